@@ -1,0 +1,30 @@
+# One function per kind of target, so that each folder's CMakeLists.txt only names its files.
+add_library(swingbank_options INTERFACE)
+target_include_directories(swingbank_options INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_options(swingbank_options INTERFACE -Wall -Wextra -Wshadow -fno-math-errno -fno-trapping-math
+  $<$<NOT:$<CONFIG:Debug>>:-O3>)
+if(SWINGBANK_ARCH)
+  target_compile_options(swingbank_options INTERFACE -march=${SWINGBANK_ARCH})
+endif()
+if(SWINGBANK_WERROR)
+  target_compile_options(swingbank_options INTERFACE -Werror)
+endif()
+if(SWINGBANK_SANITIZE)
+  target_compile_options(swingbank_options INTERFACE -fsanitize=${SWINGBANK_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(swingbank_options INTERFACE -fsanitize=${SWINGBANK_SANITIZE})
+endif()
+
+# swingbank_library(name sources... LINK targets...)
+function(swingbank_library name)
+  cmake_parse_arguments(A "" "" "LINK" ${ARGN})
+  add_library(${name} STATIC ${A_UNPARSED_ARGUMENTS})
+  target_link_libraries(${name} PUBLIC swingbank_options ${A_LINK})
+endfunction()
+
+# swingbank_command(name LINK targets...): jobs/<name>.cpp becomes bin/swingbank-<name>
+function(swingbank_command name)
+  cmake_parse_arguments(A "" "" "LINK" ${ARGN})
+  string(REPLACE "-" "_" file ${name})
+  add_executable(swingbank-${name} ${file}.cpp)
+  target_link_libraries(swingbank-${name} PRIVATE swingbank_options CLI11::CLI11 ${A_LINK})
+endfunction()

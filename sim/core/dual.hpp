@@ -1,0 +1,65 @@
+#pragma once
+// Dual<T, N>: a value and its derivatives along N directions (forward mode). T is double or a Pack.
+#include <array>
+#include <cmath>
+
+namespace swingbank::sim {
+
+inline double select(bool m, double a, double b) { return m ? a : b; }
+
+template <class T, int N>
+struct Dual {
+  T a{};
+  std::array<T, N> d{};
+  Dual() = default;
+  Dual(double x) : a(x) { d.fill(T(0.0)); }  // NOLINT(google-explicit-constructor): a constant
+
+  friend Dual operator+(const Dual& x, const Dual& y) {
+    Dual r;
+    r.a = x.a + y.a;
+    for (int i = 0; i < N; ++i) r.d[i] = x.d[i] + y.d[i];
+    return r;
+  }
+  friend Dual operator-(const Dual& x, const Dual& y) {
+    Dual r;
+    r.a = x.a - y.a;
+    for (int i = 0; i < N; ++i) r.d[i] = x.d[i] - y.d[i];
+    return r;
+  }
+  friend Dual operator*(const Dual& x, const Dual& y) {
+    Dual r;
+    r.a = x.a * y.a;
+    for (int i = 0; i < N; ++i) r.d[i] = x.d[i] * y.a + x.a * y.d[i];
+    return r;
+  }
+  friend Dual operator/(const Dual& x, const Dual& y) {
+    Dual r;
+    const T inverse = T(1.0) / y.a;
+    r.a = x.a * inverse;
+    for (int i = 0; i < N; ++i) r.d[i] = (x.d[i] - r.a * y.d[i]) * inverse;
+    return r;
+  }
+  friend Dual operator-(const Dual& x) { return Dual(0.0) - x; }
+  friend auto operator<(const Dual& x, const Dual& y) { return x.a < y.a; }
+  friend auto operator>(const Dual& x, const Dual& y) { return x.a > y.a; }
+  friend auto operator<=(const Dual& x, const Dual& y) { return x.a <= y.a; }
+};
+
+/// f(x) and f'(x) known: the dual of f.
+template <class T, int N>
+inline Dual<T, N> chain(const Dual<T, N>& x, const T& f, const T& slope) {
+  Dual<T, N> r;
+  r.a = f;
+  for (int i = 0; i < N; ++i) r.d[i] = slope * x.d[i];
+  return r;
+}
+
+template <class M, class T, int N>
+inline Dual<T, N> select(const M& m, const Dual<T, N>& x, const Dual<T, N>& y) {
+  Dual<T, N> r;
+  r.a = select(m, x.a, y.a);
+  for (int i = 0; i < N; ++i) r.d[i] = select(m, x.d[i], y.d[i]);
+  return r;
+}
+
+}  // namespace swingbank::sim

@@ -1,0 +1,66 @@
+#pragma once
+// The list of scalars every equation is compiled for, and the few functions equations may use on them:
+// + - * / < > <=, select, sqrt, sincos, atan2 (steady only), square.
+#include <cmath>
+#include <tuple>
+
+#include "sim/core/dual.hpp"
+#include "sim/core/pack.hpp"
+
+namespace swingbank::sim {
+
+/// Sensitivities carried by one dual.
+constexpr int kDirections = 8;
+using D8 = Dual<double, kDirections>;
+using P4 = Pack<4>;
+using P8 = Pack<8>;
+
+/// Every scalar an effect is instantiated for. The one place to extend.
+using Scalars = std::tuple<double, P4, P8, D8>;
+
+inline void sincos(double a, double& s, double& c) {
+  s = std::sin(a);
+  c = std::cos(a);
+}
+template <class T, int N>
+inline void sincos(const Dual<T, N>& a, Dual<T, N>& s, Dual<T, N>& c) {
+  T sa, ca;
+  sincos(a.a, sa, ca);
+  s = chain(a, sa, ca);
+  c = chain(a, ca, T(0.0) - sa);
+}
+template <class T, int N>
+inline Dual<T, N> sqrt(const Dual<T, N>& a) {
+  using std::sqrt;
+  const T f = sqrt(a.a);
+  return chain(a, f, T(0.5) / f);
+}
+template <class T, int N>
+inline Dual<T, N> atan2(const Dual<T, N>& y, const Dual<T, N>& x) {
+  using std::atan2;
+  Dual<T, N> r;
+  r.a = atan2(y.a, x.a);
+  const T q = T(1.0) / (x.a * x.a + y.a * y.a);
+  for (int i = 0; i < N; ++i) r.d[i] = (x.a * y.d[i] - y.a * x.d[i]) * q;
+  return r;
+}
+template <int N>
+inline Pack<N> atan2(Pack<N> y, Pack<N> x) {
+  for (int i = 0; i < N; ++i) y.v[i] = std::atan2(y.v[i], x.v[i]);
+  return y;
+}
+template <class T>
+inline T square(const T& a) { return a * a; }
+template <class T>
+inline T positive_part(const T& a) { return select(a > T(0.0), a, T(0.0)); }
+template <class T>
+inline T clamp(const T& a, const T& low, const T& high) { return select(a < low, low, select(high < a, high, a)); }
+
+/// The plain value of any scalar (lane 0 of a pack): for messages and branches in double code only.
+inline double value_of(double a) { return a; }
+template <int N>
+inline double value_of(const Pack<N>& a) { return a[0]; }
+template <class T, int N>
+inline double value_of(const Dual<T, N>& a) { return value_of(a.a); }
+
+}  // namespace swingbank::sim

@@ -1,0 +1,82 @@
+#pragma once
+// GENCLS: the classical machine, a constant voltage E behind Ra + jX'd.
+//   2H dw/dt = Tm - Te - D w          (Conventions::mechanical_power: (Pm - D w)/(1 + w) - Te)
+//   d delta/dt = 2 pi f0 w            Te = Re(E conj(I))
+// H = 0 is PSS/E's infinite bus: angle and speed stay where they are.
+// Source: P. Kundur, Power System Stability and Control (1994), 12.3.1; PSS/E GENCLS data sheet.
+#include "sim/core/effect.hpp"
+
+namespace swingbank::sim::machine_gencls {
+
+struct Model {
+  static constexpr std::string_view name = "GENCLS", title = "classical machine",
+                                    source = "Kundur (1994), 12.3.1; PSS/E GENCLS", dyr_name = "GENCLS";
+  static constexpr Slot slot = Slot::machine;
+  enum P { H, D, Ra, Xdp };
+  static constexpr Parameter parameters[] = {
+      {"H", "H", "s", 5.0, 0.0, 20.0, kNoNeutral, "inertia constant (0: infinite bus)"},
+      {"D", "D", "pu", 0.0, 0.0, 20.0, 0.0, "damping torque per unit speed deviation"},
+      {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance"},
+      {"Xdp", "X'd", "pu", 0.3, 1e-6, 2.5, kNoNeutral, "transient reactance"}};
+  enum X { delta, speed };
+  static constexpr State states[] = {{"delta", "rad", "rotor angle in the synchronous frame"},
+                                     {"speed", "pu", "speed deviation"}};
+  static constexpr int dyr_columns[] = {H, D};
+  static constexpr int raw_resistance = Ra, raw_reactance = Xdp;
+
+  enum C { i2H, kD, W0, power, E, moves, coefficients };
+  enum M { ere, eim, scratch };
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    if (!(p[Xdp] > 0)) problems.add("X'd = " + std::to_string(p[Xdp]) + " pu", where, "the machine needs a reactance behind its terminal", "give X'd > 0 (ZX of the generator in the .raw)");
+    if (!(p[H] >= 0)) problems.add("H = " + std::to_string(p[H]) + " s", where, "inertia cannot be negative", "give H > 0, or 0 for an infinite bus");
+  }
+  static std::string_view unphysical(const double* p) { return p[Xdp] > 0 ? "" : "X'd > 0"; }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions& conventions, T* c) {
+    c[moves] = select(p[H] > T(0.0), T(1.0), T(0.0));
+    c[i2H] = select(p[H] > T(0.0), T(0.5) / p[H], T(0.0));
+    c[kD] = p[D];
+    c[W0] = T(2.0 * 3.14159265358979323846 * conventions.frequency) * c[moves];
+    c[power] = T(conventions.mechanical_power ? 1.0 : 0.0);
+  }
+  template <class T>
+  static void source_impedance(const T* p, T& r, T& x) {
+    r = p[Ra];
+    x = p[Xdp];
+  }
+  template <class T>
+  static void emf(const T* c, const T* x, T* m, T& er, T& ei) {
+    T s, k;
+    sincos(x[delta], s, k);
+    er = m[ere] = c[E] * k;
+    ei = m[eim] = c[E] * s;
+  }
+  template <class T>
+  static void electrical(const T* c, const T* x, T* m, Signals<T>& s) {
+    s.speed = x[speed];
+    s.Te = m[ere] * s.Ir + m[eim] * s.Ii;
+    s.Ifd = c[E];
+  }
+  template <class T>
+  static void derivative(const T* c, const T* x, const T*, const Signals<T>& s, T* dx) {
+    const T driving = (s.Tm - c[kD] * x[speed]) / (T(1.0) + c[power] * x[speed]);
+    dx[delta] = c[W0] * x[speed];
+    dx[speed] = (driving - s.Te) * c[i2H];
+  }
+  template <class T>
+  static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
+    using std::atan2;
+    using std::sqrt;
+    const T er = s.Vr + p[Ra] * s.Ir - p[Xdp] * s.Ii, ei = s.Vi + p[Ra] * s.Ii + p[Xdp] * s.Ir;
+    c[E] = sqrt(er * er + ei * ei);
+    x[delta] = atan2(ei, er);
+    x[speed] = T(0.0);
+    s.Tm = er * s.Ir + ei * s.Ii;
+    s.Efd = c[E];
+    return {};
+  }
+};
+
+}  // namespace swingbank::sim::machine_gencls

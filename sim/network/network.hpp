@@ -1,0 +1,65 @@
+#pragma once
+// The positive-sequence network as read from a file: everything in per unit on base_mva, angles in rad.
+#include <complex>
+#include <string>
+#include <vector>
+
+namespace swingbank::sim {
+
+using Complex = std::complex<double>;
+
+enum class BusType { load = 1, generator = 2, slack = 3, isolated = 4 };
+
+struct Bus {
+  int number;          ///< as in the file; elsewhere buses are indices into Network::buses
+  std::string name;
+  double kv;           ///< nominal voltage [kV]
+  BusType type;
+  double vm, va;       ///< voltage in the file: start of the power flow [pu, rad]
+};
+/// Consumption [pu]: constant power, constant current and constant admittance parts at 1 pu voltage.
+struct Load {
+  int bus;
+  std::string id;
+  Complex power, current, admittance;
+};
+struct Shunt {
+  int bus;
+  std::string id;
+  Complex admittance;
+};
+/// Line or two-winding transformer: pi section with an ideal tap (ratio, phase shift) on the `from` side.
+struct Branch {
+  int from, to;
+  std::string circuit;
+  double r, x, b;             ///< series impedance, total charging [pu]
+  double tap = 1.0, shift = 0.0;  ///< [-, rad]
+  Complex shunt_from{}, shunt_to{};  ///< line shunts, magnetising admittance [pu]
+  bool in_service = true;
+};
+struct Generator {
+  int bus;
+  std::string id;
+  double p, q;            ///< dispatch [pu on base_mva]
+  double vset;            ///< [pu]
+  double mva;             ///< machine base
+  double zr, zx;          ///< ZSORCE [pu on mva]
+  bool in_service = true;
+};
+
+struct Network {
+  std::string title, origin;   ///< origin: the file it was read from
+  double base_mva = 100.0, frequency = 60.0;
+  std::vector<Bus> buses;
+  std::vector<Load> loads;
+  std::vector<Shunt> shunts;
+  std::vector<Branch> branches;
+  std::vector<Generator> generators;
+
+  /// Index of the bus with this number, or -1.
+  [[nodiscard]] int bus_index(int number) const;
+  /// Index of the branch between two bus numbers (either direction) with this circuit id, or -1.
+  [[nodiscard]] int branch_index(int from, int to, const std::string& circuit) const;
+};
+
+}  // namespace swingbank::sim

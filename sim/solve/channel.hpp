@@ -1,0 +1,33 @@
+#pragma once
+// The quantities a run records for each plant. One list: simulator, shards, trainer and reports read it.
+#include <array>
+#include <string_view>
+
+namespace swingbank::sim {
+
+enum class Channel { delta, speed, P, Q, V, theta, Efd, Ifd, Tm };
+struct ChannelRecord {
+  Channel channel;
+  std::string_view name, unit, meaning;
+};
+/// Per unit on the machine's own base.
+inline constexpr std::array<ChannelRecord, 9> kChannels = {{
+    {Channel::delta, "delta", "rad", "rotor angle in the synchronous frame"},
+    {Channel::speed, "speed", "pu", "speed deviation"},
+    {Channel::P, "P", "pu", "active power out of the machine"},
+    {Channel::Q, "Q", "pu", "reactive power out of the machine"},
+    {Channel::V, "V", "pu", "terminal voltage magnitude"},
+    {Channel::theta, "theta", "rad", "terminal voltage angle in the synchronous frame; held while V = 0"},
+    {Channel::Efd, "Efd", "pu", "field voltage, 1 pu on the air-gap line"},
+    {Channel::Ifd, "Ifd", "pu", "field current, 1 pu on the air-gap line"},
+    {Channel::Tm, "Tm", "pu", "mechanical torque, or power where the convention says so"},
+}};
+inline constexpr int kChannelCount = static_cast<int>(kChannels.size());
+/// nullptr if there is none of that name.
+constexpr const ChannelRecord* find_channel(std::string_view name) {
+  for (const auto& c : kChannels)
+    if (c.name == name) return &c;
+  return nullptr;
+}
+
+}  // namespace swingbank::sim

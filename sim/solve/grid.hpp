@@ -1,0 +1,54 @@
+#pragma once
+// A grid ready to run: network, power flow, and one plant per generator with its effects and parameters.
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sim/core/effect.hpp"
+#include "sim/network/powerflow.hpp"
+#include "sim/network/psse.hpp"
+
+namespace swingbank::sim {
+
+/// An effect with its parameter values, in the order of effect->parameters.
+struct Block {
+  const Effect* effect = nullptr;
+  std::vector<double> p;
+};
+/// One generator: the machine and its controls in order of Slot.
+struct Plant {
+  std::string name;       ///< "30" or "30/2": bus number, and id where a bus has several machines
+  int bus = -1;           ///< index into Network::buses
+  double mva = 100.0;     ///< machine base
+  Complex generation;     ///< P + jQ at the operating point [pu on the network's base]
+  Block machine;
+  std::vector<Block> controls;
+};
+struct Grid {
+  Network network;
+  PowerFlow flow;
+  Conventions conventions;
+  std::vector<Plant> plants;
+};
+
+/// Joins a network with its dynamic models. Throws InputError naming every generator in service without a model,
+/// every model without a generator, every unknown model, wrong column count and inconsistent value, with the
+/// .dyr line.
+Grid make_grid(Network network, const std::vector<DyrRecord>& dynamics, const std::string& dyr_name, Conventions conventions);
+/// read_raw + read_dyr + make_grid.
+Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dyr, Conventions conventions);
+
+/// A plant brought to its operating point: coefficients and states of machine and controls back to back.
+struct Operating {
+  std::vector<double> c;       ///< coefficients, machine first
+  std::vector<double> x;       ///< states, machine first
+  double r, xs;                ///< impedance behind the terminal [pu on the machine's base]
+  double Efd, Tm;              ///< held where exciter or governor slot is empty
+  Signals<double> s;           ///< every signal at the operating point
+};
+/// Back-initialises one plant exactly (saturation included) from terminal voltage [pu] and generation [pu on
+/// base_mva]. Throws InputError where an effect cannot hold the point.
+Operating operating_point(const Plant& plant, Complex voltage, double base_mva, const Conventions& conventions);
+
+}  // namespace swingbank::sim
