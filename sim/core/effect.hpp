@@ -39,6 +39,7 @@ struct Parameter {
 
 struct State {
   std::string_view name, unit, meaning;
+  double weight = 1.0;  ///< of this state's error in step control: a speed error counts through the angle it causes
 };
 
 /// What simulators do differently, chosen by the origin of the data (docs/decisions.md).

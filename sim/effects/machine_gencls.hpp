@@ -20,7 +20,7 @@ struct Model {
       {"Xdp", "X'd", "pu", 0.3, 1e-6, 2.5, kNoNeutral, "transient reactance"}};
   enum X { delta, speed };
   static constexpr State states[] = {{"delta", "rad", "rotor angle in the synchronous frame"},
-                                     {"speed", "pu", "speed deviation"}};
+                                     {"speed", "pu", "speed deviation", 100.0}};
   static constexpr int dyr_columns[] = {H, D};
   static constexpr int raw_resistance = Ra, raw_reactance = Xdp;
 

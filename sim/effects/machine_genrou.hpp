@@ -38,7 +38,7 @@ struct Model {
       {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance"}};
   enum X { delta, speed, Eqp, Edp, psi1d, psi2q };
   static constexpr State states[] = {{"delta", "rad", "rotor angle in the synchronous frame"},
-                                     {"speed", "pu", "speed deviation"},
+                                     {"speed", "pu", "speed deviation", 100.0},
                                      {"Eqp", "pu", "q-axis transient voltage"},
                                      {"Edp", "pu", "d-axis transient voltage"},
                                      {"psi1d", "pu", "d-axis damper flux"},
