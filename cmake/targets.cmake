@@ -21,10 +21,19 @@ function(swingbank_library name)
   target_link_libraries(${name} PUBLIC swingbank_options ${A_LINK})
 endfunction()
 
-# swingbank_command(name LINK targets...): jobs/<name>.cpp becomes bin/swingbank-<name>
+# swingbank_command(name SUMMARY "one line" LINK targets...): jobs/<name>.cpp becomes bin/swingbank-<name>.
+# The summary stands here only: `swingbank --help` lists it, the command gets it as SWINGBANK_SUMMARY.
 function(swingbank_command name)
-  cmake_parse_arguments(A "" "" "LINK" ${ARGN})
+  cmake_parse_arguments(A "" "SUMMARY" "LINK" ${ARGN})
   string(REPLACE "-" "_" file ${name})
   add_executable(swingbank-${name} ${file}.cpp)
   target_link_libraries(swingbank-${name} PRIVATE swingbank_options CLI11::CLI11 ${A_LINK})
+  target_compile_definitions(swingbank-${name} PRIVATE SWINGBANK_SUMMARY="${A_SUMMARY}")
+  set_property(GLOBAL APPEND_STRING PROPERTY SWINGBANK_COMMANDS "{\"${name}\", \"${A_SUMMARY}\"},\n")
+endfunction()
+
+# Writes the table of all commands, in the order they were declared, for the dispatcher.
+function(swingbank_command_table)
+  get_property(table GLOBAL PROPERTY SWINGBANK_COMMANDS)
+  file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/commands.inc CONTENT "${table}" @ONLY)
 endfunction()
