@@ -1,6 +1,7 @@
 #pragma once
-// One evaluation of a plant's equations, for any scalar: both integrators, play-in and initialisation use it.
-// Order: emf -> (the network answers with Ir, Ii) -> electrical -> controls in slot order -> machine derivative.
+// One plant's equations, whatever effects it is made of, in the order every integrator evaluates them:
+//   emf -> (network: terminal voltage and current) -> machine.electrical -> controls in order of Slot -> machine.derivative
+// States and coefficients of a plant lie back to back, machine first, as in Operating.
 #include <vector>
 
 #include "sim/solve/grid.hpp"
@@ -10,52 +11,45 @@ namespace swingbank::sim {
 template <class T>
 class PlantEquations {
  public:
-  explicit PlantEquations(const Plant& plant) : machine_(&plant.machine.effect->get<T>().machine) {
-    scratch_ = plant.machine.effect->scratch;
-    coefficients_ = plant.machine.effect->coefficients;
+  explicit PlantEquations(const Plant& plant) : machine_(plant.machine.effect->get<T>().machine) {
     states_ = static_cast<int>(plant.machine.effect->states.size());
-    for (const auto& block : plant.controls) {
-      controls_.push_back({&block.effect->get<T>().control, coefficients_, states_});
-      coefficients_ += block.effect->coefficients;
+    coefficients_ = plant.machine.effect->coefficients;
+    scratch_ = plant.machine.effect->scratch;
+    for (const Block& block : plant.controls) {
+      controls_.push_back({block.effect->get<T>().control, states_, coefficients_});
       states_ += static_cast<int>(block.effect->states.size());
+      coefficients_ += block.effect->coefficients;
     }
   }
   [[nodiscard]] int states() const { return states_; }
   [[nodiscard]] int coefficients() const { return coefficients_; }
   [[nodiscard]] int scratch() const { return scratch_; }
-  [[nodiscard]] bool has_controls() const { return !controls_.empty(); }
 
-  /// Voltage behind the source impedance, network frame [pu].
-  void emf(const T* c, const T* x, T* m, T& er, T& ei) const { machine_->emf(c, x, m, er, ei); }
+  /// Voltage er + j ei behind the machine's impedance [pu, network frame]. m: scratch() values, kept for derivative().
+  void emf(const T* c, const T* x, T* m, T& er, T& ei) const { machine_.emf(c, x, m, er, ei); }
 
-  /// Given s.Ir, s.Ii, the held s.Efd, s.Tm and, where there are controls, s.V.., s.P, s.Q: fills every other signal.
-  void signals(const T* c, const T* x, T* m, Signals<T>& s, T* dx) const {
-    machine_->electrical(c, x, m, s);
-    for (const auto& k : controls_) k.ops->evaluate(c + k.c, x + k.x, s, dx + k.x);
-  }
-  /// signals() and the derivative of every state.
+  /// Needs Vr, Vi, Ir, Ii [pu on the machine's base], and in s.Efd and s.Tm the values held where no exciter or
+  /// governor sets them. Fills every other signal, and dx with states() derivatives [1/s].
   void derivative(const T* c, const T* x, T* m, Signals<T>& s, T* dx) const {
-    signals(c, x, m, s, dx);
-    machine_->derivative(c, x, m, s, dx);
-  }
-  /// Terminal voltage and power from the emf and the current, behind r + jx.
-  static void terminal(const T& er, const T& ei, const T& r, const T& xs, Signals<T>& s) {
     using std::sqrt;
-    s.Vr = er - r * s.Ir + xs * s.Ii;
-    s.Vi = ei - r * s.Ii - xs * s.Ir;
-    s.V = sqrt(s.Vr * s.Vr + s.Vi * s.Vi);
     s.P = s.Vr * s.Ir + s.Vi * s.Ii;
     s.Q = s.Vi * s.Ir - s.Vr * s.Ii;
+    s.V = sqrt(s.Vr * s.Vr + s.Vi * s.Vi + T(1e-24));  // a dual needs a slope at V = 0
+    s.Vs = T(0.0);
+    s.Vlimiter = T(0.0);
+    machine_.electrical(c, x, m, s);
+    for (const Control& k : controls_) k.ops.evaluate(c + k.coefficient, x + k.state, s, dx + k.state);
+    machine_.derivative(c, x, m, s, dx);
   }
 
  private:
   struct Control {
-    const ControlOps<T>* ops;
-    int c, x;
+    ControlOps<T> ops;
+    int state, coefficient;
   };
-  const MachineOps<T>* machine_;
+  MachineOps<T> machine_;
   std::vector<Control> controls_;
-  int coefficients_ = 0, states_ = 0, scratch_ = 0;
+  int states_ = 0, coefficients_ = 0, scratch_ = 0;
 };
 
 }  // namespace swingbank::sim
