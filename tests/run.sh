@@ -1,0 +1,91 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds and runs the tests.
+#   bash tests/run.sh [--fast] [--without-psse] [--ci]
+#     --fast          the fast tier only (under 2 minutes once built)
+#     --without-psse  leaves out the comparison with PSS/E's own records, which are not part of this repository
+#     --ci            as on the integration machine: warnings are errors, the scripts and the formatting are checked,
+#                     and the fast tier runs once more under the address and undefined-behaviour sanitizers
+# PSS/E's records are looked for in $SWINGBANK_REFERENCE, else in ../shared/reference beside the repository.
+set -euo pipefail
+
+source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+fast_only=0 with_psse=1 ci=0
+while (($#)); do
+  case $1 in
+    --fast) fast_only=1 ;;
+    --without-psse) with_psse=0 ;;
+    --ci) ci=1 ;;
+    -h | --help) sed -n '2,8p' "$0"; exit 0 ;;
+    *) echo "unknown option at '$1' (tests/run.sh does not have it): run tests/run.sh --help" >&2; exit 1 ;;
+  esac
+  shift
+done
+preset=release
+((ci)) && preset=ci
+build=$source_folder/build/$preset
+failed=()
+
+say() { printf '\n== %s (after %d s)\n' "$*" "$SECONDS"; }
+
+check_reference() {
+  local folder=${SWINGBANK_REFERENCE:-$source_folder/../shared/reference}
+  if [[ ! -d $folder/psse ]]; then
+    echo "PSS/E records missing at $folder/psse (they are not part of this repository): set SWINGBANK_REFERENCE" \
+      "to the folder that holds psse/, or run with --without-psse" >&2
+    return 1
+  fi
+  SWINGBANK_REFERENCE=$(cd "$folder" && pwd)
+  export SWINGBANK_REFERENCE
+}
+
+check_scripts() {
+  local scripts
+  mapfile -t scripts < <(cd "$source_folder" && git ls-files '*.sh' '*.bash' '*.sbatch' .ci/run)
+  (cd "$source_folder" && shellcheck -x -P SCRIPTDIR "${scripts[@]}")
+}
+
+check_format() {
+  local sources
+  mapfile -t sources < <(cd "$source_folder" && git ls-files '*.cpp' '*.hpp')
+  (cd "$source_folder" && clang-format --dry-run -Werror "${sources[@]}")
+}
+
+# run_tests NAME BUILD-FOLDER CTEST-ARGUMENT...
+run_tests() {
+  local name=$1 folder=$2
+  shift 2
+  local exclude=()
+  ((with_psse)) || exclude=(-E PsseRecords)
+  ctest --test-dir "$folder" --output-on-failure --no-tests=error --timeout 900 "${exclude[@]}" "$@" || failed+=("$name")
+}
+
+run_sanitized() {
+  bash "$source_folder/jobs/setup.sh" --preset sanitize --tests
+  # Not ours: what OpenMPI keeps until the process ends.
+  export LSAN_OPTIONS=suppressions=$source_folder/tests/leaks.txt:print_suppressions=0
+  export UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1
+  # Scripts start the commands of the full build; here only the unit tests count.
+  run_tests sanitize "$source_folder/build/sanitize" -L fast -LE script -j "$(nproc)"
+}
+
+((!with_psse)) || check_reference
+say "packages and build ($preset)"
+bash "$source_folder/jobs/setup.sh" --preset "$preset" --tests
+if ((ci)); then
+  say "scripts and formatting"
+  check_scripts || failed+=(shellcheck)
+  check_format || failed+=(clang-format)
+  say "fast tier under the sanitizers"
+  run_sanitized
+fi
+say "fast tier"
+run_tests fast "$build" -L fast -j "$(nproc)"
+if ((!fast_only)); then
+  say "full tier"
+  run_tests full "$build" -L full
+fi
+if ((${#failed[@]})); then
+  say "failed: ${failed[*]}"
+  exit 1
+fi
+say "all passed"
