@@ -64,7 +64,7 @@ struct Signals {
   T Vlimiter{};       ///< limiters' sum into the voltage error [pu]
 };
 
-/// Equations of a machine: voltage `e` behind the constant impedance r + jx, both on the machine's base.
+/// Equations of a machine (state 0 is the rotor angle, state 1 the speed deviation): voltage `e` behind the constant impedance r + jx, both on the machine's base.
 /// x: states; c: coefficients; m: scratch shared by the three calls of one evaluation.
 template <class T>
 struct MachineOps {

@@ -87,4 +87,27 @@ inline void sincos(Pack<N> a, Pack<N>& s, Pack<N>& c) {
   c = P((typename P::Vector)((Mask)cc.v ^ csign));
 }
 
+/// Four-quadrant arctangent, at most 2 ulp; 0 where both arguments are 0. Reduction and rational approximation as in
+/// Moshier's Cephes library (atan.c).
+template <int N>
+inline Pack<N> atan2(Pack<N> y, Pack<N> x) {
+  using P = Pack<N>;
+  using Mask = typename P::Mask;
+  const Mask sign_bit = Mask{} + std::int64_t(1ULL << 63);
+  const P a((typename P::Vector)((Mask)y.v & ~sign_bit)), b((typename P::Vector)((Mask)x.v & ~sign_bit));
+  const Mask big = a > P(2.41421356237309504880) * b, mid = a > P(0.66) * b;
+  const P numerator = select(big, -b, select(mid, a - b, a));
+  P denominator = select(big, a, select(mid, a + b, b));
+  denominator = select(denominator > P(0.0), denominator, P(1.0));
+  const P offset = select(big, P(1.57079632679489661923), select(mid, P(0.78539816339744830962), P(0.0)));
+  const P t = numerator / denominator, z = t * t;
+  const P p = (((P(-8.750608600031904122785e-1) * z + P(-1.615753718733365076637e1)) * z +
+                P(-7.500855792314704667340e1)) * z + P(-1.228866684490136173410e2)) * z + P(-6.485021904942025371773e1);
+  const P q = ((((z + P(2.485846490142306297962e1)) * z + P(1.650270098316988542046e2)) * z +
+                P(4.328810604912902668951e2)) * z + P(4.853903996359136964868e2)) * z + P(1.945506571482613964425e2);
+  P r = offset + (t + t * (z * p / q));
+  r = select(x < P(0.0), P(3.14159265358979323846) - r, r);
+  return P((typename P::Vector)((Mask)r.v | ((Mask)y.v & sign_bit)));
+}
+
 }  // namespace swingbank::sim

@@ -44,11 +44,6 @@ inline Dual<T, N> atan2(const Dual<T, N>& y, const Dual<T, N>& x) {
   for (int i = 0; i < N; ++i) r.d[i] = (x.a * y.d[i] - y.a * x.d[i]) * q;
   return r;
 }
-template <int N>
-inline Pack<N> atan2(Pack<N> y, Pack<N> x) {
-  for (int i = 0; i < N; ++i) y.v[i] = std::atan2(y.v[i], x.v[i]);
-  return y;
-}
 template <class T>
 inline T square(const T& a) { return a * a; }
 template <class T>

@@ -31,15 +31,35 @@ class PlantEquations {
   /// Needs Vr, Vi, Ir, Ii [pu on the machine's base], and in s.Efd and s.Tm the values held where no exciter or
   /// governor sets them. Fills every other signal, and dx with states() derivatives [1/s].
   void derivative(const T* c, const T* x, T* m, Signals<T>& s, T* dx) const {
+    terminal(s);
+    signals(c, x, m, s, dx);
+    machine_.derivative(c, x, m, s, dx);
+  }
+  /// The same where nothing but the machine reads the terminal: no V, P, Q; only Ir and Ii are needed.
+  void machine_derivative(const T* c, const T* x, T* m, Signals<T>& s, T* dx) const {
+    machine_.electrical(c, x, m, s);
+    machine_.derivative(c, x, m, s, dx);
+  }
+  /// After terminal(s): every other signal; dx gets the controls' derivatives.
+  void signals(const T* c, const T* x, T* m, Signals<T>& s, T* dx) const {
+    machine_.electrical(c, x, m, s);
+    for (const Control& k : controls_) k.ops.evaluate(c + k.coefficient, x + k.state, s, dx + k.state);
+  }
+  [[nodiscard]] bool has_controls() const { return !controls_.empty(); }
+
+  /// Vr, Vi at the terminal from the voltage e behind r + jx and the current in s.
+  static void voltage(const T& er, const T& ei, const T& r, const T& x, Signals<T>& s) {
+    s.Vr = er - r * s.Ir + x * s.Ii;
+    s.Vi = ei - r * s.Ii - x * s.Ir;
+  }
+  /// P, Q and V from terminal voltage and current.
+  static void terminal(Signals<T>& s) {
     using std::sqrt;
     s.P = s.Vr * s.Ir + s.Vi * s.Ii;
     s.Q = s.Vi * s.Ir - s.Vr * s.Ii;
     s.V = sqrt(s.Vr * s.Vr + s.Vi * s.Vi + T(1e-24));  // a dual needs a slope at V = 0
     s.Vs = T(0.0);
     s.Vlimiter = T(0.0);
-    machine_.electrical(c, x, m, s);
-    for (const Control& k : controls_) k.ops.evaluate(c + k.coefficient, x + k.state, s, dx + k.state);
-    machine_.derivative(c, x, m, s, dx);
   }
 
  private:

@@ -1,0 +1,83 @@
+#pragma once
+// The lanes kernel for one scalar type (double: one lane, Pack<N>: N lanes). See batch.hpp for what it promises.
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "sim/solve/internal_network.hpp"
+#include "sim/solve/lane_schedule.hpp"
+#include "sim/solve/lane_traits.hpp"
+#include "sim/solve/plant_equations.hpp"
+#include "sim/solve/tableau.hpp"
+
+namespace swingbank::sim {
+
+template <class T>
+class Lanes {
+ public:
+  static constexpr int kLanes = LaneTraits<T>::lanes;
+  using Next = std::function<bool(Job&)>;
+  using Done = std::function<void(const Job&, const Trajectory&)>;
+
+  Lanes(const Grid& grid, const BatchOptions& options);
+  void run(const Next& next, const Done& done);
+
+ private:
+  using Traits = LaneTraits<T>;
+  struct PlantSlice {
+    PlantEquations<T> equations;
+    int x, c, m;  ///< offsets of states, coefficients and scratch
+  };
+
+  // one evaluation (lanes_equations.hpp)
+  void emfs(const T* x);
+  void current(int plant, Signals<T>& s) const;
+  void derivative(const T* x, T* dx);
+  void sample_outputs(const T* x, unsigned valid, const int* index);
+
+  // loading (lanes_load.hpp)
+  void load(int lane);
+  void load_plant(int lane, std::size_t plant, const Operating& at);
+  void enter_segment(int lane);
+  void record_steady_start(int lane);
+  int samples_until(double t) const;
+  void refill(int lane, const Next& next, const Done& done);
+  void begin_record(Trajectory& record) const;
+  void hand_over(int lane, Outcome outcome, const Done& done);
+
+  // stepping (lanes_step.hpp)
+  void evaluate_fresh();
+  template <int Stage>
+  void stage(T h);
+  T scaled_error(T h) const;
+  void record_step(T h, unsigned accepted, const double* start, const double* tried);
+  void prepare_dense(T h);
+  void commit(unsigned accepted);
+  T spread(const T* x) const;
+  void settle(unsigned accepted, const Next& next, const Done& done);
+
+  const Grid& grid_;
+  BatchOptions options_;
+  InternalNetwork network_;
+  std::vector<PlantSlice> plants_;
+  std::vector<Operating> base_;          ///< operating points with the grid's own parameters
+  std::vector<int> recorded_;
+  std::vector<Channel> channels_;
+  int n_ = 0, samples_ = 0, states_ = 0;
+  std::vector<double> weight_;           ///< per state, already divided by the tolerance
+
+  std::vector<T> g_, b_;                 ///< internal matrices, [row][column]
+  std::vector<T> c_, m_, er_, ei_, r_, xs_, efd_, tm_, grounded_, theta_;
+  std::vector<T> y_, trial_, dense_;     ///< states; dense_: four coefficient rows
+  std::vector<T> k_[dp54::kStages];
+  std::vector<T> kept_, unused_;
+  std::vector<LaneRun> lanes_;
+  std::vector<std::vector<double>> lane_r_, lane_x_;  ///< source impedances per lane
+  unsigned active_ = 0, fresh_ = 0;      ///< lanes that run; lanes whose first stage must be evaluated anew
+};
+
+}  // namespace swingbank::sim
+
+#include "sim/solve/lanes_equations.hpp"
+#include "sim/solve/lanes_load.hpp"
+#include "sim/solve/lanes_step.hpp"

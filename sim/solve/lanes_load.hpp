@@ -1,0 +1,186 @@
+#pragma once
+// Lanes: construction, loading a job into a lane, switching, finishing.
+#include <algorithm>
+
+#include "sim/solve/lanes.hpp"
+
+namespace swingbank::sim {
+
+template <class T>
+Lanes<T>::Lanes(const Grid& grid, const BatchOptions& options) : grid_(grid), options_(options), network_(grid) {
+  n_ = static_cast<int>(grid.plants.size());
+  samples_ = static_cast<int>(std::floor(options.t_end * options.rate + 1e-9)) + 1;
+  recorded_ = options.plants;
+  if (recorded_.empty())
+    for (int i = 0; i < n_; ++i) recorded_.push_back(i);
+  channels_ = options.channels;
+  if (channels_.empty())
+    for (const auto& c : kChannels) channels_.push_back(c.channel);
+
+  int c = 0, m = 0;
+  for (const auto& plant : grid.plants) {
+    plants_.push_back({PlantEquations<T>(plant), states_, c, m});
+    states_ += plants_.back().equations.states();
+    c += plants_.back().equations.coefficients();
+    m += plants_.back().equations.scratch();
+    base_.push_back(operating_point(plant, grid.flow.voltage[static_cast<std::size_t>(plant.bus)], grid.network.base_mva, grid.conventions));
+    for (const auto& state : plant.machine.effect->states) weight_.push_back(state.weight / options.tolerance);
+    for (const auto& block : plant.controls)
+      for (const auto& state : block.effect->states) weight_.push_back(state.weight / options.tolerance);
+  }
+  const auto n = static_cast<std::size_t>(n_), states = static_cast<std::size_t>(states_);
+  g_.assign(n * n, T(0.0));
+  b_.assign(n * n, T(0.0));
+  c_.assign(static_cast<std::size_t>(c), T(0.0));
+  m_.assign(static_cast<std::size_t>(m), T(0.0));
+  for (auto* v : {&er_, &ei_, &r_, &xs_, &efd_, &tm_, &grounded_, &theta_}) v->assign(n, T(0.0));
+  for (auto* v : {&y_, &trial_, &kept_, &unused_}) v->assign(states, T(0.0));
+  dense_.assign(4 * states, T(0.0));
+  for (auto& k : k_) k.assign(states, T(0.0));
+  lanes_.resize(kLanes);
+  lane_r_.resize(kLanes);
+  lane_x_.resize(kLanes);
+  // Idle lanes carry the grid's own operating point, so that their arithmetic stays finite.
+  for (int l = 0; l < kLanes; ++l) {
+    lanes_[static_cast<std::size_t>(l)].segments = {{0.0, {}}};
+    load(l);
+    enter_segment(l);
+  }
+}
+
+template <class T>
+void Lanes<T>::load_plant(int lane, std::size_t plant, const Operating& at) {
+  const PlantSlice& p = plants_[plant];
+  for (std::size_t i = 0; i < at.c.size(); ++i) Traits::set(c_[static_cast<std::size_t>(p.c) + i], lane, at.c[i]);
+  for (std::size_t i = 0; i < at.x.size(); ++i) Traits::set(y_[static_cast<std::size_t>(p.x) + i], lane, at.x[i]);
+  Traits::set(r_[plant], lane, at.r);
+  Traits::set(xs_[plant], lane, at.xs);
+  Traits::set(efd_[plant], lane, at.Efd);
+  Traits::set(tm_[plant], lane, at.Tm);
+  Traits::set(theta_[plant], lane, std::atan2(at.s.Vi, at.s.Vr));
+  lane_r_[static_cast<std::size_t>(lane)][plant] = at.r;
+  lane_x_[static_cast<std::size_t>(lane)][plant] = at.xs;
+}
+
+/// Brings every plant of the lane to its operating point, with the job's parameters where it has any.
+template <class T>
+void Lanes<T>::load(int lane) {
+  auto& run = lanes_[static_cast<std::size_t>(lane)];
+  lane_r_[static_cast<std::size_t>(lane)].resize(plants_.size());
+  lane_x_[static_cast<std::size_t>(lane)].resize(plants_.size());
+  for (std::size_t i = 0; i < plants_.size(); ++i) load_plant(lane, i, base_[i]);
+  for (const auto& [plant, values] : run.job.machine_parameters) {
+    Plant changed = grid_.plants[static_cast<std::size_t>(plant)];
+    changed.machine.p = values;
+    load_plant(lane, static_cast<std::size_t>(plant),
+               operating_point(changed, grid_.flow.voltage[static_cast<std::size_t>(changed.bus)], grid_.network.base_mva, grid_.conventions));
+  }
+  run.segment = 0;
+  run.sample = 0;
+  run.clock.t = 0.0;
+}
+
+/// Puts the matrices of the lane's current segment into place and starts the step control anew.
+template <class T>
+void Lanes<T>::enter_segment(int lane) {
+  auto& run = lanes_[static_cast<std::size_t>(lane)];
+  const auto l = static_cast<std::size_t>(lane);
+  const InternalMatrix& matrix = network_.matrix(run.segments[run.segment].topology, lane_r_[l], lane_x_[l]);
+  for (std::size_t i = 0; i < matrix.g.size(); ++i) {
+    Traits::set(g_[i], lane, matrix.g[i]);
+    Traits::set(b_[i], lane, matrix.b[i]);
+  }
+  for (std::size_t i = 0; i < matrix.grounded.size(); ++i) Traits::set(grounded_[i], lane, matrix.grounded[i] ? 1.0 : 0.0);
+  const bool last = run.segment + 1 >= run.segments.size();
+  const double end = last ? options_.t_end : run.segments[run.segment + 1].start;
+  run.clock.restart(std::min(end, options_.t_end));
+  fresh_ |= 1U << lane;
+}
+
+/// Until the first switching the grid stands still (operating_point checks the derivatives): the samples up to there
+/// are the operating point itself.
+template <class T>
+void Lanes<T>::record_steady_start(int lane) {
+  auto& run = lanes_[static_cast<std::size_t>(lane)];
+  if (!(run.segments[0].topology == Topology{})) return;
+  const bool switches = run.segments.size() > 1 && run.segments[1].start < options_.t_end;
+  const double first = switches ? run.segments[1].start : options_.t_end;
+  const int count = samples_until(first);
+  int index[kLanes] = {};
+  sample_outputs(y_.data(), 1U << lane, index);
+  for (std::size_t k = 0; k < recorded_.size(); ++k)
+    for (std::size_t j = 0; j < channels_.size(); ++j) {
+      double* v = run.record.at(static_cast<int>(k), static_cast<int>(j));
+      std::fill(v + 1, v + count, v[0]);
+    }
+  run.sample = count;
+  run.clock.t = first;
+  if (switches) {
+    run.segment = 1;
+    enter_segment(lane);
+  }
+}
+
+/// How many samples lie at or before t.
+template <class T>
+int Lanes<T>::samples_until(double t) const {
+  int count = static_cast<int>(t * options_.rate) + 1;
+  while (count > 0 && (count - 1) / options_.rate > t) --count;
+  while (count / options_.rate <= t) ++count;
+  return count < samples_ ? count : samples_;
+}
+
+/// Starts the next job in this lane; one that ends at once (nothing ever switches) is handed over right away.
+template <class T>
+void Lanes<T>::refill(int lane, const Next& next, const Done& done) {
+  auto& run = lanes_[static_cast<std::size_t>(lane)];
+  for (;;) {
+    run.job = {};
+    if (!next(run.job)) break;
+    run.segments = segments(run.job.event, grid_.network);
+    begin_record(run.record);
+    load(lane);
+    enter_segment(lane);
+    record_steady_start(lane);
+    if (run.clock.t < options_.t_end) {
+      active_ |= 1U << lane;
+      return;
+    }
+    hand_over(lane, Outcome::stable, done);
+  }
+  // Nothing left: the lane idles at the grid's own operating point.
+  active_ &= ~(1U << lane);
+  run.job = {};
+  run.segments = {{0.0, {}}};
+  load(lane);
+  enter_segment(lane);
+  run.clock.next = std::numeric_limits<double>::infinity();
+}
+
+template <class T>
+void Lanes<T>::begin_record(Trajectory& record) const {
+  record.rate = options_.rate;
+  record.samples = samples_;
+  record.plants = recorded_;
+  record.channels = channels_;
+  record.values.assign(recorded_.size() * channels_.size() * static_cast<std::size_t>(samples_), 0.0);
+  record.outcome = Outcome::stable;
+  record.largest_spread = 0.0;
+}
+
+/// A run that ended early keeps its last sample to the end.
+template <class T>
+void Lanes<T>::hand_over(int lane, Outcome outcome, const Done& done) {
+  auto& run = lanes_[static_cast<std::size_t>(lane)];
+  run.record.outcome = outcome;
+  run.record.stopped_at = run.clock.t;
+  if (run.sample < samples_ && run.sample > 0)
+    for (std::size_t k = 0; k < recorded_.size(); ++k)
+      for (std::size_t j = 0; j < channels_.size(); ++j) {
+        double* v = run.record.at(static_cast<int>(k), static_cast<int>(j));
+        std::fill(v + run.sample, v + samples_, v[run.sample - 1]);
+      }
+  done(run.job, run.record);
+}
+
+}  // namespace swingbank::sim

@@ -1,0 +1,170 @@
+#pragma once
+// Lanes: the free-running loop. Every pack step advances each lane by its own step; a lane accepts, rejects, switches
+// and refills alone.
+#include "sim/solve/lanes.hpp"
+
+namespace swingbank::sim {
+
+/// First stage of the lanes that were loaded or switched; the others keep theirs (first same as last).
+template <class T>
+void Lanes<T>::evaluate_fresh() {
+  derivative(y_.data(), kept_.data());
+  const auto fresh = Traits::mask(fresh_);
+  for (std::size_t i = 0; i < y_.size(); ++i) k_[0][i] = select(fresh, kept_[i], k_[0][i]);
+  fresh_ = 0;
+}
+
+template <class T>
+template <int Stage>
+void Lanes<T>::stage(T h) {
+  const T* y = y_.data();
+  T* trial = trial_.data();
+  const std::size_t n = y_.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    T sum = T(dp54::a[Stage][0]) * k_[0][i];
+    for (int j = 1; j < Stage; ++j)
+      if (dp54::a[Stage][j] != 0.0) sum = sum + T(dp54::a[Stage][j]) * k_[j][i];
+    trial[i] = y[i] + h * sum;
+  }
+  derivative(trial, k_[Stage].data());
+}
+
+/// Largest weighted error over the states, in units of the tolerance.
+template <class T>
+T Lanes<T>::scaled_error(T h) const {
+  T worst(0.0);
+  for (std::size_t i = 0; i < y_.size(); ++i) {
+    T e = T(dp54::error[0]) * k_[0][i];
+    for (int j = 2; j < dp54::kStages; ++j) e = e + T(dp54::error[j]) * k_[j][i];
+    e = absolute(e) * T(weight_[i]);
+    worst = select(e <= worst, worst, e);  // in this order a NaN wins
+  }
+  return worst * h;
+}
+
+template <class T>
+T Lanes<T>::spread(const T* x) const {
+  T low = x[plants_[0].x], high = low;
+  for (const auto& p : plants_) {
+    low = minimum(low, x[p.x]);
+    high = maximum(high, x[p.x]);
+  }
+  return high - low;
+}
+
+/// Coefficients of y(theta) = y0 + theta (d0 + (1 - theta)(d1 + theta (d2 + (1 - theta) d3))).
+template <class T>
+void Lanes<T>::prepare_dense(T h) {
+  const std::size_t n = y_.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const T delta = trial_[i] - y_[i];
+    const T slope = h * k_[0][i] - delta;
+    T d = T(dp54::dense[0]) * k_[0][i];
+    for (int j = 2; j < dp54::kStages; ++j) d = d + T(dp54::dense[j]) * k_[j][i];
+    dense_[i] = delta;
+    dense_[n + i] = slope;
+    dense_[2 * n + i] = delta - h * k_[6][i] - slope;
+    dense_[3 * n + i] = h * d;
+  }
+}
+
+/// Records the samples of (start, start + tried] of every accepted lane, one sample of each lane at a time.
+template <class T>
+void Lanes<T>::record_step(T h, unsigned accepted, const double* start, const double* tried) {
+  int first[kLanes], count[kLanes], most = 0;
+  for (int l = 0; l < kLanes; ++l) {
+    auto& run = lanes_[static_cast<std::size_t>(l)];
+    first[l] = run.sample;
+    count[l] = ((accepted >> l) & 1U) ? samples_until(run.clock.t) - run.sample : 0;
+    if (count[l] > most) most = count[l];
+  }
+  if (most == 0) return;
+  prepare_dense(h);
+  const std::size_t n = y_.size();
+  int index[kLanes];
+  alignas(64) double theta[kLanes];
+  for (int s = 0; s < most; ++s) {
+    unsigned valid = 0;
+    for (int l = 0; l < kLanes; ++l) {
+      index[l] = first[l] + s;
+      const bool in = s < count[l];
+      valid |= static_cast<unsigned>(in) << l;
+      theta[l] = in ? (index[l] / options_.rate - start[l]) / tried[l] : 1.0;
+    }
+    const T a = Traits::load(theta), b = T(1.0) - a;
+    for (std::size_t i = 0; i < n; ++i)
+      kept_[i] = y_[i] + a * (dense_[i] + b * (dense_[n + i] + a * (dense_[2 * n + i] + b * dense_[3 * n + i])));
+    sample_outputs(kept_.data(), valid, index);
+  }
+  for (int l = 0; l < kLanes; ++l) lanes_[static_cast<std::size_t>(l)].sample += count[l];
+}
+
+template <class T>
+void Lanes<T>::commit(unsigned accepted) {
+  const auto ok = Traits::mask(accepted);
+  for (std::size_t i = 0; i < y_.size(); ++i) {
+    y_[i] = select(ok, trial_[i], y_[i]);
+    k_[0][i] = select(ok, k_[6][i], k_[0][i]);
+  }
+}
+
+/// After a step: lanes that lost synchronism or came to their end are handed over, lanes at a switching switch.
+template <class T>
+void Lanes<T>::settle(unsigned accepted, const Next& next, const Done& done) {
+  alignas(64) double angle[kLanes];
+  Traits::store(spread(y_.data()), angle);
+  for (int l = 0; l < kLanes; ++l) {
+    auto& run = lanes_[static_cast<std::size_t>(l)];
+    if (!((active_ >> l) & 1U)) continue;
+    if (!((accepted >> l) & 1U)) {
+      if (run.clock.h > LaneClock::kShortest) continue;
+      hand_over(l, std::isfinite(angle[l]) ? Outcome::step_too_small : Outcome::not_finite, done);
+      refill(l, next, done);
+      continue;
+    }
+    if (angle[l] > run.record.largest_spread) run.record.largest_spread = angle[l];
+    const bool lost = angle[l] > options_.lose_at;
+    if (lost || run.clock.t >= options_.t_end) {
+      hand_over(l, lost ? Outcome::lost_synchronism : Outcome::stable, done);
+      refill(l, next, done);
+    } else if (run.clock.t >= run.clock.next) {
+      ++run.segment;
+      enter_segment(l);
+    }
+  }
+}
+
+template <class T>
+void Lanes<T>::run(const Next& next, const Done& done) {
+  active_ = 0;
+  for (int l = 0; l < kLanes; ++l) refill(l, next, done);
+  while (active_ != 0) {
+    if (fresh_ != 0) evaluate_fresh();
+    alignas(64) double tried[kLanes], error[kLanes];
+    double start[kLanes];
+    bool reaches[kLanes];
+    for (int l = 0; l < kLanes; ++l) tried[l] = lanes_[static_cast<std::size_t>(l)].clock.step(reaches[l]);
+    const T h = Traits::load(tried);
+    stage<1>(h);
+    stage<2>(h);
+    stage<3>(h);
+    stage<4>(h);
+    stage<5>(h);
+    stage<6>(h);
+    Traits::store(scaled_error(h), error);
+    unsigned accepted = 0;
+    for (int l = 0; l < kLanes; ++l) {
+      if (!((active_ >> l) & 1U)) continue;
+      auto& clock = lanes_[static_cast<std::size_t>(l)].clock;
+      start[l] = clock.t;
+      if (!clock.judge(tried[l], error[l])) continue;
+      accepted |= 1U << l;
+      clock.t = reaches[l] ? clock.next : clock.t + tried[l];
+    }
+    record_step(h, accepted, start, tried);
+    commit(accepted);
+    settle(accepted, next, done);
+  }
+}
+
+}  // namespace swingbank::sim
