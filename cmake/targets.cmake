@@ -1,7 +1,9 @@
 # One function per kind of target, so that each folder's CMakeLists.txt only names its files.
 add_library(swingbank_options INTERFACE)
 target_include_directories(swingbank_options INTERFACE ${PROJECT_SOURCE_DIR})
-target_compile_options(swingbank_options INTERFACE -Wall -Wextra -Wshadow -fno-math-errno -fno-trapping-math
+target_compile_options(swingbank_options INTERFACE -Wall -Wextra -Wshadow
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> # GCC 12 warns falsely about std::string concatenation
+  -fno-math-errno -fno-trapping-math
   $<$<NOT:$<CONFIG:Debug>>:-O3>)
 if(SWINGBANK_ARCH)
   target_compile_options(swingbank_options INTERFACE -march=${SWINGBANK_ARCH})

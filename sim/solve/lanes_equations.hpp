@@ -67,7 +67,7 @@ inline void Lanes<T>::sample_outputs(const T* x, unsigned valid, const int* inde
     PlantEquations<T>::terminal(s);
     p.equations.signals(&c_[static_cast<std::size_t>(p.c)], x + p.x, &m_[static_cast<std::size_t>(p.m)], s, unused + p.x);
     for (std::size_t j = 0; j < channels_.size(); ++j) {
-      T v;
+      T v(0.0);
       switch (channels_[j]) {
         case Channel::delta: v = x[p.x]; break;
         case Channel::speed: v = s.speed; break;

@@ -1,0 +1,204 @@
+// Runs over every registered effect, with no edit when one is added: records, steady state, lanes against double,
+// duals against central differences, vanishing at neutral.
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+#include "sim/core/effect.hpp"
+
+namespace swingbank::sim {
+namespace {
+
+/// One machine evaluation; the outputs an integrator sees: emf, speed, Te, Ifd and every derivative.
+template <class T>
+struct MachineCase {
+  std::vector<T> p, c, x, m;
+  Signals<T> s;
+  std::vector<T> outputs(const Effect& e) {
+    const auto& ops = e.get<T>().machine;
+    std::vector<T> dx(e.states.size(), T(0.0)), out;
+    T er, ei;
+    ops.emf(c.data(), x.data(), m.data(), er, ei);
+    ops.electrical(c.data(), x.data(), m.data(), s);
+    ops.derivative(c.data(), x.data(), m.data(), s, dx.data());
+    out = {er, ei, s.speed, s.Te, s.Ifd};
+    out.insert(out.end(), dx.begin(), dx.end());
+    return out;
+  }
+};
+
+template <class T>
+MachineCase<T> at_steady(const Effect& e, const std::vector<T>& p, const Conventions& conventions, double vr, double vi, double ir, double ii) {
+  MachineCase<T> k;
+  k.p = p;
+  k.c.assign(static_cast<std::size_t>(e.coefficients), T(0.0));
+  k.m.assign(static_cast<std::size_t>(e.scratch), T(0.0));
+  k.x.assign(e.states.size(), T(0.0));
+  k.s.Vr = T(vr);
+  k.s.Vi = T(vi);
+  k.s.Ir = T(ir);
+  k.s.Ii = T(ii);
+  e.get<T>().prepare(k.p.data(), conventions, k.c.data());
+  EXPECT_EQ(e.get<T>().machine.steady(k.p.data(), k.c.data(), k.s, k.x.data()), "");
+  return k;
+}
+
+/// Physical parameters near the middle of the records, from the standard values.
+std::vector<double> draw(const Effect& e, std::mt19937_64& random) {
+  std::uniform_real_distribution<double> u(0.95, 1.05);
+  for (int attempt = 0; attempt < 1000; ++attempt) {
+    auto p = e.standard_parameters();
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      const auto& r = e.parameters[i];
+      p[i] = p[i] == 0.0 ? r.low + 0.01 * u(random) * (r.high - r.low) : p[i] * u(random);
+    }
+    if (e.unphysical(p.data()).empty()) return p;
+  }
+  ADD_FAILURE() << e.name << ": standard values are not physical";
+  return e.standard_parameters();
+}
+
+std::vector<const Effect*> machines() {
+  std::vector<const Effect*> list;
+  for (const auto& e : all_effects())
+    if (e.slot == Slot::machine) list.push_back(&e);
+  return list;
+}
+
+TEST(Conformance, RecordsAreComplete) {
+  ASSERT_FALSE(all_effects().empty());
+  std::set<std::string_view> names;
+  for (const auto& e : all_effects()) {
+    EXPECT_TRUE(names.insert(e.name).second) << e.name << " twice";
+    EXPECT_FALSE(e.source.empty()) << e.name;
+    std::set<std::string_view> parameters;
+    for (const auto& r : e.parameters) {
+      EXPECT_TRUE(parameters.insert(r.name).second) << e.name << "." << r.name << " twice";
+      EXPECT_LE(r.low, r.standard) << e.name << "." << r.name;
+      EXPECT_LE(r.standard, r.high) << e.name << "." << r.name;
+      EXPECT_FALSE(r.unit.empty() || r.meaning.empty()) << e.name << "." << r.name;
+      if (r.neutral == r.neutral) EXPECT_TRUE(r.low <= r.neutral && r.neutral <= r.high) << e.name << "." << r.name;
+    }
+    for (int column : e.dyr_columns) EXPECT_LT(column, static_cast<int>(e.parameters.size())) << e.name;
+    Problems problems;
+    e.check(e.standard_parameters().data(), "test", problems);
+    EXPECT_TRUE(problems.empty()) << e.name << ": standard values are refused";
+  }
+}
+
+TEST(Conformance, SteadyStateStandsStill) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  for (const Effect* e : machines())
+    for (const auto& conventions : {Conventions::psse(), Conventions::andes()})
+      for (int trial = 0; trial < 100; ++trial) {
+        auto k = at_steady<double>(*e, draw(*e, random), conventions, 1.0 + 0.1 * u(random), 0.3 * u(random), 0.8 + 0.2 * u(random), 0.4 * u(random));
+        const double vr = k.s.Vr, vi = k.s.Vi, ir = k.s.Ir, ii = k.s.Ii;
+        const auto out = k.outputs(*e);
+        for (std::size_t i = 5; i < out.size(); ++i)
+          EXPECT_NEAR(out[i], 0.0, 1e-11) << e->name << "." << e->states[i - 5].name;  // rounding, over T'' >= 0.005 s
+        double r, x;
+        e->get<double>().machine.source_impedance(k.p.data(), r, x);
+        EXPECT_NEAR(out[0], vr + r * ir - x * ii, 1e-13) << e->name << ": the emf does not give the terminal voltage back";
+        EXPECT_NEAR(out[1], vi + r * ii + x * ir, 1e-13) << e->name;
+      }
+}
+
+template <class P>
+void lanes_equal_double(const Effect& e, std::mt19937_64& random) {
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  MachineCase<P> pack;
+  std::vector<MachineCase<double>> each;
+  for (int l = 0; l < P::lanes; ++l) {
+    auto k = at_steady<double>(e, draw(e, random), Conventions::psse(), 1.0 + 0.1 * u(random), 0.3 * u(random), 0.8, 0.4 * u(random));
+    for (std::size_t i = 0; i < k.x.size(); ++i) k.x[i] += (i == 1 ? 0.01 : 0.3) * u(random);
+    each.push_back(k);
+  }
+  const auto gather = [&](auto member, std::vector<P>& to) {
+    to.assign((each[0].*member).size(), P(0.0));
+    for (int l = 0; l < P::lanes; ++l)
+      for (std::size_t i = 0; i < to.size(); ++i) to[i].set(l, (each[static_cast<std::size_t>(l)].*member)[i]);
+  };
+  gather(&MachineCase<double>::c, pack.c);
+  gather(&MachineCase<double>::x, pack.x);
+  gather(&MachineCase<double>::m, pack.m);
+  for (int l = 0; l < P::lanes; ++l) {
+    const auto& s = each[static_cast<std::size_t>(l)].s;
+    pack.s.Ir.set(l, s.Ir);
+    pack.s.Ii.set(l, s.Ii);
+    pack.s.Efd.set(l, s.Efd);
+    pack.s.Tm.set(l, s.Tm);
+  }
+  const auto together = pack.outputs(e);
+  for (int l = 0; l < P::lanes; ++l) {
+    const auto alone = each[static_cast<std::size_t>(l)].outputs(e);
+    for (std::size_t i = 0; i < alone.size(); ++i)  // a few ulp: packs have their own sincos
+      EXPECT_NEAR(together[i][l], alone[i], 1e-12 * (1.0 + std::fabs(alone[i]))) << e.name << " output " << i;
+  }
+}
+
+TEST(Conformance, LanesEqualDouble) {
+  std::mt19937_64 random(2);
+  for (const Effect* e : machines())
+    for (int trial = 0; trial < 50; ++trial) {
+      lanes_equal_double<P4>(*e, random);
+      lanes_equal_double<P8>(*e, random);
+    }
+}
+
+/// Outputs after prepare and steady at parameters p, with the states moved off equilibrium by `shift`.
+template <class T>
+std::vector<T> moved(const Effect& e, const std::vector<T>& p, const std::vector<double>& shift) {
+  auto k = at_steady<T>(e, p, Conventions::psse(), 1.02, 0.1, 0.7, -0.2);
+  for (std::size_t i = 0; i < k.x.size(); ++i) k.x[i] = k.x[i] + T(shift[i]);
+  return k.outputs(e);
+}
+
+TEST(Conformance, DualsEqualCentralDifferences) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  for (const Effect* e : machines())
+    for (int trial = 0; trial < 20; ++trial) {
+      const auto p = draw(*e, random);
+      std::vector<double> shift;
+      for (std::size_t i = 0; i < e->states.size(); ++i) shift.push_back((i == 1 ? 0.01 : 0.1) * u(random));
+      for (std::size_t j = 0; j < p.size(); ++j) {
+        std::vector<D8> dual(p.begin(), p.end());
+        dual[j].d[0] = 1.0;
+        const auto exact = moved<D8>(*e, dual, shift);
+        const double h = 1e-6 * std::max(1e-2, std::fabs(p[j]));
+        auto up = p, down = p;
+        up[j] += h;
+        down[j] -= h;
+        const auto a = moved<double>(*e, up, shift), b = moved<double>(*e, down, shift);
+        for (std::size_t i = 0; i < exact.size(); ++i) {  // the difference quotient's own rounding is ~1e-16/h = 1e-8
+          const double quotient = (a[i] - b[i]) / (2 * h);
+          EXPECT_NEAR(exact[i].d[0], quotient, 1e-6 * (1.0 + std::fabs(quotient)))
+              << e->name << " output " << i << " by " << e->parameters[j].name;
+        }
+      }
+    }
+}
+
+TEST(Conformance, NeutralIsWhereTheInfluenceVanishes) {
+  // All parameters with a neutral value at neutral, then a hair away: outputs may move by that hair only.
+  for (const Effect* e : machines()) {
+    auto neutral = e->standard_parameters();
+    for (std::size_t i = 0; i < neutral.size(); ++i)
+      if (e->parameters[i].neutral == e->parameters[i].neutral) neutral[i] = e->parameters[i].neutral;
+    const std::vector<double> still(e->states.size(), 0.0);
+    const auto base = moved<double>(*e, neutral, still);
+    for (const double hair : {1e-5, 1e-7}) {
+      auto near = neutral;
+      for (std::size_t i = 0; i < near.size(); ++i)
+        if (e->parameters[i].neutral == e->parameters[i].neutral) near[i] += hair * (1.0 + 0.5 * static_cast<double>(i));
+      const auto out = moved<double>(*e, near, still);
+      for (std::size_t i = 0; i < out.size(); ++i)
+        EXPECT_NEAR(out[i], base[i], 100 * hair) << e->name << " output " << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace swingbank::sim
