@@ -5,6 +5,10 @@ target_compile_options(swingbank_options INTERFACE -Wall -Wextra -Wshadow
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> # GCC 12 warns falsely about std::string concatenation
   -fno-math-errno -fno-trapping-math
   $<$<NOT:$<CONFIG:Debug>>:-O3>)
+# GCC 12's avx512fintrin.h trips this one wherever Eigen multiplies matrices (GCC bug 105593).
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  target_compile_options(swingbank_options INTERFACE -Wno-maybe-uninitialized)
+endif()
 if(SWINGBANK_ARCH)
   target_compile_options(swingbank_options INTERFACE -march=${SWINGBANK_ARCH})
 endif()

@@ -1,6 +1,7 @@
 #pragma once
 // One plant's equations, whatever effects it is made of, in the order every integrator evaluates them:
-//   emf -> (network: terminal voltage and current) -> machine.electrical -> controls in order of Slot -> machine.derivative
+//   emf -> (network: terminal voltage and current) -> machine.electrical -> controls in order of Slot ->
+//   machine.derivative
 // States and coefficients of a plant lie back to back, machine first, as in Operating.
 #include <vector>
 
@@ -25,11 +26,12 @@ class PlantEquations {
   [[nodiscard]] int coefficients() const { return coefficients_; }
   [[nodiscard]] int scratch() const { return scratch_; }
 
-  /// Voltage er + j ei behind the machine's impedance [pu, network frame]. m: scratch() values, kept for derivative().
+  /// Voltage er + j ei behind the machine's impedance [pu, network frame]. m: scratch() values, kept for
+  /// derivative().
   void emf(const T* c, const T* x, T* m, T& er, T& ei) const { machine_.emf(c, x, m, er, ei); }
 
-  /// Needs Vr, Vi, Ir, Ii [pu on the machine's base], and in s.Efd and s.Tm the values held where no exciter or
-  /// governor sets them. Fills every other signal, and dx with states() derivatives [1/s].
+  /// Needs Vr, Vi, Ir, Ii [pu on the machine's base], and in s.Efd and s.Tm the values held where no exciter
+  /// or governor sets them. Fills every other signal, and dx with states() derivatives [1/s].
   void derivative(const T* c, const T* x, T* m, Signals<T>& s, T* dx) const {
     terminal(s);
     signals(c, x, m, s, dx);
