@@ -1,0 +1,44 @@
+# Shared by the batch scripts. Contract of the programs: SIGUSR1 -> save, exit code 2 = "saved, submit me again".
+# modules, launcher and max_restarts come from the site file.
+# shellcheck disable=SC2154
+
+# Runs "$@" in the background, because bash runs a trap only between commands or in `wait`, and forwards the signal.
+run_saving() {
+  local status signalled
+  "$@" &
+  child=$!
+  trap 'signalled=1; kill -USR1 "$child" 2>/dev/null' USR1
+  trap 'signalled=1; kill -TERM "$child" 2>/dev/null' TERM
+  while :; do
+    signalled=0 status=0
+    wait "$child" || status=$?
+    ((signalled)) || break # else the wait was interrupted, and the child may still be saving
+  done
+  trap - USR1 TERM
+  return "$status"
+}
+
+# Exit code 2 puts the job back into the queue, until max_restarts is reached.
+finish_or_requeue() {
+  local status=$1 restarts=${SLURM_RESTART_COUNT:-0}
+  ((status == 2)) || exit "$status"
+  if ((restarts >= max_restarts)); then
+    echo "job given up at $SLURM_JOB_NAME ($restarts restarts, limit $max_restarts): raise max_restarts in the site file" \
+      "or the time per attempt, then submit again; nothing done so far is lost" >&2
+    exit 1
+  fi
+  echo "saved before the time limit; going back into the queue (restart $((restarts + 1)) of at most $max_restarts)"
+  local id=$SLURM_JOB_ID
+  if [[ -n ${SLURM_ARRAY_JOB_ID:-} ]]; then id=${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID; fi
+  scontrol requeue "$id"
+  sleep 60 # the requeue ends this script; leaving first would let the job count as finished
+  exit 1
+}
+
+job_start() {
+  # shellcheck disable=SC1090 # the user's file
+  source "$SWINGBANK_SITE"
+  # shellcheck disable=SC2086 # modules is a list of words
+  if [[ -n $modules ]]; then module load $modules; fi
+  echo "$(date '+%F %T') $SLURM_JOB_NAME on $SLURM_JOB_NODELIST, attempt $((${SLURM_RESTART_COUNT:-0} + 1))"
+}
