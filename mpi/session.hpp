@@ -1,0 +1,23 @@
+#pragma once
+// MPI from start to end of a program.
+#include <mpi.h>
+
+namespace swingbank {
+
+/// Initialises MPI and ends it. Sets OMPI_MCA_fbtl_posix_read_datasieving=0 first: OpenMPI 4.1.4 otherwise returns wrong
+/// data, without an error, on collective reads of irregular selections by three ranks and more
+/// (https://github.com/open-mpi/ompi/issues/10546).
+class MpiSession {
+ public:
+  MpiSession(int* argc, char*** argv);
+  ~MpiSession();
+  MpiSession(const MpiSession&) = delete;
+  MpiSession& operator=(const MpiSession&) = delete;
+  [[nodiscard]] int rank() const { return rank_; }
+  [[nodiscard]] int size() const { return size_; }
+
+ private:
+  int rank_ = 0, size_ = 1;
+};
+
+}  // namespace swingbank

@@ -1,0 +1,28 @@
+#pragma once
+// Files that exist whole or not at all: temporary name, write, fsync, rename, fsync of the folder.
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace swingbank {
+
+/// The name a file carries while it is written: ".<name>.part" beside it.
+std::filesystem::path temporary_name(const std::filesystem::path& file);
+/// Creates a folder and its parents. Throws InputError naming the folder and the system's reason.
+void make_folder(const std::filesystem::path& folder);
+/// Creates the temporary file and asks the system for `bytes` of space. Throws InputError with the system's reason
+/// (disk full, no permission), which HDF5 and MPI-IO do not pass on; removes the temporary then.
+void reserve(const std::filesystem::path& file, std::uint64_t bytes);
+/// Flushes the temporary file to the disk and gives it its final name. Throws InputError; removes the temporary then.
+void publish(const std::filesystem::path& file);
+void flush_folder(const std::filesystem::path& folder);
+/// Writes text whole or not at all.
+void write_text(const std::filesystem::path& file, const std::string& text);
+/// Throws InputError if the file cannot be read.
+std::string read_text(const std::filesystem::path& file);
+/// Throws InputError: "<what> at <file> (<the system's reason>): <remedy>".
+[[noreturn]] void raise_file_error(const std::filesystem::path& file, int error, const std::string& what);
+/// 16 lower-case hex digits.
+std::string hex(std::uint64_t value);
+
+}  // namespace swingbank

@@ -1,0 +1,212 @@
+#include "mpi/store/hdf5_file.hpp"
+
+#include <cerrno>
+
+#include "mpi/store/durable.hpp"
+#include "sim/core/problem.hpp"
+
+namespace swingbank::h5 {
+
+namespace {
+
+/// The innermost message on HDF5's error stack: the cause. Clears the stack.
+std::string reason() {
+  std::string text = "no reason given by HDF5";
+  H5Ewalk2(
+      H5E_DEFAULT, H5E_WALK_UPWARD,
+      [](unsigned n, const H5E_error2_t* e, void* out) -> herr_t {
+        if (n == 0 && e->desc != nullptr) *static_cast<std::string*>(out) = e->desc;
+        return 0;
+      },
+      &text);
+  H5Eclear2(H5E_DEFAULT);
+  return text;
+}
+
+void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+Handle untimed(hid_t list_class) {
+  Handle list(H5Pcreate(list_class), H5Pclose);
+  H5Pset_obj_track_times(list.get(), false);
+  return list;
+}
+
+Handle space_of(const Shape& shape) {
+  return {shape.empty() ? H5Screate(H5S_SCALAR) : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose};
+}
+
+Handle string_type() {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type.get(), H5T_VARIABLE);
+  H5Tset_cset(type.get(), H5T_CSET_UTF8);
+  return type;
+}
+
+}  // namespace
+
+std::recursive_mutex& lock() {
+  static std::recursive_mutex mutex;
+  return mutex;
+}
+
+void File::fail(const std::string& what, const std::string& object) const {
+  const std::string why = reason();
+  const std::string where = name_.string() + (object.empty() ? "" : ":" + object);
+  if (why.find("errno = 28") != std::string::npos) raise_file_error(where, ENOSPC, what);
+  if (why.find("errno = 13") != std::string::npos) raise_file_error(where, EACCES, what);
+  throw InputError({what, where, why, "if the file is damaged, delete it and run the command that made it again"});
+}
+
+File File::open(const std::filesystem::path& file) {
+  silence();
+  File f;
+  f.name_ = file;
+  if (!std::filesystem::exists(file)) raise_file_error(file, ENOENT, "cannot open the HDF5 file");
+  f.file_ = Handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (!f.file_) f.fail("cannot open the HDF5 file", "");
+  return f;
+}
+
+File File::create(const std::filesystem::path& file, hid_t access) {
+  silence();
+  File f;
+  f.name_ = file;
+  const Handle properties = untimed(H5P_FILE_CREATE);
+  f.file_ = Handle(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, properties.get(), access < 0 ? H5P_DEFAULT : access), H5Fclose);
+  if (!f.file_) f.fail("cannot create the HDF5 file", "");
+  return f;
+}
+
+void File::close() {
+  if (!file_.reset()) fail("cannot complete the HDF5 file", "");
+}
+
+bool File::has(const std::string& object) const { return H5Lexists(file_.get(), object.c_str(), H5P_DEFAULT) > 0; }
+
+Shape File::shape(const std::string& object) const {
+  const Handle set(H5Dopen2(file_.get(), object.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!set) fail("cannot open the array", object);
+  const Handle space(H5Dget_space(set.get()), H5Sclose);
+  const int rank = H5Sget_simple_extent_ndims(space.get());
+  if (rank < 0) fail("cannot read the array's shape", object);
+  Shape s(static_cast<std::size_t>(rank));
+  H5Sget_simple_extent_dims(space.get(), s.data(), nullptr);
+  return s;
+}
+
+hsize_t File::row_size(const Shape& shape) {
+  hsize_t n = 1;
+  for (std::size_t i = 1; i < shape.size(); ++i) n *= shape[i];
+  return n;
+}
+
+void File::create_group(const std::string& name) {
+  const Handle properties = untimed(H5P_GROUP_CREATE);
+  const Handle group(H5Gcreate2(file_.get(), name.c_str(), H5P_DEFAULT, properties.get(), H5P_DEFAULT), H5Gclose);
+  if (!group) fail("cannot create the group", name);
+}
+
+void File::create(const std::string& object, hid_t file_type, const Shape& shape) {
+  const Handle space = space_of(shape), properties = untimed(H5P_DATASET_CREATE);
+  H5Pset_fill_time(properties.get(), H5D_FILL_TIME_NEVER);  // every row is written
+  H5Pset_alloc_time(properties.get(), H5D_ALLOC_TIME_EARLY);
+  const Handle set(H5Dcreate2(file_.get(), object.c_str(), file_type, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT), H5Dclose);
+  if (!set) fail("cannot create the array", object);
+}
+
+void File::transfer(const std::string& object, hsize_t first, hsize_t count, hid_t type, void* in, const void* out) const {
+  if (count == 0) return;
+  const Handle set(H5Dopen2(file_.get(), object.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!set) fail("cannot open the array", object);
+  const Handle space(H5Dget_space(set.get()), H5Sclose);
+  Shape extent = shape(object), start(extent.size(), 0);
+  if (extent.empty() || first + count > extent[0]) {
+    throw InputError({"rows " + std::to_string(first) + " to " + std::to_string(first + count - 1), name_.string() + ":" + object,
+                      "the array has " + std::to_string(extent.empty() ? 0 : extent[0]) + " rows", "ask for rows that exist"});
+  }
+  start[0] = first;
+  extent[0] = count;
+  H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr);
+  const Handle memory = space_of(extent);
+  const herr_t result = in != nullptr ? H5Dread(set.get(), type, memory.get(), space.get(), H5P_DEFAULT, in)
+                                      : H5Dwrite(set.get(), type, memory.get(), space.get(), H5P_DEFAULT, out);
+  if (result < 0) fail(in != nullptr ? "cannot read the array" : "cannot write the array", object);
+}
+
+void File::put(const std::string& object, const std::string& name, hid_t file_type, hid_t memory_type, const Shape& shape, const void* data) {
+  const Handle space = space_of(shape);
+  const Handle a(H5Acreate_by_name(file_.get(), object.c_str(), name.c_str(), file_type, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const bool nothing = !shape.empty() && shape[0] == 0;
+  if (!a || (!nothing && H5Awrite(a.get(), memory_type, data) < 0)) fail("cannot write the attribute", object + "@" + name);
+}
+
+void File::attribute(const std::string& name, const std::string& value, const std::string& object) {
+  const Handle type = string_type();
+  const char* text = value.c_str();
+  put(object, name, type.get(), type.get(), {}, &text);
+}
+
+void File::attribute(const std::string& name, const std::vector<std::string>& value, const std::string& object) {
+  const Handle type = string_type();
+  std::vector<const char*> texts;
+  for (const auto& v : value) texts.push_back(v.c_str());
+  put(object, name, type.get(), type.get(), {texts.size()}, texts.data());
+}
+
+void File::attribute(const std::string& name, std::uint64_t value, const std::string& object) {
+  put(object, name, Type<std::uint64_t>::file(), Type<std::uint64_t>::memory(), {}, &value);
+}
+void File::attribute(const std::string& name, double value, const std::string& object) {
+  put(object, name, Type<double>::file(), Type<double>::memory(), {}, &value);
+}
+void File::attribute(const std::string& name, const std::vector<double>& value, const std::string& object) {
+  put(object, name, Type<double>::file(), Type<double>::memory(), {value.size()}, value.data());
+}
+
+std::pair<Handle, hsize_t> File::find(const std::string& name) const {
+  Handle a(H5Aopen_by_name(file_.get(), "/", name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  if (!a) fail("cannot read the attribute", "/@" + name);
+  const Handle space(H5Aget_space(a.get()), H5Sclose);
+  const hssize_t n = H5Sget_simple_extent_npoints(space.get());
+  if (n < 0) fail("cannot read the attribute", "/@" + name);
+  return {std::move(a), static_cast<hsize_t>(n)};
+}
+
+std::vector<std::string> File::texts_attribute(const std::string& name) const {
+  const auto [a, n] = find(name);
+  const Handle type = string_type(), space(H5Aget_space(a.get()), H5Sclose);
+  std::vector<char*> texts(n, nullptr);
+  if (n > 0 && H5Aread(a.get(), type.get(), texts.data()) < 0) fail("cannot read the attribute", "/@" + name);
+  std::vector<std::string> values;
+  for (const char* t : texts) values.emplace_back(t == nullptr ? "" : t);
+  if (n > 0) H5Dvlen_reclaim(type.get(), space.get(), H5P_DEFAULT, texts.data());
+  return values;
+}
+
+std::string File::text_attribute(const std::string& name) const {
+  const auto values = texts_attribute(name);
+  if (values.size() != 1) fail("the attribute is not one text", "/@" + name);
+  return values[0];
+}
+
+std::uint64_t File::integer_attribute(const std::string& name) const {
+  const auto [a, n] = find(name);
+  std::uint64_t value = 0;
+  if (n != 1 || H5Aread(a.get(), Type<std::uint64_t>::memory(), &value) < 0) fail("the attribute is not one integer", "/@" + name);
+  return value;
+}
+
+std::vector<double> File::reals_attribute(const std::string& name) const {
+  const auto [a, n] = find(name);
+  std::vector<double> values(n);
+  if (n > 0 && H5Aread(a.get(), Type<double>::memory(), values.data()) < 0) fail("cannot read the attribute", "/@" + name);
+  return values;
+}
+
+double File::real_attribute(const std::string& name) const {
+  const auto values = reals_attribute(name);
+  if (values.size() != 1) fail("the attribute is not one number", "/@" + name);
+  return values[0];
+}
+
+}  // namespace swingbank::h5

@@ -1,0 +1,106 @@
+#pragma once
+// HDF5's C API with handles that close themselves and errors that name file and object. HDF5's own printing is off.
+// Files it creates carry no times, so equal content makes equal bytes.
+#include <hdf5.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace swingbank::h5 {
+
+/// HDF5 is not thread-safe: whoever uses it holds this lock.
+std::recursive_mutex& lock();
+
+class Handle {
+ public:
+  using Close = herr_t (*)(hid_t);
+  Handle() = default;
+  Handle(hid_t id, Close close) : id_(id), close_(close) {}
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(id_, other.id_);
+    std::swap(close_, other.close_);
+    return *this;
+  }
+  ~Handle() { reset(); }
+  /// Closes now; false if HDF5 could not.
+  bool reset() { return id_ < 0 || close_(std::exchange(id_, -1)) >= 0; }
+  [[nodiscard]] hid_t get() const { return id_; }
+  explicit operator bool() const { return id_ >= 0; }
+
+ private:
+  hid_t id_ = -1;
+  Close close_ = nullptr;
+};
+
+template <class T>
+struct Type;  // native type in memory, fixed little-endian type in the file
+template <> struct Type<float> { static hid_t memory() { return H5T_NATIVE_FLOAT; } static hid_t file() { return H5T_IEEE_F32LE; } };
+template <> struct Type<double> { static hid_t memory() { return H5T_NATIVE_DOUBLE; } static hid_t file() { return H5T_IEEE_F64LE; } };
+template <> struct Type<std::uint64_t> { static hid_t memory() { return H5T_NATIVE_UINT64; } static hid_t file() { return H5T_STD_U64LE; } };
+template <> struct Type<std::int32_t> { static hid_t memory() { return H5T_NATIVE_INT32; } static hid_t file() { return H5T_STD_I32LE; } };
+template <> struct Type<std::uint8_t> { static hid_t memory() { return H5T_NATIVE_UINT8; } static hid_t file() { return H5T_STD_U8LE; } };
+
+using Shape = std::vector<hsize_t>;
+
+class File {
+ public:
+  static File open(const std::filesystem::path& file);
+  /// `access`: a file-access property list (MPI-IO), or -1 for the default driver.
+  static File create(const std::filesystem::path& file, hid_t access = -1);
+  /// Closes; throws if buffered data could not be written.
+  void close();
+
+  [[nodiscard]] bool has(const std::string& object) const;
+  [[nodiscard]] Shape shape(const std::string& object) const;
+  void create_group(const std::string& name);
+  void create(const std::string& object, hid_t file_type, const Shape& shape);
+  template <class T>
+  void create(const std::string& object, const Shape& shape) { create(object, Type<T>::file(), shape); }
+
+  /// Rows first ... first+count-1 of the leading dimension; `values` is resized.
+  template <class T>
+  void read(const std::string& object, hsize_t first, hsize_t count, std::vector<T>& values) const {
+    const Shape s = shape(object);
+    values.resize(static_cast<std::size_t>(count * row_size(s)));
+    transfer(object, first, count, Type<T>::memory(), values.data(), nullptr);
+  }
+  template <class T>
+  void read(const std::string& object, std::vector<T>& values) const {
+    const Shape s = shape(object);
+    read(object, 0, s.empty() ? 0 : s[0], values);
+  }
+  template <class T>
+  void write(const std::string& object, hsize_t first, hsize_t count, const T* values) {
+    transfer(object, first, count, Type<T>::memory(), nullptr, values);
+  }
+
+  void attribute(const std::string& name, const std::string& value, const std::string& object = "/");
+  void attribute(const std::string& name, const std::vector<std::string>& value, const std::string& object = "/");
+  void attribute(const std::string& name, std::uint64_t value, const std::string& object = "/");
+  void attribute(const std::string& name, double value, const std::string& object = "/");
+  void attribute(const std::string& name, const std::vector<double>& value, const std::string& object = "/");
+  [[nodiscard]] std::string text_attribute(const std::string& name) const;
+  [[nodiscard]] std::vector<std::string> texts_attribute(const std::string& name) const;
+  [[nodiscard]] std::uint64_t integer_attribute(const std::string& name) const;
+  [[nodiscard]] double real_attribute(const std::string& name) const;
+  [[nodiscard]] std::vector<double> reals_attribute(const std::string& name) const;
+
+  /// Throws InputError "<what> at <file>:<object> (<HDF5's reason>): <remedy>".
+  [[noreturn]] void fail(const std::string& what, const std::string& object) const;
+  static hsize_t row_size(const Shape& shape);
+
+ private:
+  void transfer(const std::string& object, hsize_t first, hsize_t count, hid_t type, void* in, const void* out) const;
+  void put(const std::string& object, const std::string& name, hid_t file_type, hid_t memory_type, const Shape& shape, const void* data);
+  [[nodiscard]] std::pair<Handle, hsize_t> find(const std::string& name) const;
+
+  std::filesystem::path name_;
+  Handle file_;
+};
+
+}  // namespace swingbank::h5

@@ -1,0 +1,38 @@
+#pragma once
+// journal.jsonl: one line per finished shard, appended and flushed after the shard has its final name.
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace swingbank {
+
+struct JournalLine {
+  std::uint64_t shard = 0;
+  std::string file;  ///< relative to the dataset folder
+  std::uint64_t draws = 0, rows = 0, bytes = 0;
+  std::string hash;  ///< shard hash, 16 hex digits
+  std::map<std::string, std::uint64_t> outcomes;
+};
+
+/// Lines in order of the file. A last line without its line feed (the process died in the middle of it) is left out;
+/// anything else that is no line, and a shard that stands there twice, throws InputError with the line number.
+/// No file: no lines.
+std::vector<JournalLine> read_journal(const std::filesystem::path& file);
+
+/// Appends lines; each is on the disk when `append` returns. Cuts off a half-written last line when it opens.
+class Journal {
+ public:
+  explicit Journal(std::filesystem::path file);
+  ~Journal();
+  Journal(const Journal&) = delete;
+  Journal& operator=(const Journal&) = delete;
+  void append(const JournalLine& line);
+
+ private:
+  std::filesystem::path file_;
+  int fd_ = -1;
+};
+
+}  // namespace swingbank

@@ -1,0 +1,147 @@
+#include "mpi/store/shard.hpp"
+
+#include <xxhash.h>
+
+#include "mpi/store/durable.hpp"
+#include "mpi/store/shard_layout.hpp"
+#include "sim/core/problem.hpp"
+
+namespace swingbank {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void bad_shard(const fs::path& file, const std::string& what, const std::string& why) {
+  throw InputError({what, file.string(), why, "delete the file and run generate on its dataset again: it makes the shard anew"});
+}
+
+ShardAttributes read_attributes(const h5::File& f, const fs::path& file) {
+  if (f.text_attribute("format") != kShardFormat) bad_shard(file, "not a shard of this version", "format is \"" + f.text_attribute("format") + "\", not \"" + kShardFormat + "\"");
+  ShardAttributes a;
+  a.config_hash = f.text_attribute("config_hash");
+  a.kernel = f.text_attribute("kernel");
+  a.software = f.text_attribute("software");
+  a.seed = f.integer_attribute("seed");
+  a.shard = f.integer_attribute("shard");
+  a.rate = f.real_attribute("rate");
+  a.machine_model = f.text_attribute("machine_model");
+  a.channel_names = f.texts_attribute("channel_names");
+  a.channel_units = f.texts_attribute("channel_units");
+  a.parameter_names = f.texts_attribute("parameter_names");
+  a.parameter_units = f.texts_attribute("parameter_units");
+  a.parameter_low = f.reals_attribute("parameter_low");
+  a.parameter_high = f.reals_attribute("parameter_high");
+  return a;
+}
+
+/// Shapes of a shard's arrays must agree with one another.
+void read_shape(const h5::File& f, const fs::path& file, RowBlock& out) {
+  const auto records = f.shape("/records"), parameters = f.shape("/parameters");
+  if (records.size() != 3 || parameters.size() != 2 || parameters[0] != records[0])
+    bad_shard(file, "shapes that do not agree", "/records must be rows x channels x samples and /parameters rows x parameters");
+  for (const char* name : {"/sample_id", "/generator", "/fault", "/largest_spread"})
+    if (const auto s = f.shape(name); s.empty() || s[0] != records[0]) bad_shard(file, std::string("wrong number of rows in ") + name, "/records has " + std::to_string(records[0]));
+  out.channels = records[1];
+  out.samples = records[2];
+  out.parameter_count = parameters[1];
+}
+
+void read_block(const h5::File& f, std::uint64_t first, std::uint64_t count, const ShardFields& fields, RowBlock& out) {
+  out.rows = count;
+  out.records.clear();
+  out.parameters.clear();
+  out.angle_valid.clear();
+  if (fields.records) f.read("/records", first, count, out.records);
+  if (fields.parameters) f.read("/parameters", first, count, out.parameters);
+  f.read("/sample_id", first, count, out.sample_id);
+  f.read("/generator", first, count, out.generator);
+  f.read("/fault", first, count, out.fault);
+  f.read("/largest_spread", first, count, out.largest_spread);
+  if (fields.angle_valid && f.has("/angle_valid")) f.read("/angle_valid", first, count, out.angle_valid);
+}
+
+template <class T>
+void feed(XXH3_state_t* state, const T* values, std::size_t count) { XXH3_64bits_update(state, values, count * sizeof(T)); }
+
+struct HashState {
+  XXH3_state_t* state = XXH3_createState();
+  HashState() { XXH3_64bits_reset(state); }
+  ~HashState() { XXH3_freeState(state); }
+  HashState(const HashState&) = delete;
+  HashState& operator=(const HashState&) = delete;
+};
+
+}  // namespace
+
+ShardData read_shard(const fs::path& file, const ShardFields& fields) {
+  const std::lock_guard guard(h5::lock());
+  const h5::File f = h5::File::open(file);
+  ShardData data;
+  data.attributes = read_attributes(f, file);
+  read_shape(f, file, data);
+  read_block(f, 0, f.shape("/records")[0], fields, data);
+  if (fields.draws) {
+    f.read("/draws/sample_id", data.draw_sample_id);
+    f.read("/draws/outcome", data.draw_outcome);
+  }
+  return data;
+}
+
+void read_rows(const fs::path& file, std::uint64_t first, std::uint64_t count, RowBlock& out, const std::string& config_hash, const ShardFields& fields) {
+  const std::lock_guard guard(h5::lock());
+  const h5::File f = h5::File::open(file);
+  if (!config_hash.empty()) {
+    const std::string found = f.text_attribute("config_hash");
+    if (found != config_hash) bad_shard(file, "a shard of another config", "its config hash is " + found + ", the dataset's " + config_hash);
+  }
+  read_shape(f, file, out);
+  read_block(f, first, count, fields, out);
+}
+
+void write_shard(const fs::path& file, const ShardData& data) {
+  const std::lock_guard guard(h5::lock());
+  make_folder(file.parent_path());
+  const fs::path temporary = temporary_name(file);
+  try {
+    h5::File f = h5::File::create(temporary);
+    lay_out_shard(f, data, {data.rows, data.draw_sample_id.size()});
+    fill_shard(f, data, 0, 0);
+    f.close();
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    throw;
+  }
+  publish(file);
+}
+
+std::vector<std::uint64_t> row_hashes(const RowBlock& b) {
+  std::vector<std::uint64_t> hashes(b.rows);
+  const HashState h;
+  const std::size_t record = b.channels * b.samples;
+  for (std::size_t i = 0; i < b.rows; ++i) {
+    XXH3_64bits_reset(h.state);
+    feed(h.state, &b.sample_id[i], 1);
+    feed(h.state, &b.generator[i], 1);
+    feed(h.state, b.parameters.data() + i * b.parameter_count, b.parameter_count);
+    feed(h.state, b.fault.data() + i * kFaultColumns, kFaultColumns);
+    feed(h.state, &b.largest_spread[i], 1);
+    if (!b.angle_valid.empty()) feed(h.state, b.angle_valid.data() + i * b.samples, b.samples);
+    feed(h.state, b.records.data() + i * record, record);
+    hashes[i] = XXH3_64bits_digest(h.state);
+  }
+  return hashes;
+}
+
+std::uint64_t shard_hash(const std::vector<std::uint64_t>& rows, const std::vector<std::uint64_t>& draw_sample_id, const std::vector<std::uint8_t>& draw_outcome) {
+  const HashState h;
+  feed(h.state, rows.data(), rows.size());
+  feed(h.state, draw_sample_id.data(), draw_sample_id.size());
+  feed(h.state, draw_outcome.data(), draw_outcome.size());
+  return XXH3_64bits_digest(h.state);
+}
+
+std::uint64_t shard_hash(const ShardData& data) { return shard_hash(row_hashes(data), data.draw_sample_id, data.draw_outcome); }
+
+}  // namespace swingbank

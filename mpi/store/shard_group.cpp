@@ -1,0 +1,106 @@
+#include "mpi/store/shard_group.hpp"
+
+#include <functional>
+#include <numeric>
+
+#include "mpi/store/durable.hpp"
+#include "mpi/store/shard_layout.hpp"
+#include "sim/core/problem.hpp"
+
+namespace swingbank {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Runs `work` on every rank of the group, then all agree: if any failed, all throw the first failure's problem.
+void together(MPI_Comm group, const fs::path& file, const std::function<void()>& work) {
+  int rank, size;
+  MPI_Comm_rank(group, &rank);
+  MPI_Comm_size(group, &size);
+  Problem problem;
+  bool failed = true;
+  try {
+    work();
+    failed = false;
+  } catch (const InputError& e) {
+    problem = e.problems().front();
+  } catch (const std::exception& e) {
+    problem = {"cannot write the shard", file.string(), e.what(), "check the disk, then run the command again"};
+  }
+  int mine = failed ? rank : size, first = size;
+  MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, group);
+  if (first == size) return;
+  for (std::string* text : {&problem.what, &problem.where, &problem.why, &problem.remedy}) {
+    auto length = static_cast<unsigned long>(text->size());
+    MPI_Bcast(&length, 1, MPI_UNSIGNED_LONG, first, group);
+    text->resize(length);
+    MPI_Bcast(text->data(), static_cast<int>(length), MPI_CHAR, first, group);
+  }
+  throw InputError(problem);
+}
+
+/// What the arrays of all ranks will take on the disk, less HDF5's own few kilobytes.
+std::uint64_t size_on_disk(const ShardData& part, std::uint64_t rows, std::uint64_t draws) {
+  const std::uint64_t fixed = sizeof(std::uint64_t) + sizeof(std::int32_t) + sizeof(double) * (kFaultColumns + 1);
+  const std::uint64_t row = part.channels * part.samples * sizeof(float) + part.parameter_count * sizeof(double) + fixed;
+  return rows * row + draws * (sizeof(std::uint64_t) + 1);
+}
+
+template <class T>
+std::vector<T> gather(MPI_Comm group, const std::vector<T>& mine, int size) {
+  int bytes = static_cast<int>(mine.size() * sizeof(T));
+  std::vector<int> counts(static_cast<std::size_t>(size)), offsets(counts.size());
+  MPI_Allgather(&bytes, 1, MPI_INT, counts.data(), 1, MPI_INT, group);
+  std::exclusive_scan(counts.begin(), counts.end(), offsets.begin(), 0);
+  std::vector<T> all(static_cast<std::size_t>(offsets.back() + counts.back()) / sizeof(T));
+  MPI_Allgatherv(mine.data(), bytes, MPI_BYTE, all.data(), counts.data(), offsets.data(), MPI_BYTE, group);
+  return all;
+}
+
+h5::Handle access_list(MPI_Comm group) {
+  h5::Handle list(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_fapl_mpio(list.get(), group, MPI_INFO_NULL);
+  return list;
+}
+
+}  // namespace
+
+ShardReceipt write_shard(const fs::path& file, const ShardData& part, MPI_Comm group) {
+  const std::lock_guard guard(h5::lock());
+  int rank, size;
+  MPI_Comm_rank(group, &rank);
+  MPI_Comm_size(group, &size);
+  const auto hashes = gather(group, row_hashes(part), size);
+  const auto ids = gather(group, part.draw_sample_id, size);
+  const auto outcomes = gather(group, part.draw_outcome, size);
+  std::uint64_t mine[2] = {part.rows, part.draw_sample_id.size()}, before[2] = {0, 0};
+  MPI_Exscan(mine, before, 2, MPI_UINT64_T, MPI_SUM, group);
+  if (rank == 0) before[0] = before[1] = 0;
+
+  const fs::path temporary = temporary_name(file);
+  try {
+    // MPI-IO tells little about why it fails, so the system is asked first.
+    together(group, file, [&] {
+      if (rank == 0) reserve(file, size_on_disk(part, hashes.size(), ids.size()));
+    });
+    h5::File f;
+    const h5::Handle access = access_list(group);
+    together(group, file, [&] { f = h5::File::create(temporary, access.get()); });
+    together(group, file, [&] { lay_out_shard(f, part, {hashes.size(), ids.size()}); });
+    together(group, file, [&] { fill_shard(f, part, before[0], before[1]); });
+    together(group, file, [&] { f.close(); });
+    together(group, file, [&] {
+      if (rank == 0) publish(file);
+    });
+  } catch (...) {
+    if (rank == 0) {
+      std::error_code ignored;
+      fs::remove(temporary, ignored);
+    }
+    throw;
+  }
+  return {hashes.size(), ids.size(), fs::file_size(file), shard_hash(hashes, ids, outcomes)};
+}
+
+}  // namespace swingbank

@@ -1,0 +1,52 @@
+#include "mpi/store/shard_layout.hpp"
+
+namespace swingbank {
+
+void lay_out_shard(h5::File& f, const ShardData& d, ShardSize n) {
+  const ShardAttributes& a = d.attributes;
+  f.attribute("format", std::string(kShardFormat));
+  f.attribute("config_hash", a.config_hash);
+  f.attribute("kernel", a.kernel);
+  f.attribute("software", a.software);
+  f.attribute("seed", a.seed);
+  f.attribute("shard", a.shard);
+  f.attribute("rate", a.rate);
+  f.attribute("machine_model", a.machine_model);
+  f.attribute("channel_names", a.channel_names);
+  f.attribute("channel_units", a.channel_units);
+  f.attribute("parameter_names", a.parameter_names);
+  f.attribute("parameter_units", a.parameter_units);
+  f.attribute("parameter_low", a.parameter_low);
+  f.attribute("parameter_high", a.parameter_high);
+  f.create<float>("/records", {n.rows, a.channel_names.size(), d.samples});
+  f.create<double>("/parameters", {n.rows, a.parameter_names.size()});
+  f.create<std::uint64_t>("/sample_id", {n.rows});
+  f.create<std::int32_t>("/generator", {n.rows});
+  f.create<double>("/fault", {n.rows, kFaultColumns});
+  f.attribute("columns", std::vector<std::string>{"bus number", "t_on [s]", "t_off [s]", "r [pu]", "x [pu]"}, "/fault");
+  f.create<double>("/largest_spread", {n.rows});
+  f.attribute("unit", std::string("rad"), "/largest_spread");
+  for (const auto& c : a.channel_names)
+    if (c == "theta" || c == "frequency") {
+      f.create<std::uint8_t>("/angle_valid", {n.rows, d.samples});
+      break;
+    }
+  f.create_group("/draws");
+  f.create<std::uint64_t>("/draws/sample_id", {n.draws});
+  f.create<std::uint8_t>("/draws/outcome", {n.draws});
+  f.attribute("meaning", std::vector<std::string>{"stable", "lost_synchronism", "not_finite", "step_too_small", "refused"}, "/draws/outcome");
+}
+
+void fill_shard(h5::File& f, const ShardData& d, std::uint64_t first_row, std::uint64_t first_draw) {
+  f.write("/records", first_row, d.rows, d.records.data());
+  f.write("/parameters", first_row, d.rows, d.parameters.data());
+  f.write("/sample_id", first_row, d.rows, d.sample_id.data());
+  f.write("/generator", first_row, d.rows, d.generator.data());
+  f.write("/fault", first_row, d.rows, d.fault.data());
+  f.write("/largest_spread", first_row, d.rows, d.largest_spread.data());
+  if (f.has("/angle_valid")) f.write("/angle_valid", first_row, d.rows, d.angle_valid.data());
+  f.write("/draws/sample_id", first_draw, d.draw_sample_id.size(), d.draw_sample_id.data());
+  f.write("/draws/outcome", first_draw, d.draw_outcome.size(), d.draw_outcome.data());
+}
+
+}  // namespace swingbank
