@@ -1,22 +1,8 @@
-# Shared by the batch scripts. Contract of the programs: SIGUSR1 -> save, exit code 2 = "saved, submit me again".
-# modules, launcher and max_restarts come from the site file.
+# Shared by the batch scripts. modules, launcher and max_restarts come from the site file.
 # shellcheck disable=SC2154
 
-# Runs "$@" in the background, because bash runs a trap only between commands or in `wait`, and forwards the signal.
-run_saving() {
-  local status signalled
-  "$@" &
-  child=$!
-  trap 'signalled=1; kill -USR1 "$child" 2>/dev/null' USR1
-  trap 'signalled=1; kill -TERM "$child" 2>/dev/null' TERM
-  while :; do
-    signalled=0 status=0
-    wait "$child" || status=$?
-    ((signalled)) || break # else the wait was interrupted, and the child may still be saving
-  done
-  trap - USR1 TERM
-  return "$status"
-}
+# shellcheck source=jobs/run_saving.bash
+source "$SWINGBANK_SOURCE/jobs/run_saving.bash"
 
 # Exit code 2 puts the job back into the queue, until max_restarts is reached.
 finish_or_requeue() {

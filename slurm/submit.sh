@@ -36,7 +36,7 @@ mkdir -p "$SWINGBANK_OUT/log"
 
 runner=$SWINGBANK_SOURCE/jobs/run_experiment.sh
 bash "$runner" --stage check # bad settings are told now, not by a job in the night
-folds=$(bash "$runner" --stage count-folds)
+tasks=$(bash "$runner" --stage count-tasks)
 
 common=(--parsable --export=ALL --chdir="$SWINGBANK_OUT" --kill-on-invalid-dep=yes "${sbatch_extra[@]}")
 [[ -z $partition ]] || common+=(--partition="$partition")
@@ -61,6 +61,6 @@ log=$SWINGBANK_OUT/log
   generate=$(submit generate "$databank" --output="$log/generate.log" --time="$generate_time" "${warning[@]}" \
     --nodes="$generate_nodes" --ntasks="$generate_ranks")
   fold=$(submit fold "$generate" --output="$log/fold-%a.log" --time="$fold_time" "${warning[@]}" \
-    --cpus-per-task="$fold_cpus" --array="0-$((folds - 1))%$folds_at_once")
+    --cpus-per-task="$fold_cpus" --array="0-$((tasks - 1))%$folds_at_once")
   submit tables "$fold" --output="$log/tables.log" --time="$tables_time" >/dev/null
 } 2>&1

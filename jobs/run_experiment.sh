@@ -1,0 +1,118 @@
+#!/usr/bin/env bash
+# Runs one experiment from its config to its tables; what is done already is not done again. The quickstart, the
+# nightly run and the Slurm jobs all run this script.
+#   bash jobs/run_experiment.sh [--experiment FILE] [--preset NAME] [--out FOLDER] [--stage STAGE] [--task N]
+#                               [--seed N] [--ranks N] [--launcher WORDS] [--build FOLDER]
+#     --stage     check, databank, generate, train, tables, or all of them (all, the default); count-tasks prints how
+#                 many tasks the stage train has, one per network and fold
+#     --task      of the stage train, this one only, from 0
+#     --seed      of the training (default 1)
+#     --ranks     MPI processes that generate (default: one per core)
+#     --launcher  starts them (default mpirun)
+#     --build     build folder (default build/release)
+# $SWINGBANK_EXPERIMENT, $SWINGBANK_PRESET, $SWINGBANK_OUT and $SWINGBANK_BUILD are the defaults of the options.
+# Exit codes: 0 done, 1 failed, 2 saved on a signal (run it again to go on).
+set -euo pipefail
+
+source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+experiment=${SWINGBANK_EXPERIMENT:-} preset=${SWINGBANK_PRESET:-quick} out=${SWINGBANK_OUT:-}
+build=${SWINGBANK_BUILD:-$source_folder/build/release}
+stage=all task='' seed=1 ranks=$(nproc) launcher=mpirun
+# shellcheck source=jobs/run_saving.bash
+source "$source_folder/jobs/run_saving.bash"
+while (($#)); do
+  case $1 in
+    --experiment) experiment=${2:?} ;;
+    --preset) preset=${2:?} ;;
+    --out) out=${2:?} ;;
+    --stage) stage=${2:?} ;;
+    --task) task=${2:?} ;;
+    --seed) seed=${2:?} ;;
+    --ranks) ranks=${2:?} ;;
+    --launcher) launcher=${2:?} ;;
+    --build) build=${2:?} ;;
+    -h | --help) sed -n '2,15p' "$0"; exit 0 ;;
+    *) echo "unknown option at '$1' (jobs/run_experiment.sh does not have it): run it with --help" >&2; exit 1 ;;
+  esac
+  shift 2
+done
+if [[ -z $experiment ]]; then
+  echo "experiment missing at --experiment (nothing says what to run): give a file of configs/experiments" >&2
+  exit 1
+fi
+out=$(realpath -m "${out:-$source_folder/out/$(basename "$experiment" .toml)-$preset}")
+swingbank=$build/bin/swingbank
+if [[ ! -x $swingbank ]]; then
+  echo "swingbank missing at $swingbank (it is not built): run bash jobs/setup.sh" >&2
+  exit 1
+fi
+
+# What the experiment says of itself: dataset, draws, table, networks, folds
+ask() { "$swingbank" train --experiment "$experiment" --preset "$preset" --print "$1"; }
+
+# A dataset belongs to its config and size; experiments with the same two share the folder.
+dataset_folder() { echo "$out/data"; }
+
+say() { printf '\n-- %s, %s: %s\n' "$(basename "$experiment" .toml)" "$preset" "$1"; }
+
+generate() {
+  local config draws
+  config=$(ask dataset)
+  draws=$(ask draws)
+  say "events for $config ($draws draws) on $ranks processes"
+  local root=()
+  # OpenMPI refuses root unless told twice; whoever starts this script as root means it.
+  if ((EUID == 0)); then root=(env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1); fi
+  local command=("${root[@]}")
+  # shellcheck disable=SC2206 # the launcher is a list of words
+  command+=($launcher -n "$ranks")
+  if [[ $launcher == mpirun* && -z ${SLURM_JOB_ID:-} ]]; then command+=(--oversubscribe); fi
+  run_saving "${command[@]}" "$swingbank" generate "$config" --draws "$draws" --out "$(dataset_folder)"
+}
+
+tasks() {
+  local network fold
+  for network in $(ask networks); do
+    for fold in $(ask folds); do echo "$network $fold"; done
+  done
+}
+
+run_task() {
+  local network=$1 fold=$2 common
+  say "$network, fold $fold"
+  common=("$(dataset_folder)" --experiment "$experiment" --preset "$preset" --seed "$seed" --network "$network" --out "$out/results")
+  if [[ $fold == none ]]; then
+    run_saving "$swingbank" train "${common[@]}"
+  else
+    run_saving "$swingbank" cross-validate "${common[@]}" --fold "$fold"
+  fi
+}
+
+train() {
+  local lines line
+  mapfile -t lines < <(tasks)
+  if [[ -n $task ]]; then
+    if [[ ! $task =~ ^[0-9]+$ ]] || ((task >= ${#lines[@]})); then
+      echo "no such task at --task $task (the experiment has ${#lines[@]}, counted from 0): give a lower number" >&2
+      return 1
+    fi
+    lines=("${lines[task]}")
+  fi
+  for line in "${lines[@]}"; do
+    # shellcheck disable=SC2086 # two words: network and fold
+    run_task $line || return $?
+  done
+}
+
+tables() {
+  say "tables"
+  "$swingbank" tables "$out/results" --out "$out/tables"
+}
+
+case $stage in
+  check) ask table >/dev/null && ask dataset >/dev/null ;;
+  count-tasks) tasks | wc -l ;;
+  databank | generate | train | tables) mkdir -p "$out" && "$stage" ;;
+  all) mkdir -p "$out" && generate && train && tables ;;
+  *) echo "unknown stage at --stage $stage (there is none of that name): run it with --help" >&2; exit 1 ;;
+esac
