@@ -1,0 +1,50 @@
+#pragma once
+// A PMU record of one plant's terminal: what was measured, uniformly sampled, with its units settled on reading.
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/core/problem.hpp"
+
+namespace swingbank::validate {
+
+/// What a record's columns are measured in where the column name says "pu".
+struct RecordBase {
+  double mva = 100.0;       ///< base of P_pu and Q_pu [MVA]
+  double frequency = 60.0;  ///< base of f_pu and omega_pu [Hz]
+  double kv = 0.0;          ///< base of V_kV [kV]; 0: the file may not use V_kV
+};
+
+/// Samples of one terminal. All vectors have the length of `t`; optional channels are empty if not recorded.
+struct Record {
+  std::string name;                  ///< file name without folder
+  std::uint64_t hash = 0;            ///< XXH64 of the file's bytes
+  RecordBase base;
+  std::vector<double> t;             ///< [s], increasing, uniform
+  std::vector<double> V, theta;      ///< [pu], [rad] (unwrapped)
+  std::vector<double> P, Q;          ///< out of the machine [pu on base.mva]
+  std::vector<double> f;             ///< optional: frequency deviation [pu]
+  std::vector<double> speed;         ///< optional: rotor speed deviation [pu]
+  std::vector<double> Efd, Ifd;      ///< optional [pu]
+  std::vector<std::string> ignored;  ///< columns of the file that were not read
+
+  [[nodiscard]] int samples() const { return static_cast<int>(t.size()); }
+  [[nodiscard]] double step() const { return (t.back() - t.front()) / static_cast<double>(t.size() - 1); }
+  [[nodiscard]] double rate() const { return 1.0 / step(); }
+};
+
+/// Fewest samples a record may have: a pre-event window and a response cannot be told from less.
+constexpr int kFewestSamples = 30;
+
+/// Reads a CSV record. The header names each column with its unit (validate/README.md lists the names); columns that
+/// are not measurements of the terminal are left out and listed in `ignored`. Throws InputError with every fault of
+/// the file: missing, repeated or unitless columns, ragged lines, values that are no finite numbers, times that do not
+/// increase or are unevenly spaced, too few samples. Each names its line.
+Record read_record(const std::filesystem::path& file, const RecordBase& base);
+
+/// The same from text; `name` stands for the file in messages.
+Record parse_record(std::string_view text, const std::string& name, const RecordBase& base);
+
+}  // namespace swingbank::validate
