@@ -17,7 +17,8 @@ struct Bus {
   BusType type;
   double vm, va;       ///< voltage in the file: start of the power flow [pu, rad]
 };
-/// Consumption [pu]: constant power, constant current and constant admittance parts at 1 pu voltage.
+/// Consumption P + jQ [pu]: constant power, constant current and constant admittance parts, each at 1 pu voltage:
+/// S = power + current V + admittance V^2.
 struct Load {
   int bus;
   std::string id;
@@ -36,6 +37,7 @@ struct Branch {
   double tap = 1.0, shift = 0.0;  ///< [-, rad]
   Complex shunt_from{}, shunt_to{};  ///< line shunts, magnetising admittance [pu]
   bool in_service = true;
+  bool transformer = false;  ///< which section of a .raw it belongs to; the equations are the same
 };
 struct Generator {
   int bus;
@@ -45,6 +47,7 @@ struct Generator {
   double mva;             ///< machine base
   double zr, zx;          ///< ZSORCE [pu on mva]
   bool in_service = true;
+  double q_min = -99.99, q_max = 99.99;  ///< reactive limits [pu on base_mva]; kept, not enforced
 };
 
 struct Network {

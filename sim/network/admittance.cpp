@@ -1,0 +1,117 @@
+#include "sim/network/admittance.hpp"
+
+#include <Eigen/SparseLU>
+#include <algorithm>
+#include <utility>
+
+#include "sim/core/problem.hpp"
+#include "sim/network/connectivity.hpp"
+
+namespace swingbank::sim {
+namespace {
+
+using Entries = std::vector<Eigen::Triplet<Complex>>;
+
+void add_branch(const Branch& b, Entries& entries) {
+  const Complex y = 1.0 / Complex(b.r, b.x), half(0.0, 0.5 * b.b), n = std::polar(b.tap, b.shift);
+  entries.emplace_back(b.from, b.from, (y + half) / (b.tap * b.tap) + b.shunt_from);
+  entries.emplace_back(b.from, b.to, -y / std::conj(n));
+  entries.emplace_back(b.to, b.from, -y / n);
+  entries.emplace_back(b.to, b.to, y + half + b.shunt_to);
+}
+
+Entries branches_and_shunts(const Network& network, const Topology& topology) {
+  Entries entries;
+  for (std::size_t i = 0; i < network.branches.size(); ++i)
+    if (network.branches[i].in_service && !std::ranges::binary_search(topology.open, static_cast<int>(i)))
+      add_branch(network.branches[i], entries);
+  for (const Shunt& s : network.shunts) entries.emplace_back(s.bus, s.bus, s.admittance);
+  return entries;
+}
+
+Eigen::SparseMatrix<Complex> matrix(const Network& network, const Entries& entries) {
+  const auto n = static_cast<Eigen::Index>(network.buses.size());
+  Eigen::SparseMatrix<Complex> y(n, n);
+  y.setFromTriplets(entries.begin(), entries.end());
+  return y;
+}
+
+/// Throws if a part of the network is left without a generator: nothing sets its voltage.
+void check_supplied(const Network& network, const Topology& topology) {
+  const auto island = islands(network, topology.open);
+  std::vector<char> supplied(network.buses.size(), 0);  // by island; there are no more islands than buses
+  for (const Generator& g : network.generators)
+    if (g.in_service && island[static_cast<std::size_t>(g.bus)] >= 0) supplied[static_cast<std::size_t>(island[static_cast<std::size_t>(g.bus)])] = 1;
+  std::vector<int> dark;
+  for (std::size_t i = 0; i < island.size(); ++i)
+    if (island[i] >= 0 && !supplied[static_cast<std::size_t>(island[i])]) dark.push_back(static_cast<int>(i));
+  if (dark.empty()) return;
+  const std::string why = topology.open.empty() ? "no path through branches in service leads to a generator" : "with the tripped branches open no path leads to a generator";
+  throw InputError({bus_list(network, dark) + (dark.size() == 1 ? " is" : " are") + " islanded", network.origin, why, "trip another branch, or remove what is cut off"});
+}
+
+}  // namespace
+
+Eigen::SparseMatrix<Complex> bus_admittance(const Network& network, const Topology& topology) {
+  return matrix(network, branches_and_shunts(network, topology));
+}
+
+Eigen::SparseMatrix<Complex> dynamic_admittance(const Network& network, const PowerFlow& flow, const Topology& topology) {
+  check_supplied(network, topology);
+  Entries entries = branches_and_shunts(network, topology);
+  for (const Load& l : network.loads) {
+    const double vm = std::abs(flow.voltage[static_cast<std::size_t>(l.bus)]);
+    // S = conj(Y) V^2 at the power-flow voltage
+    entries.emplace_back(l.bus, l.bus, std::conj(l.power / (vm * vm) + l.current / vm + l.admittance));
+  }
+  for (const auto& [bus, z] : topology.faults)
+    if (z != Complex{}) entries.emplace_back(bus, bus, 1.0 / z);
+  for (std::size_t i = 0; i < network.buses.size(); ++i)
+    if (network.buses[i].type == BusType::isolated) entries.emplace_back(static_cast<int>(i), static_cast<int>(i), 1.0);
+  return matrix(network, entries);
+}
+
+std::vector<int> bolted_buses(const Topology& topology) {
+  std::vector<int> buses;
+  for (const auto& [bus, z] : topology.faults)
+    if (z == Complex{}) buses.push_back(bus);
+  return buses;
+}
+
+ReducedNetwork reduce(const Network& network, const PowerFlow& flow, const Topology& topology, const std::vector<int>& kept) {
+  const auto full = dynamic_admittance(network, flow, topology);
+  const auto bolted = bolted_buses(topology);
+  const auto n = static_cast<int>(network.buses.size());
+  std::vector<int> keep(static_cast<std::size_t>(n), -1), rest(static_cast<std::size_t>(n), -1);  // new positions
+  for (std::size_t k = 0; k < kept.size(); ++k) keep[static_cast<std::size_t>(kept[k])] = static_cast<int>(k);
+  ReducedNetwork reduced;
+  for (const int bus : bolted)
+    if (int& k = keep[static_cast<std::size_t>(bus)]; k >= 0) reduced.grounded.push_back(std::exchange(k, -1));
+  std::ranges::sort(reduced.grounded);
+  int others = 0;
+  for (int i = 0; i < n; ++i)
+    if (keep[static_cast<std::size_t>(i)] < 0 && !std::ranges::count(bolted, i) && !std::ranges::count(kept, i)) rest[static_cast<std::size_t>(i)] = others++;
+
+  const auto size = static_cast<Eigen::Index>(kept.size());
+  reduced.y = Eigen::MatrixXcd::Zero(size, size);
+  Eigen::MatrixXcd ke = Eigen::MatrixXcd::Zero(size, others), ek = Eigen::MatrixXcd::Zero(others, size);
+  Entries inner;
+  for (int j = 0; j < full.outerSize(); ++j)
+    for (Eigen::SparseMatrix<Complex>::InnerIterator e(full, j); e; ++e) {
+      const auto i = static_cast<std::size_t>(e.row()), c = static_cast<std::size_t>(j);
+      if (keep[i] >= 0 && keep[c] >= 0) reduced.y(keep[i], keep[c]) = e.value();
+      if (keep[i] >= 0 && rest[c] >= 0) ke(keep[i], rest[c]) = e.value();
+      if (rest[i] >= 0 && keep[c] >= 0) ek(rest[i], keep[c]) = e.value();
+      if (rest[i] >= 0 && rest[c] >= 0) inner.emplace_back(rest[i], rest[c], e.value());
+    }
+  if (others == 0) return reduced;
+  Eigen::SparseMatrix<Complex> ee(others, others);
+  ee.setFromTriplets(inner.begin(), inner.end());
+  Eigen::SparseLU<Eigen::SparseMatrix<Complex>> lu(ee);
+  if (lu.info() != Eigen::Success)
+    throw InputError({"the admittance matrix is singular", network.origin, "series and shunt elements cancel at some bus", "check impedances and shunts"});
+  reduced.y -= ke * lu.solve(ek);
+  return reduced;
+}
+
+}  // namespace swingbank::sim

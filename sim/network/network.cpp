@@ -1,0 +1,64 @@
+#include "sim/network/network.hpp"
+
+#include <algorithm>
+
+#include "sim/network/connectivity.hpp"
+
+namespace swingbank::sim {
+
+int Network::bus_index(int number) const {
+  for (std::size_t i = 0; i < buses.size(); ++i)
+    if (buses[i].number == number) return static_cast<int>(i);
+  return -1;
+}
+
+int Network::branch_index(int from, int to, const std::string& circuit) const {
+  const int f = bus_index(from), t = bus_index(to);
+  if (f < 0 || t < 0) return -1;
+  for (std::size_t i = 0; i < branches.size(); ++i) {
+    const Branch& b = branches[i];
+    const bool joins = (b.from == f && b.to == t) || (b.from == t && b.to == f);
+    if (joins && b.circuit == circuit) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+std::vector<int> islands(const Network& network, const std::vector<int>& open) {
+  std::vector<std::vector<int>> neighbours(network.buses.size());
+  for (std::size_t i = 0; i < network.branches.size(); ++i) {
+    const Branch& b = network.branches[i];
+    if (!b.in_service || std::binary_search(open.begin(), open.end(), static_cast<int>(i))) continue;
+    neighbours[static_cast<std::size_t>(b.from)].push_back(b.to);
+    neighbours[static_cast<std::size_t>(b.to)].push_back(b.from);
+  }
+  std::vector<int> island(network.buses.size(), -1);
+  int count = 0;
+  for (std::size_t start = 0; start < island.size(); ++start) {
+    if (island[start] >= 0 || network.buses[start].type == BusType::isolated) continue;
+    std::vector<int> stack{static_cast<int>(start)};
+    island[start] = count;
+    while (!stack.empty()) {
+      const int bus = stack.back();
+      stack.pop_back();
+      for (const int next : neighbours[static_cast<std::size_t>(bus)]) {
+        int& mark = island[static_cast<std::size_t>(next)];
+        if (mark >= 0) continue;
+        mark = count;
+        stack.push_back(next);
+      }
+    }
+    ++count;
+  }
+  return island;
+}
+
+std::string bus_list(const Network& network, const std::vector<int>& buses) {
+  constexpr std::size_t most = 20;  // a sentence, not a table
+  std::string text;
+  for (std::size_t i = 0; i < buses.size() && i < most; ++i)
+    text += (i ? ", " : "") + std::to_string(network.buses[static_cast<std::size_t>(buses[i])].number);
+  if (buses.size() > most) text += " and " + std::to_string(buses.size() - most) + " more";
+  return (buses.size() == 1 ? "bus " : "buses ") + text;
+}
+
+}  // namespace swingbank::sim
