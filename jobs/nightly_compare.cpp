@@ -1,0 +1,197 @@
+// swingbank nightly-compare FOLDER: what moved since the nights before, beyond its noise.
+//
+// FOLDER holds one folder per night, YYYY-MM-DD/<experiment>/results/*.json (docs/formats.md of train's
+// results). A cell is one (table, network, generator) at one preset and dataset config; its score is s =
+// ln(MSE / baseline). Every night trains with another seed, so the nights before show how much a score moves
+// by itself:
+//   residual of a night = s - median of the cell's nights before
+//   noise of a table and network = 1.4826 * median |residual| * sqrt(n / (n - 1)), pooled over its cells,
+//                                  because one cell has too few nights; at least 1 %
+//   moved: |s tonight - median| > 3 noise sqrt(1 + 1.57 / n)      (1.57 / n: the variance of a median of n)
+// With fewer than three nights before, the change is printed and no verdict given.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "sim/core/problem.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using swingbank::InputError;
+using swingbank::Problem;
+using swingbank::Problems;
+
+constexpr std::size_t kNightsNeeded = 3;
+constexpr double kLeastNoise =
+    0.01;  // a change of less than 3 % is of no interest even if the nights agree exactly
+
+struct Cell {
+  std::string table, network, generator, preset, config;
+  auto operator<=>(const Cell&) const = default;
+};
+using Night = std::map<Cell, double>;         // ln(MSE / baseline)
+using Nights = std::map<std::string, Night>;  // by date
+
+struct Change {
+  Cell cell;
+  double tonight = 0, before = 0, noise = 0;
+  std::size_t nights = 0;
+  [[nodiscard]] double limit() const {
+    return 3.0 * noise * std::sqrt(1.0 + 1.57 / static_cast<double>(nights));
+  }
+  [[nodiscard]] bool judged() const { return nights >= kNightsNeeded; }
+  [[nodiscard]] bool moved() const { return judged() && std::abs(tonight - before) > limit(); }
+};
+
+bool is_date(const std::string& name) {
+  if (name.size() != 10) return false;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    if (i == 4 || i == 7 ? name[i] != '-' : std::isdigit(static_cast<unsigned char>(name[i])) == 0)
+      return false;
+  }
+  return true;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
+
+void read_result(const fs::path& file, Night& night, Problems& problems) {
+  try {
+    const auto json = nlohmann::json::parse(std::ifstream(file));
+    if (json.value("shuffled_labels", false)) return;
+    const auto& generator = json.at("generator");
+    const double ratio = json.at("mse").get<double>() / json.at("baseline_mse").get<double>();
+    if (!(ratio > 0) || !std::isfinite(ratio)) {
+      problems.add(fmt::format("MSE / baseline = {}", ratio), file.string(), "it must be finite and positive",
+                   "delete the file and run the night again");
+      return;
+    }
+    night[{json.at("table"), json.at("network"), generator.is_null() ? "-" : generator.dump(),
+           json.at("preset"), json.at("dataset").at("config_hash")}] = std::log(ratio);
+  } catch (const nlohmann::json::exception& error) {
+    problems.add("result cannot be read", file.string(), error.what(),
+                 "delete the file and run the night again");
+  }
+}
+
+Nights read_nights(const fs::path& folder) {
+  if (!fs::is_directory(folder)) {
+    throw InputError(Problem{"no nights", folder.string(), "there is no such folder",
+                             "give the --out of jobs/nightly.sh"});
+  }
+  Nights nights;
+  Problems problems;
+  for (const auto& night : fs::directory_iterator(folder)) {
+    const std::string date = night.path().filename().string();
+    if (!is_date(date) || !night.is_directory()) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(night.path())) {
+      const auto& file = entry.path();
+      if (file.extension() == ".json" && file.parent_path().filename() == "results") {
+        read_result(file, nights[date], problems);
+      }
+    }
+  }
+  problems.raise();
+  return nights;
+}
+
+/// Changes of one night against all nights before it, in the order of the cells.
+std::vector<Change> changes_of(const std::string& date, const Nights& nights) {
+  std::map<Cell, std::vector<double>> before;
+  for (const auto& [when, night] : nights) {
+    if (when >= date) break;
+    for (const auto& [cell, score] : night) before[cell].push_back(score);
+  }
+  std::map<std::tuple<std::string, std::string>, std::vector<double>> residuals;
+  for (const auto& [cell, scores] : before) {
+    const double n = static_cast<double>(scores.size());
+    if (scores.size() < kNightsNeeded) continue;
+    for (const double score : scores) {
+      residuals[{cell.table, cell.network}].push_back(std::abs(score - median(scores)) *
+                                                      std::sqrt(n / (n - 1.0)));
+    }
+  }
+  std::vector<Change> changes;
+  for (const auto& [cell, score] : nights.at(date)) {
+    Change change{cell, score, 0, 0, 0};
+    if (const auto found = before.find(cell); found != before.end()) {
+      change.before = median(found->second);
+      change.nights = found->second.size();
+      const auto& pool = residuals[{cell.table, cell.network}];
+      if (!pool.empty()) change.noise = std::max(kLeastNoise, 1.4826 * median(pool));
+    }
+    changes.push_back(change);
+  }
+  return changes;
+}
+
+std::string percent(double log_ratio) { return fmt::format("{:+.1f} %", 100.0 * std::expm1(log_ratio)); }
+
+std::string verdict(const Change& c) {
+  if (c.nights == 0) return "new";
+  if (!c.judged()) return fmt::format("no verdict before {} nights", kNightsNeeded);
+  if (!c.moved()) return "within noise";
+  return c.tonight > c.before ? "**worse**" : "**better**";
+}
+
+void print_report(const std::string& date, std::vector<Change> changes) {
+  std::stable_sort(changes.begin(), changes.end(),
+                   [](const auto& a, const auto& b) { return a.moved() > b.moved(); });
+  const auto moved = std::count_if(changes.begin(), changes.end(), [](const auto& c) { return c.moved(); });
+  const auto judged = std::count_if(changes.begin(), changes.end(), [](const auto& c) { return c.judged(); });
+  fmt::print("# Night {}: {} of {} judged cells moved beyond their noise ({} cells in all)\n\n", date, moved,
+             judged, changes.size());
+  fmt::print(
+      "Score: MSE / predict-the-mean (1: learnt nothing). Noise: one standard deviation, from the nights "
+      "before.\n\n");
+  fmt::print(
+      "| table | network | generator | preset | tonight [-] | median before [-] | change | noise | nights | "
+      "verdict |\n");
+  fmt::print("|---|---|---|---|---|---|---|---|---|---|\n");
+  for (const auto& c : changes) {
+    const bool known = c.nights > 0;
+    fmt::print("| {} | {} | {} | {} | {:.4f} | {} | {} | {} | {} | {} |\n", c.cell.table, c.cell.network,
+               c.cell.generator, c.cell.preset, std::exp(c.tonight),
+               known ? fmt::format("{:.4f}", std::exp(c.before)) : "-",
+               known ? percent(c.tonight - c.before) : "-",
+               c.judged() ? fmt::format("{:.1f} %", 100.0 * c.noise) : "-", c.nights, verdict(c));
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{SWINGBANK_SUMMARY, "swingbank nightly-compare"};
+  std::string folder, date;
+  app.add_option("folder", folder, "folder of nights, as jobs/nightly.sh writes it")->required();
+  app.add_option("--night", date, "YYYY-MM-DD (default: the last one)");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    const Nights nights = read_nights(folder);
+    if (nights.empty() || (!date.empty() && !nights.contains(date))) {
+      throw InputError(Problem{"no results of night '" + date + "'", folder,
+                               "no <date>/<experiment>/results/*.json there", "run jobs/nightly.sh first"});
+    }
+    if (date.empty()) date = nights.rbegin()->first;
+    print_report(date, changes_of(date, nights));
+    return 0;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+}

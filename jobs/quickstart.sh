@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# From a bare Debian 12 to result tables: installs, builds, simulates events of the IEEE 39-bus system, trains and
+# tests one network per generator left out, prints the tables.
+#   bash jobs/quickstart.sh [--out FOLDER]     (default out/quickstart)
+# Started again, it goes on where it stopped.
+set -euo pipefail
+
+source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+out=$source_folder/out/quickstart
+while (($#)); do
+  case $1 in
+    --out) out=$(realpath -m "${2:?--out needs a folder}"); shift 2 ;;
+    -h | --help) sed -n '2,5p' "$0"; exit 0 ;;
+    *) echo "unknown option at '$1' (jobs/quickstart.sh does not have it): run it with --help" >&2; exit 1 ;;
+  esac
+done
+
+bash "$source_folder/jobs/setup.sh"
+started=$SECONDS
+# exec: a signal then reaches the runner itself
+bash "$source_folder/jobs/run_experiment.sh" --experiment "$source_folder/configs/experiments/ieee39_gencls.toml" \
+  --preset quick --out "$out"
+printf '\n%s\n' "done in $(((SECONDS - started + 59) / 60)) min after the build"
+echo "tables: $out/tables/tables.html (open it in a browser)"
