@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -134,7 +135,9 @@ std::optional<long double> parse_number(std::string text) {
 std::string shortest(double value, long double scale) {
   const long double scaled = scale * static_cast<long double>(value);
   char text[64];
-  for (int digits = 1; digits <= 21; ++digits) {
+  // As many digits as stand before the point, so that 100 is not written as 1e+02.
+  const int whole = value == 0.0 ? 1 : static_cast<int>(std::floor(std::log10(std::abs(scaled)))) + 1;
+  for (int digits = std::clamp(whole, 1, 12); digits <= 21; ++digits) {
     std::snprintf(text, sizeof text, "%.*Lg", digits, scaled);
     if (static_cast<double>(std::strtold(text, nullptr) / scale) == value) break;
   }

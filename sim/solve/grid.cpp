@@ -1,0 +1,207 @@
+#include "sim/solve/grid.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "sim/network/psse_text.hpp"
+
+namespace swingbank::sim {
+namespace {
+
+/// The effect with this name in a .dyr (case matters not), or nullptr.
+const Effect* effect_of_dyr(const std::string& model) {
+  const auto same = [](unsigned char a, unsigned char b) { return std::toupper(a) == std::toupper(b); };
+  for (const Effect& e : all_effects())
+    if (!e.dyr_name.empty() && std::ranges::equal(e.dyr_name, model, same)) return &e;
+  return nullptr;
+}
+std::string dyr_names() {
+  std::string names;
+  for (const Effect& e : all_effects())
+    if (!e.dyr_name.empty()) names += (names.empty() ? "" : ", ") + std::string(e.dyr_name);
+  return names;
+}
+
+class GridMaker {
+ public:
+  GridMaker(Network network, const std::string& dyr, Conventions conventions) : dyr_(dyr) {
+    grid_.network = std::move(network);
+    grid_.conventions = conventions;
+    grid_.conventions.frequency = grid_.network.frequency;
+    plants();
+  }
+  Grid make(const std::vector<DyrRecord>& dynamics) {
+    for (const DyrRecord& record : dynamics) add(record);
+    for (Plant& plant : grid_.plants) finish(plant);
+    problems_.raise();
+    solve();
+    return std::move(grid_);
+  }
+
+ private:
+  void plants() {
+    std::map<int, int> at_bus;
+    for (const Generator& g : grid_.network.generators)
+      if (g.in_service) ++at_bus[g.bus];
+    for (std::size_t i = 0; i < grid_.network.generators.size(); ++i) {
+      const Generator& g = grid_.network.generators[i];
+      const int number = bus_number(g);
+      known_.emplace(number, g.id);
+      if (!g.in_service) continue;
+      Plant plant;
+      plant.name = std::to_string(number) + (at_bus[g.bus] > 1 ? "/" + g.id : "");
+      plant.bus = g.bus;
+      plant.mva = g.mva;
+      plant.generator = static_cast<int>(i);
+      plant_of_[{number, g.id}] = grid_.plants.size();
+      grid_.plants.push_back(std::move(plant));
+    }
+  }
+  [[nodiscard]] int bus_number(const Generator& g) const { return grid_.network.buses[static_cast<std::size_t>(g.bus)].number; }
+
+  void add(const DyrRecord& record) {
+    const std::string where = dyr_ + ":" + std::to_string(record.line);
+    const Effect* effect = effect_of_dyr(record.model);
+    if (!effect) {
+      problems_.add("unknown model '" + record.model + "' of generator '" + record.id + "' at bus " + std::to_string(record.bus), where, "available are " + dyr_names(), "use one of these or remove the record");
+      return;
+    }
+    const std::pair<int, std::string> key{record.bus, record.id};
+    const auto found = plant_of_.find(key);
+    if (found == plant_of_.end()) {
+      if (known_.contains(key)) return;  // the generator exists but is out of service
+      problems_.add(record.model + " for generator '" + record.id + "' at bus " + std::to_string(record.bus), where, grid_.network.origin + " has no such generator", "correct bus number and id, or remove the record");
+      return;
+    }
+    Plant& plant = grid_.plants[found->second];
+    if (record.values.size() != effect->dyr_columns.size()) {
+      problems_.add(record.model + " with " + std::to_string(record.values.size()) + " parameters", where, "it takes " + columns(*effect), "give every parameter, in this order");
+      return;
+    }
+    place(plant, read(*effect, record, plant), where);
+  }
+  static std::string columns(const Effect& effect) {
+    std::string text = std::to_string(effect.dyr_columns.size()) + ":";
+    for (const int column : effect.dyr_columns) text += " " + std::string(effect.parameters[static_cast<std::size_t>(column)].symbol);
+    return text;
+  }
+  [[nodiscard]] Block read(const Effect& effect, const DyrRecord& record, const Plant& plant) const {
+    Block block{&effect, effect.standard_parameters()};
+    for (std::size_t i = 0; i < record.values.size(); ++i) block.p[static_cast<std::size_t>(effect.dyr_columns[i])] = record.values[i];
+    const Generator& g = grid_.network.generators[static_cast<std::size_t>(plant.generator)];
+    if (effect.raw_resistance >= 0) block.p[static_cast<std::size_t>(effect.raw_resistance)] = g.zr;
+    if (effect.raw_reactance >= 0) block.p[static_cast<std::size_t>(effect.raw_reactance)] = g.zx;
+    return block;
+  }
+  void place(Plant& plant, Block block, const std::string& where) {
+    const Effect& effect = *block.effect;
+    Problems found;
+    effect.check(block.p.data(), where, found);
+    problems_.add(found);
+    if (effect.slot == Slot::machine) {
+      if (plant.machine.effect) return taken(plant, effect, *plant.machine.effect, where);
+      if (found.empty()) compare_reactance(plant, block, where);
+      plant.machine = std::move(block);
+      return;
+    }
+    for (const Block& other : plant.controls)
+      // Limiters add up, so different ones may stand side by side; every other slot holds one model.
+      if (other.effect == &effect || (other.effect->slot == effect.slot && effect.slot != Slot::limiter)) return taken(plant, effect, *other.effect, where);
+    plant.controls.push_back(std::move(block));
+  }
+  void taken(const Plant& plant, const Effect& effect, const Effect& other, const std::string& where) {
+    problems_.add("a second " + std::string(slot_name(effect.slot)) + " model, " + std::string(effect.dyr_name) + ", for generator " + plant.name, where, "it already has " + std::string(other.dyr_name), "keep one of them");
+  }
+  void compare_reactance(const Plant& plant, const Block& block, const std::string& where) const {
+    if (block.effect->raw_reactance >= 0) return;
+    const double zx = grid_.network.generators[static_cast<std::size_t>(plant.generator)].zx;
+    double r = 0.0, x = 0.0;
+    block.effect->get<double>().machine.source_impedance(block.p.data(), r, x);
+    constexpr double tolerance = 1e-4;  // [pu]: files round reactances to four or five digits
+    if (zx != 0.0 && std::abs(zx - x) > tolerance)
+      spdlog::warn("{}: generator {} has ZX = {} pu in {} but {} pu in its {}; the latter is used", where, plant.name, zx, grid_.network.origin, x, block.effect->dyr_name);
+  }
+  void finish(Plant& plant) {
+    if (!plant.machine.effect) {
+      const Generator& g = grid_.network.generators[static_cast<std::size_t>(plant.generator)];
+      problems_.add("no machine model for generator '" + g.id + "' at bus " + std::to_string(bus_number(g)), dyr_, "it is in service in " + grid_.network.origin, "add a record with one of " + machine_names() + ", or take the generator out of service");
+    }
+    std::ranges::stable_sort(plant.controls, {}, [](const Block& b) { return b.effect->slot; });
+  }
+  static std::string machine_names() {
+    std::string names;
+    for (const Effect& e : all_effects())
+      if (e.slot == Slot::machine && !e.dyr_name.empty()) names += (names.empty() ? "" : ", ") + std::string(e.dyr_name);
+    return names;
+  }
+  void solve() {
+    grid_.flow = solve_power_flow(grid_.network);
+    for (Plant& plant : grid_.plants) plant.generation = grid_.flow.generation[static_cast<std::size_t>(plant.generator)];
+  }
+
+  std::string dyr_;
+  Grid grid_;
+  Problems problems_;
+  std::map<std::pair<int, std::string>, std::size_t> plant_of_;
+  std::set<std::pair<int, std::string>> known_;  ///< every generator of the network
+};
+
+std::string dyr_record(const Grid& grid, const Plant& plant, const Block& block, const std::string& file, Problems& problems) {
+  const Effect& effect = *block.effect;
+  const Generator& g = grid.network.generators[static_cast<std::size_t>(plant.generator)];
+  const std::string where = file + ", generator " + plant.name;
+  if (effect.dyr_name.empty()) {
+    problems.add("model " + std::string(effect.name), where, "it has no form in a .dyr", "remove it from the plant before writing");
+    return {};
+  }
+  const auto in_raw = [&](int index, double value, const char* field) {
+    if (index >= 0 && block.p[static_cast<std::size_t>(index)] != value)
+      problems.add(std::string(effect.parameters[static_cast<std::size_t>(index)].symbol) + " = " + psse::shortest(block.p[static_cast<std::size_t>(index)]) + " pu", where, "the network has " + std::string(field) + " = " + psse::shortest(value) + " pu, and PSS/E keeps it in the .raw", "set it in the network too");
+  };
+  in_raw(effect.raw_resistance, g.zr, "ZR");
+  in_raw(effect.raw_reactance, g.zx, "ZX");
+  std::string text = std::to_string(grid.network.buses[static_cast<std::size_t>(plant.bus)].number) + " " + psse::quote(std::string(effect.dyr_name)) + " " + psse::quote(g.id);
+  for (const int column : effect.dyr_columns) text += " " + psse::shortest(block.p[static_cast<std::size_t>(column)]);
+  return text + " /\n";
+}
+
+}  // namespace
+
+Grid make_grid(Network network, const std::vector<DyrRecord>& dynamics, const std::string& dyr_name, Conventions conventions) {
+  return GridMaker(std::move(network), dyr_name, conventions).make(dynamics);
+}
+
+Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dyr, Conventions conventions) {
+  Problems problems;
+  Network network;
+  std::vector<DyrRecord> dynamics;
+  const auto collect = [&](const auto& read) {
+    try {
+      read();
+    } catch (const InputError& error) {
+      for (const Problem& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
+    }
+  };
+  collect([&] { network = read_raw(raw); });
+  collect([&] { dynamics = read_dyr(dyr); });
+  problems.raise();
+  return make_grid(std::move(network), dynamics, dyr.string(), conventions);
+}
+
+void write_dyr(const Grid& grid, const std::filesystem::path& file) {
+  Problems problems;
+  std::string text;
+  for (const Plant& plant : grid.plants) {
+    text += dyr_record(grid, plant, plant.machine, file.string(), problems);
+    for (const Block& control : plant.controls) text += dyr_record(grid, plant, control, file.string(), problems);
+  }
+  problems.raise();
+  psse::write_whole(file, text);
+}
+
+}  // namespace swingbank::sim
