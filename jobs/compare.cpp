@@ -1,0 +1,120 @@
+// swingbank compare: plays records into a plant model and sets measured beside modelled P and Q.
+#include <algorithm>
+#include <charconv>
+#include <map>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "validate/compare_report.hpp"
+#include "validate/write_file.hpp"
+
+namespace {
+
+using namespace swingbank;
+using namespace swingbank::validate;
+
+/// "2.0" holds for the only record, "event.csv=2.0" for the record of that file name.
+std::map<std::string, std::vector<double>> read_switchings(const std::vector<std::string>& words, const std::vector<std::string>& records) {
+  std::map<std::string, std::vector<double>> instants;
+  Problems problems;
+  for (const auto& word : words) {
+    const auto equals = word.rfind('=');
+    const std::string number = equals == std::string::npos ? word : word.substr(equals + 1);
+    std::string record = equals == std::string::npos ? "" : word.substr(0, equals);
+    if (equals == std::string::npos && records.size() == 1) record = records.front();
+    double t = 0;
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), t);
+    if (error != std::errc{} || end != number.data() + number.size())
+      problems.add("'" + word + "'", "--switch", "it is no time in seconds", "give --switch 2.0 or --switch FILE=2.0");
+    else if (record.empty())
+      problems.add("'" + word + "'", "--switch", "several records are given", "say which one: --switch FILE=" + number);
+    else if (std::ranges::find(records, record) == records.end())
+      problems.add("record '" + record + "'", "--switch", "no --record has that file name", "use the name without its folder");
+    else
+      instants[record].push_back(t);
+  }
+  problems.raise();
+  return instants;
+}
+
+std::string joined(int argc, char** argv) {
+  std::string line = "swingbank compare";
+  for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
+  return line;
+}
+
+/// Every record, read before any is played, so that all faults of all files are told at once.
+std::vector<Record> read_records(const std::vector<std::string>& files, const RecordBase& base) {
+  std::vector<Record> records;
+  Problems problems;
+  for (const auto& file : files) {
+    try {
+      records.push_back(read_record(file, base));
+    } catch (const InputError& error) {
+      for (const auto& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
+    }
+  }
+  problems.raise();
+  return records;
+}
+
+/// Results of several records would overwrite each other if their file names were the same.
+void check_names(const std::vector<Record>& records) {
+  Problems problems;
+  for (std::size_t i = 0; i < records.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (records[i].name == records[j].name)
+        problems.add("two records named " + records[i].name, "--record", "their results would overwrite each other", "rename one of them");
+  problems.raise();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{SWINGBANK_SUMMARY};
+  std::string model_file, out = "compare-report";
+  std::vector<std::string> record_files, switches;
+  bool json = false;
+  CompareOptions options;
+  app.add_option("--model", model_file, "plant file (configs/plants/README.md)")->required();
+  app.add_option("--record", record_files, "record (CSV); may be given several times")->required();
+  app.add_option("--switch", switches, "switching instant [s], or FILE=instant; default: found by the voltage's jumps");
+  app.add_option("--jump-threshold", options.jump_threshold, "smallest jump of the voltage taken for switching [pu]")->capture_default_str();
+  app.add_option("--pre-event", options.play_in.pre_event, "steady stretch of records without switching [s]")->capture_default_str();
+  app.add_option("--out", out, "folder for report.html, compare.json and the curves as CSV")->capture_default_str();
+  app.add_flag("--json", json, "print the result as JSON instead of tables");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 1;
+  }
+  try {
+    const PlantModel model = load_plant_model(model_file);
+    std::vector<Record> records = read_records(record_files, model.record_base);
+    check_names(records);
+    std::vector<std::string> names;
+    for (const auto& r : records) names.push_back(r.name);
+    const auto instants = read_switchings(switches, names);
+    std::vector<EventComparison> events;
+    for (auto& record : records) {
+      const auto given = instants.find(record.name);
+      options.switchings = given == instants.end() ? std::vector<double>{} : given->second;
+      events.push_back(compare_event(model, std::move(record), options));
+    }
+    const Provenance rows = provenance(model, events, joined(argc, argv));
+    const std::filesystem::path folder = out;
+    for (const auto& e : events) write_file(folder / ("playback-" + std::filesystem::path(e.record.name).stem().string() + ".csv"), csv_playback(e));
+    write_file(folder / "compare.json", json_report(model, events, rows));
+    write_file(folder / "report.html", html_report(model, events, rows));
+    if (json) fmt::print("{}", json_report(model, events, rows));
+    else fmt::print("{}\nreport: {}\n", terminal_report(model, events), (folder / "report.html").string());
+    return 0;
+  } catch (const InputError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "swingbank compare: {}\n", error.what());
+    return 1;
+  }
+}
