@@ -33,7 +33,7 @@ class Lanes {
   void emfs(const T* x);
   void current(int plant, Signals<T>& s) const;
   void derivative(const T* x, T* dx);
-  void sample_outputs(const T* x, unsigned valid, const int* index);
+  void sample_outputs(const T* x, unsigned valid);
 
   // loading (lanes_load.hpp)
   void load(int lane);
@@ -42,7 +42,7 @@ class Lanes {
   void record_steady_start(int lane);
   int samples_until(double t) const;
   void refill(int lane, const Next& next, const Done& done);
-  void begin_record(Trajectory& record) const;
+  void begin_record(LaneRun& run) const;
   void hand_over(int lane, Outcome outcome, const Done& done);
 
   // stepping (lanes_step.hpp)
@@ -70,7 +70,7 @@ class Lanes {
   std::vector<T> c_, m_, er_, ei_, r_, xs_, efd_, tm_, grounded_, theta_;
   std::vector<T> y_, trial_, dense_;     ///< states; dense_: four coefficient rows
   std::vector<T> k_[dp54::kStages];
-  std::vector<T> kept_, unused_;
+  std::vector<T> kept_, unused_, outputs_;
   std::vector<LaneRun> lanes_;
   std::vector<std::vector<double>> lane_r_, lane_x_;  ///< source impedances per lane
   unsigned active_ = 0, fresh_ = 0;      ///< lanes that run; lanes whose first stage must be evaluated anew

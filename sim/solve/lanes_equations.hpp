@@ -50,9 +50,9 @@ inline void Lanes<T>::derivative(const T* x, T* dx) {
   }
 }
 
-/// Evaluates the recorded channels at states x and stores them at sample index[lane] of every lane in `valid`.
+/// Evaluates the recorded channels at states x and appends them to the record of every lane in `valid`.
 template <class T>
-inline void Lanes<T>::sample_outputs(const T* x, unsigned valid, const int* index) {
+inline void Lanes<T>::sample_outputs(const T* x, unsigned valid) {
   emfs(x);
   T* unused = unused_.data();
   const auto good = Traits::mask(valid);
@@ -87,13 +87,15 @@ inline void Lanes<T>::sample_outputs(const T* x, unsigned valid, const int* inde
           break;
         }
       }
-      alignas(64) double out[kLanes];
-      Traits::store(v, out);
-      for (int l = 0; l < kLanes; ++l)
-        if ((valid >> l) & 1U)
-          lanes_[static_cast<std::size_t>(l)].record.at(static_cast<int>(k), static_cast<int>(j))[index[l]] = out[l];
+      outputs_[k * channels_.size() + j] = v;
     }
   }
+  const double* out = reinterpret_cast<const double*>(outputs_.data());
+  for (int l = 0; l < kLanes; ++l)
+    if ((valid >> l) & 1U) {
+      auto& run = lanes_[static_cast<std::size_t>(l)];
+      run.stage.put(out + l, kLanes, run.record);
+    }
 }
 
 }  // namespace swingbank::sim

@@ -35,6 +35,7 @@ Lanes<T>::Lanes(const Grid& grid, const BatchOptions& options) : grid_(grid), op
   m_.assign(static_cast<std::size_t>(m), T(0.0));
   for (auto* v : {&er_, &ei_, &r_, &xs_, &efd_, &tm_, &grounded_, &theta_}) v->assign(n, T(0.0));
   for (auto* v : {&y_, &trial_, &kept_, &unused_}) v->assign(states, T(0.0));
+  outputs_.assign(recorded_.size() * channels_.size(), T(0.0));
   dense_.assign(4 * states, T(0.0));
   for (auto& k : k_) k.assign(states, T(0.0));
   lanes_.resize(kLanes);
@@ -76,7 +77,6 @@ void Lanes<T>::load(int lane) {
                operating_point(changed, grid_.flow.voltage[static_cast<std::size_t>(changed.bus)], grid_.network.base_mva, grid_.conventions));
   }
   run.segment = 0;
-  run.sample = 0;
   run.clock.t = 0.0;
 }
 
@@ -106,14 +106,8 @@ void Lanes<T>::record_steady_start(int lane) {
   const bool switches = run.segments.size() > 1 && run.segments[1].start < options_.t_end;
   const double first = switches ? run.segments[1].start : options_.t_end;
   const int count = samples_until(first);
-  int index[kLanes] = {};
-  sample_outputs(y_.data(), 1U << lane, index);
-  for (std::size_t k = 0; k < recorded_.size(); ++k)
-    for (std::size_t j = 0; j < channels_.size(); ++j) {
-      double* v = run.record.at(static_cast<int>(k), static_cast<int>(j));
-      std::fill(v + 1, v + count, v[0]);
-    }
-  run.sample = count;
+  sample_outputs(y_.data(), 1U << lane);
+  run.stage.hold(count, run.record);
   run.clock.t = first;
   if (switches) {
     run.segment = 1;
@@ -138,7 +132,7 @@ void Lanes<T>::refill(int lane, const Next& next, const Done& done) {
     run.job = {};
     if (!next(run.job)) break;
     run.segments = segments(run.job.event, grid_.network);
-    begin_record(run.record);
+    begin_record(run);
     load(lane);
     enter_segment(lane);
     record_steady_start(lane);
@@ -158,14 +152,16 @@ void Lanes<T>::refill(int lane, const Next& next, const Done& done) {
 }
 
 template <class T>
-void Lanes<T>::begin_record(Trajectory& record) const {
+void Lanes<T>::begin_record(LaneRun& run) const {
+  auto& record = run.record;
   record.rate = options_.rate;
   record.samples = samples_;
   record.plants = recorded_;
   record.channels = channels_;
-  record.values.assign(recorded_.size() * channels_.size() * static_cast<std::size_t>(samples_), 0.0);
+  record.values.resize(recorded_.size() * channels_.size() * static_cast<std::size_t>(samples_));
   record.outcome = Outcome::stable;
   record.largest_spread = 0.0;
+  run.stage.begin(static_cast<int>(recorded_.size() * channels_.size()));
 }
 
 /// A run that ended early keeps its last sample to the end.
@@ -174,12 +170,7 @@ void Lanes<T>::hand_over(int lane, Outcome outcome, const Done& done) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
   run.record.outcome = outcome;
   run.record.stopped_at = run.clock.t;
-  if (run.sample < samples_ && run.sample > 0)
-    for (std::size_t k = 0; k < recorded_.size(); ++k)
-      for (std::size_t j = 0; j < channels_.size(); ++j) {
-        double* v = run.record.at(static_cast<int>(k), static_cast<int>(j));
-        std::fill(v + run.sample, v + samples_, v[run.sample - 1]);
-      }
+  run.stage.hold(samples_, run.record);
   done(run.job, run.record);
 }
 

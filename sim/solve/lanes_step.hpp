@@ -74,29 +74,26 @@ void Lanes<T>::record_step(T h, unsigned accepted, const double* start, const do
   int first[kLanes], count[kLanes], most = 0;
   for (int l = 0; l < kLanes; ++l) {
     auto& run = lanes_[static_cast<std::size_t>(l)];
-    first[l] = run.sample;
-    count[l] = ((accepted >> l) & 1U) ? samples_until(run.clock.t) - run.sample : 0;
+    first[l] = run.stage.recorded();
+    count[l] = ((accepted >> l) & 1U) ? samples_until(run.clock.t) - first[l] : 0;
     if (count[l] > most) most = count[l];
   }
   if (most == 0) return;
   prepare_dense(h);
   const std::size_t n = y_.size();
-  int index[kLanes];
   alignas(64) double theta[kLanes];
   for (int s = 0; s < most; ++s) {
     unsigned valid = 0;
     for (int l = 0; l < kLanes; ++l) {
-      index[l] = first[l] + s;
       const bool in = s < count[l];
       valid |= static_cast<unsigned>(in) << l;
-      theta[l] = in ? (index[l] / options_.rate - start[l]) / tried[l] : 1.0;
+      theta[l] = in ? ((first[l] + s) / options_.rate - start[l]) / tried[l] : 1.0;
     }
     const T a = Traits::load(theta), b = T(1.0) - a;
     for (std::size_t i = 0; i < n; ++i)
       kept_[i] = y_[i] + a * (dense_[i] + b * (dense_[n + i] + a * (dense_[2 * n + i] + b * dense_[3 * n + i])));
-    sample_outputs(kept_.data(), valid, index);
+    sample_outputs(kept_.data(), valid);
   }
-  for (int l = 0; l < kLanes; ++l) lanes_[static_cast<std::size_t>(l)].sample += count[l];
 }
 
 template <class T>
