@@ -75,7 +75,10 @@ class SegmentSolver {
     ida_.reset(IDACreate(context));
     require(IDASetErrHandlerFn(ida_.get(), quiet, nullptr), "IDASetErrHandlerFn");
     require(IDAInit(ida_.get(), residual, start, y, yp), "IDAInit");
-    require(IDASStolerances(ida_.get(), options.rtol, options.atol), "IDASStolerances");
+    // IDA weighs errors by their root mean square over all unknowns. Divided by sqrt(n) the tolerance holds
+    // for each single one, however large the grid.
+    const double single = 1.0 / std::sqrt(static_cast<double>(system.size()));
+    require(IDASStolerances(ida_.get(), options.rtol * single, options.atol * single), "IDASStolerances");
     require(IDASetUserData(ida_.get(), const_cast<ReferenceSystem*>(&system)), "IDASetUserData");
     require(IDASetLinearSolver(ida_.get(), solver_.get(), matrix_.get()), "IDASetLinearSolver");
     require(IDASetJacFn(ida_.get(), jacobian), "IDASetJacFn");
@@ -125,7 +128,8 @@ class Recorder {
   bool record(int k, const ReferenceSystem& system, const double* y) {
     const double* v = y + plants_.states();
     for (std::size_t b = 0; b < angle_.size(); ++b)
-      if (!system.bolted(static_cast<int>(b))) angle_[b] = std::atan2(v[2 * b + 1], v[2 * b]);
+      if (!system.bolted(static_cast<int>(b)))
+        angle_[b] = nearest(std::atan2(v[2 * b + 1], v[2 * b]), angle_[b]);
     for (std::size_t i = 0; i < run_.plants.size(); ++i) record_plant(i, k, y, v);
     for (std::size_t i = 0; i < run_.buses.size(); ++i) {
       const auto b = static_cast<std::size_t>(run_.buses[i]);
@@ -156,6 +160,11 @@ class Recorder {
   }
 
  private:
+  /// The angle plus the multiple of 2 pi that brings it closest to the last one.
+  static double nearest(double angle, double last) {
+    constexpr double kTurn = 2.0 * 3.14159265358979323846;
+    return angle + kTurn * std::nearbyint((last - angle) / kTurn);
+  }
   void record_plant(std::size_t i, int k, const double* y, const double* v) {
     const auto& unit = plants_.units()[run_.plants[i]];
     const auto bus = static_cast<std::size_t>(unit.plant->bus);

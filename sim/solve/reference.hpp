@@ -9,7 +9,7 @@ namespace swingbank::sim {
 
 struct ReferenceOptions {
   double t_end = 15.0, rate = 120.0;
-  double rtol = 1e-8, atol = 1e-10;
+  double rtol = 1e-8, atol = 1e-10;         ///< error per step of every single unknown
   std::vector<int> plants;                  ///< empty: all
   std::vector<Channel> channels;            ///< empty: all of kChannels
   std::vector<int> buses;                   ///< whose voltage is recorded as well, by index in the network
@@ -19,10 +19,11 @@ struct ReferenceOptions {
 
 /// After a loss of synchronism (or any other end before t_end) the remaining samples repeat the last value.
 struct ReferenceRun : Trajectory {
-  std::vector<int> buses;         ///< by index in the network
-  std::vector<double> bus_v;      ///< [bus][sample], magnitude [pu]
-  std::vector<double> bus_theta;  ///< [bus][sample], angle in (-pi, pi]; held while V = 0 [rad]
-  long steps = 0;                 ///< integrator steps
+  std::vector<int> buses;     ///< by index in the network
+  std::vector<double> bus_v;  ///< [bus][sample], magnitude [pu]
+  std::vector<double>
+      bus_theta;   ///< [bus][sample], angle, continuous from sample to sample; held while V = 0 [rad]
+  long steps = 0;  ///< integrator steps
 };
 
 /// Throws InputError where the event cannot be played on this network (unknown bus, a part of the grid cut

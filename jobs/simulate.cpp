@@ -1,0 +1,364 @@
+// swingbank simulate: plays one event and writes every recorded quantity as CSV, HDF5 or both, with units.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "mpi/store/durable.hpp"
+#include "mpi/store/hdf5_file.hpp"
+#include "sim/solve/batch.hpp"
+#include "sim/solve/reference.hpp"
+
+namespace {
+using namespace swingbank;
+using namespace swingbank::sim;
+
+struct Options {
+  std::string raw, dyr, convention = "psse", integrator = "reference";
+  std::vector<std::string> faults, trips, out, plants, channels;
+  std::vector<int> buses;
+  double t_end = 15.0, rate = 120.0;
+  std::optional<double> tolerance;
+  bool after_switching = false;
+};
+
+std::vector<std::string> fields(const std::string& text) {
+  std::vector<std::string> list(1);
+  for (char c : text) {
+    if (c == ':')
+      list.emplace_back();
+    else
+      list.back() += c;
+  }
+  return list;
+}
+
+/// A number that takes up the whole text; anything else is a problem.
+double number(const std::string& text, const std::string& where, Problems& problems) {
+  try {
+    std::size_t used = 0;
+    const double value = std::stod(text, &used);
+    if (used == text.size() && std::isfinite(value)) return value;
+  } catch (const std::exception&) {  // reported below, like any other text
+  }
+  problems.add("'" + text + "' is not a number", where, "a finite number is needed here",
+               "write it like 2.05");
+  return 0.0;
+}
+
+int bus_of(const Network& network, const std::string& text, const std::string& where, Problems& problems) {
+  const double value = number(text, where, problems);
+  const int index = network.bus_index(static_cast<int>(value));
+  if (index < 0 || value != std::floor(value)) {
+    problems.add("no bus " + text, where, network.origin + " has no bus of that number",
+                 "give a bus number of that file");
+    return -1;
+  }
+  return index;
+}
+
+BusFault parse_fault(const std::string& text, const Network& network, double t_end, Problems& problems) {
+  const std::string where = "--fault " + text;
+  const auto part = fields(text);
+  if (part.size() != 3 && part.size() != 5) {
+    problems.add(
+        fmt::format("{} fields", part.size()), where, "a fault is BUS:T_ON:T_OFF or BUS:T_ON:T_OFF:R:X",
+        "give bus number, start [s], end [s] and, if it is not bolted, R and X [pu on the network's base]");
+    return {};
+  }
+  BusFault fault{bus_of(network, part[0], where, problems), number(part[1], where, problems),
+                 number(part[2], where, problems)};
+  if (part.size() == 5) fault.z = {number(part[3], where, problems), number(part[4], where, problems)};
+  if (fault.t_off > t_end)
+    problems.add(fmt::format("fault to {} s in a run of {} s", fault.t_off, t_end), where,
+                 "the run ends before the fault does", "shorten the fault or raise --t-end");
+  return fault;
+}
+
+LineTrip parse_trip(const std::string& text, const Network& network, double t_end, Problems& problems) {
+  const std::string where = "--trip " + text;
+  const auto part = fields(text);
+  if (part.size() != 4 && part.size() != 5) {
+    problems.add(
+        fmt::format("{} fields", part.size()), where,
+        "a trip is FROM:TO:CKT:T_OPEN or FROM:TO:CKT:T_OPEN:T_CLOSE",
+        "give two bus numbers, the circuit's id, the instant it opens [s] and, if it does, closes [s]");
+    return {};
+  }
+  LineTrip trip{-1, number(part[3], where, problems), {}};
+  const int from = bus_of(network, part[0], where, problems), to = bus_of(network, part[1], where, problems);
+  if (from >= 0 && to >= 0) {
+    trip.branch = network.branch_index(network.buses[from].number, network.buses[to].number, part[2]);
+    if (trip.branch < 0)
+      problems.add(fmt::format("no branch {}-{} circuit {}", part[0], part[1], part[2]), where,
+                   network.origin + " has no branch of that name",
+                   "give a branch of that file with its circuit id");
+  }
+  if (part.size() == 5) trip.t_close = number(part[4], where, problems);
+  if (std::max(trip.t_open, trip.t_close.value_or(0.0)) > t_end)
+    problems.add(fmt::format("switching after the run's end at {} s", t_end), where, "it would not be played",
+                 "choose earlier instants or raise --t-end");
+  return trip;
+}
+
+Event parse_event(const Options& options, const Network& network, Problems& problems) {
+  Event event;
+  for (const auto& text : options.faults)
+    event.faults.push_back(parse_fault(text, network, options.t_end, problems));
+  for (const auto& text : options.trips)
+    event.trips.push_back(parse_trip(text, network, options.t_end, problems));
+  return event;
+}
+
+std::vector<int> parse_plants(const Options& options, const Grid& grid, Problems& problems) {
+  std::vector<int> list;
+  for (const auto& name : options.plants) {
+    const auto at =
+        std::find_if(grid.plants.begin(), grid.plants.end(), [&](const Plant& p) { return p.name == name; });
+    if (at != grid.plants.end()) {
+      list.push_back(static_cast<int>(at - grid.plants.begin()));
+      continue;
+    }
+    std::string names;
+    for (const auto& p : grid.plants) names += (names.empty() ? "" : ", ") + p.name;
+    problems.add("no plant " + name, "--plants", "the plants are " + names, "choose some of these");
+  }
+  if (list.empty())
+    for (std::size_t i = 0; i < grid.plants.size(); ++i) list.push_back(static_cast<int>(i));
+  return list;
+}
+
+std::vector<Channel> parse_channels(const Options& options, Problems& problems) {
+  std::vector<Channel> list;
+  std::string names;
+  for (const auto& record : kChannels) names += (names.empty() ? "" : ", ") + std::string(record.name);
+  for (const auto& name : options.channels) {
+    if (const auto* record = find_channel(name))
+      list.push_back(record->channel);
+    else
+      problems.add("no channel " + name, "--channels", "the channels are " + names, "choose some of these");
+  }
+  if (list.empty())
+    for (const auto& record : kChannels) list.push_back(record.channel);
+  return list;
+}
+
+void check_options(const Options& options, Problems& problems) {
+  const auto positive = [&](double value, const char* name, const char* unit) {
+    if (!(value > 0) || !std::isfinite(value))
+      problems.add(fmt::format("{} = {} {}", name, value, unit), name, "it must be positive",
+                   "give a positive number");
+  };
+  positive(options.t_end, "--t-end", "s");
+  positive(options.rate, "--rate", "1/s");
+  if (options.tolerance) positive(*options.tolerance, "--tolerance", "(relative)");
+  if (options.t_end * options.rate > 1e8)
+    problems.add(fmt::format("{:.3g} samples", options.t_end * options.rate), "--rate",
+                 "more than 1e8 samples are not held in memory", "lower --rate or --t-end");
+  for (const std::filesystem::path file : options.out)
+    if (file.extension() != ".csv" && file.extension() != ".h5")
+      problems.add("extension '" + file.extension().string() + "'", "--out " + file.string(),
+                   "runs are written as .csv or .h5", "end the name in .csv or .h5");
+  if (options.integrator == "lanes" && !options.buses.empty())
+    problems.add("--buses with --integrator lanes", "--buses",
+                 "the lanes engine works on the network reduced to the generator buses",
+                 "use --integrator reference");
+  if (options.integrator == "lanes" && options.after_switching)
+    problems.add("--after-switching with --integrator lanes", "--after-switching",
+                 "the lanes engine records the value before a switching", "use --integrator reference");
+}
+
+double tolerance(const Options& o) { return o.tolerance.value_or(o.integrator == "lanes" ? 1e-6 : 1e-8); }
+
+ReferenceRun play(const Options& o, const Grid& grid, const Event& event, std::vector<int> plants,
+                  std::vector<Channel> channels, std::vector<int> buses) {
+  if (o.integrator == "reference") {
+    ReferenceOptions options;
+    options.t_end = o.t_end;
+    options.rate = o.rate;
+    options.rtol = tolerance(o);
+    options.atol = tolerance(o) / 100;
+    options.plants = std::move(plants);
+    options.channels = std::move(channels);
+    options.buses = std::move(buses);
+    options.after_switching = o.after_switching;
+    return run_reference(grid, event, options);
+  }
+  BatchOptions options;
+  options.t_end = o.t_end;
+  options.rate = o.rate;
+  options.tolerance = tolerance(o);
+  options.plants = std::move(plants);
+  options.channels = std::move(channels);
+  Batch batch(grid, options);
+  ReferenceRun run;
+  bool given = false;
+  batch.run(
+      [&](Job& job) {
+        job.event = event;
+        return !std::exchange(given, true);
+      },
+      [&](const Job&, const Trajectory& t) { static_cast<Trajectory&>(run) = t; });
+  return run;
+}
+
+void write_csv(const std::filesystem::path& file, const Grid& grid, const ReferenceRun& run) {
+  std::string text = "t_s";
+  for (int plant : run.plants)
+    for (Channel c : run.channels) {
+      const auto& record = kChannels[static_cast<std::size_t>(c)];
+      text += fmt::format(",{}.{}_{}", grid.plants[plant].name, record.name, record.unit);
+    }
+  for (int bus : run.buses)
+    text += fmt::format(",bus{0}.V_pu,bus{0}.theta_rad", grid.network.buses[bus].number);
+  text += '\n';
+  for (int k = 0; k < run.samples; ++k) {
+    fmt::format_to(std::back_inserter(text), "{:.12g}", k / run.rate);
+    for (std::size_t i = 0; i < run.plants.size() * run.channels.size(); ++i)
+      fmt::format_to(std::back_inserter(text), ",{:.12g}", run.values[i * run.samples + k]);
+    for (std::size_t b = 0; b < run.buses.size(); ++b)
+      fmt::format_to(std::back_inserter(text), ",{:.12g},{:.12g}", run.bus_v[b * run.samples + k],
+                     run.bus_theta[b * run.samples + k]);
+    text += '\n';
+  }
+  write_text(file, text);
+}
+
+std::string joined(const std::vector<std::string>& list) {
+  std::string all;
+  for (const auto& s : list) all += (all.empty() ? "" : " ") + s;
+  return all;
+}
+
+void describe_run(h5::File& h, const Options& o, const Grid& grid, const ReferenceRun& run) {
+  h.attribute("format", std::string("swingbank-run-1"));
+  h.attribute("network", o.raw);
+  h.attribute("dynamics", o.dyr);
+  h.attribute("convention", o.convention);
+  h.attribute("integrator", o.integrator);
+  h.attribute("tolerance", tolerance(o));
+  h.attribute("faults", joined(o.faults));
+  h.attribute("trips", joined(o.trips));
+  h.attribute("outcome", std::string(outcome_name(run.outcome)));
+  h.attribute("stopped_at_s", run.stopped_at);
+  h.attribute("largest_spread_rad", run.largest_spread);
+  std::vector<std::string> plants, names, units;
+  std::vector<double> bases;
+  for (int p : run.plants) {
+    plants.push_back(grid.plants[p].name);
+    bases.push_back(grid.plants[p].mva);
+  }
+  for (Channel c : run.channels) {
+    names.emplace_back(kChannels[static_cast<std::size_t>(c)].name);
+    units.emplace_back(kChannels[static_cast<std::size_t>(c)].unit);
+  }
+  h.attribute("plant_names", plants);
+  h.attribute("plant_base_mva", bases);
+  h.attribute("channel_names", names);
+  h.attribute("channel_units", units);
+}
+
+void write_hdf5(const std::filesystem::path& file, const Options& o, const Grid& grid,
+                const ReferenceRun& run) {
+  const std::lock_guard guard(h5::lock());
+  const auto samples = static_cast<hsize_t>(run.samples);
+  reserve(file, (run.values.size() + run.bus_v.size() * 2 + samples) * sizeof(double) + 65536);
+  h5::File h = h5::File::create(temporary_name(file));
+  const auto put = [&](const std::string& name, const h5::Shape& shape, const std::vector<double>& values) {
+    h.create<double>(name, shape);
+    h.write(name, 0, shape[0], values.data());
+  };
+  std::vector<double> time(run.samples);
+  for (int k = 0; k < run.samples; ++k) time[k] = k / run.rate;
+  put("/time", {samples}, time);
+  h.attribute("unit", std::string("s"), "/time");
+  put("/records", {run.plants.size(), run.channels.size(), samples}, run.values);
+  h.attribute("unit", std::string("see channel_units; per unit on each plant's own base"), "/records");
+  if (!run.buses.empty()) {
+    std::vector<double> numbers;
+    for (int b : run.buses) numbers.push_back(grid.network.buses[b].number);
+    put("/bus_number", {run.buses.size()}, numbers);
+    put("/bus_voltage", {run.buses.size(), samples}, run.bus_v);
+    h.attribute("unit", std::string("pu"), "/bus_voltage");
+    put("/bus_angle", {run.buses.size(), samples}, run.bus_theta);
+    h.attribute("unit", std::string("rad"), "/bus_angle");
+  }
+  describe_run(h, o, grid, run);
+  h.close();
+  publish(file);
+}
+
+int simulate(const Options& o) {
+  Problems problems;
+  check_options(o, problems);
+  problems.raise();
+  Network network = read_raw(o.raw);
+  const double hz = network.frequency;
+  const Grid grid = make_grid(std::move(network), read_dyr(o.dyr), o.dyr,
+                              o.convention == "andes" ? Conventions::andes(hz) : Conventions::psse(hz));
+  const Event event = parse_event(o, grid.network, problems);
+  auto plants = parse_plants(o, grid, problems);
+  auto channels = parse_channels(o, problems);
+  std::vector<int> buses;
+  for (int b : o.buses) buses.push_back(bus_of(grid.network, std::to_string(b), "--buses", problems));
+  problems.raise();
+
+  const auto begin = std::chrono::steady_clock::now();
+  const ReferenceRun run = play(o, grid, event, std::move(plants), std::move(channels), std::move(buses));
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  for (const std::filesystem::path file : o.out) {
+    if (file.extension() == ".csv")
+      write_csv(file, grid, run);
+    else
+      write_hdf5(file, o, grid, run);
+    fmt::print("wrote {}\n", file.string());
+  }
+  fmt::print("{} at {:g} s, largest rotor angle spread {:.3f} deg, {}{:.3f} s wall time\n",
+             outcome_name(run.outcome), run.stopped_at, run.largest_spread * 57.295779513082321,
+             run.steps > 0 ? fmt::format("{} steps, ", run.steps) : "", wall);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{SWINGBANK_SUMMARY, "swingbank simulate"};
+  Options o;
+  app.add_option("--raw", o.raw, "network, PSS/E .raw version 32 or 33")->required();
+  app.add_option("--dyr", o.dyr, "dynamic models, PSS/E .dyr")->required();
+  app.add_option("--convention", o.convention,
+                 "psse: speed in the stator voltage and Pm/(1+w); andes: neither")
+      ->check(CLI::IsMember({"psse", "andes"}))
+      ->capture_default_str();
+  app.add_option(
+      "--fault", o.faults,
+      "BUS:T_ON:T_OFF[:R:X], bolted without R and X [s, pu on the network's base]; may be repeated");
+  app.add_option("--trip", o.trips, "FROM:TO:CKT:T_OPEN[:T_CLOSE] [s]; may be repeated");
+  app.add_option("--t-end", o.t_end, "end of the run [s]")->capture_default_str();
+  app.add_option("--rate", o.rate, "samples per second [1/s]")->capture_default_str();
+  app.add_option("--integrator", o.integrator,
+                 "reference: IDA on the unreduced equations; lanes: the engine of generate")
+      ->check(CLI::IsMember({"reference", "lanes"}))
+      ->capture_default_str();
+  app.add_option("--tolerance", o.tolerance, "relative error per step (reference 1e-8, lanes 1e-6)");
+  app.add_option("--out", o.out, "file to write, .csv or .h5; may be repeated")->required();
+  app.add_option("--plants", o.plants, "plants to record, comma-separated (default: all)")->delimiter(',');
+  app.add_option("--channels", o.channels, "channels to record, comma-separated (default: all)")
+      ->delimiter(',');
+  app.add_option("--buses", o.buses, "buses whose voltage is recorded too, comma-separated numbers")
+      ->delimiter(',');
+  app.add_flag("--after-switching", o.after_switching,
+               "a sample at a switching instant shows the value just after it");
+  try {
+    app.parse(argc, argv);
+    return simulate(o);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 1;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return 1;
+  }
+}
