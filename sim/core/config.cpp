@@ -127,6 +127,8 @@ std::vector<std::string> Config::keys(const std::string& table) const {
 
 std::string Config::where(const std::string& key) const { return has(key) ? place(name_, tree_->at(key)->source().begin) : name_.string(); }
 
+void Config::ignore(const std::string& key) { tree_->asked.insert(key); }
+
 void Config::problem(const std::string& key, const std::string& what, const std::string& why, const std::string& remedy) {
   problems_.add(what, where(key), why, remedy);
 }

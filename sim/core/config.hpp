@@ -53,6 +53,8 @@ class Config {
   [[nodiscard]] std::string where(const std::string& key) const;
   /// Notes a problem with a key's value.
   void problem(const std::string& key, const std::string& what, const std::string& why, const std::string& remedy);
+  /// Takes a key or table as known, whatever it holds.
+  void ignore(const std::string& key);
   [[nodiscard]] bool sound() const { return problems_.empty(); }
   /// Notes every key that was not asked for, then throws InputError if there are problems.
   void raise();
