@@ -1,0 +1,58 @@
+// swingbank tables: results of training runs as the thesis's Tables IV, V and VI, in Markdown, CSV and HTML.
+#include <set>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "validate/tables.hpp"
+#include "validate/write_file.hpp"
+
+namespace {
+
+using namespace swingbank;
+using namespace swingbank::validate;
+
+Provenance sources(const std::vector<RunResult>& results, int argc, char** argv) {
+  std::string line = "swingbank tables";
+  for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
+  Provenance rows = {{"command", line}, {"results read", std::to_string(results.size())}};
+  std::set<std::string> datasets, software;
+  for (const auto& r : results) {
+    datasets.insert(fmt::format("{}: {} rows, hash {}, config {}", r.dataset, r.rows, r.dataset_hash, r.config_hash));
+    software.insert(r.software);
+  }
+  for (const auto& d : datasets) rows.emplace_back("dataset", d);
+  for (const auto& s : software) rows.emplace_back("software of the runs", s);
+  return rows;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{SWINGBANK_SUMMARY};
+  std::vector<std::string> folders;
+  std::string out;
+  app.add_option("results", folders, "folders with the JSON files of train and cross-validate")->required();
+  app.add_option("--out", out, "folder for tables.md, tables.html and one CSV per table")->required();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 1;
+  }
+  try {
+    const auto results = read_results({folders.begin(), folders.end()});
+    const TablesReport report = make_tables(results, sources(results, argc, argv));
+    const std::filesystem::path folder = out;
+    for (const auto& [name, content] : report.csv) write_file(folder / name, content);
+    write_file(folder / "tables.md", report.markdown);
+    write_file(folder / "tables.html", report.html);
+    fmt::print("{}summary: {}\n", report.markdown, (folder / "tables.html").string());
+    return 0;
+  } catch (const InputError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "swingbank tables: {}\n", error.what());
+    return 1;
+  }
+}
