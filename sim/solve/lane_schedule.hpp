@@ -1,6 +1,5 @@
 #pragma once
 // Time of one lane: its segments, its step and the rules by which the step grows and shrinks.
-#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <vector>
@@ -58,54 +57,15 @@ struct LaneClock {
   }
 };
 
-/// Samples on their way into a record. Channels lie far apart there; collecting eight samples per visit writes whole
-/// cache lines and touches each page an eighth as often (2.4 x faster with ten generators recorded).
-class SampleStage {
- public:
-  void begin(int rows) {
-    rows_ = rows;
-    count_ = first_ = 0;
-    values_.resize(static_cast<std::size_t>(rows) * kDepth);
-  }
-  /// Appends one sample: row i is v[i * stride].
-  void put(const double* v, int stride, Trajectory& record) {
-    double* to = values_.data() + count_ * rows_;
-    for (int i = 0; i < rows_; ++i) to[i] = v[i * stride];
-    if (++count_ == kDepth) flush(record);
-  }
-  void flush(Trajectory& record) {
-    for (int i = 0; i < rows_; ++i) {
-      double* to = record.values.data() + static_cast<std::ptrdiff_t>(i) * record.samples + first_;
-      const double* from = values_.data() + i;
-      for (int k = 0; k < count_; ++k) to[k] = from[k * rows_];
-    }
-    first_ += count_;
-    count_ = 0;
-  }
-  /// Repeats the last sample until `until` samples are recorded.
-  void hold(int until, Trajectory& record) {
-    flush(record);
-    if (first_ == 0) return;
-    for (int i = 0; i < rows_ && first_ < until; ++i) {
-      double* v = record.values.data() + static_cast<std::ptrdiff_t>(i) * record.samples;
-      std::fill(v + first_, v + until, v[first_ - 1]);
-    }
-    first_ = std::max(first_, until);
-  }
-  [[nodiscard]] int recorded() const { return first_ + count_; }
-
- private:
-  static constexpr int kDepth = 8;
-  int rows_ = 0, count_ = 0, first_ = 0;
-  std::vector<double> values_;  ///< [sample][row]
-};
-
 /// One lane's run: the job, where it is in its segments, and its record.
 struct LaneRun {
   Job job;
   std::vector<Segment> segments;
   std::size_t segment = 0;
-  SampleStage stage;
+  int recorded = 0;              ///< samples in the record
+  int pending = 0;               ///< samples whose states wait to be evaluated
+  std::vector<double> waiting;   ///< their states, [state][2 * lanes]
+  std::vector<double> theta;     ///< last terminal angle per recorded plant, held while V = 0 [rad]
   LaneClock clock;
   Trajectory record;
 };

@@ -29,11 +29,25 @@ class Lanes {
     int x, c, m;  ///< offsets of states, coefficients and scratch
   };
 
+  /// What the equations need besides the states. One set has a lane per event; the other, for recording, is one
+  /// event's values in every lane, its lanes being consecutive samples.
+  struct Constants {
+    std::vector<T> c, g, b, r, xs, efd, tm;
+  };
+
   // one evaluation (lanes_equations.hpp)
-  void emfs(const T* x);
-  void current(int plant, Signals<T>& s) const;
+  void emfs(const Constants& k, const T* x);
+  void current(const Constants& k, std::size_t plant, Signals<T>& s) const;
   void derivative(const T* x, T* dx);
-  void sample_outputs(const T* x, unsigned valid);
+
+  // recording (lanes_record.hpp)
+  void record_step(T h, unsigned accepted, const double* start, const double* tried);
+  void prepare_dense(T h);
+  void collect(int lane, int count, double start, double tried);
+  void evaluate_pending(int lane, int count);
+  void spread_constants(int lane);
+  void outputs(std::size_t row_plant, const T* x, LaneRun& run, int count);
+  void hold(LaneRun& run, int until) const;
 
   // loading (lanes_load.hpp)
   void load(int lane);
@@ -50,8 +64,6 @@ class Lanes {
   template <int Stage>
   void stage(T h);
   T scaled_error(T h) const;
-  void record_step(T h, unsigned accepted, const double* start, const double* tried);
-  void prepare_dense(T h);
   void commit(unsigned accepted);
   T spread(const T* x) const;
   void settle(unsigned accepted, const Next& next, const Done& done);
@@ -66,13 +78,14 @@ class Lanes {
   int n_ = 0, samples_ = 0, states_ = 0;
   std::vector<double> weight_;           ///< per state, already divided by the tolerance
 
-  std::vector<T> g_, b_;                 ///< internal matrices, [row][column]
-  std::vector<T> c_, m_, er_, ei_, r_, xs_, efd_, tm_, grounded_, theta_;
+  Constants per_lane_, per_sample_;
+  std::vector<T> m_, er_, ei_;           ///< scratch of one evaluation
   std::vector<T> y_, trial_, dense_;     ///< states; dense_: four coefficient rows
   std::vector<T> k_[dp54::kStages];
-  std::vector<T> kept_, unused_, outputs_;
+  std::vector<T> kept_, unused_;
   std::vector<LaneRun> lanes_;
   std::vector<std::vector<double>> lane_r_, lane_x_;  ///< source impedances per lane
+  std::vector<std::vector<char>> grounded_;           ///< per lane and plant: terminal held at V = 0
   unsigned active_ = 0, fresh_ = 0;      ///< lanes that run; lanes whose first stage must be evaluated anew
 };
 
@@ -80,4 +93,5 @@ class Lanes {
 
 #include "sim/solve/lanes_equations.hpp"
 #include "sim/solve/lanes_load.hpp"
+#include "sim/solve/lanes_record.hpp"
 #include "sim/solve/lanes_step.hpp"

@@ -29,18 +29,20 @@ Lanes<T>::Lanes(const Grid& grid, const BatchOptions& options) : grid_(grid), op
       for (const auto& state : block.effect->states) weight_.push_back(state.weight / options.tolerance);
   }
   const auto n = static_cast<std::size_t>(n_), states = static_cast<std::size_t>(states_);
-  g_.assign(n * n, T(0.0));
-  b_.assign(n * n, T(0.0));
-  c_.assign(static_cast<std::size_t>(c), T(0.0));
+  for (Constants* k : {&per_lane_, &per_sample_}) {
+    k->c.assign(static_cast<std::size_t>(c), T(0.0));
+    for (auto* v : {&k->g, &k->b}) v->assign(n * n, T(0.0));
+    for (auto* v : {&k->r, &k->xs, &k->efd, &k->tm}) v->assign(n, T(0.0));
+  }
   m_.assign(static_cast<std::size_t>(m), T(0.0));
-  for (auto* v : {&er_, &ei_, &r_, &xs_, &efd_, &tm_, &grounded_, &theta_}) v->assign(n, T(0.0));
+  for (auto* v : {&er_, &ei_}) v->assign(n, T(0.0));
   for (auto* v : {&y_, &trial_, &kept_, &unused_}) v->assign(states, T(0.0));
-  outputs_.assign(recorded_.size() * channels_.size(), T(0.0));
   dense_.assign(4 * states, T(0.0));
   for (auto& k : k_) k.assign(states, T(0.0));
   lanes_.resize(kLanes);
   lane_r_.resize(kLanes);
   lane_x_.resize(kLanes);
+  grounded_.resize(kLanes);
   // Idle lanes carry the grid's own operating point, so that their arithmetic stays finite.
   for (int l = 0; l < kLanes; ++l) {
     lanes_[static_cast<std::size_t>(l)].segments = {{0.0, {}}};
@@ -52,13 +54,12 @@ Lanes<T>::Lanes(const Grid& grid, const BatchOptions& options) : grid_(grid), op
 template <class T>
 void Lanes<T>::load_plant(int lane, std::size_t plant, const Operating& at) {
   const PlantSlice& p = plants_[plant];
-  for (std::size_t i = 0; i < at.c.size(); ++i) Traits::set(c_[static_cast<std::size_t>(p.c) + i], lane, at.c[i]);
+  for (std::size_t i = 0; i < at.c.size(); ++i) Traits::set(per_lane_.c[static_cast<std::size_t>(p.c) + i], lane, at.c[i]);
   for (std::size_t i = 0; i < at.x.size(); ++i) Traits::set(y_[static_cast<std::size_t>(p.x) + i], lane, at.x[i]);
-  Traits::set(r_[plant], lane, at.r);
-  Traits::set(xs_[plant], lane, at.xs);
-  Traits::set(efd_[plant], lane, at.Efd);
-  Traits::set(tm_[plant], lane, at.Tm);
-  Traits::set(theta_[plant], lane, std::atan2(at.s.Vi, at.s.Vr));
+  Traits::set(per_lane_.r[plant], lane, at.r);
+  Traits::set(per_lane_.xs[plant], lane, at.xs);
+  Traits::set(per_lane_.efd[plant], lane, at.Efd);
+  Traits::set(per_lane_.tm[plant], lane, at.Tm);
   lane_r_[static_cast<std::size_t>(lane)][plant] = at.r;
   lane_x_[static_cast<std::size_t>(lane)][plant] = at.xs;
 }
@@ -87,10 +88,10 @@ void Lanes<T>::enter_segment(int lane) {
   const auto l = static_cast<std::size_t>(lane);
   const InternalMatrix& matrix = network_.matrix(run.segments[run.segment].topology, lane_r_[l], lane_x_[l]);
   for (std::size_t i = 0; i < matrix.g.size(); ++i) {
-    Traits::set(g_[i], lane, matrix.g[i]);
-    Traits::set(b_[i], lane, matrix.b[i]);
+    Traits::set(per_lane_.g[i], lane, matrix.g[i]);
+    Traits::set(per_lane_.b[i], lane, matrix.b[i]);
   }
-  for (std::size_t i = 0; i < matrix.grounded.size(); ++i) Traits::set(grounded_[i], lane, matrix.grounded[i] ? 1.0 : 0.0);
+  grounded_[l] = matrix.grounded;
   const bool last = run.segment + 1 >= run.segments.size();
   const double end = last ? options_.t_end : run.segments[run.segment + 1].start;
   run.clock.restart(std::min(end, options_.t_end));
@@ -106,8 +107,10 @@ void Lanes<T>::record_steady_start(int lane) {
   const bool switches = run.segments.size() > 1 && run.segments[1].start < options_.t_end;
   const double first = switches ? run.segments[1].start : options_.t_end;
   const int count = samples_until(first);
-  sample_outputs(y_.data(), 1U << lane);
-  run.stage.hold(count, run.record);
+  for (std::size_t i = 0; i < y_.size(); ++i) run.waiting[i * 2 * kLanes] = Traits::get(y_[i], lane);
+  run.pending = 1;
+  evaluate_pending(lane, 1);
+  hold(run, count);
   run.clock.t = first;
   if (switches) {
     run.segment = 1;
@@ -161,7 +164,9 @@ void Lanes<T>::begin_record(LaneRun& run) const {
   record.values.resize(recorded_.size() * channels_.size() * static_cast<std::size_t>(samples_));
   record.outcome = Outcome::stable;
   record.largest_spread = 0.0;
-  run.stage.begin(static_cast<int>(recorded_.size() * channels_.size()));
+  run.recorded = run.pending = 0;
+  run.waiting.assign(y_.size() * 2 * kLanes, 0.0);
+  run.theta.assign(recorded_.size(), 0.0);
 }
 
 /// A run that ended early keeps its last sample to the end.
@@ -170,7 +175,8 @@ void Lanes<T>::hand_over(int lane, Outcome outcome, const Done& done) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
   run.record.outcome = outcome;
   run.record.stopped_at = run.clock.t;
-  run.stage.hold(samples_, run.record);
+  evaluate_pending(lane, run.pending);
+  hold(run, samples_);
   done(run.job, run.record);
 }
 

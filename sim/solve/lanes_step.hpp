@@ -52,50 +52,6 @@ T Lanes<T>::spread(const T* x) const {
   return high - low;
 }
 
-/// Coefficients of y(theta) = y0 + theta (d0 + (1 - theta)(d1 + theta (d2 + (1 - theta) d3))).
-template <class T>
-void Lanes<T>::prepare_dense(T h) {
-  const std::size_t n = y_.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const T delta = trial_[i] - y_[i];
-    const T slope = h * k_[0][i] - delta;
-    T d = T(dp54::dense[0]) * k_[0][i];
-    for (int j = 2; j < dp54::kStages; ++j) d = d + T(dp54::dense[j]) * k_[j][i];
-    dense_[i] = delta;
-    dense_[n + i] = slope;
-    dense_[2 * n + i] = delta - h * k_[6][i] - slope;
-    dense_[3 * n + i] = h * d;
-  }
-}
-
-/// Records the samples of (start, start + tried] of every accepted lane, one sample of each lane at a time.
-template <class T>
-void Lanes<T>::record_step(T h, unsigned accepted, const double* start, const double* tried) {
-  int first[kLanes], count[kLanes], most = 0;
-  for (int l = 0; l < kLanes; ++l) {
-    auto& run = lanes_[static_cast<std::size_t>(l)];
-    first[l] = run.stage.recorded();
-    count[l] = ((accepted >> l) & 1U) ? samples_until(run.clock.t) - first[l] : 0;
-    if (count[l] > most) most = count[l];
-  }
-  if (most == 0) return;
-  prepare_dense(h);
-  const std::size_t n = y_.size();
-  alignas(64) double theta[kLanes];
-  for (int s = 0; s < most; ++s) {
-    unsigned valid = 0;
-    for (int l = 0; l < kLanes; ++l) {
-      const bool in = s < count[l];
-      valid |= static_cast<unsigned>(in) << l;
-      theta[l] = in ? ((first[l] + s) / options_.rate - start[l]) / tried[l] : 1.0;
-    }
-    const T a = Traits::load(theta), b = T(1.0) - a;
-    for (std::size_t i = 0; i < n; ++i)
-      kept_[i] = y_[i] + a * (dense_[i] + b * (dense_[n + i] + a * (dense_[2 * n + i] + b * dense_[3 * n + i])));
-    sample_outputs(kept_.data(), valid);
-  }
-}
-
 template <class T>
 void Lanes<T>::commit(unsigned accepted) {
   const auto ok = Traits::mask(accepted);
@@ -125,6 +81,7 @@ void Lanes<T>::settle(unsigned accepted, const Next& next, const Done& done) {
       hand_over(l, lost ? Outcome::lost_synchronism : Outcome::stable, done);
       refill(l, next, done);
     } else if (run.clock.t >= run.clock.next) {
+      evaluate_pending(l, run.pending);  // before the matrices change
       ++run.segment;
       enter_segment(l);
     }

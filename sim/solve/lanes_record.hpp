@@ -1,0 +1,156 @@
+#pragma once
+// Lanes: recording. The states at the sample instants are interpolated lane by lane and wait there; when a pack of them
+// has gathered, the outputs are evaluated with the pack's lanes as consecutive samples of one event. That fills every
+// lane, whatever the steps of the others, and writes each channel as whole cache lines.
+#include <algorithm>
+
+#include "sim/solve/lanes.hpp"
+
+namespace swingbank::sim {
+
+/// Coefficients of y(theta) = y0 + theta (d0 + (1 - theta)(d1 + theta (d2 + (1 - theta) d3))).
+template <class T>
+void Lanes<T>::prepare_dense(T h) {
+  const std::size_t n = y_.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const T delta = trial_[i] - y_[i];
+    const T slope = h * k_[0][i] - delta;
+    T d = T(dp54::dense[0]) * k_[0][i];
+    for (int j = 2; j < dp54::kStages; ++j) d = d + T(dp54::dense[j]) * k_[j][i];
+    dense_[i] = delta;
+    dense_[n + i] = slope;
+    dense_[2 * n + i] = delta - h * k_[6][i] - slope;
+    dense_[3 * n + i] = h * d;
+  }
+}
+
+/// Records the samples in (start, start + tried] of every accepted lane.
+template <class T>
+void Lanes<T>::record_step(T h, unsigned accepted, const double* start, const double* tried) {
+  bool prepared = false;
+  for (int l = 0; l < kLanes; ++l) {
+    if (!((accepted >> l) & 1U)) continue;
+    const auto& run = lanes_[static_cast<std::size_t>(l)];
+    const int count = samples_until(run.clock.t) - run.recorded - run.pending;
+    if (count <= 0) continue;
+    if (!prepared) prepare_dense(h);
+    prepared = true;
+    collect(l, count, start[l], tried[l]);
+  }
+}
+
+/// Interpolates the lane's next `count` samples and evaluates every full pack of them.
+template <class T>
+void Lanes<T>::collect(int lane, int count, double start, double tried) {
+  auto& run = lanes_[static_cast<std::size_t>(lane)];
+  const std::size_t n = y_.size();
+  const double inverse = 1.0 / tried, spacing = 1.0 / options_.rate;
+  while (count > 0) {
+    const int now = std::min(count, kLanes);
+    const int first = run.recorded + run.pending;
+    alignas(64) double theta[kLanes];
+    for (int s = 0; s < kLanes; ++s) theta[s] = std::min(1.0, ((first + s) * spacing - start) * inverse);
+    const T a = Traits::load(theta), b = T(1.0) - a;
+    double* to = run.waiting.data() + run.pending;
+    for (std::size_t i = 0; i < n; ++i, to += 2 * kLanes) {
+      const auto at = [lane](const T& v) { return T(Traits::get(v, lane)); };
+      Traits::store(at(y_[i]) + a * (at(dense_[i]) + b * (at(dense_[n + i]) + a * (at(dense_[2 * n + i]) + b * at(dense_[3 * n + i])))), to);
+    }
+    run.pending += now;
+    count -= now;
+    if (run.pending >= kLanes) evaluate_pending(lane, kLanes);
+  }
+}
+
+/// Copies one lane's constants into every lane of the recording set.
+template <class T>
+void Lanes<T>::spread_constants(int lane) {
+  const auto all = [lane](const std::vector<T>& from, std::vector<T>& to) {
+    for (std::size_t i = 0; i < from.size(); ++i) to[i] = T(Traits::get(from[i], lane));
+  };
+  const Constants& from = per_lane_;
+  all(from.c, per_sample_.c);
+  all(from.r, per_sample_.r);
+  all(from.xs, per_sample_.xs);
+  all(from.efd, per_sample_.efd);
+  all(from.tm, per_sample_.tm);
+  const auto n = static_cast<std::size_t>(n_);
+  for (int plant : recorded_)
+    for (std::size_t i = static_cast<std::size_t>(plant) * n; i < (static_cast<std::size_t>(plant) + 1) * n; ++i) {
+      per_sample_.g[i] = T(Traits::get(from.g[i], lane));
+      per_sample_.b[i] = T(Traits::get(from.b[i], lane));
+    }
+}
+
+/// Evaluates the first `count` waiting samples of a lane into its record; the rest move to the front.
+template <class T>
+void Lanes<T>::evaluate_pending(int lane, int count) {
+  auto& run = lanes_[static_cast<std::size_t>(lane)];
+  if (count == 0) return;
+  spread_constants(lane);
+  const std::size_t n = y_.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    double* row = run.waiting.data() + i * 2 * kLanes;
+    kept_[i] = Traits::load(row);
+    std::copy(row + kLanes, row + 2 * kLanes, row);
+  }
+  emfs(per_sample_, kept_.data());
+  for (std::size_t k = 0; k < recorded_.size(); ++k) outputs(k, kept_.data(), run, count);
+  run.recorded += count;
+  run.pending -= count;
+}
+
+/// The channels of the k-th recorded plant, `count` samples from run.recorded on.
+template <class T>
+void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
+  const auto i = static_cast<std::size_t>(recorded_[k]);
+  const auto lane = static_cast<std::size_t>(&run - lanes_.data());
+  const PlantSlice& p = plants_[i];
+  Signals<T> s;
+  current(per_sample_, i, s);
+  PlantEquations<T>::voltage(er_[i], ei_[i], per_sample_.r[i], per_sample_.xs[i], s);
+  PlantEquations<T>::terminal(s);
+  p.equations.signals(&per_sample_.c[static_cast<std::size_t>(p.c)], x + p.x, &m_[static_cast<std::size_t>(p.m)], s, unused_.data() + p.x);
+  for (std::size_t j = 0; j < channels_.size(); ++j) {
+    T v(0.0);
+    switch (channels_[j]) {
+      case Channel::delta: v = x[p.x]; break;
+      case Channel::speed: v = s.speed; break;
+      case Channel::P: v = s.P; break;
+      case Channel::Q: v = s.Q; break;
+      case Channel::V: v = s.V; break;
+      case Channel::Efd: v = s.Efd; break;
+      case Channel::Ifd: v = s.Ifd; break;
+      case Channel::Tm: v = s.Tm; break;
+      case Channel::theta: {
+        if (grounded_[lane][i]) {
+          v = T(run.theta[k]);
+          break;
+        }
+        using std::atan2;
+        const T two_pi(6.28318530717958647692);
+        const T angle = atan2(s.Vi, s.Vr);
+        v = angle + two_pi * round_nearest((x[p.x] - angle) / two_pi);  // the turn in which the rotor is
+        run.theta[k] = Traits::get(v, count - 1);
+        break;
+      }
+    }
+    alignas(64) double out[kLanes];
+    Traits::store(v, out);
+    std::copy(out, out + count, run.record.at(static_cast<int>(k), static_cast<int>(j)) + run.recorded);
+  }
+}
+
+/// Repeats the last sample until `until` samples are recorded.
+template <class T>
+void Lanes<T>::hold(LaneRun& run, int until) const {
+  if (run.recorded == 0 || run.recorded >= until) return;
+  for (std::size_t k = 0; k < recorded_.size(); ++k)
+    for (std::size_t j = 0; j < channels_.size(); ++j) {
+      double* v = run.record.at(static_cast<int>(k), static_cast<int>(j));
+      std::fill(v + run.recorded, v + until, v[run.recorded - 1]);
+    }
+  run.recorded = until;
+}
+
+}  // namespace swingbank::sim
