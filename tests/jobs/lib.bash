@@ -4,7 +4,12 @@ set -euo pipefail
 # shellcheck disable=SC2034 # for the tests that source this
 swingbank=$SWINGBANK_BIN/swingbank
 work=$(mktemp -d)
-lib_cleanup() { rm -rf "$work"; }
+disks=()
+lib_cleanup() {
+  local one
+  for one in "${disks[@]}"; do umount "$one"; done
+  rm -rf "$work"
+}
 trap lib_cleanup EXIT
 
 fail() {
@@ -12,17 +17,48 @@ fail() {
   exit 1
 }
 
+# Gives the test its own view of the mounts, so that it can have a full and a read-only disk; they vanish with it.
+own_mounts() {
+  if [[ -n ${SWINGBANK_OWN_MOUNTS:-} ]]; then return; fi
+  export SWINGBANK_OWN_MOUNTS=1
+  local as_user=()
+  if ((EUID != 0)); then as_user=(--user --map-root-user); fi
+  lib_cleanup
+  exec unshare "${as_user[@]}" --mount bash "$0"
+}
+
+# disk FOLDER SIZE [OPTION]: a file system of that size
+disk() {
+  mkdir -p "$1"
+  mount -t tmpfs -o "size=$2" none "$1"
+  disks+=("$1")
+}
+
+# leaves_nothing FOLDER: what failed must not leave a file under any name
+leaves_nothing() {
+  local left
+  left=$(find "$1" -type f)
+  [[ -z $left ]] || fail "left behind: $left"
+}
+
 # An error message is one sentence: "<what> at <where> (<why>): <what to do>".
 sentence='.+ at .+ \(.+\): .+'
 
 # refuses NAME PATTERN COMMAND...: the command must fail with a sentence that matches PATTERN
-refuses() {
+refuses() { refuses_with 1 "$sentence" "$@"; }
+
+# misused NAME PATTERN COMMAND...: wrong options are told with a pointer to --help
+misused() { refuses_with 1 '--help' "$@"; }
+
+refuses_with() {
+  local expected=$1 form=$2
+  shift 2
   local name=$1 pattern=$2 status=0
   shift 2
   "$@" >"$work/stdout" 2>"$work/stderr" </dev/null || status=$?
-  ((status == 1)) || fail "$name: exit code $status, expected 1; it said: $(tail -n 5 "$work/stderr")"
-  grep -qE "$sentence" "$work/stderr" || fail "$name: no sentence with place, reason and remedy: $(cat "$work/stderr")"
-  grep -qE "$pattern" "$work/stderr" || fail "$name: nothing matches '$pattern' in: $(cat "$work/stderr")"
+  ((status == expected)) || fail "$name: exit code $status, expected $expected; it said: $(tail -n 5 "$work/stderr")"
+  grep -qE -e "$form" "$work/stderr" || fail "$name: the message has not the form '$form': $(cat "$work/stderr")"
+  grep -qE -e "$pattern" "$work/stderr" || fail "$name: nothing matches '$pattern' in: $(cat "$work/stderr")"
   if grep -qiE 'terminate called|core dumped|segmentation' "$work/stderr"; then fail "$name: it crashed"; fi
-  echo "ok: $name: $(grep -E "$sentence" "$work/stderr" | head -1)"
+  echo "ok: $name: $(grep -E -e "$form" "$work/stderr" | head -1)"
 }

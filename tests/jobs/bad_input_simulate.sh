@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# swingbank simulate on inputs that are wrong: a sentence, exit code 1, nothing left behind.
+source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+own_mounts
+
+networks=$SWINGBANK_SOURCE/configs/networks
+raw=$networks/ieee39_genrou.raw dyr=$networks/ieee39_genrou.dyr out=$work/out
+mkdir "$out"
+# simulate RAW DYR [OPTION...]
+simulate() {
+  local raw_file=$1 dyr_file=$2
+  shift 2
+  "$swingbank" simulate --raw "$raw_file" --dyr "$dyr_file" --out "$out/run.csv" --out "$out/run.h5" --t-end 3 "$@"
+}
+simulate "$raw" "$dyr" --fault 16:1:1.1 >/dev/null # the cases below fail for their own reason only
+rm "$out"/run.*
+
+refuses "no such .raw" "$work/none.raw" simulate "$work/none.raw" "$dyr"
+refuses "bus that is not there" '--fault 999' simulate "$raw" "$dyr" --fault 999:2:2.1
+refuses "fault that ends before it starts" 'bus 16' simulate "$raw" "$dyr" --fault 16:2:1
+misused "unknown option" 'nonsense' simulate "$raw" "$dyr" --nonsense 3
+
+sed '3d' "$dyr" >"$work/missing.dyr"
+refuses "generator without a model" 'bus 32 at .*missing.dyr' simulate "$raw" "$work/missing.dyr"
+sed "4s/GENROU/GENFOO/" "$dyr" >"$work/unknown.dyr"
+refuses "unknown model" 'unknown.dyr:4' simulate "$raw" "$work/unknown.dyr"
+sed '2s/1.8 1.7 0.4 /1.8 1.7 0.1 /' "$dyr" >"$work/reactances.dyr" # X'd below X''d and Xl
+refuses "inconsistent reactances" 'reactances.dyr:2' simulate "$raw" "$work/reactances.dyr"
+sed '5s/0.6 /abc /' "$dyr" >"$work/words.dyr"
+refuses "word for a number" 'words.dyr:5' simulate "$raw" "$work/words.dyr"
+sed '6s/7.3 /nan /' "$dyr" >"$work/nan.dyr"
+refuses "not a number" 'nan.dyr:6' simulate "$raw" "$work/nan.dyr"
+
+# Buses 20 and 34 hang on the transformer 19-20 alone (four lines of the file).
+sed '/^ *19, 20, 0, /,+3d' "$raw" >"$work/part.raw"
+refuses "islanded bus" 'part.raw' simulate "$work/part.raw" "$dyr"
+awk -F", *" -v OFS=", " '/end of bus/ {loads = 1} /end of load/ {loads = 0} loads && NF > 8 {$6 = $6 * 20} {print}' \
+  "$raw" >"$work/heavy.raw"
+refuses "power flow that diverges" 'heavy.raw' simulate "$work/heavy.raw" "$dyr"
+head -c 3000 "$raw" >"$work/short.raw"
+refuses "truncated .raw" 'short.raw' simulate "$work/short.raw" "$dyr"
+leaves_nothing "$out"
+
+disk "$work/full" 32k
+refuses "full disk" "$work/full/run.csv" "$swingbank" simulate --raw "$raw" --dyr "$dyr" --out "$work/full/run.csv"
+leaves_nothing "$work/full"
+refuses "full disk, HDF5" "$work/full/run.h5" "$swingbank" simulate --raw "$raw" --dyr "$dyr" --out "$work/full/run.h5"
+leaves_nothing "$work/full"
+mount -o remount,ro "$work/full"
+refuses "read-only disk" "$work/full/run.csv" "$swingbank" simulate --raw "$raw" --dyr "$dyr" --out "$work/full/run.csv"
+refuses "file in place of a folder" "$raw/run.csv" "$swingbank" simulate --raw "$raw" --dyr "$dyr" --out "$raw/run.csv"
