@@ -64,7 +64,7 @@ struct LaneRun {
   std::size_t segment = 0;
   int recorded = 0;              ///< samples in the record
   int pending = 0;               ///< samples whose states wait to be evaluated
-  std::vector<double> waiting;   ///< their states, [state][2 * lanes]
+  std::vector<double> waiting;   ///< their states, [state][Lanes::kRoom]
   std::vector<double> theta;     ///< last terminal angle per recorded plant, held while V = 0 [rad]
   LaneClock clock;
   Trajectory record;

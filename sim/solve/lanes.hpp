@@ -16,6 +16,8 @@ template <class T>
 class Lanes {
  public:
   static constexpr int kLanes = LaneTraits<T>::lanes;
+  static constexpr int kWaiting = 4 * kLanes;       ///< samples evaluated together: constants are spread once for all
+  static constexpr int kRoom = kWaiting + kLanes;   ///< a pack is stored where one sample is needed
   using Next = std::function<bool(Job&)>;
   using Done = std::function<void(const Job&, const Trajectory&)>;
 

@@ -107,7 +107,7 @@ void Lanes<T>::record_steady_start(int lane) {
   const bool switches = run.segments.size() > 1 && run.segments[1].start < options_.t_end;
   const double first = switches ? run.segments[1].start : options_.t_end;
   const int count = samples_until(first);
-  for (std::size_t i = 0; i < y_.size(); ++i) run.waiting[i * 2 * kLanes] = Traits::get(y_[i], lane);
+  for (std::size_t i = 0; i < y_.size(); ++i) run.waiting[i * kRoom] = Traits::get(y_[i], lane);
   run.pending = 1;
   evaluate_pending(lane, 1);
   hold(run, count);
@@ -165,7 +165,7 @@ void Lanes<T>::begin_record(LaneRun& run) const {
   record.outcome = Outcome::stable;
   record.largest_spread = 0.0;
   run.recorded = run.pending = 0;
-  run.waiting.assign(y_.size() * 2 * kLanes, 0.0);
+  run.waiting.resize(y_.size() * kRoom);
   run.theta.assign(recorded_.size(), 0.0);
 }
 

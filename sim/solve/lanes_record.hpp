@@ -39,7 +39,7 @@ void Lanes<T>::record_step(T h, unsigned accepted, const double* start, const do
   }
 }
 
-/// Interpolates the lane's next `count` samples and evaluates every full pack of them.
+/// Interpolates the lane's next `count` samples and evaluates them whenever the waiting room is full.
 template <class T>
 void Lanes<T>::collect(int lane, int count, double start, double tried) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
@@ -51,35 +51,39 @@ void Lanes<T>::collect(int lane, int count, double start, double tried) {
     alignas(64) double theta[kLanes];
     for (int s = 0; s < kLanes; ++s) theta[s] = std::min(1.0, ((first + s) * spacing - start) * inverse);
     const T a = Traits::load(theta), b = T(1.0) - a;
-    double* to = run.waiting.data() + run.pending;
-    for (std::size_t i = 0; i < n; ++i, to += 2 * kLanes) {
-      const auto at = [lane](const T& v) { return T(Traits::get(v, lane)); };
-      Traits::store(at(y_[i]) + a * (at(dense_[i]) + b * (at(dense_[n + i]) + a * (at(dense_[2 * n + i]) + b * at(dense_[3 * n + i])))), to);
+    const double* __restrict y = reinterpret_cast<const double*>(y_.data()) + lane;
+    const double* __restrict d = reinterpret_cast<const double*>(dense_.data()) + lane;
+    double* __restrict to = run.waiting.data() + run.pending;
+    for (std::size_t i = 0; i < n; ++i) {
+      const T value = T(y[i * kLanes]) +
+                      a * (T(d[i * kLanes]) +
+                           b * (T(d[(n + i) * kLanes]) + a * (T(d[(2 * n + i) * kLanes]) + b * T(d[(3 * n + i) * kLanes]))));
+      Traits::store(value, to + i * kRoom);
     }
     run.pending += now;
     count -= now;
-    if (run.pending >= kLanes) evaluate_pending(lane, kLanes);
+    if (run.pending >= kWaiting) evaluate_pending(lane, kWaiting);
   }
 }
 
 /// Copies one lane's constants into every lane of the recording set.
 template <class T>
 void Lanes<T>::spread_constants(int lane) {
-  const auto all = [lane](const std::vector<T>& from, std::vector<T>& to) {
-    for (std::size_t i = 0; i < from.size(); ++i) to[i] = T(Traits::get(from[i], lane));
+  const auto copy = [lane](const std::vector<T>& from, std::vector<T>& to, std::size_t first, std::size_t count) {
+    const double* __restrict source = reinterpret_cast<const double*>(from.data()) + lane;
+    T* __restrict target = to.data();
+    for (std::size_t i = first; i < first + count; ++i) target[i] = T(source[i * kLanes]);
   };
   const Constants& from = per_lane_;
-  all(from.c, per_sample_.c);
-  all(from.r, per_sample_.r);
-  all(from.xs, per_sample_.xs);
-  all(from.efd, per_sample_.efd);
-  all(from.tm, per_sample_.tm);
+  Constants& to = per_sample_;
+  copy(from.c, to.c, 0, to.c.size());
   const auto n = static_cast<std::size_t>(n_);
-  for (int plant : recorded_)
-    for (std::size_t i = static_cast<std::size_t>(plant) * n; i < (static_cast<std::size_t>(plant) + 1) * n; ++i) {
-      per_sample_.g[i] = T(Traits::get(from.g[i], lane));
-      per_sample_.b[i] = T(Traits::get(from.b[i], lane));
-    }
+  for (const auto& [source, target] : {std::pair{&from.r, &to.r}, {&from.xs, &to.xs}, {&from.efd, &to.efd}, {&from.tm, &to.tm}})
+    copy(*source, *target, 0, n);
+  for (int plant : recorded_) {
+    copy(from.g, to.g, static_cast<std::size_t>(plant) * n, n);
+    copy(from.b, to.b, static_cast<std::size_t>(plant) * n, n);
+  }
 }
 
 /// Evaluates the first `count` waiting samples of a lane into its record; the rest move to the front.
@@ -89,15 +93,19 @@ void Lanes<T>::evaluate_pending(int lane, int count) {
   if (count == 0) return;
   spread_constants(lane);
   const std::size_t n = y_.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    double* row = run.waiting.data() + i * 2 * kLanes;
-    kept_[i] = Traits::load(row);
-    std::copy(row + kLanes, row + 2 * kLanes, row);
+  for (int first = 0; first < count; first += kLanes) {
+    for (std::size_t i = 0; i < n; ++i) kept_[i] = Traits::load(run.waiting.data() + i * kRoom + first);
+    const int now = std::min(kLanes, count - first);
+    emfs(per_sample_, kept_.data());
+    for (std::size_t k = 0; k < recorded_.size(); ++k) outputs(k, kept_.data(), run, now);
+    run.recorded += now;
   }
-  emfs(per_sample_, kept_.data());
-  for (std::size_t k = 0; k < recorded_.size(); ++k) outputs(k, kept_.data(), run, count);
-  run.recorded += count;
   run.pending -= count;
+  if (run.pending > 0)
+    for (std::size_t i = 0; i < n; ++i) {
+      double* row = run.waiting.data() + i * kRoom;
+      std::copy(row + count, row + count + kLanes, row);
+    }
 }
 
 /// The channels of the k-th recorded plant, `count` samples from run.recorded on.
@@ -135,9 +143,12 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
         break;
       }
     }
-    alignas(64) double out[kLanes];
-    Traits::store(v, out);
-    std::copy(out, out + count, run.record.at(static_cast<int>(k), static_cast<int>(j)) + run.recorded);
+    double* to = run.record.at(static_cast<int>(k), static_cast<int>(j)) + run.recorded;
+    if (count == kLanes) {
+      Traits::store(v, to);
+    } else {
+      for (int l = 0; l < count; ++l) to[l] = Traits::get(v, l);
+    }
   }
 }
 
