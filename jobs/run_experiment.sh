@@ -90,7 +90,8 @@ run_task() {
 
 train() {
   local lines line
-  mapfile -t lines < <(tasks)
+  # A process that trains all folds reads the dataset once.
+  mapfile -t lines < <(tasks | if [[ -z $task ]]; then sed '/ none$/!s/ .*/ all/' | uniq; else cat; fi)
   if [[ -n $task ]]; then
     if [[ ! $task =~ ^[0-9]+$ ]] || ((task >= ${#lines[@]})); then
       echo "no such task at --task $task (the experiment has ${#lines[@]}, counted from 0): give a lower number" >&2
