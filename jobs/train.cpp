@@ -1,0 +1,18 @@
+// swingbank train: one network on a dataset split 60/20/20 by databank point (Table IV).
+#include "jobs/training_options.hpp"
+
+int main(int argc, char** argv) {
+  using namespace swingbank;
+  choose_blas_kernels(argv);
+  CLI::App app{SWINGBANK_SUMMARY, "swingbank train"};
+  TrainingOptions options;
+  return training_main(argc, argv, "swingbank train", app, options, [&](const RunRequest& request) {
+    if (request.experiment.leave_one_out)
+      throw InputError({"this experiment leaves generators out", options.experiment, "its split says so",
+                        "use swingbank cross-validate"});
+    const ShardStream stream = options.open(request);
+    const RunOutcome outcome = run(stream, request);
+    if (outcome == RunOutcome::already_done) fmt::print(stderr, "{}: done already\n", run_name(request));
+    return outcome;
+  });
+}

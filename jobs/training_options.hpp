@@ -1,0 +1,86 @@
+#pragma once
+// Options that `swingbank train` and `swingbank cross-validate` share.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "sim/core/problem.hpp"
+#include "train/run.hpp"
+#include "train/soft_exit.hpp"
+
+namespace swingbank {
+
+struct TrainingOptions {
+  std::string dataset, experiment, preset = "quick", network, out, print;
+  std::uint64_t seed = 1;
+  std::size_t epochs = 0;
+  int threads = 0;
+  unsigned readers = 1;
+  double memory_limit = 8.0;  // [GiB]
+  bool shuffle_labels = false;
+
+  void add_to(CLI::App& app) {
+    app.add_option("DATASET", dataset, "folder that `swingbank generate` wrote");
+    app.add_option("--experiment", experiment, "file of configs/experiments: table, dataset, presets")->required();
+    app.add_option("--preset", preset, "preset of the experiment: quick, nightly or thesis")->capture_default_str();
+    app.add_option("--network", network, "network of the preset (default: its first)");
+    app.add_option("--out", out, "folder for the result files");
+    app.add_option("--seed", seed, "seed of weights, dropout, order and split")->capture_default_str();
+    app.add_option("--epochs", epochs, "instead of the preset's");
+    app.add_option("--threads", threads, "default: the Slurm allocation, OMP_NUM_THREADS or the cores, shared by the processes");
+    app.add_option("--readers", readers, "threads that read shards which do not fit in memory")->capture_default_str();
+    app.add_option("--memory-limit", memory_limit, "series up to this size stay in memory [GiB]")->capture_default_str();
+    app.add_flag("--shuffle-labels", shuffle_labels, "control run: must score about as the mean does");
+    app.add_option("--print", print, "print one entry of the experiment and end: table, dataset, draws, networks, folds");
+  }
+
+  /// Throws InputError if an option that a run needs is missing.
+  [[nodiscard]] RunRequest request(Runtime runtime) const {
+    Problems problems;
+    if (dataset.empty())
+      problems.add("no dataset", "DATASET", "a run needs one", "give the folder that `swingbank generate` wrote");
+    if (out.empty()) problems.add("no output folder", "--out", "results need a place", "give a folder");
+    problems.raise();
+    RunRequest r;
+    r.experiment = read_experiment(experiment);
+    r.preset = preset;
+    r.network = network.empty() ? r.experiment.preset(preset).networks.at(0) : network;
+    r.seed = seed;
+    if (epochs > 0) r.epochs = epochs;
+    r.shuffle_labels = shuffle_labels;
+    r.out = out;
+    r.runtime = std::move(runtime);
+    return r;
+  }
+  [[nodiscard]] ShardStream open(const RunRequest& r) const {
+    const auto bytes = static_cast<std::uint64_t>(memory_limit * static_cast<double>(std::uint64_t{1} << 30));
+    return {open_dataset(dataset), r.experiment.preset(preset).input, {bytes, readers}};
+  }
+};
+
+inline int exit_code(RunOutcome outcome) { return outcome == RunOutcome::stopped ? kExitResubmit : 0; }
+
+/// What both programs do around their work: options, printing, signals, errors.
+template <class Work>
+int training_main(int argc, char** argv, const char* name, CLI::App& app, TrainingOptions& options, const Work& work) {
+  options.add_to(app);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    if (!options.print.empty()) {
+      fmt::print("{}\n", read_experiment(options.experiment).print(options.preset, options.print));
+      return 0;
+    }
+    catch_soft_exit();
+    const RunRequest request = options.request(set_up_runtime(options.threads));
+    fmt::print(stderr, "{}: {}\n", name, request.runtime.sentence());
+    return exit_code(work(request));
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+}
+
+}  // namespace swingbank

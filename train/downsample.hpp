@@ -1,0 +1,34 @@
+#pragma once
+// Which part of a record a network reads: channels by name, a time window, and slicing (every n-th sample).
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "mpi/store/dataset.hpp"
+
+namespace swingbank {
+
+/// As an experiment's preset states it.
+struct InputRecipe {
+  std::vector<std::string> channels;
+  double start_s = 0.0, end_s = 0.0;  ///< window [s]; the end is not included
+  std::size_t slice = 1;              ///< keep every slice-th sample: 120/s and 4 make 30/s
+  bool deviation = false;             ///< subtract each channel's first sample, i.e. its value before the fault
+};
+
+/// The same, resolved against a dataset.
+struct InputSelection {
+  std::vector<std::size_t> channels;  ///< indices into the record's channels
+  std::size_t first = 0, step = 1, samples = 0;
+  bool deviation = false;
+  double rate = 0.0;  ///< after slicing [1/s]
+
+  [[nodiscard]] std::size_t values() const { return channels.size() * samples; }
+  /// record: channels x record_samples of one row; out: selected channels x samples.
+  void apply(const float* record, std::size_t record_samples, float* out) const;
+};
+
+/// Throws InputError with every channel that is not in the dataset, a window outside the record, or a slice of 0.
+InputSelection select_input(const InputRecipe& recipe, const DatasetHeader& dataset);
+
+}  // namespace swingbank

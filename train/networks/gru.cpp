@@ -1,0 +1,31 @@
+// The thesis's GRU: 512 units, the last state into one ReLU output per parameter.
+#include "train/networks/recurrent.hpp"
+
+namespace swingbank {
+namespace {
+class Gru final : public Network {
+ public:
+  explicit Gru(const NetworkShape& s)
+      : weights_(recurrent_weights(s.channels, 3)), output_(output_layer(kRecurrentUnits, s.output_bias)) {}
+
+  at::Tensor forward(const at::Tensor& x, bool training) override {
+    const at::Tensor zero = at::zeros({1, x.size(0), kRecurrentUnits}, x.options());
+    const at::Tensor series = x.permute({2, 0, 1}).contiguous();
+    const auto states = at::gru(series, zero, weights_, true, 1, 0.0, training, false, false);
+    return at::relu(output_(std::get<1>(states)[0]));
+  }
+  std::vector<at::Tensor> parameters() override {
+    std::vector<at::Tensor> all = weights_;
+    all.insert(all.end(), {output_.weight, output_.bias});
+    return all;
+  }
+
+ private:
+  std::vector<at::Tensor> weights_;
+  Dense output_;
+};
+}  // namespace
+
+std::unique_ptr<Network> make_network_gru(const NetworkShape& shape) { return std::make_unique<Gru>(shape); }
+
+}  // namespace swingbank

@@ -1,0 +1,25 @@
+#include "train/networks/network.hpp"
+
+#include <ATen/ATen.h>
+
+#include "sim/core/problem.hpp"
+
+namespace swingbank {
+
+std::unique_ptr<Network> make_network(const std::string& name, const NetworkShape& shape) {
+  std::string names;
+  for (const auto& record : all_networks()) {
+    if (record.name == name) return record.make(shape);
+    names += (names.empty() ? "" : ", ") + std::string(record.name);
+  }
+  throw InputError({"no network called '" + name + "'", "network", "there is no networks/" + name + ".cpp",
+                    "choose one of: " + names});
+}
+
+std::int64_t parameter_count(Network& network) {
+  std::int64_t count = 0;
+  for (const auto& p : network.parameters()) count += p.numel();
+  return count;
+}
+
+}  // namespace swingbank

@@ -1,0 +1,40 @@
+#pragma once
+// Zero mean and unit variance per group of inputs, and the scale of the targets; both fitted on training rows only.
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace swingbank {
+
+/// Sums values group by group, then gives mean and standard deviation (dividing by the count).
+class Moments1 {
+ public:
+  explicit Moments1(std::size_t groups) : sum_(groups), square_(groups), count_(groups) {}
+  void add(std::size_t group, double value) {
+    sum_[group] += value;
+    square_[group] += value * value;
+    count_[group] += 1.0;
+  }
+  [[nodiscard]] double mean(std::size_t group) const { return sum_[group] / count_[group]; }
+  [[nodiscard]] double deviation(std::size_t group) const;
+
+ private:
+  std::vector<double> sum_, square_, count_;
+};
+
+/// x' = (x - mean) / deviation.
+struct Scale {
+  std::vector<float> mean, deviation;
+};
+
+/// Targets are divided by their standard deviation and not shifted, so that zero stays zero and the network's ReLU
+/// output keeps its meaning (a parameter is not negative). A constant parameter is divided by its magnitude.
+struct TargetScale {
+  std::vector<double> mean;  ///< of the training targets, raw units: the predict-the-mean baseline
+  std::vector<double> unit;  ///< raw = scaled x unit
+  /// values: all rows x parameters, raw units; rows: training rows.
+  static TargetScale fit(const std::vector<double>& values, std::size_t parameters,
+                         std::span<const std::uint64_t> rows);
+};
+
+}  // namespace swingbank

@@ -1,0 +1,115 @@
+#include "train/run.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "mpi/store/durable.hpp"
+#include "sim/core/problem.hpp"
+#include "train/random.hpp"
+#include "train/result.hpp"
+
+namespace swingbank {
+namespace {
+using nlohmann::json;
+
+/// True if the result stands there already; refuses one of another run.
+bool already_done(const std::filesystem::path& file, const json& run) {
+  if (!std::filesystem::exists(file)) return false;
+  const json there = json::parse(read_text(file), nullptr, false);
+  if (!there.is_discarded() && there.is_object() && there.value("run", json()) == run) return true;
+  throw InputError({"another run's result is in the way", file.string(), "its data or settings differ from this run's",
+                    "remove it or choose another --out"});
+}
+
+Score judge(Network& network, const ShardStream& stream, const Features& features, const TargetScale& scale,
+            const RowSplit& split) {
+  const Labels& labels = stream.labels();
+  const std::size_t p = labels.parameters;
+  const std::vector<float> out = predict(network, stream, features, split.test);
+  std::vector<double> predicted(out.size()), truth(out.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    predicted[i] = out[i] * scale.unit[i % p];
+    truth[i] = labels.values[split.test[i / p] * p + i % p];
+  }
+  const Dataset& d = stream.dataset();
+  return score({predicted, truth, scale.mean, d.parameter_names, d.parameter_units, d.parameter_low, d.parameter_high});
+}
+
+NetworkShape shape_of(const Features& features, const TargetScale& scale) {
+  NetworkShape shape{static_cast<std::int64_t>(features.channels()), static_cast<std::int64_t>(features.length()),
+                     static_cast<std::int64_t>(scale.unit.size()), {}};
+  for (std::size_t p = 0; p < scale.unit.size(); ++p)
+    shape.output_bias.push_back(static_cast<float>(scale.mean[p] / scale.unit[p]));
+  return shape;
+}
+
+}  // namespace
+
+std::string run_name(const RunRequest& r) {
+  return fmt::format("{}-{}-{}-seed{}{}{}", r.experiment.table, r.network, r.preset, r.seed,
+                     r.generator ? fmt::format("-gen{}", *r.generator) : "", r.shuffle_labels ? "-shuffled" : "");
+}
+
+std::vector<float> scaled_targets(const Labels& labels, const TargetScale& scale, const RowSplit& split, bool shuffled,
+                                  std::uint64_t seed) {
+  std::vector<std::uint64_t> source(labels.rows);
+  for (std::size_t i = 0; i < source.size(); ++i) source[i] = i;
+  if (shuffled) {
+    std::vector<std::uint64_t> seen = split.train;
+    seen.insert(seen.end(), split.validation.begin(), split.validation.end());
+    std::vector<std::uint64_t> mixed = seen;
+    shuffle(mixed, key(seed, Purpose::labels));
+    for (std::size_t i = 0; i < seen.size(); ++i) source[seen[i]] = mixed[i];
+  }
+  const std::size_t p = labels.parameters;
+  std::vector<float> targets(labels.rows * p);
+  for (std::size_t i = 0; i < targets.size(); ++i)
+    targets[i] = static_cast<float>(labels.values[source[i / p] * p + i % p] / scale.unit[i % p]);
+  return targets;
+}
+
+RunOutcome run(const ShardStream& stream, const RunRequest& r) {
+  const std::string name = run_name(r);
+  const auto file = r.out / (name + ".json"), checkpoint = r.out / "checkpoints" / (name + ".checkpoint");
+  const json run_identity = identity(stream, r);
+  if (already_done(file, run_identity)) return RunOutcome::already_done;
+  make_folder(r.out);
+  make_folder(checkpoint.parent_path());
+
+  LoopSettings settings;
+  settings.recipe = r.experiment.training(r.preset, r.network);
+  settings.seed = r.seed;
+  settings.checkpoint = checkpoint;
+  settings.run = &run_identity;
+  if (r.epochs) settings.recipe.epochs = *r.epochs;
+  const Labels& labels = stream.labels();
+  const RowSplit split = r.generator ? leave_one_out(labels, *r.generator, settings.recipe.validation_share, r.seed)
+                                     : split_by_point(labels, r.seed);
+  const TargetScale scale = TargetScale::fit(labels.values, labels.parameters, split.train);
+  const std::vector<float> targets = scaled_targets(labels, scale, split, r.shuffle_labels, r.seed);
+  const Features features =
+      Features::fit(stream, split.train, r.experiment.preset(r.preset).pca_components);
+
+  seed_torch(key(r.seed, Purpose::weights));
+  const auto network = make_network(r.network, shape_of(features, scale));
+  Progress progress(name, settings.recipe.epochs * split.train.size(), r.quiet);
+  progress.line(fmt::format("{} training, {} validation, {} test rows; {} x {} inputs, {:.2f} million weights; {}",
+                            split.train.size(), split.validation.size(), split.test.size(), features.channels(),
+                            features.length(), static_cast<double>(parameter_count(*network)) * 1e-6,
+                            r.runtime.sentence()));
+  const LoopReport report = train_network(*network, {stream, features, split.train, split.validation, targets}, settings, progress);
+  if (!report.finished) {
+    progress.line(fmt::format("saved to {}; submit the same command again to go on", checkpoint.string()));
+    return RunOutcome::stopped;
+  }
+  const Score result = judge(*network, stream, features, scale, split);
+  write_text(file, result_json(stream, r, {split, features, report, result}).dump(2) + "\n");
+  std::filesystem::remove(checkpoint);
+  progress.line(fmt::format("MSE {:.4g} against {:.4g} for the mean (x {:.3f}{}), {}, best epoch {} of {}", result.mse,
+                            result.baseline_mse, result.ratio, result.H_ratio ? fmt::format(", H alone x {:.3f}", *result.H_ratio) : "",
+                            duration(report.seconds), report.best_epoch, report.epochs));
+  return RunOutcome::done;
+}
+
+}  // namespace swingbank

@@ -1,0 +1,42 @@
+#pragma once
+// One run: split, features, training, score, JSON. Used by `swingbank train` and, fold by fold, by
+// `swingbank cross-validate`.
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+
+#include "train/experiment.hpp"
+#include "train/loop.hpp"
+#include "train/metrics.hpp"
+#include "train/runtime.hpp"
+#include "train/shard_stream.hpp"
+#include "train/split.hpp"
+
+namespace swingbank {
+
+struct RunRequest {
+  Experiment experiment;
+  std::string preset, network;
+  std::optional<std::int32_t> generator;  ///< to leave out; none: 60/20/20
+  std::uint64_t seed = 1;
+  std::optional<std::size_t> epochs;  ///< instead of the preset's
+  bool shuffle_labels = false;
+  std::filesystem::path out;
+  Runtime runtime;
+  bool quiet = false;
+};
+
+enum class RunOutcome { done, already_done, stopped };
+
+/// Trains, scores and writes the JSON of README.md. Goes on from a checkpoint of the same run. Throws InputError if the
+/// output folder holds the result of another run under the same name.
+RunOutcome run(const ShardStream& stream, const RunRequest& request);
+
+/// Targets of all rows in scaled units. With `shuffled`, the labels of the training and validation rows change places;
+/// those of other rows stay.
+std::vector<float> scaled_targets(const Labels& labels, const TargetScale& scale, const RowSplit& split, bool shuffled,
+                                  std::uint64_t seed);
+/// "V-cnn-quick-seed1-gen30"
+std::string run_name(const RunRequest& request);
+
+}  // namespace swingbank

@@ -1,0 +1,30 @@
+#pragma once
+// Settings of the process that decide how fast LibTorch trains on a CPU.
+#include <string>
+
+namespace swingbank {
+
+/// OpenBLAS takes its AVX2 kernels on processors younger than itself even where AVX-512 is there (measured on Zen 5
+/// with OpenBLAS 0.3.21: 117 against 217 GFLOP/s per core). If so, starts the program again with the AVX-512 kernels
+/// chosen in its environment; call it first in main. Does nothing where OPENBLAS_CORETYPE is set already.
+void choose_blas_kernels(char** argv);
+
+struct Runtime {
+  int threads = 1;
+  std::string blas;  ///< library, version and kernels
+  [[nodiscard]] std::string sentence() const;
+};
+/// threads = 0: those of the Slurm allocation (SLURM_CPUS_PER_TASK), of OMP_NUM_THREADS, else the cores this process
+/// may use divided by the processes that the launcher started on this node. Also flushes denormals to zero and keeps
+/// freed memory in the process (LSTM and GRU are several times slower without the first, CNN by a fifth without the
+/// second). Throws InputError for a negative number.
+Runtime set_up_runtime(int threads);
+
+/// Place of this process among those its launcher started (OpenMPI, PMIx or Slurm); 0 of 1 if it runs alone. Read from
+/// the environment, so that a trainer needs no MPI.
+struct Place {
+  int rank = 0, size = 1;
+};
+Place launcher_place();
+
+}  // namespace swingbank
