@@ -217,8 +217,7 @@ void write_csv(const std::filesystem::path& file, const Grid& grid, const Refere
   text += '\n';
   for (int k = 0; k < run.samples; ++k) {
     fmt::format_to(std::back_inserter(text), "{:.12g}", k / run.rate);
-    for (std::size_t i = 0; i < run.plants.size() * run.channels.size(); ++i)
-      fmt::format_to(std::back_inserter(text), ",{:.12g}", run.values[i * run.samples + k]);
+    for (int i = 0; i < run.rows(); ++i) fmt::format_to(std::back_inserter(text), ",{:.12g}", run.row(i)[k]);
     for (std::size_t b = 0; b < run.buses.size(); ++b)
       fmt::format_to(std::back_inserter(text), ",{:.12g},{:.12g}", run.bus_v[b * run.samples + k],
                      run.bus_theta[b * run.samples + k]);
@@ -275,12 +274,13 @@ void write_hdf5(const std::filesystem::path& file, const Options& o, const Grid&
   for (int k = 0; k < run.samples; ++k) time[k] = k / run.rate;
   put("/time", {samples}, time);
   h.attribute("unit", std::string("s"), "/time");
-  put("/records", {run.plants.size(), run.channels.size(), samples}, run.values);
+  put("/records", {run.plants.size(), run.channels.size(), samples}, run.packed());
   h.attribute("unit", std::string("see channel_units; per unit on each plant's own base"), "/records");
   if (!run.buses.empty()) {
-    std::vector<double> numbers;
+    std::vector<std::int32_t> numbers;
     for (int b : run.buses) numbers.push_back(grid.network.buses[b].number);
-    put("/bus_number", {run.buses.size()}, numbers);
+    h.create<std::int32_t>("/bus_number", {run.buses.size()});
+    h.write("/bus_number", 0, run.buses.size(), numbers.data());
     put("/bus_voltage", {run.buses.size(), samples}, run.bus_v);
     h.attribute("unit", std::string("pu"), "/bus_voltage");
     put("/bus_angle", {run.buses.size(), samples}, run.bus_theta);

@@ -62,37 +62,46 @@ class GridMaker {
       grid_.plants.push_back(std::move(plant));
     }
   }
-  [[nodiscard]] int bus_number(const Generator& g) const { return grid_.network.buses[static_cast<std::size_t>(g.bus)].number; }
+  [[nodiscard]] int bus_number(const Generator& g) const {
+    return grid_.network.buses[static_cast<std::size_t>(g.bus)].number;
+  }
 
   void add(const DyrRecord& record) {
     const std::string where = dyr_ + ":" + std::to_string(record.line);
     const Effect* effect = effect_of_dyr(record.model);
     if (!effect) {
-      problems_.add("unknown model '" + record.model + "' of generator '" + record.id + "' at bus " + std::to_string(record.bus), where, "available are " + dyr_names(), "use one of these or remove the record");
+      problems_.add("unknown model '" + record.model + "' of generator '" + record.id + "' at bus " +
+                        std::to_string(record.bus),
+                    where, "available are " + dyr_names(), "use one of these or remove the record");
       return;
     }
     const std::pair<int, std::string> key{record.bus, record.id};
     const auto found = plant_of_.find(key);
     if (found == plant_of_.end()) {
       if (known_.contains(key)) return;  // the generator exists but is out of service
-      problems_.add(record.model + " for generator '" + record.id + "' at bus " + std::to_string(record.bus), where, grid_.network.origin + " has no such generator", "correct bus number and id, or remove the record");
+      problems_.add(record.model + " for generator '" + record.id + "' at bus " + std::to_string(record.bus),
+                    where, grid_.network.origin + " has no such generator",
+                    "correct bus number and id, or remove the record");
       return;
     }
     Plant& plant = grid_.plants[found->second];
     if (record.values.size() != effect->dyr_columns.size()) {
-      problems_.add(record.model + " with " + std::to_string(record.values.size()) + " parameters", where, "it takes " + columns(*effect), "give every parameter, in this order");
+      problems_.add(record.model + " with " + std::to_string(record.values.size()) + " parameters", where,
+                    "it takes " + columns(*effect), "give every parameter, in this order");
       return;
     }
     place(plant, read(*effect, record, plant), where);
   }
   static std::string columns(const Effect& effect) {
     std::string text = std::to_string(effect.dyr_columns.size()) + ":";
-    for (const int column : effect.dyr_columns) text += " " + std::string(effect.parameters[static_cast<std::size_t>(column)].symbol);
+    for (const int column : effect.dyr_columns)
+      text += " " + std::string(effect.parameters[static_cast<std::size_t>(column)].symbol);
     return text;
   }
   [[nodiscard]] Block read(const Effect& effect, const DyrRecord& record, const Plant& plant) const {
     Block block{&effect, effect.standard_parameters()};
-    for (std::size_t i = 0; i < record.values.size(); ++i) block.p[static_cast<std::size_t>(effect.dyr_columns[i])] = record.values[i];
+    for (std::size_t i = 0; i < record.values.size(); ++i)
+      block.p[static_cast<std::size_t>(effect.dyr_columns[i])] = record.values[i];
     const Generator& g = grid_.network.generators[static_cast<std::size_t>(plant.generator)];
     if (effect.raw_resistance >= 0) block.p[static_cast<std::size_t>(effect.raw_resistance)] = g.zr;
     if (effect.raw_reactance >= 0) block.p[static_cast<std::size_t>(effect.raw_reactance)] = g.zx;
@@ -111,11 +120,14 @@ class GridMaker {
     }
     for (const Block& other : plant.controls)
       // Limiters add up, so different ones may stand side by side; every other slot holds one model.
-      if (other.effect == &effect || (other.effect->slot == effect.slot && effect.slot != Slot::limiter)) return taken(plant, effect, *other.effect, where);
+      if (other.effect == &effect || (other.effect->slot == effect.slot && effect.slot != Slot::limiter))
+        return taken(plant, effect, *other.effect, where);
     plant.controls.push_back(std::move(block));
   }
   void taken(const Plant& plant, const Effect& effect, const Effect& other, const std::string& where) {
-    problems_.add("a second " + std::string(slot_name(effect.slot)) + " model, " + std::string(effect.dyr_name) + ", for generator " + plant.name, where, "it already has " + std::string(other.dyr_name), "keep one of them");
+    problems_.add("a second " + std::string(slot_name(effect.slot)) + " model, " +
+                      std::string(effect.dyr_name) + ", for generator " + plant.name,
+                  where, "it already has " + std::string(other.dyr_name), "keep one of them");
   }
   void compare_reactance(const Plant& plant, const Block& block, const std::string& where) const {
     if (block.effect->raw_reactance >= 0) return;
@@ -124,24 +136,29 @@ class GridMaker {
     block.effect->get<double>().machine.source_impedance(block.p.data(), r, x);
     constexpr double tolerance = 1e-4;  // [pu]: files round reactances to four or five digits
     if (zx != 0.0 && std::abs(zx - x) > tolerance)
-      spdlog::warn("{}: generator {} has ZX = {} pu in {} but {} pu in its {}; the latter is used", where, plant.name, zx, grid_.network.origin, x, block.effect->dyr_name);
+      spdlog::warn("{}: generator {} has ZX = {} pu in {} but {} pu in its {}; the latter is used", where,
+                   plant.name, zx, grid_.network.origin, x, block.effect->dyr_name);
   }
   void finish(Plant& plant) {
     if (!plant.machine.effect) {
       const Generator& g = grid_.network.generators[static_cast<std::size_t>(plant.generator)];
-      problems_.add("no machine model for generator '" + g.id + "' at bus " + std::to_string(bus_number(g)), dyr_, "it is in service in " + grid_.network.origin, "add a record with one of " + machine_names() + ", or take the generator out of service");
+      problems_.add("no machine model for generator '" + g.id + "' at bus " + std::to_string(bus_number(g)),
+                    dyr_, "it is in service in " + grid_.network.origin,
+                    "add a record with one of " + machine_names() + ", or take the generator out of service");
     }
     std::ranges::stable_sort(plant.controls, {}, [](const Block& b) { return b.effect->slot; });
   }
   static std::string machine_names() {
     std::string names;
     for (const Effect& e : all_effects())
-      if (e.slot == Slot::machine && !e.dyr_name.empty()) names += (names.empty() ? "" : ", ") + std::string(e.dyr_name);
+      if (e.slot == Slot::machine && !e.dyr_name.empty())
+        names += (names.empty() ? "" : ", ") + std::string(e.dyr_name);
     return names;
   }
   void solve() {
     grid_.flow = solve_power_flow(grid_.network);
-    for (Plant& plant : grid_.plants) plant.generation = grid_.flow.generation[static_cast<std::size_t>(plant.generator)];
+    for (Plant& plant : grid_.plants)
+      plant.generation = grid_.flow.generation[static_cast<std::size_t>(plant.generator)];
   }
 
   std::string dyr_;
@@ -151,28 +168,38 @@ class GridMaker {
   std::set<std::pair<int, std::string>> known_;  ///< every generator of the network
 };
 
-std::string dyr_record(const Grid& grid, const Plant& plant, const Block& block, const std::string& file, Problems& problems) {
+std::string dyr_record(const Grid& grid, const Plant& plant, const Block& block, const std::string& file,
+                       Problems& problems) {
   const Effect& effect = *block.effect;
   const Generator& g = grid.network.generators[static_cast<std::size_t>(plant.generator)];
   const std::string where = file + ", generator " + plant.name;
   if (effect.dyr_name.empty()) {
-    problems.add("model " + std::string(effect.name), where, "it has no form in a .dyr", "remove it from the plant before writing");
+    problems.add("model " + std::string(effect.name), where, "it has no form in a .dyr",
+                 "remove it from the plant before writing");
     return {};
   }
   const auto in_raw = [&](int index, double value, const char* field) {
     if (index >= 0 && block.p[static_cast<std::size_t>(index)] != value)
-      problems.add(std::string(effect.parameters[static_cast<std::size_t>(index)].symbol) + " = " + psse::shortest(block.p[static_cast<std::size_t>(index)]) + " pu", where, "the network has " + std::string(field) + " = " + psse::shortest(value) + " pu, and PSS/E keeps it in the .raw", "set it in the network too");
+      problems.add(std::string(effect.parameters[static_cast<std::size_t>(index)].symbol) + " = " +
+                       psse::shortest(block.p[static_cast<std::size_t>(index)]) + " pu",
+                   where,
+                   "the network has " + std::string(field) + " = " + psse::shortest(value) +
+                       " pu, and PSS/E keeps it in the .raw",
+                   "set it in the network too");
   };
   in_raw(effect.raw_resistance, g.zr, "ZR");
   in_raw(effect.raw_reactance, g.zx, "ZX");
-  std::string text = std::to_string(grid.network.buses[static_cast<std::size_t>(plant.bus)].number) + " " + psse::quote(std::string(effect.dyr_name)) + " " + psse::quote(g.id);
-  for (const int column : effect.dyr_columns) text += " " + psse::shortest(block.p[static_cast<std::size_t>(column)]);
+  std::string text = std::to_string(grid.network.buses[static_cast<std::size_t>(plant.bus)].number) + " " +
+                     psse::quote(std::string(effect.dyr_name)) + " " + psse::quote(g.id);
+  for (const int column : effect.dyr_columns)
+    text += " " + psse::shortest(block.p[static_cast<std::size_t>(column)]);
   return text + " /\n";
 }
 
 }  // namespace
 
-Grid make_grid(Network network, const std::vector<DyrRecord>& dynamics, const std::string& dyr_name, Conventions conventions) {
+Grid make_grid(Network network, const std::vector<DyrRecord>& dynamics, const std::string& dyr_name,
+               Conventions conventions) {
   return GridMaker(std::move(network), dyr_name, conventions).make(dynamics);
 }
 
@@ -198,7 +225,8 @@ void write_dyr(const Grid& grid, const std::filesystem::path& file) {
   std::string text;
   for (const Plant& plant : grid.plants) {
     text += dyr_record(grid, plant, plant.machine, file.string(), problems);
-    for (const Block& control : plant.controls) text += dyr_record(grid, plant, control, file.string(), problems);
+    for (const Block& control : plant.controls)
+      text += dyr_record(grid, plant, control, file.string(), problems);
   }
   problems.raise();
   psse::write_whole(file, text);

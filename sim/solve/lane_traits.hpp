@@ -1,7 +1,9 @@
 #pragma once
 // What the lanes kernel needs to know of a scalar: how many scenarios it carries, how to reach one, how to mask.
-#include <array>
 #include <cstdint>
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
 
 #include "sim/core/scalar.hpp"
 
@@ -18,6 +20,7 @@ struct LaneTraits<double> {
   static bool mask(unsigned bits) { return (bits & 1U) != 0; }
   static double load(const double* v) { return *v; }
   static void store(double v, double* to) { *to = v; }
+  static void stream(double v, double* to) { *to = v; }
 };
 template <int N>
 struct LaneTraits<Pack<N>> {
@@ -35,6 +38,16 @@ struct LaneTraits<Pack<N>> {
     return p;
   }
   static void store(const Pack<N>& v, double* to) { __builtin_memcpy(to, &v, sizeof v); }
+  /// Past the caches, to an address on a pack boundary: records are far larger than the caches and not read soon.
+  static void stream(const Pack<N>& v, double* to) {
+#ifdef __AVX512F__
+    if constexpr (N == 8) return _mm512_stream_pd(to, (__m512d)v.v);
+#endif
+#ifdef __AVX__
+    if constexpr (N == 4) return _mm256_stream_pd(to, (__m256d)v.v);
+#endif
+    store(v, to);
+  }
 };
 
 inline double maximum(double a, double b) { return a > b ? a : b; }

@@ -161,7 +161,7 @@ void Lanes<T>::begin_record(LaneRun& run) const {
   record.samples = samples_;
   record.plants = recorded_;
   record.channels = channels_;
-  record.values.resize(recorded_.size() * channels_.size() * static_cast<std::size_t>(samples_));
+  record.allocate(true);
   record.outcome = Outcome::stable;
   record.largest_spread = 0.0;
   run.recorded = run.pending = 0;

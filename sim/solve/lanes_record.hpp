@@ -93,9 +93,9 @@ void Lanes<T>::evaluate_pending(int lane, int count) {
   if (count == 0) return;
   spread_constants(lane);
   const std::size_t n = y_.size();
-  for (int first = 0; first < count; first += kLanes) {
+  for (int first = 0, now = 0; first < count; first += now) {
     for (std::size_t i = 0; i < n; ++i) kept_[i] = Traits::load(run.waiting.data() + i * kRoom + first);
-    const int now = std::min(kLanes, count - first);
+    now = std::min(kLanes - run.recorded % kLanes, count - first);  // whole packs start on a cache line
     emfs(per_sample_, kept_.data());
     for (std::size_t k = 0; k < recorded_.size(); ++k) outputs(k, kept_.data(), run, now);
     run.recorded += now;
@@ -145,7 +145,7 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
     }
     double* to = run.record.at(static_cast<int>(k), static_cast<int>(j)) + run.recorded;
     if (count == kLanes) {
-      Traits::store(v, to);
+      Traits::stream(v, to);
     } else {
       for (int l = 0; l < count; ++l) to[l] = Traits::get(v, l);
     }

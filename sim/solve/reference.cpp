@@ -118,7 +118,7 @@ class Recorder {
     if (run.channels.empty())
       for (const auto& record : kChannels) run.channels.push_back(record.channel);
     run.buses = options.buses;
-    run.values.assign(run.plants.size() * run.channels.size() * run.samples, 0.0);
+    run.allocate(false);
     run.bus_v.assign(run.buses.size() * run.samples, 0.0);
     run.bus_theta.assign(run.buses.size() * run.samples, 0.0);
     for (std::size_t b = 0; b < angle_.size(); ++b) angle_[b] = std::arg(grid.flow.voltage[b]);
@@ -147,7 +147,7 @@ class Recorder {
   bool finish(int k, Outcome outcome) {
     run_.outcome = outcome;
     run_.stopped_at = k / options_.rate;
-    const auto hold = [&](std::vector<double>& values) {
+    const auto hold = [&](auto& values) {
       for (std::size_t row = 0; row * run_.samples < values.size(); ++row) {
         double* first = values.data() + row * run_.samples;
         std::fill(first + k + 1, first + run_.samples, first[k]);

@@ -1,6 +1,8 @@
 #pragma once
 // What a run returns, whichever integrator made it.
-#include <string>
+#include <cstddef>
+#include <new>
+#include <string_view>
 #include <vector>
 
 #include "sim/solve/channel.hpp"
@@ -13,22 +15,50 @@ constexpr std::string_view outcome_name(Outcome o) {
   return names[static_cast<int>(o)];
 }
 
+/// Memory on cache line boundaries, so that a pack of samples is one whole line.
+template <class T>
+struct CacheAligned {
+  using value_type = T;
+  static constexpr std::align_val_t kLine{64};
+  CacheAligned() = default;
+  template <class U>
+  CacheAligned(const CacheAligned<U>&) {}  // NOLINT(google-explicit-constructor): the allocator protocol asks for it
+  T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), kLine)); }
+  void deallocate(T* p, std::size_t) { ::operator delete(p, kLine); }
+  friend bool operator==(const CacheAligned&, const CacheAligned&) { return true; }
+};
+
 /// Samples at t = k/rate, k = 0..samples-1. At a switching instant the sample is the value just before it, unless
 /// asked otherwise.
 struct Trajectory {
   double rate = 0.0;                 ///< [1/s]
   int samples = 0;
+  int stride = 0;                    ///< distance between rows of `values`: at least `samples`
   std::vector<int> plants;           ///< which plants, by index in the grid
   std::vector<Channel> channels;
-  std::vector<double> values;        ///< [plant][channel][sample]
+  std::vector<double, CacheAligned<double>> values;  ///< rows [plant][channel], see at() and packed()
   Outcome outcome = Outcome::stable;
   double stopped_at = 0.0;           ///< [s]: t_end, or when synchronism was lost
   double largest_spread = 0.0;       ///< largest pairwise rotor angle difference seen [rad]
 
-  [[nodiscard]] double* at(int plant, int channel) {
-    return values.data() + (static_cast<std::size_t>(plant) * channels.size() + static_cast<std::size_t>(channel)) * static_cast<std::size_t>(samples);
+  [[nodiscard]] int rows() const { return static_cast<int>(plants.size() * channels.size()); }
+  /// Makes room for every row; with `whole_lines` each row starts on a cache line.
+  void allocate(bool whole_lines) {
+    constexpr int kDoublesPerLine = 8;
+    stride = whole_lines ? (samples + kDoublesPerLine - 1) / kDoublesPerLine * kDoublesPerLine : samples;
+    values.resize(static_cast<std::size_t>(rows()) * static_cast<std::size_t>(stride));
   }
-  [[nodiscard]] const double* at(int plant, int channel) const { return const_cast<Trajectory*>(this)->at(plant, channel); }
+  [[nodiscard]] double* row(int i) { return values.data() + static_cast<std::ptrdiff_t>(i) * stride; }
+  [[nodiscard]] const double* row(int i) const { return values.data() + static_cast<std::ptrdiff_t>(i) * stride; }
+  [[nodiscard]] double* at(int plant, int channel) { return row(plant * static_cast<int>(channels.size()) + channel); }
+  [[nodiscard]] const double* at(int plant, int channel) const { return row(plant * static_cast<int>(channels.size()) + channel); }
+  /// [plant][channel][sample] without gaps.
+  [[nodiscard]] std::vector<double> packed() const {
+    std::vector<double> all;
+    all.reserve(static_cast<std::size_t>(rows()) * static_cast<std::size_t>(samples));
+    for (int i = 0; i < rows(); ++i) all.insert(all.end(), row(i), row(i) + samples);
+    return all;
+  }
 };
 
 }  // namespace swingbank::sim

@@ -31,8 +31,8 @@ Event trip(const Grid& grid, int from, int to, const std::string& circuit, doubl
 /// Largest distance of any channel from its first value.
 double drift(const Trajectory& run) {
   double worst = 0.0;
-  for (std::size_t row = 0; row * run.samples < run.values.size(); ++row) {
-    const double* v = run.values.data() + row * run.samples;
+  for (int row = 0; row < run.rows(); ++row) {
+    const double* v = run.row(row);
     for (int k = 0; k < run.samples; ++k) worst = std::max(worst, std::abs(v[k] - v[0]));
   }
   return worst;
