@@ -41,13 +41,17 @@ void check_supplied(const Network& network, const Topology& topology) {
   const auto island = islands(network, topology.open);
   std::vector<char> supplied(network.buses.size(), 0);  // by island; there are no more islands than buses
   for (const Generator& g : network.generators)
-    if (g.in_service && island[static_cast<std::size_t>(g.bus)] >= 0) supplied[static_cast<std::size_t>(island[static_cast<std::size_t>(g.bus)])] = 1;
+    if (g.in_service && island[static_cast<std::size_t>(g.bus)] >= 0)
+      supplied[static_cast<std::size_t>(island[static_cast<std::size_t>(g.bus)])] = 1;
   std::vector<int> dark;
   for (std::size_t i = 0; i < island.size(); ++i)
     if (island[i] >= 0 && !supplied[static_cast<std::size_t>(island[i])]) dark.push_back(static_cast<int>(i));
   if (dark.empty()) return;
-  const std::string why = topology.open.empty() ? "no path through branches in service leads to a generator" : "with the tripped branches open no path leads to a generator";
-  throw InputError({bus_list(network, dark) + (dark.size() == 1 ? " is" : " are") + " islanded", network.origin, why, "trip another branch, or remove what is cut off"});
+  const std::string why = topology.open.empty()
+                              ? "no path through branches in service leads to a generator"
+                              : "with the tripped branches open no path leads to a generator";
+  throw InputError({bus_list(network, dark) + (dark.size() == 1 ? " is" : " are") + " islanded",
+                    network.origin, why, "trip another branch, or remove what is cut off"});
 }
 
 }  // namespace
@@ -56,7 +60,8 @@ Eigen::SparseMatrix<Complex> bus_admittance(const Network& network, const Topolo
   return matrix(network, branches_and_shunts(network, topology));
 }
 
-Eigen::SparseMatrix<Complex> dynamic_admittance(const Network& network, const PowerFlow& flow, const Topology& topology) {
+Eigen::SparseMatrix<Complex> dynamic_admittance(const Network& network, const PowerFlow& flow,
+                                                const Topology& topology) {
   check_supplied(network, topology);
   Entries entries = branches_and_shunts(network, topology);
   for (const Load& l : network.loads) {
@@ -67,7 +72,8 @@ Eigen::SparseMatrix<Complex> dynamic_admittance(const Network& network, const Po
   for (const auto& [bus, z] : topology.faults)
     if (z != Complex{}) entries.emplace_back(bus, bus, 1.0 / z);
   for (std::size_t i = 0; i < network.buses.size(); ++i)
-    if (network.buses[i].type == BusType::isolated) entries.emplace_back(static_cast<int>(i), static_cast<int>(i), 1.0);
+    if (network.buses[i].type == BusType::isolated)
+      entries.emplace_back(static_cast<int>(i), static_cast<int>(i), 1.0);
   return matrix(network, entries);
 }
 
@@ -78,19 +84,24 @@ std::vector<int> bolted_buses(const Topology& topology) {
   return buses;
 }
 
-ReducedNetwork reduce(const Network& network, const PowerFlow& flow, const Topology& topology, const std::vector<int>& kept) {
+ReducedNetwork reduce(const Network& network, const PowerFlow& flow, const Topology& topology,
+                      const std::vector<int>& kept) {
   const auto full = dynamic_admittance(network, flow, topology);
   const auto bolted = bolted_buses(topology);
   const auto n = static_cast<int>(network.buses.size());
-  std::vector<int> keep(static_cast<std::size_t>(n), -1), rest(static_cast<std::size_t>(n), -1);  // new positions
+  std::vector<int> keep(static_cast<std::size_t>(n), -1),
+      rest(static_cast<std::size_t>(n), -1);  // new positions
   for (std::size_t k = 0; k < kept.size(); ++k) keep[static_cast<std::size_t>(kept[k])] = static_cast<int>(k);
   ReducedNetwork reduced;
   for (const int bus : bolted)
-    if (int& k = keep[static_cast<std::size_t>(bus)]; k >= 0) reduced.grounded.push_back(std::exchange(k, -1));
+    if (int& k = keep[static_cast<std::size_t>(bus)]; k >= 0)
+      reduced.grounded.push_back(std::exchange(k, -1));
   std::ranges::sort(reduced.grounded);
   int others = 0;
   for (int i = 0; i < n; ++i)
-    if (keep[static_cast<std::size_t>(i)] < 0 && !std::ranges::count(bolted, i) && !std::ranges::count(kept, i)) rest[static_cast<std::size_t>(i)] = others++;
+    if (keep[static_cast<std::size_t>(i)] < 0 && !std::ranges::count(bolted, i) &&
+        !std::ranges::count(kept, i))
+      rest[static_cast<std::size_t>(i)] = others++;
 
   const auto size = static_cast<Eigen::Index>(kept.size());
   reduced.y = Eigen::MatrixXcd::Zero(size, size);
@@ -109,7 +120,8 @@ ReducedNetwork reduce(const Network& network, const PowerFlow& flow, const Topol
   ee.setFromTriplets(inner.begin(), inner.end());
   Eigen::SparseLU<Eigen::SparseMatrix<Complex>> lu(ee);
   if (lu.info() != Eigen::Success)
-    throw InputError({"the admittance matrix is singular", network.origin, "series and shunt elements cancel at some bus", "check impedances and shunts"});
+    throw InputError({"the admittance matrix is singular", network.origin,
+                      "series and shunt elements cancel at some bus", "check impedances and shunts"});
   reduced.y -= ke * lu.solve(ek);
   return reduced;
 }

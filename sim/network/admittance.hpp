@@ -12,18 +12,20 @@ namespace swingbank::sim {
 /// Bus admittance matrix [pu] of branches and shunts alone (what the power flow uses). n x n.
 Eigen::SparseMatrix<Complex> bus_admittance(const Network& network, const Topology& topology = {});
 
-/// The same with every load turned into the constant admittance it draws at the power-flow voltage, and faults
-/// through an impedance added. Bolted faults are not in the matrix: see `bolted_buses`.
-Eigen::SparseMatrix<Complex> dynamic_admittance(const Network& network, const PowerFlow& flow, const Topology& topology);
+/// The same with every load turned into the constant admittance it draws at the power-flow voltage, and
+/// faults through an impedance added. Bolted faults are not in the matrix: see `bolted_buses`.
+Eigen::SparseMatrix<Complex> dynamic_admittance(const Network& network, const PowerFlow& flow,
+                                                const Topology& topology);
 std::vector<int> bolted_buses(const Topology& topology);
 
 /// Kron reduction of `dynamic_admittance` to `kept` buses: I = Y V there, all other buses carry no injection,
-/// bolted buses are eliminated with V = 0. Rows and columns of a kept bus that is itself bolted are zero and it is
-/// listed in `grounded`. Throws InputError if buses without connection remain.
+/// bolted buses are eliminated with V = 0. Rows and columns of a kept bus that is itself bolted are zero and
+/// it is listed in `grounded`. Throws InputError if buses without connection remain.
 struct ReducedNetwork {
-  Eigen::MatrixXcd y;           ///< kept x kept [pu on base_mva]
-  std::vector<int> grounded;    ///< positions in `kept` whose voltage is zero
+  Eigen::MatrixXcd y;         ///< kept x kept [pu on base_mva]
+  std::vector<int> grounded;  ///< positions in `kept` whose voltage is zero
 };
-ReducedNetwork reduce(const Network& network, const PowerFlow& flow, const Topology& topology, const std::vector<int>& kept);
+ReducedNetwork reduce(const Network& network, const PowerFlow& flow, const Topology& topology,
+                      const std::vector<int>& kept);
 
 }  // namespace swingbank::sim

@@ -8,7 +8,8 @@
 
 namespace swingbank::sim {
 
-/// Three-phase fault at a bus from t_on to t_off [s] through impedance z [pu on base_mva]; z = 0 is bolted (V = 0).
+/// Three-phase fault at a bus from t_on to t_off [s] through impedance z [pu on base_mva]; z = 0 is bolted (V
+/// = 0).
 struct BusFault {
   int bus;  ///< index
   double t_on, t_off;

@@ -11,14 +11,14 @@ using Complex = std::complex<double>;
 enum class BusType { load = 1, generator = 2, slack = 3, isolated = 4 };
 
 struct Bus {
-  int number;          ///< as in the file; elsewhere buses are indices into Network::buses
+  int number;  ///< as in the file; elsewhere buses are indices into Network::buses
   std::string name;
-  double kv;           ///< nominal voltage [kV]
+  double kv;  ///< nominal voltage [kV]
   BusType type;
-  double vm, va;       ///< voltage in the file: start of the power flow [pu, rad]
+  double vm, va;  ///< voltage in the file: start of the power flow [pu, rad]
 };
-/// Consumption P + jQ [pu]: constant power, constant current and constant admittance parts, each at 1 pu voltage:
-/// S = power + current V + admittance V^2.
+/// Consumption P + jQ [pu]: constant power, constant current and constant admittance parts, each at 1 pu
+/// voltage: S = power + current V + admittance V^2.
 struct Load {
   int bus;
   std::string id;
@@ -33,8 +33,8 @@ struct Shunt {
 struct Branch {
   int from, to;
   std::string circuit;
-  double r, x, b;             ///< series impedance, total charging [pu]
-  double tap = 1.0, shift = 0.0;  ///< [-, rad]
+  double r, x, b;                    ///< series impedance, total charging [pu]
+  double tap = 1.0, shift = 0.0;     ///< [-, rad]
   Complex shunt_from{}, shunt_to{};  ///< line shunts, magnetising admittance [pu]
   bool in_service = true;
   bool transformer = false;  ///< which section of a .raw it belongs to; the equations are the same
@@ -42,16 +42,16 @@ struct Branch {
 struct Generator {
   int bus;
   std::string id;
-  double p, q;            ///< dispatch [pu on base_mva]
-  double vset;            ///< [pu]
-  double mva;             ///< machine base
-  double zr, zx;          ///< ZSORCE [pu on mva]
+  double p, q;    ///< dispatch [pu on base_mva]
+  double vset;    ///< [pu]
+  double mva;     ///< machine base
+  double zr, zx;  ///< ZSORCE [pu on mva]
   bool in_service = true;
   double q_min = -99.99, q_max = 99.99;  ///< reactive limits [pu on base_mva]; kept, not enforced
 };
 
 struct Network {
-  std::string title, origin;   ///< origin: the file it was read from
+  std::string title, origin;  ///< origin: the file it was read from
   double base_mva = 100.0, frequency = 60.0;
   std::vector<Bus> buses;
   std::vector<Load> loads;

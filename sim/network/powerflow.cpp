@@ -22,7 +22,8 @@ struct Injections {
 
 Injections collect(const Network& n) {
   const std::size_t count = n.buses.size();
-  Injections in{std::vector<Complex>(count), std::vector<Complex>(count), std::vector<Complex>(count), std::vector<Complex>(count), std::vector<double>(count)};
+  Injections in{std::vector<Complex>(count), std::vector<Complex>(count), std::vector<Complex>(count),
+                std::vector<Complex>(count), std::vector<double>(count)};
   for (const Generator& g : n.generators) {
     if (!g.in_service) continue;
     in.generation[at(g.bus)] += Complex(g.p, 0.0);
@@ -43,12 +44,16 @@ int check_slack(const Network& n, const Injections& in) {
   for (std::size_t i = 0; i < n.buses.size(); ++i)
     if (n.buses[i].type == BusType::slack) slacks.push_back(static_cast<int>(i));
   if (slacks.empty())
-    problems.add("no slack bus", n.origin, "one bus must set the angle and balance the power", "make one generator bus type 3");
+    problems.add("no slack bus", n.origin, "one bus must set the angle and balance the power",
+                 "make one generator bus type 3");
   if (slacks.size() > 1)
-    problems.add("several slack buses: " + bus_list(n, slacks), n.origin, "one bus balances the power", "leave one of them type 3 and make the others type 2");
+    problems.add("several slack buses: " + bus_list(n, slacks), n.origin, "one bus balances the power",
+                 "leave one of them type 3 and make the others type 2");
   for (const int s : slacks)
     if (in.held[at(s)] == 0.0)
-      problems.add("slack " + bus_list(n, {s}) + " has no generator in service", n.origin, "nothing there can balance the power", "put a generator in service or choose another slack bus");
+      problems.add("slack " + bus_list(n, {s}) + " has no generator in service", n.origin,
+                   "nothing there can balance the power",
+                   "put a generator in service or choose another slack bus");
   problems.raise();
 
   const auto island = islands(n);
@@ -56,13 +61,16 @@ int check_slack(const Network& n, const Injections& in) {
   for (std::size_t i = 0; i < island.size(); ++i)
     if (island[i] >= 0 && island[i] != island[at(slacks[0])]) lost.push_back(static_cast<int>(i));
   if (!lost.empty())
-    throw InputError({bus_list(n, lost) + (lost.size() == 1 ? " is" : " are") + " islanded", n.origin, "no branch in service leads to the slack bus", "close a branch, or make isolated buses type 4"});
+    throw InputError({bus_list(n, lost) + (lost.size() == 1 ? " is" : " are") + " islanded", n.origin,
+                      "no branch in service leads to the slack bus",
+                      "close a branch, or make isolated buses type 4"});
   return slacks[0];
 }
 
 class Newton {
  public:
-  Newton(const Network& n, int slack, const Injections& in) : n_(n), in_(in), slack_(slack), y_(bus_admittance(n)) {
+  Newton(const Network& n, int slack, const Injections& in)
+      : n_(n), in_(in), slack_(slack), y_(bus_admittance(n)) {
     const int count = static_cast<int>(n.buses.size());
     angle_.assign(at(count), -1);
     magnitude_.assign(at(count), -1);
@@ -73,7 +81,8 @@ class Newton {
     }
   }
 
-  /// Iterates from the present voltages; true if every mismatch is within tolerance (or rounding, see `floor`).
+  /// Iterates from the present voltages; true if every mismatch is within tolerance (or rounding, see
+  /// `floor`).
   bool iterate(double tolerance, int limit, int& iterations) {
     for (iterations = 0; iterations <= limit; ++iterations) {
       if (!evaluate()) return false;
@@ -168,7 +177,8 @@ class Newton {
     for (int i = 0; i < v_.size(); ++i) {
       if (angle_[at(i)] < 0) continue;
       const double vm = std::abs(v_[i]) - (magnitude_[at(i)] >= 0 ? dx[magnitude_[at(i)]] : 0.0);
-      v_[i] = (in_.held[at(i)] > 0.0 ? in_.held[at(i)] : vm) * std::polar(1.0, std::arg(v_[i]) - dx[angle_[at(i)]]);
+      v_[i] = (in_.held[at(i)] > 0.0 ? in_.held[at(i)] : vm) *
+              std::polar(1.0, std::arg(v_[i]) - dx[angle_[at(i)]]);
     }
     return true;
   }
@@ -197,7 +207,13 @@ PowerFlow solve_power_flow(const Network& network, double tolerance, int limit) 
     newton.start(true);  // a poor start in the file is no reason to give up
     if (!newton.iterate(tolerance, limit, flow.iterations)) {
       const double size = newton.mismatch();
-      throw InputError({"the power flow diverges, worst at " + bus_list(network, {newton.worst_bus()}) + " with a mismatch of " + std::to_string(size) + " pu (" + std::to_string(size * network.base_mva) + " MVA)", network.origin, std::to_string(limit) + " iterations from the file's voltages and from a flat start did not balance it", "check loads, dispatch and impedances near that bus"});
+      throw InputError({"the power flow diverges, worst at " + bus_list(network, {newton.worst_bus()}) +
+                            " with a mismatch of " + std::to_string(size) + " pu (" +
+                            std::to_string(size * network.base_mva) + " MVA)",
+                        network.origin,
+                        std::to_string(limit) +
+                            " iterations from the file's voltages and from a flat start did not balance it",
+                        "check loads, dispatch and impedances near that bus"});
     }
   }
   flow.mismatch = newton.mismatch();

@@ -7,10 +7,11 @@
 namespace swingbank::sim {
 
 struct PowerFlow {
-  std::vector<Complex> voltage;    ///< per bus [pu]
-  std::vector<Complex> generation; ///< per generator [pu on base_mva]; Q (and slack P) shared by MVA at a bus
+  std::vector<Complex> voltage;  ///< per bus [pu]
+  std::vector<Complex>
+      generation;  ///< per generator [pu on base_mva]; Q (and slack P) shared by MVA at a bus
   int iterations = 0;
-  double mismatch = 0.0;           ///< largest power mismatch [pu]
+  double mismatch = 0.0;  ///< largest power mismatch [pu]
 };
 /// Solves to `tolerance` [pu]. Throws InputError on divergence (naming the bus with the largest mismatch), an
 /// islanded bus, a missing or second slack bus.

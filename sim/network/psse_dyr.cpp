@@ -7,16 +7,20 @@
 namespace swingbank::sim {
 namespace {
 
-void finish(const psse::Record& record, const std::string& file, Problems& problems, std::vector<DyrRecord>& out) {
+void finish(const psse::Record& record, const std::string& file, Problems& problems,
+            std::vector<DyrRecord>& out) {
   psse::Fields fields(record, file, problems);
   DyrRecord dyr{fields.integer(0, "bus number"), fields.text(1, ""), fields.text(2, ""), {}, record.line};
   if (fields.size() < 3) {
-    problems.add("incomplete record", fields.where(), "a record is: bus number, 'MODEL', id, parameters, /", "complete the record or remove it");
+    problems.add("incomplete record", fields.where(), "a record is: bus number, 'MODEL', id, parameters, /",
+                 "complete the record or remove it");
     return;
   }
-  std::ranges::transform(dyr.model, dyr.model.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  std::ranges::transform(dyr.model, dyr.model.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   for (std::size_t i = 3; i < fields.size(); ++i)
-    dyr.values.push_back(static_cast<double>(fields.number(i, (dyr.model + " parameter " + std::to_string(i - 2)).c_str())));
+    dyr.values.push_back(
+        static_cast<double>(fields.number(i, (dyr.model + " parameter " + std::to_string(i - 2)).c_str())));
   out.push_back(std::move(dyr));
 }
 
@@ -37,7 +41,9 @@ std::vector<DyrRecord> read_dyr(const std::filesystem::path& file) {
     open.fields.clear();
   }
   if (!open.fields.empty())
-    problems.add("a record has no end", name + ":" + std::to_string(open.line), "records end with '/'; the file may be truncated", "end the record with '/' or restore the file");
+    problems.add("a record has no end", name + ":" + std::to_string(open.line),
+                 "records end with '/'; the file may be truncated",
+                 "end the record with '/' or restore the file");
   problems.raise();
   return out;
 }

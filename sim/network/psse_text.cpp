@@ -21,7 +21,8 @@ std::string trimmed(const std::string& text) {
 }
 bool blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
-/// Reads a quoted field from its opening quote at `i`; leaves `i` behind the closing one. False if there is none.
+/// Reads a quoted field from its opening quote at `i`; leaves `i` behind the closing one. False if there is
+/// none.
 bool quoted_field(const std::string& line, std::size_t& i, Field& field) {
   const char mark = line[i++];
   field.quoted = true;
@@ -43,7 +44,9 @@ bool quoted_field(const std::string& line, std::size_t& i, Field& field) {
 std::vector<std::string> read_lines(const std::filesystem::path& file) {
   std::ifstream in(file);
   if (!in || std::filesystem::is_directory(file))
-    throw InputError({"cannot read the file", file.string(), std::filesystem::exists(file) ? "no permission, or not a file" : "it does not exist", "check the path"});
+    throw InputError({"cannot read the file", file.string(),
+                      std::filesystem::exists(file) ? "no permission, or not a file" : "it does not exist",
+                      "check the path"});
   std::vector<std::string> lines;
   for (std::string line; std::getline(in, line);) lines.push_back(line);
   return lines;
@@ -67,9 +70,11 @@ Record split(const std::string& line, int number, const std::string& file, Probl
       Field field;
       if (c == '\'' || c == '"') {
         if (!quoted_field(line, i, field))
-          problems.add("a quote is not closed", file + ":" + std::to_string(number), "the name runs to the end of the line", "close it with " + std::string(1, c));
+          problems.add("a quote is not closed", file + ":" + std::to_string(number),
+                       "the name runs to the end of the line", "close it with " + std::string(1, c));
       } else {
-        while (i < line.size() && !blank(line[i]) && line[i] != ',' && line[i] != '/') field.text += line[i++];
+        while (i < line.size() && !blank(line[i]) && line[i] != ',' && line[i] != '/')
+          field.text += line[i++];
       }
       field.text = trimmed(field.text);
       record.fields.push_back(field);
@@ -99,7 +104,8 @@ int Fields::integer(std::size_t i, const char* name, std::optional<int> fallback
   errno = 0;
   const long value = std::strtol(f->text.c_str(), &end, 10);
   if (f->text.empty() || *end != '\0' || errno != 0 || value > 999999999 || value < -999999999) {
-    problems_.add(std::string(name) + " = '" + f->text + "'", where(), "it is not a whole number", "give a whole number for " + std::string(name));
+    problems_.add(std::string(name) + " = '" + f->text + "'", where(), "it is not a whole number",
+                  "give a whole number for " + std::string(name));
     return fallback.value_or(0);
   }
   return static_cast<int>(value);
@@ -112,7 +118,8 @@ long double Fields::number(std::size_t i, const char* name, std::optional<long d
     return fallback.value_or(0.0L);
   }
   if (const auto value = parse_number(f->text)) return *value;
-  problems_.add(std::string(name) + " = '" + f->text + "'", where(), "it is not a finite number", "give a number for " + std::string(name));
+  problems_.add(std::string(name) + " = '" + f->text + "'", where(), "it is not a finite number",
+                "give a number for " + std::string(name));
   return fallback.value_or(0.0L);
 }
 
@@ -155,7 +162,8 @@ void write_whole(const std::filesystem::path& file, const std::string& text) {
   const auto fail = [&](const char* step) {
     const std::string reason = std::strerror(errno);
     ::unlink(temporary.c_str());
-    throw InputError({std::string("cannot ") + step + " the file", file.string(), reason, "check the folder, its permissions and the free space"});
+    throw InputError({std::string("cannot ") + step + " the file", file.string(), reason,
+                      "check the folder, its permissions and the free space"});
   };
   const int descriptor = ::open(temporary.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0644);
   if (descriptor < 0) fail("create");

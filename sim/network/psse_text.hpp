@@ -11,13 +11,13 @@
 namespace swingbank::sim::psse {
 
 struct Field {
-  std::string text;     ///< without quotes, blanks at both ends removed
+  std::string text;  ///< without quotes, blanks at both ends removed
   bool quoted = false;
 };
 /// One record, or one line of a record. An empty unquoted field stands for "left at its default".
 struct Record {
-  int line = 0;          ///< in the file, from 1
-  bool ended = false;    ///< a '/' closed it
+  int line = 0;        ///< in the file, from 1
+  bool ended = false;  ///< a '/' closed it
   std::vector<Field> fields;
 };
 
@@ -26,7 +26,8 @@ std::vector<std::string> read_lines(const std::filesystem::path& file);
 /// Splits one line. An open quote is reported in `problems`.
 Record split(const std::string& line, int number, const std::string& file, Problems& problems);
 
-/// Typed access to the fields of a record: what is missing or no number goes to `problems`, with file and line.
+/// Typed access to the fields of a record: what is missing or no number goes to `problems`, with file and
+/// line.
 class Fields {
  public:
   Fields(const Record& record, std::string file, Problems& problems)
