@@ -79,7 +79,8 @@ int main(int argc, char** argv) {
   CompareOptions options;
   app.add_option("--model", model_file, "plant file (configs/plants/README.md)")->required();
   app.add_option("--record", record_files, "record (CSV); may be given several times")->required();
-  app.add_option("--switch", switches, "switching instant [s], or FILE=instant; default: found by the voltage's jumps");
+  app.add_option("--switch", switches, "switching instant [s], or FILE=instant; default: found by the voltage's jumps and fitted");
+  app.add_flag("!--no-fit", options.fit_switchings, "leave found instants in the middle of their sample interval");
   app.add_option("--jump-threshold", options.jump_threshold, "smallest jump of the voltage taken for switching [pu]")->capture_default_str();
   app.add_option("--pre-event", options.play_in.pre_event, "steady stretch of records without switching [s]")->capture_default_str();
   app.add_option("--out", out, "folder for report.html, compare.json and the curves as CSV")->capture_default_str();

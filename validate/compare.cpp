@@ -56,11 +56,37 @@ ChannelComparison compare_channel(std::string name, std::string unit, const std:
   return c;
 }
 
+/// Plays the record in with the event's switchings and measures every channel.
+void play(const PlantModel& model, const PlayInOptions& options, EventComparison& e) {
+  const VoltageCurve curve(e.record, e.switchings);
+  e.switchings = curve.switchings();
+  e.playback = play_in(model.plant, model.conventions, e.record, curve, options);
+  e.windows = event_windows(e.record, e.switchings, options.pre_event);
+  e.channels.clear();
+  e.channels.push_back(compare_channel("P", "MW", e.record.P, e.playback.P, e));
+  e.channels.push_back(compare_channel("Q", "Mvar", e.record.Q, e.playback.Q, e));
+}
+
+/// With the fitted instants nothing but noise is left in any window. If more is left, the model lacks something, and the
+/// instants would have been bent to make up for it.
+bool explained(const EventComparison& e) {
+  constexpr double kWithin = 2;      // rms of a window in units of the noise
+  constexpr double kSmooth = 2.5e-4; // pu; what interpolation leaves where a record has no noise
+  for (const auto& c : e.channels)
+    for (const auto& w : c.windows)
+      if (w.rms > kWithin * std::max(c.noise, kSmooth)) return false;
+  return true;
+}
+
+std::string describe_fit(const EventComparison& e) {
+  if (e.fitted) return "within that they were moved to where P and Q are met best.";
+  return "the middle of each interval was taken.";
+}
+
 void explain(EventComparison& e) {
   if (e.detected && !e.switchings.empty())
-    e.notes.push_back(fmt::format("The switching instants were found in the record, each known to ± {:.1f} ms only; the samples beside them carry that "
-                                  "uncertainty. Give them with --switch where they are known.",
-                                  1e3 * e.switchings.front().uncertainty));
+    e.notes.push_back(fmt::format("The switching instants were found in the record, which tells each to ± {:.1f} ms only; {} Give them with --switch where they are known.",
+                                  1e3 * e.switchings.front().uncertainty, describe_fit(e)));
   if (e.switchings.empty())
     e.notes.push_back("The voltage does not jump anywhere: the first seconds are taken for the steady state (--pre-event).");
   if (e.playback.start.drift != 0)
@@ -98,12 +124,14 @@ EventComparison compare_event(const PlantModel& model, Record record, const Comp
     e.switchings = detect_switchings(e.record, options.jump_threshold);
   else
     for (const double t : options.switchings) e.switchings.push_back({.time = t});
-  const VoltageCurve curve(e.record, e.switchings);
-  e.switchings = curve.switchings();
-  e.playback = play_in(model.plant, model.conventions, e.record, curve, options.play_in);
-  e.windows = event_windows(e.record, e.switchings, options.play_in.pre_event);
-  e.channels.push_back(compare_channel("P", "MW", e.record.P, e.playback.P, e));
-  e.channels.push_back(compare_channel("Q", "Mvar", e.record.Q, e.playback.Q, e));
+  play(model, options.play_in, e);
+  if (e.detected && options.fit_switchings && !e.switchings.empty()) {
+    EventComparison fitted = e;
+    fitted.switchings = fit_switchings(model.plant, model.conventions, e.record, e.switchings, options.play_in);
+    fitted.fitted = true;
+    play(model, options.play_in, fitted);
+    if (explained(fitted)) e = std::move(fitted);
+  }
   explain(e);
   return e;
 }

@@ -32,6 +32,7 @@ struct EventComparison {
   Record record;
   std::vector<Switching> switchings;
   bool detected = false;            ///< the switchings were found in the record, not given
+  bool fitted = false;              ///< and moved within their sample intervals
   std::vector<Window> windows;
   Playback playback;
   std::vector<ChannelComparison> channels;  ///< P, Q
@@ -41,6 +42,9 @@ struct EventComparison {
 struct CompareOptions {
   std::vector<double> switchings;   ///< instants [s]; empty: found by their jumps
   double jump_threshold = kJumpThreshold;
+  /// Move found instants within their sample interval to where P and Q are met best, and keep that if nothing but noise
+  /// is left then; a model that lacks something would bend them. Otherwise the middle of the interval stays.
+  bool fit_switchings = true;
   PlayInOptions play_in;
 };
 

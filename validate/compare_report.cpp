@@ -40,8 +40,8 @@ std::string describe_instants(const EventComparison& e) {
   if (e.switchings.empty()) return "none";
   std::string text;
   for (const auto& s : e.switchings)
-    text += (text.empty() ? "" : ", ") + fmt::format("{:.4f} s", s.time) + (s.uncertainty > 0 ? fmt::format(" ± {:.1f} ms", 1e3 * s.uncertainty) : "");
-  return text;
+    text += (text.empty() ? "" : ", ") + fmt::format("{:.4f} s", s.time);
+  return text + (!e.detected ? " (given)" : e.fitted ? " (found and fitted)" : " (found)");
 }
 
 std::vector<std::pair<double, double>> fault_bands(const EventComparison& e) {
@@ -51,8 +51,8 @@ std::vector<std::pair<double, double>> fault_bands(const EventComparison& e) {
 
 void add_event(Page& page, const EventComparison& e) {
   page.section(e.record.name);
-  page.text(fmt::format("{} samples at {:.6g} per second. Switching: {}{}. Start: P = {:.2f} MW, Q = {:.2f} Mvar, V = {:.4f} pu.", e.record.samples(),
-                        e.record.rate(), describe_instants(e), e.switchings.empty() ? "" : e.detected ? " (found in the record)" : " (given)",
+  page.text(fmt::format("{} samples at {:.6g} per second. Switching: {}. Start: P = {:.2f} MW, Q = {:.2f} Mvar, V = {:.4f} pu.", e.record.samples(),
+                        e.record.rate(), describe_instants(e),
                         e.playback.start.P * scale(e), e.playback.start.Q * scale(e), std::abs(e.playback.start.voltage)));
   for (const auto& note : e.notes) page.note(note);
   const auto in_units = [&](std::vector<double> v) {
@@ -82,6 +82,7 @@ nlohmann::json to_json(const EventComparison& e) {
                       {"samples", e.record.samples()},
                       {"rate_per_s", e.record.rate()},
                       {"switchings_found", e.detected},
+                      {"switchings_fitted", e.fitted},
                       {"start", {{"P_pu", e.playback.start.P}, {"Q_pu", e.playback.start.Q}, {"V_pu", std::abs(e.playback.start.voltage)}}},
                       {"notes", e.notes}};
   j["switchings"] = j["channels"] = nlohmann::json::array();
@@ -99,6 +100,21 @@ nlohmann::json to_json(const EventComparison& e) {
     j["channels"].push_back(channel);
   }
   return j;
+}
+
+/// The window in which the model is furthest off, in words.
+std::string finding(const std::vector<EventComparison>& events) {
+  const EventComparison* event = nullptr;
+  const ChannelComparison* channel = nullptr;
+  std::size_t window = 0;
+  for (const auto& e : events)
+    for (const auto& c : e.channels)
+      for (std::size_t w = 0; w < c.windows.size(); ++w)
+        if (std::isfinite(c.windows[w].in_noise) && (!channel || c.windows[w].in_noise > channel->windows[window].in_noise)) event = &e, channel = &c, window = w;
+  if (!channel) return {};
+  const auto& w = channel->windows[window];
+  return fmt::format("Furthest off: {} in the window “{}” of {}, RMS {:.3g} {}, {} the noise.", channel->name, event->windows[window].name, event->record.name, w.rms * scale(*event),
+                     channel->unit, ratio_text(w.in_noise));
 }
 
 /// Columns padded to the same width; counts characters, not bytes.
@@ -155,7 +171,7 @@ Table error_map(const std::vector<EventComparison>& events) {
 
 std::string terminal_report(const PlantModel& model, const std::vector<EventComparison>& events) {
   std::string out = fmt::format("{} ({}): measured against modelled\n\n", model.name, model.plant.machine.effect->name);
-  out += padded(error_summary(events)) + "\nRMS per window, and in units of the noise:\n" + padded(error_map(events));
+  out += padded(error_summary(events)) + "\nRMS per window, and in units of the noise:\n" + padded(error_map(events)) + "\n" + finding(events) + "\n";
   for (const auto& e : events) {
     out += fmt::format("\n{}: switching at {}\n", e.record.name, describe_instants(e));
     for (const auto& note : e.notes) out += "  note: " + note + "\n";
@@ -186,6 +202,7 @@ std::string html_report(const PlantModel& model, const std::vector<EventComparis
   Page page("Measured against modelled: " + model.name,
             fmt::format("{} of {:g} MVA; the recorded terminal voltage is played into the model, and the P and Q it answers with are compared.",
                         model.plant.machine.effect->name, model.plant.mva));
+  page.text(finding(events));
   page.table(error_map(events));
   page.table(error_summary(events));
   page.text("Drag across a chart to zoom in on a stretch of time (all charts of an event follow); double-click to see the whole record. The shaded band is the fault.");

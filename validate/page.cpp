@@ -20,18 +20,18 @@ h2{font-size:1.2rem;margin:2.4rem 0 .6rem;padding-top:.8rem;border-top:1px solid
 p{max-width:75ch;margin:.5rem 0}
 .note{border-left:4px solid #c77700;background:#fff8ec;padding:.5rem .8rem}
 figure{margin:1rem 0}
-figcaption,caption{color:var(--soft);font-size:.88rem;text-align:left;padding:.2rem 0 .4rem}
+figcaption,.caption{color:var(--soft);font-size:.88rem;padding:.2rem 0 .4rem;margin:1rem 0 0;break-after:avoid}
 .scroll{overflow-x:auto}
-table{border-collapse:collapse;font-size:.9rem;font-variant-numeric:tabular-nums;min-width:min(100%,420px)}
-caption{caption-side:top;max-width:75ch}
+table{border-collapse:separate;border-spacing:0;font-size:.9rem;font-variant-numeric:tabular-nums;min-width:min(100%,420px)}
 th,td{padding:.32rem .7rem;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}
-th{background:var(--tint);font-weight:600;vertical-align:bottom}
-th:first-child,td:first-child{text-align:left}
+th{background:var(--tint);font-weight:600;vertical-align:bottom;white-space:normal;max-width:9.5rem}
+th:first-child,td:first-child{text-align:left;position:sticky;left:0}
+td:first-child{background:var(--paper)}
 .wrap td{white-space:normal;overflow-wrap:anywhere;text-align:left}
 .chart{width:100%;height:250px}
 .legend{font-size:.85rem;color:var(--soft);min-height:1.4em}
 .hint{color:var(--soft);font-size:.85rem}
-svg{max-width:100%;height:auto;font:13px system-ui,"DejaVu Sans",sans-serif}
+svg{max-width:100%;height:auto;font:12px system-ui,"DejaVu Sans",sans-serif}
 .dygraph-axis-label{color:var(--soft);font-size:12px}.dygraph-label{font-size:12px;color:var(--soft)}
 @media(max-width:600px){main{padding:14px 12px 40px}h1{font-size:1.35rem}th,td{padding:.28rem .45rem}.chart{height:210px}}
 @media print{main{max-width:none;padding:0}figure,table,tr{break-inside:avoid}h2{break-after:avoid}.hint{display:none}.scroll{overflow:visible}th,td{padding:.2rem .4rem}body{font-size:11pt}.cell,th,.note{-webkit-print-color-adjust:exact;print-color-adjust:exact}}
@@ -55,8 +55,10 @@ function chart(d){
   group.push(g);
 }
 charts.forEach(chart);
-addEventListener("beforeprint",()=>Object.values(groups).flat().forEach(g=>g.resize(660,230)));
-addEventListener("afterprint",()=>Object.values(groups).flat().forEach(g=>g.resize()));
+// Shrunk, not redrawn: a canvas drawn while printing makes a document of 100 MB.
+const boxes=[...document.querySelectorAll(".chart")];
+addEventListener("beforeprint",()=>boxes.forEach(b=>{b.style.zoom=Math.min(1,680/b.clientWidth)}));
+addEventListener("afterprint",()=>boxes.forEach(b=>{b.style.zoom=""}));
 )js";
 
 /// JSON for a <script>: no closing tag can stand in it.
@@ -98,9 +100,8 @@ void Page::text(std::string_view paragraph) { body_ += fmt::format("<p>{}</p>\n"
 void Page::note(std::string_view paragraph) { body_ += fmt::format("<p class=\"note\">{}</p>\n", escape(paragraph)); }
 
 void Page::table(const Table& table) {
-  body_ += "<div class=\"scroll\"><table>";
-  if (!table.caption.empty()) body_ += fmt::format("<caption>{}</caption>", escape(table.caption));
-  body_ += "<thead><tr>";
+  if (!table.caption.empty()) body_ += fmt::format("<p class=\"caption\">{}</p>\n", escape(table.caption));
+  body_ += "<div class=\"scroll\"><table><thead><tr>";
   for (const auto& h : table.header) body_ += fmt::format("<th>{}</th>", escape(h));
   body_ += "</tr></thead><tbody>\n";
   for (const auto& row : table.rows) {
@@ -137,14 +138,13 @@ void Page::curves(const Curves& c) {
 }
 
 void Page::bars(const Bars& b) {
-  constexpr double left = 110, width = 480, line = 26, top = 30;
+  constexpr double left = 70, width = 330, line = 24, top = 30;
   double largest = b.reference * 1.1;
   for (const auto& bar : b.bars)
     if (std::isfinite(bar.value)) largest = std::max(largest, bar.value * 1.02);
   if (!(largest > 0)) largest = 1;
   const double height = top + line * static_cast<double>(b.bars.size()) + 8;
-  std::string svg = fmt::format("<svg viewBox=\"0 0 {:.0f} {:.0f}\" width=\"{:.0f}\" role=\"img\" aria-label=\"{}\">", left + width + 80, height,
-                                left + width + 80, escape(b.title));
+  std::string svg = fmt::format("<svg viewBox=\"0 0 {:.0f} {:.0f}\" width=\"620\" role=\"img\" aria-label=\"{}\">", left + width + 70, height, escape(b.title));
   double y = top;
   for (const auto& bar : b.bars) {
     const double w = std::isfinite(bar.value) ? std::max(width * bar.value / largest, 1.0) : 0;

@@ -141,7 +141,7 @@ class Integrator {
 }  // namespace
 
 OperatingPoint pre_event_point(const Record& record, const std::vector<Switching>& switchings, double pre_event) {
-  const double until = switchings.empty() ? record.t.front() + pre_event : switchings.front().time - switchings.front().uncertainty;
+  const double until = switchings.empty() ? record.t.front() + pre_event : switchings.front().time;
   OperatingPoint point;
   while (point.samples < record.samples() && record.t[static_cast<std::size_t>(point.samples)] <= until + 1e-4 * record.step())
     ++point.samples;
@@ -173,6 +173,7 @@ Playback play_in(const sim::Plant& plant, const sim::Conventions& conventions, c
   double t = record.t.front();
   const double slack = 1e-4 * record.step();  // as in VoltageCurve: a sample at a switching belongs before it
   for (const double sample : record.t) {
+    if (sample > options.until) break;
     for (; segment + 1 < curve.segments() && sample > curve.end(segment) + slack; ++segment) {
       integrator.advance(segment, t, curve.end(segment));
       t = std::max(t, curve.end(segment));

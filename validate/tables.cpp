@@ -193,7 +193,7 @@ Table parameter_table(const TableBlock& block) {
 }
 
 Bars ratio_bars(const TableBlock& block) {
-  Bars bars{"MSE relative to predict-the-mean (lower is better)", "", 1.0, "predict-the-mean", {}};
+  Bars bars{fmt::format("MSE relative to predict-the-mean (lower is better; blue: at most {:g})", kLearnt), "", 1.0, "predict-the-mean", {}};
   for (const auto& key : expected_rows(block)) {
     const auto* run = find_run(block, key);
     bars.bars.push_back({key.label(), run ? run->ratio : std::numeric_limits<double>::quiet_NaN(), run && run->ratio <= kLearnt});

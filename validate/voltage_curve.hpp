@@ -12,7 +12,7 @@ using Complex = std::complex<double>;
 /// An instant at which the network changed. The voltage jumps there; samples at `time` itself count as before it.
 struct Switching {
   double time = 0;         ///< [s]
-  double uncertainty = 0;  ///< half the width of the interval it lies in [s]; 0: given, not detected
+  double uncertainty = 0;  ///< it lies within time ± uncertainty [s]; 0: known
   bool has_before = false, has_after = false;
   Complex before{}, after{};  ///< one-sided voltages at `time` [pu], where they are known
 };
