@@ -68,10 +68,12 @@ inline Grid two_machine_grid(Conventions conventions, double resistance = 0.0) {
 
 /// Largest difference between two runs of the same shape, over all channels and samples.
 inline double largest_difference(const Trajectory& a, const Trajectory& b) {
-  EXPECT_EQ(a.values.size(), b.values.size());
+  EXPECT_EQ(a.rows(), b.rows());
+  EXPECT_EQ(a.samples, b.samples);
   double worst = 0.0;
-  for (std::size_t i = 0; i < std::min(a.values.size(), b.values.size()); ++i)
-    worst = std::max(worst, std::abs(a.values[i] - b.values[i]));
+  for (int row = 0; row < std::min(a.rows(), b.rows()); ++row)
+    for (int k = 0; k < std::min(a.samples, b.samples); ++k)
+      worst = std::max(worst, std::abs(a.row(row)[k] - b.row(row)[k]));
   return worst;
 }
 
