@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# swingbank simulate: what it writes, as CSV and as HDF5, by both integrators.
+source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+
+networks=$SWINGBANK_SOURCE/configs/networks
+simulate() { "$swingbank" simulate --raw "$networks/ieee14_genrou.raw" --dyr "$networks/ieee14_genrou.dyr" --t-end 4 "$@"; }
+
+summary=$(simulate --fault 5:1:1.1:0.001:0.01 --trip 1:2:1:1.1:1.5 --plants 2,8 --channels delta,P,V --buses 5,9 \
+  --out "$work/run.csv" --out "$work/run.h5")
+grep -qE '^stable at 4 s, largest rotor angle spread [0-9.]+ deg, [0-9]+ steps, [0-9.]+ s wall time$' <<<"$summary" ||
+  fail "summary: $summary"
+header='t_s,2.delta_rad,2.P_pu,2.V_pu,8.delta_rad,8.P_pu,8.V_pu,bus5.V_pu,bus5.theta_rad,bus9.V_pu,bus9.theta_rad'
+[[ $(head -n 1 "$work/run.csv") == "$header" ]] || fail "header: $(head -n 1 "$work/run.csv")"
+(($(wc -l <"$work/run.csv") == 1 + 4 * 120 + 1)) || fail "rows: $(wc -l <"$work/run.csv")"
+simulate --fault 5:1:1.1 --integrator lanes --out "$work/lanes.h5" >/dev/null
+simulate --fault 5:1:1.1 --out "$work/reference.h5" >/dev/null
+
+# Debian's own python3: that is the one python3-h5py belongs to.
+/usr/bin/python3 - "$work" <<'PYTHON'
+import csv, sys
+import h5py, numpy as np
+
+folder = sys.argv[1]
+with open(folder + "/run.csv") as file:
+    rows = np.array([[float(v) for v in row] for row in list(csv.reader(file))[1:]])
+with h5py.File(folder + "/run.h5") as run:
+    assert list(run.attrs["plant_names"]) == ["2", "8"] and list(run.attrs["plant_base_mva"]) == [100, 50]
+    assert list(run.attrs["channel_names"]) == ["delta", "P", "V"]
+    assert list(run.attrs["channel_units"]) == ["rad", "pu", "pu"]
+    assert run["time"].attrs["unit"] == "s" and run["bus_angle"].attrs["unit"] == "rad"
+    assert run.attrs["outcome"] == "stable" and run.attrs["faults"] == "5:1:1.1:0.001:0.01"
+    assert list(run["bus_number"]) == [5, 9]
+    buses = np.stack([run["bus_voltage"][:], run["bus_angle"][:]], axis=1).reshape(4, -1)
+    both = np.concatenate([run["time"][:][None], run["records"][:].reshape(6, -1), buses])
+# The CSV has 12 significant digits of values up to 10.
+assert np.abs(both.T - rows).max() < 1e-10
+before, during = 120, 126  # at 1 s, just before the fault, and in its midst
+assert rows[before, 7] > 0.95 and rows[during, 7] < 0.2
+assert abs(rows[0, 2] - 0.4) < 1e-9  # 40 MW on 100 MVA
+with h5py.File(folder + "/lanes.h5") as lanes, h5py.File(folder + "/reference.h5") as reference:
+    assert lanes.attrs["integrator"] == "lanes" and reference.attrs["integrator"] == "reference"
+    difference = np.abs(lanes["records"][:] - reference["records"][:]).max()
+    assert difference < 1e-4, difference  # what the lanes promise
+PYTHON
