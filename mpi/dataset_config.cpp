@@ -102,7 +102,7 @@ void read_databank(Config& c, DatabankConfig& b) {
 
 }  // namespace
 
-std::size_t RecordConfig::samples() const { return static_cast<std::size_t>(std::floor(t_end * rate + 1e-9)) + 1; }
+std::size_t RecordConfig::samples() const { return static_cast<std::size_t>(std::floor(t_end * rate + 1e-9)); }
 
 const sim::Effect& DatasetConfig::effect() const { return *sim::find_effect(model); }
 

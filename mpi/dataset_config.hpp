@@ -42,6 +42,7 @@ struct RecordConfig {
   double rate = 60.0;          ///< [1/s]
   std::vector<std::string> channels;  ///< of sim/solve/channel.hpp, or "frequency"
   FrequencyFilter frequency;
+  /// At k/rate, k = 0 ... t_end rate - 1: whole seconds hold whole numbers of samples.
   [[nodiscard]] std::size_t samples() const;
 };
 

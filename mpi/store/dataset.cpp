@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "mpi/store/durable.hpp"
 #include "mpi/store/journal.hpp"
@@ -64,14 +65,30 @@ DatasetHeader from_json(const nlohmann::json& j) {
   return h;
 }
 
-/// A shard's file must be there with the length the journal gives: catches truncation without opening it.
-void check_file(const fs::path& file, std::uint64_t bytes, std::uint64_t number, Problems& problems) {
+constexpr const char* kRepair = "run generate with --repair on the dataset: it makes the shard anew";
+
+/// What is wrong with a journalled shard; `deep` reads it, else its length must do, which shows truncation.
+std::optional<Problem> fault_of(const fs::path& file, const JournalLine& line, const DatasetHeader& header, bool deep) {
   std::error_code error;
   const auto size = fs::file_size(file, error);
-  const std::string remedy = "delete line of shard " + std::to_string(number) + " from journal.jsonl and run generate again: it makes the shard anew";
-  if (error) problems.add("missing shard", file.string(), error.message(), remedy);
-  else if (size != bytes)
-    problems.add("truncated or changed shard", file.string(), "it has " + std::to_string(size) + " bytes, the journal says " + std::to_string(bytes), remedy);
+  if (error) return Problem{"missing shard", file.string(), error.message(), kRepair};
+  if (size != line.bytes)
+    return Problem{"truncated or changed shard", file.string(), "it has " + std::to_string(size) + " bytes, the journal says " + std::to_string(line.bytes), kRepair};
+  if (line.shard >= header.shard_count())
+    return Problem{"shard " + std::to_string(line.shard), file.string(), "the dataset has " + std::to_string(header.shard_count()) + " shards", "restore dataset.json and journal.jsonl of one and the same dataset"};
+  if (!deep) return std::nullopt;
+  try {
+    const ShardData data = read_shard(file);
+    if (data.attributes.config_hash != header.config_hash)
+      return Problem{"a shard of another config", file.string(), "its config hash is " + data.attributes.config_hash + ", the dataset's " + header.config_hash, kRepair};
+    if (const auto found = hex(shard_hash(data)); found != line.hash)
+      return Problem{"changed shard", file.string(), "its hash is " + found + ", the journal says " + line.hash, kRepair};
+  } catch (const InputError& e) {
+    Problem p = e.problems().front();
+    p.remedy = kRepair;
+    return p;
+  }
+  return std::nullopt;
 }
 
 std::string combine(const std::vector<ShardInfo>& shards) {
@@ -107,9 +124,7 @@ Dataset open_dataset(const fs::path& folder, bool allow_incomplete) {
   Problems problems;
   for (const auto& l : lines) {
     ShardInfo s{folder / l.file, l.shard, l.rows, d.rows, l.bytes, l.hash, d.config_hash};
-    check_file(s.path, s.bytes, s.shard, problems);
-    if (l.shard >= d.shard_count())
-      problems.add("shard " + std::to_string(l.shard), (folder / "journal.jsonl").string(), "the dataset has " + std::to_string(d.shard_count()) + " shards", "restore dataset.json and journal.jsonl of one and the same dataset");
+    if (const auto p = fault_of(s.path, l, d, false)) problems.add(p->what, p->where, p->why, p->remedy);
     d.rows += l.rows;
     for (const auto& [name, count] : l.outcomes) d.outcomes[name] += count;
     d.shards.push_back(std::move(s));
@@ -122,20 +137,25 @@ Dataset open_dataset(const fs::path& folder, bool allow_incomplete) {
   return d;
 }
 
+std::vector<BadShard> find_bad_shards(const fs::path& folder, bool deep) {
+  const DatasetHeader header = read_header(folder);
+  std::vector<BadShard> bad;
+  for (const auto& line : read_journal(folder / "journal.jsonl"))
+    if (const auto p = fault_of(folder / line.file, line, header, deep)) bad.push_back({line.shard, *p});
+  return bad;
+}
+
+std::vector<BadShard> strike_bad_shards(const fs::path& folder) {
+  auto bad = find_bad_shards(folder, true);
+  auto lines = read_journal(folder / "journal.jsonl");
+  std::erase_if(lines, [&](const JournalLine& l) { return std::ranges::find(bad, l.shard, &BadShard::shard) != bad.end(); });
+  if (!bad.empty()) rewrite_journal(folder / "journal.jsonl", lines);
+  return bad;
+}
+
 void verify_dataset(const Dataset& dataset) {
   Problems problems;
-  for (const auto& s : dataset.shards) {
-    const std::string remedy = "delete the line of shard " + std::to_string(s.shard) + " from journal.jsonl and run generate again: it makes the shard anew";
-    try {
-      const ShardData data = read_shard(s.path);
-      if (data.attributes.config_hash != dataset.config_hash)
-        problems.add("a shard of another config", s.path.string(), "its config hash is " + data.attributes.config_hash + ", the dataset's " + dataset.config_hash, remedy);
-      else if (const auto found = hex(shard_hash(data)); found != s.hash)
-        problems.add("changed shard", s.path.string(), "its hash is " + found + ", the journal says " + s.hash, remedy);
-    } catch (const InputError& e) {
-      for (const auto& p : e.problems()) problems.add(p.what, p.where, p.why, remedy);
-    }
-  }
+  for (const auto& bad : find_bad_shards(dataset.path, true)) problems.add(bad.problem.what, bad.problem.where, bad.problem.why, bad.problem.remedy);
   problems.raise();
 }
 

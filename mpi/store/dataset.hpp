@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mpi/store/shard.hpp"
+#include "sim/core/problem.hpp"
 
 namespace swingbank {
 
@@ -44,6 +45,15 @@ struct Dataset : DatasetHeader {
 /// Opens a dataset. Throws InputError naming file and remedy if there is none, if a shard is missing or truncated, or,
 /// unless `allow_incomplete`, if shards are still to be made.
 Dataset open_dataset(const std::filesystem::path& folder, bool allow_incomplete = false);
+/// A journalled shard that cannot be trusted, and why.
+struct BadShard {
+  std::uint64_t shard;
+  Problem problem;
+};
+/// Journalled shards that are missing, of another length, and, if `deep`, of another config or content.
+std::vector<BadShard> find_bad_shards(const std::filesystem::path& folder, bool deep);
+/// Takes bad shards (deep) out of the journal, so that generate makes them anew. Returns what they were.
+std::vector<BadShard> strike_bad_shards(const std::filesystem::path& folder);
 /// Reads every shard and compares its hash and config with the journal. Throws InputError with every shard at fault.
 void verify_dataset(const Dataset& dataset);
 /// Rows first ... first+count-1 of one shard.

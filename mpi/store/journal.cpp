@@ -1,20 +1,20 @@
 #include "mpi/store/journal.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <utility>
 
 #include "mpi/store/durable.hpp"
 #include "sim/core/problem.hpp"
 
 namespace swingbank {
 
-namespace {
-
-std::string to_text(const JournalLine& l) {
+std::string journal_text(const JournalLine& l) {
   nlohmann::ordered_json j;
   j["shard"] = l.shard;
   j["file"] = l.file;
@@ -26,7 +26,7 @@ std::string to_text(const JournalLine& l) {
   return j.dump() + "\n";
 }
 
-JournalLine from_text(const std::string& text) {
+JournalLine parse_journal_line(const std::string& text) {
   const auto j = nlohmann::json::parse(text);
   JournalLine l;
   j.at("shard").get_to(l.shard);
@@ -39,6 +39,8 @@ JournalLine from_text(const std::string& text) {
   if (l.hash.size() != 16) throw std::runtime_error("the hash has not 16 digits");
   return l;
 }
+
+namespace {
 
 /// Length of the part that ends with a line feed.
 std::size_t whole_lines(const std::string& text) { return text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1; }
@@ -57,7 +59,7 @@ std::vector<JournalLine> read_journal(const std::filesystem::path& file) {
     const std::string where = file.string() + ":" + std::to_string(++number);
     const char* remedy = "restore the file from a copy, or delete the line: its shard is then made again";
     try {
-      lines.push_back(from_text(text.substr(at, stop - at)));
+      lines.push_back(parse_journal_line(text.substr(at, stop - at)));
       if (!seen.insert(lines.back().shard).second)
         problems.add("shard " + std::to_string(lines.back().shard) + " twice", where, "a shard is journalled once", remedy);
     } catch (const std::exception& e) {
@@ -69,9 +71,19 @@ std::vector<JournalLine> read_journal(const std::filesystem::path& file) {
   return lines;
 }
 
+void rewrite_journal(const std::filesystem::path& file, const std::vector<JournalLine>& lines) {
+  std::string text;
+  for (const auto& line : lines) text += journal_text(line);
+  write_text(file, text);
+}
+
 Journal::Journal(std::filesystem::path file) : file_(std::move(file)) {
   fd_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   if (fd_ < 0) raise_file_error(file_, errno, "cannot open the journal");
+  if (::flock(fd_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    ::close(std::exchange(fd_, -1));
+    throw InputError({"dataset in use", file_.string(), "another process is writing it", "wait for it to end, or choose another folder"});
+  }
   const std::string text = read_text(file_);
   if (const auto whole = whole_lines(text); whole != text.size() && ::ftruncate(fd_, static_cast<off_t>(whole)) != 0)
     raise_file_error(file_, errno, "cannot cut off the journal's half-written last line");
@@ -83,7 +95,7 @@ Journal::~Journal() {
 }
 
 void Journal::append(const JournalLine& line) {
-  const std::string text = to_text(line);
+  const std::string text = journal_text(line);
   const off_t before = ::lseek(fd_, 0, SEEK_END);
   const ssize_t n = ::write(fd_, text.data(), text.size());
   if (n == static_cast<ssize_t>(text.size()) && ::fsync(fd_) == 0) return;

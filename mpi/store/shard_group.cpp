@@ -1,6 +1,5 @@
 #include "mpi/store/shard_group.hpp"
 
-#include <functional>
 #include <numeric>
 
 #include "mpi/store/durable.hpp"
@@ -13,31 +12,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Runs `work` on every rank of the group, then all agree: if any failed, all throw the first failure's problem.
-void together(MPI_Comm group, const fs::path& file, const std::function<void()>& work) {
-  int rank, size;
-  MPI_Comm_rank(group, &rank);
-  MPI_Comm_size(group, &size);
-  Problem problem;
-  bool failed = true;
-  try {
-    work();
-    failed = false;
-  } catch (const InputError& e) {
-    problem = e.problems().front();
-  } catch (const std::exception& e) {
-    problem = {"cannot write the shard", file.string(), e.what(), "check the disk, then run the command again"};
-  }
-  int mine = failed ? rank : size, first = size;
-  MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, group);
-  if (first == size) return;
-  for (std::string* text : {&problem.what, &problem.where, &problem.why, &problem.remedy}) {
-    auto length = static_cast<unsigned long>(text->size());
-    MPI_Bcast(&length, 1, MPI_UNSIGNED_LONG, first, group);
-    text->resize(length);
-    MPI_Bcast(text->data(), static_cast<int>(length), MPI_CHAR, first, group);
-  }
-  throw InputError(problem);
+void send_text(MPI_Comm group, int from, std::string& text) {
+  auto length = static_cast<unsigned long>(text.size());
+  MPI_Bcast(&length, 1, MPI_UNSIGNED_LONG, from, group);
+  text.resize(length);
+  MPI_Bcast(text.data(), static_cast<int>(length), MPI_CHAR, from, group);
 }
 
 /// What the arrays of all ranks will take on the disk, less HDF5's own few kilobytes.
@@ -66,6 +45,29 @@ h5::Handle access_list(MPI_Comm group) {
 
 }  // namespace
 
+void agree(MPI_Comm group, const std::string& where, const std::function<void()>& work) {
+  int rank, size;
+  MPI_Comm_rank(group, &rank);
+  MPI_Comm_size(group, &size);
+  std::vector<Problem> problems;
+  try {
+    work();
+  } catch (const InputError& e) {
+    problems = e.problems();
+  } catch (const std::exception& e) {
+    problems.push_back({"failure", where, e.what(), "run the command again; if it fails again, report it with this message"});
+  }
+  int mine = problems.empty() ? size : rank, first = size;
+  MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, group);
+  if (first == size) return;
+  auto count = static_cast<unsigned long>(problems.size());
+  MPI_Bcast(&count, 1, MPI_UNSIGNED_LONG, first, group);
+  problems.resize(count);
+  for (auto& p : problems)
+    for (std::string* text : {&p.what, &p.where, &p.why, &p.remedy}) send_text(group, first, *text);
+  throw InputError(problems);
+}
+
 ShardReceipt write_shard(const fs::path& file, const ShardData& part, MPI_Comm group) {
   const std::lock_guard guard(h5::lock());
   int rank, size;
@@ -81,16 +83,16 @@ ShardReceipt write_shard(const fs::path& file, const ShardData& part, MPI_Comm g
   const fs::path temporary = temporary_name(file);
   try {
     // MPI-IO tells little about why it fails, so the system is asked first.
-    together(group, file, [&] {
+    agree(group, file.string(), [&] {
       if (rank == 0) reserve(file, size_on_disk(part, hashes.size(), ids.size()));
     });
     h5::File f;
     const h5::Handle access = access_list(group);
-    together(group, file, [&] { f = h5::File::create(temporary, access.get()); });
-    together(group, file, [&] { lay_out_shard(f, part, {hashes.size(), ids.size()}); });
-    together(group, file, [&] { fill_shard(f, part, before[0], before[1]); });
-    together(group, file, [&] { f.close(); });
-    together(group, file, [&] {
+    agree(group, file.string(), [&] { f = h5::File::create(temporary, access.get()); });
+    agree(group, file.string(), [&] { lay_out_shard(f, part, {hashes.size(), ids.size()}); });
+    agree(group, file.string(), [&] { fill_shard(f, part, before[0], before[1]); });
+    agree(group, file.string(), [&] { f.close(); });
+    agree(group, file.string(), [&] {
       if (rank == 0) publish(file);
     });
   } catch (...) {

@@ -1,0 +1,101 @@
+// swingbank databank: draws the points of a dataset's databank and writes them, with the shares of what was refused.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+
+#include "mpi/databank.hpp"
+#include "mpi/store/durable.hpp"
+#include "mpi/store/hdf5_file.hpp"
+
+namespace {
+using namespace swingbank;
+namespace fs = std::filesystem;
+
+struct Columns {
+  std::vector<std::string> names, units;
+  std::vector<double> low, high;
+};
+
+Columns columns_of(const DatasetConfig& c) {
+  Columns all;
+  for (const auto& b : c.box) {
+    const auto& record = c.effect().parameters[static_cast<std::size_t>(b.index)];
+    all.names.emplace_back(record.name);
+    all.units.emplace_back(record.unit);
+    all.low.push_back(b.low);
+    all.high.push_back(b.high);
+  }
+  return all;
+}
+
+void write_csv(const fs::path& file, const Databank& bank, const Columns& c) {
+  std::string text;
+  for (std::size_t i = 0; i < c.names.size(); ++i) text += fmt::format("{}{} [{}]", i == 0 ? "" : ",", c.names[i], c.units[i]);
+  text += "\n";
+  for (std::size_t i = 0; i < bank.points(); ++i) text += fmt::format("{}\n", fmt::join(bank.point(i), bank.point(i) + bank.dimensions, ","));
+  write_text(file, text);
+}
+
+void write_hdf5(const fs::path& file, const Databank& bank, const Columns& c, const DatasetConfig& config) {
+  reserve(file, bank.values.size() * sizeof(double));
+  h5::File f = h5::File::create(temporary_name(file));
+  f.attribute("format", std::string("swingbank-databank-1"));
+  f.attribute("machine_model", config.model);
+  f.attribute("seed", config.seed);
+  f.attribute("parameter_names", c.names);
+  f.attribute("parameter_units", c.units);
+  f.attribute("parameter_low", c.low);
+  f.attribute("parameter_high", c.high);
+  f.create<double>("/parameters", {bank.points(), bank.dimensions});
+  f.write("/parameters", 0, bank.points(), bank.values.data());
+  f.close();
+  publish(file);
+}
+
+void report(const Databank& bank, double seconds) {
+  const auto share = [&](std::uint64_t n) { return 100.0 * static_cast<double>(n) / static_cast<double>(bank.draws); };
+  fmt::print("{} points from {} draws in {:.2f} s: {:.1f} % accepted\n", bank.points(), bank.draws, seconds, share(bank.points()));
+  for (const auto& [why, count] : bank.refused) fmt::print("  not {:<24}{:>10} draws  {:5.1f} %\n", why, count, share(count));
+  fmt::print("  {:<28}{:>10} draws  {:5.1f} %\n", "too close to another point", bank.too_close, share(bank.too_close));
+}
+
+int run(const std::string& config_file, const Overrides& overrides, std::uint64_t points, const fs::path& out) {
+  const DatasetConfig config = read_dataset_config(config_file, overrides);
+  const Study study = load_study(config);
+  const auto extension = out.extension();
+  if (!out.empty() && extension != ".csv" && extension != ".h5")
+    throw InputError({"output format '" + extension.string() + "'", "--out " + out.string(), "a databank is written as .csv or .h5", "end the name with one of these"});
+  const auto start = std::chrono::steady_clock::now();
+  const auto& base = study.grid.plants[static_cast<std::size_t>(study.plants[0])].machine.p;
+  const Databank bank = draw_databank(config, base, points > 0 ? points : config.points());
+  report(bank, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  if (extension == ".csv") write_csv(out, bank, columns_of(config));
+  if (extension == ".h5") write_hdf5(out, bank, columns_of(config), config);
+  if (!out.empty()) fmt::print("written to {}\n", out.string());
+  return 0;
+}
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Draws the databank of a dataset: machine parameters that keep a distance from one another.\n"
+               "  swingbank databank configs/datasets/ieee39_genrou.toml --points 60000 --out bank.h5"};
+  std::string config, out;
+  Overrides overrides;
+  std::uint64_t points = 0;
+  app.add_option("config", config, "the dataset's config (TOML)")->required();
+  app.add_option("--points", points, "number of points, instead of what the config's draws need")->check(CLI::PositiveNumber);
+  app.add_option("--seed", overrides.seed, "seed, instead of the config's")->check(CLI::NonNegativeNumber);
+  app.add_option("--out", out, "file to write: .csv or .h5");
+  try {
+    app.parse(argc, argv);
+    return run(config, overrides, points, out);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 1;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return 1;
+  }
+}

@@ -1,0 +1,50 @@
+#include "mpi/sampler.hpp"
+
+#include "mpi/random.hpp"
+
+namespace swingbank {
+
+Draw Sampler::draw(std::uint64_t sample_id) const {
+  const DatasetConfig& c = study_.config;
+  const std::uint64_t point = sample_id / c.fault.per_point, machines = study_.plants.size();
+  Draw d;
+  d.job.id = sample_id;
+  if (c.vary == Vary::one) {
+    d.recorded = {point % machines};
+    d.points = {point};
+  } else {
+    for (std::size_t g = 0; g < machines; ++g) {
+      d.recorded.push_back(g);
+      d.points.push_back(point * machines + g);
+    }
+  }
+  for (std::size_t i = 0; i < d.recorded.size(); ++i) {
+    const int plant = study_.plants[d.recorded[i]];
+    std::vector<double> p = study_.grid.plants[static_cast<std::size_t>(plant)].machine.p;
+    for (std::size_t k = 0; k < c.box.size(); ++k) p[static_cast<std::size_t>(c.box[k].index)] = bank_.point(d.points[i])[k];
+    d.job.machine_parameters.emplace_back(plant, std::move(p));
+  }
+  Random random(c.seed, Stream::fault, sample_id);
+  const int bus = study_.fault_buses[random.below(study_.fault_buses.size())];
+  const double off = c.fault.start + random.uniform(c.fault.shortest, c.fault.longest);
+  d.job.event.faults = {{bus, c.fault.start, off, {c.fault.r, c.fault.x}}};
+  return d;
+}
+
+std::string Sampler::refusal(const Draw& draw) const {
+  const sim::Grid& grid = study_.grid;
+  for (const auto& [index, values] : draw.job.machine_parameters) {
+    sim::Plant plant = grid.plants[static_cast<std::size_t>(index)];
+    plant.machine.p = values;
+    if (study_.config.databank.policy == Policy::physical)
+      if (const auto why = plant.machine.effect->unphysical(values.data()); !why.empty()) return std::string(why);
+    try {
+      sim::operating_point(plant, grid.flow.voltage[static_cast<std::size_t>(plant.bus)], grid.network.base_mva, grid.conventions);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+  }
+  return {};
+}
+
+}  // namespace swingbank
