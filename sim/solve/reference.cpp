@@ -110,7 +110,7 @@ class Recorder {
            ReferenceRun& run)
       : plants_(plants), options_(options), run_(run), angle_(grid.network.buses.size()) {
     run.rate = options.rate;
-    run.samples = static_cast<int>(std::floor(options.t_end * options.rate + 1e-6)) + 1;
+    run.samples = static_cast<int>(std::floor(options.t_end * options.rate + 1e-9)) + 1;
     run.plants = options.plants;
     if (run.plants.empty())
       for (int i = 0; i < static_cast<int>(plants.units().size()); ++i) run.plants.push_back(i);
