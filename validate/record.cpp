@@ -127,9 +127,10 @@ class Reader {
   void header(std::string_view line) {
     if (line.find(',') == std::string_view::npos && line.find(';') != std::string_view::npos)
       problems_.add("semicolons between the columns", where(number_), "a record is comma-separated with decimal points", "export it with commas");
+    problems_.raise();
     for (const auto cell : split(line)) name_column(cell);
     for (const auto q : kRequired)
-      if (!used_[static_cast<int>(q)] && problems_.empty())
+      if (!used_[static_cast<int>(q)])
         problems_.add("no column " + names_of(q), where(number_), "play-in needs time, voltage, angle, P and Q", "add the column, named with its unit");
   }
 
@@ -137,10 +138,12 @@ class Reader {
     const auto known = std::ranges::find_if(kColumns, [&](const Column& c) { return lower(c.name) == lower(cell); });
     columns_.push_back(known == std::end(kColumns) ? nullptr : &*known);
     if (known == std::end(kColumns)) {
-      if (const auto q = quantity_of(cell))
+      if (const auto q = quantity_of(cell)) {
+        used_[static_cast<int>(*q)] = true;  // it is there, if not usable: do not call it missing too
         problems_.add(fmt::format("column '{}'", cell), where(number_), "its unit is missing or not known", "name it one of " + names_of(*q));
-      else
+      } else {
         record_.ignored.emplace_back(cell);
+      }
       return;
     }
     if (std::exchange(used_[static_cast<int>(known->quantity)], true))
