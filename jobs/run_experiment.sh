@@ -55,6 +55,13 @@ dataset_folder() { echo "$out/data"; }
 
 say() { printf '\n-- %s, %s: %s\n' "$(basename "$experiment" .toml)" "$preset" "$1"; }
 
+# A table of its own for people; `generate` draws the same points again by itself.
+databank() {
+  if [[ -s $out/databank.h5 ]]; then return; fi
+  say "databank"
+  "$swingbank" databank "$(ask dataset)" --out "$out/databank.h5"
+}
+
 generate() {
   local config draws
   config=$(ask dataset)
@@ -111,9 +118,18 @@ tables() {
 }
 
 case $stage in
-  check) ask table >/dev/null && ask dataset >/dev/null ;;
+  check) ask table >/dev/null ;;
   count-tasks) tasks | wc -l ;;
-  databank | generate | train | tables) mkdir -p "$out" && "$stage" ;;
-  all) mkdir -p "$out" && generate && train && tables ;;
+  databank | generate | train | tables)
+    mkdir -p "$out"
+    "$stage"
+    ;;
+  all)
+    mkdir -p "$out"
+    databank
+    generate
+    train
+    tables
+    ;;
   *) echo "unknown stage at --stage $stage (there is none of that name): run it with --help" >&2; exit 1 ;;
 esac

@@ -1,0 +1,66 @@
+#!/usr/bin/env bash
+# The real pipeline on a real slurmctld with two emulated nodes: databank -> generate -> array of folds -> tables.
+# Generate and folds are made to outlast their attempt: time limit -> signal -> saved -> requeued -> resumed. In the end
+# the dataset hash and the scores must equal those of a run that was never broken.
+set -euo pipefail
+source "$SWINGBANK_SOURCE/tests/slurm/cluster.bash"
+
+work=$(mktemp -d /tmp/swingbank-slurm.XXXXXX)
+chmod 755 "$work" # slurmctld runs under its own user
+on_exit() {
+  local status=$?
+  ((status == 0)) || tail -n 15 "$work"/*/log/*.log >&2 2>/dev/null
+  cluster_stop
+  rm -rf "$work"
+  exit "$status"
+}
+trap on_exit EXIT
+fail() {
+  echo "FAILED: $*" >&2
+  exit 1
+}
+
+# Root's consent for mpirun, and everything on one thread each: four ranks on what may be two cores.
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMP_NUM_THREADS=1
+export SWINGBANK_BUILD=${SWINGBANK_BIN%/bin}
+source "$SWINGBANK_SOURCE/tests/slurm/tiny_experiment.bash"
+tiny_experiment "$work"
+
+site() { # site FILE KEY=VALUE...
+  cp "$SWINGBANK_SOURCE/slurm/site.conf" "$1"
+  printf '%s\n' generate_nodes=2 generate_ranks=4 fold_cpus=1 generate_time=1 fold_time=1 tables_time=2 warn_before=50 "${@:2}" >>"$1"
+}
+job_state() { scontrol -o show job "$1" | grep -o 'JobState=[A-Z_]*' | sort -u | cut -d= -f2 | paste -sd,; }
+all_ended() { [[ -z $(squeue -h) ]]; }
+dataset_hash() { "$SWINGBANK_BIN/swingbank" dataset "$1" --hash; }
+scores() { (cd "$1" && grep -H -E '"(mse|baseline_mse|best_epoch)"' ./*.json); }
+
+echo "unbroken run"
+bash "$SWINGBANK_SOURCE/jobs/run_experiment.sh" --experiment "$work/tiny.toml" --preset quick --ranks 2 --out "$work/unbroken" \
+  >"$work/unbroken.log" 2>&1 || { tail -n 20 "$work/unbroken.log" >&2; fail "the unbroken run"; }
+
+cluster_start "$work/cluster"
+echo "the pipeline, each attempt cut short (after $SECONDS s)"
+site "$work/site.conf"
+bash "$SWINGBANK_SOURCE/slurm/submit.sh" "$work/tiny.toml" quick --site "$work/site.conf" --out "$work/broken" | tee "$work/jobs"
+tables=$(awk '$1 == "tables" {print $2}' "$work/jobs")
+cluster_retry 240 all_ended || fail "jobs still there after 240 s: $(squeue)"
+[[ $(job_state "$tables") == COMPLETED ]] || fail "tables: $(job_state "$tables")"
+for log in generate fold-0; do
+  grep -q 'going back into the queue' "$work/broken/log/$log.log" || fail "$log was never cut short: the test shows nothing"
+  grep -q 'attempt 2' "$work/broken/log/$log.log" || fail "$log did not start again"
+done
+[[ -s $work/broken/tables/tables.html ]] || fail "no tables.html"
+[[ $(dataset_hash "$work/broken/data") == "$(dataset_hash "$work/unbroken/data")" ]] || fail "the dataset differs"
+diff <(scores "$work/unbroken/results") <(scores "$work/broken/results") || fail "the scores differ"
+echo "same dataset, same scores (after $SECONDS s)"
+
+site "$work/once.conf" max_restarts=0
+bash "$SWINGBANK_SOURCE/slurm/submit.sh" "$work/tiny.toml" quick --site "$work/once.conf" --out "$work/once" >"$work/jobs"
+cluster_retry 90 all_ended || fail "jobs still there after 90 s: $(squeue)"
+generate=$(awk '$1 == "generate" {print $2}' "$work/jobs")
+tables=$(awk '$1 == "tables" {print $2}' "$work/jobs")
+[[ $(job_state "$generate") == FAILED ]] || fail "beyond the retry limit: $(job_state "$generate")"
+[[ $(job_state "$tables") == CANCELLED ]] || fail "a job behind a failed one: $(job_state "$tables")"
+grep -qE 'given up at .* \(.*\): ' "$work/once/log/generate.log" || fail "no sentence about the retry limit"
+echo "retry limit kept, dependants cancelled (after $SECONDS s)"

@@ -1,0 +1,54 @@
+# tiny_experiment FOLDER: a dataset and an experiment that take a core under a minute, slow enough to be broken off.
+tiny_experiment() {
+  local networks=$SWINGBANK_SOURCE/configs/networks
+  cat >"$1/tiny_data.toml" <<TOML
+raw = "$networks/ieee39_dataset_gencls.raw"
+dyr = "$networks/ieee39_dataset_gencls.dyr"
+convention = "psse"
+draws = 400
+draws_per_shard = ${TINY_SHARD:-20}
+seed = 3
+[vary]
+who = "one"
+generators = [30, 31, 32]
+model = "GENCLS"
+[vary.box]
+H = [2.0, 8.0]  # s
+D = [1.0, 4.0]  # pu
+[databank]
+distance = 0.0
+[fault]
+buses = "any"
+start = 0.5             # s
+duration = [0.05, 0.1]  # s
+[record]
+t_end = 3.5  # s
+rate = 60.0  # 1/s
+channels = ["P", "Q", "speed"]
+[kernel]
+lanes = ${TINY_LANES:-8}
+tolerance = ${TINY_TOLERANCE:-1e-6}
+TOML
+  cat >"$1/tiny.toml" <<TOML
+table = "V"
+title = "tiny"
+dataset = "tiny_data.toml"
+split = "leave-one-generator-out"
+folds = [30, 31]
+[preset.quick]
+draws = ${TINY_DRAWS:-400}
+networks = ["gru"]
+channels = ["P", "Q", "speed"]
+start_s = 0.4
+end_s = 3.4
+slice = 2
+deviation = true
+pca_components = 0
+epochs = ${TINY_EPOCHS:-2}
+batch = 32
+learning_rate = 1e-3
+schedule = "constant"
+patience = 1000
+validation_share = 0.2
+TOML
+}
