@@ -1,0 +1,124 @@
+#include "validate/compare.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support.hpp"
+#include "validate/compare_report.hpp"
+
+namespace swingbank::validate {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+PlantModel example_model() { return load_plant_model(test::source("configs/plants/ieee14_bus2.toml")); }
+EventComparison example_event(const CompareOptions& options = {}) {
+  const PlantModel model = example_model();
+  return compare_event(model, read_record(test::source("configs/records/record-example/avr_ev1.csv"), model.record_base), options);
+}
+std::vector<std::string> names(const std::vector<Window>& windows) {
+  std::vector<std::string> all;
+  for (const auto& w : windows) all.push_back(w.name);
+  return all;
+}
+
+/// The right model of a simulated event, instants off the samples, noise 0.1 %: nothing but noise may be left.
+struct RightModel {
+  test::Simulated s = test::simulate("ieee39_genrou", sim::Conventions::psse(), 16, 2.0062, 2.1131);
+  PlantModel model;
+  Record record;
+  RightModel() {
+    model.name = "right";
+    model.plant = s.grid.plants[3];
+    model.conventions = s.grid.conventions;
+    record = test::record_of(s, 3, 8, 0.001);
+    model.record_base = record.base;
+  }
+};
+
+TEST(CompareTest, ARightModelLeavesTheNoise) {
+  const RightModel right;
+  const EventComparison e = compare_event(right.model, right.record);
+  EXPECT_TRUE(e.detected);
+  EXPECT_TRUE(e.fitted);
+  for (const auto& c : e.channels) {
+    EXPECT_NEAR(c.noise, 0.001, 0.0003);  // 120 samples; the noise of V adds to that of P and Q
+    // Windows of a few samples scatter by 1/sqrt(2 n): 30 % for the 6 samples of the fault.
+    for (const auto& w : c.windows) EXPECT_LT(w.in_noise, 1.7);
+    EXPECT_GT(c.whole.in_noise, 0.8);
+  }
+}
+TEST(CompareTest, AWrongParameterShowsAndDoesNotBendTheInstants) {
+  RightModel wrong;
+  wrong.model.plant.machine.p[static_cast<std::size_t>(wrong.model.plant.machine.effect->parameter_index("H"))] *= 1.3;
+  const EventComparison e = compare_event(wrong.model, wrong.record);
+  EXPECT_FALSE(e.fitted);
+  EXPECT_GT(e.channels[0].whole.in_noise, 3);
+}
+TEST(CompareTest, AMissingExciterShowsInQ) {
+  // The record's plant has an exciter, the model has none: Q is off by tens of Mvar for seconds, P far less.
+  const EventComparison e = example_event({.switchings = {2.0, 2.1}, .play_in = {}});
+  const auto& p = e.channels[0];
+  const auto& q = e.channels[1];
+  EXPECT_NEAR(p.noise, 0.002, 0.0005);  // as made: 0.2 % of 100 MVA
+  EXPECT_NEAR(q.noise, 0.002, 0.0005);
+  EXPECT_LT(q.windows[0].in_noise, 1.1);
+  EXPECT_GT(q.windows[2].in_noise, 50);
+  EXPECT_GT(q.windows[3].in_noise, 50);
+  EXPECT_LT(p.windows[4].in_noise, 1.5);
+  EXPECT_GT(q.whole.rms, 10 * p.whole.rms);
+}
+TEST(CompareTest, WindowsFollowTheSwitchings) {
+  const EventComparison e = example_event();
+  EXPECT_THAT(names(e.windows), ElementsAre("pre-event", "fault", "0–1 s after", "1–5 s after", "> 5 s after"));
+  EXPECT_EQ(e.channels[0].windows[0].samples, 121);  // 0 to 2 s at 60/s, both included
+  EXPECT_EQ(e.channels[0].windows[1].samples, 6);
+  int sum = 0;
+  for (const auto& w : e.channels[0].windows) sum += w.samples;
+  EXPECT_EQ(sum, e.record.samples());
+  EXPECT_THAT(names(event_windows(e.record, {{.time = 2.0}}, 1.0)), ElementsAre("pre-event", "0–1 s after", "1–5 s after", "> 5 s after"));
+  EXPECT_THAT(names(event_windows(e.record, {}, 14.5)), ElementsAre("pre-event", "0–1 s after"));
+}
+TEST(CompareTest, ResidualIsModelledMinusMeasured) {
+  const EventComparison e = example_event();
+  const auto& q = e.channels[1];
+  EXPECT_DOUBLE_EQ(q.residual[500], q.modelled[500] - q.measured[500]);
+  double worst = 0;
+  for (const double r : q.residual) worst = std::max(worst, std::abs(r));
+  EXPECT_EQ(q.whole.worst, worst);
+}
+
+TEST(CompareReportTest, JsonHoldsTheNumbers) {
+  const std::vector<EventComparison> events = {example_event()};
+  const auto j = nlohmann::json::parse(json_report(example_model(), events, {{"command", "x"}}));
+  EXPECT_EQ(j["events"][0]["channels"][1]["name"], "Q");
+  EXPECT_DOUBLE_EQ(j["events"][0]["channels"][1]["whole"]["rms_pu"], events[0].channels[1].whole.rms);
+  EXPECT_EQ(j["events"][0]["channels"][1]["windows"].size(), 5u);
+}
+TEST(CompareReportTest, PageAsksForNothing) {
+  const std::vector<EventComparison> events = {example_event()};
+  const std::string html = html_report(example_model(), events, provenance(example_model(), events, "swingbank compare <x>"));
+  const std::string library(dygraphs_script());
+  const auto at = html.find(library);
+  ASSERT_NE(at, std::string::npos);
+  const std::string own = html.substr(0, at) + html.substr(at + library.size());
+  for (const char* word : {"<link", "src=", "@import", "url(", "http:", "https:"}) EXPECT_EQ(own.find(word), std::string::npos) << word;
+  EXPECT_EQ(library.find("sourceMappingURL"), std::string::npos);  // what a browser would fetch
+  EXPECT_NE(own.find("swingbank compare &lt;x&gt;"), std::string::npos);
+  EXPECT_NE(own.find("name=\"viewport\""), std::string::npos);
+}
+TEST(CompareReportTest, TerminalReportCarriesUnits) {
+  const std::string text = terminal_report(example_model(), {example_event()});
+  for (const char* word : {" MW", " Mvar", "noise", "avr_ev1.csv"}) EXPECT_THAT(text, HasSubstr(word));
+}
+TEST(CompareReportTest, PlaybackHasOneLineASample) {
+  const EventComparison e = example_event();
+  const std::string text = csv_playback(e);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), e.record.samples() + 1);
+}
+
+}  // namespace
+}  // namespace swingbank::validate
