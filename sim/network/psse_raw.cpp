@@ -110,7 +110,7 @@ bool RawReader::section(const Section& section) {
 }
 
 int RawReader::find_bus(int number, const Fields& fields) {
-  const auto found = index_.find(std::abs(number));  // a minus sign marks the metered end
+  const auto found = index_.find(number);
   if (found != index_.end()) return found->second;
   problems_.add("bus " + std::to_string(number) + " is not in the bus section", fields.where(),
                 "the record refers to it", "add the bus or correct the number");
@@ -233,7 +233,8 @@ void RawReader::generator(const Record& record) {
 void RawReader::branch(const Record& record) {
   Fields f(record, file_, problems_);
   Branch b{};
-  const int from = f.integer(0, "from bus"), to = f.integer(1, "to bus");
+  // A minus sign before the second bus only marks the metered end.
+  const int from = f.integer(0, "from bus"), to = std::abs(f.integer(1, "to bus"));
   b.from = find_bus(from, f);
   b.to = find_bus(to, f);
   b.circuit = f.text(2, "1");
@@ -246,7 +247,7 @@ void RawReader::branch(const Record& record) {
   b.shunt_from = {value(9, "GI", 0.0L), value(10, "BI", 0.0L)};
   b.shunt_to = {value(11, "GJ", 0.0L), value(12, "BJ", 0.0L)};
   b.in_service = status(f.integer(13, "ST", 1), "ST", f);
-  const int low = std::min(std::abs(from), std::abs(to)), high = std::max(std::abs(from), std::abs(to));
+  const int low = std::min(from, to), high = std::max(from, to);
   once("branch " + std::to_string(low) + "-" + std::to_string(high) + " circuit '" + b.circuit + "'", f);
   if (b.from == b.to && b.from >= 0)
     problems_.add("a branch from bus " + std::to_string(from) + " to itself", f.where(), "it joins nothing",
