@@ -180,7 +180,7 @@ TEST(PsseRaw, EveryFaultIsReportedAtOnceWithItsLine) {
   RawCase c;
   c.buses +=
       "103,'TWICE',138.0,1\n105,'NAN',138.0,1,1,1,1,nan,0\n106,'TYPE',138.0,7\n107,'V',138,1,1,1,1,0.0\n";
-  c.loads += "-103,'1',1,1,1,1.0,1.0\n";
+  c.loads += "-103,'8',1,1,1,1.0,1.0\n";
   c.loads += "999,'1',1,1,1,1.0,1.0\n103,'1',1,1,1,1.0,1.0\n103,'3',5,1,1,1.0,1.0\n103,'4',1,1,1,1.0x,1.0\n";
   c.generators +=
       "103,'9',1,0,1,-1,1.0,0,100,0,0.3\n102,'3',1,0,1,-1,1.02,0,-5,0,0.3\n102,'4',1,0,1,-1,1.03,0,100,0,0."
@@ -199,7 +199,7 @@ TEST(PsseRaw, EveryFaultIsReportedAtOnceWithItsLine) {
   expect("105,'NAN'", "VM = 'nan'");
   expect("106,'TYPE'", "IDE = 7");
   expect("107,'V'", "VM = 0 pu");
-  expect("-103,'1'", "bus -103 is not in the bus section");
+  expect("-103,'8'", "bus -103 is not in the bus section");
   expect("999,'1'", "bus 999 is not in the bus section");
   expect("103,'1',1,1,1,1.0,1.0", "load '1' at bus 103 appears twice");
   expect("103,'3',5", "STATUS = 5");
