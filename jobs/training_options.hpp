@@ -7,9 +7,9 @@
 #include <optional>
 #include <string>
 
+#include "mpi/stop_signal.hpp"
 #include "sim/core/problem.hpp"
 #include "train/run.hpp"
-#include "train/soft_exit.hpp"
 
 namespace swingbank {
 
@@ -61,7 +61,7 @@ struct TrainingOptions {
   }
 };
 
-inline int exit_code(RunOutcome outcome) { return outcome == RunOutcome::stopped ? kExitResubmit : 0; }
+inline int exit_code(RunOutcome outcome) { return outcome == RunOutcome::stopped ? kSubmitAgain : 0; }
 
 /// What both programs do around their work: options, printing, signals, errors.
 template <class Work>
@@ -73,7 +73,7 @@ int training_main(int argc, char** argv, const char* name, CLI::App& app, Traini
       fmt::print("{}\n", read_experiment(options.experiment).print(options.preset, options.print));
       return 0;
     }
-    catch_soft_exit();
+    catch_stop_signals();
     const RunRequest request = options.request(set_up_runtime(options.threads));
     fmt::print(stderr, "{}: {}\n", name, request.runtime.sentence());
     return exit_code(work(request));

@@ -15,7 +15,7 @@ Features Features::fit(const ShardStream& stream, std::span<const std::uint64_t>
   }
   const std::size_t groups = f.channels_ * f.groups_per_channel_;
   f.scale_ = {std::vector<float>(groups, 0.0f), std::vector<float>(groups, 1.0f)};
-  Moments1 moments(groups);
+  GroupMoments moments(groups);
   constexpr std::size_t kRows = 1024;
   std::vector<float> series(kRows * f.channels_ * f.samples_), values(kRows * f.channels_ * f.length_);
   for (std::size_t begin = 0; begin < rows.size(); begin += kRows) {

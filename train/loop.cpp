@@ -8,11 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "mpi/stop_signal.hpp"
 #include "sim/core/problem.hpp"
 #include "train/adam.hpp"
 #include "train/checkpoint.hpp"
 #include "train/random.hpp"
-#include "train/soft_exit.hpp"
 
 namespace swingbank {
 namespace {
@@ -41,7 +41,7 @@ struct Position {
 
 class Loop {
  public:
-  Loop(Network& network, const LoopData& data, const LoopSettings& settings, Progress& progress)
+  Loop(Network& network, const LoopData& data, const LoopSettings& settings, TrainingProgress& progress)
       : network_(network), data_(data), settings_(settings), progress_(progress), weights_(network.parameters()),
         adam_(weights_) {
     outputs_ = static_cast<std::int64_t>(data.targets.size() / data.stream.labels().rows);
@@ -67,7 +67,7 @@ class Loop {
     BatchReader reader(data_.stream, epoch_order(data_.train, settings_.seed, at_.epoch), settings_.recipe.batch, at_.batch);
     Batch batch;
     while (reader.next(batch)) {
-      if (settings_.stop ? settings_.stop() : soft_exit_requested()) {
+      if (settings_.stop ? settings_.stop() : stop_asked()) {
         save();
         return false;
       }
@@ -164,7 +164,7 @@ class Loop {
   Network& network_;
   const LoopData& data_;
   const LoopSettings& settings_;
-  Progress& progress_;
+  TrainingProgress& progress_;
   std::vector<Tensor> weights_, best_;
   Adam adam_;
   std::int64_t outputs_ = 0;
@@ -175,7 +175,7 @@ class Loop {
 
 }  // namespace
 
-LoopReport train_network(Network& network, const LoopData& data, const LoopSettings& settings, Progress& progress) {
+LoopReport train_network(Network& network, const LoopData& data, const LoopSettings& settings, TrainingProgress& progress) {
   return Loop(network, data, settings, progress).run();
 }
 

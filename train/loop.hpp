@@ -29,7 +29,7 @@ struct LoopSettings {
   std::filesystem::path checkpoint;  ///< empty: none is written
   const nlohmann::json* run = nullptr;  ///< identity of the run; a checkpoint of another one is refused
   double checkpoint_every_s = 300.0;
-  std::function<bool()> stop;  ///< asked before each batch; empty: soft_exit_requested()
+  std::function<bool()> stop;  ///< asked before each batch; empty: stop_asked()
 };
 
 struct LoopReport {
@@ -40,7 +40,7 @@ struct LoopReport {
 };
 
 /// Trains; the network ends with the weights of its best epoch. Throws InputError if the loss stops being a number.
-LoopReport train_network(Network& network, const LoopData& data, const LoopSettings& settings, Progress& progress);
+LoopReport train_network(Network& network, const LoopData& data, const LoopSettings& settings, TrainingProgress& progress);
 
 /// Network's outputs for `rows`, rows x outputs, scaled units.
 std::vector<float> predict(Network& network, const ShardStream& stream, const Features& features,

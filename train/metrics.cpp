@@ -16,12 +16,12 @@ Score score(const ScoreInput& in) {
   for (std::size_t p = 0; p < count; ++p) {
     ParameterScore s{in.names[p], in.units[p]};
     double error = 0.0, guess = 0.0;
-    Moments1 truth(1);
+    GroupMoments truth(1);
     for (std::size_t r = 0; r < rows; ++r) {
       const double value = in.truth[r * count + p], e = in.predicted[r * count + p] - value, g = in.training_mean[p] - value;
       error += e * e;
       guess += g * g;
-      truth.add(0, value - in.training_mean[p]);  // shifted, so that the squares do not cancel
+      truth.add(0, value);
     }
     s.mse = error / static_cast<double>(rows);
     s.baseline_mse = guess / static_cast<double>(rows);

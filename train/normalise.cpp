@@ -5,22 +5,21 @@
 
 namespace swingbank {
 
-double Moments1::deviation(std::size_t group) const {
-  const double m = mean(group);
+double GroupMoments::deviation(std::size_t group) const {
+  const double m = sum_[group] / count_[group];
   return std::sqrt(std::max(0.0, square_[group] / count_[group] - m * m));
 }
 
 TargetScale TargetScale::fit(const std::vector<double>& values, std::size_t parameters,
                              std::span<const std::uint64_t> rows) {
-  Moments1 moments(parameters);
+  GroupMoments moments(parameters);
   for (const std::uint64_t row : rows)
     for (std::size_t p = 0; p < parameters; ++p) moments.add(p, values[row * parameters + p]);
   TargetScale scale;
   for (std::size_t p = 0; p < parameters; ++p) {
     const double mean = moments.mean(p), deviation = moments.deviation(p), magnitude = std::abs(mean);
     scale.mean.push_back(mean);
-    const bool varies = deviation > 1e-9 * magnitude;  // what rounding leaves of a constant
-    scale.unit.push_back(varies ? deviation : magnitude > 0.0 ? magnitude : 1.0);
+    scale.unit.push_back(deviation > 0.0 ? deviation : magnitude > 0.0 ? magnitude : 1.0);
   }
   return scale;
 }

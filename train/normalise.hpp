@@ -6,20 +6,23 @@
 
 namespace swingbank {
 
-/// Sums values group by group, then gives mean and standard deviation (dividing by the count).
-class Moments1 {
+/// Sums values group by group, then gives mean and standard deviation (dividing by the count). Sums are taken about
+/// each group's first value, so that a constant has a deviation of exactly 0.
+class GroupMoments {
  public:
-  explicit Moments1(std::size_t groups) : sum_(groups), square_(groups), count_(groups) {}
+  explicit GroupMoments(std::size_t groups) : first_(groups), sum_(groups), square_(groups), count_(groups) {}
   void add(std::size_t group, double value) {
-    sum_[group] += value;
-    square_[group] += value * value;
+    if (count_[group] == 0.0) first_[group] = value;
+    const double x = value - first_[group];
+    sum_[group] += x;
+    square_[group] += x * x;
     count_[group] += 1.0;
   }
-  [[nodiscard]] double mean(std::size_t group) const { return sum_[group] / count_[group]; }
+  [[nodiscard]] double mean(std::size_t group) const { return first_[group] + sum_[group] / count_[group]; }
   [[nodiscard]] double deviation(std::size_t group) const;
 
  private:
-  std::vector<double> sum_, square_, count_;
+  std::vector<double> first_, sum_, square_, count_;
 };
 
 /// x' = (x - mean) / deviation.

@@ -7,10 +7,10 @@
 
 namespace swingbank {
 
-Progress::Progress(std::string title, std::uint64_t total, bool quiet)
+TrainingProgress::TrainingProgress(std::string title, std::uint64_t total, bool quiet)
     : title_(std::move(title)), total_(total), terminal_(isatty(STDERR_FILENO) != 0), quiet_(quiet) {}
 
-void Progress::update(std::uint64_t done, const std::string& note) {
+void TrainingProgress::update(std::uint64_t done, const std::string& note) {
   const auto now = Clock::now();
   if (!started_) {  // the rate counts what this process did, not what a checkpoint held
     started_ = true;
@@ -33,7 +33,7 @@ void Progress::update(std::uint64_t done, const std::string& note) {
   std::fflush(stderr);
 }
 
-void Progress::line(const std::string& text) {
+void TrainingProgress::line(const std::string& text) {
   if (quiet_) return;
   fmt::print(stderr, "{}{}: {}\n", open_line_ ? "\r\033[K" : "", title_, text);
   open_line_ = false;

@@ -6,10 +6,10 @@
 
 namespace swingbank {
 
-class Progress {
+class TrainingProgress {
  public:
   /// total: samples of all epochs; title starts each line. Writes to standard error.
-  Progress(std::string title, std::uint64_t total, bool quiet = false);
+  TrainingProgress(std::string title, std::uint64_t total, bool quiet = false);
   /// done: samples so far, those before a resume included; note: what the epoch says of itself.
   void update(std::uint64_t done, const std::string& note);
   /// A line of its own, whatever the medium.

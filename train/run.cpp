@@ -93,7 +93,7 @@ RunOutcome run(const ShardStream& stream, const RunRequest& r) {
 
   seed_torch(key(r.seed, Purpose::weights));
   const auto network = make_network(r.network, shape_of(features, scale));
-  Progress progress(name, settings.recipe.epochs * split.train.size(), r.quiet);
+  TrainingProgress progress(name, settings.recipe.epochs * split.train.size(), r.quiet);
   progress.line(fmt::format("{} training, {} validation, {} test rows; {} x {} inputs, {:.2f} million weights; {}",
                             split.train.size(), split.validation.size(), split.test.size(), features.channels(),
                             features.length(), static_cast<double>(parameter_count(*network)) * 1e-6,

@@ -1,0 +1,230 @@
+// Training on a made-up data set: it learns, shuffled labels teach nothing, and a resumed run equals an unbroken one.
+#include "train/loop.hpp"
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "sim/core/problem.hpp"
+#include "tests/train/fixture.hpp"
+#include "train/cross_validate.hpp"
+#include "train/result.hpp"
+
+namespace swingbank {
+namespace {
+using namespace test;
+using nlohmann::json;
+
+struct World {
+  Folder folder;
+  Dataset dataset;
+  ShardStream stream;
+  explicit World(const std::string& name, std::size_t rows = 300, std::size_t samples = 16)
+      : folder(name), dataset(make_dataset(folder.path / "data", plan(rows, samples))),
+        stream(dataset, whole_record(plan(rows, samples))) {}
+  static Plan plan(std::size_t rows, std::size_t samples) {
+    Plan p;
+    p.rows = rows;
+    p.rows_per_shard = rows / 2 + 1;
+    p.samples = samples;
+    p.rate = 8.0;
+    return p;
+  }
+};
+
+TrainingRecipe recipe(std::size_t epochs) { return {epochs, 32, 1e-3, "cosine", 100, 0.1}; }
+
+/// An experiment of one preset and network, without a file.
+RunRequest request(const World& world, const std::string& network, std::size_t epochs) {
+  RunRequest r;
+  r.experiment.table = "V";
+  r.experiment.leave_one_out = true;
+  for (int g = 30; g < 40; ++g) r.experiment.folds.push_back(g);
+  Preset p;
+  p.name = "quick";
+  p.networks = {network};
+  p.input = whole_record(World::plan(world.dataset.rows, world.dataset.samples));
+  p.training[network] = recipe(epochs);
+  r.experiment.presets["quick"] = p;
+  r.preset = "quick";
+  r.network = network;
+  r.generator = 33;
+  r.out = world.folder.path / "out";
+  r.runtime = {1, "test"};
+  r.quiet = true;
+  return r;
+}
+
+json result_of(const RunRequest& r) {
+  std::ifstream in(r.out / (run_name(r) + ".json"));
+  return json::parse(in);
+}
+
+TEST(Training, ResumedRunEqualsAnUnbrokenOneBitForBit) {
+  const World world("resume");
+  const RowSplit split = leave_one_out(world.stream.labels(), 33, 0.1, 1);
+  const TargetScale scale = TargetScale::fit(world.stream.labels().values, 3, split.train);
+  const auto targets = scaled_targets(world.stream.labels(), scale, split, false, 1);
+  const Features features = Features::fit(world.stream, split.train, 0);
+  const LoopData data{world.stream, features, split.train, split.validation, targets};
+  const NetworkShape shape{2, 16, 3, {2.0f, 2.0f, 1.0f}};
+  const json run = {{"test", 1}};
+  for (const std::string name : {"cnn", "gru"}) {
+    const auto train = [&](const std::string& checkpoint, const std::vector<int>& stops, LoopReport& report) {
+      std::vector<float> out;
+      for (std::size_t part = 0; part <= stops.size(); ++part) {
+        seed_torch(9);
+        const auto network = make_network(name, shape);
+        int batches = 0;
+        LoopSettings settings;
+        settings.recipe = recipe(4);
+        settings.checkpoint = world.folder.path / checkpoint;
+        settings.run = &run;
+        if (part < stops.size()) settings.stop = [&] { return batches++ == stops[part]; };
+        TrainingProgress progress("test", 1, true);
+        report = train_network(*network, data, settings, progress);
+        EXPECT_EQ(report.finished, part == stops.size());
+        out = predict(*network, world.stream, features, split.test);
+      }
+      return out;
+    };
+    LoopReport whole, broken;
+    const auto expected = train(name + "-a", {}, whole);
+    const auto got = train(name + "-b", {16, 5}, broken);  // 8 batches an epoch: after 2 epochs, then within one
+    EXPECT_EQ(got, expected) << name;
+    EXPECT_EQ(broken.epochs, 4u);
+    EXPECT_EQ(broken.best_epoch, whole.best_epoch);
+    EXPECT_EQ(broken.validation, whole.validation);
+  }
+}
+
+TEST(Training, RefusesADamagedOrForeignCheckpoint) {
+  const World world("damaged");
+  const RowSplit split = leave_one_out(world.stream.labels(), 33, 0.1, 1);
+  const TargetScale scale = TargetScale::fit(world.stream.labels().values, 3, split.train);
+  const auto targets = scaled_targets(world.stream.labels(), scale, split, false, 1);
+  const Features features = Features::fit(world.stream, split.train, 0);
+  const LoopData data{world.stream, features, split.train, split.validation, targets};
+  const auto file = world.folder.path / "run.checkpoint";
+  const json run = {{"test", 1}}, other = {{"test", 2}};
+  const auto train = [&](const json& identity, int stop_after) {
+    seed_torch(9);
+    const auto network = make_network("cnn", {2, 16, 3, {2.0f, 2.0f, 1.0f}});
+    LoopSettings settings;
+    settings.recipe = recipe(1);
+    settings.checkpoint = file;
+    settings.run = &identity;
+    int batches = 0;
+    settings.stop = [&] { return batches++ == stop_after; };
+    TrainingProgress progress("test", 1, true);
+    return train_network(*network, data, settings, progress).finished;
+  };
+  ASSERT_FALSE(train(run, 2));
+  EXPECT_THROW((void)train(other, 2), InputError);
+  {
+    std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
+    bytes.seekp(5000);
+    bytes.put('\x7f');
+    bytes.put('\x01');
+  }
+  EXPECT_THROW((void)train(run, 2), InputError);
+  std::filesystem::resize_file(file, 6000);
+  EXPECT_THROW((void)train(run, 2), InputError);
+}
+
+TEST(Training, LearnsAndShuffledLabelsTeachNothing) {
+  const World world("learn", 1600);
+  RunRequest r = request(world, "cnn", 16);
+  ASSERT_EQ(run(world.stream, r), RunOutcome::done);
+  const json learnt = result_of(r);
+  EXPECT_LT(learnt["ratio"], 0.5);
+  EXPECT_LT(learnt["H_ratio"], 0.5);
+  EXPECT_EQ(learnt["generator"], 33);
+  EXPECT_EQ(learnt["test_rows"], 160);
+  EXPECT_EQ(learnt["train_rows"].get<int>() + learnt["validation_rows"].get<int>(), 1440);
+  // The constant third parameter is learnt exactly and flatters the mean over all.
+  EXPECT_NEAR(learnt["mse_varied_only"].get<double>() / learnt["mse"].get<double>(), 1.5, 1e-3);
+  EXPECT_TRUE(learnt["per_parameter"][2]["relative"].is_null());
+  EXPECT_EQ(run(world.stream, r), RunOutcome::already_done);
+  EXPECT_TRUE(std::filesystem::is_empty(r.out / "checkpoints"));
+
+  r.shuffle_labels = true;
+  r.epochs = 5;
+  ASSERT_EQ(run(world.stream, r), RunOutcome::done);
+  const json shuffled = result_of(r);
+  // Test rows keep their labels, so nothing can be known of them; 160 rows scatter the quotient by some percent, and
+  // what little was learnt by heart costs some more.
+  EXPECT_GT(shuffled["ratio"], 0.9);
+  EXPECT_LT(shuffled["ratio"], 1.25);
+}
+
+TEST(Training, RecurrentNetworksLearn) {
+  const World world("recurrent", 900);
+  for (const std::string name : {"lstm", "gru"}) {
+    RunRequest r = request(world, name, 10);
+    ASSERT_EQ(run(world.stream, r), RunOutcome::done);
+    EXPECT_LT(result_of(r)["H_ratio"], 0.7) << name;
+  }
+}
+
+TEST(Training, TheLeftOutGeneratorLeavesNoTraceInTheWeights) {
+  // The same run on two data sets that differ in the left-out generator's records only.
+  const World world("trace");
+  Folder folder("moved");
+  Plan moved = World::plan(300, 16);
+  moved.shift_generator = 33;
+  const ShardStream other(make_dataset(folder.path, moved), whole_record(moved));
+  const auto outputs = [&](const ShardStream& stream, int generator) {
+    const RowSplit split = leave_one_out(stream.labels(), generator, 0.1, 1);
+    const TargetScale scale = TargetScale::fit(stream.labels().values, 3, split.train);
+    const auto targets = scaled_targets(stream.labels(), scale, split, false, 1);
+    const Features features = Features::fit(stream, split.train, 0);
+    seed_torch(9);
+    const auto network = make_network("cnn", {2, 16, 3, {2.0f, 2.0f, 1.0f}});
+    LoopSettings settings;
+    settings.recipe = recipe(2);
+    TrainingProgress progress("test", 1, true);
+    (void)train_network(*network, {stream, features, split.train, split.validation, targets}, settings, progress);
+    return predict(*network, stream, features, split.train);
+  };
+  EXPECT_EQ(outputs(world.stream, 33), outputs(other, 33));
+  EXPECT_NE(outputs(world.stream, 34), outputs(other, 34));  // where it is seen, it shows
+}
+
+TEST(Training, RefusesAResultOfOtherData) {
+  const World world("foreign");
+  RunRequest r = request(world, "cnn", 1);
+  ASSERT_EQ(run(world.stream, r), RunOutcome::done);
+  r.experiment.presets["quick"].training["cnn"].batch = 16;
+  EXPECT_THROW((void)run(world.stream, r), InputError);
+}
+
+TEST(Training, SaysWhereItDiverged) {
+  const World world("diverge");
+  RunRequest r = request(world, "cnn", 3);
+  r.experiment.presets["quick"].training["cnn"].learning_rate = 1e30;
+  try {
+    (void)run(world.stream, r);
+    FAIL() << "a rate of 1e30 trained";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("lower learning_rate"), std::string::npos) << e.what();
+  }
+}
+
+TEST(CrossValidate, ProcessesShareTheFolds) {
+  const std::vector<std::int32_t> folds = {30, 31, 32, 33, 34};
+  EXPECT_EQ(share_of(folds, {0, 2}), (std::vector<std::int32_t>{30, 32, 34}));
+  EXPECT_EQ(share_of(folds, {1, 2}), (std::vector<std::int32_t>{31, 33}));
+  EXPECT_EQ(share_of(folds, {0, 1}), folds);
+  EXPECT_TRUE(share_of(folds, {5, 6}).empty());
+}
+
+TEST(LearningRate, FallsAlongACosineAfterAWarmUp) {
+  const TrainingRecipe constant{10, 32, 1e-3, "constant", 5, 0.1}, cosine{10, 32, 1e-3, "cosine", 5, 0.1};
+  EXPECT_EQ(learning_rate(constant, 999, 1000), 1e-3);
+  EXPECT_LT(learning_rate(cosine, 0, 1000), 1e-4);
+  EXPECT_NEAR(learning_rate(cosine, 500, 1000), 0.505e-3, 1e-6);
+  EXPECT_NEAR(learning_rate(cosine, 999, 1000), 1e-5, 1e-7);
+}
+
+}  // namespace
+}  // namespace swingbank
