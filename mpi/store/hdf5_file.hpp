@@ -3,6 +3,7 @@
 // Files it creates carry no times, so equal content makes equal bytes.
 #include <hdf5.h>
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <mutex>
@@ -14,6 +15,9 @@ namespace swingbank::h5 {
 
 /// HDF5 is not thread-safe: whoever uses it holds this lock.
 std::recursive_mutex& lock();
+
+/// Something could not be closed (full disk). HDF5 1.10 then crashes in H5close, which MPI_Finalize and exit() call too.
+inline std::atomic<bool> close_failed = false;
 
 class Handle {
  public:
@@ -28,7 +32,11 @@ class Handle {
   }
   ~Handle() { reset(); }
   /// Closes now; false if HDF5 could not.
-  bool reset() { return id_ < 0 || close_(std::exchange(id_, -1)) >= 0; }
+  bool reset() {
+    if (id_ < 0 || close_(std::exchange(id_, -1)) >= 0) return true;
+    close_failed = true;
+    return false;
+  }
   [[nodiscard]] hid_t get() const { return id_; }
   explicit operator bool() const { return id_ >= 0; }
 

@@ -19,11 +19,12 @@ void send_text(MPI_Comm group, int from, std::string& text) {
   MPI_Bcast(text.data(), static_cast<int>(length), MPI_CHAR, from, group);
 }
 
-/// What the arrays of all ranks will take on the disk, less HDF5's own few kilobytes.
+/// What the arrays of all ranks will take on the disk, and room for HDF5's own few kilobytes.
 std::uint64_t size_on_disk(const ShardData& part, std::uint64_t rows, std::uint64_t draws) {
   const std::uint64_t fixed = sizeof(std::uint64_t) + sizeof(std::int32_t) + sizeof(double) * (kFaultColumns + 1);
   const std::uint64_t row = part.channels * part.samples * sizeof(float) + part.parameter_count * sizeof(double) + fixed;
-  return rows * row + draws * (sizeof(std::uint64_t) + 1);
+  constexpr std::uint64_t own = 64 * 1024;
+  return rows * row + draws * (sizeof(std::uint64_t) + 1) + own;
 }
 
 template <class T>

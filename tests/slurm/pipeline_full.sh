@@ -23,8 +23,8 @@ fail() {
 # Root's consent for mpirun, and everything on one thread each: four ranks on what may be two cores.
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMP_NUM_THREADS=1
 export SWINGBANK_BUILD=${SWINGBANK_BIN%/bin}
-source "$SWINGBANK_SOURCE/tests/slurm/tiny_experiment.bash"
-tiny_experiment "$work"
+source "$SWINGBANK_SOURCE/tests/jobs/tiny_experiment.bash"
+TINY_LANES=1 TINY_TOLERANCE=1e-12 TINY_DRAWS=4000 TINY_EPOCHS=12 tiny_experiment "$work"
 
 site() { # site FILE KEY=VALUE...
   cp "$SWINGBANK_SOURCE/slurm/site.conf" "$1"
@@ -32,7 +32,7 @@ site() { # site FILE KEY=VALUE...
 }
 job_state() { scontrol -o show job "$1" | grep -o 'JobState=[A-Z_]*' | sort -u | cut -d= -f2 | paste -sd,; }
 all_ended() { [[ -z $(squeue -h) ]]; }
-dataset_hash() { "$SWINGBANK_BIN/swingbank" dataset "$1" --hash; }
+dataset_hash() { "$SWINGBANK_BIN/swingbank" generate --verify "$1" | awk '{for (i = 1; i < NF; i++) if ($i == "dataset") hash = $(i + 1)} END {print hash}'; }
 scores() { (cd "$1" && grep -H -E '"(mse|baseline_mse|best_epoch)"' ./*.json); }
 
 echo "unbroken run"

@@ -5,7 +5,7 @@ tiny_experiment() {
 raw = "$networks/ieee39_dataset_gencls.raw"
 dyr = "$networks/ieee39_dataset_gencls.dyr"
 convention = "psse"
-draws = 400
+draws = ${TINY_DRAWS:-400}
 draws_per_shard = ${TINY_SHARD:-20}
 seed = 3
 [vary]
@@ -40,7 +40,7 @@ draws = ${TINY_DRAWS:-400}
 networks = ["gru"]
 channels = ["P", "Q", "speed"]
 start_s = 0.4
-end_s = 3.4
+end_s = 1.4
 slice = 2
 deviation = true
 pca_components = 0
