@@ -1,10 +1,10 @@
 // swingbank compare: plays records into a plant model and sets measured beside modelled P and Q.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <map>
-
-#include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 #include "validate/compare_report.hpp"
 #include "validate/write_file.hpp"
@@ -15,7 +15,8 @@ using namespace swingbank;
 using namespace swingbank::validate;
 
 /// "2.0" holds for the only record, "event.csv=2.0" for the record of that file name.
-std::map<std::string, std::vector<double>> read_switchings(const std::vector<std::string>& words, const std::vector<std::string>& records) {
+std::map<std::string, std::vector<double>> read_switchings(const std::vector<std::string>& words,
+                                                           const std::vector<std::string>& records) {
   std::map<std::string, std::vector<double>> instants;
   Problems problems;
   for (const auto& word : words) {
@@ -26,11 +27,14 @@ std::map<std::string, std::vector<double>> read_switchings(const std::vector<std
     double t = 0;
     const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), t);
     if (error != std::errc{} || end != number.data() + number.size())
-      problems.add("'" + word + "'", "--switch", "it is no time in seconds", "give --switch 2.0 or --switch FILE=2.0");
+      problems.add("'" + word + "'", "--switch", "it is no time in seconds",
+                   "give --switch 2.0 or --switch FILE=2.0");
     else if (record.empty())
-      problems.add("'" + word + "'", "--switch", "several records are given", "say which one: --switch FILE=" + number);
+      problems.add("'" + word + "'", "--switch", "several records are given",
+                   "say which one: --switch FILE=" + number);
     else if (std::ranges::find(records, record) == records.end())
-      problems.add("record '" + record + "'", "--switch", "no --record has that file name", "use the name without its folder");
+      problems.add("record '" + record + "'", "--switch", "no --record has that file name",
+                   "use the name without its folder");
     else
       instants[record].push_back(t);
   }
@@ -65,7 +69,8 @@ void check_names(const std::vector<Record>& records) {
   for (std::size_t i = 0; i < records.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (records[i].name == records[j].name)
-        problems.add("two records named " + records[i].name, "--record", "their results would overwrite each other", "rename one of them");
+        problems.add("two records named " + records[i].name, "--record",
+                     "their results would overwrite each other", "rename one of them");
   problems.raise();
 }
 
@@ -79,11 +84,17 @@ int main(int argc, char** argv) {
   CompareOptions options;
   app.add_option("--model", model_file, "plant file (configs/plants/README.md)")->required();
   app.add_option("--record", record_files, "record (CSV); may be given several times")->required();
-  app.add_option("--switch", switches, "switching instant [s], or FILE=instant; default: found by the voltage's jumps and fitted");
-  app.add_flag("!--no-fit", options.fit_switchings, "leave found instants in the middle of their sample interval");
-  app.add_option("--jump-threshold", options.jump_threshold, "smallest jump of the voltage taken for switching [pu]")->capture_default_str();
-  app.add_option("--pre-event", options.play_in.pre_event, "steady stretch of records without switching [s]")->capture_default_str();
-  app.add_option("--out", out, "folder for report.html, compare.json and the curves as CSV")->capture_default_str();
+  app.add_option("--switch", switches,
+                 "switching instant [s], or FILE=instant; default: found by the voltage's jumps and fitted");
+  app.add_flag("!--no-fit", options.fit_switchings,
+               "leave found instants in the middle of their sample interval");
+  app.add_option("--jump-threshold", options.jump_threshold,
+                 "smallest jump of the voltage taken for switching [pu]")
+      ->capture_default_str();
+  app.add_option("--pre-event", options.play_in.pre_event, "steady stretch of records without switching [s]")
+      ->capture_default_str();
+  app.add_option("--out", out, "folder for report.html, compare.json and the curves as CSV")
+      ->capture_default_str();
   app.add_flag("--json", json, "print the result as JSON instead of tables");
   try {
     app.parse(argc, argv);
@@ -105,11 +116,15 @@ int main(int argc, char** argv) {
     }
     const Provenance rows = provenance(model, events, joined(argc, argv));
     const std::filesystem::path folder = out;
-    for (const auto& e : events) write_file(folder / ("playback-" + std::filesystem::path(e.record.name).stem().string() + ".csv"), csv_playback(e));
+    for (const auto& e : events)
+      write_file(folder / ("playback-" + std::filesystem::path(e.record.name).stem().string() + ".csv"),
+                 csv_playback(e));
     write_file(folder / "compare.json", json_report(model, events, rows));
     write_file(folder / "report.html", html_report(model, events, rows));
-    if (json) fmt::print("{}", json_report(model, events, rows));
-    else fmt::print("{}\nreport: {}\n", terminal_report(model, events), (folder / "report.html").string());
+    if (json)
+      fmt::print("{}", json_report(model, events, rows));
+    else
+      fmt::print("{}\nreport: {}\n", terminal_report(model, events), (folder / "report.html").string());
     return 0;
   } catch (const InputError& error) {
     fmt::print(stderr, "{}\n", error.what());

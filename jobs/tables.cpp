@@ -1,10 +1,11 @@
 // swingbank tables: results of training runs as the thesis's Tables IV, V and VI, in Markdown, CSV and HTML.
-#include <set>
+#include "validate/tables.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "validate/tables.hpp"
+#include <CLI/CLI.hpp>
+#include <set>
+
 #include "validate/write_file.hpp"
 
 namespace {
@@ -18,7 +19,8 @@ Provenance sources(const std::vector<RunResult>& results, int argc, char** argv)
   Provenance rows = {{"command", line}, {"results read", std::to_string(results.size())}};
   std::set<std::string> datasets, software;
   for (const auto& r : results) {
-    datasets.insert(fmt::format("{}: {} rows, hash {}, config {}", r.dataset, r.rows, r.dataset_hash, r.config_hash));
+    datasets.insert(
+        fmt::format("{}: {} rows, hash {}, config {}", r.dataset, r.rows, r.dataset_hash, r.config_hash));
     software.insert(r.software);
   }
   for (const auto& d : datasets) rows.emplace_back("dataset", d);

@@ -1,18 +1,20 @@
 #include "validate/compare.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include <fmt/format.h>
-
 namespace swingbank::validate {
 namespace {
 
-/// Rounding of a file with 8 digits leaves residuals of this size; below it there is no noise to compare with.
+/// Rounding of a file with 8 digits leaves residuals of this size; below it there is no noise to compare
+/// with.
 constexpr double kNoNoise = 1e-7;
 
-WindowError measure(const std::vector<double>& t, const std::vector<double>& residual, const Window& window, bool first, double noise) {
+WindowError measure(const std::vector<double>& t, const std::vector<double>& residual, const Window& window,
+                    bool first, double noise) {
   WindowError e;
   double sum = 0, square = 0;
   for (std::size_t k = 0; k < t.size(); ++k) {
@@ -67,11 +69,11 @@ void play(const PlantModel& model, const PlayInOptions& options, EventComparison
   e.channels.push_back(compare_channel("Q", "Mvar", e.record.Q, e.playback.Q, e));
 }
 
-/// With the fitted instants nothing but noise is left in any window. If more is left, the model lacks something, and the
-/// instants would have been bent to make up for it.
+/// With the fitted instants nothing but noise is left in any window. If more is left, the model lacks
+/// something, and the instants would have been bent to make up for it.
 bool explained(const EventComparison& e) {
-  constexpr double kWithin = 2;      // rms of a window in units of the noise
-  constexpr double kSmooth = 2.5e-4; // pu; what interpolation leaves where a record has no noise
+  constexpr double kWithin = 2;       // rms of a window in units of the noise
+  constexpr double kSmooth = 2.5e-4;  // pu; what interpolation leaves where a record has no noise
   for (const auto& c : e.channels)
     for (const auto& w : c.windows)
       if (w.rms > kWithin * std::max(c.noise, kSmooth)) return false;
@@ -85,13 +87,19 @@ std::string describe_fit(const EventComparison& e) {
 
 void explain(EventComparison& e) {
   if (e.detected && !e.switchings.empty())
-    e.notes.push_back(fmt::format("The switching instants were found in the record, which tells each to ± {:.1f} ms only; {} Give them with --switch where they are known.",
-                                  1e3 * e.switchings.front().uncertainty, describe_fit(e)));
+    e.notes.push_back(
+        fmt::format("The switching instants were found in the record, which tells each to ± {:.1f} ms only; "
+                    "{} Give them with --switch where they are known.",
+                    1e3 * e.switchings.front().uncertainty, describe_fit(e)));
   if (e.switchings.empty())
-    e.notes.push_back("The voltage does not jump anywhere: the first seconds are taken for the steady state (--pre-event).");
+    e.notes.push_back(
+        "The voltage does not jump anywhere: the first seconds are taken for the steady state "
+        "(--pre-event).");
   if (e.playback.start.drift != 0)
-    e.notes.push_back(fmt::format("Before the event the angle turns by {:.3g} rad/s (frequency {:+.2f} mHz off nominal): the model starts in equilibrium in that frame.",
-                                  e.playback.start.drift, 1e3 * e.playback.start.drift / (2 * 3.14159265358979323846)));
+    e.notes.push_back(
+        fmt::format("Before the event the angle turns by {:.3g} rad/s (frequency {:+.2f} mHz off nominal): "
+                    "the model starts in equilibrium in that frame.",
+                    e.playback.start.drift, 1e3 * e.playback.start.drift / (2 * 3.14159265358979323846)));
   if (!e.record.ignored.empty()) {
     std::string all;
     for (const auto& name : e.record.ignored) all += (all.empty() ? "" : ", ") + name;
@@ -101,13 +109,17 @@ void explain(EventComparison& e) {
 
 }  // namespace
 
-std::vector<Window> event_windows(const Record& record, const std::vector<Switching>& switchings, double pre_event) {
+std::vector<Window> event_windows(const Record& record, const std::vector<Switching>& switchings,
+                                  double pre_event) {
   const double first = record.t.front(), end = record.t.back(), slack = 1e-4 * record.step();
   const bool switched = !switchings.empty();
   const double begins = slack + (switched ? switchings.front().time : std::min(first + pre_event, end));
   const double over = slack + (switched ? switchings.back().time : std::min(first + pre_event, end));
-  const Window all[] = {{"pre-event", first, begins},      {"fault", begins, over},           {"0–1 s after", over, over + 1},
-                        {"1–5 s after", over + 1, over + 5}, {"> 5 s after", over + 5, end + slack}};
+  const Window all[] = {{"pre-event", first, begins},
+                        {"fault", begins, over},
+                        {"0–1 s after", over, over + 1},
+                        {"1–5 s after", over + 1, over + 5},
+                        {"> 5 s after", over + 5, end + slack}};
   std::vector<Window> windows;
   for (const auto& w : all) {
     const auto inside = [&](double t) { return t <= w.to && (t > w.from || (&w == all && t == w.from)); };
@@ -127,7 +139,8 @@ EventComparison compare_event(const PlantModel& model, Record record, const Comp
   play(model, options.play_in, e);
   if (e.detected && options.fit_switchings && !e.switchings.empty()) {
     EventComparison fitted = e;
-    fitted.switchings = fit_switchings(model.plant, model.conventions, e.record, e.switchings, options.play_in);
+    fitted.switchings =
+        fit_switchings(model.plant, model.conventions, e.record, e.switchings, options.play_in);
     fitted.fitted = true;
     play(model, options.play_in, fitted);
     if (explained(fitted)) e = std::move(fitted);

@@ -17,40 +17,42 @@ struct Window {
 /// Residual = modelled - measured.
 struct WindowError {
   int samples = 0;
-  double rms = 0, mean = 0;         ///< [pu on the record's base]
-  double worst = 0, worst_at = 0;   ///< largest |residual| [pu] and its time [s]
-  double in_noise = 0;              ///< rms / noise; NaN where the record has no noise
+  double rms = 0, mean = 0;        ///< [pu on the record's base]
+  double worst = 0, worst_at = 0;  ///< largest |residual| [pu] and its time [s]
+  double in_noise = 0;             ///< rms / noise; NaN where the record has no noise
 };
 struct ChannelComparison {
-  std::string name, unit;           ///< "P" in "MW", "Q" in "Mvar"
+  std::string name, unit;                            ///< "P" in "MW", "Q" in "Mvar"
   std::vector<double> measured, modelled, residual;  ///< [pu on the record's base]
-  double noise = 0;                 ///< standard deviation of the pre-event residual [pu]; 0: none to see
-  WindowError whole;                ///< the whole record
-  std::vector<WindowError> windows; ///< one per window of the event
+  double noise = 0;                  ///< standard deviation of the pre-event residual [pu]; 0: none to see
+  WindowError whole;                 ///< the whole record
+  std::vector<WindowError> windows;  ///< one per window of the event
 };
 struct EventComparison {
   Record record;
   std::vector<Switching> switchings;
-  bool detected = false;            ///< the switchings were found in the record, not given
-  bool fitted = false;              ///< and moved within their sample intervals
+  bool detected = false;  ///< the switchings were found in the record, not given
+  bool fitted = false;    ///< and moved within their sample intervals
   std::vector<Window> windows;
   Playback playback;
   std::vector<ChannelComparison> channels;  ///< P, Q
-  std::vector<std::string> notes;   ///< what a reader must know: uncertain instants, drift, columns left out
+  std::vector<std::string> notes;  ///< what a reader must know: uncertain instants, drift, columns left out
 };
 
 struct CompareOptions {
-  std::vector<double> switchings;   ///< instants [s]; empty: found by their jumps
+  std::vector<double> switchings;  ///< instants [s]; empty: found by their jumps
   double jump_threshold = kJumpThreshold;
-  /// Move found instants within their sample interval to where P and Q are met best, and keep that if nothing but noise
-  /// is left then; a model that lacks something would bend them. Otherwise the middle of the interval stays.
+  /// Move found instants within their sample interval to where P and Q are met best, and keep that if nothing
+  /// but noise is left then; a model that lacks something would bend them. Otherwise the middle of the
+  /// interval stays.
   bool fit_switchings = true;
   PlayInOptions play_in;
 };
 
-/// pre-event, fault, 0-1 s, 1-5 s and > 5 s after the last switching; those that hold no sample are left out. The time
-/// between the first and the last switching is the "fault"; a single switching has none.
-std::vector<Window> event_windows(const Record& record, const std::vector<Switching>& switchings, double pre_event);
+/// pre-event, fault, 0-1 s, 1-5 s and > 5 s after the last switching; those that hold no sample are left out.
+/// The time between the first and the last switching is the "fault"; a single switching has none.
+std::vector<Window> event_windows(const Record& record, const std::vector<Switching>& switchings,
+                                  double pre_event);
 
 /// Plays the record into the model and measures what is left. Throws InputError as its parts do.
 EventComparison compare_event(const PlantModel& model, Record record, const CompareOptions& options = {});

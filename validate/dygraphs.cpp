@@ -2,8 +2,10 @@
 #include "validate/page.hpp"
 
 asm(".section .rodata\n"
-    ".global swingbank_dygraphs_js\nswingbank_dygraphs_js:\n.incbin \"" DYGRAPHS_JS "\"\n.byte 0\n"
-    ".global swingbank_dygraphs_css\nswingbank_dygraphs_css:\n.incbin \"" DYGRAPHS_CSS "\"\n.byte 0\n"
+    ".global swingbank_dygraphs_js\nswingbank_dygraphs_js:\n.incbin \"" DYGRAPHS_JS
+    "\"\n.byte 0\n"
+    ".global swingbank_dygraphs_css\nswingbank_dygraphs_css:\n.incbin \"" DYGRAPHS_CSS
+    "\"\n.byte 0\n"
     ".previous\n");
 extern "C" const char swingbank_dygraphs_js[], swingbank_dygraphs_css[];
 

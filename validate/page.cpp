@@ -1,9 +1,9 @@
 #include "validate/page.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace swingbank::validate {
@@ -63,14 +63,16 @@ addEventListener("afterprint",()=>boxes.forEach(b=>{b.style.zoom=""}));
 
 /// JSON for a <script>: no closing tag can stand in it.
 std::string script_safe(std::string text) {
-  for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3) text.insert(at + 1, "\\");
+  for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3)
+    text.insert(at + 1, "\\");
   return text;
 }
 
 std::string shade_style(double shade) {
   if (!(shade >= 0)) return {};
   const double s = std::clamp(shade, 0.0, 1.0);  // green over yellow to red, pale enough for black text
-  return fmt::format(" class=\"cell\" style=\"background:hsl({:.0f} 75% {:.0f}%)\"", 125 - 125 * s, 90 - 10 * s);
+  return fmt::format(" class=\"cell\" style=\"background:hsl({:.0f} 75% {:.0f}%)\"", 125 - 125 * s,
+                     90 - 10 * s);
 }
 
 /// Six significant digits: more than a screen shows, a third of the size.
@@ -82,11 +84,20 @@ std::string escape(std::string_view text) {
   std::string out;
   for (const char c : text) {
     switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += c;
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
     }
   }
   return out;
@@ -97,7 +108,9 @@ Page::Page(std::string_view title, std::string_view subtitle) : title_(escape(ti
 }
 void Page::section(std::string_view title) { body_ += fmt::format("<h2>{}</h2>\n", escape(title)); }
 void Page::text(std::string_view paragraph) { body_ += fmt::format("<p>{}</p>\n", escape(paragraph)); }
-void Page::note(std::string_view paragraph) { body_ += fmt::format("<p class=\"note\">{}</p>\n", escape(paragraph)); }
+void Page::note(std::string_view paragraph) {
+  body_ += fmt::format("<p class=\"note\">{}</p>\n", escape(paragraph));
+}
 
 void Page::table(const Table& table) {
   if (!table.caption.empty()) body_ += fmt::format("<p class=\"caption\">{}</p>\n", escape(table.caption));
@@ -106,7 +119,8 @@ void Page::table(const Table& table) {
   body_ += "</tr></thead><tbody>\n";
   for (const auto& row : table.rows) {
     body_ += "<tr>";
-    for (const auto& cell : row) body_ += fmt::format("<td{}>{}</td>", shade_style(cell.shade), escape(cell.text));
+    for (const auto& cell : row)
+      body_ += fmt::format("<td{}>{}</td>", shade_style(cell.shade), escape(cell.text));
     body_ += "</tr>\n";
   }
   body_ += "</tbody></table></div>\n";
@@ -115,7 +129,8 @@ void Page::table(const Table& table) {
 void Page::curves(const Curves& c) {
   const std::string id = fmt::format("chart{}", curves_++);
   body_ += fmt::format(
-      "<figure><figcaption>{}</figcaption><div class=\"legend\" id=\"{}-legend\"></div><div class=\"chart\" id=\"{}\" role=\"img\" "
+      "<figure><figcaption>{}</figcaption><div class=\"legend\" id=\"{}-legend\"></div><div class=\"chart\" "
+      "id=\"{}\" role=\"img\" "
       "aria-label=\"{}\"></div></figure>\n",
       escape(c.title), id, id, escape(c.title));
   nlohmann::json meta = {{"id", id}, {"x", c.x_label}, {"y", c.y_label}, {"group", c.group}};
@@ -144,21 +159,31 @@ void Page::bars(const Bars& b) {
     if (std::isfinite(bar.value)) largest = std::max(largest, bar.value * 1.02);
   if (!(largest > 0)) largest = 1;
   const double height = top + line * static_cast<double>(b.bars.size()) + 8;
-  std::string svg = fmt::format("<svg viewBox=\"0 0 {:.0f} {:.0f}\" width=\"620\" role=\"img\" aria-label=\"{}\">", left + width + 70, height, escape(b.title));
+  std::string svg =
+      fmt::format("<svg viewBox=\"0 0 {:.0f} {:.0f}\" width=\"620\" role=\"img\" aria-label=\"{}\">",
+                  left + width + 70, height, escape(b.title));
   double y = top;
   for (const auto& bar : b.bars) {
     const double w = std::isfinite(bar.value) ? std::max(width * bar.value / largest, 1.0) : 0;
-    svg += fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" text-anchor=\"end\" fill=\"#1b2733\">{}</text>", left - 8, y + 17, escape(bar.label));
-    svg += fmt::format("<rect x=\"{:.0f}\" y=\"{:.0f}\" width=\"{:.1f}\" height=\"{:.0f}\" rx=\"2\" fill=\"{}\"/>", left, y + 4, w, line - 8,
-                       bar.good ? "#2f7fc1" : "#c0563f");
+    svg += fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" text-anchor=\"end\" fill=\"#1b2733\">{}</text>",
+                       left - 8, y + 17, escape(bar.label));
+    svg += fmt::format(
+        "<rect x=\"{:.0f}\" y=\"{:.0f}\" width=\"{:.1f}\" height=\"{:.0f}\" rx=\"2\" fill=\"{}\"/>", left,
+        y + 4, w, line - 8, bar.good ? "#2f7fc1" : "#c0563f");
     svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.0f}\" fill=\"#5b6b7b\">{}</text>", left + w + 6, y + 17,
-                       std::isfinite(bar.value) ? fmt::format("{:.3g}{}", bar.value, b.unit.empty() ? "" : " " + escape(b.unit)) : "missing");
+                       std::isfinite(bar.value)
+                           ? fmt::format("{:.3g}{}", bar.value, b.unit.empty() ? "" : " " + escape(b.unit))
+                           : "missing");
     y += line;
   }
   if (b.reference > 0) {
     const double x = left + width * b.reference / largest;
-    svg += fmt::format("<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1:.0f}\" y2=\"{2:.0f}\" stroke=\"#1b2733\" stroke-dasharray=\"4 3\"/>", x, top - 6, height - 4);
-    svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.0f}\" text-anchor=\"end\" fill=\"#1b2733\">{}</text>", x + 4, top - 12, escape(b.reference_label));
+    svg += fmt::format(
+        "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1:.0f}\" y2=\"{2:.0f}\" stroke=\"#1b2733\" "
+        "stroke-dasharray=\"4 3\"/>",
+        x, top - 6, height - 4);
+    svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.0f}\" text-anchor=\"end\" fill=\"#1b2733\">{}</text>",
+                       x + 4, top - 12, escape(b.reference_label));
   }
   body_ += fmt::format("<figure><figcaption>{}</figcaption>{}</svg></figure>\n", escape(b.title), svg);
 }
@@ -166,13 +191,15 @@ void Page::bars(const Bars& b) {
 void Page::provenance(const Provenance& rows) {
   section("Provenance");
   body_ += "<div class=\"wrap\"><table><tbody>\n";
-  for (const auto& [name, value] : rows) body_ += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", escape(name), escape(value));
+  for (const auto& [name, value] : rows)
+    body_ += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", escape(name), escape(value));
   body_ += "</tbody></table></div>\n";
 }
 
 std::string Page::html() const {
-  std::string out = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-                    "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\"><title>";
+  std::string out =
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+      "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\"><title>";
   out += title_ + "</title>\n<style>" + std::string(kStyle);
   if (curves_ > 0) out += dygraphs_style();
   out += "</style></head><body><main>\n" + body_ + "</main>\n";

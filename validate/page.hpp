@@ -1,6 +1,6 @@
 #pragma once
-// One self-contained HTML page: text, tables, zoomable curves, bars and provenance. Opens offline, on a telephone and
-// on paper; no resource is fetched. Every text given is escaped here.
+// One self-contained HTML page: text, tables, zoomable curves, bars and provenance. Opens offline, on a
+// telephone and on paper; no resource is fetched. Every text given is escaped here.
 #include <string>
 #include <string_view>
 #include <utility>
@@ -15,8 +15,9 @@ std::string escape(std::string_view text);
 struct Cell {
   std::string text;
   double shade = -1;
-  Cell(std::string t) : text(std::move(t)) {}  // NOLINT(google-explicit-constructor): a cell is mostly its text
-  Cell(const char* t) : text(t) {}             // NOLINT(google-explicit-constructor)
+  Cell(std::string t)
+      : text(std::move(t)) {}       // NOLINT(google-explicit-constructor): a cell is mostly its text
+  Cell(const char* t) : text(t) {}  // NOLINT(google-explicit-constructor)
   Cell(std::string t, double s) : text(std::move(t)), shade(s) {}
 };
 /// The first column is left-aligned, the others are numbers.
@@ -42,7 +43,7 @@ struct Curves {
 /// Horizontal bars with a reference line, as inline SVG; a NaN is drawn as "missing".
 struct Bars {
   std::string title, unit;
-  double reference = 0;         ///< position of the line, 0: none
+  double reference = 0;  ///< position of the line, 0: none
   std::string reference_label;
   struct Bar {
     std::string label;

@@ -1,12 +1,11 @@
 #include "validate/plant_model.hpp"
 
+#include <fmt/format.h>
 #include <xxhash.h>
 
 #include <algorithm>
 #include <fstream>
 #include <sstream>
-
-#include <fmt/format.h>
 
 #include "sim/core/config.hpp"
 
@@ -26,14 +25,16 @@ std::vector<std::string> effects_of(Slot slot) {
   return names;
 }
 
-/// One section: the effect's name and every one of its parameters; checked for consistency if all could be read.
+/// One section: the effect's name and every one of its parameters; checked for consistency if all could be
+/// read.
 sim::Block read_block(Config& config, Slot slot) {
   const std::string section(sim::slot_name(slot));
   sim::Block block{sim::find_effect(config.choice(section + ".effect", effects_of(slot))), {}};
   if (!block.effect || block.effect->slot != slot) return {};
   const bool sound = config.sound();
   for (const auto& p : block.effect->parameters)
-    block.p.push_back(config.require<double>(fmt::format("{}.{}", section, p.name), {p.low, p.high, std::string(p.unit)}));
+    block.p.push_back(
+        config.require<double>(fmt::format("{}.{}", section, p.name), {p.low, p.high, std::string(p.unit)}));
   if (!sound || !config.sound()) return block;
   Problems problems;
   block.effect->check(block.p.data(), config.where(section), problems);
@@ -47,17 +48,20 @@ void read_blocks(Config& config, sim::Plant& plant) {
     const std::string section(sim::slot_name(slot));
     if (!config.has(section)) continue;
     if (effects_of(slot).empty())
-      config.problem(section, "section [" + section + "]", "this build has no effect of that kind", "remove it; the slot holds its input at the operating point");
+      config.problem(section, "section [" + section + "]", "this build has no effect of that kind",
+                     "remove it; the slot holds its input at the operating point");
     else
       plant.controls.push_back(read_block(config, slot));
   }
 }
 
 sim::Conventions read_conventions(Config& config, double hz) {
-  return config.choice("plant.conventions", {"psse", "andes"}) == "andes" ? sim::Conventions::andes(hz) : sim::Conventions::psse(hz);
+  return config.choice("plant.conventions", {"psse", "andes"}) == "andes" ? sim::Conventions::andes(hz)
+                                                                          : sim::Conventions::psse(hz);
 }
 
-/// The plant of one generator of a grid; its name there is the bus number, with "/id" where the bus has several.
+/// The plant of one generator of a grid; its name there is the bus number, with "/id" where the bus has
+/// several.
 sim::Plant find_plant(Config& config, const sim::Grid& grid, std::int64_t bus, const std::string& id) {
   const std::string number = std::to_string(bus);
   std::string all;
@@ -67,16 +71,21 @@ sim::Plant find_plant(Config& config, const sim::Grid& grid, std::int64_t bus, c
     const bool same = plant.name == number || plant.name.starts_with(number + "/");
     const bool alone = plant.name == number;
     if (same && (id.empty() ? alone : plant.name == number + "/" + id)) return plant;
-    if (alone && std::ranges::any_of(grid.network.generators, [&](const sim::Generator& g) { return g.bus == plant.bus && g.id == id && g.in_service; }))
+    if (alone && std::ranges::any_of(grid.network.generators, [&](const sim::Generator& g) {
+          return g.bus == plant.bus && g.id == id && g.in_service;
+        }))
       return plant;
   }
-  config.problem("grid.bus", "no plant at bus " + number + (id.empty() ? "" : " with id " + id), "the grid has no such generator in service", "use one of " + all);
+  config.problem("grid.bus", "no plant at bus " + number + (id.empty() ? "" : " with id " + id),
+                 "the grid has no such generator in service", "use one of " + all);
   return {};
 }
 
 void read_from_grid(Config& config, PlantModel& model) {
   for (const char* twice : {"plant.base_mva", "machine", "exciter", "governor", "stabiliser", "limiter"})
-    if (config.has(twice)) config.problem(twice, std::string(twice) + " beside [grid]", "the grid's files give it already", "remove one of them");
+    if (config.has(twice))
+      config.problem(twice, std::string(twice) + " beside [grid]", "the grid's files give it already",
+                     "remove one of them");
   const fs::path raw = config.file("grid.raw"), dyr = config.file("grid.dyr");
   const auto bus = config.require<std::int64_t>("grid.bus", {1.0});
   const auto id = config.optional<std::string>("grid.id", "");
@@ -87,7 +96,8 @@ std::string slurp(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;
   if (fs::is_directory(file) || !(text << in.rdbuf()))
-    throw InputError({"no readable plant file", file.string(), "it cannot be opened or is empty", "give the path of a plant .toml"});
+    throw InputError({"no readable plant file", file.string(), "it cannot be opened or is empty",
+                      "give the path of a plant .toml"});
   return text.str();
 }
 

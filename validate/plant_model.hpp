@@ -1,6 +1,6 @@
 #pragma once
-// The model of one plant, as the commands that work on records take it: a .toml file that names the effects and every
-// parameter, or one generator of a PSS/E grid.
+// The model of one plant, as the commands that work on records take it: a .toml file that names the effects
+// and every parameter, or one generator of a PSS/E grid.
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -11,16 +11,17 @@
 namespace swingbank::validate {
 
 struct PlantModel {
-  std::string name, origin;      ///< origin: the file it was read from
-  std::uint64_t hash = 0;        ///< XXH64 of that file's bytes
-  sim::Plant plant;              ///< its generation is set from each record
+  std::string name, origin;  ///< origin: the file it was read from
+  std::uint64_t hash = 0;    ///< XXH64 of that file's bytes
+  sim::Plant plant;          ///< its generation is set from each record
   sim::Conventions conventions;
-  RecordBase record_base;        ///< what "pu" means in the records of this plant
+  RecordBase record_base;  ///< what "pu" means in the records of this plant
 };
 
-/// Reads a plant file (configs/plants/README.md describes it). Every parameter of every effect must be given by name;
-/// nothing is defaulted. Throws InputError with every fault of the file: unknown keys, effects or parameters (the known
-/// ones are listed), missing ones, wrong types, values outside what is physically possible, inconsistent values.
+/// Reads a plant file (configs/plants/README.md describes it). Every parameter of every effect must be given
+/// by name; nothing is defaulted. Throws InputError with every fault of the file: unknown keys, effects or
+/// parameters (the known ones are listed), missing ones, wrong types, values outside what is physically
+/// possible, inconsistent values.
 PlantModel load_plant_model(const std::filesystem::path& file);
 
 }  // namespace swingbank::validate

@@ -1,9 +1,9 @@
 #include "validate/play_in.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 #include "sim/solve/plant_equations.hpp"
 #include "sim/solve/tableau.hpp"
@@ -35,7 +35,13 @@ double angle_drift(const Record& r, int n) {
 class DrivenPlant {
  public:
   DrivenPlant(const sim::Plant& plant, const sim::Operating& start, double drift)
-      : equations_(plant), c_(start.c), r_(start.r), x_(start.xs), Efd_(start.Efd), Tm_(start.Tm), drift_(drift),
+      : equations_(plant),
+        c_(start.c),
+        r_(start.r),
+        x_(start.xs),
+        Efd_(start.Efd),
+        Tm_(start.Tm),
+        drift_(drift),
         scratch_(static_cast<std::size_t>(equations_.scratch())) {}
 
   [[nodiscard]] int states() const { return equations_.states(); }
@@ -67,11 +73,12 @@ class DrivenPlant {
   std::vector<double> scratch_;
 };
 
-/// Dormand-Prince 5(4) with step control, from instant to instant; no step crosses an instant asked for, so steps end
-/// on the spline's knots and at the switchings.
+/// Dormand-Prince 5(4) with step control, from instant to instant; no step crosses an instant asked for, so
+/// steps end on the spline's knots and at the switchings.
 class Integrator {
  public:
-  Integrator(DrivenPlant& plant, const VoltageCurve& curve, const PlayInOptions& options, std::vector<double> x)
+  Integrator(DrivenPlant& plant, const VoltageCurve& curve, const PlayInOptions& options,
+             std::vector<double> x)
       : plant_(plant), curve_(curve), options_(options), x_(std::move(x)), trial_(x_.size()) {
     for (auto& k : k_) k.resize(x_.size());
   }
@@ -92,8 +99,10 @@ class Integrator {
       } else if (h < 1e-9) {
         give_up(t);
       }
-      const double factor = std::isfinite(error) ? std::clamp(0.9 * std::pow(error + 1e-12, -0.2), 0.2, 5.0) : 0.2;
-      const bool cut_short = reaches && error <= 1;  // the step was short for the instant's sake, not the error's
+      const double factor =
+          std::isfinite(error) ? std::clamp(0.9 * std::pow(error + 1e-12, -0.2), 0.2, 5.0) : 0.2;
+      const bool cut_short =
+          reaches && error <= 1;  // the step was short for the instant's sake, not the error's
       h_ = cut_short ? std::max(h_, h * factor) : h * factor;
       if (++steps_ > options_.step_limit) give_up(t);
     }
@@ -125,7 +134,8 @@ class Integrator {
   }
 
   [[noreturn]] void give_up(double t) const {
-    throw InputError({"play-in stops", fmt::format("t = {:.4f} s", t), "the plant's equations cannot be integrated further with this voltage",
+    throw InputError({"play-in stops", fmt::format("t = {:.4f} s", t),
+                      "the plant's equations cannot be integrated further with this voltage",
                       "check the parameters (time constants, limits) and the record at that time"});
   }
 
@@ -140,18 +150,22 @@ class Integrator {
 
 }  // namespace
 
-OperatingPoint pre_event_point(const Record& record, const std::vector<Switching>& switchings, double pre_event) {
+OperatingPoint pre_event_point(const Record& record, const std::vector<Switching>& switchings,
+                               double pre_event) {
   const double until = switchings.empty() ? record.t.front() + pre_event : switchings.front().time;
   OperatingPoint point;
-  while (point.samples < record.samples() && record.t[static_cast<std::size_t>(point.samples)] <= until + 1e-4 * record.step())
+  while (point.samples < record.samples() &&
+         record.t[static_cast<std::size_t>(point.samples)] <= until + 1e-4 * record.step())
     ++point.samples;
   const int n = point.samples;
   if (n < kFewestSteady)
-    throw InputError({fmt::format("{} samples before the event", n), record.name, fmt::format("the operating point is a mean over at least {}", kFewestSteady),
+    throw InputError({fmt::format("{} samples before the event", n), record.name,
+                      fmt::format("the operating point is a mean over at least {}", kFewestSteady),
                       "give a record that starts earlier, or a longer --pre-event"});
   point.drift = angle_drift(record, n);
   for (int k = 0; k < n; ++k) {
-    point.voltage += std::polar(record.V[k], record.theta[k] - point.drift * record.t[k]) / static_cast<double>(n);
+    point.voltage +=
+        std::polar(record.V[k], record.theta[k] - point.drift * record.t[k]) / static_cast<double>(n);
     point.P += record.P[k] / n;
     point.Q += record.Q[k] / n;
   }
@@ -164,7 +178,8 @@ Playback play_in(const sim::Plant& plant, const sim::Conventions& conventions, c
   back.start = pre_event_point(record, curve.switchings(), options.pre_event);
   sim::Plant started = plant;
   started.generation = {back.start.P, back.start.Q};
-  const sim::Operating start = sim::operating_point(started, back.start.voltage, record.base.mva, conventions);
+  const sim::Operating start =
+      sim::operating_point(started, back.start.voltage, record.base.mva, conventions);
   DrivenPlant driven(started, start, back.start.drift);
   Integrator integrator(driven, curve, options, start.x);
   const double to_record = plant.mva / record.base.mva;

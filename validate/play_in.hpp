@@ -1,6 +1,6 @@
 #pragma once
-// Play-in: the recorded terminal voltage drives a plant's equations, and the P and Q they answer with are set beside
-// the measured ones. No network is needed; what the network did is in the voltage.
+// Play-in: the recorded terminal voltage drives a plant's equations, and the P and Q they answer with are set
+// beside the measured ones. No network is needed; what the network did is in the voltage.
 #include <array>
 #include <limits>
 #include <vector>
@@ -12,42 +12,47 @@
 namespace swingbank::validate {
 
 struct PlayInOptions {
-  double tolerance = 1e-10;    ///< error per step, relative to 1 + |state|
-  double pre_event = 1.0;      ///< length of the pre-event window where nothing was switched [s]
+  double tolerance = 1e-10;  ///< error per step, relative to 1 + |state|
+  double pre_event = 1.0;    ///< length of the pre-event window where nothing was switched [s]
   double until = std::numeric_limits<double>::infinity();  ///< samples after it are left out [s]
-  int step_limit = 2'000'000;  ///< steps of the integrator before it gives up
+  int step_limit = 2'000'000;                              ///< steps of the integrator before it gives up
 };
 
 /// Mean terminal state before the event: where the model starts.
 struct OperatingPoint {
-  int samples = 0;         ///< of the pre-event window, from the record's first
-  Complex voltage;         ///< at t = 0 of the record [pu]
-  double P = 0, Q = 0;     ///< [pu on the record's base]
-  double drift = 0;        ///< slope of theta [rad/s]; 0 where it cannot be told from noise
+  int samples = 0;      ///< of the pre-event window, from the record's first
+  Complex voltage;      ///< at t = 0 of the record [pu]
+  double P = 0, Q = 0;  ///< [pu on the record's base]
+  double drift = 0;     ///< slope of theta [rad/s]; 0 where it cannot be told from noise
 };
 
-/// Mean of the samples before the first switching, or of the first `pre_event` seconds where there is none. Throws
-/// InputError if that leaves fewer than 5 samples.
-OperatingPoint pre_event_point(const Record& record, const std::vector<Switching>& switchings, double pre_event);
+/// Mean of the samples before the first switching, or of the first `pre_event` seconds where there is none.
+/// Throws InputError if that leaves fewer than 5 samples.
+OperatingPoint pre_event_point(const Record& record, const std::vector<Switching>& switchings,
+                               double pre_event);
 
-/// What the model answered, at the record's instants up to `until`; per unit on the record's base, Efd and Ifd on the machine's.
+/// What the model answered, at the record's instants up to `until`; per unit on the record's base, Efd and
+/// Ifd on the machine's.
 struct Playback {
   OperatingPoint start;
   std::vector<double> P, Q, speed, Efd, Ifd;
   int steps = 0;  ///< of the integrator
 };
 
-/// Plays the curve into the plant. The plant starts in equilibrium at the pre-event mean; empty exciter and governor
-/// slots hold Efd and Tm there. Where the pre-event angle turns evenly, the frame turns with it. Throws InputError if
-/// the operating point cannot be held, or the equations cannot be integrated (state and time are named).
+/// Plays the curve into the plant. The plant starts in equilibrium at the pre-event mean; empty exciter and
+/// governor slots hold Efd and Tm there. Where the pre-event angle turns evenly, the frame turns with it.
+/// Throws InputError if the operating point cannot be held, or the equations cannot be integrated (state and
+/// time are named).
 Playback play_in(const sim::Plant& plant, const sim::Conventions& conventions, const Record& record,
                  const VoltageCurve& curve, const PlayInOptions& options = {});
 
-/// A record does not say when between two samples the network changed, yet a few milliseconds decide how far the rotor
-/// is thrown. Moves each uncertain instant within its sample interval to where P and Q, up to one second after the last
-/// switching, are met best (least squares, golden section, one instant at a time). Given instants stay. A wrong model
-/// cannot move an instant out of its interval, so it cannot hide behind this by more.
-std::vector<Switching> fit_switchings(const sim::Plant& plant, const sim::Conventions& conventions, const Record& record,
-                                      std::vector<Switching> switchings, const PlayInOptions& options = {});
+/// A record does not say when between two samples the network changed, yet a few milliseconds decide how far
+/// the rotor is thrown. Moves each uncertain instant within its sample interval to where P and Q, up to one
+/// second after the last switching, are met best (least squares, golden section, one instant at a time).
+/// Given instants stay. A wrong model cannot move an instant out of its interval, so it cannot hide behind
+/// this by more.
+std::vector<Switching> fit_switchings(const sim::Plant& plant, const sim::Conventions& conventions,
+                                      const Record& record, std::vector<Switching> switchings,
+                                      const PlayInOptions& options = {});
 
 }  // namespace swingbank::validate

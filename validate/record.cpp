@@ -1,5 +1,6 @@
 #include "validate/record.hpp"
 
+#include <fmt/format.h>
 #include <xxhash.h>
 
 #include <algorithm>
@@ -11,8 +12,6 @@
 #include <optional>
 #include <sstream>
 #include <utility>
-
-#include <fmt/format.h>
 
 namespace swingbank::validate {
 namespace {
@@ -89,7 +88,8 @@ std::optional<Quantity> quantity_of(std::string_view header) {
 
 class Reader {
  public:
-  Reader(std::string_view text, std::string name, const RecordBase& base) : text_(text), name_(std::move(name)) {
+  Reader(std::string_view text, std::string name, const RecordBase& base)
+      : text_(text), name_(std::move(name)) {
     record_.name = name_;
     record_.base = base;
   }
@@ -98,7 +98,8 @@ class Reader {
     if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);  // byte order mark of spreadsheet programs
     std::string_view line;
     if (!next(line)) {
-      problems_.add("empty record", name_, "there is no header line", "give a CSV file with a header such as t_s,V_pu,theta_rad,P_pu,Q_pu");
+      problems_.add("empty record", name_, "there is no header line",
+                    "give a CSV file with a header such as t_s,V_pu,theta_rad,P_pu,Q_pu");
       problems_.raise();
     }
     header(line);
@@ -126,36 +127,43 @@ class Reader {
 
   void header(std::string_view line) {
     if (line.find(',') == std::string_view::npos && line.find(';') != std::string_view::npos)
-      problems_.add("semicolons between the columns", where(number_), "a record is comma-separated with decimal points", "export it with commas");
+      problems_.add("semicolons between the columns", where(number_),
+                    "a record is comma-separated with decimal points", "export it with commas");
     problems_.raise();
     for (const auto cell : split(line)) name_column(cell);
     for (const auto q : kRequired)
       if (!used_[static_cast<int>(q)])
-        problems_.add("no column " + names_of(q), where(number_), "play-in needs time, voltage, angle, P and Q", "add the column, named with its unit");
+        problems_.add("no column " + names_of(q), where(number_),
+                      "play-in needs time, voltage, angle, P and Q", "add the column, named with its unit");
   }
 
   void name_column(std::string_view cell) {
-    const auto known = std::ranges::find_if(kColumns, [&](const Column& c) { return lower(c.name) == lower(cell); });
+    const auto known =
+        std::ranges::find_if(kColumns, [&](const Column& c) { return lower(c.name) == lower(cell); });
     columns_.push_back(known == std::end(kColumns) ? nullptr : &*known);
     if (known == std::end(kColumns)) {
       if (const auto q = quantity_of(cell)) {
         used_[static_cast<int>(*q)] = true;  // it is there, if not usable: do not call it missing too
-        problems_.add(fmt::format("column '{}'", cell), where(number_), "its unit is missing or not known", "name it one of " + names_of(*q));
+        problems_.add(fmt::format("column '{}'", cell), where(number_), "its unit is missing or not known",
+                      "name it one of " + names_of(*q));
       } else {
         record_.ignored.emplace_back(cell);
       }
       return;
     }
     if (std::exchange(used_[static_cast<int>(known->quantity)], true))
-      problems_.add(fmt::format("column '{}'", cell), where(number_), "another column gives the same quantity", "leave one of " + names_of(known->quantity));
+      problems_.add(fmt::format("column '{}'", cell), where(number_),
+                    "another column gives the same quantity", "leave one of " + names_of(known->quantity));
     if (known->unit == U::kilovolt && !(record_.base.kv > 0))
-      problems_.add("column 'V_kV'", where(number_), "the model names no base_kv for records", "add base_kv under [record] in the plant file, or give V_pu");
+      problems_.add("column 'V_kV'", where(number_), "the model names no base_kv for records",
+                    "add base_kv under [record] in the plant file, or give V_pu");
   }
 
   void row(std::string_view line) {
     const auto cells = split(line);
     if (cells.size() != columns_.size()) {
-      fault(fmt::format("{} values", cells.size()), number_, fmt::format("the header has {} columns", columns_.size()), "complete the line or remove it");
+      fault(fmt::format("{} values", cells.size()), number_,
+            fmt::format("the header has {} columns", columns_.size()), "complete the line or remove it");
       return;
     }
     for (std::size_t i = 0; i < cells.size(); ++i)
@@ -167,29 +175,42 @@ class Reader {
     double v = std::numeric_limits<double>::quiet_NaN();
     const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), v);
     if (cell.empty() || error != std::errc{} || end != cell.data() + cell.size())
-      fault(fmt::format("{} = '{}'", column.name, cell), number_, cell.empty() ? "the value is missing" : "this is no number", "cut the record before it, or export it again");
+      fault(fmt::format("{} = '{}'", column.name, cell), number_,
+            cell.empty() ? "the value is missing" : "this is no number",
+            "cut the record before it, or export it again");
     else if (!std::isfinite(v))
-      fault(fmt::format("{} = {}", column.name, cell), number_, "the value is not finite", "cut the record before it, or export it again");
+      fault(fmt::format("{} = {}", column.name, cell), number_, "the value is not finite",
+            "cut the record before it, or export it again");
     else if (column.quantity == Quantity::V && v < 0)
-      fault(fmt::format("{} = {}", column.name, cell), number_, "a magnitude cannot be negative", "give V as a magnitude and theta as its angle");
+      fault(fmt::format("{} = {}", column.name, cell), number_, "a magnitude cannot be negative",
+            "give V as a magnitude and theta as its angle");
     return convert(column.unit, v);
   }
 
   [[nodiscard]] double convert(U unit, double v) const {
     switch (unit) {
-      case U::plain: return v;
-      case U::milli: return v * 1e-3;
-      case U::degrees: return v * std::numbers::pi / 180;
-      case U::kilovolt: return v / record_.base.kv;
-      case U::megawatt: return v / record_.base.mva;
-      case U::hertz: return v / record_.base.frequency - 1;
-      case U::absolute: return v - 1;
+      case U::plain:
+        return v;
+      case U::milli:
+        return v * 1e-3;
+      case U::degrees:
+        return v * std::numbers::pi / 180;
+      case U::kilovolt:
+        return v / record_.base.kv;
+      case U::megawatt:
+        return v / record_.base.mva;
+      case U::hertz:
+        return v / record_.base.frequency - 1;
+      case U::absolute:
+        return v - 1;
     }
     return v;
   }
 
   std::vector<double>& channel(Quantity q) {
-    std::vector<double>* all[kQuantities] = {&record_.t, &record_.V, &record_.theta, &record_.f, &record_.P, &record_.Q, &record_.speed, &record_.Efd, &record_.Ifd};
+    std::vector<double>* all[kQuantities] = {&record_.t,     &record_.V,   &record_.theta,
+                                             &record_.f,     &record_.P,   &record_.Q,
+                                             &record_.speed, &record_.Efd, &record_.Ifd};
     return *all[static_cast<int>(q)];
   }
 
@@ -197,7 +218,8 @@ class Reader {
   void check_times() {
     const auto& t = record_.t;
     if (record_.samples() < kFewestSamples) {
-      fault(fmt::format("{} samples", record_.samples()), number_, fmt::format("a record needs at least {}", kFewestSamples), "give a longer record");
+      fault(fmt::format("{} samples", record_.samples()), number_,
+            fmt::format("a record needs at least {}", kFewestSamples), "give a longer record");
       return;
     }
     std::vector<double> steps(t.size() - 1);
@@ -208,9 +230,13 @@ class Reader {
     for (std::size_t i = 0; i < steps.size(); ++i) {
       if (!std::isfinite(steps[i])) continue;  // already reported as a value
       if (!(steps[i] > 0))
-        fault(fmt::format("t = {} s after t = {} s", t[i + 1], t[i]), lines_[i + 1], steps[i] == 0 ? "the time is repeated" : "time runs backwards", "sort the record and remove repeated lines");
+        fault(fmt::format("t = {} s after t = {} s", t[i + 1], t[i]), lines_[i + 1],
+              steps[i] == 0 ? "the time is repeated" : "time runs backwards",
+              "sort the record and remove repeated lines");
       else if (usual > 0 && std::abs(steps[i] - usual) > 0.01 * usual)
-        fault(fmt::format("a step of {:.6g} s", steps[i]), lines_[i + 1], fmt::format("elsewhere samples are {:.6g} s apart", usual), "fill gaps at the source, and give times with at least 5 decimals");
+        fault(fmt::format("a step of {:.6g} s", steps[i]), lines_[i + 1],
+              fmt::format("elsewhere samples are {:.6g} s apart", usual),
+              "fill gaps at the source, and give times with at least 5 decimals");
     }
   }
 
@@ -225,7 +251,9 @@ class Reader {
     if (++faults_ <= kShown) problems_.add(std::move(what), where(line), std::move(why), std::move(remedy));
   }
   void raise() {
-    if (faults_ > kShown) problems_.add(fmt::format("{} further faults", faults_ - kShown), name_, "the list is cut here", "mend the ones above first");
+    if (faults_ > kShown)
+      problems_.add(fmt::format("{} further faults", faults_ - kShown), name_, "the list is cut here",
+                    "mend the ones above first");
     problems_.raise();
   }
 
@@ -252,7 +280,8 @@ Record read_record(const std::filesystem::path& file, const RecordBase& base) {
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;
   if (!in || !(text << in.rdbuf()))
-    throw InputError({"no readable record", file.string(), "the file cannot be opened or is empty", "give the path of a CSV record"});
+    throw InputError({"no readable record", file.string(), "the file cannot be opened or is empty",
+                      "give the path of a CSV record"});
   Record record = parse_record(text.str(), file.string(), base);
   record.name = file.filename().string();
   return record;

@@ -1,5 +1,6 @@
 #pragma once
-// A PMU record of one plant's terminal: what was measured, uniformly sampled, with its units settled on reading.
+// A PMU record of one plant's terminal: what was measured, uniformly sampled, with its units settled on
+// reading.
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -19,8 +20,8 @@ struct RecordBase {
 
 /// Samples of one terminal. All vectors have the length of `t`; optional channels are empty if not recorded.
 struct Record {
-  std::string name;                  ///< file name without folder
-  std::uint64_t hash = 0;            ///< XXH64 of the file's bytes
+  std::string name;        ///< file name without folder
+  std::uint64_t hash = 0;  ///< XXH64 of the file's bytes
   RecordBase base;
   std::vector<double> t;             ///< [s], increasing, uniform
   std::vector<double> V, theta;      ///< [pu], [rad] (unwrapped)
@@ -38,10 +39,10 @@ struct Record {
 /// Fewest samples a record may have: a pre-event window and a response cannot be told from less.
 constexpr int kFewestSamples = 30;
 
-/// Reads a CSV record. The header names each column with its unit (validate/README.md lists the names); columns that
-/// are not measurements of the terminal are left out and listed in `ignored`. Throws InputError with every fault of
-/// the file: missing, repeated or unitless columns, ragged lines, values that are no finite numbers, times that do not
-/// increase or are unevenly spaced, too few samples. Each names its line.
+/// Reads a CSV record. The header names each column with its unit (validate/README.md lists the names);
+/// columns that are not measurements of the terminal are left out and listed in `ignored`. Throws InputError
+/// with every fault of the file: missing, repeated or unitless columns, ragged lines, values that are no
+/// finite numbers, times that do not increase or are unevenly spaced, too few samples. Each names its line.
 Record read_record(const std::filesystem::path& file, const RecordBase& base);
 
 /// The same from text; `name` stands for the file in messages.

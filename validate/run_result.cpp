@@ -1,12 +1,13 @@
 #include "validate/run_result.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <tuple>
-
-#include <fmt/format.h>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 namespace swingbank::validate {
 namespace {
@@ -17,7 +18,8 @@ using nlohmann::json;
 /// Reads keys of one JSON object, collecting what is missing or of the wrong type.
 class Object {
  public:
-  Object(const json& object, std::string where, Problems& problems) : object_(object), where_(std::move(where)), problems_(problems) {}
+  Object(const json& object, std::string where, Problems& problems)
+      : object_(object), where_(std::move(where)), problems_(problems) {}
 
   template <class T>
   void get(const char* key, T& value) {
@@ -32,7 +34,8 @@ class Object {
       if (!std::isfinite(value)) fault(key, "it is not finite");
   }
   void fault(const char* key, const std::string& why) {
-    problems_.add(fmt::format("key '{}'", key), where_, why, "write the result again with this version's swingbank train");
+    problems_.add(fmt::format("key '{}'", key), where_, why,
+                  "write the result again with this version's swingbank train");
   }
   [[nodiscard]] const json& value() const { return object_; }
 
@@ -53,7 +56,8 @@ void read_parameters(Object& o, const std::string& where, RunResult& r, Problems
     p.get("unit", score.unit);
     p.get("mse", score.mse);
     p.get("variance", score.variance);
-    if (item.contains("relative") && item["relative"].is_number()) score.relative = item["relative"].get<double>();
+    if (item.contains("relative") && item["relative"].is_number())
+      score.relative = item["relative"].get<double>();
     r.parameters.push_back(std::move(score));
   }
 }
@@ -64,7 +68,8 @@ RunResult read_result(const fs::path& file, Problems& problems) {
   std::ifstream in(file);
   const json parsed = json::parse(in, nullptr, false);
   if (!parsed.is_object()) {
-    problems.add("no JSON object", file.string(), "the file is damaged or is no result", "remove it or make the run again");
+    problems.add("no JSON object", file.string(), "the file is damaged or is no result",
+                 "remove it or make the run again");
     return r;
   }
   Object o(parsed, file.string(), problems);
@@ -90,14 +95,19 @@ RunResult read_result(const fs::path& file, Problems& problems) {
   o.get("mse_varied_only", r.mse_varied_only);
   o.get("baseline_mse", r.baseline_mse);
   o.get("ratio", r.ratio);
-  o.get("H_ratio", r.H_ratio);
+  if (parsed.contains("H_ratio") && parsed["H_ratio"].is_null())
+    r.H_ratio = std::numeric_limits<double>::quiet_NaN();  // H does not vary in that dataset
+  else
+    o.get("H_ratio", r.H_ratio);
   o.get("shuffled_labels", r.shuffled);
   o.get("software", r.software);
   read_parameters(o, file.string(), r, problems);
   return r;
 }
 
-auto identity(const RunResult& r) { return std::tie(r.table, r.network, r.preset, r.config_hash, r.rows, r.seed, r.generator, r.shuffled); }
+auto identity(const RunResult& r) {
+  return std::tie(r.table, r.network, r.preset, r.dataset_hash, r.rows, r.seed, r.generator, r.shuffled);
+}
 
 }  // namespace
 
@@ -110,7 +120,8 @@ std::vector<RunResult> read_results(const std::vector<fs::path>& folders) {
     for (const auto& entry : fs::directory_iterator(folder, error))
       if (entry.path().extension() == ".json") files.push_back(entry.path());
     if (error || files.empty())
-      problems.add("no results", folder.string(), error ? error.message() : "there is no .json file in it", "give a folder that swingbank train or cross-validate wrote");
+      problems.add("no results", folder.string(), error ? error.message() : "there is no .json file in it",
+                   "give a folder that swingbank train or cross-validate wrote");
     std::ranges::sort(files);
     for (const auto& file : files) results.push_back(read_result(file, problems));
   }
@@ -118,7 +129,8 @@ std::vector<RunResult> read_results(const std::vector<fs::path>& folders) {
   for (std::size_t i = 0; i < results.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (identity(results[i]) == identity(results[j]))
-        problems.add("a second result of the same run", results[i].file.string(), "it is also in " + results[j].file.string(), "give one of the folders");
+        problems.add("a second result of the same run", results[i].file.string(),
+                     "it is also in " + results[j].file.string(), "give one of the folders");
   problems.raise();
   return results;
 }

@@ -1,6 +1,6 @@
 #pragma once
-// The thesis's Tables IV, V and VI, reproduced: each of our figures beside the thesis's and beside what a constant guess
-// scores. A run that was not made is shown as missing.
+// The thesis's Tables IV, V and VI, reproduced: each of our figures beside the thesis's and beside what a
+// constant guess scores. A run that was not made is shown as missing.
 #include <string>
 #include <vector>
 

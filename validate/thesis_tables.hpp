@@ -1,6 +1,6 @@
 #pragma once
-// Results of Y. Wu, "Model Parameter Calibration in Power Systems", University of Vermont, 2020, chapter 4: the figures
-// ours stand beside. Mean squared error over the parameters in raw units, on test data.
+// Results of Y. Wu, "Model Parameter Calibration in Power Systems", University of Vermont, 2020, chapter 4:
+// the figures ours stand beside. Mean squared error over the parameters in raw units, on test data.
 #include <array>
 #include <string_view>
 
@@ -23,29 +23,14 @@ struct ThesisCell {
   double seconds_per_epoch;  ///< 0: not given
 };
 inline constexpr std::array<ThesisCell, 23> kThesisCells = {{
-    {"IV", "cnn", 0, 0.017, 525},
-    {"IV", "lstm", 0, 0.026, 1915},
-    {"IV", "gru", 0, 0.0079, 1789},
-    {"V", "cnn", 30, 0.008, 0},
-    {"V", "cnn", 31, 0.02, 0},
-    {"V", "cnn", 32, 0.008, 0},
-    {"V", "cnn", 33, 0.007, 0},
-    {"V", "cnn", 34, 0.0098, 0},
-    {"V", "cnn", 35, 0.006, 0},
-    {"V", "cnn", 36, 0.02, 0},
-    {"V", "cnn", 37, 0.008, 0},
-    {"V", "cnn", 38, 0.009, 0},
-    {"V", "cnn", 39, 0.43, 0},
-    {"VI", "cnn", 30, 0.11, 0},
-    {"VI", "cnn", 31, 0.16, 0},
-    {"VI", "cnn", 32, 0.11, 0},
-    {"VI", "cnn", 33, 0.11, 0},
-    {"VI", "cnn", 34, 0.13, 0},
-    {"VI", "cnn", 35, 0.55, 0},
-    {"VI", "cnn", 36, 0.12, 0},
-    {"VI", "cnn", 37, 0.11, 0},
-    {"VI", "cnn", 38, 0.11, 0},
-    {"VI", "cnn", 39, 0.19, 0},
+    {"IV", "cnn", 0, 0.017, 525}, {"IV", "lstm", 0, 0.026, 1915}, {"IV", "gru", 0, 0.0079, 1789},
+    {"V", "cnn", 30, 0.008, 0},   {"V", "cnn", 31, 0.02, 0},      {"V", "cnn", 32, 0.008, 0},
+    {"V", "cnn", 33, 0.007, 0},   {"V", "cnn", 34, 0.0098, 0},    {"V", "cnn", 35, 0.006, 0},
+    {"V", "cnn", 36, 0.02, 0},    {"V", "cnn", 37, 0.008, 0},     {"V", "cnn", 38, 0.009, 0},
+    {"V", "cnn", 39, 0.43, 0},    {"VI", "cnn", 30, 0.11, 0},     {"VI", "cnn", 31, 0.16, 0},
+    {"VI", "cnn", 32, 0.11, 0},   {"VI", "cnn", 33, 0.11, 0},     {"VI", "cnn", 34, 0.13, 0},
+    {"VI", "cnn", 35, 0.55, 0},   {"VI", "cnn", 36, 0.12, 0},     {"VI", "cnn", 37, 0.11, 0},
+    {"VI", "cnn", 38, 0.11, 0},   {"VI", "cnn", 39, 0.19, 0},
 }};
 /// Section 4.1.1: EPRI's PPPD on ten test events of the Table IV data, and the CNN on the same events.
 inline constexpr double kThesisPppd = 2.6, kThesisCnnOnPppdEvents = 0.018;

@@ -1,9 +1,9 @@
 #include "validate/voltage_curve.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 namespace swingbank::validate {
 namespace {
@@ -16,8 +16,9 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Second derivatives of the not-a-knot cubic through n >= 4 knots: the third derivative is continuous at the second
-/// and the last but one. Tridiagonal after the end values are eliminated (de Boor, A Practical Guide to Splines, IV).
+/// Second derivatives of the not-a-knot cubic through n >= 4 knots: the third derivative is continuous at the
+/// second and the last but one. Tridiagonal after the end values are eliminated (de Boor, A Practical Guide
+/// to Splines, IV).
 std::vector<Complex> not_a_knot(const std::vector<double>& t, const std::vector<Complex>& v) {
   const std::size_t n = t.size();
   std::vector<double> h(n - 1), low(n), diagonal(n), high(n);
@@ -67,7 +68,8 @@ std::vector<Switching> detect_switchings(const Record& record, double threshold)
   return found;
 }
 
-VoltageCurve::VoltageCurve(const Record& record, std::vector<Switching> switchings) : switchings_(std::move(switchings)) {
+VoltageCurve::VoltageCurve(const Record& record, std::vector<Switching> switchings)
+    : switchings_(std::move(switchings)) {
   std::ranges::sort(switchings_, {}, &Switching::time);
   const double slack = 1e-4 * record.step();  // what printing times with 6 decimals leaves
   Problems problems;
@@ -82,11 +84,14 @@ VoltageCurve::VoltageCurve(const Record& record, std::vector<Switching> switchin
     };
     if (s > 0 && switchings_[s - 1].has_after) add(switchings_[s - 1].time, switchings_[s - 1].after);
     for (; k < record.t.size() && (is_last || record.t[k] <= segment.end + slack); ++k)
-      if (is_last || !switchings_[s].has_before || record.t[k] < segment.end - slack) add(record.t[k], phasor(record, k));
+      if (is_last || !switchings_[s].has_before || record.t[k] < segment.end - slack)
+        add(record.t[k], phasor(record, k));
     if (!is_last && switchings_[s].has_before) add(segment.end, switchings_[s].before);
     if (segment.t.empty())
-      problems.add(fmt::format("no sample between t = {:g} s and t = {:g} s", s > 0 ? switchings_[s - 1].time : record.t.front(), segment.end),
-                   record.name, "the voltage there cannot be known", "give switching instants inside the record, with a sample between them");
+      problems.add(fmt::format("no sample between t = {:g} s and t = {:g} s",
+                               s > 0 ? switchings_[s - 1].time : record.t.front(), segment.end),
+                   record.name, "the voltage there cannot be known",
+                   "give switching instants inside the record, with a sample between them");
     else
       fit(segment);
     segments_.push_back(std::move(segment));
@@ -99,7 +104,8 @@ void VoltageCurve::fit(Segment& segment) {
   const auto& v = segment.v;
   segment.slope2.assign(t.size(), Complex{});
   if (t.size() == 3) {
-    const Complex curve = 2.0 * ((v[2] - v[1]) / (t[2] - t[1]) - (v[1] - v[0]) / (t[1] - t[0])) / (t[2] - t[0]);
+    const Complex curve =
+        2.0 * ((v[2] - v[1]) / (t[2] - t[1]) - (v[1] - v[0]) / (t[1] - t[0])) / (t[2] - t[0]);
     segment.slope2.assign(3, curve);
   } else if (t.size() > 3) {
     segment.slope2 = not_a_knot(t, v);

@@ -9,7 +9,8 @@ namespace swingbank::validate {
 
 using Complex = std::complex<double>;
 
-/// An instant at which the network changed. The voltage jumps there; samples at `time` itself count as before it.
+/// An instant at which the network changed. The voltage jumps there; samples at `time` itself count as before
+/// it.
 struct Switching {
   double time = 0;         ///< [s]
   double uncertainty = 0;  ///< it lies within time ± uncertainty [s]; 0: known
@@ -20,14 +21,14 @@ struct Switching {
 /// Steps of the voltage larger than this [pu] in one sample interval are taken for switching.
 constexpr double kJumpThreshold = 0.02;
 
-/// Finds the sample intervals in which the voltage jumps: its step differs from both neighbouring steps by more than
-/// `threshold` [pu] and more than ten times the usual difference (noise). Each is placed in the middle of its
-/// interval, with half the interval as uncertainty.
+/// Finds the sample intervals in which the voltage jumps: its step differs from both neighbouring steps by
+/// more than `threshold` [pu] and more than ten times the usual difference (noise). Each is placed in the
+/// middle of its interval, with half the interval as uncertainty.
 std::vector<Switching> detect_switchings(const Record& record, double threshold = kJumpThreshold);
 
-/// Cubic spline (not-a-knot) through the voltage phasors of each segment, extrapolated to its ends. Phasors, not V and
-/// theta: they stay smooth where V is near zero and theta turns. Segments of 3, 2 or 1 points get the parabola, line
-/// or constant through them.
+/// Cubic spline (not-a-knot) through the voltage phasors of each segment, extrapolated to its ends. Phasors,
+/// not V and theta: they stay smooth where V is near zero and theta turns. Segments of 3, 2 or 1 points get
+/// the parabola, line or constant through them.
 class VoltageCurve {
  public:
   /// Throws InputError if switchings lie outside the record or leave a segment without any point.

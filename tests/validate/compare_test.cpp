@@ -17,7 +17,9 @@ using ::testing::HasSubstr;
 PlantModel example_model() { return load_plant_model(test::source("configs/plants/ieee14_bus2.toml")); }
 EventComparison example_event(const CompareOptions& options = {}) {
   const PlantModel model = example_model();
-  return compare_event(model, read_record(test::source("configs/records/record-example/avr_ev1.csv"), model.record_base), options);
+  return compare_event(
+      model, read_record(test::source("configs/records/record-example/avr_ev1.csv"), model.record_base),
+      options);
 }
 std::vector<std::string> names(const std::vector<Window>& windows) {
   std::vector<std::string> all;
@@ -25,7 +27,8 @@ std::vector<std::string> names(const std::vector<Window>& windows) {
   return all;
 }
 
-/// The right model of a simulated event, instants off the samples, noise 0.1 %: nothing but noise may be left.
+/// The right model of a simulated event, instants off the samples, noise 0.1 %: nothing but noise may be
+/// left.
 struct RightModel {
   test::Simulated s = test::simulate("ieee39_genrou", sim::Conventions::psse(), 16, 2.0062, 2.1131);
   PlantModel model;
@@ -53,7 +56,8 @@ TEST(CompareTest, ARightModelLeavesTheNoise) {
 }
 TEST(CompareTest, AWrongParameterShowsAndDoesNotBendTheInstants) {
   RightModel wrong;
-  wrong.model.plant.machine.p[static_cast<std::size_t>(wrong.model.plant.machine.effect->parameter_index("H"))] *= 1.3;
+  wrong.model.plant.machine
+      .p[static_cast<std::size_t>(wrong.model.plant.machine.effect->parameter_index("H"))] *= 1.3;
   const EventComparison e = compare_event(wrong.model, wrong.record);
   EXPECT_FALSE(e.fitted);
   EXPECT_GT(e.channels[0].whole.in_noise, 3);
@@ -73,13 +77,15 @@ TEST(CompareTest, AMissingExciterShowsInQ) {
 }
 TEST(CompareTest, WindowsFollowTheSwitchings) {
   const EventComparison e = example_event();
-  EXPECT_THAT(names(e.windows), ElementsAre("pre-event", "fault", "0–1 s after", "1–5 s after", "> 5 s after"));
+  EXPECT_THAT(names(e.windows),
+              ElementsAre("pre-event", "fault", "0–1 s after", "1–5 s after", "> 5 s after"));
   EXPECT_EQ(e.channels[0].windows[0].samples, 121);  // 0 to 2 s at 60/s, both included
   EXPECT_EQ(e.channels[0].windows[1].samples, 6);
   int sum = 0;
   for (const auto& w : e.channels[0].windows) sum += w.samples;
   EXPECT_EQ(sum, e.record.samples());
-  EXPECT_THAT(names(event_windows(e.record, {{.time = 2.0}}, 1.0)), ElementsAre("pre-event", "0–1 s after", "1–5 s after", "> 5 s after"));
+  EXPECT_THAT(names(event_windows(e.record, {{.time = 2.0}}, 1.0)),
+              ElementsAre("pre-event", "0–1 s after", "1–5 s after", "> 5 s after"));
   EXPECT_THAT(names(event_windows(e.record, {}, 14.5)), ElementsAre("pre-event", "0–1 s after"));
 }
 TEST(CompareTest, ResidualIsModelledMinusMeasured) {
@@ -100,12 +106,14 @@ TEST(CompareReportTest, JsonHoldsTheNumbers) {
 }
 TEST(CompareReportTest, PageAsksForNothing) {
   const std::vector<EventComparison> events = {example_event()};
-  const std::string html = html_report(example_model(), events, provenance(example_model(), events, "swingbank compare <x>"));
+  const std::string html =
+      html_report(example_model(), events, provenance(example_model(), events, "swingbank compare <x>"));
   const std::string library(dygraphs_script());
   const auto at = html.find(library);
   ASSERT_NE(at, std::string::npos);
   const std::string own = html.substr(0, at) + html.substr(at + library.size());
-  for (const char* word : {"<link", "src=", "@import", "url(", "http:", "https:"}) EXPECT_EQ(own.find(word), std::string::npos) << word;
+  for (const char* word : {"<link", "src=", "@import", "url(", "http:", "https:"})
+    EXPECT_EQ(own.find(word), std::string::npos) << word;
   EXPECT_EQ(library.find("sourceMappingURL"), std::string::npos);  // what a browser would fetch
   EXPECT_NE(own.find("swingbank compare &lt;x&gt;"), std::string::npos);
   EXPECT_NE(own.find("name=\"viewport\""), std::string::npos);

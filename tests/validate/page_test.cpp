@@ -26,9 +26,11 @@ TEST(PageTest, TextOfUsersIsEscaped) {
   const std::string html = page.html();
   const auto script = html.find("<script>");  // the first one is the library's
   const std::string body = html.substr(0, script);
-  for (const char* raw : {"alert(1)<", "<i>", "<b>", "<u>", "<k>", "<v>", "<c>"}) EXPECT_EQ(body.find(raw), std::string::npos) << raw;
+  for (const char* raw : {"alert(1)<", "<i>", "<b>", "<u>", "<k>", "<v>", "<c>"})
+    EXPECT_EQ(body.find(raw), std::string::npos) << raw;
   std::size_t closing = 0;
-  for (auto at = html.find("</script>"); at != std::string::npos; at = html.find("</script>", at + 1)) ++closing;
+  for (auto at = html.find("</script>"); at != std::string::npos; at = html.find("</script>", at + 1))
+    ++closing;
   EXPECT_EQ(closing, 2u);  // the library and ours: no label has closed one early
 }
 TEST(PageTest, ScriptsOnlyWhereThereAreCurves) {
@@ -50,7 +52,8 @@ TEST(PageTest, BarsSayWhatIsMissing) {
 }
 
 TEST(WriteFileTest, ReplacesWholeFilesOnly) {
-  const auto folder = std::filesystem::temp_directory_path() / ("swingbank_write_" + std::to_string(::getpid()));
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("swingbank_write_" + std::to_string(::getpid()));
   write_file(folder / "deep" / "a.txt", "one");
   write_file(folder / "deep" / "a.txt", "two");
   std::ifstream in(folder / "deep" / "a.txt");
@@ -58,8 +61,10 @@ TEST(WriteFileTest, ReplacesWholeFilesOnly) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / "deep"), {}), 1);  // no temporary left
   // A folder of that name, and a file where a folder should be: refused, nothing changed.
   std::filesystem::create_directories(folder / "b.txt" / "inner");
-  EXPECT_THAT(test::messages([&] { write_file(folder / "b.txt", "x"); }), ElementsAre(HasSubstr("cannot write")));
-  EXPECT_THAT(test::messages([&] { write_file(folder / "deep" / "a.txt" / "c", "x"); }), ElementsAre(HasSubstr("cannot write")));
+  EXPECT_THAT(test::messages([&] { write_file(folder / "b.txt", "x"); }),
+              ElementsAre(HasSubstr("cannot write")));
+  EXPECT_THAT(test::messages([&] { write_file(folder / "deep" / "a.txt" / "c", "x"); }),
+              ElementsAre(HasSubstr("cannot write")));
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 2);
   std::filesystem::remove_all(folder);
 }

@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
 #include <unistd.h>
 
 #include <fstream>
@@ -37,7 +36,8 @@ class PlantModelTest : public ::testing::Test {
     return test::messages([&] { load(text); });
   }
   void TearDown() override { std::filesystem::remove(file_); }
-  std::filesystem::path file_ = std::filesystem::temp_directory_path() / ("swingbank_plant_" + std::to_string(::getpid()) + ".toml");
+  std::filesystem::path file_ =
+      std::filesystem::temp_directory_path() / ("swingbank_plant_" + std::to_string(::getpid()) + ".toml");
 };
 
 TEST_F(PlantModelTest, ReadsTheExample) {
@@ -51,18 +51,28 @@ TEST_F(PlantModelTest, ReadsTheExample) {
   EXPECT_FALSE(m.conventions.speed_voltage);
   EXPECT_TRUE(m.plant.controls.empty());
 }
-TEST_F(PlantModelTest, EveryParameterMustBeThere) { EXPECT_THAT(faults(replaced(example(), "Xqp = 0.6\n", "")), ElementsAre(HasSubstr("machine.Xqp"))); }
-TEST_F(PlantModelTest, UnknownParametersListTheKnownOnes) {
-  EXPECT_THAT(faults(replaced(example(), "Ra = 0.0", "Ra = 0.0\nXddp = 0.2")), ElementsAre(AllOf(HasSubstr("Xddp"), HasSubstr("Xdpp"), HasSubstr("Tqopp"))));
+TEST_F(PlantModelTest, EveryParameterMustBeThere) {
+  EXPECT_THAT(faults(replaced(example(), "Xqp = 0.6\n", "")), ElementsAre(HasSubstr("machine.Xqp")));
 }
-TEST_F(PlantModelTest, UnknownEffectsListTheKnownOnes) { EXPECT_THAT(faults(replaced(example(), "\"GENROU\"", "\"GENROE\"")), Contains(AllOf(HasSubstr("GENROE"), HasSubstr("GENCLS"), HasSubstr("GENROU")))); }
+TEST_F(PlantModelTest, UnknownParametersListTheKnownOnes) {
+  EXPECT_THAT(faults(replaced(example(), "Ra = 0.0", "Ra = 0.0\nXddp = 0.2")),
+              ElementsAre(AllOf(HasSubstr("Xddp"), HasSubstr("Xdpp"), HasSubstr("Tqopp"))));
+}
+TEST_F(PlantModelTest, UnknownEffectsListTheKnownOnes) {
+  EXPECT_THAT(faults(replaced(example(), "\"GENROU\"", "\"GENROE\"")),
+              Contains(AllOf(HasSubstr("GENROE"), HasSubstr("GENCLS"), HasSubstr("GENROU"))));
+}
 TEST_F(PlantModelTest, ValuesMustBePossibleAndConsistent) {
-  EXPECT_THAT(faults(replaced(example(), "H = 6.54", "H = 654")), ElementsAre(AllOf(HasSubstr("H = 654"), HasSubstr("20"))));
-  EXPECT_THAT(faults(replaced(example(), "Xdp = 0.4", "Xdp = 0.1")), ElementsAre(HasSubstr("GENROU divides by X'd - Xl")));
+  EXPECT_THAT(faults(replaced(example(), "H = 6.54", "H = 654")),
+              ElementsAre(AllOf(HasSubstr("H = 654"), HasSubstr("20"))));
+  EXPECT_THAT(faults(replaced(example(), "Xdp = 0.4", "Xdp = 0.1")),
+              ElementsAre(HasSubstr("GENROU divides by X'd - Xl")));
   EXPECT_THAT(faults(replaced(example(), "H = 6.54", "H = \"6.54\"")), ElementsAre(HasSubstr("machine.H")));
 }
 TEST_F(PlantModelTest, AllFaultsAtOnce) {
-  const auto all = faults(replaced(replaced(replaced(example(), "Xqp = 0.6\n", ""), "frequency_hz = 60.0\n", ""), "[record]", "[recordings]"));
+  const auto all =
+      faults(replaced(replaced(replaced(example(), "Xqp = 0.6\n", ""), "frequency_hz = 60.0\n", ""),
+                      "[record]", "[recordings]"));
   EXPECT_THAT(all, Contains(HasSubstr("Xqp")));
   EXPECT_THAT(all, Contains(HasSubstr("frequency_hz")));
   EXPECT_THAT(all, Contains(HasSubstr("record.base_mva")));
@@ -70,17 +80,23 @@ TEST_F(PlantModelTest, AllFaultsAtOnce) {
 }
 TEST_F(PlantModelTest, TakesAGeneratorOfAGrid) {
   const std::string folder = test::source("configs/networks").string();
-  const std::string text = "[plant]\nname = \"31\"\nfrequency_hz = 60.0\nconventions = \"psse\"\n[record]\nbase_mva = 100.0\n[grid]\nraw = \"" + folder +
-                           "/ieee39_genrou.raw\"\ndyr = \"" + folder + "/ieee39_genrou.dyr\"\nbus = 31\n";
-  const sim::Grid grid = sim::load_grid(folder + "/ieee39_genrou.raw", folder + "/ieee39_genrou.dyr", sim::Conventions::psse());
-  const auto wanted = std::find_if(grid.plants.begin(), grid.plants.end(), [](const sim::Plant& p) { return p.name == "31"; });
+  const std::string text =
+      "[plant]\nname = \"31\"\nfrequency_hz = 60.0\nconventions = \"psse\"\n[record]\nbase_mva = "
+      "100.0\n[grid]\nraw = \"" +
+      folder + "/ieee39_genrou.raw\"\ndyr = \"" + folder + "/ieee39_genrou.dyr\"\nbus = 31\n";
+  const sim::Grid grid =
+      sim::load_grid(folder + "/ieee39_genrou.raw", folder + "/ieee39_genrou.dyr", sim::Conventions::psse());
+  const auto wanted = std::find_if(grid.plants.begin(), grid.plants.end(),
+                                   [](const sim::Plant& p) { return p.name == "31"; });
   ASSERT_NE(wanted, grid.plants.end());
   const PlantModel m = load(text);
   EXPECT_EQ(m.plant.machine.p, wanted->machine.p);
   EXPECT_EQ(m.plant.mva, wanted->mva);
-  EXPECT_THAT(faults(replaced(text, "bus = 31", "bus = 31\nid = \"7\"")), ElementsAre(AllOf(HasSubstr("no plant at bus 31 with id 7"), HasSubstr("30, 31"))));
+  EXPECT_THAT(faults(replaced(text, "bus = 31", "bus = 31\nid = \"7\"")),
+              ElementsAre(AllOf(HasSubstr("no plant at bus 31 with id 7"), HasSubstr("30, 31"))));
   EXPECT_THAT(faults(replaced(text, "bus = 31", "bus = 16")), ElementsAre(HasSubstr("no plant at bus 16")));
-  EXPECT_THAT(faults(replaced(text, "name = \"31\"", "name = \"31\"\nbase_mva = 10.0")), Contains(HasSubstr("beside [grid]")));
+  EXPECT_THAT(faults(replaced(text, "name = \"31\"", "name = \"31\"\nbase_mva = 10.0")),
+              Contains(HasSubstr("beside [grid]")));
 }
 
 }  // namespace

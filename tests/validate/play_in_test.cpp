@@ -29,7 +29,8 @@ double playback_error(const test::Simulated& s, int stride, bool one_sided) {
   for (int plant = 0; plant < static_cast<int>(s.grid.plants.size()); ++plant) {
     const Record r = test::record_of(s, plant, stride);
     const VoltageCurve curve(r, test::instants(s, plant, one_sided));
-    const Playback back = play_in(s.grid.plants[static_cast<std::size_t>(plant)], s.grid.conventions, r, curve);
+    const Playback back =
+        play_in(s.grid.plants[static_cast<std::size_t>(plant)], s.grid.conventions, r, curve);
     error = std::max({error, worst(back.P, r.P), worst(back.Q, r.Q)});
   }
   return error;
@@ -42,20 +43,23 @@ const test::Simulated& genrou() {
 }
 
 TEST(PlayInTest, ReproducesEverySimulatedGenrou) {
-  // Spline error at 480/s: 5/384 h^4 V'''' with V'''' about 0.05 pu/(0.05 s)^4, through 1/X'' of about 4: below 1e-8 pu.
+  // Spline error at 480/s: 5/384 h^4 V'''' with V'''' about 0.05 pu/(0.05 s)^4, through 1/X'' of about 4:
+  // below 1e-8 pu.
   EXPECT_LT(playback_error(genrou(), 1, true), 1e-7);
 }
 
 TEST(PlayInTest, ErrorFallsWithTheRate) {
   std::printf("samples/s   one-sided values known   extrapolated   [pu, worst of P and Q, 10 machines]\n");
-  // Fourth order of the spline: 120/s is 4^4 = 256 times worse than 480/s; the bounds leave a factor of about 3 above what
-  // was measured when this was written (6.4e-8, 1.2e-6, 4.1e-5 and, extrapolated, 1.2e-6, 2.6e-5, 1.2e-3).
+  // Fourth order of the spline: 120/s is 4^4 = 256 times worse than 480/s; the bounds leave a factor of about
+  // 3 above what was measured when this was written (6.4e-8, 1.2e-6, 4.1e-5 and,
+  // extrapolated, 1.2e-6, 2.6e-5, 1.2e-3).
   const struct {
     int stride;
     double known, extrapolated;
   } rows[] = {{4, 2e-7, 4e-6}, {8, 4e-6, 8e-5}, {16, 1.2e-4, 3.5e-3}};
   for (const auto& row : rows) {
-    const double known = playback_error(genrou(), row.stride, true), extrapolated = playback_error(genrou(), row.stride, false);
+    const double known = playback_error(genrou(), row.stride, true),
+                 extrapolated = playback_error(genrou(), row.stride, false);
     std::printf("%9.0f   %22.1e   %12.1e\n", 480.0 / row.stride, known, extrapolated);
     EXPECT_LT(known, row.known);
     EXPECT_LT(extrapolated, row.extrapolated);
@@ -63,16 +67,22 @@ TEST(PlayInTest, ErrorFallsWithTheRate) {
 }
 
 TEST(PlayInTest, HoldsInTheOtherConventionsAndModels) {
-  EXPECT_LT(playback_error(test::simulate("ieee39_genrou", sim::Conventions::andes(), 4, 2.0, 2.15, 480, {0.01, 0.05}), 1, true), 1e-7);
-  EXPECT_LT(playback_error(test::simulate("ieee39_gencls", sim::Conventions::psse(), 16, 2.0, 2.1), 1, true), 1e-7);
+  EXPECT_LT(playback_error(
+                test::simulate("ieee39_genrou", sim::Conventions::andes(), 4, 2.0, 2.15, 480, {0.01, 0.05}),
+                1, true),
+            1e-7);
+  EXPECT_LT(playback_error(test::simulate("ieee39_gencls", sim::Conventions::psse(), 16, 2.0, 2.1), 1, true),
+            1e-7);
 }
 
 TEST(PlayInTest, SeesAWrongParameter) {
   const Record r = test::record_of(genrou(), 2, 4);
   sim::Plant wrong = genrou().grid.plants[2];
   wrong.machine.p[static_cast<std::size_t>(wrong.machine.effect->parameter_index("H"))] *= 1.1;
-  const Playback back = play_in(wrong, genrou().grid.conventions, r, VoltageCurve(r, test::instants(genrou(), 2, true)));
-  EXPECT_GT(worst(back.P, r.P), 0.01);  // 10 % of H moves P by some per cent of the machine in its first swing
+  const Playback back =
+      play_in(wrong, genrou().grid.conventions, r, VoltageCurve(r, test::instants(genrou(), 2, true)));
+  EXPECT_GT(worst(back.P, r.P),
+            0.01);  // 10 % of H moves P by some per cent of the machine in its first swing
 }
 
 TEST(PlayInTest, StaysAtRestWhenNothingHappens) {
@@ -85,17 +95,20 @@ TEST(PlayInTest, StaysAtRestWhenNothingHappens) {
     r.Q.push_back(0.1);
   }
   const Playback back = play_in(genrou().grid.plants[0], genrou().grid.conventions, r, VoltageCurve(r, {}));
-  EXPECT_LT(worst(back.P, r.P), 1e-10);  // a mean of equal numbers and an exact initialisation: rounding alone
+  EXPECT_LT(worst(back.P, r.P),
+            1e-10);  // a mean of equal numbers and an exact initialisation: rounding alone
   EXPECT_LT(worst(back.Q, r.Q), 1e-10);
 }
 
 TEST(PlayInTest, AnOffNominalFrequencyTurnsTheFrame) {
   const test::Simulated& s = genrou();
   Record r = test::record_of(s, 3, 4);
-  const Playback still = play_in(s.grid.plants[3], s.grid.conventions, r, VoltageCurve(r, test::instants(s, 3, false)));
+  const Playback still =
+      play_in(s.grid.plants[3], s.grid.conventions, r, VoltageCurve(r, test::instants(s, 3, false)));
   const double drift = 2 * std::numbers::pi * 0.02;  // 20 mHz
   for (std::size_t k = 0; k < r.t.size(); ++k) r.theta[k] += drift * r.t[k];
-  const Playback turning = play_in(s.grid.plants[3], s.grid.conventions, r, VoltageCurve(r, test::instants(s, 3, false)));
+  const Playback turning =
+      play_in(s.grid.plants[3], s.grid.conventions, r, VoltageCurve(r, test::instants(s, 3, false)));
   EXPECT_NEAR(turning.start.drift, drift, 1e-6);
   // Phasors of 120/s turn by 1 mrad per sample; splines through them differ by h^4 of that: a few 1e-6 pu.
   EXPECT_LT(worst(turning.P, still.P), 1e-5);
@@ -117,7 +130,8 @@ TEST(PlayInTest, UsesTheRecordsOwnBase) {
 TEST(PlayInTest, RefusesARecordWithoutPreEvent) {
   Record r = test::record_of(genrou(), 0, 8);
   r.t.resize(40);
-  EXPECT_THAT(test::messages([&] { pre_event_point(r, {{.time = r.t[2]}}, 1.0); }), ElementsAre(HasSubstr("3 samples before the event")));
+  EXPECT_THAT(test::messages([&] { pre_event_point(r, {{.time = r.t[2]}}, 1.0); }),
+              ElementsAre(HasSubstr("3 samples before the event")));
 }
 
 TEST(FitSwitchingsTest, FindsInstantsBetweenSamples) {
@@ -134,7 +148,8 @@ TEST(FitSwitchingsTest, FindsInstantsBetweenSamples) {
 
 TEST(FitSwitchingsTest, LeavesGivenInstants) {
   const Record r = test::record_of(genrou(), 3, 8);
-  const auto fitted = fit_switchings(genrou().grid.plants[3], genrou().grid.conventions, r, {{.time = 2.0}, {.time = 2.1}});
+  const auto fitted =
+      fit_switchings(genrou().grid.plants[3], genrou().grid.conventions, r, {{.time = 2.0}, {.time = 2.1}});
   EXPECT_EQ(fitted[0].time, 2.0);
   EXPECT_EQ(fitted[1].time, 2.1);
 }

@@ -1,11 +1,10 @@
 #include "validate/record.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <numbers>
-
-#include <fmt/format.h>
 
 #include "support.hpp"
 
@@ -23,7 +22,8 @@ template <class F>
 std::string text_of(int n, F edit) {
   std::string all;
   for (int k = 0; k <= n; ++k) {
-    std::string line = k == 0 ? "t_s,V_pu,theta_rad,P_pu,Q_pu" : fmt::format("{},1.01,0.1,0.5,0.2", (k - 1) * 0.02);
+    std::string line =
+        k == 0 ? "t_s,V_pu,theta_rad,P_pu,Q_pu" : fmt::format("{},1.01,0.1,0.5,0.2", (k - 1) * 0.02);
     edit(k, line);
     all += line + "\n";
   }
@@ -50,7 +50,8 @@ TEST(RecordTest, ReadsTheExample) {
 
 TEST(RecordTest, UnitsAreInTheNames) {
   std::string text = "t_ms,V_kV,theta_deg,P_MW,Q_Mvar,f_hz,speed_pu,status\r\n";
-  for (int k = 0; k < 40; ++k) text += fmt::format("{},138,{},50,-20,50.1,0.002,ok\r\n", 20 * k, k < 20 ? 175 : -175);
+  for (int k = 0; k < 40; ++k)
+    text += fmt::format("{},138,{},50,-20,50.1,0.002,ok\r\n", 20 * k, k < 20 ? 175 : -175);
   const Record r = parse_record("\xEF\xBB\xBF" + text, "r.csv", {200, 50, 138});
   EXPECT_NEAR(r.rate(), 50, 1e-9);
   EXPECT_DOUBLE_EQ(r.V[0], 1);
@@ -62,15 +63,21 @@ TEST(RecordTest, UnitsAreInTheNames) {
   EXPECT_THAT(r.ignored, ElementsAre("status"));
 }
 
-TEST(RecordTest, HashIsOfTheBytes) { EXPECT_NE(parse_record(sound(), "a", {}).hash, parse_record(sound(41), "a", {}).hash); }
+TEST(RecordTest, HashIsOfTheBytes) {
+  EXPECT_NE(parse_record(sound(), "a", {}).hash, parse_record(sound(41), "a", {}).hash);
+}
 
 TEST(RecordTest, MissingColumnsAreAllNamed) {
-  EXPECT_THAT(faults("t_s,V_pu,f_pu\n0,1,1\n"), ElementsAre(HasSubstr("theta_rad, theta_deg"), HasSubstr("P_pu, P_MW"), HasSubstr("Q_pu, Q_Mvar")));
+  EXPECT_THAT(
+      faults("t_s,V_pu,f_pu\n0,1,1\n"),
+      ElementsAre(HasSubstr("theta_rad, theta_deg"), HasSubstr("P_pu, P_MW"), HasSubstr("Q_pu, Q_Mvar")));
 }
 TEST(RecordTest, ColumnsNeedAKnownUnit) {
-  EXPECT_THAT(faults("t_s,V_pu,theta_rad,P,Q_kvar\n"), ElementsAre(AllOf(HasSubstr("'P'"), HasSubstr("P_pu, P_MW")), HasSubstr("'Q_kvar'")));
+  EXPECT_THAT(faults("t_s,V_pu,theta_rad,P,Q_kvar\n"),
+              ElementsAre(AllOf(HasSubstr("'P'"), HasSubstr("P_pu, P_MW")), HasSubstr("'Q_kvar'")));
   EXPECT_THAT(faults("t_s,V_kV,theta_rad,P_pu,Q_pu\n"), ElementsAre(HasSubstr("base_kv")));
-  EXPECT_THAT(faults("t_s,V_pu,theta_rad,P_pu,P_MW,Q_pu\n"), ElementsAre(HasSubstr("another column gives the same quantity")));
+  EXPECT_THAT(faults("t_s,V_pu,theta_rad,P_pu,P_MW,Q_pu\n"),
+              ElementsAre(HasSubstr("another column gives the same quantity")));
 }
 TEST(RecordTest, EveryFaultOfAFileIsToldWithItsLine) {
   const std::string text = text_of(40, [](int k, std::string& line) {
@@ -99,7 +106,8 @@ TEST(RecordTest, TooShortOrEmpty) {
   EXPECT_THAT(faults(sound(kFewestSamples - 1)), ElementsAre(HasSubstr("29 samples")));
   EXPECT_TRUE(faults(sound(kFewestSamples)).empty());
   EXPECT_THAT(faults(""), ElementsAre(HasSubstr("empty record")));
-  EXPECT_THAT(test::messages([] { read_record("no/such/file.csv", {}); }), ElementsAre(HasSubstr("no/such/file.csv")));
+  EXPECT_THAT(test::messages([] { read_record("no/such/file.csv", {}); }),
+              ElementsAre(HasSubstr("no/such/file.csv")));
 }
 TEST(RecordTest, ALongListOfFaultsIsCut) {
   const auto all = faults(text_of(200, [](int k, std::string& line) {

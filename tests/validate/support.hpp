@@ -12,7 +12,9 @@
 
 namespace swingbank::validate::test {
 
-inline std::filesystem::path source(const std::string& path) { return std::filesystem::path(SWINGBANK_SOURCE) / path; }
+inline std::filesystem::path source(const std::string& path) {
+  return std::filesystem::path(SWINGBANK_SOURCE) / path;
+}
 
 /// The messages of the InputError that `action` throws; empty if it throws none.
 template <class F>
@@ -32,10 +34,16 @@ struct Simulated {
   sim::ReferenceRun before, after;  ///< at switching instants the value just before, just after
 };
 
-/// A grid of configs/networks with a fault at a bus, by the reference integrator. Its rtol of 1e-10 per step keeps its
-/// own error near 1e-9, far below what is tested.
-inline Simulated simulate(const std::string& name, sim::Conventions conventions, int bus, double t_on, double t_off, double rate = 480.0, sim::Complex z = {}) {
-  Simulated s{sim::load_grid(source("configs/networks/" + name + ".raw"), source("configs/networks/" + name + ".dyr"), conventions), t_on, t_off, {}, {}};
+/// A grid of configs/networks with a fault at a bus, by the reference integrator. Its rtol of 1e-10 per step
+/// keeps its own error near 1e-9, far below what is tested.
+inline Simulated simulate(const std::string& name, sim::Conventions conventions, int bus, double t_on,
+                          double t_off, double rate = 480.0, sim::Complex z = {}) {
+  Simulated s{sim::load_grid(source("configs/networks/" + name + ".raw"),
+                             source("configs/networks/" + name + ".dyr"), conventions),
+              t_on,
+              t_off,
+              {},
+              {}};
   sim::Event event;
   event.faults.push_back({s.grid.network.bus_index(bus), t_on, t_off, z});
   sim::ReferenceOptions options;
@@ -43,22 +51,25 @@ inline Simulated simulate(const std::string& name, sim::Conventions conventions,
   options.t_end = 10.0;
   options.rtol = 1e-10;
   options.atol = 1e-12;
-  options.channels = {sim::Channel::V, sim::Channel::theta, sim::Channel::P, sim::Channel::Q, sim::Channel::speed};
+  options.channels = {sim::Channel::V, sim::Channel::theta, sim::Channel::P, sim::Channel::Q,
+                      sim::Channel::speed};
   s.before = sim::run_reference(s.grid, event, options);
   options.after_switching = true;
   s.after = sim::run_reference(s.grid, event, options);
   return s;
 }
 
-/// The record of one plant at every `stride`-th sample, P and Q on the machine's own base; Gaussian noise of `noise` pu
-/// on P and Q and a tenth of it on V and theta.
+/// The record of one plant at every `stride`-th sample, P and Q on the machine's own base; Gaussian noise of
+/// `noise` pu on P and Q and a tenth of it on V and theta.
 inline Record record_of(const Simulated& s, int plant, int stride, double noise = 0.0) {
   Record r;
   r.name = "simulated.csv";
   r.base.mva = s.grid.plants[static_cast<std::size_t>(plant)].mva;
   std::mt19937_64 generator(7);
   std::normal_distribution<double> normal;
-  const auto add = [&](std::vector<double>& channel, int c, int k, double sigma) { channel.push_back(s.before.at(plant, c)[k] + sigma * normal(generator)); };
+  const auto add = [&](std::vector<double>& channel, int c, int k, double sigma) {
+    channel.push_back(s.before.at(plant, c)[k] + sigma * normal(generator));
+  };
   for (int k = 0; k < s.before.samples; k += stride) {
     r.t.push_back(k / s.before.rate);
     add(r.V, 0, k, noise / 10);

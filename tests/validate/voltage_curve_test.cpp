@@ -28,7 +28,8 @@ TEST(VoltageCurveTest, IsExactForCubicsUpToTheJumps) {
   const VoltageCurve curve(stepped(), {{.time = 1.0}, {.time = 1.5}});
   ASSERT_EQ(curve.segments(), 3);
   for (const double t : {0.0, 0.013, 0.97, 1.0}) EXPECT_NEAR(curve(0, t).real(), 1 + t * t * t / 10, 1e-13);
-  for (const double t : {1.0, 1.02, 1.33, 1.5}) EXPECT_NEAR(curve(1, t).real(), 0.5 + t * t / 20, 1e-13);  // extrapolated back to 1.0
+  for (const double t : {1.0, 1.02, 1.33, 1.5})
+    EXPECT_NEAR(curve(1, t).real(), 0.5 + t * t / 20, 1e-13);  // extrapolated back to 1.0
   for (const double t : {1.5, 1.51, 2.99}) EXPECT_NEAR(curve(2, t).real(), 0.9 + t / 50, 1e-13);
 }
 TEST(VoltageCurveTest, ShortSegmentsTakeWhatTheyHave) {
@@ -36,31 +37,43 @@ TEST(VoltageCurveTest, ShortSegmentsTakeWhatTheyHave) {
   for (const int points : {1, 2, 3}) {
     const double off = 1.0 + points / 20.0;
     Record r = stepped();
-    for (int k = 21; k <= 20 + points; ++k) r.V[static_cast<std::size_t>(k)] = points == 1 ? 0.3 : points == 2 ? 0.3 + r.t[static_cast<std::size_t>(k)] : law(r.t[static_cast<std::size_t>(k)]);
+    for (int k = 21; k <= 20 + points; ++k)
+      r.V[static_cast<std::size_t>(k)] = points == 1   ? 0.3
+                                         : points == 2 ? 0.3 + r.t[static_cast<std::size_t>(k)]
+                                                       : law(r.t[static_cast<std::size_t>(k)]);
     const VoltageCurve curve(r, {{.time = 1.0}, {.time = off}});
     const double t = 1.01;
     EXPECT_NEAR(curve(1, t).real(), points == 1 ? 0.3 : points == 2 ? 0.3 + t : 0.5 + t * t / 20, 1e-12);
   }
 }
 TEST(VoltageCurveTest, OneSidedValuesAreHit) {
-  Switching s{.time = 1.02, .has_before = true, .has_after = true, .before = {1.2, 0.1}, .after = {0.4, -0.2}};
+  Switching s{
+      .time = 1.02, .has_before = true, .has_after = true, .before = {1.2, 0.1}, .after = {0.4, -0.2}};
   const VoltageCurve curve(stepped(), {s});
   EXPECT_NEAR(std::abs(curve(0, 1.02) - s.before), 0, 1e-14);
   EXPECT_NEAR(std::abs(curve(1, 1.02) - s.after), 0, 1e-14);
 }
 TEST(VoltageCurveTest, RefusesSegmentsWithoutSamples) {
-  EXPECT_THAT(test::messages([] { VoltageCurve(stepped(), {{.time = 1.01}, {.time = 1.02}}); }), ElementsAre(HasSubstr("no sample between")));
-  EXPECT_THAT(test::messages([] { VoltageCurve(stepped(), {{.time = -1.0}}); }), ElementsAre(HasSubstr("no sample between")));
-  EXPECT_THAT(test::messages([] { VoltageCurve(stepped(), {{.time = 3.5}}); }), ElementsAre(HasSubstr("no sample between")));
+  EXPECT_THAT(test::messages([] {
+                VoltageCurve(stepped(), {{.time = 1.01}, {.time = 1.02}});
+              }),
+              ElementsAre(HasSubstr("no sample between")));
+  EXPECT_THAT(test::messages([] { VoltageCurve(stepped(), {{.time = -1.0}}); }),
+              ElementsAre(HasSubstr("no sample between")));
+  EXPECT_THAT(test::messages([] { VoltageCurve(stepped(), {{.time = 3.5}}); }),
+              ElementsAre(HasSubstr("no sample between")));
 }
 
 TEST(DetectTest, FindsTheFaultsOfTheExampleRecords) {
   const double truth[4][2] = {{2.0, 2.1}, {2.0, 2.08}, {2.0, 2.2}, {2.0, 2.15}};  // configs/records/README.md
   for (int i = 0; i < 4; ++i) {
-    const Record r = read_record(test::source("configs/records/record-example/avr_ev" + std::to_string(i + 1) + ".csv"), {});
+    const Record r = read_record(
+        test::source("configs/records/record-example/avr_ev" + std::to_string(i + 1) + ".csv"), {});
     const auto found = detect_switchings(r);
     ASSERT_EQ(found.size(), 2u) << "event " << i + 1;
-    for (int j = 0; j < 2; ++j) EXPECT_LE(std::abs(found[static_cast<std::size_t>(j)].time - truth[i][j]), found[static_cast<std::size_t>(j)].uncertainty + 1e-6);
+    for (int j = 0; j < 2; ++j)
+      EXPECT_LE(std::abs(found[static_cast<std::size_t>(j)].time - truth[i][j]),
+                found[static_cast<std::size_t>(j)].uncertainty + 1e-6);
   }
 }
 TEST(DetectTest, FindsAFaultOfOneSampleAndNothingInAQuietRecord) {
