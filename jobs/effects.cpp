@@ -34,7 +34,11 @@ int main(int argc, char** argv) {
   CLI::App app{"Lists the effects the simulator knows; with a NAME, its parameters, states and source.", "swingbank effects"};
   std::string name;
   app.add_option("name", name, "effect, e.g. GENROU");
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 1;
+  }
   if (name.empty()) {
     list();
     return 0;

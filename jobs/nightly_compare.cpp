@@ -180,7 +180,11 @@ int main(int argc, char** argv) {
   std::string folder, date;
   app.add_option("folder", folder, "folder of nights, as jobs/nightly.sh writes it")->required();
   app.add_option("--night", date, "YYYY-MM-DD (default: the last one)");
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 1;
+  }
   try {
     const Nights nights = read_nights(folder);
     if (nights.empty() || (!date.empty() && !nights.contains(date))) {

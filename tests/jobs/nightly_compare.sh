@@ -31,3 +31,5 @@ grep -q '^| V | cnn | 30 .* within noise |$' "$work/report" || fail "2 % called 
 echo '{"table": "V"' >"$work/nights/2026-01-04/ieee39_gencls/results/broken.json"
 refuses "broken result" 'broken.json' "$swingbank" nightly-compare "$work/nights"
 refuses "no folder" "$work/none" "$swingbank" nightly-compare "$work/none"
+misused "unknown option" nonsense "$swingbank" nightly-compare "$work/nights" --nonsense
+misused "unknown option" nonsense "$swingbank" effects --nonsense
