@@ -36,13 +36,16 @@ struct Model {
       {"S10", "S1.0", "-", 0.1, 0.0, 2.0, 0.0, "saturation factor at 1.0 pu flux (0: none)"},
       {"S12", "S1.2", "-", 0.4, 0.0, 10.0, 0.0, "saturation factor at 1.2 pu flux"},
       {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance"}};
+  /// Above a steep saturation knee (B up to 70) a flux error counts tenfold in the field current, and the angle keeps
+  /// it to the end: without this 3 of 600 random events missed the reference by up to 3e-4 rad, with it 7e-5.
+  static constexpr double kFluxWeight = 10.0;
   enum X { delta, speed, Eqp, Edp, psi1d, psi2q };
   static constexpr State states[] = {{"delta", "rad", "rotor angle in the synchronous frame"},
                                      {"speed", "pu", "speed deviation", 100.0},
-                                     {"Eqp", "pu", "q-axis transient voltage"},
-                                     {"Edp", "pu", "d-axis transient voltage"},
-                                     {"psi1d", "pu", "d-axis damper flux"},
-                                     {"psi2q", "pu", "second q-axis damper flux"}};
+                                     {"Eqp", "pu", "q-axis transient voltage", kFluxWeight},
+                                     {"Edp", "pu", "d-axis transient voltage", kFluxWeight},
+                                     {"psi1d", "pu", "d-axis damper flux", kFluxWeight},
+                                     {"psi2q", "pu", "second q-axis damper flux", kFluxWeight}};
   static constexpr int dyr_columns[] = {Tdop, Tdopp, Tqop, Tqopp, H, D, Xd, Xq, Xdp, Xqp, Xdpp, Xl, S10, S12};
   static constexpr int raw_resistance = Ra, raw_reactance = -1;
 
