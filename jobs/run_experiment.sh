@@ -78,9 +78,11 @@ generate() {
 }
 
 tasks() {
-  local network fold
-  for network in $(ask networks); do
-    for fold in $(ask folds); do echo "$network $fold"; done
+  local networks folds network fold
+  networks=$(ask networks)
+  folds=$(ask folds)
+  for network in $networks; do
+    for fold in $folds; do echo "$network $fold"; done
   done
 }
 
@@ -96,9 +98,11 @@ run_task() {
 }
 
 train() {
-  local lines line
+  local all lines line
+  all=$(tasks)
   # A process that trains all folds reads the dataset once.
-  mapfile -t lines < <(tasks | if [[ -z $task ]]; then sed '/ none$/!s/ .*/ all/' | uniq; else cat; fi)
+  if [[ -z $task ]]; then all=$(sed '/ none$/!s/ .*/ all/' <<<"$all" | uniq); fi
+  mapfile -t lines <<<"$all"
   if [[ -n $task ]]; then
     if [[ ! $task =~ ^[0-9]+$ ]] || ((task >= ${#lines[@]})); then
       echo "no such task at --task $task (the experiment has ${#lines[@]}, counted from 0): give a lower number" >&2

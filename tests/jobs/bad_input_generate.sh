@@ -69,7 +69,7 @@ refuses "file in place of a folder" "$config" make_data "$config" "$config/data"
 "$swingbank" generate "$config" --draws 100000 --out "$work/killed" >/dev/null 2>&1 &
 killed=$!
 for ((i = 0; i < 300; i++)); do
-  [[ $(cat "$work/killed/journal.jsonl" 2>/dev/null | wc -l) -ge 3 ]] && break
+  [[ $(grep -c . "$work/killed/journal.jsonl" 2>/dev/null) -ge 3 ]] && break
   sleep 0.1
 done
 kill -KILL "$killed"

@@ -22,7 +22,7 @@ buses = "any"
 start = 0.5             # s
 duration = [0.05, 0.1]  # s
 [record]
-t_end = 3.5  # s
+t_end = ${TINY_T_END:-3.5}  # s
 rate = 60.0  # 1/s
 channels = ["P", "Q", "speed"]
 [kernel]

@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# jobs/nightly.sh at tiny size: two nights, a night that is broken off and goes on, a double run, a failure.
+source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
+export SWINGBANK_BUILD=${SWINGBANK_BIN%/bin} SWINGBANK_NIGHTLY_PAUSE=0 OMP_NUM_THREADS=1
+
+TINY_DRAWS=120 tiny_experiment "$work"
+out=$work/nights
+night() { bash "$SWINGBANK_SOURCE/jobs/nightly.sh" --out "$out" --preset quick --date "$@" </dev/null; }
+
+night 2026-02-01 "$work/tiny.toml" >"$work/log" 2>&1 || fail "first night: $(tail "$work/log")"
+grep -q '| V | gru | 30 | quick | .* | new |' "$out/2026-02-01/report.md" || fail "report: $(cat "$out/2026-02-01/report.md")"
+[[ -s $out/2026-02-01/tiny/tables/tables.html ]] || fail "no tables"
+[[ ! -e $out/2026-02-01/tiny/data ]] || fail "the events were to be removed"
+
+# Broken off after the events are there, the night goes on and trains with its own seed.
+bash "$SWINGBANK_SOURCE/jobs/run_experiment.sh" --experiment "$work/tiny.toml" --preset quick --stage generate \
+  --out "$out/2026-02-02/tiny" >/dev/null 2>&1
+touch "$work/before"
+night 2026-02-02 --keep-data "$work/tiny.toml" >"$work/log" 2>&1 || fail "second night: $(tail "$work/log")"
+[[ -z $(find "$out/2026-02-02/tiny/data/shards" -newer "$work/before" -name '*.h5') ]] || fail "events were made again"
+[[ $(readlink "$out/latest") == 2026-02-02 ]] || fail "latest points to $(readlink "$out/latest")"
+grep -q 'no verdict before 3 nights' "$out/2026-02-02/report.md" || fail "report: $(cat "$out/2026-02-02/report.md")"
+first=$(find "$out/2026-02-01" -name '*gen30.json') second=$(find "$out/2026-02-02" -name '*gen30.json')
+[[ $(basename "$first") != "$(basename "$second")" ]] || fail "both nights trained with the same seed"
+
+exec 8>"$out/.lock"
+flock 8
+refuses "double run" "$out" night 2026-02-03 "$work/tiny.toml"
+exec 8>&-
+refuses "no date" '--date tomorrow' night tomorrow "$work/tiny.toml"
+
+sed 's/^epochs = .*/epochs = "many"/' "$work/tiny.toml" >"$work/wrong.toml"
+status=0
+night 2026-02-03 "$work/wrong.toml" >"$work/log" 2>&1 || status=$?
+((status == 1)) || fail "a night that fails: exit code $status"
+[[ $(grep -c 'failed with exit code' "$work/log") == 3 ]] || fail "three tries expected: $(cat "$work/log")"
+[[ $(readlink "$out/latest") == 2026-02-02 ]] || fail "a failed night became the latest"
+echo "ok: two nights, resume, lock, failure"
