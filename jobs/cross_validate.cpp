@@ -17,7 +17,6 @@ std::vector<std::int32_t> folds_of(const std::string& text, const Experiment& ex
 }  // namespace
 
 int main(int argc, char** argv) {
-  choose_blas_kernels(argv);
   CLI::App app{SWINGBANK_SUMMARY, "swingbank cross-validate"};
   TrainingOptions options;
   std::string fold = "all";

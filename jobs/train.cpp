@@ -3,7 +3,6 @@
 
 int main(int argc, char** argv) {
   using namespace swingbank;
-  choose_blas_kernels(argv);
   CLI::App app{SWINGBANK_SUMMARY, "swingbank train"};
   TrainingOptions options;
   return training_main(argc, argv, "swingbank train", app, options, [&](const RunRequest& request) {

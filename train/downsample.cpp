@@ -11,11 +11,23 @@
 namespace swingbank {
 
 void InputSelection::apply(const float* record, std::size_t record_samples, float* out) const {
-  for (const std::size_t c : channels) {
-    const float* series = record + c * record_samples;
-    const float base = deviation ? series[0] : 0.0f;
-    for (std::size_t i = 0; i < samples; ++i) *out++ = series[first + i * step] - base;
-  }
+  const auto copy = [&](bool deviation, float* to) {
+    for (const std::size_t c : channels) {
+      const float* series = record + c * record_samples;
+      const float base = deviation ? series[0] : 0.0f;
+      for (std::size_t i = 0; i < samples; ++i) *to++ = series[first + i * step] - base;
+    }
+  };
+  if (form == InputForm::absolute || form == InputForm::both) copy(false, out);
+  if (form == InputForm::absolute) return;
+  float* deviations = form == InputForm::both ? out + channels.size() * samples : out;
+  copy(true, deviations);
+  if (form == InputForm::deviation) return;
+  double square = 0.0;
+  for (std::size_t i = 0; i < samples; ++i) square += static_cast<double>(deviations[i]) * deviations[i];
+  const auto rms = static_cast<float>(std::sqrt(square / static_cast<double>(samples)));
+  if (rms > 0.0f)
+    for (std::size_t i = 0; i < channels.size() * samples; ++i) deviations[i] /= rms;
 }
 
 InputSelection select_input(const InputRecipe& recipe, const DatasetHeader& dataset) {
@@ -41,7 +53,7 @@ InputSelection select_input(const InputRecipe& recipe, const DatasetHeader& data
   const auto end = static_cast<std::size_t>(std::lround(recipe.end_s * dataset.rate));
   s.step = recipe.slice;
   s.samples = (end - s.first + s.step - 1) / s.step;
-  s.deviation = recipe.deviation;
+  s.form = recipe.form;
   s.rate = dataset.rate / static_cast<double>(s.step);
   return s;
 }

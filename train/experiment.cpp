@@ -57,7 +57,8 @@ Preset read_preset(Config& c, const std::string& name) {
   p.input.start_s = c.require<double>(at + ".start_s", {0.0, 1e6, "s"});
   p.input.end_s = c.require<double>(at + ".end_s", {0.0, 1e6, "s"});
   p.input.slice = count(c, at + ".slice", 1);
-  p.input.deviation = c.require<bool>(at + ".deviation");
+  const auto form = c.choice(at + ".form", kInputForms);
+  p.input.form = static_cast<InputForm>(std::find(kInputForms.begin(), kInputForms.end(), form) - kInputForms.begin());
   p.pca_components = count(c, at + ".pca_components", 0);
   const TrainingRecipe common = read_training(c, at);
   const auto known = network_names();

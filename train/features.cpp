@@ -31,7 +31,7 @@ Features Features::fit(const ShardStream& stream, std::span<const std::uint64_t>
     const auto deviation = static_cast<float>(moments.deviation(g));
     if (deviation > 0.0f) f.scale_.deviation[g] = deviation;
     else if (!f.pca_)
-      problems.add("channel " + stream.dataset().channel_names[stream.selection().channels[g]] + " is constant",
+      problems.add("channel " + stream.dataset().channel_names[stream.selection().channels[g % stream.selection().channels.size()]] + " is constant",
                    stream.dataset().path.string(), "it tells a network nothing and has no variance to divide by",
                    "leave it out of the experiment's channels");
   }

@@ -14,7 +14,7 @@ json input_json(const ShardStream& stream, const RunRequest& request, const Feat
           {"start_s", p.input.start_s},
           {"end_s", p.input.end_s},
           {"rate_per_s", stream.selection().rate},
-          {"deviation", p.input.deviation},
+          {"form", kInputForms.at(static_cast<std::size_t>(p.input.form))},
           {"samples", features.length()},
           {"pca_components", p.pca_components},
           {"pca_error", features.pca() ? json(features.pca()->error()) : json()}};
@@ -32,7 +32,7 @@ json identity(const ShardStream& stream, const RunRequest& r) {
           {"channels", p.input.channels},
           {"window", {p.input.start_s, p.input.end_s}},
           {"slice", p.input.slice},
-          {"deviation", p.input.deviation},
+          {"form", kInputForms.at(static_cast<std::size_t>(p.input.form))},
           {"pca_components", p.pca_components},
           {"epochs", r.epochs.value_or(t.epochs)},
           {"batch", t.batch},

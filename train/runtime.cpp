@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <malloc.h>
 #include <sched.h>
-#include <unistd.h>
 
 #include <climits>
 #include <cstdlib>
@@ -47,15 +46,6 @@ int default_threads() {
 
 }  // namespace
 
-void choose_blas_kernels(char** argv) {
-  const bool wide = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-                    __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq");
-  const std::string core = blas_core();
-  if (!wide || std::getenv("OPENBLAS_CORETYPE") || (core != "Haswell" && core != "Zen")) return;
-  setenv("OPENBLAS_CORETYPE", "SkylakeX", 1);
-  execv("/proc/self/exe", argv);  // on failure the slower kernels do
-}
-
 std::string Runtime::sentence() const { return fmt::format("{} threads, BLAS {}", threads, blas); }
 
 Runtime set_up_runtime(int threads) {
@@ -69,7 +59,9 @@ Runtime set_up_runtime(int threads) {
   runtime.threads = threads > 0 ? threads : default_threads();
   at::set_num_threads(runtime.threads);
   const Text config = blas_function("openblas_get_config");
-  runtime.blas = config ? std::string(config()).substr(0, std::string("OpenBLAS 0.3.21").size()) + " " + blas_core()
+  const char* forced = std::getenv("OPENBLAS_CORETYPE");  // AVX2 kernels halve the speed of a processor with AVX-512
+  runtime.blas = config ? std::string(config()).substr(0, std::string("OpenBLAS 0.3.21").size()) + " " + blas_core() +
+                              (forced ? fmt::format(" (forced by OPENBLAS_CORETYPE={})", forced) : "")
                         : "not OpenBLAS (slow: install libopenblas0-openmp)";
   return runtime;
 }

@@ -4,14 +4,9 @@
 
 namespace swingbank {
 
-/// OpenBLAS takes its AVX2 kernels on processors younger than itself even where AVX-512 is there (measured on Zen 5
-/// with OpenBLAS 0.3.21: 117 against 217 GFLOP/s per core). If so, starts the program again with the AVX-512 kernels
-/// chosen in its environment; call it first in main. Does nothing where OPENBLAS_CORETYPE is set already.
-void choose_blas_kernels(char** argv);
-
 struct Runtime {
   int threads = 1;
-  std::string blas;  ///< library, version and kernels
+  std::string blas;  ///< library, version and kernels; says so if the environment forces the kernels
   [[nodiscard]] std::string sentence() const;
 };
 /// threads = 0: those of the Slurm allocation (SLURM_CPUS_PER_TASK), of OMP_NUM_THREADS, else the cores this process

@@ -63,7 +63,7 @@ void ShardStream::check_finite(const float* series, const ShardInfo& shard, std:
   for (std::size_t i = 0; i < selection_.values(); ++i)
     if (!std::isfinite(series[i]))
       throw InputError({fmt::format("channel {} holds a value that is not a number",
-                                    dataset_.channel_names[selection_.channels[i / selection_.samples]]),
+                                    dataset_.channel_names[selection_.channels[i / selection_.samples % selection_.channels.size()]]),
                         fmt::format("{}, row {}", shard.path.string(), row - shard.first_row),
                         "a network cannot be trained on it", "generate this shard again"});
 }

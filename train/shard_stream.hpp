@@ -33,7 +33,7 @@ class ShardStream {
   [[nodiscard]] const Dataset& dataset() const { return dataset_; }
   [[nodiscard]] const InputSelection& selection() const { return selection_; }
   [[nodiscard]] const Labels& labels() const { return labels_; }
-  [[nodiscard]] std::size_t channels() const { return selection_.channels.size(); }
+  [[nodiscard]] std::size_t channels() const { return selection_.outputs(); }
   [[nodiscard]] std::size_t samples() const { return selection_.samples; }
   [[nodiscard]] bool in_memory() const { return !series_.empty(); }
   /// rows: row numbers of the dataset, in any order; out: rows x channels x samples.

@@ -50,7 +50,6 @@ double median(std::vector<double> v) {
 
 int main(int argc, char** argv) {
   using namespace swingbank;
-  choose_blas_kernels(argv);
   const auto argument = [&](int i, int otherwise) { return argc > i ? std::atoi(argv[i]) : otherwise; };
   const int batch = argument(1, 32), rounds = argument(2, 3);
   const Runtime runtime = set_up_runtime(argument(3, 0));

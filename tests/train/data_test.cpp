@@ -17,7 +17,7 @@ TEST(Downsample, TakesChannelsWindowAndEveryNthSample) {
   header.rate = 10.0;
   header.samples = 20;
   header.channel_names = {"P", "Q"};
-  const auto s = select_input({{"Q"}, 0.5, 1.5, 4, true}, header);
+  const auto s = select_input({{"Q"}, 0.5, 1.5, 4, InputForm::deviation}, header);
   std::vector<float> record(40);
   std::iota(record.begin(), record.end(), 100.0f);
   std::vector<float> out(s.values());
@@ -26,13 +26,38 @@ TEST(Downsample, TakesChannelsWindowAndEveryNthSample) {
   EXPECT_DOUBLE_EQ(s.rate, 2.5);
 }
 
+TEST(Downsample, RelativeFormDoesNotSeeTheAmplitude) {
+  DatasetHeader header;
+  header.rate = 1.0;
+  header.samples = 4;
+  header.channel_names = {"P", "Q"};
+  const std::vector<float> small = {1.0f, 2.0f, 0.0f, 1.0f, 5.0f, 8.0f, 2.0f, 5.0f}, large = {1.0f, 5.0f, -3.0f, 1.0f, 5.0f, 17.0f, -7.0f, 5.0f};
+  const auto show = [&](const std::vector<float>& record, InputForm form) {
+    const auto s = select_input({{"P", "Q"}, 0.0, 4.0, 1, form}, header);
+    std::vector<float> out(s.values());
+    s.apply(record.data(), 4, out.data());
+    return out;
+  };
+  const float r = std::sqrt(2.0f);  // root mean square of 0, 1, -1, 0 is 1 / sqrt 2
+  const std::vector<float> relative = {0.0f, r, -r, 0.0f, 0.0f, 3.0f * r, -3.0f * r, 0.0f};
+  for (const auto& record : {small, large}) {
+    const auto shown = show(record, InputForm::relative);
+    ASSERT_EQ(shown.size(), relative.size());
+    for (std::size_t i = 0; i < 8; ++i) EXPECT_NEAR(shown[i], relative[i], 1e-6);  // single precision
+  }
+  auto both = show(small, InputForm::both);
+  ASSERT_EQ(both.size(), 16u);
+  EXPECT_TRUE(std::equal(small.begin(), small.end(), both.begin()));
+  EXPECT_NEAR(both[13], 3.0f * r, 1e-6);
+}
+
 TEST(Downsample, NamesEveryProblemAtOnce) {
   DatasetHeader header;
   header.rate = 10.0;
   header.samples = 20;
   header.channel_names = {"P", "Q"};
   try {
-    (void)select_input({{"P", "Ifd"}, 1.0, 3.0, 0, false}, header);
+    (void)select_input({{"P", "Ifd"}, 1.0, 3.0, 0, InputForm::absolute}, header);
     FAIL() << "accepted";
   } catch (const InputError& e) {
     EXPECT_EQ(e.problems().size(), 3u) << e.what();

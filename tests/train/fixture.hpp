@@ -111,7 +111,7 @@ inline Dataset make_dataset(const std::filesystem::path& folder, const Plan& pla
 }
 
 inline InputRecipe whole_record(const Plan& plan = {}) {
-  return {{"P", "speed"}, 0.0, static_cast<double>(plan.samples) / plan.rate, 1, false};
+  return {{"P", "speed"}, 0.0, static_cast<double>(plan.samples) / plan.rate, 1, InputForm::absolute};
 }
 
 inline std::vector<std::uint64_t> all_rows(std::size_t count) {
