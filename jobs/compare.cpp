@@ -106,6 +106,7 @@ int main(int argc, char** argv) {
     std::vector<Record> records = read_records(record_files, model.record_base);
     check_names(records);
     std::vector<std::string> names;
+    names.reserve(records.size());
     for (const auto& r : records) names.push_back(r.name);
     const auto instants = read_switchings(switches, names);
     std::vector<EventComparison> events;

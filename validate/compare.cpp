@@ -80,17 +80,18 @@ bool explained(const EventComparison& e) {
   return true;
 }
 
-std::string describe_fit(const EventComparison& e) {
+std::string describe_fit(const EventComparison& e, bool tried) {
   if (e.fitted) return "within that they were moved to where P and Q are met best.";
-  return "the middle of each interval was taken.";
+  return tried ? "moving them within that does not explain P and Q, so the middle of each interval was taken."
+               : "the middle of each interval was taken.";
 }
 
-void explain(EventComparison& e) {
+void explain(EventComparison& e, bool tried) {
   if (e.detected && !e.switchings.empty())
     e.notes.push_back(
         fmt::format("The switching instants were found in the record, which tells each to ± {:.1f} ms only; "
                     "{} Give them with --switch where they are known.",
-                    1e3 * e.switchings.front().uncertainty, describe_fit(e)));
+                    1e3 * e.switchings.front().uncertainty, describe_fit(e, tried)));
   if (e.switchings.empty())
     e.notes.push_back(
         "The voltage does not jump anywhere: the first seconds are taken for the steady state "
@@ -145,7 +146,7 @@ EventComparison compare_event(const PlantModel& model, Record record, const Comp
     play(model, options.play_in, fitted);
     if (explained(fitted)) e = std::move(fitted);
   }
-  explain(e);
+  explain(e, options.fit_switchings);
   return e;
 }
 

@@ -89,7 +89,13 @@ void read_from_grid(Config& config, PlantModel& model) {
   const fs::path raw = config.file("grid.raw"), dyr = config.file("grid.dyr");
   const auto bus = config.require<std::int64_t>("grid.bus", {1.0});
   const auto id = config.optional<std::string>("grid.id", "");
-  if (config.sound()) model.plant = find_plant(config, sim::load_grid(raw, dyr, model.conventions), bus, id);
+  if (!config.sound()) return;
+  const sim::Grid grid = sim::load_grid(raw, dyr, model.conventions);
+  if (grid.network.frequency != model.conventions.frequency)
+    config.problem("plant.frequency_hz",
+                   fmt::format("plant.frequency_hz = {:g} Hz", model.conventions.frequency),
+                   fmt::format("the grid's .raw says {:g} Hz", grid.network.frequency), "make them agree");
+  model.plant = find_plant(config, grid, bus, id);
 }
 
 std::string slurp(const fs::path& file) {

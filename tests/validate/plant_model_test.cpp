@@ -94,6 +94,8 @@ TEST_F(PlantModelTest, TakesAGeneratorOfAGrid) {
   EXPECT_EQ(m.plant.mva, wanted->mva);
   EXPECT_THAT(faults(replaced(text, "bus = 31", "bus = 31\nid = \"7\"")),
               ElementsAre(AllOf(HasSubstr("no plant at bus 31 with id 7"), HasSubstr("30, 31"))));
+  EXPECT_THAT(faults(replaced(text, "frequency_hz = 60.0", "frequency_hz = 50.0")),
+              ElementsAre(HasSubstr("the grid's .raw says 60 Hz")));
   EXPECT_THAT(faults(replaced(text, "bus = 31", "bus = 16")), ElementsAre(HasSubstr("no plant at bus 16")));
   EXPECT_THAT(faults(replaced(text, "name = \"31\"", "name = \"31\"\nbase_mva = 10.0")),
               Contains(HasSubstr("beside [grid]")));
