@@ -16,8 +16,8 @@ template <class T>
 class Lanes {
  public:
   static constexpr int kLanes = LaneTraits<T>::lanes;
-  static constexpr int kWaiting = 4 * kLanes;       ///< samples evaluated together: constants are spread once for all
-  static constexpr int kRoom = kWaiting + kLanes;   ///< a pack is stored where one sample is needed
+  static constexpr int kWaiting = 8 * kLanes;       ///< samples evaluated together: constants are spread once for all
+  static constexpr int kRoom = kWaiting + 2 * kLanes;  ///< whole packs are stored and moved
   using Next = std::function<bool(Job&)>;
   using Done = std::function<void(const Job&, const Trajectory&)>;
 
@@ -82,6 +82,7 @@ class Lanes {
 
   Constants per_lane_, per_sample_;
   std::vector<T> m_, er_, ei_;           ///< scratch of one evaluation
+  Signals<T> signals_;                   ///< likewise: zeroing one per plant would cost 18 packs
   std::vector<T> y_, trial_, dense_;     ///< states; dense_: four coefficient rows
   std::vector<T> k_[dp54::kStages];
   std::vector<T> kept_, unused_;

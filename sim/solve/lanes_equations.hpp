@@ -35,10 +35,10 @@ inline void Lanes<T>::current(const Constants& k, std::size_t plant, Signals<T>&
 template <class T>
 inline void Lanes<T>::derivative(const T* x, T* dx) {
   const Constants& k = per_lane_;
+  Signals<T>& s = signals_;
   emfs(k, x);
   for (std::size_t i = 0; i < plants_.size(); ++i) {
     const PlantSlice& p = plants_[i];
-    Signals<T> s;
     current(k, i, s);
     const T* c = &k.c[static_cast<std::size_t>(p.c)];
     T* m = &m_[static_cast<std::size_t>(p.m)];

@@ -62,7 +62,7 @@ void Lanes<T>::collect(int lane, int count, double start, double tried) {
     }
     run.pending += now;
     count -= now;
-    if (run.pending >= kWaiting) evaluate_pending(lane, kWaiting);
+    if (run.pending >= kWaiting) evaluate_pending(lane, kWaiting - (run.recorded + kWaiting) % kLanes);
   }
 }
 
@@ -86,7 +86,8 @@ void Lanes<T>::spread_constants(int lane) {
   }
 }
 
-/// Evaluates the first `count` waiting samples of a lane into its record; the rest move to the front.
+/// Evaluates the first `count` waiting samples of a lane into its record; the rest (less than two packs) move to the
+/// front.
 template <class T>
 void Lanes<T>::evaluate_pending(int lane, int count) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
@@ -104,7 +105,8 @@ void Lanes<T>::evaluate_pending(int lane, int count) {
   if (run.pending > 0)
     for (std::size_t i = 0; i < n; ++i) {
       double* row = run.waiting.data() + i * kRoom;
-      std::copy(row + count, row + count + kLanes, row);
+      Traits::store(Traits::load(row + count), row);
+      Traits::store(Traits::load(row + count + kLanes), row + kLanes);
     }
 }
 
@@ -114,7 +116,7 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
   const auto i = static_cast<std::size_t>(recorded_[k]);
   const auto lane = static_cast<std::size_t>(&run - lanes_.data());
   const PlantSlice& p = plants_[i];
-  Signals<T> s;
+  Signals<T>& s = signals_;
   current(per_sample_, i, s);
   PlantEquations<T>::voltage(er_[i], ei_[i], per_sample_.r[i], per_sample_.xs[i], s);
   PlantEquations<T>::terminal(s);
