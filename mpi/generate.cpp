@@ -152,8 +152,14 @@ struct Groups {
 /// Rank 0: leads, and works between two polls unless it is dedicated.
 void lead(Worker* worker, Master& master, Progress& progress) {
   if (worker != nullptr) {
-    worker->exchange = [&](const Report& r) { return master.exchange(r); };
+    std::uint64_t counted = 0;  // of the shard at hand: this rank's own part of its group's draws
+    worker->exchange = [&](const Report& r) {
+      if (r.finished) progress.add(r.finished->draws - std::min(counted, r.finished->draws));
+      counted = 0;
+      return master.exchange(r);
+    };
     worker->tick = [&](std::uint64_t n) {
+      counted += n;
       progress.add(n);
       master.poll();
     };

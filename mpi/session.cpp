@@ -5,16 +5,32 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <string>
 
 #include "mpi/store/hdf5_file.hpp"
 
 namespace swingbank {
 
+namespace {
+bool launched() {
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "SLURM_STEP_ID"})
+    if (std::getenv(name) != nullptr) return true;
+  return false;
+}
+}  // namespace
+
 MpiSession::MpiSession(int* argc, char*** argv) {
   ::setenv("OMPI_MCA_fbtl_posix_read_datasieving", "0", 1);
-  // Started by hand, one rank needs no daemon beside it: starts faster, and nothing is left if it is killed.
-  const bool launched = std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr || std::getenv("PMIX_RANK") != nullptr || std::getenv("SLURM_STEP_ID") != nullptr;
-  if (!launched) ::setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  if (!launched()) {
+    // Started by hand, one rank needs no daemon beside it. Such ranks share one folder of temporary files, where the
+    // first to end removes the others' (OpenMPI 4.1.4): each gets its own.
+    ::setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+    std::string folder = (std::filesystem::temp_directory_path() / "swingbank-mpi-XXXXXX").string();
+    if (::mkdtemp(folder.data()) != nullptr) {
+      temporary_ = folder;
+      ::setenv("OMPI_MCA_orte_tmpdir_base", folder.c_str(), 1);
+    }
+  }
   H5dont_atexit();  // ~MpiSession ends it
   int provided;
   MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
@@ -23,12 +39,15 @@ MpiSession::MpiSession(int* argc, char*** argv) {
 }
 
 MpiSession::~MpiSession() {
+  std::error_code ignored;
   if (h5::close_failed) {  // H5close, which MPI_Finalize calls too, would crash on that file
     std::fflush(nullptr);
+    if (!temporary_.empty()) std::filesystem::remove_all(temporary_, ignored);
     ::_exit(EXIT_FAILURE);
   }
   H5close();  // before MPI_Finalize: HDF5 holds MPI objects
   MPI_Finalize();
+  if (!temporary_.empty()) std::filesystem::remove_all(temporary_, ignored);
 }
 
 }  // namespace swingbank

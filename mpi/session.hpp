@@ -2,6 +2,8 @@
 // MPI from start to end of a program.
 #include <mpi.h>
 
+#include <filesystem>
+
 namespace swingbank {
 
 /// Initialises MPI and ends it. Sets OMPI_MCA_fbtl_posix_read_datasieving=0 first: OpenMPI 4.1.4 otherwise returns wrong
@@ -18,6 +20,7 @@ class MpiSession {
 
  private:
   int rank_ = 0, size_ = 1;
+  std::filesystem::path temporary_;  ///< of a rank started by hand
 };
 
 }  // namespace swingbank

@@ -1,0 +1,49 @@
+# Every refusal is a sentence, a non-zero exit, and no half-written file.
+source "$(dirname "$0")/common.bash"
+make=("$generate" "$configs/ieee14_genrou_bus3.toml" --draws 40 --draws-per-shard 20 --progress none)
+"${make[@]}" --out "$work/data" >/dev/null 2>&1
+whole=$(hash_of "$work/data")
+
+expect 1 "CONFIG and --out are needed" "$generate"
+expect 1 "--nonsense" "$generate" --nonsense
+expect 1 "there is no such file" "$generate" "$work/no.toml" --out "$work/x"
+expect 1 "a dataset of another config" "${make[@]}" --seed 2 --out "$work/data"
+mkdir "$work/full" && touch "$work/full/letter"
+expect 1 "it holds files but no dataset" "${make[@]}" --out "$work/full"
+expect 1 "cannot create the folder" "${make[@]}" --out /proc/nowhere
+[ "$(hash_of "$work/data")" = "$whole" ] || fail "a refused run changed the data"
+
+# Config problems come all at once, with lines.
+sed -e "s|\.\./networks|$SWINGBANK_SOURCE/configs/networks|" -e 's/^seed = 1/sead = 1/' -e 's/^D = .*/D = [3.0, 0.0]/' -e 's/^t_end = .*/t_end = "15"/' -e 's/^generators = .*/generators = [3]/' "$configs/ieee14_genrou_bus3.toml" >"$work/bad.toml"
+expect 1 "unknown key sead at $work/bad.toml:" "$generate" "$work/bad.toml" --out "$work/x"
+grep -q "low end lies above" "$work/output" && grep -q "must be a number" "$work/output" || fail "not all problems at once"
+[ ! -e "$work/x" ] || fail "a refused config left a folder"
+sed -e "s|\.\./networks|$SWINGBANK_SOURCE/configs/networks|" -e 's/^generators = .*/generators = [3, 4]/' -e 's/^except = .*/except = [77]/' "$configs/ieee14_genrou_bus3.toml" >"$work/bad.toml"
+expect 1 "generator 4 of vary.generators" "$generate" "$work/bad.toml" --out "$work/x"
+grep -q "bus 77 of fault.except" "$work/output" || fail "not all problems at once"
+
+# A disk that takes no more: the limit on a file's size stands for it.
+(trap '' XFSZ; ulimit -f 200; expect 1 "bytes for the file at" "${make[@]}" --out "$work/limit")
+[ -z "$(find "$work/limit/shards" -type f)" ] || fail "a half-written shard stayed"
+expect 0 "$whole" "${make[@]}" --out "$work/limit"
+
+# Damaged shards are found and made anew.
+truncate -s 1000 "$work/data/shards/shard-000001.h5"
+expect 1 "truncated or changed shard" "$generate" --verify "$work/data"
+expect 1 "--repair" "${make[@]}" --out "$work/data"
+expect 0 "$whole" "${make[@]}" --repair --out "$work/data"
+printf '\x01' | dd of="$work/data/shards/shard-000000.h5" bs=1 seek=100000 conv=notrunc status=none
+expect 1 "changed shard at $work/data/shards/shard-000000.h5" "$generate" --verify "$work/data"
+expect 0 "$whole" "${make[@]}" --repair --out "$work/data"
+
+# Two at once on one folder: the second is refused.
+exec 9<>"$work/data/journal.jsonl"
+flock 9
+expect 1 "another process is writing it" "${make[@]}" --out "$work/data"
+exec 9>&-
+
+# The databank says how far it came.
+sed -e "s|\.\./networks|$SWINGBANK_SOURCE/configs/networks|" -e 's/^distance = .*/distance = 1.5/' -e 's/^scale = .*/scale = "scaled"/' "$configs/ieee39_genrou.toml" >"$work/far.toml"
+expect 1 "of 3000 points" "$SWINGBANK_BIN/swingbank-databank" "$work/far.toml" --points 3000
+expect 0 "accepted" "$SWINGBANK_BIN/swingbank-databank" "$configs/ieee39_genrou.toml" --points 100 --out "$work/bank.csv"
+[ "$(wc -l <"$work/bank.csv")" = 101 ] || fail "bank.csv has not a heading and 100 points"

@@ -1,0 +1,21 @@
+# Sourced by the scripts of this folder.
+set -euo pipefail
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+: "${SWINGBANK_BIN:?folder of the binaries}" "${SWINGBANK_SOURCE:?folder of the sources}"
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+configs=$SWINGBANK_SOURCE/configs/datasets
+generate=$SWINGBANK_BIN/swingbank-generate
+python3=/usr/bin/python3 # Debian's own: python3-h5py is installed for this one
+ranks() { local n=$1; shift; mpirun --oversubscribe -np "$n" "$@"; }
+fail() { echo "FAILED: $*" >&2; exit 1; }
+# The dataset's hash, after every shard has been read and compared.
+hash_of() { "$generate" --verify "$1" | sed -n 's/.*dataset \([0-9a-f]\{16\}\)$/\1/p'; }
+# expect <exit code> <text in the output> <command...>
+expect() {
+  local code=$1 text=$2 got=0
+  shift 2
+  "$@" >"$work/output" 2>&1 || got=$?
+  [ "$got" = "$code" ] || { cat "$work/output" >&2; fail "exit code $got instead of $code: $*"; }
+  grep -qF -- "$text" "$work/output" || { cat "$work/output" >&2; fail "no '$text' in the output of: $*"; }
+}

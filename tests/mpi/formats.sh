@@ -1,0 +1,16 @@
+# The lines of Python in docs/formats.md read a shard.
+source "$(dirname "$0")/common.bash"
+"$generate" "$configs/ieee14_genrou_bus3.toml" --draws 30 --progress none --out "$work/data" >/dev/null 2>&1
+sed -n '/^```python/,/^```/{/^```/d;p}' "$SWINGBANK_SOURCE/docs/formats.md" >"$work/read.py"
+[ "$(wc -l <"$work/read.py")" -ge 5 ] || fail "no lines of Python in docs/formats.md"
+cat >>"$work/read.py" <<'PYTHON'
+import numpy
+assert records.shape == (30, 6, 900) and records.dtype == numpy.float32
+assert len(parameters) == 14 and list(parameters)[4] == "H" and parameters["H"].shape == (30,)
+assert ((parameters["H"] >= 1) & (parameters["H"] <= 10)).all() and parameters["H"].std() > 1
+assert (speed[:, 0] == 0).all() and abs(speed).max() > 1e-4  # at rest before the fault, moved by it
+assert shard.attrs["format"] == "swingbank-shard-1" and shard.attrs["rate"] == 60.0
+assert (shard["fault"][:, 1] == 2.0).all() and (shard["fault"][:, 0] != 3).all()
+assert (shard["draws/outcome"][:] == 0).sum() == len(records)
+PYTHON
+cd "$work/data" && "$python3" "$work/read.py"

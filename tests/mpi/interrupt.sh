@@ -1,0 +1,63 @@
+# Killed or stopped in the middle, a run continues to the same hash.
+source "$(dirname "$0")/common.bash"
+options=("$configs/ieee14_genrou_bus3.toml" --draws 1000 --draws-per-shard 20 --progress none)
+lines() { if [ -e "$1/journal.jsonl" ]; then wc -l <"$1/journal.jsonl"; else echo 0; fi; }
+wait_for_lines() { # folder count
+  for _ in $(seq 3000); do
+    [ "$(lines "$1")" -ge "$2" ] && return
+    sleep 0.01
+  done
+  fail "no $2 shards after 30 s"
+}
+"$generate" "${options[@]}" --out "$work/whole" >/dev/null 2>&1
+whole=$(hash_of "$work/whole")
+
+# kill -9 of one process.
+"$generate" "${options[@]}" --out "$work/killed" >/dev/null 2>&1 &
+pid=$!
+wait_for_lines "$work/killed" 3
+kill -9 $pid
+wait $pid 2>/dev/null && fail "a killed process cannot succeed"
+made=$(lines "$work/killed")
+[ "$made" -lt 50 ] || fail "killed too late to prove anything"
+head -c -30 "$work/killed/journal.jsonl" >"$work/cut" && cp "$work/cut" "$work/killed/journal.jsonl" # died while it wrote a line
+expect 0 "dataset $whole" "$generate" "${options[@]}" --out "$work/killed"
+[ "$(hash_of "$work/killed")" = "$whole" ] || fail "another hash after kill -9"
+diff -r "$work/whole/shards" "$work/killed/shards" || fail "leftovers or other bytes after kill -9"
+
+# kill -9 of one rank of three: mpirun ends the others, the next run continues.
+mpirun --oversubscribe -np 3 "$generate" "${options[@]}" --out "$work/rank" >/dev/null 2>&1 &
+pid=$!
+wait_for_lines "$work/rank" 3
+kill -9 "$(pgrep -P $pid -f "$work/rank" | tail -1)"
+wait $pid && fail "mpirun cannot succeed without a rank"
+expect 0 "dataset $whole" ranks 2 "$generate" "${options[@]}" --out "$work/rank"
+
+# A signal: soft exit with 2, and "submit again" continues.
+"$generate" "${options[@]}" --out "$work/soft" >/dev/null 2>&1 &
+pid=$!
+wait_for_lines "$work/soft" 2
+kill -TERM $pid
+code=0
+wait $pid || code=$?
+[ $code = 2 ] || fail "exit code $code after SIGTERM"
+expect 0 "dataset $whole" "$generate" "${options[@]}" --out "$work/soft"
+mpirun --oversubscribe -np 3 "$generate" "${options[@]}" --out "$work/usr1" >/dev/null 2>&1 &
+pid=$!
+wait_for_lines "$work/usr1" 2
+kill -USR1 $pid
+code=0
+wait $pid || code=$?
+[ $code = 2 ] || fail "exit code $code after SIGUSR1 to mpirun"
+expect 0 "dataset $whole" "$generate" "${options[@]}" --out "$work/usr1"
+
+# A rank that hangs does not hold the others for ever.
+timeout 60 mpirun --oversubscribe -np 2 "$generate" "${options[@]}" --lease-timeout 2 --out "$work/hung" >"$work/log" 2>&1 &
+pid=$!
+wait_for_lines "$work/hung" 1
+mpirun_pid=$(pgrep -P $pid)
+kill -STOP "$(pgrep -P "$mpirun_pid" -f "$work/hung" | tail -1)"
+code=0
+wait $pid || code=$?
+[ $code != 0 ] && [ $code != 124 ] || fail "exit code $code of a run with a hung rank"
+grep -qE "is overdue at rank|no answer from rank 0" "$work/log" || { cat "$work/log"; fail "no word about the hung rank"; }
