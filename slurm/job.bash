@@ -8,6 +8,10 @@ source "$SWINGBANK_SOURCE/jobs/run_saving.bash"
 finish_or_requeue() {
   local status=$1 restarts=${SLURM_RESTART_COUNT:-0}
   ((status == 2)) || exit "$status"
+  if [[ $stop_signal == TERM ]]; then # cancelled by a person, or preempted: then Slurm itself requeues
+    echo "saved; stopped from outside"
+    exit "$status"
+  fi
   if ((restarts >= max_restarts)); then
     echo "job given up at $SLURM_JOB_NAME ($restarts restarts, limit $max_restarts): raise max_restarts in the site file" \
       "or the time per attempt, then submit again; nothing done so far is lost" >&2
