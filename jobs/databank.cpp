@@ -1,4 +1,7 @@
-// swingbank databank: draws the points of a dataset's databank and writes them, with the shares of what was refused.
+// swingbank databank: draws the points of a dataset's databank and writes them, with the shares of what was
+// refused.
+#include "mpi/databank.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -6,7 +9,6 @@
 #include <chrono>
 #include <cstdio>
 
-#include "mpi/databank.hpp"
 #include "mpi/store/durable.hpp"
 #include "mpi/store/hdf5_file.hpp"
 
@@ -33,9 +35,11 @@ Columns columns_of(const DatasetConfig& c) {
 
 void write_csv(const fs::path& file, const Databank& bank, const Columns& c) {
   std::string text;
-  for (std::size_t i = 0; i < c.names.size(); ++i) text += fmt::format("{}{} [{}]", i == 0 ? "" : ",", c.names[i], c.units[i]);
+  for (std::size_t i = 0; i < c.names.size(); ++i)
+    text += fmt::format("{}{} [{}]", i == 0 ? "" : ",", c.names[i], c.units[i]);
   text += "\n";
-  for (std::size_t i = 0; i < bank.points(); ++i) text += fmt::format("{}\n", fmt::join(bank.point(i), bank.point(i) + bank.dimensions, ","));
+  for (std::size_t i = 0; i < bank.points(); ++i)
+    text += fmt::format("{}\n", fmt::join(bank.point(i), bank.point(i) + bank.dimensions, ","));
   write_text(file, text);
 }
 
@@ -56,18 +60,25 @@ void write_hdf5(const fs::path& file, const Databank& bank, const Columns& c, co
 }
 
 void report(const Databank& bank, double seconds) {
-  const auto share = [&](std::uint64_t n) { return 100.0 * static_cast<double>(n) / static_cast<double>(bank.draws); };
-  fmt::print("{} points from {} draws in {:.2f} s: {:.1f} % accepted\n", bank.points(), bank.draws, seconds, share(bank.points()));
-  for (const auto& [why, count] : bank.refused) fmt::print("  not {:<24}{:>10} draws  {:5.1f} %\n", why, count, share(count));
-  fmt::print("  {:<28}{:>10} draws  {:5.1f} %\n", "too close to another point", bank.too_close, share(bank.too_close));
+  const auto share = [&](std::uint64_t n) {
+    return 100.0 * static_cast<double>(n) / static_cast<double>(bank.draws);
+  };
+  fmt::print("{} points from {} draws in {:.2f} s: {:.1f} % accepted\n", bank.points(), bank.draws, seconds,
+             share(bank.points()));
+  for (const auto& [why, count] : bank.refused)
+    fmt::print("  not {:<24}{:>10} draws  {:5.1f} %\n", why, count, share(count));
+  fmt::print("  {:<28}{:>10} draws  {:5.1f} %\n", "too close to another point", bank.too_close,
+             share(bank.too_close));
 }
 
-int run(const std::string& config_file, const Overrides& overrides, std::uint64_t points, const fs::path& out) {
+int run(const std::string& config_file, const Overrides& overrides, std::uint64_t points,
+        const fs::path& out) {
   const DatasetConfig config = read_dataset_config(config_file, overrides);
   const Study study = load_study(config);
   const auto extension = out.extension();
   if (!out.empty() && extension != ".csv" && extension != ".h5")
-    throw InputError({"output format '" + extension.string() + "'", "--out " + out.string(), "a databank is written as .csv or .h5", "end the name with one of these"});
+    throw InputError({"output format '" + extension.string() + "'", "--out " + out.string(),
+                      "a databank is written as .csv or .h5", "end the name with one of these"});
   const auto start = std::chrono::steady_clock::now();
   const auto& base = study.grid.plants[static_cast<std::size_t>(study.plants[0])].machine.p;
   const Databank bank = draw_databank(config, base, points > 0 ? points : config.points());
@@ -80,13 +91,15 @@ int run(const std::string& config_file, const Overrides& overrides, std::uint64_
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Draws the databank of a dataset: machine parameters that keep a distance from one another.\n"
-               "  swingbank databank configs/datasets/ieee39_genrou.toml --points 60000 --out bank.h5"};
+  CLI::App app{
+      "Draws the databank of a dataset: machine parameters that keep a distance from one another.\n"
+      "  swingbank databank configs/datasets/ieee39_genrou.toml --points 60000 --out bank.h5"};
   std::string config, out;
   Overrides overrides;
   std::uint64_t points = 0;
   app.add_option("config", config, "the dataset's config (TOML)")->required();
-  app.add_option("--points", points, "number of points, instead of what the config's draws need")->check(CLI::PositiveNumber);
+  app.add_option("--points", points, "number of points, instead of what the config's draws need")
+      ->check(CLI::PositiveNumber);
   app.add_option("--seed", overrides.seed, "seed, instead of the config's")->check(CLI::NonNegativeNumber);
   app.add_option("--out", out, "file to write: .csv or .h5");
   try {

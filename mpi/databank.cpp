@@ -45,14 +45,16 @@ Databank draw_databank(const DatasetConfig& config, const std::vector<double>& b
   bank.values.reserve(points * bank.dimensions);
   Neighbours neighbours = make_neighbours(config);
   std::vector<double> full = base, x(bank.dimensions), measured(bank.dimensions);
-  const auto patience = static_cast<std::uint64_t>(config.databank.candidates_per_point * static_cast<double>(points)) + 1000;
+  const auto patience =
+      static_cast<std::uint64_t>(config.databank.candidates_per_point * static_cast<double>(points)) + 1000;
   std::uint64_t admissible = 0;
   while (bank.points() < points) {
     // A policy that hardly any draw can meet must not run for ever either.
     if (admissible > patience || bank.draws > 1000 * patience)
-      throw InputError({fmt::format("databank reached {} of {} points", bank.points(), points), config.file.string(),
-                        fmt::format("{} draws: {}", bank.draws, reasons(bank)),
-                        "ask for fewer draws, a smaller databank.distance or another databank.scale, or raise databank.candidates_per_point"});
+      throw InputError({fmt::format("databank reached {} of {} points", bank.points(), points),
+                        config.file.string(), fmt::format("{} draws: {}", bank.draws, reasons(bank)),
+                        "ask for fewer draws, a smaller databank.distance or another databank.scale, or "
+                        "raise databank.candidates_per_point"});
     Random random(config.seed, Stream::databank, bank.draws++);
     for (std::size_t i = 0; i < x.size(); ++i) {
       const Box& b = config.box[i];

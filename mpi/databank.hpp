@@ -1,7 +1,7 @@
 #pragma once
-// The databank: machine parameters drawn uniformly from their boxes such that any two points keep a distance. Candidate
-// k is a pure function of (seed, k); candidates are settled in order, so the first n points are the same whatever n,
-// and on every machine.
+// The databank: machine parameters drawn uniformly from their boxes such that any two points keep a distance.
+// Candidate k is a pure function of (seed, k); candidates are settled in order, so the first n points are the
+// same whatever n, and on every machine.
 #include <map>
 #include <string>
 #include <vector>
@@ -11,9 +11,9 @@
 namespace swingbank {
 
 struct Databank {
-  std::size_t dimensions = 0;            ///< entries of the box, held ones included
-  std::vector<double> values;            ///< points x dimensions
-  std::uint64_t draws = 0;               ///< candidates drawn
+  std::size_t dimensions = 0;  ///< entries of the box, held ones included
+  std::vector<double> values;  ///< points x dimensions
+  std::uint64_t draws = 0;     ///< candidates drawn
   std::uint64_t too_close = 0;
   std::map<std::string, std::uint64_t> refused;  ///< by the ordering that was violated
 
@@ -21,8 +21,8 @@ struct Databank {
   [[nodiscard]] const double* point(std::size_t i) const { return values.data() + i * dimensions; }
 };
 
-/// Draws `points` points. `base`: the machine's full parameter vector, for what is not in the box. Throws InputError
-/// telling how many points were reached if the policy or the distance cannot be met.
+/// Draws `points` points. `base`: the machine's full parameter vector, for what is not in the box. Throws
+/// InputError telling how many points were reached if the policy or the distance cannot be met.
 Databank draw_databank(const DatasetConfig& config, const std::vector<double>& base, std::uint64_t points);
 
 }  // namespace swingbank

@@ -33,7 +33,8 @@ void read_box(Config& c, const sim::Effect& effect, std::vector<Box>& box) {
     const std::string key = "vary.box." + name;
     const int index = effect.parameter_index(name);
     if (index < 0) {
-      c.problem(key, "unknown parameter " + name, std::string(effect.name) + " has no such parameter", "use one of: " + parameter_list(effect));
+      c.problem(key, "unknown parameter " + name, std::string(effect.name) + " has no such parameter",
+                "use one of: " + parameter_list(effect));
       c.ignore(key);
       continue;
     }
@@ -53,22 +54,30 @@ void read_box(Config& c, const sim::Effect& effect, std::vector<Box>& box) {
 void read_vary(Config& c, DatasetConfig& d) {
   d.vary = c.choice("vary.who", {"one", "all"}) == "all" ? Vary::all : Vary::one;
   d.generators = numbers(c.require<std::vector<std::int64_t>>("vary.generators", kBusNumber));
-  if (c.has("vary.generators") && d.generators.empty()) c.problem("vary.generators", "no generator", "a dataset varies at least one", "list bus numbers of generators");
+  if (c.has("vary.generators") && d.generators.empty())
+    c.problem("vary.generators", "no generator", "a dataset varies at least one",
+              "list bus numbers of generators");
   d.model = c.require<std::string>("vary.model");
   const sim::Effect* effect = sim::find_effect(d.model);
   if (effect == nullptr || effect->slot != sim::Slot::machine) {
-    if (!d.model.empty()) c.problem("vary.model", "model " + d.model, "it is no machine model of this program", "use one of: " + sim::effect_names());
+    if (!d.model.empty())
+      c.problem("vary.model", "model " + d.model, "it is no machine model of this program",
+                "use one of: " + sim::effect_names());
     c.ignore("vary.box");  // cannot be judged without the model
     return;
   }
   d.model = effect->name;
   read_box(c, *effect, d.box);
-  if (std::ranges::none_of(d.box, &Box::sampled)) c.problem("vary.box", "no parameter varies", "no entry of [vary.box] is an interval", "write at least one as name = [low, high]");
+  if (std::ranges::none_of(d.box, &Box::sampled))
+    c.problem("vary.box", "no parameter varies", "no entry of [vary.box] is an interval",
+              "write at least one as name = [low, high]");
 }
 
 void read_fault(Config& c, FaultConfig& f) {
-  if (c.is_text("fault.buses")) c.choice("fault.buses", {"any"});
-  else f.buses = numbers(c.require<std::vector<std::int64_t>>("fault.buses", kBusNumber));
+  if (c.is_text("fault.buses"))
+    c.choice("fault.buses", {"any"});
+  else
+    f.buses = numbers(c.require<std::vector<std::int64_t>>("fault.buses", kBusNumber));
   f.except = numbers(c.optional<std::vector<std::int64_t>>("fault.except", {}, kBusNumber));
   f.start = c.optional<double>("fault.start", f.start, {0.0, 1e4, "s"});
   std::tie(f.shortest, f.longest) = c.interval("fault.duration", {1e-4, 100.0, "s"});
@@ -85,24 +94,31 @@ void read_record(Config& c, RecordConfig& r) {
   for (const auto& k : sim::kChannels) known.emplace_back(k.name);
   known.emplace_back("frequency");
   for (const auto& name : r.channels)
-    if (std::ranges::find(known, name) == known.end()) c.problem("record.channels", "channel '" + name + "'", "there is no such channel", fmt::format("use some of: {}", fmt::join(known, ", ")));
+    if (std::ranges::find(known, name) == known.end())
+      c.problem("record.channels", "channel '" + name + "'", "there is no such channel",
+                fmt::format("use some of: {}", fmt::join(known, ", ")));
   if (std::ranges::find(r.channels, "frequency") == r.channels.end()) return;
   r.frequency.washout = c.require<double>("record.frequency_washout", {1e-3, 100.0, "s"});
   r.frequency.filter = c.require<double>("record.frequency_filter", {1e-3, 100.0, "s"});
   if (r.frequency.washout == r.frequency.filter && r.frequency.filter > 0)
-    c.problem("record.frequency_filter", "frequency_filter equal to frequency_washout", "the filter's two time constants must differ", "change one of them");
+    c.problem("record.frequency_filter", "frequency_filter equal to frequency_washout",
+              "the filter's two time constants must differ", "change one of them");
 }
 
 void read_databank(Config& c, DatabankConfig& b) {
-  b.policy = c.choice("databank.policy", {"physical", "literal"}, "physical") == "literal" ? Policy::literal : Policy::physical;
+  b.policy = c.choice("databank.policy", {"physical", "literal"}, "physical") == "literal" ? Policy::literal
+                                                                                           : Policy::physical;
   b.distance = c.require<double>("databank.distance", {0.0, 1e6, ""});
   b.scaled = c.choice("databank.scale", {"raw", "scaled"}, "raw") == "scaled";
-  b.candidates_per_point = c.optional<double>("databank.candidates_per_point", b.candidates_per_point, {1.0, 1e9, ""});
+  b.candidates_per_point =
+      c.optional<double>("databank.candidates_per_point", b.candidates_per_point, {1.0, 1e9, ""});
 }
 
 }  // namespace
 
-std::size_t RecordConfig::samples() const { return static_cast<std::size_t>(std::floor(t_end * rate + 1e-9)); }
+std::size_t RecordConfig::samples() const {
+  return static_cast<std::size_t>(std::floor(t_end * rate + 1e-9));
+}
 
 const sim::Effect& DatasetConfig::effect() const { return *sim::find_effect(model); }
 
@@ -113,7 +129,9 @@ std::uint64_t DatasetConfig::points() const {
 
 std::string DatasetConfig::canonical() const {
   std::string text;
-  const auto line = [&](std::string_view key, const auto& value) { text += fmt::format("{} = {}\n", key, value); };
+  const auto line = [&](std::string_view key, const auto& value) {
+    text += fmt::format("{} = {}\n", key, value);
+  };
   line("convention", psse ? "psse" : "andes");
   line("draws", draws);
   line("draws_per_shard", draws_per_shard);
@@ -121,7 +139,9 @@ std::string DatasetConfig::canonical() const {
   line("vary.who", vary == Vary::all ? "all" : "one");
   line("vary.generators", generators);
   line("vary.model", model);
-  for (const auto& b : box) line(fmt::format("vary.box.{}", effect().parameters[static_cast<std::size_t>(b.index)].name), std::vector<double>{b.low, b.high});
+  for (const auto& b : box)
+    line(fmt::format("vary.box.{}", effect().parameters[static_cast<std::size_t>(b.index)].name),
+         std::vector<double>{b.low, b.high});
   line("databank.policy", databank.policy == Policy::literal ? "literal" : "physical");
   line("databank.distance", databank.distance);
   line("databank.scale", databank.scaled ? "scaled" : "raw");
@@ -147,7 +167,8 @@ DatasetConfig read_dataset_config(const fs::path& file, const Overrides& overrid
   d.dyr = c.file("dyr");
   d.psse = c.choice("convention", {"psse", "andes"}) != "andes";
   d.draws = static_cast<std::uint64_t>(c.require<std::int64_t>("draws", kCount));
-  d.draws_per_shard = static_cast<std::uint64_t>(c.optional<std::int64_t>("draws_per_shard", 512, {1, 1e6, ""}));
+  d.draws_per_shard =
+      static_cast<std::uint64_t>(c.optional<std::int64_t>("draws_per_shard", 512, {1, 1e6, ""}));
   d.seed = static_cast<std::uint64_t>(c.optional<std::int64_t>("seed", 1, {0, 9e18, ""}));
   read_vary(c, d);
   read_databank(c, d.databank);
@@ -156,17 +177,21 @@ DatasetConfig read_dataset_config(const fs::path& file, const Overrides& overrid
   d.tolerance = c.optional<double>("kernel.tolerance", 1e-6, {1e-12, 1e-2, ""});
   d.lanes = static_cast<int>(c.optional<std::int64_t>("kernel.lanes", 0, {0, 8, ""}));
   if (d.fault.start + d.fault.longest >= d.record.t_end && d.record.t_end > 0)
-    c.problem("fault.start", fmt::format("a fault until {} s", d.fault.start + d.fault.longest), fmt::format("the record ends at {} s", d.record.t_end), "let the fault end before the record does");
+    c.problem("fault.start", fmt::format("a fault until {} s", d.fault.start + d.fault.longest),
+              fmt::format("the record ends at {} s", d.record.t_end),
+              "let the fault end before the record does");
   c.raise();
   d.draws = overrides.draws.value_or(d.draws);
   d.seed = overrides.seed.value_or(d.seed);
   d.draws_per_shard = overrides.draws_per_shard.value_or(d.draws_per_shard);
+  d.fault.per_point = overrides.faults_per_point.value_or(d.fault.per_point);
   return d;
 }
 
 Study load_study(const DatasetConfig& config) {
   Study s{config, {}, {}, {}};
-  s.grid = sim::load_grid(config.raw, config.dyr, config.psse ? sim::Conventions::psse() : sim::Conventions::andes());
+  s.grid = sim::load_grid(config.raw, config.dyr,
+                          config.psse ? sim::Conventions::psse() : sim::Conventions::andes());
   const auto& network = s.grid.network;
   s.grid.conventions.frequency = network.frequency;
   Problems problems;
@@ -176,14 +201,22 @@ Study load_study(const DatasetConfig& config) {
     const auto count = std::ranges::count_if(s.grid.plants, here);
     const auto plant = std::ranges::find_if(s.grid.plants, here);
     if (count != 1)
-      problems.add(fmt::format("generator {} of vary.generators", number), config.file.string(), fmt::format("{} has {} generators in service at this bus", config.raw.string(), count), "name buses with one generator");
+      problems.add(fmt::format("generator {} of vary.generators", number), config.file.string(),
+                   fmt::format("{} has {} generators in service at this bus", config.raw.string(), count),
+                   "name buses with one generator");
     else if (plant->machine.effect != &config.effect())
-      problems.add(fmt::format("generator {} of vary.generators", number), config.file.string(), fmt::format("its machine in {} is {}, not {}", config.dyr.string(), plant->machine.effect->name, config.model), "change vary.model or the .dyr");
-    else s.plants.push_back(static_cast<int>(plant - s.grid.plants.begin()));
+      problems.add(fmt::format("generator {} of vary.generators", number), config.file.string(),
+                   fmt::format("its machine in {} is {}, not {}", config.dyr.string(),
+                               plant->machine.effect->name, config.model),
+                   "change vary.model or the .dyr");
+    else
+      s.plants.push_back(static_cast<int>(plant - s.grid.plants.begin()));
   }
   const auto index_of = [&](int number, const char* key) {
     const int bus = network.bus_index(number);
-    if (bus < 0) problems.add(fmt::format("bus {} of {}", number, key), config.file.string(), "there is no such bus in " + config.raw.string(), "name buses of the network");
+    if (bus < 0)
+      problems.add(fmt::format("bus {} of {}", number, key), config.file.string(),
+                   "there is no such bus in " + config.raw.string(), "name buses of the network");
     return bus;
   };
   std::vector<int> except;
@@ -195,7 +228,9 @@ Study load_study(const DatasetConfig& config) {
   if (config.fault.buses.empty())
     for (std::size_t i = 0; i < network.buses.size(); ++i)
       if (network.buses[i].type != sim::BusType::isolated) allow(static_cast<int>(i));
-  if (s.fault_buses.empty()) problems.add("no bus to fault", config.file.string(), "fault.except leaves none of fault.buses", "name more buses");
+  if (s.fault_buses.empty())
+    problems.add("no bus to fault", config.file.string(), "fault.except leaves none of fault.buses",
+                 "name more buses");
   problems.raise();
   return s;
 }

@@ -1,5 +1,6 @@
 #pragma once
-// A dataset's config (configs/datasets/*.toml; keys explained in configs/datasets/README.md) and the grid it is about.
+// A dataset's config (configs/datasets/*.toml; keys explained in configs/datasets/README.md) and the grid it
+// is about.
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -23,23 +24,23 @@ struct Box {
 
 struct DatabankConfig {
   Policy policy = Policy::physical;
-  double distance = 0.0;       ///< smallest Euclidean distance of two points; 0: none
-  bool scaled = false;         ///< distance in units of each box's width, else in the parameters' own units
+  double distance = 0.0;  ///< smallest Euclidean distance of two points; 0: none
+  bool scaled = false;    ///< distance in units of each box's width, else in the parameters' own units
   double candidates_per_point = 20.0;  ///< gives up after this many admissible candidates per point
 };
 
 struct FaultConfig {
-  std::vector<int> buses;      ///< bus numbers; empty: any bus
-  std::vector<int> except;     ///< bus numbers
-  double start = 2.0;          ///< [s]
+  std::vector<int> buses;                 ///< bus numbers; empty: any bus
+  std::vector<int> except;                ///< bus numbers
+  double start = 2.0;                     ///< [s]
   double shortest = 0.05, longest = 0.2;  ///< duration [s]
-  double r = 0.0, x = 0.0;     ///< [pu on the network's base]; 0: bolted
-  std::uint64_t per_point = 1; ///< faults simulated for each point of the databank
+  double r = 0.0, x = 0.0;                ///< [pu on the network's base]; 0: bolted
+  std::uint64_t per_point = 1;            ///< faults simulated for each point of the databank
 };
 
 struct RecordConfig {
-  double t_end = 15.0;         ///< [s]
-  double rate = 60.0;          ///< [1/s]
+  double t_end = 15.0;                ///< [s]
+  double rate = 60.0;                 ///< [1/s]
   std::vector<std::string> channels;  ///< of sim/solve/channel.hpp, or "frequency"
   FrequencyFilter frequency;
   /// At k/rate, k = 0 ... t_end rate - 1: whole seconds hold whole numbers of samples.
@@ -48,17 +49,17 @@ struct RecordConfig {
 
 struct DatasetConfig {
   std::filesystem::path file, raw, dyr;
-  bool psse = true;            ///< convention, else andes
+  bool psse = true;  ///< convention, else andes
   Vary vary = Vary::one;
-  std::vector<int> generators; ///< bus numbers of the machines that vary
-  std::string model;           ///< their machine model
-  std::vector<Box> box;        ///< in record order
+  std::vector<int> generators;  ///< bus numbers of the machines that vary
+  std::string model;            ///< their machine model
+  std::vector<Box> box;         ///< in record order
   DatabankConfig databank;
   FaultConfig fault;
   RecordConfig record;
   std::uint64_t draws = 0, draws_per_shard = 512, seed = 1;
-  double tolerance = 1e-6;     ///< of the kernel
-  int lanes = 0;               ///< of the kernel; 0: the widest of this build
+  double tolerance = 1e-6;  ///< of the kernel
+  int lanes = 0;            ///< of the kernel; 0: the widest of this build
 
   [[nodiscard]] const sim::Effect& effect() const;
   /// Points of the databank the draws need.
@@ -69,7 +70,7 @@ struct DatasetConfig {
 
 /// What the command line replaces.
 struct Overrides {
-  std::optional<std::uint64_t> draws, seed, draws_per_shard;
+  std::optional<std::uint64_t> draws, seed, draws_per_shard, faults_per_point;
 };
 
 /// Throws InputError with every problem of the file.

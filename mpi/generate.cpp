@@ -31,8 +31,10 @@ void require_one_variant(MPI_Comm world, const std::string& hash, const std::str
   MPI_Bcast(first, sizeof first, MPI_CHAR, 0, world);
   agree(world, "start", [&] {
     if (std::string(mine) != first)
-      throw InputError({"ranks that would make different data", fmt::format("rank {}", rank), fmt::format("it has {}, rank 0 has {}", mine, first),
-                        "start the same build with the same config on every node, or a build for the common instruction set (preset portable)"});
+      throw InputError({"ranks that would make different data", fmt::format("rank {}", rank),
+                        fmt::format("it has {}, rank 0 has {}", mine, first),
+                        "start the same build with the same config on every node, or a build for the common "
+                        "instruction set (preset portable)"});
   });
 }
 
@@ -49,7 +51,8 @@ Databank shared_databank(const Study& study, MPI_Comm world) {
   bank.values.resize(study.config.points() * bank.dimensions);
   constexpr std::size_t piece = std::size_t{1} << 26;  // MPI counts in int
   for (std::size_t at = 0; at < bank.values.size(); at += piece)
-    MPI_Bcast(bank.values.data() + at, static_cast<int>(std::min(piece, bank.values.size() - at)), MPI_DOUBLE, 0, world);
+    MPI_Bcast(bank.values.data() + at, static_cast<int>(std::min(piece, bank.values.size() - at)), MPI_DOUBLE,
+              0, world);
   return bank;
 }
 
@@ -80,12 +83,15 @@ void claim_folder(const fs::path& folder, const DatasetHeader& header) {
   if (fs::exists(folder / "dataset.json")) {
     const DatasetHeader found = read_header(folder);
     if (found.config_hash != header.config_hash)
-      throw InputError({"a dataset of another config", folder.string(), fmt::format("its config hash is {} (kernel {}), this run's is {} (kernel {})", found.config_hash, found.kernel, header.config_hash, header.kernel),
+      throw InputError({"a dataset of another config", folder.string(),
+                        fmt::format("its config hash is {} (kernel {}), this run's is {} (kernel {})",
+                                    found.config_hash, found.kernel, header.config_hash, header.kernel),
                         "give another folder, or the config, size, seed and build it was made with"});
     return;
   }
   if (fs::exists(folder) && (!fs::is_directory(folder) || !fs::is_empty(folder)))
-    throw InputError({"output folder in use", folder.string(), "it holds files but no dataset", "give a new or empty folder"});
+    throw InputError({"output folder in use", folder.string(), "it holds files but no dataset",
+                      "give a new or empty folder"});
   make_folder(folder / "shards");
   write_header(folder, header);
 }
@@ -100,7 +106,8 @@ void remove_leftovers(const fs::path& folder) {
 /// Takes bad shards out of the journal. Before the run opens it, because the file is replaced.
 void repair(const fs::path& folder) {
   const Journal lock(folder / "journal.jsonl");
-  for (const auto& bad : strike_bad_shards(folder)) spdlog::warn("to be made anew: {} at {} ({})", bad.problem.what, bad.problem.where, bad.problem.why);
+  for (const auto& bad : strike_bad_shards(folder))
+    spdlog::warn("to be made anew: {} at {} ({})", bad.problem.what, bad.problem.where, bad.problem.why);
 }
 
 /// Shards still to make.
@@ -124,7 +131,10 @@ std::int64_t ask_master(MPI_Comm world, const Report& report, double timeout) {
   const std::string text = pack(report);
   MPI_Send(text.data(), static_cast<int>(text.size()), MPI_CHAR, 0, kReportTag, world);
   if (!wait_for(world, 0, kLeaseTag, timeout)) {
-    fmt::print(stderr, "no answer from rank 0 for {:.0f} s (it hangs or is gone): the run ends; finished shards are safe, run the command again to continue\n", timeout);
+    fmt::print(stderr,
+               "no answer from rank 0 for {:.0f} s (it hangs or is gone): the run ends; finished shards are "
+               "safe, run the command again to continue\n",
+               timeout);
     MPI_Abort(world, 1);
   }
   std::int64_t lease;
@@ -196,13 +206,20 @@ int generate(const DatasetConfig& config, const GenerateOptions& o, MPI_Comm wor
     remove_leftovers(o.folder);
     missing = missing_shards(o, header);
     const auto left = draws_in(missing, config);
-    spdlog::info("{}: {} of {} draws to make in {} shards, {} ranks, kernel {}, config {}", o.folder.string(), left, config.draws, missing.size(), size, kernel, hash);
+    spdlog::info("{}: {} of {} draws to make in {} shards, {} ranks, kernel {}, config {}", o.folder.string(),
+                 left, config.draws, missing.size(), size, kernel, hash);
   });
 
   const Databank bank = shared_databank(study, world);
   const Groups groups(world, rank, size, o.writer_ranks, o.dedicated_master && size > 1);
   ShardMaker maker(study, bank);
-  Worker worker{study, maker, attributes, o.folder, groups.mine, [&](const Report& r) { return ask_master(world, r, o.lease_timeout); }, [](std::uint64_t) {}};
+  Worker worker{study,
+                maker,
+                attributes,
+                o.folder,
+                groups.mine,
+                [&](const Report& r) { return ask_master(world, r, o.lease_timeout); },
+                [](std::uint64_t) {}};
   bool complete = true;
   Problems problems;
   if (rank == 0) {
@@ -228,9 +245,14 @@ std::string describe(const Dataset& d) {
   std::uint64_t bytes = 0, draws = 0;
   for (const auto& s : d.shards) bytes += s.bytes;
   for (const auto& [name, count] : d.outcomes) draws += count;
-  std::string text = fmt::format("dataset {}: {} rows of {} x {} samples at {:g}/s, {:.1f} MB in {} of {} shards\n", d.path.string(), d.rows, d.channel_names.size(), d.samples, d.rate, static_cast<double>(bytes) / 1e6, d.shards.size(), d.shard_count());
+  std::string text =
+      fmt::format("dataset {}: {} rows of {} x {} samples at {:g}/s, {:.1f} MB in {} of {} shards\n",
+                  d.path.string(), d.rows, d.channel_names.size(), d.samples, d.rate,
+                  static_cast<double>(bytes) / 1e6, d.shards.size(), d.shard_count());
   for (const auto& [name, count] : d.outcomes)
-    text += fmt::format("  {:<18}{:>10} draws  {:5.1f} %\n", name, count, 100.0 * static_cast<double>(count) / static_cast<double>(std::max<std::uint64_t>(draws, 1)));
+    text += fmt::format(
+        "  {:<18}{:>10} draws  {:5.1f} %\n", name, count,
+        100.0 * static_cast<double>(count) / static_cast<double>(std::max<std::uint64_t>(draws, 1)));
   return text + fmt::format("  config {}  dataset {}\n", d.config_hash, d.complete ? d.hash : "unfinished");
 }
 

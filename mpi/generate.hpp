@@ -10,15 +10,15 @@ namespace swingbank {
 
 struct GenerateOptions {
   std::filesystem::path folder;
-  int writer_ranks = 1;             ///< ranks that share a shard
-  double lease_timeout = 600.0;     ///< a shard may take that long [s]; 0: for ever
-  bool dedicated_master = false;    ///< rank 0 only leads
-  bool repair = false;              ///< make shards anew that are journalled and bad
+  int writer_ranks = 1;           ///< ranks that share a shard
+  double lease_timeout = 600.0;   ///< a shard may take that long [s]; 0: for ever
+  bool dedicated_master = false;  ///< rank 0 only leads
+  bool repair = false;            ///< make shards anew that are journalled and bad
   Progress::Mode progress = Progress::Mode::automatic;
 };
 
-/// Collective over `world`. Makes the dataset, or what is missing of it. Returns 0, or 2 after a soft exit with shards
-/// still to make. Throws InputError on all ranks alike.
+/// Collective over `world`. Makes the dataset, or what is missing of it. Returns 0, or 2 after a soft exit
+/// with shards still to make. Throws InputError on all ranks alike.
 int generate(const DatasetConfig& config, const GenerateOptions& options, MPI_Comm world);
 
 /// What a finished dataset holds, for people: rows, draws by outcome, hash, size on disk.

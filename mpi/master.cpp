@@ -13,8 +13,15 @@ namespace {
 constexpr double kWarnAfter = 120.0;  ///< [s]
 }
 
-Master::Master(MPI_Comm world, Journal& journal, Progress& progress, std::deque<std::uint64_t> missing, int leaders, double timeout)
-    : world_(world), journal_(journal), progress_(progress), missing_(std::move(missing)), waiting_leaders_(leaders), timeout_(timeout), watcher_([this] { watch(); }) {}
+Master::Master(MPI_Comm world, Journal& journal, Progress& progress, std::deque<std::uint64_t> missing,
+               int leaders, double timeout)
+    : world_(world),
+      journal_(journal),
+      progress_(progress),
+      missing_(std::move(missing)),
+      waiting_leaders_(leaders),
+      timeout_(timeout),
+      watcher_([this] { watch(); }) {}
 
 Master::~Master() {
   {
@@ -30,9 +37,14 @@ void Master::watch() {
   std::unique_lock guard(mutex_);
   while (!wake_.wait_for(guard, std::chrono::milliseconds(500), [this] { return ending_; })) {
     for (auto& [leader, lease] : leases_) {
-      const double age = std::chrono::duration<double>(std::chrono::steady_clock::now() - lease.since).count();
+      const double age =
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - lease.since).count();
       if (timeout_ > 0 && age > timeout_) {
-        fmt::print(stderr, "\nshard {} is overdue at rank {} (leased {:.0f} s ago, limit {:.0f} s): the run ends; finished shards are safe, run the command again to continue, with a larger --lease-timeout if shards take that long\n", lease.shard, leader, age, timeout_);
+        fmt::print(stderr,
+                   "\nshard {} is overdue at rank {} (leased {:.0f} s ago, limit {:.0f} s): the run ends; "
+                   "finished shards are safe, run the command again to continue, with a larger "
+                   "--lease-timeout if shards take that long\n",
+                   lease.shard, leader, age, timeout_);
         std::_Exit(1);  // mpirun and srun then end the other ranks
       }
       if (!lease.warned && age > kWarnAfter) {

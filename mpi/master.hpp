@@ -16,7 +16,8 @@ class Master {
  public:
   /// `missing`: shards to make. `leaders`: ranks that ask by message (not rank 0 itself). A lease older than
   /// `timeout` seconds ends the program (0: only warns).
-  Master(MPI_Comm world, Journal& journal, Progress& progress, std::deque<std::uint64_t> missing, int leaders, double timeout);
+  Master(MPI_Comm world, Journal& journal, Progress& progress, std::deque<std::uint64_t> missing, int leaders,
+         double timeout);
   ~Master();
   Master(const Master&) = delete;
   Master& operator=(const Master&) = delete;
@@ -29,7 +30,9 @@ class Master {
   void serve_to_the_end();
 
   [[nodiscard]] const Problems& problems() const { return problems_; }
-  [[nodiscard]] bool all_made() const { return missing_.empty() && leases_.empty() && problems_.empty() && abandoned_ == 0; }
+  [[nodiscard]] bool all_made() const {
+    return missing_.empty() && leases_.empty() && problems_.empty() && abandoned_ == 0;
+  }
 
  private:
   struct Lease {
@@ -47,9 +50,9 @@ class Master {
   double timeout_;
   Problems problems_;
   bool stop_ = false;
-  int abandoned_ = 0;             ///< leases that ended in a problem
-  std::mutex mutex_;              ///< guards leases_
-  std::map<int, Lease> leases_;   ///< by leader
+  int abandoned_ = 0;            ///< leases that ended in a problem
+  std::mutex mutex_;             ///< guards leases_
+  std::map<int, Lease> leases_;  ///< by leader
   std::condition_variable wake_;
   bool ending_ = false;
   std::thread watcher_;

@@ -7,16 +7,17 @@
 namespace swingbank {
 
 namespace {
-constexpr std::size_t kAxes = 4;       ///< gridded at most: 3^4 cells are visited
-constexpr double kWorthwhile = 3.0;    ///< an axis shorter than this many distances does not separate
-constexpr unsigned kBits = 16;         ///< of a cell number per axis
+constexpr std::size_t kAxes = 4;     ///< gridded at most: 3^4 cells are visited
+constexpr double kWorthwhile = 3.0;  ///< an axis shorter than this many distances does not separate
+constexpr unsigned kBits = 16;       ///< of a cell number per axis
 }  // namespace
 
 Neighbours::Neighbours(std::vector<double> low, std::vector<double> width, double distance)
     : low_(std::move(low)), distance_(distance), order_(width.size()), gridded_(0) {
   std::iota(order_.begin(), order_.end(), 0);
   std::ranges::stable_sort(order_, [&](std::size_t a, std::size_t b) { return width[a] > width[b]; });
-  while (gridded_ < std::min(kAxes, order_.size()) && width[order_[gridded_]] >= kWorthwhile * distance) ++gridded_;
+  while (gridded_ < std::min(kAxes, order_.size()) && width[order_[gridded_]] >= kWorthwhile * distance)
+    ++gridded_;
 }
 
 /// Cell numbers start at 1, so that the neighbour below the first has a number too.

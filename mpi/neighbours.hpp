@@ -1,6 +1,6 @@
 #pragma once
-// Is there a point within a distance? Points are sorted into cells of the distance's size along the few axes that are
-// much longer than it; 60,000 GENROU points at 0.7 then need some hundred comparisons per candidate.
+// Is there a point within a distance? Points are sorted into cells of the distance's size along the few axes
+// that are much longer than it; 60,000 GENROU points at 0.7 then need some hundred comparisons per candidate.
 #include <cstdint>
 #include <unordered_map>
 #include <vector>
@@ -22,8 +22,8 @@ class Neighbours {
 
   std::vector<double> low_;
   double distance_;
-  std::vector<std::size_t> order_;    ///< axes, longest first
-  std::size_t gridded_;               ///< how many of them make up a cell
+  std::vector<std::size_t> order_;                                ///< axes, longest first
+  std::size_t gridded_;                                           ///< how many of them make up a cell
   std::unordered_map<std::uint64_t, std::vector<double>> cells_;  ///< points of a cell, axes in order_
 };
 

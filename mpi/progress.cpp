@@ -11,7 +11,13 @@
 namespace swingbank {
 
 Progress::Progress(Mode mode, std::string unit, std::uint64_t total, std::uint64_t done)
-    : mode_(mode != Mode::automatic ? mode : ::isatty(STDERR_FILENO) != 0 ? Mode::bar : Mode::lines), unit_(std::move(unit)), total_(total), before_(done), done_(done) {}
+    : mode_(mode != Mode::automatic        ? mode
+            : ::isatty(STDERR_FILENO) != 0 ? Mode::bar
+                                           : Mode::lines),
+      unit_(std::move(unit)),
+      total_(total),
+      before_(done),
+      done_(done) {}
 
 double Progress::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 double Progress::rate() const { return static_cast<double>(done_ - before_) / std::max(seconds(), 1e-9); }
@@ -35,7 +41,9 @@ void Progress::print(bool last) {
   printed_ = Clock::now();
   const double share = total_ == 0 ? 1.0 : static_cast<double>(done_) / static_cast<double>(total_);
   const double left = rate() > 0 ? static_cast<double>(total_ - std::min(done_, total_)) / rate() : 0.0;
-  const std::string text = fmt::format("{}/{} {} ({:.0f} %), {:.0f} {}/s{}", done_, total_, unit_, 100.0 * share, rate(), unit_, last ? "" : ", " + duration_text(left) + " left");
+  const std::string text =
+      fmt::format("{}/{} {} ({:.0f} %), {:.0f} {}/s{}", done_, total_, unit_, 100.0 * share, rate(), unit_,
+                  last ? "" : ", " + duration_text(left) + " left");
   if (mode_ == Mode::lines) {
     spdlog::info(text);
     return;

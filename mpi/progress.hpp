@@ -1,5 +1,6 @@
 #pragma once
-// How far a run is, with its rate and the time it still needs: one line in place on a terminal, log lines elsewhere.
+// How far a run is, with its rate and the time it still needs: one line in place on a terminal, log lines
+// elsewhere.
 #include <chrono>
 #include <cstdint>
 #include <string>

@@ -21,7 +21,8 @@ Draw Sampler::draw(std::uint64_t sample_id) const {
   for (std::size_t i = 0; i < d.recorded.size(); ++i) {
     const int plant = study_.plants[d.recorded[i]];
     std::vector<double> p = study_.grid.plants[static_cast<std::size_t>(plant)].machine.p;
-    for (std::size_t k = 0; k < c.box.size(); ++k) p[static_cast<std::size_t>(c.box[k].index)] = bank_.point(d.points[i])[k];
+    for (std::size_t k = 0; k < c.box.size(); ++k)
+      p[static_cast<std::size_t>(c.box[k].index)] = bank_.point(d.points[i])[k];
     d.job.machine_parameters.emplace_back(plant, std::move(p));
   }
   Random random(c.seed, Stream::fault, sample_id);
@@ -37,9 +38,11 @@ std::string Sampler::refusal(const Draw& draw) const {
     sim::Plant plant = grid.plants[static_cast<std::size_t>(index)];
     plant.machine.p = values;
     if (study_.config.databank.policy == Policy::physical)
-      if (const auto why = plant.machine.effect->unphysical(values.data()); !why.empty()) return std::string(why);
+      if (const auto why = plant.machine.effect->unphysical(values.data()); !why.empty())
+        return std::string(why);
     try {
-      sim::operating_point(plant, grid.flow.voltage[static_cast<std::size_t>(plant.bus)], grid.network.base_mva, grid.conventions);
+      sim::operating_point(plant, grid.flow.voltage[static_cast<std::size_t>(plant.bus)],
+                           grid.network.base_mva, grid.conventions);
     } catch (const InputError& e) {
       return e.what();
     }

@@ -22,8 +22,8 @@ bool launched() {
 MpiSession::MpiSession(int* argc, char*** argv) {
   ::setenv("OMPI_MCA_fbtl_posix_read_datasieving", "0", 1);
   if (!launched()) {
-    // Started by hand, one rank needs no daemon beside it. Such ranks share one folder of temporary files, where the
-    // first to end removes the others' (OpenMPI 4.1.4): each gets its own.
+    // Started by hand, one rank needs no daemon beside it. Such ranks share one folder of temporary files,
+    // where the first to end removes the others' (OpenMPI 4.1.4): each gets its own.
     ::setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
     std::string folder = (std::filesystem::temp_directory_path() / "swingbank-mpi-XXXXXX").string();
     if (::mkdtemp(folder.data()) != nullptr) {

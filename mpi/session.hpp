@@ -6,8 +6,8 @@
 
 namespace swingbank {
 
-/// Initialises MPI and ends it. Sets OMPI_MCA_fbtl_posix_read_datasieving=0 first: OpenMPI 4.1.4 otherwise returns wrong
-/// data, without an error, on collective reads of irregular selections by three ranks and more
+/// Initialises MPI and ends it. Sets OMPI_MCA_fbtl_posix_read_datasieving=0 first: OpenMPI 4.1.4 otherwise
+/// returns wrong data, without an error, on collective reads of irregular selections by three ranks and more
 /// (https://github.com/open-mpi/ompi/issues/10546).
 class MpiSession {
  public:

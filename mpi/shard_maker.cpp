@@ -7,7 +7,7 @@
 namespace swingbank {
 
 namespace {
-/// Below this voltage the angle means nothing [pu]; a bolted fault at the terminal gives exactly 0.
+/// Below this voltage the angle means nothing [pu]; a bolted fault at the terminal gives 0 to rounding.
 constexpr double kNoVoltage = 1e-6;
 }  // namespace
 
@@ -49,15 +49,25 @@ sim::Batch& ShardMaker::batch_for(std::size_t generator) {
   if (!batch) {
     sim::BatchOptions options = batch_options(study_.config);
     options.channels = simulated_;
-    options.plants = study_.config.vary == Vary::all ? study_.plants : std::vector<int>{study_.plants[generator]};
+    options.plants =
+        study_.config.vary == Vary::all ? study_.plants : std::vector<int>{study_.plants[generator]};
     batch = std::make_unique<sim::Batch>(study_.grid, options);
   }
   return *batch;
 }
 
-ShardData ShardMaker::make(std::uint64_t first, std::uint64_t count, const std::function<void(std::uint64_t)>& tick) {
+ShardData ShardMaker::make(std::uint64_t first, std::uint64_t count,
+                           const std::function<void(std::uint64_t)>& tick) {
   const DatasetConfig& c = study_.config;
-  Slots s{first, c.vary == Vary::all ? study_.plants.size() : 1, c.record.channels.size(), c.record.samples(), {}, {}, {}, {}, {}};
+  Slots s{first,
+          c.vary == Vary::all ? study_.plants.size() : 1,
+          c.record.channels.size(),
+          c.record.samples(),
+          {},
+          {},
+          {},
+          {},
+          {}};
   s.outcome.assign(count, kRefused);
   s.spread.assign(count, 0.0);
   s.records.assign(count * s.per_draw * s.channels * s.samples, 0.0F);
@@ -65,13 +75,15 @@ ShardData ShardMaker::make(std::uint64_t first, std::uint64_t count, const std::
   std::map<std::size_t, std::vector<std::uint64_t>> by_generator;
   for (std::uint64_t id = first; id < first + count; ++id) {
     s.draws.push_back(sampler_.draw(id));
-    if (sampler_.refusal(s.draws.back()).empty()) by_generator[c.vary == Vary::all ? 0 : s.draws.back().recorded[0]].push_back(id);
+    if (sampler_.refusal(s.draws.back()).empty())
+      by_generator[c.vary == Vary::all ? 0 : s.draws.back().recorded[0]].push_back(id);
   }
   for (auto& [generator, ids] : by_generator) run(s, std::move(ids), batch_for(generator), tick);
   return compact(s);
 }
 
-void ShardMaker::run(Slots& s, std::vector<std::uint64_t> ids, sim::Batch& batch, const std::function<void(std::uint64_t)>& tick) {
+void ShardMaker::run(Slots& s, std::vector<std::uint64_t> ids, sim::Batch& batch,
+                     const std::function<void(std::uint64_t)>& tick) {
   std::size_t at = 0;
   std::uint64_t finished = 0;
   batch.run(
@@ -96,7 +108,8 @@ void ShardMaker::keep(Slots& s, const sim::Job& job, const sim::Trajectory& t) c
   for (std::size_t g = 0; g < s.per_draw; ++g) keep_row(s, draw * s.per_draw + g, t, g);
   const std::size_t size = s.per_draw * s.channels * s.samples;
   const float* values = s.records.data() + draw * size;
-  if (!std::all_of(values, values + size, [](float v) { return std::isfinite(v); })) s.outcome[draw] = static_cast<std::uint8_t>(sim::Outcome::not_finite);
+  if (!std::all_of(values, values + size, [](float v) { return std::isfinite(v); }))
+    s.outcome[draw] = static_cast<std::uint8_t>(sim::Outcome::not_finite);
 }
 
 void ShardMaker::keep_row(Slots& s, std::size_t slot, const sim::Trajectory& t, std::size_t plant) const {
@@ -108,7 +121,8 @@ void ShardMaker::keep_row(Slots& s, std::size_t slot, const sim::Trajectory& t, 
       continue;
     }
     std::vector<double> f(s.samples);
-    terminal_frequency(recorded(angle_), s.samples, t.rate, study_.grid.conventions.frequency, study_.config.record.frequency, f.data());
+    terminal_frequency(recorded(angle_), s.samples, t.rate, study_.grid.conventions.frequency,
+                       study_.config.record.frequency, f.data());
     std::copy(f.begin(), f.end(), row + c * s.samples);
   }
   if (!angle_recorded_) return;
@@ -133,14 +147,17 @@ ShardData ShardMaker::compact(Slots& s) const {
       const std::size_t from = i * s.per_draw + g, to = d.rows++;
       if (from != to) {
         std::copy_n(s.records.data() + from * record, record, s.records.data() + to * record);
-        if (angle_recorded_) std::copy_n(s.valid.data() + from * s.samples, s.samples, s.valid.data() + to * s.samples);
+        if (angle_recorded_)
+          std::copy_n(s.valid.data() + from * s.samples, s.samples, s.valid.data() + to * s.samples);
       }
       const auto& [plant, p] = draw.job.machine_parameters[g];
       for (const auto& b : c.box) d.parameters.push_back(p[static_cast<std::size_t>(b.index)]);
       d.sample_id.push_back(draw.job.id);
       const auto& buses = study_.grid.network.buses;
-      d.generator.push_back(buses[static_cast<std::size_t>(study_.grid.plants[static_cast<std::size_t>(plant)].bus)].number);
-      d.fault.insert(d.fault.end(), {static_cast<double>(buses[static_cast<std::size_t>(fault.bus)].number), fault.t_on, fault.t_off, fault.z.real(), fault.z.imag()});
+      d.generator.push_back(
+          buses[static_cast<std::size_t>(study_.grid.plants[static_cast<std::size_t>(plant)].bus)].number);
+      d.fault.insert(d.fault.end(), {static_cast<double>(buses[static_cast<std::size_t>(fault.bus)].number),
+                                     fault.t_on, fault.t_off, fault.z.real(), fault.z.imag()});
       d.largest_spread.push_back(s.spread[i]);
     }
   }
@@ -160,7 +177,9 @@ sim::BatchOptions batch_options(const DatasetConfig& config) {
   return o;
 }
 
-std::string kernel_variant(const Study& study) { return sim::Batch(study.grid, batch_options(study.config)).variant(); }
+std::string kernel_variant(const Study& study) {
+  return sim::Batch(study.grid, batch_options(study.config)).variant();
+}
 
 ShardAttributes shard_attributes(const Study& study, const std::string& hash, const std::string& kernel) {
   const DatasetConfig& c = study.config;

@@ -23,16 +23,18 @@ class ShardMaker {
  private:
   struct Slots;
   [[nodiscard]] sim::Batch& batch_for(std::size_t generator);
-  void run(Slots& slots, std::vector<std::uint64_t> ids, sim::Batch& batch, const std::function<void(std::uint64_t)>& tick);
+  void run(Slots& slots, std::vector<std::uint64_t> ids, sim::Batch& batch,
+           const std::function<void(std::uint64_t)>& tick);
   void keep(Slots& slots, const sim::Job& job, const sim::Trajectory& t) const;
   void keep_row(Slots& slots, std::size_t slot, const sim::Trajectory& t, std::size_t plant) const;
   [[nodiscard]] ShardData compact(Slots& slots) const;
 
   const Study& study_;
   Sampler sampler_;
-  std::vector<sim::Channel> simulated_;  ///< what the kernel records: the config's channels, V and theta if needed
-  std::vector<int> source_;              ///< per channel of the config: position in simulated_, or -1: frequency
-  int voltage_ = -1, angle_ = -1;        ///< positions in simulated_
+  std::vector<sim::Channel>
+      simulated_;                  ///< what the kernel records: the config's channels, V and theta if needed
+  std::vector<int> source_;        ///< per channel of the config: position in simulated_, or -1: frequency
+  int voltage_ = -1, angle_ = -1;  ///< positions in simulated_
   bool angle_recorded_ = false;
   std::map<std::size_t, std::unique_ptr<sim::Batch>> batches_;  ///< by generator; one under 0 if all vary
 };

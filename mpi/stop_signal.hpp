@@ -1,5 +1,6 @@
 #pragma once
-// SIGTERM, SIGINT and SIGUSR1 ask for a soft exit: finish the shards at hand, leave everything durable, exit with 2.
+// SIGTERM, SIGINT and SIGUSR1 ask for a soft exit: finish the shards at hand, leave everything durable, exit
+// with 2.
 #include <csignal>
 #include <cstdlib>
 

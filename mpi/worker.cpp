@@ -32,7 +32,8 @@ JournalLine Worker::make(std::uint64_t shard) {
   std::array<std::uint64_t, kRefused + 1> mine{}, all{};
   for (const auto outcome : part.draw_outcome) ++mine[outcome];
   MPI_Allreduce(mine.data(), all.data(), static_cast<int>(all.size()), MPI_UINT64_T, MPI_SUM, group);
-  JournalLine line{shard, shard_file_name(shard), receipt.draws, receipt.rows, receipt.bytes, hex(receipt.hash), {}};
+  JournalLine line{
+      shard, shard_file_name(shard), receipt.draws, receipt.rows, receipt.bytes, hex(receipt.hash), {}};
   for (std::uint8_t i = 0; i <= kRefused; ++i)
     if (all[i] > 0) line.outcomes[std::string(draw_outcome_name(i))] = all[i];
   return line;

@@ -1,6 +1,6 @@
 #pragma once
-// A worker: a group of ranks that makes one leased shard after the other. Each rank simulates a part of the shard's
-// draws; all write it together through the MPI-IO driver.
+// A worker: a group of ranks that makes one leased shard after the other. Each rank simulates a part of the
+// shard's draws; all write it together through the MPI-IO driver.
 #include <functional>
 
 #include "mpi/message.hpp"

@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kDatasetFormat = "swingbank-dataset-1";
-constexpr const char* kRemake = "run generate with the dataset's config on this folder again: it makes what is missing";
+constexpr const char* kRemake =
+    "run generate with the dataset's config on this folder again: it makes what is missing";
 
 nlohmann::ordered_json to_json(const DatasetHeader& h) {
   nlohmann::ordered_json j;
@@ -43,7 +44,8 @@ nlohmann::ordered_json to_json(const DatasetHeader& h) {
 }
 
 DatasetHeader from_json(const nlohmann::json& j) {
-  if (j.at("format") != kDatasetFormat) throw std::runtime_error("format is not \"" + std::string(kDatasetFormat) + "\"");
+  if (j.at("format") != kDatasetFormat)
+    throw std::runtime_error("format is not \"" + std::string(kDatasetFormat) + "\"");
   DatasetHeader h;
   j.at("config_hash").get_to(h.config_hash);
   j.at("kernel").get_to(h.kernel);
@@ -68,21 +70,30 @@ DatasetHeader from_json(const nlohmann::json& j) {
 constexpr const char* kRepair = "run generate with --repair on the dataset: it makes the shard anew";
 
 /// What is wrong with a journalled shard; `deep` reads it, else its length must do, which shows truncation.
-std::optional<Problem> fault_of(const fs::path& file, const JournalLine& line, const DatasetHeader& header, bool deep) {
+std::optional<Problem> fault_of(const fs::path& file, const JournalLine& line, const DatasetHeader& header,
+                                bool deep) {
   std::error_code error;
   const auto size = fs::file_size(file, error);
   if (error) return Problem{"missing shard", file.string(), error.message(), kRepair};
   if (size != line.bytes)
-    return Problem{"truncated or changed shard", file.string(), "it has " + std::to_string(size) + " bytes, the journal says " + std::to_string(line.bytes), kRepair};
+    return Problem{
+        "truncated or changed shard", file.string(),
+        "it has " + std::to_string(size) + " bytes, the journal says " + std::to_string(line.bytes), kRepair};
   if (line.shard >= header.shard_count())
-    return Problem{"shard " + std::to_string(line.shard), file.string(), "the dataset has " + std::to_string(header.shard_count()) + " shards", "restore dataset.json and journal.jsonl of one and the same dataset"};
+    return Problem{"shard " + std::to_string(line.shard), file.string(),
+                   "the dataset has " + std::to_string(header.shard_count()) + " shards",
+                   "restore dataset.json and journal.jsonl of one and the same dataset"};
   if (!deep) return std::nullopt;
   try {
     const ShardData data = read_shard(file);
     if (data.attributes.config_hash != header.config_hash)
-      return Problem{"a shard of another config", file.string(), "its config hash is " + data.attributes.config_hash + ", the dataset's " + header.config_hash, kRepair};
+      return Problem{
+          "a shard of another config", file.string(),
+          "its config hash is " + data.attributes.config_hash + ", the dataset's " + header.config_hash,
+          kRepair};
     if (const auto found = hex(shard_hash(data)); found != line.hash)
-      return Problem{"changed shard", file.string(), "its hash is " + found + ", the journal says " + line.hash, kRepair};
+      return Problem{"changed shard", file.string(),
+                     "its hash is " + found + ", the journal says " + line.hash, kRepair};
   } catch (const InputError& e) {
     Problem p = e.problems().front();
     p.remedy = kRepair;
@@ -99,19 +110,25 @@ std::string combine(const std::vector<ShardInfo>& shards) {
 
 }  // namespace
 
-void write_header(const fs::path& folder, const DatasetHeader& header) { write_text(folder / "dataset.json", to_json(header).dump(1) + "\n"); }
+void write_header(const fs::path& folder, const DatasetHeader& header) {
+  write_text(folder / "dataset.json", to_json(header).dump(1) + "\n");
+}
 
 DatasetHeader read_header(const fs::path& folder) {
   const fs::path file = folder / "dataset.json";
-  if (!fs::exists(file)) throw InputError({"no dataset", folder.string(), "it holds no dataset.json", "give the folder that generate wrote"});
+  if (!fs::exists(file))
+    throw InputError(
+        {"no dataset", folder.string(), "it holds no dataset.json", "give the folder that generate wrote"});
   try {
     return from_json(nlohmann::json::parse(read_text(file)));
   } catch (const nlohmann::json::exception& e) {
-    throw InputError({"damaged dataset header", file.string(), e.what(), "restore the file from a copy, or make the dataset again in an empty folder"});
+    throw InputError({"damaged dataset header", file.string(), e.what(),
+                      "restore the file from a copy, or make the dataset again in an empty folder"});
   } catch (const InputError&) {
     throw;
   } catch (const std::runtime_error& e) {
-    throw InputError({"dataset header of another kind", file.string(), e.what(), "use the version of the software that wrote it"});
+    throw InputError({"dataset header of another kind", file.string(), e.what(),
+                      "use the version of the software that wrote it"});
   }
 }
 
@@ -131,7 +148,10 @@ Dataset open_dataset(const fs::path& folder, bool allow_incomplete) {
   }
   d.complete = d.shards.size() == d.shard_count();
   if (!d.complete && !allow_incomplete)
-    problems.add("unfinished dataset", folder.string(), std::to_string(d.shards.size()) + " of " + std::to_string(d.shard_count()) + " shards are there", kRemake);
+    problems.add(
+        "unfinished dataset", folder.string(),
+        std::to_string(d.shards.size()) + " of " + std::to_string(d.shard_count()) + " shards are there",
+        kRemake);
   problems.raise();
   d.hash = combine(d.shards);
   return d;
@@ -148,18 +168,22 @@ std::vector<BadShard> find_bad_shards(const fs::path& folder, bool deep) {
 std::vector<BadShard> strike_bad_shards(const fs::path& folder) {
   auto bad = find_bad_shards(folder, true);
   auto lines = read_journal(folder / "journal.jsonl");
-  std::erase_if(lines, [&](const JournalLine& l) { return std::ranges::find(bad, l.shard, &BadShard::shard) != bad.end(); });
+  std::erase_if(lines, [&](const JournalLine& l) {
+    return std::ranges::find(bad, l.shard, &BadShard::shard) != bad.end();
+  });
   if (!bad.empty()) rewrite_journal(folder / "journal.jsonl", lines);
   return bad;
 }
 
 void verify_dataset(const Dataset& dataset) {
   Problems problems;
-  for (const auto& bad : find_bad_shards(dataset.path, true)) problems.add(bad.problem.what, bad.problem.where, bad.problem.why, bad.problem.remedy);
+  for (const auto& bad : find_bad_shards(dataset.path, true))
+    problems.add(bad.problem.what, bad.problem.where, bad.problem.why, bad.problem.remedy);
   problems.raise();
 }
 
-void read_rows(const ShardInfo& shard, std::uint64_t first, std::uint64_t count, RowBlock& out, const ShardFields& fields) {
+void read_rows(const ShardInfo& shard, std::uint64_t first, std::uint64_t count, RowBlock& out,
+               const ShardFields& fields) {
   read_rows(shard.path, first, count, out, shard.config_hash, fields);
 }
 

@@ -19,12 +19,16 @@ namespace {
 std::string remedy_for(int error) {
   switch (error) {
     case ENOSPC:
-    case EDQUOT: return "free some space or choose another folder, then run the command again: it continues";
+    case EDQUOT:
+      return "free some space or choose another folder, then run the command again: it continues";
     case EACCES:
     case EPERM:
-    case EROFS: return "choose a folder you may write to, or mend its permissions";
-    case ENOENT: return "check the path";
-    default: return "check the disk, then run the command again";
+    case EROFS:
+      return "choose a folder you may write to, or mend its permissions";
+    case ENOENT:
+      return "check the path";
+    default:
+      return "check the disk, then run the command again";
   }
 }
 
@@ -48,7 +52,9 @@ void raise_file_error(const fs::path& file, int error, const std::string& what) 
   throw InputError({what, file.string(), std::strerror(error), remedy_for(error)});
 }
 
-fs::path temporary_name(const fs::path& file) { return file.parent_path() / ("." + file.filename().string() + ".part"); }
+fs::path temporary_name(const fs::path& file) {
+  return file.parent_path() / ("." + file.filename().string() + ".part");
+}
 
 void make_folder(const fs::path& folder) {
   std::error_code error;

@@ -10,10 +10,11 @@ namespace swingbank {
 std::filesystem::path temporary_name(const std::filesystem::path& file);
 /// Creates a folder and its parents. Throws InputError naming the folder and the system's reason.
 void make_folder(const std::filesystem::path& folder);
-/// Creates the temporary file and asks the system for `bytes` of space. Throws InputError with the system's reason
-/// (disk full, no permission), which HDF5 and MPI-IO do not pass on; removes the temporary then.
+/// Creates the temporary file and asks the system for `bytes` of space. Throws InputError with the system's
+/// reason (disk full, no permission), which HDF5 and MPI-IO do not pass on; removes the temporary then.
 void reserve(const std::filesystem::path& file, std::uint64_t bytes);
-/// Flushes the temporary file to the disk and gives it its final name. Throws InputError; removes the temporary then.
+/// Flushes the temporary file to the disk and gives it its final name. Throws InputError; removes the
+/// temporary then.
 void publish(const std::filesystem::path& file);
 void flush_folder(const std::filesystem::path& folder);
 /// Writes text whole or not at all.

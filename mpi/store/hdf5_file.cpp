@@ -32,7 +32,9 @@ Handle untimed(hid_t list_class) {
 }
 
 Handle space_of(const Shape& shape) {
-  return {shape.empty() ? H5Screate(H5S_SCALAR) : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose};
+  return {shape.empty() ? H5Screate(H5S_SCALAR)
+                        : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
+          H5Sclose};
 }
 
 Handle string_type() {
@@ -54,7 +56,8 @@ void File::fail(const std::string& what, const std::string& object) const {
   const std::string where = name_.string() + (object.empty() ? "" : ":" + object);
   if (why.find("errno = 28") != std::string::npos) raise_file_error(where, ENOSPC, what);
   if (why.find("errno = 13") != std::string::npos) raise_file_error(where, EACCES, what);
-  throw InputError({what, where, why, "if the file is damaged, delete it and run the command that made it again"});
+  throw InputError(
+      {what, where, why, "if the file is damaged, delete it and run the command that made it again"});
 }
 
 File File::open(const std::filesystem::path& file) {
@@ -72,7 +75,8 @@ File File::create(const std::filesystem::path& file, hid_t access) {
   File f;
   f.name_ = file;
   const Handle properties = untimed(H5P_FILE_CREATE);
-  f.file_ = Handle(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, properties.get(), access < 0 ? H5P_DEFAULT : access), H5Fclose);
+  f.file_ = Handle(
+      H5Fcreate(file.c_str(), H5F_ACC_TRUNC, properties.get(), access < 0 ? H5P_DEFAULT : access), H5Fclose);
   if (!f.file_) f.fail("cannot create the HDF5 file", "");
   return f;
 }
@@ -81,7 +85,9 @@ void File::close() {
   if (!file_.reset()) fail("cannot complete the HDF5 file", "");
 }
 
-bool File::has(const std::string& object) const { return H5Lexists(file_.get(), object.c_str(), H5P_DEFAULT) > 0; }
+bool File::has(const std::string& object) const {
+  return H5Lexists(file_.get(), object.c_str(), H5P_DEFAULT) > 0;
+}
 
 Shape File::shape(const std::string& object) const {
   const Handle set(H5Dopen2(file_.get(), object.c_str(), H5P_DEFAULT), H5Dclose);
@@ -102,7 +108,8 @@ hsize_t File::row_size(const Shape& shape) {
 
 void File::create_group(const std::string& name) {
   const Handle properties = untimed(H5P_GROUP_CREATE);
-  const Handle group(H5Gcreate2(file_.get(), name.c_str(), H5P_DEFAULT, properties.get(), H5P_DEFAULT), H5Gclose);
+  const Handle group(H5Gcreate2(file_.get(), name.c_str(), H5P_DEFAULT, properties.get(), H5P_DEFAULT),
+                     H5Gclose);
   if (!group) fail("cannot create the group", name);
 }
 
@@ -110,34 +117,44 @@ void File::create(const std::string& object, hid_t file_type, const Shape& shape
   const Handle space = space_of(shape), properties = untimed(H5P_DATASET_CREATE);
   H5Pset_fill_time(properties.get(), H5D_FILL_TIME_NEVER);  // every row is written
   H5Pset_alloc_time(properties.get(), H5D_ALLOC_TIME_EARLY);
-  const Handle set(H5Dcreate2(file_.get(), object.c_str(), file_type, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT), H5Dclose);
+  const Handle set(H5Dcreate2(file_.get(), object.c_str(), file_type, space.get(), H5P_DEFAULT,
+                              properties.get(), H5P_DEFAULT),
+                   H5Dclose);
   if (!set) fail("cannot create the array", object);
 }
 
-void File::transfer(const std::string& object, hsize_t first, hsize_t count, hid_t type, void* in, const void* out) const {
+void File::transfer(const std::string& object, hsize_t first, hsize_t count, hid_t type, void* in,
+                    const void* out) const {
   if (count == 0) return;
   const Handle set(H5Dopen2(file_.get(), object.c_str(), H5P_DEFAULT), H5Dclose);
   if (!set) fail("cannot open the array", object);
   const Handle space(H5Dget_space(set.get()), H5Sclose);
   Shape extent = shape(object), start(extent.size(), 0);
   if (extent.empty() || first + count > extent[0]) {
-    throw InputError({"rows " + std::to_string(first) + " to " + std::to_string(first + count - 1), name_.string() + ":" + object,
-                      "the array has " + std::to_string(extent.empty() ? 0 : extent[0]) + " rows", "ask for rows that exist"});
+    throw InputError({"rows " + std::to_string(first) + " to " + std::to_string(first + count - 1),
+                      name_.string() + ":" + object,
+                      "the array has " + std::to_string(extent.empty() ? 0 : extent[0]) + " rows",
+                      "ask for rows that exist"});
   }
   start[0] = first;
   extent[0] = count;
   H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr);
   const Handle memory = space_of(extent);
-  const herr_t result = in != nullptr ? H5Dread(set.get(), type, memory.get(), space.get(), H5P_DEFAULT, in)
-                                      : H5Dwrite(set.get(), type, memory.get(), space.get(), H5P_DEFAULT, out);
+  const herr_t result = in != nullptr
+                            ? H5Dread(set.get(), type, memory.get(), space.get(), H5P_DEFAULT, in)
+                            : H5Dwrite(set.get(), type, memory.get(), space.get(), H5P_DEFAULT, out);
   if (result < 0) fail(in != nullptr ? "cannot read the array" : "cannot write the array", object);
 }
 
-void File::put(const std::string& object, const std::string& name, hid_t file_type, hid_t memory_type, const Shape& shape, const void* data) {
+void File::put(const std::string& object, const std::string& name, hid_t file_type, hid_t memory_type,
+               const Shape& shape, const void* data) {
   const Handle space = space_of(shape);
-  const Handle a(H5Acreate_by_name(file_.get(), object.c_str(), name.c_str(), file_type, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const Handle a(H5Acreate_by_name(file_.get(), object.c_str(), name.c_str(), file_type, space.get(),
+                                   H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                 H5Aclose);
   const bool nothing = !shape.empty() && shape[0] == 0;
-  if (!a || (!nothing && H5Awrite(a.get(), memory_type, data) < 0)) fail("cannot write the attribute", object + "@" + name);
+  if (!a || (!nothing && H5Awrite(a.get(), memory_type, data) < 0))
+    fail("cannot write the attribute", object + "@" + name);
 }
 
 void File::attribute(const std::string& name, const std::string& value, const std::string& object) {
@@ -146,7 +163,8 @@ void File::attribute(const std::string& name, const std::string& value, const st
   put(object, name, type.get(), type.get(), {}, &text);
 }
 
-void File::attribute(const std::string& name, const std::vector<std::string>& value, const std::string& object) {
+void File::attribute(const std::string& name, const std::vector<std::string>& value,
+                     const std::string& object) {
   const Handle type = string_type();
   std::vector<const char*> texts;
   for (const auto& v : value) texts.push_back(v.c_str());
@@ -192,14 +210,16 @@ std::string File::text_attribute(const std::string& name) const {
 std::uint64_t File::integer_attribute(const std::string& name) const {
   const auto [a, n] = find(name);
   std::uint64_t value = 0;
-  if (n != 1 || H5Aread(a.get(), Type<std::uint64_t>::memory(), &value) < 0) fail("the attribute is not one integer", "/@" + name);
+  if (n != 1 || H5Aread(a.get(), Type<std::uint64_t>::memory(), &value) < 0)
+    fail("the attribute is not one integer", "/@" + name);
   return value;
 }
 
 std::vector<double> File::reals_attribute(const std::string& name) const {
   const auto [a, n] = find(name);
   std::vector<double> values(n);
-  if (n > 0 && H5Aread(a.get(), Type<double>::memory(), values.data()) < 0) fail("cannot read the attribute", "/@" + name);
+  if (n > 0 && H5Aread(a.get(), Type<double>::memory(), values.data()) < 0)
+    fail("cannot read the attribute", "/@" + name);
   return values;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// HDF5's C API with handles that close themselves and errors that name file and object. HDF5's own printing is off.
-// Files it creates carry no times, so equal content makes equal bytes.
+// HDF5's C API with handles that close themselves and errors that name file and object. HDF5's own printing
+// is off. Files it creates carry no times, so equal content makes equal bytes.
 #include <hdf5.h>
 
 #include <atomic>
@@ -16,7 +16,8 @@ namespace swingbank::h5 {
 /// HDF5 is not thread-safe: whoever uses it holds this lock.
 std::recursive_mutex& lock();
 
-/// Something could not be closed (full disk). HDF5 1.10 then crashes in H5close, which MPI_Finalize and exit() call too.
+/// Something could not be closed (full disk). HDF5 1.10 then crashes in H5close, which MPI_Finalize and
+/// exit() call too.
 inline std::atomic<bool> close_failed = false;
 
 class Handle {
@@ -47,11 +48,31 @@ class Handle {
 
 template <class T>
 struct Type;  // native type in memory, fixed little-endian type in the file
-template <> struct Type<float> { static hid_t memory() { return H5T_NATIVE_FLOAT; } static hid_t file() { return H5T_IEEE_F32LE; } };
-template <> struct Type<double> { static hid_t memory() { return H5T_NATIVE_DOUBLE; } static hid_t file() { return H5T_IEEE_F64LE; } };
-template <> struct Type<std::uint64_t> { static hid_t memory() { return H5T_NATIVE_UINT64; } static hid_t file() { return H5T_STD_U64LE; } };
-template <> struct Type<std::int32_t> { static hid_t memory() { return H5T_NATIVE_INT32; } static hid_t file() { return H5T_STD_I32LE; } };
-template <> struct Type<std::uint8_t> { static hid_t memory() { return H5T_NATIVE_UINT8; } static hid_t file() { return H5T_STD_U8LE; } };
+template <>
+struct Type<float> {
+  static hid_t memory() { return H5T_NATIVE_FLOAT; }
+  static hid_t file() { return H5T_IEEE_F32LE; }
+};
+template <>
+struct Type<double> {
+  static hid_t memory() { return H5T_NATIVE_DOUBLE; }
+  static hid_t file() { return H5T_IEEE_F64LE; }
+};
+template <>
+struct Type<std::uint64_t> {
+  static hid_t memory() { return H5T_NATIVE_UINT64; }
+  static hid_t file() { return H5T_STD_U64LE; }
+};
+template <>
+struct Type<std::int32_t> {
+  static hid_t memory() { return H5T_NATIVE_INT32; }
+  static hid_t file() { return H5T_STD_I32LE; }
+};
+template <>
+struct Type<std::uint8_t> {
+  static hid_t memory() { return H5T_NATIVE_UINT8; }
+  static hid_t file() { return H5T_STD_U8LE; }
+};
 
 using Shape = std::vector<hsize_t>;
 
@@ -68,7 +89,9 @@ class File {
   void create_group(const std::string& name);
   void create(const std::string& object, hid_t file_type, const Shape& shape);
   template <class T>
-  void create(const std::string& object, const Shape& shape) { create(object, Type<T>::file(), shape); }
+  void create(const std::string& object, const Shape& shape) {
+    create(object, Type<T>::file(), shape);
+  }
 
   /// Rows first ... first+count-1 of the leading dimension; `values` is resized.
   template <class T>
@@ -88,7 +111,8 @@ class File {
   }
 
   void attribute(const std::string& name, const std::string& value, const std::string& object = "/");
-  void attribute(const std::string& name, const std::vector<std::string>& value, const std::string& object = "/");
+  void attribute(const std::string& name, const std::vector<std::string>& value,
+                 const std::string& object = "/");
   void attribute(const std::string& name, std::uint64_t value, const std::string& object = "/");
   void attribute(const std::string& name, double value, const std::string& object = "/");
   void attribute(const std::string& name, const std::vector<double>& value, const std::string& object = "/");
@@ -103,8 +127,10 @@ class File {
   static hsize_t row_size(const Shape& shape);
 
  private:
-  void transfer(const std::string& object, hsize_t first, hsize_t count, hid_t type, void* in, const void* out) const;
-  void put(const std::string& object, const std::string& name, hid_t file_type, hid_t memory_type, const Shape& shape, const void* data);
+  void transfer(const std::string& object, hsize_t first, hsize_t count, hid_t type, void* in,
+                const void* out) const;
+  void put(const std::string& object, const std::string& name, hid_t file_type, hid_t memory_type,
+           const Shape& shape, const void* data);
   [[nodiscard]] std::pair<Handle, hsize_t> find(const std::string& name) const;
 
   std::filesystem::path name_;

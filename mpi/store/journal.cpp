@@ -45,7 +45,9 @@ JournalLine parse_journal_line(const std::string& text) {
 namespace {
 
 /// Length of the part that ends with a line feed.
-std::size_t whole_lines(const std::string& text) { return text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1; }
+std::size_t whole_lines(const std::string& text) {
+  return text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
+}
 
 }  // namespace
 
@@ -63,7 +65,8 @@ std::vector<JournalLine> read_journal(const std::filesystem::path& file) {
     try {
       lines.push_back(parse_journal_line(text.substr(at, stop - at)));
       if (!seen.insert(lines.back().shard).second)
-        problems.add("shard " + std::to_string(lines.back().shard) + " twice", where, "a shard is journalled once", remedy);
+        problems.add("shard " + std::to_string(lines.back().shard) + " twice", where,
+                     "a shard is journalled once", remedy);
     } catch (const std::exception& e) {
       problems.add("damaged journal line", where, e.what(), remedy);
     }
@@ -84,7 +87,8 @@ Journal::Journal(std::filesystem::path file) : file_(std::move(file)) {
   if (fd_ < 0) raise_file_error(file_, errno, "cannot open the journal");
   lock();
   const std::string text = read_text(file_);
-  if (const auto whole = whole_lines(text); whole != text.size() && ::ftruncate(fd_, static_cast<off_t>(whole)) != 0)
+  if (const auto whole = whole_lines(text);
+      whole != text.size() && ::ftruncate(fd_, static_cast<off_t>(whole)) != 0)
     raise_file_error(file_, errno, "cannot cut off the journal's half-written last line");
   flush_folder(file_.parent_path());
 }
@@ -95,7 +99,8 @@ void Journal::lock() {
   for (int i = 0; ::flock(fd_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK; ++i) {
     if (i == kTries) {
       ::close(std::exchange(fd_, -1));
-      throw InputError({"dataset in use", file_.string(), "another process is writing it", "wait for it to end, or choose another folder"});
+      throw InputError({"dataset in use", file_.string(), "another process is writing it",
+                        "wait for it to end, or choose another folder"});
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
@@ -111,7 +116,8 @@ void Journal::append(const JournalLine& line) {
   const ssize_t n = ::write(fd_, text.data(), text.size());
   if (n == static_cast<ssize_t>(text.size()) && ::fsync(fd_) == 0) return;
   const int error = n < 0 || errno != 0 ? errno : ENOSPC;  // a short write means the disk is full
-  if (::ftruncate(fd_, before) != 0) raise_file_error(file_, error, "cannot write the journal, and its last line is cut short");
+  if (::ftruncate(fd_, before) != 0)
+    raise_file_error(file_, error, "cannot write the journal, and its last line is cut short");
   raise_file_error(file_, error, "cannot write the journal");
 }
 

@@ -16,20 +16,22 @@ struct JournalLine {
   std::map<std::string, std::uint64_t> outcomes;
 };
 
-/// A line as it stands in the file, line feed included, and back. Throws std::exception if the text is no line.
+/// A line as it stands in the file, line feed included, and back. Throws std::exception if the text is no
+/// line.
 std::string journal_text(const JournalLine& line);
 JournalLine parse_journal_line(const std::string& text);
 
-/// Lines in order of the file. A last line without its line feed (the process died in the middle of it) is left out;
-/// anything else that is no line, and a shard that stands there twice, throws InputError with the line number.
-/// No file: no lines.
+/// Lines in order of the file. A last line without its line feed (the process died in the middle of it) is
+/// left out; anything else that is no line, and a shard that stands there twice, throws InputError with the
+/// line number. No file: no lines.
 std::vector<JournalLine> read_journal(const std::filesystem::path& file);
 
 /// Writes the journal anew with these lines: whole or not at all.
 void rewrite_journal(const std::filesystem::path& file, const std::vector<JournalLine>& lines);
 
-/// Appends lines; each is on the disk when `append` returns. Cuts off a half-written last line when it opens. Holds a
-/// lock as long as it lives: throws InputError if another process still writes the same dataset after five seconds.
+/// Appends lines; each is on the disk when `append` returns. Cuts off a half-written last line when it opens.
+/// Holds a lock as long as it lives: throws InputError if another process still writes the same dataset after
+/// five seconds.
 class Journal {
  public:
   explicit Journal(std::filesystem::path file);

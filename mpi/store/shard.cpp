@@ -13,11 +13,14 @@ namespace fs = std::filesystem;
 namespace {
 
 void bad_shard(const fs::path& file, const std::string& what, const std::string& why) {
-  throw InputError({what, file.string(), why, "delete the file and run generate on its dataset again: it makes the shard anew"});
+  throw InputError({what, file.string(), why,
+                    "delete the file and run generate on its dataset again: it makes the shard anew"});
 }
 
 ShardAttributes read_attributes(const h5::File& f, const fs::path& file) {
-  if (f.text_attribute("format") != kShardFormat) bad_shard(file, "not a shard of this version", "format is \"" + f.text_attribute("format") + "\", not \"" + kShardFormat + "\"");
+  if (f.text_attribute("format") != kShardFormat)
+    bad_shard(file, "not a shard of this version",
+              "format is \"" + f.text_attribute("format") + "\", not \"" + kShardFormat + "\"");
   ShardAttributes a;
   a.config_hash = f.text_attribute("config_hash");
   a.kernel = f.text_attribute("kernel");
@@ -39,15 +42,19 @@ ShardAttributes read_attributes(const h5::File& f, const fs::path& file) {
 void read_shape(const h5::File& f, const fs::path& file, RowBlock& out) {
   const auto records = f.shape("/records"), parameters = f.shape("/parameters");
   if (records.size() != 3 || parameters.size() != 2 || parameters[0] != records[0])
-    bad_shard(file, "shapes that do not agree", "/records must be rows x channels x samples and /parameters rows x parameters");
+    bad_shard(file, "shapes that do not agree",
+              "/records must be rows x channels x samples and /parameters rows x parameters");
   for (const char* name : {"/sample_id", "/generator", "/fault", "/largest_spread"})
-    if (const auto s = f.shape(name); s.empty() || s[0] != records[0]) bad_shard(file, std::string("wrong number of rows in ") + name, "/records has " + std::to_string(records[0]));
+    if (const auto s = f.shape(name); s.empty() || s[0] != records[0])
+      bad_shard(file, std::string("wrong number of rows in ") + name,
+                "/records has " + std::to_string(records[0]));
   out.channels = records[1];
   out.samples = records[2];
   out.parameter_count = parameters[1];
 }
 
-void read_block(const h5::File& f, std::uint64_t first, std::uint64_t count, const ShardFields& fields, RowBlock& out) {
+void read_block(const h5::File& f, std::uint64_t first, std::uint64_t count, const ShardFields& fields,
+                RowBlock& out) {
   out.rows = count;
   out.records.clear();
   out.parameters.clear();
@@ -62,7 +69,9 @@ void read_block(const h5::File& f, std::uint64_t first, std::uint64_t count, con
 }
 
 template <class T>
-void feed(XXH3_state_t* state, const T* values, std::size_t count) { XXH3_64bits_update(state, values, count * sizeof(T)); }
+void feed(XXH3_state_t* state, const T* values, std::size_t count) {
+  XXH3_64bits_update(state, values, count * sizeof(T));
+}
 
 struct HashState {
   XXH3_state_t* state = XXH3_createState();
@@ -88,12 +97,15 @@ ShardData read_shard(const fs::path& file, const ShardFields& fields) {
   return data;
 }
 
-void read_rows(const fs::path& file, std::uint64_t first, std::uint64_t count, RowBlock& out, const std::string& config_hash, const ShardFields& fields) {
+void read_rows(const fs::path& file, std::uint64_t first, std::uint64_t count, RowBlock& out,
+               const std::string& config_hash, const ShardFields& fields) {
   const std::lock_guard guard(h5::lock());
   const h5::File f = h5::File::open(file);
   if (!config_hash.empty()) {
     const std::string found = f.text_attribute("config_hash");
-    if (found != config_hash) bad_shard(file, "a shard of another config", "its config hash is " + found + ", the dataset's " + config_hash);
+    if (found != config_hash)
+      bad_shard(file, "a shard of another config",
+                "its config hash is " + found + ", the dataset's " + config_hash);
   }
   read_shape(f, file, out);
   read_block(f, first, count, fields, out);
@@ -134,7 +146,9 @@ std::vector<std::uint64_t> row_hashes(const RowBlock& b) {
   return hashes;
 }
 
-std::uint64_t shard_hash(const std::vector<std::uint64_t>& rows, const std::vector<std::uint64_t>& draw_sample_id, const std::vector<std::uint8_t>& draw_outcome) {
+std::uint64_t shard_hash(const std::vector<std::uint64_t>& rows,
+                         const std::vector<std::uint64_t>& draw_sample_id,
+                         const std::vector<std::uint8_t>& draw_outcome) {
   const HashState h;
   feed(h.state, rows.data(), rows.size());
   feed(h.state, draw_sample_id.data(), draw_sample_id.size());
@@ -142,6 +156,8 @@ std::uint64_t shard_hash(const std::vector<std::uint64_t>& rows, const std::vect
   return XXH3_64bits_digest(h.state);
 }
 
-std::uint64_t shard_hash(const ShardData& data) { return shard_hash(row_hashes(data), data.draw_sample_id, data.draw_outcome); }
+std::uint64_t shard_hash(const ShardData& data) {
+  return shard_hash(row_hashes(data), data.draw_sample_id, data.draw_outcome);
+}
 
 }  // namespace swingbank

@@ -1,7 +1,7 @@
 #pragma once
-// One shard of a dataset: the HDF5 file that docs/formats.md describes. Reading works without MPI; writing through
-// the MPI-IO driver stands in shard_group.hpp. All functions may be called from several threads: HDF5 is not
-// thread-safe, so they take one lock.
+// One shard of a dataset: the HDF5 file that docs/formats.md describes. Reading works without MPI; writing
+// through the MPI-IO driver stands in shard_group.hpp. All functions may be called from several threads: HDF5
+// is not thread-safe, so they take one lock.
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -11,9 +11,9 @@ namespace swingbank {
 
 /// What the root group's attributes say.
 struct ShardAttributes {
-  std::string config_hash;    ///< 16 hex digits
-  std::string kernel;         ///< Batch::variant()
-  std::string software;       ///< "swingbank 0.1.0"
+  std::string config_hash;  ///< 16 hex digits
+  std::string kernel;       ///< Batch::variant()
+  std::string software;     ///< "swingbank 0.1.0"
   std::uint64_t seed = 0;
   std::uint64_t shard = 0;    ///< number of the shard in its dataset
   double rate = 0.0;          ///< samples per second [1/s]
@@ -25,19 +25,20 @@ struct ShardAttributes {
 /// Rows of a shard, one per stable generator record; every array is row-major.
 struct RowBlock {
   std::size_t rows = 0, channels = 0, samples = 0, parameter_count = 0;
-  std::vector<float> records;               ///< rows x channels x samples [pu on the machine's base, rad, pu/s]
-  std::vector<double> parameters;           ///< rows x parameters, in record order of the machine model
-  std::vector<std::uint64_t> sample_id;     ///< rows
-  std::vector<std::int32_t> generator;      ///< rows: bus number of the generator
-  std::vector<double> fault;                ///< rows x 5: bus number, t_on [s], t_off [s], r [pu], x [pu]
-  std::vector<double> largest_spread;       ///< rows: largest pairwise rotor angle [rad]
-  std::vector<std::uint8_t> angle_valid;    ///< rows x samples, or empty: 0 where V = 0 and theta is held
+  std::vector<float> records;             ///< rows x channels x samples [pu on the machine's base, rad, pu/s]
+  std::vector<double> parameters;         ///< rows x parameters, in record order of the machine model
+  std::vector<std::uint64_t> sample_id;   ///< rows
+  std::vector<std::int32_t> generator;    ///< rows: bus number of the generator
+  std::vector<double> fault;              ///< rows x 5: bus number, t_on [s], t_off [s], r [pu], x [pu]
+  std::vector<double> largest_spread;     ///< rows: largest pairwise rotor angle [rad]
+  std::vector<std::uint8_t> angle_valid;  ///< rows x samples, or empty: 0 where V = 0 and theta is held
 };
 
 struct ShardData : RowBlock {
   ShardAttributes attributes;
   std::vector<std::uint64_t> draw_sample_id;  ///< every draw of the shard, stable or not
-  std::vector<std::uint8_t> draw_outcome;     ///< 0 stable, 1 lost_synchronism, 2 not_finite, 3 step_too_small, 4 refused
+  std::vector<std::uint8_t>
+      draw_outcome;  ///< 0 stable, 1 lost_synchronism, 2 not_finite, 3 step_too_small, 4 refused
 };
 
 constexpr std::size_t kFaultColumns = 5;
@@ -50,19 +51,20 @@ struct ShardFields {
 /// Reads a whole shard. Throws InputError naming the file if it is truncated, no shard, or inconsistent.
 ShardData read_shard(const std::filesystem::path& file, const ShardFields& fields = {});
 
-/// Reads rows first ... first+count-1 into `out`, whose buffers are reused. Throws InputError as read_shard does, and
-/// if `config_hash` is given and the file holds another one.
+/// Reads rows first ... first+count-1 into `out`, whose buffers are reused. Throws InputError as read_shard
+/// does, and if `config_hash` is given and the file holds another one.
 void read_rows(const std::filesystem::path& file, std::uint64_t first, std::uint64_t count, RowBlock& out,
                const std::string& config_hash = {}, const ShardFields& fields = {});
 
-/// Writes a shard under a temporary name, flushes it to the disk and renames it. Throws InputError naming the file
-/// if the disk is full or the folder cannot be written; nothing is left behind then.
+/// Writes a shard under a temporary name, flushes it to the disk and renames it. Throws InputError naming the
+/// file if the disk is full or the folder cannot be written; nothing is left behind then.
 void write_shard(const std::filesystem::path& file, const ShardData& data);
 
 /// XXH3-64 over sample_id, generator, parameters, fault, largest_spread, angle_valid and record of each row.
 std::vector<std::uint64_t> row_hashes(const RowBlock& block);
 /// XXH3-64 over the row hashes in order, then the draws' sample_id and outcomes.
-std::uint64_t shard_hash(const std::vector<std::uint64_t>& rows, const std::vector<std::uint64_t>& draw_sample_id,
+std::uint64_t shard_hash(const std::vector<std::uint64_t>& rows,
+                         const std::vector<std::uint64_t>& draw_sample_id,
                          const std::vector<std::uint8_t>& draw_outcome);
 std::uint64_t shard_hash(const ShardData& data);
 

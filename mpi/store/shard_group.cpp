@@ -21,8 +21,10 @@ void send_text(MPI_Comm group, int from, std::string& text) {
 
 /// What the arrays of all ranks will take on the disk, and room for HDF5's own few kilobytes.
 std::uint64_t size_on_disk(const ShardData& part, std::uint64_t rows, std::uint64_t draws) {
-  const std::uint64_t fixed = sizeof(std::uint64_t) + sizeof(std::int32_t) + sizeof(double) * (kFaultColumns + 1);
-  const std::uint64_t row = part.channels * part.samples * sizeof(float) + part.parameter_count * sizeof(double) + fixed;
+  const std::uint64_t fixed =
+      sizeof(std::uint64_t) + sizeof(std::int32_t) + sizeof(double) * (kFaultColumns + 1);
+  const std::uint64_t row =
+      part.channels * part.samples * sizeof(float) + part.parameter_count * sizeof(double) + fixed;
   constexpr std::uint64_t own = 64 * 1024;
   return rows * row + draws * (sizeof(std::uint64_t) + 1) + own;
 }
@@ -56,7 +58,8 @@ void agree(MPI_Comm group, const std::string& where, const std::function<void()>
   } catch (const InputError& e) {
     problems = e.problems();
   } catch (const std::exception& e) {
-    problems.push_back({"failure", where, e.what(), "run the command again; if it fails again, report it with this message"});
+    problems.push_back({"failure", where, e.what(),
+                        "run the command again; if it fails again, report it with this message"});
   }
   int mine = problems.empty() ? size : rank, first = size;
   MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, group);

@@ -23,7 +23,8 @@ void lay_out_shard(h5::File& f, const ShardData& d, ShardSize n) {
   f.create<std::uint64_t>("/sample_id", {n.rows});
   f.create<std::int32_t>("/generator", {n.rows});
   f.create<double>("/fault", {n.rows, kFaultColumns});
-  f.attribute("columns", std::vector<std::string>{"bus number", "t_on [s]", "t_off [s]", "r [pu]", "x [pu]"}, "/fault");
+  f.attribute("columns", std::vector<std::string>{"bus number", "t_on [s]", "t_off [s]", "r [pu]", "x [pu]"},
+              "/fault");
   f.create<double>("/largest_spread", {n.rows});
   f.attribute("unit", std::string("rad"), "/largest_spread");
   for (const auto& c : a.channel_names)
@@ -34,7 +35,10 @@ void lay_out_shard(h5::File& f, const ShardData& d, ShardSize n) {
   f.create_group("/draws");
   f.create<std::uint64_t>("/draws/sample_id", {n.draws});
   f.create<std::uint8_t>("/draws/outcome", {n.draws});
-  f.attribute("meaning", std::vector<std::string>{"stable", "lost_synchronism", "not_finite", "step_too_small", "refused"}, "/draws/outcome");
+  f.attribute(
+      "meaning",
+      std::vector<std::string>{"stable", "lost_synchronism", "not_finite", "step_too_small", "refused"},
+      "/draws/outcome");
 }
 
 void fill_shard(h5::File& f, const ShardData& d, std::uint64_t first_row, std::uint64_t first_draw) {

@@ -22,13 +22,17 @@ struct Config::Tree {
 
 namespace {
 
-std::string place(const fs::path& name, const toml::source_position& p) { return fmt::format("{}:{}:{}", name.string(), p.line, p.column); }
+std::string place(const fs::path& name, const toml::source_position& p) {
+  return fmt::format("{}:{}:{}", name.string(), p.line, p.column);
+}
 
 std::string slurp(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;
   if (fs::is_directory(file) || !(text << in.rdbuf()))
-    throw InputError({"cannot read the config", file.string(), fs::exists(file) ? "it cannot be opened as a file" : "there is no such file", "check the path"});
+    throw InputError({"cannot read the config", file.string(),
+                      fs::exists(file) ? "it cannot be opened as a file" : "there is no such file",
+                      "check the path"});
   return text.str();
 }
 
@@ -36,8 +40,12 @@ std::string list(const std::vector<std::string>& words) { return fmt::format("{}
 
 // What a node of TOML is called, and how it becomes a T.
 bool convert(const toml::node& n, bool& v) { return n.is_boolean() && (v = n.as_boolean()->get(), true); }
-bool convert(const toml::node& n, std::int64_t& v) { return n.is_integer() && (v = n.as_integer()->get(), true); }
-bool convert(const toml::node& n, std::string& v) { return n.is_string() && (v = n.as_string()->get(), true); }
+bool convert(const toml::node& n, std::int64_t& v) {
+  return n.is_integer() && (v = n.as_integer()->get(), true);
+}
+bool convert(const toml::node& n, std::string& v) {
+  return n.is_string() && (v = n.as_string()->get(), true);
+}
 bool convert(const toml::node& n, double& v) {
   if (n.is_integer()) return v = static_cast<double>(n.as_integer()->get()), true;
   return n.is_floating_point() && (v = n.as_floating_point()->get(), true);
@@ -58,7 +66,9 @@ std::string kind(const std::int64_t*) { return "an integer"; }
 std::string kind(const double*) { return "a number"; }
 std::string kind(const std::string*) { return "a text in quotes"; }
 template <class T>
-std::string kind(const std::vector<T>*) { return "a list, each element " + kind(static_cast<const T*>(nullptr)); }
+std::string kind(const std::vector<T>*) {
+  return "a list, each element " + kind(static_cast<const T*>(nullptr));
+}
 
 bool inside(double v, const Range& r) { return std::isfinite(v) && v >= r.low && v <= r.high; }
 bool inside(std::int64_t v, const Range& r) { return inside(static_cast<double>(v), r); }
@@ -86,17 +96,23 @@ std::string written(const toml::node& n) {
 }
 
 /// Every leaf that nobody asked for.
-void unknown(const toml::table& table, const std::string& prefix, const std::set<std::string>& asked, const fs::path& name, Problems& problems) {
+void unknown(const toml::table& table, const std::string& prefix, const std::set<std::string>& asked,
+             const fs::path& name, Problems& problems) {
   std::vector<std::string> known;
   for (const auto& key : asked)
-    if (key.starts_with(prefix) && key.find('.', prefix.size()) == std::string::npos) known.push_back(key.substr(prefix.size()));
+    if (key.starts_with(prefix) && key.find('.', prefix.size()) == std::string::npos)
+      known.push_back(key.substr(prefix.size()));
   for (const auto& [key, node] : table) {
     const std::string full = prefix + std::string(key.str());
     if (asked.contains(full)) continue;
-    const bool inner = node.is_table() && asked.lower_bound(full + ".") != asked.end() && asked.lower_bound(full + ".")->starts_with(full + ".");
-    if (inner) unknown(*node.as_table(), full + ".", asked, name, problems);
+    const bool inner = node.is_table() && asked.lower_bound(full + ".") != asked.end() &&
+                       asked.lower_bound(full + ".")->starts_with(full + ".");
+    if (inner)
+      unknown(*node.as_table(), full + ".", asked, name, problems);
     else
-      problems.add("unknown key " + full, place(name, key.source().begin), prefix.empty() ? "nothing reads it" : "nothing reads it in [" + prefix.substr(0, prefix.size() - 1) + "]",
+      problems.add("unknown key " + full, place(name, key.source().begin),
+                   prefix.empty() ? "nothing reads it"
+                                  : "nothing reads it in [" + prefix.substr(0, prefix.size() - 1) + "]",
                    known.empty() ? "remove it" : "remove it or use one of: " + list(known));
   }
 }
@@ -109,7 +125,8 @@ Config::Config(const std::string& text, const fs::path& name) : name_(name), tre
   try {
     tree_->root = toml::parse(text, name.string());
   } catch (const toml::parse_error& e) {
-    throw InputError({"not TOML", place(name, e.source().begin), std::string(e.description()), "mend the line"});
+    throw InputError(
+        {"not TOML", place(name, e.source().begin), std::string(e.description()), "mend the line"});
   }
 }
 
@@ -125,11 +142,14 @@ std::vector<std::string> Config::keys(const std::string& table) const {
   return names;
 }
 
-std::string Config::where(const std::string& key) const { return has(key) ? place(name_, tree_->at(key)->source().begin) : name_.string(); }
+std::string Config::where(const std::string& key) const {
+  return has(key) ? place(name_, tree_->at(key)->source().begin) : name_.string();
+}
 
 void Config::ignore(const std::string& key) { tree_->asked.insert(key); }
 
-void Config::problem(const std::string& key, const std::string& what, const std::string& why, const std::string& remedy) {
+void Config::problem(const std::string& key, const std::string& what, const std::string& why,
+                     const std::string& remedy) {
   problems_.add(what, where(key), why, remedy);
 }
 
@@ -140,7 +160,8 @@ bool Config::take(const std::string& key, T& value, const Range& range) {
   if (n == nullptr) return false;
   T found{};
   if (!convert(*n, found)) {
-    problem(key, key + " = " + written(*n), "it must be " + kind(static_cast<const T*>(nullptr)), "write it as such");
+    problem(key, key + " = " + written(*n), "it must be " + kind(static_cast<const T*>(nullptr)),
+            "write it as such");
   } else if (!inside(found, range)) {
     problem(key, key + " = " + written(*n), "it must be " + describe(range), "give such a value");
   } else {
@@ -153,7 +174,9 @@ template <class T>
 T Config::require(const std::string& key, const Range& range) {
   T value{};
   if (!take(key, value, range))
-    problem(key, "missing key " + key, "it has no default", "add it: " + kind(static_cast<const T*>(nullptr)) + (std::isinf(range.low) && std::isinf(range.high) ? "" : ", " + describe(range)));
+    problem(key, "missing key " + key, "it has no default",
+            "add it: " + kind(static_cast<const T*>(nullptr)) +
+                (std::isinf(range.low) && std::isinf(range.high) ? "" : ", " + describe(range)));
   return value;
 }
 
@@ -172,10 +195,12 @@ std::string Config::choice(const std::string& key, const std::vector<std::string
   return choice(key, words, {});
 }
 
-std::string Config::choice(const std::string& key, const std::vector<std::string>& words, const std::string& otherwise) {
+std::string Config::choice(const std::string& key, const std::vector<std::string>& words,
+                           const std::string& otherwise) {
   std::string word = otherwise;
   if (!take(key, word, {}) || word.empty()) return word;
-  if (std::find(words.begin(), words.end(), word) == words.end()) problem(key, key + " = '" + word + "'", "there is no such choice", "use one of: " + list(words));
+  if (std::find(words.begin(), words.end(), word) == words.end())
+    problem(key, key + " = '" + word + "'", "there is no such choice", "use one of: " + list(words));
   return word;
 }
 
@@ -183,15 +208,21 @@ fs::path Config::file(const std::string& key) {
   const auto text = require<std::string>(key);
   if (text.empty()) return {};
   const fs::path path = fs::path(text).is_absolute() ? fs::path(text) : name_.parent_path() / text;
-  if (!fs::is_regular_file(path)) problem(key, key + " = '" + text + "'", "there is no file " + path.lexically_normal().string(), "correct the path; it is relative to the config's folder");
+  if (!fs::is_regular_file(path))
+    problem(key, key + " = '" + text + "'", "there is no file " + path.lexically_normal().string(),
+            "correct the path; it is relative to the config's folder");
   return path.lexically_normal();
 }
 
 std::pair<double, double> Config::interval(const std::string& key, const Range& range) {
   const auto v = require<std::vector<double>>(key, range);
   if (v.size() == 2 && v[0] <= v[1]) return {v[0], v[1]};
-  if (is_array(key) && v.size() != 2 && !v.empty()) problem(key, key + " has " + std::to_string(v.size()) + " numbers", "an interval has two", "write [low, high]");
-  if (v.size() == 2) problem(key, fmt::format("{} = [{}, {}]", key, v[0], v[1]), "the low end lies above the high end", "write [low, high]");
+  if (is_array(key) && v.size() != 2 && !v.empty())
+    problem(key, key + " has " + std::to_string(v.size()) + " numbers", "an interval has two",
+            "write [low, high]");
+  if (v.size() == 2)
+    problem(key, fmt::format("{} = [{}, {}]", key, v[0], v[1]), "the low end lies above the high end",
+            "write [low, high]");
   return {0.0, 0.0};
 }
 
@@ -200,8 +231,8 @@ void Config::raise() {
   problems_.raise();
 }
 
-#define SWINGBANK_CONFIG_TYPE(T)                                        \
-  template T Config::require<T>(const std::string&, const Range&);      \
+#define SWINGBANK_CONFIG_TYPE(T)                                   \
+  template T Config::require<T>(const std::string&, const Range&); \
   template T Config::optional<T>(const std::string&, T, const Range&);
 SWINGBANK_CONFIG_TYPE(bool)
 SWINGBANK_CONFIG_TYPE(std::int64_t)

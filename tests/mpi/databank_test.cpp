@@ -13,7 +13,9 @@ namespace {
 
 using ::testing::HasSubstr;
 
-Databank draw(const DatasetConfig& c, std::uint64_t points) { return draw_databank(c, c.effect().standard_parameters(), points); }
+Databank draw(const DatasetConfig& c, std::uint64_t points) {
+  return draw_databank(c, c.effect().standard_parameters(), points);
+}
 
 /// Smallest distance over all pairs, by brute force.
 double closest_pair(const Databank& b) {
@@ -21,7 +23,8 @@ double closest_pair(const Databank& b) {
   for (std::size_t i = 0; i < b.points(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       double sum = 0.0;
-      for (std::size_t k = 0; k < b.dimensions; ++k) sum += (b.point(i)[k] - b.point(j)[k]) * (b.point(i)[k] - b.point(j)[k]);
+      for (std::size_t k = 0; k < b.dimensions; ++k)
+        sum += (b.point(i)[k] - b.point(j)[k]) * (b.point(i)[k] - b.point(j)[k]);
       least = std::min(least, sum);
     }
   return std::sqrt(least);
@@ -53,7 +56,9 @@ TEST(DatabankDraw, EqualsTheSerialDefinition) {
   EXPECT_EQ(draw(c, 3000).values, brute_force(c, 3000));
 }
 
-TEST(DatabankDraw, EveryPairKeepsItsDistance) { EXPECT_GE(closest_pair(draw(test::genrou_box(), 4000)), 0.7); }
+TEST(DatabankDraw, EveryPairKeepsItsDistance) {
+  EXPECT_GE(closest_pair(draw(test::genrou_box(), 4000)), 0.7);
+}
 
 TEST(DatabankDraw, PointsArePhysicalAndInTheBox) {
   const DatasetConfig c = test::genrou_box();
@@ -67,7 +72,12 @@ TEST(DatabankDraw, PointsArePhysicalAndInTheBox) {
     }
     EXPECT_EQ(c.effect().unphysical(full.data()), "");
   }
-  EXPECT_EQ(b.draws, 2000 + b.too_close + [&] { std::uint64_t n = 0; for (const auto& r : b.refused) n += r.second; return n; }());
+  EXPECT_EQ(
+      b.draws, 2000 + b.too_close + [&] {
+        std::uint64_t n = 0;
+        for (const auto& r : b.refused) n += r.second;
+        return n;
+      }());
 }
 
 TEST(DatabankDraw, FewerPointsAreThePrefix) {

@@ -28,7 +28,13 @@ std::string sentence_of(const std::function<void()>& work) {
 JournalLine line_of(const std::filesystem::path& folder, std::uint64_t shard, const ShardData& d) {
   const std::string file = "shards/shard-00000" + std::to_string(shard) + ".h5";
   write_shard(folder / file, d);
-  return {shard, file, d.draw_sample_id.size(), d.rows, std::filesystem::file_size(folder / file), hex(shard_hash(d)), {{"stable", d.rows}}};
+  return {shard,
+          file,
+          d.draw_sample_id.size(),
+          d.rows,
+          std::filesystem::file_size(folder / file),
+          hex(shard_hash(d)),
+          {{"stable", d.rows}}};
 }
 
 /// Two shards of five rows.
@@ -75,7 +81,8 @@ TEST(DatasetFolder, TruncatedShardIsNamed) {
   const TwoShards folder;
   const auto file = folder.path / "shards/shard-000001.h5";
   std::filesystem::resize_file(file, 100);
-  EXPECT_THAT(sentence_of([&] { open_dataset(folder.path); }), HasSubstr("truncated or changed shard at " + file.string()));
+  EXPECT_THAT(sentence_of([&] { open_dataset(folder.path); }),
+              HasSubstr("truncated or changed shard at " + file.string()));
 }
 
 TEST(DatasetFolder, ChangedRowIsFoundByVerify) {
@@ -97,7 +104,8 @@ TEST(DatasetFolder, ShardOfAnotherConfigIsFoundByVerify) {
   const Dataset set = open_dataset(folder.path);
   EXPECT_THAT(sentence_of([&] { verify_dataset(set); }), HasSubstr("a shard of another config"));
   RowBlock b;
-  EXPECT_THAT(sentence_of([&] { read_rows(set.shards[0], 0, 1, b); }), HasSubstr("a shard of another config"));
+  EXPECT_THAT(sentence_of([&] { read_rows(set.shards[0], 0, 1, b); }),
+              HasSubstr("a shard of another config"));
 }
 
 TEST(DatasetFolder, NoDatasetIsNamed) {

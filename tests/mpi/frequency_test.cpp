@@ -43,7 +43,8 @@ TEST(TerminalFrequency, RampFollowsTheAnalyticAnswer) {
   for (int k = 0; k < 120; ++k) {
     const double t = k / kRate;
     // Step response of 1/((1 + s Tw)(1 + s Tf)).
-    const double expected = (1.0 - (Tw * std::exp(-t / Tw) - Tf * std::exp(-t / Tf)) / (Tw - Tf)) / (2 * std::numbers::pi * kF0);
+    const double expected =
+        (1.0 - (Tw * std::exp(-t / Tw) - Tf * std::exp(-t / Tf)) / (Tw - Tf)) / (2 * std::numbers::pi * kF0);
     EXPECT_NEAR(f[static_cast<std::size_t>(k)], expected, 1e-14);  // exact for a ramp, up to rounding
   }
 }

@@ -1,4 +1,5 @@
-// What several ranks do together. tests/mpi/ranks.sh runs these under mpirun with 1, 3 and 5 ranks; alone they run on one.
+// What several ranks do together. tests/mpi/ranks.sh runs these under mpirun with 1, 3 and 5 ranks; alone
+// they run on one.
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -50,7 +51,8 @@ class Ranks : public ::testing::Test {
 TEST_F(Ranks, ShardOfAGroupEqualsThatOfOneRank) {
   // Rank r brings r + 1 rows, so that parts are uneven.
   const auto first = static_cast<std::uint64_t>(rank * (rank + 1) / 2), n = static_cast<std::uint64_t>(size);
-  const ShardReceipt receipt = write_shard(folder / "group.h5", test::sample_shard(static_cast<std::uint64_t>(rank) + 1, first), MPI_COMM_WORLD);
+  const ShardReceipt receipt = write_shard(
+      folder / "group.h5", test::sample_shard(static_cast<std::uint64_t>(rank) + 1, first), MPI_COMM_WORLD);
   const ShardData whole = test::sample_shard(n * (n + 1) / 2);
   EXPECT_EQ(receipt.rows, whole.rows);
   EXPECT_EQ(receipt.hash, shard_hash(whole));
@@ -63,7 +65,9 @@ TEST_F(Ranks, ShardOfAGroupEqualsThatOfOneRank) {
 }
 
 TEST_F(Ranks, RanksWithoutRowsTakePart) {
-  const ShardReceipt receipt = write_shard(folder / "a.h5", test::sample_shard(rank == 0 ? 0 : 2, static_cast<std::uint64_t>(rank) * 2), MPI_COMM_WORLD);
+  const ShardReceipt receipt = write_shard(
+      folder / "a.h5", test::sample_shard(rank == 0 ? 0 : 2, static_cast<std::uint64_t>(rank) * 2),
+      MPI_COMM_WORLD);
   EXPECT_EQ(receipt.rows, static_cast<std::uint64_t>(2 * (size - 1)));
   EXPECT_EQ(read_shard(folder / "a.h5").rows, receipt.rows);
 }
@@ -82,11 +86,14 @@ TEST_F(Ranks, FailureOfOneIsToldByAll) {
 TEST_F(Ranks, FolderThatIsAFileLeavesNothing) {
   if (rank == 0) write_text(folder / "file", "x");
   MPI_Barrier(MPI_COMM_WORLD);
-  EXPECT_THROW(write_shard(folder / "file" / "a.h5", test::sample_shard(1, static_cast<std::uint64_t>(rank)), MPI_COMM_WORLD), InputError);
+  EXPECT_THROW(write_shard(folder / "file" / "a.h5", test::sample_shard(1, static_cast<std::uint64_t>(rank)),
+                           MPI_COMM_WORLD),
+               InputError);
 }
 
-// OpenMPI 4.1.4 gives wrong data here from three ranks up unless MpiSession's setting stands (open-mpi/ompi#10546): every
-// fourth sample of rows that differ from rank to rank, read collectively, many times.
+// OpenMPI 4.1.4 gives wrong data here from three ranks up unless MpiSession's setting stands
+// (open-mpi/ompi#10546): every fourth sample of rows that differ from rank to rank, read collectively, many
+// times.
 TEST_F(Ranks, CollectiveReadsOfIrregularSelectionsAreRight) {
   constexpr hsize_t kRows = 64, kSamples = 600, kStep = 4;
   if (rank == 0) {
@@ -98,29 +105,35 @@ TEST_F(Ranks, CollectiveReadsOfIrregularSelectionsAreRight) {
     f.close();
   }
   MPI_Barrier(MPI_COMM_WORLD);
-  const h5::Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose), transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
+  const h5::Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose),
+      transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
   H5Pset_fapl_mpio(access.get(), MPI_COMM_WORLD, MPI_INFO_NULL);
   H5Pset_dxpl_mpio(transfer.get(), H5FD_MPIO_COLLECTIVE);
   const h5::Handle file(H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
   const h5::Handle set(H5Dopen2(file.get(), "/x", H5P_DEFAULT), H5Dclose);
   int wrong = 0;
   for (hsize_t repeat = 0; repeat < 100; ++repeat) {
-    const hsize_t row = (static_cast<hsize_t>(rank) * 7 + repeat * 3) % (kRows - 8), phase = (repeat + static_cast<hsize_t>(rank)) % kStep;
-    const hsize_t rows = 1 + (repeat + static_cast<hsize_t>(rank)) % 8, count = (kSamples - phase + kStep - 1) / kStep;
+    const hsize_t row = (static_cast<hsize_t>(rank) * 7 + repeat * 3) % (kRows - 8),
+                  phase = (repeat + static_cast<hsize_t>(rank)) % kStep;
+    const hsize_t rows = 1 + (repeat + static_cast<hsize_t>(rank)) % 8,
+                  count = (kSamples - phase + kStep - 1) / kStep;
     const hsize_t start[] = {row, phase}, step[] = {1, kStep}, number[] = {rows, count};
-    const h5::Handle space(H5Dget_space(set.get()), H5Sclose), memory(H5Screate_simple(2, number, nullptr), H5Sclose);
+    const h5::Handle space(H5Dget_space(set.get()), H5Sclose),
+        memory(H5Screate_simple(2, number, nullptr), H5Sclose);
     H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start, step, number, nullptr);
     std::vector<float> got(rows * count, -1.0F);
     ASSERT_GE(H5Dread(set.get(), H5T_NATIVE_FLOAT, memory.get(), space.get(), transfer.get(), got.data()), 0);
     for (hsize_t i = 0; i < rows; ++i)
-      for (hsize_t k = 0; k < count; ++k) wrong += got[i * count + k] != static_cast<float>((row + i) * kSamples + phase + k * kStep);
+      for (hsize_t k = 0; k < count; ++k)
+        wrong += got[i * count + k] != static_cast<float>((row + i) * kSamples + phase + k * kStep);
   }
   EXPECT_EQ(wrong, 0);
 }
 
 TEST(Report, SurvivesTheJourney) {
   Report r;
-  r.finished = JournalLine{3, "shards/shard-000003.h5", 5, 4, 99, "0123456789abcdef", {{"stable", 4}, {"refused", 1}}};
+  r.finished =
+      JournalLine{3, "shards/shard-000003.h5", 5, 4, 99, "0123456789abcdef", {{"stable", 4}, {"refused", 1}}};
   r.problems = {{"a", "b", "c", "d \"quoted\""}};
   r.stop = true;
   const Report back = unpack(pack(r));

@@ -58,7 +58,8 @@ TEST(Shard, RangeOfRows) {
   read_rows(folder.path / "a.h5", 4, 1, b, {}, {.records = false});
   EXPECT_TRUE(b.records.empty());
   EXPECT_EQ(b.parameters, (std::vector<double>{5.0, 2.0}));
-  EXPECT_THAT(sentence_of([&] { read_rows(folder.path / "a.h5", 4, 2, b); }), HasSubstr("the array has 5 rows"));
+  EXPECT_THAT(sentence_of([&] { read_rows(folder.path / "a.h5", 4, 2, b); }),
+              HasSubstr("the array has 5 rows"));
 }
 
 TEST(Shard, EmptyShardIsReadable) {
@@ -105,7 +106,8 @@ TEST(Shard, AnotherConfigIsRefused) {
   const Folder folder;
   write_shard(folder.path / "a.h5", sample_shard());
   RowBlock b;
-  EXPECT_THAT(sentence_of([&] { read_rows(folder.path / "a.h5", 0, 1, b, "ffffffffffffffff"); }), HasSubstr("another config"));
+  EXPECT_THAT(sentence_of([&] { read_rows(folder.path / "a.h5", 0, 1, b, "ffffffffffffffff"); }),
+              HasSubstr("another config"));
 }
 
 TEST(Shard, ForeignHdf5IsRefused) {
@@ -119,7 +121,8 @@ TEST(Shard, ForeignHdf5IsRefused) {
 TEST(Shard, FolderThatCannotBeMadeIsNamed) {
   const Folder folder;
   write_text(folder.path / "file", "not a folder");
-  EXPECT_THAT(sentence_of([&] { write_shard(folder.path / "file" / "a.h5", sample_shard()); }), HasSubstr("cannot create the folder"));
+  EXPECT_THAT(sentence_of([&] { write_shard(folder.path / "file" / "a.h5", sample_shard()); }),
+              HasSubstr("cannot create the folder"));
 }
 
 }  // namespace
