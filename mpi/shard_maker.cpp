@@ -7,7 +7,8 @@
 namespace swingbank {
 
 namespace {
-/// Below this voltage the angle means nothing [pu]; a bolted fault at the terminal gives 0 to rounding.
+/// Below this voltage the angle means nothing [pu]; a bolted fault at the terminal gives 1e-12 (the kernel
+/// keeps roots differentiable).
 constexpr double kNoVoltage = 1e-6;
 }  // namespace
 
