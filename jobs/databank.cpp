@@ -66,7 +66,7 @@ void report(const Databank& bank, double seconds) {
   fmt::print("{} points from {} draws in {:.2f} s: {:.1f} % accepted\n", bank.points(), bank.draws, seconds,
              share(bank.points()));
   for (const auto& [why, count] : bank.refused)
-    fmt::print("  not {:<24}{:>10} draws  {:5.1f} %\n", why, count, share(count));
+    fmt::print("  {:<28}{:>10} draws  {:5.1f} %\n", why, count, share(count));
   fmt::print("  {:<28}{:>10} draws  {:5.1f} %\n", "too close to another point", bank.too_close,
              share(bank.too_close));
 }

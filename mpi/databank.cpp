@@ -17,7 +17,7 @@ std::string objection(const sim::Effect& effect, Policy policy, const std::vecto
   Problems problems;
   effect.check(p.data(), "draw", problems);
   if (policy == Policy::physical)
-    if (const auto why = effect.unphysical(p.data()); !why.empty()) return std::string(why);
+    if (const auto why = effect.unphysical(p.data()); !why.empty()) return "not " + std::string(why);
   return problems.empty() ? "" : "singular: " + problems.list().front().why;
 }
 
@@ -32,7 +32,7 @@ Neighbours make_neighbours(const DatasetConfig& config) {
 
 std::string reasons(const Databank& bank) {
   std::string text = fmt::format("{} too close", bank.too_close);
-  for (const auto& [why, count] : bank.refused) text += fmt::format(", {} not {}", count, why);
+  for (const auto& [why, count] : bank.refused) text += fmt::format(", {} {}", count, why);
   return text;
 }
 

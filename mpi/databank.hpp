@@ -15,7 +15,7 @@ struct Databank {
   std::vector<double> values;  ///< points x dimensions
   std::uint64_t draws = 0;     ///< candidates drawn
   std::uint64_t too_close = 0;
-  std::map<std::string, std::uint64_t> refused;  ///< by the ordering that was violated
+  std::map<std::string, std::uint64_t> refused;  ///< by reason: "not Xd > X'd", "singular: ..."
 
   [[nodiscard]] std::size_t points() const { return dimensions == 0 ? 0 : values.size() / dimensions; }
   [[nodiscard]] const double* point(std::size_t i) const { return values.data() + i * dimensions; }

@@ -47,3 +47,7 @@ sed -e "s|\.\./networks|$SWINGBANK_SOURCE/configs/networks|" -e 's/^distance = .
 expect 1 "of 3000 points" "$SWINGBANK_BIN/swingbank-databank" "$work/far.toml" --points 3000
 expect 0 "accepted" "$SWINGBANK_BIN/swingbank-databank" "$configs/ieee39_genrou.toml" --points 100 --out "$work/bank.csv"
 [ "$(wc -l <"$work/bank.csv")" = 101 ] || fail "bank.csv has not a heading and 100 points"
+
+# Ranks started with different inputs do not mix their data.
+expect 1 "ranks that would make different data" mpirun --oversubscribe -np 1 "${make[@]}" --out "$work/mixed" : -np 1 "${make[@]}" --seed 2 --out "$work/mixed"
+[ ! -e "$work/mixed" ] || fail "mixed ranks left a folder"
