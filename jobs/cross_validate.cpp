@@ -2,17 +2,31 @@
 // share the folds; a Slurm array task takes one with --fold.
 #include "jobs/training_options.hpp"
 #include "train/cross_validate.hpp"
+#include "train/processes.hpp"
 
 namespace {
 using namespace swingbank;
 
 std::vector<std::int32_t> folds_of(const std::string& text, const Experiment& experiment) {
-  if (text == "all") return share_of(experiment.folds, launcher_place());
+  if (text == "all") return experiment.folds;
   for (const std::int32_t fold : experiment.folds)
     if (std::to_string(fold) == text) return {fold};
   throw InputError({fmt::format("no fold '{}'", text), "--fold",
                     fmt::format("{} leaves out {}", experiment.file.string(), fmt::join(experiment.folds, ", ")),
                     "give one of these bus numbers, or all"});
+}
+
+/// Folds of one process; errors become its exit code.
+int train_folds(const ShardStream& stream, RunRequest request, const std::vector<std::int32_t>& folds, int threads) {
+  try {
+    request.runtime = set_up_runtime(threads);
+    const RunOutcome outcome = cross_validate(stream, std::move(request), folds);
+    if (outcome == RunOutcome::already_done) fmt::print(stderr, "folds {}: done already\n", fmt::join(folds, ", "));
+    return exit_code(outcome);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
 }
 }  // namespace
 
@@ -20,16 +34,25 @@ int main(int argc, char** argv) {
   CLI::App app{SWINGBANK_SUMMARY, "swingbank cross-validate"};
   TrainingOptions options;
   std::string fold = "all";
+  int processes = 0;
   app.add_option("--fold", fold, "bus number of the generator to leave out, or all")->capture_default_str();
-  return training_main(argc, argv, "swingbank cross-validate", app, options, [&](const RunRequest& request) {
+  app.add_option("--processes", processes, "processes that share the folds, each with its part of the threads (default: one "
+                                           "per core; 1 where mpirun or srun started several)");
+  return training_main(argc, argv, app, options, [&](const RunRequest& request) {
     if (!request.experiment.leave_one_out)
       throw InputError({"this experiment leaves no generator out", options.experiment, "its split says so",
                         "use swingbank train"});
-    const auto folds = folds_of(fold, request.experiment);
-    if (folds.empty()) return RunOutcome::already_done;  // more processes than folds
-    const ShardStream stream = options.open(request);
-    const RunOutcome outcome = cross_validate(stream, request, folds);
-    if (outcome == RunOutcome::already_done) fmt::print(stderr, "folds {}: done already\n", fmt::join(folds, ", "));
-    return outcome;
+    if (processes < 0)
+      throw InputError({fmt::format("{} processes", processes), "--processes", "somebody must do the work", "use 1 or more"});
+    const Place place = launcher_place();
+    const auto folds = share_of(folds_of(fold, request.experiment), fold == "all" ? place : Place{});
+    if (folds.empty()) return 0;  // more processes than folds
+    const int threads = options.threads > 0 ? options.threads : default_threads();
+    const int wanted = processes > 0 ? processes : place.size > 1 ? 1 : threads;
+    const int count = std::min(wanted, static_cast<int>(folds.size()));
+    const ShardStream stream = options.open(request);  // read once, shared by the processes
+    return run_processes(count, [&](Place mine) {
+      return train_folds(stream, request, share_of(folds, mine), std::max(1, threads / count));
+    });
   });
 }

@@ -5,13 +5,14 @@ int main(int argc, char** argv) {
   using namespace swingbank;
   CLI::App app{SWINGBANK_SUMMARY, "swingbank train"};
   TrainingOptions options;
-  return training_main(argc, argv, "swingbank train", app, options, [&](const RunRequest& request) {
+  return training_main(argc, argv, app, options, [&](RunRequest request) {
     if (request.experiment.leave_one_out)
       throw InputError({"this experiment leaves generators out", options.experiment, "its split says so",
                         "use swingbank cross-validate"});
+    request.runtime = set_up_runtime(options.threads);
     const ShardStream stream = options.open(request);
     const RunOutcome outcome = run(stream, request);
     if (outcome == RunOutcome::already_done) fmt::print(stderr, "{}: done already\n", run_name(request));
-    return outcome;
+    return exit_code(outcome);
   });
 }

@@ -38,7 +38,7 @@ struct TrainingOptions {
   }
 
   /// Throws InputError if an option that a run needs is missing.
-  [[nodiscard]] RunRequest request(Runtime runtime) const {
+  [[nodiscard]] RunRequest request() const {
     Problems problems;
     if (dataset.empty())
       problems.add("no dataset", "DATASET", "a run needs one", "give the folder that `swingbank generate` wrote");
@@ -52,7 +52,6 @@ struct TrainingOptions {
     if (epochs > 0) r.epochs = epochs;
     r.shuffle_labels = shuffle_labels;
     r.out = out;
-    r.runtime = std::move(runtime);
     return r;
   }
   [[nodiscard]] ShardStream open(const RunRequest& r) const {
@@ -65,22 +64,16 @@ inline int exit_code(RunOutcome outcome) { return outcome == RunOutcome::stopped
 
 /// What both programs do around their work: options, printing, signals, errors.
 template <class Work>
-int training_main(int argc, char** argv, const char* name, CLI::App& app, TrainingOptions& options, const Work& work) {
+int training_main(int argc, char** argv, CLI::App& app, TrainingOptions& options, const Work& work) {
   options.add_to(app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 1;
-  }
+  CLI11_PARSE(app, argc, argv);
   try {
     if (!options.print.empty()) {
       fmt::print("{}\n", read_experiment(options.experiment).print(options.preset, options.print));
       return 0;
     }
     catch_stop_signals();
-    const RunRequest request = options.request(set_up_runtime(options.threads));
-    fmt::print(stderr, "{}: {}\n", name, request.runtime.sentence());
-    return exit_code(work(request));
+    return work(options.request());
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 1;

@@ -35,6 +35,8 @@ int usable_cores() {
   return sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
 }
 
+}  // namespace
+
 int default_threads() {
   for (const char* name : {"SLURM_CPUS_PER_TASK", "OMP_NUM_THREADS"})
     if (const int n = environment_number(name)) return n;
@@ -43,8 +45,6 @@ int default_threads() {
   const int cores = usable_cores();
   return cores < here ? std::max(1, cores) : cores == here ? 1 : std::max(1, cores / here);
 }
-
-}  // namespace
 
 std::string Runtime::sentence() const { return fmt::format("{} threads, BLAS {}", threads, blas); }
 
