@@ -41,7 +41,7 @@ check_reference() {
 check_scripts() {
   local scripts
   mapfile -t scripts < <(cd "$source_folder" && git ls-files '*.sh' '*.bash' '*.sbatch' .ci/run)
-  (cd "$source_folder" && shellcheck -x -P SCRIPTDIR "${scripts[@]}")
+  (cd "$source_folder" && shellcheck -s bash -S warning -x -P SCRIPTDIR "${scripts[@]}")
 }
 
 check_format() {
@@ -56,7 +56,7 @@ run_tests() {
   shift 2
   local exclude=()
   ((with_psse)) || exclude=(-E PsseRecords)
-  ctest --test-dir "$folder" --output-on-failure --no-tests=error --timeout 900 "${exclude[@]}" "$@" || failed+=("$name")
+  ctest --test-dir "$folder" --output-on-failure --no-tests=error --timeout 1500 "${exclude[@]}" "$@" || failed+=("$name")
 }
 
 run_sanitized() {

@@ -1,4 +1,5 @@
 # Sourced by the scripts of this folder.
+# shellcheck disable=SC2034 # used there
 set -euo pipefail
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 : "${SWINGBANK_BIN:?folder of the binaries}" "${SWINGBANK_SOURCE:?folder of the sources}"
