@@ -12,15 +12,17 @@ using namespace swingbank::sim;
 
 void list() {
   for (const auto& e : all_effects())
-    fmt::print("{:<10} {:<10} {:>2} parameters {:>2} states  {}\n", e.name, slot_name(e.slot), e.parameters.size(), e.states.size(), e.title);
+    fmt::print("{:<10} {:<10} {:>2} parameters {:>2} states  {}\n", e.name, slot_name(e.slot),
+               e.parameters.size(), e.states.size(), e.title);
 }
 
 void describe(const Effect& e) {
   fmt::print("{}: {}\nslot: {}\nsource: {}\n", e.name, e.title, slot_name(e.slot), e.source);
-  fmt::print("\n{:<8} {:<8} {:<5} {:>9} {:>9} {:>9} {:>8}  meaning\n", "name", "symbol", "unit", "standard", "low", "high", "neutral");
+  fmt::print("\n{:<8} {:<8} {:<5} {:>9} {:>9} {:>9} {:>8}  meaning\n", "name", "symbol", "unit", "standard",
+             "low", "high", "neutral");
   for (const auto& p : e.parameters)
-    fmt::print("{:<8} {:<8} {:<5} {:>9g} {:>9g} {:>9g} {:>8}  {}\n", p.name, p.symbol, p.unit, p.standard, p.low, p.high,
-               std::isnan(p.neutral) ? "-" : fmt::format("{:g}", p.neutral), p.meaning);
+    fmt::print("{:<8} {:<8} {:<5} {:>9g} {:>9g} {:>9g} {:>8}  {}\n", p.name, p.symbol, p.unit, p.standard,
+               p.low, p.high, std::isnan(p.neutral) ? "-" : fmt::format("{:g}", p.neutral), p.meaning);
   fmt::print("\nstates:\n");
   for (const auto& s : e.states) fmt::print("{:<8} {:<5} {}\n", s.name, s.unit, s.meaning);
   if (e.dyr_name.empty()) return;
@@ -31,7 +33,8 @@ void describe(const Effect& e) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Lists the effects the simulator knows; with a NAME, its parameters, states and source.", "swingbank effects"};
+  CLI::App app{"Lists the effects the simulator knows; with a NAME, its parameters, states and source.",
+               "swingbank effects"};
   std::string name;
   app.add_option("name", name, "effect, e.g. GENROU");
   try {
@@ -47,7 +50,8 @@ int main(int argc, char** argv) {
     describe(*e);
     return 0;
   }
-  const swingbank::Problem problem{"no effect '" + name + "'", "argument 1", "the registry holds " + effect_names(), "choose one of these"};
+  const swingbank::Problem problem{"no effect '" + name + "'", "argument 1",
+                                   "the registry holds " + effect_names(), "choose one of these"};
   fmt::print(stderr, "{}\n", problem.sentence());
   return 1;
 }

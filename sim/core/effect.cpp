@@ -7,11 +7,16 @@ namespace swingbank::sim {
 
 std::string_view slot_name(Slot slot) {
   switch (slot) {
-    case Slot::machine: return "machine";
-    case Slot::stabiliser: return "stabiliser";
-    case Slot::limiter: return "limiter";
-    case Slot::exciter: return "exciter";
-    case Slot::governor: return "governor";
+    case Slot::machine:
+      return "machine";
+    case Slot::stabiliser:
+      return "stabiliser";
+    case Slot::limiter:
+      return "limiter";
+    case Slot::exciter:
+      return "exciter";
+    case Slot::governor:
+      return "governor";
   }
   return "unknown";
 }
@@ -29,7 +34,9 @@ std::vector<double> Effect::standard_parameters() const {
 }
 
 const Effect* find_effect(std::string_view name) {
-  const auto same = [](char a, char b) { return std::toupper(static_cast<unsigned char>(a)) == std::toupper(static_cast<unsigned char>(b)); };
+  const auto same = [](char a, char b) {
+    return std::toupper(static_cast<unsigned char>(a)) == std::toupper(static_cast<unsigned char>(b));
+  };
   for (const auto& e : all_effects())
     if (std::ranges::equal(e.name, name, same)) return &e;
   return nullptr;

@@ -3,10 +3,10 @@
 //   name, title, source, slot           what it is, where its equations come from, where it sits in a plant
 //   parameters[], states[]              one record each; nowhere else is a parameter declared
 //   dyr_name, dyr_columns[]             PSS/E .dyr model name and column order, if it has one
-//   check(), unphysical()               singular values (refused always), orderings (refused in physical draws)
-//   prepare<T>()                        parameters -> coefficients, so that no division stays in the loop
-//   equations<T>                        see MachineOps and ControlOps below
-//   steady<T>()                         back-initialisation from the operating point
+//   check(), unphysical()               singular values (refused always), orderings (refused in physical
+//   draws) prepare<T>()                        parameters -> coefficients, so that no division stays in the
+//   loop equations<T>                        see MachineOps and ControlOps below steady<T>()
+//   back-initialisation from the operating point
 // CMake finds the header and writes the registry; nothing is edited. T runs over `Scalars`.
 #include <limits>
 #include <span>
@@ -39,7 +39,8 @@ struct Parameter {
 
 struct State {
   std::string_view name, unit, meaning;
-  double weight = 1.0;  ///< of this state's error in step control: a speed error counts through the angle it causes
+  double weight =
+      1.0;  ///< of this state's error in step control: a speed error counts through the angle it causes
 };
 
 /// What simulators do differently, chosen by the origin of the data (docs/decisions.md).
@@ -64,8 +65,9 @@ struct Signals {
   T Vlimiter{};       ///< limiters' sum into the voltage error [pu]
 };
 
-/// Equations of a machine (state 0 is the rotor angle, state 1 the speed deviation): voltage `e` behind the constant impedance r + jx, both on the machine's base.
-/// x: states; c: coefficients; m: scratch shared by the three calls of one evaluation.
+/// Equations of a machine (state 0 is the rotor angle, state 1 the speed deviation): voltage `e` behind the
+/// constant impedance r + jx, both on the machine's base. x: states; c: coefficients; m: scratch shared by
+/// the three calls of one evaluation.
 template <class T>
 struct MachineOps {
   void (*source_impedance)(const T* p, T& r, T& x) = nullptr;
@@ -80,7 +82,8 @@ struct MachineOps {
 template <class T>
 struct ControlOps {
   void (*evaluate)(const T* c, const T* x, Signals<T>& s, T* dx) = nullptr;
-  /// Given all signals at the operating point: fills states and references (kept in c). Returns why it cannot.
+  /// Given all signals at the operating point: fills states and references (kept in c). Returns why it
+  /// cannot.
   std::string (*steady)(const T* p, T* c, Signals<T>& s, T* x) = nullptr;
 };
 
@@ -104,15 +107,17 @@ struct Effect {
   Slot slot;
   std::span<const Parameter> parameters;
   std::span<const State> states;
-  std::span<const int> dyr_columns;  ///< parameter index of each .dyr column
-  int raw_resistance, raw_reactance; ///< parameters that PSS/E keeps in the .raw (ZR, ZX), or -1
+  std::span<const int> dyr_columns;   ///< parameter index of each .dyr column
+  int raw_resistance, raw_reactance;  ///< parameters that PSS/E keeps in the .raw (ZR, ZX), or -1
   int coefficients, scratch;
   void (*check)(const double* p, const std::string& where, Problems& problems);
   std::string_view (*unphysical)(const double* p);  ///< empty, or the ordering that is violated
   OpsFor<Scalars>::type ops;
 
   template <class T>
-  [[nodiscard]] const Ops<T>& get() const { return std::get<Ops<T>>(ops); }
+  [[nodiscard]] const Ops<T>& get() const {
+    return std::get<Ops<T>>(ops);
+  }
   [[nodiscard]] int parameter_index(std::string_view parameter) const;  ///< -1 if unknown
   [[nodiscard]] std::vector<double> standard_parameters() const;
 };
@@ -138,13 +143,17 @@ Ops<T> make_ops() {
   return o;
 }
 template <class M, class... T>
-std::tuple<Ops<T>...> make_all_ops(std::tuple<T...>*) { return {make_ops<M, T>()...}; }
+std::tuple<Ops<T>...> make_all_ops(std::tuple<T...>*) {
+  return {make_ops<M, T>()...};
+}
 
 template <class M>
 Effect make_effect() {
-  return {M::name, M::title, M::source, M::dyr_name, M::slot, M::parameters, M::states, M::dyr_columns,
-          M::raw_resistance, M::raw_reactance, M::coefficients, M::scratch, &M::check, &M::unphysical,
-          make_all_ops<M>(static_cast<Scalars*>(nullptr))};
+  return {M::name,          M::title,        M::source,
+          M::dyr_name,      M::slot,         M::parameters,
+          M::states,        M::dyr_columns,  M::raw_resistance,
+          M::raw_reactance, M::coefficients, M::scratch,
+          &M::check,        &M::unphysical,  make_all_ops<M>(static_cast<Scalars*>(nullptr))};
 }
 
 }  // namespace swingbank::sim

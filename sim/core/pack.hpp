@@ -30,8 +30,8 @@ struct Pack {
   static constexpr int lanes = N;
   Vector v;
   Pack() = default;
-  Pack(Vector a) : v(a) {}                // NOLINT(google-explicit-constructor): a pack is its vector
-  Pack(double a) : v(a - Vector{}) {}     // NOLINT(google-explicit-constructor): broadcast
+  Pack(Vector a) : v(a) {}             // NOLINT(google-explicit-constructor): a pack is its vector
+  Pack(double a) : v(a - Vector{}) {}  // NOLINT(google-explicit-constructor): broadcast
   double operator[](int lane) const { return v[lane]; }
   void set(int lane, double a) { v[lane] = a; }
 
@@ -70,14 +70,30 @@ inline void sincos(Pack<N> a, Pack<N>& s, Pack<N>& c) {
   using P = Pack<N>;
   using Mask = typename P::Mask;
   const P k = round_nearest(a * P(0.63661977236758134308));
-  const P r = ((a - k * P(1.57079625129699707031)) - k * P(7.54978941586159635335e-8)) - k * P(5.39030252995776476555e-15);
+  const P r = ((a - k * P(1.57079625129699707031)) - k * P(7.54978941586159635335e-8)) -
+              k * P(5.39030252995776476555e-15);
   const P z = r * r;
   const P ps = ((((((P(1.58962301576546568060e-10) * z + P(-2.50507477628578072866e-8)) * z +
-                    P(2.75573136213857245213e-6)) * z + P(-1.98412698295895385996e-4)) * z +
-                  P(8.33333333332211858878e-3)) * z + P(-1.66666666666666307295e-1)) * z) * r + r;
+                    P(2.75573136213857245213e-6)) *
+                       z +
+                   P(-1.98412698295895385996e-4)) *
+                      z +
+                  P(8.33333333332211858878e-3)) *
+                     z +
+                 P(-1.66666666666666307295e-1)) *
+                z) *
+                   r +
+               r;
   const P pc = ((((((P(-1.13585365213876817300e-11) * z + P(2.08757008419747316778e-9)) * z +
-                    P(-2.75573141792967388112e-7)) * z + P(2.48015872888517045348e-5)) * z +
-                  P(-1.38888888888730564116e-3)) * z + P(4.16666666666665929218e-2)) * z) * z +
+                    P(-2.75573141792967388112e-7)) *
+                       z +
+                   P(2.48015872888517045348e-5)) *
+                      z +
+                  P(-1.38888888888730564116e-3)) *
+                     z +
+                 P(4.16666666666665929218e-2)) *
+                z) *
+                   z +
                (P(1.0) - P(0.5) * z);
   const Mask q = __builtin_convertvector(k.v, Mask);
   const Mask odd = -(q & 1);
@@ -87,8 +103,8 @@ inline void sincos(Pack<N> a, Pack<N>& s, Pack<N>& c) {
   c = P((typename P::Vector)((Mask)cc.v ^ csign));
 }
 
-/// Four-quadrant arctangent, at most 2 ulp; 0 where both arguments are 0. Reduction and rational approximation as in
-/// Moshier's Cephes library (atan.c).
+/// Four-quadrant arctangent, at most 2 ulp; 0 where both arguments are 0. Reduction and rational
+/// approximation as in Moshier's Cephes library (atan.c).
 template <int N>
 inline Pack<N> atan2(Pack<N> y, Pack<N> x) {
   using P = Pack<N>;
@@ -102,9 +118,17 @@ inline Pack<N> atan2(Pack<N> y, Pack<N> x) {
   const P offset = select(big, P(1.57079632679489661923), select(mid, P(0.78539816339744830962), P(0.0)));
   const P t = numerator / denominator, z = t * t;
   const P p = (((P(-8.750608600031904122785e-1) * z + P(-1.615753718733365076637e1)) * z +
-                P(-7.500855792314704667340e1)) * z + P(-1.228866684490136173410e2)) * z + P(-6.485021904942025371773e1);
+                P(-7.500855792314704667340e1)) *
+                   z +
+               P(-1.228866684490136173410e2)) *
+                  z +
+              P(-6.485021904942025371773e1);
   const P q = ((((z + P(2.485846490142306297962e1)) * z + P(1.650270098316988542046e2)) * z +
-                P(4.328810604912902668951e2)) * z + P(4.853903996359136964868e2)) * z + P(1.945506571482613964425e2);
+                P(4.328810604912902668951e2)) *
+                   z +
+               P(4.853903996359136964868e2)) *
+                  z +
+              P(1.945506571482613964425e2);
   P r = offset + (t + t * (z * p / q));
   r = select(x < P(0.0), P(3.14159265358979323846) - r, r);
   return P((typename P::Vector)((Mask)r.v | ((Mask)y.v & sign_bit)));

@@ -10,9 +10,7 @@ namespace swingbank {
 /// One sentence to the user: "<what> at <where> (<why>): <remedy>".
 struct Problem {
   std::string what, where, why, remedy;
-  [[nodiscard]] std::string sentence() const {
-    return what + " at " + where + " (" + why + "): " + remedy;
-  }
+  [[nodiscard]] std::string sentence() const { return what + " at " + where + " (" + why + "): " + remedy; }
 };
 
 /// Thrown with every problem of one input; what() holds one sentence per line.

@@ -45,17 +45,27 @@ inline Dual<T, N> atan2(const Dual<T, N>& y, const Dual<T, N>& x) {
   return r;
 }
 template <class T>
-inline T square(const T& a) { return a * a; }
+inline T square(const T& a) {
+  return a * a;
+}
 template <class T>
-inline T positive_part(const T& a) { return select(a > T(0.0), a, T(0.0)); }
+inline T positive_part(const T& a) {
+  return select(a > T(0.0), a, T(0.0));
+}
 template <class T>
-inline T clamp(const T& a, const T& low, const T& high) { return select(a < low, low, select(high < a, high, a)); }
+inline T clamp(const T& a, const T& low, const T& high) {
+  return select(a < low, low, select(high < a, high, a));
+}
 
 /// The plain value of any scalar (lane 0 of a pack): for messages and branches in double code only.
 inline double value_of(double a) { return a; }
 template <int N>
-inline double value_of(const Pack<N>& a) { return a[0]; }
+inline double value_of(const Pack<N>& a) {
+  return a[0];
+}
 template <class T, int N>
-inline double value_of(const Dual<T, N>& a) { return value_of(a.a); }
+inline double value_of(const Dual<T, N>& a) {
+  return value_of(a.a);
+}
 
 }  // namespace swingbank::sim

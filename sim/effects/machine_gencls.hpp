@@ -28,8 +28,13 @@ struct Model {
   enum M { ere, eim, scratch };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    if (!(p[Xdp] > 0)) problems.add("X'd = " + std::to_string(p[Xdp]) + " pu", where, "the machine needs a reactance behind its terminal", "give X'd > 0 (ZX of the generator in the .raw)");
-    if (!(p[H] >= 0)) problems.add("H = " + std::to_string(p[H]) + " s", where, "inertia cannot be negative", "give H > 0, or 0 for an infinite bus");
+    if (!(p[Xdp] > 0))
+      problems.add("X'd = " + std::to_string(p[Xdp]) + " pu", where,
+                   "the machine needs a reactance behind its terminal",
+                   "give X'd > 0 (ZX of the generator in the .raw)");
+    if (!(p[H] >= 0))
+      problems.add("H = " + std::to_string(p[H]) + " s", where, "inertia cannot be negative",
+                   "give H > 0, or 0 for an infinite bus");
   }
   static std::string_view unphysical(const double* p) { return p[Xdp] > 0 ? "" : "X'd > 0"; }
 

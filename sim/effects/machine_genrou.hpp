@@ -17,7 +17,8 @@ namespace swingbank::sim::machine_genrou {
 
 struct Model {
   static constexpr std::string_view name = "GENROU", title = "round-rotor machine, quadratic saturation",
-                                    source = "PSS/E GENROU; IEEE Std 1110-2019 model 2.2", dyr_name = "GENROU";
+                                    source = "PSS/E GENROU; IEEE Std 1110-2019 model 2.2",
+                                    dyr_name = "GENROU";
   static constexpr Slot slot = Slot::machine;
   enum P { Tdop, Tdopp, Tqop, Tqopp, H, D, Xd, Xq, Xdp, Xqp, Xdpp, Xl, S10, S12, Ra };
   static constexpr Parameter parameters[] = {
@@ -36,8 +37,9 @@ struct Model {
       {"S10", "S1.0", "-", 0.1, 0.0, 2.0, 0.0, "saturation factor at 1.0 pu flux (0: none)"},
       {"S12", "S1.2", "-", 0.4, 0.0, 10.0, 0.0, "saturation factor at 1.2 pu flux"},
       {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance"}};
-  /// Above a steep saturation knee (B up to 70) a flux error counts tenfold in the field current, and the angle keeps
-  /// it to the end: without this 3 of 600 random events missed the reference by up to 3e-4 rad, with it 7e-5.
+  /// Above a steep saturation knee (B up to 70) a flux error counts tenfold in the field current, and the
+  /// angle keeps it to the end: without this 3 of 600 random events missed the reference by up to 3e-4 rad,
+  /// with it 7e-5.
   static constexpr double kFluxWeight = 10.0;
   enum X { delta, speed, Eqp, Edp, psi1d, psi2q };
   static constexpr State states[] = {{"delta", "rad", "rotor angle in the synchronous frame"},
@@ -49,8 +51,31 @@ struct Model {
   static constexpr int dyr_columns[] = {Tdop, Tdopp, Tqop, Tqopp, H, D, Xd, Xq, Xdp, Xqp, Xdpp, Xl, S10, S12};
   static constexpr int raw_resistance = Ra, raw_reactance = -1;
 
-  enum C { gd1, gd2, gq1, gq2, xdl, xql, dXd, dXq, kd, kq, ks, A, B, iTdop, iTdopp, iTqop, iTqopp, i2H, kD, W0,
-           speed_voltage, power, coefficients };
+  enum C {
+    gd1,
+    gd2,
+    gq1,
+    gq2,
+    xdl,
+    xql,
+    dXd,
+    dXq,
+    kd,
+    kq,
+    ks,
+    A,
+    B,
+    iTdop,
+    iTdopp,
+    iTqop,
+    iTqopp,
+    i2H,
+    kD,
+    W0,
+    speed_voltage,
+    power,
+    coefficients
+  };
   enum M { sn, cs, pd, pq, Id, Iq, Se, td, scratch };
 
   static void check(const double* p, const std::string& where, Problems& problems);
@@ -62,7 +87,8 @@ struct Model {
     return "";
   }
 
-  /// A and B of Se = B (psi - A)^2/psi through S1.0 and S1.2; needs 1.2 S1.2 > S1.0, else there is no quadratic.
+  /// A and B of Se = B (psi - A)^2/psi through S1.0 and S1.2; needs 1.2 S1.2 > S1.0, else there is no
+  /// quadratic.
   template <class T>
   static void saturation(const T& s10, const T& s12, T& a, T& b) {
     using std::sqrt;
@@ -168,14 +194,21 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
     if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
   };
   const auto text = [](double v) { return std::to_string(v); };
-  bad(!(p[H] > 0), "H = " + text(p[H]) + " s", "the swing equation divides by H", "give H > 0 (an infinite bus is GENCLS with H = 0)");
+  bad(!(p[H] > 0), "H = " + text(p[H]) + " s", "the swing equation divides by H",
+      "give H > 0 (an infinite bus is GENCLS with H = 0)");
   for (int t : {Tdop, Tdopp, Tqop, Tqopp})
-    bad(!(p[t] > 0), std::string(parameters[t].symbol) + " = " + text(p[t]) + " s", "GENROU integrates this circuit", "give a time constant > 0");
-  bad(!(p[Xdp] > p[Xl]), "X'd = " + text(p[Xdp]) + " pu with Xl = " + text(p[Xl]) + " pu", "GENROU divides by X'd - Xl", "give X'd > Xl");
-  bad(!(p[Xqp] > p[Xl]), "X'q = " + text(p[Xqp]) + " pu with Xl = " + text(p[Xl]) + " pu", "GENROU divides by X'q - Xl", "give X'q > Xl");
-  bad(!(p[Xd] > p[Xl]), "Xd = " + text(p[Xd]) + " pu with Xl = " + text(p[Xl]) + " pu", "GENROU divides by Xd - Xl", "give Xd > Xl");
-  bad(!(p[Xdpp] > 0), "X''d = " + text(p[Xdpp]) + " pu", "the machine needs a reactance behind its terminal", "give X''d > 0");
-  bad(p[S10] > 0 && !(1.2 * p[S12] > p[S10]), "S1.0 = " + text(p[S10]) + " with S1.2 = " + text(p[S12]), "no quadratic passes through both", "give 1.2 S1.2 > S1.0, or S1.0 = 0 for no saturation");
+    bad(!(p[t] > 0), std::string(parameters[t].symbol) + " = " + text(p[t]) + " s",
+        "GENROU integrates this circuit", "give a time constant > 0");
+  bad(!(p[Xdp] > p[Xl]), "X'd = " + text(p[Xdp]) + " pu with Xl = " + text(p[Xl]) + " pu",
+      "GENROU divides by X'd - Xl", "give X'd > Xl");
+  bad(!(p[Xqp] > p[Xl]), "X'q = " + text(p[Xqp]) + " pu with Xl = " + text(p[Xl]) + " pu",
+      "GENROU divides by X'q - Xl", "give X'q > Xl");
+  bad(!(p[Xd] > p[Xl]), "Xd = " + text(p[Xd]) + " pu with Xl = " + text(p[Xl]) + " pu",
+      "GENROU divides by Xd - Xl", "give Xd > Xl");
+  bad(!(p[Xdpp] > 0), "X''d = " + text(p[Xdpp]) + " pu", "the machine needs a reactance behind its terminal",
+      "give X''d > 0");
+  bad(p[S10] > 0 && !(1.2 * p[S12] > p[S10]), "S1.0 = " + text(p[S10]) + " with S1.2 = " + text(p[S12]),
+      "no quadratic passes through both", "give 1.2 S1.2 > S1.0, or S1.0 = 0 for no saturation");
 }
 
 }  // namespace swingbank::sim::machine_genrou

@@ -26,12 +26,16 @@ constexpr int widest() {
 
 struct Engine {
   virtual ~Engine() = default;
-  virtual void run(const std::function<bool(Job&)>& next, const std::function<void(const Job&, const Trajectory&)>& done) = 0;
+  virtual void run(const std::function<bool(Job&)>& next,
+                   const std::function<void(const Job&, const Trajectory&)>& done) = 0;
 };
 template <class T>
 struct EngineOf final : Engine {
   EngineOf(const Grid& grid, const BatchOptions& options) : lanes(grid, options) {}
-  void run(const std::function<bool(Job&)>& next, const std::function<void(const Job&, const Trajectory&)>& done) override { lanes.run(next, done); }
+  void run(const std::function<bool(Job&)>& next,
+           const std::function<void(const Job&, const Trajectory&)>& done) override {
+    lanes.run(next, done);
+  }
   Lanes<T> lanes;
 };
 }  // namespace
@@ -45,21 +49,30 @@ Batch::Batch(const Grid& grid, BatchOptions options) : impl_(std::make_unique<Im
   if (options.lanes == 0) options.lanes = widest();
   impl_->options = options;
   switch (options.lanes) {
-    case 1: impl_->engine = std::make_unique<EngineOf<double>>(grid, options); break;
-    case 4: impl_->engine = std::make_unique<EngineOf<P4>>(grid, options); break;
-    case 8: impl_->engine = std::make_unique<EngineOf<P8>>(grid, options); break;
+    case 1:
+      impl_->engine = std::make_unique<EngineOf<double>>(grid, options);
+      break;
+    case 4:
+      impl_->engine = std::make_unique<EngineOf<P4>>(grid, options);
+      break;
+    case 8:
+      impl_->engine = std::make_unique<EngineOf<P8>>(grid, options);
+      break;
     default:
-      throw InputError({fmt::format("{} lanes", options.lanes), "option lanes", "the kernel is built for 1, 4 and 8", "choose one of these, or 0 for the widest"});
+      throw InputError({fmt::format("{} lanes", options.lanes), "option lanes",
+                        "the kernel is built for 1, 4 and 8", "choose one of these, or 0 for the widest"});
   }
 }
 Batch::~Batch() = default;
 
-void Batch::run(const std::function<bool(Job&)>& next, const std::function<void(const Job&, const Trajectory&)>& done) {
+void Batch::run(const std::function<bool(Job&)>& next,
+                const std::function<void(const Job&, const Trajectory&)>& done) {
   impl_->engine->run(next, done);
 }
 
 std::string Batch::variant() const {
-  return fmt::format("dp54 lanes={} isa={} tol={:g}", impl_->options.lanes, instruction_set(), impl_->options.tolerance);
+  return fmt::format("dp54 lanes={} isa={} tol={:g}", impl_->options.lanes, instruction_set(),
+                     impl_->options.tolerance);
 }
 
 }  // namespace swingbank::sim

@@ -1,7 +1,7 @@
 #pragma once
-// The engine: free-running adaptive lanes. Dormand-Prince 5(4); each lane of a pack runs its own event with its own
-// time, step, acceptance and refill from the queue; lanes share no arithmetic, so a sample's bytes do not depend on
-// which lane or batch it rode in.
+// The engine: free-running adaptive lanes. Dormand-Prince 5(4); each lane of a pack runs its own event with
+// its own time, step, acceptance and refill from the queue; lanes share no arithmetic, so a sample's bytes do
+// not depend on which lane or batch it rode in.
 #include <functional>
 #include <memory>
 #include <string>
@@ -14,10 +14,10 @@ namespace swingbank::sim {
 
 struct BatchOptions {
   double t_end = 15.0, rate = 120.0;
-  double tolerance = 1e-6;            ///< error per step, weighted maximum norm over the states
-  std::vector<int> plants;            ///< recorded; empty: all
-  std::vector<Channel> channels;      ///< recorded; empty: all of kChannels
-  int lanes = 0;                      ///< 1, 4 or 8; 0: the widest this build was made for
+  double tolerance = 1e-6;                  ///< error per step, weighted maximum norm over the states
+  std::vector<int> plants;                  ///< recorded; empty: all
+  std::vector<Channel> channels;            ///< recorded; empty: all of kChannels
+  int lanes = 0;                            ///< 1, 4 or 8; 0: the widest this build was made for
   double lose_at = 3.14159265358979323846;  ///< pairwise rotor angle difference that ends a run [rad]
 };
 
@@ -25,16 +25,18 @@ struct BatchOptions {
 struct Job {
   std::uint64_t id = 0;
   Event event;
-  std::vector<std::pair<int, std::vector<double>>> machine_parameters;  ///< plant index, values in record order
+  std::vector<std::pair<int, std::vector<double>>>
+      machine_parameters;  ///< plant index, values in record order
 };
 
 class Batch {
  public:
   Batch(const Grid& grid, BatchOptions options);
   ~Batch();
-  /// Runs jobs until `next` returns false. `done` is called once per job, in the order they finish; the trajectory
-  /// is only valid during the call. An InputError of a job (operating point refused) is thrown.
-  void run(const std::function<bool(Job&)>& next, const std::function<void(const Job&, const Trajectory&)>& done);
+  /// Runs jobs until `next` returns false. `done` is called once per job, in the order they finish; the
+  /// trajectory is only valid during the call. An InputError of a job (operating point refused) is thrown.
+  void run(const std::function<bool(Job&)>& next,
+           const std::function<void(const Job&, const Trajectory&)>& done);
   /// "dp54 lanes=8 isa=avx512 tol=1e-06": part of a dataset's config hash.
   [[nodiscard]] std::string variant() const;
 

@@ -24,7 +24,8 @@ InternalNetwork::Reduced& InternalNetwork::reduced(const Topology& topology) {
   return cache_.back();
 }
 
-void InternalNetwork::assemble(Reduced& entry, const std::vector<double>& r, const std::vector<double>& x) const {
+void InternalNetwork::assemble(Reduced& entry, const std::vector<double>& r,
+                               const std::vector<double>& x) const {
   const auto plants = static_cast<Eigen::Index>(grid_.plants.size());
   const auto nodes = static_cast<Eigen::Index>(buses_.size());
   std::vector<char> node_grounded(buses_.size(), 0);
@@ -48,7 +49,8 @@ void InternalNetwork::assemble(Reduced& entry, const std::vector<double>& r, con
       a.row(n).setZero();
       a(n, n) = 1.0;
     }
-  const Eigen::MatrixXcd voltage = a.partialPivLu().solve(injection);  // V at the generator buses per unit of E
+  const Eigen::MatrixXcd voltage =
+      a.partialPivLu().solve(injection);  // V at the generator buses per unit of E
   auto& out = entry.latest;
   out.g.resize(static_cast<std::size_t>(plants * plants));
   out.b.resize(out.g.size());
@@ -68,7 +70,8 @@ void InternalNetwork::assemble(Reduced& entry, const std::vector<double>& r, con
   entry.x = x;
 }
 
-const InternalMatrix& InternalNetwork::matrix(const Topology& topology, const std::vector<double>& r, const std::vector<double>& x) {
+const InternalMatrix& InternalNetwork::matrix(const Topology& topology, const std::vector<double>& r,
+                                              const std::vector<double>& x) {
   Reduced& entry = reduced(topology);
   if (entry.r != r || entry.x != x) assemble(entry, r, x);
   return entry.latest;

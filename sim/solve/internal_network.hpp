@@ -1,7 +1,8 @@
 #pragma once
-// The network as the machines see it: currents at the terminals as a linear function of the voltages behind the
-// machines' own impedances, per topology. Two steps: Kron reduction to the generator buses (once per topology),
-// then a solve of the size of the generator buses with the machines' impedances (once per set of impedances).
+// The network as the machines see it: currents at the terminals as a linear function of the voltages behind
+// the machines' own impedances, per topology. Two steps: Kron reduction to the generator buses (once per
+// topology), then a solve of the size of the generator buses with the machines' impedances (once per set of
+// impedances).
 #include <Eigen/Dense>
 #include <deque>
 #include <vector>
@@ -20,9 +21,10 @@ struct InternalMatrix {
 class InternalNetwork {
  public:
   explicit InternalNetwork(const Grid& grid);
-  /// r, x: source impedance per plant [pu on its own base]. The reference stays valid until the next call with other
-  /// impedances; for unchanged impedances matrices are kept per topology.
-  const InternalMatrix& matrix(const Topology& topology, const std::vector<double>& r, const std::vector<double>& x);
+  /// r, x: source impedance per plant [pu on its own base]. The reference stays valid until the next call
+  /// with other impedances; for unchanged impedances matrices are kept per topology.
+  const InternalMatrix& matrix(const Topology& topology, const std::vector<double>& r,
+                               const std::vector<double>& x);
 
  private:
   struct Reduced {

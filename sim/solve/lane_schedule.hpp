@@ -17,9 +17,9 @@ inline float rough_power(float x, float p) {
 
 /// Step size control of a lane: proportional-integral (Hairer & Wanner II, IV.2), order 5.
 struct LaneClock {
-  double t = 0.0;         ///< [s]
-  double h = 0.0;         ///< step the controller asks for [s]
-  double next = 0.0;      ///< next instant the step must not cross: a switching or the end [s]
+  double t = 0.0;     ///< [s]
+  double h = 0.0;     ///< step the controller asks for [s]
+  double next = 0.0;  ///< next instant the step must not cross: a switching or the end [s]
   float last_error = 1.0F;
   static constexpr double kFirst = 0.006, kLongest = 0.25, kShortest = 1e-9;
 
@@ -62,10 +62,10 @@ struct LaneRun {
   Job job;
   std::vector<Segment> segments;
   std::size_t segment = 0;
-  int recorded = 0;              ///< samples in the record
-  int pending = 0;               ///< samples whose states wait to be evaluated
-  std::vector<double> waiting;   ///< their states, [state][Lanes::kRoom]
-  std::vector<double> theta;     ///< last terminal angle per recorded plant, held while V = 0 [rad]
+  int recorded = 0;             ///< samples in the record
+  int pending = 0;              ///< samples whose states wait to be evaluated
+  std::vector<double> waiting;  ///< their states, [state][Lanes::kRoom]
+  std::vector<double> theta;    ///< last terminal angle per recorded plant, held while V = 0 [rad]
   LaneClock clock;
   Trajectory record;
 };

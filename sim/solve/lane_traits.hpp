@@ -1,5 +1,6 @@
 #pragma once
-// What the lanes kernel needs to know of a scalar: how many scenarios it carries, how to reach one, how to mask.
+// What the lanes kernel needs to know of a scalar: how many scenarios it carries, how to reach one, how to
+// mask.
 #include <cstdint>
 #ifdef __AVX__
 #include <immintrin.h>
@@ -38,7 +39,8 @@ struct LaneTraits<Pack<N>> {
     return p;
   }
   static void store(const Pack<N>& v, double* to) { __builtin_memcpy(to, &v, sizeof v); }
-  /// Past the caches, to an address on a pack boundary: records are far larger than the caches and not read soon.
+  /// Past the caches, to an address on a pack boundary: records are far larger than the caches and not read
+  /// soon.
   static void stream(const Pack<N>& v, double* to) {
 #ifdef __AVX512F__
     if constexpr (N == 8) return _mm512_stream_pd(to, (__m512d)v.v);
@@ -54,11 +56,17 @@ inline double maximum(double a, double b) { return a > b ? a : b; }
 inline double minimum(double a, double b) { return a < b ? a : b; }
 inline double absolute(double a) { return std::fabs(a); }
 template <int N>
-inline Pack<N> maximum(Pack<N> a, Pack<N> b) { return Pack<N>(a.v > b.v ? a.v : b.v); }
+inline Pack<N> maximum(Pack<N> a, Pack<N> b) {
+  return Pack<N>(a.v > b.v ? a.v : b.v);
+}
 template <int N>
-inline Pack<N> minimum(Pack<N> a, Pack<N> b) { return Pack<N>(a.v < b.v ? a.v : b.v); }
+inline Pack<N> minimum(Pack<N> a, Pack<N> b) {
+  return Pack<N>(a.v < b.v ? a.v : b.v);
+}
 template <int N>
-inline Pack<N> absolute(Pack<N> a) { return maximum(a, -a); }
+inline Pack<N> absolute(Pack<N> a) {
+  return maximum(a, -a);
+}
 inline double round_nearest(double a) { return std::nearbyint(a); }
 
 }  // namespace swingbank::sim

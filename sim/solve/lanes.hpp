@@ -1,5 +1,6 @@
 #pragma once
-// The lanes kernel for one scalar type (double: one lane, Pack<N>: N lanes). See batch.hpp for what it promises.
+// The lanes kernel for one scalar type (double: one lane, Pack<N>: N lanes). See batch.hpp for what it
+// promises.
 #include <cmath>
 #include <limits>
 #include <string>
@@ -16,7 +17,8 @@ template <class T>
 class Lanes {
  public:
   static constexpr int kLanes = LaneTraits<T>::lanes;
-  static constexpr int kWaiting = 8 * kLanes;       ///< samples evaluated together: constants are spread once for all
+  static constexpr int kWaiting =
+      8 * kLanes;  ///< samples evaluated together: constants are spread once for all
   static constexpr int kRoom = kWaiting + 2 * kLanes;  ///< whole packs are stored and moved
   using Next = std::function<bool(Job&)>;
   using Done = std::function<void(const Job&, const Trajectory&)>;
@@ -31,8 +33,8 @@ class Lanes {
     int x, c, m;  ///< offsets of states, coefficients and scratch
   };
 
-  /// What the equations need besides the states. One set has a lane per event; the other, for recording, is one
-  /// event's values in every lane, its lanes being consecutive samples.
+  /// What the equations need besides the states. One set has a lane per event; the other, for recording, is
+  /// one event's values in every lane, its lanes being consecutive samples.
   struct Constants {
     std::vector<T> c, g, b, r, xs, efd, tm;
   };
@@ -74,22 +76,22 @@ class Lanes {
   BatchOptions options_;
   InternalNetwork network_;
   std::vector<PlantSlice> plants_;
-  std::vector<Operating> base_;          ///< operating points with the grid's own parameters
+  std::vector<Operating> base_;  ///< operating points with the grid's own parameters
   std::vector<int> recorded_;
   std::vector<Channel> channels_;
   int n_ = 0, samples_ = 0, states_ = 0;
-  std::vector<double> weight_;           ///< per state, already divided by the tolerance
+  std::vector<double> weight_;  ///< per state, already divided by the tolerance
 
   Constants per_lane_, per_sample_;
-  std::vector<T> m_, er_, ei_;           ///< scratch of one evaluation
-  Signals<T> signals_;                   ///< likewise: zeroing one per plant would cost 18 packs
-  std::vector<T> y_, trial_, dense_;     ///< states; dense_: four coefficient rows
+  std::vector<T> m_, er_, ei_;        ///< scratch of one evaluation
+  Signals<T> signals_;                ///< likewise: zeroing one per plant would cost 18 packs
+  std::vector<T> y_, trial_, dense_;  ///< states; dense_: four coefficient rows
   std::vector<T> k_[dp54::kStages];
   std::vector<T> kept_, unused_;
   std::vector<LaneRun> lanes_;
   std::vector<std::vector<double>> lane_r_, lane_x_;  ///< source impedances per lane
   std::vector<std::vector<char>> grounded_;           ///< per lane and plant: terminal held at V = 0
-  unsigned active_ = 0, fresh_ = 0;      ///< lanes that run; lanes whose first stage must be evaluated anew
+  unsigned active_ = 0, fresh_ = 0;  ///< lanes that run; lanes whose first stage must be evaluated anew
 };
 
 }  // namespace swingbank::sim

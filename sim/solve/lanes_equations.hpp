@@ -8,7 +8,8 @@ template <class T>
 inline void Lanes<T>::emfs(const Constants& k, const T* x) {
   for (std::size_t i = 0; i < plants_.size(); ++i) {
     const PlantSlice& p = plants_[i];
-    p.equations.emf(&k.c[static_cast<std::size_t>(p.c)], x + p.x, &m_[static_cast<std::size_t>(p.m)], er_[i], ei_[i]);
+    p.equations.emf(&k.c[static_cast<std::size_t>(p.c)], x + p.x, &m_[static_cast<std::size_t>(p.m)], er_[i],
+                    ei_[i]);
   }
 }
 

@@ -7,7 +7,8 @@
 namespace swingbank::sim {
 
 template <class T>
-Lanes<T>::Lanes(const Grid& grid, const BatchOptions& options) : grid_(grid), options_(options), network_(grid) {
+Lanes<T>::Lanes(const Grid& grid, const BatchOptions& options)
+    : grid_(grid), options_(options), network_(grid) {
   n_ = static_cast<int>(grid.plants.size());
   samples_ = static_cast<int>(std::floor(options.t_end * options.rate + 1e-9)) + 1;
   recorded_ = options.plants;
@@ -23,8 +24,10 @@ Lanes<T>::Lanes(const Grid& grid, const BatchOptions& options) : grid_(grid), op
     states_ += plants_.back().equations.states();
     c += plants_.back().equations.coefficients();
     m += plants_.back().equations.scratch();
-    base_.push_back(operating_point(plant, grid.flow.voltage[static_cast<std::size_t>(plant.bus)], grid.network.base_mva, grid.conventions));
-    for (const auto& state : plant.machine.effect->states) weight_.push_back(state.weight / options.tolerance);
+    base_.push_back(operating_point(plant, grid.flow.voltage[static_cast<std::size_t>(plant.bus)],
+                                    grid.network.base_mva, grid.conventions));
+    for (const auto& state : plant.machine.effect->states)
+      weight_.push_back(state.weight / options.tolerance);
     for (const auto& block : plant.controls)
       for (const auto& state : block.effect->states) weight_.push_back(state.weight / options.tolerance);
   }
@@ -54,8 +57,10 @@ Lanes<T>::Lanes(const Grid& grid, const BatchOptions& options) : grid_(grid), op
 template <class T>
 void Lanes<T>::load_plant(int lane, std::size_t plant, const Operating& at) {
   const PlantSlice& p = plants_[plant];
-  for (std::size_t i = 0; i < at.c.size(); ++i) Traits::set(per_lane_.c[static_cast<std::size_t>(p.c) + i], lane, at.c[i]);
-  for (std::size_t i = 0; i < at.x.size(); ++i) Traits::set(y_[static_cast<std::size_t>(p.x) + i], lane, at.x[i]);
+  for (std::size_t i = 0; i < at.c.size(); ++i)
+    Traits::set(per_lane_.c[static_cast<std::size_t>(p.c) + i], lane, at.c[i]);
+  for (std::size_t i = 0; i < at.x.size(); ++i)
+    Traits::set(y_[static_cast<std::size_t>(p.x) + i], lane, at.x[i]);
   Traits::set(per_lane_.r[plant], lane, at.r);
   Traits::set(per_lane_.xs[plant], lane, at.xs);
   Traits::set(per_lane_.efd[plant], lane, at.Efd);
@@ -75,7 +80,8 @@ void Lanes<T>::load(int lane) {
     Plant changed = grid_.plants[static_cast<std::size_t>(plant)];
     changed.machine.p = values;
     load_plant(lane, static_cast<std::size_t>(plant),
-               operating_point(changed, grid_.flow.voltage[static_cast<std::size_t>(changed.bus)], grid_.network.base_mva, grid_.conventions));
+               operating_point(changed, grid_.flow.voltage[static_cast<std::size_t>(changed.bus)],
+                               grid_.network.base_mva, grid_.conventions));
   }
   run.segment = 0;
   run.clock.t = 0.0;
@@ -98,8 +104,8 @@ void Lanes<T>::enter_segment(int lane) {
   fresh_ |= 1U << lane;
 }
 
-/// Until the first switching the grid stands still (operating_point checks the derivatives): the samples up to there
-/// are the operating point itself.
+/// Until the first switching the grid stands still (operating_point checks the derivatives): the samples up
+/// to there are the operating point itself.
 template <class T>
 void Lanes<T>::record_steady_start(int lane) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];

@@ -1,7 +1,8 @@
 #pragma once
-// Lanes: recording. The states at the sample instants are interpolated lane by lane and wait there; when a pack of them
-// has gathered, the outputs are evaluated with the pack's lanes as consecutive samples of one event. That fills every
-// lane, whatever the steps of the others, and writes each channel as whole cache lines.
+// Lanes: recording. The states at the sample instants are interpolated lane by lane and wait there; when a
+// pack of them has gathered, the outputs are evaluated with the pack's lanes as consecutive samples of one
+// event. That fills every lane, whatever the steps of the others, and writes each channel as whole cache
+// lines.
 #include <algorithm>
 
 #include "sim/solve/lanes.hpp"
@@ -55,9 +56,10 @@ void Lanes<T>::collect(int lane, int count, double start, double tried) {
     const double* __restrict d = reinterpret_cast<const double*>(dense_.data()) + lane;
     double* __restrict to = run.waiting.data() + run.pending;
     for (std::size_t i = 0; i < n; ++i) {
-      const T value = T(y[i * kLanes]) +
-                      a * (T(d[i * kLanes]) +
-                           b * (T(d[(n + i) * kLanes]) + a * (T(d[(2 * n + i) * kLanes]) + b * T(d[(3 * n + i) * kLanes]))));
+      const T value =
+          T(y[i * kLanes]) +
+          a * (T(d[i * kLanes]) + b * (T(d[(n + i) * kLanes]) +
+                                       a * (T(d[(2 * n + i) * kLanes]) + b * T(d[(3 * n + i) * kLanes]))));
       Traits::store(value, to + i * kRoom);
     }
     run.pending += now;
@@ -69,7 +71,8 @@ void Lanes<T>::collect(int lane, int count, double start, double tried) {
 /// Copies one lane's constants into every lane of the recording set.
 template <class T>
 void Lanes<T>::spread_constants(int lane) {
-  const auto copy = [lane](const std::vector<T>& from, std::vector<T>& to, std::size_t first, std::size_t count) {
+  const auto copy = [lane](const std::vector<T>& from, std::vector<T>& to, std::size_t first,
+                           std::size_t count) {
     const double* __restrict source = reinterpret_cast<const double*>(from.data()) + lane;
     T* __restrict target = to.data();
     for (std::size_t i = first; i < first + count; ++i) target[i] = T(source[i * kLanes]);
@@ -78,7 +81,8 @@ void Lanes<T>::spread_constants(int lane) {
   Constants& to = per_sample_;
   copy(from.c, to.c, 0, to.c.size());
   const auto n = static_cast<std::size_t>(n_);
-  for (const auto& [source, target] : {std::pair{&from.r, &to.r}, {&from.xs, &to.xs}, {&from.efd, &to.efd}, {&from.tm, &to.tm}})
+  for (const auto& [source, target] :
+       {std::pair{&from.r, &to.r}, {&from.xs, &to.xs}, {&from.efd, &to.efd}, {&from.tm, &to.tm}})
     copy(*source, *target, 0, n);
   for (int plant : recorded_) {
     copy(from.g, to.g, static_cast<std::size_t>(plant) * n, n);
@@ -86,8 +90,8 @@ void Lanes<T>::spread_constants(int lane) {
   }
 }
 
-/// Evaluates the first `count` waiting samples of a lane into its record; the rest (less than two packs) move to the
-/// front.
+/// Evaluates the first `count` waiting samples of a lane into its record; the rest (less than two packs) move
+/// to the front.
 template <class T>
 void Lanes<T>::evaluate_pending(int lane, int count) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
@@ -120,18 +124,35 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
   current(per_sample_, i, s);
   PlantEquations<T>::voltage(er_[i], ei_[i], per_sample_.r[i], per_sample_.xs[i], s);
   PlantEquations<T>::terminal(s);
-  p.equations.signals(&per_sample_.c[static_cast<std::size_t>(p.c)], x + p.x, &m_[static_cast<std::size_t>(p.m)], s, unused_.data() + p.x);
+  p.equations.signals(&per_sample_.c[static_cast<std::size_t>(p.c)], x + p.x,
+                      &m_[static_cast<std::size_t>(p.m)], s, unused_.data() + p.x);
   for (std::size_t j = 0; j < channels_.size(); ++j) {
     T v(0.0);
     switch (channels_[j]) {
-      case Channel::delta: v = x[p.x]; break;
-      case Channel::speed: v = s.speed; break;
-      case Channel::P: v = s.P; break;
-      case Channel::Q: v = s.Q; break;
-      case Channel::V: v = s.V; break;
-      case Channel::Efd: v = s.Efd; break;
-      case Channel::Ifd: v = s.Ifd; break;
-      case Channel::Tm: v = s.Tm; break;
+      case Channel::delta:
+        v = x[p.x];
+        break;
+      case Channel::speed:
+        v = s.speed;
+        break;
+      case Channel::P:
+        v = s.P;
+        break;
+      case Channel::Q:
+        v = s.Q;
+        break;
+      case Channel::V:
+        v = s.V;
+        break;
+      case Channel::Efd:
+        v = s.Efd;
+        break;
+      case Channel::Ifd:
+        v = s.Ifd;
+        break;
+      case Channel::Tm:
+        v = s.Tm;
+        break;
       case Channel::theta: {
         if (grounded_[lane][i]) {
           v = T(run.theta[k]);

@@ -1,6 +1,6 @@
 #pragma once
-// Lanes: the free-running loop. Every pack step advances each lane by its own step; a lane accepts, rejects, switches
-// and refills alone.
+// Lanes: the free-running loop. Every pack step advances each lane by its own step; a lane accepts, rejects,
+// switches and refills alone.
 #include "sim/solve/lanes.hpp"
 
 namespace swingbank::sim {
@@ -61,7 +61,8 @@ void Lanes<T>::commit(unsigned accepted) {
   }
 }
 
-/// After a step: lanes that lost synchronism or came to their end are handed over, lanes at a switching switch.
+/// After a step: lanes that lost synchronism or came to their end are handed over, lanes at a switching
+/// switch.
 template <class T>
 void Lanes<T>::settle(unsigned accepted, const Next& next, const Done& done) {
   alignas(64) double angle[kLanes];

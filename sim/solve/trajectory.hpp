@@ -22,24 +22,25 @@ struct CacheAligned {
   static constexpr std::align_val_t kLine{64};
   CacheAligned() = default;
   template <class U>
-  CacheAligned(const CacheAligned<U>&) {}  // NOLINT(google-explicit-constructor): the allocator protocol asks for it
+  CacheAligned(const CacheAligned<U>&) {
+  }  // NOLINT(google-explicit-constructor): the allocator protocol asks for it
   T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), kLine)); }
   void deallocate(T* p, std::size_t) { ::operator delete(p, kLine); }
   friend bool operator==(const CacheAligned&, const CacheAligned&) { return true; }
 };
 
-/// Samples at t = k/rate, k = 0..samples-1. At a switching instant the sample is the value just before it, unless
-/// asked otherwise.
+/// Samples at t = k/rate, k = 0..samples-1. At a switching instant the sample is the value just before it,
+/// unless asked otherwise.
 struct Trajectory {
-  double rate = 0.0;                 ///< [1/s]
+  double rate = 0.0;  ///< [1/s]
   int samples = 0;
-  int stride = 0;                    ///< distance between rows of `values`: at least `samples`
-  std::vector<int> plants;           ///< which plants, by index in the grid
+  int stride = 0;           ///< distance between rows of `values`: at least `samples`
+  std::vector<int> plants;  ///< which plants, by index in the grid
   std::vector<Channel> channels;
   std::vector<double, CacheAligned<double>> values;  ///< rows [plant][channel], see at() and packed()
   Outcome outcome = Outcome::stable;
-  double stopped_at = 0.0;           ///< [s]: t_end, or when synchronism was lost
-  double largest_spread = 0.0;       ///< largest pairwise rotor angle difference seen [rad]
+  double stopped_at = 0.0;      ///< [s]: t_end, or when synchronism was lost
+  double largest_spread = 0.0;  ///< largest pairwise rotor angle difference seen [rad]
 
   [[nodiscard]] int rows() const { return static_cast<int>(plants.size() * channels.size()); }
   /// Makes room for every row; with `whole_lines` each row starts on a cache line.
@@ -49,9 +50,15 @@ struct Trajectory {
     values.resize(static_cast<std::size_t>(rows()) * static_cast<std::size_t>(stride));
   }
   [[nodiscard]] double* row(int i) { return values.data() + static_cast<std::ptrdiff_t>(i) * stride; }
-  [[nodiscard]] const double* row(int i) const { return values.data() + static_cast<std::ptrdiff_t>(i) * stride; }
-  [[nodiscard]] double* at(int plant, int channel) { return row(plant * static_cast<int>(channels.size()) + channel); }
-  [[nodiscard]] const double* at(int plant, int channel) const { return row(plant * static_cast<int>(channels.size()) + channel); }
+  [[nodiscard]] const double* row(int i) const {
+    return values.data() + static_cast<std::ptrdiff_t>(i) * stride;
+  }
+  [[nodiscard]] double* at(int plant, int channel) {
+    return row(plant * static_cast<int>(channels.size()) + channel);
+  }
+  [[nodiscard]] const double* at(int plant, int channel) const {
+    return row(plant * static_cast<int>(channels.size()) + channel);
+  }
   /// [plant][channel][sample] without gaps.
   [[nodiscard]] std::vector<double> packed() const {
     std::vector<double> all;

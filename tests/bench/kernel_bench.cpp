@@ -1,11 +1,10 @@
-// Events per core-second of the lanes kernel on IEEE 39 (all GENROU, 15 s, 120 samples/s), lanes against the scalar
-// build of the same kernel, alternating in one run.
+// Events per core-second of the lanes kernel on IEEE 39 (all GENROU, 15 s, 120 samples/s), lanes against the
+// scalar build of the same kernel, alternating in one run.
 //   bench_kernel RAW DYR [events] [rounds]
-#include <ctime>
-
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <random>
 
 #include "sim/solve/batch.hpp"
@@ -19,7 +18,8 @@ double cpu_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// Random bolted faults of 0.05-0.2 s at any bus; one random machine with parameters within 10 % of the file's.
+/// Random bolted faults of 0.05-0.2 s at any bus; one random machine with parameters within 10 % of the
+/// file's.
 std::vector<Job> jobs(const Grid& grid, int count) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> u(0.0, 1.0);
@@ -64,8 +64,10 @@ int main(int argc, char** argv) {
       std::vector<double> rates;
       int stable = 0;
     };
-    std::vector<Case> cases = {{"8 lanes, all generators recorded", 8, false, {}}, {"4 lanes, all generators recorded", 4, false, {}},
-                               {"scalar, all generators recorded", 1, false, {}}, {"8 lanes, one generator recorded", 8, true, {}}};
+    std::vector<Case> cases = {{"8 lanes, all generators recorded", 8, false, {}},
+                               {"4 lanes, all generators recorded", 4, false, {}},
+                               {"scalar, all generators recorded", 1, false, {}},
+                               {"8 lanes, one generator recorded", 8, true, {}}};
     for (int round = 0; round < rounds; ++round)
       for (auto& c : cases) {
         BatchOptions options;
@@ -74,12 +76,16 @@ int main(int argc, char** argv) {
         Batch batch(grid, options);
         c.rates.push_back(events_per_core_second(batch, list, c.stable));
       }
-    const auto median = [](std::vector<double> v) { std::sort(v.begin(), v.end()); return v[v.size() / 2]; };
+    const auto median = [](std::vector<double> v) {
+      std::sort(v.begin(), v.end());
+      return v[v.size() / 2];
+    };
     const double scalar = median(cases[2].rates);
     for (auto& c : cases)
-      std::printf("%-36s %7.0f events/core-s (median of %d, %.0f..%.0f)  %.2f x scalar  %d of %d stable\n", c.what, median(c.rates),
-                  rounds, *std::min_element(c.rates.begin(), c.rates.end()), *std::max_element(c.rates.begin(), c.rates.end()),
-                  median(c.rates) / scalar, c.stable, count);
+      std::printf("%-36s %7.0f events/core-s (median of %d, %.0f..%.0f)  %.2f x scalar  %d of %d stable\n",
+                  c.what, median(c.rates), rounds, *std::min_element(c.rates.begin(), c.rates.end()),
+                  *std::max_element(c.rates.begin(), c.rates.end()), median(c.rates) / scalar, c.stable,
+                  count);
   } catch (const swingbank::InputError& e) {
     std::fprintf(stderr, "%s\n", e.what());
     return 1;

@@ -105,7 +105,8 @@ TEST_P(LanesAgainstReferenceFull, HundredRandomStableEvents) {
 }
 
 // The thesis's ranges on the dataset's machine bases, and on the bases of the reference records.
-INSTANTIATE_TEST_SUITE_P(Grids, LanesAgainstReferenceFull, ::testing::Values("ieee39_dataset_genrou", "ieee39_genrou"));
+INSTANTIATE_TEST_SUITE_P(Grids, LanesAgainstReferenceFull,
+                         ::testing::Values("ieee39_dataset_genrou", "ieee39_genrou"));
 
 /// A few events of each kind for the fast tier, other grids and other conventions included.
 TEST(LanesAgainstReference, EachKindOfEvent) {

@@ -40,7 +40,8 @@ TYPED_TEST(PackMath, Atan2AgreesWithTheLibraryInEveryQuadrant) {
       y.set(l, u(random) * std::pow(10.0, e(random)));
     }
     const TypeParam r = atan2(y, x);
-    for (int l = 0; l < TypeParam::lanes; ++l) ASSERT_NEAR(r[l], std::atan2(y[l], x[l]), 9e-16) << y[l] << " " << x[l];
+    for (int l = 0; l < TypeParam::lanes; ++l)
+      ASSERT_NEAR(r[l], std::atan2(y[l], x[l]), 9e-16) << y[l] << " " << x[l];
   }
   EXPECT_EQ(atan2(TypeParam(0.0), TypeParam(0.0))[0], 0.0);
 }

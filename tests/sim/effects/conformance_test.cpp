@@ -1,5 +1,5 @@
-// Runs over every registered effect, with no edit when one is added: records, steady state, lanes against double,
-// duals against central differences, vanishing at neutral.
+// Runs over every registered effect, with no edit when one is added: records, steady state, lanes against
+// double, duals against central differences, vanishing at neutral.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -29,7 +29,8 @@ struct MachineCase {
 };
 
 template <class T>
-MachineCase<T> at_steady(const Effect& e, const std::vector<T>& p, const Conventions& conventions, double vr, double vi, double ir, double ii) {
+MachineCase<T> at_steady(const Effect& e, const std::vector<T>& p, const Conventions& conventions, double vr,
+                         double vi, double ir, double ii) {
   MachineCase<T> k;
   k.p = p;
   k.c.assign(static_cast<std::size_t>(e.coefficients), T(0.0));
@@ -95,14 +96,17 @@ TEST(Conformance, SteadyStateStandsStill) {
   for (const Effect* e : machines())
     for (const auto& conventions : {Conventions::psse(), Conventions::andes()})
       for (int trial = 0; trial < 100; ++trial) {
-        auto k = at_steady<double>(*e, draw(*e, random), conventions, 1.0 + 0.1 * u(random), 0.3 * u(random), 0.8 + 0.2 * u(random), 0.4 * u(random));
+        auto k = at_steady<double>(*e, draw(*e, random), conventions, 1.0 + 0.1 * u(random), 0.3 * u(random),
+                                   0.8 + 0.2 * u(random), 0.4 * u(random));
         const double vr = k.s.Vr, vi = k.s.Vi, ir = k.s.Ir, ii = k.s.Ii;
         const auto out = k.outputs(*e);
         for (std::size_t i = 5; i < out.size(); ++i)
-          EXPECT_NEAR(out[i], 0.0, 1e-11) << e->name << "." << e->states[i - 5].name;  // rounding, over T'' >= 0.005 s
+          EXPECT_NEAR(out[i], 0.0, 1e-11)
+              << e->name << "." << e->states[i - 5].name;  // rounding, over T'' >= 0.005 s
         double r, x;
         e->get<double>().machine.source_impedance(k.p.data(), r, x);
-        EXPECT_NEAR(out[0], vr + r * ir - x * ii, 1e-13) << e->name << ": the emf does not give the terminal voltage back";
+        EXPECT_NEAR(out[0], vr + r * ir - x * ii, 1e-13)
+            << e->name << ": the emf does not give the terminal voltage back";
         EXPECT_NEAR(out[1], vi + r * ii + x * ir, 1e-13) << e->name;
       }
 }
@@ -113,14 +117,16 @@ void lanes_equal_double(const Effect& e, std::mt19937_64& random) {
   MachineCase<P> pack;
   std::vector<MachineCase<double>> each;
   for (int l = 0; l < P::lanes; ++l) {
-    auto k = at_steady<double>(e, draw(e, random), Conventions::psse(), 1.0 + 0.1 * u(random), 0.3 * u(random), 0.8, 0.4 * u(random));
+    auto k = at_steady<double>(e, draw(e, random), Conventions::psse(), 1.0 + 0.1 * u(random),
+                               0.3 * u(random), 0.8, 0.4 * u(random));
     for (std::size_t i = 0; i < k.x.size(); ++i) k.x[i] += (i == 1 ? 0.01 : 0.3) * u(random);
     each.push_back(k);
   }
   const auto gather = [&](auto member, std::vector<P>& to) {
     to.assign((each[0].*member).size(), P(0.0));
     for (int l = 0; l < P::lanes; ++l)
-      for (std::size_t i = 0; i < to.size(); ++i) to[i].set(l, (each[static_cast<std::size_t>(l)].*member)[i]);
+      for (std::size_t i = 0; i < to.size(); ++i)
+        to[i].set(l, (each[static_cast<std::size_t>(l)].*member)[i]);
   };
   gather(&MachineCase<double>::c, pack.c);
   gather(&MachineCase<double>::x, pack.x);
@@ -174,7 +180,8 @@ TEST(Conformance, DualsEqualCentralDifferences) {
         up[j] += h;
         down[j] -= h;
         const auto a = moved<double>(*e, up, shift), b = moved<double>(*e, down, shift);
-        for (std::size_t i = 0; i < exact.size(); ++i) {  // the difference quotient's own rounding is ~1e-16/h = 1e-8
+        for (std::size_t i = 0; i < exact.size();
+             ++i) {  // the difference quotient's own rounding is ~1e-16/h = 1e-8
           const double quotient = (a[i] - b[i]) / (2 * h);
           EXPECT_NEAR(exact[i].d[0], quotient, 1e-6 * (1.0 + std::fabs(quotient)))
               << e->name << " output " << i << " by " << e->parameters[j].name;
@@ -194,7 +201,8 @@ TEST(Conformance, NeutralIsWhereTheInfluenceVanishes) {
     for (const double hair : {1e-5, 1e-7}) {
       auto near = neutral;
       for (std::size_t i = 0; i < near.size(); ++i)
-        if (e->parameters[i].neutral == e->parameters[i].neutral) near[i] += hair * (1.0 + 0.5 * static_cast<double>(i));
+        if (e->parameters[i].neutral == e->parameters[i].neutral)
+          near[i] += hair * (1.0 + 0.5 * static_cast<double>(i));
       const auto out = moved<double>(*e, near, still);
       for (std::size_t i = 0; i < out.size(); ++i)
         EXPECT_NEAR(out[i], base[i], 100 * hair) << e->name << " output " << i;

@@ -10,8 +10,9 @@ namespace swingbank::sim {
 namespace {
 
 const Grid& ieee39() {
-  static const Grid grid = load_grid(SWINGBANK_SOURCE "/configs/networks/ieee39_genrou.raw",
-                                     SWINGBANK_SOURCE "/configs/networks/ieee39_genrou.dyr", Conventions::psse());
+  static const Grid grid =
+      load_grid(SWINGBANK_SOURCE "/configs/networks/ieee39_genrou.raw",
+                SWINGBANK_SOURCE "/configs/networks/ieee39_genrou.dyr", Conventions::psse());
   return grid;
 }
 
@@ -98,9 +99,9 @@ TEST(Lanes, TheSampleAtASwitchingIsTheValueJustBefore) {
   const auto t = run(jobs, options).at(0);
   const double* v = t.at(0, 0);
   const double* theta = t.at(0, 1);
-  EXPECT_GT(v[60], 0.9);             // t = 0.5 s: still the healthy grid
-  EXPECT_NEAR(v[61], 0.0, 1e-11);    // bolted: V = 0
-  EXPECT_NEAR(v[72], 0.0, 1e-11);    // t = 0.6 s: still faulted
+  EXPECT_GT(v[60], 0.9);           // t = 0.5 s: still the healthy grid
+  EXPECT_NEAR(v[61], 0.0, 1e-11);  // bolted: V = 0
+  EXPECT_NEAR(v[72], 0.0, 1e-11);  // t = 0.6 s: still faulted
   EXPECT_GT(v[73], 0.5);
   for (int k = 61; k <= 72; ++k) EXPECT_EQ(theta[k], theta[60]) << "theta is held while V = 0";
 }
