@@ -158,9 +158,9 @@ TEST(Training, LearnsAndShuffledLabelsTeachNothing) {
 }
 
 TEST(Training, RecurrentNetworksLearn) {
-  const World world("recurrent", 900);
+  const World world("recurrent", 500);
   for (const std::string name : {"lstm", "gru"}) {
-    RunRequest r = request(world, name, 10);
+    RunRequest r = request(world, name, 8);
     ASSERT_EQ(run(world.stream, r), RunOutcome::done);
     EXPECT_LT(result_of(r)["H_ratio"], 0.7) << name;
   }
