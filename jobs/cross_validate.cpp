@@ -1,7 +1,8 @@
-// swingbank cross-validate: leave one generator out (Tables V and VI). Several processes started by mpirun or srun
-// share the folds; a Slurm array task takes one with --fold.
-#include "jobs/training_options.hpp"
+// swingbank cross-validate: leave one generator out (Tables V and VI). Several processes started by mpirun or
+// srun share the folds; a Slurm array task takes one with --fold.
 #include "train/cross_validate.hpp"
+
+#include "jobs/training_options.hpp"
 #include "train/processes.hpp"
 
 namespace {
@@ -11,17 +12,20 @@ std::vector<std::int32_t> folds_of(const std::string& text, const Experiment& ex
   if (text == "all") return experiment.folds;
   for (const std::int32_t fold : experiment.folds)
     if (std::to_string(fold) == text) return {fold};
-  throw InputError({fmt::format("no fold '{}'", text), "--fold",
-                    fmt::format("{} leaves out {}", experiment.file.string(), fmt::join(experiment.folds, ", ")),
-                    "give one of these bus numbers, or all"});
+  throw InputError(
+      {fmt::format("no fold '{}'", text), "--fold",
+       fmt::format("{} leaves out {}", experiment.file.string(), fmt::join(experiment.folds, ", ")),
+       "give one of these bus numbers, or all"});
 }
 
 /// Folds of one process; errors become its exit code.
-int train_folds(const ShardStream& stream, RunRequest request, const std::vector<std::int32_t>& folds, int threads) {
+int train_folds(const ShardStream& stream, RunRequest request, const std::vector<std::int32_t>& folds,
+                int threads) {
   try {
     request.runtime = set_up_runtime(threads);
     const RunOutcome outcome = cross_validate(stream, std::move(request), folds);
-    if (outcome == RunOutcome::already_done) fmt::print(stderr, "folds {}: done already\n", fmt::join(folds, ", "));
+    if (outcome == RunOutcome::already_done)
+      fmt::print(stderr, "folds {}: done already\n", fmt::join(folds, ", "));
     return exit_code(outcome);
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
@@ -36,14 +40,16 @@ int main(int argc, char** argv) {
   std::string fold = "all";
   int processes = 0;
   app.add_option("--fold", fold, "bus number of the generator to leave out, or all")->capture_default_str();
-  app.add_option("--processes", processes, "processes that share the folds, each with its part of the threads (default: one "
-                                           "per core; 1 where mpirun or srun started several)");
+  app.add_option("--processes", processes,
+                 "processes that share the folds, each with its part of the threads (default: one "
+                 "per core; 1 where mpirun or srun started several)");
   return training_main(argc, argv, app, options, [&](const RunRequest& request) {
     if (!request.experiment.leave_one_out)
       throw InputError({"this experiment leaves no generator out", options.experiment, "its split says so",
                         "use swingbank train"});
     if (processes < 0)
-      throw InputError({fmt::format("{} processes", processes), "--processes", "somebody must do the work", "use 1 or more"});
+      throw InputError({fmt::format("{} processes", processes), "--processes", "somebody must do the work",
+                        "use 1 or more"});
     const Place place = launcher_place();
     const auto folds = share_of(folds_of(fold, request.experiment), fold == "all" ? place : Place{});
     if (folds.empty()) return 0;  // more processes than folds

@@ -24,24 +24,31 @@ struct TrainingOptions {
 
   void add_to(CLI::App& app) {
     app.add_option("DATASET", dataset, "folder that `swingbank generate` wrote");
-    app.add_option("--experiment", experiment, "file of configs/experiments: table, dataset, presets")->required();
-    app.add_option("--preset", preset, "preset of the experiment: quick, nightly or thesis")->capture_default_str();
+    app.add_option("--experiment", experiment, "file of configs/experiments: table, dataset, presets")
+        ->required();
+    app.add_option("--preset", preset, "preset of the experiment: quick, nightly or thesis")
+        ->capture_default_str();
     app.add_option("--network", network, "network of the preset (default: its first)");
     app.add_option("--out", out, "folder for the result files");
     app.add_option("--seed", seed, "seed of weights, dropout, order and split")->capture_default_str();
     app.add_option("--epochs", epochs, "instead of the preset's");
-    app.add_option("--threads", threads, "default: the Slurm allocation, OMP_NUM_THREADS or the cores, shared by the processes");
-    app.add_option("--readers", readers, "threads that read shards which do not fit in memory")->capture_default_str();
-    app.add_option("--memory-limit", memory_limit, "series up to this size stay in memory [GiB]")->capture_default_str();
+    app.add_option("--threads", threads,
+                   "default: the Slurm allocation, OMP_NUM_THREADS or the cores, shared by the processes");
+    app.add_option("--readers", readers, "threads that read shards which do not fit in memory")
+        ->capture_default_str();
+    app.add_option("--memory-limit", memory_limit, "series up to this size stay in memory [GiB]")
+        ->capture_default_str();
     app.add_flag("--shuffle-labels", shuffle_labels, "control run: must score about as the mean does");
-    app.add_option("--print", print, "print one entry of the experiment and end: table, dataset, draws, networks, folds");
+    app.add_option("--print", print,
+                   "print one entry of the experiment and end: table, dataset, draws, networks, folds");
   }
 
   /// Throws InputError if an option that a run needs is missing.
   [[nodiscard]] RunRequest request() const {
     Problems problems;
     if (dataset.empty())
-      problems.add("no dataset", "DATASET", "a run needs one", "give the folder that `swingbank generate` wrote");
+      problems.add("no dataset", "DATASET", "a run needs one",
+                   "give the folder that `swingbank generate` wrote");
     if (out.empty()) problems.add("no output folder", "--out", "results need a place", "give a folder");
     problems.raise();
     RunRequest r;

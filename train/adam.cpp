@@ -10,7 +10,8 @@ namespace swingbank {
 Adam::Adam(std::vector<at::Tensor> parameters, double beta1, double beta2, double epsilon)
     : parameters_(std::move(parameters)), beta1_(beta1), beta2_(beta2), epsilon_(epsilon) {
   for (const auto& p : parameters_) {
-    TORCH_CHECK(p.is_contiguous() && p.scalar_type() == at::kFloat, "Adam: parameters must be contiguous floats");
+    TORCH_CHECK(p.is_contiguous() && p.scalar_type() == at::kFloat,
+                "Adam: parameters must be contiguous floats");
     first_.push_back(at::zeros(p.sizes(), at::kFloat));
     second_.push_back(at::zeros(p.sizes(), at::kFloat));
   }
@@ -23,7 +24,8 @@ void Adam::step(double learning_rate) {
   const auto t = static_cast<double>(steps_);
   const auto rate = static_cast<float>(learning_rate / (1.0 - std::pow(beta1_, t)));
   const auto root = static_cast<float>(1.0 / std::sqrt(1.0 - std::pow(beta2_, t)));
-  const auto b1 = static_cast<float>(beta1_), b2 = static_cast<float>(beta2_), eps = static_cast<float>(epsilon_);
+  const auto b1 = static_cast<float>(beta1_), b2 = static_cast<float>(beta2_),
+             eps = static_cast<float>(epsilon_);
   const auto a1 = static_cast<float>(1.0 - beta1_), a2 = static_cast<float>(1.0 - beta2_);
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     at::Tensor& p = parameters_[i];

@@ -12,11 +12,13 @@ namespace swingbank {
 class Adam {
  public:
   /// Contiguous single-precision leaves; the moments start at zero.
-  explicit Adam(std::vector<at::Tensor> parameters, double beta1 = 0.9, double beta2 = 0.999, double epsilon = 1e-8);
+  explicit Adam(std::vector<at::Tensor> parameters, double beta1 = 0.9, double beta2 = 0.999,
+                double epsilon = 1e-8);
   ~Adam();
   Adam(Adam&&) noexcept;
 
-  /// One step with the gradients the parameters hold; parameters without a gradient stay. Clears the gradients.
+  /// One step with the gradients the parameters hold; parameters without a gradient stay. Clears the
+  /// gradients.
   void step(double learning_rate);
   [[nodiscard]] std::int64_t steps() const { return steps_; }
   void set_steps(std::int64_t steps) { steps_ = steps; }

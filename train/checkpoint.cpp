@@ -66,7 +66,8 @@ bool read_checkpoint(const std::filesystem::path& file, const json& run, json& h
   if (!in) return false;
   Hash hash;
   const auto get = [&](void* data, std::size_t bytes) {
-    if (!in.read(static_cast<char*>(data), static_cast<std::streamsize>(bytes))) raise_damaged(file, "it ends too early");
+    if (!in.read(static_cast<char*>(data), static_cast<std::streamsize>(bytes)))
+      raise_damaged(file, "it ends too early");
     hash.add(data, bytes);
   };
   const auto get_size = [&] {
@@ -83,7 +84,8 @@ bool read_checkpoint(const std::filesystem::path& file, const json& run, json& h
   get(text.data(), text.size());
   header = json::parse(text, nullptr, false);
   if (header.is_discarded()) raise_damaged(file, "its header is damaged");
-  if (header.value("run", json()) != run) raise_damaged(file, "it belongs to a run with other settings or data");
+  if (header.value("run", json()) != run)
+    raise_damaged(file, "it belongs to a run with other settings or data");
   if (get_size() != arrays.size()) raise_damaged(file, "it holds another number of arrays");
   for (const auto& a : arrays) {
     if (get_size() != a.size()) raise_damaged(file, "an array has another length");

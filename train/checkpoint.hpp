@@ -1,6 +1,7 @@
 #pragma once
-// A training run on disk: a JSON header and raw single-precision arrays, sealed with a checksum. Written under a
-// temporary name, flushed and renamed, so that the last good checkpoint survives a kill at any moment.
+// A training run on disk: a JSON header and raw single-precision arrays, sealed with a checksum. Written
+// under a temporary name, flushed and renamed, so that the last good checkpoint survives a kill at any
+// moment.
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
@@ -11,8 +12,9 @@ namespace swingbank {
 /// header: position and identity of the run; arrays: weights, moments and best weights in a fixed order.
 void write_checkpoint(const std::filesystem::path& file, const nlohmann::json& header,
                       const std::vector<std::span<const float>>& arrays);
-/// Reads into `arrays`, whose lengths must be those written. False if there is no such file. Throws InputError if it is
-/// damaged, belongs to another run (header["run"] differs from `run`), or has arrays of other lengths.
+/// Reads into `arrays`, whose lengths must be those written. False if there is no such file. Throws
+/// InputError if it is damaged, belongs to another run (header["run"] differs from `run`), or has arrays of
+/// other lengths.
 bool read_checkpoint(const std::filesystem::path& file, const nlohmann::json& run, nlohmann::json& header,
                      const std::vector<std::span<float>>& arrays);
 

@@ -4,12 +4,14 @@ namespace swingbank {
 
 std::vector<std::int32_t> share_of(const std::vector<std::int32_t>& folds, Place place) {
   std::vector<std::int32_t> mine;
-  for (auto i = static_cast<std::size_t>(place.rank); i < folds.size(); i += static_cast<std::size_t>(place.size))
+  for (auto i = static_cast<std::size_t>(place.rank); i < folds.size();
+       i += static_cast<std::size_t>(place.size))
     mine.push_back(folds[i]);
   return mine;
 }
 
-RunOutcome cross_validate(const ShardStream& stream, RunRequest request, const std::vector<std::int32_t>& folds) {
+RunOutcome cross_validate(const ShardStream& stream, RunRequest request,
+                          const std::vector<std::int32_t>& folds) {
   RunOutcome outcome = RunOutcome::already_done;
   for (const std::int32_t fold : folds) {
     request.generator = fold;

@@ -9,6 +9,7 @@ namespace swingbank {
 /// Folds of one process: every size-th, from rank on.
 std::vector<std::int32_t> share_of(const std::vector<std::int32_t>& folds, Place place);
 /// Runs the folds in turn; stops after the first that was asked to stop.
-RunOutcome cross_validate(const ShardStream& stream, RunRequest request, const std::vector<std::int32_t>& folds);
+RunOutcome cross_validate(const ShardStream& stream, RunRequest request,
+                          const std::vector<std::int32_t>& folds);
 
 }  // namespace swingbank

@@ -34,7 +34,8 @@ InputSelection select_input(const InputRecipe& recipe, const DatasetHeader& data
   Problems problems;
   InputSelection s;
   if (recipe.channels.empty())
-    problems.add("no input channels", "channels", "a network needs at least one", "name some of the dataset's channels");
+    problems.add("no input channels", "channels", "a network needs at least one",
+                 "name some of the dataset's channels");
   for (const auto& name : recipe.channels) {
     const auto found = std::find(dataset.channel_names.begin(), dataset.channel_names.end(), name);
     if (found == dataset.channel_names.end())
@@ -44,7 +45,8 @@ InputSelection select_input(const InputRecipe& recipe, const DatasetHeader& data
     s.channels.push_back(static_cast<std::size_t>(found - dataset.channel_names.begin()));
   }
   const double length = static_cast<double>(dataset.samples) / dataset.rate;
-  if (recipe.slice < 1) problems.add("slice 0", "slice", "every 0th sample is none", "use 1 to keep all samples");
+  if (recipe.slice < 1)
+    problems.add("slice 0", "slice", "every 0th sample is none", "use 1 to keep all samples");
   if (!(recipe.start_s >= 0.0 && recipe.start_s < recipe.end_s && recipe.end_s <= length + 1e-9))
     problems.add(fmt::format("window {} s to {} s", recipe.start_s, recipe.end_s), "start_s, end_s",
                  fmt::format("the records run from 0 to {} s", length), "choose a window inside");

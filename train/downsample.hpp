@@ -12,9 +12,10 @@ namespace swingbank {
 enum class InputForm {
   absolute,   ///< as recorded
   deviation,  ///< less the value before the fault
-  relative,   ///< the deviation divided by the row's root mean square deviation of the first channel. A machine's H and D
-              ///< follow from the ratio of its channels, so this shows a large machine that moves little like any other
-  both,       ///< the absolute channels, then the relative ones
+  relative,   ///< the deviation divided by the row's root mean square deviation of the first channel. A
+             ///< machine's H and D follow from the ratio of its channels, so this shows a large machine that
+             ///< moves little like any other
+  both,  ///< the absolute channels, then the relative ones
 };
 /// Names as experiments write them, in order of the enumeration.
 inline const std::vector<std::string> kInputForms = {"absolute", "deviation", "relative", "both"};
@@ -40,7 +41,8 @@ struct InputSelection {
   void apply(const float* record, std::size_t record_samples, float* out) const;
 };
 
-/// Throws InputError with every channel that is not in the dataset, a window outside the record, or a slice of 0.
+/// Throws InputError with every channel that is not in the dataset, a window outside the record, or a slice
+/// of 0.
 InputSelection select_input(const InputRecipe& recipe, const DatasetHeader& dataset);
 
 }  // namespace swingbank

@@ -37,7 +37,8 @@ TrainingRecipe read_training(Config& c, const std::string& at) {
 /// A table named after a network changes what stands in it for that network only.
 TrainingRecipe override_training(Config& c, const std::string& at, TrainingRecipe t) {
   const auto whole = [&](const char* key, std::size_t& value) {
-    value = static_cast<std::size_t>(c.optional<std::int64_t>(at + key, static_cast<std::int64_t>(value), {1, 1e12}));
+    value = static_cast<std::size_t>(
+        c.optional<std::int64_t>(at + key, static_cast<std::int64_t>(value), {1, 1e12}));
   };
   whole(".epochs", t.epochs);
   whole(".batch", t.batch);
@@ -58,14 +59,15 @@ Preset read_preset(Config& c, const std::string& name) {
   p.input.end_s = c.require<double>(at + ".end_s", {0.0, 1e6, "s"});
   p.input.slice = count(c, at + ".slice", 1);
   const auto form = c.choice(at + ".form", kInputForms);
-  p.input.form = static_cast<InputForm>(std::find(kInputForms.begin(), kInputForms.end(), form) - kInputForms.begin());
+  p.input.form =
+      static_cast<InputForm>(std::find(kInputForms.begin(), kInputForms.end(), form) - kInputForms.begin());
   p.pca_components = count(c, at + ".pca_components", 0);
   const TrainingRecipe common = read_training(c, at);
   const auto known = network_names();
   for (const auto& network : p.networks) {
     if (std::find(known.begin(), known.end(), network) == known.end())
-      c.problem(at + ".networks", fmt::format("no network called '{}'", network), "train/networks has no such file",
-                fmt::format("choose among {}", fmt::join(known, ", ")));
+      c.problem(at + ".networks", fmt::format("no network called '{}'", network),
+                "train/networks has no such file", fmt::format("choose among {}", fmt::join(known, ", ")));
     p.training[network] = override_training(c, at + "." + network, common);
   }
   return p;
@@ -80,11 +82,14 @@ Experiment read_experiment(const std::filesystem::path& file) {
   e.table = c.choice("table", {"IV", "V", "VI"});
   e.title = c.require<std::string>("title");
   e.dataset = c.file("dataset");
-  e.leave_one_out = c.choice("split", {"leave-one-generator-out", "by-databank-point"}) == "leave-one-generator-out";
+  e.leave_one_out =
+      c.choice("split", {"leave-one-generator-out", "by-databank-point"}) == "leave-one-generator-out";
   if (e.leave_one_out)
-    for (const auto g : c.require<std::vector<std::int64_t>>("folds", {1, 1e9})) e.folds.push_back(static_cast<std::int32_t>(g));
+    for (const auto g : c.require<std::vector<std::int64_t>>("folds", {1, 1e9}))
+      e.folds.push_back(static_cast<std::int32_t>(g));
   for (const auto& name : c.keys("preset")) e.presets[name] = read_preset(c, name);
-  if (e.presets.empty()) c.problem("preset", "no preset", "an experiment needs at least one", "add [preset.quick]");
+  if (e.presets.empty())
+    c.problem("preset", "no preset", "an experiment needs at least one", "add [preset.quick]");
   c.raise();
   return e;
 }
@@ -102,9 +107,10 @@ const TrainingRecipe& Experiment::training(const std::string& preset_name, const
   const Preset& p = preset(preset_name);
   const auto found = p.training.find(network);
   if (found != p.training.end()) return found->second;
-  throw InputError({fmt::format("network '{}' is not in this experiment", network), "--network",
-                    fmt::format("preset {} of {} trains {}", preset_name, file.string(), fmt::join(p.networks, ", ")),
-                    "choose one of these or add it to the preset's networks"});
+  throw InputError(
+      {fmt::format("network '{}' is not in this experiment", network), "--network",
+       fmt::format("preset {} of {} trains {}", preset_name, file.string(), fmt::join(p.networks, ", ")),
+       "choose one of these or add it to the preset's networks"});
 }
 
 std::string Experiment::print(const std::string& preset_name, const std::string& what) const {

@@ -4,7 +4,8 @@
 
 namespace swingbank {
 
-Features Features::fit(const ShardStream& stream, std::span<const std::uint64_t> rows, std::size_t pca_components) {
+Features Features::fit(const ShardStream& stream, std::span<const std::uint64_t> rows,
+                       std::size_t pca_components) {
   Features f;
   f.channels_ = stream.channels();
   f.samples_ = f.length_ = stream.samples();
@@ -29,11 +30,16 @@ Features Features::fit(const ShardStream& stream, std::span<const std::uint64_t>
   for (std::size_t g = 0; g < groups; ++g) {
     f.scale_.mean[g] = static_cast<float>(moments.mean(g));
     const auto deviation = static_cast<float>(moments.deviation(g));
-    if (deviation > 0.0f) f.scale_.deviation[g] = deviation;
+    if (deviation > 0.0f)
+      f.scale_.deviation[g] = deviation;
     else if (!f.pca_)
-      problems.add("channel " + stream.dataset().channel_names[stream.selection().channels[g % stream.selection().channels.size()]] + " is constant",
-                   stream.dataset().path.string(), "it tells a network nothing and has no variance to divide by",
-                   "leave it out of the experiment's channels");
+      problems.add(
+          "channel " +
+              stream.dataset()
+                  .channel_names[stream.selection().channels[g % stream.selection().channels.size()]] +
+              " is constant",
+          stream.dataset().path.string(), "it tells a network nothing and has no variance to divide by",
+          "leave it out of the experiment's channels");
   }
   problems.raise();
   return f;
@@ -43,8 +49,10 @@ void Features::apply(const float* series, std::size_t count, float* out) const {
   for (std::size_t r = 0; r < count; ++r) {
     const float* in = series + r * channels_ * samples_;
     float* row = out + r * channels_ * length_;
-    if (pca_) pca_->apply(in, row);
-    else std::copy_n(in, channels_ * length_, row);
+    if (pca_)
+      pca_->apply(in, row);
+    else
+      std::copy_n(in, channels_ * length_, row);
     for (std::size_t c = 0; c < channels_; ++c)
       for (std::size_t i = 0; i < length_; ++i) {
         const std::size_t g = group(c, i);

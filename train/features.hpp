@@ -1,5 +1,6 @@
 #pragma once
-// From a record's series to what the network reads: optional PCA, then normalisation. Fitted on training rows only.
+// From a record's series to what the network reads: optional PCA, then normalisation. Fitted on training rows
+// only.
 #include <optional>
 #include <span>
 
@@ -11,9 +12,10 @@ namespace swingbank {
 
 class Features {
  public:
-  /// pca_components = 0: no PCA. Series are normalised per channel, components per channel and component. Throws
-  /// InputError if a channel is constant over the training rows.
-  static Features fit(const ShardStream& stream, std::span<const std::uint64_t> rows, std::size_t pca_components);
+  /// pca_components = 0: no PCA. Series are normalised per channel, components per channel and component.
+  /// Throws InputError if a channel is constant over the training rows.
+  static Features fit(const ShardStream& stream, std::span<const std::uint64_t> rows,
+                      std::size_t pca_components);
 
   [[nodiscard]] std::size_t channels() const { return channels_; }
   [[nodiscard]] std::size_t length() const { return length_; }

@@ -24,8 +24,9 @@ double seconds_since(Clock::time_point t) { return std::chrono::duration<double>
 
 Tensor inputs_of(const Batch& batch, const Features& features) {
   const auto rows = static_cast<std::int64_t>(batch.rows.size());
-  Tensor x = at::empty({rows, static_cast<std::int64_t>(features.channels()), static_cast<std::int64_t>(features.length())},
-                       at::kFloat);
+  Tensor x = at::empty(
+      {rows, static_cast<std::int64_t>(features.channels()), static_cast<std::int64_t>(features.length())},
+      at::kFloat);
   features.apply(batch.series.data(), batch.rows.size(), x.data_ptr<float>());
   return x;
 }
@@ -42,7 +43,11 @@ struct Position {
 class Loop {
  public:
   Loop(Network& network, const LoopData& data, const LoopSettings& settings, TrainingProgress& progress)
-      : network_(network), data_(data), settings_(settings), progress_(progress), weights_(network.parameters()),
+      : network_(network),
+        data_(data),
+        settings_(settings),
+        progress_(progress),
+        weights_(network.parameters()),
         adam_(weights_) {
     outputs_ = static_cast<std::int64_t>(data.targets.size() / data.stream.labels().rows);
     for (const auto& w : weights_) best_.push_back(w.detach().clone());
@@ -52,7 +57,8 @@ class Loop {
   LoopReport run() {
     resume();
     bool saved = false;
-    while (at_.epoch < settings_.recipe.epochs && at_.stale < settings_.recipe.patience && !saved) saved = !epoch();
+    while (at_.epoch < settings_.recipe.epochs && at_.stale < settings_.recipe.patience && !saved)
+      saved = !epoch();
     const double spent = seconds();
     if (!saved) {
       at::NoGradGuard no_gradients;
@@ -64,7 +70,8 @@ class Loop {
  private:
   /// False if the run was asked to stop; it is saved then.
   bool epoch() {
-    BatchReader reader(data_.stream, epoch_order(data_.train, settings_.seed, at_.epoch), settings_.recipe.batch, at_.batch);
+    BatchReader reader(data_.stream, epoch_order(data_.train, settings_.seed, at_.epoch),
+                       settings_.recipe.batch, at_.batch);
     Batch batch;
     while (reader.next(batch)) {
       if (settings_.stop ? settings_.stop() : stop_asked()) {
@@ -87,7 +94,8 @@ class Loop {
     const Tensor loss = error.square().mean();
     const double value = loss.item<double>();
     if (!std::isfinite(value))
-      throw InputError({"the training loss is not a number", fmt::format("epoch {}, batch {}", at_.epoch + 1, at_.batch + 1),
+      throw InputError({"the training loss is not a number",
+                        fmt::format("epoch {}, batch {}", at_.epoch + 1, at_.batch + 1),
                         "the weights have diverged", "lower learning_rate in the experiment"});
     loss.backward();
     const auto done = at_.epoch * batches_ + at_.batch;
@@ -96,7 +104,8 @@ class Loop {
     at_.rows += static_cast<double>(batch.rows.size());
     ++at_.batch;
     progress_.update(at_.epoch * data_.train.size() + static_cast<std::uint64_t>(at_.rows),
-                     fmt::format("epoch {} of {}, loss {:.4f}", at_.epoch + 1, settings_.recipe.epochs, at_.loss_sum / at_.rows));
+                     fmt::format("epoch {} of {}, loss {:.4f}", at_.epoch + 1, settings_.recipe.epochs,
+                                 at_.loss_sum / at_.rows));
   }
 
   /// Validation error of the epoch; keeps the weights if it is the least so far.
@@ -110,8 +119,9 @@ class Loop {
     }
     const double error = sum / static_cast<double>(out.size());
     const bool better = error < at_.best;
-    progress_.line(fmt::format("epoch {} of {}: loss {:.4f}, validation {:.4f}{} (scaled units)", at_.epoch + 1,
-                               settings_.recipe.epochs, at_.loss_sum / at_.rows, error, better ? ", best so far" : ""));
+    progress_.line(fmt::format("epoch {} of {}: loss {:.4f}, validation {:.4f}{} (scaled units)",
+                               at_.epoch + 1, settings_.recipe.epochs, at_.loss_sum / at_.rows, error,
+                               better ? ", best so far" : ""));
     ++at_.stale;
     if (!better) return;
     at_.best = error;
@@ -143,20 +153,33 @@ class Loop {
   void save() {
     last_save_ = Clock::now();
     if (settings_.checkpoint.empty()) return;
-    const json header = {{"run", settings_.run ? *settings_.run : json()}, {"epoch", at_.epoch},
-                         {"batch", at_.batch}, {"best_epoch", at_.best_epoch}, {"stale", at_.stale},
-                         {"best", std::isfinite(at_.best) ? json(at_.best) : json()}, {"loss_sum", at_.loss_sum},
-                         {"rows", at_.rows}, {"seconds", seconds()}, {"adam_steps", adam_.steps()}};
+    const json header = {{"run", settings_.run ? *settings_.run : json()},
+                         {"epoch", at_.epoch},
+                         {"batch", at_.batch},
+                         {"best_epoch", at_.best_epoch},
+                         {"stale", at_.stale},
+                         {"best", std::isfinite(at_.best) ? json(at_.best) : json()},
+                         {"loss_sum", at_.loss_sum},
+                         {"rows", at_.rows},
+                         {"seconds", seconds()},
+                         {"adam_steps", adam_.steps()}};
     write_checkpoint(settings_.checkpoint, header, arrays<const float>());
   }
 
   void resume() {
     if (settings_.checkpoint.empty()) return;
     json header;
-    if (!read_checkpoint(settings_.checkpoint, settings_.run ? *settings_.run : json(), header, arrays<float>())) return;
-    at_ = {header.at("epoch"), header.at("batch"), header.at("best_epoch"), header.at("stale"),
-           header.at("best").is_null() ? at_.best : header.at("best").get<double>(), header.at("loss_sum"),
-           header.at("rows"), header.at("seconds")};
+    if (!read_checkpoint(settings_.checkpoint, settings_.run ? *settings_.run : json(), header,
+                         arrays<float>()))
+      return;
+    at_ = {header.at("epoch"),
+           header.at("batch"),
+           header.at("best_epoch"),
+           header.at("stale"),
+           header.at("best").is_null() ? at_.best : header.at("best").get<double>(),
+           header.at("loss_sum"),
+           header.at("rows"),
+           header.at("seconds")};
     adam_.set_steps(header.at("adam_steps"));
     progress_.line(fmt::format("resumed at epoch {}, batch {}", at_.epoch + 1, at_.batch + 1));
   }
@@ -175,7 +198,8 @@ class Loop {
 
 }  // namespace
 
-LoopReport train_network(Network& network, const LoopData& data, const LoopSettings& settings, TrainingProgress& progress) {
+LoopReport train_network(Network& network, const LoopData& data, const LoopSettings& settings,
+                         TrainingProgress& progress) {
   return Loop(network, data, settings, progress).run();
 }
 

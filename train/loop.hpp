@@ -1,6 +1,7 @@
 #pragma once
-// Epochs of Adam with early stop on the validation rows; the weights of the best epoch are kept. Bit-exact when
-// resumed: every random number is keyed by seed, epoch and batch, so that no generator state needs saving.
+// Epochs of Adam with early stop on the validation rows; the weights of the best epoch are kept. Bit-exact
+// when resumed: every random number is keyed by seed, epoch and batch, so that no generator state needs
+// saving.
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -26,7 +27,7 @@ struct LoopData {
 struct LoopSettings {
   TrainingRecipe recipe;
   std::uint64_t seed = 1;
-  std::filesystem::path checkpoint;  ///< empty: none is written
+  std::filesystem::path checkpoint;     ///< empty: none is written
   const nlohmann::json* run = nullptr;  ///< identity of the run; a checkpoint of another one is refused
   double checkpoint_every_s = 300.0;
   std::function<bool()> stop;  ///< asked before each batch; empty: stop_asked()
@@ -39,8 +40,10 @@ struct LoopReport {
   double validation = 0.0;  ///< mean squared error of the best epoch on the validation rows, scaled units
 };
 
-/// Trains; the network ends with the weights of its best epoch. Throws InputError if the loss stops being a number.
-LoopReport train_network(Network& network, const LoopData& data, const LoopSettings& settings, TrainingProgress& progress);
+/// Trains; the network ends with the weights of its best epoch. Throws InputError if the loss stops being a
+/// number.
+LoopReport train_network(Network& network, const LoopData& data, const LoopSettings& settings,
+                         TrainingProgress& progress);
 
 /// Network's outputs for `rows`, rows x outputs, scaled units.
 std::vector<float> predict(Network& network, const ShardStream& stream, const Features& features,

@@ -18,7 +18,8 @@ Score score(const ScoreInput& in) {
     double error = 0.0, guess = 0.0;
     GroupMoments truth(1);
     for (std::size_t r = 0; r < rows; ++r) {
-      const double value = in.truth[r * count + p], e = in.predicted[r * count + p] - value, g = in.training_mean[p] - value;
+      const double value = in.truth[r * count + p], e = in.predicted[r * count + p] - value,
+                   g = in.training_mean[p] - value;
       error += e * e;
       guess += g * g;
       truth.add(0, value);

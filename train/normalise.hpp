@@ -1,13 +1,14 @@
 #pragma once
-// Zero mean and unit variance per group of inputs, and the scale of the targets; both fitted on training rows only.
+// Zero mean and unit variance per group of inputs, and the scale of the targets; both fitted on training rows
+// only.
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace swingbank {
 
-/// Sums values group by group, then gives mean and standard deviation (dividing by the count). Sums are taken about
-/// each group's first value, so that a constant has a deviation of exactly 0.
+/// Sums values group by group, then gives mean and standard deviation (dividing by the count). Sums are taken
+/// about each group's first value, so that a constant has a deviation of exactly 0.
 class GroupMoments {
  public:
   explicit GroupMoments(std::size_t groups) : first_(groups), sum_(groups), square_(groups), count_(groups) {}
@@ -30,8 +31,9 @@ struct Scale {
   std::vector<float> mean, deviation;
 };
 
-/// Targets are divided by their standard deviation and not shifted, so that zero stays zero and the network's ReLU
-/// output keeps its meaning (a parameter is not negative). A constant parameter is divided by its magnitude.
+/// Targets are divided by their standard deviation and not shifted, so that zero stays zero and the network's
+/// ReLU output keeps its meaning (a parameter is not negative). A constant parameter is divided by its
+/// magnitude.
 struct TargetScale {
   std::vector<double> mean;  ///< of the training targets, raw units: the predict-the-mean baseline
   std::vector<double> unit;  ///< raw = scaled x unit

@@ -27,11 +27,13 @@ void check_shape(double rate, std::size_t samples, std::size_t components) {
                  "PCA works on whole seconds", "make the window a whole number of seconds");
   else if (components > per_second)
     problems.add(fmt::format("{} components of {} samples", components, per_second), "pca_components",
-                 "there cannot be more components than samples in a second", "lower pca_components or slice less");
+                 "there cannot be more components than samples in a second",
+                 "lower pca_components or slice less");
   problems.raise();
 }
 
-std::vector<Moments> moments(const ShardStream& stream, std::span<const std::uint64_t> rows, std::size_t per_second) {
+std::vector<Moments> moments(const ShardStream& stream, std::span<const std::uint64_t> rows,
+                             std::size_t per_second) {
   const std::size_t channels = stream.channels(), samples = stream.samples();
   std::vector<Moments> all(channels);
   for (auto& m : all) {
@@ -45,11 +47,12 @@ std::vector<Moments> moments(const ShardStream& stream, std::span<const std::uin
     stream.read(rows.subspan(begin, count), series.data());
     for (std::size_t c = 0; c < channels; ++c)
       for (std::size_t r = 0; r < count; ++r) {
-        const auto seconds = Eigen::Map<const Eigen::MatrixXf>(series.data() + (r * channels + c) * samples,
-                                                               static_cast<Eigen::Index>(per_second),
-                                                               static_cast<Eigen::Index>(samples / per_second))
-                                 .cast<double>()
-                                 .eval();
+        const auto seconds =
+            Eigen::Map<const Eigen::MatrixXf>(series.data() + (r * channels + c) * samples,
+                                              static_cast<Eigen::Index>(per_second),
+                                              static_cast<Eigen::Index>(samples / per_second))
+                .cast<double>()
+                .eval();
         all[c].sum += seconds.rowwise().sum();
         all[c].square.noalias() += seconds * seconds.transpose();
         all[c].count += static_cast<double>(seconds.cols());
@@ -92,8 +95,8 @@ void Pca::apply(const float* series, float* out) const {
 void Pca::reconstruct(const float* components, float* series) const {
   const auto samples = static_cast<Eigen::Index>(per_second_), seconds = static_cast<Eigen::Index>(seconds_);
   for (std::size_t c = 0; c < basis_.size(); ++c) {
-    const Eigen::Map<const Eigen::MatrixXf> scores(components + c * length(), static_cast<Eigen::Index>(components_),
-                                                   seconds);
+    const Eigen::Map<const Eigen::MatrixXf> scores(components + c * length(),
+                                                   static_cast<Eigen::Index>(components_), seconds);
     Eigen::Map<Eigen::MatrixXf> out(series + c * per_second_ * seconds_, samples, seconds);
     out = (basis_[c] * scores).colwise() + mean_[c];
   }

@@ -1,6 +1,6 @@
 #pragma once
-// Per-feature principal components, as in the thesis: every second of a channel (60 samples at 60/s) becomes its
-// leading components (10), with one basis per channel.
+// Per-feature principal components, as in the thesis: every second of a channel (60 samples at 60/s) becomes
+// its leading components (10), with one basis per channel.
 #include <Eigen/Dense>
 #include <span>
 #include <vector>
@@ -11,8 +11,8 @@ namespace swingbank {
 
 class Pca {
  public:
-  /// Fits on `rows` only. Throws InputError if the rate is no whole number, the window no whole number of seconds, or
-  /// there are fewer samples per second than components.
+  /// Fits on `rows` only. Throws InputError if the rate is no whole number, the window no whole number of
+  /// seconds, or there are fewer samples per second than components.
   static Pca fit(const ShardStream& stream, std::span<const std::uint64_t> rows, std::size_t components);
 
   [[nodiscard]] std::size_t components() const { return components_; }

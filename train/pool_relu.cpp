@@ -13,8 +13,8 @@ namespace {
 constexpr std::uint8_t kCut = 255;  // ReLU is at zero: no gradient to anybody
 
 /// One row of channels: the winner of `pool` rows `stride` floats apart.
-void pool_row(const float* x, std::int64_t stride, std::int64_t pool, const float* bias, std::int64_t channels, float* y,
-              std::uint8_t* winner) {
+void pool_row(const float* x, std::int64_t stride, std::int64_t pool, const float* bias,
+              std::int64_t channels, float* y, std::uint8_t* winner) {
   for (std::int64_t c = 0; c < channels; ++c) {
     float best = x[c];
     std::uint8_t at = 0;
@@ -30,7 +30,8 @@ void pool_row(const float* x, std::int64_t stride, std::int64_t pool, const floa
 }
 
 struct PoolRelu : torch::autograd::Function<PoolRelu> {
-  static Tensor forward(AutogradContext* context, const Tensor& series, const Tensor& bias, std::int64_t pool) {
+  static Tensor forward(AutogradContext* context, const Tensor& series, const Tensor& bias,
+                        std::int64_t pool) {
     const Tensor x = series.contiguous();
     const std::int64_t out = x.size(0) / pool, row = x.size(1) * x.size(2), channels = x.size(2);
     Tensor y = at::empty({out, x.size(1), channels}, x.options());
@@ -41,7 +42,8 @@ struct PoolRelu : torch::autograd::Function<PoolRelu> {
     at::parallel_for(0, out * x.size(1), 16, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t r = begin; r < end; ++r) {
         const std::int64_t t = r / x.size(1), b = r % x.size(1);
-        pool_row(px + t * pool * row + b * channels, row, pool, pb, channels, py + r * channels, pw + r * channels);
+        pool_row(px + t * pool * row + b * channels, row, pool, pb, channels, py + r * channels,
+                 pw + r * channels);
       }
     });
     context->save_for_backward({winner});
@@ -52,7 +54,8 @@ struct PoolRelu : torch::autograd::Function<PoolRelu> {
 
   static tensor_list backward(AutogradContext* context, tensor_list gradient) {
     const Tensor winner = context->get_saved_variables()[0], g = gradient[0].contiguous();
-    const std::int64_t length = context->saved_data["length"].toInt(), pool = context->saved_data["pool"].toInt();
+    const std::int64_t length = context->saved_data["length"].toInt(),
+                       pool = context->saved_data["pool"].toInt();
     const std::int64_t out = g.size(0), batch = g.size(1), channels = g.size(2), row = batch * channels;
     Tensor dx = at::empty({length, batch, channels}, g.options()), passed = at::empty_like(g);
     if (out * pool < length) dx.narrow(0, out * pool, length - out * pool).zero_();
@@ -75,7 +78,8 @@ struct PoolRelu : torch::autograd::Function<PoolRelu> {
 }  // namespace
 
 Tensor pool_relu(const Tensor& x, const Tensor& bias, std::int64_t pool) {
-  TORCH_CHECK(pool >= 1 && pool < kCut && x.dim() == 3 && x.size(0) >= pool, "pool_relu: series shorter than the pool");
+  TORCH_CHECK(pool >= 1 && pool < kCut && x.dim() == 3 && x.size(0) >= pool,
+              "pool_relu: series shorter than the pool");
   return PoolRelu::apply(x, bias, pool);
 }
 

@@ -31,7 +31,8 @@ int wait_for(pid_t child, const std::vector<pid_t>& running) {
     const pid_t ended = waitpid(child, &status, WNOHANG);
     if (ended == child) {
       if (WIFEXITED(status)) return WEXITSTATUS(status);
-      fmt::print(stderr, "a process that trains folds ended at signal {} ({}): run the same command again to go on\n",
+      fmt::print(stderr,
+                 "a process that trains folds ended at signal {} ({}): run the same command again to go on\n",
                  WTERMSIG(status), strsignal(WTERMSIG(status)));
       return 1;
     }
@@ -51,14 +52,15 @@ int run_processes(int count, const std::function<int(Place)>& work) {
     if (child < 0) {
       const int error = errno;
       end_all(children, SIGTERM);
-      throw InputError({fmt::format("process {} of {} cannot be started", i + 1, count), "--processes", std::strerror(error),
-                        "ask for fewer"});
+      throw InputError({fmt::format("process {} of {} cannot be started", i + 1, count), "--processes",
+                        std::strerror(error), "ask for fewer"});
     }
     children.push_back(child);
   }
   int worst = 0;
   for (std::size_t i = 0; i < children.size(); ++i) {
-    const int code = wait_for(children[i], {children.begin() + static_cast<std::ptrdiff_t>(i), children.end()});
+    const int code =
+        wait_for(children[i], {children.begin() + static_cast<std::ptrdiff_t>(i), children.end()});
     worst = code == 0 ? worst : code == kSubmitAgain && worst != 1 ? kSubmitAgain : 1;
   }
   return worst;

@@ -6,9 +6,9 @@
 
 namespace swingbank {
 
-/// Runs `work` in `count` child processes, each with its place, and returns the exit code of them all: 1 if any failed,
-/// else 2 if any was stopped, else 0. Signals for a soft exit are passed on. count = 1: runs here. No thread may have
-/// been started before.
+/// Runs `work` in `count` child processes, each with its place, and returns the exit code of them all: 1 if
+/// any failed, else 2 if any was stopped, else 0. Signals for a soft exit are passed on. count = 1: runs
+/// here. No thread may have been started before.
 int run_processes(int count, const std::function<int(Place)>& work);
 
 }  // namespace swingbank

@@ -47,15 +47,23 @@ json result_json(const ShardStream& stream, const RunRequest& r, const RunParts&
   const TrainingRecipe& t = r.experiment.training(r.preset, r.network);
   json parameters = json::array();
   for (const auto& p : parts.score.parameters)
-    parameters.push_back({{"name", p.name}, {"unit", p.unit}, {"mse", p.mse}, {"baseline_mse", p.baseline_mse},
-                          {"variance", p.variance}, {"box_variance", p.box_variance}, {"relative", or_null(p.relative())}});
+    parameters.push_back({{"name", p.name},
+                          {"unit", p.unit},
+                          {"mse", p.mse},
+                          {"baseline_mse", p.baseline_mse},
+                          {"variance", p.variance},
+                          {"box_variance", p.box_variance},
+                          {"relative", or_null(p.relative())}});
   return {{"table", r.experiment.table},
           {"network", r.network},
           {"preset", r.preset},
           {"seed", r.seed},
           {"generator", or_null(r.generator)},
-          {"dataset", {{"name", std::filesystem::weakly_canonical(d.path).filename().string()}, {"hash", d.hash},
-                       {"config_hash", d.config_hash}, {"rows", d.rows}}},
+          {"dataset",
+           {{"name", std::filesystem::weakly_canonical(d.path).filename().string()},
+            {"hash", d.hash},
+            {"config_hash", d.config_hash},
+            {"rows", d.rows}}},
           {"machine_model", d.machine_model},
           {"parameters", d.parameter_names},
           {"train_rows", parts.split.train.size()},

@@ -6,7 +6,8 @@
 
 namespace swingbank {
 
-/// What tells this run from every other: data, recipe, seed. A checkpoint or result with another identity is not its.
+/// What tells this run from every other: data, recipe, seed. A checkpoint or result with another identity is
+/// not its.
 nlohmann::json identity(const ShardStream& stream, const RunRequest& request);
 
 struct RunParts {

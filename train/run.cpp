@@ -18,8 +18,8 @@ bool already_done(const std::filesystem::path& file, const json& run) {
   if (!std::filesystem::exists(file)) return false;
   const json there = json::parse(read_text(file), nullptr, false);
   if (!there.is_discarded() && there.is_object() && there.value("run", json()) == run) return true;
-  throw InputError({"another run's result is in the way", file.string(), "its data or settings differ from this run's",
-                    "remove it or choose another --out"});
+  throw InputError({"another run's result is in the way", file.string(),
+                    "its data or settings differ from this run's", "remove it or choose another --out"});
 }
 
 Score judge(Network& network, const ShardStream& stream, const Features& features, const TargetScale& scale,
@@ -33,12 +33,15 @@ Score judge(Network& network, const ShardStream& stream, const Features& feature
     truth[i] = labels.values[split.test[i / p] * p + i % p];
   }
   const Dataset& d = stream.dataset();
-  return score({predicted, truth, scale.mean, d.parameter_names, d.parameter_units, d.parameter_low, d.parameter_high});
+  return score({predicted, truth, scale.mean, d.parameter_names, d.parameter_units, d.parameter_low,
+                d.parameter_high});
 }
 
 NetworkShape shape_of(const Features& features, const TargetScale& scale) {
-  NetworkShape shape{static_cast<std::int64_t>(features.channels()), static_cast<std::int64_t>(features.length()),
-                     static_cast<std::int64_t>(scale.unit.size()), {}};
+  NetworkShape shape{static_cast<std::int64_t>(features.channels()),
+                     static_cast<std::int64_t>(features.length()),
+                     static_cast<std::int64_t>(scale.unit.size()),
+                     {}};
   for (std::size_t p = 0; p < scale.unit.size(); ++p)
     shape.output_bias.push_back(static_cast<float>(scale.mean[p] / scale.unit[p]));
   return shape;
@@ -48,11 +51,12 @@ NetworkShape shape_of(const Features& features, const TargetScale& scale) {
 
 std::string run_name(const RunRequest& r) {
   return fmt::format("{}-{}-{}-seed{}{}{}", r.experiment.table, r.network, r.preset, r.seed,
-                     r.generator ? fmt::format("-gen{}", *r.generator) : "", r.shuffle_labels ? "-shuffled" : "");
+                     r.generator ? fmt::format("-gen{}", *r.generator) : "",
+                     r.shuffle_labels ? "-shuffled" : "");
 }
 
-std::vector<float> scaled_targets(const Labels& labels, const TargetScale& scale, const RowSplit& split, bool shuffled,
-                                  std::uint64_t seed) {
+std::vector<float> scaled_targets(const Labels& labels, const TargetScale& scale, const RowSplit& split,
+                                  bool shuffled, std::uint64_t seed) {
   std::vector<std::uint64_t> source(labels.rows);
   for (std::size_t i = 0; i < source.size(); ++i) source[i] = i;
   if (shuffled) {
@@ -84,21 +88,22 @@ RunOutcome run(const ShardStream& stream, const RunRequest& r) {
   settings.run = &run_identity;
   if (r.epochs) settings.recipe.epochs = *r.epochs;
   const Labels& labels = stream.labels();
-  const RowSplit split = r.generator ? leave_one_out(labels, *r.generator, settings.recipe.validation_share, r.seed)
-                                     : split_by_point(labels, r.seed);
+  const RowSplit split = r.generator
+                             ? leave_one_out(labels, *r.generator, settings.recipe.validation_share, r.seed)
+                             : split_by_point(labels, r.seed);
   const TargetScale scale = TargetScale::fit(labels.values, labels.parameters, split.train);
   const std::vector<float> targets = scaled_targets(labels, scale, split, r.shuffle_labels, r.seed);
-  const Features features =
-      Features::fit(stream, split.train, r.experiment.preset(r.preset).pca_components);
+  const Features features = Features::fit(stream, split.train, r.experiment.preset(r.preset).pca_components);
 
   seed_torch(key(r.seed, Purpose::weights));
   const auto network = make_network(r.network, shape_of(features, scale));
   TrainingProgress progress(name, settings.recipe.epochs * split.train.size(), r.quiet);
-  progress.line(fmt::format("{} training, {} validation, {} test rows; {} x {} inputs, {:.2f} million weights; {}",
-                            split.train.size(), split.validation.size(), split.test.size(), features.channels(),
-                            features.length(), static_cast<double>(parameter_count(*network)) * 1e-6,
-                            r.runtime.sentence()));
-  const LoopReport report = train_network(*network, {stream, features, split.train, split.validation, targets}, settings, progress);
+  progress.line(fmt::format(
+      "{} training, {} validation, {} test rows; {} x {} inputs, {:.2f} million weights; {}",
+      split.train.size(), split.validation.size(), split.test.size(), features.channels(), features.length(),
+      static_cast<double>(parameter_count(*network)) * 1e-6, r.runtime.sentence()));
+  const LoopReport report =
+      train_network(*network, {stream, features, split.train, split.validation, targets}, settings, progress);
   if (!report.finished) {
     progress.line(fmt::format("saved to {}; submit the same command again to go on", checkpoint.string()));
     return RunOutcome::stopped;
@@ -106,8 +111,9 @@ RunOutcome run(const ShardStream& stream, const RunRequest& r) {
   const Score result = judge(*network, stream, features, scale, split);
   write_text(file, result_json(stream, r, {split, features, report, result}).dump(2) + "\n");
   std::filesystem::remove(checkpoint);
-  progress.line(fmt::format("MSE {:.4g} against {:.4g} for the mean (x {:.3f}{}), {}, best epoch {} of {}", result.mse,
-                            result.baseline_mse, result.ratio, result.H_ratio ? fmt::format(", H alone x {:.3f}", *result.H_ratio) : "",
+  progress.line(fmt::format("MSE {:.4g} against {:.4g} for the mean (x {:.3f}{}), {}, best epoch {} of {}",
+                            result.mse, result.baseline_mse, result.ratio,
+                            result.H_ratio ? fmt::format(", H alone x {:.3f}", *result.H_ratio) : "",
                             duration(report.seconds), report.best_epoch, report.epochs));
   return RunOutcome::done;
 }

@@ -28,14 +28,14 @@ struct RunRequest {
 
 enum class RunOutcome { done, already_done, stopped };
 
-/// Trains, scores and writes the JSON of README.md. Goes on from a checkpoint of the same run. Throws InputError if the
-/// output folder holds the result of another run under the same name.
+/// Trains, scores and writes the JSON of README.md. Goes on from a checkpoint of the same run. Throws
+/// InputError if the output folder holds the result of another run under the same name.
 RunOutcome run(const ShardStream& stream, const RunRequest& request);
 
-/// Targets of all rows in scaled units. With `shuffled`, the labels of the training and validation rows change places;
-/// those of other rows stay.
-std::vector<float> scaled_targets(const Labels& labels, const TargetScale& scale, const RowSplit& split, bool shuffled,
-                                  std::uint64_t seed);
+/// Targets of all rows in scaled units. With `shuffled`, the labels of the training and validation rows
+/// change places; those of other rows stay.
+std::vector<float> scaled_targets(const Labels& labels, const TargetScale& scale, const RowSplit& split,
+                                  bool shuffled, std::uint64_t seed);
 /// "V-cnn-quick-seed1-gen30"
 std::string run_name(const RunRequest& request);
 

@@ -40,7 +40,8 @@ int usable_cores() {
 int default_threads() {
   for (const char* name : {"SLURM_CPUS_PER_TASK", "OMP_NUM_THREADS"})
     if (const int n = environment_number(name)) return n;
-  const int here = std::max({1, environment_number("OMPI_COMM_WORLD_LOCAL_SIZE"), environment_number("MPI_LOCALNRANKS")});
+  const int here =
+      std::max({1, environment_number("OMPI_COMM_WORLD_LOCAL_SIZE"), environment_number("MPI_LOCALNRANKS")});
   // OpenMPI binds each process to its own core already; then the affinity mask says it all.
   const int cores = usable_cores();
   return cores < here ? std::max(1, cores) : cores == here ? 1 : std::max(1, cores / here);
@@ -50,7 +51,8 @@ std::string Runtime::sentence() const { return fmt::format("{} threads, BLAS {}"
 
 Runtime set_up_runtime(int threads) {
   if (threads < 0)
-    throw InputError({fmt::format("{} threads", threads), "--threads", "a run needs at least one", "use 1 or more"});
+    throw InputError(
+        {fmt::format("{} threads", threads), "--threads", "a run needs at least one", "use 1 or more"});
   mallopt(M_MMAP_MAX, 0);
   mallopt(M_TRIM_THRESHOLD, INT_MAX);
   mallopt(M_TOP_PAD, 64 << 20);
@@ -59,8 +61,10 @@ Runtime set_up_runtime(int threads) {
   runtime.threads = threads > 0 ? threads : default_threads();
   at::set_num_threads(runtime.threads);
   const Text config = blas_function("openblas_get_config");
-  const char* forced = std::getenv("OPENBLAS_CORETYPE");  // AVX2 kernels halve the speed of a processor with AVX-512
-  runtime.blas = config ? std::string(config()).substr(0, std::string("OpenBLAS 0.3.21").size()) + " " + blas_core() +
+  const char* forced =
+      std::getenv("OPENBLAS_CORETYPE");  // AVX2 kernels halve the speed of a processor with AVX-512
+  runtime.blas = config ? std::string(config()).substr(0, std::string("OpenBLAS 0.3.21").size()) + " " +
+                              blas_core() +
                               (forced ? fmt::format(" (forced by OPENBLAS_CORETYPE={})", forced) : "")
                         : "not OpenBLAS (slow: install libopenblas0-openmp)";
   return runtime;
@@ -71,7 +75,8 @@ Place launcher_place() {
     const char* text = std::getenv(name);
     return text ? std::atoi(text) : -1;
   };
-  // Slurm's own variables also stand in a batch script that starts one process: only srun gives a step several tasks.
+  // Slurm's own variables also stand in a batch script that starts one process: only srun gives a step
+  // several tasks.
   for (const auto& [rank, size] : {std::pair{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"},
                                    std::pair{"SLURM_PROCID", "SLURM_STEP_NUM_TASKS"}})
     if (number(rank) >= 0 && number(size) > number(rank)) return {number(rank), number(size)};

@@ -9,16 +9,16 @@ struct Runtime {
   std::string blas;  ///< library, version and kernels; says so if the environment forces the kernels
   [[nodiscard]] std::string sentence() const;
 };
-/// Threads of the Slurm allocation (SLURM_CPUS_PER_TASK), of OMP_NUM_THREADS, else the cores this process may use divided
-/// by the processes that the launcher started on this node.
+/// Threads of the Slurm allocation (SLURM_CPUS_PER_TASK), of OMP_NUM_THREADS, else the cores this process may
+/// use divided by the processes that the launcher started on this node.
 int default_threads();
 /// threads = 0: default_threads(). Also flushes denormals to zero and keeps
-/// freed memory in the process (LSTM and GRU are several times slower without the first, CNN by a fifth without the
-/// second). Throws InputError for a negative number.
+/// freed memory in the process (LSTM and GRU are several times slower without the first, CNN by a fifth
+/// without the second). Throws InputError for a negative number.
 Runtime set_up_runtime(int threads);
 
-/// Place of this process among those its launcher started (OpenMPI, PMIx or Slurm); 0 of 1 if it runs alone. Read from
-/// the environment, so that a trainer needs no MPI.
+/// Place of this process among those its launcher started (OpenMPI, PMIx or Slurm); 0 of 1 if it runs alone.
+/// Read from the environment, so that a trainer needs no MPI.
 struct Place {
   int rank = 0, size = 1;
 };

@@ -14,7 +14,8 @@ namespace {
 constexpr std::size_t kBlock = 256, kWindow = 64;  // rows per block, blocks per window
 constexpr std::uint64_t kLongestRun = 1024, kLargestGap = 64;
 constexpr ShardFields kLabelsOnly{.records = false, .parameters = true, .angle_valid = false, .draws = false};
-constexpr ShardFields kRecordsOnly{.records = true, .parameters = false, .angle_valid = false, .draws = false};
+constexpr ShardFields kRecordsOnly{
+    .records = true, .parameters = false, .angle_valid = false, .draws = false};
 }  // namespace
 
 ShardStream::ShardStream(Dataset dataset, const InputRecipe& recipe, const StreamOptions& options)
@@ -35,9 +36,10 @@ void ShardStream::load_labels() {
     read_rows(shard, 0, shard.rows, block, kLabelsOnly);
     for (std::size_t i = 0; i < block.parameters.size(); ++i)
       if (!std::isfinite(block.parameters[i]))
-        problems.add(fmt::format("parameter {} is not a number", dataset_.parameter_names[i % labels_.parameters]),
-                     fmt::format("{}, row {}", shard.path.string(), i / labels_.parameters),
-                     "a network cannot be trained on it", "generate this shard again");
+        problems.add(
+            fmt::format("parameter {} is not a number", dataset_.parameter_names[i % labels_.parameters]),
+            fmt::format("{}, row {}", shard.path.string(), i / labels_.parameters),
+            "a network cannot be trained on it", "generate this shard again");
     labels_.values.insert(labels_.values.end(), block.parameters.begin(), block.parameters.end());
     labels_.sample_id.insert(labels_.sample_id.end(), block.sample_id.begin(), block.sample_id.end());
     labels_.generator.insert(labels_.generator.end(), block.generator.begin(), block.generator.end());
@@ -62,10 +64,13 @@ const ShardInfo& ShardStream::shard_of(std::uint64_t row) const {
 void ShardStream::check_finite(const float* series, const ShardInfo& shard, std::uint64_t row) const {
   for (std::size_t i = 0; i < selection_.values(); ++i)
     if (!std::isfinite(series[i]))
-      throw InputError({fmt::format("channel {} holds a value that is not a number",
-                                    dataset_.channel_names[selection_.channels[i / selection_.samples % selection_.channels.size()]]),
-                        fmt::format("{}, row {}", shard.path.string(), row - shard.first_row),
-                        "a network cannot be trained on it", "generate this shard again"});
+      throw InputError(
+          {fmt::format(
+               "channel {} holds a value that is not a number",
+               dataset_
+                   .channel_names[selection_.channels[i / selection_.samples % selection_.channels.size()]]),
+           fmt::format("{}, row {}", shard.path.string(), row - shard.first_row),
+           "a network cannot be trained on it", "generate this shard again"});
 }
 
 void ShardStream::read_run(std::span<const Wanted> run, float* out) const {
@@ -110,7 +115,8 @@ void ShardStream::read(std::span<const std::uint64_t> rows, float* out) const {
   for (auto& worker : workers) worker.get();
 }
 
-std::vector<std::uint64_t> epoch_order(std::span<const std::uint64_t> rows, std::uint64_t seed, std::uint64_t epoch) {
+std::vector<std::uint64_t> epoch_order(std::span<const std::uint64_t> rows, std::uint64_t seed,
+                                       std::uint64_t epoch) {
   const std::size_t blocks = (rows.size() + kBlock - 1) / kBlock;
   std::vector<std::size_t> block_order(blocks);
   for (std::size_t i = 0; i < blocks; ++i) block_order[i] = i;
@@ -131,7 +137,10 @@ std::vector<std::uint64_t> epoch_order(std::span<const std::uint64_t> rows, std:
 
 BatchReader::BatchReader(const ShardStream& stream, std::vector<std::uint64_t> order, std::size_t batch,
                          std::size_t first)
-    : stream_(stream), order_(std::move(order)), batch_(batch), position_(std::min(first * batch, order_.size())) {
+    : stream_(stream),
+      order_(std::move(order)),
+      batch_(batch),
+      position_(std::min(first * batch, order_.size())) {
   chunk_ = std::max<std::size_t>(1, kBlock * kWindow / 4 / batch_) * batch_;
   if (!stream_.in_memory()) start_reading(position_);
 }
@@ -149,7 +158,8 @@ void BatchReader::start_reading(std::size_t from) {
 
 bool BatchReader::next(Batch& out) {
   if (position_ >= order_.size()) return false;
-  const std::size_t count = std::min(batch_, order_.size() - position_), values = stream_.selection().values();
+  const std::size_t count = std::min(batch_, order_.size() - position_),
+                    values = stream_.selection().values();
   out.rows = {order_.data() + position_, count};
   out.series.resize(count * values);
   if (stream_.in_memory()) {

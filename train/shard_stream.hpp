@@ -1,6 +1,6 @@
 #pragma once
-// Rows of a dataset for training. Labels of all rows are always in memory; the series are kept there too when they
-// fit, and are read block by block ahead of use otherwise. What comes out is the same either way.
+// Rows of a dataset for training. Labels of all rows are always in memory; the series are kept there too when
+// they fit, and are read block by block ahead of use otherwise. What comes out is the same either way.
 #include <cstdint>
 #include <future>
 #include <optional>
@@ -21,13 +21,13 @@ struct Labels {
 
 struct StreamOptions {
   std::uint64_t memory_limit = std::uint64_t{8} << 30;  ///< [bytes]
-  unsigned readers = 1;                                 ///< threads that read ahead; the bytes do not depend on it
+  unsigned readers = 1;  ///< threads that read ahead; the bytes do not depend on it
 };
 
 class ShardStream {
  public:
-  /// Reads all labels, and the series if they fit. Throws InputError naming the shard and row of a value that is not
-  /// finite.
+  /// Reads all labels, and the series if they fit. Throws InputError naming the shard and row of a value that
+  /// is not finite.
   ShardStream(Dataset dataset, const InputRecipe& recipe, const StreamOptions& options = {});
 
   [[nodiscard]] const Dataset& dataset() const { return dataset_; }
@@ -58,9 +58,11 @@ class ShardStream {
   std::vector<float> series_;
 };
 
-/// Order in which an epoch visits `rows` (ascending): blocks of 256 neighbours are shuffled, then the rows within each
-/// window of 64 blocks. Depends on rows, seed and epoch only; sets below 16,384 rows are shuffled fully.
-std::vector<std::uint64_t> epoch_order(std::span<const std::uint64_t> rows, std::uint64_t seed, std::uint64_t epoch);
+/// Order in which an epoch visits `rows` (ascending): blocks of 256 neighbours are shuffled, then the rows
+/// within each window of 64 blocks. Depends on rows, seed and epoch only; sets below 16,384 rows are shuffled
+/// fully.
+std::vector<std::uint64_t> epoch_order(std::span<const std::uint64_t> rows, std::uint64_t seed,
+                                       std::uint64_t epoch);
 
 struct Batch {
   std::span<const std::uint64_t> rows;
@@ -71,7 +73,8 @@ struct Batch {
 class BatchReader {
  public:
   /// Starts at batch `first` of the order.
-  BatchReader(const ShardStream& stream, std::vector<std::uint64_t> order, std::size_t batch, std::size_t first = 0);
+  BatchReader(const ShardStream& stream, std::vector<std::uint64_t> order, std::size_t batch,
+              std::size_t first = 0);
   /// False at the end.
   bool next(Batch& out);
   [[nodiscard]] std::size_t batches() const { return (order_.size() + batch_ - 1) / batch_; }

@@ -11,7 +11,8 @@ using at::Tensor;
 using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
-/// Rows of a spectrum come in planes: all real parts, then all imaginary parts. F frequencies, L samples, K taps.
+/// Rows of a spectrum come in planes: all real parts, then all imaginary parts. F frequencies, L samples, K
+/// taps.
 struct SpectralMatrices {
   Tensor series;   ///< 2F x L: samples to spectrum
   Tensor taps;     ///< 2F x K: taps to spectrum

@@ -1,7 +1,7 @@
 #pragma once
-// Stride-1 'same' convolution in one dimension (cross-correlation, as torch::nn::Conv1d) with a long kernel, carried
-// out in the frequency domain. The transforms are dense products with sines and cosines: at kernel lengths around a
-// hundred a matrix product at full speed beats an FFT bound by memory.
+// Stride-1 'same' convolution in one dimension (cross-correlation, as torch::nn::Conv1d) with a long kernel,
+// carried out in the frequency domain. The transforms are dense products with sines and cosines: at kernel
+// lengths around a hundred a matrix product at full speed beats an FFT bound by memory.
 #include <cstdint>
 #include <memory>
 
@@ -34,8 +34,8 @@ class SpectralPlan {
 };
 
 /// x: length x batch x in, weight: kernel x in x out (weight[k][i][o] is Conv1d's weight[o][i][k]); returns
-/// length x batch x out, without bias. Differentiable in both. Like Conv1d, an even kernel gets its extra zero on the
-/// right.
+/// length x batch x out, without bias. Differentiable in both. Like Conv1d, an even kernel gets its extra
+/// zero on the right.
 at::Tensor spectral_conv(const at::Tensor& x, const at::Tensor& weight, const SpectralPlan& plan);
 
 }  // namespace swingbank

@@ -16,12 +16,14 @@ namespace swingbank {
 namespace {
 
 /// Rows of each databank point, points in order of first appearance.
-std::vector<std::vector<std::uint64_t>> points_of(const Labels& labels, const std::vector<std::uint64_t>& rows) {
+std::vector<std::vector<std::uint64_t>> points_of(const Labels& labels,
+                                                  const std::vector<std::uint64_t>& rows) {
   std::map<std::vector<double>, std::size_t> seen;
   std::vector<std::vector<std::uint64_t>> points;
   for (const std::uint64_t row : rows) {
     const double* first = labels.values.data() + row * labels.parameters;
-    const auto [it, fresh] = seen.try_emplace(std::vector<double>(first, first + labels.parameters), points.size());
+    const auto [it, fresh] =
+        seen.try_emplace(std::vector<double>(first, first + labels.parameters), points.size());
     if (fresh) points.emplace_back();
     points[it->second].push_back(row);
   }
@@ -60,7 +62,8 @@ RowSplit split_by_point(const Labels& labels, std::uint64_t seed) {
   return split;
 }
 
-RowSplit leave_one_out(const Labels& labels, std::int32_t generator, double validation_share, std::uint64_t seed) {
+RowSplit leave_one_out(const Labels& labels, std::int32_t generator, double validation_share,
+                       std::uint64_t seed) {
   RowSplit split;
   std::vector<std::uint64_t> others;
   for (std::uint64_t row = 0; row < labels.rows; ++row)

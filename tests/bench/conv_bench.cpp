@@ -1,6 +1,6 @@
-// Training step of the thesis's CNN at 6 channels x 450 samples: this project's network (spectral convolutions, fused
-// pools, one-pass Adam) against the same network of torch::nn::Conv1d layers and torch::optim::Adam, in one process,
-// alternating. Usage: bench_conv [batch 128] [rounds 3] [threads 0 = all]
+// Training step of the thesis's CNN at 6 channels x 450 samples: this project's network (spectral
+// convolutions, fused pools, one-pass Adam) against the same network of torch::nn::Conv1d layers and
+// torch::optim::Adam, in one process, alternating. Usage: bench_conv [batch 128] [rounds 3] [threads 0 = all]
 #include <fmt/format.h>
 #include <torch/torch.h>
 
@@ -23,8 +23,10 @@ struct Direct : nn::Module {
   nn::Conv1d first{nullptr}, second{nullptr};
   nn::Linear hidden{nullptr}, last{nullptr}, output{nullptr};
   Direct() {
-    first = register_module("first", nn::Conv1d(nn::Conv1dOptions(kChannels, 256, kKernel).padding(torch::kSame)));
-    second = register_module("second", nn::Conv1d(nn::Conv1dOptions(256, 512, kKernel).padding(torch::kSame)));
+    first = register_module("first",
+                            nn::Conv1d(nn::Conv1dOptions(kChannels, 256, kKernel).padding(torch::kSame)));
+    second =
+        register_module("second", nn::Conv1d(nn::Conv1dOptions(256, 512, kKernel).padding(torch::kSame)));
     hidden = register_module("hidden", nn::Linear(512 * (kSamples / 4 / 2), 1024));
     last = register_module("last", nn::Linear(1024, 256));
     output = register_module("output", nn::Linear(256, kOutputs));
@@ -38,7 +40,8 @@ struct Direct : nn::Module {
   }
 };
 
-/// Wall clock, and processor time of all threads: on a shared machine the second is the fairer one for one thread.
+/// Wall clock, and processor time of all threads: on a shared machine the second is the fairer one for one
+/// thread.
 struct Cost {
   double wall = 0.0, processor = 0.0;  // [s]
 };
@@ -72,7 +75,8 @@ int main(int argc, char** argv) {
 
   Direct direct;
   torch::optim::Adam torch_adam(direct.parameters(), 1e-3);
-  const auto network = make_network("cnn", {kChannels, kSamples, kOutputs, std::vector<float>(kOutputs, 0.5f)});
+  const auto network =
+      make_network("cnn", {kChannels, kSamples, kOutputs, std::vector<float>(kOutputs, 0.5f)});
   Adam adam(network->parameters());
   fmt::print("{} weights\n", parameter_count(*network));
   const auto direct_step = [&] {

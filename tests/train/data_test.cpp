@@ -31,7 +31,8 @@ TEST(Downsample, RelativeFormDoesNotSeeTheAmplitude) {
   header.rate = 1.0;
   header.samples = 4;
   header.channel_names = {"P", "Q"};
-  const std::vector<float> small = {1.0f, 2.0f, 0.0f, 1.0f, 5.0f, 8.0f, 2.0f, 5.0f}, large = {1.0f, 5.0f, -3.0f, 1.0f, 5.0f, 17.0f, -7.0f, 5.0f};
+  const std::vector<float> small = {1.0f, 2.0f, 0.0f, 1.0f, 5.0f, 8.0f, 2.0f, 5.0f},
+                           large = {1.0f, 5.0f, -3.0f, 1.0f, 5.0f, 17.0f, -7.0f, 5.0f};
   const auto show = [&](const std::vector<float>& record, InputForm form) {
     const auto s = select_input({{"P", "Q"}, 0.0, 4.0, 1, form}, header);
     std::vector<float> out(s.values());
@@ -108,7 +109,8 @@ TEST(EpochOrder, DependsOnSeedAndEpochOnly) {
   auto sorted = order;
   std::sort(sorted.begin(), sorted.end());
   EXPECT_EQ(sorted, rows);
-  // Displacements of a uniform shuffle average a third of the length; blocks in shuffled windows come close to that.
+  // Displacements of a uniform shuffle average a third of the length; blocks in shuffled windows come close
+  // to that.
   double displacement = 0.0;
   for (std::size_t i = 0; i < order.size(); ++i) displacement += std::abs(double(order[i]) - double(i));
   EXPECT_GT(displacement / 40000.0 / 40000.0, 0.25);
@@ -181,7 +183,8 @@ TEST(Features, SeeTheTrainingRowsOnly) {
   const ShardStream a(dataset, whole_record()), b(moved, whole_record());
   const RowSplit split = leave_one_out(a.labels(), 33, 0.1, 1);
   for (const std::size_t components : {0u, 5u}) {
-    const Features fa = Features::fit(a, split.train, components), fb = Features::fit(b, split.train, components);
+    const Features fa = Features::fit(a, split.train, components),
+                   fb = Features::fit(b, split.train, components);
     EXPECT_EQ(fa.scale().mean, fb.scale().mean);
     EXPECT_EQ(fa.scale().deviation, fb.scale().deviation);
     const Features all = Features::fit(b, all_rows(b.labels().rows), components);
@@ -195,7 +198,8 @@ TEST(Features, GiveZeroMeanAndUnitVariance) {
   const auto rows = all_rows(300);
   for (const std::size_t components : {0u, 5u}) {
     const Features f = Features::fit(stream, rows, components);
-    std::vector<float> series(rows.size() * stream.selection().values()), x(rows.size() * f.channels() * f.length());
+    std::vector<float> series(rows.size() * stream.selection().values()),
+        x(rows.size() * f.channels() * f.length());
     stream.read(rows, series.data());
     f.apply(series.data(), rows.size(), x.data());
     double sum = 0.0, square = 0.0;
@@ -221,7 +225,8 @@ TEST(Pca, ReconstructsWhatItSaysItDoes) {
       // Dropped energy over the variance of a second about its mean second.
       std::vector<double> mean(20);
       for (std::size_t i = 0; i < 400 * samples; ++i)
-        mean[i % 20] += x[(i / samples) * values + c * samples + i % samples] / (400.0 * double(samples) / 20.0);
+        mean[i % 20] +=
+            x[(i / samples) * values + c * samples + i % samples] / (400.0 * double(samples) / 20.0);
       double lost = 0.0, total = 0.0;
       for (std::size_t r = 0; r < 400; ++r) {
         pca.apply(x.data() + r * values, score.data());

@@ -1,5 +1,6 @@
 #pragma once
-// Small made-up data sets for the tests of train/: written through the real shard writer, into a folder of their own.
+// Small made-up data sets for the tests of train/: written through the real shard writer, into a folder of
+// their own.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -19,7 +20,8 @@ namespace swingbank::test {
 struct Folder {
   std::filesystem::path path;
   explicit Folder(const std::string& name)
-      : path(std::filesystem::temp_directory_path() / ("swingbank-train-" + name + "-" + std::to_string(getpid()))) {
+      : path(std::filesystem::temp_directory_path() /
+             ("swingbank-train-" + name + "-" + std::to_string(getpid()))) {
     std::filesystem::remove_all(path);
   }
   ~Folder() { std::filesystem::remove_all(path); }
@@ -28,13 +30,14 @@ struct Folder {
 struct Plan {
   std::size_t rows = 400, rows_per_shard = 150, samples = 40;
   double rate = 20.0;
-  int rows_per_point = 1;  ///< neighbouring rows with the same parameters
+  int rows_per_point = 1;                ///< neighbouring rows with the same parameters
   std::optional<std::size_t> spoil_row;  ///< gets a value that is not a number
   int shift_generator = 0;               ///< its records are moved by 100
 };
 
-/// Channels "P" and "speed": a damped swing whose frequency and decay follow from H and D (uniform 1-10 and 1-8), with
-/// an amplitude and a level that tell nothing. X is a constant parameter. Row i belongs to generator 30 + i % 10.
+/// Channels "P" and "speed": a damped swing whose frequency and decay follow from H and D (uniform 1-10 and
+/// 1-8), with an amplitude and a level that tell nothing. X is a constant parameter. Row i belongs to
+/// generator 30 + i % 10.
 inline Dataset make_dataset(const std::filesystem::path& folder, const Plan& plan = {}) {
   make_folder(folder / "shards");
   DatasetHeader header;
@@ -57,7 +60,9 @@ inline Dataset make_dataset(const std::filesystem::path& folder, const Plan& pla
   write_header(folder, header);
   Journal journal(folder / "journal.jsonl");
   std::mt19937_64 random(11);
-  const auto uniform = [&](double low, double high) { return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53; };
+  const auto uniform = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
+  };
   double h = 0.0, d = 0.0;
   for (std::size_t first = 0, number = 0; first < plan.rows; first += plan.rows_per_shard, ++number) {
     ShardData shard;
@@ -76,8 +81,9 @@ inline Dataset make_dataset(const std::filesystem::path& folder, const Plan& pla
       for (int c = 0; c < 2; ++c)
         for (std::size_t k = 0; k < plan.samples; ++k) {
           const double t = static_cast<double>(k) / plan.rate, wave = swing * std::exp(-0.2 * d * t);
-          shard.records.push_back(static_cast<float>(c == 0 ? shift + level + wave * std::sin(12.0 / std::sqrt(h) * t)
-                                                            : shift + 0.01 * wave * std::cos(12.0 / std::sqrt(h) * t)));
+          shard.records.push_back(
+              static_cast<float>(c == 0 ? shift + level + wave * std::sin(12.0 / std::sqrt(h) * t)
+                                        : shift + 0.01 * wave * std::cos(12.0 / std::sqrt(h) * t)));
         }
       if (plan.spoil_row == row) shard.records.back() = std::nanf("");
       shard.parameters.insert(shard.parameters.end(), {h, d, 0.3});
@@ -104,8 +110,13 @@ inline Dataset make_dataset(const std::filesystem::path& folder, const Plan& pla
     a.parameter_high = header.parameter_high;
     const std::string name = "shards/shard-" + std::to_string(number) + ".h5";
     write_shard(folder / name, shard);
-    journal.append({number, name, shard.rows, shard.rows, std::filesystem::file_size(folder / name),
-                    hex(shard_hash(shard)), {{"stable", shard.rows}}});
+    journal.append({number,
+                    name,
+                    shard.rows,
+                    shard.rows,
+                    std::filesystem::file_size(folder / name),
+                    hex(shard_hash(shard)),
+                    {{"stable", shard.rows}}});
   }
   return open_dataset(folder);
 }

@@ -1,4 +1,5 @@
-// Training on a made-up data set: it learns, shuffled labels teach nothing, and a resumed run equals an unbroken one.
+// Training on a made-up data set: it learns, shuffled labels teach nothing, and a resumed run equals an
+// unbroken one.
 #include "train/loop.hpp"
 
 #include <fstream>
@@ -19,7 +20,8 @@ struct World {
   Dataset dataset;
   ShardStream stream;
   explicit World(const std::string& name, std::size_t rows = 300, std::size_t samples = 16)
-      : folder(name), dataset(make_dataset(folder.path / "data", plan(rows, samples))),
+      : folder(name),
+        dataset(make_dataset(folder.path / "data", plan(rows, samples))),
         stream(dataset, whole_record(plan(rows, samples))) {}
   static Plan plan(std::size_t rows, std::size_t samples) {
     Plan p;
@@ -89,7 +91,8 @@ TEST(Training, ResumedRunEqualsAnUnbrokenOneBitForBit) {
     };
     LoopReport whole, broken;
     const auto expected = train(name + "-a", {}, whole);
-    const auto got = train(name + "-b", {16, 5}, broken);  // 8 batches an epoch: after 2 epochs, then within one
+    const auto got =
+        train(name + "-b", {16, 5}, broken);  // 8 batches an epoch: after 2 epochs, then within one
     EXPECT_EQ(got, expected) << name;
     EXPECT_EQ(broken.epochs, 4u);
     EXPECT_EQ(broken.best_epoch, whole.best_epoch);
@@ -151,8 +154,8 @@ TEST(Training, LearnsAndShuffledLabelsTeachNothing) {
   r.epochs = 5;
   ASSERT_EQ(run(world.stream, r), RunOutcome::done);
   const json shuffled = result_of(r);
-  // Test rows keep their labels, so nothing can be known of them; 160 rows scatter the quotient by some percent, and
-  // what little was learnt by heart costs some more.
+  // Test rows keep their labels, so nothing can be known of them; 160 rows scatter the quotient by some
+  // percent, and what little was learnt by heart costs some more.
   EXPECT_GT(shuffled["ratio"], 0.9);
   EXPECT_LT(shuffled["ratio"], 1.25);
 }
@@ -183,7 +186,8 @@ TEST(Training, TheLeftOutGeneratorLeavesNoTraceInTheWeights) {
     LoopSettings settings;
     settings.recipe = recipe(2);
     TrainingProgress progress("test", 1, true);
-    (void)train_network(*network, {stream, features, split.train, split.validation, targets}, settings, progress);
+    (void)train_network(*network, {stream, features, split.train, split.validation, targets}, settings,
+                        progress);
     return predict(*network, stream, features, split.train);
   };
   EXPECT_EQ(outputs(world.stream, 33), outputs(other, 33));

@@ -12,9 +12,10 @@ namespace {
 
 TEST(Metrics, AgreeWithFiguresWorkedOutByHand) {
   // Two rows; H true 2 and 4, D true 1 and 1, X constant.
-  const std::vector<double> truth = {2.0, 1.0, 0.3, 4.0, 1.0, 0.3}, predicted = {3.0, 1.5, 0.3, 4.0, 0.5, 0.3},
-                            mean = {5.0, 2.0, 0.3};
-  const Score s = score({predicted, truth, mean, {"H", "D", "X"}, {"s", "pu", "pu"}, {1.0, 0.0, 0.3}, {10.0, 3.0, 0.3}});
+  const std::vector<double> truth = {2.0, 1.0, 0.3, 4.0, 1.0, 0.3},
+                            predicted = {3.0, 1.5, 0.3, 4.0, 0.5, 0.3}, mean = {5.0, 2.0, 0.3};
+  const Score s =
+      score({predicted, truth, mean, {"H", "D", "X"}, {"s", "pu", "pu"}, {1.0, 0.0, 0.3}, {10.0, 3.0, 0.3}});
   EXPECT_DOUBLE_EQ(s.parameters[0].mse, 0.5);            // (1 + 0) / 2
   EXPECT_DOUBLE_EQ(s.parameters[0].baseline_mse, 5.0);   // (9 + 1) / 2
   EXPECT_DOUBLE_EQ(s.parameters[0].variance, 1.0);       // of 2 and 4
@@ -55,8 +56,9 @@ TEST(Experiment, FilesOfTheRepositoryAreSound) {
 
 TEST(Experiment, NamesEveryProblemWithItsLine) {
   const auto file = std::filesystem::temp_directory_path() / "swingbank-experiment-test.toml";
-  std::ofstream(file) << "table = \"IX\"\ntitle = 5\ndataset = \"absent.toml\"\nsplit = \"by-databank-point\"\n"
-                         "[preset.quick]\ndraws = 0\nnetworks = [\"cnm\"]\nepoch = 3\n";
+  std::ofstream(file)
+      << "table = \"IX\"\ntitle = 5\ndataset = \"absent.toml\"\nsplit = \"by-databank-point\"\n"
+         "[preset.quick]\ndraws = 0\nnetworks = [\"cnm\"]\nepoch = 3\n";
   try {
     (void)read_experiment(file);
     FAIL() << "accepted";

@@ -1,5 +1,3 @@
-#include "train/networks/network.hpp"
-
 #include <ATen/ATen.h>
 #include <gtest/gtest.h>
 #include <torch/optim/adam.h>
@@ -8,6 +6,7 @@
 
 #include "sim/core/problem.hpp"
 #include "train/adam.hpp"
+#include "train/networks/network.hpp"
 
 namespace swingbank {
 namespace {
@@ -73,7 +72,9 @@ TEST(Networks, DropoutFollowsTheSeed) {
   EXPECT_FALSE(at::equal(with_seed(5), with_seed(6)));
 }
 
-TEST(Networks, CnnRefusesAShortSeries) { EXPECT_THROW((void)make_network("cnn", shape(3, 7, 2)), InputError); }
+TEST(Networks, CnnRefusesAShortSeries) {
+  EXPECT_THROW((void)make_network("cnn", shape(3, 7, 2)), InputError);
+}
 
 TEST(Adam, EqualsTorchAdam) {
   at::manual_seed(2);

@@ -1,6 +1,6 @@
-// The thesis's convolutional network, section "Networks": conv 256 filters, kernel N/4, same, ReLU, max-pool 4; conv 512
-// filters, kernel N/4, same, ReLU, max-pool 2; dense 1024, dense 256, each ReLU and dropout 0.2; one ReLU output per
-// parameter. N is the input length. Inside, time is the first dimension.
+// The thesis's convolutional network, section "Networks": conv 256 filters, kernel N/4, same, ReLU, max-pool
+// 4; conv 512 filters, kernel N/4, same, ReLU, max-pool 2; dense 1024, dense 256, each ReLU and dropout 0.2;
+// one ReLU output per parameter. N is the input length. Inside, time is the first dimension.
 #include <ATen/ATen.h>
 
 #include "sim/core/problem.hpp"
@@ -12,7 +12,8 @@
 namespace swingbank {
 namespace {
 using at::Tensor;
-constexpr std::int64_t kFirst = 256, kSecond = 512, kPoolFirst = 4, kPoolSecond = 2, kHidden = 1024, kLast = 256;
+constexpr std::int64_t kFirst = 256, kSecond = 512, kPoolFirst = 4, kPoolSecond = 2, kHidden = 1024,
+                       kLast = 256;
 constexpr double kDropout = 0.2;
 
 class Cnn final : public Network {
@@ -38,12 +39,13 @@ class Cnn final : public Network {
   }
 
   std::vector<Tensor> parameters() override {
-    return {weight1_,      bias1_,       weight2_,    bias2_,        hidden_.weight,
-            hidden_.bias,  last_.weight, last_.bias,  output_.weight, output_.bias};
+    return {weight1_,     bias1_,       weight2_,   bias2_,         hidden_.weight,
+            hidden_.bias, last_.weight, last_.bias, output_.weight, output_.bias};
   }
 
  private:
-  /// With a handful of input channels the direct product is short enough: rows (t, b), columns (tap, channel).
+  /// With a handful of input channels the direct product is short enough: rows (t, b), columns (tap,
+  /// channel).
   Tensor first_convolution(const Tensor& x) {
     const auto batch = x.size(0), channels = x.size(1), n = x.size(2), left = (kernel_ - 1) / 2;
     const Tensor padded =

@@ -1,5 +1,6 @@
 #pragma once
-// Weights as torch::nn initialises them (uniform within 1 / sqrt(fan-in)), and the output layer all networks share.
+// Weights as torch::nn initialises them (uniform within 1 / sqrt(fan-in)), and the output layer all networks
+// share.
 #include <ATen/ATen.h>
 
 #include <cmath>

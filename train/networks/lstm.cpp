@@ -26,6 +26,8 @@ class Lstm final : public Network {
 };
 }  // namespace
 
-std::unique_ptr<Network> make_network_lstm(const NetworkShape& shape) { return std::make_unique<Lstm>(shape); }
+std::unique_ptr<Network> make_network_lstm(const NetworkShape& shape) {
+  return std::make_unique<Lstm>(shape);
+}
 
 }  // namespace swingbank

@@ -1,6 +1,6 @@
 #pragma once
-// What a network of this folder is. networks/<name>.cpp defines make_network_<name>; the list of all of them is
-// generated from the file names by CMake, so that a new file is the whole registration.
+// What a network of this folder is. networks/<name>.cpp defines make_network_<name>; the list of all of them
+// is generated from the file names by CMake, so that a new file is the whole registration.
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -35,8 +35,8 @@ struct NetworkRecord {
 };
 /// All networks in order of name.
 const std::vector<NetworkRecord>& all_networks();
-/// Weights come from torch's generator: seed it first. Throws InputError that lists the names if there is none such,
-/// and if the shape is too short for the network.
+/// Weights come from torch's generator: seed it first. Throws InputError that lists the names if there is
+/// none such, and if the shape is too short for the network.
 std::unique_ptr<Network> make_network(const std::string& name, const NetworkShape& shape);
 /// Number of weights.
 std::int64_t parameter_count(Network& network);
