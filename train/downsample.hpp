@@ -13,9 +13,9 @@ enum class InputForm {
   absolute,   ///< as recorded
   deviation,  ///< less the value before the fault
   relative,   ///< the deviation divided by the row's root mean square deviation of the first channel. A
-             ///< machine's H and D follow from the ratio of its channels, so this shows a large machine that
-             ///< moves little like any other
-  both,  ///< the absolute channels, then the relative ones
+              ///< machine's H and D follow from the ratio of its channels, so this shows a large machine that
+              ///< moves little like any other
+  both,       ///< the absolute channels, then the relative ones
 };
 /// Names as experiments write them, in order of the enumeration.
 inline const std::vector<std::string> kInputForms = {"absolute", "deviation", "relative", "both"};
