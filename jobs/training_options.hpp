@@ -73,7 +73,11 @@ inline int exit_code(RunOutcome outcome) { return outcome == RunOutcome::stopped
 template <class Work>
 int training_main(int argc, char** argv, CLI::App& app, TrainingOptions& options, const Work& work) {
   options.add_to(app);
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 1;
+  }
   try {
     if (!options.print.empty()) {
       fmt::print("{}\n", read_experiment(options.experiment).print(options.preset, options.print));
