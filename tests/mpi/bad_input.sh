@@ -1,3 +1,4 @@
+#!/usr/bin/env bash
 # Every refusal is a sentence, a non-zero exit, and no half-written file.
 source "$(dirname "$0")/common.bash"
 make=("$generate" "$configs/ieee14_genrou_bus3.toml" --draws 40 --draws-per-shard 20 --progress none)
@@ -16,7 +17,7 @@ expect 1 "cannot create the folder" "${make[@]}" --out /proc/nowhere
 # Config problems come all at once, with lines.
 sed -e "s|\.\./networks|$SWINGBANK_SOURCE/configs/networks|" -e 's/^seed = 1/sead = 1/' -e 's/^D = .*/D = [3.0, 0.0]/' -e 's/^t_end = .*/t_end = "15"/' -e 's/^generators = .*/generators = [3]/' "$configs/ieee14_genrou_bus3.toml" >"$work/bad.toml"
 expect 1 "unknown key sead at $work/bad.toml:" "$generate" "$work/bad.toml" --out "$work/x"
-grep -q "low end lies above" "$work/output" && grep -q "must be a number" "$work/output" || fail "not all problems at once"
+if ! grep -q "low end lies above" "$work/output" || ! grep -q "must be a number" "$work/output"; then fail "not all problems at once"; fi
 [ ! -e "$work/x" ] || fail "a refused config left a folder"
 sed -e "s|\.\./networks|$SWINGBANK_SOURCE/configs/networks|" -e 's/^generators = .*/generators = [3, 4]/' -e 's/^except = .*/except = [77]/' "$configs/ieee14_genrou_bus3.toml" >"$work/bad.toml"
 expect 1 "generator 4 of vary.generators" "$generate" "$work/bad.toml" --out "$work/x"

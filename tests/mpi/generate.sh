@@ -1,3 +1,4 @@
+#!/usr/bin/env bash
 # A dataset is the same to the last byte whoever makes it: 1, 2, 3 and 5 ranks, shards written by 1 and 3 ranks.
 source "$(dirname "$0")/common.bash"
 shard=16

@@ -1,3 +1,4 @@
+#!/usr/bin/env bash
 # Killed or stopped in the middle, a run continues to the same hash.
 source "$(dirname "$0")/common.bash"
 options=("$configs/ieee14_genrou_bus3.toml" --draws 1000 --draws-per-shard 20 --progress none)
@@ -59,5 +60,5 @@ mpirun_pid=$(pgrep -P $pid)
 kill -STOP "$(pgrep -P "$mpirun_pid" -f "$work/hung" | tail -1)"
 code=0
 wait $pid || code=$?
-[ $code != 0 ] && [ $code != 124 ] || fail "exit code $code of a run with a hung rank"
+if [ "$code" = 0 ] || [ "$code" = 124 ]; then fail "exit code $code of a run with a hung rank"; fi
 grep -qE "is overdue at rank|no answer from rank 0" "$work/log" || { cat "$work/log"; fail "no word about the hung rank"; }
