@@ -15,7 +15,7 @@ namespace {
 /// Why a candidate may not be used, or empty. Singular values are refused under every policy.
 std::string objection(const sim::Effect& effect, Policy policy, const std::vector<double>& p) {
   Problems problems;
-  effect.check(p.data(), "draw", problems);
+  effect.check(effect.law.get(), p.data(), "draw", problems);
   if (policy == Policy::physical)
     if (const auto why = effect.unphysical(p.data()); !why.empty()) return "not " + std::string(why);
   return problems.empty() ? "" : "singular: " + problems.list().front().why;

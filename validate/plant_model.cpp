@@ -20,8 +20,8 @@ constexpr double kSmallest = 1e-9;  ///< bases and frequencies are above zero
 /// Names of the effects of one slot, as a config may write them.
 std::vector<std::string> effects_of(Slot slot) {
   std::vector<std::string> names;
-  for (const auto& e : sim::all_effects())
-    if (e.slot == slot) names.emplace_back(e.name);
+  for (const auto* e : sim::every_effect())
+    if (e->slot == slot) names.emplace_back(e->name);
   return names;
 }
 
@@ -37,21 +37,24 @@ sim::Block read_block(Config& config, Slot slot) {
         config.require<double>(fmt::format("{}.{}", section, p.name), {p.low, p.high, std::string(p.unit)}));
   if (!sound || !config.sound()) return block;
   Problems problems;
-  block.effect->check(block.p.data(), config.where(section), problems);
+  block.effect->check(block.effect->law.get(), block.p.data(), config.where(section), problems);
   for (const auto& p : problems.list()) config.problem(section, p.what, p.why, p.remedy);
   return block;
 }
 
 void read_blocks(Config& config, sim::Plant& plant) {
   plant.machine = read_block(config, Slot::machine);
-  for (const auto slot : {Slot::stabiliser, Slot::limiter, Slot::exciter, Slot::governor}) {
+  for (const Slot slot : sim::kSlots) {
     const std::string section(sim::slot_name(slot));
-    if (!config.has(section)) continue;
-    if (effects_of(slot).empty())
+    if (slot == Slot::machine || slot == Slot::load || !config.has(section)) continue;
+    if (effects_of(slot).empty()) {
       config.problem(section, "section [" + section + "]", "this build has no effect of that kind",
                      "remove it; the slot holds its input at the operating point");
-    else
-      plant.controls.push_back(read_block(config, slot));
+    } else if (slot == Slot::transformer) {
+      plant.transformer = read_block(config, slot);
+    } else {
+      (slot == Slot::measurement ? plant.measurements : plant.controls).push_back(read_block(config, slot));
+    }
   }
 }
 

@@ -37,8 +37,6 @@ class DrivenPlant {
   DrivenPlant(const sim::Plant& plant, const sim::Operating& start, double drift)
       : equations_(plant),
         c_(start.c),
-        r_(start.r),
-        x_(start.xs),
         Efd_(start.Efd),
         Tm_(start.Tm),
         drift_(drift),
@@ -51,25 +49,32 @@ class DrivenPlant {
     sim::Signals<double> s;
     s.Efd = Efd_;
     s.Tm = Tm_;
+    s.t = t;
     v *= std::polar(1.0, -drift_ * t);
-    double er, ei;
+    s.Vpr = v.real();
+    s.Vpi = v.imag();
+    double er, ei, ir, ii;
     equations_.emf(c_.data(), x, scratch_.data(), er, ei);
-    const Complex current = (Complex(er, ei) - v) / Complex(r_, x_);
-    s.Ir = current.real();
-    s.Ii = current.imag();
-    s.Vr = v.real();
-    s.Vi = v.imag();
-    s.V = std::abs(v);
-    s.P = s.Vr * s.Ir + s.Vi * s.Ii;
-    s.Q = s.Vi * s.Ir - s.Vr * s.Ii;
+    equations_.from_grid(c_.data(), x, scratch_.data(), er, ei, s, ir, ii);
     equations_.derivative(c_.data(), x, scratch_.data(), s, dx);
     return s;
+  }
+  /// Power into the grid of signals just evaluated [pu on the machine's base].
+  [[nodiscard]] Complex power(const sim::Signals<double>& s) const {
+    double p, q;
+    equations_.grid_power(c_.data(), s, p, q);
+    return {p, q};
+  }
+  /// Takes states that have crossed a limit back to it.
+  void clamp_states(double* x) const {
+    double moved = 0.0;
+    equations_.clamp_states(c_.data(), x, moved);
   }
 
  private:
   sim::PlantEquations<double> equations_;
   std::vector<double> c_;
-  double r_, x_, Efd_, Tm_, drift_;
+  double Efd_, Tm_, drift_;
   std::vector<double> scratch_;
 };
 
@@ -96,6 +101,7 @@ class Integrator {
       if (error <= 1) {
         t = reaches ? to : t + h;
         x_ = trial_;
+        plant_.clamp_states(x_.data());
       } else if (h < 1e-9) {
         give_up(t);
       }
@@ -111,7 +117,6 @@ class Integrator {
  private:
   double attempt(int segment, double t, double h) {
     namespace dp = sim::dp54;
-    static constexpr double c[7] = {0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1, 1};
     const std::size_t n = x_.size();
     for (int stage = 0; stage < dp::kStages; ++stage) {
       for (std::size_t i = 0; i < n; ++i) {
@@ -119,7 +124,7 @@ class Integrator {
         for (int j = 0; j < stage; ++j) sum += dp::a[stage][j] * k_[j][i];
         trial_[i] = x_[i] + h * sum;
       }
-      const double at = t + c[stage] * h;
+      const double at = t + dp::c[stage] * h;
       plant_(at, curve_(segment, at), trial_.data(), k_[stage].data());
     }
     double worst = 0;
@@ -196,8 +201,9 @@ Playback play_in(const sim::Plant& plant, const sim::Conventions& conventions, c
     integrator.advance(segment, t, sample);
     t = std::max(t, sample);
     const auto s = driven(sample, curve(segment, sample), integrator.states().data(), dx.data());
-    back.P.push_back(s.P * to_record);
-    back.Q.push_back(s.Q * to_record);
+    const Complex power = driven.power(s) * to_record;
+    back.P.push_back(power.real());
+    back.Q.push_back(power.imag());
     back.speed.push_back(s.speed);
     back.Efd.push_back(s.Efd);
     back.Ifd.push_back(s.Ifd);

@@ -2,23 +2,15 @@
 
 #include <algorithm>
 #include <cctype>
+#include <deque>
 
 namespace swingbank::sim {
 
 std::string_view slot_name(Slot slot) {
-  switch (slot) {
-    case Slot::machine:
-      return "machine";
-    case Slot::stabiliser:
-      return "stabiliser";
-    case Slot::limiter:
-      return "limiter";
-    case Slot::exciter:
-      return "exciter";
-    case Slot::governor:
-      return "governor";
-  }
-  return "unknown";
+  constexpr std::array<std::string_view, kSlots.size()> names = {
+      "machine", "transformer", "compensator", "setpoint", "stabiliser", "limiter",
+      "exciter", "governor",    "shaft",       "load",     "measurement"};
+  return names[static_cast<std::size_t>(slot)];
 }
 
 int Effect::parameter_index(std::string_view parameter) const {
@@ -33,18 +25,46 @@ std::vector<double> Effect::standard_parameters() const {
   return p;
 }
 
+namespace {
+bool same_name(std::string_view a, std::string_view b) {
+  return std::ranges::equal(
+      a, b, [](unsigned char x, unsigned char y) { return std::toupper(x) == std::toupper(y); });
+}
+std::deque<Effect>& added() {
+  static std::deque<Effect> list;  // a deque: effects are known by address
+  return list;
+}
+}  // namespace
+
+std::vector<const Effect*> every_effect() {
+  std::vector<const Effect*> list;
+  for (const Effect& e : all_effects()) list.push_back(&e);
+  for (const Effect& e : added()) list.push_back(&e);
+  return list;
+}
+
 const Effect* find_effect(std::string_view name) {
-  const auto same = [](char a, char b) {
-    return std::toupper(static_cast<unsigned char>(a)) == std::toupper(static_cast<unsigned char>(b));
-  };
-  for (const auto& e : all_effects())
-    if (std::ranges::equal(e.name, name, same)) return &e;
+  for (const Effect* e : every_effect())
+    if (same_name(e->name, name)) return e;
   return nullptr;
+}
+
+const Effect& add_effect(Effect effect) {
+  if (find_effect(effect.name))
+    throw InputError({"a second effect '" + std::string(effect.name) + "'", std::string(effect.source),
+                      "the name is taken", "choose another name"});
+  return added().emplace_back(std::move(effect));
 }
 
 std::string effect_names() {
   std::string names;
-  for (const auto& e : all_effects()) names += (names.empty() ? "" : ", ") + std::string(e.name);
+  for (const Effect* e : every_effect()) names += (names.empty() ? "" : ", ") + std::string(e->name);
+  return names;
+}
+std::string effect_names(Slot slot) {
+  std::string names;
+  for (const Effect* e : every_effect())
+    if (e->slot == slot) names += (names.empty() ? "" : ", ") + std::string(e->name);
   return names;
 }
 

@@ -1,14 +1,20 @@
 #pragma once
 // The effect contract. An effect is one header in sim/effects that declares a `struct Model` with
-//   name, title, source, slot           what it is, where its equations come from, where it sits in a plant
-//   parameters[], states[]              one record each; nowhere else is a parameter declared
-//   dyr_name, dyr_columns[]             PSS/E .dyr model name and column order, if it has one
-//   check(), unphysical()               singular values (refused always), orderings (refused in physical
-//   draws) prepare<T>()                        parameters -> coefficients, so that no division stays in the
-//   loop equations<T>                        see MachineOps and ControlOps below steady<T>()
-//   back-initialisation from the operating point
+//   name, title, source, slot     what it is, where its equations come from, where it sits
+//   description                   block diagram and equations as text; `swingbank effects NAME` prints it
+//   parameters[], states[]        one record each; nowhere else is a parameter declared
+//   dyr_name, dyr_columns[]       PSS/E .dyr model name and column order ("" and none if it has none)
+//   check(), unphysical()         singular values (refused always), orderings (refused in physical draws)
+//   prepare<T>()                  parameters -> coefficients, so that no division stays in the loop
+//   the equations of its kind     MachineOps, ControlOps, TransformerOps, LoadOps or MeasureOps below
+//   steady<T>()                   back-initialisation from the operating point
+//   instants()                    optional: when its equations jump in time
 // CMake finds the header and writes the registry; nothing is edited. T runs over `Scalars`.
+#include <array>
+#include <complex>
+#include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,9 +26,30 @@
 
 namespace swingbank::sim {
 
-/// Where an effect sits in a plant; also the order in which a plant's blocks are evaluated.
-enum class Slot { machine, stabiliser, limiter, exciter, governor };
+/// Where an effect sits in a plant; from `compensator` to `shaft` also the order in which the controls are
+/// evaluated.
+enum class Slot {
+  machine,      ///< the synchronous machine itself
+  transformer,  ///< between the machine's terminal and the grid
+  compensator,  ///< makes Vc, the voltage the exciter regulates
+  setpoint,     ///< moves dVref, dPref
+  stabiliser,   ///< makes Vs
+  limiter,      ///< adds to Vlimiter
+  exciter,      ///< makes Efd
+  governor,     ///< makes Tm
+  shaft,        ///< changes Tm after the governor: what acts on the shaft whatever the governor does
+  load,         ///< a consumer at a bus
+  measurement,  ///< between the grid and the record
+};
+inline constexpr std::array kSlots = {Slot::machine,    Slot::transformer, Slot::compensator, Slot::setpoint,
+                                      Slot::stabiliser, Slot::limiter,     Slot::exciter,     Slot::governor,
+                                      Slot::shaft,      Slot::load,        Slot::measurement};
 std::string_view slot_name(Slot slot);
+constexpr bool is_control(Slot slot) { return slot >= Slot::compensator && slot <= Slot::shaft; }
+/// Whether several effects may stand in the slot of one plant: those that add up.
+constexpr bool is_shared(Slot slot) {
+  return slot == Slot::setpoint || slot == Slot::limiter || slot == Slot::shaft || slot == Slot::measurement;
+}
 
 constexpr double kNoNeutral = std::numeric_limits<double>::quiet_NaN();
 
@@ -39,15 +66,20 @@ struct Parameter {
 
 struct State {
   std::string_view name, unit, meaning;
-  double weight =
-      1.0;  ///< of this state's error in step control: a speed error counts through the angle it causes
+  /// Of this state's error in step control: a speed error counts through the angle it causes.
+  double weight = 1.0;
+  /// Coefficients that hold the limits of a non-windup state, -1: none. Whoever integrates stops the state
+  /// there: its derivative is zero while it would lead further out.
+  int low = -1, high = -1;
 };
 
-/// What simulators do differently, chosen by the origin of the data (docs/decisions.md).
+/// What simulators do differently, chosen by the origin of the data (docs/decisions.md), and what an effect
+/// knows of its surroundings.
 struct Conventions {
   bool speed_voltage = true;     ///< the flux linkages' voltage is scaled by speed: E'' = (1 + w) psi''
   bool mechanical_power = true;  ///< the governor sets power, so torque is (Pm - D w)/(1 + w); else torque
   double frequency = 60.0;       ///< system frequency [Hz]
+  double mva = 100.0;            ///< base of the machine at hand [MVA]; set by operating_point
   static constexpr Conventions psse(double hz = 60.0) { return {true, true, hz}; }
   static constexpr Conventions andes(double hz = 60.0) { return {false, false, hz}; }
 };
@@ -55,14 +87,18 @@ struct Conventions {
 /// Everything the blocks of one plant exchange; per unit on the machine's own base, network frame for r, i.
 template <class T>
 struct Signals {
-  T Vr{}, Vi{}, V{};  ///< terminal voltage and its magnitude [pu]
-  T Ir{}, Ii{};       ///< current injected into the network [pu]
-  T P{}, Q{};         ///< power out of the machine [pu]
-  T speed{};          ///< speed deviation [pu]
-  T Te{}, Tm{};       ///< electrical and mechanical torque (or power, see Conventions) [pu]
-  T Ifd{}, Efd{};     ///< field current and voltage, 1 pu on the air-gap line [pu]
-  T Vs{};             ///< stabiliser output [pu]
-  T Vlimiter{};       ///< limiters' sum into the voltage error [pu]
+  T Vr{}, Vi{}, V{};     ///< voltage at the machine's terminal and its magnitude [pu]
+  T Ir{}, Ii{};          ///< current out of the machine [pu]
+  T P{}, Q{};            ///< power out of the machine [pu]
+  T speed{};             ///< speed deviation [pu]
+  T Te{}, Tm{};          ///< electrical and mechanical torque (or power, see Conventions) [pu]
+  T Ifd{}, Efd{};        ///< field current and voltage, 1 pu on the air-gap line [pu]
+  T Vc{};                ///< voltage the exciter regulates: V unless a compensator changes it [pu]
+  T Vs{};                ///< stabiliser output [pu]
+  T Vlimiter{};          ///< limiters' sum into the voltage error [pu]
+  T dVref{}, dPref{};    ///< moves of the exciter's and the governor's reference [pu]
+  T t{};                 ///< time [s]; at an instant named by instants() that of the running side
+  T Vpr{}, Vpi{}, Vp{};  ///< voltage at the grid's side of the step-up transformer [pu]
 };
 
 /// Equations of a machine (state 0 is the rotor angle, state 1 the speed deviation): voltage `e` behind the
@@ -76,22 +112,51 @@ struct MachineOps {
   void (*derivative)(const T* c, const T* x, const T* m, const Signals<T>& s, T* dx) = nullptr;
   /// Given Vr, Vi, Ir, Ii: fills the states, s.Efd and s.Tm, and coefficients fixed by the operating point.
   std::string (*steady)(const T* p, T* c, Signals<T>& s, T* x) = nullptr;
+  /// Only where no constant impedance does (saliency, saturated reactances): Vr, Vi -> Ir, Ii, after emf.
+  /// source_impedance is then the one to start from.
+  void (*current)(const T* c, const T* x, T* m, Signals<T>& s) = nullptr;
 };
 
-/// Equations of a control: reads and writes signals, gives the derivative of its states.
+/// Equations of a control: reads and writes signals, gives the derivative of its states. `law` is the
+/// effect's own data where it was read from a file.
 template <class T>
 struct ControlOps {
-  void (*evaluate)(const T* c, const T* x, Signals<T>& s, T* dx) = nullptr;
+  void (*evaluate)(const void* law, const T* c, const T* x, Signals<T>& s, T* dx) = nullptr;
   /// Given all signals at the operating point: fills states and references (kept in c). Returns why it
-  /// cannot.
+  /// cannot, empty if it can.
+  std::string (*steady)(const void* law, const T* p, T* c, Signals<T>& s, T* x) = nullptr;
+};
+
+/// A step-up transformer: ideal ratio (grid side / machine side) and impedance on the machine's base.
+template <class T>
+struct TransformerOps {
+  void (*impedance)(const T* p, T& r, T& x, T& ratio) = nullptr;
+};
+
+/// A consumer. Its current into the bus (negative while it consumes) follows from the bus voltage and its
+/// states; per unit on Load::mva. `steady` gets Vr, Vi, Ir, Ii.
+template <class T>
+struct LoadOps {
+  void (*current)(const T* c, const T* x, Signals<T>& s) = nullptr;  ///< Vr, Vi -> Ir, Ii
+  void (*derivative)(const T* c, const T* x, const Signals<T>& s, T* dx) = nullptr;
   std::string (*steady)(const T* p, T* c, Signals<T>& s, T* x) = nullptr;
+};
+
+/// Phasors as an instrument delivers them: uniform samples of voltage [pu], of current out of the plant [pu],
+/// and the frequency deviation [pu] it reports. NaN marks a sample that is missing.
+struct Phasors {
+  double rate = 60.0, frequency = 60.0;  ///< samples per second; system frequency [Hz]
+  std::vector<std::complex<double>> V, I;
+  std::vector<double> df;
 };
 
 template <class T>
 struct Ops {
   void (*prepare)(const T* p, const Conventions& conventions, T* c) = nullptr;
-  MachineOps<T> machine;  ///< filled where slot == machine
-  ControlOps<T> control;  ///< filled elsewhere
+  MachineOps<T> machine;          ///< filled where slot == machine
+  ControlOps<T> control;          ///< filled where is_control(slot)
+  TransformerOps<T> transformer;  ///< filled where slot == transformer
+  LoadOps<T> load;                ///< filled where slot == load
 };
 
 template <class Tuple>
@@ -103,16 +168,21 @@ struct OpsFor<std::tuple<T...>> {
 
 /// One registered effect, its types erased.
 struct Effect {
-  std::string_view name, title, source, dyr_name;
+  std::string_view name, title, source, description, dyr_name;
   Slot slot;
   std::span<const Parameter> parameters;
   std::span<const State> states;
   std::span<const int> dyr_columns;   ///< parameter index of each .dyr column
   int raw_resistance, raw_reactance;  ///< parameters that PSS/E keeps in the .raw (ZR, ZX), or -1
   int coefficients, scratch;
-  void (*check)(const double* p, const std::string& where, Problems& problems);
+  void (*check)(const void* law, const double* p, const std::string& where, Problems& problems);
   std::string_view (*unphysical)(const double* p);  ///< empty, or the ordering that is violated
+  /// When the equations jump in time [s]; nullptr: never.
+  std::vector<double> (*instants)(const void* law, const double* p);
+  /// What the instrument makes of the true phasors; `seed` drives what is random. Only measurements.
+  void (*measure)(const double* p, std::uint64_t seed, Phasors& phasors);
   OpsFor<Scalars>::type ops;
+  std::shared_ptr<const void> law = nullptr;  ///< data of an effect read from a file
 
   template <class T>
   [[nodiscard]] const Ops<T>& get() const {
@@ -122,23 +192,38 @@ struct Effect {
   [[nodiscard]] std::vector<double> standard_parameters() const;
 };
 
-/// Every effect, in the order of the file names. Generated: sim/effects/*.hpp.
+/// Every compiled effect, in the order of the file names. Generated: sim/effects/*.hpp.
 std::span<const Effect> all_effects();
-/// nullptr if there is none of that name (case matters not).
+/// nullptr if there is none of that name (case matters not), compiled or added.
 const Effect* find_effect(std::string_view name);
-/// Names of all effects for error messages: "GENCLS, GENROU".
+/// Adds an effect made at run time (a law file). Throws InputError if the name is taken.
+const Effect& add_effect(Effect effect);
+/// Every effect: compiled ones, then added ones.
+std::vector<const Effect*> every_effect();
+/// Names of all effects of a slot (of all slots) for error messages: "GENCLS, GENROU".
 std::string effect_names();
+std::string effect_names(Slot slot);
 
 // ---- used by the generated registry only -------------------------------------------------------------
 template <class M, class T>
 Ops<T> make_ops() {
   Ops<T> o;
-  o.prepare = &M::template prepare<T>;
+  if constexpr (requires { &M::template prepare<T>; }) o.prepare = &M::template prepare<T>;
   if constexpr (M::slot == Slot::machine) {
     o.machine = {&M::template source_impedance<T>, &M::template emf<T>, &M::template electrical<T>,
                  &M::template derivative<T>, &M::template steady<T>};
-  } else {
-    o.control = {&M::template evaluate<T>, &M::template steady<T>};
+    if constexpr (requires { &M::template current<T>; }) o.machine.current = &M::template current<T>;
+  } else if constexpr (M::slot == Slot::transformer) {
+    o.transformer = {&M::template impedance<T>};
+  } else if constexpr (M::slot == Slot::load) {
+    o.load = {&M::template current<T>, &M::template derivative<T>, &M::template steady<T>};
+  } else if constexpr (is_control(M::slot)) {
+    o.control = {+[](const void*, const T* c, const T* x, Signals<T>& s, T* dx) {
+                   M::template evaluate<T>(c, x, s, dx);
+                 },
+                 +[](const void*, const T* p, T* c, Signals<T>& s, T* x) {
+                   return M::template steady<T>(p, c, s, x);
+                 }};
   }
   return o;
 }
@@ -149,11 +234,30 @@ std::tuple<Ops<T>...> make_all_ops(std::tuple<T...>*) {
 
 template <class M>
 Effect make_effect() {
-  return {M::name,          M::title,        M::source,
-          M::dyr_name,      M::slot,         M::parameters,
-          M::states,        M::dyr_columns,  M::raw_resistance,
-          M::raw_reactance, M::coefficients, M::scratch,
-          &M::check,        &M::unphysical,  make_all_ops<M>(static_cast<Scalars*>(nullptr))};
+  Effect e{};
+  e.name = M::name;
+  e.title = M::title;
+  e.source = M::source;
+  e.description = M::description;
+  e.slot = M::slot;
+  e.parameters = M::parameters;
+  if constexpr (requires { M::states[0]; }) e.states = M::states;
+  if constexpr (requires { M::dyr_name; }) e.dyr_name = M::dyr_name;
+  if constexpr (requires { M::dyr_columns[0]; }) e.dyr_columns = M::dyr_columns;
+  e.raw_resistance = e.raw_reactance = -1;
+  if constexpr (requires { M::raw_resistance; }) e.raw_resistance = M::raw_resistance;
+  if constexpr (requires { M::raw_reactance; }) e.raw_reactance = M::raw_reactance;
+  if constexpr (requires { M::coefficients; }) e.coefficients = M::coefficients;
+  if constexpr (requires { M::scratch; }) e.scratch = M::scratch;
+  e.check = +[](const void*, const double* p, const std::string& where, Problems& problems) {
+    M::check(p, where, problems);
+  };
+  e.unphysical = &M::unphysical;
+  if constexpr (requires { &M::instants; })
+    e.instants = +[](const void*, const double* p) { return M::instants(p); };
+  if constexpr (requires { &M::measure; }) e.measure = &M::measure;
+  e.ops = make_all_ops<M>(static_cast<Scalars*>(nullptr));
+  return e;
 }
 
 }  // namespace swingbank::sim

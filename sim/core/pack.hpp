@@ -55,6 +55,18 @@ inline Pack<N> sqrt(Pack<N> a) {
   return a;
 }
 
+/// Lane by lane through the C library: the same bits as for a double. For the few effects that need them.
+template <int N>
+inline Pack<N> exp(Pack<N> a) {
+  for (int i = 0; i < N; ++i) a.v[i] = std::exp(a.v[i]);
+  return a;
+}
+template <int N>
+inline Pack<N> log(Pack<N> a) {
+  for (int i = 0; i < N; ++i) a.v[i] = std::log(a.v[i]);
+  return a;
+}
+
 /// Largest integer-valued rounding (to nearest even) by the 1.5·2^52 trick; |a| must stay below 2^51.
 template <int N>
 inline Pack<N> round_nearest(Pack<N> a) {

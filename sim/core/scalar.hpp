@@ -1,6 +1,6 @@
 #pragma once
 // The list of scalars every equation is compiled for, and the few functions equations may use on them:
-// + - * / < > <=, select, sqrt, sincos, atan2 (steady only), square.
+// + - * / < > <=, select, sqrt, exp, log, sincos, atan2 (steady only), square, positive_part, clamp.
 #include <cmath>
 #include <tuple>
 
@@ -43,6 +43,17 @@ inline Dual<T, N> atan2(const Dual<T, N>& y, const Dual<T, N>& x) {
   const T q = T(1.0) / (x.a * x.a + y.a * y.a);
   for (int i = 0; i < N; ++i) r.d[i] = (x.a * y.d[i] - y.a * x.d[i]) * q;
   return r;
+}
+template <class T, int N>
+inline Dual<T, N> exp(const Dual<T, N>& a) {
+  using std::exp;
+  const T f = exp(a.a);
+  return chain(a, f, f);
+}
+template <class T, int N>
+inline Dual<T, N> log(const Dual<T, N>& a) {
+  using std::log;
+  return chain(a, log(a.a), T(1.0) / a.a);
 }
 template <class T>
 inline T square(const T& a) {

@@ -1,9 +1,5 @@
 #pragma once
-// GENCLS: the classical machine, a constant voltage E behind Ra + jX'd.
-//   2H dw/dt = Tm - Te - D w          (Conventions::mechanical_power: (Pm - D w)/(1 + w) - Te)
-//   d delta/dt = 2 pi f0 w            Te = Re(E conj(I))
-// H = 0 is PSS/E's infinite bus: angle and speed stay where they are.
-// Source: P. Kundur, Power System Stability and Control (1994), 12.3.1; PSS/E GENCLS data sheet.
+// GENCLS: the classical machine.
 #include "sim/core/effect.hpp"
 
 namespace swingbank::sim::machine_gencls {
@@ -12,6 +8,11 @@ struct Model {
   static constexpr std::string_view name = "GENCLS", title = "classical machine",
                                     source = "Kundur (1994), 12.3.1; PSS/E GENCLS", dyr_name = "GENCLS";
   static constexpr Slot slot = Slot::machine;
+  static constexpr std::string_view description = R"(
+   2H dw/dt = Tm - Te - D w          (Conventions::mechanical_power: (Pm - D w)/(1 + w) - Te)
+   d delta/dt = 2 pi f0 w            Te = Re(E conj(I))
+  H = 0 is PSS/E's infinite bus: angle and speed stay where they are.
+)";
   enum P { H, D, Ra, Xdp };
   static constexpr Parameter parameters[] = {
       {"H", "H", "s", 5.0, 0.0, 20.0, kNoNeutral, "inertia constant (0: infinite bus)"},

@@ -1,16 +1,5 @@
 #pragma once
-// GENROU: round-rotor machine, one field and three damper circuits, quadratic saturation on |psi''|.
-//   psi''d = gd1 E'q + (1 - gd1) psi1d          gd1 = (X'' - Xl)/(X'd - Xl)
-//   psi''q = (1 - gq1) psi2q - gq1 E'd          gq1 = (X'' - Xl)/(X'q - Xl)
-//   E'' = (-psi''q + j psi''d)(1 + w) exp(j(delta - pi/2)) behind Ra + jX''    (speed voltage: convention)
-//   Se = B (psi'' - A)^2/psi'' above A, with Se(1.0) = S1.0 and Se(1.2) = S1.2;  S1.0 = 0: no saturation
-//   Xad Ifd = E'q + (Xd - X'd)(Id - kd td) + psi''d Se      td = psi1d + (X'd - Xl) Id - E'q
-//   T'do dE'q/dt  = Efd - Xad Ifd                           T''do dpsi1d/dt = -td
-//   T'qo dE'd/dt  = (Xq - X'q)(Iq - kq tq) - E'd + ks psi''q Se
-//   tq = psi2q + (X'q - Xl) Iq + E'd                        T''qo dpsi2q/dt = -tq
-//   kd = (X'd - X'')/(X'd - Xl)^2   kq = (X'q - X'')/(X'q - Xl)^2   ks = (Xq - Xl)/(Xd - Xl)
-//   2H dw/dt = Tm - Te - D w   (convention: (Pm - D w)/(1 + w) - Te)      Te = psi''d Iq - psi''q Id
-// Source: PSS/E GENROU data sheet; IEEE Std 1110-2019, model 2.2; saturation on both axes as in PSS/E.
+// GENROU: round-rotor machine, one field and three damper circuits.
 #include "sim/core/effect.hpp"
 
 namespace swingbank::sim::machine_genrou {
@@ -20,6 +9,18 @@ struct Model {
                                     source = "PSS/E GENROU; IEEE Std 1110-2019 model 2.2",
                                     dyr_name = "GENROU";
   static constexpr Slot slot = Slot::machine;
+  static constexpr std::string_view description = R"(
+   psi''d = gd1 E'q + (1 - gd1) psi1d          gd1 = (X'' - Xl)/(X'd - Xl)
+   psi''q = (1 - gq1) psi2q - gq1 E'd          gq1 = (X'' - Xl)/(X'q - Xl)
+   E'' = (-psi''q + j psi''d)(1 + w) exp(j(delta - pi/2)) behind Ra + jX''    (speed voltage: convention)
+   Se = B (psi'' - A)^2/psi'' above A, with Se(1.0) = S1.0 and Se(1.2) = S1.2;  S1.0 = 0: no saturation
+   Xad Ifd = E'q + (Xd - X'd)(Id - kd td) + psi''d Se      td = psi1d + (X'd - Xl) Id - E'q
+   T'do dE'q/dt  = Efd - Xad Ifd                           T''do dpsi1d/dt = -td
+   T'qo dE'd/dt  = (Xq - X'q)(Iq - kq tq) - E'd + ks psi''q Se
+   tq = psi2q + (X'q - Xl) Iq + E'd                        T''qo dpsi2q/dt = -tq
+   kd = (X'd - X'')/(X'd - Xl)^2   kq = (X'q - X'')/(X'q - Xl)^2   ks = (Xq - Xl)/(Xd - Xl)
+   2H dw/dt = Tm - Te - D w   (convention: (Pm - D w)/(1 + w) - Te)      Te = psi''d Iq - psi''q Id
+)";
   enum P { Tdop, Tdopp, Tqop, Tqopp, H, D, Xd, Xq, Xdp, Xqp, Xdpp, Xl, S10, S12, Ra };
   static constexpr Parameter parameters[] = {
       {"Tdop", "T'do", "s", 7.0, 0.5, 20.0, kNoNeutral, "d-axis transient open-circuit time constant"},

@@ -40,35 +40,46 @@ Eigen::SparseMatrix<Complex> matrix(const Network& network, const Entries& entri
 void check_supplied(const Network& network, const Topology& topology) {
   const auto island = islands(network, topology.open);
   std::vector<char> supplied(network.buses.size(), 0);  // by island; there are no more islands than buses
-  for (const Generator& g : network.generators)
-    if (g.in_service && island[static_cast<std::size_t>(g.bus)] >= 0)
-      supplied[static_cast<std::size_t>(island[static_cast<std::size_t>(g.bus)])] = 1;
+  for (std::size_t k = 0; k < network.generators.size(); ++k) {
+    const Generator& g = network.generators[k];
+    const int at = island[static_cast<std::size_t>(g.bus)];
+    if (g.in_service && at >= 0 && !std::ranges::binary_search(topology.tripped, static_cast<int>(k)))
+      supplied[static_cast<std::size_t>(at)] = 1;
+  }
   std::vector<int> dark;
   for (std::size_t i = 0; i < island.size(); ++i)
     if (island[i] >= 0 && !supplied[static_cast<std::size_t>(island[i])]) dark.push_back(static_cast<int>(i));
   if (dark.empty()) return;
-  const std::string why = topology.open.empty()
+  const std::string why = topology.open.empty() && topology.tripped.empty()
                               ? "no path through branches in service leads to a generator"
-                              : "with the tripped branches open no path leads to a generator";
+                              : "with what is tripped no path leads to a generator";
   throw InputError({bus_list(network, dark) + (dark.size() == 1 ? " is" : " are") + " islanded",
                     network.origin, why, "trip another branch, or remove what is cut off"});
 }
 
 }  // namespace
 
+Complex consumption(const Load& load, const PowerFlow& flow) {
+  const double vm = std::abs(flow.voltage[static_cast<std::size_t>(load.bus)]);
+  return load.power + load.current * vm + load.admittance * (vm * vm);
+}
+
 Eigen::SparseMatrix<Complex> bus_admittance(const Network& network, const Topology& topology) {
   return matrix(network, branches_and_shunts(network, topology));
 }
 
 Eigen::SparseMatrix<Complex> dynamic_admittance(const Network& network, const PowerFlow& flow,
-                                                const Topology& topology) {
+                                                const Topology& topology, const std::vector<int>& without) {
   check_supplied(network, topology);
   Entries entries = branches_and_shunts(network, topology);
-  for (const Load& l : network.loads) {
-    const double vm = std::abs(flow.voltage[static_cast<std::size_t>(l.bus)]);
-    // S = conj(Y) V^2 at the power-flow voltage
-    entries.emplace_back(l.bus, l.bus, std::conj(l.power / (vm * vm) + l.current / vm + l.admittance));
+  const auto squared = [&](int bus) { return std::norm(flow.voltage[static_cast<std::size_t>(bus)]); };
+  for (std::size_t i = 0; i < network.loads.size(); ++i) {
+    if (std::ranges::binary_search(without, static_cast<int>(i))) continue;
+    const Load& l = network.loads[i];
+    entries.emplace_back(l.bus, l.bus, std::conj(consumption(l, flow)) / squared(l.bus));
   }
+  for (const auto& [bus, power] : topology.load_steps)
+    entries.emplace_back(bus, bus, std::conj(power) / squared(bus));
   for (const auto& [bus, z] : topology.faults)
     if (z != Complex{}) entries.emplace_back(bus, bus, 1.0 / z);
   for (std::size_t i = 0; i < network.buses.size(); ++i)
@@ -85,8 +96,8 @@ std::vector<int> bolted_buses(const Topology& topology) {
 }
 
 ReducedNetwork reduce(const Network& network, const PowerFlow& flow, const Topology& topology,
-                      const std::vector<int>& kept) {
-  const auto full = dynamic_admittance(network, flow, topology);
+                      const std::vector<int>& kept, const std::vector<int>& without) {
+  const auto full = dynamic_admittance(network, flow, topology, without);
   const auto bolted = bolted_buses(topology);
   const auto n = static_cast<int>(network.buses.size());
   std::vector<int> keep(static_cast<std::size_t>(n), -1),

@@ -12,10 +12,15 @@ namespace swingbank::sim {
 /// Bus admittance matrix [pu] of branches and shunts alone (what the power flow uses). n x n.
 Eigen::SparseMatrix<Complex> bus_admittance(const Network& network, const Topology& topology = {});
 
-/// The same with every load turned into the constant admittance it draws at the power-flow voltage, and
-/// faults through an impedance added. Bolted faults are not in the matrix: see `bolted_buses`.
+/// What a load draws at the power-flow voltage [pu on base_mva].
+Complex consumption(const Load& load, const PowerFlow& flow);
+
+/// The same with every load turned into the constant admittance it draws at the power-flow voltage, load
+/// steps likewise, and faults through an impedance added. Bolted faults are not in the matrix: see
+/// `bolted_buses`. `without`: loads left out, by index, sorted.
 Eigen::SparseMatrix<Complex> dynamic_admittance(const Network& network, const PowerFlow& flow,
-                                                const Topology& topology);
+                                                const Topology& topology,
+                                                const std::vector<int>& without = {});
 std::vector<int> bolted_buses(const Topology& topology);
 
 /// Kron reduction of `dynamic_admittance` to `kept` buses: I = Y V there, all other buses carry no injection,
@@ -26,6 +31,6 @@ struct ReducedNetwork {
   std::vector<int> grounded;  ///< positions in `kept` whose voltage is zero
 };
 ReducedNetwork reduce(const Network& network, const PowerFlow& flow, const Topology& topology,
-                      const std::vector<int>& kept);
+                      const std::vector<int>& kept, const std::vector<int>& without = {});
 
 }  // namespace swingbank::sim

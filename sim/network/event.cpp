@@ -94,31 +94,122 @@ std::vector<Interval> trip_intervals(const Event& event, const Network& network,
   return list;
 }
 
+std::string generator_name(const Network& network, int generator) {
+  const Generator& g = network.generators[static_cast<std::size_t>(generator)];
+  return "event, generator " + g.id + " at bus " +
+         std::to_string(network.buses[static_cast<std::size_t>(g.bus)].number);
+}
+bool known_generator(int generator, const Network& network, Problems& problems) {
+  if (generator >= 0 && generator < static_cast<int>(network.generators.size())) {
+    if (network.generators[static_cast<std::size_t>(generator)].in_service) return true;
+    problems.add("event of a generator out of service", generator_name(network, generator),
+                 "nothing runs there", "choose a generator in service");
+    return false;
+  }
+  problems.add("generator index " + std::to_string(generator), "event",
+               "the network has " + std::to_string(network.generators.size()) + " generators",
+               "name a generator of the network");
+  return false;
+}
+constexpr double kForGood = std::numeric_limits<double>::infinity();
+
+std::vector<Interval> generator_intervals(const Event& event, const Network& network, Problems& problems) {
+  std::vector<Interval> list;
+  for (const GeneratorTrip& t : event.generator_trips) {
+    if (!known_generator(t.generator, network, problems)) continue;
+    check_times({t.generator, t.time, kForGood}, generator_name(network, t.generator), problems);
+    list.push_back({t.generator, t.time, kForGood});
+  }
+  check_overlap(
+      list, "trips", [&](int generator) { return generator_name(network, generator); }, problems);
+  return list;
+}
+
+std::vector<Interval> load_intervals(const Event& event, const Network& network, Problems& problems) {
+  std::vector<Interval> list;
+  for (const LoadStep& step : event.load_steps) {
+    if (step.bus < 0 || step.bus >= static_cast<int>(network.buses.size())) {
+      problems.add("load step at bus index " + std::to_string(step.bus), "event",
+                   "the network has " + std::to_string(network.buses.size()) + " buses",
+                   "name a bus of the network");
+      continue;
+    }
+    const std::string where = bus_name(network, step.bus);
+    check_times({step.bus, step.t_on, step.t_off.value_or(kForGood)}, where, problems);
+    if (!std::isfinite(step.power.real()) || !std::isfinite(step.power.imag()))
+      problems.add("a load step that is no number", where, "P and Q must be finite", "give P and Q in pu");
+    list.push_back({step.bus, step.t_on, step.t_off.value_or(kForGood)});
+  }
+  return list;
+}
+
+void check_setpoints(const Event& event, const Network& network, Problems& problems) {
+  for (const SetpointStep& step : event.setpoint_steps) {
+    if (!known_generator(step.generator, network, problems)) continue;
+    const std::string where = generator_name(network, step.generator);
+    check_times({step.generator, step.time, kForGood}, where, problems);
+    if (!std::isfinite(step.dVref) || !std::isfinite(step.dPref))
+      problems.add("a reference step that is no number", where, "it must be finite", "give it in pu");
+  }
+}
+
+/// References in force at time t, one entry per generator that has moved.
+std::vector<Setpoint> setpoints_at(const Event& event, double t) {
+  std::vector<Setpoint> list;
+  for (const SetpointStep& step : event.setpoint_steps) {
+    if (step.time > t) continue;
+    const auto same = std::ranges::find(list, step.generator, &Setpoint::generator);
+    if (same == list.end())
+      list.push_back({step.generator, step.dVref, step.dPref});
+    else
+      same->dVref += step.dVref, same->dPref += step.dPref;
+  }
+  std::ranges::sort(list, {}, &Setpoint::generator);
+  return list;
+}
+
 }  // namespace
 
-std::vector<Segment> segments(const Event& event, const Network& network) {
+std::vector<Segment> segments(const Event& event, const Network& network,
+                              const std::vector<double>& instants) {
   Problems problems;
   const auto faults = fault_intervals(event, network, problems);
   const auto trips = trip_intervals(event, network, problems);
+  const auto lost = generator_intervals(event, network, problems);
+  const auto loads = load_intervals(event, network, problems);
+  check_setpoints(event, network, problems);
   problems.raise();
 
-  std::set<double> instants{0.0};
-  for (const auto* list : {&faults, &trips})
+  std::set<double> all{0.0};
+  for (const auto* list : {&faults, &trips, &lost, &loads})
     for (const Interval& i : *list)
       for (const double t : {i.start, i.end})
-        if (std::isfinite(t)) instants.insert(t);
+        if (std::isfinite(t)) all.insert(t);
+  for (const SetpointStep& step : event.setpoint_steps) all.insert(step.time);
+  const std::set<double> jumps(instants.begin(), instants.end());
+  for (const double t : jumps)
+    if (t > 0.0 && std::isfinite(t)) all.insert(t);
 
   std::vector<Segment> result;
-  for (const double t : instants) {
+  for (const double t : all) {
+    const auto active = [t](const Interval& i) { return i.start <= t && t < i.end; };
     Topology topology;
     for (std::size_t k = 0; k < faults.size(); ++k)
-      if (faults[k].start <= t && t < faults[k].end)
-        topology.faults.emplace_back(faults[k].what, event.faults[k].z);
+      if (active(faults[k])) topology.faults.emplace_back(faults[k].what, event.faults[k].z);
     for (const Interval& i : trips)
-      if (i.start <= t && t < i.end) topology.open.push_back(i.what);
+      if (active(i)) topology.open.push_back(i.what);
+    for (const Interval& i : lost)
+      if (active(i)) topology.tripped.push_back(i.what);
+    for (std::size_t k = 0; k < loads.size(); ++k)
+      if (active(loads[k])) topology.load_steps.emplace_back(loads[k].what, event.load_steps[k].power);
     std::ranges::sort(topology.faults, {}, &std::pair<int, Complex>::first);
     std::ranges::sort(topology.open);
-    if (result.empty() || !(result.back().topology == topology)) result.push_back({t, std::move(topology)});
+    std::ranges::sort(topology.tripped);
+    std::ranges::stable_sort(topology.load_steps, {}, &std::pair<int, Complex>::first);
+    auto setpoints = setpoints_at(event, t);
+    const bool same = !result.empty() && result.back().topology == topology &&
+                      result.back().setpoints == setpoints && !jumps.contains(t);
+    if (!same) result.push_back({t, std::move(topology), std::move(setpoints)});
   }
   return result;
 }

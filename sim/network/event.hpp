@@ -1,6 +1,6 @@
 #pragma once
-// What happens to the grid during a run: three-phase faults and line switching, and the piecewise constant
-// topology that follows from them.
+// What happens to the grid during a run - faults, switching, trips, steps - and the piecewise constant
+// topology that follows from it.
 #include <optional>
 #include <vector>
 
@@ -21,23 +21,56 @@ struct LineTrip {
   double t_open;
   std::optional<double> t_close;
 };
+/// A generator disconnected for good.
+struct GeneratorTrip {
+  int generator;  ///< index into Network::generators
+  double time;    ///< [s]
+};
+/// Consumption added at a bus (taken away if negative), as the constant admittance that draws `power` at the
+/// voltage before the event.
+struct LoadStep {
+  int bus;        ///< index
+  Complex power;  ///< P + jQ [pu on base_mva]
+  double t_on;    ///< [s]
+  std::optional<double> t_off;
+};
+/// A step of a control's reference, added to those before it.
+struct SetpointStep {
+  int generator;        ///< index into Network::generators
+  double time;          ///< [s]
+  double dVref, dPref;  ///< [pu]
+};
 struct Event {
   std::vector<BusFault> faults;
   std::vector<LineTrip> trips;
+  std::vector<GeneratorTrip> generator_trips = {};
+  std::vector<LoadStep> load_steps = {};
+  std::vector<SetpointStep> setpoint_steps = {};
 };
 
-/// The network between two switching instants: which buses are faulted and which branches are open.
+/// The network between two switching instants.
 struct Topology {
-  std::vector<std::pair<int, Complex>> faults;  ///< bus index, impedance; sorted by bus
-  std::vector<int> open;                        ///< branch indices, sorted
+  std::vector<std::pair<int, Complex>> faults = {};      ///< bus index, impedance; sorted by bus
+  std::vector<int> open = {};                            ///< branch indices, sorted
+  std::vector<int> tripped = {};                         ///< generator indices, sorted
+  std::vector<std::pair<int, Complex>> load_steps = {};  ///< bus index, power [pu]; sorted by bus
   friend bool operator==(const Topology&, const Topology&) = default;
+};
+/// Reference moves of one generator in force during a segment [pu].
+struct Setpoint {
+  int generator;
+  double dVref, dPref;
+  friend bool operator==(const Setpoint&, const Setpoint&) = default;
 };
 struct Segment {
   double start;  ///< [s]; the first starts at 0
   Topology topology;
+  std::vector<Setpoint> setpoints = {};
 };
-/// Segments in order of time; switchings at the same instant make one segment. Throws InputError if an event
-/// ends before it starts, starts before 0, or faults a bus twice at once.
-std::vector<Segment> segments(const Event& event, const Network& network);
+/// Segments in order of time; switchings at the same instant make one segment. `instants`: further times at
+/// which a segment begins (effects that jump). Throws InputError if an event ends before it starts, starts
+/// before 0, names what the network has not, or faults a bus twice at once.
+std::vector<Segment> segments(const Event& event, const Network& network,
+                              const std::vector<double>& instants = {});
 
 }  // namespace swingbank::sim

@@ -45,6 +45,17 @@ struct Batch::Impl {
   std::unique_ptr<Engine> engine;
 };
 
+std::map<int, Plant> changed_plants(const Grid& grid, const Job& job) {
+  std::map<int, Plant> changed;
+  const auto plant = [&](int index) -> Plant& {
+    return changed.try_emplace(index, grid.plants[static_cast<std::size_t>(index)]).first->second;
+  };
+  for (const auto& [index, values] : job.machine_parameters) plant(index).machine.p = values;
+  for (const auto& c : job.control_parameters)
+    plant(c.plant).controls[static_cast<std::size_t>(c.control)].p = c.values;
+  return changed;
+}
+
 Batch::Batch(const Grid& grid, BatchOptions options) : impl_(std::make_unique<Impl>()) {
   if (options.lanes == 0) options.lanes = widest();
   impl_->options = options;

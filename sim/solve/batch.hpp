@@ -27,7 +27,16 @@ struct Job {
   Event event;
   std::vector<std::pair<int, std::vector<double>>>
       machine_parameters;  ///< plant index, values in record order
+  struct Control {
+    int plant, control;  ///< index of the plant, and of the block among its controls
+    std::vector<double> values;
+    friend bool operator==(const Control&, const Control&) = default;
+  };
+  std::vector<Control> control_parameters = {};
 };
+
+/// The plants a job changes, by index.
+std::map<int, Plant> changed_plants(const Grid& grid, const Job& job);
 
 class Batch {
  public:

@@ -110,7 +110,7 @@ class GridMaker {
   void place(Plant& plant, Block block, const std::string& where) {
     const Effect& effect = *block.effect;
     Problems found;
-    effect.check(block.p.data(), where, found);
+    effect.check(effect.law.get(), block.p.data(), where, found);
     problems_.add(found);
     if (effect.slot == Slot::machine) {
       if (plant.machine.effect) return taken(plant, effect, *plant.machine.effect, where);
@@ -118,9 +118,13 @@ class GridMaker {
       plant.machine = std::move(block);
       return;
     }
+    if (effect.slot == Slot::transformer) {
+      if (plant.transformer.effect) return taken(plant, effect, *plant.transformer.effect, where);
+      plant.transformer = std::move(block);
+      return;
+    }
     for (const Block& other : plant.controls)
-      // Limiters add up, so different ones may stand side by side; every other slot holds one model.
-      if (other.effect == &effect || (other.effect->slot == effect.slot && effect.slot != Slot::limiter))
+      if (other.effect == &effect || (other.effect->slot == effect.slot && !is_shared(effect.slot)))
         return taken(plant, effect, *other.effect, where);
     plant.controls.push_back(std::move(block));
   }
@@ -198,6 +202,24 @@ std::string dyr_record(const Grid& grid, const Plant& plant, const Block& block,
 
 }  // namespace
 
+std::vector<int> Grid::modelled_loads() const {
+  std::vector<int> list;
+  for (const Consumer& c : loads) list.push_back(c.load);
+  std::ranges::sort(list);
+  return list;
+}
+
+std::vector<double> instants_of(const Plant& plant) {
+  std::vector<double> all;
+  for (const Block& block : plant.controls) {
+    if (!block.effect->instants) continue;
+    const auto more = block.effect->instants(block.effect->law.get(), block.p.data());
+    all.insert(all.end(), more.begin(), more.end());
+  }
+  std::ranges::sort(all);
+  return all;
+}
+
 Grid make_grid(Network network, const std::vector<DyrRecord>& dynamics, const std::string& dyr_name,
                Conventions conventions) {
   return GridMaker(std::move(network), dyr_name, conventions).make(dynamics);
@@ -225,6 +247,7 @@ void write_dyr(const Grid& grid, const std::filesystem::path& file) {
   std::string text;
   for (const Plant& plant : grid.plants) {
     text += dyr_record(grid, plant, plant.machine, file.string(), problems);
+    if (plant.transformer.effect) text += dyr_record(grid, plant, plant.transformer, file.string(), problems);
     for (const Block& control : plant.controls)
       text += dyr_record(grid, plant, control, file.string(), problems);
   }

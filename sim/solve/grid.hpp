@@ -16,21 +16,36 @@ struct Block {
   const Effect* effect = nullptr;
   std::vector<double> p;
 };
-/// One generator: the machine and its controls in order of Slot.
+/// One generator: the machine and what stands around it.
 struct Plant {
   std::string name;    ///< "30" or "30/2": bus number, and id where a bus has several machines
   int bus = -1;        ///< index into Network::buses
   double mva = 100.0;  ///< machine base
   Complex generation;  ///< P + jQ at the operating point [pu on the network's base]
   Block machine;
-  std::vector<Block> controls;
+  Block transformer;            ///< none: effect == nullptr; the bus is then the machine's terminal
+  std::vector<Block> controls;  ///< in order of Slot
+  std::vector<Block> measurements;
   int generator = -1;  ///< index into Network::generators
+};
+/// A load with a model of its own; every other load is a constant impedance.
+struct Consumer {
+  std::string name;     ///< "8" or "8/2": bus number, and id where a bus has several loads
+  int bus = -1;         ///< index into Network::buses
+  int load = -1;        ///< index into Network::loads
+  double mva = 100.0;   ///< base of its parameters
+  Complex consumption;  ///< P + jQ at the operating point [pu on the network's base]
+  Block block;
 };
 struct Grid {
   Network network;
   PowerFlow flow;
   Conventions conventions;
   std::vector<Plant> plants;
+  std::vector<Consumer> loads;
+
+  /// Indices into Network::loads of the loads with a model of their own, sorted.
+  [[nodiscard]] std::vector<int> modelled_loads() const;
 };
 
 /// Joins a network with its dynamic models. Throws InputError naming every generator in service without a
@@ -43,23 +58,35 @@ Grid make_grid(Network network, const std::vector<DyrRecord>& dynamics, const st
 /// read_raw + read_dyr + make_grid.
 Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dyr, Conventions conventions);
 
+/// When the plant's effects jump in time, sorted [s].
+std::vector<double> instants_of(const Plant& plant);
+/// Effects see at most the end of their segment less this, so that a jump at its end stays in the next [s].
+constexpr double kBeforeSwitching = 1e-9;
+
 /// Writes the plants' models and parameters; with the network's .raw they read back to the last bit. Throws
 /// InputError if a parameter that belongs into the .raw differs from the network's, or an effect has no .dyr
 /// form.
 void write_dyr(const Grid& grid, const std::filesystem::path& file);
 
-/// A plant brought to its operating point: coefficients and states of machine and controls back to back.
-struct Operating {
-  std::vector<double> c;  ///< coefficients, machine first
-  std::vector<double> x;  ///< states, machine first
-  double r, xs;           ///< impedance behind the terminal [pu on the machine's base]
-  double Efd, Tm;         ///< held where exciter or governor slot is empty
-  Signals<double> s;      ///< every signal at the operating point
+/// A plant brought to its operating point. T: double, or a dual where derivatives are wanted.
+template <class T>
+struct OperatingOf {
+  std::vector<T> c;  ///< coefficients: machine, Joint (plant_equations.hpp), controls
+  std::vector<T> x;  ///< states: machine, controls
+  T Efd, Tm;         ///< held where exciter or governor slot is empty
+  Signals<T> s;      ///< every signal at the operating point
 };
-/// Back-initialises one plant exactly (saturation included) from terminal voltage [pu] and generation [pu on
-/// base_mva]: machine first, then controls in order of Slot. Every derivative is evaluated there; throws
-/// InputError where an effect cannot hold the point or a derivative exceeds 1e-9.
+using Operating = OperatingOf<double>;
+
+/// Back-initialises one plant exactly (saturation included) from the voltage at its bus [pu] and generation
+/// [pu on base_mva]: machine first, then controls in order of Slot. Every derivative is evaluated there;
+/// throws InputError where an effect cannot hold the point, a state lies outside its limits or a derivative
+/// exceeds 1e-9.
 Operating operating_point(const Plant& plant, Complex voltage, double base_mva,
                           const Conventions& conventions);
+/// The same with the values of every block given as T (machine, transformer if there is one, controls).
+template <class T>
+OperatingOf<T> operating_point_of(const Plant& plant, const std::vector<std::vector<T>>& parameters,
+                                  Complex voltage, double base_mva, const Conventions& conventions);
 
 }  // namespace swingbank::sim

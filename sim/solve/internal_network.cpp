@@ -9,32 +9,42 @@ constexpr std::size_t kCacheLimit = 4096;  // topologies: one per bus and branch
 }
 
 InternalNetwork::InternalNetwork(const Grid& grid) : grid_(grid) {
-  for (const auto& plant : grid.plants) {
-    auto at = std::find(buses_.begin(), buses_.end(), plant.bus);
+  const auto add = [&](int bus, double mva, int generator) {
+    auto at = std::find(buses_.begin(), buses_.end(), bus);
     node_of_.push_back(static_cast<int>(at - buses_.begin()));
-    if (at == buses_.end()) buses_.push_back(plant.bus);
-  }
+    if (at == buses_.end()) buses_.push_back(bus);
+    base_.push_back(mva / grid.network.base_mva);
+    generator_.push_back(generator);
+  };
+  for (const Plant& plant : grid.plants) add(plant.bus, plant.mva, plant.generator);
+  for (const Consumer& load : grid.loads) add(load.bus, load.mva, -1);
 }
 
 InternalNetwork::Reduced& InternalNetwork::reduced(const Topology& topology) {
   for (auto& entry : cache_)
     if (entry.topology == topology) return entry;
   if (cache_.size() >= kCacheLimit) cache_.pop_front();
-  cache_.push_back({topology, reduce(grid_.network, grid_.flow, topology, buses_), {}, {}, {}});
+  cache_.push_back(
+      {topology, reduce(grid_.network, grid_.flow, topology, buses_, grid_.modelled_loads()), {}, {}, {}});
   return cache_.back();
 }
 
 void InternalNetwork::assemble(Reduced& entry, const std::vector<double>& r,
                                const std::vector<double>& x) const {
-  const auto plants = static_cast<Eigen::Index>(grid_.plants.size());
+  const auto plants = static_cast<Eigen::Index>(node_of_.size());
   const auto nodes = static_cast<Eigen::Index>(buses_.size());
   std::vector<char> node_grounded(buses_.size(), 0);
   for (int n : entry.network.grounded) node_grounded[static_cast<std::size_t>(n)] = 1;
 
-  Eigen::VectorXcd source(plants);  // admittance of each machine on the network's base
+  auto& out = entry.latest;
+  out.tripped.assign(node_of_.size(), 0);
+  Eigen::VectorXcd source(plants);  // admittance of each on the network's base
   for (Eigen::Index i = 0; i < plants; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    source[i] = grid_.plants[k].mva / grid_.network.base_mva / Complex(r[k], x[k]);
+    source[i] = base_[k] / Complex(r[k], x[k]);
+    if (generator_[k] < 0 || !std::ranges::binary_search(entry.topology.tripped, generator_[k])) continue;
+    out.tripped[k] = 1;
+    source[i] = 0.0;
   }
   Eigen::MatrixXcd a = entry.network.y;
   Eigen::MatrixXcd injection = Eigen::MatrixXcd::Zero(nodes, plants);
@@ -51,17 +61,16 @@ void InternalNetwork::assemble(Reduced& entry, const std::vector<double>& r,
     }
   const Eigen::MatrixXcd voltage =
       a.partialPivLu().solve(injection);  // V at the generator buses per unit of E
-  auto& out = entry.latest;
   out.g.resize(static_cast<std::size_t>(plants * plants));
   out.b.resize(out.g.size());
   out.grounded.resize(static_cast<std::size_t>(plants));
   for (Eigen::Index i = 0; i < plants; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const double to_machine = grid_.network.base_mva / grid_.plants[k].mva;
+    const double to_own = 1.0 / base_[k];
     out.grounded[k] = node_grounded[static_cast<std::size_t>(node_of_[k])];
     for (Eigen::Index j = 0; j < plants; ++j) {
       const Complex drop = (i == j ? 1.0 : 0.0) - voltage(node_of_[k], j);
-      const Complex m = source[i] * drop * to_machine;
+      const Complex m = source[i] * drop * to_own;
       out.g[static_cast<std::size_t>(i * plants + j)] = m.real();
       out.b[static_cast<std::size_t>(i * plants + j)] = m.imag();
     }

@@ -1,8 +1,7 @@
 #pragma once
 // The network as the machines see it: currents at the terminals as a linear function of the voltages behind
-// the machines' own impedances, per topology. Two steps: Kron reduction to the generator buses (once per
-// topology), then a solve of the size of the generator buses with the machines' impedances (once per set of
-// impedances).
+// the machines' own impedances, per topology. Two steps: Kron reduction to the buses with sources (once per
+// topology), then a solve of their number with the sources' impedances (once per set of impedances).
 #include <Eigen/Dense>
 #include <deque>
 #include <vector>
@@ -12,16 +11,19 @@
 
 namespace swingbank::sim {
 
-/// I = (G + jB) E, row and column per plant; currents on each machine's own base [pu]. Row-major.
+/// I = (G + jB) E, row and column per source: plants, then loads with a model of their own; currents on each
+/// source's own base [pu]. Row-major.
 struct InternalMatrix {
   std::vector<double> g, b;
-  std::vector<char> grounded;  ///< per plant: 1 where the terminal is held at V = 0
+  std::vector<char> grounded;  ///< per source: 1 where the bus is held at V = 0
+  std::vector<char> tripped;   ///< per source: 1 where it is disconnected
 };
 
 class InternalNetwork {
  public:
   explicit InternalNetwork(const Grid& grid);
-  /// r, x: source impedance per plant [pu on its own base]. The reference stays valid until the next call
+  [[nodiscard]] int sources() const { return static_cast<int>(node_of_.size()); }
+  /// r, x: impedance per source [pu on its own base]. The reference stays valid until the next call
   /// with other impedances; for unchanged impedances matrices are kept per topology.
   const InternalMatrix& matrix(const Topology& topology, const std::vector<double>& r,
                                const std::vector<double>& x);
@@ -37,8 +39,10 @@ class InternalNetwork {
   void assemble(Reduced& entry, const std::vector<double>& r, const std::vector<double>& x) const;
 
   const Grid& grid_;
-  std::vector<int> buses_;    ///< generator buses, one entry each
-  std::vector<int> node_of_;  ///< per plant: position in buses_
+  std::vector<int> buses_;      ///< buses with sources, one entry each
+  std::vector<int> node_of_;    ///< per source: position in buses_
+  std::vector<double> base_;    ///< per source: own base over the network's
+  std::vector<int> generator_;  ///< per source: index into Network::generators, -1 for a load
   std::deque<Reduced> cache_;
 };
 

@@ -61,6 +61,7 @@ struct LaneClock {
 struct LaneRun {
   Job job;
   std::vector<Segment> segments;
+  std::vector<double> jumps;  ///< instants at which the plants' effects jump, sorted [s]
   std::size_t segment = 0;
   int recorded = 0;             ///< samples in the record
   int pending = 0;              ///< samples whose states wait to be evaluated

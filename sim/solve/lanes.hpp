@@ -8,6 +8,7 @@
 #include "sim/solve/internal_network.hpp"
 #include "sim/solve/lane_schedule.hpp"
 #include "sim/solve/lane_traits.hpp"
+#include "sim/solve/load_equations.hpp"
 #include "sim/solve/plant_equations.hpp"
 #include "sim/solve/tableau.hpp"
 
@@ -33,16 +34,29 @@ class Lanes {
     int x, c, m;  ///< offsets of states, coefficients and scratch
   };
 
+  struct LoadSlice {
+    LoadEquations<T> equations;
+    int x, c;
+  };
+
   /// What the equations need besides the states. One set has a lane per event; the other, for recording, is
   /// one event's values in every lane, its lanes being consecutive samples.
   struct Constants {
-    std::vector<T> c, g, b, r, xs, efd, tm;
+    std::vector<T> c, g, b, efd, tm, dvref, dpref, on;  ///< on: 1, or 0 where the plant is tripped
+    std::vector<T> vr, vi;  ///< terminal voltages of nonlinear sources: where the search begins
+    T last_moment;          ///< largest time effects may see [s]
   };
 
   // one evaluation (lanes_equations.hpp)
-  void emfs(const Constants& k, const T* x);
+  void emfs(Constants& k, const T* x);
   void current(const Constants& k, std::size_t plant, Signals<T>& s) const;
   void derivative(const T* x, T* dx);
+
+  // sources whose current is no linear function of the voltage (lanes_algebra.hpp)
+  void solve_algebra(Constants& k, const T* x);
+  void source_emf(const Constants& k, const T* x, int source, const T& vr, const T& vi, T& er, T& ei);
+  const T* source_impedance(const Constants& k, int source) const;
+  T newton_step(Constants& k, const T* x);
 
   // recording (lanes_record.hpp)
   void record_step(T h, unsigned accepted, const double* start, const double* tried);
@@ -55,7 +69,10 @@ class Lanes {
 
   // loading (lanes_load.hpp)
   void load(int lane);
+  void build_slices();
+  void reserve();
   void load_plant(int lane, std::size_t plant, const Operating& at);
+  void load_consumer(int lane, std::size_t load);
   void enter_segment(int lane);
   void record_steady_start(int lane);
   int samples_until(double t) const;
@@ -69,6 +86,7 @@ class Lanes {
   void stage(T h);
   T scaled_error(T h) const;
   void commit(unsigned accepted);
+  void clamp_states();
   T spread(const T* x) const;
   void settle(unsigned accepted, const Next& next, const Done& done);
 
@@ -76,26 +94,33 @@ class Lanes {
   BatchOptions options_;
   InternalNetwork network_;
   std::vector<PlantSlice> plants_;
-  std::vector<Operating> base_;  ///< operating points with the grid's own parameters
+  std::vector<LoadSlice> loads_;
+  std::vector<int> nonlinear_;               ///< sources: plants, then loads
+  std::vector<Operating> base_, load_base_;  ///< operating points with the grid's own parameters
+  bool limited_ = false, timed_ = false;     ///< whether any state has limits, any effect reads the time
   std::vector<int> recorded_;
   std::vector<Channel> channels_;
-  int n_ = 0, samples_ = 0, states_ = 0;
+  int n_ = 0, sources_ = 0, samples_ = 0, states_ = 0;
   std::vector<double> weight_;  ///< per state, already divided by the tolerance
 
   Constants per_lane_, per_sample_;
   std::vector<T> m_, er_, ei_;        ///< scratch of one evaluation
-  Signals<T> signals_;                ///< likewise: zeroing one per plant would cost 18 packs
+  Signals<T> signals_;                ///< likewise: zeroing one per plant would cost 25 packs
+  std::vector<T> algebra_;            ///< scratch of newton_step
+  T time_{}, start_{};                ///< of the evaluation, of the step, per lane [s]
   std::vector<T> y_, trial_, dense_;  ///< states; dense_: four coefficient rows
   std::vector<T> k_[dp54::kStages];
   std::vector<T> kept_, unused_;
   std::vector<LaneRun> lanes_;
   std::vector<std::vector<double>> lane_r_, lane_x_;  ///< source impedances per lane
-  std::vector<std::vector<char>> grounded_;           ///< per lane and plant: terminal held at V = 0
+  std::vector<std::vector<char>> grounded_;           ///< per lane and source: bus held at V = 0
   unsigned active_ = 0, fresh_ = 0;  ///< lanes that run; lanes whose first stage must be evaluated anew
+  unsigned tripped_ = 0;             ///< lanes in which a plant is tripped
 };
 
 }  // namespace swingbank::sim
 
+#include "sim/solve/lanes_algebra.hpp"
 #include "sim/solve/lanes_equations.hpp"
 #include "sim/solve/lanes_load.hpp"
 #include "sim/solve/lanes_record.hpp"

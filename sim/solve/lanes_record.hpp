@@ -81,13 +81,21 @@ void Lanes<T>::spread_constants(int lane) {
   Constants& to = per_sample_;
   copy(from.c, to.c, 0, to.c.size());
   const auto n = static_cast<std::size_t>(n_);
-  for (const auto& [source, target] :
-       {std::pair{&from.r, &to.r}, {&from.xs, &to.xs}, {&from.efd, &to.efd}, {&from.tm, &to.tm}})
+  for (const auto& [source, target] : {std::pair{&from.efd, &to.efd},
+                                       {&from.tm, &to.tm},
+                                       {&from.dvref, &to.dvref},
+                                       {&from.dpref, &to.dpref}})
     copy(*source, *target, 0, n);
-  for (int plant : recorded_) {
-    copy(from.g, to.g, static_cast<std::size_t>(plant) * n, n);
-    copy(from.b, to.b, static_cast<std::size_t>(plant) * n, n);
-  }
+  copy(from.vr, to.vr, 0, to.vr.size());
+  copy(from.vi, to.vi, 0, to.vi.size());
+  to.last_moment = T(Traits::get(from.last_moment, lane));
+  const auto row = [&](int source) {
+    const auto length = static_cast<std::size_t>(sources_);
+    copy(from.g, to.g, static_cast<std::size_t>(source) * length, length);
+    copy(from.b, to.b, static_cast<std::size_t>(source) * length, length);
+  };
+  for (int plant : recorded_) row(plant);
+  for (int source : nonlinear_) row(source);
 }
 
 /// Evaluates the first `count` waiting samples of a lane into its record; the rest (less than two packs) move
@@ -101,6 +109,11 @@ void Lanes<T>::evaluate_pending(int lane, int count) {
   for (int first = 0, now = 0; first < count; first += now) {
     for (std::size_t i = 0; i < n; ++i) kept_[i] = Traits::load(run.waiting.data() + i * kRoom + first);
     now = std::min(kLanes - run.recorded % kLanes, count - first);  // whole packs start on a cache line
+    if (timed_) {
+      alignas(64) double at[kLanes];
+      for (int l = 0; l < kLanes; ++l) at[l] = (run.recorded + l) / options_.rate;
+      signals_.t = minimum(Traits::load(at), per_sample_.last_moment);
+    }
     emfs(per_sample_, kept_.data());
     for (std::size_t k = 0; k < recorded_.size(); ++k) outputs(k, kept_.data(), run, now);
     run.recorded += now;
@@ -122,10 +135,12 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
   const PlantSlice& p = plants_[i];
   Signals<T>& s = signals_;
   current(per_sample_, i, s);
-  PlantEquations<T>::voltage(er_[i], ei_[i], per_sample_.r[i], per_sample_.xs[i], s);
-  PlantEquations<T>::terminal(s);
-  p.equations.signals(&per_sample_.c[static_cast<std::size_t>(p.c)], x + p.x,
-                      &m_[static_cast<std::size_t>(p.m)], s, unused_.data() + p.x);
+  const T* c = &per_sample_.c[static_cast<std::size_t>(p.c)];
+  p.equations.voltages(c, er_[i], ei_[i], s);
+  p.equations.signals(c, x + p.x, &m_[static_cast<std::size_t>(p.m)], s, unused_.data() + p.x);
+  T power, reactive, vr, vi;
+  p.equations.grid_power(c, s, power, reactive);
+  p.equations.grid_voltage(s, vr, vi);
   for (std::size_t j = 0; j < channels_.size(); ++j) {
     T v(0.0);
     switch (channels_[j]) {
@@ -136,13 +151,13 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
         v = s.speed;
         break;
       case Channel::P:
-        v = s.P;
+        v = power;
         break;
       case Channel::Q:
-        v = s.Q;
+        v = reactive;
         break;
       case Channel::V:
-        v = s.V;
+        v = p.equations.grid_magnitude(s, vr, vi);
         break;
       case Channel::Efd:
         v = s.Efd;
@@ -160,7 +175,7 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
         }
         using std::atan2;
         const T two_pi(6.28318530717958647692);
-        const T angle = atan2(s.Vi, s.Vr);
+        const T angle = atan2(vi, vr);
         v = angle + two_pi * round_nearest((x[p.x] - angle) / two_pi);  // the turn in which the rotor is
         run.theta[k] = Traits::get(v, count - 1);
         break;

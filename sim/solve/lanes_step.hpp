@@ -8,6 +8,11 @@ namespace swingbank::sim {
 /// First stage of the lanes that were loaded or switched; the others keep theirs (first same as last).
 template <class T>
 void Lanes<T>::evaluate_fresh() {
+  if (timed_) {
+    alignas(64) double now[kLanes];
+    for (int l = 0; l < kLanes; ++l) now[l] = lanes_[static_cast<std::size_t>(l)].clock.t;
+    time_ = Traits::load(now);
+  }
   derivative(y_.data(), kept_.data());
   const auto fresh = Traits::mask(fresh_);
   for (std::size_t i = 0; i < y_.size(); ++i) k_[0][i] = select(fresh, kept_[i], k_[0][i]);
@@ -26,6 +31,7 @@ void Lanes<T>::stage(T h) {
       if (dp54::a[Stage][j] != 0.0) sum = sum + T(dp54::a[Stage][j]) * k_[j][i];
     trial[i] = y[i] + h * sum;
   }
+  if (timed_) time_ = start_ + T(dp54::c[Stage]) * h;
   derivative(trial, k_[Stage].data());
 }
 
@@ -44,12 +50,19 @@ T Lanes<T>::scaled_error(T h) const {
 
 template <class T>
 T Lanes<T>::spread(const T* x) const {
-  T low = x[plants_[0].x], high = low;
-  for (const auto& p : plants_) {
-    low = minimum(low, x[p.x]);
-    high = maximum(high, x[p.x]);
+  T low(std::numeric_limits<double>::max()), high = -low;
+  for (std::size_t i = 0; i < plants_.size(); ++i) {
+    const T& delta = x[plants_[i].x];
+    if (tripped_ != 0) {
+      const auto on = per_lane_.on[i] > T(0.5);
+      low = minimum(low, select(on, delta, low));
+      high = maximum(high, select(on, delta, high));
+    } else {
+      low = minimum(low, delta);
+      high = maximum(high, delta);
+    }
   }
-  return high - low;
+  return maximum(high - low, T(0.0));
 }
 
 template <class T>
@@ -59,6 +72,21 @@ void Lanes<T>::commit(unsigned accepted) {
     y_[i] = select(ok, trial_[i], y_[i]);
     k_[0][i] = select(ok, k_[6][i], k_[0][i]);
   }
+  if (limited_) clamp_states();
+}
+
+/// States that overshot a limit within the step go back to it; their lanes' first stage is then evaluated
+/// anew.
+template <class T>
+void Lanes<T>::clamp_states() {
+  T moved(0.0);
+  for (const auto& p : plants_)
+    p.equations.clamp_states(&per_lane_.c[static_cast<std::size_t>(p.c)], &y_[static_cast<std::size_t>(p.x)],
+                             moved);
+  alignas(64) double by[kLanes];
+  Traits::store(moved, by);
+  for (int l = 0; l < kLanes; ++l)
+    if (by[l] > 0.0) fresh_ |= 1U << l;
 }
 
 /// After a step: lanes that lost synchronism or came to their end are handed over, lanes at a switching
@@ -96,10 +124,14 @@ void Lanes<T>::run(const Next& next, const Done& done) {
   while (active_ != 0) {
     if (fresh_ != 0) evaluate_fresh();
     alignas(64) double tried[kLanes], error[kLanes];
-    double start[kLanes];
+    alignas(64) double start[kLanes];
     bool reaches[kLanes];
     for (int l = 0; l < kLanes; ++l) tried[l] = lanes_[static_cast<std::size_t>(l)].clock.step(reaches[l]);
     const T h = Traits::load(tried);
+    if (timed_) {
+      for (int l = 0; l < kLanes; ++l) start[l] = lanes_[static_cast<std::size_t>(l)].clock.t;
+      start_ = Traits::load(start);
+    }
     stage<1>(h);
     stage<2>(h);
     stage<3>(h);

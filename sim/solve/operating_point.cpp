@@ -3,121 +3,198 @@
 #include <cmath>
 
 #include "sim/solve/grid.hpp"
+#include "sim/solve/plant_equations.hpp"
 
 namespace swingbank::sim {
 namespace {
 
-/// Where a block's coefficients and states begin.
+/// A block, its parameters, and where its coefficients and states begin.
+template <class T>
 struct Place {
-  const Block* block;
+  const Effect* effect;
+  const T* p;
   std::size_t c, x;
 };
 
+template <class T>
 class Initialiser {
  public:
-  Initialiser(const Plant& plant, Complex voltage, Complex power, const Conventions& conventions)
-      : plant_(plant) {
-    std::size_t c = 0, x = 0;
-    const auto add = [&](const Block& block) {
-      places_.push_back({&block, c, x});
-      c += static_cast<std::size_t>(block.effect->coefficients);
-      x += block.effect->states.size();
+  Initialiser(const Plant& plant, const std::vector<std::vector<T>>& parameters, Complex voltage,
+              Complex power, const Conventions& conventions)
+      : plant_(plant), equations_(plant) {
+    o_.c.assign(static_cast<std::size_t>(equations_.coefficients()), T(0.0));
+    o_.x.assign(static_cast<std::size_t>(equations_.states()), T(0.0));
+    scratch_.assign(static_cast<std::size_t>(equations_.scratch()), T(0.0));
+    std::size_t c = 0, x = 0, block = 0;
+    const auto add = [&](const Block& b, std::size_t more) {
+      places_.push_back({b.effect, parameters[block++].data(), c, x});
+      c += static_cast<std::size_t>(b.effect->coefficients) + more;
+      x += b.effect->states.size();
     };
-    add(plant.machine);
-    for (const Block& control : plant.controls) add(control);
-    o_.c.assign(c, 0.0);
-    o_.x.assign(x, 0.0);
-    scratch_.assign(static_cast<std::size_t>(plant.machine.effect->scratch), 0.0);
-    for (const Place& p : places_) ops(p).prepare(p.block->p.data(), conventions, o_.c.data() + p.c);
+    add(plant.machine, kJoint);
+    if (plant.transformer.effect) transformer_ = parameters[block++].data();
+    for (const Block& control : plant.controls) add(control, 0);
+    Conventions here = conventions;
+    here.mva = plant.mva;
+    for (const auto& p : places_) ops(p).prepare(p.p, here, o_.c.data() + p.c);
+    join();
     terminal(voltage, power);
   }
 
-  Operating run() {
-    const Place& machine = places_.front();
-    ops(machine).machine.source_impedance(machine.block->p.data(), o_.r, o_.xs);
-    held(ops(machine).machine.steady(machine.block->p.data(), coefficients(machine), o_.s, states(machine)),
-         machine);
+  OperatingOf<T> run() {
+    const auto& machine = places_.front();
+    held(ops(machine).machine.steady(machine.p, coefficients(machine), o_.s, states(machine)), machine);
     o_.Efd = o_.s.Efd;
     o_.Tm = o_.s.Tm;
     emf();
     ops(machine).machine.electrical(coefficients(machine), states(machine), scratch_.data(), o_.s);
-    for (std::size_t i = 1; i < places_.size(); ++i)
-      held(
-          ops(places_[i])
-              .control.steady(places_[i].block->p.data(), coefficients(places_[i]), o_.s, states(places_[i])),
-          places_[i]);
+    for (std::size_t i = 1; i < places_.size(); ++i) {
+      const auto& p = places_[i];
+      held(ops(p).control.steady(p.effect->law.get(), p.p, coefficients(p), o_.s, states(p)), p);
+    }
     problems_.raise();
-    verify();
+    within_limits();
+    standing();
     problems_.raise();
     return std::move(o_);
   }
 
  private:
-  static const Ops<double>& ops(const Place& p) { return p.block->effect->get<double>(); }
-  double* coefficients(const Place& p) { return o_.c.data() + p.c; }
-  double* states(const Place& p) { return o_.x.data() + p.x; }
+  static const Ops<T>& ops(const Place<T>& p) { return p.effect->template get<T>(); }
+  T* coefficients(const Place<T>& p) { return o_.c.data() + p.c; }
+  T* states(const Place<T>& p) { return o_.x.data() + p.x; }
   [[nodiscard]] std::string where() const { return "generator " + plant_.name; }
 
-  void terminal(Complex v, Complex s) {
-    const Complex i = std::conj(s / v);
-    o_.s.Vr = v.real();
-    o_.s.Vi = v.imag();
-    o_.s.V = std::abs(v);
-    o_.s.Ir = i.real();
-    o_.s.Ii = i.imag();
-    o_.s.P = s.real();
-    o_.s.Q = s.imag();
+  /// Impedances of machine and step-up transformer, as Joint says.
+  void join() {
+    T* j = o_.c.data() + plant_.machine.effect->coefficients;
+    ops(places_.front()).machine.source_impedance(places_.front().p, j[joint_rm], j[joint_xm]);
+    j[joint_ratio] = T(1.0);
+    j[joint_r] = j[joint_rm];
+    j[joint_x] = j[joint_xm];
+    if (!transformer_) return;
+    T r, x;
+    plant_.transformer.effect->template get<T>().transformer.impedance(transformer_, r, x, j[joint_ratio]);
+    const T square_ratio = j[joint_ratio] * j[joint_ratio];
+    j[joint_r] = square_ratio * (j[joint_rm] + r);
+    j[joint_x] = square_ratio * (j[joint_xm] + x);
   }
-  void held(const std::string& why, const Place& p) {
-    if (!why.empty())
-      problems_.add(std::string(p.block->effect->name) +
-                        " cannot hold the operating point P = " + std::to_string(o_.s.P) +
-                        " pu, Q = " + std::to_string(o_.s.Q) + " pu, V = " + std::to_string(o_.s.V) + " pu",
-                    where(), why, "change the model's parameters or the dispatch");
+  void terminal(Complex v, Complex power) {
+    const Complex i = std::conj(power / v);
+    Signals<T>& s = o_.s;
+    s.Vr = s.Vpr = T(v.real());
+    s.Vi = s.Vpi = T(v.imag());
+    s.Ir = T(i.real());
+    s.Ii = T(i.imag());
+    if (transformer_) equations_.through_transformer(o_.c.data(), s);
+    using std::sqrt;
+    s.V = s.Vc = sqrt(s.Vr * s.Vr + s.Vi * s.Vi);
+    s.P = s.Vr * s.Ir + s.Vi * s.Ii;
+    s.Q = s.Vi * s.Ir - s.Vr * s.Ii;
+  }
+  void held(const std::string& why, const Place<T>& p) {
+    if (why.empty()) return;
+    const Signals<T>& s = o_.s;
+    problems_.add(
+        fmt::format("{} cannot hold the operating point P = {:.4f} pu, Q = {:.4f} pu, V = {:.4f} pu",
+                    p.effect->name, value_of(s.P), value_of(s.Q), value_of(s.V)),
+        where(), why, "change the model's parameters or the dispatch");
   }
   /// The voltage behind the impedance must drive exactly the current the power flow asks for.
   void emf() {
-    double er = 0.0, ei = 0.0;
+    T er, ei;
+    const T* j = o_.c.data() + plant_.machine.effect->coefficients;
     ops(places_.front())
         .machine.emf(coefficients(places_.front()), states(places_.front()), scratch_.data(), er, ei);
-    const Complex drop = Complex(o_.r, o_.xs) * Complex(o_.s.Ir, o_.s.Ii);
-    const double gap = std::abs(Complex(er, ei) - Complex(o_.s.Vr, o_.s.Vi) - drop);
-    if (!(gap < kTolerance))
-      problems_.add(fmt::format("internal voltage off by {:.3g} pu", gap), where(),
-                    std::string(plant_.machine.effect->name) + " does not reproduce the terminal current",
+    Signals<T> again = o_.s;
+    if (equations_.nonlinear()) {
+      equations_.current(o_.c.data(), o_.x.data(), scratch_.data(), again);
+    } else {
+      const Complex z(value_of(j[joint_rm]), value_of(j[joint_xm]));
+      const Complex i =
+          (Complex(value_of(er), value_of(ei)) - Complex(value_of(o_.s.Vr), value_of(o_.s.Vi))) / z;
+      again.Ir = T(i.real());
+      again.Ii = T(i.imag());
+    }
+    const double gap =
+        std::hypot(value_of(again.Ir) - value_of(o_.s.Ir), value_of(again.Ii) - value_of(o_.s.Ii));
+    if (!(gap * std::hypot(value_of(j[joint_rm]), value_of(j[joint_xm])) < kTolerance))
+      problems_.add(fmt::format("terminal current off by {:.3g} pu", gap), where(),
+                    std::string(plant_.machine.effect->name) + " does not reproduce the operating point",
                     "check its parameters");
   }
-  void verify() {
-    std::vector<double> dx(o_.x.size(), 0.0);
-    // Efd and Tm are whatever the controls give; where a slot is empty they are held.
-    for (std::size_t i = 1; i < places_.size(); ++i)
-      ops(places_[i])
-          .control.evaluate(coefficients(places_[i]), states(places_[i]), o_.s, dx.data() + places_[i].x);
-    const Place& m = places_.front();
-    ops(m).machine.derivative(coefficients(m), states(m), scratch_.data(), o_.s, dx.data());
-    for (const Place& p : places_)
-      for (std::size_t k = 0; k < p.block->effect->states.size(); ++k)
-        if (!(std::abs(dx[p.x + k]) < kTolerance))
-          problems_.add("state " + std::string(p.block->effect->states[k].name) + " of " +
-                            std::string(p.block->effect->name) +
-                            fmt::format(" moves at {:.3g} per second", dx[p.x + k]),
+  void within_limits() {
+    for (const auto& p : places_)
+      for (std::size_t k = 0; k < p.effect->states.size(); ++k) {
+        const State& state = p.effect->states[k];
+        const double x = value_of(o_.x[p.x + k]);
+        const auto outside = [&](int limit, const char* side, bool wrong) {
+          if (!wrong) return;
+          problems_.add(fmt::format("{} of {} = {:.4g} {}", state.name, p.effect->name, x, state.unit),
+                        where(),
+                        fmt::format("its {} limit is {:.4g} {}", side,
+                                    value_of(o_.c[p.c + static_cast<std::size_t>(limit)]), state.unit),
+                        "widen the limit or change the dispatch");
+        };
+        const auto limit = [&](int index) { return value_of(o_.c[p.c + static_cast<std::size_t>(index)]); };
+        if (state.low >= 0) outside(state.low, "lower", x < limit(state.low) - kTolerance);
+        if (state.high >= 0) outside(state.high, "upper", x > limit(state.high) + kTolerance);
+      }
+  }
+  /// Efd and Tm are whatever the controls give; where a slot is empty they are held.
+  void standing() {
+    std::vector<T> dx(o_.x.size(), T(0.0));
+    Signals<T> s = o_.s;
+    s.Efd = o_.Efd;
+    s.Tm = o_.Tm;
+    s.t = T(-1.0);  // before anything that begins at a time
+    equations_.derivative(o_.c.data(), o_.x.data(), scratch_.data(), s, dx.data());
+    const auto off = [&](const char* signal, const T& is, const T& should) {
+      if (!(std::abs(value_of(is) - value_of(should)) < kTolerance))
+        problems_.add(fmt::format("{} = {:.6g} pu", signal, value_of(is)), where(),
+                      fmt::format("the machine needs {:.6g} pu at its operating point", value_of(should)),
+                      "check the limits of the model that makes it");
+    };
+    off("Efd", s.Efd, o_.Efd);
+    off("Tm", s.Tm, o_.Tm);
+    for (const auto& p : places_)
+      for (std::size_t k = 0; k < p.effect->states.size(); ++k)
+        if (!(std::abs(value_of(dx[p.x + k])) < kTolerance))
+          problems_.add(fmt::format("state {} of {} moves at {:.3g} per second", p.effect->states[k].name,
+                                    p.effect->name, value_of(dx[p.x + k])),
                         where(), "the operating point must be steady to 1e-9",
                         "check the model's parameters");
   }
 
   static constexpr double kTolerance = 1e-9;  // derivatives of order 1 cancel to rounding, 1e-14 or so
   const Plant& plant_;
-  std::vector<Place> places_;
-  std::vector<double> scratch_;
-  Operating o_{};
+  PlantEquations<T> equations_;
+  std::vector<Place<T>> places_;
+  const T* transformer_ = nullptr;
+  std::vector<T> scratch_;
+  OperatingOf<T> o_{};
   Problems problems_;
 };
 
 }  // namespace
 
+template <class T>
+OperatingOf<T> operating_point_of(const Plant& plant, const std::vector<std::vector<T>>& parameters,
+                                  Complex voltage, double base_mva, const Conventions& conventions) {
+  return Initialiser<T>(plant, parameters, voltage, plant.generation * (base_mva / plant.mva), conventions)
+      .run();
+}
+template OperatingOf<double> operating_point_of(const Plant&, const std::vector<std::vector<double>>&,
+                                                Complex, double, const Conventions&);
+template OperatingOf<D8> operating_point_of(const Plant&, const std::vector<std::vector<D8>>&, Complex,
+                                            double, const Conventions&);
+
 Operating operating_point(const Plant& plant, Complex voltage, double base_mva,
                           const Conventions& conventions) {
-  return Initialiser(plant, voltage, plant.generation * (base_mva / plant.mva), conventions).run();
+  std::vector<std::vector<double>> parameters{plant.machine.p};
+  if (plant.transformer.effect) parameters.push_back(plant.transformer.p);
+  for (const Block& control : plant.controls) parameters.push_back(control.p);
+  return operating_point_of<double>(plant, parameters, voltage, base_mva, conventions);
 }
 
 }  // namespace swingbank::sim

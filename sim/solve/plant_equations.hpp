@@ -1,23 +1,33 @@
 #pragma once
 // One plant's equations, whatever effects it is made of, in the order every integrator evaluates them:
-//   emf -> (network: terminal voltage and current) -> machine.electrical -> controls in order of Slot ->
-//   machine.derivative
-// States and coefficients of a plant lie back to back, machine first, as in Operating.
+//   emf -> (network: current) -> terminal -> machine.electrical -> controls in order of Slot ->
+//   machine.derivative -> non-windup limits
+// States of a plant lie back to back, machine first; coefficients likewise, with the plant's own (Joint)
+// after the machine's.
 #include <vector>
 
 #include "sim/solve/grid.hpp"
 
 namespace swingbank::sim {
 
+/// What a plant knows besides its effects' coefficients: impedance [pu on the machine's base] of the machine
+/// alone (rm, xm), and with the step-up transformer as the grid sees it (r, x); the transformer's ratio.
+enum Joint { joint_rm, joint_xm, joint_ratio, joint_r, joint_x, kJoint };
+
 template <class T>
 class PlantEquations {
  public:
   explicit PlantEquations(const Plant& plant) : machine_(plant.machine.effect->get<T>().machine) {
-    states_ = static_cast<int>(plant.machine.effect->states.size());
-    coefficients_ = plant.machine.effect->coefficients;
-    scratch_ = plant.machine.effect->scratch;
+    const Effect& machine = *plant.machine.effect;
+    scratch_ = machine.scratch;
+    joint_ = machine.coefficients;
+    has_transformer_ = plant.transformer.effect != nullptr;
+    limits(machine, 0);
+    states_ = static_cast<int>(machine.states.size());
+    coefficients_ = joint_ + kJoint;
     for (const Block& block : plant.controls) {
-      controls_.push_back({block.effect->get<T>().control, states_, coefficients_});
+      controls_.push_back({block.effect->get<T>().control, block.effect->law.get(), states_, coefficients_});
+      limits(*block.effect, coefficients_);
       states_ += static_cast<int>(block.effect->states.size());
       coefficients_ += block.effect->coefficients;
     }
@@ -25,34 +35,140 @@ class PlantEquations {
   [[nodiscard]] int states() const { return states_; }
   [[nodiscard]] int coefficients() const { return coefficients_; }
   [[nodiscard]] int scratch() const { return scratch_; }
+  /// Whether anything but the machine must be evaluated.
+  [[nodiscard]] bool machine_alone() const { return controls_.empty() && !has_transformer_ && !nonlinear(); }
+  /// Whether the current is no linear function of emf and voltage: see current().
+  [[nodiscard]] bool nonlinear() const { return machine_.current != nullptr; }
+  [[nodiscard]] bool limited() const { return !limits_.empty(); }
 
-  /// Voltage er + j ei behind the machine's impedance [pu, network frame]. m: scratch() values, kept for
+  /// Voltage er + j ei as the grid sees it behind r + jx [pu, network frame]. m: scratch() values, kept for
   /// derivative().
-  void emf(const T* c, const T* x, T* m, T& er, T& ei) const { machine_.emf(c, x, m, er, ei); }
+  void emf(const T* c, const T* x, T* m, T& er, T& ei) const {
+    machine_.emf(c, x, m, er, ei);
+    if (!has_transformer_) return;
+    er = er * c[joint_ + joint_ratio];
+    ei = ei * c[joint_ + joint_ratio];
+  }
+  /// Where nonlinear(): Vr, Vi at the terminal -> Ir, Ii, after emf().
+  void current(const T* c, const T* x, T* m, Signals<T>& s) const { machine_.current(c, x, m, s); }
+  [[nodiscard]] const T* impedance(const T* c) const { return c + joint_ + joint_r; }
 
-  /// Needs Vr, Vi, Ir, Ii [pu on the machine's base], and in s.Efd and s.Tm the values held where no exciter
-  /// or governor sets them. Fills every other signal, and dx with states() derivatives [1/s].
+  /// Vr, Vi at the terminal and Vpr, Vpi at the grid's side, with er + j ei from emf() and the current Ir, Ii
+  /// into the grid, which becomes that of the machine.
+  void voltages(const T* c, const T& er, const T& ei, Signals<T>& s) const {
+    const T* j = c + joint_;
+    if (!has_transformer_) {
+      s.Vr = er - j[joint_r] * s.Ir + j[joint_x] * s.Ii;
+      s.Vi = ei - j[joint_r] * s.Ii - j[joint_x] * s.Ir;
+      return;
+    }
+    s.Vpr = er - j[joint_r] * s.Ir + j[joint_x] * s.Ii;
+    s.Vpi = ei - j[joint_r] * s.Ii - j[joint_x] * s.Ir;
+    through_transformer(c, s);
+  }
+  /// The same from the voltage Vpr, Vpi at the grid's side: of no use behind V = 0.
+  void through_transformer(const T* c, Signals<T>& s) const {
+    const T* j = c + joint_;
+    const T n = j[joint_ratio], in = T(1.0) / n;
+    s.Ir = s.Ir * n;
+    s.Ii = s.Ii * n;
+    // machine's terminal = grid's side / n + zt It, and n^2 zt = (r + jx) - n^2 (rm + j xm)
+    const T rt = j[joint_r] * in * in - j[joint_rm], xt = j[joint_x] * in * in - j[joint_xm];
+    s.Vr = s.Vpr * in + rt * s.Ir - xt * s.Ii;
+    s.Vi = s.Vpi * in + rt * s.Ii + xt * s.Ir;
+  }
+
+  /// Currents and terminal voltage from the voltage Vpr, Vpi in s at the grid's side, after emf(). Returns
+  /// the current into the grid in ir, ii.
+  void from_grid(const T* c, const T* x, T* m, const T& er, const T& ei, Signals<T>& s, T& ir, T& ii) const {
+    if (nonlinear()) {  // never behind a transformer: make_grid refuses that
+      s.Vr = s.Vpr;
+      s.Vi = s.Vpi;
+      current(c, x, m, s);
+      ir = s.Ir;
+      ii = s.Ii;
+      return;
+    }
+    const T* j = c + joint_;
+    const T dr = er - s.Vpr, di = ei - s.Vpi;
+    const T k = T(1.0) / (j[joint_r] * j[joint_r] + j[joint_x] * j[joint_x]);
+    s.Ir = ir = (j[joint_r] * dr + j[joint_x] * di) * k;
+    s.Ii = ii = (j[joint_r] * di - j[joint_x] * dr) * k;
+    if (has_transformer_) return through_transformer(c, s);
+    s.Vr = s.Vpr;
+    s.Vi = s.Vpi;
+  }
+
+  /// After voltages() or from_grid(). In s.Efd and s.Tm stand the values held where no exciter or governor
+  /// sets them, in s.dVref, s.dPref and s.t what the event brings. Fills every other signal, and dx with
+  /// states() derivatives [1/s].
   void derivative(const T* c, const T* x, T* m, Signals<T>& s, T* dx) const {
-    terminal(s);
     signals(c, x, m, s, dx);
     machine_.derivative(c, x, m, s, dx);
+    hold_at_limits(c, x, dx);
   }
-  /// The same where nothing but the machine reads the terminal: no V, P, Q; only Ir and Ii are needed.
+  /// The same where machine_alone(): only Ir and Ii are needed.
   void machine_derivative(const T* c, const T* x, T* m, Signals<T>& s, T* dx) const {
     machine_.electrical(c, x, m, s);
     machine_.derivative(c, x, m, s, dx);
   }
-  /// After terminal(s): every other signal; dx gets the controls' derivatives.
+  /// Every signal; dx gets the controls' derivatives.
   void signals(const T* c, const T* x, T* m, Signals<T>& s, T* dx) const {
+    terminal(s);
     machine_.electrical(c, x, m, s);
-    for (const Control& k : controls_) k.ops.evaluate(c + k.coefficient, x + k.state, s, dx + k.state);
+    for (const Control& k : controls_) k.ops.evaluate(k.law, c + k.coefficient, x + k.state, s, dx + k.state);
   }
-  [[nodiscard]] bool has_controls() const { return !controls_.empty(); }
+  /// Takes states back to the limits they have crossed within a step; adds to `moved` how far.
+  void clamp_states(const T* c, T* x, T& moved) const {
+    for (const Limit& l : limits_) {
+      const T before = x[l.state];
+      if (l.low >= 0) x[l.state] = select(before < c[l.low], c[l.low], before);
+      if (l.high >= 0) x[l.state] = select(x[l.state] > c[l.high], c[l.high], x[l.state]);
+      moved = moved + positive_part(x[l.state] - before) + positive_part(before - x[l.state]);
+    }
+  }
+  /// Power into the grid: behind a transformer that of its far side.
+  void grid_power(const T* c, const Signals<T>& s, T& P, T& Q) const {
+    P = s.P;
+    Q = s.Q;
+    if (!has_transformer_) return;
+    const T in = T(1.0) / c[joint_ + joint_ratio];
+    P = (s.Vpr * s.Ir + s.Vpi * s.Ii) * in;
+    Q = (s.Vpi * s.Ir - s.Vpr * s.Ii) * in;
+  }
+  /// Voltage at the grid's side.
+  void grid_voltage(const Signals<T>& s, T& vr, T& vi) const {
+    vr = has_transformer_ ? s.Vpr : s.Vr;
+    vi = has_transformer_ ? s.Vpi : s.Vi;
+  }
+  [[nodiscard]] T grid_magnitude(const Signals<T>& s, const T& vr, const T& vi) const {
+    using std::sqrt;
+    return has_transformer_ ? sqrt(vr * vr + vi * vi + T(1e-24)) : s.V;
+  }
 
-  /// Vr, Vi at the terminal from the voltage e behind r + jx and the current in s.
-  static void voltage(const T& er, const T& ei, const T& r, const T& x, Signals<T>& s) {
-    s.Vr = er - r * s.Ir + x * s.Ii;
-    s.Vi = ei - r * s.Ii - x * s.Ir;
+ private:
+  struct Control {
+    ControlOps<T> ops;
+    const void* law;
+    int state, coefficient;
+  };
+  struct Limit {
+    int state, low, high;
+  };
+  void limits(const Effect& effect, int coefficient) {
+    for (std::size_t i = 0; i < effect.states.size(); ++i) {
+      const State& state = effect.states[i];
+      if (state.low < 0 && state.high < 0) continue;
+      limits_.push_back({states_ + static_cast<int>(i), state.low < 0 ? -1 : coefficient + state.low,
+                         state.high < 0 ? -1 : coefficient + state.high});
+    }
+  }
+  void hold_at_limits(const T* c, const T* x, T* dx) const {
+    for (const Limit& l : limits_) {
+      T& d = dx[l.state];
+      if (l.low >= 0) d = select(x[l.state] > c[l.low], d, positive_part(d));
+      if (l.high >= 0) d = select(x[l.state] < c[l.high], d, T(0.0) - positive_part(T(0.0) - d));
+    }
   }
   /// P, Q and V from terminal voltage and current.
   static void terminal(Signals<T>& s) {
@@ -60,18 +176,16 @@ class PlantEquations {
     s.P = s.Vr * s.Ir + s.Vi * s.Ii;
     s.Q = s.Vi * s.Ir - s.Vr * s.Ii;
     s.V = sqrt(s.Vr * s.Vr + s.Vi * s.Vi + T(1e-24));  // a dual needs a slope at V = 0
+    s.Vc = s.V;
     s.Vs = T(0.0);
     s.Vlimiter = T(0.0);
   }
 
- private:
-  struct Control {
-    ControlOps<T> ops;
-    int state, coefficient;
-  };
   MachineOps<T> machine_;
   std::vector<Control> controls_;
-  int states_ = 0, coefficients_ = 0, scratch_ = 0;
+  std::vector<Limit> limits_;
+  bool has_transformer_ = false;
+  int joint_ = 0, states_ = 0, coefficients_ = 0, scratch_ = 0;
 };
 
 }  // namespace swingbank::sim

@@ -23,15 +23,15 @@ void require(int flag, const char* call) {
     throw std::runtime_error(std::string(call) + " failed with SUNDIALS code " + std::to_string(flag));
 }
 
-int residual(realtype, N_Vector y, N_Vector yp, N_Vector f, void* user) {
+int residual(realtype t, N_Vector y, N_Vector yp, N_Vector f, void* user) {
   const auto& system = *static_cast<const ReferenceSystem*>(user);
-  system.residual(N_VGetArrayPointer(y), N_VGetArrayPointer(yp), N_VGetArrayPointer(f));
+  system.residual(t, N_VGetArrayPointer(y), N_VGetArrayPointer(yp), N_VGetArrayPointer(f));
   const double* value = N_VGetArrayPointer(f);
   // 1 asks IDA for a smaller step instead of going on with a value that is none.
   return std::all_of(value, value + system.size(), [](double v) { return std::isfinite(v); }) ? 0 : 1;
 }
 
-int jacobian(realtype, realtype a, N_Vector y, N_Vector, N_Vector, SUNMatrix j, void* user, N_Vector,
+int jacobian(realtype t, realtype a, N_Vector y, N_Vector, N_Vector, SUNMatrix j, void* user, N_Vector,
              N_Vector, N_Vector) {
   const auto& system = *static_cast<const ReferenceSystem*>(user);
   const auto& pattern = system.pattern();
@@ -39,7 +39,7 @@ int jacobian(realtype, realtype a, N_Vector y, N_Vector, N_Vector, SUNMatrix j, 
             SUNSparseMatrix_IndexPointers(j));
   std::copy(pattern.innerIndexPtr(), pattern.innerIndexPtr() + pattern.nonZeros(),
             SUNSparseMatrix_IndexValues(j));
-  system.jacobian(a, N_VGetArrayPointer(y), SUNSparseMatrix_Data(j));
+  system.jacobian(t, a, N_VGetArrayPointer(y), SUNSparseMatrix_Data(j));
   return 0;
 }
 
@@ -130,13 +130,13 @@ class Recorder {
     for (std::size_t b = 0; b < angle_.size(); ++b)
       if (!system.bolted(static_cast<int>(b)))
         angle_[b] = nearest(std::atan2(v[2 * b + 1], v[2 * b]), angle_[b]);
-    for (std::size_t i = 0; i < run_.plants.size(); ++i) record_plant(i, k, y, v);
+    for (std::size_t i = 0; i < run_.plants.size(); ++i) record_plant(i, k, system, y);
     for (std::size_t i = 0; i < run_.buses.size(); ++i) {
       const auto b = static_cast<std::size_t>(run_.buses[i]);
       run_.bus_v[i * run_.samples + k] = std::hypot(v[2 * b], v[2 * b + 1]);
       run_.bus_theta[i * run_.samples + k] = angle_[b];
     }
-    const double spread = angle_spread(y);
+    const double spread = angle_spread(system, y);
     run_.largest_spread = std::max(run_.largest_spread, spread);
     if (spread >= options_.lose_at) return finish(k, Outcome::lost_synchronism);
     if (!std::all_of(y, y + system.size(), [](double value) { return std::isfinite(value); }))
@@ -165,10 +165,15 @@ class Recorder {
     constexpr double kTurn = 2.0 * 3.14159265358979323846;
     return angle + kTurn * std::nearbyint((last - angle) / kTurn);
   }
-  void record_plant(std::size_t i, int k, const double* y, const double* v) {
-    const auto& unit = plants_.units()[run_.plants[i]];
-    const auto bus = static_cast<std::size_t>(unit.plant->bus);
-    const Signals<double> s = plants_.signals(unit, y, {v[2 * bus], v[2 * bus + 1]});
+  void record_plant(std::size_t i, int k, const ReferenceSystem& system, const double* y) {
+    const auto u = static_cast<std::size_t>(run_.plants[i]);
+    const auto& unit = plants_.units()[u];
+    Complex current;
+    const Signals<double> s = system.signals(u, k / options_.rate, y, current);
+    const Complex v = system.tripped(u) ? Complex(s.Vpr, s.Vpi)
+                                        : Complex(y[plants_.states() + 2 * unit.bus],
+                                                  y[plants_.states() + 2 * unit.bus + 1]);
+    const Complex power = system.tripped(u) ? Complex() : v * std::conj(current);
     for (std::size_t c = 0; c < run_.channels.size(); ++c) {
       double& value = run_.at(static_cast<int>(i), static_cast<int>(c))[k];
       switch (run_.channels[c]) {
@@ -179,16 +184,16 @@ class Recorder {
           value = s.speed;
           break;
         case Channel::P:
-          value = s.P;
+          value = power.real();
           break;
         case Channel::Q:
-          value = s.Q;
+          value = power.imag();
           break;
         case Channel::V:
-          value = std::hypot(s.Vr, s.Vi);
+          value = std::abs(v);
           break;
         case Channel::theta:
-          value = angle_[bus];
+          value = angle_[static_cast<std::size_t>(unit.bus)];
           break;
         case Channel::Efd:
           value = s.Efd;
@@ -202,10 +207,11 @@ class Recorder {
       }
     }
   }
-  [[nodiscard]] double angle_spread(const double* y) const {
+  [[nodiscard]] double angle_spread(const ReferenceSystem& system, const double* y) const {
     double low = 1e300, high = -1e300;
-    for (const auto& unit : plants_.units()) {
-      if (unit.delta < 0) continue;
+    for (std::size_t u = 0; u < plants_.units().size(); ++u) {
+      const auto& unit = plants_.units()[u];
+      if (unit.delta < 0 || system.tripped(u)) continue;
       low = std::min(low, y[unit.first + unit.delta]);
       high = std::max(high, y[unit.first + unit.delta]);
     }
@@ -233,7 +239,7 @@ ReferenceRun run_reference(const Grid& grid, const Event& event, const Reference
   ReferenceRun run;
   const ReferencePlants plants(grid);
   Recorder recorder(grid, plants, options, run);
-  std::vector<Segment> parts = segments(event, grid.network);
+  const std::vector<Segment> parts = segments(event, grid.network, plants.instants());
 
   SUNContext raw = nullptr;
   require(SUNContext_Create(nullptr, &raw), "SUNContext_Create");
@@ -245,16 +251,17 @@ ReferenceRun run_reference(const Grid& grid, const Event& event, const Reference
 
   int k = 0;
   // The left limit at t = 0 is the operating point itself, even if the event starts there.
-  if (!options.after_switching || !(parts.front().topology != Topology{})) {
-    if (!recorder.record(k++, ReferenceSystem(grid, plants, {}), values)) return run;
+  if (!options.after_switching || parts.front().topology == Topology{}) {
+    if (!recorder.record(k++, ReferenceSystem(grid, plants, {}, options.t_end), values)) return run;
   }
   for (std::size_t p = 0; p < parts.size() && parts[p].start < options.t_end + kSameInstant; ++p) {
     const double start = parts[p].start;
     const bool last = p + 1 == parts.size() || parts[p + 1].start > options.t_end;
     const double end = last ? options.t_end : parts[p + 1].start;
-    const ReferenceSystem system(grid, plants, parts[p].topology);
-    system.solve_voltages(values);
-    system.derivatives(values, N_VGetArrayPointer(yp.get()));
+    const ReferenceSystem system(grid, plants, parts[p], last ? 2 * options.t_end + 1.0 : end);
+    (void)system.clamp_states(values);
+    system.solve_voltages(start, values);
+    system.derivatives(start, values, N_VGetArrayPointer(yp.get()));
     const auto time = [&] { return k / options.rate; };
     if (k < run.samples && time() < start + kSameInstant && !recorder.record(k++, system, values)) return run;
     if (end - start < kSameInstant) continue;

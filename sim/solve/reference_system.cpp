@@ -1,23 +1,16 @@
 #include "sim/solve/reference_system.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "sim/network/admittance.hpp"
-#include "sim/network/connectivity.hpp"
 
 namespace swingbank::sim {
 namespace {
-
-/// Adds the current a machine sends into the network to its signals; T is double or a dual.
-template <class T>
-void terminal(const T& er, const T& ei, const Complex& y, Signals<T>& s) {
-  const T dr = er - s.Vr, di = ei - s.Vi;
-  s.Ir = T(y.real()) * dr - T(y.imag()) * di;
-  s.Ii = T(y.imag()) * dr + T(y.real()) * di;
-}
 
 int delta_state(const Effect& machine) {
   for (std::size_t i = 0; i < machine.states.size(); ++i)
@@ -25,63 +18,85 @@ int delta_state(const Effect& machine) {
   return -1;
 }
 
-/// Buses that no machine and no fault can hold to a voltage: their equations have no solution.
-std::vector<int> cut_off(const Grid& grid, const Topology& topology) {
-  const std::vector<int> island = islands(grid.network, topology.open);
-  std::vector<bool> held(island.size() + 1, false);
-  for (const Plant& plant : grid.plants) held[island[plant.bus] + 1] = true;
-  for (const auto& [bus, z] : topology.faults) held[island[bus] + 1] = true;
-  held[0] = true;  // isolated buses (-1) are out of the grid
-  std::vector<int> lost;
-  for (int b = 0; b < static_cast<int>(island.size()); ++b)
-    if (!held[island[b] + 1]) lost.push_back(b);
-  return lost;
+template <class T>
+const std::vector<T>& coefficients(const ReferencePlants::Unit& unit) {
+  if constexpr (std::is_same_v<T, double>)
+    return unit.operating.c;
+  else
+    return unit.coefficients;
+}
+template <class T>
+const auto& plant_equations(const ReferencePlants::Unit& unit) {
+  if constexpr (std::is_same_v<T, double>)
+    return *unit.equations;
+  else
+    return *unit.sensitivities;
+}
+template <class T>
+const auto& load_equations(const ReferencePlants::Unit& unit) {
+  if constexpr (std::is_same_v<T, double>)
+    return *unit.consumption;
+  else
+    return *unit.consumption_sensitivities;
 }
 
 }  // namespace
 
 ReferencePlants::ReferencePlants(const Grid& grid) {
-  units_.reserve(grid.plants.size());
+  units_.reserve(grid.plants.size() + grid.loads.size());
+  const auto place = [&](Unit unit) {
+    unit.coefficients.assign(unit.operating.c.begin(), unit.operating.c.end());
+    unit.first = states_;
+    states_ += unit.states;
+    units_.push_back(std::move(unit));
+  };
   for (const Plant& plant : grid.plants) {
-    Operating op =
+    Unit unit;
+    unit.plant = &plant;
+    unit.operating =
         operating_point(plant, grid.flow.voltage[plant.bus], grid.network.base_mva, grid.conventions);
-    const Complex y = 1.0 / Complex(op.r, op.xs);
-    units_.push_back({&plant, std::move(op), PlantEquations<double>(plant), PlantEquations<D8>(plant),
-                      states_, delta_state(*plant.machine.effect), y, plant.mva / grid.network.base_mva});
-    states_ += units_.back().equations.states();
+    unit.equations.emplace(plant);
+    unit.sensitivities.emplace(plant);
+    unit.bus = plant.bus;
+    unit.states = unit.equations->states();
+    unit.delta = delta_state(*plant.machine.effect);
+    unit.scale = plant.mva / grid.network.base_mva;
+    place(std::move(unit));
+    const auto more = instants_of(plant);
+    instants_.insert(instants_.end(), more.begin(), more.end());
+  }
+  for (const Consumer& load : grid.loads) {
+    Unit unit;
+    unit.load = &load;
+    unit.operating = load_operating_point(load, load.block.p, grid.flow.voltage[load.bus],
+                                          grid.network.base_mva, grid.conventions);
+    unit.consumption.emplace(load);
+    unit.consumption_sensitivities.emplace(load);
+    unit.bus = load.bus;
+    unit.states = unit.consumption->states();
+    unit.delta = -1;
+    unit.scale = load.mva / grid.network.base_mva;
+    place(std::move(unit));
   }
 }
 
-Complex ReferencePlants::emf(const Unit& unit, const double* y) const {
-  std::vector<double> m(unit.equations.scratch());
-  double er, ei;
-  unit.equations.emf(unit.operating.c.data(), y + unit.first, m.data(), er, ei);
-  return {er, ei};
-}
-
-Signals<double> ReferencePlants::signals(const Unit& unit, const double* y, Complex v, double* dx) const {
-  std::vector<double> m(unit.equations.scratch()), unused(unit.equations.states());
-  const double* c = unit.operating.c.data();
-  const double* x = y + unit.first;
-  double er, ei;
-  unit.equations.emf(c, x, m.data(), er, ei);
-  Signals<double> s;
-  s.Vr = v.real();
-  s.Vi = v.imag();
-  s.Efd = unit.operating.Efd;
-  s.Tm = unit.operating.Tm;
-  terminal(er, ei, unit.y, s);
-  unit.equations.derivative(c, x, m.data(), s, dx ? dx : unused.data());
-  return s;
-}
-
-ReferenceSystem::ReferenceSystem(const Grid& grid, const ReferencePlants& plants, const Topology& topology)
-    : plants_(plants), buses_(static_cast<int>(grid.network.buses.size())), bolted_(buses_, false) {
-  if (const std::vector<int> lost = cut_off(grid, topology); !lost.empty())
-    throw InputError({"cut off: " + bus_list(grid.network, lost), grid.network.origin,
-                      "no machine and no fault is left in that part of the grid",
-                      "keep a branch to it closed, or take it out of the network"});
-  build_network(grid, topology);
+ReferenceSystem::ReferenceSystem(const Grid& grid, const ReferencePlants& plants, const Segment& segment,
+                                 double end)
+    : plants_(plants),
+      grid_(grid),
+      buses_(static_cast<int>(grid.network.buses.size())),
+      last_moment_(end - kBeforeSwitching),
+      bolted_(buses_, false),
+      tripped_(plants.units().size(), false),
+      setpoint_(plants.units().size()) {
+  for (std::size_t u = 0; u < plants.units().size(); ++u) {
+    if (!plants.units()[u].plant) continue;
+    const int generator = plants.units()[u].plant->generator;
+    tripped_[u] = std::ranges::binary_search(segment.topology.tripped, generator);
+    for (const Setpoint& move : segment.setpoints)
+      if (move.generator == generator) setpoint_[u] = move;
+  }
+  build_network(grid, segment.topology);
   build_pattern();
 }
 
@@ -89,7 +104,7 @@ void ReferenceSystem::build_network(const Grid& grid, const Topology& topology) 
   for (int b : bolted_buses(topology)) bolted_[b] = true;
   for (int b = 0; b < buses_; ++b)
     if (grid.network.buses[b].type == BusType::isolated) bolted_[b] = true;  // out of the grid: V = 0
-  y_ = dynamic_admittance(grid.network, grid.flow, topology);
+  y_ = dynamic_admittance(grid.network, grid.flow, topology, grid.modelled_loads());
   y_.prune([&](Eigen::Index row, Eigen::Index, const Complex&) { return !bolted_[row]; });
 }
 
@@ -111,14 +126,14 @@ void ReferenceSystem::build_pattern() {
     }
   }
   std::vector<std::vector<int>> members;
-  for (const auto& unit : plants_.units()) {
-    std::vector<int>& index = members.emplace_back(unit.equations.states());
+  for (const Unit& unit : plants_.units()) {
+    std::vector<int>& index = members.emplace_back(unit.states);
     std::iota(index.begin(), index.end(), unit.first);
-    index.push_back(bus_row(unit.plant->bus));
-    index.push_back(bus_row(unit.plant->bus) + 1);
+    index.push_back(bus_row(unit.bus));
+    index.push_back(bus_row(unit.bus) + 1);
     for (int col : index)
       for (int row : index)
-        if (row < plants_.states() || !bolted_[unit.plant->bus]) add(row, col, 0.0);
+        if (row < plants_.states() || !bolted_[unit.bus]) add(row, col, 0.0);
   }
   constant_.resize(size(), size());
   constant_.setFromTriplets(entries.begin(), entries.end());
@@ -132,49 +147,92 @@ void ReferenceSystem::build_pattern() {
       for (int row : members[u]) {
         const auto* place = std::lower_bound(inner + outer[col], inner + outer[col + 1], row);
         const bool found = place != inner + outer[col + 1] && *place == row;
-        const bool fixed = row >= plants_.states() && bolted_[plants_.units()[u].plant->bus];
+        const bool fixed = row >= plants_.states() && bolted_[plants_.units()[u].bus];
         places_[u].push_back(found && !fixed ? static_cast<int>(place - inner) : -1);
       }
 }
 
-void ReferenceSystem::solve_voltages(double* y) const {
-  std::vector<Eigen::Triplet<Complex>> entries;
-  Eigen::VectorXcd injected = Eigen::VectorXcd::Zero(buses_);
-  for (int b = 0; b < buses_; ++b) {
-    if (bolted_[b]) entries.emplace_back(b, b, 1.0);
-    for (decltype(y_)::InnerIterator it(y_, b); it; ++it)
-      entries.emplace_back(b, static_cast<int>(it.col()), it.value());
+/// One unit at bus voltage vr + j vi: signals, derivatives of its states, current into the grid.
+template <class T>
+Signals<T> ReferenceSystem::evaluate(std::size_t u, double t, const T* x, const T& vr, const T& vi, T* dx,
+                                     T& ir, T& ii) const {
+  const Unit& unit = plants_.units()[u];
+  const T* c = coefficients<T>(unit).data();
+  Signals<T> s;
+  s.Vpr = s.Vr = vr;
+  s.Vpi = s.Vi = vi;
+  s.t = T(std::min(t, last_moment_));
+  if (unit.load) {
+    load_equations<T>(unit).current(c, x, s);
+    load_equations<T>(unit).derivative(c, x, s, dx);
+    ir = s.Ir;
+    ii = s.Ii;
+    return s;
   }
-  for (const auto& unit : plants_.units()) {
-    const int b = unit.plant->bus;
-    if (bolted_[b]) continue;
-    entries.emplace_back(b, b, unit.y * unit.scale);
-    injected[b] += unit.y * unit.scale * plants_.emf(unit, y);
+  s.Efd = T(unit.operating.Efd);
+  s.Tm = T(unit.operating.Tm);
+  s.dVref = T(setpoint_[u].dVref);
+  s.dPref = T(setpoint_[u].dPref);
+  const auto& equations = plant_equations<T>(unit);
+  std::vector<T> m(equations.scratch());
+  T er, ei;
+  equations.emf(c, x, m.data(), er, ei);
+  if (tripped_[u]) {  // stands still, open-circuited
+    s.Vpr = er;
+    s.Vpi = ei;
   }
-  Eigen::SparseMatrix<Complex> matrix(buses_, buses_);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  Eigen::SparseLU<Eigen::SparseMatrix<Complex>> lu(matrix);
-  Eigen::VectorXcd v = Eigen::VectorXcd::Constant(buses_, std::nan(""));
-  if (lu.info() == Eigen::Success) {
-    v = lu.solve(injected);
-    v += lu.solve(injected - matrix * v)
-             .eval();  // one refinement: a fault impedance of 1e-6 pu stretches the scale
-  }
-  for (int b = 0; b < buses_; ++b) {
-    y[bus_row(b)] = bolted_[b] ? 0.0 : v[b].real();
-    y[bus_row(b) + 1] = bolted_[b] ? 0.0 : v[b].imag();
-  }
+  equations.from_grid(c, x, m.data(), er, ei, s, ir, ii);
+  equations.derivative(c, x, m.data(), s, dx);
+  if (tripped_[u]) std::fill(dx, dx + unit.states, T(0.0));
+  return s;
 }
 
-void ReferenceSystem::derivatives(const double* y, double* yp) const {
+Signals<double> ReferenceSystem::signals(std::size_t u, double t, const double* y, Complex& current,
+                                         double* dx) const {
+  const Unit& unit = plants_.units()[u];
+  std::vector<double> unused(unit.states);
+  const double* v = y + bus_row(unit.bus);
+  double ir, ii;
+  const auto s = evaluate<double>(u, t, y + unit.first, v[0], v[1], dx ? dx : unused.data(), ir, ii);
+  current = {ir, ii};
+  return s;
+}
+
+void ReferenceSystem::solve_voltages(double t, double* y) const {
+  constexpr int limit = 50;
+  constexpr double tolerance = 1e-12;  // [pu of voltage]: rounding of a matrix of faults and lines is below
+  for (int b = 0; b < buses_; ++b)
+    if (bolted_[b]) y[bus_row(b)] = y[bus_row(b) + 1] = 0.0;
+  std::vector<double> yp(size(), 0.0), f(size());
+  Eigen::SparseMatrix<double> j = constant_;
+  for (int iteration = 0; iteration < limit; ++iteration) {
+    residual(t, y, yp.data(), f.data());
+    jacobian(t, 0.0, y, j.valuePtr());
+    const Eigen::SparseMatrix<double> jv = j.bottomRightCorner(2 * buses_, 2 * buses_);
+    Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(jv);
+    if (lu.info() != Eigen::Success) break;
+    const Eigen::Map<const Eigen::VectorXd> rest(f.data() + plants_.states(), 2 * buses_);
+    Eigen::VectorXd step = lu.solve(rest);
+    step += lu.solve(rest - jv * step).eval();  // a fault impedance of 1e-6 pu stretches the scale
+    double largest = step.cwiseAbs().maxCoeff();
+    if (!std::isfinite(largest)) break;
+    if (largest > 1.0) step *= 1.0 / largest;  // a load of constant power may throw the first steps far
+    for (int i = 0; i < 2 * buses_; ++i) y[plants_.states() + i] -= step[i];
+    if (largest < tolerance) return;
+  }
+  throw InputError({"no voltages satisfy the network", fmt::format("t = {:g} s", t),
+                    "the loads and sources have no common solution after this switching",
+                    "use load models that give way at low voltage, or another event"});
+}
+
+void ReferenceSystem::derivatives(double t, const double* y, double* yp) const {
   std::fill(yp, yp + size(), 0.0);
-  for (const auto& unit : plants_.units()) {
-    const double* v = y + bus_row(unit.plant->bus);
-    (void)plants_.signals(unit, y, {v[0], v[1]}, yp + unit.first);
-  }
+  Complex unused;
+  for (std::size_t u = 0; u < plants_.units().size(); ++u)
+    (void)signals(u, t, y, unused, yp + plants_.units()[u].first);
 }
 
-void ReferenceSystem::residual(const double* y, const double* yp, double* f) const {
+void ReferenceSystem::residual(double t, const double* y, const double* yp, double* f) const {
   for (int b = 0; b < buses_; ++b) {
     const double* v = y + bus_row(b);
     Complex current = bolted_[b] ? Complex(v[0], v[1]) : Complex();
@@ -185,46 +243,48 @@ void ReferenceSystem::residual(const double* y, const double* yp, double* f) con
     f[bus_row(b)] = current.real();
     f[bus_row(b) + 1] = current.imag();
   }
-  for (const auto& unit : plants_.units()) {
-    const int b = unit.plant->bus, row = bus_row(b);
+  for (std::size_t u = 0; u < plants_.units().size(); ++u) {
+    const Unit& unit = plants_.units()[u];
     double* dx = f + unit.first;
-    const Signals<double> s = plants_.signals(unit, y, {y[row], y[row + 1]}, dx);
-    for (int i = 0; i < unit.equations.states(); ++i) dx[i] = yp[unit.first + i] - dx[i];
-    if (bolted_[b]) continue;
-    f[row] -= s.Ir * unit.scale;
-    f[row + 1] -= s.Ii * unit.scale;
+    Complex current;
+    (void)signals(u, t, y, current, dx);
+    for (int i = 0; i < unit.states; ++i) dx[i] = yp[unit.first + i] - dx[i];
+    if (bolted_[unit.bus] || tripped_[u]) continue;
+    f[bus_row(unit.bus)] -= current.real() * unit.scale;
+    f[bus_row(unit.bus) + 1] -= current.imag() * unit.scale;
   }
 }
 
-void ReferenceSystem::jacobian(double a, const double* y, double* values) const {
-  std::copy(constant_.valuePtr(), constant_.valuePtr() + constant_.nonZeros(), values);
-  for (std::size_t u = 0; u < plants_.units().size(); ++u) plant_jacobian(u, a, y, values);
+bool ReferenceSystem::clamp_states(double* y) const {
+  double moved = 0.0;
+  for (const Unit& unit : plants_.units())
+    if (unit.equations) unit.equations->clamp_states(unit.operating.c.data(), y + unit.first, moved);
+  return moved > 0.0;
 }
 
-void ReferenceSystem::plant_jacobian(std::size_t u, double a, const double* y, double* values) const {
-  const auto& unit = plants_.units()[u];
-  const int n = unit.equations.states(), members = n + 2, row = bus_row(unit.plant->bus);
-  const std::vector<D8> c(unit.operating.c.begin(), unit.operating.c.end());
-  std::vector<D8> x(members), m(unit.equations.scratch()), dx(n);
+void ReferenceSystem::jacobian(double t, double a, const double* y, double* values) const {
+  std::copy(constant_.valuePtr(), constant_.valuePtr() + constant_.nonZeros(), values);
+  for (std::size_t u = 0; u < plants_.units().size(); ++u) unit_jacobian(u, t, a, y, values);
+}
+
+void ReferenceSystem::unit_jacobian(std::size_t u, double t, double a, const double* y,
+                                    double* values) const {
+  const Unit& unit = plants_.units()[u];
+  const int n = unit.states, members = n + 2, row = bus_row(unit.bus);
+  std::vector<D8> x(members), dx(n);
   for (int from = 0; from < members; from += kDirections) {
     for (int i = 0; i < members; ++i) x[i] = D8(i < n ? y[unit.first + i] : y[row + i - n]);
     const int to = std::min(from + kDirections, members);
     for (int i = from; i < to; ++i) x[i].d[i - from] = 1.0;
-    Signals<D8> s;
-    D8 er, ei;
-    unit.sensitivities.emf(c.data(), x.data(), m.data(), er, ei);
-    s.Vr = x[n];
-    s.Vi = x[n + 1];
-    s.Efd = D8(unit.operating.Efd);
-    s.Tm = D8(unit.operating.Tm);
-    terminal(er, ei, unit.y, s);
-    unit.sensitivities.derivative(c.data(), x.data(), m.data(), s, dx.data());
+    D8 ir, ii;
+    (void)evaluate<D8>(u, t, x.data(), x[n], x[n + 1], dx.data(), ir, ii);
     for (int col = from; col < to; ++col) {
       const int* place = places_[u].data() + col * members;
       const int k = col - from;
       for (int i = 0; i < n; ++i) values[place[i]] += (i == col ? a : 0.0) - dx[i].d[k];
-      if (place[n] >= 0) values[place[n]] -= s.Ir.d[k] * unit.scale;
-      if (place[n + 1] >= 0) values[place[n + 1]] -= s.Ii.d[k] * unit.scale;
+      if (tripped_[u]) continue;
+      if (place[n] >= 0) values[place[n]] -= ir.d[k] * unit.scale;
+      if (place[n + 1] >= 0) values[place[n + 1]] -= ii.d[k] * unit.scale;
     }
   }
 }

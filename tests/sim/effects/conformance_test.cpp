@@ -85,7 +85,7 @@ TEST(Conformance, RecordsAreComplete) {
     }
     for (int column : e.dyr_columns) EXPECT_LT(column, static_cast<int>(e.parameters.size())) << e.name;
     Problems problems;
-    e.check(e.standard_parameters().data(), "test", problems);
+    e.check(nullptr, e.standard_parameters().data(), "test", problems);
     EXPECT_TRUE(problems.empty()) << e.name << ": standard values are refused";
   }
 }
