@@ -251,7 +251,7 @@ ReferenceRun run_reference(const Grid& grid, const Event& event, const Reference
 
   int k = 0;
   // The left limit at t = 0 is the operating point itself, even if the event starts there.
-  if (!options.after_switching || parts.front().topology == Topology{}) {
+  if (!options.after_switching || (parts.front().topology == Topology{} && parts.front().setpoints.empty())) {
     if (!recorder.record(k++, ReferenceSystem(grid, plants, {}, options.t_end), values)) return run;
   }
   for (std::size_t p = 0; p < parts.size() && parts[p].start < options.t_end + kSameInstant; ++p) {

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "sim/network/admittance.hpp"
+#include "sim/network/connectivity.hpp"
 
 namespace swingbank::sim {
 namespace {
@@ -16,6 +17,20 @@ int delta_state(const Effect& machine) {
   for (std::size_t i = 0; i < machine.states.size(); ++i)
     if (machine.states[i].name == "delta") return static_cast<int>(i);
   return -1;
+}
+
+/// Buses that no machine and no fault can hold to a voltage: their equations have no solution.
+std::vector<int> cut_off(const Grid& grid, const Topology& topology) {
+  const std::vector<int> island = islands(grid.network, topology.open);
+  std::vector<bool> held(island.size() + 1, false);
+  for (const Plant& plant : grid.plants)
+    if (!std::ranges::binary_search(topology.tripped, plant.generator)) held[island[plant.bus] + 1] = true;
+  for (const auto& [bus, z] : topology.faults) held[island[bus] + 1] = true;
+  held[0] = true;  // isolated buses (-1) are out of the grid
+  std::vector<int> lost;
+  for (int b = 0; b < static_cast<int>(island.size()); ++b)
+    if (!held[island[b] + 1]) lost.push_back(b);
+  return lost;
 }
 
 template <class T>
@@ -96,6 +111,10 @@ ReferenceSystem::ReferenceSystem(const Grid& grid, const ReferencePlants& plants
     for (const Setpoint& move : segment.setpoints)
       if (move.generator == generator) setpoint_[u] = move;
   }
+  if (const std::vector<int> lost = cut_off(grid, segment.topology); !lost.empty())
+    throw InputError({"cut off: " + bus_list(grid.network, lost), grid.network.origin,
+                      "no machine and no fault is left in that part of the grid",
+                      "keep a branch to it closed, or take it out of the network"});
   build_network(grid, segment.topology);
   build_pattern();
 }
@@ -218,6 +237,8 @@ void ReferenceSystem::solve_voltages(double t, double* y) const {
     if (!std::isfinite(largest)) break;
     if (largest > 1.0) step *= 1.0 / largest;  // a load of constant power may throw the first steps far
     for (int i = 0; i < 2 * buses_; ++i) y[plants_.states() + i] -= step[i];
+    for (int b = 0; b < buses_; ++b)
+      if (bolted_[b]) y[bus_row(b)] = y[bus_row(b) + 1] = 0.0;
     if (largest < tolerance) return;
   }
   throw InputError({"no voltages satisfy the network", fmt::format("t = {:g} s", t),

@@ -54,25 +54,25 @@ TEST(Reference, JacobianEqualsCentralDifferences) {
   Topology topology;
   topology.faults = {
       {grid.network.bus_index(2), Complex()}};  // a machine's own bus: its network rows are V = 0
-  const ReferenceSystem system(grid, plants, topology);
+  const ReferenceSystem system(grid, plants, {0.0, topology, {}}, 1.0);
   const int n = system.size();
   std::vector<double> y(n, 0.0), yp(n, 0.0), low(n), high(n);
   for (const auto& unit : plants.units())
     std::copy(unit.operating.x.begin(), unit.operating.x.end(), y.begin() + unit.first);
   std::mt19937_64 random(1);  // away from steady state, so that no term is zero by chance
   for (auto& value : y) value += 1e-3 * (static_cast<double>(random() % 2001) / 1000.0 - 1.0);
-  system.solve_voltages(y.data());
+  system.solve_voltages(0.0, y.data());
   const double a = 7.0;
   Eigen::SparseMatrix<double> jacobian = system.pattern();
-  system.jacobian(a, y.data(), jacobian.valuePtr());
+  system.jacobian(0.0, a, y.data(), jacobian.valuePtr());
   for (int col = 0; col < n; ++col) {
     const double h = 1e-5, keep = y[col], keep_p = yp[col];
     y[col] = keep + h;
     yp[col] = keep_p + a * h;
-    system.residual(y.data(), yp.data(), high.data());
+    system.residual(0.0, y.data(), yp.data(), high.data());
     y[col] = keep - h;
     yp[col] = keep_p - a * h;
-    system.residual(y.data(), yp.data(), low.data());
+    system.residual(0.0, y.data(), yp.data(), low.data());
     y[col] = keep;
     yp[col] = keep_p;
     for (int row = 0; row < n; ++row) {
@@ -89,13 +89,13 @@ TEST(Reference, SolvedVoltagesSatisfyTheEquations) {
   for (const Complex z : {Complex(), Complex(0, 1e-6), Complex(0.01, 0.02)}) {
     Topology topology;
     topology.faults = {{grid.network.bus_index(16), z}};
-    const ReferenceSystem system(grid, plants, topology);
+    const ReferenceSystem system(grid, plants, {0.0, topology, {}}, 1.0);
     std::vector<double> y(system.size()), yp(system.size()), f(system.size());
     for (const auto& unit : plants.units())
       std::copy(unit.operating.x.begin(), unit.operating.x.end(), y.begin() + unit.first);
-    system.solve_voltages(y.data());
-    system.derivatives(y.data(), yp.data());
-    system.residual(y.data(), yp.data(), f.data());
+    system.solve_voltages(0.0, y.data());
+    system.derivatives(0.0, y.data(), yp.data());
+    system.residual(0.0, y.data(), yp.data(), f.data());
     // currents of 1e2 pu through admittances of 1e6 pu leave 1e6 * 1e-16 * a few
     for (double value : f) EXPECT_LT(std::abs(value), 1e-8);
   }

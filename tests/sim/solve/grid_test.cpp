@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "sim/solve/plant_equations.hpp"
 #include "tests/sim/network/raw_case.hpp"
 
 namespace swingbank::sim {
@@ -167,7 +168,9 @@ TEST_P(OperatingPoints, AreSteadyAndFeedTheNetwork) {
       double er = 0.0, ei = 0.0;
       machine.emf(o.c.data(), o.x.data(), scratch.data(), er, ei);
       Signals<double> s = o.s;
-      const Complex i = (Complex(er, ei) - v) / Complex(o.r, o.xs);
+      double r = 0.0, x = 0.0;
+      machine.source_impedance(plant.machine.p.data(), r, x);
+      const Complex i = (Complex(er, ei) - v) / Complex(r, x);
       s.Ir = i.real();
       s.Ii = i.imag();
       s.Efd = o.Efd;
@@ -206,7 +209,8 @@ TEST(OperatingPoint, OfAnInfiniteBusStandsStill) {
   const Grid grid = load({}, plain_dyr());
   const Operating o = operating_point(grid.plants[0], grid.flow.voltage[0], 100.0, grid.conventions);
   EXPECT_EQ(o.x[1], 0.0);
-  EXPECT_EQ(o.xs, 0.3);
+  const PlantEquations<double> equations(grid.plants[0]);
+  EXPECT_EQ(equations.impedance(o.c.data())[1], 0.3);
 }
 
 TEST(OperatingPoint, AnImpossiblePointNamesThePlant) {
