@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <sstream>
 
 namespace swingbank::sim::psse {
 namespace {
@@ -50,6 +51,21 @@ std::vector<std::string> read_lines(const std::filesystem::path& file) {
   std::vector<std::string> lines;
   for (std::string line; std::getline(in, line);) lines.push_back(line);
   return lines;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+bool ends_section(const Record& record) {
+  return !record.fields.empty() && !record.fields[0].quoted && record.fields[0].text == "0";
+}
+bool ends_file(const Record& record) {
+  return !record.fields.empty() && !record.fields[0].quoted &&
+         (record.fields[0].text == "Q" || record.fields[0].text == "q");
 }
 
 Record split(const std::string& line, int number, const std::string& file, Problems& problems) {

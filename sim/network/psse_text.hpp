@@ -23,8 +23,14 @@ struct Record {
 
 /// Lines of a text file without their line ends. Throws InputError if it cannot be read.
 std::vector<std::string> read_lines(const std::filesystem::path& file);
+/// The same of a text.
+std::vector<std::string> lines_of(const std::string& text);
 /// Splits one line. An open quote is reported in `problems`.
 Record split(const std::string& line, int number, const std::string& file, Problems& problems);
+
+/// A record that begins with 0 ends a section, one that begins with Q the file.
+bool ends_section(const Record& record);
+bool ends_file(const Record& record);
 
 /// Typed access to the fields of a record: what is missing or no number goes to `problems`, with file and
 /// line.

@@ -1,9 +1,9 @@
 #include <gmock/gmock.h>
 
-#include <bit>
 #include <cmath>
 #include <random>
 
+#include "tests/sim/network/flatten.hpp"
 #include "tests/sim/network/raw_case.hpp"
 
 namespace swingbank::sim {
@@ -11,55 +11,13 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Every number of a network, in one order, as bits; names and flags as text.
-struct Flat {
-  std::vector<std::uint64_t> numbers;
-  std::string words;
-  void add(double v) { numbers.push_back(std::bit_cast<std::uint64_t>(v)); }
-  void add(Complex v) {
-    add(v.real());
-    add(v.imag());
-  }
-  template <class... T>
-  void all(const T&... v) {
-    (add(v), ...);
-  }
-};
-Flat flatten(const Network& n) {
-  Flat f;
-  f.words = n.title;
-  f.all(n.base_mva, n.frequency);
-  for (const Bus& b : n.buses) {
-    f.words += "|" + std::to_string(b.number) + b.name + std::to_string(static_cast<int>(b.type));
-    f.all(b.kv, b.vm, b.va);
-  }
-  for (const Load& l : n.loads) {
-    f.words += "|" + std::to_string(l.bus) + l.id;
-    f.all(l.power, l.current, l.admittance);
-  }
-  for (const Shunt& s : n.shunts) {
-    f.words += "|" + std::to_string(s.bus) + s.id;
-    f.add(s.admittance);
-  }
-  for (const Branch& b : n.branches) {
-    f.words += "|" + std::to_string(b.from) + "-" + std::to_string(b.to) + b.circuit +
-               (b.in_service ? "on" : "off") + (b.transformer ? "T" : "L");
-    f.all(b.r, b.x, b.b, b.tap, b.shift, b.shunt_from, b.shunt_to);
-  }
-  for (const Generator& g : n.generators) {
-    f.words += "|" + std::to_string(g.bus) + g.id + (g.in_service ? "on" : "off");
-    f.all(g.p, g.q, g.vset, g.mva, g.zr, g.zx, g.q_min, g.q_max);
-  }
-  return f;
-}
 void expect_round_trip(const Network& n) {
-  const ScratchFile file("out.raw");
-  write_raw(n, file.path);
-  const Flat a = flatten(n), b = flatten(read_raw(file.path));
-  EXPECT_EQ(a.words, b.words);
-  ASSERT_EQ(a.numbers.size(), b.numbers.size());
-  for (std::size_t i = 0; i < a.numbers.size(); ++i)
-    ASSERT_EQ(a.numbers[i], b.numbers[i]) << "number " << i << ": " << std::bit_cast<double>(a.numbers[i]);
+  for (const int version : {32, 33, 34, 35}) {
+    SCOPED_TRACE(version);
+    const ScratchFile file("out.raw");
+    write_raw(n, file.path, version);
+    expect_same(n, read_raw(file.path));
+  }
 }
 
 class PsseWriteNetworks : public ::testing::TestWithParam<const char*> {};
@@ -111,6 +69,21 @@ Network random_network(double base, unsigned seed) {
 TEST(PsseWrite, RandomNumbersReadBackToTheLastBit) {
   for (const double base : {100.0, 33.3, 1.0 / 3.0, 12345.678901234567})
     for (unsigned seed = 1; seed <= 5; ++seed) expect_round_trip(random_network(base, seed));
+}
+
+TEST(PsseWrite, FromVersionToVersionNothingChanges) {
+  const Network n = random_network(100.0, 9);
+  Network again = n;
+  for (const int version : {33, 34, 35, 33, 32, 35, 34})
+    again = parse_raw(raw_text(again, version, "text"), "text");
+  expect_same(n, again);
+}
+
+TEST(PsseWrite, OtherVersionsAreRefused) {
+  const Network n = random_network(100.0, 9);
+  for (const int version : {0, 31, 36})
+    EXPECT_THAT(sentences_of([&] { raw_text(n, version, "out.raw"); }),
+                HasSubstr("version " + std::to_string(version)));
 }
 
 TEST(PsseWrite, RefusesWhatARawCannotHold) {
