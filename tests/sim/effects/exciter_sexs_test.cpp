@@ -1,0 +1,62 @@
+// SEXS: step response in closed form, ceilings without wind-up, bypasses.
+#include "control_bench.hpp"
+
+namespace swingbank::sim::test {
+namespace {
+
+const ControlBench::Changes kValues = {{"TAoverTB", 0.4}, {"TB", 5.0},     {"K", 20.0},
+                                       {"TE", 1.0},       {"EMIN", -50.0}, {"EMAX", 50.0}};
+
+TEST(ExciterSexs, StepOfTheReferenceFollowsTheClosedForm) {
+  ControlBench bench("SEXS", kValues);
+  const double TA = 2.0, TB = 5.0, TE = 1.0, K = 20.0, step = 0.05;
+  EXPECT_LT(bench.largest_derivative(), 1e-14);
+  bench.in.dVref = step;
+  for (double t = 0.25; t < 20.0; t += 0.25) {
+    bench.run(0.25);
+    // Partial fractions of (1 + s TA)/(s (1 + s TB)(1 + s TE)).
+    const double exact = 2.0 + K * step *
+                                   (1.0 - (TB - TA) / (TB - TE) * std::exp(-t / TB) -
+                                    (TE - TA) / (TE - TB) * std::exp(-t / TE));
+    EXPECT_NEAR(bench.out().Efd, exact, 1e-12) << t;  // 1 ms steps against 1 s: (1e-3)^4, and rounding
+  }
+  bench.run(60.0);
+  EXPECT_NEAR(bench.out().Efd, 2.0 + K * step, 1e-4);  // gain K; exp(-80 / 5) is 1e-7 of it
+}
+
+TEST(ExciterSexs, EveryInputEntersWithItsSign) {
+  for (const auto& [input, sign] : {std::pair{&Signals<double>::dVref, 1.0},
+                                    {&Signals<double>::Vs, 1.0},
+                                    {&Signals<double>::Vlimiter, 1.0},
+                                    {&Signals<double>::Vc, -1.0}}) {
+    ControlBench bench("SEXS", kValues);
+    const auto h = bench.response(input, &Signals<double>::Efd, 0.7);
+    const auto exact = sign * 20.0 * lead_over_lag(2.0, 5.0, 0.7) * lead_over_lag(0.0, 1.0, 0.7);
+    EXPECT_LT(std::abs(h - exact), 1e-8);  // difference quotient over 1e-6
+  }
+}
+
+TEST(ExciterSexs, CeilingHoldsWithoutWindUpAndReleasesAtOnce) {
+  ControlBench bench("SEXS", {{"TAoverTB", 1.0}, {"TB", 0.0}, {"K", 100.0}, {"TE", 0.5}, {"EMAX", 4.0}});
+  bench.in.Vc = 0.8;  // K * 0.2 = 20 pu asked for above the operating point
+  bench.run(10.0);
+  EXPECT_EQ(bench.out().Efd, 4.0);
+  EXPECT_EQ(bench.state("Efd"), 4.0);
+  bench.in.Vc = 1.0;
+  bench.run(0.1);
+  // From the ceiling back to 2 pu with TE alone, as if the 10 s had not been.
+  EXPECT_NEAR(bench.out().Efd, 2.0 + 2.0 * std::exp(-0.1 / 0.5), 1e-10);  // (h/TE)^4 with h = 1 ms
+  bench.in.Vc = 1.3;
+  bench.run(10.0);
+  EXPECT_EQ(bench.out().Efd, -4.0);
+  bench.in.Vc = 1.0;
+  bench.run(0.1);
+  EXPECT_NEAR(bench.out().Efd, 2.0 - 6.0 * std::exp(-0.1 / 0.5), 1e-10);
+}
+
+TEST(ExciterSexs, OperatingPointAboveTheCeilingIsRefused) {
+  EXPECT_EQ(ControlBench("SEXS", {{"EMAX", 1.5}}).refused, "Efd outside its limits");
+}
+
+}  // namespace
+}  // namespace swingbank::sim::test
