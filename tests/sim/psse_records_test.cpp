@@ -1,29 +1,18 @@
-// The reference integrator against PSS/E's own records. The files belong to others and are not in this
-// repository: they are looked for in $SWINGBANK_REFERENCE/psse, then in ../shared/reference/psse. Without
-// them these tests fail;
+// The reference integrator against PSS/E's own records. The files belong to others (psse_folder.hpp).
+// Without them these tests fail;
 // `.ci/run --without-psse` leaves the suite out.
-#include <cstdlib>
 #include <numbers>
 
+#include "psse_folder.hpp"
 #include "reference_support.hpp"
 
 namespace swingbank::sim {
 namespace {
 
-std::filesystem::path psse_folder() {
-  if (const char* given = std::getenv("SWINGBANK_REFERENCE")) return std::filesystem::path(given) / "psse";
-  return std::filesystem::path(SWINGBANK_SOURCE) / "../shared/reference/psse";
-}
-
 /// Largest difference of the rotor angle of 102 over all samples [degrees]: line 101-102 circuit 1 opens at 1
 /// s.
 double largest_angle_error(const std::string& dyr, const std::string& record, Conventions conventions) {
-  const std::filesystem::path folder = psse_folder() / "GENROU";
-  if (!std::filesystem::exists(folder))
-    throw std::runtime_error(
-        "no PSS/E records at " + folder.string() +
-        " (they are not part of this repository): set SWINGBANK_REFERENCE to the folder that holds psse/, "
-        "or run .ci/run --without-psse");
+  const std::filesystem::path folder = test::psse_folder("GENROU");
   const Grid grid = load_grid(folder / "ThreeBusMulti.raw", folder / dyr, conventions);
   const test::Table table = test::read_table(folder / record, false);
   Event event;
