@@ -55,13 +55,15 @@ constexpr double kNoNeutral = std::numeric_limits<double>::quiet_NaN();
 
 /// One parameter of an effect. `low` and `high` bound what is physically possible; a dataset's sampling box
 /// stands in its own config and is checked against them. `neutral` is the value at which the parameter's
-/// influence vanishes (NaN: there is none).
+/// influence vanishes (NaN: there is none). The unit "code" marks a choice among whole numbers: never sampled,
+/// never fitted.
 struct Parameter {
   std::string_view name;    ///< identifier in configs, HDF5 and tables: "Xdp"
   std::string_view symbol;  ///< as engineers write it: "X'd"
   std::string_view unit;    ///< "pu", "s"
   double standard, low, high, neutral;
   std::string_view meaning;
+  [[nodiscard]] constexpr bool is_code() const { return unit == "code"; }
 };
 
 struct State {
