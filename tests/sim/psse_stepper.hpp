@@ -1,0 +1,50 @@
+#pragma once
+// Our equations integrated the way PSS/E integrates its own: x(t + h) = x(t) + h (3 f(t) - f(t - h))/2, and
+// at a switching instant the mean of the derivatives before and after it (both read off the first samples
+// after the trip in its records). With it a difference between record and equations is one of modelling.
+#include <functional>
+#include <vector>
+
+#include "sim/solve/reference_system.hpp"
+
+namespace swingbank::sim::test {
+
+/// Calls see(time, signals, states) of plant `plant` every h seconds until `end` [s], twice at the switching
+/// instant, which is event's only one and a multiple of h.
+inline void step_as_psse(const Grid& grid, const Event& event, std::size_t plant, double h, double end,
+                         const std::function<void(double, const Signals<double>&, const double*)>& see) {
+  const ReferencePlants plants(grid);
+  const auto parts = segments(event, grid.network, plants.instants());
+  if (parts.size() != 2) throw std::runtime_error("one switching instant is expected");
+  const ReferenceSystem before(grid, plants, parts[0], 2 * end), after(grid, plants, parts[1], 2 * end);
+  const auto states = static_cast<std::size_t>(plants.states());
+  std::vector<double> y(static_cast<std::size_t>(before.size())), f(y), f_before(y), f_after(y);
+  for (const auto& unit : plants.units())
+    std::copy(unit.operating.x.begin(), unit.operating.x.end(), y.begin() + unit.first);
+  for (std::size_t b = 0; b < grid.flow.voltage.size(); ++b) {
+    y[states + 2 * b] = grid.flow.voltage[b].real();
+    y[states + 2 * b + 1] = grid.flow.voltage[b].imag();
+  }
+  const ReferenceSystem* system = &before;
+  const auto steps = std::lround(end / h), switching = std::lround(parts[1].start / h);
+  const auto look = [&](double t, std::vector<double>& to) {
+    system->solve_voltages(t, y.data());
+    Complex current;
+    see(t, system->signals(plant, t, y.data(), current), y.data() + plants.units()[plant].first);
+    system->derivatives(t, y.data(), to.data());
+  };
+  for (long k = 0; k <= steps; ++k) {
+    const double t = static_cast<double>(k) * h;
+    look(t, f);
+    if (k == switching) {
+      system = &after;
+      look(t, f_after);
+      for (std::size_t i = 0; i < states; ++i) f[i] = 0.5 * (f[i] + f_after[i]);
+    }
+    for (std::size_t i = 0; i < states; ++i) y[i] += h * (1.5 * f[i] - 0.5 * f_before[i]);
+    (void)system->clamp_states(y.data());
+    f_before = f;
+  }
+}
+
+}  // namespace swingbank::sim::test
