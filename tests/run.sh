@@ -57,7 +57,7 @@ run_tests() {
   local name=$1 folder=$2
   shift 2
   local exclude=()
-  ((with_psse)) || exclude=(-E PsseRecords)
+  ((with_psse)) || exclude=(-E 'PsseRecords|MatpowerRecords')
   ctest --test-dir "$folder" --output-on-failure --no-tests=error --timeout 1500 "${exclude[@]}" "$@" || failed+=("$name")
 }
 

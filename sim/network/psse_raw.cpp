@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
+
+#include "sim/network/consistency.hpp"
 
 namespace swingbank::sim {
 
@@ -180,58 +181,16 @@ bool RawReader::status(int value, const char* name, const Fields& fields) {
 }
 
 void RawReader::finish() {
-  const auto isolated = [&](int bus) { return at(bus).type == BusType::isolated; };
-  std::erase_if(network_.loads, [&](const Load& l) { return isolated(l.bus); });
-  std::erase_if(network_.shunts, [&](const Shunt& s) { return isolated(s.bus); });
-  for (Branch& b : network_.branches)
-    if (isolated(b.from) || isolated(b.to)) b.in_service = false;
+  settle_isolated(network_);
   for (const int star : stars_)  // a star point whose windings are all out hangs on nothing
     if (std::ranges::none_of(network_.branches,
                              [&](const Branch& b) { return b.to == star && b.in_service; }))
       network_.buses[static_cast<std::size_t>(star)].type = BusType::isolated;
-  std::map<int, double> held;
-  for (std::size_t i = 0; i < network_.generators.size(); ++i) {
-    Generator& g = network_.generators[i];
-    if (isolated(g.bus)) g.in_service = false;
-    if (!g.in_service) continue;
-    const Bus& b = at(g.bus);
-    const std::string where = file_ + ":" + std::to_string(generator_line_[i]);
-    if (b.type == BusType::load)
-      problems_.add("a generator in service at bus " + std::to_string(b.number) + " of type 1", where,
-                    "a load bus holds no voltage, so the generator would be ignored",
-                    "make the bus type 2 or take the generator out of service");
-    const auto [other, first] = held.emplace(g.bus, g.vset);
-    if (!first && other->second != g.vset)
-      problems_.add("VS = " + shortest(g.vset) + " pu", where,
-                    "another generator at bus " + std::to_string(b.number) + " holds " +
-                        shortest(other->second) + " pu",
-                    "give both the same voltage");
-  }
+  check_held_voltages(
+      network_, [&](std::size_t i) { return file_ + ":" + std::to_string(generator_line_[i]); }, problems_);
   if (network_.buses.empty() && problems_.empty())
     problems_.add("no buses", file_, "the bus section is empty", "give a case with buses");
   check_finite(network_, file_, problems_);
-}
-
-void check_finite(const Network& n, const std::string& file, Problems& problems) {
-  const auto report = [&](const std::string& what, int bus, std::initializer_list<double> values) {
-    if (std::ranges::all_of(values, [](double v) { return std::isfinite(v); })) return;
-    problems.add(what + " at bus " + std::to_string(n.buses[static_cast<std::size_t>(bus)].number) +
-                     " is beyond the range of numbers",
-                 file, "a value or a base it is divided by is absurdly large or small",
-                 "correct the value or the base");
-  };
-  for (const Load& l : n.loads)
-    report("load '" + l.id + "'", l.bus,
-           {l.power.real(), l.power.imag(), l.current.real(), l.current.imag(), l.admittance.real(),
-            l.admittance.imag()});
-  for (const Shunt& s : n.shunts)
-    report("shunt '" + s.id + "'", s.bus, {s.admittance.real(), s.admittance.imag()});
-  for (const Branch& b : n.branches)
-    report("the branch with circuit '" + b.circuit + "'", b.from,
-           {b.r, b.x, b.b, b.tap, b.shift, b.shunt_from.real(), b.shunt_from.imag(), b.shunt_to.real(),
-            b.shunt_to.imag()});
-  for (const Generator& g : n.generators)
-    report("generator '" + g.id + "'", g.bus, {g.p, g.q, g.vset, g.mva, g.zr, g.zx, g.q_min, g.q_max});
 }
 
 }  // namespace psse

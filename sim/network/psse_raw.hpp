@@ -104,7 +104,4 @@ class RawReader {
   std::set<int> stars_;  ///< indices of the star points of three-winding transformers
 };
 
-/// Notes every number of the network that is not finite: quotients of extreme values.
-void check_finite(const Network& network, const std::string& file, Problems& problems);
-
 }  // namespace swingbank::sim::psse
