@@ -1,0 +1,98 @@
+#pragma once
+// EXST1: static excitation fed from the machine's terminal.
+#include <fmt/format.h>
+
+#include "sim/core/blocks.hpp"
+#include "sim/core/effect.hpp"
+
+namespace swingbank::sim::exciter_exst1 {
+
+struct Model {
+  static constexpr std::string_view name = "EXST1", title = "static excitation system, type ST1 of 1981",
+                                    source =
+                                        "IEEE Committee Report, Excitation system models (1981), ST1; "
+                                        "PSS/E EXST1",
+                                    dyr_name = "EXST1";
+  static constexpr Slot slot = Slot::exciter;
+  static constexpr std::string_view description = R"(
+  Vc --> [ 1/(1 + s TR) ] --> Vm
+  Vref + dVref - Vm + Vs + Vlimiter - Vf --> [VIMIN, VIMAX] --> [ (1 + s TC)/(1 + s TB) ]
+         --> [ KA/(1 + s TA) ] --> Va --> [V VRMIN - KC Ifd, V VRMAX - KC Ifd] --> Efd
+  Vf = s KF/(1 + s TF) Va
+)";
+  enum P { TR, VIMAX, VIMIN, TC, TB, KA, TA, VRMAX, VRMIN, KC, KF, TF };
+  static constexpr Parameter parameters[] = {
+      {"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)"},
+      {"VIMAX", "VIMAX", "pu", 5.0, 0.0, 100.0, kNoNeutral, "upper limit of the voltage error"},
+      {"VIMIN", "VIMIN", "pu", -5.0, -100.0, 0.0, kNoNeutral, "lower limit of the voltage error"},
+      {"TC", "TC", "s", 1.0, 0.0, 30.0, kNoNeutral, "lead"},
+      {"TB", "TB", "s", 10.0, 0.0, 100.0, kNoNeutral, "lag (0: bypass)"},
+      {"KA", "KA", "pu", 200.0, 1.0, 2000.0, kNoNeutral, "gain"},
+      {"TA", "TA", "s", 0.02, 0.001, 2.0, kNoNeutral, "regulator time constant"},
+      {"VRMAX", "VRMAX", "pu", 6.0, 0.5, 100.0, kNoNeutral, "upper ceiling at rated voltage"},
+      {"VRMIN", "VRMIN", "pu", -5.0, -100.0, 0.5, kNoNeutral, "lower ceiling at rated voltage"},
+      {"KC", "KC", "pu", 0.05, 0.0, 1.0, 0.0, "ceilings' drop by field current"},
+      {"KF", "KF", "pu", 0.0, 0.0, 1.0, 0.0, "rate feedback"},
+      {"TF", "TF", "s", 1.0, 0.01, 20.0, kNoNeutral, "rate feedback's time constant"}};
+  static constexpr int dyr_columns[] = {TR, VIMAX, VIMIN, TC, TB, KA, TA, VRMAX, VRMIN, KC, KF, TF};
+  enum C { iTR, vimax, vimin, lead, iTB, gain, iTA, vrmax, vrmin, drop, feedback, iTF, Vref, coefficients };
+  enum X { Vm, leadlag, Va, rate };
+  static constexpr State states[] = {{"Vm", "pu", "measured voltage"},
+                                     {"leadlag", "pu", "state of the lead-lag"},
+                                     {"Va", "pu", "regulator output before the ceilings"},
+                                     {"rate", "pu", "state of the rate feedback"}};
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
+      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
+    };
+    bad(!(p[TA] > 0), fmt::format("TA = {:g} s", p[TA]), "EXST1 integrates Va over TA", "give TA > 0");
+    bad(!(p[TF] > 0), fmt::format("TF = {:g} s", p[TF]), "the rate feedback divides by TF", "give TF > 0");
+    bad(!(p[KA] > 0), fmt::format("KA = {:g}", p[KA]), "no gain, no exciter", "give KA > 0");
+    for (int i : {TR, TB})
+      bad(!(p[i] >= 0), fmt::format("{} = {:g} s", parameters[i].symbol, p[i]), "a time constant",
+          "give a value >= 0");
+    bad(!(p[VIMAX] > p[VIMIN]), fmt::format("VIMAX = {:g} pu with VIMIN = {:g} pu", p[VIMAX], p[VIMIN]),
+        "the error must have room to move", "give VIMAX > VIMIN");
+    bad(!(p[VRMAX] > p[VRMIN]), fmt::format("VRMAX = {:g} pu with VRMIN = {:g} pu", p[VRMAX], p[VRMIN]),
+        "Efd must have room to move", "give VRMAX > VRMIN");
+  }
+  static std::string_view unphysical(const double*) { return ""; }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions&, T* c) {
+    c[iTR] = inverse(p[TR]);
+    c[vimax] = p[VIMAX];
+    c[vimin] = p[VIMIN];
+    c[lead] = p[TC];
+    c[iTB] = inverse(p[TB]);
+    c[gain] = p[KA];
+    c[iTA] = T(1.0) / p[TA];
+    c[vrmax] = p[VRMAX];
+    c[vrmin] = p[VRMIN];
+    c[drop] = p[KC];
+    c[iTF] = T(1.0) / p[TF];
+    c[feedback] = p[KF] * c[iTF];
+  }
+  template <class T>
+  static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
+    const T measured = lag(c[iTR], x[Vm], s.Vc, dx[Vm]);
+    const T stabilised = c[feedback] * washout(c[iTF], x[rate], x[Va], dx[rate]);
+    const T error = c[Vref] + s.dVref - measured + s.Vs + s.Vlimiter - stabilised;
+    const T limited = clamp(error, c[vimin], c[vimax]);
+    const T u = lead_lag(c[lead], c[iTB], x[leadlag], limited, dx[leadlag]);
+    dx[Va] = (c[gain] * u - x[Va]) * c[iTA];
+    const T fall = c[drop] * s.Ifd;
+    s.Efd = clamp(x[Va], s.V * c[vrmin] - fall, s.V * c[vrmax] - fall);
+  }
+  template <class T>
+  static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
+    x[Vm] = s.Vc;
+    x[Va] = x[rate] = s.Efd;
+    x[leadlag] = s.Efd / p[KA];
+    c[Vref] = x[leadlag] + s.Vc - s.Vs - s.Vlimiter;
+    return {};
+  }
+};
+
+}  // namespace swingbank::sim::exciter_exst1
