@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -9,7 +10,10 @@
 
 #include "mpi/store/durable.hpp"
 #include "mpi/store/hdf5_file.hpp"
+#include "sim/network/event_text.hpp"
+#include "sim/network/matpower.hpp"
 #include "sim/solve/batch.hpp"
+#include "sim/solve/load_choice.hpp"
 #include "sim/solve/reference.hpp"
 
 namespace {
@@ -18,10 +22,13 @@ using namespace swingbank::sim;
 
 struct Options {
   std::string raw, dyr, convention = "psse", integrator = "reference";
-  std::vector<std::string> faults, trips, out, plants, channels;
+  std::vector<std::string> faults, trips, generator_trips, load_steps, vref_steps, pref_steps, loads;
+  std::vector<std::string> out, plants, channels;
+  std::string load_model = "impedance";
   std::vector<int> buses;
   double t_end = 15.0, rate = 120.0;
-  std::optional<double> tolerance;
+  std::optional<double> tolerance, frequency_hz;
+  std::vector<std::string> ignore_models, map_models;
   bool after_switching = false;
 };
 
@@ -110,7 +117,36 @@ Event parse_event(const Options& options, const Network& network, Problems& prob
     event.faults.push_back(parse_fault(text, network, options.t_end, problems));
   for (const auto& text : options.trips)
     event.trips.push_back(parse_trip(text, network, options.t_end, problems));
+  const double end = options.t_end;
+  for (const auto& text : options.generator_trips)
+    event.generator_trips.push_back(
+        read_generator_trip(text, network, end, "--trip-generator " + text, problems));
+  for (const auto& text : options.load_steps)
+    event.load_steps.push_back(read_load_step(text, network, end, "--load-step " + text, problems));
+  for (const auto& text : options.vref_steps)
+    event.setpoint_steps.push_back(
+        read_setpoint_step(text, network, end, true, "--vref-step " + text, problems));
+  for (const auto& text : options.pref_steps)
+    event.setpoint_steps.push_back(
+        read_setpoint_step(text, network, end, false, "--pref-step " + text, problems));
   return event;
+}
+
+/// A step of a reference that nothing follows would be lost without a word.
+void check_followers(const Grid& grid, const Event& event, Problems& problems) {
+  for (const SetpointStep& step : event.setpoint_steps) {
+    const auto plant = std::ranges::find(grid.plants, step.generator, &Plant::generator);
+    if (plant == grid.plants.end()) continue;
+    const auto lacks = [&](Slot slot) {
+      return std::ranges::none_of(plant->controls, [&](const Block& b) { return b.effect->slot == slot; });
+    };
+    if (step.dVref != 0 && lacks(Slot::exciter))
+      problems.add("a step of Vref at plant " + plant->name, "--vref-step", "it has no exciter",
+                   "choose a plant with one, or add one to the .dyr");
+    if (step.dPref != 0 && lacks(Slot::governor))
+      problems.add("a step of Pref at plant " + plant->name, "--pref-step", "it has no governor",
+                   "choose a plant with one, or add one to the .dyr");
+  }
 }
 
 std::vector<int> parse_plants(const Options& options, const Grid& grid, Problems& problems) {
@@ -236,11 +272,18 @@ void describe_run(h5::File& h, const Options& o, const Grid& grid, const Referen
   h.attribute("format", std::string("swingbank-run-1"));
   h.attribute("network", o.raw);
   h.attribute("dynamics", o.dyr);
+  h.attribute("ignored_models", joined(o.ignore_models));
+  h.attribute("mapped_models", joined(o.map_models));
   h.attribute("convention", o.convention);
   h.attribute("integrator", o.integrator);
   h.attribute("tolerance", tolerance(o));
   h.attribute("faults", joined(o.faults));
   h.attribute("trips", joined(o.trips));
+  h.attribute("generator_trips", joined(o.generator_trips));
+  h.attribute("load_steps", joined(o.load_steps));
+  h.attribute("vref_steps", joined(o.vref_steps));
+  h.attribute("pref_steps", joined(o.pref_steps));
+  h.attribute("loads", describe_loads(grid));
   h.attribute("outcome", std::string(outcome_name(run.outcome)));
   h.attribute("stopped_at_s", run.stopped_at);
   h.attribute("largest_spread_rad", run.largest_spread);
@@ -294,12 +337,17 @@ void write_hdf5(const std::filesystem::path& file, const Options& o, const Grid&
 int simulate(const Options& o) {
   Problems problems;
   check_options(o, problems);
+  DyrOptions models{o.ignore_models, {}};
+  for (const auto& text : o.map_models) add_model_map(models, text, "--map-model " + text, problems);
   problems.raise();
-  Network network = read_raw(o.raw);
+  Network network = read_network(o.raw, o.frequency_hz);
   const double hz = network.frequency;
-  const Grid grid = make_grid(std::move(network), read_dyr(o.dyr), o.dyr,
-                              o.convention == "andes" ? Conventions::andes(hz) : Conventions::psse(hz));
+  Grid grid = make_grid(std::move(network), read_dyr(o.dyr, models), o.dyr,
+                        o.convention == "andes" ? Conventions::andes(hz) : Conventions::psse(hz));
+  if (o.load_model == "raw") loads_as_composed(grid, problems);
+  for (const auto& text : o.loads) choose_load(grid, text, "--load " + text, problems);
   const Event event = parse_event(o, grid.network, problems);
+  check_followers(grid, event, problems);
   auto plants = parse_plants(o, grid, problems);
   auto channels = parse_channels(o, problems);
   std::vector<int> buses;
@@ -316,6 +364,7 @@ int simulate(const Options& o) {
       write_hdf5(file, o, grid, run);
     fmt::print("wrote {}\n", file.string());
   }
+  fmt::print("loads: {}\n", describe_loads(grid));
   fmt::print("{} at {:g} s, largest rotor angle spread {:.3f} deg, {}{:.3f} s wall time\n",
              outcome_name(run.outcome), run.stopped_at, run.largest_spread * 57.295779513082321,
              run.steps > 0 ? fmt::format("{} steps, ", run.steps) : "", wall);
@@ -327,8 +376,12 @@ int simulate(const Options& o) {
 int main(int argc, char** argv) {
   CLI::App app{SWINGBANK_SUMMARY, "swingbank simulate"};
   Options o;
-  app.add_option("--raw", o.raw, "network, PSS/E .raw version 32 or 33")->required();
+  app.add_option("--raw", o.raw, "network, PSS/E .raw version 32 to 35 or MATPOWER .m")->required();
   app.add_option("--dyr", o.dyr, "dynamic models, PSS/E .dyr")->required();
+  app.add_option("--frequency-hz", o.frequency_hz, "nominal frequency [Hz], which a .m does not hold");
+  app.add_option("--ignore-model", o.ignore_models, "name of a .dyr model to leave out; may be repeated");
+  app.add_option("--map-model", o.map_models,
+                 "FROM=TO: read a .dyr model as another with as many parameters; may be repeated");
   app.add_option("--convention", o.convention,
                  "psse: speed in the stator voltage and Pm/(1+w); andes: neither")
       ->check(CLI::IsMember({"psse", "andes"}))
@@ -337,6 +390,19 @@ int main(int argc, char** argv) {
       "--fault", o.faults,
       "BUS:T_ON:T_OFF[:R:X], bolted without R and X [s, pu on the network's base]; may be repeated");
   app.add_option("--trip", o.trips, "FROM:TO:CKT:T_OPEN[:T_CLOSE] [s]; may be repeated");
+  app.add_option("--trip-generator", o.generator_trips, "BUS[/ID]:T [s], for good; may be repeated");
+  app.add_option("--load-step", o.load_steps,
+                 "BUS:P:Q:T_ON[:T_OFF] [MW, Mvar, s], consumption added as constant admittance; may be "
+                 "repeated");
+  app.add_option("--vref-step", o.vref_steps, "BUS[/ID]:T:STEP [s, pu]; may be repeated");
+  app.add_option("--pref-step", o.pref_steps, "BUS[/ID]:T:STEP [s, pu]; may be repeated");
+  app.add_option("--loads", o.load_model,
+                 "impedance: every load at constant impedance; raw: as the .raw composes it of constant "
+                 "power, current and admittance")
+      ->check(CLI::IsMember({"impedance", "raw"}))
+      ->capture_default_str();
+  app.add_option("--load", o.loads,
+                 "BUS[/ID]:EFFECT[:PARAM=VALUE,...], a model for one load; may be repeated");
   app.add_option("--t-end", o.t_end, "end of the run [s]")->capture_default_str();
   app.add_option("--rate", o.rate, "samples per second [1/s]")->capture_default_str();
   app.add_option("--integrator", o.integrator,

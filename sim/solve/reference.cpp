@@ -113,7 +113,7 @@ class Recorder {
     run.samples = static_cast<int>(std::floor(options.t_end * options.rate + 1e-9)) + 1;
     run.plants = options.plants;
     if (run.plants.empty())
-      for (int i = 0; i < static_cast<int>(plants.units().size()); ++i) run.plants.push_back(i);
+      for (int i = 0; i < static_cast<int>(grid.plants.size()); ++i) run.plants.push_back(i);
     run.channels = options.channels;
     if (run.channels.empty())
       for (const auto& record : kChannels) run.channels.push_back(record.channel);

@@ -1,0 +1,24 @@
+#pragma once
+// Parts of an event as a person writes them on a command line. Every fault of a text becomes a problem that
+// names `where`; what is returned then is of no use. `t_end`: end of the run [s]; nothing may lie after it.
+#include <string>
+
+#include "sim/core/problem.hpp"
+#include "sim/network/event.hpp"
+
+namespace swingbank::sim {
+
+/// "BUS/ID", or "BUS" where it has one generator in service; -1 with a problem otherwise.
+int generator_named(const Network& network, const std::string& text, const std::string& where,
+                    Problems& problems);
+/// "BUS[/ID]:T"
+GeneratorTrip read_generator_trip(const std::string& text, const Network& network, double t_end,
+                                  const std::string& where, Problems& problems);
+/// "BUS:P:Q:T_ON[:T_OFF]", P in MW, Q in Mvar, positive: more consumption.
+LoadStep read_load_step(const std::string& text, const Network& network, double t_end,
+                        const std::string& where, Problems& problems);
+/// "BUS[/ID]:T:STEP" [s, pu], a step of the exciter's reference if `voltage`, else of the governor's.
+SetpointStep read_setpoint_step(const std::string& text, const Network& network, double t_end, bool voltage,
+                                const std::string& where, Problems& problems);
+
+}  // namespace swingbank::sim

@@ -1,0 +1,158 @@
+#include "sim/solve/load_choice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "sim/network/admittance.hpp"
+
+namespace swingbank::sim {
+namespace {
+
+std::string load_name(const Network& network, std::size_t load) {
+  const Load& l = network.loads[load];
+  const auto at_bus = std::ranges::count(network.loads, l.bus, &Load::bus);
+  return std::to_string(network.buses[static_cast<std::size_t>(l.bus)].number) +
+         (at_bus > 1 ? "/" + l.id : "");
+}
+
+/// Loads that "BUS" or "BUS/ID" means, by index.
+std::vector<int> loads_named(const Network& network, const std::string& text, const std::string& where,
+                             Problems& problems) {
+  const auto slash = text.find('/');
+  const std::string number = text.substr(0, slash), id = slash == text.npos ? "" : text.substr(slash + 1);
+  std::vector<int> list;
+  std::string names;
+  for (std::size_t i = 0; i < network.loads.size(); ++i) {
+    const Load& l = network.loads[i];
+    names += (names.empty() ? "" : ", ") + load_name(network, i);
+    if (std::to_string(network.buses[static_cast<std::size_t>(l.bus)].number) == number &&
+        (slash == text.npos || l.id == id))
+      list.push_back(static_cast<int>(i));
+  }
+  if (list.empty())
+    problems.add("no load " + text, where, network.origin + " has loads at " + names,
+                 "name one of these, BUS or BUS/ID");
+  return list;
+}
+
+void set_parameters(Block& block, const std::string& text, const std::string& where, Problems& problems) {
+  for (std::size_t at = 0; at < text.size();) {
+    const auto comma = std::min(text.find(',', at), text.size());
+    const std::string one = text.substr(at, comma - at);
+    at = comma + 1;
+    const auto equal = one.find('=');
+    const int index = block.effect->parameter_index(one.substr(0, equal));
+    if (equal == one.npos || index < 0) {
+      std::string names;
+      for (const Parameter& p : block.effect->parameters)
+        names += (names.empty() ? "" : ", ") + std::string(p.name);
+      problems.add("'" + one + "'", where, std::string(block.effect->name) + " has " + names,
+                   "write PARAM=VALUE with one of these");
+      continue;
+    }
+    double value = 0.0;
+    const char* end = one.data() + one.size();
+    const auto read = std::from_chars(one.data() + equal + 1, end, value);
+    if (read.ec != std::errc{} || read.ptr != end || !std::isfinite(value))
+      problems.add("'" + one + "'", where, "its value is no number", "write it like Pp=0.4");
+    block.p[static_cast<std::size_t>(index)] = value;
+  }
+}
+
+/// Fraction of the total that `part` is; 0 of 0 is 0.
+double fraction(double part, double total) { return part == 0.0 ? 0.0 : part / total; }
+
+}  // namespace
+
+void set_load(Grid& grid, int load, Block block, const std::string& where, Problems& problems) {
+  const Load& l = grid.network.loads[static_cast<std::size_t>(load)];
+  block.effect->check(block.effect->law.get(), block.p.data(), where, problems);
+  Consumer consumer;
+  consumer.name = load_name(grid.network, static_cast<std::size_t>(load));
+  consumer.bus = l.bus;
+  consumer.load = load;
+  consumer.mva = grid.network.base_mva;
+  consumer.consumption = consumption(l, grid.flow);
+  consumer.block = std::move(block);
+  if (consumer.consumption == Complex{}) {
+    problems.add("load " + consumer.name + " draws nothing", where,
+                 "its P and Q are zero in " + grid.network.origin, "choose a load that draws power");
+    return;
+  }
+  const auto same = std::ranges::find(grid.loads, load, &Consumer::load);
+  if (same == grid.loads.end())
+    grid.loads.push_back(std::move(consumer));
+  else
+    *same = std::move(consumer);
+}
+
+void loads_as_composed(Grid& grid, Problems& problems) {
+  const Effect* zip = find_effect("ZIP");
+  const auto set = [&](Block& block, const char* parameter, double value) {
+    block.p[static_cast<std::size_t>(zip->parameter_index(parameter))] = value;
+  };
+  for (std::size_t i = 0; i < grid.network.loads.size(); ++i) {
+    const Load& l = grid.network.loads[i];
+    if (l.power == Complex{} && l.current == Complex{}) continue;
+    const Complex total = consumption(l, grid.flow);
+    const double v = std::abs(grid.flow.voltage[static_cast<std::size_t>(l.bus)]);
+    const Complex current = l.current * v, admittance = l.admittance * (v * v);
+    const std::string where = "load " + load_name(grid.network, i);
+    const auto cancels = [&](double a, double b, double c, double sum, const char* name) {
+      constexpr double least = 1e-9;  // of the parts: below it their difference has no digits left
+      if (std::abs(sum) > least * (std::abs(a) + std::abs(b) + std::abs(c)) || (a == 0 && b == 0 && c == 0))
+        return;
+      problems.add(fmt::format("the parts of {} cancel", name), where,
+                   "ZIP takes them as fractions of their sum", "split the load into two with their own ids");
+    };
+    cancels(l.power.real(), current.real(), admittance.real(), total.real(), "P");
+    cancels(l.power.imag(), current.imag(), admittance.imag(), total.imag(), "Q");
+    Block block{zip, zip->standard_parameters()};
+    set(block, "Pi", fraction(current.real(), total.real()));
+    set(block, "Pp", fraction(l.power.real(), total.real()));
+    set(block, "Qi", fraction(current.imag(), total.imag()));
+    set(block, "Qp", fraction(l.power.imag(), total.imag()));
+    set_load(grid, static_cast<int>(i), std::move(block), where, problems);
+  }
+}
+
+void choose_load(Grid& grid, const std::string& text, const std::string& where, Problems& problems) {
+  const auto first = text.find(':'), second = first == text.npos ? text.npos : text.find(':', first + 1);
+  if (first == text.npos) {
+    problems.add("'" + text + "'", where, "a load model is BUS[/ID]:EFFECT[:PARAM=VALUE,...]",
+                 "write it like 8:ZIP:Pp=0.4,Pi=0.3");
+    return;
+  }
+  const std::string name = text.substr(first + 1, second == text.npos ? text.npos : second - first - 1);
+  const Effect* effect = find_effect(name);
+  if (!effect || effect->slot != Slot::load) {
+    problems.add("no load model '" + name + "'", where, "the load models are " + effect_names(Slot::load),
+                 "choose one of these");
+    return;
+  }
+  Block block{effect, effect->standard_parameters()};
+  if (second != text.npos) set_parameters(block, text.substr(second + 1), where, problems);
+  for (const int load : loads_named(grid.network, text.substr(0, first), where, problems))
+    set_load(grid, load, block, where, problems);
+}
+
+std::string describe_loads(const Grid& grid) {
+  if (grid.loads.empty()) return "constant impedance";
+  std::string text;
+  std::vector<const Effect*> kinds;
+  for (const Consumer& c : grid.loads)
+    if (!std::ranges::count(kinds, c.block.effect)) kinds.push_back(c.block.effect);
+  for (const Effect* effect : kinds) {
+    text += (text.empty() ? "" : "; ") + std::string(effect->name) + " at";
+    const char* separator = " ";
+    for (const Consumer& c : grid.loads)
+      if (c.block.effect == effect) text += std::exchange(separator, ", ") + c.name;
+  }
+  return grid.loads.size() == grid.network.loads.size() ? text : text + "; the others constant impedance";
+}
+
+}  // namespace swingbank::sim

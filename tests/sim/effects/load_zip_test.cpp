@@ -1,0 +1,137 @@
+// ZIP against hand-computed powers, and in both integrators.
+#include "sim/effects/load_zip.hpp"
+
+#include <gmock/gmock.h>
+
+#include "sim/solve/batch.hpp"
+#include "sim/solve/load_choice.hpp"
+#include "sim/solve/load_equations.hpp"
+#include "tests/sim/reference_support.hpp"
+
+namespace swingbank::sim {
+namespace {
+
+using ::testing::HasSubstr;
+constexpr auto kGrid = "ieee39_genrou";
+
+Consumer consumer(std::vector<std::pair<const char*, double>> values) {
+  Consumer load;
+  load.name = "1";
+  load.consumption = {0.8, 0.3};
+  load.block = {find_effect("ZIP"), find_effect("ZIP")->standard_parameters()};
+  for (const auto& [name, value] : values)
+    load.block.p[static_cast<std::size_t>(load.block.effect->parameter_index(name))] = value;
+  return load;
+}
+
+/// Power drawn at voltage v of a load that draws 0.8 + j0.3 pu at 0.98 pu.
+Complex drawn(const Consumer& load, Complex v) {
+  const Complex v0 = std::polar(0.98, 0.3);
+  const auto o = load_operating_point(load, load.block.p, v0, 100.0, Conventions::psse());
+  Signals<double> s;
+  s.Vr = v.real();
+  s.Vi = v.imag();
+  LoadEquations<double>(load).current(o.c.data(), o.x.data(), s);
+  return -v * std::conj(Complex(s.Ir, s.Ii));
+}
+
+TEST(LoadZip, DrawsItsPolynomial) {
+  const auto load = consumer({{"Pi", 0.3}, {"Pp", 0.5}, {"Qi", 0.2}, {"Qp", 0.1}});
+  const double v = 0.9 / 0.98;
+  const Complex s = drawn(load, std::polar(0.9, 0.3));
+  EXPECT_NEAR(s.real(), 0.8 * (0.2 * v * v + 0.3 * v + 0.5), 1e-14);  // rounding
+  EXPECT_NEAR(s.imag(), 0.3 * (0.7 * v * v + 0.2 * v + 0.1), 1e-14);
+}
+
+TEST(LoadZip, GivesWayBelowItsThresholdsWithoutAStepAndIsNothingAtZero) {
+  const auto load = consumer({{"Pi", 0.3}, {"Pp", 0.5}});
+  const auto p = [&](double v) { return drawn(load, std::polar(v, 0.3)).real(); };
+  const double half = 0.35, impedance = 0.2 * half * half / (0.98 * 0.98);
+  // At 0.35 pu, half of Vp and 0.7 of Vi: the power part to 1/4, the current part from Vi with 0.49.
+  EXPECT_NEAR(p(half), 0.8 * (impedance + 0.3 * 0.5 / 0.98 * 0.49 + 0.5 * 0.25), 1e-14);
+  for (const double edge : {0.5, 0.7}) EXPECT_NEAR(p(edge + 1e-9), p(edge - 1e-9), 1e-8);  // slope < 3
+  EXPECT_EQ(drawn(load, 0.0), Complex());
+}
+
+TEST(LoadZip, FollowsTheFrequencyOfItsBus) {
+  // The lag follows a voltage that turns at df with sin(angle) = 2 pi f0 Tf df / sqrt(1 + (2 pi f0 Tf df)^2).
+  const double df = 0.001, turn = 2 * 3.14159265358979323846 * 60 * 0.05 * df;
+  const auto load = consumer({{"Kpf", 2.0}, {"Kqf", -1.0}});
+  const Complex v0 = std::polar(0.98, 0.3), v = v0 * std::polar(1.0, std::atan(turn));
+  const Complex s = drawn(load, v);
+  const double measured = turn / std::sqrt(1 + turn * turn) / (turn / df);
+  EXPECT_NEAR(s.real(), 0.8 * (1 + 2 * measured), 1e-12);
+  EXPECT_NEAR(s.imag(), 0.3 * (1 - measured), 1e-12);
+}
+
+TEST(LoadZip, RefusesAnOperatingPointBelowItsThreshold) {
+  const auto load = consumer({{"Pp", 0.5}, {"Vp", 1.0}});
+  try {
+    (void)drawn(load, 1.0);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("Vp = 1 pu"));
+  }
+}
+
+TEST(LoadZip, EveryFaultOfAChoiceIsReported) {
+  Grid grid = test::configured_grid(kGrid, Conventions::psse());
+  Problems problems;
+  for (const char* text : {"8", "8:GENROU", "99:ZIP", "8:ZIP:Pp=x,Pz=1", "8:ZIP:Tf=0"})
+    choose_load(grid, text, std::string("--load ") + text, problems);
+  try {
+    problems.raise();
+    FAIL();
+  } catch (const InputError& e) {
+    for (const char* part :
+         {"BUS[/ID]:EFFECT", "no load model 'GENROU'", "no load 99", "'Pp=x'", "'Pz=1'", "Tf = 0 s"})
+      EXPECT_THAT(e.what(), HasSubstr(part));
+  }
+}
+
+void lanes_equal_reference(const Grid& grid, const Event& event) {
+  const ReferenceRun reference = run_reference(grid, event, {});
+  ASSERT_EQ(reference.outcome, Outcome::stable);
+  ASSERT_EQ(reference.plants.size(), grid.plants.size());
+  Batch batch(grid, BatchOptions{});
+  bool given = false, done = false;
+  batch.run(
+      [&](Job& job) {
+        job.event = event;
+        return !std::exchange(given, true);
+      },
+      [&](const Job&, const Trajectory& run) {
+        done = true;
+        EXPECT_EQ(run.outcome, Outcome::stable);
+        EXPECT_LE(test::largest_difference(run, reference), 1e-4);  // the bound
+      });
+  EXPECT_TRUE(done);
+}
+
+TEST(LoadZip, LanesEqualTheReferenceWithAFaultAtALoadBus) {
+  Grid grid = test::configured_grid(kGrid, Conventions::psse());
+  Problems problems;
+  choose_load(grid, "8:ZIP:Pp=0.4,Pi=0.3,Qp=0.2,Qi=0.3,Kpf=1.5,Kqf=-1", "--load", problems);
+  choose_load(grid, "20:ZIP:Pi=1", "--load", problems);
+  problems.raise();
+  Event event;
+  event.faults = {{grid.network.bus_index(8), 1.0, 1.08, {}}};
+  lanes_equal_reference(grid, event);
+}
+
+TEST(LoadZip, ImpedanceAloneIsTheDefaultLoad) {
+  const Grid plain = test::configured_grid(kGrid, Conventions::psse());
+  Grid grid = plain;
+  Problems problems;
+  for (const Load& l : plain.network.loads)
+    choose_load(grid, std::to_string(plain.network.buses[static_cast<std::size_t>(l.bus)].number) + ":ZIP",
+                "--load", problems);
+  problems.raise();
+  Event event;
+  event.faults = {{4, 1.0, 1.1, {}}};
+  // Two integrations at rtol 1e-8 of the same equations; the reference's own error is below 1e-6.
+  EXPECT_LE(test::largest_difference(run_reference(grid, event, {}), run_reference(plain, event, {})), 1e-6);
+}
+
+}  // namespace
+}  // namespace swingbank::sim
