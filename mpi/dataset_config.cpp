@@ -132,6 +132,10 @@ std::string DatasetConfig::canonical() const {
   const auto line = [&](std::string_view key, const auto& value) {
     text += fmt::format("{} = {}\n", key, value);
   };
+  // Absent keys leave no line, so that configs without them keep their hash.
+  if (!models.ignore.empty()) line("ignore_models", models.ignore);
+  for (const auto& [from, to] : models.map) line("map_models", from + "=" + to);
+  if (frequency_hz) line("frequency_hz", *frequency_hz);
   line("convention", psse ? "psse" : "andes");
   line("draws", draws);
   line("draws_per_shard", draws_per_shard);
@@ -165,6 +169,8 @@ DatasetConfig read_dataset_config(const fs::path& file, const Overrides& overrid
   d.file = file;
   d.raw = c.file("raw");
   d.dyr = c.file("dyr");
+  d.models = sim::read_dyr_options(c, "");
+  if (c.has("frequency_hz")) d.frequency_hz = c.require<double>("frequency_hz", {1.0, 1000.0, "Hz"});
   d.psse = c.choice("convention", {"psse", "andes"}) != "andes";
   d.draws = static_cast<std::uint64_t>(c.require<std::int64_t>("draws", kCount));
   d.draws_per_shard =
@@ -191,7 +197,8 @@ DatasetConfig read_dataset_config(const fs::path& file, const Overrides& overrid
 Study load_study(const DatasetConfig& config) {
   Study s{config, {}, {}, {}};
   s.grid = sim::load_grid(config.raw, config.dyr,
-                          config.psse ? sim::Conventions::psse() : sim::Conventions::andes());
+                          config.psse ? sim::Conventions::psse() : sim::Conventions::andes(), config.models,
+                          config.frequency_hz);
   const auto& network = s.grid.network;
   s.grid.conventions.frequency = network.frequency;
   Problems problems;

@@ -49,7 +49,9 @@ struct RecordConfig {
 
 struct DatasetConfig {
   std::filesystem::path file, raw, dyr;
-  bool psse = true;  ///< convention, else andes
+  bool psse = true;                    ///< convention, else andes
+  sim::DyrOptions models;              ///< .dyr models left out or read as others
+  std::optional<double> frequency_hz;  ///< what a MATPOWER case needs
   Vary vary = Vary::one;
   std::vector<int> generators;  ///< bus numbers of the machines that vary
   std::string model;            ///< their machine model

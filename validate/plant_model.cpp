@@ -92,8 +92,11 @@ void read_from_grid(Config& config, PlantModel& model) {
   const fs::path raw = config.file("grid.raw"), dyr = config.file("grid.dyr");
   const auto bus = config.require<std::int64_t>("grid.bus", {1.0});
   const auto id = config.optional<std::string>("grid.id", "");
+  const sim::DyrOptions models = sim::read_dyr_options(config, "grid.");
   if (!config.sound()) return;
-  const sim::Grid grid = sim::load_grid(raw, dyr, model.conventions);
+  std::optional<double> hz;  // a .raw has its own, which is compared below
+  if (raw.extension() == ".m") hz = model.conventions.frequency;
+  const sim::Grid grid = sim::load_grid(raw, dyr, model.conventions, models, hz);
   if (grid.network.frequency != model.conventions.frequency)
     config.problem("plant.frequency_hz",
                    fmt::format("plant.frequency_hz = {:g} Hz", model.conventions.frequency),

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/core/config.hpp"
 #include "sim/core/problem.hpp"
 #include "sim/network/network.hpp"
 
@@ -61,6 +62,10 @@ struct DyrOptions {
 /// "FROM=TO" of a command line or config as an entry of DyrOptions::map; `where` names the option.
 void add_model_map(DyrOptions& options, const std::string& text, const std::string& where,
                    Problems& problems);
+
+/// The keys `ignore_models` (names) and `map_models` (FROM=TO) of a config, both optional; `prefix`: "" or
+/// the table they stand in with its dot.
+DyrOptions read_dyr_options(Config& config, const std::string& prefix);
 
 /// Reads a .dyr file: records end with '/', may span lines; what follows the '/' and lines that begin with
 /// '//' are comments. Parameters that are no numbers are noted in the record, everything else wrong with the

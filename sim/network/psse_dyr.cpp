@@ -138,6 +138,17 @@ void add_model_map(DyrOptions& options, const std::string& text, const std::stri
                  "keep one of the mappings");
 }
 
+DyrOptions read_dyr_options(Config& config, const std::string& prefix) {
+  DyrOptions options;
+  options.ignore = config.optional<std::vector<std::string>>(prefix + "ignore_models", {});
+  const std::string key = prefix + "map_models";
+  Problems problems;
+  for (const auto& text : config.optional<std::vector<std::string>>(key, {}))
+    add_model_map(options, text, config.where(key), problems);
+  for (const Problem& p : problems.list()) config.problem(key, p.what, p.why, p.remedy);
+  return options;
+}
+
 std::vector<DyrRecord> read_dyr(const std::filesystem::path& file, const DyrOptions& options) {
   return DyrReader(psse::read_lines(file), file.string(), options).read();
 }

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "sim/network/matpower.hpp"
 #include "sim/network/psse_text.hpp"
 
 namespace swingbank::sim {
@@ -70,11 +71,17 @@ class GridMaker {
     const std::string where = dyr_ + ":" + std::to_string(record.line);
     const Effect* effect = effect_of_dyr(record.model);
     if (!effect) {
-      problems_.add("unknown model '" + record.model + "' of generator '" + record.id + "' at bus " +
-                        std::to_string(record.bus),
-                    where, "available are " + dyr_names(), "use one of these or remove the record");
+      const std::string name = record.user.empty() ? record.model : record.user;
+      problems_.add((record.user.empty() ? "unknown model '" : "user-written model '") + name +
+                        "' of generator '" + record.id + "' at bus " + std::to_string(record.bus),
+                    where, "available are " + dyr_names(),
+                    "leave it out with --ignore-model " + name +
+                        ", or let another with as many parameters (" + std::to_string(record.values.size()) +
+                        ") stand for it with --map-model " + name + "=OTHER");
       return;
     }
+    problems_.add(record.faults);
+    if (!record.faults.empty()) return;
     const std::pair<int, std::string> key{record.bus, record.id};
     const auto found = plant_of_.find(key);
     if (found == plant_of_.end()) {
@@ -225,7 +232,8 @@ Grid make_grid(Network network, const std::vector<DyrRecord>& dynamics, const st
   return GridMaker(std::move(network), dyr_name, conventions).make(dynamics);
 }
 
-Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dyr, Conventions conventions) {
+Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dyr, Conventions conventions,
+               const DyrOptions& options, std::optional<double> frequency_hz) {
   Problems problems;
   Network network;
   std::vector<DyrRecord> dynamics;
@@ -236,8 +244,8 @@ Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dy
       for (const Problem& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
     }
   };
-  collect([&] { network = read_raw(raw); });
-  collect([&] { dynamics = read_dyr(dyr); });
+  collect([&] { network = read_network(raw, frequency_hz); });
+  collect([&] { dynamics = read_dyr(dyr, options); });
   problems.raise();
   return make_grid(std::move(network), dynamics, dyr.string(), conventions);
 }

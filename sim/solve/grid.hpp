@@ -2,6 +2,7 @@
 // A grid ready to run: network, power flow, and one plant per generator with its effects and parameters.
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,8 +56,12 @@ struct Grid {
 /// and ZX contradicts it, the .dyr counts, as in PSS/E, and a warning says so.
 Grid make_grid(Network network, const std::vector<DyrRecord>& dynamics, const std::string& dyr_name,
                Conventions conventions);
-/// read_raw + read_dyr + make_grid.
-Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dyr, Conventions conventions);
+/// read_network + read_dyr + make_grid. `frequency_hz`: what a MATPOWER case (.m) needs.
+Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dyr, Conventions conventions,
+               const DyrOptions& options = {}, std::optional<double> frequency_hz = {});
+
+/// Values of every block of a plant: machine, transformer if there is one, controls.
+std::vector<std::vector<double>> block_parameters(const Plant& plant);
 
 /// When the plant's effects jump in time, sorted [s].
 std::vector<double> instants_of(const Plant& plant);

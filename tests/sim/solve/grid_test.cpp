@@ -249,5 +249,43 @@ GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(PublishedPsse);
 INSTANTIATE_TEST_SUITE_P(Files, PublishedPsse, ::testing::ValuesIn(published()),
                          [](const auto& test) { return test.param.stem().string(); });
 
+TEST(Grid, ModelsThatAreNotAvailableAreAllNamedAndCanBeIgnoredOrMapped) {
+  const RawCase raw;
+  const ScratchFile r("case.raw", raw.text());
+  const std::string round = kRound;
+  const ScratchFile d("case.dyr", "101 'GENCLS' 1 0.0 0.0 /\n102 'GENROX' 1 " + round +
+                                      " /\n102 'IEEEX9' 1 1 2 3 /\n102 'USRMDL' 1 'MYGOV' 5 0 /\n");
+  const auto load_with = [&](const DyrOptions& options) {
+    return load_grid(r.path, d.path, Conventions::psse(), options);
+  };
+  const std::string all = sentences_of([&] { load_with({}); });
+  for (const char* part : {"unknown model 'GENROX'", "case.dyr:2", "unknown model 'IEEEX9'", "case.dyr:3",
+                           "--ignore-model IEEEX9", "user-written model 'MYGOV'", "case.dyr:4",
+                           "--map-model GENROX=OTHER", "(14)"})
+    EXPECT_THAT(all, HasSubstr(part));
+  DyrOptions options{{"IEEEX9", "MYGOV"}, {{"GENROX", "GENROU"}}};
+  const Grid grid = load_with(options);
+  EXPECT_EQ(grid.plants[1].machine.effect->name, "GENROU");
+  EXPECT_TRUE(grid.plants[1].controls.empty());
+  options.map = {{"GENROX", "GENCLS"}};  // takes two parameters, not fourteen
+  EXPECT_THAT(sentences_of([&] { load_with(options); }), HasSubstr("GENCLS with 14 parameters"));
+}
+
+TEST(Grid, AMatpowerCaseTakesItsFrequencyFromTheCaller) {
+  const ScratchFile m("two.m",
+                      "mpc.version = '2';\nmpc.baseMVA = 100;\n"
+                      "mpc.bus = [1 3 0 0 0 0 1 1 0 110 1 1.1 0.9; 2 2 50 10 0 0 1 1 0 110 1 1.1 0.9];\n"
+                      "mpc.gen = [1 0 0 9 -9 1 100 1 9 0; 2 40 0 9 -9 1 100 1 9 0];\n"
+                      "mpc.branch = [1 2 0.01 0.1 0 0 0 0 0 0 1];\n"),
+      d("two.dyr", "1 'GENROU' 1 " + kRound + " /\n2 'GENROU' 1 " + kRound + " /\n"),
+      classical("two.dyr", "1 'GENCLS' 1 3.0 0.0 /\n2 'GENROU' 1 " + kRound + " /\n");
+  EXPECT_EQ(load_grid(m.path, d.path, Conventions::psse(), {}, 50.0).conventions.frequency, 50.0);
+  EXPECT_THAT(sentences_of([&] { load_grid(m.path, d.path, Conventions::psse()); }),
+              HasSubstr("no frequency"));
+  // A case has no machine impedance for a model that takes its X'd from there.
+  EXPECT_THAT(sentences_of([&] { load_grid(m.path, classical.path, Conventions::psse(), {}, 50.0); }),
+              HasSubstr("X'd = 0"));
+}
+
 }  // namespace
 }  // namespace swingbank::sim
