@@ -1,0 +1,62 @@
+#pragma once
+// FORCEDOSC: an oscillation forced upon the shaft.
+#include <fmt/format.h>
+
+#include "sim/core/drive.hpp"
+#include "sim/core/effect.hpp"
+
+namespace swingbank::sim::shaft_forced_oscillation {
+
+struct Model {
+  static constexpr std::string_view name = "FORCEDOSC", title = "forced oscillation of the mechanical torque",
+                                    source =
+                                        "disturbance drive: NERC, Forced Oscillation Monitoring and "
+                                        "Mitigation (2017); sine by definition";
+  static constexpr Slot slot = Slot::shaft;
+  static constexpr std::string_view description = R"(
+  Tm = Tm(governor) + amplitude sin(2 pi frequency (t - start) + phase)      start <= t < end
+  Before `start` and from `end` on exactly nothing is added.
+)";
+  enum P { amplitude, frequency, phase, start, end };
+  static constexpr Parameter parameters[] = {
+      {"amplitude", "A", "pu", 0.0, -1.0, 1.0, 0.0, "amplitude of the torque"},
+      {"frequency", "f", "Hz", 0.5, 1e-3, 60.0, kNoNeutral, "frequency of the oscillation"},
+      {"phase", "phi", "rad", 0.0, -6.2831853071795862, 6.2831853071795862, kNoNeutral, "phase at `start`"},
+      {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNeutral, "when it begins"},
+      {"end", "t2", "s", 1e5, 0.0, 1e5, kNoNeutral, "when it ends (100000: never)"}};
+  enum C { kA, w, phi, t1, t2, coefficients };
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    if (!(p[frequency] > 0))
+      problems.add(fmt::format("frequency = {:g} Hz", p[frequency]), where, "an oscillation has a period",
+                   "give frequency > 0");
+    if (!(p[start] >= 0))
+      problems.add(fmt::format("start = {:g} s", p[start]), where, "a run begins at 0 s", "give start >= 0");
+    if (!(p[end] > p[start]))
+      problems.add(fmt::format("end = {:g} s with start = {:g} s", p[end], p[start]), where,
+                   "an oscillation ends after it began", "give end > start");
+  }
+  static std::string_view unphysical(const double*) { return ""; }
+  static std::vector<double> instants(const double* p) { return {p[start], p[end]}; }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions&, T* c) {
+    c[kA] = p[amplitude];
+    c[w] = T(2.0 * 3.14159265358979323846) * p[frequency];
+    c[phi] = p[phase];
+    c[t1] = p[start];
+    c[t2] = p[end];
+  }
+  template <class T>
+  static void evaluate(const T* c, const T*, Signals<T>& s, T*) {
+    T sine, unused;
+    sincos(c[w] * (s.t - c[t1]) + c[phi], sine, unused);
+    s.Tm = s.Tm + between(s.t, c[t1], c[t2], c[kA] * sine);
+  }
+  template <class T>
+  static std::string steady(const T*, T*, Signals<T>&, T*) {
+    return {};
+  }
+};
+
+}  // namespace swingbank::sim::shaft_forced_oscillation
