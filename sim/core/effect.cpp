@@ -8,8 +8,8 @@ namespace swingbank::sim {
 
 std::string_view slot_name(Slot slot) {
   constexpr std::array<std::string_view, kSlots.size()> names = {
-      "machine", "transformer", "compensator", "setpoint", "stabiliser", "limiter",
-      "exciter", "governor",    "shaft",       "load",     "measurement"};
+      "machine",    "transformer", "compensator", "setpoint", "governor",   "shaft",
+      "stabiliser", "limiter",     "exciter",     "load",     "measurement"};
   return names[static_cast<std::size_t>(slot)];
 }
 

@@ -33,19 +33,19 @@ enum class Slot {
   transformer,  ///< between the machine's terminal and the grid
   compensator,  ///< makes Vc, the voltage the exciter regulates
   setpoint,     ///< moves dVref, dPref
-  stabiliser,   ///< makes Vs
-  limiter,      ///< adds to Vlimiter
-  exciter,      ///< makes Efd
   governor,     ///< makes Tm
   shaft,        ///< changes Tm after the governor: what acts on the shaft whatever the governor does
+  stabiliser,   ///< makes Vs; after the governor, for accelerating power needs Tm
+  limiter,      ///< adds to Vlimiter
+  exciter,      ///< makes Efd
   load,         ///< a consumer at a bus
   measurement,  ///< between the grid and the record
 };
-inline constexpr std::array kSlots = {Slot::machine,    Slot::transformer, Slot::compensator, Slot::setpoint,
-                                      Slot::stabiliser, Slot::limiter,     Slot::exciter,     Slot::governor,
-                                      Slot::shaft,      Slot::load,        Slot::measurement};
+inline constexpr std::array kSlots = {Slot::machine,  Slot::transformer, Slot::compensator, Slot::setpoint,
+                                      Slot::governor, Slot::shaft,       Slot::stabiliser,  Slot::limiter,
+                                      Slot::exciter,  Slot::load,        Slot::measurement};
 std::string_view slot_name(Slot slot);
-constexpr bool is_control(Slot slot) { return slot >= Slot::compensator && slot <= Slot::shaft; }
+constexpr bool is_control(Slot slot) { return slot >= Slot::compensator && slot <= Slot::exciter; }
 /// Whether several effects may stand in the slot of one plant: those that add up.
 constexpr bool is_shared(Slot slot) {
   return slot == Slot::setpoint || slot == Slot::limiter || slot == Slot::shaft || slot == Slot::measurement;
@@ -55,8 +55,8 @@ constexpr double kNoNeutral = std::numeric_limits<double>::quiet_NaN();
 
 /// One parameter of an effect. `low` and `high` bound what is physically possible; a dataset's sampling box
 /// stands in its own config and is checked against them. `neutral` is the value at which the parameter's
-/// influence vanishes (NaN: there is none). The unit "code" marks a choice among whole numbers: never sampled,
-/// never fitted.
+/// influence vanishes (NaN: there is none). The unit "code" marks a choice among whole numbers: never
+/// sampled, never fitted.
 struct Parameter {
   std::string_view name;    ///< identifier in configs, HDF5 and tables: "Xdp"
   std::string_view symbol;  ///< as engineers write it: "X'd"
@@ -82,7 +82,7 @@ struct Conventions {
   bool mechanical_power = true;  ///< the governor sets power, so torque is (Pm - D w)/(1 + w); else torque
   double frequency = 60.0;       ///< system frequency [Hz]
   double mva = 100.0;            ///< base of the machine at hand [MVA]; set by operating_point
-  static constexpr Conventions psse(double hz = 60.0) { return {true, true, hz}; }
+  static constexpr Conventions psse(double hz = 60.0) { return {false, true, hz}; }
   static constexpr Conventions andes(double hz = 60.0) { return {false, false, hz}; }
 };
 

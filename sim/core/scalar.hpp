@@ -14,9 +14,10 @@ constexpr int kDirections = 8;
 using D8 = Dual<double, kDirections>;
 using P4 = Pack<4>;
 using P8 = Pack<8>;
+using D8P8 = Dual<P8, kDirections>;  ///< eight scenarios with eight sensitivities each
 
 /// Every scalar an effect is instantiated for. The one place to extend.
-using Scalars = std::tuple<double, P4, P8, D8>;
+using Scalars = std::tuple<double, P4, P8, D8, D8P8>;
 
 inline void sincos(double a, double& s, double& c) {
   s = std::sin(a);

@@ -57,8 +57,15 @@ std::map<int, Plant> changed_plants(const Grid& grid, const Job& job) {
 }
 
 Batch::Batch(const Grid& grid, BatchOptions options) : impl_(std::make_unique<Impl>()) {
-  if (options.lanes == 0) options.lanes = widest();
+  if (options.lanes == 0) options.lanes = options.sensitivities ? 8 : widest();
   impl_->options = options;
+  if (options.sensitivities) {
+    if (options.lanes != 8)
+      throw InputError({fmt::format("{} lanes with sensitivities", options.lanes), "option lanes",
+                        "sensitivities are built for 8", "choose 8, or 0"});
+    impl_->engine = std::make_unique<EngineOf<D8P8>>(grid, options);
+    return;
+  }
   switch (options.lanes) {
     case 1:
       impl_->engine = std::make_unique<EngineOf<double>>(grid, options);

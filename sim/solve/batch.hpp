@@ -19,6 +19,16 @@ struct BatchOptions {
   std::vector<Channel> channels;            ///< recorded; empty: all of kChannels
   int lanes = 0;                            ///< 1, 4 or 8; 0: the widest this build was made for
   double lose_at = 3.14159265358979323846;  ///< pairwise rotor angle difference that ends a run [rad]
+  bool sensitivities = false;               ///< carry derivatives along Job::seeds; always 8 lanes
+};
+
+/// A parameter a sensitivity is wanted for. The step control weighs the sensitivity's error times `scale`
+/// like that of the value itself.
+struct Seed {
+  int plant;
+  int block;  ///< 0: machine, then transformer if there is one, then controls
+  int parameter;
+  double scale;  ///< [unit of the parameter]
 };
 
 /// One run to make: the event and the plants' parameters. Plants that are not listed keep the grid's own.
@@ -33,6 +43,7 @@ struct Job {
     friend bool operator==(const Control&, const Control&) = default;
   };
   std::vector<Control> control_parameters = {};
+  std::vector<Seed> seeds = {};  ///< at most kDirections; only where BatchOptions::sensitivities
 };
 
 /// The plants a job changes, by index.

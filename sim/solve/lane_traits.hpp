@@ -15,17 +15,22 @@ struct LaneTraits;
 
 template <>
 struct LaneTraits<double> {
-  static constexpr int lanes = 1;
+  using Flat = double;
+  static constexpr int lanes = 1, directions = 0;
   static double get(double v, int) { return v; }
   static void set(double& v, int, double a) { v = a; }
   static bool mask(unsigned bits) { return (bits & 1U) != 0; }
   static double load(const double* v) { return *v; }
   static void store(double v, double* to) { *to = v; }
   static void stream(double v, double* to) { *to = v; }
+  static double value(double v) { return v; }
+  static double constant(double v) { return v; }
+  static double magnitude(double v) { return std::fabs(v); }
 };
 template <int N>
 struct LaneTraits<Pack<N>> {
-  static constexpr int lanes = N;
+  using Flat = Pack<N>;
+  static constexpr int lanes = N, directions = 0;
   static double get(const Pack<N>& v, int l) { return v.v[l]; }
   static void set(Pack<N>& v, int l, double a) { reinterpret_cast<double*>(&v)[l] = a; }
   static typename Pack<N>::Mask mask(unsigned bits) {
@@ -50,6 +55,42 @@ struct LaneTraits<Pack<N>> {
 #endif
     store(v, to);
   }
+  static Pack<N> value(const Pack<N>& v) { return v; }
+  static Pack<N> constant(const Pack<N>& v) { return v; }
+  static Pack<N> magnitude(const Pack<N>& v) { return Pack<N>(v.v > -v.v ? v.v : -v.v); }
+};
+/// Sensitivities ride in the lanes: a value is 1 + D flats, one after the other.
+template <int N, int D>
+struct LaneTraits<Dual<Pack<N>, D>> {
+  using T = Dual<Pack<N>, D>;
+  using Flat = Pack<N>;
+  using Of = LaneTraits<Flat>;
+  static constexpr int lanes = N, directions = D;
+  static_assert(sizeof(T) == (1 + D) * sizeof(Flat));
+  static double get(const T& v, int l) { return v.a.v[l]; }
+  static void set(T& v, int l, double a) {
+    Of::set(v.a, l, a);
+    for (auto& d : v.d) Of::set(d, l, 0.0);
+  }
+  static void set_slope(T& v, int l, int direction, double a) {
+    Of::set(v.d[static_cast<std::size_t>(direction)], l, a);
+  }
+  static typename Flat::Mask mask(unsigned bits) { return Of::mask(bits); }
+  static Flat value(const T& v) { return v.a; }
+  static T constant(const Flat& v) {
+    T r(0.0);
+    r.a = v;
+    return r;
+  }
+  /// A slope's error counts like a value's: slopes are per unit of the parameter's own scale.
+  static Flat magnitude(const T& v) {
+    Flat m = Of::magnitude(v.a);
+    for (const auto& d : v.d) {
+      const Flat e = Of::magnitude(d);
+      m = select(e <= m, m, e);  // in this order a NaN wins
+    }
+    return m;
+  }
 };
 
 inline double maximum(double a, double b) { return a > b ? a : b; }
@@ -68,5 +109,21 @@ inline Pack<N> absolute(Pack<N> a) {
   return maximum(a, -a);
 }
 inline double round_nearest(double a) { return std::nearbyint(a); }
+template <class T, int D>
+Dual<T, D> maximum(const Dual<T, D>& a, const Dual<T, D>& b) {
+  return select(a > b, a, b);
+}
+template <class T, int D>
+Dual<T, D> minimum(const Dual<T, D>& a, const Dual<T, D>& b) {
+  return select(a < b, a, b);
+}
+template <class T, int D>
+Dual<T, D> absolute(const Dual<T, D>& a) {
+  return maximum(a, -a);
+}
+template <class T, int D>
+Dual<T, D> round_nearest(const Dual<T, D>& a) {
+  return chain(a, round_nearest(a.a), T(0.0));
+}
 
 }  // namespace swingbank::sim

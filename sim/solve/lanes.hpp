@@ -29,6 +29,8 @@ class Lanes {
 
  private:
   using Traits = LaneTraits<T>;
+  using Flat = typename Traits::Flat;
+  static constexpr std::size_t kFlats = 1 + Traits::directions;  ///< flats in one T
   struct PlantSlice {
     PlantEquations<T> equations;
     int x, c, m;  ///< offsets of states, coefficients and scratch
@@ -56,11 +58,11 @@ class Lanes {
   void solve_algebra(Constants& k, const T* x);
   void source_emf(const Constants& k, const T* x, int source, const T& vr, const T& vi, T& er, T& ei);
   const T* source_impedance(const Constants& k, int source) const;
-  T newton_step(Constants& k, const T* x);
+  Flat newton_step(Constants& k, const T* x);
 
   // recording (lanes_record.hpp)
-  void record_step(T h, unsigned accepted, const double* start, const double* tried);
-  void prepare_dense(T h);
+  void record_step(const T& h, unsigned accepted, const double* start, const double* tried);
+  void prepare_dense(const T& h);
   void collect(int lane, int count, double start, double tried);
   void evaluate_pending(int lane, int count);
   void spread_constants(int lane);
@@ -71,7 +73,10 @@ class Lanes {
   void load(int lane);
   void build_slices();
   void reserve();
-  void load_plant(int lane, std::size_t plant, const Operating& at);
+  template <class Value>
+  void load_plant(int lane, std::size_t plant, const OperatingOf<Value>& at);
+  void load_seeded(int lane, const std::map<int, Plant>& changed);
+  void matrix_slopes(int lane, const InternalMatrix& matrix);
   void load_consumer(int lane, std::size_t load);
   void enter_segment(int lane);
   void record_steady_start(int lane);
@@ -83,8 +88,8 @@ class Lanes {
   // stepping (lanes_step.hpp)
   void evaluate_fresh();
   template <int Stage>
-  void stage(T h);
-  T scaled_error(T h) const;
+  void stage(const T& h);
+  Flat scaled_error(const Flat& h) const;
   void commit(unsigned accepted);
   void clamp_states();
   T spread(const T* x) const;

@@ -56,7 +56,7 @@ void solve_dense(T* a, T* b, std::size_t n) {
 /// One Newton step of V - (E(V) - z (G + jB) E(V)) = 0, left in algebra_[0 .. 2K). dE/dV by differences:
 /// their error only slows the convergence. Returns the largest component.
 template <class T>
-T Lanes<T>::newton_step(Constants& k, const T* x) {
+typename Lanes<T>::Flat Lanes<T>::newton_step(Constants& k, const T* x) {
   constexpr double nudge = 1e-6;  // [pu]
   const std::size_t count = nonlinear_.size(), size = 2 * count;
   T* f = algebra_.data();
@@ -96,8 +96,8 @@ T Lanes<T>::newton_step(Constants& k, const T* x) {
     }
   }
   solve_dense(a, f, size);
-  T largest(0.0);
-  for (std::size_t i = 0; i < size; ++i) largest = maximum(absolute(f[i]), largest);
+  Flat largest(0.0);
+  for (std::size_t i = 0; i < size; ++i) largest = maximum(absolute(Traits::value(f[i])), largest);
   return largest;
 }
 
@@ -106,19 +106,22 @@ void Lanes<T>::solve_algebra(Constants& k, const T* x) {
   constexpr int limit = 40;
   constexpr double longest = 0.3;  // [pu]: a load of constant power may throw the first steps far
   constexpr double near = 1e-7;    // [pu]: a step this short leaves 1e-13 behind
+  // Newton's last step still carries the slopes' error of the differences: duals take two more.
+  constexpr int more = Traits::directions > 0 ? 2 : 0;
   auto seeking = Traits::mask((1U << kLanes) - 1U);
   unsigned open = (1U << kLanes) - 1U;
+  std::array<int, kLanes> calm{};
   for (int step = 0; step < limit && open != 0; ++step) {
-    const T largest = newton_step(k, x);
-    const T scale = T(longest) / maximum(T(longest), largest);
+    const Flat largest = newton_step(k, x);
+    const T scale = Traits::constant(Flat(longest) / maximum(Flat(longest), largest));
     for (std::size_t i = 0; i < nonlinear_.size(); ++i) {
       k.vr[i] = select(seeking, k.vr[i] - scale * algebra_[2 * i], k.vr[i]);
       k.vi[i] = select(seeking, k.vi[i] - scale * algebra_[2 * i + 1], k.vi[i]);
     }
     alignas(64) double size[kLanes];
-    Traits::store(largest, size);
+    LaneTraits<Flat>::store(largest, size);
     for (int l = 0; l < kLanes; ++l)
-      if (size[l] < near) open &= ~(1U << l);
+      if (size[l] < near && calm[static_cast<std::size_t>(l)]++ >= more) open &= ~(1U << l);
     seeking = Traits::mask(open);
   }
   for (std::size_t i = 0; i < nonlinear_.size(); ++i) {

@@ -1,6 +1,9 @@
 #pragma once
 // Lanes: construction, loading a job into a lane, switching, finishing.
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <set>
 
 #include "sim/solve/lanes.hpp"
 
@@ -86,17 +89,22 @@ void Lanes<T>::reserve() {
 }
 
 template <class T>
-void Lanes<T>::load_plant(int lane, std::size_t plant, const Operating& at) {
+template <class Value>
+void Lanes<T>::load_plant(int lane, std::size_t plant, const OperatingOf<Value>& at) {
   const PlantSlice& p = plants_[plant];
-  for (std::size_t i = 0; i < at.c.size(); ++i)
-    Traits::set(per_lane_.c[static_cast<std::size_t>(p.c) + i], lane, at.c[i]);
-  for (std::size_t i = 0; i < at.x.size(); ++i)
-    Traits::set(y_[static_cast<std::size_t>(p.x) + i], lane, at.x[i]);
-  Traits::set(per_lane_.efd[plant], lane, at.Efd);
-  Traits::set(per_lane_.tm[plant], lane, at.Tm);
-  const double* z = at.c.data() + grid_.plants[plant].machine.effect->coefficients + joint_r;
-  lane_r_[static_cast<std::size_t>(lane)][plant] = z[0];
-  lane_x_[static_cast<std::size_t>(lane)][plant] = z[1];
+  const auto put = [lane](T& to, const Value& from) {
+    Traits::set(to, lane, value_of(from));
+    if constexpr (Traits::directions > 0 && !std::is_same_v<Value, double>)
+      for (int d = 0; d < Traits::directions; ++d)
+        Traits::set_slope(to, lane, d, from.d[static_cast<std::size_t>(d)]);
+  };
+  for (std::size_t i = 0; i < at.c.size(); ++i) put(per_lane_.c[static_cast<std::size_t>(p.c) + i], at.c[i]);
+  for (std::size_t i = 0; i < at.x.size(); ++i) put(y_[static_cast<std::size_t>(p.x) + i], at.x[i]);
+  put(per_lane_.efd[plant], at.Efd);
+  put(per_lane_.tm[plant], at.Tm);
+  const Value* z = at.c.data() + grid_.plants[plant].machine.effect->coefficients + joint_r;
+  lane_r_[static_cast<std::size_t>(lane)][plant] = value_of(z[0]);
+  lane_x_[static_cast<std::size_t>(lane)][plant] = value_of(z[1]);
 }
 
 template <class T>
@@ -119,10 +127,12 @@ void Lanes<T>::load(int lane) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
   for (std::size_t i = 0; i < plants_.size(); ++i) load_plant(lane, i, base_[i]);
   for (std::size_t i = 0; i < loads_.size(); ++i) load_consumer(lane, i);
-  for (const auto& [plant, changed] : changed_plants(grid_, run.job))
-    load_plant(lane, static_cast<std::size_t>(plant),
-               operating_point(changed, grid_.flow.voltage[static_cast<std::size_t>(changed.bus)],
+  const auto changed = changed_plants(grid_, run.job);
+  for (const auto& [index, plant] : changed)
+    load_plant(lane, static_cast<std::size_t>(index),
+               operating_point(plant, grid_.flow.voltage[static_cast<std::size_t>(plant.bus)],
                                grid_.network.base_mva, grid_.conventions));
+  if constexpr (Traits::directions > 0) load_seeded(lane, changed);
   for (std::size_t i = 0; i < nonlinear_.size(); ++i) {
     const int source = nonlinear_[i];
     const int bus = source < n_ ? grid_.plants[static_cast<std::size_t>(source)].bus
@@ -133,6 +143,56 @@ void Lanes<T>::load(int lane) {
   }
   run.segment = 0;
   run.clock.t = 0.0;
+}
+
+/// Plants with seeded parameters once more, with the derivatives of their operating point.
+template <class T>
+void Lanes<T>::load_seeded(int lane, const std::map<int, Plant>& changed) {
+  const auto& seeds = lanes_[static_cast<std::size_t>(lane)].job.seeds;
+  if (seeds.size() > static_cast<std::size_t>(Traits::directions))
+    throw InputError({fmt::format("{} seeds", seeds.size()), "job",
+                      fmt::format("a lane carries {} sensitivities", Traits::directions), "split the job"});
+  std::set<int> seeded;
+  for (const Seed& seed : seeds) seeded.insert(seed.plant);
+  for (const int index : seeded) {
+    const auto other = changed.find(index);
+    const Plant& plant =
+        other == changed.end() ? grid_.plants[static_cast<std::size_t>(index)] : other->second;
+    std::vector<std::vector<D8>> parameters;
+    for (const auto& values : block_parameters(plant)) parameters.emplace_back(values.begin(), values.end());
+    for (std::size_t d = 0; d < seeds.size(); ++d)
+      if (seeds[d].plant == index)
+        parameters[static_cast<std::size_t>(seeds[d].block)][static_cast<std::size_t>(seeds[d].parameter)]
+            .d[d] = seeds[d].scale;
+    load_plant(
+        lane, static_cast<std::size_t>(index),
+        operating_point_of<D8>(plant, parameters, grid_.flow.voltage[static_cast<std::size_t>(plant.bus)],
+                               grid_.network.base_mva, grid_.conventions));
+  }
+}
+
+/// M = (G + jB) changes with a source's impedance by dM = -M[:,k] dz M[k,:].
+template <class T>
+void Lanes<T>::matrix_slopes(int lane, const InternalMatrix& matrix) {
+  const auto n = static_cast<std::size_t>(sources_);
+  for (int d = 0; d < Traits::directions; ++d)
+    for (std::size_t k = 0; k < plants_.size(); ++k) {
+      const T* z = source_impedance(per_lane_, static_cast<int>(k));
+      const auto slope = [&](const T& v) {
+        return LaneTraits<Flat>::get(v.d[static_cast<std::size_t>(d)], lane);
+      };
+      const Complex dz(slope(z[0]), slope(z[1]));
+      if (dz == Complex{}) continue;
+      const auto m = [&](std::size_t i, std::size_t j) {
+        return Complex(matrix.g[i * n + j], matrix.b[i * n + j]);
+      };
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j) {
+          const Complex dm = -m(i, k) * dz * m(k, j);
+          Traits::set_slope(per_lane_.g[i * n + j], lane, d, dm.real());
+          Traits::set_slope(per_lane_.b[i * n + j], lane, d, dm.imag());
+        }
+    }
 }
 
 /// Puts the matrices of the lane's current segment into place and starts the step control anew.
@@ -146,6 +206,7 @@ void Lanes<T>::enter_segment(int lane) {
     Traits::set(per_lane_.g[i], lane, matrix.g[i]);
     Traits::set(per_lane_.b[i], lane, matrix.b[i]);
   }
+  if constexpr (Traits::directions > 0) matrix_slopes(lane, matrix);
   grounded_[l] = matrix.grounded;
   tripped_ &= ~(1U << lane);
   for (std::size_t i = 0; i < plants_.size(); ++i) {
@@ -175,7 +236,8 @@ void Lanes<T>::record_steady_start(int lane) {
   const bool switches = run.segments.size() > 1 && run.segments[1].start < options_.t_end;
   const double first = switches ? run.segments[1].start : options_.t_end;
   const int count = samples_until(first);
-  for (std::size_t i = 0; i < y_.size(); ++i) run.waiting[i * kRoom] = Traits::get(y_[i], lane);
+  const double* flat = reinterpret_cast<const double*>(y_.data()) + lane;
+  for (std::size_t i = 0; i < y_.size() * kFlats; ++i) run.waiting[i * kRoom] = flat[i * kLanes];
   run.pending = 1;
   evaluate_pending(lane, 1);
   hold(run, count);
@@ -237,11 +299,12 @@ void Lanes<T>::begin_record(LaneRun& run) const {
   record.samples = samples_;
   record.plants = recorded_;
   record.channels = channels_;
+  record.directions = Traits::directions;
   record.allocate(true);
   record.outcome = Outcome::stable;
   record.largest_spread = 0.0;
   run.recorded = run.pending = 0;
-  run.waiting.resize(y_.size() * kRoom);
+  run.waiting.resize(y_.size() * kFlats * kRoom);
   run.theta.assign(recorded_.size(), 0.0);
 }
 

@@ -11,7 +11,7 @@ namespace swingbank::sim {
 
 /// Coefficients of y(theta) = y0 + theta (d0 + (1 - theta)(d1 + theta (d2 + (1 - theta) d3))).
 template <class T>
-void Lanes<T>::prepare_dense(T h) {
+void Lanes<T>::prepare_dense(const T& h) {
   const std::size_t n = y_.size();
   for (std::size_t i = 0; i < n; ++i) {
     const T delta = trial_[i] - y_[i];
@@ -27,7 +27,7 @@ void Lanes<T>::prepare_dense(T h) {
 
 /// Records the samples in (start, start + tried] of every accepted lane.
 template <class T>
-void Lanes<T>::record_step(T h, unsigned accepted, const double* start, const double* tried) {
+void Lanes<T>::record_step(const T& h, unsigned accepted, const double* start, const double* tried) {
   bool prepared = false;
   for (int l = 0; l < kLanes; ++l) {
     if (!((accepted >> l) & 1U)) continue;
@@ -44,23 +44,24 @@ void Lanes<T>::record_step(T h, unsigned accepted, const double* start, const do
 template <class T>
 void Lanes<T>::collect(int lane, int count, double start, double tried) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
-  const std::size_t n = y_.size();
+  const std::size_t n = y_.size() * kFlats;
   const double inverse = 1.0 / tried, spacing = 1.0 / options_.rate;
   while (count > 0) {
     const int now = std::min(count, kLanes);
     const int first = run.recorded + run.pending;
     alignas(64) double theta[kLanes];
     for (int s = 0; s < kLanes; ++s) theta[s] = std::min(1.0, ((first + s) * spacing - start) * inverse);
-    const T a = Traits::load(theta), b = T(1.0) - a;
+    const Flat a = LaneTraits<Flat>::load(theta), b = Flat(1.0) - a;
     const double* __restrict y = reinterpret_cast<const double*>(y_.data()) + lane;
     const double* __restrict d = reinterpret_cast<const double*>(dense_.data()) + lane;
     double* __restrict to = run.waiting.data() + run.pending;
+    // dense_ holds four rows of T per state, each T a row of flats: [coefficient][state][flat]
     for (std::size_t i = 0; i < n; ++i) {
-      const T value =
-          T(y[i * kLanes]) +
-          a * (T(d[i * kLanes]) + b * (T(d[(n + i) * kLanes]) +
-                                       a * (T(d[(2 * n + i) * kLanes]) + b * T(d[(3 * n + i) * kLanes]))));
-      Traits::store(value, to + i * kRoom);
+      const Flat value = Flat(y[i * kLanes]) +
+                         a * (Flat(d[i * kLanes]) +
+                              b * (Flat(d[(n + i) * kLanes]) +
+                                   a * (Flat(d[(2 * n + i) * kLanes]) + b * Flat(d[(3 * n + i) * kLanes]))));
+      LaneTraits<Flat>::store(value, to + i * kRoom);
     }
     run.pending += now;
     count -= now;
@@ -74,8 +75,9 @@ void Lanes<T>::spread_constants(int lane) {
   const auto copy = [lane](const std::vector<T>& from, std::vector<T>& to, std::size_t first,
                            std::size_t count) {
     const double* __restrict source = reinterpret_cast<const double*>(from.data()) + lane;
-    T* __restrict target = to.data();
-    for (std::size_t i = first; i < first + count; ++i) target[i] = T(source[i * kLanes]);
+    Flat* __restrict target = reinterpret_cast<Flat*>(to.data());
+    for (std::size_t i = first * kFlats; i < (first + count) * kFlats; ++i)
+      target[i] = Flat(source[i * kLanes]);
   };
   const Constants& from = per_lane_;
   Constants& to = per_sample_;
@@ -105,14 +107,16 @@ void Lanes<T>::evaluate_pending(int lane, int count) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
   if (count == 0) return;
   spread_constants(lane);
-  const std::size_t n = y_.size();
+  const std::size_t n = y_.size() * kFlats;
+  Flat* const kept = reinterpret_cast<Flat*>(kept_.data());
   for (int first = 0, now = 0; first < count; first += now) {
-    for (std::size_t i = 0; i < n; ++i) kept_[i] = Traits::load(run.waiting.data() + i * kRoom + first);
+    for (std::size_t i = 0; i < n; ++i)
+      kept[i] = LaneTraits<Flat>::load(run.waiting.data() + i * kRoom + first);
     now = std::min(kLanes - run.recorded % kLanes, count - first);  // whole packs start on a cache line
     if (timed_) {
       alignas(64) double at[kLanes];
       for (int l = 0; l < kLanes; ++l) at[l] = (run.recorded + l) / options_.rate;
-      signals_.t = minimum(Traits::load(at), per_sample_.last_moment);
+      signals_.t = minimum(Traits::constant(LaneTraits<Flat>::load(at)), per_sample_.last_moment);
     }
     emfs(per_sample_, kept_.data());
     for (std::size_t k = 0; k < recorded_.size(); ++k) outputs(k, kept_.data(), run, now);
@@ -122,8 +126,9 @@ void Lanes<T>::evaluate_pending(int lane, int count) {
   if (run.pending > 0)
     for (std::size_t i = 0; i < n; ++i) {
       double* row = run.waiting.data() + i * kRoom;
-      Traits::store(Traits::load(row + count), row);
-      Traits::store(Traits::load(row + count + kLanes), row + kLanes);
+      using Of = LaneTraits<Flat>;
+      Of::store(Of::load(row + count), row);
+      Of::store(Of::load(row + count + kLanes), row + kLanes);
     }
 }
 
@@ -181,12 +186,16 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
         break;
       }
     }
-    double* to = run.record.at(static_cast<int>(k), static_cast<int>(j)) + run.recorded;
-    if (count == kLanes) {
-      Traits::stream(v, to);
-    } else {
-      for (int l = 0; l < count; ++l) to[l] = Traits::get(v, l);
-    }
+    const auto put = [&](const Flat& flat, double* row) {
+      double* to = row + run.recorded;
+      if (count == kLanes) return LaneTraits<Flat>::stream(flat, to);
+      for (int l = 0; l < count; ++l) to[l] = LaneTraits<Flat>::get(flat, l);
+    };
+    const int plant = static_cast<int>(k), channel = static_cast<int>(j);
+    put(Traits::value(v), run.record.at(plant, channel));
+    if constexpr (Traits::directions > 0)
+      for (int d = 0; d < Traits::directions; ++d)
+        put(v.d[static_cast<std::size_t>(d)], run.record.slope(d, plant, channel));
   }
 }
 
@@ -196,8 +205,10 @@ void Lanes<T>::hold(LaneRun& run, int until) const {
   if (run.recorded == 0 || run.recorded >= until) return;
   for (std::size_t k = 0; k < recorded_.size(); ++k)
     for (std::size_t j = 0; j < channels_.size(); ++j) {
-      double* v = run.record.at(static_cast<int>(k), static_cast<int>(j));
-      std::fill(v + run.recorded, v + until, v[run.recorded - 1]);
+      const auto repeat = [&](double* v) { std::fill(v + run.recorded, v + until, v[run.recorded - 1]); };
+      repeat(run.record.at(static_cast<int>(k), static_cast<int>(j)));
+      for (int d = 0; d < Traits::directions; ++d)
+        repeat(run.record.slope(d, static_cast<int>(k), static_cast<int>(j)));
     }
   run.recorded = until;
 }

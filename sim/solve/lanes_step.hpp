@@ -11,7 +11,7 @@ void Lanes<T>::evaluate_fresh() {
   if (timed_) {
     alignas(64) double now[kLanes];
     for (int l = 0; l < kLanes; ++l) now[l] = lanes_[static_cast<std::size_t>(l)].clock.t;
-    time_ = Traits::load(now);
+    time_ = Traits::constant(LaneTraits<Flat>::load(now));
   }
   derivative(y_.data(), kept_.data());
   const auto fresh = Traits::mask(fresh_);
@@ -21,7 +21,7 @@ void Lanes<T>::evaluate_fresh() {
 
 template <class T>
 template <int Stage>
-void Lanes<T>::stage(T h) {
+void Lanes<T>::stage(const T& h) {
   const T* y = y_.data();
   T* trial = trial_.data();
   const std::size_t n = y_.size();
@@ -37,12 +37,12 @@ void Lanes<T>::stage(T h) {
 
 /// Largest weighted error over the states, in units of the tolerance.
 template <class T>
-T Lanes<T>::scaled_error(T h) const {
-  T worst(0.0);
+typename Lanes<T>::Flat Lanes<T>::scaled_error(const Flat& h) const {
+  Flat worst(0.0);
   for (std::size_t i = 0; i < y_.size(); ++i) {
-    T e = T(dp54::error[0]) * k_[0][i];
-    for (int j = 2; j < dp54::kStages; ++j) e = e + T(dp54::error[j]) * k_[j][i];
-    e = absolute(e) * T(weight_[i]);
+    T sum = T(dp54::error[0]) * k_[0][i];
+    for (int j = 2; j < dp54::kStages; ++j) sum = sum + T(dp54::error[j]) * k_[j][i];
+    const Flat e = Traits::magnitude(sum) * Flat(weight_[i]);
     worst = select(e <= worst, worst, e);  // in this order a NaN wins
   }
   return worst * h;
@@ -84,7 +84,7 @@ void Lanes<T>::clamp_states() {
     p.equations.clamp_states(&per_lane_.c[static_cast<std::size_t>(p.c)], &y_[static_cast<std::size_t>(p.x)],
                              moved);
   alignas(64) double by[kLanes];
-  Traits::store(moved, by);
+  LaneTraits<Flat>::store(Traits::value(moved), by);
   for (int l = 0; l < kLanes; ++l)
     if (by[l] > 0.0) fresh_ |= 1U << l;
 }
@@ -94,7 +94,7 @@ void Lanes<T>::clamp_states() {
 template <class T>
 void Lanes<T>::settle(unsigned accepted, const Next& next, const Done& done) {
   alignas(64) double angle[kLanes];
-  Traits::store(spread(y_.data()), angle);
+  LaneTraits<Flat>::store(Traits::value(spread(y_.data())), angle);
   for (int l = 0; l < kLanes; ++l) {
     auto& run = lanes_[static_cast<std::size_t>(l)];
     if (!((active_ >> l) & 1U)) continue;
@@ -127,10 +127,11 @@ void Lanes<T>::run(const Next& next, const Done& done) {
     alignas(64) double start[kLanes];
     bool reaches[kLanes];
     for (int l = 0; l < kLanes; ++l) tried[l] = lanes_[static_cast<std::size_t>(l)].clock.step(reaches[l]);
-    const T h = Traits::load(tried);
+    const Flat step = LaneTraits<Flat>::load(tried);
+    const T h = Traits::constant(step);
     if (timed_) {
       for (int l = 0; l < kLanes; ++l) start[l] = lanes_[static_cast<std::size_t>(l)].clock.t;
-      start_ = Traits::load(start);
+      start_ = Traits::constant(LaneTraits<Flat>::load(start));
     }
     stage<1>(h);
     stage<2>(h);
@@ -138,7 +139,7 @@ void Lanes<T>::run(const Next& next, const Done& done) {
     stage<4>(h);
     stage<5>(h);
     stage<6>(h);
-    Traits::store(scaled_error(h), error);
+    LaneTraits<Flat>::store(scaled_error(step), error);
     unsigned accepted = 0;
     for (int l = 0; l < kLanes; ++l) {
       if (!((active_ >> l) & 1U)) continue;

@@ -191,10 +191,14 @@ template OperatingOf<D8> operating_point_of(const Plant&, const std::vector<std:
 
 Operating operating_point(const Plant& plant, Complex voltage, double base_mva,
                           const Conventions& conventions) {
+  return operating_point_of<double>(plant, block_parameters(plant), voltage, base_mva, conventions);
+}
+
+std::vector<std::vector<double>> block_parameters(const Plant& plant) {
   std::vector<std::vector<double>> parameters{plant.machine.p};
   if (plant.transformer.effect) parameters.push_back(plant.transformer.p);
   for (const Block& control : plant.controls) parameters.push_back(control.p);
-  return operating_point_of<double>(plant, parameters, voltage, base_mva, conventions);
+  return parameters;
 }
 
 }  // namespace swingbank::sim

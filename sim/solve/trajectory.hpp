@@ -38,6 +38,8 @@ struct Trajectory {
   std::vector<int> plants;  ///< which plants, by index in the grid
   std::vector<Channel> channels;
   std::vector<double, CacheAligned<double>> values;  ///< rows [plant][channel], see at() and packed()
+  int directions = 0;                                ///< sensitivities carried along
+  std::vector<double, CacheAligned<double>> slopes;  ///< like values, once per direction: see slope()
   Outcome outcome = Outcome::stable;
   double stopped_at = 0.0;      ///< [s]: t_end, or when synchronism was lost
   double largest_spread = 0.0;  ///< largest pairwise rotor angle difference seen [rad]
@@ -48,6 +50,16 @@ struct Trajectory {
     constexpr int kDoublesPerLine = 8;
     stride = whole_lines ? (samples + kDoublesPerLine - 1) / kDoublesPerLine * kDoublesPerLine : samples;
     values.resize(static_cast<std::size_t>(rows()) * static_cast<std::size_t>(stride));
+    slopes.resize(values.size() * static_cast<std::size_t>(directions));
+  }
+  /// Derivative of at(plant, channel) along a direction.
+  [[nodiscard]] double* slope(int direction, int plant, int channel) {
+    return slopes.data() + static_cast<std::ptrdiff_t>(direction * rows() +
+                                                       plant * static_cast<int>(channels.size()) + channel) *
+                               stride;
+  }
+  [[nodiscard]] const double* slope(int direction, int plant, int channel) const {
+    return const_cast<Trajectory*>(this)->slope(direction, plant, channel);
   }
   [[nodiscard]] double* row(int i) { return values.data() + static_cast<std::ptrdiff_t>(i) * stride; }
   [[nodiscard]] const double* row(int i) const {
