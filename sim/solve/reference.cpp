@@ -194,6 +194,7 @@ class Recorder {
           break;
         case Channel::theta:
           value = angle_[static_cast<std::size_t>(unit.bus)];
+          if (system.tripped(u)) value = nearest(std::arg(v), k > 0 ? (&value)[-1] : value);
           break;
         case Channel::Efd:
           value = s.Efd;
