@@ -18,17 +18,19 @@ struct Model {
         (1 + A5 s + A6 s^2)              1 + s T1   1 + s T3      s T5
   u -> ------------------------------- -> -------- - -------- KS -------- -> [LSMIN, LSMAX] -> Vs
        (1+A1 s+A2 s^2)(1+A3 s+A4 s^2)    1 + s T2   1 + s T4     1 + s T6
-  u: speed deviation (ICS = 1), electrical power on the machine's base (3), voltage (5).
+  u: speed deviation (ICS = 1), electrical power on the machine's base (3), accelerating power Pm - P (4),
+     voltage (5).
   Vs = 0 while Vc > VCU or Vc < VCL (a zero switches that side off). T2, T4 = 0: bypass; T6 = 0: KS alone.
 )";
   enum P { ICS, IB, A1, A2, A3, A4, A5, A6, T1, T2, T3, T4, T5, T6, KS, LSMAX, LSMIN, VCU, VCL };
   static constexpr Parameter parameters[] = {
-      {"ICS", "ICS", "-", 1.0, 1.0, 6.0, kNoNeutral, "input: 1 speed, 3 electrical power, 5 voltage"},
-      {"IB", "IB", "-", 0.0, 0.0, 999997.0, kNoNeutral, "remote bus (0: the machine's own)"},
-      {"A1", "A1", "s", 0.0, 0.0, 10.0, 0.0, "filter denominator 1, first order"},
-      {"A2", "A2", "s^2", 0.0, 0.0, 10.0, 0.0, "filter denominator 1, second order"},
-      {"A3", "A3", "s", 0.0, 0.0, 10.0, 0.0, "filter denominator 2, first order"},
-      {"A4", "A4", "s^2", 0.0, 0.0, 10.0, 0.0, "filter denominator 2, second order"},
+      {"ICS", "ICS", "code", 1.0, 1.0, 6.0, kNoNeutral,
+       "input: 1 speed, 3 electrical, 4 accelerating power, 5 voltage"},
+      {"IB", "IB", "code", 0.0, 0.0, 999997.0, kNoNeutral, "remote bus (0: the machine's own)"},
+      {"A1", "A1", "s", 0.06, 0.0, 10.0, 0.0, "filter denominator 1, first order"},
+      {"A2", "A2", "s^2", 0.0016, 0.0, 10.0, 0.0, "filter denominator 1, second order"},
+      {"A3", "A3", "s", 0.03, 0.0, 10.0, 0.0, "filter denominator 2, first order"},
+      {"A4", "A4", "s^2", 0.0004, 0.0, 10.0, 0.0, "filter denominator 2, second order"},
       {"A5", "A5", "s", 0.0, -10.0, 10.0, 0.0, "filter numerator, first order"},
       {"A6", "A6", "s^2", 0.0, -10.0, 10.0, 0.0, "filter numerator, second order"},
       {"T1", "T1", "s", 0.1, 0.0, 20.0, kNoNeutral, "first lead"},
@@ -40,13 +42,14 @@ struct Model {
       {"KS", "KS", "pu", 10.0, -1000.0, 1000.0, 0.0, "gain"},
       {"LSMAX", "LSMAX", "pu", 0.1, 0.0, 10.0, kNoNeutral, "upper limit of Vs"},
       {"LSMIN", "LSMIN", "pu", -0.1, -10.0, 0.0, kNoNeutral, "lower limit of Vs"},
-      {"VCU", "VCU", "pu", 0.0, 0.0, 10.0, 0.0, "no output above this voltage (0: off)"},
-      {"VCL", "VCL", "pu", 0.0, -10.0, 1.0, 0.0, "no output below this voltage (0: off)"}};
+      {"VCU", "VCU", "pu", 1.25, 0.0, 10.0, 0.0, "no output above this voltage (0: off)"},
+      {"VCL", "VCL", "pu", 0.7, -10.0, 1.0, 0.0, "no output below this voltage (0: off)"}};
   static constexpr int dyr_columns[] = {ICS, IB, A1, A2, A3, A4,    A5,    A6,  T1, T2,
                                         T3,  T4, T5, T6, KS, LSMAX, LSMIN, VCU, VCL};
   enum C {
     w1,
     w3,
+    w4,
     w5,
     a1,
     a2,
@@ -82,10 +85,10 @@ struct Model {
     const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
       if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
     };
-    bad(p[ICS] != 1.0 && p[ICS] != 3.0 && p[ICS] != 5.0, fmt::format("ICS = {:g}", p[ICS]),
-        "IEEEST reads speed (1), electrical power (3) or voltage (5); bus frequency (2), accelerating power "
-        "(4) and voltage slope (6) are not modelled",
-        "give ICS = 1, 3 or 5");
+    bad(p[ICS] != 1.0 && p[ICS] != 3.0 && p[ICS] != 4.0 && p[ICS] != 5.0, fmt::format("ICS = {:g}", p[ICS]),
+        "IEEEST reads speed (1), electrical power (3), accelerating power (4) or voltage (5); bus frequency "
+        "(2) and voltage slope (6) are not modelled",
+        "give ICS = 1, 3, 4 or 5");
     bad(p[IB] != 0.0, fmt::format("IB = {:g}", p[IB]), "IEEEST reads its own machine only", "give IB = 0");
     for (int i : {A1, A2, A3, A4})
       bad(!(p[i] >= 0), fmt::format("{} = {:g}", parameters[i].symbol, p[i]), "the filter would be unstable",
@@ -107,8 +110,9 @@ struct Model {
   static void prepare(const T* p, const Conventions&, T* c) {
     const T zero(0.0), one(1.0);
     c[w1] = select(p[ICS] < T(2.0), one, zero);
-    c[w5] = select(p[ICS] > T(4.0), one, zero);
-    c[w3] = one - c[w1] - c[w5];
+    c[w5] = select(p[ICS] > T(4.5), one, zero);
+    c[w4] = select(p[ICS] > T(3.5), one - c[w5], zero);
+    c[w3] = one - c[w1] - c[w4] - c[w5];
     for (int i = 0; i < 6; ++i) c[a1 + i] = p[A1 + i];
     for (int i = 0; i < 4; ++i) c[ia1 + i] = inverse(p[A1 + i]);
     c[t1] = p[T1];
@@ -146,7 +150,7 @@ struct Model {
   }
   template <class T>
   static T input(const T* c, const Signals<T>& s) {
-    return c[w1] * s.speed + c[w3] * s.P + c[w5] * s.V;
+    return c[w1] * s.speed + c[w3] * s.P + c[w4] * (s.Tm - s.P) + c[w5] * s.V;
   }
   template <class T>
   static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {

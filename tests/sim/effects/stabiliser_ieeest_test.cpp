@@ -16,9 +16,11 @@ C diagram(const ControlBench::Changes& v, double omega) {
          lead_over_lag(a("T1"), a("T2"), omega) * lead_over_lag(a("T3"), a("T4"), omega) * a("KS") * s *
          a("T5") / (1.0 + s * a("T6"));
 }
+/// No filter and no cut-off by voltage unless given.
 ControlBench::Changes with(ControlBench::Changes more) {
-  ControlBench::Changes v = {{"T1", 0.3}, {"T2", 0.05}, {"T3", 0.2}, {"T4", 0.02},
-                             {"T5", 1.5}, {"T6", 2.0},  {"KS", 12.0}};
+  ControlBench::Changes v = {{"A1", 0.0},  {"A2", 0.0}, {"A3", 0.0},  {"A4", 0.0}, {"VCU", 0.0},
+                             {"VCL", 0.0}, {"T1", 0.3}, {"T2", 0.05}, {"T3", 0.2}, {"T4", 0.02},
+                             {"T5", 1.5},  {"T6", 2.0}, {"KS", 12.0}};
   for (const auto& [k, x] : more) v[k] = x;
   return v;
 }
@@ -35,8 +37,10 @@ TEST(StabiliserIeeest, TransferFunctionForEveryOrderOfTheFilter) {
                              {{"A1", 0.06}, {"A3", 0.03}, {"A4", 0.001}, {"A6", 0.004}},
                              {{"A1", 0.06}, {"A2", 0.002}, {"A3", 0.03}, {"A4", 0.001}, {"A6", 0.004}}}) {
     const auto values = with(filter);
-    for (const auto& [code, input] :
-         {std::pair{1.0, &Signals<double>::speed}, {3.0, &Signals<double>::P}, {5.0, &Signals<double>::V}}) {
+    for (const auto& [code, input] : {std::pair{1.0, &Signals<double>::speed},
+                                      {3.0, &Signals<double>::P},
+                                      {4.0, &Signals<double>::Tm},
+                                      {5.0, &Signals<double>::V}}) {
       auto all = values;
       all["ICS"] = code;
       ControlBench bench("IEEEST", all);
@@ -54,7 +58,7 @@ TEST(StabiliserIeeest, TransferFunctionForEveryOrderOfTheFilter) {
 
 TEST(StabiliserIeeest, ZeroTimeConstantsAreBypassed) {
   ControlBench bench("IEEEST",
-                     {{"T1", 0.0}, {"T2", 0.0}, {"T3", 0.0}, {"T4", 0.0}, {"KS", 4.0}, {"T6", 0.0}});
+                     with({{"T1", 0.0}, {"T2", 0.0}, {"T3", 0.0}, {"T4", 0.0}, {"KS", 4.0}, {"T6", 0.0}}));
   bench.in.speed = 0.002;
   EXPECT_DOUBLE_EQ(bench.out().Vs, 0.008);
 }
@@ -87,7 +91,7 @@ TEST(StabiliserIeeest, VoltageOutsideItsBandCutsTheOutput) {
 
 TEST(StabiliserIeeest, WhatItCannotDoIsRefusedByName) {
   EXPECT_EQ(ControlBench("IEEEST", {{"ICS", 2.0}, {"IB", 7.0}}).problems.list().size(), 2u);
-  EXPECT_EQ(ControlBench("IEEEST", {{"A6", 0.1}, {"A1", 0.1}}).problems.list().size(), 1u);
+  EXPECT_EQ(ControlBench("IEEEST", with({{"A6", 0.1}, {"A1", 0.1}})).problems.list().size(), 1u);
 }
 
 }  // namespace
