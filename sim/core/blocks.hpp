@@ -66,4 +66,25 @@ struct Quadratic {
   [[nodiscard]] T operator()(const T& v) const { return B * square(positive_part(v - A)); }
 };
 
+/// What a three-phase bridge rectifier delivers from the voltage V behind its commutating reactance, loaded
+/// with I = KC Ifd [pu]: V FEX(I/V), FEX of IEEE Std 421.5, annex D, multiplied out so that nothing divides.
+template <class T>
+inline T rectified(const T& V, const T& I) {
+  using std::sqrt;
+  const T root3(1.7320508075688772), zero(0.0);
+  const T square_2 = T(0.75) * V * V - I * I;
+  const auto mode1 = T(4.0) * I <= root3 * V, mode2 = T(4.0) * I <= T(3.0) * V;
+  const T arc = sqrt(select(square_2 > zero, square_2, T(1.0)));
+  return select(mode1, V - positive_part(I) / root3, select(mode2, arc, root3 * positive_part(V - I)));
+}
+/// The V from which a rectifier loaded with I delivers Efd > 0.
+template <class T>
+inline T rectifier_source(const T& Efd, const T& I) {
+  using std::sqrt;
+  const T root3(1.7320508075688772);
+  const T arc = sqrt((Efd * Efd + I * I) / T(0.75));
+  return select(root3 * I <= Efd, Efd + positive_part(I) / root3,
+                select(I <= root3 * Efd, arc, I + Efd / root3));
+}
+
 }  // namespace swingbank::sim

@@ -2,7 +2,6 @@
 // Our equations integrated the way PSS/E integrates its own: x(t + h) = x(t) + h (3 f(t) - f(t - h))/2, and
 // at a switching instant the mean of the derivatives before and after it (both read off the first samples
 // after the trip in its records). With it a difference between record and equations is one of modelling.
-#include <functional>
 #include <vector>
 
 #include "sim/solve/reference_system.hpp"
@@ -10,9 +9,11 @@
 namespace swingbank::sim::test {
 
 /// Calls see(time, signals, states) of plant `plant` every h seconds until `end` [s], twice at the switching
-/// instant, which is event's only one and a multiple of h.
-inline void step_as_psse(const Grid& grid, const Event& event, std::size_t plant, double h, double end,
-                         const std::function<void(double, const Signals<double>&, const double*)>& see) {
+/// instant, which is event's only one and a multiple of h. A fourth argument of `see`, if it takes one, is
+/// the real and imaginary voltage of every bus [pu].
+template <class See>
+void step_as_psse(const Grid& grid, const Event& event, std::size_t plant, double h, double end,
+                  const See& see) {
   const ReferencePlants plants(grid);
   const auto parts = segments(event, grid.network, plants.instants());
   if (parts.size() != 2) throw std::runtime_error("one switching instant is expected");
@@ -30,7 +31,12 @@ inline void step_as_psse(const Grid& grid, const Event& event, std::size_t plant
   const auto look = [&](double t, std::vector<double>& to) {
     system->solve_voltages(t, y.data());
     Complex current;
-    see(t, system->signals(plant, t, y.data(), current), y.data() + plants.units()[plant].first);
+    const auto signals = system->signals(plant, t, y.data(), current);
+    const double* x = y.data() + plants.units()[plant].first;
+    if constexpr (requires { see(t, signals, x, y.data()); })
+      see(t, signals, x, y.data() + states);
+    else
+      see(t, signals, x);
     system->derivatives(t, y.data(), to.data());
   };
   for (long k = 0; k <= steps; ++k) {
