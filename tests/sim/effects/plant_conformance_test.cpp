@@ -192,6 +192,8 @@ TEST(PlantConformance, DualsEqualCentralDifferences) {
     for (std::size_t j = 0; j < e->parameters.size(); ++j) {
       const Parameter& record = e->parameters[j];
       if (record.is_code()) continue;
+      // A time constant of zero is a bypass: there is no derivative across its onset.
+      if (values[block][j] == 0.0 && record.low == 0.0) continue;
       std::vector<std::vector<D8>> dual;
       for (const auto& v : values) dual.emplace_back(v.begin(), v.end());
       dual[block][j].d[0] = 1.0;
@@ -302,7 +304,7 @@ TEST(LoadConformance, DualsEqualCentralDifferences) {
       return load_outputs<T>(load, o, x);
     };
     for (std::size_t j = 0; j < e->parameters.size(); ++j) {
-      if (e->parameters[j].is_code()) continue;
+      if (e->parameters[j].is_code() || (load.block.p[j] == 0.0 && e->parameters[j].low == 0.0)) continue;
       std::vector<D8> dual(load.block.p.begin(), load.block.p.end());
       dual[j].d[0] = 1.0;
       const auto exact = value(dual);
