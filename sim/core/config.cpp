@@ -146,6 +146,12 @@ std::string Config::where(const std::string& key) const {
   return has(key) ? place(name_, tree_->at(key)->source().begin) : name_.string();
 }
 
+std::pair<unsigned, unsigned> Config::position(const std::string& key) const {
+  if (!has(key)) return {0, 0};
+  const auto begin = tree_->at(key)->source().begin;
+  return {begin.line, begin.column};
+}
+
 void Config::ignore(const std::string& key) { tree_->asked.insert(key); }
 
 void Config::problem(const std::string& key, const std::string& what, const std::string& why,

@@ -53,6 +53,8 @@ class Config {
   [[nodiscard]] std::vector<std::string> keys(const std::string& table) const;
   /// "file.toml:12:3" of a key, or of the file if it is not there.
   [[nodiscard]] std::string where(const std::string& key) const;
+  /// Line and column of a key's value, {0, 0} if it is not there.
+  [[nodiscard]] std::pair<unsigned, unsigned> position(const std::string& key) const;
   /// Notes a problem with a key's value.
   void problem(const std::string& key, const std::string& what, const std::string& why,
                const std::string& remedy);
