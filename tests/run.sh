@@ -5,7 +5,8 @@
 #     --without-psse  leaves out the comparison with PSS/E's own records, which are not part of this repository
 #     --sanitize      also the fast tier's unit tests under the address and undefined-behaviour sanitizers (their build
 #                     takes longer than all the rest: Eigen's sparse solvers are slow to compile with checks)
-#     --ci            as on the integration machine: warnings are errors, the scripts and the formatting are checked
+#     --ci            as on the integration machine: warnings are errors, the scripts and the formatting are checked,
+#                     each fuzz target runs for 30 s
 # PSS/E's records are looked for in $SWINGBANK_REFERENCE, else in ../shared/reference beside the repository.
 set -euo pipefail
 
@@ -17,7 +18,7 @@ while (($#)); do
     --without-psse) with_psse=0 ;;
     --sanitize) sanitize=1 ;;
     --ci) ci=1 ;;
-    -h | --help) sed -n '2,9p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,10p' "$0"; exit 0 ;;
     *) echo "unknown option at '$1' (tests/run.sh does not have it): run tests/run.sh --help" >&2; exit 1 ;;
   esac
   shift
@@ -77,6 +78,10 @@ if ((ci)); then
   say "scripts and formatting"
   check_scripts || failed+=(shellcheck)
   check_format || failed+=(clang-format)
+fi
+if ((ci)); then
+  say "fuzz targets"
+  bash "$source_folder/tests/fuzz/run.bash" 30 || failed+=(fuzz)
 fi
 if ((sanitize)); then
   say "fast tier under the sanitizers"

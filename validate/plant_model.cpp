@@ -115,8 +115,9 @@ std::string slurp(const fs::path& file) {
 
 }  // namespace
 
-PlantModel load_plant_model(const fs::path& file) {
-  const std::string text = slurp(file);
+PlantModel load_plant_model(const fs::path& file) { return parse_plant_model(slurp(file), file); }
+
+PlantModel parse_plant_model(const std::string& text, const fs::path& file) {
   Config config(text, file);
   PlantModel model;
   model.origin = file.string();

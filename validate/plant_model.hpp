@@ -23,5 +23,7 @@ struct PlantModel {
 /// parameters (the known ones are listed), missing ones, wrong types, values outside what is physically
 /// possible, inconsistent values.
 PlantModel load_plant_model(const std::filesystem::path& file);
+/// The same from a text; `file` stands for it in messages, and relative paths in it refer to its folder.
+PlantModel parse_plant_model(const std::string& text, const std::filesystem::path& file);
 
 }  // namespace swingbank::validate

@@ -156,6 +156,7 @@ std::optional<long double> parse_number(std::string text) {
 }
 
 std::string shortest(double value, long double scale) {
+  if (!std::isfinite(value)) return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";  // in messages
   const long double scaled = scale * static_cast<long double>(value);
   char text[64];
   // As many digits as stand before the point, so that 100 is not written as 1e+02.

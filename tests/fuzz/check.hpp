@@ -1,0 +1,67 @@
+#pragma once
+// What must hold after bytes were read without an error: everything computed from them is finite, or refused
+// with a sentence.
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "sim/core/problem.hpp"
+#include "sim/network/network.hpp"
+#include "sim/network/powerflow.hpp"
+#include "sim/network/psse.hpp"
+
+namespace swingbank::fuzz {
+
+/// Stops the fuzzer here with a stack trace.
+[[noreturn]] inline void fail(const char* what) {
+  std::fprintf(stderr, "violated: %s\n", what);
+  std::abort();
+}
+inline void require(bool holds, const char* what) {
+  if (!holds) fail(what);
+}
+
+/// Runs `action`; an InputError must carry at least one sentence, every part of it filled.
+template <class Action>
+bool accepted(const Action& action) {
+  try {
+    action();
+    return true;
+  } catch (const InputError& error) {
+    require(!error.problems().empty(), "an error has a sentence");
+    for (const Problem& p : error.problems())
+      require(!p.what.empty() && !p.where.empty() && !p.why.empty() && !p.remedy.empty(),
+              "a sentence says what, where, why and what to do");
+    return false;
+  }
+}
+
+inline bool finite(sim::Complex z) { return std::isfinite(z.real()) && std::isfinite(z.imag()); }
+
+/// The power flow of a network is finite or refused. Larger networks take too long here.
+inline void check_power_flow(const sim::Network& network) {
+  if (network.buses.size() > 60) return;
+  sim::PowerFlow flow;
+  if (!accepted([&] { flow = sim::solve_power_flow(network); })) return;
+  for (const sim::Complex& v : flow.voltage) require(finite(v), "voltages are finite");
+  for (const sim::Complex& s : flow.generation) require(finite(s), "generation is finite");
+}
+
+/// What can be written reads back as it was.
+inline void check_round_trip(const sim::Network& network) {
+  for (const int version : {33, 35}) {
+    std::string once;
+    if (!accepted([&] { once = sim::raw_text(network, version, "written"); })) return;
+    sim::Network again;
+    require(accepted([&] { again = sim::parse_raw(once, "written"); }), "what was written can be read");
+    require(sim::raw_text(again, version, "again") == once, "a second round trip changes nothing");
+  }
+}
+
+inline void quiet() { spdlog::set_level(spdlog::level::off); }
+
+}  // namespace swingbank::fuzz

@@ -1,0 +1,14 @@
+// MATPOWER .m: bytes -> network -> power flow.
+#include "sim/network/matpower.hpp"
+
+#include "tests/fuzz/check.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace swingbank;
+  fuzz::quiet();
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  sim::Network network;
+  if (!fuzz::accepted([&] { network = sim::parse_matpower(text, "case.m", 60.0); })) return 0;
+  fuzz::check_power_flow(network);
+  return 0;
+}
