@@ -1,18 +1,20 @@
 #!/usr/bin/env bash
 # Reproduces the tables with the preset `nightly`, keeps a dated report and says what moved since the nights before.
-#   bash jobs/nightly.sh [--out FOLDER] [--date YYYY-MM-DD] [--preset NAME] [--seed N] [--keep-data] [EXPERIMENT...]
+#   bash jobs/nightly.sh [--out FOLDER] [--date YYYY-MM-DD] [--preset NAME] [--seed N] [--keep-data] [--fuzz SECONDS]
+#                        [EXPERIMENT...]
 #     --out        default out/nightly; one folder per night in it, `latest` points to the last one
 #     --date       default today; a night that was broken off goes on when started again on its date
 #     --preset     default nightly
 #     --seed       of the training; default the day's number, so that every night trains with another seed: the nights
 #                  then show how much a result moves by itself
 #     --keep-data  keeps the simulated events (gigabytes; the same config makes the same bytes again)
+#     --fuzz       time of each fuzz target of the readers, after the tables; default 600, 0 leaves them out
 #     EXPERIMENT   default every file of configs/experiments
 # Exit codes: 0 done, 1 failed, 2 saved on a signal.
 set -euo pipefail
 
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-out=$source_folder/out/nightly date=$(date +%F) preset=nightly seed='' keep_data=0 experiments=()
+out=$source_folder/out/nightly date=$(date +%F) preset=nightly seed='' keep_data=0 fuzz=600 experiments=()
 tries=3 pause=${SWINGBANK_NIGHTLY_PAUSE:-60} # [s] between tries
 while (($#)); do
   case $1 in
@@ -21,7 +23,8 @@ while (($#)); do
     --preset) preset=${2:?--preset needs a name}; shift 2 ;;
     --seed) seed=${2:?--seed needs a number}; shift 2 ;;
     --keep-data) keep_data=1; shift ;;
-    -h | --help) sed -n '2,11p' "$0"; exit 0 ;;
+    --fuzz) fuzz=${2:?--fuzz needs seconds}; shift 2 ;;
+    -h | --help) sed -n '2,13p' "$0"; exit 0 ;;
     -*) echo "unknown option at '$1' (jobs/nightly.sh does not have it): run it with --help" >&2; exit 1 ;;
     *) experiments+=("$(realpath -m "$1")"); shift ;;
   esac
@@ -81,5 +84,12 @@ fi
 "$build/bin/swingbank" nightly-compare "$out" --night "$date" >"$night/report.md.part"
 mv "$night/report.md.part" "$night/report.md"
 ln -sfn "$date" "$out/latest"
+if [[ $fuzz != 0 ]]; then
+  {
+    printf '\n## Fuzz targets\n\n'
+    bash "$source_folder/tests/fuzz/run.bash" "$fuzz" 2>&1 | sed 's/^/- /' || status=1
+  } >>"$night/report.md"
+fi
 cat "$night/report.md"
 echo "report: $night/report.md"
+exit "$status"

@@ -6,7 +6,7 @@ export SWINGBANK_BUILD=${SWINGBANK_BIN%/bin} SWINGBANK_NIGHTLY_PAUSE=0 OMP_NUM_T
 
 TINY_DRAWS=120 tiny_experiment "$work"
 out=$work/nights
-night() { bash "$SWINGBANK_SOURCE/jobs/nightly.sh" --out "$out" --preset quick --date "$@" </dev/null; }
+night() { bash "$SWINGBANK_SOURCE/jobs/nightly.sh" --out "$out" --preset quick --fuzz 0 --date "$@" </dev/null; }
 
 night 2026-02-01 "$work/tiny.toml" >"$work/log" 2>&1 || fail "first night: $(tail "$work/log")"
 grep -q '| V | gru | 30 | quick | .* | new |' "$out/2026-02-01/report.md" || fail "report: $(cat "$out/2026-02-01/report.md")"
