@@ -200,6 +200,19 @@ std::string dyr_record(const Grid& grid, const Plant& plant, const Block& block,
   };
   in_raw(effect.raw_resistance, g.zr, "ZR");
   in_raw(effect.raw_reactance, g.zx, "ZX");
+  const auto standard = effect.standard_parameters();
+  for (int i = 0; i < static_cast<int>(block.p.size()); ++i) {
+    if (i == effect.raw_resistance || i == effect.raw_reactance || std::ranges::count(effect.dyr_columns, i))
+      continue;
+    const auto at = static_cast<std::size_t>(i);
+    const Parameter& parameter = effect.parameters[at];
+    const double dropped = std::isnan(parameter.neutral) ? standard[at] : parameter.neutral;
+    if (block.p[at] != dropped)
+      problems.add(std::string(parameter.symbol) + " = " + psse::shortest(block.p[at]) + " " +
+                       std::string(parameter.unit) + " of " + std::string(effect.name),
+                   where, "a .dyr has no column for it",
+                   "set it to " + psse::shortest(dropped) + " " + std::string(parameter.unit));
+  }
   std::string text = std::to_string(grid.network.buses[static_cast<std::size_t>(plant.bus)].number) + " " +
                      psse::quote(std::string(effect.dyr_name)) + " " + psse::quote(g.id);
   for (const int column : effect.dyr_columns)

@@ -33,21 +33,23 @@ double largest_angle_error(const std::string& dyr, const std::string& record, Co
   return worst;
 }
 
-// 0.02 degrees is the issue's limit; the record has four digits after 1e-4 degrees and PSS/E's own step of
-// half a cycle.
+/// The issue allows 0.02 degrees. Measured 0.0038 and 0.0040, which PSS/E's step of 5 ms makes (0.0002 with
+/// its own integration, docs/decisions.md); the former convention, with speed voltage, is off by 0.009.
+constexpr double kLimit = 0.006;
+
 TEST(PsseRecords, SaturatedGenrou) {
   const double worst = largest_angle_error("ThreeBus_GENROU.dyr", "TEST_GENROU.csv", Conventions::psse());
   RecordProperty("largest_degrees", testing::PrintToString(worst));
-  EXPECT_LT(worst, 0.02);
+  EXPECT_LT(worst, kLimit);
 }
 TEST(PsseRecords, UnsaturatedGenrou) {
   const double worst =
       largest_angle_error("ThreeBus_GENROU_NO_SAT.dyr", "TEST_GENROU_NO_SAT.csv", Conventions::psse());
   RecordProperty("largest_degrees", testing::PrintToString(worst));
-  EXPECT_LT(worst, 0.02);
+  EXPECT_LT(worst, kLimit);
 }
-// The conventions are what makes the difference: without them the same equations are off by 0.045-0.048
-// degrees.
+// The conventions are what makes the difference: with mechanical torque instead of power the same equations
+// are off by 0.045-0.048 degrees.
 TEST(PsseRecords, OtherConventionsAreTold) {
   EXPECT_GT(largest_angle_error("ThreeBus_GENROU.dyr", "TEST_GENROU.csv", Conventions::andes()), 0.03);
 }
