@@ -1,0 +1,152 @@
+#pragma once
+// IEEEG1: steam turbine with up to four stages and a speed-limited valve.
+#include <fmt/format.h>
+
+#include "sim/core/blocks.hpp"
+#include "sim/core/effect.hpp"
+
+namespace swingbank::sim::governor_ieeeg1 {
+
+struct Model {
+  static constexpr std::string_view name = "IEEEG1", title = "steam turbine with reheat stages and governor",
+                                    source =
+                                        "IEEE Trans. PAS-92 (1973) 1904; IEEE PES-TR1 (2013), 2.3; "
+                                        "PSS/E IEEEG1",
+                                    dyr_name = "IEEEG1";
+  static constexpr Slot slot = Slot::governor;
+  static constexpr std::string_view description = R"(
+                                                           UO       PMAX
+  b(w) --> [ K (1 + s T2)/(1 + s T1) ] --(-)--> (+) --> [ 1/T3 ]--> [ 1/s ] --valve--> [ 1/(1 + s T4) ] --x4-->
+                            Pref + dPref --(+)   -valve    UC       PMIN
+  x4 --> [ 1/(1 + s T5) ] --x5--> [ 1/(1 + s T6) ] --x6--> [ 1/(1 + s T7) ] --x7
+  b(w): 0 within +-db, beyond it the distance to the edge (IEEEG1D; db = 0 is IEEEG1)
+  dvalve/dt = (Pref + dPref - K (1 + s T2)/(1 + s T1) b(w) - valve)/T3
+              UC <= dvalve/dt <= UO, PMIN <= valve <= PMAX without wind-up
+  Pm = K1 x4 + K3 x5 + K5 x6 + K7 x7
+  One shaft only: JBUS, M and the shares K2, K4, K6, K8 of a second generator are zero.
+)";
+  enum P { JBUS, M, K, T1, T2, T3, UO, UC, PMAX, PMIN, T4, K1, K2, T5, K3, K4, T6, K5, K6, T7, K7, K8, db };
+  static constexpr Parameter parameters[] = {
+      {"JBUS", "JBUS", "code", 0.0, 0.0, 0.0, 0.0, "bus of the low-pressure generator (0: there is none)"},
+      {"M", "M", "code", 0.0, 0.0, 0.0, 0.0, "number of the low-pressure generator (0: there is none)"},
+      {"K", "K", "pu", 20.0, 1.0, 200.0, kNoNeutral, "gain, the reciprocal of droop"},
+      {"T1", "T1", "s", 0.2, 0.0, 100.0, kNoNeutral, "lag of the governor (0: neither lag nor lead)"},
+      {"T2", "T2", "s", 0.05, 0.0, 10.0, kNoNeutral, "lead of the governor"},
+      {"T3", "T3", "s", 0.2, 0.02, 10.0, kNoNeutral, "servo time constant"},
+      {"UO", "UO", "pu/s", 0.2, 0.01, 10.0, kNoNeutral, "largest opening speed"},
+      {"UC", "UC", "pu/s", -0.3, -10.0, -0.01, kNoNeutral, "largest closing speed, negative"},
+      {"PMAX", "PMAX", "pu", 1.0, 0.1, 5.0, kNoNeutral, "upper limit of the valve"},
+      {"PMIN", "PMIN", "pu", 0.0, -1.0, 1.0, kNoNeutral, "lower limit of the valve"},
+      {"T4", "T4", "s", 0.3, 0.0, 10.0, kNoNeutral, "steam bowl time constant (0: none)"},
+      {"K1", "K1", "pu", 0.3, 0.0, 1.5, 0.0, "share of power before the first reheater"},
+      {"K2", "K2", "pu", 0.0, 0.0, 0.0, 0.0, "the same, of the low-pressure generator"},
+      {"T5", "T5", "s", 7.0, 0.0, 60.0, kNoNeutral, "time constant of the first reheater (0: none)"},
+      {"K3", "K3", "pu", 0.4, 0.0, 1.5, 0.0, "share of power after the first reheater"},
+      {"K4", "K4", "pu", 0.0, 0.0, 0.0, 0.0, "the same, of the low-pressure generator"},
+      {"T6", "T6", "s", 0.5, 0.0, 60.0, kNoNeutral, "time constant of the crossover (0: none)"},
+      {"K5", "K5", "pu", 0.3, 0.0, 1.5, 0.0, "share of power after the crossover"},
+      {"K6", "K6", "pu", 0.0, 0.0, 0.0, 0.0, "the same, of the low-pressure generator"},
+      {"T7", "T7", "s", 0.0, 0.0, 60.0, kNoNeutral, "time constant of the last stage (0: none)"},
+      {"K7", "K7", "pu", 0.0, 0.0, 1.5, 0.0, "share of power after the last stage"},
+      {"K8", "K8", "pu", 0.0, 0.0, 0.0, 0.0, "the same, of the low-pressure generator"},
+      {"db", "db", "pu", 0.0, 0.0, 0.02, 0.0, "half width of the intentional dead-band of the speed"}};
+  static constexpr int dyr_columns[] = {JBUS, M,  K,  T1, T2, T3, UO, UC, PMAX, PMIN, T4,
+                                        K1,   K2, T5, K3, K4, T6, K5, K6, T7,   K7,   K8};
+  enum C {
+    gain,
+    iT1,
+    lead,
+    iT3,
+    opening,
+    closing,
+    high,
+    low,
+    iT4,
+    iT5,
+    iT6,
+    iT7,
+    share4,
+    share5,
+    share6,
+    share7,
+    band,
+    Pref,
+    coefficients
+  };
+  enum X { governor, valve, bowl, reheat, crossover, last };
+  static constexpr State states[] = {{"governor", "pu", "lagged speed"},
+                                     {"valve", "pu", "valve opening", 1.0, low, high},
+                                     {"bowl", "pu", "flow through the steam bowl, x4"},
+                                     {"reheat", "pu", "flow through the first reheater, x5"},
+                                     {"crossover", "pu", "flow through the crossover, x6"},
+                                     {"last", "pu", "flow through the last stage, x7"}};
+
+  static void check(const double* p, const std::string& where, Problems& problems);
+  static std::string_view unphysical(const double*) { return ""; }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions&, T* c) {
+    c[gain] = p[K];
+    c[iT1] = inverse(p[T1]);
+    c[lead] = p[T2];
+    c[iT3] = T(1.0) / p[T3];
+    c[opening] = p[UO];
+    c[closing] = p[UC];
+    c[high] = p[PMAX];
+    c[low] = p[PMIN];
+    c[iT4] = inverse(p[T4]);
+    c[iT5] = inverse(p[T5]);
+    c[iT6] = inverse(p[T6]);
+    c[iT7] = inverse(p[T7]);
+    c[share4] = p[K1];
+    c[share5] = p[K3];
+    c[share6] = p[K5];
+    c[share7] = p[K7];
+    c[band] = p[db];
+  }
+  template <class T>
+  static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
+    const T speed = lead_lag(c[lead], c[iT1], x[governor], dead_band(s.speed, c[band]), dx[governor]);
+    const T steam = clamp(x[valve], c[low], c[high]);
+    const T error = c[Pref] + s.dPref - c[gain] * speed - steam;
+    dx[valve] = clamp(error * c[iT3], c[closing], c[opening]);
+    const T x4 = lag(c[iT4], x[bowl], steam, dx[bowl]);
+    const T x5 = lag(c[iT5], x[reheat], x4, dx[reheat]);
+    const T x6 = lag(c[iT6], x[crossover], x5, dx[crossover]);
+    const T x7 = lag(c[iT7], x[last], x6, dx[last]);
+    s.Tm = c[share4] * x4 + c[share5] * x5 + c[share6] * x6 + c[share7] * x7;
+  }
+  template <class T>
+  static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
+    x[governor] = T(0.0);
+    c[Pref] = s.Tm / (p[K1] + p[K3] + p[K5] + p[K7]);
+    for (const int i : {valve, bowl, reheat, crossover, last}) x[i] = c[Pref];
+    return {};
+  }
+};
+
+inline void Model::check(const double* p, const std::string& where, Problems& problems) {
+  const auto text = [&](int i) {
+    return fmt::format("{} = {:g}{}{}", parameters[i].symbol, p[i], parameters[i].is_code() ? "" : " ",
+                       parameters[i].is_code() ? "" : parameters[i].unit);
+  };
+  if (!(p[T3] > 0)) problems.add(text(T3), where, "IEEEG1 divides by it", "give T3 > 0");
+  for (const int t : {T1, T2, T4, T5, T6, T7})
+    if (!(p[t] >= 0)) problems.add(text(t), where, "a time constant", "give a value >= 0");
+  if (!(p[UO] > 0 && p[UC] < 0))
+    problems.add(text(UO) + " with " + text(UC), where, "the valve must be able to open and to close",
+                 "give UO > 0 and UC < 0");
+  if (!(p[PMAX] > p[PMIN]))
+    problems.add(text(PMAX) + " with " + text(PMIN), where, "the valve must have room to move",
+                 "give PMAX > PMIN");
+  if (!(p[K1] + p[K3] + p[K5] + p[K7] > 0))
+    problems.add(text(K1) + ", " + text(K3) + ", " + text(K5) + ", " + text(K7), where,
+                 "the stages share out the turbine's power", "give shares with a sum > 0");
+  for (const int i : {JBUS, M, K2, K4, K6, K8})
+    if (p[i] != 0)
+      problems.add(text(i), where, "a second, low-pressure generator on the steam is not modelled",
+                   "give 0 and put its share into K1, K3, K5 or K7");
+  if (!(p[db] >= 0)) problems.add(text(db), where, "half the width of a band", "give db >= 0");
+}
+
+}  // namespace swingbank::sim::governor_ieeeg1

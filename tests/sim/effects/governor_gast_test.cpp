@@ -1,0 +1,63 @@
+// GAST: transfer function below the temperature limit, the limit's own steady state, limits without wind-up.
+#include "control_bench.hpp"
+
+namespace swingbank::sim::test {
+namespace {
+
+const ControlBench::Changes kValues = {{"R", 0.05},   {"T1", 0.4},     {"T2", 0.1},
+                                       {"T3", 3.0},   {"AT", 0.9},     {"KT", 2.0},
+                                       {"VMAX", 1.1}, {"VMIN", -0.05}, {"Dturb", 0.3}};
+
+TEST(GovernorGast, SmallSignalsFollowTheTransferFunction) {
+  ControlBench bench("GAST", kValues);
+  EXPECT_LT(bench.largest_derivative(), 1e-14);
+  for (const double omega : {0.01, 0.1, 1.0, 10.0}) {
+    const auto exact = -20.0 * lead_over_lag(0.0, 0.4, omega) * lead_over_lag(0.0, 0.1, omega) - 0.3;
+    const auto h = bench.response(&Signals<double>::speed, &Signals<double>::Tm, omega);
+    EXPECT_LT(std::abs(h - exact), 1e-7 * (1.0 + std::abs(exact))) << omega;  // differences over 1e-6
+  }
+}
+
+TEST(GovernorGast, TemperatureHoldsThePowerAtItsLimitAndLetsGo) {
+  ControlBench bench("GAST", kValues);
+  bench.in.speed = -0.02;  // droop asks for 1.2 pu
+  bench.run(0.3);
+  EXPECT_GT(bench.state("fuel"), 0.9);  // the measurement is slow: for a while more than the limit flows
+  bench.run(60.0);
+  // fuel = AT + KT (AT - fuel) has the only solution AT; the slowest mode has T3/(1 + KT) = 1 s.
+  EXPECT_NEAR(bench.out().Tm, 0.9 + 0.3 * 0.02, 1e-12);
+  bench.in.speed = 0.0;
+  bench.run(60.0);
+  EXPECT_NEAR(bench.out().Tm, 0.8, 1e-8);  // exp(-60/3) of 0.1
+}
+
+TEST(GovernorGast, FuelValveStopsAtItsEndsWithoutWindUp) {
+  ControlBench bench("GAST", kValues);
+  bench.in.speed = 0.1;  // droop asks for -1.2 pu
+  bench.run(10.0);
+  EXPECT_EQ(bench.state("fuel"), -0.05);
+  bench.in.speed = 0.0;
+  bench.run(0.4);
+  EXPECT_NEAR(bench.state("fuel"), 0.8 - 0.85 * std::exp(-1.0), 1e-9);  // T1 from the end on, no delay
+}
+
+TEST(GovernorGast, DeadBandTakesItsWidthFromTheSpeed) {
+  auto values = kValues;
+  values["db"] = 0.0006;
+  ControlBench bench("GAST", values);
+  bench.in.speed = 0.0005;
+  EXPECT_LT(bench.largest_derivative(), 1e-14);
+  bench.in.speed = 0.0016;
+  EXPECT_NEAR(bench.derivative()[0], -0.001 / 0.05 / 0.4, 1e-12);
+}
+
+TEST(GovernorGast, WhatCannotRunIsRefused) {
+  EXPECT_NE(ControlBench("GAST", {{"AT", 0.7}}).refused.find("AT = 0.7 pu"), std::string::npos);
+  EXPECT_EQ(ControlBench("GAST", {{"VMAX", 0.7}}).refused, "fuel outside its limits");
+  using Change = std::pair<const char*, double>;
+  for (const auto& [name, value] : {Change{"R", 0.0}, {"T1", 0.0}, {"KT", -1.0}, {"VMIN", 2.0}, {"T3", -1.0}})
+    EXPECT_FALSE(ControlBench("GAST", {{name, value}}).problems.empty()) << name;
+}
+
+}  // namespace
+}  // namespace swingbank::sim::test
