@@ -38,6 +38,16 @@ std::vector<Job> jobs(const Grid& grid, int count) {
   return list;
 }
 
+/// The same grid with an exciter, a governor and a stabiliser at standard values on every machine.
+Grid controlled(Grid grid) {
+  for (Plant& plant : grid.plants)
+    for (const char* name : {"TGOV1", "IEEEST", "SEXS"}) {
+      const Effect& e = *find_effect(name);
+      plant.controls.push_back({&e, e.standard_parameters()});
+    }
+  return grid;
+}
+
 double events_per_core_second(Batch& batch, const std::vector<Job>& list, int& stable) {
   std::size_t at = 0;
   stable = 0;
@@ -57,23 +67,26 @@ int main(int argc, char** argv) {
     const Grid grid = load_grid(argv[1], argv[2], Conventions::psse());
     const int count = argc > 3 ? std::atoi(argv[3]) : 400, rounds = argc > 4 ? std::atoi(argv[4]) : 3;
     const auto list = jobs(grid, count);
+    const Grid with_controls = controlled(grid);
     struct Case {
       const char* what;
       int lanes;
-      bool one;
+      bool one, controls;
       std::vector<double> rates;
       int stable = 0;
     };
-    std::vector<Case> cases = {{"8 lanes, all generators recorded", 8, false, {}},
-                               {"4 lanes, all generators recorded", 4, false, {}},
-                               {"scalar, all generators recorded", 1, false, {}},
-                               {"8 lanes, one generator recorded", 8, true, {}}};
+    std::vector<Case> cases = {{"8 lanes, all generators recorded", 8, false, false, {}},
+                               {"4 lanes, all generators recorded", 4, false, false, {}},
+                               {"scalar, all generators recorded", 1, false, false, {}},
+                               {"8 lanes, one generator recorded", 8, true, false, {}},
+                               {"8 lanes, controls on all, all recorded", 8, false, true, {}},
+                               {"8 lanes, controls on all, one recorded", 8, true, true, {}}};
     for (int round = 0; round < rounds; ++round)
       for (auto& c : cases) {
         BatchOptions options;
         options.lanes = c.lanes;
         if (c.one) options.plants = {3};
-        Batch batch(grid, options);
+        Batch batch(c.controls ? with_controls : grid, options);
         c.rates.push_back(events_per_core_second(batch, list, c.stable));
       }
     const auto median = [](std::vector<double> v) {
@@ -82,7 +95,7 @@ int main(int argc, char** argv) {
     };
     const double scalar = median(cases[2].rates);
     for (auto& c : cases)
-      std::printf("%-36s %7.0f events/core-s (median of %d, %.0f..%.0f)  %.2f x scalar  %d of %d stable\n",
+      std::printf("%-40s %7.0f events/core-s (median of %d, %.0f..%.0f)  %.2f x scalar  %d of %d stable\n",
                   c.what, median(c.rates), rounds, *std::min_element(c.rates.begin(), c.rates.end()),
                   *std::max_element(c.rates.begin(), c.rates.end()), median(c.rates) / scalar, c.stable,
                   count);
