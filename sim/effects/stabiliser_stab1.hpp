@@ -1,0 +1,73 @@
+#pragma once
+// STAB1: speed-sensitive power system stabiliser.
+#include <fmt/format.h>
+
+#include "sim/core/blocks.hpp"
+#include "sim/core/effect.hpp"
+
+namespace swingbank::sim::stabiliser_stab1 {
+
+struct Model {
+  static constexpr std::string_view name = "STAB1", title = "speed-sensitive stabiliser",
+                                    source = "PSS/E STAB1", dyr_name = "STAB1";
+  static constexpr Slot slot = Slot::stabiliser;
+  static constexpr std::string_view description = R"(
+                    K s       1 + s T1   1 + s T2
+  speed deviation --------- - -------- - -------- -> [-HLIM, HLIM] -> Vs
+                    1 + s T   1 + s T3   1 + s T4
+  given as K/T, T, T1/T3, T3, T2/T4, T4; T3 = 0 or T4 = 0: bypass
+)";
+  enum P { KT, TW, T1_T3, T3, T2_T4, T4, HLIM };
+  static constexpr Parameter parameters[] = {
+      {"KT", "K/T", "pu", 10.0, -1000.0, 1000.0, 0.0, "gain above the washout's corner"},
+      {"TW", "T", "s", 5.0, 0.01, 50.0, kNoNeutral, "washout"},
+      {"T1_T3", "T1/T3", "-", 5.0, 0.0, 100.0, 1.0, "first lead over lag"},
+      {"T3", "T3", "s", 0.05, 0.0, 20.0, kNoNeutral, "first lag (0: bypass)"},
+      {"T2_T4", "T2/T4", "-", 4.0, 0.0, 100.0, 1.0, "second lead over lag"},
+      {"T4", "T4", "s", 0.04, 0.0, 20.0, kNoNeutral, "second lag (0: bypass)"},
+      {"HLIM", "HLIM", "pu", 0.1, 0.0, 10.0, kNoNeutral, "limit of Vs, both ways"}};
+  static constexpr int dyr_columns[] = {KT, TW, T1_T3, T3, T2_T4, T4, HLIM};
+  enum C { gain, iT, t1, it3, t2, it4, limit, coefficients };
+  enum X { washed, lead1, lead2 };
+  static constexpr State states[] = {{"washed", "pu", "state of the washout"},
+                                     {"lead1", "pu", "state of the first lead-lag"},
+                                     {"lead2", "pu", "state of the second lead-lag"}};
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    if (!(p[TW] > 0))
+      problems.add(fmt::format("T = {:g} s", p[TW]), where, "STAB1 divides by T", "give T > 0");
+    for (int i : {T3, T4})
+      if (!(p[i] >= 0))
+        problems.add(fmt::format("{} = {:g} s", parameters[i].symbol, p[i]), where, "a time constant",
+                     "give a value >= 0");
+    if (!(p[HLIM] >= 0))
+      problems.add(fmt::format("HLIM = {:g} pu", p[HLIM]), where, "a limit both ways", "give HLIM >= 0");
+  }
+  static std::string_view unphysical(const double*) { return ""; }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions&, T* c) {
+    c[gain] = p[KT];
+    c[iT] = T(1.0) / p[TW];
+    c[t1] = p[T1_T3] * p[T3];
+    c[it3] = inverse(p[T3]);
+    c[t2] = p[T2_T4] * p[T4];
+    c[it4] = inverse(p[T4]);
+    c[limit] = p[HLIM];
+  }
+  template <class T>
+  static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
+    const T u = c[gain] * washout(c[iT], x[washed], s.speed, dx[washed]);
+    const T a = lead_lag(c[t1], c[it3], x[lead1], u, dx[lead1]);
+    const T b = lead_lag(c[t2], c[it4], x[lead2], a, dx[lead2]);
+    s.Vs = clamp(b, T(0.0) - c[limit], c[limit]);
+  }
+  template <class T>
+  static std::string steady(const T*, T*, Signals<T>& s, T* x) {
+    x[washed] = s.speed;
+    x[lead1] = x[lead2] = s.Vs = T(0.0);
+    return {};
+  }
+};
+
+}  // namespace swingbank::sim::stabiliser_stab1
