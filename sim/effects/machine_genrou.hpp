@@ -1,6 +1,7 @@
 #pragma once
 // GENROU: round-rotor machine, one field and three damper circuits.
 #include "sim/core/effect.hpp"
+#include "sim/core/saturation.hpp"
 
 namespace swingbank::sim::machine_genrou {
 
@@ -88,17 +89,6 @@ struct Model {
     return "";
   }
 
-  /// A and B of Se = B (psi - A)^2/psi through S1.0 and S1.2; needs 1.2 S1.2 > S1.0, else there is no
-  /// quadratic.
-  template <class T>
-  static void saturation(const T& s10, const T& s12, T& a, T& b) {
-    using std::sqrt;
-    const auto on = s10 > T(0.0);
-    const T safe = select(on, s10, T(1.0)), top = select(on, s12, T(2.0));
-    const T r = sqrt(T(1.2) * top / safe);
-    a = select(on, (r - T(1.2)) / (r - T(1.0)), T(0.0));
-    b = select(on, s10 / square(T(1.0) - a), T(0.0));
-  }
   template <class T>
   static void prepare(const T* p, const Conventions& conventions, T* c) {
     const T xd = p[Xdp] - p[Xl], xq = p[Xqp] - p[Xl], xs = p[Xdpp] - p[Xl];
@@ -113,7 +103,7 @@ struct Model {
     c[kd] = (p[Xdp] - p[Xdpp]) / (xd * xd);
     c[kq] = (p[Xqp] - p[Xdpp]) / (xq * xq);
     c[ks] = (p[Xq] - p[Xl]) / (p[Xd] - p[Xl]);
-    saturation(p[S10], p[S12], c[A], c[B]);
+    quadratic_saturation(p[S10], p[S12], c[A], c[B]);
     c[iTdop] = T(1.0) / p[Tdop];
     c[iTdopp] = T(1.0) / p[Tdopp];
     c[iTqop] = T(1.0) / p[Tqop];

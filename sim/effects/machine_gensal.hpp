@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "sim/core/effect.hpp"
-#include "sim/effects/machine_genrou.hpp"
+#include "sim/core/saturation.hpp"
 
 namespace swingbank::sim::machine_gensal {
 
@@ -39,7 +39,7 @@ struct Model {
       {"S12", "S1.2", "-", 0.4, 0.0, 10.0, 0.0, "saturation factor at 1.2 pu E'q"},
       {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance"}};
   /// As GENROU's: above a steep saturation knee a flux error counts tenfold in the field current.
-  static constexpr double kFluxWeight = machine_genrou::Model::kFluxWeight;
+  static constexpr double kFluxWeight = 10.0;
   enum X { delta, speed, Eqp, psi1d, psi2q };
   static constexpr State states[] = {{"delta", "rad", "rotor angle in the synchronous frame"},
                                      {"speed", "pu", "speed deviation", 100.0},
@@ -86,7 +86,7 @@ struct Model {
     c[dXd] = p[Xd] - p[Xdp];
     c[dXq] = p[Xq] - p[Xdpp];
     c[kd] = (p[Xdp] - p[Xdpp]) / (c[xdl] * c[xdl]);
-    machine_genrou::Model::saturation(p[S10], p[S12], c[A], c[B]);
+    quadratic_saturation(p[S10], p[S12], c[A], c[B]);
     c[iTdop] = T(1.0) / p[Tdop];
     c[iTdopp] = T(1.0) / p[Tdopp];
     c[iTqopp] = T(1.0) / p[Tqopp];

@@ -1,0 +1,36 @@
+#pragma once
+// Saturation of a synchronous machine as PSS/E gives it: by its factors Se at 1.0 and 1.2 pu flux, S1.0 = 0
+// for none. The field needs psi Se(psi) more current than the air-gap line says.
+#include "sim/core/scalar.hpp"
+
+namespace swingbank::sim {
+
+/// A and B of Se = B (psi - A)^2/psi through S1.0 and S1.2; needs 1.2 S1.2 > S1.0, else there is no
+/// quadratic (PSS/E GENROU, GENSAL).
+template <class T>
+inline void quadratic_saturation(const T& s10, const T& s12, T& a, T& b) {
+  using std::sqrt;
+  const auto on = s10 > T(0.0);
+  const T safe = select(on, s10, T(1.0)), top = select(on, s12, T(2.0));
+  const T r = sqrt(T(1.2) * top / safe);
+  a = select(on, (r - T(1.2)) / (r - T(1.0)), T(0.0));
+  b = select(on, s10 / square(T(1.0) - a), T(0.0));
+}
+
+/// Se = S1.0 psi^x through both factors, x = ln(S1.2/S1.0)/ln 1.2 (PSS/E GENROE, GENSAE); needs S1.2 > 0.
+template <class T>
+inline T saturation_exponent(const T& s10, const T& s12) {
+  using std::log;
+  const auto on = s10 > T(0.0);
+  const T ratio = select(on, s12, T(1.0)) / select(on, s10, T(1.0));
+  return log(ratio) * T(1.0 / 0.18232155679395462);  // ln 1.2
+}
+/// Se(psi) from psi^2; S1.0 = 0 gives 0.
+template <class T>
+inline T exponential_saturation(const T& s10, const T& exponent, const T& flux_squared) {
+  using std::exp;
+  using std::log;
+  return s10 * exp(exponent * T(0.5) * log(flux_squared + T(1e-24)));
+}
+
+}  // namespace swingbank::sim
