@@ -11,9 +11,10 @@
 #include "mpi/store/durable.hpp"
 #include "mpi/store/hdf5_file.hpp"
 #include "sim/network/event_text.hpp"
-#include "sim/network/matpower.hpp"
+#include "sim/network/fault_sequence.hpp"
 #include "sim/solve/batch.hpp"
 #include "sim/solve/load_choice.hpp"
+#include "sim/solve/plant_equations.hpp"
 #include "sim/solve/reference.hpp"
 
 namespace {
@@ -24,7 +25,7 @@ struct Options {
   std::string raw, dyr, convention = "psse", integrator = "reference";
   std::vector<std::string> faults, trips, generator_trips, load_steps, vref_steps, pref_steps, loads;
   std::vector<std::string> out, plants, channels;
-  std::string load_model = "impedance";
+  std::string load_model = "impedance", fault_type = "3ph", z0;
   std::vector<int> buses;
   double t_end = 15.0, rate = 120.0;
   std::optional<double> tolerance, frequency_hz;
@@ -130,6 +131,33 @@ Event parse_event(const Options& options, const Network& network, Problems& prob
     event.setpoint_steps.push_back(
         read_setpoint_step(text, network, end, false, "--pref-step " + text, problems));
   return event;
+}
+
+/// Machines behind their step-up transformers, at the impedance the positive sequence has of them.
+std::vector<SequenceSource> sequence_sources(const Grid& grid) {
+  std::vector<SequenceSource> list;
+  for (const Plant& plant : grid.plants) {
+    const Operating at = operating_point(plant, grid.flow.voltage[static_cast<std::size_t>(plant.bus)],
+                                         grid.network.base_mva, grid.conventions);
+    const double* joint = at.c.data() + plant.machine.effect->coefficients;
+    const Complex own = 1.0 / Complex(joint[joint_r], joint[joint_x]);
+    list.push_back({plant.bus, plant.generator, own * plant.mva / grid.network.base_mva});
+  }
+  return list;
+}
+
+void choose_fault_type(const Options& options, const Grid& grid, Event& event, Problems& problems) {
+  const auto type = fault_type(options.fault_type);
+  std::optional<Complex> z0;
+  if (!options.z0.empty()) {
+    const auto part = fields(options.z0);
+    if (part.size() == 2)
+      z0 = Complex(number(part[0], "--z0", problems), number(part[1], "--z0", problems));
+    else
+      problems.add(options.z0, "--z0", "the form is R:X", "give both, in pu on the network's base");
+  }
+  if (problems.empty() && type)
+    make_unbalanced(event, *type, z0, grid.network, grid.flow, sequence_sources(grid), problems);
 }
 
 /// A step of a reference that nothing follows would be lost without a word.
@@ -278,6 +306,8 @@ void describe_run(h5::File& h, const Options& o, const Grid& grid, const Referen
   h.attribute("integrator", o.integrator);
   h.attribute("tolerance", tolerance(o));
   h.attribute("faults", joined(o.faults));
+  h.attribute("fault_type", o.fault_type);
+  h.attribute("zero_sequence_r_x_pu", o.z0);
   h.attribute("trips", joined(o.trips));
   h.attribute("generator_trips", joined(o.generator_trips));
   h.attribute("load_steps", joined(o.load_steps));
@@ -340,13 +370,12 @@ int simulate(const Options& o) {
   DyrOptions models{o.ignore_models, {}};
   for (const auto& text : o.map_models) add_model_map(models, text, "--map-model " + text, problems);
   problems.raise();
-  Network network = read_network(o.raw, o.frequency_hz);
-  const double hz = network.frequency;
-  Grid grid = make_grid(std::move(network), read_dyr(o.dyr, models), o.dyr,
-                        o.convention == "andes" ? Conventions::andes(hz) : Conventions::psse(hz));
+  Grid grid = load_grid(o.raw, o.dyr, o.convention == "andes" ? Conventions::andes() : Conventions::psse(),
+                        models, o.frequency_hz);
   if (o.load_model == "raw") loads_as_composed(grid, problems);
   for (const auto& text : o.loads) choose_load(grid, text, "--load " + text, problems);
-  const Event event = parse_event(o, grid.network, problems);
+  Event event = parse_event(o, grid.network, problems);
+  choose_fault_type(o, grid, event, problems);
   check_followers(grid, event, problems);
   auto plants = parse_plants(o, grid, problems);
   auto channels = parse_channels(o, problems);
@@ -389,6 +418,14 @@ int main(int argc, char** argv) {
   app.add_option(
       "--fault", o.faults,
       "BUS:T_ON:T_OFF[:R:X], bolted without R and X [s, pu on the network's base]; may be repeated");
+  app.add_option("--fault-type", o.fault_type,
+                 "3ph, or by sequence equivalents slg: line to ground, ll: two-phase, llg: two-phase to "
+                 "ground; R and X of --fault are then the fault's own")
+      ->check(CLI::IsMember({"3ph", "slg", "ll", "llg"}))
+      ->capture_default_str();
+  app.add_option("--z0", o.z0,
+                 "R:X, zero-sequence impedance of the grid at the fault [pu on the network's base]; needed "
+                 "by slg and llg");
   app.add_option("--trip", o.trips, "FROM:TO:CKT:T_OPEN[:T_CLOSE] [s]; may be repeated");
   app.add_option("--trip-generator", o.generator_trips, "BUS[/ID]:T [s], for good; may be repeated");
   app.add_option("--load-step", o.load_steps,
