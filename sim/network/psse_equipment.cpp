@@ -15,7 +15,7 @@ void RawReader::bus(const Record& record) {
   const int type = f.integer(3, "IDE", 1);
   b.vm = static_cast<double>(f.number(7, "VM", 1.0L));
   b.va = static_cast<double>(f.number(8, "VA", 0.0L) / kDegrees);
-  if (b.number < 0)
+  if (b.number <= 0)
     problems_.add("bus number " + std::to_string(b.number), f.where(), "numbers are positive",
                   "give a positive number");
   if (type < 1 || type > 4)

@@ -180,6 +180,7 @@ TEST(PsseRaw, EveryFaultIsReportedAtOnceWithItsLine) {
   RawCase c;
   c.buses +=
       "103,'TWICE',138.0,1\n105,'NAN',138.0,1,1,1,1,nan,0\n106,'TYPE',138.0,7\n107,'V',138,1,1,1,1,0.0\n";
+  c.buses += "00,'ZERO',138.0,1\n";
   c.loads += "-103,'8',1,1,1,1.0,1.0\n";
   c.loads += "999,'1',1,1,1,1.0,1.0\n103,'1',1,1,1,1.0,1.0\n103,'3',5,1,1,1.0,1.0\n103,'4',1,1,1,1.0x,1.0\n";
   c.generators +=
@@ -195,6 +196,7 @@ TEST(PsseRaw, EveryFaultIsReportedAtOnceWithItsLine) {
       if (p.where.ends_with(line) && p.sentence().find(what) != std::string::npos) return;
     ADD_FAILURE() << "no problem '" << what << "' on line " << line;
   };
+  expect("00,'ZERO'", "bus number 0");
   expect("103,'TWICE'", "bus 103 appears twice");
   expect("105,'NAN'", "VM = 'nan'");
   expect("106,'TYPE'", "IDE = 7");
