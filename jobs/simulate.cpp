@@ -12,7 +12,6 @@
 #include "mpi/store/hdf5_file.hpp"
 #include "sim/network/event_text.hpp"
 #include "sim/network/fault_sequence.hpp"
-#include "sim/network/matpower.hpp"
 #include "sim/solve/batch.hpp"
 #include "sim/solve/load_choice.hpp"
 #include "sim/solve/plant_equations.hpp"
@@ -371,10 +370,8 @@ int simulate(const Options& o) {
   DyrOptions models{o.ignore_models, {}};
   for (const auto& text : o.map_models) add_model_map(models, text, "--map-model " + text, problems);
   problems.raise();
-  Network network = read_network(o.raw, o.frequency_hz);
-  const double hz = network.frequency;
-  Grid grid = make_grid(std::move(network), read_dyr(o.dyr, models), o.dyr,
-                        o.convention == "andes" ? Conventions::andes(hz) : Conventions::psse(hz));
+  Grid grid = load_grid(o.raw, o.dyr, o.convention == "andes" ? Conventions::andes() : Conventions::psse(),
+                        models, o.frequency_hz);
   if (o.load_model == "raw") loads_as_composed(grid, problems);
   for (const auto& text : o.loads) choose_load(grid, text, "--load " + text, problems);
   Event event = parse_event(o, grid.network, problems);
