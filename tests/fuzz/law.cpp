@@ -1,0 +1,25 @@
+// Law files: bytes -> effect -> a round-rotor machine with it at its operating point.
+#include "sim/core/law.hpp"
+
+#include "sim/solve/grid.hpp"
+#include "tests/fuzz/check.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace swingbank;
+  fuzz::quiet();
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  sim::Effect law;
+  if (!fuzz::accepted([&] { law = sim::make_law(text, "law.toml"); })) return 0;
+  static const sim::Effect* const machine = sim::find_effect("GENROU");
+  sim::Plant plant;
+  plant.name = "fuzzed";
+  plant.generation = {0.5, 0.1};  // [pu on 100 MVA]
+  plant.machine = {machine, machine->standard_parameters()};
+  plant.controls = {{&law, law.standard_parameters()}};
+  sim::Operating point;
+  if (!fuzz::accepted([&] { point = sim::operating_point(plant, 1.0, 100.0, sim::Conventions::psse()); }))
+    return 0;
+  for (const double v : point.x) fuzz::require(std::isfinite(v), "states are finite");
+  for (const double v : point.c) fuzz::require(std::isfinite(v), "coefficients are finite");
+  return 0;
+}
