@@ -24,6 +24,18 @@ sed '3d' "$dyr" >"$work/missing.dyr"
 refuses "generator without a model" 'bus 32 at .*missing.dyr' simulate "$raw" "$work/missing.dyr"
 sed "4s/GENROU/GENFOO/" "$dyr" >"$work/unknown.dyr"
 refuses "unknown model" 'unknown.dyr:4' simulate "$raw" "$work/unknown.dyr"
+refuses "the way out of an unknown model" '--ignore-model GENFOO' simulate "$raw" "$work/unknown.dyr"
+refuses "mapping to other parameters" 'GENCLS with 14 parameters' simulate "$raw" "$work/unknown.dyr" --map-model GENFOO=GENCLS
+refuses "mapping without a model" "'GENFOO' at --map-model" simulate "$raw" "$work/unknown.dyr" --map-model GENFOO
+refuses "ignored model that is not there" 'no model GENBAR' simulate "$raw" "$work/unknown.dyr" --ignore-model GENBAR
+simulate "$raw" "$work/unknown.dyr" --map-model GENFOO=GENROU >/dev/null
+sed '4s/^/30 "EXTRA" 1 1 2 3 \/\n/' "$dyr" >"$work/extra.dyr"
+simulate "$raw" "$work/extra.dyr" --ignore-model extra | grep 'ignored, as asked: EXTRA on line 4' >/dev/null
+rm "$out"/run.*
+refuses "frequency that contradicts the .raw" 'BASFRQ = 60 Hz' simulate "$raw" "$dyr" --frequency-hz 50
+echo "mpc.version = '2';" >"$work/case.m"
+refuses "MATPOWER case without a frequency" 'frequency-hz' simulate "$work/case.m" "$dyr"
+refuses "MATPOWER case that is cut off" 'no branch at .*case.m' simulate "$work/case.m" "$dyr" --frequency-hz 60
 sed '2s/1.8 1.7 0.4 /1.8 1.7 0.1 /' "$dyr" >"$work/reactances.dyr" # X'd below X''d and Xl
 refuses "inconsistent reactances" 'reactances.dyr:2' simulate "$raw" "$work/reactances.dyr"
 sed '5s/0.6 /abc /' "$dyr" >"$work/words.dyr"
