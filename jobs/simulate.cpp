@@ -10,9 +10,11 @@
 
 #include "mpi/store/durable.hpp"
 #include "mpi/store/hdf5_file.hpp"
+#include "sim/core/law.hpp"
 #include "sim/network/event_text.hpp"
 #include "sim/network/fault_sequence.hpp"
 #include "sim/solve/batch.hpp"
+#include "sim/solve/block_text.hpp"
 #include "sim/solve/load_choice.hpp"
 #include "sim/solve/plant_equations.hpp"
 #include "sim/solve/reference.hpp"
@@ -23,7 +25,8 @@ using namespace swingbank::sim;
 
 struct Options {
   std::string raw, dyr, convention = "psse", integrator = "reference";
-  std::vector<std::string> faults, trips, generator_trips, load_steps, vref_steps, pref_steps, loads;
+  std::vector<std::string> faults, trips, generator_trips, load_steps, vref_steps, pref_steps, loads, laws,
+      attached;
   std::vector<std::string> out, plants, channels;
   std::string load_model = "impedance", fault_type = "3ph", z0;
   std::vector<int> buses;
@@ -314,6 +317,8 @@ void describe_run(h5::File& h, const Options& o, const Grid& grid, const Referen
   h.attribute("vref_steps", joined(o.vref_steps));
   h.attribute("pref_steps", joined(o.pref_steps));
   h.attribute("loads", describe_loads(grid));
+  h.attribute("laws", joined(o.laws));
+  h.attribute("attached", joined(o.attached));
   h.attribute("outcome", std::string(outcome_name(run.outcome)));
   h.attribute("stopped_at_s", run.stopped_at);
   h.attribute("largest_spread_rad", run.largest_spread);
@@ -370,8 +375,10 @@ int simulate(const Options& o) {
   DyrOptions models{o.ignore_models, {}};
   for (const auto& text : o.map_models) add_model_map(models, text, "--map-model " + text, problems);
   problems.raise();
+  for (const auto& file : o.laws) load_law(file);
   Grid grid = load_grid(o.raw, o.dyr, o.convention == "andes" ? Conventions::andes() : Conventions::psse(),
                         models, o.frequency_hz);
+  for (const auto& text : o.attached) attach(grid, text, "--attach " + text, problems);
   if (o.load_model == "raw") loads_as_composed(grid, problems);
   for (const auto& text : o.loads) choose_load(grid, text, "--load " + text, problems);
   Event event = parse_event(o, grid.network, problems);
@@ -411,6 +418,9 @@ int main(int argc, char** argv) {
   app.add_option("--ignore-model", o.ignore_models, "name of a .dyr model to leave out; may be repeated");
   app.add_option("--map-model", o.map_models,
                  "FROM=TO: read a .dyr model as another with as many parameters; may be repeated");
+  app.add_option("--law", o.laws, "law file (.toml) whose effect --attach may use; may be repeated");
+  app.add_option("--attach", o.attached,
+                 "PLANT:EFFECT[:PARAM=VALUE,...]: an effect added to a plant (or to all); may be repeated");
   app.add_option("--convention", o.convention,
                  "psse: speed in the stator voltage and Pm/(1+w); andes: neither")
       ->check(CLI::IsMember({"psse", "andes"}))

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
 #include "sim/network/admittance.hpp"
+#include "sim/solve/block_text.hpp"
 
 namespace swingbank::sim {
 namespace {
@@ -37,30 +37,6 @@ std::vector<int> loads_named(const Network& network, const std::string& text, co
     problems.add("no load " + text, where, network.origin + " has loads at " + names,
                  "name one of these, BUS or BUS/ID");
   return list;
-}
-
-void set_parameters(Block& block, const std::string& text, const std::string& where, Problems& problems) {
-  for (std::size_t at = 0; at < text.size();) {
-    const auto comma = std::min(text.find(',', at), text.size());
-    const std::string one = text.substr(at, comma - at);
-    at = comma + 1;
-    const auto equal = one.find('=');
-    const int index = block.effect->parameter_index(one.substr(0, equal));
-    if (equal == one.npos || index < 0) {
-      std::string names;
-      for (const Parameter& p : block.effect->parameters)
-        names += (names.empty() ? "" : ", ") + std::string(p.name);
-      problems.add("'" + one + "'", where, std::string(block.effect->name) + " has " + names,
-                   "write PARAM=VALUE with one of these");
-      continue;
-    }
-    double value = 0.0;
-    const char* end = one.data() + one.size();
-    const auto read = std::from_chars(one.data() + equal + 1, end, value);
-    if (read.ec != std::errc{} || read.ptr != end || !std::isfinite(value))
-      problems.add("'" + one + "'", where, "its value is no number", "write it like Pp=0.4");
-    block.p[static_cast<std::size_t>(index)] = value;
-  }
 }
 
 /// Fraction of the total that `part` is; 0 of 0 is 0.

@@ -1,0 +1,21 @@
+#pragma once
+// Effects as a person writes them on a command line: "EFFECT[:PARAM=VALUE,...]".
+#include <optional>
+#include <string>
+
+#include "sim/solve/grid.hpp"
+
+namespace swingbank::sim {
+
+/// Sets parameters from "PARAM=VALUE,..."; what is wrong becomes a problem that names `where`.
+void set_parameters(Block& block, const std::string& text, const std::string& where, Problems& problems);
+
+/// "PLANT:EFFECT[:PARAM=VALUE,...]" puts an effect into a plant ("all": into every plant): any slot but
+/// machine and load. Parameters not named keep the effect's standard value. Unknown names, a slot that is
+/// taken and what the effect's check() refuses become problems.
+void attach(Grid& grid, const std::string& text, const std::string& where, Problems& problems);
+
+/// Puts a block into its slot of a plant, after what stands there already. Why it cannot, or nothing.
+std::optional<Problem> place(Plant& plant, Block block, const std::string& where);
+
+}  // namespace swingbank::sim
