@@ -87,6 +87,7 @@ void attach(Grid& grid, const std::string& text, const std::string& where, Probl
     names += (names.empty() ? "" : ", ") + plant.name;
     if (plant.name != plant_name && plant_name != "all") continue;
     any = true;
+    if (!found.empty()) continue;
     if (auto problem = place(plant, block, where))
       problems.add(problem->what, problem->where, problem->why, problem->remedy);
   }
