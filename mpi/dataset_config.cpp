@@ -62,7 +62,7 @@ void read_vary(Config& c, DatasetConfig& d) {
   if (effect == nullptr || effect->slot != sim::Slot::machine) {
     if (!d.model.empty())
       c.problem("vary.model", "model " + d.model, "it is no machine model of this program",
-                "use one of: " + sim::effect_names());
+                "use one of: " + sim::effect_names(sim::Slot::machine));
     c.ignore("vary.box");  // cannot be judged without the model
     return;
   }

@@ -59,8 +59,8 @@ TEST_F(PlantModelTest, UnknownParametersListTheKnownOnes) {
               ElementsAre(AllOf(HasSubstr("Xddp"), HasSubstr("Xdpp"), HasSubstr("Tqopp"))));
 }
 TEST_F(PlantModelTest, UnknownEffectsListTheKnownOnes) {
-  EXPECT_THAT(faults(replaced(example(), "\"GENROU\"", "\"GENROE\"")),
-              Contains(AllOf(HasSubstr("GENROE"), HasSubstr("GENCLS"), HasSubstr("GENROU"))));
+  EXPECT_THAT(faults(replaced(example(), "\"GENROU\"", "\"GENSOL\"")),
+              Contains(AllOf(HasSubstr("GENSOL"), HasSubstr("GENCLS"), HasSubstr("GENROU"))));
 }
 TEST_F(PlantModelTest, ValuesMustBePossibleAndConsistent) {
   EXPECT_THAT(faults(replaced(example(), "H = 6.54", "H = 654")),

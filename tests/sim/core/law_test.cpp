@@ -132,7 +132,8 @@ TEST(LawFile, ALimitedStateDoesNotWindUp) {
   test::ControlBench bench("SEXSLAW",
                            {{"TAoverTB", 1.0}, {"K", 10.0}, {"TE", 0.5}, {"EMAX", 3.0}, {"EMIN", 0.0}});
   ASSERT_EQ(bench.refused, "");
-  EXPECT_LE(bench.largest_derivative(), 1e-14);
+  EXPECT_LE(bench.largest_derivative(),
+            1e-13);      // rounding of K y = 2 over TE: some 10 ulp, with or without FMA
   bench.in.dVref = 1.0;  // asks for Efd = 12
   bench.run(10.0);
   EXPECT_EQ(bench.out().Efd, 3.0);
