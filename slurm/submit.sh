@@ -32,6 +32,10 @@ SWINGBANK_OUT=${SWINGBANK_OUT:-$SWINGBANK_SOURCE/out/$(basename "$SWINGBANK_EXPE
 export SWINGBANK_SOURCE SWINGBANK_SITE SWINGBANK_OUT SWINGBANK_EXPERIMENT SWINGBANK_PRESET
 # shellcheck source=slurm/site.conf
 source "$SWINGBANK_SITE"
+lacks() { echo "no $1 at $SWINGBANK_SITE (a site file sets everything): start from a copy of slurm/site.conf" >&2; exit 1; }
+for name in generate_nodes generate_ranks generate_time fold_cpus fold_time folds_at_once tables_time warn_before; do
+  [[ -n ${!name:-} ]] || lacks "$name"
+done
 mkdir -p "$SWINGBANK_OUT/log"
 
 runner=$SWINGBANK_SOURCE/jobs/run_experiment.sh
@@ -56,6 +60,7 @@ submit() {
 }
 
 log=$SWINGBANK_OUT/log
+# shellcheck disable=SC2154 # these come from the site file, and were looked for above
 {
   databank=$(submit databank '' --output="$log/databank.log" --time="$tables_time" "${warning[@]}")
   generate=$(submit generate "$databank" --output="$log/generate.log" --time="$generate_time" "${warning[@]}" \
