@@ -6,9 +6,10 @@
 //   dyr_name, dyr_columns[]       PSS/E .dyr model name and column order ("" and none if it has none)
 //   check(), unphysical()         singular values (refused always), orderings (refused in physical draws)
 //   prepare<T>()                  parameters -> coefficients, so that no division stays in the loop
-//   the equations of its kind     MachineOps, ControlOps, TransformerOps, LoadOps or MeasureOps below
+//   the equations of its kind     MachineOps, ControlOps, TransformerOps or LoadOps below
 //   steady<T>()                   back-initialisation from the operating point
 //   instants()                    optional: when its equations jump in time
+//   measure(), memory()           of a measurement: what it makes of the phasors, and how far it reaches
 // CMake finds the header and writes the registry; nothing is edited. T runs over `Scalars`.
 #include <array>
 #include <complex>
@@ -183,6 +184,9 @@ struct Effect {
   std::vector<double> (*instants)(const void* law, const double* p);
   /// What the instrument makes of the true phasors; `seed` drives what is random. Only measurements.
   void (*measure)(const double* p, std::uint64_t seed, Phasors& phasors);
+  /// How far in time an output sample of measure() reaches to either side [s]; nullptr: no further than
+  /// itself.
+  double (*memory)(const double* p);
   OpsFor<Scalars>::type ops;
   std::shared_ptr<const void> law = nullptr;  ///< data of an effect read from a file
 
@@ -258,6 +262,7 @@ Effect make_effect() {
   if constexpr (requires { &M::instants; })
     e.instants = +[](const void*, const double* p) { return M::instants(p); };
   if constexpr (requires { &M::measure; }) e.measure = &M::measure;
+  if constexpr (requires { &M::memory; }) e.memory = &M::memory;
   e.ops = make_all_ops<M>(static_cast<Scalars*>(nullptr));
   return e;
 }
