@@ -17,16 +17,16 @@ using namespace swingbank;
 namespace fs = std::filesystem;
 
 struct Columns {
-  std::vector<std::string> names, units;
+  std::vector<std::string> names, units, effects;
   std::vector<double> low, high;
 };
 
 Columns columns_of(const DatasetConfig& c) {
   Columns all;
   for (const auto& b : c.box) {
-    const auto& record = c.effect().parameters[static_cast<std::size_t>(b.index)];
-    all.names.emplace_back(record.name);
-    all.units.emplace_back(record.unit);
+    all.names.push_back(c.name_of(b));
+    all.units.emplace_back(c.record_of(b).unit);
+    all.effects.emplace_back(c.effect_of(b).name);
     all.low.push_back(b.low);
     all.high.push_back(b.high);
   }
@@ -53,6 +53,7 @@ void write_hdf5(const fs::path& file, const Databank& bank, const Columns& c, co
   f.attribute("parameter_units", c.units);
   f.attribute("parameter_low", c.low);
   f.attribute("parameter_high", c.high);
+  if (!config.other_effects().empty()) f.attribute("parameter_effects", c.effects);
   f.create<double>("/parameters", {bank.points(), bank.dimensions});
   f.write("/parameters", 0, bank.points(), bank.values.data());
   f.close();
@@ -80,7 +81,7 @@ int run(const std::string& config_file, const Overrides& overrides, std::uint64_
     throw InputError({"output format '" + extension.string() + "'", "--out " + out.string(),
                       "a databank is written as .csv or .h5", "end the name with one of these"});
   const auto start = std::chrono::steady_clock::now();
-  const auto& base = study.grid.plants[static_cast<std::size_t>(study.plants[0])].machine.p;
+  const auto& base = study.grid.plants[static_cast<std::size_t>(study.plants[0])];
   const Databank bank = draw_databank(config, base, points > 0 ? points : config.points());
   report(bank, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   if (extension == ".csv") write_csv(out, bank, columns_of(config));
@@ -92,7 +93,7 @@ int run(const std::string& config_file, const Overrides& overrides, std::uint64_
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "Draws the databank of a dataset: machine parameters that keep a distance from one another.\n"
+      "Draws the databank of a dataset: parameters that keep a distance from one another.\n"
       "  swingbank databank configs/datasets/ieee39_genrou.toml --points 60000 --out bank.h5"};
   std::string config, out;
   Overrides overrides;

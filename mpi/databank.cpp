@@ -6,20 +6,12 @@
 #include <cmath>
 
 #include "mpi/neighbours.hpp"
+#include "mpi/plant_blocks.hpp"
 #include "mpi/random.hpp"
 
 namespace swingbank {
 
 namespace {
-
-/// Why a candidate may not be used, or empty. Singular values are refused under every policy.
-std::string objection(const sim::Effect& effect, Policy policy, const std::vector<double>& p) {
-  Problems problems;
-  effect.check(effect.law.get(), p.data(), "draw", problems);
-  if (policy == Policy::physical)
-    if (const auto why = effect.unphysical(p.data()); !why.empty()) return "not " + std::string(why);
-  return problems.empty() ? "" : "singular: " + problems.list().front().why;
-}
 
 Neighbours make_neighbours(const DatasetConfig& config) {
   std::vector<double> low, width;
@@ -38,13 +30,13 @@ std::string reasons(const Databank& bank) {
 
 }  // namespace
 
-Databank draw_databank(const DatasetConfig& config, const std::vector<double>& base, std::uint64_t points) {
-  const sim::Effect& effect = config.effect();
+Databank draw_databank(const DatasetConfig& config, const sim::Plant& base, std::uint64_t points) {
+  BoxedPlant candidate(config, base);
   Databank bank;
   bank.dimensions = config.box.size();
   bank.values.reserve(points * bank.dimensions);
   Neighbours neighbours = make_neighbours(config);
-  std::vector<double> full = base, x(bank.dimensions), measured(bank.dimensions);
+  std::vector<double> x(bank.dimensions), measured(bank.dimensions);
   const auto patience =
       static_cast<std::uint64_t>(config.databank.candidates_per_point * static_cast<double>(points)) + 1000;
   std::uint64_t admissible = 0;
@@ -61,9 +53,9 @@ Databank draw_databank(const DatasetConfig& config, const std::vector<double>& b
       const double u = b.sampled() ? random.uniform() : 0.0;
       x[i] = b.low + (b.high - b.low) * u;
       measured[i] = config.databank.scaled ? u : x[i];
-      full[static_cast<std::size_t>(b.index)] = x[i];
     }
-    if (const std::string why = objection(effect, config.databank.policy, full); !why.empty()) {
+    candidate.set(x.data());
+    if (const std::string why = objection(config, candidate.plant()); !why.empty()) {
       ++bank.refused[why];
       continue;
     }

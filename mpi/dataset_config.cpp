@@ -8,8 +8,10 @@
 #include <cmath>
 #include <tuple>
 
+#include "mpi/plant_blocks.hpp"
 #include "mpi/store/durable.hpp"
 #include "sim/core/config.hpp"
+#include "sim/core/law.hpp"
 
 namespace swingbank {
 
@@ -23,17 +25,23 @@ const Range kCount{1, 1e12, ""};
 
 std::string parameter_list(const sim::Effect& e) {
   std::string all;
-  for (const auto& p : e.parameters) all += (all.empty() ? "" : ", ") + std::string(p.name);
-  return all;
+  for (const auto& p : e.parameters)
+    if (!p.is_code()) all += (all.empty() ? "" : ", ") + std::string(p.name);
+  return all.empty() ? "none" : all;
 }
 
-/// [vary.box]: name = [low, high] is sampled, name = value is held. Bounds come from the effect's records.
-void read_box(Config& c, const sim::Effect& effect, std::vector<Box>& box) {
-  for (const auto& name : c.keys("vary.box")) {
-    const std::string key = "vary.box." + name;
+/// A table of boxes: name = [low, high] is sampled, name = value is held. Bounds come from the effect's
+/// records. `owner`: the effect, nullptr for the machine.
+void read_box(Config& c, const std::string& table, const sim::Effect& effect, const sim::Effect* owner,
+              std::vector<Box>& box) {
+  std::vector<Box> found;
+  for (const auto& name : c.keys(table)) {
+    const std::string key = table + "." + name;
     const int index = effect.parameter_index(name);
-    if (index < 0) {
-      c.problem(key, "unknown parameter " + name, std::string(effect.name) + " has no such parameter",
+    if (index < 0 || effect.parameters[static_cast<std::size_t>(index)].is_code()) {
+      c.problem(key, (index < 0 ? "unknown parameter " : "parameter ") + name,
+                std::string(effect.name) +
+                    (index < 0 ? " has no such parameter" : " takes it as a code, which is never sampled"),
                 "use one of: " + parameter_list(effect));
       c.ignore(key);
       continue;
@@ -42,13 +50,63 @@ void read_box(Config& c, const sim::Effect& effect, std::vector<Box>& box) {
     const Range possible{record.low, record.high, std::string(record.unit)};
     if (c.is_array(key)) {
       const auto [low, high] = c.interval(key, possible);
-      box.push_back({index, low, high});
+      found.push_back({index, low, high, owner});
     } else {
       const double value = c.require<double>(key, possible);
-      box.push_back({index, value, value});
+      found.push_back({index, value, value, owner});
     }
   }
-  std::ranges::sort(box, {}, &Box::index);
+  std::ranges::sort(found, {}, &Box::index);
+  box.insert(box.end(), found.begin(), found.end());
+}
+
+/// [vary.effects.NAME]: parameters of what stands around the machine.
+void read_effect_boxes(Config& c, std::vector<Box>& box) {
+  std::vector<std::pair<const sim::Effect*, std::string>> tables;
+  for (const auto& name : c.keys("vary.effects")) {
+    const std::string table = "vary.effects." + name;
+    const sim::Effect* effect = sim::find_effect(name);
+    const auto known = [&](const auto& t) { return t.first == effect; };
+    std::string why;
+    if (effect == nullptr)
+      why = "there is no such effect; law files stand under `laws`";
+    else if (effect->slot == sim::Slot::machine)
+      why = "it is a machine, whose parameters stand in [vary.box]";
+    else if (effect->slot != sim::Slot::transformer && !sim::is_control(effect->slot))
+      why = "it is a " + std::string(sim::slot_name(effect->slot)) + ", no part of a plant's equations";
+    else if (std::ranges::any_of(tables, known))
+      why = "another table of this config names the same effect";
+    else {
+      tables.emplace_back(effect, table);
+      continue;
+    }
+    c.problem(table, "effect " + name, why, "name an effect that the varied generators have");
+    c.ignore(table);
+  }
+  std::ranges::sort(tables, {},
+                    [](const auto& t) { return std::pair(t.first->slot, std::string(t.first->name)); });
+  for (const auto& [effect, table] : tables) read_box(c, table, *effect, effect, box);
+}
+
+/// `laws` are read first: what they add may be attached and varied.
+void read_effects(Config& c, DatasetConfig& d) {
+  for (const auto& text : c.optional<std::vector<std::string>>("laws", {})) {
+    d.laws.push_back((c.name().parent_path() / text).lexically_normal());
+    try {
+      sim::load_law(d.laws.back());
+    } catch (const InputError& e) {
+      for (const auto& p : e.problems()) c.problem("laws", p.what, p.where + ": " + p.why, p.remedy);
+    }
+  }
+  Problems problems;
+  for (const auto& text : c.optional<std::vector<std::string>>("attach", {})) {
+    d.attachments.push_back(sim::read_attachment(text, "attach = '" + text + "'", problems));
+    const sim::Effect* effect = d.attachments.back().block.effect;
+    if (effect != nullptr && effect->slot == sim::Slot::measurement)
+      problems.add(std::string(effect->name), "attach = '" + text + "'",
+                   "a dataset holds what the plant does, not what an instrument makes of it", "leave it out");
+  }
+  for (const auto& p : problems.list()) c.problem("attach", p.what, p.where + ": " + p.why, p.remedy);
 }
 
 void read_vary(Config& c, DatasetConfig& d) {
@@ -67,9 +125,11 @@ void read_vary(Config& c, DatasetConfig& d) {
     return;
   }
   d.model = effect->name;
-  read_box(c, *effect, d.box);
+  read_box(c, "vary.box", *effect, nullptr, d.box);
+  read_effect_boxes(c, d.box);
   if (std::ranges::none_of(d.box, &Box::sampled))
-    c.problem("vary.box", "no parameter varies", "no entry of [vary.box] is an interval",
+    c.problem("vary.box", "no parameter varies",
+              "no entry of [vary.box] or [vary.effects.…] is an interval",
               "write at least one as name = [low, high]");
 }
 
@@ -122,10 +182,39 @@ std::size_t RecordConfig::samples() const {
 
 const sim::Effect& DatasetConfig::effect() const { return *sim::find_effect(model); }
 
+const sim::Effect& DatasetConfig::effect_of(const Box& b) const {
+  return b.effect == nullptr ? effect() : *b.effect;
+}
+
+const sim::Parameter& DatasetConfig::record_of(const Box& b) const {
+  return effect_of(b).parameters[static_cast<std::size_t>(b.index)];
+}
+
+std::string DatasetConfig::name_of(const Box& b) const {
+  return (b.effect == nullptr ? "" : std::string(b.effect->name) + ".") + std::string(record_of(b).name);
+}
+
+std::vector<const sim::Effect*> DatasetConfig::other_effects() const {
+  std::vector<const sim::Effect*> all;
+  for (const auto& b : box)
+    if (b.effect != nullptr && std::ranges::find(all, b.effect) == all.end()) all.push_back(b.effect);
+  return all;
+}
+
 std::uint64_t DatasetConfig::points() const {
   const std::uint64_t groups = (draws + fault.per_point - 1) / fault.per_point;
   return vary == Vary::all ? groups * generators.size() : groups;
 }
+
+namespace {
+/// "30:SEXS:TAoverTB=0.1,TB=10,…" with every parameter, so that a standard value that moves shows in the hash.
+std::string written(const sim::Attachment& a) {
+  std::string text = a.plant + ":" + std::string(a.block.effect->name);
+  for (std::size_t i = 0; i < a.block.p.size(); ++i)
+    text += fmt::format("{}{}={}", i == 0 ? ":" : ",", a.block.effect->parameters[i].name, a.block.p[i]);
+  return text;
+}
+}  // namespace
 
 std::string DatasetConfig::canonical() const {
   std::string text;
@@ -136,6 +225,7 @@ std::string DatasetConfig::canonical() const {
   if (!models.ignore.empty()) line("ignore_models", models.ignore);
   for (const auto& [from, to] : models.map) line("map_models", from + "=" + to);
   if (frequency_hz) line("frequency_hz", *frequency_hz);
+  for (const auto& a : attachments) line("attach", written(a));
   line("convention", psse ? "psse" : "andes");
   line("draws", draws);
   line("draws_per_shard", draws_per_shard);
@@ -144,7 +234,7 @@ std::string DatasetConfig::canonical() const {
   line("vary.generators", generators);
   line("vary.model", model);
   for (const auto& b : box)
-    line(fmt::format("vary.box.{}", effect().parameters[static_cast<std::size_t>(b.index)].name),
+    line((b.effect == nullptr ? "vary.box." : "vary.effects.") + name_of(b),
          std::vector<double>{b.low, b.high});
   line("databank.policy", databank.policy == Policy::literal ? "literal" : "physical");
   line("databank.distance", databank.distance);
@@ -176,6 +266,7 @@ DatasetConfig read_dataset_config(const fs::path& file, const Overrides& overrid
   d.draws_per_shard =
       static_cast<std::uint64_t>(c.optional<std::int64_t>("draws_per_shard", 512, {1, 1e6, ""}));
   d.seed = static_cast<std::uint64_t>(c.optional<std::int64_t>("seed", 1, {0, 9e18, ""}));
+  read_effects(c, d);
   read_vary(c, d);
   read_databank(c, d.databank);
   read_fault(c, d.fault);
@@ -202,6 +293,7 @@ Study load_study(const DatasetConfig& config) {
   const auto& network = s.grid.network;
   s.grid.conventions.frequency = network.frequency;
   Problems problems;
+  for (const auto& a : config.attachments) sim::attach(s.grid, a, config.file.string(), problems);
   for (int number : config.generators) {
     const int bus = network.bus_index(number);
     const auto here = [&](const sim::Plant& p) { return bus >= 0 && p.bus == bus; };
@@ -218,6 +310,14 @@ Study load_study(const DatasetConfig& config) {
                    "change vary.model or the .dyr");
     else
       s.plants.push_back(static_cast<int>(plant - s.grid.plants.begin()));
+    if (count != 1) continue;
+    for (const sim::Effect* effect : config.other_effects())
+      if (const auto n = block_count(*plant, *effect); n != 1)
+        problems.add(fmt::format("generator {} of vary.generators", number), config.file.string(),
+                     fmt::format("it has {} {} with parameters in [vary.effects.{}]", n == 0 ? "no" : "two",
+                                 effect->name, effect->name),
+                     n == 0 ? fmt::format("add \"{}:{}\" to attach", plant->name, effect->name)
+                            : "leave one of them in the .dyr");
   }
   const auto index_of = [&](int number, const char* key) {
     const int bus = network.bus_index(number);
@@ -244,7 +344,9 @@ Study load_study(const DatasetConfig& config) {
 
 std::string config_hash(const DatasetConfig& config, const std::string& kernel) {
   std::string text = config.canonical() + kernel + "\n";
-  for (const auto& file : {config.raw, config.dyr}) {
+  std::vector<fs::path> files = {config.raw, config.dyr};
+  files.insert(files.end(), config.laws.begin(), config.laws.end());
+  for (const auto& file : files) {
     const std::string content = read_text(file);
     text += hex(XXH3_64bits(content.data(), content.size())) + "\n";
   }

@@ -8,6 +8,7 @@
 
 #include "mpi/frequency.hpp"
 #include "sim/solve/batch.hpp"
+#include "sim/solve/block_text.hpp"
 #include "sim/solve/grid.hpp"
 
 namespace swingbank {
@@ -15,10 +16,11 @@ namespace swingbank {
 enum class Policy { physical, literal };
 enum class Vary { one, all };
 
-/// A machine parameter of the dataset: sampled uniformly from low ... high, or held (low == high).
+/// A parameter of the dataset: sampled uniformly from low ... high, or held (low == high).
 struct Box {
   int index;  ///< in the effect's records
   double low, high;
+  const sim::Effect* effect = nullptr;  ///< whose parameter it is; nullptr: the machine's
   [[nodiscard]] bool sampled() const { return high > low; }
 };
 
@@ -55,7 +57,10 @@ struct DatasetConfig {
   Vary vary = Vary::one;
   std::vector<int> generators;  ///< bus numbers of the machines that vary
   std::string model;            ///< their machine model
-  std::vector<Box> box;         ///< in record order
+  /// The machine's in record order, then those of other effects in order of slot, name and record.
+  std::vector<Box> box;
+  std::vector<std::filesystem::path> laws;   ///< law files; read with the config
+  std::vector<sim::Attachment> attachments;  ///< effects that the .dyr lacks
   DatabankConfig databank;
   FaultConfig fault;
   RecordConfig record;
@@ -64,6 +69,12 @@ struct DatasetConfig {
   int lanes = 0;            ///< of the kernel; 0: the widest of this build
 
   [[nodiscard]] const sim::Effect& effect() const;
+  [[nodiscard]] const sim::Effect& effect_of(const Box& box) const;
+  [[nodiscard]] const sim::Parameter& record_of(const Box& box) const;
+  /// "H" of the machine, "SEXS.K" of another effect.
+  [[nodiscard]] std::string name_of(const Box& box) const;
+  /// The effects besides the machine that have parameters in the box, each once.
+  [[nodiscard]] std::vector<const sim::Effect*> other_effects() const;
   /// Points of the databank the draws need.
   [[nodiscard]] std::uint64_t points() const;
   /// Every value that bytes depend on, one `key = value` per line.
@@ -85,10 +96,12 @@ struct Study {
   std::vector<int> plants;       ///< index of each varied generator
   std::vector<int> fault_buses;  ///< index of each bus that may be faulted
 };
-/// Throws InputError: unknown buses, a generator of another model, parameters nobody can run.
+/// Throws InputError: unknown buses, a generator of another model or without a varied effect, an effect
+/// attached to a slot that is taken, parameters nobody can run.
 Study load_study(const DatasetConfig& config);
 
-/// XXH3-64 over the canonical config, the contents of .raw and .dyr and the kernel's variant; 16 hex digits.
+/// XXH3-64 over the canonical config, the contents of .raw, .dyr and law files and the kernel's variant; 16
+/// hex digits.
 std::string config_hash(const DatasetConfig& config, const std::string& kernel);
 
 }  // namespace swingbank

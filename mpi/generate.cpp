@@ -44,7 +44,7 @@ Databank shared_databank(const Study& study, MPI_Comm world) {
   MPI_Comm_rank(world, &rank);
   Databank bank;
   bank.dimensions = study.config.box.size();
-  const auto& base = study.grid.plants[static_cast<std::size_t>(study.plants[0])].machine.p;
+  const auto& base = study.grid.plants[static_cast<std::size_t>(study.plants[0])];
   agree(world, "databank", [&] {
     if (rank == 0) bank = draw_databank(study.config, base, study.config.points());
   });
@@ -75,6 +75,7 @@ DatasetHeader header_of(const Study& study, const ShardAttributes& a) {
   h.parameter_units = a.parameter_units;
   h.parameter_low = a.parameter_low;
   h.parameter_high = a.parameter_high;
+  h.parameter_effects = a.parameter_effects;
   return h;
 }
 

@@ -1,5 +1,6 @@
 #include "mpi/sampler.hpp"
 
+#include "mpi/plant_blocks.hpp"
 #include "mpi/random.hpp"
 
 namespace swingbank {
@@ -20,10 +21,9 @@ Draw Sampler::draw(std::uint64_t sample_id) const {
   }
   for (std::size_t i = 0; i < d.recorded.size(); ++i) {
     const int plant = study_.plants[d.recorded[i]];
-    std::vector<double> p = study_.grid.plants[static_cast<std::size_t>(plant)].machine.p;
-    for (std::size_t k = 0; k < c.box.size(); ++k)
-      p[static_cast<std::size_t>(c.box[k].index)] = bank_.point(d.points[i])[k];
-    d.job.machine_parameters.emplace_back(plant, std::move(p));
+    BoxedPlant boxed(c, study_.grid.plants[static_cast<std::size_t>(plant)]);
+    boxed.set(bank_.point(d.points[i]));
+    boxed.put_into(d.job, plant);
   }
   Random random(c.seed, Stream::fault, sample_id);
   const int bus = study_.fault_buses[random.below(study_.fault_buses.size())];
@@ -34,12 +34,8 @@ Draw Sampler::draw(std::uint64_t sample_id) const {
 
 std::string Sampler::refusal(const Draw& draw) const {
   const sim::Grid& grid = study_.grid;
-  for (const auto& [index, values] : draw.job.machine_parameters) {
-    sim::Plant plant = grid.plants[static_cast<std::size_t>(index)];
-    plant.machine.p = values;
-    if (study_.config.databank.policy == Policy::physical)
-      if (const auto why = plant.machine.effect->unphysical(values.data()); !why.empty())
-        return std::string(why);
+  for (const auto& [index, plant] : sim::changed_plants(grid, draw.job)) {
+    if (const auto why = objection(study_.config, plant); !why.empty()) return why;
     try {
       sim::operating_point(plant, grid.flow.voltage[static_cast<std::size_t>(plant.bus)],
                            grid.network.base_mva, grid.conventions);

@@ -27,7 +27,7 @@ struct ShardMaker::Slots {
   std::vector<std::uint8_t> valid;
 };
 
-ShardMaker::ShardMaker(const Study& study, const Databank& bank) : study_(study), sampler_(study, bank) {
+ShardMaker::ShardMaker(const Study& study, const Databank& bank) : study_(study), bank_(bank), sampler_(study, bank) {
   const auto position = [&](sim::Channel c) {
     const auto found = std::ranges::find(simulated_, c);
     if (found != simulated_.end()) return static_cast<int>(found - simulated_.begin());
@@ -151,12 +151,12 @@ ShardData ShardMaker::compact(Slots& s) const {
         if (angle_recorded_)
           std::copy_n(s.valid.data() + from * s.samples, s.samples, s.valid.data() + to * s.samples);
       }
-      const auto& [plant, p] = draw.job.machine_parameters[g];
-      for (const auto& b : c.box) d.parameters.push_back(p[static_cast<std::size_t>(b.index)]);
+      const double* point = bank_.point(draw.points[g]);
+      d.parameters.insert(d.parameters.end(), point, point + c.box.size());
       d.sample_id.push_back(draw.job.id);
       const auto& buses = study_.grid.network.buses;
-      d.generator.push_back(
-          buses[static_cast<std::size_t>(study_.grid.plants[static_cast<std::size_t>(plant)].bus)].number);
+      const auto plant = static_cast<std::size_t>(study_.plants[draw.recorded[g]]);
+      d.generator.push_back(buses[static_cast<std::size_t>(study_.grid.plants[plant].bus)].number);
       d.fault.insert(d.fault.end(), {static_cast<double>(buses[static_cast<std::size_t>(fault.bus)].number),
                                      fault.t_on, fault.t_off, fault.z.real(), fault.z.imag()});
       d.largest_spread.push_back(s.spread[i]);
@@ -196,10 +196,11 @@ ShardAttributes shard_attributes(const Study& study, const std::string& hash, co
     a.channel_names.push_back(name);
     a.channel_units.emplace_back(record == nullptr ? "pu" : record->unit);
   }
+  const auto others = c.other_effects();
   for (const auto& b : c.box) {
-    const auto& record = c.effect().parameters[static_cast<std::size_t>(b.index)];
-    a.parameter_names.emplace_back(record.name);
-    a.parameter_units.emplace_back(record.unit);
+    a.parameter_names.push_back(c.name_of(b));
+    a.parameter_units.emplace_back(c.record_of(b).unit);
+    if (!others.empty()) a.parameter_effects.emplace_back(c.effect_of(b).name);
     a.parameter_low.push_back(b.low);
     a.parameter_high.push_back(b.high);
   }

@@ -30,6 +30,7 @@ class ShardMaker {
   [[nodiscard]] ShardData compact(Slots& slots) const;
 
   const Study& study_;
+  const Databank& bank_;
   Sampler sampler_;
   std::vector<sim::Channel>
       simulated_;                  ///< what the kernel records: the config's channels, V and theta if needed

@@ -5,9 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "sim/solve/grid.hpp"
-#include "validate/record.hpp"
-#include "validate/voltage_curve.hpp"
+#include "validate/driven_plant.hpp"
 
 namespace swingbank::validate {
 
@@ -16,14 +14,6 @@ struct PlayInOptions {
   double pre_event = 1.0;    ///< length of the pre-event window where nothing was switched [s]
   double until = std::numeric_limits<double>::infinity();  ///< samples after it are left out [s]
   int step_limit = 2'000'000;                              ///< steps of the integrator before it gives up
-};
-
-/// Mean terminal state before the event: where the model starts.
-struct OperatingPoint {
-  int samples = 0;      ///< of the pre-event window, from the record's first
-  Complex voltage;      ///< at t = 0 of the record [pu]
-  double P = 0, Q = 0;  ///< [pu on the record's base]
-  double drift = 0;     ///< slope of theta [rad/s]; 0 where it cannot be told from noise
 };
 
 /// Mean of the samples before the first switching, or of the first `pre_event` seconds where there is none.

@@ -39,6 +39,7 @@ nlohmann::ordered_json to_json(const DatasetHeader& h) {
   j["parameter_units"] = h.parameter_units;
   j["parameter_low"] = h.parameter_low;
   j["parameter_high"] = h.parameter_high;
+  if (!h.parameter_effects.empty()) j["parameter_effects"] = h.parameter_effects;
   j["config"] = h.config;
   return j;
 }
@@ -62,6 +63,7 @@ DatasetHeader from_json(const nlohmann::json& j) {
   j.at("parameter_units").get_to(h.parameter_units);
   j.at("parameter_low").get_to(h.parameter_low);
   j.at("parameter_high").get_to(h.parameter_high);
+  if (j.contains("parameter_effects")) j.at("parameter_effects").get_to(h.parameter_effects);
   j.at("config").get_to(h.config);
   if (h.draws_per_shard == 0) throw std::runtime_error("draws_per_shard is 0");
   return h;

@@ -116,6 +116,7 @@ class File {
   void attribute(const std::string& name, std::uint64_t value, const std::string& object = "/");
   void attribute(const std::string& name, double value, const std::string& object = "/");
   void attribute(const std::string& name, const std::vector<double>& value, const std::string& object = "/");
+  [[nodiscard]] bool has_attribute(const std::string& name) const;  ///< of the root group
   [[nodiscard]] std::string text_attribute(const std::string& name) const;
   [[nodiscard]] std::vector<std::string> texts_attribute(const std::string& name) const;
   [[nodiscard]] std::uint64_t integer_attribute(const std::string& name) const;

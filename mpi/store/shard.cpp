@@ -35,6 +35,7 @@ ShardAttributes read_attributes(const h5::File& f, const fs::path& file) {
   a.parameter_units = f.texts_attribute("parameter_units");
   a.parameter_low = f.reals_attribute("parameter_low");
   a.parameter_high = f.reals_attribute("parameter_high");
+  if (f.has_attribute("parameter_effects")) a.parameter_effects = f.texts_attribute("parameter_effects");
   return a;
 }
 

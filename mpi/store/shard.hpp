@@ -20,13 +20,14 @@ struct ShardAttributes {
   std::string machine_model;  ///< "GENROU"
   std::vector<std::string> channel_names, channel_units, parameter_names, parameter_units;
   std::vector<double> parameter_low, parameter_high;  ///< the sampling box
+  std::vector<std::string> parameter_effects;         ///< whose they are; empty: all the machine's
 };
 
 /// Rows of a shard, one per stable generator record; every array is row-major.
 struct RowBlock {
   std::size_t rows = 0, channels = 0, samples = 0, parameter_count = 0;
   std::vector<float> records;             ///< rows x channels x samples [pu on the machine's base, rad, pu/s]
-  std::vector<double> parameters;         ///< rows x parameters, in record order of the machine model
+  std::vector<double> parameters;         ///< rows x parameters, in order of parameter_names
   std::vector<std::uint64_t> sample_id;   ///< rows
   std::vector<std::int32_t> generator;    ///< rows: bus number of the generator
   std::vector<double> fault;              ///< rows x 5: bus number, t_on [s], t_off [s], r [pu], x [pu]

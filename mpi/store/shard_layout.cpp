@@ -18,6 +18,7 @@ void lay_out_shard(h5::File& f, const ShardData& d, ShardSize n) {
   f.attribute("parameter_units", a.parameter_units);
   f.attribute("parameter_low", a.parameter_low);
   f.attribute("parameter_high", a.parameter_high);
+  if (!a.parameter_effects.empty()) f.attribute("parameter_effects", a.parameter_effects);
   f.create<float>("/records", {n.rows, a.channel_names.size(), d.samples});
   f.create<double>("/parameters", {n.rows, a.parameter_names.size()});
   f.create<std::uint64_t>("/sample_id", {n.rows});

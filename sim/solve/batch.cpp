@@ -51,8 +51,12 @@ std::map<int, Plant> changed_plants(const Grid& grid, const Job& job) {
     return changed.try_emplace(index, grid.plants[static_cast<std::size_t>(index)]).first->second;
   };
   for (const auto& [index, values] : job.machine_parameters) plant(index).machine.p = values;
-  for (const auto& c : job.control_parameters)
-    plant(c.plant).controls[static_cast<std::size_t>(c.control)].p = c.values;
+  for (const auto& [index, control, values] : job.control_parameters) {
+    Plant& changing = plant(index);
+    (control == kTransformer ? changing.transformer
+                             : changing.controls[static_cast<std::size_t>(control)])
+        .p = values;
+  }
   return changed;
 }
 

@@ -31,6 +31,8 @@ struct Seed {
   double scale;  ///< [unit of the parameter]
 };
 
+constexpr int kTransformer = -1;  ///< in place of a control: the plant's step-up transformer
+
 /// One run to make: the event and the plants' parameters. Plants that are not listed keep the grid's own.
 struct Job {
   std::uint64_t id = 0;
@@ -38,7 +40,7 @@ struct Job {
   std::vector<std::pair<int, std::vector<double>>>
       machine_parameters;  ///< plant index, values in record order
   struct Control {
-    int plant, control;  ///< index of the plant, and of the block among its controls
+    int plant, control;  ///< index of the plant, and of the block among its controls; kTransformer
     std::vector<double> values;
     friend bool operator==(const Control&, const Control&) = default;
   };

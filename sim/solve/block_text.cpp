@@ -61,38 +61,48 @@ std::optional<Problem> place(Plant& plant, Block block, const std::string& where
   return {};
 }
 
-void attach(Grid& grid, const std::string& text, const std::string& where, Problems& problems) {
+Attachment read_attachment(const std::string& text, const std::string& where, Problems& problems) {
   const auto first = text.find(':'), second = first == text.npos ? text.npos : text.find(':', first + 1);
   if (first == text.npos) {
     problems.add("'" + text + "'", where, "an effect is attached by PLANT:EFFECT[:PARAM=VALUE,...]",
                  "write it like 30:FORCEDOSC:amplitude=0.01,frequency=0.5");
-    return;
+    return {};
   }
-  const std::string plant_name = text.substr(0, first);
+  Attachment a{text.substr(0, first), {}};
   const std::string name = text.substr(first + 1, second == text.npos ? text.npos : second - first - 1);
   const Effect* effect = find_effect(name);
   if (!effect) {
     problems.add("no effect '" + name + "'", where, "there are " + effect_names(),
                  "choose one of these, or give its file with --law");
-    return;
+    return {};
   }
   Block block{effect, effect->standard_parameters()};
   Problems found;
   if (second != text.npos) set_parameters(block, text.substr(second + 1), where, found);
   if (found.empty()) effect->check(effect->law.get(), block.p.data(), where, found);
   problems.add(found);
+  if (found.empty()) a.block = std::move(block);
+  return a;
+}
+
+void attach(Grid& grid, const Attachment& a, const std::string& where, Problems& problems) {
+  if (a.plant.empty() && !a.block.effect) return;  // nothing could be read
   bool any = false;
   std::string names;
   for (Plant& plant : grid.plants) {
     names += (names.empty() ? "" : ", ") + plant.name;
-    if (plant.name != plant_name && plant_name != "all") continue;
+    if (plant.name != a.plant && a.plant != "all") continue;
     any = true;
-    if (!found.empty()) continue;
-    if (auto problem = place(plant, block, where))
+    if (!a.block.effect) continue;
+    if (auto problem = place(plant, a.block, where))
       problems.add(problem->what, problem->where, problem->why, problem->remedy);
   }
   if (!any)
-    problems.add("no plant " + plant_name, where, "the plants are " + names, "choose one of these, or all");
+    problems.add("no plant " + a.plant, where, "the plants are " + names, "choose one of these, or all");
+}
+
+void attach(Grid& grid, const std::string& text, const std::string& where, Problems& problems) {
+  attach(grid, read_attachment(text, where, problems), where, problems);
 }
 
 }  // namespace swingbank::sim

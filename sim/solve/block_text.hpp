@@ -10,9 +10,19 @@ namespace swingbank::sim {
 /// Sets parameters from "PARAM=VALUE,..."; what is wrong becomes a problem that names `where`.
 void set_parameters(Block& block, const std::string& text, const std::string& where, Problems& problems);
 
+/// An effect for a plant ("all": for every plant).
+struct Attachment {
+  std::string plant;
+  Block block;  ///< effect == nullptr: the text was at fault
+};
+/// Reads "PLANT:EFFECT[:PARAM=VALUE,...]". Parameters not named keep the effect's standard value. Unknown
+/// names and what the effect's check() refuses become problems.
+Attachment read_attachment(const std::string& text, const std::string& where, Problems& problems);
+/// Puts an effect that was read into its plants. An unknown plant and a slot that is taken become problems.
+void attach(Grid& grid, const Attachment& attachment, const std::string& where, Problems& problems);
+
 /// "PLANT:EFFECT[:PARAM=VALUE,...]" puts an effect into a plant ("all": into every plant): any slot but
-/// machine and load. Parameters not named keep the effect's standard value. Unknown names, a slot that is
-/// taken and what the effect's check() refuses become problems.
+/// machine and load. The two above in one.
 void attach(Grid& grid, const std::string& text, const std::string& where, Problems& problems);
 
 /// Puts a block into its slot of a plant, after what stands there already. Why it cannot, or nothing.

@@ -93,5 +93,9 @@ Operating operating_point(const Plant& plant, Complex voltage, double base_mva,
 template <class T>
 OperatingOf<T> operating_point_of(const Plant& plant, const std::vector<std::vector<T>>& parameters,
                                   Complex voltage, double base_mva, const Conventions& conventions);
+/// The same with the generation P, Q given as T [pu on the machine's base]; plant.generation is not read.
+template <class T>
+OperatingOf<T> operating_point_of(const Plant& plant, const std::vector<std::vector<T>>& parameters,
+                                  Complex voltage, const T& P, const T& Q, const Conventions& conventions);
 
 }  // namespace swingbank::sim

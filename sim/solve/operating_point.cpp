@@ -20,7 +20,7 @@ template <class T>
 class Initialiser {
  public:
   Initialiser(const Plant& plant, const std::vector<std::vector<T>>& parameters, Complex voltage,
-              Complex power, const Conventions& conventions)
+              const T& P, const T& Q, const Conventions& conventions)
       : plant_(plant), equations_(plant) {
     o_.c.assign(static_cast<std::size_t>(equations_.coefficients()), T(0.0));
     o_.x.assign(static_cast<std::size_t>(equations_.states()), T(0.0));
@@ -38,7 +38,7 @@ class Initialiser {
     here.mva = plant.mva;
     for (const auto& p : places_) ops(p).prepare(p.p, here, o_.c.data() + p.c);
     join();
-    terminal(voltage, power);
+    terminal(voltage, P, Q);
   }
 
   OperatingOf<T> run() {
@@ -79,13 +79,13 @@ class Initialiser {
     j[joint_r] = square_ratio * (j[joint_rm] + r);
     j[joint_x] = square_ratio * (j[joint_xm] + x);
   }
-  void terminal(Complex v, Complex power) {
-    const Complex i = std::conj(power / v);
+  void terminal(Complex v, const T& P, const T& Q) {
     Signals<T>& s = o_.s;
     s.Vr = s.Vpr = T(v.real());
     s.Vi = s.Vpi = T(v.imag());
-    s.Ir = T(i.real());
-    s.Ii = T(i.imag());
+    const T per_square(1.0 / std::norm(v));
+    s.Ir = (s.Vr * P + s.Vi * Q) * per_square;
+    s.Ii = (s.Vi * P - s.Vr * Q) * per_square;
     if (transformer_) equations_.through_transformer(o_.c.data(), s);
     using std::sqrt;
     s.V = s.Vc = sqrt(s.Vr * s.Vr + s.Vi * s.Vi);
@@ -181,13 +181,22 @@ class Initialiser {
 template <class T>
 OperatingOf<T> operating_point_of(const Plant& plant, const std::vector<std::vector<T>>& parameters,
                                   Complex voltage, double base_mva, const Conventions& conventions) {
-  return Initialiser<T>(plant, parameters, voltage, plant.generation * (base_mva / plant.mva), conventions)
-      .run();
+  const Complex power = plant.generation * (base_mva / plant.mva);
+  return operating_point_of<T>(plant, parameters, voltage, T(power.real()), T(power.imag()), conventions);
+}
+template <class T>
+OperatingOf<T> operating_point_of(const Plant& plant, const std::vector<std::vector<T>>& parameters,
+                                  Complex voltage, const T& P, const T& Q, const Conventions& conventions) {
+  return Initialiser<T>(plant, parameters, voltage, P, Q, conventions).run();
 }
 template OperatingOf<double> operating_point_of(const Plant&, const std::vector<std::vector<double>>&,
                                                 Complex, double, const Conventions&);
 template OperatingOf<D8> operating_point_of(const Plant&, const std::vector<std::vector<D8>>&, Complex,
                                             double, const Conventions&);
+template OperatingOf<double> operating_point_of(const Plant&, const std::vector<std::vector<double>>&,
+                                                Complex, const double&, const double&, const Conventions&);
+template OperatingOf<D8> operating_point_of(const Plant&, const std::vector<std::vector<D8>>&, Complex,
+                                            const D8&, const D8&, const Conventions&);
 
 Operating operating_point(const Plant& plant, Complex voltage, double base_mva,
                           const Conventions& conventions) {

@@ -107,6 +107,15 @@ class PlantEquations {
     machine_.derivative(c, x, m, s, dx);
     hold_at_limits(c, x, dx);
   }
+  /// The same with torque and field voltage added to what the controls give.
+  void derivative_with(const T* c, const T* x, T* m, const T& torque, const T& field, Signals<T>& s,
+                       T* dx) const {
+    signals(c, x, m, s, dx);
+    s.Tm = s.Tm + torque;
+    s.Efd = s.Efd + field;
+    machine_.derivative(c, x, m, s, dx);
+    hold_at_limits(c, x, dx);
+  }
   /// The same where machine_alone(): only Ir and Ii are needed.
   void machine_derivative(const T* c, const T* x, T* m, Signals<T>& s, T* dx) const {
     machine_.electrical(c, x, m, s);

@@ -14,7 +14,9 @@ namespace {
 using ::testing::HasSubstr;
 
 Databank draw(const DatasetConfig& c, std::uint64_t points) {
-  return draw_databank(c, c.effect().standard_parameters(), points);
+  sim::Plant plant;
+  plant.machine = {&c.effect(), c.effect().standard_parameters()};
+  return draw_databank(c, plant, points);
 }
 
 /// Smallest distance over all pairs, by brute force.

@@ -10,7 +10,8 @@
 namespace swingbank::sim {
 namespace {
 
-/// One machine evaluation; the outputs an integrator sees: emf, speed, Te, Ifd and every derivative.
+/// One machine evaluation; the outputs an integrator sees: emf (where the machine gives its current itself:
+/// that), speed, Te, Ifd and every derivative.
 template <class T>
 struct MachineCase {
   std::vector<T> p, c, x, m;
@@ -20,6 +21,11 @@ struct MachineCase {
     std::vector<T> dx(e.states.size(), T(0.0)), out;
     T er, ei;
     ops.emf(c.data(), x.data(), m.data(), er, ei);
+    if (ops.current) {
+      ops.current(c.data(), x.data(), m.data(), s);
+      er = s.Ir;
+      ei = s.Ii;
+    }
     ops.electrical(c.data(), x.data(), m.data(), s);
     ops.derivative(c.data(), x.data(), m.data(), s, dx.data());
     out = {er, ei, s.speed, s.Te, s.Ifd};
@@ -103,6 +109,11 @@ TEST(Conformance, SteadyStateStandsStill) {
         for (std::size_t i = 5; i < out.size(); ++i)
           EXPECT_NEAR(out[i], 0.0, 1e-11)
               << e->name << "." << e->states[i - 5].name;  // rounding, over T'' >= 0.005 s
+        if (e->get<double>().machine.current) {
+          EXPECT_NEAR(out[0], ir, 1e-12) << e->name << ": its current is not the operating point's";
+          EXPECT_NEAR(out[1], ii, 1e-12) << e->name;  // rounding over a reactance of 0.2 pu
+          continue;
+        }
         double r, x;
         e->get<double>().machine.source_impedance(k.p.data(), r, x);
         EXPECT_NEAR(out[0], vr + r * ir - x * ii, 1e-13)
@@ -133,6 +144,8 @@ void lanes_equal_double(const Effect& e, std::mt19937_64& random) {
   gather(&MachineCase<double>::m, pack.m);
   for (int l = 0; l < P::lanes; ++l) {
     const auto& s = each[static_cast<std::size_t>(l)].s;
+    pack.s.Vr.set(l, s.Vr);
+    pack.s.Vi.set(l, s.Vi);
     pack.s.Ir.set(l, s.Ir);
     pack.s.Ii.set(l, s.Ii);
     pack.s.Efd.set(l, s.Efd);

@@ -1,0 +1,286 @@
+#include "validate/driven_plant.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "sim/solve/plant_equations.hpp"
+#include "sim/solve/tableau.hpp"
+
+namespace swingbank::validate {
+namespace {
+
+using sim::D8;
+using Kind = Direction::Kind;
+
+/// Height at t of the hat over knot k, straight to its neighbours.
+double hat(const std::vector<double>& knots, std::size_t k, double t) {
+  if (t < knots.front() || t > knots.back()) return 0.0;
+  if (t < knots[k]) return k == 0 ? 0.0 : std::max(0.0, (t - knots[k - 1]) / (knots[k] - knots[k - 1]));
+  if (k + 1 == knots.size()) return t == knots[k] ? 1.0 : 0.0;
+  return std::max(0.0, (knots[k + 1] - t) / (knots[k + 1] - knots[k]));
+}
+
+template <class T>
+struct Seeds;  // what a scalar makes of directions
+template <>
+struct Seeds<double> {
+  static void add(double&, std::size_t, double) {}
+  static double slope(double, std::size_t) { return 0.0; }
+  static double size(double x) { return std::abs(x); }
+};
+template <>
+struct Seeds<D8> {
+  static void add(D8& x, std::size_t direction, double by) { x.d[direction] += by; }
+  static double slope(const D8& x, std::size_t direction) { return x.d[direction]; }
+  /// Slopes count a hundredth: a fit forgives them more than a value.
+  static double size(const D8& x) {
+    double worst = std::abs(x.a);
+    for (const double d : x.d) worst = std::max(worst, 1e-2 * std::abs(d));
+    return worst;
+  }
+};
+
+template <class T>
+class Driven {
+ public:
+  Driven(const Drive& run, std::span<const Direction> directions)
+      : run_(run),
+        directions_(directions),
+        equations_(*run.plant),
+        scratch_(static_cast<std::size_t>(equations_.scratch())) {
+    start();
+    const std::size_t n = x_.size();
+    for (auto& k : k_) k.resize(n);
+    trial_.resize(n);
+    collect_instants();
+  }
+
+  Response run() {
+    Response back;
+    back.slopes.resize(directions_.size());
+    const Record& r = *run_.record;
+    const double slack = 1e-4 * r.step();  // as in VoltageCurve: a sample at a switching belongs before it
+    t_ = r.t.front();
+    for (const double sample : r.t) {
+      if (sample > run_.until) break;
+      while (next_ < instants_.size() && sample > instants_[next_].time + slack) pass_instant();
+      advance(sample);
+      record(sample, back);
+    }
+    back.steps = steps_;
+    return back;
+  }
+
+ private:
+  struct Instant {
+    double time;
+    int switching;  ///< of the curve; -1: of an effect
+  };
+
+  void start() {
+    const sim::Plant& plant = *run_.plant;
+    std::vector<std::vector<T>> p;
+    for (const auto& block : sim::block_parameters(plant)) p.emplace_back(block.begin(), block.end());
+    const double to_machine = run_.record->base.mva / plant.mva;
+    T P(run_.start.P * to_machine), Q(run_.start.Q * to_machine);
+    each([&](const Direction& d, std::size_t i) {
+      if (d.kind == Kind::parameter)
+        Seeds<T>::add(p[static_cast<std::size_t>(d.block)][static_cast<std::size_t>(d.index)], i, d.scale);
+      if (d.kind == Kind::P) Seeds<T>::add(P, i, d.scale * to_machine);
+      if (d.kind == Kind::Q) Seeds<T>::add(Q, i, d.scale * to_machine);
+    });
+    auto at = sim::operating_point_of<T>(plant, p, run_.start.voltage, P, Q, run_.conventions);
+    c_ = std::move(at.c);
+    x_ = std::move(at.x);
+    Efd_ = at.Efd;
+    Tm_ = at.Tm;
+    x_[0] = x_[0] + T(run_.angle);
+    x_[1] = x_[1] + T(run_.speed);
+    each([&](const Direction& d, std::size_t i) {
+      if (d.kind == Kind::angle) Seeds<T>::add(x_[0], i, d.scale);
+      if (d.kind == Kind::speed) Seeds<T>::add(x_[1], i, d.scale);
+    });
+    has_torque_ = !run_.torque.t.empty();
+    has_field_ = !run_.field.t.empty();
+  }
+  void collect_instants() {
+    const auto& switchings = run_.curve->switchings();
+    for (std::size_t k = 0; k < switchings.size(); ++k)
+      instants_.push_back({switchings[k].time, static_cast<int>(k)});
+    for (const double t : sim::instants_of(*run_.plant))
+      if (t > run_.record->t.front() && t < run_.record->t.back()) instants_.push_back({t, -1});
+    std::ranges::stable_sort(instants_, {}, &Instant::time);
+    look_ahead();
+  }
+  template <class F>
+  void each(F f) const {
+    for (std::size_t i = 0; i < directions_.size(); ++i) f(directions_[i], i);
+  }
+
+  /// Signals and derivative at states x and time t.
+  void evaluate(double t, const T* x, sim::Signals<T>& s, T* dx) {
+    const Complex v = (*run_.curve)(segment_, t) * std::polar(1.0, -run_.start.drift * t);
+    s.Efd = Efd_;
+    s.Tm = Tm_;
+    s.dVref = T(0.0);
+    s.dPref = T(0.0);
+    s.t = T(std::min(t, last_moment_));
+    s.Vpr = T(v.real());
+    s.Vpi = T(v.imag());
+    T er, ei, ir, ii;
+    equations_.emf(c_.data(), x, scratch_.data(), er, ei);
+    equations_.from_grid(c_.data(), x, scratch_.data(), er, ei, s, ir, ii);
+    if (!has_torque_ && !has_field_) return equations_.derivative(c_.data(), x, scratch_.data(), s, dx);
+    equations_.derivative_with(c_.data(), x, scratch_.data(), added(run_.torque, Kind::torque, t),
+                               added(run_.field, Kind::field, t), s, dx);
+  }
+  T added(const PiecewiseLinear& input, Kind kind, double t) const {
+    T value(input(t));
+    each([&](const Direction& d, std::size_t i) {
+      if (d.kind == kind)
+        Seeds<T>::add(value, i, d.scale * hat(input.t, static_cast<std::size_t>(d.index), t));
+    });
+    return value;
+  }
+
+  /// Integrates to the next instant and over to its other side.
+  void pass_instant() {
+    const Instant at = instants_[next_];
+    advance(at.time);
+    const T* before = derivative_at(at.time, 0);
+    ++next_;
+    look_ahead();
+    if (at.switching < 0) return;
+    ++segment_;
+    const T* after = derivative_at(at.time, 1);
+    each([&](const Direction& d, std::size_t i) {
+      if (d.kind != Kind::switching || d.index != at.switching) return;
+      for (std::size_t j = 0; j < x_.size(); ++j)
+        Seeds<T>::add(x_[j], i, d.scale * (sim::value_of(before[j]) - sim::value_of(after[j])));
+    });
+  }
+  /// Effects see at most the next instant less a moment.
+  void look_ahead() {
+    last_moment_ = next_ < instants_.size() ? instants_[next_].time - sim::kBeforeSwitching : 1e300;
+  }
+  const T* derivative_at(double t, std::size_t keep) {
+    evaluate(t, x_.data(), signals_, k_[keep].data());
+    return k_[keep].data();
+  }
+
+  void advance(double to) {
+    while (t_ < to) {
+      const double left = to - t_;
+      const bool reaches = h_ >= left * (1 - 1e-12);
+      const double h = reaches ? left : h_;
+      const double error = attempt(h);
+      if (error <= 1) {
+        t_ = reaches ? to : t_ + h;
+        std::swap(x_, trial_);
+        T moved(0.0);
+        equations_.clamp_states(c_.data(), x_.data(), moved);
+      } else if (h < 1e-9) {
+        give_up();
+      }
+      const double factor =
+          std::isfinite(error) ? std::clamp(0.9 * std::pow(error + 1e-12, -0.2), 0.2, 5.0) : 0.2;
+      const bool cut_short = reaches && error <= 1;  // short for the instant's sake, not the error's
+      h_ = cut_short ? std::max(h_, h * factor) : h * factor;
+      if (++steps_ > run_.step_limit) give_up();
+    }
+    t_ = std::max(t_, to);
+  }
+  double attempt(double h) {
+    namespace dp = sim::dp54;
+    const std::size_t n = x_.size();
+    for (int stage = 0; stage < dp::kStages; ++stage) {
+      for (std::size_t i = 0; i < n; ++i) {
+        T sum(0.0);
+        for (int j = 0; j < stage; ++j)
+          if (dp::a[stage][j] != 0.0) sum = sum + T(dp::a[stage][j]) * k_[static_cast<std::size_t>(j)][i];
+        trial_[i] = x_[i] + T(h) * sum;
+      }
+      evaluate(t_ + dp::c[stage] * h, trial_.data(), signals_, k_[static_cast<std::size_t>(stage)].data());
+    }
+    double worst = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      T e(0.0);
+      for (int j = 0; j < dp::kStages; ++j)
+        if (dp::error[j] != 0.0) e = e + T(dp::error[j]) * k_[static_cast<std::size_t>(j)][i];
+      const double ratio = h * Seeds<T>::size(e) / (run_.tolerance * (1 + std::abs(sim::value_of(x_[i]))));
+      if (!std::isfinite(ratio)) return ratio;
+      worst = std::max(worst, ratio);
+    }
+    return worst;
+  }
+
+  void record(double t, Response& back) {
+    evaluate(t, x_.data(), signals_, k_[0].data());
+    const double to_record = run_.plant->mva / run_.record->base.mva;
+    T P, Q;
+    equations_.grid_power(c_.data(), signals_, P, Q);
+    const std::array<T, kOutputs> out = {P * T(to_record), Q * T(to_record), signals_.speed, signals_.Efd,
+                                         signals_.Ifd};
+    for (int o = 0; o < kOutputs; ++o) {
+      back.value[o].push_back(sim::value_of(out[static_cast<std::size_t>(o)]));
+      for (std::size_t d = 0; d < directions_.size(); ++d)
+        back.slopes[d].value[o].push_back(Seeds<T>::slope(out[static_cast<std::size_t>(o)], d));
+    }
+  }
+  [[noreturn]] void give_up() const {
+    throw InputError({"play-in stops", fmt::format("t = {:.4f} s", t_),
+                      "the plant's equations cannot be integrated further with this voltage",
+                      "check the parameters (time constants, limits) and the record at that time"});
+  }
+
+  const Drive& run_;
+  std::span<const Direction> directions_;
+  sim::PlantEquations<T> equations_;
+  std::vector<T> c_, x_, trial_, scratch_;
+  std::array<std::vector<T>, 7> k_;
+  T Efd_, Tm_;
+  sim::Signals<T> signals_;
+  bool has_torque_ = false, has_field_ = false;
+  std::vector<Instant> instants_;
+  std::size_t next_ = 0;
+  int segment_ = 0, steps_ = 0;
+  double t_ = 0, h_ = 1e-3, last_moment_ = 1e300;
+};
+
+}  // namespace
+
+double PiecewiseLinear::operator()(double at) const {
+  if (t.empty() || at < t.front() || at > t.back()) return 0.0;
+  if (t.size() == 1) return value.front();
+  const auto above = std::upper_bound(t.begin() + 1, t.end() - 1, at);
+  const auto k = static_cast<std::size_t>(above - t.begin()) - 1;
+  const double share = (at - t[k]) / (t[k + 1] - t[k]);
+  return (1 - share) * value[k] + share * value[k + 1];
+}
+
+std::string_view output_name(Output output) {
+  constexpr std::array<std::string_view, kOutputs> names = {"P", "Q", "speed", "Efd", "Ifd"};
+  return names[static_cast<std::size_t>(output)];
+}
+
+Response drive(const Drive& run, std::span<const Direction> directions) {
+  if (directions.empty()) return Driven<double>(run, {}).run();
+  Response all;
+  constexpr std::size_t kAtOnce = sim::kDirections;
+  for (std::size_t first = 0; first < directions.size(); first += kAtOnce) {
+    Response some =
+        Driven<D8>(run, directions.subspan(first, std::min(kAtOnce, directions.size() - first))).run();
+    if (first == 0) {
+      all = std::move(some);
+      continue;
+    }
+    std::ranges::move(some.slopes, std::back_inserter(all.slopes));
+    all.steps += some.steps;
+  }
+  return all;
+}
+
+}  // namespace swingbank::validate
