@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "jobs/measured_run.hpp"
 #include "mpi/store/durable.hpp"
 #include "mpi/store/hdf5_file.hpp"
 #include "sim/core/law.hpp"
@@ -27,7 +28,8 @@ struct Options {
   std::string raw, dyr, convention = "psse", integrator = "reference";
   std::vector<std::string> faults, trips, generator_trips, load_steps, vref_steps, pref_steps, loads, laws,
       attached;
-  std::vector<std::string> out, plants, channels;
+  std::vector<std::string> out, plants, channels, measured;
+  std::uint64_t measure_seed = 1;
   std::string load_model = "impedance", fault_type = "3ph", z0;
   std::vector<int> buses;
   double t_end = 15.0, rate = 120.0;
@@ -240,12 +242,12 @@ void check_options(const Options& options, Problems& problems) {
 
 double tolerance(const Options& o) { return o.tolerance.value_or(o.integrator == "lanes" ? 1e-6 : 1e-8); }
 
-ReferenceRun play(const Options& o, const Grid& grid, const Event& event, std::vector<int> plants,
+ReferenceRun play(const Options& o, int finer, const Grid& grid, const Event& event, std::vector<int> plants,
                   std::vector<Channel> channels, std::vector<int> buses) {
   if (o.integrator == "reference") {
     ReferenceOptions options;
     options.t_end = o.t_end;
-    options.rate = o.rate;
+    options.rate = o.rate * finer;
     options.rtol = tolerance(o);
     options.atol = tolerance(o) / 100;
     options.plants = std::move(plants);
@@ -256,7 +258,7 @@ ReferenceRun play(const Options& o, const Grid& grid, const Event& event, std::v
   }
   BatchOptions options;
   options.t_end = o.t_end;
-  options.rate = o.rate;
+  options.rate = o.rate * finer;
   options.tolerance = tolerance(o);
   options.plants = std::move(plants);
   options.channels = std::move(channels);
@@ -272,19 +274,28 @@ ReferenceRun play(const Options& o, const Grid& grid, const Event& event, std::v
   return run;
 }
 
-void write_csv(const std::filesystem::path& file, const Grid& grid, const ReferenceRun& run) {
+/// A number of a CSV cell after its comma; a sample that is missing leaves the cell empty.
+void put_cell(std::string& text, double value) {
+  text += ',';
+  if (!std::isnan(value)) fmt::format_to(std::back_inserter(text), "{:.12g}", value);
+}
+
+void write_csv(const std::filesystem::path& file, const Grid& grid, const MeasuredRun& run) {
   std::string text = "t_s";
   for (int plant : run.plants)
     for (Channel c : run.channels) {
       const auto& record = kChannels[static_cast<std::size_t>(c)];
       text += fmt::format(",{}.{}_{}", grid.plants[plant].name, record.name, record.unit);
     }
+  for (std::size_t i = 0; i < run.frequency.size(); ++i)
+    text += fmt::format(",{}.f_hz", grid.plants[run.plants[i]].name);
   for (int bus : run.buses)
     text += fmt::format(",bus{0}.V_pu,bus{0}.theta_rad", grid.network.buses[bus].number);
   text += '\n';
   for (int k = 0; k < run.samples; ++k) {
     fmt::format_to(std::back_inserter(text), "{:.12g}", k / run.rate);
-    for (int i = 0; i < run.rows(); ++i) fmt::format_to(std::back_inserter(text), ",{:.12g}", run.row(i)[k]);
+    for (int i = 0; i < run.rows(); ++i) put_cell(text, run.row(i)[k]);
+    for (const auto& f : run.frequency) put_cell(text, f[static_cast<std::size_t>(k)]);
     for (std::size_t b = 0; b < run.buses.size(); ++b)
       fmt::format_to(std::back_inserter(text), ",{:.12g},{:.12g}", run.bus_v[b * run.samples + k],
                      run.bus_theta[b * run.samples + k]);
@@ -319,6 +330,8 @@ void describe_run(h5::File& h, const Options& o, const Grid& grid, const Referen
   h.attribute("loads", describe_loads(grid));
   h.attribute("laws", joined(o.laws));
   h.attribute("attached", joined(o.attached));
+  h.attribute("measured", joined(o.measured));
+  h.attribute("measure_seed", std::to_string(o.measure_seed));
   h.attribute("outcome", std::string(outcome_name(run.outcome)));
   h.attribute("stopped_at_s", run.stopped_at);
   h.attribute("largest_spread_rad", run.largest_spread);
@@ -339,10 +352,12 @@ void describe_run(h5::File& h, const Options& o, const Grid& grid, const Referen
 }
 
 void write_hdf5(const std::filesystem::path& file, const Options& o, const Grid& grid,
-                const ReferenceRun& run) {
+                const MeasuredRun& run) {
   const std::lock_guard guard(h5::lock());
   const auto samples = static_cast<hsize_t>(run.samples);
-  reserve(file, (run.values.size() + run.bus_v.size() * 2 + samples) * sizeof(double) + 65536);
+  reserve(file,
+          (run.values.size() + run.bus_v.size() * 2 + (run.frequency.size() + 1) * samples) * sizeof(double) +
+              65536);
   h5::File h = h5::File::create(temporary_name(file));
   const auto put = [&](const std::string& name, const h5::Shape& shape, const std::vector<double>& values) {
     h.create<double>(name, shape);
@@ -354,6 +369,12 @@ void write_hdf5(const std::filesystem::path& file, const Options& o, const Grid&
   h.attribute("unit", std::string("s"), "/time");
   put("/records", {run.plants.size(), run.channels.size(), samples}, run.packed());
   h.attribute("unit", std::string("see channel_units; per unit on each plant's own base"), "/records");
+  if (!run.frequency.empty()) {
+    std::vector<double> all;
+    for (const auto& f : run.frequency) all.insert(all.end(), f.begin(), f.end());
+    put("/measured_frequency", {run.frequency.size(), samples}, all);
+    h.attribute("unit", std::string("Hz"), "/measured_frequency");
+  }
   if (!run.buses.empty()) {
     std::vector<std::int32_t> numbers;
     for (int b : run.buses) numbers.push_back(grid.network.buses[b].number);
@@ -384,14 +405,18 @@ int simulate(const Options& o) {
   Event event = parse_event(o, grid.network, problems);
   choose_fault_type(o, grid, event, problems);
   check_followers(grid, event, problems);
-  auto plants = parse_plants(o, grid, problems);
-  auto channels = parse_channels(o, problems);
+  const auto plants = parse_plants(o, grid, problems);
+  const auto channels = parse_channels(o, problems);
+  const Instruments instruments(o.measured, o.measure_seed, problems);
   std::vector<int> buses;
   for (int b : o.buses) buses.push_back(bus_of(grid.network, std::to_string(b), "--buses", problems));
   problems.raise();
 
   const auto begin = std::chrono::steady_clock::now();
-  const ReferenceRun run = play(o, grid, event, std::move(plants), std::move(channels), std::move(buses));
+  const auto played = [&](int finer, const std::vector<Channel>& wanted) {
+    return play(o, finer, grid, event, plants, wanted, buses);
+  };
+  const MeasuredRun run = instruments.run(grid, plants, channels, played);
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   for (const std::filesystem::path file : o.out) {
     if (file.extension() == ".csv")
@@ -421,6 +446,11 @@ int main(int argc, char** argv) {
   app.add_option("--law", o.laws, "law file (.toml) whose effect --attach may use; may be repeated");
   app.add_option("--attach", o.attached,
                  "PLANT:EFFECT[:PARAM=VALUE,...]: an effect added to a plant (or to all); may be repeated");
+  app.add_option("--measure", o.measured,
+                 "EFFECT[:PARAM=VALUE,...]: an instrument between every recorded plant and the record, after "
+                 "those before it; may be repeated");
+  app.add_option("--measure-seed", o.measure_seed, "seed of the instruments' noise and gaps")
+      ->capture_default_str();
   app.add_option("--convention", o.convention,
                  "psse: speed in the stator voltage and Pm/(1+w); andes: neither")
       ->check(CLI::IsMember({"psse", "andes"}))

@@ -1,0 +1,84 @@
+#pragma once
+// What simulate does where a run passes instruments before it is written.
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/solve/measure.hpp"
+#include "sim/solve/reference.hpp"
+
+namespace swingbank::sim {
+
+/// A run as it is written; `frequency` is empty unless the run was measured.
+struct MeasuredRun : ReferenceRun {
+  std::vector<std::vector<double>> frequency;  ///< [plant][sample], as the instruments report it [Hz]
+};
+
+/// Every factor-th sample of a run, of some of its channels.
+inline MeasuredRun thinned(const MeasuredRun& run, int factor, const std::vector<Channel>& channels) {
+  MeasuredRun thin = run;
+  thin.rate = run.rate / factor;
+  thin.samples = (run.samples - 1) / factor + 1;
+  thin.channels = channels;
+  thin.allocate(false);
+  const auto take = [&](const double* from, double* to) {
+    for (int k = 0; k < thin.samples; ++k) to[k] = from[static_cast<std::ptrdiff_t>(k) * factor];
+  };
+  const auto old = [&](Channel c) {
+    return static_cast<int>(std::ranges::find(run.channels, c) - run.channels.begin());
+  };
+  for (int p = 0; p < static_cast<int>(run.plants.size()); ++p)
+    for (int c = 0; c < static_cast<int>(channels.size()); ++c)
+      take(run.at(p, old(channels[static_cast<std::size_t>(c)])), thin.at(p, c));
+  const auto take_all = [&](const std::vector<double>& from, std::vector<double>& to, std::size_t rows) {
+    to.assign(rows * static_cast<std::size_t>(thin.samples), 0.0);
+    for (std::size_t i = 0; i < rows; ++i) take(&from[i * run.samples], &to[i * thin.samples]);
+  };
+  take_all(run.bus_v, thin.bus_v, run.buses.size());
+  take_all(run.bus_theta, thin.bus_theta, run.buses.size());
+  for (std::size_t p = 0; p < run.frequency.size(); ++p) {
+    thin.frequency[p].resize(static_cast<std::size_t>(thin.samples));
+    take(run.frequency[p].data(), thin.frequency[p].data());
+  }
+  return thin;
+}
+
+/// The instruments of a run: those of the plants and those of the command line, which all plants share.
+class Instruments {
+ public:
+  Instruments(const std::vector<std::string>& texts, std::uint64_t seed, Problems& problems) : seed_(seed) {
+    for (const auto& text : texts)
+      if (auto block = read_measurement(text, "--measure " + text, problems))
+        chain_.push_back(std::move(*block));
+  }
+
+  /// Plays by `play(rate factor, channels)` -> ReferenceRun, measures, and keeps the channels asked for. A
+  /// chain with a memory sees the run at several times the rate, so that its windows are resolved.
+  template <class Play>
+  MeasuredRun run(const Grid& grid, const std::vector<int>& plants, const std::vector<Channel>& channels,
+                  const Play& play) const {
+    double reach = memory(chain_);
+    bool any = !chain_.empty();
+    for (int p : plants) {
+      const auto& own = grid.plants[static_cast<std::size_t>(p)].measurements;
+      any = any || !own.empty();
+      reach = std::max(reach, memory(own) + memory(chain_));
+    }
+    if (!any) return {play(1, channels), {}};
+    constexpr int kFiner = 8;
+    const int factor = reach > 0 ? kFiner : 1;
+    std::vector<Channel> all = channels;
+    for (Channel c : {Channel::V, Channel::theta, Channel::P, Channel::Q})
+      if (std::ranges::find(all, c) == all.end()) all.push_back(c);
+    MeasuredRun run{play(factor, all), {}};
+    run.frequency = measure_run(grid, chain_, seed_, run);
+    return thinned(run, factor, channels);
+  }
+
+ private:
+  std::vector<Block> chain_;
+  std::uint64_t seed_;
+};
+
+}  // namespace swingbank::sim

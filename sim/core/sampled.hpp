@@ -1,0 +1,57 @@
+#pragma once
+// Uniform samples as a function of time, for what an instrument does to them.
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace swingbank::sim {
+
+/// A curve through uniform samples: a cubic (Catmull-Rom) where they are smooth, a straight line across a
+/// jump, whose sides do not bend each other. Before the first and after the last sample it stands still.
+/// T: double or complex.
+template <class T>
+class SampledCurve {
+ public:
+  explicit SampledCurve(std::span<const T> y) : y_(y), slope_(y.size(), T{}) {
+    for (std::ptrdiff_t k = 0; k < size(); ++k) {
+      const bool left = k > 0 && !jump(k - 1), right = k + 1 < size() && !jump(k);
+      if (left && right)
+        slope_[index(k)] = 0.5 * (at(k + 1) - at(k - 1));
+      else if (left || right)
+        slope_[index(k)] = left ? at(k) - at(k - 1) : at(k + 1) - at(k);
+    }
+  }
+
+  /// Value at a position counted in samples.
+  [[nodiscard]] T operator()(double position) const {
+    const double place = std::clamp(position, 0.0, static_cast<double>(size() - 1));
+    const auto k = std::min(static_cast<std::ptrdiff_t>(place), size() - 2);
+    const double u = place - static_cast<double>(k);
+    if (k < 0 || u == 0.0) return at(k < 0 ? 0 : k);
+    const T rise = at(k + 1) - at(k);
+    if (jump(k)) return at(k) + u * rise;
+    const T a = slope_[index(k)] - rise, b = rise - slope_[index(k + 1)];
+    return at(k) + u * (rise + (1.0 - u) * ((1.0 - u) * a + u * b));
+  }
+
+ private:
+  /// Whether the samples jump between k and k + 1: by far more than on either side of it.
+  [[nodiscard]] bool jump(std::ptrdiff_t k) const {
+    constexpr double kFarMore = 8.0;
+    const double rise = std::abs(at(k + 1) - at(k));
+    const double before = k > 0 ? std::abs(at(k) - at(k - 1)) : 0.0;
+    const double after = k + 2 < size() ? std::abs(at(k + 2) - at(k + 1)) : 0.0;
+    return rise > kFarMore * std::max(before, after);
+  }
+  [[nodiscard]] static std::size_t index(std::ptrdiff_t k) { return static_cast<std::size_t>(k); }
+  [[nodiscard]] std::ptrdiff_t size() const { return static_cast<std::ptrdiff_t>(y_.size()); }
+  [[nodiscard]] T at(std::ptrdiff_t k) const { return y_[index(k)]; }
+
+  std::span<const T> y_;
+  std::vector<T> slope_;
+};
+
+}  // namespace swingbank::sim

@@ -1,0 +1,38 @@
+#pragma once
+// CTERROR: ratio and phase error of the current transformers.
+#include <fmt/format.h>
+
+#include "sim/core/effect.hpp"
+
+namespace swingbank::sim::measurement_ct {
+
+struct Model {
+  static constexpr std::string_view name = "CTERROR", title = "current transformer: gain and phase error",
+                                    source = "IEC 61869-2 (ratio error, phase displacement); IEEE Std C57.13";
+  static constexpr Slot slot = Slot::measurement;
+  static constexpr std::string_view description = R"(
+  I --( 1 + gain )--( e^{j phase} )-- I'
+
+  I' = I (1 + gain) exp(j phase): constant, so it shows before the event as well.
+  Class 0.5 allows gain = 0.005 pu and phase = 0.0087 rad (30 minutes of arc) at rated current.
+  On P and Q alone gain is a wrong machine base; only the phase is told apart from it.
+)";
+  enum P { gain, phase };
+  static constexpr Parameter parameters[] = {
+      {"gain", "eps", "pu", 0.0, -0.5, 0.5, 0.0, "error of the current's magnitude, of itself"},
+      {"phase", "dphi", "rad", 0.0, -0.5, 0.5, 0.0, "error of the current's angle, positive: leading"}};
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    if (!(p[gain] > -1))
+      problems.add(fmt::format("gain = {:g} pu", p[gain]), where, "nothing of the current would be left",
+                   "give gain > -1");
+  }
+  static std::string_view unphysical(const double*) { return ""; }
+
+  static void measure(const double* p, std::uint64_t, Phasors& phasors) {
+    const std::complex<double> factor = std::polar(1.0 + p[gain], p[phase]);
+    for (auto& current : phasors.I) current *= factor;
+  }
+};
+
+}  // namespace swingbank::sim::measurement_ct

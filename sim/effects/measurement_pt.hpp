@@ -1,0 +1,37 @@
+#pragma once
+// PTERROR: ratio and phase error of the voltage transformers.
+#include <fmt/format.h>
+
+#include "sim/core/effect.hpp"
+
+namespace swingbank::sim::measurement_pt {
+
+struct Model {
+  static constexpr std::string_view name = "PTERROR", title = "voltage transformer: gain and phase error",
+                                    source = "IEC 61869-3, 61869-5 (ratio error, phase displacement)";
+  static constexpr Slot slot = Slot::measurement;
+  static constexpr std::string_view description = R"(
+  V --( 1 + gain )--( e^{j phase} )-- V'
+
+  V' = V (1 + gain) exp(j phase): constant, so it shows before the event as well.
+  Class 0.5 allows gain = 0.005 pu and phase = 0.0058 rad (20 minutes of arc) at rated voltage.
+)";
+  enum P { gain, phase };
+  static constexpr Parameter parameters[] = {
+      {"gain", "eps", "pu", 0.0, -0.5, 0.5, 0.0, "error of the voltage's magnitude, of itself"},
+      {"phase", "dphi", "rad", 0.0, -0.5, 0.5, 0.0, "error of the voltage's angle, positive: leading"}};
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    if (!(p[gain] > -1))
+      problems.add(fmt::format("gain = {:g} pu", p[gain]), where, "nothing of the voltage would be left",
+                   "give gain > -1");
+  }
+  static std::string_view unphysical(const double*) { return ""; }
+
+  static void measure(const double* p, std::uint64_t, Phasors& phasors) {
+    const std::complex<double> factor = std::polar(1.0 + p[gain], p[phase]);
+    for (auto& voltage : phasors.V) voltage *= factor;
+  }
+};
+
+}  // namespace swingbank::sim::measurement_pt

@@ -1,0 +1,39 @@
+#pragma once
+// SKEW: the current channel is late against the voltage channel.
+#include "sim/core/effect.hpp"
+#include "sim/core/sampled.hpp"
+
+namespace swingbank::sim::measurement_skew {
+
+struct Model {
+  static constexpr std::string_view name = "SKEW", title = "time skew of the current against the voltage",
+                                    source =
+                                        "displacement in time by definition; IEEE Std C37.118.1, 4.3 (time "
+                                        "stamps)";
+  static constexpr Slot slot = Slot::measurement;
+  static constexpr std::string_view description = R"(
+  I --[ delay of `skew` ]-- I'
+
+  I'(t) = I(t - skew), of the phasor in the synchronous frame: a whole channel that is late. (What a late
+  sampling clock does besides, it turns the phasor by 2 pi f0 skew, is CTERROR's phase.)
+  Between samples: a cubic, and a straight line across a jump, so that nothing but the sample inside the
+  jump is smeared. Outside the record the current stands still.
+)";
+  enum P { skew };
+  static constexpr Parameter parameters[] = {
+      {"skew", "tau", "s", 0.0, -1.0, 1.0, 0.0, "by how much the current is late"}};
+
+  static void check(const double*, const std::string&, Problems&) {}
+  static std::string_view unphysical(const double*) { return ""; }
+  static double memory(const double* p) { return std::abs(p[skew]); }
+
+  static void measure(const double* p, std::uint64_t, Phasors& phasors) {
+    if (p[skew] == 0.0) return;
+    const std::vector<std::complex<double>> before = phasors.I;
+    const SampledCurve<std::complex<double>> curve(before);
+    const double shift = p[skew] * phasors.rate;
+    for (std::size_t k = 0; k < before.size(); ++k) phasors.I[k] = curve(static_cast<double>(k) - shift);
+  }
+};
+
+}  // namespace swingbank::sim::measurement_skew

@@ -1,0 +1,65 @@
+#!/usr/bin/env bash
+# swingbank simulate --measure: instruments between the plants and the record.
+source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+
+networks=$SWINGBANK_SOURCE/configs/networks
+simulate() {
+  "$swingbank" simulate --raw "$networks/ieee14_genrou.raw" --dyr "$networks/ieee14_genrou.dyr" --t-end 4 \
+    --rate 60 --fault 5:1:1.1 --plants 2 "$@"
+}
+for integrator in reference lanes; do
+  simulate --integrator $integrator --out "$work/true_$integrator.csv" --out "$work/true_$integrator.h5" >/dev/null
+  simulate --integrator $integrator --measure CTERROR:gain=0.01,phase=0.005 --measure SKEW:skew=0.05 \
+    --out "$work/measured_$integrator.csv" >/dev/null
+done
+simulate --channels P,Efd --measure CTERROR:gain=0.01 --out "$work/one.csv" --out "$work/one.h5" >/dev/null
+simulate --attach 2:PTERROR:gain=0.02 --out "$work/attached.csv" >/dev/null
+/usr/bin/python3 - "$work" <<'PYTHON'
+import cmath, csv, sys
+import h5py
+
+def table(name):
+    with open(f"{sys.argv[1]}/{name}.csv") as file:
+        rows = list(csv.reader(file))
+    return {name: [float(v) for v in column] for name, column in zip(rows[0], zip(*rows[1:]))}
+
+for integrator in ("reference", "lanes"):
+    true, seen = table(f"true_{integrator}"), table(f"measured_{integrator}")
+    assert "2.f_hz" in seen and "2.f_hz" not in true
+    assert seen["t_s"] == true["t_s"]
+    # A turn of S by -0.005 rad, scaled by 1.01, of the current three samples ago. Both runs hold 1e-6 per step.
+    def phasors(r):
+        v = [cmath.rect(m, a) for m, a in zip(r["2.V_pu"], r["2.theta_rad"])]
+        return v, [((p + 1j * q) / u).conjugate() for p, q, u in zip(r["2.P_pu"], r["2.Q_pu"], v)]
+    (v, i), (vm, im) = phasors(true), phasors(seen)
+    late = [i[max(k - 3, 0)] * 1.01 * cmath.exp(0.005j) for k in range(len(i))]
+    worst_v = max(abs(a - b) for a, b in zip(v, vm))
+    # Away from the switchings, where a sample is one-sided at 60/s and inside the jump at 480/s.
+    worst_i = max(abs(a - b) for k, (a, b) in enumerate(zip(late, im)) if abs(k - 63) > 2 and abs(k - 69) > 2)
+    assert worst_v < 2e-5, worst_v
+    assert worst_i < 1e-4, worst_i
+    assert max(true["2.speed_pu"]) > 1e-3 and abs(seen["2.f_hz"][0] - 60) < 1e-6
+    # Once the grid has calmed down a bus moves with its machine: within a few mHz.
+    assert abs(seen["2.f_hz"][-2] - 60 * (1 + seen["2.speed_pu"][-2])) < 0.05
+
+true, one = table("true_reference"), table("one")
+assert list(one) == ["t_s", "2.P_pu", "2.Efd_pu", "2.f_hz"]
+assert abs(one["2.P_pu"][0] / true["2.P_pu"][0] - 1.01) < 1e-9  # the CSV has 12 digits
+with h5py.File(f"{sys.argv[1]}/one.h5") as file:
+    assert file["measured_frequency"].shape == (1, 241)
+    assert file["measured_frequency"].attrs["unit"] in ("Hz", b"Hz")
+    assert "CTERROR:gain=0.01" in str(file.attrs["measured"])
+with h5py.File(f"{sys.argv[1]}/true_reference.h5") as file:
+    assert "measured_frequency" not in file
+attached = table("attached")
+assert abs(attached["2.V_pu"][0] / true["2.V_pu"][0] - 1.02) < 1e-9
+PYTHON
+
+refuses "no such instrument" "no measurement effect 'SEXS' at --measure SEXS \(there are .*CTERROR" \
+  simulate --measure SEXS --out "$work/x.csv"
+refuses "no such parameter" "CTERROR has gain, phase" simulate --measure CTERROR:gian=1 --out "$work/x.csv"
+refuses "a dead instrument" "nothing of the current would be left" simulate --measure CTERROR:gain=-1 --out "$work/x.csv"
+refuses "a bolted terminal" "V = 0 pu after 1.+ s at plant 2 \(P and Q do not tell the current there" \
+  "$swingbank" simulate --raw "$networks/ieee14_genrou.raw" --dyr "$networks/ieee14_genrou.dyr" --t-end 2 --rate 60 \
+  --fault 2:1:1.05 --plants 2 --measure CTERROR:gain=0.1 --out "$work/x.csv"
+[[ ! -e $work/x.csv ]] || fail "a refused run left a file"
