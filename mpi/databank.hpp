@@ -1,7 +1,7 @@
 #pragma once
-// The databank: parameters of machine and other effects drawn uniformly from their boxes such that any two points keep a distance.
-// Candidate k is a pure function of (seed, k); candidates are settled in order, so the first n points are the
-// same whatever n, and on every machine.
+// The databank: parameters of machine and other effects drawn uniformly from their boxes such that any two
+// points keep a distance. Candidate k is a pure function of (seed, k); candidates are settled in order, so
+// the first n points are the same whatever n, and on every machine.
 #include <map>
 #include <string>
 #include <vector>
@@ -21,7 +21,8 @@ struct Databank {
   [[nodiscard]] const double* point(std::size_t i) const { return values.data() + i * dimensions; }
 };
 
-/// Draws `points` points. `base`: the plant that tells what is not in the box. Throws InputError telling how many points were reached if the policy or the distance cannot be met.
+/// Draws `points` points. `base`: the plant that tells what is not in the box. Throws InputError telling how
+/// many points were reached if the policy or the distance cannot be met.
 Databank draw_databank(const DatasetConfig& config, const sim::Plant& base, std::uint64_t points);
 
 }  // namespace swingbank

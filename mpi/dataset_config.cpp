@@ -128,8 +128,7 @@ void read_vary(Config& c, DatasetConfig& d) {
   read_box(c, "vary.box", *effect, nullptr, d.box);
   read_effect_boxes(c, d.box);
   if (std::ranges::none_of(d.box, &Box::sampled))
-    c.problem("vary.box", "no parameter varies",
-              "no entry of [vary.box] or [vary.effects.…] is an interval",
+    c.problem("vary.box", "no parameter varies", "no entry of [vary.box] or [vary.effects.…] is an interval",
               "write at least one as name = [low, high]");
 }
 
@@ -207,7 +206,8 @@ std::uint64_t DatasetConfig::points() const {
 }
 
 namespace {
-/// "30:SEXS:TAoverTB=0.1,TB=10,…" with every parameter, so that a standard value that moves shows in the hash.
+/// "30:SEXS:TAoverTB=0.1,TB=10,…" with every parameter, so that a standard value that moves shows in the
+/// hash.
 std::string written(const sim::Attachment& a) {
   std::string text = a.plant + ":" + std::string(a.block.effect->name);
   for (std::size_t i = 0; i < a.block.p.size(); ++i)

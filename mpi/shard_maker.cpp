@@ -27,7 +27,8 @@ struct ShardMaker::Slots {
   std::vector<std::uint8_t> valid;
 };
 
-ShardMaker::ShardMaker(const Study& study, const Databank& bank) : study_(study), bank_(bank), sampler_(study, bank) {
+ShardMaker::ShardMaker(const Study& study, const Databank& bank)
+    : study_(study), bank_(bank), sampler_(study, bank) {
   const auto position = [&](sim::Channel c) {
     const auto found = std::ranges::find(simulated_, c);
     if (found != simulated_.end()) return static_cast<int>(found - simulated_.begin());

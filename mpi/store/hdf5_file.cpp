@@ -201,6 +201,9 @@ std::vector<std::string> File::texts_attribute(const std::string& name) const {
   return values;
 }
 
+bool File::has_attribute(const std::string& name) const {
+  return H5Aexists_by_name(file_.get(), "/", name.c_str(), H5P_DEFAULT) > 0;
+}
 std::string File::text_attribute(const std::string& name) const {
   const auto values = texts_attribute(name);
   if (values.size() != 1) fail("the attribute is not one text", "/@" + name);

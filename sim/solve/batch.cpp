@@ -53,8 +53,7 @@ std::map<int, Plant> changed_plants(const Grid& grid, const Job& job) {
   for (const auto& [index, values] : job.machine_parameters) plant(index).machine.p = values;
   for (const auto& [index, control, values] : job.control_parameters) {
     Plant& changing = plant(index);
-    (control == kTransformer ? changing.transformer
-                             : changing.controls[static_cast<std::size_t>(control)])
+    (control == kTransformer ? changing.transformer : changing.controls[static_cast<std::size_t>(control)])
         .p = values;
   }
   return changed;

@@ -25,8 +25,7 @@ struct Case {
   }
   Case(const std::string& name, std::uint64_t draws)
       : study(load(name, draws)),
-        bank(draw_databank(study.config,
-                           study.grid.plants[static_cast<std::size_t>(study.plants[0])],
+        bank(draw_databank(study.config, study.grid.plants[static_cast<std::size_t>(study.plants[0])],
                            study.config.points())),
         maker(study, bank) {}
 };
