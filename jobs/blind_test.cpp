@@ -1,0 +1,88 @@
+// swingbank blind-test: makes records in which an effect is hidden, and scores what a diagnosis said of them.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+
+#include "validate/blind_case.hpp"
+#include "validate/blind_plan.hpp"
+
+namespace {
+using namespace swingbank;
+using namespace swingbank::validate;
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string config, out, part = "1/1";
+  std::vector<std::string> kinds;
+  int make = 0;
+  std::uint64_t seed = 1;
+  double size = 0;
+  bool tiny = false;
+};
+
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+int make(const Options& o) {
+  const BlindConfig config = load_blind_config(o.config);
+  const BlindPlan plan = plan_blind(config, o.kinds, o.make, o.seed, o.size);
+  settle_plan(plan, config, o.out);
+  const auto [part, parts] = read_part(o.part);
+  const auto begin = std::chrono::steady_clock::now();
+  int made = 0, there = 0;
+  for (std::size_t k = 0; k < plan.cases.size(); ++k) {
+    if (static_cast<int>(k % static_cast<std::size_t>(parts)) != part - 1) continue;
+    const std::string name = case_name(k);
+    const fs::path folder = fs::path(o.out) / "cases" / name;
+    if (fs::exists(folder)) {
+      ++there;
+      continue;
+    }
+    const auto start = std::chrono::steady_clock::now();
+    const BlindCase one = make_blind_case(config, plan.cases[k]);
+    write_blind_case(one, config, name, folder, fs::path(o.out) / "truth" / (name + ".json"));
+    ++made;
+    fmt::print("{} of {}: {}, {} events, {:.1f} s\n", k + 1, plan.cases.size(), name, one.records.size(),
+               seconds_since(start));
+    std::fflush(stdout);
+  }
+  fmt::print("made {} cases in {:.1f} s, {} were there already: {}\n", made, seconds_since(begin), there,
+             o.out);
+  return 0;
+}
+
+int blind_test(const Options& o) {
+  if (o.make > 0) return make(o);
+  throw InputError({"nothing to do", "--make", "it was not given", "give --make N"});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{SWINGBANK_SUMMARY, "swingbank blind-test"};
+  Options o;
+  app.add_option("--config", o.config, "what cases are drawn from, configs/blind/*.toml")->required();
+  app.add_option("--out", o.out, "folder of the run: cases/, truth/, plan.json")->required();
+  app.add_option("--make", o.make, "make that many cases (those that are there stay)");
+  app.add_option("--seed", o.seed, "seed of the run")->capture_default_str();
+  app.add_option(
+         "--kinds", o.kinds,
+         "kinds to hide, comma-separated: kinds of the config, A+B for two at once, none, listed, odd, "
+         "pairs (default: the issue's mixture)")
+      ->delimiter(',');
+  app.add_option("--size", o.size, "size of every effect, in detection limits (default: drawn)");
+  app.add_option("--part", o.part, "K/N: only every N-th case, from the K-th; for ranks and job arrays")
+      ->capture_default_str();
+  try {
+    app.parse(argc, argv);
+    return blind_test(o);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 1;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return 1;
+  }
+}

@@ -1,0 +1,85 @@
+#pragma once
+// The world of one blind case: grid, plants, controls and events, drawn; the grid at any size of the hidden
+// effects.
+#include <optional>
+#include <span>
+
+#include "sim/solve/grid.hpp"
+#include "sim/solve/reference.hpp"
+#include "validate/blind_case.hpp"
+#include "validate/blind_random.hpp"
+
+namespace swingbank::validate {
+
+inline constexpr double kRecordMva = 100.0;  ///< base of P_pu and Q_pu in blind records [MVA]
+
+class BlindWorld {
+ public:
+  /// Draws grid, plant, true parameters and controls. Throws InputError where they do not fit one another.
+  BlindWorld(const BlindConfig& config, const std::vector<const BlindKind*>& hidden, BlindDraw& draw);
+
+  /// The grid with each hidden effect at its scale; nullopt leaves an effect out.
+  [[nodiscard]] sim::Grid grid(std::span<const std::optional<double>> scale) const;
+  /// Grid without any hidden effect.
+  [[nodiscard]] const sim::Grid& plain() const { return grid_; }
+  [[nodiscard]] int plant() const { return plant_; }
+  [[nodiscard]] const std::string& grid_name() const { return name_; }
+  [[nodiscard]] bool controlled() const { return controlled_; }
+
+ private:
+  void draw_machines(double spread, BlindDraw& draw);
+  void draw_target(BlindDraw& draw);
+  void draw_others(BlindDraw& draw);
+  void apply(const BlindKind& kind, double scale, sim::Grid& grid) const;
+  std::vector<const BlindKind*> hidden_;
+  std::vector<std::vector<sim::Block>> blocks_;  ///< hidden ones, per kind
+  sim::Grid grid_;
+  std::string name_;
+  int plant_ = 0;
+  bool controlled_ = false;
+};
+
+/// Every non-code parameter moved by up to `spread`, until the effect's own checks accept them.
+void jitter(sim::Block& block, double spread, BlindDraw& draw);
+
+BlindEvent draw_fault(const BlindWorld& world, BlindDraw& draw);
+/// A load step or the loss of another generator.
+BlindEvent draw_frequency_event(const BlindWorld& world, BlindDraw& draw);
+
+/// The plant's own quantities of one event on the fine grid: V, theta, P, Q, speed, Ifd, P and Q on the
+/// machine's base.
+sim::ReferenceRun simulate_fine(const sim::Grid& grid, int plant, const BlindEvent& event,
+                                const BlindConfig& config);
+/// What the instruments make of it, without noise: hidden measurement effects and the P-class filter on the
+/// fine grid, then every n-th sample. P and Q on kRecordMva.
+Record measured(const sim::ReferenceRun& fine, const sim::Plant& plant, const BlindConfig& config,
+                double frequency, bool pmu_filter, std::uint64_t seed);
+void add_noise(Record& record, const BlindConfig& config, double noise, double mva, bool channels,
+               BlindDraw& draw);
+
+/// How large a difference between records is, for P and Q of all events, in units of noise.
+class BlindSize {
+ public:
+  /// `plain`: records without the hidden effects; `plant`: the model that explains them.
+  BlindSize(const sim::Plant& plant, const sim::Conventions& conventions,
+            const std::vector<BlindEvent>& events, std::vector<Record> plain, double sigma);
+  [[nodiscard]] double visible(const std::vector<Record>& with) const;
+  /// After a linear refit of the machine's parameters and the switching instants.
+  [[nodiscard]] double left(const std::vector<Record>& with) const;
+
+ private:
+  [[nodiscard]] std::vector<double> answer(const sim::Plant& plant, const Record& record,
+                                           const std::vector<double>& switchings) const;
+  [[nodiscard]] std::vector<double> residual(std::size_t event, const Record& record) const;
+  void add_columns(std::size_t event);
+
+  sim::Plant plant_;
+  sim::Conventions conventions_;
+  std::vector<BlindEvent> events_;
+  std::vector<Record> plain_;
+  double sigma_;
+  std::vector<std::vector<double>> plain_residual_;  ///< [event][P, Q]
+  std::vector<std::vector<double>> columns_;         ///< directions that a refit may use, over all events
+};
+
+}  // namespace swingbank::validate
