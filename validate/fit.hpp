@@ -1,0 +1,82 @@
+#pragma once
+// Least squares over several events at once: the plant's free parameters, common to all, and what belongs to
+// one event only (when exactly it was switched, where exactly the plant stood). Levenberg-Marquardt (Ceres)
+// on the sensitivities of the driven plant.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "validate/fit_event.hpp"
+
+namespace swingbank::validate {
+
+/// A parameter that may move. `spread` is how far its value is believed to be off: relative where the
+/// parameter is positive by nature (it is then fitted as a logarithm), absolute otherwise; 0: no belief.
+struct FreeParameter {
+  int block = 0, index = 0;  ///< as in sim::block_parameters
+  double spread = 0.3;
+};
+
+/// Parameters of a block that a fit may move: no codes, none that sits at its neutral value or at zero, and
+/// none that says when something happens.
+std::vector<FreeParameter> free_parameters(const sim::Plant& plant, int block, double spread);
+/// The same of all blocks.
+std::vector<FreeParameter> free_parameters(const sim::Plant& plant, double spread);
+
+/// What is known of one parameter.
+const sim::Parameter& parameter_record(const sim::Plant& plant, int block, int index);
+const sim::Effect& block_effect(const sim::Plant& plant, int block);
+double& parameter_value(sim::Plant& plant, int block, int index);
+
+/// What belongs to one event.
+struct EventState {
+  std::vector<double> switchings;             ///< [s]
+  double P = 0, Q = 0, angle = 0, speed = 0;  ///< offsets of the operating point and of the first states
+};
+
+struct EventFit {
+  EventState state;
+  double chi2 = 0;                            ///< sum of squared whitened residuals
+  int values = 0;                             ///< how many
+  std::vector<std::vector<double>> model;     ///< [channel][sample]
+  std::vector<std::vector<double>> residual;  ///< model - measured, whitened: [channel][sample]
+  /// chi2 per value: 1 where nothing but noise is left.
+  [[nodiscard]] double misfit() const { return chi2 / values; }
+};
+
+struct FittedParameter {
+  FreeParameter where;
+  std::string block, name, unit;
+  double start = 0, value = 0;
+  double error = 0;          ///< standard error from the curvature [unit]; NaN where the fit is singular
+  double low = 0, high = 0;  ///< 95 % interval [unit], within the physical bounds
+  bool at_bound = false;
+  /// Share of the interval that the records decide, the belief the rest: 0 nothing, 1 all.
+  double decided = 0;
+};
+
+struct Fit {
+  sim::Plant plant;  ///< with the fitted values
+  std::vector<FittedParameter> parameters;
+  std::vector<EventFit> events;
+  double chi2 = 0, belief = 0;  ///< of the data; of the spreads
+  int values = 0, fitted = 0;   ///< numbers compared; free numbers, those of the events included
+  int iterations = 0;
+  bool converged = false;
+  std::string failed;  ///< why the start could not be evaluated; empty if it could
+  [[nodiscard]] double misfit() const { return chi2 / values; }
+};
+
+struct FitOptions {
+  int iterations = 30;
+  double tolerance = 1e-6;             ///< of the integration
+  double enough = 1e-5;                ///< relative change of the cost at which the fit stops
+  std::vector<EventState> start = {};  ///< of the events; empty: as prepared
+};
+
+/// Fits `free` parameters of the plant and every event's own state. A start that cannot be evaluated gives
+/// `failed`; parameters that cannot be are never reached, the search turns back.
+Fit fit(const sim::Plant& plant, const sim::Conventions& conventions, const std::vector<FitEvent>& events,
+        const std::vector<FreeParameter>& free, const FitOptions& options = {});
+
+}  // namespace swingbank::validate

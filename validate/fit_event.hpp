@@ -1,0 +1,39 @@
+#pragma once
+// One event made ready for fitting: where the voltage jumps, where the model starts, and how large the noise
+// is in each channel.
+#include <Eigen/Dense>
+#include <vector>
+
+#include "validate/driven_plant.hpp"
+#include "validate/plant_model.hpp"
+
+namespace swingbank::validate {
+
+struct FitEvent {
+  Record record;
+  std::vector<Switching> switchings;  ///< where they were found; those with an uncertainty are fitted
+  OperatingPoint start;
+  std::vector<Output> channels;  ///< measured ones: P, Q, then speed, Efd, Ifd where recorded
+  Eigen::VectorXd noise;         ///< standard deviation per channel [pu]
+  Eigen::MatrixXd whitening;     ///< W: W e has unit covariance where e is noise
+  [[nodiscard]] const std::vector<double>& measured(Output o) const;
+  [[nodiscard]] int values() const { return record.samples() * static_cast<int>(channels.size()); }
+};
+
+struct FitEventOptions {
+  bool measured_states = true;  ///< compare speed, Efd and Ifd too, where they are recorded
+  double jump_threshold = kJumpThreshold;
+  double pre_event = 1.0;  ///< length of the steady window where nothing is switched [s]
+};
+
+/// Prepares records that belong together (one plant, one instrument). The noise is that of the pre-event
+/// residual of `model`, pooled over the events: what the played-in voltage's own noise adds through the
+/// machine's reactance is in it, and so is what ties P and Q together. `kLeastNoise` is its floor. Throws
+/// InputError if a record has no pre-event.
+std::vector<FitEvent> prepare_events(const PlantModel& model, std::vector<Record> records,
+                                     const FitEventOptions& options = {});
+
+/// Interpolation between samples leaves residuals of this size where a record has no noise at all [pu].
+constexpr double kLeastNoise = 1e-4;
+
+}  // namespace swingbank::validate
