@@ -89,7 +89,7 @@ TEST(RecordTest, EveryFaultOfAFileIsToldWithItsLine) {
     if (k == 30) line = "0.2,1.01,0.1,0.5,0.2";
   });
   const auto all = faults(text);
-  EXPECT_THAT(all, Contains(AllOf(HasSubstr("V_pu = nan"), HasSubstr("r.csv:4"))));
+  EXPECT_THAT(all, Contains(AllOf(HasSubstr("V_pu = 'nan'"), HasSubstr("r.csv:4"), HasSubstr("missing"))));
   EXPECT_THAT(all, Contains(AllOf(HasSubstr("'x5'"), HasSubstr("r.csv:6"), HasSubstr("no number"))));
   EXPECT_THAT(all, Contains(AllOf(HasSubstr("P_pu = ''"), HasSubstr("r.csv:8"), HasSubstr("missing"))));
   EXPECT_THAT(all, Contains(AllOf(HasSubstr("4 values"), HasSubstr("r.csv:10"))));
@@ -111,7 +111,7 @@ TEST(RecordTest, TooShortOrEmpty) {
 }
 TEST(RecordTest, ALongListOfFaultsIsCut) {
   const auto all = faults(text_of(200, [](int k, std::string& line) {
-    if (k > 0) line += ",1";
+    if (k > 0 && k % 2 == 0) line += ",1";  // neighbours would be one sentence
   }));
   EXPECT_THAT(all, SizeIs(51));
   EXPECT_THAT(all.back(), HasSubstr("further faults"));
