@@ -1,0 +1,178 @@
+#pragma once
+// ESST4B: static excitation from a potential or compound source, two PI regulators.
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "sim/core/blocks.hpp"
+#include "sim/core/effect.hpp"
+
+namespace swingbank::sim::exciter_esst4b {
+
+struct Model {
+  static constexpr std::string_view name = "ESST4B",
+                                    title = "static excitation system with two PI regulators, type ST4B",
+                                    source =
+                                        "IEEE Std 421.5-2005, 7.4, type ST4B, annexes D (rectifier) and "
+                                        "E (non-windup PI); PSS/E ESST4B",
+                                    dyr_name = "ESST4B";
+  static constexpr Slot slot = Slot::exciter;
+  static constexpr std::string_view description = R"(
+  Vc --> [ 1/(1 + s TR) ] --> Vm
+  e = Vref + dVref - Vm + Vs + Vlimiter
+  e --> [ KPR + KIR/s ] [VRMIN, VRMAX] --> Vr --> [ 1/(1 + s TA) ] --> Va
+  Va - KG Efd --> [ KPM + KIM/s ] [VMMIN, VMMAX] --> Vmr          (each PI stops integrating at its limit)
+  Efd = Vmr VB         VB = VE FEX(KC Ifd/VE), at most VBMAX
+  VE = |KP' V + j (KI + KP' XL) I|, KP' = KP at angle THETAP         (V, I: phasors at the terminal)
+)";
+  enum P { TR, KPR, KIR, VRMAX, VRMIN, TA, KPM, KIM, VMMAX, VMMIN, KG, KP, KI, VBMAX, KC, XL, THETAP };
+  static constexpr Parameter parameters[] = {
+      {"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)"},
+      {"KPR", "KPR", "pu", 10.75, 0.0, 1000.0, kNoNeutral, "voltage regulator, proportional"},
+      {"KIR", "KIR", "1/s", 10.75, 0.0, 1000.0, kNoNeutral, "voltage regulator, integral"},
+      {"VRMAX", "VRMAX", "pu", 1.0, 0.0, 100.0, kNoNeutral, "upper limit of the voltage regulator"},
+      {"VRMIN", "VRMIN", "pu", -0.87, -100.0, 0.0, kNoNeutral, "lower limit of the voltage regulator"},
+      {"TA", "TA", "s", 0.02, 0.0, 10.0, 0.0, "lag between the regulators (0: none)"},
+      {"KPM", "KPM", "pu", 1.0, 0.0, 1000.0, kNoNeutral, "inner regulator, proportional"},
+      {"KIM", "KIM", "1/s", 0.0, 0.0, 1000.0, kNoNeutral, "inner regulator, integral"},
+      {"VMMAX", "VMMAX", "pu", 1.0, 0.0, 100.0, kNoNeutral, "upper limit of the inner regulator"},
+      {"VMMIN", "VMMIN", "pu", -0.87, -100.0, 0.0, kNoNeutral, "lower limit of the inner regulator"},
+      {"KG", "KG", "pu", 0.0, 0.0, 1.1, kNoNeutral, "feedback of Efd to the inner regulator"},
+      {"KP", "KP", "pu", 9.3, 0.0, 20.0, kNoNeutral, "source, from voltage"},
+      {"KI", "KI", "pu", 0.0, 0.0, 20.0, 0.0, "source, from current"},
+      {"VBMAX", "VBMAX", "pu", 11.63, 0.1, 100.0, kNoNeutral, "upper limit of the source"},
+      {"KC", "KC", "pu", 0.124, 0.0, 1.0, 0.0, "rectifier's commutating reactance"},
+      {"XL", "XL", "pu", 0.0, 0.0, 0.5, 0.0, "reactance of the source's voltage part"},
+      {"THETAP", "THETAP", "deg", 0.0, -90.0, 90.0, kNoNeutral, "angle of the source's voltage part"}};
+  static constexpr int dyr_columns[] = {TR,    KPR, KIR, VRMAX, VRMIN, TA, KPM, KIM,   VMMAX,
+                                        VMMIN, KG,  KP,  KI,    VBMAX, KC, XL,  THETAP};
+  enum C {
+    iTR,
+    kpr,
+    kir,
+    vrmax,
+    vrmin,
+    iTA,
+    kpm,
+    kim,
+    vmmax,
+    vmmin,
+    kg,
+    voltage_r,
+    voltage_i,
+    current_r,
+    current_i,
+    vbmax,
+    commutation,
+    Vref,
+    coefficients
+  };
+  enum X { Vm, xr, Va, xm };
+  static constexpr State states[] = {{"Vm", "pu", "measured voltage"},
+                                     {"xr", "pu", "integral of the voltage regulator"},
+                                     {"Va", "pu", "voltage regulator, lagged"},
+                                     {"xm", "pu", "integral of the inner regulator"}};
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
+      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
+    };
+    const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
+    for (int i : {KPR, KIR, KPM, KIM, KG, KC})
+      bad(!(p[i] >= 0), says(i), "the loop would be unstable", "give a value >= 0");
+    for (const auto& [proportional, integral] : {std::pair{KPR, KIR}, {KPM, KIM}})
+      bad(p[proportional] == 0.0 && p[integral] == 0.0,
+          fmt::format("{} with {}", says(proportional), says(integral)), "no gain, no regulator",
+          "give one of them");
+    for (int i : {TR, TA}) bad(!(p[i] >= 0), says(i) + " s", "a time constant", "give a value >= 0");
+    bad(!(p[KP] > 0) && !(p[KI] > 0), fmt::format("{} with {}", says(KP), says(KI)),
+        "the source delivers nothing", "give KP > 0 or KI > 0");
+    bad(!(p[VBMAX] > 0), says(VBMAX) + " pu", "the source delivers nothing", "give VBMAX > 0");
+    for (const auto& [most, least] : {std::pair{VRMAX, VRMIN}, {VMMAX, VMMIN}})
+      bad(!(p[most] > p[least]), fmt::format("{} pu with {} pu", says(most), says(least)),
+          "the regulator must have room to move", "give a range");
+  }
+  static std::string_view unphysical(const double*) { return ""; }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions&, T* c) {
+    for (const auto& [to, from] : {std::pair<int, int>{kpr, KPR},
+                                   {kir, KIR},
+                                   {vrmax, VRMAX},
+                                   {vrmin, VRMIN},
+                                   {kpm, KPM},
+                                   {kim, KIM},
+                                   {vmmax, VMMAX},
+                                   {vmmin, VMMIN},
+                                   {kg, KG},
+                                   {vbmax, VBMAX},
+                                   {commutation, KC}})
+      c[to] = p[from];
+    c[iTR] = inverse(p[TR]);
+    c[iTA] = inverse(p[TA]);
+    T sine, cosine;
+    sincos(p[THETAP] * T(std::numbers::pi / 180.0), sine, cosine);
+    c[voltage_r] = p[KP] * cosine;
+    c[voltage_i] = p[KP] * sine;
+    c[current_r] = T(0.0) - c[voltage_i] * p[XL];  // of j (KI + KP' XL)
+    c[current_i] = p[KI] + c[voltage_r] * p[XL];
+  }
+  /// Voltage the source delivers behind its rectifier.
+  template <class T>
+  static T source_voltage(const T* c, const Signals<T>& s) {
+    using std::sqrt;
+    const T re = c[voltage_r] * s.Vr - c[voltage_i] * s.Vi + c[current_r] * s.Ir - c[current_i] * s.Ii;
+    const T im = c[voltage_r] * s.Vi + c[voltage_i] * s.Vr + c[current_r] * s.Ii + c[current_i] * s.Ir;
+    const T square_2 = re * re + im * im, tiny(1e-12);
+    const T VE = sqrt(select(square_2 > tiny, square_2, tiny));
+    return clamp(rectified(VE, c[commutation] * s.Ifd), T(0.0), c[vbmax]);
+  }
+  /// Slope of a PI's integral: none while its output, `out` before the limits, stands beyond one and `slope`
+  /// would lead further.
+  template <class T>
+  static T non_windup(const T& slope, const T& out, const T& least, const T& most) {
+    const T zero(0.0);
+    return select(most < out, zero - positive_part(zero - slope),
+                  select(out < least, positive_part(slope), slope));
+  }
+  template <class T>
+  static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
+    const T one(1.0);
+    const T measured = lag(c[iTR], x[Vm], s.Vc, dx[Vm]);
+    const T e = c[Vref] + s.dVref - measured + s.Vs + s.Vlimiter;
+    const T outer = c[kpr] * e + x[xr];
+    dx[xr] = non_windup(c[kir] * e, outer, c[vrmin], c[vrmax]);
+    const T va = lag(c[iTA], x[Va], clamp(outer, c[vrmin], c[vrmax]), dx[Va]);
+    const T VB = source_voltage(c, s);
+    // The loop Vmr = KPM (Va - KG VB Vmr) + xm, solved; its limits are those of the solution.
+    const T inner = (c[kpm] * va + x[xm]) / (one + c[kpm] * c[kg] * VB);
+    s.Efd = VB * clamp(inner, c[vmmin], c[vmmax]);
+    dx[xm] = non_windup(c[kim] * (va - c[kg] * s.Efd), inner, c[vmmin], c[vmmax]);
+  }
+  template <class T>
+  static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
+    const T zero(0.0), one(1.0), VB = source_voltage(c, s);
+    if (!(value_of(VB) > 0.0))
+      return fmt::format("the source delivers VB = {:.4f} pu at V = {:.4f} pu, Ifd = {:.4f} pu", value_of(VB),
+                         value_of(s.V), value_of(s.Ifd));
+    const T inner = s.Efd / VB;
+    const auto inner_integrates = p[KIM] > zero, outer_integrates = p[KIR] > zero;
+    x[xm] = select(inner_integrates, inner, zero);
+    x[Va] = p[KG] * s.Efd + select(inner_integrates, zero, inner / select(inner_integrates, one, p[KPM]));
+    const auto outside = [](const char* what, const T& value, const T& least, const T& most) {
+      const double v = value_of(value), low = value_of(least), high = value_of(most);
+      return v < low || v > high ? fmt::format("{} = {:.4f} pu is needed and its limits are {:g}, {:g} pu",
+                                               what, v, low, high)
+                                 : std::string();
+    };
+    if (auto why = outside("Vmr", inner, p[VMMIN], p[VMMAX]); !why.empty()) return why;
+    if (auto why = outside("Vr", x[Va], p[VRMIN], p[VRMAX]); !why.empty()) return why;
+    x[xr] = select(outer_integrates, x[Va], zero);
+    x[Vm] = s.Vc;
+    const T e = select(outer_integrates, zero, x[Va] / select(outer_integrates, one, p[KPR]));
+    c[Vref] = e + s.Vc - s.Vs - s.Vlimiter;
+    return {};
+  }
+};
+
+}  // namespace swingbank::sim::exciter_esst4b

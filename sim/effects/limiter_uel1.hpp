@@ -1,0 +1,135 @@
+#pragma once
+// UEL1: under-excitation limiter with a circle in the P-Q plane.
+#include <fmt/format.h>
+
+#include "sim/core/blocks.hpp"
+#include "sim/core/effect.hpp"
+
+namespace swingbank::sim::limiter_uel1 {
+
+struct Model {
+  static constexpr std::string_view name = "UEL1",
+                                    title = "under-excitation limiter with a circular characteristic",
+                                    source = "IEEE Std 421.5-2005, 10.1, type UEL1; PSS/E UEL1",
+                                    dyr_name = "UEL1";
+  static constexpr Slot slot = Slot::limiter;
+  static constexpr std::string_view description = R"(
+  VUR = KUR V, at most VURMAX        VUC = |KUC V - j I|, at most VUCMAX        (V, I: phasors at the terminal)
+  e = VUC - VUR                      above zero outside the circle of radius KUR V^2 about P = 0, Q = KUC V^2
+  d Vui/dt = KUI e within [VUIMIN, VUIMAX], non-windup
+  Vui + KUL e -> (1 + s TU1)/(1 + s TU2) -> (1 + s TU3)/(1 + s TU4) -> [VULMIN, VULMAX] -> Vuel
+  Vlimiter = Vlimiter + Vuel         (at the exciter's summing point; TU2, TU4 = 0: bypass)
+)";
+  enum P { KUR, KUC, KUF, VURMAX, VUCMAX, KUI, KUL, VUIMAX, VUIMIN, TU1, TU2, TU3, TU4, VULMAX, VULMIN };
+  static constexpr Parameter parameters[] = {
+      {"KUR", "KUR", "pu", 1.95, 0.0, 100.0, kNoNeutral, "radius"},
+      {"KUC", "KUC", "pu", 1.38, 0.0, 100.0, kNoNeutral, "centre on the Q axis"},
+      {"KUF", "KUF", "pu", 0.0, 0.0, 100.0, 0.0, "gain of the exciter's rate feedback (only 0)"},
+      {"VURMAX", "VURMAX", "pu", 5.8, 0.0, 100.0, kNoNeutral, "upper limit of KUR V"},
+      {"VUCMAX", "VUCMAX", "pu", 5.8, 0.0, 100.0, kNoNeutral, "upper limit of |KUC V - j I|"},
+      {"KUI", "KUI", "1/s", 0.5, 0.0, 1000.0, 0.0, "integral gain"},
+      {"KUL", "KUL", "pu", 0.5, 0.0, 1000.0, 0.0, "proportional gain"},
+      {"VUIMAX", "VUIMAX", "pu", 0.25, 0.0, 100.0, kNoNeutral, "upper limit of the integrator"},
+      {"VUIMIN", "VUIMIN", "pu", 0.0, -100.0, 0.0, kNoNeutral, "lower limit of the integrator"},
+      {"TU1", "TU1", "s", 0.0, 0.0, 20.0, kNoNeutral, "first lead"},
+      {"TU2", "TU2", "s", 0.05, 0.0, 20.0, kNoNeutral, "first lag (0: bypass)"},
+      {"TU3", "TU3", "s", 0.0, 0.0, 20.0, kNoNeutral, "second lead"},
+      {"TU4", "TU4", "s", 0.0, 0.0, 20.0, kNoNeutral, "second lag (0: bypass)"},
+      {"VULMAX", "VULMAX", "pu", 0.25, 0.0, 100.0, kNoNeutral, "upper limit of the output"},
+      {"VULMIN", "VULMIN", "pu", 0.0, -100.0, 0.0, kNoNeutral, "lower limit of the output (only 0)"}};
+  static constexpr int dyr_columns[] = {KUR,    KUC, KUF, VURMAX, VUCMAX, KUI,    KUL,   VUIMAX,
+                                        VUIMIN, TU1, TU2, TU3,    TU4,    VULMAX, VULMIN};
+  enum C {
+    radius,
+    centre,
+    radius_max,
+    distance_max,
+    integral,
+    proportional,
+    vimax,
+    vimin,
+    t1,
+    it2,
+    t3,
+    it4,
+    top,
+    bottom,
+    coefficients
+  };
+  enum X { Vui, lead1, lead2 };
+  static constexpr State states[] = {{"Vui", "pu", "integrator", 1.0, vimin, vimax},
+                                     {"lead1", "pu", "state of the first lead-lag"},
+                                     {"lead2", "pu", "state of the second lead-lag"}};
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
+      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
+    };
+    const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
+    bad(p[KUF] != 0.0, says(KUF), "the exciter's rate feedback is not passed to UEL1", "give KUF = 0");
+    bad(p[VULMIN] != 0.0, says(VULMIN) + " pu",
+        "UEL1 adds to the voltage error and must be silent inside its circle; a takeover gate is not "
+        "modelled",
+        "give VULMIN = 0");
+    for (int i : {KUR, KUC, VURMAX, VUCMAX})
+      bad(!(p[i] > 0), says(i) + " pu", "the circle needs a radius, a centre and room", "give a value > 0");
+    for (int i : {KUI, KUL})
+      bad(!(p[i] >= 0), says(i), "the limiter would pull further out", "give a value >= 0");
+    for (int i : {TU2, TU4}) bad(!(p[i] >= 0), says(i) + " s", "a time constant", "give a value >= 0");
+    bad(!(p[VUIMIN] <= 0.0 && p[VUIMAX] >= 0.0), fmt::format("{} pu with {} pu", says(VUIMIN), says(VUIMAX)),
+        "the integrator rests at VUIMIN and may only raise the voltage above", "give VUIMIN <= 0 <= VUIMAX");
+    bad(!(p[VULMAX] >= 0.0), says(VULMAX) + " pu", "the limits cross", "give VULMAX >= 0");
+  }
+  static std::string_view unphysical(const double* p) { return p[KUC] < p[KUR] ? "" : "KUC < KUR"; }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions&, T* c) {
+    c[radius] = p[KUR];
+    c[centre] = p[KUC];
+    c[radius_max] = p[VURMAX];
+    c[distance_max] = p[VUCMAX];
+    c[integral] = p[KUI];
+    c[proportional] = p[KUL];
+    c[vimax] = p[VUIMAX];
+    c[vimin] = p[VUIMIN];
+    c[t1] = p[TU1];
+    c[it2] = inverse(p[TU2]);
+    c[t3] = p[TU3];
+    c[it4] = inverse(p[TU4]);
+    c[top] = p[VULMAX];
+    c[bottom] = p[VULMIN];
+  }
+  /// How far the operating point lies outside the circle, over V [pu].
+  template <class T>
+  static T outside(const T* c, const Signals<T>& s) {
+    using std::sqrt;
+    const T zero(0.0), re = c[centre] * s.Vr + s.Ii, im = c[centre] * s.Vi - s.Ir;
+    const T square_2 = re * re + im * im, tiny(1e-12);
+    const T distance = sqrt(select(square_2 > tiny, square_2, tiny));
+    return clamp(distance, zero, c[distance_max]) - clamp(c[radius] * s.V, zero, c[radius_max]);
+  }
+  template <class T>
+  static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
+    const T e = outside(c, s);
+    dx[Vui] = c[integral] * e;
+    const T u = clamp(x[Vui], c[vimin], c[vimax]) + c[proportional] * e;
+    const T a = lead_lag(c[t1], c[it2], x[lead1], u, dx[lead1]);
+    s.Vlimiter = s.Vlimiter + clamp(lead_lag(c[t3], c[it4], x[lead2], a, dx[lead2]), c[bottom], c[top]);
+  }
+  template <class T>
+  static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
+    const T e = outside(c, s);
+    if (value_of(e) > 0.0)
+      return fmt::format(
+          "P = {:.4f} pu, Q = {:.4f} pu at V = {:.4f} pu lies {:.4f} pu outside the circle of "
+          "radius KUR V^2 about Q = KUC V^2: UEL1 would act from the start",
+          value_of(s.P), value_of(s.Q), value_of(s.V), value_of(e) * value_of(s.V));
+    x[Vui] = p[VUIMIN];
+    x[lead1] = x[lead2] = p[VUIMIN] + p[KUL] * e;
+    T dx[std::size(states)];
+    evaluate(c, x, s, dx);
+    return {};
+  }
+};
+
+}  // namespace swingbank::sim::limiter_uel1

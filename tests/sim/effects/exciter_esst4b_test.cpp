@@ -1,0 +1,107 @@
+// ESST4B: the source against its phasor definition, transfer function against the diagram, limits of both
+// regulators and their release, what cannot be held.
+#include <numbers>
+
+#include "control_bench.hpp"
+
+namespace swingbank::sim::test {
+namespace {
+
+using C = std::complex<double>;
+using Values = ControlBench::Changes;
+constexpr auto kEfd = &Signals<double>::Efd;
+
+/// KP, KI, KC, XL and THETAP all at work.
+Values with(Values more) {
+  Values v = {{"TR", 0.02}, {"KPR", 3.0},     {"KIR", 4.0},  {"TA", 0.05}, {"KPM", 0.6},
+              {"KIM", 2.0}, {"KG", 0.15},     {"KP", 6.0},   {"KI", 0.4},  {"KC", 0.1},
+              {"XL", 0.08}, {"THETAP", 20.0}, {"VRMAX", 9.0}};
+  for (const auto& [k, x] : more) v[k] = x;
+  return v;
+}
+/// VB of these values by IEEE Std 421.5: phasors V and I of a bench, FEX of its first region.
+double source(const Signals<double>& s) {
+  const C V(s.Vr, s.Vi), I(s.Ir, s.Ii), kp = std::polar(6.0, 20.0 * std::numbers::pi / 180.0);
+  const double ve = std::abs(kp * V + C(0.0, 1.0) * (0.4 + kp * 0.08) * I);
+  return ve * (1.0 - 0.1 * s.Ifd / ve / std::sqrt(3.0));
+}
+
+TEST(ExciterEsst4b, TransferFunctionIsTheDiagrams) {
+  for (const auto& more : {Values{},
+                           {{"KIM", 0.0}},
+                           {{"KPM", 0.0}, {"KIM", 14.9}, {"KG", 1.0}},
+                           {{"KIM", 0.0}, {"KG", 0.0}, {"KPM", 1.0}},
+                           {{"KIR", 0.0}, {"TA", 0.0}, {"TR", 0.0}}}) {
+    const Values v = with(more);
+    for (const double omega : {0.1, 1.0, 7.0, 40.0}) {
+      ControlBench bench("ESST4B", v);
+      ASSERT_TRUE(bench.problems.empty());
+      ASSERT_EQ(bench.refused, "");
+      EXPECT_LT(bench.largest_derivative(), 1e-12);  // rounding over TA
+      EXPECT_NEAR(bench.out().Efd, 2.0, 1e-14);
+      const C s(0.0, omega);
+      const double VB = source(bench.in);
+      const C inner = v.at("KPM") + v.at("KIM") / s;
+      const C exact = (v.at("KPR") + v.at("KIR") / s) * lead_over_lag(0.0, v.at("TA"), omega) * VB * inner /
+                      (1.0 + v.at("KG") * VB * inner);
+      // difference quotients over 1e-6, times gains of up to 15 60
+      EXPECT_LT(std::abs(bench.response(&Signals<double>::Vs, kEfd, omega) - exact),
+                1e-7 * (1.0 + std::abs(exact)));
+      EXPECT_LT(std::abs(bench.response(&Signals<double>::Vc, kEfd, omega) +
+                         exact * lead_over_lag(0.0, v.at("TR"), omega)),
+                1e-7 * (1.0 + std::abs(exact)));
+    }
+  }
+}
+
+TEST(ExciterEsst4b, CeilingIsVmmaxTimesTheSource) {
+  ControlBench bench("ESST4B", with({{"VMMAX", 0.8}, {"VMMIN", -0.5}}));
+  bench.in.dVref = 0.5;
+  bench.run(20.0);
+  EXPECT_NEAR(bench.out().Efd, 0.8 * source(bench.in), 1e-14);
+  bench.in.Vr = 0.5;  // the source follows V and I at once
+  bench.in.Vi = 0.1;
+  bench.in.Ii = -0.6;
+  bench.in.Ifd = 3.0;
+  EXPECT_NEAR(bench.out().Efd, 0.8 * source(bench.in), 1e-14);
+  bench.in.dVref = -0.5;
+  bench.run(20.0);
+  EXPECT_NEAR(bench.out().Efd, -0.5 * source(bench.in), 1e-14);
+}
+
+TEST(ExciterEsst4b, SourceIsLimitedByVbmax) {
+  ControlBench bench("ESST4B", with({{"VMMAX", 0.8}, {"VBMAX", 4.0}}));
+  EXPECT_GT(source(bench.in), 4.0);
+  bench.in.dVref = 0.5;
+  bench.run(20.0);
+  EXPECT_NEAR(bench.out().Efd, 0.8 * 4.0, 1e-14);
+}
+
+TEST(ExciterEsst4b, RegulatorsStopIntegratingAtTheirLimitsAndReleaseAtOnce) {
+  ControlBench bench("ESST4B", with({{"VRMAX", 1.5}, {"VMMAX", 0.6}, {"KG", 0.0}}));
+  bench.in.dVref = 0.1;
+  bench.run(30.0);
+  // both stand with output, not integral, at the limit; within one step of 1 ms of it
+  EXPECT_NEAR(bench.state("xr") + 3.0 * 0.1, 1.5, 4.0 * 0.1 * 1e-3);
+  EXPECT_NEAR(bench.state("Va"), 1.5, 1e-12);
+  const double held = bench.state("xm");
+  bench.run(1.0);
+  EXPECT_EQ(bench.state("xm"), held);
+  bench.in.dVref = -0.6;
+  bench.run(0.2);
+  EXPECT_LT(bench.state("Va"), 0.0);  // 1.5 - 3 0.7 and falling, with TA = 0.05 s
+  EXPECT_LT(bench.out().Efd, 0.6 * source(bench.in));
+}
+
+TEST(ExciterEsst4b, WhatItCannotHoldIsNamed) {
+  EXPECT_NE(ControlBench("ESST4B", {{"VMMAX", 0.1}}).refused.find("Vmr = 0.2"), std::string::npos);
+  EXPECT_NE(ControlBench("ESST4B", {{"VRMAX", 0.1}}).refused.find("Vr = 0.2"), std::string::npos);
+  EXPECT_NE(ControlBench("ESST4B", {{"KC", 1.0}, {"KP", 1.0}}).refused.find("VB = 0.0"), std::string::npos);
+  EXPECT_EQ(ControlBench("ESST4B", {{"KPR", 0.0}, {"KIR", 0.0}, {"KP", 0.0}, {"VBMAX", 0.0}, {"TA", -1.0}})
+                .problems.list()
+                .size(),
+            4u);
+}
+
+}  // namespace
+}  // namespace swingbank::sim::test
