@@ -6,22 +6,13 @@
 #include <cmath>
 
 #include "sim/core/noise.hpp"
+#include "sim/core/window.hpp"
 #include "sim/solve/block_text.hpp"
 
 namespace swingbank::sim {
 namespace {
 
 constexpr double kTurn = 6.28318530717958647692;
-
-/// Frequency deviation [pu] from an angle [rad]: central difference, one-sided at the ends.
-std::vector<double> derivative_of(const std::vector<double>& theta, double rate, double frequency) {
-  std::vector<double> df(theta.size(), 0.0);
-  for (std::size_t k = 0; k < theta.size(); ++k) {
-    const std::size_t a = k > 0 ? k - 1 : k, b = std::min(k + 1, theta.size() - 1);
-    if (b > a) df[k] = (theta[b] - theta[a]) * rate / (static_cast<double>(b - a) * kTurn * frequency);
-  }
-  return df;
-}
 
 int channel_index(const Trajectory& run, Channel channel) {
   const auto at = std::ranges::find(run.channels, channel);
@@ -36,7 +27,7 @@ int channel_index(const Trajectory& run, Channel channel) {
 
 Phasors phasors_of(const TerminalRecord& record, double rate, double frequency, const std::string& where) {
   Phasors phasors{rate, frequency, {}, {}, record.df};
-  if (phasors.df.empty()) phasors.df = derivative_of(record.theta, rate, frequency);
+  if (phasors.df.empty()) phasors.df = frequency_deviation(record.theta, rate, frequency);
   for (std::size_t k = 0; k < record.V.size(); ++k) {
     if (record.V[k] == 0.0)
       throw InputError({fmt::format("V = 0 pu after {:g} s", static_cast<double>(k) / rate), where,

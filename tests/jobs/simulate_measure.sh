@@ -13,6 +13,11 @@ for integrator in reference lanes; do
     --out "$work/measured_$integrator.csv" >/dev/null
 done
 simulate --channels P,Efd --measure CTERROR:gain=0.01 --out "$work/one.csv" --out "$work/one.h5" >/dev/null
+pmu=(--measure PMUFILTER --measure NOISE:relative=0.001,angle=0.001 --measure GAPS:rate=1,length=0.05)
+for run in a b; do simulate "${pmu[@]}" --measure-seed 5 --out "$work/pmu_$run.csv" >/dev/null; done
+simulate "${pmu[@]}" --measure-seed 6 --out "$work/pmu_c.csv" >/dev/null
+cmp -s "$work/pmu_a.csv" "$work/pmu_b.csv" || fail "one seed gave two records"
+if cmp -s "$work/pmu_a.csv" "$work/pmu_c.csv"; then fail "two seeds gave one record"; fi
 simulate --attach 2:PTERROR:gain=0.02 --out "$work/attached.csv" >/dev/null
 /usr/bin/python3 - "$work" <<'PYTHON'
 import cmath, csv, sys
@@ -51,6 +56,18 @@ with h5py.File(f"{sys.argv[1]}/one.h5") as file:
     assert "CTERROR:gain=0.01" in str(file.attrs["measured"])
 with h5py.File(f"{sys.argv[1]}/true_reference.h5") as file:
     assert "measured_frequency" not in file
+
+with open(f"{sys.argv[1]}/pmu_a.csv") as file:
+    rows = list(csv.DictReader(file))
+missing = [k for k, row in enumerate(rows) if row["2.P_pu"] == ""]
+# About 4 gaps of 3 samples in 241; 40 would be 10 standard deviations off.
+assert 0 < len(missing) < 40, len(missing)
+for k in missing:
+    assert all(rows[k][c] == "" for c in ("2.V_pu", "2.theta_rad", "2.P_pu", "2.Q_pu", "2.f_hz"))
+    assert rows[k]["2.speed_pu"] != ""  # the rotor passes no instrument
+quiet = [float(row["2.V_pu"]) for row in rows[:55] if row["2.V_pu"]]
+spread = (sum((v / true["2.V_pu"][0] - 1) ** 2 for v in quiet) / len(quiet)) ** 0.5
+assert 0.0006 < spread < 0.0014, spread  # 0.001 of about 50 samples: within 4 / sqrt(2 x 50) = 40 %
 attached = table("attached")
 assert abs(attached["2.V_pu"][0] / true["2.V_pu"][0] - 1.02) < 1e-9
 PYTHON

@@ -1,0 +1,54 @@
+#pragma once
+// GAPS: samples that never arrived.
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "sim/core/effect.hpp"
+#include "sim/core/noise.hpp"
+
+namespace swingbank::sim::measurement_gaps {
+
+struct Model {
+  static constexpr std::string_view name = "GAPS", title = "missing samples",
+                                    source =
+                                        "two-state Markov chain of lost packets: E. N. Gilbert, \"Capacity "
+                                        "of a burst-noise channel\", Bell Syst. Tech. J. 39 (1960)";
+  static constexpr Slot slot = Slot::measurement;
+  static constexpr std::string_view description = R"(
+  there --( rate dt )--> missing --( dt / length )--> there          chance at each sample, dt apart
+
+  A missing sample loses V, I and df together (NaN). A gap is one sample long at least; the first sample is
+  there.
+)";
+  enum P { rate, length };
+  static constexpr Parameter parameters[] = {
+      {"rate", "lambda", "1/s", 0.0, 0.0, 100.0, 0.0, "gaps that begin per second of good record"},
+      {"length", "L", "s", 0.1, 1e-3, 60.0, kNoNeutral, "mean length of a gap"}};
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    if (!(p[rate] >= 0))
+      problems.add(fmt::format("rate = {:g} 1/s", p[rate]), where, "it is a number of gaps",
+                   "give 0 or more");
+    if (!(p[length] > 0))
+      problems.add(fmt::format("length = {:g} s", p[length]), where, "a gap has a length", "give length > 0");
+  }
+  static std::string_view unphysical(const double*) { return ""; }
+
+  static constexpr std::uint32_t kStream = 11;  ///< none of NOISE's
+
+  static void measure(const double* p, std::uint64_t seed, Phasors& phasors) {
+    constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+    bool missing = false;
+    for (std::size_t k = 1; k < phasors.V.size(); ++k) {
+      const auto u = uniform_pair(seed, kStream, k);
+      const bool begins = u[0] < p[rate] / phasors.rate, ends = u[1] < 1.0 / (p[length] * phasors.rate);
+      missing = begins || (missing && !ends);
+      if (!missing) continue;
+      phasors.V[k] = phasors.I[k] = {kMissing, kMissing};
+      phasors.df[k] = kMissing;
+    }
+  }
+};
+
+}  // namespace swingbank::sim::measurement_gaps

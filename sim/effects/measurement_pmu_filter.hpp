@@ -1,0 +1,109 @@
+#pragma once
+// PMUFILTER: the filter of a phasor measurement unit, class P or M.
+#include <fmt/format.h>
+
+#include "sim/core/effect.hpp"
+#include "sim/core/window.hpp"
+
+namespace swingbank::sim::measurement_pmu_filter {
+
+/// Reference filters of class M: reports per second, cut-off reference Ffr [Hz], order at 16 samples a cycle.
+struct MClass {
+  double reports, Ffr, order;
+};
+inline constexpr MClass kAt50Hz[] = {{10, 1.779, 806}, {25, 4.355, 338}, {50, 7.75, 142}, {100, 14.1, 66}};
+inline constexpr MClass kAt60Hz[] = {{10, 1.780, 968}, {12, 2.125, 816}, {15, 2.64, 662}, {20, 3.50, 502},
+                                     {30, 5.02, 306},  {60, 8.19, 164},  {120, 16.25, 70}};
+inline std::span<const MClass> table(double hz) {
+  if (hz == 50.0) return kAt50Hz;
+  if (hz == 60.0) return kAt60Hz;
+  return {};
+}
+inline const MClass* find(double hz, double reports) {
+  for (const MClass& row : table(hz))
+    if (row.reports == reports) return &row;
+  return nullptr;
+}
+
+struct Model {
+  static constexpr std::string_view name = "PMUFILTER", title = "filter of a phasor measurement unit",
+                                    source =
+                                        "IEEE Std C37.118.1-2011, Annex C (2018, Annex D): reference models "
+                                        "of class P and M";
+  static constexpr Slot slot = Slot::measurement;
+  static constexpr std::string_view description = R"(
+  V, I --[ average over the window w ]--( class P: 1 / sin )-- V', I'       df = d(angle V')/dt
+
+  class 0 (P): w(t) = 1 - |t| / T,  |t| < T = scale / f0              two cycles at scale = 1
+               with compensation = 1, V' and I' are divided by sin(pi (f0 + 1.625 scale df) / (2 f0)),
+               which restores the magnitude off nominal frequency
+  class 1 (M): w(t) = sin(x) / x (0.54 + 0.46 cos(pi t / L)),  |t| < L,  x = 4 pi Ffr t / scale
+               Ffr and L = scale N / (32 f0) from the standard's table for the reports per second
+  The same w for V and I. The window is integrated over a cubic through the samples, whatever their rate;
+  outside the record the phasors stand still. At 60/s without oversampling a jump is as sharp as the samples
+  are.
+)";
+  enum P { klass, scale, reports, compensation };
+  static constexpr Parameter parameters[] = {
+      {"class", "class", "code", 0.0, 0.0, 1.0, kNoNeutral, "0: class P, 1: class M"},
+      {"scale", "s", "-", 1.0, 0.0, 10.0, 0.0, "length of the window over that of the standard"},
+      {"reports", "Fs", "code", 60.0, 10.0, 120.0, kNoNeutral,
+       "reports per second, which choose the window of class M"},
+      {"compensation", "comp", "code", 1.0, 0.0, 1.0, kNoNeutral,
+       "1: class P corrects the magnitude off nominal frequency, 0: it does not"}};
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    const auto either = [&](P i) {
+      if (p[i] != 0.0 && p[i] != 1.0)
+        problems.add(fmt::format("{} = {:g}", parameters[i].name, p[i]), where, "it is a choice",
+                     "give 0 or 1");
+    };
+    either(klass);
+    either(compensation);
+    if (!(p[scale] >= 0))
+      problems.add(fmt::format("scale = {:g}", p[scale]), where, "a window has a length", "give scale >= 0");
+    if (p[klass] == 1.0 && !find(50.0, p[reports]) && !find(60.0, p[reports]))
+      problems.add(
+          fmt::format("reports = {:g} per second", p[reports]), where,
+          "class M has windows for 10, 25, 50, 100 at 50 Hz and 10, 12, 15, 20, 30, 60, 120 at 60 Hz",
+          "give one of these");
+  }
+  static std::string_view unphysical(const double*) { return ""; }
+  static double half_length(const double* p, double hz) {
+    if (p[klass] == 0.0) return p[scale] / hz;
+    const MClass* row = find(hz, p[reports]);
+    return row ? p[scale] * row->order / (32.0 * hz) : 0.0;
+  }
+  /// At whichever of 50 and 60 Hz the window is longer.
+  static double memory(const double* p) { return std::max(half_length(p, 50.0), half_length(p, 60.0)); }
+
+  /// Throws InputError where class M has no window for these reports at the system's frequency.
+  static void measure(const double* p, std::uint64_t, Phasors& phasors) {
+    if (p[scale] == 0.0) return;
+    constexpr double kPi = 3.14159265358979323846;
+    const double f0 = phasors.frequency, half = half_length(p, f0);
+    if (p[klass] == 1.0 && half == 0.0)
+      throw InputError({fmt::format("class M at {:g} reports per second", p[reports]),
+                        fmt::format("PMUFILTER, {:g} Hz", f0), "the standard has no such window",
+                        f0 == 50.0 ? "give reports = 10, 25, 50 or 100"
+                                   : "give reports = 10, 12, 15, 20, 30, 60 or 120 (in a 60 Hz system)"});
+    const double cut = p[klass] == 1.0 ? 4.0 * kPi * find(f0, p[reports])->Ffr / p[scale] : 0.0;
+    const auto window = [&](double t) {
+      if (p[klass] == 0.0) return 1.0 - std::fabs(t) / half;
+      const double x = cut * t, sinc = std::fabs(x) < 1e-4 ? 1.0 - x * x / 6.0 : std::sin(x) / x;
+      return sinc * (0.54 + 0.46 * std::cos(kPi * t / half));
+    };
+    const auto weights = window_weights(window, half, 1.0 / phasors.rate);
+    phasors.V = averaged(phasors.V, weights);
+    phasors.I = averaged(phasors.I, weights);
+    phasors.df = frequency_deviation(continuous_angles(phasors.V), phasors.rate, f0);
+    if (p[klass] == 1.0 || p[compensation] == 0.0) return;
+    for (std::size_t k = 0; k < phasors.V.size(); ++k) {
+      const double gain = std::sin(0.5 * kPi * (1.0 + 1.625 * p[scale] * phasors.df[k]));
+      phasors.V[k] /= gain;
+      phasors.I[k] /= gain;
+    }
+  }
+};
+
+}  // namespace swingbank::sim::measurement_pmu_filter
