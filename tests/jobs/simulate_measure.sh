@@ -13,7 +13,7 @@ for integrator in reference lanes; do
     --out "$work/measured_$integrator.csv" >/dev/null
 done
 simulate --channels P,Efd --measure CTERROR:gain=0.01 --out "$work/one.csv" --out "$work/one.h5" >/dev/null
-pmu=(--measure PMUFILTER --measure NOISE:relative=0.001,angle=0.001 --measure GAPS:rate=1,length=0.05)
+pmu=(--measure PMUFILTER --measure "NOISE:relative=0.001,angle=0.001" --measure "GAPS:rate=1,length=0.05")
 for run in a b; do simulate "${pmu[@]}" --measure-seed 5 --out "$work/pmu_$run.csv" >/dev/null; done
 simulate "${pmu[@]}" --measure-seed 6 --out "$work/pmu_c.csv" >/dev/null
 cmp -s "$work/pmu_a.csv" "$work/pmu_b.csv" || fail "one seed gave two records"
