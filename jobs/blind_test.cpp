@@ -2,11 +2,14 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 
 #include "validate/blind_case.hpp"
 #include "validate/blind_plan.hpp"
+#include "validate/blind_score.hpp"
+#include "validate/write_file.hpp"
 
 namespace {
 using namespace swingbank;
@@ -14,12 +17,12 @@ using namespace swingbank::validate;
 namespace fs = std::filesystem;
 
 struct Options {
-  std::string config, out, part = "1/1";
+  std::string config, targets, out, judge, part = "1/1";
   std::vector<std::string> kinds;
   int make = 0;
   std::uint64_t seed = 1;
   double size = 0;
-  bool tiny = false;
+  bool score = false;
 };
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
@@ -54,9 +57,48 @@ int make(const Options& o) {
   return 0;
 }
 
+int judge(const Options& o) {
+  const fs::path run = o.out;
+  if (!fs::is_directory(run / "cases"))
+    throw InputError({"no run", o.out, "it has no folder cases", "make cases first, with --make"});
+  int judged = 0;
+  const auto faults =
+      judge_cases(run, program_judge(o.judge, run / "verdicts"), read_part(o.part),
+                  [&](const std::string& name, const BlindVerdict& v) {
+                    ++judged;
+                    fmt::print("{}: {}{}{}, {:.1f} s\n", name, v.verdict, v.effects.empty() ? "" : " ",
+                               v.effects.empty() ? "" : v.effects.front(), v.seconds);
+                    std::fflush(stdout);
+                  });
+  for (const auto& fault : faults) fmt::print(stderr, "{}\n", fault);
+  fmt::print("judged {} cases, {} failed: {}\n", judged, faults.size(), o.out);
+  return faults.empty() ? 0 : 1;
+}
+
+int score(const Options& o) {
+  if (o.targets.empty())
+    throw InputError(
+        {"no targets", "--targets", "a score is held against them", "give configs/blind/targets.toml"});
+  const BlindScore result = score_blind(o.out, o.targets);
+  const std::string text = score_markdown(result);
+  write_file(fs::path(o.out) / "score.md", text);
+  write_file(fs::path(o.out) / "score.json", score_json(result).dump(1) + "\n");
+  fmt::print("{}", text);
+  return 0;
+}
+
 int blind_test(const Options& o) {
-  if (o.make > 0) return make(o);
-  throw InputError({"nothing to do", "--make", "it was not given", "give --make N"});
+  if (o.make <= 0 && o.judge.empty() && !o.score)
+    throw InputError({"nothing to do", "blind-test", "none of --make, --judge, --score was given",
+                      "give one of them, or several"});
+  if (o.make > 0) {
+    if (o.config.empty())
+      throw InputError(
+          {"no config", "--config", "cases are drawn from one", "give configs/blind/cases.toml"});
+    if (const int code = make(o); code != 0) return code;
+  }
+  const int code = o.judge.empty() ? 0 : judge(o);
+  return o.score ? std::max(code, score(o)) : code;
 }
 
 }  // namespace
@@ -64,8 +106,8 @@ int blind_test(const Options& o) {
 int main(int argc, char** argv) {
   CLI::App app{SWINGBANK_SUMMARY, "swingbank blind-test"};
   Options o;
-  app.add_option("--config", o.config, "what cases are drawn from, configs/blind/*.toml")->required();
-  app.add_option("--out", o.out, "folder of the run: cases/, truth/, plan.json")->required();
+  app.add_option("--config", o.config, "what --make draws from: configs/blind/cases.toml, tiny.toml");
+  app.add_option("--out", o.out, "folder of the run: cases/, truth/, verdicts/, score.md")->required();
   app.add_option("--make", o.make, "make that many cases (those that are there stay)");
   app.add_option("--seed", o.seed, "seed of the run")->capture_default_str();
   app.add_option(
@@ -74,6 +116,10 @@ int main(int argc, char** argv) {
          "pairs (default: the issue's mixture)")
       ->delimiter(',');
   app.add_option("--size", o.size, "size of every effect, in detection limits (default: drawn)");
+  app.add_option("--judge", o.judge,
+                 "program to run as PROGRAM CASE_FOLDER VERDICT_FILE on every case without a verdict");
+  app.add_flag("--score", o.score, "hold the verdicts against the truth: score.md, score.json");
+  app.add_option("--targets", o.targets, "rates asked for, configs/blind/targets.toml");
   app.add_option("--part", o.part, "K/N: only every N-th case, from the K-th; for ranks and job arrays")
       ->capture_default_str();
   try {

@@ -1,0 +1,59 @@
+#pragma once
+// The score of a blind run: verdicts against the sealed truth, as rates with their 95 % intervals.
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "validate/blind_verdict.hpp"
+
+namespace swingbank::validate {
+
+/// k of n with Wilson's 95 % interval (Wilson 1927, J. Am. Stat. Assoc. 22, 209).
+struct Rate {
+  int hits = 0, n = 0;
+  void count(bool hit) {
+    ++n;
+    hits += hit ? 1 : 0;
+  }
+  [[nodiscard]] double value() const { return n > 0 ? static_cast<double>(hits) / n : 0.0; }
+  [[nodiscard]] double low() const;
+  [[nodiscard]] double high() const;
+};
+
+/// One case: what was hidden and what was said.
+struct ScoredCase {
+  std::string name;
+  std::vector<std::string> kinds, sides;          ///< of the hidden effects
+  std::vector<std::vector<std::string>> answers;  ///< names that count as right, per hidden effect
+  bool listed = true;                             ///< every hidden effect is in the list of hypotheses
+  double size = 0;                                ///< smallest of the hidden effects, in detection limits
+  bool channels = false;                          ///< speed and Ifd measured too
+  BlindVerdict verdict;
+
+  [[nodiscard]] bool first_right() const;      ///< the first effect named is the hidden one
+  [[nodiscard]] bool right_or_in_set() const;  ///< or it is in the stated confusion set
+  [[nodiscard]] bool all_named() const;        ///< every hidden effect is named
+  [[nodiscard]] bool side_right() const;
+};
+
+struct BlindScore {
+  std::vector<ScoredCase> cases;
+  std::vector<std::string> unjudged;  ///< cases without a verdict
+  std::map<std::string, Rate> rates;  ///< by name: see score_blind
+  std::map<std::string, double> targets;
+  std::map<std::string, std::map<std::string, int>> confusion;  ///< [kind][what was said first]
+  std::map<std::string, std::vector<Rate>> by_size;             ///< "PQ", "all": right first, per size class
+  double median_seconds = 0, longest_seconds = 0;
+};
+/// Lower edges of the size classes [detection limits].
+inline constexpr double kSizeEdges[] = {0.0, 1.0, 2.0, 4.0, 7.0};
+
+/// Reads RUN/truth and RUN/verdicts. `targets` (a TOML file's [target]) sets a least rate for each rate it
+/// names. Throws InputError with every fault of the files.
+BlindScore score_blind(const std::filesystem::path& run, const std::filesystem::path& targets);
+std::string score_markdown(const BlindScore& score);
+nlohmann::json score_json(const BlindScore& score);
+
+}  // namespace swingbank::validate
