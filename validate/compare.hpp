@@ -3,17 +3,13 @@
 #include <string>
 #include <vector>
 
+#include "validate/error_map.hpp"
 #include "validate/plant_model.hpp"
 #include "validate/play_in.hpp"
 #include "validate/record.hpp"
 
 namespace swingbank::validate {
 
-/// A stretch of the record: from < t <= to (the first one includes its start).
-struct Window {
-  std::string name;
-  double from, to;  ///< [s]
-};
 /// Residual = modelled - measured.
 struct WindowError {
   int samples = 0;
