@@ -1,57 +1,198 @@
-// swingbank effects [NAME]: what the registry holds, from the effects' own records.
+// swingbank effects [NAME...]: what the registry holds, from the effects' own records.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
+#include <utility>
 
-#include "sim/core/effect.hpp"
+#include "sim/core/law.hpp"
 
 namespace {
+using namespace swingbank;
 using namespace swingbank::sim;
+using Json = nlohmann::ordered_json;
 
-void list() {
-  for (const auto& e : all_effects())
-    fmt::print("{:<10} {:<10} {:>2} parameters {:>2} states  {}\n", e.name, slot_name(e.slot),
-               e.parameters.size(), e.states.size(), e.title);
+std::string_view slot_meaning(Slot slot) {
+  constexpr std::array<std::string_view, kSlots.size()> meanings = {
+      "the synchronous machine",
+      "between the machine's terminal and the grid",
+      "makes Vc, the voltage the exciter regulates",
+      "moves the references of exciter and governor",
+      "makes the mechanical torque",
+      "changes the torque after the governor",
+      "makes Vs, the stabiliser's signal",
+      "adds to the voltage error",
+      "makes the field voltage",
+      "a consumer at a bus",
+      "between the grid and the record"};
+  return meanings[static_cast<std::size_t>(slot)];
+}
+
+void print_list() {
+  for (const Slot slot : kSlots) {
+    bool any = false;
+    for (const Effect* e : every_effect()) {
+      if (e->slot != slot) continue;
+      if (!std::exchange(any, true)) fmt::print("{}: {}\n", slot_name(slot), slot_meaning(slot));
+      fmt::print("  {:<11} {}{}\n", e->name, e->title, e->law ? " (law file)" : "");
+    }
+  }
+}
+
+std::string number(double value) { return std::isnan(value) ? "-" : fmt::format("{:g}", value); }
+
+/// Rows as columns wide enough for their cells; the last column runs free.
+void print_table(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> width(rows[0].size(), 0);
+  for (const auto& row : rows)
+    for (std::size_t c = 0; c < row.size(); ++c) width[c] = std::max(width[c], row[c].size());
+  for (const auto& row : rows) {
+    std::string line = "  ";
+    for (std::size_t c = 0; c + 1 < row.size(); ++c) line += fmt::format("{:<{}}  ", row[c], width[c]);
+    fmt::print("{}{}\n", line, row.back());
+  }
 }
 
 void describe(const Effect& e) {
-  fmt::print("{}: {}\nslot: {}\nsource: {}\n", e.name, e.title, slot_name(e.slot), e.source);
-  fmt::print("\n{:<8} {:<8} {:<5} {:>9} {:>9} {:>9} {:>8}  meaning\n", "name", "symbol", "unit", "standard",
-             "low", "high", "neutral");
-  for (const auto& p : e.parameters)
-    fmt::print("{:<8} {:<8} {:<5} {:>9g} {:>9g} {:>9g} {:>8}  {}\n", p.name, p.symbol, p.unit, p.standard,
-               p.low, p.high, std::isnan(p.neutral) ? "-" : fmt::format("{:g}", p.neutral), p.meaning);
-  fmt::print("\nstates:\n");
-  for (const auto& s : e.states) fmt::print("{:<8} {:<5} {}\n", s.name, s.unit, s.meaning);
+  fmt::print("{}: {}\nslot: {} ({})\nsource: {}\n", e.name, e.title, slot_name(e.slot), slot_meaning(e.slot),
+             e.source);
+  if (e.description.find_first_not_of(" \n") != std::string_view::npos) {
+    const auto begin = e.description.find_first_not_of('\n');
+    fmt::print("\n{}", e.description.substr(begin));
+    if (!e.description.ends_with('\n')) fmt::print("\n");
+  }
+  if (!e.parameters.empty()) {
+    std::vector<std::vector<std::string>> rows = {
+        {"name", "symbol", "unit", "standard", "lowest", "highest", "neutral", "meaning"}};
+    for (const Parameter& p : e.parameters)
+      rows.push_back({std::string(p.name), std::string(p.symbol), std::string(p.unit), number(p.standard),
+                      number(p.low), number(p.high), number(p.neutral), std::string(p.meaning)});
+    fmt::print("\nparameters (neutral: where the influence vanishes; unit code: a choice)\n");
+    print_table(rows);
+  }
+  if (!e.states.empty()) {
+    std::vector<std::vector<std::string>> rows = {{"name", "unit", "meaning"}};
+    for (const State& s : e.states)
+      rows.push_back({std::string(s.name), std::string(s.unit), std::string(s.meaning)});
+    fmt::print("\nstates\n");
+    print_table(rows);
+  }
   if (e.dyr_name.empty()) return;
-  fmt::print("\n.dyr: {}", e.dyr_name);
+  fmt::print("\n.dyr: BUS '{}' ID", e.dyr_name);
   for (int column : e.dyr_columns) fmt::print(" {}", e.parameters[static_cast<std::size_t>(column)].symbol);
-  fmt::print("\n");
+  fmt::print(" /\n");
+}
+
+Json value(double v) { return std::isnan(v) ? Json(nullptr) : Json(v); }
+
+Json as_json(const Effect& e) {
+  Json j = {{"name", e.name},
+            {"title", e.title},
+            {"slot", slot_name(e.slot)},
+            {"source", e.source},
+            {"description", e.description},
+            {"law_file", e.law != nullptr},
+            {"parameters", Json::array()},
+            {"states", Json::array()}};
+  for (const Parameter& p : e.parameters)
+    j["parameters"].push_back({{"name", p.name},
+                               {"symbol", p.symbol},
+                               {"unit", p.unit},
+                               {"standard", value(p.standard)},
+                               {"low", value(p.low)},
+                               {"high", value(p.high)},
+                               {"neutral", value(p.neutral)},
+                               {"meaning", p.meaning}});
+  for (const State& s : e.states)
+    j["states"].push_back({{"name", s.name}, {"unit", s.unit}, {"meaning", s.meaning}});
+  if (e.dyr_name.empty()) return j;
+  j["dyr"] = {{"name", e.dyr_name}, {"columns", Json::array()}};
+  for (int column : e.dyr_columns)
+    j["dyr"]["columns"].push_back(e.parameters[static_cast<std::size_t>(column)].name);
+  return j;
+}
+
+/// Fewest letters to change, add, drop or swap with the next to make one of the other, whatever their case
+/// (optimal string alignment).
+std::size_t letters_apart(std::string_view a, std::string_view b) {
+  const auto same = [&](std::size_t i, std::size_t j) {
+    return std::toupper(static_cast<unsigned char>(a[i - 1])) ==
+           std::toupper(static_cast<unsigned char>(b[j - 1]));
+  };
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i)
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      if (i == 0 || j == 0) {
+        d[i][j] = i + j;
+        continue;
+      }
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (same(i, j) ? 0 : 1)});
+      if (i > 1 && j > 1 && same(i, j - 1) && same(i - 1, j))
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  return d[a.size()][b.size()];
+}
+
+/// The five names most like `name`, nearest first.
+std::string nearest_names(const std::string& name) {
+  std::vector<std::pair<std::size_t, std::string_view>> list;
+  for (const Effect* e : every_effect()) list.emplace_back(letters_apart(name, e->name), e->name);
+  std::ranges::stable_sort(list, {}, [](const auto& one) { return one.first; });
+  list.resize(std::min<std::size_t>(list.size(), 5));
+  std::string names;
+  for (const auto& one : list) names += (names.empty() ? "" : ", ") + std::string(one.second);
+  return names;
+}
+
+int run(const std::vector<std::string>& names, const std::vector<std::string>& laws, bool json) {
+  for (const auto& file : laws) load_law(file);
+  Problems problems;
+  std::vector<const Effect*> chosen;
+  for (const auto& name : names) {
+    chosen.push_back(find_effect(name));
+    if (!chosen.back())
+      problems.add("no effect '" + name + "'", "NAME", "the nearest names are " + nearest_names(name),
+                   "choose one of these, or see them all with swingbank effects");
+  }
+  problems.raise();
+  const auto& shown = names.empty() ? every_effect() : chosen;
+  if (json) {
+    Json all = Json::array();
+    for (const Effect* e : shown) all.push_back(as_json(*e));
+    fmt::print("{}\n", all.dump(1));
+  } else if (names.empty()) {
+    print_list();
+  } else {
+    for (const Effect* e : shown) {
+      if (e != shown.front()) fmt::print("\n");
+      describe(*e);
+    }
+  }
+  return 0;
 }
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Lists the effects the simulator knows; with a NAME, its parameters, states and source.",
-               "swingbank effects"};
-  std::string name;
-  app.add_option("name", name, "effect, e.g. GENROU");
+  CLI::App app{
+      "Lists the effects the simulator knows, by the place they take; with a NAME, its block diagram, "
+      "equations, parameters, states and source.",
+      "swingbank effects"};
+  std::vector<std::string> names, laws;
+  bool json = false;
+  app.add_option("NAME", names, "effects, e.g. GENROU SEXS");
+  app.add_option("--law", laws, "law file (.toml) whose effect is added; may be repeated")
+      ->allow_extra_args(false);
+  app.add_flag("--json", json, "the same for machines: an array with one object per effect");
   try {
     app.parse(argc, argv);
+    return run(names, laws, json);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 1;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
   }
-  if (name.empty()) {
-    list();
-    return 0;
-  }
-  if (const Effect* e = find_effect(name)) {
-    describe(*e);
-    return 0;
-  }
-  const swingbank::Problem problem{"no effect '" + name + "'", "argument 1",
-                                   "the registry holds " + effect_names(), "choose one of these"};
-  fmt::print(stderr, "{}\n", problem.sentence());
-  return 1;
 }

@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# swingbank effects: the list, one effect, the same as JSON, law files, and names that do not exist.
+source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+
+"$swingbank" effects >"$work/list.txt"
+"$swingbank" effects --json >"$work/list.json"
+"$swingbank" effects SEXS genrou >"$work/two.txt"
+"$swingbank" effects --json SEXS GAPS >"$work/two.json"
+law=$SWINGBANK_SOURCE/configs/laws/torque_voltage_dip.toml
+"$swingbank" effects --law "$law" DIPTORQUE >"$work/law.txt"
+"$swingbank" effects --law "$law" >"$work/laws.txt"
+
+/usr/bin/python3 - "$work" "$SWINGBANK_SOURCE" <<'PYTHON'
+import json, pathlib, re, sys
+
+work, source = map(pathlib.Path, sys.argv[1:])
+lines = (work / "list.txt").read_text().splitlines()
+listed = {}
+for line in lines:
+    if line.startswith("  "):
+        listed[line.split()[0]] = slot
+    else:
+        slot = line.split(":")[0]
+everything = json.loads((work / "list.json").read_text())
+assert listed == {e["name"]: e["slot"] for e in everything}
+# Every header is there, under its slot, and nothing else.
+headers = {}
+for header in (source / "sim/effects").glob("*.hpp"):
+    text = header.read_text()
+    name = re.search(r'name = "(\w+)"', text).group(1)
+    headers[name] = re.search(r"slot = Slot::(\w+)", text).group(1)
+assert headers == listed, headers.keys() ^ listed.keys()
+for e in everything:
+    assert e["title"] and e["source"] and e["description"].strip(), e["name"]
+    for p in e["parameters"]:
+        assert p["low"] <= p["standard"] <= p["high"] and p["unit"] and p["meaning"], (e["name"], p)
+
+sexs, gaps = json.loads((work / "two.json").read_text())
+assert sexs["dyr"] == {"name": "SEXS", "columns": ["TAoverTB", "TB", "K", "TE", "EMIN", "EMAX"]}
+gain = next(p for p in sexs["parameters"] if p["name"] == "K")
+assert gain["standard"] == 100 and gain["neutral"] is None
+assert "dyr" not in gaps and gaps["parameters"][0]["neutral"] == 0
+
+two = (work / "two.txt").read_text()
+assert "SEXS: simplified excitation system" in two and "GENROU: round-rotor machine" in two
+assert "TE dEfd/dt = K y - Efd" in two  # the equations
+assert re.search(r"^  K +K +pu +100 +0\.5 +2000 +- +gain$", two, re.M), two
+assert ".dyr: BUS 'SEXS' ID TA/TB TB K TE EMIN EMAX /" in two
+assert "source: " in two and re.search(r"^  Efd +pu +field voltage$", two, re.M)
+
+law = (work / "law.txt").read_text()
+assert "DIPTORQUE: torque lost in a voltage dip" in law and "recovery" in law
+assert "DIPTORQUE" in (work / "laws.txt").read_text() and "DIPTORQUE" not in listed
+PYTHON
+
+refuses "a name mistyped" "no effect 'GENRUO' at NAME \(the nearest names are GENROU" "$swingbank" effects GENRUO
+"$swingbank" effects GENRUO SEXX 2>"$work/both.txt" && fail "unknown names were accepted"
+(($(wc -l <"$work/both.txt") == 2)) || fail "not every unknown name was told: $(cat "$work/both.txt")"
+refuses "no law file" "no readable law file" "$swingbank" effects --law "$work/none.toml"
+misused "unknown option" nonsense "$swingbank" effects --nonsense
