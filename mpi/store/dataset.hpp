@@ -20,7 +20,7 @@ struct DatasetHeader {
   std::uint64_t samples = 0;  ///< per channel and row
   std::vector<std::string> channel_names, channel_units, parameter_names, parameter_units;
   std::vector<double> parameter_low, parameter_high;  ///< the sampling box
-  std::vector<std::string> parameter_effects;         ///< whose they are; empty: all the machine's
+  std::vector<std::string> parameter_effects = {};    ///< whose they are; empty: all the machine's
   [[nodiscard]] std::uint64_t shard_count() const { return (draws + draws_per_shard - 1) / draws_per_shard; }
 };
 

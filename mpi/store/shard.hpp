@@ -20,7 +20,7 @@ struct ShardAttributes {
   std::string machine_model;  ///< "GENROU"
   std::vector<std::string> channel_names, channel_units, parameter_names, parameter_units;
   std::vector<double> parameter_low, parameter_high;  ///< the sampling box
-  std::vector<std::string> parameter_effects;         ///< whose they are; empty: all the machine's
+  std::vector<std::string> parameter_effects = {};    ///< whose they are; empty: all the machine's
 };
 
 /// Rows of a shard, one per stable generator record; every array is row-major.

@@ -34,6 +34,28 @@ def records(folder):
     return numpy.concatenate([h5py.File(f)["records"][:] for f in sorted(glob.glob(f"{sys.argv[1]}/{folder}/shards/*.h5"))])
 assert (records("one") == records("single")).all()
 PYTHON
+# Effects attached and varied: the same for any number of ranks, and when resumed.
+with_exciter=("$configs/ieee39_genrou_sexs.toml" --draws 60 --draws-per-shard 10 --progress none)
+"$generate" "${with_exciter[@]}" --out "$work/exciter" >"$work/log" 2>&1 || { cat "$work/log"; fail "an exciter attached"; }
+head -3 "$work/exciter/journal.jsonl" >"$work/three" # as if it had been stopped half way
+mkdir -p "$work/resumed/shards"
+cp "$work/exciter/dataset.json" "$work/resumed"
+cp "$work/three" "$work/resumed/journal.jsonl"
+cp "$work"/exciter/shards/shard-00000[0-2].h5 "$work/resumed/shards"
+ranks 3 "$generate" "${with_exciter[@]}" --writer-ranks 2 --out "$work/resumed" >"$work/log" 2>&1 || { cat "$work/log"; fail "resumed"; }
+[ "$(hash_of "$work/exciter")" = "$(hash_of "$work/resumed")" ] || fail "another hash when resumed"
+diff -r "$work/exciter/shards" "$work/resumed/shards" || fail "other bytes when resumed"
+"$python3" - "$work" <<'PYTHON'
+import sys
+import h5py
+a = h5py.File(f"{sys.argv[1]}/exciter/shards/shard-000000.h5")
+names = [n.decode() if isinstance(n, bytes) else n for n in a.attrs["parameter_names"]]
+effects = [n.decode() if isinstance(n, bytes) else n for n in a.attrs["parameter_effects"]]
+assert names[-2:] == ["SEXS.K", "SEXS.TE"] and effects[-2:] == ["SEXS", "SEXS"] and effects[0] == "GENROU"
+gain = a["parameters"][:, -2]
+assert ((gain >= 20) & (gain <= 300)).all() and gain.std() > 30, gain
+assert a["records"].shape[0] == len(gain)
+PYTHON
 # All generators varying: ten rows per stable draw.
 ranks 2 "$generate" "$configs/ieee39_gencls_all.toml" --draws 20 --draws-per-shard 10 --progress none --out "$work/all" >"$work/log" 2>&1
 grep -q '"rows":[1-9][0-9]*0,' "$work/all/journal.jsonl" || fail "rows are no multiple of ten"
