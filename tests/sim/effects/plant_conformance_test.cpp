@@ -203,10 +203,13 @@ TEST(PlantConformance, DualsEqualCentralDifferences) {
       up[block][j] += h;
       down[block][j] -= h;
       const auto a = moved<double>(plant, up, shift), b = moved<double>(plant, down, shift);
+      const auto here = moved<double>(plant, values, shift);
       for (std::size_t i = 0; i < exact.size(); ++i) {
         const double quotient = (a[i] - b[i]) / (2 * h);
+        // At a kink (a parameter whose sign decides what it does) the dual is the slope of one side.
+        const double kink = std::fabs(a[i] - 2 * here[i] + b[i]) / (2 * h);
         // the quotient's own rounding: outputs of 1e2 over h of 1e-8
-        EXPECT_NEAR(exact[i].d[0], quotient, 1e-5 * (1.0 + std::fabs(quotient)))
+        EXPECT_NEAR(exact[i].d[0], quotient, 1e-5 * (1.0 + std::fabs(quotient)) + kink)
             << e->name << " output " << i << " by " << record.name;
       }
     }

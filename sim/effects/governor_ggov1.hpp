@@ -1,0 +1,329 @@
+#pragma once
+// GGOV1: gas turbine or engine under a PID governor, with load (temperature) and acceleration limiter.
+//
+// PSS/E computes the acceleration limiter's output as the stroke of the step before plus
+// Ka (Aset - acceleration) dt, that is: the stroke may rise no faster than Ka (Aset - acceleration). Here the
+// state `accel` does that without a step size; it follows the other two outputs from kAbove over them with
+// the time constant kFollow, so that what moves slower than kAbove/kFollow never meets it.
+#include <fmt/format.h>
+
+#include "sim/core/blocks.hpp"
+#include "sim/core/effect.hpp"
+
+namespace swingbank::sim::governor_ggov1 {
+
+struct Model {
+  static constexpr std::string_view
+      name = "GGOV1",
+      title = "gas turbine or engine, PID governor, load and acceleration limiter",
+      source = "IEEE PES-TR1 (2013), 3.1.2.3; NERC, Gas turbine governor modeling (2017); PSS/E GGOV1",
+      dyr_name = "GGOV1";
+  static constexpr Slot slot = Slot::governor;
+  static constexpr std::string_view description = R"(
+  e = Pref + R dPref + mw - R f - w --> [ db ] --> [ minerr, maxerr ] --> Kpgov + Kigov/s + s Kdgov/(1 + s Tdgov) --> FSRN
+      f: measured power (Rselect 1), valve (-1), requested stroke (-2), nothing (0)
+      measured power = P/(1 + s Tpelec)      mw = Kimw/s (Pmwset - measured power) within +-1.1 R
+  Ldref/Kturb + Wfnl - exhaust --> Kpload + Kiload/s <= 1 --> FSRT      (the integral moves within Rdown, Rup)
+  stroke = min(FSRN, FSRT) within Vmin, Vmax, rising no faster than Ka (Aset - s w/(1 + s Ta))  (Ka = 0: off)
+  stroke --> [ 1/(1 + s Tact), speed Rclose to Ropen, Vmin to Vmax ] --valve--> x (1 + w if Flag = 1) --> fuel
+  Pm = (1 + s Tc)/(1 + s Tb) Kturb (fuel - Wfnl) - Dm (1 + w)           (the last term if Dm > 0)
+  exhaust = (1 + s Tsa)/((1 + s Tsb)(1 + s Tfload)) fuel (1 + w)^Dm     (the last factor if Dm < 0)
+  per unit of Trate (0: the machine's base); both integrals stay where the valve or their limit is, without wind-up
+)";
+  enum P {
+    Rselect,
+    Flag,
+    R,
+    Tpelec,
+    maxerr,
+    minerr,
+    Kpgov,
+    Kigov,
+    Kdgov,
+    Tdgov,
+    Vmax,
+    Vmin,
+    Tact,
+    Kturb,
+    Wfnl,
+    Tb,
+    Tc,
+    Teng,
+    Tfload,
+    Kpload,
+    Kiload,
+    Ldref,
+    Dm,
+    Ropen,
+    Rclose,
+    Kimw,
+    Aset,
+    Ka,
+    Ta,
+    Trate,
+    db,
+    Tsa,
+    Tsb,
+    Rup,
+    Rdown
+  };
+  static constexpr Parameter parameters[] = {
+      {"Rselect", "Rselect", "code", 1.0, -2.0, 1.0, kNoNeutral,
+       "droop of: 1 electrical power, 0 nothing, -1 valve, -2 requested stroke"},
+      {"Flag", "Flag", "code", 0.0, 0.0, 1.0, kNoNeutral, "1: fuel flow in proportion to speed"},
+      {"R", "R", "pu", 0.04, 0.0, 1.0, kNoNeutral, "permanent droop"},
+      {"Tpelec", "Tpelec", "s", 1.0, 0.0, 30.0, kNoNeutral, "power transducer (0: none)"},
+      {"maxerr", "maxerr", "pu", 0.05, 0.0, 1.0, kNoNeutral, "upper limit of the speed error"},
+      {"minerr", "minerr", "pu", -0.05, -1.0, 0.0, kNoNeutral, "lower limit of the speed error"},
+      {"Kpgov", "Kpgov", "pu/pu", 10.0, 0.0, 100.0, kNoNeutral, "proportional gain"},
+      {"Kigov", "Kigov", "1/s", 2.0, 0.0, 50.0, kNoNeutral, "integral gain"},
+      {"Kdgov", "Kdgov", "s", 0.0, 0.0, 50.0, 0.0, "derivative gain"},
+      {"Tdgov", "Tdgov", "s", 1.0, 0.0, 10.0, kNoNeutral, "time constant of the derivative"},
+      {"Vmax", "Vmax", "pu", 1.0, 0.0, 2.0, kNoNeutral, "upper limit of the valve"},
+      {"Vmin", "Vmin", "pu", 0.15, -0.5, 1.0, kNoNeutral, "lower limit of the valve"},
+      {"Tact", "Tact", "s", 0.5, 0.01, 20.0, kNoNeutral, "actuator time constant"},
+      {"Kturb", "Kturb", "pu/pu", 1.5, 0.1, 10.0, kNoNeutral, "turbine gain"},
+      {"Wfnl", "Wfnl", "pu", 0.2, 0.0, 1.0, kNoNeutral, "fuel flow at no load"},
+      {"Tb", "Tb", "s", 0.1, 0.0, 20.0, kNoNeutral, "turbine lag (0: none)"},
+      {"Tc", "Tc", "s", 0.0, 0.0, 20.0, kNoNeutral, "turbine lead"},
+      {"Teng", "Teng", "s", 0.0, 0.0, 0.0, 0.0, "transport delay of a diesel engine: 0 only"},
+      {"Tfload", "Tfload", "s", 3.0, 0.0, 30.0, kNoNeutral, "load limiter's measurement (0: none)"},
+      {"Kpload", "Kpload", "pu/pu", 2.0, 0.0, 50.0, kNoNeutral, "load limiter, proportional gain"},
+      {"Kiload", "Kiload", "1/s", 0.67, 0.0, 20.0, kNoNeutral, "load limiter, integral gain"},
+      {"Ldref", "Ldref", "pu", 1.0, 0.0, 5.0, kNoNeutral, "load limiter's reference, as power"},
+      {"Dm", "Dm", "pu", 0.0, -2.0, 5.0, 0.0,
+       "> 0: power lost in proportion to speed; < 0: exponent of speed in the exhaust temperature"},
+      {"Ropen", "Ropen", "pu/s", 0.1, 0.0, 99.0, kNoNeutral, "fastest opening"},
+      {"Rclose", "Rclose", "pu/s", -0.1, -99.0, 0.0, kNoNeutral, "fastest closing"},
+      {"Kimw", "Kimw", "1/s", 0.0, 0.0, 1.0, 0.0, "gain of the power controller"},
+      {"Aset", "Aset", "pu/s", 0.1, 0.0, 99.0, kNoNeutral, "acceleration limiter's reference"},
+      {"Ka", "Ka", "1/s", 10.0, 0.0, 999.0, 0.0, "acceleration limiter's gain (0: none)"},
+      {"Ta", "Ta", "s", 0.1, 0.0, 10.0, kNoNeutral, "acceleration limiter's measurement"},
+      {"Trate", "Trate", "MW", 0.0, 0.0, 10000.0, 0.0, "turbine rating (0: the machine's base)"},
+      {"db", "db", "pu", 0.0, 0.0, 0.1, 0.0, "half width of the dead-band of the speed error"},
+      {"Tsa", "Tsa", "s", 4.0, 0.0, 50.0, kNoNeutral, "exhaust temperature, lead"},
+      {"Tsb", "Tsb", "s", 5.0, 0.0, 50.0, kNoNeutral, "exhaust temperature, lag (0: none)"},
+      {"Rup", "Rup", "pu/s", 99.0, 0.0, 99.0, kNoNeutral, "load limit's fastest rise"},
+      {"Rdown", "Rdown", "pu/s", -99.0, -99.0, 0.0, kNoNeutral, "load limit's fastest fall"}};
+  static constexpr int dyr_columns[] = {Rselect, Flag,   R,      Tpelec, maxerr, minerr, Kpgov,  Kigov, Kdgov,
+                                        Tdgov,   Vmax,   Vmin,   Tact,   Kturb,  Wfnl,   Tb,     Tc,    Teng,
+                                        Tfload,  Kpload, Kiload, Ldref,  Dm,     Ropen,  Rclose, Kimw,  Aset,
+                                        Ka,      Ta,     Trate,  db,     Tsa,    Tsb,    Rup,    Rdown};
+  static constexpr double kAbove = 0.002;   ///< [pu of stroke]
+  static constexpr double kFollow = 0.02;   ///< [s]
+  static constexpr double kFullLoad = 1.0;  ///< the load limiter's output ends here [pu of stroke]
+  enum C {
+    droop,
+    droop_power,
+    droop_valve,
+    droop_stroke,
+    inverse_loop,
+    iTpelec,
+    most,
+    least,
+    kp,
+    ki,
+    kd,
+    iTdgov,
+    high,
+    low,
+    full,
+    iTact,
+    kturb,
+    wfnl,
+    iTb,
+    tc,
+    iTfload,
+    kpload,
+    kiload,
+    limit,  ///< Ldref/Kturb + Wfnl
+    loss,
+    exponent,
+    fuel_speed,
+    ropen,
+    rclose,
+    kimw,
+    mw_high,
+    mw_low,
+    aset,
+    ka,
+    iTa,
+    base,  ///< machine base over turbine rating
+    band,
+    tsa,
+    iTsb,
+    rup,
+    rdown,
+    Pref,
+    Pmwset,
+    coefficients
+  };
+  enum X { power, mw, integral, rate, swing, accel, heat, exhaust, load, valve, turbine };
+  static constexpr State states[] = {{"power", "pu", "measured electrical power"},
+                                     {"mw", "pu", "power controller", 1.0, mw_low, mw_high},
+                                     {"integral", "pu", "governor's integral", 1.0, low, high},
+                                     {"rate", "pu", "lag of the governor's derivative"},
+                                     {"swing", "pu", "lag of the acceleration's measurement"},
+                                     {"accel", "pu", "acceleration limiter", 1.0, low, -1},
+                                     {"heat", "pu", "lag of the exhaust temperature"},
+                                     {"exhaust", "pu", "measured exhaust temperature, as fuel flow"},
+                                     {"load", "pu", "load limiter's integral", 1.0, low, full},
+                                     {"valve", "pu", "fuel valve", 1.0, low, high},
+                                     {"turbine", "pu", "turbine power"}};
+
+  static void check(const double* p, const std::string& where, Problems& problems);
+  static std::string_view unphysical(const double*) { return ""; }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions& conventions, T* c) {
+    const T zero(0.0);
+    const double code = value_of(p[Rselect]);
+    c[droop] = p[R];
+    c[droop_power] = code == 1.0 ? p[R] : zero;
+    c[droop_valve] = code == -1.0 ? p[R] : zero;
+    c[droop_stroke] = code == -2.0 ? p[R] : zero;
+    c[iTpelec] = inverse(p[Tpelec]);
+    c[most] = p[maxerr];
+    c[least] = p[minerr];
+    c[iTdgov] = inverse(p[Tdgov]);
+    c[kp] = p[Kpgov];
+    c[ki] = p[Kigov];
+    c[kd] = p[Kdgov] * c[iTdgov];
+    c[inverse_loop] = T(1.0) / (T(1.0) + c[droop_stroke] * (c[kp] + c[kd]));
+    c[high] = p[Vmax];
+    c[low] = p[Vmin];
+    c[full] = T(kFullLoad);
+    c[iTact] = T(1.0) / p[Tact];
+    c[kturb] = p[Kturb];
+    c[wfnl] = p[Wfnl];
+    c[iTb] = inverse(p[Tb]);
+    c[tc] = p[Tc];
+    c[iTfload] = inverse(p[Tfload]);
+    c[kpload] = p[Kpload];
+    c[kiload] = p[Kiload];
+    c[limit] = p[Ldref] / p[Kturb] + p[Wfnl];
+    c[loss] = select(p[Dm] < zero, zero, p[Dm]);  // a fit that starts at 0 goes to that side
+    c[exponent] = select(p[Dm] < zero, p[Dm], zero);
+    c[fuel_speed] = p[Flag];
+    c[ropen] = p[Ropen];
+    c[rclose] = p[Rclose];
+    c[kimw] = p[Kimw];
+    c[mw_high] = T(1.1) * p[R];
+    c[mw_low] = zero - c[mw_high];
+    c[aset] = p[Aset];
+    c[ka] = p[Ka];
+    c[iTa] = inverse(p[Ta]);
+    const auto rated = p[Trate] > zero;
+    c[base] = select(rated, T(conventions.mva) / select(rated, p[Trate], T(1.0)), T(1.0));
+    c[band] = p[db];
+    c[tsa] = p[Tsa];
+    c[iTsb] = inverse(p[Tsb]);
+    c[rup] = p[Rup];
+    c[rdown] = p[Rdown];
+  }
+
+  template <class T>
+  static T lower(const T& a, const T& b) {
+    return select(a < b, a, b);
+  }
+  template <class T>
+  static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
+    const T position = clamp(x[valve], c[low], c[high]), turning = T(1.0) + s.speed;
+    const T fuel = position * (T(1.0) + c[fuel_speed] * s.speed);
+    const T texm = exhaust_temperature(c, x, fuel, turning, dx);
+    const T stroke = requested(c, x, position, texm, s, dx);
+    dx[valve] = clamp((stroke - position) * c[iTact], c[rclose], c[ropen]);
+    const T driven = lead_lag(c[tc], c[iTb], x[turbine], c[kturb] * (fuel - c[wfnl]), dx[turbine]);
+    s.Tm = (driven - c[loss] * turning) / c[base];
+  }
+  template <class T>
+  static T exhaust_temperature(const T* c, const T* x, const T& fuel, const T& turning, T* dx) {
+    using std::exp;
+    using std::log;
+    const T rising = select(turning > T(0.01), turning, T(0.01));  // a machine at rest has no exponent
+    const T hot = fuel * exp(c[exponent] * log(rising));
+    return lag(c[iTfload], x[exhaust], lead_lag(c[tsa], c[iTsb], x[heat], hot, dx[heat]), dx[exhaust]);
+  }
+  /// The stroke that the lowest of the three controllers asks for; `texm`: measured exhaust temperature.
+  template <class T>
+  static T requested(const T* c, const T* x, const T& position, const T& texm, const Signals<T>& s, T* dx) {
+    const T measured = lag(c[iTpelec], x[power], s.P * c[base], dx[power]);
+    dx[mw] = c[kimw] * (c[Pmwset] - measured);
+    const T asked = c[Pref] + c[droop] * s.dPref + clamp(x[mw], c[mw_low], c[mw_high]) - s.speed -
+                    c[droop_power] * measured - c[droop_valve] * position;
+    const T hotter = c[limit] - texm;
+    dx[load] = clamp(c[kiload] * hotter, c[rdown], c[rup]);
+    const T fsrt = lower(clamp(x[load], c[low], c[full]) + c[kpload] * hotter, c[full]);
+    // With the droop of the stroke itself, stroke = gain error(asked - droop stroke) + rest has one solution;
+    // where another controller has the stroke, the droop is that of the stroke there is.
+    const T gain = c[kp] + c[kd], rest = clamp(x[integral], c[low], c[high]) - c[kd] * x[rate];
+    const T free =
+        clamp(dead_band(asked - c[droop_stroke] * rest, c[band]) * c[inverse_loop], c[least], c[most]);
+    const T wanted = clamp(lower(gain * free + rest, fsrt), c[low], c[high]);
+    const auto limits = c[ka] > T(0.0);
+    const T ceiling = select(limits, clamp(x[accel], c[low], c[high]), wanted);
+    const T stroke = lower(wanted, ceiling);
+    const T error = clamp(dead_band(asked - c[droop_stroke] * stroke, c[band]), c[least], c[most]);
+    dx[integral] = c[ki] * error;
+    dx[rate] = (error - x[rate]) * c[iTdgov];
+    const T acceleration = dx[swing] = (s.speed - x[swing]) * c[iTa];
+    const T follow = (wanted + T(kAbove) - x[accel]) * T(1.0 / kFollow);
+    dx[accel] = select(limits, lower(follow, c[ka] * (c[aset] - acceleration)), follow);
+    return stroke;
+  }
+  template <class T>
+  static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
+    const T pe = s.P * c[base], fuel = (s.Tm * c[base] + c[loss]) / c[kturb] + c[wfnl];
+    const double stroke = value_of(fuel);
+    const auto refuse = [&](const char* what, double bound) {
+      return fmt::format("it would need a stroke of {:.4g} pu, {} = {:.4g} pu", stroke, what, bound);
+    };
+    if (stroke > value_of(p[Vmax])) return refuse("above Vmax", value_of(p[Vmax]));
+    if (stroke < value_of(p[Vmin])) return refuse("below Vmin", value_of(p[Vmin]));
+    if (stroke > kFullLoad) return refuse("above the load limiter's largest", kFullLoad);
+    if (stroke > value_of(c[limit]))
+      return fmt::format("it would need {:.4g} pu of power, above its load limit Ldref = {:.4g} pu",
+                         value_of(s.Tm * c[base] + c[loss]), value_of(p[Ldref]));
+    c[Pmwset] = x[power] = pe;
+    x[mw] = x[rate] = x[swing] = T(0.0);
+    x[integral] = x[heat] = x[exhaust] = x[valve] = fuel;
+    x[accel] = fuel + T(kAbove);
+    x[load] = c[full];
+    x[turbine] = c[kturb] * (fuel - c[wfnl]);
+    c[Pref] = c[droop_power] * pe + (c[droop_valve] + c[droop_stroke]) * fuel;
+    return {};
+  }
+};
+
+inline void Model::check(const double* p, const std::string& where, Problems& problems) {
+  const auto value = [&](int i) {
+    return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i],
+                       parameters[i].is_code() ? "" : parameters[i].unit);
+  };
+  const auto bad = [&](bool wrong, const std::string& what, const char* why, const char* remedy) {
+    if (wrong) problems.add(what, where, why, remedy);
+  };
+  bad(p[Rselect] != 1 && p[Rselect] != 0 && p[Rselect] != -1 && p[Rselect] != -2, value(Rselect),
+      "it is the code of the droop's signal", "give 1, 0, -1 or -2");
+  bad(p[Flag] != 0 && p[Flag] != 1, value(Flag), "it is a switch", "give 0 or 1");
+  bad(p[Teng] != 0, value(Teng), "a transport delay is no part of this model",
+      "give Teng = 0; GGOV1 without it is as fast as its actuator");
+  for (const int i : {Tact, Kturb, Ropen, Rup})
+    bad(!(p[i] > 0), value(i), "nothing would move", "give a value > 0");
+  for (const int i : {Rclose, Rdown}) bad(!(p[i] < 0), value(i), "nothing would move", "give a value < 0");
+  for (const int i : {R,      Tpelec, maxerr, Kpgov, Kigov, Kdgov, Tdgov, Tb, Tc,  Tfload,
+                      Kpload, Kiload, Kimw,   Aset,  Ka,    Ta,    Trate, db, Tsa, Tsb})
+    bad(!(p[i] >= 0), value(i), "a size, not a direction", "give a value >= 0");
+  bad(!(p[minerr] <= 0), value(minerr), "the lower limit of an error", "give a value <= 0");
+  bad(!(p[Vmax] > p[Vmin]), value(Vmax) + " with " + value(Vmin), "the valve must have room to move",
+      "give Vmax > Vmin");
+  bad(!(p[Vmin] < kFullLoad), value(Vmin), "the load limiter's output ends at 1 pu", "give Vmin < 1");
+  bad(p[Kdgov] > 0 && p[Tdgov] == 0, value(Kdgov) + " with " + value(Tdgov),
+      "a derivative needs a time constant", "give Tdgov > 0");
+  bad(p[Ka] > 0 && p[Ta] == 0, value(Ka) + " with " + value(Ta), "a derivative needs a time constant",
+      "give Ta > 0, or Ka = 0 for no acceleration limiter");
+  for (const int i : {Wfnl, Ldref, Dm})
+    bad(!(p[i] - p[i] == 0), value(i), "it must be finite", "give a number");
+}
+
+}  // namespace swingbank::sim::governor_ggov1

@@ -1,0 +1,186 @@
+// GGOV1: transfer function of the governor's path for every droop code, steady droop, each limiter's own
+// response, release without wind-up, refusals.
+#include "control_bench.hpp"
+
+namespace swingbank::sim::test {
+namespace {
+
+using Complex = std::complex<double>;
+const ControlBench::Changes kValues = {{"R", 0.05},    {"Tpelec", 0.5}, {"Kpgov", 8.0}, {"Kigov", 1.5},
+                                       {"Kdgov", 2.0}, {"Tdgov", 0.2},  {"Tact", 0.4},  {"Kturb", 1.5},
+                                       {"Wfnl", 0.2},  {"Tb", 0.6},     {"Tc", 0.1},    {"Dm", 0.2},
+                                       {"Ldref", 1.1}};
+Complex pid(Complex s) { return 8.0 + 1.5 / s + s * 2.0 / (1.0 + s * 0.2); }
+
+ControlBench bench_with(ControlBench::Changes changes, Signals<double> at = ControlBench::rated()) {
+  ControlBench::Changes all = kValues;
+  for (const auto& [name, value] : changes) all[name] = value;
+  return ControlBench("GGOV1", all, at);
+}
+
+/// Speed to Pm with the power held: electrical power is an input of its own.
+TEST(GovernorGgov1, SmallSignalsFollowTheTransferFunction) {
+  for (const double code : {1.0, 0.0, -1.0, -2.0})
+    for (const double flag : {0.0, 1.0}) {
+      ControlBench bench = bench_with({{"Rselect", code}, {"Flag", flag}});
+      ASSERT_EQ(bench.refused, "");
+      EXPECT_LT(bench.largest_derivative(), 1e-12);
+      const double valve = (0.8 + 0.2) / 1.5 + 0.2;  // Dm at rated speed takes 0.2 pu
+      for (const double omega : {0.05, 0.5, 5.0}) {
+        const Complex s(0.0, omega), actuator = 1.0 / (1.0 + s * 0.4);
+        Complex stroke = -pid(s);
+        if (code == -1.0) stroke /= 1.0 + 0.05 * pid(s) * actuator;
+        if (code == -2.0) stroke /= 1.0 + 0.05 * pid(s);
+        const Complex exact = 1.5 * (stroke * actuator + flag * valve) * lead_over_lag(0.1, 0.6, omega) - 0.2;
+        const Complex h = bench.response(&Signals<double>::speed, &Signals<double>::Tm, omega);
+        EXPECT_LT(std::abs(h - exact), 1e-6 * (1.0 + std::abs(exact)))  // differences over 1e-6
+            << code << " " << flag << " " << omega;
+        const Complex by_power = bench.response(&Signals<double>::P, &Signals<double>::Tm, omega);
+        const Complex droop =
+            code == 1.0 ? -0.05 * pid(s) * 1.5 * actuator * lead_over_lag(0.1, 0.6, omega) / (1.0 + s * 0.5)
+                        : 0.0;
+        EXPECT_LT(std::abs(by_power - droop), 1e-6) << code;
+      }
+    }
+}
+
+TEST(GovernorGgov1, DroopInTheSteadyState) {
+  // f of the stroke: 0.01 of speed moves stroke by -0.01/0.05, power by Kturb times that.
+  ControlBench bench = bench_with({{"Rselect", -1.0}, {"Dm", 0.0}});
+  bench.in.speed = 0.002;
+  bench.run(400.0, 5e-3);
+  EXPECT_NEAR(bench.out().Tm, 0.8 - 1.5 * 0.002 / 0.05, 1e-8);  // the slowest mode, 1/(R Kigov) = 13 s
+  bench.in.speed = 0.0;
+  bench.in.dPref = 0.02;
+  bench.run(400.0, 5e-3);
+  EXPECT_NEAR(bench.out().Tm, 0.8 + 1.5 * 0.02, 1e-8);
+}
+
+TEST(GovernorGgov1, BaseOfTheTurbineRating) {
+  // 100 MVA machine with a 125 MW turbine: 0.8 pu are 0.64 pu there.
+  ControlBench bench = bench_with({{"Trate", 125.0}, {"Dm", 0.0}});
+  EXPECT_NEAR(bench.state("valve"), 0.64 / 1.5 + 0.2, 1e-15);
+  EXPECT_NEAR(bench.out().Tm, 0.8, 1e-15);
+}
+
+/// Load limiter: however low the speed, the measured exhaust settles where it is Ldref/Kturb + Wfnl.
+TEST(GovernorGgov1, LoadLimiterHoldsItsReferenceAndLetsGo) {
+  ControlBench bench = bench_with({{"Ldref", 0.9}, {"Dm", 0.0}, {"Rselect", 0.0}, {"Aset", 99.0}});
+  bench.in.speed = -0.003;  // isochronous: the governor would open to Vmax
+  bench.run(200.0);
+  EXPECT_NEAR(bench.out().Tm, 0.9, 1e-6);  // exp(-200/10) of 0.3, about
+  // The governor's integral stands at Vmax = 1 pu. At speed +0.003 its output is 1 - 8 * 0.003 less
+  // 1.5 * 0.003 per second: it takes the stroke, then 0.8 pu, over after (0.2 - 0.024)/0.0045 = 39.1 s.
+  bench.in.speed = 0.003;
+  bench.run(38.0);
+  EXPECT_NEAR(bench.out().Tm, 0.9, 1e-6);
+  bench.run(12.0);
+  EXPECT_NEAR(bench.out().Tm, 0.9 - 1.5 * 0.0045 * (50.0 - 39.1 - 0.4 - 0.5), 2e-4);  // Tact, Tb - Tc
+}
+
+TEST(GovernorGgov1, IntegralsDoNotWindUp) {
+  ControlBench bench = bench_with({{"Ldref", 5.0}, {"Rselect", 0.0}, {"Kdgov", 0.0}, {"Aset", 99.0}});
+  bench.in.speed = -0.01;
+  bench.run(300.0, 5e-3);
+  EXPECT_EQ(bench.state("integral"), 1.0);
+  EXPECT_NEAR(bench.state("valve"), 1.0, 1e-12);  // a lag after it
+  EXPECT_EQ(bench.state("load"), 1.0);
+  bench.in.speed = 0.02;  // stroke = 1 - 8 * 0.02 - 1.5 * 0.02 t at once, the valve at 0.1 pu/s at most
+  bench.run(0.5);
+  EXPECT_NEAR(bench.state("valve"), 1.0 - 0.1 * 0.5, 1e-9);
+  EXPECT_NEAR(bench.state("integral"), 1.0 - 1.5 * 0.02 * 0.5, 1e-9);
+}
+
+TEST(GovernorGgov1, ValveKeepsItsSpeedsAndEnds) {
+  ControlBench bench = bench_with({{"Ropen", 0.05}, {"Rclose", -0.2}, {"Ka", 0.0}});
+  const double start = bench.state("valve");
+  bench.in.speed = -0.02;
+  bench.run(0.5);
+  EXPECT_NEAR(bench.state("valve"), start + 0.05 * 0.5, 1e-9);
+  bench.in.speed = 0.05;
+  bench.run(30.0);
+  EXPECT_NEAR(bench.state("valve"), 0.15, 1e-9);  // Vmin
+}
+
+/// While the machine accelerates at a > Aset the stroke falls at Ka (a - Aset), else it may rise at
+/// Ka (Aset - a). Once the washout has settled, the acceleration is the slope of the speed.
+TEST(GovernorGgov1, AccelerationLimiterRampsTheStroke) {
+  ControlBench bench =
+      bench_with({{"Kpgov", 0.0}, {"Kdgov", 0.0}, {"Kigov", 0.0}, {"Aset", 0.01}, {"Ka", 5.0}, {"Ta", 0.05}});
+  const double start = bench.state("accel");
+  const double slope = 0.03, seconds = 2.0, step = 1e-3;
+  for (double t = 0; t < seconds - step / 2; t += step) {
+    bench.in.speed = slope * (t + step / 2);
+    bench.run(step, step);
+  }
+  // Measured acceleration slope (1 - exp(-t/Ta)): its integral falls short of slope t by slope Ta; the
+  // state follows `wanted` from above until the first milliseconds have passed. Tolerance: the speed is
+  // held through each step, step * slope * Ka.
+  const double expected = start - 5.0 * (slope - 0.01) * seconds + 5.0 * slope * 0.05;
+  EXPECT_NEAR(bench.state("accel"), expected, 3e-3);
+  EXPECT_LT(bench.state("accel"), start - 0.15);
+  bench.run(1.0);  // speed constant again: the stroke comes back at Ka Aset = 0.05 pu/s
+  const double low = bench.state("accel");
+  bench.run(1.0);
+  EXPECT_NEAR(bench.state("accel"), low + 0.05, 1e-6);
+  bench.run(20.0);
+  EXPECT_NEAR(bench.state("accel"), start, 1e-6);
+}
+
+TEST(GovernorGgov1, ExhaustTemperatureFollowsSpeedByNegativeDm) {
+  ControlBench bench = bench_with({{"Dm", -0.5}, {"Kpgov", 0.0}, {"Kdgov", 0.0}, {"Kigov", 0.0}});
+  const double valve = 0.8 / 1.5 + 0.2;
+  bench.in.speed = -0.04;
+  bench.run(60.0);
+  EXPECT_NEAR(bench.state("exhaust"), valve * std::pow(0.96, -0.5), 1e-6);  // exp(-60/5) of 0.015
+  EXPECT_NEAR(bench.out().Tm, 0.8, 1e-9);  // power itself does not depend on speed then
+}
+
+TEST(GovernorGgov1, PowerControllerReturnsTheLoadToItsSetPoint) {
+  // The plant delivers what the turbine gives: P = Tm, at another speed.
+  ControlBench bench = bench_with({{"Kimw", 0.01}, {"Dm", 0.0}});
+  bench.in.speed = 0.001;
+  for (int i = 0; i < 60000; ++i) {
+    bench.in.P = bench.out().Tm;
+    bench.run(0.01, 0.01);
+  }
+  EXPECT_NEAR(bench.out().Tm, 0.8, 1e-5);  // exp(-600 s Kimw/R) and less
+  EXPECT_NEAR(bench.state("mw"), 0.001, 1e-5);
+}
+
+TEST(GovernorGgov1, WhatCannotRunIsRefused) {
+  EXPECT_NE(bench_with({{"Ldref", 0.7}, {"Dm", 0.0}}).refused.find("Ldref = 0.7 pu"), std::string::npos);
+  EXPECT_NE(bench_with({{"Vmax", 0.7}}).refused.find("above Vmax = 0.7 pu"), std::string::npos);
+  EXPECT_NE(
+      bench_with({{"Kturb", 1.0}, {"Vmax", 2.0}, {"Ldref", 5.0}}).refused.find("load limiter's largest"),
+      std::string::npos);
+  auto idle = ControlBench::rated();
+  idle.Tm = idle.P = 0.0;
+  EXPECT_NE(bench_with({{"Vmin", 0.3}, {"Dm", 0.0}}, idle).refused.find("below Vmin = 0.3 pu"),
+            std::string::npos);
+  using Change = std::pair<const char*, double>;
+  for (const auto& [name, value] : {Change{"Teng", 0.5},
+                                    {"Rselect", 2.0},
+                                    {"Flag", 0.5},
+                                    {"Tact", 0.0},
+                                    {"Kturb", 0.0},
+                                    {"Ropen", 0.0},
+                                    {"Rclose", 0.1},
+                                    {"Vmax", 0.1},
+                                    {"minerr", 0.1},
+                                    {"Tdgov", 0.0},
+                                    {"Ta", 0.0},
+                                    {"Tb", -1.0}})
+    EXPECT_FALSE(bench_with({{name, value}}).problems.empty()) << name;
+  Problems problems = bench_with({{"Teng", 0.5}}).problems;
+  try {
+    problems.raise();
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("Teng = 0.5 s at GGOV1 (a transport delay"), std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace swingbank::sim::test
