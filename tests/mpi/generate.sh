@@ -37,10 +37,9 @@ PYTHON
 # Effects attached and varied: the same for any number of ranks, and when resumed.
 with_exciter=("$configs/ieee39_genrou_sexs.toml" --draws 60 --draws-per-shard 10 --progress none)
 "$generate" "${with_exciter[@]}" --out "$work/exciter" >"$work/log" 2>&1 || { cat "$work/log"; fail "an exciter attached"; }
-head -3 "$work/exciter/journal.jsonl" >"$work/three" # as if it had been stopped half way
-mkdir -p "$work/resumed/shards"
+mkdir -p "$work/resumed/shards" # as if it had been stopped half way
+head -3 "$work/exciter/journal.jsonl" >"$work/resumed/journal.jsonl"
 cp "$work/exciter/dataset.json" "$work/resumed"
-cp "$work/three" "$work/resumed/journal.jsonl"
 cp "$work"/exciter/shards/shard-00000[0-2].h5 "$work/resumed/shards"
 ranks 3 "$generate" "${with_exciter[@]}" --writer-ranks 2 --out "$work/resumed" >"$work/log" 2>&1 || { cat "$work/log"; fail "resumed"; }
 [ "$(hash_of "$work/exciter")" = "$(hash_of "$work/resumed")" ] || fail "another hash when resumed"
