@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "sim/core/config.hpp"
+#include "sim/core/law.hpp"
 
 namespace swingbank::validate {
 namespace {
@@ -26,9 +27,8 @@ std::vector<std::string> effects_of(Slot slot) {
 }
 
 /// One section: the effect's name and every one of its parameters; checked for consistency if all could be
-/// read.
-sim::Block read_block(Config& config, Slot slot) {
-  const std::string section(sim::slot_name(slot));
+/// read. `section` is a slot's name, or "limiter[1]".
+sim::Block read_block(Config& config, Slot slot, const std::string& section) {
   sim::Block block{sim::find_effect(config.choice(section + ".effect", effects_of(slot))), {}};
   if (!block.effect || block.effect->slot != slot) return {};
   const bool sound = config.sound();
@@ -42,25 +42,74 @@ sim::Block read_block(Config& config, Slot slot) {
   return block;
 }
 
+/// Every [[section]] of a slot that takes several effects.
+std::vector<sim::Block> read_several(Config& config, Slot slot) {
+  const std::string name(sim::slot_name(slot));
+  config.ignore(name);  // its keys are compared below
+  std::vector<sim::Block> blocks;
+  for (int k = 0; config.has(fmt::format("{}[{}]", name, k)); ++k) {
+    const std::string section = fmt::format("{}[{}]", name, k);
+    const sim::Block block = read_block(config, slot, section);
+    if (!block.effect) continue;
+    std::vector<std::string> known = {"effect"};
+    for (const auto& p : block.effect->parameters) known.emplace_back(p.name);
+    for (const auto& key : config.keys(section))
+      if (!std::ranges::count(known, key))
+        config.problem(section + "." + key, "unknown key " + key, "nothing reads it in [[" + name + "]]",
+                       fmt::format("remove it or use one of: {}", fmt::join(known, ", ")));
+    blocks.push_back(block);
+  }
+  return blocks;
+}
+
+/// The effects of one slot: one [section], or several [[section]] where they add up.
+void read_slot(Config& config, Slot slot, std::vector<sim::Block>& into) {
+  const std::string section(sim::slot_name(slot));
+  if (!config.is_array(section)) return into.push_back(read_block(config, slot, section));
+  if (!sim::is_shared(slot)) {
+    config.ignore(section);
+    return config.problem(section, "several [[" + section + "]]", "a plant has room for one",
+                          "write one [" + section + "]");
+  }
+  std::ranges::move(read_several(config, slot), std::back_inserter(into));
+}
+
 void read_blocks(Config& config, sim::Plant& plant) {
-  plant.machine = read_block(config, Slot::machine);
+  plant.machine = read_block(config, Slot::machine, "machine");
   for (const Slot slot : sim::kSlots) {
     const std::string section(sim::slot_name(slot));
     if (slot == Slot::machine || slot == Slot::load || !config.has(section)) continue;
-    if (effects_of(slot).empty()) {
+    if (effects_of(slot).empty())
       config.problem(section, "section [" + section + "]", "this build has no effect of that kind",
                      "remove it; the slot holds its input at the operating point");
-    } else if (slot == Slot::transformer) {
-      plant.transformer = read_block(config, slot);
-    } else {
-      (slot == Slot::measurement ? plant.measurements : plant.controls).push_back(read_block(config, slot));
-    }
+    else if (slot == Slot::transformer)
+      plant.transformer = read_block(config, slot, section);
+    else
+      read_slot(config, slot, slot == Slot::measurement ? plant.measurements : plant.controls);
   }
 }
 
+/// Law files of the plant: their effects are known from here on.
+std::vector<fs::path> read_laws(Config& config) {
+  std::vector<fs::path> files;
+  for (const auto& name : config.optional<std::vector<std::string>>("laws", {})) {
+    const fs::path file = (config.name().parent_path() / name).lexically_normal();
+    try {
+      sim::load_law(file);
+      files.push_back(file);
+    } catch (const InputError& error) {
+      for (const auto& p : error.problems())
+        config.problem("laws", p.what + " in " + p.where, p.why, p.remedy);
+    }
+  }
+  return files;
+}
+
 sim::Conventions read_conventions(Config& config, double hz) {
-  return config.choice("plant.conventions", {"psse", "andes"}) == "andes" ? sim::Conventions::andes(hz)
-                                                                          : sim::Conventions::psse(hz);
+  auto read = config.choice("plant.conventions", {"psse", "andes"}) == "andes" ? sim::Conventions::andes(hz)
+                                                                               : sim::Conventions::psse(hz);
+  read.speed_voltage = config.optional<bool>("plant.speed_voltage", read.speed_voltage);
+  return read;
 }
 
 /// The plant of one generator of a grid; its name there is the bus number, with "/id" where the bus has
@@ -122,6 +171,7 @@ PlantModel parse_plant_model(const std::string& text, const fs::path& file) {
   PlantModel model;
   model.origin = file.string();
   model.hash = XXH64(text.data(), text.size(), 0);
+  model.laws = read_laws(config);
   model.name = config.require<std::string>("plant.name");
   config.optional<std::string>("plant.origin", "");
   const auto hz = config.require<double>("plant.frequency_hz", {kSmallest, 1000.0, "Hz"});

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "sim/solve/grid.hpp"
 #include "validate/record.hpp"
@@ -15,7 +16,8 @@ struct PlantModel {
   std::uint64_t hash = 0;    ///< XXH64 of that file's bytes
   sim::Plant plant;          ///< its generation is set from each record
   sim::Conventions conventions;
-  RecordBase record_base;  ///< what "pu" means in the records of this plant
+  RecordBase record_base;                        ///< what "pu" means in the records of this plant
+  std::vector<std::filesystem::path> laws = {};  ///< law files that its effects come from
 };
 
 /// Reads a plant file (configs/plants/README.md describes it). Every parameter of every effect must be given
