@@ -185,6 +185,11 @@ class Search {
  public:
   Search(const Setting& setting, const FitOptions& options) : setting_(setting), options_(options) {
     z_.assign(setting.axes.size(), 0.0);
+    for (std::size_t i = 0; i < options.values.size(); ++i) {
+      const Axis& axis = setting.axes[i];
+      z_[i] = axis.z(
+          std::clamp(options.values[i], std::min(axis.low, axis.start), std::max(axis.high, axis.start)));
+    }
     const auto& events = *setting.events;
     ceres::Problem::Options owned;
     problem_ = std::make_unique<ceres::Problem>(owned);

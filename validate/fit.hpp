@@ -72,6 +72,7 @@ struct FitOptions {
   double tolerance = 1e-6;             ///< of the integration
   double enough = 1e-5;                ///< relative change of the cost at which the fit stops
   std::vector<EventState> start = {};  ///< of the events; empty: as prepared
+  std::vector<double> values = {};     ///< of the free parameters, to start from; empty: the plant's
 };
 
 /// Fits `free` parameters of the plant and every event's own state. A start that cannot be evaluated gives
