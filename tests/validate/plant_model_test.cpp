@@ -51,6 +51,17 @@ TEST_F(PlantModelTest, ReadsTheExample) {
   EXPECT_FALSE(m.conventions.speed_voltage);
   EXPECT_TRUE(m.plant.controls.empty());
 }
+TEST_F(PlantModelTest, ReadsLawsBesideIt) {
+  const std::string law = test::source("configs/laws/torque_voltage_dip.toml");
+  const std::string shaft =
+      "\n[shaft]\neffect = \"DIPTORQUE\"\nloss = 0.2\nthreshold = 0.1\ndepth = 0.3\nrecovery = 2.0\n";
+  const PlantModel m = load("laws = [\"" + law + "\"]\n" + example() + shaft);
+  ASSERT_EQ(m.plant.controls.size(), 1u);
+  EXPECT_EQ(m.plant.controls[0].effect->name, "DIPTORQUE");
+  EXPECT_EQ(m.plant.controls[0].p, (std::vector<double>{0.2, 0.1, 0.3, 2.0}));
+  EXPECT_THAT(faults("laws = [\"none.toml\"]\n" + example()),
+              ElementsAre(AllOf(HasSubstr("no readable law file"), HasSubstr("none.toml"))));
+}
 TEST_F(PlantModelTest, EveryParameterMustBeThere) {
   EXPECT_THAT(faults(replaced(example(), "Xqp = 0.6\n", "")), ElementsAre(HasSubstr("machine.Xqp")));
 }
