@@ -35,7 +35,7 @@ int make(const Options& o) {
   settle_plan(plan, config, o.out);
   const auto [part, parts] = read_part(o.part);
   const auto begin = std::chrono::steady_clock::now();
-  int made = 0, there = 0;
+  int made = 0, there = 0, failed = 0;
   for (std::size_t k = 0; k < plan.cases.size(); ++k) {
     if (static_cast<int>(k % static_cast<std::size_t>(parts)) != part - 1) continue;
     const std::string name = case_name(k);
@@ -45,16 +45,21 @@ int make(const Options& o) {
       continue;
     }
     const auto start = std::chrono::steady_clock::now();
-    const BlindCase one = make_blind_case(config, plan.cases[k]);
-    write_blind_case(one, config, name, folder, fs::path(o.out) / "truth" / (name + ".json"));
-    ++made;
-    fmt::print("{} of {}: {}, {} events, {:.1f} s\n", k + 1, plan.cases.size(), name, one.records.size(),
-               seconds_since(start));
+    try {
+      const BlindCase one = make_blind_case(config, plan.cases[k]);
+      write_blind_case(one, config, name, folder, fs::path(o.out) / "truth" / (name + ".json"));
+      ++made;
+      fmt::print("{} of {}: {}, {} events, {} draws, {:.1f} s\n", k + 1, plan.cases.size(), name,
+                 one.records.size(), one.attempts, seconds_since(start));
+    } catch (const InputError& error) {  // one kind that cannot be drawn does not stop a long run
+      ++failed;
+      fmt::print(stderr, "{} of {}: {}\n", k + 1, plan.cases.size(), error.what());
+    }
     std::fflush(stdout);
   }
-  fmt::print("made {} cases in {:.1f} s, {} were there already: {}\n", made, seconds_since(begin), there,
-             o.out);
-  return 0;
+  fmt::print("made {} cases in {:.1f} s, {} were there already, {} failed: {}\n", made, seconds_since(begin),
+             there, failed, o.out);
+  return failed == 0 ? 0 : 1;
 }
 
 int judge(const Options& o) {

@@ -30,6 +30,8 @@ class Maker {
     made_.spec = spec;
     made_.noise = config.noise[draw.below(config.noise.size())];
     made_.pmu_filter = draw.coin(config.filter_share);
+    for (const BlindKind* kind : spec.hidden)  // the instrument is what is in question
+      if (kind->side == "measurement") made_.pmu_filter = false;
     made_.channels = draw.coin(config.channels_share);
     made_.controlled = world_.controlled();
     made_.grid_name = world_.grid_name();

@@ -4,8 +4,6 @@
 
 namespace swingbank::validate {
 
-std::span<const sim::Effect> odd_effects() { return {}; }
-
 const sim::Effect* blind_effect(const std::string& name) {
   for (const auto& odd : odd_effects())
     if (odd.name == name) return &odd;
