@@ -67,11 +67,13 @@ struct Model {
     Vref,
     coefficients
   };
+  /// Efd is VB, about 10 pu, times what the states say, without another lag.
+  static constexpr double kSourceWeight = 10.0;
   enum X { Vm, xr, Va, xm };
-  static constexpr State states[] = {{"Vm", "pu", "measured voltage"},
-                                     {"xr", "pu", "integral of the voltage regulator"},
-                                     {"Va", "pu", "voltage regulator, lagged"},
-                                     {"xm", "pu", "integral of the inner regulator"}};
+  static constexpr State states[] = {{"Vm", "pu", "measured voltage", kSourceWeight},
+                                     {"xr", "pu", "integral of the voltage regulator", kSourceWeight},
+                                     {"Va", "pu", "voltage regulator, lagged", kSourceWeight},
+                                     {"xm", "pu", "integral of the inner regulator", kSourceWeight}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
