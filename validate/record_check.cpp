@@ -20,6 +20,8 @@ bool within(double x, double low, double high) { return x >= low && x <= high; }
 /// Is x near target, to a share of it?
 bool near(double x, double target, double share) { return std::abs(x - target) <= share * std::abs(target); }
 
+double square(double x) { return x * x; }
+
 class Check {
  public:
   Check(const Record& record, const PlantFacts& plant) : r_(record), plant_(plant) {}
@@ -299,10 +301,6 @@ class Check {
          [](const Reading& x) {
            return Reading{x.V, x.theta / kDegree, x.P, x.Q};
          }},
-        {"angle_sign", "with the angle's sign changed they fit", "change the sign of theta",
-         [](const Reading& x) {
-           return Reading{x.V, -x.theta, x.P, x.Q};
-         }},
         {"q_sign", "with the sign of Q changed they fit", "change the sign of Q",
          [](const Reading& x) {
            return Reading{x.V, x.theta, x.P, -x.Q};
@@ -320,15 +318,18 @@ class Check {
                        delay > 0 ? "after" : "before"),
            "they were stamped by different clocks or filters", "shift them so that they jump together");
     const JumpFit as_is = fit_jumps(r_, jumps_, delay, [](const Reading& x) { return x; });
-    if (!(as_is.misfit >= 0)) return;
-    // Sound records leave below 0.03 (tests/validate/record_check_test.cpp).
-    const bool fits = as_is.reactance > 0 && as_is.misfit < 0.06;
+    // A jump is a combination of four samples that carries five times the variance of one.
+    const double noise = 10 * square(signals_.V.noise) / as_is.voltage +
+                         5 * (square(signals_.P.noise) + square(signals_.Q.noise)) / as_is.current;
+    if (!(as_is.misfit >= 0) || !(noise < 0.01)) return;
+    // Sound records leave below 0.01 (tests/validate/record_check_sound_test.cpp).
+    const bool fits = as_is.reactance > 0 && as_is.misfit < 0.03;
     if (fits) {
       reactance(as_is.reactance * plant_.mva / r_.base.mva);
       return;
     }
     const Mistake* best = nullptr;
-    double least = std::min(0.05, as_is.reactance > 0 ? as_is.misfit / 4 : 1);
+    double least = std::min(0.02, as_is.reactance > 0 ? as_is.misfit / 4 : 1);
     for (const auto& m : mistakes()) {
       const JumpFit fit = fit_jumps(r_, jumps_, delay, m.reinterpret);
       // Of two that do about as well the commoner mistake, which stands first.

@@ -27,7 +27,8 @@ using Reinterpret = std::function<Reading(const Reading&)>;
 /// What the jumps say under one reading, from dV = -jX dI by least squares.
 struct JumpFit {
   double reactance = 0;  ///< X [pu on the record's base], current out of the machine; X'' if all is well
-  double misfit = 1;     ///< share of sum |dV|^2 that this leaves: about 0.01 for sound records
+  double misfit = 1;     ///< share of sum |dV|^2 that this leaves: below 0.01 for sound records
+  double voltage = 0, current = 0;  ///< mean |dV|^2 and |dI|^2 of a jump [pu^2]
 };
 /// P and Q are taken `delay` samples later than the voltage. NaN where there is nothing to divide by.
 JumpFit fit_jumps(const Record& record, const std::vector<Jump>& jumps, int delay,

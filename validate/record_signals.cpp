@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 #include <span>
@@ -44,6 +45,7 @@ void find_noise(const std::vector<double>& y, double rate, SignalFacts& facts) {
   for (std::size_t k = 0; k + width <= y.size(); k += std::max<std::size_t>(width / 2, 1))
     quietest = std::min(quietest, fit_line(std::span(y).subspan(k, width)).spread);
   facts.white = median_of(std::move(second)) / kSecondDifference;
+  facts.quietest = quietest;
   facts.noise = std::max(facts.white, quietest);
 }
 
@@ -59,6 +61,19 @@ std::size_t leaves(const std::vector<double>& y, double level, double reach) {
   return y.size();
 }
 
+/// The event begins before its first clear jump where that is smeared, or an earlier one too small: the first
+/// step of the voltage within half a second that stands out from those before.
+std::size_t step_before(const Record& r, std::size_t jump) {
+  std::vector<double> steps;
+  for (std::size_t k = 0; k < jump; ++k)
+    steps.push_back(std::abs(std::polar(r.V[k + 1], r.theta[k + 1]) - std::polar(r.V[k], r.theta[k])));
+  const double limit = std::max(10 * median_in(steps), 0.002);
+  const auto back = static_cast<std::size_t>(0.5 * r.rate());
+  for (std::size_t k = jump > back ? jump - back : 0; k < jump; ++k)
+    if (steps[k] > limit) return k;
+  return jump;
+}
+
 /// Where the event begins: before the first jump, or where a channel first leaves the noise about its first
 /// samples.
 void find_event(const Record& r, Signals& s) {
@@ -66,7 +81,7 @@ void find_event(const Record& r, Signals& s) {
   const std::size_t n = r.t.size();
   if (!jumps.empty()) {
     s.event = true;
-    s.onset = jumps.front().before;
+    s.onset = step_before(r, jumps.front().before);
     s.last = jumps.back().before;
     return;
   }
@@ -83,8 +98,10 @@ void find_event(const Record& r, Signals& s) {
   s.onset = s.last = first > 0 && first < n ? first - 1 : 0;
 }
 
-void describe(const std::vector<double>& y, const Signals& s, SignalFacts& facts) {
-  const auto before = s.event ? until(y, s.onset) : std::span<const double>(y);
+void describe(const Record& r, const std::vector<double>& y, const Signals& s, SignalFacts& facts) {
+  // Measuring windows reach over the event: leave out 50 ms before it.
+  const auto guard = static_cast<std::size_t>(std::ceil(0.05 * r.rate()));
+  const auto before = s.event ? until(y, s.onset > guard ? s.onset - guard : 0) : std::span<const double>(y);
   facts.level = median_in(before);
   for (const double v : y) facts.reach = std::max(facts.reach, std::abs(v - facts.level));
   if (before.size() < 10) return;
@@ -166,7 +183,7 @@ void describe_angle(const Record& r, Signals& s) {
 }
 
 void find_holds(const Record& r, Signals& s) {
-  if (!(s.P.noise > 1e-6)) return;  // without noise standing still is no sign of anything
+  if (!(s.P.quietest > 2e-5)) return;  // without noise standing still is no sign of anything
   std::size_t run = 0;
   for (std::size_t k = 1; k < r.t.size(); ++k) {
     const bool same =
@@ -192,9 +209,9 @@ Signals record_signals(const Record& r) {
   find_noise(r.P, rate, s.P);
   find_noise(r.Q, rate, s.Q);
   find_event(r, s);
-  describe(r.V, s, s.V);
-  describe(r.P, s, s.P);
-  describe(r.Q, s, s.Q);
+  describe(r, r.V, s, s.V);
+  describe(r, r.P, s, s.P);
+  describe(r, r.Q, s, s.Q);
   describe_angle(r, s);
   find_holds(r, s);
   return s;

@@ -11,7 +11,8 @@ namespace swingbank::validate {
 struct SignalFacts {
   double level = 0;        ///< median before the event (of the whole record where there is none)
   double white = 0;        ///< standard deviation of noise that changes from sample to sample
-  double noise = 0;        ///< the larger of that and of the spread of the quietest second
+  double quietest = 0;     ///< spread of the quietest second
+  double noise = 0;        ///< the larger of both
   double reach = 0;        ///< largest distance from the level
   double drift = 0;        ///< of a straight line through the samples before the event, over their length
   double drift_error = 0;  ///< its standard error
