@@ -53,6 +53,8 @@ struct Setting {
   const std::vector<FitEvent>* events;
   std::vector<Axis> axes;
   double tolerance;
+  InputKind input;
+  std::vector<std::vector<double>> knots;  ///< of the input, per event [s]
 };
 
 sim::Plant moved(const Setting& s, const double* z) {
@@ -76,12 +78,14 @@ bool possible(const sim::Plant& plant) {
 /// Residuals of one event; parameter blocks: z of the plant (absent if none is free), state of the event.
 class EventCost : public ceres::CostFunction {
  public:
-  EventCost(const Setting& setting, std::size_t event) : setting_(setting), event_((*setting.events)[event]) {
+  EventCost(const Setting& setting, std::size_t event)
+      : setting_(setting), event_((*setting.events)[event]), knots_(setting.knots[event]) {
     set_num_residuals(event_.values());
     if (!setting.axes.empty())
       mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(setting.axes.size()));
-    mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(event_.switchings.size()) + kStates);
+    mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(state_size()));
   }
+  [[nodiscard]] std::size_t state_size() const { return event_.switchings.size() + kStates + knots_.size(); }
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     const bool has_axes = !setting_.axes.empty();
     const double* z = has_axes ? blocks[0] : nullptr;
@@ -107,7 +111,7 @@ class EventCost : public ceres::CostFunction {
       const Response r = drive(with, along);
       write(r.value, true, residuals, 1, 0);
       const int nz = static_cast<int>(setting_.axes.size());
-      const int ns = static_cast<int>(event_.switchings.size()) + kStates;
+      const int ns = static_cast<int>(state_size());
       for (std::size_t d = 0; d < along.size(); ++d)
         if (d < states_at)
           write(r.slopes[d].value, false, by_z, nz, static_cast<int>(d));
@@ -130,6 +134,10 @@ class EventCost : public ceres::CostFunction {
     run.angle = kStateScale[2] * s[2];
     run.speed = kStateScale[3] * s[3];
     run.tolerance = setting_.tolerance;
+    if (setting_.input == InputKind::none) return run;
+    PiecewiseLinear& input = setting_.input == InputKind::torque ? run.torque : run.field;
+    input.t = knots_;
+    input.value.assign(s + kStates, s + kStates + knots_.size());
     return run;
   }
 
@@ -138,6 +146,8 @@ class EventCost : public ceres::CostFunction {
     for (std::size_t k = 0; k < event_.switchings.size(); ++k)
       along.push_back({Kind::switching, 0, static_cast<int>(k), kSwitchScale});
     for (int k = 0; k < kStates; ++k) along.push_back({kStateKind[k], 0, 0, kStateScale[k]});
+    const Kind kind = setting_.input == InputKind::torque ? Kind::torque : Kind::field;
+    for (std::size_t k = 0; k < knots_.size(); ++k) along.push_back({kind, 0, static_cast<int>(k), 1.0});
   }
   /// Whitened values (less the measured ones) into column `column` of a matrix of `stride` columns.
   void write(const std::vector<double>* values, bool less_measured, double* to, int stride,
@@ -157,19 +167,51 @@ class EventCost : public ceres::CostFunction {
 
   const Setting& setting_;
   const FitEvent& event_;
+  const std::vector<double>& knots_;
 };
 
-/// (z - 0)/spread, one residual each.
+/// Bends of an input that begins at `first` of the event's state, in units of `bend`; the first knot and the
+/// first slope count as bends from zero, so that nothing is inferred before it is needed.
+class Bends : public ceres::CostFunction {
+ public:
+  Bends(std::size_t size, std::size_t first, double bend) : size_(size), first_(first), weight_(1 / bend) {
+    set_num_residuals(static_cast<int>(size - first));
+    mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(size));
+  }
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    const double* u = blocks[0] + first_;
+    const std::size_t n = size_ - first_;
+    double* j = jacobians ? jacobians[0] : nullptr;
+    if (j) std::fill(j, j + n * size_, 0.0);
+    for (std::size_t k = 0; k < n; ++k) {
+      const double one = k >= 1 ? u[k - 1] : 0.0, two = k >= 2 ? u[k - 2] : 0.0;
+      residuals[k] = weight_ * (u[k] - 2 * one + two);
+      if (!j) continue;
+      double* row = j + k * size_ + first_;
+      row[k] = weight_;
+      if (k >= 1) row[static_cast<std::ptrdiff_t>(k) - 1] = -2 * weight_;
+      if (k >= 2) row[static_cast<std::ptrdiff_t>(k) - 2] = weight_;
+    }
+    return true;
+  }
+
+ private:
+  std::size_t size_, first_;
+  double weight_;
+};
+
+/// z/spread, one residual each, in units of the misfit reached.
 class Belief : public ceres::CostFunction {
  public:
-  explicit Belief(std::vector<double> spread) : spread_(std::move(spread)) {
+  Belief(std::vector<double> spread, const double* discrepancy)
+      : spread_(std::move(spread)), discrepancy_(discrepancy) {
     set_num_residuals(static_cast<int>(spread_.size()));
     mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(spread_.size()));
   }
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     const std::size_t n = spread_.size();
     for (std::size_t i = 0; i < n; ++i) {
-      const double weight = spread_[i] > 0 ? 1 / spread_[i] : 0.0;
+      const double weight = spread_[i] > 0 ? std::sqrt(*discrepancy_) / spread_[i] : 0.0;
       residuals[i] = weight * blocks[0][i];
       if (jacobians && jacobians[0])
         for (std::size_t j = 0; j < n; ++j) jacobians[0][i * n + j] = i == j ? weight : 0.0;
@@ -179,6 +221,7 @@ class Belief : public ceres::CostFunction {
 
  private:
   std::vector<double> spread_;
+  const double* discrepancy_;
 };
 
 class Search {
@@ -193,9 +236,7 @@ class Search {
     const auto& events = *setting.events;
     ceres::Problem::Options owned;
     problem_ = std::make_unique<ceres::Problem>(owned);
-    for (std::size_t e = 0; e < events.size(); ++e) {
-      states_.emplace_back(start_of(e));
-    }
+    for (std::size_t e = 0; e < events.size(); ++e) states_.push_back(start_of(e));
     for (std::size_t e = 0; e < events.size(); ++e) add_event(e);
     if (!z_.empty()) add_beliefs();
   }
@@ -207,8 +248,42 @@ class Search {
       fit.failed = reason();
       return fit;
     }
+    for (int left = options_.iterations; left > 0;) {
+      const double before = discrepancy_ = misfit();
+      const int most = before > kClose ? std::min(left, kRound) : left;
+      fit.converged = solve(most, fit.iterations);
+      left = options_.iterations - fit.iterations;
+      if (before <= kClose || (fit.converged && misfit() > 0.9 * before)) break;
+    }
+    fit.plant = moved(setting_, z_.data());
+    collect_events(fit);
+    collect_parameters(fit);
+    return fit;
+  }
+
+ private:
+  static constexpr double kClose = 1.5;  ///< misfit at which beliefs count as they stand
+  static constexpr int kRound = 4;       ///< iterations between two looks at the misfit
+
+  /// chi2 per value, at least 1.
+  double misfit() const {
+    double chi2 = 0;
+    int values = 0;
+    for (std::size_t e = 0; e < costs_.size(); ++e) {
+      std::vector<double> residual(static_cast<std::size_t>(costs_[e]->num_residuals()));
+      std::vector<const double*> blocks;
+      if (!z_.empty()) blocks.push_back(z_.data());
+      blocks.push_back(states_[e].data());
+      if (!costs_[e]->Evaluate(blocks.data(), residual.data(), nullptr)) return 1.0;
+      for (const double r : residual) chi2 += r * r;
+      values += costs_[e]->num_residuals();
+    }
+    return std::max(1.0, chi2 / values);
+  }
+  /// One search of at most so many iterations; true if it converged.
+  bool solve(int iterations, int& done) {
     ceres::Solver::Options o;
-    o.max_num_iterations = options_.iterations;
+    o.max_num_iterations = iterations;
     o.function_tolerance = options_.enough;
     o.linear_solver_type = ceres::DENSE_SCHUR;
     o.logging_type = ceres::SILENT;
@@ -217,24 +292,21 @@ class Search {
     o.max_num_consecutive_invalid_steps = 12;
     ceres::Solver::Summary summary;
     ceres::Solve(o, problem_.get(), &summary);
-    fit.converged = summary.termination_type == ceres::CONVERGENCE;
-    fit.iterations = static_cast<int>(summary.iterations.size());
-    fit.plant = moved(setting_, z_.data());
-    collect_events(fit);
-    collect_parameters(fit);
-    return fit;
+    done += std::max(1, static_cast<int>(summary.iterations.size()) - 1);
+    return summary.termination_type == ceres::CONVERGENCE;
   }
 
- private:
   std::vector<double> start_of(std::size_t e) const {
     const FitEvent& event = (*setting_.events)[e];
-    std::vector<double> s(event.switchings.size() + kStates, 0.0);
+    std::vector<double> s(event.switchings.size() + kStates + setting_.knots[e].size(), 0.0);
     if (options_.start.empty()) return s;
     const EventState& from = options_.start[e];
     for (std::size_t k = 0; k < event.switchings.size(); ++k)
       s[k] = (from.switchings[k] - event.switchings[k].time) / kSwitchScale;
     const double values[kStates] = {from.P, from.Q, from.angle, from.speed};
     for (std::size_t k = 0; k < kStates; ++k) s[event.switchings.size() + k] = values[k] / kStateScale[k];
+    if (setting_.input != InputKind::none)
+      std::ranges::copy(from.input.value, s.end() - static_cast<std::ptrdiff_t>(from.input.value.size()));
     return s;
   }
   void add_event(std::size_t e) {
@@ -247,7 +319,11 @@ class Search {
     problem_->AddResidualBlock(cost, nullptr, blocks);
     std::vector<double> spread(event.switchings.size(), 0.0);
     spread.insert(spread.end(), std::begin(kStateBelief), std::end(kStateBelief));
-    problem_->AddResidualBlock(new Belief(spread), nullptr, {states_[e].data()});
+    spread.resize(states_[e].size(), 0.0);
+    problem_->AddResidualBlock(new Belief(spread, &discrepancy_), nullptr, {states_[e].data()});
+    if (const std::size_t first = event.switchings.size() + kStates; first < states_[e].size())
+      problem_->AddResidualBlock(new Bends(states_[e].size(), first, options_.bend), nullptr,
+                                 {states_[e].data()});
     // an instant on a sample would change sides with it
     const double edge = 1e-3 * event.record.step();
     std::vector<int> fixed;
@@ -272,7 +348,7 @@ class Search {
       problem_->SetParameterLowerBound(z_.data(), static_cast<int>(i), std::min(0.0, a.z(a.low)));
       problem_->SetParameterUpperBound(z_.data(), static_cast<int>(i), std::max(0.0, a.z(a.high)));
     }
-    problem_->AddResidualBlock(new Belief(spread), nullptr, {z_.data()});
+    problem_->AddResidualBlock(new Belief(spread, &discrepancy_), nullptr, {z_.data()});
   }
   /// Why the start cannot be evaluated.
   std::string reason() const {
@@ -306,11 +382,13 @@ class Search {
       f.state.Q = kStateScale[1] * s[1];
       f.state.angle = run.angle;
       f.state.speed = run.speed;
+      if (setting_.input != InputKind::none)
+        f.state.input = setting_.input == InputKind::torque ? run.torque : run.field;
       f.values = event.values();
       whiten(event, r, f);
       fit.chi2 += f.chi2;
       fit.values += f.values;
-      fit.fitted += static_cast<int>(states_[e].size());
+      fit.fitted += static_cast<int>(switchings.size()) + kStates;
       fit.events.push_back(std::move(f));
     }
     fit.fitted += static_cast<int>(z_.size());
@@ -376,12 +454,27 @@ class Search {
     const auto switchings = static_cast<Eigen::Index>((*setting_.events)[e].switchings.size());
     for (Eigen::Index k = 0; k < kStates; ++k)
       s(switchings + k, switchings + k) += 1 / (kStateBelief[k] * kStateBelief[k]);
+    add_bends(e, s);
     const Eigen::MatrixXd cross = by_state.transpose() * by_z;
     curvature += by_z.transpose() * by_z - cross.transpose() * s.ldlt().solve(cross);
   }
 
+  void add_bends(std::size_t e, Eigen::MatrixXd& s) const {
+    const std::size_t size = states_[e].size(), first = size - setting_.knots[e].size();
+    if (first == size) return;
+    const Bends bends(size, first, options_.bend);
+    using Row = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    Row j(size - first, size);
+    std::vector<double> unused(size - first);
+    const double* blocks[] = {states_[e].data()};
+    double* jacobians[] = {j.data()};
+    bends.Evaluate(blocks, unused.data(), jacobians);
+    s += j.transpose() * j;
+  }
+
   const Setting& setting_;
   const FitOptions& options_;
+  double discrepancy_ = 1.0;
   std::vector<double> z_;
   std::vector<std::vector<double>> states_;
   std::vector<EventCost*> costs_;
@@ -433,7 +526,10 @@ std::vector<FreeParameter> free_parameters(const sim::Plant& plant, double sprea
 
 Fit fit(const sim::Plant& plant, const sim::Conventions& conventions, const std::vector<FitEvent>& events,
         const std::vector<FreeParameter>& free, const FitOptions& options) {
-  Setting setting{&plant, &conventions, &events, {}, options.tolerance};
+  Setting setting{&plant, &conventions, &events, {}, options.tolerance, options.input, {}};
+  setting.knots.resize(events.size());
+  if (options.input != InputKind::none)
+    for (std::size_t e = 0; e < events.size(); ++e) setting.knots[e] = options.start[e].input.t;
   for (const auto& f : free) setting.axes.push_back(make_axis(plant, f));
   return Search(setting, options).run();
 }

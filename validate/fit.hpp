@@ -28,10 +28,14 @@ const sim::Parameter& parameter_record(const sim::Plant& plant, int block, int i
 const sim::Effect& block_effect(const sim::Plant& plant, int block);
 double& parameter_value(sim::Plant& plant, int block, int index);
 
+/// An input that no model makes, free in time.
+enum class InputKind { none, torque, field };
+
 /// What belongs to one event.
 struct EventState {
   std::vector<double> switchings;             ///< [s]
   double P = 0, Q = 0, angle = 0, speed = 0;  ///< offsets of the operating point and of the first states
+  PiecewiseLinear input = {};                 ///< what was added to Tm or Efd [pu]
 };
 
 struct EventFit {
@@ -73,10 +77,15 @@ struct FitOptions {
   double enough = 1e-5;                ///< relative change of the cost at which the fit stops
   std::vector<EventState> start = {};  ///< of the events; empty: as prepared
   std::vector<double> values = {};     ///< of the free parameters, to start from; empty: the plant's
+  InputKind input = InputKind::none;   ///< fitted too, on the knots of `start`'s inputs
+  double bend = 0.01;                  ///< second difference that the input is believed to have [pu]
 };
 
 /// Fits `free` parameters of the plant and every event's own state. A start that cannot be evaluated gives
-/// `failed`; parameters that cannot be are never reached, the search turns back.
+/// `failed`; parameters that cannot be are never reached, the search turns back. While the structure is wrong
+/// the misfit is large, and beliefs would count for nothing: parameters would be bent out of all reason to
+/// mimic what is missing. So beliefs weigh as if the noise were as large as the misfit reached, and give way
+/// as it falls.
 Fit fit(const sim::Plant& plant, const sim::Conventions& conventions, const std::vector<FitEvent>& events,
         const std::vector<FreeParameter>& free, const FitOptions& options = {});
 
