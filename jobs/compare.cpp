@@ -7,9 +7,12 @@
 #include <map>
 
 #include "validate/compare_report.hpp"
+#include "validate/record_check.hpp"
 #include "validate/write_file.hpp"
 
 namespace {
+
+constexpr int kNotAdequate = 3;  // exit code
 
 using namespace swingbank;
 using namespace swingbank::validate;
@@ -74,6 +77,21 @@ void check_names(const std::vector<Record>& records) {
   problems.raise();
 }
 
+/// Warnings of each record's check. Throws InputError with the refusals of all of them.
+std::vector<std::vector<std::string>> check_records(const std::vector<Record>& records,
+                                                    const PlantModel& model) {
+  std::vector<std::vector<std::string>> warnings(records.size());
+  Problems refusals;
+  for (std::size_t i = 0; i < records.size(); ++i)
+    for (const auto& [kind, severity, p] : check_record(records[i], plant_facts(model)))
+      if (severity == Severity::refuse)
+        refusals.add(p.what, p.where, p.why, p.remedy);
+      else
+        warnings[i].push_back(p.sentence());
+  refusals.raise();
+  return warnings;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -83,7 +101,8 @@ int main(int argc, char** argv) {
   bool json = false;
   CompareOptions options;
   app.add_option("--model", model_file, "plant file (configs/plants/README.md)")->required();
-  app.add_option("--record", record_files, "record (CSV); may be given several times")->required();
+  app.add_option("--records,--record", record_files, "records (CSV, COMTRADE or HDF5), one or several")
+      ->required();
   app.add_option("--switch", switches,
                  "switching instant [s], or FILE=instant; default: found by the voltage's jumps and fitted");
   app.add_flag("!--no-fit", options.fit_switchings,
@@ -93,6 +112,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--pre-event", options.play_in.pre_event, "steady stretch of records without switching [s]")
       ->capture_default_str();
+  app.add_option("--until", options.play_in.until, "leave out what comes later [s]");
   app.add_option("--out", out, "folder for report.html, compare.json and the curves as CSV")
       ->capture_default_str();
   app.add_flag("--json", json, "print the result as JSON instead of tables");
@@ -105,6 +125,7 @@ int main(int argc, char** argv) {
     const PlantModel model = load_plant_model(model_file);
     std::vector<Record> records = read_records(record_files, model.record_base);
     check_names(records);
+    const auto warnings = check_records(records, model);
     std::vector<std::string> names;
     names.reserve(records.size());
     for (const auto& r : records) names.push_back(r.name);
@@ -114,19 +135,24 @@ int main(int argc, char** argv) {
       const auto given = instants.find(record.name);
       options.switchings = given == instants.end() ? std::vector<double>{} : given->second;
       events.push_back(compare_event(model, std::move(record), options));
+      auto& notes = events.back().notes;
+      const auto& warned = warnings[events.size() - 1];
+      notes.insert(notes.begin(), warned.begin(), warned.end());
     }
+    const Adequacy adequacy = judge(events);
     const Provenance rows = provenance(model, events, joined(argc, argv));
     const std::filesystem::path folder = out;
     for (const auto& e : events)
       write_file(folder / ("playback-" + std::filesystem::path(e.record.name).stem().string() + ".csv"),
                  csv_playback(e));
-    write_file(folder / "compare.json", json_report(model, events, rows));
-    write_file(folder / "report.html", html_report(model, events, rows));
+    write_file(folder / "compare.json", json_report(model, events, adequacy, rows));
+    write_file(folder / "report.html", html_report(model, events, adequacy, rows));
     if (json)
-      fmt::print("{}", json_report(model, events, rows));
+      fmt::print("{}", json_report(model, events, adequacy, rows));
     else
-      fmt::print("{}\nreport: {}\n", terminal_report(model, events), (folder / "report.html").string());
-    return 0;
+      fmt::print("{}\nreport: {}\n", terminal_report(model, events, adequacy),
+                 (folder / "report.html").string());
+    return adequacy.adequate ? 0 : kNotAdequate;
   } catch (const InputError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 1;

@@ -6,12 +6,18 @@
 #include <cmath>
 #include <limits>
 
+#include "validate/error_map_table.hpp"
+#include "validate/fit_event.hpp"
+
 namespace swingbank::validate {
 namespace {
 
 /// Rounding of a file with 8 digits leaves residuals of this size; below it there is no noise to compare
 /// with.
 constexpr double kNoNoise = 1e-7;
+/// Interpolation leaves as much of the speed [pu]: what 1e-4 pu of P, wrong for a tenth of a second, does to
+/// a machine of H = 1 s.
+constexpr double kLeastSpeedNoise = 5e-6;
 
 WindowError measure(const std::vector<double>& t, const std::vector<double>& residual, const Window& window,
                     bool first, double noise) {
@@ -41,20 +47,33 @@ double spread(const std::vector<double>& values, int n) {
   return s > kNoNoise ? s : 0.0;
 }
 
-ChannelComparison compare_channel(std::string name, std::string unit, const std::vector<double>& measured,
+struct Channel {
+  std::string name, unit;
+  double scale;         ///< units in 1 pu
+  double floor;         ///< what the computation leaves where a record has no noise [pu]
+  bool starts_at_mean;  ///< the model starts at this channel's pre-event mean
+};
+
+ChannelComparison compare_channel(const Channel& channel, const std::vector<double>& measured,
                                   const std::vector<double>& modelled, const EventComparison& event) {
   ChannelComparison c;
-  c.name = std::move(name);
-  c.unit = std::move(unit);
+  c.name = channel.name;
+  c.unit = channel.unit;
+  c.scale = channel.scale;
   c.measured = measured;
   c.modelled = modelled;
   c.residual.resize(measured.size());
   std::ranges::transform(modelled, measured, c.residual.begin(), std::minus<>());
-  c.noise = spread(c.residual, event.playback.start.samples);
+  const int quiet = event.playback.start.samples;
+  c.noise = spread(c.residual, quiet);
   const auto& t = event.record.t;
   c.whole = measure(t, c.residual, {"whole record", t.front(), t.back()}, true, c.noise);
   for (std::size_t w = 0; w < event.windows.size(); ++w)
     c.windows.push_back(measure(t, c.residual, event.windows[w], w == 0, c.noise));
+  const std::span<const double> all(c.residual);
+  c.map = error_map(t, all, event.windows,
+                    estimate_noise(all.first(static_cast<std::size_t>(quiet)), channel.floor),
+                    {.quiet = quiet, .starts_at_mean = channel.starts_at_mean});
   return c;
 }
 
@@ -65,8 +84,16 @@ void play(const PlantModel& model, const PlayInOptions& options, EventComparison
   e.playback = play_in(model.plant, model.conventions, e.record, curve, options);
   e.windows = event_windows(e.record, e.switchings, options.pre_event);
   e.channels.clear();
-  e.channels.push_back(compare_channel("P", "MW", e.record.P, e.playback.P, e));
-  e.channels.push_back(compare_channel("Q", "Mvar", e.record.Q, e.playback.Q, e));
+  const RecordBase& base = e.record.base;
+  const auto add = [&](const Channel& channel, const std::vector<double>& measured,
+                       const std::vector<double>& modelled) {
+    if (!measured.empty()) e.channels.push_back(compare_channel(channel, measured, modelled, e));
+  };
+  add({"P", "MW", base.mva, kLeastNoise, true}, e.record.P, e.playback.P);
+  add({"Q", "Mvar", base.mva, kLeastNoise, true}, e.record.Q, e.playback.Q);
+  add({"speed", "mHz", 1e3 * base.frequency, kLeastSpeedNoise, false}, e.record.speed, e.playback.speed);
+  add({"Efd", "pu", 1, kLeastNoise, false}, e.record.Efd, e.playback.Efd);
+  add({"Ifd", "pu", 1, kLeastNoise, false}, e.record.Ifd, e.playback.Ifd);
 }
 
 /// With the fitted instants nothing but noise is left in any window. If more is left, the model lacks
@@ -75,9 +102,51 @@ bool explained(const EventComparison& e) {
   constexpr double kWithin = 2;       // rms of a window in units of the noise
   constexpr double kSmooth = 2.5e-4;  // pu; what interpolation leaves where a record has no noise
   for (const auto& c : e.channels)
-    for (const auto& w : c.windows)
-      if (w.rms > kWithin * std::max(c.noise, kSmooth)) return false;
+    if (c.name == "P" || c.name == "Q")
+      for (const auto& w : c.windows)
+        if (w.rms > kWithin * std::max(c.noise, kSmooth)) return false;
   return true;
+}
+
+/// The record without what comes after `last`. Throws InputError if too little is left.
+Record until(Record r, double last) {
+  const auto kept =
+      static_cast<std::size_t>(std::ranges::upper_bound(r.t, last + 1e-4 * r.step()) - r.t.begin());
+  if (kept == r.t.size()) return r;
+  if (kept < kFewestSamples)
+    throw InputError({fmt::format("{} samples", kept), r.name,
+                      fmt::format("--until {:g} s leaves fewer than {}", last, kFewestSamples),
+                      "give a later --until"});
+  for (auto* channel :
+       {&r.t, &r.V, &r.theta, &r.P, &r.Q, &r.f, &r.speed, &r.Efd, &r.Ifd, &r.theta_as_written})
+    if (!channel->empty()) channel->resize(kept);
+  return r;
+}
+
+/// One cell of all maps, and what it is called.
+struct NamedCell {
+  const EventComparison* event;
+  const ChannelComparison* channel;
+  std::string where;
+  const MapCell* cell;
+};
+std::vector<NamedCell> all_cells(const std::vector<EventComparison>& events) {
+  std::vector<NamedCell> all;
+  for (const auto& e : events)
+    for (const auto& c : e.channels) {
+      const auto add = [&](const std::string& where, const MapCell& cell) {
+        if (!cell.empty()) all.push_back({&e, &c, where, &cell});
+      };
+      add("over the whole record", c.map.whole);
+      for (std::size_t w = 0; w < c.map.rows.size(); ++w) {
+        const auto& row = c.map.rows[w];
+        add("in the window “" + e.windows[w].name + "”", row.all);
+        for (std::size_t b = 0; b < row.bands.size(); ++b)
+          add(fmt::format("in the window “{}” at {}", e.windows[w].name, error_bands()[b].name),
+              row.bands[b]);
+      }
+    }
+  return all;
 }
 
 std::string describe_fit(const EventComparison& e, bool tried) {
@@ -131,7 +200,7 @@ std::vector<Window> event_windows(const Record& record, const std::vector<Switch
 
 EventComparison compare_event(const PlantModel& model, Record record, const CompareOptions& options) {
   EventComparison e;
-  e.record = std::move(record);
+  e.record = until(std::move(record), options.play_in.until);
   e.detected = options.switchings.empty();
   if (e.detected)
     e.switchings = detect_switchings(e.record, options.jump_threshold);
@@ -148,6 +217,35 @@ EventComparison compare_event(const PlantModel& model, Record record, const Comp
   }
   explain(e, options.fit_switchings);
   return e;
+}
+
+Adequacy judge(std::vector<EventComparison>& events) {
+  std::vector<ErrorMap*> maps;
+  for (auto& e : events)
+    for (auto& c : e.channels) maps.push_back(&c.map);
+  set_bounds(maps, kFalseAlarm);
+  Adequacy a;
+  const NamedCell* worst = nullptr;
+  const auto cells = all_cells(events);
+  for (const auto& named : cells) {
+    ++a.cells;
+    a.exceeding += named.cell->exceeds() ? 1 : 0;
+    if (!worst || named.cell->in_noise / named.cell->bound > worst->cell->in_noise / worst->cell->bound)
+      worst = &named;
+  }
+  a.adequate = a.exceeding == 0;
+  a.sentence =
+      a.adequate
+          ? fmt::format("Adequate: each of {} cells is within what noise alone allows", a.cells)
+          : fmt::format("Not adequate: {} of {} cells exceed what noise alone allows", a.exceeding, a.cells);
+  a.sentence += fmt::format(" (with probability {:g} % for all of them together).", 100 * (1 - kFalseAlarm));
+  if (worst)
+    a.sentence +=
+        fmt::format(" {}: {} {} of {}, RMS {:.3g} {}, {} noise where {} is allowed.",
+                    a.adequate ? "Nearest to its bound" : "Furthest off", worst->channel->name, worst->where,
+                    worst->event->record.name, worst->cell->rms * worst->channel->scale, worst->channel->unit,
+                    times_noise(worst->cell->in_noise), times_noise(worst->cell->bound));
+  return a;
 }
 
 }  // namespace swingbank::validate

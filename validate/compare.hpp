@@ -18,11 +18,13 @@ struct WindowError {
   double in_noise = 0;             ///< rms / noise; NaN where the record has no noise
 };
 struct ChannelComparison {
-  std::string name, unit;                            ///< "P" in "MW", "Q" in "Mvar"
-  std::vector<double> measured, modelled, residual;  ///< [pu on the record's base]
+  std::string name, unit;                            ///< "P" in "MW", "speed" in "mHz"
+  double scale = 1;                                  ///< units in 1 pu
+  std::vector<double> measured, modelled, residual;  ///< [pu]
   double noise = 0;                  ///< standard deviation of the pre-event residual [pu]; 0: none to see
   WindowError whole;                 ///< the whole record
   std::vector<WindowError> windows;  ///< one per window of the event
+  ErrorMap map;                      ///< per window and band; bounds are set by judge()
 };
 struct EventComparison {
   Record record;
@@ -31,7 +33,7 @@ struct EventComparison {
   bool fitted = false;    ///< and moved within their sample intervals
   std::vector<Window> windows;
   Playback playback;
-  std::vector<ChannelComparison> channels;  ///< P, Q
+  std::vector<ChannelComparison> channels;  ///< P, Q, and speed, Efd, Ifd where they are recorded
   std::vector<std::string> notes;  ///< what a reader must know: uncertain instants, drift, columns left out
 };
 
@@ -42,7 +44,7 @@ struct CompareOptions {
   /// but noise is left then; a model that lacks something would bend them. Otherwise the middle of the
   /// interval stays.
   bool fit_switchings = true;
-  PlayInOptions play_in;
+  PlayInOptions play_in;  ///< samples after its `until` are left out of the comparison
 };
 
 /// pre-event, fault, 0-1 s, 1-5 s and > 5 s after the last switching; those that hold no sample are left out.
@@ -52,5 +54,19 @@ std::vector<Window> event_windows(const Record& record, const std::vector<Switch
 
 /// Plays the record into the model and measures what is left. Throws InputError as its parts do.
 EventComparison compare_event(const PlantModel& model, Record record, const CompareOptions& options = {});
+
+/// Noise alone exceeds any of the judged cells of an adequate model with this probability.
+constexpr double kFalseAlarm = 0.001;
+
+/// Is nothing but noise left?
+struct Adequacy {
+  bool adequate = false;
+  int cells = 0, exceeding = 0;  ///< of all maps, the whole records included
+  std::string sentence;          ///< verdict, criterion and the cell that is furthest off
+};
+/// Sets the bounds of all maps and judges by them: a model is adequate if every cell of every map, every
+/// window over all frequencies and every channel's whole record stays within what noise allows, with
+/// probability 1 - kFalseAlarm for all of them together.
+Adequacy judge(std::vector<EventComparison>& events);
 
 }  // namespace swingbank::validate

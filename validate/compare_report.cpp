@@ -6,37 +6,17 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "validate/error_map_table.hpp"
+
 namespace swingbank::validate {
 namespace {
 
-double scale(const EventComparison& e) { return e.record.base.mva; }
-
-std::string ratio_text(double in_noise) {
-  if (!std::isfinite(in_noise)) return "–";
-  return in_noise < 9.95 ? fmt::format("{:.1f} ×", in_noise) : fmt::format("{:.0f} ×", in_noise);
-}
-
-/// 1 × noise is as good as it gets (0), 30 × is beyond dispute (1); logarithmic between.
-double shade(double in_noise) {
-  return std::isfinite(in_noise) ? std::clamp(std::log(in_noise / 1.2) / std::log(25.0), 0.0, 1.0) : -1;
-}
-
-/// Every window name that occurs, in order of time.
-std::vector<std::string> window_names(const std::vector<EventComparison>& events) {
-  std::vector<std::string> names;
-  for (const char* name : {"pre-event", "fault", "0–1 s after", "1–5 s after", "> 5 s after"})
-    for (const auto& e : events)
-      if (std::ranges::find(e.windows, name, &Window::name) != e.windows.end()) {
-        names.emplace_back(name);
-        break;
-      }
-  return names;
-}
-
-const WindowError* find_window(const EventComparison& e, const ChannelComparison& c,
-                               const std::string& name) {
-  const auto w = std::ranges::find(e.windows, name, &Window::name);
-  return w == e.windows.end() ? nullptr : &c.windows[static_cast<std::size_t>(w - e.windows.begin())];
+std::vector<LabelledMap> maps_of(const std::vector<EventComparison>& events) {
+  std::vector<LabelledMap> maps;
+  for (const auto& e : events)
+    for (const auto& c : e.channels)
+      maps.push_back({e.record.name, c.name, c.unit, c.scale, &e.windows, &c.map});
+  return maps;
 }
 
 std::string describe_instants(const EventComparison& e) {
@@ -55,14 +35,14 @@ void add_event(Page& page, const EventComparison& e) {
   page.section(e.record.name);
   page.text(fmt::format(
       "{} samples at {:.6g} per second. Switching: {}. Start: P = {:.2f} MW, Q = {:.2f} Mvar, V = {:.4f} pu.",
-      e.record.samples(), e.record.rate(), describe_instants(e), e.playback.start.P * scale(e),
-      e.playback.start.Q * scale(e), std::abs(e.playback.start.voltage)));
+      e.record.samples(), e.record.rate(), describe_instants(e), e.playback.start.P * e.record.base.mva,
+      e.playback.start.Q * e.record.base.mva, std::abs(e.playback.start.voltage)));
   for (const auto& note : e.notes) page.note(note);
-  const auto in_units = [&](std::vector<double> v) {
-    for (auto& x : v) x *= scale(e);
-    return v;
-  };
   for (const auto& c : e.channels) {
+    const auto in_units = [&](std::vector<double> v) {
+      for (auto& x : v) x *= c.scale;
+      return v;
+    };
     Curves overlay{c.name + ", measured and modelled",
                    "t [s]",
                    c.name + " [" + c.unit + "]",
@@ -111,7 +91,11 @@ nlohmann::json to_json(const EventComparison& e) {
   for (const auto& s : e.switchings)
     j["switchings"].push_back({{"t_s", s.time}, {"uncertainty_s", s.uncertainty}});
   for (const auto& c : e.channels) {
-    nlohmann::json channel = {{"name", c.name}, {"noise_pu", c.noise}, {"whole", to_json(c.whole)}};
+    nlohmann::json channel = {{"name", c.name},
+                              {"unit", c.unit},
+                              {"units_in_pu", c.scale},
+                              {"noise_pu", c.noise},
+                              {"whole", to_json(c.whole)}};
     channel["windows"] = nlohmann::json::array();
     for (std::size_t w = 0; w < e.windows.size(); ++w) {
       auto window = to_json(c.windows[w]);
@@ -120,27 +104,10 @@ nlohmann::json to_json(const EventComparison& e) {
       window["to_s"] = e.windows[w].to;
       channel["windows"].push_back(window);
     }
+    channel["map"] = map_json(e.windows, c.map);
     j["channels"].push_back(channel);
   }
   return j;
-}
-
-/// The window in which the model is furthest off, in words.
-std::string finding(const std::vector<EventComparison>& events) {
-  const EventComparison* event = nullptr;
-  const ChannelComparison* channel = nullptr;
-  std::size_t window = 0;
-  for (const auto& e : events)
-    for (const auto& c : e.channels)
-      for (std::size_t w = 0; w < c.windows.size(); ++w)
-        if (std::isfinite(c.windows[w].in_noise) &&
-            (!channel || c.windows[w].in_noise > channel->windows[window].in_noise))
-          event = &e, channel = &c, window = w;
-  if (!channel) return {};
-  const auto& w = channel->windows[window];
-  return fmt::format("Furthest off: {} in the window “{}” of {}, RMS {:.3g} {}, {} the noise.", channel->name,
-                     event->windows[window].name, event->record.name, w.rms * scale(*event), channel->unit,
-                     ratio_text(w.in_noise));
 }
 
 /// Columns padded to the same width; counts characters, not bytes.
@@ -174,55 +141,42 @@ Table error_summary(const std::vector<EventComparison>& events) {
               {}};
   for (const auto& e : events)
     for (const auto& c : e.channels)
-      table.rows.push_back({e.record.name, c.name, fmt::format("{:.3f} {}", c.whole.rms * scale(e), c.unit),
-                            fmt::format("{:.5f}", c.whole.rms),
-                            fmt::format("{:.3f} {}", c.whole.worst * scale(e), c.unit),
+      table.rows.push_back({e.record.name, c.name, fmt::format("{:.3f} {}", c.whole.rms * c.scale, c.unit),
+                            fmt::format("{:.6f}", c.whole.rms),
+                            fmt::format("{:.3f} {}", c.whole.worst * c.scale, c.unit),
                             fmt::format("{:.3f} s", c.whole.worst_at),
-                            c.noise > 0 ? fmt::format("{:.3f} {}", c.noise * scale(e), c.unit) : "none",
-                            Cell(ratio_text(c.whole.in_noise), shade(c.whole.in_noise))});
+                            c.noise > 0 ? fmt::format("{:.3f} {}", c.noise * c.scale, c.unit) : "none",
+                            times_noise(c.map.whole.in_noise) + (c.map.whole.exceeds() ? " *" : "")});
   return table;
 }
 
-Table error_map(const std::vector<EventComparison>& events) {
-  Table table{
-      "RMS of the residual in each window, and how many times the noise that is. Noise is the spread of the "
-      "pre-event residual; "
-      "about 1 × means that nothing but noise is left.",
-      {"event", "channel"},
-      {}};
-  const auto names = window_names(events);
-  table.header.insert(table.header.end(), names.begin(), names.end());
-  for (const auto& e : events)
-    for (const auto& c : e.channels) {
-      std::vector<Cell> row = {e.record.name, c.name};
-      for (const auto& name : names) {
-        const auto* w = find_window(e, c, name);
-        if (!w)
-          row.emplace_back("–");
-        else
-          row.emplace_back(fmt::format("{:.3g} {} · {}", w->rms * scale(e), c.unit, ratio_text(w->in_noise)),
-                           shade(w->in_noise));
-      }
-      table.rows.push_back(std::move(row));
-    }
-  return table;
-}
+Table error_map(const std::vector<EventComparison>& events) { return map_table(maps_of(events)); }
 
-std::string terminal_report(const PlantModel& model, const std::vector<EventComparison>& events) {
+std::string terminal_report(const PlantModel& model, const std::vector<EventComparison>& events,
+                            const Adequacy& adequacy) {
   std::string out =
       fmt::format("{} ({}): measured against modelled\n\n", model.name, model.plant.machine.effect->name);
-  out += padded(error_summary(events)) + "\nRMS per window, and in units of the noise:\n" +
-         padded(error_map(events)) + "\n" + finding(events) + "\n";
+  const auto maps = maps_of(events);
+  out += padded(error_summary(events));
+  out += events.size() > 1 ? "\nIn units of noise, per window and band, worst of all events:\n" +
+                                 padded(worst_map_table(maps))
+                           : "\nIn units of noise, per window and band:\n" + padded(map_table(maps));
+  out += "* exceeds what noise alone allows\n";
   for (const auto& e : events) {
     out += fmt::format("\n{}: switching at {}\n", e.record.name, describe_instants(e));
     for (const auto& note : e.notes) out += "  note: " + note + "\n";
   }
-  return out;
+  return out + "\n" + adequacy.sentence + "\n";
 }
 
 std::string json_report(const PlantModel& model, const std::vector<EventComparison>& events,
-                        const Provenance& rows) {
-  nlohmann::json j = {{"format", "swingbank-compare-1"},
+                        const Adequacy& adequacy, const Provenance& rows) {
+  nlohmann::json j = {{"format", "swingbank-compare-2"},
+                      {"adequate", adequacy.adequate},
+                      {"verdict", adequacy.sentence},
+                      {"cells", adequacy.cells},
+                      {"cells_exceeding", adequacy.exceeding},
+                      {"false_alarm_probability", kFalseAlarm},
                       {"model",
                        {{"name", model.name},
                         {"file", model.origin},
@@ -237,26 +191,34 @@ std::string json_report(const PlantModel& model, const std::vector<EventComparis
 }
 
 std::string csv_playback(const EventComparison& e) {
-  std::string out = "t_s,V_pu,theta_rad,P_measured_pu,P_modelled_pu,Q_measured_pu,Q_modelled_pu\n";
-  for (std::size_t k = 0; k < e.record.t.size(); ++k)
-    out += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", e.record.t[k], e.record.V[k],
-                       e.record.theta[k], e.record.P[k], e.playback.P[k], e.record.Q[k], e.playback.Q[k]);
+  std::string out = "t_s,V_pu,theta_rad";
+  for (const auto& c : e.channels) out += fmt::format(",{0}_measured_pu,{0}_modelled_pu", c.name);
+  out += "\n";
+  for (std::size_t k = 0; k < e.record.t.size(); ++k) {
+    out += fmt::format("{:.9g},{:.9g},{:.9g}", e.record.t[k], e.record.V[k], e.record.theta[k]);
+    for (const auto& c : e.channels) out += fmt::format(",{:.9g},{:.9g}", c.measured[k], c.modelled[k]);
+    out += "\n";
+  }
   return out;
 }
 
 std::string html_report(const PlantModel& model, const std::vector<EventComparison>& events,
-                        const Provenance& rows) {
+                        const Adequacy& adequacy, const Provenance& rows) {
   Page page("Measured against modelled: " + model.name,
-            fmt::format("{} of {:g} MVA; the recorded terminal voltage is played into the model, and the P "
-                        "and Q it answers with are compared.",
+            fmt::format("{} of {:g} MVA; the recorded terminal voltage is played into the model, and what it "
+                        "answers with is compared.",
                         model.plant.machine.effect->name, model.plant.mva));
-  page.text(finding(events));
-  page.table(error_map(events));
+  page.verdict(adequacy.sentence, adequacy.adequate);
+  const auto maps = maps_of(events);
+  page.table(events.size() > 1 ? worst_map_table(maps) : map_table(maps));
   page.table(error_summary(events));
   page.text(
       "Drag across a chart to zoom in on a stretch of time (all charts of an event follow); double-click to "
       "see the whole record. The shaded band is the fault.");
-  for (const auto& e : events) add_event(page, e);
+  for (const auto& e : events) {
+    add_event(page, e);
+    if (events.size() > 1) page.table(map_table(maps_of({e})));
+  }
   page.provenance(rows);
   return page.html();
 }

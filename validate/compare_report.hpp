@@ -8,21 +8,22 @@
 
 namespace swingbank::validate {
 
-/// Error per event, channel and window: rows of the map, in MW or Mvar and in units of the noise.
+/// Error per event, channel, window and band in units of noise, and its RMS per window in units.
 Table error_map(const std::vector<EventComparison>& events);
 /// RMS, mean and largest error per event and channel over the whole record, with units.
 Table error_summary(const std::vector<EventComparison>& events);
 
-/// Both tables and the notes, for a terminal.
-std::string terminal_report(const PlantModel& model, const std::vector<EventComparison>& events);
+/// Both tables, the notes and the verdict, for a terminal.
+std::string terminal_report(const PlantModel& model, const std::vector<EventComparison>& events,
+                            const Adequacy& adequacy);
 /// Everything but the samples; values in pu, bases and units beside them.
 std::string json_report(const PlantModel& model, const std::vector<EventComparison>& events,
-                        const Provenance& provenance);
-/// The samples of one event: t, V, theta, measured and modelled P and Q.
+                        const Adequacy& adequacy, const Provenance& provenance);
+/// The samples of one event: t, V, theta, and every channel measured and modelled.
 std::string csv_playback(const EventComparison& event);
-/// The self-contained page: tables, overlays, residuals, provenance.
+/// The self-contained page: verdict, tables, overlays, residuals, provenance.
 std::string html_report(const PlantModel& model, const std::vector<EventComparison>& events,
-                        const Provenance& provenance);
+                        const Adequacy& adequacy, const Provenance& provenance);
 
 /// Hashes of model and records, version and command line.
 Provenance provenance(const PlantModel& model, const std::vector<EventComparison>& events,

@@ -19,6 +19,8 @@ h2{font-size:1.2rem;margin:2.4rem 0 .6rem;padding-top:.8rem;border-top:1px solid
 .subtitle{color:var(--soft);margin:0 0 1.2rem}
 p{max-width:75ch;margin:.5rem 0}
 .note{border-left:4px solid #c77700;background:#fff8ec;padding:.5rem .8rem}
+.verdict{border-left:6px solid #c0392b;background:#fdf0ee;padding:.8rem 1rem;font-size:1.1rem;max-width:none}
+.verdict.good{border-color:#2e8b57;background:#eef8f1}
 figure{margin:1rem 0}
 figcaption,.caption{color:var(--soft);font-size:.88rem;padding:.2rem 0 .4rem;margin:1rem 0 0;break-after:avoid}
 .scroll{overflow-x:auto}
@@ -34,7 +36,7 @@ td:first-child{background:var(--paper)}
 svg{max-width:100%;height:auto;font:12px system-ui,"DejaVu Sans",sans-serif}
 .dygraph-axis-label{color:var(--soft);font-size:12px}.dygraph-label{font-size:12px;color:var(--soft)}
 @media(max-width:600px){main{padding:14px 12px 40px}h1{font-size:1.35rem}th,td{padding:.28rem .45rem}.chart{height:210px}}
-@media print{main{max-width:none;padding:0}figure,table,tr{break-inside:avoid}h2{break-after:avoid}.hint{display:none}.scroll{overflow:visible}th,td{padding:.2rem .4rem}body{font-size:11pt}.cell,th,.note{-webkit-print-color-adjust:exact;print-color-adjust:exact}}
+@media print{main{max-width:none;padding:0}figure,table,tr{break-inside:avoid}h2{break-after:avoid}.hint{display:none}.scroll{overflow:visible}th,td{padding:.2rem .4rem}body{font-size:11pt}.cell,th,.note,.verdict{-webkit-print-color-adjust:exact;print-color-adjust:exact}}
 )css";
 
 constexpr std::string_view kScript = R"js(
@@ -110,6 +112,9 @@ void Page::section(std::string_view title) { body_ += fmt::format("<h2>{}</h2>\n
 void Page::text(std::string_view paragraph) { body_ += fmt::format("<p>{}</p>\n", escape(paragraph)); }
 void Page::note(std::string_view paragraph) {
   body_ += fmt::format("<p class=\"note\">{}</p>\n", escape(paragraph));
+}
+void Page::verdict(std::string_view sentence, bool good) {
+  body_ += fmt::format("<p class=\"verdict {}\">{}</p>\n", good ? "good" : "bad", escape(sentence));
 }
 
 void Page::table(const Table& table) {

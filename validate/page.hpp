@@ -60,7 +60,8 @@ class Page {
   Page(std::string_view title, std::string_view subtitle);
   void section(std::string_view title);
   void text(std::string_view paragraph);
-  void note(std::string_view paragraph);  ///< set apart: a caution
+  void note(std::string_view paragraph);               ///< set apart: a caution
+  void verdict(std::string_view sentence, bool good);  ///< the first thing to read
   void table(const Table& table);
   void curves(const Curves& curves);
   void bars(const Bars& bars);

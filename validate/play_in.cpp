@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace swingbank::validate {
 namespace {
@@ -68,6 +69,8 @@ Playback play_in(const sim::Plant& plant, const sim::Conventions& conventions, c
   back.P = take(Output::P);
   back.Q = take(Output::Q);
   back.speed = take(Output::speed);
+  // The frame turns with the pre-event angle; a record's speed is off nominal by as much.
+  for (double& w : back.speed) w += back.start.drift / (2 * std::numbers::pi * conventions.frequency);
   back.Efd = take(Output::Efd);
   back.Ifd = take(Output::Ifd);
   back.steps = response.steps;

@@ -9,13 +9,15 @@ model=$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml
 compare=$SWINGBANK_BIN/swingbank-compare tables=$SWINGBANK_BIN/swingbank-tables
 
 "$compare" --model "$model" --record "$records/avr_ev1.csv" --record "$records/avr_ev2.csv" --switch avr_ev1.csv=2.0 --switch avr_ev1.csv=2.1 \
-  --out "$work/report" --json >"$work/printed.json"
+  --out "$work/report" --json >"$work/printed.json" && fail "a missing exciter found adequate"
+[[ $? == 3 ]] || fail "exit code of a model that is not adequate"
 cmp "$work/printed.json" "$work/report/compare.json" || fail "--json prints something else than it writes"
 python3 - "$work/printed.json" <<'PYTHON'
 import json, sys
 events = json.load(open(sys.argv[1]))["events"]
 assert [e["record"] for e in events] == ["avr_ev1.csv", "avr_ev2.csv"]
 assert [e["switchings_found"] for e in events] == [False, True]
+assert json.load(open(sys.argv[1]))["adequate"] is False
 assert [s["t_s"] for s in events[0]["switchings"]] == [2.0, 2.1]
 PYTHON
 [[ $(find "$work/report" -type f | wc -l) == 4 ]] || fail "report.html, compare.json and two curves expected"

@@ -54,6 +54,37 @@ TEST(CompareTest, ARightModelLeavesTheNoise) {
     EXPECT_GT(c.whole.in_noise, 0.8);
   }
 }
+TEST(CompareTest, ARightModelIsAdequate) {
+  const RightModel right;
+  std::vector<EventComparison> events = {compare_event(right.model, right.record)};
+  const Adequacy a = judge(events);
+  EXPECT_TRUE(a.adequate) << a.sentence;
+  EXPECT_EQ(a.exceeding, 0);
+  EXPECT_THAT(a.sentence, HasSubstr("Adequate"));
+}
+TEST(CompareTest, AnInadequateModelIsCalledSo) {
+  std::vector<EventComparison> events = {example_event({.switchings = {2.0, 2.1}, .play_in = {}})};
+  const Adequacy a = judge(events);
+  EXPECT_FALSE(a.adequate);
+  EXPECT_THAT(a.sentence, HasSubstr("Not adequate"));
+  // The missing exciter raises the field voltage; nothing in P before the event is wrong.
+  EXPECT_THAT(a.sentence, HasSubstr("Efd"));
+  EXPECT_FALSE(events[0].channels[0].map.rows[0].all.exceeds());
+}
+TEST(CompareTest, ComparesWhatIsRecorded) {
+  const EventComparison e = example_event({.switchings = {2.0, 2.1}, .play_in = {}});
+  std::vector<std::string> channels;
+  for (const auto& c : e.channels) channels.push_back(c.name);
+  EXPECT_THAT(channels, ElementsAre("P", "Q", "speed", "Efd", "Ifd"));
+  EXPECT_NEAR(e.channels[2].noise, 2e-5, 4e-6);  // as made; 121 samples: 3 s.e. are 19 %
+}
+TEST(CompareTest, UntilLeavesOutTheRest) {
+  const EventComparison e = example_event({.switchings = {2.0, 2.1}, .play_in = {.until = 6.0}});
+  EXPECT_NEAR(e.record.t.back(), 6.0, 1e-6);
+  EXPECT_EQ(e.channels[0].residual.size(), e.record.t.size());
+  EXPECT_THAT(test::messages([] { example_event({.switchings = {}, .play_in = {.until = 0.3}}); }),
+              ElementsAre(HasSubstr("--until 0.3 s")));
+}
 TEST(CompareTest, AWrongParameterShowsAndDoesNotBendTheInstants) {
   RightModel wrong;
   wrong.model.plant.machine
@@ -98,16 +129,25 @@ TEST(CompareTest, ResidualIsModelledMinusMeasured) {
 }
 
 TEST(CompareReportTest, JsonHoldsTheNumbers) {
-  const std::vector<EventComparison> events = {example_event()};
-  const auto j = nlohmann::json::parse(json_report(example_model(), events, {{"command", "x"}}));
+  std::vector<EventComparison> events = {example_event()};
+  const Adequacy adequacy = judge(events);
+  const auto j = nlohmann::json::parse(json_report(example_model(), events, adequacy, {{"command", "x"}}));
   EXPECT_EQ(j["events"][0]["channels"][1]["name"], "Q");
   EXPECT_DOUBLE_EQ(j["events"][0]["channels"][1]["whole"]["rms_pu"], events[0].channels[1].whole.rms);
   EXPECT_EQ(j["events"][0]["channels"][1]["windows"].size(), 5u);
+  const auto& map = j["events"][0]["channels"][1]["map"];
+  ASSERT_EQ(map.size(), 5u * 5u + 1);  // windows times (all and four bands), and the whole record
+  EXPECT_EQ(map[12]["window"], "0–1 s after");
+  EXPECT_EQ(map[12]["band"], "0.1–0.8 Hz");
+  EXPECT_DOUBLE_EQ(map[12]["rms_in_noise"], events[0].channels[1].map.rows[2].bands[1].in_noise);
+  EXPECT_TRUE(map[1]["rms_in_noise"].is_null());  // 2 s hold nothing below 0.1 Hz
+  EXPECT_EQ(j["adequate"], false);
 }
 TEST(CompareReportTest, PageAsksForNothing) {
-  const std::vector<EventComparison> events = {example_event()};
-  const std::string html =
-      html_report(example_model(), events, provenance(example_model(), events, "swingbank compare <x>"));
+  std::vector<EventComparison> events = {example_event()};
+  const Adequacy adequacy = judge(events);
+  const std::string html = html_report(example_model(), events, adequacy,
+                                       provenance(example_model(), events, "swingbank compare <x>"));
   const std::string library(dygraphs_script());
   const auto at = html.find(library);
   ASSERT_NE(at, std::string::npos);
@@ -119,8 +159,11 @@ TEST(CompareReportTest, PageAsksForNothing) {
   EXPECT_NE(own.find("name=\"viewport\""), std::string::npos);
 }
 TEST(CompareReportTest, TerminalReportCarriesUnits) {
-  const std::string text = terminal_report(example_model(), {example_event()});
-  for (const char* word : {" MW", " Mvar", "noise", "avr_ev1.csv"}) EXPECT_THAT(text, HasSubstr(word));
+  std::vector<EventComparison> events = {example_event()};
+  const Adequacy adequacy = judge(events);
+  const std::string text = terminal_report(example_model(), events, adequacy);
+  for (const char* word : {" MW", " Mvar", " mHz", "noise", "Not adequate", "avr_ev1.csv"})
+    EXPECT_THAT(text, HasSubstr(word));
 }
 TEST(CompareReportTest, PlaybackHasOneLineASample) {
   const EventComparison e = example_event();
