@@ -59,6 +59,7 @@ Databank shared_databank(const Study& study, MPI_Comm world) {
 DatasetHeader header_of(const Study& study, const ShardAttributes& a) {
   const DatasetConfig& c = study.config;
   DatasetHeader h;
+  h.name = c.file.stem().string();
   h.config_hash = a.config_hash;
   h.kernel = a.kernel;
   h.software = a.software;

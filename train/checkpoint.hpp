@@ -1,7 +1,5 @@
 #pragma once
-// A training run on disk: a JSON header and raw single-precision arrays, sealed with a checksum. Written
-// under a temporary name, flushed and renamed, so that the last good checkpoint survives a kill at any
-// moment.
+// A training run on disk, as a sealed file.
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <span>

@@ -1,6 +1,7 @@
 #include "train/features.hpp"
 
 #include "sim/core/problem.hpp"
+#include "train/sealed_file.hpp"
 
 namespace swingbank {
 
@@ -42,6 +43,37 @@ Features Features::fit(const ShardStream& stream, std::span<const std::uint64_t>
           "leave it out of the experiment's channels");
   }
   problems.raise();
+  return f;
+}
+
+FeatureSizes Features::sizes() const {
+  return {channels_, samples_, pca_ ? pca_->components() : 0, pca_ ? pca_->per_second() : 0};
+}
+
+std::size_t Features::array_count(const FeatureSizes& s) {
+  return 2 + (s.pca_components > 0 ? 2 * s.channels : 0);
+}
+
+std::vector<std::vector<float>> Features::arrays() const {
+  std::vector<std::vector<float>> all = {scale_.mean, scale_.deviation};
+  if (pca_)
+    for (auto& a : pca_->arrays()) all.push_back(std::move(a));
+  return all;
+}
+
+Features Features::restore(const FeatureSizes& s, std::span<const std::vector<float>> arrays) {
+  Features f;
+  f.channels_ = s.channels;
+  f.samples_ = f.length_ = s.samples;
+  if (arrays.size() != array_count(s)) throw Unusable{"it holds another number of arrays"};
+  if (s.pca_components > 0) {
+    f.pca_ = Pca::restore(s.pca_components, s.pca_per_second, s.samples, arrays.subspan(2));
+    f.length_ = f.pca_->length();
+    f.groups_per_channel_ = s.pca_components;
+  }
+  f.scale_ = {arrays[0], arrays[1]};
+  for (const auto* a : {&f.scale_.mean, &f.scale_.deviation})
+    if (a->size() != f.channels_ * f.groups_per_channel_) throw Unusable{"an array has another length"};
   return f;
 }
 

@@ -10,6 +10,11 @@
 
 namespace swingbank {
 
+struct FeatureSizes {
+  std::size_t channels = 0, samples = 0;
+  std::size_t pca_components = 0, pca_per_second = 0;  ///< 0: no PCA
+};
+
 class Features {
  public:
   /// pca_components = 0: no PCA. Series are normalised per channel, components per channel and component.
@@ -21,6 +26,13 @@ class Features {
   [[nodiscard]] std::size_t length() const { return length_; }
   [[nodiscard]] const std::optional<Pca>& pca() const { return pca_; }
   [[nodiscard]] const Scale& scale() const { return scale_; }
+  /// What was fitted, for a file: sizes, then arrays in the order of `restore`.
+  [[nodiscard]] FeatureSizes sizes() const;
+  [[nodiscard]] std::vector<std::vector<float>> arrays() const;
+  /// The opposite. Throws Unusable if that does not fit together.
+  static Features restore(const FeatureSizes& sizes, std::span<const std::vector<float>> arrays);
+  /// Arrays that `restore` takes for these sizes.
+  static std::size_t array_count(const FeatureSizes& sizes);
   /// series: count x channels x samples; out: count x channels x length().
   void apply(const float* series, std::size_t count, float* out) const;
 

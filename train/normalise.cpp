@@ -11,7 +11,7 @@ double GroupMoments::deviation(std::size_t group) const {
 }
 
 TargetScale TargetScale::fit(const std::vector<double>& values, std::size_t parameters,
-                             std::span<const std::uint64_t> rows) {
+                             std::span<const std::uint64_t> rows, std::span<const double> low) {
   GroupMoments moments(parameters);
   for (const std::uint64_t row : rows)
     for (std::size_t p = 0; p < parameters; ++p) moments.add(p, values[row * parameters + p]);
@@ -19,6 +19,7 @@ TargetScale TargetScale::fit(const std::vector<double>& values, std::size_t para
   for (std::size_t p = 0; p < parameters; ++p) {
     const double mean = moments.mean(p), deviation = moments.deviation(p), magnitude = std::abs(mean);
     scale.mean.push_back(mean);
+    scale.origin.push_back(low.empty() ? 0.0 : std::min(0.0, low[p]));
     scale.unit.push_back(deviation > 0.0 ? deviation : magnitude > 0.0 ? magnitude : 1.0);
   }
   return scale;

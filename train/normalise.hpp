@@ -32,14 +32,23 @@ struct Scale {
 };
 
 /// Targets are divided by their standard deviation and not shifted, so that zero stays zero and the network's
-/// ReLU output keeps its meaning (a parameter is not negative). A constant parameter is divided by its
+/// ReLU output keeps its meaning (a parameter is not negative). Where the box reaches below zero (an
+/// exciter's lower ceiling), its low end takes the place of zero. A constant parameter is divided by its
 /// magnitude.
 struct TargetScale {
-  std::vector<double> mean;  ///< of the training targets, raw units: the predict-the-mean baseline
-  std::vector<double> unit;  ///< raw = scaled x unit
-  /// values: all rows x parameters, raw units; rows: training rows.
+  std::vector<double> mean;    ///< of the training targets, raw units: the predict-the-mean baseline
+  std::vector<double> unit;    ///< raw = scaled x unit + origin
+  std::vector<double> origin;  ///< 0, or the box's low end below it
+  /// values: all rows x parameters, raw units; rows: training rows; low: of the box (empty: none is
+  /// negative).
   static TargetScale fit(const std::vector<double>& values, std::size_t parameters,
-                         std::span<const std::uint64_t> rows);
+                         std::span<const std::uint64_t> rows, std::span<const double> low = {});
+  [[nodiscard]] double scaled(double raw, std::size_t parameter) const {
+    return (raw - origin[parameter]) / unit[parameter];
+  }
+  [[nodiscard]] double raw(double scaled, std::size_t parameter) const {
+    return scaled * unit[parameter] + origin[parameter];
+  }
 };
 
 }  // namespace swingbank

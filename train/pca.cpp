@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim/core/problem.hpp"
+#include "train/sealed_file.hpp"
 
 namespace swingbank {
 namespace {
@@ -79,6 +80,32 @@ Pca Pca::fit(const ShardStream& stream, std::span<const std::uint64_t> rows, std
     pca.mean_.push_back(mean.cast<float>());
     const double total = covariance.trace(), kept = solver.eigenvalues().tail(k).sum();
     if (total > 0.0) pca.error_ = std::max(pca.error_, std::max(0.0, 1.0 - kept / total));
+  }
+  return pca;
+}
+
+std::vector<std::vector<float>> Pca::arrays() const {
+  std::vector<std::vector<float>> all;
+  for (std::size_t c = 0; c < mean_.size(); ++c) {
+    all.emplace_back(mean_[c].data(), mean_[c].data() + mean_[c].size());
+    all.emplace_back(basis_[c].data(), basis_[c].data() + basis_[c].size());
+  }
+  return all;
+}
+
+Pca Pca::restore(std::size_t components, std::size_t per_second, std::size_t samples,
+                 std::span<const std::vector<float>> arrays) {
+  if (per_second == 0 || samples % per_second != 0) throw Unusable{"its seconds are no whole number"};
+  Pca pca;
+  pca.components_ = components;
+  pca.per_second_ = per_second;
+  pca.seconds_ = samples / per_second;
+  const auto rows = static_cast<Eigen::Index>(per_second), columns = static_cast<Eigen::Index>(components);
+  for (std::size_t i = 0; i + 1 < arrays.size(); i += 2) {
+    if (arrays[i].size() != per_second || arrays[i + 1].size() != per_second * components)
+      throw Unusable{"an array has another length"};
+    pca.mean_.push_back(Eigen::Map<const Eigen::VectorXf>(arrays[i].data(), rows));
+    pca.basis_.push_back(Eigen::Map<const Eigen::MatrixXf>(arrays[i + 1].data(), rows, columns));
   }
   return pca;
 }

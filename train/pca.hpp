@@ -17,6 +17,12 @@ class Pca {
 
   [[nodiscard]] std::size_t components() const { return components_; }
   [[nodiscard]] std::size_t seconds() const { return seconds_; }
+  [[nodiscard]] std::size_t per_second() const { return per_second_; }
+  /// What was fitted, for a file: per channel mean and basis (column by column).
+  [[nodiscard]] std::vector<std::vector<float>> arrays() const;
+  /// The opposite, without error(). Throws Unusable if that does not fit together.
+  static Pca restore(std::size_t components, std::size_t per_second, std::size_t samples,
+                     std::span<const std::vector<float>> arrays);
   /// Length of a channel afterwards: seconds x components, a second's components side by side.
   [[nodiscard]] std::size_t length() const { return seconds_ * components_; }
   /// series: channels x samples of one row; out: channels x length().

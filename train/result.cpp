@@ -21,6 +21,10 @@ json input_json(const ShardStream& stream, const RunRequest& request, const Feat
 }
 }  // namespace
 
+std::string dataset_name(const Dataset& d) {
+  return d.name.empty() ? std::filesystem::weakly_canonical(d.path).filename().string() : d.name;
+}
+
 json identity(const ShardStream& stream, const RunRequest& r) {
   const Preset& p = r.experiment.preset(r.preset);
   const TrainingRecipe& t = r.experiment.training(r.preset, r.network);
@@ -60,10 +64,7 @@ json result_json(const ShardStream& stream, const RunRequest& r, const RunParts&
           {"seed", r.seed},
           {"generator", or_null(r.generator)},
           {"dataset",
-           {{"name", std::filesystem::weakly_canonical(d.path).filename().string()},
-            {"hash", d.hash},
-            {"config_hash", d.config_hash},
-            {"rows", d.rows}}},
+           {{"name", dataset_name(d)}, {"hash", d.hash}, {"config_hash", d.config_hash}, {"rows", d.rows}}},
           {"machine_model", d.machine_model},
           {"parameters", d.parameter_names},
           {"train_rows", parts.split.train.size()},

@@ -6,6 +6,9 @@
 
 namespace swingbank {
 
+/// The config's name; the folder's, if the dataset was made before headers had a name.
+std::string dataset_name(const Dataset& dataset);
+
 /// What tells this run from every other: data, recipe, seed. A checkpoint or result with another identity is
 /// not its.
 nlohmann::json identity(const ShardStream& stream, const RunRequest& request);

@@ -8,6 +8,7 @@
 #include "sim/core/problem.hpp"
 #include "train/random.hpp"
 #include "train/result.hpp"
+#include "train/saved_network.hpp"
 
 namespace swingbank {
 namespace {
@@ -29,7 +30,7 @@ Score judge(Network& network, const ShardStream& stream, const Features& feature
   const std::vector<float> out = predict(network, stream, features, split.test);
   std::vector<double> predicted(out.size()), truth(out.size());
   for (std::size_t i = 0; i < out.size(); ++i) {
-    predicted[i] = out[i] * scale.unit[i % p];
+    predicted[i] = scale.raw(out[i], i % p);
     truth[i] = labels.values[split.test[i / p] * p + i % p];
   }
   const Dataset& d = stream.dataset();
@@ -43,7 +44,7 @@ NetworkShape shape_of(const Features& features, const TargetScale& scale) {
                      static_cast<std::int64_t>(scale.unit.size()),
                      {}};
   for (std::size_t p = 0; p < scale.unit.size(); ++p)
-    shape.output_bias.push_back(static_cast<float>(scale.mean[p] / scale.unit[p]));
+    shape.output_bias.push_back(static_cast<float>(scale.scaled(scale.mean[p], p)));
   return shape;
 }
 
@@ -69,7 +70,7 @@ std::vector<float> scaled_targets(const Labels& labels, const TargetScale& scale
   const std::size_t p = labels.parameters;
   std::vector<float> targets(labels.rows * p);
   for (std::size_t i = 0; i < targets.size(); ++i)
-    targets[i] = static_cast<float>(labels.values[source[i / p] * p + i % p] / scale.unit[i % p]);
+    targets[i] = static_cast<float>(scale.scaled(labels.values[source[i / p] * p + i % p], i % p));
   return targets;
 }
 
@@ -91,7 +92,8 @@ RunOutcome run(const ShardStream& stream, const RunRequest& r) {
   const RowSplit split = r.generator
                              ? leave_one_out(labels, *r.generator, settings.recipe.validation_share, r.seed)
                              : split_by_point(labels, r.seed);
-  const TargetScale scale = TargetScale::fit(labels.values, labels.parameters, split.train);
+  const TargetScale scale =
+      TargetScale::fit(labels.values, labels.parameters, split.train, stream.dataset().parameter_low);
   const std::vector<float> targets = scaled_targets(labels, scale, split, r.shuffle_labels, r.seed);
   const Features features = Features::fit(stream, split.train, r.experiment.preset(r.preset).pca_components);
 
@@ -109,6 +111,8 @@ RunOutcome run(const ShardStream& stream, const RunRequest& r) {
     return RunOutcome::stopped;
   }
   const Score result = judge(*network, stream, features, scale, split);
+  if (r.save_network && !r.shuffle_labels)
+    save_network(network_file(file), {stream, r, features, scale, split, run_identity}, *network);
   write_text(file, result_json(stream, r, {split, features, report, result}).dump(2) + "\n");
   std::filesystem::remove(checkpoint);
   progress.line(fmt::format("MSE {:.4g} against {:.4g} for the mean (x {:.3f}{}), {}, best epoch {} of {}",

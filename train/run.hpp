@@ -21,6 +21,7 @@ struct RunRequest {
   std::uint64_t seed = 1;
   std::optional<std::size_t> epochs;  ///< instead of the preset's
   bool shuffle_labels = false;
+  bool save_network = true;  ///< beside the result (not of a control run)
   std::filesystem::path out;
   Runtime runtime;
   bool quiet = false;

@@ -23,6 +23,7 @@ constexpr const char* kRemake =
 nlohmann::ordered_json to_json(const DatasetHeader& h) {
   nlohmann::ordered_json j;
   j["format"] = kDatasetFormat;
+  if (!h.name.empty()) j["name"] = h.name;
   j["config_hash"] = h.config_hash;
   j["kernel"] = h.kernel;
   j["software"] = h.software;
@@ -48,6 +49,7 @@ DatasetHeader from_json(const nlohmann::json& j) {
   if (j.at("format") != kDatasetFormat)
     throw std::runtime_error("format is not \"" + std::string(kDatasetFormat) + "\"");
   DatasetHeader h;
+  h.name = j.value("name", "");
   j.at("config_hash").get_to(h.config_hash);
   j.at("kernel").get_to(h.kernel);
   j.at("software").get_to(h.software);

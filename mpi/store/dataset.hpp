@@ -13,6 +13,7 @@ namespace swingbank {
 
 /// What dataset.json says; written before the first shard.
 struct DatasetHeader {
+  std::string name = {};  ///< of the config's file: "ieee39_genrou"; empty in older datasets
   std::string config_hash, kernel, software, machine_model;
   std::string config;  ///< the config in canonical form
   std::uint64_t seed = 0, draws = 0, draws_per_shard = 0;
