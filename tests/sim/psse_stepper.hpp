@@ -1,7 +1,8 @@
 #pragma once
 // Our equations integrated the way PSS/E integrates its own: x(t + h) = x(t) + h (3 f(t) - f(t - h))/2, and
 // at a switching instant the mean of the derivatives before and after it (both read off the first samples
-// after the trip in its records). Some exciters take shorter steps within each. With it a difference between record and equations is one of modelling.
+// after the trip in its records); some exciters take shorter steps within each. With it a difference between
+// record and equations is one of modelling.
 #include <vector>
 
 #include "sim/solve/reference_system.hpp"
