@@ -144,22 +144,7 @@ class Maker {
   /// The owner's model: no hidden effect, every machine parameter off by 10 to 20 % (or as configured).
   void draw_model() {
     made_.model = target(world_.plain());
-    sim::Block& machine = made_.model.machine;
-    const std::vector<double> right = machine.p;
-    for (int i = 0; i < 10'000; ++i) {
-      for (std::size_t k = 0; k < right.size(); ++k) {
-        const double off = draw_.uniform(config_.wrong.first, config_.wrong.second);
-        machine.p[k] = right[k] * (draw_.coin() ? 1.0 + off : 1.0 - off);
-      }
-      Problems problems;
-      machine.effect->check(nullptr, machine.p.data(), "blind case", problems);
-      bool inside = problems.empty() && machine.effect->unphysical(machine.p.data()).empty();
-      for (std::size_t k = 0; k < right.size(); ++k)
-        inside = inside && machine.p[k] >= machine.effect->parameters[k].low &&
-                 machine.p[k] <= machine.effect->parameters[k].high;
-      if (inside) return;
-    }
-    throw Unstable{};
+    if (!mislead(made_.model.machine, config_.wrong, draw_)) throw Unstable{};
   }
 
   const BlindConfig& config_;

@@ -41,7 +41,8 @@ struct BlindTruth {
 
 struct BlindCase {
   BlindSpec spec;
-  int attempts = 0;  ///< draws until every event was stable
+  int attempts = 0;            ///< draws until every event was stable
+  std::string maker = "grid";  ///< or "second": tests/blind
   std::string grid_name, plant_name;
   sim::Conventions conventions;
   sim::Plant truth, model;  ///< with the hidden effects and right parameters; without, and 10-20 % wrong

@@ -45,7 +45,7 @@ json truth_json(const BlindCase& made, const BlindConfig& config, const std::str
           {"seed", made.spec.seed},
           {"index", made.spec.index},
           {"config_hash", fmt::format("{:016x}", config.hash)},
-          {"maker", "grid"},
+          {"maker", made.maker},
           {"attempts", made.attempts},
           {"grid", made.grid_name},
           {"plant", made.plant_name},

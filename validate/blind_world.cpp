@@ -91,6 +91,24 @@ void jitter(sim::Block& block, double spread, BlindDraw& draw) {
   block.p = middle;
 }
 
+bool mislead(sim::Block& machine, std::pair<double, double> wrong, BlindDraw& draw) {
+  const sim::Effect& effect = *machine.effect;
+  const std::vector<double> right = machine.p;
+  for (int i = 0; i < 10'000; ++i) {
+    bool inside = true;
+    for (std::size_t k = 0; k < right.size(); ++k) {
+      const double off = draw.uniform(wrong.first, wrong.second);
+      machine.p[k] = right[k] * (draw.coin() ? 1.0 + off : 1.0 - off);
+      inside =
+          inside && machine.p[k] >= effect.parameters[k].low && machine.p[k] <= effect.parameters[k].high;
+    }
+    Problems problems;
+    effect.check(effect.law.get(), machine.p.data(), "blind case", problems);
+    if (inside && problems.empty() && effect.unphysical(machine.p.data()).empty()) return true;
+  }
+  return false;
+}
+
 BlindWorld::BlindWorld(const BlindConfig& config, const std::vector<const BlindKind*>& hidden,
                        BlindDraw& draw)
     : hidden_(hidden) {

@@ -42,6 +42,10 @@ class BlindWorld {
 /// Every non-code parameter moved by up to `spread`, until the effect's own checks accept them.
 void jitter(sim::Block& block, double spread, BlindDraw& draw);
 
+/// Moves every parameter of a machine by a share between `wrong`'s ends, up or down, until the machine is
+/// physical. False: it was not in 10,000 draws.
+bool mislead(sim::Block& machine, std::pair<double, double> wrong, BlindDraw& draw);
+
 BlindEvent draw_fault(const BlindWorld& world, BlindDraw& draw);
 /// A load step or the loss of another generator.
 BlindEvent draw_frequency_event(const BlindWorld& world, BlindDraw& draw);

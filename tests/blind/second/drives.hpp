@@ -1,0 +1,68 @@
+#pragma once
+// Drives of the private set, written for the second simulator: sawtooth torque, field lost in part, limit
+// cycle of the field voltage, stick-slip, random walk.
+#include <cmath>
+#include <random>
+
+#include "tests/blind/second/simulator.hpp"
+
+namespace swingbank::blind_second {
+
+/// Rises evenly from -A to A, falls at once.
+inline OddDrive sawtooth(double A, double hz, double start, double until) {
+  OddDrive d;
+  for (double t = start; t < until; t += 1 / hz) d.instants.push_back(t);
+  d.torque = [=](double t, double within, double, const OddDrive::Memory&) {
+    if (within < start) return 0.0;
+    const double tooth = std::floor((within - start) * hz);
+    return A * (2 * ((t - start) * hz - tooth) - 1);
+  };
+  return d;
+}
+inline OddDrive field_loss(double part, double start) {
+  OddDrive d;
+  d.instants = {start};
+  d.field = [=](double within, double Efd, const OddDrive::Memory&) {
+    return within < start ? Efd : Efd * (1 - part);
+  };
+  return d;
+}
+/// Van der Pol's oscillator on Efd, kicked by the voltage's deviation.
+inline OddDrive limit_cycle(double A, double hz, double growth) {
+  OddDrive d;
+  d.rates = [=](double dV, const OddDrive::Memory& m) {
+    const double w = 2 * kPi * hz;
+    return OddDrive::Memory{w * m[1], w * (growth * (1 - m[0] * m[0]) * m[1] - m[0]) - 20 * dV};
+  };
+  d.field = [=](double, double Efd, const OddDrive::Memory& m) { return Efd + A * m[0]; };
+  return d;
+}
+/// Friction that is twice as large while the shaft hardly moves.
+inline OddDrive stick_slip(double A, double loose) {
+  OddDrive d;
+  d.torque = [=](double, double, double w, const OddDrive::Memory&) {
+    const double sticking = 1 / (1 + w * w / (loose * loose));
+    return -A * w / std::hypot(w, 1e-4) * (1 + sticking);
+  };
+  return d;
+}
+/// Normal increments, straight between knots `step` apart.
+inline OddDrive random_walk(double A, double step, double start, double until, unsigned seed) {
+  OddDrive d;
+  std::mt19937 engine(seed);
+  std::normal_distribution<double> normal;
+  std::vector<double> knots{0.0};
+  for (double t = start; t < until; t += step) {
+    d.instants.push_back(t);
+    knots.push_back(knots.back() + A * normal(engine));
+  }
+  d.torque = [=](double t, double within, double, const OddDrive::Memory&) {
+    if (within < start) return 0.0;
+    const auto k = static_cast<std::size_t>((within - start) / step);
+    if (k + 1 >= knots.size()) return knots.back();
+    return knots[k] + (knots[k + 1] - knots[k]) * ((t - start) / step - static_cast<double>(k));
+  };
+  return d;
+}
+
+}  // namespace swingbank::blind_second
