@@ -10,12 +10,14 @@
 
 #include "sim/network/matpower.hpp"
 #include "sim/network/psse_text.hpp"
+#include "sim/solve/load_choice.hpp"
 
 namespace swingbank::sim {
 namespace {
 
 /// The effect with this name in a .dyr (case matters not), or nullptr.
-const Effect* effect_of_dyr(const std::string& model) {
+const Effect* effect_of_dyr(std::string model) {
+  if (model == "GENTPJ1") model = "GENTPJU1";  // its name since PSS/E 34
   const auto same = [](unsigned char a, unsigned char b) { return std::toupper(a) == std::toupper(b); };
   for (const Effect& e : all_effects())
     if (!e.dyr_name.empty() && std::ranges::equal(e.dyr_name, model, same)) return &e;
@@ -41,6 +43,9 @@ class GridMaker {
     for (Plant& plant : grid_.plants) finish(plant);
     problems_.raise();
     solve();
+    for (LoadModel& model : load_models_)
+      set_load(grid_, model.load, std::move(model.block), model.where, problems_);
+    problems_.raise();
     return std::move(grid_);
   }
 
@@ -67,13 +72,14 @@ class GridMaker {
     return grid_.network.buses[static_cast<std::size_t>(g.bus)].number;
   }
 
-  void add(const DyrRecord& record) {
-    const std::string where = dyr_ + ":" + std::to_string(record.line);
-    const Effect* effect = effect_of_dyr(record.model);
+  void add(const DyrRecord& given) {
+    const std::string where = dyr_ + ":" + std::to_string(given.line);
+    const Effect* effect = effect_of_dyr(given.user.empty() ? given.model : given.user);
+    const DyrRecord record = effect && !given.user.empty() ? plain(given, *effect) : given;
     if (!effect) {
       const std::string name = record.user.empty() ? record.model : record.user;
-      problems_.add((record.user.empty() ? "unknown model '" : "user-written model '") + name +
-                        "' of generator '" + record.id + "' at bus " + std::to_string(record.bus),
+      problems_.add((record.user.empty() ? "unknown model '" : "user-written model '") + name + "' of '" +
+                        record.id + "' at bus " + std::to_string(record.bus),
                     where, "available are " + dyr_names(),
                     "leave it out with --ignore-model " + name +
                         ", or let another with as many parameters (" + std::to_string(record.values.size()) +
@@ -82,6 +88,7 @@ class GridMaker {
     }
     problems_.add(record.faults);
     if (!record.faults.empty()) return;
+    if (effect->slot == Slot::load) return add_load(*effect, record, where);
     const std::pair<int, std::string> key{record.bus, record.id};
     const auto found = plant_of_.find(key);
     if (found == plant_of_.end()) {
@@ -92,12 +99,52 @@ class GridMaker {
       return;
     }
     Plant& plant = grid_.plants[found->second];
-    if (record.values.size() != effect->dyr_columns.size()) {
-      problems_.add(record.model + " with " + std::to_string(record.values.size()) + " parameters", where,
-                    "it takes " + columns(*effect), "give every parameter, in this order");
+    if (!complete(*effect, record, where)) return;
+    place(plant, read(*effect, record, plant), where);
+  }
+  /// A user-written model that is one of ours: without IC, IT, NI, NC, NS, NV before its parameters.
+  static DyrRecord plain(DyrRecord record, const Effect& effect) {
+    constexpr std::size_t before = 6, count = 3;
+    const std::size_t columns = effect.dyr_columns.size();
+    if (record.values.size() == columns + before && record.values[count] == static_cast<double>(columns))
+      record.values.erase(record.values.begin(), record.values.begin() + before);
+    record.model = record.user;
+    return record;
+  }
+  bool complete(const Effect& effect, const DyrRecord& record, const std::string& where) {
+    if (record.values.size() == effect.dyr_columns.size()) return true;
+    problems_.add(record.model + " with " + std::to_string(record.values.size()) + " parameters", where,
+                  "it takes " + columns(effect), "give every parameter, in this order");
+    return false;
+  }
+  /// A model for one load, or with the id * for every load at the bus.
+  void add_load(const Effect& effect, const DyrRecord& record, const std::string& where) {
+    const std::string what =
+        record.model + " for load '" + record.id + "' at bus " + std::to_string(record.bus);
+    const int bus = grid_.network.bus_index(record.bus);
+    if (bus < 0) {
+      problems_.add(what, where, grid_.network.origin + " has no such bus",
+                    "correct the bus number, or remove the record");
       return;
     }
-    place(plant, read(*effect, record, plant), where);
+    if (!complete(effect, record, where)) return;
+    Problems found;
+    const Block block = values_of(effect, record);
+    effect.check(effect.law.get(), block.p.data(), where, found);
+    problems_.add(found);
+    bool any = false;
+    for (std::size_t i = 0; i < grid_.network.loads.size(); ++i) {
+      const Load& load = grid_.network.loads[i];
+      if (load.bus != bus || (record.id != "*" && load.id != record.id)) continue;
+      any = true;
+      const auto same = [&](const LoadModel& m) { return m.load == static_cast<int>(i); };
+      if (const auto other = std::ranges::find_if(load_models_, same); other != load_models_.end())
+        problems_.add("a second model, " + what, where,
+                      "it already has " + std::string(other->block.effect->dyr_name), "keep one of them");
+      else
+        load_models_.push_back({static_cast<int>(i), block, where});
+    }
+    if (!any) spdlog::warn("{}: {} left out: no such load is in service", where, what);
   }
   static std::string columns(const Effect& effect) {
     std::string text = std::to_string(effect.dyr_columns.size()) + ":";
@@ -105,10 +152,14 @@ class GridMaker {
       text += " " + std::string(effect.parameters[static_cast<std::size_t>(column)].symbol);
     return text;
   }
-  [[nodiscard]] Block read(const Effect& effect, const DyrRecord& record, const Plant& plant) const {
+  static Block values_of(const Effect& effect, const DyrRecord& record) {
     Block block{&effect, effect.standard_parameters()};
     for (std::size_t i = 0; i < record.values.size(); ++i)
       block.p[static_cast<std::size_t>(effect.dyr_columns[i])] = record.values[i];
+    return block;
+  }
+  [[nodiscard]] Block read(const Effect& effect, const DyrRecord& record, const Plant& plant) const {
+    Block block = values_of(effect, record);
     const Generator& g = grid_.network.generators[static_cast<std::size_t>(plant.generator)];
     if (effect.raw_resistance >= 0) block.p[static_cast<std::size_t>(effect.raw_resistance)] = g.zr;
     if (effect.raw_reactance >= 0) block.p[static_cast<std::size_t>(effect.raw_reactance)] = g.zx;
@@ -172,34 +223,29 @@ class GridMaker {
       plant.generation = grid_.flow.generation[static_cast<std::size_t>(plant.generator)];
   }
 
+  struct LoadModel {
+    int load;  ///< index into Network::loads
+    Block block;
+    std::string where;
+  };
   std::string dyr_;
   Grid grid_;
   Problems problems_;
+  std::vector<LoadModel> load_models_;
   std::map<std::pair<int, std::string>, std::size_t> plant_of_;
   std::set<std::pair<int, std::string>> known_;  ///< every generator of the network
 };
 
-std::string dyr_record(const Grid& grid, const Plant& plant, const Block& block, const std::string& file,
-                       Problems& problems) {
+/// One record of a .dyr; `owner`: "generator 30" or "load 8", `id`: its id in the .raw.
+std::string dyr_record(const Block& block, const std::string& owner, int bus, const std::string& id,
+                       const std::string& file, Problems& problems) {
   const Effect& effect = *block.effect;
-  const Generator& g = grid.network.generators[static_cast<std::size_t>(plant.generator)];
-  const std::string where = file + ", generator " + plant.name;
+  const std::string where = file + ", " + owner;
   if (effect.dyr_name.empty()) {
     problems.add("model " + std::string(effect.name), where, "it has no form in a .dyr",
-                 "remove it from the plant before writing");
+                 "remove it before writing");
     return {};
   }
-  const auto in_raw = [&](int index, double value, const char* field) {
-    if (index >= 0 && block.p[static_cast<std::size_t>(index)] != value)
-      problems.add(std::string(effect.parameters[static_cast<std::size_t>(index)].symbol) + " = " +
-                       psse::shortest(block.p[static_cast<std::size_t>(index)]) + " pu",
-                   where,
-                   "the network has " + std::string(field) + " = " + psse::shortest(value) +
-                       " pu, and PSS/E keeps it in the .raw",
-                   "set it in the network too");
-  };
-  in_raw(effect.raw_resistance, g.zr, "ZR");
-  in_raw(effect.raw_reactance, g.zx, "ZX");
   const auto standard = effect.standard_parameters();
   for (int i = 0; i < static_cast<int>(block.p.size()); ++i) {
     if (i == effect.raw_resistance || i == effect.raw_reactance || std::ranges::count(effect.dyr_columns, i))
@@ -213,11 +259,30 @@ std::string dyr_record(const Grid& grid, const Plant& plant, const Block& block,
                    where, "a .dyr has no column for it",
                    "set it to " + psse::shortest(dropped) + " " + std::string(parameter.unit));
   }
-  std::string text = std::to_string(grid.network.buses[static_cast<std::size_t>(plant.bus)].number) + " " +
-                     psse::quote(std::string(effect.dyr_name)) + " " + psse::quote(g.id);
+  std::string text =
+      std::to_string(bus) + " " + psse::quote(std::string(effect.dyr_name)) + " " + psse::quote(id);
   for (const int column : effect.dyr_columns)
     text += " " + psse::shortest(block.p[static_cast<std::size_t>(column)]);
   return text + " /\n";
+}
+
+std::string plant_record(const Grid& grid, const Plant& plant, const Block& block, const std::string& file,
+                         Problems& problems) {
+  const Effect& effect = *block.effect;
+  const Generator& g = grid.network.generators[static_cast<std::size_t>(plant.generator)];
+  const auto in_raw = [&](int index, double value, const char* field) {
+    if (index >= 0 && block.p[static_cast<std::size_t>(index)] != value)
+      problems.add(std::string(effect.parameters[static_cast<std::size_t>(index)].symbol) + " = " +
+                       psse::shortest(block.p[static_cast<std::size_t>(index)]) + " pu",
+                   file + ", generator " + plant.name,
+                   "the network has " + std::string(field) + " = " + psse::shortest(value) +
+                       " pu, and PSS/E keeps it in the .raw",
+                   "set it in the network too");
+  };
+  in_raw(effect.raw_resistance, g.zr, "ZR");
+  in_raw(effect.raw_reactance, g.zx, "ZX");
+  return dyr_record(block, "generator " + plant.name,
+                    grid.network.buses[static_cast<std::size_t>(plant.bus)].number, g.id, file, problems);
 }
 
 }  // namespace
@@ -267,10 +332,17 @@ void write_dyr(const Grid& grid, const std::filesystem::path& file) {
   Problems problems;
   std::string text;
   for (const Plant& plant : grid.plants) {
-    text += dyr_record(grid, plant, plant.machine, file.string(), problems);
-    if (plant.transformer.effect) text += dyr_record(grid, plant, plant.transformer, file.string(), problems);
+    text += plant_record(grid, plant, plant.machine, file.string(), problems);
+    if (plant.transformer.effect)
+      text += plant_record(grid, plant, plant.transformer, file.string(), problems);
     for (const Block& control : plant.controls)
-      text += dyr_record(grid, plant, control, file.string(), problems);
+      text += plant_record(grid, plant, control, file.string(), problems);
+  }
+  for (const Consumer& load : grid.loads) {
+    const Load& l = grid.network.loads[static_cast<std::size_t>(load.load)];
+    text += dyr_record(load.block, "load " + load.name,
+                       grid.network.buses[static_cast<std::size_t>(load.bus)].number, l.id, file.string(),
+                       problems);
   }
   problems.raise();
   psse::write_whole(file, text);

@@ -74,6 +74,7 @@ void loads_as_composed(Grid& grid, Problems& problems) {
   for (std::size_t i = 0; i < grid.network.loads.size(); ++i) {
     const Load& l = grid.network.loads[i];
     if (l.power == Complex{} && l.current == Complex{}) continue;
+    if (std::ranges::count(grid.loads, static_cast<int>(i), &Consumer::load)) continue;
     const Complex total = consumption(l, grid.flow);
     const double v = std::abs(grid.flow.voltage[static_cast<std::size_t>(l.bus)]);
     const Complex current = l.current * v, admittance = l.admittance * (v * v);

@@ -7,9 +7,9 @@
 
 namespace swingbank::sim {
 
-/// Every load exactly as the .raw composes it (PL/QL constant power, IP/IQ constant current, YP/YQ constant
-/// admittance), through the effect ZIP. Loads that draw nothing or are admittances alone need no model.
-/// A load whose parts cancel to P = 0 or Q = 0 is a problem.
+/// Every load without a model of its own exactly as the .raw composes it (PL/QL constant power, IP/IQ
+/// constant current, YP/YQ constant admittance), through the effect ZIP. Loads that draw nothing or are
+/// admittances alone need no model. A load whose parts cancel to P = 0 or Q = 0 is a problem.
 void loads_as_composed(Grid& grid, Problems& problems);
 
 /// One load from "BUS[/ID]:EFFECT[:PARAM=VALUE,...]"; without ID every load at the bus. Parameters not named

@@ -74,7 +74,7 @@ TEST(Grid, EveryFaultIsReportedAtOnceWithTheDyrLine) {
   EXPECT_THAT(all, HasSubstr("GENCLS with 1 parameters at "));
   EXPECT_THAT(all, HasSubstr("it takes 2: H D"));
   EXPECT_THAT(all, HasSubstr("case.dyr:1"));
-  EXPECT_THAT(all, HasSubstr("unknown model 'GENFOO' of generator '1' at bus 101"));
+  EXPECT_THAT(all, HasSubstr("unknown model 'GENFOO' of '1' at bus 101"));
   EXPECT_THAT(all, HasSubstr("GENCLS, GENROE, GENROU"));
   EXPECT_THAT(all, HasSubstr("case.dyr:2"));
   EXPECT_THAT(all, HasSubstr("a second machine model, GENCLS, for generator 102/1"));

@@ -1,0 +1,145 @@
+#pragma once
+// IEEL: load as a sum of three powers of the voltage, with a dependence on frequency.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "sim/core/effect.hpp"
+
+namespace swingbank::sim::load_ieel {
+
+struct Model {
+  static constexpr std::string_view name = "IEEL",
+                                    title = "three powers of the voltage; frequency dependence",
+                                    source =
+                                        "PSS/E IEELBL; IEEE Task Force, Standard load models, IEEE Trans. "
+                                        "Power Syst. 10 (1995) 1302; thresholds: PSS/E, PQBRAK",
+                                    dyr_name = "IEELBL";
+  static constexpr Slot slot = Slot::load;
+  static constexpr std::string_view description = R"(
+  P = PL (a1 V^n1 + a2 V^n2 + a3 V^n3)(1 + a7 df)    Q = QL (a4 V^n4 + a5 V^n5 + a6 V^n6)(1 + a8 df)
+  PL and QL such that P and Q are the load's at the voltage of the power flow
+  A term with n < 1 goes on below Vp, one with 1 <= n < 2 below Vi as the impedance it has there.
+  df: frequency deviation of the bus from its voltage and the same behind a lag x = V/(1 + s Tf),
+      df = Im(V conj x) / (|V| |x|) / (2 pi f0 Tf)
+)";
+  enum P { a1, a2, a3, a4, a5, a6, a7, a8, n1, n2, n3, n4, n5, n6, Vp, Vi, Tf };
+  static constexpr Parameter parameters[] = {
+      {"a1", "a1", "-", 1.0, -10.0, 10.0, kNoNeutral, "part of P with V to the power n1"},
+      {"a2", "a2", "-", 0.0, -10.0, 10.0, 0.0, "part of P with V to the power n2"},
+      {"a3", "a3", "-", 0.0, -10.0, 10.0, 0.0, "part of P with V to the power n3"},
+      {"a4", "a4", "-", 1.0, -10.0, 10.0, kNoNeutral, "part of Q with V to the power n4"},
+      {"a5", "a5", "-", 0.0, -10.0, 10.0, 0.0, "part of Q with V to the power n5"},
+      {"a6", "a6", "-", 0.0, -10.0, 10.0, 0.0, "part of Q with V to the power n6"},
+      {"a7", "a7", "pu/pu", 0.0, -10.0, 10.0, 0.0, "change of P per change of frequency"},
+      {"a8", "a8", "pu/pu", 0.0, -10.0, 10.0, 0.0, "change of Q per change of frequency"},
+      {"n1", "n1", "-", 2.0, 0.0, 10.0, kNoNeutral, "exponent of the voltage"},
+      {"n2", "n2", "-", 1.0, 0.0, 10.0, kNoNeutral, "exponent of the voltage"},
+      {"n3", "n3", "-", 0.0, 0.0, 10.0, kNoNeutral, "exponent of the voltage"},
+      {"n4", "n4", "-", 2.0, 0.0, 10.0, kNoNeutral, "exponent of the voltage"},
+      {"n5", "n5", "-", 1.0, 0.0, 10.0, kNoNeutral, "exponent of the voltage"},
+      {"n6", "n6", "-", 0.0, 0.0, 10.0, kNoNeutral, "exponent of the voltage"},
+      {"Vp", "Vp", "pu", 0.7, 0.05, 1.0, kNoNeutral, "voltage below which terms with n < 1 are impedances"},
+      {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNeutral, "voltage below which terms with n < 2 are impedances"},
+      {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNeutral, "lag behind which the frequency is measured"}};
+  static constexpr int dyr_columns[] = {a1, a2, a3, a4, a5, a6, a7, a8, n1, n2, n3, n4, n5, n6};
+  enum X { xr, xi };
+  /// An error of x counts in P by a7/(2 pi f0 Tf), a tenth or so.
+  static constexpr State states[] = {{"xr", "pu", "lagged voltage, real", 0.1},
+                                     {"xi", "pu", "lagged voltage, imaginary", 0.1}};
+  enum C {
+    part,                ///< six parts, those of P then those of Q, as conductance and susceptance at 1 pu
+    power = part + 6,    ///< six exponents less 2
+    lowest = power + 6,  ///< six voltages below which the term is an impedance
+    kp = lowest + 6,
+    kq,
+    iTf,
+    slope,
+    coefficients
+  };
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    for (const int i : {Vp, Vi, Tf})
+      if (!(p[i] > 0.0) || !std::isfinite(p[i]))
+        problems.add(fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit), where,
+                     "IEEL divides by it", "give a value > 0");
+    for (int i = n1; i <= n6; ++i)
+      if (!(p[i] >= 0.0))
+        problems.add(fmt::format("{} = {:g}", parameters[i].symbol, p[i]), where,
+                     "a load that grows as its voltage falls has no solution near V = 0",
+                     "give an exponent >= 0");
+    for (int i = a1; i <= a8; ++i)
+      if (!std::isfinite(p[i]))
+        problems.add(fmt::format("{} = {:g}", parameters[i].symbol, p[i]), where, "it must be finite",
+                     "give a number");
+  }
+  static std::string_view unphysical(const double*) { return ""; }
+
+  /// V^n.
+  template <class T>
+  static T to_the_power(const T& v, const T& n) {
+    using std::exp;
+    using std::log;
+    return exp(n * log(v));
+  }
+  template <class T>
+  static void prepare(const T* p, const Conventions& conventions, T* c) {
+    for (int k = 0; k < 6; ++k) {
+      const T& n = p[n1 + k];
+      c[power + k] = n - T(2.0);
+      c[lowest + k] = select(n < T(1.0), p[Vp], select(n < T(2.0), p[Vi], T(1e-6)));
+    }
+    c[kp] = p[a7];
+    c[kq] = p[a8];
+    c[iTf] = T(1.0) / p[Tf];
+    c[slope] = c[iTf] * T(1.0 / (2.0 * 3.14159265358979323846 * conventions.frequency));
+  }
+  /// As an admittance, so that nothing is divided by V.
+  template <class T>
+  static void current(const T* c, const T* x, Signals<T>& s) {
+    using std::sqrt;
+    constexpr double tiny = 1e-24;  // [pu^2] a dual needs a slope at V = 0
+    const T squared = s.Vr * s.Vr + s.Vi * s.Vi + T(tiny), v = sqrt(squared);
+    T y[2] = {T(0.0), T(0.0)};
+    for (int k = 0; k < 6; ++k) {
+      const T& edge = c[lowest + k];
+      y[k / 3] = y[k / 3] + c[part + k] * to_the_power(select(v > edge, v, edge), c[power + k]);
+    }
+    const T lagged = x[xr] * x[xr] + x[xi] * x[xi] + T(tiny);
+    const T df = (s.Vi * x[xr] - s.Vr * x[xi]) / sqrt(squared * lagged) * c[slope];
+    const T g = y[0] * (T(1.0) + c[kp] * df), b = y[1] * (T(1.0) + c[kq] * df);
+    s.Ir = T(0.0) - g * s.Vr - b * s.Vi;
+    s.Ii = b * s.Vr - g * s.Vi;
+  }
+  template <class T>
+  static void derivative(const T* c, const T* x, const Signals<T>& s, T* dx) {
+    dx[xr] = (s.Vr - x[xr]) * c[iTf];
+    dx[xi] = (s.Vi - x[xi]) * c[iTf];
+  }
+  template <class T>
+  static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
+    using std::sqrt;
+    const T v = sqrt(s.Vr * s.Vr + s.Vi * s.Vi);
+    const T drawn[2] = {T(0.0) - s.Vr * s.Ir - s.Vi * s.Ii, s.Vr * s.Ii - s.Vi * s.Ir};
+    for (int side = 0; side < 2; ++side) {
+      T sum(0.0);
+      for (int k = 3 * side; k < 3 * side + 3; ++k) {
+        if (value_of(p[a1 + k]) != 0.0 && value_of(v) < value_of(c[lowest + k]))
+          return fmt::format("{} = {:g} pu: the part with {} = {:g} is an impedance there already",
+                             value_of(p[n1 + k]) < 1.0 ? "Vp" : "Vi", value_of(c[lowest + k]),
+                             parameters[n1 + k].symbol, value_of(p[n1 + k]));
+        sum = sum + p[a1 + k] * to_the_power(v, p[n1 + k]);
+      }
+      const bool nothing = value_of(drawn[side]) == 0.0;
+      if (!nothing && !(value_of(sum) > 0.0))
+        return fmt::format("the parts of {} add up to {:.4g} there", side == 0 ? "P" : "Q", value_of(sum));
+      const T rated = nothing ? T(0.0) : drawn[side] / sum;
+      for (int k = 3 * side; k < 3 * side + 3; ++k) c[part + k] = rated * p[a1 + k];
+    }
+    x[xr] = s.Vr;
+    x[xi] = s.Vi;
+    return {};
+  }
+};
+
+}  // namespace swingbank::sim::load_ieel

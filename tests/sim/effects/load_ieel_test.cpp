@@ -1,0 +1,82 @@
+// IEEL against hand-computed powers, and against ZIP where both are the same load.
+#include "sim/effects/load_ieel.hpp"
+
+#include <gmock/gmock.h>
+
+#include "sim/solve/load_equations.hpp"
+
+namespace swingbank::sim {
+namespace {
+
+using ::testing::HasSubstr;
+using Changes = std::vector<std::pair<const char*, double>>;
+
+/// Power drawn at voltage v of a load that draws 0.8 + j0.3 pu at 0.98 pu.
+Complex drawn(const char* name, const Changes& changes, Complex v) {
+  Consumer load;
+  load.name = "1";
+  load.consumption = {0.8, 0.3};
+  load.block = {find_effect(name), find_effect(name)->standard_parameters()};
+  for (const auto& [parameter, value] : changes)
+    load.block.p[static_cast<std::size_t>(load.block.effect->parameter_index(parameter))] = value;
+  const auto o = load_operating_point(load, load.block.p, std::polar(0.98, 0.3), 100.0, Conventions::psse());
+  Signals<double> s;
+  s.Vr = v.real();
+  s.Vi = v.imag();
+  LoadEquations<double>(load).current(o.c.data(), o.x.data(), s);
+  return -v * std::conj(Complex(s.Ir, s.Ii));
+}
+const Changes kParts = {{"a1", 0.5}, {"a2", 0.2}, {"a3", 0.4},  {"a4", 0.7}, {"a5", 0.0}, {"a6", 0.1},
+                        {"n1", 1.6}, {"n2", 0.0}, {"n3", 0.75}, {"n4", 3.0}, {"n6", 2.0}};
+
+TEST(LoadIeel, DrawsItsPowersOfTheVoltage) {
+  const auto p = [](double v) { return 0.5 * std::pow(v, 1.6) + 0.2 + 0.4 * std::pow(v, 0.75); };
+  const auto q = [](double v) { return 0.7 * v * v * v + 0.1 * v * v; };
+  for (const double v : {0.98, 0.85, 1.1}) {  // the parts need not add up to 1: the load's P and Q do
+    const Complex s = drawn("IEEL", kParts, std::polar(v, 0.3));
+    EXPECT_NEAR(s.real(), 0.8 * p(v) / p(0.98), 1e-14);  // rounding
+    EXPECT_NEAR(s.imag(), 0.3 * q(v) / q(0.98), 1e-14);
+  }
+}
+
+TEST(LoadIeel, GivesWayAtLowVoltageWithoutAStep) {
+  const auto p = [](double v) { return drawn("IEEL", kParts, std::polar(v, 0.3)).real(); };
+  for (const double edge : {0.5, 0.7}) EXPECT_NEAR(p(edge + 1e-9), p(edge - 1e-9), 1e-8);  // slope < 3
+  EXPECT_NEAR(p(0.2) / p(0.4), 0.25, 1e-12);  // nothing but impedances
+  EXPECT_NEAR(std::abs(drawn("IEEL", kParts, 0.0)), 0.0, 1e-20);
+}
+
+TEST(LoadIeel, IsZipWithWholeExponents) {
+  const Changes ieel = {{"a1", 0.3}, {"a2", 0.5}, {"a3", 0.2}, {"a4", 0.6},
+                        {"a5", 0.4}, {"a6", 0.0}, {"a7", 1.5}, {"a8", -1.0}};
+  // ZIP's parts are those of the load at 0.98 pu, IEEL's those at 1 pu.
+  const double v0 = 0.98, p = 0.3 * v0 * v0 + 0.5 * v0 + 0.2, q = 0.6 * v0 * v0 + 0.4 * v0;
+  const Changes zip = {
+      {"Pi", 0.5 * v0 / p}, {"Pp", 0.2 / p}, {"Qi", 0.4 * v0 / q}, {"Kpf", 1.5}, {"Kqf", -1.0}};
+  for (const double v : {1.0, 0.9, 0.6, 0.3})  // turned by 0.02 rad: df as well
+    EXPECT_NEAR(std::abs(drawn("IEEL", ieel, std::polar(v, 0.32)) - drawn("ZIP", zip, std::polar(v, 0.32))),
+                0.0, 1e-14);
+}
+
+TEST(LoadIeel, WhatCannotRunIsRefused) {
+  for (const auto& [changes, part] :
+       {std::pair{Changes{{"a1", -1.0}}, "the parts of P add up to -0.96"},
+        {Changes{{"n1", 0.5}, {"Vp", 1.0}}, "Vp = 1 pu: the part with n1 = 0.5 is an impedance"}})
+    try {
+      drawn("IEEL", changes, 1.0);
+      FAIL() << part;
+    } catch (const InputError& e) {
+      EXPECT_THAT(e.what(), HasSubstr(part));
+    }
+  const Effect& effect = *find_effect("IEEL");
+  for (const auto& [name, value] : {std::pair{"n2", -1.0}, {"Tf", 0.0}, {"Vi", 0.0}}) {
+    auto p = effect.standard_parameters();
+    p[static_cast<std::size_t>(effect.parameter_index(name))] = value;
+    Problems problems;
+    effect.check(nullptr, p.data(), "test", problems);
+    EXPECT_FALSE(problems.empty()) << name;
+  }
+}
+
+}  // namespace
+}  // namespace swingbank::sim

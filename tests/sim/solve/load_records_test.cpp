@@ -1,0 +1,130 @@
+// Load models in a .dyr: which load they belong to, round trip, faults; user-written models that are ours.
+#include <gmock/gmock.h>
+
+#include "sim/solve/load_choice.hpp"
+#include "tests/sim/network/raw_case.hpp"
+
+namespace swingbank::sim {
+namespace {
+
+using ::testing::HasSubstr;
+
+const std::string kPlants =
+    "101 'GENCLS' 1 0.0 0.0 /\n102 'GENROU' 1 8.0 0.03 0.4 0.05 6.175 0.05 1.8 1.7 0.3 0.55 0.25 0.2 0.1 0.8 "
+    "/\n";
+const std::string kMotor =
+    "'CIM5BL' 1 1 0.01 0.07 3.5 0.012 0.15 0.02 0.3 1.0 0.05 1.2 0.4 300 0 0.7 0 12 5 1.5 0.9 /\n";
+const std::string kPowers = "'IEELBL' 1 0.2 0.3 0.5 0.6 0.4 0 1.5 -1 2 1 0 2 1 0 /\n";
+
+Grid load(const RawCase& raw, const std::string& dyr) {
+  const ScratchFile r("case.raw", raw.text()), d("case.dyr", dyr);
+  return load_grid(r.path, d.path, Conventions::psse());
+}
+RawCase two_loads() {
+  RawCase raw;
+  raw.loads = "103,'1',1,1,1,150.0,30.0,0,0,0,0,1,1,0\n103,'2',1,1,1,100.0,10.0,0,0,0,0,1,1,0\n";
+  return raw;
+}
+double parameter(const Block& block, const char* name) {
+  return block.p.at(static_cast<std::size_t>(block.effect->parameter_index(name)));
+}
+
+TEST(LoadRecords, BelongToTheLoadOfTheirId) {
+  const Grid grid = load(two_loads(), kPlants + "103 " + kMotor);
+  ASSERT_EQ(grid.loads.size(), 1u);
+  const Consumer& motor = grid.loads[0];
+  EXPECT_EQ(motor.name, "103/1");
+  EXPECT_EQ(motor.block.effect->name, "CIM5");
+  EXPECT_EQ(motor.consumption, Complex(1.5, 0.3));
+  EXPECT_EQ(parameter(motor.block, "X2"), 0.3);
+  EXPECT_EQ(parameter(motor.block, "Mbase"), 300.0);
+  EXPECT_EQ(parameter(motor.block, "E"), 1.5);  // CIM5BL calls it D
+  EXPECT_EQ(parameter(motor.block, "D"), 1.0);
+  EXPECT_EQ(parameter(motor.block, "Tnom"), 0.9);
+}
+
+TEST(LoadRecords, AStarMeansEveryLoadOfTheBus) {
+  const Grid grid =
+      load(two_loads(), kPlants + "103 'IEELBL' * 0.2 0.3 0.5 0.6 0.4 0 1.5 -1 2 1 0 2 1 0 /\n");
+  ASSERT_EQ(grid.loads.size(), 2u);
+  EXPECT_EQ(grid.loads[1].name, "103/2");
+  EXPECT_EQ(parameter(grid.loads[1].block, "a7"), 1.5);
+  EXPECT_EQ(parameter(grid.loads[1].block, "n2"), 1.0);
+}
+
+TEST(LoadRecords, ReadBackToTheLastBit) {
+  Grid grid = load(two_loads(),
+                   kPlants + "103 " + kMotor + "103 'IEELBL' 2 0.2 0.3 0.5 0.6 0.4 0 1.5 -1 2 1 0 2 1 0 /\n");
+  ASSERT_EQ(grid.loads.size(), 2u);
+  for (Consumer& c : grid.loads)
+    for (const char* name : {"R1", "X1", "a2", "a7"})
+      if (const int i = c.block.effect->parameter_index(name); i >= 0)
+        c.block.p[static_cast<std::size_t>(i)] /= 3.0;
+  const ScratchFile file("out.dyr");
+  write_dyr(grid, file.path);
+  const Grid again = make_grid(grid.network, read_dyr(file.path), file.path.string(), grid.conventions);
+  ASSERT_EQ(again.loads.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(again.loads[k].block.effect, grid.loads[k].block.effect);
+    EXPECT_EQ(again.loads[k].block.p, grid.loads[k].block.p);
+    EXPECT_EQ(again.loads[k].load, grid.loads[k].load);
+  }
+}
+
+TEST(LoadRecords, WhatADyrCannotHoldIsNotLostInSilence) {
+  Grid grid = load({}, kPlants + "103 " + kMotor);
+  const auto set = [&](const char* name, double value) {
+    grid.loads[0].block.p[static_cast<std::size_t>(grid.loads[0].block.effect->parameter_index(name))] =
+        value;
+  };
+  set("C0", 0.3);
+  const ScratchFile file("out.dyr");
+  EXPECT_THAT(sentences_of([&] { write_dyr(grid, file.path); }), HasSubstr("C0 = 0.3 - of CIM5"));
+  EXPECT_FALSE(std::filesystem::exists(file.path));
+}
+
+TEST(LoadRecords, EveryFaultIsReported) {
+  const std::string all = sentences_of([] {
+    load({}, kPlants + "103 " + kMotor + "103 " + kPowers + "999 " + kPowers + "103 'CIM5BL' 1 1 2 3 /\n");
+  });
+  EXPECT_THAT(all, HasSubstr("a second model, IEELBL for load '1' at bus 103"));
+  EXPECT_THAT(all, HasSubstr("it already has CIM5BL"));
+  EXPECT_THAT(all, HasSubstr("IEELBL for load '1' at bus 999"));
+  EXPECT_THAT(all, HasSubstr("CIM5BL with 3 parameters"));
+  EXPECT_THAT(all, HasSubstr("it takes 20: IT Ra Xa"));
+  const std::string relay = sentences_of([] {
+    load({}, kPlants + "103 'CIM5BL' 1 1 0.01 0.07 3.5 0.012 0.15 0 0 1 0 1.2 0 300 0 0.7 0.65 12 5 2 0 /\n");
+  });
+  EXPECT_THAT(relay, HasSubstr("VI = 0.65 pu"));
+  EXPECT_THAT(relay, HasSubstr("case.dyr:3"));
+}
+
+TEST(LoadRecords, TheirLoadsKeepThemWhereTheOthersAreAsComposed) {
+  Grid grid = load(two_loads(), kPlants + "103 " + kMotor);
+  Problems problems;
+  loads_as_composed(grid, problems);
+  problems.raise();
+  ASSERT_EQ(grid.loads.size(), 2u);
+  EXPECT_EQ(grid.loads[0].block.effect->name, "CIM5");
+  EXPECT_EQ(grid.loads[1].block.effect->name, "ZIP");
+}
+
+/// PSS/E up to 33 writes GENTPJ as a user-written model, from 34 on as GENTPJ1.
+TEST(LoadRecords, UserWrittenModelsThatAreOursAreReadAsThat) {
+  const std::string infinite = "101 'GENCLS' 1 0.0 0.0 /\n102 ",
+                    values = " 8.0 0.03 0.4 0.05 6.175 0.05 1.8 1.7 0.3 0.55 0.25 0.26 0.2 0.1 0.4 0.08 /\n";
+  for (const std::string& record :
+       {"'GENTPJU1' 1" + values, "'GENTPJ1' 1" + values, "'USRMDL' 1 'GENTPJU1' 1 1 0 16 6 1" + values}) {
+    const Grid grid = load({}, infinite + record);
+    const Block& machine = grid.plants[1].machine;
+    EXPECT_EQ(machine.effect->name, "GENTPJ");
+    EXPECT_EQ(parameter(machine, "Tdop"), 8.0);
+    EXPECT_EQ(parameter(machine, "Xqpp"), 0.26);
+    EXPECT_EQ(parameter(machine, "Kis"), 0.08);
+  }
+  EXPECT_THAT(sentences_of([&] { load({}, infinite + "'USRMDL' 1 'GENTPJU1' 1 1 0 15 6 1" + values); }),
+              HasSubstr("GENTPJU1 with 22 parameters"));
+}
+
+}  // namespace
+}  // namespace swingbank::sim
