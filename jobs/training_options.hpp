@@ -20,7 +20,7 @@ struct TrainingOptions {
   int threads = 0;
   unsigned readers = 1;
   double memory_limit = 8.0;  // [GiB]
-  bool shuffle_labels = false;
+  bool shuffle_labels = false, save_network = true;
 
   void add_to(CLI::App& app) {
     app.add_option("DATASET", dataset, "folder that `swingbank generate` wrote");
@@ -39,6 +39,8 @@ struct TrainingOptions {
     app.add_option("--memory-limit", memory_limit, "series up to this size stay in memory [GiB]")
         ->capture_default_str();
     app.add_flag("--shuffle-labels", shuffle_labels, "control run: must score about as the mean does");
+    app.add_flag("!--no-network", save_network,
+                 "do not write the trained network beside its result (4 bytes a weight)");
     app.add_option("--print", print,
                    "print one entry of the experiment and end: table, dataset, draws, networks, folds");
   }
@@ -58,6 +60,7 @@ struct TrainingOptions {
     r.seed = seed;
     if (epochs > 0) r.epochs = epochs;
     r.shuffle_labels = shuffle_labels;
+    r.save_network = save_network;
     r.out = out;
     return r;
   }

@@ -1,0 +1,172 @@
+// swingbank predict: a trained network's estimate of a plant's parameters from measured records.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "jobs/record_for_network.hpp"
+#include "train/runtime.hpp"
+#include "validate/record_check.hpp"
+#include "validate/write_file.hpp"
+
+namespace {
+using namespace swingbank;
+using namespace swingbank::validate;
+using nlohmann::ordered_json;
+
+struct Options {
+  std::string network, model, out;
+  std::vector<std::string> records;
+  std::optional<double> event;
+  bool json = false;
+};
+
+struct Estimated {
+  Record record;
+  NetworkInput input;
+  Estimate estimate;
+};
+
+void require_same_machine(const NetworkInfo& network, const PlantModel& model) {
+  const auto machine = std::string(model.plant.machine.effect->name);
+  if (machine != network.machine_model)
+    throw InputError({"a plant with " + machine, model.origin,
+                      "the network was trained on " + network.machine_model,
+                      "give a network of the plant's machine model"});
+}
+
+/// Every record, read and checked, so that all faults of all files are told at once.
+std::vector<Estimated> read_all(const Options& o, const PlantModel& model) {
+  std::vector<Estimated> all;
+  Problems problems;
+  for (const auto& file : o.records) {
+    try {
+      all.push_back({read_record(file, model.record_base), {}, {}});
+      raise_refusals(check_record(all.back().record, plant_facts(model)));
+    } catch (const InputError& error) {
+      for (const auto& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
+    }
+  }
+  problems.raise();
+  return all;
+}
+
+/// Mean over the records, and their standard deviation about it (0 for one record).
+std::pair<double, double> over_records(const std::vector<Estimated>& all, std::size_t parameter) {
+  double mean = 0.0, square = 0.0;
+  for (const auto& e : all) mean += e.estimate.values[parameter] / static_cast<double>(all.size());
+  for (const auto& e : all) square += std::pow(e.estimate.values[parameter] - mean, 2.0);
+  return {mean, all.size() > 1 ? std::sqrt(square / static_cast<double>(all.size() - 1)) : 0.0};
+}
+
+ordered_json to_json(const SavedNetwork& network, const PlantModel& model,
+                     const std::vector<Estimated>& all) {
+  const NetworkInfo& n = network.info();
+  ordered_json j;
+  j["format"] = "swingbank-estimate-1";
+  j["software"] = "swingbank " SWINGBANK_VERSION;
+  j["network"] = {{"file", network.file().string()},
+                  {"run", n.run},
+                  {"kind", n.network},
+                  {"machine_model", n.machine_model},
+                  {"dataset", n.dataset},
+                  {"dataset_hash", n.dataset_hash},
+                  {"left_out", n.left_out ? ordered_json(*n.left_out) : ordered_json()},
+                  {"input_rms_seen", n.input_rms_seen}};
+  j["model"] = model.origin;
+  for (const auto& e : all)
+    j["records"].push_back({{"file", e.record.name},
+                            {"hash", fmt::format("{:016x}", e.record.hash)},
+                            {"event_s", e.input.event_s},
+                            {"held_before_record_s", e.input.held_s},
+                            {"input_rms", e.estimate.input_rms},
+                            {"estimates", e.estimate.values}});
+  for (std::size_t i = 0; i < n.parameters.size(); ++i) {
+    const auto& p = n.parameters[i];
+    const auto [mean, scatter] = over_records(all, i);
+    j["parameters"].push_back({{"name", p.name},
+                               {"effect", p.effect},
+                               {"unit", p.unit},
+                               {"estimate", mean},
+                               {"spread", p.spread},
+                               {"bias", p.bias},
+                               {"scatter", scatter},
+                               {"low", p.low},
+                               {"high", p.high},
+                               {"learnt", p.high > p.low}});
+  }
+  return j;
+}
+
+std::string table(const NetworkInfo& n, const std::vector<Estimated>& all) {
+  std::string text = fmt::format("{:<16}{:>12}{:>12}{:>12}  {:<6}{}\n", "parameter", "estimate", "spread",
+                                 "scatter", "unit", "learnt within");
+  for (std::size_t i = 0; i < n.parameters.size(); ++i) {
+    const auto& p = n.parameters[i];
+    const auto [mean, scatter] = over_records(all, i);
+    text +=
+        fmt::format("{:<16}{:>12.4g}{:>12.3g}{:>12.3g}  {:<6}{}\n", p.name, mean, p.spread, scatter, p.unit,
+                    p.high > p.low ? fmt::format("{:g} to {:g}", p.low, p.high) : "held, not learnt");
+  }
+  return text +
+         "spread: root mean square error on the network's validation records; scatter: between these "
+         "records\n";
+}
+
+/// A network answers whatever it is shown; this is how one sees that it was never shown anything like it.
+void warn_of_strangers(const NetworkInfo& n, const std::vector<Estimated>& all) {
+  for (const auto& e : all)
+    if (e.estimate.input_rms > n.input_rms_seen)
+      fmt::print(
+          stderr,
+          "warning: {} is unlike what the network was trained on: its normalised input is {:.2g} rms, the "
+          "largest seen was {:.2g}; do not trust this estimate\n",
+          e.record.name, e.estimate.input_rms, n.input_rms_seen);
+}
+
+int run(const Options& o) {
+  const SavedNetwork network = SavedNetwork::load(o.network);
+  const PlantModel model = load_plant_model(o.model);
+  require_same_machine(network.info(), model);
+  std::vector<Estimated> all = read_all(o, model);
+  if (o.event && all.size() > 1)
+    throw InputError(
+        {"one instant for several records", "--event", "each has its own", "give one record at a time"});
+  for (auto& e : all) {
+    e.input = network_input(e.record, model, network.info(), o.event);
+    e.estimate = network.estimate(e.input.values);
+  }
+  warn_of_strangers(network.info(), all);
+  const std::string text = to_json(network, model, all).dump(2) + "\n";
+  if (!o.out.empty()) write_file(o.out, text);
+  fmt::print("{}", o.json ? text : table(network.info(), all));
+  return 0;
+}
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{SWINGBANK_SUMMARY, "swingbank predict"};
+  Options o;
+  app.add_option("--network", o.network,
+                 "file.network that train or cross-validate wrote, or a folder with one")
+      ->required();
+  app.add_option("--model", o.model, "plant file: machine model and base, bases of the records")->required();
+  app.add_option("--records,--record", o.records, "records (CSV, COMTRADE or HDF5), one or several")
+      ->required();
+  app.add_option("--event", o.event, "when the event begins [s] (default: found)");
+  app.add_option("--out", o.out, "write the estimate as JSON to this file");
+  app.add_flag("--json", o.json, "print the estimate as JSON instead of a table");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 1;
+  }
+  try {
+    set_up_runtime(0);
+    return run(o);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+}

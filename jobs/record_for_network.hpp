@@ -1,0 +1,106 @@
+#pragma once
+// A measured record as the dataset's records are that a network was trained on.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "train/saved_network.hpp"
+#include "validate/plant_model.hpp"
+#include "validate/record_signals.hpp"
+
+namespace swingbank {
+
+/// Channels x samples, and where they come from.
+struct NetworkInput {
+  std::vector<float> values;
+  double event_s = 0.0;  ///< the record's time of the event [s]
+  double held_s = 0.0;   ///< length before the record begins, where the steady values stand [s]
+};
+
+namespace record_detail {
+
+/// The record's series of a dataset's channel on the machine's base; empty if it was not measured.
+inline std::vector<double> series_of(const std::string& channel, const validate::Record& r,
+                                     const validate::PlantModel& model, const NetworkInfo& network) {
+  const std::map<std::string, const std::vector<double>*> direct = {
+      {"P", &r.P},         {"Q", &r.Q},     {"V", &r.V},    {"theta", &r.theta},
+      {"speed", &r.speed}, {"Efd", &r.Efd}, {"Ifd", &r.Ifd}};
+  if (channel == "frequency" && network.frequency) {
+    std::vector<double> f(r.t.size());
+    terminal_frequency(r.theta.data(), r.t.size(), r.rate(), model.conventions.frequency, *network.frequency,
+                       f.data());
+    return f;
+  }
+  const auto found = direct.find(channel);
+  if (found == direct.end()) return {};
+  std::vector<double> x = *found->second;
+  if (channel == "P" || channel == "Q")
+    for (double& value : x) value *= r.base.mva / model.plant.mva;
+  return x;
+}
+
+/// Straight line between neighbouring samples; `at` is inside the record.
+inline double between(const validate::Record& r, const std::vector<double>& x, double at) {
+  const double place = (at - r.t.front()) / r.step();
+  const auto left = std::min(static_cast<std::size_t>(std::max(0.0, place + 1e-9)), x.size() - 2);
+  const double part = std::clamp(place - static_cast<double>(left), 0.0, 1.0);
+  return x[left] + part * (x[left + 1] - x[left]);
+}
+
+}  // namespace record_detail
+
+/// Puts the record's event where the network's records have theirs and samples it at their rate. The first
+/// sample and what lies before the record's beginning are the medians of the samples before the event, for a
+/// dataset's records begin at rest. Throws InputError: no event found or none before it, a channel that was
+/// not measured, a record that ends too early.
+inline NetworkInput network_input(const validate::Record& record, const validate::PlantModel& model,
+                                  const NetworkInfo& network, std::optional<double> event_s) {
+  Problems problems;
+  const validate::Signals signals = validate::record_signals(record);
+  NetworkInput in;
+  std::size_t quiet = signals.onset + 1;  // samples before the event
+  in.event_s = event_s.value_or(record.t[signals.onset]);
+  if (event_s)
+    quiet = static_cast<std::size_t>(
+        std::ranges::count_if(record.t, [&](double t) { return t <= *event_s + 0.5 * record.step(); }));
+  if (!event_s && !signals.event)
+    problems.add("no event", record.name, "nothing leaves the noise",
+                 "give --event with its time, or another record");
+  else if (constexpr std::size_t few = 5; quiet < few || quiet >= record.t.size())
+    problems.add(fmt::format("an event at {:g} s", in.event_s), record.name,
+                 fmt::format("there must be {} samples or more before it, and some after it", few),
+                 "give a record that begins earlier");
+  if (!network.fault_start)
+    problems.add("network without an instant of its faults", network.run,
+                 "its dataset does not say when they begin", "train it on a dataset that `generate` made");
+  problems.raise();
+  const double shift = in.event_s - *network.fault_start;
+  const double last = shift + static_cast<double>(network.samples - 1) / network.rate;
+  if (last > record.t.back() + 0.5 * record.step())
+    problems.add(
+        fmt::format("a record until {:g} s", record.t.back()), record.name,
+        fmt::format("the network reads until {:g} s, {:g} s after the event", last, last - in.event_s),
+        "give a longer record");
+  in.held_s = std::max(0.0, record.t.front() - shift);
+  for (const auto& channel : network.channels) {
+    const auto x = record_detail::series_of(channel, record, model, network);
+    if (x.empty()) {
+      problems.add("channel " + channel, record.name, "the network reads it and the record does not hold it",
+                   "give a record with it, or a network trained without it");
+      continue;
+    }
+    const double level = validate::median_of({x.begin(), x.begin() + static_cast<std::ptrdiff_t>(quiet)});
+    for (std::size_t k = 0; k < network.samples; ++k) {
+      const double t = shift + static_cast<double>(k) / network.rate;
+      const bool before = k == 0 || t < record.t.front();
+      in.values.push_back(static_cast<float>(before ? level : record_detail::between(record, x, t)));
+    }
+  }
+  problems.raise();
+  return in;
+}
+
+}  // namespace swingbank

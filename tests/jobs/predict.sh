@@ -1,0 +1,98 @@
+#!/usr/bin/env bash
+# swingbank predict: estimates from records are those that the network made of the same rows when it was judged.
+source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
+export OMP_NUM_THREADS=1
+
+TINY_DRAWS=150 tiny_experiment "$work"
+sed -i 's/^channels = \["P", "Q", "speed"\]$/channels = ["P", "Q", "speed", "V", "theta"]/' "$work/tiny_data.toml"
+"$swingbank" generate "$work/tiny_data.toml" --progress none --out "$work/data" >"$work/log" 2>&1 || fail "$(cat "$work/log")"
+"$swingbank" cross-validate "$work/data" --experiment "$work/tiny.toml" --fold 30 --out "$work/out" >"$work/log" 2>&1 || fail "$(cat "$work/log")"
+network=$work/out/V-gru-quick-seed1-gen30.network
+[[ -s $network ]] || fail "no network beside the result"
+grep -q '"name": "tiny_data"' "$work/out/V-gru-quick-seed1-gen30.json" || fail "the dataset has not its config's name"
+
+cat >"$work/plant.toml" <<'TOML'
+[plant]
+name = "bus 30"
+base_mva = 100.0
+frequency_hz = 60.0
+conventions = "psse"
+origin = "test"
+[record]
+base_mva = 100.0
+[machine]
+effect = "GENCLS"
+H = 4.0
+D = 2.0
+Ra = 0.0
+Xdp = 0.3
+TOML
+
+# Every row of the generator left out as a record of its own. P and Q are on the machine's base already.
+/usr/bin/python3 - "$work" <<'PYTHON'
+import glob, sys
+import h5py, numpy
+work, n = sys.argv[1], 0
+def write(name, t, x):
+    with open(f"{work}/{name}.csv", "w") as file:
+        file.write("t_s,P_pu,Q_pu,speed_pu,V_pu,theta_rad\n")
+        for k in range(len(t)):
+            file.write(",".join(f"{v:.9g}" for v in (t[k], *x[:, k])) + "\n")
+truth = []
+for path in sorted(glob.glob(f"{work}/data/shards/*.h5")):
+    shard = h5py.File(path)
+    for i in numpy.flatnonzero(shard["generator"][:] == 30):
+        x = shard["records"][i].astype(float)
+        t = numpy.arange(x.shape[1]) / 60
+        write(f"row-{n:03d}", t, x)
+        if n == 0:
+            # The same, seen by an instrument with its own clock, rate and base, after more rest.
+            fine = numpy.arange(-120, 2 * len(t) - 1) / 120
+            y = numpy.array([numpy.interp(fine, t, c) for c in x])
+            y[:2] *= 100 / 250
+            write("other", fine + 17, y)
+        truth.append(shard["parameters"][i])
+        n += 1
+numpy.savetxt(f"{work}/truth.txt", truth)
+PYTHON
+
+"$swingbank" predict --network "$work/out" --model "$work/plant.toml" --records "$work"/row-*.csv --json >"$work/all.json" 2>"$work/log" || fail "$(head -5 "$work/log")"
+"$swingbank" predict --network "$network" --model "$work/plant.toml" --records "$work/row-000.csv" --out "$work/one.json" >"$work/table" || fail "one record"
+grep -qE '^H .* s +2 to 8$' "$work/table" || fail "no table: $(cat "$work/table")"
+sed -i '/^\[record\]/,/^base_mva/s/^base_mva = .*/base_mva = 250.0/' "$work/plant.toml"
+"$swingbank" predict --network "$network" --model "$work/plant.toml" --records "$work/other.csv" --json >"$work/other.json" || fail "other clock, rate and base"
+
+/usr/bin/python3 - "$work" <<'PYTHON'
+import json, sys
+import numpy
+load = lambda name: json.load(open(f"{sys.argv[1]}/{name}"))
+every, one, other = load("all.json"), load("one.json"), load("other.json")
+result, truth = load("out/V-gru-quick-seed1-gen30.json"), numpy.loadtxt(f"{sys.argv[1]}/truth.txt")
+estimates = numpy.array([r["estimates"] for r in every["records"]])
+assert estimates.shape == truth.shape and len(truth) == result["test_rows"], (estimates.shape, result["test_rows"])
+mse = ((estimates - truth) ** 2).mean(axis=0)
+said = [p["mse"] for p in result["per_parameter"]]
+# Records hold nine digits of single-precision values; the steady level is their median, not their first sample.
+assert numpy.allclose(mse, said, rtol=2e-3), (mse, said)
+assert one["records"][0]["estimates"] == every["records"][0]["estimates"]
+assert abs(one["records"][0]["event_s"] - 0.5) < 0.02, one
+# Another clock and rate move the found event by less than a sample, 17 ms of a 1 s window.
+a, b = (numpy.array([p["estimate"] for p in j["parameters"]]) for j in (one, other))
+assert numpy.allclose(a, b, rtol=0.02), (a, b)
+assert abs(other["records"][0]["event_s"] - 17.5) < 0.02 and other["records"][0]["held_before_record_s"] == 0
+assert every["parameters"][0]["name"] == "H" and every["parameters"][0]["spread"] > 0.1, every["parameters"]
+assert every["parameters"][0]["unit"] == "s" and every["parameters"][0]["effect"] == "GENCLS"
+PYTHON
+
+# What cannot be estimated is told.
+predict() { "$swingbank" predict --network "$network" --model "$work/plant.toml" "$@"; }
+cut -d, -f1-3,5,6 "$work/row-000.csv" >"$work/no-speed.csv"
+refuses "channel that was not measured" 'channel speed at no-speed.csv' predict --records "$work/no-speed.csv"
+head -70 "$work/row-000.csv" >"$work/short.csv"
+refuses "record too short" 'give a longer record' predict --records "$work/short.csv"
+refuses "no network" 'none.network' "$swingbank" predict --network "$work/none.network" --model "$work/plant.toml" --records "$work/row-000.csv"
+head -c 3000 "$network" >"$work/cut.network"
+refuses "truncated network" 'cut.network' "$swingbank" predict --network "$work/cut.network" --model "$work/plant.toml" --records "$work/row-000.csv"
+refuses "another machine model" 'the network was trained on GENCLS' "$swingbank" predict --network "$network" --model "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml" --records "$work/row-000.csv"
+misused "unknown option" 'nonsense' predict --records "$work/row-000.csv" --nonsense 3
