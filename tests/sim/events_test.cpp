@@ -1,6 +1,7 @@
 // Events other than faults and line trips, in both integrators.
 #include "reference_support.hpp"
 #include "sim/solve/batch.hpp"
+#include "sim/solve/load_choice.hpp"
 
 namespace swingbank::sim {
 namespace {
@@ -10,11 +11,15 @@ int row_of(const Trajectory& run, Channel channel) {
 }
 
 /// Runs the event in both integrators and returns the lanes' run.
-Trajectory compared(const Grid& grid, const Event& event) {
-  const ReferenceRun reference = run_reference(grid, event, {});
+Trajectory compared(const Grid& grid, const Event& event, double t_end = ReferenceOptions{}.t_end) {
+  ReferenceOptions exact;
+  exact.t_end = t_end;
+  const ReferenceRun reference = run_reference(grid, event, exact);
   EXPECT_EQ(reference.outcome, Outcome::stable);
   Trajectory kept;
-  Batch batch(grid, BatchOptions{});
+  BatchOptions options;
+  options.t_end = t_end;
+  Batch batch(grid, options);
   bool given = false;
   batch.run(
       [&](Job& job) {
@@ -45,6 +50,54 @@ TEST(Events, ATrippedMachineDeliversNothingAndTheOthersSlowDown) {
     if (p != plant) {
       EXPECT_LT(run.at(p, row_of(run, Channel::speed))[240], 0.0) << grid.plants[p].name;
     }
+}
+
+double inertia(const Plant& plant) {  // 2 H S [s pu of the network's base]
+  const Block& m = plant.machine;
+  return 2 * m.p[static_cast<std::size_t>(m.effect->parameter_index("H"))] * plant.mva / 100.0;
+}
+/// Mean slope of the remaining machines' speed, weighed by 2 H S, between two samples [1/s].
+double frequency_slope(const Grid& grid, const Trajectory& run, int lost, int from, int to) {
+  double sum = 0.0, weight = 0.0;
+  for (int p = 0; p < static_cast<int>(grid.plants.size()); ++p) {
+    if (p == lost) continue;
+    const double* speed = run.at(p, row_of(run, Channel::speed));
+    sum += inertia(grid.plants[static_cast<std::size_t>(p)]) * (speed[to] - speed[from]);
+    weight += inertia(grid.plants[static_cast<std::size_t>(p)]);
+  }
+  return sum / weight * run.rate / (to - from);
+}
+
+/// All the other machines together are one with M = sum 2 H S, short of the power P that the lost one gave:
+/// dw/dt = -P/M from the first instant on.
+TEST(Events, FrequencyBeginsToFallAsTheAggregateSwingEquationSays) {
+  for (const char* name : {"30", "34", "37"}) {
+    Grid grid = test::configured_grid("ieee39_genrou", Conventions::psse());
+    Event event;
+    const auto lost = std::ranges::find(grid.plants, name, &Plant::name);
+    event.generator_trips = {{lost->generator, 1.0}};
+    double remaining = 0.0;
+    for (const Plant& p : grid.plants)
+      if (p.name != name) remaining += inertia(p);
+    const double expected = -lost->generation.real() / remaining;
+    const int index = static_cast<int>(lost - grid.plants.begin());
+    const Trajectory soft = compared(grid, event, 1.5);
+    Problems problems;
+    for (const Load& l : grid.network.loads)
+      choose_load(
+          grid, std::to_string(grid.network.buses[static_cast<std::size_t>(l.bus)].number) + ":ZIP:Pp=1,Qp=1",
+          "--load", problems);
+    problems.raise();
+    const Trajectory hard = compared(grid, event, 1.5);
+    const int at = static_cast<int>(std::lround(1.0 * hard.rate)),
+              later = at + static_cast<int>(hard.rate / 10);
+    // Loads that keep their power leave only the change of the lines' losses: 4, 0.2 and 3 MW of 250 to 540.
+    EXPECT_NEAR(frequency_slope(grid, hard, index, at, later) / expected, 1.0, 0.02) << name;
+    // Impedances give way with the voltage: the frequency falls more slowly, yet it falls.
+    const double gentle = frequency_slope(grid, soft, index, at, later) / expected;
+    EXPECT_GT(gentle, 0.3) << name;
+    EXPECT_LT(gentle, 0.97) << name;
+  }
 }
 
 TEST(Events, ALoadStepTakesThePowerItNamesAtTheVoltageBefore) {
