@@ -1,0 +1,75 @@
+#pragma once
+// What commands that work on several records share: reading them all before anything is said, progress, and
+// what is said when it cannot be done.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <exception>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "validate/plant_model.hpp"
+#include "validate/record.hpp"
+#include "validate/record_check.hpp"
+
+namespace swingbank::jobs {
+
+/// Reads and checks every record, so that all faults of all files are told at once; findings that do not
+/// refuse go to stderr.
+inline std::vector<validate::Record> read_events(const std::vector<std::string>& files,
+                                                 const validate::PlantModel& model) {
+  std::vector<validate::Record> records;
+  Problems problems;
+  const auto take = [&](const InputError& error) {
+    for (const auto& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
+  };
+  for (const auto& file : files) {
+    try {
+      validate::Record record = validate::read_record(file, model.record_base);
+      const auto findings = validate::check_record(record, validate::plant_facts(model));
+      for (const auto& f : findings)
+        if (f.severity == validate::Severity::warn) fmt::print(stderr, "note: {}\n", f.problem.sentence());
+      if (std::ranges::any_of(records, [&](const auto& other) { return other.name == record.name; }))
+        problems.add("two records named " + record.name, "--records", "they could not be told apart",
+                     "rename one of them");
+      validate::raise_refusals(findings);
+      records.push_back(std::move(record));
+    } catch (const InputError& error) {
+      take(error);
+    }
+  }
+  problems.raise();
+  return records;
+}
+
+/// Writes "what: done of total" over itself where stderr is a terminal, and nothing elsewhere.
+inline std::function<void(const std::string&, int, int)> progress_line() {
+  if (::isatty(STDERR_FILENO) == 0) return {};
+  return [](const std::string& what, int done, int total) {
+    fmt::print(stderr, "\r\033[K{}: {} of {}{}", what, done, total, done == total ? "\r\033[K" : "");
+    std::fflush(stderr);
+  };
+}
+
+inline std::string command_line(const std::string& command, int argc, char** argv) {
+  std::string line = "swingbank " + command;
+  for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
+  return line;
+}
+
+/// Runs it; bad input and failures become a message and exit code 1.
+template <class F>
+int guarded(const std::string& command, F action) {
+  try {
+    return action();
+  } catch (const InputError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "swingbank {}: {}\n", command, error.what());
+  }
+  return 1;
+}
+
+}  // namespace swingbank::jobs

@@ -1,0 +1,355 @@
+#include "validate/calibrate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "sim/core/noise.hpp"
+#include "validate/calibrate_identify.hpp"
+#include "validate/in_parallel.hpp"
+
+namespace swingbank::validate {
+namespace {
+
+/// Whether the equations can be run with these parameters and a machine can have them.
+bool possible(const sim::Plant& plant) {
+  Problems problems;
+  bool physical = true;
+  const auto check = [&](const sim::Block& b) {
+    if (!b.effect) return;
+    b.effect->check(b.effect->law.get(), b.p.data(), "", problems);
+    physical = physical && (!b.effect->unphysical || b.effect->unphysical(b.p.data()).empty());
+  };
+  check(plant.machine);
+  check(plant.transformer);
+  for (const auto& b : plant.controls) check(b);
+  return physical && problems.empty();
+}
+
+/// "GENROU.Xl" or "Xl" taken out of the free parameters.
+std::vector<FreeParameter> choose_free(const sim::Plant& plant, const CalibrateOptions& options) {
+  std::vector<FreeParameter> free = free_parameters(plant, options.spread);
+  Problems problems;
+  std::string all;
+  const auto name_of = [&](const FreeParameter& f) {
+    return fmt::format("{}.{}", block_effect(plant, f.block).name,
+                       parameter_record(plant, f.block, f.index).name);
+  };
+  for (const auto& f : free) all += (all.empty() ? "" : ", ") + name_of(f);
+  for (const auto& fixed : options.fixed)
+    if (std::erase_if(free, [&](const FreeParameter& f) {
+          return name_of(f) == fixed || parameter_record(plant, f.block, f.index).name == fixed;
+        }) == 0)
+      problems.add("parameter '" + fixed + "'", "--fix", "the fit has no such free parameter",
+                   "use one of " + all);
+  if (free.empty() && problems.empty())
+    problems.add("no free parameter", plant.name, "all are fixed, zero, or codes", "leave some free");
+  problems.raise();
+  return free;
+}
+
+Fit alone(const PlantModel& model, const sim::Plant& plant, const FitEvent& event) {
+  Fit f = fit(plant, model.conventions, {event}, {});
+  if (!f.failed.empty())
+    throw InputError({"the model cannot follow the record", event.record.name, f.failed,
+                      "check the model's parameters and the record's base and units"});
+  return f;
+}
+
+/// chi2 of all events with their states as given; infinite where the plant cannot be driven.
+double chi2_of(const sim::Plant& plant, const sim::Conventions& conventions,
+               const std::vector<FitEvent>& events, const std::vector<EventState>& states) {
+  double sum = 0;
+  try {
+    for (std::size_t e = 0; e < events.size(); ++e) {
+      const EventSlopes s = event_slopes(plant, conventions, events[e], states[e], {});
+      sum += s.residual.squaredNorm();
+    }
+  } catch (const InputError&) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return sum;
+}
+
+/// Parameter sets about the model's own, the best of which are worth a search.
+class Screen {
+ public:
+  Screen(const sim::Plant& plant, const std::vector<FreeParameter>& free, std::uint64_t seed)
+      : plant_(plant), free_(free), seed_(seed) {}
+  /// Values of set k, drawn until they contradict no equation (100 times at most: then the model's own).
+  std::vector<double> draw(std::uint64_t k) const {
+    for (std::uint32_t attempt = 0; attempt < 100; ++attempt) {
+      std::vector<double> values;
+      for (std::size_t i = 0; i < free_.size(); ++i)
+        values.push_back(one(free_[i], sim::normal_pair(seed_ + k, attempt, i)[0]));
+      if (possible(with(values))) return values;
+    }
+    return own();
+  }
+  sim::Plant with(const std::vector<double>& values) const {
+    sim::Plant plant = plant_;
+    for (std::size_t i = 0; i < free_.size(); ++i)
+      parameter_value(plant, free_[i].block, free_[i].index) = values[i];
+    return plant;
+  }
+  std::vector<double> own() const {
+    sim::Plant plant = plant_;
+    std::vector<double> values;
+    for (const auto& f : free_) values.push_back(parameter_value(plant, f.block, f.index));
+    return values;
+  }
+
+ private:
+  double one(const FreeParameter& f, double normal) const {
+    const auto& record = parameter_record(plant_, f.block, f.index);
+    sim::Plant plant = plant_;
+    const double value = parameter_value(plant, f.block, f.index);
+    const double moved =
+        value > 0 ? value * std::exp(f.spread * normal) : value + normal * axis_unit(plant_, f);
+    return std::clamp(moved, record.low, record.high);
+  }
+  const sim::Plant& plant_;
+  const std::vector<FreeParameter>& free_;
+  std::uint64_t seed_;
+};
+
+class Run {
+ public:
+  Run(const PlantModel& model, std::vector<Record> records, const CalibrateOptions& options)
+      : model_(model),
+        options_(options),
+        out_(held_out_events(records, options.held_out)),
+        free_(choose_free(model.plant, options)) {
+    c_.model = model;
+    c_.prepared = prepare_events(model, std::move(records), options.events);
+    for (std::size_t e = 0; e < c_.prepared.size(); ++e)
+      if (!out_[e]) seen_.push_back(c_.prepared[e]);
+  }
+
+  Calibration run() {
+    const auto begin = std::chrono::steady_clock::now();
+    before_ = each_alone(model_.plant, "events with the model as it is");
+    search();
+    after_ = each_alone(c_.fit.plant, "events with the fitted model");
+    c_.model.plant = c_.fit.plant;
+    for (const auto& f : after_) c_.states.push_back(f.state);
+    learn();
+    judge();
+    c_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return std::move(c_);
+  }
+
+ private:
+  void tell(const std::string& what, int done, int total) const {
+    if (options_.progress) options_.progress(what, done, total);
+  }
+  /// Every event by itself, only its own state free. Seen events keep the state of the common fit if better.
+  std::vector<EventFit> each_alone(const sim::Plant& plant, const std::string& what) const {
+    std::vector<EventFit> fits(c_.prepared.size());
+    in_parallel(
+        c_.prepared.size(),
+        [&](std::size_t e) { fits[e] = std::move(alone(model_, plant, c_.prepared[e]).events.front()); },
+        [&](int done) { tell(what, done, static_cast<int>(fits.size())); });
+    return fits;
+  }
+
+  void search() {
+    std::vector<EventState> states;
+    for (std::size_t e = 0; e < before_.size(); ++e)
+      if (!out_[e]) states.push_back(before_[e].state);
+    const Screen screen(model_.plant, free_, options_.seed);
+    std::vector<std::vector<double>> draws(static_cast<std::size_t>(std::max(0, options_.draws)));
+    std::vector<std::pair<double, std::size_t>> order(draws.size());
+    in_parallel(
+        draws.size(),
+        [&](std::size_t k) {
+          draws[k] = screen.draw(k);
+          order[k] = {chi2_of(screen.with(draws[k]), model_.conventions, seen_, states), k};
+        },
+        [&](int done) { tell("parameter sets screened", done, options_.draws); });
+    std::ranges::sort(order);
+    std::vector<std::vector<double>> starts = {screen.own()};
+    for (std::size_t k = 0; k < order.size() && k < static_cast<std::size_t>(std::max(0, options_.starts));
+         ++k)
+      if (std::isfinite(order[k].first)) starts.push_back(draws[order[k].second]);
+
+    std::vector<Fit> fits(starts.size());
+    in_parallel(
+        starts.size(),
+        [&](std::size_t k) {
+          FitOptions o;
+          o.start = states;
+          o.values = starts[k];
+          fits[k] = fit(model_.plant, model_.conventions, seen_, free_, o);
+        },
+        [&](int done) { tell("starts refined", done, static_cast<int>(starts.size())); });
+    choose(fits);
+  }
+  void choose(std::vector<Fit>& fits) {
+    const auto cost = [](const Fit& f) {
+      return f.failed.empty() ? f.chi2 + f.belief : std::numeric_limits<double>::infinity();
+    };
+    const auto best = std::ranges::min_element(fits, {}, cost);
+    if (!best->failed.empty())
+      throw InputError({"no start can be evaluated", model_.origin, best->failed, "correct the model"});
+    c_.starts = static_cast<int>(fits.size());
+    // 1 % of the cost, or what one parameter's standard error costs
+    const double near = std::max(1.0, 0.01 * cost(*best));
+    c_.agreeing = static_cast<int>(
+        std::ranges::count_if(fits, [&](const Fit& f) { return cost(f) <= cost(*best) + near; }));
+    c_.converged = best->converged;
+    c_.fit = *best;
+  }
+
+  /// Errors, correlations, what is not decided and by which event it would be.
+  void learn() {
+    std::vector<EventSlopes> slopes(c_.prepared.size());
+    in_parallel(
+        slopes.size(),
+        [&](std::size_t e) {
+          slopes[e] = event_slopes(c_.fit.plant, model_.conventions, c_.prepared[e], c_.states[e], free_);
+        },
+        [&](int done) { tell("sensitivities", done, static_cast<int>(slopes.size())); });
+    const auto n = static_cast<Eigen::Index>(free_.size());
+    const Eigen::MatrixXd belief = options_.spread > 0 ? Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n))
+                                                       : Eigen::MatrixXd(Eigen::MatrixXd::Zero(n, n));
+    Eigen::MatrixXd data = Eigen::MatrixXd::Zero(n, n), scores = data;
+    for (std::size_t e = 0; e < slopes.size(); ++e) {
+      if (out_[e]) continue;
+      data += information(slopes[e]);
+      scores +=
+          score_covariance(slopes[e], static_cast<int>(std::lround(kColour / c_.prepared[e].record.step())));
+    }
+    const Eigen::MatrixXd inverse = (data + belief).ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+    const Eigen::MatrixXd robust = inverse * (scores + belief) * inverse;
+    Eigen::VectorXd unit(n), widening(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      unit[i] = axis_unit(c_.fit.plant, free_[static_cast<std::size_t>(i)]);
+      widening[i] = std::sqrt(std::max(1.0, robust(i, i) / inverse(i, i)));
+    }
+    fill_parameters(inverse, unit, widening);
+    c_.blurs = find_blurs(data, unit);
+    try_others(data + belief, inverse, unit, widening);
+    for (std::size_t e = 0; e < slopes.size(); ++e)  // what uncertain parameters add to events they never saw
+      allowance_.push_back(out_[e] ? (information(slopes[e]) * robust).trace() / c_.prepared[e].values()
+                                   : 0.0);
+  }
+  static constexpr double kColour = 0.5;  ///< how far apart samples of coloured noise count together [s]
+
+  void fill_parameters(const Eigen::MatrixXd& inverse, const Eigen::VectorXd& unit,
+                       const Eigen::VectorXd& widening) {
+    constexpr double kNormal95 = 1.959963985;
+    const auto n = inverse.rows();
+    c_.correlation.resize(n, n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index j = 0; j < n; ++j)
+        c_.correlation(i, j) = inverse(i, j) / std::sqrt(inverse(i, i) * inverse(j, j));
+      CalibratedParameter p{.fit = c_.fit.parameters[static_cast<std::size_t>(i)]};
+      const auto& record = parameter_record(c_.fit.plant, p.fit.where.block, p.fit.where.index);
+      p.curvature_error = unit[i] * std::sqrt(inverse(i, i));
+      p.fit.error = p.curvature_error * widening[i];
+      const double reach = kNormal95 * p.fit.error;
+      const bool logarithmic = p.fit.start > 0;
+      p.fit.low = std::max(record.low,
+                           logarithmic ? p.fit.value * std::exp(-reach / p.fit.value) : p.fit.value - reach);
+      p.fit.high = std::min(record.high,
+                            logarithmic ? p.fit.value * std::exp(reach / p.fit.value) : p.fit.value + reach);
+      c_.parameters.push_back(p);
+    }
+  }
+  void try_others(const Eigen::MatrixXd& known, const Eigen::MatrixXd& inverse, const Eigen::VectorXd& unit,
+                  const Eigen::VectorXd& widening) {
+    std::vector<EventState> states;
+    for (std::size_t e = 0; e < out_.size(); ++e)
+      if (!out_[e]) states.push_back(c_.states[e]);
+    const auto n = known.rows();
+    for (const auto& tried : try_events(c_.fit.plant, model_.conventions, seen_, states, free_)) {
+      const Eigen::MatrixXd with = (known + tried.information).ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+      Candidate candidate{tried.what, {}};
+      for (Eigen::Index i = 0; i < n; ++i) {
+        candidate.error.push_back(unit[i] * std::sqrt(with(i, i)) * widening[i]);
+        auto& p = c_.parameters[static_cast<std::size_t>(i)];
+        const double narrowed = std::sqrt(with(i, i) / inverse(i, i));
+        if (narrowed < std::min(0.8, p.narrowed)) {
+          p.narrowed = narrowed;
+          p.best_candidate = static_cast<int>(c_.candidates.size());
+        }
+      }
+      c_.candidates.push_back(candidate);
+    }
+  }
+
+  void judge() {
+    double before = 0, after = 0, values = 0, spare = 0;
+    bool holds = true, held = true;
+    for (std::size_t e = 0; e < c_.prepared.size(); ++e) {
+      EventScore s = score_event(c_.prepared[e], before_[e], after_[e], !out_[e], options_.adequate);
+      s.limit += allowance_[e];
+      holds = holds && s.adequate();
+      held = held && s.before <= s.limit;
+      if (s.seen) {
+        before += before_[e].chi2;
+        after += after_[e].chi2;
+        values += before_[e].values;
+        spare = std::max(spare, s.limit);
+      }
+      c_.events.push_back(s);
+    }
+    c_.before = before / values;
+    c_.after = after / values;
+    c_.limit = spare;
+    c_.adequacy = !holds ? Adequacy::structure_poor : held ? Adequacy::adequate : Adequacy::parameters_poor;
+    c_.sentence = sentence();
+  }
+  std::string sentence() const {
+    const std::string left = fmt::format("chi2 per value {:.3g} -> {:.3g}, noise alone leaves at most {:.3g}",
+                                         c_.before, c_.after, c_.limit);
+    if (c_.adequacy == Adequacy::structure_poor) return poor_structure(left);
+    if (c_.adequacy == Adequacy::adequate)
+      return "Adequate: nothing but noise was left before calibration, and is left after it (" + left + ").";
+    std::vector<std::pair<double, std::string>> moves;
+    for (const auto& p : c_.parameters)
+      moves.emplace_back(
+          std::abs(p.fit.value - p.fit.start) / p.fit.error,
+          fmt::format("{} {:.4g} -> {:.4g} {}", p.fit.name, p.fit.start, p.fit.value, p.fit.unit));
+    std::ranges::sort(moves, std::greater{});
+    std::string most;
+    for (std::size_t k = 0; k < moves.size() && k < 3; ++k)
+      if (moves[k].first > 2) most += (most.empty() ? "" : ", ") + moves[k].second;
+    return "The parameters were poor, the structure holds: after calibration nothing but noise is left (" +
+           left + ")." + (most.empty() ? "" : " Furthest off, in standard errors: " + most + ".");
+  }
+  std::string poor_structure(const std::string& left) const {
+    const EventScore* worst = &c_.events.front();
+    for (const auto& s : c_.events)
+      if (s.after / s.limit > worst->after / worst->limit) worst = &s;
+    const auto channel = std::ranges::max_element(worst->channels, {}, &ChannelScore::misfit_after);
+    return fmt::format(
+        "Something is missing in the structure: what is left survives the refit of every parameter ({}). "
+        "Most "
+        "of it stands in {} of {}: {:.3g} {} rms where the noise is {:.3g} {}. 'swingbank diagnose' looks "
+        "for "
+        "what is missing.",
+        left, output_name(channel->channel), worst->record, channel->rms_after, channel->unit, channel->noise,
+        channel->unit);
+  }
+
+  const PlantModel& model_;
+  const CalibrateOptions& options_;
+  std::vector<bool> out_;
+  std::vector<FreeParameter> free_;
+  std::vector<FitEvent> seen_;
+  std::vector<EventFit> before_, after_;
+  std::vector<double> allowance_;
+  Calibration c_;
+};
+
+}  // namespace
+
+Calibration calibrate(const PlantModel& model, std::vector<Record> records, const CalibrateOptions& options) {
+  return Run(model, std::move(records), options).run();
+}
+
+}  // namespace swingbank::validate

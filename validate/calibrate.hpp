@@ -1,0 +1,108 @@
+#pragma once
+// Calibration: the free parameters of the present structure fitted to several events at once, from several
+// starts; what the records decide and what they cannot; and whether the structure holds after that, on the
+// events it was fitted to and on those left out.
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "validate/fit.hpp"
+
+namespace swingbank::validate {
+
+struct CalibrateOptions {
+  double spread = 0.2;  ///< relative uncertainty believed of the parameters
+  int draws = 24;       ///< parameter sets tried as starts
+  int starts = 2;       ///< of them, refined beside the model's own values
+  std::uint64_t seed = 1;
+  std::vector<std::string> held_out;  ///< record names (or their numbers, from 1) left out of the fit
+  std::vector<std::string> fixed;     ///< "GENROU.Xl": stays as it is
+  double adequate = 1.12;  ///< chi2 per value that interpolation and the played-in voltage may leave
+  FitEventOptions events = {};
+  /// Called with what is done, done and total; may be empty.
+  std::function<void(const std::string& what, int done, int total)> progress = {};
+};
+
+/// One channel of one event. `scale` makes its unit of the record's pu.
+struct ChannelScore {
+  Output channel;
+  std::string unit;
+  double scale = 1;
+  double noise = 0;                            ///< [unit]
+  double rms_before = 0, rms_after = 0;        ///< of model - measured [unit]
+  double misfit_before = 0, misfit_after = 0;  ///< (rms / noise)^2: 1 is nothing but noise
+};
+struct EventScore {
+  std::string record;
+  bool seen = true;              ///< false: left out of the fit; only its own state was fitted
+  double before = 0, after = 0;  ///< chi2 per value
+  double limit = 0;              ///< of chi2 per value: above it, more than noise is left
+  double colour = 0;             ///< correlation of neighbouring samples of the pre-event residual
+  std::vector<ChannelScore> channels;
+  [[nodiscard]] bool adequate() const { return after <= limit; }
+};
+
+/// Parameters that move together without the records noticing.
+struct Blur {
+  struct Member {
+    int parameter;  ///< index into Calibration::parameters
+    double change;  ///< along the direction [unit of the parameter], for one standard deviation
+  };
+  std::vector<Member> members;  ///< the largest first
+  double decided = 0;           ///< share of this direction that the records decide
+  bool alone = false;           ///< one parameter by itself: it leaves no trace in the records
+};
+
+/// An event that the records do not hold, tried in simulation.
+struct Candidate {
+  std::string what;
+  std::vector<double> error;  ///< standard error of each parameter with it added [unit]
+};
+
+struct CalibratedParameter {
+  FittedParameter fit;         ///< error and interval: widened where the residual is coloured
+  double curvature_error = 0;  ///< as the curvature alone says
+  int best_candidate = -1;     ///< that would narrow it most; -1: none by a fifth
+  double narrowed = 1;         ///< its error with that event / without
+};
+
+enum class Adequacy {
+  adequate,         ///< before and after: the parameters were as good
+  parameters_poor,  ///< only after: the structure holds, the parameters did not
+  structure_poor,   ///< what is left survives the refit: something is missing
+};
+
+struct Calibration {
+  PlantModel model;  ///< with the fitted values
+  Adequacy adequacy = Adequacy::adequate;
+  std::string sentence;
+  std::vector<CalibratedParameter> parameters;
+  Eigen::MatrixXd correlation;
+  std::vector<Blur> blurs;
+  std::vector<Candidate> candidates;
+  std::vector<EventScore> events;
+  double before = 0, after = 0, limit = 0;  ///< chi2 per value over the events seen
+  int starts = 0, agreeing = 0;             ///< refined starts; how many came to the same optimum
+  bool converged = false;
+  Fit fit;                         ///< of the events seen
+  std::vector<EventState> states;  ///< of every event, at the fitted parameters
+  std::vector<FitEvent> prepared;  ///< every event, in the order given
+  double seconds = 0;
+};
+
+/// Throws InputError: no events, unknown names in `held_out` or `fixed`, all events held out, records without
+/// a pre-event, a model that cannot hold its operating point.
+Calibration calibrate(const PlantModel& model, std::vector<Record> records, const CalibrateOptions& options);
+
+/// Which of the events are left out: by record name (with or without ending) or number from 1.
+std::vector<bool> held_out_events(const std::vector<Record>& records, const std::vector<std::string>& names);
+
+/// Limit of chi2 per value for nothing but noise (one in a thousand exceeds it), for residuals as coloured as
+/// the event's pre-event stretch, at least `least`.
+double misfit_limit(const FitEvent& event, const EventFit& fitted, double least);
+
+/// Misfit of one event before and after, seen or not; `freedom` of its noise estimate is in the limit.
+EventScore score_event(const FitEvent& event, const EventFit& before, const EventFit& after, bool seen,
+                       double least);
+
+}  // namespace swingbank::validate

@@ -1,0 +1,23 @@
+#pragma once
+// What the records cannot tell, and which event could.
+#include "validate/calibrate.hpp"
+#include "validate/calibrate_slopes.hpp"
+
+namespace swingbank::validate {
+
+/// Directions of the information matrix (in units of belief) that the records decide less than half.
+/// `unit`: axis_unit of each parameter.
+std::vector<Blur> find_blurs(const Eigen::MatrixXd& information, const Eigen::VectorXd& unit);
+
+/// Information of events that were not recorded, made by driving the plant with plain voltages: a frequency
+/// event, a deep fault, a lasting step of the voltage; and, where speed, Efd and Ifd were not recorded, of
+/// the same events with them. `errors` of each candidate are left empty.
+struct TriedEvent {
+  std::string what;
+  Eigen::MatrixXd information;
+};
+std::vector<TriedEvent> try_events(const sim::Plant& plant, const sim::Conventions& conventions,
+                                   const std::vector<FitEvent>& events, const std::vector<EventState>& states,
+                                   const std::vector<FreeParameter>& free);
+
+}  // namespace swingbank::validate
