@@ -147,6 +147,14 @@ NetworkInfo info_of(const json& h) {
   return i;
 }
 
+/// The weights that the shape's bias starts are read over it.
+NetworkShape shape_of(const FeatureSizes& s, std::size_t outputs) {
+  const std::size_t seconds = s.pca_per_second > 0 ? s.samples / s.pca_per_second : 0;
+  const std::size_t length = s.pca_components > 0 ? seconds * s.pca_components : s.samples;
+  return {static_cast<std::int64_t>(s.channels), static_cast<std::int64_t>(length),
+          static_cast<std::int64_t>(outputs), std::vector<float>(outputs, 0.0f)};
+}
+
 /// The file itself, or the only one of a folder.
 fs::path find_file(const fs::path& path) {
   if (!fs::is_directory(path)) {
@@ -192,41 +200,18 @@ SavedNetwork SavedNetwork::load(const fs::path& path) {
   FeatureSizes sizes;
   std::vector<std::vector<float>> features;
   std::vector<at::Tensor> weights;
-  const auto start = [&](const json& h, std::size_t arrays) {
+  const auto start = [&](const json& header, std::size_t arrays) {
     try {
-      n.info_ = info_of(h);
-      for (const auto& p : h.at("parameters")) {
-        n.scale_.mean.push_back(p.at("mean"));
-        n.scale_.unit.push_back(p.at("scale"));
-        n.scale_.origin.push_back(p.at("origin"));
-      }
-      const json &s = h.at("input"), &f = h.at("features");
-      for (std::size_t c = 0; c < n.info_.channels.size(); ++c) n.selection_.channels.push_back(c);
-      n.selection_.first = s.at("first");
-      n.selection_.step = s.at("step");
-      n.selection_.samples = s.at("samples");
-      n.selection_.form = form_of(s.at("form"));
-      n.selection_.rate = n.info_.rate / static_cast<double>(n.selection_.step);
-      n.info_.samples = n.selection_.first + (n.selection_.samples - 1) * n.selection_.step + 1;
-      sizes = {f.at("channels"), f.at("samples"), f.at("pca_components"), f.at("pca_per_second")};
+      sizes = n.read_header(header);
     } catch (const json::exception& e) {
       throw Unusable{std::string("its header is of another kind: ") + e.what()};
     }
-    if (sizes.channels != n.selection_.outputs() || sizes.samples != n.selection_.samples)
-      throw Unusable{"its sizes do not fit together"};
-    const std::size_t length =
-        sizes.pca_components > 0
-            ? sizes.samples / std::max<std::size_t>(1, sizes.pca_per_second) * sizes.pca_components
-            : sizes.samples;
-    n.network_ = make_network(
-        n.info_.network,
-        {static_cast<std::int64_t>(sizes.channels), static_cast<std::int64_t>(length),
-         static_cast<std::int64_t>(n.scale_.unit.size()), std::vector<float>(n.scale_.unit.size(), 0.0f)});
+    n.network_ = make_network(n.info_.network, shape_of(sizes, n.info_.parameters.size()));
     for (const auto& w : n.network_->parameters()) weights.push_back(w.detach());
     features.resize(Features::array_count(sizes));
     if (arrays != features.size() + weights.size()) throw Unusable{"it holds another number of arrays"};
   };
-  read_sealed(kNetwork, n.file_, start, [&](std::size_t i, std::size_t size) -> std::span<float> {
+  const auto place = [&](std::size_t i, std::size_t size) -> std::span<float> {
     if (i < features.size()) {
       features[i].resize(size);
       return features[i];
@@ -234,13 +219,36 @@ SavedNetwork SavedNetwork::load(const fs::path& path) {
     at::Tensor& w = weights[i - features.size()];
     if (size != static_cast<std::size_t>(w.numel())) throw Unusable{"an array has another length"};
     return {w.data_ptr<float>(), size};
-  });
+  };
+  read_sealed(kNetwork, n.file_, start, place);
   try {
     n.features_ = Features::restore(sizes, features);
   } catch (const Unusable& e) {
-    throw InputError({"network file cannot be used", n.file_.string(), e.why, "train it again"});
+    throw InputError({"network file cannot be used", n.file_.string(), e.why, kNetwork.remedy});
   }
   return n;
+}
+
+FeatureSizes SavedNetwork::read_header(const json& h) {
+  info_ = info_of(h);
+  for (const auto& p : h.at("parameters")) {
+    scale_.mean.push_back(p.at("mean"));
+    scale_.unit.push_back(p.at("scale"));
+    scale_.origin.push_back(p.at("origin"));
+  }
+  const json &s = h.at("input"), &f = h.at("features");
+  for (std::size_t c = 0; c < info_.channels.size(); ++c) selection_.channels.push_back(c);
+  selection_.first = s.at("first");
+  selection_.step = s.at("step");
+  selection_.samples = s.at("samples");
+  selection_.form = form_of(s.at("form"));
+  selection_.rate = info_.rate / static_cast<double>(selection_.step);
+  info_.samples = selection_.first + (selection_.samples - 1) * selection_.step + 1;
+  const FeatureSizes sizes = {f.at("channels"), f.at("samples"), f.at("pca_components"),
+                              f.at("pca_per_second")};
+  if (sizes.channels != selection_.outputs() || sizes.samples != selection_.samples)
+    throw Unusable{"its sizes do not fit together"};
+  return sizes;
 }
 
 Estimate SavedNetwork::estimate(std::span<const float> record) const {

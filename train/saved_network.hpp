@@ -71,6 +71,7 @@ class SavedNetwork {
 
  private:
   SavedNetwork();
+  FeatureSizes read_header(const nlohmann::json& header);
   std::filesystem::path file_;
   NetworkInfo info_;
   InputSelection selection_;
