@@ -467,7 +467,8 @@ int main(int argc, char** argv) {
                  "R:X, zero-sequence impedance of the grid at the fault [pu on the network's base]; needed "
                  "by slg and llg");
   app.add_option("--trip", o.trips, "FROM:TO:CKT:T_OPEN[:T_CLOSE] [s]; may be repeated");
-  app.add_option("--trip-generator", o.generator_trips, "BUS[/ID]:T [s], for good; may be repeated");
+  app.add_option("--trip-generator", o.generator_trips,
+                 "BUS[/ID]:T[:PART] [s, of its units], for good, without PART all; may be repeated");
   app.add_option("--load-step", o.load_steps,
                  "BUS:P:Q:T_ON[:T_OFF] [MW, Mvar, s], consumption added as constant admittance; may be "
                  "repeated");
@@ -475,7 +476,7 @@ int main(int argc, char** argv) {
   app.add_option("--pref-step", o.pref_steps, "BUS[/ID]:T:STEP [s, pu]; may be repeated");
   app.add_option("--loads", o.load_model,
                  "impedance: every load at constant impedance; raw: as the .raw composes it of constant "
-                 "power, current and admittance")
+                 "power, current and admittance; those with a model in the .dyr keep it")
       ->check(CLI::IsMember({"impedance", "raw"}))
       ->capture_default_str();
   app.add_option("--load", o.loads,

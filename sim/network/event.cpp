@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "sim/core/problem.hpp"
@@ -117,12 +118,34 @@ std::vector<Interval> generator_intervals(const Event& event, const Network& net
   std::vector<Interval> list;
   for (const GeneratorTrip& t : event.generator_trips) {
     if (!known_generator(t.generator, network, problems)) continue;
-    check_times({t.generator, t.time, kForGood}, generator_name(network, t.generator), problems);
-    list.push_back({t.generator, t.time, kForGood});
+    const std::string where = generator_name(network, t.generator);
+    check_times({t.generator, t.time, kForGood}, where, problems);
+    if (!(t.part > 0.0 && t.part <= 1.0))
+      problems.add("a trip of " + std::to_string(t.part) + " of its units", where,
+                   "it is a part of the whole", "give more than 0 and at most 1");
+    if (t.part >= 1.0) list.push_back({t.generator, t.time, kForGood});
   }
   check_overlap(
       list, "trips", [&](int generator) { return generator_name(network, generator); }, problems);
   return list;
+}
+
+/// Generators that have lost a part of their units until t, and what is left of them.
+std::vector<std::pair<int, double>> partly_tripped_at(const Event& event, double t,
+                                                      const std::vector<int>& tripped) {
+  std::map<int, double> left;
+  for (const GeneratorTrip& trip : event.generator_trips)
+    if (trip.part < 1.0 && trip.time <= t && !std::ranges::binary_search(tripped, trip.generator))
+      left.try_emplace(trip.generator, 1.0).first->second -= trip.part;
+  return {left.begin(), left.end()};
+}
+void check_parts(const Event& event, const Network& network, Problems& problems) {
+  constexpr double least = 1e-6;  // below it nothing is left but rounding
+  for (const auto& [generator, left] : partly_tripped_at(event, kForGood, {}))
+    if (left < least && generator >= 0 && generator < static_cast<int>(network.generators.size()))
+      problems.add("partial trips that leave " + std::to_string(left) + " of the units",
+                   generator_name(network, generator), "some must stay",
+                   "lower the parts, or trip the whole generator");
 }
 
 std::vector<Interval> load_intervals(const Event& event, const Network& network, Problems& problems) {
@@ -170,6 +193,12 @@ std::vector<Setpoint> setpoints_at(const Event& event, double t) {
 
 }  // namespace
 
+double Topology::connected(int generator) const {
+  if (std::ranges::binary_search(tripped, generator)) return 0.0;
+  const auto part = std::ranges::find(partly_tripped, generator, &std::pair<int, double>::first);
+  return part == partly_tripped.end() ? 1.0 : part->second;
+}
+
 std::vector<Segment> segments(const Event& event, const Network& network,
                               const std::vector<double>& instants) {
   Problems problems;
@@ -178,6 +207,7 @@ std::vector<Segment> segments(const Event& event, const Network& network,
   const auto lost = generator_intervals(event, network, problems);
   const auto loads = load_intervals(event, network, problems);
   check_setpoints(event, network, problems);
+  check_parts(event, network, problems);
   problems.raise();
 
   std::set<double> all{0.0};
@@ -186,6 +216,7 @@ std::vector<Segment> segments(const Event& event, const Network& network,
       for (const double t : {i.start, i.end})
         if (std::isfinite(t)) all.insert(t);
   for (const SetpointStep& step : event.setpoint_steps) all.insert(step.time);
+  for (const GeneratorTrip& trip : event.generator_trips) all.insert(trip.time);
   const std::set<double> jumps(instants.begin(), instants.end());
   for (const double t : jumps)
     if (t > 0.0 && std::isfinite(t)) all.insert(t);
@@ -205,6 +236,7 @@ std::vector<Segment> segments(const Event& event, const Network& network,
     std::ranges::sort(topology.faults, {}, &std::pair<int, Complex>::first);
     std::ranges::sort(topology.open);
     std::ranges::sort(topology.tripped);
+    topology.partly_tripped = partly_tripped_at(event, t, topology.tripped);
     std::ranges::stable_sort(topology.load_steps, {}, &std::pair<int, Complex>::first);
     auto setpoints = setpoints_at(event, t);
     const bool same = !result.empty() && result.back().topology == topology &&

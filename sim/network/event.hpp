@@ -21,10 +21,12 @@ struct LineTrip {
   double t_open;
   std::optional<double> t_close;
 };
-/// A generator disconnected for good.
+/// A generator disconnected for good, or a part of it: the plant then stands for units of which some are
+/// lost, and the others go on as they were.
 struct GeneratorTrip {
-  int generator;  ///< index into Network::generators
-  double time;    ///< [s]
+  int generator;      ///< index into Network::generators
+  double time;        ///< [s]
+  double part = 1.0;  ///< of its units, > 0; 1: all
 };
 /// Consumption added at a bus (taken away if negative), as the constant admittance that draws `power` at the
 /// voltage before the event.
@@ -54,7 +56,11 @@ struct Topology {
   std::vector<int> open = {};                            ///< branch indices, sorted
   std::vector<int> tripped = {};                         ///< generator indices, sorted
   std::vector<std::pair<int, Complex>> load_steps = {};  ///< bus index, power [pu]; sorted by bus
+  /// Generators of which a part is lost, and the part still connected; sorted, none of `tripped`.
+  std::vector<std::pair<int, double>> partly_tripped = {};
   friend bool operator==(const Topology&, const Topology&) = default;
+  /// Part of a generator's units that is connected: 0 to 1.
+  [[nodiscard]] double connected(int generator) const;
 };
 /// Reference moves of one generator in force during a segment [pu].
 struct Setpoint {

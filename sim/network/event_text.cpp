@@ -79,10 +79,11 @@ int generator_named(const Network& network, const std::string& text, const std::
 
 GeneratorTrip read_generator_trip(const std::string& text, const Network& network, double t_end,
                                   const std::string& where, Problems& problems) {
-  const auto part = fields(text, 2, 2, "BUS[/ID]:T", where, problems);
+  const auto part = fields(text, 2, 3, "BUS[/ID]:T[:PART] in s and parts of the whole", where, problems);
   if (part.empty()) return {-1, 0.0};
   const int generator = generator_named(network, part[0], where, problems);
-  return {generator, instant(part[1], t_end, where, problems)};
+  const double t = instant(part[1], t_end, where, problems);
+  return {generator, t, part.size() == 3 ? number(part[2], where, problems) : 1.0};
 }
 
 LoadStep read_load_step(const std::string& text, const Network& network, double t_end,

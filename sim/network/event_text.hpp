@@ -11,7 +11,7 @@ namespace swingbank::sim {
 /// "BUS/ID", or "BUS" where it has one generator in service; -1 with a problem otherwise.
 int generator_named(const Network& network, const std::string& text, const std::string& where,
                     Problems& problems);
-/// "BUS[/ID]:T"
+/// "BUS[/ID]:T", or "BUS[/ID]:T:PART" for a part of its units.
 GeneratorTrip read_generator_trip(const std::string& text, const Network& network, double t_end,
                                   const std::string& where, Problems& problems);
 /// "BUS:P:Q:T_ON[:T_OFF]", P in MW, Q in Mvar, positive: more consumption.

@@ -67,7 +67,7 @@ Complex negative_sequence_impedance(const Network& network, const PowerFlow& flo
                                     const std::vector<SequenceSource>& sources, int bus) {
   Eigen::SparseMatrix<Complex> y = dynamic_admittance(network, flow, topology);
   for (const SequenceSource& s : sources)
-    if (!std::ranges::binary_search(topology.tripped, s.generator)) y.coeffRef(s.bus, s.bus) += s.admittance;
+    y.coeffRef(s.bus, s.bus) += topology.connected(s.generator) * s.admittance;
   y.makeCompressed();
   const Eigen::SparseLU<Eigen::SparseMatrix<Complex>> lu(y);
   if (lu.info() != Eigen::Success)

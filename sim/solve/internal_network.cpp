@@ -38,13 +38,13 @@ void InternalNetwork::assemble(Reduced& entry, const std::vector<double>& r,
 
   auto& out = entry.latest;
   out.tripped.assign(node_of_.size(), 0);
+  out.connected.assign(node_of_.size(), 1.0);
   Eigen::VectorXcd source(plants);  // admittance of each on the network's base
   for (Eigen::Index i = 0; i < plants; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    source[i] = base_[k] / Complex(r[k], x[k]);
-    if (generator_[k] < 0 || !std::ranges::binary_search(entry.topology.tripped, generator_[k])) continue;
-    out.tripped[k] = 1;
-    source[i] = 0.0;
+    if (generator_[k] >= 0) out.connected[k] = entry.topology.connected(generator_[k]);
+    out.tripped[k] = out.connected[k] == 0.0;
+    source[i] = out.connected[k] * base_[k] / Complex(r[k], x[k]);
   }
   Eigen::MatrixXcd a = entry.network.y;
   Eigen::MatrixXcd injection = Eigen::MatrixXcd::Zero(nodes, plants);
@@ -66,7 +66,7 @@ void InternalNetwork::assemble(Reduced& entry, const std::vector<double>& r,
   out.grounded.resize(static_cast<std::size_t>(plants));
   for (Eigen::Index i = 0; i < plants; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const double to_own = 1.0 / base_[k];
+    const double to_own = out.tripped[k] ? 0.0 : 1.0 / (out.connected[k] * base_[k]);
     out.grounded[k] = node_grounded[static_cast<std::size_t>(node_of_[k])];
     for (Eigen::Index j = 0; j < plants; ++j) {
       const Complex drop = (i == j ? 1.0 : 0.0) - voltage(node_of_[k], j);

@@ -15,8 +15,9 @@ namespace swingbank::sim {
 /// source's own base [pu]. Row-major.
 struct InternalMatrix {
   std::vector<double> g, b;
-  std::vector<char> grounded;  ///< per source: 1 where the bus is held at V = 0
-  std::vector<char> tripped;   ///< per source: 1 where it is disconnected
+  std::vector<char> grounded;     ///< per source: 1 where the bus is held at V = 0
+  std::vector<char> tripped;      ///< per source: 1 where it is disconnected
+  std::vector<double> connected;  ///< per source: part of its units that is connected
 };
 
 class InternalNetwork {

@@ -119,6 +119,7 @@ class Lanes {
   std::vector<LaneRun> lanes_;
   std::vector<std::vector<double>> lane_r_, lane_x_;  ///< source impedances per lane
   std::vector<std::vector<char>> grounded_;           ///< per lane and source: bus held at V = 0
+  std::vector<std::vector<double>> connected_;        ///< per lane and source: part that is connected
   unsigned active_ = 0, fresh_ = 0;  ///< lanes that run; lanes whose first stage must be evaluated anew
   unsigned tripped_ = 0;             ///< lanes in which a plant is tripped
 };

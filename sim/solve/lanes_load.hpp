@@ -86,6 +86,7 @@ void Lanes<T>::reserve() {
   lanes_.resize(kLanes);
   for (auto* v : {&lane_r_, &lane_x_}) v->assign(kLanes, std::vector<double>(sources));
   grounded_.resize(kLanes);
+  connected_.resize(kLanes);
 }
 
 template <class T>
@@ -208,6 +209,7 @@ void Lanes<T>::enter_segment(int lane) {
   }
   if constexpr (Traits::directions > 0) matrix_slopes(lane, matrix);
   grounded_[l] = matrix.grounded;
+  connected_[l] = matrix.connected;
   tripped_ &= ~(1U << lane);
   for (std::size_t i = 0; i < plants_.size(); ++i) {
     Traits::set(per_lane_.on[i], lane, matrix.tripped[i] ? 0.0 : 1.0);

@@ -145,6 +145,10 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
   p.equations.signals(c, x + p.x, &m_[static_cast<std::size_t>(p.m)], s, unused_.data() + p.x);
   T power, reactive, vr, vi;
   p.equations.grid_power(c, s, power, reactive);
+  if (const double part = connected_[lane][i]; part < 1.0) {  // of a unit; a tripped one has no current
+    power = power * T(part);
+    reactive = reactive * T(part);
+  }
   p.equations.grid_voltage(s, vr, vi);
   for (std::size_t j = 0; j < channels_.size(); ++j) {
     T v(0.0);

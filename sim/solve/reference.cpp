@@ -173,7 +173,7 @@ class Recorder {
     const Complex v = system.tripped(u) ? Complex(s.Vpr, s.Vpi)
                                         : Complex(y[plants_.states() + 2 * unit.bus],
                                                   y[plants_.states() + 2 * unit.bus + 1]);
-    const Complex power = system.tripped(u) ? Complex() : v * std::conj(current);
+    const Complex power = system.tripped(u) ? Complex() : system.connected(u) * v * std::conj(current);
     for (std::size_t c = 0; c < run_.channels.size(); ++c) {
       double& value = run_.at(static_cast<int>(i), static_cast<int>(c))[k];
       switch (run_.channels[c]) {

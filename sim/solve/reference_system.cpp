@@ -102,12 +102,12 @@ ReferenceSystem::ReferenceSystem(const Grid& grid, const ReferencePlants& plants
       buses_(static_cast<int>(grid.network.buses.size())),
       last_moment_(end - kBeforeSwitching),
       bolted_(buses_, false),
-      tripped_(plants.units().size(), false),
+      connected_(plants.units().size(), 1.0),
       setpoint_(plants.units().size()) {
   for (std::size_t u = 0; u < plants.units().size(); ++u) {
     if (!plants.units()[u].plant) continue;
     const int generator = plants.units()[u].plant->generator;
-    tripped_[u] = std::ranges::binary_search(segment.topology.tripped, generator);
+    connected_[u] = segment.topology.connected(generator);
     for (const Setpoint& move : segment.setpoints)
       if (move.generator == generator) setpoint_[u] = move;
   }
@@ -196,13 +196,13 @@ Signals<T> ReferenceSystem::evaluate(std::size_t u, double t, const T* x, const 
   std::vector<T> m(equations.scratch());
   T er, ei;
   equations.emf(c, x, m.data(), er, ei);
-  if (tripped_[u]) {  // stands still, open-circuited
+  if (tripped(u)) {  // stands still, open-circuited
     s.Vpr = er;
     s.Vpi = ei;
   }
   equations.from_grid(c, x, m.data(), er, ei, s, ir, ii);
   equations.derivative(c, x, m.data(), s, dx);
-  if (tripped_[u]) std::fill(dx, dx + unit.states, T(0.0));
+  if (tripped(u)) std::fill(dx, dx + unit.states, T(0.0));
   return s;
 }
 
@@ -270,9 +270,10 @@ void ReferenceSystem::residual(double t, const double* y, const double* yp, doub
     Complex current;
     (void)signals(u, t, y, current, dx);
     for (int i = 0; i < unit.states; ++i) dx[i] = yp[unit.first + i] - dx[i];
-    if (bolted_[unit.bus] || tripped_[u]) continue;
-    f[bus_row(unit.bus)] -= current.real() * unit.scale;
-    f[bus_row(unit.bus) + 1] -= current.imag() * unit.scale;
+    if (bolted_[unit.bus] || tripped(u)) continue;
+    const double scale = unit.scale * connected_[u];
+    f[bus_row(unit.bus)] -= current.real() * scale;
+    f[bus_row(unit.bus) + 1] -= current.imag() * scale;
   }
 }
 
@@ -292,6 +293,7 @@ void ReferenceSystem::unit_jacobian(std::size_t u, double t, double a, const dou
                                     double* values) const {
   const Unit& unit = plants_.units()[u];
   const int n = unit.states, members = n + 2, row = bus_row(unit.bus);
+  const double scale = unit.scale * connected_[u];
   std::vector<D8> x(members), dx(n);
   for (int from = 0; from < members; from += kDirections) {
     for (int i = 0; i < members; ++i) x[i] = D8(i < n ? y[unit.first + i] : y[row + i - n]);
@@ -303,9 +305,9 @@ void ReferenceSystem::unit_jacobian(std::size_t u, double t, double a, const dou
       const int* place = places_[u].data() + col * members;
       const int k = col - from;
       for (int i = 0; i < n; ++i) values[place[i]] += (i == col ? a : 0.0) - dx[i].d[k];
-      if (tripped_[u]) continue;
-      if (place[n] >= 0) values[place[n]] -= ir.d[k] * unit.scale;
-      if (place[n + 1] >= 0) values[place[n + 1]] -= ii.d[k] * unit.scale;
+      if (tripped(u)) continue;
+      if (place[n] >= 0) values[place[n]] -= ir.d[k] * scale;
+      if (place[n + 1] >= 0) values[place[n + 1]] -= ii.d[k] * scale;
     }
   }
 }

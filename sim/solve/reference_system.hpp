@@ -53,7 +53,9 @@ class ReferenceSystem {
   ReferenceSystem(const Grid& grid, const ReferencePlants& plants, const Segment& segment, double end);
   [[nodiscard]] int size() const { return plants_.states() + 2 * buses_; }
   [[nodiscard]] bool bolted(int bus) const { return bolted_[static_cast<std::size_t>(bus)]; }
-  [[nodiscard]] bool tripped(std::size_t unit) const { return tripped_[unit]; }
+  [[nodiscard]] bool tripped(std::size_t unit) const { return connected_[unit] == 0.0; }
+  /// Part of a unit that is connected, 0 to 1.
+  [[nodiscard]] double connected(std::size_t unit) const { return connected_[unit]; }
 
   /// Bus voltages that satisfy the algebraic equations for the states in y: written into y, which holds the
   /// ones to start from (Newton). Throws InputError if there are none.
@@ -85,7 +87,8 @@ class ReferenceSystem {
   const Grid& grid_;
   int buses_;
   double last_moment_;  ///< largest time effects may see [s]
-  std::vector<bool> bolted_, tripped_;
+  std::vector<bool> bolted_;
+  std::vector<double> connected_;                    ///< per unit: part that is connected
   std::vector<Setpoint> setpoint_;                   ///< per unit
   Eigen::SparseMatrix<Complex, Eigen::RowMajor> y_;  ///< network; rows of bolted buses are empty
   Eigen::SparseMatrix<double> constant_;             ///< dF/dy of the network, with room for the units

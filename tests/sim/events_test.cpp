@@ -100,6 +100,63 @@ TEST(Events, FrequencyBeginsToFallAsTheAggregateSwingEquationSays) {
   }
 }
 
+/// A plant of two units is one plant whose units are split: losing 40 % of it is losing the second unit.
+TEST(Events, APartialTripIsTheTripOfThatUnit) {
+  const std::filesystem::path folder = std::filesystem::path(SWINGBANK_SOURCE) / "configs/networks";
+  const auto models = read_dyr(folder / "ieee39_genrou.dyr");
+  const Network whole = read_raw(folder / "ieee39_genrou.raw");
+  Network split = whole;
+  const int bus = whole.bus_index(34);
+  const auto first = std::ranges::find(split.generators, bus, &Generator::bus);
+  Generator second = *first;
+  second.id = "2";
+  const auto take = [](Generator& g, double part) {
+    for (double* v : {&g.p, &g.q, &g.mva, &g.q_max, &g.q_min}) *v *= part;
+  };
+  take(*first, 0.6);
+  take(second, 0.4);
+  split.generators.push_back(second);
+  auto both = models;
+  const auto model = std::ranges::find(both, 34, &DyrRecord::bus);
+  both.push_back(*model);
+  both.back().id = "2";
+  const Grid one = make_grid(whole, models, "one", Conventions::psse()),
+             two = make_grid(split, both, "two", Conventions::psse());
+  Event partly, wholly;
+  partly.generator_trips = {
+      {static_cast<int>(std::ranges::find(whole.generators, bus, &Generator::bus) - whole.generators.begin()),
+       1.0, 0.4}};
+  wholly.generator_trips = {{static_cast<int>(split.generators.size()) - 1, 1.0}};
+  const Trajectory a = compared(one, partly, 3.0), b = compared(two, wholly, 3.0);
+  ASSERT_EQ(two.plants.back().name, "34/2");
+  const int last = a.samples - 1;
+  for (std::size_t i = 0; i < one.plants.size(); ++i) {
+    const int p = static_cast<int>(i), speed = row_of(a, Channel::speed), power = row_of(a, Channel::P);
+    // Two runs of the lanes at 1e-6 per step.
+    EXPECT_NEAR(a.at(p, speed)[last], b.at(p, speed)[last], 1e-6) << one.plants[i].name;
+    // Per unit of the whole plant: what is left of it gives 0.6 of what a unit gives.
+    const double left = one.plants[i].bus == bus ? 0.6 : 1.0;
+    EXPECT_NEAR(a.at(p, power)[last], left * b.at(p, power)[last], 1e-5) << one.plants[i].name;
+  }
+}
+
+TEST(Events, PartsOfAGeneratorAddUp) {
+  const Grid grid = test::two_machine_grid(Conventions::psse());
+  Event event;
+  event.generator_trips = {{1, 1.0, 0.3}, {1, 2.0, 0.5}};
+  const auto list = segments(event, grid.network);
+  ASSERT_EQ(list.size(), 3u);
+  EXPECT_EQ(list[0].topology.connected(1), 1.0);
+  EXPECT_NEAR(list[1].topology.connected(1), 0.7, 1e-15);
+  EXPECT_NEAR(list[2].topology.connected(1), 0.2, 1e-15);
+  event.generator_trips.push_back({1, 3.0});  // the rest
+  EXPECT_EQ(segments(event, grid.network).back().topology.connected(1), 0.0);
+  for (const double part : {0.0, -0.1, 1.1, 0.2}) {
+    event.generator_trips = {{1, 1.0, 0.8}, {1, 2.0, part}};  // the last leaves nothing
+    EXPECT_THROW(segments(event, grid.network), InputError) << part;
+  }
+}
+
 TEST(Events, ALoadStepTakesThePowerItNamesAtTheVoltageBefore) {
   const Grid grid = test::two_machine_grid(Conventions::psse());
   Event event;
