@@ -1,86 +1,182 @@
 #pragma once
-// Our equations integrated the way PSS/E integrates its own: x(t + h) = x(t) + h (3 f(t) - f(t - h))/2, and
-// at a switching instant the mean of the derivatives before and after it (both read off the first samples
-// after the trip in its records); some exciters take shorter steps within each. With it a difference between
-// record and equations is one of modelling.
+// Our equations integrated the way PSS/E integrates its own, as read off its records. With it a difference
+// between record and equations is one of modelling.
+//   x(t + h) = x(t) + h (3 f(t) - f(t - h))/2, at a switching instant f is the mean of the derivatives before
+//     and after it;
+//   some exciters take shorter steps of the same kind within each, everything else standing still;
+//   Efd is what the exciter's states at t make of voltage and field current at t - h;
+//   HYGOV's power, not TGOV1's, is that of t - h.
 #include <vector>
 
 #include "sim/solve/reference_system.hpp"
 
 namespace swingbank::sim::test {
 
-/// Places in the vector of all states of those that belong to exciters.
-inline std::vector<std::size_t> exciter_states(const ReferencePlants& plants) {
-  std::vector<std::size_t> places;
-  for (const auto& unit : plants.units()) {
-    if (!unit.plant) continue;
-    auto place = static_cast<std::size_t>(unit.first) + unit.plant->machine.effect->states.size();
-    for (const Block& block : unit.plant->controls)
-      for (std::size_t i = 0; i < block.effect->states.size(); ++i, ++place)
-        if (block.effect->slot == Slot::exciter) places.push_back(place);
+class PsseStepper {
+ public:
+  PsseStepper(const Grid& grid, const Event& event, double h, double end, int exciter_steps)
+      : h_(h),
+        exciter_steps_(exciter_steps),
+        plants_(grid),
+        parts_(segments(event, grid.network, plants_.instants())),
+        before_(grid, plants_, parts_.at(0), 2 * end),
+        after_(grid, plants_, parts_.at(1), 2 * end),
+        system_(&before_),
+        states_(static_cast<std::size_t>(plants_.states())),
+        y_(static_cast<std::size_t>(before_.size())),
+        f_(y_),
+        f_before_(y_),
+        fine_f_before_(y_) {
+    if (parts_.size() != 2) throw std::runtime_error("one switching instant is expected");
+    for (const auto& unit : plants_.units())
+      std::copy(unit.operating.x.begin(), unit.operating.x.end(), y_.begin() + unit.first);
+    for (std::size_t b = 0; b < grid.flow.voltage.size(); ++b) {
+      y_[states_ + 2 * b] = grid.flow.voltage[b].real();
+      y_[states_ + 2 * b + 1] = grid.flow.voltage[b].imag();
+    }
+    last_ = y_;
+    for (std::size_t u = 0; u < plants_.units().size(); ++u) find_controls(u);
   }
-  return places;
-}
+  [[nodiscard]] long switching() const { return std::lround(parts_[1].start / h_); }
+
+  /// Solves the network at t and keeps the states' derivatives; after the switching: their mean.
+  void derive(double t) {
+    system_->solve_voltages(t, y_.data());
+    system_->derivatives(t, y_.data(), f_.data());
+    for (const Exciter& e : exciters_)
+      f_[e.flux] += (late_field_voltage(e, t) - signals(e.unit, t).Efd) / e.time_constant;
+    for (Governor& g : late_governors_) {
+      g.now = signals(g.unit, t).Tm;
+      f_[g.speed] += (g.last - g.now) / (1.0 + y_[g.speed]) / (2.0 * g.inertia);
+    }
+  }
+  void switch_over(double t) {
+    const auto f = f_;
+    system_ = &after_;
+    derive(t);
+    for (std::size_t i = 0; i < states_; ++i) f_[i] = 0.5 * (f_[i] + f[i]);
+  }
+  /// From t to t + h.
+  void advance(double t) {
+    const auto at_t = y_;
+    const auto exciters = advanced_exciters(t);
+    for (std::size_t i = 0; i < states_; ++i) y_[i] += h_ * (1.5 * f_[i] - 0.5 * f_before_[i]);
+    for (const Exciter& e : exciters_)
+      for (std::size_t i = e.first; i < e.end; ++i) y_[i] = exciters[i];
+    (void)system_->clamp_states(y_.data());
+    for (Governor& g : late_governors_) g.last = g.now;
+    f_before_ = f_;
+    last_ = at_t;
+  }
+  /// What PSS/E prints of a plant at t.
+  [[nodiscard]] Signals<double> printed(std::size_t plant, double t) const {
+    auto s = signals(plant, t);
+    for (const Exciter& e : exciters_)
+      if (e.unit == plant) s.Efd = late_field_voltage(e, t);
+    return s;
+  }
+  [[nodiscard]] const double* states(std::size_t plant) const {
+    return y_.data() + plants_.units()[plant].first;
+  }
+  /// Real and imaginary voltage of every bus [pu].
+  [[nodiscard]] const double* voltages() const { return y_.data() + states_; }
+
+ private:
+  struct Exciter {
+    std::size_t unit, first, end;  ///< places of its states
+    std::size_t flux;              ///< place of E'q, which Efd drives
+    double time_constant;          ///< over this T'do [s]
+  };
+  struct Governor {
+    std::size_t unit, speed;  ///< place of the speed deviation
+    double inertia;           ///< H [s]
+    double last, now;         ///< power at t - h and t [pu]
+  };
+  void find_controls(std::size_t u) {
+    const auto& unit = plants_.units()[u];
+    if (!unit.plant) return;
+    const Block& machine = unit.plant->machine;
+    auto place = static_cast<std::size_t>(unit.first);
+    Exciter e{u, 0, 0, 0, 0.0};
+    for (std::size_t i = 0; i < machine.effect->states.size(); ++i, ++place)
+      if (machine.effect->states[i].name == "Eqp") e.flux = place;
+    const auto parameter = [&](const char* name) {
+      return machine.p.at(static_cast<std::size_t>(machine.effect->parameter_index(name)));
+    };
+    for (const Block& block : unit.plant->controls) {
+      if (block.effect->slot == Slot::exciter) {
+        e.first = place;
+        e.end = place + block.effect->states.size();
+        e.time_constant = parameter("Tdop");
+        exciters_.push_back(e);
+      }
+      if (block.effect->name == "HYGOV")
+        late_governors_.push_back({u, static_cast<std::size_t>(unit.first) + 1, parameter("H"),
+                                   unit.operating.Tm, unit.operating.Tm});
+      place += block.effect->states.size();
+    }
+  }
+  [[nodiscard]] Signals<double> signals(std::size_t unit, double t) const {
+    Complex current;
+    return system_->signals(unit, t, y_.data(), current);
+  }
+  [[nodiscard]] double late_field_voltage(const Exciter& e, double t) const {
+    auto mixed = last_;
+    for (std::size_t i = e.first; i < e.end; ++i) mixed[i] = y_[i];
+    Complex current;
+    return system_->signals(e.unit, t, mixed.data(), current).Efd;
+  }
+  /// All states, with the exciters' at t + h.
+  std::vector<double> advanced_exciters(double t) {
+    auto fine = y_, f = f_;
+    for (int k = 0; k < exciter_steps_; ++k) {
+      if (k > 0) system_->derivatives(t, fine.data(), f.data());
+      for (const Exciter& e : exciters_)
+        for (std::size_t i = e.first; i < e.end; ++i)
+          fine[i] += h_ / exciter_steps_ * (1.5 * f[i] - 0.5 * fine_f_before_[i]);
+      (void)system_->clamp_states(fine.data());
+      fine_f_before_ = f;
+    }
+    return fine;
+  }
+
+  double h_;
+  int exciter_steps_;
+  ReferencePlants plants_;
+  std::vector<Segment> parts_;
+  ReferenceSystem before_, after_;
+  const ReferenceSystem* system_;
+  std::size_t states_;
+  std::vector<double> y_, last_;  ///< states and voltages at t and at t - h
+  std::vector<double> f_, f_before_, fine_f_before_;
+  std::vector<Exciter> exciters_;
+  std::vector<Governor> late_governors_;
+};
 
 /// Calls see(time, signals, states) of plant `plant` every h seconds until `end` [s], twice at the switching
 /// instant, which is event's only one and a multiple of h. A fourth argument of `see`, if it takes one, is
-/// the real and imaginary voltage of every bus [pu]. Exciters take `exciter_steps` steps within each, during
-/// which everything outside them stands still.
+/// the real and imaginary voltage of every bus [pu]. `exciter_steps`: how many the exciters take within h.
 template <class See>
 void step_as_psse(const Grid& grid, const Event& event, std::size_t plant, double h, double end,
                   const See& see, int exciter_steps = 1) {
-  const ReferencePlants plants(grid);
-  const auto parts = segments(event, grid.network, plants.instants());
-  if (parts.size() != 2) throw std::runtime_error("one switching instant is expected");
-  const ReferenceSystem before(grid, plants, parts[0], 2 * end), after(grid, plants, parts[1], 2 * end);
-  const auto states = static_cast<std::size_t>(plants.states());
-  std::vector<double> y(static_cast<std::size_t>(before.size())), f(y), f_before(y), f_after(y);
-  for (const auto& unit : plants.units())
-    std::copy(unit.operating.x.begin(), unit.operating.x.end(), y.begin() + unit.first);
-  for (std::size_t b = 0; b < grid.flow.voltage.size(); ++b) {
-    y[states + 2 * b] = grid.flow.voltage[b].real();
-    y[states + 2 * b + 1] = grid.flow.voltage[b].imag();
-  }
-  const ReferenceSystem* system = &before;
-  const auto exciters = exciter_states(plants);
-  std::vector<double> fine, fine_f, fine_before(y.size());
-  // One step of the exciters' states; f: their derivatives at its start, the switching's mean included.
-  const auto step_exciters = [&](double t) {
-    fine = y;
-    fine_f = f;
-    for (int k = 0; k < exciter_steps; ++k) {
-      if (k > 0) system->derivatives(t, fine.data(), fine_f.data());
-      for (const std::size_t i : exciters)
-        fine[i] += h / exciter_steps * (1.5 * fine_f[i] - 0.5 * fine_before[i]);
-      (void)system->clamp_states(fine.data());
-      fine_before = fine_f;
-    }
-  };
-  const auto steps = std::lround(end / h), switching = std::lround(parts[1].start / h);
-  const auto look = [&](double t, std::vector<double>& to) {
-    system->solve_voltages(t, y.data());
-    Complex current;
-    const auto signals = system->signals(plant, t, y.data(), current);
-    const double* x = y.data() + plants.units()[plant].first;
-    if constexpr (requires { see(t, signals, x, y.data()); })
-      see(t, signals, x, y.data() + states);
+  PsseStepper stepper(grid, event, h, end, exciter_steps);
+  const auto show = [&](double t) {
+    const auto s = stepper.printed(plant, t);
+    if constexpr (requires { see(t, s, stepper.states(plant), stepper.voltages()); })
+      see(t, s, stepper.states(plant), stepper.voltages());
     else
-      see(t, signals, x);
-    system->derivatives(t, y.data(), to.data());
+      see(t, s, stepper.states(plant));
   };
+  const auto steps = std::lround(end / h);
   for (long k = 0; k <= steps; ++k) {
     const double t = static_cast<double>(k) * h;
-    look(t, f);
-    if (k == switching) {
-      system = &after;
-      look(t, f_after);
-      for (std::size_t i = 0; i < states; ++i) f[i] = 0.5 * (f[i] + f_after[i]);
+    stepper.derive(t);
+    show(t);
+    if (k == stepper.switching()) {
+      stepper.switch_over(t);
+      show(t);
     }
-    step_exciters(t);
-    for (std::size_t i = 0; i < states; ++i) y[i] += h * (1.5 * f[i] - 0.5 * f_before[i]);
-    for (const std::size_t i : exciters) y[i] = fine[i];
-    (void)system->clamp_states(y.data());
-    f_before = f;
+    stepper.advance(t);
   }
 }
 
