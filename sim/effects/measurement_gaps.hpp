@@ -46,7 +46,7 @@ struct Model {
       missing = begins || (missing && !ends);
       if (!missing) continue;
       phasors.V[k] = phasors.I[k] = {kMissing, kMissing};
-      phasors.df[k] = kMissing;
+      if (k < phasors.df.size()) phasors.df[k] = kMissing;
     }
   }
 };
