@@ -125,15 +125,13 @@ class Data {
     return out_.places.size() - 1;
   }
 
+  /// Numbers count up by one; each break is told once.
   void numbered(std::size_t sample, double number) {
-    if (number != static_cast<double>(sample) + first_number_) {
-      if (sample == 0 && number >= 0)
-        first_number_ = number;
-      else
-        faults_.add("number", fmt::format("sample number {:g}", number), sample,
-                    fmt::format("{:g} was to come", static_cast<double>(sample) + first_number_),
-                    "samples are missing or repeated: fill the gap at the source, or cut the record");
-    }
+    if (sample > 0 && number != next_number_)
+      faults_.add("number", fmt::format("sample number {:g}", number), sample,
+                  fmt::format("{:g} was to come", next_number_),
+                  "samples are missing or repeated: fill the gap at the source, or cut the record");
+    next_number_ = number + 1;
   }
 
   void add(std::size_t channel, double x) {
@@ -176,7 +174,7 @@ class Data {
   Problems& problems_;
   SampleFaults faults_;
   std::vector<double> stamps_;
-  double first_number_ = 1;
+  double next_number_ = 1;
 };
 
 /// The section of a .cff whose heading holds `word`; `heading` becomes that line.

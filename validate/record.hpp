@@ -46,7 +46,7 @@ struct Record {
 constexpr int kFewestSamples = 30;
 
 struct ReadOptions {
-  std::string terminal;    ///< which terminal, where the file holds several
+  std::string terminal{};  ///< which terminal, where the file holds several
   double phasor_rate = 0;  ///< phasors per second made of waveforms; 0: one per nominal cycle
 };
 
