@@ -16,14 +16,14 @@ struct Model {
   Vref + dVref - Vc + Vs + Vlimiter --> [ (1 + s TA)/(1 + s TB) ] --> [ K/(1 + s TE) ] --> Efd
                                                                       EMIN <= Efd <= EMAX, non-windup
   TB dx1/dt = u - x1            y = x1 + (TA/TB)(u - x1)
-  TE dEfd/dt = K y - Efd
+  TE dEfd/dt = K y - Efd        TE = 0: Efd = K y
 )";
   enum P { TAoverTB, TB, K, TE, EMIN, EMAX };
   static constexpr Parameter parameters[] = {
       {"TAoverTB", "TA/TB", "-", 0.1, 0.0, 10.0, 1.0, "lead over lag time constant"},
       {"TB", "TB", "s", 10.0, 0.0, 100.0, kNoNeutral, "lag time constant (0: none)"},
       {"K", "K", "pu", 100.0, 0.5, 2000.0, kNoNeutral, "gain"},
-      {"TE", "TE", "s", 0.1, 0.001, 5.0, kNoNeutral, "exciter time constant"},
+      {"TE", "TE", "s", 0.1, 0.0, 5.0, kNoNeutral, "exciter time constant (0: none)"},
       {"EMIN", "EMIN", "pu", -4.0, -100.0, 0.0, kNoNeutral, "lower ceiling of Efd"},
       {"EMAX", "EMAX", "pu", 5.0, 0.5, 100.0, kNoNeutral, "upper ceiling of Efd"}};
   static constexpr int dyr_columns[] = {TAoverTB, TB, K, TE, EMIN, EMAX};
@@ -33,11 +33,11 @@ struct Model {
                                      {"Efd", "pu", "field voltage", 1.0, low, high}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    if (!(p[TE] > 0))
-      problems.add(fmt::format("TE = {:g} s", p[TE]), where, "SEXS integrates Efd over TE", "give TE > 0");
     if (!(p[K] > 0)) problems.add(fmt::format("K = {:g}", p[K]), where, "no gain, no exciter", "give K > 0");
-    if (!(p[TB] >= 0))
-      problems.add(fmt::format("TB = {:g} s", p[TB]), where, "a time constant", "give TB >= 0");
+    for (int i : {TB, TE})
+      if (!(p[i] >= 0))
+        problems.add(fmt::format("{} = {:g} s", parameters[i].symbol, p[i]), where, "a time constant",
+                     "give a value >= 0");
     if (!(p[EMAX] > p[EMIN]))
       problems.add(fmt::format("EMAX = {:g} pu with EMIN = {:g} pu", p[EMAX], p[EMIN]), where,
                    "Efd must have room to move", "give EMAX > EMIN");
@@ -49,7 +49,7 @@ struct Model {
     c[TA] = p[TAoverTB] * p[TB];
     c[iTB] = inverse(p[TB]);
     c[gain] = p[K];
-    c[iTE] = T(1.0) / p[TE];
+    c[iTE] = inverse(p[TE]);
     c[low] = p[EMIN];
     c[high] = p[EMAX];
   }
@@ -57,8 +57,7 @@ struct Model {
   static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
     const T error = c[Vref] + s.dVref - s.Vc + s.Vs + s.Vlimiter;
     const T y = lead_lag(c[TA], c[iTB], x[leadlag], error, dx[leadlag]);
-    dx[Efd] = (c[gain] * y - x[Efd]) * c[iTE];
-    s.Efd = clamp(x[Efd], c[low], c[high]);
+    s.Efd = clamp(lag(c[iTE], x[Efd], c[gain] * y, dx[Efd]), c[low], c[high]);
   }
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {

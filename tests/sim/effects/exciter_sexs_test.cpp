@@ -58,5 +58,19 @@ TEST(ExciterSexs, OperatingPointAboveTheCeilingIsRefused) {
   EXPECT_EQ(ControlBench("SEXS", {{"EMAX", 1.5}}).refused, "Efd outside its limits");
 }
 
+TEST(ExciterSexs, ZeroTimeConstantPassesTheLeadLagOn) {
+  ControlBench bench("SEXS", {{"TAoverTB", 0.4}, {"TB", 5.0}, {"K", 20.0}, {"TE", 0.0}, {"EMAX", 4.0}});
+  EXPECT_TRUE(bench.problems.empty());
+  EXPECT_LT(bench.largest_derivative(), 1e-15);
+  EXPECT_DOUBLE_EQ(bench.out().Efd, 2.0);
+  bench.in.dVref = 0.05;
+  EXPECT_NEAR(bench.out().Efd, 2.0 + 20.0 * 0.4 * 0.05, 1e-14);
+  bench.run(1.0);
+  // 1 ms steps against 5 s, and rounding
+  EXPECT_NEAR(bench.out().Efd, 2.0 + 20.0 * 0.05 * (1.0 - 0.6 * std::exp(-1.0 / 5.0)), 1e-12);
+  bench.in.Vc = 0.5;
+  EXPECT_EQ(bench.out().Efd, 4.0);
+}
+
 }  // namespace
 }  // namespace swingbank::sim::test

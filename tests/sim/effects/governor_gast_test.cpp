@@ -51,6 +51,14 @@ TEST(GovernorGast, DeadBandTakesItsWidthFromTheSpeed) {
   EXPECT_NEAR(bench.derivative()[0], -0.001 / 0.05 / 0.4, 1e-12);
 }
 
+TEST(GovernorGast, StandsAtItsTemperatureLimitWhateverThePowerFlowRounds) {
+  auto at = ControlBench::rated();
+  at.Tm = 0.9 + 1e-12;
+  ControlBench bench("GAST", kValues, at);
+  EXPECT_EQ(bench.refused, "");
+  EXPECT_LT(bench.largest_derivative(), 1e-14);
+}
+
 TEST(GovernorGast, WhatCannotRunIsRefused) {
   EXPECT_NE(ControlBench("GAST", {{"AT", 0.7}}).refused.find("AT = 0.7 pu"), std::string::npos);
   EXPECT_EQ(ControlBench("GAST", {{"VMAX", 0.7}}).refused, "fuel outside its limits");
