@@ -66,6 +66,13 @@ FitEvent voltage_step(const FitEvent& like) {
   return Trial(like, {kAt}).with([](double t) { return t <= kAt ? 1.0 : 0.97; }, [](double) { return 0.0; });
 }
 
+/// As after a load rejection.
+FitEvent voltage_rise(const FitEvent& like) {
+  const double end = kAt + 3.0;
+  return Trial(like, {kAt, end})
+      .with([end](double t) { return t <= kAt || t > end ? 1.0 : 1.15; }, [](double) { return 0.0; });
+}
+
 EventState at_rest(const FitEvent& event) {
   EventState state;
   for (const auto& s : event.switchings) state.switchings.push_back(s.time);
@@ -122,6 +129,8 @@ std::vector<TriedEvent> try_events(const sim::Plant& plant, const sim::Conventio
            std::pair{fmt::format("a deep fault (V to {:.2f} pu for 0.15 s)", 0.2 * V), deep_fault(like)},
            std::pair{fmt::format("a lasting step of the voltage (-3 %, to {:.3f} pu)", 0.97 * V),
                      voltage_step(like)},
+           std::pair{fmt::format("a load rejection (V up by 15 %, to {:.2f} pu, for 3 s)", 1.15 * V),
+                     voltage_rise(like)},
        })
     attempt(what, event, at_rest(event));
   if (std::ranges::count(like.channels, Output::Ifd) == 0) {

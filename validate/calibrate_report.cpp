@@ -23,9 +23,17 @@ json finite(double value) { return std::isfinite(value) ? json(value) : json(nul
 
 std::string percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
 
+/// Moved by more than 2.5 times what its spread believes: the belief pulls it back, and others with it.
+bool strained(const FittedParameter& p) {
+  const bool logarithmic = p.start > 0 && p.value > 0;
+  const double moved = logarithmic ? std::abs(std::log(p.value / p.start)) : 0.0;
+  return p.where.spread > 0 && moved > 2.5 * p.where.spread;
+}
+
 std::string notes(const Calibration& c, std::size_t i) {
   const auto& p = c.parameters[i];
   std::string text = p.fit.at_bound ? "at its bound" : "";
+  if (strained(p.fit)) text += std::string(text.empty() ? "" : "; ") + "further off than --spread believes";
   if (p.fit.decided < 0.5) text += std::string(text.empty() ? "" : "; ") + "not identified";
   return text;
 }
@@ -56,7 +64,8 @@ json parameter_json(const Calibration& c, std::size_t i) {
             {"low_95", finite(p.fit.low)},
             {"high_95", finite(p.fit.high)},
             {"decided_by_records", finite(p.fit.decided)},
-            {"at_bound", p.fit.at_bound}};
+            {"at_bound", p.fit.at_bound},
+            {"beyond_belief", strained(p.fit)}};
   j["would_be_narrowed_by"] =
       p.best_candidate < 0 ? json(nullptr)
                            : json{{"event", c.candidates[static_cast<std::size_t>(p.best_candidate)].what},
@@ -154,6 +163,11 @@ std::string terminal_report(const Calibration& c) {
         "The noise is coloured: neighbouring samples before the event correlate by {:.2f} in {}; limits and "
         "errors are widened for it.\n",
         coloured->colour, coloured->record);
+  if (std::ranges::any_of(c.parameters, [](const auto& p) { return strained(p.fit); }))
+    text +=
+        "Some values lie further from the model's than --spread believes; the belief pulls at them and at "
+        "what "
+        "moves with them. Calibrate again from the new model, or with a larger --spread.\n";
   for (const auto& blur : c.blurs) text += "- " + describe(c, blur) + "\n";
   const std::string events = identify_text(c);
   if (!events.empty()) text += "Which event would tell:\n" + events;
