@@ -20,6 +20,8 @@ constexpr double kSpeed = 0.02;  ///< no governor trips a unit below that deviat
 constexpr double kClose = 0.1;   ///< a size is met within that part of it
 constexpr int kSizeTries = 8;    ///< simulations of all events while a size is sought
 
+constexpr double kHuge = 1e300;  ///< size of what cannot be simulated
+
 /// One draw that cannot be simulated: another is made.
 struct Unstable {};
 
@@ -113,33 +115,45 @@ class Maker {
     scales_ = found;
   }
   void seek(const BlindSize& size, std::size_t k, Scales& alone, BlindTruth& truth) {
-    double low = 0.0, high = 1.0, scale = 1.0;
-    bool above = false;
-    double best = 1e300;
+    double low = 0.0, high = 1.0, low_left = 0.0, high_left = kHuge, scale = 1.0, best = kHuge;
+    const bool logarithmic = truth.kind->logarithmic;
     for (int i = 0; i < kSizeTries; ++i) {
       alone[k] = scale;
-      double left = 1e300, visible = 0;
-      try {
-        const std::vector<Record> with = records(world_.grid(alone));
-        left = size.left(with);
-        visible = size.visible(with);
-      } catch (const Unstable&) {  // too strong: larger than anything asked for
-      }
+      const auto [left, visible] = sizes(size, alone);
       const double miss = std::abs(std::log(left / truth.wanted));
-      if (left < 1e300 && miss < best) {
+      if (left < kHuge && miss < best) {
         best = miss;
         truth.scale = scale;
         truth.left = left;
         truth.visible = visible;
       }
-      if (miss < std::log1p(kClose) || (left < truth.wanted && scale == 1.0)) break;
+      const bool end = left < truth.wanted ? scale == 1.0 : scale == 0.0;
+      if (miss < std::log1p(kClose) || end) break;
       (left > truth.wanted ? high : low) = scale;
-      above = above || left > truth.wanted;
-      const bool proportional = !truth.kind->logarithmic && left < 1e300;
-      const double guess = scale * truth.wanted / left;
-      scale = proportional && guess > low && guess < high ? guess : 0.5 * (low + high);
+      (left > truth.wanted ? high_left : low_left) = left;
+      scale = next_scale(logarithmic, truth.wanted, low, low_left, high, high_left);
     }
-    if (best == 1e300) throw Unstable{};
+    // An effect that stays below its own detection limit at full size shows nothing in these events.
+    if (best == kHuge || truth.left < truth.kind->limit) throw Unstable{};
+  }
+  /// Size left and visible at these scales; huge where the grid does not stay stable.
+  [[nodiscard]] std::pair<double, double> sizes(const BlindSize& size, const Scales& scales) const {
+    try {
+      const std::vector<Record> with = records(world_.grid(scales));
+      return {size.left(with), size.visible(with)};
+    } catch (const Unstable&) {  // too strong: larger than anything asked for
+      return {kHuge, kHuge};
+    }
+  }
+  static double next_scale(bool logarithmic, double wanted, double low, double low_left, double high,
+                           double high_left) {
+    const double middle = 0.5 * (low + high);
+    if (high_left >= kHuge) return middle;
+    if (logarithmic && low_left == 0.0) return 0.0;  // is even the smallest too large?
+    double guess = high * wanted / high_left;
+    if (logarithmic)
+      guess = low + (high - low) * std::log(wanted / low_left) / std::log(high_left / low_left);
+    return guess > low && guess < high ? guess : middle;
   }
   /// The owner's model: no hidden effect, every machine parameter off by 10 to 20 % (or as configured).
   void draw_model() {

@@ -61,9 +61,6 @@ BlindCase make_blind_case(const BlindConfig& config, const BlindSpec& spec);
 void write_blind_case(const BlindCase& made, const BlindConfig& config, const std::string& name,
                       const std::filesystem::path& folder, const std::filesystem::path& truth);
 
-/// The plant file of a model: reads back to the same values (`configs/plants/README.md`).
-std::string plant_file(const sim::Plant& plant, const sim::Conventions& conventions, const std::string& name,
-                       double record_mva);
 /// A record as CSV, with the columns of validate/README.md.
 std::string record_csv(const Record& record);
 

@@ -2,6 +2,7 @@
 
 #include "validate/blind_case.hpp"
 #include "validate/blind_world.hpp"
+#include "validate/plant_file.hpp"
 #include "validate/write_file.hpp"
 
 namespace swingbank::validate {
@@ -63,35 +64,25 @@ json truth_json(const BlindCase& made, const BlindConfig& config, const std::str
           {"model", plant_json(made.model)}};
 }
 
-void append_block(std::string& text, const sim::Block& block) {
-  fmt::format_to(std::back_inserter(text), "\n[{}]\neffect = \"{}\"\n", sim::slot_name(block.effect->slot),
-                 block.effect->name);
-  for (std::size_t k = 0; k < block.p.size(); ++k)
-    fmt::format_to(std::back_inserter(text), "{} = {:.6g}  # {}\n", block.effect->parameters[k].name,
-                   block.p[k], block.effect->parameters[k].unit);
+std::string model_file(const BlindCase& made, const std::string& name) {
+  PlantModel model;
+  model.name = name;
+  model.plant = made.model;
+  model.plant.name = name;
+  model.conventions = sim::Conventions::psse(made.conventions.frequency);
+  model.record_base.mva = kRecordMva;
+  model.record_base.frequency = made.conventions.frequency;
+  return plant_text(model, {"Plant of a blind case, as its owner believes it to be"});
 }
 
 }  // namespace
-
-std::string plant_file(const sim::Plant& plant, const sim::Conventions& conventions, const std::string& name,
-                       double record_mva) {
-  std::string text = fmt::format(
-      "[plant]\nname = \"{}\"\nbase_mva = {}  # MVA\nfrequency_hz = {}\nconventions = \"{}\"\n\n[record]\n"
-      "base_mva = {}  # MVA\n",
-      name, plant.mva, conventions.frequency, conventions.mechanical_power ? "psse" : "andes", record_mva);
-  append_block(text, plant.machine);
-  if (plant.transformer.effect) append_block(text, plant.transformer);
-  for (const auto& block : plant.controls) append_block(text, block);
-  return text;
-}
 
 void write_blind_case(const BlindCase& made, const BlindConfig& config, const std::string& name,
                       const fs::path& folder, const fs::path& truth) {
   write_file(truth, truth_json(made, config, name).dump(1) + "\n");
   const fs::path partial = folder.parent_path() / ("." + folder.filename().string() + ".partial");
   fs::remove_all(partial);
-  write_file(partial / "model.toml",
-             plant_file(made.model, sim::Conventions::psse(made.conventions.frequency), name, kRecordMva));
+  write_file(partial / "model.toml", model_file(made, name));
   for (std::size_t e = 0; e < made.records.size(); ++e)
     write_file(partial / fmt::format("event{}.csv", e + 1), record_csv(made.records[e]));
   fs::rename(partial, folder);
