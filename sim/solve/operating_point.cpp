@@ -19,8 +19,8 @@ struct Place {
 template <class T>
 class Initialiser {
  public:
-  Initialiser(const Plant& plant, const std::vector<std::vector<T>>& parameters, Complex voltage,
-              const T& P, const T& Q, const Conventions& conventions)
+  Initialiser(const Plant& plant, const std::vector<std::vector<T>>& parameters, Complex voltage, const T& P,
+              const T& Q, const Conventions& conventions)
       : plant_(plant), equations_(plant) {
     o_.c.assign(static_cast<std::size_t>(equations_.coefficients()), T(0.0));
     o_.x.assign(static_cast<std::size_t>(equations_.states()), T(0.0));
@@ -43,6 +43,12 @@ class Initialiser {
 
   OperatingOf<T> run() {
     const auto& machine = places_.front();
+    if (transformer_ && equations_.nonlinear())
+      problems_.add(fmt::format("{} behind {}", machine.effect->name, plant_.transformer.effect->name),
+                    where(),
+                    "its current is no linear function of the voltage, which the transformer here needs",
+                    "put the transformer into the network, or choose another machine model");
+    problems_.raise();
     held(ops(machine).machine.steady(machine.p, coefficients(machine), o_.s, states(machine)), machine);
     o_.Efd = o_.s.Efd;
     o_.Tm = o_.s.Tm;

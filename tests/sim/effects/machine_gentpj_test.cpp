@@ -174,6 +174,23 @@ TEST(MachineGentpj, LanesEqualTheReference) {
   EXPECT_EQ(done, events.size());
 }
 
+TEST(MachineGentpj, IsRefusedBehindATransformerOfThePlant) {
+  Grid grid = test::two_machine_grid(Conventions::psse());
+  for (const char* name : {"GENROU", "GENTPJ"}) {
+    Plant& plant = grid.plants[1];
+    plant.machine = {find_effect(name), find_effect(name)->standard_parameters()};
+    plant.transformer = {find_effect("STEPUP"), find_effect("STEPUP")->standard_parameters()};
+    const auto start = [&] {
+      (void)operating_point(plant, grid.flow.voltage[static_cast<std::size_t>(plant.bus)],
+                            grid.network.base_mva, grid.conventions);
+    };
+    if (plant.machine.effect->name == "GENROU")
+      EXPECT_NO_THROW(start());
+    else
+      EXPECT_THROW(start(), InputError);
+  }
+}
+
 TEST(MachineGentpj, SingularValuesAreRefused) {
   const Effect& effect = *find_effect("GENTPJ");
   for (const auto& [name, value] : {std::pair{"Tdopp", 0.0},
