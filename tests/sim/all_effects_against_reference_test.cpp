@@ -9,6 +9,7 @@
 #include "reference_support.hpp"
 #include "sim/solve/batch.hpp"
 #include "sim/solve/load_choice.hpp"
+#include "sim/solve/load_equations.hpp"
 
 namespace swingbank::sim {
 namespace {
@@ -87,7 +88,25 @@ bool holds(const Plant& plant, const Grid& grid) {
   }
 }
 
-Grid dressed(const Grid& plain, Draws& draws) {
+/// Every load effect at some of the loads, where it can be held.
+void dress_loads(Grid& grid, Draws& draws) {
+  for (std::size_t i = 0; i < grid.network.loads.size(); ++i) {
+    if (!draws.chance(0.2)) continue;
+    Grid next = grid;
+    Problems problems;
+    set_load(next, static_cast<int>(i), draw(Slot::load, draws), "draw", problems);
+    if (!problems.empty()) continue;  // a load that draws nothing
+    const Consumer& load = *std::ranges::find(next.loads, static_cast<int>(i), &Consumer::load);
+    try {
+      (void)load_operating_point(load, load.block.p, next.flow.voltage[static_cast<std::size_t>(load.bus)],
+                                 next.network.base_mva, next.conventions);
+      grid = std::move(next);
+    } catch (const InputError&) {
+    }
+  }
+}
+
+Grid dressed(const Grid& plain, Draws& draws, Draws& of_loads) {
   Grid grid = plain;
   for (Plant& plant : grid.plants)
     for (int attempt = 0; attempt < 20; ++attempt) {
@@ -100,6 +119,7 @@ Grid dressed(const Grid& plain, Draws& draws) {
   Problems problems;
   if (draws.chance(0.3)) loads_as_composed(grid, problems);
   EXPECT_TRUE(problems.empty());
+  if (of_loads.chance(0.5)) dress_loads(grid, of_loads);
   return grid;
 }
 
@@ -139,6 +159,7 @@ std::string outfit(const Grid& grid) {
     for (const Block& b : p.controls) text += "+" + std::string(b.effect->name);
     text += " ";
   }
+  for (const Consumer& c : grid.loads) text += c.name + ":" + std::string(c.block.effect->name) + " ";
   return text;
 }
 
@@ -230,14 +251,15 @@ void compare(const Grid& grid, Draws& draws, Tally& tally) {
 
 void run_events(int grids, std::uint64_t seed) {
   const Grid plain = test::configured_grid("ieee39_dataset_genrou", Conventions::psse());
-  Draws draws(seed);
+  Draws draws(seed), of_loads(seed + 1);
   Tally tally;
   for (int g = 0; g < grids; ++g) {
-    const Grid grid = dressed(plain, draws);
+    const Grid grid = dressed(plain, draws, of_loads);
     for (const Plant& p : grid.plants) {
       tally.seen.insert(p.machine.effect->name);
       for (const Block& b : p.controls) tally.seen.insert(b.effect->name);
     }
+    for (const Consumer& c : grid.loads) tally.seen.insert(c.block.effect->name);
     compare(grid, draws, tally);
   }
   testing::Test::RecordProperty("compared", tally.compared);
