@@ -270,7 +270,7 @@ class Check {
     const std::string what =
         fmt::format("{:.4g} pu of the machine's {:g} MVA before the event", on_machine, plant_.mva);
     for (const auto& b : bases())
-      if (b.factor < 1 && within(on_machine * b.factor, 0.02, 1.3)) {
+      if (b.factor < 1 && within(on_machine * b.factor, 0.05, 1.2)) {
         refuse("wrong_base", what, "likely " + b.why, b.remedy);
         return;
       }
