@@ -49,7 +49,7 @@ void read_all(std::ifstream& in, std::uint64_t length, const SealedKind& kind,
   start(header, arrays);
   for (std::size_t i = 0; i < arrays; ++i) {
     const std::uint64_t size = get_size();
-    if (size > length / sizeof(float)) throw Unusable{"an array has another length"};
+    if (size > length / sizeof(float)) throw Unusable{"it ends too early"};
     const std::span<float> to = place(i, size);
     get(to.data(), to.size_bytes());
   }

@@ -33,7 +33,7 @@ TOML
 /usr/bin/python3 - "$work" <<'PYTHON'
 import glob, sys
 import h5py, numpy
-work, n = sys.argv[1], 0
+work, n, gentlest = sys.argv[1], 0, 0
 def write(name, t, x):
     with open(f"{work}/{name}.csv", "w") as file:
         file.write("t_s,P_pu,Q_pu,speed_pu,V_pu,theta_rad\n")
@@ -52,6 +52,10 @@ for path in sorted(glob.glob(f"{work}/data/shards/*.h5")):
             y = numpy.array([numpy.interp(fine, t, c) for c in x])
             y[:2] *= 100 / 250
             write("other", fine + 17, y)
+        if abs(x[3]).min() > gentlest:
+            # All swings three times as large: nothing of the kind was trained on.
+            gentlest = abs(x[3]).min()
+            write("wild", t, x[:, :1] + 3 * (x - x[:, :1]))
         truth.append(shard["parameters"][i])
         n += 1
 numpy.savetxt(f"{work}/truth.txt", truth)
@@ -89,10 +93,12 @@ PYTHON
 predict() { "$swingbank" predict --network "$network" --model "$work/plant.toml" "$@"; }
 cut -d, -f1-3,5,6 "$work/row-000.csv" >"$work/no-speed.csv"
 refuses "channel that was not measured" 'channel speed at no-speed.csv' predict --records "$work/no-speed.csv"
-head -70 "$work/row-000.csv" >"$work/short.csv"
-refuses "record too short" 'give a longer record' predict --records "$work/short.csv"
+refuses "record ends too early" 'give a longer record' predict --records "$work/row-000.csv" --event 3.0
+refuses "nothing before the event" 'give a record that begins earlier' predict --records "$work/row-000.csv" --event 0.01
+predict --records "$work/wild.csv" >"$work/log" 2>&1 || fail "a wild record: $(cat "$work/log")"
+grep -q "warning: wild.csv is unlike what the network was trained on" "$work/log" || fail "no warning of a wild record"
 refuses "no network" 'none.network' "$swingbank" predict --network "$work/none.network" --model "$work/plant.toml" --records "$work/row-000.csv"
 head -c 3000 "$network" >"$work/cut.network"
-refuses "truncated network" 'cut.network' "$swingbank" predict --network "$work/cut.network" --model "$work/plant.toml" --records "$work/row-000.csv"
+refuses "truncated network" 'cut.network .it ends too early' "$swingbank" predict --network "$work/cut.network" --model "$work/plant.toml" --records "$work/row-000.csv"
 refuses "another machine model" 'the network was trained on GENCLS' "$swingbank" predict --network "$network" --model "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml" --records "$work/row-000.csv"
 misused "unknown option" 'nonsense' predict --records "$work/row-000.csv" --nonsense 3
