@@ -61,6 +61,22 @@ std::size_t leaves(const std::vector<double>& y, double level, double reach) {
   return y.size();
 }
 
+/// The first sample by which the frequency, as the angle turns over half a second, has changed by more than
+/// 20 mHz and the noise: what a slow event shows before anything else. Size if there is none.
+std::size_t turns_faster(const Record& r) {
+  constexpr double kSpan = 0.5, kLeast = 2 * std::numbers::pi * 0.02;  // s, rad/s
+  const auto m = static_cast<std::size_t>(kSpan * r.rate());
+  const std::size_t n = r.theta.size();
+  if (m < 1 || n < m + 20) return n;
+  std::vector<double> turned(n - m);
+  for (std::size_t k = 0; k + m < n; ++k) turned[k] = r.theta[k + m] - r.theta[k];
+  SignalFacts noise;
+  find_noise(r.theta, r.rate(), noise);
+  const double reach = std::max(6 * 1.1 * std::numbers::sqrt2 * noise.white, kLeast * kSpan);
+  const std::size_t k = leaves(turned, median_in(std::span(turned).first(10)), reach);
+  return k < turned.size() ? k + m : n;
+}
+
 /// The event begins before its first clear jump where that is smeared, or an earlier one too small: the first
 /// step of the voltage within half a second that stands out from those before.
 std::size_t step_before(const Record& r, std::size_t jump) {
@@ -94,14 +110,17 @@ void find_event(const Record& r, Signals& s) {
     const double reach = std::max(6 * facts->noise, 1e-4);
     first = std::min(first, leaves(*y, median_in(std::span(*y).first(10)), reach * 1.1));
   }
-  s.event = first < n;
+  first = std::min(first, turns_faster(r));
+  s.event = s.slow = first < n;
   s.onset = s.last = first > 0 && first < n ? first - 1 : 0;
 }
 
 void describe(const Record& r, const std::vector<double>& y, const Signals& s, SignalFacts& facts) {
   // Measuring windows reach over the event: leave out 50 ms before it.
   const auto guard = static_cast<std::size_t>(std::ceil(0.05 * r.rate()));
-  const auto before = s.event ? until(y, s.onset > guard ? s.onset - guard : 0) : std::span<const double>(y);
+  // A slow event is seen only some time after it began.
+  const std::size_t clear = s.slow ? s.onset / 2 : s.onset > guard ? s.onset - guard : 0;
+  const auto before = s.event ? until(y, clear) : std::span<const double>(y);
   facts.level = median_in(before);
   for (const double v : y) facts.reach = std::max(facts.reach, std::abs(v - facts.level));
   if (before.size() < 10) return;

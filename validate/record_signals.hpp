@@ -22,6 +22,7 @@ struct SignalFacts {
 struct Signals {
   SignalFacts V, P, Q;
   bool event = false;         ///< something leaves the noise
+  bool slow = false;          ///< without a jump; it began before `onset`
   std::size_t onset = 0;      ///< last sample before the event
   std::size_t last = 0;       ///< last sample before the last switching, or `onset`
   double theta_level = 0;     ///< median of the angle before the event, as written [rad]
