@@ -96,13 +96,17 @@ std::vector<std::vector<std::string>> check_records(const std::vector<Record>& r
 
 int main(int argc, char** argv) {
   CLI::App app{SWINGBANK_SUMMARY};
-  std::string model_file, out = "compare-report";
+  std::string model_file, out = "compare-report", drive = "voltage";
   std::vector<std::string> record_files, switches;
   bool json = false;
   CompareOptions options;
   app.add_option("--model", model_file, "plant file (configs/plants/README.md)")->required();
   app.add_option("--records,--record", record_files, "records (CSV, COMTRADE or HDF5), one or several")
       ->required();
+  app.add_option("--drive", drive,
+                 "what drives the model: voltage (V and angle; P and Q are compared) or pq (the reverse)")
+      ->check(CLI::IsMember({"voltage", "pq"}))
+      ->capture_default_str();
   app.add_option("--switch", switches,
                  "switching instant [s], or FILE=instant; default: found by the voltage's jumps and fitted");
   app.add_flag("!--no-fit", options.fit_switchings,
@@ -122,6 +126,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 1;
   }
   try {
+    options.drive = drive == "pq" ? DriveBy::power : DriveBy::voltage;
     const PlantModel model = load_plant_model(model_file);
     std::vector<Record> records = read_records(record_files, model.record_base);
     check_names(records);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "validate/error_map_table.hpp"
 #include "validate/fit_event.hpp"
@@ -52,6 +53,8 @@ struct Channel {
   double scale;         ///< units in 1 pu
   double floor;         ///< what the computation leaves where a record has no noise [pu]
   bool starts_at_mean;  ///< the model starts at this channel's pre-event mean
+  bool judged = true;
+  std::string_view skip = {};  ///< window whose noise is not that before the event
 };
 
 ChannelComparison compare_channel(const Channel& channel, const std::vector<double>& measured,
@@ -60,6 +63,7 @@ ChannelComparison compare_channel(const Channel& channel, const std::vector<doub
   c.name = channel.name;
   c.unit = channel.unit;
   c.scale = channel.scale;
+  c.judged = channel.judged;
   c.measured = measured;
   c.modelled = modelled;
   c.residual.resize(measured.size());
@@ -73,15 +77,28 @@ ChannelComparison compare_channel(const Channel& channel, const std::vector<doub
   const std::span<const double> all(c.residual);
   c.map = error_map(t, all, event.windows,
                     estimate_noise(all.first(static_cast<std::size_t>(quiet)), channel.floor),
-                    {.quiet = quiet, .starts_at_mean = channel.starts_at_mean});
+                    {.quiet = quiet, .starts_at_mean = channel.starts_at_mean, .skip = channel.skip});
   return c;
 }
 
+/// Frequency [pu deviation] of an angle, by central differences.
+std::vector<double> frequency_of(const std::vector<double>& t, const std::vector<double>& theta,
+                                 double nominal) {
+  std::vector<double> f;
+  for (std::size_t k = 0; k < t.size(); ++k) {
+    const std::size_t a = k == 0 ? 0 : k - 1, b = std::min(k + 1, t.size() - 1);
+    f.push_back((theta[b] - theta[a]) / (t[b] - t[a]) / (2 * std::numbers::pi * nominal));
+  }
+  return f;
+}
+
 /// Plays the record in with the event's switchings and measures every channel.
-void play(const PlantModel& model, const PlayInOptions& options, EventComparison& e) {
+void play(const PlantModel& model, DriveBy drive, const PlayInOptions& options, EventComparison& e) {
   const VoltageCurve curve(e.record, e.switchings);
   e.switchings = curve.switchings();
-  e.playback = play_in(model.plant, model.conventions, e.record, curve, options);
+  const bool power = drive == DriveBy::power;
+  e.playback = power ? play_in_power(model.plant, model.conventions, e.record, e.switchings, options)
+                     : play_in(model.plant, model.conventions, e.record, curve, options);
   e.windows = event_windows(e.record, e.switchings, options.pre_event);
   e.channels.clear();
   const RecordBase& base = e.record.base;
@@ -89,11 +106,24 @@ void play(const PlantModel& model, const PlayInOptions& options, EventComparison
                        const std::vector<double>& modelled) {
     if (!measured.empty()) e.channels.push_back(compare_channel(channel, measured, modelled, e));
   };
-  add({"P", "MW", base.mva, kLeastNoise, true}, e.record.P, e.playback.P);
-  add({"Q", "Mvar", base.mva, kLeastNoise, true}, e.record.Q, e.playback.Q);
-  add({"speed", "mHz", 1e3 * base.frequency, kLeastSpeedNoise, false}, e.record.speed, e.playback.speed);
-  add({"Efd", "pu", 1, kLeastNoise, false}, e.record.Efd, e.playback.Efd);
-  add({"Ifd", "pu", 1, kLeastNoise, false}, e.record.Ifd, e.playback.Ifd);
+  if (power) {
+    add({"V", "pu", 1, kLeastNoise, true, true, "fault"}, e.record.V, e.playback.V);
+    add({"frequency", "mHz", 1e3 * base.frequency, kLeastSpeedNoise, true, false},
+        frequency_of(e.record.t, e.record.theta, base.frequency),
+        frequency_of(e.record.t, e.playback.theta, base.frequency));
+  }
+  const auto add_output = [&](Output o, const std::vector<double>& measured,
+                              const std::vector<double>& modelled, bool starts_at_mean, bool judged) {
+    const ChannelUnit u = channel_unit(o, base);
+    add({std::string(output_name(o)), u.name, u.scale, u.floor, starts_at_mean, judged}, measured, modelled);
+  };
+  if (!power) {
+    add_output(Output::P, e.record.P, e.playback.P, true, true);
+    add_output(Output::Q, e.record.Q, e.playback.Q, true, true);
+  }
+  add_output(Output::speed, e.record.speed, e.playback.speed, false, !power);
+  add_output(Output::Efd, e.record.Efd, e.playback.Efd, false, true);
+  add_output(Output::Ifd, e.record.Ifd, e.playback.Ifd, false, true);
 }
 
 /// With the fitted instants nothing but noise is left in any window. If more is left, the model lacks
@@ -134,6 +164,7 @@ std::vector<NamedCell> all_cells(const std::vector<EventComparison>& events) {
   std::vector<NamedCell> all;
   for (const auto& e : events)
     for (const auto& c : e.channels) {
+      if (!c.judged) continue;
       const auto add = [&](const std::string& where, const MapCell& cell) {
         if (!cell.empty()) all.push_back({&e, &c, where, &cell});
       };
@@ -198,6 +229,19 @@ std::vector<Window> event_windows(const Record& record, const std::vector<Switch
   return windows;
 }
 
+ChannelUnit channel_unit(Output output, const RecordBase& base) {
+  switch (output) {
+    case Output::P:
+      return {"MW", base.mva, kLeastNoise};
+    case Output::Q:
+      return {"Mvar", base.mva, kLeastNoise};
+    case Output::speed:
+      return {"mHz", 1e3 * base.frequency, kLeastSpeedNoise};
+    default:
+      return {"pu", 1, kLeastNoise};
+  }
+}
+
 EventComparison compare_event(const PlantModel& model, Record record, const CompareOptions& options) {
   EventComparison e;
   e.record = until(std::move(record), options.play_in.until);
@@ -206,23 +250,33 @@ EventComparison compare_event(const PlantModel& model, Record record, const Comp
     e.switchings = detect_switchings(e.record, options.jump_threshold);
   else
     for (const double t : options.switchings) e.switchings.push_back({.time = t});
-  play(model, options.play_in, e);
+  play(model, DriveBy::voltage, options.play_in, e);
   if (e.detected && options.fit_switchings && !e.switchings.empty()) {
     EventComparison fitted = e;
     fitted.switchings =
         fit_switchings(model.plant, model.conventions, e.record, e.switchings, options.play_in);
     fitted.fitted = true;
-    play(model, options.play_in, fitted);
+    play(model, DriveBy::voltage, options.play_in, fitted);
     if (explained(fitted)) e = std::move(fitted);
   }
   explain(e, options.fit_switchings);
+  if (options.drive == DriveBy::power) {  // with the instants that the voltage told
+    play(model, DriveBy::power, options.play_in, e);
+    e.notes.push_back(
+        "P and Q drive the model. No network holds its angle, so a small lasting error of P grows into one "
+        "of "
+        "frequency and speed: both are shown, the verdict is about the voltage and the field. During a fault "
+        "the voltage answers "
+        "many times as strongly to noise of P and Q, so that window is not judged.");
+  }
   return e;
 }
 
 Adequacy judge(std::vector<EventComparison>& events) {
   std::vector<ErrorMap*> maps;
   for (auto& e : events)
-    for (auto& c : e.channels) maps.push_back(&c.map);
+    for (auto& c : e.channels)
+      if (c.judged) maps.push_back(&c.map);
   set_bounds(maps, kFalseAlarm);
   Adequacy a;
   const NamedCell* worst = nullptr;

@@ -25,6 +25,11 @@ struct ChannelComparison {
   WindowError whole;                 ///< the whole record
   std::vector<WindowError> windows;  ///< one per window of the event
   ErrorMap map;                      ///< per window and band; bounds are set by judge()
+  bool judged = true;                ///< counts for the verdict
+};
+enum class DriveBy {
+  voltage,  ///< V and theta drive, P and Q are compared
+  power,    ///< P and Q drive, V and the frequency of theta are compared
 };
 struct EventComparison {
   Record record;
@@ -33,11 +38,12 @@ struct EventComparison {
   bool fitted = false;    ///< and moved within their sample intervals
   std::vector<Window> windows;
   Playback playback;
-  std::vector<ChannelComparison> channels;  ///< P, Q, and speed, Efd, Ifd where they are recorded
+  std::vector<ChannelComparison> channels;  ///< P, Q or V, frequency; speed, Efd, Ifd where recorded
   std::vector<std::string> notes;  ///< what a reader must know: uncertain instants, drift, columns left out
 };
 
 struct CompareOptions {
+  DriveBy drive = DriveBy::voltage;
   std::vector<double> switchings;  ///< instants [s]; empty: found by their jumps
   double jump_threshold = kJumpThreshold;
   /// Move found instants within their sample interval to where P and Q are met best, and keep that if nothing
@@ -47,12 +53,22 @@ struct CompareOptions {
   PlayInOptions play_in;  ///< samples after its `until` are left out of the comparison
 };
 
+/// How a channel is shown, and what computing it leaves where a record has no noise.
+struct ChannelUnit {
+  std::string name;
+  double scale;  ///< units in 1 pu
+  double floor;  ///< [pu]
+};
+ChannelUnit channel_unit(Output output, const RecordBase& base);
+
 /// pre-event, fault, 0-1 s, 1-5 s and > 5 s after the last switching; those that hold no sample are left out.
 /// The time between the first and the last switching is the "fault"; a single switching has none.
 std::vector<Window> event_windows(const Record& record, const std::vector<Switching>& switchings,
                                   double pre_event);
 
-/// Plays the record into the model and measures what is left. Throws InputError as its parts do.
+/// Plays the record into the model and measures what is left. Where P and Q drive, no network holds the
+/// angle: a constant error of P, which a noisy pre-event leaves, becomes a ramp of frequency. Frequency and
+/// speed are then shown, not judged. Throws InputError as its parts do.
 EventComparison compare_event(const PlantModel& model, Record record, const CompareOptions& options = {});
 
 /// Noise alone exceeds any of the judged cells of an adequate model with this probability.

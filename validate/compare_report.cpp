@@ -91,11 +91,8 @@ nlohmann::json to_json(const EventComparison& e) {
   for (const auto& s : e.switchings)
     j["switchings"].push_back({{"t_s", s.time}, {"uncertainty_s", s.uncertainty}});
   for (const auto& c : e.channels) {
-    nlohmann::json channel = {{"name", c.name},
-                              {"unit", c.unit},
-                              {"units_in_pu", c.scale},
-                              {"noise_pu", c.noise},
-                              {"whole", to_json(c.whole)}};
+    nlohmann::json channel = {{"name", c.name},     {"unit", c.unit},      {"units_in_pu", c.scale},
+                              {"judged", c.judged}, {"noise_pu", c.noise}, {"whole", to_json(c.whole)}};
     channel["windows"] = nlohmann::json::array();
     for (std::size_t w = 0; w < e.windows.size(); ++w) {
       auto window = to_json(c.windows[w]);
@@ -205,10 +202,11 @@ std::string csv_playback(const EventComparison& e) {
 std::string html_report(const PlantModel& model, const std::vector<EventComparison>& events,
                         const Adequacy& adequacy, const Provenance& rows) {
   Page page("Measured against modelled: " + model.name,
-            fmt::format("{} of {:g} MVA; the recorded terminal voltage is played into the model, and what it "
+            fmt::format("{} of {:g} MVA; the recorded {} played into the model, and what it "
                         "answers with is compared.",
-                        model.plant.machine.effect->name, model.plant.mva));
-  page.verdict(adequacy.sentence, adequacy.adequate);
+                        model.plant.machine.effect->name, model.plant.mva,
+                        events.front().playback.P.empty() ? "P and Q are" : "terminal voltage is"));
+  page.verdict(adequacy.sentence, adequacy.adequate ? Tone::good : Tone::bad);
   const auto maps = maps_of(events);
   page.table(events.size() > 1 ? worst_map_table(maps) : map_table(maps));
   page.table(error_summary(events));

@@ -193,7 +193,7 @@ ErrorMap error_map(std::span<const double> t, std::span<const double> residual,
     const auto [begin, end] = samples_of(t, windows[w], w == 0);
     ErrorMap::Row row;
     row.bands.resize(std::size(kBands));
-    if (end > begin) {
+    if (end > begin && (options.skip.empty() || windows[w].name != options.skip)) {
       const bool first = w == 0;
       const WindowFilling f = fill(residual.subspan(begin, end - begin), step, noise,
                                    first ? 0.0 : start_error, first && options.starts_at_mean);

@@ -65,6 +65,7 @@ struct ErrorMapOptions {
   int quiet = 0;  ///< samples before the event, whose mean is the model's start; 0: the start is exact
   /// The first window's mean tells nothing: the model starts there.
   bool starts_at_mean = true;
+  std::string_view skip = {};  ///< name of a window to leave out: its cells stay empty
 };
 
 /// Each window's residual on the orthonormal cosines of that window (DCT-II; mode k has k half periods): a

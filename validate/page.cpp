@@ -16,11 +16,12 @@ body{margin:0;background:var(--paper);color:var(--ink);font:16px/1.5 system-ui,-
 main{max-width:1080px;margin:0 auto;padding:24px 20px 60px}
 h1{font-size:1.7rem;line-height:1.2;margin:0 0 .2rem}
 h2{font-size:1.2rem;margin:2.4rem 0 .6rem;padding-top:.8rem;border-top:1px solid var(--line);overflow-wrap:anywhere}
+h3{font-size:1.05rem;margin:2rem 0 .4rem;overflow-wrap:anywhere}
 .subtitle{color:var(--soft);margin:0 0 1.2rem}
 p{max-width:75ch;margin:.5rem 0}
 .note{border-left:4px solid #c77700;background:#fff8ec;padding:.5rem .8rem}
 .verdict{border-left:6px solid #c0392b;background:#fdf0ee;padding:.8rem 1rem;font-size:1.1rem;max-width:none}
-.verdict.good{border-color:#2e8b57;background:#eef8f1}
+.verdict.good{border-color:#2e8b57;background:#eef8f1}.verdict.found{border-color:#0b5cad;background:#eef4fb}
 figure{margin:1rem 0}
 figcaption,.caption{color:var(--soft);font-size:.88rem;padding:.2rem 0 .4rem;margin:1rem 0 0;break-after:avoid}
 .scroll{overflow-x:auto}
@@ -51,7 +52,8 @@ function chart(d){
     legend:"always",labelsDiv:document.getElementById(d.id+"-legend"),animatedZooms:false,axisLabelWidth:52,
     digitsAfterDecimal:5,highlightCircleSize:3,xRangePad:2,yRangePad:8,
     axes:{x:{axisLabelWidth:44}},
-    underlayCallback:(c,a,gr)=>{c.fillStyle="rgba(200,60,40,.13)";d.bands.forEach(b=>{const l=gr.toDomXCoord(b[0]),r=gr.toDomXCoord(b[1]);c.fillRect(l,a.y,Math.max(r-l,1),a.h)})},
+    underlayCallback:(c,a,gr)=>{if(d.tolerance){c.fillStyle="rgba(46,139,87,.18)";const u=gr.toDomYCoord(d.tolerance);c.fillRect(a.x,u,a.w,Math.max(gr.toDomYCoord(-d.tolerance)-u,1))}
+      c.fillStyle="rgba(200,60,40,.13)";d.bands.forEach(b=>{const l=gr.toDomXCoord(b[0]),r=gr.toDomXCoord(b[1]);c.fillRect(l,a.y,Math.max(r-l,1),a.h)})},
     drawCallback:(gr,first)=>{if(first||busy)return;busy=true;const w=gr.isZoomed("x")?gr.xAxisRange():null;
       group.forEach(o=>{if(o!==gr){const s=o.xAxisRange(),f=w||bounds;if(Math.abs(s[0]-f[0])+Math.abs(s[1]-f[1])>1e-9)o.updateOptions({dateWindow:w})}});busy=false}});
   group.push(g);
@@ -113,8 +115,14 @@ void Page::text(std::string_view paragraph) { body_ += fmt::format("<p>{}</p>\n"
 void Page::note(std::string_view paragraph) {
   body_ += fmt::format("<p class=\"note\">{}</p>\n", escape(paragraph));
 }
-void Page::verdict(std::string_view sentence, bool good) {
-  body_ += fmt::format("<p class=\"verdict {}\">{}</p>\n", good ? "good" : "bad", escape(sentence));
+void Page::subsection(std::string_view title) { body_ += fmt::format("<h3>{}</h3>\n", escape(title)); }
+void Page::verdict(std::string_view sentence, Tone tone) {
+  const char* name = tone == Tone::good ? "good" : tone == Tone::found ? "found" : "bad";
+  body_ += fmt::format("<p class=\"verdict {}\">{}</p>\n", name, escape(sentence));
+}
+void Page::data(std::string_view id, std::string_view json) {
+  body_ += fmt::format("<script type=\"application/json\" id=\"{}\">{}</script>\n", escape(id),
+                       script_safe(std::string(json)));
 }
 
 void Page::table(const Table& table) {
@@ -138,7 +146,8 @@ void Page::curves(const Curves& c) {
       "id=\"{}\" role=\"img\" "
       "aria-label=\"{}\"></div></figure>\n",
       escape(c.title), id, id, escape(c.title));
-  nlohmann::json meta = {{"id", id}, {"x", c.x_label}, {"y", c.y_label}, {"group", c.group}};
+  nlohmann::json meta = {
+      {"id", id}, {"x", c.x_label}, {"y", c.y_label}, {"group", c.group}, {"tolerance", c.tolerance}};
   meta["names"] = meta["points"] = meta["colours"] = meta["bands"] = nlohmann::json::array();
   for (const auto& s : c.series) {
     meta["names"].push_back(s.name);
@@ -158,7 +167,10 @@ void Page::curves(const Curves& c) {
 }
 
 void Page::bars(const Bars& b) {
-  constexpr double left = 70, width = 330, line = 24, top = 30;
+  constexpr double width = 330, line = 24, top = 30;
+  std::size_t longest = 0;
+  for (const auto& bar : b.bars) longest = std::max(longest, bar.label.size());
+  const double left = std::max(70.0, 12 + 6.6 * static_cast<double>(longest));
   double largest = b.reference * 1.1;
   for (const auto& bar : b.bars)
     if (std::isfinite(bar.value)) largest = std::max(largest, bar.value * 1.02);

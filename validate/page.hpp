@@ -38,6 +38,7 @@ struct Curves {
   std::vector<double> x;
   std::vector<Series> series;
   std::vector<std::pair<double, double>> bands;  ///< shaded intervals of x
+  double tolerance = 0;                          ///< shaded: y from -tolerance to it; 0: none
 };
 
 /// Horizontal bars with a reference line, as inline SVG; a NaN is drawn as "missing".
@@ -53,19 +54,23 @@ struct Bars {
   std::vector<Bar> bars;
 };
 
+enum class Tone { good, found, bad };
+
 using Provenance = std::vector<std::pair<std::string, std::string>>;
 
 class Page {
  public:
   Page(std::string_view title, std::string_view subtitle);
   void section(std::string_view title);
+  void subsection(std::string_view title);
   void text(std::string_view paragraph);
   void note(std::string_view paragraph);               ///< set apart: a caution
-  void verdict(std::string_view sentence, bool good);  ///< the first thing to read
+  void verdict(std::string_view sentence, Tone tone);  ///< the first thing to read
   void table(const Table& table);
   void curves(const Curves& curves);
   void bars(const Bars& bars);
   void provenance(const Provenance& rows);
+  void data(std::string_view id, std::string_view json);  ///< for programs; not shown
   /// The whole page. Scripts are part of it only if it has curves.
   [[nodiscard]] std::string html() const;
 

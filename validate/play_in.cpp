@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "validate/driven_pq.hpp"
+
 namespace swingbank::validate {
 namespace {
 
@@ -73,6 +75,28 @@ Playback play_in(const sim::Plant& plant, const sim::Conventions& conventions, c
   for (double& w : back.speed) w += back.start.drift / (2 * std::numbers::pi * conventions.frequency);
   back.Efd = take(Output::Efd);
   back.Ifd = take(Output::Ifd);
+  back.steps = response.steps;
+  return back;
+}
+
+Playback play_in_power(const sim::Plant& plant, const sim::Conventions& conventions, const Record& record,
+                       const std::vector<Switching>& switchings, const PlayInOptions& options) {
+  const VoltageCurve voltage(record, switchings), power = power_curve(record, switchings);
+  Playback back;
+  back.start = pre_event_point(record, switchings, options.pre_event);
+  PowerResponse response = drive_by_power({.plant = &plant,
+                                           .conventions = conventions,
+                                           .record = &record,
+                                           .power = &power,
+                                           .voltage = &voltage,
+                                           .start = back.start,
+                                           .tolerance = options.tolerance,
+                                           .step_limit = options.step_limit});
+  back.V = std::move(response.V);
+  back.theta = std::move(response.theta);
+  back.speed = std::move(response.speed);
+  back.Efd = std::move(response.Efd);
+  back.Ifd = std::move(response.Ifd);
   back.steps = response.steps;
   return back;
 }

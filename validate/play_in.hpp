@@ -26,7 +26,8 @@ OperatingPoint pre_event_point(const Record& record, const std::vector<Switching
 struct Playback {
   OperatingPoint start;
   std::vector<double> P, Q, speed, Efd, Ifd;
-  int steps = 0;  ///< of the integrator
+  std::vector<double> V, theta;  ///< where P and Q drive (play_in_power); theta unwrapped [rad]
+  int steps = 0;                 ///< of the integrator
 };
 
 /// Plays the curve into the plant. The plant starts in equilibrium at the pre-event mean; empty exciter and
@@ -35,6 +36,11 @@ struct Playback {
 /// time are named).
 Playback play_in(const sim::Plant& plant, const sim::Conventions& conventions, const Record& record,
                  const VoltageCurve& curve, const PlayInOptions& options = {});
+
+/// The reverse: P and Q of the record drive the plant, V and theta are its answer; P and Q stay empty. Throws
+/// also where no terminal voltage delivers them.
+Playback play_in_power(const sim::Plant& plant, const sim::Conventions& conventions, const Record& record,
+                       const std::vector<Switching>& switchings, const PlayInOptions& options = {});
 
 /// A record does not say when between two samples the network changed, yet a few milliseconds decide how far
 /// the rotor is thrown. Moves each uncertain instant within its sample interval to where P and Q, up to one

@@ -78,6 +78,25 @@ TEST(CompareTest, ComparesWhatIsRecorded) {
   EXPECT_THAT(channels, ElementsAre("P", "Q", "speed", "Efd", "Ifd"));
   EXPECT_NEAR(e.channels[2].noise, 2e-5, 4e-6);  // as made; 121 samples: 3 s.e. are 19 %
 }
+TEST(CompareTest, PowerDrivesTheModelToo) {
+  const RightModel right;
+  CompareOptions options;
+  options.drive = DriveBy::power;
+  std::vector<EventComparison> events = {compare_event(right.model, right.record, options)};
+  const Adequacy a = judge(events);
+  const EventComparison& e = events[0];
+  EXPECT_EQ(e.channels[0].name, "V");
+  EXPECT_EQ(e.channels[1].name, "frequency");
+  EXPECT_FALSE(e.channels[1].judged);
+  // Noise of 1e-4 pu on V and, through X'' of some tenths, of 1e-3 pu on Q.
+  EXPECT_LT(e.channels[0].noise, 5e-4);
+  EXPECT_TRUE(a.adequate) << a.sentence;
+  RightModel wrong;
+  wrong.model.plant.machine
+      .p[static_cast<std::size_t>(wrong.model.plant.machine.effect->parameter_index("Tdop"))] *= 0.5;
+  std::vector<EventComparison> off = {compare_event(wrong.model, wrong.record, options)};
+  EXPECT_FALSE(judge(off).adequate);
+}
 TEST(CompareTest, UntilLeavesOutTheRest) {
   const EventComparison e = example_event({.switchings = {2.0, 2.1}, .play_in = {.until = 6.0}});
   EXPECT_NEAR(e.record.t.back(), 6.0, 1e-6);
