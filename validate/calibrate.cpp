@@ -285,7 +285,8 @@ class Run {
     double before = 0, after = 0, values = 0, spare = 0;
     bool holds = true, held = true;
     for (std::size_t e = 0; e < c_.prepared.size(); ++e) {
-      EventScore s = score_event(c_.prepared[e], before_[e], after_[e], !out_[e], options_.adequate);
+      EventScore s = score_event(c_.prepared[e], before_[e], after_[e], !out_[e],
+                                 pre_event_samples(c_.prepared), options_.adequate);
       s.limit += allowance_[e];
       holds = holds && s.adequate();
       held = held && s.before <= s.limit;

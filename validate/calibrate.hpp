@@ -97,12 +97,15 @@ Calibration calibrate(const PlantModel& model, std::vector<Record> records, cons
 /// Which of the events are left out: by record name (with or without ending) or number from 1.
 std::vector<bool> held_out_events(const std::vector<Record>& records, const std::vector<std::string>& names);
 
-/// Limit of chi2 per value for nothing but noise (one in a thousand exceeds it), for residuals as coloured as
-/// the event's pre-event stretch, at least `least`.
-double misfit_limit(const FitEvent& event, const EventFit& fitted, double least);
+/// Samples that the noise was estimated from, less one per event.
+int pre_event_samples(const std::vector<FitEvent>& events);
 
-/// Misfit of one event before and after, seen or not; `freedom` of its noise estimate is in the limit.
+/// Limit of chi2 per value for nothing but noise (one in a thousand exceeds it): for residuals as coloured as
+/// the event's pre-event stretch, noise estimated from `pre_event` samples; at least `least`.
+double misfit_limit(const FitEvent& event, const EventFit& fitted, int pre_event, double least);
+
+/// Misfit of one event before and after, seen or not.
 EventScore score_event(const FitEvent& event, const EventFit& before, const EventFit& after, bool seen,
-                       double least);
+                       int pre_event, double least);
 
 }  // namespace swingbank::validate

@@ -38,24 +38,31 @@ double rms(const FitEvent& event, const EventFit& fitted, std::size_t c) {
 
 }  // namespace
 
-double misfit_limit(const FitEvent& event, const EventFit& fitted, double least) {
+double misfit_limit(const FitEvent& event, const EventFit& fitted, int pre_event, double least) {
   double spread = 1;  // of a sum of squares of a coloured series (Bartlett), against a white one
   const int n = std::max(2, event.start.samples);
   for (const double r : correlations(event, fitted))
     spread += 2 * std::max(0.0, r * r - 1.0 / n);  // 1/n is what white noise shows
   const double samples = 2 * spread / event.values();
-  const double estimate = 2.0 / (static_cast<double>(event.channels.size()) * (n - 1));
+  const double estimate =
+      2 * spread / (static_cast<double>(event.channels.size()) * std::max(1, pre_event - 1));
   return std::max(least, 1 + kOneInThousand * std::sqrt(samples + estimate));
 }
 
+int pre_event_samples(const std::vector<FitEvent>& events) {
+  int sum = 0;
+  for (const auto& e : events) sum += e.start.samples - 1;
+  return sum;
+}
+
 EventScore score_event(const FitEvent& event, const EventFit& before, const EventFit& after, bool seen,
-                       double least) {
+                       int pre_event, double least) {
   EventScore s;
   s.record = event.record.name;
   s.seen = seen;
   s.before = before.misfit();
   s.after = after.misfit();
-  s.limit = misfit_limit(event, after, least);
+  s.limit = misfit_limit(event, after, pre_event, least);
   s.colour = correlations(event, after).front();
   for (std::size_t c = 0; c < event.channels.size(); ++c) {
     ChannelScore channel;
