@@ -20,7 +20,8 @@ struct Model {
       dyr_name = "GGOV1";
   static constexpr Slot slot = Slot::governor;
   static constexpr std::string_view description = R"(
-  e = Pref + R dPref + mw - R f - w --> [ db ] --> [ minerr, maxerr ] --> Kpgov + Kigov/s + s Kdgov/(1 + s Tdgov) --> FSRN
+  e = Pref + R dPref + mw - R f - w --> [ db ] --> [ minerr, maxerr ] --error
+  error --> Kpgov + Kigov/s + s Kdgov/(1 + s Tdgov) --> FSRN
       f: measured power (Rselect 1), valve (-1), requested stroke (-2), nothing (0)
       measured power = P/(1 + s Tpelec)      mw = Kimw/s (Pmwset - measured power) within +-1.1 R
   Ldref/Kturb + Wfnl - exhaust --> Kpload + Kiload/s <= 1 --> FSRT      (the integral moves within Rdown, Rup)
@@ -28,7 +29,7 @@ struct Model {
   stroke --> [ 1/(1 + s Tact), speed Rclose to Ropen, Vmin to Vmax ] --valve--> x (1 + w if Flag = 1) --> fuel
   Pm = (1 + s Tc)/(1 + s Tb) Kturb (fuel - Wfnl) - Dm (1 + w)           (the last term if Dm > 0)
   exhaust = (1 + s Tsa)/((1 + s Tsb)(1 + s Tfload)) fuel (1 + w)^Dm     (the last factor if Dm < 0)
-  per unit of Trate (0: the machine's base); both integrals stay where the valve or their limit is, without wind-up
+  per unit of Trate (0: the machine's base); integrals within Vmin and Vmax (FSRT: 1), without wind-up
 )";
   enum P {
     Rselect,

@@ -36,7 +36,7 @@ struct Model {
       dyr_name = "CIM5BL";
   static constexpr Slot slot = Slot::load;
   static constexpr std::string_view description = R"(
-  V = (Ra + jX'') I + j psi''    psi'' = a1 psi1 + a2 psi2    X'' = Xa + Xm in parallel with the cages' leakage
+  V = (Ra + jX'') I + j psi''    psi'' = a1 psi1 + a2 psi2    X'' = Xa + Xm parallel to the cages' leakage
   dpsi_k/dt = -w0 R_k i_k - j w0 s psi_k;  for the first cage i_1 + Se(|psi''|) psi''/Xm
       type 1: jXm parallel to R1/s + jX1 and R2/s + jX2
       type 2: jXm parallel to jX1 + (R1/s parallel to R2/s + jX2);         R2 = X2 = 0: one cage, R1/s + jX1
