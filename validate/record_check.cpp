@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <utility>
 
@@ -21,6 +22,12 @@ bool within(double x, double low, double high) { return x >= low && x <= high; }
 bool near(double x, double target, double share) { return std::abs(x - target) <= share * std::abs(target); }
 
 double square(double x) { return x * x; }
+
+/// One way to read the four columns of a sample: what is tried for the likely mistake.
+struct Reading {
+  double V, theta, P, Q;
+};
+using Reinterpret = std::function<Reading(const Reading&)>;
 
 class Check {
  public:
@@ -282,6 +289,8 @@ class Check {
   struct Mistake {
     const char *kind, *why, *remedy;
     Reinterpret reinterpret;
+    double sound = 0.03;  ///< share left over up to which the record is taken as it is
+    double turn = 0;      ///< the angle as written must jump by this at least [rad]
   };
   static const std::vector<Mistake>& mistakes() {
     static const std::vector<Mistake> list = {
@@ -296,11 +305,13 @@ class Check {
         {"angle_unit", "with theta in degrees they fit", "name the column theta_deg",
          [](const Reading& x) {
            return Reading{x.V, x.theta * kDegree, x.P, x.Q};
-         }},
+         },
+         0.015, 0.1},  // where it hardly jumps, no angle at all would fit nearly as well
         {"angle_unit", "with theta in radians they fit", "name the column theta_rad",
          [](const Reading& x) {
            return Reading{x.V, x.theta / kDegree, x.P, x.Q};
-         }},
+         },
+         0.006},  // too small an angle hides where V jumps more; too large a one fits no sound record
         {"q_sign", "with the sign of Q changed they fit", "change the sign of Q",
          [](const Reading& x) {
            return Reading{x.V, x.theta, x.P, -x.Q};
@@ -310,34 +321,62 @@ class Check {
   }
 
   void jumps() {
-    if (jumps_.empty() || found("voltage_unit") || found("angle_unit") || found("angle_frame")) return;
+    if (found("voltage_unit") || found("angle_unit") || found("angle_frame")) return;
     const int delay = power_delay(r_, jumps_);
     if (delay != 0)
       warn("time_skew",
            fmt::format("P and Q jump {:.0f} ms {} the voltage", 1e3 * std::abs(delay) * r_.step(),
                        delay > 0 ? "after" : "before"),
            "they were stamped by different clocks or filters", "shift them so that they jump together");
-    const JumpFit as_is = fit_jumps(r_, jumps_, delay, [](const Reading& x) { return x; });
-    // A jump is a combination of four samples that carries five times the variance of one.
-    const double noise = 10 * square(signals_.V.noise) / as_is.voltage +
-                         5 * (square(signals_.P.noise) + square(signals_.Q.noise)) / as_is.current;
-    if (!(as_is.misfit >= 0) || !(noise < 0.01)) return;
-    // Sound records leave below 0.01 (tests/validate/record_check_sound_test.cpp).
-    const bool fits = as_is.reactance > 0 && as_is.misfit < 0.03;
-    if (fits) {
-      reactance(as_is.reactance * plant_.mva / r_.base.mva);
-      return;
-    }
+    const JumpFit as_is = fit_jumps(r_, jumps_, delay);
     const Mistake* best = nullptr;
-    double least = std::min(0.02, as_is.reactance > 0 ? as_is.misfit / 4 : 1);
+    double least = 1;
     for (const auto& m : mistakes()) {
-      const JumpFit fit = fit_jumps(r_, jumps_, delay, m.reinterpret);
+      const Record alternative = reinterpreted(m.reinterpret);
+      const std::vector<Jump> there = find_jumps(alternative);
+      const JumpFit fit = fit_jumps(alternative, there, delay), same = fit_jumps(r_, there, delay);
+      const double noise = noise_share(fit);
+      if (!(fit.reactance > 0 && noise < 0.1 && fit.misfit < 0.01 + 2 * noise)) continue;
+      if (m.turn > 0 && std::ranges::none_of(there, [&](const Jump& j) { return turned(j) > m.turn; }))
+        continue;
+      // Sound records leave below 0.03 beside their noise (tests/validate/record_check_sound_test.cpp).
+      const bool sound =
+          same.reactance > 0 && (same.misfit < m.sound + 2 * noise || same.misfit < 5 * fit.misfit);
       // Of two that do about as well the commoner mistake, which stands first.
-      if (fit.reactance > 0 && fit.misfit < (best ? least / 2 : least)) best = &m, least = fit.misfit;
+      if (!sound && fit.misfit < least / 2) best = &m, least = fit.misfit;
     }
     if (best)
       refuse(best->kind, "voltage and current that do not jump together as at a machine's terminals",
              best->why, best->remedy);
+    else if (as_is.reactance > 0 && as_is.misfit < 0.03 + 3 * noise_share(as_is) && noise_share(as_is) < 0.1)
+      reactance(as_is.reactance * plant_.mva / r_.base.mva);
+  }
+
+  /// How far the angle as written jumps [rad].
+  [[nodiscard]] double turned(const Jump& j) const {
+    const std::vector<double>& theta = r_.theta_as_written.empty() ? r_.theta : r_.theta_as_written;
+    return std::abs(theta[j.after] - theta[j.before]);
+  }
+
+  /// Share of the squared jumps that is noise: a jump is a combination of four samples that carries five
+  /// times the variance of one.
+  [[nodiscard]] double noise_share(const JumpFit& fit) const {
+    return 10 * square(signals_.V.white) / fit.voltage +
+           5 * (square(signals_.P.white) + square(signals_.Q.white)) / fit.current;
+  }
+
+  [[nodiscard]] Record reinterpreted(const Reinterpret& reinterpret) const {
+    Record other;
+    other.t = r_.t;
+    for (std::size_t k = 0; k < r_.t.size(); ++k) {
+      const double theta = r_.theta_as_written.empty() ? r_.theta[k] : r_.theta_as_written[k];
+      const Reading x = reinterpret({r_.V[k], theta, r_.P[k], r_.Q[k]});
+      other.V.push_back(x.V);
+      other.theta.push_back(x.theta);
+      other.P.push_back(x.P);
+      other.Q.push_back(x.Q);
+    }
+    return other;
   }
 
   /// X'' of machines is 0.1 to 0.4 pu, with a step-up transformer up to 0.6.

@@ -49,17 +49,15 @@ std::vector<Jump> find_jumps(const Record& r) {
   return jumps;
 }
 
-JumpFit fit_jumps(const Record& r, const std::vector<Jump>& jumps, int delay,
-                  const Reinterpret& reinterpret) {
+JumpFit fit_jumps(const Record& r, const std::vector<Jump>& jumps, int delay) {
   double cross = 0, current = 0, voltage = 0, count = 0;  // sums of Re(dV conj(-j dI)), |dI|^2, |dV|^2
   struct Phasors {
     Complex v, i;
   };
   const auto at = [&](std::size_t k) {
     const auto late = static_cast<std::size_t>(static_cast<long>(k) + delay);
-    const Reading x = reinterpret({r.V[k], written_theta(r, k), r.P[late], r.Q[late]});
-    const Complex v = std::polar(std::abs(x.V), x.theta);
-    return Phasors{v, std::conj(Complex(x.P, x.Q) / v)};
+    const Complex v = std::polar(std::abs(r.V[k]), written_theta(r, k));
+    return Phasors{v, std::conj(Complex(r.P[late], r.Q[late]) / v)};
   };
   for (const auto& j : jumps) {
     if (static_cast<long>(j.before) - 1 + std::min(delay, 0) < 0) continue;

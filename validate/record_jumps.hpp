@@ -3,7 +3,6 @@
 // machine jumps by the voltage's jump behind its subtransient reactance, dV = -jX'' dI (Kundur, Power System
 // Stability and Control, 3.6), whatever else the plant has: a record of which this is not true by far has its
 // columns or bases confused.
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,21 +17,14 @@ struct Jump {
 /// Jumps of the voltage phasor, large enough to divide by.
 std::vector<Jump> find_jumps(const Record& record);
 
-/// One way to read the four columns: what check_record takes for the likely mistake.
-struct Reading {
-  double V, theta, P, Q;
-};
-using Reinterpret = std::function<Reading(const Reading&)>;
-
-/// What the jumps say under one reading, from dV = -jX dI by least squares.
+/// What the jumps say, from dV = -jX dI by least squares.
 struct JumpFit {
   double reactance = 0;  ///< X [pu on the record's base], current out of the machine; X'' if all is well
   double misfit = 1;     ///< share of sum |dV|^2 that this leaves: below 0.01 for sound records
   double voltage = 0, current = 0;  ///< mean |dV|^2 and |dI|^2 of a jump [pu^2]
 };
 /// P and Q are taken `delay` samples later than the voltage. NaN where there is nothing to divide by.
-JumpFit fit_jumps(const Record& record, const std::vector<Jump>& jumps, int delay,
-                  const Reinterpret& reinterpret);
+JumpFit fit_jumps(const Record& record, const std::vector<Jump>& jumps, int delay);
 
 /// By how many samples P and Q jump later than the voltage; the same for every jump, otherwise 0.
 int power_delay(const Record& record, const std::vector<Jump>& jumps);
