@@ -60,6 +60,7 @@ BlindKind read_kind(Config& config, const std::string& name) {
   kind.name = name;
   kind.side = config.choice(at + "side", kSides);
   kind.listed = config.optional<bool>(at + "listed", true);
+  kind.drawn = config.optional<bool>(at + "drawn", true);
   kind.base = config.optional<std::vector<std::string>>(at + "base", {});
   kind.hidden = config.optional<std::vector<std::string>>(at + "hidden", {});
   kind.answers = config.optional<std::vector<std::string>>(at + "answers", {name});

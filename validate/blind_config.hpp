@@ -21,6 +21,7 @@ struct BlindKind {
   std::string name;
   std::string side;                  ///< mechanical, excitation, machine, measurement, none
   bool listed = true;                ///< false: of the private set, which no hypothesis names
+  bool drawn = true;                 ///< false: hidden only where it is asked for by name
   std::vector<std::string> base;     ///< controls the model knows: "EFFECT[:PARAM=VALUE,...]"
   std::vector<std::string> hidden;   ///< what the model lacks, written the same way
   std::vector<std::string> answers;  ///< names a verdict may give it

@@ -19,7 +19,7 @@ using Hidden = std::vector<const BlindKind*>;
 std::vector<const BlindKind*> of(const BlindConfig& config, bool listed) {
   std::vector<const BlindKind*> list;
   for (const auto& kind : config.kinds)
-    if (kind.listed == listed) list.push_back(&kind);
+    if (kind.listed == listed && kind.drawn) list.push_back(&kind);
   return list;
 }
 

@@ -85,16 +85,14 @@ BlindVerdict read_verdict(const fs::path& file) {
   else
     problems.add("no wall time", file.string() + ", key seconds", "it must be a number of seconds, 0 or more",
                  "write how long it took");
+  if (const auto why = j.find("why"); why != j.end() && why->is_string()) v.why = why->get<std::string>();
   problems.raise();
   return v;
 }
 
 std::string verdict_json(const BlindVerdict& v) {
-  return json{{"verdict", v.verdict},
-              {"effects", v.effects},
-              {"set", v.set},
-              {"side", v.side},
-              {"seconds", v.seconds}}
+  return json{{"verdict", v.verdict}, {"effects", v.effects}, {"set", v.set},
+              {"side", v.side},       {"seconds", v.seconds}, {"why", v.why}}
              .dump(1) +
          "\n";
 }

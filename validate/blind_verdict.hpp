@@ -13,12 +13,14 @@ struct BlindVerdict {
   std::vector<std::string> set;      ///< which cannot be told apart
   std::string side = "none";         ///< mechanical, excitation, machine, measurement or none
   double seconds = 0;                ///< wall time it took [s]
+  std::string why = {};              ///< optional: the sentence behind it
 };
 
 /// Gets a case folder (model.toml, event1.csv ...), which holds nothing of the truth.
 using BlindJudge = std::function<BlindVerdict(const std::filesystem::path& folder)>;
 
-/// Reads a verdict's JSON: the five keys above. Throws InputError with every fault.
+/// Reads a verdict's JSON: the keys verdict, effects, set, side, seconds and, if there, why.
+/// Throws InputError with every fault.
 BlindVerdict read_verdict(const std::filesystem::path& file);
 std::string verdict_json(const BlindVerdict& verdict);
 
