@@ -66,6 +66,65 @@ TEST(PlayInTest, ErrorFallsWithTheRate) {
   }
 }
 
+/// Largest error of V between samples of one segment, where it is interpolated by polynomials through
+/// `points` neighbours, and by the spline that play-in uses. Between the switching and the run's end, where
+/// samples of 480/s tell the truth.
+struct VoltageError {
+  double polynomial = 0, spline = 0;
+};
+VoltageError voltage_error(const test::Simulated& s, int stride, int points) {
+  VoltageError worst_error;
+  const int first = static_cast<int>(std::lround(s.t_off * s.before.rate)) + stride;
+  for (int plant = 0; plant < static_cast<int>(s.grid.plants.size()); ++plant) {
+    const auto phasor = [&](int k) { return std::polar(s.before.at(plant, 0)[k], s.before.at(plant, 1)[k]); };
+    const Record r = test::record_of(s, plant, stride);
+    const VoltageCurve curve(r, test::instants(s, plant, false));
+    const int last = first + (s.before.samples - 1 - first) / stride * stride;
+    for (int k = first; k <= last; ++k) {
+      const int below = first + (k - first) / stride * stride;
+      const int begin = std::clamp(below - (points / 2 - 1) * stride, first, last - (points - 1) * stride);
+      Complex v = 0;
+      for (int i = 0; i < points; ++i) {  // Lagrange
+        double weight = 1;
+        for (int j = 0; j < points; ++j)
+          if (j != i) weight *= static_cast<double>(k - begin - j * stride) / ((i - j) * stride);
+        v += weight * phasor(begin + i * stride);
+      }
+      worst_error.polynomial = std::max(worst_error.polynomial, std::abs(v - phasor(k)));
+      worst_error.spline = std::max(worst_error.spline, std::abs(curve(2, k / s.before.rate) - phasor(k)));
+    }
+  }
+  return worst_error;
+}
+
+TEST(PlayInTest, InterpolationOfTheVoltageFallsWithOrderAndRate) {
+  std::printf(
+      "samples/s     linear      cubic    quintic     spline   [pu of V, 10 machines, after the fault]\n");
+  double before[3] = {};
+  for (const int stride : {16, 8, 4}) {
+    double error[3], spline = 0;
+    for (int i = 0; i < 3; ++i) {
+      const VoltageError e = voltage_error(genrou(), stride, 2 * (i + 1));
+      error[i] = e.polynomial;
+      spline = e.spline;
+    }
+    std::printf("%9.0f   %8.1e   %8.1e   %8.1e   %8.1e\n", 480.0 / stride, error[0], error[1], error[2],
+                spline);
+    EXPECT_LT(error[1], error[0]);
+    EXPECT_LT(error[2], error[1]);
+    EXPECT_LT(spline,
+              2 * error[1]);  // of the order of the cubic; through all points, not four, it is no worse
+    // Half the step divides the error by 2^order: 4, 16, 64. The worst lies at a segment's end, where the
+    // points are on one side and move with the step: about half of that is certain.
+    for (int i = 0; i < 3; ++i) {
+      if (before[i] > 0) {
+        EXPECT_GT(before[i] / error[i], 0.45 * std::pow(4.0, i + 1));
+      }
+      before[i] = error[i];
+    }
+  }
+}
+
 TEST(PlayInTest, HoldsInTheOtherConventionsAndModels) {
   EXPECT_LT(playback_error(
                 test::simulate("ieee39_genrou", sim::Conventions::andes(), 4, 2.0, 2.15, 480, {0.01, 0.05}),
