@@ -225,7 +225,8 @@ class Check {
     if (signals_.wraps_of_360 || std::abs(signals_.first_angle) > 2.1 * std::numbers::pi)
       refuse("angle_unit", fmt::format("an angle of {:.4g} rad", signals_.first_angle),
              "angles in radians stay within a turn: these are degrees taken as radians", name_deg);
-    const double ratio = signals_.angle_per_frequency;
+    // A frequency or speed in a wrong unit says nothing about the angle.
+    const double ratio = found("frequency_unit") || found("speed_unit") ? 0 : signals_.angle_per_frequency;
     if (within(ratio, 18, 180))
       refuse("angle_unit",
              fmt::format("an angle that turns {:.0f} times as fast as the frequency says", ratio),
