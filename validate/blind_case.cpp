@@ -57,7 +57,6 @@ class Maker {
   [[nodiscard]] const sim::Plant& target(const sim::Grid& grid) const {
     return grid.plants[static_cast<std::size_t>(world_.plant())];
   }
-  [[nodiscard]] double sigma() const { return made_.noise * target(world_.plain()).mva / kRecordMva; }
   /// The run of one event; throws Unstable where it does not stay in bounds.
   [[nodiscard]] sim::ReferenceRun run(const sim::Grid& grid, const BlindEvent& event) const {
     sim::ReferenceRun fine = simulate_fine(grid, world_.plant(), event, config_);
@@ -97,7 +96,10 @@ class Maker {
   void choose_sizes() {
     if (spec_.hidden.empty()) return;
     const sim::Grid& plain = world_.plain();
-    const BlindSize size(target(plain), plain.conventions, made_.events, plain_, sigma());
+    std::vector<Record> noisy = plain_;
+    for (Record& record : noisy)
+      add_noise(record, config_, made_.noise, target(plain).mva, made_.channels, draw_);
+    const BlindSize size(target(plain), plain.conventions, made_.events, plain_, noisy);
     scales_.assign(spec_.hidden.size(), {});
     Scales found = scales_;
     for (std::size_t k = 0; k < spec_.hidden.size(); ++k) {

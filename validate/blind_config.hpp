@@ -27,7 +27,7 @@ struct BlindKind {
   std::vector<std::string> answers;  ///< names a verdict may give it
   std::vector<BlindPath> path;
   bool logarithmic = false;  ///< scale runs through the logarithm of the parameters
-  double limit = 0;  ///< detection limit: size left after the machine's parameters are refitted [noise]
+  double limit = 0;  ///< detection limit: size (docs/blind-test.md) from which it is asked for [noise]
 };
 
 struct BlindGrid {

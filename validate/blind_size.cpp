@@ -14,34 +14,46 @@ constexpr double kInstant = 2e-4;  ///< by which a switching instant is moved fo
 }  // namespace
 
 BlindSize::BlindSize(const sim::Plant& plant, const sim::Conventions& conventions,
-                     const std::vector<BlindEvent>& events, std::vector<Record> plain, double sigma)
-    : plant_(plant), conventions_(conventions), events_(events), plain_(std::move(plain)), sigma_(sigma) {
+                     const std::vector<BlindEvent>& events, std::vector<Record> plain,
+                     const std::vector<Record>& noisy)
+    : plant_(plant),
+      conventions_(conventions),
+      events_(events),
+      plain_(std::move(plain)),
+      sigma_(plain_.size(), {1.0, 1.0}),
+      plain_residual_(plain_.size()) {
   for (std::size_t e = 0; e < plain_.size(); ++e) {
-    plain_residual_.push_back({});
-    plain_residual_[e] = residual(e, plain_[e]);
+    const std::vector<double> left = residual(e, noisy[e]);
+    const std::size_t n = left.size() / 2;
+    for (std::size_t c = 0; c < 2; ++c) {
+      double sum = 0;
+      for (std::size_t k = 0; k < n; ++k) sum += left[c * n + k] * left[c * n + k];
+      sigma_[e][c] = std::sqrt(sum / static_cast<double>(n));
+    }
   }
+  for (std::size_t e = 0; e < plain_.size(); ++e) plain_residual_[e] = residual(e, plain_[e]);
   for (std::size_t e = 0; e < plain_.size(); ++e) add_columns(e);
 }
 
-std::vector<double> BlindSize::answer(const sim::Plant& plant, const Record& record,
+std::vector<double> BlindSize::answer(std::size_t event, const sim::Plant& plant, const Record& record,
                                       const std::vector<double>& switchings) const {
   std::vector<Switching> instants;
   for (const double t : switchings) instants.push_back({.time = t});
   PlayInOptions options;
   options.tolerance = 1e-7;  // a thousandth of the smallest noise
   const Playback model = play_in(plant, conventions_, record, VoltageCurve(record, instants), options);
-  std::vector<double> all = model.P;
-  all.insert(all.end(), model.Q.begin(), model.Q.end());
-  for (double& value : all) value /= sigma_;
+  std::vector<double> all;
+  for (const double p : model.P) all.push_back(p / sigma_[event][0]);
+  for (const double q : model.Q) all.push_back(q / sigma_[event][1]);
   return all;
 }
 
 std::vector<double> BlindSize::residual(std::size_t event, const Record& record) const {
-  std::vector<double> r = answer(plant_, record, events_[event].switchings);
+  std::vector<double> r = answer(event, plant_, record, events_[event].switchings);
   const std::size_t n = record.t.size();
   for (std::size_t k = 0; k < n; ++k) {
-    r[k] = record.P[k] / sigma_ - r[k];
-    r[n + k] = record.Q[k] / sigma_ - r[n + k];
+    r[k] = record.P[k] / sigma_[event][0] - r[k];
+    r[n + k] = record.Q[k] / sigma_[event][1] - r[n + k];
   }
   if (!plain_residual_[event].empty())  // what interpolation and filter leave even without the effect
     for (std::size_t k = 0; k < r.size(); ++k) r[k] -= plain_residual_[event][k];
@@ -56,7 +68,7 @@ void BlindSize::add_columns(std::size_t event) {
     if (e < event) before += 2 * plain_[e].t.size();
     total += 2 * plain_[e].t.size();
   }
-  const std::vector<double> middle = answer(plant_, record, events_[event].switchings);
+  const std::vector<double> middle = answer(event, plant_, record, events_[event].switchings);
   const auto fill = [&](std::vector<double>& column, const std::vector<double>& moved, double step) {
     for (std::size_t k = 0; k < rows; ++k) column[before + k] = (moved[k] - middle[k]) / step;
   };
@@ -66,17 +78,17 @@ void BlindSize::add_columns(std::size_t event) {
     sim::Plant moved = plant_;
     moved.machine.p[i] *= 1.0 + kMove;
     if (columns_.size() <= place) columns_.emplace_back(total, 0.0);
-    fill(columns_[place++], answer(moved, record, events_[event].switchings), kMove);
+    fill(columns_[place++], answer(event, moved, record, events_[event].switchings), kMove);
   }
   if (event + 1 < plain_.size()) return;
   for (std::size_t e = 0; e < plain_.size(); ++e) {  // instants: columns of one event each
     std::size_t first = 0;
     for (std::size_t k = 0; k < e; ++k) first += 2 * plain_[k].t.size();
-    const std::vector<double> at = answer(plant_, plain_[e], events_[e].switchings);
+    const std::vector<double> at = answer(e, plant_, plain_[e], events_[e].switchings);
     for (std::size_t s = 0; s < events_[e].switchings.size(); ++s) {
       std::vector<double> instants = events_[e].switchings;
       instants[s] += kInstant;
-      const std::vector<double> moved = answer(plant_, plain_[e], instants);
+      const std::vector<double> moved = answer(e, plant_, plain_[e], instants);
       columns_.emplace_back(total, 0.0);
       for (std::size_t k = 0; k < moved.size(); ++k)
         columns_.back()[first + k] = (moved[k] - at[k]) / kInstant;
@@ -88,8 +100,8 @@ double BlindSize::visible(const std::vector<Record>& with) const {
   double sum = 0;
   for (std::size_t e = 0; e < with.size(); ++e)
     for (std::size_t k = 0; k < with[e].t.size(); ++k)
-      sum += std::pow((with[e].P[k] - plain_[e].P[k]) / sigma_, 2) +
-             std::pow((with[e].Q[k] - plain_[e].Q[k]) / sigma_, 2);
+      sum += std::pow((with[e].P[k] - plain_[e].P[k]) / sigma_[e][0], 2) +
+             std::pow((with[e].Q[k] - plain_[e].Q[k]) / sigma_[e][1], 2);
   return std::sqrt(sum);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // The world of one blind case: grid, plants, controls and events, drawn; the grid at any size of the hidden
 // effects.
+#include <array>
 #include <optional>
 #include <span>
 
@@ -61,18 +62,21 @@ Record measured(const sim::ReferenceRun& fine, const sim::Plant& plant, const Bl
 void add_noise(Record& record, const BlindConfig& config, double noise, double mva, bool channels,
                BlindDraw& draw);
 
-/// How large a difference between records is, for P and Q of all events, in units of noise.
+/// How large a difference between records is, for P and Q of all events, in units of the noise that the right
+/// model leaves: that of P and Q and that of V and theta as plant and controls answer to it.
 class BlindSize {
  public:
-  /// `plain`: records without the hidden effects; `plant`: the model that explains them.
+  /// `plain`: records without the hidden effects, `noisy`: the same with noise; `plant`: the model that
+  /// explains them.
   BlindSize(const sim::Plant& plant, const sim::Conventions& conventions,
-            const std::vector<BlindEvent>& events, std::vector<Record> plain, double sigma);
+            const std::vector<BlindEvent>& events, std::vector<Record> plain,
+            const std::vector<Record>& noisy);
   [[nodiscard]] double visible(const std::vector<Record>& with) const;
   /// After a linear refit of the machine's parameters and the switching instants.
   [[nodiscard]] double left(const std::vector<Record>& with) const;
 
  private:
-  [[nodiscard]] std::vector<double> answer(const sim::Plant& plant, const Record& record,
+  [[nodiscard]] std::vector<double> answer(std::size_t event, const sim::Plant& plant, const Record& record,
                                            const std::vector<double>& switchings) const;
   [[nodiscard]] std::vector<double> residual(std::size_t event, const Record& record) const;
   void add_columns(std::size_t event);
@@ -81,8 +85,8 @@ class BlindSize {
   sim::Conventions conventions_;
   std::vector<BlindEvent> events_;
   std::vector<Record> plain_;
-  double sigma_;
-  std::vector<std::vector<double>> plain_residual_;  ///< [event][P, Q]
+  std::vector<std::array<double, 2>> sigma_;         ///< [event]: of P and of Q [pu]
+  std::vector<std::vector<double>> plain_residual_;  ///< [event][P, Q] [noise]
   std::vector<std::vector<double>> columns_;         ///< directions that a refit may use, over all events
 };
 

@@ -163,7 +163,9 @@ BlindCase make(const BlindConfig& config, const BlindSpec& spec, BlindDraw& d) {
   }
   made.model = made.truth = known_plant(plain);
   if (!kind.empty()) {
-    const BlindSize size(made.model, made.conventions, made.events, without, made.noise * kMva / kRecordMva);
+    std::vector<Record> noisy = without;
+    for (Record& record : noisy) add_noise(record, config, made.noise, kMva, made.channels, d);
+    const BlindSize size(made.model, made.conventions, made.events, without, noisy);
     truth.kind = spec.hidden.front();
     truth.left = size.left(made.records);
     truth.visible = size.visible(made.records);
