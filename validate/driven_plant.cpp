@@ -23,6 +23,22 @@ double hat(const std::vector<double>& knots, std::size_t k, double t) {
   return std::max(0.0, (knots[k + 1] - t) / (knots[k + 1] - knots[k]));
 }
 
+/// An embedded Runge-Kutta pair whose last stage is the first of the next step.
+struct Pair {
+  int stages;
+  double exponent;  ///< of the error in step control
+  const double (*a)[6];
+  const double *c, *error;
+};
+constexpr Pair kFine{sim::dp54::kStages, -1.0 / 5, sim::dp54::a, sim::dp54::c, sim::dp54::error};
+/// Bogacki and Shampine 3(2), Appl. Math. Lett. 2 (1989) 321: half the work where a step must end at every
+/// sample anyway and the voltage is noisy.
+constexpr double kRoughA[4][6] = {{}, {1.0 / 2}, {0.0, 3.0 / 4}, {2.0 / 9, 1.0 / 3, 4.0 / 9}};
+constexpr double kRoughC[4] = {0.0, 1.0 / 2, 3.0 / 4, 1.0};
+constexpr double kRoughError[4] = {2.0 / 9 - 7.0 / 24, 1.0 / 3 - 1.0 / 4, 4.0 / 9 - 1.0 / 3, -1.0 / 8};
+constexpr Pair kRough{4, -1.0 / 3, kRoughA, kRoughC, kRoughError};
+constexpr double kRoughFrom = 1e-5;  ///< tolerance
+
 template <class T>
 struct Seeds;  // what a scalar makes of directions
 template <>
@@ -68,7 +84,7 @@ class Driven {
       if (sample > run_.until) break;
       while (next_ < instants_.size() && sample > instants_[next_].time + slack) pass_instant();
       advance(sample);
-      record(sample, back);
+      record(back);
     }
     back.steps = steps_;
     return back;
@@ -153,6 +169,7 @@ class Driven {
     const T* before = derivative_at(at.time, 0);
     ++next_;
     look_ahead();
+    fresh_ = true;
     if (at.switching < 0) return;
     ++segment_;
     const T* after = derivative_at(at.time, 1);
@@ -176,40 +193,48 @@ class Driven {
       const double left = to - t_;
       const bool reaches = h_ >= left * (1 - 1e-12);
       const double h = reaches ? left : h_;
-      const double error = attempt(h);
+      double error = attempt(h);
+      if (h <= run_.least_step && error > 1 && std::isfinite(error)) error = 1;
       if (error <= 1) {
         t_ = reaches ? to : t_ + h;
         std::swap(x_, trial_);
+        std::swap(k_.front(), k_[static_cast<std::size_t>(pair_.stages - 1)]);
         T moved(0.0);
         equations_.clamp_states(c_.data(), x_.data(), moved);
+        fresh_ = sim::value_of(moved) > 0;
       } else if (h < 1e-9) {
         give_up();
       }
       const double factor =
-          std::isfinite(error) ? std::clamp(0.9 * std::pow(error + 1e-12, -0.2), 0.2, 5.0) : 0.2;
+          std::isfinite(error) ? std::clamp(0.9 * std::pow(error + 1e-12, pair_.exponent), 0.2, 5.0) : 0.2;
       const bool cut_short = reaches && error <= 1;  // short for the instant's sake, not the error's
       h_ = cut_short ? std::max(h_, h * factor) : h * factor;
       if (++steps_ > run_.step_limit) give_up();
     }
     t_ = std::max(t_, to);
   }
+  /// Makes k_[0] and the signals those of the states as they stand.
+  void refresh() {
+    if (fresh_) evaluate(t_, x_.data(), signals_, k_[0].data());
+    fresh_ = false;
+  }
   double attempt(double h) {
-    namespace dp = sim::dp54;
+    refresh();
     const std::size_t n = x_.size();
-    for (int stage = 0; stage < dp::kStages; ++stage) {
+    for (int stage = 1; stage < pair_.stages; ++stage) {
       for (std::size_t i = 0; i < n; ++i) {
         T sum(0.0);
         for (int j = 0; j < stage; ++j)
-          if (dp::a[stage][j] != 0.0) sum = sum + T(dp::a[stage][j]) * k_[static_cast<std::size_t>(j)][i];
+          if (pair_.a[stage][j] != 0.0) sum = sum + T(pair_.a[stage][j]) * k_[static_cast<std::size_t>(j)][i];
         trial_[i] = x_[i] + T(h) * sum;
       }
-      evaluate(t_ + dp::c[stage] * h, trial_.data(), signals_, k_[static_cast<std::size_t>(stage)].data());
+      evaluate(t_ + pair_.c[stage] * h, trial_.data(), signals_, k_[static_cast<std::size_t>(stage)].data());
     }
     double worst = 0;
     for (std::size_t i = 0; i < n; ++i) {
       T e(0.0);
-      for (int j = 0; j < dp::kStages; ++j)
-        if (dp::error[j] != 0.0) e = e + T(dp::error[j]) * k_[static_cast<std::size_t>(j)][i];
+      for (int j = 0; j < pair_.stages; ++j)
+        if (pair_.error[j] != 0.0) e = e + T(pair_.error[j]) * k_[static_cast<std::size_t>(j)][i];
       const double ratio = h * Seeds<T>::size(e) / (run_.tolerance * (1 + std::abs(sim::value_of(x_[i]))));
       if (!std::isfinite(ratio)) return ratio;
       worst = std::max(worst, ratio);
@@ -217,8 +242,8 @@ class Driven {
     return worst;
   }
 
-  void record(double t, Response& back) {
-    evaluate(t, x_.data(), signals_, k_[0].data());
+  void record(Response& back) {
+    refresh();
     const double to_record = run_.plant->mva / run_.record->base.mva;
     T P, Q;
     equations_.grid_power(c_.data(), signals_, P, Q);
@@ -237,6 +262,8 @@ class Driven {
   }
 
   const Drive& run_;
+  const Pair& pair_ = run_.tolerance < kRoughFrom ? kFine : kRough;
+  bool fresh_ = true;  ///< k_[0] must be evaluated anew
   std::span<const Direction> directions_;
   sim::PlantEquations<T> equations_;
   std::vector<T> c_, x_, trial_, scratch_;

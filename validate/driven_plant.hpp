@@ -38,11 +38,12 @@ struct Drive {
   const Record* record = nullptr;
   const VoltageCurve* curve = nullptr;
   OperatingPoint start = {};
-  double angle = 0, speed = 0;    ///< offset of the first two states from equilibrium [rad], [pu]
+  double angle = 0, speed = 0;              ///< offset of the first two states from equilibrium [rad], [pu]
   PiecewiseLinear torque = {}, field = {};  ///< added to Tm, Efd [pu]
-  double tolerance = 1e-10;       ///< error per step, relative to 1 + |state|
-  double until = 1e300;           ///< samples after it are left out [s]
-  int step_limit = 2'000'000;     ///< steps before it gives up
+  double tolerance = 1e-10;                 ///< error per step, relative to 1 + |state|
+  double until = 1e300;                     ///< samples after it are left out [s]
+  double least_step = 0.0;                  ///< steps this short are taken whatever their error; 0: never [s]
+  int step_limit = 2'000'000;               ///< steps before it gives up
 };
 
 /// What a slope is taken along; `scale` is one unit of the direction, and slopes are per such unit.

@@ -134,6 +134,9 @@ class EventCost : public ceres::CostFunction {
     run.angle = kStateScale[2] * s[2];
     run.speed = kStateScale[3] * s[3];
     run.tolerance = setting_.tolerance;
+    // a limit that is met and left within a sample is no reason for short steps
+    run.least_step = event_.record.step() / 40;
+    run.step_limit = 15 * event_.record.samples();
     if (setting_.input == InputKind::none) return run;
     PiecewiseLinear& input = setting_.input == InputKind::torque ? run.torque : run.field;
     input.t = knots_;
@@ -253,7 +256,7 @@ class Search {
       const int most = before > kClose ? std::min(left, kRound) : left;
       fit.converged = solve(most, fit.iterations);
       left = options_.iterations - fit.iterations;
-      if (before <= kClose || (fit.converged && misfit() > 0.9 * before)) break;
+      if (before <= kClose || misfit() > 0.95 * before) break;
     }
     fit.plant = moved(setting_, z_.data());
     collect_events(fit);
@@ -285,7 +288,8 @@ class Search {
     ceres::Solver::Options o;
     o.max_num_iterations = iterations;
     o.function_tolerance = options_.enough;
-    o.linear_solver_type = ceres::DENSE_SCHUR;
+    o.linear_solver_type =
+        setting_.input == InputKind::none ? ceres::DENSE_NORMAL_CHOLESKY : ceres::SPARSE_NORMAL_CHOLESKY;
     o.logging_type = ceres::SILENT;
     o.num_threads = 1;  // hypotheses run side by side
     o.initial_trust_region_radius = 1e2;

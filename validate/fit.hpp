@@ -73,7 +73,7 @@ struct Fit {
 
 struct FitOptions {
   int iterations = 30;
-  double tolerance = 1e-6;             ///< of the integration
+  double tolerance = 1e-5;             ///< of the integration
   double enough = 1e-5;                ///< relative change of the cost at which the fit stops
   std::vector<EventState> start = {};  ///< of the events; empty: as prepared
   std::vector<double> values = {};     ///< of the free parameters, to start from; empty: the plant's

@@ -1,0 +1,66 @@
+#pragma once
+// Which physical effect does the model lack? The missing input is inferred first (which side?), then every
+// hypothesis is fitted by itself and judged on events it was not fitted to.
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "validate/fit.hpp"
+#include "validate/hypothesis.hpp"
+#include "validate/missing_input.hpp"
+
+namespace swingbank::validate {
+
+/// What the left-out event says: the model fitted to the others, with and without the effect.
+struct HeldOut {
+  std::string record;
+  double before = 0, after = 0;  ///< chi2 per value
+};
+
+/// One hypothesis, fitted and judged.
+struct Judgement {
+  Hypothesis hypothesis;
+  Fit fit;                        ///< to all events
+  double gain = 0;                ///< BIC(base) - BIC(with it): evidence in its favour
+  double size = 0;                ///< what it adds to the answer: norm of the change / noise, per sqrt(value)
+  std::vector<HeldOut> held_out;  ///< empty where it was not worth it
+  bool accepted = false;
+  std::string why_not;  ///< empty where accepted
+};
+
+enum class Verdict {
+  adequate,     ///< nothing but noise is left
+  missing,      ///< one effect is missing, and it is named
+  confusable,   ///< one of several, which these records cannot tell apart
+  unexplained,  ///< none of the known effects explains it
+};
+std::string_view verdict_name(Verdict verdict);
+
+struct Diagnosis {
+  Verdict verdict = Verdict::adequate;
+  Side side = Side::none;
+  std::string sentence;                 ///< the verdict as a grid engineer reads it
+  std::vector<std::string> effects;     ///< named: one, or several that act together
+  std::vector<std::string> equivalent;  ///< names that explain the records as well
+  Fit base;                             ///< the present structure, refitted
+  MissingInput torque, field;
+  std::vector<Judgement> ranked;    ///< best first
+  std::vector<std::string> outrun;  ///< rivals of a slot that were not fitted: others answer better
+  std::vector<FitEvent> events;
+  double seconds = 0;
+};
+
+struct DiagnoseOptions {
+  double spread = 0.2;     ///< relative uncertainty believed of the model's parameters
+  double adequate = 1.12;  ///< chi2 per value up to which nothing but noise is left
+  int threads = 0;         ///< 0: as many as there are cores
+  bool measured_states = true;
+  int leading = 5;  ///< hypotheses that are judged on events left out
+  /// Called with what is done, done and total; may be empty.
+  std::function<void(const std::string& what, int done, int total)> progress;
+};
+
+/// Throws InputError as its parts do; needs at least two events to judge.
+Diagnosis diagnose(const PlantModel& model, std::vector<Record> records, const DiagnoseOptions& options = {});
+
+}  // namespace swingbank::validate

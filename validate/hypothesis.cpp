@@ -1,0 +1,203 @@
+#include "validate/hypothesis.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <random>
+
+namespace swingbank::validate {
+namespace {
+
+using sim::Slot;
+
+constexpr double kSpread = 1.0;  ///< what is believed of an added effect's parameters: within a factor e
+
+Side side_of(Slot slot) {
+  switch (slot) {
+    case Slot::governor:
+    case Slot::shaft:
+      return Side::mechanical;
+    case Slot::exciter:
+    case Slot::stabiliser:
+    case Slot::limiter:
+    case Slot::compensator:
+    case Slot::setpoint:
+      return Side::excitation;
+    case Slot::measurement:
+      return Side::measurement;
+    case Slot::machine:
+    case Slot::transformer:
+    case Slot::load:
+      break;
+  }
+  return Side::machine;
+}
+
+bool sound(const sim::Block& b) {
+  Problems problems;
+  b.effect->check(b.effect->law.get(), b.p.data(), "", problems);
+  return problems.list().empty();
+}
+
+/// Puts the block where its slot's order asks for; returns its index as sim::block_parameters counts.
+int insert(sim::Plant& plant, sim::Block block) {
+  const int first = plant.transformer.effect ? 2 : 1;
+  if (block.effect->slot == Slot::transformer) {
+    plant.transformer = std::move(block);
+    return 1;
+  }
+  const auto at = std::ranges::upper_bound(plant.controls, block.effect->slot, {},
+                                           [](const sim::Block& b) { return b.effect->slot; });
+  const auto index = static_cast<int>(at - plant.controls.begin());
+  plant.controls.insert(at, std::move(block));
+  return first + index;
+}
+
+bool occupied(const sim::Plant& plant, const sim::Effect& effect) {
+  if (effect.slot == Slot::transformer) return plant.transformer.effect != nullptr;
+  return std::ranges::any_of(plant.controls, [&](const sim::Block& b) {
+    return b.effect == &effect || (b.effect->slot == effect.slot && !sim::is_shared(effect.slot));
+  });
+}
+
+/// The standard values, then draws around them: which lie where the records ask for is found by trying.
+std::vector<std::vector<double>> draws(const sim::Plant& plant, const std::vector<FreeParameter>& free,
+                                       int count) {
+  std::vector<double> standard;
+  for (const auto& f : free)
+    standard.push_back(
+        sim::block_parameters(plant)[static_cast<std::size_t>(f.block)][static_cast<std::size_t>(f.index)]);
+  std::vector<std::vector<double>> starts{standard};
+  std::mt19937_64 random(1);  // the same draws every time: a diagnosis can be repeated
+  std::normal_distribution<double> normal;
+  while (static_cast<int>(starts.size()) < count) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      const auto& p = parameter_record(plant, free[i].block, free[i].index);
+      values.push_back(std::clamp(standard[i] * std::exp(0.8 * normal(random)), p.low, p.high));
+    }
+    starts.push_back(std::move(values));
+  }
+  return starts;
+}
+
+void add_effects(const sim::Plant& base, const sim::Conventions& conventions, std::vector<Hypothesis>& all) {
+  for (const sim::Effect* effect : sim::every_effect()) {
+    const bool fits = effect->slot == Slot::transformer || sim::is_control(effect->slot);
+    if (!fits || effect->instants || occupied(base, *effect)) continue;
+    Hypothesis h;
+    h.name = effect->name;
+    h.what = fmt::format("{} {} ({})", sim::slot_name(effect->slot), effect->name, effect->title);
+    h.side = side_of(effect->slot);
+    h.slot = static_cast<int>(effect->slot);
+    h.plant = base;
+    h.conventions = conventions;
+    const int block = insert(h.plant, {effect, effect->standard_parameters()});
+    h.free = free_parameters(h.plant, block, kSpread);
+    h.starts = draws(h.plant, h.free, 10);
+    all.push_back(std::move(h));
+  }
+}
+
+/// "S10" -> "S": parameters of one name with different numbers describe one curve.
+std::string_view stem(std::string_view name) {
+  while (!name.empty() && std::isdigit(static_cast<unsigned char>(name.back()))) name.remove_suffix(1);
+  return name;
+}
+
+void add_neutral_groups(const sim::Plant& base, const sim::Conventions& conventions,
+                        std::vector<Hypothesis>& all) {
+  const auto blocks = sim::block_parameters(base);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const sim::Effect& effect = block_effect(base, static_cast<int>(b));
+    std::vector<std::vector<int>> groups;
+    for (std::size_t i = 0; i < blocks[b].size(); ++i) {
+      const auto& p = effect.parameters[i];
+      if (p.is_code() || blocks[b][i] != p.neutral) continue;
+      const bool joins =
+          !groups.empty() &&
+          stem(effect.parameters[static_cast<std::size_t>(groups.back().back())].name) == stem(p.name) &&
+          stem(p.name) != p.name;
+      if (joins)
+        groups.back().push_back(static_cast<int>(i));
+      else
+        groups.push_back({static_cast<int>(i)});
+    }
+    for (const auto& group : groups) {
+      Hypothesis h;
+      std::string names, meanings;
+      for (const int i : group) {
+        const auto& p = effect.parameters[static_cast<std::size_t>(i)];
+        names += (names.empty() ? "" : ",") + std::string(p.name);
+        meanings += (meanings.empty() ? "" : ", ") + std::string(p.meaning);
+      }
+      h.name = fmt::format("{}:{}", effect.name, names);
+      h.what = fmt::format("{} of {} ({})", names, effect.name, meanings);
+      h.side = side_of(effect.slot);
+      h.plant = base;
+      h.conventions = conventions;
+      for (const double share : {0.02, 0.1, 0.3, -0.02, -0.1}) {
+        std::vector<double> values;
+        sim::Block moved{&effect, blocks[b]};
+        for (std::size_t k = 0; k < group.size(); ++k) {
+          const auto& p = effect.parameters[static_cast<std::size_t>(group[k])];
+          const double room = share > 0 ? p.high - p.neutral : p.neutral - p.low;
+          // a curve's later points lie above its earlier ones
+          const double v = p.neutral + share * room * static_cast<double>(k + 1) * (k > 0 ? 2.0 : 1.0);
+          values.push_back(v);
+          moved.p[static_cast<std::size_t>(group[k])] = v;
+        }
+        const bool inside = std::ranges::all_of(values, [&](double v) { return v != 0.0; });
+        if (!inside || !sound(moved)) continue;
+        if (h.starts.empty())
+          for (std::size_t k = 0; k < group.size(); ++k)
+            parameter_value(h.plant, static_cast<int>(b), group[k]) = values[k];
+        h.starts.push_back(values);
+      }
+      if (h.starts.empty()) continue;
+      for (const int i : group) h.free.push_back({static_cast<int>(b), i, 2.0});
+      all.push_back(std::move(h));
+    }
+  }
+}
+
+void add_conventions(const sim::Plant& base, const sim::Conventions& conventions,
+                     std::vector<Hypothesis>& all) {
+  Hypothesis h;
+  h.name = "speed-voltage";
+  h.what = "speed in the stator voltage (E'' = (1 + w) psi'')";
+  h.side = Side::machine;
+  h.plant = base;
+  h.conventions = conventions;
+  h.conventions.speed_voltage = !conventions.speed_voltage;
+  h.starts = {{}};
+  all.push_back(std::move(h));
+}
+
+}  // namespace
+
+std::string_view side_name(Side side) {
+  constexpr std::array<std::string_view, 5> names = {"none", "mechanical", "excitation", "machine",
+                                                     "measurement"};
+  return names[static_cast<std::size_t>(side)];
+}
+
+std::vector<Hypothesis> all_hypotheses(const sim::Plant& base, const sim::Conventions& conventions) {
+  std::vector<Hypothesis> all;
+  add_effects(base, conventions, all);
+  add_neutral_groups(base, conventions, all);
+  add_conventions(base, conventions, all);
+  return all;
+}
+
+sim::Plant started(const Hypothesis& h, const std::vector<double>& start) {
+  sim::Plant plant = h.plant;
+  for (std::size_t i = 0; i < h.free.size(); ++i)
+    parameter_value(plant, h.free[i].block, h.free[i].index) = start[i];
+  return plant;
+}
+
+}  // namespace swingbank::validate

@@ -1,0 +1,32 @@
+#pragma once
+// What could be missing: every registered effect in a slot that has room, every group of parameters at their
+// neutral values, every measurement fault, every convention. Nothing is listed by name: an effect joins by
+// existing.
+#include <string>
+#include <vector>
+
+#include "validate/fit.hpp"
+
+namespace swingbank::validate {
+
+enum class Side { none, mechanical, excitation, machine, measurement };
+std::string_view side_name(Side side);
+
+struct Hypothesis {
+  std::string name;  ///< "SEXS", "GENROU S10, S12"
+  std::string what;  ///< "exciter SEXS (simplified excitation system)"
+  Side side = Side::none;
+  int slot = -1;     ///< of the effect that would fill it (sim::Slot); -1: none is filled
+  sim::Plant plant;  ///< the base with it, at a value to start from
+  sim::Conventions conventions;
+  std::vector<FreeParameter> free;          ///< those it brings
+  std::vector<std::vector<double>> starts;  ///< values of `free`, tried in turn
+};
+
+/// Everything that may be added to the plant. Some of it may change nothing there (a stabiliser without an
+/// exciter); trying shows. Effects that act at given instants are not among them: they belong to one event.
+std::vector<Hypothesis> all_hypotheses(const sim::Plant& base, const sim::Conventions& conventions);
+/// The hypothesis's plant with `start` as values of its free parameters.
+sim::Plant started(const Hypothesis& h, const std::vector<double>& start);
+
+}  // namespace swingbank::validate
