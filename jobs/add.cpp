@@ -1,0 +1,112 @@
+// swingbank add: adds a physical effect (or law) to a plant model, fits it and shows before and after on
+// every event.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "jobs/event_records.hpp"
+#include "sim/core/law.hpp"
+#include "validate/add_report.hpp"
+#include "validate/plant_file.hpp"
+#include "validate/write_file.hpp"
+
+namespace {
+
+using namespace swingbank;
+using namespace swingbank::validate;
+
+constexpr int kNotAdequate = 3;
+
+struct Arguments {
+  std::string effect, model, out = "added", command;
+  std::vector<std::string> records, laws;
+  bool json = false, until_adequate = false;
+  AddOptions options;
+};
+
+/// Law files of the command line whose effects the plant has now.
+void keep_laws(PlantModel& model, const std::vector<std::pair<std::string, const sim::Effect*>>& laws) {
+  for (const auto& [file, effect] : laws)
+    for (const auto& block : model.plant.controls)
+      if (block.effect == effect && std::ranges::count(model.laws, std::filesystem::path(file)) == 0)
+        model.laws.emplace_back(file);
+}
+
+void write(const Arguments& a, const PlantModel& model, const std::vector<std::string>& provenance,
+           nlohmann::json result, const std::string& text) {
+  const std::filesystem::path folder = a.out;
+  result["format"] = "swingbank-add-1";
+  result["command"] = a.command;
+  write_plant_file(folder / "model.toml", model, provenance);
+  write_file(folder / "add.json", result.dump(1) + "\n");
+  if (a.json)
+    fmt::print("{}\n", result.dump(1));
+  else
+    fmt::print("{}\nmodel: {}\n", text, (folder / "model.toml").string());
+}
+
+int run(Arguments& a) {
+  if (a.effect.empty() != a.until_adequate)
+    throw InputError({a.effect.empty() ? "no effect" : "an effect beside --until-adequate", "swingbank add",
+                      "it is either named or looked for", "give one of EFFECT and --until-adequate"});
+  const PlantModel model = load_plant_model(a.model);
+  std::vector<std::pair<std::string, const sim::Effect*>> laws;
+  for (const auto& file : a.laws) laws.emplace_back(file, &sim::load_law(std::filesystem::path(file)));
+  std::vector<Record> records = jobs::read_events(a.records, model);
+  held_out_events(records, a.options.calibrate.held_out);
+  a.options.calibrate.progress = jobs::progress_line();
+  if (a.until_adequate) {
+    Completion c = add_until_adequate(model, records, a.options);
+    keep_laws(c.model, laws);
+    std::vector<std::string> provenance = {"Command: " + a.command};
+    for (const auto& one : c.added)
+      for (const auto& line : provenance_lines(one, model, a.command)) provenance.push_back(line);
+    provenance.push_back(c.sentence);
+    write(a, c.model, provenance, completion_json(c), terminal_report(c));
+    return c.adequate ? 0 : kNotAdequate;
+  }
+  Addition done = add_effect(model, find_hypothesis(model, a.effect), std::move(records), a.options);
+  keep_laws(done.model, laws);
+  write(a, done.model, provenance_lines(done, model, a.command), addition_json(done), terminal_report(done));
+  return done.adequate && done.earns ? 0 : kNotAdequate;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{SWINGBANK_SUMMARY};
+  Arguments a;
+  bool inner = true;
+  auto& c = a.options.calibrate;
+  app.add_option("effect", a.effect,
+                 "effect, law or parameter group (SEXS, GENROU:S10,S12); 'swingbank effects' lists them");
+  app.add_option("--model", a.model, "plant file (configs/plants/README.md)")->required();
+  app.add_option("--records,--record", a.records, "records of the events (validate/README.md)")->required();
+  app.add_option("--out", a.out, "folder for model.toml and add.json")->capture_default_str();
+  app.add_option("--law", a.laws, "law file (.toml) whose effect may be added; may be repeated");
+  app.add_option("--hold-out", c.held_out,
+                 "record (name or number from 1) left out of the fit and used to judge it; may be repeated");
+  app.add_flag("--until-adequate", a.until_adequate,
+               "diagnose and add, one effect at a time, until nothing but noise is left");
+  app.add_option("--spread", c.spread, "relative uncertainty believed of the model's parameters")
+      ->capture_default_str()
+      ->check(CLI::Range(0.001, 2.0));
+  app.add_option("--jump-threshold", c.events.jump_threshold,
+                 "smallest jump of the voltage taken for switching [pu]")
+      ->capture_default_str();
+  app.add_option("--pre-event", c.events.pre_event, "steady stretch of records without switching [s]")
+      ->capture_default_str();
+  app.add_flag("!--power-only", inner, "leave recorded speed, Efd and Ifd aside: compare P and Q only");
+  app.add_flag("--json", a.json, "print the result as JSON instead of tables");
+  app.footer(
+      "Exit codes: 0 the effect earns its place and nothing but noise is left, 3 it does not or more is "
+      "left, 1 bad input.");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 1;
+  }
+  c.events.measured_states = inner;
+  a.command = jobs::command_line("add", argc, argv);
+  return jobs::guarded("add", [&] { return run(a); });
+}

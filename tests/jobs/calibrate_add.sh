@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# swingbank calibrate and add as a user starts them: what they write, exit codes, and a sentence for each wrong input.
+source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+
+model=$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml
+records=$SWINGBANK_SOURCE/configs/records/record-example
+one=$records/avr_ev1.csv two=$records/avr_ev2.csv
+export OMP_NUM_THREADS=2
+
+# the exciter that the model lacks: added, fitted to one event, tried on the other
+"$swingbank" add SEXS --model "$model" --records "$one" "$two" --hold-out avr_ev2 --power-only --out "$work/added" --json \
+  >"$work/printed.json"
+cmp "$work/printed.json" "$work/added/add.json" || fail "--json prints something else than it writes"
+python3 - "$work/added/add.json" <<'PYTHON'
+import json, sys
+r = json.load(open(sys.argv[1]))
+assert r["effect"] == "SEXS" and r["earns_its_place"] and r["adequate"], r["sentence"]
+seen, unseen = r["events"]
+assert (seen["record"], seen["seen"], unseen["seen"]) == ("avr_ev1.csv", True, False)
+assert unseen["misfit_before"] > 100 * unseen["misfit_after"]
+assert [c["unit"] for c in unseen["channels"]] == ["MW", "Mvar"]
+PYTHON
+grep -q '^effect = "SEXS"' "$work/added/model.toml" || fail "the new model has no SEXS"
+grep -q '^# Command: swingbank add SEXS' "$work/added/model.toml" || fail "the new model does not say where it comes from"
+
+# what was written is a model: it is calibrated again, and holds
+"$swingbank" calibrate --model "$work/added/model.toml" --records "$one" "$two" --power-only --draws 0 --starts 0 --out "$work/again" >"$work/text"
+[[ -s $work/again/model.toml && -s $work/again/calibrate.json ]] || fail "model.toml and calibrate.json expected"
+grep -q 'SEXS.K' "$work/text" || fail "the table lacks the exciter's gain"
+
+# without the exciter the structure does not hold: exit code 3, and the files are there all the same
+status=0
+"$swingbank" calibrate --model "$model" --records "$one" --power-only --draws 0 --starts 0 --out "$work/poor" >"$work/text" || status=$?
+((status == 3)) || fail "exit code $status, expected 3"
+grep -q 'survives the refit' "$work/text" || fail "it does not say that something is missing: $(head -1 "$work/text")"
+
+out=$work/out
+mkdir "$out"
+calibrate() { "$swingbank" calibrate --model "$model" --out "$out" "$@"; }
+add() { "$swingbank" add --model "$model" --out "$out" "$@"; }
+refuses "no such model" "none.toml" "$swingbank" calibrate --model "$work/none.toml" --records "$one" --out "$out"
+refuses "no such records" "none1.csv" calibrate --records "$work/none1.csv" "$work/none2.csv"
+grep -q none2.csv "$work/stderr" || fail "only the first missing record is named"
+refuses "one event, held out" "every event is held out" calibrate --records "$one" --hold-out 1
+refuses "unknown event held out" "avr_ev2.csv" calibrate --records "$one" "$two" --hold-out avr_ev9
+refuses "unknown parameter fixed" "GENROU.Xdp" calibrate --records "$one" --fix GENROU.Xyz
+refuses "the same record twice" "two records named" calibrate --records "$one" "$one"
+misused "no records" "records" calibrate
+misused "spread" "spread" calibrate --records "$one" --spread -1
+refuses "unknown effect" "SEXS" add NONESUCH --records "$one"
+refuses "an effect of one event" "belongs to one event" add VREFSTEP --records "$one"
+refuses "slot taken" "no room" add GENCLS --records "$one"
+refuses "no effect named" "until-adequate" add --records "$one"
+refuses "named and looked for" "until-adequate" add SEXS --until-adequate --records "$one"
+refuses "one event, held out" "every event is held out" add SEXS --records "$one" --hold-out avr_ev1
+refuses "no such law" "none.toml" add SEXS --records "$one" --law "$work/none.toml"
+leaves_nothing "$out"

@@ -1,0 +1,80 @@
+// An effect added to the model of the committed records, which were made with a SEXS and nothing else.
+#include "validate/add.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support.hpp"
+
+namespace swingbank::validate {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+PlantModel example(bool with_exciter) {
+  PlantModel model = load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  if (with_exciter)
+    model.plant.controls.push_back({sim::find_effect("SEXS"), {0.1, 10.0, 100.0, 0.05, -4.0, 5.0}});
+  return model;
+}
+std::vector<Record> records(const PlantModel& model) {
+  std::vector<Record> both;
+  for (const char* name : {"avr_ev1.csv", "avr_ev2.csv"})
+    both.push_back(
+        read_record(test::source(std::string("configs/records/record-example/") + name), model.record_base));
+  return both;
+}
+AddOptions power_only() {
+  AddOptions options;
+  options.calibrate.events.measured_states = false;
+  options.refined = 1;
+  return options;
+}
+
+TEST(Add, TheMissingExciterExplainsTheUnseenEvent) {
+  const PlantModel model = example(false);
+  AddOptions options = power_only();
+  options.calibrate.held_out = {"2"};
+  const Addition a = add_effect(model, find_hypothesis(model, "sexs"), records(model), options);
+  EXPECT_TRUE(a.earns);
+  EXPECT_TRUE(a.adequate) << a.sentence;
+  ASSERT_EQ(a.events.size(), 2U);
+  EXPECT_FALSE(a.events[1].score.seen);
+  EXPECT_LT(a.events[1].score.after, a.events[1].score.limit);
+  EXPECT_GT(a.events[1].refitted, 10 * a.events[1].score.after);  // a refit alone does not do it
+  ASSERT_EQ(a.model.plant.controls.size(), 1U);
+  EXPECT_EQ(a.model.plant.controls[0].effect->name, "SEXS");
+  for (int i = 0; i < a.own; ++i) EXPECT_EQ(a.parameters[static_cast<std::size_t>(i)].block, "SEXS");
+}
+
+TEST(Add, WhatIsNotThereDoesNotEarnItsPlace) {
+  const PlantModel model = example(true);
+  const Addition a = add_effect(model, find_hypothesis(model, "GENROU:Ra"), records(model), power_only());
+  EXPECT_FALSE(a.earns) << a.evidence;
+  EXPECT_TRUE(a.adequate);
+}
+
+TEST(Add, WhatIsThereIsMissedWhereItIsTakenOut) {
+  const PlantModel model = example(true);
+  const Removal r = try_without(model, 0, records(model), power_only());
+  EXPECT_EQ(r.effect, "SEXS");
+  EXPECT_GT(r.evidence, 1000);  // Q is off by fifty times its noise without it
+  EXPECT_TRUE(r.model.plant.controls.empty());
+}
+
+TEST(Add, NamesAreFoundAsWrittenAndOthersListed) {
+  const PlantModel model = example(true);
+  EXPECT_EQ(find_hypothesis(model, "genrou: S10, S12").name, "GENROU:S10,S12");
+  EXPECT_THAT(test::messages([&] { find_hypothesis(model, "nonesuch"); }),
+              ElementsAre(AllOf(HasSubstr("no effect of that name"), HasSubstr("TGOV1"))));
+  EXPECT_THAT(test::messages([&] { find_hypothesis(model, "IEEET1"); }),
+              ElementsAre(AllOf(HasSubstr("no room"), HasSubstr("exciter"))));
+  EXPECT_THAT(test::messages([&] { find_hypothesis(model, "VREFSTEP"); }),
+              ElementsAre(HasSubstr("belongs to one event")));
+}
+
+}  // namespace
+}  // namespace swingbank::validate

@@ -1,0 +1,252 @@
+#include "validate/add.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <chrono>
+#include <cmath>
+
+#include "validate/calibrate_slopes.hpp"
+#include "validate/in_parallel.hpp"
+
+namespace swingbank::validate {
+namespace {
+
+/// BIC differences above it are strong evidence (Kass and Raftery, JASA 90, 1995, give 6 to 10).
+constexpr double kStrong = 10.0;
+
+std::string plain(const std::string& name) {
+  std::string out;
+  for (const char c : name)
+    if (c != ' ' && c != '\t') out += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return out;
+}
+
+double criterion(const Fit& f) {
+  return f.failed.empty() ? f.chi2 + f.belief + f.fitted * std::log(static_cast<double>(f.values))
+                          : std::numeric_limits<double>::infinity();
+}
+
+/// The effect's parameters, then every other that a refit may move.
+std::vector<FreeParameter> free_of(const Hypothesis& h, double spread) {
+  std::vector<FreeParameter> free = h.free;
+  for (const auto& f : free_parameters(h.plant, spread))
+    if (std::ranges::none_of(
+            h.free, [&](const FreeParameter& own) { return own.block == f.block && own.index == f.index; }))
+      free.push_back(f);
+  return free;
+}
+std::vector<double> values_of(const sim::Plant& plant, const std::vector<FreeParameter>& free) {
+  const auto blocks = sim::block_parameters(plant);
+  std::vector<double> values;
+  for (const auto& f : free)
+    values.push_back(blocks[static_cast<std::size_t>(f.block)][static_cast<std::size_t>(f.index)]);
+  return values;
+}
+
+/// Events, those seen apart, and the model's own fits of them.
+class Bench {
+ public:
+  Bench(const PlantModel& model, std::vector<Record> records, const CalibrateOptions& options)
+      : options_(options), out_(held_out_events(records, options.held_out)) {
+    all_ = prepare_events(model, std::move(records), options.events);
+    for (std::size_t e = 0; e < all_.size(); ++e)
+      if (!out_[e]) seen_.push_back(all_[e]);
+  }
+  [[nodiscard]] const std::vector<FitEvent>& all() const { return all_; }
+  [[nodiscard]] const std::vector<FitEvent>& seen() const { return seen_; }
+  [[nodiscard]] bool is_seen(std::size_t e) const { return !out_[e]; }
+
+  /// Every event by itself, only its own state free.
+  std::vector<EventFit> each(const sim::Plant& plant, const sim::Conventions& conventions,
+                             const std::string& what) const {
+    std::vector<EventFit> fits(all_.size());
+    in_parallel(
+        all_.size(),
+        [&](std::size_t e) {
+          Fit f = fit(plant, conventions, {all_[e]}, {});
+          if (!f.failed.empty())
+            throw InputError({"the model cannot follow the record", all_[e].record.name, f.failed,
+                              "check the model's parameters and the record's base and units"});
+          fits[e] = std::move(f.events.front());
+        },
+        [&](int done) { tell(what, done, static_cast<int>(all_.size())); });
+    return fits;
+  }
+  std::vector<EventState> states_of(const std::vector<EventFit>& fits) const {
+    std::vector<EventState> states;
+    for (std::size_t e = 0; e < fits.size(); ++e)
+      if (!out_[e]) states.push_back(fits[e].state);
+    return states;
+  }
+  void tell(const std::string& what, int done, int total) const {
+    if (options_.progress) options_.progress(what, done, total);
+  }
+
+ private:
+  const CalibrateOptions& options_;
+  std::vector<bool> out_;
+  std::vector<FitEvent> all_, seen_;
+};
+
+double chi2_of(const sim::Plant& plant, const sim::Conventions& conventions, const Bench& bench,
+               const std::vector<EventState>& states) {
+  double sum = 0;
+  try {
+    for (std::size_t e = 0; e < states.size(); ++e)
+      sum += event_slopes(plant, conventions, bench.seen()[e], states[e], {}).residual.squaredNorm();
+  } catch (const InputError&) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return sum;
+}
+
+/// The fit with the effect: its starts screened, the best refined, the best of them finished.
+Fit fit_with(const Hypothesis& h, const Bench& bench, const std::vector<EventState>& states,
+             const AddOptions& options) {
+  const auto free = free_of(h, options.calibrate.spread);
+  std::vector<std::pair<double, std::size_t>> order(h.starts.size());
+  in_parallel(
+      h.starts.size(),
+      [&](std::size_t k) {
+        order[k] = {chi2_of(started(h, h.starts[k]), h.conventions, bench, states), k};
+      },
+      [&](int done) {
+        bench.tell("values of " + h.name + " screened", done, static_cast<int>(order.size()));
+      });
+  std::ranges::sort(order);
+  const std::size_t tries = std::min(order.size(), static_cast<std::size_t>(std::max(1, options.refined)));
+  std::vector<Fit> fits(tries);
+  in_parallel(
+      tries,
+      [&](std::size_t k) {
+        FitOptions o;
+        o.iterations = 10;
+        o.start = states;
+        o.values = values_of(started(h, h.starts[order[k].second]), free);
+        fits[k] = fit(h.plant, h.conventions, bench.seen(), free, o);
+      },
+      [&](int done) { bench.tell("starts of " + h.name + " refined", done, static_cast<int>(tries)); });
+  Fit best = *std::ranges::min_element(fits, {}, criterion);
+  if (!best.failed.empty())
+    throw InputError({"effect " + h.name + " cannot be fitted", "every start", best.failed,
+                      "check the model's parameters, or add another effect"});
+  FitOptions o;
+  o.values = values_of(best.plant, free);
+  for (const auto& e : best.events) o.start.push_back(e.state);
+  Fit finished = fit(h.plant, h.conventions, bench.seen(), free, o);
+  return criterion(finished) < criterion(best) ? finished : best;
+}
+
+Fit fit_without(const PlantModel& model, const Bench& bench, const std::vector<EventState>& states,
+                double spread) {
+  FitOptions o;
+  o.start = states;
+  return fit(model.plant, model.conventions, bench.seen(), free_parameters(model.plant, spread), o);
+}
+
+std::string own_values(const Addition& a) {
+  std::string text;
+  for (int i = 0; i < a.own; ++i) {
+    const auto& p = a.parameters[static_cast<std::size_t>(i)];
+    text += fmt::format("{}{} = {:.4g} {} ({:.4g} to {:.4g})", text.empty() ? "" : ", ", p.name, p.value,
+                        p.unit, p.low, p.high);
+  }
+  return text;
+}
+
+std::string sentence_of(const Addition& a) {
+  double before = 0, without = 0, after = 0;
+  const bool any_unseen = std::ranges::any_of(a.events, [](const auto& e) { return !e.score.seen; });
+  int n = 0;
+  for (const auto& e : a.events) {
+    if (any_unseen && e.score.seen) continue;
+    before += e.score.before;
+    without += e.refitted;
+    after += e.score.after;
+    ++n;
+  }
+  const std::string where = any_unseen ? "events it was not fitted to" : "the events (none was held out)";
+  std::string text = fmt::format(
+      "{} {}: on {} chi2 per value goes from {:.3g} ({:.3g} after refitting without it) to {:.3g}.",
+      a.hypothesis.what, a.earns ? "added" : "does not earn its place", where, before / n, without / n,
+      after / n);
+  if (a.own > 0) text += " " + own_values(a) + ".";
+  text += a.adequate ? " Nothing but noise is left." : " More than noise is left: something else is missing.";
+  return text;
+}
+
+}  // namespace
+
+Hypothesis find_hypothesis(const PlantModel& model, const std::string& name) {
+  auto all = all_hypotheses(model.plant, model.conventions);
+  const auto found = std::ranges::find(all, plain(name), [](const Hypothesis& h) { return plain(h.name); });
+  if (found != all.end()) return *found;
+  std::string names;
+  for (const auto& h : all) names += (names.empty() ? "" : ", ") + h.name;
+  const sim::Effect* effect = sim::find_effect(name);
+  const std::string remedy = "use one of " + names + ", or load a law with --law";
+  if (effect == nullptr)
+    throw InputError({"effect '" + name + "'", "swingbank add", "there is no effect of that name", remedy});
+  if (effect->instants)
+    throw InputError({"effect " + std::string(effect->name), "swingbank add",
+                      "it acts at given instants and so belongs to one event, not to the plant",
+                      "write it into the model file by hand"});
+  throw InputError({"effect " + std::string(effect->name), "swingbank add",
+                    "the plant has no room in slot " + std::string(sim::slot_name(effect->slot)),
+                    "remove what stands there, or " + remedy});
+}
+
+Addition add_effect(const PlantModel& model, const Hypothesis& hypothesis, std::vector<Record> records,
+                    const AddOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  const Bench bench(model, std::move(records), options.calibrate);
+  const auto before = bench.each(model.plant, model.conventions, "events with the model as it is");
+  const auto states = bench.states_of(before);
+  Addition a;
+  a.hypothesis = hypothesis;
+  a.model = model;
+  a.without = fit_without(model, bench, states, options.calibrate.spread);
+  if (!a.without.failed.empty())
+    throw InputError({"the model cannot be fitted", model.origin, a.without.failed, "correct the model"});
+  a.with = fit_with(hypothesis, bench, bench.states_of(before), options);
+  a.own = static_cast<int>(hypothesis.free.size());
+  a.parameters = a.with.parameters;
+  a.evidence = criterion(a.without) - criterion(a.with);
+  const auto refitted = bench.each(a.without.plant, model.conventions, "events without the effect");
+  const auto after = bench.each(a.with.plant, hypothesis.conventions, "events with the effect");
+  a.adequate = a.earns = true;
+  for (std::size_t e = 0; e < bench.all().size(); ++e) {
+    AddedEvent event{score_event(bench.all()[e], before[e], after[e], bench.is_seen(e),
+                                 pre_event_samples(bench.all()), options.calibrate.adequate),
+                     refitted[e].misfit()};
+    a.adequate = a.adequate && event.score.adequate();
+    a.earns = a.earns && (event.score.seen || event.improves() || event.score.adequate());
+    a.events.push_back(std::move(event));
+  }
+  a.earns = a.earns && a.evidence > kStrong;
+  a.model.plant = a.with.plant;
+  a.model.conventions = hypothesis.conventions;
+  a.prepared = bench.all();
+  a.sentence = sentence_of(a);
+  a.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return a;
+}
+
+Removal try_without(const PlantModel& model, std::size_t control, std::vector<Record> records,
+                    const AddOptions& options) {
+  const Bench bench(model, std::move(records), options.calibrate);
+  Removal r;
+  r.effect = model.plant.controls[control].effect->name;
+  r.model = model;
+  r.model.plant.controls.erase(r.model.plant.controls.begin() + static_cast<std::ptrdiff_t>(control));
+  const auto states = bench.states_of(bench.each(model.plant, model.conventions, "events with " + r.effect));
+  const Fit with = fit_without(model, bench, states, options.calibrate.spread);
+  const Fit without = fit_without(r.model, bench, states, options.calibrate.spread);
+  r.evidence = criterion(without) - criterion(with);
+  if (without.failed.empty()) r.model.plant = without.plant;
+  return r;
+}
+
+}  // namespace swingbank::validate

@@ -1,0 +1,67 @@
+#pragma once
+// One effect added to a model: fitted with everything else on the events seen, and held against the same
+// structure refitted without it, on the unseen ones too.
+#include "validate/calibrate.hpp"
+#include "validate/hypothesis.hpp"
+
+namespace swingbank::validate {
+
+struct AddOptions {
+  CalibrateOptions calibrate = {};  ///< spread, events held out, limits, progress; `draws` screens the effect
+  int refined = 3;                  ///< starts of the effect that are refined
+};
+
+/// One event: chi2 per value of the model as it was, refitted without the effect, and with it.
+struct AddedEvent {
+  EventScore score;     ///< before: the model as it was; after: with the effect
+  double refitted = 0;  ///< chi2 per value without the effect, after refitting everything else
+  [[nodiscard]] bool improves() const { return score.after < refitted; }
+};
+
+struct Addition {
+  Hypothesis hypothesis;
+  PlantModel model;                         ///< with the effect and the fitted values
+  std::vector<FittedParameter> parameters;  ///< all that were free; those of the effect first
+  int own = 0;                              ///< how many are the effect's
+  std::vector<AddedEvent> events;
+  double evidence = 0;    ///< BIC without - BIC with, over the events seen: above 10 is strong
+  bool earns = false;     ///< evidence is strong, and no unseen event is worse with it
+  bool adequate = false;  ///< nothing but noise is left in any event
+  std::string sentence;
+  std::vector<FitEvent> prepared;
+  Fit without, with;
+  double seconds = 0;
+};
+
+/// The hypothesis of that name (letters' case and blanks do not matter). Throws InputError naming those that
+/// can be added to this plant; says so where the slot is taken, or where the effect belongs to one event.
+Hypothesis find_hypothesis(const PlantModel& model, const std::string& name);
+
+/// Throws InputError as calibrate does.
+Addition add_effect(const PlantModel& model, const Hypothesis& hypothesis, std::vector<Record> records,
+                    const AddOptions& options);
+
+/// Taking out one control of a model (index into Plant::controls): what its evidence is, everything else
+/// refitted. The returned model lacks it.
+struct Removal {
+  std::string effect;
+  PlantModel model;
+  double evidence = 0;  ///< BIC without - BIC with: below 0 the effect does not earn its place
+};
+Removal try_without(const PlantModel& model, std::size_t control, std::vector<Record> records,
+                    const AddOptions& options);
+
+/// Everything that was done until the model was adequate, or nothing helped any more.
+struct Completion {
+  std::vector<Addition> added;   ///< in order
+  std::vector<Removal> removed;  ///< of them
+  PlantModel model;
+  bool adequate = false;
+  std::string sentence;
+};
+/// Diagnoses and adds, one effect at a time, `most` at most; after each, what was added before must still
+/// earn its place. Events held out are seen by neither diagnosis nor fit.
+Completion add_until_adequate(const PlantModel& model, const std::vector<Record>& records,
+                              const AddOptions& options, int most = 4);
+
+}  // namespace swingbank::validate
