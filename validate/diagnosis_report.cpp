@@ -1,0 +1,216 @@
+#include "validate/diagnosis_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "validate/error_map_table.hpp"
+
+namespace swingbank::validate {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kBand99 = 2.5758;  // standard deviations that hold 99 % of normal numbers
+
+nlohmann::json number(double v) { return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(nullptr); }
+
+const MissingInput* better_input(const Diagnosis& d) {
+  const bool torque = !d.torque.fit.events.empty(), field = !d.field.fit.events.empty();
+  if (torque && (!field || d.torque.misfit() <= d.field.misfit())) return &d.torque;
+  return field ? &d.field : nullptr;
+}
+
+/// Model less measured [pu].
+std::vector<double> difference(const std::vector<double>& model, const std::vector<double>& measured) {
+  std::vector<double> r(measured.size());
+  std::ranges::transform(model, measured, r.begin(), std::minus<>());
+  return r;
+}
+double share_inside(const std::vector<double>& residual, double band) {
+  const auto inside = std::ranges::count_if(residual, [&](double r) { return std::abs(r) <= band; });
+  return static_cast<double>(inside) / static_cast<double>(residual.size());
+}
+
+ReportChannel channel_of(const Diagnosis& d, const Fit* after, std::size_t e, std::size_t c,
+                         const std::vector<Window>& windows) {
+  const FitEvent& event = d.events[e];
+  const Output output = event.channels[c];
+  const ChannelUnit unit = channel_unit(output, event.record.base);
+  ReportChannel r;
+  r.name = output_name(output);
+  r.unit = unit.name;
+  r.scale = unit.scale;
+  r.noise = event.noise[static_cast<Eigen::Index>(c)];
+  r.measured = event.measured(output);
+  const auto quiet = static_cast<std::size_t>(event.start.samples);
+  const auto judge_one = [&](const Fit& fit, std::vector<double>& model, ErrorMap& map, double& inside) {
+    model = fit.events[e].model[c];
+    const auto residual = difference(model, r.measured);
+    inside = share_inside(residual, kBand99 * r.noise);
+    // Samples before the event are steady in any model: their residual is the channel's noise.
+    const NoiseModel noise = estimate_noise(std::span(residual).first(quiet), unit.floor);
+    map = error_map(event.record.t, residual, windows, noise, {.quiet = static_cast<int>(quiet)});
+  };
+  judge_one(d.base, r.before, r.map_before, r.inside_before);
+  if (after) judge_one(*after, r.after, r.map_after, r.inside_after);
+  return r;
+}
+
+void bound(std::vector<ReportEvent>& events, ErrorMap ReportChannel::*which) {
+  std::vector<ErrorMap*> maps;
+  for (auto& e : events)
+    for (auto& c : e.channels) maps.push_back(&(c.*which));
+  set_bounds(maps, kFalseAlarm);
+}
+
+nlohmann::json parameters_json(const Fit& fit) {
+  auto rows = nlohmann::json::array();
+  for (const auto& p : fit.parameters)
+    rows.push_back({{"block", p.block},
+                    {"name", p.name},
+                    {"unit", p.unit},
+                    {"start", p.start},
+                    {"value", p.value},
+                    {"error", number(p.error)},
+                    {"low_95", number(p.low)},
+                    {"high_95", number(p.high)},
+                    {"at_bound", p.at_bound},
+                    {"told_by_records", number(p.decided)}});
+  return rows;
+}
+
+nlohmann::json input_json(const Diagnosis& d, const MissingInput& input) {
+  if (input.fit.events.empty()) return nullptr;
+  nlohmann::json j = {{"rms_in_noise", number(std::sqrt(input.misfit()))},
+                      {"events", nlohmann::json::array()}};
+  for (std::size_t e = 0; e < input.fit.events.size(); ++e)
+    j["events"].push_back(
+        {{"record", d.events[e].record.name}, {"t_s", input.of(e).t}, {"value_pu", input.of(e).value}});
+  return j;
+}
+
+nlohmann::json event_json(const ReportEvent& e, bool with_after) {
+  const Record& r = e.event->record;
+  nlohmann::json j = {{"record", r.name},
+                      {"record_xxh64", fmt::format("{:016x}", r.hash)},
+                      {"samples", r.samples()},
+                      {"rate_per_s", r.rate()},
+                      {"rms_in_noise_before", number(e.before)},
+                      {"rms_in_noise_after", with_after ? number(e.after) : nullptr},
+                      {"unseen_rms_in_noise_before", number(e.unseen_before)},
+                      {"unseen_rms_in_noise_after", number(e.unseen_after)},
+                      {"channels", nlohmann::json::array()}};
+  for (const auto& c : e.channels) {
+    nlohmann::json k = {{"name", c.name},
+                        {"unit", c.unit},
+                        {"units_in_pu", c.scale},
+                        {"noise_pu", c.noise},
+                        {"inside_99_before", c.inside_before},
+                        {"map_before", map_json(e.windows, c.map_before)}};
+    if (with_after) {
+      k["inside_99_after"] = c.inside_after;
+      k["map_after"] = map_json(e.windows, c.map_after);
+    }
+    j["channels"].push_back(std::move(k));
+  }
+  return j;
+}
+
+nlohmann::json hypothesis_json(const Judgement& h) {
+  nlohmann::json j = {{"name", h.hypothesis.name},
+                      {"what", h.hypothesis.what},
+                      {"side", side_name(h.hypothesis.side)},
+                      {"accepted", h.accepted},
+                      {"why_not", h.why_not},
+                      {"evidence", number(h.gain)},
+                      {"size", number(h.size)},
+                      {"rms_in_noise", h.fit.values > 0 ? number(std::sqrt(h.fit.misfit())) : nullptr},
+                      {"unseen", nlohmann::json::array()}};
+  for (const auto& u : h.held_out)
+    j["unseen"].push_back({{"record", u.record},
+                           {"rms_in_noise_before", number(std::sqrt(u.before))},
+                           {"rms_in_noise_after", number(std::sqrt(u.after))}});
+  return j;
+}
+
+}  // namespace
+
+ReportFigures report_figures(const Diagnosis& d) {
+  ReportFigures figures;
+  const Judgement* best = !d.ranked.empty() && d.ranked.front().accepted ? &d.ranked.front() : nullptr;
+  if (d.verdict != Verdict::adequate && best) {
+    figures.after = &best->fit;
+    figures.after_name = best->hypothesis.name;
+  } else if (d.verdict == Verdict::unexplained) {
+    if (const MissingInput* input = better_input(d)) {
+      figures.after = &input->fit;
+      figures.after_name =
+          input->kind == InputKind::torque ? "the inferred torque" : "the inferred field voltage";
+    }
+  }
+  for (std::size_t e = 0; e < d.events.size(); ++e) {
+    ReportEvent r;
+    r.event = &d.events[e];
+    r.windows = event_windows(r.event->record, r.event->switchings, FitEventOptions{}.pre_event);
+    for (std::size_t c = 0; c < r.event->channels.size(); ++c)
+      r.channels.push_back(channel_of(d, figures.after, e, c, r.windows));
+    r.before = std::sqrt(d.base.events[e].misfit());
+    r.after = figures.after ? std::sqrt(figures.after->events[e].misfit()) : kNaN;
+    r.unseen_before = r.unseen_after = kNaN;
+    if (best && figures.after == &best->fit && e < best->held_out.size()) {
+      r.unseen_before = std::sqrt(best->held_out[e].before);
+      r.unseen_after = std::sqrt(best->held_out[e].after);
+    }
+    figures.events.push_back(std::move(r));
+  }
+  bound(figures.events, &ReportChannel::map_before);
+  if (figures.after) bound(figures.events, &ReportChannel::map_after);
+  return figures;
+}
+
+nlohmann::json diagnosis_json(const PlantModel& model, const Diagnosis& d, const Provenance& rows) {
+  const ReportFigures figures = report_figures(d);
+  nlohmann::json j = {{"format", "swingbank-diagnosis-1"},
+                      {"verdict", verdict_name(d.verdict)},
+                      {"sentence", d.sentence},
+                      {"side", side_name(d.side)},
+                      {"effects", d.effects},
+                      {"equivalent", d.equivalent},
+                      {"seconds", d.seconds},
+                      {"model",
+                       {{"name", model.name},
+                        {"file", model.origin},
+                        {"xxh64", fmt::format("{:016x}", model.hash)},
+                        {"mva", model.plant.mva}}}};
+  j["before"] = {{"rms_in_noise", number(std::sqrt(d.base.misfit()))},
+                 {"parameters", parameters_json(d.base)}};
+  if (figures.after)
+    j["after"] = {{"with", figures.after_name},
+                  {"rms_in_noise", number(std::sqrt(figures.after->misfit()))},
+                  {"parameters", parameters_json(*figures.after)}};
+  else
+    j["after"] = nullptr;
+  j["missing_torque"] = input_json(d, d.torque);
+  j["missing_field_voltage"] = input_json(d, d.field);
+  j["hypotheses"] = nlohmann::json::array();
+  for (const auto& h : d.ranked) j["hypotheses"].push_back(hypothesis_json(h));
+  j["events"] = nlohmann::json::array();
+  for (const auto& e : figures.events) j["events"].push_back(event_json(e, figures.after != nullptr));
+  for (const auto& [name, value] : rows) j["provenance"].push_back({{"what", name}, {"value", value}});
+  return j;
+}
+
+Provenance diagnosis_provenance(const PlantModel& model, const Diagnosis& d,
+                                const std::string& command_line) {
+  Provenance rows = {{"command", command_line},
+                     {"software", "swingbank " SWINGBANK_VERSION},
+                     {"model", fmt::format("{}, XXH64 {:016x}", model.origin, model.hash)}};
+  for (const auto& e : d.events)
+    rows.emplace_back("record", fmt::format("{}, XXH64 {:016x}", e.record.name, e.record.hash));
+  return rows;
+}
+
+}  // namespace swingbank::validate
