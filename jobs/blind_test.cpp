@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "validate/blind_case.hpp"
+#include "validate/blind_judge.hpp"
 #include "validate/blind_plan.hpp"
 #include "validate/blind_score.hpp"
 #include "validate/write_file.hpp"
@@ -22,7 +23,7 @@ struct Options {
   int make = 0;
   std::uint64_t seed = 1;
   double size = 0;
-  bool score = false;
+  bool diagnose = false, score = false;
 };
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
@@ -67,14 +68,14 @@ int judge(const Options& o) {
   if (!fs::is_directory(run / "cases"))
     throw InputError({"no run", o.out, "it has no folder cases", "make cases first, with --make"});
   int judged = 0;
+  const BlindJudge asked = o.diagnose ? diagnosis_judge() : program_judge(o.judge, run / "verdicts");
   const auto faults =
-      judge_cases(run, program_judge(o.judge, run / "verdicts"), read_part(o.part),
-                  [&](const std::string& name, const BlindVerdict& v) {
-                    ++judged;
-                    fmt::print("{}: {}{}{}, {:.1f} s\n", name, v.verdict, v.effects.empty() ? "" : " ",
-                               v.effects.empty() ? "" : v.effects.front(), v.seconds);
-                    std::fflush(stdout);
-                  });
+      judge_cases(run, asked, read_part(o.part), [&](const std::string& name, const BlindVerdict& v) {
+        ++judged;
+        fmt::print("{}: {}{}{}, {:.1f} s\n", name, v.verdict, v.effects.empty() ? "" : " ",
+                   v.effects.empty() ? "" : v.effects.front(), v.seconds);
+        std::fflush(stdout);
+      });
   for (const auto& fault : faults) fmt::print(stderr, "{}\n", fault);
   fmt::print("judged {} cases, {} failed: {}\n", judged, faults.size(), o.out);
   return faults.empty() ? 0 : 1;
@@ -93,8 +94,11 @@ int score(const Options& o) {
 }
 
 int blind_test(const Options& o) {
-  if (o.make <= 0 && o.judge.empty() && !o.score)
-    throw InputError({"nothing to do", "blind-test", "none of --make, --judge, --score was given",
+  const bool asks = o.diagnose || !o.judge.empty();
+  if (o.diagnose && !o.judge.empty())
+    throw InputError({"two judges", "--diagnose and --judge", "a run has one", "give one of them"});
+  if (o.make <= 0 && !asks && !o.score)
+    throw InputError({"nothing to do", "blind-test", "none of --make, --diagnose, --judge, --score was given",
                       "give one of them, or several"});
   if (o.make > 0) {
     if (o.config.empty())
@@ -102,7 +106,7 @@ int blind_test(const Options& o) {
           {"no config", "--config", "cases are drawn from one", "give configs/blind/cases.toml"});
     if (const int code = make(o); code != 0) return code;
   }
-  const int code = o.judge.empty() ? 0 : judge(o);
+  const int code = asks ? judge(o) : 0;
   return o.score ? std::max(code, score(o)) : code;
 }
 
@@ -121,6 +125,7 @@ int main(int argc, char** argv) {
          "pairs (default: the issue's mixture)")
       ->delimiter(',');
   app.add_option("--size", o.size, "size of every effect, in detection limits (default: drawn)");
+  app.add_flag("--diagnose", o.diagnose, "diagnose every case without a verdict, as swingbank diagnose does");
   app.add_option("--judge", o.judge,
                  "program to run as PROGRAM CASE_FOLDER VERDICT_FILE on every case without a verdict");
   app.add_flag("--score", o.score, "hold the verdicts against the truth: score.md, score.json");

@@ -122,8 +122,11 @@ void settle_plan(const BlindPlan& plan, const BlindConfig& config, const std::fi
   const auto file = folder / "plan.json";
   const std::string text = text_of(plan, config);
   if (!std::filesystem::exists(file)) {
-    write_file(file, text);
-    return;
+    try {
+      write_file(file, text);
+    } catch (const InputError&) {  // another part of the run may have been faster; it is compared below
+      if (!std::filesystem::exists(file)) throw;
+    }
   }
   std::ostringstream there;
   there << std::ifstream(file, std::ios::binary).rdbuf();
