@@ -8,6 +8,7 @@
 
 #include "sim/core/noise.hpp"
 #include "validate/calibrate_identify.hpp"
+#include "validate/calibrate_voltage_noise.hpp"
 #include "validate/in_parallel.hpp"
 
 namespace swingbank::validate {
@@ -132,6 +133,7 @@ class Run {
     const auto begin = std::chrono::steady_clock::now();
     before_ = each_alone(model_.plant, "events with the model as it is");
     search();
+    undo_voltage_noise();
     after_ = each_alone(c_.fit.plant, "events with the fitted model");
     c_.model.plant = c_.fit.plant;
     for (const auto& f : after_) c_.states.push_back(f.state);
@@ -203,6 +205,54 @@ class Run {
     c_.fit = *best;
   }
 
+  static constexpr double kClose = 1.5;  ///< misfit above which something else pulls harder
+
+  /// One Newton step from where noise of the played-in voltage has pulled the fit.
+  void undo_voltage_noise() {
+    const auto n = static_cast<Eigen::Index>(free_.size());
+    shift_ = Eigen::VectorXd::Zero(n);
+    if (c_.fit.misfit() > kClose) return;
+    std::vector<EventSlopes> slopes(seen_.size());
+    in_parallel(
+        slopes.size(),
+        [&](std::size_t e) {
+          slopes[e] = event_slopes(c_.fit.plant, model_.conventions, seen_[e], c_.fit.events[e].state, free_);
+        },
+        [&](int done) { tell("noise of the voltage", done, static_cast<int>(slopes.size())); });
+    noise_ = voltage_noise(c_.fit.plant, model_.conventions, seen_, slopes, free_);
+    c_.voltage_noise = noise_.share;
+    Eigen::MatrixXd data = Eigen::MatrixXd::Zero(n, n);
+    for (const auto& s : slopes) data += information(s);
+    const Eigen::VectorXd step = with_belief(real(data)).ldlt().solve(noise_.score);
+    sim::Plant plant = c_.fit.plant;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const auto& f = free_[static_cast<std::size_t>(i)];
+      const auto& record = parameter_record(plant, f.block, f.index);
+      double& value = parameter_value(plant, f.block, f.index);
+      const double move = axis_unit(c_.fit.plant, f) * step[i], old = value;
+      value = std::clamp(old > 0 ? old * std::exp(move / old) : old + move, std::min(old, record.low),
+                         std::max(old, record.high));
+      shift_[i] = value - old;
+    }
+    if (!possible(plant)) {
+      shift_.setZero();
+      return;
+    }
+    c_.fit.plant = plant;
+    for (Eigen::Index i = 0; i < n; ++i) c_.fit.parameters[static_cast<std::size_t>(i)].value += shift_[i];
+  }
+  /// Information less what noise pretends; no direction below zero.
+  Eigen::MatrixXd real(const Eigen::MatrixXd& data) const {
+    if (noise_.information.size() == 0) return data;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(data - noise_.information);
+    return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
+           eigen.eigenvectors().transpose();
+  }
+  Eigen::MatrixXd with_belief(Eigen::MatrixXd data) const {
+    if (options_.spread > 0) data.diagonal().array() += 1.0;
+    return data;
+  }
+
   /// Errors, correlations, what is not decided and by which event it would be.
   void learn() {
     std::vector<EventSlopes> slopes(c_.prepared.size());
@@ -222,6 +272,7 @@ class Run {
       scores +=
           score_covariance(slopes[e], static_cast<int>(std::lround(kColour / c_.prepared[e].record.step())));
     }
+    data = real(data);
     const Eigen::MatrixXd inverse = (data + belief).ldlt().solve(Eigen::MatrixXd::Identity(n, n));
     const Eigen::MatrixXd robust = inverse * (scores + belief) * inverse;
     Eigen::VectorXd unit(n), widening(n);
@@ -248,6 +299,7 @@ class Run {
         c_.correlation(i, j) = inverse(i, j) / std::sqrt(inverse(i, i) * inverse(j, j));
       CalibratedParameter p{.fit = c_.fit.parameters[static_cast<std::size_t>(i)]};
       const auto& record = parameter_record(c_.fit.plant, p.fit.where.block, p.fit.where.index);
+      p.shift = shift_[i];
       p.curvature_error = unit[i] * std::sqrt(inverse(i, i));
       p.fit.error = p.curvature_error * widening[i];
       const double reach = kNormal95 * p.fit.error;
@@ -344,6 +396,8 @@ class Run {
   std::vector<FitEvent> seen_;
   std::vector<EventFit> before_, after_;
   std::vector<double> allowance_;
+  VoltageNoise noise_;
+  Eigen::VectorXd shift_;
   Calibration c_;
 };
 

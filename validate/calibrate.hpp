@@ -62,6 +62,7 @@ struct Candidate {
 struct CalibratedParameter {
   FittedParameter fit;         ///< error and interval: widened where the residual is coloured
   double curvature_error = 0;  ///< as the curvature alone says
+  double shift = 0;            ///< what noise of the played-in voltage had moved it by, taken back [unit]
   int best_candidate = -1;     ///< that would narrow it most; -1: none by a fifth
   double narrowed = 1;         ///< its error with that event / without
 };
@@ -84,6 +85,7 @@ struct Calibration {
   double before = 0, after = 0, limit = 0;  ///< chi2 per value over the events seen
   int starts = 0, agreeing = 0;             ///< refined starts; how many came to the same optimum
   bool converged = false;
+  double voltage_noise = 0;        ///< share of the pre-event movement of V that is the instrument's
   Fit fit;                         ///< of the events seen
   std::vector<EventState> states;  ///< of every event, at the fitted parameters
   std::vector<FitEvent> prepared;  ///< every event, in the order given

@@ -64,6 +64,7 @@ json parameter_json(const Calibration& c, std::size_t i) {
             {"low_95", finite(p.fit.low)},
             {"high_95", finite(p.fit.high)},
             {"decided_by_records", finite(p.fit.decided)},
+            {"voltage_noise_correction", p.shift},
             {"at_bound", p.fit.at_bound},
             {"beyond_belief", strained(p.fit)}};
   j["would_be_narrowed_by"] =
@@ -207,6 +208,7 @@ json calibration_json(const Calibration& c) {
             {"starts", c.starts},
             {"starts_agreeing", c.agreeing},
             {"converged", c.converged},
+            {"voltage_noise_share", c.voltage_noise},
             {"seconds", c.seconds},
             {"events", json::array()},
             {"parameters", json::array()},
