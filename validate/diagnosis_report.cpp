@@ -140,7 +140,8 @@ nlohmann::json hypothesis_json(const Judgement& h) {
 
 ReportFigures report_figures(const Diagnosis& d) {
   ReportFigures figures;
-  const Judgement* best = !d.ranked.empty() && d.ranked.front().accepted ? &d.ranked.front() : nullptr;
+  const bool named = !d.ranked.empty() && d.ranked.front().accepted && !d.ranked.front().fit.events.empty();
+  const Judgement* best = named ? &d.ranked.front() : nullptr;
   if (d.verdict != Verdict::adequate && best) {
     figures.after = &best->fit;
     figures.after_name = best->hypothesis.name;

@@ -32,10 +32,12 @@ struct Example {
     FitOptions brief;
     brief.iterations = 2;
     d.base = fit(model.plant, model.conventions, d.events, free_parameters(model.plant, 0.2), brief);
+    if (!d.base.failed.empty()) throw std::runtime_error(d.base.failed);
     for (Hypothesis& h : all_hypotheses(model.plant, model.conventions)) {
       if (h.name.find("SEXS") == std::string::npos || !d.ranked.empty()) continue;
       Judgement j;
       j.fit = fit(started(h, h.starts.front()), h.conventions, d.events, h.free, brief);
+      if (!j.fit.failed.empty()) throw std::runtime_error(j.fit.failed);
       j.gain = d.base.chi2 - j.fit.chi2;
       j.accepted = true;
       for (const FitEvent& e : d.events) j.held_out.push_back({e.record.name, 400, 2.25});
