@@ -43,15 +43,15 @@ ReportChannel channel_of(const Diagnosis& d, const Fit* after, std::size_t e, st
   r.name = output_name(output);
   r.unit = unit.name;
   r.scale = unit.scale;
-  r.noise = event.noise[static_cast<Eigen::Index>(c)];
   r.measured = event.measured(output);
   const auto quiet = static_cast<std::size_t>(event.start.samples);
   const auto judge_one = [&](const Fit& fit, std::vector<double>& model, ErrorMap& map, double& inside) {
     model = fit.events[e].model[c];
     const auto residual = difference(model, r.measured);
-    inside = share_inside(residual, kBand99 * r.noise);
     // Samples before the event are steady in any model: their residual is the channel's noise.
     const NoiseModel noise = estimate_noise(std::span(residual).first(quiet), unit.floor);
+    if (r.noise == 0) r.noise = noise.sigma;  // one tolerance for both
+    inside = share_inside(residual, kBand99 * r.noise);
     map = error_map(event.record.t, residual, windows, noise, {.quiet = static_cast<int>(quiet)});
   };
   judge_one(d.base, r.before, r.map_before, r.inside_before);
