@@ -6,28 +6,13 @@
 #include <chrono>
 #include <cmath>
 
-#include "sim/core/noise.hpp"
 #include "validate/calibrate_identify.hpp"
+#include "validate/calibrate_screen.hpp"
 #include "validate/calibrate_voltage_noise.hpp"
 #include "validate/in_parallel.hpp"
 
 namespace swingbank::validate {
 namespace {
-
-/// Whether the equations can be run with these parameters and a machine can have them.
-bool possible(const sim::Plant& plant) {
-  Problems problems;
-  bool physical = true;
-  const auto check = [&](const sim::Block& b) {
-    if (!b.effect) return;
-    b.effect->check(b.effect->law.get(), b.p.data(), "", problems);
-    physical = physical && (!b.effect->unphysical || b.effect->unphysical(b.p.data()).empty());
-  };
-  check(plant.machine);
-  check(plant.transformer);
-  for (const auto& b : plant.controls) check(b);
-  return physical && problems.empty();
-}
 
 /// "GENROU.Xl" or "Xl" taken out of the free parameters.
 std::vector<FreeParameter> choose_free(const sim::Plant& plant, const CalibrateOptions& options) {
@@ -73,48 +58,6 @@ double chi2_of(const sim::Plant& plant, const sim::Conventions& conventions,
   }
   return sum;
 }
-
-/// Parameter sets about the model's own, the best of which are worth a search.
-class Screen {
- public:
-  Screen(const sim::Plant& plant, const std::vector<FreeParameter>& free, std::uint64_t seed)
-      : plant_(plant), free_(free), seed_(seed) {}
-  /// Values of set k, drawn until they contradict no equation (100 times at most: then the model's own).
-  std::vector<double> draw(std::uint64_t k) const {
-    for (std::uint32_t attempt = 0; attempt < 100; ++attempt) {
-      std::vector<double> values;
-      for (std::size_t i = 0; i < free_.size(); ++i)
-        values.push_back(one(free_[i], sim::normal_pair(seed_ + k, attempt, i)[0]));
-      if (possible(with(values))) return values;
-    }
-    return own();
-  }
-  sim::Plant with(const std::vector<double>& values) const {
-    sim::Plant plant = plant_;
-    for (std::size_t i = 0; i < free_.size(); ++i)
-      parameter_value(plant, free_[i].block, free_[i].index) = values[i];
-    return plant;
-  }
-  std::vector<double> own() const {
-    sim::Plant plant = plant_;
-    std::vector<double> values;
-    for (const auto& f : free_) values.push_back(parameter_value(plant, f.block, f.index));
-    return values;
-  }
-
- private:
-  double one(const FreeParameter& f, double normal) const {
-    const auto& record = parameter_record(plant_, f.block, f.index);
-    sim::Plant plant = plant_;
-    const double value = parameter_value(plant, f.block, f.index);
-    const double moved =
-        value > 0 ? value * std::exp(f.spread * normal) : value + normal * axis_unit(plant_, f);
-    return std::clamp(moved, record.low, record.high);
-  }
-  const sim::Plant& plant_;
-  const std::vector<FreeParameter>& free_;
-  std::uint64_t seed_;
-};
 
 class Run {
  public:
