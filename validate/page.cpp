@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -30,6 +31,7 @@ th,td{padding:.32rem .7rem;border-bottom:1px solid var(--line);text-align:right;
 th{background:var(--tint);font-weight:600;vertical-align:bottom;white-space:normal;max-width:9.5rem}
 th:first-child,td:first-child{text-align:left;position:sticky;left:0}
 td:first-child{background:var(--paper)}
+td.words{text-align:left}
 .wrap td{white-space:normal;overflow-wrap:anywhere;text-align:left}
 .chart{width:100%;height:250px}
 .legend{font-size:.85rem;color:var(--soft);min-height:1.4em}
@@ -77,6 +79,11 @@ std::string shade_style(double shade) {
   const double s = std::clamp(shade, 0.0, 1.0);  // green over yellow to red, pale enough for black text
   return fmt::format(" class=\"cell\" style=\"background:hsl({:.0f} 75% {:.0f}%)\"", 125 - 125 * s,
                      90 - 10 * s);
+}
+
+/// Words read from the left, numbers from the right.
+bool is_words(const Cell& cell) {
+  return cell.shade < 0 && !cell.text.empty() && std::isalpha(static_cast<unsigned char>(cell.text.front()));
 }
 
 /// Six significant digits: more than a screen shows, a third of the size.
@@ -133,7 +140,8 @@ void Page::table(const Table& table) {
   for (const auto& row : table.rows) {
     body_ += "<tr>";
     for (const auto& cell : row)
-      body_ += fmt::format("<td{}>{}</td>", shade_style(cell.shade), escape(cell.text));
+      body_ += fmt::format("<td{}>{}</td>", is_words(cell) ? " class=\"words\"" : shade_style(cell.shade),
+                           escape(cell.text));
     body_ += "</tr>\n";
   }
   body_ += "</tbody></table></div>\n";
