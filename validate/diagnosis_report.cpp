@@ -45,12 +45,19 @@ ReportChannel channel_of(const Diagnosis& d, const Fit* after, std::size_t e, st
   r.scale = unit.scale;
   r.measured = event.measured(output);
   const auto quiet = static_cast<std::size_t>(event.start.samples);
+  // Before the event the residual is the channel's noise, unless a fit bends the start to mimic what is
+  // missing: the quieter of the two is believed.
+  const auto noise_of = [&](const Fit& fit) {
+    const auto residual = difference(fit.events[e].model[c], r.measured);
+    return estimate_noise(std::span(residual).first(quiet), unit.floor);
+  };
+  NoiseModel noise = noise_of(d.base);
+  if (after)
+    if (NoiseModel other = noise_of(*after); other.sigma < noise.sigma) noise = std::move(other);
+  r.noise = noise.sigma;
   const auto judge_one = [&](const Fit& fit, std::vector<double>& model, ErrorMap& map, double& inside) {
     model = fit.events[e].model[c];
     const auto residual = difference(model, r.measured);
-    // Samples before the event are steady in any model: their residual is the channel's noise.
-    const NoiseModel noise = estimate_noise(std::span(residual).first(quiet), unit.floor);
-    if (r.noise == 0) r.noise = noise.sigma;  // one tolerance for both
     inside = share_inside(residual, kBand99 * r.noise);
     map = error_map(event.record.t, residual, windows, noise, {.quiet = static_cast<int>(quiet)});
   };
