@@ -26,13 +26,16 @@ std::vector<Direction> state_directions(const FitEvent& event) {
 Eigen::VectorXd whitened(const FitEvent& event, const std::vector<double>* values, bool less_measured) {
   const auto n = static_cast<Eigen::Index>(event.channels.size());
   Eigen::VectorXd all(event.values()), e(n);
+  Eigen::Index row = 0;
   for (Eigen::Index k = 0; k < event.record.samples(); ++k) {
+    if (!event.compared(static_cast<std::size_t>(k))) continue;
     for (Eigen::Index c = 0; c < n; ++c) {
       const Output o = event.channels[static_cast<std::size_t>(c)];
       e[c] = values[static_cast<int>(o)][k];
       if (less_measured) e[c] -= event.measured(o)[static_cast<std::size_t>(k)];
     }
-    all.segment(k * n, n) = event.whitening * e;
+    all.segment(row, n) = event.whitening * e;
+    row += n;
   }
   return all;
 }
@@ -54,7 +57,7 @@ EventSlopes event_slopes(const sim::Plant& plant, const sim::Conventions& conven
   std::ranges::move(state_directions(event), std::back_inserter(along));
   auto switchings = event.switchings;
   for (std::size_t k = 0; k < switchings.size(); ++k) switchings[k].time = state.switchings[k];
-  const VoltageCurve curve(event.record, switchings);
+  const VoltageCurve curve(event.played(), switchings);
   Drive run{.plant = &plant, .conventions = conventions, .record = &event.record, .curve = &curve};
   run.start = event.start;
   run.start.P += state.P;

@@ -20,6 +20,11 @@ constexpr double kApart = 12;
 /// Misfit at which a first start needs no second.
 constexpr double kSettled = 1.3;
 
+std::string capitalised(std::string text) {
+  if (!text.empty()) text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text;
+}
+
 double criterion(const Fit& f) {
   return f.chi2 + f.belief + f.fitted * std::log(static_cast<double>(f.values));
 }
@@ -184,7 +189,7 @@ class Diagnoser {
     misfit = 0;
     try {
       for (const FitEvent& e : result_.events) {
-        const VoltageCurve curve(e.record, e.switchings);
+        const VoltageCurve curve(e.played(), e.switchings);
         Drive run{.plant = &plant, .conventions = h.conventions, .record = &e.record, .curve = &curve};
         run.start = e.start;
         run.tolerance = 1e-5;
@@ -202,9 +207,10 @@ class Diagnoser {
         }
         for (std::size_t c = 0; c < e.channels.size(); ++c)
           for (std::size_t k = 0; k < r.of(e.channels[c]).size(); ++k)
-            misfit += std::pow((r.of(e.channels[c])[k] - e.measured(e.channels[c])[k]) /
-                                   e.noise[static_cast<Eigen::Index>(c)],
-                               2);
+            if (e.compared(k))
+              misfit += std::pow((r.of(e.channels[c])[k] - e.measured(e.channels[c])[k]) /
+                                     e.noise[static_cast<Eigen::Index>(c)],
+                                 2);
       }
     } catch (const InputError&) {
       return false;
@@ -311,8 +317,8 @@ class Diagnoser {
     for (const auto& name : result_.equivalent) rivals += (rivals.empty() ? "" : ", ") + name;
     result_.sentence = fmt::format(
         "{} is missing{}: on events it was not fitted to, chi2 per value falls from {:.1f} to {:.2f}.",
-        best.hypothesis.what, rivals.empty() ? "" : " (or " + rivals + ": these records cannot tell)", before,
-        after);
+        capitalised(best.hypothesis.what),
+        rivals.empty() ? "" : " (or " + rivals + ": these records cannot tell)", before, after);
   }
   void report(const std::string& what, int done, int total) const {
     if (options_.progress) options_.progress(what, done, total);

@@ -105,7 +105,7 @@ class EventCost : public ceres::CostFunction {
     try {
       auto switchings = event_.switchings;
       const Drive run = make_drive(plant, state, switchings);
-      const VoltageCurve curve(event_.record, switchings);
+      const VoltageCurve curve(event_.played(), switchings);
       Drive with = run;
       with.curve = &curve;
       const Response r = drive(with, along);
@@ -157,14 +157,16 @@ class EventCost : public ceres::CostFunction {
              int column) const {
     const auto n = static_cast<Eigen::Index>(event_.channels.size());
     Eigen::VectorXd e(n);
+    Eigen::Index row = 0;
     for (int k = 0; k < event_.record.samples(); ++k) {
+      if (!event_.compared(static_cast<std::size_t>(k))) continue;
       for (Eigen::Index c = 0; c < n; ++c) {
         const Output o = event_.channels[static_cast<std::size_t>(c)];
         e[c] = values[static_cast<int>(o)][static_cast<std::size_t>(k)];
         if (less_measured) e[c] -= event_.measured(o)[static_cast<std::size_t>(k)];
       }
       const Eigen::VectorXd w = event_.whitening * e;
-      for (Eigen::Index c = 0; c < n; ++c) to[(k * n + c) * stride + column] = w[c];
+      for (Eigen::Index c = 0; c < n; ++c) to[row++ * stride + column] = w[c];
     }
   }
 
@@ -361,7 +363,7 @@ class Search {
       for (std::size_t e = 0; e < states_.size(); ++e) {
         auto switchings = (*setting_.events)[e].switchings;
         Drive run = costs_[e]->make_drive(plant, states_[e].data(), switchings);
-        const VoltageCurve curve((*setting_.events)[e].record, switchings);
+        const VoltageCurve curve((*setting_.events)[e].played(), switchings);
         run.curve = &curve;
         drive(run);
       }
@@ -377,7 +379,7 @@ class Search {
       EventFit f;
       auto switchings = event.switchings;
       Drive run = costs_[e]->make_drive(fit.plant, states_[e].data(), switchings);
-      const VoltageCurve curve(event.record, switchings);
+      const VoltageCurve curve(event.played(), switchings);
       run.curve = &curve;
       const Response r = drive(run);
       for (const auto& s : switchings) f.state.switchings.push_back(s.time);
@@ -407,7 +409,7 @@ class Search {
         e[c] = f.model[static_cast<std::size_t>(c)][k] -
                event.measured(event.channels[static_cast<std::size_t>(c)])[k];
       const Eigen::VectorXd w = event.whitening * e;
-      f.chi2 += w.squaredNorm();
+      if (event.compared(k)) f.chi2 += w.squaredNorm();
       for (Eigen::Index c = 0; c < n; ++c) f.residual[static_cast<std::size_t>(c)].push_back(w[c]);
     }
   }

@@ -1,14 +1,58 @@
 #include "validate/fit_event.hpp"
 
+#include <algorithm>
+
 #include "validate/play_in.hpp"
 
 namespace swingbank::validate {
 namespace {
 
-FitEvent prepare(Record record, const FitEventOptions& options) {
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+/// How much each step of the voltage stands out from those two and three before and after it [pu].
+std::vector<double> prominence(const Record& r) {
+  const auto phasor = [&](std::size_t k) { return std::polar(r.V[k], r.theta[k]); };
+  std::vector<Complex> step;
+  for (std::size_t k = 0; k + 1 < r.t.size(); ++k) step.push_back(phasor(k + 1) - phasor(k));
+  std::vector<double> d(step.size(), 0.0);
+  for (std::size_t k = 3; k + 3 < step.size(); ++k)
+    d[k] = std::min({std::abs(step[k] - step[k - 3]), std::abs(step[k] - step[k - 2]),
+                     std::abs(step[k] - step[k + 2]), std::abs(step[k] - step[k + 3])});
+  return d;
+}
+
+bool any_smeared(const Record& record, double threshold) {
+  std::vector<char> smeared;
+  find_switchings(record, threshold, false, smeared);
+  return std::ranges::count(smeared, 1) > 0;
+}
+
+/// Time, V and theta of the samples that are not smeared.
+Record without(const Record& record, const std::vector<char>& smeared) {
+  Record clean;
+  clean.name = record.name;
+  clean.base = record.base;
+  for (std::size_t k = 0; k < record.t.size(); ++k) {
+    if (smeared[k]) continue;
+    clean.t.push_back(record.t[k]);
+    clean.V.push_back(record.V[k]);
+    clean.theta.push_back(record.theta[k]);
+  }
+  return clean;
+}
+
+FitEvent prepare(Record record, const FitEventOptions& options, bool smears) {
   FitEvent e;
   e.record = std::move(record);
-  e.switchings = detect_switchings(e.record, options.jump_threshold);
+  e.switchings = find_switchings(e.record, options.jump_threshold, smears, e.smeared);
+  if (std::ranges::count(e.smeared, 1) > 0)
+    e.clean = without(e.record, e.smeared);
+  else
+    e.smeared.clear();
   e.start = pre_event_point(e.record, e.switchings, options.pre_event);
   e.channels = {Output::P, Output::Q};
   if (options.measured_states)
@@ -19,7 +63,7 @@ FitEvent prepare(Record record, const FitEventOptions& options) {
 
 /// Residual before the event, [channel][sample], each less its mean.
 Eigen::MatrixXd quiet_residual(const PlantModel& model, const FitEvent& e) {
-  const VoltageCurve curve(e.record, e.switchings);
+  const VoltageCurve curve(e.played(), e.switchings);
   const Response r = drive({.plant = &model.plant,
                             .conventions = model.conventions,
                             .record = &e.record,
@@ -37,6 +81,27 @@ Eigen::MatrixXd quiet_residual(const PlantModel& model, const FitEvent& e) {
 }
 
 }  // namespace
+
+std::vector<Switching> find_switchings(const Record& record, double threshold, bool always,
+                                       std::vector<char>& smeared) {
+  smeared.assign(record.t.size(), 0);
+  const auto d = prominence(record);
+  const double limit = std::max(threshold, 10 * median(d));
+  std::vector<Switching> found;
+  for (std::size_t k = 0; k < d.size(); ++k) {
+    if (d[k] <= limit) continue;
+    std::size_t last = k;
+    while (last + 1 < d.size() && d[last + 1] > limit) ++last;
+    // intervals k .. last; samples k + 1 .. last lie inside the jump
+    const bool spread = last > k || always;
+    const double from = record.t[k], to = record.t[last + 1], beside = spread ? record.step() : 0.0;
+    found.push_back({(from + to) / 2, (to - from) / 2 + beside});
+    if (spread)
+      for (std::size_t s = k; s <= last + 1; ++s) smeared[s] = 1;
+    k = last;
+  }
+  return found;
+}
 
 const std::vector<double>& FitEvent::measured(Output o) const {
   switch (o) {
@@ -57,7 +122,9 @@ const std::vector<double>& FitEvent::measured(Output o) const {
 std::vector<FitEvent> prepare_events(const PlantModel& model, std::vector<Record> records,
                                      const FitEventOptions& options) {
   std::vector<FitEvent> events;
-  for (Record& r : records) events.push_back(prepare(std::move(r), options));
+  const bool smears =
+      std::ranges::any_of(records, [&](const Record& r) { return any_smeared(r, options.jump_threshold); });
+  for (Record& r : records) events.push_back(prepare(std::move(r), options, smears));
   for (FitEvent& e : events) {
     const auto n = static_cast<Eigen::Index>(e.channels.size());
     Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(n, n);

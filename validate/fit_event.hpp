@@ -13,11 +13,19 @@ struct FitEvent {
   Record record;
   std::vector<Switching> switchings;  ///< where they were found; those with an uncertainty are fitted
   OperatingPoint start;
+  /// Marks samples that an instrument's filter has smeared over a switching: neither played in nor compared.
+  /// Empty: none is.
+  std::vector<char> smeared = {};
+  Record clean = {};             ///< time, V and theta of the others; empty where none is smeared
   std::vector<Output> channels;  ///< measured ones: P, Q, then speed, Efd, Ifd where recorded
   Eigen::VectorXd noise;         ///< standard deviation per channel [pu]
   Eigen::MatrixXd whitening;     ///< W: W e has unit covariance where e is noise
   [[nodiscard]] const std::vector<double>& measured(Output o) const;
-  [[nodiscard]] int values() const { return record.samples() * static_cast<int>(channels.size()); }
+  /// What is played in.
+  [[nodiscard]] const Record& played() const { return smeared.empty() ? record : clean; }
+  [[nodiscard]] bool compared(std::size_t sample) const { return smeared.empty() || !smeared[sample]; }
+  /// Numbers that are compared.
+  [[nodiscard]] int values() const { return played().samples() * static_cast<int>(channels.size()); }
 };
 
 struct FitEventOptions {
@@ -25,6 +33,12 @@ struct FitEventOptions {
   double jump_threshold = kJumpThreshold;
   double pre_event = 1.0;  ///< length of the steady window where nothing is switched [s]
 };
+
+/// Finds switchings although a filter may have spread their jumps over two or three sample intervals;
+/// `smeared` gets a mark per sample that lies inside such a jump or beside it. An instrument that smears one
+/// jump smears them all, so `always` marks the neighbours of sharp ones too.
+std::vector<Switching> find_switchings(const Record& record, double threshold, bool always,
+                                       std::vector<char>& smeared);
 
 /// Prepares records that belong together (one plant, one instrument). The noise is that of the pre-event
 /// residual of `model`, pooled over the events: what the played-in voltage's own noise adds through the

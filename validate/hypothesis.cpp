@@ -77,7 +77,9 @@ std::vector<std::vector<double>> draws(const sim::Plant& plant, const std::vecto
     std::vector<double> values;
     for (std::size_t i = 0; i < free.size(); ++i) {
       const auto& p = parameter_record(plant, free[i].block, free[i].index);
-      values.push_back(std::clamp(standard[i] * std::exp(0.8 * normal(random)), p.low, p.high));
+      // gains are believed within decades, times and limits within a factor
+      const double width = p.low > 0 && p.high / p.low >= 1000 ? 2.0 : 0.8;
+      values.push_back(std::clamp(standard[i] * std::exp(width * normal(random)), p.low, p.high));
     }
     starts.push_back(std::move(values));
   }
