@@ -276,7 +276,21 @@ class Run {
     }
   }
 
+  /// What taking the noise back costs: the optimum itself lay lower, so it is no sign of a missing effect.
+  void allow_correction() {
+    double cost = 0, values = 0;
+    for (std::size_t e = 0, seen = 0; e < after_.size(); ++e) {
+      if (out_[e]) continue;
+      const double more = std::max(0.0, after_[e].chi2 - c_.fit.events[seen++].chi2);
+      allowance_[e] += more / after_[e].values;
+      cost += more;
+      values += after_[e].values;
+    }
+    for (std::size_t e = 0; e < after_.size(); ++e)
+      if (out_[e]) allowance_[e] += cost / values;
+  }
   void judge() {
+    if (shift_.squaredNorm() > 0) allow_correction();
     double before = 0, after = 0, values = 0, spare = 0;
     bool holds = true, held = true;
     for (std::size_t e = 0; e < c_.prepared.size(); ++e) {

@@ -233,6 +233,7 @@ TEST(CalibrateFull, IntervalsHoldTheTruthUnderUsualNoise) {
 TEST(CalibrateFull, IntervalsHoldTheTruthWhereTheVoltageIsAsNoisyAsThePower) {
   const Coverage c = coverage(2e-3, 2e-3, 20);
   EXPECT_GE(c.share(), 0.90);
+  EXPECT_GE(c.adequate, 19);
 }
 
 }  // namespace
