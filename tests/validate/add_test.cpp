@@ -30,7 +30,6 @@ std::vector<Record> records(const PlantModel& model) {
 AddOptions power_only() {
   AddOptions options;
   options.calibrate.events.measured_states = false;
-  options.refined = 1;
   return options;
 }
 
