@@ -16,9 +16,6 @@ namespace {
 /// Rounding of a file with 8 digits leaves residuals of this size; below it there is no noise to compare
 /// with.
 constexpr double kNoNoise = 1e-7;
-/// Interpolation leaves as much of the speed [pu]: what 1e-4 pu of P, wrong for a tenth of a second, does to
-/// a machine of H = 1 s.
-constexpr double kLeastSpeedNoise = 5e-6;
 
 WindowError measure(const std::vector<double>& t, const std::vector<double>& residual, const Window& window,
                     bool first, double noise) {

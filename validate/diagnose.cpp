@@ -19,6 +19,8 @@ constexpr double kEvidence = 25;
 constexpr double kApart = 12;
 /// Misfit at which a first start needs no second.
 constexpr double kSettled = 1.3;
+/// Misfit of the base below which what is missing is small.
+constexpr double kNested = 4;
 
 std::string capitalised(std::string text) {
   if (!text.empty()) text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
@@ -51,8 +53,16 @@ class Diagnoser {
   void fit_base() {
     report("base", 0, 1);
     FitOptions o;
-    result_.base = fit(model_.plant, model_.conventions, result_.events,
-                       free_parameters(model_.plant, options_.spread), o);
+    const auto free = free_parameters(model_.plant, options_.spread);
+    result_.base = fit(model_.plant, model_.conventions, result_.events, free, o);
+    if (result_.base.failed.empty() && result_.base.misfit() < kNested) {
+      PlantModel fitted = model_;
+      fitted.plant = result_.base.plant;
+      measure_noise(fitted, result_.events);
+      o.values = values_of(result_.base.plant, free);
+      for (const auto& e : result_.base.events) o.start.push_back(e.state);
+      result_.base = fit(model_.plant, model_.conventions, result_.events, free, o);
+    }
     if (!result_.base.failed.empty())
       throw InputError({"the model cannot be fitted", model_.origin, result_.base.failed,
                         "correct the model or leave the record out"});
@@ -73,6 +83,8 @@ class Diagnoser {
   struct Candidate {
     Hypothesis hypothesis;
     std::vector<sim::Plant> starts;
+    std::vector<double> nested =
+        {};                 ///< free parameters: the base as fitted, and the start that suits it best
     double misfit = 1e300;  ///< of the best start
   };
 
@@ -151,6 +163,7 @@ class Diagnoser {
       if (answer(s.plant, h, base, s.misfit, acts)) starts.push_back(std::move(s));
     }
     std::ranges::sort(starts, {}, &Start::misfit);
+    if (acts && result_.base.misfit() < kNested) nest(h, base, c);
     if (acts && !starts.empty()) {
       c.misfit = starts.front().misfit;
       for (auto& s : starts) c.starts.push_back(std::move(s.plant));
@@ -168,7 +181,24 @@ class Diagnoser {
     free.insert(free.end(), h.free.begin(), h.free.end());
     return free;
   }
-  /// A short fit from the best start, and from the second best if that does not settle it.
+  /// Where the base nearly fits, what is missing is small: its fitted values are the start then.
+  void nest(const Hypothesis& h, const sim::Plant& base, Candidate& c) const {
+    double least = 1e300;
+    for (const auto& values : h.starts) {
+      sim::Plant plant = started(h, values);
+      for (const auto& p : result_.base.parameters)
+        for (const auto& f : free_of(h))
+          if (block_effect(plant, f.block).name == p.block &&
+              parameter_record(plant, f.block, f.index).name == p.name)
+            parameter_value(plant, f.block, f.index) = p.value;
+      double misfit = 0;
+      bool acts = true;
+      if (!answer(plant, h, base, misfit, acts) || misfit >= least) continue;
+      least = misfit;
+      c.nested = values_of(plant, free_of(h));
+    }
+  }
+  /// A short fit from the best start, and from others if that does not settle it.
   Judgement quick(const Candidate& c, const Fit& base_fit) const {
     Judgement j;
     const auto free = free_of(c.hypothesis);
@@ -177,6 +207,14 @@ class Diagnoser {
       FitOptions o;
       o.iterations = 8;
       Fit f = fit(c.starts[k], c.hypothesis.conventions, result_.events, free, o);
+      if (f.failed.empty() && (j.fit.events.empty() || criterion(f) < criterion(j.fit))) j.fit = std::move(f);
+    }
+    if (!c.nested.empty()) {
+      FitOptions o;
+      o.iterations = 12;
+      o.values = c.nested;
+      for (const auto& e : base_fit.events) o.start.push_back(e.state);
+      Fit f = fit(c.starts.front(), c.hypothesis.conventions, result_.events, free, o);
       if (f.failed.empty() && (j.fit.events.empty() || criterion(f) < criterion(j.fit))) j.fit = std::move(f);
     }
     if (!j.fit.events.empty()) j.gain = criterion(base_fit) - criterion(j.fit);
@@ -316,9 +354,11 @@ class Diagnoser {
     std::string rivals;
     for (const auto& name : result_.equivalent) rivals += (rivals.empty() ? "" : ", ") + name;
     result_.sentence = fmt::format(
-        "{} is missing{}: on events it was not fitted to, chi2 per value falls from {:.1f} to {:.2f}.",
+        "{} is missing{}: on events it was not fitted to, the error falls from {:.1f} × noise to {:.2f} × "
+        "noise.",
         capitalised(best.hypothesis.what),
-        rivals.empty() ? "" : " (or " + rivals + ": these records cannot tell)", before, after);
+        rivals.empty() ? "" : " (or " + rivals + ": these records cannot tell)", std::sqrt(before),
+        std::sqrt(after));
   }
   void report(const std::string& what, int done, int total) const {
     if (options_.progress) options_.progress(what, done, total);

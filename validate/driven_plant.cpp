@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "sim/solve/plant_equations.hpp"
 #include "sim/solve/tableau.hpp"
@@ -245,10 +246,12 @@ class Driven {
   void record(Response& back) {
     refresh();
     const double to_record = run_.plant->mva / run_.record->base.mva;
+    // the frame turns with the pre-event angle
+    const double frame = run_.start.drift / (2 * std::numbers::pi * run_.conventions.frequency);
     T P, Q;
     equations_.grid_power(c_.data(), signals_, P, Q);
-    const std::array<T, kOutputs> out = {P * T(to_record), Q * T(to_record), signals_.speed, signals_.Efd,
-                                         signals_.Ifd};
+    const std::array<T, kOutputs> out = {P * T(to_record), Q * T(to_record), signals_.speed + T(frame),
+                                         signals_.Efd, signals_.Ifd};
     for (int o = 0; o < kOutputs; ++o) {
       back.value[o].push_back(sim::value_of(out[static_cast<std::size_t>(o)]));
       for (std::size_t d = 0; d < directions_.size(); ++d)

@@ -53,7 +53,9 @@ FitEvent prepare(Record record, const FitEventOptions& options, bool smears) {
     e.clean = without(e.record, e.smeared);
   else
     e.smeared.clear();
-  e.start = pre_event_point(e.record, e.switchings, options.pre_event);
+  auto first = e.switchings;
+  if (!e.smeared.empty() && !first.empty()) first.front().time -= first.front().uncertainty;
+  e.start = pre_event_point(e.record, first, options.pre_event);
   e.channels = {Output::P, Output::Q};
   if (options.measured_states)
     for (const Output o : {Output::speed, Output::Efd, Output::Ifd})
@@ -92,6 +94,11 @@ std::vector<Switching> find_switchings(const Record& record, double threshold, b
     if (d[k] <= limit) continue;
     std::size_t last = k;
     while (last + 1 < d.size() && d[last + 1] > limit) ++last;
+    // a step within a smeared jump may happen to look like those around it
+    if (last + 2 < d.size() && d[last + 2] > limit) {
+      last += 2;
+      while (last + 1 < d.size() && d[last + 1] > limit) ++last;
+    }
     // intervals k .. last; samples k + 1 .. last lie inside the jump
     const bool spread = last > k || always;
     const double from = record.t[k], to = record.t[last + 1], beside = spread ? record.step() : 0.0;
@@ -125,6 +132,11 @@ std::vector<FitEvent> prepare_events(const PlantModel& model, std::vector<Record
   const bool smears =
       std::ranges::any_of(records, [&](const Record& r) { return any_smeared(r, options.jump_threshold); });
   for (Record& r : records) events.push_back(prepare(std::move(r), options, smears));
+  measure_noise(model, events);
+  return events;
+}
+
+void measure_noise(const PlantModel& model, std::vector<FitEvent>& events) {
   for (FitEvent& e : events) {
     const auto n = static_cast<Eigen::Index>(e.channels.size());
     Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(n, n);
@@ -136,11 +148,13 @@ std::vector<FitEvent> prepare_events(const PlantModel& model, std::vector<Record
       freedom += other.start.samples - 1;
     }
     Eigen::MatrixXd covariance = scatter / freedom;
-    covariance.diagonal().array() += kLeastNoise * kLeastNoise;
+    for (Eigen::Index c = 0; c < n; ++c) {
+      const bool speed = e.channels[static_cast<std::size_t>(c)] == Output::speed;
+      covariance(c, c) += std::pow(speed ? kLeastSpeedNoise : kLeastNoise, 2);
+    }
     e.noise = covariance.diagonal().cwiseSqrt();
     e.whitening = covariance.llt().matrixL().solve(Eigen::MatrixXd::Identity(n, n));
   }
-  return events;
 }
 
 }  // namespace swingbank::validate

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "validate/driven_pq.hpp"
 
@@ -72,7 +71,6 @@ Playback play_in(const sim::Plant& plant, const sim::Conventions& conventions, c
   back.Q = take(Output::Q);
   back.speed = take(Output::speed);
   // The frame turns with the pre-event angle; a record's speed is off nominal by as much.
-  for (double& w : back.speed) w += back.start.drift / (2 * std::numbers::pi * conventions.frequency);
   back.Efd = take(Output::Efd);
   back.Ifd = take(Output::Ifd);
   back.steps = response.steps;
