@@ -1,5 +1,6 @@
 // Blind cases: what is in them, what is not, and whether the same seed gives the same one.
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -94,7 +95,7 @@ TEST(BlindCase, SwitchingsLieOffTheSamples) {
 TEST(BlindCase, FolderHoldsNothingOfTheTruth) {
   const BlindConfig config = tiny();
   const BlindCase made = make(config, "FORCEDOSC");
-  const fs::path folder = fs::path(testing::TempDir()) / "blind_case_test";
+  const fs::path folder = fs::path(testing::TempDir()) / ("blind_case_" + std::to_string(::getpid()));
   fs::remove_all(folder);
   write_blind_case(made, config, "c0001", folder / "cases" / "c0001", folder / "truth" / "c0001.json");
   std::set<std::string> names;

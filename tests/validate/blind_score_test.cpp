@@ -2,6 +2,7 @@
 #include "validate/blind_score.hpp"
 
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include "tests/validate/support.hpp"
 #include "validate/write_file.hpp"
@@ -44,7 +45,7 @@ class BlindScoring : public testing::Test {
     return score_blind(run_, test::source("configs/blind/targets.toml"));
   }
 
-  fs::path run_ = fs::path(testing::TempDir()) / "blind_score_test";
+  fs::path run_ = fs::path(testing::TempDir()) / ("blind_score_" + std::to_string(::getpid()));
   int count_ = 0;
 };
 

@@ -129,6 +129,7 @@ TEST(LawFile, ThreeWaysOfWritingAnExciterAgree) {
 }
 
 TEST(LawFile, ALimitedStateDoesNotWindUp) {
+  sexs_law();
   test::ControlBench bench("SEXSLAW",
                            {{"TAoverTB", 1.0}, {"K", 10.0}, {"TE", 0.5}, {"EMAX", 3.0}, {"EMIN", 0.0}});
   ASSERT_EQ(bench.refused, "");
