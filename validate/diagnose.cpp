@@ -13,8 +13,6 @@
 namespace swingbank::validate {
 namespace {
 
-/// Evidence a hypothesis must have beyond BIC [nats x 2]: what the best of some thirty wrong ones may reach.
-constexpr double kEvidence = 25;
 /// Rivals within this evidence cannot be told apart.
 constexpr double kApart = 12;
 /// Misfit at which a first start needs no second.
@@ -35,6 +33,10 @@ class Diagnoser {
  public:
   Diagnoser(const PlantModel& model, std::vector<Record> records, const DiagnoseOptions& options)
       : model_(model), options_(options) {
+    if (records.size() < 2)
+      throw InputError({fmt::format("{} event", records.size()), "--records",
+                        "an effect is believed only if it predicts an event that it was not fitted to",
+                        "give records of two events or more"});
     result_.events = prepare_events(model, std::move(records), {.measured_states = options.measured_states});
     threads_ = options.threads > 0 ? options.threads : omp_get_num_procs();
   }

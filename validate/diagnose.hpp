@@ -50,6 +50,10 @@ struct Diagnosis {
   double seconds = 0;
 };
 
+/// Evidence (fall of BIC) from which a hypothesis is accepted: what the best of some thirty wrong ones may
+/// reach.
+constexpr double kEvidence = 25;
+
 struct DiagnoseOptions {
   double spread = 0.2;     ///< relative uncertainty believed of the model's parameters
   double adequate = 1.12;  ///< chi2 per value up to which nothing but noise is left

@@ -149,12 +149,16 @@ class DiagnosisPage {
     page_.text(
         fmt::format("{} effects were added one at a time, each with the model's parameters refitted. "
                     "Evidence is the fall of the "
-                    "Bayesian information criterion: more than 10 is strong, below 0 the effect does not pay "
+                    "Bayesian information criterion: from 25 it is accepted, below 0 the effect does not pay "
                     "for its parameters. "
                     "The leading ones were then judged on events left out of the fit.",
                     d_.ranked.size()));
     const double most = std::max(1.0, d_.ranked.front().gain);
-    Bars bars{"Evidence (logarithmic: each step of 1 is a factor of ten)", "", 1.0, "strong", {}};
+    Bars bars{"Evidence (logarithmic: each step of 1 is a factor of ten)",
+              "",
+              std::log10(kEvidence),
+              "accepted",
+              {}};
     for (std::size_t i = 0; i < std::min(kBars, d_.ranked.size()); ++i)
       bars.bars.push_back({d_.ranked[i].hypothesis.name, std::log10(std::max(1.0, d_.ranked[i].gain)),
                            d_.ranked[i].accepted || (d_.ranked[i].gain >= most && most > 10)});

@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# swingbank diagnose as a user starts it: what it writes, exit codes, and a sentence for each wrong input.
+source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+
+model=$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml
+records=$SWINGBANK_SOURCE/configs/records/record-example
+one=$records/avr_ev1.csv two=$records/avr_ev2.csv
+
+# the exciter that the model lacks is named, on two events
+status=0
+"$swingbank" diagnose --model "$model" --records "$one" "$two" --power-only --out "$work/found" --json \
+  >"$work/printed.json" || status=$?
+((status == 3)) || fail "exit code $status, expected 3"
+cmp "$work/printed.json" "$work/found/diagnosis.json" || fail "--json prints something else than it writes"
+grep -q 'SEXS' "$work/found/report.html" || fail "the report does not name the exciter"
+python3 - "$work/found/diagnosis.json" <<'PYTHON'
+import json, sys
+r = json.load(open(sys.argv[1]))
+assert r["verdict"] in ("missing", "confusable") and r["effects"][0] == "SEXS", r["sentence"]
+PYTHON
+
+out=$work/out
+mkdir "$out"
+# refused WORDS ARGUMENT...: exit code 1, the words on stderr, nothing written
+refused() {
+  local words=$1 code=0
+  shift
+  "$swingbank" diagnose --out "$out/d" "$@" >"$work/text" 2>&1 || code=$?
+  ((code == 1)) || fail "exit code $code, expected 1, with $*"
+  grep -q -- "$words" "$work/text" || fail "'$words' expected, got: $(head -1 "$work/text")"
+  [[ ! -e $out/d ]] || fail "something was written with $*"
+}
+refused 'records of two events or more' --model "$model" --records "$one"
+refused 'nowhere.csv' --model "$model" --records "$one" "$work/nowhere.csv"
+refused 'nowhere.toml' --model "$work/nowhere.toml" --records "$one" "$two"
+refused 'two records named' --model "$model" --records "$one" "$one"
+head -20 "$one" >"$work/short.csv"
+refused 'short.csv' --model "$model" --records "$one" "$work/short.csv"
