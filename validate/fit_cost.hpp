@@ -1,0 +1,234 @@
+#pragma once
+// What a fit minimises: residuals of each event, beliefs, and the bends of an added input, as Ceres takes
+// them. For fit.cpp only.
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "validate/fit.hpp"
+
+namespace swingbank::validate::fitting {
+
+using Kind = Direction::Kind;
+
+constexpr int kStates = 4;  ///< P, Q, angle, speed
+/// One unit of each, as the search steps: far below any effect, far above rounding.
+inline constexpr double kStateScale[kStates] = {1e-3, 1e-3, 1e-3, 1e-5};
+inline constexpr Kind kStateKind[kStates] = {Kind::P, Kind::Q, Kind::angle, Kind::speed};
+/// What a start is believed to be off by, in those units: a plant before an event nearly stands still.
+inline constexpr double kStateBelief[kStates] = {20, 20, 20, 20};
+constexpr double kSwitchScale = 1e-3;  ///< [s]
+
+/// A free parameter as the search sees it: z = 0 at the start, steps of order 1.
+struct Axis {
+  FreeParameter where;
+  double start, low, high;  ///< of the parameter
+  bool logarithmic;
+  double unit;  ///< of z, where linear
+  [[nodiscard]] double value(double z) const { return logarithmic ? start * std::exp(z) : start + unit * z; }
+  [[nodiscard]] double slope(double z) const { return logarithmic ? value(z) : unit; }
+  [[nodiscard]] double z(double v) const { return logarithmic ? std::log(v / start) : (v - start) / unit; }
+  /// Standard deviation of the belief in z.
+  [[nodiscard]] double spread() const { return where.spread; }
+};
+
+inline Axis make_axis(const sim::Plant& plant, const FreeParameter& f) {
+  const sim::Parameter& record = parameter_record(plant, f.block, f.index);
+  const double start =
+      sim::block_parameters(plant)[static_cast<std::size_t>(f.block)][static_cast<std::size_t>(f.index)];
+  Axis a{f, start, record.low, record.high, start > 0, 1.0};
+  if (a.logarithmic) {
+    a.low = std::max(a.low, 1e-3 * start);
+    a.high = std::min(a.high, 1e3 * start);
+  } else {
+    a.unit = start != 0 ? std::abs(start) : 0.05 * std::min(record.high - record.low, 20.0);
+  }
+  return a;
+}
+
+/// What stands fixed during a fit.
+struct Setting {
+  const sim::Plant* plant;
+  const sim::Conventions* conventions;
+  const std::vector<FitEvent>* events;
+  std::vector<Axis> axes;
+  double tolerance;
+  InputKind input;
+  std::vector<std::vector<double>> knots;  ///< of the input, per event [s]
+};
+
+inline sim::Plant moved(const Setting& s, const double* z) {
+  sim::Plant plant = *s.plant;
+  for (std::size_t i = 0; i < s.axes.size(); ++i)
+    parameter_value(plant, s.axes[i].where.block, s.axes[i].where.index) = s.axes[i].value(z[i]);
+  return plant;
+}
+
+/// Whether the equations can be run with these parameters.
+inline bool can_run(const sim::Plant& plant) {
+  Problems problems;
+  const auto check = [&](const sim::Block& b) {
+    b.effect->check(b.effect->law.get(), b.p.data(), "", problems);
+  };
+  check(plant.machine);
+  if (plant.transformer.effect) check(plant.transformer);
+  for (const auto& b : plant.controls) check(b);
+  return problems.list().empty();
+}
+
+/// Residuals of one event; parameter blocks: z of the plant (absent if none is free), state of the event.
+class EventCost : public ceres::CostFunction {
+ public:
+  EventCost(const Setting& setting, std::size_t event)
+      : setting_(setting), event_((*setting.events)[event]), knots_(setting.knots[event]) {
+    set_num_residuals(event_.values());
+    if (!setting.axes.empty())
+      mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(setting.axes.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(state_size()));
+  }
+  [[nodiscard]] std::size_t state_size() const { return event_.switchings.size() + kStates + knots_.size(); }
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    const bool has_axes = !setting_.axes.empty();
+    const double* z = has_axes ? blocks[0] : nullptr;
+    const double* state = blocks[has_axes ? 1 : 0];
+    double* by_z = jacobians && has_axes ? jacobians[0] : nullptr;
+    double* by_state = jacobians ? jacobians[has_axes ? 1 : 0] : nullptr;
+    const sim::Plant plant = moved(setting_, z);
+    if (!can_run(plant)) return false;
+    std::vector<Direction> along;
+    if (by_z)
+      for (std::size_t i = 0; i < setting_.axes.size(); ++i) {
+        const Axis& a = setting_.axes[i];
+        along.push_back({Kind::parameter, a.where.block, a.where.index, a.slope(z[i])});
+      }
+    const std::size_t states_at = along.size();
+    if (by_state) add_state_directions(along);
+    try {
+      auto switchings = event_.switchings;
+      const Drive run = make_drive(plant, state, switchings);
+      const VoltageCurve curve(event_.played(), switchings);
+      Drive with = run;
+      with.curve = &curve;
+      const Response r = drive(with, along);
+      write(r.value, true, residuals, 1, 0);
+      const int nz = static_cast<int>(setting_.axes.size());
+      const int ns = static_cast<int>(state_size());
+      for (std::size_t d = 0; d < along.size(); ++d)
+        if (d < states_at)
+          write(r.slopes[d].value, false, by_z, nz, static_cast<int>(d));
+        else
+          write(r.slopes[d].value, false, by_state, ns, static_cast<int>(d - states_at));
+    } catch (const InputError&) {
+      return false;
+    }
+    return true;
+  }
+  /// The run at a state; `switchings` get their moved instants.
+  Drive make_drive(const sim::Plant& plant, const double* state, std::vector<Switching>& switchings) const {
+    for (std::size_t k = 0; k < switchings.size(); ++k)
+      switchings[k].time = event_.switchings[k].time + kSwitchScale * state[k];
+    const double* s = state + switchings.size();
+    Drive run{.plant = &plant, .conventions = *setting_.conventions, .record = &event_.record};
+    run.start = event_.start;
+    run.start.P += kStateScale[0] * s[0];
+    run.start.Q += kStateScale[1] * s[1];
+    run.angle = kStateScale[2] * s[2];
+    run.speed = kStateScale[3] * s[3];
+    run.tolerance = setting_.tolerance;
+    // a limit that is met and left within a sample is no reason for short steps
+    run.least_step = event_.record.step() / 40;
+    run.step_limit = 15 * event_.record.samples();
+    if (setting_.input == InputKind::none) return run;
+    PiecewiseLinear& input = setting_.input == InputKind::torque ? run.torque : run.field;
+    input.t = knots_;
+    input.value.assign(s + kStates, s + kStates + knots_.size());
+    return run;
+  }
+
+ private:
+  void add_state_directions(std::vector<Direction>& along) const {
+    for (std::size_t k = 0; k < event_.switchings.size(); ++k)
+      along.push_back({Kind::switching, 0, static_cast<int>(k), kSwitchScale});
+    for (int k = 0; k < kStates; ++k) along.push_back({kStateKind[k], 0, 0, kStateScale[k]});
+    const Kind kind = setting_.input == InputKind::torque ? Kind::torque : Kind::field;
+    for (std::size_t k = 0; k < knots_.size(); ++k) along.push_back({kind, 0, static_cast<int>(k), 1.0});
+  }
+  /// Whitened values (less the measured ones) into column `column` of a matrix of `stride` columns.
+  void write(const std::vector<double>* values, bool less_measured, double* to, int stride,
+             int column) const {
+    const auto n = static_cast<Eigen::Index>(event_.channels.size());
+    Eigen::VectorXd e(n);
+    Eigen::Index row = 0;
+    for (int k = 0; k < event_.record.samples(); ++k) {
+      if (!event_.compared(static_cast<std::size_t>(k))) continue;
+      for (Eigen::Index c = 0; c < n; ++c) {
+        const Output o = event_.channels[static_cast<std::size_t>(c)];
+        e[c] = values[static_cast<int>(o)][static_cast<std::size_t>(k)];
+        if (less_measured) e[c] -= event_.measured(o)[static_cast<std::size_t>(k)];
+      }
+      const Eigen::VectorXd w = event_.whitening * e;
+      for (Eigen::Index c = 0; c < n; ++c) to[row++ * stride + column] = w[c];
+    }
+  }
+
+  const Setting& setting_;
+  const FitEvent& event_;
+  const std::vector<double>& knots_;
+};
+
+/// Bends of an input that begins at `first` of the event's state, in units of `bend`; the first knot and the
+/// first slope count as bends from zero, so that nothing is inferred before it is needed.
+class Bends : public ceres::CostFunction {
+ public:
+  Bends(std::size_t size, std::size_t first, double bend) : size_(size), first_(first), weight_(1 / bend) {
+    set_num_residuals(static_cast<int>(size - first));
+    mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(size));
+  }
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    const double* u = blocks[0] + first_;
+    const std::size_t n = size_ - first_;
+    double* j = jacobians ? jacobians[0] : nullptr;
+    if (j) std::fill(j, j + n * size_, 0.0);
+    for (std::size_t k = 0; k < n; ++k) {
+      const double one = k >= 1 ? u[k - 1] : 0.0, two = k >= 2 ? u[k - 2] : 0.0;
+      residuals[k] = weight_ * (u[k] - 2 * one + two);
+      if (!j) continue;
+      double* row = j + k * size_ + first_;
+      row[k] = weight_;
+      if (k >= 1) row[static_cast<std::ptrdiff_t>(k) - 1] = -2 * weight_;
+      if (k >= 2) row[static_cast<std::ptrdiff_t>(k) - 2] = weight_;
+    }
+    return true;
+  }
+
+ private:
+  std::size_t size_, first_;
+  double weight_;
+};
+
+/// z/spread, one residual each, in units of the misfit reached.
+class Belief : public ceres::CostFunction {
+ public:
+  Belief(std::vector<double> spread, const double* discrepancy)
+      : spread_(std::move(spread)), discrepancy_(discrepancy) {
+    set_num_residuals(static_cast<int>(spread_.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(spread_.size()));
+  }
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    const std::size_t n = spread_.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const double weight = spread_[i] > 0 ? std::sqrt(*discrepancy_) / spread_[i] : 0.0;
+      residuals[i] = weight * blocks[0][i];
+      if (jacobians && jacobians[0])
+        for (std::size_t j = 0; j < n; ++j) jacobians[0][i * n + j] = i == j ? weight : 0.0;
+    }
+    return true;
+  }
+
+ private:
+  std::vector<double> spread_;
+  const double* discrepancy_;
+};
+
+}  // namespace swingbank::validate::fitting

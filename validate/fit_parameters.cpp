@@ -1,0 +1,48 @@
+#include <algorithm>
+
+#include "validate/fit.hpp"
+
+namespace swingbank::validate {
+
+const sim::Effect& block_effect(const sim::Plant& plant, int block) {
+  if (block == 0) return *plant.machine.effect;
+  const int first = plant.transformer.effect ? 2 : 1;
+  if (block < first) return *plant.transformer.effect;
+  return *plant.controls[static_cast<std::size_t>(block - first)].effect;
+}
+const sim::Parameter& parameter_record(const sim::Plant& plant, int block, int index) {
+  return block_effect(plant, block).parameters[static_cast<std::size_t>(index)];
+}
+double& parameter_value(sim::Plant& plant, int block, int index) {
+  const auto i = static_cast<std::size_t>(index);
+  if (block == 0) return plant.machine.p[i];
+  const int first = plant.transformer.effect ? 2 : 1;
+  if (block < first) return plant.transformer.p[i];
+  return plant.controls[static_cast<std::size_t>(block - first)].p[i];
+}
+
+std::vector<FreeParameter> free_parameters(const sim::Plant& plant, int block, double spread) {
+  const sim::Effect& effect = block_effect(plant, block);
+  const auto values = sim::block_parameters(plant)[static_cast<std::size_t>(block)];
+  std::vector<double> instants;
+  if (effect.instants) instants = effect.instants(effect.law.get(), values.data());
+  std::vector<FreeParameter> free;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto& p = effect.parameters[i];
+    if (p.is_code() || values[i] == 0.0 || values[i] == p.neutral) continue;
+    if (std::ranges::count(instants, values[i])) continue;
+    free.push_back({block, static_cast<int>(i), spread});
+  }
+  return free;
+}
+std::vector<FreeParameter> free_parameters(const sim::Plant& plant, double spread) {
+  std::vector<FreeParameter> all;
+  const auto blocks = static_cast<int>(sim::block_parameters(plant).size());
+  for (int b = 0; b < blocks; ++b) {
+    const auto some = free_parameters(plant, b, spread);
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  return all;
+}
+
+}  // namespace swingbank::validate
