@@ -42,7 +42,7 @@ void Progress::print(bool last) {
   const double share = total_ == 0 ? 1.0 : static_cast<double>(done_) / static_cast<double>(total_);
   const double left = rate() > 0 ? static_cast<double>(total_ - std::min(done_, total_)) / rate() : 0.0;
   const std::string text =
-      fmt::format("{}/{} {} ({:.0f} %), {:.0f} {}/s{}", done_, total_, unit_, 100.0 * share, rate(), unit_,
+      fmt::format("{}/{} {} ({:.0f} %), {}{}", done_, total_, unit_, 100.0 * share, rate_text(rate(), unit_),
                   last ? "" : ", " + duration_text(left) + " left");
   if (mode_ == Mode::lines) {
     spdlog::info(text);
@@ -53,6 +53,12 @@ void Progress::print(bool last) {
   fmt::print(stderr, "\r\033[K[{:#<{}}{:.<{}}] {}", "", filled, "", width - filled, text);
   std::fflush(stderr);
   open_ = true;
+}
+
+std::string rate_text(double per_second, const std::string& unit) {
+  if (per_second >= 0.995) return fmt::format("{:.0f} {}/s", per_second, unit);
+  if (per_second >= 1.0 / 60) return fmt::format("{:.1f} {}/min", 60 * per_second, unit);
+  return fmt::format("{:.1f} {}/h", 3600 * per_second, unit);
 }
 
 std::string duration_text(double seconds) {

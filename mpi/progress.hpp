@@ -29,6 +29,8 @@ class Progress {
   bool open_ = false;  ///< a line without its line feed stands on the terminal
 };
 
+/// "120 draws/s", and where that would be below one "4.5 plants/min" or "2.0 plants/h".
+std::string rate_text(double per_second, const std::string& unit);
 /// "1 h 02 min", "3 min 20 s", "12 s".
 std::string duration_text(double seconds);
 

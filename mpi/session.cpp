@@ -11,13 +11,11 @@
 
 namespace swingbank {
 
-namespace {
-bool launched() {
+bool MpiSession::launched() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "SLURM_STEP_ID"})
     if (std::getenv(name) != nullptr) return true;
   return false;
 }
-}  // namespace
 
 MpiSession::MpiSession(int* argc, char*** argv) {
   ::setenv("OMPI_MCA_fbtl_posix_read_datasieving", "0", 1);
