@@ -25,10 +25,6 @@ std::string capitalised(std::string text) {
   return text;
 }
 
-double criterion(const Fit& f) {
-  return f.chi2 + f.belief + f.fitted * std::log(static_cast<double>(f.values));
-}
-
 class Diagnoser {
  public:
   Diagnoser(const PlantModel& model, std::vector<Record> records, const DiagnoseOptions& options)
@@ -68,7 +64,7 @@ class Diagnoser {
     if (!result_.base.failed.empty())
       throw InputError({"the model cannot be fitted", model_.origin, result_.base.failed,
                         "correct the model or leave the record out"});
-    held_out_base_ = hold_out(model_.plant, model_.conventions, {}, result_.base);
+    held_out_base_ = hold_out(trial(), model_.plant, model_.conventions, {}, result_.base);
     report("base", 1, 1);
   }
   void infer_inputs() {
@@ -109,7 +105,7 @@ class Diagnoser {
     done = 0;
 #pragma omp parallel for schedule(dynamic) num_threads(threads_)
     for (int i = 0; i < leading; ++i) {
-      judge(judged[static_cast<std::size_t>(i)], base_fit);
+      judge(trial(), base_fit, held_out_base_, judged[static_cast<std::size_t>(i)]);
       const std::lock_guard lock(progress);
       report("unseen events " + judged[static_cast<std::size_t>(i)].hypothesis.name, ++done, leading);
     }
@@ -175,13 +171,7 @@ class Diagnoser {
   }
 
   std::vector<FreeParameter> free_of(const Hypothesis& h) const {
-    std::vector<FreeParameter> free;
-    for (const auto& f : free_parameters(h.plant, options_.spread))
-      if (std::ranges::none_of(
-              h.free, [&](const FreeParameter& own) { return own.block == f.block && own.index == f.index; }))
-        free.push_back(f);
-    free.insert(free.end(), h.free.begin(), h.free.end());
-    return free;
+    return validate::free_of(h, options_.spread);
   }
   /// Where the base nearly fits, what is missing is small: its fitted values are the start then.
   void nest(const Hypothesis& h, const sim::Plant& base, Candidate& c) const {
@@ -258,66 +248,7 @@ class Diagnoser {
     return std::isfinite(misfit);
   }
 
-  /// Each event predicted by the structure fitted to the others.
-  std::vector<HeldOut> hold_out(const sim::Plant& plant, const sim::Conventions& conventions,
-                                const std::vector<FreeParameter>& free, const Fit& whole) const {
-    std::vector<HeldOut> out(result_.events.size());
-    for (std::size_t left = 0; left < result_.events.size(); ++left) {
-      std::vector<FitEvent> others;
-      FitOptions o;
-      o.iterations = 6;
-      for (std::size_t e = 0; e < result_.events.size(); ++e)
-        if (e != left) {
-          others.push_back(result_.events[e]);
-          o.start.push_back(whole.events[e].state);
-        }
-      out[left].record = result_.events[left].record.name;
-      if (others.empty()) continue;
-      const auto& all = free.empty() ? free_parameters(plant, options_.spread) : free;
-      o.values = values_of(whole.plant, all);
-      const Fit seen = fit(plant, conventions, others, all, o);
-      FitOptions unseen;
-      const Fit f =
-          fit(seen.failed.empty() ? seen.plant : plant, conventions, {result_.events[left]}, {}, unseen);
-      out[left].after = f.failed.empty() ? f.misfit() : 1e300;
-    }
-    return out;
-  }
-  static std::vector<double> values_of(const sim::Plant& plant, const std::vector<FreeParameter>& free) {
-    std::vector<double> values;
-    const auto blocks = sim::block_parameters(plant);
-    for (const auto& f : free)
-      values.push_back(blocks[static_cast<std::size_t>(f.block)][static_cast<std::size_t>(f.index)]);
-    return values;
-  }
-
-  void judge(Judgement& j, const Fit& base_fit) const {
-    const auto free = free_of(j.hypothesis);
-    FitOptions o;
-    o.values = values_of(j.fit.plant, free);
-    for (const auto& e : j.fit.events) o.start.push_back(e.state);
-    if (Fit f = fit(j.hypothesis.plant, j.hypothesis.conventions, result_.events, free, o);
-        f.failed.empty() && criterion(f) < criterion(j.fit))
-      j.fit = std::move(f);
-    j.gain = criterion(base_fit) - criterion(j.fit);
-    j.size = std::sqrt(std::max(0.0, base_fit.chi2 - j.fit.chi2));
-    if (j.gain < kEvidence) {
-      j.why_not = fmt::format("evidence {:.0f}, below {:.0f}", j.gain, kEvidence);
-      return;
-    }
-    j.held_out = hold_out(j.hypothesis.plant, j.hypothesis.conventions, free, j.fit);
-    for (std::size_t e = 0; e < j.held_out.size(); ++e) j.held_out[e].before = held_out_base_[e].after;
-    for (const auto& h : j.held_out)
-      if (h.after > h.before && h.after > options_.adequate) {
-        j.why_not = fmt::format("does not improve {} when that is not fitted", h.record);
-        return;
-      }
-    if (j.fit.misfit() > options_.adequate) {
-      j.why_not = fmt::format("leaves {:.2f} of the noise's variance", j.fit.misfit());
-      return;
-    }
-    j.accepted = true;
-  }
+  [[nodiscard]] Trial trial() const { return {result_.events, options_.spread, options_.adequate}; }
 
   void settle() {
     const auto& r = result_.ranked;

@@ -6,27 +6,10 @@
 #include <vector>
 
 #include "validate/fit.hpp"
-#include "validate/hypothesis.hpp"
+#include "validate/judge.hpp"
 #include "validate/missing_input.hpp"
 
 namespace swingbank::validate {
-
-/// What the left-out event says: the model fitted to the others, with and without the effect.
-struct HeldOut {
-  std::string record;
-  double before = 0, after = 0;  ///< chi2 per value
-};
-
-/// One hypothesis, fitted and judged.
-struct Judgement {
-  Hypothesis hypothesis;
-  Fit fit;                        ///< to all events
-  double gain = 0;                ///< BIC(base) - BIC(with it): evidence in its favour
-  double size = 0;                ///< what it adds to the answer: norm of the change / noise, per sqrt(value)
-  std::vector<HeldOut> held_out;  ///< empty where it was not worth it
-  bool accepted = false;
-  std::string why_not;  ///< empty where accepted
-};
 
 enum class Verdict {
   adequate,     ///< nothing but noise is left
@@ -49,10 +32,6 @@ struct Diagnosis {
   std::vector<FitEvent> events;
   double seconds = 0;
 };
-
-/// Evidence (fall of BIC) from which a hypothesis is accepted: what the best of some thirty wrong ones may
-/// reach.
-constexpr double kEvidence = 25;
 
 struct DiagnoseOptions {
   double spread = 0.2;     ///< relative uncertainty believed of the model's parameters

@@ -1,0 +1,85 @@
+#include "validate/judge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace swingbank::validate {
+
+double criterion(const Fit& f) {
+  return f.chi2 + f.belief + f.fitted * std::log(static_cast<double>(f.values));
+}
+
+std::vector<double> values_of(const sim::Plant& plant, const std::vector<FreeParameter>& free) {
+  sim::Plant own = plant;
+  std::vector<double> values;
+  for (const auto& f : free) values.push_back(parameter_value(own, f.block, f.index));
+  return values;
+}
+
+std::vector<FreeParameter> free_of(const Hypothesis& h, double spread) {
+  std::vector<FreeParameter> free;
+  for (const auto& f : free_parameters(h.plant, spread))
+    if (std::ranges::none_of(
+            h.free, [&](const FreeParameter& own) { return own.block == f.block && own.index == f.index; }))
+      free.push_back(f);
+  free.insert(free.end(), h.free.begin(), h.free.end());
+  return free;
+}
+
+std::vector<HeldOut> hold_out(const Trial& trial, const sim::Plant& plant,
+                              const sim::Conventions& conventions, const std::vector<FreeParameter>& free,
+                              const Fit& whole) {
+  std::vector<HeldOut> out(trial.events.size());
+  for (std::size_t left = 0; left < trial.events.size(); ++left) {
+    std::vector<FitEvent> others;
+    FitOptions o;
+    o.iterations = 6;
+    for (std::size_t e = 0; e < trial.events.size(); ++e)
+      if (e != left) {
+        others.push_back(trial.events[e]);
+        o.start.push_back(whole.events[e].state);
+      }
+    out[left].record = trial.events[left].record.name;
+    if (others.empty()) continue;
+    const auto& all = free.empty() ? free_parameters(plant, trial.spread) : free;
+    o.values = values_of(whole.plant, all);
+    const Fit seen = fit(plant, conventions, others, all, o);
+    FitOptions unseen;
+    const Fit f =
+        fit(seen.failed.empty() ? seen.plant : plant, conventions, {trial.events[left]}, {}, unseen);
+    out[left].after = f.failed.empty() ? f.misfit() : 1e300;
+  }
+  return out;
+}
+
+void judge(const Trial& trial, const Fit& base, const std::vector<HeldOut>& held_out_base, Judgement& j) {
+  const auto free = free_of(j.hypothesis, trial.spread);
+  FitOptions o;
+  o.values = values_of(j.fit.plant, free);
+  for (const auto& e : j.fit.events) o.start.push_back(e.state);
+  if (Fit f = fit(j.hypothesis.plant, j.hypothesis.conventions, trial.events, free, o);
+      f.failed.empty() && criterion(f) < criterion(j.fit))
+    j.fit = std::move(f);
+  j.gain = criterion(base) - criterion(j.fit);
+  j.size = std::sqrt(std::max(0.0, base.chi2 - j.fit.chi2));
+  if (j.gain < kEvidence) {
+    j.why_not = fmt::format("evidence {:.0f}, below {:.0f}", j.gain, kEvidence);
+    return;
+  }
+  j.held_out = hold_out(trial, j.hypothesis.plant, j.hypothesis.conventions, free, j.fit);
+  for (std::size_t e = 0; e < j.held_out.size(); ++e) j.held_out[e].before = held_out_base[e].after;
+  for (const auto& h : j.held_out)
+    if (h.after > h.before && h.after > trial.adequate) {
+      j.why_not = fmt::format("does not improve {} when that is not fitted", h.record);
+      return;
+    }
+  if (j.fit.misfit() > trial.adequate) {
+    j.why_not = fmt::format("leaves {:.2f} of the noise's variance", j.fit.misfit());
+    return;
+  }
+  j.accepted = true;
+}
+
+}  // namespace swingbank::validate

@@ -1,0 +1,54 @@
+#pragma once
+// How a hypothesis is judged: fitted to all events, then by what it predicts for events left out of the fit.
+#include <string>
+#include <vector>
+
+#include "validate/fit.hpp"
+#include "validate/hypothesis.hpp"
+
+namespace swingbank::validate {
+
+/// What the left-out event says: the model fitted to the others, with and without the effect.
+struct HeldOut {
+  std::string record;
+  double before = 0, after = 0;  ///< chi2 per value
+};
+
+/// One hypothesis, fitted and judged.
+struct Judgement {
+  Hypothesis hypothesis;
+  Fit fit;                        ///< to all events
+  double gain = 0;                ///< BIC(base) - BIC(with it): evidence in its favour
+  double size = 0;                ///< what it adds to the answer: norm of the change / noise, per sqrt(value)
+  std::vector<HeldOut> held_out;  ///< empty where it was not worth it
+  bool accepted = false;
+  std::string why_not;  ///< empty where accepted
+};
+
+/// Evidence (fall of BIC) from which a hypothesis is accepted: what the best of some thirty wrong ones may
+/// reach.
+constexpr double kEvidence = 25;
+
+/// Bayes's information criterion, beliefs included.
+double criterion(const Fit& f);
+/// Present values of the free parameters.
+std::vector<double> values_of(const sim::Plant& plant, const std::vector<FreeParameter>& free);
+/// Those of the plant that a refit may move, then the hypothesis's own.
+std::vector<FreeParameter> free_of(const Hypothesis& h, double spread);
+
+/// Events to judge on, and what is known of them without any hypothesis.
+struct Trial {
+  const std::vector<FitEvent>& events;
+  double spread;    ///< believed of the model's parameters
+  double adequate;  ///< chi2 per value up to which nothing but noise is left
+};
+
+/// Each event predicted by the structure fitted to the others; `free` empty: the plant's own.
+std::vector<HeldOut> hold_out(const Trial& trial, const sim::Plant& plant,
+                              const sim::Conventions& conventions, const std::vector<FreeParameter>& free,
+                              const Fit& whole);
+/// Finishes the fit of `j` and accepts it if its evidence is strong, every left-out event is predicted better
+/// than by the base, and nothing but noise is left; otherwise says why not.
+void judge(const Trial& trial, const Fit& base, const std::vector<HeldOut>& held_out_base, Judgement& j);
+
+}  // namespace swingbank::validate
