@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "jobs/event_records.hpp"
+#include "jobs/fleet_run.hpp"
 #include "validate/diagnosis_report.hpp"
 #include "validate/diagnosis_text.hpp"
 #include "validate/write_file.hpp"
@@ -34,34 +35,71 @@ int run(const std::string& model_file, const std::vector<std::string>& record_fi
   return d.verdict == Verdict::adequate ? 0 : kNotAdequate;
 }
 
+/// What a person may ask for.
+struct Command {
+  std::string model, out = "diagnosis", plant;
+  std::vector<std::string> records;
+  DiagnoseOptions options;
+  jobs::FleetCommand fleet;
+};
+
+void declare(CLI::App& app, Command& c) {
+  auto* model = app.add_option("--model", c.model, "plant file (configs/plants/README.md)");
+  auto* records =
+      app.add_option("--records,--record", c.records, "records of the events (validate/README.md)");
+  model->needs(records);
+  records->needs(model);
+  auto* fleet = app.add_option("--fleet", c.fleet.fleet,
+                               "instead of both: a fleet file, many plants with their records "
+                               "(configs/fleet/README.md); under mpirun each rank takes one plant at a time")
+                    ->excludes(model);
+  app.add_option("--plant", c.plant, "of the fleet only this plant; its result as JSON, no table")
+      ->needs(fleet);
+  app.add_option(
+         "--out", c.out,
+         "folder for report.html and diagnosis.json; of a fleet for fleet.html, fleet.json, fleet.csv and "
+         "a folder per plant")
+      ->capture_default_str();
+  app.add_option("--spread", c.options.spread,
+                 "relative uncertainty believed of the model's parameters; of a fleet it stands in its file")
+      ->capture_default_str()
+      ->check(CLI::Range(0.001, 2.0))
+      ->excludes(fleet);
+  app.add_option(
+         "--threads", c.fleet.threads,
+         "of one diagnosis; 0: one per core (default: that, or 1 where several ranks share the machine)")
+      ->check(CLI::Range(0, 4096));
+  app.add_flag(
+         "!--power-only", c.options.measured_states,
+         "leave recorded speed, Efd and Ifd aside: compare P and Q only; of a fleet it stands in its file")
+      ->excludes(fleet);
+  app.add_flag("--json", c.fleet.json, "print the result as JSON instead of text");
+  app.footer(
+      "Exit codes: 0 adequate, 3 something is missing or unexplained, 1 bad input. Of a fleet: 0 all plants "
+      "are "
+      "adequate, 3 some plant is not, 1 some plant failed, 2 stopped by a signal (run it again to "
+      "continue).");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{SWINGBANK_SUMMARY};
-  std::string model_file, out = "diagnosis";
-  std::vector<std::string> record_files;
-  bool json = false;
-  DiagnoseOptions options;
-  app.add_option("--model", model_file, "plant file (configs/plants/README.md)")->required();
-  app.add_option("--records,--record", record_files, "records of the events (validate/README.md)")
-      ->required();
-  app.add_option("--out", out, "folder for report.html and diagnosis.json")->capture_default_str();
-  app.add_option("--spread", options.spread, "relative uncertainty believed of the model's parameters")
-      ->capture_default_str()
-      ->check(CLI::Range(0.001, 2.0));
-  app.add_option("--threads", options.threads, "0: one per core")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 4096));
-  app.add_flag("!--power-only", options.measured_states,
-               "leave recorded speed, Efd and Ifd aside: compare P and Q only");
-  app.add_flag("--json", json, "print the result as JSON instead of text");
-  app.footer("Exit codes: 0 adequate, 3 something is missing or unexplained, 1 bad input.");
+  CLI::App app{SWINGBANK_SUMMARY, "swingbank diagnose"};
+  Command c;
+  declare(app, c);
   try {
     app.parse(argc, argv);
+    if (c.model.empty() && c.fleet.fleet.empty())
+      throw CLI::RequiredError("--model with --records, or --fleet,");
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 1;
   }
   return jobs::guarded("diagnose", [&] {
-    return run(model_file, record_files, out, json, options, jobs::command_line("diagnose", argc, argv));
+    c.fleet.out = c.out;
+    if (!c.plant.empty()) return jobs::run_fleet_plant(c.fleet, c.plant);
+    if (!c.fleet.fleet.empty()) return jobs::run_fleet(c.fleet, &argc, &argv);
+    c.options.threads = std::max(c.fleet.threads, 0);
+    return run(c.model, c.records, c.out, c.fleet.json, c.options,
+               jobs::command_line("diagnose", argc, argv));
   });
 }

@@ -107,29 +107,6 @@ nlohmann::json to_json(const EventComparison& e) {
   return j;
 }
 
-/// Columns padded to the same width; counts characters, not bytes.
-std::string padded(const Table& table) {
-  const auto length = [](const std::string& s) {
-    return std::ranges::count_if(s, [](unsigned char c) { return (c & 0xC0) != 0x80; });
-  };
-  std::vector<std::ptrdiff_t> width;
-  for (const auto& h : table.header) width.push_back(length(h));
-  for (const auto& row : table.rows)
-    for (std::size_t i = 0; i < row.size(); ++i) width[i] = std::max(width[i], length(row[i].text));
-  std::string out;
-  const auto line = [&](const auto& row, const auto& text) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string pad(static_cast<std::size_t>(width[i] - length(text(row[i]))), ' ');
-      out += i < 2 ? text(row[i]) + pad + "  " : pad + text(row[i]) + "  ";
-    }
-    out.erase(out.find_last_not_of(' ') + 1);
-    out += "\n";
-  };
-  line(table.header, [](const std::string& s) { return s; });
-  for (const auto& row : table.rows) line(row, [](const Cell& c) { return c.text; });
-  return out;
-}
-
 }  // namespace
 
 Table error_summary(const std::vector<EventComparison>& events) {

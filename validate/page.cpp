@@ -141,7 +141,9 @@ void Page::table(const Table& table) {
     body_ += "<tr>";
     for (const auto& cell : row)
       body_ += fmt::format("<td{}>{}</td>", is_words(cell) ? " class=\"words\"" : shade_style(cell.shade),
-                           escape(cell.text));
+                           cell.link.empty()
+                               ? escape(cell.text)
+                               : fmt::format("<a href=\"{}\">{}</a>", escape(cell.link), escape(cell.text)));
     body_ += "</tr>\n";
   }
   body_ += "</tbody></table></div>\n";
@@ -263,6 +265,28 @@ std::string csv(const Table& table) {
   std::string out;
   const auto line = [&](const auto& cells, const auto& text) {
     for (std::size_t i = 0; i < cells.size(); ++i) out += (i ? "," : "") + quoted(text(cells[i]));
+    out += "\n";
+  };
+  line(table.header, [](const std::string& s) { return s; });
+  for (const auto& row : table.rows) line(row, [](const Cell& c) { return c.text; });
+  return out;
+}
+
+std::string padded(const Table& table, std::size_t left) {
+  const auto length = [](const std::string& s) {
+    return std::ranges::count_if(s, [](unsigned char c) { return (c & 0xC0) != 0x80; });
+  };
+  std::vector<std::ptrdiff_t> width;
+  for (const auto& h : table.header) width.push_back(length(h));
+  for (const auto& row : table.rows)
+    for (std::size_t i = 0; i < row.size(); ++i) width[i] = std::max(width[i], length(row[i].text));
+  std::string out;
+  const auto line = [&](const auto& row, const auto& text) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string pad(static_cast<std::size_t>(width[i] - length(text(row[i]))), ' ');
+      out += i < left ? text(row[i]) + pad + "  " : pad + text(row[i]) + "  ";
+    }
+    out.erase(out.find_last_not_of(' ') + 1);
     out += "\n";
   };
   line(table.header, [](const std::string& s) { return s; });

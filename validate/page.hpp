@@ -11,10 +11,11 @@ namespace swingbank::validate {
 /// & < > " as entities.
 std::string escape(std::string_view text);
 
-/// A cell's text and, if any, its shade: 0 good … 1 bad.
+/// A cell's text and, if any, its shade: 0 good … 1 bad; and the address it leads to on a page.
 struct Cell {
   std::string text;
   double shade = -1;
+  std::string link = {};
   Cell(std::string t)
       : text(std::move(t)) {}       // NOLINT(google-explicit-constructor): a cell is mostly its text
   Cell(const char* t) : text(t) {}  // NOLINT(google-explicit-constructor)
@@ -82,6 +83,9 @@ class Page {
 /// The same table as Markdown and as CSV (RFC 4180).
 std::string markdown(const Table& table);
 std::string csv(const Table& table);
+/// The same in columns for a terminal, as wide as their texts (characters, not bytes); the first `left`
+/// columns start at the left.
+std::string padded(const Table& table, std::size_t left = 2);
 
 /// Source text of the chart library.
 std::string_view dygraphs_script();

@@ -1,0 +1,190 @@
+#include "jobs/fleet_run.hpp"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/file.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "jobs/event_records.hpp"
+#include "jobs/item_progress.hpp"
+#include "mpi/item_queue.hpp"
+#include "mpi/session.hpp"
+#include "mpi/stop_signal.hpp"
+#include "mpi/store/shard_group.hpp"
+#include "validate/fleet_report.hpp"
+#include "validate/write_file.hpp"
+
+extern char** environ;
+
+namespace swingbank::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace validate;
+
+/// The folder belongs to one run at a time. The lock falls when the process ends, however it ends.
+class FolderLock {
+ public:
+  explicit FolderLock(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    const fs::path file = folder / ".lock";
+    descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    if (descriptor_ < 0)
+      throw InputError({"cannot write", folder.string(), error ? error.message() : std::strerror(errno),
+                        "choose a writable folder with room on its disk"});
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
+      throw InputError({"a second run", folder.string(), "another swingbank diagnose --fleet writes there",
+                        "wait for it, or give another --out"});
+  }
+  ~FolderLock() { ::close(descriptor_); }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
+/// Output and status of a program that was started with these arguments.
+struct Ended {
+  std::string output;
+  int status = 0;
+};
+Ended run_program(const std::string& program, const std::vector<std::string>& words) {
+  std::vector<char*> arguments;
+  for (const auto& w : words) arguments.push_back(const_cast<char*>(w.c_str()));
+  arguments.push_back(nullptr);
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0)
+    throw std::runtime_error(std::string("no pipe: ") + std::strerror(errno));
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+  pid_t child = 0;
+  const int failure = ::posix_spawn(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  ::close(ends[1]);
+  Ended e;
+  char buffer[4096];
+  for (;;) {
+    const ssize_t n = failure == 0 ? ::read(ends[0], buffer, sizeof buffer) : 0;
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) break;
+    e.output.append(buffer, static_cast<std::size_t>(n));
+  }
+  ::close(ends[0]);
+  if (failure != 0) throw std::runtime_error("cannot start " + program + ": " + std::strerror(failure));
+  while (::waitpid(child, &e.status, 0) < 0 && errno == EINTR) continue;
+  return e;
+}
+
+/// What run_fleet_plant printed; a failed row if it ended otherwise.
+std::string plant_result(const FleetCommand& c, const FleetPlant& plant, int threads) {
+  const auto failed = [&](const std::string& why) {
+    return nlohmann::json{{"was_there", false}, {"row", row_json(failed_row(plant.name, why))}}.dump();
+  };
+  try {
+    const Ended e =
+        run_program("/proc/self/exe", {"swingbank-diagnose", "--fleet", c.fleet, "--plant", plant.name,
+                                       "--out", c.out, "--threads", std::to_string(threads)});
+    if (WIFSIGNALED(e.status))
+      return failed(fmt::format("The diagnosis was ended by signal {} ({}).", WTERMSIG(e.status),
+                                strsignal(WTERMSIG(e.status))));
+    if (nlohmann::json::accept(e.output)) return e.output;
+    return failed(fmt::format("The diagnosis ended with code {} and no result.", WEXITSTATUS(e.status)));
+  } catch (const std::exception& error) {
+    return failed(error.what());
+  }
+}
+
+std::string describe(const FleetRow& row, bool was_there) {
+  std::string text = row.plant + ": " + row.verdict;
+  if (row.failed()) text += ": " + row.sentence.substr(0, row.sentence.find('\n'));
+  for (const auto& effect : row.effects) text += " " + effect;
+  return text + (was_there ? " (was there already)" : "");
+}
+
+int tell(const FleetCommand& c, const Fleet& fleet, const std::vector<FleetRow>& rows) {
+  const fs::path folder = c.out;
+  const std::string json = fleet_json(fleet, rows);
+  write_file(folder / "fleet.json", json);
+  write_file(folder / "fleet.csv", fleet_csv(rows));
+  write_file(folder / "fleet.html", fleet_html(fleet, rows));
+  if (c.json)
+    fmt::print("{}", json);
+  else
+    fmt::print("{}report: {}\n", fleet_text(rows), (folder / "fleet.html").string());
+  return fleet_code(rows);
+}
+
+}  // namespace
+
+int run_fleet_plant(const FleetCommand& c, const std::string& name) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // killed with its rank: the next run must not find it still writing
+  for (const int s : {SIGTERM, SIGINT, SIGUSR1}) std::signal(s, SIG_IGN);  // a soft stop lets it finish
+  const Fleet fleet = load_fleet(c.fleet);
+  const auto plant = std::ranges::find(fleet.plants, name, &FleetPlant::name);
+  if (plant == fleet.plants.end())
+    throw InputError(
+        {"no plant " + name, c.fleet, "the fleet has no [plant." + name + "]", "name one of its plants"});
+  DiagnoseOptions options;
+  options.threads = std::max(c.threads, 0);
+  options.progress = progress_line();
+  const FleetOutcome o = diagnose_plant(fleet, *plant, c.out, options);
+  fmt::print("{}\n", nlohmann::json{{"was_there", o.was_there}, {"row", row_json(o.row)}}.dump());
+  return 0;
+}
+
+int run_fleet(const FleetCommand& c, int* argc, char*** argv) {
+  std::optional<MpiSession> session;
+  if (MpiSession::launched()) session.emplace(argc, argv);
+  const Ranks ranks{session ? MPI_COMM_WORLD : MPI_COMM_NULL};
+  const bool first = ranks.rank() == 0;
+  catch_stop_signals();
+  const int threads = c.threads >= 0 ? c.threads : ranks.on_this_machine() > 1 ? 1 : 0;
+  Fleet fleet;
+  std::unique_ptr<FolderLock> lock;
+  // What one rank cannot read or write is told once, and ends all.
+  const auto prepare = [&] {
+    fleet = load_fleet(c.fleet);
+    if (first) lock = std::make_unique<FolderLock>(c.out);
+  };
+  int sound = 1;
+  try {
+    session ? agree(MPI_COMM_WORLD, c.fleet, prepare) : prepare();
+  } catch (const InputError& error) {
+    if (first) fmt::print(stderr, "{}\n", error.what());
+    sound = 0;
+  }
+  if (sound == 0) return 1;
+
+  std::vector<FleetRow> rows(fleet.plants.size());
+  ItemProgress progress("plants", rows.size());
+  SharedItems shared;
+  for (std::size_t i = 0; i < rows.size(); ++i) shared.items.push_back(i);
+  shared.work = [&](std::size_t i) { return plant_result(c, fleet.plants[i], threads); };
+  shared.done = [&](std::size_t i, const std::string& result) {
+    const auto j = nlohmann::json::parse(result);
+    rows[i] = read_row(j.at("row").dump(), fleet.plants[i].name);
+    progress.line(describe(rows[i], j.at("was_there")), j.at("was_there"));
+  };
+  if (!share_items(ranks, shared)) {
+    if (first)
+      fmt::print("stopped on a signal; finished plants are safe: run the same command again to continue\n");
+    return kSubmitAgain;
+  }
+  int code = 0;
+  if (first) code = guarded("diagnose", [&] { return tell(c, fleet, rows); });
+  return ranks.from_first(code);
+}
+
+}  // namespace swingbank::jobs

@@ -1,0 +1,39 @@
+#pragma once
+// What commands that work through items of many seconds each share: one line per item on stderr, with how
+// many are done, the rate and the time left.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <string>
+
+#include "mpi/progress.hpp"
+
+namespace swingbank::jobs {
+
+class ItemProgress {
+ public:
+  /// `unit`: "plants".
+  ItemProgress(std::string unit, std::size_t total) : unit_(std::move(unit)), total_(total) {}
+  /// One more is done. One that an earlier run had done is no part of the rate.
+  void line(const std::string& text, bool was_there) {
+    ++done_;
+    if (!was_there) ++made_;
+    const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    const double rate = static_cast<double>(made_) / (spent > 1e-9 ? spent : 1e-9);
+    std::string speed;
+    if (made_ > 0) speed = ", " + rate_text(rate, unit_);
+    if (made_ > 0 && done_ < total_)
+      speed += ", " + duration_text(static_cast<double>(total_ - done_) / rate) + " left";
+    fmt::print(stderr, "{}/{} {} ({:.0f} %{}): {}\n", done_, total_, unit_,
+               100.0 * static_cast<double>(done_) / static_cast<double>(total_), speed, text);
+    std::fflush(stderr);
+  }
+
+ private:
+  std::string unit_;
+  std::size_t total_, done_ = 0, made_ = 0;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace swingbank::jobs
