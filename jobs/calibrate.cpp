@@ -1,4 +1,5 @@
-// swingbank calibrate: fits the parameters of a plant model to records of several events.
+// swingbank calibrate: fits the parameters of a plant model to records of several events, by our own search,
+// by plain curve fitting, or both side by side.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -6,6 +7,7 @@
 #include "jobs/event_records.hpp"
 #include "validate/calibrate_report.hpp"
 #include "validate/plant_file.hpp"
+#include "validate/side_by_side.hpp"
 #include "validate/write_file.hpp"
 
 namespace {
@@ -15,64 +17,122 @@ using namespace swingbank::validate;
 
 constexpr int kNotAdequate = 3;
 
-int run(const std::string& model_file, const std::vector<std::string>& record_files, const std::string& out,
-        bool json, CalibrateOptions options, const std::string& command_line) {
-  const PlantModel model = load_plant_model(model_file);
-  std::vector<Record> records = jobs::read_events(record_files, model);
-  options.progress = jobs::progress_line();
-  const Calibration c = calibrate(model, std::move(records), options);
-  const std::filesystem::path folder = out;
-  nlohmann::json result = calibration_json(c);
-  result["command"] = command_line;
-  write_plant_file(folder / "model.toml", c.model, provenance_lines(c, command_line));
+struct Arguments {
+  std::string model, out = "calibration", method = "fit", truth, command;
+  std::vector<std::string> records;
+  bool json = false;
+  CalibrateOptions options;
+};
+
+CurveFit fit_curves(const Arguments& a, const PlantModel& model, std::vector<Record> records) {
+  CurveFitOptions options;
+  options.held_out = a.options.held_out;
+  options.fixed = a.options.fixed;
+  options.events = a.options.events;
+  options.adequate = a.options.adequate;
+  return curve_fit(model, std::move(records), options);
+}
+
+void say(const Arguments& a, const nlohmann::json& result, const std::string& text) {
+  const std::filesystem::path folder = a.out;
   write_file(folder / "calibrate.json", result.dump(1) + "\n");
-  if (json)
+  if (a.json)
     fmt::print("{}\n", result.dump(1));
   else
-    fmt::print("{}\nmodel: {}\n", terminal_report(c), (folder / "model.toml").string());
+    fmt::print("{}\nmodel: {}\n", text, (folder / "model.toml").string());
+}
+
+int run_baseline(const Arguments& a, const PlantModel& model, std::vector<Record> records,
+                 const Truth& truth) {
+  const CurveFit f = fit_curves(a, model, std::move(records));
+  write_plant_file(std::filesystem::path(a.out) / "model.toml", f.model,
+                   provenance_lines(f, model, a.command));
+  nlohmann::json result = curve_fit_json(f, truth);
+  result["command"] = a.command;
+  say(a, result, terminal_report(f, truth));
+  return f.adequate ? 0 : kNotAdequate;
+}
+
+int run(const Arguments& a) {
+  const PlantModel model = load_plant_model(a.model);
+  const Truth truth = a.truth.empty() ? Truth{} : read_truth(a.truth, model);
+  std::vector<Record> records = jobs::read_events(a.records, model);
+  if (a.method == "curve-fit") return run_baseline(a, model, std::move(records), truth);
+  const bool both = a.method == "both";
+  std::vector<Record> again = both ? records : std::vector<Record>{};
+  const Calibration c = calibrate(model, std::move(records), a.options);
+  const std::filesystem::path folder = a.out;
+  std::string text = terminal_report(c);
+  nlohmann::json result = calibration_json(c);
+  result["command"] = a.command;
+  std::vector<Way> ways = {way_of_model(c)};
+  if (both) {
+    const CurveFit f = fit_curves(a, model, std::move(again));
+    write_plant_file(folder / "curve-fit.toml", f.model, provenance_lines(f, model, a.command));
+    result["curve_fit"] = curve_fit_json(f, truth);
+    ways.push_back(way_of(f, c));
+  }
+  ways.push_back(way_of(c));
+  if (ways.size() > 2 || !truth.empty()) {
+    text += "\n" + beside_report(ways, truth);
+    result["side_by_side"] = beside_json(ways, truth);
+  }
+  write_plant_file(folder / "model.toml", c.model, provenance_lines(c, a.command));
+  say(a, result, text);
   return c.adequacy == Adequacy::structure_poor ? kNotAdequate : 0;
+}
+
+void add_options(CLI::App& app, Arguments& a, bool& inner) {
+  auto& o = a.options;
+  app.add_option("--model", a.model, "plant file (configs/plants/README.md)")->required();
+  app.add_option("--records,--record", a.records, "records of the events (validate/README.md)")->required();
+  app.add_option("--out", a.out, "folder for model.toml and calibrate.json")->capture_default_str();
+  app.add_option("--method", a.method,
+                 "fit; curve-fit: the usual way, least squares of P and Q from the model's own values, as a "
+                 "baseline; both: side by side")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"fit", "curve-fit", "both"}));
+  app.add_option("--truth", a.truth, "plant file (or blind-test's truth) to compare the parameters with");
+  app.add_option("--hold-out", o.held_out,
+                 "record (name or number from 1) left out of the fit and used to judge it; may be repeated");
+  app.add_option("--spread", o.spread, "relative uncertainty believed of the model's parameters")
+      ->capture_default_str()
+      ->check(CLI::Range(0.001, 2.0));
+  app.add_option("--fix", o.fixed, "parameter that stays as it is (GENROU.Xl); may be repeated");
+  app.add_option("--draws", o.draws, "parameter sets tried as starts")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 100000));
+  app.add_option("--starts", o.starts, "how many of them are refined, beside the model's own values")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 1000));
+  app.add_option("--seed", o.seed, "of the draws")->capture_default_str();
+  app.add_option("--jump-threshold", o.events.jump_threshold,
+                 "smallest jump of the voltage taken for switching [pu]")
+      ->capture_default_str();
+  app.add_option("--pre-event", o.events.pre_event, "steady stretch of records without switching [s]")
+      ->capture_default_str();
+  app.add_flag("!--power-only", inner, "leave recorded speed, Efd and Ifd aside: compare P and Q only");
+  app.add_flag("--json", a.json, "print the result as JSON instead of tables");
+  app.footer(
+      "Exit codes: 0 the structure holds, 3 something is missing in it (curve-fit: more than noise is left), "
+      "1 "
+      "bad input.");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{SWINGBANK_SUMMARY};
-  std::string model_file, out = "calibration";
-  std::vector<std::string> record_files;
-  bool json = false, inner = true;
-  CalibrateOptions options;
-  app.add_option("--model", model_file, "plant file (configs/plants/README.md)")->required();
-  app.add_option("--records,--record", record_files, "records of the events (validate/README.md)")
-      ->required();
-  app.add_option("--out", out, "folder for model.toml and calibrate.json")->capture_default_str();
-  app.add_option("--hold-out", options.held_out,
-                 "record (name or number from 1) left out of the fit and used to judge it; may be repeated");
-  app.add_option("--spread", options.spread, "relative uncertainty believed of the model's parameters")
-      ->capture_default_str()
-      ->check(CLI::Range(0.001, 2.0));
-  app.add_option("--fix", options.fixed, "parameter that stays as it is (GENROU.Xl); may be repeated");
-  app.add_option("--draws", options.draws, "parameter sets tried as starts")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 100000));
-  app.add_option("--starts", options.starts, "how many of them are refined, beside the model's own values")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 1000));
-  app.add_option("--seed", options.seed, "of the draws")->capture_default_str();
-  app.add_option("--jump-threshold", options.events.jump_threshold,
-                 "smallest jump of the voltage taken for switching [pu]")
-      ->capture_default_str();
-  app.add_option("--pre-event", options.events.pre_event, "steady stretch of records without switching [s]")
-      ->capture_default_str();
-  app.add_flag("!--power-only", inner, "leave recorded speed, Efd and Ifd aside: compare P and Q only");
-  app.add_flag("--json", json, "print the result as JSON instead of tables");
-  app.footer("Exit codes: 0 the structure holds, 3 something is missing in it, 1 bad input.");
+  Arguments a;
+  bool inner = true;
+  add_options(app, a, inner);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 1;
   }
-  options.events.measured_states = inner;
-  return jobs::guarded("calibrate", [&] {
-    return run(model_file, record_files, out, json, options, jobs::command_line("calibrate", argc, argv));
-  });
+  a.options.progress = jobs::progress_line();
+  a.options.events.measured_states = inner;
+  a.command = jobs::command_line("calibrate", argc, argv);
+  return jobs::guarded("calibrate", [&] { return run(a); });
 }

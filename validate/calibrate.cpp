@@ -14,28 +14,6 @@
 namespace swingbank::validate {
 namespace {
 
-/// "GENROU.Xl" or "Xl" taken out of the free parameters.
-std::vector<FreeParameter> choose_free(const sim::Plant& plant, const CalibrateOptions& options) {
-  std::vector<FreeParameter> free = free_parameters(plant, options.spread);
-  Problems problems;
-  std::string all;
-  const auto name_of = [&](const FreeParameter& f) {
-    return fmt::format("{}.{}", block_effect(plant, f.block).name,
-                       parameter_record(plant, f.block, f.index).name);
-  };
-  for (const auto& f : free) all += (all.empty() ? "" : ", ") + name_of(f);
-  for (const auto& fixed : options.fixed)
-    if (std::erase_if(free, [&](const FreeParameter& f) {
-          return name_of(f) == fixed || parameter_record(plant, f.block, f.index).name == fixed;
-        }) == 0)
-      problems.add("parameter '" + fixed + "'", "--fix", "the fit has no such free parameter",
-                   "use one of " + all);
-  if (free.empty() && problems.empty())
-    problems.add("no free parameter", plant.name, "all are fixed, zero, or codes", "leave some free");
-  problems.raise();
-  return free;
-}
-
 Fit alone(const PlantModel& model, const sim::Plant& plant, const FitEvent& event) {
   Fit f = fit(plant, model.conventions, {event}, {});
   if (!f.failed.empty())
@@ -65,7 +43,7 @@ class Run {
       : model_(model),
         options_(options),
         out_(held_out_events(records, options.held_out)),
-        free_(choose_free(model.plant, options)) {
+        free_(chosen_parameters(model.plant, options.spread, options.fixed)) {
     c_.model = model;
     c_.prepared = prepare_events(model, std::move(records), options.events);
     for (std::size_t e = 0; e < c_.prepared.size(); ++e)
@@ -359,6 +337,28 @@ class Run {
 };
 
 }  // namespace
+
+std::vector<FreeParameter> chosen_parameters(const sim::Plant& plant, double spread,
+                                             const std::vector<std::string>& fixed) {
+  std::vector<FreeParameter> free = free_parameters(plant, spread);
+  Problems problems;
+  std::string all;
+  const auto name_of = [&](const FreeParameter& f) {
+    return fmt::format("{}.{}", block_effect(plant, f.block).name,
+                       parameter_record(plant, f.block, f.index).name);
+  };
+  for (const auto& f : free) all += (all.empty() ? "" : ", ") + name_of(f);
+  for (const auto& one : fixed)
+    if (std::erase_if(free, [&](const FreeParameter& f) {
+          return name_of(f) == one || parameter_record(plant, f.block, f.index).name == one;
+        }) == 0)
+      problems.add("parameter '" + one + "'", "--fix", "the fit has no such free parameter",
+                   "use one of " + all);
+  if (free.empty() && problems.empty())
+    problems.add("no free parameter", plant.name, "all are fixed, zero, or codes", "leave some free");
+  problems.raise();
+  return free;
+}
 
 Calibration calibrate(const PlantModel& model, std::vector<Record> records, const CalibrateOptions& options) {
   return Run(model, std::move(records), options).run();

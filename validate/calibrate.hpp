@@ -96,6 +96,11 @@ struct Calibration {
 /// a pre-event, a model that cannot hold its operating point.
 Calibration calibrate(const PlantModel& model, std::vector<Record> records, const CalibrateOptions& options);
 
+/// The plant's free parameters without those in `fixed` ("GENROU.Xl" or "Xl"). Throws InputError: unknown
+/// names, none left.
+std::vector<FreeParameter> chosen_parameters(const sim::Plant& plant, double spread,
+                                             const std::vector<std::string>& fixed);
+
 /// Which of the events are left out: by record name (with or without ending) or number from 1.
 std::vector<bool> held_out_events(const std::vector<Record>& records, const std::vector<std::string>& names);
 
