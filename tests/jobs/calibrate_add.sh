@@ -28,6 +28,22 @@ grep -q '^# Command: swingbank add SEXS' "$work/added/model.toml" || fail "the n
 [[ -s $work/again/model.toml && -s $work/again/calibrate.json ]] || fail "model.toml and calibrate.json expected"
 grep -q 'SEXS.K' "$work/text" || fail "the table lacks the exciter's gain"
 
+# the usual way beside it, with the truth known: tables and JSON agree on who is nearer
+"$swingbank" calibrate --model "$work/added/model.toml" --records "$one" "$two" --hold-out avr_ev2 --power-only --draws 0 --starts 0 \
+  --method both --truth "$work/added/model.toml" --out "$work/both" >"$work/text"
+grep -q 'intervals hold the truth' "$work/text" || fail "no comparison with the truth"
+grep -q '^# Fitted by least squares of the curves' "$work/both/curve-fit.toml" || fail "no plant file of the curve fit"
+python3 - "$work/both/calibrate.json" <<'PYTHON'
+import json, sys
+r = json.load(open(sys.argv[1]))
+model, curve, ours = r["side_by_side"]
+assert [w["way"] for w in r["side_by_side"]] == ["model", "curve fit", "calibrate"]
+assert model["truth"]["rms_relative"] == 0 and curve["truth"]["mse_raw_units"] > ours["truth"]["mse_raw_units"] > 0, curve["truth"]
+assert [e["seen"] for e in curve["events"]] == [True, False] and r["curve_fit"]["format"] == "swingbank-curve-fit-1"
+PYTHON
+"$swingbank" calibrate --model "$work/added/model.toml" --records "$one" --method curve-fit --json --out "$work/curves" >"$work/printed.json" || (($? == 3))
+cmp "$work/printed.json" "$work/curves/calibrate.json" || fail "--json prints something else than it writes"
+
 # without the exciter the structure does not hold: exit code 3, and the files are there all the same
 status=0
 "$swingbank" calibrate --model "$model" --records "$one" --power-only --draws 0 --starts 0 --out "$work/poor" >"$work/text" || status=$?
@@ -45,7 +61,9 @@ refuses "one event, held out" "every event is held out" calibrate --records "$on
 refuses "unknown event held out" "avr_ev2.csv" calibrate --records "$one" "$two" --hold-out avr_ev9
 refuses "unknown parameter fixed" "GENROU.Xdp" calibrate --records "$one" --fix GENROU.Xyz
 refuses "the same record twice" "two records named" calibrate --records "$one" "$one"
+refuses "truth of no known form" "blind-test" calibrate --records "$one" --truth "$work/added/add.json"
 misused "no records" "records" calibrate
+misused "method" "method" calibrate --records "$one" --method guess
 misused "spread" "spread" calibrate --records "$one" --spread -1
 refuses "unknown effect" "SEXS" add NONESUCH --records "$one"
 refuses "an effect of one event" "belongs to one event" add VREFSTEP --records "$one"
