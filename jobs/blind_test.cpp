@@ -5,7 +5,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <optional>
 
+#include "jobs/item_progress.hpp"
+#include "mpi/item_queue.hpp"
+#include "mpi/session.hpp"
+#include "mpi/stop_signal.hpp"
 #include "validate/blind_case.hpp"
 #include "validate/blind_judge.hpp"
 #include "validate/blind_plan.hpp"
@@ -20,7 +25,7 @@ namespace fs = std::filesystem;
 struct Options {
   std::string config, targets, out, judge, part = "1/1";
   std::vector<std::string> kinds;
-  int make = 0;
+  int make = 0, threads = -1;
   std::uint64_t seed = 1;
   double size = 0;
   bool diagnose = false, score = false;
@@ -30,55 +35,116 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-int make(const Options& o) {
-  const BlindConfig config = load_blind_config(o.config);
-  const BlindPlan plan = plan_blind(config, o.kinds, o.make, o.seed, o.size);
-  settle_plan(plan, config, o.out);
-  const auto [part, parts] = read_part(o.part);
-  const auto begin = std::chrono::steady_clock::now();
-  int made = 0, there = 0, failed = 0;
-  for (std::size_t k = 0; k < plan.cases.size(); ++k) {
-    if (static_cast<int>(k % static_cast<std::size_t>(parts)) != part - 1) continue;
-    const std::string name = case_name(k);
-    const fs::path folder = fs::path(o.out) / "cases" / name;
-    if (fs::exists(folder)) {
-      ++there;
-      continue;
-    }
-    const auto start = std::chrono::steady_clock::now();
-    try {
-      const BlindCase one = make_blind_case(config, plan.cases[k]);
-      write_blind_case(one, config, name, folder, fs::path(o.out) / "truth" / (name + ".json"));
-      ++made;
-      fmt::print("{} of {}: {}, {} events, {} draws, {:.1f} s\n", k + 1, plan.cases.size(), name,
-                 one.records.size(), one.attempts, seconds_since(start));
-    } catch (const InputError& error) {  // one kind that cannot be drawn does not stop a long run
-      ++failed;
-      fmt::print(stderr, "{} of {}: {}\n", k + 1, plan.cases.size(), error.what());
-    }
-    std::fflush(stdout);
-  }
-  fmt::print("made {} cases in {:.1f} s, {} were there already, {} failed: {}\n", made, seconds_since(begin),
-             there, failed, o.out);
-  return failed == 0 ? 0 : 1;
+/// Whether an item was done by this run, by an earlier one, or not at all, and what to say of it.
+enum class Fate { done, was_there, failed };
+std::string packed(Fate fate, const std::string& text) {
+  return std::to_string(static_cast<int>(fate)) + text;
 }
 
-int judge(const Options& o) {
+struct Counts {
+  int done = 0, there = 0, failed = 0;
+};
+
+/// Works through the cases of this part, each on the rank that is free. Exit code, the same on all ranks.
+int share_cases(const Ranks& ranks, const Options& o, std::size_t count, const std::string& unit,
+                const std::function<std::string(std::size_t)>& work, Counts& counts) {
+  const auto [part, parts] = read_part(o.part);
+  SharedItems shared;
+  for (std::size_t k = 0; k < count; ++k)
+    if (static_cast<int>(k % static_cast<std::size_t>(parts)) == part - 1) shared.items.push_back(k);
+  jobs::ItemProgress progress(unit, shared.items.size());
+  shared.work = work;
+  shared.done = [&](std::size_t, const std::string& result) {
+    const auto fate = static_cast<Fate>(result.front() - '0');
+    (fate == Fate::done ? counts.done : fate == Fate::failed ? counts.failed : counts.there) += 1;
+    progress.line(result.substr(1), fate == Fate::was_there);
+  };
+  if (!share_items(ranks, shared)) {
+    if (ranks.rank() == 0)
+      fmt::print("stopped on a signal; finished cases are safe: run the same command again to continue\n");
+    return kSubmitAgain;
+  }
+  return ranks.from_first(counts.failed == 0 ? 0 : 1);
+}
+
+/// One case of the plan. What cannot be drawn does not stop a long run.
+std::string make_one(const Options& o, const BlindConfig& config, const BlindSpec& spec,
+                     const std::string& name) {
+  const fs::path folder = fs::path(o.out) / "cases" / name;
+  if (fs::exists(folder)) return packed(Fate::was_there, name + ", was there");
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    const BlindCase one = make_blind_case(config, spec);
+    write_blind_case(one, config, name, folder, fs::path(o.out) / "truth" / (name + ".json"));
+    return packed(Fate::done, fmt::format("{}, {} events, {} draws, {:.1f} s", name, one.records.size(),
+                                          one.attempts, seconds_since(start)));
+  } catch (const std::exception& error) {
+    return packed(Fate::failed, name + ": " + error.what());
+  }
+}
+
+int make(const Ranks& ranks, const Options& o) {
+  BlindConfig config;
+  BlindPlan plan;
+  agree(ranks, o.config, [&] {
+    config = load_blind_config(o.config);
+    plan = plan_blind(config, o.kinds, o.make, o.seed, o.size);
+  });
+  agree(ranks, o.out, [&] {
+    if (ranks.rank() == 0) settle_plan(plan, config, o.out);
+  });
+  const auto begin = std::chrono::steady_clock::now();
+  Counts counts;
+  const int code = share_cases(
+      ranks, o, plan.cases.size(), "cases",
+      [&](std::size_t k) { return make_one(o, config, plan.cases[k], case_name(k)); }, counts);
+  if (ranks.rank() == 0)
+    fmt::print("made {} cases in {:.1f} s, {} were there already, {} failed: {}\n", counts.done,
+               seconds_since(begin), counts.there, counts.failed, o.out);
+  return code;
+}
+
+std::size_t count_cases(const fs::path& run) {
+  std::size_t n = 0;
+  for (const auto& entry : fs::directory_iterator(run / "cases"))
+    n += entry.path().filename().string().front() != '.' ? 1 : 0;
+  return n;
+}
+
+/// Judges the k-th of all cases.
+std::string judge_one(const fs::path& run, const BlindJudge& asked, std::size_t k, std::size_t count) {
+  std::string said;
+  try {
+    const auto faults = judge_cases(
+        run, asked, {static_cast<int>(k) + 1, static_cast<int>(count)},
+        [&](const std::string& name, const BlindVerdict& v) {
+          said = fmt::format("{}: {}{}{}, {:.1f} s", name, v.verdict, v.effects.empty() ? "" : " ",
+                             v.effects.empty() ? "" : v.effects.front(), v.seconds);
+        });
+    if (!faults.empty()) return packed(Fate::failed, faults.front());
+  } catch (const std::exception& error) {
+    return packed(Fate::failed, error.what());
+  }
+  return said.empty() ? packed(Fate::was_there, "was judged already") : packed(Fate::done, said);
+}
+
+int judge(const Ranks& ranks, const Options& o) {
   const fs::path run = o.out;
-  if (!fs::is_directory(run / "cases"))
-    throw InputError({"no run", o.out, "it has no folder cases", "make cases first, with --make"});
-  int judged = 0;
-  const BlindJudge asked = o.diagnose ? diagnosis_judge() : program_judge(o.judge, run / "verdicts");
-  const auto faults =
-      judge_cases(run, asked, read_part(o.part), [&](const std::string& name, const BlindVerdict& v) {
-        ++judged;
-        fmt::print("{}: {}{}{}, {:.1f} s\n", name, v.verdict, v.effects.empty() ? "" : " ",
-                   v.effects.empty() ? "" : v.effects.front(), v.seconds);
-        std::fflush(stdout);
-      });
-  for (const auto& fault : faults) fmt::print(stderr, "{}\n", fault);
-  fmt::print("judged {} cases, {} failed: {}\n", judged, faults.size(), o.out);
-  return faults.empty() ? 0 : 1;
+  std::size_t count = 0;
+  agree(ranks, o.out, [&] {
+    if (fs::is_directory(run / "cases"))
+      count = count_cases(run);
+    else
+      throw InputError({"no run", o.out, "it has no folder cases", "make cases first, with --make"});
+  });
+  DiagnoseOptions options;
+  options.threads = o.threads >= 0 ? o.threads : ranks.on_this_machine() > 1 ? 1 : 0;
+  const BlindJudge asked = o.diagnose ? diagnosis_judge(options) : program_judge(o.judge, run / "verdicts");
+  Counts counts;
+  const int code = share_cases(
+      ranks, o, count, "cases", [&](std::size_t k) { return judge_one(run, asked, k, count); }, counts);
+  if (ranks.rank() == 0) fmt::print("judged {} cases, {} failed: {}\n", counts.done, counts.failed, o.out);
+  return code;
 }
 
 int score(const Options& o) {
@@ -93,21 +159,38 @@ int score(const Options& o) {
   return 0;
 }
 
-int blind_test(const Options& o) {
-  const bool asks = o.diagnose || !o.judge.empty();
+void check(const Options& o) {
   if (o.diagnose && !o.judge.empty())
     throw InputError({"two judges", "--diagnose and --judge", "a run has one", "give one of them"});
-  if (o.make <= 0 && !asks && !o.score)
+  if (o.make <= 0 && !o.diagnose && o.judge.empty() && !o.score)
     throw InputError({"nothing to do", "blind-test", "none of --make, --diagnose, --judge, --score was given",
                       "give one of them, or several"});
-  if (o.make > 0) {
-    if (o.config.empty())
-      throw InputError(
-          {"no config", "--config", "cases are drawn from one", "give configs/blind/cases.toml"});
-    if (const int code = make(o); code != 0) return code;
+  if (o.make > 0 && o.config.empty())
+    throw InputError({"no config", "--config", "cases are drawn from one", "give configs/blind/cases.toml"});
+}
+
+int blind_test(const Ranks& ranks, const Options& o) {
+  check(o);
+  if (o.make > 0)
+    if (const int code = make(ranks, o); code != 0) return code;
+  const int code = o.diagnose || !o.judge.empty() ? judge(ranks, o) : 0;
+  if (code == kSubmitAgain || !o.score) return code;
+  return std::max(code, ranks.rank() == 0 ? score(o) : 0);
+}
+
+/// Under mpirun every rank comes here. What one of them throws ends all; it is told once where all throw the
+/// same.
+int on_ranks(int argc, char** argv, const Options& o) {
+  std::optional<MpiSession> session;
+  if (MpiSession::launched()) session.emplace(&argc, &argv);
+  const Ranks ranks{session ? MPI_COMM_WORLD : MPI_COMM_NULL};
+  catch_stop_signals();
+  try {
+    return blind_test(ranks, o);
+  } catch (const std::exception& error) {
+    if (ranks.rank() == 0) fmt::print(stderr, "{}\n", error.what());
+    return 1;
   }
-  const int code = asks ? judge(o) : 0;
-  return o.score ? std::max(code, score(o)) : code;
 }
 
 }  // namespace
@@ -130,11 +213,17 @@ int main(int argc, char** argv) {
                  "program to run as PROGRAM CASE_FOLDER VERDICT_FILE on every case without a verdict");
   app.add_flag("--score", o.score, "hold the verdicts against the truth: score.md, score.json");
   app.add_option("--targets", o.targets, "rates asked for, configs/blind/targets.toml");
-  app.add_option("--part", o.part, "K/N: only every N-th case, from the K-th; for ranks and job arrays")
+  app.add_option(
+         "--threads", o.threads,
+         "of one diagnosis; 0: one per core (default: that, or 1 where several ranks share the machine)")
+      ->check(CLI::Range(0, 4096));
+  app.add_option(
+         "--part", o.part,
+         "K/N: only every N-th case, from the K-th; for job arrays. Under mpirun the ranks share those")
       ->capture_default_str();
   try {
     app.parse(argc, argv);
-    return blind_test(o);
+    return on_ranks(argc, argv, o);
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 1;
   } catch (const std::exception& e) {

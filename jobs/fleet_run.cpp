@@ -19,7 +19,6 @@
 #include "mpi/item_queue.hpp"
 #include "mpi/session.hpp"
 #include "mpi/stop_signal.hpp"
-#include "mpi/store/shard_group.hpp"
 #include "validate/fleet_report.hpp"
 #include "validate/write_file.hpp"
 
@@ -153,19 +152,15 @@ int run_fleet(const FleetCommand& c, int* argc, char*** argv) {
   const int threads = c.threads >= 0 ? c.threads : ranks.on_this_machine() > 1 ? 1 : 0;
   Fleet fleet;
   std::unique_ptr<FolderLock> lock;
-  // What one rank cannot read or write is told once, and ends all.
-  const auto prepare = [&] {
-    fleet = load_fleet(c.fleet);
-    if (first) lock = std::make_unique<FolderLock>(c.out);
-  };
-  int sound = 1;
   try {
-    session ? agree(MPI_COMM_WORLD, c.fleet, prepare) : prepare();
-  } catch (const InputError& error) {
+    agree(ranks, c.fleet, [&] {
+      fleet = load_fleet(c.fleet);
+      if (first) lock = std::make_unique<FolderLock>(c.out);
+    });
+  } catch (const InputError& error) {  // the same on all ranks
     if (first) fmt::print(stderr, "{}\n", error.what());
-    sound = 0;
+    return 1;
   }
-  if (sound == 0) return 1;
 
   std::vector<FleetRow> rows(fleet.plants.size());
   ItemProgress progress("plants", rows.size());

@@ -12,6 +12,7 @@
 
 #include "mpi/message.hpp"
 #include "mpi/stop_signal.hpp"
+#include "mpi/store/shard_group.hpp"
 
 namespace swingbank {
 namespace {
@@ -182,6 +183,13 @@ int Ranks::on_this_machine() const {
 int Ranks::from_first(int value) const {
   if (world != MPI_COMM_NULL) MPI_Bcast(&value, 1, MPI_INT, 0, world);
   return value;
+}
+
+void agree(const Ranks& ranks, const std::string& where, const std::function<void()>& prepare) {
+  if (ranks.world == MPI_COMM_NULL)
+    prepare();
+  else
+    agree(ranks.world, where, prepare);
 }
 
 bool share_items(const Ranks& ranks, const SharedItems& shared) {

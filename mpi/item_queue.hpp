@@ -21,6 +21,10 @@ struct Ranks {
   [[nodiscard]] int from_first(int value) const;
 };
 
+/// Runs `prepare` on every rank; if it throws on any, all throw the problems of the first such rank.
+/// Collective.
+void agree(const Ranks& ranks, const std::string& where, const std::function<void()>& prepare);
+
 struct SharedItems {
   std::vector<std::size_t> items;  ///< the same on all ranks
   /// On any rank; must not call MPI (on rank 0 it runs in a thread of its own). What it returns reaches rank

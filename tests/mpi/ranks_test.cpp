@@ -1,11 +1,15 @@
 // What several ranks do together. tests/mpi/ranks.sh runs these under mpirun with 1, 3 and 5 ranks; alone
 // they run on one.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <fstream>
 #include <memory>
 #include <numeric>
+#include <thread>
 
+#include "mpi/item_queue.hpp"
 #include "mpi/message.hpp"
 #include "mpi/session.hpp"
 #include "mpi/store/durable.hpp"
@@ -70,6 +74,34 @@ TEST_F(Ranks, RanksWithoutRowsTakePart) {
       MPI_COMM_WORLD);
   EXPECT_EQ(receipt.rows, static_cast<std::uint64_t>(2 * (size - 1)));
   EXPECT_EQ(read_shard(folder / "a.h5").rows, receipt.rows);
+}
+
+TEST_F(Ranks, EveryItemIsDoneOnceWhoeverIsFree) {
+  const swingbank::Ranks ranks{MPI_COMM_WORLD};
+  std::vector<int> told(20, 0);
+  int own = 0;
+  SharedItems shared;
+  for (std::size_t i = 0; i < told.size(); i += 2) shared.items.push_back(i);  // any set of numbers
+  shared.work = [&](std::size_t i) {
+    ++own;
+    // the last rank is slow: the others take what it leaves
+    std::this_thread::sleep_for(std::chrono::milliseconds(rank == size - 1 ? 40 : 2));
+    return fmt::format("item {}\nby {}", i, rank);  // several words and lines arrive as they are
+  };
+  shared.done = [&](std::size_t i, const std::string& result) {
+    EXPECT_EQ(rank, 0);
+    EXPECT_THAT(result, ::testing::StartsWith(fmt::format("item {}\nby ", i)));
+    ++told[i];
+  };
+  EXPECT_TRUE(share_items(ranks, shared));
+  for (std::size_t i = 0; i < told.size(); ++i) EXPECT_EQ(told[i], rank == 0 && i % 2 == 0 ? 1 : 0) << i;
+  int sum = 0, most = 0;
+  MPI_Allreduce(&own, &sum, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+  MPI_Allreduce(&own, &most, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+  EXPECT_EQ(sum, 10);
+  if (size > 1 && rank == size - 1) {
+    EXPECT_LT(own, most);
+  }
 }
 
 TEST_F(Ranks, FailureOfOneIsToldByAll) {
