@@ -214,12 +214,14 @@ Fleet load_fleet(const fs::path& file) {
 }
 
 double chance_of(double evidence, int added, int values, int hypotheses) {
-  double chance = 1;
+  double chance = 0;
   if (added <= 0) {
     chance = std::exp(-std::max(evidence, 0.0) / 2);
   } else {
-    const double k = added, x = evidence + k * std::log(static_cast<double>(values));
-    if (x > k) chance = std::exp((k - x + k * std::log(x / k)) / 2);
+    const double x = std::max(evidence + added * std::log(static_cast<double>(values)), 0.0);
+    chance = added % 2 == 1 ? std::erfc(std::sqrt(x / 2)) : std::exp(-x / 2);
+    for (double k = added % 2 == 1 ? 1 : 2; k < added; k += 2)
+      chance += std::exp(k / 2 * std::log(x / 2) - x / 2 - std::lgamma(k / 2 + 1));
   }
   return std::min(1.0, chance * hypotheses);
 }

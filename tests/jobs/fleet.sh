@@ -1,0 +1,69 @@
+#!/usr/bin/env bash
+# swingbank diagnose --fleet: one sound plant among bad ones, on two ranks and then alone; what is refused.
+# shellcheck disable=SC2154 # what lib.bash sets
+source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+source "$(dirname "${BASH_SOURCE[0]}")/fleet.bash"
+
+head -100 "$work/records/e1.csv" >"$work/records/cut.csv"
+printf '1.65,1.04,-0.1' >>"$work/records/cut.csv"
+sed '50s/,[^,]*/,NaN/' "$work/records/e2.csv" >"$work/records/nan.csv"
+{
+  echo '[options]'
+  echo 'power_only = true'
+  plant sound '"records/e[12].csv"'
+  plant cut '"records/e1.csv", "records/cut.csv"'
+  plant nan '"records/e1.csv", "records/nan.csv"'
+  plant gone '"records/e1.csv", "records/e9.csv"'
+  plant alone '"records/e1.csv"'
+  plant nobody '"records/x*.csv"'
+} >"$work/fleet.toml"
+expect 1 fleet "$work/fleet.toml" "$work/ranks" 2
+/usr/bin/python3 - "$work/ranks" <<'PYTHON'
+import csv, json, sys
+folder = sys.argv[1]
+fleet = json.load(open(folder + "/fleet.json"))
+plants = {p["plant"]: p for p in fleet["plants"]}
+assert fleet["failed"] == 5 and len(plants) == 6, fleet["summary"]
+sound = plants["sound"]
+assert sound["verdict"] in ("missing", "confusable") and sound["effects"][0] == "SEXS", sound
+assert sound["side"] == "excitation"
+# the field without an exciter leaves tens of sigma; with it nothing but noise is left on events not fitted to
+assert sound["unseen_rms_in_noise_before"] > 10 and sound["unseen_rms_in_noise_after"] < 1.1
+words = {"cut": "cut.csv:101", "nan": "nan.csv:50", "gone": "e9.csv", "alone": "two events", "nobody": "x*.csv"}
+for name, where in words.items():
+    assert plants[name]["verdict"] == "failed" and where in plants[name]["sentence"], plants[name]
+rows = list(csv.DictReader(open(folder + "/fleet.csv")))
+assert [r["plant"] for r in rows] == sorted(plants) and rows[-1]["effects"] == "SEXS"
+whole = json.load(open(folder + "/sound/diagnosis.json"))
+assert whole["sentence"] == sound["sentence"]
+PYTHON
+grep -q '^6/6 plants (100 %' "$work/ranks.log" || fail "progress: $(cat "$work/ranks.log")"
+grep -q 'SEXS' "$work/ranks/sound/report.html" || fail "no report of the sound plant"
+
+# again, alone: what is there is not computed again, and the table is the same
+before=$(stat -c %y "$work/ranks/sound/plant.json")
+expect 1 fleet "$work/fleet.toml" "$work/ranks"
+grep -q 'sound: .* (was there already)' "$work/ranks.log" || fail "computed again: $(cat "$work/ranks.log")"
+[[ $before == "$(stat -c %y "$work/ranks/sound/plant.json")" ]] || fail "written again"
+grep -q '5 failed' "$work/table" || fail "table: $(cat "$work/table")"
+[[ -z $(find "$work/ranks" -name '*.part' -o -name '*.old') ]] || fail "left behind: $(find "$work/ranks")"
+
+# bad input: nothing is computed or written
+diagnose() { "$swingbank" diagnose "$@" --out "$work/none"; }
+{
+  plant a '"records/e1.csv"' 'colour = 3'
+  echo '[option]'
+} >"$work/wrong.toml"
+refuses "unknown key" 'colour' diagnose --fleet "$work/wrong.toml"
+refuses "unknown section" 'option ' diagnose --fleet "$work/wrong.toml"
+refuses "no fleet file" 'nowhere.toml' diagnose --fleet "$work/nowhere.toml"
+refuses "no such plant" 'no plant z' diagnose --fleet "$work/fleet.toml" --plant z
+misused "options of the fleet's file" 'excludes' diagnose --fleet "$work/fleet.toml" --power-only
+misused "a plant beside a fleet" 'excludes' diagnose --fleet "$work/fleet.toml" --model m.toml --records e.csv
+misused "neither" 'fleet' diagnose
+[[ ! -e $work/none ]] || fail "something was written"
+echo 'a file' >"$work/file"
+refuses "a file in place of the folder" "$work/file" "$swingbank" diagnose --fleet "$work/fleet.toml" --out "$work/file"
+exec 9>"$work/ranks/.lock"
+flock -n 9
+refuses "a second run" 'a second run' "$swingbank" diagnose --fleet "$work/fleet.toml" --out "$work/ranks"
