@@ -1,5 +1,3 @@
-#include "validate/diagnose.hpp"
-
 #include <fmt/format.h>
 #include <omp.h>
 
@@ -9,6 +7,8 @@
 #include <cmath>
 #include <map>
 #include <mutex>
+
+#include "validate/diagnose.hpp"
 
 namespace swingbank::validate {
 namespace {
@@ -270,6 +270,13 @@ class Diagnoser {
         "{} would (chi2 per value {:.2f}); its course is shown.",
         r.size(), result_.base.misfit(), r.empty() ? result_.base.misfit() : r.front().fit.misfit(),
         t < f ? "torque" : "field voltage", std::min(t, f));
+    result_.laws =
+        search_laws({model_, trial(), result_.base, held_out_base_, result_.torque, result_.field, threads_},
+                    options_.progress);
+    if (result_.laws.found()) {
+      result_.side = result_.laws.found()->judgement.hypothesis.side;
+      result_.sentence = law_sentence(result_.laws, r.size());
+    }
   }
   void name_best() {
     const Judgement& best = result_.ranked.front();

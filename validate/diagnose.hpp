@@ -7,6 +7,7 @@
 
 #include "validate/fit.hpp"
 #include "validate/judge.hpp"
+#include "validate/law_search.hpp"
 #include "validate/missing_input.hpp"
 
 namespace swingbank::validate {
@@ -27,6 +28,7 @@ struct Diagnosis {
   std::vector<std::string> equivalent;  ///< names that explain the records as well
   Fit base;                             ///< the present structure, refitted
   MissingInput torque, field;
+  LawSearch laws;                   ///< where no known effect explains the records
   std::vector<Judgement> ranked;    ///< best first
   std::vector<std::string> outrun;  ///< rivals of a slot that were not fitted: others answer better
   std::vector<FitEvent> events;

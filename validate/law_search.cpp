@@ -1,0 +1,200 @@
+#include "validate/law_search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <mutex>
+
+#include "sim/core/law.hpp"
+#include "validate/law_text.hpp"
+#include "validate/law_traces.hpp"
+
+namespace swingbank::validate {
+namespace {
+
+constexpr double kLawSpread = 1.0;  ///< believed of a law's numbers: within a factor e of the regression's
+constexpr double kLeastExplained = 0.3;  ///< share of the inferred input below which a law is not tried
+constexpr std::size_t kFitted = 8;       ///< laws fitted to the records
+constexpr std::size_t kPerSignal = 3;    ///< of one signal
+constexpr std::size_t kJudged = 3;       ///< laws judged on events left out
+/// Share of the base's misfit down to which an input must come to be worth a law.
+constexpr double kExplains = 0.3;
+/// An input that leaves no more than so many times what the better one leaves explains as much.
+constexpr double kAsMuch = 1.5;
+/// chi2 per value after the first fit from which judging would be in vain.
+constexpr double kHopeless = 2;
+
+/// The leading ones, not all of one signal.
+std::vector<LawCandidate> leading(const std::vector<LawCandidate>& ranked) {
+  std::map<std::string, std::size_t> of_signal;
+  std::vector<LawCandidate> chosen;
+  for (const auto& law : ranked) {
+    if (chosen.size() == kFitted || law.explained < kLeastExplained) break;
+    if (of_signal[law.signal]++ < kPerSignal) chosen.push_back(law);
+  }
+  return chosen;
+}
+
+std::string source_of(const std::vector<FitEvent>& events) {
+  std::string names;
+  for (const auto& e : events) names += (names.empty() ? "" : ", ") + e.record.name;
+  return "found by swingbank diagnose in " + names;
+}
+
+/// The present values of `from` in a plant that has one block more.
+std::vector<double> values_in(const sim::Plant& from, const sim::Block& law, int block,
+                              const std::vector<FreeParameter>& free) {
+  sim::Plant own = from;
+  std::vector<double> values;
+  for (const auto& f : free)
+    values.push_back(f.block == block
+                         ? law.p[static_cast<std::size_t>(f.index)]
+                         : parameter_value(own, f.block > block ? f.block - 1 : f.block, f.index));
+  return values;
+}
+
+class Searcher {
+ public:
+  Searcher(const Unexplained& c, const MissingInput& input, const LawProgress& report)
+      : case_(c), input_(input), report_(report) {}
+
+  LawSearch run() {
+    const auto begin = std::chrono::steady_clock::now();
+    LawSearch s;
+    s.kind = input_.kind;
+    const double level = trigger_level(case_.trial.events);
+    s.traces = law_traces(case_.model, case_.trial.events, input_, level);
+    s.ranked = law_candidates(s.kind, s.traces, level);
+    tell("laws ranked", 1, 1);
+    const auto tried = leading(s.ranked);
+    s.findings.resize(tried.size());
+    in_turn("law", tried.size(), [&](std::size_t k) { s.findings[k] = fitted(tried[k]); });
+    std::erase_if(s.findings, [](const LawFinding& f) { return f.judgement.fit.events.empty(); });
+    std::ranges::stable_sort(s.findings, std::greater<>(),
+                             [](const LawFinding& f) { return f.judgement.gain; });
+    in_turn("unseen events, law", std::min(kJudged, s.findings.size()),
+            [&](std::size_t k) { settle(s.findings[k]); });
+    std::ranges::stable_sort(s.findings, [](const LawFinding& a, const LawFinding& b) {
+      return a.judgement.accepted != b.judgement.accepted ? a.judgement.accepted
+                                                          : a.judgement.gain > b.judgement.gain;
+    });
+    for (LawFinding& f : s.findings) write_out(f);
+    s.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return s;
+  }
+
+ private:
+  template <class Work>
+  void in_turn(const std::string& what, std::size_t n, Work work) {
+    int done = 0;
+    std::mutex lock;
+#pragma omp parallel for schedule(dynamic) num_threads(case_.threads)
+    for (std::size_t k = 0; k < n; ++k) {
+      work(k);
+      const std::lock_guard guard(lock);
+      tell(what, ++done, static_cast<int>(n));
+    }
+  }
+  void tell(const std::string& what, int done, int total) const {
+    if (report_) report_(what, done, total);
+  }
+
+  [[nodiscard]] LawFinding fitted(const LawCandidate& law) const {
+    LawFinding f;
+    f.law = law;
+    f.effect = std::make_shared<const sim::Effect>(
+        sim::make_law(law_toml(law, source_of(case_.trial.events)), law_name(law) + ".toml"));
+    Hypothesis& h = f.judgement.hypothesis;
+    h.name = law_name(law);
+    h.side = law.kind == InputKind::torque ? Side::mechanical : Side::excitation;
+    h.conventions = case_.model.conventions;
+    int block = 0;
+    h.plant = with_law(case_.model.plant, *f.effect, block);
+    for (std::size_t i = 0; i < law.parameters.size(); ++i)
+      h.free.push_back({block, static_cast<int>(i), kLawSpread});
+    h.starts = {f.effect->standard_parameters()};
+    const auto free = free_of(h, case_.trial.spread);
+    FitOptions o;
+    o.iterations = 10;
+    o.values = values_in(input_.fit.plant, {f.effect.get(), h.starts.front()}, block, free);
+    for (const auto& e : input_.fit.events) o.start.push_back(e.state);
+    Fit found = fit(h.plant, h.conventions, case_.trial.events, free, o);
+    if (!found.failed.empty()) return f;
+    f.judgement.fit = std::move(found);
+    f.judgement.gain = criterion(case_.base) - criterion(f.judgement.fit);
+    return f;
+  }
+  void settle(LawFinding& f) const {
+    const double left = f.judgement.fit.misfit();
+    if (left > kHopeless) {
+      f.judgement.why_not = fmt::format("leaves {:.2f} of the noise's variance", left);
+      return;
+    }
+    judge(case_.trial, case_.base, case_.held_out_base, f.judgement);
+  }
+  void write_out(LawFinding& f) const {
+    if (f.judgement.why_not.empty() && !f.judgement.accepted)
+      f.judgement.why_not = fmt::format("leaves {:.2f} of the noise's variance", f.judgement.fit.misfit());
+    const auto& own = f.judgement.hypothesis.free;
+    std::vector<FittedParameter> values;
+    for (const auto& p : f.judgement.fit.parameters)
+      if (p.where.block == own.front().block) values.push_back(p);
+    for (const auto& p : values)
+      for (auto& mine : f.law.parameters)
+        if (mine.name == p.name) mine.value = p.value;
+    f.words = law_words(f.law, values);
+    f.judgement.hypothesis.what = f.words;
+    f.toml = law_toml(f.law, source_of(case_.trial.events));
+  }
+
+  const Unexplained& case_;
+  const MissingInput& input_;
+  const LawProgress& report_;
+};
+
+}  // namespace
+
+sim::Plant with_law(const sim::Plant& plant, const sim::Effect& effect, int& block) {
+  sim::Plant with = plant;
+  const auto at = std::ranges::upper_bound(with.controls, effect.slot, {},
+                                           [](const sim::Block& b) { return b.effect->slot; });
+  block = (plant.transformer.effect ? 2 : 1) + static_cast<int>(at - with.controls.begin());
+  with.controls.insert(at, {&effect, effect.standard_parameters()});
+  return with;
+}
+
+LawSearch search_laws(const Unexplained& case_, const LawProgress& report) {
+  const auto left = [](const MissingInput& m) { return m.fit.events.empty() ? 1e300 : m.misfit(); };
+  const bool torque = left(case_.torque) < left(case_.field);
+  const MissingInput &first = torque ? case_.torque : case_.field,
+                     &second = torque ? case_.field : case_.torque;
+  const auto explains = [&](const MissingInput& m) {
+    return left(m) < std::max(case_.trial.adequate, kExplains * case_.base.misfit());
+  };
+  if (!explains(first)) return {};
+  LawSearch found = Searcher(case_, first, report).run();
+  if (found.found() || !explains(second) || left(second) > kAsMuch * left(first)) return found;
+  LawSearch other = Searcher(case_, second, report).run();
+  other.seconds += found.seconds;
+  return other.found() ? std::move(other) : std::move(found);
+}
+
+std::string law_sentence(const LawSearch& search, std::size_t hypotheses) {
+  const LawFinding* law = search.found();
+  if (!law) return {};
+  double before = 0, after = 0;
+  const auto& unseen = law->judgement.held_out;
+  for (const auto& h : unseen) {
+    before += h.before / static_cast<double>(unseen.size());
+    after += h.after / static_cast<double>(unseen.size());
+  }
+  return fmt::format(
+      "None of the {} known effects explains it; {} does: on events it was not fitted to, the error falls "
+      "from {:.1f} × noise to {:.2f} × noise.",
+      hypotheses, law->words, std::sqrt(before), std::sqrt(after));
+}
+
+}  // namespace swingbank::validate

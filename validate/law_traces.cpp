@@ -1,0 +1,68 @@
+// The inferred input and the signals of the plant that has it.
+#include "validate/law_traces.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace swingbank::validate {
+namespace {
+
+/// First switching after which the voltage leaves its band; NaN: it never does.
+double trigger_of(const FitEvent& e, double level) {
+  const Record& r = e.played();
+  if (level > 0)
+    for (std::size_t k = static_cast<std::size_t>(e.start.samples); k < r.t.size(); ++k)
+      if (std::abs(r.V[k] - std::abs(e.start.voltage)) > level) return r.t[k];
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+std::vector<LawTrace> law_traces(const PlantModel& model, const std::vector<FitEvent>& events,
+                                 const MissingInput& input, double level) {
+  std::vector<LawTrace> all;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const FitEvent& e = events[i];
+    const EventState& state = input.fit.events[i].state;
+    auto switchings = e.switchings;
+    for (std::size_t k = 0; k < switchings.size(); ++k) switchings[k].time = state.switchings[k];
+    const VoltageCurve curve(e.played(), switchings);
+    Drive run{.plant = &input.fit.plant,
+              .conventions = model.conventions,
+              .record = &e.record,
+              .curve = &curve,
+              .start = e.start};
+    run.start.P += state.P;
+    run.start.Q += state.Q;
+    run.angle = state.angle;
+    run.speed = state.speed;
+    (input.kind == InputKind::torque ? run.torque : run.field) = state.input;
+    run.tolerance = 1e-5;
+    run.least_step = e.record.step() / 40;
+    const Response r = drive(run);
+    const double to_machine = e.record.base.mva / input.fit.plant.mva;
+    LawTrace t;
+    t.t = e.record.t;
+    t.knots = state.input.t;
+    t.input = state.input.value;
+    t.begin = t.knots.front();
+    t.trigger = trigger_of(e, level);
+    const auto deviation = [&](const std::vector<double>& x, double scale) {
+      std::vector<double> d;
+      for (const double v : x) d.push_back(scale * (v - x.front()));
+      return d;
+    };
+    std::vector<double> V;  // as played in: smooth across what an instrument smeared
+    for (std::size_t k = 0, segment = 0; k < t.t.size(); ++k) {
+      while (segment < switchings.size() && t.t[k] > switchings[segment].time) ++segment;
+      V.push_back(std::abs(curve(static_cast<int>(segment), t.t[k])) - std::abs(e.start.voltage));
+    }
+    t.signal = {r.of(Output::speed), V, deviation(r.of(Output::P), to_machine),
+                deviation(r.of(Output::Q), to_machine), deviation(r.of(Output::Ifd), 1.0)};
+    t.rest = input.kind == InputKind::torque ? run.start.P * to_machine : r.of(Output::Efd).front();
+    all.push_back(std::move(t));
+  }
+  return all;
+}
+
+}  // namespace swingbank::validate
