@@ -13,11 +13,10 @@
 #include "mpi/store/hdf5_file.hpp"
 #include "sim/core/law.hpp"
 #include "sim/network/event_text.hpp"
-#include "sim/network/fault_sequence.hpp"
 #include "sim/solve/batch.hpp"
 #include "sim/solve/block_text.hpp"
+#include "sim/solve/event_choice.hpp"
 #include "sim/solve/load_choice.hpp"
-#include "sim/solve/plant_equations.hpp"
 #include "sim/solve/reference.hpp"
 
 namespace {
@@ -26,11 +25,11 @@ using namespace swingbank::sim;
 
 struct Options {
   std::string raw, dyr, convention = "psse", integrator = "reference";
-  std::vector<std::string> faults, trips, generator_trips, load_steps, vref_steps, pref_steps, loads, laws,
-      attached;
+  EventTexts event;
+  std::vector<std::string> loads, laws, attached;
   std::vector<std::string> out, plants, channels, measured;
   std::uint64_t measure_seed = 1;
-  std::string load_model = "impedance", fault_type = "3ph", z0;
+  std::string load_model = "impedance";
   std::vector<int> buses;
   double t_end = 15.0, rate = 120.0;
   std::optional<double> tolerance, frequency_hz;
@@ -38,148 +37,11 @@ struct Options {
   bool after_switching = false;
 };
 
-std::vector<std::string> fields(const std::string& text) {
-  std::vector<std::string> list(1);
-  for (char c : text) {
-    if (c == ':')
-      list.emplace_back();
-    else
-      list.back() += c;
-  }
-  return list;
-}
-
-/// A number that takes up the whole text; anything else is a problem.
-double number(const std::string& text, const std::string& where, Problems& problems) {
-  try {
-    std::size_t used = 0;
-    const double value = std::stod(text, &used);
-    if (used == text.size() && std::isfinite(value)) return value;
-  } catch (const std::exception&) {  // reported below, like any other text
-  }
-  problems.add("'" + text + "' is not a number", where, "a finite number is needed here",
-               "write it like 2.05");
-  return 0.0;
-}
-
-int bus_of(const Network& network, const std::string& text, const std::string& where, Problems& problems) {
-  const double value = number(text, where, problems);
-  const int index = network.bus_index(static_cast<int>(value));
-  if (index < 0 || value != std::floor(value)) {
-    problems.add("no bus " + text, where, network.origin + " has no bus of that number",
-                 "give a bus number of that file");
-    return -1;
-  }
-  return index;
-}
-
-BusFault parse_fault(const std::string& text, const Network& network, double t_end, Problems& problems) {
-  const std::string where = "--fault " + text;
-  const auto part = fields(text);
-  if (part.size() != 3 && part.size() != 5) {
-    problems.add(
-        fmt::format("{} fields", part.size()), where, "a fault is BUS:T_ON:T_OFF or BUS:T_ON:T_OFF:R:X",
-        "give bus number, start [s], end [s] and, if it is not bolted, R and X [pu on the network's base]");
-    return {};
-  }
-  BusFault fault{bus_of(network, part[0], where, problems), number(part[1], where, problems),
-                 number(part[2], where, problems)};
-  if (part.size() == 5) fault.z = {number(part[3], where, problems), number(part[4], where, problems)};
-  if (fault.t_off > t_end)
-    problems.add(fmt::format("fault to {} s in a run of {} s", fault.t_off, t_end), where,
-                 "the run ends before the fault does", "shorten the fault or raise --t-end");
-  return fault;
-}
-
-LineTrip parse_trip(const std::string& text, const Network& network, double t_end, Problems& problems) {
-  const std::string where = "--trip " + text;
-  const auto part = fields(text);
-  if (part.size() != 4 && part.size() != 5) {
-    problems.add(
-        fmt::format("{} fields", part.size()), where,
-        "a trip is FROM:TO:CKT:T_OPEN or FROM:TO:CKT:T_OPEN:T_CLOSE",
-        "give two bus numbers, the circuit's id, the instant it opens [s] and, if it does, closes [s]");
-    return {};
-  }
-  LineTrip trip{-1, number(part[3], where, problems), {}};
-  const int from = bus_of(network, part[0], where, problems), to = bus_of(network, part[1], where, problems);
-  if (from >= 0 && to >= 0) {
-    trip.branch = network.branch_index(network.buses[from].number, network.buses[to].number, part[2]);
-    if (trip.branch < 0)
-      problems.add(fmt::format("no branch {}-{} circuit {}", part[0], part[1], part[2]), where,
-                   network.origin + " has no branch of that name",
-                   "give a branch of that file with its circuit id");
-  }
-  if (part.size() == 5) trip.t_close = number(part[4], where, problems);
-  if (std::max(trip.t_open, trip.t_close.value_or(0.0)) > t_end)
-    problems.add(fmt::format("switching after the run's end at {} s", t_end), where, "it would not be played",
-                 "choose earlier instants or raise --t-end");
-  return trip;
-}
-
-Event parse_event(const Options& options, const Network& network, Problems& problems) {
-  Event event;
-  for (const auto& text : options.faults)
-    event.faults.push_back(parse_fault(text, network, options.t_end, problems));
-  for (const auto& text : options.trips)
-    event.trips.push_back(parse_trip(text, network, options.t_end, problems));
-  const double end = options.t_end;
-  for (const auto& text : options.generator_trips)
-    event.generator_trips.push_back(
-        read_generator_trip(text, network, end, "--trip-generator " + text, problems));
-  for (const auto& text : options.load_steps)
-    event.load_steps.push_back(read_load_step(text, network, end, "--load-step " + text, problems));
-  for (const auto& text : options.vref_steps)
-    event.setpoint_steps.push_back(
-        read_setpoint_step(text, network, end, true, "--vref-step " + text, problems));
-  for (const auto& text : options.pref_steps)
-    event.setpoint_steps.push_back(
-        read_setpoint_step(text, network, end, false, "--pref-step " + text, problems));
-  return event;
-}
-
-/// Machines behind their step-up transformers, at the impedance the positive sequence has of them.
-std::vector<SequenceSource> sequence_sources(const Grid& grid) {
-  std::vector<SequenceSource> list;
-  for (const Plant& plant : grid.plants) {
-    const Operating at = operating_point(plant, grid.flow.voltage[static_cast<std::size_t>(plant.bus)],
-                                         grid.network.base_mva, grid.conventions);
-    const double* joint = at.c.data() + plant.machine.effect->coefficients;
-    const Complex own = 1.0 / Complex(joint[joint_r], joint[joint_x]);
-    list.push_back({plant.bus, plant.generator, own * plant.mva / grid.network.base_mva});
-  }
-  return list;
-}
-
-void choose_fault_type(const Options& options, const Grid& grid, Event& event, Problems& problems) {
-  const auto type = fault_type(options.fault_type);
-  std::optional<Complex> z0;
-  if (!options.z0.empty()) {
-    const auto part = fields(options.z0);
-    if (part.size() == 2)
-      z0 = Complex(number(part[0], "--z0", problems), number(part[1], "--z0", problems));
-    else
-      problems.add(options.z0, "--z0", "the form is R:X", "give both, in pu on the network's base");
-  }
-  if (problems.empty() && type)
-    make_unbalanced(event, *type, z0, grid.network, grid.flow, sequence_sources(grid), problems);
-}
-
-/// A step of a reference that nothing follows would be lost without a word.
-void check_followers(const Grid& grid, const Event& event, Problems& problems) {
-  for (const SetpointStep& step : event.setpoint_steps) {
-    const auto plant = std::ranges::find(grid.plants, step.generator, &Plant::generator);
-    if (plant == grid.plants.end()) continue;
-    const auto lacks = [&](Slot slot) {
-      return std::ranges::none_of(plant->controls, [&](const Block& b) { return b.effect->slot == slot; });
-    };
-    if (step.dVref != 0 && lacks(Slot::exciter))
-      problems.add("a step of Vref at plant " + plant->name, "--vref-step", "it has no exciter",
-                   "choose a plant with one, or add one to the .dyr");
-    if (step.dPref != 0 && lacks(Slot::governor))
-      problems.add("a step of Pref at plant " + plant->name, "--pref-step", "it has no governor",
-                   "choose a plant with one, or add one to the .dyr");
-  }
+/// The option that a part of an event stands in.
+std::string event_option(EventPart part, const std::string& text) {
+  constexpr const char* kOptions[] = {"--fault",     "--trip",      "--trip-generator", "--load-step",
+                                      "--vref-step", "--pref-step", "--fault-type",     "--z0"};
+  return kOptions[static_cast<int>(part)] + (text.empty() ? "" : " " + text);
 }
 
 std::vector<int> parse_plants(const Options& options, const Grid& grid, Problems& problems) {
@@ -319,14 +181,14 @@ void describe_run(h5::File& h, const Options& o, const Grid& grid, const Referen
   h.attribute("convention", o.convention);
   h.attribute("integrator", o.integrator);
   h.attribute("tolerance", tolerance(o));
-  h.attribute("faults", joined(o.faults));
-  h.attribute("fault_type", o.fault_type);
-  h.attribute("zero_sequence_r_x_pu", o.z0);
-  h.attribute("trips", joined(o.trips));
-  h.attribute("generator_trips", joined(o.generator_trips));
-  h.attribute("load_steps", joined(o.load_steps));
-  h.attribute("vref_steps", joined(o.vref_steps));
-  h.attribute("pref_steps", joined(o.pref_steps));
+  h.attribute("faults", joined(o.event.faults));
+  h.attribute("fault_type", o.event.fault_type);
+  h.attribute("zero_sequence_r_x_pu", o.event.z0);
+  h.attribute("trips", joined(o.event.trips));
+  h.attribute("generator_trips", joined(o.event.generator_trips));
+  h.attribute("load_steps", joined(o.event.load_steps));
+  h.attribute("vref_steps", joined(o.event.vref_steps));
+  h.attribute("pref_steps", joined(o.event.pref_steps));
   h.attribute("loads", describe_loads(grid));
   h.attribute("laws", joined(o.laws));
   h.attribute("attached", joined(o.attached));
@@ -402,14 +264,12 @@ int simulate(const Options& o) {
   for (const auto& text : o.attached) attach(grid, text, "--attach " + text, problems);
   if (o.load_model == "raw") loads_as_composed(grid, problems);
   for (const auto& text : o.loads) choose_load(grid, text, "--load " + text, problems);
-  Event event = parse_event(o, grid.network, problems);
-  choose_fault_type(o, grid, event, problems);
-  check_followers(grid, event, problems);
+  const Event event = read_event(o.event, grid, o.t_end, event_option, problems);
   const auto plants = parse_plants(o, grid, problems);
   const auto channels = parse_channels(o, problems);
   const Instruments instruments(o.measured, o.measure_seed, problems);
   std::vector<int> buses;
-  for (int b : o.buses) buses.push_back(bus_of(grid.network, std::to_string(b), "--buses", problems));
+  for (int b : o.buses) buses.push_back(read_bus(std::to_string(b), grid.network, "--buses", problems));
   problems.raise();
 
   const auto begin = std::chrono::steady_clock::now();
@@ -456,24 +316,24 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"psse", "andes"}))
       ->capture_default_str();
   app.add_option(
-      "--fault", o.faults,
+      "--fault", o.event.faults,
       "BUS:T_ON:T_OFF[:R:X], bolted without R and X [s, pu on the network's base]; may be repeated");
-  app.add_option("--fault-type", o.fault_type,
+  app.add_option("--fault-type", o.event.fault_type,
                  "3ph, or by sequence equivalents slg: line to ground, ll: two-phase, llg: two-phase to "
                  "ground; R and X of --fault are then the fault's own")
       ->check(CLI::IsMember({"3ph", "slg", "ll", "llg"}))
       ->capture_default_str();
-  app.add_option("--z0", o.z0,
+  app.add_option("--z0", o.event.z0,
                  "R:X, zero-sequence impedance of the grid at the fault [pu on the network's base]; needed "
                  "by slg and llg");
-  app.add_option("--trip", o.trips, "FROM:TO:CKT:T_OPEN[:T_CLOSE] [s]; may be repeated");
-  app.add_option("--trip-generator", o.generator_trips,
+  app.add_option("--trip", o.event.trips, "FROM:TO:CKT:T_OPEN[:T_CLOSE] [s]; may be repeated");
+  app.add_option("--trip-generator", o.event.generator_trips,
                  "BUS[/ID]:T[:PART] [s, of its units], for good, without PART all; may be repeated");
-  app.add_option("--load-step", o.load_steps,
+  app.add_option("--load-step", o.event.load_steps,
                  "BUS:P:Q:T_ON[:T_OFF] [MW, Mvar, s], consumption added as constant admittance; may be "
                  "repeated");
-  app.add_option("--vref-step", o.vref_steps, "BUS[/ID]:T:STEP [s, pu]; may be repeated");
-  app.add_option("--pref-step", o.pref_steps, "BUS[/ID]:T:STEP [s, pu]; may be repeated");
+  app.add_option("--vref-step", o.event.vref_steps, "BUS[/ID]:T:STEP [s, pu]; may be repeated");
+  app.add_option("--pref-step", o.event.pref_steps, "BUS[/ID]:T:STEP [s, pu]; may be repeated");
   app.add_option("--loads", o.load_model,
                  "impedance: every load at constant impedance; raw: as the .raw composes it of constant "
                  "power, current and admittance; those with a model in the .dyr keep it")

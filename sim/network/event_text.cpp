@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <vector>
@@ -77,6 +78,67 @@ int generator_named(const Network& network, const std::string& text, const std::
   return -1;
 }
 
+int read_bus(const std::string& text, const Network& network, const std::string& where, Problems& problems) {
+  for (std::size_t i = 0; i < network.buses.size(); ++i)
+    if (std::to_string(network.buses[i].number) == text) return static_cast<int>(i);
+  problems.add("no bus " + text, where, network.origin + " has no bus of that number",
+               "give a bus number of that file");
+  return -1;
+}
+
+BusFault read_fault(const std::string& text, const Network& network, double t_end, const std::string& where,
+                    Problems& problems) {
+  const auto part = fields(text);
+  if (part.size() != 3 && part.size() != 5) {
+    problems.add(
+        fmt::format("{} fields", part.size()), where, "a fault is BUS:T_ON:T_OFF or BUS:T_ON:T_OFF:R:X",
+        "give bus number, start [s], end [s] and, if it is not bolted, R and X [pu on the network's base]");
+    return {-1, 0.0, 0.0};
+  }
+  BusFault fault{read_bus(part[0], network, where, problems), number(part[1], where, problems),
+                 number(part[2], where, problems)};
+  if (part.size() == 5) fault.z = {number(part[3], where, problems), number(part[4], where, problems)};
+  if (fault.t_off > t_end)
+    problems.add(fmt::format("fault to {} s in a run of {} s", fault.t_off, t_end), where,
+                 "the run ends before the fault does", "shorten the fault or let the run end later");
+  return fault;
+}
+
+LineTrip read_line_trip(const std::string& text, const Network& network, double t_end,
+                        const std::string& where, Problems& problems) {
+  const auto part = fields(text);
+  if (part.size() != 4 && part.size() != 5) {
+    problems.add(
+        fmt::format("{} fields", part.size()), where,
+        "a trip is FROM:TO:CKT:T_OPEN or FROM:TO:CKT:T_OPEN:T_CLOSE",
+        "give two bus numbers, the circuit's id, the instant it opens [s] and, if it does, closes [s]");
+    return {-1, 0.0, {}};
+  }
+  LineTrip trip{-1, number(part[3], where, problems), {}};
+  const int from = read_bus(part[0], network, where, problems),
+            to = read_bus(part[1], network, where, problems);
+  if (from >= 0 && to >= 0) {
+    const auto bus = [&](int i) { return network.buses[static_cast<std::size_t>(i)].number; };
+    trip.branch = network.branch_index(bus(from), bus(to), part[2]);
+    if (trip.branch < 0)
+      problems.add(fmt::format("no branch {}-{} circuit {}", part[0], part[1], part[2]), where,
+                   network.origin + " has no branch of that name",
+                   "give a branch of that file with its circuit id");
+  }
+  if (part.size() == 5) trip.t_close = number(part[4], where, problems);
+  if (std::max(trip.t_open, trip.t_close.value_or(0.0)) > t_end)
+    problems.add(fmt::format("switching after the run's end at {} s", t_end), where, "it would not be played",
+                 "choose earlier instants or let the run end later");
+  return trip;
+}
+
+Complex read_impedance(const std::string& text, const std::string& where, Problems& problems) {
+  const auto part = fields(text);
+  if (part.size() == 2) return {number(part[0], where, problems), number(part[1], where, problems)};
+  problems.add(text, where, "the form is R:X", "give both, in pu on the network's base");
+  return {};
+}
+
 GeneratorTrip read_generator_trip(const std::string& text, const Network& network, double t_end,
                                   const std::string& where, Problems& problems) {
   const auto part = fields(text, 2, 3, "BUS[/ID]:T[:PART] in s and parts of the whole", where, problems);
@@ -91,11 +153,7 @@ LoadStep read_load_step(const std::string& text, const Network& network, double 
   LoadStep step{-1, {}, 0.0, {}};
   const auto part = fields(text, 4, 5, "BUS:P:Q:T_ON[:T_OFF] in MW, Mvar and s", where, problems);
   if (part.empty()) return step;
-  for (std::size_t i = 0; i < network.buses.size(); ++i)
-    if (std::to_string(network.buses[i].number) == part[0]) step.bus = static_cast<int>(i);
-  if (step.bus < 0)
-    problems.add("no bus " + part[0], where, network.origin + " has no bus of that number",
-                 "give a bus number of that file");
+  step.bus = read_bus(part[0], network, where, problems);
   const double p = number(part[1], where, problems), q = number(part[2], where, problems);
   step.power = Complex(p, q) / network.base_mva;
   step.t_on = instant(part[3], t_end, where, problems);

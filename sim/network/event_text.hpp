@@ -11,6 +11,16 @@ namespace swingbank::sim {
 /// "BUS/ID", or "BUS" where it has one generator in service; -1 with a problem otherwise.
 int generator_named(const Network& network, const std::string& text, const std::string& where,
                     Problems& problems);
+/// Index of the bus of that number; -1 with a problem otherwise.
+int read_bus(const std::string& text, const Network& network, const std::string& where, Problems& problems);
+/// "BUS:T_ON:T_OFF", bolted, or "BUS:T_ON:T_OFF:R:X" [s, pu on the network's base].
+BusFault read_fault(const std::string& text, const Network& network, double t_end, const std::string& where,
+                    Problems& problems);
+/// "FROM:TO:CKT:T_OPEN[:T_CLOSE]" [s].
+LineTrip read_line_trip(const std::string& text, const Network& network, double t_end,
+                        const std::string& where, Problems& problems);
+/// "R:X" [pu on the network's base].
+Complex read_impedance(const std::string& text, const std::string& where, Problems& problems);
 /// "BUS[/ID]:T", or "BUS[/ID]:T:PART" for a part of its units.
 GeneratorTrip read_generator_trip(const std::string& text, const Network& network, double t_end,
                                   const std::string& where, Problems& problems);
