@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <optional>
 
 #include "jobs/event_records.hpp"
+#include "jobs/own_command.hpp"
+#include "validate/calibrate_network.hpp"
 #include "validate/calibrate_report.hpp"
 #include "validate/plant_file.hpp"
 #include "validate/side_by_side.hpp"
@@ -18,7 +21,7 @@ using namespace swingbank::validate;
 constexpr int kNotAdequate = 3;
 
 struct Arguments {
-  std::string model, out = "calibration", method = "fit", truth, command;
+  std::string model, out = "calibration", method = "fit", truth, network, start, command;
   std::vector<std::string> records;
   bool json = false;
   CalibrateOptions options;
@@ -53,12 +56,45 @@ int run_baseline(const Arguments& a, const PlantModel& model, std::vector<Record
   return f.adequate ? 0 : kNotAdequate;
 }
 
-int run(const Arguments& a) {
+/// The network's estimate from the events that are fitted, by `swingbank predict` or as it was given.
+std::optional<NetworkEstimate> ask_network(const Arguments& a, const std::vector<Record>& records) {
+  const auto out = held_out_events(records, a.options.held_out);
+  if (!a.start.empty()) {
+    NetworkEstimate given = read_estimate(a.start);
+    require_unseen(given, records, out);
+    return given;
+  }
+  if (a.network.empty()) return std::nullopt;
+  const auto predict = jobs::own_command(
+      "predict",
+      "run 'swingbank predict --out FILE' where it was built with LibTorch, and give --start FILE");
+  const jobs::Scratch scratch;
+  const auto file = scratch.folder() / "estimate.json";
+  std::vector<std::string> words = {"--network", a.network,     "--model",  a.model,
+                                    "--out",     file.string(), "--records"};
+  for (std::size_t k = 0; k < records.size(); ++k)
+    if (!out[k]) words.push_back(a.records[k]);
+  if (jobs::run_own(predict, words) != 0)
+    throw InputError({"no estimate of the network", a.network, "swingbank predict says why above",
+                      "correct that, or calibrate without --network"});
+  return read_estimate(file);
+}
+
+int run(Arguments& a) {
   const PlantModel model = load_plant_model(a.model);
   const Truth truth = a.truth.empty() ? Truth{} : read_truth(a.truth, model);
   std::vector<Record> records = jobs::read_events(a.records, model);
+  if (a.method == "curve-fit" && !(a.network.empty() && a.start.empty()))
+    throw InputError({"a network's start", "--method curve-fit",
+                      "curve fitting starts from the model's own values", "give --method fit or both"});
   if (a.method == "curve-fit") return run_baseline(a, model, std::move(records), truth);
   const bool both = a.method == "both";
+  const auto estimate = ask_network(a, records);
+  sim::Plant estimated;
+  if (estimate) {
+    estimated = estimated_plant(*estimate, model, a.options.spread);
+    a.options.given.push_back({"network", estimated});
+  }
   std::vector<Record> again = both ? records : std::vector<Record>{};
   const Calibration c = calibrate(model, std::move(records), a.options);
   const std::filesystem::path folder = a.out;
@@ -72,6 +108,7 @@ int run(const Arguments& a) {
     result["curve_fit"] = curve_fit_json(f, truth);
     ways.push_back(way_of(f, c));
   }
+  if (estimate) ways.push_back(way_of(*estimate, estimated, c));
   ways.push_back(way_of(c));
   if (ways.size() > 2 || !truth.empty()) {
     text += "\n" + beside_report(ways, truth);
@@ -92,6 +129,12 @@ void add_options(CLI::App& app, Arguments& a, bool& inner) {
                  "baseline; both: side by side")
       ->capture_default_str()
       ->check(CLI::IsMember({"fit", "curve-fit", "both"}));
+  auto* network =
+      app.add_option("--network", a.network,
+                     "trained network (file.network, or a folder with one): its estimate is one of the "
+                     "starts, and is shown beside the fit");
+  app.add_option("--start", a.start, "the same from what 'swingbank predict --out FILE' wrote")
+      ->excludes(network);
   app.add_option("--truth", a.truth, "plant file (or blind-test's truth) to compare the parameters with");
   app.add_option("--hold-out", o.held_out,
                  "record (name or number from 1) left out of the fit and used to judge it; may be repeated");

@@ -94,9 +94,18 @@ class Run {
         [&](int done) { tell("parameter sets screened", done, options_.draws); });
     std::ranges::sort(order);
     std::vector<std::vector<double>> starts = {screen.own()};
-    for (std::size_t k = 0; k < order.size() && k < static_cast<std::size_t>(std::max(0, options_.starts));
-         ++k)
-      if (std::isfinite(order[k].first)) starts.push_back(draws[order[k].second]);
+    c_.started = {{.name = "model", .before = chi2_of(model_.plant, model_.conventions, seen_, states)}};
+    for (const auto& g : options_.given) {
+      starts.push_back(values_of(g.plant));
+      c_.started.push_back(
+          {.name = g.name, .before = chi2_of(screen.with(starts.back()), model_.conventions, seen_, states)});
+    }
+    const auto refined = static_cast<std::size_t>(std::max(0, options_.starts));
+    for (std::size_t k = 0; k < order.size() && k < refined; ++k) {
+      if (!std::isfinite(order[k].first)) continue;
+      starts.push_back(draws[order[k].second]);
+      c_.started.push_back({.name = fmt::format("draw {}", order[k].second + 1), .before = order[k].first});
+    }
 
     std::vector<Fit> fits(starts.size());
     in_parallel(
@@ -110,6 +119,13 @@ class Run {
         [&](int done) { tell("starts refined", done, static_cast<int>(starts.size())); });
     choose(fits);
   }
+  std::vector<double> values_of(const sim::Plant& plant) const {
+    const auto blocks = sim::block_parameters(plant);
+    std::vector<double> values;
+    for (const auto& f : free_)
+      values.push_back(blocks[static_cast<std::size_t>(f.block)][static_cast<std::size_t>(f.index)]);
+    return values;
+  }
   void choose(std::vector<Fit>& fits) {
     const auto cost = [](const Fit& f) {
       return f.failed.empty() ? f.chi2 + f.belief : std::numeric_limits<double>::infinity();
@@ -120,8 +136,15 @@ class Run {
     c_.starts = static_cast<int>(fits.size());
     // 1 % of the cost, or what one parameter's standard error costs
     const double near = std::max(1.0, 0.01 * cost(*best));
-    c_.agreeing = static_cast<int>(
-        std::ranges::count_if(fits, [&](const Fit& f) { return cost(f) <= cost(*best) + near; }));
+    double values = 0;
+    for (const auto& e : seen_) values += e.values();
+    for (std::size_t k = 0; k < fits.size(); ++k) {
+      auto& start = c_.started[k];
+      start.before /= values;
+      start.after = fits[k].failed.empty() ? fits[k].misfit() : std::numeric_limits<double>::infinity();
+      start.agrees = cost(fits[k]) <= cost(*best) + near;
+      c_.agreeing += start.agrees;
+    }
     c_.converged = best->converged;
     c_.fit = *best;
   }

@@ -10,6 +10,12 @@
 
 namespace swingbank::validate {
 
+/// A further start of the search, and what it is called in reports.
+struct GivenStart {
+  std::string name;
+  sim::Plant plant;
+};
+
 struct CalibrateOptions {
   double spread = 0.2;  ///< relative uncertainty believed of the parameters
   int draws = 24;       ///< parameter sets tried as starts
@@ -17,6 +23,7 @@ struct CalibrateOptions {
   std::uint64_t seed = 1;
   std::vector<std::string> held_out;  ///< record names (or their numbers, from 1) left out of the fit
   std::vector<std::string> fixed;     ///< "GENROU.Xl": stays as it is
+  std::vector<GivenStart> given;      ///< starts beside the model's own values and those drawn
   double adequate = 1.12;  ///< chi2 per value that interpolation and the played-in voltage may leave
   FitEventOptions events = {};
   /// Called with what is done, done and total; may be empty.
@@ -73,6 +80,13 @@ enum class Adequacy {
   structure_poor,   ///< what is left survives the refit: something is missing
 };
 
+/// One start of the search.
+struct StartScore {
+  std::string name;              ///< "model", "network", "draw 3"
+  double before = 0, after = 0;  ///< chi2 per value over the events seen; infinite where it cannot be run
+  bool agrees = false;           ///< came to the best optimum
+};
+
 struct Calibration {
   PlantModel model;  ///< with the fitted values
   Adequacy adequacy = Adequacy::adequate;
@@ -84,6 +98,7 @@ struct Calibration {
   std::vector<EventScore> events;
   double before = 0, after = 0, limit = 0;  ///< chi2 per value over the events seen
   int starts = 0, agreeing = 0;             ///< refined starts; how many came to the same optimum
+  std::vector<StartScore> started;          ///< each of them: the model's own, those given, those drawn
   bool converged = false;
   double voltage_noise = 0;        ///< share of the pre-event movement of V that is the instrument's
   Fit fit;                         ///< of the events seen

@@ -52,6 +52,15 @@ std::string identify_text(const Calibration& c) {
   return text;
 }
 
+std::string starts_text(const Calibration& c) {
+  std::string text = "Starts, chi2 per value before -> after:";
+  for (const auto& s : c.started)
+    text += fmt::format(" {} {:.3g} -> {:.3g}{};", s.name, s.before, s.after,
+                        s.agrees ? "" : " (another optimum)");
+  text.back() = '.';
+  return text + "\n";
+}
+
 json parameter_json(const Calibration& c, std::size_t i) {
   const auto& p = c.parameters[i];
   json j = {{"effect", p.fit.block},
@@ -158,6 +167,7 @@ std::string terminal_report(const Calibration& c) {
       c.sentence + "\n\n" + aligned(event_table(c.events)) + "\n" + aligned(parameter_table(c));
   text += fmt::format("\n{} of {} starts came to this optimum{}.\n", c.agreeing, c.starts,
                       c.converged ? "" : "; the search had not ended when its iterations did");
+  if (c.started.size() > 1) text += starts_text(c);
   const auto coloured = std::ranges::max_element(c.events, {}, &EventScore::colour);
   if (coloured->colour > 0.2)
     text += fmt::format(
@@ -207,6 +217,7 @@ json calibration_json(const Calibration& c) {
             {"misfit_limit", c.limit},
             {"starts", c.starts},
             {"starts_agreeing", c.agreeing},
+            {"started", json::array()},
             {"converged", c.converged},
             {"voltage_noise_share", c.voltage_noise},
             {"seconds", c.seconds},
@@ -215,6 +226,11 @@ json calibration_json(const Calibration& c) {
             {"correlation", json::array()},
             {"not_told_apart", json::array()},
             {"events_tried", json::array()}};
+  for (const auto& s : c.started)
+    j["started"].push_back({{"name", s.name},
+                            {"misfit_before", finite(s.before)},
+                            {"misfit_after", finite(s.after)},
+                            {"agrees", s.agrees}});
   for (const auto& e : c.events) j["events"].push_back(event_json(e));
   for (std::size_t i = 0; i < c.parameters.size(); ++i) {
     j["parameters"].push_back(parameter_json(c, i));

@@ -90,6 +90,31 @@ const ChannelScore* channel_of(const EventScore& event, Output channel) {
   return at == event.channels.end() ? nullptr : &*at;
 }
 
+/// Every event of the calibration with another plant's parameters and a state of its own.
+std::vector<EventScore> try_plant(const sim::Plant& plant, const Calibration& c) {
+  std::vector<EventScore> events = c.events;
+  in_parallel(
+      c.prepared.size(),
+      [&](std::size_t e) {
+        const Fit own = fit(plant, c.model.conventions, {c.prepared[e]}, {});
+        EventScore& to = events[e];
+        if (!own.failed.empty()) {
+          to.after = std::numeric_limits<double>::infinity();
+          for (auto& ch : to.channels) ch.rms_after = ch.misfit_after = to.after;
+          return;
+        }
+        const EventScore score = score_event(c.prepared[e], own.events.front(), own.events.front(), to.seen,
+                                             pre_event_samples(c.prepared), 1.0);
+        to.after = score.after;
+        for (std::size_t k = 0; k < score.channels.size(); ++k) {
+          to.channels[k].rms_after = score.channels[k].rms_after;
+          to.channels[k].misfit_after = score.channels[k].misfit_after;
+        }
+      },
+      [](int) {});
+  return events;
+}
+
 }  // namespace
 
 Truth read_truth(const std::filesystem::path& file, const PlantModel& model) {
@@ -120,24 +145,18 @@ Way way_of(const Calibration& c) {
 }
 
 Way way_of(const CurveFit& f, const Calibration& c) {
-  Way way{"curve fit", {}, c.events};
+  Way way{"curve fit", {}, try_plant(f.model.plant, c)};
   for (const auto& p : f.parameters) way.values.push_back(value_of(p));
-  in_parallel(
-      c.prepared.size(),
-      [&](std::size_t e) {
-        const Fit own = fit(f.model.plant, f.model.conventions, {c.prepared[e]}, {});
-        if (!own.failed.empty())
-          throw InputError({"the plant that curve fitting found", c.prepared[e].record.name, own.failed,
-                            "hold more of its parameters with --fix"});
-        const EventScore score = score_event(c.prepared[e], own.events.front(), own.events.front(),
-                                             c.events[e].seen, pre_event_samples(c.prepared), 1.0);
-        way.events[e].after = score.after;
-        for (std::size_t k = 0; k < score.channels.size(); ++k) {
-          way.events[e].channels[k].rms_after = score.channels[k].rms_after;
-          way.events[e].channels[k].misfit_after = score.channels[k].misfit_after;
-        }
-      },
-      [](int) {});
+  return way;
+}
+
+Way way_of(const NetworkEstimate& estimate, const sim::Plant& plant, const Calibration& c) {
+  constexpr double kNormal95 = 1.959963985;
+  Way way{"network", {}, try_plant(plant, c)};
+  for (const auto& p : estimate.parameters)
+    if (p.learnt())
+      way.values.push_back(
+          {p.full(), p.unit, p.value, p.value - kNormal95 * p.spread, p.value + kNormal95 * p.spread});
   return way;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "validate/calibrate.hpp"
+#include "validate/calibrate_network.hpp"
 #include "validate/curve_fit.hpp"
 #include "validate/page.hpp"
 
@@ -35,6 +36,9 @@ Way way_of_model(const Calibration& c);
 Way way_of(const Calibration& c);
 /// The curve fit's parameters, tried on the events of the calibration.
 Way way_of(const CurveFit& f, const Calibration& c);
+/// The network's estimates where the plant has them, with its spread for an interval; `plant`: with them
+/// (estimated_plant). Where that plant cannot follow an event, what is left of it is infinite.
+Way way_of(const NetworkEstimate& estimate, const sim::Plant& plant, const Calibration& c);
 
 /// How far one way is from the truth, over the parameters that both know.
 struct Distance {

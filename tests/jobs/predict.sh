@@ -102,3 +102,35 @@ head -c 3000 "$network" >"$work/cut.network"
 refuses "truncated network" 'cut.network .it ends too early' "$swingbank" predict --network "$work/cut.network" --model "$work/plant.toml" --records "$work/row-000.csv"
 refuses "another machine model" 'the network was trained on GENCLS' "$swingbank" predict --network "$network" --model "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml" --records "$work/row-000.csv"
 misused "unknown option" 'nonsense' predict --records "$work/row-000.csv" --nonsense 3
+
+# calibrate asks the network by itself: its estimate is a start, and stands beside the fit; what is held out is not shown to it
+sed -i '/^\[record\]/,/^base_mva/s/^base_mva = .*/base_mva = 100.0/' "$work/plant.toml"
+status=0
+"$swingbank" calibrate --model "$work/plant.toml" --records "$work"/row-00[0-3].csv --hold-out row-003 --network "$network" --draws 0 --starts 0 \
+  --spread 0.5 --out "$work/calibrated" --json >"$work/printed.json" 2>"$work/log" || status=$?
+((status == 0 || status == 3)) || fail "calibrate --network: $(cat "$work/log")"
+"$swingbank" predict --network "$network" --model "$work/plant.toml" --records "$work"/row-00[0-2].csv --out "$work/seen.json" >"$work/log" 2>&1 || fail "predict for --start"
+"$swingbank" calibrate --model "$work/plant.toml" --records "$work"/row-00[0-3].csv --hold-out row-003 --start "$work/seen.json" --draws 0 --starts 0 \
+  --spread 0.5 --out "$work/started" --json >"$work/started.json" 2>"$work/log" || (($? == 3)) || fail "calibrate --start: $(cat "$work/log")"
+/usr/bin/python3 - "$work" <<'PYTHON'
+import json, sys
+load = lambda name: json.load(open(f"{sys.argv[1]}/{name}"))
+asked, given, seen = load("printed.json"), load("started.json"), load("seen.json")
+assert [s["name"] for s in asked["started"]] == ["model", "network"], asked["started"]
+assert all(s["misfit_after"] <= s["misfit_before"] for s in asked["started"]), asked["started"]
+model, network, fit = asked["side_by_side"]
+assert [w["way"] for w in asked["side_by_side"]] == ["model", "network", "calibrate"]
+said = {p["effect"] + "." + p["name"]: p["estimate"] for p in seen["parameters"]}
+for p in network["parameters"]:
+    assert p["value"] == said[p["parameter"]] and p["low_95"] < p["value"] < p["high_95"], p
+assert network["parameters"] == given["side_by_side"][1]["parameters"], "asked and given differ"
+assert [e["seen"] for e in fit["events"]] == [True, True, True, False]
+PYTHON
+calibrate() { "$swingbank" calibrate --model "$work/plant.toml" --records "$work"/row-00[0-3].csv --out "$work/refused" "$@"; }
+refuses "network of another plant" 'was trained on GENCLS' "$swingbank" calibrate --model "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml" \
+  --records "$SWINGBANK_SOURCE/configs/records/record-example/avr_ev1.csv" --start "$work/seen.json" --out "$work/refused"
+refuses "no network" 'predict says why above' calibrate --network "$work/none.network"
+refuses "estimate of an event held out" 'that event is held out' calibrate --start "$work/seen.json" --hold-out 1
+refuses "curve fitting with a network" 'starts from the model.s own values' calibrate --start "$work/seen.json" --method curve-fit
+misused "network and start" 'excludes' calibrate --start "$work/seen.json" --network "$network"
+[[ ! -e $work/refused ]] || fail "left behind: $(find "$work/refused")"
