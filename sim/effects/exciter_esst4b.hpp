@@ -21,7 +21,8 @@ struct Model {
   Vc --> [ 1/(1 + s TR) ] --> Vm
   e = Vref + dVref - Vm + Vs + Vlimiter
   e --> [ KPR + KIR/s ] [VRMIN, VRMAX] --> Vr --> [ 1/(1 + s TA) ] --> Va
-  Va - KG Efd --> [ KPM + KIM/s ] [VMMIN, VMMAX] --> Vmr          (each PI stops integrating at its limit)
+  Va - KG Efd --> [ KPM + KIM/s ] [VMMIN, VMMAX] --> Vmr          (each PI stops integrating at its limit,
+                                                                 within 0.002 pu beyond it)
   Efd = Vmr VB         VB = VE FEX(KC Ifd/VE), at most VBMAX
   VE = |KP' V + j (KI + KP' XL) I|, KP' = KP at angle THETAP         (V, I: phasors at the terminal)
 )";
@@ -74,6 +75,8 @@ struct Model {
                                      {"xr", "pu", "integral of the voltage regulator", kSourceWeight},
                                      {"Va", "pu", "voltage regulator, lagged", kSourceWeight},
                                      {"xm", "pu", "integral of the inner regulator", kSourceWeight}};
+
+  static constexpr double kBand = 2e-3;  ///< beyond a limit, where a PI's integral comes to rest [pu]
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
@@ -130,12 +133,14 @@ struct Model {
     return clamp(rectified(VE, c[commutation] * s.Ifd), T(0.0), c[vbmax]);
   }
   /// Slope of a PI's integral: none while its output, `out` before the limits, stands beyond one and `slope`
-  /// would lead further.
+  /// would lead further. It fades out over a narrow band: cut off at once, it has no solution where the
+  /// proportional part falls while the integral rises (the output would slide along the limit).
   template <class T>
   static T non_windup(const T& slope, const T& out, const T& least, const T& most) {
-    const T zero(0.0);
-    return select(most < out, zero - positive_part(zero - slope),
-                  select(out < least, positive_part(slope), slope));
+    const T zero(0.0), one(1.0), per_band(1.0 / kBand);
+    const T rise = one - clamp((out - most) * per_band, zero, one);
+    const T fall = one - clamp((least - out) * per_band, zero, one);
+    return positive_part(slope) * rise - positive_part(zero - slope) * fall;
   }
   template <class T>
   static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {

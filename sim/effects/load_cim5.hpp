@@ -353,7 +353,8 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
     if (wrong) problems.add(what, where, why, remedy);
   };
   bad(p[IT] != 1 && p[IT] != 2, value(IT), "it is the code of the circuit", "give 1 or 2");
-  for (const int i : {Xm, R1, X1, H}) bad(!(p[i] > 0), value(i), "CIM5 divides by it", "give a value > 0");
+  for (const int i : {Xm, R1, X1, H})
+    bad(!(p[i] > 0), value(i), "the motor divides by it", "give a value > 0");
   for (const int i : {Ra, Xa, R2, X2, E1, S1, E2, S2, Mbase, Pmult, TI, TB, E, Tnom})
     bad(!(p[i] >= 0), value(i), "a size, not a direction", "give a value >= 0");
   bad((p[R2] > 0) != (p[X2] > 0), value(R2) + " with " + value(X2), "a second cage has both",

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "sim/core/bus_frequency.hpp"
 #include "sim/core/effect.hpp"
 
 namespace swingbank::sim::load_ieel {
@@ -92,7 +93,7 @@ struct Model {
     c[kp] = p[a7];
     c[kq] = p[a8];
     c[iTf] = T(1.0) / p[Tf];
-    c[slope] = c[iTf] * T(1.0 / (2.0 * 3.14159265358979323846 * conventions.frequency));
+    c[slope] = frequency_slope(c[iTf], conventions.frequency);
   }
   /// As an admittance, so that nothing is divided by V.
   template <class T>
@@ -105,8 +106,7 @@ struct Model {
       const T& edge = c[lowest + k];
       y[k / 3] = y[k / 3] + c[part + k] * to_the_power(select(v > edge, v, edge), c[power + k]);
     }
-    const T lagged = x[xr] * x[xr] + x[xi] * x[xi] + T(tiny);
-    const T df = (s.Vi * x[xr] - s.Vr * x[xi]) / sqrt(squared * lagged) * c[slope];
+    const T df = bus_frequency(s.Vr, s.Vi, squared, x[xr], x[xi], c[slope]);
     const T g = y[0] * (T(1.0) + c[kp] * df), b = y[1] * (T(1.0) + c[kq] * df);
     s.Ir = T(0.0) - g * s.Vr - b * s.Vi;
     s.Ii = b * s.Vr - g * s.Vi;

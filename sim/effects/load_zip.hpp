@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "sim/core/bus_frequency.hpp"
 #include "sim/core/effect.hpp"
 
 namespace swingbank::sim::load_zip {
@@ -64,7 +65,7 @@ struct Model {
     c[kp] = p[Kpf];
     c[kq] = p[Kqf];
     c[iTf] = T(1.0) / p[Tf];
-    c[slope] = c[iTf] * T(1.0 / (2.0 * 3.14159265358979323846 * conventions.frequency));
+    c[slope] = frequency_slope(c[iTf], conventions.frequency);
   }
   /// As an admittance, so that nothing is divided by V.
   template <class T>
@@ -75,8 +76,7 @@ struct Model {
     const T v = sqrt(squared);
     const T high = select(v > c[vp], v, c[vp]), low = select(v > c[vi], v, c[vi]);
     const T power = T(1.0) / (high * high), amps = T(1.0) / low;
-    const T lagged = x[xr] * x[xr] + x[xi] * x[xi] + T(tiny);
-    const T df = (s.Vi * x[xr] - s.Vr * x[xi]) / sqrt(squared * lagged) * c[slope];
+    const T df = bus_frequency(s.Vr, s.Vi, squared, x[xr], x[xi], c[slope]);
     const T g = c[P0] * (c[pz] + c[pi] * amps + c[pp] * power) * (T(1.0) + c[kp] * df);
     const T b = c[Q0] * (c[qz] + c[qi] * amps + c[qp] * power) * (T(1.0) + c[kq] * df);
     s.Ir = T(0.0) - g * s.Vr - b * s.Vi;

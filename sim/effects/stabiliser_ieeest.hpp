@@ -2,7 +2,10 @@
 // IEEEST: the IEEE (1981) power system stabiliser.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "sim/core/blocks.hpp"
+#include "sim/core/bus_frequency.hpp"
 #include "sim/core/effect.hpp"
 
 namespace swingbank::sim::stabiliser_ieeest {
@@ -18,14 +21,16 @@ struct Model {
         (1 + A5 s + A6 s^2)              1 + s T1   1 + s T3      s T5
   u -> ------------------------------- -> -------- - -------- KS -------- -> [LSMIN, LSMAX] -> Vs
        (1+A1 s+A2 s^2)(1+A3 s+A4 s^2)    1 + s T2   1 + s T4     1 + s T6
-  u: speed deviation (ICS = 1), electrical power on the machine's base (3), accelerating power Pm - P (4),
-     voltage (5).
+  u: speed deviation (ICS = 1), frequency deviation of the terminal (2), electrical power on the machine's
+     base (3), accelerating power Pm - P (4), voltage V (5), its slope (6).
+     Frequency from the voltage and the same behind a lag x = V/(1 + s Tf): Im(V conj x)/(|V| |x|)/(2 pi f0 Tf);
+     slope s V/(1 + s Tf).
   Vs = 0 while Vc > VCU or Vc < VCL (a zero switches that side off). T2, T4 = 0: bypass; T6 = 0: KS alone.
 )";
-  enum P { ICS, IB, A1, A2, A3, A4, A5, A6, T1, T2, T3, T4, T5, T6, KS, LSMAX, LSMIN, VCU, VCL };
+  enum P { ICS, IB, A1, A2, A3, A4, A5, A6, T1, T2, T3, T4, T5, T6, KS, LSMAX, LSMIN, VCU, VCL, Tf };
   static constexpr Parameter parameters[] = {
       {"ICS", "ICS", "code", 1.0, 1.0, 6.0, kNoNeutral,
-       "input: 1 speed, 3 electrical, 4 accelerating power, 5 voltage"},
+       "input: 1 speed, 2 frequency, 3 electrical, 4 accelerating power, 5 voltage, 6 its slope"},
       {"IB", "IB", "code", 0.0, 0.0, 999997.0, kNoNeutral, "remote bus (0: the machine's own)"},
       {"A1", "A1", "s", 0.06, 0.0, 10.0, 0.0, "filter denominator 1, first order"},
       {"A2", "A2", "s^2", 0.0016, 0.0, 10.0, 0.0, "filter denominator 1, second order"},
@@ -43,14 +48,19 @@ struct Model {
       {"LSMAX", "LSMAX", "pu", 0.1, 0.0, 10.0, kNoNeutral, "upper limit of Vs"},
       {"LSMIN", "LSMIN", "pu", -0.1, -10.0, 0.0, kNoNeutral, "lower limit of Vs"},
       {"VCU", "VCU", "pu", 1.25, 0.0, 10.0, 0.0, "no output above this voltage (0: off)"},
-      {"VCL", "VCL", "pu", 0.7, -10.0, 1.0, 0.0, "no output below this voltage (0: off)"}};
+      {"VCL", "VCL", "pu", 0.7, -10.0, 1.0, 0.0, "no output below this voltage (0: off)"},
+      {"Tf", "Tf", "s", 0.04, 0.005, 1.0, kNoNeutral, "lag behind which frequency or slope is measured"}};
   static constexpr int dyr_columns[] = {ICS, IB, A1, A2, A3, A4,    A5,    A6,  T1, T2,
                                         T3,  T4, T5, T6, KS, LSMAX, LSMIN, VCU, VCL};
   enum C {
     w1,
+    w2,
     w3,
     w4,
     w5,
+    w6,
+    iTf,
+    per_lead,
     a1,
     a2,
     a3,
@@ -74,21 +84,28 @@ struct Model {
     vcl,
     coefficients
   };
-  enum X { y, ydot, w, wdot, lead1, lead2, washed };
-  static constexpr State states[] = {
-      {"y", "pu", "first filter's output"},           {"ydot", "pu/s", "its slope"},
-      {"w", "pu", "second filter's state"},           {"wdot", "pu/s", "its slope"},
-      {"lead1", "pu", "state of the first lead-lag"}, {"lead2", "pu", "state of the second lead-lag"},
-      {"washed", "pu", "state of the washout"}};
+  enum X { y, ydot, w, wdot, lead1, lead2, washed, xr, xi };
+  static constexpr State states[] = {{"y", "pu", "first filter's output"},
+                                     {"ydot", "pu/s", "its slope"},
+                                     {"w", "pu", "second filter's state"},
+                                     {"wdot", "pu/s", "its slope"},
+                                     {"lead1", "pu", "state of the first lead-lag"},
+                                     {"lead2", "pu", "state of the second lead-lag"},
+                                     {"washed", "pu", "state of the washout"},
+                                     {"xr", "pu", "lagged voltage, real (ICS = 6: magnitude)"},
+                                     {"xi", "pu", "lagged voltage, imaginary"}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
       if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
     };
-    bad(p[ICS] != 1.0 && p[ICS] != 3.0 && p[ICS] != 4.0 && p[ICS] != 5.0, fmt::format("ICS = {:g}", p[ICS]),
-        "IEEEST reads speed (1), electrical power (3), accelerating power (4) or voltage (5); bus frequency "
-        "(2) and voltage slope (6) are not modelled",
-        "give ICS = 1, 3, 4 or 5");
+    bad(!(p[ICS] >= 1.0 && p[ICS] <= 6.0 && p[ICS] == std::floor(p[ICS])), fmt::format("ICS = {:g}", p[ICS]),
+        "IEEEST reads speed (1), frequency (2), electrical power (3), accelerating power (4), voltage (5) or "
+        "its "
+        "slope (6)",
+        "give a whole number from 1 to 6");
+    bad(!(p[Tf] > 0) || !std::isfinite(p[Tf]), fmt::format("Tf = {:g} s", p[Tf]),
+        "frequency and slope are measured behind a lag", "give Tf > 0");
     bad(p[IB] != 0.0, fmt::format("IB = {:g}", p[IB]), "IEEEST reads its own machine only", "give IB = 0");
     for (int i : {A1, A2, A3, A4})
       bad(!(p[i] >= 0), fmt::format("{} = {:g}", parameters[i].symbol, p[i]), "the filter would be unstable",
@@ -104,15 +121,27 @@ struct Model {
     bad(!(p[LSMAX] >= p[LSMIN]), fmt::format("LSMAX = {:g} pu with LSMIN = {:g} pu", p[LSMAX], p[LSMIN]),
         "the limits cross", "give LSMAX >= LSMIN");
   }
-  static std::string_view unphysical(const double*) { return ""; }
+  /// A cut-off inside the band of normal voltages switches the stabiliser on and off without end.
+  static std::string_view unphysical(const double* p) {
+    if (p[VCU] > 0.0 && p[VCU] < 1.1) return "VCU >= 1.1";
+    if (p[VCL] > 0.9) return "VCL <= 0.9";
+    return "";
+  }
 
   template <class T>
-  static void prepare(const T* p, const Conventions&, T* c) {
+  static void prepare(const T* p, const Conventions& conventions, T* c) {
     const T zero(0.0), one(1.0);
-    c[w1] = select(p[ICS] < T(2.0), one, zero);
-    c[w5] = select(p[ICS] > T(4.5), one, zero);
-    c[w4] = select(p[ICS] > T(3.5), one - c[w5], zero);
-    c[w3] = one - c[w1] - c[w4] - c[w5];
+    const auto is = [&](double code) {
+      return select(p[ICS] > T(code - 0.5), select(p[ICS] < T(code + 0.5), one, zero), zero);
+    };
+    c[w1] = is(1);
+    c[w2] = is(2);
+    c[w3] = is(3);
+    c[w4] = is(4);
+    c[w5] = is(5);
+    c[w6] = is(6);
+    c[iTf] = T(1.0) / p[Tf];
+    c[per_lead] = c[w2] * frequency_slope(c[iTf], conventions.frequency);
     for (int i = 0; i < 6; ++i) c[a1 + i] = p[A1 + i];
     for (int i = 0; i < 4; ++i) c[ia1 + i] = inverse(p[A1 + i]);
     c[t1] = p[T1];
@@ -149,13 +178,18 @@ struct Model {
     return in_w + c[a5] * in_d + c[a6] * in_dd;
   }
   template <class T>
-  static T input(const T* c, const Signals<T>& s) {
-    return c[w1] * s.speed + c[w3] * s.P + c[w4] * (s.Tm - s.P) + c[w5] * s.V;
+  static T input(const T* c, const T* x, const Signals<T>& s) {
+    T u = c[w1] * s.speed + c[w3] * s.P + c[w4] * (s.Tm - s.P) + c[w5] * s.V;
+    if (any_positive(c[w2])) u = u + bus_frequency(s.Vr, s.Vi, s.V * s.V, x[xr], x[xi], c[per_lead]);
+    if (any_positive(c[w6])) u = u + c[w6] * c[iTf] * (s.V - x[xr]);
+    return u;
   }
   template <class T>
   static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
     const T zero(0.0);
-    const T filtered = filter(c, x, input(c, s), dx);
+    dx[xr] = (c[w2] * s.Vr + c[w6] * s.V - x[xr]) * c[iTf];
+    dx[xi] = (c[w2] * s.Vi - x[xi]) * c[iTf];
+    const T filtered = filter(c, x, input(c, x, s), dx);
     const T a = lead_lag(c[t1], c[it2], x[lead1], filtered, dx[lead1]);
     const T b = lead_lag(c[t3], c[it4], x[lead2], a, dx[lead2]);
     dx[washed] = (b - x[washed]) * c[it6];
@@ -165,9 +199,11 @@ struct Model {
   }
   template <class T>
   static std::string steady(const T*, T* c, Signals<T>& s, T* x) {
-    x[y] = x[w] = x[lead1] = x[lead2] = x[washed] = input(c, s);
+    x[xr] = c[w2] * s.Vr + c[w6] * s.V;  // zero and without a slope where nothing reads them
+    x[xi] = c[w2] * s.Vi;
+    x[y] = x[w] = x[lead1] = x[lead2] = x[washed] = input(c, x, s);
     x[ydot] = x[wdot] = T(0.0);
-    T dx[7];
+    T dx[9];
     evaluate(c, x, s, dx);
     return {};
   }

@@ -81,12 +81,13 @@ TEST(ExciterEsst4b, RegulatorsStopIntegratingAtTheirLimitsAndReleaseAtOnce) {
   ControlBench bench("ESST4B", with({{"VRMAX", 1.5}, {"VMMAX", 0.6}, {"KG", 0.0}}));
   bench.in.dVref = 0.1;
   bench.run(30.0);
-  // both stand with output, not integral, at the limit; within one step of 1 ms of it
-  EXPECT_NEAR(bench.state("xr") + 3.0 * 0.1, 1.5, 4.0 * 0.1 * 1e-3);
+  // both stand with output, not integral, at the limit; at most the band of 0.002 pu beyond it
+  EXPECT_GE(bench.state("xr") + 3.0 * 0.1, 1.5);
+  EXPECT_LE(bench.state("xr") + 3.0 * 0.1, 1.502);
   EXPECT_NEAR(bench.state("Va"), 1.5, 1e-12);
   const double held = bench.state("xm");
   bench.run(1.0);
-  EXPECT_EQ(bench.state("xm"), held);
+  EXPECT_NEAR(bench.state("xm"), held, 1e-12);  // rounding at the band's edge
   bench.in.dVref = -0.6;
   bench.run(0.2);
   EXPECT_LT(bench.state("Va"), 0.0);  // 1.5 - 3 0.7 and falling, with TA = 0.05 s

@@ -1,0 +1,121 @@
+#pragma once
+// LDFR: a load of constant power, current and impedance parts whose first two follow powers of the frequency.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "sim/core/bus_frequency.hpp"
+#include "sim/core/effect.hpp"
+
+namespace swingbank::sim::load_ldfr {
+
+struct Model {
+  static constexpr std::string_view name = "LDFR",
+                                    title = "constant power, current, impedance; powers of the frequency",
+                                    source = "PSS/E LDFRBL; thresholds: PSS/E, PQBRAK", dyr_name = "LDFRBL";
+  static constexpr Slot slot = Slot::load;
+  static constexpr std::string_view description = R"(
+  v = V/V0, f = 1 + df, with P0, Q0, V0 those of the power flow
+  P = P0 ((1 - Pi - Pp) v^2 + Pi v f^r + Pp f^m)
+  Q = Q0 ((1 - Qi - Qp) v^2 + Qi v f^s + Qp f^n)
+  Of a .dyr: the parts are those of which the .raw composes the load.
+  Below Vp the power part, below Vi the current part goes on as the impedance it has there.
+  df: frequency deviation of the bus from its voltage and the same behind a lag x = V/(1 + s Tf),
+      df = Im(V conj x) / (|V| |x|) / (2 pi f0 Tf)
+)";
+  enum P { m, n, r, s, Pi, Pp, Qi, Qp, Vp, Vi, Tf };
+  static constexpr Parameter parameters[] = {
+      {"m", "m", "-", 1.5, -20.0, 20.0, 0.0, "power of the frequency in the constant power part of P"},
+      {"n", "n", "-", -1.0, -20.0, 20.0, 0.0, "power of the frequency in the constant power part of Q"},
+      {"r", "r", "-", 1.0, -20.0, 20.0, 0.0, "power of the frequency in the constant current part of P"},
+      {"s", "s", "-", 0.0, -20.0, 20.0, 0.0, "power of the frequency in the constant current part of Q"},
+      {"Pi", "Pi", "-", 0.0, 0.0, 1.0, 0.0, "part of P at constant current"},
+      {"Pp", "Pp", "-", 0.5, 0.0, 1.0, 0.0, "part of P at constant power"},
+      {"Qi", "Qi", "-", 0.0, 0.0, 1.0, 0.0, "part of Q at constant current"},
+      {"Qp", "Qp", "-", 0.5, 0.0, 1.0, 0.0, "part of Q at constant power"},
+      {"Vp", "Vp", "pu", 0.7, 0.05, 1.0, kNoNeutral, "voltage below which the power part is an impedance"},
+      {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNeutral, "voltage below which the current part is an impedance"},
+      {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNeutral, "lag behind which the frequency is measured"}};
+  static constexpr int dyr_columns[] = {m, n, r, s};
+  enum X { xr, xi };
+  /// An error of x counts in P by m/(2 pi f0 Tf), a tenth or so.
+  static constexpr State states[] = {{"xr", "pu", "lagged voltage, real", 0.1},
+                                     {"xi", "pu", "lagged voltage, imaginary", 0.1}};
+  enum C { g0, gi, gp, b0, bi, bp, em, en, er, es, vp, vi, iTf, slope, coefficients };
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    for (const int i : {Vp, Vi, Tf})
+      if (!(p[i] > 0.0) || !std::isfinite(p[i]))
+        problems.add(fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit), where,
+                     "LDFR divides by it", "give a value > 0");
+    for (int i = m; i <= Qp; ++i)
+      if (!std::isfinite(p[i]))
+        problems.add(fmt::format("{} = {:g}", parameters[i].symbol, p[i]), where, "it must be finite",
+                     "give a number");
+  }
+  static std::string_view unphysical(const double* p) {
+    if (!(p[Pi] + p[Pp] <= 1.0)) return "Pi + Pp <= 1";
+    if (!(p[Qi] + p[Qp] <= 1.0)) return "Qi + Qp <= 1";
+    return "";
+  }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions& conventions, T* c) {
+    c[em] = p[m];
+    c[en] = p[n];
+    c[er] = p[r];
+    c[es] = p[s];
+    c[vp] = p[Vp];
+    c[vi] = p[Vi];
+    c[iTf] = T(1.0) / p[Tf];
+    c[slope] = frequency_slope(c[iTf], conventions.frequency);
+  }
+  /// As an admittance, so that nothing is divided by V.
+  template <class T>
+  static void current(const T* c, const T* x, Signals<T>& signal) {
+    using std::exp;
+    using std::log;
+    using std::sqrt;
+    constexpr double tiny = 1e-24;  // [pu^2] a dual needs a slope at V = 0
+    const T squared = signal.Vr * signal.Vr + signal.Vi * signal.Vi + T(tiny), v = sqrt(squared);
+    const T high = select(v > c[vp], v, c[vp]), low = select(v > c[vi], v, c[vi]);
+    const T power = T(1.0) / (high * high), amps = T(1.0) / low;
+    const T df = bus_frequency(signal.Vr, signal.Vi, squared, x[xr], x[xi], c[slope]);
+    const T least(1e-3);  // a frequency, not what an exponent may be taken of while a step is tried
+    const T f = log(select(df > least - T(1.0), T(1.0) + df, least));
+    const T g = c[g0] + c[gi] * amps * exp(c[er] * f) + c[gp] * power * exp(c[em] * f);
+    const T b = c[b0] + c[bi] * amps * exp(c[es] * f) + c[bp] * power * exp(c[en] * f);
+    signal.Ir = T(0.0) - g * signal.Vr - b * signal.Vi;
+    signal.Ii = b * signal.Vr - g * signal.Vi;
+  }
+  template <class T>
+  static void derivative(const T* c, const T* x, const Signals<T>& signal, T* dx) {
+    dx[xr] = (signal.Vr - x[xr]) * c[iTf];
+    dx[xi] = (signal.Vi - x[xi]) * c[iTf];
+  }
+  template <class T>
+  static std::string steady(const T* p, T* c, Signals<T>& signal, T* x) {
+    using std::sqrt;
+    const T squared = signal.Vr * signal.Vr + signal.Vi * signal.Vi, v = sqrt(squared);
+    const auto needs = [&](int one, int other, int threshold) {
+      return (value_of(p[one]) != 0.0 || value_of(p[other]) != 0.0) && value_of(v) < value_of(p[threshold]);
+    };
+    if (needs(Pp, Qp, Vp))
+      return fmt::format("Vp = {:g} pu: the power part is an impedance there already", value_of(p[Vp]));
+    if (needs(Pi, Qi, Vi))
+      return fmt::format("Vi = {:g} pu: the current part is an impedance there already", value_of(p[Vi]));
+    const T P0 = T(0.0) - signal.Vr * signal.Ir - signal.Vi * signal.Ii,
+            Q0 = signal.Vr * signal.Ii - signal.Vi * signal.Ir, one(1.0);
+    c[g0] = P0 * (one - p[Pi] - p[Pp]) / squared;
+    c[b0] = Q0 * (one - p[Qi] - p[Qp]) / squared;
+    c[gi] = P0 * p[Pi] / v;
+    c[bi] = Q0 * p[Qi] / v;
+    c[gp] = P0 * p[Pp];
+    c[bp] = Q0 * p[Qp];
+    x[xr] = signal.Vr;
+    x[xi] = signal.Vi;
+    return {};
+  }
+};
+
+}  // namespace swingbank::sim::load_ldfr
