@@ -146,6 +146,8 @@ class CaseReader {
     b.vm = finite(row, 7, "Vm");
     b.va = radians(row, 8, "Va");
     b.kv = finite(row, 9, "baseKV");
+    b.area = integer(row, 6, "area");
+    b.zone = integer(row, 10, "zone");
     b.type = static_cast<BusType>(type);
     if (b.number <= 0)
       problems_.add("bus number " + std::to_string(b.number), where(row), "numbers are positive",
@@ -162,7 +164,7 @@ class CaseReader {
                     "a bus stands in one row", "remove one or give it another number");
     network_.buses.push_back(b);
     const Complex load(pu(row, 2, "Pd"), pu(row, 3, "Qd")), shunt(pu(row, 4, "Gs"), pu(row, 5, "Bs"));
-    if (load != Complex{}) network_.loads.push_back({index, "1", load, {}, {}});
+    if (load != Complex{}) network_.loads.push_back({index, "1", load, {}, {}, b.area, b.zone});
     if (shunt != Complex{}) network_.shunts.push_back({index, "1", shunt});
   }
 

@@ -16,6 +16,7 @@ struct Bus {
   double kv;  ///< nominal voltage [kV]
   BusType type;
   double vm, va;  ///< voltage in the file: start of the power flow [pu, rad]
+  int area = 1, zone = 1, owner = 1;
 };
 /// Consumption P + jQ [pu]: constant power, constant current and constant admittance parts, each at 1 pu
 /// voltage: S = power + current V + admittance V^2.
@@ -23,6 +24,7 @@ struct Load {
   int bus;
   std::string id;
   Complex power, current, admittance;
+  int area = 1, zone = 1, owner = 1;  ///< load models of a .dyr may name these instead of a bus
 };
 struct Shunt {
   int bus;
@@ -48,6 +50,7 @@ struct Generator {
   double zr, zx;  ///< ZSORCE [pu on mva]
   bool in_service = true;
   double q_min = -99.99, q_max = 99.99;  ///< reactive limits [pu on base_mva]; kept, not enforced
+  double rt = 0.0, xt = 0.0;             ///< step-up transformer between machine and bus [pu on mva]; 0: none
 };
 
 struct Network {

@@ -17,21 +17,21 @@ namespace swingbank::sim {
 /// of its X), transformer with two windings, with three (a star point becomes a bus of its own, numbered
 /// above every bus of the file, and each winding a transformer to it); CW 1-3, CZ 1-3, CM 1-2; switched shunt
 /// (BINIT as a fixed shunt, its steps and control are not modelled). Passed over, because they change nothing
-/// in the equations: lines that begin with '@!', system-wide data, area, zone, owner, inter-area transfer,
-/// impedance correction tables that no transformer uses, multi-section line groupings, ratings, names of
-/// branches, vector groups, voltage limits, tap and load-flow controls (taps stay where they are),
-/// substations whose buses are in one piece. Refused, naming section and line: dc lines, FACTS and GNE
-/// devices, induction machines, transformers with a correction table, generators with a step-up transformer
-/// (XT) or remote regulation, distributed generation inside a load, buses that a substation's open switches
-/// split. Reactive limits are kept but not enforced. Out-of-service loads and shunts are left out; what
-/// stands at an isolated bus (type 4) is out of service, as in PSS/E.
+/// in the equations: lines that begin with '@!', system-wide data, names of areas, zones and owners,
+/// inter-area transfer, impedance correction tables that no transformer uses, multi-section line groupings,
+/// ratings, names of branches, vector groups, voltage limits, tap and load-flow controls (taps stay where
+/// they are), substations whose buses are in one piece. Refused, naming section and line: dc lines, FACTS and
+/// GNE devices, induction machines, transformers with a correction table, generators with remote regulation
+/// or a step-up transformer (RT, XT) off its nominal ratio (GTAP), distributed generation inside a load,
+/// buses that a substation's open switches split. Reactive limits are kept but not enforced. Out-of-service
+/// loads and shunts are left out; what stands at an isolated bus (type 4) is out of service, as in PSS/E.
 ///
 /// Defaults of PSS/E for fields left empty: bus BASKV 0, IDE 1, VM 1, VA 0; load and shunt ID '1', STATUS 1,
-/// powers 0; generator ID '1', PG 0, QG 0, QT 9999, QB -9999, VS 1, IREG 0, MBASE = SBASE, ZR 0, ZX 1, RT 0,
-/// XT 0, STAT 1; branch CKT '1', R 0, B 0, line shunts 0, ST 1; transformer K 0, CKT '1', CW 1, CZ 1, CM 1,
-/// MAG1 0, MAG2 0, STAT 1, R 0, SBASE = SBASE of the system, WINDV 1 (CW 2: BASKV), NOMV 0 (= BASKV), ANG 0,
-/// TAB 0, VMSTAR 1, ANSTAR 0; SBASE 100. Everything else (bus numbers, X of branches, switches and
-/// transformers, REV, BASFRQ) must be given.
+/// powers 0, AREA, ZONE and OWNER 1 (a load's: its bus's); generator ID '1', PG 0, QG 0, QT 9999, QB -9999,
+/// VS 1, IREG 0, MBASE = SBASE, ZR 0, ZX 1, RT 0, XT 0, GTAP 1, STAT 1; branch CKT '1', R 0, B 0, line shunts
+/// 0, ST 1; transformer K 0, CKT '1', CW 1, CZ 1, CM 1, MAG1 0, MAG2 0, STAT 1, R 0, SBASE = SBASE of the
+/// system, WINDV 1 (CW 2: BASKV), NOMV 0 (= BASKV), ANG 0, TAB 0, VMSTAR 1, ANSTAR 0; SBASE 100. Everything
+/// else (bus numbers, X of branches, switches and transformers, REV, BASFRQ) must be given.
 Network read_raw(const std::filesystem::path& file);
 /// The same from a text; `name` stands for the file in messages.
 Network parse_raw(const std::string& text, const std::string& name);

@@ -13,6 +13,9 @@ void RawReader::bus(const Record& record) {
   b.name = f.text(1, "");
   b.kv = static_cast<double>(f.number(2, "BASKV", 0.0L));
   const int type = f.integer(3, "IDE", 1);
+  b.area = f.integer(4, "AREA", 1);
+  b.zone = f.integer(5, "ZONE", 1);
+  b.owner = f.integer(6, "OWNER", 1);
   b.vm = static_cast<double>(f.number(7, "VM", 1.0L));
   b.va = static_cast<double>(f.number(8, "VA", 0.0L) / kDegrees);
   if (b.number <= 0)
@@ -36,6 +39,10 @@ void RawReader::load(const Record& record) {
   l.bus = find_bus(f.integer(0, "bus number"), f);
   l.id = f.text(1, "1");
   const bool on = status(f.integer(2, "STATUS", 1), "STATUS", f);
+  const Bus of = l.bus < 0 ? Bus{} : network_.buses[static_cast<std::size_t>(l.bus)];
+  l.area = f.integer(3, "AREA", of.area);
+  l.zone = f.integer(4, "ZONE", of.zone);
+  l.owner = f.integer(11, "OWNER", of.owner);
   const auto mw = [&](std::size_t i, const char* name) { return pu(f.number(i, name, 0.0L)); };
   l.power = {mw(5, "PL"), mw(6, "QL")};
   l.current = {mw(7, "IP"), mw(8, "IQ")};
@@ -94,7 +101,10 @@ void RawReader::generator(const Record& record) {
   g.mva = static_cast<double>(f.number(base, "MBASE", base_));
   g.zr = static_cast<double>(f.number(base + 1, "ZR", 0.0L));
   g.zx = static_cast<double>(f.number(base + 2, "ZX", 1.0L));
-  const bool step_up = f.number(base + 3, "RT", 0.0L) != 0 || f.number(base + 4, "XT", 0.0L) != 0;
+  g.rt = static_cast<double>(f.number(base + 3, "RT", 0.0L));
+  g.xt = static_cast<double>(f.number(base + 4, "XT", 0.0L));
+  const bool step_up = g.rt != 0.0 || g.xt != 0.0;
+  const double tap = static_cast<double>(f.number(base + 5, "GTAP", 1.0L));
   g.in_service = status(f.integer(columns_.gen_status, "STAT", 1), "STAT", f);
   once("generator '" + g.id + "' at bus " + std::to_string(number), f);
   if (!(g.mva > 0))
@@ -107,9 +117,12 @@ void RawReader::generator(const Record& record) {
     problems_.add("IREG = " + std::to_string(regulated), f.where(),
                   "regulation of a remote bus is not modelled",
                   "set IREG to 0 and VS to the generator's own solved voltage");
-  if (g.in_service && step_up)
-    problems_.add("RT or XT is not zero", f.where(),
-                  "a step-up transformer inside the generator record is not modelled",
+  if (g.in_service && step_up && !(g.rt >= 0 && g.xt >= 0))
+    problems_.add("RT = " + shortest(g.rt) + " pu, XT = " + shortest(g.xt) + " pu", f.where(),
+                  "a step-up transformer has losses and leakage", "give RT >= 0 and XT >= 0");
+  if (g.in_service && step_up && tap != 1.0)
+    problems_.add("GTAP = " + shortest(tap), f.where(),
+                  "a step-up transformer inside the generator record is modelled at its nominal ratio",
                   "enter it as a transformer between two buses");
   if (g.bus < 0) return;
   generator_line_[network_.generators.size()] = record.line;

@@ -81,9 +81,9 @@ class RawWriter {
             quote(b.name),
             shortest(b.kv),
             std::to_string(static_cast<int>(b.type)),
-            "1",
-            "1",
-            "1",
+            std::to_string(b.area),
+            std::to_string(b.zone),
+            std::to_string(b.owner),
             shortest(b.vm),
             degrees(b.va)};
       if (version_ >= 33) add(r, {"1.1", "0.9", "1.1", "0.9"});
@@ -96,15 +96,15 @@ class RawWriter {
       Row r{number(l.bus),
             quote(l.id),
             "1",
-            "1",
-            "1",
+            std::to_string(l.area),
+            std::to_string(l.zone),
             mw(l.power.real()),
             mw(l.power.imag()),
             mw(l.current.real()),
             mw(l.current.imag()),
             mw(l.admittance.real()),
             mw(0.0 - l.admittance.imag()),
-            "1",
+            std::to_string(l.owner),
             "1"};
       if (version_ >= 33) add(r, {"0"});
       if (version_ >= 34) add(r, {"0", "0", "0"});
@@ -122,8 +122,8 @@ class RawWriter {
     for (const Generator& g : n_.generators) {
       Row r{number(g.bus), quote(g.id), mw(g.p), mw(g.q), mw(g.q_max), mw(g.q_min), shortest(g.vset), "0"};
       if (version_ >= 35) add(r, {"0"});
-      add(r, {shortest(g.mva), shortest(g.zr), shortest(g.zx), "0", "0", "1", yes(g.in_service), "100",
-              "9999", "-9999"});
+      add(r, {shortest(g.mva), shortest(g.zr), shortest(g.zx), shortest(g.rt), shortest(g.xt), "1",
+              yes(g.in_service), "100", "9999", "-9999"});
       if (version_ >= 35) add(r, {"0"});
       add(r, {"1", "1"});
       row(r);

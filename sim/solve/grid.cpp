@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <map>
@@ -15,19 +16,43 @@
 namespace swingbank::sim {
 namespace {
 
+/// Which loads a load model of a .dyr is for. Where several are for one load the first of these counts.
+enum class Reach { load, owner, zone, area, all };
+constexpr std::array kEndings = {"BL", "OW", "ZN", "AR", "AL"};
+
 /// The effect with this name in a .dyr (case matters not), or nullptr.
-const Effect* effect_of_dyr(std::string model) {
-  if (model == "GENTPJ1") model = "GENTPJU1";  // its name since PSS/E 34
+const Effect* effect_named(std::string_view model) {
   const auto same = [](unsigned char a, unsigned char b) { return std::toupper(a) == std::toupper(b); };
   for (const Effect& e : all_effects())
     if (!e.dyr_name.empty() && std::ranges::equal(e.dyr_name, model, same)) return &e;
   return nullptr;
+}
+/// The same, with the names that stand for it too: IEELAR is IEELBL for an area.
+std::pair<const Effect*, Reach> effect_of_dyr(std::string model) {
+  if (model == "GENTPJ1") model = "GENTPJU1";  // its name since PSS/E 34
+  if (const Effect* own = effect_named(model)) return {own, Reach::load};
+  for (std::size_t i = 1; i < kEndings.size(); ++i) {
+    if (!model.ends_with(kEndings[i])) continue;
+    const Effect* effect = effect_named(model.substr(0, model.size() - 2) + kEndings[0]);
+    if (effect && effect->slot == Slot::load) return {effect, static_cast<Reach>(i)};
+  }
+  return {nullptr, Reach::load};
 }
 std::string dyr_names() {
   std::string names;
   for (const Effect& e : all_effects())
     if (!e.dyr_name.empty()) names += (names.empty() ? "" : ", ") + std::string(e.dyr_name);
   return names;
+}
+
+/// The step-up transformer that a .raw keeps in the generator's record.
+bool has_transformer(const Generator& g) { return g.rt != 0.0 || g.xt != 0.0; }
+Block transformer_of(const Generator& g) {
+  Block block{find_effect("STEPUP"), {}};
+  block.p = block.effect->standard_parameters();
+  block.p[static_cast<std::size_t>(block.effect->parameter_index("R"))] = g.rt;
+  block.p[static_cast<std::size_t>(block.effect->parameter_index("X"))] = g.xt;
+  return block;
 }
 
 class GridMaker {
@@ -43,8 +68,10 @@ class GridMaker {
     for (Plant& plant : grid_.plants) finish(plant);
     problems_.raise();
     solve();
-    for (LoadModel& model : load_models_)
+    for (LoadModel& model : load_models_) {
+      if (is_composed(*model.block.effect)) compose(grid_, model.load, model.block, model.where, problems_);
       set_load(grid_, model.load, std::move(model.block), model.where, problems_);
+    }
     problems_.raise();
     return std::move(grid_);
   }
@@ -64,6 +91,7 @@ class GridMaker {
       plant.bus = g.bus;
       plant.mva = g.mva;
       plant.generator = static_cast<int>(i);
+      if (has_transformer(g)) plant.transformer = transformer_of(g);
       plant_of_[{number, g.id}] = grid_.plants.size();
       grid_.plants.push_back(std::move(plant));
     }
@@ -74,7 +102,7 @@ class GridMaker {
 
   void add(const DyrRecord& given) {
     const std::string where = dyr_ + ":" + std::to_string(given.line);
-    const Effect* effect = effect_of_dyr(given.user.empty() ? given.model : given.user);
+    const auto [effect, reach] = effect_of_dyr(given.user.empty() ? given.model : given.user);
     const DyrRecord record = effect && !given.user.empty() ? plain(given, *effect) : given;
     if (!effect) {
       const std::string name = record.user.empty() ? record.model : record.user;
@@ -88,7 +116,7 @@ class GridMaker {
     }
     problems_.add(record.faults);
     if (!record.faults.empty()) return;
-    if (effect->slot == Slot::load) return add_load(*effect, record, where);
+    if (effect->slot == Slot::load) return add_load(*effect, reach, record, where);
     const std::pair<int, std::string> key{record.bus, record.id};
     const auto found = plant_of_.find(key);
     if (found == plant_of_.end()) {
@@ -117,12 +145,14 @@ class GridMaker {
                   "it takes " + columns(effect), "give every parameter, in this order");
     return false;
   }
-  /// A model for one load, or with the id * for every load at the bus.
-  void add_load(const Effect& effect, const DyrRecord& record, const std::string& where) {
-    const std::string what =
-        record.model + " for load '" + record.id + "' at bus " + std::to_string(record.bus);
+  /// A model for one load, or with the id * for every load, of a bus, owner, zone, area or of all.
+  void add_load(const Effect& effect, Reach reach, const DyrRecord& record, const std::string& where) {
+    constexpr std::array of = {"at bus", "of owner", "in zone", "in area", "anywhere"};
+    const std::string what = record.model + " for load '" + record.id + "' " +
+                             of[static_cast<std::size_t>(reach)] +
+                             (reach == Reach::all ? "" : " " + std::to_string(record.bus));
     const int bus = grid_.network.bus_index(record.bus);
-    if (bus < 0) {
+    if (reach == Reach::load && bus < 0) {
       problems_.add(what, where, grid_.network.origin + " has no such bus",
                     "correct the bus number, or remove the record");
       return;
@@ -135,14 +165,24 @@ class GridMaker {
     bool any = false;
     for (std::size_t i = 0; i < grid_.network.loads.size(); ++i) {
       const Load& load = grid_.network.loads[i];
-      if (load.bus != bus || (record.id != "*" && load.id != record.id)) continue;
+      const int number[] = {bus, record.bus, record.bus, record.bus, 0};
+      const int own[] = {load.bus, load.owner, load.zone, load.area, 0};
+      const auto r = static_cast<std::size_t>(reach);
+      if (own[r] != number[r] || (record.id != "*" && load.id != record.id)) continue;
+      if (record.id == "*" && load.power == Complex{} && load.current == Complex{} &&
+          load.admittance == Complex{})
+        continue;  // there is nothing to model
       any = true;
       const auto same = [&](const LoadModel& m) { return m.load == static_cast<int>(i); };
-      if (const auto other = std::ranges::find_if(load_models_, same); other != load_models_.end())
+      const auto other = std::ranges::find_if(load_models_, same);
+      const LoadModel model{static_cast<int>(i), block, where, reach};
+      if (other == load_models_.end())
+        load_models_.push_back(model);
+      else if (reach < other->reach)
+        *other = model;
+      else if (reach == other->reach)
         problems_.add("a second model, " + what, where,
                       "it already has " + std::string(other->block.effect->dyr_name), "keep one of them");
-      else
-        load_models_.push_back({static_cast<int>(i), block, where});
     }
     if (!any) spdlog::warn("{}: {} left out: no such load is in service", where, what);
   }
@@ -227,6 +267,7 @@ class GridMaker {
     int load;  ///< index into Network::loads
     Block block;
     std::string where;
+    Reach reach;
   };
   std::string dyr_;
   Grid grid_;
@@ -236,9 +277,10 @@ class GridMaker {
   std::set<std::pair<int, std::string>> known_;  ///< every generator of the network
 };
 
-/// One record of a .dyr; `owner`: "generator 30" or "load 8", `id`: its id in the .raw.
+/// One record of a .dyr; `owner`: "generator 30" or "load 8", `id`: its id in the .raw; `raw`: the block with
+/// what the .raw says of it.
 std::string dyr_record(const Block& block, const std::string& owner, int bus, const std::string& id,
-                       const std::string& file, Problems& problems) {
+                       const std::string& file, Problems& problems, const Block* raw = nullptr) {
   const Effect& effect = *block.effect;
   const std::string where = file + ", " + owner;
   if (effect.dyr_name.empty()) {
@@ -252,11 +294,14 @@ std::string dyr_record(const Block& block, const std::string& owner, int bus, co
       continue;
     const auto at = static_cast<std::size_t>(i);
     const Parameter& parameter = effect.parameters[at];
-    const double dropped = std::isnan(parameter.neutral) ? standard[at] : parameter.neutral;
+    if (raw && raw->p[at] == block.p[at]) continue;
+    const double dropped = raw                             ? raw->p[at]
+                           : std::isnan(parameter.neutral) ? standard[at]
+                                                           : parameter.neutral;
     if (block.p[at] != dropped)
       problems.add(std::string(parameter.symbol) + " = " + psse::shortest(block.p[at]) + " " +
                        std::string(parameter.unit) + " of " + std::string(effect.name),
-                   where, "a .dyr has no column for it",
+                   where, raw ? "PSS/E takes it from the .raw" : "a .dyr has no column for it",
                    "set it to " + psse::shortest(dropped) + " " + std::string(parameter.unit));
   }
   std::string text =
@@ -283,6 +328,16 @@ std::string plant_record(const Grid& grid, const Plant& plant, const Block& bloc
   in_raw(effect.raw_reactance, g.zx, "ZX");
   return dyr_record(block, "generator " + plant.name,
                     grid.network.buses[static_cast<std::size_t>(plant.bus)].number, g.id, file, problems);
+}
+
+/// A step-up transformer stands in the .raw, or nowhere.
+void write_transformer(const Grid& grid, const Plant& plant, const std::string& file, Problems& problems) {
+  const Generator& g = grid.network.generators[static_cast<std::size_t>(plant.generator)];
+  const Block raw = has_transformer(g) ? transformer_of(g) : Block{};
+  if (plant.transformer.effect == raw.effect && plant.transformer.p == raw.p) return;
+  problems.add("a step-up transformer that is not the network's", file + ", generator " + plant.name,
+               "PSS/E keeps it in the .raw (RT, XT), a .dyr has no form of it",
+               "set the generator's RT and XT in the network, or remove it before writing");
 }
 
 }  // namespace
@@ -333,16 +388,17 @@ void write_dyr(const Grid& grid, const std::filesystem::path& file) {
   std::string text;
   for (const Plant& plant : grid.plants) {
     text += plant_record(grid, plant, plant.machine, file.string(), problems);
-    if (plant.transformer.effect)
-      text += plant_record(grid, plant, plant.transformer, file.string(), problems);
+    write_transformer(grid, plant, file.string(), problems);
     for (const Block& control : plant.controls)
       text += plant_record(grid, plant, control, file.string(), problems);
   }
   for (const Consumer& load : grid.loads) {
     const Load& l = grid.network.loads[static_cast<std::size_t>(load.load)];
+    Block raw{load.block.effect, load.block.effect->standard_parameters()};
+    if (is_composed(*raw.effect)) compose(grid, load.load, raw, file.string(), problems);
     text += dyr_record(load.block, "load " + load.name,
                        grid.network.buses[static_cast<std::size_t>(load.bus)].number, l.id, file.string(),
-                       problems);
+                       problems, is_composed(*raw.effect) ? &raw : nullptr);
   }
   problems.raise();
   psse::write_whole(file, text);

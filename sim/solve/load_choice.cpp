@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -39,6 +40,19 @@ std::vector<int> loads_named(const Network& network, const std::string& text, co
   return list;
 }
 
+/// Every load that has no model and draws something, by index.
+std::vector<int> loads_without_model(const Grid& grid, const std::string& where, Problems& problems) {
+  std::vector<int> list;
+  for (std::size_t i = 0; i < grid.network.loads.size(); ++i)
+    if (!std::ranges::count(grid.loads, static_cast<int>(i), &Consumer::load) &&
+        consumption(grid.network.loads[i], grid.flow) != Complex{})
+      list.push_back(static_cast<int>(i));
+  if (list.empty())
+    problems.add("no load without a model", where, "* means the loads that have none yet",
+                 "name the loads, BUS or BUS/ID, or leave this out");
+  return list;
+}
+
 /// Fraction of the total that `part` is; 0 of 0 is 0.
 double fraction(double part, double total) { return part == 0.0 ? 0.0 : part / total; }
 
@@ -66,33 +80,45 @@ void set_load(Grid& grid, int load, Block block, const std::string& where, Probl
     *same = std::move(consumer);
 }
 
+bool is_composed(const Effect& effect) {
+  if (effect.slot != Slot::load || effect.dyr_name.empty()) return false;
+  return std::ranges::all_of(std::array{"Pi", "Pp", "Qi", "Qp"},
+                             [&](const char* part) { return effect.parameter_index(part) >= 0; });
+}
+
+void compose(const Grid& grid, int load, Block& block, const std::string& where, Problems& problems) {
+  const Load& l = grid.network.loads[static_cast<std::size_t>(load)];
+  const Complex total = consumption(l, grid.flow);
+  const double v = std::abs(grid.flow.voltage[static_cast<std::size_t>(l.bus)]);
+  const Complex current = l.current * v, admittance = l.admittance * (v * v);
+  const auto set = [&](const char* parameter, double value) {
+    block.p[static_cast<std::size_t>(block.effect->parameter_index(parameter))] = value;
+  };
+  const auto cancels = [&](double a, double b, double c, double sum, const char* name) {
+    constexpr double least = 1e-9;  // of the parts: below it their difference has no digits left
+    if (std::abs(sum) > least * (std::abs(a) + std::abs(b) + std::abs(c)) || (a == 0 && b == 0 && c == 0))
+      return;
+    problems.add(fmt::format("the parts of {} cancel", name), where,
+                 fmt::format("{} takes them as fractions of their sum", block.effect->name),
+                 "split the load into two with their own ids");
+  };
+  cancels(l.power.real(), current.real(), admittance.real(), total.real(), "P");
+  cancels(l.power.imag(), current.imag(), admittance.imag(), total.imag(), "Q");
+  set("Pi", fraction(current.real(), total.real()));
+  set("Pp", fraction(l.power.real(), total.real()));
+  set("Qi", fraction(current.imag(), total.imag()));
+  set("Qp", fraction(l.power.imag(), total.imag()));
+}
+
 void loads_as_composed(Grid& grid, Problems& problems) {
   const Effect* zip = find_effect("ZIP");
-  const auto set = [&](Block& block, const char* parameter, double value) {
-    block.p[static_cast<std::size_t>(zip->parameter_index(parameter))] = value;
-  };
   for (std::size_t i = 0; i < grid.network.loads.size(); ++i) {
     const Load& l = grid.network.loads[i];
     if (l.power == Complex{} && l.current == Complex{}) continue;
     if (std::ranges::count(grid.loads, static_cast<int>(i), &Consumer::load)) continue;
-    const Complex total = consumption(l, grid.flow);
-    const double v = std::abs(grid.flow.voltage[static_cast<std::size_t>(l.bus)]);
-    const Complex current = l.current * v, admittance = l.admittance * (v * v);
     const std::string where = "load " + load_name(grid.network, i);
-    const auto cancels = [&](double a, double b, double c, double sum, const char* name) {
-      constexpr double least = 1e-9;  // of the parts: below it their difference has no digits left
-      if (std::abs(sum) > least * (std::abs(a) + std::abs(b) + std::abs(c)) || (a == 0 && b == 0 && c == 0))
-        return;
-      problems.add(fmt::format("the parts of {} cancel", name), where,
-                   "ZIP takes them as fractions of their sum", "split the load into two with their own ids");
-    };
-    cancels(l.power.real(), current.real(), admittance.real(), total.real(), "P");
-    cancels(l.power.imag(), current.imag(), admittance.imag(), total.imag(), "Q");
     Block block{zip, zip->standard_parameters()};
-    set(block, "Pi", fraction(current.real(), total.real()));
-    set(block, "Pp", fraction(l.power.real(), total.real()));
-    set(block, "Qi", fraction(current.imag(), total.imag()));
-    set(block, "Qp", fraction(l.power.imag(), total.imag()));
+    compose(grid, static_cast<int>(i), block, where, problems);
     set_load(grid, static_cast<int>(i), std::move(block), where, problems);
   }
 }
@@ -113,8 +139,10 @@ void choose_load(Grid& grid, const std::string& text, const std::string& where, 
   }
   Block block{effect, effect->standard_parameters()};
   if (second != text.npos) set_parameters(block, text.substr(second + 1), where, problems);
-  for (const int load : loads_named(grid.network, text.substr(0, first), where, problems))
-    set_load(grid, load, block, where, problems);
+  const std::vector<int> chosen = text.starts_with("*:")
+                                      ? loads_without_model(grid, where, problems)
+                                      : loads_named(grid.network, text.substr(0, first), where, problems);
+  for (const int load : chosen) set_load(grid, load, block, where, problems);
 }
 
 std::string describe_loads(const Grid& grid) {

@@ -12,8 +12,15 @@ namespace swingbank::sim {
 /// admittances alone need no model. A load whose parts cancel to P = 0 or Q = 0 is a problem.
 void loads_as_composed(Grid& grid, Problems& problems);
 
-/// One load from "BUS[/ID]:EFFECT[:PARAM=VALUE,...]"; without ID every load at the bus. Parameters not named
-/// keep the effect's standard value. Replaces the model a load has. `where` names option or config line.
+/// Whether an effect's parts of constant power and current (Pp, Pi, Qp, Qi) are those of the .raw where its
+/// .dyr record names none: the frequency-dependent load of PSS/E.
+bool is_composed(const Effect& effect);
+/// Sets these parts as the .raw composes the load. One whose parts cancel to P = 0 or Q = 0 is a problem.
+void compose(const Grid& grid, int load, Block& block, const std::string& where, Problems& problems);
+
+/// One load from "BUS[/ID]:EFFECT[:PARAM=VALUE,...]"; without ID every load at the bus, with * in place
+/// of BUS every load that has no model yet and draws something. Parameters not named keep the effect's
+/// standard value. Replaces the model a load has. `where` names option or config line.
 void choose_load(Grid& grid, const std::string& text, const std::string& where, Problems& problems);
 
 /// Gives one load of the network a model; replaces the one it has. The effect's check() and a load that draws

@@ -32,13 +32,13 @@ inline std::vector<const Effect*> effects_in(Slot slot) {
   return list;
 }
 
-/// Standard values within 10 %; what stands at zero is at times up to a fiftieth of its range, so that every
+/// Standard values within 10 %; what stands at zero is at times up to 0.2 % of its range, so that every
 /// branch of the equations is drawn; codes at times another of theirs.
 inline double draw_value(const Parameter& record, double standard, Draws& draws) {
   const bool moved = draws.chance(0.15);
   if (record.is_code()) return moved ? std::floor(draws.uniform(record.low, record.high + 1.0)) : standard;
   if (standard != 0.0) return standard * draws.uniform(0.9, 1.1);
-  return moved ? draws.uniform(0.02 * record.low, 0.02 * record.high) : 0.0;
+  return moved ? draws.uniform(0.002 * record.low, 0.002 * record.high) : 0.0;
 }
 
 /// One of a slot's effects with values that it takes and a physical device has.

@@ -56,6 +56,30 @@ TEST(StabiliserIeeest, TransferFunctionForEveryOrderOfTheFilter) {
   }
 }
 
+/// Input codes 2 and 6 measure s/(1 + s Tf) of the terminal's angle and of its magnitude.
+TEST(StabiliserIeeest, FrequencyAndSlopeOfTheVoltageBehindTheirLag) {
+  const double w0 = 2 * 3.14159265358979323846 * 60, Tf = 0.03;
+  for (const double code : {2.0, 6.0}) {
+    auto all = with({{"A1", 0.06}, {"Tf", Tf}, {"ICS", code}});
+    ControlBench bench("IEEEST", all);
+    EXPECT_TRUE(bench.problems.empty());
+    EXPECT_EQ(bench.largest_derivative(), 0.0);
+    EXPECT_EQ(bench.out().Vs, 0.0);
+    for (const double omega : {0.1, 1.0, 7.0, 40.0}) {
+      const C s(0.0, omega);
+      const C exact = diagram(all, omega) * s / (1.0 + s * Tf) / (code == 2.0 ? w0 : 1.0);
+      const auto move = [&](Signals<double>& signal, double d) {
+        (code == 2.0 ? signal.Vi : signal.V) += d;  // at V = 1 pu the angle's move is Vi's
+      };
+      // difference quotients over 1e-6
+      EXPECT_LT(std::abs(bench.response(move, kVs, omega) - exact), 1e-6 * (1.0 + std::abs(exact)));
+    }
+  }
+  EXPECT_EQ(ControlBench("IEEEST", with({{"ICS", 7.0}})).problems.list().size(), 1u);
+  EXPECT_EQ(ControlBench("IEEEST", with({{"ICS", 2.5}})).problems.list().size(), 1u);
+  EXPECT_EQ(ControlBench("IEEEST", with({{"Tf", 0.0}})).problems.list().size(), 1u);
+}
+
 TEST(StabiliserIeeest, ZeroTimeConstantsAreBypassed) {
   ControlBench bench("IEEEST",
                      with({{"T1", 0.0}, {"T2", 0.0}, {"T3", 0.0}, {"T4", 0.0}, {"KS", 4.0}, {"T6", 0.0}}));
@@ -90,7 +114,7 @@ TEST(StabiliserIeeest, VoltageOutsideItsBandCutsTheOutput) {
 }
 
 TEST(StabiliserIeeest, WhatItCannotDoIsRefusedByName) {
-  EXPECT_EQ(ControlBench("IEEEST", {{"ICS", 2.0}, {"IB", 7.0}}).problems.list().size(), 2u);
+  EXPECT_EQ(ControlBench("IEEEST", {{"ICS", 9.0}, {"IB", 7.0}}).problems.list().size(), 2u);
   EXPECT_EQ(ControlBench("IEEEST", with({{"A6", 0.1}, {"A1", 0.1}})).problems.list().size(), 1u);
 }
 

@@ -29,11 +29,13 @@ inline Flat flatten(const Network& n) {
   f.words = n.title;
   f.all(n.base_mva, n.frequency);
   for (const Bus& b : n.buses) {
-    f.words += "|" + std::to_string(b.number) + b.name + std::to_string(static_cast<int>(b.type));
+    f.words += "|" + std::to_string(b.number) + b.name + std::to_string(static_cast<int>(b.type)) + ":" +
+               std::to_string(b.area) + ":" + std::to_string(b.zone) + ":" + std::to_string(b.owner);
     f.all(b.kv, b.vm, b.va);
   }
   for (const Load& l : n.loads) {
-    f.words += "|" + std::to_string(l.bus) + l.id;
+    f.words += "|" + std::to_string(l.bus) + l.id + ":" + std::to_string(l.area) + ":" +
+               std::to_string(l.zone) + ":" + std::to_string(l.owner);
     f.all(l.power, l.current, l.admittance);
   }
   for (const Shunt& s : n.shunts) {
@@ -47,7 +49,7 @@ inline Flat flatten(const Network& n) {
   }
   for (const Generator& g : n.generators) {
     f.words += "|" + std::to_string(g.bus) + g.id + (g.in_service ? "on" : "off");
-    f.all(g.p, g.q, g.vset, g.mva, g.zr, g.zx, g.q_min, g.q_max);
+    f.all(g.p, g.q, g.vset, g.mva, g.zr, g.zx, g.q_min, g.q_max, g.rt, g.xt);
   }
   return f;
 }

@@ -42,12 +42,13 @@ Network random_network(double base, unsigned seed) {
   n.frequency = 50.0;
   for (int i = 0; i < 40; ++i)
     n.buses.push_back({100 + i, "B'" + std::to_string(i) + ", /", positive(),
-                       i == 0 ? BusType::slack : BusType::generator, positive(), value(random)});
+                       i == 0 ? BusType::slack : BusType::generator, positive(), value(random), i % 5, i % 7,
+                       i % 3});
   for (int i = 0; i < 40; ++i) {
-    n.loads.push_back({i, "L", {any(), any()}, {any(), any()}, {any(), any()}});
+    n.loads.push_back({i, "L", {any(), any()}, {any(), any()}, {any(), any()}, i % 4, 9 - i % 9, 1 + i % 2});
     n.shunts.push_back({i, "S", {any(), any()}});
-    n.generators.push_back(
-        {i, "G1", any(), any(), positive(), positive(), any(), any(), i % 3 != 0, any(), any()});
+    n.generators.push_back({i, "G1", any(), any(), positive(), positive(), any(), any(), i % 3 != 0, any(),
+                            any(), positive(), positive()});
     n.branches.push_back(
         {i, (i + 1) % 40, "C", any(), any(), any(), 1.0, 0.0, {any(), any()}, {any(), any()}, i % 2 == 0});
   }

@@ -109,6 +109,131 @@ TEST(LoadRecords, TheirLoadsKeepThemWhereTheOthersAreAsComposed) {
   EXPECT_EQ(grid.loads[1].block.effect->name, "ZIP");
 }
 
+/// Two loads at bus 103: one of area 1, zone 2, owner 4, one of area 3, zone 2, owner 5.
+RawCase scattered_loads() {
+  RawCase raw;
+  raw.loads = "103,'1',1,1,2,150.0,30.0,0,0,0,0,4,1,0\n103,'2',1,3,2,100.0,10.0,0,0,0,0,5,1,0\n";
+  return raw;
+}
+std::string powers(const std::string& ending, const std::string& id, double a1) {
+  return "'IEEL" + ending + "' " + id + " " + std::to_string(a1) +
+         " 0.3 0.5 0.6 0.4 0 1.5 -1 2 1 0 2 1 0 /\n";
+}
+/// a1 of each load's model; -1 where it has none.
+std::vector<double> firsts(const Grid& grid) {
+  std::vector<double> list(grid.network.loads.size(), -1.0);
+  for (const Consumer& c : grid.loads) list[static_cast<std::size_t>(c.load)] = parameter(c.block, "a1");
+  return list;
+}
+
+TEST(LoadRecords, ReachTheLoadsOfAnAreaZoneOwnerOrAll) {
+  using Firsts = std::vector<double>;
+  const auto of = [](const std::string& records) {
+    return firsts(load(scattered_loads(), kPlants + records));
+  };
+  EXPECT_EQ(of("3 " + powers("AR", "*", 0.25)), (Firsts{-1, 0.25}));
+  EXPECT_EQ(of("2 " + powers("ZN", "*", 0.25)), (Firsts{0.25, 0.25}));
+  EXPECT_EQ(of("2 " + powers("ZN", "1", 0.25)), (Firsts{0.25, -1}));
+  EXPECT_EQ(of("4 " + powers("OW", "*", 0.25)), (Firsts{0.25, -1}));
+  EXPECT_EQ(of("0 " + powers("AL", "*", 0.25)), (Firsts{0.25, 0.25}));
+  // the more particular counts, in whatever order they come
+  const std::string all = "0 " + powers("AL", "*", 0.25), area = "3 " + powers("AR", "*", 0.5),
+                    owner = "5 " + powers("OW", "*", 0.75), own = "103 " + powers("BL", "2", 1.0);
+  EXPECT_EQ(of(all + area), (Firsts{0.25, 0.5}));
+  EXPECT_EQ(of(owner + area + all), (Firsts{0.25, 0.75}));
+  EXPECT_EQ(of(own + all + owner), (Firsts{0.25, 1.0}));
+  EXPECT_THAT(sentences_of([&] { of(area + area); }),
+              HasSubstr("a second model, IEELAR for load '*' in area 3"));
+}
+
+TEST(LoadRecords, AreasAreTheBusesUnlessTheLoadHasItsOwn) {
+  RawCase raw;
+  raw.buses =
+      "101,'N',138.0,3,1,1,1,1.05,0.0\n102,'E',138.0,2,1,1,1,1.02,-0.9\n103,'S',138.0,1,7,8,9,0.99,-8.7\n";
+  raw.loads = "103,'1',1,,,150.0,30.0\n103,'2',1,3,,100.0,10.0\n";
+  const Network n = raw.read();
+  EXPECT_EQ(n.loads[0].area, 7);
+  EXPECT_EQ(n.loads[0].zone, 8);
+  EXPECT_EQ(n.loads[0].owner, 9);
+  EXPECT_EQ(n.loads[1].area, 3);
+  EXPECT_EQ(n.loads[1].zone, 8);
+}
+
+TEST(LoadRecords, AMotorWithItsLoadTorqueReadsBack) {
+  const Grid grid =
+      load({}, kPlants +
+                   "103 'CIM6BL' 1 1 0.01 0.07 3.5 0.012 0.15 0 0 1 0 1.2 0 300 0 0.7 0 12 5 0.5 "
+                   "0.2 0.1 1.5 0.3 0.9 /\n");
+  ASSERT_EQ(grid.loads.size(), 1u);
+  const Block& motor = grid.loads[0].block;
+  EXPECT_EQ(motor.effect->name, "CIM6");
+  const double torque[] = {0.5, 0.2, 0.1, 1.5, 0.3, 0.9};
+  int i = 0;
+  for (const char* name : {"A", "B", "D", "E", "C0", "Tnom"}) EXPECT_EQ(parameter(motor, name), torque[i++]);
+  const ScratchFile file("out.dyr");
+  write_dyr(grid, file.path);
+  const Grid again = make_grid(grid.network, read_dyr(file.path), file.path.string(), grid.conventions);
+  EXPECT_EQ(again.loads.at(0).block.p, motor.p);
+  EXPECT_EQ(again.loads.at(0).block.effect, motor.effect);
+}
+
+TEST(LoadRecords, AFrequencyDependentLoadIsComposedAsTheRawSays) {
+  RawCase raw;
+  raw.loads = "103,'1',1,1,1,150.0,0.0,60.0,-20.0,40.0,-10.0,1,1,0\n";
+  Grid grid = load(raw, kPlants + "103 'LDFRBL' * 1.5 -1 0.5 0.25 /\n");
+  ASSERT_EQ(grid.loads.size(), 1u);
+  const Block& block = grid.loads[0].block;
+  EXPECT_EQ(block.effect->name, "LDFR");
+  EXPECT_EQ(parameter(block, "s"), 0.25);
+  const double v = std::abs(grid.flow.voltage[2]), p = 1.5 + 0.6 * v + 0.4 * v * v;
+  const double q = -0.2 * v + 0.1 * v * v;  // YQ counts as susceptance
+  EXPECT_NEAR(parameter(block, "Pp"), 1.5 / p, 1e-15);
+  EXPECT_NEAR(parameter(block, "Pi"), 0.6 * v / p, 1e-15);
+  EXPECT_EQ(parameter(block, "Qp"), 0.0);
+  EXPECT_NEAR(parameter(block, "Qi"), -0.2 * v / q, 1e-14);
+  const ScratchFile file("out.dyr");
+  write_dyr(grid, file.path);
+  const Grid again = make_grid(grid.network, read_dyr(file.path), file.path.string(), grid.conventions);
+  EXPECT_EQ(again.loads.at(0).block.p, block.p);
+  grid.loads[0].block.p[static_cast<std::size_t>(block.effect->parameter_index("Pp"))] = 0.5;
+  EXPECT_THAT(sentences_of([&] { write_dyr(grid, file.path); }), HasSubstr("PSS/E takes it from the .raw"));
+}
+
+TEST(LoadRecords, AStarIsEveryLoadWithoutAModel) {
+  Grid grid = load(two_loads(), kPlants + "103 " + kMotor);
+  Problems problems;
+  choose_load(grid, "*:ZIP:Pi=1,Qp=0.5", "--load", problems);
+  EXPECT_TRUE(problems.empty());
+  ASSERT_EQ(grid.loads.size(), 2u);
+  EXPECT_EQ(grid.loads[0].block.effect->name, "CIM5");
+  EXPECT_EQ(grid.loads[1].block.effect->name, "ZIP");
+  EXPECT_EQ(parameter(grid.loads[1].block, "Pi"), 1.0);
+  choose_load(grid, "*:ZIP", "--load", problems);
+  EXPECT_THAT(sentences_of([&] { problems.raise(); }), HasSubstr("no load without a model at --load"));
+}
+
+/// RT and XT of a generator's record are the plant's step-up transformer.
+TEST(LoadRecords, StepUpTransformersStandInTheRaw) {
+  RawCase raw;
+  raw.generators =
+      "101,'1',153.0,73.0,100,-100,1.05,0,100,0,0.3,0,0,1,1\n102,'1',100.0,-3.0,100,-100,1.02,0,125,0,0.25,"
+      "0.002,0.12,1,1\n";
+  Grid grid = load(raw, kPlants);
+  EXPECT_EQ(grid.plants[0].transformer.effect, nullptr);
+  const Block& step_up = grid.plants[1].transformer;
+  ASSERT_NE(step_up.effect, nullptr);
+  EXPECT_EQ(parameter(step_up, "R"), 0.002);
+  EXPECT_EQ(parameter(step_up, "X"), 0.12);
+  EXPECT_EQ(parameter(step_up, "ratio"), 1.0);
+  const ScratchFile r("out.raw"), d("out.dyr");
+  write_raw(grid.network, r.path);
+  write_dyr(grid, d.path);
+  EXPECT_EQ(load_grid(r.path, d.path, grid.conventions).plants[1].transformer.p, step_up.p);
+  grid.plants[1].transformer = {};
+  EXPECT_THAT(sentences_of([&] { write_dyr(grid, d.path); }),
+              HasSubstr("PSS/E keeps it in the .raw (RT, XT)"));
+}
+
 /// PSS/E up to 33 writes GENTPJ as a user-written model, from 34 on as GENTPJ1.
 TEST(LoadRecords, UserWrittenModelsThatAreOursAreReadAsThat) {
   const std::string infinite = "101 'GENCLS' 1 0.0 0.0 /\n102 ",
