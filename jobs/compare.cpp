@@ -8,6 +8,7 @@
 
 #include "validate/compare_report.hpp"
 #include "validate/record_check.hpp"
+#include "validate/system_compare.hpp"
 #include "validate/write_file.hpp"
 
 namespace {
@@ -92,40 +93,72 @@ std::vector<std::vector<std::string>> check_records(const std::vector<Record>& r
   return warnings;
 }
 
+/// A whole grid at several terminals.
+int run_system(const std::string& file, const std::string& out, bool json, const std::string& command_line) {
+  const SystemCase system = load_system(file);
+  const SystemComparison c = compare_system(system);
+  const Provenance rows = system_provenance(system, command_line);
+  const std::filesystem::path folder = out;
+  const std::string result = system_json(system, c, rows);
+  for (const auto& e : c.terminals)
+    write_file(folder / ("curves-" + e.record.name + ".csv"), csv_playback(e));
+  write_file(folder / "compare.json", result);
+  write_file(folder / "report.html", system_html(system, c, rows));
+  if (json)
+    fmt::print("{}", result);
+  else
+    fmt::print("{}\nreport: {}\n", system_text(system, c), (folder / "report.html").string());
+  return c.adequacy.adequate ? 0 : kNotAdequate;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{SWINGBANK_SUMMARY};
-  std::string model_file, out = "compare-report", drive = "voltage";
+  std::string model_file, system_file, out = "compare-report", drive = "voltage";
   std::vector<std::string> record_files, switches;
   bool json = false;
   CompareOptions options;
-  app.add_option("--model", model_file, "plant file (configs/plants/README.md)")->required();
-  app.add_option("--records,--record", record_files, "records (CSV, COMTRADE or HDF5), one or several")
-      ->required();
+  auto* model_option = app.add_option("--model", model_file, "plant file (configs/plants/README.md)");
+  auto* records_option =
+      app.add_option("--records,--record", record_files, "records (CSV, COMTRADE or HDF5), one or several");
+  model_option->needs(records_option);
+  records_option->needs(model_option);
+  auto* system_option = app.add_option("--system", system_file,
+                                       "instead of both: a system file, a grid with an event and records of "
+                                       "several terminals (validate/README.md)")
+                            ->excludes(model_option);
   app.add_option("--drive", drive,
                  "what drives the model: voltage (V and angle; P and Q are compared) or pq (the reverse)")
       ->check(CLI::IsMember({"voltage", "pq"}))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->excludes(system_option);
   app.add_option("--switch", switches,
-                 "switching instant [s], or FILE=instant; default: found by the voltage's jumps and fitted");
+                 "switching instant [s], or FILE=instant; default: found by the voltage's jumps and fitted")
+      ->excludes(system_option);
   app.add_flag("!--no-fit", options.fit_switchings,
-               "leave found instants in the middle of their sample interval");
+               "leave found instants in the middle of their sample interval")
+      ->excludes(system_option);
   app.add_option("--jump-threshold", options.jump_threshold,
                  "smallest jump of the voltage taken for switching [pu]")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->excludes(system_option);
   app.add_option("--pre-event", options.play_in.pre_event, "steady stretch of records without switching [s]")
-      ->capture_default_str();
-  app.add_option("--until", options.play_in.until, "leave out what comes later [s]");
+      ->capture_default_str()
+      ->excludes(system_option);
+  app.add_option("--until", options.play_in.until, "leave out what comes later [s]")->excludes(system_option);
   app.add_option("--out", out, "folder for report.html, compare.json and the curves as CSV")
       ->capture_default_str();
   app.add_flag("--json", json, "print the result as JSON instead of tables");
   try {
     app.parse(argc, argv);
+    if (model_file.empty() && system_file.empty())
+      throw CLI::RequiredError("--model with --record, or --system,");
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 1;
   }
   try {
+    if (!system_file.empty()) return run_system(system_file, out, json, joined(argc, argv));
     options.drive = drive == "pq" ? DriveBy::power : DriveBy::voltage;
     const PlantModel model = load_plant_model(model_file);
     std::vector<Record> records = read_records(record_files, model.record_base);

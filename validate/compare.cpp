@@ -45,50 +45,6 @@ double spread(const std::vector<double>& values, int n) {
   return s > kNoNoise ? s : 0.0;
 }
 
-struct Channel {
-  std::string name, unit;
-  double scale;         ///< units in 1 pu
-  double floor;         ///< what the computation leaves where a record has no noise [pu]
-  bool starts_at_mean;  ///< the model starts at this channel's pre-event mean
-  bool judged = true;
-  std::string_view skip = {};  ///< window whose noise is not that before the event
-};
-
-ChannelComparison compare_channel(const Channel& channel, const std::vector<double>& measured,
-                                  const std::vector<double>& modelled, const EventComparison& event) {
-  ChannelComparison c;
-  c.name = channel.name;
-  c.unit = channel.unit;
-  c.scale = channel.scale;
-  c.judged = channel.judged;
-  c.measured = measured;
-  c.modelled = modelled;
-  c.residual.resize(measured.size());
-  std::ranges::transform(modelled, measured, c.residual.begin(), std::minus<>());
-  const int quiet = event.playback.start.samples;
-  c.noise = spread(c.residual, quiet);
-  const auto& t = event.record.t;
-  c.whole = measure(t, c.residual, {"whole record", t.front(), t.back()}, true, c.noise);
-  for (std::size_t w = 0; w < event.windows.size(); ++w)
-    c.windows.push_back(measure(t, c.residual, event.windows[w], w == 0, c.noise));
-  const std::span<const double> all(c.residual);
-  c.map = error_map(t, all, event.windows,
-                    estimate_noise(all.first(static_cast<std::size_t>(quiet)), channel.floor),
-                    {.quiet = quiet, .starts_at_mean = channel.starts_at_mean, .skip = channel.skip});
-  return c;
-}
-
-/// Frequency [pu deviation] of an angle, by central differences.
-std::vector<double> frequency_of(const std::vector<double>& t, const std::vector<double>& theta,
-                                 double nominal) {
-  std::vector<double> f;
-  for (std::size_t k = 0; k < t.size(); ++k) {
-    const std::size_t a = k == 0 ? 0 : k - 1, b = std::min(k + 1, t.size() - 1);
-    f.push_back((theta[b] - theta[a]) / (t[b] - t[a]) / (2 * std::numbers::pi * nominal));
-  }
-  return f;
-}
-
 /// Plays the record in with the event's switchings and measures every channel.
 void play(const PlantModel& model, DriveBy drive, const PlayInOptions& options, EventComparison& e) {
   const VoltageCurve curve(e.record, e.switchings);
@@ -99,7 +55,7 @@ void play(const PlantModel& model, DriveBy drive, const PlayInOptions& options, 
   e.windows = event_windows(e.record, e.switchings, options.pre_event);
   e.channels.clear();
   const RecordBase& base = e.record.base;
-  const auto add = [&](const Channel& channel, const std::vector<double>& measured,
+  const auto add = [&](const ChannelRule& channel, const std::vector<double>& measured,
                        const std::vector<double>& modelled) {
     if (!measured.empty()) e.channels.push_back(compare_channel(channel, measured, modelled, e));
   };
@@ -206,6 +162,40 @@ void explain(EventComparison& e, bool tried) {
 }
 
 }  // namespace
+
+ChannelComparison compare_channel(const ChannelRule& channel, const std::vector<double>& measured,
+                                  const std::vector<double>& modelled, const EventComparison& event) {
+  ChannelComparison c;
+  c.name = channel.name;
+  c.unit = channel.unit;
+  c.scale = channel.scale;
+  c.judged = channel.judged;
+  c.measured = measured;
+  c.modelled = modelled;
+  c.residual.resize(measured.size());
+  std::ranges::transform(modelled, measured, c.residual.begin(), std::minus<>());
+  const int quiet = event.playback.start.samples;
+  c.noise = spread(c.residual, quiet);
+  const auto& t = event.record.t;
+  c.whole = measure(t, c.residual, {"whole record", t.front(), t.back()}, true, c.noise);
+  for (std::size_t w = 0; w < event.windows.size(); ++w)
+    c.windows.push_back(measure(t, c.residual, event.windows[w], w == 0, c.noise));
+  const std::span<const double> all(c.residual);
+  c.map = error_map(t, all, event.windows,
+                    estimate_noise(all.first(static_cast<std::size_t>(quiet)), channel.floor),
+                    {.quiet = quiet, .starts_at_mean = channel.starts_at_mean, .skip = channel.skip});
+  return c;
+}
+
+std::vector<double> frequency_of(const std::vector<double>& t, const std::vector<double>& theta,
+                                 double nominal) {
+  std::vector<double> f;
+  for (std::size_t k = 0; k < t.size(); ++k) {
+    const std::size_t a = k == 0 ? 0 : k - 1, b = std::min(k + 1, t.size() - 1);
+    f.push_back((theta[b] - theta[a]) / (t[b] - t[a]) / (2 * std::numbers::pi * nominal));
+  }
+  return f;
+}
 
 std::vector<Window> event_windows(const Record& record, const std::vector<Switching>& switchings,
                                   double pre_event) {

@@ -61,6 +61,23 @@ struct ChannelUnit {
 };
 ChannelUnit channel_unit(Output output, const RecordBase& base);
 
+/// What one channel is called and how it is judged.
+struct ChannelRule {
+  std::string name, unit;
+  double scale;         ///< units in 1 pu
+  double floor;         ///< what the computation leaves where a record has no noise [pu]
+  bool starts_at_mean;  ///< the model starts at this channel's pre-event mean
+  bool judged = true;
+  std::string_view skip = {};  ///< window whose noise is not that before the event
+};
+/// Residual, windows and error map of one channel of an event whose record, windows and playback.start are
+/// set; noise is that of the first playback.start.samples residuals.
+ChannelComparison compare_channel(const ChannelRule& rule, const std::vector<double>& measured,
+                                  const std::vector<double>& modelled, const EventComparison& event);
+/// Frequency [pu deviation] of an angle, by central differences.
+std::vector<double> frequency_of(const std::vector<double>& t, const std::vector<double>& theta,
+                                 double nominal);
+
 /// pre-event, fault, 0-1 s, 1-5 s and > 5 s after the last switching; those that hold no sample are left out.
 /// The time between the first and the last switching is the "fault"; a single switching has none.
 std::vector<Window> event_windows(const Record& record, const std::vector<Switching>& switchings,

@@ -48,6 +48,7 @@ constexpr int kFewestSamples = 30;
 struct ReadOptions {
   std::string terminal{};  ///< which terminal, where the file holds several
   double phasor_rate = 0;  ///< phasors per second made of waveforms; 0: one per nominal cycle
+  bool power = true;       ///< P and Q are needed (or the current); false: they stay empty where not given
 };
 
 /// Reads a record; the name's ending says what it is: .cfg/.dat or .cff COMTRADE, .h5 a run of

@@ -16,13 +16,13 @@ namespace {
 
 using Present = std::array<bool, kQuantities>;
 
-/// What play-in cannot do without; P and Q may also come from the current.
-std::vector<Quantity> missing(const Present& present) {
+/// What a comparison cannot do without; P and Q, where they are needed, may also come from the current.
+std::vector<Quantity> missing(const Present& present, bool power) {
   const auto has = [&](Quantity q) { return present[static_cast<std::size_t>(q)]; };
   std::vector<Quantity> all;
   for (const auto q : {Quantity::time, Quantity::V, Quantity::theta})
     if (!has(q)) all.push_back(q);
-  if (has(Quantity::I) && has(Quantity::phi)) return all;
+  if (!power || (has(Quantity::I) && has(Quantity::phi))) return all;
   for (const auto q : {Quantity::P, Quantity::Q})
     if (!has(q)) all.push_back(q);
   return all;
@@ -43,8 +43,9 @@ std::string listed(const std::set<std::string>& names) {
 }
 
 /// The terminal to read: asked for, nameless, or the only complete one.
-std::string choose_terminal(const std::vector<Heading>& headings, const std::string& asked,
+std::string choose_terminal(const std::vector<Heading>& headings, const ReadOptions& options,
                             const std::string& where, Problems& problems) {
+  const std::string& asked = options.terminal;
   std::set<std::string> all, complete;
   for (const auto& h : headings)
     if (h.meaning && !h.meaning->terminal.empty()) all.insert(h.meaning->terminal);
@@ -55,27 +56,29 @@ std::string choose_terminal(const std::vector<Heading>& headings, const std::str
                    all.empty() ? "leave '#" + asked + "' off the file's name" : "choose one of them");
     return asked;
   }
-  if (all.empty() || missing(present_in(headings, {})).empty()) return {};
+  if (all.empty() || missing(present_in(headings, {}), options.power).empty()) return {};
   for (const auto& t : all)
-    if (missing(present_in(headings, t)).empty()) complete.insert(t);
+    if (missing(present_in(headings, t), options.power).empty()) complete.insert(t);
   if (complete.size() > 1)
     problems.add("several terminals", where, "the file has " + listed(complete),
                  "choose one: FILE#" + *complete.begin());
   if (!complete.empty()) return *complete.begin();
   if (all.size() > 1)
     problems.add("no complete terminal", where,
-                 "of " + listed(all) + " none has voltage, angle, P and Q (or current and its angle)",
+                 "of " + listed(all) + " none has voltage, angle" +
+                     (options.power ? ", P and Q (or current and its angle)" : " and time"),
                  "export all of them for one terminal");
   return *all.begin();
 }
 
-void check_missing(const Present& present, const std::string& where, const Record& about,
+void check_missing(const Present& present, bool power, const std::string& where, const Record& about,
                    Problems& problems) {
   std::string others;
   for (const auto& name : about.ignored) others += (others.empty() ? "" : ", ") + name;
-  for (const auto q : missing(present))
+  for (const auto q : missing(present, power))
     problems.add("no column " + names_of(q), where,
-                 "play-in needs time, voltage, angle, P and Q" +
+                 std::string(power ? "play-in needs time, voltage, angle, P and Q"
+                                   : "a comparison needs time, voltage and angle") +
                      (others.empty() ? "" : "; not understood: " + others.substr(0, 200)),
                  "add the column, named with its unit");
 }
@@ -161,7 +164,7 @@ void SampleFaults::tell(Problems& problems, const std::string& file) const {
 std::vector<std::size_t> choose_columns(const std::vector<Heading>& headings, const ReadOptions& options,
                                         const RecordBase& base, const std::string& where, Record& about,
                                         Problems& problems) {
-  about.terminal = choose_terminal(headings, options.terminal, where, problems);
+  about.terminal = choose_terminal(headings, options, where, problems);
   std::vector<std::size_t> chosen;
   std::set<std::string> others;
   Present used{};
@@ -187,7 +190,7 @@ std::vector<std::size_t> choose_columns(const std::vector<Heading>& headings, co
                    "leave one of " + names_of(meaning->quantity));
     chosen.push_back(i);
   }
-  check_missing(used, where, about, problems);
+  check_missing(used, options.power, where, about, problems);
   if (!others.empty()) about.notes.push_back("Other terminals in the file: " + listed(others) + ".");
   return chosen;
 }
@@ -216,7 +219,7 @@ Record build_record(RawRecord raw, const RecordBase& base, SampleFaults faults, 
   if (r.P.empty() || r.Q.empty()) {
     r.P.clear();
     r.Q.clear();
-    power_from_current(r, current, angle);
+    if (!current.empty() && !angle.empty()) power_from_current(r, current, angle);
   }
   if (std::abs(r.t.front()) > 1e6) {  // seconds since an epoch: reports could not show them
     r.start = fmt::format("{:.6f} s", r.t.front());

@@ -1,0 +1,350 @@
+// The event in the full grid beside the records of its terminals.
+#include "validate/system_compare.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <set>
+
+#include "sim/solve/reference.hpp"
+#include "validate/error_map_table.hpp"
+#include "validate/fit_event.hpp"
+
+namespace swingbank::validate {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr int kFewestQuiet = 5;  // samples before the event, from which its noise is estimated
+
+/// What the grid has at one terminal, on the record's instants and base.
+struct Modelled {
+  std::vector<double> V, theta, P, Q, speed, Efd, Ifd;
+};
+
+/// Instants at which something is switched, sorted.
+std::vector<double> instants_of(const sim::Event& e) {
+  std::set<double> all;
+  for (const auto& f : e.faults) all.insert({f.t_on, f.t_off});
+  for (const auto& t : e.trips) {
+    all.insert(t.t_open);
+    if (t.t_close) all.insert(*t.t_close);
+  }
+  for (const auto& g : e.generator_trips) all.insert(g.time);
+  for (const auto& l : e.load_steps) {
+    all.insert(l.t_on);
+    if (l.t_off) all.insert(*l.t_off);
+  }
+  for (const auto& s : e.setpoint_steps) all.insert(s.time);
+  return {all.begin(), all.end()};
+}
+
+/// The event with every instant moved by `move`.
+template <class Move>
+sim::Event moved(sim::Event e, Move move) {
+  for (auto& f : e.faults) f.t_on = move(f.t_on), f.t_off = move(f.t_off);
+  for (auto& t : e.trips) {
+    t.t_open = move(t.t_open);
+    if (t.t_close) t.t_close = move(*t.t_close);
+  }
+  for (auto& g : e.generator_trips) g.time = move(g.time);
+  for (auto& l : e.load_steps) {
+    l.t_on = move(l.t_on);
+    if (l.t_off) l.t_off = move(*l.t_off);
+  }
+  for (auto& s : e.setpoint_steps) s.time = move(s.time);
+  return e;
+}
+
+std::vector<double> scaled(const double* values, int n, double factor) {
+  std::vector<double> out(values, values + n);
+  for (double& v : out) v *= factor;
+  return out;
+}
+void unwrap(std::vector<double>& angle) {
+  for (std::size_t k = 1; k < angle.size(); ++k)
+    angle[k] -= kTurn * std::round((angle[k] - angle[k - 1]) / kTurn);
+}
+
+class SystemRun {
+ public:
+  SystemRun(const SystemCase& system, const sim::Event& event) : s_(system), event_(event) {
+    answers.resize(s_.terminals.size());
+    // Terminals that were sampled at the same instants share a simulation, which then needs no interpolation.
+    std::map<std::tuple<double, double, int>, std::vector<std::size_t>> groups;
+    for (std::size_t i = 0; i < s_.terminals.size(); ++i) {
+      const Record& r = s_.terminals[i].record;
+      groups[{r.t.front(), r.step(), r.samples()}].push_back(i);
+    }
+    for (const auto& [when, members] : groups)
+      play(std::get<0>(when), std::get<1>(when), std::get<2>(when), members);
+  }
+  std::vector<Modelled> answers;
+  sim::Outcome outcome = sim::Outcome::stable;
+  double stopped_at = std::numeric_limits<double>::infinity();
+
+ private:
+  void play(double first, double step, int samples, const std::vector<std::size_t>& members) {
+    using sim::Channel;
+    sim::ReferenceOptions o;
+    o.rate = 1 / step;
+    o.t_end = step * (samples - 1) + 0.01 * step;
+    o.rtol = s_.tolerance;
+    o.atol = s_.tolerance / 100;
+    o.channels = {Channel::V,     Channel::theta, Channel::P,  Channel::Q,
+                  Channel::speed, Channel::Efd,   Channel::Ifd};
+    std::vector<std::size_t> plants, buses;
+    for (const std::size_t i : members) {
+      const SystemTerminal& t = s_.terminals[i];
+      (t.plant >= 0 ? plants : buses).push_back(i);
+      (t.plant >= 0 ? o.plants : o.buses).push_back(t.plant >= 0 ? t.plant : t.bus);
+    }
+    if (o.plants.empty()) o.plants = {0};  // none would mean all
+    const sim::Event event = moved(event_, [&](double t) { return t - first; });
+    const sim::ReferenceRun run = sim::run_reference(s_.grid, event, o);
+    if (run.outcome != sim::Outcome::stable && first + run.stopped_at < stopped_at) {
+      outcome = run.outcome;
+      stopped_at = first + run.stopped_at;
+    }
+    for (std::size_t k = 0; k < plants.size(); ++k) take_plant(run, static_cast<int>(k), samples, plants[k]);
+    for (std::size_t k = 0; k < buses.size(); ++k) {
+      Modelled& m = answers[buses[k]];
+      const auto from = static_cast<std::ptrdiff_t>(k) * run.samples;
+      m.V = scaled(run.bus_v.data() + from, samples, 1);
+      m.theta = scaled(run.bus_theta.data() + from, samples, 1);
+      unwrap(m.theta);
+    }
+  }
+  void take_plant(const sim::ReferenceRun& run, int row, int samples, std::size_t terminal) {
+    Modelled& m = answers[terminal];
+    const sim::Plant& plant = s_.grid.plants[static_cast<std::size_t>(s_.terminals[terminal].plant)];
+    const double base = plant.mva / s_.base.mva;
+    const auto channel = [&](int c, double factor) { return scaled(run.at(row, c), samples, factor); };
+    m.V = channel(0, 1);
+    m.theta = channel(1, 1);
+    m.P = channel(2, base);
+    m.Q = channel(3, base);
+    m.speed = channel(4, 1);
+    m.Efd = channel(5, 1);
+    m.Ifd = channel(6, 1);
+    unwrap(m.theta);
+  }
+
+  const SystemCase& s_;
+  const sim::Event& event_;
+};
+
+double mean_of(const std::vector<double>& v, std::size_t n) {
+  return std::accumulate(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(n), 0.0) / static_cast<double>(n);
+}
+/// a - b, whole turns taken off such that it starts within half a turn of zero.
+std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> d(a.size());
+  std::ranges::transform(a, b, d.begin(), std::minus<>());
+  const double turns = kTurn * std::round(d.front() / kTurn);
+  for (double& v : d) v -= turns;
+  return d;
+}
+
+/// Compares one terminal after the other.
+class Comparer {
+ public:
+  Comparer(const SystemCase& system, const SystemRun& run, SystemComparison& out)
+      : s_(system), run_(run), out_(out) {}
+
+  void terminal(std::size_t i) {
+    const SystemTerminal& t = s_.terminals[i];
+    EventComparison e;
+    e.record = t.record;
+    e.record.name = t.name;
+    e.notes = t.warnings;
+    for (const double at : out_.instants)
+      e.switchings.push_back({.time = at, .uncertainty = out_.uncertainty});
+    e.detected = s_.find_instants;
+    const double begins = out_.instants.front() + 1e-4 * t.record.step();
+    e.playback.start.samples =
+        static_cast<int>(std::ranges::upper_bound(t.record.t, begins) - t.record.t.begin());
+    if (e.playback.start.samples < kFewestQuiet)
+      throw InputError({fmt::format("{} samples before the event", e.playback.start.samples),
+                        "terminal " + t.name, "noise and steady state are seen there",
+                        "start the record at least 1 s before the event"});
+    e.windows = event_windows(e.record, e.switchings, 1.0);
+    channels(i, e);
+    out_.terminals.push_back(std::move(e));
+  }
+
+ private:
+  void channels(std::size_t i, EventComparison& e) {
+    const Modelled& m = run_.answers[i];
+    const Record& r = s_.terminals[i].record;
+    // While a bolted fault holds V near zero its angle is noise.
+    const bool gone = std::ranges::any_of(r.V, [](double v) { return v < 0.05; });
+    out_.initial.push_back(add(e, {"V", "pu", 1, kLeastNoise, shift()}, r.V, m.V));
+    out_.initial.push_back(angle(i, e, gone));
+    const RecordBase& base = s_.base;
+    const auto output = [&](Output o, const std::vector<double>& measured,
+                            const std::vector<double>& modelled) {
+      const ChannelUnit u = channel_unit(o, base);
+      return add(e, {std::string(output_name(o)), u.name, u.scale, u.floor, shift()}, measured, modelled);
+    };
+    out_.initial.push_back(output(Output::P, r.P, m.P));
+    out_.initial.push_back(output(Output::Q, r.Q, m.Q));
+    output(Output::speed, r.speed, m.speed);
+    output(Output::Efd, r.Efd, m.Efd);
+    output(Output::Ifd, r.Ifd, m.Ifd);
+  }
+  /// Relative to the reference where there is one; its own, and all without one, as frequency.
+  /// Returns the angle that the model starts off by; NaN where the frequency is compared.
+  double angle(std::size_t i, EventComparison& e, bool gone) {
+    const auto reference = static_cast<std::size_t>(std::max(s_.reference, 0));
+    const Record &r = s_.terminals[i].record, &other = s_.terminals[reference].record;
+    const std::string_view skip = gone ? "fault" : "";
+    if (s_.reference < 0 || i == reference) {
+      const double nominal = s_.base.frequency;
+      add(e, {"frequency", "mHz", 1e3 * nominal, kLeastSpeedNoise, shift(), true, skip},
+          frequency_of(r.t, r.theta, nominal), frequency_of(r.t, run_.answers[i].theta, nominal));
+      return kNaN;
+    }
+    if (other.samples() != r.samples() || std::abs(other.t.front() - r.t.front()) > 1e-3 * r.step() ||
+        std::abs(other.step() - r.step()) > 1e-6 * r.step())
+      throw InputError({"angles sampled at other instants",
+                        "terminals " + e.record.name + " and " + s_.terminals[reference].name,
+                        "the angle between them cannot be taken sample by sample",
+                        "export both at the same rate, or leave compare.reference out"});
+    const auto measured = difference(r.theta, other.theta);
+    auto modelled = difference(run_.answers[i].theta, run_.answers[reference].theta);
+    const double turns = kTurn * std::round((modelled.front() - measured.front()) / kTurn);
+    for (double& v : modelled) v -= turns;
+    return add(e, {"angle", "deg", 360 / kTurn, kLeastNoise, shift(), true, skip}, measured, modelled);
+  }
+  [[nodiscard]] bool shift() const { return s_.steady_state == SteadyState::shift; }
+
+  /// Returns what the model starts off by; NaN where nothing was measured.
+  double add(EventComparison& e, const ChannelRule& rule, const std::vector<double>& measured,
+             std::vector<double> modelled) {
+    if (measured.empty()) return kNaN;
+    const auto quiet = static_cast<std::size_t>(e.playback.start.samples);
+    const double off = mean_of(modelled, quiet) - mean_of(measured, quiet);
+    if (shift())
+      for (double& v : modelled) v -= off;
+    e.channels.push_back(compare_channel(rule, measured, modelled, e));
+    return off;
+  }
+
+  const SystemCase& s_;
+  const SystemRun& run_;
+  SystemComparison& out_;
+};
+
+/// The cell of a comparison that is furthest beyond its bound, or nearest to it.
+std::pair<double, std::string> worst_cell(const EventComparison& e) {
+  double worst = 0;
+  std::string where;
+  const auto look = [&](const ChannelComparison& c, const std::string& place, const MapCell& cell) {
+    if (cell.empty() || !(cell.in_noise / cell.bound > worst)) return;
+    worst = cell.in_noise / cell.bound;
+    where = fmt::format("{} {}, {} noise ({:.3g} {})", c.name, place, times_noise(cell.in_noise),
+                        cell.rms * c.scale, c.unit);
+  };
+  for (const auto& c : e.channels) {
+    if (!c.judged) continue;
+    for (std::size_t w = 0; w < c.map.rows.size(); ++w) {
+      look(c, e.windows[w].name, c.map.rows[w].all);
+      for (std::size_t b = 0; b < c.map.rows[w].bands.size(); ++b)
+        look(c, fmt::format("{} at {}", e.windows[w].name, error_bands()[b].name), c.map.rows[w].bands[b]);
+    }
+    look(c, "whole record", c.map.whole);
+  }
+  return {worst, where};
+}
+
+/// A plant's record played into its own model.
+void play_alone(const SystemCase& s, const SystemComparison& c, TerminalRank& rank) {
+  const SystemTerminal& t = s.terminals[rank.terminal];
+  PlantModel model;
+  model.name = t.name;
+  model.plant = s.grid.plants[static_cast<std::size_t>(t.plant)];
+  model.conventions = s.grid.conventions;
+  model.record_base = s.base;
+  CompareOptions options;
+  options.switchings = c.instants;
+  try {
+    std::vector<EventComparison> one = {compare_event(model, t.record, options)};
+    one.front().record.name = t.name;
+    rank.alone = judge(one);
+    std::tie(rank.alone_worst, rank.alone_where) = worst_cell(one.front());
+  } catch (const InputError& error) {
+    rank.alone_where = std::string("could not be played in: ") + error.what();
+  }
+}
+
+bool fails_alone(const TerminalRank& r) { return r.alone && !r.alone->adequate; }
+
+void rank_terminals(const SystemCase& s, SystemComparison& c) {
+  for (std::size_t i = 0; i < c.terminals.size(); ++i) {
+    TerminalRank r;
+    r.terminal = i;
+    std::tie(r.worst, r.where) = worst_cell(c.terminals[i]);
+    if (s.terminals[i].plant >= 0) play_alone(s, c, r);
+    c.ranking.push_back(std::move(r));
+  }
+  std::ranges::stable_sort(c.ranking, [](const TerminalRank& a, const TerminalRank& b) {
+    if (fails_alone(a) != fails_alone(b)) return fails_alone(a);
+    return fails_alone(a) ? a.alone_worst > b.alone_worst : a.worst > b.worst;
+  });
+  const TerminalRank& first = c.ranking.front();
+  const auto failing = std::ranges::count_if(c.ranking, fails_alone);
+  const auto played =
+      std::ranges::count_if(c.ranking, [](const TerminalRank& r) { return r.alone.has_value(); });
+  if (c.adequacy.adequate)
+    c.culprit = "Every terminal is met.";
+  else if (failing > 0)
+    c.culprit = fmt::format(
+        "Terminal {} fails most: its plant's model does not answer its own recorded voltage either ({}); "
+        "look there "
+        "first.{}",
+        s.terminals[first.terminal].name, first.alone_where,
+        failing > 1 ? fmt::format(" {} more plants fail so.", failing - 1) : "");
+  else
+    c.culprit =
+        fmt::format("Terminal {} fails most ({}).{}", s.terminals[first.terminal].name, first.where,
+                    played > 0 ? " Every recorded plant answers its own recorded voltage as measured, so the "
+                                 "error is in the network, the loads, the event, or a plant without a record."
+                               : "");
+}
+
+}  // namespace
+
+SystemComparison compare_system(const SystemCase& s) {
+  SystemComparison c;
+  c.instants = instants_of(s.event);
+  for (const auto& t : s.terminals)
+    if (c.instants.front() < t.record.t.front())
+      throw InputError({fmt::format("an event at {:g} s", c.instants.front()), "terminal " + t.name,
+                        fmt::format("its record begins at {:g} s", t.record.t.front()),
+                        "give the event's instants on the records' clock"});
+  const SystemRun run(s, s.event);
+  c.outcome = run.outcome;
+  c.stopped_at = run.stopped_at;
+  Comparer comparer(s, run, c);
+  for (std::size_t i = 0; i < s.terminals.size(); ++i) comparer.terminal(i);
+  c.adequacy = judge(c.terminals);
+  rank_terminals(s, c);
+  if (c.outcome != sim::Outcome::stable)
+    c.notes.push_back(
+        fmt::format("The simulation ended at {:.3f} s: {}. What follows repeats its last value.",
+                    c.stopped_at, sim::outcome_name(c.outcome)));
+  if (s.steady_state == SteadyState::shift)
+    c.notes.push_back(
+        "What differs before the event was taken off every channel (compare.steady_state = \"shift\"): only "
+        "what "
+        "the event does is judged. The table of the steady state shows it.");
+  return c;
+}
+
+}  // namespace swingbank::validate
