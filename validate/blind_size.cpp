@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "validate/blind_world.hpp"
+#include "validate/fit.hpp"
 #include "validate/play_in.hpp"
 
 namespace swingbank::validate {
@@ -73,10 +74,9 @@ void BlindSize::add_columns(std::size_t event) {
     for (std::size_t k = 0; k < rows; ++k) column[before + k] = (moved[k] - middle[k]) / step;
   };
   std::size_t place = 0;
-  for (std::size_t i = 0; i < plant_.machine.p.size(); ++i) {
-    if (plant_.machine.p[i] == 0.0) continue;  // at neutral: a hypothesis, not a parameter to refit
+  for (const FreeParameter& f : free_parameters(plant_, 1.0)) {
     sim::Plant moved = plant_;
-    moved.machine.p[i] *= 1.0 + kMove;
+    parameter_value(moved, f.block, f.index) *= 1.0 + kMove;
     if (columns_.size() <= place) columns_.emplace_back(total, 0.0);
     fill(columns_[place++], answer(event, moved, record, events_[event].switchings), kMove);
   }

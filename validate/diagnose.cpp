@@ -1,3 +1,5 @@
+#include "validate/diagnose.hpp"
+
 #include <fmt/format.h>
 #include <omp.h>
 
@@ -8,7 +10,7 @@
 #include <map>
 #include <mutex>
 
-#include "validate/diagnose.hpp"
+#include "validate/instruments.hpp"
 
 namespace swingbank::validate {
 namespace {
@@ -225,11 +227,11 @@ class Diagnoser {
         run.tolerance = 1e-5;
         run.least_step = e.record.step() / 40;
         run.step_limit = 15 * e.record.samples();
-        const Response r = drive(run);
+        const Response r = observe(run);
         if (!acts) {
           run.plant = &base;
           run.conventions = model_.conventions;
-          const Response plain = drive(run);
+          const Response plain = observe(run);
           for (std::size_t c = 0; c < e.channels.size() && !acts; ++c)
             for (std::size_t k = 0; k < r.of(e.channels[c]).size() && !acts; ++k)
               acts = std::abs(r.of(e.channels[c])[k] - plain.of(e.channels[c])[k]) >

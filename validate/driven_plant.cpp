@@ -132,6 +132,10 @@ class Driven {
     std::ranges::stable_sort(instants_, {}, &Instant::time);
     look_ahead();
   }
+  /// As seen from a frame that turns with the pre-event angle.
+  Complex voltage(double t) const {
+    return run_.voltage_factor * (*run_.curve)(segment_, t) * std::polar(1.0, -run_.start.drift * t);
+  }
   template <class F>
   void each(F f) const {
     for (std::size_t i = 0; i < directions_.size(); ++i) f(directions_[i], i);
@@ -139,7 +143,7 @@ class Driven {
 
   /// Signals and derivative at states x and time t.
   void evaluate(double t, const T* x, sim::Signals<T>& s, T* dx) {
-    const Complex v = (*run_.curve)(segment_, t) * std::polar(1.0, -run_.start.drift * t);
+    const Complex v = voltage(t);
     s.Efd = Efd_;
     s.Tm = Tm_;
     s.dVref = T(0.0);
@@ -248,6 +252,7 @@ class Driven {
     const double to_record = run_.plant->mva / run_.record->base.mva;
     // the frame turns with the pre-event angle
     const double frame = run_.start.drift / (2 * std::numbers::pi * run_.conventions.frequency);
+    back.voltage.push_back(voltage(t_));
     T P, Q;
     equations_.grid_power(c_.data(), signals_, P, Q);
     const std::array<T, kOutputs> out = {P * T(to_record), Q * T(to_record), signals_.speed + T(frame),

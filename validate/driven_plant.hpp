@@ -37,6 +37,7 @@ struct Drive {
   sim::Conventions conventions = {};
   const Record* record = nullptr;
   const VoltageCurve* curve = nullptr;
+  Complex voltage_factor = 1;  ///< what the curve is multiplied by
   OperatingPoint start = {};
   double angle = 0, speed = 0;              ///< offset of the first two states from equilibrium [rad], [pu]
   PiecewiseLinear torque = {}, field = {};  ///< added to Tm, Efd [pu]
@@ -71,7 +72,8 @@ struct Response {
     std::vector<double> value[kOutputs];
   };
   std::vector<Slope> slopes;
-  int steps = 0;  ///< of the integrator
+  std::vector<Complex> voltage;  ///< that drove the plant, per sample [pu]
+  int steps = 0;                 ///< of the integrator
   [[nodiscard]] const std::vector<double>& of(Output o) const { return value[static_cast<int>(o)]; }
 };
 

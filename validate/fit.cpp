@@ -146,7 +146,7 @@ class Search {
         Drive run = costs_[e]->make_drive(plant, states_[e].data(), switchings);
         const VoltageCurve curve((*setting_.events)[e].played(), switchings);
         run.curve = &curve;
-        drive(run);
+        observe(run);
       }
     } catch (const InputError& error) {
       return error.problems().front().sentence();
@@ -162,7 +162,7 @@ class Search {
       Drive run = costs_[e]->make_drive(fit.plant, states_[e].data(), switchings);
       const VoltageCurve curve(event.played(), switchings);
       run.curve = &curve;
-      const Response r = drive(run);
+      const Response r = observe(run);
       for (const auto& s : switchings) f.state.switchings.push_back(s.time);
       const double* s = states_[e].data() + switchings.size();
       f.state.P = kStateScale[0] * s[0];

@@ -13,20 +13,21 @@ namespace swingbank::validate {
 /// A parameter that may move. `spread` is how far its value is believed to be off: relative where the
 /// parameter is positive by nature (it is then fitted as a logarithm), absolute otherwise; 0: no belief.
 struct FreeParameter {
-  int block = 0, index = 0;  ///< as in sim::block_parameters
+  int block = 0, index = 0;  ///< as in sim::block_parameters; instruments (Plant::measurements) follow
   double spread = 0.3;
 };
 
 /// Parameters of a block that a fit may move: no codes, none that sits at its neutral value or at zero, and
 /// none that says when something happens.
 std::vector<FreeParameter> free_parameters(const sim::Plant& plant, int block, double spread);
-/// The same of all blocks.
+/// The same of all blocks but the instruments.
 std::vector<FreeParameter> free_parameters(const sim::Plant& plant, double spread);
 
 /// What is known of one parameter.
 const sim::Parameter& parameter_record(const sim::Plant& plant, int block, int index);
 const sim::Effect& block_effect(const sim::Plant& plant, int block);
 double& parameter_value(sim::Plant& plant, int block, int index);
+double parameter_value(const sim::Plant& plant, int block, int index);
 
 /// An input that no model makes, free in time.
 enum class InputKind { none, torque, field };

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "validate/fit.hpp"
+#include "validate/instruments.hpp"
 
 namespace swingbank::validate::fitting {
 
@@ -35,8 +36,7 @@ struct Axis {
 
 inline Axis make_axis(const sim::Plant& plant, const FreeParameter& f) {
   const sim::Parameter& record = parameter_record(plant, f.block, f.index);
-  const double start =
-      sim::block_parameters(plant)[static_cast<std::size_t>(f.block)][static_cast<std::size_t>(f.index)];
+  const double start = parameter_value(plant, f.block, f.index);
   Axis a{f, start, record.low, record.high, start > 0, 1.0};
   if (a.logarithmic) {
     a.low = std::max(a.low, 1e-3 * start);
@@ -73,7 +73,8 @@ inline bool can_run(const sim::Plant& plant) {
   };
   check(plant.machine);
   if (plant.transformer.effect) check(plant.transformer);
-  for (const auto& b : plant.controls) check(b);
+  for (const auto* list : {&plant.controls, &plant.measurements})
+    for (const auto& b : *list) check(b);
   return problems.list().empty();
 }
 
@@ -110,7 +111,7 @@ class EventCost : public ceres::CostFunction {
       const VoltageCurve curve(event_.played(), switchings);
       Drive with = run;
       with.curve = &curve;
-      const Response r = drive(with, along);
+      const Response r = observe(with, along);
       write(r.value, true, residuals, 1, 0);
       const int nz = static_cast<int>(setting_.axes.size());
       const int ns = static_cast<int>(state_size());

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "validate/instruments.hpp"
 #include "validate/play_in.hpp"
+#include "validate/unsmear.hpp"
 
 namespace swingbank::validate {
 namespace {
@@ -66,13 +68,13 @@ FitEvent prepare(Record record, const FitEventOptions& options, bool smears) {
 /// Residual before the event, [channel][sample], each less its mean.
 Eigen::MatrixXd quiet_residual(const PlantModel& model, const FitEvent& e) {
   const VoltageCurve curve(e.played(), e.switchings);
-  const Response r = drive({.plant = &model.plant,
-                            .conventions = model.conventions,
-                            .record = &e.record,
-                            .curve = &curve,
-                            .start = e.start,
-                            .tolerance = 1e-8,
-                            .until = e.record.t[static_cast<std::size_t>(e.start.samples - 1)]});
+  const Response r = observe({.plant = &model.plant,
+                              .conventions = model.conventions,
+                              .record = &e.record,
+                              .curve = &curve,
+                              .start = e.start,
+                              .tolerance = 1e-8,
+                              .until = e.record.t[static_cast<std::size_t>(e.start.samples - 1)]});
   Eigen::MatrixXd residual(e.channels.size(), e.start.samples);
   for (std::size_t c = 0; c < e.channels.size(); ++c)
     for (int k = 0; k < e.start.samples; ++k)
@@ -132,6 +134,7 @@ std::vector<FitEvent> prepare_events(const PlantModel& model, std::vector<Record
   const bool smears =
       std::ranges::any_of(records, [&](const Record& r) { return any_smeared(r, options.jump_threshold); });
   for (Record& r : records) events.push_back(prepare(std::move(r), options, smears));
+  unsmear(events);
   measure_noise(model, events);
   return events;
 }

@@ -2,6 +2,7 @@
 // One event made ready for fitting: where the voltage jumps, where the model starts, and how large the noise
 // is in each channel.
 #include <Eigen/Dense>
+#include <algorithm>
 #include <vector>
 
 #include "validate/driven_plant.hpp"
@@ -16,7 +17,8 @@ struct FitEvent {
   /// Marks samples that an instrument's filter has smeared over a switching: neither played in nor compared.
   /// Empty: none is.
   std::vector<char> smeared = {};
-  Record clean = {};             ///< time, V and theta of the others; empty where none is smeared
+  /// Time, V and theta of the others, and what unsmear() brought back; empty where none is smeared.
+  Record clean = {};
   std::vector<Output> channels;  ///< measured ones: P, Q, then speed, Efd, Ifd where recorded
   Eigen::VectorXd noise;         ///< standard deviation per channel [pu]
   Eigen::MatrixXd whitening;     ///< W: W e has unit covariance where e is noise
@@ -25,7 +27,10 @@ struct FitEvent {
   [[nodiscard]] const Record& played() const { return smeared.empty() ? record : clean; }
   [[nodiscard]] bool compared(std::size_t sample) const { return smeared.empty() || !smeared[sample]; }
   /// Numbers that are compared.
-  [[nodiscard]] int values() const { return played().samples() * static_cast<int>(channels.size()); }
+  [[nodiscard]] int values() const {
+    const auto left_out = std::ranges::count(smeared, 1);
+    return (record.samples() - static_cast<int>(left_out)) * static_cast<int>(channels.size());
+  }
 };
 
 struct FitEventOptions {

@@ -4,26 +4,35 @@
 
 namespace swingbank::validate {
 
-const sim::Effect& block_effect(const sim::Plant& plant, int block) {
-  if (block == 0) return *plant.machine.effect;
-  const int first = plant.transformer.effect ? 2 : 1;
-  if (block < first) return *plant.transformer.effect;
-  return *plant.controls[static_cast<std::size_t>(block - first)].effect;
+namespace {
+
+/// Machine, transformer if there is one, controls, instruments.
+template <class Plant>
+auto& block_of(Plant& plant, int block) {
+  if (block == 0) return plant.machine;
+  int left = block - (plant.transformer.effect ? 2 : 1);
+  if (left < 0) return plant.transformer;
+  const auto controls = static_cast<int>(plant.controls.size());
+  if (left < controls) return plant.controls[static_cast<std::size_t>(left)];
+  return plant.measurements[static_cast<std::size_t>(left - controls)];
 }
+
+}  // namespace
+
+const sim::Effect& block_effect(const sim::Plant& plant, int block) { return *block_of(plant, block).effect; }
 const sim::Parameter& parameter_record(const sim::Plant& plant, int block, int index) {
   return block_effect(plant, block).parameters[static_cast<std::size_t>(index)];
 }
 double& parameter_value(sim::Plant& plant, int block, int index) {
-  const auto i = static_cast<std::size_t>(index);
-  if (block == 0) return plant.machine.p[i];
-  const int first = plant.transformer.effect ? 2 : 1;
-  if (block < first) return plant.transformer.p[i];
-  return plant.controls[static_cast<std::size_t>(block - first)].p[i];
+  return block_of(plant, block).p[static_cast<std::size_t>(index)];
+}
+double parameter_value(const sim::Plant& plant, int block, int index) {
+  return block_of(plant, block).p[static_cast<std::size_t>(index)];
 }
 
 std::vector<FreeParameter> free_parameters(const sim::Plant& plant, int block, double spread) {
   const sim::Effect& effect = block_effect(plant, block);
-  const auto values = sim::block_parameters(plant)[static_cast<std::size_t>(block)];
+  const auto& values = block_of(plant, block).p;
   std::vector<double> instants;
   if (effect.instants) instants = effect.instants(effect.law.get(), values.data());
   std::vector<FreeParameter> free;

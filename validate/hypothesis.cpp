@@ -8,6 +8,8 @@
 #include <cmath>
 #include <random>
 
+#include "validate/instruments.hpp"
+
 namespace swingbank::validate {
 namespace {
 
@@ -42,12 +44,16 @@ bool sound(const sim::Block& b) {
   return problems.list().empty();
 }
 
-/// Puts the block where its slot's order asks for; returns its index as sim::block_parameters counts.
+/// Puts the block where its slot's order asks for; returns its index as a FreeParameter counts.
 int insert(sim::Plant& plant, sim::Block block) {
   const int first = plant.transformer.effect ? 2 : 1;
   if (block.effect->slot == Slot::transformer) {
     plant.transformer = std::move(block);
     return 1;
+  }
+  if (block.effect->slot == Slot::measurement) {
+    plant.measurements.push_back(std::move(block));
+    return first + static_cast<int>(plant.controls.size() + plant.measurements.size()) - 1;
   }
   const auto at = std::ranges::upper_bound(plant.controls, block.effect->slot, {},
                                            [](const sim::Block& b) { return b.effect->slot; });
@@ -58,18 +64,17 @@ int insert(sim::Plant& plant, sim::Block block) {
 
 bool occupied(const sim::Plant& plant, const sim::Effect& effect) {
   if (effect.slot == Slot::transformer) return plant.transformer.effect != nullptr;
-  return std::ranges::any_of(plant.controls, [&](const sim::Block& b) {
-    return b.effect == &effect || (b.effect->slot == effect.slot && !sim::is_shared(effect.slot));
-  });
+  for (const auto* list : {&plant.controls, &plant.measurements})
+    for (const sim::Block& b : *list)
+      if (b.effect == &effect || (b.effect->slot == effect.slot && !sim::is_shared(effect.slot))) return true;
+  return false;
 }
 
 /// The standard values, then draws around them: which lie where the records ask for is found by trying.
 std::vector<std::vector<double>> draws(const sim::Plant& plant, const std::vector<FreeParameter>& free,
                                        int count) {
   std::vector<double> standard;
-  for (const auto& f : free)
-    standard.push_back(
-        sim::block_parameters(plant)[static_cast<std::size_t>(f.block)][static_cast<std::size_t>(f.index)]);
+  for (const auto& f : free) standard.push_back(parameter_value(plant, f.block, f.index));
   std::vector<std::vector<double>> starts{standard};
   std::mt19937_64 random(1);  // the same draws every time: a diagnosis can be repeated
   std::normal_distribution<double> normal;
@@ -86,20 +91,41 @@ std::vector<std::vector<double>> draws(const sim::Plant& plant, const std::vecto
   return starts;
 }
 
+/// An instrument is nearly right: its errors are small, and their answer straight.
+void start_near_neutral(Hypothesis& h, int block) {
+  const sim::Effect& effect = block_effect(h.plant, block);
+  for (std::size_t i = 0; i < effect.parameters.size(); ++i)
+    if (!effect.parameters[i].is_code()) h.free.push_back({block, static_cast<int>(i), kSpread});
+  for (const double share : {0.002, -0.002}) {
+    std::vector<double> values;
+    for (const auto& f : h.free) {
+      const auto& p = effect.parameters[static_cast<std::size_t>(f.index)];
+      values.push_back(std::clamp(p.neutral + share * (p.high - p.low), p.low, p.high));
+    }
+    h.starts.push_back(values);
+  }
+}
+
 void add_effects(const sim::Plant& base, const sim::Conventions& conventions, std::vector<Hypothesis>& all) {
   for (const sim::Effect* effect : sim::every_effect()) {
-    const bool fits = effect->slot == Slot::transformer || sim::is_control(effect->slot);
+    const bool instrument = effect->slot == Slot::measurement;
+    const bool fits = effect->slot == Slot::transformer || sim::is_control(effect->slot) || instrument;
     if (!fits || effect->instants || occupied(base, *effect)) continue;
+    if (instrument && !is_linear(*effect)) continue;
     Hypothesis h;
     h.name = effect->name;
     h.what = fmt::format("{} {} ({})", sim::slot_name(effect->slot), effect->name, effect->title);
     h.side = side_of(effect->slot);
-    h.slot = static_cast<int>(effect->slot);
+    if (!sim::is_shared(effect->slot)) h.slot = static_cast<int>(effect->slot);
     h.plant = base;
     h.conventions = conventions;
     const int block = insert(h.plant, {effect, effect->standard_parameters()});
-    h.free = free_parameters(h.plant, block, kSpread);
-    h.starts = draws(h.plant, h.free, 10);
+    if (instrument) {
+      start_near_neutral(h, block);
+    } else {
+      h.free = free_parameters(h.plant, block, kSpread);
+      h.starts = draws(h.plant, h.free, 10);
+    }
     all.push_back(std::move(h));
   }
 }

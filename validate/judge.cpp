@@ -12,9 +12,8 @@ double criterion(const Fit& f) {
 }
 
 std::vector<double> values_of(const sim::Plant& plant, const std::vector<FreeParameter>& free) {
-  sim::Plant own = plant;
   std::vector<double> values;
-  for (const auto& f : free) values.push_back(parameter_value(own, f.block, f.index));
+  for (const auto& f : free) values.push_back(parameter_value(plant, f.block, f.index));
   return values;
 }
 

@@ -1,0 +1,19 @@
+#pragma once
+// A driven plant as its own instruments show it (Plant::measurements): the recorded voltage is freed of their
+// errors before it is played in, and the answer goes through them before it is compared.
+#include "validate/driven_plant.hpp"
+
+namespace swingbank::validate {
+
+/// drive() between instruments. What they make of a standing phasor is taken back from the played voltage and
+/// from the operating point; how they smear a moving one is not (their window around a jump is left out of a
+/// fit, see FitEvent::smeared), but the answer's current is smeared as they do. The chain must be linear, as
+/// is_linear says. Directions may be parameters of the instruments too: their blocks follow those of
+/// sim::block_parameters; slopes along these are central differences. Throws InputError as drive().
+Response observe(const Drive& run, std::span<const Direction> directions = {});
+
+/// Whether instruments of this kind, away from neutral, answer twice the phasors by twice the answer, and
+/// without chance: a noise or a quantisation does not, and is no error that a fit could take back.
+bool is_linear(const sim::Effect& instrument);
+
+}  // namespace swingbank::validate
