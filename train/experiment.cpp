@@ -79,7 +79,7 @@ Experiment read_experiment(const std::filesystem::path& file) {
   Config c(file);
   Experiment e;
   e.file = file;
-  e.table = c.choice("table", {"IV", "V", "VI"});
+  e.table = c.has("table") ? c.choice("table", {"IV", "V", "VI"}) : file.stem().string();
   e.title = c.require<std::string>("title");
   e.dataset = c.file("dataset");
   e.leave_one_out =

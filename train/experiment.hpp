@@ -1,5 +1,5 @@
 #pragma once
-// An experiment: one table of results, as configs/experiments/*.toml states it.
+// An experiment: one table of results, of the thesis or not, as configs/experiments/*.toml states it.
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -31,7 +31,7 @@ struct Preset {
 
 struct Experiment {
   std::filesystem::path file;
-  std::string table;  ///< "IV", "V" or "VI"
+  std::string table;  ///< "IV", "V" or "VI" of the thesis; else the file's own name, which results then bear
   std::string title;
   std::filesystem::path dataset;    ///< its config
   bool leave_one_out = false;       ///< otherwise 60/20/20 by databank point
