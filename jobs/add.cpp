@@ -1,10 +1,12 @@
 // swingbank add: adds a physical effect (or law) to a plant model, fits it and shows before and after on
-// every event.
+// every event; with --retrain also what the effect does to a trained network.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <optional>
 
 #include "jobs/event_records.hpp"
+#include "jobs/retrain_run.hpp"
 #include "sim/core/law.hpp"
 #include "validate/add_report.hpp"
 #include "validate/plant_file.hpp"
@@ -20,8 +22,10 @@ constexpr int kNotAdequate = 3;
 struct Arguments {
   std::string effect, model, out = "added", command;
   std::vector<std::string> records, laws;
-  bool json = false, until_adequate = false;
+  bool json = false, until_adequate = false, retrain = false;
+  std::string truth;
   AddOptions options;
+  RetrainOptions training;
 };
 
 /// Law files of the command line whose effects the plant has now.
@@ -45,10 +49,59 @@ void write(const Arguments& a, const PlantModel& model, const std::vector<std::s
     fmt::print("{}\nmodel: {}\n", text, (folder / "model.toml").string());
 }
 
-int run(Arguments& a) {
+/// What is wrong with options that belong together, before anything is computed.
+void check_options(const Arguments& a) {
+  Problems problems;
   if (a.effect.empty() != a.until_adequate)
-    throw InputError({a.effect.empty() ? "no effect" : "an effect beside --until-adequate", "swingbank add",
-                      "it is either named or looked for", "give one of EFFECT and --until-adequate"});
+    problems.add(a.effect.empty() ? "no effect" : "an effect beside --until-adequate", "swingbank add",
+                 "it is either named or looked for", "give one of EFFECT and --until-adequate");
+  if (a.retrain && a.until_adequate)
+    problems.add("--retrain beside --until-adequate", "swingbank add", "networks are trained for one effect",
+                 "name the effect");
+  if (a.retrain && a.options.calibrate.held_out.empty())
+    problems.add("no event held out", "--retrain",
+                 "networks are judged on events that the effect was not fitted to",
+                 "hold out at least one with --hold-out");
+  if (a.retrain && a.training.dataset.empty())
+    problems.add("no dataset config", "--retrain", "networks are trained on the plant in its grid",
+                 "give --dataset FILE (configs/datasets)");
+  problems.raise();
+}
+
+/// Two networks made (or found made), asked and compared. Empty if a signal stopped the making.
+std::optional<Retrained> retrain(const Arguments& a, const jobs::RetrainPrograms& programs,
+                                 const PlantModel& before, const Addition& added,
+                                 const std::vector<Record>& records) {
+  const std::filesystem::path folder = a.out;
+  const Truth truth = a.truth.empty() ? Truth{} : read_truth(a.truth, before);
+  const auto sides = write_retrain_configs(folder / "retrain", added, records, a.training);
+  for (const auto& side : sides)
+    if (!jobs::make_network(programs, side)) return std::nullopt;
+  const std::array<NetworkEstimate, 2> estimates = {
+      jobs::ask_network(programs, sides[0], a.model, a.records),
+      jobs::ask_network(programs, sides[1], (folder / "model.toml").string(), a.records)};
+  return compare_networks(estimates, before, added, truth);
+}
+
+int run_retrain(const Arguments& a, const jobs::RetrainPrograms& programs, const PlantModel& before,
+                const Addition& done, const std::vector<Record>& records) {
+  const std::filesystem::path folder = a.out;
+  const auto networks = retrain(a, programs, before, done, records);
+  if (!networks) {
+    fmt::print(stderr, "stopped on a signal; run the same command again to go on\n");
+    return jobs::kStopped;
+  }
+  nlohmann::json result = retrained_json(*networks);
+  result["command"] = a.command;
+  write_file(folder / "retrain.json", result.dump(1) + "\n");
+  if (!a.json) fmt::print("\n{}\n", terminal_report(*networks));
+  return 0;
+}
+
+int run(Arguments& a) {
+  check_options(a);
+  jobs::RetrainPrograms programs;
+  if (a.retrain) programs = jobs::retrain_programs();
   const PlantModel model = load_plant_model(a.model);
   std::vector<std::pair<std::string, const sim::Effect*>> laws;
   for (const auto& file : a.laws) laws.emplace_back(file, &sim::load_law(std::filesystem::path(file)));
@@ -65,9 +118,11 @@ int run(Arguments& a) {
     write(a, c.model, provenance, completion_json(c), terminal_report(c));
     return c.adequate ? 0 : kNotAdequate;
   }
-  Addition done = add_effect(model, find_hypothesis(model, a.effect), std::move(records), a.options);
+  Addition done = add_effect(model, find_hypothesis(model, a.effect), records, a.options);
   keep_laws(done.model, laws);
   write(a, done.model, provenance_lines(done, model, a.command), addition_json(done), terminal_report(done));
+  if (a.retrain)
+    if (const int code = run_retrain(a, programs, model, done, records); code != 0) return code;
   return done.adequate && done.earns ? 0 : kNotAdequate;
 }
 
@@ -88,6 +143,29 @@ int main(int argc, char** argv) {
                  "record (name or number from 1) left out of the fit and used to judge it; may be repeated");
   app.add_flag("--until-adequate", a.until_adequate,
                "diagnose and add, one effect at a time, until nothing but noise is left");
+  app.add_flag(
+      "--retrain", a.retrain,
+      "train a network on the plant without and one with the effect, and compare them on these records "
+      "(folder OUT/retrain; run again to go on)");
+  app.add_option("--dataset", a.training.dataset,
+                 "--retrain: config of a dataset about this plant in its grid, without the effect")
+      ->check(CLI::ExistingFile);
+  app.add_option("--train-draws", a.training.draws, "--retrain: events simulated for each network")
+      ->capture_default_str()
+      ->check(CLI::Range(50, 100'000'000));
+  app.add_option("--train-epochs", a.training.epochs, "--retrain: passes through them")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100'000));
+  app.add_option("--train-network", a.training.network, "--retrain: cnn, gru or lstm")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"cnn", "gru", "lstm"}));
+  app.add_option(
+         "--train-range", a.training.range,
+         "--retrain: the effect's parameters are drawn from 1/RANGE of to RANGE times what was fitted")
+      ->capture_default_str()
+      ->check(CLI::Range(1.05, 100.0));
+  app.add_option("--truth", a.truth,
+                 "--retrain: plant file (or blind-test's truth) to judge the networks by");
   app.add_option("--spread", c.spread, "relative uncertainty believed of the model's parameters")
       ->capture_default_str()
       ->check(CLI::Range(0.001, 2.0));
@@ -100,7 +178,7 @@ int main(int argc, char** argv) {
   app.add_flag("--json", a.json, "print the result as JSON instead of tables");
   app.footer(
       "Exit codes: 0 the effect earns its place and nothing but noise is left, 3 it does not or more is "
-      "left, 1 bad input.");
+      "left, 1 bad input, 2 a training stopped on a signal: run again to go on.");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -26,7 +26,8 @@ NetworkEstimate parse(const json& j, const std::filesystem::path& file) {
   for (const json& p : j.at("parameters"))
     e.parameters.push_back({p.at("name"), p.at("effect"), p.at("unit"), p.at("estimate"), p.at("spread"),
                             p.at("scatter"), p.at("low"), p.at("high")});
-  for (const json& r : j.at("records")) e.records.push_back({r.at("file"), r.at("hash")});
+  for (const json& r : j.at("records"))
+    e.records.push_back({r.at("file"), r.at("hash"), r.value("estimates", std::vector<double>())});
   return e;
 }
 
