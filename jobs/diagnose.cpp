@@ -17,6 +17,15 @@ using namespace swingbank::validate;
 
 constexpr int kNotAdequate = 3;
 
+/// The law that was found, as a file; its path, empty where none was.
+std::filesystem::path write_law(const Diagnosis& d, const std::filesystem::path& folder) {
+  const LawFinding* law = d.laws.found();
+  if (!law) return {};
+  const auto file = folder / (law->judgement.hypothesis.name + ".toml");
+  write_file(file, law->toml);
+  return file;
+}
+
 int run(const std::string& model_file, const std::vector<std::string>& record_files, const std::string& out,
         bool json, DiagnoseOptions options, const std::string& command_line) {
   const PlantModel model = load_plant_model(model_file);
@@ -28,10 +37,15 @@ int run(const std::string& model_file, const std::vector<std::string>& record_fi
   const std::filesystem::path folder = out;
   write_file(folder / "diagnosis.json", result.dump(1) + "\n");
   write_file(folder / "report.html", diagnosis_html(model, d, provenance));
-  if (json)
+  const auto law_file = write_law(d, folder);
+  if (json) {
     fmt::print("{}\n", result.dump(1));
-  else
+  } else {
     fmt::print("{}\nreport: {}\n", diagnosis_text(d), (folder / "report.html").string());
+    if (!law_file.empty())
+      fmt::print("law: {0} (swingbank add {1} --law {0} adds it)\n", law_file.string(),
+                 law_file.stem().string());
+  }
   return d.verdict == Verdict::adequate ? 0 : kNotAdequate;
 }
 
@@ -55,10 +69,10 @@ void declare(CLI::App& app, Command& c) {
                     ->excludes(model);
   app.add_option("--plant", c.plant, "of the fleet only this plant; its result as JSON, no table")
       ->needs(fleet);
-  app.add_option(
-         "--out", c.out,
-         "folder for report.html and diagnosis.json; of a fleet for fleet.html, fleet.json, fleet.csv and "
-         "a folder per plant")
+  app.add_option("--out", c.out,
+                 "folder for report.html, diagnosis.json and, where one is found, the law file; of a fleet "
+                 "for fleet.html, fleet.json, fleet.csv and "
+                 "a folder per plant")
       ->capture_default_str();
   app.add_option("--spread", c.options.spread,
                  "relative uncertainty believed of the model's parameters; of a fleet it stands in its file")

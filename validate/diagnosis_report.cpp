@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "validate/diagnosis_report_laws.hpp"
 #include "validate/error_map_table.hpp"
 
 namespace swingbank::validate {
@@ -127,7 +128,7 @@ nlohmann::json event_json(const ReportEvent& e, bool with_after) {
 }
 
 nlohmann::json hypothesis_json(const Judgement& h) {
-  nlohmann::json j = {{"name", h.hypothesis.name},
+  nlohmann::json j = {{"name", full_name(h.hypothesis)},
                       {"what", h.hypothesis.what},
                       {"side", side_name(h.hypothesis.side)},
                       {"accepted", h.accepted},
@@ -149,9 +150,10 @@ ReportFigures report_figures(const Diagnosis& d) {
   ReportFigures figures;
   const bool named = !d.ranked.empty() && d.ranked.front().accepted && !d.ranked.front().fit.events.empty();
   const Judgement* best = named ? &d.ranked.front() : nullptr;
+  if (!best && d.laws.found()) best = &d.laws.found()->judgement;
   if (d.verdict != Verdict::adequate && best) {
     figures.after = &best->fit;
-    figures.after_name = best->hypothesis.name;
+    figures.after_name = full_name(best->hypothesis);
   } else if (d.verdict == Verdict::unexplained) {
     if (const MissingInput* input = better_input(d)) {
       figures.after = &input->fit;
@@ -203,6 +205,7 @@ nlohmann::json diagnosis_json(const PlantModel& model, const Diagnosis& d, const
     j["after"] = nullptr;
   j["missing_torque"] = input_json(d, d.torque);
   j["missing_field_voltage"] = input_json(d, d.field);
+  j["laws"] = laws_json(d);
   j["hypotheses"] = nlohmann::json::array();
   for (const auto& h : d.ranked) j["hypotheses"].push_back(hypothesis_json(h));
   j["events"] = nlohmann::json::array();

@@ -32,7 +32,8 @@ struct ReportFigures {
   std::string after_name;      ///< "SEXS", "the inferred field voltage"
   std::vector<ReportEvent> events;
 };
-/// `after` is the best hypothesis where one was accepted, else the inferred input that leaves less. Refers to
+/// `after` is the best hypothesis where one was accepted, else the law that was found, else the inferred
+/// input that leaves less. Refers to
 /// `diagnosis`, which must outlive it.
 ReportFigures report_figures(const Diagnosis& diagnosis);
 

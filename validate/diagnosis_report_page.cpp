@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "validate/diagnosis_report.hpp"
+#include "validate/diagnosis_report_laws.hpp"
 #include "validate/error_map_table.hpp"
 
 namespace swingbank::validate {
@@ -45,6 +46,7 @@ class DiagnosisPage {
     error_maps();
     sides();
     hypotheses();
+    laws_on_page(d_, page_);
     parameters();
     page_.section("Events");
     page_.text(
@@ -160,7 +162,7 @@ class DiagnosisPage {
               "accepted",
               {}};
     for (std::size_t i = 0; i < std::min(kBars, d_.ranked.size()); ++i)
-      bars.bars.push_back({d_.ranked[i].hypothesis.name, std::log10(std::max(1.0, d_.ranked[i].gain)),
+      bars.bars.push_back({full_name(d_.ranked[i].hypothesis), std::log10(std::max(1.0, d_.ranked[i].gain)),
                            d_.ranked[i].accepted || (d_.ranked[i].gain >= most && most > 10)});
     page_.bars(bars);
     Table table{"", {"hypothesis", "what", "side", "evidence", "error left", "unseen events", "judged"}, {}};
@@ -168,7 +170,7 @@ class DiagnosisPage {
       double worst = 0;
       for (const auto& u : h.held_out) worst = std::max(worst, std::sqrt(u.after));
       table.rows.push_back(
-          {h.hypothesis.name, h.hypothesis.what, std::string(side_name(h.hypothesis.side)),
+          {full_name(h.hypothesis), h.hypothesis.what, std::string(side_name(h.hypothesis.side)),
            fmt::format("{:.1f}", h.gain), h.fit.values > 0 ? times_noise(std::sqrt(h.fit.misfit())) : "–",
            h.held_out.empty() ? "–" : "≤ " + times_noise(worst), h.accepted ? "accepted" : h.why_not});
     }

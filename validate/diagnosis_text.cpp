@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "validate/diagnosis_report_laws.hpp"
+
 namespace swingbank::validate {
 namespace {
 
@@ -24,7 +26,7 @@ void add_hypotheses(const Diagnosis& d, std::string& text) {
       before += h.before / static_cast<double>(j.held_out.size());
       after += h.after / static_cast<double>(j.held_out.size());
     }
-    text += fmt::format("{:<18} {:<12} {:>12.1f} {:>10.3f} {:>22}  {}\n", j.hypothesis.name,
+    text += fmt::format("{:<18} {:<12} {:>12.1f} {:>10.3f} {:>22}  {}\n", full_name(j.hypothesis),
                         side_name(j.hypothesis.side), j.gain, j.fit.misfit(),
                         j.held_out.empty() ? "" : fmt::format("{:.2f}, {:.3f}", before, after),
                         j.accepted ? "accepted" : j.why_not);
@@ -38,7 +40,8 @@ void add_hypotheses(const Diagnosis& d, std::string& text) {
 }
 void add_parameters(const Diagnosis& d, std::string& text) {
   const bool named = !d.ranked.empty() && d.ranked.front().accepted;
-  const Fit& fit = named ? d.ranked.front().fit : d.base;
+  const LawFinding* law = named ? nullptr : d.laws.found();
+  const Fit& fit = named ? d.ranked.front().fit : law ? law->judgement.fit : d.base;
   text += fmt::format("\n{:<10} {:<10} {:>12} {:>12} {:>26} {:>6}\n", "block", "parameter", "model", "fitted",
                       "95 % interval", "unit");
   for (const auto& p : fit.parameters)
@@ -53,6 +56,7 @@ std::string diagnosis_text(const Diagnosis& d) {
   std::string text = d.sentence + "\n";
   add_inputs(d, text);
   add_hypotheses(d, text);
+  text += laws_text(d);
   add_parameters(d, text);
   text += fmt::format("\n{} events, {:.1f} s\n", d.events.size(), d.seconds);
   return text;

@@ -44,10 +44,11 @@ struct LawParameter {
 /// A law: its text but for the parameters' values.
 struct LawCandidate {
   InputKind kind = InputKind::torque;
-  std::string family;       ///< "static", "lagged", "limited", "dead-banded", "periodic", "step", ...
-  std::string signal;       ///< of kLawSignals, "time" or "time since the voltage moved"
-  std::string words;        ///< with {name} where a parameter's value belongs
-  std::string value, body;  ///< of the law file: the expression, and the tables that it needs
+  std::string family;             ///< "static", "lagged", "limited", "dead-banded", "periodic", "step", ...
+  std::string signal;             ///< of kLawSignals, "time" or "time since the voltage moved"
+  std::string words;              ///< with {name} where a parameter's value belongs
+  std::string value, body;        ///< of the law file: the expression, and the tables that it needs
+  std::string requirements = "";  ///< of the law file: conditions on the parameters, in quotes
   std::vector<LawParameter> parameters;
   double explained = 0;                     ///< share of the inferred input's square that it takes away
   double score = 0;                         ///< the same less what its numbers cost; lower is better

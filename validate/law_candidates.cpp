@@ -12,15 +12,20 @@ namespace swingbank::validate {
 namespace {
 
 enum class Filter { none, lag, washout };
-enum class Shape { straight, limited, dead_band, bent, even };
+enum class Shape { straight, limited, dead_band, bent, even, curve };
 
 struct Form {
   std::size_t signal = 0;
   Filter filter = Filter::none;
   double T = 0;  ///< of the filter [s]
   Shape shape = Shape::straight;
-  double width = 0;  ///< of the limit's rise or of the dead band [pu]
+  double width = 0;  ///< of the limit's rise or of the dead band; of a curve: its last point [pu]
+  double ratio = 0;  ///< of a curve: between its points
 };
+constexpr int kPoints = 4;  ///< of a curve, on either side of zero
+
+/// Abscissa of a curve's point, k = 0 ... kPoints.
+double point_of(const Form& f, int k) { return k == 0 ? 0.0 : f.width * std::pow(f.ratio, kPoints - k); }
 
 /// First-order lag of a course that begins at rest.
 std::vector<double> lagged(const std::vector<double>& t, const std::vector<double>& x, double T) {
@@ -50,6 +55,7 @@ Course shaped(Course course, const Form& f) {
   for (auto& event : course)
     for (double& x : event) switch (f.shape) {
         case Shape::straight:
+        case Shape::curve:
           break;
         case Shape::limited:
           x = std::clamp(x / f.width, -1.0, 1.0);
@@ -66,6 +72,21 @@ Course shaped(Course course, const Form& f) {
       }
   return course;
 }
+/// Hats over a curve's points, odd in the signal; beyond the last point it stays at its value.
+std::vector<Course> hats(const Course& course, const Form& f) {
+  std::vector<Course> all(kPoints, course);
+  for (int k = 1; k <= kPoints; ++k) {
+    const double low = point_of(f, k - 1), mid = point_of(f, k), high = k < kPoints ? point_of(f, k + 1) : 0;
+    for (auto& event : all[static_cast<std::size_t>(k - 1)])
+      for (double& x : event) {
+        const double size = std::abs(x);
+        double y = std::clamp((size - low) / (mid - low), 0.0, 1.0);
+        if (k < kPoints) y -= std::clamp((size - mid) / (high - mid), 0.0, 1.0);
+        x = std::copysign(y, x);
+      }
+  }
+  return all;
+}
 double largest(const Course& course) {
   double most = 0;
   for (const auto& e : course)
@@ -77,18 +98,37 @@ LawParameter gain_of(const std::string& name, double value, double most, const s
   return {name, "pu", value, -most, most, true, meaning};
 }
 
+/// A curve through points (w1, u1), (w2, u2), ... and, turned round, on the other side of zero.
+void describe_curve(const Form& f, const Eigen::VectorXd& factors, LawCandidate& law) {
+  const double least = 0.05 * factors.cwiseAbs().maxCoeff();
+  std::string points, order;
+  for (int k = 1; k <= kPoints; ++k) {
+    double u = factors[k - 1];
+    if (std::abs(u) < least)
+      u = std::copysign(least, u);  // a search in parts of its own size could not leave zero
+    law.parameters.push_back({fmt::format("w{}", k), "pu", point_of(f, k), 1e-7, 10.0, false,
+                              fmt::format("deviation at point {}", k)});
+    law.parameters.push_back(
+        {fmt::format("u{}", k), "pu", u, -10.0, 10.0, false, fmt::format("value at point {}", k)});
+    points += fmt::format("{}{{u{}}} at {{w{}}}", k == 1 ? "" : ", ", k, k);
+    if (k == 1) {
+      law.value = "u1 * clamp(x / w1, -1, 1)";
+      continue;
+    }
+    law.value += fmt::format(
+        " + (u{0} - u{1}) * (clamp(x, -w{0}, w{0}) - clamp(x, -w{1}, w{1})) / (w{0} - w{1})", k, k - 1);
+    order += fmt::format("{}\"w{} < w{}\"", k == 2 ? "" : ", ", k - 1, k);
+  }
+  law.requirements = order;
+  law.words = "a curve of {x}, through " + points + ", straight between and with its sign";
+}
 /// What each shape puts out, in TOML and in words; `y` stands for the filtered signal.
-void describe_shape(const Form& f, double factor, LawCandidate& law) {
+void describe_shape(const Form& f, const Eigen::VectorXd& factors, LawCandidate& law) {
   constexpr double kMostGain = 1e6, kMostLevel = 10;
+  const double factor = factors[0];
   const std::string y = f.filter == Filter::none ? "x" : "filtered";
-  const LawParameter width{"w",
-                           "pu",
-                           f.width,
-                           1e-7,
-                           10.0,
-                           false,
-                           f.shape == Shape::limited ? "deviation from which it grows no further"
-                                                     : "deviation that has no effect"};
+  const LawParameter limit{"w", "pu", f.width, 1e-7, 10.0, false, "deviation from which it grows no further"};
+  const LawParameter band{"w", "pu", f.width, 1e-7, 10.0, false, "deviation that has no effect"};
   switch (f.shape) {
     case Shape::straight:
       law.value = "K * " + y;
@@ -98,12 +138,12 @@ void describe_shape(const Form& f, double factor, LawCandidate& law) {
     case Shape::limited:
       law.value = "L * clamp(" + y + " / w, -1, 1)";
       law.words = "{L} where {x} exceeds {w}, in proportion below that and with its sign";
-      law.parameters = {gain_of("L", factor, kMostLevel, "limit"), width};
+      law.parameters = {gain_of("L", factor, kMostLevel, "limit"), limit};
       break;
     case Shape::dead_band:
       law.value = "K * deadband(" + y + ", w)";
       law.words = "{K} × what {x} exceeds {w} by, in either direction";
-      law.parameters = {gain_of("K", factor, kMostGain, "gain outside the dead band"), width};
+      law.parameters = {gain_of("K", factor, kMostGain, "gain outside the dead band"), band};
       break;
     case Shape::bent:
       law.value = "K * " + y + " * abs(" + y + ")";
@@ -115,20 +155,23 @@ void describe_shape(const Form& f, double factor, LawCandidate& law) {
       law.words = "{K} × the square of {x}";
       law.parameters = {gain_of("K", factor, kMostGain, "gain")};
       break;
+    case Shape::curve:
+      describe_curve(f, factors, law);
+      break;
   }
 }
-LawCandidate candidate_of(InputKind kind, const Form& f, double factor) {
+LawCandidate candidate_of(InputKind kind, const Form& f, const Eigen::VectorXd& factors) {
   const LawSignal& s = kLawSignals[f.signal];
   LawCandidate law;
   law.kind = kind;
   law.signal = s.name;
-  describe_shape(f, factor, law);
+  describe_shape(f, factors, law);
   std::string x(s.words);
   if (f.filter != Filter::none)
     x += f.filter == Filter::lag ? " (lagged by {T})" : " (washed out within {T})";
   law.words.replace(law.words.find("{x}"), 3, x);
   law.body = fmt::format("[signals]\nx = \"{}\"\n", s.expression);
-  constexpr std::array kShapes = {"static", "limited", "dead-banded", "quadratic", "even"};
+  constexpr std::array kShapes = {"static", "limited", "dead-banded", "quadratic", "even", "curved"};
   law.family = kShapes[static_cast<std::size_t>(f.shape)];
   if (f.filter == Filter::none) return law;
   const bool lag = f.filter == Filter::lag;
@@ -191,24 +234,36 @@ std::vector<LawCandidate> law_candidates(InputKind kind, const std::vector<LawTr
       const Course base = filtered(traces, form);
       const double most = largest(base);
       if (!(most > 1e-9)) continue;
+      const auto keep = [&](LawRegression::Answer answer) {
+        Best& b = best[{s, form.filter, form.shape}];
+        if (b.answer.course.size() == 0 || answer.score < b.answer.score) b = {form, std::move(answer)};
+      };
+      const int filter = form.filter == Filter::none ? 0 : 1;
       const auto consider = [&](Shape shape, double part) {
         form.shape = shape;
         form.width = part * most;
-        auto answer = regression.fit({regression.at_knots(shaped(base, form))},
-                                     (form.filter == Filter::none ? 0 : 1) + (part > 0 ? 1 : 0));
-        Best& b = best[{s, form.filter, shape}];
-        if (b.answer.course.size() == 0 || answer.score < b.answer.score) b = {form, std::move(answer)};
+        keep(regression.fit({regression.at_knots(shaped(base, form))}, filter + (part > 0 ? 1 : 0)));
       };
       for (const Shape shape : {Shape::straight, Shape::bent, Shape::even}) consider(shape, 0);
       for (const double part : {0.01, 0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.7}) {
         consider(Shape::limited, part);
         consider(Shape::dead_band, part);
       }
+      if (filter > 0) continue;
+      for (const double part : {0.3, 0.6, 1.0})
+        for (const double ratio : {0.15, 0.3, 0.5}) {
+          form.shape = Shape::curve;
+          form.width = part * most;
+          form.ratio = ratio;
+          std::vector<Eigen::VectorXd> columns;
+          for (const Course& hat : hats(base, form)) columns.push_back(regression.at_knots(hat));
+          keep(regression.fit(columns, kPoints));
+        }
     }
   std::vector<LawCandidate> all;
   for (const auto& [key, b] : best) {
-    if (b.answer.factors.size() == 0 || b.answer.factors[0] == 0) continue;
-    LawCandidate law = candidate_of(kind, b.form, b.answer.factors[0]);
+    if (b.answer.factors.size() == 0 || b.answer.factors.isZero(0)) continue;
+    LawCandidate law = candidate_of(kind, b.form, b.answer.factors);
     law.explained = b.answer.explained;
     law.score = b.answer.score;
     law.course = regression.by_event(b.answer.course);

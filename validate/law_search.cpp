@@ -7,8 +7,10 @@
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <set>
 
 #include "sim/core/law.hpp"
+#include "validate/law_course.hpp"
 #include "validate/law_text.hpp"
 #include "validate/law_traces.hpp"
 
@@ -27,15 +29,35 @@ constexpr double kAsMuch = 1.5;
 /// chi2 per value after the first fit from which judging would be in vain.
 constexpr double kHopeless = 2;
 
-/// The leading ones, not all of one signal.
+/// Whether every word of `a`'s family is one of `b`'s: then `b` is `a` with something more.
+bool within(const LawCandidate& a, const LawCandidate& b) {
+  const auto words = [](const std::string& family) {
+    std::set<std::string> all;
+    for (std::size_t at = 0; at < family.size();) {
+      const auto comma = std::min(family.find(", ", at), family.size());
+      all.insert(family.substr(at, comma - at));
+      at = comma + 2;
+    }
+    all.erase("static");
+    return all;
+  };
+  return a.signal == b.signal && std::ranges::includes(words(b.family), words(a.family));
+}
+/// The leading ones, not all of one signal, and none that is another that answers better with something more.
 std::vector<LawCandidate> leading(const std::vector<LawCandidate>& ranked) {
   std::map<std::string, std::size_t> of_signal;
   std::vector<LawCandidate> chosen;
   for (const auto& law : ranked) {
     if (chosen.size() == kFitted || law.explained < kLeastExplained) break;
+    if (std::ranges::any_of(chosen, [&](const LawCandidate& c) { return within(c, law); })) continue;
     if (of_signal[law.signal]++ < kPerSignal) chosen.push_back(law);
   }
   return chosen;
+}
+/// What a law must answer better by before it is preferred: one of the record's own time means something only
+/// where records begin alike, and one in proportion to the start says more than one that is not.
+double handicap(const LawCandidate& law) {
+  return (law.signal == "time" ? 6.0 : 0.0) + (law.family.ends_with("in proportion") ? 3.0 : 0.0);
 }
 
 std::string source_of(const std::vector<FitEvent>& events) {
@@ -73,15 +95,15 @@ class Searcher {
     s.findings.resize(tried.size());
     in_turn("law", tried.size(), [&](std::size_t k) { s.findings[k] = fitted(tried[k]); });
     std::erase_if(s.findings, [](const LawFinding& f) { return f.judgement.fit.events.empty(); });
-    std::ranges::stable_sort(s.findings, std::greater<>(),
-                             [](const LawFinding& f) { return f.judgement.gain; });
+    const auto by_gain = [](const LawFinding& a, const LawFinding& b) {
+      if (a.judgement.accepted != b.judgement.accepted) return a.judgement.accepted;
+      return a.judgement.gain - handicap(a.law) > b.judgement.gain - handicap(b.law);
+    };
+    std::ranges::stable_sort(s.findings, by_gain);
     in_turn("unseen events, law", std::min(kJudged, s.findings.size()),
             [&](std::size_t k) { settle(s.findings[k]); });
-    std::ranges::stable_sort(s.findings, [](const LawFinding& a, const LawFinding& b) {
-      return a.judgement.accepted != b.judgement.accepted ? a.judgement.accepted
-                                                          : a.judgement.gain > b.judgement.gain;
-    });
-    for (LawFinding& f : s.findings) write_out(f);
+    std::ranges::stable_sort(s.findings, by_gain);
+    for (LawFinding& f : s.findings) write_out(f, s.traces);
     s.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return s;
   }
@@ -135,9 +157,9 @@ class Searcher {
     }
     judge(case_.trial, case_.base, case_.held_out_base, f.judgement);
   }
-  void write_out(LawFinding& f) const {
+  void write_out(LawFinding& f, const std::vector<LawTrace>& traces) const {
     if (f.judgement.why_not.empty() && !f.judgement.accepted)
-      f.judgement.why_not = fmt::format("leaves {:.2f} of the noise's variance", f.judgement.fit.misfit());
+      f.judgement.why_not = "not judged: others answer better";
     const auto& own = f.judgement.hypothesis.free;
     std::vector<FittedParameter> values;
     for (const auto& p : f.judgement.fit.parameters)
@@ -145,6 +167,11 @@ class Searcher {
     for (const auto& p : values)
       for (auto& mine : f.law.parameters)
         if (mine.name == p.name) mine.value = p.value;
+    std::vector<double> fitted;
+    for (const auto& p : f.law.parameters) fitted.push_back(p.value);
+    const LawRegression regression(traces);
+    f.law.course =
+        regression.by_event(regression.at_knots(law_course(*f.effect, fitted, f.law.kind, traces)));
     f.words = law_words(f.law, values);
     f.judgement.hypothesis.what = f.words;
     f.toml = law_toml(f.law, source_of(case_.trial.events));

@@ -53,6 +53,7 @@ std::string law_toml(const LawCandidate& law, const std::string& source) {
       "name = \"{}\"\ntitle = {}\nsource = {}\noutput = \"{}\"\naction = \"add\"\nvalue = {}\n\n{}\n",
       law_name(law), in_quotes(fmt::format("{} law of {}: {}", law.family, law.signal, law_words(law))),
       in_quotes(source), law.kind == InputKind::torque ? "Tm" : "Efd", in_quotes(law.value), law.body);
+  if (!law.requirements.empty()) text.insert(text.find("value = "), "require = [" + law.requirements + "]\n");
   text += "[parameters]\n";
   for (const auto& p : law.parameters)
     text += fmt::format(

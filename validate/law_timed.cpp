@@ -4,110 +4,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
+
+#include "validate/law_shapes.hpp"
 
 namespace swingbank::validate {
 namespace {
 
-constexpr double kRise = 0.05;  ///< of every beginning and end [s]: a jump would have no slope to follow
+using Kind = LawShape::Kind;
 constexpr double kTurn = 2 * std::numbers::pi;
-
-double edge(double tau) { return std::clamp(tau / kRise, 0.0, 1.0); }
-double sawtooth(double turns) { return 2 * (turns - std::floor(turns)) - 1; }
-double square(double turns) { return turns - std::floor(turns) < 0.5 ? 1 : -1; }
-/// The same as Fourier series, for law files have no jumps: factor / k sin(2 k turn), turn = pi times turns.
-std::string series(double factor, int step, int most) {
-  std::string text;
-  for (int k = 1; k <= most; k += step)
-    text += fmt::format("{}{:.6g} * sin({} * turn)", k == 1 ? "" : " + ", factor / k, 2 * k);
-  return text;
-}
-
-/// A shape over the time since its beginning; `b` is its second number.
-struct Shape {
-  std::string family;
-  std::function<double(double tau, double b)> course, other = {};  ///< other: the cosine beside the sine
-  std::vector<double> grid;                                        ///< of b; empty: it has none
-  LawParameter second;
-  std::string value, signals, words;
-};
-
-std::vector<double> frequencies(double length) {
-  std::vector<double> all;
-  for (double f = 0.08; f <= 3.0; f += std::max(0.02, 0.25 / length)) all.push_back(f);
-  return all;
-}
-
-std::vector<Shape> shapes(double length) {
-  const LawParameter none{};
-  const auto time = [](const std::string& name, const std::string& meaning) {
-    return LawParameter{name, "s", 0, 1e-3, 1000, false, meaning};
-  };
-  const LawParameter f{"f", "Hz", 0, 0.01, 30, false, "frequency"};
-  const std::string rise = fmt::format("clamp(tau / {:g}, 0, 1)", kRise);
-  const std::vector<double> lengths = {0.2, 0.3, 0.5, 0.75, 1, 1.5, 2, 3, 4, 6, 8, 10};
-  std::vector<Shape> all;
-  all.push_back({"step",
-                 [](double tau, double) { return edge(tau); },
-                 {},
-                 {},
-                 none,
-                 rise,
-                 "",
-                 "a step of {A} that begins {begin}"});
-  all.push_back({"pulse",
-                 [](double tau, double b) { return edge(tau) - edge(tau - b); },
-                 {},
-                 lengths,
-                 time("length", "how long it lasts"),
-                 fmt::format("({} - clamp((tau - length) / {:g}, 0, 1))", rise, kRise),
-                 "",
-                 "a pulse of {A} that begins {begin} and lasts {length}"});
-  all.push_back({"ramp",
-                 [](double tau, double b) { return std::clamp(tau / b, 0.0, 1.0); },
-                 {},
-                 lengths,
-                 time("length", "how long it rises"),
-                 "clamp(tau / length, 0, 1)",
-                 "",
-                 "a ramp to {A} that begins {begin} and takes {length}"});
-  all.push_back({"decaying",
-                 [](double tau, double b) { return edge(tau) * std::exp(-std::max(0.0, tau) / b); },
-                 {},
-                 lengths,
-                 time("T", "time constant of the decay"),
-                 rise + " * exp(-max(tau, 0) / T)",
-                 "",
-                 "{A}, decaying with {T}, that begins {begin}"});
-  all.push_back({"periodic", [](double tau, double b) { return edge(tau) * std::sin(kTurn * b * tau); },
-                 [](double tau, double b) { return edge(tau) * std::cos(kTurn * b * tau); },
-                 frequencies(length), f, rise + " * sin(2 * pi * f * tau + phase)", "",
-                 "an oscillation of amplitude {A} at {f} that begins {begin} with phase {phase}"});
-  all.push_back({"periodic, sawtooth",
-                 [](double tau, double b) { return edge(tau) * sawtooth(b * tau); },
-                 {},
-                 frequencies(length),
-                 f,
-                 rise + " * wave",
-                 "turn = \"pi * f * tau\"\nwave = \"" + series(-2 / std::numbers::pi, 1, 8) + "\"\n",
-                 "a sawtooth of amplitude {A} at {f} that begins {begin}"});
-  all.push_back({"periodic, square",
-                 [](double tau, double b) { return edge(tau) * square(b * tau); },
-                 {},
-                 frequencies(length),
-                 f,
-                 rise + " * wave",
-                 "turn = \"pi * f * tau\"\nwave = \"" + series(4 / std::numbers::pi, 2, 7) + "\"\n",
-                 "a square wave of amplitude {A} at {f} that begins {begin}"});
-  return all;
-}
 
 /// Where time is counted from.
 struct Clock {
-  bool triggered = false;
-  bool scaled = false;  ///< in proportion to the power or field voltage at rest
+  bool triggered = false;  ///< from when the voltage moved, else from the record's zero
+  bool scaled = false;     ///< in proportion to the power or field voltage at rest
 };
+
+void replace(std::string& text, const std::string& what, const std::string& with) {
+  if (const auto at = text.find(what); at != std::string::npos) text.replace(at, what.size(), with);
+}
 
 class Timed {
  public:
@@ -121,16 +36,13 @@ class Timed {
 
   std::vector<LawCandidate> run() const {
     std::vector<LawCandidate> all;
-    for (const Shape& shape : shapes(last_ - first_))
-      for (const bool triggered : {false, true}) {
-        if (triggered && level_ <= 0) continue;
+    for (const LawShape& shape : law_shapes(last_ - first_))
+      for (const bool triggered : {true, false})
         for (const bool scaled : {false, true}) {
-          const bool periodic = shape.second.name == "f";
-          if (scaled && periodic) continue;
+          if ((triggered && level_ <= 0) || (scaled && shape.kind != Kind::once)) continue;
           if (auto law = best_of(shape, {triggered, scaled}); !law.value.empty())
             all.push_back(std::move(law));
         }
-      }
     return all;
   }
 
@@ -139,91 +51,115 @@ class Timed {
     double begin, b;
     LawRegression::Answer answer = {};
   };
-  [[nodiscard]] LawRegression::Answer answer_of(const Shape& shape, const Clock& clock, double begin,
+  [[nodiscard]] LawRegression::Answer answer_of(const LawShape& shape, const Clock& clock, double begin,
                                                 double b) const {
     const auto column = [&](const auto& course) {
       return regression_.at_knots_of([&](const LawTrace& e, double t) {
         const double tau = t - begin - (clock.triggered ? e.trigger : 0.0);
         if (!(tau > 0)) return 0.0;  // an event without a trigger has no such time
-        return (clock.scaled ? e.rest : 1.0) * course(tau, b);
+        return (clock.scaled ? e.rest : 1.0) * course(tau);
       });
     };
-    std::vector<Eigen::VectorXd> columns = {column(shape.course)};
-    if (shape.other) columns.push_back(column(shape.other));
+    std::vector<Eigen::VectorXd> columns;
+    if (shape.kind == Kind::sine) {
+      columns.push_back(column([&](double tau) { return shape.course(tau, b) * std::sin(kTurn * b * tau); }));
+      columns.push_back(column([&](double tau) { return shape.course(tau, b) * std::cos(kTurn * b * tau); }));
+    } else {
+      columns.push_back(column([&](double tau) { return shape.course(tau, b); }));
+    }
     return regression_.fit(columns, shape.grid.empty() ? 1 : 2);
   }
-  [[nodiscard]] LawCandidate best_of(const Shape& shape, const Clock& clock) const {
+
+  [[nodiscard]] LawCandidate best_of(const LawShape& shape, const Clock& clock) const {
     const double from = clock.triggered ? 0.0 : first_, to = clock.triggered ? last_ - first_ : last_;
-    const bool periodic = shape.second.name == "f";
-    const double step = periodic ? 0.5 : 0.1;
+    // a wave may have begun up to a period before anything is known
+    const auto least = [&](double b) {
+      return shape.kind == Kind::wave && !clock.triggered ? from - 1 / b : from;
+    };
+    double step = shape.kind == Kind::once ? 0.1 : 0.5;
     At best{from, 0};
     const std::vector<double> only = {0.0};
-    const auto& grid = shape.grid.empty() ? only : shape.grid;
-    for (double begin = from; begin < to - 0.3; begin += step)
-      for (const double b : grid) consider(shape, clock, begin, b, best);
-    refine(shape, clock, step, from, best);
-    if (best.answer.factors.size() == 0 || best.answer.factors[0] == 0) return {};
-    return candidate(shape, clock, best);
-  }
-  void consider(const Shape& shape, const Clock& clock, double begin, double b, At& best) const {
-    auto answer = answer_of(shape, clock, begin, b);
-    if (best.answer.factors.size() > 0 && answer.score >= best.answer.score) return;
-    best = {begin, b, std::move(answer)};
-  }
-  /// Pattern search from the best point of the grid.
-  void refine(const Shape& shape, const Clock& clock, double step, double least, At& best) const {
-    const bool periodic = shape.second.name == "f";
-    double by = periodic ? 0.25 / (last_ - first_) : 0.25 * best.b;
+    for (const double b : shape.grid.empty() ? only : shape.grid)
+      for (double begin = least(b); begin < to - 0.3; begin += step) consider(shape, clock, begin, b, best);
+    // a pattern search from the best point of the grid
+    double by = shape.kind == Kind::once ? 0.25 * best.b : 0.25 / (last_ - first_);
     for (int round = 0; round < 5; ++round, step /= 2, by /= 2) {
       const At centre = best;
       for (const double d : {-step / 2, 0.0, step / 2})
         for (const double c : {-by, 0.0, by}) {
-          if ((d == 0 && c == 0) || centre.begin + d < least || (c != 0 && centre.b + c <= 0)) continue;
-          if (shape.grid.empty() && c != 0) continue;
-          consider(shape, clock, centre.begin + d, centre.b + c, best);
+          if ((d == 0 && c == 0) || (c != 0 && (shape.grid.empty() || centre.b + c <= 0))) continue;
+          if (centre.begin + d >= least(centre.b + c))
+            consider(shape, clock, centre.begin + d, centre.b + c, best);
         }
     }
+    if (best.answer.factors.size() == 0 || best.answer.factors.isZero()) return {};
+    return candidate(shape, clock, best, best.begin <= from && shape.kind == Kind::sine);
   }
-  [[nodiscard]] LawCandidate candidate(const Shape& shape, const Clock& clock, const At& at) const {
+  void consider(const LawShape& shape, const Clock& clock, double begin, double b, At& best) const {
+    auto answer = answer_of(shape, clock, begin, b);
+    if (best.answer.factors.size() > 0 && answer.score >= best.answer.score) return;
+    best = {begin, b, std::move(answer)};
+  }
+
+  /// `always`: its beginning is not among its numbers, for it is there when anything is known.
+  [[nodiscard]] LawCandidate candidate(const LawShape& shape, const Clock& clock, const At& at,
+                                       bool always) const {
     LawCandidate law;
     law.kind = kind_;
-    law.family = shape.family;
+    law.family = shape.family + (clock.scaled ? ", in proportion" : "");
     law.signal = clock.triggered ? "time since the voltage moved" : "time";
-    const double a = at.answer.factors[0];
-    const double amplitude = shape.other ? at.answer.factors.norm() : a;
-    law.parameters.push_back({"A", clock.scaled ? "-" : "pu", amplitude, -20, 20, true,
-                              clock.scaled ? "size, as a part of what it has at rest" : "size"});
-    const std::string begin = clock.triggered ? "delay" : "start";
-    // on a logarithmic scale a delay of nothing would have no room to grow
-    law.parameters.push_back({begin, "s", std::max(clock.triggered ? 0.02 : 1e-3, at.begin), 0, 1e5, false,
-                              clock.triggered ? "time from the voltage's move to its beginning"
-                                              : "time of the record at which it begins"});
+    law.parameters.push_back({"A", clock.scaled ? "-" : "pu",
+                              shape.kind == Kind::sine ? at.answer.factors.norm() : at.answer.factors[0], -20,
+                              20, true, clock.scaled ? "size, as a part of the value at rest" : "size"});
+    const std::string now = clock.triggered ? "since" : "t";
+    law.words = shape.words;
+    law.body = fmt::format("[signals]\ntau = \"{} - {}\"\n", now, add_begin(clock, at, always, law));
     if (!shape.grid.empty()) {
       law.parameters.push_back(shape.second);
       law.parameters.back().value = at.b;
     }
-    if (shape.other) {
-      double phase = std::atan2(at.answer.factors[1], a);
-      if (phase < 0.3) phase += kTurn;
-      law.parameters.push_back({"phase", "rad", phase, 0, 20, false, "phase when it begins"});
-    }
-    const std::string rest = kind_ == InputKind::torque ? "P0" : "Efd0";
-    law.value = fmt::format("A * {}{}", clock.scaled ? rest + " * " : "", shape.value);
-    law.body = fmt::format("[signals]\ntau = \"{} - {}\"\n{}", clock.triggered ? "since" : "t", begin,
-                           shape.signals);
+    if (shape.kind == Kind::sine) add_phase(clock, at, now, law);
+    law.body += shape.signals;
+    const bool torque = kind_ == InputKind::torque;
+    law.value = fmt::format("A * {}{}", clock.scaled ? (torque ? "P0 * " : "Efd0 * ") : "", shape.value);
     if (clock.triggered) law.body += trigger();
-    law.words = shape.words;
-    replace(law.words, "{begin}",
-            clock.triggered ? fmt::format("{{delay}} after the voltage has left ± {:.3g} pu", level_)
-                            : "at {start} of the record");
     if (clock.scaled)
       replace(law.words, "{A}",
-              kind_ == InputKind::torque ? "{A} × the active power before the event"
-                                         : "{A} × the field voltage before the event");
+              fmt::format("{{A}} × the {} before the event", torque ? "active power" : "field voltage"));
     law.explained = at.answer.explained;
     law.score = at.answer.score;
     law.course = regression_.by_event(at.answer.course);
     return law;
+  }
+  /// When it begins: as a parameter, or as a number where nothing could tell.
+  std::string add_begin(const Clock& clock, const At& at, bool always, LawCandidate& law) const {
+    const std::string level = fmt::format("the voltage has left ± {:.3g} pu", level_);
+    if (always) {
+      replace(law.words, "{begin}", clock.triggered ? "when " + level : "before the event");
+      return fmt::format("{:.4g}", clock.triggered ? 0.0 : first_ - 0.05);
+    }
+    replace(law.words, "{begin}",
+            clock.triggered ? "{delay} after " + level : std::string("at {start} of the record"));
+    if (clock.triggered)  // on a logarithmic scale a delay of nothing would have no room to grow
+      law.parameters.push_back({"delay", "s", std::max(0.02, at.begin), 0, 1e5, false,
+                                "time from the voltage's move to its beginning"});
+    else
+      law.parameters.push_back(
+          {"start", "s", at.begin, -1e5, 1e5, false, "time of the record at which it begins"});
+    return law.parameters.back().name;
+  }
+  /// The phase at the middle of what is known, where it does not depend on the frequency.
+  void add_phase(const Clock& clock, const At& at, const std::string& now, LawCandidate& law) const {
+    const double middle =
+        std::round((clock.triggered ? (last_ - first_) / 2 : (first_ + last_) / 2) * 10) / 10;
+    double phase =
+        std::atan2(at.answer.factors[1], at.answer.factors[0]) + kTurn * at.b * (middle - at.begin);
+    phase -= kTurn * std::floor(phase / kTurn);
+    if (phase < 0.3) phase += kTurn;  // a logarithmic scale needs room below
+    law.parameters.push_back({"phase", "rad", phase, 0, 20, false, "phase in the middle of the records"});
+    law.body += fmt::format("turned = \"{} - {:g}\"\n", now, middle);
+    replace(law.words, "{centre}",
+            fmt::format("{:g} s {}", middle, clock.triggered ? "after that" : "of the record"));
   }
   [[nodiscard]] std::string trigger() const {
     return fmt::format(
@@ -231,9 +167,6 @@ class Timed {
         "derivative = \"100 * clamp(abs(V - V0) / {0:.4g} - 1, 0, 1) * (1 - moved)\"\n"
         "\n[states.since]\nunit = \"s\"\nmeaning = \"time since then\"\nderivative = \"moved\"\n",
         level_);
-  }
-  static void replace(std::string& text, const std::string& what, const std::string& with) {
-    if (const auto at = text.find(what); at != std::string::npos) text.replace(at, what.size(), with);
   }
 
   InputKind kind_;

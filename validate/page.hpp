@@ -55,6 +55,16 @@ struct Bars {
   std::vector<Bar> bars;
 };
 
+/// Points in a plane, small, as inline SVG.
+struct Scatter {
+  std::string title, x_label, y_label;
+  struct Group {
+    std::string name, colour;
+    std::vector<std::pair<double, double>> points;
+  };
+  std::vector<Group> groups;
+};
+
 enum class Tone { good, found, bad };
 
 using Provenance = std::vector<std::pair<std::string, std::string>>;
@@ -70,6 +80,7 @@ class Page {
   void table(const Table& table);
   void curves(const Curves& curves);
   void bars(const Bars& bars);
+  void scatters(const std::vector<Scatter>& side_by_side);
   void provenance(const Provenance& rows);
   void data(std::string_view id, std::string_view json);  ///< for programs; not shown
   /// The whole page. Scripts are part of it only if it has curves.
