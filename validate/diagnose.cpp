@@ -7,20 +7,28 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <map>
 #include <mutex>
 
-#include "validate/instruments.hpp"
+#include "validate/search.hpp"
 
 namespace swingbank::validate {
 namespace {
 
 /// Rivals within this evidence cannot be told apart.
 constexpr double kApart = 12;
-/// Misfit at which a first start needs no second.
-constexpr double kSettled = 1.3;
+/// Evidence that a long fit may add to a short one: what lies further behind the best is not judged.
+constexpr double kWorthJudging = 200;
 /// Misfit of the base below which what is missing is small.
 constexpr double kNested = 4;
+
+/// Whether the records cannot tell `j` from `best`: by evidence, or, in one slot, by what they leave, for
+/// there the simpler one is named by taste.
+bool as_good(const Judgement& j, const Judgement& best) {
+  if (best.gain - j.gain < kApart) return true;
+  const bool rivals = j.hypothesis.slot >= 0 && j.hypothesis.slot == best.hypothesis.slot;
+  return rivals && j.hypothesis.with == best.hypothesis.with &&
+         j.fit.chi2 + j.fit.belief - best.fit.chi2 - best.fit.belief < kApart;
+}
 
 std::string capitalised(std::string text) {
   if (!text.empty()) text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
@@ -43,7 +51,7 @@ class Diagnoser {
     const auto begin = std::chrono::steady_clock::now();
     fit_base();
     infer_inputs();
-    search(model_.plant, model_.conventions, result_.base, result_.ranked);
+    search();
     settle();
     result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return std::move(result_);
@@ -79,175 +87,69 @@ class Diagnoser {
     report("missing input", 1, 1);
   }
 
-  /// A hypothesis with its starts in order of what they leave, before any fit.
-  struct Candidate {
-    Hypothesis hypothesis;
-    std::vector<sim::Plant> starts;
-    std::vector<double> nested =
-        {};                 ///< free parameters: the base as fitted, and the start that suits it best
-    double misfit = 1e300;  ///< of the best start
-  };
-
-  /// Tries every hypothesis that may be added to `base`, best first.
-  void search(const sim::Plant& base, const sim::Conventions& conventions, const Fit& base_fit,
-              std::vector<Judgement>& ranked) {
-    auto candidates = screened(base, conventions);
-    std::vector<Judgement> judged(candidates.size());
+  /// Tries every hypothesis by itself, judges the leading ones; where none holds, pairs of them.
+  void search() {
+    const Stage stage = model_stage();
+    Search found = try_hypotheses(stage, options_.progress);
+    result_.outrun = std::move(found.outrun);
+    result_.ranked = std::move(found.tried);
+    judge_leading(result_.ranked);
+    if (result_.ranked.empty() || result_.ranked.front().accepted ||
+        result_.base.misfit() <= options_.adequate)
+      return;
+    auto pairs = try_pairs(stage);
+    judge_leading(pairs);
+    std::erase_if(pairs, [](const Judgement& j) { return !j.accepted; });
+    result_.ranked.insert(result_.ranked.begin(), std::make_move_iterator(pairs.begin()),
+                          std::make_move_iterator(pairs.end()));
+  }
+  [[nodiscard]] Stage model_stage() const {
+    return {.events = result_.events,
+            .plant = model_.plant,
+            .conventions = model_.conventions,
+            .fit = result_.base,
+            .spread = options_.spread,
+            .threads = threads_};
+  }
+  /// What the best single hypotheses, one of each slot, leave over for a second one.
+  std::vector<Judgement> try_pairs(const Stage& stage) {
+    std::vector<const Judgement*> firsts;
+    for (const auto& j : result_.ranked) {
+      const bool taken = std::ranges::any_of(firsts, [&](const Judgement* f) {
+        return j.hypothesis.slot >= 0 && f->hypothesis.slot == j.hypothesis.slot;
+      });
+      if (!taken && j.gain >= kEvidence && static_cast<int>(firsts.size()) < options_.firsts)
+        firsts.push_back(&j);
+    }
+    std::vector<Judgement> pairs;
+    for (const Judgement* first : firsts) {
+      for (auto& pair : try_hypotheses(after(stage, *first), options_.progress).tried)
+        if (pair.gain >= kEvidence) {
+          pair.gain += first->gain;
+          pairs.push_back(std::move(pair));
+        }
+    }
+    std::ranges::stable_sort(pairs, std::greater<>(), &Judgement::gain);
+    return pairs;
+  }
+  /// Those that might still be as good as the best, accepted ones first after it.
+  void judge_leading(std::vector<Judgement>& tried) {
+    int leading = 0;
+    while (
+        leading < static_cast<int>(tried.size()) && leading < options_.leading &&
+        (leading < 3 || tried[static_cast<std::size_t>(leading)].gain > tried.front().gain - kWorthJudging))
+      ++leading;
     int done = 0;
     std::mutex progress;
-#pragma omp parallel for schedule(dynamic) num_threads(threads_)
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-      judged[i] = quick(candidates[i], base_fit);
-      const std::lock_guard lock(progress);
-      report("fit " + candidates[i].hypothesis.name, ++done, static_cast<int>(candidates.size()));
-    }
-    std::erase_if(judged, [](const Judgement& j) { return j.fit.events.empty(); });
-    std::ranges::sort(judged, std::greater<>(), &Judgement::gain);
-    const int leading = std::min(options_.leading, static_cast<int>(judged.size()));
-    done = 0;
 #pragma omp parallel for schedule(dynamic) num_threads(threads_)
     for (int i = 0; i < leading; ++i) {
-      judge(trial(), base_fit, held_out_base_, judged[static_cast<std::size_t>(i)]);
+      judge(trial(), result_.base, held_out_base_, tried[static_cast<std::size_t>(i)]);
       const std::lock_guard lock(progress);
-      report("unseen events " + judged[static_cast<std::size_t>(i)].hypothesis.name, ++done, leading);
+      report("unseen events " + full_name(tried[static_cast<std::size_t>(i)].hypothesis), ++done, leading);
     }
-    std::ranges::stable_sort(judged, [](const Judgement& x, const Judgement& y) {
+    std::ranges::stable_sort(tried, [](const Judgement& x, const Judgement& y) {
       return x.accepted != y.accepted ? x.accepted : x.gain > y.gain;
     });
-    ranked = std::move(judged);
-  }
-
-  /// Every hypothesis that acts here; of those that compete for one slot the simplest and the two whose
-  /// starts answer best.
-  std::vector<Candidate> screened(const sim::Plant& base, const sim::Conventions& conventions) {
-    auto all = all_hypotheses(base, conventions);
-    std::vector<Candidate> candidates(all.size());
-    int done = 0;
-    std::mutex progress;
-#pragma omp parallel for schedule(dynamic) num_threads(threads_)
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      candidates[i] = screen(std::move(all[i]), base);
-      const std::lock_guard lock(progress);
-      report("hypotheses", ++done, static_cast<int>(all.size()));
-    }
-    std::erase_if(candidates, [](const Candidate& c) { return c.starts.empty(); });
-    std::ranges::stable_sort(candidates, {}, &Candidate::misfit);
-    std::map<int, std::vector<std::size_t>> rivals;
-    for (std::size_t i = 0; i < candidates.size(); ++i)
-      if (candidates[i].hypothesis.slot >= 0) rivals[candidates[i].hypothesis.slot].push_back(i);
-    std::vector<char> keep(candidates.size(), 1);
-    for (const auto& [slot, those] : rivals) {
-      const auto simplest = std::ranges::min_element(
-          those, {}, [&](std::size_t i) { return candidates[i].hypothesis.free.size(); });
-      for (std::size_t k = 2; k < those.size(); ++k)
-        if (those[k] != *simplest) {
-          keep[those[k]] = 0;
-          result_.outrun.push_back(candidates[those[k]].hypothesis.name);
-        }
-    }
-    std::vector<Candidate> kept;
-    for (std::size_t i = 0; i < candidates.size(); ++i)
-      if (keep[i]) kept.push_back(std::move(candidates[i]));
-    return kept;
-  }
-  Candidate screen(Hypothesis h, const sim::Plant& base) const {
-    Candidate c;
-    struct Start {
-      double misfit;
-      sim::Plant plant;
-    };
-    std::vector<Start> starts;
-    bool acts = false;
-    for (const auto& values : h.starts) {
-      Start s{0, started(h, values)};
-      if (answer(s.plant, h, base, s.misfit, acts)) starts.push_back(std::move(s));
-    }
-    std::ranges::sort(starts, {}, &Start::misfit);
-    if (acts && result_.base.misfit() < kNested) nest(h, base, c);
-    if (acts && !starts.empty()) {
-      c.misfit = starts.front().misfit;
-      for (auto& s : starts) c.starts.push_back(std::move(s.plant));
-    }
-    c.hypothesis = std::move(h);
-    return c;
-  }
-
-  std::vector<FreeParameter> free_of(const Hypothesis& h) const {
-    return validate::free_of(h, options_.spread);
-  }
-  /// Where the base nearly fits, what is missing is small: its fitted values are the start then.
-  void nest(const Hypothesis& h, const sim::Plant& base, Candidate& c) const {
-    double least = 1e300;
-    for (const auto& values : h.starts) {
-      sim::Plant plant = started(h, values);
-      for (const auto& p : result_.base.parameters)
-        for (const auto& f : free_of(h))
-          if (block_effect(plant, f.block).name == p.block &&
-              parameter_record(plant, f.block, f.index).name == p.name)
-            parameter_value(plant, f.block, f.index) = p.value;
-      double misfit = 0;
-      bool acts = true;
-      if (!answer(plant, h, base, misfit, acts) || misfit >= least) continue;
-      least = misfit;
-      c.nested = values_of(plant, free_of(h));
-    }
-  }
-  /// A short fit from the best start, and from others if that does not settle it.
-  Judgement quick(const Candidate& c, const Fit& base_fit) const {
-    Judgement j;
-    const auto free = free_of(c.hypothesis);
-    const std::size_t tries = std::min<std::size_t>(c.starts.size(), 2);
-    for (std::size_t k = 0; k < tries && (k == 0 || j.fit.events.empty() || j.fit.misfit() > kSettled); ++k) {
-      FitOptions o;
-      o.iterations = 8;
-      Fit f = fit(c.starts[k], c.hypothesis.conventions, result_.events, free, o);
-      if (f.failed.empty() && (j.fit.events.empty() || criterion(f) < criterion(j.fit))) j.fit = std::move(f);
-    }
-    if (!c.nested.empty()) {
-      FitOptions o;
-      o.iterations = 12;
-      o.values = c.nested;
-      for (const auto& e : base_fit.events) o.start.push_back(e.state);
-      Fit f = fit(c.starts.front(), c.hypothesis.conventions, result_.events, free, o);
-      if (f.failed.empty() && (j.fit.events.empty() || criterion(f) < criterion(j.fit))) j.fit = std::move(f);
-    }
-    if (!j.fit.events.empty()) j.gain = criterion(base_fit) - criterion(j.fit);
-    j.hypothesis = c.hypothesis;
-    return j;
-  }
-  /// Misfit of a start, everything else as in the model; whether it acts at all.
-  bool answer(const sim::Plant& plant, const Hypothesis& h, const sim::Plant& base, double& misfit,
-              bool& acts) const {
-    misfit = 0;
-    try {
-      for (const FitEvent& e : result_.events) {
-        const VoltageCurve curve(e.played(), e.switchings);
-        Drive run{.plant = &plant, .conventions = h.conventions, .record = &e.record, .curve = &curve};
-        run.start = e.start;
-        run.tolerance = 1e-5;
-        run.least_step = e.record.step() / 40;
-        run.step_limit = 15 * e.record.samples();
-        const Response r = observe(run);
-        if (!acts) {
-          run.plant = &base;
-          run.conventions = model_.conventions;
-          const Response plain = observe(run);
-          for (std::size_t c = 0; c < e.channels.size() && !acts; ++c)
-            for (std::size_t k = 0; k < r.of(e.channels[c]).size() && !acts; ++k)
-              acts = std::abs(r.of(e.channels[c])[k] - plain.of(e.channels[c])[k]) >
-                     1e-2 * e.noise[static_cast<Eigen::Index>(c)];
-        }
-        for (std::size_t c = 0; c < e.channels.size(); ++c)
-          for (std::size_t k = 0; k < r.of(e.channels[c]).size(); ++k)
-            if (e.compared(k))
-              misfit += std::pow((r.of(e.channels[c])[k] - e.measured(e.channels[c])[k]) /
-                                     e.noise[static_cast<Eigen::Index>(c)],
-                                 2);
-      }
-    } catch (const InputError&) {
-      return false;
-    }
-    return std::isfinite(misfit);
   }
 
   [[nodiscard]] Trial trial() const { return {result_.events, options_.spread, options_.adequate}; }
@@ -283,10 +185,11 @@ class Diagnoser {
   void name_best() {
     const Judgement& best = result_.ranked.front();
     result_.side = best.hypothesis.side;
-    result_.effects = {best.hypothesis.name};
+    if (!best.hypothesis.with.empty()) result_.effects.push_back(best.hypothesis.with);
+    result_.effects.push_back(best.hypothesis.name);
     for (const auto& j : result_.ranked)
-      if (j.accepted && &j != &best && best.gain - j.gain < kApart)
-        result_.equivalent.push_back(j.hypothesis.name);
+      if (j.accepted && &j != &best && as_good(j, best))
+        result_.equivalent.push_back(full_name(j.hypothesis));
     double before = 0, after = 0;
     for (const auto& h : best.held_out) {
       before += h.before / static_cast<double>(best.held_out.size());
@@ -298,7 +201,9 @@ class Diagnoser {
     result_.sentence = fmt::format(
         "{} is missing{}: on events it was not fitted to, the error falls from {:.1f} × noise to {:.2f} × "
         "noise.",
-        capitalised(best.hypothesis.what),
+        capitalised(best.hypothesis.with.empty()
+                        ? best.hypothesis.what
+                        : best.hypothesis.with + ", and besides " + best.hypothesis.what),
         rivals.empty() ? "" : " (or " + rivals + ": these records cannot tell)", std::sqrt(before),
         std::sqrt(after));
   }

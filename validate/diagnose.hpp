@@ -40,7 +40,8 @@ struct DiagnoseOptions {
   double adequate = 1.12;  ///< chi2 per value up to which nothing but noise is left
   int threads = 0;         ///< 0: as many as there are cores
   bool measured_states = true;
-  int leading = 5;  ///< hypotheses that are judged on events left out
+  int leading = 8;  ///< hypotheses at most that are judged on events left out
+  int firsts = 2;   ///< hypotheses that a second one is tried beside, where none holds by itself
   /// Called with what is done, done and total; may be empty.
   std::function<void(const std::string& what, int done, int total)> progress;
 };

@@ -15,16 +15,43 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// How much each step of the voltage stands out from those two and three before and after it [pu].
-std::vector<double> prominence(const Record& r) {
+/// Of the voltage, from each sample to the next [pu].
+std::vector<Complex> steps_of(const Record& r) {
   const auto phasor = [&](std::size_t k) { return std::polar(r.V[k], r.theta[k]); };
   std::vector<Complex> step;
   for (std::size_t k = 0; k + 1 < r.t.size(); ++k) step.push_back(phasor(k + 1) - phasor(k));
+  return step;
+}
+
+/// How much each step stands out from those two and three before and after it [pu].
+std::vector<double> prominence(const std::vector<Complex>& step) {
   std::vector<double> d(step.size(), 0.0);
   for (std::size_t k = 3; k + 3 < step.size(); ++k)
     d[k] = std::min({std::abs(step[k] - step[k - 3]), std::abs(step[k] - step[k - 2]),
                      std::abs(step[k] - step[k + 2]), std::abs(step[k] - step[k + 3])});
   return d;
+}
+
+/// Intervals first .. last over which one jump is smeared.
+struct Smear {
+  std::size_t first, last;
+};
+/// A short fault's two jumps may have run together: they go opposite ways.
+std::vector<Smear> told_apart(const std::vector<Complex>& step, Smear both) {
+  constexpr double kBack = -0.15, kOn = 0.05;  // of the first jump's largest step
+  Complex onward = step[both.first];
+  for (std::size_t i = both.first; i <= std::min(both.first + 2, both.last); ++i)
+    if (std::abs(step[i]) > std::abs(onward)) onward = step[i];
+  const auto along = [&](std::size_t i) {
+    return std::real(step[i] * std::conj(onward)) / std::norm(onward);
+  };
+  std::size_t back = both.first;
+  while (back <= both.last && along(back) > kBack) ++back;
+  if (back > both.last) return {both};
+  std::size_t end = both.first;
+  for (std::size_t i = both.first; i < back; ++i)
+    if (along(i) > kOn) end = i;
+  return {{both.first, end}, {back, both.last}};
 }
 
 bool any_smeared(const Record& record, double threshold) {
@@ -89,7 +116,8 @@ Eigen::MatrixXd quiet_residual(const PlantModel& model, const FitEvent& e) {
 std::vector<Switching> find_switchings(const Record& record, double threshold, bool always,
                                        std::vector<char>& smeared) {
   smeared.assign(record.t.size(), 0);
-  const auto d = prominence(record);
+  const auto step = steps_of(record);
+  const auto d = prominence(step);
   const double limit = std::max(threshold, 10 * median(d));
   std::vector<Switching> found;
   for (std::size_t k = 0; k < d.size(); ++k) {
@@ -101,12 +129,14 @@ std::vector<Switching> find_switchings(const Record& record, double threshold, b
       last += 2;
       while (last + 1 < d.size() && d[last + 1] > limit) ++last;
     }
-    // intervals k .. last; samples k + 1 .. last lie inside the jump
-    const bool spread = last > k || always;
-    const double from = record.t[k], to = record.t[last + 1], beside = spread ? record.step() : 0.0;
-    found.push_back({(from + to) / 2, (to - from) / 2 + beside});
-    if (spread)
-      for (std::size_t s = k; s <= last + 1; ++s) smeared[s] = 1;
+    // samples first + 1 .. last lie inside the jump
+    for (const Smear& jump : told_apart(step, {k, last})) {
+      const bool spread = jump.last > jump.first || always;
+      const double from = record.t[jump.first], to = record.t[jump.last + 1];
+      found.push_back({(from + to) / 2, (to - from) / 2 + (spread ? record.step() : 0.0)});
+      if (spread)
+        for (std::size_t s = jump.first; s <= jump.last + 1; ++s) smeared[s] = 1;
+    }
     k = last;
   }
   return found;

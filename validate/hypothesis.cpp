@@ -221,6 +221,8 @@ std::vector<Hypothesis> all_hypotheses(const sim::Plant& base, const sim::Conven
   return all;
 }
 
+std::string full_name(const Hypothesis& h) { return h.with.empty() ? h.name : h.with + " + " + h.name; }
+
 sim::Plant started(const Hypothesis& h, const std::vector<double>& start) {
   sim::Plant plant = h.plant;
   for (std::size_t i = 0; i < h.free.size(); ++i)

@@ -13,8 +13,9 @@ enum class Side { none, mechanical, excitation, machine, measurement };
 std::string_view side_name(Side side);
 
 struct Hypothesis {
-  std::string name;  ///< "SEXS", "GENROU S10, S12"
-  std::string what;  ///< "exciter SEXS (simplified excitation system)"
+  std::string name;       ///< "SEXS", "GENROU S10, S12"
+  std::string what;       ///< "exciter SEXS (simplified excitation system)"
+  std::string with = {};  ///< what was added before it; empty: nothing
   Side side = Side::none;
   int slot = -1;     ///< of the effect that would fill it (sim::Slot); -1: none is filled
   sim::Plant plant;  ///< the base with it, at a value to start from
@@ -26,6 +27,8 @@ struct Hypothesis {
 /// Everything that may be added to the plant. Some of it may change nothing there (a stabiliser without an
 /// exciter); trying shows. Effects that act at given instants are not among them: they belong to one event.
 std::vector<Hypothesis> all_hypotheses(const sim::Plant& base, const sim::Conventions& conventions);
+/// Its name after that of what was added before: "SEXS + GENROU:Ra".
+std::string full_name(const Hypothesis& h);
 /// The hypothesis's plant with `start` as values of its free parameters.
 sim::Plant started(const Hypothesis& h, const std::vector<double>& start);
 

@@ -8,11 +8,12 @@
 namespace swingbank::validate {
 namespace {
 
-constexpr int kFew = 3;      ///< clean samples from which a segment is known well enough
-constexpr int kNodes = 96;   ///< of a window's integral
-constexpr int kGrid = 12;    ///< instants tried along each side of a bracket
-constexpr int kZooms = 5;    ///< then around the best one, each bracket a quarter of the last
-constexpr double kGood = 6;  ///< times the noise that a window may leave
+constexpr int kFew = 3;     ///< clean samples from which a segment is known well enough
+constexpr int kNodes = 96;  ///< of a window's integral
+constexpr int kGrid = 12;   ///< instants tried along each side of a bracket
+constexpr int kZooms = 5;   ///< then around the best one, each bracket a quarter of the last
+constexpr double kGood =
+    20;  ///< times the noise that a window may leave while neighbours are extrapolated far
 
 double weight(const FilterWindow& w, double t) {
   const double x = std::abs(t) / w.half;
@@ -174,7 +175,7 @@ double phasor_noise(const FitEvent& e) {
 }
 
 /// Puts the segment's voltage into the clean record, at the samples that lie within it.
-void fill(FitEvent& e, std::size_t from, const Segment& s) {
+void fill(FitEvent& e, const Segment& s) {
   Record filled;
   filled.name = e.clean.name;
   filled.base = e.clean.base;
@@ -200,46 +201,82 @@ void fill(FitEvent& e, std::size_t from, const Segment& s) {
   while (next < e.clean.t.size() && e.clean.t[next] <= s.b + edge) ++next;
   copy([](double) { return true; });
   e.clean = std::move(filled);
-  const double unsure = e.record.step() / 10;
-  e.switchings[from] = {.time = s.a, .uncertainty = unsure};
-  e.switchings[from + 1] = {.time = s.b, .uncertainty = unsure};
+}
+
+/// Which samples the window reaches with a jump at its instants; too many were left out before it was known.
+void mark_again(FitEvent& e, const FilterWindow& window) {
+  const double reach = window.half - 1e-3 * e.record.step();
+  e.clean.t.clear();
+  e.clean.V.clear();
+  e.clean.theta.clear();
+  for (std::size_t k = 0; k < e.record.t.size(); ++k) {
+    e.smeared[k] = std::ranges::any_of(e.switchings, [&](const Switching& s) {
+      return std::abs(e.record.t[k] - s.time) < reach + s.uncertainty;
+    });
+    if (e.smeared[k]) continue;
+    e.clean.t.push_back(e.record.t[k]);
+    e.clean.V.push_back(e.record.V[k]);
+    e.clean.theta.push_back(e.record.theta[k]);
+  }
 }
 
 struct Found {
   std::size_t event, from;
   Segment segment;
 };
+/// Every short segment brought back with a window of that shape, `cycles` to either side.
+struct Attempt {
+  FilterWindow window;
+  std::vector<Found> segments;
+  double left = 1e300;  ///< mean square miss in units of the noise
+};
+Attempt attempt(const std::vector<FitEvent>& events, FilterWindow::Shape shape, double cycles) {
+  Attempt a{{shape, 0}, {}};
+  double left = 0, freedom = 0;
+  for (std::size_t e = 0; e < events.size(); ++e) {
+    if (events[e].smeared.empty()) continue;
+    a.window.half = cycles / events[e].record.base.frequency;
+    const VoltageCurve curve = rough_curve(events[e]);
+    for (const std::size_t s : short_segments(events[e])) {
+      a.segments.push_back({e, s, brought_back(events[e], s, curve, a.window)});
+      left += a.segments.back().segment.left / std::pow(phasor_noise(events[e]) + kLeastNoise, 2);
+      freedom += std::max(1, a.segments.back().segment.freedom);
+    }
+  }
+  if (!a.segments.empty()) a.left = left / freedom;
+  return a;
+}
+Attempt best_attempt(const std::vector<FitEvent>& events) {
+  Attempt best;
+  for (const auto shape : {FilterWindow::Shape::triangle, FilterWindow::Shape::box})
+    for (const double cycles : {0.5, 0.75, 1.0, 1.25, 1.5, 2.0})
+      if (Attempt a = attempt(events, shape, cycles); a.left < best.left) best = std::move(a);
+  return best;
+}
+/// Instants as found, so sharp that only samples within the window are left out.
+void place(std::vector<FitEvent>& events, const Attempt& a) {
+  for (const Found& f : a.segments) {
+    FitEvent& e = events[f.event];
+    const double unsure = e.record.step() / 5;
+    e.switchings[f.from] = {.time = f.segment.a, .uncertainty = unsure};
+    e.switchings[f.from + 1] = {.time = f.segment.b, .uncertainty = unsure};
+  }
+}
 
 }  // namespace
 
 FilterWindow unsmear(std::vector<FitEvent>& events) {
-  using Shape = FilterWindow::Shape;
-  FilterWindow best;
-  std::vector<Found> brought;
-  double least = 1e300;
-  for (const Shape shape : {Shape::triangle, Shape::box})
-    for (const double cycles : {0.5, 0.75, 1.0, 1.25, 1.5, 2.0}) {
-      std::vector<Found> all;
-      double left = 0, freedom = 0;
-      FilterWindow window{shape, 0};
-      for (std::size_t e = 0; e < events.size(); ++e) {
-        if (events[e].smeared.empty()) continue;
-        window.half = cycles / events[e].record.base.frequency;
-        const VoltageCurve curve = rough_curve(events[e]);
-        for (const std::size_t s : short_segments(events[e])) {
-          all.push_back({e, s, brought_back(events[e], s, curve, window)});
-          left += all.back().segment.left / std::pow(phasor_noise(events[e]) + kLeastNoise, 2);
-          freedom += std::max(1, all.back().segment.freedom);
-        }
-      }
-      if (all.empty() || left / freedom >= least) continue;
-      least = left / freedom;
-      best = window;
-      brought = std::move(all);
-    }
-  if (least > kGood * kGood) return {};
-  for (const Found& f : brought) fill(events[f.event], f.from, f.segment);
-  return best;
+  Attempt best = best_attempt(events);
+  if (best.left > kGood * kGood) return {};
+  place(events, best);
+  for (const Found& f : best.segments) mark_again(events[f.event], best.window);
+  // samples that turned out clean are nearer to the jumps: less is extrapolated now
+  if (const Attempt again = best_attempt(events); again.left < best.left) {
+    best = again;
+    place(events, best);
+  }
+  for (const Found& f : best.segments) fill(events[f.event], f.segment);
+  return best.window;
 }
 
 }  // namespace swingbank::validate

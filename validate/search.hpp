@@ -1,0 +1,37 @@
+#pragma once
+// Every hypothesis tried by itself on one structure: started from draws, fitted for a short while, in order
+// of its evidence. Judging the leading ones on unseen events comes after (judge).
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "validate/judge.hpp"
+
+namespace swingbank::validate {
+
+/// Called with what is done, done and total; may be empty.
+using SearchProgress = std::function<void(const std::string& what, int done, int total)>;
+
+/// A structure that a hypothesis may be added to.
+struct Stage {
+  const std::vector<FitEvent>& events;
+  sim::Plant plant;  ///< nominal values: beliefs are about them
+  sim::Conventions conventions;
+  const Fit& fit;                       ///< of this structure
+  std::vector<FreeParameter> own = {};  ///< what earlier stages brought, as numbered in `plant`
+  std::string with = {};                ///< its name; empty: the model as it was given
+  double spread = 0.2;                  ///< believed of the model's parameters
+  int threads = 1;
+};
+
+struct Search {
+  std::vector<Judgement> tried;     ///< fitted, not judged; best first. `gain` is over the stage's fit.
+  std::vector<std::string> outrun;  ///< rivals of a slot that were not fitted: others answer better
+};
+
+Search try_hypotheses(const Stage& stage, const SearchProgress& report = {});
+
+/// The stage at which `j`, added to `stage`, is there already.
+Stage after(const Stage& stage, const Judgement& j);
+
+}  // namespace swingbank::validate
