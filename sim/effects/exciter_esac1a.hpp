@@ -71,11 +71,13 @@ struct Model {
     coefficients
   };
   enum X { Vm, leadlag, Va, Ve, rate };
-  static constexpr State states[] = {{"Vm", "pu", "measured voltage"},
-                                     {"leadlag", "pu", "state of the lead-lag"},
+  /// What enters the regulator counts in Efd by its gain of some hundreds, within its lags.
+  static constexpr double kErrorWeight = 10.0;
+  static constexpr State states[] = {{"Vm", "pu", "measured voltage", kErrorWeight},
+                                     {"leadlag", "pu", "state of the lead-lag", kErrorWeight},
                                      {"Va", "pu", "regulator output", 1.0, vamin, vamax},
                                      {"Ve", "pu", "voltage behind the rectifier", 1.0, none, -1},
-                                     {"rate", "pu", "state of the rate feedback"}};
+                                     {"rate", "pu", "state of the rate feedback", kErrorWeight}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {

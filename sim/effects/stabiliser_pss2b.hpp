@@ -120,23 +120,25 @@ struct Model {
     coefficients = slow + kSlots
   };
   enum X { w1, w2, y1, w3, w4, y2, ramp, lead1 = ramp + kSlots, lead2, lead3 };
-  static constexpr State states[] = {{"w1", "pu", "first washout of the first input"},
-                                     {"w2", "pu", "second washout of the first input"},
-                                     {"y1", "pu", "first input, filtered"},
-                                     {"w3", "pu", "first washout of the second input"},
-                                     {"w4", "pu", "second washout of the second input"},
-                                     {"y2", "pu", "second input, filtered"},
-                                     {"ramp1", "pu", "ramp-tracking filter, first lag"},
-                                     {"ramp2", "pu", "second lag"},
-                                     {"ramp3", "pu", "third lag"},
-                                     {"ramp4", "pu", "fourth lag"},
-                                     {"ramp5", "pu", "fifth lag"},
-                                     {"ramp6", "pu", "sixth lag"},
-                                     {"ramp7", "pu", "seventh lag"},
-                                     {"ramp8", "pu", "eighth lag"},
-                                     {"lead1", "pu", "state of the first lead-lag"},
-                                     {"lead2", "pu", "state of the second lead-lag"},
-                                     {"lead3", "pu", "state of the third lead-lag"}};
+  /// Behind every state stand KS1 and the leads, some tens together, and an exciter's gain.
+  static constexpr double kGainWeight = 10.0;
+  static constexpr State states[] = {{"w1", "pu", "first washout of the first input", kGainWeight},
+                                     {"w2", "pu", "second washout of the first input", kGainWeight},
+                                     {"y1", "pu", "first input, filtered", kGainWeight},
+                                     {"w3", "pu", "first washout of the second input", kGainWeight},
+                                     {"w4", "pu", "second washout of the second input", kGainWeight},
+                                     {"y2", "pu", "second input, filtered", kGainWeight},
+                                     {"ramp1", "pu", "ramp-tracking filter, first lag", kGainWeight},
+                                     {"ramp2", "pu", "second lag", kGainWeight},
+                                     {"ramp3", "pu", "third lag", kGainWeight},
+                                     {"ramp4", "pu", "fourth lag", kGainWeight},
+                                     {"ramp5", "pu", "fifth lag", kGainWeight},
+                                     {"ramp6", "pu", "sixth lag", kGainWeight},
+                                     {"ramp7", "pu", "seventh lag", kGainWeight},
+                                     {"ramp8", "pu", "eighth lag", kGainWeight},
+                                     {"lead1", "pu", "state of the first lead-lag", kGainWeight},
+                                     {"lead2", "pu", "state of the second lead-lag", kGainWeight},
+                                     {"lead3", "pu", "state of the third lead-lag", kGainWeight}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     check_as(name, p, where, problems);
