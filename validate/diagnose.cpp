@@ -9,6 +9,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "validate/noise.hpp"
 #include "validate/search.hpp"
 
 namespace swingbank::validate {
@@ -18,8 +19,8 @@ namespace {
 constexpr double kApart = 12;
 /// Evidence that a long fit may add to a short one: what lies further behind the best is not judged.
 constexpr double kWorthJudging = 200;
-/// Misfit of the base below which what is missing is small.
-constexpr double kNested = 4;
+/// Misfit of the base below which its reactances are near enough to measure the noise with.
+constexpr double kClose = 4;
 
 /// Whether the records cannot tell `j` from `best`: by evidence, or, in one slot, by what they leave, for
 /// there the simpler one is named by taste.
@@ -27,7 +28,7 @@ bool as_good(const Judgement& j, const Judgement& best) {
   if (best.gain - j.gain < kApart) return true;
   const bool rivals = j.hypothesis.slot >= 0 && j.hypothesis.slot == best.hypothesis.slot;
   return rivals && j.hypothesis.with == best.hypothesis.with &&
-         j.fit.chi2 + j.fit.belief - best.fit.chi2 - best.fit.belief < kApart;
+         j.fit.chi2 + j.fit.belief - best.fit.chi2 - best.fit.belief < kEvidence;
 }
 
 std::string capitalised(std::string text) {
@@ -63,10 +64,13 @@ class Diagnoser {
     FitOptions o;
     const auto free = free_parameters(model_.plant, options_.spread);
     result_.base = fit(model_.plant, model_.conventions, result_.events, free, o);
-    if (result_.base.failed.empty() && result_.base.misfit() < kNested) {
-      PlantModel fitted = model_;
-      fitted.plant = result_.base.plant;
-      measure_noise(fitted, result_.events);
+    if (result_.base.failed.empty()) {
+      if (result_.base.misfit() < kClose) {
+        PlantModel fitted = model_;
+        fitted.plant = result_.base.plant;
+        measure_noise(fitted, result_.events);
+      }
+      sharpen_noise(result_.base, result_.events);
       o.values = values_of(result_.base.plant, free);
       for (const auto& e : result_.base.events) o.start.push_back(e.state);
       result_.base = fit(model_.plant, model_.conventions, result_.events, free, o);
@@ -139,13 +143,16 @@ class Diagnoser {
         leading < static_cast<int>(tried.size()) && leading < options_.leading &&
         (leading < 3 || tried[static_cast<std::size_t>(leading)].gain > tried.front().gain - kWorthJudging))
       ++leading;
+    const int slot = tried.empty() ? -1 : tried.front().hypothesis.slot;
     int done = 0;
     std::mutex progress;
 #pragma omp parallel for schedule(dynamic) num_threads(threads_)
     for (int i = 0; i < leading; ++i) {
-      judge(trial(), result_.base, held_out_base_, tried[static_cast<std::size_t>(i)]);
+      Judgement& j = tried[static_cast<std::size_t>(i)];
+      if (j.hypothesis.slot >= 0 && j.hypothesis.slot == slot) try_further(model_stage(), j);
+      judge(trial(), result_.base, held_out_base_, j);
       const std::lock_guard lock(progress);
-      report("unseen events " + full_name(tried[static_cast<std::size_t>(i)].hypothesis), ++done, leading);
+      report("unseen events " + full_name(j.hypothesis), ++done, leading);
     }
     std::ranges::stable_sort(tried, [](const Judgement& x, const Judgement& y) {
       return x.accepted != y.accepted ? x.accepted : x.gain > y.gain;

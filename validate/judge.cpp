@@ -6,6 +6,12 @@
 #include <cmath>
 
 namespace swingbank::validate {
+namespace {
+
+/// An event in which the effect hardly acts may be predicted worse by this, the refit's own scatter.
+constexpr double kWorse = 1.02;
+
+}  // namespace
 
 double criterion(const Fit& f) {
   return f.chi2 + f.belief + f.fitted * std::log(static_cast<double>(f.values));
@@ -70,7 +76,7 @@ void judge(const Trial& trial, const Fit& base, const std::vector<HeldOut>& held
   j.held_out = hold_out(trial, j.hypothesis.plant, j.hypothesis.conventions, free, j.fit);
   for (std::size_t e = 0; e < j.held_out.size(); ++e) j.held_out[e].before = held_out_base[e].after;
   for (const auto& h : j.held_out)
-    if (h.after > h.before && h.after > trial.adequate) {
+    if (h.after > kWorse * h.before && h.after > trial.adequate) {
       j.why_not = fmt::format("does not improve {} when that is not fitted", h.record);
       return;
     }

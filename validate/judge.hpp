@@ -21,6 +21,7 @@ struct Judgement {
   double gain = 0;                ///< BIC(base) - BIC(with it): evidence in its favour
   double size = 0;                ///< what it adds to the answer: norm of the change / noise, per sqrt(value)
   std::vector<HeldOut> held_out;  ///< empty where it was not worth it
+  std::vector<sim::Plant> starts;  ///< not tried yet, best first
   bool accepted = false;
   std::string why_not;  ///< empty where accepted
 };

@@ -161,6 +161,8 @@ class Searcher {
     }
     if (!j.fit.events.empty()) j.gain = criterion(stage_.fit) - criterion(j.fit);
     j.hypothesis = c.hypothesis;
+    if (c.starts.size() > tries)
+      j.starts.assign(c.starts.begin() + static_cast<std::ptrdiff_t>(tries), c.starts.end());
     return j;
   }
   /// Misfit of a start, everything else as in the model; whether it acts at all.
@@ -220,6 +222,18 @@ class Searcher {
 
 Search try_hypotheses(const Stage& stage, const SearchProgress& report) {
   return Searcher(stage, report).run();
+}
+
+void try_further(const Stage& stage, Judgement& j) {
+  constexpr std::size_t kFurther = 4;
+  const auto free = free_of(j.hypothesis, stage.spread);
+  FitOptions o;
+  o.iterations = 10;
+  for (std::size_t k = 0; k < std::min(kFurther, j.starts.size()); ++k)
+    if (Fit f = fit(j.starts[k], j.hypothesis.conventions, stage.events, free, o);
+        f.failed.empty() && criterion(f) < criterion(j.fit))
+      j.fit = std::move(f);
+  j.starts.clear();
 }
 
 Stage after(const Stage& stage, const Judgement& j) {

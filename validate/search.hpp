@@ -31,6 +31,10 @@ struct Search {
 
 Search try_hypotheses(const Stage& stage, const SearchProgress& report = {});
 
+/// Fits `j`, as try_hypotheses left it, from further starts: rivals of the best of a slot must not lose by a
+/// poor start.
+void try_further(const Stage& stage, Judgement& j);
+
 /// The stage at which `j`, added to `stage`, is there already.
 Stage after(const Stage& stage, const Judgement& j);
 

@@ -1,0 +1,14 @@
+#pragma once
+// How large the noise is, from the whole records instead of the quiet stretch before the event alone: a
+// verdict on a few per cent of chi2 needs it to a few per cent.
+#include "validate/fit.hpp"
+
+namespace swingbank::validate {
+
+/// Scales every channel's noise to what the residual of `fit` shows from sample to sample (second
+/// differences, whose median neither a misfit, slow beside the sampling, nor the moments around a switching
+/// move). Only where the residual before the events is white, as that measure supposes; elsewhere the noise
+/// stays that of the pre-event stretch.
+void sharpen_noise(const Fit& fit, std::vector<FitEvent>& events);
+
+}  // namespace swingbank::validate
