@@ -11,9 +11,9 @@
 #include <numeric>
 #include <set>
 
-#include "sim/solve/reference.hpp"
 #include "validate/error_map_table.hpp"
 #include "validate/fit_event.hpp"
+#include "validate/system_compare_run.hpp"
 
 namespace swingbank::validate {
 namespace {
@@ -21,123 +21,6 @@ namespace {
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kFewestQuiet = 5;  // samples before the event, from which its noise is estimated
-
-/// What the grid has at one terminal, on the record's instants and base.
-struct Modelled {
-  std::vector<double> V, theta, P, Q, speed, Efd, Ifd;
-};
-
-/// Instants at which something is switched, sorted.
-std::vector<double> instants_of(const sim::Event& e) {
-  std::set<double> all;
-  for (const auto& f : e.faults) all.insert({f.t_on, f.t_off});
-  for (const auto& t : e.trips) {
-    all.insert(t.t_open);
-    if (t.t_close) all.insert(*t.t_close);
-  }
-  for (const auto& g : e.generator_trips) all.insert(g.time);
-  for (const auto& l : e.load_steps) {
-    all.insert(l.t_on);
-    if (l.t_off) all.insert(*l.t_off);
-  }
-  for (const auto& s : e.setpoint_steps) all.insert(s.time);
-  return {all.begin(), all.end()};
-}
-
-/// The event with every instant moved by `move`.
-template <class Move>
-sim::Event moved(sim::Event e, Move move) {
-  for (auto& f : e.faults) f.t_on = move(f.t_on), f.t_off = move(f.t_off);
-  for (auto& t : e.trips) {
-    t.t_open = move(t.t_open);
-    if (t.t_close) t.t_close = move(*t.t_close);
-  }
-  for (auto& g : e.generator_trips) g.time = move(g.time);
-  for (auto& l : e.load_steps) {
-    l.t_on = move(l.t_on);
-    if (l.t_off) l.t_off = move(*l.t_off);
-  }
-  for (auto& s : e.setpoint_steps) s.time = move(s.time);
-  return e;
-}
-
-std::vector<double> scaled(const double* values, int n, double factor) {
-  std::vector<double> out(values, values + n);
-  for (double& v : out) v *= factor;
-  return out;
-}
-void unwrap(std::vector<double>& angle) {
-  for (std::size_t k = 1; k < angle.size(); ++k)
-    angle[k] -= kTurn * std::round((angle[k] - angle[k - 1]) / kTurn);
-}
-
-class SystemRun {
- public:
-  SystemRun(const SystemCase& system, const sim::Event& event) : s_(system), event_(event) {
-    answers.resize(s_.terminals.size());
-    // Terminals that were sampled at the same instants share a simulation, which then needs no interpolation.
-    std::map<std::tuple<double, double, int>, std::vector<std::size_t>> groups;
-    for (std::size_t i = 0; i < s_.terminals.size(); ++i) {
-      const Record& r = s_.terminals[i].record;
-      groups[{r.t.front(), r.step(), r.samples()}].push_back(i);
-    }
-    for (const auto& [when, members] : groups)
-      play(std::get<0>(when), std::get<1>(when), std::get<2>(when), members);
-  }
-  std::vector<Modelled> answers;
-  sim::Outcome outcome = sim::Outcome::stable;
-  double stopped_at = std::numeric_limits<double>::infinity();
-
- private:
-  void play(double first, double step, int samples, const std::vector<std::size_t>& members) {
-    using sim::Channel;
-    sim::ReferenceOptions o;
-    o.rate = 1 / step;
-    o.t_end = step * (samples - 1) + 0.01 * step;
-    o.rtol = s_.tolerance;
-    o.atol = s_.tolerance / 100;
-    o.channels = {Channel::V,     Channel::theta, Channel::P,  Channel::Q,
-                  Channel::speed, Channel::Efd,   Channel::Ifd};
-    std::vector<std::size_t> plants, buses;
-    for (const std::size_t i : members) {
-      const SystemTerminal& t = s_.terminals[i];
-      (t.plant >= 0 ? plants : buses).push_back(i);
-      (t.plant >= 0 ? o.plants : o.buses).push_back(t.plant >= 0 ? t.plant : t.bus);
-    }
-    if (o.plants.empty()) o.plants = {0};  // none would mean all
-    const sim::Event event = moved(event_, [&](double t) { return t - first; });
-    const sim::ReferenceRun run = sim::run_reference(s_.grid, event, o);
-    if (run.outcome != sim::Outcome::stable && first + run.stopped_at < stopped_at) {
-      outcome = run.outcome;
-      stopped_at = first + run.stopped_at;
-    }
-    for (std::size_t k = 0; k < plants.size(); ++k) take_plant(run, static_cast<int>(k), samples, plants[k]);
-    for (std::size_t k = 0; k < buses.size(); ++k) {
-      Modelled& m = answers[buses[k]];
-      const auto from = static_cast<std::ptrdiff_t>(k) * run.samples;
-      m.V = scaled(run.bus_v.data() + from, samples, 1);
-      m.theta = scaled(run.bus_theta.data() + from, samples, 1);
-      unwrap(m.theta);
-    }
-  }
-  void take_plant(const sim::ReferenceRun& run, int row, int samples, std::size_t terminal) {
-    Modelled& m = answers[terminal];
-    const sim::Plant& plant = s_.grid.plants[static_cast<std::size_t>(s_.terminals[terminal].plant)];
-    const double base = plant.mva / s_.base.mva;
-    const auto channel = [&](int c, double factor) { return scaled(run.at(row, c), samples, factor); };
-    m.V = channel(0, 1);
-    m.theta = channel(1, 1);
-    m.P = channel(2, base);
-    m.Q = channel(3, base);
-    m.speed = channel(4, 1);
-    m.Efd = channel(5, 1);
-    m.Ifd = channel(6, 1);
-    unwrap(m.theta);
-  }
-
-  const SystemCase& s_;
-  const sim::Event& event_;
-};
 
 double mean_of(const std::vector<double>& v, std::size_t n) {
   return std::accumulate(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(n), 0.0) / static_cast<double>(n);
@@ -166,6 +49,7 @@ class Comparer {
     for (const double at : out_.instants)
       e.switchings.push_back({.time = at, .uncertainty = out_.uncertainty});
     e.detected = s_.find_instants;
+    if (const auto doubt = clock_doubt(t.record, out_.instants); !doubt.empty()) e.notes.push_back(doubt);
     const double begins = out_.instants.front() + 1e-4 * t.record.step();
     e.playback.start.samples =
         static_cast<int>(std::ranges::upper_bound(t.record.t, begins) - t.record.t.begin());
@@ -272,14 +156,14 @@ void play_alone(const SystemCase& s, const SystemComparison& c, TerminalRank& ra
   model.conventions = s.grid.conventions;
   model.record_base = s.base;
   CompareOptions options;
-  options.switchings = c.instants;
+  if (clock_doubt(t.record, c.instants).empty()) options.switchings = c.instants;  // else its own jumps
   try {
     std::vector<EventComparison> one = {compare_event(model, t.record, options)};
     one.front().record.name = t.name;
     rank.alone = judge(one);
     std::tie(rank.alone_worst, rank.alone_where) = worst_cell(one.front());
   } catch (const InputError& error) {
-    rank.alone_where = std::string("could not be played in: ") + error.what();
+    rank.alone_where = "could not be played in: " + error.problems().front().sentence();
   }
 }
 
@@ -323,12 +207,21 @@ void rank_terminals(const SystemCase& s, SystemComparison& c) {
 SystemComparison compare_system(const SystemCase& s) {
   SystemComparison c;
   c.instants = instants_of(s.event);
+  sim::Event event = s.event;
+  if (s.find_instants) {
+    const auto written = c.instants;
+    c.instants = found_instants(s, c.uncertainty);
+    event = moved(event, [&](double t) {
+      const auto at = std::ranges::lower_bound(written, t) - written.begin();
+      return c.instants[static_cast<std::size_t>(at)];
+    });
+  }
   for (const auto& t : s.terminals)
     if (c.instants.front() < t.record.t.front())
       throw InputError({fmt::format("an event at {:g} s", c.instants.front()), "terminal " + t.name,
                         fmt::format("its record begins at {:g} s", t.record.t.front()),
                         "give the event's instants on the records' clock"});
-  const SystemRun run(s, s.event);
+  const SystemRun run = run_system(s, event);
   c.outcome = run.outcome;
   c.stopped_at = run.stopped_at;
   Comparer comparer(s, run, c);
@@ -339,6 +232,12 @@ SystemComparison compare_system(const SystemCase& s) {
     c.notes.push_back(
         fmt::format("The simulation ended at {:.3f} s: {}. What follows repeats its last value.",
                     c.stopped_at, sim::outcome_name(c.outcome)));
+  if (s.find_instants)
+    c.notes.push_back(
+        fmt::format("The records tell each switching instant to ± {:.1f} ms; within that they were moved to "
+                    "where model and "
+                    "records agree best. Give them (event.instants = \"given\") where they are known.",
+                    1e3 * c.uncertainty));
   if (s.steady_state == SteadyState::shift)
     c.notes.push_back(
         "What differs before the event was taken off every channel (compare.steady_state = \"shift\"): only "

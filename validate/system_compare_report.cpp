@@ -32,6 +32,22 @@ Table of_terminals(Table table) {
   return table;
 }
 
+/// RMS and largest error of every channel, whole record.
+Table summary(const std::vector<EventComparison>& terminals) {
+  Table table{"Residual (modelled − measured) over the whole record.",
+              {"terminal", "channel", "RMS", "largest", "at", "noise σ", "RMS / noise"},
+              {}};
+  for (const auto& e : terminals)
+    for (const auto& c : e.channels) {
+      const auto in_units = [&](double v) { return fmt::format("{:.3g} {}", v * c.scale, c.unit); };
+      table.rows.push_back({e.record.name, c.name, in_units(c.whole.rms), in_units(c.whole.worst),
+                            fmt::format("{:.3f} s", c.whole.worst_at),
+                            c.noise > 0 ? in_units(c.noise) : "none",
+                            times_noise(c.map.whole.in_noise) + (c.map.whole.exceeds() ? " *" : "")});
+    }
+  return table;
+}
+
 std::string place_of(const SystemCase& s, const SystemTerminal& t) {
   return t.plant >= 0 ? "plant " + s.grid.plants[static_cast<std::size_t>(t.plant)].name
                       : fmt::format("bus {}", s.grid.network.buses[static_cast<std::size_t>(t.bus)].number);
@@ -153,7 +169,7 @@ Table ranking_table(const SystemCase& s, const SystemComparison& c) {
 
 std::string system_text(const SystemCase& s, const SystemComparison& c) {
   std::string out = fmt::format("{}: measured against the simulation of the whole grid\n\n", s.name);
-  out += padded(of_terminals(error_summary(c.terminals)));
+  out += padded(summary(c.terminals));
   out += "\nIn units of noise, per window and band" +
          std::string(c.terminals.size() > 1 ? ", worst of all terminals" : "") + ":\n";
   const auto maps = maps_of(c.terminals);
@@ -161,7 +177,7 @@ std::string system_text(const SystemCase& s, const SystemComparison& c) {
   out += "* exceeds what noise alone allows\n\nBefore the event, model less record:\n";
   out += padded(initial_table(s, c));
   out += "\nTerminals, the one that fails most first (largest cell over its bound):\n";
-  out += padded(ranking_table(s, c));
+  out += padded(ranking_table(s, c), 6);
   out += "\nswitching at " + instants_text(c) + "\n";
   for (const auto& note : c.notes) out += "note: " + note + "\n";
   for (const auto& e : c.terminals)
@@ -212,7 +228,7 @@ std::string system_html(const SystemCase& s, const SystemComparison& c, const Pr
   page.table(ranking_table(s, c));
   const auto maps = maps_of(c.terminals);
   page.table(of_terminals(c.terminals.size() > 1 ? worst_map_table(maps) : map_table(maps)));
-  page.table(of_terminals(error_summary(c.terminals)));
+  page.table(summary(c.terminals));
   page.table(initial_table(s, c));
   std::string event;
   for (const auto& line : event_lines(s.texts)) event += (event.empty() ? "" : "; ") + line;

@@ -1,0 +1,245 @@
+// The whole grid against records of its terminals: the records are made by the same grid, as it is and
+// changed.
+#include "validate/system_compare.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "sim/solve/block_text.hpp"
+#include "support.hpp"
+
+namespace swingbank::validate {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+/// A folder with a system file and records, of one test's own.
+class SystemCompare : public ::testing::Test {
+ protected:
+  SystemCompare() {
+    std::string name = (fs::temp_directory_path() / "swingbank-system-XXXXXX").string();
+    folder = ::mkdtemp(name.data());
+  }
+  ~SystemCompare() override { fs::remove_all(folder); }
+
+  struct Truth {
+    std::vector<std::string> attached;
+    double t_on = 2, t_off = 2.1, noise = 2e-4, shift_V = 0;
+  };
+  /// Records of plants 1, 2, 8 and bus 5 of IEEE 14 with governors and exciters, fault at bus 4; white noise
+  /// [pu].
+  void record(const Truth& truth) const {
+    sim::Grid grid =
+        sim::load_grid(test::source("configs/networks/ieee14_genrou.raw"),
+                       test::source("configs/networks/ieee14_genrou.dyr"), sim::Conventions::psse());
+    Problems problems;
+    for (const auto& text : truth.attached) sim::attach(grid, text, text, problems);
+    problems.raise();
+    sim::Event event;
+    event.faults.push_back({grid.network.bus_index(4), truth.t_on, truth.t_off});
+    sim::ReferenceOptions o;
+    o.t_end = 10;
+    o.rate = 60;
+    o.channels = {sim::Channel::V, sim::Channel::theta, sim::Channel::P, sim::Channel::Q};
+    o.buses = {grid.network.bus_index(5)};
+    const sim::ReferenceRun run = sim::run_reference(grid, event, o);
+    ASSERT_EQ(run.outcome, sim::Outcome::stable);
+    std::mt19937 random(1);
+    std::normal_distribution<double> noise(0, truth.noise);
+    for (std::size_t p = 0; p < run.plants.size(); ++p) {
+      const sim::Plant& plant = grid.plants[static_cast<std::size_t>(run.plants[p])];
+      std::ofstream out(folder / ("plant" + plant.name + ".csv"));
+      out.precision(10);
+      out << "t_s,V_pu,theta_rad,P_pu,Q_pu\n";
+      for (int k = 0; k < run.samples; ++k) {
+        const auto at = [&](int c) { return run.at(static_cast<int>(p), c)[k]; };
+        const double base = plant.mva / 100;
+        out << k / 60.0 << ',' << at(0) + truth.shift_V + noise(random) << ',' << at(1) + noise(random) << ','
+            << at(2) * base + noise(random) << ',' << at(3) * base + noise(random) << '\n';
+      }
+    }
+    std::ofstream out(folder / "bus5.csv");
+    out.precision(10);
+    out << "t_s,V_pu,theta_rad\n";
+    for (int k = 0; k < run.samples; ++k)
+      out << k / 60.0 << ',' << run.bus_v[static_cast<std::size_t>(k)] + noise(random) << ','
+          << run.bus_theta[static_cast<std::size_t>(k)] + noise(random) << '\n';
+  }
+  /// The file, with `from` replaced by `to`.
+  fs::path system(const std::string& from = "", const std::string& to = "") const {
+    std::string text = R"(
+[system]
+name = "IEEE 14"
+raw = "RAW"
+dyr = "DYR"
+conventions = "psse"
+attach = ["all:TGOV1:R=0.05,T1=0.5", "all:SEXS"]
+[event]
+fault = ["4:2.0:2.1"]
+[record]
+base_mva = 100.0
+[compare]
+reference = "one"
+[terminal.one]
+plant = "1"
+record = "plant1.csv"
+[terminal.two]
+plant = "2"
+record = "plant2.csv"
+[terminal.eight]
+plant = "8"
+record = "plant8.csv"
+[terminal.five]
+bus = 5
+record = "bus5.csv"
+)";
+    const auto replace = [&](const std::string& a, const std::string& b) {
+      if (const auto at = text.find(a); !a.empty() && at != std::string::npos) text.replace(at, a.size(), b);
+    };
+    replace("RAW", test::source("configs/networks/ieee14_genrou.raw").string());
+    replace("DYR", test::source("configs/networks/ieee14_genrou.dyr").string());
+    replace(from, to);
+    std::ofstream(folder / "system.toml") << text;
+    return folder / "system.toml";
+  }
+  const std::vector<std::string> same = {"all:TGOV1:R=0.05,T1=0.5", "all:SEXS"};
+  fs::path folder;
+};
+
+TEST_F(SystemCompare, TheSameGridIsAdequate) {
+  record({.attached = same});
+  const SystemCase s = load_system(system());
+  const SystemComparison c = compare_system(s);
+  EXPECT_TRUE(c.adequacy.adequate) << c.adequacy.sentence;
+  EXPECT_EQ(c.instants, (std::vector<double>{2.0, 2.1}));
+  ASSERT_EQ(c.terminals.size(), 4);  // in order of names: eight, five, one, two
+  std::vector<std::string> names;
+  for (const auto& channel : c.terminals[3].channels) names.push_back(channel.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"V", "angle", "P", "Q"}));
+  EXPECT_EQ(c.terminals[2].channels[1].name, "frequency");  // the reference's own
+  EXPECT_EQ(c.terminals[1].channels.size(), 2);             // a bus: V and angle
+  // nothing but the noise of 2e-4 that was added: its RMS scatters by 1/sqrt(2 * 601) = 3 %, four times that
+  // are allowed
+  for (const auto& channel : c.terminals[3].channels)
+    if (channel.name != "angle") {
+      EXPECT_NEAR(channel.whole.rms, 2e-4, 0.12 * 2e-4) << channel.name;
+    }
+  // the angle's has that of the reference as well
+  EXPECT_NEAR(c.terminals[3].channels[1].whole.rms, std::sqrt(2.0) * 2e-4, 0.12 * std::sqrt(2.0) * 2e-4);
+  for (const auto& r : c.ranking) EXPECT_LT(r.worst, 1);
+}
+
+TEST_F(SystemCompare, AChangedGovernorIsNamedFirstAlthoughAllTerminalsSwing) {
+  std::vector<std::string> changed = {"1:TGOV1:R=0.05,T1=0.5", "3:TGOV1:R=0.05,T1=0.5",
+                                      "6:TGOV1:R=0.05,T1=0.5", "8:TGOV1:R=0.05,T1=0.5",
+                                      "2:TGOV1:R=0.02,T1=0.2", "all:SEXS"};
+  record({.attached = changed});
+  const SystemCase s = load_system(system());
+  const SystemComparison c = compare_system(s);
+  EXPECT_FALSE(c.adequacy.adequate);
+  EXPECT_EQ(s.terminals[c.ranking[0].terminal].name, "two");
+  ASSERT_TRUE(c.ranking[0].alone.has_value());
+  EXPECT_FALSE(c.ranking[0].alone->adequate);
+  for (std::size_t k = 1; k < c.ranking.size(); ++k)
+    if (c.ranking[k].alone) {
+      EXPECT_TRUE(c.ranking[k].alone->adequate) << c.ranking[k].alone_where;
+    }
+  EXPECT_THAT(c.culprit, HasSubstr("Terminal two fails most: its plant's model"));
+  EXPECT_THAT(system_text(s, c), HasSubstr(c.culprit));
+  const auto j = nlohmann::json::parse(system_json(s, c, system_provenance(s, "command")));
+  EXPECT_EQ(j["ranking"][0]["terminal"], "two");
+  EXPECT_FALSE(j["adequate"]);
+  EXPECT_EQ(j["terminals"][3]["channels"][2]["name"], "P");
+  EXPECT_THAT(system_html(s, c, {}), HasSubstr("P residual"));
+}
+
+TEST_F(SystemCompare, AnErrorOfTheGridIsNoPlantsFault) {
+  record({.attached = same});
+  // the simulation has the fault behind an impedance: the records know nothing of it
+  const SystemCase s = load_system(system("4:2.0:2.1\"", "4:2.0:2.1:0.01:0.02\""));
+  const SystemComparison c = compare_system(s);
+  EXPECT_FALSE(c.adequacy.adequate);
+  EXPECT_THAT(c.culprit, HasSubstr("Every recorded plant answers its own recorded voltage as measured"));
+}
+
+TEST_F(SystemCompare, InstantsAreFoundBetweenTheSamples) {
+  record({.attached = same, .t_on = 2.013, .t_off = 2.107});
+  const SystemComparison given = compare_system(load_system(system()));
+  EXPECT_FALSE(given.adequacy.adequate);
+  const SystemComparison c = compare_system(load_system(system("[event]", "[event]\ninstants = \"found\"")));
+  EXPECT_TRUE(c.adequacy.adequate) << c.adequacy.sentence;
+  // Half a sample is 8.3 ms; P and Q after the fault tell it to a twentieth of that.
+  EXPECT_NEAR(c.instants[0], 2.013, 4e-4);
+  EXPECT_NEAR(c.instants[1], 2.107, 4e-4);
+}
+
+TEST_F(SystemCompare, AnotherClockIsNoticed) {
+  record({.attached = same, .t_on = 2.053, .t_off = 2.153});
+  const SystemComparison c = compare_system(load_system(system()));
+  EXPECT_FALSE(c.adequacy.adequate);
+  EXPECT_THAT(c.terminals[3].notes, Contains(HasSubstr("not at the event's instants")));
+  // the plants are played in with their records' own jumps, so none of them is blamed
+  EXPECT_THAT(c.culprit, HasSubstr("Every recorded plant answers its own recorded voltage as measured"));
+}
+
+TEST_F(SystemCompare, ASteadyDifferenceIsJudgedOrTakenOff) {
+  record({.attached = same, .shift_V = 0.003});
+  const SystemComparison judged = compare_system(load_system(system()));
+  EXPECT_FALSE(judged.adequacy.adequate);
+  EXPECT_NEAR(judged.initial[4 * 3], -0.003, 1e-4);  // of terminal two, V [pu]; noise of the mean 2e-5
+  const SystemComparison shifted =
+      compare_system(load_system(system("[compare]", "[compare]\nsteady_state = \"shift\"")));
+  for (const auto& e : shifted.terminals)
+    for (const auto& channel : e.channels) EXPECT_LT(std::abs(channel.whole.mean), 1e-4) << channel.name;
+  EXPECT_TRUE(shifted.adequacy.adequate) << shifted.adequacy.sentence;
+}
+
+TEST_F(SystemCompare, TerminalsMayHaveBeenSampledAtOtherInstants) {
+  record({.attached = same});
+  // every second sample of plant 2, from the third on
+  std::ifstream in(folder / "plant2.csv");
+  std::string line, kept;
+  for (int k = -1; std::getline(in, line); ++k)
+    if (k < 0 || (k >= 3 && k % 2 == 1)) kept += line + "\n";
+  std::ofstream(folder / "plant2.csv") << kept;
+  const SystemComparison c = compare_system(load_system(system("reference = \"one\"", "")));
+  EXPECT_TRUE(c.adequacy.adequate) << c.adequacy.sentence;
+  EXPECT_EQ(c.terminals[3].channels[1].name, "frequency");
+  EXPECT_THAT(test::messages([&] { compare_system(load_system(system())); }),
+              Contains(HasSubstr("angles sampled at other instants")));
+}
+
+TEST_F(SystemCompare, BadInputIsNamed) {
+  record({.attached = same});
+  const std::pair<std::pair<const char*, const char*>, const char*> cases[] = {
+      {{"4:2.0:2.1", "99:2.0:2.1"}, "no bus 99"},
+      {{"4:2.0:2.1", "4:2.0:99"}, "fault to 99 s"},
+      {{"fault = [\"4:2.0:2.1\"]", ""}, "no event"},
+      {{"plant = \"8\"", "plant = \"9\""}, "no plant 9"},
+      {{"bus = 5", "bus = 77"}, "no bus 77"},
+      {{"bus = 5", "bus = 5\nplant = \"1\""}, "one of them"},
+      {{"reference = \"one\"", "reference = \"zero\""}, "no terminal zero"},
+      {{"base_mva = 100.0", "base_mva = -1"}, "base_mva"},
+      {{"plant8.csv", "nowhere.csv"}, "nowhere.csv"},
+      {{"[compare]", "[compare]\ncolour = 1"}, "colour"},
+      {{"all:SEXS", "all:NOSUCH"}, "NOSUCH"},
+      {{"ieee14_genrou.raw", "nowhere.raw"}, "nowhere.raw"},
+  };
+  for (const auto& [change, words] : cases)
+    EXPECT_THAT(test::messages([&, &change = change] { load_system(system(change.first, change.second)); }),
+                Contains(HasSubstr(words)))
+        << change.first;
+  // before the record begins, and with nothing before it
+  EXPECT_THAT(test::messages([&] { compare_system(load_system(system("4:2.0:2.1", "4:-1:2.1"))); }),
+              Contains(HasSubstr("its record begins at 0 s")));
+  EXPECT_THAT(test::messages([&] { compare_system(load_system(system("4:2.0:2.1", "4:0.01:2.1"))); }),
+              Contains(HasSubstr("samples before the event")));
+}
+
+}  // namespace
+}  // namespace swingbank::validate
