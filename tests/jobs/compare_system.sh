@@ -1,0 +1,90 @@
+#!/usr/bin/env bash
+# swingbank compare --system: the example, a record of the same grid, what it writes, and a sentence for each wrong input.
+# shellcheck disable=SC2154 # what lib.bash sets
+source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+
+networks=$SWINGBANK_SOURCE/configs/networks
+# the example: a record with an exciter that the grid does not have
+code=0
+"$swingbank" compare --system "$SWINGBANK_SOURCE/configs/systems/ieee14_fault_at_5.toml" --out "$work/example" \
+  --json >"$work/printed.json" || code=$?
+((code == 3)) || fail "exit code $code of a grid without the exciter"
+cmp "$work/printed.json" "$work/example/compare.json" || fail "--json prints something else than it writes"
+[[ $(find "$work/example" -type f | wc -l) == 3 ]] || fail "report.html, compare.json and one terminal's curves expected"
+/usr/bin/python3 - "$work/printed.json" <<'PYTHON'
+import json, sys
+r = json.load(open(sys.argv[1]))
+first = r["ranking"][0]
+assert r["adequate"] is False and first["terminal"] == "gen2" and first["alone_adequate"] is False
+start = r["terminals"][0]["initial"]  # the power flow is that of the record; sigma of its means 0.002 / sqrt(121)
+assert abs(start["P_pu"]) < 6e-4 and abs(start["Q_pu"]) < 6e-4 and abs(start["V_pu"]) < 1e-4, start
+PYTHON
+
+# records of the same grid: adequate; one governor changed: its terminal first
+simulate() {
+  "$swingbank" simulate --raw "$networks/ieee14_genrou.raw" --dyr "$networks/ieee14_genrou.dyr" --attach all:SEXS --t-end 8 --rate 60 \
+    --fault 4:2:2.1 --channels V,theta,P,Q --buses 5 --out "$1.h5" --out "$1.csv" "${@:2}" >/dev/null
+}
+simulate "$work/same" --attach all:TGOV1:R=0.05,T1=0.5
+simulate "$work/changed" --attach 2:TGOV1:R=0.02,T1=0.2 --attach 1:TGOV1:R=0.05,T1=0.5 --attach 3:TGOV1:R=0.05,T1=0.5 \
+  --attach 6:TGOV1:R=0.05,T1=0.5 --attach 8:TGOV1:R=0.05,T1=0.5
+# system RUN [EVENT LINE]
+system() {
+  cat <<TOML
+[system]
+name = "IEEE 14"
+raw = "$networks/ieee14_genrou.raw"
+dyr = "$networks/ieee14_genrou.dyr"
+conventions = "psse"
+attach = ["all:SEXS", "all:TGOV1:R=0.05,T1=0.5"]
+[event]
+${2:-fault = [\"4:2:2.1\"]}
+[record]
+base_mva = 100.0
+[terminal.gen1]
+plant = "1"
+record = "$1.h5#1"
+[terminal.gen2]
+plant = "2"
+record = "$1.h5#2"
+[terminal.bus5]
+bus = 5
+record = "$1.csv#bus5"
+TOML
+}
+system same >"$work/same.toml"
+"$swingbank" compare --system "$work/same.toml" --out "$work/good" >"$work/text" || fail "the same grid: $(tail -3 "$work/text")"
+grep -q '^Adequate' "$work/text" || fail "no verdict: $(cat "$work/text")"
+system changed >"$work/changed.toml"
+code=0
+"$swingbank" compare --system "$work/changed.toml" --out "$work/bad" >"$work/text" || code=$?
+((code == 3)) || fail "exit code $code with a changed governor"
+grep -q '^Terminal gen2 fails most: its plant' "$work/text" || fail "not named: $(tail -4 "$work/text")"
+for file in report.html compare.json curves-bus5.csv curves-gen1.csv curves-gen2.csv; do
+  [[ -s $work/bad/$file ]] || fail "no $file"
+done
+
+compare() { "$swingbank" compare --out "$work/none" "$@"; }
+refuses "no system file" 'nowhere.toml' compare --system "$work/nowhere.toml"
+head -200 "$work/same.csv" >"$work/cut.csv"
+printf '3.3333,1.0' >>"$work/cut.csv"
+changed_system() { sed "$1" "$work/same.toml" >"$work/wrong.toml"; }
+changed_system 's|same.csv|cut.csv|'
+refuses "a record that is cut off" 'cut.csv:201' compare --system "$work/wrong.toml"
+sed '50s/,[^,]*$/,NaN/' "$work/same.csv" >"$work/nan.csv"
+changed_system 's|same.csv|nan.csv|'
+refuses "not a number" 'nan.csv:50' compare --system "$work/wrong.toml"
+changed_system 's|#2"|#3x"|'
+refuses "no such terminal" "no plant '3x'" compare --system "$work/wrong.toml"
+changed_system 's|4:2:2.1|44:2:2.1|'
+refuses "no such bus" 'no bus 44' compare --system "$work/wrong.toml"
+changed_system 's|4:2:2.1|4:2:12|'
+refuses "an event after the records" 'fault to 12' compare --system "$work/wrong.toml"
+changed_system 's|^base_mva|base_mwa|'
+refuses "a key that is misspelt" 'base_mwa' compare --system "$work/wrong.toml"
+misused "a plant beside a system" 'excludes' compare --system "$work/same.toml" --model m.toml --record e.csv
+misused "what a system file says" 'excludes' compare --system "$work/same.toml" --switch 2
+misused "neither" 'system' compare
+[[ ! -e $work/none ]] || fail "something was written"
+echo 'a file' >"$work/file"
+refuses "a file in place of the folder" "$work/file" "$swingbank" compare --system "$work/same.toml" --out "$work/file"

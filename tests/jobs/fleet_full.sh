@@ -1,0 +1,101 @@
+#!/usr/bin/env bash
+# A fleet whose run is killed, stopped or loses one diagnosis ends in the same table as an unbroken run.
+# shellcheck disable=SC2154 # what lib.bash sets
+source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+source "$(dirname "${BASH_SOURCE[0]}")/fleet.bash"
+
+{
+  echo '[options]'
+  echo 'power_only = true'
+  plant p1 '"records/e1.csv", "records/e2.csv"'
+  plant p2 '"records/e3.csv", "records/e4.csv"'
+  plant p3 '"records/e1.csv", "records/e4.csv"'
+  plant bad '"records/nowhere.csv", "records/e4.csv"'
+} >"$work/fleet.toml"
+expect 1 fleet "$work/fleet.toml" "$work/whole"
+
+# done_in FOLDER: how many plants are finished
+done_in() { find "$1" -mindepth 2 -name diagnosis.json -not -path '*.part/*' 2>/dev/null | wc -l; }
+# wait_for FOLDER COUNT
+wait_for() {
+  for _ in $(seq 6000); do
+    if (($(done_in "$1") >= $2)); then return; fi
+    sleep 0.05
+  done
+  fail "no $2 plants after 5 minutes: $(cat "$1.log")"
+}
+# of_fleet FOLDER: processes that work for it
+of_fleet() { pgrep -f -- "--fleet $work/fleet.toml .*--out $1" || true; }
+
+# kill -9 of every process, when one plant is done and another under way
+fleet "$work/fleet.toml" "$work/killed" 2 >"$work/table" &
+run=$!
+wait_for "$work/killed" 1
+mapfile -t ids < <(of_fleet "$work/killed")
+kill -9 "${ids[@]}" 2>/dev/null || true
+if wait $run; then fail "a killed run cannot succeed"; fi
+[[ ! -e $work/killed/fleet.json ]] || fail "killed too late to prove anything"
+sleep 1 # a diagnosis dies with its rank
+[[ -z $(of_fleet "$work/killed") ]] || fail "left running: $(of_fleet "$work/killed")"
+expect 1 fleet "$work/fleet.toml" "$work/killed" 3
+(($(grep -c 'was there already' "$work/killed.log") >= 1)) || fail "finished plants were computed again"
+same_table "$work/whole" "$work/killed"
+[[ -z $(find "$work/killed" -name '*.part' -o -name '*.old') ]] || fail "left behind: $(find "$work/killed")"
+
+# a signal: what is under way is finished, no more is begun, exit code 2
+fleet "$work/fleet.toml" "$work/soft" >"$work/table" &
+run=$!
+wait_for "$work/soft" 1
+kill -USR1 "$(of_fleet "$work/soft" | head -1)"
+code=0
+wait $run || code=$?
+((code == 2)) || fail "exit code $code after SIGUSR1"
+grep -q 'run the same command again' "$work/table" || fail "after SIGUSR1: $(cat "$work/table")"
+(($(done_in "$work/soft") < 3)) || fail "stopped too late to prove anything"
+
+# one diagnosis is killed: its plant fails with a word about it, the others are done; the next run mends it
+rm -rf "$work/soft/p3"
+fleet "$work/fleet.toml" "$work/soft" >"$work/table" &
+run=$!
+child=
+for _ in $(seq 6000); do
+  child=$(pgrep -f -- "--plant p3 --out $work/soft" || true)
+  if [[ -n $child ]]; then break; fi
+  sleep 0.05
+done
+kill -9 "$child"
+code=0
+wait $run || code=$?
+((code == 1)) || fail "exit code $code with a diagnosis killed"
+grep -q 'p3 failed: The diagnosis was ended by signal 9' "$work/table" || fail "no word of it: $(cat "$work/table")"
+grep -q '2 failed' "$work/table" || fail "others failed too: $(cat "$work/table")"
+expect 1 fleet "$work/fleet.toml" "$work/soft"
+same_table "$work/whole" "$work/soft"
+
+# other inputs of the same name are diagnosed again, and only they
+sed -i 's/^0.05,[^,]*/0.05,1.045/' "$work/records/e4.csv"
+expect 1 fleet "$work/fleet.toml" "$work/soft"
+(($(grep -c 'was there already' "$work/soft.log") == 1)) || fail "what changed: $(cat "$work/soft.log")"
+
+# nothing is missing: exit code 0
+networks=$SWINGBANK_SOURCE/configs/networks
+for bus in 4 9; do
+  "$swingbank" simulate --raw "$networks/ieee14_genrou.raw" --dyr "$networks/ieee14_genrou.dyr" --t-end 6 --rate 60 \
+    --fault "$bus:2:2.1" --plants 2 --channels V,theta,P,Q --measure NOISE:relative=0.001,angle=0.0002 \
+    --measure-seed "$bus" --out "$work/records/sound$bus.h5" >/dev/null
+done
+cat >"$work/grid.toml" <<TOML
+[plant]
+name = "bus 2"
+frequency_hz = 60.0
+conventions = "psse"
+[record]
+base_mva = 100.0
+[grid]
+raw = "$networks/ieee14_genrou.raw"
+dyr = "$networks/ieee14_genrou.dyr"
+bus = 2
+TOML
+printf '[plant.sound]\nmodel = "grid.toml"\nrecords = ["records/sound*.h5"]\n' >"$work/sound.toml"
+expect 0 fleet "$work/sound.toml" "$work/sound"
+grep -q '1 plant: 1 adequate' "$work/table" || fail "table: $(cat "$work/table")"
