@@ -9,6 +9,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "validate/decide.hpp"
 #include "validate/noise.hpp"
 #include "validate/search.hpp"
 
@@ -194,9 +195,12 @@ class Diagnoser {
     result_.side = best.hypothesis.side;
     if (!best.hypothesis.with.empty()) result_.effects.push_back(best.hypothesis.with);
     result_.effects.push_back(best.hypothesis.name);
-    for (const auto& j : result_.ranked)
-      if (j.accepted && &j != &best && as_good(j, best))
-        result_.equivalent.push_back(full_name(j.hypothesis));
+    const Judgement* rival = nullptr;
+    for (const auto& j : result_.ranked) {
+      if (!j.accepted || &j == &best || !as_good(j, best)) continue;
+      result_.equivalent.push_back(full_name(j.hypothesis));
+      if (!rival) rival = &j;
+    }
     double before = 0, after = 0;
     for (const auto& h : best.held_out) {
       before += h.before / static_cast<double>(best.held_out.size());
@@ -213,6 +217,9 @@ class Diagnoser {
                         : best.hypothesis.with + ", and besides " + best.hypothesis.what),
         rivals.empty() ? "" : " (or " + rivals + ": these records cannot tell)", std::sqrt(before),
         std::sqrt(after));
+    if (!rival) return;
+    result_.would_decide = what_would_decide(best, *rival, result_.events);
+    result_.sentence += " " + result_.would_decide;
   }
   void report(const std::string& what, int done, int total) const {
     if (options_.progress) options_.progress(what, done, total);

@@ -26,6 +26,7 @@ struct Diagnosis {
   std::string sentence;                 ///< the verdict as a grid engineer reads it
   std::vector<std::string> effects;     ///< named: one, or several that act together
   std::vector<std::string> equivalent;  ///< names that explain the records as well
+  std::string would_decide;             ///< what would tell the first of those apart; empty without one
   Fit base;                             ///< the present structure, refitted
   MissingInput torque, field;
   LawSearch laws;                   ///< where no known effect explains the records

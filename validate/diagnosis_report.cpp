@@ -189,6 +189,7 @@ nlohmann::json diagnosis_json(const PlantModel& model, const Diagnosis& d, const
                       {"side", side_name(d.side)},
                       {"effects", d.effects},
                       {"equivalent", d.equivalent},
+                      {"would_decide", d.would_decide},
                       {"seconds", d.seconds},
                       {"model",
                        {{"name", model.name},

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "support.hpp"
+#include "validate/instruments.hpp"
 
 namespace swingbank::validate {
 namespace {
@@ -22,7 +23,9 @@ TEST(Hypotheses, EveryEffectThatFitsAndEveryNeutralGroupJoins) {
   std::vector<std::string> names;
   for (const auto& h : all_hypotheses(model.plant, model.conventions)) names.push_back(h.name);
   for (const sim::Effect& e : sim::all_effects()) {
-    const bool joins = (e.slot == sim::Slot::transformer || sim::is_control(e.slot)) && e.instants == nullptr;
+    const bool instrument = e.slot == sim::Slot::measurement && is_linear(e);
+    const bool joins =
+        (e.slot == sim::Slot::transformer || sim::is_control(e.slot) || instrument) && e.instants == nullptr;
     EXPECT_EQ(std::ranges::count(names, e.name), joins ? 1 : 0) << e.name;
   }
   EXPECT_THAT(names, testing::IsSupersetOf({"GENROU:D", "GENROU:S10,S12", "GENROU:Ra", "speed-voltage"}));

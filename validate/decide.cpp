@@ -1,0 +1,91 @@
+#include "validate/decide.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "validate/instruments.hpp"
+
+namespace swingbank::validate {
+namespace {
+
+/// What an instrument of a plant resolves [pu]: a tenth of a per cent of rated Efd and Ifd; speed from shaft
+/// pickups.
+constexpr double kFieldNoise = 1e-3, kSpeedNoise = 2e-5;
+/// Norm of a difference in units of noise from which a test between two is sure.
+constexpr double kSure = 10;
+/// A frequency that stays off by this shows what governors do [Hz].
+constexpr double kLasting = 0.02;
+
+Response response_of(const Judgement& j, const FitEvent& e, const EventState& state) {
+  auto switchings = e.switchings;
+  for (std::size_t k = 0; k < switchings.size(); ++k) switchings[k].time = state.switchings[k];
+  const VoltageCurve curve(e.played(), switchings);
+  Drive run{.plant = &j.fit.plant,
+            .conventions = j.hypothesis.conventions,
+            .record = &e.record,
+            .curve = &curve,
+            .start = e.start};
+  run.start.P += state.P;
+  run.start.Q += state.Q;
+  run.angle = state.angle;
+  run.speed = state.speed;
+  run.tolerance = 1e-5;
+  run.least_step = e.record.step() / 40;
+  return observe(run);
+}
+
+double norm_of_difference(const std::vector<double>& x, const std::vector<double>& y, double noise) {
+  double sum = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) sum += std::pow((x[k] - y[k]) / noise, 2);
+  return std::sqrt(sum);
+}
+
+/// Whether the frequency at the terminal stays off after some event.
+bool frequency_stays_off(const std::vector<FitEvent>& events) {
+  return std::ranges::any_of(events, [](const FitEvent& e) {
+    const auto& r = e.record;
+    const std::size_t last = r.t.size() - 1, from = last - std::min(last, r.t.size() / 5);
+    const double turns = (r.theta[last] - r.theta[from]) / (2 * std::numbers::pi);
+    return std::abs(turns / (r.t[last] - r.t[from])) > kLasting;
+  });
+}
+
+}  // namespace
+
+std::string what_would_decide(const Judgement& x, const Judgement& y, const std::vector<FitEvent>& events) {
+  double differs[kOutputs] = {};
+  for (std::size_t e = 0; e < events.size(); ++e) {
+    const Response a = response_of(x, events[e], x.fit.events[e].state);
+    const Response b = response_of(y, events[e], y.fit.events[e].state);
+    for (const Output o : {Output::speed, Output::Efd, Output::Ifd})
+      differs[static_cast<int>(o)] =
+          std::hypot(differs[static_cast<int>(o)],
+                     norm_of_difference(a.of(o), b.of(o), o == Output::speed ? kSpeedNoise : kFieldNoise));
+  }
+  Output best = Output::speed;
+  double most = 0;
+  for (const Output o : {Output::speed, Output::Ifd, Output::Efd}) {
+    const bool recorded =
+        std::ranges::any_of(events, [&](const FitEvent& e) { return std::ranges::count(e.channels, o) > 0; });
+    if (recorded || differs[static_cast<int>(o)] <= most) continue;
+    most = differs[static_cast<int>(o)];
+    best = o;
+  }
+  if (most >= kSure)
+    return fmt::format("A record of {} would decide: there {} and {} differ by {:.0f} × noise.",
+                       output_name(best), full_name(x.hypothesis), full_name(y.hypothesis), most);
+  const bool mechanical = x.hypothesis.side == Side::mechanical || y.hypothesis.side == Side::mechanical;
+  if (mechanical && !frequency_stays_off(events))
+    return fmt::format(
+        "A frequency event would help to decide between {} and {}: in none of these records "
+        "does the frequency stay off by {} Hz.",
+        full_name(x.hypothesis), full_name(y.hypothesis), kLasting);
+  return fmt::format(
+      "No channel of the plant would decide between {} and {} in these events; larger ones may.",
+      full_name(x.hypothesis), full_name(y.hypothesis));
+}
+
+}  // namespace swingbank::validate
