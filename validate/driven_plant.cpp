@@ -134,7 +134,8 @@ class Driven {
   }
   /// As seen from a frame that turns with the pre-event angle.
   Complex voltage(double t) const {
-    return run_.voltage_factor * (*run_.curve)(segment_, t) * std::polar(1.0, -run_.start.drift * t);
+    const Complex v = run_.voltage_factor * (*run_.curve)(segment_, t);
+    return run_.start.drift == 0 ? v : v * std::polar(1.0, -run_.start.drift * t);
   }
   template <class F>
   void each(F f) const {

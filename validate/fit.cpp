@@ -77,6 +77,8 @@ class Search {
     o.num_threads = 1;  // hypotheses run side by side
     o.initial_trust_region_radius = 1e2;
     o.max_num_consecutive_invalid_steps = 12;
+    // a step that bounds cut short is tried as it is: the search along it costs several Jacobians a step
+    o.max_num_line_search_step_size_iterations = 0;
     ceres::Solver::Summary summary;
     ceres::Solve(o, problem_.get(), &summary);
     done += std::max(1, static_cast<int>(summary.iterations.size()) - 1);

@@ -159,7 +159,7 @@ class EventCost : public ceres::CostFunction {
   void write(const std::vector<double>* values, bool less_measured, double* to, int stride,
              int column) const {
     const auto n = static_cast<Eigen::Index>(event_.channels.size());
-    Eigen::VectorXd e(n);
+    double e[kOutputs];
     Eigen::Index row = 0;
     for (int k = 0; k < event_.record.samples(); ++k) {
       if (!event_.compared(static_cast<std::size_t>(k))) continue;
@@ -168,8 +168,11 @@ class EventCost : public ceres::CostFunction {
         e[c] = values[static_cast<int>(o)][static_cast<std::size_t>(k)];
         if (less_measured) e[c] -= event_.measured(o)[static_cast<std::size_t>(k)];
       }
-      const Eigen::VectorXd w = event_.whitening * e;
-      for (Eigen::Index c = 0; c < n; ++c) to[row++ * stride + column] = w[c];
+      for (Eigen::Index c = 0; c < n; ++c) {
+        double w = 0;
+        for (Eigen::Index i = 0; i <= c; ++i) w += event_.whitening(c, i) * e[i];  // lower triangular
+        to[row++ * stride + column] = w;
+      }
     }
   }
 

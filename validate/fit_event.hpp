@@ -21,7 +21,7 @@ struct FitEvent {
   Record clean = {};
   std::vector<Output> channels;  ///< measured ones: P, Q, then speed, Efd, Ifd where recorded
   Eigen::VectorXd noise;         ///< standard deviation per channel [pu]
-  Eigen::MatrixXd whitening;     ///< W: W e has unit covariance where e is noise
+  Eigen::MatrixXd whitening;     ///< W, lower triangular: W e has unit covariance where e is noise
   [[nodiscard]] const std::vector<double>& measured(Output o) const;
   /// What is played in.
   [[nodiscard]] const Record& played() const { return smeared.empty() ? record : clean; }
