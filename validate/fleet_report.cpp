@@ -82,12 +82,11 @@ std::string fleet_caution(const std::vector<FleetRow>& rows) {
     if (std::isfinite(r.chance)) any += r.chance;
   return fmt::format(
       "False verdicts: noise alone would name an effect at any of the plants that have one named with a "
-      "probability "
-      "of at most {:.0e}. That leaves out what is worse than noise: instruments in error, records of another "
-      "plant, "
-      "effects that are not in the list. How often the diagnosis errs on plants that lack nothing was "
-      "measured with "
-      "hidden truth: docs/blind-test.md.",
+      "probability of at most {:.0e}. That leaves out what is worse than noise: instruments in error, "
+      "records of "
+      "another plant, effects that are not in the list. How often the diagnosis names an effect where "
+      "nothing is "
+      "missing is for the blind test to say (docs/blind-test.md).",
       std::max(std::min(any, 1.0), 1e-12));
 }
 
@@ -137,7 +136,11 @@ std::string fleet_html(const Fleet& fleet, const std::vector<FleetRow>& rows) {
   page.section("Verdicts");
   for (const auto& r : rows) {
     page.subsection(r.plant);
-    page.text(r.sentence);
+    for (std::size_t at = 0; at < r.sentence.size();) {  // a problem per line
+      const std::size_t end = std::min(r.sentence.find('\n', at), r.sentence.size());
+      page.text(r.sentence.substr(at, end - at));
+      at = end + 1;
+    }
   }
   page.provenance({{"command", "swingbank diagnose --fleet " + fleet.file.string()},
                    {"software", "swingbank " SWINGBANK_VERSION}});

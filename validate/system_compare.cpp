@@ -148,7 +148,7 @@ std::pair<double, std::string> worst_cell(const EventComparison& e) {
 }
 
 /// A plant's record played into its own model.
-void play_alone(const SystemCase& s, const SystemComparison& c, TerminalRank& rank) {
+void play_alone(const SystemCase& s, SystemComparison& c, TerminalRank& rank) {
   const SystemTerminal& t = s.terminals[rank.terminal];
   PlantModel model;
   model.name = t.name;
@@ -164,6 +164,7 @@ void play_alone(const SystemCase& s, const SystemComparison& c, TerminalRank& ra
     std::tie(rank.alone_worst, rank.alone_where) = worst_cell(one.front());
   } catch (const InputError& error) {
     rank.alone_where = "could not be played in: " + error.problems().front().sentence();
+    c.terminals[rank.terminal].notes.push_back("Alone, its record " + rank.alone_where);
   }
 }
 

@@ -162,7 +162,9 @@ Table ranking_table(const SystemCase& s, const SystemComparison& c) {
     const auto ratio = [](double worst) { return Cell(fmt::format("{:.3g}", worst), worst > 1 ? 1.0 : 0.0); };
     table.rows.push_back({s.terminals[r.terminal].name, place_of(s, s.terminals[r.terminal]), ratio(r.worst),
                           r.where, r.alone ? ratio(r.alone_worst) : Cell("–"),
-                          r.alone_where.empty() ? "–" : r.alone_where});
+                          r.alone                 ? r.alone_where
+                          : r.alone_where.empty() ? "–"
+                                                  : "not possible"});
   }
   return table;
 }
