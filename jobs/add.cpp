@@ -62,9 +62,6 @@ void check_options(const Arguments& a) {
     problems.add("no event held out", "--retrain",
                  "networks are judged on events that the effect was not fitted to",
                  "hold out at least one with --hold-out");
-  if (a.retrain && a.training.dataset.empty())
-    problems.add("no dataset config", "--retrain", "networks are trained on the plant in its grid",
-                 "give --dataset FILE (configs/datasets)");
   problems.raise();
 }
 
@@ -74,7 +71,7 @@ std::optional<Retrained> retrain(const Arguments& a, const jobs::RetrainPrograms
                                  const std::vector<Record>& records) {
   const std::filesystem::path folder = a.out;
   const Truth truth = a.truth.empty() ? Truth{} : read_truth(a.truth, before);
-  const auto sides = write_retrain_configs(folder / "retrain", added, records, a.training);
+  const auto sides = write_retrain_configs(folder / "retrain", before, added, records, a.training);
   for (const auto& side : sides)
     if (!jobs::make_network(programs, side)) return std::nullopt;
   const std::array<NetworkEstimate, 2> estimates = {
@@ -148,7 +145,8 @@ int main(int argc, char** argv) {
       "train a network on the plant without and one with the effect, and compare them on these records "
       "(folder OUT/retrain; run again to go on)");
   app.add_option("--dataset", a.training.dataset,
-                 "--retrain: config of a dataset about this plant in its grid, without the effect")
+                 "--retrain: config of a dataset about this plant in its grid, without the effect "
+                 "(default: the plant behind three lines and a large machine)")
       ->check(CLI::ExistingFile);
   app.add_option("--train-draws", a.training.draws, "--retrain: events simulated for each network")
       ->capture_default_str()
@@ -161,7 +159,8 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"cnn", "gru", "lstm"}));
   app.add_option(
          "--train-range", a.training.range,
-         "--retrain: the effect's parameters are drawn from 1/RANGE of to RANGE times what was fitted")
+         "--retrain: the effect's parameters are drawn from 1/RANGE of to RANGE times what was fitted; "
+         "without --dataset the machine's too, about the model's values")
       ->capture_default_str()
       ->check(CLI::Range(1.05, 100.0));
   app.add_option("--truth", a.truth,

@@ -16,11 +16,12 @@
 namespace swingbank::validate {
 
 struct RetrainOptions {
-  std::filesystem::path dataset;  ///< config of a dataset about this plant without the effect
+  std::filesystem::path dataset;  ///< config of a dataset about this plant without the effect; empty: made
   std::uint64_t draws = 4000;     ///< events simulated for each network
   std::size_t epochs = 20;
   std::string network = "cnn";
-  double range = 2.0;      ///< the effect's parameters are drawn from value / range to value * range
+  double range = 2.0;  ///< the effect's parameters are drawn from value / range to value * range, and those
+                       ///< of the machine where no dataset is given
   std::uint64_t seed = 1;  ///< of draws and training
 };
 
@@ -30,12 +31,19 @@ struct RetrainSide {
   std::filesystem::path folder, dataset, experiment, data, results;
 };
 
-/// Writes dataset.toml and experiment.toml of both sides below `folder`, the second with the effect of
+/// Writes a dataset config about the plant behind three lines and a large machine, at the operating point of
+/// an event, with .raw and .dyr; each free parameter of the machine from value / range to value * range.
+/// Returns the config's path. Throws InputError where the plant has no .dyr form.
+std::filesystem::path write_plant_grid(const std::filesystem::path& folder, const PlantModel& model,
+                                       const FitEvent& event, double range);
+
+/// Writes dataset and experiment of both sides below `folder`, the second with the effect of
 /// `added`: attached at its fitted values and varied about those that the records decide. What the networks
 /// read: P, Q, V, frequency, and speed and Ifd where every record holds them (and `added` compared them), for
 /// up to 8 s after the event. Throws InputError: a base config that is not about one varied plant of this
 /// machine model, an addition that a dataset cannot express, records that end too early.
-std::array<RetrainSide, 2> write_retrain_configs(const std::filesystem::path& folder, const Addition& added,
+std::array<RetrainSide, 2> write_retrain_configs(const std::filesystem::path& folder,
+                                                 const PlantModel& before, const Addition& added,
                                                  const std::vector<Record>& records,
                                                  const RetrainOptions& options);
 

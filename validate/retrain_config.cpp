@@ -36,8 +36,7 @@ toml::table read_base(const fs::path& file) {
 
 class Base {
  public:
-  Base(const RetrainOptions& options, const Addition& added)
-      : file_(options.dataset), table_(read_base(file_)) {
+  Base(const fs::path& config, const Addition& added) : file_(config), table_(read_base(file_)) {
     Problems problems;
     const auto say = [&](const std::string& what, const std::string& why, const std::string& remedy) {
       problems.add(what, file_.string(), why, remedy);
@@ -186,10 +185,13 @@ std::string experiment_text(const std::string& title, const std::vector<std::str
 
 }  // namespace
 
-std::array<RetrainSide, 2> write_retrain_configs(const fs::path& folder, const Addition& added,
-                                                 const std::vector<Record>& records,
+std::array<RetrainSide, 2> write_retrain_configs(const fs::path& folder, const PlantModel& before,
+                                                 const Addition& added, const std::vector<Record>& records,
                                                  const RetrainOptions& options) {
-  const Base base(options, added);
+  const fs::path config = options.dataset.empty() ? write_plant_grid(folder / "grid", before,
+                                                                     added.prepared.front(), options.range)
+                                                  : options.dataset;
+  const Base base(config, added);
   const auto channels = channels_of(added, records);
   const int seconds = seconds_of(added);
   const double start = base.fault_start();
@@ -201,7 +203,7 @@ std::array<RetrainSide, 2> write_retrain_configs(const fs::path& folder, const A
     side.name = k == 0 ? "without" : "with";
     side.folder = folder / side.name;
     side.dataset = side.folder / "dataset.toml";
-    side.experiment = side.folder / "experiment.toml";
+    side.experiment = side.folder / (side.name + ".toml");  // results bear its name
     side.data = side.folder / "data";
     side.results = side.folder / "results";
     toml::table dataset = base.table();
@@ -219,7 +221,7 @@ std::array<RetrainSide, 2> write_retrain_configs(const fs::path& folder, const A
     below(dataset, {"fault"}).insert_or_assign("start", start);
     if (k == 1) add_effect_to(dataset, base, added, options);
     std::ostringstream text;
-    text << "# Written by swingbank add --retrain from " << options.dataset.filename().string() << ".\n"
+    text << "# Written by swingbank add --retrain from " << config.filename().string() << ".\n"
          << dataset << "\n";
     write_file(side.dataset, text.str());
     write_file(side.experiment,
