@@ -78,16 +78,22 @@ std::string fleet_summary(const std::vector<FleetRow>& rows) {
 
 std::string fleet_caution(const std::vector<FleetRow>& rows) {
   double any = 0;  // expected number of effects that noise alone names
+  bool named = false;
   for (const auto& r : rows)
-    if (std::isfinite(r.chance)) any += r.chance;
-  return fmt::format(
-      "False verdicts: noise alone would name an effect at any of the plants that have one named with a "
-      "probability of at most {:.0e}. That leaves out what is worse than noise: instruments in error, "
-      "records of "
-      "another plant, effects that are not in the list. How often the diagnosis names an effect where "
-      "nothing is "
-      "missing is for the blind test to say (docs/blind-test.md).",
-      std::max(std::min(any, 1.0), 1e-12));
+    if (std::isfinite(r.chance)) any += r.chance, named = true;
+  std::string text = "False verdicts: ";
+  if (named)
+    text += fmt::format(
+        "noise alone would name an effect at any of the plants that have one named with a probability of at "
+        "most "
+        "{:.0e}. That leaves out what is worse than noise: instruments in error, records of another plant, "
+        "effects "
+        "that are not in the list. ",
+        std::clamp(any, 1e-12, 1.0));
+  return text +
+         "How often the diagnosis names an effect where nothing is missing, or misses one, is for the blind "
+         "test to say "
+         "(docs/blind-test.md).";
 }
 
 std::string fleet_text(const std::vector<FleetRow>& rows) {
