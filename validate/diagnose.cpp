@@ -17,9 +17,11 @@ namespace swingbank::validate {
 namespace {
 
 /// Rivals within this evidence cannot be told apart.
-constexpr double kApart = 12;
+constexpr double kApart = 25;
 /// Evidence that a long fit may add to a short one: what lies further behind the best is not judged.
 constexpr double kWorthJudging = 200;
+/// Share of the best one's evidence from which a rival is near it.
+constexpr double kNear = 0.7;
 /// Misfit of the base below which its reactances are near enough to measure the noise with.
 constexpr double kClose = 4;
 
@@ -29,7 +31,7 @@ bool as_good(const Judgement& j, const Judgement& best) {
   if (best.gain - j.gain < kApart) return true;
   const bool rivals = j.hypothesis.slot >= 0 && j.hypothesis.slot == best.hypothesis.slot;
   return rivals && j.hypothesis.with == best.hypothesis.with &&
-         j.fit.chi2 + j.fit.belief - best.fit.chi2 - best.fit.belief < kEvidence;
+         j.fit.chi2 + j.fit.belief - best.fit.chi2 - best.fit.belief < kApart;
 }
 
 std::string capitalised(std::string text) {
@@ -95,9 +97,7 @@ class Diagnoser {
   /// Tries every hypothesis by itself, judges the leading ones; where none holds, pairs of them.
   void search() {
     const Stage stage = model_stage();
-    Search found = try_hypotheses(stage, options_.progress);
-    result_.outrun = std::move(found.outrun);
-    result_.ranked = std::move(found.tried);
+    result_.ranked = try_hypotheses(stage, options_.progress);
     judge_leading(result_.ranked);
     if (result_.ranked.empty() || result_.ranked.front().accepted ||
         result_.base.misfit() <= options_.adequate)
@@ -128,7 +128,7 @@ class Diagnoser {
     }
     std::vector<Judgement> pairs;
     for (const Judgement* first : firsts) {
-      for (auto& pair : try_hypotheses(after(stage, *first), options_.progress).tried)
+      for (auto& pair : try_hypotheses(after(stage, *first), options_.progress))
         if (pair.gain >= kEvidence) {
           pair.gain += first->gain;
           pairs.push_back(std::move(pair));
@@ -139,25 +139,47 @@ class Diagnoser {
   }
   /// Those that might still be as good as the best, accepted ones first after it.
   void judge_leading(std::vector<Judgement>& tried) {
+    if (tried.empty()) return;
+    give_rivals_a_chance(tried);
     int leading = 0;
     while (
         leading < static_cast<int>(tried.size()) && leading < options_.leading &&
         (leading < 3 || tried[static_cast<std::size_t>(leading)].gain > tried.front().gain - kWorthJudging))
       ++leading;
-    const int slot = tried.empty() ? -1 : tried.front().hypothesis.slot;
-    int done = 0;
-    std::mutex progress;
-#pragma omp parallel for schedule(dynamic) num_threads(threads_)
-    for (int i = 0; i < leading; ++i) {
-      Judgement& j = tried[static_cast<std::size_t>(i)];
-      if (j.hypothesis.slot >= 0 && j.hypothesis.slot == slot) try_further(model_stage(), j);
-      judge(trial(), result_.base, held_out_base_, j);
-      const std::lock_guard lock(progress);
-      report("unseen events " + full_name(j.hypothesis), ++done, leading);
-    }
+    each(leading, "unseen events", tried,
+         [&](Judgement& j) { judge(trial(), result_.base, held_out_base_, j); });
     std::ranges::stable_sort(tried, [](const Judgement& x, const Judgement& y) {
       return x.accepted != y.accepted ? x.accepted : x.gain > y.gain;
     });
+  }
+
+  /// Rivals of the best in its slot are fitted from further starts, if they come near it at all.
+  void give_rivals_a_chance(std::vector<Judgement>& tried) {
+    const int slot = tried.front().hypothesis.slot;
+    if (slot < 0) return;
+    const double near = kNear * tried.front().gain;
+    const auto rivals = std::stable_partition(tried.begin(), tried.end(), [&](const Judgement& j) {
+      return j.hypothesis.slot == slot && j.gain > near;
+    });
+    const Stage stage = model_stage();
+    each(static_cast<int>(rivals - tried.begin()), "further starts", tried, [&](Judgement& j) {
+      try_further(stage, j);
+      j.gain = criterion(result_.base) - criterion(j.fit);
+    });
+    std::ranges::stable_sort(tried, std::greater<>(), &Judgement::gain);
+  }
+  /// Does something with each of the first so many, on all cores.
+  template <class F>
+  void each(int count, const std::string& what, std::vector<Judgement>& tried, F act) const {
+    int done = 0;
+    std::mutex progress;
+#pragma omp parallel for schedule(dynamic) num_threads(threads_)
+    for (int i = 0; i < count; ++i) {
+      Judgement& j = tried[static_cast<std::size_t>(i)];
+      act(j);
+      const std::lock_guard lock(progress);
+      report(what + " " + full_name(j.hypothesis), ++done, count);
+    }
   }
 
   [[nodiscard]] Trial trial() const { return {result_.events, options_.spread, options_.adequate}; }

@@ -31,7 +31,6 @@ struct Diagnosis {
   MissingInput torque, field;
   LawSearch laws;                   ///< where no known effect explains the records
   std::vector<Judgement> ranked;    ///< best first
-  std::vector<std::string> outrun;  ///< rivals of a slot that were not fitted: others answer better
   std::vector<FitEvent> events;
   double seconds = 0;
 };
@@ -41,7 +40,7 @@ struct DiagnoseOptions {
   double adequate = 1.12;  ///< chi2 per value up to which nothing but noise is left
   int threads = 0;         ///< 0: as many as there are cores
   bool measured_states = true;
-  int leading = 8;  ///< hypotheses at most that are judged on events left out
+  int leading = 9;  ///< hypotheses at most that are judged on events left out
   int firsts = 2;   ///< hypotheses that a second one is tried beside, where none holds by itself
   /// Called with what is done, done and total; may be empty.
   std::function<void(const std::string& what, int done, int total)> progress;

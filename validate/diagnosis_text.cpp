@@ -33,10 +33,6 @@ void add_hypotheses(const Diagnosis& d, std::string& text) {
   }
   if (d.ranked.size() > kShown)
     text += fmt::format("and {} more that explain less\n", d.ranked.size() - kShown);
-  if (d.outrun.empty()) return;
-  text += "not fitted, because others of their slot answer better from the start:";
-  for (const auto& name : d.outrun) text += " " + name;
-  text += "\n";
 }
 void add_parameters(const Diagnosis& d, std::string& text) {
   const bool named = !d.ranked.empty() && d.ranked.front().accepted;

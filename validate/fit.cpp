@@ -200,15 +200,17 @@ class Search {
   void collect_parameters(Fit& fit) const {
     const auto n = static_cast<Eigen::Index>(z_.size());
     if (n == 0) return;
-    Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(n, n);
-    for (std::size_t e = 0; e < costs_.size(); ++e) add_curvature(e, curvature);
-    Eigen::MatrixXd with_belief = curvature;
+    Eigen::MatrixXd with_belief = Eigen::MatrixXd::Zero(n, n);
+    if (options_.errors)
+      for (std::size_t e = 0; e < costs_.size(); ++e) add_curvature(e, with_belief);
     for (Eigen::Index i = 0; i < n; ++i) {
       const double spread = setting_.axes[static_cast<std::size_t>(i)].spread();
       if (spread > 0) with_belief(i, i) += 1 / (spread * spread);
       fit.belief += spread > 0 ? std::pow(z_[static_cast<std::size_t>(i)] / spread, 2) : 0.0;
     }
-    const Eigen::MatrixXd covariance = with_belief.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+    const Eigen::MatrixXd covariance =
+        options_.errors ? Eigen::MatrixXd(with_belief.ldlt().solve(Eigen::MatrixXd::Identity(n, n)))
+                        : Eigen::MatrixXd::Constant(n, n, std::nan(""));
     for (Eigen::Index i = 0; i < n; ++i) {
       const Axis& a = setting_.axes[static_cast<std::size_t>(i)];
       const double z = z_[static_cast<std::size_t>(i)];

@@ -79,6 +79,7 @@ struct FitOptions {
   std::vector<EventState> start = {};  ///< of the events; empty: as prepared
   std::vector<double> values = {};     ///< of the free parameters, to start from; empty: the plant's
   InputKind input = InputKind::none;   ///< fitted too, on the knots of `start`'s inputs
+  bool errors = true;                  ///< of the parameters too: one more look at all slopes
   double bend = 0.01;                  ///< second difference that the input is believed to have [pu]
 };
 

@@ -143,7 +143,7 @@ FleetRow row_of(const Diagnosis& d) {
   const Judgement& best = d.ranked.front();
   if (!best.accepted) return row;
   row.evidence = best.gain;
-  const int tried = static_cast<int>(d.ranked.size() + d.outrun.size());
+  const int tried = static_cast<int>(d.ranked.size());
   row.chance = chance_of(best.gain, best.fit.fitted - d.base.fitted, best.fit.values, tried);
   double before = 0, after = 0;
   for (const auto& h : best.held_out) {

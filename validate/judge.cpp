@@ -10,6 +10,10 @@ namespace {
 
 /// An event in which the effect hardly acts may be predicted worse by this, the refit's own scatter.
 constexpr double kWorse = 1.02;
+/// chi2 per value up to which an unseen event is predicted: 1.3 times the noise; or its share of what it was.
+constexpr double kPredicts = 1.69, kFalls = 0.1;
+/// A finished fit is taken for a short one, which has no errors, unless its criterion is worse by this.
+constexpr double kSame = 0.5;
 
 }  // namespace
 
@@ -41,6 +45,7 @@ std::vector<HeldOut> hold_out(const Trial& trial, const sim::Plant& plant,
     std::vector<FitEvent> others;
     FitOptions o;
     o.iterations = 6;
+    o.errors = false;
     for (std::size_t e = 0; e < trial.events.size(); ++e)
       if (e != left) {
         others.push_back(trial.events[e]);
@@ -65,7 +70,7 @@ void judge(const Trial& trial, const Fit& base, const std::vector<HeldOut>& held
   o.values = values_of(j.fit.plant, free);
   for (const auto& e : j.fit.events) o.start.push_back(e.state);
   if (Fit f = fit(j.hypothesis.plant, j.hypothesis.conventions, trial.events, free, o);
-      f.failed.empty() && criterion(f) < criterion(j.fit))
+      f.failed.empty() && criterion(f) < criterion(j.fit) + kSame)
     j.fit = std::move(f);
   j.gain = criterion(base) - criterion(j.fit);
   j.size = std::sqrt(std::max(0.0, base.chi2 - j.fit.chi2));
@@ -78,6 +83,11 @@ void judge(const Trial& trial, const Fit& base, const std::vector<HeldOut>& held
   for (const auto& h : j.held_out)
     if (h.after > kWorse * h.before && h.after > trial.adequate) {
       j.why_not = fmt::format("does not improve {} when that is not fitted", h.record);
+      return;
+    }
+  for (const auto& h : j.held_out)
+    if (h.after > kPredicts && h.after > kFalls * h.before) {
+      j.why_not = fmt::format("does not predict {} when that is not fitted", h.record);
       return;
     }
   if (j.fit.misfit() > trial.adequate) {

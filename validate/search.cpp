@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <mutex>
 
 #include "validate/instruments.hpp"
@@ -13,19 +12,17 @@ namespace swingbank::validate {
 namespace {
 
 /// Misfit at which a first start needs no second.
-constexpr double kSettled = 1.3;
+constexpr double kSettled = 1.03;
 /// Misfit of the stage below which what is missing is small.
 constexpr double kNested = 4;
-/// Rivals of one slot that are fitted: those whose starts answer best, and the simplest.
-constexpr std::size_t kRivals = 4;
 
-/// A hypothesis with its starts in order of what they leave, before any fit.
+/// A hypothesis with its starts: its standard values, then draws in order of what they leave before any fit.
+/// What leaves least may be what hardly acts.
 struct Candidate {
   Hypothesis hypothesis;
   std::vector<sim::Plant> starts;
   std::vector<double> nested =
-      {};                 ///< free parameters: the stage as fitted, and the start that suits it best
-  double misfit = 1e300;  ///< of the best start
+      {};  ///< free parameters: the stage as fitted, and the start that suits it best
 };
 
 /// Index in `plant` of the block with that effect.
@@ -39,7 +36,7 @@ class Searcher {
  public:
   Searcher(const Stage& stage, const SearchProgress& report) : stage_(stage), report_(report) {}
 
-  Search run() {
+  std::vector<Judgement> run() {
     const auto candidates = screened();
     std::vector<Judgement> tried(candidates.size());
     int done = 0;
@@ -52,13 +49,12 @@ class Searcher {
     }
     std::erase_if(tried, [](const Judgement& j) { return j.fit.events.empty(); });
     std::ranges::sort(tried, std::greater<>(), &Judgement::gain);
-    found_.tried = std::move(tried);
-    return std::move(found_);
+    return tried;
   }
 
  private:
-  /// Every hypothesis that acts here, without those that rivals of their slot outrun.
-  std::vector<Candidate> screened() {
+  /// Every hypothesis that acts here.
+  std::vector<Candidate> screened() const {
     auto all = all_hypotheses(stage_.plant, stage_.conventions);
     std::vector<Candidate> candidates(all.size());
     int done = 0;
@@ -71,25 +67,7 @@ class Searcher {
       report("hypotheses", ++done, all.size());
     }
     std::erase_if(candidates, [](const Candidate& c) { return c.starts.empty(); });
-    std::ranges::stable_sort(candidates, {}, &Candidate::misfit);
-    return without_outrun(std::move(candidates));
-  }
-  std::vector<Candidate> without_outrun(std::vector<Candidate> candidates) {
-    std::map<int, std::vector<const Candidate*>> rivals;
-    for (const auto& c : candidates)
-      if (c.hypothesis.slot >= 0) rivals[c.hypothesis.slot].push_back(&c);
-    std::vector<Candidate> kept;
-    for (auto& c : candidates) {
-      const auto& those = rivals[c.hypothesis.slot];
-      const auto size = [](const Candidate* r) { return r->hypothesis.free.size(); };
-      const bool simplest = !those.empty() && *std::ranges::min_element(those, {}, size) == &c;
-      const auto rank = std::ranges::find(those, &c) - those.begin();
-      if (c.hypothesis.slot < 0 || simplest || rank < static_cast<std::ptrdiff_t>(kRivals))
-        kept.push_back(c);
-      else
-        found_.outrun.push_back(c.hypothesis.name);
-    }
-    return kept;
+    return candidates;
   }
   /// What earlier stages brought is free in this hypothesis too.
   void bring(Hypothesis& h) const {
@@ -114,10 +92,9 @@ class Searcher {
       Start s{0, started(h, values)};
       if (answer(s.plant, h, s.misfit, acts)) starts.push_back(std::move(s));
     }
-    std::ranges::sort(starts, {}, &Start::misfit);
+    if (!starts.empty()) std::ranges::sort(starts.begin() + 1, starts.end(), {}, &Start::misfit);
     if (acts && !starts.empty()) {
       nest(h, c);
-      c.misfit = starts.front().misfit;
       for (auto& s : starts) c.starts.push_back(std::move(s.plant));
     }
     c.hypothesis = std::move(h);
@@ -139,7 +116,7 @@ class Searcher {
       c.nested = values_of(plant, free_of(h, stage_.spread));
     }
   }
-  /// A short fit from the best start, and from others if that does not settle it.
+  /// A short fit from the first start, and from another if that does not settle it.
   Judgement quick(const Candidate& c) const {
     Judgement j;
     const auto free = free_of(c.hypothesis, stage_.spread);
@@ -149,6 +126,7 @@ class Searcher {
     };
     FitOptions o;
     o.iterations = 8;
+    o.errors = false;
     const std::size_t tries = std::min<std::size_t>(c.starts.size(), 2);
     for (std::size_t k = 0; k < tries && (k == 0 || j.fit.events.empty() || j.fit.misfit() > kSettled); ++k)
       attempt(k, o);
@@ -215,12 +193,11 @@ class Searcher {
 
   const Stage& stage_;
   const SearchProgress& report_;
-  Search found_;
 };
 
 }  // namespace
 
-Search try_hypotheses(const Stage& stage, const SearchProgress& report) {
+std::vector<Judgement> try_hypotheses(const Stage& stage, const SearchProgress& report) {
   return Searcher(stage, report).run();
 }
 
@@ -229,6 +206,7 @@ void try_further(const Stage& stage, Judgement& j) {
   const auto free = free_of(j.hypothesis, stage.spread);
   FitOptions o;
   o.iterations = 10;
+  o.errors = false;
   for (std::size_t k = 0; k < std::min(kFurther, j.starts.size()); ++k)
     if (Fit f = fit(j.starts[k], j.hypothesis.conventions, stage.events, free, o);
         f.failed.empty() && criterion(f) < criterion(j.fit))

@@ -24,12 +24,8 @@ struct Stage {
   int threads = 1;
 };
 
-struct Search {
-  std::vector<Judgement> tried;     ///< fitted, not judged; best first. `gain` is over the stage's fit.
-  std::vector<std::string> outrun;  ///< rivals of a slot that were not fitted: others answer better
-};
-
-Search try_hypotheses(const Stage& stage, const SearchProgress& report = {});
+/// Fitted, not judged; best first. `gain` is over the stage's fit.
+std::vector<Judgement> try_hypotheses(const Stage& stage, const SearchProgress& report = {});
 
 /// Fits `j`, as try_hypotheses left it, from further starts: rivals of the best of a slot must not lose by a
 /// poor start.
