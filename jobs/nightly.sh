@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Reproduces the tables with the preset `nightly`, keeps a dated report and says what moved since the nights before.
 #   bash jobs/nightly.sh [--out FOLDER] [--date YYYY-MM-DD] [--preset NAME] [--seed N] [--keep-data] [--fuzz SECONDS]
-#                        [EXPERIMENT...]
+#                        [--blind CASES] [EXPERIMENT...]
 #     --out        default out/nightly; one folder per night in it, `latest` points to the last one
 #     --date       default today; a night that was broken off goes on when started again on its date
 #     --preset     default nightly
@@ -9,12 +9,14 @@
 #                  then show how much a result moves by itself
 #     --keep-data  keeps the simulated events (gigabytes; the same config makes the same bytes again)
 #     --fuzz       time of each fuzz target of the readers, after the tables; default 600, 0 leaves them out
+#     --blind      cases of a blind test of the diagnosis with the night's seed, after the fuzz targets; default 25,
+#                  0 leaves it out
 #     EXPERIMENT   default every file of configs/experiments
 # Exit codes: 0 done, 1 failed, 2 saved on a signal.
 set -euo pipefail
 
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-out=$source_folder/out/nightly date=$(date +%F) preset=nightly seed='' keep_data=0 fuzz=600 experiments=()
+out=$source_folder/out/nightly date=$(date +%F) preset=nightly seed='' keep_data=0 fuzz=600 blind=25 experiments=()
 tries=3 pause=${SWINGBANK_NIGHTLY_PAUSE:-60} # [s] between tries
 while (($#)); do
   case $1 in
@@ -24,7 +26,8 @@ while (($#)); do
     --seed) seed=${2:?--seed needs a number}; shift 2 ;;
     --keep-data) keep_data=1; shift ;;
     --fuzz) fuzz=${2:?--fuzz needs seconds}; shift 2 ;;
-    -h | --help) sed -n '2,13p' "$0"; exit 0 ;;
+    --blind) blind=${2:?--blind needs a number of cases}; shift 2 ;;
+    -h | --help) sed -n '2,15p' "$0"; exit 0 ;;
     -*) echo "unknown option at '$1' (jobs/nightly.sh does not have it): run it with --help" >&2; exit 1 ;;
     *) experiments+=("$(realpath -m "$1")"); shift ;;
   esac
@@ -73,6 +76,14 @@ run_all() {
   done
 }
 
+# A part of the blind test (docs/blind-test.md); what is made and judged stays when it is broken off.
+blind_test() {
+  local swingbank=$build/bin/swingbank configs=$source_folder/configs/blind run=$night/blind
+  "$swingbank" blind-test --config "$configs/cases.toml" --out "$run" --make "$blind" --seed "$seed" &&
+    "$swingbank" blind-test --out "$run" --diagnose &&
+    "$swingbank" blind-test --out "$run" --score --targets "$configs/targets.toml"
+}
+
 if [[ -z ${SWINGBANK_BUILD:-} ]]; then bash "$source_folder/jobs/setup.sh" 9>&-; fi
 exec > >(exec tee -a "$night/log.txt" 9>&-) 2>&1
 status=0
@@ -89,6 +100,10 @@ if [[ $fuzz != 0 ]]; then
     printf '\n## Fuzz targets\n\n'
     bash "$source_folder/tests/fuzz/run.bash" "$fuzz" 2>&1 | sed 's/^/- /' || status=1
   } >>"$night/report.md"
+fi
+if [[ $blind != 0 ]]; then
+  blind_test || status=1
+  { printf '\n## Blind test, seed %s\n\n' "$seed" && sed '1,2d;s/^## /### /' "$night/blind/score.md"; } >>"$night/report.md" || status=1
 fi
 cat "$night/report.md"
 echo "report: $night/report.md"

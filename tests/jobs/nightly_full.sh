@@ -6,7 +6,7 @@ export SWINGBANK_BUILD=${SWINGBANK_BIN%/bin} SWINGBANK_NIGHTLY_PAUSE=0 OMP_NUM_T
 
 TINY_DRAWS=120 tiny_experiment "$work"
 out=$work/nights
-night() { bash "$SWINGBANK_SOURCE/jobs/nightly.sh" --out "$out" --preset quick --fuzz 0 --date "$@" </dev/null; }
+night() { bash "$SWINGBANK_SOURCE/jobs/nightly.sh" --out "$out" --preset quick --fuzz 0 --blind "${BLIND:-0}" --date "$@" </dev/null; }
 
 night 2026-02-01 "$work/tiny.toml" >"$work/log" 2>&1 || fail "first night: $(tail "$work/log")"
 grep -q '| V | gru | 30 | quick | .* | new |' "$out/2026-02-01/report.md" || fail "report: $(cat "$out/2026-02-01/report.md")"
@@ -23,6 +23,10 @@ night 2026-02-02 --keep-data "$work/tiny.toml" >"$work/log" 2>&1 || fail "second
 grep -q 'no verdict before 3 nights' "$out/2026-02-02/report.md" || fail "report: $(cat "$out/2026-02-02/report.md")"
 first=$(find "$out/2026-02-01" -name '*gen30.json') second=$(find "$out/2026-02-02" -name '*gen30.json')
 [[ $(basename "$first") != "$(basename "$second")" ]] || fail "both nights trained with the same seed"
+
+# A night with a blind case: it is made, judged, counted.
+BLIND=1 night 2026-02-02 "$work/tiny.toml" >"$work/log" 2>&1 || fail "night with a blind case: $(tail "$work/log")"
+grep -q '^1 cases judged, 0 without a verdict' "$out/2026-02-02/report.md" || fail "report: $(cat "$out/2026-02-02/report.md")"
 
 exec 8>"$out/.lock"
 flock 8
