@@ -42,3 +42,31 @@ with h5py.File(folder + "/lanes.h5") as lanes, h5py.File(folder + "/reference.h5
     difference = np.abs(lanes["records"][:] - reference["records"][:]).max()
     assert difference < 1e-4, difference  # what the lanes promise
 PYTHON
+
+# Unbalanced faults by hand: two machines at no load and 1 pu (X'' = 0.2 and 0.3 pu), a line of 0.1 pu between
+# them, a fault at the second. Z1 = Z2 = (0.2 + 0.1) parallel to 0.3 = j0.15 pu, Z0 = j0.05 pu. The positive
+# sequence sees Z2 + Z0 = 0.2 (line to ground), Z2 = 0.15 (two-phase), Z2 parallel to Z0 = 0.0375 pu (two-phase
+# to ground), and V = Zf/(Z1 + Zf) just after the fault: 4/7, 1/2, 1/5 pu.
+{
+  printf '%s\n' "0, 100.0, 33, 0, 0, 60.0" "two machines" "at no load"
+  printf '%s\n' "1,'A',20.0,3,1,1,1,1.0,0.0" "2,'B',20.0,2,1,1,1,1.0,0.0" "0 /" "0 /" "0 /"
+  printf '%s\n' "1,'1',0,0,99,-99,1.0,0,100,0,0.2" "2,'1',0,0,99,-99,1.0,0,100,0,0.3" "0 /"
+  printf '%s\n' "1,2,'1',0.0,0.1" "0 /"
+  for _ in {1..14}; do echo "0 /"; done
+  echo Q
+} >"$work/pair.raw"
+printf '%s\n' "1 'GENCLS' 1 5.0 0.0 /" "2 'GENCLS' 1 5.0 0.0 /" >"$work/pair.dyr"
+# at_fault VOLTAGE OPTIONS...: V of bus 2 just after the fault
+at_fault() {
+  local expected=$1 found
+  shift
+  "$swingbank" simulate --raw "$work/pair.raw" --dyr "$work/pair.dyr" --t-end 0.5 --rate 100 --fault 2:0.1:0.2 \
+    --after-switching --channels V --buses 2 --out "$work/pair.csv" "$@" >/dev/null
+  found=$(awk -F, '$1 == 0.1 { print $4 }' "$work/pair.csv")
+  awk -v a="$found" -v b="$expected" 'BEGIN { d = a - b; exit !(a != "" && d * d < 1e-18) }' || # CSV: 12 digits
+    fail "V = $found pu instead of $expected pu with $*"
+}
+at_fault 0.571428571429 --fault-type slg --z0 0:0.05
+at_fault 0.5 --fault-type ll
+at_fault 0.2 --fault-type llg --z0 0:0.05
+at_fault 0 --fault-type 3ph
