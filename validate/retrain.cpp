@@ -103,16 +103,25 @@ void leave(const sim::Plant& plant, const sim::Conventions& conventions, const F
 std::string figure(double value) {
   return std::isfinite(value) ? fmt::format("{:.3g}", value) : "cannot be run";
 }
+std::string power(double rms) {
+  return std::isfinite(rms) ? fmt::format("{:.3g} MW, Mvar", rms) : "cannot be run";
+}
 
 std::string sentence_of(const Retrained& r, const Addition& added) {
-  return fmt::format(
-      "On events not fitted, the network without {0} misses the {1} by {2:.3g} standard deviations of the "
-      "values "
-      "drawn, the one with it by {3:.3g}: {4:.3g} times less (the middle of the intervals by {5:.3g}). With "
-      "its "
-      "estimates P and Q are missed by {6} instead of {7} MW or Mvar rms.",
+  std::string text = fmt::format(
+      "On events not fitted, the network without {} misses the {} by {:.3g} standard deviations of the "
+      "values drawn, "
+      "the one with it by {:.3g}: {:.3g} times less (the middle of the intervals by {:.3g}).",
       added.hypothesis.name, r.truth ? "true parameters" : "fitted parameters", r.error[0], r.error[1],
-      r.fall(), r.middle, figure(r.rms[1]), figure(r.rms[0]));
+      r.fall(), r.middle);
+  if (r.error[1] > r.middle)
+    text +=
+        " That is no better than the middle: train it on more (--train-draws, --train-epochs) before "
+        "trusting it.";
+  if (!std::isfinite(r.rms[1])) return text + " With its estimates the plant cannot be run.";
+  return text + fmt::format(" With its estimates P and Q are missed by {} rms; with those of the other {}.",
+                            power(r.rms[1]),
+                            std::isfinite(r.rms[0]) ? "by " + power(r.rms[0]) : "the plant cannot be run");
 }
 
 }  // namespace
@@ -186,8 +195,8 @@ std::string terminal_report(const Retrained& r) {
   for (const auto& e : r.events)
     events.rows.push_back({e.record, e.seen ? "fitted" : "UNSEEN",
                            fmt::format("{:.2f}", e.parameter_error[0]),
-                           fmt::format("{:.2f}", e.parameter_error[1]), figure(e.rms[0]) + " MW, Mvar",
-                           figure(e.rms[1]) + " MW, Mvar", figure(e.misfit[0]), figure(e.misfit[1])});
+                           fmt::format("{:.2f}", e.parameter_error[1]), power(e.rms[0]), power(e.rms[1]),
+                           figure(e.misfit[0]), figure(e.misfit[1])});
   return r.sentence +
          "\n\nEstimates on the unseen events; errors in standard deviations of the values drawn:\n" +
          aligned(t) + "\nP and Q with each network's estimates from the fitted events:\n" + aligned(events);
