@@ -122,7 +122,8 @@ std::vector<Cell> mean_row(const TableBlock& block) {
 std::string heading(const TableBlock& block) {
   const auto rank = table_rank(block.table);
   const bool of_thesis = rank < kThesisTables.size();
-  std::string text = of_thesis ? fmt::format("Table {}: {}", block.table, kThesisTables[rank].title) : block.table;
+  std::string text =
+      of_thesis ? fmt::format("Table {}: {}", block.table, kThesisTables[rank].title) : block.table;
   if (!block.network.empty()) text += ", " + upper(block.network);
   if (block.shuffled) text += " — control run with shuffled labels";
   return text;
@@ -202,7 +203,8 @@ std::vector<TableBlock> group_results(std::vector<RunResult> results) {
 }
 
 Table score_table(const TableBlock& block) {
-  const bool left_out = std::ranges::any_of(expected_rows(block), [](const RowKey& k) { return k.generator > 0; });
+  const bool left_out =
+      std::ranges::any_of(expected_rows(block), [](const RowKey& k) { return k.generator > 0; });
   Table table{heading(block) + ". " + made_with(block),
               {left_out ? "generator" : "network", "MSE", "thesis MSE", "predict-the-mean MSE",
                "MSE / predict-the-mean", "the same, H alone", "MSE without constant parameters",
