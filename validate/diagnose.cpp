@@ -30,8 +30,7 @@ constexpr double kClose = 4;
 bool as_good(const Judgement& j, const Judgement& best) {
   if (best.gain - j.gain < kApart) return true;
   const bool rivals = j.hypothesis.slot >= 0 && j.hypothesis.slot == best.hypothesis.slot;
-  return rivals && j.hypothesis.with == best.hypothesis.with &&
-         j.fit.chi2 + j.fit.belief - best.fit.chi2 - best.fit.belief < kApart;
+  return rivals && j.hypothesis.with == best.hypothesis.with && j.fit.chi2 - best.fit.chi2 < kApart;
 }
 
 std::string capitalised(std::string text) {
@@ -85,11 +84,16 @@ class Diagnoser {
     report("base", 1, 1);
   }
   void infer_inputs() {
+    FitOptions from;  // parameters bent far out of shape are no start
+    if (result_.base.misfit() < kClose) {
+      from.values = values_of(result_.base.plant, free_parameters(model_.plant, options_.spread));
+      for (const auto& e : result_.base.events) from.start.push_back(e.state);
+    }
 #pragma omp parallel for schedule(dynamic) num_threads(threads_)
     for (int i = 0; i < 2; ++i) {
       MissingInput& m = i == 0 ? result_.torque : result_.field;
       m = infer_input(i == 0 ? InputKind::torque : InputKind::field, model_.plant, model_.conventions,
-                      result_.events, options_.spread, {});
+                      result_.events, options_.spread, from);
     }
     report("missing input", 1, 1);
   }
@@ -186,7 +190,8 @@ class Diagnoser {
 
   void settle() {
     const auto& r = result_.ranked;
-    const bool quiet = result_.base.misfit() <= options_.adequate;
+    const bool quiet =
+        result_.base.misfit() <= options_.adequate && !earns(result_.torque) && !earns(result_.field);
     if (!r.empty() && r.front().accepted) return name_best();
     if (quiet) {
       result_.verdict = Verdict::adequate;
@@ -211,6 +216,13 @@ class Diagnoser {
       result_.side = result_.laws.found()->judgement.hypothesis.side;
       result_.sentence = law_sentence(result_.laws, r.size());
     }
+  }
+  /// Whether a free input explains more than as many free numbers explain of noise: twice over, by Akaike's
+  /// criterion (1974).
+  [[nodiscard]] bool earns(const MissingInput& m) const {
+    std::size_t knots = 0;
+    for (const auto& e : m.fit.events) knots += e.state.input.t.size();
+    return result_.base.chi2 - m.fit.chi2 > 2.0 * static_cast<double>(knots);
   }
   void name_best() {
     const Judgement& best = result_.ranked.front();

@@ -36,8 +36,20 @@ std::vector<double> prominence(const std::vector<Complex>& step) {
 struct Smear {
   std::size_t first, last;
 };
+/// Leaves out what moves beside the jump: in a short fault the voltage drifts, step after like step.
+Smear trimmed(const std::vector<Complex>& step, Smear jump, double limit) {
+  double largest = 0;
+  for (std::size_t i = jump.first; i <= jump.last; ++i) largest = std::max(largest, std::abs(step[i]));
+  const auto belongs = [&](std::size_t i) {
+    const double beside = std::min(std::abs(step[i] - step[i - 1]), std::abs(step[i] - step[i + 1]));
+    return std::abs(step[i]) > 0.3 * largest || beside > limit;
+  };
+  while (jump.first < jump.last && !belongs(jump.first)) ++jump.first;
+  while (jump.first < jump.last && !belongs(jump.last)) --jump.last;
+  return jump;
+}
 /// A short fault's two jumps may have run together: they go opposite ways.
-std::vector<Smear> told_apart(const std::vector<Complex>& step, Smear both) {
+std::vector<Smear> told_apart(const std::vector<Complex>& step, Smear both, double limit) {
   constexpr double kBack = -0.15, kOn = 0.05;  // of the first jump's largest step
   Complex onward = step[both.first];
   for (std::size_t i = both.first; i <= std::min(both.first + 2, both.last); ++i)
@@ -47,11 +59,11 @@ std::vector<Smear> told_apart(const std::vector<Complex>& step, Smear both) {
   };
   std::size_t back = both.first;
   while (back <= both.last && along(back) > kBack) ++back;
-  if (back > both.last) return {both};
+  if (back > both.last) return {trimmed(step, both, limit)};
   std::size_t end = both.first;
   for (std::size_t i = both.first; i < back; ++i)
     if (along(i) > kOn) end = i;
-  return {{both.first, end}, {back, both.last}};
+  return {trimmed(step, {both.first, end}, limit), trimmed(step, {back, both.last}, limit)};
 }
 
 bool any_smeared(const Record& record, double threshold) {
@@ -130,7 +142,7 @@ std::vector<Switching> find_switchings(const Record& record, double threshold, b
       while (last + 1 < d.size() && d[last + 1] > limit) ++last;
     }
     // samples first + 1 .. last lie inside the jump
-    for (const Smear& jump : told_apart(step, {k, last})) {
+    for (const Smear& jump : told_apart(step, {k, last}, limit)) {
       const bool spread = jump.last > jump.first || always;
       const double from = record.t[jump.first], to = record.t[jump.last + 1];
       found.push_back({(from + to) / 2, (to - from) / 2 + (spread ? record.step() : 0.0)});

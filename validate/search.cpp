@@ -11,8 +11,10 @@
 namespace swingbank::validate {
 namespace {
 
-/// Misfit at which a first start needs no second.
-constexpr double kSettled = 1.03;
+/// Starts that are tried, and steps of the fits: from each, from the best two of them, and from the stage's
+/// fit.
+constexpr std::size_t kTries = 4;
+constexpr int kFirstSteps = 4, kMoreSteps = 8, kNestedSteps = 12;
 /// Misfit of the stage below which what is missing is small.
 constexpr double kNested = 4;
 
@@ -30,6 +32,14 @@ int block_with(const sim::Plant& plant, const sim::Effect& effect) {
   int block = 0;
   while (&block_effect(plant, block) != &effect) ++block;
   return block;
+}
+
+/// Where `f` ended, its beliefs as they were.
+FitOptions continued(FitOptions o, const Fit& f, const std::vector<FreeParameter>& free) {
+  o.values = values_of(f.plant, free);
+  o.start.clear();
+  for (const auto& e : f.events) o.start.push_back(e.state);
+  return o;
 }
 
 class Searcher {
@@ -116,31 +126,46 @@ class Searcher {
       c.nested = values_of(plant, free_of(h, stage_.spread));
     }
   }
-  /// A short fit from the first start, and from another if that does not settle it.
+  /// From the standard values, and from the draw that a few steps show to be the best. The standard ones are
+  /// not left out for being slow: draws that hardly act always look better at first.
   Judgement quick(const Candidate& c) const {
     Judgement j;
     const auto free = free_of(c.hypothesis, stage_.spread);
-    const auto attempt = [&](std::size_t start, const FitOptions& o) {
-      Fit f = fit(c.starts[start], c.hypothesis.conventions, stage_.events, free, o);
-      if (f.failed.empty() && (j.fit.events.empty() || criterion(f) < criterion(j.fit))) j.fit = std::move(f);
+    const auto attempt = [&](const sim::Plant& start, const FitOptions& o) {
+      return fit(start, c.hypothesis.conventions, stage_.events, free, o);
     };
     FitOptions o;
-    o.iterations = 8;
     o.errors = false;
-    const std::size_t tries = std::min<std::size_t>(c.starts.size(), 2);
-    for (std::size_t k = 0; k < tries && (k == 0 || j.fit.events.empty() || j.fit.misfit() > kSettled); ++k)
-      attempt(k, o);
-    const bool worse = j.fit.events.empty() || criterion(j.fit) > criterion(stage_.fit);
-    if (!c.nested.empty() && (worse || stage_.fit.misfit() < kNested)) {
-      o.iterations = 12;
-      o.values = c.nested;
-      for (const auto& e : stage_.fit.events) o.start.push_back(e.state);
-      attempt(0, o);
+    o.iterations = kFirstSteps;
+    std::vector<Fit> fits;
+    const sim::Plant* best = nullptr;
+    Fit first;
+    const std::size_t tries = std::min(c.starts.size(), kTries);
+    for (std::size_t k = 1; k < tries; ++k) {
+      Fit f = attempt(c.starts[k], o);
+      if (!f.failed.empty() || (best && criterion(f) >= criterion(first))) continue;
+      first = std::move(f);
+      best = &c.starts[k];
     }
-    if (!j.fit.events.empty()) j.gain = criterion(stage_.fit) - criterion(j.fit);
+    o.iterations = kMoreSteps;  // beliefs are about the start, not about where its first steps led
+    if (best) fits.push_back(attempt(*best, continued(o, first, free)));
+    o.iterations = kFirstSteps + kMoreSteps;
+    fits.push_back(attempt(c.starts.front(), o));
+    std::erase_if(fits, [](const Fit& f) { return !f.failed.empty(); });
+    const bool worse =
+        fits.empty() || criterion(*std::ranges::min_element(fits, {}, criterion)) > criterion(stage_.fit);
+    if (!c.nested.empty() && (worse || stage_.fit.misfit() < kNested)) {
+      o.iterations = kNestedSteps;
+      o.values = c.nested;
+      o.start.clear();
+      for (const auto& e : stage_.fit.events) o.start.push_back(e.state);
+      if (Fit f = attempt(c.starts.front(), o); f.failed.empty()) fits.push_back(std::move(f));
+    }
     j.hypothesis = c.hypothesis;
-    if (c.starts.size() > tries)
-      j.starts.assign(c.starts.begin() + static_cast<std::ptrdiff_t>(tries), c.starts.end());
+    j.starts.assign(c.starts.begin() + static_cast<std::ptrdiff_t>(tries), c.starts.end());
+    if (fits.empty()) return j;
+    j.fit = std::move(*std::ranges::min_element(fits, {}, criterion));
+    j.gain = criterion(stage_.fit) - criterion(j.fit);
     return j;
   }
   /// Misfit of a start, everything else as in the model; whether it acts at all.
