@@ -86,7 +86,8 @@ std::string fleet_caution(const std::vector<FleetRow>& rows) {
     text += fmt::format(
         "noise alone would name an effect at any of the plants that have one named with a probability of at "
         "most "
-        "{:.0e}. That leaves out what is worse than noise: instruments in error, records of another plant, "
+        "{:.0e}. That leaves out noise of the played-in voltage, instruments in error, records of another "
+        "plant, "
         "effects "
         "that are not in the list. ",
         std::clamp(any, 1e-12, 1.0));

@@ -77,26 +77,3 @@ same_table "$work/whole" "$work/soft"
 sed -i 's/^0.05,[^,]*/0.05,1.045/' "$work/records/e4.csv"
 expect 1 fleet "$work/fleet.toml" "$work/soft"
 (($(grep -c 'was there already' "$work/soft.log") == 1)) || fail "what changed: $(cat "$work/soft.log")"
-
-# nothing is missing: exit code 0
-networks=$SWINGBANK_SOURCE/configs/networks
-for bus in 4 9; do
-  "$swingbank" simulate --raw "$networks/ieee14_genrou.raw" --dyr "$networks/ieee14_genrou.dyr" --t-end 6 --rate 60 \
-    --fault "$bus:2:2.1" --plants 2 --channels V,theta,P,Q --measure NOISE:relative=0.001,angle=0.0002 \
-    --measure-seed "$bus" --out "$work/records/sound$bus.h5" >/dev/null
-done
-cat >"$work/grid.toml" <<TOML
-[plant]
-name = "bus 2"
-frequency_hz = 60.0
-conventions = "psse"
-[record]
-base_mva = 100.0
-[grid]
-raw = "$networks/ieee14_genrou.raw"
-dyr = "$networks/ieee14_genrou.dyr"
-bus = 2
-TOML
-printf '[plant.sound]\nmodel = "grid.toml"\nrecords = ["records/sound*.h5"]\n' >"$work/sound.toml"
-expect 0 fleet "$work/sound.toml" "$work/sound"
-grep -q '1 plant: 1 adequate' "$work/table" || fail "table: $(cat "$work/table")"
