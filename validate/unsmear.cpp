@@ -77,7 +77,10 @@ struct Segment {
 /// Least squares for mean and slope with the instants given.
 Segment solved(const std::vector<SplitAverage>& averages, const std::vector<Complex>& measured, double centre,
                double a, double b) {
-  Segment s{.a = a, .b = b, .centre = centre};
+  Segment s;
+  s.a = a;
+  s.b = b;
+  s.centre = centre;
   double mm = 0, ms = 0, ss = 0;
   Complex m = 0, t = 0;
   std::vector<SplitAverage::Row> rows;
