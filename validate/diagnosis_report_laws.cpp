@@ -107,13 +107,12 @@ void laws_on_page(const Diagnosis& d, Page& page) {
   add_courses(d, page);
   add_scatters(d, page);
   Table table{
-      "", {"law", "what", "share of the input", "evidence", "error left", "unseen events", "judged"}, {}};
+      "", {"law", "share of the input", "evidence", "error left", "unseen events", "judged", "what"}, {}};
   for (const auto& f : s.findings)
-    table.rows.push_back({f.judgement.hypothesis.name, f.words,
-                          fmt::format("{:.0f} %", 100 * f.law.explained),
+    table.rows.push_back({f.judgement.hypothesis.name, fmt::format("{:.0f} %", 100 * f.law.explained),
                           fmt::format("{:.1f}", f.judgement.gain),
                           fmt::format("{:.2f} ×", std::sqrt(f.judgement.fit.misfit())), unseen_words(f),
-                          f.judgement.accepted ? "accepted" : f.judgement.why_not});
+                          f.judgement.accepted ? "accepted" : f.judgement.why_not, f.words});
   if (!table.rows.empty()) page.table(table);
 }
 
