@@ -34,6 +34,8 @@ class ReducedSystem {
     for (const Seed& seed : seeds_)
       p.push_back(value_of(grid_.plants[static_cast<std::size_t>(seed.plant)], seed));
   }
+  ReducedSystem(const ReducedSystem&) = delete;  // network_ refers to grid_
+  ReducedSystem& operator=(const ReducedSystem&) = delete;
   std::vector<double> p;  ///< seeded values, as CVODES moves them
 
   /// Every plant's states at its operating point.
@@ -95,11 +97,11 @@ class ReducedSystem {
       r.push_back(z[0]);
       x.push_back(z[1]);
     }
-    InternalNetwork network(grid_);
-    matrix_ = network.matrix(topology_, r, x);
+    matrix_ = network_.matrix(topology_, r, x);
   }
 
   Grid grid_;
+  InternalNetwork network_{grid_};  ///< keeps the reduction, for it depends on no parameter
   Topology topology_;
   std::vector<Seed> seeds_;
   std::vector<Operating> at_;
