@@ -88,17 +88,19 @@ double instrument_share(const std::vector<FitEvent>& events, const std::vector<E
 
 }  // namespace
 
+FitEvent noisy_minute(const std::vector<FitEvent>& events, double amount) {
+  std::vector<Quiet> quiet;
+  for (const auto& e : events) quiet.push_back(quiet_of(e));
+  return minute(events.front(), quiet, amount);
+}
+
 VoltageNoise voltage_noise(const sim::Plant& plant, const sim::Conventions& conventions,
                            const std::vector<FitEvent>& events, const std::vector<EventSlopes>& slopes,
                            const std::vector<FreeParameter>& free) {
-  std::vector<Quiet> quiet;
   double samples = 0;
-  for (const auto& e : events) {
-    quiet.push_back(quiet_of(e));
-    samples += e.record.samples();
-  }
-  const EventSlopes still = event_slopes(plant, conventions, minute(events.front(), quiet, 0), {}, free);
-  const EventSlopes moved = event_slopes(plant, conventions, minute(events.front(), quiet, 1), {}, free);
+  for (const auto& e : events) samples += e.record.samples();
+  const EventSlopes still = event_slopes(plant, conventions, noisy_minute(events, 0), {}, free);
+  const EventSlopes moved = event_slopes(plant, conventions, noisy_minute(events, 1), {}, free);
   const Eigen::MatrixXd noise = moved.slopes - still.slopes;
   const double share = instrument_share(events, slopes);
   const double times = share * samples / (static_cast<double>(moved.answer.size()) / moved.channels);

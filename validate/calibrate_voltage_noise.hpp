@@ -6,6 +6,10 @@
 
 namespace swingbank::validate {
 
+/// A minute at the operating point of the first event, whose V and theta move as `amount` times they do
+/// before the events; answers are compared with zero.
+FitEvent noisy_minute(const std::vector<FitEvent>& events, double amount);
+
 struct VoltageNoise {
   /// Share of the pre-event movement of V that is the instrument's: 1 if the measured P and Q do not answer
   /// it, 0 if they do as the model says, for then the plant has really seen it.

@@ -80,6 +80,7 @@ class Diagnoser {
     if (!result_.base.failed.empty())
       throw InputError({"the model cannot be fitted", model_.origin, result_.base.failed,
                         "correct the model or leave the record out"});
+    result_.colour = noise_colour(result_.base.plant, model_.conventions, result_.events);
     held_out_base_ = hold_out(trial(), model_.plant, model_.conventions, {}, result_.base);
     report("base", 1, 1);
   }
@@ -127,13 +128,13 @@ class Diagnoser {
       const bool taken = std::ranges::any_of(firsts, [&](const Judgement* f) {
         return j.hypothesis.slot >= 0 && f->hypothesis.slot == j.hypothesis.slot;
       });
-      if (!taken && j.gain >= kEvidence && static_cast<int>(firsts.size()) < options_.firsts)
+      if (!taken && j.gain >= trial().evidence && static_cast<int>(firsts.size()) < options_.firsts)
         firsts.push_back(&j);
     }
     std::vector<Judgement> pairs;
     for (const Judgement* first : firsts) {
       for (auto& pair : try_hypotheses(after(stage, *first), options_.progress))
-        if (pair.gain >= kEvidence) {
+        if (pair.gain >= trial().evidence) {
           pair.gain += first->gain;
           pairs.push_back(std::move(pair));
         }
@@ -186,7 +187,9 @@ class Diagnoser {
     }
   }
 
-  [[nodiscard]] Trial trial() const { return {result_.events, options_.spread, options_.adequate}; }
+  [[nodiscard]] Trial trial() const {
+    return {result_.events, options_.spread, options_.adequate, kEvidence * result_.colour};
+  }
 
   void settle() {
     const auto& r = result_.ranked;
@@ -217,12 +220,12 @@ class Diagnoser {
       result_.sentence = law_sentence(result_.laws, r.size());
     }
   }
-  /// Whether a free input explains more than as many free numbers explain of noise: twice over, by Akaike's
-  /// criterion (1974).
+  /// Whether a free input explains more than as many free numbers explain of noise: twice over where it is
+  /// white (Akaike 1974), more where it is coloured.
   [[nodiscard]] bool earns(const MissingInput& m) const {
     std::size_t knots = 0;
     for (const auto& e : m.fit.events) knots += e.state.input.t.size();
-    return result_.base.chi2 - m.fit.chi2 > 2.0 * static_cast<double>(knots);
+    return result_.base.chi2 - m.fit.chi2 > (1 + result_.colour) * static_cast<double>(knots);
   }
   void name_best() {
     const Judgement& best = result_.ranked.front();

@@ -29,9 +29,10 @@ struct Diagnosis {
   std::string would_decide;             ///< what would tell the first of those apart; empty without one
   Fit base;                             ///< the present structure, refitted
   MissingInput torque, field;
-  LawSearch laws;                   ///< where no known effect explains the records
-  std::vector<Judgement> ranked;    ///< best first
+  LawSearch laws;                 ///< where no known effect explains the records
+  std::vector<Judgement> ranked;  ///< best first
   std::vector<FitEvent> events;
+  double colour = 1;  ///< of the noise: evidence must be that many times kEvidence
   double seconds = 0;
 };
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "validate/blind_measured.hpp"
 #include "validate/diagnosis_report_laws.hpp"
 #include "validate/error_map_table.hpp"
 
@@ -183,19 +184,21 @@ ReportFigures report_figures(const Diagnosis& d) {
 
 nlohmann::json diagnosis_json(const PlantModel& model, const Diagnosis& d, const Provenance& rows) {
   const ReportFigures figures = report_figures(d);
-  nlohmann::json j = {{"format", "swingbank-diagnosis-1"},
-                      {"verdict", verdict_name(d.verdict)},
-                      {"sentence", d.sentence},
-                      {"side", side_name(d.side)},
-                      {"effects", d.effects},
-                      {"equivalent", d.equivalent},
-                      {"would_decide", d.would_decide},
-                      {"seconds", d.seconds},
-                      {"model",
-                       {{"name", model.name},
-                        {"file", model.origin},
-                        {"xxh64", fmt::format("{:016x}", model.hash)},
-                        {"mva", model.plant.mva}}}};
+  nlohmann::json j = {
+      {"format", "swingbank-diagnosis-1"},
+      {"verdict", verdict_name(d.verdict)},
+      {"sentence", d.sentence},
+      {"false_positives", {{"given_an_effect", kFalsePositives.hits}, {"nothing_hidden", kFalsePositives.n}}},
+      {"side", side_name(d.side)},
+      {"effects", d.effects},
+      {"equivalent", d.equivalent},
+      {"would_decide", d.would_decide},
+      {"seconds", d.seconds},
+      {"model",
+       {{"name", model.name},
+        {"file", model.origin},
+        {"xxh64", fmt::format("{:016x}", model.hash)},
+        {"mva", model.plant.mva}}}};
   j["before"] = {{"rms_in_noise", number(std::sqrt(d.base.misfit()))},
                  {"parameters", parameters_json(d.base)}};
   if (figures.after)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "validate/blind_measured.hpp"
 #include "validate/diagnosis_report.hpp"
 #include "validate/diagnosis_report_laws.hpp"
 #include "validate/error_map_table.hpp"
@@ -42,6 +43,7 @@ class DiagnosisPage {
     page_.verdict(d_.sentence, d_.verdict == Verdict::adequate      ? Tone::good
                                : d_.verdict == Verdict::unexplained ? Tone::bad
                                                                     : Tone::found);
+    page_.text(false_positive_note());
     at_a_glance();
     error_maps();
     sides();
@@ -148,22 +150,19 @@ class DiagnosisPage {
   void hypotheses() {
     if (d_.ranked.empty()) return;
     page_.section("What could be missing");
-    page_.text(
-        fmt::format("{} effects were added one at a time, each with the model's parameters refitted. "
-                    "Evidence is the fall of the "
-                    "Bayesian information criterion: from 25 it is accepted, below 0 the effect does not pay "
-                    "for its parameters. "
-                    "The leading ones were then judged on events left out of the fit.",
-                    d_.ranked.size()));
+    page_.text(fmt::format(
+        "{} effects were added one at a time, each with the model's parameters refitted. "
+        "Evidence is the fall of the "
+        "Bayesian information criterion: from {:.0f} it is accepted, below 0 the effect does not pay "
+        "for its parameters. "
+        "The leading ones were then judged on events left out of the fit.",
+        d_.ranked.size(), kEvidence * d_.colour));
     const double most = std::max(1.0, d_.ranked.front().gain);
-    Bars bars{"Evidence (logarithmic: each step of 1 is a factor of ten)",
-              "",
-              std::log10(kEvidence),
-              "accepted",
-              {}};
+    Bars bars{"Evidence (logarithmic)", "", std::log10(kEvidence * d_.colour), "accepted", {}};
     for (std::size_t i = 0; i < std::min(kBars, d_.ranked.size()); ++i)
       bars.bars.push_back({full_name(d_.ranked[i].hypothesis), std::log10(std::max(1.0, d_.ranked[i].gain)),
-                           d_.ranked[i].accepted || (d_.ranked[i].gain >= most && most > 10)});
+                           d_.ranked[i].accepted || (d_.ranked[i].gain >= most && most > 10),
+                           fmt::format("{:.0f}", d_.ranked[i].gain)});
     page_.bars(bars);
     Table table{"", {"hypothesis", "what", "side", "evidence", "error left", "unseen events", "judged"}, {}};
     for (const auto& h : d_.ranked) {

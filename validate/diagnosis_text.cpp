@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "validate/blind_measured.hpp"
 #include "validate/diagnosis_report_laws.hpp"
 
 namespace swingbank::validate {
@@ -49,7 +50,7 @@ void add_parameters(const Diagnosis& d, std::string& text) {
 }  // namespace
 
 std::string diagnosis_text(const Diagnosis& d) {
-  std::string text = d.sentence + "\n";
+  std::string text = d.sentence + "\n" + false_positive_note() + "\n";
   add_inputs(d, text);
   add_hypotheses(d, text);
   text += laws_text(d);

@@ -74,8 +74,8 @@ void judge(const Trial& trial, const Fit& base, const std::vector<HeldOut>& held
     j.fit = std::move(f);
   j.gain = criterion(base) - criterion(j.fit);
   j.size = std::sqrt(std::max(0.0, base.chi2 - j.fit.chi2));
-  if (j.gain < kEvidence) {
-    j.why_not = fmt::format("evidence {:.0f}, below {:.0f}", j.gain, kEvidence);
+  if (j.gain < trial.evidence) {
+    j.why_not = fmt::format("evidence {:.0f}, below {:.0f}", j.gain, trial.evidence);
     return;
   }
   j.held_out = hold_out(trial, j.hypothesis.plant, j.hypothesis.conventions, free, j.fit);

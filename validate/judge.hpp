@@ -26,9 +26,8 @@ struct Judgement {
   std::string why_not;  ///< empty where accepted
 };
 
-/// Evidence (fall of BIC) from which a hypothesis is accepted. White noise alone would hardly give the best
-/// of some thirty wrong ones 25; the noise of V, which goes through exciter and rotor, colours the residual
-/// and has given 60.
+/// Evidence (fall of BIC) from which a hypothesis is accepted, times the noise's colour (noise_colour). White
+/// noise alone would hardly give the best of some thirty wrong ones 25.
 constexpr double kEvidence = 80;
 
 /// Bayes's information criterion, beliefs included.
@@ -41,8 +40,9 @@ std::vector<FreeParameter> free_of(const Hypothesis& h, double spread);
 /// Events to judge on, and what is known of them without any hypothesis.
 struct Trial {
   const std::vector<FitEvent>& events;
-  double spread;    ///< believed of the model's parameters
-  double adequate;  ///< chi2 per value up to which nothing but noise is left
+  double spread;                ///< believed of the model's parameters
+  double adequate;              ///< chi2 per value up to which nothing but noise is left
+  double evidence = kEvidence;  ///< from which a hypothesis is accepted
 };
 
 /// Each event predicted by the structure fitted to the others; `free` empty: the plant's own.

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "validate/calibrate_voltage_noise.hpp"
+#include "validate/instruments.hpp"
+
 namespace swingbank::validate {
 namespace {
 
@@ -70,6 +73,41 @@ void sharpen_noise(const Fit& fit, std::vector<FitEvent>& events) {
     sharper[i].whitening = events[i].whitening * scale.cwiseInverse().asDiagonal();
   }
   events = std::move(sharper);
+}
+
+double noise_colour(const sim::Plant& plant, const sim::Conventions& conventions,
+                    const std::vector<FitEvent>& events) {
+  const auto answer = [&](double amount) {
+    FitEvent minute = noisy_minute(events, amount);
+    minute.smeared.clear();
+    const VoltageCurve curve(minute.record, {});
+    Drive run{.plant = &plant, .conventions = conventions, .record = &minute.record, .curve = &curve};
+    run.start = minute.start;
+    run.tolerance = 1e-5;
+    return observe(run);
+  };
+  const Response still = answer(0), moved = answer(1);
+  const FitEvent& e = events.front();
+  const auto n = static_cast<Eigen::Index>(e.channels.size());
+  const auto length = static_cast<std::size_t>(std::lround(2 / e.record.step()));
+  const std::size_t blocks = still.of(Output::P).size() / length;
+  Eigen::VectorXd one = Eigen::VectorXd::Zero(n), slow = one;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(n);
+    for (std::size_t k = b * length; k < (b + 1) * length; ++k) {
+      Eigen::VectorXd d(n);
+      for (Eigen::Index c = 0; c < n; ++c) {
+        const Output o = e.channels[static_cast<std::size_t>(c)];
+        d[c] = moved.of(o)[k] - still.of(o)[k];
+      }
+      const Eigen::VectorXd w = e.whitening * d;
+      one += w.cwiseAbs2();
+      sum += w;
+    }
+    slow += sum.cwiseAbs2() / static_cast<double>(length);
+  }
+  const Eigen::VectorXd white = one / static_cast<double>(blocks * length);
+  return 1 + (slow / static_cast<double>(blocks) - white).cwiseMax(0.0).maxCoeff();
 }
 
 }  // namespace swingbank::validate

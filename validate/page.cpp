@@ -198,7 +198,8 @@ void Page::bars(const Bars& b) {
         "<rect x=\"{:.0f}\" y=\"{:.0f}\" width=\"{:.1f}\" height=\"{:.0f}\" rx=\"2\" fill=\"{}\"/>", left,
         y + 4, w, line - 8, bar.good ? "#2f7fc1" : "#c0563f");
     svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.0f}\" fill=\"#5b6b7b\">{}</text>", left + w + 6, y + 17,
-                       std::isfinite(bar.value)
+                       !bar.shown.empty() ? escape(bar.shown)
+                       : std::isfinite(bar.value)
                            ? fmt::format("{:.3g}{}", bar.value, b.unit.empty() ? "" : " " + escape(b.unit))
                            : "missing");
     y += line;

@@ -51,6 +51,7 @@ struct Bars {
     std::string label;
     double value;
     bool good = true;
+    std::string shown = {};  ///< beside the bar, instead of the value
   };
   std::vector<Bar> bars;
 };
