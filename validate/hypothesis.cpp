@@ -111,7 +111,7 @@ void add_effects(const sim::Plant& base, const sim::Conventions& conventions, st
     const bool instrument = effect->slot == Slot::measurement;
     const bool fits = effect->slot == Slot::transformer || sim::is_control(effect->slot) || instrument;
     if (!fits || effect->instants || occupied(base, *effect)) continue;
-    if (instrument && !is_linear(*effect)) continue;
+    if (instrument && !can_be_taken_back(*effect)) continue;
     Hypothesis h;
     h.name = effect->name;
     h.what = fmt::format("{} {} ({})", sim::slot_name(effect->slot), effect->name, effect->title);

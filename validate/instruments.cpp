@@ -185,7 +185,7 @@ Response observe(const Drive& run, std::span<const Direction> directions) {
   return r;
 }
 
-bool is_linear(const sim::Effect& instrument) {
+bool can_be_taken_back(const sim::Effect& instrument) {
   constexpr double kAway = 0.05;  // of the range: beyond what rounding hides
   auto p = instrument.standard_parameters();
   for (std::size_t i = 0; i < p.size(); ++i)
@@ -198,6 +198,7 @@ bool is_linear(const sim::Effect& instrument) {
     once.V.push_back(std::polar(1.0 + 1e-3 * k, 2e-3 * k));
     once.I.push_back(std::polar(0.7 - 2e-3 * k, 1e-3 * k));
   }
+  const auto before = once.V;
   sim::Phasors twice = once;
   for (auto* channel : {&twice.V, &twice.I})
     for (auto& x : *channel) x *= 2.0;
@@ -206,6 +207,8 @@ bool is_linear(const sim::Effect& instrument) {
   for (std::size_t k = 0; k < kSamples; ++k)
     if (!(std::abs(twice.V[k] - 2.0 * once.V[k]) < 1e-9 && std::abs(twice.I[k] - 2.0 * once.I[k]) < 1e-9))
       return false;
+  for (std::size_t k = 0; k < kSamples; ++k)
+    if (!(std::abs(once.V[k] / before[k] - once.V[0] / before[0]) < 1e-9)) return false;
   return true;
 }
 

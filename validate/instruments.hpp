@@ -7,13 +7,14 @@ namespace swingbank::validate {
 
 /// drive() between instruments. What they make of a standing phasor is taken back from the played voltage and
 /// from the operating point; how they smear a moving one is not (their window around a jump is left out of a
-/// fit, see FitEvent::smeared), but the answer's current is smeared as they do. The chain must be linear, as
-/// is_linear says. Directions may be parameters of the instruments too: their blocks follow those of
-/// sim::block_parameters; slopes along these are central differences. Throws InputError as drive().
+/// fit, see FitEvent::smeared), but the answer's current is smeared as they do. The chain must be linear.
+/// Directions may be parameters of the instruments too: their blocks follow those of sim::block_parameters;
+/// slopes along these are central differences. Throws InputError as drive().
 Response observe(const Drive& run, std::span<const Direction> directions = {});
 
-/// Whether instruments of this kind, away from neutral, answer twice the phasors by twice the answer, and
-/// without chance: a noise or a quantisation does not, and is no error that a fit could take back.
-bool is_linear(const sim::Effect& instrument);
+/// Whether what instruments of this kind do, away from neutral, can be taken back: they answer twice the
+/// phasors by twice the answer and without chance (a noise or a quantisation does not), and change the
+/// voltage by a constant factor at most (a filter smears it; its window around jumps is left out instead).
+bool can_be_taken_back(const sim::Effect& instrument);
 
 }  // namespace swingbank::validate

@@ -23,7 +23,7 @@ TEST(Hypotheses, EveryEffectThatFitsAndEveryNeutralGroupJoins) {
   std::vector<std::string> names;
   for (const auto& h : all_hypotheses(model.plant, model.conventions)) names.push_back(h.name);
   for (const sim::Effect& e : sim::all_effects()) {
-    const bool instrument = e.slot == sim::Slot::measurement && is_linear(e);
+    const bool instrument = e.slot == sim::Slot::measurement && can_be_taken_back(e);
     const bool joins =
         (e.slot == sim::Slot::transformer || sim::is_control(e.slot) || instrument) && e.instants == nullptr;
     EXPECT_EQ(std::ranges::count(names, e.name), joins ? 1 : 0) << e.name;

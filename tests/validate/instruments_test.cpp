@@ -133,11 +133,11 @@ TEST_F(InstrumentsTest, SlopesAreThoseOfDifferences) {
   }
 }
 
-TEST(Instruments, OnlyLinearOnesCanBeTakenBack) {
-  for (const char* name : {"CTERROR", "PTERROR", "SKEW", "PMUFILTER"})
-    EXPECT_TRUE(is_linear(*sim::find_effect(name))) << name;
-  for (const char* name : {"NOISE", "GAPS", "QUANTISE"})
-    EXPECT_FALSE(is_linear(*sim::find_effect(name))) << name;
+TEST(Instruments, ChanceStepsAndFiltersCannotBeTakenBack) {
+  for (const char* name : {"CTERROR", "PTERROR", "SKEW"})
+    EXPECT_TRUE(can_be_taken_back(*sim::find_effect(name))) << name;
+  for (const char* name : {"NOISE", "GAPS", "QUANTISE", "PMUFILTER"})
+    EXPECT_FALSE(can_be_taken_back(*sim::find_effect(name))) << name;
 }
 
 }  // namespace
