@@ -12,9 +12,8 @@ namespace swingbank::validate {
 void sharpen_noise(const Fit& fit, std::vector<FitEvent>& events);
 
 /// How coloured the residual is by nature: the played-in voltage's own noise passes exciter and rotor, and
-/// what comes out is slow. Power of the whitened answer's slow part (means over a second) in the channel that
-/// has most, in units of white noise: 1 without an exciter, 3 to 10 with a fast one of high gain. Evidence
-/// and what a free input explains of noise grow by as much.
+/// what comes out is slow. Power of the whitened answer's slow part (means over two seconds) in the channel
+/// that has most, in units of white noise. Evidence and what a free input explains of noise grow by as much.
 double noise_colour(const sim::Plant& plant, const sim::Conventions& conventions,
                     const std::vector<FitEvent>& events);
 
