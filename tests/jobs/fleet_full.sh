@@ -30,11 +30,11 @@ of_fleet() { pgrep -f -- "--fleet $work/fleet.toml .*--out $1" || true; }
 
 # kill -9 of every process, when one plant is done and another under way
 fleet "$work/fleet.toml" "$work/killed" 2 >"$work/table" &
-run=$!
+started=$!
 wait_for "$work/killed" 1
 mapfile -t ids < <(of_fleet "$work/killed")
 kill -9 "${ids[@]}" 2>/dev/null || true
-if wait $run; then fail "a killed run cannot succeed"; fi
+if wait "$started"; then fail "a killed run cannot succeed"; fi
 [[ ! -e $work/killed/fleet.json ]] || fail "killed too late to prove anything"
 sleep 1 # a diagnosis dies with its rank
 [[ -z $(of_fleet "$work/killed") ]] || fail "left running: $(of_fleet "$work/killed")"
@@ -45,11 +45,11 @@ same_table "$work/whole" "$work/killed"
 
 # a signal: what is under way is finished, no more is begun, exit code 2
 fleet "$work/fleet.toml" "$work/soft" >"$work/table" &
-run=$!
+started=$!
 wait_for "$work/soft" 1
 kill -USR1 "$(of_fleet "$work/soft" | head -1)"
 code=0
-wait $run || code=$?
+wait "$started" || code=$?
 ((code == 2)) || fail "exit code $code after SIGUSR1"
 grep -q 'run the same command again' "$work/table" || fail "after SIGUSR1: $(cat "$work/table")"
 (($(done_in "$work/soft") < 3)) || fail "stopped too late to prove anything"
@@ -57,7 +57,7 @@ grep -q 'run the same command again' "$work/table" || fail "after SIGUSR1: $(cat
 # one diagnosis is killed: its plant fails with a word about it, the others are done; the next run mends it
 rm -rf "$work/soft/p3"
 fleet "$work/fleet.toml" "$work/soft" >"$work/table" &
-run=$!
+started=$!
 child=
 for _ in $(seq 15000); do
   child=$(pgrep -f -- "--plant p3 --out $work/soft" || true)
@@ -66,7 +66,7 @@ for _ in $(seq 15000); do
 done
 kill -9 "$child"
 code=0
-wait $run || code=$?
+wait "$started" || code=$?
 ((code == 1)) || fail "exit code $code with a diagnosis killed"
 grep -q 'p3 failed: The diagnosis was ended by signal 9' "$work/table" || fail "no word of it: $(cat "$work/table")"
 grep -q '2 failed' "$work/table" || fail "others failed too: $(cat "$work/table")"
