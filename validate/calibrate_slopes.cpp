@@ -22,21 +22,10 @@ std::vector<Direction> state_directions(const FitEvent& event) {
   return along;
 }
 
-/// [sample * channels + channel], whitened.
+/// [compared sample * channels + channel], whitened.
 Eigen::VectorXd whitened(const FitEvent& event, const std::vector<double>* values, bool less_measured) {
-  const auto n = static_cast<Eigen::Index>(event.channels.size());
-  Eigen::VectorXd all(event.values()), e(n);
-  Eigen::Index row = 0;
-  for (Eigen::Index k = 0; k < event.record.samples(); ++k) {
-    if (!event.compared(static_cast<std::size_t>(k))) continue;
-    for (Eigen::Index c = 0; c < n; ++c) {
-      const Output o = event.channels[static_cast<std::size_t>(c)];
-      e[c] = values[static_cast<int>(o)][k];
-      if (less_measured) e[c] -= event.measured(o)[static_cast<std::size_t>(k)];
-    }
-    all.segment(row, n) = event.whitening * e;
-    row += n;
-  }
+  RowMatrix all = event.collected(values, less_measured);
+  event.whiten(all);
   return all;
 }
 

@@ -15,19 +15,6 @@ constexpr double kBlock = 0.5;  ///< length of a piece drawn from the records: c
 struct Quiet {
   std::vector<double> V, theta;
 };
-std::vector<double> detrended(const std::vector<double>& x, int count) {
-  double mean = 0, slope = 0, spread = 0;
-  const double middle = 0.5 * (count - 1);
-  for (int k = 0; k < count; ++k) mean += x[static_cast<std::size_t>(k)] / count;
-  for (int k = 0; k < count; ++k) {
-    slope += (k - middle) * (x[static_cast<std::size_t>(k)] - mean);
-    spread += (k - middle) * (k - middle);
-  }
-  std::vector<double> rest;
-  for (int k = 0; k < count; ++k)
-    rest.push_back(x[static_cast<std::size_t>(k)] - mean - slope / spread * (k - middle));
-  return rest;
-}
 Quiet quiet_of(const FitEvent& e) {
   Quiet q{detrended(e.record.V, e.start.samples), detrended(e.record.theta, e.start.samples)};
   for (double& v : q.V) v /= std::abs(e.start.voltage);
@@ -86,14 +73,29 @@ double instrument_share(const std::vector<FitEvent>& events, const std::vector<E
   return own > 0 ? std::clamp(cross / own, 0.0, 1.0) : 0.0;
 }
 
-}  // namespace
-
+/// A minute at the operating point of the first event, whose V and theta move as `amount` times they do
+/// before the events; answers are compared with zero.
 FitEvent noisy_minute(const std::vector<FitEvent>& events, double amount) {
   std::vector<Quiet> quiet;
   for (const auto& e : events) quiet.push_back(quiet_of(e));
   return minute(events.front(), quiet, amount);
 }
 
+}  // namespace
+
+std::vector<double> detrended(const std::vector<double>& x, int count) {
+  double mean = 0, slope = 0, spread = 0;
+  const double middle = 0.5 * (count - 1);
+  for (int k = 0; k < count; ++k) mean += x[static_cast<std::size_t>(k)] / count;
+  for (int k = 0; k < count; ++k) {
+    slope += (k - middle) * (x[static_cast<std::size_t>(k)] - mean);
+    spread += (k - middle) * (k - middle);
+  }
+  std::vector<double> rest;
+  for (int k = 0; k < count; ++k)
+    rest.push_back(x[static_cast<std::size_t>(k)] - mean - slope / spread * (k - middle));
+  return rest;
+}
 VoltageNoise voltage_noise(const sim::Plant& plant, const sim::Conventions& conventions,
                            const std::vector<FitEvent>& events, const std::vector<EventSlopes>& slopes,
                            const std::vector<FreeParameter>& free) {

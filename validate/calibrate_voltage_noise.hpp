@@ -6,9 +6,8 @@
 
 namespace swingbank::validate {
 
-/// A minute at the operating point of the first event, whose V and theta move as `amount` times they do
-/// before the events; answers are compared with zero.
-FitEvent noisy_minute(const std::vector<FitEvent>& events, double amount);
+/// The first `count` values less their mean and slope.
+std::vector<double> detrended(const std::vector<double>& x, int count);
 
 struct VoltageNoise {
   /// Share of the pre-event movement of V that is the instrument's: 1 if the measured P and Q do not answer

@@ -98,20 +98,7 @@ class EventResidual : public ceres::CostFunction {
 /// The event as the fitted curves meet it, in units of noise as everywhere else.
 EventFit as_played(const Setting& setting, const sim::Plant& plant, const FitEvent& event) {
   EventFit f;
-  const Response r = answer(setting, plant, event);
-  const auto n = static_cast<Eigen::Index>(event.channels.size());
-  Eigen::VectorXd e(n);
-  f.values = event.values();
-  f.residual.resize(event.channels.size());
-  for (const Output o : event.channels) f.model.push_back(r.of(o));
-  for (std::size_t k = 0; k < event.record.t.size(); ++k) {
-    for (Eigen::Index c = 0; c < n; ++c)
-      e[c] = f.model[static_cast<std::size_t>(c)][k] -
-             event.measured(event.channels[static_cast<std::size_t>(c)])[k];
-    const Eigen::VectorXd w = event.whitening * e;
-    if (event.compared(k)) f.chi2 += w.squaredNorm();
-    for (Eigen::Index c = 0; c < n; ++c) f.residual[static_cast<std::size_t>(c)].push_back(w[c]);
-  }
+  compare(event, answer(setting, plant, event), f);
   return f;
 }
 

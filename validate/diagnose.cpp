@@ -73,6 +73,7 @@ class Diagnoser {
         measure_noise(fitted, result_.events);
       }
       sharpen_noise(result_.base, result_.events);
+      remember_noise(result_.base, model_.conventions, result_.events);
       o.values = values_of(result_.base.plant, free);
       for (const auto& e : result_.base.events) o.start.push_back(e.state);
       result_.base = fit(model_.plant, model_.conventions, result_.events, free, o);
@@ -80,7 +81,6 @@ class Diagnoser {
     if (!result_.base.failed.empty())
       throw InputError({"the model cannot be fitted", model_.origin, result_.base.failed,
                         "correct the model or leave the record out"});
-    result_.colour = noise_colour(result_.base.plant, model_.conventions, result_.events);
     held_out_base_ = hold_out(trial(), model_.plant, model_.conventions, {}, result_.base);
     report("base", 1, 1);
   }
@@ -188,7 +188,7 @@ class Diagnoser {
   }
 
   [[nodiscard]] Trial trial() const {
-    return {result_.events, options_.spread, options_.adequate, kEvidence * result_.colour};
+    return {result_.events, options_.spread, options_.adequate, kEvidence};
   }
 
   void settle() {
@@ -220,12 +220,11 @@ class Diagnoser {
       result_.sentence = law_sentence(result_.laws, r.size());
     }
   }
-  /// Whether a free input explains more than as many free numbers explain of noise: twice over where it is
-  /// white (Akaike 1974), more where it is coloured.
+  /// Whether a free input explains twice what as many free numbers explain of noise (Akaike 1974).
   [[nodiscard]] bool earns(const MissingInput& m) const {
     std::size_t knots = 0;
     for (const auto& e : m.fit.events) knots += e.state.input.t.size();
-    return result_.base.chi2 - m.fit.chi2 > (1 + result_.colour) * static_cast<double>(knots);
+    return result_.base.chi2 - m.fit.chi2 > 2.0 * static_cast<double>(knots);
   }
   void name_best() {
     const Judgement& best = result_.ranked.front();

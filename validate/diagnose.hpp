@@ -32,7 +32,6 @@ struct Diagnosis {
   LawSearch laws;                 ///< where no known effect explains the records
   std::vector<Judgement> ranked;  ///< best first
   std::vector<FitEvent> events;
-  double colour = 1;  ///< of the noise: evidence must be that many times kEvidence
   double seconds = 0;
 };
 

@@ -156,9 +156,9 @@ class DiagnosisPage {
         "Bayesian information criterion: from {:.0f} it is accepted, below 0 the effect does not pay "
         "for its parameters. "
         "The leading ones were then judged on events left out of the fit.",
-        d_.ranked.size(), kEvidence * d_.colour));
+        d_.ranked.size(), kEvidence));
     const double most = std::max(1.0, d_.ranked.front().gain);
-    Bars bars{"Evidence (logarithmic)", "", std::log10(kEvidence * d_.colour), "accepted", {}};
+    Bars bars{"Evidence (logarithmic)", "", std::log10(kEvidence), "accepted", {}};
     for (std::size_t i = 0; i < std::min(kBars, d_.ranked.size()); ++i)
       bars.bars.push_back({full_name(d_.ranked[i].hypothesis), std::log10(std::max(1.0, d_.ranked[i].gain)),
                            d_.ranked[i].accepted || (d_.ranked[i].gain >= most && most > 10),

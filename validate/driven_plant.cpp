@@ -91,6 +91,36 @@ class Driven {
     return back;
   }
 
+  /// Slopes of derivative and outputs at the start: by states, then by V and theta.
+  LinearPlant linear() {
+    const auto n = static_cast<Eigen::Index>(x_.size());
+    Eigen::MatrixXd by(n + kOutputs, n + 2);
+    const double to_record = run_.plant->mva / run_.record->base.mva;
+    const Complex v = run_.start.voltage;
+    for (Eigen::Index first = 0; first < n + 2; first += sim::kDirections) {
+      const Eigen::Index count = std::min<Eigen::Index>(sim::kDirections, n + 2 - first);
+      auto x = x_;
+      for (T& value : x) value = value + T(1e-9);  // beside the corner that a dead-band of no width has
+      T vr(v.real()), vi(v.imag());
+      for (Eigen::Index i = 0; i < count; ++i) {
+        const auto d = static_cast<std::size_t>(i);
+        if (first + i < n) Seeds<T>::add(x[static_cast<std::size_t>(first + i)], d, 1.0);
+        const Complex slope = first + i == n ? v : first + i == n + 1 ? Complex(0, 1) * v : Complex();
+        Seeds<T>::add(vr, d, slope.real());
+        Seeds<T>::add(vi, d, slope.imag());
+      }
+      evaluate_at(vr, vi, run_.record->t.front(), x.data(), signals_, trial_.data());
+      const auto out = outputs(to_record);
+      for (Eigen::Index i = 0; i < count; ++i)
+        for (Eigen::Index j = 0; j < n + kOutputs; ++j)
+          by(j, first + i) = Seeds<T>::slope(
+              j < n ? trial_[static_cast<std::size_t>(j)] : out[static_cast<std::size_t>(j - n)],
+              static_cast<std::size_t>(i));
+    }
+    return {by.topLeftCorner(n, n), by.topRightCorner(n, 2), by.bottomLeftCorner(kOutputs, n),
+            by.bottomRightCorner(kOutputs, 2)};
+  }
+
  private:
   struct Instant {
     double time;
@@ -145,13 +175,16 @@ class Driven {
   /// Signals and derivative at states x and time t.
   void evaluate(double t, const T* x, sim::Signals<T>& s, T* dx) {
     const Complex v = voltage(t);
+    evaluate_at(T(v.real()), T(v.imag()), t, x, s, dx);
+  }
+  void evaluate_at(T vr, T vi, double t, const T* x, sim::Signals<T>& s, T* dx) {
     s.Efd = Efd_;
     s.Tm = Tm_;
     s.dVref = T(0.0);
     s.dPref = T(0.0);
     s.t = T(std::min(t, last_moment_));
-    s.Vpr = T(v.real());
-    s.Vpi = T(v.imag());
+    s.Vpr = vr;
+    s.Vpi = vi;
     T er, ei, ir, ii;
     equations_.emf(c_.data(), x, scratch_.data(), er, ei);
     equations_.from_grid(c_.data(), x, scratch_.data(), er, ei, s, ir, ii);
@@ -254,15 +287,19 @@ class Driven {
     // the frame turns with the pre-event angle
     const double frame = run_.start.drift / (2 * std::numbers::pi * run_.conventions.frequency);
     back.voltage.push_back(voltage(t_));
-    T P, Q;
-    equations_.grid_power(c_.data(), signals_, P, Q);
-    const std::array<T, kOutputs> out = {P * T(to_record), Q * T(to_record), signals_.speed + T(frame),
-                                         signals_.Efd, signals_.Ifd};
+    auto out = outputs(to_record);
+    out[static_cast<std::size_t>(Output::speed)] = signals_.speed + T(frame);
     for (int o = 0; o < kOutputs; ++o) {
       back.value[o].push_back(sim::value_of(out[static_cast<std::size_t>(o)]));
       for (std::size_t d = 0; d < directions_.size(); ++d)
         back.slopes[d].value[o].push_back(Seeds<T>::slope(out[static_cast<std::size_t>(o)], d));
     }
+  }
+  /// By the signals as they stand.
+  std::array<T, kOutputs> outputs(double to_record) const {
+    T P, Q;
+    equations_.grid_power(c_.data(), signals_, P, Q);
+    return {P * T(to_record), Q * T(to_record), signals_.speed, signals_.Efd, signals_.Ifd};
   }
   [[noreturn]] void give_up() const {
     throw InputError({"play-in stops", fmt::format("t = {:.4f} s", t_),
@@ -301,6 +338,8 @@ std::string_view output_name(Output output) {
   constexpr std::array<std::string_view, kOutputs> names = {"P", "Q", "speed", "Efd", "Ifd"};
   return names[static_cast<std::size_t>(output)];
 }
+
+LinearPlant linearise(const Drive& run) { return Driven<D8>(run, {}).linear(); }
 
 Response drive(const Drive& run, std::span<const Direction> directions) {
   if (directions.empty()) return Driven<double>(run, {}).run();

@@ -2,6 +2,7 @@
 // One plant driven by a terminal voltage: no network is needed, what the network did is in the voltage. The
 // same equations run on doubles (what does the plant answer?) and on duals (and how does the answer move with
 // parameters, switching instants, the start, and torque or field voltage that no model explains?).
+#include <Eigen/Dense>
 #include <span>
 #include <vector>
 
@@ -81,5 +82,13 @@ struct Response {
 /// switching instant that is a direction, slopes jump by the difference of the derivatives on its two sides.
 /// Throws InputError if the operating point cannot be held or the equations cannot be integrated.
 Response drive(const Drive& run, std::span<const Direction> directions = {});
+
+/// How the plant moves about a run's start: x' = A x + B u, y = C x + D u with u = (change of V over V,
+/// change of theta [rad]) and y = all outputs, in the units of Response.
+struct LinearPlant {
+  Eigen::MatrixXd A, B, C, D;
+};
+/// Throws InputError if the operating point cannot be held.
+LinearPlant linearise(const Drive& run);
 
 }  // namespace swingbank::validate

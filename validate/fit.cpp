@@ -173,28 +173,13 @@ class Search {
       f.state.speed = run.speed;
       if (setting_.input != InputKind::none)
         f.state.input = setting_.input == InputKind::torque ? run.torque : run.field;
-      f.values = event.values();
-      whiten(event, r, f);
+      compare(event, r, f);
       fit.chi2 += f.chi2;
       fit.values += f.values;
       fit.fitted += static_cast<int>(switchings.size()) + kStates;
       fit.events.push_back(std::move(f));
     }
     fit.fitted += static_cast<int>(z_.size());
-  }
-  static void whiten(const FitEvent& event, const Response& r, EventFit& f) {
-    const auto n = static_cast<Eigen::Index>(event.channels.size());
-    f.residual.resize(event.channels.size());
-    Eigen::VectorXd e(n);
-    for (const Output o : event.channels) f.model.push_back(r.of(o));
-    for (std::size_t k = 0; k < event.record.t.size(); ++k) {
-      for (Eigen::Index c = 0; c < n; ++c)
-        e[c] = f.model[static_cast<std::size_t>(c)][k] -
-               event.measured(event.channels[static_cast<std::size_t>(c)])[k];
-      const Eigen::VectorXd w = event.whitening * e;
-      if (event.compared(k)) f.chi2 += w.squaredNorm();
-      for (Eigen::Index c = 0; c < n; ++c) f.residual[static_cast<std::size_t>(c)].push_back(w[c]);
-    }
   }
   /// Values and their errors: the inverse of the curvature, the events' states projected out.
   void collect_parameters(Fit& fit) const {
@@ -273,6 +258,19 @@ class Search {
 };
 
 }  // namespace
+
+void compare(const FitEvent& event, const Response& answer, EventFit& f) {
+  for (const Output o : event.channels) f.model.push_back(answer.of(o));
+  RowMatrix e = event.collected(answer.value, true);
+  event.whiten(e);
+  f.values = event.values();
+  f.chi2 = e.squaredNorm();
+  f.residual.assign(event.channels.size(), std::vector<double>(event.record.t.size(), 0.0));
+  Eigen::Index row = 0;
+  for (std::size_t k = 0; k < event.record.t.size(); ++k)
+    for (std::size_t c = 0; event.compared(k) && c < event.channels.size(); ++c)
+      f.residual[c][k] = e(row++, 0);
+}
 
 Fit fit(const sim::Plant& plant, const sim::Conventions& conventions, const std::vector<FitEvent>& events,
         const std::vector<FreeParameter>& free, const FitOptions& options) {

@@ -41,10 +41,11 @@ struct EventState {
 
 struct EventFit {
   EventState state;
-  double chi2 = 0;                            ///< sum of squared whitened residuals
-  int values = 0;                             ///< how many
-  std::vector<std::vector<double>> model;     ///< [channel][sample]
-  std::vector<std::vector<double>> residual;  ///< model - measured, whitened: [channel][sample]
+  double chi2 = 0;                         ///< sum of squared whitened residuals
+  int values = 0;                          ///< how many
+  std::vector<std::vector<double>> model;  ///< [channel][sample]
+  std::vector<std::vector<double>>
+      residual;  ///< model - measured, whitened: [channel][sample]; 0 where not compared
   /// chi2 per value: 1 where nothing but noise is left.
   [[nodiscard]] double misfit() const { return chi2 / values; }
 };
@@ -82,6 +83,9 @@ struct FitOptions {
   bool errors = true;                  ///< of the parameters too: one more look at all slopes
   double bend = 0.01;                  ///< second difference that the input is believed to have [pu]
 };
+
+/// Fills in what `answer` leaves of the event: all but the state.
+void compare(const FitEvent& event, const Response& answer, EventFit& fit);
 
 /// Fits `free` parameters of the plant and every event's own state. A start that cannot be evaluated gives
 /// `failed`; parameters that cannot be are never reached, the search turns back. While the structure is wrong

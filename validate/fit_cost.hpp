@@ -112,14 +112,18 @@ class EventCost : public ceres::CostFunction {
       Drive with = run;
       with.curve = &curve;
       const Response r = observe(with, along);
-      write(r.value, true, residuals, 1, 0);
-      const int nz = static_cast<int>(setting_.axes.size());
-      const int ns = static_cast<int>(state_size());
+      RowMatrix e(num_residuals(), 1 + static_cast<Eigen::Index>(along.size()));
+      e.col(0) = event_.collected(r.value, true);
       for (std::size_t d = 0; d < along.size(); ++d)
-        if (d < states_at)
-          write(r.slopes[d].value, false, by_z, nz, static_cast<int>(d));
-        else
-          write(r.slopes[d].value, false, by_state, ns, static_cast<int>(d - states_at));
+        e.col(1 + static_cast<Eigen::Index>(d)) = event_.collected(r.slopes[d].value, false);
+      event_.whiten(e);
+      Eigen::Map<Eigen::VectorXd>(residuals, e.rows()) = e.col(0);
+      const auto at = static_cast<Eigen::Index>(states_at);
+      if (by_z) Eigen::Map<RowMatrix>(by_z, e.rows(), at) = e.middleCols(1, at);
+      if (by_state) {
+        const Eigen::Index states = e.cols() - 1 - at;
+        Eigen::Map<RowMatrix>(by_state, e.rows(), states) = e.rightCols(states);
+      }
     } catch (const InputError&) {
       return false;
     }
@@ -155,27 +159,6 @@ class EventCost : public ceres::CostFunction {
     const Kind kind = setting_.input == InputKind::torque ? Kind::torque : Kind::field;
     for (std::size_t k = 0; k < knots_.size(); ++k) along.push_back({kind, 0, static_cast<int>(k), 1.0});
   }
-  /// Whitened values (less the measured ones) into column `column` of a matrix of `stride` columns.
-  void write(const std::vector<double>* values, bool less_measured, double* to, int stride,
-             int column) const {
-    const auto n = static_cast<Eigen::Index>(event_.channels.size());
-    double e[kOutputs];
-    Eigen::Index row = 0;
-    for (int k = 0; k < event_.record.samples(); ++k) {
-      if (!event_.compared(static_cast<std::size_t>(k))) continue;
-      for (Eigen::Index c = 0; c < n; ++c) {
-        const Output o = event_.channels[static_cast<std::size_t>(c)];
-        e[c] = values[static_cast<int>(o)][static_cast<std::size_t>(k)];
-        if (less_measured) e[c] -= event_.measured(o)[static_cast<std::size_t>(k)];
-      }
-      for (Eigen::Index c = 0; c < n; ++c) {
-        double w = 0;
-        for (Eigen::Index i = 0; i <= c; ++i) w += event_.whitening(c, i) * e[i];  // lower triangular
-        to[row++ * stride + column] = w;
-      }
-    }
-  }
-
   const Setting& setting_;
   const FitEvent& event_;
   const std::vector<double>& knots_;

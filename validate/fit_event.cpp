@@ -86,16 +86,33 @@ Record without(const Record& record, const std::vector<char>& smeared) {
   return clean;
 }
 
+/// Last sample before V leaves what it was in the first half second; no switching need be found for that.
+double still_until(const Record& r) {
+  constexpr double kFirst = 0.5, kOff = 8;  // [s]; standard deviations
+  const auto n = static_cast<std::size_t>(std::lround(kFirst / r.step()));
+  if (n < 3 || n + 1 >= r.V.size()) return r.t.back();
+  double mean = 0, square = 0;
+  for (std::size_t k = 0; k < n; ++k) mean += r.V[k] / static_cast<double>(n);
+  for (std::size_t k = 0; k < n; ++k) square += std::pow(r.V[k] - mean, 2) / static_cast<double>(n - 1);
+  const double limit = std::max(kOff * std::sqrt(square), kLeastNoise);
+  for (std::size_t k = n; k + 1 < r.V.size(); ++k)
+    if (std::min(std::abs(r.V[k] - mean), std::abs(r.V[k + 1] - mean)) > limit) return r.t[k - 1];
+  return r.t.back();
+}
+
 FitEvent prepare(Record record, const FitEventOptions& options, bool smears) {
   FitEvent e;
   e.record = std::move(record);
-  e.switchings = find_switchings(e.record, options.jump_threshold, smears, e.smeared);
+  // a filter shares a jump out over two intervals at least
+  e.switchings = find_switchings(e.record, options.jump_threshold / (smears ? 2 : 1), smears, e.smeared);
   if (std::ranges::count(e.smeared, 1) > 0)
     e.clean = without(e.record, e.smeared);
   else
     e.smeared.clear();
   auto first = e.switchings;
   if (!e.smeared.empty() && !first.empty()) first.front().time -= first.front().uncertainty;
+  if (const double still = still_until(e.record); !first.empty() && still < first.front().time)
+    first.insert(first.begin(), {still, 0.0});
   e.start = pre_event_point(e.record, first, options.pre_event);
   e.channels = {Output::P, Output::Q};
   if (options.measured_states)
@@ -168,6 +185,24 @@ const std::vector<double>& FitEvent::measured(Output o) const {
       break;
   }
   return record.Ifd;
+}
+
+Eigen::VectorXd FitEvent::collected(const std::vector<double>* values, bool less_measured) const {
+  Eigen::VectorXd all(this->values());
+  Eigen::Index row = 0;
+  for (std::size_t k = 0; k < record.t.size(); ++k) {
+    if (!compared(k)) continue;
+    for (const Output o : channels)
+      all[row++] = values[static_cast<int>(o)][k] - (less_measured ? measured(o)[k] : 0.0);
+  }
+  return all;
+}
+
+void FitEvent::whiten(RowMatrix& e) const {
+  if (memory) return memory->whiten(e);
+  const Eigen::Index n = whitening.rows();
+  for (Eigen::Index row = 0; row < e.rows(); row += n)
+    e.middleRows(row, n) = (whitening.triangularView<Eigen::Lower>() * e.middleRows(row, n)).eval();
 }
 
 std::vector<FitEvent> prepare_events(const PlantModel& model, std::vector<Record> records,

@@ -3,9 +3,11 @@
 // is in each channel.
 #include <Eigen/Dense>
 #include <algorithm>
+#include <memory>
 #include <vector>
 
 #include "validate/driven_plant.hpp"
+#include "validate/innovations.hpp"
 #include "validate/plant_model.hpp"
 
 namespace swingbank::validate {
@@ -21,7 +23,13 @@ struct FitEvent {
   Record clean = {};
   std::vector<Output> channels;  ///< measured ones: P, Q, then speed, Efd, Ifd where recorded
   Eigen::VectorXd noise;         ///< standard deviation per channel [pu]
-  Eigen::MatrixXd whitening;     ///< W, lower triangular: W e has unit covariance where e is noise
+  Eigen::MatrixXd whitening;     ///< W, lower triangular: W e has unit covariance where e is white noise
+  std::shared_ptr<const Innovations> memory = nullptr;  ///< of the noise, where it is not white
+  /// One of Response's answers or slopes ([output][sample]), less the measured values where asked: [compared
+  /// sample * channels + channel].
+  [[nodiscard]] Eigen::VectorXd collected(const std::vector<double>* values, bool less_measured) const;
+  /// Whitens residuals, or changes of the answer, in place: [compared sample * channels + channel][column].
+  void whiten(RowMatrix& e) const;
   [[nodiscard]] const std::vector<double>& measured(Output o) const;
   /// What is played in.
   [[nodiscard]] const Record& played() const { return smeared.empty() ? record : clean; }

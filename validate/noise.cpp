@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <unsupported/Eigen/MatrixFunctions>
 
 #include "validate/calibrate_voltage_noise.hpp"
-#include "validate/instruments.hpp"
 
 namespace swingbank::validate {
 namespace {
@@ -56,6 +57,102 @@ double ratio(Channel channel) {
   return *middle / kMedianOfSquare / kSecondDifference / variance;
 }
 
+constexpr double kLow = 3.0, kHigh = 10.0;  ///< band in which the voltage's noise is measured [Hz]
+constexpr double kLeft = 0.01;              ///< of a channel's variance: its own noise, at least
+constexpr double kMatters = 1e-3;           ///< variance of slow noise over that of white noise
+
+/// Variances of white noise that would have the density of V (relative) and theta [rad] in the band, before
+/// the events.
+Eigen::Vector2d voltage_noise_of(const std::vector<FitEvent>& events) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  int lines = 0;
+  for (const FitEvent& e : events) {
+    const int n = e.start.samples;
+    auto V = detrended(e.record.V, n), theta = detrended(e.record.theta, n);
+    const double turn = 2 * std::numbers::pi * e.record.step(), line = 1 / (n * e.record.step());
+    for (int m = static_cast<int>(std::ceil(kLow / line)); m * line <= kHigh && 2 * m < n; ++m, ++lines) {
+      Complex by_v = 0, by_theta = 0;
+      for (int k = 0; k < n; ++k) {
+        const Complex wave = std::polar(1.0, turn * m * line * k);
+        by_v += wave * V[static_cast<std::size_t>(k)] / std::abs(e.start.voltage);
+        by_theta += wave * theta[static_cast<std::size_t>(k)];
+      }
+      sum += Eigen::Vector2d(std::norm(by_v), std::norm(by_theta)) / n;
+    }
+  }
+  return lines > 0 ? Eigen::Vector2d(sum / lines) : Eigen::Vector2d(Eigen::Vector2d::Zero());
+}
+
+/// How much of the answer's own movement before the events is found in the residual: 1 if the voltage moves
+/// by noise of its instrument alone, 0 if the plant answers all of it. Where that cannot be told, the larger.
+double instrument_share(const Fit& fit, const std::vector<FitEvent>& events) {
+  double cross = 0, own = 0;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const FitEvent& e = events[i];
+    const int n = e.start.samples;
+    for (std::size_t c = 0; c < e.channels.size(); ++c) {
+      const double noise = e.noise[static_cast<Eigen::Index>(c)];
+      const auto answer = detrended(fit.events[i].model[c], n),
+                 measured = detrended(e.measured(e.channels[c]), n);
+      for (std::size_t k = 0; k < answer.size(); ++k) {
+        cross += answer[k] * (answer[k] - measured[k]) / (noise * noise);
+        own += answer[k] * answer[k] / (noise * noise);
+      }
+    }
+  }
+  return own > 0 ? std::clamp((cross + std::sqrt(own)) / own, 0.0, 1.0) : 1.0;
+}
+
+/// Slow noise of an event: states are the plant's, less what the latest sample did to them, and the mean
+/// error of V and theta over the pre-event window, from which everything is counted.
+SlowNoise slow_noise(const LinearPlant& plant, const FitEvent& e, const Eigen::Vector2d& variance) {
+  const Eigen::Index n = plant.A.rows(), m = n + 2, count = static_cast<Eigen::Index>(e.channels.size());
+  Eigen::MatrixXd C(count, n), D(count, 2);
+  for (Eigen::Index c = 0; c < count; ++c) {
+    C.row(c) = plant.C.row(static_cast<Eigen::Index>(e.channels[static_cast<std::size_t>(c)]));
+    D.row(c) = plant.D.row(static_cast<Eigen::Index>(e.channels[static_cast<std::size_t>(c)]));
+  }
+  // over one sample, the voltage straight in between: x1 = F x0 + G u0 + H (u1 - u0)
+  const double h = e.record.step();
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(n + 4, n + 4);
+  whole.topLeftCorner(n, n) = h * plant.A;
+  whole.block(0, n, n, 2) = h * plant.B;
+  whole.block(n, n + 2, 2, 2).setIdentity();
+  whole = whole.exp().eval();
+  const Eigen::MatrixXd F = whole.topLeftCorner(n, n), G = whole.block(0, n, n, 2),
+                        H = whole.topRightCorner(n, 2);
+  const Eigen::MatrixXd in = F * H + G - H, through = D + C * H;
+  const Eigen::MatrixXd V = variance.asDiagonal();
+
+  SlowNoise s;
+  s.A = Eigen::MatrixXd::Identity(m, m);
+  s.A.topLeftCorner(n, n) = F;
+  s.A.topRightCorner(n, 2) = G;
+  s.C.resize(count, m);
+  s.C << C, D;
+  s.P = s.Q = Eigen::MatrixXd::Zero(m, m);
+  s.P.bottomRightCorner(2, 2) = V / e.start.samples;
+  s.Q.topLeftCorner(n, n) = in * V * in.transpose();
+  s.M = Eigen::MatrixXd::Zero(m, count);
+  s.M.topRows(n) = in * V * through.transpose();
+  // the measured noise holds what the voltage's does at once; the rest cannot be less than nothing
+  const Eigen::MatrixXd scale = e.noise.asDiagonal(), unit = e.noise.cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd white = unit * e.whitening.inverse();
+  const Eigen::MatrixXd at_once = unit * through * V * through.transpose() * unit;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> rest(white * white.transpose() - at_once);
+  const Eigen::VectorXd left = rest.eigenvalues().cwiseMax(kLeft);
+  s.S = scale * (at_once + rest.eigenvectors() * left.asDiagonal() * rest.eigenvectors().transpose()) * scale;
+  return s;
+}
+
+/// Whether, by the record's end, the slow part of any channel's noise has a variance worth speaking of.
+bool matters(const SlowNoise& s, const FitEvent& e) {
+  Eigen::MatrixXd P = s.P;
+  for (int k = 0; k < e.record.samples(); ++k) P = (s.A * P * s.A.transpose() + s.Q).eval();
+  const Eigen::MatrixXd slow = e.whitening * s.C * P * s.C.transpose() * e.whitening.transpose();
+  return slow.diagonal().maxCoeff() > kMatters;
+}
+
 }  // namespace
 
 void sharpen_noise(const Fit& fit, std::vector<FitEvent>& events) {
@@ -75,39 +172,18 @@ void sharpen_noise(const Fit& fit, std::vector<FitEvent>& events) {
   events = std::move(sharper);
 }
 
-double noise_colour(const sim::Plant& plant, const sim::Conventions& conventions,
-                    const std::vector<FitEvent>& events) {
-  const auto answer = [&](double amount) {
-    FitEvent minute = noisy_minute(events, amount);
-    minute.smeared.clear();
-    const VoltageCurve curve(minute.record, {});
-    Drive run{.plant = &plant, .conventions = conventions, .record = &minute.record, .curve = &curve};
-    run.start = minute.start;
-    run.tolerance = 1e-5;
-    return observe(run);
-  };
-  const Response still = answer(0), moved = answer(1);
-  const FitEvent& e = events.front();
-  const auto n = static_cast<Eigen::Index>(e.channels.size());
-  const auto length = static_cast<std::size_t>(std::lround(2 / e.record.step()));
-  const std::size_t blocks = still.of(Output::P).size() / length;
-  Eigen::VectorXd one = Eigen::VectorXd::Zero(n), slow = one;
-  for (std::size_t b = 0; b < blocks; ++b) {
-    Eigen::VectorXd sum = Eigen::VectorXd::Zero(n);
-    for (std::size_t k = b * length; k < (b + 1) * length; ++k) {
-      Eigen::VectorXd d(n);
-      for (Eigen::Index c = 0; c < n; ++c) {
-        const Output o = e.channels[static_cast<std::size_t>(c)];
-        d[c] = moved.of(o)[k] - still.of(o)[k];
-      }
-      const Eigen::VectorXd w = e.whitening * d;
-      one += w.cwiseAbs2();
-      sum += w;
-    }
-    slow += sum.cwiseAbs2() / static_cast<double>(length);
+void remember_noise(const Fit& fit, const sim::Conventions& conventions, std::vector<FitEvent>& events) {
+  const Eigen::Vector2d variance = voltage_noise_of(events) * instrument_share(fit, events);
+  for (FitEvent& e : events) {
+    const VoltageCurve curve(e.played(), e.switchings);
+    const Drive at{.plant = &fit.plant,
+                   .conventions = conventions,
+                   .record = &e.record,
+                   .curve = &curve,
+                   .start = e.start};
+    const SlowNoise noise = slow_noise(linearise(at), e, variance);
+    if (matters(noise, e)) e.memory = std::make_shared<Innovations>(noise, e.record.samples(), e.smeared);
   }
-  const Eigen::VectorXd white = one / static_cast<double>(blocks * length);
-  return 1 + (slow / static_cast<double>(blocks) - white).cwiseMax(0.0).maxCoeff();
 }
 
 }  // namespace swingbank::validate

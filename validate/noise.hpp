@@ -11,10 +11,10 @@ namespace swingbank::validate {
 /// stays that of the pre-event stretch.
 void sharpen_noise(const Fit& fit, std::vector<FitEvent>& events);
 
-/// How coloured the residual is by nature: the played-in voltage's own noise passes exciter and rotor, and
-/// what comes out is slow. Power of the whitened answer's slow part (means over two seconds) in the channel
-/// that has most, in units of white noise. Evidence and what a free input explains of noise grow by as much.
-double noise_colour(const sim::Plant& plant, const sim::Conventions& conventions,
-                    const std::vector<FitEvent>& events);
+/// Noise of the played-in voltage passes exciter and rotor, and what comes out is slow. Follows it through
+/// the plant's equations about each event's start and gives the events' noise that memory, where it matters.
+/// Density of the voltage's noise: what moves at 3 to 10 Hz before the events (below, the grid itself moves;
+/// above, instruments filter), as far as the residual of `fit` says that the instrument made it.
+void remember_noise(const Fit& fit, const sim::Conventions& conventions, std::vector<FitEvent>& events);
 
 }  // namespace swingbank::validate

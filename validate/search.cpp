@@ -15,16 +15,20 @@ namespace {
 /// fit.
 constexpr std::size_t kTries = 4;
 constexpr int kFirstSteps = 4, kMoreSteps = 8, kNestedSteps = 12;
-/// Misfit of the stage below which what is missing is small.
-constexpr double kNested = 4;
+/// Steps from each start beside a stage that nearly fits, and from the best of them.
+constexpr int kNearSteps = 3, kOnwardSteps = 9;
+/// Misfit of the stage below which what is missing is small, and below which the fitted values are good
+/// starts for everything but what is missing.
+constexpr double kNested = 4, kNear = 1.5;
 
 /// A hypothesis with its starts: its standard values, then draws in order of what they leave before any fit.
 /// What leaves least may be what hardly acts.
 struct Candidate {
   Hypothesis hypothesis;
   std::vector<sim::Plant> starts;
-  std::vector<double> nested =
-      {};  ///< free parameters: the stage as fitted, and the start that suits it best
+  /// The stage as fitted, with each start: its misfit, and all free parameters. The standard start first, the
+  /// others as they suit the stage.
+  std::vector<std::pair<double, std::vector<double>>> nested = {};
 };
 
 /// Index in `plant` of the block with that effect.
@@ -112,7 +116,6 @@ class Searcher {
   }
   /// Where the stage nearly fits, what is missing is small: its fitted values are the start then.
   void nest(const Hypothesis& h, Candidate& c) const {
-    double least = 1e300;
     for (const auto& values : h.starts) {
       sim::Plant plant = started(h, values);
       for (const auto& p : stage_.fit.parameters) {
@@ -121,15 +124,15 @@ class Searcher {
       }
       double misfit = 0;
       bool acts = true;
-      if (!answer(plant, h, misfit, acts) || misfit >= least) continue;
-      least = misfit;
-      c.nested = values_of(plant, free_of(h, stage_.spread));
+      if (answer(plant, h, misfit, acts))
+        c.nested.emplace_back(misfit, values_of(plant, free_of(h, stage_.spread)));
     }
+    if (!c.nested.empty()) std::ranges::sort(c.nested.begin() + 1, c.nested.end());
   }
   /// From the standard values, and from the draw that a few steps show to be the best. The standard ones are
   /// not left out for being slow: draws that hardly act always look better at first.
   Judgement quick(const Candidate& c) const {
-    Judgement j;
+    if (stage_.fit.misfit() < kNear && !c.nested.empty()) return near(c);
     const auto free = free_of(c.hypothesis, stage_.spread);
     const auto attempt = [&](const sim::Plant& start, const FitOptions& o) {
       return fit(start, c.hypothesis.conventions, stage_.events, free, o);
@@ -156,13 +159,39 @@ class Searcher {
         fits.empty() || criterion(*std::ranges::min_element(fits, {}, criterion)) > criterion(stage_.fit);
     if (!c.nested.empty() && (worse || stage_.fit.misfit() < kNested)) {
       o.iterations = kNestedSteps;
-      o.values = c.nested;
+      o.values = std::ranges::min_element(c.nested)->second;
       o.start.clear();
       for (const auto& e : stage_.fit.events) o.start.push_back(e.state);
       if (Fit f = attempt(c.starts.front(), o); f.failed.empty()) fits.push_back(std::move(f));
     }
+    return judgement(c, fits, tries);
+  }
+  /// Beside a stage that nearly fits, all else starts as that ended.
+  Judgement near(const Candidate& c) const {
+    const auto free = free_of(c.hypothesis, stage_.spread);
+    FitOptions o;
+    o.errors = false;
+    o.iterations = kNearSteps;
+    for (const auto& e : stage_.fit.events) o.start.push_back(e.state);
+    std::vector<Fit> fits;
+    for (std::size_t k = 0; k < std::min(c.nested.size(), kTries); ++k) {
+      o.values = c.nested[k].second;
+      if (Fit f = fit(c.starts.front(), c.hypothesis.conventions, stage_.events, free, o); f.failed.empty())
+        fits.push_back(std::move(f));
+    }
+    if (fits.empty()) return judgement(c, fits, kTries);
+    o = continued(o, *std::ranges::min_element(fits, {}, criterion), free);
+    o.iterations = kOnwardSteps;
+    fits.push_back(fit(c.starts.front(), c.hypothesis.conventions, stage_.events, free, o));
+    return judgement(c, fits, kTries);
+  }
+  /// The best of the fits; starts from `tried` on remain.
+  Judgement judgement(const Candidate& c, std::vector<Fit>& fits, std::size_t tried) const {
+    Judgement j;
     j.hypothesis = c.hypothesis;
-    j.starts.assign(c.starts.begin() + static_cast<std::ptrdiff_t>(tries), c.starts.end());
+    j.starts.assign(c.starts.begin() + static_cast<std::ptrdiff_t>(std::min(tried, c.starts.size())),
+                    c.starts.end());
+    std::erase_if(fits, [](const Fit& f) { return !f.failed.empty(); });
     if (fits.empty()) return j;
     j.fit = std::move(*std::ranges::min_element(fits, {}, criterion));
     j.gain = criterion(stage_.fit) - criterion(j.fit);

@@ -124,6 +124,42 @@ TEST_F(DrivenPlantTest, SlopesAlongAddedInputs) {
                  {Kind::field, 0, 1, 1e-4},
                  {Kind::field, 0, 3, 1e-4}});
 }
+TEST_F(DrivenPlantTest, LinearPlantAnswersASmallStep) {
+  // V and theta step by little at the start and stay: states and outputs of the linear plant against play-in
+  for (const Complex factor : {Complex(1 + 1e-5, 0), std::polar(1.0, 1e-5)}) {
+    Record quiet = record_;
+    const OperatingPoint start = pre_event_point(record_, switchings_, 1.0);
+    std::ranges::fill(quiet.V, std::abs(start.voltage));
+    std::ranges::fill(quiet.theta, std::arg(start.voltage));
+    const VoltageCurve curve(quiet, {});
+    Drive run{.plant = &model_.plant, .conventions = model_.conventions, .record = &quiet, .curve = &curve};
+    run.start = start;
+    run.until = 3.0;
+    const LinearPlant plant = linearise(run);
+    const Response still = drive(run);
+    run.voltage_factor = factor;
+    const Response moved = drive(run);
+    const Eigen::Vector2d u(std::abs(factor) - 1, std::arg(factor));
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(plant.A.rows());
+    double t = quiet.t.front();
+    Eigen::MatrixXd worst = Eigen::MatrixXd::Zero(kOutputs, 2);  // difference, size
+    for (std::size_t k = 0; k < moved.value[0].size(); ++k) {
+      constexpr int kParts = 2000;  // of a sample interval: explicit steps, right to 1e-4
+      for (const double h = (quiet.t[k] - t) / kParts; t < quiet.t[k] - h / 2; t += h)
+        x += h * (plant.A * x + plant.B * u);
+      t = quiet.t[k];
+      const Eigen::VectorXd y = plant.C * x + plant.D * u;
+      for (int o = 0; o < kOutputs; ++o) {
+        const double by = moved.value[o][k] - still.value[o][k];
+        worst(o, 0) = std::max(worst(o, 0), std::abs(by - y[o]));
+        worst(o, 1) = std::max(worst(o, 1), std::abs(by));
+      }
+    }
+    for (int o = 0; o < kOutputs; ++o)
+      // the step's own curvature and the explicit steps' error
+      EXPECT_LE(worst(o, 0), 2e-3 * worst(o, 1) + 1e-10) << output_name(static_cast<Output>(o));
+  }
+}
 TEST_F(DrivenPlantTest, AddedInputIsPiecewiseLinear) {
   const PiecewiseLinear f{{1.0, 2.0, 4.0}, {0.0, 1.0, -1.0}};
   EXPECT_EQ(f(0.9), 0.0);
