@@ -96,10 +96,9 @@ class Maker {
   void choose_sizes() {
     if (spec_.hidden.empty()) return;
     const sim::Grid& plain = world_.plain();
-    std::vector<Record> noisy = plain_;
-    for (Record& record : noisy)
-      add_noise(record, config_, made_.noise, target(plain).mva, made_.channels, draw_);
-    const BlindSize size(target(plain), plain.conventions, made_.events, plain_, noisy);
+    const BlindSize size(target(plain), plain.conventions, made_.events, plain_,
+                         made_.noise * target(plain).mva / plain_.front().base.mva,
+                         made_.noise * config_.voltage_noise);
     scales_.assign(spec_.hidden.size(), {});
     Scales found = scales_;
     for (std::size_t k = 0; k < spec_.hidden.size(); ++k) {

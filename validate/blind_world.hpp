@@ -9,6 +9,7 @@
 #include "sim/solve/reference.hpp"
 #include "validate/blind_case.hpp"
 #include "validate/blind_random.hpp"
+#include "validate/fit_event.hpp"
 
 namespace swingbank::validate {
 
@@ -63,31 +64,33 @@ void add_noise(Record& record, const BlindConfig& config, double noise, double m
                BlindDraw& draw);
 
 /// How large a difference between records is, for P and Q of all events, in units of the noise that the right
-/// model leaves: that of P and Q and that of V and theta as plant and controls answer to it.
+/// model leaves: that of P and Q, and that of V and theta as plant and controls answer to it, slow as it is.
 class BlindSize {
  public:
-  /// `plain`: records without the hidden effects, `noisy`: the same with noise; `plant`: the model that
-  /// explains them.
+  /// `plain`: records without the hidden effects; `plant`: the model that explains them; standard deviations
+  /// of P and Q, and of V and theta [pu on the records' base, rad].
   BlindSize(const sim::Plant& plant, const sim::Conventions& conventions,
-            const std::vector<BlindEvent>& events, std::vector<Record> plain,
-            const std::vector<Record>& noisy);
+            const std::vector<BlindEvent>& events, std::vector<Record> plain, double power_noise,
+            double voltage_noise);
   [[nodiscard]] double visible(const std::vector<Record>& with) const;
   /// After a linear refit of the machine's parameters and the switching instants.
   [[nodiscard]] double left(const std::vector<Record>& with) const;
 
  private:
-  [[nodiscard]] std::vector<double> answer(std::size_t event, const sim::Plant& plant, const Record& record,
-                                           const std::vector<double>& switchings) const;
-  [[nodiscard]] std::vector<double> residual(std::size_t event, const Record& record) const;
+  [[nodiscard]] Eigen::VectorXd answer(const sim::Plant& plant, const Record& record,
+                                       const std::vector<double>& switchings) const;
+  [[nodiscard]] Eigen::VectorXd residual(std::size_t event, const Record& record) const;
   void add_columns(std::size_t event);
+  /// Rows of an event within those of all.
+  [[nodiscard]] Eigen::Index first_row(std::size_t event) const;
 
   sim::Plant plant_;
   sim::Conventions conventions_;
   std::vector<BlindEvent> events_;
   std::vector<Record> plain_;
-  std::vector<std::array<double, 2>> sigma_;         ///< [event]: of P and of Q [pu]
-  std::vector<std::vector<double>> plain_residual_;  ///< [event][P, Q] [noise]
-  std::vector<std::vector<double>> columns_;         ///< directions that a refit may use, over all events
+  std::vector<FitEvent> noise_;                  ///< how to whiten each event
+  std::vector<Eigen::VectorXd> plain_residual_;  ///< [event][sample * 2 + channel] [pu]
+  RowMatrix columns_;  ///< directions that a refit may use, whitened: [event, sample, channel][direction]
 };
 
 }  // namespace swingbank::validate

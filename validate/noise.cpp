@@ -103,8 +103,33 @@ double instrument_share(const Fit& fit, const std::vector<FitEvent>& events) {
   return own > 0 ? std::clamp((cross + std::sqrt(own)) / own, 0.0, 1.0) : 1.0;
 }
 
-/// Slow noise of an event: states are the plant's, less what the latest sample did to them, and the mean
-/// error of V and theta over the pre-event window, from which everything is counted.
+/// Whether, by the record's end, the slow part of any channel's noise has a variance worth speaking of.
+bool matters(const SlowNoise& s, const FitEvent& e) {
+  Eigen::MatrixXd P = s.P;
+  for (int k = 0; k < e.record.samples(); ++k) P = (s.A * P * s.A.transpose() + s.Q).eval();
+  const Eigen::MatrixXd slow = e.whitening * s.C * P * s.C.transpose() * e.whitening.transpose();
+  return slow.diagonal().maxCoeff() > kMatters;
+}
+
+}  // namespace
+
+void sharpen_noise(const Fit& fit, std::vector<FitEvent>& events) {
+  std::vector<FitEvent> sharper = events;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    Eigen::VectorXd scale(events[i].noise.size());
+    for (std::size_t c = 0; c < events[i].channels.size(); ++c) {
+      Channel channel;
+      for (std::size_t e = 0; e < events.size(); ++e)
+        if (events[e].channels == events[i].channels) add(events[e], fit.events[e], c, channel);
+      scale[static_cast<Eigen::Index>(c)] =
+          channel.samples > 0 && channel.differences > 0 ? std::sqrt(ratio(std::move(channel))) : 1.0;
+    }
+    sharper[i].noise = events[i].noise.cwiseProduct(scale);
+    sharper[i].whitening = events[i].whitening * scale.cwiseInverse().asDiagonal();
+  }
+  events = std::move(sharper);
+}
+
 SlowNoise slow_noise(const LinearPlant& plant, const FitEvent& e, const Eigen::Vector2d& variance) {
   const Eigen::Index n = plant.A.rows(), m = n + 2, count = static_cast<Eigen::Index>(e.channels.size());
   Eigen::MatrixXd C(count, n), D(count, 2);
@@ -143,33 +168,6 @@ SlowNoise slow_noise(const LinearPlant& plant, const FitEvent& e, const Eigen::V
   const Eigen::VectorXd left = rest.eigenvalues().cwiseMax(kLeft);
   s.S = scale * (at_once + rest.eigenvectors() * left.asDiagonal() * rest.eigenvectors().transpose()) * scale;
   return s;
-}
-
-/// Whether, by the record's end, the slow part of any channel's noise has a variance worth speaking of.
-bool matters(const SlowNoise& s, const FitEvent& e) {
-  Eigen::MatrixXd P = s.P;
-  for (int k = 0; k < e.record.samples(); ++k) P = (s.A * P * s.A.transpose() + s.Q).eval();
-  const Eigen::MatrixXd slow = e.whitening * s.C * P * s.C.transpose() * e.whitening.transpose();
-  return slow.diagonal().maxCoeff() > kMatters;
-}
-
-}  // namespace
-
-void sharpen_noise(const Fit& fit, std::vector<FitEvent>& events) {
-  std::vector<FitEvent> sharper = events;
-  for (std::size_t i = 0; i < events.size(); ++i) {
-    Eigen::VectorXd scale(events[i].noise.size());
-    for (std::size_t c = 0; c < events[i].channels.size(); ++c) {
-      Channel channel;
-      for (std::size_t e = 0; e < events.size(); ++e)
-        if (events[e].channels == events[i].channels) add(events[e], fit.events[e], c, channel);
-      scale[static_cast<Eigen::Index>(c)] =
-          channel.samples > 0 && channel.differences > 0 ? std::sqrt(ratio(std::move(channel))) : 1.0;
-    }
-    sharper[i].noise = events[i].noise.cwiseProduct(scale);
-    sharper[i].whitening = events[i].whitening * scale.cwiseInverse().asDiagonal();
-  }
-  events = std::move(sharper);
 }
 
 void remember_noise(const Fit& fit, const sim::Conventions& conventions, std::vector<FitEvent>& events) {

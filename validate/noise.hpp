@@ -11,6 +11,11 @@ namespace swingbank::validate {
 /// stays that of the pre-event stretch.
 void sharpen_noise(const Fit& fit, std::vector<FitEvent>& events);
 
+/// Noise of the played-in voltage, of these variances [V/V, rad], as the plant answers it: the states are the
+/// plant's, less what the latest sample did to them, and the mean error of V and theta over the pre-event
+/// window, from which everything is counted. `event`: whitening at once, channels, start.
+SlowNoise slow_noise(const LinearPlant& plant, const FitEvent& event, const Eigen::Vector2d& variance);
+
 /// Noise of the played-in voltage passes exciter and rotor, and what comes out is slow. Follows it through
 /// the plant's equations about each event's start and gives the events' noise that memory, where it matters.
 /// Density of the voltage's noise: what moves at 3 to 10 Hz before the events (below, the grid itself moves;
