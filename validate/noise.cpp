@@ -184,4 +184,25 @@ void remember_noise(const Fit& fit, const sim::Conventions& conventions, std::ve
   }
 }
 
+double slow_remainder(const Fit& fit, const std::vector<FitEvent>& events) {
+  double worst = 0;
+  for (const double seconds : {0.5, 1.0, 2.0})
+    for (std::size_t c = 0; c < events.front().channels.size(); ++c) {
+      double power = 0;
+      int blocks = 0;
+      for (std::size_t i = 0; i < events.size(); ++i) {
+        if (events[i].channels != events.front().channels) continue;
+        const auto& residual = fit.events[i].residual[c];
+        const auto length = static_cast<std::size_t>(std::lround(seconds / events[i].record.step()));
+        for (std::size_t first = 0; first + length <= residual.size(); first += length, ++blocks) {
+          double sum = 0;
+          for (std::size_t k = first; k < first + length; ++k) sum += residual[k];
+          power += sum * sum / static_cast<double>(length);
+        }
+      }
+      if (blocks > 0) worst = std::max(worst, (power / blocks - 1) / std::sqrt(2.0 / blocks));
+    }
+  return worst;
+}
+
 }  // namespace swingbank::validate

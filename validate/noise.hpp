@@ -22,4 +22,8 @@ SlowNoise slow_noise(const LinearPlant& plant, const FitEvent& event, const Eige
 /// above, instruments filter), as far as the residual of `fit` says that the instrument made it.
 void remember_noise(const Fit& fit, const sim::Conventions& conventions, std::vector<FitEvent>& events);
 
+/// How far the power of slow means of the residual (0.5, 1 and 2 s) lies above that of white noise, in
+/// standard deviations, in the channel and length where that is most.
+double slow_remainder(const Fit& fit, const std::vector<FitEvent>& events);
+
 }  // namespace swingbank::validate

@@ -69,7 +69,10 @@ class Searcher {
  private:
   /// Every hypothesis that acts here.
   std::vector<Candidate> screened() const {
-    auto all = all_hypotheses(stage_.plant, stage_.conventions);
+    double seconds = 0;
+    for (const FitEvent& e : stage_.events)
+      seconds = std::max(seconds, e.record.t.back() - e.record.t.front());
+    auto all = all_hypotheses(stage_.plant, stage_.conventions, seconds);
     std::vector<Candidate> candidates(all.size());
     int done = 0;
     std::mutex progress;
@@ -127,7 +130,92 @@ class Searcher {
       if (answer(plant, h, misfit, acts))
         c.nested.emplace_back(misfit, values_of(plant, free_of(h, stage_.spread)));
     }
-    if (!c.nested.empty()) std::ranges::sort(c.nested.begin() + 1, c.nested.end());
+    if (c.nested.empty()) return;
+    std::ranges::sort(c.nested.begin() + 1, c.nested.end());
+    if (stage_.fit.misfit() < kNear) scale(h, c);
+  }
+  /// Parameters that switch the effect off at their neutral value, by their place in the free ones. Off means
+  /// a thousandth of the standard values' answer: more states make other steps.
+  std::vector<std::size_t> amplitudes(const Hypothesis& h, const Candidate& c) const {
+    const auto free = free_of(h, stage_.spread);
+    const auto& standard = c.nested.front().second;
+    double along = 0, whole = 0;
+    std::vector<std::size_t> found;
+    if (!project(h, with_values(h, free, standard), along, whole)) return found;
+    for (std::size_t i = free.size() - h.free.size(); i < free.size(); ++i) {
+      const double neutral = parameter_record(h.plant, free[i].block, free[i].index).neutral;
+      if (!(neutral < standard[i]) && !(neutral > standard[i])) continue;
+      auto off = standard;
+      off[i] = neutral;
+      double left = 0;
+      if (project(h, with_values(h, free, off), along, left) && left < 1e-6 * whole) found.push_back(i);
+    }
+    return found;
+  }
+  static sim::Plant with_values(const Hypothesis& h, const std::vector<FreeParameter>& free,
+                                const std::vector<double>& values) {
+    sim::Plant plant = h.plant;
+    for (std::size_t i = 0; i < free.size(); ++i)
+      parameter_value(plant, free[i].block, free[i].index) = values[i];
+    return plant;
+  }
+  /// Score test at the neutral point: each start as small as a first step along its amplitude would make it,
+  /// those with most to gain first.
+  void scale(const Hypothesis& h, Candidate& c) const {
+    constexpr double kSmall = 0.01;  // of the amplitude: the answer is straight
+    const auto which = amplitudes(h, c);
+    if (which.empty()) return;
+    const auto free = free_of(h, stage_.spread);
+    const auto at = [&](std::vector<double> values, double share) {
+      for (const std::size_t i : which) {
+        const double neutral = parameter_record(h.plant, free[i].block, free[i].index).neutral;
+        values[i] = neutral + share * (values[i] - neutral);
+      }
+      return values;
+    };
+    std::vector<std::pair<double, std::vector<double>>> scaled;
+    for (const auto& [misfit, values] : c.nested) {
+      double along = 0, square = 0;
+      if (!project(h, with_values(h, free, at(values, kSmall)), along, square) || !(square > 0)) continue;
+      const double share = std::clamp(-along / square * kSmall, 1e-3, 1.0);
+      scaled.emplace_back(along < 0 ? -along * along / square : 0.0, at(values, share));
+    }
+    std::ranges::sort(scaled);
+    if (scaled.size() >= kTries) scaled.resize(kTries - 1);
+    c.nested.insert(c.nested.begin() + 1, std::make_move_iterator(scaled.begin()),
+                    std::make_move_iterator(scaled.end()));
+  }
+  /// Change of the stage's answer to that of `plant`, whitened: times the stage's residual, times itself.
+  bool project(const Hypothesis& h, const sim::Plant& plant, double& along, double& square) const {
+    try {
+      for (std::size_t i = 0; i < stage_.events.size(); ++i) {
+        const FitEvent& e = stage_.events[i];
+        const EventFit& at = stage_.fit.events[i];
+        auto switchings = e.switchings;
+        for (std::size_t k = 0; k < switchings.size(); ++k) switchings[k].time = at.state.switchings[k];
+        const VoltageCurve curve(e.played(), switchings);
+        Drive run{.plant = &plant, .conventions = h.conventions, .record = &e.record, .curve = &curve};
+        run.start = e.start;
+        run.start.P += at.state.P;
+        run.start.Q += at.state.Q;
+        run.angle = at.state.angle;
+        run.speed = at.state.speed;
+        run.tolerance = 1e-5;
+        run.least_step = e.record.step() / 40;
+        run.step_limit = 15 * e.record.samples();
+        EventFit moved;
+        compare(e, observe(run), moved);
+        for (std::size_t ch = 0; ch < moved.residual.size(); ++ch)
+          for (std::size_t k = 0; k < moved.residual[ch].size(); ++k) {
+            const double by = moved.residual[ch][k] - at.residual[ch][k];
+            along += by * at.residual[ch][k];
+            square += by * by;
+          }
+      }
+    } catch (const InputError&) {
+      return false;
+    }
+    return true;
   }
   /// From the standard values, and from the draw that a few steps show to be the best. The standard ones are
   /// not left out for being slow: draws that hardly act always look better at first.

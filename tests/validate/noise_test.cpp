@@ -61,6 +61,31 @@ TEST(SharpenNoise, WhiteNoiseIsMeasuredToAFewPerCent) {
   EXPECT_NEAR(c.events[0].noise[0], kSigma, 0.05 * kSigma);
   EXPECT_NEAR(c.events[0].whitening(0, 0) * c.events[0].noise[0], 1.0, 1e-12);
 }
+TEST(SlowRemainder, IsFewStandardDeviationsOfWhiteNoiseAndManyOfSlow) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  for (const double slow : {0.0, 0.25}) {  // a quarter of the noise, over seconds
+    Case c = make(1.0, 1.0);
+    for (auto& f : c.fit.events) {
+      f.residual.assign(2, {});
+      for (auto& channel : f.residual) {
+        double drift = 0;
+        for (int k = 0; k < kSamples; ++k) {
+          drift = 0.99 * drift + std::sqrt(1 - 0.99 * 0.99) * normal(random);
+          channel.push_back(normal(random) + slow * drift);
+        }
+      }
+    }
+    const double remainder = slow_remainder(c.fit, c.events);
+    // the largest of six nearly normal numbers; slow: 0.0625 of the variance over 200 samples is some 5 times
+    // the power of white noise in two seconds, 4 / sqrt(2 / 35)
+    if (slow == 0.0) {
+      EXPECT_LT(remainder, 5.0);
+    } else {
+      EXPECT_GT(remainder, 8.0);
+    }
+  }
+}
 TEST(SharpenNoise, ColouredNoiseIsLeftAlone) {
   Case c = make(0.3, 1.0);
   const double before = c.events[0].noise[0];
