@@ -17,6 +17,9 @@ constexpr std::size_t kTries = 4;
 constexpr int kFirstSteps = 4, kMoreSteps = 8, kNestedSteps = 12;
 /// Steps from each start beside a stage that nearly fits, and from the best of them.
 constexpr int kNearSteps = 3, kOnwardSteps = 9;
+/// Rounds of the latter, as long as each gains so much.
+constexpr int kRounds = 5;
+constexpr double kWorthARound = 10;
 /// Misfit of the stage below which what is missing is small, and below which the fitted values are good
 /// starts for everything but what is missing.
 constexpr double kNested = 4, kNear = 1.5;
@@ -268,9 +271,14 @@ class Searcher {
         fits.push_back(std::move(f));
     }
     if (fits.empty()) return judgement(c, fits, kTries);
-    o = continued(o, *std::ranges::min_element(fits, {}, criterion), free);
     o.iterations = kOnwardSteps;
-    fits.push_back(fit(c.starts.front(), c.hypothesis.conventions, stage_.events, free, o));
+    Fit best = *std::ranges::min_element(fits, {}, criterion);
+    for (int round = 0; round < kRounds; ++round) {
+      const Fit from = std::exchange(best, fit(c.starts.front(), c.hypothesis.conventions, stage_.events,
+                                               free, continued(o, best, free)));
+      if (!best.failed.empty() || best.converged || criterion(best) > criterion(from) - kWorthARound) break;
+    }
+    fits.push_back(std::move(best));
     return judgement(c, fits, kTries);
   }
   /// The best of the fits; starts from `tried` on remain.

@@ -30,6 +30,8 @@ class Lanes {
  private:
   using Traits = LaneTraits<T>;
   using Flat = typename Traits::Flat;
+  /// Of dp54::kink in the error: 0.03 would bound what a kink leaves by the tolerance, this by ten times it.
+  static constexpr double kKinkShare = 0.003;
   static constexpr std::size_t kFlats = 1 + Traits::directions;  ///< flats in one T
   struct PlantSlice {
     PlantEquations<T> equations;
@@ -90,6 +92,7 @@ class Lanes {
   template <int Stage>
   void stage(const T& h);
   Flat scaled_error(const Flat& h) const;
+  Flat kink_error(std::size_t state) const;
   void commit(unsigned accepted);
   void clamp_states();
   T spread(const T* x) const;
@@ -107,6 +110,7 @@ class Lanes {
   std::vector<Channel> channels_;
   int n_ = 0, sources_ = 0, samples_ = 0, states_ = 0;
   std::vector<double> weight_;  ///< per state, already divided by the tolerance
+  std::vector<int> kinked_;     ///< states whose steps are watched for kinks: those of exciters
 
   Constants per_lane_, per_sample_;
   std::vector<T> m_, er_, ei_;        ///< scratch of one evaluation

@@ -36,7 +36,11 @@ template <class T>
 void Lanes<T>::build_slices() {
   int c = 0, m = 0;
   const auto weigh = [&](const Effect& effect) {
-    for (const auto& state : effect.states) weight_.push_back(state.weight / options_.tolerance);
+    for (const auto& state : effect.states) {
+      // Limits of stabilisers and regulators stand before exciters, whose gain makes their kinks steep.
+      if (effect.slot == Slot::exciter) kinked_.push_back(static_cast<int>(weight_.size()));
+      weight_.push_back(state.weight / options_.tolerance);
+    }
   };
   for (std::size_t i = 0; i < grid_.plants.size(); ++i) {
     const Plant& plant = grid_.plants[i];

@@ -45,7 +45,26 @@ typename Lanes<T>::Flat Lanes<T>::scaled_error(const Flat& h) const {
     const Flat e = Traits::magnitude(sum) * Flat(weight_[i]);
     worst = select(e <= worst, worst, e);  // in this order a NaN wins
   }
+  for (const int state : kinked_) {
+    const auto i = static_cast<std::size_t>(state);
+    const Flat e = kink_error(i) * Flat(weight_[i]);
+    worst = select(e <= worst, worst, e);
+  }
   return worst * h;
+}
+
+/// What a kink within the step may leave in a state, over h: see dp54::kink.
+template <class T>
+typename Lanes<T>::Flat Lanes<T>::kink_error(std::size_t state) const {
+  Flat worst(0.0);
+  for (const auto& difference : dp54::kink) {
+    T sum =
+        T(difference[2]) * k_[2][state] + T(difference[3]) * k_[3][state] + T(difference[6]) * k_[6][state];
+    sum = sum + T(difference[0]) * k_[0][state] + T(difference[4]) * k_[4][state];
+    const Flat e = Traits::magnitude(sum);
+    worst = select(e <= worst, worst, e);
+  }
+  return worst * Flat(kKinkShare);
 }
 
 template <class T>
