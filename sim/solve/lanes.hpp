@@ -38,6 +38,17 @@ class Lanes {
     int x, c, m;  ///< offsets of states, coefficients and scratch
   };
 
+  /// An exciter behind a stabiliser: whether Vs comes to its limits or leaves them is seen from stages in
+  /// which it stays the same to the bit.
+  struct Watch {
+    std::size_t plant;
+    int first, count;      ///< the exciter's states
+    bool always;           ///< it declares no limits (State::low, high): where its own stand is not known
+    Flat start{}, last{};  ///< Vs at the step's start, at the last stage
+    Flat rested{}, rested_next{};  ///< 1 where Vs rested before the step, before the next one
+    Flat same{};                   ///< stages at which Vs was the last one's
+  };
+
   struct LoadSlice {
     LoadEquations<T> equations;
     int x, c;
@@ -93,6 +104,8 @@ class Lanes {
   void stage(const T& h);
   Flat scaled_error(const Flat& h) const;
   Flat kink_error(std::size_t state) const;
+  Flat has_kink(const Watch& watch) const;
+  void watch_stage(std::size_t plant, const T& vs);
   void commit(unsigned accepted);
   void clamp_states();
   T spread(const T* x) const;
@@ -103,6 +116,7 @@ class Lanes {
   InternalNetwork network_;
   std::vector<PlantSlice> plants_;
   std::vector<LoadSlice> loads_;
+  std::vector<Watch> watched_;
   std::vector<int> nonlinear_;               ///< sources: plants, then loads
   std::vector<Operating> base_, load_base_;  ///< operating points with the grid's own parameters
   bool limited_ = false, timed_ = false;     ///< whether any state has limits, any effect reads the time
@@ -110,7 +124,6 @@ class Lanes {
   std::vector<Channel> channels_;
   int n_ = 0, sources_ = 0, samples_ = 0, states_ = 0;
   std::vector<double> weight_;  ///< per state, already divided by the tolerance
-  std::vector<int> kinked_;     ///< states whose steps are watched for kinks: those of exciters
 
   Constants per_lane_, per_sample_;
   std::vector<T> m_, er_, ei_;        ///< scratch of one evaluation

@@ -36,11 +36,7 @@ template <class T>
 void Lanes<T>::build_slices() {
   int c = 0, m = 0;
   const auto weigh = [&](const Effect& effect) {
-    for (const auto& state : effect.states) {
-      // Limits of stabilisers and regulators stand before exciters, whose gain makes their kinks steep.
-      if (effect.slot == Slot::exciter) kinked_.push_back(static_cast<int>(weight_.size()));
-      weight_.push_back(state.weight / options_.tolerance);
-    }
+    for (const auto& state : effect.states) weight_.push_back(state.weight / options_.tolerance);
   };
   for (std::size_t i = 0; i < grid_.plants.size(); ++i) {
     const Plant& plant = grid_.plants[i];
@@ -52,7 +48,17 @@ void Lanes<T>::build_slices() {
     base_.push_back(operating_point(plant, grid_.flow.voltage[static_cast<std::size_t>(plant.bus)],
                                     grid_.network.base_mva, grid_.conventions));
     weigh(*plant.machine.effect);
-    for (const auto& block : plant.controls) weigh(*block.effect);
+    const auto has = [&](Slot slot) {
+      return std::ranges::any_of(plant.controls, [&](const Block& b) { return b.effect->slot == slot; });
+    };
+    for (const auto& block : plant.controls) {
+      const auto limited = [](const State& state) { return state.low >= 0 || state.high >= 0; };
+      if (block.effect->slot == Slot::exciter && has(Slot::stabiliser))
+        watched_.push_back({i, static_cast<int>(weight_.size()),
+                            static_cast<int>(block.effect->states.size()),
+                            std::ranges::none_of(block.effect->states, limited)});
+      weigh(*block.effect);
+    }
     if (equations.nonlinear()) nonlinear_.push_back(static_cast<int>(i));
     limited_ = limited_ || equations.limited();
     timed_ = timed_ || !plant.controls.empty();

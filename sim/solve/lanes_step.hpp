@@ -15,6 +15,10 @@ void Lanes<T>::evaluate_fresh() {
   }
   derivative(y_.data(), kept_.data());
   const auto fresh = Traits::mask(fresh_);
+  for (Watch& watch : watched_) {
+    watch.start = select(fresh, watch.last, watch.start);
+    watch.rested = select(fresh, Flat(0.0), watch.rested);
+  }
   for (std::size_t i = 0; i < y_.size(); ++i) k_[0][i] = select(fresh, kept_[i], k_[0][i]);
   fresh_ = 0;
 }
@@ -45,12 +49,36 @@ typename Lanes<T>::Flat Lanes<T>::scaled_error(const Flat& h) const {
     const Flat e = Traits::magnitude(sum) * Flat(weight_[i]);
     worst = select(e <= worst, worst, e);  // in this order a NaN wins
   }
-  for (const int state : kinked_) {
-    const auto i = static_cast<std::size_t>(state);
-    const Flat e = kink_error(i) * Flat(weight_[i]);
-    worst = select(e <= worst, worst, e);
+  for (const Watch& watch : watched_) {
+    const Flat kink = has_kink(watch);
+    for (int i = watch.first; i < watch.first + watch.count; ++i) {
+      const auto state = static_cast<std::size_t>(i);
+      const Flat e = kink * kink_error(state) * Flat(weight_[state]);
+      worst = select(e <= worst, worst, e);
+    }
   }
   return worst * h;
+}
+
+/// 1 where Vs comes to a limit within the step or leaves one, else 0.
+template <class T>
+typename Lanes<T>::Flat Lanes<T>::has_kink(const Watch& watch) const {
+  const Flat zero(0.0), one(1.0);
+  if (watch.always) return one;
+  const Flat moves = select(watch.same + watch.rested <= zero, zero, one);
+  return select(Flat(dp54::kStages - 1) <= watch.same, zero, moves);
+}
+
+/// After a stage's evaluation.
+template <class T>
+void Lanes<T>::watch_stage(std::size_t plant, const T& vs) {
+  const Flat now = Traits::value(vs), zero(0.0), one(1.0);
+  for (Watch& watch : watched_) {
+    if (watch.plant != plant) continue;
+    watch.same = watch.same + select(now <= watch.last, select(watch.last <= now, one, zero), zero);
+    watch.rested_next = select(now <= watch.last, select(watch.last <= now, one, zero), zero);
+    watch.last = now;
+  }
 }
 
 /// What a kink within the step may leave in a state, over h: see dp54::kink.
@@ -90,6 +118,10 @@ void Lanes<T>::commit(unsigned accepted) {
   for (std::size_t i = 0; i < y_.size(); ++i) {
     y_[i] = select(ok, trial_[i], y_[i]);
     k_[0][i] = select(ok, k_[6][i], k_[0][i]);
+  }
+  for (Watch& watch : watched_) {
+    watch.start = select(ok, watch.last, watch.start);
+    watch.rested = select(ok, watch.rested_next, watch.rested);
   }
   if (limited_) clamp_states();
 }
@@ -151,6 +183,10 @@ void Lanes<T>::run(const Next& next, const Done& done) {
     if (timed_) {
       for (int l = 0; l < kLanes; ++l) start[l] = lanes_[static_cast<std::size_t>(l)].clock.t;
       start_ = Traits::constant(LaneTraits<Flat>::load(start));
+    }
+    for (Watch& watch : watched_) {
+      watch.last = watch.start;
+      watch.same = Flat(0.0);
     }
     stage<1>(h);
     stage<2>(h);
