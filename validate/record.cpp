@@ -74,10 +74,11 @@ Record read_record(const std::filesystem::path& named, const RecordBase& base, c
   ReadOptions options = given;
   const std::filesystem::path file = split_terminal(named, options);
   const std::string e = extension(file);
-  if (e == ".cfg" || e == ".dat" || e == ".cff") return read_comtrade(file, base, options);
-  if (e == ".h5" || e == ".hdf5") return read_hdf5_record(file, base, options);
-  Record record = parse_record(read_bytes(file), file.string(), base, options);
-  record.name = file.filename().string();
+  const bool comtrade = e == ".cfg" || e == ".dat" || e == ".cff";
+  Record record = comtrade                     ? read_comtrade(file, base, options)
+                  : e == ".h5" || e == ".hdf5" ? read_hdf5_record(file, base, options)
+                                               : parse_record(read_bytes(file), file.string(), base, options);
+  record.name = named.filename().string();  // with the terminal, if one was named: two of a file differ
   return record;
 }
 

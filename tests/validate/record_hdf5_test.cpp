@@ -51,6 +51,7 @@ class RecordHdf5Test : public ::testing::Test {
 TEST_F(RecordHdf5Test, OnePlantOnTheRecordsBase) {
   write("swingbank-run-1");
   const Record r = read_record(file_.string() + "#GENROU 7", {150, 60, 0});
+  EXPECT_EQ(r.name, file_.filename().string() + "#GENROU 7");
   ASSERT_EQ(r.samples(), 50);
   const double t = 7 / 60.0;
   EXPECT_DOUBLE_EQ(r.t[7], t);
