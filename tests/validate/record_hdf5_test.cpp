@@ -51,7 +51,6 @@ class RecordHdf5Test : public ::testing::Test {
 TEST_F(RecordHdf5Test, OnePlantOnTheRecordsBase) {
   write("swingbank-run-1");
   const Record r = read_record(file_.string() + "#GENROU 7", {150, 60, 0});
-  EXPECT_EQ(r.name, file_.filename().string() + "#GENROU 7");
   ASSERT_EQ(r.samples(), 50);
   const double t = 7 / 60.0;
   EXPECT_DOUBLE_EQ(r.t[7], t);
@@ -60,7 +59,7 @@ TEST_F(RecordHdf5Test, OnePlantOnTheRecordsBase) {
   EXPECT_DOUBLE_EQ(r.V[7], 1.3 + t / 100);
   EXPECT_DOUBLE_EQ(r.theta[7], 1.4 + t / 100);
   EXPECT_EQ(r.terminal, "GENROU 7");
-  EXPECT_EQ(r.name, "run.h5");
+  EXPECT_EQ(r.name, "run.h5#GENROU 7");
   EXPECT_THAT(r.ignored, ElementsAre("delta"));
 }
 TEST_F(RecordHdf5Test, SeveralPlantsOrNoSuchPlant) {
