@@ -23,8 +23,15 @@ void require(int flag, const char* call) {
     throw std::runtime_error(std::string(call) + " failed with SUNDIALS code " + std::to_string(flag));
 }
 
+/// What IDA hands back to the functions below.
+struct SegmentProblem {
+  const ReferenceSystem& system;
+  const ReferenceOptions& options;
+  std::vector<double> weight;  ///< per unknown, of its error
+};
+
 int residual(realtype t, N_Vector y, N_Vector yp, N_Vector f, void* user) {
-  const auto& system = *static_cast<const ReferenceSystem*>(user);
+  const auto& system = static_cast<const SegmentProblem*>(user)->system;
   system.residual(t, N_VGetArrayPointer(y), N_VGetArrayPointer(yp), N_VGetArrayPointer(f));
   const double* value = N_VGetArrayPointer(f);
   // 1 asks IDA for a smaller step instead of going on with a value that is none.
@@ -33,13 +40,25 @@ int residual(realtype t, N_Vector y, N_Vector yp, N_Vector f, void* user) {
 
 int jacobian(realtype t, realtype a, N_Vector y, N_Vector, N_Vector, SUNMatrix j, void* user, N_Vector,
              N_Vector, N_Vector) {
-  const auto& system = *static_cast<const ReferenceSystem*>(user);
+  const auto& system = static_cast<const SegmentProblem*>(user)->system;
   const auto& pattern = system.pattern();
   std::copy(pattern.outerIndexPtr(), pattern.outerIndexPtr() + pattern.cols() + 1,
             SUNSparseMatrix_IndexPointers(j));
   std::copy(pattern.innerIndexPtr(), pattern.innerIndexPtr() + pattern.nonZeros(),
             SUNSparseMatrix_IndexValues(j));
   system.jacobian(t, a, N_VGetArrayPointer(y), SUNSparseMatrix_Data(j));
+  return 0;
+}
+
+/// IDA weighs errors by their root mean square over all unknowns. Times sqrt(n) the tolerance holds for each
+/// single one, however large the grid; an unknown that others see through a gain counts by its weight.
+int error_weights(N_Vector y, N_Vector weights, void* user) {
+  const auto& problem = *static_cast<const SegmentProblem*>(user);
+  const double* value = N_VGetArrayPointer(y);
+  double* to = N_VGetArrayPointer(weights);
+  const double all = std::sqrt(static_cast<double>(problem.weight.size()));
+  for (std::size_t i = 0; i < problem.weight.size(); ++i)
+    to[i] = all * problem.weight[i] / (problem.options.rtol * std::abs(value[i]) + problem.options.atol);
   return 0;
 }
 
@@ -68,18 +87,15 @@ class SegmentSolver {
  public:
   SegmentSolver(SUNContext context, const ReferenceSystem& system, N_Vector y, N_Vector yp, double start,
                 double end, const ReferenceOptions& options)
-      : y_(y), yp_(yp) {
+      : y_(y), yp_(yp), problem_{system, options, system.error_weights()} {
     matrix_.reset(
         SUNSparseMatrix(system.size(), system.size(), system.pattern().nonZeros(), CSC_MAT, context));
     solver_.reset(SUNLinSol_KLU(y, matrix_.get(), context));
     ida_.reset(IDACreate(context));
     require(IDASetErrHandlerFn(ida_.get(), quiet, nullptr), "IDASetErrHandlerFn");
     require(IDAInit(ida_.get(), residual, start, y, yp), "IDAInit");
-    // IDA weighs errors by their root mean square over all unknowns. Divided by sqrt(n) the tolerance holds
-    // for each single one, however large the grid.
-    const double single = 1.0 / std::sqrt(static_cast<double>(system.size()));
-    require(IDASStolerances(ida_.get(), options.rtol * single, options.atol * single), "IDASStolerances");
-    require(IDASetUserData(ida_.get(), const_cast<ReferenceSystem*>(&system)), "IDASetUserData");
+    require(IDASetUserData(ida_.get(), &problem_), "IDASetUserData");
+    require(IDAWFtolerances(ida_.get(), error_weights), "IDAWFtolerances");
     require(IDASetLinearSolver(ida_.get(), solver_.get(), matrix_.get()), "IDASetLinearSolver");
     require(IDASetJacFn(ida_.get(), jacobian), "IDASetJacFn");
     require(IDASetMaxNumSteps(ida_.get(), 1'000'000), "IDASetMaxNumSteps");
@@ -98,6 +114,7 @@ class SegmentSolver {
 
  private:
   N_Vector y_, yp_;
+  SegmentProblem problem_;
   Owner<SUNMatrix, FreeMatrix> matrix_;
   Owner<SUNLinearSolver, FreeSolver> solver_;
   std::unique_ptr<void, FreeIda> ida_;

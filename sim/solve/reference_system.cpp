@@ -277,6 +277,21 @@ void ReferenceSystem::residual(double t, const double* y, const double* yp, doub
   }
 }
 
+std::vector<double> ReferenceSystem::error_weights() const {
+  constexpr double kStabiliser = 30.0, kExciter = 10.0;  // docs/decisions.md, entry 54
+  std::vector<double> weight(static_cast<std::size_t>(size()), 1.0);
+  for (const Unit& unit : plants_.units()) {
+    if (!unit.plant) continue;
+    double* at = weight.data() + unit.first + unit.plant->machine.effect->states.size();
+    for (const Block& block : unit.plant->controls) {
+      const Slot slot = block.effect->slot;
+      const double w = slot == Slot::stabiliser ? kStabiliser : slot == Slot::exciter ? kExciter : 1.0;
+      at = std::fill_n(at, block.effect->states.size(), w);
+    }
+  }
+  return weight;
+}
+
 bool ReferenceSystem::clamp_states(double* y) const {
   double moved = 0.0;
   for (const Unit& unit : plants_.units())

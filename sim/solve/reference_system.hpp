@@ -63,6 +63,10 @@ class ReferenceSystem {
   /// y' of the states; zero for the voltages.
   void derivatives(double t, const double* y, double* yp) const;
   void residual(double t, const double* y, const double* yp, double* f) const;
+  /// Per unknown: what its error counts in step control. States of stabilisers and exciters stand before
+  /// gains of some thousands and some ten, and before limits that turn a late state into a lasting error of
+  /// Efd.
+  [[nodiscard]] std::vector<double> error_weights() const;
   /// Takes states back to the limits they have crossed; true if any moved.
   bool clamp_states(double* y) const;
   /// Every signal of one unit, current into the grid in `current`; dx (its states' derivatives) may be
