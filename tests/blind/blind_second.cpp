@@ -163,9 +163,8 @@ BlindCase make(const BlindConfig& config, const BlindSpec& spec, BlindDraw& d) {
   }
   made.model = made.truth = known_plant(plain);
   if (!kind.empty()) {
-    std::vector<Record> noisy = without;
-    for (Record& record : noisy) add_noise(record, config, made.noise, kMva, made.channels, d);
-    const BlindSize size(made.model, made.conventions, made.events, without, noisy);
+    const BlindSize size(made.model, made.conventions, made.events, without,
+                         made.noise * kMva / without.front().base.mva, made.noise * config.voltage_noise);
     truth.kind = spec.hidden.front();
     truth.left = size.left(made.records);
     truth.visible = size.visible(made.records);
