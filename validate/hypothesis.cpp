@@ -70,16 +70,11 @@ bool occupied(const sim::Plant& plant, const sim::Effect& effect) {
   return false;
 }
 
-/// The standard values, then draws around them: which lie where the records ask for is found by trying. What
-/// takes longer than the records last cannot be seen in them: it is tried at a thirtieth of them.
+/// The standard values, then draws around them: which lie where the records ask for is found by trying.
 std::vector<std::vector<double>> draws(const sim::Plant& plant, const std::vector<FreeParameter>& free,
-                                       int count, double seconds) {
+                                       int count) {
   std::vector<double> standard;
-  for (const auto& f : free) {
-    const auto& p = parameter_record(plant, f.block, f.index);
-    const double value = parameter_value(plant, f.block, f.index);
-    standard.push_back(p.unit == "s" && value >= seconds ? std::max(p.low, seconds / 30) : value);
-  }
+  for (const auto& f : free) standard.push_back(parameter_value(plant, f.block, f.index));
   std::vector<std::vector<double>> starts{standard};
   std::mt19937_64 random(1);  // the same draws every time: a diagnosis can be repeated
   std::normal_distribution<double> normal;
@@ -111,8 +106,7 @@ void start_near_neutral(Hypothesis& h, int block) {
   }
 }
 
-void add_effects(const sim::Plant& base, const sim::Conventions& conventions, double seconds,
-                 std::vector<Hypothesis>& all) {
+void add_effects(const sim::Plant& base, const sim::Conventions& conventions, std::vector<Hypothesis>& all) {
   for (const sim::Effect* effect : sim::every_effect()) {
     const bool instrument = effect->slot == Slot::measurement;
     const bool fits = effect->slot == Slot::transformer || sim::is_control(effect->slot) || instrument;
@@ -130,7 +124,7 @@ void add_effects(const sim::Plant& base, const sim::Conventions& conventions, do
       start_near_neutral(h, block);
     } else {
       h.free = free_parameters(h.plant, block, kSpread);
-      h.starts = draws(h.plant, h.free, 10, seconds);
+      h.starts = draws(h.plant, h.free, 10);
     }
     all.push_back(std::move(h));
   }
@@ -219,10 +213,9 @@ std::string_view side_name(Side side) {
   return names[static_cast<std::size_t>(side)];
 }
 
-std::vector<Hypothesis> all_hypotheses(const sim::Plant& base, const sim::Conventions& conventions,
-                                       double seconds) {
+std::vector<Hypothesis> all_hypotheses(const sim::Plant& base, const sim::Conventions& conventions) {
   std::vector<Hypothesis> all;
-  add_effects(base, conventions, seconds, all);
+  add_effects(base, conventions, all);
   add_neutral_groups(base, conventions, all);
   add_conventions(base, conventions, all);
   return all;

@@ -26,9 +26,7 @@ struct Hypothesis {
 
 /// Everything that may be added to the plant. Some of it may change nothing there (a stabiliser without an
 /// exciter); trying shows. Effects that act at given instants are not among them: they belong to one event.
-/// `seconds`: how long the records last.
-std::vector<Hypothesis> all_hypotheses(const sim::Plant& base, const sim::Conventions& conventions,
-                                       double seconds = 1e300);
+std::vector<Hypothesis> all_hypotheses(const sim::Plant& base, const sim::Conventions& conventions);
 /// Its name after that of what was added before: "SEXS + GENROU:Ra".
 std::string full_name(const Hypothesis& h);
 /// The hypothesis's plant with `start` as values of its free parameters.

@@ -72,10 +72,7 @@ class Searcher {
  private:
   /// Every hypothesis that acts here.
   std::vector<Candidate> screened() const {
-    double seconds = 0;
-    for (const FitEvent& e : stage_.events)
-      seconds = std::max(seconds, e.record.t.back() - e.record.t.front());
-    auto all = all_hypotheses(stage_.plant, stage_.conventions, seconds);
+    auto all = all_hypotheses(stage_.plant, stage_.conventions);
     std::vector<Candidate> candidates(all.size());
     int done = 0;
     std::mutex progress;
