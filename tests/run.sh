@@ -94,6 +94,7 @@ if ((!fast_only)); then
   run_tests full "$build" -L full
 fi
 if ((${#failed[@]})); then
+  cat "$source_folder"/build/fuzz/found/*/summary.txt 2>/dev/null || true
   say "failed: ${failed[*]}"
   exit 1
 fi

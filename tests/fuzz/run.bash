@@ -40,8 +40,12 @@ run_target() {
     -artifact_prefix="$found/" "$corpus" "$source_folder/tests/fuzz/corpus/$1" >"$found/log.txt" 2>&1; then
     echo "fuzz $1: $(sed -n 's/^stat::number_of_executed_units: *//p' "$found/log.txt") inputs in $seconds s, nothing found"
   else
-    echo "fuzz $1: found something, see $found" >&2
-    grep -m 3 -E 'violated|runtime error|ERROR' "$found/log.txt" >&2 || true
+    {
+      echo "fuzz $1: found something, see $found"
+      grep -m 3 -E 'violated|runtime error|ERROR' "$found/log.txt" || tail -n 5 "$found/log.txt"
+      # a machine that is thrown away takes the input with it
+      find "$found" -type f ! -name log.txt -size -3k -printf '%f, in base64: ' -exec base64 -w 0 {} \; -printf '\n'
+    } | tee "$found/summary.txt" >&2
     return 1
   fi
 }
