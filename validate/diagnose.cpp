@@ -102,17 +102,18 @@ class Diagnoser {
     report("missing input", 1, 1);
   }
 
-  /// Tries every hypothesis by itself, judges the leading ones; where none holds, pairs of them.
+  /// Tries every hypothesis by itself, judges the leading ones; then each beside the one that holds, or,
+  /// where none does, beside the best two.
   void search() {
     const Stage stage = model_stage();
     result_.ranked = try_hypotheses(stage, options_.progress);
     judge_leading(result_.ranked);
-    if (result_.ranked.empty() || result_.ranked.front().accepted ||
-        result_.base.misfit() <= options_.adequate)
-      return;
-    auto pairs = try_pairs(stage);
+    if (result_.ranked.empty()) return;
+    const Judgement best = result_.ranked.front();
+    if (!best.accepted && result_.base.misfit() <= options_.adequate) return;
+    auto pairs = best.accepted ? beside(stage, best) : try_pairs(stage);
     judge_leading(pairs);
-    std::erase_if(pairs, [](const Judgement& j) { return !j.accepted; });
+    std::erase_if(pairs, [&](const Judgement& j) { return !j.accepted || !needed(j); });
     result_.ranked.insert(result_.ranked.begin(), std::make_move_iterator(pairs.begin()),
                           std::make_move_iterator(pairs.end()));
   }
@@ -135,15 +136,23 @@ class Diagnoser {
         firsts.push_back(&j);
     }
     std::vector<Judgement> pairs;
-    for (const Judgement* first : firsts) {
-      for (auto& pair : try_hypotheses(after(stage, *first), options_.progress))
-        if (pair.gain >= trial().evidence) {
-          pair.gain += first->gain;
-          pairs.push_back(std::move(pair));
-        }
-    }
+    for (const Judgement* first : firsts) std::ranges::move(beside(stage, *first), std::back_inserter(pairs));
     std::ranges::stable_sort(pairs, std::greater<>(), &Judgement::gain);
     return pairs;
+  }
+  /// Every hypothesis beside one that is taken as given; evidence is that of both.
+  [[nodiscard]] std::vector<Judgement> beside(const Stage& stage, const Judgement& first) const {
+    auto pairs = try_hypotheses(after(stage, first), options_.progress);
+    std::erase_if(pairs, [](const Judgement& j) { return j.gain < kEvidence; });
+    for (auto& pair : pairs) pair.gain += first.gain;
+    return pairs;
+  }
+  /// Whether a pair explains what no single one does: the rival that was not taken may fit as well.
+  [[nodiscard]] bool needed(const Judgement& pair) const {
+    return std::ranges::none_of(result_.ranked, [&](const Judgement& single) {
+      return single.accepted &&
+             (single.fit.chi2 - pair.fit.chi2 < kEvidence || pair.gain - single.gain < kEvidence);
+    });
   }
   /// Those that might still be as good as the best, accepted ones first after it.
   void judge_leading(std::vector<Judgement>& tried) {
