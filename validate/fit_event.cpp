@@ -31,6 +31,17 @@ std::vector<double> prominence(const std::vector<Complex>& step) {
                      std::abs(step[k] - step[k + 2]), std::abs(step[k] - step[k + 3])});
   return d;
 }
+/// Whether nothing in intervals first .. last stands out from steps as large: part of a fast swing.
+bool is_swing(const std::vector<Complex>& step, const std::vector<double>& d, std::size_t first,
+              std::size_t last) {
+  constexpr double kOfSwing = 0.25;
+  for (std::size_t k = first; k <= last; ++k) {
+    double beside = 0;
+    for (const std::size_t i : {k - 3, k - 2, k + 2, k + 3}) beside = std::max(beside, std::abs(step[i]));
+    if (d[k] >= kOfSwing * beside) return false;
+  }
+  return true;
+}
 
 /// Intervals first .. last over which one jump is smeared.
 struct Smear {
@@ -103,8 +114,9 @@ double still_until(const Record& r) {
 FitEvent prepare(Record record, const FitEventOptions& options, bool smears) {
   FitEvent e;
   e.record = std::move(record);
-  // a filter shares a jump out over two intervals at least
-  e.switchings = find_switchings(e.record, options.jump_threshold / (smears ? 2 : 1), smears, e.smeared);
+  // half of what matters to the eye: a filter shares a jump out over two intervals, and one that is not found
+  // is played in as a ramp
+  e.switchings = find_switchings(e.record, options.jump_threshold / 2, smears, e.smeared);
   if (std::ranges::count(e.smeared, 1) > 0)
     e.clean = without(e.record, e.smeared);
   else
@@ -158,6 +170,7 @@ std::vector<Switching> find_switchings(const Record& record, double threshold, b
       last += 2;
       while (last + 1 < d.size() && d[last + 1] > limit) ++last;
     }
+    if (is_swing(step, d, k, std::min(last, d.size() - 4))) continue;
     // samples first + 1 .. last lie inside the jump
     for (const Smear& jump : told_apart(step, {k, last}, limit)) {
       const bool spread = jump.last > jump.first || always;
