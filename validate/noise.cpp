@@ -58,6 +58,7 @@ double ratio(Channel channel) {
 }
 
 constexpr double kLow = 3.0, kHigh = 10.0;  ///< band in which the voltage's noise is measured [Hz]
+constexpr double kGuess = 2e-3;             ///< what V may be off by beside a switching, of itself
 constexpr double kLeft = 0.01;              ///< of a channel's variance: its own noise, at least
 constexpr double kMatters = 1e-3;           ///< variance of slow noise over that of white noise
 
@@ -158,6 +159,15 @@ SlowNoise slow_noise(const LinearPlant& plant, const FitEvent& e, const Eigen::V
   s.P = s.Q = Eigen::MatrixXd::Zero(m, m);
   s.P.bottomRightCorner(2, 2) = V / e.start.samples;
   s.Q.topLeftCorner(n, n) = in * V * in.transpose();
+  // between samples about a switching the voltage is guessed
+  s.jump = Eigen::MatrixXd::Zero(m, m);
+  s.jump.topLeftCorner(n, n) = kGuess * kGuess * in * in.transpose();
+  s.doubtful.assign(e.record.t.size(), 0);
+  for (std::size_t k = 0; k + 1 < e.record.t.size(); ++k)
+    s.doubtful[k] =
+        (!e.smeared.empty() && e.smeared[k]) || std::ranges::any_of(e.switchings, [&](const Switching& w) {
+          return e.record.t[k] <= w.time && w.time < e.record.t[k + 1];
+        });
   s.M = Eigen::MatrixXd::Zero(m, count);
   s.M.topRows(n) = in * V * through.transpose();
   // the measured noise holds what the voltage's does at once; the rest cannot be less than nothing
