@@ -7,8 +7,9 @@
 
 namespace swingbank::validate {
 
-/// Cases in which nothing was hidden that were given an effect, as judged before anything was mended on them.
-inline const Rate kFalsePositives{3, 4};
+/// Cases in which nothing was hidden that were given an effect, as judged before anything was mended on them:
+/// seed 3409263365, broken off after 44 of 100 cases.
+inline const Rate kFalsePositives{2, 17};
 
 /// "Of N blind cases in which nothing was hidden k were given an effect (95 %: a to b %)."
 std::string false_positive_note();
