@@ -13,7 +13,7 @@
 namespace swingbank::validate {
 namespace {
 
-/// BIC differences above it are strong evidence (Kass and Raftery, JASA 90, 1995, give 6 to 10).
+/// Differences above it are strong evidence (Kass and Raftery, JASA 90, 1995, give 6 to 10).
 constexpr double kStrong = 10.0;
 
 std::string plain(const std::string& name) {
@@ -21,11 +21,6 @@ std::string plain(const std::string& name) {
   for (const char c : name)
     if (c != ' ' && c != '\t') out += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   return out;
-}
-
-double criterion(const Fit& f) {
-  return f.failed.empty() ? f.chi2 + f.belief + f.fitted * std::log(static_cast<double>(f.values))
-                          : std::numeric_limits<double>::infinity();
 }
 
 /// The effect's parameters, then every other that a refit may move.
@@ -128,7 +123,7 @@ Fit fit_with(const Hypothesis& h, const Bench& bench, const std::vector<EventSta
         fits[k] = fit(h.plant, h.conventions, bench.seen(), free, o);
       },
       [&](int done) { bench.tell("starts of " + h.name + " refined", done, static_cast<int>(tries)); });
-  Fit best = *std::ranges::min_element(fits, {}, criterion);
+  Fit best = *std::ranges::min_element(fits, {}, penalised);
   if (!best.failed.empty())
     throw InputError({"effect " + h.name + " cannot be fitted", "every start", best.failed,
                       "check the model's parameters, or add another effect"});
@@ -136,7 +131,7 @@ Fit fit_with(const Hypothesis& h, const Bench& bench, const std::vector<EventSta
   o.values = values_of(best.plant, free);
   for (const auto& e : best.events) o.start.push_back(e.state);
   Fit finished = fit(h.plant, h.conventions, bench.seen(), free, o);
-  return criterion(finished) < criterion(best) ? finished : best;
+  return penalised(finished) < penalised(best) ? finished : best;
 }
 
 Fit fit_without(const PlantModel& model, const Bench& bench, const std::vector<EventState>& states,

@@ -9,8 +9,9 @@
 namespace swingbank::validate {
 namespace {
 
-constexpr double kMove = 1e-3;     ///< of a parameter: the slope's own error stays below 1 %
-constexpr double kInstant = 2e-4;  ///< by which a switching instant is moved for its slope [s]
+constexpr double kTolerance = 1e-7;      ///< of the integration: a thousandth of the smallest noise
+constexpr double kSwitchingUnit = 2e-4;  ///< one unit of a switching instant [s]
+constexpr Eigen::Index kStates = 4;      ///< of an event's start: P, Q, angle, speed
 
 /// P and Q, one sample after the other.
 Eigen::VectorXd interleaved(const std::vector<double>& P, const std::vector<double>& Q) {
@@ -54,11 +55,14 @@ BlindSize::BlindSize(const sim::Plant& plant, const sim::Conventions& convention
     plain_residual_.push_back(Eigen::VectorXd::Zero(2 * plain_[e].samples()));
     plain_residual_.back() = residual(e, plain_[e]);
   }
-  Eigen::Index instants = 0;
-  for (const auto& event : events_) instants += static_cast<Eigen::Index>(event.switchings.size());
-  const auto parameters = static_cast<Eigen::Index>(free_parameters(plant_, 1.0).size());
-  columns_ = RowMatrix::Zero(first_row(plain_.size()), parameters + instants);
+  auto columns = static_cast<Eigen::Index>(free_parameters(plant_, 1.0).size());
+  for (std::size_t e = 0; e < events_.size(); ++e) columns += own_columns(e);
+  columns_ = RowMatrix::Zero(first_row(plain_.size()), columns);
   for (std::size_t e = 0; e < plain_.size(); ++e) add_columns(e);
+}
+
+Eigen::Index BlindSize::own_columns(std::size_t event) const {
+  return static_cast<Eigen::Index>(events_[event].switchings.size()) + kStates;
 }
 
 Eigen::Index BlindSize::first_row(std::size_t event) const {
@@ -67,38 +71,46 @@ Eigen::Index BlindSize::first_row(std::size_t event) const {
   return row;
 }
 
-Eigen::VectorXd BlindSize::answer(const sim::Plant& plant, const Record& record,
-                                  const std::vector<double>& switchings) const {
+Response BlindSize::answer(std::size_t event, const Record& record,
+                           const std::vector<Direction>& along) const {
   std::vector<Switching> instants;
-  for (const double t : switchings) instants.push_back({.time = t});
-  PlayInOptions options;
-  options.tolerance = 1e-7;  // a thousandth of the smallest noise
-  const Playback model = play_in(plant, conventions_, record, VoltageCurve(record, instants), options);
-  return interleaved(model.P, model.Q);
+  for (const double t : events_[event].switchings) instants.push_back({.time = t});
+  const VoltageCurve curve(record, instants);
+  return drive({.plant = &plant_,
+                .conventions = conventions_,
+                .record = &record,
+                .curve = &curve,
+                .start = pre_event_point(record, instants, 1.0),
+                .tolerance = kTolerance},
+               along);
 }
 
 Eigen::VectorXd BlindSize::residual(std::size_t event, const Record& record) const {
   // less what interpolation and filter leave even without the effect
-  return interleaved(record.P, record.Q) - answer(plant_, record, events_[event].switchings) -
+  const Response r = answer(event, record, {});
+  return interleaved(record.P, record.Q) - interleaved(r.of(Output::P), r.of(Output::Q)) -
          plain_residual_[event];
 }
 
 void BlindSize::add_columns(std::size_t event) {
-  const Record& record = plain_[event];
-  const auto& switchings = events_[event].switchings;
-  const Eigen::VectorXd middle = answer(plant_, record, switchings);
-  RowMatrix own = RowMatrix::Zero(middle.size(), columns_.cols());
-  Eigen::Index column = 0;
-  for (const FreeParameter& f : free_parameters(plant_, 1.0)) {
-    sim::Plant moved = plant_;
-    parameter_value(moved, f.block, f.index) *= 1.0 + kMove;
-    own.col(column++) = (answer(moved, record, switchings) - middle) / kMove;
-  }
-  for (std::size_t e = 0; e < event; ++e) column += static_cast<Eigen::Index>(events_[e].switchings.size());
-  for (std::size_t s = 0; s < switchings.size(); ++s) {
-    std::vector<double> instants = switchings;
-    instants[s] += kInstant;
-    own.col(column++) = (answer(plant_, record, instants) - middle) / kInstant;
+  using Kind = Direction::Kind;
+  std::vector<Direction> along;
+  for (const FreeParameter& f : free_parameters(plant_, 1.0))
+    along.push_back({Kind::parameter, f.block, f.index, parameter_value(plant_, f.block, f.index)});
+  const std::size_t shared = along.size();
+  for (std::size_t s = 0; s < events_[event].switchings.size(); ++s)
+    along.push_back({Kind::switching, 0, static_cast<int>(s), kSwitchingUnit});
+  for (const Kind kind : {Kind::P, Kind::Q, Kind::angle, Kind::speed}) along.push_back({kind, 0, 0, 1.0});
+  const Response r = answer(event, plain_[event], along);
+
+  auto first = static_cast<Eigen::Index>(shared);  // columns of this event's own
+  for (std::size_t e = 0; e < event; ++e) first += own_columns(e);
+  RowMatrix own = RowMatrix::Zero(2 * plain_[event].samples(), columns_.cols());
+  for (std::size_t d = 0; d < along.size(); ++d) {
+    const auto& slope = r.slopes[d].value;
+    const auto at = static_cast<Eigen::Index>(d);
+    own.col(d < shared ? at : first + at - static_cast<Eigen::Index>(shared)) =
+        interleaved(slope[static_cast<int>(Output::P)], slope[static_cast<int>(Output::Q)]);
   }
   noise_[event].whiten(own);
   columns_.middleRows(first_row(event), own.rows()) = own;

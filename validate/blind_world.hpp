@@ -73,14 +73,16 @@ class BlindSize {
             const std::vector<BlindEvent>& events, std::vector<Record> plain, double power_noise,
             double voltage_noise);
   [[nodiscard]] double visible(const std::vector<Record>& with) const;
-  /// After a linear refit of the machine's parameters and the switching instants.
+  /// After a linear refit of the machine's parameters, and of each event's instants and start.
   [[nodiscard]] double left(const std::vector<Record>& with) const;
 
  private:
-  [[nodiscard]] Eigen::VectorXd answer(const sim::Plant& plant, const Record& record,
-                                       const std::vector<double>& switchings) const;
+  [[nodiscard]] Response answer(std::size_t event, const Record& record,
+                                const std::vector<Direction>& along) const;
   [[nodiscard]] Eigen::VectorXd residual(std::size_t event, const Record& record) const;
   void add_columns(std::size_t event);
+  /// Directions that belong to one event: its instants and its start.
+  [[nodiscard]] Eigen::Index own_columns(std::size_t event) const;
   /// Rows of an event within those of all.
   [[nodiscard]] Eigen::Index first_row(std::size_t event) const;
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "validate/fit_cost.hpp"
 
@@ -198,9 +199,14 @@ class Search {
       if (spread > 0) with_belief(i, i) += 1 / (spread * spread);
       fit.belief += spread > 0 ? std::pow(z_[static_cast<std::size_t>(i)] / spread, 2) : 0.0;
     }
-    const Eigen::MatrixXd covariance =
-        options_.errors ? Eigen::MatrixXd(with_belief.ldlt().solve(Eigen::MatrixXd::Identity(n, n)))
-                        : Eigen::MatrixXd::Constant(n, n, std::nan(""));
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Constant(n, n, std::nan(""));
+    fit.occam = std::nan("");
+    if (options_.errors) {
+      const auto known = with_belief.ldlt();
+      covariance = known.solve(Eigen::MatrixXd::Identity(n, n));
+      fit.occam = known.vectorD().array().log().sum();
+      for (const Axis& a : setting_.axes) fit.occam += a.spread() > 0 ? 2 * std::log(a.spread()) : 0.0;
+    }
     for (Eigen::Index i = 0; i < n; ++i) {
       const Axis& a = setting_.axes[static_cast<std::size_t>(i)];
       const double z = z_[static_cast<std::size_t>(i)];
@@ -263,6 +269,11 @@ class Search {
 };
 
 }  // namespace
+
+double penalised(const Fit& f) {
+  return f.failed.empty() ? f.chi2 + f.belief : std::numeric_limits<double>::infinity();
+}
+double criterion(const Fit& f) { return penalised(f) + f.occam; }
 
 void compare(const FitEvent& event, const Response& answer, EventFit& f) {
   for (const Output o : event.channels) f.model.push_back(answer.of(o));

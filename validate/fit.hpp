@@ -67,11 +67,20 @@ struct Fit {
   std::vector<EventFit> events;
   double chi2 = 0, belief = 0;  ///< of the data; of the spreads
   int values = 0, fitted = 0;   ///< numbers compared; free numbers, those of the events included
+  /// Log determinant of what records and beliefs know of the parameters, in units of what beliefs knew: a
+  /// parameter that the records do not decide adds nothing. NaN without errors.
+  double occam = 0;
   int iterations = 0;
   bool converged = false;
   std::string failed;  ///< why the start could not be evaluated; empty if it could
   [[nodiscard]] double misfit() const { return chi2 / values; }
 };
+
+/// What is minimised, where nothing but noise is left; infinite if the fit failed.
+double penalised(const Fit& f);
+/// -2 log of the structure's evidence, up to what all structures share, by Laplace's approximation (MacKay,
+/// Neural Computation 4, 1992, p. 415); of a fit with errors.
+double criterion(const Fit& f);
 
 struct FitOptions {
   int iterations = 30;

@@ -144,7 +144,7 @@ FleetRow row_of(const Diagnosis& d) {
   if (!best.accepted) return row;
   row.evidence = best.gain;
   const int tried = static_cast<int>(d.ranked.size());
-  row.chance = chance_of(best.gain, best.fit.fitted - d.base.fitted, best.fit.values, tried);
+  row.chance = chance_of(penalised(d.base) - penalised(best.fit), best.fit.fitted - d.base.fitted, tried);
   double before = 0, after = 0;
   for (const auto& h : best.held_out) {
     before += h.before / static_cast<double>(best.held_out.size());
@@ -213,12 +213,12 @@ Fleet load_fleet(const fs::path& file) {
   return fleet;
 }
 
-double chance_of(double evidence, int added, int values, int hypotheses) {
+double chance_of(double fall, int added, int hypotheses) {
   double chance = 0;
   if (added <= 0) {
-    chance = std::exp(-std::max(evidence, 0.0) / 2);
+    chance = std::exp(-std::max(fall, 0.0) / 2);
   } else {
-    const double x = std::max(evidence + added * std::log(static_cast<double>(values)), 0.0);
+    const double x = std::max(fall, 0.0);
     chance = added % 2 == 1 ? std::erfc(std::sqrt(x / 2)) : std::exp(-x / 2);
     for (double k = added % 2 == 1 ? 1 : 2; k < added; k += 2)
       chance += std::exp(k / 2 * std::log(x / 2) - x / 2 - std::lgamma(k / 2 + 1));

@@ -46,11 +46,12 @@ nlohmann::json row_json(const FleetRow& row);
 /// Throws InputError naming `where` if the text is no row.
 FleetRow read_row(const std::string& text, const std::string& where);
 
-/// Upper bound of the probability that noise alone gives at least this evidence to any of `hypotheses` that
-/// are wrong: twice the log likelihood ratio of `added` superfluous parameters is chi-square distributed
-/// (Wilks), that of two structures with equally many parameters exceeds g with at most exp(-g/2); times the
-/// number of hypotheses (Bonferroni). Errors of the instruments and of the list are not in it.
-double chance_of(double evidence, int added, int values, int hypotheses);
+/// Upper bound of the probability that noise alone lets chi2 (and beliefs) fall so far for any of
+/// `hypotheses` that are wrong: twice the log likelihood ratio of `added` superfluous parameters is
+/// chi-square distributed (Wilks), that of two structures with equally many parameters exceeds g with at most
+/// exp(-g/2); times the number of hypotheses (Bonferroni). Errors of the instruments and of the list are not
+/// in it.
+double chance_of(double fall, int added, int hypotheses);
 
 /// What was done for one plant.
 struct FleetOutcome {

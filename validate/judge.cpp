@@ -17,10 +17,6 @@ constexpr double kSame = 0.5;
 
 }  // namespace
 
-double criterion(const Fit& f) {
-  return f.chi2 + f.belief + f.fitted * std::log(static_cast<double>(f.values));
-}
-
 std::vector<double> values_of(const sim::Plant& plant, const std::vector<FreeParameter>& free) {
   std::vector<double> values;
   for (const auto& f : free) values.push_back(parameter_value(plant, f.block, f.index));
@@ -70,7 +66,7 @@ void judge(const Trial& trial, const Fit& base, const std::vector<HeldOut>& held
   o.values = values_of(j.fit.plant, free);
   for (const auto& e : j.fit.events) o.start.push_back(e.state);
   if (Fit f = fit(j.hypothesis.plant, j.hypothesis.conventions, trial.events, free, o);
-      f.failed.empty() && criterion(f) < criterion(j.fit) + kSame)
+      f.failed.empty() && penalised(f) < penalised(j.fit) + kSame)
     j.fit = std::move(f);
   j.gain = criterion(base) - criterion(j.fit);
   j.size = std::sqrt(std::max(0.0, base.chi2 - j.fit.chi2));

@@ -18,7 +18,7 @@ struct HeldOut {
 struct Judgement {
   Hypothesis hypothesis;
   Fit fit;                        ///< to all events
-  double gain = 0;                ///< BIC(base) - BIC(with it): evidence in its favour
+  double gain = 0;                ///< criterion(base) - criterion(with it): evidence in its favour
   double size = 0;                ///< what it adds to the answer: norm of the change / noise, per sqrt(value)
   std::vector<HeldOut> held_out;  ///< empty where it was not worth it
   std::vector<sim::Plant> starts;  ///< not tried yet, best first
@@ -26,12 +26,10 @@ struct Judgement {
   std::string why_not;  ///< empty where accepted
 };
 
-/// Evidence (fall of BIC) from which a hypothesis is accepted. Thirty development cases with nothing hidden
+/// Evidence from which a hypothesis is accepted. Thirty development cases with nothing hidden
 /// gave the best of some thirty wrong ones 20 at most.
 constexpr double kEvidence = 40;
 
-/// Bayes's information criterion, beliefs included.
-double criterion(const Fit& f);
 /// Present values of the free parameters.
 std::vector<double> values_of(const sim::Plant& plant, const std::vector<FreeParameter>& free);
 /// Those of the plant that a refit may move, then the hypothesis's own.

@@ -234,7 +234,7 @@ class Searcher {
     const std::size_t tries = std::min(c.starts.size(), kTries);
     for (std::size_t k = 1; k < tries; ++k) {
       Fit f = attempt(c.starts[k], o);
-      if (!f.failed.empty() || (best && criterion(f) >= criterion(first))) continue;
+      if (!f.failed.empty() || (best && penalised(f) >= penalised(first))) continue;
       first = std::move(f);
       best = &c.starts[k];
     }
@@ -244,7 +244,7 @@ class Searcher {
     fits.push_back(attempt(c.starts.front(), o));
     std::erase_if(fits, [](const Fit& f) { return !f.failed.empty(); });
     const bool worse =
-        fits.empty() || criterion(*std::ranges::min_element(fits, {}, criterion)) > criterion(stage_.fit);
+        fits.empty() || penalised(*std::ranges::min_element(fits, {}, penalised)) > penalised(stage_.fit);
     if (!c.nested.empty() && (worse || stage_.fit.misfit() < kNested)) {
       o.iterations = kNestedSteps;
       o.values = std::ranges::min_element(c.nested)->second;
@@ -269,11 +269,11 @@ class Searcher {
     }
     if (fits.empty()) return judgement(c, fits, kTries);
     o.iterations = kOnwardSteps;
-    Fit best = *std::ranges::min_element(fits, {}, criterion);
+    Fit best = *std::ranges::min_element(fits, {}, penalised);
     for (int round = 0; round < kRounds; ++round) {
       const Fit from = std::exchange(best, fit(c.starts.front(), c.hypothesis.conventions, stage_.events,
                                                free, continued(o, best, free)));
-      if (!best.failed.empty() || best.converged || criterion(best) > criterion(from) - kWorthARound) break;
+      if (!best.failed.empty() || best.converged || penalised(best) > penalised(from) - kWorthARound) break;
     }
     fits.push_back(std::move(best));
     return judgement(c, fits, kTries);
@@ -286,9 +286,20 @@ class Searcher {
                     c.starts.end());
     std::erase_if(fits, [](const Fit& f) { return !f.failed.empty(); });
     if (fits.empty()) return j;
-    j.fit = std::move(*std::ranges::min_element(fits, {}, criterion));
+    j.fit = with_errors(c, std::move(*std::ranges::min_element(fits, {}, penalised)));
     j.gain = criterion(stage_.fit) - criterion(j.fit);
     return j;
+  }
+  /// The same fit; its evidence needs the errors.
+  Fit with_errors(const Candidate& c, Fit f) const {
+    const auto free = free_of(c.hypothesis, stage_.spread);
+    FitOptions o = continued({}, f, free);
+    o.iterations = 0;
+    Fit known = fit(c.starts.front(), c.hypothesis.conventions, stage_.events, free, o);
+    if (!known.failed.empty()) return f;
+    known.iterations = f.iterations;
+    known.converged = f.converged;
+    return known;
   }
   /// Misfit of a start, everything else as in the model; whether it acts at all.
   bool answer(const sim::Plant& plant, const Hypothesis& h, double& misfit, bool& acts) const {
@@ -353,10 +364,9 @@ void try_further(const Stage& stage, Judgement& j) {
   const auto free = free_of(j.hypothesis, stage.spread);
   FitOptions o;
   o.iterations = 10;
-  o.errors = false;
   for (std::size_t k = 0; k < std::min(kFurther, j.starts.size()); ++k)
     if (Fit f = fit(j.starts[k], j.hypothesis.conventions, stage.events, free, o);
-        f.failed.empty() && criterion(f) < criterion(j.fit))
+        f.failed.empty() && penalised(f) < penalised(j.fit))
       j.fit = std::move(f);
   j.starts.clear();
 }

@@ -180,11 +180,10 @@ TEST(FleetChance, IsThatOfTheChiSquareDistribution) {
   // Tables of the distribution: 5 % at 3.841, 5.991, 7.815, 9.488, 18.307 for 1, 2, 3, 4, 10 degrees (4
   // digits).
   const std::pair<int, double> quantiles[] = {{1, 3.841}, {2, 5.991}, {3, 7.815}, {4, 9.488}, {10, 18.307}};
-  for (const auto& [k, x] : quantiles)
-    EXPECT_NEAR(chance_of(x - k * std::log(1000.0), k, 1000, 1), 0.05, 2e-5) << k;
-  EXPECT_DOUBLE_EQ(chance_of(10, 1, 1000, 30), 30 * chance_of(10, 1, 1000, 1));
-  EXPECT_EQ(chance_of(-50, 1, 1000, 30), 1);
-  EXPECT_DOUBLE_EQ(chance_of(10, 0, 1000, 1), std::exp(-5.0));
+  for (const auto& [k, x] : quantiles) EXPECT_NEAR(chance_of(x, k, 1), 0.05, 2e-5) << k;
+  EXPECT_DOUBLE_EQ(chance_of(20, 1, 30), 30 * chance_of(20, 1, 1));
+  EXPECT_EQ(chance_of(-50, 1, 30), 1);
+  EXPECT_DOUBLE_EQ(chance_of(10, 0, 1), std::exp(-5.0));
 }
 
 }  // namespace
