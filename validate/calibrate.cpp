@@ -10,6 +10,7 @@
 #include "validate/calibrate_screen.hpp"
 #include "validate/calibrate_voltage_noise.hpp"
 #include "validate/in_parallel.hpp"
+#include "validate/noise.hpp"
 
 namespace swingbank::validate {
 namespace {
@@ -54,7 +55,11 @@ class Run {
     const auto begin = std::chrono::steady_clock::now();
     before_ = each_alone(model_.plant, "events with the model as it is");
     search();
-    undo_voltage_noise();
+    shift_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(free_.size()));
+    if (c_.fit.misfit() <= kClose) {
+      whiten_voltage_noise();
+      undo_voltage_noise();
+    }
     after_ = each_alone(c_.fit.plant, "events with the fitted model");
     c_.model.plant = c_.fit.plant;
     for (const auto& f : after_) c_.states.push_back(f.state);
@@ -151,11 +156,32 @@ class Run {
 
   static constexpr double kClose = 1.5;  ///< misfit above which something else pulls harder
 
+  /// What noise of the played-in voltage becomes behind the fitted plant is predicted from sample to sample;
+  /// the fit goes on with the rest.
+  void whiten_voltage_noise() {
+    Fit whole;
+    whole.plant = c_.fit.plant;
+    whole.events = each_alone(whole.plant, "noise of the voltage");
+    noise_ = voltage_noise(whole, c_.prepared);
+    remember_noise(whole, model_.conventions, c_.prepared);
+    if (std::ranges::none_of(c_.prepared, [](const FitEvent& e) { return e.memory != nullptr; })) return;
+    FitOptions o;
+    o.values = values_of(whole.plant);
+    seen_.clear();
+    for (std::size_t e = 0; e < c_.prepared.size(); ++e) {
+      if (out_[e]) continue;
+      seen_.push_back(c_.prepared[e]);
+      o.start.push_back(whole.events[e].state);
+    }
+    c_.fit = fit(model_.plant, model_.conventions, seen_, free_, o);
+    if (!c_.fit.failed.empty())
+      throw InputError(
+          {"the fitted model cannot be run again", model_.origin, c_.fit.failed, "fix parameters"});
+    before_ = each_alone(model_.plant, "events with the model as it is");
+  }
   /// One Newton step from where noise of the played-in voltage has pulled the fit.
   void undo_voltage_noise() {
     const auto n = static_cast<Eigen::Index>(free_.size());
-    shift_ = Eigen::VectorXd::Zero(n);
-    if (c_.fit.misfit() > kClose) return;
     std::vector<EventSlopes> slopes(seen_.size());
     in_parallel(
         slopes.size(),
@@ -163,11 +189,11 @@ class Run {
           slopes[e] = event_slopes(c_.fit.plant, model_.conventions, seen_[e], c_.fit.events[e].state, free_);
         },
         [&](int done) { tell("noise of the voltage", done, static_cast<int>(slopes.size())); });
-    noise_ = voltage_noise(c_.fit.plant, model_.conventions, seen_, slopes, free_);
+    pull_ = voltage_pull(c_.fit.plant, model_.conventions, seen_, noise_.variance, free_);
     c_.voltage_noise = noise_.share;
     Eigen::MatrixXd data = Eigen::MatrixXd::Zero(n, n);
     for (const auto& s : slopes) data += information(s);
-    const Eigen::VectorXd step = with_belief(real(data)).ldlt().solve(noise_.score);
+    const Eigen::VectorXd step = with_belief(real(data)).ldlt().solve(pull_.score);
     sim::Plant plant = c_.fit.plant;
     for (Eigen::Index i = 0; i < n; ++i) {
       const auto& f = free_[static_cast<std::size_t>(i)];
@@ -187,8 +213,8 @@ class Run {
   }
   /// Information less what noise pretends; no direction below zero.
   Eigen::MatrixXd real(const Eigen::MatrixXd& data) const {
-    if (noise_.information.size() == 0) return data;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(data - noise_.information);
+    if (pull_.information.size() == 0) return data;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(data - pull_.information);
     return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
            eigen.eigenvectors().transpose();
   }
@@ -261,7 +287,8 @@ class Run {
     for (std::size_t e = 0; e < out_.size(); ++e)
       if (!out_[e]) states.push_back(c_.states[e]);
     const auto n = known.rows();
-    for (const auto& tried : try_events(c_.fit.plant, model_.conventions, seen_, states, free_)) {
+    for (const auto& tried :
+         try_events(c_.fit.plant, model_.conventions, seen_, states, noise_.variance, free_)) {
       const Eigen::MatrixXd with = (known + tried.information).ldlt().solve(Eigen::MatrixXd::Identity(n, n));
       Candidate candidate{tried.what, {}};
       for (Eigen::Index i = 0; i < n; ++i) {
@@ -355,6 +382,7 @@ class Run {
   std::vector<EventFit> before_, after_;
   std::vector<double> allowance_;
   VoltageNoise noise_;
+  VoltagePull pull_;
   Eigen::VectorXd shift_;
   Calibration c_;
 };

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "validate/noise.hpp"
+
 namespace swingbank::validate {
 namespace {
 
@@ -26,6 +28,8 @@ class Trial {
       event_.switchings.push_back(
           {.time = first + std::floor(t / step) * step + 0.4 * step, .uncertainty = 0.5 * step});
     event_.start.drift = 0;
+    event_.smeared.clear();
+    event_.memory = nullptr;
   }
   /// V as a multiple of the operating point's, and the frequency deviation [Hz], both of time.
   template <class V, class F>
@@ -114,12 +118,16 @@ std::vector<Blur> find_blurs(const Eigen::MatrixXd& information, const Eigen::Ve
 
 std::vector<TriedEvent> try_events(const sim::Plant& plant, const sim::Conventions& conventions,
                                    const std::vector<FitEvent>& events, const std::vector<EventState>& states,
-                                   const std::vector<FreeParameter>& free) {
+                                   const Eigen::Vector2d& variance, const std::vector<FreeParameter>& free) {
   std::vector<TriedEvent> tried;
   const FitEvent& like = events.front();
+  const auto learnt = [&](FitEvent event, const EventState& state) {
+    event.memory = memory_of(plant, conventions, event, variance);
+    return information(event_slopes(plant, conventions, event, state, free));
+  };
   const auto attempt = [&](const std::string& what, const FitEvent& event, const EventState& state) {
     try {
-      tried.push_back({what, information(event_slopes(plant, conventions, event, state, free))});
+      tried.push_back({what, learnt(event, state)});
     } catch (const InputError&) {  // the plant does not survive that event: nothing is learnt from it
     }
   };
@@ -138,8 +146,7 @@ std::vector<TriedEvent> try_events(const sim::Plant& plant, const sim::Conventio
     inner.information =
         Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(free.size()), static_cast<Eigen::Index>(free.size()));
     for (std::size_t e = 0; e < events.size(); ++e)
-      inner.information +=
-          information(event_slopes(plant, conventions, inner_channels(events[e]), states[e], free));
+      inner.information += learnt(inner_channels(events[e]), states[e]);
     tried.push_back(inner);
   }
   return tried;

@@ -11,13 +11,13 @@ std::vector<Blur> find_blurs(const Eigen::MatrixXd& information, const Eigen::Ve
 
 /// Information of events that were not recorded, made by driving the plant with plain voltages: a frequency
 /// event, a deep fault, a lasting step of the voltage; and, where speed, Efd and Ifd were not recorded, of
-/// the same events with them. `errors` of each candidate are left empty.
+/// the same events with them. `variance`: of the played-in voltage's noise [V/V, rad].
 struct TriedEvent {
   std::string what;
   Eigen::MatrixXd information;
 };
 std::vector<TriedEvent> try_events(const sim::Plant& plant, const sim::Conventions& conventions,
                                    const std::vector<FitEvent>& events, const std::vector<EventState>& states,
-                                   const std::vector<FreeParameter>& free);
+                                   const Eigen::Vector2d& variance, const std::vector<FreeParameter>& free);
 
 }  // namespace swingbank::validate

@@ -53,7 +53,7 @@ std::string identify_text(const Calibration& c) {
 }
 
 std::string starts_text(const Calibration& c) {
-  std::string text = "Starts, chi2 per value before -> after:";
+  std::string text = "Starts, chi2 per value before -> after, noise taken as white:";
   for (const auto& s : c.started)
     text += fmt::format(" {} {:.3g} -> {:.3g}{};", s.name, s.before, s.after,
                         s.agrees ? "" : " (another optimum)");

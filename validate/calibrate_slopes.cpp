@@ -59,7 +59,6 @@ EventSlopes event_slopes(const sim::Plant& plant, const sim::Conventions& conven
   EventSlopes back;
   back.channels = static_cast<int>(event.channels.size());
   back.residual = whitened(event, r.value, true);
-  back.answer = whitened(event, r.value, false);
   const auto parameters = static_cast<Eigen::Index>(free.size());
   const auto states = static_cast<Eigen::Index>(along.size()) - parameters;
   back.slopes.resize(event.values(), parameters);

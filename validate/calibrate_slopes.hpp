@@ -15,7 +15,6 @@ double axis_unit(const sim::Plant& plant, const FreeParameter& parameter);
 struct EventSlopes {
   Eigen::MatrixXd slopes;    ///< [sample * channels + channel][parameter], whitened, per axis_unit
   Eigen::VectorXd residual;  ///< likewise, model - measured
-  Eigen::VectorXd answer;    ///< of the model, likewise
   int channels = 0;
 };
 

@@ -5,8 +5,6 @@
 #include <numbers>
 #include <unsupported/Eigen/MatrixFunctions>
 
-#include "validate/calibrate_voltage_noise.hpp"
-
 namespace swingbank::validate {
 namespace {
 
@@ -62,9 +60,24 @@ constexpr double kGuess = 2e-3;             ///< what V may be off by beside a s
 constexpr double kLeft = 0.01;              ///< of a channel's variance: its own noise, at least
 constexpr double kMatters = 1e-3;           ///< variance of slow noise over that of white noise
 
+/// The first `count` values less their mean and slope.
+std::vector<double> detrended(const std::vector<double>& x, int count) {
+  double mean = 0, slope = 0, spread = 0;
+  const double middle = 0.5 * (count - 1);
+  for (int k = 0; k < count; ++k) mean += x[static_cast<std::size_t>(k)] / count;
+  for (int k = 0; k < count; ++k) {
+    slope += (k - middle) * (x[static_cast<std::size_t>(k)] - mean);
+    spread += (k - middle) * (k - middle);
+  }
+  std::vector<double> rest;
+  for (int k = 0; k < count; ++k)
+    rest.push_back(x[static_cast<std::size_t>(k)] - mean - slope / spread * (k - middle));
+  return rest;
+}
+
 /// Variances of white noise that would have the density of V (relative) and theta [rad] in the band, before
 /// the events.
-Eigen::Vector2d voltage_noise_of(const std::vector<FitEvent>& events) {
+Eigen::Vector2d moving_in_band(const std::vector<FitEvent>& events) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   int lines = 0;
   for (const FitEvent& e : events) {
@@ -180,18 +193,25 @@ SlowNoise slow_noise(const LinearPlant& plant, const FitEvent& e, const Eigen::V
   return s;
 }
 
+std::shared_ptr<const Innovations> memory_of(const sim::Plant& plant, const sim::Conventions& conventions,
+                                             const FitEvent& e, const Eigen::Vector2d& variance) {
+  const VoltageCurve curve(e.played(), e.switchings);
+  const Drive at{
+      .plant = &plant, .conventions = conventions, .record = &e.record, .curve = &curve, .start = e.start};
+  const SlowNoise noise = slow_noise(linearise(at), e, variance);
+  if (!matters(noise, e)) return nullptr;
+  return std::make_shared<Innovations>(noise, e.record.samples(), e.smeared);
+}
+
+VoltageNoise voltage_noise(const Fit& fit, const std::vector<FitEvent>& events) {
+  const double share = instrument_share(fit, events);
+  return {share, share * moving_in_band(events)};
+}
+
 void remember_noise(const Fit& fit, const sim::Conventions& conventions, std::vector<FitEvent>& events) {
-  const Eigen::Vector2d variance = voltage_noise_of(events) * instrument_share(fit, events);
-  for (FitEvent& e : events) {
-    const VoltageCurve curve(e.played(), e.switchings);
-    const Drive at{.plant = &fit.plant,
-                   .conventions = conventions,
-                   .record = &e.record,
-                   .curve = &curve,
-                   .start = e.start};
-    const SlowNoise noise = slow_noise(linearise(at), e, variance);
-    if (matters(noise, e)) e.memory = std::make_shared<Innovations>(noise, e.record.samples(), e.smeared);
-  }
+  const Eigen::Vector2d variance = voltage_noise(fit, events).variance;
+  for (FitEvent& e : events)
+    if (auto memory = memory_of(fit.plant, conventions, e, variance)) e.memory = std::move(memory);
 }
 
 double slow_remainder(const Fit& fit, const std::vector<FitEvent>& events) {

@@ -16,10 +16,23 @@ void sharpen_noise(const Fit& fit, std::vector<FitEvent>& events);
 /// window, from which everything is counted. `event`: whitening at once, channels, start.
 SlowNoise slow_noise(const LinearPlant& plant, const FitEvent& event, const Eigen::Vector2d& variance);
 
+/// The memory of an event's noise by slow_noise() about its start; none where that hardly matters.
+std::shared_ptr<const Innovations> memory_of(const sim::Plant& plant, const sim::Conventions& conventions,
+                                             const FitEvent& event, const Eigen::Vector2d& variance);
+
+/// Noise of the played-in voltage, by what moves before the events.
+struct VoltageNoise {
+  /// Share of the pre-event movement of V and theta that is the instrument's: 1 if the measured P and Q do
+  /// not answer it, 0 if they do as the model says, for then the plant has really seen it.
+  double share = 0;
+  /// Of white noise as dense as the instrument's share of what moves at 3 to 10 Hz (below, the grid itself
+  /// moves; above, instruments filter) [V/V, rad].
+  Eigen::Vector2d variance = Eigen::Vector2d::Zero();
+};
+VoltageNoise voltage_noise(const Fit& fit, const std::vector<FitEvent>& events);
+
 /// Noise of the played-in voltage passes exciter and rotor, and what comes out is slow. Follows it through
 /// the plant's equations about each event's start and gives the events' noise that memory, where it matters.
-/// Density of the voltage's noise: what moves at 3 to 10 Hz before the events (below, the grid itself moves;
-/// above, instruments filter), as far as the residual of `fit` says that the instrument made it.
 void remember_noise(const Fit& fit, const sim::Conventions& conventions, std::vector<FitEvent>& events);
 
 /// How far the power of slow means of the residual (0.5, 1 and 2 s) lies above that of white noise, in
