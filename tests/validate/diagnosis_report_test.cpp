@@ -164,6 +164,72 @@ TEST(DiagnosisReportTest, WhatNothingExplainsIsShownAsInput) {
   EXPECT_THAT(diagnosis_html(example().model, d, {}), HasSubstr("verdict bad"));
 }
 
+/// The example where nothing known was accepted but a law for the field voltage was, ahead of one that was
+/// not.
+Diagnosis with_laws() {
+  Diagnosis d = example().d;
+  d.laws.kind = InputKind::field;
+  d.laws.ranked.resize(7);
+  LawFinding found;
+  for (std::size_t e = 0; e < d.events.size(); ++e) {
+    LawTrace trace;
+    trace.t = {0, 1, 2, 3, 4};
+    for (auto& signal : trace.signal) signal = {0, 0.1, -0.2, 0.3, 0.1};
+    trace.knots = {0, 2, 4};
+    trace.input = {0, 0.5, 0.25};
+    d.laws.traces.push_back(trace);
+    found.law.course.push_back({0, 0.375, 0.125});
+  }
+  found.law.family = "lagged";
+  found.law.signal = "V";
+  found.law.explained = 0.83;
+  found.words = "-20 * V < 0.5";
+  found.judgement = d.ranked.front();
+  found.judgement.hypothesis.name = "LAW1";
+  found.judgement.accepted = true;
+  LawFinding refused = found;
+  refused.judgement.hypothesis.name = "LAW2";
+  refused.judgement.accepted = false;
+  refused.judgement.why_not = "it worsens <ev3>";
+  refused.judgement.held_out.clear();
+  d.laws.findings = {found, refused};
+  return d;
+}
+
+TEST(DiagnosisReportTest, LawsStandOnThePageAsInTheJson) {
+  const Diagnosis d = with_laws();
+  const std::string html = diagnosis_html(example().model, d, {});
+  const auto section = html.find("A law for it");
+  ASSERT_NE(section, std::string::npos);
+  EXPECT_THAT(html, HasSubstr("7 kinds of laws were ranked"));
+  EXPECT_THAT(html, HasSubstr("Found: -20 * V &lt; 0.5."));
+  EXPECT_THAT(html, HasSubstr("inferred field voltage"));
+  const auto rows = table_after(html.substr(section), "share of the input");
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0][0], "LAW1");
+  EXPECT_EQ(rows[0][1], "83 %");
+  EXPECT_EQ(rows[0][4], "≤ 1.50 ×");  // the example's unseen chi2 per value is 2.25
+  EXPECT_EQ(rows[0][5], "accepted");
+  EXPECT_EQ(rows[1][4], "–");
+  EXPECT_EQ(rows[1][5], "it worsens <ev3>");
+  const auto told = diagnosis_json(example().model, d, {})["laws"];
+  EXPECT_EQ(told["input"], "field_voltage");
+  EXPECT_EQ(told["found"], "LAW1");
+  EXPECT_EQ(told["fitted"][1]["why_not"], "it worsens <ev3>");
+}
+TEST(DiagnosisReportTest, WhereNoLawHoldsThePageSaysSo) {
+  Diagnosis d = with_laws();
+  d.laws.findings.erase(d.laws.findings.begin());
+  const std::string html = diagnosis_html(example().model, d, {});
+  EXPECT_THAT(html, HasSubstr("No law predicts unseen events: none is offered."));
+  EXPECT_THAT(html, testing::Not(HasSubstr("Found:")));
+  EXPECT_TRUE(diagnosis_json(example().model, d, {})["laws"]["found"].is_null());
+}
+TEST(DiagnosisReportTest, WithoutASearchForLawsThePageIsSilent) {
+  EXPECT_THAT(page(), testing::Not(HasSubstr("A law for it")));
+  EXPECT_TRUE(figures()["laws"].is_null());
+}
+
 TEST(DiagnosisPageTest, ABrowserShowsIt) {
   // A drag from 30 % to 60 % of the first chart's width, as a person would zoom.
   const std::string zoom = R"js(<script>

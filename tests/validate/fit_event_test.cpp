@@ -1,0 +1,54 @@
+// Which steps of the voltage are switchings: jumps, small ones too, but not a swing however fast.
+#include "validate/fit_event.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <numbers>
+#include <random>
+
+namespace swingbank::validate {
+namespace {
+
+/// Ten seconds at 60/s of V(t) and theta(t), with noise of 1e-4 pu.
+Record record_of(
+    const std::function<double(double)>& V,
+    const std::function<double(double)>& theta = [](double) { return 0.1; }) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal(0, 1e-4);
+  Record r;
+  for (int k = 0; k < 600; ++k) {
+    r.t.push_back(k / 60.0);
+    r.V.push_back(V(r.t.back()) + normal(random));
+    r.theta.push_back(theta(r.t.back()) + normal(random));
+  }
+  return r;
+}
+std::vector<Switching> switchings_of(const Record& r) {
+  std::vector<char> smeared;
+  return find_switchings(r, kJumpThreshold / 2, false, smeared);
+}
+
+TEST(FindSwitchings, AFastSwingIsNone) {
+  // 4 rad within a second, up to 5.4 rad/s: a step of 0.09 pu differs from those two further by 0.016 pu
+  const Record r = record_of([](double) { return 1.0; },
+                             [](double t) { return 0.1 + 2 * (1 + std::erf((t - 4) / 0.42)); });
+  for (const auto& s : switchings_of(r)) ADD_FAILURE() << "switching at " << s.time << " s";
+}
+TEST(FindSwitchings, ASmallJumpIsOne) {
+  const auto found = switchings_of(record_of([](double t) { return t <= 3.0 ? 1.0 : 0.985; }));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NEAR(found.front().time, 3.0 + 0.5 / 60, 0.51 / 60);  // within its sample interval
+}
+TEST(FindSwitchings, AJumpOutOfASwingIsOne) {
+  const auto found = switchings_of(
+      record_of([](double t) { return (t <= 5.0 ? 1.0 : 0.8) + 0.05 * std::sin(2 * std::numbers::pi * t); }));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NEAR(found.front().time, 5.0 + 0.5 / 60, 0.51 / 60);
+}
+TEST(FindSwitchings, NoiseIsNone) {
+  EXPECT_TRUE(switchings_of(record_of([](double) { return 1.0; })).empty());
+}
+
+}  // namespace
+}  // namespace swingbank::validate
