@@ -389,28 +389,6 @@ class Run {
 
 }  // namespace
 
-std::vector<FreeParameter> chosen_parameters(const sim::Plant& plant, double spread,
-                                             const std::vector<std::string>& fixed) {
-  std::vector<FreeParameter> free = free_parameters(plant, spread);
-  Problems problems;
-  std::string all;
-  const auto name_of = [&](const FreeParameter& f) {
-    return fmt::format("{}.{}", block_effect(plant, f.block).name,
-                       parameter_record(plant, f.block, f.index).name);
-  };
-  for (const auto& f : free) all += (all.empty() ? "" : ", ") + name_of(f);
-  for (const auto& one : fixed)
-    if (std::erase_if(free, [&](const FreeParameter& f) {
-          return name_of(f) == one || parameter_record(plant, f.block, f.index).name == one;
-        }) == 0)
-      problems.add("parameter '" + one + "'", "--fix", "the fit has no such free parameter",
-                   "use one of " + all);
-  if (free.empty() && problems.empty())
-    problems.add("no free parameter", plant.name, "all are fixed, zero, or codes", "leave some free");
-  problems.raise();
-  return free;
-}
-
 Calibration calibrate(const PlantModel& model, std::vector<Record> records, const CalibrateOptions& options) {
   return Run(model, std::move(records), options).run();
 }
