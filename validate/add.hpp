@@ -24,7 +24,7 @@ struct Addition {
   std::vector<FittedParameter> parameters;  ///< all that were free; those of the effect first
   int own = 0;                              ///< how many are the effect's
   std::vector<AddedEvent> events;
-  double evidence = 0;    ///< BIC without - BIC with, over the events seen: above 10 is strong
+  double evidence = 0;    ///< criterion() without - with, over the events seen: above 10 is strong
   bool earns = false;     ///< evidence is strong, and no unseen event is worse with it
   bool adequate = false;  ///< nothing but noise is left in any event
   std::string sentence;
@@ -46,7 +46,7 @@ Addition add_effect(const PlantModel& model, const Hypothesis& hypothesis, std::
 struct Removal {
   std::string effect;
   PlantModel model;
-  double evidence = 0;  ///< BIC without - BIC with: below 0 the effect does not earn its place
+  double evidence = 0;  ///< criterion() without - with: below 0 the effect does not earn its place
 };
 Removal try_without(const PlantModel& model, std::size_t control, std::vector<Record> records,
                     const AddOptions& options);

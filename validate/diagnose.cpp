@@ -20,6 +20,9 @@ namespace {
 constexpr double kApart = 25;
 /// Evidence that a long fit may add to a short one: what lies further behind the best is not judged.
 constexpr double kWorthJudging = 200;
+/// Evidence and fall of chi2 asked of a second effect: what the first, or the instruments, leave unexplained
+/// looks like one (60 in a development case).
+constexpr double kSecond = 80;
 /// Share of the best one's evidence from which a rival is near it.
 constexpr double kNear = 0.7;
 /// Misfit of the base below which its reactances are near enough to measure the noise with.
@@ -111,9 +114,19 @@ class Diagnoser {
     if (result_.ranked.empty()) return;
     const Judgement best = result_.ranked.front();
     if (!best.accepted && result_.base.misfit() <= options_.adequate) return;
-    auto pairs = best.accepted ? beside(stage, best) : try_pairs(stage);
+    auto pairs = best.accepted ? beside(stage, best) : try_pairs(stage, nullptr);
     judge_leading(pairs);
-    std::erase_if(pairs, [&](const Judgement& j) { return !j.accepted || !needed(j); });
+    try_alone(pairs);
+    const auto unneeded = [&](const Judgement& j) { return !j.accepted || !needed(j); };
+    std::erase_if(pairs, unneeded);
+    if (best.accepted && !pairs.empty()) {  // the best alone was the best of a wrong kind, perhaps
+      auto others = try_pairs(stage, &best);
+      judge_leading(others);
+      std::erase_if(others, unneeded);
+      std::ranges::move(others, std::back_inserter(pairs));
+      std::ranges::stable_sort(pairs, std::greater<>(), &Judgement::gain);
+    }
+    keep_one_order(pairs);
     result_.ranked.insert(result_.ranked.begin(), std::make_move_iterator(pairs.begin()),
                           std::make_move_iterator(pairs.end()));
   }
@@ -125,14 +138,18 @@ class Diagnoser {
             .spread = options_.spread,
             .threads = threads_};
   }
-  /// What the best single hypotheses, one of each slot, leave over for a second one.
-  std::vector<Judgement> try_pairs(const Stage& stage) {
+  /// What the best single hypotheses, one of each slot, leave over for a second one; not beside `tried`.
+  std::vector<Judgement> try_pairs(const Stage& stage, const Judgement* tried) {
     std::vector<const Judgement*> firsts;
     for (const auto& j : result_.ranked) {
       const bool taken = std::ranges::any_of(firsts, [&](const Judgement* f) {
         return j.hypothesis.slot >= 0 && f->hypothesis.slot == j.hypothesis.slot;
       });
-      if (!taken && j.gain >= trial().evidence && static_cast<int>(firsts.size()) < options_.firsts)
+      if (tried && (j.hypothesis.name == tried->hypothesis.name ||
+                    (tried->hypothesis.slot >= 0 && j.hypothesis.slot == tried->hypothesis.slot)))
+        continue;
+      if (!taken && j.gain >= trial().evidence && j.fitted &&
+          static_cast<int>(firsts.size()) < options_.firsts)
         firsts.push_back(&j);
     }
     std::vector<Judgement> pairs;
@@ -143,15 +160,42 @@ class Diagnoser {
   /// Every hypothesis beside one that is taken as given; evidence is that of both.
   [[nodiscard]] std::vector<Judgement> beside(const Stage& stage, const Judgement& first) const {
     auto pairs = try_hypotheses(after(stage, first), options_.progress);
-    std::erase_if(pairs, [](const Judgement& j) { return j.gain < kEvidence; });
+    std::erase_if(pairs, [](const Judgement& j) { return j.gain < kSecond; });
     for (auto& pair : pairs) pair.gain += first.gain;
     return pairs;
+  }
+  /// Of A beside B and B beside A, the better.
+  static void keep_one_order(std::vector<Judgement>& pairs) {
+    std::vector<Judgement> kept;
+    for (Judgement& j : pairs)
+      if (std::ranges::none_of(kept, [&](const Judgement& known) {
+            return known.hypothesis.with == j.hypothesis.name && known.hypothesis.name == j.hypothesis.with;
+          }))
+        kept.push_back(std::move(j));
+    pairs = std::move(kept);
+  }
+  /// Each of the best pair's effects alone, from where the pair ended: what looks like a second effect may
+  /// only be a better start for the first.
+  void try_alone(const std::vector<Judgement>& pairs) {
+    if (pairs.empty() || !pairs.front().accepted) return;
+    const Judgement& pair = pairs.front();
+    for (Judgement& single : result_.ranked) {
+      const std::string& name = single.hypothesis.name;
+      if (!single.fitted || (name != pair.hypothesis.name && name != pair.hypothesis.with)) continue;
+      const double before = penalised(single.fit);
+      try_from(model_stage(), pair.fit, single);
+      if (!(penalised(single.fit) < before - 1)) continue;
+      single.accepted = false;
+      single.why_not.clear();
+      judge_all(single);
+    }
+    best_first(result_.ranked);
   }
   /// Whether a pair explains what no single one does: the rival that was not taken may fit as well.
   [[nodiscard]] bool needed(const Judgement& pair) const {
     return std::ranges::none_of(result_.ranked, [&](const Judgement& single) {
       return single.accepted &&
-             (single.fit.chi2 - pair.fit.chi2 < kEvidence || pair.gain - single.gain < kEvidence);
+             (single.fit.chi2 - pair.fit.chi2 < kSecond || pair.gain - single.gain < kSecond);
     });
   }
   /// Those that might still be as good as the best, accepted ones first after it.
@@ -163,9 +207,20 @@ class Diagnoser {
         leading < static_cast<int>(tried.size()) && leading < options_.leading &&
         (leading < 3 || tried[static_cast<std::size_t>(leading)].gain > tried.front().gain - kWorthJudging))
       ++leading;
-    each(leading, "unseen events", tried,
-         [&](Judgement& j) { judge(trial(), result_.base, held_out_base_, j); });
-    std::ranges::stable_sort(tried, [](const Judgement& x, const Judgement& y) {
+    each(leading, "unseen events", tried, [&](Judgement& j) { judge_all(j); });
+    best_first(tried);
+  }
+  /// On unseen events, and beside the inputs free in time.
+  void judge_all(Judgement& j) const {
+    judge(trial(), result_.base, held_out_base_, j);
+    for (const auto& [m, what] : {std::pair(&result_.torque, "torque"), {&result_.field, "field voltage"}})
+      if (j.accepted && explained(*m) > result_.base.chi2 - j.fit.chi2) {
+        j.accepted = false;
+        j.why_not = fmt::format("a {} free in time explains more", what);
+      }
+  }
+  static void best_first(std::vector<Judgement>& judged) {
+    std::ranges::stable_sort(judged, [](const Judgement& x, const Judgement& y) {
       return x.accepted != y.accepted ? x.accepted : x.gain > y.gain;
     });
   }
@@ -176,11 +231,12 @@ class Diagnoser {
     if (slot < 0) return;
     const double near = kNear * tried.front().gain;
     const auto rivals = std::stable_partition(tried.begin(), tried.end(), [&](const Judgement& j) {
-      return j.hypothesis.slot == slot && j.gain > near;
+      return j.hypothesis.slot == slot && j.gain > near && j.fitted;
     });
     const Stage stage = model_stage();
+    const Fit leader = std::ranges::max_element(tried.begin(), rivals, {}, &Judgement::gain)->fit;
     each(static_cast<int>(rivals - tried.begin()), "further starts", tried, [&](Judgement& j) {
-      try_further(stage, j);
+      try_further(stage, leader, j);
       j.gain = criterion(result_.base) - criterion(j.fit);
     });
     std::ranges::stable_sort(tried, std::greater<>(), &Judgement::gain);
@@ -206,8 +262,8 @@ class Diagnoser {
   void settle() {
     const auto& r = result_.ranked;
     const bool quiet = result_.base.misfit() <= options_.adequate &&
-                       slow_remainder(result_.base, result_.events) < kSlow && !earns(result_.torque) &&
-                       !earns(result_.field);
+                       slow_remainder(result_.base, result_.events) < kSlow &&
+                       explained(result_.torque) <= 0 && explained(result_.field) <= 0;
     if (!r.empty() && r.front().accepted) return name_best();
     if (quiet) {
       result_.verdict = Verdict::adequate;
@@ -233,11 +289,12 @@ class Diagnoser {
       result_.sentence = law_sentence(result_.laws, r.size());
     }
   }
-  /// Whether a free input explains twice what as many free numbers explain of noise (Akaike 1974).
-  [[nodiscard]] bool earns(const MissingInput& m) const {
+  /// What a free input explains of chi2, less what as many free numbers would do of noise, twice (Akaike
+  /// 1974).
+  [[nodiscard]] double explained(const MissingInput& m) const {
     std::size_t knots = 0;
     for (const auto& e : m.fit.events) knots += e.state.input.t.size();
-    return result_.base.chi2 - m.fit.chi2 > 2.0 * static_cast<double>(knots);
+    return result_.base.chi2 - m.fit.chi2 - 2.0 * static_cast<double>(knots);
   }
   void name_best() {
     const Judgement& best = result_.ranked.front();

@@ -151,9 +151,10 @@ class DiagnosisPage {
     if (d_.ranked.empty()) return;
     page_.section("What could be missing");
     page_.text(fmt::format(
-        "{} effects were added one at a time, each with the model's parameters refitted. "
-        "Evidence is the fall of the "
-        "Bayesian information criterion: from {:.0f} it is accepted, below 0 the effect does not pay "
+        "{} effects were added one at a time. A score test beside the refitted model says first what each "
+        "could gain; what promises something is fitted, the model's parameters with it. "
+        "Evidence is twice the logarithm of how much likelier the effect makes the records (Laplace's "
+        "approximation): from {:.0f} it is accepted, below 0 the effect does not pay "
         "for its parameters. "
         "The leading ones were then judged on events left out of the fit.",
         d_.ranked.size(), kEvidence));

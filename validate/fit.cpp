@@ -93,13 +93,11 @@ class Search {
 
   std::vector<double> start_of(std::size_t e) const {
     const FitEvent& event = (*setting_.events)[e];
-    std::vector<double> s(event.switchings.size() + kStates + setting_.knots[e].size(), 0.0);
-    if (options_.start.empty()) return s;
+    const std::size_t knots = setting_.knots[e].size();
+    if (options_.start.empty()) return std::vector<double>(event.switchings.size() + kStates + knots, 0.0);
     const EventState& from = options_.start[e];
-    for (std::size_t k = 0; k < event.switchings.size(); ++k)
-      s[k] = (from.switchings[k] - event.switchings[k].time) / kSwitchScale;
-    const double values[kStates] = {from.P, from.Q, from.angle, from.speed};
-    for (std::size_t k = 0; k < kStates; ++k) s[event.switchings.size() + k] = values[k] / kStateScale[k];
+    std::vector<double> s = state_of(event, from);
+    s.resize(s.size() + knots);
     if (setting_.input != InputKind::none)
       std::ranges::copy(from.input.value, s.end() - static_cast<std::ptrdiff_t>(from.input.value.size()));
     return s;
@@ -171,12 +169,7 @@ class Search {
       const VoltageCurve curve(event.played(), switchings);
       run.curve = &curve;
       const Response r = observe(run);
-      for (const auto& s : switchings) f.state.switchings.push_back(s.time);
-      const double* s = states_[e].data() + switchings.size();
-      f.state.P = kStateScale[0] * s[0];
-      f.state.Q = kStateScale[1] * s[1];
-      f.state.angle = run.angle;
-      f.state.speed = run.speed;
+      f.state = event_state(event, states_[e].data());
       if (setting_.input != InputKind::none)
         f.state.input = setting_.input == InputKind::torque ? run.torque : run.field;
       compare(event, r, f);
@@ -274,6 +267,27 @@ double penalised(const Fit& f) {
   return f.failed.empty() ? f.chi2 + f.belief : std::numeric_limits<double>::infinity();
 }
 double criterion(const Fit& f) { return penalised(f) + f.occam; }
+
+std::vector<Switching> switchings_at(const FitEvent& event, const EventState& state) {
+  auto switchings = event.switchings;
+  for (std::size_t k = 0; k < switchings.size(); ++k) switchings[k].time = state.switchings[k];
+  return switchings;
+}
+
+Drive drive_at(const sim::Plant& plant, const sim::Conventions& conventions, const FitEvent& event,
+               const EventState& state) {
+  Drive run{.plant = &plant, .conventions = conventions, .record = &event.record};
+  run.start = event.start;
+  run.start.P += state.P;
+  run.start.Q += state.Q;
+  run.angle = state.angle;
+  run.speed = state.speed;
+  run.tolerance = kFitTolerance;
+  // a limit that is met and left within a sample is no reason for short steps
+  run.least_step = event.record.step() / 40;
+  run.step_limit = 15 * event.record.samples();
+  return run;
+}
 
 void compare(const FitEvent& event, const Response& answer, EventFit& f) {
   for (const Output o : event.channels) f.model.push_back(answer.of(o));

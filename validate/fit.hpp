@@ -82,9 +82,11 @@ double penalised(const Fit& f);
 /// Neural Computation 4, 1992, p. 415); of a fit with errors.
 double criterion(const Fit& f);
 
+constexpr double kFitTolerance = 1e-5;  ///< of the integration
+
 struct FitOptions {
   int iterations = 30;
-  double tolerance = 1e-5;             ///< of the integration
+  double tolerance = kFitTolerance;    ///< of the integration
   double enough = 1e-5;                ///< relative change of the cost at which the fit stops
   std::vector<EventState> start = {};  ///< of the events; empty: as prepared
   std::vector<double> values = {};     ///< of the free parameters, to start from; empty: the plant's
@@ -93,6 +95,12 @@ struct FitOptions {
   double bend = 0.01;                  ///< second difference that the input is believed to have [pu]
 };
 
+/// The event's switchings where `state` has them.
+std::vector<Switching> switchings_at(const FitEvent& event, const EventState& state);
+/// The event played into a plant from `state`, as fits do it; the curve, through those switchings, is still
+/// to be set.
+Drive drive_at(const sim::Plant& plant, const sim::Conventions& conventions, const FitEvent& event,
+               const EventState& state);
 /// Fills in what `answer` leaves of the event: all but the state.
 void compare(const FitEvent& event, const Response& answer, EventFit& fit);
 

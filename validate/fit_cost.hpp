@@ -1,6 +1,6 @@
 #pragma once
 // What a fit minimises: residuals of each event, beliefs, and the bends of an added input, as Ceres takes
-// them. For fit.cpp only.
+// them. For fit.cpp and score_test.cpp only.
 #include <ceres/ceres.h>
 
 #include <algorithm>
@@ -78,6 +78,27 @@ inline bool can_run(const sim::Plant& plant) {
   return problems.list().empty();
 }
 
+/// An event's state as the search sees it, without an input.
+inline std::vector<double> state_of(const FitEvent& event, const EventState& from) {
+  std::vector<double> s;
+  for (std::size_t k = 0; k < event.switchings.size(); ++k)
+    s.push_back((from.switchings[k] - event.switchings[k].time) / kSwitchScale);
+  const double values[kStates] = {from.P, from.Q, from.angle, from.speed};
+  for (int k = 0; k < kStates; ++k) s.push_back(values[k] / kStateScale[k]);
+  return s;
+}
+
+/// The reverse.
+inline EventState event_state(const FitEvent& event, const double* s) {
+  EventState at;
+  for (const auto& w : event.switchings) at.switchings.push_back(w.time + kSwitchScale * *s++);
+  at.P = kStateScale[0] * s[0];
+  at.Q = kStateScale[1] * s[1];
+  at.angle = kStateScale[2] * s[2];
+  at.speed = kStateScale[3] * s[3];
+  return at;
+}
+
 /// Residuals of one event; parameter blocks: z of the plant (absent if none is free), state of the event.
 class EventCost : public ceres::CostFunction {
  public:
@@ -131,19 +152,11 @@ class EventCost : public ceres::CostFunction {
   }
   /// The run at a state; `switchings` get their moved instants.
   Drive make_drive(const sim::Plant& plant, const double* state, std::vector<Switching>& switchings) const {
-    for (std::size_t k = 0; k < switchings.size(); ++k)
-      switchings[k].time = event_.switchings[k].time + kSwitchScale * state[k];
-    const double* s = state + switchings.size();
-    Drive run{.plant = &plant, .conventions = *setting_.conventions, .record = &event_.record};
-    run.start = event_.start;
-    run.start.P += kStateScale[0] * s[0];
-    run.start.Q += kStateScale[1] * s[1];
-    run.angle = kStateScale[2] * s[2];
-    run.speed = kStateScale[3] * s[3];
+    const EventState at = event_state(event_, state);
+    switchings = switchings_at(event_, at);
+    Drive run = drive_at(plant, *setting_.conventions, event_, at);
     run.tolerance = setting_.tolerance;
-    // a limit that is met and left within a sample is no reason for short steps
-    run.least_step = event_.record.step() / 40;
-    run.step_limit = 15 * event_.record.samples();
+    const double* s = state + switchings.size();
     if (setting_.input == InputKind::none) return run;
     PiecewiseLinear& input = setting_.input == InputKind::torque ? run.torque : run.field;
     input.t = knots_;

@@ -15,6 +15,7 @@ namespace {
 
 using sim::Slot;
 
+constexpr int kDraws = 40;       ///< of an effect's parameters, as starts
 constexpr double kSpread = 1.0;  ///< what is believed of an added effect's parameters: within a factor e
 
 Side side_of(Slot slot) {
@@ -124,7 +125,7 @@ void add_effects(const sim::Plant& base, const sim::Conventions& conventions, st
       start_near_neutral(h, block);
     } else {
       h.free = free_parameters(h.plant, block, kSpread);
-      h.starts = draws(h.plant, h.free, 10);
+      h.starts = draws(h.plant, h.free, kDraws);
     }
     all.push_back(std::move(h));
   }

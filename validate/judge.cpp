@@ -10,8 +10,8 @@ namespace {
 
 /// An event in which the effect hardly acts may be predicted worse by this, the refit's own scatter.
 constexpr double kWorse = 1.02;
-/// chi2 per value up to which an unseen event is predicted: 1.3 times the noise; or its share of what it was.
-constexpr double kPredicts = 1.69, kFalls = 0.1;
+/// Cost per value up to which an unseen event is predicted; or its share of what it was.
+constexpr double kPredicts = 1.25, kFalls = 0.1;
 /// A finished fit is taken for a short one, which has no errors, unless its criterion is worse by this.
 constexpr double kSame = 0.5;
 
@@ -56,11 +56,13 @@ std::vector<HeldOut> hold_out(const Trial& trial, const sim::Plant& plant,
     const Fit f =
         fit(seen.failed.empty() ? seen.plant : plant, conventions, {trial.events[left]}, {}, unseen);
     out[left].after = f.failed.empty() ? f.misfit() : 1e300;
+    out[left].cost_after = (penalised(whole) - penalised(seen)) / whole.events[left].values;
   }
   return out;
 }
 
 void judge(const Trial& trial, const Fit& base, const std::vector<HeldOut>& held_out_base, Judgement& j) {
+  if (!j.fitted) return;
   const auto free = free_of(j.hypothesis, trial.spread);
   FitOptions o;
   o.values = values_of(j.fit.plant, free);
@@ -75,14 +77,17 @@ void judge(const Trial& trial, const Fit& base, const std::vector<HeldOut>& held
     return;
   }
   j.held_out = hold_out(trial, j.hypothesis.plant, j.hypothesis.conventions, free, j.fit);
-  for (std::size_t e = 0; e < j.held_out.size(); ++e) j.held_out[e].before = held_out_base[e].after;
+  for (std::size_t e = 0; e < j.held_out.size(); ++e) {
+    j.held_out[e].before = held_out_base[e].after;
+    j.held_out[e].cost_before = held_out_base[e].cost_after;
+  }
   for (const auto& h : j.held_out)
-    if (h.after > kWorse * h.before && h.after > trial.adequate) {
+    if (h.cost_after > kWorse * h.cost_before && h.cost_after > trial.adequate) {
       j.why_not = fmt::format("does not improve {} when that is not fitted", h.record);
       return;
     }
   for (const auto& h : j.held_out)
-    if (h.after > kPredicts && h.after > kFalls * h.before) {
+    if (h.cost_after > kPredicts && h.cost_after > kFalls * h.cost_before) {
       j.why_not = fmt::format("does not predict {} when that is not fitted", h.record);
       return;
     }

@@ -12,6 +12,9 @@ namespace swingbank::validate {
 struct HeldOut {
   std::string record;
   double before = 0, after = 0;  ///< chi2 per value
+  /// By how much the cost of the fit grows when this event joins it, per value: its chi2, allowing for what
+  /// the others leave open of the parameters.
+  double cost_before = 0, cost_after = 0;
 };
 
 /// One hypothesis, fitted and judged.
@@ -21,7 +24,7 @@ struct Judgement {
   double gain = 0;                ///< criterion(base) - criterion(with it): evidence in its favour
   double size = 0;                ///< what it adds to the answer: norm of the change / noise, per sqrt(value)
   std::vector<HeldOut> held_out;  ///< empty where it was not worth it
-  std::vector<sim::Plant> starts;  ///< not tried yet, best first
+  bool fitted = true;             ///< false: the score test gave no hope; `fit` is without it
   bool accepted = false;
   std::string why_not;  ///< empty where accepted
 };
@@ -47,8 +50,9 @@ struct Trial {
 std::vector<HeldOut> hold_out(const Trial& trial, const sim::Plant& plant,
                               const sim::Conventions& conventions, const std::vector<FreeParameter>& free,
                               const Fit& whole);
-/// Finishes the fit of `j` and accepts it if its evidence is strong, every left-out event is predicted better
-/// than by the base, and nothing but noise is left; otherwise says why not.
+/// Nothing where it was not fitted. Else finishes the fit of `j` and accepts it if its evidence is
+/// strong, every left-out event is predicted better than by the base, and nothing but noise is left;
+/// otherwise says why not.
 void judge(const Trial& trial, const Fit& base, const std::vector<HeldOut>& held_out_base, Judgement& j);
 
 }  // namespace swingbank::validate

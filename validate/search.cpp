@@ -1,19 +1,24 @@
 #include "validate/search.hpp"
 
+#include <fmt/format.h>
 #include <omp.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
+#include <optional>
+#include <ranges>
 
 #include "validate/instruments.hpp"
+#include "validate/score_test.hpp"
 
 namespace swingbank::validate {
 namespace {
 
-/// Starts that are tried, and steps of the fits: from each, from the best two of them, and from the stage's
-/// fit.
-constexpr std::size_t kTries = 4;
+/// Starts that are tried, and that the score test looks at; steps of the fits: from each, from the best two
+/// of them, and from the stage's fit.
+constexpr std::size_t kTries = 4, kScored = 6, kScreened = 10;
 constexpr int kFirstSteps = 4, kMoreSteps = 8, kNestedSteps = 12;
 /// Steps from each start beside a stage that nearly fits, and from the best of them.
 constexpr int kNearSteps = 3, kOnwardSteps = 9;
@@ -23,6 +28,12 @@ constexpr double kWorthARound = 10;
 /// Misfit of the stage below which what is missing is small, and below which the fitted values are good
 /// starts for everything but what is missing.
 constexpr double kNested = 4, kNear = 1.5;
+/// Share of the best one's first gain from which a hypothesis is fitted on.
+constexpr double kFair = 0.2;
+/// Fall of chi2 below which a hypothesis is not worth a fit: half the evidence asked for.
+constexpr double kHopeless = 20;
+/// Of the standard amplitude: where the answer is straight; the least that a start has.
+constexpr double kSmall = 0.01, kLeastShare = 1e-3;
 
 /// A hypothesis with its starts: its standard values, then draws in order of what they leave before any fit.
 /// What leaves least may be what hardly acts.
@@ -32,6 +43,7 @@ struct Candidate {
   /// The stage as fitted, with each start: its misfit, and all free parameters. The standard start first, the
   /// others as they suit the stage.
   std::vector<std::pair<double, std::vector<double>>> nested = {};
+  double promise = 0;  ///< by how much chi2 would fall, by the score test
 };
 
 /// Index in `plant` of the block with that effect.
@@ -39,6 +51,32 @@ int block_with(const sim::Plant& plant, const sim::Effect& effect) {
   int block = 0;
   while (&block_effect(plant, block) != &effect) ++block;
   return block;
+}
+
+bool has_block(const sim::Plant& plant, const sim::Effect& effect) {
+  const auto blocks = static_cast<int>(sim::block_parameters(plant).size());
+  for (int b = 0; b < blocks; ++b)
+    if (&block_effect(plant, b) == &effect) return true;
+  return false;
+}
+
+/// chi2 of a plant, the events where `states` have them; infinite where it cannot be run.
+double left_by(const sim::Plant& plant, const sim::Conventions& conventions,
+               const std::vector<FitEvent>& events, const std::vector<EventState>& states) {
+  double chi2 = 0;
+  try {
+    for (std::size_t e = 0; e < events.size(); ++e) {
+      const VoltageCurve curve(events[e].played(), switchings_at(events[e], states[e]));
+      Drive run = drive_at(plant, conventions, events[e], states[e]);
+      run.curve = &curve;
+      EventFit f;
+      compare(events[e], observe(run), f);
+      chi2 += f.chi2;
+    }
+  } catch (const InputError&) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return chi2;
 }
 
 /// Where `f` ended, its beliefs as they were.
@@ -51,18 +89,24 @@ FitOptions continued(FitOptions o, const Fit& f, const std::vector<FreeParameter
 
 class Searcher {
  public:
-  Searcher(const Stage& stage, const SearchProgress& report) : stage_(stage), report_(report) {}
+  Searcher(const Stage& stage, const SearchProgress& report) : stage_(stage), report_(report) {
+    if (stage.fit.misfit() < kNear) score_.emplace(stage.events, stage.plant, stage.conventions, stage.fit);
+  }
 
   std::vector<Judgement> run() {
     const auto candidates = screened();
     std::vector<Judgement> tried(candidates.size());
-    int done = 0;
-    std::mutex progress;
-#pragma omp parallel for schedule(dynamic) num_threads(stage_.threads)
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-      tried[i] = quick(candidates[i]);
-      const std::lock_guard lock(progress);
-      report("fit " + candidates[i].hypothesis.name, ++done, candidates.size());
+    if (score_) {
+      each(candidates, "fit ", [&](std::size_t i) {
+        tried[i] = candidates[i].nested.empty() ? hopeless(candidates[i]) : near(candidates[i]);
+      });
+    } else {
+      std::vector<std::vector<Fit>> begun(candidates.size());
+      each(candidates, "first steps ", [&](std::size_t i) { begun[i] = first_steps(candidates[i]); });
+      const auto onward = promising(candidates, begun);
+      each(candidates, "fit ", [&](std::size_t i) {
+        tried[i] = onward[i] ? more_steps(candidates[i], begun[i]) : judgement(candidates[i], begun[i]);
+      });
     }
     std::erase_if(tried, [](const Judgement& j) { return j.fit.events.empty(); });
     std::ranges::sort(tried, std::greater<>(), &Judgement::gain);
@@ -70,6 +114,17 @@ class Searcher {
   }
 
  private:
+  template <class F>
+  void each(const std::vector<Candidate>& candidates, const std::string& what, F act) const {
+    int done = 0;
+    std::mutex progress;
+#pragma omp parallel for schedule(dynamic) num_threads(stage_.threads)
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      act(i);
+      const std::lock_guard lock(progress);
+      report(what + candidates[i].hypothesis.name, ++done, candidates.size());
+    }
+  }
   /// Every hypothesis that acts here.
   std::vector<Candidate> screened() const {
     auto all = all_hypotheses(stage_.plant, stage_.conventions);
@@ -79,7 +134,11 @@ class Searcher {
 #pragma omp parallel for schedule(dynamic) num_threads(stage_.threads)
     for (std::size_t i = 0; i < all.size(); ++i) {
       bring(all[i]);
-      candidates[i] = screen(std::move(all[i]));
+      if (score_)
+        score(all[i], candidates[i]);
+      else
+        screen(all[i], candidates[i]);
+      candidates[i].hypothesis = std::move(all[i]);
       const std::lock_guard lock(progress);
       report("hypotheses", ++done, all.size());
     }
@@ -97,15 +156,14 @@ class Searcher {
     }
   }
 
-  Candidate screen(Hypothesis h) const {
-    Candidate c;
+  void screen(const Hypothesis& h, Candidate& c) const {
     struct Start {
       double misfit;
       sim::Plant plant;
     };
     std::vector<Start> starts;
     bool acts = false;
-    for (const auto& values : h.starts) {
+    for (const auto& values : h.starts | std::views::take(kScreened)) {
       Start s{0, started(h, values)};
       if (answer(s.plant, h, s.misfit, acts)) starts.push_back(std::move(s));
     }
@@ -114,43 +172,15 @@ class Searcher {
       nest(h, c);
       for (auto& s : starts) c.starts.push_back(std::move(s.plant));
     }
-    c.hypothesis = std::move(h);
-    return c;
   }
-  /// Where the stage nearly fits, what is missing is small: its fitted values are the start then.
-  void nest(const Hypothesis& h, Candidate& c) const {
-    for (const auto& values : h.starts) {
-      sim::Plant plant = started(h, values);
-      for (const auto& p : stage_.fit.parameters) {
-        const int block = block_with(plant, block_effect(stage_.plant, p.where.block));
-        parameter_value(plant, block, p.where.index) = p.value;
-      }
-      double misfit = 0;
-      bool acts = true;
-      if (answer(plant, h, misfit, acts))
-        c.nested.emplace_back(misfit, values_of(plant, free_of(h, stage_.spread)));
+  /// The stage as fitted, with this start: all free parameters.
+  std::vector<double> beside_fit(const Hypothesis& h, const std::vector<double>& start) const {
+    sim::Plant plant = started(h, start);
+    for (const auto& p : stage_.fit.parameters) {
+      const int block = block_with(plant, block_effect(stage_.plant, p.where.block));
+      parameter_value(plant, block, p.where.index) = p.value;
     }
-    if (c.nested.empty()) return;
-    std::ranges::sort(c.nested.begin() + 1, c.nested.end());
-    if (stage_.fit.misfit() < kNear) scale(h, c);
-  }
-  /// Parameters that switch the effect off at their neutral value, by their place in the free ones. Off means
-  /// a thousandth of the standard values' answer: more states make other steps.
-  std::vector<std::size_t> amplitudes(const Hypothesis& h, const Candidate& c) const {
-    const auto free = free_of(h, stage_.spread);
-    const auto& standard = c.nested.front().second;
-    double along = 0, whole = 0;
-    std::vector<std::size_t> found;
-    if (!project(h, with_values(h, free, standard), along, whole)) return found;
-    for (std::size_t i = free.size() - h.free.size(); i < free.size(); ++i) {
-      const double neutral = parameter_record(h.plant, free[i].block, free[i].index).neutral;
-      if (!(neutral < standard[i]) && !(neutral > standard[i])) continue;
-      auto off = standard;
-      off[i] = neutral;
-      double left = 0;
-      if (project(h, with_values(h, free, off), along, left) && left < 1e-6 * whole) found.push_back(i);
-    }
-    return found;
+    return values_of(plant, free_of(h, stage_.spread));
   }
   static sim::Plant with_values(const Hypothesis& h, const std::vector<FreeParameter>& free,
                                 const std::vector<double>& values) {
@@ -159,13 +189,59 @@ class Searcher {
       parameter_value(plant, free[i].block, free[i].index) = values[i];
     return plant;
   }
-  /// Score test at the neutral point: each start as small as a first step along its amplitude would make it,
-  /// those with most to gain first.
-  void scale(const Hypothesis& h, Candidate& c) const {
-    constexpr double kSmall = 0.01;  // of the amplitude: the answer is straight
-    const auto which = amplitudes(h, c);
-    if (which.empty()) return;
+  /// Starts beside what was fitted, the standard one first, then as they suit the stage.
+  void nest(const Hypothesis& h, Candidate& c) const {
     const auto free = free_of(h, stage_.spread);
+    for (const auto& start : h.starts | std::views::take(kScreened)) {
+      auto values = beside_fit(h, start);
+      double misfit = 0;
+      bool acts = true;
+      if (answer(with_values(h, free, values), h, misfit, acts))
+        c.nested.emplace_back(misfit, std::move(values));
+    }
+    if (!c.nested.empty()) std::ranges::sort(c.nested.begin() + 1, c.nested.end());
+  }
+  /// Parameters that switch the effect off at their neutral value, by their place in the free ones. Off means
+  /// a thousandth of the standard values' answer: more states make other steps.
+  std::vector<std::size_t> amplitudes(const Hypothesis& h, const std::vector<double>& standard) const {
+    const auto free = free_of(h, stage_.spread);
+    std::vector<std::size_t> found;
+    const double whole = moves(h, with_values(h, free, standard));
+    for (std::size_t i = free.size() - h.free.size(); i < free.size(); ++i) {
+      const double neutral = parameter_record(h.plant, free[i].block, free[i].index).neutral;
+      if (!(neutral < standard[i]) && !(neutral > standard[i])) continue;
+      auto off = standard;
+      off[i] = neutral;
+      if (moves(h, with_values(h, free, off)) < 1e-6 * whole) found.push_back(i);
+    }
+    return found;
+  }
+  /// Squared change of the first event's answer, in units of noise; NaN where it cannot be run.
+  double moves(const Hypothesis& h, const sim::Plant& plant) const {
+    const FitEvent& e = stage_.events.front();
+    const EventFit& at = stage_.fit.events.front();
+    try {
+      const VoltageCurve curve(e.played(), switchings_at(e, at.state));
+      Drive run = drive_at(plant, h.conventions, e, at.state);
+      run.curve = &curve;
+      const Response r = observe(run);
+      double square = 0;
+      for (std::size_t c = 0; c < e.channels.size(); ++c)
+        for (std::size_t k = 0; k < r.of(e.channels[c]).size(); ++k)
+          square +=
+              std::pow((r.of(e.channels[c])[k] - at.model[c][k]) / e.noise[static_cast<Eigen::Index>(c)], 2);
+      return square;
+    } catch (const InputError&) {
+      return std::nan("");
+    }
+  }
+  /// Score test at the neutral point: each start as small as a first step along its amplitude would make it,
+  /// those with most to gain first, the standard one before them. Nothing to gain: no starts, not worth a
+  /// fit.
+  void score(const Hypothesis& h, Candidate& c) const {
+    const auto free = free_of(h, stage_.spread);
+    const auto standard = beside_fit(h, h.starts.front());
+    const auto which = amplitudes(h, standard);
     const auto at = [&](std::vector<double> values, double share) {
       for (const std::size_t i : which) {
         const double neutral = parameter_record(h.plant, free[i].block, free[i].index).neutral;
@@ -173,75 +249,87 @@ class Searcher {
       }
       return values;
     };
-    std::vector<std::pair<double, std::vector<double>>> scaled;
-    for (const auto& [misfit, values] : c.nested) {
-      double along = 0, square = 0;
-      if (!project(h, with_values(h, free, at(values, kSmall)), along, square) || !(square > 0)) continue;
-      const double share = std::clamp(-along / square * kSmall, 1e-3, 1.0);
-      scaled.emplace_back(along < 0 ? -along * along / square : 0.0, at(values, share));
-    }
-    std::ranges::sort(scaled);
-    if (scaled.size() >= kTries) scaled.resize(kTries - 1);
-    c.nested.insert(c.nested.begin() + 1, std::make_move_iterator(scaled.begin()),
-                    std::make_move_iterator(scaled.end()));
-  }
-  /// Change of the stage's answer to that of `plant`, whitened: times the stage's residual, times itself.
-  bool project(const Hypothesis& h, const sim::Plant& plant, double& along, double& square) const {
-    try {
-      for (std::size_t i = 0; i < stage_.events.size(); ++i) {
-        const FitEvent& e = stage_.events[i];
-        const EventFit& at = stage_.fit.events[i];
-        auto switchings = e.switchings;
-        for (std::size_t k = 0; k < switchings.size(); ++k) switchings[k].time = at.state.switchings[k];
-        const VoltageCurve curve(e.played(), switchings);
-        Drive run{.plant = &plant, .conventions = h.conventions, .record = &e.record, .curve = &curve};
-        run.start = e.start;
-        run.start.P += at.state.P;
-        run.start.Q += at.state.Q;
-        run.angle = at.state.angle;
-        run.speed = at.state.speed;
-        run.tolerance = 1e-5;
-        run.least_step = e.record.step() / 40;
-        run.step_limit = 15 * e.record.samples();
-        EventFit moved;
-        compare(e, observe(run), moved);
-        for (std::size_t ch = 0; ch < moved.residual.size(); ++ch)
-          for (std::size_t k = 0; k < moved.residual[ch].size(); ++k) {
-            const double by = moved.residual[ch][k] - at.residual[ch][k];
-            along += by * at.residual[ch][k];
-            square += by * by;
-          }
+    std::vector<ScoreTest::Change> changes;
+    std::vector<std::pair<double, std::vector<double>>> starts;
+    for (const auto& start : h.starts) {
+      if (starts.size() == kScored) break;
+      const auto values = beside_fit(h, start);
+      auto whole = score_->change_to(with_values(h, free, values), h.conventions);
+      if (!whole) continue;
+      double gain = whole->gain(), share = std::clamp(whole->share(), kLeastShare, 1.0);
+      changes.push_back(std::move(*whole));
+      std::vector<Direction> along;
+      for (std::size_t i = free.size() - h.free.size(); i < free.size(); ++i) {
+        const double neutral = parameter_record(h.plant, free[i].block, free[i].index).neutral;
+        const bool asked = which.empty() ? !std::isnan(neutral) : std::ranges::count(which, i) > 0;
+        if (asked)
+          along.push_back({Direction::Kind::parameter, free[i].block, free[i].index, values[i] - neutral});
       }
-    } catch (const InputError&) {
-      return false;
+      if (!along.empty())
+        for (auto& slope : score_->slopes(with_values(h, free, at(values, kSmall)), h.conventions, along)) {
+          if (!which.empty() && slope.gain() > gain)
+            gain = slope.gain(), share = std::clamp(slope.share(), kLeastShare, 1.0);
+          changes.push_back(std::move(slope));
+        }
+      starts.emplace_back(-gain, at(values, share));
     }
-    return true;
+    c.promise = score_->joint_gain(changes);
+    if (starts.empty() || std::ranges::none_of(changes, [](const auto& x) { return x.square > 0; })) return;
+    c.starts = {started(h, h.starts.front())};
+    // a few large changes say little of a small one
+    if (c.promise < kHopeless && (!which.empty() || starts.size() >= std::min(h.starts.size(), kScored)))
+      return;
+    std::ranges::sort(starts);
+    if (starts.size() >= kTries) starts.resize(kTries - 1);
+    c.nested.emplace_back(0.0, standard);
+    std::ranges::move(starts, std::back_inserter(c.nested));
   }
-  /// From the standard values, and from the draw that a few steps show to be the best. The standard ones are
-  /// not left out for being slow: draws that hardly act always look better at first.
-  Judgement quick(const Candidate& c) const {
-    if (stage_.fit.misfit() < kNear && !c.nested.empty()) return near(c);
-    const auto free = free_of(c.hypothesis, stage_.spread);
-    const auto attempt = [&](const sim::Plant& start, const FitOptions& o) {
-      return fit(start, c.hypothesis.conventions, stage_.events, free, o);
-    };
+  Fit attempt(const Candidate& c, const sim::Plant& start, const FitOptions& o) const {
+    return fit(start, c.hypothesis.conventions, stage_.events, free_of(c.hypothesis, stage_.spread), o);
+  }
+  /// From the standard values and from three draws, in the order of the starts.
+  std::vector<Fit> first_steps(const Candidate& c) const {
     FitOptions o;
     o.errors = false;
     o.iterations = kFirstSteps;
     std::vector<Fit> fits;
-    const sim::Plant* best = nullptr;
-    Fit first;
-    const std::size_t tries = std::min(c.starts.size(), kTries);
-    for (std::size_t k = 1; k < tries; ++k) {
-      Fit f = attempt(c.starts[k], o);
-      if (!f.failed.empty() || (best && penalised(f) >= penalised(first))) continue;
-      first = std::move(f);
-      best = &c.starts[k];
+    for (std::size_t k = 0; k < std::min(c.starts.size(), kTries); ++k)
+      fits.push_back(attempt(c, c.starts[k], o));
+    return fits;
+  }
+  /// Those whose first steps gain a fair share of what the best one's do, and the rivals of its slot.
+  std::vector<char> promising(const std::vector<Candidate>& candidates,
+                              const std::vector<std::vector<Fit>>& begun) const {
+    std::vector<double> gains;
+    for (const auto& fits : begun) {
+      double gain = -std::numeric_limits<double>::infinity();
+      for (const Fit& f : fits) gain = std::max(gain, penalised(stage_.fit) - penalised(f));
+      gains.push_back(gain);
     }
-    o.iterations = kMoreSteps;  // beliefs are about the start, not about where its first steps led
-    if (best) fits.push_back(attempt(*best, continued(o, first, free)));
-    o.iterations = kFirstSteps + kMoreSteps;
-    fits.push_back(attempt(c.starts.front(), o));
+    const auto best = std::ranges::max_element(gains);
+    std::vector<char> onward;
+    for (std::size_t i = 0; i < gains.size(); ++i) {
+      const int slot = candidates[static_cast<std::size_t>(best - gains.begin())].hypothesis.slot;
+      onward.push_back(*best <= 0 || gains[i] >= kFair * *best ||
+                       (slot >= 0 && candidates[i].hypothesis.slot == slot));
+    }
+    return onward;
+  }
+  /// Onward from the best draw, and from the standard values: these are not left out for being slow, draws
+  /// that hardly act always look better at first. Beliefs are about the start, not about where its first
+  /// steps led.
+  Judgement more_steps(const Candidate& c, const std::vector<Fit>& begun) const {
+    const auto free = free_of(c.hypothesis, stage_.spread);
+    FitOptions o;
+    o.errors = false;
+    o.iterations = kMoreSteps;
+    std::vector<Fit> fits;
+    std::size_t best = 0;
+    for (std::size_t k = 1; k < begun.size(); ++k)
+      if (begun[k].failed.empty() && (best == 0 || penalised(begun[k]) < penalised(begun[best]))) best = k;
+    for (const std::size_t k : {std::size_t{0}, best})
+      if (begun[k].failed.empty() && (k > 0 || fits.empty()))
+        fits.push_back(attempt(c, c.starts[k], continued(o, begun[k], free)));
     std::erase_if(fits, [](const Fit& f) { return !f.failed.empty(); });
     const bool worse =
         fits.empty() || penalised(*std::ranges::min_element(fits, {}, penalised)) > penalised(stage_.fit);
@@ -250,9 +338,18 @@ class Searcher {
       o.values = std::ranges::min_element(c.nested)->second;
       o.start.clear();
       for (const auto& e : stage_.fit.events) o.start.push_back(e.state);
-      if (Fit f = attempt(c.starts.front(), o); f.failed.empty()) fits.push_back(std::move(f));
+      if (Fit f = attempt(c, c.starts.front(), o); f.failed.empty()) fits.push_back(std::move(f));
     }
-    return judgement(c, fits, tries);
+    return judgement(c, fits);
+  }
+  Judgement hopeless(const Candidate& c) const {
+    Judgement j;
+    j.hypothesis = c.hypothesis;
+    j.fit = stage_.fit;
+    j.fitted = false;
+    j.gain = c.promise;
+    j.why_not = fmt::format("chi2 would fall by some {:.0f}: not worth a fit", c.promise);
+    return j;
   }
   /// Beside a stage that nearly fits, all else starts as that ended.
   Judgement near(const Candidate& c) const {
@@ -267,7 +364,7 @@ class Searcher {
       if (Fit f = fit(c.starts.front(), c.hypothesis.conventions, stage_.events, free, o); f.failed.empty())
         fits.push_back(std::move(f));
     }
-    if (fits.empty()) return judgement(c, fits, kTries);
+    if (fits.empty()) return judgement(c, fits);
     o.iterations = kOnwardSteps;
     Fit best = *std::ranges::min_element(fits, {}, penalised);
     for (int round = 0; round < kRounds; ++round) {
@@ -276,14 +373,12 @@ class Searcher {
       if (!best.failed.empty() || best.converged || penalised(best) > penalised(from) - kWorthARound) break;
     }
     fits.push_back(std::move(best));
-    return judgement(c, fits, kTries);
+    return judgement(c, fits);
   }
-  /// The best of the fits; starts from `tried` on remain.
-  Judgement judgement(const Candidate& c, std::vector<Fit>& fits, std::size_t tried) const {
+  /// The best of the fits.
+  Judgement judgement(const Candidate& c, std::vector<Fit> fits) const {
     Judgement j;
     j.hypothesis = c.hypothesis;
-    j.starts.assign(c.starts.begin() + static_cast<std::ptrdiff_t>(std::min(tried, c.starts.size())),
-                    c.starts.end());
     std::erase_if(fits, [](const Fit& f) { return !f.failed.empty(); });
     if (fits.empty()) return j;
     j.fit = with_errors(c, std::move(*std::ranges::min_element(fits, {}, penalised)));
@@ -307,11 +402,8 @@ class Searcher {
     try {
       for (const FitEvent& e : stage_.events) {
         const VoltageCurve curve(e.played(), e.switchings);
-        Drive run{.plant = &plant, .conventions = h.conventions, .record = &e.record, .curve = &curve};
-        run.start = e.start;
-        run.tolerance = 1e-5;
-        run.least_step = e.record.step() / 40;
-        run.step_limit = 15 * e.record.samples();
+        Drive run = drive_at(plant, h.conventions, e, {});
+        run.curve = &curve;
         const Response r = observe(run);
         if (!acts) {
           run.plant = &stage_.plant;
@@ -351,6 +443,7 @@ class Searcher {
 
   const Stage& stage_;
   const SearchProgress& report_;
+  std::optional<ScoreTest> score_;  ///< where the stage nearly fits
 };
 
 }  // namespace
@@ -359,16 +452,59 @@ std::vector<Judgement> try_hypotheses(const Stage& stage, const SearchProgress& 
   return Searcher(stage, report).run();
 }
 
-void try_further(const Stage& stage, Judgement& j) {
-  constexpr std::size_t kFurther = 4;
-  const auto free = free_of(j.hypothesis, stage.spread);
-  FitOptions o;
-  o.iterations = 10;
-  for (std::size_t k = 0; k < std::min(kFurther, j.starts.size()); ++k)
-    if (Fit f = fit(j.starts[k], j.hypothesis.conventions, stage.events, free, o);
+void try_further(const Stage& stage, const Fit& leader, Judgement& j) {
+  constexpr std::size_t kFurther = 2;
+  constexpr int kOwnSteps = 8, kAllSteps = 10;
+  const Hypothesis& h = j.hypothesis;
+  // what both share, where the leader has it
+  Hypothesis led = h;
+  for (const auto& p : leader.parameters) {
+    const sim::Effect& effect = block_effect(leader.plant, p.where.block);
+    if (has_block(led.plant, effect) && has_block(stage.plant, effect))
+      parameter_value(led.plant, block_with(led.plant, effect), p.where.index) = p.value;
+  }
+  std::vector<EventState> states;
+  for (const auto& e : leader.events) states.push_back(e.state);
+  auto starts = h.starts;
+  starts.push_back(values_of(j.fit.plant, h.free));
+  std::vector<std::pair<double, const std::vector<double>*>> order;
+  for (const auto& start : starts)
+    if (const double left = left_by(started(led, start), h.conventions, stage.events, states);
+        std::isfinite(left))
+      order.emplace_back(left, &start);
+  std::ranges::sort(order);
+  const auto free = free_of(h, stage.spread);
+  for (std::size_t k = 0; k < std::min(kFurther, order.size()); ++k) {
+    FitOptions o;
+    o.errors = false;
+    o.start = states;
+    o.iterations = kOwnSteps;
+    o.values = *order[k].second;
+    const Fit own = fit(led.plant, h.conventions, stage.events, h.free, o);
+    if (!own.failed.empty()) continue;
+    o = continued(o, own, free);
+    o.errors = true;
+    o.iterations = kAllSteps;
+    if (Fit f = fit(h.plant, h.conventions, stage.events, free, o);
         f.failed.empty() && penalised(f) < penalised(j.fit))
       j.fit = std::move(f);
-  j.starts.clear();
+  }
+}
+
+void try_from(const Stage& stage, const Fit& other, Judgement& j) {
+  const Hypothesis& h = j.hypothesis;
+  const auto free = free_of(h, stage.spread);
+  FitOptions o;
+  for (const FreeParameter& f : free) {
+    const sim::Effect& effect = block_effect(h.plant, f.block);
+    o.values.push_back(has_block(other.plant, effect)
+                           ? parameter_value(other.plant, block_with(other.plant, effect), f.index)
+                           : parameter_value(j.fit.plant, f.block, f.index));
+  }
+  for (const auto& e : other.events) o.start.push_back(e.state);
+  if (Fit f = fit(h.plant, h.conventions, stage.events, free, o);
+      f.failed.empty() && penalised(f) < penalised(j.fit))
+    j.fit = std::move(f);
 }
 
 Stage after(const Stage& stage, const Judgement& j) {

@@ -27,9 +27,12 @@ struct Stage {
 /// Fitted, not judged; best first. `gain` is over the stage's fit.
 std::vector<Judgement> try_hypotheses(const Stage& stage, const SearchProgress& report = {});
 
-/// Fits `j`, as try_hypotheses left it, from further starts: rivals of the best of a slot must not lose by a
-/// poor start.
-void try_further(const Stage& stage, Judgement& j);
+/// Fits `j`, as try_hypotheses left it, from further starts, the machine as the leading hypothesis of its
+/// slot found it: a rival must not lose by a poor start.
+void try_further(const Stage& stage, const Fit& leader, Judgement& j);
+
+/// Fits `j` from where the fit of another structure ended.
+void try_from(const Stage& stage, const Fit& other, Judgement& j);
 
 /// The stage at which `j`, added to `stage`, is there already.
 Stage after(const Stage& stage, const Judgement& j);
