@@ -110,8 +110,9 @@ Fit fit_with(const Hypothesis& h, const Bench& bench, const std::vector<EventSta
       [&](int done) {
         bench.tell("values of " + h.name + " screened", done, static_cast<int>(order.size()));
       });
-  std::ranges::sort(order);
-  const std::size_t tries = std::min(order.size(), static_cast<std::size_t>(std::max(1, options.refined)));
+  std::ranges::sort(order.begin() + 1, order.end());  // what leaves least may be what hardly acts
+  const std::size_t tries =
+      std::min(order.size(), 1 + static_cast<std::size_t>(std::max(0, options.refined)));
   std::vector<Fit> fits(tries);
   in_parallel(
       tries,

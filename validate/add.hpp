@@ -8,7 +8,7 @@ namespace swingbank::validate {
 
 struct AddOptions {
   CalibrateOptions calibrate = {};  ///< spread, events held out, limits, progress; `draws` screens the effect
-  int refined = 3;                  ///< starts of the effect that are refined
+  int refined = 3;                  ///< starts of the effect that are refined, beside the standard one
 };
 
 /// One event: chi2 per value of the model as it was, refitted without the effect, and with it.

@@ -69,7 +69,8 @@ Table addition_table(const Addition& a) {
 
 std::string terminal_report(const Addition& a) {
   return a.sentence + "\n\n" + aligned(addition_table(a)) + "\n" + aligned(values_table(a)) +
-         fmt::format("\nEvidence (twice the log of the Bayes factor): {:.1f}; above 10 is strong.\n", a.evidence);
+         fmt::format("\nEvidence (twice the log of the Bayes factor): {:.1f}; above 10 is strong.\n",
+                     a.evidence);
 }
 
 json addition_json(const Addition& a) {
@@ -117,8 +118,8 @@ std::string terminal_report(const Completion& c) {
   std::string text;
   for (const auto& a : c.added) text += terminal_report(a) + "\n";
   for (const auto& r : c.removed)
-    text += fmt::format("{} taken out again: it no longer earns its place (evidence {:.1f}).\n",
-                        r.effect, r.evidence);
+    text += fmt::format("{} taken out again: it no longer earns its place (evidence {:.1f}).\n", r.effect,
+                        r.evidence);
   return text + c.sentence + "\n";
 }
 

@@ -20,20 +20,9 @@ constexpr double kSure = 10;
 constexpr double kLasting = 0.02;
 
 Response response_of(const Judgement& j, const FitEvent& e, const EventState& state) {
-  auto switchings = e.switchings;
-  for (std::size_t k = 0; k < switchings.size(); ++k) switchings[k].time = state.switchings[k];
-  const VoltageCurve curve(e.played(), switchings);
-  Drive run{.plant = &j.fit.plant,
-            .conventions = j.hypothesis.conventions,
-            .record = &e.record,
-            .curve = &curve,
-            .start = e.start};
-  run.start.P += state.P;
-  run.start.Q += state.Q;
-  run.angle = state.angle;
-  run.speed = state.speed;
-  run.tolerance = 1e-5;
-  run.least_step = e.record.step() / 40;
+  const VoltageCurve curve(e.played(), switchings_at(e, state));
+  Drive run = drive_at(j.fit.plant, j.hypothesis.conventions, e, state);
+  run.curve = &curve;
   return observe(run);
 }
 

@@ -24,21 +24,11 @@ std::vector<LawTrace> law_traces(const PlantModel& model, const std::vector<FitE
   for (std::size_t i = 0; i < events.size(); ++i) {
     const FitEvent& e = events[i];
     const EventState& state = input.fit.events[i].state;
-    auto switchings = e.switchings;
-    for (std::size_t k = 0; k < switchings.size(); ++k) switchings[k].time = state.switchings[k];
+    const auto switchings = switchings_at(e, state);
     const VoltageCurve curve(e.played(), switchings);
-    Drive run{.plant = &input.fit.plant,
-              .conventions = model.conventions,
-              .record = &e.record,
-              .curve = &curve,
-              .start = e.start};
-    run.start.P += state.P;
-    run.start.Q += state.Q;
-    run.angle = state.angle;
-    run.speed = state.speed;
+    Drive run = drive_at(input.fit.plant, model.conventions, e, state);
+    run.curve = &curve;
     (input.kind == InputKind::torque ? run.torque : run.field) = state.input;
-    run.tolerance = 1e-5;
-    run.least_step = e.record.step() / 40;
     const Response r = drive(run);
     const double to_machine = e.record.base.mva / input.fit.plant.mva;
     LawTrace t;
