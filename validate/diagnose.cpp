@@ -25,6 +25,11 @@ constexpr double kWorthJudging = 200;
 constexpr double kSecond = 80;
 /// Share of the best one's evidence from which a rival is near it.
 constexpr double kNear = 0.7;
+/// Leading extensions from which the model alone is fitted once more; what that must gain, of the first one's
+/// evidence; and how often it may.
+constexpr std::size_t kWaysOut = 2;
+constexpr double kEscape = 0.1;
+constexpr int kBases = 2;
 /// Misfit of the base below which its reactances are near enough to measure the noise with.
 constexpr double kClose = 4;
 
@@ -58,7 +63,15 @@ class Diagnoser {
 
   Diagnosis run() {
     const auto begin = std::chrono::steady_clock::now();
-    fit_base();
+    const std::vector<FitEvent> prepared = result_.events;
+    FitOptions from;
+    for (int round = 0;; ++round) {
+      fit_base(from);
+      result_.ranked = try_hypotheses(model_stage(), options_.progress);
+      if (round == kBases || !better_base(from)) break;
+      result_.events = prepared;  // the noise was measured beside the worse one
+    }
+    held_out_base_ = hold_out(trial(), model_.plant, model_.conventions, {}, result_.base);
     infer_inputs();
     search();
     settle();
@@ -67,9 +80,8 @@ class Diagnoser {
   }
 
  private:
-  void fit_base() {
+  void fit_base(FitOptions o) {
     report("base", 0, 1);
-    FitOptions o;
     const auto free = free_parameters(model_.plant, options_.spread);
     result_.base = fit(model_.plant, model_.conventions, result_.events, free, o);
     if (result_.base.failed.empty()) {
@@ -80,22 +92,38 @@ class Diagnoser {
       }
       sharpen_noise(result_.base, result_.events);
       remember_noise(result_.base, model_.conventions, result_.events);
-      o.values = values_of(result_.base.plant, free);
-      for (const auto& e : result_.base.events) o.start.push_back(e.state);
+      o = where(result_.base, free);
       result_.base = fit(model_.plant, model_.conventions, result_.events, free, o);
     }
     if (!result_.base.failed.empty())
       throw InputError({"the model cannot be fitted", model_.origin, result_.base.failed,
                         "correct the model or leave the record out"});
-    held_out_base_ = hold_out(trial(), model_.plant, model_.conventions, {}, result_.base);
     report("base", 1, 1);
+  }
+  /// To start where `f` ended.
+  static FitOptions where(const Fit& f, const std::vector<FreeParameter>& free) {
+    FitOptions o;
+    o.values = values_of(f.plant, free);
+    for (const auto& e : f.events) o.start.push_back(e.state);
+    return o;
+  }
+  /// Whether the model alone fits much better from where its leading extensions ended: then these were ways
+  /// out of a poor minimum. `from` gets the better one.
+  bool better_base(FitOptions& from) const {
+    if (result_.ranked.empty() || result_.ranked.front().gain < kEvidence) return false;
+    Judgement base;
+    base.hypothesis.plant = model_.plant;
+    base.hypothesis.conventions = model_.conventions;
+    base.fit = result_.base;
+    for (std::size_t k = 0; k < std::min<std::size_t>(kWaysOut, result_.ranked.size()); ++k)
+      if (result_.ranked[k].fitted) try_from(model_stage(), result_.ranked[k].fit, base);
+    from = where(base.fit, free_parameters(model_.plant, options_.spread));
+    return penalised(result_.base) - penalised(base.fit) > kEscape * result_.ranked.front().gain;
   }
   void infer_inputs() {
     FitOptions from;  // parameters bent far out of shape are no start
-    if (result_.base.misfit() < kClose) {
-      from.values = values_of(result_.base.plant, free_parameters(model_.plant, options_.spread));
-      for (const auto& e : result_.base.events) from.start.push_back(e.state);
-    }
+    if (result_.base.misfit() < kClose)
+      from = where(result_.base, free_parameters(model_.plant, options_.spread));
 #pragma omp parallel for schedule(dynamic) num_threads(threads_)
     for (int i = 0; i < 2; ++i) {
       MissingInput& m = i == 0 ? result_.torque : result_.field;
@@ -105,11 +133,10 @@ class Diagnoser {
     report("missing input", 1, 1);
   }
 
-  /// Tries every hypothesis by itself, judges the leading ones; then each beside the one that holds, or,
+  /// Judges the leading hypotheses; then tries each beside the one that holds, or,
   /// where none does, beside the best two.
   void search() {
     const Stage stage = model_stage();
-    result_.ranked = try_hypotheses(stage, options_.progress);
     judge_leading(result_.ranked);
     if (result_.ranked.empty()) return;
     const Judgement best = result_.ranked.front();
