@@ -28,7 +28,7 @@ constexpr double kNear = 0.7;
 /// Leading extensions from which the model alone is fitted once more; what that must gain, of the first one's
 /// evidence; and how often it may.
 constexpr std::size_t kWaysOut = 2;
-constexpr double kEscape = 0.1;
+constexpr double kEscape = 0.5;
 constexpr int kBases = 2;
 /// Misfit of the base below which its reactances are near enough to measure the noise with.
 constexpr double kClose = 4;
