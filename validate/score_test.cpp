@@ -139,6 +139,7 @@ std::vector<ScoreTest::Change> ScoreTest::slopes(const sim::Plant& plant, const 
 }
 
 double ScoreTest::joint_gain(const std::vector<Change>& changes) const {
+  if (changes.empty()) return 0.0;
   const auto n = static_cast<Eigen::Index>(changes.size());
   Eigen::MatrixXd square = Eigen::MatrixXd::Zero(n, n);
   Eigen::VectorXd along = Eigen::VectorXd::Zero(n);
