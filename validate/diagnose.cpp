@@ -12,6 +12,7 @@
 #include "validate/decide.hpp"
 #include "validate/noise.hpp"
 #include "validate/search.hpp"
+#include "validate/search_parts.hpp"
 
 namespace swingbank::validate {
 namespace {
@@ -92,20 +93,13 @@ class Diagnoser {
       }
       sharpen_noise(result_.base, result_.events);
       remember_noise(result_.base, model_.conventions, result_.events);
-      o = where(result_.base, free);
+      o = continued({}, result_.base, free);
       result_.base = fit(model_.plant, model_.conventions, result_.events, free, o);
     }
     if (!result_.base.failed.empty())
       throw InputError({"the model cannot be fitted", model_.origin, result_.base.failed,
                         "correct the model or leave the record out"});
     report("base", 1, 1);
-  }
-  /// To start where `f` ended.
-  static FitOptions where(const Fit& f, const std::vector<FreeParameter>& free) {
-    FitOptions o;
-    o.values = values_of(f.plant, free);
-    for (const auto& e : f.events) o.start.push_back(e.state);
-    return o;
   }
   /// Whether the model alone fits much better from where its leading extensions ended: then these were ways
   /// out of a poor minimum. `from` gets the better one.
@@ -117,13 +111,13 @@ class Diagnoser {
     base.fit = result_.base;
     for (std::size_t k = 0; k < std::min<std::size_t>(kWaysOut, result_.ranked.size()); ++k)
       if (result_.ranked[k].fitted) try_from(model_stage(), result_.ranked[k].fit, base);
-    from = where(base.fit, free_parameters(model_.plant, options_.spread));
+    from = continued({}, base.fit, free_parameters(model_.plant, options_.spread));
     return penalised(result_.base) - penalised(base.fit) > kEscape * result_.ranked.front().gain;
   }
   void infer_inputs() {
     FitOptions from;  // parameters bent far out of shape are no start
     if (result_.base.misfit() < kClose)
-      from = where(result_.base, free_parameters(model_.plant, options_.spread));
+      from = continued({}, result_.base, free_parameters(model_.plant, options_.spread));
 #pragma omp parallel for schedule(dynamic) num_threads(threads_)
     for (int i = 0; i < 2; ++i) {
       MissingInput& m = i == 0 ? result_.torque : result_.field;

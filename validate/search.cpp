@@ -12,6 +12,7 @@
 
 #include "validate/instruments.hpp"
 #include "validate/score_test.hpp"
+#include "validate/search_parts.hpp"
 
 namespace swingbank::validate {
 namespace {
@@ -45,47 +46,6 @@ struct Candidate {
   std::vector<std::pair<double, std::vector<double>>> nested = {};
   double promise = 0;  ///< by how much chi2 would fall, by the score test
 };
-
-/// Index in `plant` of the block with that effect.
-int block_with(const sim::Plant& plant, const sim::Effect& effect) {
-  int block = 0;
-  while (&block_effect(plant, block) != &effect) ++block;
-  return block;
-}
-
-bool has_block(const sim::Plant& plant, const sim::Effect& effect) {
-  const auto blocks = static_cast<int>(sim::block_parameters(plant).size());
-  for (int b = 0; b < blocks; ++b)
-    if (&block_effect(plant, b) == &effect) return true;
-  return false;
-}
-
-/// chi2 of a plant, the events where `states` have them; infinite where it cannot be run.
-double left_by(const sim::Plant& plant, const sim::Conventions& conventions,
-               const std::vector<FitEvent>& events, const std::vector<EventState>& states) {
-  double chi2 = 0;
-  try {
-    for (std::size_t e = 0; e < events.size(); ++e) {
-      const VoltageCurve curve(events[e].played(), switchings_at(events[e], states[e]));
-      Drive run = drive_at(plant, conventions, events[e], states[e]);
-      run.curve = &curve;
-      EventFit f;
-      compare(events[e], observe(run), f);
-      chi2 += f.chi2;
-    }
-  } catch (const InputError&) {
-    return std::numeric_limits<double>::infinity();
-  }
-  return chi2;
-}
-
-/// Where `f` ended, its beliefs as they were.
-FitOptions continued(FitOptions o, const Fit& f, const std::vector<FreeParameter>& free) {
-  o.values = values_of(f.plant, free);
-  o.start.clear();
-  for (const auto& e : f.events) o.start.push_back(e.state);
-  return o;
-}
 
 class Searcher {
  public:
@@ -149,7 +109,7 @@ class Searcher {
   void bring(Hypothesis& h) const {
     h.with = stage_.with;
     for (const FreeParameter& f : stage_.own) {
-      const int block = block_with(h.plant, block_effect(stage_.plant, f.block));
+      const int block = find_block(h.plant, block_effect(stage_.plant, f.block));
       h.free.push_back({block, f.index, f.spread});
       const double value = parameter_value(stage_.plant, f.block, f.index);
       for (auto& start : h.starts) start.push_back(value);
@@ -177,7 +137,7 @@ class Searcher {
   std::vector<double> beside_fit(const Hypothesis& h, const std::vector<double>& start) const {
     sim::Plant plant = started(h, start);
     for (const auto& p : stage_.fit.parameters) {
-      const int block = block_with(plant, block_effect(stage_.plant, p.where.block));
+      const int block = find_block(plant, block_effect(stage_.plant, p.where.block));
       parameter_value(plant, block, p.where.index) = p.value;
     }
     return values_of(plant, free_of(h, stage_.spread));
@@ -450,61 +410,6 @@ class Searcher {
 
 std::vector<Judgement> try_hypotheses(const Stage& stage, const SearchProgress& report) {
   return Searcher(stage, report).run();
-}
-
-void try_further(const Stage& stage, const Fit& leader, Judgement& j) {
-  constexpr std::size_t kFurther = 2;
-  constexpr int kOwnSteps = 8, kAllSteps = 10;
-  const Hypothesis& h = j.hypothesis;
-  // what both share, where the leader has it
-  Hypothesis led = h;
-  for (const auto& p : leader.parameters) {
-    const sim::Effect& effect = block_effect(leader.plant, p.where.block);
-    if (has_block(led.plant, effect) && has_block(stage.plant, effect))
-      parameter_value(led.plant, block_with(led.plant, effect), p.where.index) = p.value;
-  }
-  std::vector<EventState> states;
-  for (const auto& e : leader.events) states.push_back(e.state);
-  auto starts = h.starts;
-  starts.push_back(values_of(j.fit.plant, h.free));
-  std::vector<std::pair<double, const std::vector<double>*>> order;
-  for (const auto& start : starts)
-    if (const double left = left_by(started(led, start), h.conventions, stage.events, states);
-        std::isfinite(left))
-      order.emplace_back(left, &start);
-  std::ranges::sort(order);
-  const auto free = free_of(h, stage.spread);
-  for (std::size_t k = 0; k < std::min(kFurther, order.size()); ++k) {
-    FitOptions o;
-    o.errors = false;
-    o.start = states;
-    o.iterations = kOwnSteps;
-    o.values = *order[k].second;
-    const Fit own = fit(led.plant, h.conventions, stage.events, h.free, o);
-    if (!own.failed.empty()) continue;
-    o = continued(o, own, free);
-    o.errors = true;
-    o.iterations = kAllSteps;
-    if (Fit f = fit(h.plant, h.conventions, stage.events, free, o);
-        f.failed.empty() && penalised(f) < penalised(j.fit))
-      j.fit = std::move(f);
-  }
-}
-
-void try_from(const Stage& stage, const Fit& other, Judgement& j) {
-  const Hypothesis& h = j.hypothesis;
-  const auto free = free_of(h, stage.spread);
-  FitOptions o;
-  for (const FreeParameter& f : free) {
-    const sim::Effect& effect = block_effect(h.plant, f.block);
-    o.values.push_back(has_block(other.plant, effect)
-                           ? parameter_value(other.plant, block_with(other.plant, effect), f.index)
-                           : parameter_value(j.fit.plant, f.block, f.index));
-  }
-  for (const auto& e : other.events) o.start.push_back(e.state);
-  if (Fit f = fit(h.plant, h.conventions, stage.events, free, o);
-      f.failed.empty() && penalised(f) < penalised(j.fit))
-    j.fit = std::move(f);
 }
 
 Stage after(const Stage& stage, const Judgement& j) {
