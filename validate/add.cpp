@@ -32,13 +32,6 @@ std::vector<FreeParameter> free_of(const Hypothesis& h, double spread) {
       free.push_back(f);
   return free;
 }
-std::vector<double> values_of(const sim::Plant& plant, const std::vector<FreeParameter>& free) {
-  const auto blocks = sim::block_parameters(plant);
-  std::vector<double> values;
-  for (const auto& f : free)
-    values.push_back(blocks[static_cast<std::size_t>(f.block)][static_cast<std::size_t>(f.index)]);
-  return values;
-}
 
 /// Events, those seen apart, and the model's own fits of them.
 class Bench {

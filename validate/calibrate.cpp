@@ -101,7 +101,7 @@ class Run {
     std::vector<std::vector<double>> starts = {screen.own()};
     c_.started = {{.name = "model", .before = chi2_of(model_.plant, model_.conventions, seen_, states)}};
     for (const auto& g : options_.given) {
-      starts.push_back(values_of(g.plant));
+      starts.push_back(values_of(g.plant, free_));
       c_.started.push_back(
           {.name = g.name, .before = chi2_of(screen.with(starts.back()), model_.conventions, seen_, states)});
     }
@@ -123,13 +123,6 @@ class Run {
         },
         [&](int done) { tell("starts refined", done, static_cast<int>(starts.size())); });
     choose(fits);
-  }
-  std::vector<double> values_of(const sim::Plant& plant) const {
-    const auto blocks = sim::block_parameters(plant);
-    std::vector<double> values;
-    for (const auto& f : free_)
-      values.push_back(blocks[static_cast<std::size_t>(f.block)][static_cast<std::size_t>(f.index)]);
-    return values;
   }
   void choose(std::vector<Fit>& fits) {
     const auto cost = [](const Fit& f) {
@@ -166,7 +159,7 @@ class Run {
     remember_noise(whole, model_.conventions, c_.prepared);
     if (std::ranges::none_of(c_.prepared, [](const FitEvent& e) { return e.memory != nullptr; })) return;
     FitOptions o;
-    o.values = values_of(whole.plant);
+    o.values = values_of(whole.plant, free_);
     seen_.clear();
     for (std::size_t e = 0; e < c_.prepared.size(); ++e) {
       if (out_[e]) continue;

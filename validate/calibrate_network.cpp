@@ -31,14 +31,6 @@ NetworkEstimate parse(const json& j, const std::filesystem::path& file) {
   return e;
 }
 
-/// Index of the block with that effect as sim::block_parameters counts, -1: none.
-int block_of(const sim::Plant& plant, const std::string& effect) {
-  const auto blocks = static_cast<int>(sim::block_parameters(plant).size());
-  for (int b = 0; b < blocks; ++b)
-    if (block_effect(plant, b).name == effect) return b;
-  return -1;
-}
-
 /// Whether a plant believed to be `value`, `spread` off, may be one of those between low and high.
 bool within_reach(double value, double low, double high, double spread) {
   const double reach = kBridged * spread * std::abs(value);
@@ -71,7 +63,8 @@ sim::Plant estimated_plant(const NetworkEstimate& estimate, const PlantModel& mo
   }
   std::string absent;
   for (const auto& p : estimate.parameters) {
-    const int block = block_of(plant, p.effect);
+    const sim::Effect* effect = sim::find_effect(p.effect);
+    const int block = effect ? find_block(plant, *effect) : -1;
     if (block < 0) {
       if (absent.find(p.effect) == std::string::npos) absent += (absent.empty() ? "" : ", ") + p.effect;
       continue;

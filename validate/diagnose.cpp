@@ -12,7 +12,6 @@
 #include "validate/decide.hpp"
 #include "validate/noise.hpp"
 #include "validate/search.hpp"
-#include "validate/search_parts.hpp"
 
 namespace swingbank::validate {
 namespace {

@@ -302,6 +302,13 @@ void compare(const FitEvent& event, const Response& answer, EventFit& f) {
       f.residual[c][k] = e(row++, 0);
 }
 
+FitOptions continued(FitOptions o, const Fit& f, const std::vector<FreeParameter>& free) {
+  o.values = values_of(f.plant, free);
+  o.start.clear();
+  for (const auto& e : f.events) o.start.push_back(e.state);
+  return o;
+}
+
 Fit fit(const sim::Plant& plant, const sim::Conventions& conventions, const std::vector<FitEvent>& events,
         const std::vector<FreeParameter>& free, const FitOptions& options) {
   Setting setting{&plant, &conventions, &events, {}, options.tolerance, options.input, {}};

@@ -28,6 +28,12 @@ const sim::Parameter& parameter_record(const sim::Plant& plant, int block, int i
 const sim::Effect& block_effect(const sim::Plant& plant, int block);
 double& parameter_value(sim::Plant& plant, int block, int index);
 double parameter_value(const sim::Plant& plant, int block, int index);
+/// Present values of the free parameters.
+std::vector<double> values_of(const sim::Plant& plant, const std::vector<FreeParameter>& free);
+/// Machine, transformer, controls and instruments.
+int block_count(const sim::Plant& plant);
+/// Index of the first block with that effect; -1: the plant has none.
+int find_block(const sim::Plant& plant, const sim::Effect& effect);
 
 /// An input that no model makes, free in time.
 enum class InputKind { none, torque, field };
@@ -94,6 +100,9 @@ struct FitOptions {
   bool errors = true;                  ///< of the parameters too: one more look at all slopes
   double bend = 0.01;                  ///< second difference that the input is believed to have [pu]
 };
+
+/// To go on where `f` ended; beliefs stay about the plant that is fitted.
+FitOptions continued(FitOptions o, const Fit& f, const std::vector<FreeParameter>& free);
 
 /// The event's switchings where `state` has them.
 std::vector<Switching> switchings_at(const FitEvent& event, const EventState& state);

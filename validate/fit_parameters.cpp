@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <stdexcept>
 
 #include "validate/fit.hpp"
 
@@ -9,12 +10,13 @@ namespace {
 /// Machine, transformer if there is one, controls, instruments.
 template <class Plant>
 auto& block_of(Plant& plant, int block) {
+  if (block < 0) throw std::out_of_range("no such block");
   if (block == 0) return plant.machine;
   int left = block - (plant.transformer.effect ? 2 : 1);
   if (left < 0) return plant.transformer;
   const auto controls = static_cast<int>(plant.controls.size());
   if (left < controls) return plant.controls[static_cast<std::size_t>(left)];
-  return plant.measurements[static_cast<std::size_t>(left - controls)];
+  return plant.measurements.at(static_cast<std::size_t>(left - controls));
 }
 
 }  // namespace
@@ -28,6 +30,20 @@ double& parameter_value(sim::Plant& plant, int block, int index) {
 }
 double parameter_value(const sim::Plant& plant, int block, int index) {
   return block_of(plant, block).p[static_cast<std::size_t>(index)];
+}
+std::vector<double> values_of(const sim::Plant& plant, const std::vector<FreeParameter>& free) {
+  std::vector<double> values;
+  for (const auto& f : free) values.push_back(parameter_value(plant, f.block, f.index));
+  return values;
+}
+int block_count(const sim::Plant& plant) {
+  return static_cast<int>(1 + (plant.transformer.effect ? 1 : 0) + plant.controls.size() +
+                          plant.measurements.size());
+}
+int find_block(const sim::Plant& plant, const sim::Effect& effect) {
+  for (int block = 0; block < block_count(plant); ++block)
+    if (&block_effect(plant, block) == &effect) return block;
+  return -1;
 }
 
 std::vector<FreeParameter> free_parameters(const sim::Plant& plant, int block, double spread) {

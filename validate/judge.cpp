@@ -17,12 +17,6 @@ constexpr double kSame = 0.5;
 
 }  // namespace
 
-std::vector<double> values_of(const sim::Plant& plant, const std::vector<FreeParameter>& free) {
-  std::vector<double> values;
-  for (const auto& f : free) values.push_back(parameter_value(plant, f.block, f.index));
-  return values;
-}
-
 std::vector<FreeParameter> free_of(const Hypothesis& h, double spread) {
   std::vector<FreeParameter> free;
   for (const auto& f : free_parameters(h.plant, spread))

@@ -33,8 +33,6 @@ struct Judgement {
 /// gave the best of some thirty wrong ones 20 at most.
 constexpr double kEvidence = 40;
 
-/// Present values of the free parameters.
-std::vector<double> values_of(const sim::Plant& plant, const std::vector<FreeParameter>& free);
 /// Those of the plant that a refit may move, then the hypothesis's own.
 std::vector<FreeParameter> free_of(const Hypothesis& h, double spread);
 

@@ -12,7 +12,6 @@
 
 #include "validate/instruments.hpp"
 #include "validate/score_test.hpp"
-#include "validate/search_parts.hpp"
 
 namespace swingbank::validate {
 namespace {

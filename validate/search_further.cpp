@@ -4,7 +4,6 @@
 
 #include "validate/instruments.hpp"
 #include "validate/search.hpp"
-#include "validate/search_parts.hpp"
 
 namespace swingbank::validate {
 namespace {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <stdexcept>
 
 #include "exciter_example.hpp"
 
@@ -33,6 +34,25 @@ TEST(FitEvidence, AStructureIsNotBlamedForWhatCannotBeSeen) {
   ASSERT_EQ(with.parameters.size(), 2U);
   // two searches end within 1e-5 of chi2, some 2000
   EXPECT_NEAR(criterion(with), criterion(without), 0.05);
+}
+TEST(FitBlocks, AreCountedThroughTransformerControlsAndInstruments) {
+  sim::Plant plant = ExciterExample(kSpread).model.plant;
+  const sim::Effect *transformer = sim::find_effect("STEPUP"), *instrument = sim::find_effect("CTERROR");
+  for (const bool stepped : {false, true}) {
+    if (stepped) plant.transformer = {transformer, transformer->standard_parameters()};
+    plant.measurements = {{instrument, instrument->standard_parameters()}};
+    const int last = block_count(plant) - 1;
+    EXPECT_EQ(find_block(plant, *plant.machine.effect), 0);
+    EXPECT_EQ(find_block(plant, *transformer), stepped ? 1 : -1);
+    EXPECT_EQ(find_block(plant, *sim::find_effect("SEXS")), last - 1);
+    EXPECT_EQ(find_block(plant, *instrument), last);
+    parameter_value(plant, last, 1) = 0.25;
+    EXPECT_EQ(values_of(plant, {{.block = last, .index = 1}}), std::vector{0.25});
+    EXPECT_EQ(plant.measurements.front().p[1], 0.25);
+    EXPECT_THROW((void)parameter_value(plant, last + 1, 0), std::out_of_range);
+    EXPECT_THROW((void)parameter_value(plant, find_block(plant, *sim::find_effect("TGOV1")), 0),
+                 std::out_of_range);
+  }
 }
 TEST(FitEvidence, AFailedFitIsTheWorst) {
   Fit f;
