@@ -23,6 +23,7 @@ MpiSession::MpiSession(int* argc, char*** argv) {
     // Started by hand, one rank needs no daemon beside it. Such ranks share one folder of temporary files,
     // where the first to end removes the others' (OpenMPI 4.1.4): each gets its own.
     ::setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+    ::setenv("OMPI_MCA_pml", "ob1", 0);  // it talks to nobody: looking for fast networks takes 0.2 s
     std::string folder = (std::filesystem::temp_directory_path() / "swingbank-mpi-XXXXXX").string();
     if (::mkdtemp(folder.data()) != nullptr) {
       temporary_ = folder;
