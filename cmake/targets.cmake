@@ -5,6 +5,8 @@ target_compile_options(swingbank_options INTERFACE -Wall -Wextra -Wshadow
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> # GCC 12 warns falsely about std::string concatenation
   -fno-math-errno -fno-trapping-math
   $<$<NOT:$<CONFIG:Debug>>:-O3>)
+# Events, hypotheses and ranks share the cores; Eigen's own threads would spin beside them.
+target_compile_definitions(swingbank_options INTERFACE EIGEN_DONT_PARALLELIZE)
 # GCC 12's avx512fintrin.h trips this one wherever Eigen multiplies matrices (GCC bug 105593).
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(swingbank_options INTERFACE -Wno-maybe-uninitialized)

@@ -24,7 +24,7 @@ constexpr double kWorthJudging = 200;
 /// looks like one (60 in a development case).
 constexpr double kSecond = 80;
 /// Share of the best one's evidence from which a rival is near it.
-constexpr double kNear = 0.7;
+constexpr double kNear = 0.2;
 /// Leading extensions from which the model alone is fitted once more; what that must gain, of the first one's
 /// evidence; and how often it may.
 constexpr std::size_t kWaysOut = 2;

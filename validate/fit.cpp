@@ -13,6 +13,23 @@ namespace {
 
 using namespace fitting;
 
+/// Steps tried for one that is to be taken: a refused one costs no slopes.
+constexpr int kRefused = 4;
+
+/// Counts the steps taken, and stops the search when they are enough.
+class Steps : public ceres::IterationCallback {
+ public:
+  explicit Steps(int enough) : enough_(enough) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    if (summary.iteration > 0 && summary.step_is_successful) ++taken_;
+    return taken_ < enough_ ? ceres::SOLVER_CONTINUE : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+  }
+  [[nodiscard]] int taken() const { return taken_; }
+
+ private:
+  int enough_, taken_ = 0;
+};
+
 class Search {
  public:
   Search(const Setting& setting, const FitOptions& options) : setting_(setting), options_(options) {
@@ -65,7 +82,7 @@ class Search {
       blocks.push_back(states_[e].data());
       if (!costs_[e]->Evaluate(blocks.data(), residual.data(), nullptr)) return 1.0;
       for (const double r : residual) chi2 += r * r;
-      values += costs_[e]->num_residuals();
+      values += (*setting_.events)[e].values();
     }
     return std::max(1.0, chi2 / values);
   }
@@ -75,7 +92,9 @@ class Search {
     static const bool quiet = (FLAGS_minloglevel = google::GLOG_FATAL, true);
     static_cast<void>(quiet);
     ceres::Solver::Options o;
-    o.max_num_iterations = iterations;
+    Steps steps(iterations);
+    o.callbacks.push_back(&steps);
+    o.max_num_iterations = kRefused * iterations;
     o.function_tolerance = options_.enough;
     o.linear_solver_type =
         setting_.input == InputKind::none ? ceres::DENSE_NORMAL_CHOLESKY : ceres::SPARSE_NORMAL_CHOLESKY;
@@ -87,7 +106,7 @@ class Search {
     o.max_num_line_search_step_size_iterations = 0;
     ceres::Solver::Summary summary;
     ceres::Solve(o, problem_.get(), &summary);
-    done += std::max(1, static_cast<int>(summary.iterations.size()) - 1);
+    done += std::max(1, steps.taken());
     return summary.termination_type == ceres::CONVERGENCE;
   }
 
@@ -223,7 +242,7 @@ class Search {
   }
   void add_curvature(std::size_t e, Eigen::MatrixXd& curvature) const {
     using Row = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    const auto rows = static_cast<Eigen::Index>((*setting_.events)[e].values());
+    const auto rows = static_cast<Eigen::Index>(costs_[e]->num_residuals());
     Row by_z(rows, static_cast<Eigen::Index>(z_.size())),
         by_state(rows, static_cast<Eigen::Index>(states_[e].size()));
     Eigen::VectorXd residual(rows);

@@ -99,12 +99,33 @@ inline EventState event_state(const FitEvent& event, const double* s) {
   return at;
 }
 
-/// Residuals of one event; parameter blocks: z of the plant (absent if none is free), state of the event.
+/// R, upper triangular, with the columns' products: R'R = e'e. A column that the others make leaves a zero
+/// row.
+inline RowMatrix triangle_of(const RowMatrix& e) {
+  constexpr double kRounding = 1e-14;  // of a squared norm
+  RowMatrix r = e.transpose() * e;
+  const Eigen::Index n = r.cols();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double whole = e.col(i).squaredNorm(), left = r(i, i);
+    if (left <= kRounding * whole) {
+      r.row(i).setZero();
+    } else {
+      r.row(i).tail(n - i) /= std::sqrt(left);
+      for (Eigen::Index k = i + 1; k < n; ++k) r.row(k).tail(n - k) -= r(i, k) * r.row(i).tail(n - k);
+    }
+    r.row(i).head(i).setZero();
+  }
+  return r;
+}
+
+/// What one event costs; parameter blocks: z of the plant (absent if none is free), state of the event. Ceres
+/// asks for nothing but products of residuals and slopes: it gets the triangle that has them, a row per
+/// column instead of one per value.
 class EventCost : public ceres::CostFunction {
  public:
   EventCost(const Setting& setting, std::size_t event)
       : setting_(setting), event_((*setting.events)[event]), knots_(setting.knots[event]) {
-    set_num_residuals(event_.values());
+    set_num_residuals(static_cast<int>(setting.axes.size() + state_size()) + 1);
     if (!setting.axes.empty())
       mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(setting.axes.size()));
     mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(state_size()));
@@ -112,43 +133,54 @@ class EventCost : public ceres::CostFunction {
   [[nodiscard]] std::size_t state_size() const { return event_.switchings.size() + kStates + knots_.size(); }
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     const bool has_axes = !setting_.axes.empty();
-    const double* z = has_axes ? blocks[0] : nullptr;
-    const double* state = blocks[has_axes ? 1 : 0];
-    double* by_z = jacobians && has_axes ? jacobians[0] : nullptr;
-    double* by_state = jacobians ? jacobians[has_axes ? 1 : 0] : nullptr;
+    const RowMatrix e =
+        values(has_axes ? blocks[0] : nullptr, blocks[has_axes ? 1 : 0], jacobians != nullptr);
+    if (e.size() == 0) return false;
+    const Eigen::Index rows = num_residuals();
+    Eigen::Map<Eigen::VectorXd> residual(residuals, rows);
+    if (!jacobians) {
+      residual.setZero();
+      residual[rows - 1] = e.norm();
+      return true;
+    }
+    const RowMatrix r = triangle_of(e);
+    residual = r.col(rows - 1);
+    Eigen::Index at = 0;
+    for (const std::int32_t size : parameter_block_sizes()) {
+      if (double* block = *jacobians++) Eigen::Map<RowMatrix>(block, rows, size) = r.middleCols(at, size);
+      at += size;
+    }
+    return true;
+  }
+  /// Whitened residuals of all values in the last column, before it slopes by z and by the state where asked;
+  /// empty where the plant cannot be run.
+  [[nodiscard]] RowMatrix values(const double* z, const double* state, bool slopes) const {
     const sim::Plant plant = moved(setting_, z);
-    if (!can_run(plant)) return false;
+    if (!can_run(plant)) return {};
     std::vector<Direction> along;
-    if (by_z)
+    if (slopes) {
       for (std::size_t i = 0; i < setting_.axes.size(); ++i) {
         const Axis& a = setting_.axes[i];
         along.push_back({Kind::parameter, a.where.block, a.where.index, a.slope(z[i])});
       }
-    const std::size_t states_at = along.size();
-    if (by_state) add_state_directions(along);
+      add_state_directions(along);
+    }
     try {
       auto switchings = event_.switchings;
-      const Drive run = make_drive(plant, state, switchings);
+      Drive run = make_drive(plant, state, switchings);
       const VoltageCurve curve(event_.played(), switchings);
-      Drive with = run;
-      with.curve = &curve;
-      const Response r = observe(with, along);
-      RowMatrix e(num_residuals(), 1 + static_cast<Eigen::Index>(along.size()));
-      e.col(0) = event_.collected(r.value, true);
-      for (std::size_t d = 0; d < along.size(); ++d)
-        e.col(1 + static_cast<Eigen::Index>(d)) = event_.collected(r.slopes[d].value, false);
+      run.curve = &curve;
+      const Response r = observe(run, along);
+      const auto n = static_cast<Eigen::Index>(along.size());
+      RowMatrix e(event_.values(), n + 1);
+      for (Eigen::Index d = 0; d < n; ++d)
+        e.col(d) = event_.collected(r.slopes[static_cast<std::size_t>(d)].value, false);
+      e.col(n) = event_.collected(r.value, true);
       event_.whiten(e);
-      Eigen::Map<Eigen::VectorXd>(residuals, e.rows()) = e.col(0);
-      const auto at = static_cast<Eigen::Index>(states_at);
-      if (by_z) Eigen::Map<RowMatrix>(by_z, e.rows(), at) = e.middleCols(1, at);
-      if (by_state) {
-        const Eigen::Index states = e.cols() - 1 - at;
-        Eigen::Map<RowMatrix>(by_state, e.rows(), states) = e.rightCols(states);
-      }
+      return e;
     } catch (const InputError&) {
-      return false;
+      return {};
     }
-    return true;
   }
   /// The run at a state; `switchings` get their moved instants.
   Drive make_drive(const sim::Plant& plant, const double* state, std::vector<Switching>& switchings) const {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <map>
 #include <random>
 
 #include "validate/instruments.hpp"
@@ -15,8 +16,9 @@ namespace {
 
 using sim::Slot;
 
-constexpr int kDraws = 40;       ///< of an effect's parameters, as starts
-constexpr double kSpread = 1.0;  ///< what is believed of an added effect's parameters: within a factor e
+constexpr std::size_t kDraws = 39,
+                      kRedraws = 20;  ///< of an effect's parameters, as starts; at most so many times more
+constexpr double kSpread = 1.0;       ///< what is believed of an added effect's parameters: within a factor e
 
 Side side_of(Slot slot) {
   switch (slot) {
@@ -45,6 +47,10 @@ bool sound(const sim::Block& b) {
   return problems.list().empty();
 }
 
+bool sound_block(const sim::Plant& plant, int block) {
+  return sound({&block_effect(plant, block), sim::block_parameters(plant)[static_cast<std::size_t>(block)]});
+}
+
 /// Puts the block where its slot's order asks for; returns its index as a FreeParameter counts.
 int insert(sim::Plant& plant, sim::Block block) {
   const int first = plant.transformer.effect ? 2 : 1;
@@ -71,25 +77,30 @@ bool occupied(const sim::Plant& plant, const sim::Effect& effect) {
   return false;
 }
 
-/// The standard values, then draws around them: which lie where the records ask for is found by trying.
+/// Draws about the standard values of the block's parameters, which all are: which lie where the records ask
+/// for is found by trying. Half of the width is common to all parameters of a unit, so that points of one
+/// curve and its times keep their order; a draw that contradicts itself is drawn again.
 std::vector<std::vector<double>> draws(const sim::Plant& plant, const std::vector<FreeParameter>& free,
-                                       int count) {
-  std::vector<double> standard;
-  for (const auto& f : free) standard.push_back(parameter_value(plant, f.block, f.index));
-  std::vector<std::vector<double>> starts{standard};
-  std::mt19937_64 random(1);  // the same draws every time: a diagnosis can be repeated
+                                       std::size_t count, unsigned seed) {
+  std::mt19937_64 random(seed);  // the same draws every time: a diagnosis can be repeated
   std::normal_distribution<double> normal;
-  while (static_cast<int>(starts.size()) < count) {
+  sim::Plant drawn = plant;
+  std::vector<std::vector<double>> all;
+  for (std::size_t tries = 0; all.size() < count && tries < kRedraws * count; ++tries) {
+    std::map<std::string_view, double> common;
     std::vector<double> values;
-    for (std::size_t i = 0; i < free.size(); ++i) {
-      const auto& p = parameter_record(plant, free[i].block, free[i].index);
+    for (const auto& f : free) {
+      const auto& p = parameter_record(plant, f.block, f.index);
       // gains are believed within decades, times and limits within a factor
       const double width = p.low > 0 && p.high / p.low >= 1000 ? 2.0 : 0.8;
-      values.push_back(std::clamp(standard[i] * std::exp(width * normal(random)), p.low, p.high));
+      const double whole = common.try_emplace(p.unit, normal(random)).first->second;
+      const double factor = std::exp(width * std::sqrt(0.5) * (whole + normal(random)));
+      values.push_back(std::clamp(parameter_value(plant, f.block, f.index) * factor, p.low, p.high));
+      parameter_value(drawn, f.block, f.index) = values.back();
     }
-    starts.push_back(std::move(values));
+    if (free.empty() || sound_block(drawn, free.front().block)) all.push_back(std::move(values));
   }
-  return starts;
+  return all;
 }
 
 /// An instrument is nearly right: its errors are small, and their answer straight.
@@ -125,7 +136,9 @@ void add_effects(const sim::Plant& base, const sim::Conventions& conventions, st
       start_near_neutral(h, block);
     } else {
       h.free = free_parameters(h.plant, block, kSpread);
-      h.starts = draws(h.plant, h.free, kDraws);
+      h.starts = draws(h.plant, h.free, kDraws, 1);
+      h.starts.insert(h.starts.begin(), values_of(h.plant, h.free));
+      h.drawn = true;
     }
     all.push_back(std::move(h));
   }
@@ -220,6 +233,10 @@ std::vector<Hypothesis> all_hypotheses(const sim::Plant& base, const sim::Conven
   add_neutral_groups(base, conventions, all);
   add_conventions(base, conventions, all);
   return all;
+}
+
+std::vector<std::vector<double>> further_draws(const Hypothesis& h, std::size_t own, std::size_t count) {
+  return draws(h.plant, {h.free.begin(), h.free.begin() + static_cast<std::ptrdiff_t>(own)}, count, 2);
 }
 
 std::string full_name(const Hypothesis& h) { return h.with.empty() ? h.name : h.with + " + " + h.name; }

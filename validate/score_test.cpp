@@ -25,18 +25,13 @@ struct Slopes {
 
 Slopes slopes_of(const Setting& setting, std::size_t event, const std::vector<double>& z,
                  const std::vector<double>& state) {
-  const EventCost cost(setting, event);
-  const auto rows = static_cast<Eigen::Index>(cost.num_residuals());
-  Slopes s{Eigen::VectorXd(rows), RowMatrix(rows, static_cast<Eigen::Index>(z.size())),
-           RowMatrix(rows, static_cast<Eigen::Index>(state.size()))};
-  std::vector<const double*> blocks;
-  std::vector<double*> jacobians;
-  if (!z.empty()) blocks.push_back(z.data()), jacobians.push_back(s.by_parameter.data());
-  blocks.push_back(state.data()), jacobians.push_back(s.by_state.data());
-  if (!cost.Evaluate(blocks.data(), s.residual.data(), jacobians.data()))
+  const auto parameters = static_cast<Eigen::Index>(z.size()),
+             states = static_cast<Eigen::Index>(state.size());
+  const RowMatrix e = EventCost(setting, event).values(z.data(), state.data(), true);
+  if (e.size() == 0)
     throw InputError({"the fitted model cannot be run", (*setting.events)[event].record.name,
                       "it could while it was fitted", "report this"});
-  return s;
+  return {e.rightCols(1), e.leftCols(parameters), e.middleCols(parameters, states)};
 }
 
 }  // namespace

@@ -24,6 +24,8 @@ class ScoreTest {
     double whole = 0;   ///< before anything was taken out, squared
     /// By how much chi2 would fall, were the answer straight.
     [[nodiscard]] double gain() const { return square > 0 && along < 0 ? along * along / square : 0.0; }
+    /// By how much chi2 would rise with all of the change.
+    [[nodiscard]] double rise() const { return square + 2 * along; }
     /// How much of the change would be best.
     [[nodiscard]] double share() const { return square > 0 ? -along / square : 0.0; }
   };

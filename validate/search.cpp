@@ -7,55 +7,35 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
-#include <optional>
-#include <ranges>
 
-#include "validate/instruments.hpp"
-#include "validate/score_test.hpp"
+#include "validate/search_starts.hpp"
 
 namespace swingbank::validate {
 namespace {
 
-/// Starts that are tried, and that the score test looks at; steps of the fits: from each, from the best two
-/// of them, and from the stage's fit.
-constexpr std::size_t kTries = 4, kScored = 6, kScreened = 10;
+/// Steps of the fits: from each start, from the best two of them, and from the stage's fit.
 constexpr int kFirstSteps = 4, kMoreSteps = 8, kNestedSteps = 12;
 /// Steps from each start beside a stage that nearly fits, and from the best of them.
 constexpr int kNearSteps = 3, kOnwardSteps = 9;
 /// Rounds of the latter, as long as each gains so much.
 constexpr int kRounds = 5;
 constexpr double kWorthARound = 10;
-/// Misfit of the stage below which what is missing is small, and below which the fitted values are good
-/// starts for everything but what is missing.
-constexpr double kNested = 4, kNear = 1.5;
+/// ... and where it is still worse than the stage, what a round may leave of that.
+constexpr double kComing = 0.8;
+/// Misfit of the stage below which its fitted values are good starts for everything but what is missing.
+constexpr double kNested = 4;
 /// Share of the best one's first gain from which a hypothesis is fitted on.
 constexpr double kFair = 0.2;
-/// Fall of chi2 below which a hypothesis is not worth a fit: half the evidence asked for.
-constexpr double kHopeless = 20;
-/// Of the standard amplitude: where the answer is straight; the least that a start has.
-constexpr double kSmall = 0.01, kLeastShare = 1e-3;
-
-/// A hypothesis with its starts: its standard values, then draws in order of what they leave before any fit.
-/// What leaves least may be what hardly acts.
-struct Candidate {
-  Hypothesis hypothesis;
-  std::vector<sim::Plant> starts;
-  /// The stage as fitted, with each start: its misfit, and all free parameters. The standard start first, the
-  /// others as they suit the stage.
-  std::vector<std::pair<double, std::vector<double>>> nested = {};
-  double promise = 0;  ///< by how much chi2 would fall, by the score test
-};
 
 class Searcher {
  public:
-  Searcher(const Stage& stage, const SearchProgress& report) : stage_(stage), report_(report) {
-    if (stage.fit.misfit() < kNear) score_.emplace(stage.events, stage.plant, stage.conventions, stage.fit);
-  }
+  Searcher(const Stage& stage, const SearchProgress& report)
+      : stage_(stage), report_(report), starts_(stage) {}
 
   std::vector<Judgement> run() {
     const auto candidates = screened();
     std::vector<Judgement> tried(candidates.size());
-    if (score_) {
+    if (starts_.near()) {
       each(candidates, "fit ", [&](std::size_t i) {
         tried[i] = candidates[i].nested.empty() ? hopeless(candidates[i]) : near(candidates[i]);
       });
@@ -92,156 +72,12 @@ class Searcher {
     std::mutex progress;
 #pragma omp parallel for schedule(dynamic) num_threads(stage_.threads)
     for (std::size_t i = 0; i < all.size(); ++i) {
-      bring(all[i]);
-      if (score_)
-        score(all[i], candidates[i]);
-      else
-        screen(all[i], candidates[i]);
-      candidates[i].hypothesis = std::move(all[i]);
+      candidates[i] = starts_.of(std::move(all[i]));
       const std::lock_guard lock(progress);
       report("hypotheses", ++done, all.size());
     }
     std::erase_if(candidates, [](const Candidate& c) { return c.starts.empty(); });
     return candidates;
-  }
-  /// What earlier stages brought is free in this hypothesis too.
-  void bring(Hypothesis& h) const {
-    h.with = stage_.with;
-    for (const FreeParameter& f : stage_.own) {
-      const int block = find_block(h.plant, block_effect(stage_.plant, f.block));
-      h.free.push_back({block, f.index, f.spread});
-      const double value = parameter_value(stage_.plant, f.block, f.index);
-      for (auto& start : h.starts) start.push_back(value);
-    }
-  }
-
-  void screen(const Hypothesis& h, Candidate& c) const {
-    struct Start {
-      double misfit;
-      sim::Plant plant;
-    };
-    std::vector<Start> starts;
-    bool acts = false;
-    for (const auto& values : h.starts | std::views::take(kScreened)) {
-      Start s{0, started(h, values)};
-      if (answer(s.plant, h, s.misfit, acts)) starts.push_back(std::move(s));
-    }
-    if (!starts.empty()) std::ranges::sort(starts.begin() + 1, starts.end(), {}, &Start::misfit);
-    if (acts && !starts.empty()) {
-      nest(h, c);
-      for (auto& s : starts) c.starts.push_back(std::move(s.plant));
-    }
-  }
-  /// The stage as fitted, with this start: all free parameters.
-  std::vector<double> beside_fit(const Hypothesis& h, const std::vector<double>& start) const {
-    sim::Plant plant = started(h, start);
-    for (const auto& p : stage_.fit.parameters) {
-      const int block = find_block(plant, block_effect(stage_.plant, p.where.block));
-      parameter_value(plant, block, p.where.index) = p.value;
-    }
-    return values_of(plant, free_of(h, stage_.spread));
-  }
-  static sim::Plant with_values(const Hypothesis& h, const std::vector<FreeParameter>& free,
-                                const std::vector<double>& values) {
-    sim::Plant plant = h.plant;
-    for (std::size_t i = 0; i < free.size(); ++i)
-      parameter_value(plant, free[i].block, free[i].index) = values[i];
-    return plant;
-  }
-  /// Starts beside what was fitted, the standard one first, then as they suit the stage.
-  void nest(const Hypothesis& h, Candidate& c) const {
-    const auto free = free_of(h, stage_.spread);
-    for (const auto& start : h.starts | std::views::take(kScreened)) {
-      auto values = beside_fit(h, start);
-      double misfit = 0;
-      bool acts = true;
-      if (answer(with_values(h, free, values), h, misfit, acts))
-        c.nested.emplace_back(misfit, std::move(values));
-    }
-    if (!c.nested.empty()) std::ranges::sort(c.nested.begin() + 1, c.nested.end());
-  }
-  /// Parameters that switch the effect off at their neutral value, by their place in the free ones. Off means
-  /// a thousandth of the standard values' answer: more states make other steps.
-  std::vector<std::size_t> amplitudes(const Hypothesis& h, const std::vector<double>& standard) const {
-    const auto free = free_of(h, stage_.spread);
-    std::vector<std::size_t> found;
-    const double whole = moves(h, with_values(h, free, standard));
-    for (std::size_t i = free.size() - h.free.size(); i < free.size(); ++i) {
-      const double neutral = parameter_record(h.plant, free[i].block, free[i].index).neutral;
-      if (!(neutral < standard[i]) && !(neutral > standard[i])) continue;
-      auto off = standard;
-      off[i] = neutral;
-      if (moves(h, with_values(h, free, off)) < 1e-6 * whole) found.push_back(i);
-    }
-    return found;
-  }
-  /// Squared change of the first event's answer, in units of noise; NaN where it cannot be run.
-  double moves(const Hypothesis& h, const sim::Plant& plant) const {
-    const FitEvent& e = stage_.events.front();
-    const EventFit& at = stage_.fit.events.front();
-    try {
-      const VoltageCurve curve(e.played(), switchings_at(e, at.state));
-      Drive run = drive_at(plant, h.conventions, e, at.state);
-      run.curve = &curve;
-      const Response r = observe(run);
-      double square = 0;
-      for (std::size_t c = 0; c < e.channels.size(); ++c)
-        for (std::size_t k = 0; k < r.of(e.channels[c]).size(); ++k)
-          square +=
-              std::pow((r.of(e.channels[c])[k] - at.model[c][k]) / e.noise[static_cast<Eigen::Index>(c)], 2);
-      return square;
-    } catch (const InputError&) {
-      return std::nan("");
-    }
-  }
-  /// Score test at the neutral point: each start as small as a first step along its amplitude would make it,
-  /// those with most to gain first, the standard one before them. Nothing to gain: no starts, not worth a
-  /// fit.
-  void score(const Hypothesis& h, Candidate& c) const {
-    const auto free = free_of(h, stage_.spread);
-    const auto standard = beside_fit(h, h.starts.front());
-    const auto which = amplitudes(h, standard);
-    const auto at = [&](std::vector<double> values, double share) {
-      for (const std::size_t i : which) {
-        const double neutral = parameter_record(h.plant, free[i].block, free[i].index).neutral;
-        values[i] = neutral + share * (values[i] - neutral);
-      }
-      return values;
-    };
-    std::vector<ScoreTest::Change> changes;
-    std::vector<std::pair<double, std::vector<double>>> starts;
-    for (const auto& start : h.starts) {
-      if (starts.size() == kScored) break;
-      const auto values = beside_fit(h, start);
-      auto whole = score_->change_to(with_values(h, free, values), h.conventions);
-      if (!whole) continue;
-      double gain = whole->gain(), share = std::clamp(whole->share(), kLeastShare, 1.0);
-      changes.push_back(std::move(*whole));
-      std::vector<Direction> along;
-      for (std::size_t i = free.size() - h.free.size(); i < free.size(); ++i) {
-        const double neutral = parameter_record(h.plant, free[i].block, free[i].index).neutral;
-        const bool asked = which.empty() ? !std::isnan(neutral) : std::ranges::count(which, i) > 0;
-        if (asked)
-          along.push_back({Direction::Kind::parameter, free[i].block, free[i].index, values[i] - neutral});
-      }
-      if (!along.empty())
-        for (auto& slope : score_->slopes(with_values(h, free, at(values, kSmall)), h.conventions, along)) {
-          if (!which.empty() && slope.gain() > gain)
-            gain = slope.gain(), share = std::clamp(slope.share(), kLeastShare, 1.0);
-          changes.push_back(std::move(slope));
-        }
-      starts.emplace_back(-gain, at(values, share));
-    }
-    c.promise = score_->joint_gain(changes);
-    if (starts.empty() || std::ranges::none_of(changes, [](const auto& x) { return x.square > 0; })) return;
-    c.starts = {started(h, h.starts.front())};
-    // a few large changes say little of a small one
-    if (c.promise < kHopeless && (!which.empty() || starts.size() >= std::min(h.starts.size(), kScored)))
-      return;
-    std::ranges::sort(starts);
-    if (starts.size() >= kTries) starts.resize(kTries - 1);
-    c.nested.emplace_back(0.0, standard);
-    std::ranges::move(starts, std::back_inserter(c.nested));
   }
   Fit attempt(const Candidate& c, const sim::Plant& start, const FitOptions& o) const {
     return fit(start, c.hypothesis.conventions, stage_.events, free_of(c.hypothesis, stage_.spread), o);
@@ -329,7 +165,10 @@ class Searcher {
     for (int round = 0; round < kRounds; ++round) {
       const Fit from = std::exchange(best, fit(c.starts.front(), c.hypothesis.conventions, stage_.events,
                                                free, continued(o, best, free)));
-      if (!best.failed.empty() || best.converged || penalised(best) > penalised(from) - kWorthARound) break;
+      const double left = penalised(best) - penalised(stage_.fit);
+      const bool gets_there = left < kComing * (penalised(from) - penalised(stage_.fit));
+      if (best.converged || penalised(best) > penalised(from) - kWorthARound || (left > 0 && !gets_there))
+        break;
     }
     fits.push_back(std::move(best));
     return judgement(c, fits);
@@ -355,46 +194,6 @@ class Searcher {
     known.converged = f.converged;
     return known;
   }
-  /// Misfit of a start, everything else as in the model; whether it acts at all.
-  bool answer(const sim::Plant& plant, const Hypothesis& h, double& misfit, bool& acts) const {
-    misfit = 0;
-    try {
-      for (const FitEvent& e : stage_.events) {
-        const VoltageCurve curve(e.played(), e.switchings);
-        Drive run = drive_at(plant, h.conventions, e, {});
-        run.curve = &curve;
-        const Response r = observe(run);
-        if (!acts) {
-          run.plant = &stage_.plant;
-          run.conventions = stage_.conventions;
-          acts = differ(r, observe(run), e);
-        }
-        misfit += misfit_of(r, e);
-      }
-    } catch (const InputError&) {
-      return false;
-    }
-    return std::isfinite(misfit);
-  }
-  /// Whether two answers differ by a hundredth of the noise somewhere.
-  static bool differ(const Response& x, const Response& y, const FitEvent& e) {
-    for (std::size_t c = 0; c < e.channels.size(); ++c)
-      for (std::size_t k = 0; k < x.of(e.channels[c]).size(); ++k)
-        if (std::abs(x.of(e.channels[c])[k] - y.of(e.channels[c])[k]) >
-            1e-2 * e.noise[static_cast<Eigen::Index>(c)])
-          return true;
-    return false;
-  }
-  static double misfit_of(const Response& r, const FitEvent& e) {
-    double sum = 0;
-    for (std::size_t c = 0; c < e.channels.size(); ++c)
-      for (std::size_t k = 0; k < r.of(e.channels[c]).size(); ++k)
-        if (e.compared(k))
-          sum += std::pow(
-              (r.of(e.channels[c])[k] - e.measured(e.channels[c])[k]) / e.noise[static_cast<Eigen::Index>(c)],
-              2);
-    return sum;
-  }
   void report(const std::string& what, int done, std::size_t total) const {
     if (!report_) return;
     report_(stage_.with.empty() ? what : what + " beside " + stage_.with, done, static_cast<int>(total));
@@ -402,7 +201,7 @@ class Searcher {
 
   const Stage& stage_;
   const SearchProgress& report_;
-  std::optional<ScoreTest> score_;  ///< where the stage nearly fits
+  StartFinder starts_;
 };
 
 }  // namespace

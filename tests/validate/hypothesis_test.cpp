@@ -1,0 +1,55 @@
+// What is tried: every start of every hypothesis is a plant that can be.
+#include "validate/hypothesis.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "exciter_example.hpp"
+#include "validate/fit_cost.hpp"
+
+namespace swingbank::validate {
+namespace {
+
+std::vector<Hypothesis> hypotheses() {
+  const PlantModel model = ExciterExample(0.2).model;
+  return all_hypotheses(model.plant, model.conventions);
+}
+
+TEST(Hypotheses, EveryStartIsSound) {
+  std::set<std::string> drawn;
+  for (const Hypothesis& h : hypotheses()) {
+    if (h.drawn) drawn.insert(h.name);
+    for (const auto& start : h.starts) EXPECT_TRUE(fitting::can_run(started(h, start))) << h.name;
+  }
+  EXPECT_TRUE(drawn.contains("MAXEX2"));  // three points of one curve, which keep their order
+  EXPECT_TRUE(drawn.contains("TGOV1"));
+}
+TEST(Hypotheses, StartsAreTheStandardValuesThenDraws) {
+  for (const Hypothesis& h : hypotheses()) {
+    if (!h.drawn) continue;
+    EXPECT_EQ(h.starts.size(), 40U) << h.name;
+    EXPECT_EQ(h.starts.front(), values_of(h.plant, h.free)) << h.name;
+    EXPECT_EQ(std::set(h.starts.begin(), h.starts.end()).size(), h.starts.size()) << h.name;
+  }
+}
+TEST(Hypotheses, FurtherDrawsAreOthers) {
+  for (const Hypothesis& h : hypotheses()) {
+    if (!h.drawn) continue;
+    const std::set known(h.starts.begin(), h.starts.end());
+    const auto further = further_draws(h, h.free.size(), 20);
+    EXPECT_EQ(further.size(), 20U) << h.name;
+    for (const auto& draw : further) EXPECT_FALSE(known.contains(draw)) << h.name;
+  }
+}
+TEST(Triangle, HasTheProductsOfTheColumns) {
+  RowMatrix e = RowMatrix::Random(50, 6);
+  e.col(3) = 2 * e.col(0) - e.col(1);  // what the others make leaves nothing of its own
+  const RowMatrix r = fitting::triangle_of(e);
+  EXPECT_LT((r.transpose() * r - e.transpose() * e).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_EQ(r.row(3).cwiseAbs().maxCoeff(), 0.0);
+  for (Eigen::Index i = 1; i < r.rows(); ++i) EXPECT_EQ(r.row(i).head(i).cwiseAbs().maxCoeff(), 0.0);
+}
+
+}  // namespace
+}  // namespace swingbank::validate

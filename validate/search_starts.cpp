@@ -1,0 +1,230 @@
+#include "validate/search_starts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <ranges>
+
+#include "validate/instruments.hpp"
+
+namespace swingbank::validate {
+namespace {
+
+/// Starts that the score test looks at, and of which the misfit is taken.
+constexpr std::size_t kScored = 6, kScreened = 10;
+/// Misfit of a stage that nearly fits.
+constexpr double kNear = 1.5;
+/// Of the standard amplitude: where the answer is straight; the least that a start has.
+constexpr double kSmall = 0.01, kLeastShare = 1e-3;
+/// Draws among which those that act are looked for; squared change, in units of noise, from which one does.
+constexpr std::size_t kProvoking = 200;
+constexpr double kActs = 10;
+
+}  // namespace
+
+StartFinder::StartFinder(const Stage& stage) : stage_(stage) {
+  if (stage.fit.misfit() < kNear) score_.emplace(stage.events, stage.plant, stage.conventions, stage.fit);
+}
+
+Candidate StartFinder::of(Hypothesis h) const {
+  Candidate c;
+  bring(h);
+  provoke(h);
+  if (score_)
+    score(h, c);
+  else
+    screen(h, c);
+  c.hypothesis = std::move(h);
+  return c;
+}
+
+void StartFinder::bring(Hypothesis& h) const {
+  h.with = stage_.with;
+  for (const FreeParameter& f : stage_.own) {
+    const int block = find_block(h.plant, block_effect(stage_.plant, f.block));
+    h.free.push_back({block, f.index, f.spread});
+    const double value = parameter_value(stage_.plant, f.block, f.index);
+    for (auto& start : h.starts) start.push_back(value);
+  }
+}
+void StartFinder::provoke(Hypothesis& h) const {
+  if (!h.drawn || acts(h, h.starts.front())) return;
+  const std::size_t own = h.free.size() - stage_.own.size();
+  std::vector<std::vector<double>> acting;
+  for (auto& draw : further_draws(h, own, kProvoking)) {
+    draw.insert(draw.end(), h.starts.front().begin() + static_cast<std::ptrdiff_t>(own),
+                h.starts.front().end());
+    if (acts(h, draw)) acting.push_back(std::move(draw));
+    if (acting.size() == kScreened) break;
+  }
+  if (!acting.empty()) h.starts = std::move(acting);
+}
+void StartFinder::screen(const Hypothesis& h, Candidate& c) const {
+  struct Start {
+    double misfit;
+    sim::Plant plant;
+  };
+  std::vector<Start> starts;
+  bool acts = false;
+  for (const auto& values : h.starts | std::views::take(kScreened)) {
+    Start s{0, started(h, values)};
+    if (answer(s.plant, h, s.misfit, acts)) starts.push_back(std::move(s));
+  }
+  if (!starts.empty()) std::ranges::sort(starts.begin() + 1, starts.end(), {}, &Start::misfit);
+  if (acts && !starts.empty()) {
+    nest(h, c);
+    for (auto& s : starts) c.starts.push_back(std::move(s.plant));
+  }
+}
+std::vector<double> StartFinder::beside_fit(const Hypothesis& h, const std::vector<double>& start) const {
+  sim::Plant plant = started(h, start);
+  for (const auto& p : stage_.fit.parameters) {
+    const int block = find_block(plant, block_effect(stage_.plant, p.where.block));
+    parameter_value(plant, block, p.where.index) = p.value;
+  }
+  return values_of(plant, free_of(h, stage_.spread));
+}
+sim::Plant StartFinder::with_values(const Hypothesis& h, const std::vector<FreeParameter>& free,
+                                    const std::vector<double>& values) {
+  sim::Plant plant = h.plant;
+  for (std::size_t i = 0; i < free.size(); ++i)
+    parameter_value(plant, free[i].block, free[i].index) = values[i];
+  return plant;
+}
+void StartFinder::nest(const Hypothesis& h, Candidate& c) const {
+  const auto free = free_of(h, stage_.spread);
+  for (const auto& start : h.starts | std::views::take(kScreened)) {
+    auto values = beside_fit(h, start);
+    double misfit = 0;
+    bool acts = true;
+    if (answer(with_values(h, free, values), h, misfit, acts))
+      c.nested.emplace_back(misfit, std::move(values));
+  }
+  if (!c.nested.empty()) std::ranges::sort(c.nested.begin() + 1, c.nested.end());
+}
+std::vector<std::size_t> StartFinder::amplitudes(const Hypothesis& h,
+                                                 const std::vector<double>& standard) const {
+  const auto free = free_of(h, stage_.spread);
+  std::vector<std::size_t> found;
+  const double whole = moves(h, with_values(h, free, standard));
+  for (std::size_t i = free.size() - h.free.size(); i < free.size(); ++i) {
+    const double neutral = parameter_record(h.plant, free[i].block, free[i].index).neutral;
+    if (!(neutral < standard[i]) && !(neutral > standard[i])) continue;
+    auto off = standard;
+    off[i] = neutral;
+    if (moves(h, with_values(h, free, off)) < 1e-6 * whole) found.push_back(i);
+  }
+  return found;
+}
+bool StartFinder::acts(const Hypothesis& h, const std::vector<double>& start) const {
+  const sim::Plant plant = with_values(h, free_of(h, stage_.spread), beside_fit(h, start));
+  for (std::size_t e = 0; e < stage_.events.size(); ++e)
+    if (moves(h, plant, e) > kActs) return true;
+  return false;
+}
+double StartFinder::moves(const Hypothesis& h, const sim::Plant& plant, std::size_t event) const {
+  const FitEvent& e = stage_.events[event];
+  const EventFit& at = stage_.fit.events[event];
+  try {
+    const VoltageCurve curve(e.played(), switchings_at(e, at.state));
+    Drive run = drive_at(plant, h.conventions, e, at.state);
+    run.curve = &curve;
+    const Response r = observe(run);
+    double square = 0;
+    for (std::size_t c = 0; c < e.channels.size(); ++c)
+      for (std::size_t k = 0; k < r.of(e.channels[c]).size(); ++k)
+        square +=
+            std::pow((r.of(e.channels[c])[k] - at.model[c][k]) / e.noise[static_cast<Eigen::Index>(c)], 2);
+    return square;
+  } catch (const InputError&) {
+    return std::nan("");
+  }
+}
+void StartFinder::score(const Hypothesis& h, Candidate& c) const {
+  const auto free = free_of(h, stage_.spread);
+  const auto standard = beside_fit(h, h.starts.front());
+  const auto which = amplitudes(h, standard);
+  const auto at = [&](std::vector<double> values, double share) {
+    for (const std::size_t i : which) {
+      const double neutral = parameter_record(h.plant, free[i].block, free[i].index).neutral;
+      values[i] = neutral + share * (values[i] - neutral);
+    }
+    return values;
+  };
+  std::vector<ScoreTest::Change> changes;
+  std::vector<std::pair<double, std::vector<double>>> starts;
+  for (const auto& start : h.starts) {
+    const bool scored = starts.size() < kScored;
+    if (!scored && !which.empty()) break;
+    const auto values = beside_fit(h, start);
+    auto whole = score_->change_to(with_values(h, free, values), h.conventions);
+    if (!whole) continue;
+    if (which.empty()) starts.emplace_back(whole->rise(), values);
+    if (!scored) continue;
+    double gain = whole->gain(), share = std::clamp(whole->share(), kLeastShare, 1.0);
+    changes.push_back(std::move(*whole));
+    std::vector<Direction> along;
+    for (std::size_t i = free.size() - h.free.size(); i < free.size(); ++i) {
+      const double neutral = parameter_record(h.plant, free[i].block, free[i].index).neutral;
+      const bool asked = which.empty() ? !std::isnan(neutral) : std::ranges::count(which, i) > 0;
+      if (asked)
+        along.push_back({Direction::Kind::parameter, free[i].block, free[i].index, values[i] - neutral});
+    }
+    if (!along.empty())
+      for (auto& slope : score_->slopes(with_values(h, free, at(values, kSmall)), h.conventions, along)) {
+        if (!which.empty() && slope.gain() > gain)
+          gain = slope.gain(), share = std::clamp(slope.share(), kLeastShare, 1.0);
+        changes.push_back(std::move(slope));
+      }
+    if (!which.empty()) starts.emplace_back(-gain, at(values, share));
+  }
+  c.promise = score_->joint_gain(changes);
+  if (starts.empty() || std::ranges::none_of(changes, [](const auto& x) { return x.square > 0; })) return;
+  c.starts = {started(h, h.starts.front())};
+  // a few large changes say little of a small one
+  if (c.promise < kHopeless && (!which.empty() || starts.size() >= std::min(h.starts.size(), kScored)))
+    return;
+  std::ranges::sort(starts);
+  if (starts.size() >= kTries) starts.resize(kTries - 1);
+  c.nested.emplace_back(0.0, standard);
+  std::ranges::move(starts, std::back_inserter(c.nested));
+}
+bool StartFinder::answer(const sim::Plant& plant, const Hypothesis& h, double& misfit, bool& acts) const {
+  misfit = 0;
+  try {
+    for (const FitEvent& e : stage_.events) {
+      const VoltageCurve curve(e.played(), e.switchings);
+      Drive run = drive_at(plant, h.conventions, e, {});
+      run.curve = &curve;
+      const Response r = observe(run);
+      if (!acts) {
+        run.plant = &stage_.plant;
+        run.conventions = stage_.conventions;
+        acts = differ(r, observe(run), e);
+      }
+      misfit += misfit_of(r, e);
+    }
+  } catch (const InputError&) {
+    return false;
+  }
+  return std::isfinite(misfit);
+}
+bool StartFinder::differ(const Response& x, const Response& y, const FitEvent& e) {
+  for (std::size_t c = 0; c < e.channels.size(); ++c)
+    for (std::size_t k = 0; k < x.of(e.channels[c]).size(); ++k)
+      if (std::abs(x.of(e.channels[c])[k] - y.of(e.channels[c])[k]) >
+          1e-2 * e.noise[static_cast<Eigen::Index>(c)])
+        return true;
+  return false;
+}
+double StartFinder::misfit_of(const Response& r, const FitEvent& e) {
+  double sum = 0;
+  for (std::size_t c = 0; c < e.channels.size(); ++c)
+    for (std::size_t k = 0; k < r.of(e.channels[c]).size(); ++k)
+      if (e.compared(k))
+        sum += std::pow(
+            (r.of(e.channels[c])[k] - e.measured(e.channels[c])[k]) / e.noise[static_cast<Eigen::Index>(c)],
+            2);
+  return sum;
+}
+
+}  // namespace swingbank::validate

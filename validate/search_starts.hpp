@@ -1,0 +1,70 @@
+#pragma once
+// Where a hypothesis starts beside a structure: draws in order of what they leave, or, beside a structure
+// that nearly fits, as small as the score test would make them. For search.cpp only.
+#include <optional>
+
+#include "validate/score_test.hpp"
+#include "validate/search.hpp"
+
+namespace swingbank::validate {
+
+/// Starts that are fitted.
+constexpr std::size_t kTries = 4;
+/// Fall of chi2 below which a hypothesis is not worth a fit: half the evidence asked for.
+constexpr double kHopeless = 20;
+
+/// A hypothesis with its starts: its standard values, then draws in order of what they leave before any fit.
+/// What leaves least may be what hardly acts.
+struct Candidate {
+  Hypothesis hypothesis;
+  std::vector<sim::Plant> starts;
+  /// The stage as fitted, with each start: its misfit, and all free parameters. The standard start first, the
+  /// others as they suit the stage.
+  std::vector<std::pair<double, std::vector<double>>> nested = {};
+  double promise = 0;  ///< by how much chi2 would fall, by the score test
+};
+
+class StartFinder {
+ public:
+  explicit StartFinder(const Stage& stage);
+  /// Whether the stage nearly fits: then the score test chooses.
+  [[nodiscard]] bool near() const { return score_.has_value(); }
+  /// No starts: it does not act here.
+  [[nodiscard]] Candidate of(Hypothesis h) const;
+
+ private:
+  /// What earlier stages brought is free in this hypothesis too.
+  void bring(Hypothesis& h) const;
+  /// A limiter may wait for more than the standard values let it meet here: then draws that act are its
+  /// starts.
+  void provoke(Hypothesis& h) const;
+  void screen(const Hypothesis& h, Candidate& c) const;
+  /// The stage as fitted, with this start: all free parameters.
+  [[nodiscard]] std::vector<double> beside_fit(const Hypothesis& h, const std::vector<double>& start) const;
+  [[nodiscard]] static sim::Plant with_values(const Hypothesis& h, const std::vector<FreeParameter>& free,
+                                              const std::vector<double>& values);
+  /// Starts beside what was fitted, the standard one first, then as they suit the stage.
+  void nest(const Hypothesis& h, Candidate& c) const;
+  /// Parameters that switch the effect off at their neutral value, by their place in the free ones. Off means
+  /// a thousandth of the standard values' answer: more states make other steps.
+  [[nodiscard]] std::vector<std::size_t> amplitudes(const Hypothesis& h,
+                                                    const std::vector<double>& standard) const;
+  /// Whether the stage as fitted answers any event otherwise with this start.
+  [[nodiscard]] bool acts(const Hypothesis& h, const std::vector<double>& start) const;
+  /// Squared change of an event's answer, in units of noise; NaN where it cannot be run.
+  [[nodiscard]] double moves(const Hypothesis& h, const sim::Plant& plant, std::size_t event = 0) const;
+  /// Score test at the neutral point: each start as small as a first step along its amplitude would make it,
+  /// those with most to gain first, the standard one before them. What has no amplitude acts in full or not
+  /// at all: of its starts those first that raise chi2 least. Nothing to gain: no starts, not worth a fit.
+  void score(const Hypothesis& h, Candidate& c) const;
+  /// Misfit of a start, everything else as in the model; whether it acts at all.
+  [[nodiscard]] bool answer(const sim::Plant& plant, const Hypothesis& h, double& misfit, bool& acts) const;
+  /// Whether two answers differ by a hundredth of the noise somewhere.
+  [[nodiscard]] static bool differ(const Response& x, const Response& y, const FitEvent& e);
+  [[nodiscard]] static double misfit_of(const Response& r, const FitEvent& e);
+
+  const Stage& stage_;
+  std::optional<ScoreTest> score_;
+};
+
+}  // namespace swingbank::validate
