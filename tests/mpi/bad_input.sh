@@ -5,6 +5,17 @@ make=("$generate" "$configs/ieee14_genrou_bus3.toml" --draws 40 --draws-per-shar
 "${make[@]}" --out "$work/data" >/dev/null 2>&1
 whole=$(hash_of "$work/data")
 
+# Two at once on one folder: the second is refused, after it has waited; the rest goes on meanwhile.
+two_at_once() {
+  exec 9<>"$work/data/journal.jsonl"
+  flock 9
+  expect 1 "another process is writing it" "${make[@]}" --out "$work/data"
+}
+mkdir "$work/busy"
+cp -r "$work/data" "$work/busy"
+(work=$work/busy && two_at_once) &
+busy=$!
+
 expect 1 "CONFIG and --out are needed" "$generate"
 expect 1 "--nonsense" "$generate" --nonsense
 expect 1 "there is no such file" "$generate" "$work/no.toml" --out "$work/x"
@@ -37,12 +48,6 @@ printf '\x01' | dd of="$work/data/shards/shard-000000.h5" bs=1 seek=100000 conv=
 expect 1 "changed shard at $work/data/shards/shard-000000.h5" "$generate" --verify "$work/data"
 expect 0 "$whole" "${make[@]}" --repair --out "$work/data"
 
-# Two at once on one folder: the second is refused.
-exec 9<>"$work/data/journal.jsonl"
-flock 9
-expect 1 "another process is writing it" "${make[@]}" --out "$work/data"
-exec 9>&-
-
 # The databank says how far it came.
 sed -e "s|\.\./networks|$SWINGBANK_SOURCE/configs/networks|" -e 's/^distance = .*/distance = 1.5/' -e 's/^scale = .*/scale = "scaled"/' "$configs/ieee39_genrou.toml" >"$work/far.toml"
 expect 1 "of 3000 points" "$SWINGBANK_BIN/swingbank-databank" "$work/far.toml" --points 3000
@@ -52,3 +57,4 @@ expect 0 "accepted" "$SWINGBANK_BIN/swingbank-databank" "$configs/ieee39_genrou.
 # Ranks started with different inputs do not mix their data.
 expect 1 "ranks that would make different data" mpirun --oversubscribe -np 1 "${make[@]}" --out "$work/mixed" : -np 1 "${make[@]}" --seed 2 --out "$work/mixed"
 [ ! -e "$work/mixed" ] || fail "mixed ranks left a folder"
+wait $busy || fail "two at once on one folder"

@@ -62,7 +62,7 @@ json result_of(const RunRequest& r) {
 }
 
 TEST(Training, ResumedRunEqualsAnUnbrokenOneBitForBit) {
-  const World world("resume");
+  const World world("resume", 150);
   const RowSplit split = leave_one_out(world.stream.labels(), 33, 0.1, 1);
   const TargetScale scale = TargetScale::fit(world.stream.labels().values, 3, split.train);
   const auto targets = scaled_targets(world.stream.labels(), scale, split, false, 1);
@@ -92,7 +92,7 @@ TEST(Training, ResumedRunEqualsAnUnbrokenOneBitForBit) {
     LoopReport whole, broken;
     const auto expected = train(name + "-a", {}, whole);
     const auto got =
-        train(name + "-b", {16, 5}, broken);  // 8 batches an epoch: after 2 epochs, then within one
+        train(name + "-b", {8, 3}, broken);  // 4 batches an epoch: after 2 epochs, then within one
     EXPECT_EQ(got, expected) << name;
     EXPECT_EQ(broken.epochs, 4u);
     EXPECT_EQ(broken.best_epoch, whole.best_epoch);
@@ -135,15 +135,15 @@ TEST(Training, RefusesADamagedOrForeignCheckpoint) {
 }
 
 TEST(Training, LearnsAndShuffledLabelsTeachNothing) {
-  const World world("learn", 1600);
-  RunRequest r = request(world, "cnn", 16);
+  const World world("learn", 800);
+  RunRequest r = request(world, "cnn", 4);
   ASSERT_EQ(run(world.stream, r), RunOutcome::done);
   const json learnt = result_of(r);
   EXPECT_LT(learnt["ratio"], 0.5);
   EXPECT_LT(learnt["H_ratio"], 0.5);
   EXPECT_EQ(learnt["generator"], 33);
-  EXPECT_EQ(learnt["test_rows"], 160);
-  EXPECT_EQ(learnt["train_rows"].get<int>() + learnt["validation_rows"].get<int>(), 1440);
+  EXPECT_EQ(learnt["test_rows"], 80);
+  EXPECT_EQ(learnt["train_rows"].get<int>() + learnt["validation_rows"].get<int>(), 720);
   // The constant third parameter is learnt exactly and flatters the mean over all.
   EXPECT_NEAR(learnt["mse_varied_only"].get<double>() / learnt["mse"].get<double>(), 1.5, 1e-3);
   EXPECT_TRUE(learnt["per_parameter"][2]["relative"].is_null());
@@ -151,19 +151,18 @@ TEST(Training, LearnsAndShuffledLabelsTeachNothing) {
   EXPECT_TRUE(std::filesystem::is_empty(r.out / "checkpoints"));
 
   r.shuffle_labels = true;
-  r.epochs = 5;
   ASSERT_EQ(run(world.stream, r), RunOutcome::done);
   const json shuffled = result_of(r);
-  // Test rows keep their labels, so nothing can be known of them; 160 rows scatter the quotient by some
+  // Test rows keep their labels, so nothing can be known of them; 80 rows scatter the quotient by some
   // percent, and what little was learnt by heart costs some more.
   EXPECT_GT(shuffled["ratio"], 0.9);
   EXPECT_LT(shuffled["ratio"], 1.25);
 }
 
 TEST(Training, RecurrentNetworksLearn) {
-  const World world("recurrent", 500);
+  const World world("recurrent", 500, 8);
   for (const std::string name : {"lstm", "gru"}) {
-    RunRequest r = request(world, name, 8);
+    RunRequest r = request(world, name, 3);
     ASSERT_EQ(run(world.stream, r), RunOutcome::done);
     EXPECT_LT(result_of(r)["H_ratio"], 0.7) << name;
   }
