@@ -5,9 +5,14 @@ mkdir "$work/records"
 # Six seconds hold the fault and the first swings, and are diagnosed in half the time.
 for k in 1 2 3 4; do head -361 "$SWINGBANK_SOURCE/configs/records/record-example/avr_ev$k.csv" >"$work/records/e$k.csv"; done
 cp "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml" "$work/model.toml"
+# the same with the exciter of the records: nothing is missing, which is soon found
+{
+  cat "$work/model.toml"
+  printf '[exciter]\neffect = "SEXS"\nTAoverTB = 0.1\nTB = 10.0\nK = 100.0\nTE = 0.05\nEMIN = -4.0\nEMAX = 5.0\n'
+} >"$work/whole.toml"
 
-# plant NAME RECORDS [LINE]: a section of a fleet file
-plant() { printf '[plant.%s]\nmodel = "model.toml"\nrecords = [%s]\n%s\n' "$1" "$2" "${3:-}"; }
+# plant NAME RECORDS [LINE]: a section of a fleet file; its model is the one without the exciter, or $model
+plant() { printf '[plant.%s]\nmodel = "%s"\nrecords = [%s]\n%s\n' "$1" "${model:-model.toml}" "$2" "${3:-}"; }
 
 # fleet FILE OUT [RANKS]: prints the table; its exit code; progress goes to OUT.log
 fleet() {

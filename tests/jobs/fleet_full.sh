@@ -13,6 +13,19 @@ source "$(dirname "${BASH_SOURCE[0]}")/fleet.bash"
   plant bad '"records/nowhere.csv", "records/e4.csv"'
 } >"$work/fleet.toml"
 expect 1 fleet "$work/fleet.toml" "$work/whole"
+/usr/bin/python3 - "$work/whole" <<'PYTHON'
+import csv, json, sys
+folder = sys.argv[1]
+plants = {p["plant"]: p for p in json.load(open(folder + "/fleet.json"))["plants"]}
+for name in ("p1", "p2", "p3"):
+    p = plants[name]
+    assert p["verdict"] in ("missing", "confusable") and p["effects"][0] == "SEXS" and p["side"] == "excitation", p
+    # the field without an exciter leaves tens of sigma; with it nothing but noise is left on events not fitted to
+    assert p["unseen_rms_in_noise_before"] > 10 and p["unseen_rms_in_noise_after"] < 1.1, p
+rows = {r["plant"]: r for r in csv.DictReader(open(folder + "/fleet.csv"))}
+assert rows["p1"]["effects"].startswith("SEXS"), rows["p1"]
+PYTHON
+grep -q 'SEXS' "$work/whole/p1/report.html" || fail "no report of p1"
 
 # done_in FOLDER: how many plants are finished
 done_in() { find "$1" -mindepth 2 -name diagnosis.json -not -path '*.part/*' 2>/dev/null | wc -l; }

@@ -1,18 +1,10 @@
 #!/usr/bin/env bash
-# swingbank add --retrain: two networks made, asked and compared; made ones are found again; what cannot be is told.
+# swingbank add --retrain: two networks made, asked and compared; what cannot be is told.
+# shellcheck disable=SC2154 # what lib.bash sets
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+source "$(dirname "${BASH_SOURCE[0]}")/retrain.bash"
 
-model=$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml
-records=$SWINGBANK_SOURCE/configs/records/record-example
-one=$records/avr_ev1.csv two=$records/avr_ev2.csv
-export OMP_NUM_THREADS=1
-
-add() { "$swingbank" add SEXS --model "$model" --records "$one" "$two" --power-only --train-draws 60 --train-epochs 1 "$@"; }
-retrain() { add --hold-out avr_ev2 --retrain "$@"; }
-
-# nothing but a few draws: this is about the way, not about how good the networks are
-retrain --dataset "$SWINGBANK_SOURCE/configs/datasets/ieee14_genrou_bus2.toml" --out "$work/given" >"$work/text" 2>"$work/log" ||
-  (($? == 3)) || fail "$(tail -5 "$work/log")"
+retrain_given "$work/text" || (($? == 3)) || fail "$(tail -5 "$work/log")"
 grep -q 'Estimates on the unseen events' "$work/text" || fail "no comparison: $(cat "$work/text")"
 for side in without with; do
   [[ -s $work/given/retrain/$side/results/$side-cnn-retrain-seed1.network ]] || fail "no network $side the effect"
@@ -34,18 +26,6 @@ for side in ("without", "with"):
     assert abs(said["records"][1]["estimates"][H] - shared[[p["parameter"] for p in shared].index("GENROU.H")][side]["estimate"]) < 1e-9
 assert [e["seen"] for e in r["events"]] == [True, False]
 PYTHON
-
-# again: datasets and networks stand there
-before=$(stat -c %Y "$work"/given/retrain/*/results/*.network)
-retrain --dataset "$SWINGBANK_SOURCE/configs/datasets/ieee14_genrou_bus2.toml" --out "$work/given" >"$work/again" 2>"$work/log" ||
-  (($? == 3)) || fail "again: $(tail -5 "$work/log")"
-cmp "$work/text" "$work/again" || fail "the second run says something else"
-[[ $before == "$(stat -c %Y "$work"/given/retrain/*/results/*.network)" ]] || fail "networks were trained again"
-
-# without a dataset the plant stands behind lines
-retrain --out "$work/made" --json >"$work/text" 2>"$work/log" || (($? == 3)) || fail "$(tail -5 "$work/log")"
-python3 -c 'import json, sys; json.load(open(sys.argv[1]))' "$work/text" || fail "--json prints more than JSON"
-[[ -s $work/made/retrain/grid/plant.raw && -s $work/made/retrain.json ]] || fail "no grid made"
 
 out=$work/out
 mkdir "$out"

@@ -20,3 +20,12 @@ expect() {
   [ "$got" = "$code" ] || { cat "$work/output" >&2; fail "exit code $got instead of $code: $*"; }
   grep -qF -- "$text" "$work/output" || { cat "$work/output" >&2; fail "no '$text' in the output of: $*"; }
 }
+# How many shards are in the journal of a folder.
+lines() { if [ -e "$1/journal.jsonl" ]; then wc -l <"$1/journal.jsonl"; else echo 0; fi; }
+wait_for_lines() { # folder count
+  for _ in $(seq 3000); do
+    [ "$(lines "$1")" -ge "$2" ] && return
+    sleep 0.01
+  done
+  fail "no $2 shards after 30 s"
+}

@@ -170,7 +170,7 @@ Tally run_events(int wanted, std::uint64_t seed) {
   return tally;
 }
 
-TEST(AllEffectsAgainstReference, FiftyRandomEvents) { run_events(50, 20211); }
+TEST(AllEffectsAgainstReference, TwentyRandomEvents) { run_events(20, 20211); }
 
 TEST(AllEffectsAgainstReferenceFull, ThousandRandomEvents) {
   const Tally tally = run_events(1000, 20212);
