@@ -14,7 +14,7 @@ namespace {
 using namespace fitting;
 
 /// Steps tried for one that is to be taken: a refused one costs no slopes.
-constexpr int kRefused = 4;
+constexpr int kRefused = 2;
 
 /// Counts the steps taken, and stops the search when they are enough.
 class Steps : public ceres::IterationCallback {

@@ -16,8 +16,9 @@ namespace {
 
 using sim::Slot;
 
-constexpr std::size_t kDraws = 39,
-                      kRedraws = 20;  ///< of an effect's parameters, as starts; at most so many times more
+constexpr std::size_t kDraws = 39;    ///< of an effect's parameters, as starts
+constexpr std::size_t kRedraws = 20;  ///< for one that is sound, at most
+constexpr double kShortest = 3e-3;    ///< of the time allowed, what the shortest draw takes
 constexpr double kSpread = 1.0;       ///< what is believed of an added effect's parameters: within a factor e
 
 Side side_of(Slot slot) {
@@ -79,22 +80,32 @@ bool occupied(const sim::Plant& plant, const sim::Effect& effect) {
 
 /// Draws about the standard values of the block's parameters, which all are: which lie where the records ask
 /// for is found by trying. Half of the width is common to all parameters of a unit, so that points of one
-/// curve and its times keep their order; a draw that contradicts itself is drawn again.
+/// curve and its times keep their order; a draw that contradicts itself is drawn again. `within` > 0: the
+/// longest time is at most about that [s].
 std::vector<std::vector<double>> draws(const sim::Plant& plant, const std::vector<FreeParameter>& free,
-                                       std::size_t count, unsigned seed) {
+                                       std::size_t count, unsigned seed, double within = 0) {
+  double longest = 0;
+  for (const auto& f : free)
+    if (parameter_record(plant, f.block, f.index).unit == "s")
+      longest = std::max(longest, parameter_value(plant, f.block, f.index));
   std::mt19937_64 random(seed);  // the same draws every time: a diagnosis can be repeated
   std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform;
   sim::Plant drawn = plant;
   std::vector<std::vector<double>> all;
   for (std::size_t tries = 0; all.size() < count && tries < kRedraws * count; ++tries) {
     std::map<std::string_view, double> common;
+    const double shorter =
+        longest > 0 && within > 0 ? std::pow(kShortest, uniform(random)) * within / longest : 1;
     std::vector<double> values;
     for (const auto& f : free) {
       const auto& p = parameter_record(plant, f.block, f.index);
       // gains are believed within decades, times and limits within a factor
       const double width = p.low > 0 && p.high / p.low >= 1000 ? 2.0 : 0.8;
       const double whole = common.try_emplace(p.unit, normal(random)).first->second;
-      const double factor = std::exp(width * std::sqrt(0.5) * (whole + normal(random)));
+      const bool bounded = p.unit == "s" && within > 0;
+      const double factor = (bounded ? shorter : std::exp(width * std::sqrt(0.5) * whole)) *
+                            std::exp(width * std::sqrt(0.5) * normal(random));
       values.push_back(std::clamp(parameter_value(plant, f.block, f.index) * factor, p.low, p.high));
       parameter_value(drawn, f.block, f.index) = values.back();
     }
@@ -235,8 +246,10 @@ std::vector<Hypothesis> all_hypotheses(const sim::Plant& base, const sim::Conven
   return all;
 }
 
-std::vector<std::vector<double>> further_draws(const Hypothesis& h, std::size_t own, std::size_t count) {
-  return draws(h.plant, {h.free.begin(), h.free.begin() + static_cast<std::ptrdiff_t>(own)}, count, 2);
+std::vector<std::vector<double>> further_draws(const Hypothesis& h, std::size_t own, std::size_t count,
+                                               double within) {
+  return draws(h.plant, {h.free.begin(), h.free.begin() + static_cast<std::ptrdiff_t>(own)}, count, 2,
+               within);
 }
 
 std::string full_name(const Hypothesis& h) { return h.with.empty() ? h.name : h.with + " + " + h.name; }

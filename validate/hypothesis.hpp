@@ -28,8 +28,10 @@ struct Hypothesis {
 /// Everything that may be added to the plant. Some of it may change nothing there (a stabiliser without an
 /// exciter); trying shows. Effects that act at given instants are not among them: they belong to one event.
 std::vector<Hypothesis> all_hypotheses(const sim::Plant& base, const sim::Conventions& conventions);
-/// More draws of its first `own` free parameters than the starts it came with.
-std::vector<std::vector<double>> further_draws(const Hypothesis& h, std::size_t own, std::size_t count);
+/// More draws of its first `own` free parameters than the starts it came with; their longest time about
+/// `within` [s] at most.
+std::vector<std::vector<double>> further_draws(const Hypothesis& h, std::size_t own, std::size_t count,
+                                               double within);
 /// Its name after that of what was added before: "SEXS + GENROU:Ra".
 std::string full_name(const Hypothesis& h);
 /// The hypothesis's plant with `start` as values of its free parameters.

@@ -24,8 +24,10 @@ constexpr double kWorthARound = 10;
 constexpr double kComing = 0.8;
 /// Misfit of the stage below which its fitted values are good starts for everything but what is missing.
 constexpr double kNested = 4;
-/// Share of the best one's first gain from which a hypothesis is fitted on.
-constexpr double kFair = 0.2;
+/// Starts that all hypotheses try; shares of the best one's gain from which further starts are tried, and
+/// from which a hypothesis is fitted on.
+constexpr std::size_t kFirst = 2;
+constexpr double kFairAtFirst = 0.05, kFair = 0.2;
 
 class Searcher {
  public:
@@ -41,8 +43,12 @@ class Searcher {
       });
     } else {
       std::vector<std::vector<Fit>> begun(candidates.size());
-      each(candidates, "first steps ", [&](std::size_t i) { begun[i] = first_steps(candidates[i]); });
-      const auto onward = promising(candidates, begun);
+      each(candidates, "first steps ", [&](std::size_t i) { first_steps(candidates[i], kFirst, begun[i]); });
+      const auto fair = promising(candidates, begun, kFairAtFirst);
+      each(candidates, "first steps ", [&](std::size_t i) {
+        if (fair[i]) first_steps(candidates[i], kTries, begun[i]);
+      });
+      const auto onward = promising(candidates, begun, kFair);
       each(candidates, "fit ", [&](std::size_t i) {
         tried[i] = onward[i] ? more_steps(candidates[i], begun[i]) : judgement(candidates[i], begun[i]);
       });
@@ -82,19 +88,18 @@ class Searcher {
   Fit attempt(const Candidate& c, const sim::Plant& start, const FitOptions& o) const {
     return fit(start, c.hypothesis.conventions, stage_.events, free_of(c.hypothesis, stage_.spread), o);
   }
-  /// From the standard values and from three draws, in the order of the starts.
-  std::vector<Fit> first_steps(const Candidate& c) const {
+  /// From the standard values and from draws, in the order of the starts: the first so many, less those
+  /// begun.
+  void first_steps(const Candidate& c, std::size_t tries, std::vector<Fit>& fits) const {
     FitOptions o;
     o.errors = false;
     o.iterations = kFirstSteps;
-    std::vector<Fit> fits;
-    for (std::size_t k = 0; k < std::min(c.starts.size(), kTries); ++k)
+    for (std::size_t k = fits.size(); k < std::min(c.starts.size(), tries); ++k)
       fits.push_back(attempt(c, c.starts[k], o));
-    return fits;
   }
   /// Those whose first steps gain a fair share of what the best one's do, and the rivals of its slot.
   std::vector<char> promising(const std::vector<Candidate>& candidates,
-                              const std::vector<std::vector<Fit>>& begun) const {
+                              const std::vector<std::vector<Fit>>& begun, double share) const {
     std::vector<double> gains;
     for (const auto& fits : begun) {
       double gain = -std::numeric_limits<double>::infinity();
@@ -105,7 +110,7 @@ class Searcher {
     std::vector<char> onward;
     for (std::size_t i = 0; i < gains.size(); ++i) {
       const int slot = candidates[static_cast<std::size_t>(best - gains.begin())].hypothesis.slot;
-      onward.push_back(*best <= 0 || gains[i] >= kFair * *best ||
+      onward.push_back(*best <= 0 || gains[i] >= share * *best ||
                        (slot >= 0 && candidates[i].hypothesis.slot == slot));
     }
     return onward;

@@ -15,6 +15,8 @@ constexpr std::size_t kScored = 6, kScreened = 10;
 constexpr double kNear = 1.5;
 /// Of the standard amplitude: where the answer is straight; the least that a start has.
 constexpr double kSmall = 0.01, kLeastShare = 1e-3;
+/// Rise of chi2, as a multiple of what it is, from which no start leads back.
+constexpr double kOutOfReach = 100;
 /// Draws among which those that act are looked for; squared change, in units of noise, from which one does.
 constexpr std::size_t kProvoking = 200;
 constexpr double kActs = 10;
@@ -50,7 +52,9 @@ void StartFinder::provoke(Hypothesis& h) const {
   if (!h.drawn || acts(h, h.starts.front())) return;
   const std::size_t own = h.free.size() - stage_.own.size();
   std::vector<std::vector<double>> acting;
-  for (auto& draw : further_draws(h, own, kProvoking)) {
+  for (auto& draw :
+       further_draws(h, own, kProvoking,
+                     stage_.events.front().record.t.back() - stage_.events.front().record.t.front())) {
     draw.insert(draw.end(), h.starts.front().begin() + static_cast<std::ptrdiff_t>(own),
                 h.starts.front().end());
     if (acts(h, draw)) acting.push_back(std::move(draw));
@@ -152,8 +156,9 @@ void StartFinder::score(const Hypothesis& h, Candidate& c) const {
   };
   std::vector<ScoreTest::Change> changes;
   std::vector<std::pair<double, std::vector<double>>> starts;
+  std::size_t looked_at = 0;
   for (const auto& start : h.starts) {
-    const bool scored = starts.size() < kScored;
+    const bool scored = looked_at++ < kScored;
     if (!scored && !which.empty()) break;
     const auto values = beside_fit(h, start);
     auto whole = score_->change_to(with_values(h, free, values), h.conventions);
@@ -183,10 +188,12 @@ void StartFinder::score(const Hypothesis& h, Candidate& c) const {
   // a few large changes say little of a small one
   if (c.promise < kHopeless && (!which.empty() || starts.size() >= std::min(h.starts.size(), kScored)))
     return;
+  const double reach = kOutOfReach * stage_.fit.chi2;
+  if (!which.empty() || starts.front().first < reach) c.nested.emplace_back(0.0, standard);
   std::ranges::sort(starts);
-  if (starts.size() >= kTries) starts.resize(kTries - 1);
-  c.nested.emplace_back(0.0, standard);
-  std::ranges::move(starts, std::back_inserter(c.nested));
+  for (auto& start : starts)
+    if (c.nested.empty() || (c.nested.size() < kTries && start.first < reach))
+      c.nested.push_back(std::move(start));
 }
 bool StartFinder::answer(const sim::Plant& plant, const Hypothesis& h, double& misfit, bool& acts) const {
   misfit = 0;

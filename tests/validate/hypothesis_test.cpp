@@ -37,7 +37,7 @@ TEST(Hypotheses, FurtherDrawsAreOthers) {
   for (const Hypothesis& h : hypotheses()) {
     if (!h.drawn) continue;
     const std::set known(h.starts.begin(), h.starts.end());
-    const auto further = further_draws(h, h.free.size(), 20);
+    const auto further = further_draws(h, h.free.size(), 20, 15.0);
     EXPECT_EQ(further.size(), 20U) << h.name;
     for (const auto& draw : further) EXPECT_FALSE(known.contains(draw)) << h.name;
   }
