@@ -13,8 +13,8 @@ namespace {
 
 using namespace fitting;
 
-/// Steps tried for one that is to be taken: a refused one costs no slopes.
-constexpr int kRefused = 2;
+/// A search of a few steps must not end on refused ones, which cost no slopes: so many more are tried.
+constexpr int kFew = 4, kRefused = 3;
 
 /// Counts the steps taken, and stops the search when they are enough.
 class Steps : public ceres::IterationCallback {
@@ -94,7 +94,7 @@ class Search {
     ceres::Solver::Options o;
     Steps steps(iterations);
     o.callbacks.push_back(&steps);
-    o.max_num_iterations = kRefused * iterations;
+    o.max_num_iterations = iterations > 0 && iterations <= kFew ? iterations + kRefused : iterations;
     o.function_tolerance = options_.enough;
     o.linear_solver_type =
         setting_.input == InputKind::none ? ceres::DENSE_NORMAL_CHOLESKY : ceres::SPARSE_NORMAL_CHOLESKY;

@@ -18,7 +18,7 @@ constexpr double kSmall = 0.01, kLeastShare = 1e-3;
 /// Rise of chi2, as a multiple of what it is, from which no start leads back.
 constexpr double kOutOfReach = 100;
 /// Draws among which those that act are looked for; squared change, in units of noise, from which one does.
-constexpr std::size_t kProvoking = 200;
+constexpr std::size_t kProvoking = 80;
 constexpr double kActs = 10;
 
 }  // namespace
