@@ -1,22 +1,13 @@
 #!/usr/bin/env bash
 # swingbank cross-validate, train and tables on inputs that are wrong: a sentence, exit code 1, no result.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
-source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
 own_mounts
-export OMP_NUM_THREADS=1
-
-tiny_experiment "$work"
-experiment=$work/tiny.toml data=$work/data out=$work/out
-"$swingbank" generate "$work/tiny_data.toml" --draws 100 --out "$data" >/dev/null 2>&1
-mkdir "$out"
-# validate DATA EXPERIMENT [OPTION...]
-validate() { "$swingbank" cross-validate "$1" --experiment "$2" --out "$out" "${@:3}"; }
+source "$(dirname "${BASH_SOURCE[0]}")/bad_input_train.bash"
 
 refuses "no such experiment" "$work/none.toml" validate "$data" "$work/none.toml"
 refuses "no such dataset" "$work/none" validate "$work/none" "$experiment"
 misused "unknown option" 'nonsense' validate "$data" "$experiment" --nonsense 3
 
-edit() { sed "$2" "$experiment" >"$work/$1.toml"; }
 edit key 's/^patience/patienc/'
 refuses "unknown key" 'key.toml:[0-9]+' validate "$data" "$work/key.toml"
 

@@ -1,16 +1,7 @@
 #!/usr/bin/env bash
 # swingbank cross-validate, train and tables: the refusals beside those of bad_input_train.sh.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
-source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
-export OMP_NUM_THREADS=1
-
-tiny_experiment "$work"
-experiment=$work/tiny.toml data=$work/data out=$work/out
-"$swingbank" generate "$work/tiny_data.toml" --draws 100 --out "$data" >/dev/null 2>&1
-mkdir "$out"
-# validate DATA EXPERIMENT [OPTION...]
-validate() { "$swingbank" cross-validate "$1" --experiment "$2" --out "$out" "${@:3}"; }
-edit() { sed "$2" "$experiment" >"$work/$1.toml"; }
+source "$(dirname "${BASH_SOURCE[0]}")/bad_input_train.bash"
 
 refuses "no dataset given" 'DATASET' "$swingbank" cross-validate --experiment "$experiment" --out "$out"
 refuses "unknown preset" 'preset' validate "$data" "$experiment" --preset weekly
