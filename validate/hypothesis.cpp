@@ -78,8 +78,8 @@ bool occupied(const sim::Plant& plant, const sim::Effect& effect) {
   return false;
 }
 
-/// Draws about the standard values of the block's parameters, which all are: which lie where the records ask
-/// for is found by trying. Half of the width is common to all parameters of a unit, so that points of one
+/// Draws about what the plant has of `free`, parameters of one block: which lie where the records ask for is
+/// found by trying. Half of the width is common to all parameters of a unit, so that points of one
 /// curve and its times keep their order; a draw that contradicts itself is drawn again. `within` > 0: the
 /// longest time is at most about that [s].
 std::vector<std::vector<double>> draws(const sim::Plant& plant, const std::vector<FreeParameter>& free,

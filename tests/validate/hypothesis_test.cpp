@@ -46,7 +46,7 @@ TEST(Triangle, HasTheProductsOfTheColumns) {
   RowMatrix e = RowMatrix::Random(50, 6);
   e.col(3) = 2 * e.col(0) - e.col(1);  // what the others make leaves nothing of its own
   const RowMatrix r = fitting::triangle_of(e);
-  EXPECT_LT((r.transpose() * r - e.transpose() * e).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LT((r.transpose() * r - e.transpose() * e).cwiseAbs().maxCoeff(), 1e-12);  // sums of 50, rounded
   EXPECT_EQ(r.row(3).cwiseAbs().maxCoeff(), 0.0);
   for (Eigen::Index i = 1; i < r.rows(); ++i) EXPECT_EQ(r.row(i).head(i).cwiseAbs().maxCoeff(), 0.0);
 }
