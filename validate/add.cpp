@@ -9,6 +9,7 @@
 
 #include "validate/calibrate_slopes.hpp"
 #include "validate/in_parallel.hpp"
+#include "validate/noise.hpp"
 
 namespace swingbank::validate {
 namespace {
@@ -39,11 +40,19 @@ class Bench {
   Bench(const PlantModel& model, std::vector<Record> records, const CalibrateOptions& options)
       : options_(options), out_(held_out_events(records, options.held_out)) {
     all_ = prepare_events(model, std::move(records), options.events);
-    for (std::size_t e = 0; e < all_.size(); ++e)
-      if (!out_[e]) seen_.push_back(all_[e]);
+    keep_seen();
   }
   [[nodiscard]] const std::vector<FitEvent>& all() const { return all_; }
   [[nodiscard]] const std::vector<FitEvent>& seen() const { return seen_; }
+  /// Measures the noise anew through a fit of the events seen, if that is close.
+  bool measure_noise(const Fit& seen, const sim::Conventions& conventions) {
+    if (seen.misfit() >= kClose) return false;
+    Fit whole = seen;
+    whole.events = each(seen.plant, conventions, "noise measured again");
+    measure_noise_through(whole, conventions, all_);
+    keep_seen();
+    return true;
+  }
   [[nodiscard]] bool is_seen(std::size_t e) const { return !out_[e]; }
 
   /// Every event by itself, only its own state free.
@@ -73,6 +82,12 @@ class Bench {
   }
 
  private:
+  void keep_seen() {
+    seen_.clear();
+    for (std::size_t e = 0; e < all_.size(); ++e)
+      if (!out_[e]) seen_.push_back(all_[e]);
+  }
+
   const CalibrateOptions& options_;
   std::vector<bool> out_;
   std::vector<FitEvent> all_, seen_;
@@ -88,6 +103,12 @@ double chi2_of(const sim::Plant& plant, const sim::Conventions& conventions, con
     return std::numeric_limits<double>::infinity();
   }
   return sum;
+}
+
+/// The fit from where `f` ended.
+Fit go_on(const sim::Plant& plant, const sim::Conventions& conventions, const Bench& bench,
+          const std::vector<FreeParameter>& free, const Fit& f) {
+  return fit(plant, conventions, bench.seen(), free, continued({}, f, free));
 }
 
 /// The fit with the effect: its starts screened, the best refined, the best of them finished.
@@ -121,10 +142,7 @@ Fit fit_with(const Hypothesis& h, const Bench& bench, const std::vector<EventSta
   if (!best.failed.empty())
     throw InputError({"effect " + h.name + " cannot be fitted", "every start", best.failed,
                       "check the model's parameters, or add another effect"});
-  FitOptions o;
-  o.values = values_of(best.plant, free);
-  for (const auto& e : best.events) o.start.push_back(e.state);
-  Fit finished = fit(h.plant, h.conventions, bench.seen(), free, o);
+  const Fit finished = go_on(h.plant, h.conventions, bench, free, best);
   return penalised(finished) < penalised(best) ? finished : best;
 }
 
@@ -190,8 +208,8 @@ Hypothesis find_hypothesis(const PlantModel& model, const std::string& name) {
 Addition add_effect(const PlantModel& model, const Hypothesis& hypothesis, std::vector<Record> records,
                     const AddOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
-  const Bench bench(model, std::move(records), options.calibrate);
-  const auto before = bench.each(model.plant, model.conventions, "events with the model as it is");
+  Bench bench(model, std::move(records), options.calibrate);
+  auto before = bench.each(model.plant, model.conventions, "events with the model as it is");
   const auto states = bench.states_of(before);
   Addition a;
   a.hypothesis = hypothesis;
@@ -199,7 +217,13 @@ Addition add_effect(const PlantModel& model, const Hypothesis& hypothesis, std::
   a.without = fit_without(model, bench, states, options.calibrate.spread);
   if (!a.without.failed.empty())
     throw InputError({"the model cannot be fitted", model.origin, a.without.failed, "correct the model"});
-  a.with = fit_with(hypothesis, bench, bench.states_of(before), options);
+  a.with = fit_with(hypothesis, bench, states, options);
+  if (bench.measure_noise(a.with, hypothesis.conventions)) {
+    const double spread = options.calibrate.spread;
+    before = bench.each(model.plant, model.conventions, "events with the model as it is");
+    a.without = go_on(model.plant, model.conventions, bench, free_parameters(model.plant, spread), a.without);
+    a.with = go_on(hypothesis.plant, hypothesis.conventions, bench, free_of(hypothesis, spread), a.with);
+  }
   a.own = static_cast<int>(hypothesis.free.size());
   a.parameters = a.with.parameters;
   a.evidence = criterion(a.without) - criterion(a.with);

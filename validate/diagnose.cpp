@@ -30,8 +30,9 @@ constexpr double kNear = 0.2;
 constexpr std::size_t kWaysOut = 2;
 constexpr double kEscape = 0.5;
 constexpr int kBases = 2;
-/// Misfit of the base below which its reactances are near enough to measure the noise with.
-constexpr double kClose = 4;
+
+/// Steps of the fits that go on with the noise measured again.
+constexpr int kOnwards = 4;
 
 /// What noise leaves may be slow by so many standard deviations (slow_remainder). Thirty development cases
 /// with nothing hidden had 3.9 at most.
@@ -71,6 +72,7 @@ class Diagnoser {
       if (round == kBases || !better_base(from)) break;
       result_.events = prepared;  // the noise was measured beside the worse one
     }
+    measure_noise_again();
     held_out_base_ = hold_out(trial(), model_.plant, model_.conventions, {}, result_.base);
     infer_inputs();
     search();
@@ -85,13 +87,7 @@ class Diagnoser {
     const auto free = free_parameters(model_.plant, options_.spread);
     result_.base = fit(model_.plant, model_.conventions, result_.events, free, o);
     if (result_.base.failed.empty()) {
-      if (result_.base.misfit() < kClose) {
-        PlantModel fitted = model_;
-        fitted.plant = result_.base.plant;
-        measure_noise(fitted, result_.events);
-      }
-      sharpen_noise(result_.base, result_.events);
-      remember_noise(result_.base, model_.conventions, result_.events);
+      measure_noise_through(result_.base, model_.conventions, result_.events);
       o = continued({}, result_.base, free);
       result_.base = fit(model_.plant, model_.conventions, result_.events, free, o);
     }
@@ -112,6 +108,30 @@ class Diagnoser {
       if (result_.ranked[k].fitted) try_from(model_stage(), result_.ranked[k].fit, base);
     from = continued({}, base.fit, free_parameters(model_.plant, options_.spread));
     return penalised(result_.base) - penalised(base.fit) > kEscape * result_.ranked.front().gain;
+  }
+  /// A base that fits badly hides the noise: then it is measured through the leading extension, and all are
+  /// fitted on with that.
+  void measure_noise_again() {
+    if (result_.ranked.empty() || result_.base.misfit() < kClose) return;
+    const Judgement& best = result_.ranked.front();
+    if (!best.fitted || best.fit.misfit() >= kClose) return;
+    const double near = kNear * best.gain;
+    measure_noise_through(best.fit, best.hypothesis.conventions, result_.events);
+    const auto go_on = [&](const sim::Plant& plant, const sim::Conventions& conventions,
+                           const std::vector<FreeParameter>& free, Fit& f, int iterations) {
+      FitOptions o = continued({}, f, free);
+      o.iterations = iterations;
+      if (Fit next = fit(plant, conventions, result_.events, free, o); next.failed.empty()) f = next;
+    };
+    go_on(model_.plant, model_.conventions, free_parameters(model_.plant, options_.spread), result_.base,
+          kOnwards);
+    each(static_cast<int>(result_.ranked.size()), "noise measured again", result_.ranked, [&](Judgement& j) {
+      if (!j.fitted) return;
+      go_on(j.hypothesis.plant, j.hypothesis.conventions, free_of(j.hypothesis, options_.spread), j.fit,
+            j.gain > near ? kOnwards : 0);
+      j.gain = criterion(result_.base) - criterion(j.fit);
+    });
+    std::ranges::stable_sort(result_.ranked, std::greater<>(), &Judgement::gain);
   }
   void infer_inputs() {
     FitOptions from;  // parameters bent far out of shape are no start

@@ -134,10 +134,11 @@ FitEvent prepare(Record record, const FitEventOptions& options, bool smears) {
 }
 
 /// Residual before the event, [channel][sample], each less its mean.
-Eigen::MatrixXd quiet_residual(const PlantModel& model, const FitEvent& e) {
+Eigen::MatrixXd quiet_residual(const sim::Plant& plant, const sim::Conventions& conventions,
+                               const FitEvent& e) {
   const VoltageCurve curve(e.played(), e.switchings);
-  const Response r = observe({.plant = &model.plant,
-                              .conventions = model.conventions,
+  const Response r = observe({.plant = &plant,
+                              .conventions = conventions,
                               .record = &e.record,
                               .curve = &curve,
                               .start = e.start,
@@ -225,18 +226,19 @@ std::vector<FitEvent> prepare_events(const PlantModel& model, std::vector<Record
       std::ranges::any_of(records, [&](const Record& r) { return any_smeared(r, options.jump_threshold); });
   for (Record& r : records) events.push_back(prepare(std::move(r), options, smears));
   unsmear(events);
-  measure_noise(model, events);
+  measure_noise(model.plant, model.conventions, events);
   return events;
 }
 
-void measure_noise(const PlantModel& model, std::vector<FitEvent>& events) {
+void measure_noise(const sim::Plant& plant, const sim::Conventions& conventions,
+                   std::vector<FitEvent>& events) {
   for (FitEvent& e : events) {
     const auto n = static_cast<Eigen::Index>(e.channels.size());
     Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(n, n);
     int freedom = 0;
     for (const FitEvent& other : events) {
       if (other.channels != e.channels) continue;
-      const Eigen::MatrixXd residual = quiet_residual(model, other);
+      const Eigen::MatrixXd residual = quiet_residual(plant, conventions, other);
       scatter += residual * residual.transpose();
       freedom += other.start.samples - 1;
     }

@@ -60,9 +60,10 @@ std::vector<Switching> find_switchings(const Record& record, double threshold, b
 std::vector<FitEvent> prepare_events(const PlantModel& model, std::vector<Record> records,
                                      const FitEventOptions& options = {});
 
-/// Measures the noise anew with another model of the same plant: a reactance that is a fifth wrong makes it a
+/// Measures the noise anew with another model of the plant: a reactance that is a fifth wrong makes it a
 /// fifth wrong.
-void measure_noise(const PlantModel& model, std::vector<FitEvent>& events);
+void measure_noise(const sim::Plant& plant, const sim::Conventions& conventions,
+                   std::vector<FitEvent>& events);
 
 /// Interpolation between samples leaves residuals of this size where a record has no noise at all [pu].
 constexpr double kLeastNoise = 1e-4;

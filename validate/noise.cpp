@@ -211,7 +211,14 @@ VoltageNoise voltage_noise(const Fit& fit, const std::vector<FitEvent>& events) 
 void remember_noise(const Fit& fit, const sim::Conventions& conventions, std::vector<FitEvent>& events) {
   const Eigen::Vector2d variance = voltage_noise(fit, events).variance;
   for (FitEvent& e : events)
-    if (auto memory = memory_of(fit.plant, conventions, e, variance)) e.memory = std::move(memory);
+    e.memory = memory_of(fit.plant, conventions, e, variance);
+}
+
+void measure_noise_through(const Fit& fit, const sim::Conventions& conventions,
+                           std::vector<FitEvent>& events) {
+  if (fit.misfit() < kClose) measure_noise(fit.plant, conventions, events);
+  sharpen_noise(fit, events);
+  remember_noise(fit, conventions, events);
 }
 
 double slow_remainder(const Fit& fit, const std::vector<FitEvent>& events) {

@@ -35,6 +35,14 @@ VoltageNoise voltage_noise(const Fit& fit, const std::vector<FitEvent>& events);
 /// the plant's equations about each event's start and gives the events' noise that memory, where it matters.
 void remember_noise(const Fit& fit, const sim::Conventions& conventions, std::vector<FitEvent>& events);
 
+/// Misfit below which a structure's reactances are near enough to measure the noise with.
+constexpr double kClose = 4;
+
+/// Measures the events' noise anew through a fit of theirs, of whatever structure: its variance where the fit
+/// is close, how large it is sample by sample, and its memory.
+void measure_noise_through(const Fit& fit, const sim::Conventions& conventions,
+                           std::vector<FitEvent>& events);
+
 /// How far the power of slow means of the residual (0.5, 1 and 2 s) lies above that of white noise, in
 /// standard deviations, in the channel and length where that is most.
 double slow_remainder(const Fit& fit, const std::vector<FitEvent>& events);

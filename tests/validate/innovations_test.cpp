@@ -87,7 +87,7 @@ struct Quiet {
       FitEvent& e = events.back();
       e.noise.setConstant(kPower);
     }
-    measure_noise(model, events);
+    measure_noise(model.plant, model.conventions, events);
   }
   /// Residuals of the model as it is.
   void answer() {
