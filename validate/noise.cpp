@@ -210,8 +210,7 @@ VoltageNoise voltage_noise(const Fit& fit, const std::vector<FitEvent>& events) 
 
 void remember_noise(const Fit& fit, const sim::Conventions& conventions, std::vector<FitEvent>& events) {
   const Eigen::Vector2d variance = voltage_noise(fit, events).variance;
-  for (FitEvent& e : events)
-    e.memory = memory_of(fit.plant, conventions, e, variance);
+  for (FitEvent& e : events) e.memory = memory_of(fit.plant, conventions, e, variance);
 }
 
 void measure_noise_through(const Fit& fit, const sim::Conventions& conventions,
