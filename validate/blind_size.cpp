@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -13,14 +14,26 @@ constexpr double kTolerance = 1e-7;      ///< of the integration: a thousandth o
 constexpr double kSwitchingUnit = 2e-4;  ///< one unit of a switching instant [s]
 constexpr Eigen::Index kStates = 4;      ///< of an event's start: P, Q, angle, speed
 
-/// P and Q, one sample after the other.
-Eigen::VectorXd interleaved(const std::vector<double>& P, const std::vector<double>& Q) {
-  Eigen::VectorXd all(static_cast<Eigen::Index>(2 * P.size()));
+/// P and Q of the compared samples, one after the other.
+Eigen::VectorXd interleaved(const FitEvent& e, const std::vector<double>& P, const std::vector<double>& Q) {
+  Eigen::VectorXd all(e.values());
+  Eigen::Index row = 0;
   for (std::size_t k = 0; k < P.size(); ++k) {
-    all[static_cast<Eigen::Index>(2 * k)] = P[k];
-    all[static_cast<Eigen::Index>(2 * k + 1)] = Q[k];
+    if (!e.compared(k)) continue;
+    all[row++] = P[k];
+    all[row++] = Q[k];
   }
   return all;
+}
+
+/// Samples next to a switching: a current that is late by a thousandth of a second shows in one of these
+/// alone, where a diagnosis cannot tell it from the instant.
+std::vector<char> beside_switchings(const Record& record, const std::vector<double>& switchings) {
+  std::vector<char> beside;
+  for (const double t : record.t)
+    beside.push_back(std::ranges::any_of(
+        switchings, [&](double instant) { return std::abs(t - instant) < record.step(); }));
+  return beside;
 }
 
 /// An event whose noise has these standard deviations.
@@ -29,6 +42,7 @@ FitEvent noise_of(const sim::Plant& plant, const sim::Conventions& conventions, 
   FitEvent e;
   e.record = record;
   for (const double t : event.switchings) e.switchings.push_back({.time = t});
+  e.smeared = beside_switchings(record, event.switchings);
   e.channels = {Output::P, Output::Q};
   e.start = pre_event_point(record, e.switchings, 1.0);
   const VoltageCurve curve(record, e.switchings);
@@ -52,7 +66,7 @@ BlindSize::BlindSize(const sim::Plant& plant, const sim::Conventions& convention
     : plant_(plant), conventions_(conventions), events_(events), plain_(std::move(plain)) {
   for (std::size_t e = 0; e < plain_.size(); ++e) {
     noise_.push_back(noise_of(plant_, conventions_, plain_[e], events_[e], power_noise, voltage_noise));
-    plain_residual_.push_back(Eigen::VectorXd::Zero(2 * plain_[e].samples()));
+    plain_residual_.push_back(Eigen::VectorXd::Zero(noise_[e].values()));
     plain_residual_.back() = residual(e, plain_[e]);
   }
   auto columns = static_cast<Eigen::Index>(free_parameters(plant_, 1.0).size());
@@ -67,7 +81,7 @@ Eigen::Index BlindSize::own_columns(std::size_t event) const {
 
 Eigen::Index BlindSize::first_row(std::size_t event) const {
   Eigen::Index row = 0;
-  for (std::size_t e = 0; e < event; ++e) row += 2 * plain_[e].samples();
+  for (std::size_t e = 0; e < event; ++e) row += noise_[e].values();
   return row;
 }
 
@@ -88,8 +102,8 @@ Response BlindSize::answer(std::size_t event, const Record& record,
 Eigen::VectorXd BlindSize::residual(std::size_t event, const Record& record) const {
   // less what interpolation and filter leave even without the effect
   const Response r = answer(event, record, {});
-  return interleaved(record.P, record.Q) - interleaved(r.of(Output::P), r.of(Output::Q)) -
-         plain_residual_[event];
+  return interleaved(noise_[event], record.P, record.Q) -
+         interleaved(noise_[event], r.of(Output::P), r.of(Output::Q)) - plain_residual_[event];
 }
 
 void BlindSize::add_columns(std::size_t event) {
@@ -105,12 +119,12 @@ void BlindSize::add_columns(std::size_t event) {
 
   auto first = static_cast<Eigen::Index>(shared);  // columns of this event's own
   for (std::size_t e = 0; e < event; ++e) first += own_columns(e);
-  RowMatrix own = RowMatrix::Zero(2 * plain_[event].samples(), columns_.cols());
+  RowMatrix own = RowMatrix::Zero(noise_[event].values(), columns_.cols());
   for (std::size_t d = 0; d < along.size(); ++d) {
     const auto& slope = r.slopes[d].value;
     const auto at = static_cast<Eigen::Index>(d);
     own.col(d < shared ? at : first + at - static_cast<Eigen::Index>(shared)) =
-        interleaved(slope[static_cast<int>(Output::P)], slope[static_cast<int>(Output::Q)]);
+        interleaved(noise_[event], slope[static_cast<int>(Output::P)], slope[static_cast<int>(Output::Q)]);
   }
   noise_[event].whiten(own);
   columns_.middleRows(first_row(event), own.rows()) = own;
@@ -120,8 +134,9 @@ double BlindSize::visible(const std::vector<Record>& with) const {
   double sum = 0;
   for (std::size_t e = 0; e < with.size(); ++e)
     for (std::size_t k = 0; k < with[e].t.size(); ++k)
-      sum += std::pow((with[e].P[k] - plain_[e].P[k]) / noise_[e].noise[0], 2) +
-             std::pow((with[e].Q[k] - plain_[e].Q[k]) / noise_[e].noise[1], 2);
+      if (noise_[e].compared(k))
+        sum += std::pow((with[e].P[k] - plain_[e].P[k]) / noise_[e].noise[0], 2) +
+               std::pow((with[e].Q[k] - plain_[e].Q[k]) / noise_[e].noise[1], 2);
   return std::sqrt(sum);
 }
 

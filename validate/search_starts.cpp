@@ -1,6 +1,7 @@
 #include "validate/search_starts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <ranges>
 
@@ -11,6 +12,8 @@ namespace {
 
 /// Starts that the score test looks at, and of which the misfit is taken.
 constexpr std::size_t kScored = 6, kScreened = 10;
+/// ... and of draws that act, where standard values do not: each picks up elsewhere.
+constexpr std::size_t kProvoked = 30;
 /// Misfit of a stage that nearly fits.
 constexpr double kNear = 1.5;
 /// Of the standard amplitude: where the answer is straight; the least that a start has.
@@ -19,7 +22,14 @@ constexpr double kSmall = 0.01, kLeastShare = 1e-3;
 constexpr double kOutOfReach = 100;
 /// Draws among which those that act are looked for; squared change, in units of noise, from which one does.
 constexpr std::size_t kProvoking = 80;
+/// How far from a draw that cannot stand a start lies, of the way to one that does nothing; halvings with
+/// which the first that can is found.
+constexpr std::array<double, 4> kBeyond = {0.02, 0.05, 0.1, 0.2};
+constexpr int kHalvings = 6;
 constexpr double kActs = 10;
+/// Squared answer of what is off, in that of the standard values: more states make other steps. Where a
+/// limiter's timer runs they do so by more, but by less than what acts.
+constexpr double kOff = 1e-6;
 
 }  // namespace
 
@@ -30,9 +40,9 @@ StartFinder::StartFinder(const Stage& stage) : stage_(stage) {
 Candidate StartFinder::of(Hypothesis h) const {
   Candidate c;
   bring(h);
-  provoke(h);
+  const bool provoked = provoke(h);
   if (score_)
-    score(h, c);
+    score(h, provoked ? kProvoked : kScored, c);
   else
     screen(h, c);
   c.hypothesis = std::move(h);
@@ -48,19 +58,45 @@ void StartFinder::bring(Hypothesis& h) const {
     for (auto& start : h.starts) start.push_back(value);
   }
 }
-void StartFinder::provoke(Hypothesis& h) const {
-  if (!h.drawn || acts(h, h.starts.front())) return;
+bool StartFinder::provoke(Hypothesis& h) const {
+  if (!h.drawn || largest_move(h, h.starts.front()) > kActs) return false;
   const std::size_t own = h.free.size() - stage_.own.size();
-  std::vector<std::vector<double>> acting;
+  std::vector<std::vector<double>> acting, idle, failing;
   for (auto& draw :
        further_draws(h, own, kProvoking,
                      stage_.events.front().record.t.back() - stage_.events.front().record.t.front())) {
     draw.insert(draw.end(), h.starts.front().begin() + static_cast<std::ptrdiff_t>(own),
                 h.starts.front().end());
-    if (acts(h, draw)) acting.push_back(std::move(draw));
-    if (acting.size() == kScreened) break;
+    const double move = largest_move(h, draw);
+    (move > kActs ? acting : std::isnan(move) ? failing : idle).push_back(std::move(draw));
+    if (acting.size() == kProvoked) break;
   }
-  if (!acting.empty()) h.starts = std::move(acting);
+  if (!idle.empty() && !failing.empty())
+    for (std::size_t k = 0; k < kProvoking && acting.size() < kProvoked; ++k)
+      if (auto start =
+              between(h, failing[k % failing.size()], idle[k % idle.size()], kBeyond[k % kBeyond.size()]))
+        acting.push_back(std::move(*start));
+  if (acting.empty()) return false;
+  h.starts = std::move(acting);
+  return true;
+}
+std::optional<std::vector<double>> StartFinder::between(const Hypothesis& h,
+                                                        const std::vector<double>& failing,
+                                                        const std::vector<double>& idle,
+                                                        double beyond) const {
+  const auto at = [&](double share) {
+    auto values = failing;
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] += share * (idle[i] - values[i]);
+    return values;
+  };
+  double fails = 0, runs = 1;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = 0.5 * (fails + runs);
+    (std::isnan(moves(h, beside(h, at(middle)), 0)) ? fails : runs) = middle;
+  }
+  auto start = at(runs + beyond * (1 - runs));
+  if (largest_move(h, start) > kActs) return start;
+  return std::nullopt;
 }
 void StartFinder::screen(const Hypothesis& h, Candidate& c) const {
   struct Start {
@@ -109,21 +145,32 @@ std::vector<std::size_t> StartFinder::amplitudes(const Hypothesis& h,
                                                  const std::vector<double>& standard) const {
   const auto free = free_of(h, stage_.spread);
   std::vector<std::size_t> found;
-  const double whole = moves(h, with_values(h, free, standard));
+  std::size_t event = 0;  // the first in which it acts
+  double whole = 0;
+  for (std::size_t e = 0; e < stage_.events.size() && !(whole > kActs); ++e)
+    if (const double square = moves(h, with_values(h, free, standard), e); square > whole)
+      event = e, whole = square;
   for (std::size_t i = free.size() - h.free.size(); i < free.size(); ++i) {
     const double neutral = parameter_record(h.plant, free[i].block, free[i].index).neutral;
     if (!(neutral < standard[i]) && !(neutral > standard[i])) continue;
     auto off = standard;
     off[i] = neutral;
-    if (moves(h, with_values(h, free, off)) < 1e-6 * whole) found.push_back(i);
+    if (moves(h, with_values(h, free, off), event) < std::max(kOff * whole, std::min(kActs, 0.01 * whole)))
+      found.push_back(i);
   }
   return found;
 }
-bool StartFinder::acts(const Hypothesis& h, const std::vector<double>& start) const {
-  const sim::Plant plant = with_values(h, free_of(h, stage_.spread), beside_fit(h, start));
-  for (std::size_t e = 0; e < stage_.events.size(); ++e)
-    if (moves(h, plant, e) > kActs) return true;
-  return false;
+sim::Plant StartFinder::beside(const Hypothesis& h, const std::vector<double>& start) const {
+  return with_values(h, free_of(h, stage_.spread), beside_fit(h, start));
+}
+double StartFinder::largest_move(const Hypothesis& h, const std::vector<double>& start) const {
+  const sim::Plant plant = beside(h, start);
+  double most = 0;
+  for (std::size_t e = 0; e < stage_.events.size() && !(most > kActs) && !std::isnan(most); ++e) {
+    const double move = moves(h, plant, e);
+    if (!(move <= most)) most = move;
+  }
+  return most;
 }
 double StartFinder::moves(const Hypothesis& h, const sim::Plant& plant, std::size_t event) const {
   const FitEvent& e = stage_.events[event];
@@ -143,7 +190,7 @@ double StartFinder::moves(const Hypothesis& h, const sim::Plant& plant, std::siz
     return std::nan("");
   }
 }
-void StartFinder::score(const Hypothesis& h, Candidate& c) const {
+void StartFinder::score(const Hypothesis& h, std::size_t looks, Candidate& c) const {
   const auto free = free_of(h, stage_.spread);
   const auto standard = beside_fit(h, h.starts.front());
   const auto which = amplitudes(h, standard);
@@ -158,7 +205,7 @@ void StartFinder::score(const Hypothesis& h, Candidate& c) const {
   std::vector<std::pair<double, std::vector<double>>> starts;
   std::size_t looked_at = 0;
   for (const auto& start : h.starts) {
-    const bool scored = looked_at++ < kScored;
+    const bool scored = looked_at++ < looks;
     if (!scored && !which.empty()) break;
     const auto values = beside_fit(h, start);
     auto whole = score_->change_to(with_values(h, free, values), h.conventions);
@@ -186,8 +233,7 @@ void StartFinder::score(const Hypothesis& h, Candidate& c) const {
   if (starts.empty() || std::ranges::none_of(changes, [](const auto& x) { return x.square > 0; })) return;
   c.starts = {started(h, h.starts.front())};
   // a few large changes say little of a small one
-  if (c.promise < kHopeless && (!which.empty() || starts.size() >= std::min(h.starts.size(), kScored)))
-    return;
+  if (c.promise < kHopeless && (!which.empty() || starts.size() >= std::min(h.starts.size(), looks))) return;
   const double reach = kOutOfReach * stage_.fit.chi2;
   if (!which.empty() || starts.front().first < reach) c.nested.emplace_back(0.0, standard);
   std::ranges::sort(starts);

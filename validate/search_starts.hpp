@@ -36,8 +36,8 @@ class StartFinder {
   /// What earlier stages brought is free in this hypothesis too.
   void bring(Hypothesis& h) const;
   /// A limiter may wait for more than the standard values let it meet here: then draws that act are its
-  /// starts.
-  void provoke(Hypothesis& h) const;
+  /// starts. False: they stay what they were.
+  bool provoke(Hypothesis& h) const;
   void screen(const Hypothesis& h, Candidate& c) const;
   /// The stage as fitted, with this start: all free parameters.
   [[nodiscard]] std::vector<double> beside_fit(const Hypothesis& h, const std::vector<double>& start) const;
@@ -45,18 +45,27 @@ class StartFinder {
                                               const std::vector<double>& values);
   /// Starts beside what was fitted, the standard one first, then as they suit the stage.
   void nest(const Hypothesis& h, Candidate& c) const;
-  /// Parameters that switch the effect off at their neutral value, by their place in the free ones. Off means
-  /// a thousandth of the standard values' answer: more states make other steps.
+  /// Parameters that switch the effect off at their neutral value, by their place in the free ones.
   [[nodiscard]] std::vector<std::size_t> amplitudes(const Hypothesis& h,
                                                     const std::vector<double>& standard) const;
-  /// Whether the stage as fitted answers any event otherwise with this start.
-  [[nodiscard]] bool acts(const Hypothesis& h, const std::vector<double>& start) const;
+  /// The stage as fitted, with this start.
+  [[nodiscard]] sim::Plant beside(const Hypothesis& h, const std::vector<double>& start) const;
+  /// Squared change by this start of the first event's answer that it changes so much that it acts, else of
+  /// the one it changes most, in units of noise; NaN where it cannot be run.
+  [[nodiscard]] double largest_move(const Hypothesis& h, const std::vector<double>& start) const;
   /// Squared change of an event's answer, in units of noise; NaN where it cannot be run.
-  [[nodiscard]] double moves(const Hypothesis& h, const sim::Plant& plant, std::size_t event = 0) const;
+  [[nodiscard]] double moves(const Hypothesis& h, const sim::Plant& plant, std::size_t event) const;
   /// Score test at the neutral point: each start as small as a first step along its amplitude would make it,
   /// those with most to gain first, the standard one before them. What has no amplitude acts in full or not
   /// at all: of its starts those first that raise chi2 least. Nothing to gain: no starts, not worth a fit.
-  void score(const Hypothesis& h, Candidate& c) const;
+  /// Slopes of the first `looks` starts.
+  void score(const Hypothesis& h, std::size_t looks, Candidate& c) const;
+  /// A limiter that stands above its pickup at the start fails, one far below it does nothing: one that acts,
+  /// so far beyond the first between the two that runs; none if it does not.
+  [[nodiscard]] std::optional<std::vector<double>> between(const Hypothesis& h,
+                                                           const std::vector<double>& failing,
+                                                           const std::vector<double>& idle,
+                                                           double beyond) const;
   /// Misfit of a start, everything else as in the model; whether it acts at all.
   [[nodiscard]] bool answer(const sim::Plant& plant, const Hypothesis& h, double& misfit, bool& acts) const;
   /// Whether two answers differ by a hundredth of the noise somewhere.
