@@ -77,12 +77,17 @@ std::vector<Smear> told_apart(const std::vector<Complex>& step, Smear both, doub
   return {trimmed(step, {both.first, end}, limit), trimmed(step, {back, both.last}, limit)};
 }
 
-bool any_smeared(const Record& record, double threshold) {
-  std::vector<char> smeared;
-  find_switchings(record, threshold, false, smeared);
-  return std::ranges::count(smeared, 1) > 0;
+/// Whether the record's first jump is too large, and too sudden, to have passed a filter: that shares it out
+/// over two intervals, or begins in the interval before. Later ones may be a swing's.
+bool is_sharp(const Record& r, const std::vector<Switching>& found, double threshold) {
+  constexpr double kClear = 10, kBegins = 0.03;
+  if (found.empty()) return false;
+  const auto k = static_cast<std::size_t>(
+      std::ranges::find_if(r.t, [&](double t) { return t > found.front().time; }) - r.t.begin());
+  const auto step = steps_of(r);
+  return std::abs(step[k - 1]) > kClear * threshold &&
+         std::abs(step[k - 2]) < kBegins * std::abs(step[k - 1]);
 }
-
 /// Time, V and theta of the samples that are not smeared.
 Record without(const Record& record, const std::vector<char>& smeared) {
   Record clean;
@@ -111,12 +116,12 @@ double still_until(const Record& r) {
   return r.t.back();
 }
 
-FitEvent prepare(Record record, const FitEventOptions& options, bool smears) {
+FitEvent prepare(Record record, const FitEventOptions& options, Jumps jumps) {
   FitEvent e;
   e.record = std::move(record);
   // half of what matters to the eye: a filter shares a jump out over two intervals, and one that is not found
   // is played in as a ramp
-  e.switchings = find_switchings(e.record, options.jump_threshold / 2, smears, e.smeared);
+  e.switchings = find_switchings(e.record, options.jump_threshold / 2, jumps, e.smeared);
   if (std::ranges::count(e.smeared, 1) > 0)
     e.clean = without(e.record, e.smeared);
   else
@@ -155,7 +160,19 @@ Eigen::MatrixXd quiet_residual(const sim::Plant& plant, const sim::Conventions& 
 
 }  // namespace
 
-std::vector<Switching> find_switchings(const Record& record, double threshold, bool always,
+Jumps jumps_of(const std::vector<Record>& records, double threshold) {
+  bool any_spread = false, any_sharp = false;
+  for (const Record& r : records) {
+    std::vector<char> smeared;
+    const auto found = find_switchings(r, threshold, Jumps::either, smeared);
+    if (!found.empty() && found.front().uncertainty > r.step()) return Jumps::spread;
+    any_sharp = any_sharp || is_sharp(r, found, threshold);
+    any_spread = any_spread || std::ranges::count(smeared, 1) > 0;
+  }
+  return any_spread && !any_sharp ? Jumps::spread : Jumps::sharp;
+}
+
+std::vector<Switching> find_switchings(const Record& record, double threshold, Jumps jumps,
                                        std::vector<char>& smeared) {
   smeared.assign(record.t.size(), 0);
   const auto step = steps_of(record);
@@ -174,7 +191,8 @@ std::vector<Switching> find_switchings(const Record& record, double threshold, b
     if (is_swing(step, d, k, std::min(last, d.size() - 4))) continue;
     // samples first + 1 .. last lie inside the jump
     for (const Smear& jump : told_apart(step, {k, last}, limit)) {
-      const bool spread = jump.last > jump.first || always;
+      const bool wide = jump.last > jump.first, spread = wide || jumps == Jumps::spread;
+      if (wide && jumps == Jumps::sharp) continue;
       const double from = record.t[jump.first], to = record.t[jump.last + 1];
       found.push_back({(from + to) / 2, (to - from) / 2 + (spread ? record.step() : 0.0)});
       if (spread)
@@ -222,9 +240,8 @@ void FitEvent::whiten(RowMatrix& e) const {
 std::vector<FitEvent> prepare_events(const PlantModel& model, std::vector<Record> records,
                                      const FitEventOptions& options) {
   std::vector<FitEvent> events;
-  const bool smears =
-      std::ranges::any_of(records, [&](const Record& r) { return any_smeared(r, options.jump_threshold); });
-  for (Record& r : records) events.push_back(prepare(std::move(r), options, smears));
+  const Jumps jumps = jumps_of(records, options.jump_threshold);
+  for (Record& r : records) events.push_back(prepare(std::move(r), options, jumps));
   unsmear(events);
   measure_noise(model.plant, model.conventions, events);
   return events;

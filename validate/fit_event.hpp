@@ -47,11 +47,17 @@ struct FitEventOptions {
   double pre_event = 1.0;  ///< length of the steady window where nothing is switched [s]
 };
 
+/// What an instrument does to jumps: it smears all or none.
+enum class Jumps { either, sharp, spread };
+
 /// Finds switchings although a filter may have spread their jumps over two or three sample intervals;
-/// `smeared` gets a mark per sample that lies inside such a jump or beside it. An instrument that smears one
-/// jump smears them all, so `always` marks the neighbours of sharp ones too.
-std::vector<Switching> find_switchings(const Record& record, double threshold, bool always,
+/// `smeared` gets a mark per sample that lies inside such a jump or beside it. Where jumps are known to be
+/// spread the neighbours of sharp ones are marked too; where they are sharp, what is spread is a swing.
+std::vector<Switching> find_switchings(const Record& record, double threshold, Jumps jumps,
                                        std::vector<char>& smeared);
+
+/// What one instrument does, by all of its records: their first jumps decide, later ones may be a swing's.
+Jumps jumps_of(const std::vector<Record>& records, double threshold);
 
 /// Prepares records that belong together (one plant, one instrument). The noise is that of the pre-event
 /// residual of `model`, pooled over the events: what the played-in voltage's own noise adds through the

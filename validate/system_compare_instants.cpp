@@ -16,7 +16,7 @@ constexpr double kAfter = 1.0;  // s after the last switching that a fit looks a
 /// Instants of the jumps in one record.
 std::vector<Switching> jumps_of(const Record& r) {
   std::vector<char> smeared;
-  return find_switchings(r, kJumpThreshold, false, smeared);
+  return find_switchings(r, kJumpThreshold, Jumps::either, smeared);
 }
 
 /// Up to `end`, everything that is looked at.

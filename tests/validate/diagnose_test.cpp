@@ -41,7 +41,7 @@ TEST(FindSwitchings, SmearedJumpsAreFoundAndMarked) {
   const PlantModel model = load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   Record r = example_records(model).front();
   std::vector<char> smeared;
-  const auto sharp = find_switchings(r, kJumpThreshold, false, smeared);
+  const auto sharp = find_switchings(r, kJumpThreshold, Jumps::either, smeared);
   ASSERT_EQ(sharp.size(), 2u);
   EXPECT_EQ(std::ranges::count(smeared, 1), 0);
   // a filter that takes the mean of each sample and the next
@@ -50,7 +50,7 @@ TEST(FindSwitchings, SmearedJumpsAreFoundAndMarked) {
     r.V[k] = std::abs(v);
     r.theta[k] += std::arg(v * std::polar(1.0, -r.theta[k]));
   }
-  const auto found = find_switchings(r, kJumpThreshold, false, smeared);
+  const auto found = find_switchings(r, kJumpThreshold, Jumps::either, smeared);
   ASSERT_EQ(found.size(), 2u);
   EXPECT_GE(std::ranges::count(smeared, 1), 4);
   for (std::size_t k = 0; k < 2; ++k)

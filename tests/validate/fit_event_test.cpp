@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <numbers>
 #include <random>
@@ -26,7 +27,7 @@ Record record_of(
 }
 std::vector<Switching> switchings_of(const Record& r) {
   std::vector<char> smeared;
-  return find_switchings(r, kJumpThreshold / 2, false, smeared);
+  return find_switchings(r, kJumpThreshold / 2, Jumps::either, smeared);
 }
 
 TEST(FindSwitchings, AFastSwingIsNone) {
@@ -45,6 +46,44 @@ TEST(FindSwitchings, AJumpOutOfASwingIsOne) {
       record_of([](double t) { return (t <= 5.0 ? 1.0 : 0.8) + 0.05 * std::sin(2 * std::numbers::pi * t); }));
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NEAR(found.front().time, 5.0 + 0.5 / 60, 0.51 / 60);
+}
+/// A fault from 3 s to 3.1 s, then a swing of 3 Hz past the voltage's minimum, as near loss of synchronism.
+Record near_loss() {
+  return record_of(
+      [](double t) {
+        if (t <= 3.0) return 1.0;
+        if (t <= 3.1) return 0.35;
+        return 0.9 - 0.55 * std::exp(-std::pow((t - 3.5) / 0.035, 2));
+      },
+      [](double t) { return t <= 3.1 ? 0.1 : 0.5 + 0.6 * std::erf((t - 3.5) / 0.05); });
+}
+/// Each phasor the mean of itself and the next.
+Record filtered(Record r) {
+  const auto at = [&](std::size_t k) { return std::polar(r.V[k], r.theta[k]); };
+  for (std::size_t k = 0; k + 1 < r.t.size(); ++k) {
+    const auto v = (at(k) + at(k + 1)) / 2.0;
+    r.V[k] = std::abs(v);
+    r.theta[k] = std::arg(v);
+  }
+  return r;
+}
+
+TEST(FindSwitchings, ASwingBesideSharpJumpsIsNone) {
+  const Record r = near_loss();
+  std::vector<char> smeared;
+  const auto either = find_switchings(r, kJumpThreshold / 2, Jumps::either, smeared);
+  ASSERT_GT(either.size(), 2U) << "the swing was meant to be taken for a smeared jump";
+  ASSERT_EQ(jumps_of({r}, kJumpThreshold), Jumps::sharp);
+  const auto found = find_switchings(r, kJumpThreshold / 2, Jumps::sharp, smeared);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_NEAR(found[0].time, 3.0, 1.0 / 60);
+  EXPECT_NEAR(found[1].time, 3.1, 1.0 / 60);
+  EXPECT_EQ(std::ranges::count(smeared, 1), 0);
+}
+TEST(FindSwitchings, OneInstrumentSmearsAllOrNone) {
+  const Record quiet = record_of([](double) { return 1.0; });
+  EXPECT_EQ(jumps_of({quiet, near_loss()}, kJumpThreshold), Jumps::sharp);
+  EXPECT_EQ(jumps_of({quiet, filtered(near_loss())}, kJumpThreshold), Jumps::spread);
 }
 TEST(FindSwitchings, NoiseIsNone) {
   EXPECT_TRUE(switchings_of(record_of([](double) { return 1.0; })).empty());

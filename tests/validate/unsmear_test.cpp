@@ -40,7 +40,7 @@ FitEvent event(double half, double noise) {
     e.record.V.push_back(std::abs(v) + normal(random));
     e.record.theta.push_back(std::arg(v) + normal(random));
   }
-  e.switchings = find_switchings(e.record, kJumpThreshold, true, e.smeared);
+  e.switchings = find_switchings(e.record, kJumpThreshold, Jumps::spread, e.smeared);
   e.clean.base = e.record.base;
   for (std::size_t k = 0; k < e.record.t.size(); ++k) {
     if (e.smeared[k]) continue;
