@@ -141,7 +141,9 @@ nlohmann::json hypothesis_json(const Judgement& h) {
   for (const auto& u : h.held_out)
     j["unseen"].push_back({{"record", u.record},
                            {"rms_in_noise_before", number(std::sqrt(u.before))},
-                           {"rms_in_noise_after", number(std::sqrt(u.after))}});
+                           {"rms_in_noise_after", number(std::sqrt(u.after))},
+                           {"cost_per_value_before", number(u.cost_before)},
+                           {"cost_per_value_after", number(u.cost_after)}});
   return j;
 }
 

@@ -10,6 +10,9 @@ namespace {
 
 /// An event in which the effect hardly acts may be predicted worse by this, the refit's own scatter.
 constexpr double kWorse = 1.02;
+/// Nor may it cost an unseen event more than this, or than this share of the evidence: what is really missing
+/// costs it nothing.
+constexpr double kCosts = 20, kCostsShare = 0.1;
 /// Cost per value up to which an unseen event is predicted; or its share of what it was.
 constexpr double kPredicts = 1.25, kFalls = 0.1;
 /// A finished fit is taken for a short one, which has no errors, unless its criterion is worse by this.
@@ -75,11 +78,15 @@ void judge(const Trial& trial, const Fit& base, const std::vector<HeldOut>& held
     j.held_out[e].before = held_out_base[e].after;
     j.held_out[e].cost_before = held_out_base[e].cost_after;
   }
-  for (const auto& h : j.held_out)
-    if (h.cost_after > kWorse * h.cost_before && h.cost_after > trial.adequate) {
+  for (std::size_t e = 0; e < j.held_out.size(); ++e) {
+    const HeldOut& h = j.held_out[e];
+    const double costs = (h.cost_after - h.cost_before) * trial.events[e].values();
+    if ((h.cost_after > kWorse * h.cost_before && h.cost_after > trial.adequate) ||
+        costs > std::max(kCosts, kCostsShare * j.gain)) {
       j.why_not = fmt::format("does not improve {} when that is not fitted", h.record);
       return;
     }
+  }
   for (const auto& h : j.held_out)
     if (h.cost_after > kPredicts && h.cost_after > kFalls * h.cost_before) {
       j.why_not = fmt::format("does not predict {} when that is not fitted", h.record);
