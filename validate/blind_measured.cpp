@@ -6,10 +6,9 @@ namespace swingbank::validate {
 
 std::string false_positive_note() {
   return fmt::format(
-      "Of {} blind cases in which nothing was hidden, {} were given an effect (95 % interval {:.0f} to "
-      "{:.0f} %; "
-      "docs/blind-test.md).",
-      kFalsePositives.n, kFalsePositives.hits, 100 * kFalsePositives.low(), 100 * kFalsePositives.high());
+      "In {} of {} blind cases in which nothing was hidden an effect was named (95 % interval {:.1f} to "
+      "{:.0f} %; docs/blind-test.md).",
+      kFalsePositives.hits, kFalsePositives.n, 100 * kFalsePositives.low(), 100 * kFalsePositives.high());
 }
 
 }  // namespace swingbank::validate

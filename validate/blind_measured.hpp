@@ -11,7 +11,7 @@ namespace swingbank::validate {
 /// seed 1128960556.
 inline const Rate kFalsePositives{1, 40};
 
-/// "Of N blind cases in which nothing was hidden k were given an effect (95 %: a to b %)."
+/// "In k of n blind cases in which nothing was hidden an effect was named (95 %: a to b %)."
 std::string false_positive_note();
 
 }  // namespace swingbank::validate
