@@ -115,20 +115,17 @@ class Diagnoser {
     if (result_.ranked.empty() || result_.base.misfit() < kClose) return;
     const Judgement& best = result_.ranked.front();
     if (!best.fitted || best.fit.misfit() >= kClose) return;
-    const double near = kNear * best.gain;
     measure_noise_through(best.fit, best.hypothesis.conventions, result_.events);
     const auto go_on = [&](const sim::Plant& plant, const sim::Conventions& conventions,
-                           const std::vector<FreeParameter>& free, Fit& f, int iterations) {
+                           const std::vector<FreeParameter>& free, Fit& f) {
       FitOptions o = continued({}, f, free);
-      o.iterations = iterations;
+      o.iterations = kOnwards;
       if (Fit next = fit(plant, conventions, result_.events, free, o); next.failed.empty()) f = next;
     };
-    go_on(model_.plant, model_.conventions, free_parameters(model_.plant, options_.spread), result_.base,
-          kOnwards);
+    go_on(model_.plant, model_.conventions, free_parameters(model_.plant, options_.spread), result_.base);
     each(static_cast<int>(result_.ranked.size()), "noise measured again", result_.ranked, [&](Judgement& j) {
       if (!j.fitted) return;
-      go_on(j.hypothesis.plant, j.hypothesis.conventions, free_of(j.hypothesis, options_.spread), j.fit,
-            j.gain > near ? kOnwards : 0);
+      go_on(j.hypothesis.plant, j.hypothesis.conventions, free_of(j.hypothesis, options_.spread), j.fit);
       j.gain = criterion(result_.base) - criterion(j.fit);
     });
     std::ranges::stable_sort(result_.ranked, std::greater<>(), &Judgement::gain);

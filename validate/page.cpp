@@ -180,7 +180,7 @@ void Page::bars(const Bars& b) {
   constexpr double width = 330, line = 24, top = 30;
   std::size_t longest = 0;
   for (const auto& bar : b.bars) longest = std::max(longest, bar.label.size());
-  const double left = std::max(70.0, 12 + 6.6 * static_cast<double>(longest));
+  const double left = std::max(70.0, 12 + 7.8 * static_cast<double>(longest));
   double largest = b.reference * 1.1;
   for (const auto& bar : b.bars)
     if (std::isfinite(bar.value)) largest = std::max(largest, bar.value * 1.02);
