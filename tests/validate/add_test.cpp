@@ -20,12 +20,12 @@ PlantModel example(bool with_exciter) {
     model.plant.controls.push_back({sim::find_effect("SEXS"), {0.1, 10.0, 100.0, 0.05, -4.0, 5.0}});
   return model;
 }
-std::vector<Record> records(const PlantModel& model) {
-  std::vector<Record> both;
-  for (const char* name : {"avr_ev1.csv", "avr_ev2.csv"})
-    both.push_back(
-        read_record(test::source(std::string("configs/records/record-example/") + name), model.record_base));
-  return both;
+std::vector<Record> records(const PlantModel& model, int count = 2) {
+  std::vector<Record> some;
+  for (int i = 1; i <= count; ++i)
+    some.push_back(read_record(test::source(fmt::format("configs/records/record-example/avr_ev{}.csv", i)),
+                               model.record_base));
+  return some;
 }
 AddOptions power_only() {
   AddOptions options;
@@ -47,6 +47,20 @@ TEST(Add, TheMissingExciterExplainsTheUnseenEvent) {
   ASSERT_EQ(a.model.plant.controls.size(), 1U);
   EXPECT_EQ(a.model.plant.controls[0].effect->name, "SEXS");
   for (int i = 0; i < a.own; ++i) EXPECT_EQ(a.parameters[static_cast<std::size_t>(i)].block, "SEXS");
+}
+
+// Noise taken through the model without the exciter left TA/TB outside its interval.
+TEST(Add, IntervalsHoldTheTruth) {
+  const PlantModel model = example(false), truth = example(true);
+  AddOptions options = power_only();
+  options.calibrate.held_out = {"4"};
+  const Addition a = add_effect(model, find_hypothesis(model, "SEXS"), records(model, 4), options);
+  ASSERT_EQ(a.parameters.size(), 17U);
+  for (const auto& p : a.parameters) {
+    const double value = parameter_value(truth.plant, p.where.block, p.where.index);
+    EXPECT_LE(p.low, value) << p.block << "." << p.name;
+    EXPECT_GE(p.high, value) << p.block << "." << p.name;
+  }
 }
 
 TEST(Add, WhatIsNotThereDoesNotEarnItsPlace) {
