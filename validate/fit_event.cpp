@@ -169,7 +169,7 @@ Jumps jumps_of(const std::vector<Record>& records, double threshold) {
     any_sharp = any_sharp || is_sharp(r, found, threshold);
     any_spread = any_spread || std::ranges::count(smeared, 1) > 0;
   }
-  return any_spread && !any_sharp ? Jumps::spread : Jumps::sharp;
+  return any_sharp ? Jumps::sharp : any_spread ? Jumps::spread : Jumps::either;
 }
 
 std::vector<Switching> find_switchings(const Record& record, double threshold, Jumps jumps,

@@ -57,6 +57,7 @@ std::vector<Switching> find_switchings(const Record& record, double threshold, J
                                        std::vector<char>& smeared);
 
 /// What one instrument does, by all of its records: their first jumps decide, later ones may be a swing's.
+/// `either` where none tells.
 Jumps jumps_of(const std::vector<Record>& records, double threshold);
 
 /// Prepares records that belong together (one plant, one instrument). The noise is that of the pre-event

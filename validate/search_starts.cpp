@@ -28,8 +28,8 @@ constexpr std::array<double, 4> kBeyond = {0.02, 0.05, 0.1, 0.2};
 constexpr int kHalvings = 6;
 constexpr double kActs = 10;
 /// Squared answer of what is off, in that of the standard values: more states make other steps. Where a
-/// limiter's timer runs they do so by more, but by less than what acts.
-constexpr double kOff = 1e-6;
+/// limiter's timer runs they do so by more, but by less than what acts and than a tenth of the answer.
+constexpr double kOff = 1e-6, kOffBeside = 0.01;
 
 }  // namespace
 
@@ -155,7 +155,8 @@ std::vector<std::size_t> StartFinder::amplitudes(const Hypothesis& h,
     if (!(neutral < standard[i]) && !(neutral > standard[i])) continue;
     auto off = standard;
     off[i] = neutral;
-    if (moves(h, with_values(h, free, off), event) < std::max(kOff * whole, std::min(kActs, 0.01 * whole)))
+    if (moves(h, with_values(h, free, off), event) <
+        std::max(kOff * whole, std::min(kActs, kOffBeside * whole)))
       found.push_back(i);
   }
   return found;
