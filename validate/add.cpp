@@ -9,6 +9,7 @@
 
 #include "validate/calibrate_slopes.hpp"
 #include "validate/in_parallel.hpp"
+#include "validate/judge.hpp"
 #include "validate/noise.hpp"
 
 namespace swingbank::validate {
@@ -22,16 +23,6 @@ std::string plain(const std::string& name) {
   for (const char c : name)
     if (c != ' ' && c != '\t') out += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   return out;
-}
-
-/// The effect's parameters, then every other that a refit may move.
-std::vector<FreeParameter> free_of(const Hypothesis& h, double spread) {
-  std::vector<FreeParameter> free = h.free;
-  for (const auto& f : free_parameters(h.plant, spread))
-    if (std::ranges::none_of(
-            h.free, [&](const FreeParameter& own) { return own.block == f.block && own.index == f.index; }))
-      free.push_back(f);
-  return free;
 }
 
 /// Events, those seen apart, and the model's own fits of them.
@@ -187,11 +178,12 @@ std::string sentence_of(const Addition& a) {
 }  // namespace
 
 Hypothesis find_hypothesis(const PlantModel& model, const std::string& name) {
+  const auto named = [&](const Hypothesis& h) { return plain(h.name) == plain(name); };
   auto all = all_hypotheses(model.plant, model.conventions);
-  const auto found = std::ranges::find(all, plain(name), [](const Hypothesis& h) { return plain(h.name); });
-  if (found != all.end()) return *found;
   std::string names;
   for (const auto& h : all) names += (names.empty() ? "" : ", ") + h.name;
+  std::ranges::move(all_replacements(model.plant, model.conventions), std::back_inserter(all));
+  if (const auto found = std::ranges::find_if(all, named); found != all.end()) return *found;
   const sim::Effect* effect = sim::find_effect(name);
   const std::string remedy = "use one of " + names + ", or load a law with --law";
   if (effect == nullptr)
@@ -202,7 +194,8 @@ Hypothesis find_hypothesis(const PlantModel& model, const std::string& name) {
                       "write it into the model file by hand"});
   throw InputError({"effect " + std::string(effect->name), "swingbank add",
                     "the plant has no room in slot " + std::string(sim::slot_name(effect->slot)),
-                    "remove what stands there, or " + remedy});
+                    "write \"" + std::string(effect->name) +
+                        " in place of ...\" with the name of what stands there, or " + remedy});
 }
 
 Addition add_effect(const PlantModel& model, const Hypothesis& hypothesis, std::vector<Record> records,
@@ -226,6 +219,7 @@ Addition add_effect(const PlantModel& model, const Hypothesis& hypothesis, std::
   }
   a.own = static_cast<int>(hypothesis.free.size());
   a.parameters = a.with.parameters;
+  std::ranges::rotate(a.parameters, a.parameters.end() - a.own);  // the effect's stand last in a fit
   a.evidence = criterion(a.without) - criterion(a.with);
   const auto refitted = bench.each(a.without.plant, model.conventions, "events without the effect");
   const auto after = bench.each(a.with.plant, hypothesis.conventions, "events with the effect");
@@ -249,14 +243,18 @@ Addition add_effect(const PlantModel& model, const Hypothesis& hypothesis, std::
 
 Removal try_without(const PlantModel& model, std::size_t control, std::vector<Record> records,
                     const AddOptions& options) {
-  const Bench bench(model, std::move(records), options.calibrate);
+  Bench bench(model, std::move(records), options.calibrate);
   Removal r;
   r.effect = model.plant.controls[control].effect->name;
   r.model = model;
   r.model.plant.controls.erase(r.model.plant.controls.begin() + static_cast<std::ptrdiff_t>(control));
   const auto states = bench.states_of(bench.each(model.plant, model.conventions, "events with " + r.effect));
-  const Fit with = fit_without(model, bench, states, options.calibrate.spread);
-  const Fit without = fit_without(r.model, bench, states, options.calibrate.spread);
+  const double spread = options.calibrate.spread;
+  Fit with = fit_without(model, bench, states, spread), without = fit_without(r.model, bench, states, spread);
+  if (with.failed.empty() && without.failed.empty() && bench.measure_noise(with, model.conventions)) {
+    with = go_on(model.plant, model.conventions, bench, free_parameters(model.plant, spread), with);
+    without = go_on(r.model.plant, model.conventions, bench, free_parameters(r.model.plant, spread), without);
+  }
   r.evidence = criterion(without) - criterion(with);
   if (without.failed.empty()) r.model.plant = without.plant;
   return r;

@@ -42,7 +42,7 @@ FitEvent noise_of(const sim::Plant& plant, const sim::Conventions& conventions, 
   FitEvent e;
   e.record = record;
   for (const double t : event.switchings) e.switchings.push_back({.time = t});
-  e.smeared = beside_switchings(record, event.switchings);
+  e.left_out = beside_switchings(record, event.switchings);
   e.channels = {Output::P, Output::Q};
   e.start = pre_event_point(record, e.switchings, 1.0);
   const VoltageCurve curve(record, e.switchings);
@@ -54,7 +54,7 @@ FitEvent noise_of(const sim::Plant& plant, const sim::Conventions& conventions, 
   const Eigen::Matrix2d white = at_once + power * power * Eigen::Matrix2d::Identity();
   e.noise = white.diagonal().cwiseSqrt();
   e.whitening = white.llt().matrixL().solve(Eigen::Matrix2d::Identity());
-  e.memory = std::make_shared<Innovations>(slow_noise(linear, e, variance), record.samples(), e.smeared);
+  e.memory = std::make_shared<Innovations>(slow_noise(linear, e, variance), record.samples(), e.left_out);
   return e;
 }
 

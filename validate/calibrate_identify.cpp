@@ -29,6 +29,7 @@ class Trial {
           {.time = first + std::floor(t / step) * step + 0.4 * step, .uncertainty = 0.5 * step});
     event_.start.drift = 0;
     event_.smeared.clear();
+    event_.left_out.clear();
     event_.memory = nullptr;
   }
   /// V as a multiple of the operating point's, and the frequency deviation [Hz], both of time.

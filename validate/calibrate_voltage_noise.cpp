@@ -29,6 +29,7 @@ FitEvent minute(const FitEvent& like, const Eigen::Vector2d& deviation) {
   for (auto* channel : {&r.P, &r.Q, &r.speed, &r.Efd, &r.Ifd}) channel->assign(samples, 0.0);
   event.switchings.clear();
   event.smeared.clear();
+  event.left_out.clear();
   event.start.drift = 0;
   return event;
 }

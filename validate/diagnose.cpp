@@ -68,10 +68,13 @@ class Diagnoser {
     FitOptions from;
     for (int round = 0;; ++round) {
       fit_base(from);
-      result_.ranked = try_hypotheses(model_stage(), options_.progress);
+      const Stage stage = model_stage();
+      result_.ranked =
+          try_hypotheses(stage, all_hypotheses(stage.plant, stage.conventions), options_.progress);
       if (round == kBases || !better_base(from)) break;
       result_.events = prepared;  // the noise was measured beside the worse one
     }
+    try_replacements();
     measure_noise_again();
     held_out_base_ = hold_out(trial(), model_.plant, model_.conventions, {}, result_.base);
     infer_inputs();
@@ -108,6 +111,15 @@ class Diagnoser {
       if (result_.ranked[k].fitted) try_from(model_stage(), result_.ranked[k].fit, base);
     from = continued({}, base.fit, free_parameters(model_.plant, options_.spread));
     return penalised(result_.base) - penalised(base.fit) > kEscape * result_.ranked.front().gain;
+  }
+  /// Where nothing that could be added leaves only noise, what is there may be of another kind.
+  void try_replacements() {
+    const auto fits = [&](const Fit& f) { return f.misfit() <= options_.adequate; };
+    if (fits(result_.base) || (!result_.ranked.empty() && fits(result_.ranked.front().fit))) return;
+    const Stage stage = model_stage();
+    auto others = try_hypotheses(stage, all_replacements(stage.plant, stage.conventions), options_.progress);
+    std::ranges::move(others, std::back_inserter(result_.ranked));
+    std::ranges::stable_sort(result_.ranked, std::greater<>(), &Judgement::gain);
   }
   /// A base that fits badly hides the noise: then it is measured through the leading extension, and all are
   /// fitted on with that.
@@ -185,7 +197,7 @@ class Diagnoser {
       if (tried && (j.hypothesis.name == tried->hypothesis.name ||
                     (tried->hypothesis.slot >= 0 && j.hypothesis.slot == tried->hypothesis.slot)))
         continue;
-      if (!taken && j.gain >= trial().evidence && j.fitted &&
+      if (!taken && j.gain >= trial().evidence && j.fitted && !j.hypothesis.replaces &&
           static_cast<int>(firsts.size()) < options_.firsts)
         firsts.push_back(&j);
     }
@@ -196,7 +208,8 @@ class Diagnoser {
   }
   /// Every hypothesis beside one that is taken as given; evidence is that of both.
   [[nodiscard]] std::vector<Judgement> beside(const Stage& stage, const Judgement& first) const {
-    auto pairs = try_hypotheses(after(stage, first), options_.progress);
+    const Stage then = after(stage, first);
+    auto pairs = try_hypotheses(then, all_hypotheses(then.plant, then.conventions), options_.progress);
     std::erase_if(pairs, [](const Judgement& j) { return j.gain < kSecond; });
     for (auto& pair : pairs) pair.gain += first.gain;
     return pairs;
@@ -353,11 +366,11 @@ class Diagnoser {
     std::string rivals;
     for (const auto& name : result_.equivalent) rivals += (rivals.empty() ? "" : ", ") + name;
     result_.sentence = fmt::format(
-        "{} is missing{}: on events it was not fitted to, the error falls from {:.1f} × noise to {:.2f} × "
-        "noise.",
+        "{} {}{}: on events it was not fitted to, the error falls from {:.1f} × noise to {:.2f} × noise.",
         capitalised(best.hypothesis.with.empty()
                         ? best.hypothesis.what
                         : best.hypothesis.with + ", and besides " + best.hypothesis.what),
+        best.hypothesis.replaces ? "explains the records" : "is missing",
         rivals.empty() ? "" : " (or " + rivals + ": these records cannot tell)", std::sqrt(before),
         std::sqrt(after));
     if (!rival) return;

@@ -138,6 +138,18 @@ FitEvent prepare(Record record, const FitEventOptions& options, Jumps jumps) {
   return e;
 }
 
+/// Samples that are not compared.
+std::vector<char> left_out(const FitEvent& e) {
+  std::vector<char> marks = e.smeared;
+  marks.resize(e.record.t.size());
+  for (std::size_t k = 0; k < marks.size(); ++k)
+    if (std::ranges::any_of(e.switchings, [&](const Switching& s) {
+          return s.uncertainty > 0 && std::abs(e.record.t[k] - s.time) < e.record.step();
+        }))
+      marks[k] = 1;
+  return marks;
+}
+
 /// Residual before the event, [channel][sample], each less its mean.
 Eigen::MatrixXd quiet_residual(const sim::Plant& plant, const sim::Conventions& conventions,
                                const FitEvent& e) {
@@ -243,6 +255,7 @@ std::vector<FitEvent> prepare_events(const PlantModel& model, std::vector<Record
   const Jumps jumps = jumps_of(records, options.jump_threshold);
   for (Record& r : records) events.push_back(prepare(std::move(r), options, jumps));
   unsmear(events);
+  for (FitEvent& e : events) e.left_out = left_out(e);
   measure_noise(model.plant, model.conventions, events);
   return events;
 }

@@ -16,9 +16,11 @@ struct FitEvent {
   Record record;
   std::vector<Switching> switchings;  ///< where they were found; those with an uncertainty are fitted
   OperatingPoint start;
-  /// Marks samples that an instrument's filter has smeared over a switching: neither played in nor compared.
-  /// Empty: none is.
+  /// Marks samples that an instrument's filter has smeared over a switching: not played in. Empty: none is.
   std::vector<char> smeared = {};
+  /// Marks samples that are not compared: the smeared ones, and those next to a sharp switching, on whose
+  /// other side a channel that is a millisecond late may be. Empty: none is.
+  std::vector<char> left_out = {};
   /// Time, V and theta of the others, and what unsmear() brought back; empty where none is smeared.
   Record clean = {};
   std::vector<Output> channels;  ///< measured ones: P, Q, then speed, Efd, Ifd where recorded
@@ -33,11 +35,11 @@ struct FitEvent {
   [[nodiscard]] const std::vector<double>& measured(Output o) const;
   /// What is played in.
   [[nodiscard]] const Record& played() const { return smeared.empty() ? record : clean; }
-  [[nodiscard]] bool compared(std::size_t sample) const { return smeared.empty() || !smeared[sample]; }
+  [[nodiscard]] bool compared(std::size_t sample) const { return left_out.empty() || !left_out[sample]; }
   /// Numbers that are compared.
   [[nodiscard]] int values() const {
-    const auto left_out = std::ranges::count(smeared, 1);
-    return (record.samples() - static_cast<int>(left_out)) * static_cast<int>(channels.size());
+    const auto missing = std::ranges::count(left_out, 1);
+    return (record.samples() - static_cast<int>(missing)) * static_cast<int>(channels.size());
   }
 };
 

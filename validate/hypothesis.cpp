@@ -129,29 +129,34 @@ void start_near_neutral(Hypothesis& h, int block) {
   }
 }
 
+/// The effect in a slot that has room for it.
+Hypothesis added_to(const sim::Plant& base, const sim::Conventions& conventions, const sim::Effect& effect) {
+  Hypothesis h;
+  h.name = effect.name;
+  h.what = fmt::format("{} {} ({})", sim::slot_name(effect.slot), effect.name, effect.title);
+  h.side = side_of(effect.slot);
+  if (!sim::is_shared(effect.slot)) h.slot = static_cast<int>(effect.slot);
+  h.plant = base;
+  h.conventions = conventions;
+  const int block = insert(h.plant, {&effect, effect.standard_parameters()});
+  if (effect.slot == Slot::measurement) {
+    start_near_neutral(h, block);
+  } else {
+    h.free = free_parameters(h.plant, block, kSpread);
+    h.starts = draws(h.plant, h.free, kDraws, 1);
+    h.starts.insert(h.starts.begin(), values_of(h.plant, h.free));
+    h.drawn = true;
+  }
+  return h;
+}
+
 void add_effects(const sim::Plant& base, const sim::Conventions& conventions, std::vector<Hypothesis>& all) {
   for (const sim::Effect* effect : sim::every_effect()) {
     const bool instrument = effect->slot == Slot::measurement;
     const bool fits = effect->slot == Slot::transformer || sim::is_control(effect->slot) || instrument;
     if (!fits || effect->instants || occupied(base, *effect)) continue;
     if (instrument && !can_be_taken_back(*effect)) continue;
-    Hypothesis h;
-    h.name = effect->name;
-    h.what = fmt::format("{} {} ({})", sim::slot_name(effect->slot), effect->name, effect->title);
-    h.side = side_of(effect->slot);
-    if (!sim::is_shared(effect->slot)) h.slot = static_cast<int>(effect->slot);
-    h.plant = base;
-    h.conventions = conventions;
-    const int block = insert(h.plant, {effect, effect->standard_parameters()});
-    if (instrument) {
-      start_near_neutral(h, block);
-    } else {
-      h.free = free_parameters(h.plant, block, kSpread);
-      h.starts = draws(h.plant, h.free, kDraws, 1);
-      h.starts.insert(h.starts.begin(), values_of(h.plant, h.free));
-      h.drawn = true;
-    }
-    all.push_back(std::move(h));
+    all.push_back(added_to(base, conventions, *effect));
   }
 }
 
@@ -243,6 +248,25 @@ std::vector<Hypothesis> all_hypotheses(const sim::Plant& base, const sim::Conven
   add_effects(base, conventions, all);
   add_neutral_groups(base, conventions, all);
   add_conventions(base, conventions, all);
+  return all;
+}
+
+std::vector<Hypothesis> all_replacements(const sim::Plant& base, const sim::Conventions& conventions) {
+  std::vector<Hypothesis> all;
+  for (std::size_t c = 0; c < base.controls.size(); ++c) {
+    const sim::Effect& there = *base.controls[c].effect;
+    if (sim::is_shared(there.slot)) continue;
+    sim::Plant room = base;
+    room.controls.erase(room.controls.begin() + static_cast<std::ptrdiff_t>(c));
+    for (const sim::Effect* effect : sim::every_effect()) {
+      if (effect->slot != there.slot || effect == &there || effect->instants) continue;
+      Hypothesis h = added_to(room, conventions, *effect);
+      h.name += fmt::format(" in place of {}", there.name);
+      h.what += fmt::format(" in place of {}", there.name);
+      h.replaces = true;
+      all.push_back(std::move(h));
+    }
+  }
   return all;
 }
 

@@ -11,7 +11,7 @@ namespace swingbank::validate {
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// x[k+1] = A x[k] + w, e[k] = C x[k] + v: covariance of w is Q, of v is S, of w with v is M; x[0] has P.
-/// Behind the samples marked in `doubtful` (empty: none), w has the covariance `jump` besides.
+/// Behind sample k, w has the covariance `doubtful[k]` times `jump` besides (empty: none has).
 struct SlowNoise {
   Eigen::MatrixXd A, C, Q, S, M, P, jump = {};
   std::vector<char> doubtful = {};

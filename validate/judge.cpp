@@ -45,6 +45,7 @@ std::vector<HeldOut> hold_out(const Trial& trial, const sim::Plant& plant,
         o.start.push_back(whole.events[e].state);
       }
     out[left].record = trial.events[left].record.name;
+    out[left].values = trial.events[left].values();
     if (others.empty()) continue;
     const auto& all = free.empty() ? free_parameters(plant, trial.spread) : free;
     o.values = values_of(whole.plant, all);
@@ -56,6 +57,17 @@ std::vector<HeldOut> hold_out(const Trial& trial, const sim::Plant& plant,
     out[left].cost_after = (penalised(whole) - penalised(seen)) / whole.events[left].values;
   }
   return out;
+}
+
+std::string objection(const std::vector<HeldOut>& held_out, double evidence, double adequate) {
+  for (const HeldOut& h : held_out)
+    if ((h.cost_after > kWorse * h.cost_before && h.cost_after > adequate) ||
+        h.saves() < -std::max(kCosts, kCostsShare * evidence))
+      return fmt::format("does not improve {} when that is not fitted", h.record);
+  for (const HeldOut& h : held_out)
+    if (h.cost_after > kPredicts && h.cost_after > kFalls * h.cost_before)
+      return fmt::format("does not predict {} when that is not fitted", h.record);
+  return "";
 }
 
 void judge(const Trial& trial, const Fit& base, const std::vector<HeldOut>& held_out_base, Judgement& j) {
@@ -78,20 +90,8 @@ void judge(const Trial& trial, const Fit& base, const std::vector<HeldOut>& held
     j.held_out[e].before = held_out_base[e].after;
     j.held_out[e].cost_before = held_out_base[e].cost_after;
   }
-  for (std::size_t e = 0; e < j.held_out.size(); ++e) {
-    const HeldOut& h = j.held_out[e];
-    const double costs = (h.cost_after - h.cost_before) * trial.events[e].values();
-    if ((h.cost_after > kWorse * h.cost_before && h.cost_after > trial.adequate) ||
-        costs > std::max(kCosts, kCostsShare * j.gain)) {
-      j.why_not = fmt::format("does not improve {} when that is not fitted", h.record);
-      return;
-    }
-  }
-  for (const auto& h : j.held_out)
-    if (h.cost_after > kPredicts && h.cost_after > kFalls * h.cost_before) {
-      j.why_not = fmt::format("does not predict {} when that is not fitted", h.record);
-      return;
-    }
+  j.why_not = objection(j.held_out, j.gain, trial.adequate);
+  if (!j.why_not.empty()) return;
   if (j.fit.misfit() > trial.adequate) {
     j.why_not = fmt::format("leaves {:.2f} of the noise's variance", j.fit.misfit());
     return;

@@ -15,6 +15,9 @@ struct HeldOut {
   /// By how much the cost of the fit grows when this event joins it, per value: its chi2, allowing for what
   /// the others leave open of the parameters.
   double cost_before = 0, cost_after = 0;
+  int values = 0;  ///< numbers compared
+  /// What the effect takes off the cost, not per value; negative where it costs.
+  [[nodiscard]] double saves() const { return (cost_before - cost_after) * values; }
 };
 
 /// One hypothesis, fitted and judged.
@@ -48,6 +51,9 @@ struct Trial {
 std::vector<HeldOut> hold_out(const Trial& trial, const sim::Plant& plant,
                               const sim::Conventions& conventions, const std::vector<FreeParameter>& free,
                               const Fit& whole);
+/// What left-out events say against an effect of this evidence, by name of the event; empty: nothing.
+/// `adequate` as in Trial.
+std::string objection(const std::vector<HeldOut>& held_out, double evidence, double adequate);
 /// Nothing where it was not fitted. Else finishes the fit of `j` and accepts it if its evidence is
 /// strong, every left-out event is predicted better than by the base, and nothing but noise is left;
 /// otherwise says why not.

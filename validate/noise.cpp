@@ -57,6 +57,7 @@ double ratio(Channel channel) {
 
 constexpr double kLow = 3.0, kHigh = 10.0;  ///< band in which the voltage's noise is measured [Hz]
 constexpr double kGuess = 2e-3;             ///< what V may be off by beside a switching, of itself
+constexpr char kSmeared = 40;               ///< ... and its square, as a multiple, where V was brought back
 constexpr double kLeft = 0.01;              ///< of a channel's variance: its own noise, at least
 constexpr double kMatters = 1e-3;           ///< variance of slow noise over that of white noise
 
@@ -176,11 +177,12 @@ SlowNoise slow_noise(const LinearPlant& plant, const FitEvent& e, const Eigen::V
   s.jump = Eigen::MatrixXd::Zero(m, m);
   s.jump.topLeftCorner(n, n) = kGuess * kGuess * in * in.transpose();
   s.doubtful.assign(e.record.t.size(), 0);
-  for (std::size_t k = 0; k + 1 < e.record.t.size(); ++k)
-    s.doubtful[k] =
-        (!e.smeared.empty() && e.smeared[k]) || std::ranges::any_of(e.switchings, [&](const Switching& w) {
-          return e.record.t[k] <= w.time && w.time < e.record.t[k + 1];
-        });
+  for (std::size_t k = 0; k + 1 < e.record.t.size(); ++k) {
+    const bool switched = std::ranges::any_of(e.switchings, [&](const Switching& w) {
+      return e.record.t[k] <= w.time && w.time < e.record.t[k + 1];
+    });
+    s.doubtful[k] = !e.smeared.empty() && e.smeared[k] ? kSmeared : switched ? 1 : 0;
+  }
   s.M = Eigen::MatrixXd::Zero(m, count);
   s.M.topRows(n) = in * V * through.transpose();
   // the measured noise holds what the voltage's does at once; the rest cannot be less than nothing
@@ -200,7 +202,7 @@ std::shared_ptr<const Innovations> memory_of(const sim::Plant& plant, const sim:
       .plant = &plant, .conventions = conventions, .record = &e.record, .curve = &curve, .start = e.start};
   const SlowNoise noise = slow_noise(linearise(at), e, variance);
   if (!matters(noise, e)) return nullptr;
-  return std::make_shared<Innovations>(noise, e.record.samples(), e.smeared);
+  return std::make_shared<Innovations>(noise, e.record.samples(), e.left_out);
 }
 
 VoltageNoise voltage_noise(const Fit& fit, const std::vector<FitEvent>& events) {

@@ -305,13 +305,25 @@ class Check {
       // Of two that do about as well the commoner mistake, which stands first.
       if (!sound && fit.misfit < least / 2) best = &m, least = fit.misfit;
     }
-    if (best)
+    if (best && apart())
+      warn("time_skew", "voltage and current jump up to a sample apart", "one of them is late",
+           "mend its time stamps, or let `swingbank diagnose` fit the skew (SKEW)");
+    else if (best)
       refuse(best->kind, "voltage and current that do not jump together as at a machine's terminals",
              best->why, best->remedy);
     else if (as_is.reactance > 0 && as_is.misfit < 0.03 + 3 * noise_share(as_is) && noise_share(as_is) < 0.1)
       reactance(as_is.reactance * plant_.mva / r_.base.mva);
   }
 
+  /// Whether the jumps belong together once each takes in one more interval on either side.
+  [[nodiscard]] bool apart() const {
+    std::vector<Jump> wide;
+    for (const Jump& j : jumps_)
+      if (j.before > 0) wide.push_back({j.before - 1, j.after + 1});
+    const JumpFit fit = fit_jumps(r_, wide, 0);
+    const double noise = noise_share(fit);
+    return fit.reactance > 0 && noise < 0.1 && fit.misfit < 0.03 + 2 * noise;
+  }
   /// How far the angle as written jumps [rad].
   [[nodiscard]] double turned(const Jump& j) const {
     const std::vector<double>& theta = r_.theta_as_written.empty() ? r_.theta : r_.theta_as_written;

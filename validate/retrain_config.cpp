@@ -107,6 +107,10 @@ const sim::Block* added_block(const Addition& added) {
 
 void add_effect_to(toml::table& dataset, const Base& base, const Addition& added,
                    const RetrainOptions& options) {
+  if (added.hypothesis.replaces)
+    throw InputError({"effect " + added.hypothesis.name, "--retrain",
+                      "the datasets differ in what is added, not in what stands in a slot",
+                      "retrain with the new model as the model"});
   const sim::Block* block = added_block(added);
   if (block != nullptr) {
     if (!dataset["attach"].is_array()) dataset.insert_or_assign("attach", toml::array{});

@@ -34,8 +34,8 @@ class Searcher {
   Searcher(const Stage& stage, const SearchProgress& report)
       : stage_(stage), report_(report), starts_(stage) {}
 
-  std::vector<Judgement> run() {
-    const auto candidates = screened();
+  std::vector<Judgement> run(std::vector<Hypothesis> all) {
+    const auto candidates = screened(std::move(all));
     std::vector<Judgement> tried(candidates.size());
     if (starts_.near()) {
       each(candidates, "fit ", [&](std::size_t i) {
@@ -71,8 +71,7 @@ class Searcher {
     }
   }
   /// Every hypothesis that acts here.
-  std::vector<Candidate> screened() const {
-    auto all = all_hypotheses(stage_.plant, stage_.conventions);
+  std::vector<Candidate> screened(std::vector<Hypothesis> all) const {
     std::vector<Candidate> candidates(all.size());
     int done = 0;
     std::mutex progress;
@@ -211,8 +210,9 @@ class Searcher {
 
 }  // namespace
 
-std::vector<Judgement> try_hypotheses(const Stage& stage, const SearchProgress& report) {
-  return Searcher(stage, report).run();
+std::vector<Judgement> try_hypotheses(const Stage& stage, std::vector<Hypothesis> all,
+                                      const SearchProgress& report) {
+  return Searcher(stage, report).run(std::move(all));
 }
 
 Stage after(const Stage& stage, const Judgement& j) {

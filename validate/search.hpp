@@ -24,8 +24,9 @@ struct Stage {
   int threads = 1;
 };
 
-/// Fitted, not judged; best first. `gain` is over the stage's fit.
-std::vector<Judgement> try_hypotheses(const Stage& stage, const SearchProgress& report = {});
+/// Fitted, not judged; best first, those that do not act left out. `gain` is over the stage's fit.
+std::vector<Judgement> try_hypotheses(const Stage& stage, std::vector<Hypothesis> all,
+                                      const SearchProgress& report = {});
 
 /// Fits `j`, as try_hypotheses left it, from further starts, the machine as the leading hypothesis of its
 /// slot found it: a rival must not lose by a poor start.

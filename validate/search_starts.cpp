@@ -119,7 +119,7 @@ std::vector<double> StartFinder::beside_fit(const Hypothesis& h, const std::vect
   sim::Plant plant = started(h, start);
   for (const auto& p : stage_.fit.parameters) {
     const int block = find_block(plant, block_effect(stage_.plant, p.where.block));
-    parameter_value(plant, block, p.where.index) = p.value;
+    if (block >= 0) parameter_value(plant, block, p.where.index) = p.value;
   }
   return values_of(plant, free_of(h, stage_.spread));
 }

@@ -10,6 +10,14 @@
 
 namespace swingbank::sim {
 
+#ifdef SWINGBANK_COUNT_FLOPS
+/// Additions, multiplications, divisions and roots of all packs, each lane one: for tests/bench.
+inline thread_local std::uint64_t pack_operations = 0;
+inline void count_operations(int lanes) { pack_operations += static_cast<std::uint64_t>(lanes); }
+#else
+inline void count_operations(int) {}
+#endif
+
 template <int N>
 struct PackTypes;  // spelled out per width: GCC 12 drops vector_size on a dependent width
 template <>
@@ -35,19 +43,26 @@ struct Pack {
   double operator[](int lane) const { return v[lane]; }
   void set(int lane, double a) { v[lane] = a; }
 
-  friend Pack operator+(Pack a, Pack b) { return Pack(a.v + b.v); }
-  friend Pack operator-(Pack a, Pack b) { return Pack(a.v - b.v); }
-  friend Pack operator*(Pack a, Pack b) { return Pack(a.v * b.v); }
-  friend Pack operator/(Pack a, Pack b) { return Pack(a.v / b.v); }
+  friend Pack operator+(Pack a, Pack b) { return counted(a.v + b.v); }
+  friend Pack operator-(Pack a, Pack b) { return counted(a.v - b.v); }
+  friend Pack operator*(Pack a, Pack b) { return counted(a.v * b.v); }
+  friend Pack operator/(Pack a, Pack b) { return counted(a.v / b.v); }
   friend Pack operator-(Pack a) { return Pack(-a.v); }
   friend Mask operator<(Pack a, Pack b) { return a.v < b.v; }
   friend Mask operator>(Pack a, Pack b) { return a.v > b.v; }
   friend Mask operator<=(Pack a, Pack b) { return a.v <= b.v; }
   friend Pack select(Mask m, Pack a, Pack b) { return Pack(m ? a.v : b.v); }
+
+ private:
+  static Pack counted(Vector v) {
+    count_operations(N);
+    return Pack(v);
+  }
 };
 
 template <int N>
 inline Pack<N> sqrt(Pack<N> a) {
+  count_operations(N);
 #ifdef __AVX512F__
   if constexpr (N == 8) return Pack<N>((typename Pack<N>::Vector)_mm512_maskz_sqrt_pd(0xff, (__m512d)a.v));
 #endif

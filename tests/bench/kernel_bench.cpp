@@ -1,5 +1,6 @@
-// Events per core-second of the lanes kernel on IEEE 39 (all GENROU, 15 s, 120 samples/s), lanes against the
-// scalar build of the same kernel, alternating in one run.
+// Events per core-second of the lanes kernel on IEEE 39 (all GENROU, 15 s, 120 samples/s): lanes, the scalar
+// build of the same kernel and the reference integrator, alternating in one run; beside them what the core
+// can do at most. Built with SWINGBANK_COUNT_FLOPS: operations per event instead.
 //   bench_kernel RAW DYR [events] [rounds]
 #include <algorithm>
 #include <cstdio>
@@ -7,10 +8,14 @@
 #include <ctime>
 #include <random>
 
+#include "sim/core/pack.hpp"
 #include "sim/solve/batch.hpp"
+#include "sim/solve/reference.hpp"
 
 namespace {
 using namespace swingbank::sim;
+
+constexpr int kReferenceEvents = 25;  ///< in each round
 
 double cpu_seconds() {
   timespec t{};
@@ -48,13 +53,65 @@ Grid controlled(Grid grid) {
   return grid;
 }
 
-double events_per_core_second(Batch& batch, const std::vector<Job>& list, int& stable) {
-  std::size_t at = 0;
-  stable = 0;
+struct Case {
+  const char* what;
+  int lanes;  ///< 0: the reference integrator
+  bool one, controls;
+  std::vector<double> rates = {};
+  int stable = 0, events = 0;
+  double operations = 0;  ///< per event
+};
+
+/// Adds one round's rate. The reference integrator, some hundred times slower, makes fewer events.
+void round(Case& c, const Grid& grid, const std::vector<Job>& list) {
+  c.stable = c.events = 0;
   const double start = cpu_seconds();
-  batch.run([&](Job& job) { return at < list.size() && (job = list[at++], true); },
-            [&](const Job&, const Trajectory& t) { stable += t.outcome == Outcome::stable; });
-  return static_cast<double>(list.size()) / (cpu_seconds() - start);
+  if (c.lanes == 0) {
+    ReferenceOptions options;
+    for (; c.events < static_cast<int>(list.size()) && c.events < kReferenceEvents; ++c.events) {
+      const Job& job = list[static_cast<std::size_t>(c.events)];
+      Grid changed = grid;
+      for (auto& [plant, as] : changed_plants(grid, job))
+        changed.plants[static_cast<std::size_t>(plant)] = as;
+      c.stable += run_reference(changed, job.event, options).outcome == Outcome::stable;
+    }
+  } else {
+    BatchOptions options;
+    options.lanes = c.lanes;
+    if (c.one) options.plants = {3};
+#ifdef SWINGBANK_COUNT_FLOPS
+    pack_operations = 0;
+#endif
+    std::size_t at = 0;
+    Batch batch(grid, options);
+    batch.run([&](Job& job) { return at < list.size() && (job = list[at++], true); },
+              [&](const Job&, const Trajectory& t) { c.stable += t.outcome == Outcome::stable; });
+    c.events = static_cast<int>(list.size());
+#ifdef SWINGBANK_COUNT_FLOPS
+    c.operations = static_cast<double>(pack_operations) / c.events;
+#endif
+  }
+  c.rates.push_back(c.events / (cpu_seconds() - start));
+}
+
+/// Multiply-adds of sixteen independent packs: GFLOP/s, two per multiply-add.
+double peak_gflops() {
+  constexpr int kSums = 16, kTimes = 20'000'000;
+  P8 sum[kSums];
+  for (int i = 0; i < kSums; ++i) sum[i] = P8(1.0 + i);
+  const P8 factor(0.999999), addend(1e-6);
+  const double start = cpu_seconds();
+  for (int k = 0; k < kTimes; ++k)
+    for (auto& s : sum) s = s * factor + addend;
+  const double seconds = cpu_seconds() - start;
+  volatile double kept = 0;
+  for (const auto& s : sum) kept = kept + s[0];
+  return 2.0 * 8 * kSums * kTimes / seconds * 1e-9;
+}
+
+double median(std::vector<double> v) {
+  std::sort(v.begin(), v.end());
+  return v[v.size() / 2];
 }
 }  // namespace
 
@@ -68,37 +125,34 @@ int main(int argc, char** argv) {
     const int count = argc > 3 ? std::atoi(argv[3]) : 400, rounds = argc > 4 ? std::atoi(argv[4]) : 3;
     const auto list = jobs(grid, count);
     const Grid with_controls = controlled(grid);
-    struct Case {
-      const char* what;
-      int lanes;
-      bool one, controls;
-      std::vector<double> rates;
-      int stable = 0;
-    };
-    std::vector<Case> cases = {{"8 lanes, all generators recorded", 8, false, false, {}},
-                               {"4 lanes, all generators recorded", 4, false, false, {}},
-                               {"scalar, all generators recorded", 1, false, false, {}},
-                               {"8 lanes, one generator recorded", 8, true, false, {}},
-                               {"8 lanes, controls on all, all recorded", 8, false, true, {}},
-                               {"8 lanes, controls on all, one recorded", 8, true, true, {}}};
-    for (int round = 0; round < rounds; ++round)
-      for (auto& c : cases) {
-        BatchOptions options;
-        options.lanes = c.lanes;
-        if (c.one) options.plants = {3};
-        Batch batch(c.controls ? with_controls : grid, options);
-        c.rates.push_back(events_per_core_second(batch, list, c.stable));
-      }
-    const auto median = [](std::vector<double> v) {
-      std::sort(v.begin(), v.end());
-      return v[v.size() / 2];
-    };
+    std::vector<Case> cases = {{"8 lanes, all generators recorded", 8, false, false},
+                               {"4 lanes, all generators recorded", 4, false, false},
+                               {"scalar, all generators recorded", 1, false, false},
+                               {"reference integrator, all recorded", 0, false, false},
+                               {"8 lanes, one generator recorded", 8, true, false},
+                               {"8 lanes, controls on all, all recorded", 8, false, true},
+                               {"8 lanes, controls on all, one recorded", 8, true, true}};
+#ifdef SWINGBANK_COUNT_FLOPS
+    for (auto& c : cases) {
+      if (c.lanes < 4) continue;
+      round(c, c.controls ? with_controls : grid, list);
+      std::printf("%-40s %7.2f million operations per event, %d events\n", c.what, 1e-6 * c.operations,
+                  c.events);
+    }
+#else
+    std::vector<double> peaks;
+    for (int k = 0; k < rounds; ++k) {
+      peaks.push_back(peak_gflops());
+      for (auto& c : cases) round(c, c.controls ? with_controls : grid, list);
+    }
     const double scalar = median(cases[2].rates);
     for (auto& c : cases)
-      std::printf("%-40s %7.0f events/core-s (median of %d, %.0f..%.0f)  %.2f x scalar  %d of %d stable\n",
+      std::printf("%-40s %7.0f events/core-s (median of %d, %.0f..%.0f)  %.3g x scalar  %d of %d stable\n",
                   c.what, median(c.rates), rounds, *std::min_element(c.rates.begin(), c.rates.end()),
                   *std::max_element(c.rates.begin(), c.rates.end()), median(c.rates) / scalar, c.stable,
-                  count);
+                  c.events);
+    std::printf("%-40s %7.0f GFLOP/s\n", "multiply-adds of independent packs", median(peaks));
+#endif
   } catch (const swingbank::InputError& e) {
     std::fprintf(stderr, "%s\n", e.what());
     return 1;

@@ -42,6 +42,21 @@ TEST(Hypotheses, FurtherDrawsAreOthers) {
     for (const auto& draw : further) EXPECT_FALSE(known.contains(draw)) << h.name;
   }
 }
+TEST(Hypotheses, AReplacementStandsAloneInItsSlot) {
+  const PlantModel model = ExciterExample(0.2).model;  // its only control is SEXS
+  const auto all = all_replacements(model.plant, model.conventions);
+  std::size_t exciters = 0;
+  for (const sim::Effect* effect : sim::every_effect()) exciters += effect->slot == sim::Slot::exciter;
+  EXPECT_EQ(all.size(), exciters - 1);
+  for (const Hypothesis& h : all) {
+    EXPECT_TRUE(h.name.ends_with(" in place of SEXS")) << h.name;
+    ASSERT_EQ(h.plant.controls.size(), 1U) << h.name;
+    EXPECT_EQ(h.slot, static_cast<int>(sim::Slot::exciter)) << h.name;
+    EXPECT_TRUE(h.name.starts_with(h.plant.controls.front().effect->name)) << h.name;
+    EXPECT_FALSE(h.name.starts_with("SEXS"));
+    EXPECT_TRUE(fitting::can_run(h.plant)) << h.name;
+  }
+}
 TEST(Triangle, HasTheProductsOfTheColumns) {
   RowMatrix e = RowMatrix::Random(50, 6);
   e.col(3) = 2 * e.col(0) - e.col(1);  // what the others make leaves nothing of its own

@@ -108,6 +108,33 @@ TEST(RecordSoundTest, AnotherFrameAndWrappedAngles) {
   for (double& a : r.theta_as_written) a = std::remainder(a, 2 * std::numbers::pi);
   expect_sound(r, r.base.mva, "0.03 Hz off nominal");
 }
+TEST(RecordSoundTest, ACurrentUpToASampleLateIsNotedNotRefused) {
+  const test::Simulated s = test::simulate("ieee14_genrou", sim::Conventions::psse(), 4, 2.0041, 2.1083);
+  constexpr std::size_t kStride = 8;  // to 60/s
+  int noted = 0;
+  for (const std::size_t late : {2U, 4U, 6U, 7U}) {  // of eight ticks
+    const Record fine = test::record_of(s, 1, 1, 0.0);
+    Record r;
+    r.name = fine.name;
+    r.base = fine.base;
+    for (std::size_t k = kStride; k < fine.t.size(); k += kStride) {
+      const auto phasor = [&](std::size_t n) { return std::polar(fine.V[n], fine.theta[n]); };
+      const Complex i = std::conj(Complex(fine.P[k - late], fine.Q[k - late]) / phasor(k - late));
+      const Complex power = phasor(k) * std::conj(i);
+      r.t.push_back(fine.t[k]);
+      r.V.push_back(fine.V[k]);
+      r.theta.push_back(fine.theta[k]);
+      r.P.push_back(power.real());
+      r.Q.push_back(power.imag());
+    }
+    for (const Finding& f : check_record(r, {r.base.mva, 60})) {
+      EXPECT_EQ(f.kind, "time_skew") << late << " ticks: " << f.problem.sentence();
+      EXPECT_EQ(f.severity, Severity::warn) << late;
+      ++noted;
+    }
+  }
+  EXPECT_GT(noted, 0);
+}
 TEST(RecordSoundTest, OnTheSystemBase) {
   const test::Simulated s = test::simulate("ieee39_genrou", sim::Conventions::psse(), 16, 2.0062, 2.1131);
   for (int p = 0; p < static_cast<int>(s.grid.plants.size()); ++p) {

@@ -1,0 +1,50 @@
+// Where hypotheses start beside a model that nearly fits.
+#include "validate/search_starts.hpp"
+
+#include <gtest/gtest.h>
+
+#include "exciter_example.hpp"
+#include "validate/instruments.hpp"
+
+namespace swingbank::validate {
+namespace {
+
+/// Squared change of the first event's answer by these values, in units of noise; the rest as fitted.
+double moved(const Stage& stage, const Hypothesis& h, const std::vector<double>& start) {
+  sim::Plant plant = started(h, start);
+  for (const auto& p : stage.fit.parameters)
+    parameter_value(plant, find_block(plant, block_effect(stage.plant, p.where.block)), p.where.index) =
+        p.value;
+  const FitEvent& e = stage.events.front();
+  const EventFit& at = stage.fit.events.front();
+  const VoltageCurve curve(e.played(), switchings_at(e, at.state));
+  Drive run = drive_at(plant, stage.conventions, e, at.state);
+  run.curve = &curve;
+  const Response r = observe(run);
+  double square = 0;
+  for (std::size_t c = 0; c < e.channels.size(); ++c)
+    for (std::size_t k = 0; k < e.record.t.size(); ++k)
+      square +=
+          std::pow((r.of(e.channels[c])[k] - at.model[c][k]) / e.noise[static_cast<Eigen::Index>(c)], 2);
+  return square;
+}
+
+TEST(Starts, ALimiterStartsWhereItActs) {
+  const ExciterExample example(0.2);
+  const Fit nearly = example.fitted({"H", "Xd", "Xd'", "K"});
+  ASSERT_TRUE(nearly.failed.empty()) << nearly.failed;
+  const Stage stage{.events = example.events,
+                    .plant = example.model.plant,
+                    .conventions = example.model.conventions,
+                    .fit = nearly};
+  auto all = all_hypotheses(stage.plant, stage.conventions);
+  const auto limiter = std::ranges::find(all, "MAXEX2", &Hypothesis::name);
+  ASSERT_NE(limiter, all.end());
+  ASSERT_LT(moved(stage, *limiter, limiter->starts.front()), 1e-3) << "it was meant to wait";
+  const Candidate c = StartFinder(stage).of(*limiter);
+  ASSERT_GE(c.hypothesis.starts.size(), 10U);
+  for (std::size_t k = 0; k < 10; ++k) EXPECT_GT(moved(stage, c.hypothesis, c.hypothesis.starts[k]), 10) << k;
+}
+
+}  // namespace
+}  // namespace swingbank::validate
