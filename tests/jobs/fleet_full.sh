@@ -60,7 +60,7 @@ same_table "$work/whole" "$work/killed"
 fleet "$work/fleet.toml" "$work/soft" >"$work/table" &
 started=$!
 wait_for "$work/soft" 1
-kill -USR1 "$(of_fleet "$work/soft" | head -1)"
+kill -USR1 "$(pgrep -o -f -- "--fleet $work/fleet.toml .*--out $work/soft")" # the oldest: its diagnoses came after it
 code=0
 wait "$started" || code=$?
 ((code == 2)) || fail "exit code $code after SIGUSR1"
