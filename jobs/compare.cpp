@@ -168,6 +168,7 @@ int main(int argc, char** argv) {
     names.reserve(records.size());
     for (const auto& r : records) names.push_back(r.name);
     const auto instants = read_switchings(switches, names);
+    options.jumps = jumps_of(records, options.jump_threshold);
     std::vector<EventComparison> events;
     for (auto& record : records) {
       const auto given = instants.find(record.name);

@@ -7,8 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "validate/compare_fitted.hpp"
 #include "validate/error_map_table.hpp"
-#include "validate/fit_event.hpp"
 
 namespace swingbank::validate {
 namespace {
@@ -17,12 +17,14 @@ namespace {
 /// with.
 constexpr double kNoNoise = 1e-7;
 
-WindowError measure(const std::vector<double>& t, const std::vector<double>& residual, const Window& window,
-                    bool first, double noise) {
+WindowError measure(const std::vector<double>& t, const std::vector<double>& residual,
+                    const std::vector<char>& left_out, const Window& window, bool first, double noise) {
   WindowError e;
   double sum = 0, square = 0;
   for (std::size_t k = 0; k < t.size(); ++k) {
-    if (t[k] > window.to || !(t[k] > window.from || (first && t[k] == window.from))) continue;
+    if ((!left_out.empty() && left_out[k]) || t[k] > window.to ||
+        !(t[k] > window.from || (first && t[k] == window.from)))
+      continue;
     ++e.samples;
     sum += residual[k];
     square += residual[k] * residual[k];
@@ -45,14 +47,28 @@ double spread(const std::vector<double>& values, int n) {
   return s > kNoNoise ? s : 0.0;
 }
 
-/// Plays the record in with the event's switchings and measures every channel.
-void play(const PlantModel& model, DriveBy drive, const PlayInOptions& options, EventComparison& e) {
-  const VoltageCurve curve(e.record, e.switchings);
-  e.switchings = curve.switchings();
+/// Samples that are left out in the middle of a window, on a straight line between their neighbours.
+std::vector<double> bridged(std::vector<double> values, const std::vector<char>& left_out) {
+  for (std::size_t k = 0; k < left_out.size(); ++k) {
+    if (!left_out[k]) continue;
+    std::size_t end = k;
+    while (end < left_out.size() && left_out[end]) ++end;
+    const double from = k > 0 ? values[k - 1] : 0.0, to = end < values.size() ? values[end] : from;
+    const double steps = static_cast<double>(end - k + 1);
+    for (std::size_t i = k; i < end; ++i)
+      values[i] = from + (to - from) * static_cast<double>(i - k + 1) / steps;
+    k = end;
+  }
+  return values;
+}
+
+/// Every channel, once the event's playback is there.
+void measure_channels(const PlantModel& model, DriveBy drive, const PlayInOptions& options,
+                      EventComparison& e) {
   const bool power = drive == DriveBy::power;
-  e.playback = power ? play_in_power(model.plant, model.conventions, e.record, e.switchings, options)
-                     : play_in(model.plant, model.conventions, e.record, curve, options);
-  e.windows = event_windows(e.record, e.switchings, options.pre_event);
+  e.doubt.clear();
+  if (!power) add_doubt(model, e);
+  e.windows = event_windows(e.record, e.switchings, options.pre_event, e.left_out);
   e.channels.clear();
   const RecordBase& base = e.record.base;
   const auto add = [&](const ChannelRule& channel, const std::vector<double>& measured,
@@ -79,16 +95,20 @@ void play(const PlantModel& model, DriveBy drive, const PlayInOptions& options, 
   add_output(Output::Ifd, e.record.Ifd, e.playback.Ifd, false, true);
 }
 
-/// With the fitted instants nothing but noise is left in any window. If more is left, the model lacks
-/// something, and the instants would have been bent to make up for it.
+/// Plays the record in with the event's switchings and measures every channel.
+void play(const PlantModel& model, DriveBy drive, const PlayInOptions& options, EventComparison& e) {
+  const VoltageCurve curve(e.record, e.switchings);
+  e.switchings = curve.switchings();
+  e.playback = drive == DriveBy::power
+                   ? play_in_power(model.plant, model.conventions, e.record, e.switchings, options)
+                   : play_in(model.plant, model.conventions, e.record, curve, options);
+  measure_channels(model, drive, options, e);
+}
+
+/// Whether nothing but noise is left of the event by itself.
 bool explained(const EventComparison& e) {
-  constexpr double kWithin = 2;       // rms of a window in units of the noise
-  constexpr double kSmooth = 2.5e-4;  // pu; what interpolation leaves where a record has no noise
-  for (const auto& c : e.channels)
-    if (c.name == "P" || c.name == "Q")
-      for (const auto& w : c.windows)
-        if (w.rms > kWithin * std::max(c.noise, kSmooth)) return false;
-  return true;
+  std::vector<EventComparison> one = {e};
+  return judge(one).adequate;
 }
 
 /// The record without what comes after `last`. Throws InputError if too little is left.
@@ -140,7 +160,12 @@ std::string describe_fit(const EventComparison& e, bool tried) {
 }
 
 void explain(EventComparison& e, bool tried) {
-  if (e.detected && !e.switchings.empty())
+  if (const auto smeared = std::ranges::count(e.left_out, 1); smeared > 0)
+    e.notes.push_back(fmt::format(
+        "The instrument's filter has smeared the jumps over {} samples: these are neither played in nor "
+        "compared, and instants and start were moved to where the rest is met best.",
+        smeared));
+  else if (e.detected && !e.switchings.empty())
     e.notes.push_back(
         fmt::format("The switching instants were found in the record, which tells each to ± {:.1f} ms only; "
                     "{} Give them with --switch where they are known.",
@@ -177,13 +202,21 @@ ChannelComparison compare_channel(const ChannelRule& channel, const std::vector<
   const int quiet = event.playback.start.samples;
   c.noise = spread(c.residual, quiet);
   const auto& t = event.record.t;
-  c.whole = measure(t, c.residual, {"whole record", t.front(), t.back()}, true, c.noise);
+  const auto measured_in = [&](const Window& window, bool first) {
+    return measure(t, c.residual, event.left_out, window, first, c.noise);
+  };
+  c.whole = measured_in({"whole record", t.front(), t.back()}, true);
   for (std::size_t w = 0; w < event.windows.size(); ++w)
-    c.windows.push_back(measure(t, c.residual, event.windows[w], w == 0, c.noise));
-  const std::span<const double> all(c.residual);
+    c.windows.push_back(measured_in(event.windows[w], w == 0));
+  const auto seen = bridged(c.residual, event.left_out);
+  const std::span<const double> all(seen);
+  const auto doubt = event.doubt.find(channel.name);
   c.map = error_map(t, all, event.windows,
                     estimate_noise(all.first(static_cast<std::size_t>(quiet)), channel.floor),
-                    {.quiet = quiet, .starts_at_mean = channel.starts_at_mean, .skip = channel.skip});
+                    {.quiet = quiet,
+                     .starts_at_mean = channel.starts_at_mean,
+                     .skip = channel.skip,
+                     .shapes = doubt == event.doubt.end() ? nullptr : &doubt->second});
   return c;
 }
 
@@ -198,7 +231,8 @@ std::vector<double> frequency_of(const std::vector<double>& t, const std::vector
 }
 
 std::vector<Window> event_windows(const Record& record, const std::vector<Switching>& switchings,
-                                  double pre_event) {
+                                  double pre_event, const std::vector<char>& left_out) {
+  const auto out = [&](std::size_t k) { return !left_out.empty() && left_out[k]; };
   const double first = record.t.front(), end = record.t.back(), slack = 1e-4 * record.step();
   const bool switched = !switchings.empty();
   const double begins = slack + (switched ? switchings.front().time : std::min(first + pre_event, end));
@@ -211,7 +245,13 @@ std::vector<Window> event_windows(const Record& record, const std::vector<Switch
   std::vector<Window> windows;
   for (const auto& w : all) {
     const auto inside = [&](double t) { return t <= w.to && (t > w.from || (&w == all && t == w.from)); };
-    if (std::ranges::any_of(record.t, inside)) windows.push_back(w);
+    Window kept = w;
+    const auto begin = static_cast<std::size_t>(std::ranges::find_if(record.t, inside) - record.t.begin());
+    std::size_t from = begin, to = begin;
+    while (to < record.t.size() && inside(record.t[to])) ++to;
+    while (from < to && out(from)) kept.from = record.t[from++];
+    while (to > from && out(to - 1)) kept.to = record.t[--to] - slack;
+    if (to > from) windows.push_back(kept);
   }
   return windows;
 }
@@ -233,18 +273,24 @@ EventComparison compare_event(const PlantModel& model, Record record, const Comp
   EventComparison e;
   e.record = until(std::move(record), options.play_in.until);
   e.detected = options.switchings.empty();
-  if (e.detected)
-    e.switchings = detect_switchings(e.record, options.jump_threshold);
-  else
-    for (const double t : options.switchings) e.switchings.push_back({.time = t});
-  play(model, DriveBy::voltage, options.play_in, e);
-  if (e.detected && options.fit_switchings && !e.switchings.empty()) {
-    EventComparison fitted = e;
-    fitted.switchings =
-        fit_switchings(model.plant, model.conventions, e.record, e.switchings, options.play_in);
-    fitted.fitted = true;
-    play(model, DriveBy::voltage, options.play_in, fitted);
-    if (explained(fitted)) e = std::move(fitted);
+  const Jumps jumps =
+      options.jumps == Jumps::either ? jumps_of({e.record}, options.jump_threshold) : options.jumps;
+  const auto fitted = [&] {
+    EventComparison other = e;
+    play_fitted(model, options, jumps, other);
+    measure_channels(model, DriveBy::voltage, options.play_in, other);
+    return other;
+  };
+  if (e.detected && jumps == Jumps::spread && options.drive == DriveBy::voltage) {
+    e = fitted();
+  } else {
+    if (e.detected)
+      e.switchings = detect_switchings(e.record, options.jump_threshold);
+    else
+      for (const double t : options.switchings) e.switchings.push_back({.time = t});
+    play(model, DriveBy::voltage, options.play_in, e);
+    if (e.detected && options.fit_switchings && !e.switchings.empty())
+      if (EventComparison other = fitted(); explained(other)) e = std::move(other);
   }
   explain(e, options.fit_switchings);
   if (options.drive == DriveBy::power) {  // with the instants that the voltage told

@@ -1,9 +1,11 @@
 #pragma once
 // Measured against modelled P and Q of one event, per window of time and beside the record's own noise.
+#include <map>
 #include <string>
 #include <vector>
 
 #include "validate/error_map.hpp"
+#include "validate/fit_event.hpp"
 #include "validate/plant_model.hpp"
 #include "validate/play_in.hpp"
 #include "validate/record.hpp"
@@ -39,6 +41,12 @@ struct EventComparison {
   std::vector<Window> windows;
   Playback playback;
   std::vector<ChannelComparison> channels;  ///< P, Q or V, frequency; speed, Efd, Ifd where recorded
+  /// Marks samples that an instrument's filter has smeared over a switching: they are not compared. Empty:
+  /// none.
+  std::vector<char> left_out = {};
+  /// By channel: what the played-in voltage's errors may leave in the residual, one standard deviation each
+  /// (VoltageDoubt) [shape][sample] [pu].
+  std::map<std::string, std::vector<std::vector<double>>> doubt = {};
   std::vector<std::string> notes;  ///< what a reader must know: uncertain instants, drift, columns left out
 };
 
@@ -50,7 +58,8 @@ struct CompareOptions {
   /// but noise is left then; a model that lacks something would bend them. Otherwise the middle of the
   /// interval stays.
   bool fit_switchings = true;
-  PlayInOptions play_in;  ///< samples after its `until` are left out of the comparison
+  Jumps jumps = Jumps::either;  ///< what the instrument does to jumps; either: the record tells
+  PlayInOptions play_in;        ///< samples after its `until` are left out of the comparison
 };
 
 /// How a channel is shown, and what computing it leaves where a record has no noise.
@@ -79,9 +88,10 @@ std::vector<double> frequency_of(const std::vector<double>& t, const std::vector
                                  double nominal);
 
 /// pre-event, fault, 0-1 s, 1-5 s and > 5 s after the last switching; those that hold no sample are left out.
-/// The time between the first and the last switching is the "fault"; a single switching has none.
+/// The time between the first and the last switching is the "fault"; a single switching has none. No window
+/// begins or ends with samples that are left out.
 std::vector<Window> event_windows(const Record& record, const std::vector<Switching>& switchings,
-                                  double pre_event);
+                                  double pre_event, const std::vector<char>& left_out = {});
 
 /// Plays the record into the model and measures what is left. Where P and Q drive, no network holds the
 /// angle: a constant error of P, which a noisy pre-event leaves, becomes a ramp of frequency. Frequency and

@@ -167,7 +167,8 @@ ReportFigures report_figures(const Diagnosis& d) {
   for (std::size_t e = 0; e < d.events.size(); ++e) {
     ReportEvent r;
     r.event = &d.events[e];
-    r.windows = event_windows(r.event->record, r.event->switchings, FitEventOptions{}.pre_event);
+    r.windows =
+        event_windows(r.event->record, r.event->switchings, FitEventOptions{}.pre_event, r.event->smeared);
     for (std::size_t c = 0; c < r.event->channels.size(); ++c)
       r.channels.push_back(channel_of(d, figures.after, e, c, r.windows));
     r.before = std::sqrt(d.base.events[e].misfit());

@@ -112,7 +112,7 @@ struct WindowFilling {
 };
 
 WindowFilling fill(std::span<const double> x, double step, const NoiseModel& noise, double start_error,
-                   bool skip_mean) {
+                   bool skip_mean, const std::vector<std::span<const double>>& shapes) {
   WindowFilling f;
   const Cosines cosines(x.size());
   const double length = static_cast<double>(x.size()) * step;
@@ -120,6 +120,10 @@ WindowFilling fill(std::span<const double> x, double step, const NoiseModel& noi
     const double frequency = static_cast<double>(k) / (2 * length);
     double variance = cosines.variance(noise, k);
     if (k == 0) variance += static_cast<double>(x.size()) * start_error;
+    for (const auto& shape : shapes) {
+      const double part = cosines.coefficient(shape, k);
+      variance += part * part;
+    }
     const double c = cosines.coefficient(x, k);
     f.all.add(c, variance);
     for (std::size_t b = 0; b < std::size(kBands); ++b)
@@ -195,8 +199,12 @@ ErrorMap error_map(std::span<const double> t, std::span<const double> residual,
     row.bands.resize(std::size(kBands));
     if (end > begin && (options.skip.empty() || windows[w].name != options.skip)) {
       const bool first = w == 0;
+      std::vector<std::span<const double>> shapes;
+      if (options.shapes)
+        for (const auto& shape : *options.shapes)
+          shapes.push_back(std::span(shape).subspan(begin, end - begin));
       const WindowFilling f = fill(residual.subspan(begin, end - begin), step, noise,
-                                   first ? 0.0 : start_error, first && options.starts_at_mean);
+                                   first ? 0.0 : start_error, first && options.starts_at_mean, shapes);
       row.all = f.all.cell(end - begin);
       for (std::size_t b = 0; b < row.bands.size(); ++b) row.bands[b] = f.bands[b].cell(end - begin);
       whole.add(f.all);

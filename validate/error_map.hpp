@@ -66,6 +66,9 @@ struct ErrorMapOptions {
   /// The first window's mean tells nothing: the model starts there.
   bool starts_at_mean = true;
   std::string_view skip = {};  ///< name of a window to leave out: its cells stay empty
+  /// What else may be in the residual by chance, one standard deviation each [shape][sample] [pu]; may be
+  /// null.
+  const std::vector<std::vector<double>>* shapes = nullptr;
 };
 
 /// Each window's residual on the orthonormal cosines of that window (DCT-II; mode k has k half periods): a

@@ -252,7 +252,8 @@ void FitEvent::whiten(RowMatrix& e) const {
 std::vector<FitEvent> prepare_events(const PlantModel& model, std::vector<Record> records,
                                      const FitEventOptions& options) {
   std::vector<FitEvent> events;
-  const Jumps jumps = jumps_of(records, options.jump_threshold);
+  const Jumps jumps =
+      options.jumps == Jumps::either ? jumps_of(records, options.jump_threshold) : options.jumps;
   for (Record& r : records) events.push_back(prepare(std::move(r), options, jumps));
   unsmear(events);
   for (FitEvent& e : events) e.left_out = left_out(e);

@@ -43,14 +43,15 @@ struct FitEvent {
   }
 };
 
+/// What an instrument does to jumps: it smears all or none.
+enum class Jumps { either, sharp, spread };
+
 struct FitEventOptions {
   bool measured_states = true;  ///< compare speed, Efd and Ifd too, where they are recorded
   double jump_threshold = kJumpThreshold;
-  double pre_event = 1.0;  ///< length of the steady window where nothing is switched [s]
+  double pre_event = 1.0;       ///< length of the steady window where nothing is switched [s]
+  Jumps jumps = Jumps::either;  ///< either: the records tell (jumps_of)
 };
-
-/// What an instrument does to jumps: it smears all or none.
-enum class Jumps { either, sharp, spread };
 
 /// Finds switchings although a filter may have spread their jumps over two or three sample intervals;
 /// `smeared` gets a mark per sample that lies inside such a jump or beside it. Where jumps are known to be

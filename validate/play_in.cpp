@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "validate/driven_pq.hpp"
+#include "validate/instruments.hpp"
 
 namespace swingbank::validate {
 namespace {
@@ -58,14 +59,14 @@ Playback play_in(const sim::Plant& plant, const sim::Conventions& conventions, c
                  const VoltageCurve& curve, const PlayInOptions& options) {
   Playback back;
   back.start = pre_event_point(record, curve.switchings(), options.pre_event);
-  Response response = drive({.plant = &plant,
-                             .conventions = conventions,
-                             .record = &record,
-                             .curve = &curve,
-                             .start = back.start,
-                             .tolerance = options.tolerance,
-                             .until = options.until,
-                             .step_limit = options.step_limit});
+  Response response = observe({.plant = &plant,
+                               .conventions = conventions,
+                               .record = &record,
+                               .curve = &curve,
+                               .start = back.start,
+                               .tolerance = options.tolerance,
+                               .until = options.until,
+                               .step_limit = options.step_limit});
   const auto take = [&](Output o) { return std::move(response.value[static_cast<int>(o)]); };
   back.P = take(Output::P);
   back.Q = take(Output::Q);

@@ -42,13 +42,4 @@ Playback play_in(const sim::Plant& plant, const sim::Conventions& conventions, c
 Playback play_in_power(const sim::Plant& plant, const sim::Conventions& conventions, const Record& record,
                        const std::vector<Switching>& switchings, const PlayInOptions& options = {});
 
-/// A record does not say when between two samples the network changed, yet a few milliseconds decide how far
-/// the rotor is thrown. Moves each uncertain instant within its sample interval to where P and Q, up to one
-/// second after the last switching, are met best (least squares, golden section, one instant at a time).
-/// Given instants stay. A wrong model cannot move an instant out of its interval, so it cannot hide behind
-/// this by more.
-std::vector<Switching> fit_switchings(const sim::Plant& plant, const sim::Conventions& conventions,
-                                      const Record& record, std::vector<Switching> switchings,
-                                      const PlayInOptions& options = {});
-
 }  // namespace swingbank::validate

@@ -193,25 +193,5 @@ TEST(PlayInTest, RefusesARecordWithoutPreEvent) {
               ElementsAre(HasSubstr("3 samples before the event")));
 }
 
-TEST(FitSwitchingsTest, FindsInstantsBetweenSamples) {
-  // Neither instant is a sample at 60/s; the run's own samples at 480/s do not matter here.
-  const test::Simulated s = test::simulate("ieee39_genrou", sim::Conventions::psse(), 16, 2.0062, 2.1131);
-  const Record r = test::record_of(s, 3, 8, 0.001);
-  const auto found = detect_switchings(r);
-  ASSERT_EQ(found.size(), 2u);
-  const auto fitted = fit_switchings(s.grid.plants[3], s.grid.conventions, r, found);
-  // Noise of 0.1 % on P and Q leaves a few hundredths of a sample interval (16.7 ms).
-  EXPECT_NEAR(fitted[0].time, 2.0062, 0.0008);
-  EXPECT_NEAR(fitted[1].time, 2.1131, 0.0008);
-}
-
-TEST(FitSwitchingsTest, LeavesGivenInstants) {
-  const Record r = test::record_of(genrou(), 3, 8);
-  const auto fitted =
-      fit_switchings(genrou().grid.plants[3], genrou().grid.conventions, r, {{.time = 2.0}, {.time = 2.1}});
-  EXPECT_EQ(fitted[0].time, 2.0);
-  EXPECT_EQ(fitted[1].time, 2.1);
-}
-
 }  // namespace
 }  // namespace swingbank::validate

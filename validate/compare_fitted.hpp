@@ -1,0 +1,16 @@
+#pragma once
+// A record compared as fits see it: no record says when between two samples the network changed, and a few
+// milliseconds decide how far the rotor is thrown.
+#include "validate/compare.hpp"
+
+namespace swingbank::validate {
+
+/// Sets switchings, playback and left_out of the event, whose record is set, with its instants and start
+/// fitted, the model as it is. Samples that a filter has smeared over a jump are not played in. Throws
+/// InputError where the model cannot follow the record.
+void play_fitted(const PlantModel& model, const CompareOptions& options, Jumps jumps, EventComparison& e);
+
+/// EventComparison::doubt of an event that was played in by its voltage.
+void add_doubt(const PlantModel& model, EventComparison& e);
+
+}  // namespace swingbank::validate
