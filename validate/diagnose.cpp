@@ -59,6 +59,7 @@ class Diagnoser {
                         "an effect is believed only if it predicts an event that it was not fitted to",
                         "give records of two events or more"});
     result_.events = prepare_events(model, std::move(records), {.measured_states = options.measured_states});
+    result_.conventions = model.conventions;
     threads_ = options.threads > 0 ? options.threads : omp_get_num_procs();
   }
 

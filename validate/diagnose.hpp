@@ -32,6 +32,7 @@ struct Diagnosis {
   LawSearch laws;                 ///< where no known effect explains the records
   std::vector<Judgement> ranked;  ///< best first
   std::vector<FitEvent> events;
+  sim::Conventions conventions;  ///< of the model
   double seconds = 0;
 };
 

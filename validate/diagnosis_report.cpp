@@ -10,6 +10,7 @@
 #include "validate/blind_measured.hpp"
 #include "validate/diagnosis_report_laws.hpp"
 #include "validate/error_map_table.hpp"
+#include "validate/noise.hpp"
 
 namespace swingbank::validate {
 namespace {
@@ -31,13 +32,29 @@ std::vector<double> difference(const std::vector<double>& model, const std::vect
   std::ranges::transform(model, measured, r.begin(), std::minus<>());
   return r;
 }
-double share_inside(const std::vector<double>& residual, double band) {
-  const auto inside = std::ranges::count_if(residual, [&](double r) { return std::abs(r) <= band; });
-  return static_cast<double>(inside) / static_cast<double>(residual.size());
+double share_inside(const FitEvent& e, const std::vector<double>& residual, double band) {
+  int inside = 0, compared = 0;
+  for (std::size_t k = 0; k < residual.size(); ++k) {
+    if (!e.compared(k)) continue;
+    ++compared;
+    inside += std::abs(residual[k]) <= band ? 1 : 0;
+  }
+  return static_cast<double>(inside) / compared;
+}
+/// Of one channel.
+std::vector<std::vector<double>> shapes_of(const VoltageDoubt& doubt, std::size_t channel) {
+  std::vector<std::vector<double>> shapes;
+  for (const auto& shape : doubt.shapes) shapes.push_back(shape[channel]);
+  return shapes;
 }
 
+/// What the played-in voltage's errors leave in an event, before and after.
+struct Doubts {
+  VoltageDoubt before, after;
+};
+
 ReportChannel channel_of(const Diagnosis& d, const Fit* after, std::size_t e, std::size_t c,
-                         const std::vector<Window>& windows) {
+                         const std::vector<Window>& windows, const Doubts& doubts) {
   const FitEvent& event = d.events[e];
   const Output output = event.channels[c];
   const ChannelUnit unit = channel_unit(output, event.record.base);
@@ -57,14 +74,17 @@ ReportChannel channel_of(const Diagnosis& d, const Fit* after, std::size_t e, st
   if (after)
     if (NoiseModel other = noise_of(*after); other.sigma < noise.sigma) noise = std::move(other);
   r.noise = noise.sigma;
-  const auto judge_one = [&](const Fit& fit, std::vector<double>& model, ErrorMap& map, double& inside) {
+  const auto judge_one = [&](const Fit& fit, const VoltageDoubt& doubt, std::vector<double>& model,
+                             ErrorMap& map, double& inside) {
     model = fit.events[e].model[c];
     const auto residual = difference(model, r.measured);
-    inside = share_inside(residual, kBand99 * r.noise);
-    map = error_map(event.record.t, residual, windows, noise, {.quiet = static_cast<int>(quiet)});
+    inside = share_inside(event, residual, kBand99 * r.noise);
+    const auto shapes = shapes_of(doubt, c);
+    map = error_map(event.record.t, residual, windows, noise,
+                    {.quiet = static_cast<int>(quiet), .shapes = &shapes});
   };
-  judge_one(d.base, r.before, r.map_before, r.inside_before);
-  if (after) judge_one(*after, r.after, r.map_after, r.inside_after);
+  judge_one(d.base, doubts.before, r.before, r.map_before, r.inside_before);
+  if (after) judge_one(*after, doubts.after, r.after, r.map_after, r.inside_after);
   return r;
 }
 
@@ -169,8 +189,10 @@ ReportFigures report_figures(const Diagnosis& d) {
     r.event = &d.events[e];
     r.windows =
         event_windows(r.event->record, r.event->switchings, FitEventOptions{}.pre_event, r.event->smeared);
+    Doubts doubts{voltage_doubt(d.base.plant, d.conventions, *r.event), {}};
+    if (figures.after) doubts.after = voltage_doubt(figures.after->plant, d.conventions, *r.event);
     for (std::size_t c = 0; c < r.event->channels.size(); ++c)
-      r.channels.push_back(channel_of(d, figures.after, e, c, r.windows));
+      r.channels.push_back(channel_of(d, figures.after, e, c, r.windows, doubts));
     r.before = std::sqrt(d.base.events[e].misfit());
     r.after = figures.after ? std::sqrt(figures.after->events[e].misfit()) : kNaN;
     r.unseen_before = r.unseen_after = kNaN;
