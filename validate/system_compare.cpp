@@ -34,11 +34,25 @@ std::vector<double> difference(const std::vector<double>& a, const std::vector<d
   return d;
 }
 
+/// How far to either side of a switching the instruments' filters smear it [s]; 0: they do not.
+double smear_of(const SystemCase& system) {
+  std::vector<Record> records;
+  for (const SystemTerminal& t : system.terminals) records.push_back(t.record);
+  if (jumps_of(records, kJumpThreshold) != Jumps::spread) return 0;
+  double farthest = 0;
+  for (const Record& r : records) {
+    std::vector<char> smeared;
+    for (const Switching& s : find_switchings(r, kJumpThreshold / 2, Jumps::spread, smeared))
+      farthest = std::max(farthest, s.uncertainty);
+  }
+  return farthest;
+}
+
 /// Compares one terminal after the other.
 class Comparer {
  public:
   Comparer(const SystemCase& system, const SystemRun& run, SystemComparison& out)
-      : s_(system), run_(run), out_(out) {}
+      : s_(system), run_(run), out_(out), smear_(smear_of(system)) {}
 
   void terminal(std::size_t i) {
     const SystemTerminal& t = s_.terminals[i];
@@ -50,19 +64,30 @@ class Comparer {
       e.switchings.push_back({.time = at, .uncertainty = out_.uncertainty});
     e.detected = s_.find_instants;
     if (const auto doubt = clock_doubt(t.record, out_.instants); !doubt.empty()) e.notes.push_back(doubt);
-    const double begins = out_.instants.front() + 1e-4 * t.record.step();
+    leave_out_smeared(e);
+    const double begins = out_.instants.front() - smear_ + 1e-4 * t.record.step();
     e.playback.start.samples =
         static_cast<int>(std::ranges::upper_bound(t.record.t, begins) - t.record.t.begin());
     if (e.playback.start.samples < kFewestQuiet)
       throw InputError({fmt::format("{} samples before the event", e.playback.start.samples),
                         "terminal " + t.name, "noise and steady state are seen there",
                         "start the record at least 1 s before the event"});
-    e.windows = event_windows(e.record, e.switchings, 1.0);
+    e.windows = event_windows(e.record, e.switchings, 1.0, e.left_out);
     channels(i, e);
     out_.terminals.push_back(std::move(e));
   }
 
  private:
+  void leave_out_smeared(EventComparison& e) const {
+    if (!(smear_ > 0)) return;
+    for (const double t : e.record.t)
+      e.left_out.push_back(
+          std::ranges::any_of(out_.instants, [&](double at) { return std::abs(t - at) <= smear_; }));
+    e.notes.push_back(fmt::format(
+        "The instruments' filters smear switchings by up to {:.0f} ms to either side: samples there are not "
+        "compared.",
+        1e3 * smear_));
+  }
   void channels(std::size_t i, EventComparison& e) {
     const Modelled& m = run_.answers[i];
     const Record& r = s_.terminals[i].record;
@@ -123,6 +148,7 @@ class Comparer {
   const SystemCase& s_;
   const SystemRun& run_;
   SystemComparison& out_;
+  double smear_;
 };
 
 /// The cell of a comparison that is furthest beyond its bound, or nearest to it.
