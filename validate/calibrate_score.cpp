@@ -30,12 +30,17 @@ std::vector<double> correlations(const FitEvent& event, const EventFit& fitted) 
   return rho;
 }
 
-/// Root mean square of model - measured [pu].
+/// Root mean square of model - measured over what is compared [pu].
 double rms(const FitEvent& event, const EventFit& fitted, std::size_t c) {
   const auto& measured = event.measured(event.channels[c]);
   double sum = 0;
-  for (std::size_t k = 0; k < measured.size(); ++k) sum += std::pow(fitted.model[c][k] - measured[k], 2);
-  return std::sqrt(sum / static_cast<double>(measured.size()));
+  int compared = 0;
+  for (std::size_t k = 0; k < measured.size(); ++k) {
+    if (!event.compared(k)) continue;
+    sum += std::pow(fitted.model[c][k] - measured[k], 2);
+    ++compared;
+  }
+  return std::sqrt(sum / compared);
 }
 
 }  // namespace
