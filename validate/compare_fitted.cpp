@@ -2,7 +2,7 @@
 
 #include "validate/fit.hpp"
 #include "validate/instruments.hpp"
-#include "validate/noise.hpp"
+#include "validate/voltage_doubt.hpp"
 
 namespace swingbank::validate {
 

@@ -10,7 +10,7 @@
 #include "validate/blind_measured.hpp"
 #include "validate/diagnosis_report_laws.hpp"
 #include "validate/error_map_table.hpp"
-#include "validate/noise.hpp"
+#include "validate/voltage_doubt.hpp"
 
 namespace swingbank::validate {
 namespace {

@@ -16,17 +16,6 @@ void sharpen_noise(const Fit& fit, std::vector<FitEvent>& events);
 /// window, from which everything is counted. `event`: whitening at once, channels, start.
 SlowNoise slow_noise(const LinearPlant& plant, const FitEvent& event, const Eigen::Vector2d& variance);
 
-/// What the played-in voltage's own errors leave in an event's channels, one standard deviation each: its
-/// mean's before the event, what its noise becomes behind the plant (draws of it, which share the variance),
-/// and what it may be off by about switchings and in place of smeared samples. The plant is linear about the
-/// start.
-struct VoltageDoubt {
-  using Shape = std::vector<std::vector<double>>;  ///< [channel][sample]
-  std::vector<Shape> shapes;
-};
-VoltageDoubt voltage_doubt(const sim::Plant& plant, const sim::Conventions& conventions,
-                           const FitEvent& event);
-
 /// The memory of an event's noise by slow_noise() about its start; none where that hardly matters.
 std::shared_ptr<const Innovations> memory_of(const sim::Plant& plant, const sim::Conventions& conventions,
                                              const FitEvent& event, const Eigen::Vector2d& variance);
