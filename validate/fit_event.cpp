@@ -138,6 +138,25 @@ FitEvent prepare(Record record, const FitEventOptions& options, Jumps jumps) {
   return e;
 }
 
+/// One instrument smears all jumps over the same time: what is spread wider than every record's first jump is
+/// a fast swing.
+void drop_swings(std::vector<FitEvent>& events) {
+  double widest = 0;
+  for (const FitEvent& e : events)
+    if (!e.switchings.empty()) widest = std::max(widest, e.switchings.front().uncertainty);
+  for (FitEvent& e : events) {
+    const double edge = 0.5 * e.record.step();
+    if (e.smeared.empty() ||
+        std::erase_if(e.switchings, [&](const Switching& s) { return s.uncertainty > widest + edge; }) == 0)
+      continue;
+    for (std::size_t k = 0; k < e.smeared.size(); ++k)
+      e.smeared[k] = std::ranges::any_of(e.switchings, [&](const Switching& s) {
+        return std::abs(e.record.t[k] - s.time) < s.uncertainty - edge;
+      });
+    e.clean = without(e.record, e.smeared);
+  }
+}
+
 /// Samples that are not compared.
 std::vector<char> left_out(const FitEvent& e) {
   std::vector<char> marks = e.smeared;
@@ -255,6 +274,7 @@ std::vector<FitEvent> prepare_events(const PlantModel& model, std::vector<Record
   const Jumps jumps =
       options.jumps == Jumps::either ? jumps_of(records, options.jump_threshold) : options.jumps;
   for (Record& r : records) events.push_back(prepare(std::move(r), options, jumps));
+  if (jumps == Jumps::spread) drop_swings(events);
   unsmear(events);
   for (FitEvent& e : events) e.left_out = left_out(e);
   measure_noise(model.plant, model.conventions, events);

@@ -256,13 +256,27 @@ Attempt best_attempt(const std::vector<FitEvent>& events) {
       if (Attempt a = attempt(events, shape, cycles); a.left < best.left) best = std::move(a);
   return best;
 }
+void place(FitEvent& e, const Found& f, double unsure) {
+  e.switchings[f.from] = {.time = f.segment.a, .uncertainty = unsure};
+  e.switchings[f.from + 1] = {.time = f.segment.b, .uncertainty = unsure};
+}
 /// Instants as found, so sharp that only samples within the window are left out.
 void place(std::vector<FitEvent>& events, const Attempt& a) {
-  for (const Found& f : a.segments) {
+  for (const Found& f : a.segments) place(events[f.event], f, events[f.event].record.step() / 5);
+}
+
+/// Whether no sample of the segment is clean.
+bool is_empty(const FitEvent& e, std::size_t from) {
+  return std::ranges::none_of(
+      e.clean.t, [&](double t) { return e.switchings[from].time <= t && t <= e.switchings[from + 1].time; });
+}
+/// Where no window answers: what has no clean sample must have some voltage to be played in, and is doubted.
+void fill_empty(std::vector<FitEvent>& events, const Attempt& poor) {
+  for (const Found& f : poor.segments) {
     FitEvent& e = events[f.event];
-    const double unsure = e.record.step() / 5;
-    e.switchings[f.from] = {.time = f.segment.a, .uncertainty = unsure};
-    e.switchings[f.from + 1] = {.time = f.segment.b, .uncertainty = unsure};
+    if (!is_empty(e, f.from)) continue;
+    place(e, f, e.record.step());
+    fill(e, f.segment);
   }
 }
 
@@ -270,7 +284,10 @@ void place(std::vector<FitEvent>& events, const Attempt& a) {
 
 FilterWindow unsmear(std::vector<FitEvent>& events) {
   Attempt best = best_attempt(events);
-  if (best.left > kGood * kGood) return {};
+  if (best.left > kGood * kGood) {
+    fill_empty(events, best);
+    return {};
+  }
   place(events, best);
   for (const Found& f : best.segments) mark_again(events[f.event], best.window);
   // samples that turned out clean are nearer to the jumps: less is extrapolated now
