@@ -50,7 +50,7 @@ TEST(Add, TheMissingExciterExplainsTheUnseenEvent) {
 }
 
 // Noise taken through the model without the exciter left TA/TB outside its interval. Of seventeen sound 95 %
-// intervals all hold the truth in 42 % of such records, all but one in 79 %; X''d misses by a tenth of its
+// intervals all hold the truth in 42 % of such records, all but one in 79 %; X''d misses by a quarter of its
 // error.
 TEST(Add, IntervalsHoldTheTruth) {
   const PlantModel model = example(false), truth = example(true);
