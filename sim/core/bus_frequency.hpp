@@ -28,6 +28,9 @@ inline T bus_frequency(const T& Vr, const T& Vi, const T& squared, const T& xr, 
 inline bool any_positive(double a) { return a > 0.0; }
 template <int N>
 inline bool any_positive(const Pack<N>& a) {
+#ifdef __AVX512F__
+  if constexpr (N == 8) return _mm512_cmp_pd_mask((__m512d)a.v, _mm512_setzero_pd(), _CMP_GT_OQ) != 0;
+#endif
   bool any = false;
   for (int lane = 0; lane < N; ++lane) any |= a[lane] > 0.0;
   return any;

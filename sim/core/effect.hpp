@@ -74,6 +74,13 @@ struct State {
   /// Coefficients that hold the limits of a non-windup state, -1: none. Whoever integrates stops the state
   /// there: its derivative is zero while it would lead further out.
   int low = -1, high = -1;
+  /// Coefficients without which the state stands still: where they are zero its derivative is, whatever the
+  /// signals, once it stands where steady() puts it. -1: none; a state that names none always counts as
+  /// moving.
+  struct Movers {
+    int first = -1, second = -1;
+  };
+  Movers moved_by = {};
 };
 
 /// What simulators do differently, chosen by the origin of the data (docs/decisions.md), and what an effect

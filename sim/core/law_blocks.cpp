@@ -100,6 +100,7 @@ int Reader::first_order(const std::string& name, Block& block) {
   const std::string key = "blocks." + name + ".";
   block.first_state = add_state(name, fmt::format("state of the {} {}", block.kind, name));
   const int state = block.first_state, x = graph_.state(state);
+  states_[static_cast<std::size_t>(state)].weight = state_weight(key);
   if (limits_its_state(block.kind)) {
     StateEntry& s = states_[static_cast<std::size_t>(state)];
     if (config_.has(key + "low")) s.low = value(key + "low");

@@ -145,6 +145,11 @@ void Reader::read_references() {
   }
 }
 
+/// What `key` says of a state's error in step control (State::weight).
+double Reader::state_weight(const std::string& key) {
+  return config_.optional<double>(key + "weight", 1.0, {1e-6, 1e6, ""});
+}
+
 /// Names first, so that derivatives may use any state; see read() for the order.
 void Reader::read_states() {
   const auto names = in_file_order("states");
@@ -154,7 +159,7 @@ void Reader::read_states() {
     const int index = add_state(name, config_.require<std::string>(key + "meaning"));
     StateEntry& s = states_[static_cast<std::size_t>(index)];
     s.unit = config_.require<std::string>(key + "unit");
-    s.weight = config_.optional<double>(key + "weight", 1.0, {1e-6, 1e6, ""});
+    s.weight = state_weight(key);
     state_.emplace(name, index);
   }
   for (const auto& [name, index] : state_) {

@@ -79,6 +79,7 @@ class Reader {
   std::vector<int> list(const std::string& key);
   bool surely_positive(int vertex) const;
   int add_state(const std::string& name, const std::string& meaning);
+  double state_weight(const std::string& key);
 
   std::string text_;
   Config config_;

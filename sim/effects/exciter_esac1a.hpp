@@ -73,8 +73,8 @@ struct Model {
   enum X { Vm, leadlag, Va, Ve, rate };
   /// What enters the regulator counts in Efd by its gain of some hundreds, within its lags.
   static constexpr double kErrorWeight = 10.0;
-  static constexpr State states[] = {{"Vm", "pu", "measured voltage", kErrorWeight},
-                                     {"leadlag", "pu", "state of the lead-lag", kErrorWeight},
+  static constexpr State states[] = {{"Vm", "pu", "measured voltage", kErrorWeight, -1, -1, {iTR}},
+                                     {"leadlag", "pu", "state of the lead-lag", kErrorWeight, -1, -1, {iTB}},
                                      {"Va", "pu", "regulator output", 1.0, vamin, vamax},
                                      {"Ve", "pu", "voltage behind the rectifier", 1.0, none, -1},
                                      {"rate", "pu", "state of the rate feedback", kErrorWeight}};

@@ -29,8 +29,9 @@ struct Model {
   static constexpr int dyr_columns[] = {TAoverTB, TB, K, TE, EMIN, EMAX};
   enum C { TA, iTB, gain, iTE, low, high, Vref, coefficients };
   enum X { leadlag, Efd };
-  static constexpr State states[] = {{"leadlag", "pu", "state of the lead-lag"},
-                                     {"Efd", "pu", "field voltage", 1.0, low, high}};
+  // An error of the lead-lag stays for TB and reaches Efd some 100 times larger; one of Efd is gone after TE.
+  static constexpr State states[] = {{"leadlag", "pu", "state of the lead-lag", 20.0, -1, -1, {iTB}},
+                                     {"Efd", "pu", "field voltage", 0.1, low, high}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     if (!(p[K] > 0)) problems.add(fmt::format("K = {:g}", p[K]), where, "no gain, no exciter", "give K > 0");

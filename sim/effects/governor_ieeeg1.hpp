@@ -74,12 +74,13 @@ struct Model {
     coefficients
   };
   enum X { governor, valve, bowl, reheat, crossover, last };
-  static constexpr State states[] = {{"governor", "pu", "lagged speed"},
-                                     {"valve", "pu", "valve opening", 1.0, low, high},
-                                     {"bowl", "pu", "flow through the steam bowl, x4"},
-                                     {"reheat", "pu", "flow through the first reheater, x5"},
-                                     {"crossover", "pu", "flow through the crossover, x6"},
-                                     {"last", "pu", "flow through the last stage, x7"}};
+  static constexpr State states[] = {
+      {"governor", "pu", "lagged speed", 1.0, -1, -1, {iT1}},
+      {"valve", "pu", "valve opening", 1.0, low, high},
+      {"bowl", "pu", "flow through the steam bowl, x4", 1.0, -1, -1, {iT4}},
+      {"reheat", "pu", "flow through the first reheater, x5", 1.0, -1, -1, {iT5}},
+      {"crossover", "pu", "flow through the crossover, x6", 1.0, -1, -1, {iT6}},
+      {"last", "pu", "flow through the last stage, x7", 1.0, -1, -1, {iT7}}};
 
   static void check(const double* p, const std::string& where, Problems& problems);
   static std::string_view unphysical(const double*) { return ""; }

@@ -85,15 +85,20 @@ struct Model {
     coefficients
   };
   enum X { y, ydot, w, wdot, lead1, lead2, washed, xr, xi };
-  static constexpr State states[] = {{"y", "pu", "first filter's output"},
-                                     {"ydot", "pu/s", "its slope"},
-                                     {"w", "pu", "second filter's state"},
-                                     {"wdot", "pu/s", "its slope"},
-                                     {"lead1", "pu", "state of the first lead-lag"},
-                                     {"lead2", "pu", "state of the second lead-lag"},
-                                     {"washed", "pu", "state of the washout"},
-                                     {"xr", "pu", "lagged voltage, real (ICS = 6: magnitude)"},
-                                     {"xi", "pu", "lagged voltage, imaginary"}};
+  // The slopes' own errors are gone within a filter's time constant: they weigh that many seconds.
+  static constexpr State states[] = {
+      {.name = "y", .unit = "pu", .meaning = "first filter's output", .moved_by = {ia1, ia2}},
+      {.name = "ydot", .unit = "pu/s", .meaning = "its slope", .weight = 0.05, .moved_by = {ia2}},
+      {.name = "w", .unit = "pu", .meaning = "second filter's state", .moved_by = {ia3, ia4}},
+      {.name = "wdot", .unit = "pu/s", .meaning = "its slope", .weight = 0.05, .moved_by = {ia4}},
+      {.name = "lead1", .unit = "pu", .meaning = "state of the first lead-lag", .moved_by = {it2}},
+      {.name = "lead2", .unit = "pu", .meaning = "state of the second lead-lag", .moved_by = {it4}},
+      {.name = "washed", .unit = "pu", .meaning = "state of the washout", .moved_by = {it6}},
+      {.name = "xr",
+       .unit = "pu",
+       .meaning = "lagged voltage, real (ICS = 6: magnitude)",
+       .moved_by = {w2, w6}},
+      {.name = "xi", .unit = "pu", .meaning = "lagged voltage, imaginary", .moved_by = {w2}}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
@@ -159,6 +164,10 @@ struct Model {
   /// The second-order filter: either denominator may be of order 2, 1 or 0.
   template <class T>
   static T filter(const T* c, const T* x, const T& u, T* dx) {
+    if (!any_positive(c[ia1] + c[ia2] + c[ia3] + c[ia4])) {
+      dx[y] = dx[ydot] = dx[w] = dx[wdot] = T(0.0);
+      return u;
+    }
     const T zero(0.0);
     const auto second = c[ia2] > zero, first = c[ia1] > zero;
     const T slope1 = (u - x[y]) * c[ia1];
@@ -187,8 +196,11 @@ struct Model {
   template <class T>
   static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
     const T zero(0.0);
-    dx[xr] = (c[w2] * s.Vr + c[w6] * s.V - x[xr]) * c[iTf];
-    dx[xi] = (c[w2] * s.Vi - x[xi]) * c[iTf];
+    dx[xr] = dx[xi] = zero;
+    if (any_positive(c[w2] + c[w6])) {
+      dx[xr] = (c[w2] * s.Vr + c[w6] * s.V - x[xr]) * c[iTf];
+      dx[xi] = (c[w2] * s.Vi - x[xi]) * c[iTf];
+    }
     const T filtered = filter(c, x, input(c, x, s), dx);
     const T a = lead_lag(c[t1], c[it2], x[lead1], filtered, dx[lead1]);
     const T b = lead_lag(c[t3], c[it4], x[lead2], a, dx[lead2]);

@@ -122,23 +122,24 @@ struct Model {
   enum X { w1, w2, y1, w3, w4, y2, ramp, lead1 = ramp + kSlots, lead2, lead3 };
   /// Behind every state stand KS1 and the leads, some tens together, and an exciter's gain.
   static constexpr double kGainWeight = 10.0;
-  static constexpr State states[] = {{"w1", "pu", "first washout of the first input", kGainWeight},
-                                     {"w2", "pu", "second washout of the first input", kGainWeight},
-                                     {"y1", "pu", "first input, filtered", kGainWeight},
-                                     {"w3", "pu", "first washout of the second input", kGainWeight},
-                                     {"w4", "pu", "second washout of the second input", kGainWeight},
-                                     {"y2", "pu", "second input, filtered", kGainWeight},
-                                     {"ramp1", "pu", "ramp-tracking filter, first lag", kGainWeight},
-                                     {"ramp2", "pu", "second lag", kGainWeight},
-                                     {"ramp3", "pu", "third lag", kGainWeight},
-                                     {"ramp4", "pu", "fourth lag", kGainWeight},
-                                     {"ramp5", "pu", "fifth lag", kGainWeight},
-                                     {"ramp6", "pu", "sixth lag", kGainWeight},
-                                     {"ramp7", "pu", "seventh lag", kGainWeight},
-                                     {"ramp8", "pu", "eighth lag", kGainWeight},
-                                     {"lead1", "pu", "state of the first lead-lag", kGainWeight},
-                                     {"lead2", "pu", "state of the second lead-lag", kGainWeight},
-                                     {"lead3", "pu", "state of the third lead-lag", kGainWeight}};
+  static constexpr State states[] = {
+      {"w1", "pu", "first washout of the first input", kGainWeight},
+      {"w2", "pu", "second washout of the first input", kGainWeight, -1, -1, {iTw2}},
+      {"y1", "pu", "first input, filtered", kGainWeight, -1, -1, {iT6}},
+      {"w3", "pu", "first washout of the second input", kGainWeight},
+      {"w4", "pu", "second washout of the second input", kGainWeight, -1, -1, {iTw4}},
+      {"y2", "pu", "second input, filtered", kGainWeight, -1, -1, {iT7}},
+      {"ramp1", "pu", "ramp-tracking filter, first lag", kGainWeight, -1, -1, {slow}},
+      {"ramp2", "pu", "second lag", kGainWeight, -1, -1, {slow + 1}},
+      {"ramp3", "pu", "third lag", kGainWeight, -1, -1, {slow + 2}},
+      {"ramp4", "pu", "fourth lag", kGainWeight, -1, -1, {slow + 3}},
+      {"ramp5", "pu", "fifth lag", kGainWeight, -1, -1, {slow + 4}},
+      {"ramp6", "pu", "sixth lag", kGainWeight, -1, -1, {slow + 5}},
+      {"ramp7", "pu", "seventh lag", kGainWeight, -1, -1, {slow + 6}},
+      {"ramp8", "pu", "eighth lag", kGainWeight, -1, -1, {slow + 7}},
+      {"lead1", "pu", "state of the first lead-lag", kGainWeight, -1, -1, {it2}},
+      {"lead2", "pu", "state of the second lead-lag", kGainWeight, -1, -1, {it4}},
+      {"lead3", "pu", "state of the third lead-lag", kGainWeight, -1, -1, {it11}}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     check_as(name, p, where, problems);

@@ -20,7 +20,7 @@ class Lanes {
   static constexpr int kLanes = LaneTraits<T>::lanes;
   static constexpr int kWaiting =
       8 * kLanes;  ///< samples evaluated together: constants are spread once for all
-  static constexpr int kRoom = kWaiting + 2 * kLanes;  ///< whole packs are stored and moved
+  static constexpr int kRoom = kWaiting + 4 * kLanes;  ///< whole packs are stored and moved
   using Next = std::function<bool(Job&)>;
   using Done = std::function<void(const Job&, const Trajectory&)>;
 
@@ -35,13 +35,13 @@ class Lanes {
   static constexpr std::size_t kFlats = 1 + Traits::directions;  ///< flats in one T
   struct PlantSlice {
     PlantEquations<T> equations;
-    int x, c, m;  ///< offsets of states, coefficients and scratch
+    int x, c, m;     ///< offsets of states, coefficients and scratch
+    int watch = -1;  ///< of watched_, -1: none
   };
 
   /// An exciter behind a stabiliser: whether Vs comes to its limits or leaves them is seen from stages in
   /// which it stays the same to the bit.
   struct Watch {
-    std::size_t plant;
     int first, count;      ///< the exciter's states
     bool always;           ///< it declares no limits (State::low, high): where its own stand is not known
     Flat start{}, last{};  ///< Vs at the step's start, at the last stage
@@ -52,6 +52,16 @@ class Lanes {
   struct LoadSlice {
     LoadEquations<T> equations;
     int x, c;
+  };
+
+  /// A state that stands still while two coefficients are zero (State::moved_by; -1: only the first counts).
+  struct Resting {
+    int state, first, second;
+  };
+
+  /// Samples of one lane that fall into this step and have room.
+  struct Due {
+    int lane, count;
   };
 
   /// What the equations need besides the states. One set has a lane per event; the other, for recording, is
@@ -75,8 +85,8 @@ class Lanes {
 
   // recording (lanes_record.hpp)
   void record_step(const T& h, unsigned accepted, const double* start, const double* tried);
-  void prepare_dense(const T& h);
-  void collect(int lane, int count, double start, double tried);
+  void interpolate(const T& h, const double* start, const double* tried);
+  void dense(std::size_t state, const T& h, Flat* rows) const;
   void evaluate_pending(int lane, int count);
   void spread_constants(int lane);
   void outputs(std::size_t row_plant, const T* x, LaneRun& run, int count);
@@ -91,7 +101,9 @@ class Lanes {
   void load_seeded(int lane, const std::map<int, Plant>& changed);
   void matrix_slopes(int lane, const InternalMatrix& matrix);
   void load_consumer(int lane, std::size_t load);
+  void find_moving();
   void enter_segment(int lane);
+  void fill_waiting(int lane);
   void record_steady_start(int lane);
   int samples_until(double t) const;
   void refill(int lane, const Next& next, const Done& done);
@@ -105,7 +117,8 @@ class Lanes {
   Flat scaled_error(const Flat& h) const;
   Flat kink_error(std::size_t state) const;
   Flat has_kink(const Watch& watch) const;
-  void watch_stage(std::size_t plant, const T& vs);
+  Flat leaves_limit(std::size_t state) const;
+  void watch_stage(Watch& watch, const T& vs);
   void commit(unsigned accepted);
   void clamp_states();
   T spread(const T* x) const;
@@ -120,20 +133,27 @@ class Lanes {
   std::vector<int> nonlinear_;               ///< sources: plants, then loads
   std::vector<Operating> base_, load_base_;  ///< operating points with the grid's own parameters
   bool limited_ = false, timed_ = false;     ///< whether any state has limits, any effect reads the time
+  std::vector<int> stopped_;                 ///< states with limits at which they are held
+  std::vector<Resting> resting_;
+  std::vector<int> moving_;            ///< states that move in any lane
+  std::vector<int> wanted_, sampled_;  ///< states the outputs need; of these the moving ones
+  std::vector<char> needed_;           ///< per state: whether the outputs need it
+  std::vector<std::pair<std::size_t, std::size_t>> spread_;  ///< coefficients they need: first, number
   std::vector<int> recorded_;
   std::vector<Channel> channels_;
   int n_ = 0, sources_ = 0, samples_ = 0, states_ = 0;
   std::vector<double> weight_;  ///< per state, already divided by the tolerance
 
   Constants per_lane_, per_sample_;
-  std::vector<T> m_, er_, ei_;        ///< scratch of one evaluation
-  Signals<T> signals_;                ///< likewise: zeroing one per plant would cost 25 packs
-  std::vector<T> algebra_;            ///< scratch of newton_step
-  T time_{}, start_{};                ///< of the evaluation, of the step, per lane [s]
-  std::vector<T> y_, trial_, dense_;  ///< states; dense_: four coefficient rows
+  std::vector<T> m_, er_, ei_;  ///< scratch of one evaluation
+  Signals<T> signals_;          ///< likewise: zeroing one per plant would cost 25 packs
+  std::vector<T> algebra_;      ///< scratch of newton_step
+  T time_{}, start_{};          ///< of the evaluation, of the step, per lane [s]
+  std::vector<T> y_, trial_;    ///< states
   std::vector<T> k_[dp54::kStages];
   std::vector<T> kept_, unused_;
   std::vector<LaneRun> lanes_;
+  std::vector<Due> due_;
   std::vector<std::vector<double>> lane_r_, lane_x_;  ///< source impedances per lane
   std::vector<std::vector<char>> grounded_;           ///< per lane and source: bus held at V = 0
   std::vector<std::vector<double>> connected_;        ///< per lane and source: part that is connected

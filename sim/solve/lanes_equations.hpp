@@ -53,7 +53,7 @@ inline void Lanes<T>::derivative(const T* x, T* dx) {
     } else {
       p.equations.voltages(c, er_[i], ei_[i], s);
       p.equations.derivative(c, x + p.x, m, s, dx + p.x);
-      if (!watched_.empty()) watch_stage(i, s.Vs);
+      if (p.watch >= 0) watch_stage(watched_[static_cast<std::size_t>(p.watch)], s.Vs);
     }
     if (tripped_ != 0)
       for (int j = 0; j < p.equations.states(); ++j) dx[p.x + j] = dx[p.x + j] * k.on[i];

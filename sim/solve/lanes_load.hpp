@@ -35,8 +35,18 @@ Lanes<T>::Lanes(const Grid& grid, const BatchOptions& options)
 template <class T>
 void Lanes<T>::build_slices() {
   int c = 0, m = 0;
-  const auto weigh = [&](const Effect& effect) {
-    for (const auto& state : effect.states) weight_.push_back(state.weight / options_.tolerance);
+  const auto add_states = [&](const Effect& effect, int coefficient, bool needed) {
+    for (const State& state : effect.states) {
+      const auto at = [&](int mover) { return mover < 0 ? -1 : coefficient + mover; };
+      const auto [first, second] = state.moved_by;
+      if (first >= 0) resting_.push_back({static_cast<int>(weight_.size()), at(first), at(second)});
+      if (state.low >= 0 || state.high >= 0) stopped_.push_back(static_cast<int>(weight_.size()));
+      weight_.push_back(state.weight / options_.tolerance);
+      needed_.push_back(needed);
+    }
+  };
+  const auto add_spread = [&](int first, int count) {
+    spread_.push_back({static_cast<std::size_t>(first), static_cast<std::size_t>(count)});
   };
   for (std::size_t i = 0; i < grid_.plants.size(); ++i) {
     const Plant& plant = grid_.plants[i];
@@ -47,17 +57,23 @@ void Lanes<T>::build_slices() {
     m += equations.scratch();
     base_.push_back(operating_point(plant, grid_.flow.voltage[static_cast<std::size_t>(plant.bus)],
                                     grid_.network.base_mva, grid_.conventions));
-    weigh(*plant.machine.effect);
+    const bool recorded = std::ranges::find(recorded_, static_cast<int>(i)) != recorded_.end();
+    add_states(*plant.machine.effect, plants_.back().c, true);
+    add_spread(plants_.back().c,
+               recorded ? equations.coefficients() : plant.machine.effect->coefficients + kJoint);
+    int coefficient = plants_.back().c + plant.machine.effect->coefficients + kJoint;
     const auto has = [&](Slot slot) {
       return std::ranges::any_of(plant.controls, [&](const Block& b) { return b.effect->slot == slot; });
     };
     for (const auto& block : plant.controls) {
       const auto limited = [](const State& state) { return state.low >= 0 || state.high >= 0; };
-      if (block.effect->slot == Slot::exciter && has(Slot::stabiliser))
-        watched_.push_back({i, static_cast<int>(weight_.size()),
-                            static_cast<int>(block.effect->states.size()),
+      if (block.effect->slot == Slot::exciter && has(Slot::stabiliser)) {
+        plants_.back().watch = static_cast<int>(watched_.size());
+        watched_.push_back({static_cast<int>(weight_.size()), static_cast<int>(block.effect->states.size()),
                             std::ranges::none_of(block.effect->states, limited)});
-      weigh(*block.effect);
+      }
+      add_states(*block.effect, coefficient, recorded);
+      coefficient += block.effect->coefficients;
     }
     if (equations.nonlinear()) nonlinear_.push_back(static_cast<int>(i));
     limited_ = limited_ || equations.limited();
@@ -71,7 +87,8 @@ void Lanes<T>::build_slices() {
     load_base_.push_back(load_operating_point(load, load.block.p,
                                               grid_.flow.voltage[static_cast<std::size_t>(load.bus)],
                                               grid_.network.base_mva, grid_.conventions));
-    weigh(*load.block.effect);
+    add_states(*load.block.effect, loads_.back().c, true);
+    add_spread(loads_.back().c, loads_.back().equations.coefficients());
   }
   for (Constants* k : {&per_lane_, &per_sample_}) k->c.assign(static_cast<std::size_t>(c), T(0.0));
   m_.assign(static_cast<std::size_t>(m), T(0.0));
@@ -91,8 +108,9 @@ void Lanes<T>::reserve() {
   algebra_.assign(free + 2 * free + free * free, T(0.0));
   for (auto* v : {&er_, &ei_}) v->assign(sources, T(0.0));
   for (auto* v : {&y_, &trial_, &kept_, &unused_}) v->assign(states, T(0.0));
-  dense_.assign(4 * states, T(0.0));
   for (auto& k : k_) k.assign(states, T(0.0));
+  for (int i = 0; i < states_; ++i)
+    if (needed_[static_cast<std::size_t>(i)]) wanted_.push_back(i);
   lanes_.resize(kLanes);
   for (auto* v : {&lane_r_, &lane_x_}) v->assign(kLanes, std::vector<double>(sources));
   grounded_.resize(kLanes);
@@ -152,8 +170,29 @@ void Lanes<T>::load(int lane) {
     Traits::set(per_lane_.vr[i], lane, v.real());
     Traits::set(per_lane_.vi[i], lane, v.imag());
   }
+  find_moving();
   run.segment = 0;
   run.clock.t = 0.0;
+}
+
+/// Which states move in any lane; the others keep what they have through every step.
+template <class T>
+void Lanes<T>::find_moving() {
+  const auto zero = [this](int coefficient) {
+    if (coefficient < 0) return true;
+    const double* v = reinterpret_cast<const double*>(&per_lane_.c[static_cast<std::size_t>(coefficient)]);
+    return std::all_of(v, v + kFlats * kLanes, [](double a) { return a == 0.0; });
+  };
+  std::vector<char> still(y_.size());
+  for (const Resting& r : resting_)
+    still[static_cast<std::size_t>(r.state)] = zero(r.first) && zero(r.second);
+  const auto rests = [&](int i) { return still[static_cast<std::size_t>(i)] != 0; };
+  moving_.clear();
+  sampled_.clear();
+  for (int i = 0; i < states_; ++i)
+    if (!rests(i)) moving_.push_back(i);
+  std::ranges::remove_copy_if(wanted_, std::back_inserter(sampled_), rests);
+  trial_ = y_;
 }
 
 /// Plants with seeded parameters once more, with the derivatives of their operating point.
@@ -248,8 +287,6 @@ void Lanes<T>::record_steady_start(int lane) {
   const bool switches = run.segments.size() > 1 && run.segments[1].start < options_.t_end;
   const double first = switches ? run.segments[1].start : options_.t_end;
   const int count = samples_until(first);
-  const double* flat = reinterpret_cast<const double*>(y_.data()) + lane;
-  for (std::size_t i = 0; i < y_.size() * kFlats; ++i) run.waiting[i * kRoom] = flat[i * kLanes];
   run.pending = 1;
   evaluate_pending(lane, 1);
   hold(run, count);
@@ -258,6 +295,15 @@ void Lanes<T>::record_steady_start(int lane) {
     run.segment = 1;
     enter_segment(lane);
   }
+}
+
+/// Fills a lane's waiting room with its operating point: what rests is not interpolated.
+template <class T>
+void Lanes<T>::fill_waiting(int lane) {
+  double* to = lanes_[static_cast<std::size_t>(lane)].waiting.data();
+  const double* from = reinterpret_cast<const double*>(y_.data()) + lane;
+  for (std::size_t i = 0; i < y_.size() * kFlats; ++i, to += kRoom)
+    std::fill(to, to + kRoom, from[i * kLanes]);
 }
 
 /// How many samples lie at or before t.
@@ -287,6 +333,7 @@ void Lanes<T>::refill(int lane, const Next& next, const Done& done) {
     run.segments = segments(run.job.event, grid_.network, run.jumps);
     begin_record(run);
     load(lane);
+    fill_waiting(lane);
     enter_segment(lane);
     record_steady_start(lane);
     if (run.clock.t < options_.t_end) {

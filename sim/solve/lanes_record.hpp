@@ -4,68 +4,91 @@
 // event. That fills every lane, whatever the steps of the others, and writes each channel as whole cache
 // lines.
 #include <algorithm>
+#include <array>
 
 #include "sim/solve/lanes.hpp"
 
 namespace swingbank::sim {
 
-/// Coefficients of y(theta) = y0 + theta (d0 + (1 - theta)(d1 + theta (d2 + (1 - theta) d3))).
+/// Of one state, y(theta) = y0 + theta (d0 + (1 - theta)(d1 + theta (d2 + (1 - theta) d3))): y0, d0 to d3,
+/// each a row of flats.
 template <class T>
-void Lanes<T>::prepare_dense(const T& h) {
-  const std::size_t n = y_.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const T delta = trial_[i] - y_[i];
-    const T slope = h * k_[0][i] - delta;
-    T d = T(dp54::dense[0]) * k_[0][i];
-    for (int j = 2; j < dp54::kStages; ++j) d = d + T(dp54::dense[j]) * k_[j][i];
-    dense_[i] = delta;
-    dense_[n + i] = slope;
-    dense_[2 * n + i] = delta - h * k_[6][i] - slope;
-    dense_[3 * n + i] = h * d;
-  }
+void Lanes<T>::dense(std::size_t state, const T& h, Flat* rows) const {
+  const std::size_t i = state;
+  T* row = reinterpret_cast<T*>(rows);
+  const T delta = trial_[i] - y_[i];
+  const T slope = h * k_[0][i] - delta;
+  T d = T(dp54::dense[0]) * k_[0][i];
+  for (int j = 2; j < dp54::kStages; ++j) d = d + T(dp54::dense[j]) * k_[j][i];
+  row[0] = y_[i];
+  row[1] = delta;
+  row[2] = slope;
+  row[3] = delta - h * k_[6][i] - slope;
+  row[4] = h * d;
 }
 
-/// Records the samples in (start, start + tried] of every accepted lane.
+/// Records the samples in (start, start + tried] of every accepted lane. Where a step holds more than a
+/// waiting room takes, in several rounds.
 template <class T>
 void Lanes<T>::record_step(const T& h, unsigned accepted, const double* start, const double* tried) {
-  bool prepared = false;
-  for (int l = 0; l < kLanes; ++l) {
-    if (!((accepted >> l) & 1U)) continue;
-    const auto& run = lanes_[static_cast<std::size_t>(l)];
-    const int count = samples_until(run.clock.t) - run.recorded - run.pending;
-    if (count <= 0) continue;
-    if (!prepared) prepare_dense(h);
-    prepared = true;
-    collect(l, count, start[l], tried[l]);
+  for (;;) {
+    due_.clear();
+    for (int l = 0; l < kLanes; ++l) {
+      if (!((accepted >> l) & 1U)) continue;
+      const auto& run = lanes_[static_cast<std::size_t>(l)];
+      const int left = samples_until(run.clock.t) - run.recorded - run.pending;
+      const int room = (kRoom - run.pending) / kLanes * kLanes - kLanes;  // whole packs are moved
+      if (left > 0) due_.push_back({l, std::min(left, room)});
+    }
+    if (due_.empty()) return;
+    interpolate(h, start, tried);
+    for (const Due& due : due_) {
+      auto& run = lanes_[static_cast<std::size_t>(due.lane)];
+      run.pending += due.count;
+      if (run.pending >= kWaiting) evaluate_pending(due.lane, kWaiting - (run.recorded + kWaiting) % kLanes);
+    }
   }
 }
 
-/// Interpolates the lane's next `count` samples and evaluates them whenever the waiting room is full.
+/// The states at the due samples, state by state: its values of all lanes lie side by side.
 template <class T>
-void Lanes<T>::collect(int lane, int count, double start, double tried) {
-  auto& run = lanes_[static_cast<std::size_t>(lane)];
-  const std::size_t n = y_.size() * kFlats;
-  const double inverse = 1.0 / tried, spacing = 1.0 / options_.rate;
-  while (count > 0) {
-    const int now = std::min(count, kLanes);
-    const int first = run.recorded + run.pending;
-    alignas(64) double theta[kLanes];
-    for (int s = 0; s < kLanes; ++s) theta[s] = std::min(1.0, ((first + s) * spacing - start) * inverse);
-    const Flat a = LaneTraits<Flat>::load(theta), b = Flat(1.0) - a;
-    const double* __restrict y = reinterpret_cast<const double*>(y_.data()) + lane;
-    const double* __restrict d = reinterpret_cast<const double*>(dense_.data()) + lane;
-    double* __restrict to = run.waiting.data() + run.pending;
-    // dense_ holds four rows of T per state, each T a row of flats: [coefficient][state][flat]
-    for (std::size_t i = 0; i < n; ++i) {
-      const Flat value = Flat(y[i * kLanes]) +
-                         a * (Flat(d[i * kLanes]) +
-                              b * (Flat(d[(n + i) * kLanes]) +
-                                   a * (Flat(d[(2 * n + i) * kLanes]) + b * Flat(d[(3 * n + i) * kLanes]))));
-      LaneTraits<Flat>::store(value, to + i * kRoom);
+void Lanes<T>::interpolate(const T& h, const double* start, const double* tried) {
+  struct Pass {
+    Flat a, b;   ///< theta, 1 - theta
+    double* to;  ///< the first state's row
+    int lane;
+  };
+  const double spacing = 1.0 / options_.rate;
+  std::array<Pass, kRoom> passes;
+  std::size_t count = 0;
+  for (const Due& due : due_) {
+    auto& run = lanes_[static_cast<std::size_t>(due.lane)];
+    const double inverse = 1.0 / tried[due.lane];
+    for (int done = 0; done < due.count; done += kLanes) {
+      alignas(64) double theta[kLanes];
+      const int first = run.recorded + run.pending + done;
+      for (int s = 0; s < kLanes; ++s)
+        theta[s] = std::min(1.0, ((first + s) * spacing - start[due.lane]) * inverse);
+      const Flat a = LaneTraits<Flat>::load(theta);
+      passes[count++] = {a, Flat(1.0) - a, run.waiting.data() + run.pending + done, due.lane};
     }
-    run.pending += now;
-    count -= now;
-    if (run.pending >= kWaiting) evaluate_pending(lane, kWaiting - (run.recorded + kWaiting) % kLanes);
+  }
+  for (const int state : sampled_) {
+    Flat rows[5 * kFlats];
+    dense(static_cast<std::size_t>(state), h, rows);
+    const double* d = reinterpret_cast<const double*>(rows);
+    constexpr std::size_t row = kFlats * kLanes;
+    const std::size_t offset = static_cast<std::size_t>(state) * kFlats * kRoom;
+    for (std::size_t k = 0; k < count; ++k) {
+      const Pass& p = passes[k];
+      for (std::size_t f = 0; f < kFlats; ++f) {
+        const double* at = d + f * kLanes + p.lane;
+        const Flat value =
+            Flat(at[0]) + p.a * (Flat(at[row]) + p.b * (Flat(at[2 * row]) +
+                                                        p.a * (Flat(at[3 * row]) + p.b * Flat(at[4 * row]))));
+        LaneTraits<Flat>::store(value, p.to + offset + f * kRoom);
+      }
+    }
   }
 }
 
@@ -81,7 +104,7 @@ void Lanes<T>::spread_constants(int lane) {
   };
   const Constants& from = per_lane_;
   Constants& to = per_sample_;
-  copy(from.c, to.c, 0, to.c.size());
+  for (const auto& [first, count] : spread_) copy(from.c, to.c, first, count);
   const auto n = static_cast<std::size_t>(n_);
   for (const auto& [source, target] : {std::pair{&from.efd, &to.efd},
                                        {&from.tm, &to.tm},
@@ -100,18 +123,20 @@ void Lanes<T>::spread_constants(int lane) {
   for (int source : nonlinear_) row(source);
 }
 
-/// Evaluates the first `count` waiting samples of a lane into its record; the rest (less than two packs) move
-/// to the front.
+/// Evaluates the first `count` waiting samples of a lane into its record; the rest move to the front.
 template <class T>
 void Lanes<T>::evaluate_pending(int lane, int count) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
   if (count == 0) return;
   spread_constants(lane);
-  const std::size_t n = y_.size() * kFlats;
+  using Of = LaneTraits<Flat>;
   Flat* const kept = reinterpret_cast<Flat*>(kept_.data());
+  const auto each_row = [this](const std::vector<int>& states, auto&& what) {
+    for (const int state : states)
+      for (std::size_t i = static_cast<std::size_t>(state) * kFlats, f = 0; f < kFlats; ++f) what(i + f);
+  };
   for (int first = 0, now = 0; first < count; first += now) {
-    for (std::size_t i = 0; i < n; ++i)
-      kept[i] = LaneTraits<Flat>::load(run.waiting.data() + i * kRoom + first);
+    each_row(wanted_, [&](std::size_t i) { kept[i] = Of::load(run.waiting.data() + i * kRoom + first); });
     now = std::min(kLanes - run.recorded % kLanes, count - first);  // whole packs start on a cache line
     if (timed_) {
       alignas(64) double at[kLanes];
@@ -123,13 +148,11 @@ void Lanes<T>::evaluate_pending(int lane, int count) {
     run.recorded += now;
   }
   run.pending -= count;
-  if (run.pending > 0)
-    for (std::size_t i = 0; i < n; ++i) {
-      double* row = run.waiting.data() + i * kRoom;
-      using Of = LaneTraits<Flat>;
-      Of::store(Of::load(row + count), row);
-      Of::store(Of::load(row + count + kLanes), row + kLanes);
-    }
+  each_row(sampled_, [&](std::size_t i) {
+    double* row = run.waiting.data() + i * kRoom;
+    for (int moved = 0; moved < run.pending; moved += kLanes)
+      Of::store(Of::load(row + count + moved), row + moved);
+  });
 }
 
 /// The channels of the k-th recorded plant, `count` samples from run.recorded on.
@@ -209,7 +232,13 @@ void Lanes<T>::hold(LaneRun& run, int until) const {
   if (run.recorded == 0 || run.recorded >= until) return;
   for (std::size_t k = 0; k < recorded_.size(); ++k)
     for (std::size_t j = 0; j < channels_.size(); ++j) {
-      const auto repeat = [&](double* v) { std::fill(v + run.recorded, v + until, v[run.recorded - 1]); };
+      const auto repeat = [&](double* v) {
+        const double last = v[run.recorded - 1];
+        int i = run.recorded;
+        for (; i < until && i % kLanes != 0; ++i) v[i] = last;
+        for (; i + kLanes <= until; i += kLanes) LaneTraits<Flat>::stream(Flat(last), v + i);
+        for (; i < until; ++i) v[i] = last;
+      };
       repeat(run.record.at(static_cast<int>(k), static_cast<int>(j)));
       for (int d = 0; d < Traits::directions; ++d)
         repeat(run.record.slope(d, static_cast<int>(k), static_cast<int>(j)));

@@ -28,8 +28,8 @@ template <int Stage>
 void Lanes<T>::stage(const T& h) {
   const T* y = y_.data();
   T* trial = trial_.data();
-  const std::size_t n = y_.size();
-  for (std::size_t i = 0; i < n; ++i) {
+  for (const int state : moving_) {
+    const auto i = static_cast<std::size_t>(state);
     T sum = T(dp54::a[Stage][0]) * k_[0][i];
     for (int j = 1; j < Stage; ++j)
       if (dp54::a[Stage][j] != 0.0) sum = sum + T(dp54::a[Stage][j]) * k_[j][i];
@@ -43,7 +43,8 @@ void Lanes<T>::stage(const T& h) {
 template <class T>
 typename Lanes<T>::Flat Lanes<T>::scaled_error(const Flat& h) const {
   Flat worst(0.0);
-  for (std::size_t i = 0; i < y_.size(); ++i) {
+  for (const int state : moving_) {
+    const auto i = static_cast<std::size_t>(state);
     T sum = T(dp54::error[0]) * k_[0][i];
     for (int j = 2; j < dp54::kStages; ++j) sum = sum + T(dp54::error[j]) * k_[j][i];
     const Flat e = Traits::magnitude(sum) * Flat(weight_[i]);
@@ -57,7 +58,20 @@ typename Lanes<T>::Flat Lanes<T>::scaled_error(const Flat& h) const {
       worst = select(e <= worst, worst, e);
     }
   }
+  for (const int i : stopped_) {
+    const auto state = static_cast<std::size_t>(i);
+    const Flat e = leaves_limit(state) * kink_error(state) * Flat(weight_[state]);
+    worst = select(e <= worst, worst, e);
+  }
   return worst * h;
+}
+
+/// 1 where a state held at its limit comes off it within the step, else 0.
+template <class T>
+typename Lanes<T>::Flat Lanes<T>::leaves_limit(std::size_t state) const {
+  const Flat zero(0.0), one(1.0), first = Traits::magnitude(k_[0][state]),
+                                  last = Traits::magnitude(k_[dp54::kStages - 1][state]);
+  return select(first <= zero, select(last <= zero, zero, one), zero);
 }
 
 /// 1 where Vs comes to a limit within the step or leaves one, else 0.
@@ -71,14 +85,11 @@ typename Lanes<T>::Flat Lanes<T>::has_kink(const Watch& watch) const {
 
 /// After a stage's evaluation.
 template <class T>
-void Lanes<T>::watch_stage(std::size_t plant, const T& vs) {
+void Lanes<T>::watch_stage(Watch& watch, const T& vs) {
   const Flat now = Traits::value(vs), zero(0.0), one(1.0);
-  for (Watch& watch : watched_) {
-    if (watch.plant != plant) continue;
-    watch.same = watch.same + select(now <= watch.last, select(watch.last <= now, one, zero), zero);
-    watch.rested_next = select(now <= watch.last, select(watch.last <= now, one, zero), zero);
-    watch.last = now;
-  }
+  watch.rested_next = select(now <= watch.last, select(watch.last <= now, one, zero), zero);
+  watch.same = watch.same + watch.rested_next;
+  watch.last = now;
 }
 
 /// What a kink within the step may leave in a state, over h: see dp54::kink.
@@ -115,7 +126,8 @@ T Lanes<T>::spread(const T* x) const {
 template <class T>
 void Lanes<T>::commit(unsigned accepted) {
   const auto ok = Traits::mask(accepted);
-  for (std::size_t i = 0; i < y_.size(); ++i) {
+  for (const int state : moving_) {
+    const auto i = static_cast<std::size_t>(state);
     y_[i] = select(ok, trial_[i], y_[i]);
     k_[0][i] = select(ok, k_[6][i], k_[0][i]);
   }

@@ -159,6 +159,36 @@ void lanes_equal_double(const Effect& e, std::mt19937_64& random) {
   }
 }
 
+TEST(Conformance, StatesStandStillWithoutTheirMovers) {
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  int tested = 0;
+  for (const auto& e : all_effects())
+    for (std::size_t i = 0; i < e.states.size(); ++i) {
+      const auto [first, second] = e.states[i].moved_by;
+      if (first < 0) continue;
+      ASSERT_TRUE(is_control(e.slot)) << e.name << ": this test knows controls only";
+      const auto& ops = e.get<double>();
+      std::vector<double> p = e.standard_parameters(), x(e.states.size()), dx(x.size());
+      std::vector<double> c(static_cast<std::size_t>(e.coefficients));
+      Signals<double> s;
+      s.Vr = s.V = s.Vc = s.Efd = 1.0;
+      s.P = s.Tm = 0.5;
+      ops.prepare(p.data(), Conventions::psse(), c.data());
+      for (const int mover : {first, second})
+        if (mover >= 0) c[static_cast<std::size_t>(mover)] = 0.0;
+      ASSERT_EQ(ops.control.steady(nullptr, p.data(), c.data(), s, x.data()), "") << e.name;
+      for (std::size_t j = 0; j < x.size(); ++j)
+        if (j != i) x[j] += 0.1 * u(random);
+      for (double* signal : {&s.Vr, &s.Vi, &s.V, &s.Vc, &s.P, &s.speed, &s.Tm, &s.Vs, &s.Ifd, &s.dVref})
+        *signal += 0.1 * u(random);
+      ops.control.evaluate(nullptr, c.data(), x.data(), s, dx.data());
+      EXPECT_EQ(dx[i], 0.0) << e.name << "." << e.states[i].name;
+      ++tested;
+    }
+  EXPECT_GT(tested, 20);
+}
+
 TEST(Conformance, LanesEqualDouble) {
   std::mt19937_64 random(2);
   for (const Effect* e : machines())

@@ -1,0 +1,86 @@
+// Worst error of the lanes against the reference integrator over the events of bench_kernel that it finds
+// stable, without controls and with: of max(1 pu, the channel's swing), samples within 2 ms of a switching
+// left out.
+//   bench_error RAW DYR [events]
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "kernel_events.hpp"
+#include "sim/solve/reference.hpp"
+
+namespace {
+using namespace swingbank::sim;
+
+struct Worst {
+  double error = 0.0;
+  std::string where;
+  int compared = 0, beyond = 0, differ = 0;  ///< events: compared, beyond 1e-4, with another outcome
+};
+
+Trajectory reference(const Grid& grid, const Job& job) {
+  Grid changed = grid;
+  for (auto& [plant, as] : changed_plants(grid, job)) changed.plants[static_cast<std::size_t>(plant)] = as;
+  return run_reference(changed, job.event, ReferenceOptions{});
+}
+
+bool near_switching(const Job& job, double t) {
+  return std::ranges::any_of(job.event.faults, [t](const BusFault& f) {
+    return std::abs(t - f.t_on) < 2e-3 || std::abs(t - f.t_off) < 2e-3;
+  });
+}
+
+double row_error(const Job& job, const Trajectory& run, const double* a, const double* b) {
+  const auto [low, high] = std::minmax_element(b, b + run.samples);
+  double worst = 0.0;
+  for (int k = 0; k < run.samples; ++k)
+    if (!near_switching(job, k / run.rate)) worst = std::max(worst, std::abs(a[k] - b[k]));
+  return worst / std::max(1.0, *high - *low);
+}
+
+void compare(const Grid& grid, const Job& job, const Trajectory& run, Worst& worst) {
+  const Trajectory ida = reference(grid, job);
+  if (ida.outcome != run.outcome) ++worst.differ;
+  if (ida.outcome != Outcome::stable || run.outcome != Outcome::stable) return;
+  double event = 0.0;
+  for (int p = 0; p < static_cast<int>(run.plants.size()); ++p)
+    for (int c = 0; c < static_cast<int>(run.channels.size()); ++c) {
+      const double error = row_error(job, run, run.at(p, c), ida.at(p, c));
+      event = std::max(event, error);
+      if (error <= worst.error) continue;
+      worst.error = error;
+      worst.where = std::string(kChannels[static_cast<std::size_t>(c)].name) + " of plant " +
+                    std::to_string(p) + ", event " + std::to_string(job.id);
+    }
+  ++worst.compared;
+  worst.beyond += event > 1e-4;
+}
+
+void report(const char* what, const Grid& grid, int count) {
+  const auto list = jobs(grid, count);
+  std::size_t at = 0;
+  Worst worst;
+  Batch batch(grid, BatchOptions{});
+  batch.run([&](Job& job) { return at < list.size() && (job = list[at++], true); },
+            [&](const Job& job, const Trajectory& run) { compare(grid, job, run, worst); });
+  std::printf("%-16s worst error %.2g (%s), %d of %d stable events beyond 1e-4, %d with another outcome\n",
+              what, worst.error, worst.where.c_str(), worst.beyond, worst.compared, worst.differ);
+}
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 3) {
+    std::fprintf(stderr, "usage: bench_error RAW DYR [events]\n");
+    return 1;
+  }
+  try {
+    const Grid grid = load_grid(argv[1], argv[2], Conventions::psse());
+    const int count = argc > 3 ? std::atoi(argv[3]) : 400;
+    report("machines alone", grid, count);
+    report("controls on all", controlled(grid), count);
+  } catch (const swingbank::InputError& e) {
+    std::fprintf(stderr, "%s\n", e.what());
+    return 1;
+  }
+}
