@@ -153,13 +153,16 @@ std::vector<NamedCell> all_cells(const std::vector<EventComparison>& events) {
   return all;
 }
 
-std::string describe_fit(const EventComparison& e, bool tried) {
+/// `failed`: why they could not be moved; empty where they could.
+std::string describe_fit(const EventComparison& e, bool tried, const std::string& failed) {
   if (e.fitted) return "within that they were moved to where P and Q are met best.";
+  if (!failed.empty())
+    return "they could not be moved within that, so the middle of each interval was taken (" + failed + ").";
   return tried ? "moving them within that does not explain P and Q, so the middle of each interval was taken."
                : "the middle of each interval was taken.";
 }
 
-void explain(EventComparison& e, bool tried) {
+void explain(EventComparison& e, bool tried, const std::string& failed) {
   if (const auto smeared = std::ranges::count(e.left_out, 1); smeared > 0)
     e.notes.push_back(fmt::format(
         "The instrument's filter has smeared the jumps over {} samples: these are neither played in nor "
@@ -169,7 +172,7 @@ void explain(EventComparison& e, bool tried) {
     e.notes.push_back(
         fmt::format("The switching instants were found in the record, which tells each to ± {:.1f} ms only; "
                     "{} Give them with --switch where they are known.",
-                    1e3 * e.switchings.front().uncertainty, describe_fit(e, tried)));
+                    1e3 * e.switchings.front().uncertainty, describe_fit(e, tried, failed)));
   if (e.switchings.empty())
     e.notes.push_back(
         "The voltage does not jump anywhere: the first seconds are taken for the steady state "
@@ -275,6 +278,7 @@ EventComparison compare_event(const PlantModel& model, Record record, const Comp
   e.detected = options.switchings.empty();
   const Jumps jumps =
       options.jumps == Jumps::either ? jumps_of({e.record}, options.jump_threshold) : options.jumps;
+  std::string failed;
   const auto fitted = [&] {
     EventComparison other = e;
     play_fitted(model, options, jumps, other);
@@ -289,10 +293,15 @@ EventComparison compare_event(const PlantModel& model, Record record, const Comp
     else
       for (const double t : options.switchings) e.switchings.push_back({.time = t});
     play(model, DriveBy::voltage, options.play_in, e);
-    if (e.detected && options.fit_switchings && !e.switchings.empty())
-      if (EventComparison other = fitted(); explained(other)) e = std::move(other);
+    if (e.detected && options.fit_switchings && !e.switchings.empty()) {
+      try {
+        if (EventComparison other = fitted(); explained(other)) e = std::move(other);
+      } catch (const InputError& error) {  // fits take fewer steps: what was played in above stands
+        failed = error.problems().front().sentence();
+      }
+    }
   }
-  explain(e, options.fit_switchings);
+  explain(e, options.fit_switchings, failed);
   if (options.drive == DriveBy::power) {  // with the instants that the voltage told
     play(model, DriveBy::power, options.play_in, e);
     e.notes.push_back(

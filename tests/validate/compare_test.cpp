@@ -116,6 +116,19 @@ TEST(CompareTest, NoiseOfTheVoltageBehindARegulatorIsNoMisfit) {
   const Adequacy a = judge(events);
   EXPECT_TRUE(a.adequate) << a.sentence;
 }
+/// A time constant of a hundredth of a sample takes more steps than a fit grants, and play-in has them.
+TEST(CompareTest, WhereTheFitCannotRunThePlayInStands) {
+  RightModel right;
+  right.model.plant.controls.push_back(
+      {sim::find_effect("TGOV1"), {0.5, 1e-4, 2.0, -1.0, 1.0, 10.0, 0.0, 0.0}});
+  const EventComparison e = compare_event(right.model, right.record);
+  EXPECT_FALSE(e.fitted);
+  ASSERT_EQ(e.channels.size(), 2U);
+  for (const auto& c : e.channels) EXPECT_LT(c.whole.in_noise, 10) << c.name;  // by the middles: 5.2, 2.9
+  ASSERT_FALSE(e.notes.empty());
+  EXPECT_THAT(e.notes.front(), HasSubstr("could not be moved"));
+  EXPECT_THAT(e.notes.front(), HasSubstr("play-in stops"));
+}
 TEST(CompareTest, AnInadequateModelIsCalledSo) {
   std::vector<EventComparison> events = {example_event({.switchings = {2.0, 2.1}, .play_in = {}})};
   const Adequacy a = judge(events);
