@@ -8,6 +8,8 @@
 #include <numbers>
 #include <random>
 
+#include "support.hpp"
+
 namespace swingbank::validate {
 namespace {
 
@@ -87,6 +89,26 @@ TEST(FindSwitchings, OneInstrumentSmearsAllOrNone) {
 }
 TEST(FindSwitchings, NoiseIsNone) {
   EXPECT_TRUE(switchings_of(record_of([](double) { return 1.0; })).empty());
+}
+/// The filter smears every jump over as many samples, the swing is wider.
+TEST(PrepareEvents, BehindAFilterAWiderSwingIsNone) {
+  Record r = filtered(near_loss());
+  r.P.assign(r.t.size(), 0.4);
+  r.Q.assign(r.t.size(), 0.1);
+  std::vector<char> smeared;
+  const auto found = find_switchings(r, kJumpThreshold / 2, Jumps::spread, smeared);
+  ASSERT_EQ(found.size(), 3U) << "the swing was meant to be taken for a smeared jump";
+  ASSERT_GT(found[2].uncertainty, found[0].uncertainty + r.step());
+  const PlantModel model = load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  const FitEvent e = prepare_events(model, {r}).front();
+  ASSERT_EQ(e.switchings.size(), 2U);
+  EXPECT_NEAR(e.switchings[0].time, 3.0, 1.0 / 60);
+  EXPECT_NEAR(e.switchings[1].time, 3.1, 1.0 / 60);
+  for (std::size_t k = 0; k < r.t.size(); ++k) {
+    const bool beside = std::min(std::abs(r.t[k] - 3.0), std::abs(r.t[k] - 3.1)) < 1.5 * r.step();
+    EXPECT_EQ(e.smeared[k] != 0, beside) << "at " << r.t[k] << " s";
+  }
+  EXPECT_EQ(e.clean.t.size(), r.t.size() - 6);  // the swing's samples are played in
 }
 
 }  // namespace
