@@ -11,8 +11,10 @@
 #include <numeric>
 #include <set>
 
+#include "sim/solve/measure.hpp"
 #include "validate/error_map_table.hpp"
 #include "validate/fit_event.hpp"
+#include "validate/instruments.hpp"
 #include "validate/system_compare_run.hpp"
 
 namespace swingbank::validate {
@@ -34,10 +36,12 @@ std::vector<double> difference(const std::vector<double>& a, const std::vector<d
   return d;
 }
 
-/// How far to either side of a switching the instruments' filters smear it [s]; 0: they do not.
+/// How far to either side of a switching instruments without a declared filter smear it, by their records
+/// [s]; 0: they do not.
 double smear_of(const SystemCase& system) {
   std::vector<Record> records;
-  for (const SystemTerminal& t : system.terminals) records.push_back(t.record);
+  for (const SystemTerminal& t : system.terminals)
+    if (!(sim::memory(t.instruments) > 0)) records.push_back(t.record);
   if (jumps_of(records, kJumpThreshold) != Jumps::spread) return 0;
   double farthest = 0;
   for (const Record& r : records) {
@@ -52,10 +56,11 @@ double smear_of(const SystemCase& system) {
 class Comparer {
  public:
   Comparer(const SystemCase& system, const SystemRun& run, SystemComparison& out)
-      : s_(system), run_(run), out_(out), smear_(smear_of(system)) {}
+      : s_(system), run_(run), out_(out), undeclared_(smear_of(system)) {}
 
   void terminal(std::size_t i) {
     const SystemTerminal& t = s_.terminals[i];
+    const double smear = smear_at(t);
     EventComparison e;
     e.record = t.record;
     e.record.name = t.name;
@@ -64,8 +69,8 @@ class Comparer {
       e.switchings.push_back({.time = at, .uncertainty = out_.uncertainty});
     e.detected = s_.find_instants;
     if (const auto doubt = clock_doubt(t.record, out_.instants); !doubt.empty()) e.notes.push_back(doubt);
-    leave_out_smeared(e);
-    const double begins = out_.instants.front() - smear_ + 1e-4 * t.record.step();
+    leave_out_smeared(e, smear);
+    const double begins = out_.instants.front() - smear + 1e-4 * t.record.step();
     e.playback.start.samples =
         static_cast<int>(std::ranges::upper_bound(t.record.t, begins) - t.record.t.begin());
     if (e.playback.start.samples < kFewestQuiet)
@@ -78,15 +83,22 @@ class Comparer {
   }
 
  private:
-  void leave_out_smeared(EventComparison& e) const {
-    if (!(smear_ > 0)) return;
+  /// How far to either side of a switching the terminal's samples are not compared [s]: its filter's window,
+  /// and what the cubic through the simulation's samples bends beside a jump. Within that an instant that is
+  /// wrong by a fraction of a millisecond shows.
+  [[nodiscard]] double smear_at(const SystemTerminal& t) const {
+    const double memory = sim::memory(t.instruments);
+    return memory > 0 ? memory + 2 * t.record.step() / kFine : undeclared_;
+  }
+  void leave_out_smeared(EventComparison& e, double smear) const {
+    if (!(smear > 0)) return;
     for (const double t : e.record.t)
       e.left_out.push_back(
-          std::ranges::any_of(out_.instants, [&](double at) { return std::abs(t - at) <= smear_; }));
+          std::ranges::any_of(out_.instants, [&](double at) { return std::abs(t - at) <= smear; }));
     e.notes.push_back(fmt::format(
         "The instruments' filters smear switchings by up to {:.0f} ms to either side: samples there are not "
         "compared.",
-        1e3 * smear_));
+        1e3 * smear));
   }
   void channels(std::size_t i, EventComparison& e) {
     const Modelled& m = run_.answers[i];
@@ -148,7 +160,7 @@ class Comparer {
   const SystemCase& s_;
   const SystemRun& run_;
   SystemComparison& out_;
-  double smear_;
+  double undeclared_;
 };
 
 /// The cell of a comparison that is furthest beyond its bound, or nearest to it.
@@ -179,10 +191,16 @@ void play_alone(const SystemCase& s, SystemComparison& c, TerminalRank& rank) {
   PlantModel model;
   model.name = t.name;
   model.plant = s.grid.plants[static_cast<std::size_t>(t.plant)];
+  // a filter is left out: what it does to the played-in voltage it does to P and Q too
+  model.plant.measurements.clear();
+  std::ranges::copy_if(t.instruments, std::back_inserter(model.plant.measurements),
+                       [](const sim::Block& b) { return can_be_taken_back(*b.effect); });
   model.conventions = s.grid.conventions;
   model.record_base = s.base;
   CompareOptions options;
-  if (clock_doubt(t.record, c.instants).empty()) options.switchings = c.instants;  // else its own jumps
+  // else by its own jumps; smeared samples are played in where instants are given
+  const bool smeared = jumps_of({t.record}, kJumpThreshold) == Jumps::spread;
+  if (!smeared && clock_doubt(t.record, c.instants).empty()) options.switchings = c.instants;
   try {
     std::vector<EventComparison> one = {compare_event(model, t.record, options)};
     one.front().record.name = t.name;

@@ -13,9 +13,10 @@ namespace swingbank::validate {
 /// Where a record was taken: at a plant's terminal, or at a bus, where only voltage and angle are compared.
 struct SystemTerminal {
   std::string name;
-  int plant = -1;  ///< index in the grid's plants; -1: a bus
-  int bus = -1;    ///< index in the network's buses
-  Record record;   ///< P and Q empty at a bus
+  int plant = -1;                       ///< index in the grid's plants; -1: a bus
+  int bus = -1;                         ///< index in the network's buses
+  Record record;                        ///< P and Q empty at a bus
+  std::vector<sim::Block> instruments;  ///< between the grid and the record, those of the plant first
   std::vector<std::string> warnings;
 };
 enum class SteadyState {

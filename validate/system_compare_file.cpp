@@ -11,6 +11,7 @@
 #include "sim/network/event_text.hpp"
 #include "sim/solve/block_text.hpp"
 #include "sim/solve/load_choice.hpp"
+#include "sim/solve/measure.hpp"
 #include "validate/record_check.hpp"
 #include "validate/record_formats.hpp"
 #include "validate/system_compare.hpp"
@@ -112,6 +113,36 @@ void check_bus_record(const Record& r, Problems& problems) {
                  "name the column by its unit (V_kV with record.base_kv), or give per-unit values");
 }
 
+/// Whether an instrument answers, and always the same: a model has neither noise nor gaps.
+bool is_repeatable(const sim::Block& instrument, double frequency) {
+  constexpr int kSamples = 240;
+  sim::Phasors one{60.0, frequency, {}, {}, std::vector<double>(kSamples, 0.0)};
+  for (int k = 0; k < kSamples; ++k) {
+    one.V.push_back(std::polar(1.0, 1e-3 * k));
+    one.I.push_back(std::polar(0.5, 2e-3 * k));
+  }
+  sim::Phasors other = one;
+  instrument.effect->measure(instrument.p.data(), 1, one);
+  instrument.effect->measure(instrument.p.data(), 2, other);
+  return one.V == other.V && one.I == other.I;  // a sample that is missing is not a number
+}
+
+/// Those of the plant, then those of the file.
+void add_instruments(Config& c, const std::string& key, const SystemCase& s, SystemTerminal& t) {
+  if (t.plant >= 0) t.instruments = s.grid.plants[static_cast<std::size_t>(t.plant)].measurements;
+  Problems problems;
+  for (const auto& text : c.optional<Texts>(key, {}))
+    if (auto block = sim::read_measurement(text, "instrument " + text, problems))
+      t.instruments.push_back(std::move(*block));
+  tell(c, key, problems);
+  for (const sim::Block& block : t.instruments)
+    attempt(c, key, [&] {
+      if (!is_repeatable(block, s.base.frequency))
+        throw InputError({"an instrument that draws random numbers", std::string(block.effect->name),
+                          "how much noise a record has is seen in it", "leave it out"});
+    });
+}
+
 void read_terminal(Config& c, const std::string& name, SystemCase& s) {
   const std::string at = "terminal." + name + ".";
   SystemTerminal t;
@@ -132,6 +163,7 @@ void read_terminal(Config& c, const std::string& name, SystemCase& s) {
     t.plant = plant_named(c, at + "plant", plant, s.grid);
     if (t.plant >= 0) t.bus = s.grid.plants[static_cast<std::size_t>(t.plant)].bus;
   }
+  add_instruments(c, at + "instruments", s, t);
   if (t.bus < 0) return;
   attempt(c, at + "record", [&] {
     t.record = read_record(c.name().parent_path() / file, s.base, {.power = !is_bus});

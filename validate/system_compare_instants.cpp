@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "sim/solve/measure.hpp"
 #include "validate/fit_event.hpp"
 #include "validate/system_compare_run.hpp"
 
@@ -34,12 +35,15 @@ SystemCase shortened(SystemCase s, double end) {
 class InstantFit {
  public:
   InstantFit(const SystemCase& system, std::vector<double> written, std::vector<double> found)
-      : s_(shortened(system, found.back() + kAfter)), written_(std::move(written)), best_(std::move(found)) {}
+      : s_(shortened(system, found.back() + kAfter)), written_(std::move(written)), best_(std::move(found)) {
+    mark_smeared();
+  }
 
   /// Golden section on one instant after the other, within `reach` of where it was found.
   std::vector<double> run(double reach) {
     constexpr double kGolden = 0.6180339887498949;
     constexpr int kSweeps = 2, kSteps = 9;  // 9 steps leave 1.3 % of the interval
+    constexpr double kEnough = 2.5e-4;      // [s]; a filter makes intervals long
     const auto middle = best_;
     for (int sweep = 0; sweep < kSweeps; ++sweep)
       for (std::size_t k = 0; k < best_.size(); ++k) {
@@ -48,7 +52,7 @@ class InstantFit {
         if (k + 1 < best_.size()) high = std::min(high, best_[k + 1] - 1e-4);
         double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
         double at_a = misfit(k, a), at_b = misfit(k, b);
-        for (int step = 0; step < kSteps; ++step)
+        for (int step = 0; step < kSteps || high - low > kEnough; ++step)
           if (at_a < at_b) {
             high = b, b = a, at_b = at_a;
             a = high - kGolden * (high - low), at_a = misfit(k, a);
@@ -62,6 +66,18 @@ class InstantFit {
   }
 
  private:
+  void mark_smeared() {
+    const auto declared = [](const SystemTerminal& t) { return sim::memory(t.instruments) > 0; };
+    std::vector<Record> records;
+    for (const SystemTerminal& t : s_.terminals)
+      if (!declared(t)) records.push_back(t.record);
+    const Jumps jumps = validate::jumps_of(records, kJumpThreshold);
+    for (const SystemTerminal& t : s_.terminals) {
+      smeared_.emplace_back(t.record.t.size(), 0);
+      if (!declared(t) && jumps == Jumps::spread)
+        find_switchings(t.record, kJumpThreshold / 2, jumps, smeared_.back());
+    }
+  }
   /// Sum of squares over every terminal, in units of the pre-event's spread, with instant k at t.
   double misfit(std::size_t k, double t) {
     auto instants = best_;
@@ -73,13 +89,16 @@ class InstantFit {
     double sum = 0;
     for (std::size_t i = 0; i < s_.terminals.size(); ++i) {
       const Record& r = s_.terminals[i].record;
-      sum += squares(r.t, r.V, run.answers[i].V) + squares(r.t, r.P, run.answers[i].P) +
-             squares(r.t, r.Q, run.answers[i].Q);
+      const Modelled& m = run.answers[i];
+      const auto of = [&](const std::vector<double>& measured, const std::vector<double>& modelled) {
+        return squares(r.t, measured, modelled, smeared_[i]);
+      };
+      sum += of(r.V, m.V) + of(r.P, m.P) + of(r.Q, m.Q);
     }
     return sum;
   }
   [[nodiscard]] double squares(const std::vector<double>& t, const std::vector<double>& measured,
-                               const std::vector<double>& modelled) const {
+                               const std::vector<double>& modelled, const std::vector<char>& smeared) const {
     if (measured.empty()) return 0;
     const auto quiet = static_cast<std::size_t>(
         std::max<std::ptrdiff_t>(std::ranges::lower_bound(t, best_.front() - 0.05) - t.begin(), 2));
@@ -87,12 +106,15 @@ class InstantFit {
     for (std::size_t k = 0; k < quiet; ++k) mean += (modelled[k] - measured[k]) / static_cast<double>(quiet);
     for (std::size_t k = 0; k < quiet; ++k)
       spread += std::pow(modelled[k] - measured[k] - mean, 2) / static_cast<double>(quiet);
-    for (std::size_t k = 0; k < t.size(); ++k) sum += std::pow(modelled[k] - measured[k] - mean, 2);
+    for (std::size_t k = 0; k < t.size(); ++k)
+      if (!smeared[k]) sum += std::pow(modelled[k] - measured[k] - mean, 2);
     return sum / (spread + kLeastNoise * kLeastNoise);
   }
 
   SystemCase s_;
   std::vector<double> written_, best_;
+  /// By terminal: samples smeared by a filter that is not declared, so that no instant meets them.
+  std::vector<std::vector<char>> smeared_;
 };
 
 }  // namespace

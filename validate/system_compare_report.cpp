@@ -109,12 +109,14 @@ json terminal_json(const SystemCase& s, const SystemComparison& c, std::size_t i
             {"samples", t.record.samples()},
             {"rate_per_s", t.record.rate()},
             {"warnings", t.warnings},
+            {"instruments", json::array()},
             {"initial",
              {{"V_pu", number(c.initial[4 * i])},
               {"angle_rad", number(c.initial[4 * i + 1])},
               {"P_pu", number(c.initial[4 * i + 2])},
               {"Q_pu", number(c.initial[4 * i + 3])}}},
             {"channels", json::array()}};
+  for (const auto& block : t.instruments) j["instruments"].push_back(block.effect->name);
   for (const auto& channel : e.channels) j["channels"].push_back(channel_json(e, channel));
   return j;
 }

@@ -7,6 +7,8 @@
 #include <set>
 #include <tuple>
 
+#include "sim/core/window.hpp"
+#include "sim/solve/measure.hpp"
 #include "sim/solve/reference.hpp"
 
 namespace swingbank::validate {
@@ -22,6 +24,24 @@ std::vector<double> scaled(const double* values, int n, double factor) {
 void unwrap(std::vector<double>& angle) {
   for (std::size_t k = 1; k < angle.size(); ++k)
     angle[k] -= kTurn * std::round((angle[k] - angle[k - 1]) / kTurn);
+}
+
+/// A jump between two samples would pass for a ramp about their middle: the nearer one takes a share of it,
+/// which leaves an average over a window as if the jump stood where it is. `at` [samples].
+void place_jump(std::vector<Complex>& y, double at) {
+  const double before = std::floor(at + 1e-6);
+  if (before < 0 || before + 2 > static_cast<double>(y.size())) return;
+  const auto k = static_cast<std::size_t>(before);
+  const double late = std::max(at - before, 0.0) - 0.5;
+  const Complex jump = y[k + 1] - y[k];
+  y[late < 0 ? k : k + 1] -= late * jump;
+}
+
+void thin(std::vector<double>& values, int samples, int stride) {
+  if (values.empty()) return;
+  for (int k = 0; k < samples; ++k)
+    values[static_cast<std::size_t>(k)] = values[static_cast<std::size_t>(k * stride)];
+  values.resize(static_cast<std::size_t>(samples));
 }
 
 class Player {
@@ -40,11 +60,21 @@ class Player {
   SystemRun out;
 
  private:
+  /// What of the grid is recorded for a group of terminals.
+  struct Sampling {
+    double first, rate;  ///< [s], [1/s]
+    int stride;          ///< of the record's samples in those of the simulation
+    int samples;         ///< of the record
+  };
+
   void play(double first, double step, int samples, const std::vector<std::size_t>& members) {
     using sim::Channel;
+    double memory = 0;
+    for (const std::size_t i : members) memory = std::max(memory, sim::memory(s_.terminals[i].instruments));
+    const int stride = memory > 0 ? kFine : 1;
     sim::ReferenceOptions o;
-    o.rate = 1 / step;
-    o.t_end = step * (samples - 1) + 0.01 * step;
+    o.rate = stride / step;
+    o.t_end = step * (samples - 1) + memory + 0.01 * step;
     o.rtol = s_.tolerance;
     o.atol = s_.tolerance / 100;
     o.channels = {Channel::V,     Channel::theta, Channel::P,  Channel::Q,
@@ -62,20 +92,21 @@ class Player {
       out.outcome = run.outcome;
       out.stopped_at = first + run.stopped_at;
     }
-    for (std::size_t k = 0; k < plants.size(); ++k) take_plant(run, static_cast<int>(k), samples, plants[k]);
+    for (std::size_t k = 0; k < plants.size(); ++k) take_plant(run, static_cast<int>(k), plants[k]);
     for (std::size_t k = 0; k < buses.size(); ++k) {
       Modelled& m = out.answers[buses[k]];
       const auto from = static_cast<std::ptrdiff_t>(k) * run.samples;
-      m.V = scaled(run.bus_v.data() + from, samples, 1);
-      m.theta = scaled(run.bus_theta.data() + from, samples, 1);
+      m.V = scaled(run.bus_v.data() + from, run.samples, 1);
+      m.theta = scaled(run.bus_theta.data() + from, run.samples, 1);
       unwrap(m.theta);
     }
+    for (const std::size_t i : members) measure(i, {first, o.rate, stride, samples});
   }
-  void take_plant(const sim::ReferenceRun& run, int row, int samples, std::size_t terminal) {
+  void take_plant(const sim::ReferenceRun& run, int row, std::size_t terminal) {
     Modelled& m = out.answers[terminal];
     const sim::Plant& plant = s_.grid.plants[static_cast<std::size_t>(s_.terminals[terminal].plant)];
     const double base = plant.mva / s_.base.mva;
-    const auto channel = [&](int c, double factor) { return scaled(run.at(row, c), samples, factor); };
+    const auto channel = [&](int c, double factor) { return scaled(run.at(row, c), run.samples, factor); };
     m.V = channel(0, 1);
     m.theta = channel(1, 1);
     m.P = channel(2, base);
@@ -84,6 +115,37 @@ class Player {
     m.Efd = channel(5, 1);
     m.Ifd = channel(6, 1);
     unwrap(m.theta);
+  }
+
+  /// The terminal's answer as its instruments show it, at the record's samples.
+  void measure(std::size_t terminal, const Sampling& at) {
+    Modelled& m = out.answers[terminal];
+    const SystemTerminal& t = s_.terminals[terminal];
+    if (!t.instruments.empty()) {
+      sim::Phasors phasors = phasors_at(t, m, at.rate);
+      if (sim::memory(t.instruments) > 0)
+        for (const double instant : instants_of(event_))
+          for (auto* y : {&phasors.V, &phasors.I}) place_jump(*y, (instant - at.first) * at.rate);
+      sim::measure(t.instruments, 1, phasors);
+      const sim::TerminalRecord seen = sim::terminal_of(phasors, m.theta.front());
+      m.V = seen.V;
+      m.theta = seen.theta;
+      if (t.plant >= 0) m.P = seen.P, m.Q = seen.Q;
+    }
+    for (auto* channel : {&m.V, &m.theta, &m.P, &m.Q, &m.speed, &m.Efd, &m.Ifd})
+      thin(*channel, at.samples, at.stride);
+  }
+  [[nodiscard]] sim::Phasors phasors_at(const SystemTerminal& t, const Modelled& m, double rate) const {
+    const double frequency = s_.base.frequency;
+    if (t.plant >= 0)
+      return sim::phasors_of({m.V, m.theta, m.P, m.Q, {}}, rate, frequency, "terminal " + t.name);
+    sim::Phasors bus{rate,
+                     frequency,
+                     {},
+                     std::vector<Complex>(m.V.size(), 0.0),
+                     sim::frequency_deviation(m.theta, rate, frequency)};
+    for (std::size_t k = 0; k < m.V.size(); ++k) bus.V.push_back(std::polar(m.V[k], m.theta[k]));
+    return bus;
   }
 
   const SystemCase& s_;

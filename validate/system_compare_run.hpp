@@ -19,7 +19,12 @@ struct SystemRun {
   sim::Outcome outcome = sim::Outcome::stable;
   double stopped_at = std::numeric_limits<double>::infinity();  ///< on the records' clock [s]
 };
-/// Throws InputError as run_reference.
+/// Behind instruments with a memory, whose answers need samples between the record's, the grid is sampled so
+/// many times as often.
+constexpr int kFine = 8;
+
+/// What the terminals' instruments show of the event in the grid. Throws InputError as run_reference, and
+/// where a voltage of zero leaves an instrument no current to show.
 SystemRun run_system(const SystemCase& system, const sim::Event& event);
 
 /// Instants at which something is switched, sorted [s].

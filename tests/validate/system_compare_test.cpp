@@ -2,6 +2,7 @@
 // changed.
 #include "validate/system_compare.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -31,17 +32,18 @@ class SystemCompare : public ::testing::Test {
   struct Truth {
     std::vector<std::string> attached;
     double t_on = 2, t_off = 2.1, noise = 2e-4, shift_V = 0;
-    int window = 0;  ///< ticks of 1/480 s to either side that a triangular filter takes in
+    int window = 0;  ///< samples to either side that a triangular filter takes in
+    int fine = 8;    ///< samples of the grid in one of the record
   };
-  /// Every eighth phasor behind the filter.
-  static std::vector<Complex> seen(const std::vector<Complex>& fine, int window) {
+  /// Of every `fine`-th phasor, what is seen behind the filter.
+  static std::vector<Complex> seen(const std::vector<Complex>& fine, const Truth& truth) {
     std::vector<Complex> values;
     const int last = static_cast<int>(fine.size()) - 1;
-    for (int k = 0; k <= last; k += 8) {
+    for (int k = 0; k <= last; k += truth.fine) {
       Complex sum = 0;
       double weights = 0;
-      for (int j = -window; j <= window; ++j) {
-        const double weight = 1 - std::abs(j) / (window + 1.0);
+      for (int j = -truth.window; j <= truth.window; ++j) {
+        const double weight = 1 - std::abs(j) / (truth.window + 1.0);
         sum += weight * fine[static_cast<std::size_t>(std::clamp(k + j, 0, last))];
         weights += weight;
       }
@@ -62,7 +64,7 @@ class SystemCompare : public ::testing::Test {
     event.faults.push_back({grid.network.bus_index(4), truth.t_on, truth.t_off});
     sim::ReferenceOptions o;
     o.t_end = 10;
-    o.rate = 480;
+    o.rate = 60 * truth.fine;
     o.channels = {sim::Channel::V, sim::Channel::theta, sim::Channel::P, sim::Channel::Q};
     o.buses = {grid.network.bus_index(5)};
     const sim::ReferenceRun run = sim::run_reference(grid, event, o);
@@ -80,8 +82,8 @@ class SystemCompare : public ::testing::Test {
         V.push_back(std::polar(at(0), at(1)));
         I.push_back(std::conj(Complex(at(2), at(3)) * (plant.mva / 100) / V.back()));
       }
-      V = seen(V, truth.window);
-      I = seen(I, truth.window);
+      V = seen(V, truth);
+      I = seen(I, truth);
       double angle = std::arg(V.front());
       for (std::size_t k = 0; k < V.size(); ++k) {
         const Complex power = V[k] * std::conj(I[k]);
@@ -97,7 +99,7 @@ class SystemCompare : public ::testing::Test {
     std::vector<Complex> V;
     for (std::size_t k = 0; k < static_cast<std::size_t>(run.samples); ++k)
       V.push_back(std::polar(run.bus_v[k], run.bus_theta[k]));
-    V = seen(V, truth.window);
+    V = seen(V, truth);
     double angle = std::arg(V.front());
     for (std::size_t k = 0; k < V.size(); ++k) {
       angle += std::remainder(std::arg(V[k]) - angle, 2 * std::numbers::pi);
@@ -139,10 +141,13 @@ record = "bus5.csv"
     replace("RAW", test::source("configs/networks/ieee14_genrou.raw").string());
     replace("DYR", test::source("configs/networks/ieee14_genrou.dyr").string());
     replace(from, to);
+    for (std::size_t at = 0; (at = text.find("record = ", at)) != text.npos; at += instruments.size() + 1)
+      text.insert(at, instruments);
     std::ofstream(folder / "system.toml") << text;
     return folder / "system.toml";
   }
   const std::vector<std::string> same = {"all:TGOV1:R=0.05,T1=0.5", "all:SEXS"};
+  std::string instruments;  ///< a line of every terminal
   fs::path folder;
 };
 
@@ -178,6 +183,37 @@ TEST_F(SystemCompare, BehindFiltersTheSameGridIsAdequate) {
     EXPECT_GE(std::ranges::count(e.left_out, 1), 4) << e.record.name;
     EXPECT_LE(std::ranges::count(e.left_out, 1), 14) << e.record.name;
   }
+}
+/// 64 times as dense as the record, switched half-way between two samples: a triangle over two cycles.
+constexpr double kTick = 1.0 / 3840, kOn = 7692.5 * kTick, kOff = 8096.5 * kTick;
+constexpr int kWindow = 63, kFineness = 64;
+
+TEST_F(SystemCompare, BehindDeclaredFiltersTheSameGridIsAdequateAtLittleNoise) {
+  record({.attached = same, .t_on = kOn, .t_off = kOff, .window = kWindow, .fine = kFineness});
+  const auto given = fmt::format("4:{:.7f}:{:.7f}", kOn, kOff);
+  const SystemComparison undeclared = compare_system(load_system(system("4:2.0:2.1", given)));
+  EXPECT_FALSE(undeclared.adequacy.adequate);  // 0.002 pu of Q in the fault
+  instruments = "instruments = [\"PMUFILTER\"]\n";
+  const SystemComparison c = compare_system(load_system(system("4:2.0:2.1", given)));
+  EXPECT_TRUE(c.adequacy.adequate) << c.adequacy.sentence;
+  for (const auto& e :
+       c.terminals) {  // a cycle of 50 Hz and a quarter of a sample to either side of two jumps
+    EXPECT_GE(std::ranges::count(e.left_out, 1), 4) << e.record.name;
+    EXPECT_LE(std::ranges::count(e.left_out, 1), 6) << e.record.name;
+  }
+  EXPECT_NEAR(c.terminals[3].channels[3].whole.rms, 2e-4, 0.12 * 2e-4);  // as TheSameGridIsAdequate
+}
+TEST_F(SystemCompare, DeclaredFiltersTellTheInstants) {
+  record({.attached = same, .t_on = kOn, .t_off = kOff, .window = kWindow, .fine = kFineness});
+  const auto found = system("[event]", "[event]\ninstants = \"found\"");
+  const SystemComparison undeclared = compare_system(load_system(found));
+  EXPECT_NEAR(undeclared.instants[0], kOn, 2e-3);  // by what follows the smeared samples: 0.6 and 0.4 ms off
+  EXPECT_NEAR(undeclared.instants[1], kOff, 2e-3);
+  instruments = "instruments = [\"PMUFILTER\"]\n";
+  const SystemComparison c = compare_system(load_system(system("[event]", "[event]\ninstants = \"found\"")));
+  EXPECT_TRUE(c.adequacy.adequate) << c.adequacy.sentence;
+  EXPECT_NEAR(c.instants[0], kOn, 1e-4);
+  EXPECT_NEAR(c.instants[1], kOff, 1e-4);
 }
 TEST_F(SystemCompare, AChangedGovernorIsNamedFirstAlthoughAllTerminalsSwing) {
   std::vector<std::string> changed = {"1:TGOV1:R=0.05,T1=0.5", "3:TGOV1:R=0.05,T1=0.5",
@@ -274,6 +310,9 @@ TEST_F(SystemCompare, BadInputIsNamed) {
       {{"[compare]", "[compare]\ncolour = 1"}, "colour"},
       {{"all:SEXS", "all:NOSUCH"}, "NOSUCH"},
       {{"ieee14_genrou.raw", "nowhere.raw"}, "nowhere.raw"},
+      {{"bus = 5", "bus = 5\ninstruments = [\"SEXS\"]"}, "no measurement effect 'SEXS'"},
+      {{"bus = 5", "bus = 5\ninstruments = [\"GAPS:rate=1\"]"}, "draws random numbers"},
+      {{"bus = 5", "bus = 5\ninstruments = [\"PMUFILTER:class=1,reports=50\"]"}, "reports = 10, 12, 15"},
   };
   for (const auto& [change, words] : cases)
     EXPECT_THAT(test::messages([&, &change = change] { load_system(system(change.first, change.second)); }),
