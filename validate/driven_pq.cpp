@@ -29,6 +29,7 @@ class DrivenByPower {
     Efd_ = at.Efd;
     Tm_ = at.Tm;
     voltage_ = run.start.voltage;
+    terminal_ = {at.s.Vr, at.s.Vi};
     for (auto& k : k_) k.resize(x_.size());
     trial_.resize(x_.size());
     collect_instants();
@@ -73,17 +74,21 @@ class DrivenByPower {
                                                         : std::norm(b) / (middle + std::sqrt(rest));
     return std::conj((w + b) / e);
   }
-  /// For a machine whose current is no linear function of its voltage: Newton on V conj(I(V)) = S from the
-  /// last solution, differences for slopes.
+  /// For a machine whose current is no linear function of its voltage: Newton on V conj(I) = S at the grid's
+  /// side, in the voltage of the machine's own terminal, from the last solution, differences for slopes.
   std::optional<Complex> by_newton(const double* x, Complex s, sim::Signals<double>& signals) {
-    const auto gap = [&](Complex v) {
+    const auto grid_side = [&](Complex v) {
       signals.Vr = v.real();
       signals.Vi = v.imag();
       equations_.current(c_.data(), x, scratch_.data(), signals);
-      return v * std::conj(Complex(signals.Ir, signals.Ii)) - s;
+      return equations_.to_grid(c_.data(), signals);
+    };
+    const auto gap = [&](Complex v) {
+      const auto [voltage, current] = grid_side(v);
+      return voltage * std::conj(current) - s;
     };
     constexpr double kStep = 1e-7;
-    Complex v = voltage_;
+    Complex v = terminal_;
     for (int i = 0; i < 30; ++i) {
       const Complex g = gap(v), by_r = (gap(v + kStep) - g) / kStep,
                     by_i = (gap(v + Complex(0, kStep)) - g) / kStep;
@@ -92,7 +97,10 @@ class DrivenByPower {
                          (by_r.real() * g.imag() - g.real() * by_r.imag()) / det);
       v -= move;
       if (!std::isfinite(std::abs(v))) return std::nullopt;
-      if (std::abs(move) < 1e-12) return v;
+      if (std::abs(move) < 1e-12) {
+        terminal_ = v;
+        return grid_side(v).first;
+      }
     }
     return std::nullopt;
   }
@@ -191,7 +199,7 @@ class DrivenByPower {
   std::vector<double> c_, x_, trial_, scratch_;
   std::array<std::vector<double>, sim::dp54::kStages> k_;
   double Efd_ = 0, Tm_ = 0, to_machine_;
-  Complex voltage_;
+  Complex voltage_, terminal_;  ///< at the grid's side, at the machine
   sim::Signals<double> signals_;
   std::vector<Instant> instants_;
   std::size_t next_ = 0;

@@ -40,10 +40,6 @@ std::optional<Problem> place(Plant& plant, Block block, const std::string& where
   };
   if (effect.slot == Slot::transformer) {
     if (plant.transformer.effect) return taken(*plant.transformer.effect);
-    if (plant.machine.effect && plant.machine.effect->get<double>().machine.current)
-      return Problem{std::string(effect.name) + " for plant " + plant.name, where,
-                     std::string(plant.machine.effect->name) + " has no constant impedance to join it with",
-                     "put the transformer into the network as a branch"};
     plant.transformer = std::move(block);
     return {};
   }

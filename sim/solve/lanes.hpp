@@ -68,7 +68,7 @@ class Lanes {
   /// one event's values in every lane, its lanes being consecutive samples.
   struct Constants {
     std::vector<T> c, g, b, efd, tm, dvref, dpref, on;  ///< on: 1, or 0 where the plant is tripped
-    std::vector<T> vr, vi;  ///< terminal voltages of nonlinear sources: where the search begins
+    std::vector<T> vr, vi;  ///< voltages at nonlinear sources' own terminals: where the search begins
     T last_moment;          ///< largest time effects may see [s]
   };
 
@@ -81,6 +81,8 @@ class Lanes {
   void solve_algebra(Constants& k, const T* x);
   void source_emf(const Constants& k, const T* x, int source, const T& vr, const T& vi, T& er, T& ei);
   const T* source_impedance(const Constants& k, int source) const;
+  const T* own_impedance(const Constants& k, int source) const;
+  const T* ratio(const Constants& k, int source) const;
   Flat newton_step(Constants& k, const T* x);
 
   // recording (lanes_record.hpp)

@@ -2,7 +2,8 @@
 // Lanes: sources whose current is no linear function of the voltage - loads with a model of their own,
 // machines with saliency. Each is written as E = V + z I(V) behind its constant impedance z, so that the
 // network stays I = (G + jB) E; the voltages V at these sources are found by Newton's method, every lane
-// until it has converged and no further, so that no lane's bits depend on another's.
+// until it has converged and no further, so that no lane's bits depend on another's. V is the machine's own
+// terminal: behind a step-up transformer of ratio n the network has n E, and the machine n I.
 #include "sim/solve/lanes.hpp"
 
 namespace swingbank::sim {
@@ -17,7 +18,22 @@ inline const T* Lanes<T>::source_impedance(const Constants& k, int source) const
   return l.equations.impedance(&k.c[static_cast<std::size_t>(l.c)]);
 }
 
-/// E = V + z I(V) of one nonlinear source.
+/// Of a machine without its step-up transformer.
+template <class T>
+inline const T* Lanes<T>::own_impedance(const Constants& k, int source) const {
+  if (source >= n_) return source_impedance(k, source);
+  const PlantSlice& p = plants_[static_cast<std::size_t>(source)];
+  return p.equations.machine_impedance(&k.c[static_cast<std::size_t>(p.c)]);
+}
+/// Of a machine's step-up transformer; none: nullptr.
+template <class T>
+inline const T* Lanes<T>::ratio(const Constants& k, int source) const {
+  if (source >= n_) return nullptr;
+  const PlantSlice& p = plants_[static_cast<std::size_t>(source)];
+  return p.equations.ratio(&k.c[static_cast<std::size_t>(p.c)]);
+}
+
+/// E = V + z I(V) of one nonlinear source, as the network has it.
 template <class T>
 void Lanes<T>::source_emf(const Constants& k, const T* x, int source, const T& vr, const T& vi, T& er,
                           T& ei) {
@@ -31,9 +47,13 @@ void Lanes<T>::source_emf(const Constants& k, const T* x, int source, const T& v
     const LoadSlice& l = loads_[static_cast<std::size_t>(source - n_)];
     l.equations.current(&k.c[static_cast<std::size_t>(l.c)], x + l.x, s);
   }
-  const T* z = source_impedance(k, source);
+  const T* z = own_impedance(k, source);
   er = vr + z[0] * s.Ir - z[1] * s.Ii;
   ei = vi + z[0] * s.Ii + z[1] * s.Ir;
+  if (const T* n = ratio(k, source)) {
+    er = er * *n;
+    ei = ei * *n;
+  }
 }
 
 /// Solves a x = b in place, no pivoting: the matrix is the identity plus what the nonlinear parts feed back.
@@ -77,16 +97,24 @@ typename Lanes<T>::Flat Lanes<T>::newton_step(Constants& k, const T* x) {
   Signals<T>& s = signals_;
   for (std::size_t i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(nonlinear_[i]);
-    const T* z = source_impedance(k, nonlinear_[i]);
+    const T* z = own_impedance(k, nonlinear_[i]);
+    T zr = z[0], zi = z[1], er = er_[at], ei = ei_[at], share(1.0);
+    if (const T* n = ratio(k, nonlinear_[i])) {
+      share = T(1.0) / *n;
+      er = er * share;
+      ei = ei * share;
+      zr = zr * *n;
+      zi = zi * *n;
+    }
     current(k, at, s);
-    f[2 * i] = k.vr[i] - (er_[at] - z[0] * s.Ir + z[1] * s.Ii);
-    f[2 * i + 1] = k.vi[i] - (ei_[at] - z[0] * s.Ii - z[1] * s.Ir);
+    f[2 * i] = k.vr[i] - (er - zr * s.Ir + zi * s.Ii);
+    f[2 * i + 1] = k.vi[i] - (ei - zr * s.Ii - zi * s.Ir);
     for (std::size_t j = 0; j < count; ++j) {
       const auto from = static_cast<std::size_t>(nonlinear_[j]);
       const T& g = k.g[at * static_cast<std::size_t>(sources_) + from];
       const T& b = k.b[at * static_cast<std::size_t>(sources_) + from];
       const double own = i == j ? 1.0 : 0.0;
-      const T wr = T(own) - (z[0] * g - z[1] * b), wi = T(0.0) - (z[0] * b + z[1] * g);  // dV/dE
+      const T wr = (i == j ? share : T(0.0)) - (zr * g - zi * b), wi = T(0.0) - (zr * b + zi * g);  // dV/dE
       for (std::size_t side = 0; side < 2; ++side) {
         const T& dr = slope[4 * j + 2 * side];
         const T& di = slope[4 * j + 2 * side + 1];

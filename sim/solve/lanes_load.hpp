@@ -163,12 +163,10 @@ void Lanes<T>::load(int lane) {
                                grid_.network.base_mva, grid_.conventions));
   if constexpr (Traits::directions > 0) load_seeded(lane, changed);
   for (std::size_t i = 0; i < nonlinear_.size(); ++i) {
-    const int source = nonlinear_[i];
-    const int bus = source < n_ ? grid_.plants[static_cast<std::size_t>(source)].bus
-                                : grid_.loads[static_cast<std::size_t>(source - n_)].bus;
-    const Complex v = grid_.flow.voltage[static_cast<std::size_t>(bus)];
-    Traits::set(per_lane_.vr[i], lane, v.real());
-    Traits::set(per_lane_.vi[i], lane, v.imag());
+    const auto source = static_cast<std::size_t>(nonlinear_[i]);
+    const auto& at = source < plants_.size() ? base_[source] : load_base_[source - plants_.size()];
+    Traits::set(per_lane_.vr[i], lane, at.s.Vr);
+    Traits::set(per_lane_.vi[i], lane, at.s.Vi);
   }
   find_moving();
   run.segment = 0;

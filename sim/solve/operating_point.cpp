@@ -43,12 +43,6 @@ class Initialiser {
 
   OperatingOf<T> run() {
     const auto& machine = places_.front();
-    if (transformer_ && equations_.nonlinear())
-      problems_.add(fmt::format("{} behind {}", machine.effect->name, plant_.transformer.effect->name),
-                    where(),
-                    "its current is no linear function of the voltage, which the transformer here needs",
-                    "put the transformer into the network, or choose another machine model");
-    problems_.raise();
     held(ops(machine).machine.steady(machine.p, coefficients(machine), o_.s, states(machine)), machine);
     o_.Efd = o_.s.Efd;
     o_.Tm = o_.s.Tm;

@@ -4,6 +4,12 @@
 //   machine.derivative -> non-windup limits
 // States of a plant lie back to back, machine first; coefficients likewise, with the plant's own (Joint)
 // after the machine's.
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "sim/solve/grid.hpp"
@@ -52,6 +58,12 @@ class PlantEquations {
   /// Where nonlinear(): Vr, Vi at the terminal -> Ir, Ii, after emf().
   void current(const T* c, const T* x, T* m, Signals<T>& s) const { machine_.current(c, x, m, s); }
   [[nodiscard]] const T* impedance(const T* c) const { return c + joint_ + joint_r; }
+  /// Of the machine alone.
+  [[nodiscard]] const T* machine_impedance(const T* c) const { return c + joint_ + joint_rm; }
+  /// Of the step-up transformer; none: nullptr.
+  [[nodiscard]] const T* ratio(const T* c) const {
+    return has_transformer_ ? c + joint_ + joint_ratio : nullptr;
+  }
 
   /// Vr, Vi at the terminal and Vpr, Vpi at the grid's side, with er + j ei from emf() and the current Ir, Ii
   /// into the grid, which becomes that of the machine.
@@ -78,10 +90,20 @@ class PlantEquations {
     s.Vi = s.Vpi * in + rt * s.Ii + xt * s.Ir;
   }
 
+  /// Voltage and current at the grid's side from Vr, Vi and Ir, Ii of the machine.
+  [[nodiscard]] std::pair<std::complex<T>, std::complex<T>> to_grid(const T* c, const Signals<T>& s) const {
+    const std::complex<T> v(s.Vr, s.Vi), i(s.Ir, s.Ii);
+    if (!has_transformer_) return {v, i};
+    const T* j = c + joint_;
+    const T n = j[joint_ratio];
+    const std::complex<T> zt(j[joint_r] / (n * n) - j[joint_rm], j[joint_x] / (n * n) - j[joint_xm]);
+    return {n * (v - zt * i), i / n};
+  }
+
   /// Currents and terminal voltage from the voltage Vpr, Vpi in s at the grid's side, after emf(). Returns
   /// the current into the grid in ir, ii.
   void from_grid(const T* c, const T* x, T* m, const T& er, const T& ei, Signals<T>& s, T& ir, T& ii) const {
-    if (nonlinear()) {  // never behind a transformer: make_grid refuses that
+    if (nonlinear() && !has_transformer_) {
       s.Vr = s.Vpr;
       s.Vi = s.Vpi;
       current(c, x, m, s);
@@ -94,7 +116,11 @@ class PlantEquations {
     const T k = T(1.0) / (j[joint_r] * j[joint_r] + j[joint_x] * j[joint_x]);
     s.Ir = ir = (j[joint_r] * dr + j[joint_x] * di) * k;
     s.Ii = ii = (j[joint_r] * di - j[joint_x] * dr) * k;
-    if (has_transformer_) return through_transformer(c, s);
+    if (has_transformer_) {
+      through_transformer(c, s);
+      if (nonlinear()) nonlinear_through_transformer(c, x, m, s, ir, ii);
+      return;
+    }
     s.Vr = s.Vpr;
     s.Vi = s.Vpi;
   }
@@ -178,6 +204,46 @@ class PlantEquations {
       if (l.low >= 0) d = select(x[l.state] > c[l.low], d, positive_part(d));
       if (l.high >= 0) d = select(x[l.state] < c[l.high], d, T(0.0) - positive_part(T(0.0) - d));
     }
+  }
+  /// The terminal voltage at which the machine's own current is the one the transformer carries: Newton's
+  /// method from the Vr, Vi in s, slopes by differences, whose error only slows it. No current where it is
+  /// not found, as of the machine alone.
+  void nonlinear_through_transformer(const T* c, const T* x, T* m, Signals<T>& s, T& ir, T& ii) const {
+    constexpr int kLimit = 20;
+    constexpr int kMore = std::is_same_v<T, double> ? 0 : 2;       // slopes of duals come after their values
+    constexpr double kNudge = 1e-6, kNear = 1e-9, kLongest = 0.3;  // [pu]
+    const T* j = c + joint_;
+    const T in = T(1.0) / j[joint_ratio];
+    const T rt = j[joint_r] * in * in - j[joint_rm], xt = j[joint_x] * in * in - j[joint_xm];
+    const T ar = s.Vpr * in, ai = s.Vpi * in;
+    const auto rest = [&](const T& vr, const T& vi, T& fr, T& fi) {
+      s.Vr = vr;
+      s.Vi = vi;
+      current(c, x, m, s);
+      fr = vr - ar - rt * s.Ir + xt * s.Ii;
+      fi = vi - ai - rt * s.Ii - xt * s.Ir;
+    };
+    T vr = s.Vr, vi = s.Vi;
+    int calm = 0;
+    for (int step = 0; step < kLimit && calm <= kMore; ++step) {
+      T fr, fi, a, b, d, e;
+      rest(vr + T(kNudge), vi, a, d);
+      rest(vr, vi + T(kNudge), b, e);
+      rest(vr, vi, fr, fi);
+      a = (a - fr) * T(1 / kNudge), b = (b - fr) * T(1 / kNudge);
+      d = (d - fi) * T(1 / kNudge), e = (e - fi) * T(1 / kNudge);
+      const T over = T(1.0) / (a * e - b * d), dr = (e * fr - b * fi) * over, di = (a * fi - d * fr) * over;
+      const double largest = std::max(std::abs(value_of(dr)), std::abs(value_of(di)));
+      const T scale(kLongest / std::max(kLongest, largest));
+      vr = vr - scale * dr;
+      vi = vi - scale * di;
+      if (largest < kNear) ++calm;
+    }
+    T unused;
+    rest(vr, vi, unused, unused);
+    if (calm == 0) s.Ir = T(std::numeric_limits<double>::quiet_NaN());
+    ir = s.Ir * in;
+    ii = s.Ii * in;
   }
   /// P, Q and V from terminal voltage and current.
   static void terminal(Signals<T>& s) {

@@ -118,6 +118,19 @@ TEST_F(DrivenPlantTest, SlopesAlongNuisances) {
                  {Kind::angle, 0, 0, 1e-5},
                  {Kind::speed, 0, 0, 1e-6}});
 }
+/// The current of a GENTPJ is found by Newton's method, its terminal behind the transformer by another one.
+TEST_F(DrivenPlantTest, SlopesThroughATransformerAndASaturatedStator) {
+  const auto* gentpj = sim::find_effect("GENTPJ");
+  model_.plant.machine = {gentpj, gentpj->standard_parameters()};
+  model_.plant.transformer = {sim::find_effect("STEPUP"), {0.004, 0.12, 1.04}};
+  std::vector<Direction> directions = {
+      {Kind::switching, 0, 1, 1e-5}, {Kind::P, 0, 0, 1e-5}, {Kind::Q, 0, 0, 1e-5}, {Kind::angle, 0, 0, 1e-5}};
+  for (const char* name : {"H", "Xdp", "Xdpp", "Xqpp", "Xl", "S10", "S12", "Kis"}) {
+    const int p = gentpj->parameter_index(name);
+    directions.push_back({Kind::parameter, 0, p, 1e-4 * model_.plant.machine.p[static_cast<std::size_t>(p)]});
+  }
+  expect_slopes(directions);
+}
 TEST_F(DrivenPlantTest, SlopesAlongAddedInputs) {
   expect_slopes({{Kind::torque, 0, 1, 1e-4},
                  {Kind::torque, 0, 2, 1e-4},

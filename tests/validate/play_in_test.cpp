@@ -48,6 +48,13 @@ TEST(PlayInTest, ReproducesEverySimulatedGenrou) {
   EXPECT_LT(playback_error(genrou(), 1, true), 1e-7);
 }
 
+TEST(PlayInTest, ReproducesEverySimulatedGentpjBehindATransformer) {
+  EXPECT_LT(playback_error(test::simulate("ieee39_genrou", sim::Conventions::psse(), 16, 2.0, 2.1, 480, {},
+                                          test::put_behind_transformers),
+                           1, true),
+            1e-7);
+}
+
 TEST(PlayInTest, ErrorFallsWithTheRate) {
   std::printf("samples/s   one-sided values known   extrapolated   [pu, worst of P and Q, 10 machines]\n");
   // Fourth order of the spline: 120/s is 4^4 = 256 times worse than 480/s; the bounds leave a factor of about

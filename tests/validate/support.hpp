@@ -2,6 +2,7 @@
 // Simulated events, and records made of them, shared by the tests of play-in and compare.
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <random>
 #include <string>
 #include <vector>
@@ -35,15 +36,17 @@ struct Simulated {
 };
 
 /// A grid of configs/networks with a fault at a bus, by the reference integrator. Its rtol of 1e-10 per step
-/// keeps its own error near 1e-9, far below what is tested.
+/// keeps its own error near 1e-9, far below what is tested. `change`: of the grid, before.
 inline Simulated simulate(const std::string& name, sim::Conventions conventions, int bus, double t_on,
-                          double t_off, double rate = 480.0, sim::Complex z = {}) {
+                          double t_off, double rate = 480.0, sim::Complex z = {},
+                          const std::function<void(sim::Grid&)>& change = {}) {
   Simulated s{sim::load_grid(source("configs/networks/" + name + ".raw"),
                              source("configs/networks/" + name + ".dyr"), conventions),
               t_on,
               t_off,
               {},
               {}};
+  if (change) change(s.grid);
   sim::Event event;
   event.faults.push_back({s.grid.network.bus_index(bus), t_on, t_off, z});
   sim::ReferenceOptions options;
@@ -57,6 +60,15 @@ inline Simulated simulate(const std::string& name, sim::Conventions conventions,
   options.after_switching = true;
   s.after = sim::run_reference(s.grid, event, options);
   return s;
+}
+
+/// Every machine a GENTPJ, whose current is no linear function of its voltage, behind a transformer.
+inline void put_behind_transformers(sim::Grid& grid) {
+  for (sim::Plant& plant : grid.plants) {
+    const sim::Effect* gentpj = sim::find_effect("GENTPJ");
+    plant.machine = {gentpj, gentpj->standard_parameters()};
+    plant.transformer = {sim::find_effect("STEPUP"), {0.004, 0.12, 1.04}};
+  }
 }
 
 /// The record of one plant at every `stride`-th sample, P and Q on the machine's own base; Gaussian noise of

@@ -54,18 +54,26 @@ Network network(bool branch) {
   net.generators = {machine(0, 0.0, 1.02, 100.0, 1e-4), machine(branch ? 2 : 1, 0.9, 1.01, kMva, 0.25)};
   return net;
 }
-std::vector<DyrRecord> models(int bus) {
-  return {
-      {1, "GENCLS", "1", {0.0, 0.0}, 1},
-      {bus, "GENROU", "1", {8.0, 0.03, 0.4, 0.05, 6.175, 0.05, 1.8, 1.7, 0.3, 0.55, 0.25, 0.2, 0.1, 0.8}, 2}};
+const DyrRecord kGenrou = {
+    0, "GENROU", "1", {8.0, 0.03, 0.4, 0.05, 6.175, 0.05, 1.8, 1.7, 0.3, 0.55, 0.25, 0.2, 0.1, 0.8}, 2};
+/// Its current is no linear function of the voltage.
+const DyrRecord kGentpj = {
+    0,
+    "GENTPJU1",
+    "1",
+    {7.0, 0.04, 0.8, 0.06, 5.0, 0.05, 1.8, 1.7, 0.3, 0.55, 0.25, 0.27, 0.15, 0.1, 0.4, 0.05},
+    2};
+std::vector<DyrRecord> models(int bus, DyrRecord machine = kGenrou) {
+  machine.bus = bus;
+  return {{1, "GENCLS", "1", {0.0, 0.0}, 1}, machine};
 }
 
 struct Pair {
   Grid branch, plant;
 };
 /// Both grids at one and the same power flow: the plant gets what flows into bus 2 from the branch.
-Pair grids(Conventions conventions) {
-  Pair pair{make_grid(network(true), models(3), "branch", conventions), {}};
+Pair grids(Conventions conventions, const DyrRecord& machine = kGenrou) {
+  Pair pair{make_grid(network(true), models(3, machine), "branch", conventions), {}};
   const auto& v = pair.branch.flow.voltage;
   const Complex z(kR * 100.0 / kMva, kX * 100.0 / kMva);
   const Complex current = (v[2] - v[1] / kRatio) / z / kRatio;
@@ -74,7 +82,7 @@ Pair grids(Conventions conventions) {
   net.buses[1].type = BusType::generator;
   net.generators[1].p = power.real();
   net.generators[1].vset = std::abs(v[1]);
-  pair.plant = make_grid(std::move(net), models(2), "plant", conventions);
+  pair.plant = make_grid(std::move(net), models(2, machine), "plant", conventions);
   pair.plant.plants[1].transformer = {find_effect("STEPUP"), {kR, kX, kRatio}};
   return pair;
 }
@@ -89,8 +97,12 @@ ReferenceRun reference(const Grid& grid, std::vector<Channel> channels) {
 }
 
 TEST(TransformerStepup, EqualsTheSameTransformerAsABranch) {
-  for (const auto& conventions : {Conventions::psse(), Conventions::andes()}) {
-    const Pair pair = grids(conventions);
+  const std::pair<Conventions, DyrRecord> cases[] = {{Conventions::psse(), kGenrou},
+                                                     {Conventions::andes(), kGenrou},
+                                                     {Conventions::psse(), kGentpj},
+                                                     {Conventions::andes(), kGentpj}};
+  for (const auto& [conventions, machine] : cases) {
+    const Pair pair = grids(conventions, machine);
     EXPECT_NEAR(std::abs(pair.plant.flow.voltage[1] - pair.branch.flow.voltage[1]), 0.0,
                 1e-10);  // power flow
     const auto inside = {Channel::delta, Channel::speed, Channel::Ifd};

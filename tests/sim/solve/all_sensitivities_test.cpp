@@ -132,9 +132,8 @@ Event gentle() {
 }
 
 /// Largest difference of each column over the column's largest value.
-void compare_with_quotients(const Effect& e, Worst& worst) {
+void compare_with_quotients(const Grid& grid, const Effect& e, Worst& worst) {
   constexpr double floor = 2e-5;  // below it the quotients' noise, up to 1e-10, nears the limit
-  const Grid grid = host(e);
   const auto all = seeds(grid, e);
   for (std::size_t first = 0; first < all.size(); first += kAtOnce) {
     const std::vector<Seed> some(
@@ -166,7 +165,7 @@ TEST(AllSensitivitiesFull, EqualCentralDifferences) {
   std::set<std::string_view> seen;
   for (const Effect* e : effects_of_a_plant()) {
     Worst own;
-    compare_with_quotients(*e, own);
+    compare_with_quotients(host(*e), *e, own);
     EXPECT_LT(own.value, 1e-5) << own.where;  // the limit
     worst.columns += own.columns - 1;
     worst.add(own.value, own.where);
@@ -176,6 +175,18 @@ TEST(AllSensitivitiesFull, EqualCentralDifferences) {
   RecordProperty("worst", testing::PrintToString(worst.value) + " " + worst.where);
   std::cout << worst.columns << " columns of " << seen.size() << " effects, worst " << worst.value << " "
             << worst.where << "\n";
+}
+
+/// A machine whose current is no linear function of the voltage, its terminal behind a transformer.
+TEST(AllSensitivitiesFull, EqualCentralDifferencesBehindATransformer) {
+  Grid grid = host(*find_effect("GENTPJ"));
+  grid.plants[kPlant].transformer = {find_effect("STEPUP"), {0.004, 0.12, 1.04}};
+  for (const char* name : {"GENTPJ", "STEPUP"}) {
+    Worst worst;
+    compare_with_quotients(grid, *find_effect(name), worst);
+    EXPECT_GT(worst.columns, 0);
+    EXPECT_LT(worst.value, 1e-5) << worst.where;
+  }
 }
 
 /// The same against CVODES, whose plants have no algebraic equations, in the states of the machine and of the
