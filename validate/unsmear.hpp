@@ -16,8 +16,8 @@ struct FilterWindow {
 
 /// Fills short segments of the events' clean records with the voltage that, averaged, gives the smeared
 /// samples, and places their switchings. The window is the one, common to all events, that leaves least.
-/// Nothing is changed where no window answers to within a few times the noise of V and theta. Returns the
-/// window.
+/// Where no window answers to within a few times the noise of V and theta, only segments without a clean
+/// sample are filled, so that there is something to play in. Returns the window.
 FilterWindow unsmear(std::vector<FitEvent>& events);
 
 }  // namespace swingbank::validate
