@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "sim/solve/lane_schedule.hpp"
 #include "sim/solve/plant_equations.hpp"
 #include "sim/solve/tableau.hpp"
 
@@ -46,12 +48,14 @@ template <>
 struct Seeds<double> {
   static void add(double&, std::size_t, double) {}
   static double slope(double, std::size_t) { return 0.0; }
+  static double times(double factor, double x) { return factor * x; }
   static double size(double x) { return std::abs(x); }
 };
 template <>
 struct Seeds<D8> {
   static void add(D8& x, std::size_t direction, double by) { x.d[direction] += by; }
   static double slope(const D8& x, std::size_t direction) { return x.d[direction]; }
+  static D8 times(double factor, const D8& x) { return sim::chain(x, factor * x.a, factor); }
   /// Slopes count a hundredth: a fit forgives them more than a value.
   static double size(const D8& x) {
     double worst = std::abs(x.a);
@@ -245,12 +249,15 @@ class Driven {
         give_up();
       }
       const double factor =
-          std::isfinite(error) ? std::clamp(0.9 * std::pow(error + 1e-12, pair_.exponent), 0.2, 5.0) : 0.2;
+          std::isfinite(error) ? std::clamp(0.9 * grown(error + 1e-12, pair_.exponent), 0.2, 5.0) : 0.2;
       const bool cut_short = reaches && error <= 1;  // short for the instant's sake, not the error's
       h_ = cut_short ? std::max(h_, h * factor) : h * factor;
       if (++steps_ > run_.step_limit) give_up();
     }
     t_ = std::max(t_, to);
+  }
+  static double grown(double error, double exponent) {
+    return sim::rough_power(static_cast<float>(error), static_cast<float>(exponent));
   }
   /// Makes k_[0] and the signals those of the states as they stand.
   void refresh() {
@@ -259,21 +266,33 @@ class Driven {
   }
   double attempt(double h) {
     refresh();
-    const std::size_t n = x_.size();
-    for (int stage = 1; stage < pair_.stages; ++stage) {
-      for (std::size_t i = 0; i < n; ++i) {
-        T sum(0.0);
-        for (int j = 0; j < stage; ++j)
-          if (pair_.a[stage][j] != 0.0) sum = sum + T(pair_.a[stage][j]) * k_[static_cast<std::size_t>(j)][i];
-        trial_[i] = x_[i] + T(h) * sum;
-      }
-      evaluate(t_ + pair_.c[stage] * h, trial_.data(), signals_, k_[static_cast<std::size_t>(stage)].data());
-    }
+    return &pair_ == &kRough ? attempt<kRough>(h, std::make_integer_sequence<int, kRough.stages - 1>{})
+                             : attempt<kFine>(h, std::make_integer_sequence<int, kFine.stages - 1>{});
+  }
+  template <const Pair& pair, int... Before>
+  double attempt(double h, std::integer_sequence<int, Before...>) {
+    (stage<pair, Before + 1>(h), ...);
+    return scaled_error<pair>(h);
+  }
+  /// weights[0] k_[0] to weights[last] k_[last] of one state.
+  template <int last>
+  T weighted(const double* weights, std::size_t state) const {
+    T sum = Seeds<T>::times(weights[0], k_[0][state]);
+    for (std::size_t j = 1; j <= last; ++j)
+      if (weights[j] != 0.0) sum = sum + Seeds<T>::times(weights[j], k_[j][state]);
+    return sum;
+  }
+  template <const Pair& pair, int at>
+  void stage(double h) {
+    for (std::size_t i = 0; i < x_.size(); ++i)
+      trial_[i] = x_[i] + Seeds<T>::times(h, weighted<at - 1>(pair.a[at], i));
+    evaluate(t_ + pair.c[at] * h, trial_.data(), signals_, k_[at].data());
+  }
+  template <const Pair& pair>
+  double scaled_error(double h) const {
     double worst = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      T e(0.0);
-      for (int j = 0; j < pair_.stages; ++j)
-        if (pair_.error[j] != 0.0) e = e + T(pair_.error[j]) * k_[static_cast<std::size_t>(j)][i];
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      const T e = weighted<pair.stages - 1>(pair.error, i);
       const double ratio = h * Seeds<T>::size(e) / (run_.tolerance * (1 + std::abs(sim::value_of(x_[i]))));
       if (!std::isfinite(ratio)) return ratio;
       worst = std::max(worst, ratio);

@@ -109,14 +109,24 @@ void VoltageCurve::fit(Segment& segment) {
     segment.slope2.assign(3, curve);
   } else if (t.size() > 3) {
     segment.slope2 = not_a_knot(t, v);
+    segment.rate = static_cast<double>(t.size() - 3) / (t[t.size() - 2] - t[1]);
   }
+}
+
+/// The last knot at or before t that has another behind it; the first where t lies before all.
+std::size_t VoltageCurve::interval(const Segment& s, double t) {
+  const std::size_t last = s.t.size() - 2;
+  const double guess = (t - s.t[1]) * s.rate + 1;
+  std::size_t i = guess < 0 ? 0 : std::min(last, static_cast<std::size_t>(guess));
+  while (i < last && s.t[i + 1] <= t) ++i;
+  while (i > 0 && t < s.t[i]) --i;
+  return i;
 }
 
 Complex VoltageCurve::operator()(int index, double t) const {
   const Segment& s = segments_[static_cast<std::size_t>(index)];
   if (s.t.size() == 1) return s.v[0];
-  const auto above = std::upper_bound(s.t.begin() + 1, s.t.end() - 1, t);
-  const auto i = static_cast<std::size_t>(above - s.t.begin()) - 1;
+  const std::size_t i = interval(s, t);
   const double h = s.t[i + 1] - s.t[i], b = (t - s.t[i]) / h, a = 1 - b;
   return a * s.v[i] + b * s.v[i + 1] +
          ((a * a * a - a) * s.slope2[i] + (b * b * b - b) * s.slope2[i + 1]) * (h * h / 6);

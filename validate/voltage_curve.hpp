@@ -46,8 +46,10 @@ class VoltageCurve {
     double end = 0;
     std::vector<double> t;
     std::vector<Complex> v, slope2;  ///< knots and second derivatives there
+    double rate = 0;                 ///< inner knots per second, all but evenly spaced; 0: too few
   };
   static void fit(Segment& segment);
+  static std::size_t interval(const Segment& segment, double t);
   std::vector<Switching> switchings_;
   std::vector<Segment> segments_;
 };
