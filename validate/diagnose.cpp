@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <mutex>
+#include <optional>
 
 #include "validate/decide.hpp"
 #include "validate/noise.hpp"
@@ -77,6 +78,8 @@ class Diagnoser {
     }
     try_replacements();
     measure_noise_again();
+    passed_.emplace(result_.base.plant, model_.conventions, result_.events,
+                    voltage_noise(result_.base, result_.events).variance);
     held_out_base_ = hold_out(trial(), model_.plant, model_.conventions, {}, result_.base);
     infer_inputs();
     search();
@@ -307,7 +310,7 @@ class Diagnoser {
   }
 
   [[nodiscard]] Trial trial() const {
-    return {result_.events, options_.spread, options_.adequate, kEvidence};
+    return {result_.events, options_.spread, options_.adequate, kEvidence, passed_ ? &*passed_ : nullptr};
   }
 
   void settle() {
@@ -386,6 +389,7 @@ class Diagnoser {
   const DiagnoseOptions& options_;
   Diagnosis result_;
   std::vector<HeldOut> held_out_base_;
+  std::optional<PassedNoise> passed_;
   int threads_;
 };
 

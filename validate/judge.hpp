@@ -5,6 +5,7 @@
 
 #include "validate/fit.hpp"
 #include "validate/hypothesis.hpp"
+#include "validate/passed_noise.hpp"
 
 namespace swingbank::validate {
 
@@ -45,6 +46,8 @@ struct Trial {
   double spread;                ///< believed of the model's parameters
   double adequate;              ///< chi2 per value up to which nothing but noise is left
   double evidence = kEvidence;  ///< from which a hypothesis is accepted
+  /// By the base, of the voltage's noise: to pass less of it is no evidence. Null: that is left aside.
+  const PassedNoise* passed = nullptr;
 };
 
 /// Each event predicted by the structure fitted to the others; `free` empty: the plant's own.
