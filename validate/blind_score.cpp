@@ -26,6 +26,17 @@ bool share(const std::vector<std::string>& a, const std::vector<std::string>& b)
   return std::ranges::any_of(a, [&](const std::string& one) { return among(b, one); });
 }
 
+/// "A + B": what acts together.
+std::vector<std::string> together(const std::string& entry) {
+  constexpr std::string_view kAnd = " + ";
+  std::vector<std::string> names;
+  for (std::size_t from = 0, to = 0; to != std::string::npos; from = to + kAnd.size()) {
+    to = entry.find(kAnd, from);
+    names.push_back(entry.substr(from, to - from));
+  }
+  return names;
+}
+
 double wilson(const Rate& r, double sign) {
   if (r.n == 0) return sign < 0 ? 0.0 : 1.0;
   constexpr double z = 1.959963984540054;
@@ -90,6 +101,7 @@ void count(const ScoredCase& c, BlindScore& score) {
   if (c.size >= kFrom) score.rates["side"].count(c.side_right());
   if (c.kinds.size() > 1) {
     score.rates["two effects: both named"].count(c.all_named());
+    score.rates["two effects: both named or in the set"].count(c.all_in_set());
     score.rates["two effects: not adequate"].count(v.verdict != "adequate");
   } else if (!c.listed) {
     score.rates["outside the list: none of these"].count(v.verdict == "unexplained");
@@ -126,6 +138,13 @@ bool ScoredCase::right_or_in_set() const {
 bool ScoredCase::all_named() const {
   return !answers.empty() &&
          std::ranges::all_of(answers, [&](const auto& a) { return share(a, verdict.effects); });
+}
+bool ScoredCase::all_in_set() const {
+  const auto names_all = [&](const std::string& entry) {
+    return std::ranges::all_of(answers, [&](const auto& a) { return share(a, together(entry)); });
+  };
+  return all_named() ||
+         (verdict.verdict == "confusable" && !answers.empty() && std::ranges::any_of(verdict.set, names_all));
 }
 bool ScoredCase::side_right() const { return among(sides, verdict.side); }
 

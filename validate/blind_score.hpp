@@ -35,6 +35,7 @@ struct ScoredCase {
   [[nodiscard]] bool first_right() const;      ///< the first effect named is the hidden one
   [[nodiscard]] bool right_or_in_set() const;  ///< or it is in the stated confusion set
   [[nodiscard]] bool all_named() const;        ///< every hidden effect is named
+  [[nodiscard]] bool all_in_set() const;       ///< or one entry of the stated set ("A + B") names every one
   [[nodiscard]] bool side_right() const;
 };
 

@@ -89,6 +89,23 @@ TEST_F(BlindScoring, CountsEachRate) {
   EXPECT_DOUBLE_EQ(s.longest_seconds, 9.0);
 }
 
+TEST_F(BlindScoring, APairIsInTheSetWhereOneEntryNamesBoth) {
+  const Hidden sexs{"SEXS", "excitation", "SEXS", 5}, droop{"TGOV1", "mechanical", "TGOV1", 3};
+  const auto in_set = [&](const BlindVerdict& verdict) {
+    add({sexs, droop}, verdict);
+    const BlindScore s = score();
+    return s.cases.back().all_in_set() && !s.cases.back().all_named();
+  };
+  EXPECT_TRUE(in_set({"confusable", {"EXST1", "HYGOV"}, {"EXST1 + TGOV1", "TGOV1 + SEXS"}, "excitation", 1}));
+  EXPECT_FALSE(in_set({"confusable", {"EXST1", "HYGOV"}, {"EXST1 + TGOV1", "SEXS + HYGOV"}, "excitation", 1}))
+      << "one each is not both";
+  EXPECT_FALSE(in_set({"confusable", {"SEXS"}, {"TGOV1"}, "excitation", 1}));
+  EXPECT_FALSE(in_set({"missing", {"EXST1", "HYGOV"}, {"SEXS + TGOV1"}, "excitation", 1}));
+  const BlindScore s = score();
+  EXPECT_EQ(s.rates.at("two effects: both named").hits, 0);
+  EXPECT_EQ(s.rates.at("two effects: both named or in the set").hits, 1);
+}
+
 TEST_F(BlindScoring, RefusedOrUnexplainedIsNotRight) {
   add({{"SEXS", "excitation", "SEXS", 5}}, {"unexplained", {"SEXS"}, {"SEXS"}, "excitation", 1}, true);
   const BlindScore s = score();
