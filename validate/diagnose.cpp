@@ -9,6 +9,7 @@
 #include <cmath>
 #include <mutex>
 #include <optional>
+#include <span>
 
 #include "validate/decide.hpp"
 #include "validate/noise.hpp"
@@ -21,6 +22,8 @@ namespace {
 constexpr double kApart = 25;
 /// Evidence that a long fit may add to a short one: what lies further behind the best is not judged.
 constexpr double kWorthJudging = 200;
+/// How many are judged where none holds.
+constexpr int kAtLeast = 3;
 /// Evidence and fall of chi2 asked of a second effect: what the first, or the instruments, leave unexplained
 /// looks like one (60 in a development case).
 constexpr double kSecond = 80;
@@ -139,7 +142,7 @@ class Diagnoser {
       if (Fit next = fit(plant, conventions, result_.events, free, o); next.failed.empty()) f = next;
     };
     go_on(model_.plant, model_.conventions, free_parameters(model_.plant, options_.spread), result_.base);
-    each(static_cast<int>(result_.ranked.size()), "noise measured again", result_.ranked, [&](Judgement& j) {
+    each(result_.ranked, "noise measured again", [&](Judgement& j) {
       if (!j.fitted) return;
       go_on(j.hypothesis.plant, j.hypothesis.conventions, free_of(j.hypothesis, options_.spread), j.fit);
       j.gain = criterion(result_.base) - criterion(j.fit);
@@ -214,7 +217,11 @@ class Diagnoser {
   [[nodiscard]] std::vector<Judgement> beside(const Stage& stage, const Judgement& first) const {
     const Stage then = after(stage, first);
     auto pairs = try_hypotheses(then, all_hypotheses(then.plant, then.conventions), options_.progress);
-    std::erase_if(pairs, [](const Judgement& j) { return j.gain < kSecond; });
+    // a rival of the best one may only have started badly
+    const int slot = pairs.empty() || pairs.front().gain < kSecond ? -1 : pairs.front().hypothesis.slot;
+    std::erase_if(pairs, [&](const Judgement& j) {
+      return j.gain < kSecond && (slot < 0 || j.hypothesis.slot != slot || !j.fitted);
+    });
     for (auto& pair : pairs) pair.gain += first.gain;
     return pairs;
   }
@@ -252,17 +259,24 @@ class Diagnoser {
              (single.fit.chi2 - pair.fit.chi2 < kSecond || pair.gain - single.gain < kSecond);
     });
   }
-  /// Those that might still be as good as the best, accepted ones first after it.
-  void judge_leading(std::vector<Judgement>& tried) {
+  /// Those that might still be as good as the best, accepted ones first after it; where none of them holds,
+  /// three.
+  void judge_leading(std::vector<Judgement>& tried) const {
     if (tried.empty()) return;
     give_rivals_a_chance(tried);
-    int leading = 0;
-    while (
-        leading < static_cast<int>(tried.size()) && leading < options_.leading &&
-        (leading < 3 || tried[static_cast<std::size_t>(leading)].gain > tried.front().gain - kWorthJudging))
+    const int most = std::min(options_.leading, static_cast<int>(tried.size()));
+    int leading = 1;
+    while (leading < most &&
+           tried[static_cast<std::size_t>(leading)].gain > tried.front().gain - kWorthJudging)
       ++leading;
-    each(leading, "unseen events", tried, [&](Judgement& j) { judge_all(j); });
+    judge_some(tried, 0, leading);
+    const bool none = std::ranges::none_of(tried, &Judgement::accepted);
+    if (none && leading < kAtLeast) judge_some(tried, leading, std::min(kAtLeast, most));
     best_first(tried);
+  }
+  void judge_some(std::vector<Judgement>& tried, int from, int to) const {
+    each(std::span(tried).subspan(static_cast<std::size_t>(from), static_cast<std::size_t>(to - from)),
+         "unseen events", [&](Judgement& j) { judge_all(j); });
   }
   /// On unseen events, and beside the inputs free in time.
   void judge_all(Judgement& j) const {
@@ -280,7 +294,7 @@ class Diagnoser {
   }
 
   /// Rivals of the best in its slot are fitted from further starts, if they come near it at all.
-  void give_rivals_a_chance(std::vector<Judgement>& tried) {
+  void give_rivals_a_chance(std::vector<Judgement>& tried) const {
     const int slot = tried.front().hypothesis.slot;
     if (slot < 0) return;
     const double near = kNear * tried.front().gain;
@@ -289,23 +303,22 @@ class Diagnoser {
     });
     const Stage stage = model_stage();
     const Fit leader = std::ranges::max_element(tried.begin(), rivals, {}, &Judgement::gain)->fit;
-    each(static_cast<int>(rivals - tried.begin()), "further starts", tried, [&](Judgement& j) {
+    each({tried.begin(), rivals}, "further starts", [&](Judgement& j) {
       try_further(stage, leader, j);
       j.gain = criterion(result_.base) - criterion(j.fit);
     });
     std::ranges::stable_sort(tried, std::greater<>(), &Judgement::gain);
   }
-  /// Does something with each of the first so many, on all cores.
+  /// Does something with each, on all cores.
   template <class F>
-  void each(int count, const std::string& what, std::vector<Judgement>& tried, F act) const {
+  void each(std::span<Judgement> tried, const std::string& what, F act) const {
     int done = 0;
     std::mutex progress;
 #pragma omp parallel for schedule(dynamic) num_threads(threads_)
-    for (int i = 0; i < count; ++i) {
-      Judgement& j = tried[static_cast<std::size_t>(i)];
+    for (Judgement& j : tried) {
       act(j);
       const std::lock_guard lock(progress);
-      report(what + " " + full_name(j.hypothesis), ++done, count);
+      report(what + " " + full_name(j.hypothesis), ++done, static_cast<int>(tried.size()));
     }
   }
 

@@ -17,6 +17,8 @@ namespace {
 constexpr int kFirstSteps = 4, kMoreSteps = 8, kNestedSteps = 12;
 /// Steps from each start beside a stage that nearly fits, and from the best of them.
 constexpr int kNearSteps = 3, kOnwardSteps = 9;
+/// ... and where what the stage has bent starts afresh.
+constexpr int kUnbentSteps = 8;
 /// Rounds of the latter, as long as each gains so much.
 constexpr int kRounds = 5;
 constexpr double kWorthARound = 10;
@@ -28,6 +30,8 @@ constexpr double kNested = 4;
 /// from which a hypothesis is fitted on.
 constexpr std::size_t kFirst = 2;
 constexpr double kFairAtFirst = 0.05, kFair = 0.2;
+/// ... and what lies so little behind the best one goes on in any case.
+constexpr double kCloseBehind = 200;
 
 class Searcher {
  public:
@@ -38,8 +42,15 @@ class Searcher {
     const auto candidates = screened(std::move(all));
     std::vector<Judgement> tried(candidates.size());
     if (starts_.near()) {
+      std::vector<std::vector<Fit>> begun(candidates.size());
+      each(candidates, "first steps ", [&](std::size_t i) { near_first(candidates[i], begun[i]); });
+      const auto onward = promising(candidates, begun, kFair);
       each(candidates, "fit ", [&](std::size_t i) {
-        tried[i] = candidates[i].nested.empty() ? hopeless(candidates[i]) : near(candidates[i]);
+        const Candidate& c = candidates[i];
+        if (c.nested.empty())
+          tried[i] = hopeless(c);
+        else
+          tried[i] = onward[i] ? near_onward(c, std::move(begun[i])) : judgement(c, std::move(begun[i]));
       });
     } else {
       std::vector<std::vector<Fit>> begun(candidates.size());
@@ -109,7 +120,7 @@ class Searcher {
     std::vector<char> onward;
     for (std::size_t i = 0; i < gains.size(); ++i) {
       const int slot = candidates[static_cast<std::size_t>(best - gains.begin())].hypothesis.slot;
-      onward.push_back(*best <= 0 || gains[i] >= share * *best ||
+      onward.push_back(*best <= 0 || gains[i] >= share * *best || gains[i] > *best - kCloseBehind ||
                        (slot >= 0 && candidates[i].hypothesis.slot == slot));
     }
     return onward;
@@ -151,31 +162,42 @@ class Searcher {
     return j;
   }
   /// Beside a stage that nearly fits, all else starts as that ended.
-  Judgement near(const Candidate& c) const {
-    const auto free = free_of(c.hypothesis, stage_.spread);
+  Fit from_stage(const Candidate& c, const std::vector<double>& values, int steps) const {
     FitOptions o;
     o.errors = false;
-    o.iterations = kNearSteps;
+    o.iterations = steps;
+    o.values = values;
     for (const auto& e : stage_.fit.events) o.start.push_back(e.state);
-    std::vector<Fit> fits;
-    for (std::size_t k = 0; k < std::min(c.nested.size(), kTries); ++k) {
-      o.values = c.nested[k].second;
-      if (Fit f = fit(c.starts.front(), c.hypothesis.conventions, stage_.events, free, o); f.failed.empty())
+    return attempt(c, c.starts.front(), o);
+  }
+  void near_first(const Candidate& c, std::vector<Fit>& fits) const {
+    for (std::size_t k = 0; k < std::min(c.nested.size(), kTries); ++k)
+      if (Fit f = from_stage(c, c.nested[k].second, kNearSteps); f.failed.empty())
         fits.push_back(std::move(f));
-    }
+  }
+  Judgement near_onward(const Candidate& c, std::vector<Fit> fits) const {
     if (fits.empty()) return judgement(c, fits);
+    Fit best = in_rounds(c, *std::ranges::min_element(fits, {}, penalised));
+    if (!c.unbent.empty())
+      if (Fit f = from_stage(c, c.unbent, kUnbentSteps); penalised(f) < penalised(best) + kCloseBehind)
+        fits.push_back(in_rounds(c, std::move(f)));
+    fits.push_back(std::move(best));
+    return judgement(c, fits);
+  }
+  /// Fitted on as long as that is worth it.
+  Fit in_rounds(const Candidate& c, Fit best) const {
+    FitOptions o;
+    o.errors = false;
     o.iterations = kOnwardSteps;
-    Fit best = *std::ranges::min_element(fits, {}, penalised);
+    const auto free = free_of(c.hypothesis, stage_.spread);
     for (int round = 0; round < kRounds; ++round) {
-      const Fit from = std::exchange(best, fit(c.starts.front(), c.hypothesis.conventions, stage_.events,
-                                               free, continued(o, best, free)));
+      const Fit from = std::exchange(best, attempt(c, c.starts.front(), continued(o, best, free)));
       const double left = penalised(best) - penalised(stage_.fit);
       const bool gets_there = left < kComing * (penalised(from) - penalised(stage_.fit));
       if (best.converged || penalised(best) > penalised(from) - kWorthARound || (left > 0 && !gets_there))
         break;
     }
-    fits.push_back(std::move(best));
-    return judgement(c, fits);
+    return best;
   }
   /// The best of the fits.
   Judgement judgement(const Candidate& c, std::vector<Fit> fits) const {
@@ -213,15 +235,6 @@ class Searcher {
 std::vector<Judgement> try_hypotheses(const Stage& stage, std::vector<Hypothesis> all,
                                       const SearchProgress& report) {
   return Searcher(stage, report).run(std::move(all));
-}
-
-Stage after(const Stage& stage, const Judgement& j) {
-  sim::Plant plant = j.hypothesis.plant;
-  for (const auto& f : j.hypothesis.free)
-    parameter_value(plant, f.block, f.index) = parameter_value(j.fit.plant, f.block, f.index);
-  return {stage.events, std::move(plant),  j.hypothesis.conventions,
-          j.fit,        j.hypothesis.free, j.hypothesis.name,
-          stage.spread, stage.threads};
 }
 
 }  // namespace swingbank::validate

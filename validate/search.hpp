@@ -38,4 +38,7 @@ void try_from(const Stage& stage, const Fit& other, Judgement& j);
 /// The stage at which `j`, added to `stage`, is there already.
 Stage after(const Stage& stage, const Judgement& j);
 
+/// Frees in `h` what earlier stages brought, as it was fitted.
+void bring(const Stage& stage, Hypothesis& h);
+
 }  // namespace swingbank::validate

@@ -84,4 +84,20 @@ void try_from(const Stage& stage, const Fit& other, Judgement& j) {
     j.fit = std::move(f);
 }
 
+Stage after(const Stage& stage, const Judgement& j) {
+  return {stage.events, j.hypothesis.plant, j.hypothesis.conventions,
+          j.fit,        j.hypothesis.free,  j.hypothesis.name,
+          stage.spread, stage.threads};
+}
+
+void bring(const Stage& stage, Hypothesis& h) {
+  h.with = stage.with;
+  for (const FreeParameter& f : stage.own) {
+    const int block = find_block(h.plant, block_effect(stage.plant, f.block));
+    h.free.push_back({block, f.index, f.spread});
+    const double value = parameter_value(stage.fit.plant, f.block, f.index);
+    for (auto& start : h.starts) start.push_back(value);
+  }
+}
+
 }  // namespace swingbank::validate

@@ -18,6 +18,8 @@ constexpr std::size_t kProvoked = 30;
 constexpr double kNear = 1.5;
 /// Of the standard amplitude: where the answer is straight; the least that a start has.
 constexpr double kSmall = 0.01, kLeastShare = 1e-3;
+/// Standard deviations of the belief from which a parameter is bent.
+constexpr double kBent = 2.0;
 /// Rise of chi2, as a multiple of what it is, from which no start leads back.
 constexpr double kOutOfReach = 100;
 /// Draws among which those that act are looked for; squared change, in units of noise, from which one does.
@@ -39,7 +41,7 @@ StartFinder::StartFinder(const Stage& stage) : stage_(stage) {
 
 Candidate StartFinder::of(Hypothesis h) const {
   Candidate c;
-  bring(h);
+  bring(stage_, h);
   const bool provoked = provoke(h);
   if (score_)
     score(h, provoked ? kProvoked : kScored, c);
@@ -49,14 +51,31 @@ Candidate StartFinder::of(Hypothesis h) const {
   return c;
 }
 
-void StartFinder::bring(Hypothesis& h) const {
-  h.with = stage_.with;
+sim::Plant StartFinder::believed(const Hypothesis& h) const {
+  sim::Plant plant = started(h, h.starts.front());
   for (const FreeParameter& f : stage_.own) {
-    const int block = find_block(h.plant, block_effect(stage_.plant, f.block));
-    h.free.push_back({block, f.index, f.spread});
-    const double value = parameter_value(stage_.plant, f.block, f.index);
-    for (auto& start : h.starts) start.push_back(value);
+    const int block = find_block(plant, block_effect(stage_.plant, f.block));
+    parameter_value(plant, block, f.index) = parameter_value(stage_.plant, f.block, f.index);
   }
+  return plant;
+}
+std::vector<double> StartFinder::unbent(const Hypothesis& h) const {
+  std::vector<int> bent;
+  for (const auto& p : stage_.fit.parameters) {
+    const bool own = std::ranges::any_of(stage_.own, [&](const FreeParameter& f) {
+      return f.block == p.where.block && f.index == p.where.index;
+    });
+    if (!own && p.start > 0 && std::abs(std::log(p.value / p.start)) > kBent * p.where.spread)
+      bent.push_back(p.where.block);
+  }
+  if (bent.empty()) return {};
+  const auto free = free_of(h, stage_.spread);
+  sim::Plant plant = with_values(h, free, beside_fit(h, h.starts.front()));
+  for (const auto& p : stage_.fit.parameters)
+    if (const int block = find_block(plant, block_effect(stage_.plant, p.where.block));
+        block >= 0 && std::ranges::count(bent, p.where.block) > 0)
+      parameter_value(plant, block, p.where.index) = p.start;
+  return values_of(plant, free);
 }
 bool StartFinder::provoke(Hypothesis& h) const {
   if (!h.drawn || largest_move(h, h.starts.front()) > kActs) return false;
@@ -232,9 +251,10 @@ void StartFinder::score(const Hypothesis& h, std::size_t looks, Candidate& c) co
   }
   c.promise = score_->joint_gain(changes);
   if (starts.empty() || std::ranges::none_of(changes, [](const auto& x) { return x.square > 0; })) return;
-  c.starts = {started(h, h.starts.front())};
+  c.starts = {believed(h)};
   // a few large changes say little of a small one
   if (c.promise < kHopeless && (!which.empty() || starts.size() >= std::min(h.starts.size(), looks))) return;
+  c.unbent = unbent(h);
   const double reach = kOutOfReach * stage_.fit.chi2;
   if (!which.empty() || starts.front().first < reach) c.nested.emplace_back(0.0, standard);
   std::ranges::sort(starts);

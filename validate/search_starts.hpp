@@ -21,6 +21,10 @@ struct Candidate {
   /// The stage as fitted, with each start: its misfit, and all free parameters. The standard start first, the
   /// others as they suit the stage.
   std::vector<std::pair<double, std::vector<double>>> nested = {};
+  /// Its standard start beside the stage as fitted, but for the blocks that the fit has bent: these as the
+  /// model has them. What is missing bends what stands nearest to it, and a short fit does not lead back.
+  /// Empty: none is bent.
+  std::vector<double> unbent = {};
   double promise = 0;  ///< by how much chi2 would fall, by the score test
 };
 
@@ -31,10 +35,13 @@ class StartFinder {
   [[nodiscard]] bool near() const { return score_.has_value(); }
   /// No starts: it does not act here.
   [[nodiscard]] Candidate of(Hypothesis h) const;
+  /// Candidate::unbent.
+  [[nodiscard]] std::vector<double> unbent(const Hypothesis& h) const;
 
  private:
-  /// What earlier stages brought is free in this hypothesis too.
-  void bring(Hypothesis& h) const;
+  /// About what its parameters are believed: its first start, and what earlier stages brought as that was
+  /// believed.
+  [[nodiscard]] sim::Plant believed(const Hypothesis& h) const;
   /// A limiter may wait for more than the standard values let it meet here: then draws that act are its
   /// starts. False: they stay what they were.
   bool provoke(Hypothesis& h) const;

@@ -46,5 +46,37 @@ TEST(Starts, ALimiterStartsWhereItActs) {
   for (std::size_t k = 0; k < 10; ++k) EXPECT_GT(moved(stage, c.hypothesis, c.hypothesis.starts[k]), 10) << k;
 }
 
+TEST(Starts, WhatTheFitHasBentStartsAsTheModelHasIt) {
+  const ExciterExample example(0.2);
+  Fit bent = example.fitted({"H", "K", "TE"}, {.iterations = 0});
+  const auto moved_to = [&](const std::string& name, double share) {
+    auto& p = *std::ranges::find(bent.parameters, name, &FittedParameter::name);
+    p.value = share * p.start;
+  };
+  const Stage stage{.events = example.events,
+                    .plant = example.model.plant,
+                    .conventions = example.model.conventions,
+                    .fit = bent};
+  auto all = all_hypotheses(stage.plant, stage.conventions);
+  const Hypothesis& h = *std::ranges::find(all, "IEEEVC", &Hypothesis::name);
+  const auto free = free_of(h, stage.spread);
+  const auto share = [&](const std::vector<double>& values, const std::string& name) {
+    for (std::size_t i = 0; i < free.size(); ++i)
+      if (parameter_record(h.plant, free[i].block, free[i].index).name == name)
+        return values[i] / parameter_value(h.plant, free[i].block, free[i].index);
+    return std::nan("");
+  };
+  moved_to("H", 1.3);
+  moved_to("K", 1.3);
+  moved_to("TE", 1.3);
+  EXPECT_TRUE(StartFinder(stage).unbent(h).empty()) << "within two standard deviations of the belief";
+  moved_to("K", 0.6);
+  const auto values = StartFinder(stage).unbent(h);
+  ASSERT_FALSE(values.empty());
+  EXPECT_DOUBLE_EQ(share(values, "K"), 1.0);
+  EXPECT_DOUBLE_EQ(share(values, "TE"), 1.0) << "of the same block";
+  EXPECT_DOUBLE_EQ(share(values, "H"), 1.3) << "of another block";
+}
+
 }  // namespace
 }  // namespace swingbank::validate
