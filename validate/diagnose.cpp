@@ -170,14 +170,12 @@ class Diagnoser {
     if (result_.ranked.empty()) return;
     const Judgement best = result_.ranked.front();
     if (!best.accepted && result_.base.misfit() <= options_.adequate) return;
-    auto pairs = best.accepted ? beside(stage, best) : try_pairs(stage, nullptr);
-    judge_leading(pairs);
+    auto pairs = best.accepted ? judged_beside(stage, best) : try_pairs(stage);
     try_alone(pairs);
     const auto unneeded = [&](const Judgement& j) { return !j.accepted || !needed(j); };
     std::erase_if(pairs, unneeded);
-    if (best.accepted && !pairs.empty()) {  // the best alone was the best of a wrong kind, perhaps
-      auto others = try_pairs(stage, &best);
-      judge_leading(others);
+    if (!pairs.empty()) {  // the first was chosen while the second was missing
+      auto others = exchanged(stage, pairs.front());
       std::erase_if(others, unneeded);
       std::ranges::move(others, std::back_inserter(pairs));
       std::ranges::stable_sort(pairs, std::greater<>(), &Judgement::gain);
@@ -194,24 +192,43 @@ class Diagnoser {
             .spread = options_.spread,
             .threads = threads_};
   }
-  /// What the best single hypotheses, one of each slot, leave over for a second one; not beside `tried`.
-  std::vector<Judgement> try_pairs(const Stage& stage, const Judgement* tried) {
+  /// What the best single hypotheses, one of each slot, leave over for a second one; the next one only where
+  /// no pair holds beside the one before.
+  std::vector<Judgement> try_pairs(const Stage& stage) {
     std::vector<const Judgement*> firsts;
     for (const auto& j : result_.ranked) {
       const bool taken = std::ranges::any_of(firsts, [&](const Judgement* f) {
         return j.hypothesis.slot >= 0 && f->hypothesis.slot == j.hypothesis.slot;
       });
-      if (tried && (j.hypothesis.name == tried->hypothesis.name ||
-                    (tried->hypothesis.slot >= 0 && j.hypothesis.slot == tried->hypothesis.slot)))
-        continue;
       if (!taken && j.gain >= trial().evidence && j.fitted && !j.hypothesis.replaces &&
           static_cast<int>(firsts.size()) < options_.firsts)
         firsts.push_back(&j);
     }
     std::vector<Judgement> pairs;
-    for (const Judgement* first : firsts) std::ranges::move(beside(stage, *first), std::back_inserter(pairs));
-    std::ranges::stable_sort(pairs, std::greater<>(), &Judgement::gain);
+    for (const Judgement* first : firsts) {
+      std::ranges::move(judged_beside(stage, *first), std::back_inserter(pairs));
+      best_first(pairs);
+      if (!pairs.empty() && pairs.front().accepted) break;
+    }
     return pairs;
+  }
+  [[nodiscard]] std::vector<Judgement> judged_beside(const Stage& stage, const Judgement& first) const {
+    auto pairs = beside(stage, first);
+    judge_leading(pairs);
+    return pairs;
+  }
+  /// Rivals of a pair's first effect in its place: those of its slot, and whatever else holds alone.
+  [[nodiscard]] std::vector<Judgement> exchanged(const Stage& stage, const Judgement& pair) const {
+    auto rivals = exchanges(stage, pair, result_.ranked);
+    each(rivals, "in place of " + pair.hypothesis.with, [&](Judgement& j) {
+      try_exchange(stage, pair, j);
+      j.gain = criterion(result_.base) - criterion(j.fit);
+    });
+    std::erase_if(rivals, [](const Judgement& j) { return !j.fit.failed.empty(); });
+    std::ranges::stable_sort(rivals, std::greater<>(), &Judgement::gain);
+    std::erase_if(rivals, [&](const Judgement& j) { return j.gain < pair.gain - kWorthJudging; });
+    each(rivals, "unseen events", [&](Judgement& j) { judge_all(j); });
+    return rivals;
   }
   /// Every hypothesis beside one that is taken as given; evidence is that of both.
   [[nodiscard]] std::vector<Judgement> beside(const Stage& stage, const Judgement& first) const {

@@ -42,7 +42,7 @@ struct DiagnoseOptions {
   int threads = 0;         ///< 0: as many as there are cores
   bool measured_states = true;
   int leading = 9;  ///< hypotheses at most that are judged on events left out
-  int firsts = 2;   ///< hypotheses that a second one is tried beside, besides the best that holds
+  int firsts = 2;   ///< hypotheses that a second one is tried beside, in turn, where none holds alone
   /// Called with what is done, done and total; may be empty.
   std::function<void(const std::string& what, int done, int total)> progress;
 };

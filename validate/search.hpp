@@ -41,4 +41,12 @@ Stage after(const Stage& stage, const Judgement& j);
 /// Frees in `h` what earlier stages brought, as it was fitted.
 void bring(const Stage& stage, Hypothesis& h);
 
+/// What could stand in the place of a pair's first effect, beside its second as the pair has it: whatever
+/// fills the first one's slot, and those of `alone` that are accepted. Not fitted: `fit` has the values and
+/// states to start from, as `alone` found them, the second effect's as the pair has them.
+std::vector<Judgement> exchanges(const Stage& stage, const Judgement& pair,
+                                 const std::vector<Judgement>& alone);
+/// Fits one of them; from further starts, the machine as in the pair, if it ends behind that.
+void try_exchange(const Stage& stage, const Judgement& pair, Judgement& j);
+
 }  // namespace swingbank::validate

@@ -27,6 +27,17 @@ double left_by(const sim::Plant& plant, const sim::Conventions& conventions,
   return chi2;
 }
 
+/// Values of the `free` parameters of `like` from one plant to another, where both have them.
+void copy_values(const sim::Plant& from, const sim::Plant& like, const std::vector<FreeParameter>& free,
+                 sim::Plant& to) {
+  for (const FreeParameter& f : free) {
+    const sim::Effect& effect = block_effect(like, f.block);
+    const int source = find_block(from, effect), target = find_block(to, effect);
+    if (source >= 0 && target >= 0)
+      parameter_value(to, target, f.index) = parameter_value(from, source, f.index);
+  }
+}
+
 }  // namespace
 
 void try_further(const Stage& stage, const Fit& leader, Judgement& j) {
@@ -69,6 +80,16 @@ void try_further(const Stage& stage, const Fit& leader, Judgement& j) {
   }
 }
 
+void try_exchange(const Stage& stage, const Judgement& pair, Judgement& j) {
+  constexpr double kBehind = 10;
+  const auto free = free_of(j.hypothesis, stage.spread);
+  if (Fit f =
+          fit(j.hypothesis.plant, j.hypothesis.conventions, stage.events, free, continued({}, j.fit, free));
+      f.failed.empty())
+    j.fit = std::move(f);
+  if (penalised(j.fit) > penalised(pair.fit) + kBehind) try_further(stage, pair.fit, j);
+}
+
 void try_from(const Stage& stage, const Fit& other, Judgement& j) {
   const Hypothesis& h = j.hypothesis;
   const auto free = free_of(h, stage.spread);
@@ -98,6 +119,38 @@ void bring(const Stage& stage, Hypothesis& h) {
     const double value = parameter_value(stage.fit.plant, f.block, f.index);
     for (auto& start : h.starts) start.push_back(value);
   }
+}
+
+std::vector<Judgement> exchanges(const Stage& stage, const Judgement& pair,
+                                 const std::vector<Judgement>& alone) {
+  const auto all = all_hypotheses(stage.plant, stage.conventions);
+  const auto first = std::ranges::find(all, pair.hypothesis.with, &Hypothesis::name),
+             second = std::ranges::find(all, pair.hypothesis.name, &Hypothesis::name);
+  if (first == all.end() || second == all.end()) return {};  // one needs the other to be there
+  Judgement stays;
+  stays.hypothesis = *second;
+  stays.fit.plant = second->plant;
+  copy_values(pair.fit.plant, second->plant, second->free, stays.fit.plant);
+  const Stage then = after(stage, stays);
+  std::vector<Judgement> rivals;
+  for (Hypothesis& h : all_hypotheses(then.plant, then.conventions)) {
+    const auto known = std::ranges::find(alone, h.name, [](const Judgement& j) { return j.hypothesis.name; });
+    const bool in_slot = first->slot >= 0 && h.slot == first->slot;
+    const bool holds = known != alone.end() && known->accepted && known->hypothesis.with.empty();
+    if (h.name == first->name || h.name == second->name || !(in_slot || holds)) continue;
+    const bool found = known != alone.end() && known->fitted;
+    const Fit& from = found ? known->fit : pair.fit;
+    Judgement j;
+    j.fit.failed = "not fitted";
+    j.fit.plant = h.plant;
+    copy_values(from.plant, h.plant, free_of(h, stage.spread), j.fit.plant);
+    copy_values(pair.fit.plant, then.plant, then.own, j.fit.plant);
+    for (const auto& e : from.events) j.fit.events.emplace_back().state = e.state;
+    bring(then, h);
+    j.hypothesis = std::move(h);
+    rivals.push_back(std::move(j));
+  }
+  return rivals;
 }
 
 }  // namespace swingbank::validate
