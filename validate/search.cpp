@@ -44,7 +44,10 @@ class Searcher {
     if (starts_.near()) {
       std::vector<std::vector<Fit>> begun(candidates.size());
       each(candidates, "first steps ", [&](std::size_t i) { near_first(candidates[i], begun[i]); });
-      const auto onward = promising(candidates, begun, kFair);
+      auto onward = promising(candidates, begun, kFair);
+      // worse than nothing: not there yet, and another start is left
+      for (std::size_t i = 0; i < candidates.size(); ++i)
+        if (!candidates[i].unbent.empty() && gain_of(begun[i]) < 0) onward[i] = 1;
       each(candidates, "fit ", [&](std::size_t i) {
         const Candidate& c = candidates[i];
         if (c.nested.empty())
@@ -107,15 +110,17 @@ class Searcher {
     for (std::size_t k = fits.size(); k < std::min(c.starts.size(), tries); ++k)
       fits.push_back(attempt(c, c.starts[k], o));
   }
+  /// Of the best of them, over the stage; minus infinity without any.
+  double gain_of(const std::vector<Fit>& fits) const {
+    double gain = -std::numeric_limits<double>::infinity();
+    for (const Fit& f : fits) gain = std::max(gain, penalised(stage_.fit) - penalised(f));
+    return gain;
+  }
   /// Those whose first steps gain a fair share of what the best one's do, and the rivals of its slot.
   std::vector<char> promising(const std::vector<Candidate>& candidates,
                               const std::vector<std::vector<Fit>>& begun, double share) const {
     std::vector<double> gains;
-    for (const auto& fits : begun) {
-      double gain = -std::numeric_limits<double>::infinity();
-      for (const Fit& f : fits) gain = std::max(gain, penalised(stage_.fit) - penalised(f));
-      gains.push_back(gain);
-    }
+    for (const auto& fits : begun) gains.push_back(gain_of(fits));
     const auto best = std::ranges::max_element(gains);
     std::vector<char> onward;
     for (std::size_t i = 0; i < gains.size(); ++i) {
