@@ -80,7 +80,7 @@ void judge(const Trial& trial, const Fit& base, const std::vector<HeldOut>& held
       f.failed.empty() && penalised(f) < penalised(j.fit) + kSame)
     j.fit = std::move(f);
   j.gain = criterion(base) - criterion(j.fit);
-  if (trial.passed) j.gain -= trial.passed->less_with(j.fit.plant, j.hypothesis.conventions);
+  if (trial.passed) j.gain -= std::max(0.0, trial.passed->less_with(j.fit.plant, j.hypothesis.conventions));
   j.size = std::sqrt(std::max(0.0, base.chi2 - j.fit.chi2));
   if (j.gain < trial.evidence) {
     j.why_not = fmt::format("evidence {:.0f}, below {:.0f}", j.gain, trial.evidence);
