@@ -5,6 +5,8 @@
 #include <numbers>
 #include <unsupported/Eigen/MatrixFunctions>
 
+#include "sim/core/noise.hpp"
+
 namespace swingbank::validate {
 namespace {
 
@@ -193,6 +195,27 @@ SlowNoise slow_noise(const LinearPlant& plant, const FitEvent& e, const Eigen::V
   const Eigen::VectorXd left = rest.eigenvalues().cwiseMax(kLeft);
   s.S = scale * (at_once + rest.eigenvectors() * left.asDiagonal() * rest.eigenvectors().transpose()) * scale;
   return s;
+}
+
+FitEvent minute_of_noise(const FitEvent& like, const Eigen::Vector2d& deviation) {
+  constexpr double kSeconds = 60.0;
+  FitEvent event = like;
+  Record& r = event.record;
+  const double step = r.step(), first = r.t.front();
+  const auto samples = static_cast<std::size_t>(kSeconds / step);
+  for (auto* channel : {&r.t, &r.V, &r.theta}) channel->resize(samples);
+  for (std::size_t k = 0; k < samples; ++k) {
+    const auto normal = sim::normal_pair(1, 0, k);
+    r.t[k] = first + static_cast<double>(k) * step;
+    r.V[k] = std::abs(like.start.voltage) * (1 + deviation[0] * normal[0]);
+    r.theta[k] = std::arg(like.start.voltage) + deviation[1] * normal[1];
+  }
+  for (auto* channel : {&r.P, &r.Q, &r.speed, &r.Efd, &r.Ifd}) channel->assign(samples, 0.0);
+  event.switchings.clear();
+  event.smeared.clear();
+  event.left_out.clear();
+  event.start.drift = 0;
+  return event;
 }
 
 std::shared_ptr<const Innovations> memory_of(const sim::Plant& plant, const sim::Conventions& conventions,

@@ -31,6 +31,10 @@ struct VoltageNoise {
 };
 VoltageNoise voltage_noise(const Fit& fit, const std::vector<FitEvent>& events);
 
+/// A minute at the operating point of `like`, V and theta moved by that many standard deviations of noise;
+/// answers are compared with zero.
+FitEvent minute_of_noise(const FitEvent& like, const Eigen::Vector2d& deviation);
+
 /// Noise of the played-in voltage passes exciter and rotor, and what comes out is slow. Follows it through
 /// the plant's equations about each event's start and gives the events' noise that memory, where it matters.
 void remember_noise(const Fit& fit, const sim::Conventions& conventions, std::vector<FitEvent>& events);
