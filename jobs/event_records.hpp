@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
 #include <functional>
 #include <string>
@@ -44,11 +45,21 @@ inline std::vector<validate::Record> read_events(const std::vector<std::string>&
   return records;
 }
 
-/// Writes "what: done of total" over itself where stderr is a terminal, and nothing elsewhere.
+/// Writes "what: done of total" over itself where stderr is a terminal, elsewhere as a line every ten
+/// seconds.
 inline std::function<void(const std::string&, int, int)> progress_line() {
-  if (::isatty(STDERR_FILENO) == 0) return {};
-  return [](const std::string& what, int done, int total) {
-    fmt::print(stderr, "\r\033[K{}: {} of {}{}", what, done, total, done == total ? "\r\033[K" : "");
+  if (::isatty(STDERR_FILENO) != 0)
+    return [](const std::string& what, int done, int total) {
+      fmt::print(stderr, "\r\033[K{}: {} of {}{}", what, done, total, done == total ? "\r\033[K" : "");
+      std::fflush(stderr);
+    };
+  using Clock = std::chrono::steady_clock;
+  return [start = Clock::now(), said = Clock::now()](const std::string& what, int done, int total) mutable {
+    const auto now = Clock::now();
+    if (now - said < std::chrono::seconds(10)) return;
+    said = now;
+    fmt::print(stderr, "after {:.0f} s: {}: {} of {}\n", std::chrono::duration<double>(now - start).count(),
+               what, done, total);
     std::fflush(stderr);
   };
 }

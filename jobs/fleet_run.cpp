@@ -137,7 +137,9 @@ int run_fleet_plant(const FleetCommand& c, const std::string& name) {
         {"no plant " + name, c.fleet, "the fleet has no [plant." + name + "]", "name one of its plants"});
   DiagnoseOptions options;
   options.threads = std::max(c.threads, 0);
-  options.progress = progress_line();
+  options.progress = [line = progress_line(), &name](const std::string& what, int done, int total) {
+    line(name + ": " + what, done, total);
+  };
   const FleetOutcome o = diagnose_plant(fleet, *plant, c.out, options);
   fmt::print("{}\n", nlohmann::json{{"was_there", o.was_there}, {"row", row_json(o.row)}}.dump());
   return 0;

@@ -7,11 +7,11 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <mutex>
 #include <optional>
 #include <span>
 
 #include "validate/decide.hpp"
+#include "validate/in_parallel.hpp"
 #include "validate/noise.hpp"
 #include "validate/search.hpp"
 
@@ -37,6 +37,10 @@ constexpr int kBases = 2;
 
 /// Steps of the fits that go on with the noise measured again.
 constexpr int kOnwards = 4;
+
+/// Share of what an effect takes off the unseen events' cost from which one event has all of it; share of
+/// that event's error down to which the others have not foretold it.
+constexpr double kAlone = 0.8, kForetold = 0.5;
 
 /// What noise leaves may be slow by so many standard deviations (slow_remainder). Thirty development cases
 /// with nothing hidden had 3.9 at most.
@@ -153,13 +157,13 @@ class Diagnoser {
     FitOptions from;  // parameters bent far out of shape are no start
     if (result_.base.misfit() < kClose)
       from = continued({}, result_.base, free_parameters(model_.plant, options_.spread));
-#pragma omp parallel for schedule(dynamic) num_threads(threads_)
-    for (int i = 0; i < 2; ++i) {
+    const auto infer = [&](std::size_t i) {
       MissingInput& m = i == 0 ? result_.torque : result_.field;
       m = infer_input(i == 0 ? InputKind::torque : InputKind::field, model_.plant, model_.conventions,
                       result_.events, options_.spread, from);
-    }
-    report("missing input", 1, 1);
+    };
+    in_parallel(
+        2, infer, [&](int done) { report("missing input", done, 2); }, threads_);
   }
 
   /// Judges the leading hypotheses; then tries each beside the one that holds, or,
@@ -282,14 +286,25 @@ class Diagnoser {
     if (tried.empty()) return;
     give_rivals_a_chance(tried);
     const int most = std::min(options_.leading, static_cast<int>(tried.size()));
-    int leading = 1;
-    while (leading < most &&
-           tried[static_cast<std::size_t>(leading)].gain > tried.front().gain - kWorthJudging)
-      ++leading;
-    judge_some(tried, 0, leading);
+    int leading = 0;
+    for (double best = tried.front().gain;;) {  // judging may take some of the first ones' evidence away
+      const int judged = leading;
+      while (leading < most && tried[static_cast<std::size_t>(leading)].gain > best - kWorthJudging)
+        ++leading;
+      if (leading == judged) break;
+      judge_some(tried, judged, leading);
+      best = best_gain({tried.begin(), tried.begin() + leading});
+    }
     const bool none = std::ranges::none_of(tried, &Judgement::accepted);
     if (none && leading < kAtLeast) judge_some(tried, leading, std::min(kAtLeast, most));
     best_first(tried);
+  }
+  /// Of those that are accepted; of all where none is.
+  static double best_gain(std::span<const Judgement> judged) {
+    const auto better = [](const Judgement& x, const Judgement& y) {
+      return x.accepted != y.accepted ? y.accepted : x.gain < y.gain;
+    };
+    return std::ranges::max_element(judged, better)->gain;
   }
   void judge_some(std::vector<Judgement>& tried, int from, int to) const {
     each(std::span(tried).subspan(static_cast<std::size_t>(from), static_cast<std::size_t>(to - from)),
@@ -329,14 +344,12 @@ class Diagnoser {
   /// Does something with each, on all cores.
   template <class F>
   void each(std::span<Judgement> tried, const std::string& what, F act) const {
-    int done = 0;
-    std::mutex progress;
-#pragma omp parallel for schedule(dynamic) num_threads(threads_)
-    for (Judgement& j : tried) {
-      act(j);
-      const std::lock_guard lock(progress);
-      report(what + " " + full_name(j.hypothesis), ++done, static_cast<int>(tried.size()));
-    }
+    in_parallel(
+        tried.size(), [&](std::size_t k) { act(tried[k]); },
+        [&](int done, std::size_t k) {
+          report(what + " " + full_name(tried[k].hypothesis), done, static_cast<int>(tried.size()));
+        },
+        threads_);
   }
 
   [[nodiscard]] Trial trial() const {
@@ -391,25 +404,38 @@ class Diagnoser {
       result_.equivalent.push_back(full_name(j.hypothesis));
       if (!rival) rival = &j;
     }
-    double before = 0, after = 0;
-    for (const auto& h : best.held_out) {
-      before += h.before / static_cast<double>(best.held_out.size());
-      after += h.after / static_cast<double>(best.held_out.size());
-    }
     result_.verdict = result_.equivalent.empty() ? Verdict::missing : Verdict::confusable;
     std::string rivals;
     for (const auto& name : result_.equivalent) rivals += (rivals.empty() ? "" : ", ") + name;
     result_.sentence = fmt::format(
-        "{} {}{}: on events it was not fitted to, the error falls from {:.1f} × noise to {:.2f} × noise.",
+        "{} {}{}: {}.",
         capitalised(best.hypothesis.with.empty()
                         ? best.hypothesis.what
                         : best.hypothesis.with + ", and besides " + best.hypothesis.what),
         best.hypothesis.replaces ? "explains the records" : "is missing",
-        rivals.empty() ? "" : " (or " + rivals + ": these records cannot tell)", std::sqrt(before),
-        std::sqrt(after));
+        rivals.empty() ? "" : " (or " + rivals + ": these records cannot tell)", fall_of_error(best));
     if (!rival) return;
     result_.would_decide = what_would_decide(best, *rival, result_.events);
     result_.sentence += " " + result_.would_decide;
+  }
+  /// On unseen events; of what shows in one event only, which no other can predict, there.
+  [[nodiscard]] std::string fall_of_error(const Judgement& best) const {
+    double saved = 0, before = 0, after = 0;
+    for (const auto& h : best.held_out) {
+      saved += std::max(0.0, h.saves());
+      before += h.before / static_cast<double>(best.held_out.size());
+      after += h.after / static_cast<double>(best.held_out.size());
+    }
+    const auto most = std::ranges::max_element(best.held_out, {}, &HeldOut::saves);
+    const auto e = static_cast<std::size_t>(most - best.held_out.begin());
+    if (most->saves() > kAlone * saved && most->after > kForetold * most->before)
+      return fmt::format(
+          "it shows in {} alone, so that no other event foretells it; fitted there too, the error falls from "
+          "{:.2f} × noise to {:.2f} × noise",
+          most->record, std::sqrt(result_.base.events[e].misfit()), std::sqrt(best.fit.events[e].misfit()));
+    return fmt::format(
+        "on events it was not fitted to, the error falls from {:.1f} × noise to {:.2f} × noise",
+        std::sqrt(before), std::sqrt(after));
   }
   void report(const std::string& what, int done, int total) const {
     if (options_.progress) options_.progress(what, done, total);

@@ -27,7 +27,13 @@ struct Axis {
   double start, low, high;  ///< of the parameter
   bool logarithmic;
   double unit;  ///< of z, where linear
-  [[nodiscard]] double value(double z) const { return logarithmic ? start * std::exp(z) : start + unit * z; }
+  /// To 40 binary digits: parameters at the same bound stay equal wherever they started from.
+  [[nodiscard]] double value(double z) const {
+    const double v = logarithmic ? start * std::exp(z) : start + unit * z;
+    if (v == 0 || !std::isfinite(v)) return v;
+    const int digits = 39 - std::ilogb(v);
+    return std::ldexp(std::nearbyint(std::ldexp(v, digits)), -digits);
+  }
   [[nodiscard]] double slope(double z) const { return logarithmic ? value(z) : unit; }
   [[nodiscard]] double z(double v) const { return logarithmic ? std::log(v / start) : (v - start) / unit; }
   /// Standard deviation of the belief in z.

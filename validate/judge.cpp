@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace swingbank::validate {
 namespace {
@@ -54,7 +55,9 @@ std::vector<HeldOut> hold_out(const Trial& trial, const sim::Plant& plant,
     const Fit f =
         fit(seen.failed.empty() ? seen.plant : plant, conventions, {trial.events[left]}, {}, unseen);
     out[left].after = f.failed.empty() ? f.misfit() : 1e300;
-    out[left].cost_after = (penalised(whole) - penalised(seen)) / whole.events[left].values;
+    out[left].cost_after = seen.failed.empty()
+                               ? (penalised(whole) - penalised(seen)) / whole.events[left].values
+                               : std::numeric_limits<double>::infinity();
   }
   return out;
 }

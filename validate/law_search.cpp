@@ -6,10 +6,10 @@
 #include <chrono>
 #include <cmath>
 #include <map>
-#include <mutex>
 #include <set>
 
 #include "sim/core/law.hpp"
+#include "validate/in_parallel.hpp"
 #include "validate/law_course.hpp"
 #include "validate/law_text.hpp"
 #include "validate/law_traces.hpp"
@@ -111,14 +111,8 @@ class Searcher {
  private:
   template <class Work>
   void in_turn(const std::string& what, std::size_t n, Work work) {
-    int done = 0;
-    std::mutex lock;
-#pragma omp parallel for schedule(dynamic) num_threads(case_.threads)
-    for (std::size_t k = 0; k < n; ++k) {
-      work(k);
-      const std::lock_guard guard(lock);
-      tell(what, ++done, static_cast<int>(n));
-    }
+    in_parallel(
+        n, work, [&](int done) { tell(what, done, static_cast<int>(n)); }, case_.threads);
   }
   void tell(const std::string& what, int done, int total) const {
     if (report_) report_(what, done, total);

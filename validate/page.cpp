@@ -28,7 +28,7 @@ figcaption,.caption{color:var(--soft);font-size:.88rem;padding:.2rem 0 .4rem;mar
 .scroll{overflow-x:auto}
 table{border-collapse:separate;border-spacing:0;font-size:.9rem;font-variant-numeric:tabular-nums;min-width:min(100%,420px)}
 th,td{padding:.32rem .7rem;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}
-th{background:var(--tint);font-weight:600;vertical-align:bottom;white-space:normal;overflow-wrap:anywhere;max-width:9.5rem}
+th{background:var(--tint);font-weight:600;vertical-align:bottom;white-space:normal;overflow-wrap:break-word;max-width:9.5rem}
 th:first-child,td:first-child{text-align:left;position:sticky;left:0}
 td:first-child{background:var(--paper)}
 td.words{text-align:left}

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -315,14 +316,17 @@ class Check {
       reactance(as_is.reactance * plant_.mva / r_.base.mva);
   }
 
-  /// Whether the jumps belong together once each takes in one more interval on either side.
+  /// Whether the jumps belong together once each takes in one more interval: after it, before it, or both.
   [[nodiscard]] bool apart() const {
-    std::vector<Jump> wide;
-    for (const Jump& j : jumps_)
-      if (j.before > 0) wide.push_back({j.before - 1, j.after + 1});
-    const JumpFit fit = fit_jumps(r_, wide, 0);
-    const double noise = noise_share(fit);
-    return fit.reactance > 0 && noise < 0.1 && fit.misfit < 0.03 + 2 * noise;
+    constexpr std::array<std::pair<std::size_t, std::size_t>, 3> kWider = {{{1, 1}, {0, 1}, {1, 0}}};
+    return std::ranges::any_of(kWider, [this](const auto& wider) {
+      std::vector<Jump> wide;
+      for (const Jump& j : jumps_)
+        if (j.before >= wider.first) wide.push_back({j.before - wider.first, j.after + wider.second});
+      const JumpFit fit = fit_jumps(r_, wide, 0);
+      const double noise = noise_share(fit);
+      return fit.reactance > 0 && noise < 0.1 && fit.misfit < 0.03 + 2 * noise;
+    });
   }
   /// How far the angle as written jumps [rad].
   [[nodiscard]] double turned(const Jump& j) const {

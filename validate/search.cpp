@@ -1,13 +1,12 @@
 #include "validate/search.hpp"
 
 #include <fmt/format.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
 
+#include "validate/in_parallel.hpp"
 #include "validate/search_starts.hpp"
 
 namespace swingbank::validate {
@@ -75,26 +74,19 @@ class Searcher {
  private:
   template <class F>
   void each(const std::vector<Candidate>& candidates, const std::string& what, F act) const {
-    int done = 0;
-    std::mutex progress;
-#pragma omp parallel for schedule(dynamic) num_threads(stage_.threads)
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-      act(i);
-      const std::lock_guard lock(progress);
-      report(what + candidates[i].hypothesis.name, ++done, candidates.size());
-    }
+    in_parallel(
+        candidates.size(), act,
+        [&](int done, std::size_t i) {
+          report(what + candidates[i].hypothesis.name, done, candidates.size());
+        },
+        stage_.threads);
   }
   /// Every hypothesis that acts here.
   std::vector<Candidate> screened(std::vector<Hypothesis> all) const {
     std::vector<Candidate> candidates(all.size());
-    int done = 0;
-    std::mutex progress;
-#pragma omp parallel for schedule(dynamic) num_threads(stage_.threads)
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      candidates[i] = starts_.of(std::move(all[i]));
-      const std::lock_guard lock(progress);
-      report("hypotheses", ++done, all.size());
-    }
+    in_parallel(
+        all.size(), [&](std::size_t i) { candidates[i] = starts_.of(std::move(all[i])); },
+        [&](int done) { report("hypotheses", done, all.size()); }, stage_.threads);
     std::erase_if(candidates, [](const Candidate& c) { return c.starts.empty(); });
     return candidates;
   }
@@ -155,7 +147,7 @@ class Searcher {
       for (const auto& e : stage_.fit.events) o.start.push_back(e.state);
       if (Fit f = attempt(c, c.starts.front(), o); f.failed.empty()) fits.push_back(std::move(f));
     }
-    return judgement(c, fits);
+    return judgement(c, scanned(c, std::move(fits)));
   }
   Judgement hopeless(const Candidate& c) const {
     Judgement j;
@@ -187,7 +179,13 @@ class Searcher {
       if (Fit f = from_stage(c, c.unbent, kUnbentSteps); penalised(f) < penalised(best) + kCloseBehind)
         fits.push_back(in_rounds(c, std::move(f)));
     fits.push_back(std::move(best));
-    return judgement(c, fits);
+    return judgement(c, scanned(c, std::move(fits)));
+  }
+  /// The best of the fits, with what no slope sees at its best as well.
+  std::vector<Fit> scanned(const Candidate& c, std::vector<Fit> fits) const {
+    if (fits.empty()) return fits;
+    return {past_blind(stage_, c.hypothesis, c.starts.front(),
+                       std::move(*std::ranges::min_element(fits, {}, penalised)))};
   }
   /// Fitted on as long as that is worth it.
   Fit in_rounds(const Candidate& c, Fit best) const {

@@ -28,6 +28,15 @@ struct Stage {
 std::vector<Judgement> try_hypotheses(const Stage& stage, std::vector<Hypothesis> all,
                                       const SearchProgress& report = {});
 
+/// chi2 of a plant, the events where `states` have them; infinite where it cannot be run.
+double left_by(const sim::Plant& plant, const sim::Conventions& conventions,
+               const std::vector<FitEvent>& events, const std::vector<EventState>& states);
+
+/// Goes on where `from` ended with what acts without a slope: when a limiter's timer ends is an instant,
+/// which no sensitivity follows. Such parameters of `h` are tried at multiples of their values, and
+/// everything is fitted on from the best, as long as that gains; beliefs are about `believed`.
+Fit past_blind(const Stage& stage, const Hypothesis& h, const sim::Plant& believed, Fit from);
+
 /// Fits `j`, as try_hypotheses left it, from further starts, the machine as the leading hypothesis of its
 /// slot found it: a rival must not lose by a poor start.
 void try_further(const Stage& stage, const Fit& leader, Judgement& j);

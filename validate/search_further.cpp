@@ -8,7 +8,39 @@
 namespace swingbank::validate {
 namespace {
 
-/// chi2 of a plant, the events where `states` have them; infinite where it cannot be run.
+/// Values of the `free` parameters of `like` from one plant to another, where both have them.
+void copy_values(const sim::Plant& from, const sim::Plant& like, const std::vector<FreeParameter>& free,
+                 sim::Plant& to) {
+  for (const FreeParameter& f : free) {
+    const sim::Effect& effect = block_effect(like, f.block);
+    const int source = find_block(from, effect), target = find_block(to, effect);
+    if (source >= 0 && target >= 0)
+      parameter_value(to, target, f.index) = parameter_value(from, source, f.index);
+  }
+}
+
+/// `values` of the hypothesis's free parameters, with those of its slot as the leader's effect there has them
+/// by the same name: effects of one slot share their textbooks' letters.
+std::vector<double> by_name(const Hypothesis& h, std::vector<double> values, const sim::Plant& leader) {
+  int there = 0;
+  while (there < block_count(leader) && static_cast<int>(block_effect(leader, there).slot) != h.slot) ++there;
+  if (there == block_count(leader)) return values;
+  const auto& known = block_effect(leader, there).parameters;
+  for (std::size_t i = 0; i < h.free.size(); ++i) {
+    const FreeParameter& f = h.free[i];
+    if (static_cast<int>(block_effect(h.plant, f.block).slot) != h.slot) continue;
+    const sim::Parameter& own = parameter_record(h.plant, f.block, f.index);
+    const auto same = std::ranges::find_if(
+        known, [&](const sim::Parameter& p) { return p.name == own.name && p.unit == own.unit; });
+    if (same == known.end()) continue;
+    const double value = parameter_value(leader, there, static_cast<int>(same - known.begin()));
+    values[i] = std::clamp(value, own.low, own.high);
+  }
+  return values;
+}
+
+}  // namespace
+
 double left_by(const sim::Plant& plant, const sim::Conventions& conventions,
                const std::vector<FitEvent>& events, const std::vector<EventState>& states) {
   double chi2 = 0;
@@ -27,19 +59,6 @@ double left_by(const sim::Plant& plant, const sim::Conventions& conventions,
   return chi2;
 }
 
-/// Values of the `free` parameters of `like` from one plant to another, where both have them.
-void copy_values(const sim::Plant& from, const sim::Plant& like, const std::vector<FreeParameter>& free,
-                 sim::Plant& to) {
-  for (const FreeParameter& f : free) {
-    const sim::Effect& effect = block_effect(like, f.block);
-    const int source = find_block(from, effect), target = find_block(to, effect);
-    if (source >= 0 && target >= 0)
-      parameter_value(to, target, f.index) = parameter_value(from, source, f.index);
-  }
-}
-
-}  // namespace
-
 void try_further(const Stage& stage, const Fit& leader, Judgement& j) {
   constexpr std::size_t kFurther = 2;
   constexpr int kOwnSteps = 8, kAllSteps = 10;
@@ -56,6 +75,7 @@ void try_further(const Stage& stage, const Fit& leader, Judgement& j) {
   for (const auto& e : leader.events) states.push_back(e.state);
   auto starts = h.starts;
   starts.push_back(values_of(j.fit.plant, h.free));
+  starts.push_back(by_name(h, starts.back(), leader.plant));
   std::vector<std::pair<double, const std::vector<double>*>> order;
   for (const auto& start : starts)
     if (const double left = left_by(started(led, start), h.conventions, stage.events, states);

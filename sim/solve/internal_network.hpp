@@ -11,13 +11,16 @@
 
 namespace swingbank::sim {
 
+/// How each source is connected.
+struct Terminals {
+  std::vector<char> grounded;     ///< 1 where the bus is held at V = 0
+  std::vector<char> tripped;      ///< 1 where it is disconnected
+  std::vector<double> connected;  ///< part of its units that is connected
+};
 /// I = (G + jB) E, row and column per source: plants, then loads with a model of their own; currents on each
 /// source's own base [pu]. Row-major.
-struct InternalMatrix {
+struct InternalMatrix : Terminals {
   std::vector<double> g, b;
-  std::vector<char> grounded;     ///< per source: 1 where the bus is held at V = 0
-  std::vector<char> tripped;      ///< per source: 1 where it is disconnected
-  std::vector<double> connected;  ///< per source: part of its units that is connected
 };
 
 class InternalNetwork {

@@ -63,10 +63,10 @@ struct LaneRun {
   std::vector<Segment> segments;
   std::vector<double> jumps;  ///< instants at which the plants' effects jump, sorted [s]
   std::size_t segment = 0;
-  int recorded = 0;             ///< samples in the record
-  int pending = 0;              ///< samples whose states wait to be evaluated
-  std::vector<double> waiting;  ///< their states, [state][Lanes::kRoom]
-  std::vector<double> theta;    ///< last terminal angle per recorded plant, held while V = 0 [rad]
+  int recorded = 0;                                   ///< samples in the record
+  int pending = 0;                                    ///< samples whose states wait to be evaluated
+  std::vector<double, CacheAligned<double>> waiting;  ///< their states, [samples of a pack][state][sample]
+  std::vector<double> theta;  ///< last terminal angle per recorded plant, held while V = 0 [rad]
   LaneClock clock;
   Trajectory record;
 };

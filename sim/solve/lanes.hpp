@@ -10,6 +10,8 @@
 #include "sim/solve/lane_traits.hpp"
 #include "sim/solve/load_equations.hpp"
 #include "sim/solve/plant_equations.hpp"
+#include "sim/solve/shared_network.hpp"
+#include "sim/solve/switched_network.hpp"
 #include "sim/solve/tableau.hpp"
 
 namespace swingbank::sim {
@@ -75,6 +77,8 @@ class Lanes {
   // one evaluation (lanes_equations.hpp)
   void emfs(Constants& k, const T* x);
   void current(const Constants& k, std::size_t plant, Signals<T>& s) const;
+  void shared_current(std::size_t at, const Constants& k, std::size_t plant, Signals<T>& s) const;
+  void inputs(const Constants& k, std::size_t plant, Signals<T>& s) const;
   void derivative(const T* x, T* dx);
 
   // sources whose current is no linear function of the voltage (lanes_algebra.hpp)
@@ -89,10 +93,19 @@ class Lanes {
   void record_step(const T& h, unsigned accepted, const double* start, const double* tried);
   void interpolate(const T& h, const double* start, const double* tried);
   void dense(std::size_t state, const T& h, Flat* rows) const;
+  const T* waiting_pack(const LaneRun& run, int first, const std::vector<int>& states, T* room) const;
   void evaluate_pending(int lane, int count);
+  void drop_waiting(LaneRun& run, int count);
   void spread_constants(int lane);
   void outputs(std::size_t row_plant, const T* x, LaneRun& run, int count);
   void hold(LaneRun& run, int until) const;
+
+  // the lanes' matrices (lanes_network.hpp)
+  void share();
+  const Terminals& set_matrix(int lane, const Topology& topology);
+  const Terminals& set_shared(int lane, const Topology& topology);
+  std::optional<LowRank> few_products(int lane, const Topology& topology);
+  void matrix_slopes(int lane, const InternalMatrix& matrix);
 
   // loading (lanes_load.hpp)
   void load(int lane);
@@ -101,7 +114,6 @@ class Lanes {
   template <class Value>
   void load_plant(int lane, std::size_t plant, const OperatingOf<Value>& at);
   void load_seeded(int lane, const std::map<int, Plant>& changed);
-  void matrix_slopes(int lane, const InternalMatrix& matrix);
   void load_consumer(int lane, std::size_t load);
   void find_moving();
   void enter_segment(int lane);
@@ -129,12 +141,18 @@ class Lanes {
   const Grid& grid_;
   BatchOptions options_;
   InternalNetwork network_;
+  SharedNetwork<T> shared_;                  ///< where shares_
+  std::optional<SwitchedNetwork> switched_;  ///< where shares_
+  Terminals terminals_;                      ///< of the segment a lane enters; where shares_
+  std::vector<double> own_r_, own_x_;        ///< impedances of the grid's own machines; where shares_
+  std::vector<SharedRows> recorded_rows_;    ///< per lane, of its own matrix; where shares_
   std::vector<PlantSlice> plants_;
   std::vector<LoadSlice> loads_;
   std::vector<Watch> watched_;
   std::vector<int> nonlinear_;               ///< sources: plants, then loads
   std::vector<Operating> base_, load_base_;  ///< operating points with the grid's own parameters
   bool limited_ = false, timed_ = false;     ///< whether any state has limits, any effect reads the time
+  bool shares_ = false;                      ///< many sources: not a matrix per lane
   std::vector<int> stopped_;                 ///< states with limits at which they are held
   std::vector<Resting> resting_;
   std::vector<int> moving_;            ///< states that move in any lane
@@ -148,6 +166,7 @@ class Lanes {
 
   Constants per_lane_, per_sample_;
   std::vector<T> m_, er_, ei_;  ///< scratch of one evaluation
+  std::vector<T> ir_, ii_;      ///< likewise, where shares_
   Signals<T> signals_;          ///< likewise: zeroing one per plant would cost 25 packs
   std::vector<T> algebra_;      ///< scratch of newton_step
   T time_{}, start_{};          ///< of the evaluation, of the step, per lane [s]
@@ -168,5 +187,6 @@ class Lanes {
 #include "sim/solve/lanes_algebra.hpp"
 #include "sim/solve/lanes_equations.hpp"
 #include "sim/solve/lanes_load.hpp"
+#include "sim/solve/lanes_network.hpp"
 #include "sim/solve/lanes_record.hpp"
 #include "sim/solve/lanes_step.hpp"

@@ -19,22 +19,25 @@ template <class T>
 inline void Lanes<T>::current(const Constants& k, std::size_t source, Signals<T>& s) const {
   const T* g = &k.g[source * static_cast<std::size_t>(sources_)];
   const T* b = &k.b[source * static_cast<std::size_t>(sources_)];
-  const T* er = er_.data();
-  const T* ei = ei_.data();
-  T gr = g[0] * er[0], gi = g[0] * ei[0], bi = b[0] * ei[0], br = b[0] * er[0];
-  for (int j = 1; j < sources_; ++j) {
-    gr = gr + g[j] * er[j];
-    gi = gi + g[j] * ei[j];
-    bi = bi + b[j] * ei[j];
-    br = br + b[j] * er[j];
-  }
-  s.Ir = gr - bi;
-  s.Ii = gi + br;
-  if (source >= plants_.size()) return;
-  s.Efd = k.efd[source];
-  s.Tm = k.tm[source];
-  s.dVref = k.dvref[source];
-  s.dPref = k.dpref[source];
+  row_times(g, b, er_.data(), ei_.data(), sources_, s.Ir, s.Ii);
+  if (source < plants_.size()) inputs(k, source, s);
+}
+
+/// The same where all currents were computed at once and plant's is the at-th.
+template <class T>
+inline void Lanes<T>::shared_current(std::size_t at, const Constants& k, std::size_t plant,
+                                     Signals<T>& s) const {
+  s.Ir = ir_[at];
+  s.Ii = ii_[at];
+  inputs(k, plant, s);
+}
+
+template <class T>
+inline void Lanes<T>::inputs(const Constants& k, std::size_t plant, Signals<T>& s) const {
+  s.Efd = k.efd[plant];
+  s.Tm = k.tm[plant];
+  s.dVref = k.dvref[plant];
+  s.dPref = k.dpref[plant];
 }
 
 template <class T>
@@ -43,9 +46,13 @@ inline void Lanes<T>::derivative(const T* x, T* dx) {
   Signals<T>& s = signals_;
   s.t = minimum(time_, k.last_moment);
   emfs(k, x);
+  if (shares_) shared_.solve(er_.data(), ei_.data(), ir_.data(), ii_.data());
   for (std::size_t i = 0; i < plants_.size(); ++i) {
     const PlantSlice& p = plants_[i];
-    current(k, i, s);
+    if (shares_)
+      shared_current(i, k, i, s);
+    else
+      current(k, i, s);
     const T* c = &k.c[static_cast<std::size_t>(p.c)];
     T* m = &m_[static_cast<std::size_t>(p.m)];
     if (p.equations.machine_alone()) {

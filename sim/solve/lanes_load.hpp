@@ -22,6 +22,7 @@ Lanes<T>::Lanes(const Grid& grid, const BatchOptions& options)
   if (channels_.empty())
     for (const auto& c : kChannels) channels_.push_back(c.channel);
   build_slices();
+  share();
   reserve();
   // Idle lanes carry the grid's own operating point, so that their arithmetic stays finite.
   for (int l = 0; l < kLanes; ++l) {
@@ -99,7 +100,7 @@ void Lanes<T>::reserve() {
   const auto n = static_cast<std::size_t>(n_), sources = static_cast<std::size_t>(sources_),
              states = static_cast<std::size_t>(states_), free = 2 * nonlinear_.size();
   for (Constants* k : {&per_lane_, &per_sample_}) {
-    for (auto* v : {&k->g, &k->b}) v->assign(sources * sources, T(0.0));
+    for (auto* v : {&k->g, &k->b}) v->assign(shares_ ? 0 : sources * sources, T(0.0));
     for (auto* v : {&k->efd, &k->tm, &k->dvref, &k->dpref}) v->assign(n, T(0.0));
     k->on.assign(n, T(1.0));
     for (auto* v : {&k->vr, &k->vi}) v->assign(nonlinear_.size(), T(0.0));
@@ -219,48 +220,19 @@ void Lanes<T>::load_seeded(int lane, const std::map<int, Plant>& changed) {
   }
 }
 
-/// M = (G + jB) changes with a source's impedance by dM = -M[:,k] dz M[k,:].
-template <class T>
-void Lanes<T>::matrix_slopes(int lane, const InternalMatrix& matrix) {
-  const auto n = static_cast<std::size_t>(sources_);
-  for (int d = 0; d < Traits::directions; ++d)
-    for (std::size_t k = 0; k < plants_.size(); ++k) {
-      const T* z = source_impedance(per_lane_, static_cast<int>(k));
-      const auto slope = [&](const T& v) {
-        return LaneTraits<Flat>::get(v.d[static_cast<std::size_t>(d)], lane);
-      };
-      const Complex dz(slope(z[0]), slope(z[1]));
-      if (dz == Complex{}) continue;
-      const auto m = [&](std::size_t i, std::size_t j) {
-        return Complex(matrix.g[i * n + j], matrix.b[i * n + j]);
-      };
-      for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t j = 0; j < n; ++j) {
-          const Complex dm = -m(i, k) * dz * m(k, j);
-          Traits::set_slope(per_lane_.g[i * n + j], lane, d, dm.real());
-          Traits::set_slope(per_lane_.b[i * n + j], lane, d, dm.imag());
-        }
-    }
-}
-
 /// Puts the matrices of the lane's current segment into place and starts the step control anew.
 template <class T>
 void Lanes<T>::enter_segment(int lane) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
   const auto l = static_cast<std::size_t>(lane);
   const Segment& segment = run.segments[run.segment];
-  const InternalMatrix& matrix = network_.matrix(segment.topology, lane_r_[l], lane_x_[l]);
-  for (std::size_t i = 0; i < matrix.g.size(); ++i) {
-    Traits::set(per_lane_.g[i], lane, matrix.g[i]);
-    Traits::set(per_lane_.b[i], lane, matrix.b[i]);
-  }
-  if constexpr (Traits::directions > 0) matrix_slopes(lane, matrix);
-  grounded_[l] = matrix.grounded;
-  connected_[l] = matrix.connected;
+  const Terminals& terminals = set_matrix(lane, segment.topology);
+  grounded_[l] = terminals.grounded;
+  connected_[l] = terminals.connected;
   tripped_ &= ~(1U << lane);
   for (std::size_t i = 0; i < plants_.size(); ++i) {
-    Traits::set(per_lane_.on[i], lane, matrix.tripped[i] ? 0.0 : 1.0);
-    if (matrix.tripped[i]) tripped_ |= 1U << lane;
+    Traits::set(per_lane_.on[i], lane, terminals.tripped[i] ? 0.0 : 1.0);
+    if (terminals.tripped[i]) tripped_ |= 1U << lane;
     double dvref = 0.0, dpref = 0.0;
     for (const Setpoint& move : segment.setpoints)
       if (move.generator == grid_.plants[i].generator) dvref = move.dVref, dpref = move.dPref;
@@ -300,8 +272,9 @@ template <class T>
 void Lanes<T>::fill_waiting(int lane) {
   double* to = lanes_[static_cast<std::size_t>(lane)].waiting.data();
   const double* from = reinterpret_cast<const double*>(y_.data()) + lane;
-  for (std::size_t i = 0; i < y_.size() * kFlats; ++i, to += kRoom)
-    std::fill(to, to + kRoom, from[i * kLanes]);
+  for (int pack = 0; pack < kRoom / kLanes; ++pack)
+    for (std::size_t i = 0; i < y_.size() * kFlats; ++i, to += kLanes)
+      std::fill(to, to + kLanes, from[i * kLanes]);
 }
 
 /// How many samples lie at or before t.

@@ -50,27 +50,35 @@ void Lanes<T>::record_step(const T& h, unsigned accepted, const double* start, c
   }
 }
 
-/// The states at the due samples, state by state: its values of all lanes lie side by side.
+/// The states at the due samples, state by state: its values of all lanes lie side by side. What waits lies
+/// pack by pack, so that the states of one are written to consecutive lines; a pack of new samples that
+/// begins within one goes into two.
 template <class T>
 void Lanes<T>::interpolate(const T& h, const double* start, const double* tried) {
+  using Of = LaneTraits<Flat>;
   struct Pass {
     Flat a, b;   ///< theta, 1 - theta
-    double* to;  ///< the first state's row
-    int lane;
+    double* to;  ///< the pack's first state
+    int lane, offset;
+    decltype(Of::mask(0U)) later;  ///< samples of this pack, not of the next
   };
   const double spacing = 1.0 / options_.rate;
+  const std::size_t flats = y_.size() * kFlats * kLanes;  // of one pack
   std::array<Pass, kRoom> passes;
   std::size_t count = 0;
   for (const Due& due : due_) {
     auto& run = lanes_[static_cast<std::size_t>(due.lane)];
     const double inverse = 1.0 / tried[due.lane];
+    const int offset = run.pending % kLanes;
     for (int done = 0; done < due.count; done += kLanes) {
       alignas(64) double theta[kLanes];
       const int first = run.recorded + run.pending + done;
       for (int s = 0; s < kLanes; ++s)
-        theta[s] = std::min(1.0, ((first + s) * spacing - start[due.lane]) * inverse);
-      const Flat a = LaneTraits<Flat>::load(theta);
-      passes[count++] = {a, Flat(1.0) - a, run.waiting.data() + run.pending + done, due.lane};
+        theta[(s + offset) % kLanes] = std::min(1.0, ((first + s) * spacing - start[due.lane]) * inverse);
+      const Flat a = Of::load(theta);
+      const auto pack = static_cast<std::size_t>((run.pending + done) / kLanes);
+      passes[count++] = {a,        Flat(1.0) - a, run.waiting.data() + pack * flats,
+                         due.lane, offset,        Of::mask(~((1U << offset) - 1U))};
     }
   }
   for (const int state : sampled_) {
@@ -78,7 +86,7 @@ void Lanes<T>::interpolate(const T& h, const double* start, const double* tried)
     dense(static_cast<std::size_t>(state), h, rows);
     const double* d = reinterpret_cast<const double*>(rows);
     constexpr std::size_t row = kFlats * kLanes;
-    const std::size_t offset = static_cast<std::size_t>(state) * kFlats * kRoom;
+    const std::size_t place = static_cast<std::size_t>(state) * row;
     for (std::size_t k = 0; k < count; ++k) {
       const Pass& p = passes[k];
       for (std::size_t f = 0; f < kFlats; ++f) {
@@ -86,7 +94,13 @@ void Lanes<T>::interpolate(const T& h, const double* start, const double* tried)
         const Flat value =
             Flat(at[0]) + p.a * (Flat(at[row]) + p.b * (Flat(at[2 * row]) +
                                                         p.a * (Flat(at[3 * row]) + p.b * Flat(at[4 * row]))));
-        LaneTraits<Flat>::store(value, p.to + offset + f * kRoom);
+        double* to = p.to + place + f * kLanes;
+        if (p.offset == 0) {
+          Of::store(value, to);
+        } else {
+          Of::store(select(p.later, value, Of::load(to)), to);
+          Of::store(select(p.later, Of::load(to + flats), value), to + flats);
+        }
       }
     }
   }
@@ -114,6 +128,7 @@ void Lanes<T>::spread_constants(int lane) {
   copy(from.vr, to.vr, 0, to.vr.size());
   copy(from.vi, to.vi, 0, to.vi.size());
   to.last_moment = T(Traits::get(from.last_moment, lane));
+  if (shares_) return;  // rows of the lane's own matrix are kept in recorded_rows_
   const auto row = [&](int source) {
     const auto length = static_cast<std::size_t>(sources_);
     copy(from.g, to.g, static_cast<std::size_t>(source) * length, length);
@@ -123,36 +138,58 @@ void Lanes<T>::spread_constants(int lane) {
   for (int source : nonlinear_) row(source);
 }
 
+/// The states of a pack of waiting samples from `first` on: where they wait, or gathered in `room`.
+template <class T>
+const T* Lanes<T>::waiting_pack(const LaneRun& run, int first, const std::vector<int>& states,
+                                T* room) const {
+  const std::size_t flats = y_.size() * kFlats * kLanes;
+  const int offset = first % kLanes;
+  const double* from = run.waiting.data() + static_cast<std::size_t>(first / kLanes) * flats;
+  if (offset == 0) return reinterpret_cast<const T*>(from);
+  double* to = reinterpret_cast<double*>(room);
+  for (const int state : states) {
+    const std::size_t place = static_cast<std::size_t>(state) * kFlats * kLanes;
+    for (std::size_t i = place; i < place + kFlats * kLanes; i += kLanes)
+      for (int l = 0; l < kLanes; ++l) {
+        const int at = l + offset;
+        to[i + l] = at < kLanes ? from[i + at] : from[i + flats + at - kLanes];
+      }
+  }
+  return room;
+}
+
 /// Evaluates the first `count` waiting samples of a lane into its record; the rest move to the front.
 template <class T>
 void Lanes<T>::evaluate_pending(int lane, int count) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
   if (count == 0) return;
   spread_constants(lane);
-  using Of = LaneTraits<Flat>;
-  Flat* const kept = reinterpret_cast<Flat*>(kept_.data());
-  const auto each_row = [this](const std::vector<int>& states, auto&& what) {
-    for (const int state : states)
-      for (std::size_t i = static_cast<std::size_t>(state) * kFlats, f = 0; f < kFlats; ++f) what(i + f);
-  };
   for (int first = 0, now = 0; first < count; first += now) {
-    each_row(wanted_, [&](std::size_t i) { kept[i] = Of::load(run.waiting.data() + i * kRoom + first); });
+    const T* x = waiting_pack(run, first, wanted_, kept_.data());
     now = std::min(kLanes - run.recorded % kLanes, count - first);  // whole packs start on a cache line
     if (timed_) {
       alignas(64) double at[kLanes];
       for (int l = 0; l < kLanes; ++l) at[l] = (run.recorded + l) / options_.rate;
       signals_.t = minimum(Traits::constant(LaneTraits<Flat>::load(at)), per_sample_.last_moment);
     }
-    emfs(per_sample_, kept_.data());
-    for (std::size_t k = 0; k < recorded_.size(); ++k) outputs(k, kept_.data(), run, now);
+    emfs(per_sample_, x);
+    if (shares_)
+      recorded_rows_[static_cast<std::size_t>(lane)].times(er_.data(), ei_.data(), ir_.data(), ii_.data());
+    for (std::size_t k = 0; k < recorded_.size(); ++k) outputs(k, x, run, now);
     run.recorded += now;
   }
+  drop_waiting(run, count);
+}
+
+/// Takes the first `count` waiting samples out of the room.
+template <class T>
+void Lanes<T>::drop_waiting(LaneRun& run, int count) {
   run.pending -= count;
-  each_row(sampled_, [&](std::size_t i) {
-    double* row = run.waiting.data() + i * kRoom;
-    for (int moved = 0; moved < run.pending; moved += kLanes)
-      Of::store(Of::load(row + count + moved), row + moved);
-  });
+  for (int moved = 0; moved < run.pending; moved += kLanes) {
+    const T* from = waiting_pack(run, count + moved, sampled_, kept_.data());
+    T* to = reinterpret_cast<T*>(run.waiting.data() + static_cast<std::size_t>(moved) * y_.size() * kFlats);
+    for (const int state : sampled_) to[state] = from[state];
+  }
 }
 
 /// The channels of the k-th recorded plant, `count` samples from run.recorded on.
@@ -162,7 +199,10 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
   const auto lane = static_cast<std::size_t>(&run - lanes_.data());
   const PlantSlice& p = plants_[i];
   Signals<T>& s = signals_;
-  current(per_sample_, i, s);
+  if (shares_)
+    shared_current(k, per_sample_, i, s);
+  else
+    current(per_sample_, i, s);
   const T* c = &per_sample_.c[static_cast<std::size_t>(p.c)];
   p.equations.voltages(c, er_[i], ei_[i], s);
   p.equations.signals(c, x + p.x, &m_[static_cast<std::size_t>(p.m)], s, unused_.data() + p.x);

@@ -1,5 +1,4 @@
-// Cost of an event against the number of generators, on synthetic grids: a ring of generator buses with
-// chords, each machine behind its own transformer, a load at every ring bus. Cost grows no worse than
+// Cost of an event against the number of generators, on synthetic grids. Cost grows no worse than
 // quadratically.
 //   bench_scaling [events] [rounds]
 #include <algorithm>
@@ -7,8 +6,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <vector>
 
 #include "sim/solve/batch.hpp"
+#include "synthetic_grid.hpp"
 
 namespace {
 using namespace swingbank::sim;
@@ -17,54 +18,6 @@ double cpu_seconds() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-Branch branch(int from, int to, double x, bool transformer) {
-  Branch b{};
-  b.from = from;
-  b.to = to;
-  b.circuit = "1";
-  b.r = transformer ? 0.0 : 0.1 * x;
-  b.x = x;
-  b.transformer = transformer;
-  return b;
-}
-
-/// n machines of 100 MVA at 80 MW; bus 2i is the ring's, bus 2i + 1 the machine's.
-Grid synthetic(int n) {
-  Network net;
-  net.title = net.origin = "synthetic";
-  std::vector<DyrRecord> dynamics;
-  for (int i = 0; i < n; ++i) {
-    net.buses.push_back({2 * i + 1, "RING", 230.0, BusType::load, 1.0, 0.0});
-    net.buses.push_back({2 * i + 2, "UNIT", 20.0, i == 0 ? BusType::slack : BusType::generator, 1.02, 0.0});
-    net.branches.push_back(branch(2 * i, 2 * i + 1, 0.1, true));
-    net.branches.push_back(branch(2 * i, 2 * ((i + 1) % n), 0.05, false));
-    if (i % 2 == 0 && n > 6) {
-      net.branches.push_back(branch(2 * i, 2 * ((i + n / 3) % n), 0.1, false));
-      net.branches.back().circuit = "2";
-    }
-    Load load{};
-    load.bus = 2 * i;
-    load.id = "1";
-    load.power = {0.8, 0.2};
-    net.loads.push_back(load);
-    Generator g{};
-    g.bus = 2 * i + 1;
-    g.id = "1";
-    g.p = 0.8;
-    g.vset = 1.02;
-    g.mva = 100.0;
-    g.zx = 0.25;
-    net.generators.push_back(g);
-    dynamics.push_back(
-        {2 * i + 2,
-         "GENROU",
-         "1",
-         {8.0, 0.03, 0.4, 0.05, 4.0 + 0.1 * (i % 10), 1.0, 1.8, 1.7, 0.3, 0.55, 0.25, 0.2, 0.1, 0.4},
-         i + 1});
-  }
-  return make_grid(std::move(net), dynamics, "synthetic", Conventions::psse());
 }
 
 /// Seconds of processor time per event of 15 s, and how many ended stable.

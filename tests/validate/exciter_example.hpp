@@ -2,8 +2,18 @@
 // An example event and its plant, with an exciter whose lower limit is never met.
 #include "support.hpp"
 #include "validate/fit.hpp"
+#include "validate/instruments.hpp"
 
 namespace swingbank::validate {
+
+/// What the plant answers to the event from `at`.
+inline Response answer(const FitEvent& e, const EventState& at, const sim::Plant& plant,
+                       const sim::Conventions& conventions) {
+  const VoltageCurve curve(e.played(), switchings_at(e, at));
+  Drive run = drive_at(plant, conventions, e, at);
+  run.curve = &curve;
+  return observe(run);
+}
 
 struct ExciterExample {
   PlantModel model = load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));

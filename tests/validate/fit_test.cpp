@@ -1,12 +1,11 @@
 // What a fit says of the structure's evidence: parameters count as far as the records decide them.
-#include "validate/fit.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
 
 #include "exciter_example.hpp"
+#include "validate/fit_cost.hpp"
 
 namespace swingbank::validate {
 namespace {
@@ -34,6 +33,14 @@ TEST(FitEvidence, AStructureIsNotBlamedForWhatCannotBeSeen) {
   ASSERT_EQ(with.parameters.size(), 2U);
   // two searches end within 1e-5 of chi2, some 2000
   EXPECT_NEAR(criterion(with), criterion(without), 0.05);
+}
+TEST(FitAxis, ParametersAtOneBoundAreEqualWhereverTheyStarted) {
+  const auto from = [](double start) { return fitting::Axis{{}, start, 0.1, 1e3, true, 1.0}; };
+  for (const double bound : {0.1, 0.2, 0.3, 0.7, 5.0})
+    for (const double start : {15.0, 30.0, 60.0, 7.3}) {
+      EXPECT_EQ(from(start).value(from(start).z(bound)), from(60).value(from(60).z(bound))) << bound;
+      EXPECT_NEAR(from(start).value(from(start).z(bound)), bound, 1e-11 * bound);
+    }
 }
 TEST(FitBlocks, AreCountedThroughTransformerControlsAndInstruments) {
   sim::Plant plant = ExciterExample(kSpread).model.plant;

@@ -3,6 +3,10 @@
 
 #include <gmock/gmock.h>
 
+#include <limits>
+
+#include "exciter_example.hpp"
+
 namespace swingbank::validate {
 namespace {
 
@@ -38,6 +42,25 @@ TEST(Objection, AnEventMayNotPayForTheOthers) {
 TEST(Objection, AnEventThatWasBadMayNotBecomeWorse) {
   EXPECT_THAT(objection({event("a", 30.0, 1.0), event("b", 2.0, 2.1)}, 29000, kAdequate),
               HasSubstr("improve b"));
+}
+TEST(Objection, AnEventWithoutWhichNothingCouldBeFittedIsNotPredicted) {
+  HeldOut none = event("b", 1.0, 1.0);
+  none.cost_after = std::numeric_limits<double>::infinity();
+  EXPECT_THAT(objection({event("a", 3.0, 1.0), none}, 2000, kAdequate), HasSubstr("b when"));
+}
+TEST(HeldOutEvents, AFitThatFailsWithoutOnePredictsNothing) {
+  ExciterExample example(0.2);
+  example.events.push_back(example.events.front());
+  const Fit whole = example.fitted({"H"}, {.iterations = 0});
+  const Trial trial{example.events, 0.2, kAdequate};
+  const auto hold = [&](const Fit& f) {
+    return hold_out(trial, example.model.plant, example.model.conventions, example.free({"H", "EMAX"}), f);
+  };
+  EXPECT_LT(hold(whole).front().cost_after, 1e6);
+  Fit impossible = whole;
+  for (const auto& f : example.free({"EMAX"}))
+    parameter_value(impossible.plant, f.block, f.index) = 0.5;  // Efd stands above it
+  EXPECT_GT(hold(impossible).front().cost_after, 1e300);
 }
 TEST(Objection, AnEventMustBePredictedNotOnlyImproved) {
   EXPECT_THAT(objection({event("a", 3.0, 1.0), event("b", 3.0, 1.5)}, 3500, kAdequate),

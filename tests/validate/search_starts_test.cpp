@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "exciter_example.hpp"
-#include "validate/instruments.hpp"
 
 namespace swingbank::validate {
 namespace {
@@ -17,10 +16,7 @@ double moved(const Stage& stage, const Hypothesis& h, const std::vector<double>&
         p.value;
   const FitEvent& e = stage.events.front();
   const EventFit& at = stage.fit.events.front();
-  const VoltageCurve curve(e.played(), switchings_at(e, at.state));
-  Drive run = drive_at(plant, stage.conventions, e, at.state);
-  run.curve = &curve;
-  const Response r = observe(run);
+  const Response r = answer(e, at.state, plant, stage.conventions);
   double square = 0;
   for (std::size_t c = 0; c < e.channels.size(); ++c)
     for (std::size_t k = 0; k < e.record.t.size(); ++k)

@@ -1,0 +1,140 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <ranges>
+
+#include "validate/instruments.hpp"
+#include "validate/search.hpp"
+
+namespace swingbank::validate {
+namespace {
+
+constexpr std::array<double, 10> kMultiples = {0.3, 0.5, 0.7, 0.85, 0.95, 1.05, 1.18, 1.4, 2.0, 3.3};
+/// Multiples at which it shows whether a parameter acts at all.
+constexpr double kLess = 0.7, kMore = 1.4;
+/// Change of chi2 from which it does.
+constexpr double kActs = 1;
+/// How many of the multiples get a fit: those that leave least as they are, three steps of what has slopes;
+/// of these the best, all parameters.
+constexpr std::size_t kFitted = 12, kBest = 2;
+constexpr int kOwnSteps = 3, kAllSteps = 9;
+/// Rounds as long as each gains so much.
+constexpr int kRounds = 4;
+constexpr double kWorthARound = 10;
+
+class BlindScan {
+ public:
+  BlindScan(const Stage& stage, const Hypothesis& h, const Fit& from) : stage_(stage), h_(h), from_(from) {
+    for (const auto& e : from.events) states_.push_back(e.state);
+    std::vector<char> seen;
+    try {
+      seen = slopes();
+    } catch (const InputError&) {  // slopes make other steps, and these cannot be run
+      return;
+    }
+    for (std::size_t i = 0; i < h.free.size(); ++i) (seen[i] ? seen_ : blind_).push_back(h.free[i]);
+    std::erase_if(blind_, [this](const FreeParameter& f) { return idle(f); });
+  }
+  /// The best of what was tried, all but the blind ones of the hypothesis as `from` has it.
+  [[nodiscard]] std::vector<Fit> best() const {
+    std::vector<std::pair<double, sim::Plant>> starts;
+    for (const auto& group : groups())
+      for (const double multiple : kMultiples) {
+        sim::Plant plant = multiplied(group, multiple);
+        if (const double left = left_by(plant, h_.conventions, stage_.events, states_); std::isfinite(left))
+          starts.emplace_back(left, std::move(plant));
+      }
+    std::ranges::sort(starts, {}, &std::pair<double, sim::Plant>::first);
+    std::vector<Fit> tried;
+    for (const auto& start : starts | std::views::take(kFitted))
+      if (Fit f = beside(start.second); f.failed.empty()) tried.push_back(std::move(f));
+    std::ranges::sort(tried, {}, &Fit::chi2);
+    if (tried.size() > kBest) tried.resize(kBest);
+    return tried;
+  }
+
+ private:
+  using Group = std::vector<FreeParameter>;
+
+  /// Per parameter of the hypothesis: whether any event's answer has a slope along it.
+  [[nodiscard]] std::vector<char> slopes() const {
+    std::vector<Direction> along;
+    for (const FreeParameter& f : h_.free)
+      along.push_back({Direction::Kind::parameter, f.block, f.index, 1.0});
+    std::vector<char> seen(along.size(), 0);
+    for (std::size_t e = 0; e < stage_.events.size(); ++e) {
+      const FitEvent& event = stage_.events[e];
+      const VoltageCurve curve(event.played(), switchings_at(event, states_[e]));
+      Drive run = drive_at(from_.plant, h_.conventions, event, states_[e]);
+      run.curve = &curve;
+      const Response r = observe(run, along);
+      for (std::size_t d = 0; d < along.size(); ++d)
+        if (event.collected(r.slopes[d].value, false).squaredNorm() > 0) seen[d] = 1;
+    }
+    return seen;
+  }
+  [[nodiscard]] sim::Plant multiplied(const Group& group, double by) const {
+    sim::Plant plant = from_.plant;
+    for (const FreeParameter& f : group) {
+      double& value = parameter_value(plant, f.block, f.index);
+      const sim::Parameter& record = parameter_record(plant, f.block, f.index);
+      value = std::clamp(value * by, record.low, record.high);
+    }
+    return plant;
+  }
+  /// Whether nothing changes with it, either way.
+  [[nodiscard]] bool idle(const FreeParameter& f) const {
+    return std::ranges::all_of(std::array{kLess, kMore}, [&](double by) {
+      const double left = left_by(multiplied({f}, by), h_.conventions, stage_.events, states_);
+      return std::abs(left - from_.chi2) < kActs;
+    });
+  }
+  /// Each by itself, and those of one unit together: points of a curve do not cross then.
+  [[nodiscard]] std::vector<Group> groups() const {
+    std::vector<Group> all;
+    std::map<std::string, Group> by_unit;
+    for (const FreeParameter& f : blind_) {
+      all.push_back({f});
+      by_unit[std::string(parameter_record(from_.plant, f.block, f.index).unit)].push_back(f);
+    }
+    for (auto& [unit, group] : by_unit)
+      if (group.size() > 1) all.push_back(std::move(group));
+    return all;
+  }
+  [[nodiscard]] Fit beside(const sim::Plant& plant) const {
+    FitOptions o;
+    o.errors = false;
+    o.iterations = kOwnSteps;
+    o.start = states_;
+    return fit(plant, h_.conventions, stage_.events, seen_, o);
+  }
+
+  const Stage& stage_;
+  const Hypothesis& h_;
+  const Fit& from_;
+  std::vector<EventState> states_;
+  std::vector<FreeParameter> seen_, blind_;
+};
+
+}  // namespace
+
+Fit past_blind(const Stage& stage, const Hypothesis& h, const sim::Plant& believed, Fit from) {
+  const auto free = free_of(h, stage.spread);
+  for (int round = 0; round < kRounds && from.failed.empty(); ++round) {
+    Fit best = from;
+    for (const Fit& start : BlindScan(stage, h, from).best()) {
+      FitOptions o = continued({}, start, free);
+      o.errors = false;
+      o.iterations = kAllSteps;
+      if (Fit f = fit(believed, h.conventions, stage.events, free, o); penalised(f) < penalised(best))
+        best = std::move(f);
+    }
+    const bool worth = penalised(best) < penalised(from) - kWorthARound;
+    from = std::move(best);
+    if (!worth) break;
+  }
+  return from;
+}
+
+}  // namespace swingbank::validate
