@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <ranges>
+#include <span>
 
 #include "validate/instruments.hpp"
 #include "validate/search.hpp"
@@ -47,7 +47,7 @@ class BlindScan {
       }
     std::ranges::sort(starts, {}, &std::pair<double, sim::Plant>::first);
     std::vector<Fit> tried;
-    for (const auto& start : starts | std::views::take(kFitted))
+    for (const auto& start : std::span(starts).first(std::min(kFitted, starts.size())))
       if (Fit f = beside(start.second); f.failed.empty()) tried.push_back(std::move(f));
     std::ranges::sort(tried, {}, &Fit::chi2);
     if (tried.size() > kBest) tried.resize(kBest);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ranges>
+#include <span>
 
 #include "validate/instruments.hpp"
 
@@ -124,7 +124,7 @@ void StartFinder::screen(const Hypothesis& h, Candidate& c) const {
   };
   std::vector<Start> starts;
   bool acts = false;
-  for (const auto& values : h.starts | std::views::take(kScreened)) {
+  for (const auto& values : std::span(h.starts).first(std::min(kScreened, h.starts.size()))) {
     Start s{0, started(h, values)};
     if (answer(s.plant, h, s.misfit, acts)) starts.push_back(std::move(s));
   }
@@ -151,7 +151,7 @@ sim::Plant StartFinder::with_values(const Hypothesis& h, const std::vector<FreeP
 }
 void StartFinder::nest(const Hypothesis& h, Candidate& c) const {
   const auto free = free_of(h, stage_.spread);
-  for (const auto& start : h.starts | std::views::take(kScreened)) {
+  for (const auto& start : std::span(h.starts).first(std::min(kScreened, h.starts.size()))) {
     auto values = beside_fit(h, start);
     double misfit = 0;
     bool acts = true;

@@ -26,10 +26,22 @@ for target in "${targets[@]}"; do
   fi
 done
 
-cmake -S "$source_folder" -B "$build" -G Ninja -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ \
+# Runs a command of the build; what stopped it also stands among what was found.
+built() {
+  "$@" >"$build.log" 2>&1 && return
+  mkdir -p "$build/found/build"
+  {
+    echo "fuzz: the targets cannot be built, see $build.log"
+    grep -m 12 -E 'error|FAILED' "$build.log" || tail -n 30 "$build.log"
+  } | tee "$build/found/build/summary.txt" >&2
+  return 1
+}
+rm -rf "$build/found/build"
+mkdir -p "$build"
+built cmake -S "$source_folder" -B "$build" -G Ninja -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ \
   -DCMAKE_BUILD_TYPE=Debug -DSWINGBANK_ARCH=x86-64-v2 -DSWINGBANK_FUZZ=ON -DSWINGBANK_TESTS=OFF -DSWINGBANK_TRAIN=OFF \
-  -DSWINGBANK_BENCH=OFF >"$build.log" 2>&1 || { tail -n 30 "$build.log" >&2; exit 1; }
-cmake --build "$build" --target "${targets[@]/#/fuzz_}" >"$build.log" 2>&1 || { tail -n 30 "$build.log" >&2; exit 1; }
+  -DSWINGBANK_BENCH=OFF
+built cmake --build "$build" --target "${targets[@]/#/fuzz_}"
 
 # run_target NAME
 run_target() {
