@@ -219,7 +219,8 @@ Addition add_effect(const PlantModel& model, const Hypothesis& hypothesis, std::
   }
   a.own = static_cast<int>(hypothesis.free.size());
   a.parameters = a.with.parameters;
-  std::ranges::rotate(a.parameters, a.parameters.end() - a.own);  // the effect's stand last in a fit
+  // The effect's stand last in a fit.
+  std::rotate(a.parameters.begin(), a.parameters.end() - a.own, a.parameters.end());
   a.evidence = criterion(a.without) - criterion(a.with);
   const auto refitted = bench.each(a.without.plant, model.conventions, "events without the effect");
   const auto after = bench.each(a.with.plant, hypothesis.conventions, "events with the effect");

@@ -4,22 +4,19 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <optional>
 #include <span>
 
-#include "validate/decide.hpp"
 #include "validate/in_parallel.hpp"
 #include "validate/noise.hpp"
 #include "validate/search.hpp"
+#include "validate/verdict.hpp"
 
 namespace swingbank::validate {
 namespace {
 
-/// Rivals within this evidence cannot be told apart.
-constexpr double kApart = 25;
 /// Evidence that a long fit may add to a short one: what lies further behind the best is not judged.
 constexpr double kWorthJudging = 200;
 /// How many are judged where none holds.
@@ -37,26 +34,6 @@ constexpr int kBases = 2;
 
 /// Steps of the fits that go on with the noise measured again.
 constexpr int kOnwards = 4;
-
-/// Share of what an effect takes off the unseen events' cost from which one event has all of it; share of
-/// that event's error down to which the others have not foretold it.
-constexpr double kAlone = 0.8, kForetold = 0.5;
-
-/// What noise leaves may be slow by so many standard deviations (slow_remainder). Thirty development cases
-/// with nothing hidden had 3.9 at most.
-constexpr double kSlow = 8;
-
-/// Whether the records cannot tell `j` from `best`: by evidence, or by what they leave, for then the simpler
-/// one is named by taste.
-bool as_good(const Judgement& j, const Judgement& best) {
-  return best.gain - j.gain < kApart ||
-         (j.hypothesis.with == best.hypothesis.with && j.fit.chi2 - best.fit.chi2 < kApart);
-}
-
-std::string capitalised(std::string text) {
-  if (!text.empty()) text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
-  return text;
-}
 
 class Diagnoser {
  public:
@@ -90,7 +67,8 @@ class Diagnoser {
     held_out_base_ = hold_out(trial(), model_.plant, model_.conventions, {}, result_.base);
     infer_inputs();
     search();
-    settle();
+    settle({model_, trial(), result_.base, held_out_base_, result_.torque, result_.field, threads_},
+           options_.progress, result_);
     result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return std::move(result_);
   }
@@ -314,7 +292,7 @@ class Diagnoser {
   void judge_all(Judgement& j) const {
     judge(trial(), result_.base, held_out_base_, j);
     for (const auto& [m, what] : {std::pair(&result_.torque, "torque"), {&result_.field, "field voltage"}})
-      if (j.accepted && explained(*m) > result_.base.chi2 - j.fit.chi2) {
+      if (j.accepted && m->explains(result_.base) > result_.base.chi2 - j.fit.chi2) {
         j.accepted = false;
         j.why_not = fmt::format("a {} free in time explains more", what);
       }
@@ -356,87 +334,6 @@ class Diagnoser {
     return {result_.events, options_.spread, options_.adequate, kEvidence, passed_ ? &*passed_ : nullptr};
   }
 
-  void settle() {
-    const auto& r = result_.ranked;
-    const bool quiet = result_.base.misfit() <= options_.adequate &&
-                       slow_remainder(result_.base, result_.events) < kSlow &&
-                       explained(result_.torque) <= 0 && explained(result_.field) <= 0;
-    if (!r.empty() && r.front().accepted) return name_best();
-    if (quiet) {
-      result_.verdict = Verdict::adequate;
-      result_.sentence = fmt::format(
-          "The model is adequate: after refitting its parameters nothing but noise is left (chi2 per value "
-          "{:.3f}), and no effect in the list improves it.",
-          result_.base.misfit());
-      return;
-    }
-    result_.verdict = Verdict::unexplained;
-    const double t = result_.torque.misfit(), f = result_.field.misfit();
-    result_.side = t < f ? Side::mechanical : Side::excitation;
-    result_.sentence = fmt::format(
-        "None of the {} known effects explains the records (chi2 per value {:.2f} at best {:.2f}). A missing "
-        "{} would (chi2 per value {:.2f}); its course is shown.",
-        r.size(), result_.base.misfit(), r.empty() ? result_.base.misfit() : r.front().fit.misfit(),
-        t < f ? "torque" : "field voltage", std::min(t, f));
-    result_.laws =
-        search_laws({model_, trial(), result_.base, held_out_base_, result_.torque, result_.field, threads_},
-                    options_.progress);
-    if (result_.laws.found()) {
-      result_.side = result_.laws.found()->judgement.hypothesis.side;
-      result_.sentence = law_sentence(result_.laws, r.size());
-    }
-  }
-  /// What a free input explains of chi2, less what as many free numbers would do of noise, twice (Akaike
-  /// 1974).
-  [[nodiscard]] double explained(const MissingInput& m) const {
-    std::size_t knots = 0;
-    for (const auto& e : m.fit.events) knots += e.state.input.t.size();
-    return result_.base.chi2 - m.fit.chi2 - 2.0 * static_cast<double>(knots);
-  }
-  void name_best() {
-    const Judgement& best = result_.ranked.front();
-    result_.side = best.hypothesis.side;
-    if (!best.hypothesis.with.empty()) result_.effects.push_back(best.hypothesis.with);
-    result_.effects.push_back(best.hypothesis.name);
-    const Judgement* rival = nullptr;
-    for (const auto& j : result_.ranked) {
-      if (!j.accepted || &j == &best || !as_good(j, best)) continue;
-      result_.equivalent.push_back(full_name(j.hypothesis));
-      if (!rival) rival = &j;
-    }
-    result_.verdict = result_.equivalent.empty() ? Verdict::missing : Verdict::confusable;
-    std::string rivals;
-    for (const auto& name : result_.equivalent) rivals += (rivals.empty() ? "" : ", ") + name;
-    result_.sentence = fmt::format(
-        "{} {}{}: {}.",
-        capitalised(best.hypothesis.with.empty()
-                        ? best.hypothesis.what
-                        : best.hypothesis.with + ", and besides " + best.hypothesis.what),
-        best.hypothesis.replaces ? "explains the records" : "is missing",
-        rivals.empty() ? "" : " (or " + rivals + ": these records cannot tell)", fall_of_error(best));
-    if (!rival) return;
-    result_.would_decide = what_would_decide(best, *rival, result_.events);
-    result_.sentence += " " + result_.would_decide;
-  }
-  /// On unseen events; of what shows in one event only, which no other can predict, there.
-  [[nodiscard]] std::string fall_of_error(const Judgement& best) const {
-    double saved = 0, before = 0, after = 0;
-    for (const auto& h : best.held_out) {
-      saved += std::max(0.0, h.saves());
-      before += h.before / static_cast<double>(best.held_out.size());
-      after += h.after / static_cast<double>(best.held_out.size());
-    }
-    const auto most = std::ranges::max_element(best.held_out, {}, &HeldOut::saves);
-    const auto e = static_cast<std::size_t>(most - best.held_out.begin());
-    if (most->saves() > kAlone * saved && most->after > kForetold * most->before)
-      return fmt::format(
-          "it shows in {} alone, so that no other event foretells it; fitted there too, the error falls from "
-          "{:.2f} × noise to {:.2f} × noise",
-          most->record, std::sqrt(result_.base.events[e].misfit()), std::sqrt(best.fit.events[e].misfit()));
-    return fmt::format(
-        "on events it was not fitted to, the error falls from {:.1f} × noise to {:.2f} × noise",
-        std::sqrt(before), std::sqrt(after));
-  }
   void report(const std::string& what, int done, int total) const {
     if (options_.progress) options_.progress(what, done, total);
   }
@@ -450,11 +347,6 @@ class Diagnoser {
 };
 
 }  // namespace
-
-std::string_view verdict_name(Verdict verdict) {
-  constexpr std::array<std::string_view, 4> names = {"adequate", "missing", "confusable", "unexplained"};
-  return names[static_cast<std::size_t>(verdict)];
-}
 
 Diagnosis diagnose(const PlantModel& model, std::vector<Record> records, const DiagnoseOptions& options) {
   return Diagnoser(model, std::move(records), options).run();

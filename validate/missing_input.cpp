@@ -25,6 +25,12 @@ std::vector<double> knots_of(const FitEvent& event) {
 
 }  // namespace
 
+double MissingInput::explains(const Fit& without) const {
+  std::size_t knots = 0;
+  for (const auto& e : fit.events) knots += e.state.input.t.size();
+  return without.chi2 - fit.chi2 - 2.0 * static_cast<double>(knots);
+}
+
 MissingInput infer_input(InputKind kind, const sim::Plant& plant, const sim::Conventions& conventions,
                          const std::vector<FitEvent>& events, double spread, const FitOptions& start) {
   MissingInput found{kind, {}};

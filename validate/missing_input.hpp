@@ -11,6 +11,9 @@ struct MissingInput {
   InputKind kind = InputKind::torque;
   Fit fit;  ///< the plant refitted with it; events' states carry `input`
   [[nodiscard]] double misfit() const { return fit.misfit(); }
+  /// What it explains of the chi2 that `without` leaves, less what as many free numbers would do of noise,
+  /// twice (Akaike 1974).
+  [[nodiscard]] double explains(const Fit& without) const;
   [[nodiscard]] const PiecewiseLinear& of(std::size_t event) const { return fit.events[event].state.input; }
 };
 

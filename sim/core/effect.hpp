@@ -81,6 +81,10 @@ struct State {
     int first = -1, second = -1;
   };
   Movers moved_by = {};
+  /// Coefficient that multiplies the weight where it is above 1, -1: none.
+  int weighed_by = -1;
+  /// Its derivative bends where `low` and `high` do not tell: every step is judged as one with a kink.
+  bool bends = false;
 };
 
 /// What simulators do differently, chosen by the origin of the data (docs/decisions.md), and what an effect

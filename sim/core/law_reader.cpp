@@ -255,6 +255,17 @@ std::string Reader::describe() const {
   return text;
 }
 
+/// Whether an exciter has limits, and none of them at a state.
+bool Reader::bends() const {
+  constexpr std::array kBending = {Act::minimum, Act::maximum, Act::clamp, Act::select_less,
+                                   Act::select_less_equal};
+  const auto limited = [](const StateEntry& s) { return s.low >= 0 || s.high >= 0; };
+  return law_.slot == Slot::exciter && std::ranges::none_of(states_, limited) &&
+         std::ranges::any_of(graph_.vertices(), [&](const Vertex& v) {
+           return !v.fixed && std::ranges::find(kBending, v.act) != kBending.end();
+         });
+}
+
 /// Records and program from what was read; only of a sound file.
 void Reader::finish() {
   std::vector<int> derivatives, also;
@@ -277,6 +288,7 @@ void Reader::finish() {
     record.weight = s.weight;
     record.low = coefficient(s.low);
     record.high = coefficient(s.high);
+    record.bends = bends();
     law_.states.push_back(record);
     law_.start.push_back(coefficient(s.start));
   }

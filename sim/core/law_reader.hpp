@@ -48,6 +48,7 @@ class Reader {
   void read_references();
   void read_requirements();
   void read_output();
+  [[nodiscard]] bool bends() const;
   void finish();
   bool claim(const std::string& key, const std::string& name, const char* what);
   std::vector<std::string> in_file_order(const std::string& table);

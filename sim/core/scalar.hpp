@@ -80,4 +80,20 @@ inline double value_of(const Dual<T, N>& a) {
   return value_of(a.a);
 }
 
+/// Whether any lane is above zero: to leave out what no lane needs, as long as lanes without it add nothing.
+inline bool any_positive(double a) { return a > 0.0; }
+template <int N>
+inline bool any_positive(const Pack<N>& a) {
+#ifdef __AVX512F__
+  if constexpr (N == 8) return _mm512_cmp_pd_mask((__m512d)a.v, _mm512_setzero_pd(), _CMP_GT_OQ) != 0;
+#endif
+  bool any = false;
+  for (int lane = 0; lane < N; ++lane) any |= a[lane] > 0.0;
+  return any;
+}
+template <class T, int N>
+inline bool any_positive(const Dual<T, N>& a) {
+  return any_positive(a.a);
+}
+
 }  // namespace swingbank::sim

@@ -68,8 +68,8 @@ struct Model {
   enum X { Vm, leadlag, Vr, Efd, rate };
   static constexpr State states[] = {{"Vm", "pu", "measured voltage"},
                                      {"leadlag", "pu", "state of the lead-lag"},
-                                     {"Vr", "pu", "regulator output"},
-                                     {"Efd", "pu", "field voltage"},
+                                     {"Vr", "pu", "regulator output", 1.0, -1, -1, {}, -1, true},
+                                     {"Efd", "pu", "field voltage", 1.0, -1, -1, {}, -1, true},
                                      {"rate", "pu", "state of the rate feedback"}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {

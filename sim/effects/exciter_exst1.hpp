@@ -37,10 +37,11 @@ struct Model {
   static constexpr int dyr_columns[] = {TR, VIMAX, VIMIN, TC, TB, KA, TA, VRMAX, VRMIN, KC, KF, TF};
   enum C { iTR, vimax, vimin, lead, iTB, gain, iTA, vrmax, vrmin, drop, feedback, iTF, Vref, coefficients };
   enum X { Vm, leadlag, Va, rate };
-  static constexpr State states[] = {{"Vm", "pu", "measured voltage", 1.0, -1, -1, {iTR}},
-                                     {"leadlag", "pu", "state of the lead-lag", 1.0, -1, -1, {iTB}},
-                                     {"Va", "pu", "regulator output before the ceilings"},
-                                     {"rate", "pu", "state of the rate feedback"}};
+  static constexpr State states[] = {
+      {"Vm", "pu", "measured voltage", 1.0, -1, -1, {iTR}},
+      {"leadlag", "pu", "state of the lead-lag", 1.0, -1, -1, {iTB}, -1, true},
+      {"Va", "pu", "regulator output before the ceilings", 1.0, -1, -1, {}, -1, true},
+      {"rate", "pu", "state of the rate feedback"}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {

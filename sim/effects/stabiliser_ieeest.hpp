@@ -82,15 +82,35 @@ struct Model {
     high,
     vcu,
     vcl,
+    sharp,
     coefficients
   };
   enum X { y, ydot, w, wdot, lead1, lead2, washed, xr, xi };
-  // The slopes' own errors are gone within a filter's time constant: they weigh that many seconds.
+  // The slopes' own errors are gone within a filter's time constant: they weigh that many seconds. A
+  // numerator passes the filter's errors on that many times larger (sharp).
   static constexpr State states[] = {
-      {.name = "y", .unit = "pu", .meaning = "first filter's output", .moved_by = {ia1, ia2}},
-      {.name = "ydot", .unit = "pu/s", .meaning = "its slope", .weight = 0.05, .moved_by = {ia2}},
-      {.name = "w", .unit = "pu", .meaning = "second filter's state", .moved_by = {ia3, ia4}},
-      {.name = "wdot", .unit = "pu/s", .meaning = "its slope", .weight = 0.05, .moved_by = {ia4}},
+      {.name = "y",
+       .unit = "pu",
+       .meaning = "first filter's output",
+       .moved_by = {ia1, ia2},
+       .weighed_by = sharp},
+      {.name = "ydot",
+       .unit = "pu/s",
+       .meaning = "its slope",
+       .weight = 0.05,
+       .moved_by = {ia2},
+       .weighed_by = sharp},
+      {.name = "w",
+       .unit = "pu",
+       .meaning = "second filter's state",
+       .moved_by = {ia3, ia4},
+       .weighed_by = sharp},
+      {.name = "wdot",
+       .unit = "pu/s",
+       .meaning = "its slope",
+       .weight = 0.05,
+       .moved_by = {ia4},
+       .weighed_by = sharp},
       {.name = "lead1", .unit = "pu", .meaning = "state of the first lead-lag", .moved_by = {it2}},
       {.name = "lead2", .unit = "pu", .meaning = "state of the second lead-lag", .moved_by = {it4}},
       {.name = "washed", .unit = "pu", .meaning = "state of the washout", .moved_by = {it6}},
@@ -158,6 +178,8 @@ struct Model {
     c[gain] = p[KS];
     c[low] = p[LSMIN];
     c[high] = p[LSMAX];
+    const auto size = [&](const T& a) { return positive_part(a) + positive_part(zero - a); };
+    c[sharp] = one + size(c[a5]) * (c[ia1] + c[ia3]) + size(c[a6]) * (c[ia2] + c[ia4] + c[ia1] * c[ia3]);
     c[vcu] = select(p[VCU] > zero, p[VCU], T(1e9));
     c[vcl] = select(zero < p[VCL] * p[VCL], p[VCL], T(-1e9));
   }

@@ -34,6 +34,8 @@ class Lanes {
   using Flat = typename Traits::Flat;
   /// Of dp54::kink in the error: 0.03 would bound what a kink leaves by the tolerance, this by ten times it.
   static constexpr double kKinkShare = 0.003;
+  /// What a kink leaves shows at once, however soon it is gone: a state weighs at least this much there.
+  static constexpr double kKinkWeight = 0.3;
   static constexpr std::size_t kFlats = 1 + Traits::directions;  ///< flats in one T
   struct PlantSlice {
     PlantEquations<T> equations;
@@ -44,9 +46,8 @@ class Lanes {
   /// An exciter behind a stabiliser: whether Vs comes to its limits or leaves them is seen from stages in
   /// which it stays the same to the bit.
   struct Watch {
-    int first, count;      ///< the exciter's states
-    bool always;           ///< it declares no limits (State::low, high): where its own stand is not known
-    Flat start{}, last{};  ///< Vs at the step's start, at the last stage
+    int first, count;              ///< the exciter's states
+    Flat start{}, last{};          ///< Vs at the step's start, at the last stage
     Flat rested{}, rested_next{};  ///< 1 where Vs rested before the step, before the next one
     Flat same{};                   ///< stages at which Vs was the last one's
   };
@@ -59,6 +60,11 @@ class Lanes {
   /// A state that stands still while two coefficients are zero (State::moved_by; -1: only the first counts).
   struct Resting {
     int state, first, second;
+  };
+
+  /// A state whose weight a coefficient multiplies (State::weighed_by).
+  struct Weighed {
+    int state, coefficient;
   };
 
   /// Samples of one lane that fall into this step and have room.
@@ -116,6 +122,7 @@ class Lanes {
   void load_seeded(int lane, const std::map<int, Plant>& changed);
   void load_consumer(int lane, std::size_t load);
   void find_moving();
+  void find_weights();
   void enter_segment(int lane);
   void fill_waiting(int lane);
   void record_steady_start(int lane);
@@ -130,6 +137,7 @@ class Lanes {
   void stage(const T& h);
   Flat scaled_error(const Flat& h) const;
   Flat kink_error(std::size_t state) const;
+  Flat own_error(std::size_t state) const;
   Flat has_kink(const Watch& watch) const;
   Flat leaves_limit(std::size_t state) const;
   void watch_stage(Watch& watch, const T& vs);
@@ -154,7 +162,10 @@ class Lanes {
   bool limited_ = false, timed_ = false;     ///< whether any state has limits, any effect reads the time
   bool shares_ = false;                      ///< many sources: not a matrix per lane
   std::vector<int> stopped_;                 ///< states with limits at which they are held
+  std::vector<int> bent_;                    ///< states of which any step may hold a kink (State::bends)
   std::vector<Resting> resting_;
+  std::vector<Weighed> weighed_;
+  bool weighs_ = false;                ///< whether a coefficient of weighed_ is above 1 in any lane
   std::vector<int> moving_;            ///< states that move in any lane
   std::vector<int> wanted_, sampled_;  ///< states the outputs need; of these the moving ones
   std::vector<char> needed_;           ///< per state: whether the outputs need it

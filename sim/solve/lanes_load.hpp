@@ -42,6 +42,8 @@ void Lanes<T>::build_slices() {
       const auto [first, second] = state.moved_by;
       if (first >= 0) resting_.push_back({static_cast<int>(weight_.size()), at(first), at(second)});
       if (state.low >= 0 || state.high >= 0) stopped_.push_back(static_cast<int>(weight_.size()));
+      if (state.bends) bent_.push_back(static_cast<int>(weight_.size()));
+      if (state.weighed_by >= 0) weighed_.push_back({static_cast<int>(weight_.size()), at(state.weighed_by)});
       weight_.push_back(state.weight / options_.tolerance);
       needed_.push_back(needed);
     }
@@ -67,11 +69,9 @@ void Lanes<T>::build_slices() {
       return std::ranges::any_of(plant.controls, [&](const Block& b) { return b.effect->slot == slot; });
     };
     for (const auto& block : plant.controls) {
-      const auto limited = [](const State& state) { return state.low >= 0 || state.high >= 0; };
       if (block.effect->slot == Slot::exciter && has(Slot::stabiliser)) {
         plants_.back().watch = static_cast<int>(watched_.size());
-        watched_.push_back({static_cast<int>(weight_.size()), static_cast<int>(block.effect->states.size()),
-                            std::ranges::none_of(block.effect->states, limited)});
+        watched_.push_back({static_cast<int>(weight_.size()), static_cast<int>(block.effect->states.size())});
       }
       add_states(*block.effect, coefficient, recorded);
       coefficient += block.effect->coefficients;
@@ -170,6 +170,7 @@ void Lanes<T>::load(int lane) {
     Traits::set(per_lane_.vi[i], lane, at.s.Vi);
   }
   find_moving();
+  find_weights();
   run.segment = 0;
   run.clock.t = 0.0;
 }
@@ -192,6 +193,14 @@ void Lanes<T>::find_moving() {
     if (!rests(i)) moving_.push_back(i);
   std::ranges::remove_copy_if(wanted_, std::back_inserter(sampled_), rests);
   trial_ = y_;
+}
+
+/// Whether a state weighs more than its effect's standard says in any lane.
+template <class T>
+void Lanes<T>::find_weights() {
+  weighs_ = std::ranges::any_of(weighed_, [this](const Weighed& w) {
+    return any_positive(Traits::value(per_lane_.c[static_cast<std::size_t>(w.coefficient)]) - Flat(1.0));
+  });
 }
 
 /// Plants with seeded parameters once more, with the derivatives of their operating point.

@@ -43,27 +43,31 @@ void Lanes<T>::stage(const T& h) {
 template <class T>
 typename Lanes<T>::Flat Lanes<T>::scaled_error(const Flat& h) const {
   Flat worst(0.0);
-  for (const int state : moving_) {
-    const auto i = static_cast<std::size_t>(state);
-    T sum = T(dp54::error[0]) * k_[0][i];
-    for (int j = 2; j < dp54::kStages; ++j) sum = sum + T(dp54::error[j]) * k_[j][i];
-    const Flat e = Traits::magnitude(sum) * Flat(weight_[i]);
-    worst = select(e <= worst, worst, e);  // in this order a NaN wins
-  }
+  const auto add = [&worst](const Flat& e) { worst = select(e <= worst, worst, e); };  // so a NaN wins
+  for (const int state : moving_) add(own_error(static_cast<std::size_t>(state)));
+  if (weighs_)
+    for (const Weighed& w : weighed_)
+      add(own_error(static_cast<std::size_t>(w.state)) *
+          Traits::value(per_lane_.c[static_cast<std::size_t>(w.coefficient)]));
   for (const Watch& watch : watched_) {
     const Flat kink = has_kink(watch);
-    for (int i = watch.first; i < watch.first + watch.count; ++i) {
-      const auto state = static_cast<std::size_t>(i);
-      const Flat e = kink * kink_error(state) * Flat(weight_[state]);
-      worst = select(e <= worst, worst, e);
-    }
+    for (int i = watch.first; i < watch.first + watch.count; ++i)
+      add(kink * kink_error(static_cast<std::size_t>(i)));
   }
+  for (const int i : bent_) add(kink_error(static_cast<std::size_t>(i)));
   for (const int i : stopped_) {
     const auto state = static_cast<std::size_t>(i);
-    const Flat e = leaves_limit(state) * kink_error(state) * Flat(weight_[state]);
-    worst = select(e <= worst, worst, e);
+    add(leaves_limit(state) * kink_error(state));
   }
   return worst * h;
+}
+
+/// The method's own estimate of a state's error over h, weighted.
+template <class T>
+typename Lanes<T>::Flat Lanes<T>::own_error(std::size_t state) const {
+  T sum = T(dp54::error[0]) * k_[0][state];
+  for (int j = 2; j < dp54::kStages; ++j) sum = sum + T(dp54::error[j]) * k_[j][state];
+  return Traits::magnitude(sum) * Flat(weight_[state]);
 }
 
 /// 1 where a state held at its limit comes off it within the step, else 0.
@@ -78,7 +82,6 @@ typename Lanes<T>::Flat Lanes<T>::leaves_limit(std::size_t state) const {
 template <class T>
 typename Lanes<T>::Flat Lanes<T>::has_kink(const Watch& watch) const {
   const Flat zero(0.0), one(1.0);
-  if (watch.always) return one;
   const Flat moves = select(watch.same + watch.rested <= zero, zero, one);
   return select(Flat(dp54::kStages - 1) <= watch.same, zero, moves);
 }
@@ -92,7 +95,7 @@ void Lanes<T>::watch_stage(Watch& watch, const T& vs) {
   watch.last = now;
 }
 
-/// What a kink within the step may leave in a state, over h: see dp54::kink.
+/// What a kink within the step may leave in a state, over h, weighted: see dp54::kink.
 template <class T>
 typename Lanes<T>::Flat Lanes<T>::kink_error(std::size_t state) const {
   Flat worst(0.0);
@@ -103,7 +106,7 @@ typename Lanes<T>::Flat Lanes<T>::kink_error(std::size_t state) const {
     const Flat e = Traits::magnitude(sum);
     worst = select(e <= worst, worst, e);
   }
-  return worst * Flat(kKinkShare);
+  return worst * Flat(kKinkShare * std::max(weight_[state], kKinkWeight / options_.tolerance));
 }
 
 template <class T>

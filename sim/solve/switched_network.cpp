@@ -48,7 +48,7 @@ std::optional<SwitchedNetwork::Touched> SwitchedNetwork::touch(const Topology& t
   });
   auto& buses = touched.buses;
   std::ranges::sort(buses);
-  buses.erase(std::ranges::unique(buses).begin(), buses.end());
+  buses.erase(std::unique(buses.begin(), buses.end()), buses.end());
   if (static_cast<int>(buses.size()) > most) return {};
   const auto count = static_cast<Eigen::Index>(buses.size());
   const auto place = [&](int bus) { return std::ranges::lower_bound(buses, bus) - buses.begin(); };
