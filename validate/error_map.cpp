@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <numeric>
+#include <unsupported/Eigen/FFT>
 
 namespace swingbank::validate {
 namespace {
@@ -47,39 +49,47 @@ std::vector<double> autoregression(const std::vector<double>& r, std::size_t n) 
   return best;
 }
 
-/// Cosines of one window: mode k is a_k cos(pi k (2 i + 1) / 2n).
+/// Cosines of one window of n samples: mode k is a_k cos(pi k (2 i + 1) / 2n), of unit norm.
 class Cosines {
  public:
   explicit Cosines(std::size_t n) : n_(n), table_(4 * n) {
     for (std::size_t i = 0; i < 4 * n; ++i)
       table_[i] = std::cos(std::numbers::pi * static_cast<double>(i) / (2.0 * static_cast<double>(n)));
   }
-  [[nodiscard]] double coefficient(std::span<const double> x, std::size_t k) const {
-    double sum = 0;
-    std::size_t at = k % (4 * n_);
-    for (const double v : x) {
-      sum += v * table_[at];
-      at = (at + 2 * k) % (4 * n_);
-    }
-    return sum * std::sqrt((k == 0 ? 1.0 : 2.0) / static_cast<double>(n_));
+  /// Every mode's coefficient: the discrete cosine transform, by a Fourier transform of the samples in the
+  /// order even ones up, odd ones down (Makhoul 1980).
+  [[nodiscard]] std::vector<double> coefficients(std::span<const double> x) {
+    if (n_ == 1) return {x[0]};  // kissfft reads past the end of one sample
+    std::vector<std::complex<double>> folded(n_), modes;
+    for (std::size_t i = 0; i < n_; ++i) folded[i % 2 == 0 ? i / 2 : n_ - 1 - i / 2] = x[i];
+    fft_.fwd(modes, folded);
+    std::vector<double> c(n_);
+    for (std::size_t k = 0; k < n_; ++k)
+      c[k] = (modes[k].real() * table_[k] + modes[k].imag() * sine(k)) *
+             std::sqrt((k == 0 ? 1.0 : 2.0) / static_cast<double>(n_));
+    return c;
   }
-  /// Variance of the coefficient under noise: sum over lags d of covariance times sum_i b(i) b(i + d), which
+  /// Variance of a coefficient under noise: sum over lags d of covariance times sum_i b(i) b(i + d), which
   /// is a geometric series.
   [[nodiscard]] double variance(const NoiseModel& noise, std::size_t k) const {
-    const double n = static_cast<double>(n_), w = std::numbers::pi * static_cast<double>(k) / n;
+    const double n = static_cast<double>(n_);
     double sum = noise.covariance[0];
     for (std::size_t lag = 1; lag < std::min(noise.covariance.size(), n_); ++lag) {
-      const double d = static_cast<double>(lag), m = n - d;
-      const double overlap =
-          k == 0 ? m / n : (m * std::cos(w * d) + std::sin(m * w) * std::cos(w * n) / std::sin(w)) / n;
+      const double m = n - static_cast<double>(lag);
+      const std::size_t angle = 2 * k * lag;  // in units of pi / 2n
+      const double overlap = k == 0 ? m / n : (m * table_[angle % (4 * n_)] - sine(angle) / sine(2 * k)) / n;
       sum += 2 * noise.covariance[lag] * overlap;
     }
     return std::max(sum, 1e-3 * noise.covariance[0]);  // a truncated covariance can cancel
   }
 
  private:
+  /// sin(pi i / 2n).
+  [[nodiscard]] double sine(std::size_t i) const { return table_[(i + 3 * n_) % (4 * n_)]; }
+
   std::size_t n_;
   std::vector<double> table_;
+  Eigen::FFT<double> fft_;
 };
 
 /// Sums of a cell while it is filled.
@@ -114,17 +124,17 @@ struct WindowFilling {
 WindowFilling fill(std::span<const double> x, double step, const NoiseModel& noise, double start_error,
                    bool skip_mean, const std::vector<std::span<const double>>& shapes) {
   WindowFilling f;
-  const Cosines cosines(x.size());
+  Cosines cosines(x.size());
+  const std::vector<double> own = cosines.coefficients(x);
+  std::vector<std::vector<double>> parts;
+  for (const auto& shape : shapes) parts.push_back(cosines.coefficients(shape));
   const double length = static_cast<double>(x.size()) * step;
   for (std::size_t k = skip_mean ? 1 : 0; k < x.size(); ++k) {
     const double frequency = static_cast<double>(k) / (2 * length);
     double variance = cosines.variance(noise, k);
     if (k == 0) variance += static_cast<double>(x.size()) * start_error;
-    for (const auto& shape : shapes) {
-      const double part = cosines.coefficient(shape, k);
-      variance += part * part;
-    }
-    const double c = cosines.coefficient(x, k);
+    for (const auto& part : parts) variance += part[k] * part[k];
+    const double c = own[k];
     f.all.add(c, variance);
     for (std::size_t b = 0; b < std::size(kBands); ++b)
       if (frequency >= kBands[b].from && frequency < kBands[b].to && 2 * length * kBands[b].to >= 1)

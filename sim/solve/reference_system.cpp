@@ -278,11 +278,11 @@ void ReferenceSystem::residual(double t, const double* y, const double* yp, doub
 }
 
 std::vector<double> ReferenceSystem::error_weights() const {
-  constexpr double kStabiliser = 30.0, kExciter = 10.0;  // docs/decisions.md, entry 54
+  constexpr double kStabiliser = 30.0, kExciter = 10.0, kMachine = 10.0;  // docs/decisions.md, entries 54, 89
   std::vector<double> weight(static_cast<std::size_t>(size()), 1.0);
   for (const Unit& unit : plants_.units()) {
     if (!unit.plant) continue;
-    double* at = weight.data() + unit.first + unit.plant->machine.effect->states.size();
+    double* at = std::fill_n(weight.data() + unit.first, unit.plant->machine.effect->states.size(), kMachine);
     for (const Block& block : unit.plant->controls) {
       const Slot slot = block.effect->slot;
       const double w = slot == Slot::stabiliser ? kStabiliser : slot == Slot::exciter ? kExciter : 1.0;

@@ -65,7 +65,7 @@ class ReferenceSystem {
   void residual(double t, const double* y, const double* yp, double* f) const;
   /// Per unknown: what its error counts in step control. States of stabilisers and exciters stand before
   /// gains of some thousands and some ten, and before limits that turn a late state into a lasting error of
-  /// Efd.
+  /// Efd; those of machines behind an Efd that such a limit bends at once.
   [[nodiscard]] std::vector<double> error_weights() const;
   /// Takes states back to the limits they have crossed; true if any moved.
   bool clamp_states(double* y) const;
