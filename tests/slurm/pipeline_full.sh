@@ -36,7 +36,7 @@ job_state() { scontrol -o show job "$1" | grep -o 'JobState=[A-Z_]*' | sort -u |
 # signal_generate OUT JOB: as Slurm does before the time limit
 has_shards() { [[ $(grep -c . "$1/data/journal.jsonl" 2>/dev/null) -ge 3 ]]; }
 signal_generate() {
-  cluster_retry 60 has_shards "$1" || fail "generate has made nothing after 60 s"
+  cluster_retry 300 has_shards "$1" || fail "generate has made nothing after 300 s"
   scancel --batch --signal=USR1 "$2"
 }
 job_of() { awk -v stage="$1" '$1 == stage {print $2}' "$work/jobs"; }
