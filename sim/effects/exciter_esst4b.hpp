@@ -71,11 +71,22 @@ struct Model {
   /// Efd is VB, about 10 pu, times what the states say, without another lag.
   static constexpr double kSourceWeight = 10.0;
   enum X { Vm, xr, Va, xm };
-  static constexpr State states[] = {
-      {"Vm", "pu", "measured voltage", kSourceWeight},
-      {"xr", "pu", "integral of the voltage regulator", kSourceWeight, -1, -1, {}, -1, true},
-      {"Va", "pu", "voltage regulator, lagged", kSourceWeight, -1, -1, {}, -1, true},
-      {"xm", "pu", "integral of the inner regulator", kSourceWeight, -1, -1, {}, -1, true}};
+  static constexpr State states[] = {{"Vm", "pu", "measured voltage", kSourceWeight},
+                                     {.name = "xr",
+                                      .unit = "pu",
+                                      .meaning = "integral of the voltage regulator",
+                                      .weight = kSourceWeight,
+                                      .bends = true},
+                                     {.name = "Va",
+                                      .unit = "pu",
+                                      .meaning = "voltage regulator, lagged",
+                                      .weight = kSourceWeight,
+                                      .bends = true},
+                                     {.name = "xm",
+                                      .unit = "pu",
+                                      .meaning = "integral of the inner regulator",
+                                      .weight = kSourceWeight,
+                                      .bends = true}};
 
   static constexpr double kBand = 2e-3;  ///< beyond a limit, where a PI's integral comes to rest [pu]
 

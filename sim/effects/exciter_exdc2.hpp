@@ -66,11 +66,12 @@ struct Model {
     coefficients
   };
   enum X { Vm, leadlag, Vr, Efd, rate };
-  static constexpr State states[] = {{"Vm", "pu", "measured voltage"},
-                                     {"leadlag", "pu", "state of the lead-lag"},
-                                     {"Vr", "pu", "regulator output", 1.0, -1, -1, {}, -1, true},
-                                     {"Efd", "pu", "field voltage", 1.0, -1, -1, {}, -1, true},
-                                     {"rate", "pu", "state of the rate feedback"}};
+  static constexpr State states[] = {
+      {"Vm", "pu", "measured voltage"},
+      {"leadlag", "pu", "state of the lead-lag"},
+      {.name = "Vr", .unit = "pu", .meaning = "regulator output", .bends = true},
+      {.name = "Efd", .unit = "pu", .meaning = "field voltage", .bends = true},
+      {"rate", "pu", "state of the rate feedback"}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {

@@ -39,8 +39,8 @@ struct Model {
   enum X { Vm, leadlag, Va, rate };
   static constexpr State states[] = {
       {"Vm", "pu", "measured voltage", 1.0, -1, -1, {iTR}},
-      {"leadlag", "pu", "state of the lead-lag", 1.0, -1, -1, {iTB}, -1, true},
-      {"Va", "pu", "regulator output before the ceilings", 1.0, -1, -1, {}, -1, true},
+      {.name = "leadlag", .unit = "pu", .meaning = "state of the lead-lag", .moved_by = {iTB}, .bends = true},
+      {.name = "Va", .unit = "pu", .meaning = "regulator output before the ceilings", .bends = true},
       {"rate", "pu", "state of the rate feedback"}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
