@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/solve/measure.hpp"
+#include "sim/solve/measure_run.hpp"
 #include "sim/solve/reference.hpp"
 
 namespace swingbank::sim {

@@ -14,7 +14,7 @@
 #include "sim/core/law.hpp"
 #include "sim/network/event_text.hpp"
 #include "sim/solve/batch.hpp"
-#include "sim/solve/block_text.hpp"
+#include "sim/solve/attach.hpp"
 #include "sim/solve/event_choice.hpp"
 #include "sim/solve/load_choice.hpp"
 #include "sim/solve/reference.hpp"

@@ -3,7 +3,7 @@
 // document, after new cases; never after a look at cases already judged.
 #include <string>
 
-#include "validate/blind_score.hpp"
+#include "sim/core/rate.hpp"
 
 namespace swingbank::validate {
 

@@ -37,13 +37,6 @@ std::vector<std::string> together(const std::string& entry) {
   return names;
 }
 
-double wilson(const Rate& r, double sign) {
-  if (r.n == 0) return sign < 0 ? 0.0 : 1.0;
-  constexpr double z = 1.959963984540054;
-  const double n = r.n, p = r.value(), zz = z * z / n;
-  return (p + zz / 2 + sign * z * std::sqrt(p * (1 - p) / n + zz / (4 * n))) / (1 + zz);
-}
-
 ScoredCase read_truth(const fs::path& file) {
   std::ifstream in(file);
   const json j = json::parse(in, nullptr, false);
@@ -122,9 +115,6 @@ std::map<std::string, double> read_targets(const fs::path& file) {
 }
 
 }  // namespace
-
-double Rate::low() const { return std::max(0.0, wilson(*this, -1)); }
-double Rate::high() const { return std::min(1.0, wilson(*this, 1)); }
 
 bool ScoredCase::first_right() const {
   return (verdict.verdict == "missing" || verdict.verdict == "confusable") && !verdict.effects.empty() &&

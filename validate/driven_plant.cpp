@@ -8,7 +8,6 @@
 #include <numbers>
 #include <utility>
 
-#include "sim/solve/lane_schedule.hpp"
 #include "sim/solve/plant_equations.hpp"
 #include "sim/solve/tableau.hpp"
 
@@ -257,7 +256,7 @@ class Driven {
     t_ = std::max(t_, to);
   }
   static double grown(double error, double exponent) {
-    return sim::rough_power(static_cast<float>(error), static_cast<float>(exponent));
+    return sim::dp54::rough_power(static_cast<float>(error), static_cast<float>(exponent));
   }
   /// Makes k_[0] and the signals those of the states as they stand.
   void refresh() {

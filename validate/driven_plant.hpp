@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/solve/grid.hpp"
+#include "sim/solve/plant.hpp"
 #include "validate/record.hpp"
 #include "validate/voltage_curve.hpp"
 

@@ -9,7 +9,7 @@
 #include "sim/core/config.hpp"
 #include "sim/core/law.hpp"
 #include "sim/network/event_text.hpp"
-#include "sim/solve/block_text.hpp"
+#include "sim/solve/attach.hpp"
 #include "sim/solve/load_choice.hpp"
 #include "sim/solve/measure.hpp"
 #include "validate/record_check.hpp"

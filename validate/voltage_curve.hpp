@@ -1,13 +1,11 @@
 #pragma once
 // The recorded terminal voltage as a function of time: smooth between switching instants, never across one.
-#include <complex>
 #include <vector>
 
+#include "sim/core/complex.hpp"
 #include "validate/record.hpp"
 
 namespace swingbank::validate {
-
-using Complex = std::complex<double>;
 
 /// An instant at which the network changed. The voltage jumps there; samples at `time` itself count as before
 /// it.

@@ -1,12 +1,11 @@
 #pragma once
 // The positive-sequence network as read from a file: everything in per unit on base_mva, angles in rad.
-#include <complex>
 #include <string>
 #include <vector>
 
-namespace swingbank::sim {
+#include "sim/core/complex.hpp"
 
-using Complex = std::complex<double>;
+namespace swingbank::sim {
 
 enum class BusType { load = 1, generator = 2, slack = 3, isolated = 4 };
 

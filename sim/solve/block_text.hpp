@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "sim/solve/grid.hpp"
+#include "sim/solve/plant.hpp"
 
 namespace swingbank::sim {
 
@@ -18,13 +18,6 @@ struct Attachment {
 /// Reads "PLANT:EFFECT[:PARAM=VALUE,...]". Parameters not named keep the effect's standard value. Unknown
 /// names and what the effect's check() refuses become problems.
 Attachment read_attachment(const std::string& text, const std::string& where, Problems& problems);
-/// Puts an effect that was read into its plants. An unknown plant and a slot that is taken become problems.
-void attach(Grid& grid, const Attachment& attachment, const std::string& where, Problems& problems);
-
-/// "PLANT:EFFECT[:PARAM=VALUE,...]" puts an effect into a plant ("all": into every plant): any slot but
-/// machine and load. The two above in one.
-void attach(Grid& grid, const std::string& text, const std::string& where, Problems& problems);
-
 /// Puts a block into its slot of a plant, after what stands there already. Why it cannot, or nothing.
 std::optional<Problem> place(Plant& plant, Block block, const std::string& where);
 

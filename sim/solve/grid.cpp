@@ -349,17 +349,6 @@ std::vector<int> Grid::modelled_loads() const {
   return list;
 }
 
-std::vector<double> instants_of(const Plant& plant) {
-  std::vector<double> all;
-  for (const Block& block : plant.controls) {
-    if (!block.effect->instants) continue;
-    const auto more = block.effect->instants(block.effect->law.get(), block.p.data());
-    all.insert(all.end(), more.begin(), more.end());
-  }
-  std::ranges::sort(all);
-  return all;
-}
-
 Grid make_grid(Network network, const std::vector<DyrRecord>& dynamics, const std::string& dyr_name,
                Conventions conventions) {
   return GridMaker(std::move(network), dyr_name, conventions).make(dynamics);

@@ -1,19 +1,12 @@
 #pragma once
 // Time of one lane: its segments, its step and the rules by which the step grows and shrinks.
-#include <bit>
-#include <cstdint>
 #include <vector>
 
 #include "sim/network/event.hpp"
 #include "sim/solve/batch.hpp"
+#include "sim/solve/tableau.hpp"
 
 namespace swingbank::sim {
-
-/// x^p for the step controller only: relative error below 6 %, the same bits on every machine.
-inline float rough_power(float x, float p) {
-  const float log2 = static_cast<float>(std::bit_cast<std::int32_t>(x)) * 1.1920929e-7F - 126.94269504F;
-  return std::bit_cast<float>(static_cast<std::int32_t>((log2 * p + 126.94269504F) * 8388608.0F));
-}
 
 /// Step size control of a lane: proportional-integral (Hairer & Wanner II, IV.2), order 5.
 struct LaneClock {
@@ -42,7 +35,7 @@ struct LaneClock {
     if (!(e < 1e30F)) e = 1e30F;
     if (e < 1e-8F) e = 1e-8F;
     if (ok) {
-      float f = 0.9F * rough_power(e, -0.14F) * rough_power(last_error, 0.06F);
+      float f = 0.9F * dp54::rough_power(e, -0.14F) * dp54::rough_power(last_error, 0.06F);
       f = f > 4.0F ? 4.0F : (f < 0.3F ? 0.3F : f);
       const double grown = tried * f;
       const bool cut_short = tried < 0.999 * h;
@@ -50,7 +43,7 @@ struct LaneClock {
       if (h > kLongest) h = kLongest;
       last_error = e < 1e-3F ? 1e-3F : e;
     } else {
-      const float f = 0.85F * rough_power(e, -0.2F);
+      const float f = 0.85F * dp54::rough_power(e, -0.2F);
       h = tried * (f < 0.2F ? 0.2F : f);
     }
     return ok;

@@ -2,7 +2,7 @@
 // One consumer's equations: its current follows from the bus voltage and its states. For solvers that work
 // with sources behind constant impedances it is one too: E = V + z I, where z is the impedance the load has
 // at the operating point, so that a constant-impedance load is E = 0.
-#include "sim/solve/grid.hpp"
+#include "sim/solve/plant.hpp"
 
 namespace swingbank::sim {
 

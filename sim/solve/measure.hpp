@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/solve/grid.hpp"
-#include "sim/solve/trajectory.hpp"
+#include "sim/solve/plant.hpp"
 
 namespace swingbank::sim {
 
@@ -33,11 +32,5 @@ double memory(std::span<const Block> chain);
 
 /// "EFFECT[:PARAM=VALUE,...]" of the measurement slot. What is wrong becomes problems that name `where`.
 std::optional<Block> read_measurement(const std::string& text, const std::string& where, Problems& problems);
-
-/// Replaces V, theta, P and Q of every plant in the run by what is measured: the plant's own measurements,
-/// then `chain`. Needs those four channels. Returns the frequency they report [Hz], [plant][sample]. Plant i
-/// of the grid draws from its own random numbers. Throws InputError as phasors_of.
-std::vector<std::vector<double>> measure_run(const Grid& grid, std::span<const Block> chain,
-                                             std::uint64_t seed, Trajectory& run);
 
 }  // namespace swingbank::sim

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "sim/solve/grid.hpp"
+#include "sim/solve/plant.hpp"
 #include "sim/solve/plant_equations.hpp"
 
 namespace swingbank::sim {

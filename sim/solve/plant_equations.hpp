@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/solve/grid.hpp"
+#include "sim/solve/plant.hpp"
 
 namespace swingbank::sim {
 

@@ -10,7 +10,7 @@
 #include <fstream>
 
 #include "sim/core/config.hpp"
-#include "sim/solve/block_text.hpp"
+#include "sim/solve/attach.hpp"
 #include "support.hpp"
 #include "validate/play_in.hpp"
 

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <random>
 
-#include "sim/solve/block_text.hpp"
+#include "sim/solve/attach.hpp"
 #include "support.hpp"
 
 namespace swingbank::validate {

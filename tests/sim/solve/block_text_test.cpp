@@ -1,4 +1,4 @@
-#include "sim/solve/block_text.hpp"
+#include "sim/solve/attach.hpp"
 
 #include "../reference_support.hpp"
 

@@ -1,4 +1,4 @@
-#include "sim/solve/measure.hpp"
+#include "sim/solve/measure_run.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,0 +1,9 @@
+#pragma once
+// Phasors, impedances and powers.
+#include <complex>
+
+namespace swingbank {
+
+using Complex = std::complex<double>;
+
+}  // namespace swingbank
