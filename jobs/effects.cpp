@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "sim/core/law.hpp"
+#include "sim/core/library.hpp"
 
 namespace {
 using namespace swingbank;

@@ -12,6 +12,7 @@
 #include "mpi/store/durable.hpp"
 #include "sim/core/config.hpp"
 #include "sim/core/law.hpp"
+#include "sim/core/library.hpp"
 #include "sim/solve/attach.hpp"
 
 namespace swingbank {

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "sim/core/library.hpp"
 #include "validate/calibrate_slopes.hpp"
 #include "validate/in_parallel.hpp"
 #include "validate/judge.hpp"

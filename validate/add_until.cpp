@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "sim/core/library.hpp"
 #include "validate/add.hpp"
 #include "validate/diagnose.hpp"
 

@@ -1,5 +1,6 @@
 #include "validate/blind_effects.hpp"
 
+#include "sim/core/library.hpp"
 #include "sim/solve/block_text.hpp"
 
 namespace swingbank::validate {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/core/library.hpp"
 #include "sim/solve/block_text.hpp"
 #include "validate/blind_effects.hpp"
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mpi/store/durable.hpp"
+#include "sim/core/library.hpp"
 
 namespace swingbank::validate {
 namespace {

@@ -9,6 +9,7 @@
 #include <map>
 #include <random>
 
+#include "sim/core/library.hpp"
 #include "validate/instruments.hpp"
 
 namespace swingbank::validate {

@@ -9,6 +9,7 @@
 
 #include "sim/core/config.hpp"
 #include "sim/core/law.hpp"
+#include "sim/core/library.hpp"
 
 namespace swingbank::validate {
 namespace {

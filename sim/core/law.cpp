@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "sim/core/law_definition.hpp"
+#include "sim/core/library.hpp"
 
 namespace swingbank::sim {
 namespace law {

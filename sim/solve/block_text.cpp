@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "sim/core/library.hpp"
+
 namespace swingbank::sim {
 
 void set_parameters(Block& block, const std::string& text, const std::string& where, Problems& problems) {

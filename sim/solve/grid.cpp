@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 
+#include "sim/core/library.hpp"
 #include "sim/network/matpower.hpp"
 #include "sim/network/psse_text.hpp"
 #include "sim/solve/load_choice.hpp"

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/core/library.hpp"
 #include "sim/network/admittance.hpp"
 #include "sim/solve/block_text.hpp"
 

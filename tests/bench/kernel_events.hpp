@@ -2,6 +2,7 @@
 // What the kernel's benchmarks run: events and grids.
 #include <random>
 
+#include "sim/core/library.hpp"
 #include "sim/solve/batch.hpp"
 
 namespace swingbank::sim {

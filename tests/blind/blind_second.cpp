@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <map>
 
+#include "sim/core/library.hpp"
 #include "sim/solve/block_text.hpp"
 #include "tests/blind/second/drives.hpp"
 #include "validate/blind_effects.hpp"

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "sim/core/library.hpp"
 #include "sim/solve/block_text.hpp"
 #include "tests/blind/second/drives.hpp"
 #include "validate/play_in.hpp"

@@ -1,6 +1,7 @@
 // Law files: bytes -> effect -> a round-rotor machine with it at its operating point.
 #include "sim/core/law.hpp"
 
+#include "sim/core/library.hpp"
 #include "sim/solve/grid.hpp"
 #include "tests/fuzz/check.hpp"
 

@@ -8,6 +8,7 @@
 #include "mpi/shard_maker.hpp"
 #include "mpi/store/durable.hpp"
 #include "sample_shard.hpp"
+#include "sim/core/library.hpp"
 
 namespace swingbank {
 namespace {

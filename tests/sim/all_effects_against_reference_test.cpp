@@ -4,6 +4,7 @@
 #include <map>
 
 #include "random_grids.hpp"
+#include "sim/core/library.hpp"
 #include "sim/solve/batch.hpp"
 
 namespace swingbank::sim {

@@ -7,6 +7,7 @@
 
 #include "psse_stepper.hpp"
 #include "reference_support.hpp"
+#include "sim/core/library.hpp"
 
 namespace swingbank::sim {
 namespace {

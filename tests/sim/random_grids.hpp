@@ -6,6 +6,7 @@
 #include <set>
 
 #include "reference_support.hpp"
+#include "sim/core/library.hpp"
 #include "sim/solve/load_choice.hpp"
 #include "sim/solve/load_equations.hpp"
 

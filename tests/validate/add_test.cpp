@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sim/core/library.hpp"
 #include "support.hpp"
 
 namespace swingbank::validate {

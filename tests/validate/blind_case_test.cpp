@@ -7,6 +7,7 @@
 #include <fstream>
 #include <set>
 
+#include "sim/core/library.hpp"
 #include "tests/validate/support.hpp"
 #include "validate/blind_effects.hpp"
 #include "validate/blind_plan.hpp"

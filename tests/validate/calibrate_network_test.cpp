@@ -10,6 +10,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "sim/core/library.hpp"
 #include "support.hpp"
 #include "validate/side_by_side.hpp"
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 
+#include "sim/core/library.hpp"
 #include "support.hpp"
 #include "validate/calibrate_report.hpp"
 #include "validate/in_parallel.hpp"

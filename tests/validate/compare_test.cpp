@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "sim/core/library.hpp"
 #include "support.hpp"
 #include "validate/compare_report.hpp"
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "sim/core/library.hpp"
 #include "support.hpp"
 #include "validate/plant_file.hpp"
 #include "validate/side_by_side.hpp"

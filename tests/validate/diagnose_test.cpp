@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "sim/core/library.hpp"
 #include "support.hpp"
 #include "validate/instruments.hpp"
 

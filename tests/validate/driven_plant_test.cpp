@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/core/library.hpp"
 #include "validate/plant_model.hpp"
 #include "validate/play_in.hpp"
 

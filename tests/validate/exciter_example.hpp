@@ -1,5 +1,6 @@
 #pragma once
 // An example event and its plant, with an exciter whose lower limit is never met.
+#include "sim/core/library.hpp"
 #include "support.hpp"
 #include "validate/fit.hpp"
 #include "validate/instruments.hpp"

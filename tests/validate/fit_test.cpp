@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "exciter_example.hpp"
+#include "sim/core/library.hpp"
 #include "validate/fit_cost.hpp"
 
 namespace swingbank::validate {

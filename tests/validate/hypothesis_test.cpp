@@ -6,6 +6,7 @@
 #include <set>
 
 #include "exciter_example.hpp"
+#include "sim/core/library.hpp"
 #include "validate/fit_cost.hpp"
 
 namespace swingbank::validate {

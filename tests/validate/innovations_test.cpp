@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "sim/core/library.hpp"
 #include "validate/noise.hpp"
 #include "validate/plant_model.hpp"
 

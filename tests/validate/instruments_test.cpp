@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/core/library.hpp"
 #include "sim/solve/measure.hpp"
 #include "validate/fit.hpp"
 #include "validate/play_in.hpp"

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "exciter_example.hpp"
+#include "sim/core/library.hpp"
 
 namespace swingbank::validate {
 namespace {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/core/library.hpp"
 #include "support.hpp"
 #include "validate/write_file.hpp"
 

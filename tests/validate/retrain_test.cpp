@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "sim/core/config.hpp"
+#include "sim/core/library.hpp"
 #include "sim/solve/attach.hpp"
 #include "support.hpp"
 #include "validate/play_in.hpp"

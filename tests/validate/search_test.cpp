@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "exciter_example.hpp"
+#include "sim/core/library.hpp"
 
 namespace swingbank::validate {
 namespace {

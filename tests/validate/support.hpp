@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/core/library.hpp"
 #include "sim/solve/reference.hpp"
 #include "validate/record.hpp"
 #include "validate/voltage_curve.hpp"

@@ -1,6 +1,7 @@
 // Law files as texts: expressions, and what is refused.
 #include "../effects/control_bench.hpp"
 #include "law_support.hpp"
+#include "sim/core/library.hpp"
 
 namespace swingbank::sim {
 namespace {

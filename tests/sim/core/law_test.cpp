@@ -5,6 +5,7 @@
 #include "../reference_support.hpp"
 #include "law_support.hpp"
 #include "sim/core/law_definition.hpp"
+#include "sim/core/library.hpp"
 #include "sim/solve/batch.hpp"
 
 namespace swingbank::sim {

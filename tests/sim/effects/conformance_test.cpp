@@ -6,6 +6,7 @@
 #include <set>
 
 #include "sim/core/effect.hpp"
+#include "sim/core/library.hpp"
 
 namespace swingbank::sim {
 namespace {

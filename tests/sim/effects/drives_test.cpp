@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "../reference_support.hpp"
+#include "sim/core/library.hpp"
 #include "sim/solve/batch.hpp"
 
 namespace swingbank::sim {

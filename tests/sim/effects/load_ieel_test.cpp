@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "sim/core/library.hpp"
 #include "sim/solve/load_equations.hpp"
 
 namespace swingbank::sim {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/core/library.hpp"
 #include "sim/effects/load_cim6.hpp"
 #include "sim/solve/load_equations.hpp"
 

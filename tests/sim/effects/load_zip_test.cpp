@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "sim/core/library.hpp"
 #include "sim/solve/batch.hpp"
 #include "sim/solve/load_choice.hpp"
 #include "sim/solve/load_equations.hpp"

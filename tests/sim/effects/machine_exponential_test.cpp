@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/core/effect.hpp"
+#include "sim/core/library.hpp"
 #include "sim/core/saturation.hpp"
 
 namespace swingbank::sim {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/core/effect.hpp"
+#include "sim/core/library.hpp"
 
 namespace swingbank::sim {
 namespace {

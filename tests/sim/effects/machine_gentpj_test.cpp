@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/core/effect.hpp"
+#include "sim/core/library.hpp"
 #include "sim/solve/batch.hpp"
 #include "tests/sim/reference_support.hpp"
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/core/effect.hpp"
+#include "sim/core/library.hpp"
 
 namespace swingbank::sim::test {
 

@@ -2,6 +2,7 @@
 #include <cstring>
 
 #include "measurement_bench.hpp"
+#include "sim/core/library.hpp"
 
 namespace swingbank::sim {
 namespace {

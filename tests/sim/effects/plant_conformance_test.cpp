@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <random>
 
+#include "sim/core/library.hpp"
 #include "sim/solve/load_equations.hpp"
 #include "sim/solve/plant_equations.hpp"
 

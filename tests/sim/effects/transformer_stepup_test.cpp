@@ -1,5 +1,6 @@
 // A plant behind STEPUP against the same plant at its own bus behind the same transformer as a branch.
 #include "../reference_support.hpp"
+#include "sim/core/library.hpp"
 #include "sim/solve/batch.hpp"
 
 namespace swingbank::sim {

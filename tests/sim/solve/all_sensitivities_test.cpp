@@ -4,6 +4,7 @@
 
 #include "../reference_support.hpp"
 #include "reduced_system.hpp"
+#include "sim/core/library.hpp"
 
 namespace swingbank::sim {
 namespace {
