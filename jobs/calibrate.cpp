@@ -157,9 +157,8 @@ void add_options(CLI::App& app, Arguments& a, bool& inner) {
   app.add_flag("!--power-only", inner, "leave recorded speed, Efd and Ifd aside: compare P and Q only");
   app.add_flag("--json", a.json, "print the result as JSON instead of tables");
   app.footer(
-      "Exit codes: 0 the structure holds, 3 something is missing in it (curve-fit: more than noise is left), "
-      "1 "
-      "bad input.");
+      "Exit codes: 0 the structure holds, 3 something is missing in it "
+      "(curve-fit: more than noise is left), 1 bad input.");
 }
 
 }  // namespace

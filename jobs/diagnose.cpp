@@ -89,10 +89,9 @@ void declare(CLI::App& app, Command& c) {
       ->excludes(fleet);
   app.add_flag("--json", c.fleet.json, "print the result as JSON instead of text");
   app.footer(
-      "Exit codes: 0 adequate, 3 something is missing or unexplained, 1 bad input. Of a fleet: 0 all plants "
-      "are "
-      "adequate, 3 some plant is not, 1 some plant failed, 2 stopped by a signal (run it again to "
-      "continue).");
+      "Exit codes: 0 adequate, 3 something is missing or unexplained, 1 bad "
+      "input. Of a fleet: 0 all plants are adequate, 3 some plant is not, 1 "
+      "some plant failed, 2 stopped by a signal (run it again to continue).");
 }
 
 }  // namespace

@@ -32,8 +32,8 @@ void declare(CLI::App& app, Command& c) {
       "Simulates the dataset that a config describes into a folder of HDF5 shards (docs/formats.md).\n"
       "  swingbank generate configs/datasets/ieee39_gencls.toml --draws 4000 --out data/gencls\n"
       "  mpirun -np 8 swingbank generate ... on more cores: the data are the same to the last byte.\n"
-      "Run again, it makes what is missing. SIGTERM, SIGUSR1 or Ctrl-C end it softly: exit code 2, run it "
-      "again.");
+      "Run again, it makes what is missing. SIGTERM, SIGUSR1 or Ctrl-C end it softly: exit code 2, "
+      "run it again.");
   app.add_option("config", c.config, "the dataset's config (TOML)");
   app.add_option("--out", c.options.folder,
                  "dataset folder; new, empty, or an unfinished one of the same config");

@@ -80,11 +80,22 @@ json rate_json(const Rate& r) {
 
 std::string score_markdown(const BlindScore& score) {
   return fmt::format(
-      "# Blind test\n\n{} cases judged, {} without a verdict. Time per case: median {:.1f} s, longest {:.1f} "
-      "s.\n"
-      "Rates of single effects and of the side count effects from 2 detection limits up.\n\n## Rates\n\n{}\n"
-      "## Right effect first, against size\n\n{}\n## Confusion matrix\n\nFirst effect named, or the verdict "
-      "where none was.\n\n{}",
+      "# Blind test\n"
+      "\n"
+      "{} cases judged, {} without a verdict. Time per case: median {:.1f} s, longest {:.1f} s.\n"
+      "Rates of single effects and of the side count effects from 2 detection limits up.\n"
+      "\n"
+      "## Rates\n"
+      "\n"
+      "{}\n"
+      "## Right effect first, against size\n"
+      "\n"
+      "{}\n"
+      "## Confusion matrix\n"
+      "\n"
+      "First effect named, or the verdict where none was.\n"
+      "\n"
+      "{}",
       score.cases.size(), score.unjudged.size(), score.median_seconds, score.longest_seconds, rates(score),
       sizes(score), matrix(score));
 }

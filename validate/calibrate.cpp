@@ -358,11 +358,9 @@ class Run {
       if (s.after / s.limit > worst->after / worst->limit) worst = &s;
     const auto channel = std::ranges::max_element(worst->channels, {}, &ChannelScore::misfit_after);
     return fmt::format(
-        "Something is missing in the structure: what is left survives the refit of every parameter ({}). "
-        "Most "
-        "of it stands in {} of {}: {:.3g} {} rms where the noise is {:.3g} {}. 'swingbank diagnose' looks "
-        "for "
-        "what is missing.",
+        "Something is missing in the structure: what is left survives the refit of "
+        "every parameter ({}). Most of it stands in {} of {}: {:.3g} {} rms where "
+        "the noise is {:.3g} {}. 'swingbank diagnose' looks for what is missing.",
         left, output_name(channel->channel), worst->record, channel->rms_after, channel->unit, channel->noise,
         channel->unit);
   }

@@ -176,9 +176,8 @@ std::string terminal_report(const Calibration& c) {
         coloured->colour, coloured->record);
   if (std::ranges::any_of(c.parameters, [](const auto& p) { return strained(p.fit); }))
     text +=
-        "Some values lie further from the model's than --spread believes; the belief pulls at them and at "
-        "what "
-        "moves with them. Calibrate again from the new model, or with a larger --spread.\n";
+        "Some values lie further from the model's than --spread believes; the belief pulls at them and "
+        "at what moves with them. Calibrate again from the new model, or with a larger --spread.\n";
   for (const auto& blur : c.blurs) text += "- " + describe(c, blur) + "\n";
   const std::string events = identify_text(c);
   if (!events.empty()) text += "Which event would tell:\n" + events;

@@ -306,10 +306,8 @@ EventComparison compare_event(const PlantModel& model, Record record, const Comp
     play(model, DriveBy::power, options.play_in, e);
     e.notes.push_back(
         "P and Q drive the model. No network holds its angle, so a small lasting error of P grows into one "
-        "of "
-        "frequency and speed: both are shown, the verdict is about the voltage and the field. During a fault "
-        "the voltage answers "
-        "many times as strongly to noise of P and Q, so that window is not judged.");
+        "of frequency and speed: both are shown, the verdict is about the voltage and the field. During a "
+        "fault the voltage answers many times as strongly to noise of P and Q, so that window is not judged.");
   }
   return e;
 }

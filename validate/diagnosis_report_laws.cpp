@@ -94,11 +94,10 @@ void laws_on_page(const Diagnosis& d, Page& page) {
   if (s.kind == InputKind::none) return;
   page.section("A law for it");
   page.text(fmt::format(
-      "No known effect explains the records. The {} that would is plotted here over time and against every "
-      "signal "
-      "that a law could read. {} kinds of laws were ranked on it (at once, lagged, washed out, limited, "
-      "dead-banded, curved, periodic, or set off at a time or by the voltage), the leading {} fitted to the "
-      "records. A law is offered only if it predicts events that it was not fitted to.",
+      "No known effect explains the records. The {} that would is plotted here over time and against "
+      "every signal that a law could read. {} kinds of laws were ranked on it (at once, lagged, washed "
+      "out, limited, dead-banded, curved, periodic, or set off at a time or by the voltage), the leading "
+      "{} fitted to the records. A law is offered only if it predicts events that it was not fitted to.",
       input_name(s), s.ranked.size(), s.findings.size()));
   if (const LawFinding* f = s.found())
     page.note(fmt::format("Found: {}.", f->words));

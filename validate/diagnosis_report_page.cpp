@@ -53,8 +53,7 @@ class DiagnosisPage {
     page_.section("Events");
     page_.text(
         "Drag across a chart to zoom in on a stretch of time (all charts of an event follow); double-click "
-        "to see "
-        "the whole record. Shaded upright: the fault. Shaded level: the 99 % band of the noise.");
+        "to see the whole record. Shaded upright: the fault. Shaded level: the 99 % band of the noise.");
     for (std::size_t e = 0; e < figures_.events.size(); ++e) event(e);
     method();
     page_.provenance(rows_);
@@ -67,9 +66,8 @@ class DiagnosisPage {
 
   void at_a_glance() {
     Table table{
-        "Error of each event: RMS of the residual over all channels, in units of noise. 1 × means that "
-        "nothing "
-        "but noise is left.",
+        "Error of each event: RMS of the residual over all channels, "
+        "in units of noise. 1 × means that nothing but noise is left.",
         {"event", "model as it is, refitted"},
         {}};
     if (with_after()) table.header.push_back("with " + figures_.after_name);
@@ -181,9 +179,8 @@ class DiagnosisPage {
     page_.section("Parameters");
     const Fit& last = with_after() ? *figures_.after : d_.base;
     Table table{
-        "95 % intervals. The last column says how much of the interval the records decide; the rest is what "
-        "was "
-        "believed before.",
+        "95 % intervals. The last column says how much of the interval "
+        "the records decide; the rest is what was believed before.",
         {"parameter", "unit", "model file", "refitted as it is"},
         {}};
     if (with_after()) table.header.push_back("with " + figures_.after_name);
@@ -279,13 +276,10 @@ class DiagnosisPage {
         "standards set no numerical tolerance; stated here is the 99 % band of the noise, estimated before "
         "each event.");
     page_.text(
-        "“As it is” means the present structure with its parameters fitted to all events: what is wrong then "
-        "is not a "
-        "matter of parameters. A cell of the error map is the part of the residual in a window of time and a "
-        "band of "
-        "frequency, over what noise alone leaves there; the bound is kept by noise alone in all cells "
-        "together with "
-        "99.9 % probability.");
+        "“As it is” means the present structure with its parameters fitted to all events: what "
+        "is wrong then is not a matter of parameters. A cell of the error map is the part of "
+        "the residual in a window of time and a band of frequency, over what noise alone leaves "
+        "there; the bound is kept by noise alone in all cells together with 99.9 % probability.");
     page_.text(fmt::format("Computed in {:.0f} s.", d_.seconds));
   }
 

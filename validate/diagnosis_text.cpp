@@ -12,9 +12,9 @@ constexpr std::size_t kShown = 12;
 
 void add_inputs(const Diagnosis& d, std::string& text) {
   text += fmt::format(
-      "\nWhat is left [chi2 per value; 1: noise]: {:.2f} with the parameters refitted, {:.2f} with a torque "
-      "free in "
-      "time, {:.2f} with a field voltage free in time.\n",
+      "\n"
+      "What is left [chi2 per value; 1: noise]: {:.2f} with the parameters refitted, "
+      "{:.2f} with a torque free in time, {:.2f} with a field voltage free in time.\n",
       d.base.misfit(), d.torque.misfit(), d.field.misfit());
 }
 void add_hypotheses(const Diagnosis& d, std::string& text) {

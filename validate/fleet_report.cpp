@@ -84,12 +84,9 @@ std::string fleet_caution(const std::vector<FleetRow>& rows) {
   std::string text = "False verdicts: ";
   if (named)
     text += fmt::format(
-        "noise alone would name an effect at any of the plants that have one named with a probability of at "
-        "most "
-        "{:.0e}. That leaves out noise of the played-in voltage, instruments in error, records of another "
-        "plant, "
-        "effects "
-        "that are not in the list. ",
+        "noise alone would name an effect at any of the plants that have one named with a "
+        "probability of at most {:.0e}. That leaves out noise of the played-in voltage, "
+        "instruments in error, records of another plant, effects that are not in the list. ",
         std::clamp(any, 1e-12, 1.0));
   return text +
          "How often the diagnosis names an effect where nothing is missing, or misses one, is for the blind "

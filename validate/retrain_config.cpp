@@ -179,11 +179,25 @@ std::string experiment_text(const std::string& title, const std::vector<std::str
   for (const auto& c : channels) list += (list.empty() ? "\"" : ", \"") + c + "\"";
   return fmt::format(
       "# Written by swingbank add --retrain.\n"
-      "title = \"{}\"\ndataset = \"dataset.toml\"\nsplit = \"by-databank-point\"\n\n"
-      "[preset.retrain]\ndraws = {}\nnetworks = [\"{}\"]\nchannels = [{}]\nstart_s = {}\nend_s = {}\nslice = "
-      "1\n"
-      "form = \"both\"\npca_components = {}\nepochs = {}\nbatch = 64\nlearning_rate = 1e-3\n"
-      "schedule = \"cosine\"\npatience = {}\nvalidation_share = 0.1\n",
+      "title = \"{}\"\n"
+      "dataset = \"dataset.toml\"\n"
+      "split = \"by-databank-point\"\n"
+      "\n"
+      "[preset.retrain]\n"
+      "draws = {}\n"
+      "networks = [\"{}\"]\n"
+      "channels = [{}]\n"
+      "start_s = {}\n"
+      "end_s = {}\n"
+      "slice = 1\n"
+      "form = \"both\"\n"
+      "pca_components = {}\n"
+      "epochs = {}\n"
+      "batch = 64\n"
+      "learning_rate = 1e-3\n"
+      "schedule = \"cosine\"\n"
+      "patience = {}\n"
+      "validation_share = 0.1\n",
       title, o.draws, o.network, list, start, start + seconds, kComponents, o.epochs, o.epochs);
 }
 

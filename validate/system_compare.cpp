@@ -285,9 +285,8 @@ SystemComparison compare_system(const SystemCase& s) {
                     1e3 * c.uncertainty));
   if (s.steady_state == SteadyState::shift)
     c.notes.push_back(
-        "What differs before the event was taken off every channel (compare.steady_state = \"shift\"): only "
-        "what "
-        "the event does is judged. The table of the steady state shows it.");
+        "What differs before the event was taken off every channel (compare.steady_state = "
+        "\"shift\"): only what the event does is judged. The table of the steady state shows it.");
   return c;
 }
 

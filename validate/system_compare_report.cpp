@@ -153,11 +153,10 @@ void add_terminal(Page& page, const SystemCase& s, const SystemComparison& c, st
 
 Table ranking_table(const SystemCase& s, const SystemComparison& c) {
   Table table{
-      "Terminals, the one that fails most first. “Alone”: the recorded voltage of a plant played into its "
-      "own model, "
-      "so that neither the grid nor other plants can be to blame; those that fail so come first. Numbers are "
-      "the "
-      "largest cell of the error map over its bound: above 1 noise alone does not explain it.",
+      "Terminals, the one that fails most first. “Alone”: the recorded voltage of a "
+      "plant played into its own model, so that neither the grid nor other plants "
+      "can be to blame; those that fail so come first. Numbers are the largest cell "
+      "of the error map over its bound: above 1 noise alone does not explain it.",
       {"terminal", "at", "in the grid", "furthest off", "alone", "furthest off, alone"},
       {}};
   for (const auto& r : c.ranking) {

@@ -130,9 +130,8 @@ std::string heading(const TableBlock& block) {
 }
 std::string made_with(const TableBlock& block) {
   return fmt::format(
-      "Preset {}, dataset {} ({} rows, hash {}), seed {}. MSE: mean over the parameters of the squared error "
-      "in "
-      "raw units (s², pu²).",
+      "Preset {}, dataset {} ({} rows, hash {}), seed {}. MSE: mean "
+      "over the parameters of the squared error in raw units (s², pu²).",
       block.preset, block.dataset, block.rows, block.runs.front().dataset_hash, block.seed);
 }
 std::string verdict(const TableBlock& block) {

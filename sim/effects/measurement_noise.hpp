@@ -10,9 +10,9 @@ namespace swingbank::sim::measurement_noise {
 struct Model {
   static constexpr std::string_view name = "NOISE", title = "Gaussian noise of phasors and frequency",
                                     source =
-                                        "white noise by definition; Brown, Biswal, Brahma, Ranade, Cao, "
-                                        "\"Characterizing and quantifying noise in PMU data\", IEEE PESGM "
-                                        "2016";
+                                        "white noise by definition; Brown, Biswal, "
+                                        "Brahma, Ranade, Cao, \"Characterizing and "
+                                        "quantifying noise in PMU data\", IEEE PESGM 2016";
   static constexpr Slot slot = Slot::measurement;
   static constexpr std::string_view description = R"(
   V --( 1 + relative g1 )--( e^{j angle g2} )--( + V (g3 + j g4) )-- V'       I alike with its own g

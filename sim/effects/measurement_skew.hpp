@@ -8,8 +8,8 @@ namespace swingbank::sim::measurement_skew {
 struct Model {
   static constexpr std::string_view name = "SKEW", title = "time skew of the current against the voltage",
                                     source =
-                                        "displacement in time by definition; IEEE Std C37.118.1, 4.3 (time "
-                                        "stamps)";
+                                        "displacement in time by definition; "
+                                        "IEEE Std C37.118.1, 4.3 (time stamps)";
   static constexpr Slot slot = Slot::measurement;
   static constexpr std::string_view description = R"(
   I --[ delay of `skew` ]-- I'

@@ -125,9 +125,8 @@ struct Model {
       if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
     };
     bad(!(p[ICS] >= 1.0 && p[ICS] <= 6.0 && p[ICS] == std::floor(p[ICS])), fmt::format("ICS = {:g}", p[ICS]),
-        "IEEEST reads speed (1), frequency (2), electrical power (3), accelerating power (4), voltage (5) or "
-        "its "
-        "slope (6)",
+        "IEEEST reads speed (1), frequency (2), electrical power (3), "
+        "accelerating power (4), voltage (5) or its slope (6)",
         "give a whole number from 1 to 6");
     bad(!(p[Tf] > 0) || !std::isfinite(p[Tf]), fmt::format("Tf = {:g} s", p[Tf]),
         "frequency and slope are measured behind a lag", "give Tf > 0");

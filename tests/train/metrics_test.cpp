@@ -60,13 +60,24 @@ TEST(Experiment, WithoutATableOfTheThesisBearsTheFilesName) {
   const auto folder = std::filesystem::temp_directory_path() / fmt::format("experiment-test-{}", ::getpid());
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "data.toml") << "draws = 1\n";
-  std::ofstream(folder / "mine.toml")
-      << "title = \"mine\"\ndataset = \"data.toml\"\nsplit = \"by-databank-point\"\n[preset.quick]\ndraws = "
-         "60\n"
-         "networks = [\"cnn\"]\nchannels = [\"P\"]\nstart_s = 2.0\nend_s = 6.0\nslice = 1\nform = \"both\"\n"
-         "pca_components = 4\nepochs = 1\nbatch = 64\nlearning_rate = 1e-3\nschedule = \"cosine\"\npatience "
-         "= 1\n"
-         "validation_share = 0.1\n";
+  std::ofstream(folder / "mine.toml") << "title = \"mine\"\n"
+                                         "dataset = \"data.toml\"\n"
+                                         "split = \"by-databank-point\"\n"
+                                         "[preset.quick]\n"
+                                         "draws = 60\n"
+                                         "networks = [\"cnn\"]\n"
+                                         "channels = [\"P\"]\n"
+                                         "start_s = 2.0\n"
+                                         "end_s = 6.0\n"
+                                         "slice = 1\n"
+                                         "form = \"both\"\n"
+                                         "pca_components = 4\n"
+                                         "epochs = 1\n"
+                                         "batch = 64\n"
+                                         "learning_rate = 1e-3\n"
+                                         "schedule = \"cosine\"\n"
+                                         "patience = 1\n"
+                                         "validation_share = 0.1\n";
   const Experiment e = read_experiment(folder / "mine.toml");
   EXPECT_EQ(e.table, "mine");
   EXPECT_EQ(e.print("quick", "table"), "mine");

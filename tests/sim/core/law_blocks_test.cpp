@@ -94,10 +94,9 @@ std::string refusal(const std::string& text, Signals<double> s = test::ControlBe
 TEST(LawOperatingPoint, WhatCannotBeHeldIsRefusedWithASentence) {
   EXPECT_EQ(refusal(law_of("Efd", "replace", "value = \"3.5\"")),
             "it gives Efd = 3.5 pu where the machine needs 2 pu (a reference = \"solve\" would meet it)");
-  EXPECT_EQ(
-      refusal(law_of("Tm", "add", "value = \"0.1 * V\"")),
-      "it adds 0.1 pu to Tm where nothing has happened yet (subtract the value at the operating point, as in "
-      "V - V0)");
+  EXPECT_EQ(refusal(law_of("Tm", "add", "value = \"0.1 * V\"")),
+            "it adds 0.1 pu to Tm where nothing has happened yet (subtract "
+            "the value at the operating point, as in V - V0)");
   EXPECT_EQ(refusal(law_of("Tm", "add", "value = \"0.1 * (V - V0)\"")), "");
   EXPECT_EQ(refusal(law_of("Vs", "add",
                            "value = \"x\"\n[states.x]\nunit = \"pu\"\nmeaning = \"m\"\nderivative = \"1\"")),

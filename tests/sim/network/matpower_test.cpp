@@ -86,14 +86,33 @@ TEST(Matpower, TheSameCaseAsARawGivesTheSamePowerFlow) {
 
 TEST(Matpower, EveryFaultIsReportedAtOnceWithItsLine) {
   const std::string text =
-      "function mpc = bad\nmpc.version = '2';\nmpc.baseMVA = 0;\nmpc.bus = [\n"
-      "1 3 0 0 0 0 1 1 0 110 1 1.1 0.9;\n1 2 0 0 0 0 1 1 0 110 1 1.1 0.9;\n2 9 0 0 0 0 1 1 0 110 1 1.1 0.9;\n"
-      "3 1 NaN 0 0 0 1 1 0 110 1 1.1 0.9;\n4 1 0 0 0 0 1 0 0 110 1 1.1 0.9;\n5 1 0 0;\n6 1 1/3 0 0 0 1 1 0 "
-      "110 1 "
-      "1.1 0.9;\n7.5 1 0 0 0 0 1 1 0 110 1 1.1 0.9;\n];\n"
-      "mpc.gen = [\n9 0 0 1 -1 1 100 1 1 0;\n1 0 0 1 -1 0 0 1 1 0;\n3 0 0 1 -1 1 100 1 1 0;\n];\n"
-      "mpc.branch = [\n1 1 0 0.1 0 0 0 0 0 0 1;\n1 2 0 0 0 0 0 0 0 0 1;\n1 2 0 0.1 0 0 0 0 -1 0 1;\n];\n"
-      "mpc.branch(:, 3) = mpc.branch(:, 3) / 10;\nmpc.dcline = [1 2 1 10];\nmpc.gen = [1];\nx = 3;\n";
+      "function mpc = bad\n"
+      "mpc.version = '2';\n"
+      "mpc.baseMVA = 0;\n"
+      "mpc.bus = [\n"
+      "1 3 0 0 0 0 1 1 0 110 1 1.1 0.9;\n"
+      "1 2 0 0 0 0 1 1 0 110 1 1.1 0.9;\n"
+      "2 9 0 0 0 0 1 1 0 110 1 1.1 0.9;\n"
+      "3 1 NaN 0 0 0 1 1 0 110 1 1.1 0.9;\n"
+      "4 1 0 0 0 0 1 0 0 110 1 1.1 0.9;\n"
+      "5 1 0 0;\n"
+      "6 1 1/3 0 0 0 1 1 0 110 1 1.1 0.9;\n"
+      "7.5 1 0 0 0 0 1 1 0 110 1 1.1 0.9;\n"
+      "];\n"
+      "mpc.gen = [\n"
+      "9 0 0 1 -1 1 100 1 1 0;\n"
+      "1 0 0 1 -1 0 0 1 1 0;\n"
+      "3 0 0 1 -1 1 100 1 1 0;\n"
+      "];\n"
+      "mpc.branch = [\n"
+      "1 1 0 0.1 0 0 0 0 0 0 1;\n"
+      "1 2 0 0 0 0 0 0 0 0 1;\n"
+      "1 2 0 0.1 0 0 0 0 -1 0 1;\n"
+      "];\n"
+      "mpc.branch(:, 3) = mpc.branch(:, 3) / 10;\n"
+      "mpc.dcline = [1 2 1 10];\n"
+      "mpc.gen = [1];\n"
+      "x = 3;\n";
   std::string all;
   const auto problems = problems_of([&] { parse_matpower(text, "bad.m", 60.0); });
   const auto expect = [&](int line, const std::string& what) {

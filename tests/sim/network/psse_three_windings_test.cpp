@@ -18,8 +18,8 @@ using ::testing::HasSubstr;
 RawCase with(const std::string& transformer) {
   RawCase c;
   c.buses =
-      "101,'HIGH',110.0,3,1,1,1,1.05,0.0\n102,'MID',20.0,2,1,1,1,1.02,-0.9\n103,'LOW',10.0,1,1,1,1,0.99,-8."
-      "7\n";
+      "101,'HIGH',110.0,3,1,1,1,1.05,0.0\n102,'MID',20.0,2,1,1,1,1.02,-0.9\n"
+      "103,'LOW',10.0,1,1,1,1,0.99,-8.7\n";
   c.branches = "";
   c.transformers = transformer;
   return c;

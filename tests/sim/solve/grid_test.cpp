@@ -55,8 +55,8 @@ TEST(Grid, JoinsGeneratorsAndModels) {
 TEST(Grid, SeveralMachinesAtABusCarryTheirIds) {
   RawCase raw;
   raw.generators +=
-      "102,'B',50.0,0,100,-100,1.02,0,50,0.002,0.4,0,0,1,1\n102,'C',50.0,0,100,-100,1.02,0,50,0,0.4,0,0,1,"
-      "0\n";
+      "102,'B',50.0,0,100,-100,1.02,0,50,0.002,0.4,0,0,1,1\n"
+      "102,'C',50.0,0,100,-100,1.02,0,50,0,0.4,0,0,1,0\n";
   const Grid grid = load(raw, plain_dyr() + "102 'GENCLS' 'B' 3.0 1.0 /\n102 'GENCLS' 'C' 3.0 1.0 /\n");
   ASSERT_EQ(grid.plants.size(), 3u);  // C is out of service, its model is not a fault
   EXPECT_EQ(grid.plants[1].name, "102/1");

@@ -216,8 +216,8 @@ TEST(LoadRecords, AStarIsEveryLoadWithoutAModel) {
 TEST(LoadRecords, StepUpTransformersStandInTheRaw) {
   RawCase raw;
   raw.generators =
-      "101,'1',153.0,73.0,100,-100,1.05,0,100,0,0.3,0,0,1,1\n102,'1',100.0,-3.0,100,-100,1.02,0,125,0,0.25,"
-      "0.002,0.12,1,1\n";
+      "101,'1',153.0,73.0,100,-100,1.05,0,100,0,0.3,0,0,1,1\n"
+      "102,'1',100.0,-3.0,100,-100,1.02,0,125,0,0.25,0.002,0.12,1,1\n";
   Grid grid = load(raw, kPlants);
   EXPECT_EQ(grid.plants[0].transformer.effect, nullptr);
   const Block& step_up = grid.plants[1].transformer;
