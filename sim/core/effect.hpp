@@ -87,7 +87,7 @@ struct State {
   bool bends = false;
 };
 
-/// What simulators do differently, chosen by the origin of the data (docs/decisions.md), and what an effect
+/// What simulators do differently, chosen by the origin of the data (decision 07), and what an effect
 /// knows of its surroundings.
 struct Conventions {
   bool speed_voltage = true;     ///< the flux linkages' voltage is scaled by speed: E'' = (1 + w) psi''

@@ -278,7 +278,7 @@ void ReferenceSystem::residual(double t, const double* y, const double* yp, doub
 }
 
 std::vector<double> ReferenceSystem::error_weights() const {
-  constexpr double kStabiliser = 30.0, kExciter = 10.0, kMachine = 10.0;  // docs/decisions.md, entries 54, 89
+  constexpr double kStabiliser = 30.0, kExciter = 10.0, kMachine = 10.0;  // decision 05
   std::vector<double> weight(static_cast<std::size_t>(size()), 1.0);
   for (const Unit& unit : plants_.units()) {
     if (!unit.plant) continue;

@@ -185,7 +185,7 @@ TEST(AllEffectsAgainstReferenceFull, ThousandRandomEvents) {
   EXPECT_EQ(tally.seen, all_names());
 }
 
-/// Three grids with events that were beyond the limit before entry 88 of docs/decisions.md.
+/// Three grids with events that were beyond the limit before decision 04 was amended on 2026-11-23.
 TEST(AllEffectsAgainstReferenceFull, EventsOnceMissed) {
   const Grid plain = test::configured_grid("ieee39_dataset_genrou", Conventions::psse());
   const std::set<int> missed = {37, 45, 85};

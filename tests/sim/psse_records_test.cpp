@@ -34,7 +34,7 @@ double largest_angle_error(const std::string& dyr, const std::string& record, Co
 }
 
 /// The issue allows 0.02 degrees. Measured 0.0038 and 0.0040, which PSS/E's step of 5 ms makes (0.0002 with
-/// its own integration, docs/decisions.md); the former convention, with speed voltage, is off by 0.009.
+/// its own integration, decision 07); the former convention, with speed voltage, is off by 0.009.
 constexpr double kLimit = 0.006;
 
 TEST(PsseRecords, SaturatedGenrou) {
