@@ -11,12 +11,12 @@
 namespace swingbank::validate {
 namespace {
 
-/// What an instrument of a plant resolves [pu]: a tenth of a per cent of rated Efd and Ifd; speed from shaft
-/// pickups.
+/// An instrument of a plant resolves this much [pu]: a tenth of a per cent of rated Efd and Ifd, and of the
+/// speed what shaft pickups do.
 constexpr double kFieldNoise = 1e-3, kSpeedNoise = 2e-5;
-/// Norm of a difference in units of noise from which a test between two is sure.
+/// A test between two is sure if the norm of their difference, in units of noise, is at least this.
 constexpr double kSure = 10;
-/// A frequency that stays off by this shows what governors do [Hz].
+/// A frequency that stays off by this much [Hz] shows what governors do.
 constexpr double kLasting = 0.02;
 
 Response response_of(const Judgement& j, const FitEvent& e, const EventState& state) {

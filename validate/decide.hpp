@@ -6,8 +6,9 @@
 
 namespace swingbank::validate {
 
-/// A sentence: which channel that was not recorded would, or which kind of event; what neither would if so.
-/// Both are fitted to `events`, so their answers in P and Q are alike; their speed, Efd and Ifd need not be.
+/// A sentence that names the channel that was not recorded, or the kind of event, that would tell the two
+/// apart, or says that none would. Both are fitted to `events`, so their answers in P and Q are alike; their
+/// speed, Efd and Ifd need not be.
 std::string what_would_decide(const Judgement& x, const Judgement& y, const std::vector<FitEvent>& events);
 
 }  // namespace swingbank::validate

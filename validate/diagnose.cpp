@@ -17,17 +17,18 @@
 namespace swingbank::validate {
 namespace {
 
-/// Evidence that a long fit may add to a short one: what lies further behind the best is not judged.
+/// A long fit may add this much evidence to a short one. A hypothesis that lies further behind the best is
+/// not judged.
 constexpr double kWorthJudging = 200;
-/// How many are judged where none holds.
+/// So many hypotheses are judged where none holds.
 constexpr int kAtLeast = 3;
-/// Evidence and fall of chi2 asked of a second effect: what the first, or the instruments, leave unexplained
-/// looks like one (60 in a development case).
+/// A second effect needs this much evidence and this fall of chi2, because what the first effect or the
+/// instruments leave unexplained looks like a second one (60 in a development case).
 constexpr double kSecond = 80;
-/// Share of the best one's evidence from which a rival is near it.
+/// A rival is near the best one from this share of its evidence.
 constexpr double kNear = 0.2;
-/// Leading extensions from which the model alone is fitted once more; what that must gain, of the first one's
-/// evidence; and how often it may.
+/// The model alone is fitted once more from the kWaysOut leading extensions. The better fit counts if it
+/// gains kEscape of the first one's evidence, and this may happen kBases times.
 constexpr std::size_t kWaysOut = 2;
 constexpr double kEscape = 0.5;
 constexpr int kBases = 2;
@@ -58,7 +59,7 @@ class Diagnoser {
       result_.ranked =
           try_hypotheses(stage, all_hypotheses(stage.plant, stage.conventions), options_.progress);
       if (round == kBases || !better_base(from)) break;
-      result_.events = prepared;  // the noise was measured beside the worse one
+      result_.events = prepared;  // the noise was measured through the worse base
     }
     try_replacements();
     measure_noise_again();
@@ -88,8 +89,8 @@ class Diagnoser {
                         "correct the model or leave the record out"});
     report("base", 1, 1);
   }
-  /// Whether the model alone fits much better from where its leading extensions ended: then these were ways
-  /// out of a poor minimum. `from` gets the better one.
+  /// Whether the model alone fits much better from where its leading extensions ended. Then these were ways
+  /// out of a poor minimum. `from` gets the better fit's values.
   bool better_base(FitOptions& from) const {
     if (result_.ranked.empty() || result_.ranked.front().gain < kEvidence) return false;
     Judgement base;
@@ -101,7 +102,7 @@ class Diagnoser {
     from = continued({}, base.fit, free_parameters(model_.plant, options_.spread));
     return penalised(result_.base) - penalised(base.fit) > kEscape * result_.ranked.front().gain;
   }
-  /// Where nothing that could be added leaves only noise, what is there may be of another kind.
+  /// Where no addition leaves only noise, an effect that is there may be of another kind.
   void try_replacements() {
     const auto fits = [&](const Fit& f) { return f.misfit() <= options_.adequate; };
     if (fits(result_.base) || (!result_.ranked.empty() && fits(result_.ranked.front().fit))) return;
@@ -110,8 +111,8 @@ class Diagnoser {
     std::ranges::move(others, std::back_inserter(result_.ranked));
     std::ranges::stable_sort(result_.ranked, std::greater<>(), &Judgement::gain);
   }
-  /// A base that fits badly hides the noise: then it is measured through the leading extension, and all are
-  /// fitted on with that.
+  /// A base that fits badly hides the noise. The noise is then measured through the leading extension, and
+  /// all fits go on with it.
   void measure_noise_again() {
     if (result_.ranked.empty() || result_.base.misfit() < kClose) return;
     const Judgement& best = result_.ranked.front();
@@ -132,7 +133,7 @@ class Diagnoser {
     std::ranges::stable_sort(result_.ranked, std::greater<>(), &Judgement::gain);
   }
   void infer_inputs() {
-    FitOptions from;  // parameters bent far out of shape are no start
+    FitOptions from;  // parameters that are bent far out of shape are no start
     if (result_.base.misfit() < kClose)
       from = continued({}, result_.base, free_parameters(model_.plant, options_.spread));
     const auto infer = [&](std::size_t i) {
@@ -144,8 +145,8 @@ class Diagnoser {
         2, infer, [&](int done) { report("missing input", done, 2); }, threads_);
   }
 
-  /// Judges the leading hypotheses; then tries each beside the one that holds, or,
-  /// where none does, beside the best two.
+  /// Judges the leading hypotheses. Then tries each hypothesis beside the one that holds or, where none does,
+  /// beside the best two.
   void search() {
     const Stage stage = model_stage();
     judge_leading(result_.ranked);
@@ -156,7 +157,7 @@ class Diagnoser {
     try_alone(pairs);
     const auto unneeded = [&](const Judgement& j) { return !j.accepted || !needed(j); };
     std::erase_if(pairs, unneeded);
-    if (!pairs.empty()) {  // the first was chosen while the second was missing
+    if (!pairs.empty()) {  // the first effect was chosen while the second was missing
       auto others = exchanged(stage, pairs.front());
       std::erase_if(others, unneeded);
       std::ranges::move(others, std::back_inserter(pairs));
@@ -174,8 +175,8 @@ class Diagnoser {
             .spread = options_.spread,
             .threads = threads_};
   }
-  /// What the best single hypotheses, one of each slot, leave over for a second one; the next one only where
-  /// no pair holds beside the one before.
+  /// Tries pairs beside the best single hypotheses, one of each slot. The next single one is tried only if no
+  /// pair beside the one before holds.
   std::vector<Judgement> try_pairs(const Stage& stage) {
     std::vector<const Judgement*> firsts;
     for (const auto& j : result_.ranked) {
@@ -199,7 +200,7 @@ class Diagnoser {
     judge_leading(pairs);
     return pairs;
   }
-  /// Rivals of a pair's first effect in its place: those of its slot, and whatever else holds alone.
+  /// Rivals of a pair's first effect, fitted in its place: those of its slot, and whatever else holds alone.
   [[nodiscard]] std::vector<Judgement> exchanged(const Stage& stage, const Judgement& pair) const {
     auto rivals = exchanges(stage, pair, result_.ranked);
     each(rivals, "in place of " + pair.hypothesis.with, [&](Judgement& j) {
@@ -212,11 +213,11 @@ class Diagnoser {
     each(rivals, "unseen events", [&](Judgement& j) { judge_all(j); });
     return rivals;
   }
-  /// Every hypothesis beside one that is taken as given; evidence is that of both.
+  /// Fits every hypothesis beside one that is taken as given; the evidence is that of both.
   [[nodiscard]] std::vector<Judgement> beside(const Stage& stage, const Judgement& first) const {
     const Stage then = after(stage, first);
     auto pairs = try_hypotheses(then, all_hypotheses(then.plant, then.conventions), options_.progress);
-    // a rival of the best one may only have started badly
+    // a rival of the best hypothesis may only have started badly
     const int slot = pairs.empty() || pairs.front().gain < kSecond ? -1 : pairs.front().hypothesis.slot;
     std::erase_if(pairs, [&](const Judgement& j) {
       return j.gain < kSecond && (slot < 0 || j.hypothesis.slot != slot || !j.fitted);
@@ -224,7 +225,7 @@ class Diagnoser {
     for (auto& pair : pairs) pair.gain += first.gain;
     return pairs;
   }
-  /// Of A beside B and B beside A, the better.
+  /// Keeps the better one of "A beside B" and "B beside A".
   static void keep_one_order(std::vector<Judgement>& pairs) {
     std::vector<Judgement> kept;
     for (Judgement& j : pairs)
@@ -234,8 +235,8 @@ class Diagnoser {
         kept.push_back(std::move(j));
     pairs = std::move(kept);
   }
-  /// Each of the best pair's effects alone, from where the pair ended: what looks like a second effect may
-  /// only be a better start for the first.
+  /// Fits each of the best pair's effects alone, from where the pair ended. What looks like a second effect
+  /// may only be a better start for the first.
   void try_alone(const std::vector<Judgement>& pairs) {
     if (pairs.empty() || !pairs.front().accepted) return;
     const Judgement& pair = pairs.front();
@@ -251,21 +252,21 @@ class Diagnoser {
     }
     best_first(result_.ranked);
   }
-  /// Whether a pair explains what no single one does: the rival that was not taken may fit as well.
+  /// Whether a pair explains what no single effect explains. A rival that was not taken may fit as well.
   [[nodiscard]] bool needed(const Judgement& pair) const {
     return std::ranges::none_of(result_.ranked, [&](const Judgement& single) {
       return single.accepted &&
              (single.fit.chi2 - pair.fit.chi2 < kSecond || pair.gain - single.gain < kSecond);
     });
   }
-  /// Those that might still be as good as the best, accepted ones first after it; where none of them holds,
-  /// three.
+  /// Judges the hypotheses that might still be as good as the best one, and puts accepted ones first. Where
+  /// none of them holds, three are judged.
   void judge_leading(std::vector<Judgement>& tried) const {
     if (tried.empty()) return;
     give_rivals_a_chance(tried);
     const int most = std::min(options_.leading, static_cast<int>(tried.size()));
     int leading = 0;
-    for (double best = tried.front().gain;;) {  // judging may take some of the first ones' evidence away
+    for (double best = tried.front().gain;;) {  // judging may take away some of the first ones' evidence
       const int judged = leading;
       while (leading < most && tried[static_cast<std::size_t>(leading)].gain > best - kWorthJudging)
         ++leading;
@@ -277,7 +278,7 @@ class Diagnoser {
     if (none && leading < kAtLeast) judge_some(tried, leading, std::min(kAtLeast, most));
     best_first(tried);
   }
-  /// Of those that are accepted; of all where none is.
+  /// The best evidence among the accepted ones, or among all where none is accepted.
   static double best_gain(std::span<const Judgement> judged) {
     const auto better = [](const Judgement& x, const Judgement& y) {
       return x.accepted != y.accepted ? y.accepted : x.gain < y.gain;
@@ -288,7 +289,7 @@ class Diagnoser {
     each(std::span(tried).subspan(static_cast<std::size_t>(from), static_cast<std::size_t>(to - from)),
          "unseen events", [&](Judgement& j) { judge_all(j); });
   }
-  /// On unseen events, and beside the inputs free in time.
+  /// Judges on unseen events, and beside the inputs that are free in time.
   void judge_all(Judgement& j) const {
     judge(trial(), result_.base, held_out_base_, j);
     for (const auto& [m, what] : {std::pair(&result_.torque, "torque"), {&result_.field, "field voltage"}})
@@ -319,7 +320,7 @@ class Diagnoser {
     });
     std::ranges::stable_sort(tried, std::greater<>(), &Judgement::gain);
   }
-  /// Does something with each, on all cores.
+  /// Does something with each judgement, on all cores.
   template <class F>
   void each(std::span<Judgement> tried, const std::string& what, F act) const {
     in_parallel(

@@ -24,12 +24,13 @@ struct Diagnosis {
   Verdict verdict = Verdict::adequate;
   Side side = Side::none;
   std::string sentence;                 ///< the verdict as a grid engineer reads it
-  std::vector<std::string> effects;     ///< named: one, or several that act together
+  std::vector<std::string> effects;     ///< names of one effect, or of several that act together
   std::vector<std::string> equivalent;  ///< names that explain the records as well
-  std::string would_decide;             ///< what would tell the first of those apart; empty without one
-  Fit base;                             ///< the present structure, refitted
+  /// What would tell the best one from the first of `equivalent`; empty without one.
+  std::string would_decide;
+  Fit base;  ///< the present structure, refitted
   MissingInput torque, field;
-  LawSearch laws;                 ///< where no known effect explains the records
+  LawSearch laws;                 ///< laws that were searched, where no known effect explains the records
   std::vector<Judgement> ranked;  ///< best first
   std::vector<FitEvent> events;
   sim::Conventions conventions;  ///< of the model
@@ -42,7 +43,7 @@ struct DiagnoseOptions {
   int threads = 0;         ///< 0: as many as there are cores
   bool measured_states = true;
   int leading = 9;  ///< hypotheses at most that are judged on events left out
-  int firsts = 2;   ///< hypotheses that a second one is tried beside, in turn, where none holds alone
+  int firsts = 2;   ///< where no hypothesis holds alone, a second one is tried beside so many, in turn
   /// Called with what is done, done and total; may be empty.
   std::function<void(const std::string& what, int done, int total)> progress;
 };

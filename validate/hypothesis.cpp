@@ -17,10 +17,10 @@ namespace {
 
 using sim::Slot;
 
-constexpr std::size_t kDraws = 39;    ///< of an effect's parameters, as starts
-constexpr std::size_t kRedraws = 20;  ///< for one that is sound, at most
-constexpr double kShortest = 3e-3;    ///< of the time allowed, what the shortest draw takes
-constexpr double kSpread = 1.0;       ///< what is believed of an added effect's parameters: within a factor e
+constexpr std::size_t kDraws = 39;    ///< draws of an effect's parameters, as starts
+constexpr std::size_t kRedraws = 20;  ///< tries for each draw until one is sound, at most
+constexpr double kShortest = 3e-3;    ///< the shortest draw takes this share of the time allowed
+constexpr double kSpread = 1.0;       ///< an added effect's parameters are believed within a factor e
 
 Side side_of(Slot slot) {
   switch (slot) {
@@ -53,7 +53,7 @@ bool sound_block(const sim::Plant& plant, int block) {
   return sound({&block_effect(plant, block), sim::block_parameters(plant)[static_cast<std::size_t>(block)]});
 }
 
-/// Puts the block where its slot's order asks for; returns its index as a FreeParameter counts.
+/// Puts the block where its slot's order asks for. Returns its index, counted as in FreeParameter.
 int insert(sim::Plant& plant, sim::Block block) {
   const int first = plant.transformer.effect ? 2 : 1;
   if (block.effect->slot == Slot::transformer) {
@@ -79,10 +79,10 @@ bool occupied(const sim::Plant& plant, const sim::Effect& effect) {
   return false;
 }
 
-/// Draws about what the plant has of `free`, parameters of one block: which lie where the records ask for is
-/// found by trying. Half of the width is common to all parameters of a unit, so that points of one
-/// curve and its times keep their order; a draw that contradicts itself is drawn again. `within` > 0: the
-/// longest time is at most about that [s].
+/// Draws about the values that the plant has of `free`, parameters of one block. Only trying finds the draws
+/// that lie where the records ask for. Half of the width is common to all parameters of a unit, so that
+/// points of one curve and its times keep their order. A draw that contradicts itself is drawn again. If
+/// `within` is above 0, the longest time is at most about that [s].
 std::vector<std::vector<double>> draws(const sim::Plant& plant, const std::vector<FreeParameter>& free,
                                        std::size_t count, unsigned seed, double within = 0) {
   double longest = 0;

@@ -9,14 +9,15 @@
 namespace swingbank::validate {
 namespace {
 
-/// An event in which the effect hardly acts may be predicted worse by this, the refit's own scatter.
+/// An event in which the effect hardly acts may be predicted worse by this factor, which is the scatter of
+/// the refit itself.
 constexpr double kWorse = 1.02;
-/// Nor may it cost an unseen event more than this, or than this share of the evidence: what is really missing
-/// costs it nothing.
+/// An effect may cost an unseen event no more than the larger of kCosts in chi2 and of kCostsShare of its
+/// evidence. An effect that is really missing costs it nothing.
 constexpr double kCosts = 20, kCostsShare = 0.1;
-/// Cost per value up to which an unseen event is predicted; or its share of what it was.
+/// An unseen event is predicted if its cost per value is at most kPredicts, or at most kFalls of what it was.
 constexpr double kPredicts = 1.25, kFalls = 0.1;
-/// A finished fit is taken for a short one, which has no errors, unless its criterion is worse by this.
+/// A short fit has no errors, so the finished one takes its place unless its criterion is worse by this.
 constexpr double kSame = 0.5;
 
 }  // namespace

@@ -9,15 +9,15 @@
 
 namespace swingbank::validate {
 
-/// What the left-out event says: the model fitted to the others, with and without the effect.
+/// What a left-out event says of an effect, by the model fitted to the other events with and without it.
 struct HeldOut {
   std::string record;
   double before = 0, after = 0;  ///< chi2 per value
-  /// By how much the cost of the fit grows when this event joins it, per value: its chi2, allowing for what
-  /// the others leave open of the parameters.
+  /// By how much the cost of the fit grows for each value when this event joins it. This is the event's chi2,
+  /// less what the other events leave open of the parameters.
   double cost_before = 0, cost_after = 0;
   int values = 0;  ///< numbers compared
-  /// What the effect takes off the cost, not per value; negative where it costs.
+  /// What the effect takes off the cost of the whole event; negative where the effect costs.
   [[nodiscard]] double saves() const { return (cost_before - cost_after) * values; }
 };
 
@@ -27,7 +27,7 @@ struct Judgement {
   Fit fit;                        ///< to all events
   double gain = 0;                ///< criterion(base) - criterion(with it): evidence in its favour
   double size = 0;                ///< what it adds to the answer: norm of the change / noise, per sqrt(value)
-  std::vector<HeldOut> held_out;  ///< empty where it was not worth it
+  std::vector<HeldOut> held_out;  ///< empty where judging was not worth it
   bool fitted = true;             ///< false: the score test gave no hope; `fit` is without it
   bool accepted = false;
   std::string why_not;  ///< empty where accepted
@@ -37,7 +37,7 @@ struct Judgement {
 /// gave the best of some thirty wrong ones 20 at most.
 constexpr double kEvidence = 40;
 
-/// Those of the plant that a refit may move, then the hypothesis's own.
+/// Parameters of the plant that a refit may move, then the hypothesis's own parameters.
 std::vector<FreeParameter> free_of(const Hypothesis& h, double spread);
 
 /// Events to judge on, and what is known of them without any hypothesis.
@@ -46,20 +46,22 @@ struct Trial {
   double spread;                ///< believed of the model's parameters
   double adequate;              ///< chi2 per value up to which nothing but noise is left
   double evidence = kEvidence;  ///< from which a hypothesis is accepted
-  /// By the base, of the voltage's noise: to pass less of it is no evidence. Null: that is left aside.
+  /// Noise of the voltage that the base passes into its answer: to pass less of it is no evidence. Null: this
+  /// noise is not considered.
   const PassedNoise* passed = nullptr;
 };
 
-/// Each event predicted by the structure fitted to the others; `free` empty: the plant's own.
+/// Predicts each event by the structure fitted to the other events. Empty `free` means the plant's own
+/// parameters.
 std::vector<HeldOut> hold_out(const Trial& trial, const sim::Plant& plant,
                               const sim::Conventions& conventions, const std::vector<FreeParameter>& free,
                               const Fit& whole);
-/// What left-out events say against an effect of this evidence, by name of the event; empty: nothing.
-/// `adequate` as in Trial.
+/// Says which left-out event speaks against an effect of this evidence, and how. Empty if none does.
+/// `adequate` is that of Trial.
 std::string objection(const std::vector<HeldOut>& held_out, double evidence, double adequate);
-/// Nothing where it was not fitted. Else finishes the fit of `j` and accepts it if its evidence is
-/// strong, every left-out event is predicted better than by the base, and nothing but noise is left;
-/// otherwise says why not.
+/// Does nothing if `j` was not fitted. Otherwise finishes its fit and accepts it if its evidence is strong,
+/// every left-out event is predicted better than by the base, and nothing but noise is left. If not, says why
+/// not.
 void judge(const Trial& trial, const Fit& base, const std::vector<HeldOut>& held_out_base, Judgement& j);
 
 }  // namespace swingbank::validate

@@ -12,9 +12,9 @@ using namespace fitting;
 
 /// Share of a combination of changes, each of length 1, that counts as one of its own.
 constexpr double kOwn = 0.02;
-/// Of a change: what is left by rounding where the structure could do all of it.
+/// Share of a change that rounding leaves where the structure could make all of it.
 constexpr double kRounding = 1e-7;
-/// Squared norm of what two runs of one model may differ by: other states make other steps.
+/// Two runs of one model may differ by this squared norm, because other states make other steps.
 constexpr double kOtherSteps = 4;
 
 /// The residual of one event at the fit, and its slopes.
@@ -41,7 +41,7 @@ ScoreTest::ScoreTest(const std::vector<FitEvent>& events, const sim::Plant& plan
     : events_(events), fit_(fit) {
   Setting setting{&plant, &conventions, &events, {}, kFitTolerance, InputKind::none, {}};
   setting.knots.resize(events.size());
-  std::vector<double> at, belief;  // where the fit ended, and what is believed of it
+  std::vector<double> at, belief;  // where the fit ended, and what was believed there
   for (const auto& p : fit.parameters) {
     setting.axes.push_back(make_axis(plant, p.where));
     at.push_back(setting.axes.back().z(p.value));

@@ -16,20 +16,21 @@ namespace {
 constexpr int kFirstSteps = 4, kMoreSteps = 8, kNestedSteps = 12;
 /// Steps from each start beside a stage that nearly fits, and from the best of them.
 constexpr int kNearSteps = 3, kOnwardSteps = 9;
-/// ... and where what the stage has bent starts afresh.
+/// Steps of the fit that starts with the blocks which the stage has bent as the model has them.
 constexpr int kUnbentSteps = 8;
-/// Rounds of the latter, as long as each gains so much.
+/// A fit goes on in so many rounds at most, as long as each round gains kWorthARound.
 constexpr int kRounds = 5;
 constexpr double kWorthARound = 10;
-/// ... and where it is still worse than the stage, what a round may leave of that.
+/// A fit that is still worse than the stage goes on only if a round leaves less than this share of the
+/// distance to the stage.
 constexpr double kComing = 0.8;
 /// Misfit of the stage below which its fitted values are good starts for everything but what is missing.
 constexpr double kNested = 4;
-/// Starts that all hypotheses try; shares of the best one's gain from which further starts are tried, and
-/// from which a hypothesis is fitted on.
+/// All hypotheses try kFirst starts. Further starts are tried from a share of kFairAtFirst of the best one's
+/// gain, and a hypothesis is fitted on from a share of kFair.
 constexpr std::size_t kFirst = 2;
 constexpr double kFairAtFirst = 0.05, kFair = 0.2;
-/// ... and what lies so little behind the best one goes on in any case.
+/// What lies this little behind the best one goes on in any case.
 constexpr double kCloseBehind = 200;
 
 class Searcher {
@@ -44,7 +45,7 @@ class Searcher {
       std::vector<std::vector<Fit>> begun(candidates.size());
       each(candidates, "first steps ", [&](std::size_t i) { near_first(candidates[i], begun[i]); });
       auto onward = promising(candidates, begun, kFair);
-      // worse than nothing: not there yet, and another start is left
+      // a fit that is worse than nothing has not arrived yet, and another start is left
       for (std::size_t i = 0; i < candidates.size(); ++i)
         if (!candidates[i].unbent.empty() && gain_of(begun[i]) < 0) onward[i] = 1;
       each(candidates, "fit ", [&](std::size_t i) {
@@ -93,8 +94,8 @@ class Searcher {
   Fit attempt(const Candidate& c, const sim::Plant& start, const FitOptions& o) const {
     return fit(start, c.hypothesis.conventions, stage_.events, free_of(c.hypothesis, stage_.spread), o);
   }
-  /// From the standard values and from draws, in the order of the starts: the first so many, less those
-  /// begun.
+  /// Fits the first `tries` starts, the standard values and then the draws, leaving out those that `fits`
+  /// holds already.
   void first_steps(const Candidate& c, std::size_t tries, std::vector<Fit>& fits) const {
     FitOptions o;
     o.errors = false;
@@ -102,13 +103,14 @@ class Searcher {
     for (std::size_t k = fits.size(); k < std::min(c.starts.size(), tries); ++k)
       fits.push_back(attempt(c, c.starts[k], o));
   }
-  /// Of the best of them, over the stage; minus infinity without any.
+  /// What the best of the fits gains over the stage; minus infinity if there is none.
   double gain_of(const std::vector<Fit>& fits) const {
     double gain = -std::numeric_limits<double>::infinity();
     for (const Fit& f : fits) gain = std::max(gain, penalised(stage_.fit) - penalised(f));
     return gain;
   }
-  /// Those whose first steps gain a fair share of what the best one's do, and the rivals of its slot.
+  /// Marks the hypotheses whose first steps gain a fair share of what the best one's do, and the rivals of
+  /// its slot.
   std::vector<char> promising(const std::vector<Candidate>& candidates,
                               const std::vector<std::vector<Fit>>& begun, double share) const {
     std::vector<double> gains;
@@ -122,9 +124,9 @@ class Searcher {
     }
     return onward;
   }
-  /// Onward from the best draw, and from the standard values: these are not left out for being slow, draws
-  /// that hardly act always look better at first. Beliefs are about the start, not about where its first
-  /// steps led.
+  /// Goes on from the best draw and from the standard values. These are not left out for being slow, because
+  /// draws that hardly act always look better at first. Beliefs are about the start, not about where its
+  /// first steps led.
   Judgement more_steps(const Candidate& c, const std::vector<Fit>& begun) const {
     const auto free = free_of(c.hypothesis, stage_.spread);
     FitOptions o;
@@ -158,7 +160,7 @@ class Searcher {
     j.why_not = fmt::format("chi2 would fall by some {:.0f}: not worth a fit", c.promise);
     return j;
   }
-  /// Beside a stage that nearly fits, all else starts as that ended.
+  /// Fits from the values and states at which a stage that nearly fits has ended.
   Fit from_stage(const Candidate& c, const std::vector<double>& values, int steps) const {
     FitOptions o;
     o.errors = false;
@@ -181,13 +183,13 @@ class Searcher {
     fits.push_back(std::move(best));
     return judgement(c, scanned(c, std::move(fits)));
   }
-  /// The best of the fits, with what no slope sees at its best as well.
+  /// The best of the fits, after parameters without a slope have been scanned as well.
   std::vector<Fit> scanned(const Candidate& c, std::vector<Fit> fits) const {
     if (fits.empty()) return fits;
     return {past_blind(stage_, c.hypothesis, c.starts.front(),
                        std::move(*std::ranges::min_element(fits, {}, penalised)))};
   }
-  /// Fitted on as long as that is worth it.
+  /// Fits on in rounds, as long as that is worth it.
   Fit in_rounds(const Candidate& c, Fit best) const {
     FitOptions o;
     o.errors = false;
@@ -202,7 +204,7 @@ class Searcher {
     }
     return best;
   }
-  /// The best of the fits.
+  /// Makes a judgement of the best of the fits.
   Judgement judgement(const Candidate& c, std::vector<Fit> fits) const {
     Judgement j;
     j.hypothesis = c.hypothesis;
@@ -212,7 +214,7 @@ class Searcher {
     j.gain = criterion(stage_.fit) - criterion(j.fit);
     return j;
   }
-  /// The same fit; its evidence needs the errors.
+  /// The same fit with errors, which its evidence needs.
   Fit with_errors(const Candidate& c, Fit f) const {
     const auto free = free_of(c.hypothesis, stage_.spread);
     FitOptions o = continued({}, f, free);

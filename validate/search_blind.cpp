@@ -13,13 +13,13 @@ namespace {
 constexpr std::array<double, 10> kMultiples = {0.3, 0.5, 0.7, 0.85, 0.95, 1.05, 1.18, 1.4, 2.0, 3.3};
 /// Multiples at which it shows whether a parameter acts at all.
 constexpr double kLess = 0.7, kMore = 1.4;
-/// Change of chi2 from which it does.
+/// A parameter acts if it changes chi2 by this much.
 constexpr double kActs = 1;
-/// How many of the multiples get a fit: those that leave least as they are, three steps of what has slopes;
-/// of these the best, all parameters.
+/// The kFitted multiples that leave least get kOwnSteps steps of the parameters that have slopes. The kBest
+/// best of these get kAllSteps steps of all parameters.
 constexpr std::size_t kFitted = 12, kBest = 2;
 constexpr int kOwnSteps = 3, kAllSteps = 9;
-/// Rounds as long as each gains so much.
+/// So many rounds at most, as long as each round gains kWorthARound.
 constexpr int kRounds = 4;
 constexpr double kWorthARound = 10;
 
@@ -30,13 +30,14 @@ class BlindScan {
     std::vector<char> seen;
     try {
       seen = slopes();
-    } catch (const InputError&) {  // slopes make other steps, and these cannot be run
+    } catch (const InputError&) {  // a run with slopes takes other steps, and this one cannot be run
       return;
     }
     for (std::size_t i = 0; i < h.free.size(); ++i) (seen[i] ? seen_ : blind_).push_back(h.free[i]);
     std::erase_if(blind_, [this](const FreeParameter& f) { return idle(f); });
   }
-  /// The best of what was tried, all but the blind ones of the hypothesis as `from` has it.
+  /// The best of the values tried. Parameters of the hypothesis that have slopes are fitted for a few steps;
+  /// everything else is as `from` has it.
   [[nodiscard]] std::vector<Fit> best() const {
     std::vector<std::pair<double, sim::Plant>> starts;
     for (const auto& group : groups())
@@ -57,7 +58,7 @@ class BlindScan {
  private:
   using Group = std::vector<FreeParameter>;
 
-  /// Per parameter of the hypothesis: whether any event's answer has a slope along it.
+  /// For each parameter of the hypothesis, whether any event's answer has a slope along it.
   [[nodiscard]] std::vector<char> slopes() const {
     std::vector<Direction> along;
     for (const FreeParameter& f : h_.free)
@@ -83,14 +84,15 @@ class BlindScan {
     }
     return plant;
   }
-  /// Whether nothing changes with it, either way.
+  /// Whether neither a smaller nor a larger value changes anything.
   [[nodiscard]] bool idle(const FreeParameter& f) const {
     return std::ranges::all_of(std::array{kLess, kMore}, [&](double by) {
       const double left = left_by(multiplied({f}, by), h_.conventions, stage_.events, states_);
       return std::abs(left - from_.chi2) < kActs;
     });
   }
-  /// Each by itself, and those of one unit together: points of a curve do not cross then.
+  /// Each parameter by itself, and all parameters of one unit together, so that the points of a curve do not
+  /// cross.
   [[nodiscard]] std::vector<Group> groups() const {
     std::vector<Group> all;
     std::map<std::string, Group> by_unit;

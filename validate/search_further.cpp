@@ -8,7 +8,7 @@
 namespace swingbank::validate {
 namespace {
 
-/// Values of the `free` parameters of `like` from one plant to another, where both have them.
+/// Copies the values of the `free` parameters of `like` from one plant to another, where both have them.
 void copy_values(const sim::Plant& from, const sim::Plant& like, const std::vector<FreeParameter>& free,
                  sim::Plant& to) {
   for (const FreeParameter& f : free) {
@@ -19,8 +19,9 @@ void copy_values(const sim::Plant& from, const sim::Plant& like, const std::vect
   }
 }
 
-/// `values` of the hypothesis's free parameters, with those of its slot as the leader's effect there has them
-/// by the same name: effects of one slot share their textbooks' letters.
+/// Returns `values` of the hypothesis's free parameters, but takes those of its slot from the leader's effect
+/// there wherever that has a parameter of the same name and unit. Effects of one slot share the names of
+/// their textbooks.
 std::vector<double> by_name(const Hypothesis& h, std::vector<double> values, const sim::Plant& leader) {
   int there = 0;
   while (there < block_count(leader) && static_cast<int>(block_effect(leader, there).slot) != h.slot) ++there;
@@ -63,7 +64,7 @@ void try_further(const Stage& stage, const Fit& leader, Judgement& j) {
   constexpr std::size_t kFurther = 2;
   constexpr int kOwnSteps = 8, kAllSteps = 10;
   const Hypothesis& h = j.hypothesis;
-  // what both share, where the leader has it
+  // parameters that both share start at the leader's values
   Hypothesis led = h;
   for (const auto& p : leader.parameters) {
     const sim::Effect& effect = block_effect(leader.plant, p.where.block);
@@ -146,7 +147,7 @@ std::vector<Judgement> exchanges(const Stage& stage, const Judgement& pair,
   const auto all = all_hypotheses(stage.plant, stage.conventions);
   const auto first = std::ranges::find(all, pair.hypothesis.with, &Hypothesis::name),
              second = std::ranges::find(all, pair.hypothesis.name, &Hypothesis::name);
-  if (first == all.end() || second == all.end()) return {};  // one needs the other to be there
+  if (first == all.end() || second == all.end()) return {};  // one effect needs the other to be there
   Judgement stays;
   stays.hypothesis = *second;
   stays.fit.plant = second->plant;

@@ -10,27 +10,32 @@
 namespace swingbank::validate {
 namespace {
 
-/// Starts that the score test looks at, and of which the misfit is taken.
+/// The score test looks at kScored starts, and the misfit is taken of kScreened starts.
 constexpr std::size_t kScored = 6, kScreened = 10;
-/// ... and of draws that act, where standard values do not: each picks up elsewhere.
+/// The score test looks at more draws where the standard values do not act, because each of them picks up
+/// elsewhere.
 constexpr std::size_t kProvoked = 30;
 /// Misfit of a stage that nearly fits.
 constexpr double kNear = 1.5;
-/// Of the standard amplitude: where the answer is straight; the least that a start has.
+/// Shares of the standard amplitude: kSmall is where the answer is straight, kLeastShare is the least that a
+/// start has.
 constexpr double kSmall = 0.01, kLeastShare = 1e-3;
 /// Standard deviations of the belief from which a parameter is bent.
 constexpr double kBent = 2.0;
 /// Rise of chi2, as a multiple of what it is, from which no start leads back.
 constexpr double kOutOfReach = 100;
-/// Draws among which those that act are looked for; squared change, in units of noise, from which one does.
+/// Draws that act are looked for among kProvoking draws. A draw acts if the squared change of an event's
+/// answer, in units of noise, exceeds kActs.
 constexpr std::size_t kProvoking = 80;
-/// How far from a draw that cannot stand a start lies, of the way to one that does nothing; halvings with
-/// which the first that can is found.
+/// On the way from a draw that cannot be run to one that does nothing, kHalvings halvings find the first
+/// point that runs. A start lies beyond this point by one of these shares of the rest of the way.
 constexpr std::array<double, 4> kBeyond = {0.02, 0.05, 0.1, 0.2};
 constexpr int kHalvings = 6;
 constexpr double kActs = 10;
-/// Squared answer of what is off, in that of the standard values: more states make other steps. Where a
-/// limiter's timer runs they do so by more, but by less than what acts and than a tenth of the answer.
+/// An effect that is off still changes the answer a little, because more states make other steps. It is off
+/// if its squared answer is below kOff of that of the standard values. Where a limiter's timer runs, the
+/// steps differ by more, but by less than what acts (kActs) and than a tenth of the answer (kOffBeside of its
+/// square).
 constexpr double kOff = 1e-6, kOffBeside = 0.01;
 
 }  // namespace
@@ -164,7 +169,7 @@ std::vector<std::size_t> StartFinder::amplitudes(const Hypothesis& h,
                                                  const std::vector<double>& standard) const {
   const auto free = free_of(h, stage_.spread);
   std::vector<std::size_t> found;
-  std::size_t event = 0;  // the first in which it acts
+  std::size_t event = 0;  // the first event in which the effect acts
   double whole = 0;
   for (std::size_t e = 0; e < stage_.events.size() && !(whole > kActs); ++e)
     if (const double square = moves(h, with_values(h, free, standard), e); square > whole)
@@ -252,7 +257,7 @@ void StartFinder::score(const Hypothesis& h, std::size_t looks, Candidate& c) co
   c.promise = score_->joint_gain(changes);
   if (starts.empty() || std::ranges::none_of(changes, [](const auto& x) { return x.square > 0; })) return;
   c.starts = {believed(h)};
-  // a few large changes say little of a small one
+  // the gain of a few large changes says little about that of a small one
   if (c.promise < kHopeless && (!which.empty() || starts.size() >= std::min(h.starts.size(), looks))) return;
   c.unbent = unbent(h);
   const double reach = kOutOfReach * stage_.fit.chi2;

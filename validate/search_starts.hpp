@@ -8,22 +8,23 @@
 
 namespace swingbank::validate {
 
-/// Starts that are fitted.
+/// So many starts are fitted.
 constexpr std::size_t kTries = 4;
-/// Fall of chi2 below which a hypothesis is not worth a fit: half the evidence asked for.
+/// A hypothesis is not worth a fit if chi2 would fall by less than this, which is half the evidence asked
+/// for.
 constexpr double kHopeless = 20;
 
-/// A hypothesis with its starts: its standard values, then draws in order of what they leave before any fit.
-/// What leaves least may be what hardly acts.
+/// A hypothesis with its starts: its standard values, then draws in order of the misfit that they leave
+/// before any fit. A draw that leaves the least misfit may be one that hardly acts.
 struct Candidate {
   Hypothesis hypothesis;
   std::vector<sim::Plant> starts;
-  /// The stage as fitted, with each start: its misfit, and all free parameters. The standard start first, the
-  /// others as they suit the stage.
+  /// For each start beside the fitted stage, its misfit and the values of all free parameters. The standard
+  /// start comes first, and the others follow as they suit the stage.
   std::vector<std::pair<double, std::vector<double>>> nested = {};
-  /// Its standard start beside the stage as fitted, but for the blocks that the fit has bent: these as the
-  /// model has them. What is missing bends what stands nearest to it, and a short fit does not lead back.
-  /// Empty: none is bent.
+  /// Values of its standard start beside the fitted stage, but with the blocks that the fit has bent as the
+  /// model has them. A missing effect bends what stands nearest to it, and a short fit does not lead back.
+  /// Empty if no block is bent.
   std::vector<double> unbent = {};
   double promise = 0;  ///< by how much chi2 would fall, by the score test
 };
@@ -31,49 +32,51 @@ struct Candidate {
 class StartFinder {
  public:
   explicit StartFinder(const Stage& stage);
-  /// Whether the stage nearly fits: then the score test chooses.
+  /// Whether the stage nearly fits; the score test chooses the starts then.
   [[nodiscard]] bool near() const { return score_.has_value(); }
-  /// No starts: it does not act here.
+  /// The hypothesis with its starts; it has none where it does not act.
   [[nodiscard]] Candidate of(Hypothesis h) const;
   /// Candidate::unbent.
   [[nodiscard]] std::vector<double> unbent(const Hypothesis& h) const;
 
  private:
-  /// About what its parameters are believed: its first start, and what earlier stages brought as that was
-  /// believed.
+  /// The plant that beliefs are about: the hypothesis at its first start, and the parameters of earlier
+  /// stages at the values that were believed of them.
   [[nodiscard]] sim::Plant believed(const Hypothesis& h) const;
-  /// A limiter may wait for more than the standard values let it meet here: then draws that act are its
-  /// starts. False: they stay what they were.
+  /// A limiter may wait for more than its standard values let it meet in these records. Then draws that act
+  /// become its starts. Returns false where the starts stay as they were.
   bool provoke(Hypothesis& h) const;
   void screen(const Hypothesis& h, Candidate& c) const;
-  /// The stage as fitted, with this start: all free parameters.
+  /// Values of all free parameters, with this start beside the fitted stage.
   [[nodiscard]] std::vector<double> beside_fit(const Hypothesis& h, const std::vector<double>& start) const;
   [[nodiscard]] static sim::Plant with_values(const Hypothesis& h, const std::vector<FreeParameter>& free,
                                               const std::vector<double>& values);
-  /// Starts beside what was fitted, the standard one first, then as they suit the stage.
+  /// Fills in starts beside the fitted stage, the standard one first and then as they suit the stage.
   void nest(const Hypothesis& h, Candidate& c) const;
-  /// Parameters that switch the effect off at their neutral value, by their place in the free ones.
+  /// Parameters that switch the effect off at their neutral value, by their index in the free parameters.
   [[nodiscard]] std::vector<std::size_t> amplitudes(const Hypothesis& h,
                                                     const std::vector<double>& standard) const;
-  /// The stage as fitted, with this start.
+  /// The plant with this start beside the fitted stage.
   [[nodiscard]] sim::Plant beside(const Hypothesis& h, const std::vector<double>& start) const;
-  /// Squared change by this start of the first event's answer that it changes so much that it acts, else of
-  /// the one it changes most, in units of noise; NaN where it cannot be run.
+  /// Squared change of an event's answer by this start, in units of noise: of the first event in which it
+  /// acts, else of the event that it changes most. NaN where it cannot be run.
   [[nodiscard]] double largest_move(const Hypothesis& h, const std::vector<double>& start) const;
   /// Squared change of an event's answer, in units of noise; NaN where it cannot be run.
   [[nodiscard]] double moves(const Hypothesis& h, const sim::Plant& plant, std::size_t event) const;
-  /// Score test at the neutral point: each start as small as a first step along its amplitude would make it,
-  /// those with most to gain first, the standard one before them. What has no amplitude acts in full or not
-  /// at all: of its starts those first that raise chi2 least. Nothing to gain: no starts, not worth a fit.
-  /// Slopes of the first `looks` starts.
+  /// Runs the score test at the neutral point. Each start is as small as a first step along its amplitude
+  /// would make it. The standard start comes first, then those with most to gain. An effect without an
+  /// amplitude acts in full or not at all; its starts are ordered by how little they raise chi2. An effect
+  /// with nothing to gain gets no starts. Slopes are taken of the first `looks` starts.
   void score(const Hypothesis& h, std::size_t looks, Candidate& c) const;
-  /// A limiter that stands above its pickup at the start fails, one far below it does nothing: one that acts,
-  /// so far beyond the first between the two that runs; none if it does not.
+  /// A limiter that stands above its pickup at the start cannot be run, and one far below it does nothing.
+  /// Finds a start that acts by going `beyond` the first point between the two that runs; none if this start
+  /// does not act.
   [[nodiscard]] std::optional<std::vector<double>> between(const Hypothesis& h,
                                                            const std::vector<double>& failing,
                                                            const std::vector<double>& idle,
                                                            double beyond) const;
-  /// Misfit of a start, everything else as in the model; whether it acts at all.
+  /// Takes the misfit of a start with everything else as in the model, and notes whether it acts at all.
+  /// Returns false where it cannot be run.
   [[nodiscard]] bool answer(const sim::Plant& plant, const Hypothesis& h, double& misfit, bool& acts) const;
   /// Whether two answers differ by a hundredth of the noise somewhere.
   [[nodiscard]] static bool differ(const Response& x, const Response& y, const FitEvent& e);

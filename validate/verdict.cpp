@@ -15,16 +15,17 @@ namespace {
 
 /// Rivals within this evidence cannot be told apart.
 constexpr double kApart = 25;
-/// Share of what an effect takes off the unseen events' cost from which one event has all of it; share of
-/// that event's error down to which the others have not foretold it.
+/// An effect shows in one event alone if that event holds more than this share of what the effect takes off
+/// the cost of all unseen events (kAlone), and if the others, fitted without it, leave more than this share
+/// of its error (kForetold).
 constexpr double kAlone = 0.8, kForetold = 0.5;
 
-/// What noise leaves may be slow by so many standard deviations (slow_remainder). Thirty development cases
-/// with nothing hidden had 3.9 at most.
+/// The slow part of what noise leaves may exceed that of white noise by this many standard deviations
+/// (slow_remainder). Thirty development cases with nothing hidden had 3.9 at most.
 constexpr double kSlow = 8;
 
-/// Whether the records cannot tell `j` from `best`: by evidence, or by what they leave, for then the simpler
-/// one is named by taste.
+/// Whether the records cannot tell `j` from `best`. They cannot if their evidences are close. Nor can they if
+/// both leave about the same chi2, because the evidence then only prefers the simpler one.
 bool as_good(const Judgement& j, const Judgement& best) {
   return best.gain - j.gain < kApart ||
          (j.hypothesis.with == best.hypothesis.with && j.fit.chi2 - best.fit.chi2 < kApart);
@@ -35,7 +36,8 @@ std::string capitalised(std::string text) {
   return text;
 }
 
-/// On unseen events; of what shows in one event only, which no other can predict, there.
+/// Says how far the error falls on unseen events. No other event can predict an effect that shows in one
+/// event only; its error is then that of the fit to this event.
 std::string fall_of_error(const Fit& base, const Judgement& best) {
   double saved = 0, before = 0, after = 0;
   for (const auto& h : best.held_out) {
