@@ -16,7 +16,8 @@
 namespace swingbank::validate {
 namespace {
 
-/// Differences above it are strong evidence (Kass and Raftery, JASA 90, 1995, give 6 to 10).
+/// Differences of the criterion above this are strong evidence (Kass and Raftery, JASA 90, 1995, give 6 to
+/// 10).
 constexpr double kStrong = 10.0;
 
 std::string plain(const std::string& name) {
@@ -26,7 +27,7 @@ std::string plain(const std::string& name) {
   return out;
 }
 
-/// Events, those seen apart, and the model's own fits of them.
+/// The events, with those that are seen set apart, and the model's own fits of them.
 class Bench {
  public:
   Bench(const PlantModel& model, std::vector<Record> records, const CalibrateOptions& options)
@@ -47,7 +48,7 @@ class Bench {
   }
   [[nodiscard]] bool is_seen(std::size_t e) const { return !out_[e]; }
 
-  /// Every event by itself, only its own state free.
+  /// Fits every event by itself, with only its own state free.
   std::vector<EventFit> each(const sim::Plant& plant, const sim::Conventions& conventions,
                              const std::string& what) const {
     std::vector<EventFit> fits(all_.size());
@@ -116,7 +117,8 @@ Fit fit_with(const Hypothesis& h, const Bench& bench, const std::vector<EventSta
       [&](int done) {
         bench.tell("values of " + h.name + " screened", done, static_cast<int>(order.size()));
       });
-  std::ranges::sort(order.begin() + 1, order.end());  // what leaves least may be what hardly acts
+  // The start that leaves least may be one that hardly acts.
+  std::ranges::sort(order.begin() + 1, order.end());
   const std::size_t tries =
       std::min(order.size(), 1 + static_cast<std::size_t>(std::max(0, options.refined)));
   std::vector<Fit> fits(tries);
@@ -220,7 +222,7 @@ Addition add_effect(const PlantModel& model, const Hypothesis& hypothesis, std::
   }
   a.own = static_cast<int>(hypothesis.free.size());
   a.parameters = a.with.parameters;
-  // The effect's stand last in a fit.
+  // The effect's parameters stand last in a fit.
   std::rotate(a.parameters.begin(), a.parameters.end() - a.own, a.parameters.end());
   a.evidence = criterion(a.without) - criterion(a.with);
   const auto refitted = bench.each(a.without.plant, model.conventions, "events without the effect");

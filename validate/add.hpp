@@ -21,7 +21,7 @@ struct AddedEvent {
 struct Addition {
   Hypothesis hypothesis;
   PlantModel model;                         ///< with the effect and the fitted values
-  std::vector<FittedParameter> parameters;  ///< all that were free; those of the effect first
+  std::vector<FittedParameter> parameters;  ///< all parameters that were free; those of the effect come first
   int own = 0;                              ///< how many are the effect's
   std::vector<AddedEvent> events;
   double evidence = 0;    ///< criterion() without - with, over the events seen: above 10 is strong
@@ -41,8 +41,8 @@ Hypothesis find_hypothesis(const PlantModel& model, const std::string& name);
 Addition add_effect(const PlantModel& model, const Hypothesis& hypothesis, std::vector<Record> records,
                     const AddOptions& options);
 
-/// Taking out one control of a model (index into Plant::controls): what its evidence is, everything else
-/// refitted. The returned model lacks it.
+/// Takes out one control of a model (index into Plant::controls) and says what its evidence is with
+/// everything else refitted. The returned model lacks it.
 struct Removal {
   std::string effect;
   PlantModel model;
@@ -59,8 +59,8 @@ struct Completion {
   bool adequate = false;
   std::string sentence;
 };
-/// Diagnoses and adds, one effect at a time, `most` at most; after each, what was added before must still
-/// earn its place. Events held out are seen by neither diagnosis nor fit.
+/// Diagnoses and adds one effect at a time, `most` effects at most. After each addition, what was added
+/// before must still earn its place. Neither diagnosis nor fit sees the events held out.
 Completion add_until_adequate(const PlantModel& model, const std::vector<Record>& records,
                               const AddOptions& options, int most = 4);
 

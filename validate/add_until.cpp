@@ -18,8 +18,8 @@ std::vector<Record> seen_of(const std::vector<Record>& records, const std::vecto
   return seen;
 }
 
-/// What the diagnosis names; where it names nothing because more than one effect is missing, the hypothesis
-/// that improves every event it was not fitted to, with the best evidence.
+/// The effect that the diagnosis names. Where it names nothing because more than one effect is missing, this
+/// is the hypothesis with the best evidence among those that improve every event they were not fitted to.
 std::string next_effect(const Diagnosis& d) {
   if (!d.effects.empty()) return d.effects.front();
   const auto helps = [](const Judgement& j) {

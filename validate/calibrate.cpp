@@ -73,7 +73,8 @@ class Run {
   void tell(const std::string& what, int done, int total) const {
     if (options_.progress) options_.progress(what, done, total);
   }
-  /// Every event by itself, only its own state free. Seen events keep the state of the common fit if better.
+  /// Fits every event by itself, with only its own state free. Events that were seen keep the state of the
+  /// common fit if that is better.
   std::vector<EventFit> each_alone(const sim::Plant& plant, const std::string& what) const {
     std::vector<EventFit> fits(c_.prepared.size());
     in_parallel(
@@ -132,7 +133,7 @@ class Run {
     if (!best->failed.empty())
       throw InputError({"no start can be evaluated", model_.origin, best->failed, "correct the model"});
     c_.starts = static_cast<int>(fits.size());
-    // 1 % of the cost, or what one parameter's standard error costs
+    // near means 1 % of the cost, or what one parameter's standard error costs
     const double near = std::max(1.0, 0.01 * cost(*best));
     double values = 0;
     for (const auto& e : seen_) values += e.values();
@@ -149,8 +150,8 @@ class Run {
 
   static constexpr double kClose = 1.5;  ///< misfit above which something else pulls harder
 
-  /// What noise of the played-in voltage becomes behind the fitted plant is predicted from sample to sample;
-  /// the fit goes on with the rest.
+  /// Predicts from sample to sample what noise of the played-in voltage becomes behind the fitted plant; the
+  /// fit goes on with the rest.
   void whiten_voltage_noise() {
     Fit whole;
     whole.plant = c_.fit.plant;
@@ -172,7 +173,7 @@ class Run {
           {"the fitted model cannot be run again", model_.origin, c_.fit.failed, "fix parameters"});
     before_ = each_alone(model_.plant, "events with the model as it is");
   }
-  /// One Newton step from where noise of the played-in voltage has pulled the fit.
+  /// Takes one Newton step back from where noise of the played-in voltage has pulled the fit.
   void undo_voltage_noise() {
     const auto n = static_cast<Eigen::Index>(free_.size());
     std::vector<EventSlopes> slopes(seen_.size());
@@ -204,7 +205,7 @@ class Run {
     c_.fit.plant = plant;
     for (Eigen::Index i = 0; i < n; ++i) c_.fit.parameters[static_cast<std::size_t>(i)].value += shift_[i];
   }
-  /// Information less what noise pretends; no direction below zero.
+  /// Information less what noise pretends; no direction of it is below zero.
   Eigen::MatrixXd real(const Eigen::MatrixXd& data) const {
     if (pull_.information.size() == 0) return data;
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(data - pull_.information);
@@ -216,7 +217,7 @@ class Run {
     return data;
   }
 
-  /// Errors, correlations, what is not decided and by which event it would be.
+  /// Fills in errors, correlations, what is not decided, and the event that would decide it.
   void learn() {
     std::vector<EventSlopes> slopes(c_.prepared.size());
     in_parallel(
@@ -297,7 +298,8 @@ class Run {
     }
   }
 
-  /// What taking the noise back costs: the optimum itself lay lower, so it is no sign of a missing effect.
+  /// Allows for what taking the noise back costs. The optimum itself lay lower, so this cost is no sign of a
+  /// missing effect.
   void allow_correction() {
     double cost = 0, values = 0;
     for (std::size_t e = 0, seen = 0; e < after_.size(); ++e) {

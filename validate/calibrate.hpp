@@ -10,7 +10,7 @@
 
 namespace swingbank::validate {
 
-/// A further start of the search, and what it is called in reports.
+/// A further start of the search, and the name that reports give it.
 struct GivenStart {
   std::string name;
   sim::Plant plant;
@@ -19,7 +19,7 @@ struct GivenStart {
 struct CalibrateOptions {
   double spread = 0.2;  ///< relative uncertainty believed of the parameters
   int draws = 24;       ///< parameter sets tried as starts
-  int starts = 2;       ///< of them, refined beside the model's own values
+  int starts = 2;       ///< how many of these are refined beside the model's own values
   std::uint64_t seed = 1;
   std::vector<std::string> held_out;  ///< record names (or their numbers, from 1) left out of the fit
   std::vector<std::string> fixed;     ///< "GENROU.Xl": stays as it is
@@ -37,13 +37,13 @@ struct ChannelScore {
   double scale = 1;
   double noise = 0;                            ///< [unit]
   double rms_before = 0, rms_after = 0;        ///< of model - measured [unit]
-  double misfit_before = 0, misfit_after = 0;  ///< (rms / noise)^2: 1 is nothing but noise
+  double misfit_before = 0, misfit_after = 0;  ///< (rms / noise)^2; 1 means that nothing but noise is left
 };
 struct EventScore {
   std::string record;
   bool seen = true;              ///< false: left out of the fit; only its own state was fitted
   double before = 0, after = 0;  ///< chi2 per value
-  double limit = 0;              ///< of chi2 per value: above it, more than noise is left
+  double limit = 0;              ///< limit of chi2 per value; above it, more than noise is left
   double colour = 0;             ///< correlation of neighbouring samples of the pre-event residual
   std::vector<ChannelScore> channels;
   [[nodiscard]] bool adequate() const { return after <= limit; }
@@ -63,14 +63,14 @@ struct Blur {
 /// An event that the records do not hold, tried in simulation.
 struct Candidate {
   std::string what;
-  std::vector<double> error;  ///< standard error of each parameter with it added [unit]
+  std::vector<double> error;  ///< standard error of each parameter with this event added [unit]
 };
 
 struct CalibratedParameter {
   FittedParameter fit;         ///< error and interval: widened where the residual is coloured
-  double curvature_error = 0;  ///< as the curvature alone says
-  double shift = 0;            ///< what noise of the played-in voltage had moved it by, taken back [unit]
-  int best_candidate = -1;     ///< that would narrow it most; -1: none by a fifth
+  double curvature_error = 0;  ///< standard error as the curvature alone says
+  double shift = 0;            ///< shift by noise of the played-in voltage, which has been taken back [unit]
+  int best_candidate = -1;     ///< index of the event that would narrow the error most; -1: none by a fifth
   double narrowed = 1;         ///< its error with that event / without
 };
 
@@ -98,7 +98,7 @@ struct Calibration {
   std::vector<EventScore> events;
   double before = 0, after = 0, limit = 0;  ///< chi2 per value over the events seen
   int starts = 0, agreeing = 0;             ///< refined starts; how many came to the same optimum
-  std::vector<StartScore> started;          ///< each of them: the model's own, those given, those drawn
+  std::vector<StartScore> started;          ///< each refined start: the model's own, those given, those drawn
   bool converged = false;
   double voltage_noise = 0;        ///< share of the pre-event movement of V that is the instrument's
   Fit fit;                         ///< of the events seen
@@ -119,11 +119,12 @@ std::vector<FreeParameter> chosen_parameters(const sim::Plant& plant, double spr
 /// Which of the events are left out: by record name (with or without ending) or number from 1.
 std::vector<bool> held_out_events(const std::vector<Record>& records, const std::vector<std::string>& names);
 
-/// Samples that the noise was estimated from, less one per event.
+/// Number of samples that the noise was estimated from, less one for each event.
 int pre_event_samples(const std::vector<FitEvent>& events);
 
-/// Limit of chi2 per value for nothing but noise (one in a thousand exceeds it): for residuals as coloured as
-/// the event's pre-event stretch, noise estimated from `pre_event` samples; at least `least`.
+/// Limit of chi2 per value for nothing but noise, which one in a thousand exceeds. It allows for residuals as
+/// coloured as the event's pre-event stretch and for a noise that was estimated from `pre_event` samples, and
+/// is at least `least`.
 double misfit_limit(const FitEvent& event, const EventFit& fitted, int pre_event, double least);
 
 /// Misfit of one event before and after, seen or not.

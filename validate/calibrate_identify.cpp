@@ -71,7 +71,7 @@ FitEvent voltage_step(const FitEvent& like) {
   return Trial(like, {kAt}).with([](double t) { return t <= kAt ? 1.0 : 0.97; }, [](double) { return 0.0; });
 }
 
-/// As after a load rejection.
+/// The voltage rises as after a load rejection.
 FitEvent voltage_rise(const FitEvent& like) {
   const double end = kAt + 3.0;
   return Trial(like, {kAt, end})
@@ -84,7 +84,7 @@ EventState at_rest(const FitEvent& event) {
   return state;
 }
 
-/// The same event with speed, Efd and Ifd in place of what was recorded, as well measured as usual.
+/// The same event with speed, Efd and Ifd in place of what was recorded, measured as well as is usual.
 FitEvent inner_channels(FitEvent event) {
   event.channels = {Output::speed, Output::Efd, Output::Ifd};
   for (auto* channel : {&event.record.speed, &event.record.Efd, &event.record.Ifd})

@@ -10,8 +10,8 @@ namespace swingbank::validate {
 std::vector<Blur> find_blurs(const Eigen::MatrixXd& information, const Eigen::VectorXd& unit);
 
 /// Information of events that were not recorded, made by driving the plant with plain voltages: a frequency
-/// event, a deep fault, a lasting step of the voltage; and, where speed, Efd and Ifd were not recorded, of
-/// the same events with them. `variance`: of the played-in voltage's noise [V/V, rad].
+/// event, a deep fault, a lasting step of the voltage. Where speed, Efd and Ifd were not recorded, the same
+/// events with them follow. `variance` is that of the played-in voltage's noise [V/V, rad].
 struct TriedEvent {
   std::string what;
   Eigen::MatrixXd information;

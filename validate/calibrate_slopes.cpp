@@ -8,7 +8,7 @@ namespace {
 
 using Kind = Direction::Kind;
 
-/// States of an event: how far each is believed to be off, as in the fit.
+/// How far each state of an event is believed to be off, as in the fit.
 constexpr double kStateSpread[] = {0.02, 0.02, 0.02, 2e-4};  // P, Q [pu], angle [rad], speed [pu]
 constexpr Kind kStateKind[] = {Kind::P, Kind::Q, Kind::angle, Kind::speed};
 
@@ -53,7 +53,7 @@ EventSlopes event_slopes(const sim::Plant& plant, const sim::Conventions& conven
   run.start.Q += state.Q;
   run.angle = state.angle;
   run.speed = state.speed;
-  run.tolerance = 1e-7;  // slopes are to 1e-5 of themselves then
+  run.tolerance = 1e-7;  // slopes are then accurate to 1e-5 of themselves
   const Response r = drive(run, along);
 
   EventSlopes back;
@@ -67,7 +67,7 @@ EventSlopes event_slopes(const sim::Plant& plant, const sim::Conventions& conven
     const Eigen::VectorXd column = whitened(event, r.slopes[static_cast<std::size_t>(d)].value, false);
     (d < parameters ? back.slopes.col(d) : own.col(d - parameters)) = column;
   }
-  // with their beliefs (one unit each) the states absorb what the projection takes out
+  // the states, with their beliefs of one unit each, absorb what the projection takes out
   const Eigen::MatrixXd inner = own.transpose() * own + Eigen::MatrixXd::Identity(states, states);
   const auto solved = inner.ldlt();
   back.slopes -= own * solved.solve(own.transpose() * back.slopes).eval();

@@ -1,14 +1,15 @@
 #pragma once
-// What the records say of the parameters at a fitted point: slopes of the whitened answer, what each event's
-// own state absorbs taken out, and the information matrix made of them.
+// What the records say of the parameters at a fitted point: slopes of the whitened answer, without what each
+// event's own state absorbs, and the information matrix made of them.
 #include <Eigen/Dense>
 
 #include "validate/fit.hpp"
 
 namespace swingbank::validate {
 
-/// One unit of a parameter's axis in `information`: the change that its spread believes in. Relative where
-/// the parameter is above zero (the fit moves its logarithm), of the value's or the bounds' size otherwise.
+/// One unit of a parameter's axis in `information` is the change that its spread believes in. It is relative
+/// where the parameter is above zero (the fit moves its logarithm), and of the size of the value or the
+/// bounds otherwise.
 double axis_unit(const sim::Plant& plant, const FreeParameter& parameter);
 
 /// One event at a point of the fit.
@@ -26,8 +27,8 @@ EventSlopes event_slopes(const sim::Plant& plant, const sim::Conventions& conven
 /// J'J of one event: information on the parameters, in units of what their spreads believe.
 Eigen::MatrixXd information(const EventSlopes& e);
 
-/// Covariance of the scores J'r, samples up to `lags` apart taken together (Newey and West, Econometrica 55,
-/// 1987): what it is where the residual is coloured or larger than believed.
+/// Covariance of the scores J'r, with samples up to `lags` apart taken together (Newey and West, Econometrica
+/// 55, 1987). It holds where the residual is coloured or larger than believed.
 Eigen::MatrixXd score_covariance(const EventSlopes& e, int lags);
 
 }  // namespace swingbank::validate

@@ -1,15 +1,15 @@
 #pragma once
-// Noise of the measured voltage goes through the plant into the answer it is compared by, and into the slopes
-// along the parameters: a fit is then pulled to where the plant passes least of it (reactances too large),
-// and counts slopes that are noise as information. Whitening leaves that; what both amount to is computed and
-// taken back.
+// Noise of the measured voltage goes through the plant into the answer that the record is compared with, and
+// into the slopes along the parameters. A fit is then pulled to where the plant passes least of this noise
+// (reactances too large), and counts slopes that are noise as information. Whitening does not remove either;
+// both are computed here and taken back.
 #include "validate/calibrate_slopes.hpp"
 
 namespace swingbank::validate {
 
 struct VoltagePull {
   Eigen::VectorXd score;        ///< J'r expected at the truth, summed over the events' samples
-  Eigen::MatrixXd information;  ///< J'J that noise pretends
+  Eigen::MatrixXd information;  ///< J'J that noise alone makes, as if it were information
 };
 
 /// White noise of these variances [V/V, rad], played into the plant for a minute at the operating point of

@@ -13,7 +13,8 @@ namespace {
 
 using namespace fitting;
 
-/// A search of a few steps must not end on refused ones, which cost no slopes: so many more are tried.
+/// A search of a few steps must not end on refused steps, which cost no slopes. So kRefused more steps are
+/// tried where at most kFew are allowed.
 constexpr int kFew = 4, kRefused = 3;
 
 /// Counts the steps taken, and stops the search when they are enough.
@@ -102,7 +103,8 @@ class Search {
     o.num_threads = 1;  // hypotheses run side by side
     o.initial_trust_region_radius = 1e2;
     o.max_num_consecutive_invalid_steps = 12;
-    // a step that bounds cut short is tried as it is: the search along it costs several Jacobians a step
+    // A step that bounds cut short is tried as it is, because a search along it costs several Jacobians a
+    // step.
     o.max_num_line_search_step_size_iterations = 0;
     ceres::Solver::Summary summary;
     ceres::Solve(o, problem_.get(), &summary);
@@ -199,7 +201,8 @@ class Search {
     }
     fit.fitted += static_cast<int>(z_.size());
   }
-  /// Values and their errors: the inverse of the curvature, the events' states projected out.
+  /// Collects the values and their errors: the inverse of the curvature, with the events' states projected
+  /// out.
   void collect_parameters(Fit& fit) const {
     const auto n = static_cast<Eigen::Index>(z_.size());
     if (n == 0) return;
@@ -302,7 +305,7 @@ Drive drive_at(const sim::Plant& plant, const sim::Conventions& conventions, con
   run.angle = state.angle;
   run.speed = state.speed;
   run.tolerance = kFitTolerance;
-  // a limit that is met and left within a sample is no reason for short steps
+  // a limit that is met and left within one sample is no reason for short steps
   run.least_step = event.record.step() / 40;
   run.step_limit = 15 * event.record.samples();
   return run;

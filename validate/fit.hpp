@@ -63,7 +63,8 @@ struct FittedParameter {
   double error = 0;          ///< standard error from the curvature [unit]; NaN where the fit is singular
   double low = 0, high = 0;  ///< 95 % interval [unit], within the physical bounds
   bool at_bound = false;
-  /// Share of the interval that the records decide, the belief the rest: 0 nothing, 1 all.
+  /// Share of the interval that the records decide; the belief decides the rest. 0: the records decide
+  /// nothing, 1: all.
   double decided = 0;
 };
 
@@ -71,9 +72,9 @@ struct Fit {
   sim::Plant plant;  ///< with the fitted values
   std::vector<FittedParameter> parameters;
   std::vector<EventFit> events;
-  double chi2 = 0, belief = 0;  ///< of the data; of the spreads
+  double chi2 = 0, belief = 0;  ///< chi2 of the data, and the cost of the beliefs
   int values = 0, fitted = 0;   ///< numbers compared; free numbers, those of the events included
-  /// Log determinant of what records and beliefs know of the parameters, in units of what beliefs knew: a
+  /// Log determinant of what records and beliefs know of the parameters, in units of what the beliefs knew. A
   /// parameter that the records do not decide adds nothing. NaN without errors.
   double occam = 0;
   int iterations = 0;
@@ -82,10 +83,10 @@ struct Fit {
   [[nodiscard]] double misfit() const { return chi2 / values; }
 };
 
-/// What is minimised, where nothing but noise is left; infinite if the fit failed.
+/// The cost that is minimised, where nothing but noise is left; infinite if the fit failed.
 double penalised(const Fit& f);
-/// -2 log of the structure's evidence, up to what all structures share, by Laplace's approximation (MacKay,
-/// Neural Computation 4, 1992, p. 415); of a fit with errors.
+/// -2 log of the structure's evidence by Laplace's approximation (MacKay, Neural Computation 4, 1992, p.
+/// 415), up to what all structures share. Needs a fit with errors.
 double criterion(const Fit& f);
 
 constexpr double kFitTolerance = 1e-5;  ///< of the integration
@@ -101,16 +102,16 @@ struct FitOptions {
   double bend = 0.01;                  ///< second difference that the input is believed to have [pu]
 };
 
-/// To go on where `f` ended; beliefs stay about the plant that is fitted.
+/// Options to go on where `f` ended; beliefs stay about the plant that is fitted.
 FitOptions continued(FitOptions o, const Fit& f, const std::vector<FreeParameter>& free);
 
-/// The event's switchings where `state` has them.
+/// The event's switchings at the instants that `state` has.
 std::vector<Switching> switchings_at(const FitEvent& event, const EventState& state);
-/// The event played into a plant from `state`, as fits do it; the curve, through those switchings, is still
-/// to be set.
+/// The event played into a plant from `state`, as fits do it. The caller still sets the curve, which goes
+/// through those switchings.
 Drive drive_at(const sim::Plant& plant, const sim::Conventions& conventions, const FitEvent& event,
                const EventState& state);
-/// Fills in what `answer` leaves of the event: all but the state.
+/// Fills in everything but the state: what `answer` leaves of the event.
 void compare(const FitEvent& event, const Response& answer, EventFit& fit);
 
 /// Fits `free` parameters of the plant and every event's own state. A start that cannot be evaluated gives

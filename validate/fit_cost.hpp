@@ -14,10 +14,11 @@ namespace swingbank::validate::fitting {
 using Kind = Direction::Kind;
 
 constexpr int kStates = 4;  ///< P, Q, angle, speed
-/// One unit of each, as the search steps: far below any effect, far above rounding.
+/// One unit of each state, as the search steps: it is far below any effect and far above rounding.
 inline constexpr double kStateScale[kStates] = {1e-3, 1e-3, 1e-3, 1e-5};
 inline constexpr Kind kStateKind[kStates] = {Kind::P, Kind::Q, Kind::angle, Kind::speed};
-/// What a start is believed to be off by, in those units: a plant before an event nearly stands still.
+/// A start is believed to be off by so many of those units, because a plant nearly stands still before an
+/// event.
 inline constexpr double kStateBelief[kStates] = {20, 20, 20, 20};
 constexpr double kSwitchScale = 1e-3;  ///< [s]
 
@@ -27,7 +28,8 @@ struct Axis {
   double start, low, high;  ///< of the parameter
   bool logarithmic;
   double unit;  ///< of z, where linear
-  /// To 40 binary digits: parameters at the same bound stay equal wherever they started from.
+  /// The value is rounded to 40 binary digits, so that parameters at the same bound stay equal wherever they
+  /// started from.
   [[nodiscard]] double value(double z) const {
     const double v = logarithmic ? start * std::exp(z) : start + unit * z;
     if (v == 0 || !std::isfinite(v)) return v;
@@ -105,8 +107,8 @@ inline EventState event_state(const FitEvent& event, const double* s) {
   return at;
 }
 
-/// R, upper triangular, with the columns' products: R'R = e'e. A column that the others make leaves a zero
-/// row.
+/// R, upper triangular, has the same products of columns as e: R'R = e'e. A column that the others make
+/// leaves a zero row.
 inline RowMatrix triangle_of(const RowMatrix& e) {
   constexpr double kRounding = 1e-14;  // of a squared norm
   RowMatrix r = e.transpose() * e;
@@ -124,9 +126,9 @@ inline RowMatrix triangle_of(const RowMatrix& e) {
   return r;
 }
 
-/// What one event costs; parameter blocks: z of the plant (absent if none is free), state of the event. Ceres
-/// asks for nothing but products of residuals and slopes: it gets the triangle that has them, a row per
-/// column instead of one per value.
+/// What one event costs. The parameter blocks are z of the plant (absent if none is free) and the state of
+/// the event. Ceres asks for nothing but products of residuals and slopes, so it gets the triangle that has
+/// these products, with one row for each column instead of one for each value.
 class EventCost : public ceres::CostFunction {
  public:
   EventCost(const Setting& setting, std::size_t event)
@@ -158,8 +160,8 @@ class EventCost : public ceres::CostFunction {
     }
     return true;
   }
-  /// Whitened residuals of all values in the last column, before it slopes by z and by the state where asked;
-  /// empty where the plant cannot be run.
+  /// Whitened residuals of all values in the last column, and before it the slopes by z and by the state
+  /// where asked. Empty where the plant cannot be run.
   [[nodiscard]] RowMatrix values(const double* z, const double* state, bool slopes) const {
     const sim::Plant plant = moved(setting_, z);
     if (!can_run(plant)) return {};
@@ -188,7 +190,7 @@ class EventCost : public ceres::CostFunction {
       return {};
     }
   }
-  /// The run at a state; `switchings` get their moved instants.
+  /// Makes the run at a state; `switchings` get their moved instants.
   Drive make_drive(const sim::Plant& plant, const double* state, std::vector<Switching>& switchings) const {
     const EventState at = event_state(event_, state);
     switchings = switchings_at(event_, at);
@@ -245,7 +247,7 @@ class Bends : public ceres::CostFunction {
   double weight_;
 };
 
-/// z/spread, one residual each, in units of the misfit reached.
+/// The belief in each parameter: one residual z/spread, in units of the misfit reached.
 class Belief : public ceres::CostFunction {
  public:
   Belief(std::vector<double> spread, const double* discrepancy)

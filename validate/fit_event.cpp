@@ -15,7 +15,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Of the voltage, from each sample to the next [pu].
+/// Steps of the voltage from each sample to the next [pu].
 std::vector<Complex> steps_of(const Record& r) {
   const auto phasor = [&](std::size_t k) { return std::polar(r.V[k], r.theta[k]); };
   std::vector<Complex> step;
@@ -23,7 +23,7 @@ std::vector<Complex> steps_of(const Record& r) {
   return step;
 }
 
-/// How much each step stands out from those two and three before and after it [pu].
+/// How much each step stands out from the steps two and three before and after it [pu].
 std::vector<double> prominence(const std::vector<Complex>& step) {
   std::vector<double> d(step.size(), 0.0);
   for (std::size_t k = 3; k + 3 < step.size(); ++k)
@@ -31,7 +31,8 @@ std::vector<double> prominence(const std::vector<Complex>& step) {
                      std::abs(step[k] - step[k + 2]), std::abs(step[k] - step[k + 3])});
   return d;
 }
-/// Whether nothing in intervals first .. last stands out from steps as large: part of a fast swing.
+/// Whether intervals first .. last are part of a fast swing, where nothing stands out from steps of the same
+/// size.
 bool is_swing(const std::vector<Complex>& step, const std::vector<double>& d, std::size_t first,
               std::size_t last) {
   constexpr double kOfSwing = 0.25;
@@ -47,7 +48,7 @@ bool is_swing(const std::vector<Complex>& step, const std::vector<double>& d, st
 struct Smear {
   std::size_t first, last;
 };
-/// Leaves out what moves beside the jump: in a short fault the voltage drifts, step after like step.
+/// Leaves out what moves beside the jump, because the voltage drifts in a short fault, step after like step.
 Smear trimmed(const std::vector<Complex>& step, Smear jump, double limit) {
   double largest = 0;
   for (std::size_t i = jump.first; i <= jump.last; ++i) largest = std::max(largest, std::abs(step[i]));
@@ -59,7 +60,7 @@ Smear trimmed(const std::vector<Complex>& step, Smear jump, double limit) {
   while (jump.first < jump.last && !belongs(jump.last)) --jump.last;
   return jump;
 }
-/// A short fault's two jumps may have run together: they go opposite ways.
+/// The two jumps of a short fault may have run together. They are told apart because they go opposite ways.
 std::vector<Smear> told_apart(const std::vector<Complex>& step, Smear both, double limit) {
   constexpr double kBack = -0.15, kOn = 0.05;  // of the first jump's largest step
   Complex onward = step[both.first];
@@ -77,8 +78,8 @@ std::vector<Smear> told_apart(const std::vector<Complex>& step, Smear both, doub
   return {trimmed(step, {both.first, end}, limit), trimmed(step, {back, both.last}, limit)};
 }
 
-/// Whether the record's first jump is too large, and too sudden, to have passed a filter: that shares it out
-/// over two intervals, or begins in the interval before. Later ones may be a swing's.
+/// Whether the record's first jump is too large and too sudden to have passed a filter. A filter would share
+/// the jump out over two intervals, or begin in the interval before. Later jumps may be those of a swing.
 bool is_sharp(const Record& r, const std::vector<Switching>& found, double threshold) {
   constexpr double kClear = 10, kBegins = 0.03;
   if (found.empty()) return false;
@@ -102,7 +103,7 @@ Record without(const Record& record, const std::vector<char>& smeared) {
   return clean;
 }
 
-/// Last sample before V leaves what it was in the first half second; no switching need be found for that.
+/// Last sample before V leaves what it was in the first half second. This needs no switching to be found.
 double still_until(const Record& r) {
   constexpr double kFirst = 0.5, kOff = 8;  // [s]; standard deviations
   const auto n = static_cast<std::size_t>(std::lround(kFirst / r.step()));
@@ -119,8 +120,8 @@ double still_until(const Record& r) {
 FitEvent prepare(Record record, const FitEventOptions& options, Jumps jumps) {
   FitEvent e;
   e.record = std::move(record);
-  // half of what matters to the eye: a filter shares a jump out over two intervals, and one that is not found
-  // is played in as a ramp
+  // The threshold is half of what matters to the eye. A filter shares a jump out over two intervals, and a
+  // jump that is not found is played in as a ramp.
   e.switchings = find_switchings(e.record, options.jump_threshold / 2, jumps, e.smeared);
   if (std::ranges::count(e.smeared, 1) > 0)
     e.clean = without(e.record, e.smeared);
@@ -138,8 +139,8 @@ FitEvent prepare(Record record, const FitEventOptions& options, Jumps jumps) {
   return e;
 }
 
-/// One instrument smears all jumps over the same time: what is spread wider than every record's first jump is
-/// a fast swing.
+/// One instrument smears all jumps over the same time, so a step that is spread wider than every record's
+/// first jump is a fast swing.
 void drop_swings(std::vector<FitEvent>& events) {
   double widest = 0;
   for (const FitEvent& e : events)
@@ -169,7 +170,7 @@ std::vector<char> left_out(const FitEvent& e) {
   return marks;
 }
 
-/// Residual before the event, [channel][sample], each less its mean.
+/// Residual before the event, [channel][sample], with each channel's mean taken off.
 Eigen::MatrixXd quiet_residual(const sim::Plant& plant, const sim::Conventions& conventions,
                                const FitEvent& e) {
   const VoltageCurve curve(e.played(), e.switchings);

@@ -16,27 +16,29 @@ struct FitEvent {
   Record record;
   std::vector<Switching> switchings;  ///< where they were found; those with an uncertainty are fitted
   OperatingPoint start;
-  /// Marks samples that an instrument's filter has smeared over a switching: not played in. Empty: none is.
+  /// Marks samples that an instrument's filter has smeared over a switching; these are not played in. Empty:
+  /// no sample is.
   std::vector<char> smeared = {};
-  /// Marks samples that are not compared: the smeared ones, and those next to a sharp switching, on whose
-  /// other side a channel that is a millisecond late may be. Empty: none is.
+  /// Marks samples that are not compared: the smeared ones, and those next to a sharp switching, because a
+  /// channel that is a millisecond late may lie on the other side there. Empty: no sample is.
   std::vector<char> left_out = {};
-  /// Time, V and theta of the others, and what unsmear() brought back; empty where none is smeared.
+  /// Time, V and theta of the samples that are not smeared, and of those that unsmear() brought back. Empty
+  /// where none is smeared.
   Record clean = {};
   std::vector<Output> channels;  ///< measured ones: P, Q, then speed, Efd, Ifd where recorded
   Eigen::VectorXd noise;         ///< standard deviation per channel [pu]
   Eigen::MatrixXd whitening;     ///< W, lower triangular: W e has unit covariance where e is white noise
-  std::shared_ptr<const Innovations> memory = nullptr;  ///< of the noise, where it is not white
-  /// One of Response's answers or slopes ([output][sample]), less the measured values where asked: [compared
-  /// sample * channels + channel].
+  std::shared_ptr<const Innovations> memory = nullptr;  ///< memory of the noise, where it is not white
+  /// One of Response's answers or slopes ([output][sample]), with the measured values taken off where asked:
+  /// [compared sample * channels + channel].
   [[nodiscard]] Eigen::VectorXd collected(const std::vector<double>* values, bool less_measured) const;
   /// Whitens residuals, or changes of the answer, in place: [compared sample * channels + channel][column].
   void whiten(RowMatrix& e) const;
   [[nodiscard]] const std::vector<double>& measured(Output o) const;
-  /// What is played in.
+  /// The record that is played in.
   [[nodiscard]] const Record& played() const { return smeared.empty() ? record : clean; }
   [[nodiscard]] bool compared(std::size_t sample) const { return left_out.empty() || !left_out[sample]; }
-  /// Numbers that are compared.
+  /// How many numbers are compared.
   [[nodiscard]] int values() const {
     const auto missing = std::ranges::count(left_out, 1);
     return (record.samples() - static_cast<int>(missing)) * static_cast<int>(channels.size());
@@ -53,14 +55,14 @@ struct FitEventOptions {
   Jumps jumps = Jumps::either;  ///< either: the records tell (jumps_of)
 };
 
-/// Finds switchings although a filter may have spread their jumps over two or three sample intervals;
-/// `smeared` gets a mark per sample that lies inside such a jump or beside it. Where jumps are known to be
-/// spread the neighbours of sharp ones are marked too; where they are sharp, what is spread is a swing.
+/// Finds switchings even where a filter has spread their jumps over two or three sample intervals. `smeared`
+/// gets a mark for each sample that lies inside such a jump or beside it. If jumps are known to be spread,
+/// the neighbours of sharp ones are marked too; if they are known to be sharp, a spread step is a swing.
 std::vector<Switching> find_switchings(const Record& record, double threshold, Jumps jumps,
                                        std::vector<char>& smeared);
 
-/// What one instrument does, by all of its records: their first jumps decide, later ones may be a swing's.
-/// `either` where none tells.
+/// What one instrument does to jumps, by all of its records. Their first jumps decide, because later ones may
+/// be those of a swing. `either` where no record tells.
 Jumps jumps_of(const std::vector<Record>& records, double threshold);
 
 /// Prepares records that belong together (one plant, one instrument). The noise is that of the pre-event
@@ -70,15 +72,15 @@ Jumps jumps_of(const std::vector<Record>& records, double threshold);
 std::vector<FitEvent> prepare_events(const PlantModel& model, std::vector<Record> records,
                                      const FitEventOptions& options = {});
 
-/// Measures the noise anew with another model of the plant: a reactance that is a fifth wrong makes it a
-/// fifth wrong.
+/// Measures the noise anew with another model of the plant, because a reactance that is wrong by a fifth
+/// makes the noise wrong by a fifth.
 void measure_noise(const sim::Plant& plant, const sim::Conventions& conventions,
                    std::vector<FitEvent>& events);
 
 /// Interpolation between samples leaves residuals of this size where a record has no noise at all [pu].
 constexpr double kLeastNoise = 1e-4;
-/// The same of the speed [pu]: what 1e-4 pu of P, wrong for a tenth of a second, does to a machine of H = 1
-/// s.
+/// The same for the speed [pu]. It is what an error of 1e-4 pu of P that lasts a tenth of a second does to a
+/// machine of H = 1 s.
 constexpr double kLeastSpeedNoise = 5e-6;
 
 }  // namespace swingbank::validate

@@ -10,8 +10,9 @@ namespace swingbank::validate {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// x[k+1] = A x[k] + w, e[k] = C x[k] + v: covariance of w is Q, of v is S, of w with v is M; x[0] has P.
-/// Behind sample k, w has the covariance `doubtful[k]` times `jump` besides (empty: none has).
+/// x[k+1] = A x[k] + w, e[k] = C x[k] + v. The covariance of w is Q, that of v is S, that of w with v is M,
+/// and that of x[0] is P. Behind sample k, the covariance of w is larger by `doubtful[k]` times `jump`
+/// (empty: nowhere).
 struct SlowNoise {
   Eigen::MatrixXd A, C, Q, S, M, P, jump = {};
   std::vector<char> doubtful = {};
@@ -19,7 +20,7 @@ struct SlowNoise {
 
 class Innovations {
  public:
-  /// `samples` of a record; those marked in `left_out` (empty: none) are not compared.
+  /// Filters `samples` samples of a record; those marked in `left_out` (empty: none) are not compared.
   Innovations(const SlowNoise& noise, int samples, const std::vector<char>& left_out);
   /// Whitens every column of e [compared sample * channels + channel][column] in place.
   void whiten(RowMatrix& e) const;
@@ -28,7 +29,7 @@ class Innovations {
   struct Step {
     bool compared;
     Eigen::MatrixXd white;  ///< inverse root of the innovation's covariance, lower triangular
-    Eigen::MatrixXd gain;   ///< of the prediction by the innovation
+    Eigen::MatrixXd gain;   ///< gain by which the innovation corrects the prediction
   };
   Eigen::MatrixXd A_, C_;
   std::vector<Step> steps_;

@@ -10,12 +10,13 @@ namespace {
 
 using Kind = Direction::Kind;
 
-/// Samples of the answer per sample of the record, where instruments have a memory: what a jump smears over
-/// is that much shorter.
+/// Where instruments have a memory, the answer has so many samples for each sample of the record. A jump is
+/// then smeared over a time that is shorter by this factor.
 constexpr int kFine = 8;
-constexpr double kMove = 1e-5;  ///< of a parameter's range: of no consequence to the slope's error
+/// Step of a parameter as a share of its range; it is of no consequence to the slope's error.
+constexpr double kMove = 1e-5;
 
-/// What the chain makes of standing phasors.
+/// What the chain of instruments makes of standing phasors.
 struct Standing {
   Complex V = 1, I = 1;
 };
@@ -57,7 +58,7 @@ void thin(std::vector<T>& values, std::size_t stride) {
   values.resize(kept);
 }
 
-/// One run, and its slopes along what is not the instruments'.
+/// One run, and its slopes along directions that are not parameters of the instruments.
 class Observed {
  public:
   Observed(const Drive& run, std::span<const Direction> directions)
@@ -118,7 +119,8 @@ class Observed {
     inner_.record = &fine_;
     inner_.step_limit = run_.step_limit * kFine;
   }
-  /// Slopes along P and Q of the start are asked for as measured, and were taken as they are in the plant.
+  /// Turns slopes along P and Q of the start. They are asked for as measured, and were taken as they are in
+  /// the plant.
   void turn_starts(Response& r) const {
     const auto find = [&](Kind kind) {
       return std::ranges::find(directions_, kind, &Direction::kind) - directions_.begin();

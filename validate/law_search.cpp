@@ -17,19 +17,19 @@
 namespace swingbank::validate {
 namespace {
 
-constexpr double kLawSpread = 1.0;  ///< believed of a law's numbers: within a factor e of the regression's
+constexpr double kLawSpread = 1.0;  ///< a law's numbers are believed within a factor e of the regression's
 constexpr double kLeastExplained = 0.3;  ///< share of the inferred input below which a law is not tried
 constexpr std::size_t kFitted = 8;       ///< laws fitted to the records
-constexpr std::size_t kPerSignal = 3;    ///< of one signal
+constexpr std::size_t kPerSignal = 3;    ///< laws of one signal that are fitted, at most
 constexpr std::size_t kJudged = 3;       ///< laws judged on events left out
-/// Share of the base's misfit down to which an input must come to be worth a law.
+/// An input is worth a law if it leaves at most this share of the base's misfit.
 constexpr double kExplains = 0.3;
-/// An input that leaves no more than so many times what the better one leaves explains as much.
+/// An input explains as much as the better one if it leaves no more than this many times what that leaves.
 constexpr double kAsMuch = 1.5;
-/// chi2 per value after the first fit from which judging would be in vain.
+/// Judging would be in vain if the first fit leaves this chi2 per value or more.
 constexpr double kHopeless = 2;
 
-/// Whether every word of `a`'s family is one of `b`'s: then `b` is `a` with something more.
+/// Whether every word of `a`'s family is one of `b`'s; then `b` is `a` with something added.
 bool within(const LawCandidate& a, const LawCandidate& b) {
   const auto words = [](const std::string& family) {
     std::set<std::string> all;
@@ -43,7 +43,8 @@ bool within(const LawCandidate& a, const LawCandidate& b) {
   };
   return a.signal == b.signal && std::ranges::includes(words(b.family), words(a.family));
 }
-/// The leading ones, not all of one signal, and none that is another that answers better with something more.
+/// The leading laws. Not all of them are of one signal, and none of them is a better one with something
+/// added.
 std::vector<LawCandidate> leading(const std::vector<LawCandidate>& ranked) {
   std::map<std::string, std::size_t> of_signal;
   std::vector<LawCandidate> chosen;
@@ -54,8 +55,8 @@ std::vector<LawCandidate> leading(const std::vector<LawCandidate>& ranked) {
   }
   return chosen;
 }
-/// What a law must answer better by before it is preferred: one of the record's own time means something only
-/// where records begin alike, and one in proportion to the start says more than one that is not.
+/// By how much a law must answer better before it is preferred. A time of the record means something only
+/// where records begin alike, and a law in proportion to the start says more than one that is not.
 double handicap(const LawCandidate& law) {
   return (law.signal == "time" ? 6.0 : 0.0) + (law.family.ends_with("in proportion") ? 3.0 : 0.0);
 }

@@ -42,15 +42,15 @@ struct Unexplained {
 };
 using LawProgress = std::function<void(const std::string& what, int done, int total)>;
 
-/// Searches in the input that explains more; in the other too if that explains as much and the first gave no
-/// law. No search where neither takes away most of the misfit.
+/// Searches in the input that explains more. Searches in the other input too if that explains as much and the
+/// first one gave no law. Does not search where neither takes away most of the misfit.
 LawSearch search_laws(const Unexplained& case_, const LawProgress& report = {});
 
 /// "None of the 31 known effects explains it; a torque of ... does: ..."; empty without an accepted law.
 std::string law_sentence(const LawSearch& search, std::size_t hypotheses);
 
-/// The plant with the law's effect behind what stands in its slot; `block`: its index as FreeParameter
-/// counts.
+/// The plant with the law's effect behind what stands in its slot. `block` becomes its index, counted as in
+/// FreeParameter.
 sim::Plant with_law(const sim::Plant& plant, const sim::Effect& effect, int& block);
 
 }  // namespace swingbank::validate

@@ -9,10 +9,11 @@
 namespace swingbank::validate {
 namespace {
 
-constexpr double kRise = 0.05;  ///< of every beginning and end [s]: a jump would have no slope to follow
-constexpr double kEdge = 0.1;   ///< sine at which a square wave is at its height, for the same reason
+/// Length of every beginning and end [s], since a jump would have no slope to follow.
+constexpr double kRise = 0.05;
+constexpr double kEdge = 0.1;  ///< sine at which a square wave is at its height, for the same reason
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr int kHarmonics = 16;  ///< of a sawtooth: what is left out is 4 % of its square
+constexpr int kHarmonics = 16;  ///< harmonics of a sawtooth; those left out hold 4 % of its square
 
 double edge(double tau) { return std::clamp(tau / kRise, 0.0, 1.0); }
 double sawtooth(double turns) { return 2 * (turns - std::floor(turns)) - 1; }

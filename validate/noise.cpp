@@ -10,14 +10,16 @@
 namespace swingbank::validate {
 namespace {
 
-constexpr double kBeside = 0.1;             ///< left out on either side of a switching [s]
-constexpr double kMedianOfSquare = 0.4549;  ///< of a normal variable, in variances
-constexpr double kSecondDifference = 6;     ///< variance of x[k-1] - 2 x[k] + x[k+1], in that of white x
+/// Samples this close to a switching on either side are left out [s].
+constexpr double kBeside = 0.1;
+/// Median of the square of a normal variable, in units of its variance.
+constexpr double kMedianOfSquare = 0.4549;
+constexpr double kSecondDifference = 6;  ///< variance of x[k-1] - 2 x[k] + x[k+1], in that of white x
 /// Standard deviation of log(second differences / variance) of n white samples is sqrt(kOfRatio / n): the
 /// variance's 2 and the differences' 3.89, less twice the covariance's 2.
 constexpr double kOfRatio = 2 * 0.944;
 
-/// Residual of a channel, one event after the other; samples that do not count break it.
+/// Residual of a channel, one event after the other. Samples that do not count interrupt it.
 struct Channel {
   std::vector<double> square;        ///< second differences, of the whole records
   double quiet = 0, quiet_hf = 0;    ///< before the events: variance, mean square second difference
@@ -58,10 +60,12 @@ double ratio(Channel channel) {
 }
 
 constexpr double kLow = 3.0, kHigh = 10.0;  ///< band in which the voltage's noise is measured [Hz]
-constexpr double kGuess = 2e-3;             ///< what V may be off by beside a switching, of itself
-constexpr char kSmeared = 40;               ///< ... and its square, as a multiple, where V was brought back
-constexpr double kLeft = 0.01;              ///< of a channel's variance: its own noise, at least
-constexpr double kMatters = 1e-3;           ///< variance of slow noise over that of white noise
+constexpr double kGuess = 2e-3;             ///< V may be off by this share of itself beside a switching
+/// Where V was brought back, the square of kGuess is this many times larger.
+constexpr char kSmeared = 40;
+constexpr double kLeft = 0.01;  ///< at least this share of a channel's variance is its own noise
+/// Slow noise matters from this share of the variance of white noise.
+constexpr double kMatters = 1e-3;
 
 /// The first `count` values less their mean and slope.
 std::vector<double> detrended(const std::vector<double>& x, int count) {
@@ -78,8 +82,8 @@ std::vector<double> detrended(const std::vector<double>& x, int count) {
   return rest;
 }
 
-/// Variances of white noise that would have the density of V (relative) and theta [rad] in the band, before
-/// the events.
+/// Variances of the white noise that would have the density that V (relative) and theta [rad] show in the
+/// band before the events.
 Eigen::Vector2d moving_in_band(const std::vector<FitEvent>& events) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   int lines = 0;
@@ -101,7 +105,8 @@ Eigen::Vector2d moving_in_band(const std::vector<FitEvent>& events) {
 }
 
 /// How much of the answer's own movement before the events is found in the residual: 1 if the voltage moves
-/// by noise of its instrument alone, 0 if the plant answers all of it. Where that cannot be told, the larger.
+/// only by noise of its instrument, 0 if the plant answers all of the movement. Returns the larger value
+/// where that cannot be told.
 double instrument_share(const Fit& fit, const std::vector<FitEvent>& events) {
   double cross = 0, own = 0;
   for (std::size_t i = 0; i < events.size(); ++i) {
@@ -120,7 +125,7 @@ double instrument_share(const Fit& fit, const std::vector<FitEvent>& events) {
   return own > 0 ? std::clamp((cross + std::sqrt(own)) / own, 0.0, 1.0) : 1.0;
 }
 
-/// Whether, by the record's end, the slow part of any channel's noise has a variance worth speaking of.
+/// Whether the slow part of any channel's noise has a variance worth speaking of by the record's end.
 bool matters(const SlowNoise& s, const FitEvent& e) {
   Eigen::MatrixXd P = s.P;
   for (int k = 0; k < e.record.samples(); ++k) P = (s.A * P * s.A.transpose() + s.Q).eval();
@@ -154,7 +159,7 @@ SlowNoise slow_noise(const LinearPlant& plant, const FitEvent& e, const Eigen::V
     C.row(c) = plant.C.row(static_cast<Eigen::Index>(e.channels[static_cast<std::size_t>(c)]));
     D.row(c) = plant.D.row(static_cast<Eigen::Index>(e.channels[static_cast<std::size_t>(c)]));
   }
-  // over one sample, the voltage straight in between: x1 = F x0 + G u0 + H (u1 - u0)
+  // the voltage is taken as straight over one sample: x1 = F x0 + G u0 + H (u1 - u0)
   const double h = e.record.step();
   Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(n + 4, n + 4);
   whole.topLeftCorner(n, n) = h * plant.A;
@@ -175,7 +180,7 @@ SlowNoise slow_noise(const LinearPlant& plant, const FitEvent& e, const Eigen::V
   s.P = s.Q = Eigen::MatrixXd::Zero(m, m);
   s.P.bottomRightCorner(2, 2) = V / e.start.samples;
   s.Q.topLeftCorner(n, n) = in * V * in.transpose();
-  // between samples about a switching the voltage is guessed
+  // the voltage is only guessed between the samples about a switching
   s.jump = Eigen::MatrixXd::Zero(m, m);
   s.jump.topLeftCorner(n, n) = kGuess * kGuess * in * in.transpose();
   s.doubtful.assign(e.record.t.size(), 0);
@@ -187,7 +192,8 @@ SlowNoise slow_noise(const LinearPlant& plant, const FitEvent& e, const Eigen::V
   }
   s.M = Eigen::MatrixXd::Zero(m, count);
   s.M.topRows(n) = in * V * through.transpose();
-  // the measured noise holds what the voltage's does at once; the rest cannot be less than nothing
+  // the measured noise already holds what the voltage's noise does at once, and the rest cannot be less than
+  // nothing
   const Eigen::MatrixXd scale = e.noise.asDiagonal(), unit = e.noise.cwiseInverse().asDiagonal();
   const Eigen::MatrixXd white = unit * e.whitening.inverse();
   const Eigen::MatrixXd at_once = unit * through * V * through.transpose() * unit;

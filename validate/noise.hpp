@@ -5,50 +5,53 @@
 
 namespace swingbank::validate {
 
-/// Scales every channel's noise to what the residual of `fit` shows from sample to sample (second
-/// differences, whose median neither a misfit, slow beside the sampling, nor the moments around a switching
-/// move). Only where the residual before the events is white, as that measure supposes; elsewhere the noise
-/// stays that of the pre-event stretch.
+/// Scales every channel's noise to what the residual of `fit` shows from sample to sample. The measure is the
+/// median of the squared second differences, which neither a slow misfit nor the moments around a switching
+/// move. It supposes white noise, so the noise stays that of the pre-event stretch where the residual before
+/// the events is not white.
 void sharpen_noise(const Fit& fit, std::vector<FitEvent>& events);
 
-/// Noise of the played-in voltage, of these variances [V/V, rad], as the plant answers it: the states are the
+/// Noise of the played-in voltage, of these variances [V/V, rad], as the plant answers it. The states are the
 /// plant's, less what the latest sample did to them, and the mean error of V and theta over the pre-event
-/// window, from which everything is counted. `event`: whitening at once, channels, start.
+/// window, from which everything is counted. `event` gives the whitening, the channels and the start.
 SlowNoise slow_noise(const LinearPlant& plant, const FitEvent& event, const Eigen::Vector2d& variance);
 
-/// The memory of an event's noise by slow_noise() about its start; none where that hardly matters.
+/// The memory of an event's noise by slow_noise() about its start; none where slow noise hardly matters.
 std::shared_ptr<const Innovations> memory_of(const sim::Plant& plant, const sim::Conventions& conventions,
                                              const FitEvent& event, const Eigen::Vector2d& variance);
 
-/// Noise of the played-in voltage, by what moves before the events.
+/// Noise of the played-in voltage, measured by what moves before the events.
 struct VoltageNoise {
-  /// Share of the pre-event movement of V and theta that is the instrument's: 1 if the measured P and Q do
-  /// not answer it, 0 if they do as the model says, for then the plant has really seen it.
+  /// Share of the pre-event movement of V and theta that is the instrument's. It is 1 if the measured P and Q
+  /// do not answer the movement, and 0 if they do as the model says, because the plant has then really seen
+  /// it.
   double share = 0;
-  /// Of white noise as dense as the instrument's share of what moves at 3 to 10 Hz (below, the grid itself
-  /// moves; above, instruments filter) [V/V, rad].
+  /// Variance of white noise that is as dense as the instrument's share of what moves at 3 to 10 Hz [V/V,
+  /// rad]. Below this band the grid itself moves, and above it instruments filter.
   Eigen::Vector2d variance = Eigen::Vector2d::Zero();
 };
 VoltageNoise voltage_noise(const Fit& fit, const std::vector<FitEvent>& events);
 
-/// A minute at the operating point of `like`, V and theta moved by that many standard deviations of noise;
-/// answers are compared with zero.
+/// A minute at the operating point of `like`, with V and theta moved by that many standard deviations of
+/// noise. Answers are compared with zero.
 FitEvent minute_of_noise(const FitEvent& like, const Eigen::Vector2d& deviation);
 
-/// Noise of the played-in voltage passes exciter and rotor, and what comes out is slow. Follows it through
-/// the plant's equations about each event's start and gives the events' noise that memory, where it matters.
+/// Noise of the played-in voltage passes exciter and rotor, and what comes out is slow. This follows it
+/// through the plant's equations about each event's start, and gives the events' noise that memory where it
+/// matters.
 void remember_noise(const Fit& fit, const sim::Conventions& conventions, std::vector<FitEvent>& events);
 
-/// Misfit below which a structure's reactances are near enough to measure the noise with.
+/// The noise can be measured through a structure whose misfit is below this, because its reactances are near
+/// enough.
 constexpr double kClose = 4;
 
-/// Measures the events' noise anew through a fit of theirs, of whatever structure: its variance where the fit
-/// is close, how large it is sample by sample, and its memory.
+/// Measures the events' noise anew through a fit of whatever structure: its variance where the fit is close,
+/// its size from sample to sample, and its memory.
 void measure_noise_through(const Fit& fit, const sim::Conventions& conventions,
                            std::vector<FitEvent>& events);
 
-/// How far the power of slow means of the residual (0.5, 1 and 2 s) lies above that of white noise, in
-/// standard deviations, in the channel and length where that is most.
+/// How far the power of slow means of the residual (over 0.5, 1 and 2 s) lies above that of white noise, in
+/// standard deviations, for the channel and length where it is largest.
 double slow_remainder(const Fit& fit, const std::vector<FitEvent>& events);
 
 }  // namespace swingbank::validate

@@ -9,9 +9,10 @@ namespace swingbank::validate {
 namespace {
 
 constexpr int kFew = 3;     ///< clean samples from which a segment is known well enough
-constexpr int kNodes = 96;  ///< of a window's integral
+constexpr int kNodes = 96;  ///< nodes of a window's integral
 constexpr int kGrid = 12;   ///< instants tried along each side of a bracket
-constexpr int kZooms = 5;   ///< then around the best one, each bracket a quarter of the last
+/// Rounds around the best one, each with brackets of a quarter of the last ones' width.
+constexpr int kZooms = 5;
 constexpr double kGood =
     20;  ///< times the noise that a window may leave while neighbours are extrapolated far
 
@@ -39,7 +40,7 @@ class SplitAverage {
       sums_.push_back(sum);
     }
   }
-  /// What is known with the instants at a and b, and the factors of the segment's mean and slope.
+  /// What is known once the instants are at a and b, and the factors of the segment's mean and slope.
   struct Row {
     Complex known;
     double mean, slope;
@@ -136,7 +137,7 @@ Segment brought_back(const FitEvent& e, std::size_t from, const VoltageCurve& cu
   return best;
 }
 
-/// Segments between switchings that hold too few clean samples, their neighbours being long enough.
+/// Segments between switchings that hold too few clean samples and whose neighbours are long enough.
 std::vector<std::size_t> short_segments(const FitEvent& e) {
   const auto clean = [&](std::size_t segment) {
     const double from = segment == 0 ? -1e300 : e.switchings[segment - 1].time;
@@ -149,8 +150,8 @@ std::vector<std::size_t> short_segments(const FitEvent& e) {
   return found;
 }
 
-/// The curve of the clean samples; a segment that has none gets what was recorded in its middle, only so that
-/// there is one.
+/// The curve of the clean samples. A segment without any gets what was recorded in its middle, only so that
+/// there is a value.
 VoltageCurve rough_curve(const FitEvent& e) {
   Record r = e.clean;
   for (std::size_t s = 0; s + 1 < e.switchings.size(); ++s) {
@@ -206,7 +207,8 @@ void fill(FitEvent& e, const Segment& s) {
   e.clean = std::move(filled);
 }
 
-/// Which samples the window reaches with a jump at its instants; too many were left out before it was known.
+/// Marks again which samples the window reaches with a jump at its instants, since too many were left out
+/// before the window was known.
 void mark_again(FitEvent& e, const FilterWindow& window) {
   const double reach = window.half - 1e-3 * e.record.step();
   e.clean.t.clear();
@@ -227,7 +229,7 @@ struct Found {
   std::size_t event, from;
   Segment segment;
 };
-/// Every short segment brought back with a window of that shape, `cycles` to either side.
+/// An attempt to bring back every short segment with a window of one shape, `cycles` to either side.
 struct Attempt {
   FilterWindow window;
   std::vector<Found> segments;
@@ -260,7 +262,8 @@ void place(FitEvent& e, const Found& f, double unsure) {
   e.switchings[f.from] = {.time = f.segment.a, .uncertainty = unsure};
   e.switchings[f.from + 1] = {.time = f.segment.b, .uncertainty = unsure};
 }
-/// Instants as found, so sharp that only samples within the window are left out.
+/// Places the instants as they were found. They are then so sharp that only samples within the window are
+/// left out.
 void place(std::vector<FitEvent>& events, const Attempt& a) {
   for (const Found& f : a.segments) place(events[f.event], f, events[f.event].record.step() / 5);
 }
@@ -270,7 +273,8 @@ bool is_empty(const FitEvent& e, std::size_t from) {
   return std::ranges::none_of(
       e.clean.t, [&](double t) { return e.switchings[from].time <= t && t <= e.switchings[from + 1].time; });
 }
-/// Where no window answers: what has no clean sample must have some voltage to be played in, and is doubted.
+/// Fills segments where no window answers. A segment without a clean sample must have some voltage to be
+/// played in, and this voltage is doubted.
 void fill_empty(std::vector<FitEvent>& events, const Attempt& poor) {
   for (const Found& f : poor.segments) {
     FitEvent& e = events[f.event];
@@ -290,7 +294,7 @@ FilterWindow unsmear(std::vector<FitEvent>& events) {
   }
   place(events, best);
   for (const Found& f : best.segments) mark_again(events[f.event], best.window);
-  // samples that turned out clean are nearer to the jumps: less is extrapolated now
+  // samples that turned out to be clean are nearer to the jumps, so less is extrapolated now
   if (const Attempt again = best_attempt(events); again.left < best.left) {
     best = again;
     place(events, best);

@@ -24,7 +24,7 @@ Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance) {
   return of.eigenvectors().rightCols(2) * of.eigenvalues().tail(2).cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
-/// What the plant makes of kicks of its states: [channel][sample].
+/// The plant's answer to kicks of its states: [channel][sample].
 template <class Kick>
 VoltageDoubt::Shape answer(const SlowNoise& noise, std::size_t samples, Kick kick) {
   VoltageDoubt::Shape shape(static_cast<std::size_t>(noise.C.rows()), std::vector<double>(samples, 0.0));
@@ -40,7 +40,7 @@ VoltageDoubt::Shape answer(const SlowNoise& noise, std::size_t samples, Kick kic
 }  // namespace
 
 VoltageDoubt voltage_doubt(const sim::Plant& plant, const sim::Conventions& conventions, const FitEvent& e) {
-  constexpr std::uint32_t kDraws = 48;  // tell a variance to 20 %
+  constexpr std::uint32_t kDraws = 48;  // so many draws tell a variance to 20 %
   const std::size_t samples = e.record.t.size();
   const Eigen::Vector2d variance(white_variance(e.record.V, e.start.samples) / std::norm(e.start.voltage),
                                  white_variance(e.record.theta, e.start.samples));

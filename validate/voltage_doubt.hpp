@@ -1,12 +1,13 @@
 #pragma once
-// What the errors of the played-in voltage may leave in a residual, as shapes that add to a map's variance.
+// Shapes of what errors of the played-in voltage may leave in a residual; they add to a map's variance.
 #include "validate/fit_event.hpp"
 
 namespace swingbank::validate {
 
-/// What the played-in voltage's own errors leave in an event's channels, one standard deviation each: its
-/// mean's before the event, what its noise becomes behind the plant (draws of it, which share the variance),
-/// and what it may be off by about switchings and in place of smeared samples. The plant is linear about the
+/// What the played-in voltage's own errors may leave in an event's channels, as shapes of one standard
+/// deviation each: two for the errors of the means of V and theta before the event, a number of draws for
+/// what their noise becomes behind the plant (the draws share its variance), and two for each sample about a
+/// switching or in place of smeared samples, where the voltage is guessed. The plant is linear about the
 /// start.
 struct VoltageDoubt {
   using Shape = std::vector<std::vector<double>>;  ///< [channel][sample]
