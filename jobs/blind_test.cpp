@@ -205,7 +205,7 @@ int main(int argc, char** argv) {
   app.add_option(
          "--kinds", o.kinds,
          "kinds to hide, comma-separated: kinds of the config, A+B for two at once, none, listed, odd, "
-         "pairs (default: the issue's mixture)")
+         "pairs (default: the mixture of docs/blind-test.md)")
       ->delimiter(',');
   app.add_option("--size", o.size, "size of every effect, in detection limits (default: drawn)");
   app.add_flag("--diagnose", o.diagnose, "diagnose every case without a verdict, as swingbank diagnose does");

@@ -16,13 +16,13 @@ using Scales = std::vector<std::optional<double>>;
 constexpr int kAttempts = 60;    ///< whole worlds drawn before giving up
 constexpr int kEventTries = 12;  ///< draws of one event within a world
 constexpr double kDip = 0.05;    ///< a fault that moves V by less at the plant is drawn again [pu]
-constexpr double kSpeed = 0.02;  ///< no governor trips a unit below that deviation [pu]
+constexpr double kSpeed = 0.02;  ///< deviation of the speed below which no governor trips a unit [pu]
 constexpr double kClose = 0.1;   ///< a size is met within that part of it
 constexpr int kSizeTries = 8;    ///< simulations of all events while a size is sought
 
 constexpr double kHuge = 1e300;  ///< size of what cannot be simulated
 
-/// One draw that cannot be simulated: another is made.
+/// A draw that cannot be simulated; another one is made.
 struct Unstable {};
 
 class Maker {
@@ -150,7 +150,7 @@ class Maker {
                            double high_left) {
     const double middle = 0.5 * (low + high);
     if (high_left >= kHuge) return middle;
-    if (logarithmic && low_left == 0.0) return 0.0;  // is even the smallest too large?
+    if (logarithmic && low_left == 0.0) return 0.0;  // tries whether even the smallest is too large
     double guess = high * wanted / high_left;
     if (logarithmic)
       guess = low + (high - low) * std::log(wanted / low_left) / std::log(high_left / low_left);

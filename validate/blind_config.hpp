@@ -32,20 +32,20 @@ struct BlindKind {
 
 struct BlindGrid {
   std::filesystem::path raw, dyr;
-  std::vector<std::int64_t> buses;  ///< whose plants may be the one recorded
+  std::vector<std::int64_t> buses;  ///< buses whose plants may be the one recorded
 };
 
 struct BlindConfig {
   std::vector<BlindGrid> grids;
   std::vector<BlindKind> kinds;
-  std::vector<double> noise;  ///< of the machine's MVA, of which one is drawn per case [-]
+  std::vector<double> noise;  ///< noise in parts of the machine's MVA; one value is drawn for each case [-]
   double voltage_noise = 1;   ///< noise of V [pu] and theta [rad] as a multiple of it
   double speed_noise = 0;     ///< of the rotor speed [pu]
   double seconds = 15, rate = 60, fine_rate = 960;
   int faults = 4, frequency_events = 1;
-  std::pair<double, double> wrong{0.1, 0.2};  ///< by how much machine parameters of the model are off
+  std::pair<double, double> wrong{0.1, 0.2};  ///< shares by which the model's machine parameters are off
   std::pair<double, double> size{1.0, 10.0};  ///< drawn sizes, in detection limits
-  double spread = 0.1;                        ///< of the true parameters about those of the files
+  double spread = 0.1;                        ///< spread of the true parameters about those of the files
   double filter_share = 0.5, channels_share = 0.5, controlled_share = 0.5;
   std::uint64_t hash = 0;  ///< XXH64 of the file
 

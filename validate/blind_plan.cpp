@@ -102,7 +102,7 @@ BlindPlan plan_blind(const BlindConfig& config, const std::vector<std::string>& 
   Dealer dealer(config, draw);
   Problems problems;
   std::vector<std::string> words = kinds;
-  if (words.empty()) {  // the 200 listed, 200 nothing, 60 odd, 40 pairs
+  if (words.empty()) {  // asked for: 200 listed, 200 nothing, 60 odd, 40 pairs
     for (int k = 0; k < 10; ++k) words.insert(words.end(), {"listed", "none"});
     words.insert(words.end(), {"odd", "odd", "odd", "pairs", "pairs"});
   }

@@ -26,8 +26,8 @@ Eigen::VectorXd interleaved(const FitEvent& e, const std::vector<double>& P, con
   return all;
 }
 
-/// Samples next to a switching: a current that is late by a thousandth of a second shows in one of these
-/// alone, where a diagnosis cannot tell it from the instant.
+/// Marks samples next to a switching. A current that is late by a thousandth of a second shows in one of
+/// these alone, where a diagnosis cannot tell it from the instant.
 std::vector<char> beside_switchings(const Record& record, const std::vector<double>& switchings) {
   std::vector<char> beside;
   for (const double t : record.t)
@@ -100,7 +100,7 @@ Response BlindSize::answer(std::size_t event, const Record& record,
 }
 
 Eigen::VectorXd BlindSize::residual(std::size_t event, const Record& record) const {
-  // less what interpolation and filter leave even without the effect
+  // what interpolation and filter leave even without the effect is taken off
   const Response r = answer(event, record, {});
   return interleaved(noise_[event], record.P, record.Q) -
          interleaved(noise_[event], r.of(Output::P), r.of(Output::Q)) - plain_residual_[event];

@@ -10,7 +10,7 @@ namespace swingbank::validate {
 struct BlindVerdict {
   std::string verdict;               ///< adequate, missing, confusable, unexplained or refused
   std::vector<std::string> effects;  ///< what is missing, best first; several where several are missing
-  std::vector<std::string> set;      ///< which cannot be told apart
+  std::vector<std::string> set;      ///< names that cannot be told apart
   std::string side = "none";         ///< mechanical, excitation, machine, measurement or none
   double seconds = 0;                ///< wall time it took [s]
   std::string why = {};              ///< optional: the sentence behind it

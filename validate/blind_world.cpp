@@ -18,7 +18,8 @@ constexpr int kTries = 200;  ///< draws of one block until its checks accept it
   throw InputError({what, "blind case", why, "change the kinds in the config"});
 }
 
-/// Limits stay where they are: a ceiling moved below the operating point would refuse the plant.
+/// Whether a parameter is a limit. Limits stay where they are, because a ceiling moved below the operating
+/// point would refuse the plant.
 bool is_limit(std::string_view name) {
   return name.find("MAX") != name.npos || name.find("MIN") != name.npos || name == "GMAX" || name == "GMIN";
 }

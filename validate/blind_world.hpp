@@ -1,6 +1,6 @@
 #pragma once
-// The world of one blind case: grid, plants, controls and events, drawn; the grid at any size of the hidden
-// effects.
+// The world of one blind case, which is drawn: grid, plants, controls and events. It gives the grid at any
+// size of the hidden effects.
 #include <array>
 #include <optional>
 #include <span>
@@ -56,15 +56,16 @@ BlindEvent draw_frequency_event(const BlindWorld& world, BlindDraw& draw);
 /// machine's base.
 sim::ReferenceRun simulate_fine(const sim::Grid& grid, int plant, const BlindEvent& event,
                                 const BlindConfig& config);
-/// What the instruments make of it, without noise: hidden measurement effects and the P-class filter on the
-/// fine grid, then every n-th sample. P and Q on kRecordMva.
+/// The record that the instruments make of it, without noise: hidden measurement effects and the P-class
+/// filter act on the fine grid, and every n-th sample is taken. P and Q are on kRecordMva.
 Record measured(const sim::ReferenceRun& fine, const sim::Plant& plant, const BlindConfig& config,
                 double frequency, bool pmu_filter, std::uint64_t seed);
 void add_noise(Record& record, const BlindConfig& config, double noise, double mva, bool channels,
                BlindDraw& draw);
 
 /// How large a difference between records is, for P and Q of all events, in units of the noise that the right
-/// model leaves: that of P and Q, and that of V and theta as plant and controls answer to it, slow as it is.
+/// model leaves. This is the noise of P and Q, and that of V and theta as plant and controls answer to it,
+/// with its slow part.
 class BlindSize {
  public:
   /// `plain`: records without the hidden effects; `plant`: the model that explains them; standard deviations
@@ -73,7 +74,8 @@ class BlindSize {
             const std::vector<BlindEvent>& events, std::vector<Record> plain, double power_noise,
             double voltage_noise);
   [[nodiscard]] double visible(const std::vector<Record>& with) const;
-  /// After a linear refit of the machine's parameters, and of each event's instants and start.
+  /// Size of what is left after a linear refit of the machine's parameters, and of each event's instants and
+  /// start.
   [[nodiscard]] double left(const std::vector<Record>& with) const;
 
  private:

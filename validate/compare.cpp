@@ -13,7 +13,7 @@
 namespace swingbank::validate {
 namespace {
 
-/// Rounding of a file with 8 digits leaves residuals of this size; below it there is no noise to compare
+/// Rounding of a file with 8 digits leaves residuals of this size. Below it there is no noise to compare
 /// with.
 constexpr double kNoNoise = 1e-7;
 
@@ -62,7 +62,7 @@ std::vector<double> bridged(std::vector<double> values, const std::vector<char>&
   return values;
 }
 
-/// Every channel, once the event's playback is there.
+/// Measures every channel, once the event's playback is there.
 void measure_channels(const PlantModel& model, DriveBy drive, const PlayInOptions& options,
                       EventComparison& e) {
   const bool power = drive == DriveBy::power;
@@ -153,7 +153,7 @@ std::vector<NamedCell> all_cells(const std::vector<EventComparison>& events) {
   return all;
 }
 
-/// `failed`: why they could not be moved; empty where they could.
+/// Says how the instants were treated. `failed` is why they could not be moved, and empty where they could.
 std::string describe_fit(const EventComparison& e, bool tried, const std::string& failed) {
   if (e.fitted) return "within that they were moved to where P and Q are met best.";
   if (!failed.empty())
@@ -296,7 +296,7 @@ EventComparison compare_event(const PlantModel& model, Record record, const Comp
     if (e.detected && options.fit_switchings && !e.switchings.empty()) {
       try {
         if (EventComparison other = fitted(); explained(other)) e = std::move(other);
-      } catch (const InputError& error) {  // fits take fewer steps: what was played in above stands
+      } catch (const InputError& error) {  // a fit may take fewer steps, and the play-in above stands
         failed = error.problems().front().sentence();
       }
     }

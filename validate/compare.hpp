@@ -41,8 +41,8 @@ struct EventComparison {
   std::vector<Window> windows;
   Playback playback;
   std::vector<ChannelComparison> channels;  ///< P, Q or V, frequency; speed, Efd, Ifd where recorded
-  /// Marks samples that an instrument's filter has smeared over a switching: they are not compared. Empty:
-  /// none.
+  /// Marks samples that an instrument's filter has smeared over a switching; these are not compared. Empty:
+  /// no sample is.
   std::vector<char> left_out = {};
   /// By channel: what the played-in voltage's errors may leave in the residual, one standard deviation each
   /// (VoltageDoubt) [shape][sample] [pu].
@@ -54,9 +54,9 @@ struct CompareOptions {
   DriveBy drive = DriveBy::voltage;
   std::vector<double> switchings;  ///< instants [s]; empty: found by their jumps
   double jump_threshold = kJumpThreshold;
-  /// Move found instants within their sample interval to where P and Q are met best, and keep that if nothing
-  /// but noise is left then; a model that lacks something would bend them. Otherwise the middle of the
-  /// interval stays.
+  /// Moves found instants within their sample interval to where P and Q are met best, and keeps that if
+  /// nothing but noise is left then, because a model that lacks something would bend them. Otherwise the
+  /// middle of the interval stays.
   bool fit_switchings = true;
   Jumps jumps = Jumps::either;  ///< what the instrument does to jumps; either: the record tells
   PlayInOptions play_in;        ///< samples after its `until` are left out of the comparison

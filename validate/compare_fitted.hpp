@@ -5,12 +5,12 @@
 
 namespace swingbank::validate {
 
-/// Sets switchings, playback and left_out of the event, whose record is set, with its instants and start
-/// fitted, the model as it is. Samples that a filter has smeared over a jump are not played in. Throws
-/// InputError where the model cannot follow the record.
+/// Sets switchings, playback and left_out of an event whose record is set. Its instants and its start are
+/// fitted, and the model stays as it is. Samples that a filter has smeared over a jump are not played in.
+/// Throws InputError where the model cannot follow the record.
 void play_fitted(const PlantModel& model, const CompareOptions& options, Jumps jumps, EventComparison& e);
 
-/// EventComparison::doubt of an event that was played in by its voltage.
+/// Sets EventComparison::doubt of an event that was played in by its voltage.
 void add_doubt(const PlantModel& model, EventComparison& e);
 
 }  // namespace swingbank::validate

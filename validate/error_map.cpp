@@ -28,7 +28,7 @@ std::vector<double> autocovariance(std::span<const double> x, int most) {
   return r;
 }
 
-/// Autoregressive coefficients, x[i] = a[0] x[i-1] + a[1] x[i-2] + ... + e, of the order that BIC likes best.
+/// Autoregressive coefficients, x[i] = a[0] x[i-1] + a[1] x[i-2] + ... + e, of the order with the best BIC.
 std::vector<double> autoregression(const std::vector<double>& r, std::size_t n) {
   std::vector<double> a, best;
   double rest = r[0], least = std::log(r[0]);
@@ -56,8 +56,8 @@ class Cosines {
     for (std::size_t i = 0; i < 4 * n; ++i)
       table_[i] = std::cos(std::numbers::pi * static_cast<double>(i) / (2.0 * static_cast<double>(n)));
   }
-  /// Every mode's coefficient: the discrete cosine transform, by a Fourier transform of the samples in the
-  /// order even ones up, odd ones down (Makhoul 1980).
+  /// Every mode's coefficient by the discrete cosine transform, which is a Fourier transform of the samples
+  /// in the order even ones up, odd ones down (Makhoul 1980).
   [[nodiscard]] std::vector<double> coefficients(std::span<const double> x) {
     if (n_ == 1) return {x[0]};  // kissfft reads past the end of one sample
     std::vector<std::complex<double>> folded(n_), modes;

@@ -27,8 +27,8 @@ std::span<const Band> error_bands();
 struct NoiseModel {
   double sigma = 0;                ///< standard deviation [pu]
   std::vector<double> covariance;  ///< at lags of 0, 1, ... samples [pu^2]; zero beyond
-  int samples = 0;                 ///< it was estimated from; 0: known
-  int freedom = 0;                 ///< of the estimate; 0: known
+  int samples = 0;                 ///< number of samples it was estimated from; 0: known
+  int freedom = 0;                 ///< degrees of freedom of the estimate; 0: known
   /// Variance of the mean of many samples, times their number.
   [[nodiscard]] double slow() const;
 };
@@ -41,7 +41,8 @@ NoiseModel estimate_noise(std::span<const double> quiet, double floor);
 NoiseModel white_noise(double sigma);
 
 struct MapCell {
-  int values = 0;  ///< independent ones in it; 0: the window is too short for the band, nothing is known
+  /// Independent values in the cell; 0: the window is too short for the band, nothing is known.
+  int values = 0;
   double rms = 0;  ///< of the residual's part in window and band [pu]
   /// sqrt(mean of squares, each over its variance under noise): 1 where nothing but noise is left.
   double in_noise = std::numeric_limits<double>::quiet_NaN();
@@ -71,17 +72,18 @@ struct ErrorMapOptions {
   const std::vector<std::vector<double>>* shapes = nullptr;
 };
 
-/// Each window's residual on the orthonormal cosines of that window (DCT-II; mode k has k half periods): a
-/// mode belongs to the band of its frequency, and white noise of any window gives each mode the same
-/// variance. A band is empty where the window is shorter than half a period of the band's upper end; the mean
-/// of such a window is in `all` only. After the first window the mean also carries the error of the start. A
-/// large component leaks: of one of 100 x some 3 x are seen two bands away.
+/// Projects each window's residual on the orthonormal cosines of that window (DCT-II; mode k has k half
+/// periods). A mode belongs to the band of its frequency, and white noise of any window gives each mode the
+/// same variance. A band is empty where the window is shorter than half a period of the band's upper end; the
+/// mean of such a window is in `all` only. After the first window the mean also carries the error of the
+/// start. A large component leaks: of one of 100 x some 3 x are seen two bands away.
 ErrorMap error_map(std::span<const double> t, std::span<const double> residual,
                    const std::vector<Window>& windows, const NoiseModel& noise,
                    const ErrorMapOptions& options = {});
 
-/// What sqrt(mean square of `values` noise values / estimated variance) exceeds with this probability: square
-/// root of the F distribution's quantile, `freedom` = 0 for a known variance.
+/// The bound that sqrt(mean square of `values` noise values / estimated variance) exceeds with this
+/// probability. It is the square root of the F distribution's quantile; `freedom` = 0 stands for a known
+/// variance.
 double noise_bound(int values, int freedom, double probability);
 
 /// Bound of every cell of all maps such that noise alone exceeds any of them with at most `probability`

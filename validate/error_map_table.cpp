@@ -10,7 +10,8 @@
 namespace swingbank::validate {
 namespace {
 
-/// Within the bound: 0 (good). Beyond it at once visible, 25 × the bound is beyond dispute (1); logarithmic.
+/// Shade of a cell: 0 (good) within the bound, at once visible beyond it, and 1 from 25 × the bound, which is
+/// beyond dispute. The scale is logarithmic.
 double shade(const MapCell& cell) {
   if (cell.empty() || !std::isfinite(cell.bound)) return -1;
   if (!cell.exceeds()) return 0;

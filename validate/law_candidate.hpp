@@ -1,7 +1,7 @@
 #pragma once
-// Small laws u = f(signal) or u = f(time) that could be the inferred input: enumerated over grids of their
-// few numbers, each judged by how much of the input's course it takes away. Cheap, so that thousands can be
-// tried; the leading ones are then fitted to the records themselves (law_search.hpp).
+// Small laws u = f(signal) or u = f(time) that could be the inferred input. They are enumerated over grids of
+// their few numbers, and each is judged by how much of the input's course it takes away. This is cheap, so
+// thousands can be tried; the leading ones are then fitted to the records themselves (law_search.hpp).
 #include <array>
 #include <limits>
 #include <string>
@@ -55,8 +55,8 @@ struct LawCandidate {
   std::vector<std::vector<double>> course;  ///< [event][knot] [pu]
 };
 
-/// Deviation of the voltage that counts as an event: well above its noise, half of what the smallest event
-/// with a switching shows [pu]. 0: no event shows any.
+/// Deviation of the voltage that counts as an event [pu]. It is well above the voltage's noise, and half of
+/// what the smallest event with a switching shows. 0: no event shows any.
 double trigger_level(const std::vector<FitEvent>& events);
 
 /// The best of each family and signal, best first. `level` as from trigger_level.

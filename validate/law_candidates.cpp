@@ -190,7 +190,7 @@ std::vector<Form> forms_of(std::size_t signal) {
   return forms;
 }
 
-/// Without signals, twenty samples a second: enough for what knots can show.
+/// Traces without their signals, thinned to twenty samples a second, which is enough for what knots can show.
 std::vector<LawTrace> thinned(std::vector<LawTrace> traces) {
   for (auto& e : traces) {
     std::vector<double> t;

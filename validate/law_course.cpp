@@ -31,7 +31,7 @@ class Runner {
  private:
   static constexpr double kRated = 1.0;  ///< laws see the voltage's deviation only
 
-  /// Between sample k and the next, `share` of the way.
+  /// Signals between sample k and the next one, at this `share` of the way.
   [[nodiscard]] sim::Signals<double> signals(std::size_t k, double share) const {
     const auto at = [&](const std::vector<double>& v) {
       return k + 1 < v.size() ? (1 - share) * v[k] + share * v[k + 1] : v[k];

@@ -19,7 +19,7 @@ class LawRegression {
     double explained = 0, score = 0;
     Eigen::VectorXd course;  ///< at all knots, event after event
   };
-  /// `numbers`: how many the courses were chosen with, besides their factors.
+  /// `numbers` says with how many numbers the courses were chosen, besides their factors.
   [[nodiscard]] Answer fit(const std::vector<Eigen::VectorXd>& columns, int numbers) const;
   /// A course as the input shows it: its mean around each knot, weighted as the straight pieces are.
   [[nodiscard]] Eigen::VectorXd at_knots(const Course& course) const;

@@ -101,7 +101,7 @@ class Timed {
     best = {begin, b, std::move(answer)};
   }
 
-  /// `always`: its beginning is not among its numbers, for it is there when anything is known.
+  /// `always` means that the law is there when anything is known, so its beginning is not among its numbers.
   [[nodiscard]] LawCandidate candidate(const LawShape& shape, const Clock& clock, const At& at,
                                        bool always) const {
     LawCandidate law;
@@ -131,7 +131,7 @@ class Timed {
     law.course = regression_.by_event(at.answer.course);
     return law;
   }
-  /// When it begins: as a parameter, or as a number where nothing could tell.
+  /// Adds when the law begins: as a parameter, or as a number where nothing could tell.
   std::string add_begin(const Clock& clock, const At& at, bool always, LawCandidate& law) const {
     const std::string level = fmt::format("the voltage has left ± {:.3g} pu", level_);
     if (always) {
@@ -148,7 +148,7 @@ class Timed {
           {"start", "s", at.begin, -1e5, 1e5, false, "time of the record at which it begins"});
     return law.parameters.back().name;
   }
-  /// The phase at the middle of what is known, where it does not depend on the frequency.
+  /// Adds the phase at the middle of what is known, where it does not depend on the frequency.
   void add_phase(const Clock& clock, const At& at, const std::string& now, LawCandidate& law) const {
     const double middle =
         std::round((clock.triggered ? (last_ - first_) / 2 : (first_ + last_) / 2) * 10) / 10;

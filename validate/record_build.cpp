@@ -16,7 +16,8 @@ namespace {
 
 using Present = std::array<bool, kQuantities>;
 
-/// What a comparison cannot do without; P and Q, where they are needed, may also come from the current.
+/// Quantities that a comparison cannot do without. P and Q, where they are needed, may also come from the
+/// current.
 std::vector<Quantity> missing(const Present& present, bool power) {
   const auto has = [&](Quantity q) { return present[static_cast<std::size_t>(q)]; };
   std::vector<Quantity> all;
@@ -42,7 +43,7 @@ std::string listed(const std::set<std::string>& names) {
   return all;
 }
 
-/// The terminal to read: asked for, nameless, or the only complete one.
+/// The terminal to read: the one asked for, the nameless one, or the only complete one.
 std::string choose_terminal(const std::vector<Heading>& headings, const ReadOptions& options,
                             const std::string& where, Problems& problems) {
   const std::string& asked = options.terminal;

@@ -51,14 +51,14 @@ struct RawRecord {
 };
 
 /// Columns to read, in the file's order. Unknown ones go to `about.ignored`. Of several terminals the one
-/// asked for is taken, or the only complete one. Adds a problem for each that is repeated, unitless or
+/// asked for is taken, or the only complete one. Adds a problem for each column that is repeated, unitless or
 /// missing.
 std::vector<std::size_t> choose_columns(const std::vector<Heading>& headings, const ReadOptions& options,
                                         const RecordBase& base, const std::string& where, Record& about,
                                         Problems& problems);
 
-/// Units, times, power from current where P and Q are not given, continuous angle. Throws InputError with
-/// `problems`, `faults` and what it finds itself.
+/// Converts units and times, computes power from the current where P and Q are not given, and makes the angle
+/// continuous. Throws InputError with `problems`, `faults` and what it finds itself.
 Record build_record(RawRecord raw, const RecordBase& base, SampleFaults faults, Problems problems,
                     const std::string& file);
 

@@ -122,7 +122,8 @@ class Check {
     steadiness();
   }
 
-  /// Before the event powers must stand still, or the equilibrium the model starts in is not the plant's.
+  /// Powers must stand still before the event, or the equilibrium that the model starts in is not the
+  /// plant's.
   void steadiness() {
     for (const auto& [name, s] : {std::pair{"P", &signals_.P}, {"Q", &signals_.Q}}) {
       const double scale = machine_per_record();
@@ -303,7 +304,7 @@ class Check {
       // Sound records leave below 0.03 beside their noise (tests/validate/record_check_sound_test.cpp).
       const bool sound =
           same.reactance > 0 && (same.misfit < m.sound + 2 * noise || same.misfit < 5 * fit.misfit);
-      // Of two that do about as well the commoner mistake, which stands first.
+      // Of two mistakes that explain the jumps about as well, the commoner one is taken, which stands first.
       if (!sound && fit.misfit < least / 2) best = &m, least = fit.misfit;
     }
     if (best && apart())
@@ -316,7 +317,8 @@ class Check {
       reactance(as_is.reactance * plant_.mva / r_.base.mva);
   }
 
-  /// Whether the jumps belong together once each takes in one more interval: after it, before it, or both.
+  /// Whether the jumps belong together once each of them takes in one more interval: after it, before it, or
+  /// both.
   [[nodiscard]] bool apart() const {
     constexpr std::array<std::pair<std::size_t, std::size_t>, 3> kWider = {{{1, 1}, {0, 1}, {1, 0}}};
     return std::ranges::any_of(kWider, [this](const auto& wider) {

@@ -18,15 +18,17 @@ struct Finding {
   Problem problem;
 };
 
-/// What a check must know of the plant. Only what is certain: a wrong parameter must not refuse a record.
+/// What a check must know of the plant. It holds only what is certain, because a wrong parameter must not
+/// refuse a record.
 struct PlantFacts {
   double mva = 0;           ///< the machine's base [MVA]
   double frequency = 60.0;  ///< nominal [Hz]
 };
 PlantFacts plant_facts(const PlantModel& model);
 
-/// Everything suspicious about a record, the graver first. A finding that refuses means: no verdict about the
-/// model can come of this record. Takes any Record with equally long channels; never throws for its content.
+/// Everything suspicious about a record, the graver findings first. A finding that refuses means that no
+/// verdict about the model can come of this record. Takes any Record with equally long channels; never throws
+/// for its content.
 std::vector<Finding> check_record(const Record& record, const PlantFacts& plant);
 
 /// The findings that refuse, as the problems of an InputError; throws if there are any.

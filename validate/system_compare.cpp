@@ -37,7 +37,7 @@ std::vector<double> difference(const std::vector<double>& a, const std::vector<d
 }
 
 /// How far to either side of a switching instruments without a declared filter smear it, by their records
-/// [s]; 0: they do not.
+/// [s]. 0: they do not.
 double smear_of(const SystemCase& system) {
   std::vector<Record> records;
   for (const SystemTerminal& t : system.terminals)
@@ -83,9 +83,9 @@ class Comparer {
   }
 
  private:
-  /// How far to either side of a switching the terminal's samples are not compared [s]: its filter's window,
-  /// and what the cubic through the simulation's samples bends beside a jump. Within that an instant that is
-  /// wrong by a fraction of a millisecond shows.
+  /// How far to either side of a switching the terminal's samples are not compared [s]. This is its filter's
+  /// window, and the stretch that the cubic through the simulation's samples bends beside a jump. Within it
+  /// an instant that is wrong by a fraction of a millisecond shows.
   [[nodiscard]] double smear_at(const SystemTerminal& t) const {
     const double memory = sim::memory(t.instruments);
     return memory > 0 ? memory + 2 * t.record.step() / kFine : undeclared_;
@@ -119,8 +119,9 @@ class Comparer {
     output(Output::Efd, r.Efd, m.Efd);
     output(Output::Ifd, r.Ifd, m.Ifd);
   }
-  /// Relative to the reference where there is one; its own, and all without one, as frequency.
-  /// Returns the angle that the model starts off by; NaN where the frequency is compared.
+  /// Compares angles relative to the reference where there is one. The reference's own angle, and all angles
+  /// where there is no reference, are compared as frequency. Returns the angle that the model starts off by;
+  /// NaN where the frequency is compared.
   double angle(std::size_t i, EventComparison& e, bool gone) {
     const auto reference = static_cast<std::size_t>(std::max(s_.reference, 0));
     const Record &r = s_.terminals[i].record, &other = s_.terminals[reference].record;
@@ -145,7 +146,7 @@ class Comparer {
   }
   [[nodiscard]] bool shift() const { return s_.steady_state == SteadyState::shift; }
 
-  /// Returns what the model starts off by; NaN where nothing was measured.
+  /// Adds a channel. Returns what the model starts off by; NaN where nothing was measured.
   double add(EventComparison& e, const ChannelRule& rule, const std::vector<double>& measured,
              std::vector<double> modelled) {
     if (measured.empty()) return kNaN;

@@ -13,7 +13,7 @@ namespace {
 using test::Difference;
 using test::Draws;
 
-constexpr double kLimit = 1e-4;  ///< of max(1 pu, the channel's swing): the issue's
+constexpr double kLimit = 1e-4;  ///< of max(1 pu, the channel's swing): the limit asked for
 constexpr int kEventsPerGrid = 10;
 
 ReferenceOptions exact() {
@@ -205,7 +205,7 @@ TEST(AllEffectsAgainstReferenceFull, EventsOnceMissed) {
 
 /// The reference's own error: rtol 1e-8 against 1e-10.
 Tally run_references(int wanted, std::uint64_t seed) {
-  constexpr double limit = 1e-6;  // the issue's, in the same units
+  constexpr double limit = 1e-6;  // the limit asked for, in the same units
   const Grid plain = test::configured_grid("ieee39_dataset_genrou", Conventions::psse());
   ReferenceOptions finer = exact();
   finer.rtol = 1e-10;

@@ -7,9 +7,9 @@ namespace swingbank::sim {
 namespace {
 
 /// What the comparison allows per channel [rad, pu, pu on 100 MVA, pu on 100 MVA, pu, rad, pu]. ANDES's own
-/// error is up to 3e-6 rad and 3e-5 pu; delta, P, Q and V are the limits, the rest follows from them:
-/// speed is the slope of an angle known to 1e-4 rad at swings of 10 rad/s over 377 rad/s; theta as delta; Ifd
-/// as Q.
+/// error is up to 3e-6 rad and 3e-5 pu; delta, P, Q and V are the limits asked for, the rest follows from
+/// them: speed is the slope of an angle known to 1e-4 rad at swings of 10 rad/s over 377 rad/s; theta as
+/// delta; Ifd as Q.
 struct Limit {
   const char* name;
   Channel channel;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kStart = 0.5;   // [s]
 constexpr double kEnd = 10.0;    // several swings of the slowest machine [s]
-constexpr double kBound = 5e-3;  // the bound between the two integrators [s]
+constexpr double kBound = 5e-3;  // the bound asked for between the two integrators [s]
 constexpr double kWidth = 1e-4;  // to which the engine's own time is bracketed, well below the bound [s]
 
 /// A fault at one bus and the durations between which stability is lost [s].

@@ -29,7 +29,7 @@ Trajectory compared(const Grid& grid, const Event& event, double t_end = Referen
       [&](const Job&, const Trajectory& run) {
         kept = run;
         EXPECT_EQ(run.outcome, Outcome::stable);
-        EXPECT_LE(test::largest_difference(run, reference), 1e-4);  // the bound
+        EXPECT_LE(test::largest_difference(run, reference), 1e-4);  // the bound asked for
       });
   EXPECT_TRUE(given);
   return kept;

@@ -100,7 +100,7 @@ TEST_P(LanesAgainstReferenceFull, HundredRandomStableEvents) {
   for (int c = 0; c < kChannelCount; ++c) {
     RecordProperty("largest_" + std::string(kChannels[c].name), testing::PrintToString(worst[c]));
     EXPECT_LE(worst[c], 1e-4) << kChannels[c].name << " [" << kChannels[c].unit
-                              << "]";  // issue: <= 1e-4 in every channel
+                              << "]";  // asked for: <= 1e-4 in every channel
   }
 }
 

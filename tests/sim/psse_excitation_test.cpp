@@ -9,7 +9,7 @@
 namespace swingbank::sim {
 namespace {
 
-/// The limit: 0.2 % of each channel's swing.
+/// The limit asked for: 0.2 % of each channel's swing.
 constexpr double kLimit = 2e-3;
 
 Grid grid_of(const std::string& name) {

@@ -36,7 +36,7 @@ TEST(PsseRecords, Hygov) {
       low = std::min(low, theirs);
       high = std::max(high, theirs);
     }
-    // The limit; measured 0.032 % of V, 0.061 % of the angle, 0.038 % of the speed.
+    // The limit asked for; measured 0.032 % of V, 0.061 % of the angle, 0.038 % of the speed.
     EXPECT_LT(worst, 0.002 * (high - low)) << "channel " << channel;
   }
 }

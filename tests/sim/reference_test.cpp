@@ -44,7 +44,7 @@ TEST(Reference, StaysPutWithoutAFault) {
     const ReferenceRun run = run_reference(grid, {}, {});
     EXPECT_EQ(run.outcome, Outcome::stable);
     EXPECT_EQ(run.samples, 1801);
-    EXPECT_LT(drift(run), 1e-9) << name;  // issue: drift < 1e-9 over 15 s
+    EXPECT_LT(drift(run), 1e-9) << name;  // asked for: drift < 1e-9 over 15 s
   }
 }
 

@@ -170,7 +170,7 @@ Trajectory compared(const Grid& grid, const Event& event) {
             [&](const Job&, const Trajectory& run) {
               kept = run;
               EXPECT_LE(test::largest_difference(run, run_reference(grid, event, exact)),
-                        1e-4);  // the issue's
+                        1e-4);  // the limit asked for
             });
   return kept;
 }

@@ -104,7 +104,7 @@ void lanes_equal_reference(const Grid& grid, const Event& event) {
       [&](const Job&, const Trajectory& run) {
         done = true;
         EXPECT_EQ(run.outcome, Outcome::stable);
-        EXPECT_LE(test::largest_difference(run, reference), 1e-4);  // the bound
+        EXPECT_LE(test::largest_difference(run, reference), 1e-4);  // the bound asked for
       });
   EXPECT_TRUE(done);
 }

@@ -165,7 +165,7 @@ void expect_lanes_equal_the_reference(const Grid& grid) {
       [&](const Job& job, const Trajectory& run) {
         ++done;
         EXPECT_EQ(run.outcome, Outcome::stable) << job.id;
-        // the bound
+        // the bound asked for
         EXPECT_LE(test::largest_difference(run, run_reference(grid, job.event, exact)), 1e-4) << job.id;
       });
   EXPECT_EQ(done, events.size());

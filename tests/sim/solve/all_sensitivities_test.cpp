@@ -167,7 +167,7 @@ TEST(AllSensitivitiesFull, EqualCentralDifferences) {
   for (const Effect* e : effects_of_a_plant()) {
     Worst own;
     compare_with_quotients(host(*e), *e, own);
-    EXPECT_LT(own.value, 1e-5) << own.where;  // the limit
+    EXPECT_LT(own.value, 1e-5) << own.where;  // the limit asked for
     worst.columns += own.columns - 1;
     worst.add(own.value, own.where);
     if (own.columns > 0) seen.insert(e->name);
@@ -227,7 +227,7 @@ TEST(AllSensitivitiesFull, EqualThoseOfCvodes) {
     if (e->slot == Slot::machine && e->get<double>().machine.current) continue;  // algebraic
     Worst own;
     compare_with_cvodes(*e, own);
-    EXPECT_LT(own.value, 1e-5) << own.where;  // the limit
+    EXPECT_LT(own.value, 1e-5) << own.where;  // the limit asked for
     worst.columns += own.columns - 1;
     worst.add(own.value, own.where);
   }

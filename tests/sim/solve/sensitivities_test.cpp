@@ -86,7 +86,7 @@ TEST(Sensitivities, EqualCentralDifferences) {
       for (int k = 0; k < dual.samples; ++k)
         quotient[static_cast<std::size_t>(k)] =
             (side[0].row(row)[k] - side[1].row(row)[k]) / (2 * h) * seed.scale;
-      // the limit; the quotient's third-order term is 1e-8 relative, the integrators' errors 1e-7
+      // the limit asked for; the quotient's third-order term is 1e-8 relative, the integrators' errors 1e-7
       EXPECT_LT(worst_column(dual, static_cast<int>(d), quotient, row), 1e-5)
           << "row " << row << " by "
           << grid.plants[plant].machine.effect->parameters[static_cast<std::size_t>(seed.parameter)].name;
@@ -127,7 +127,7 @@ TEST(Sensitivities, EqualThoseOfCvodes) {
           worst_column(dual, static_cast<int>(i), columns[i][static_cast<std::size_t>(state)], state);
       RecordProperty("worst_" + std::to_string(i) + "_" + std::to_string(state),
                      testing::PrintToString(worst));
-      EXPECT_LT(worst, 1e-5) << "seed " << i << " state " << state;  // the limit
+      EXPECT_LT(worst, 1e-5) << "seed " << i << " state " << state;  // the limit asked for
     }
 }
 
