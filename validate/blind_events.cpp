@@ -27,7 +27,7 @@ BlindEvent draw_load_step(const BlindWorld& world, double start, BlindDraw& draw
   const sim::Load& at = network.loads[draw.below(network.loads.size())];
   const double p = total * draw.uniform(0.02, 0.05) * (draw.coin() ? 1.0 : -1.0);
   BlindEvent event;
-  event.event.load_steps.push_back({at.bus, sim::Complex(p, 0.2 * p), start, {}});
+  event.event.load_steps.push_back({at.bus, Complex(p, 0.2 * p), start, {}});
   event.switchings = {start};
   event.text =
       fmt::format("load step of {:.1f} MW and {:.1f} Mvar at bus {}, {:.5f} s", p * network.base_mva,
@@ -46,7 +46,7 @@ BlindEvent draw_fault(const BlindWorld& world, BlindDraw& draw) {
   BlindEvent event;
   sim::BusFault fault{bus, off_grid(1.5, 2.0, draw), 0.0, {}};
   fault.t_off = fault.t_on + off_grid(0.05, 0.15, draw);
-  if (draw.coin()) fault.z = sim::Complex(draw.uniform(0.0, 0.01), draw.uniform(0.005, 0.05));
+  if (draw.coin()) fault.z = Complex(draw.uniform(0.0, 0.01), draw.uniform(0.005, 0.05));
   event.event.faults.push_back(fault);
   event.switchings = {fault.t_on, fault.t_off};
   event.text = fmt::format("fault at bus {} from {:.5f} to {:.5f} s through {:.4f} + j{:.4f} pu",

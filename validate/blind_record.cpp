@@ -12,7 +12,7 @@ enum FineChannel { kV, kTheta, kP, kQ, kSpeed, kIfd };
 
 /// The reference P-class filter of IEEE Std C37.118.1-2011, annex C: triangular over two cycles of nominal
 /// frequency, w(k) = 1 - 2|k|/(N + 2), here normalised. Ends are held.
-std::vector<sim::Complex> p_class(const std::vector<sim::Complex>& x, double rate, double frequency) {
+std::vector<Complex> p_class(const std::vector<Complex>& x, double rate, double frequency) {
   const int half = static_cast<int>(std::lround(rate / frequency)) - 1;
   const int last = static_cast<int>(x.size()) - 1;
   std::vector<double> weight;
@@ -21,7 +21,7 @@ std::vector<sim::Complex> p_class(const std::vector<sim::Complex>& x, double rat
     weight.push_back(1.0 - std::abs(k) / (half + 1.0));
     sum += weight.back();
   }
-  std::vector<sim::Complex> y(x.size());
+  std::vector<Complex> y(x.size());
   for (int i = 0; i <= last; ++i)
     for (int k = -half; k <= half; ++k)
       y[static_cast<std::size_t>(i)] += weight[static_cast<std::size_t>(k + half)] / sum *
@@ -34,9 +34,9 @@ sim::Phasors phasors(const sim::ReferenceRun& fine, double frequency) {
   p.rate = fine.rate;
   p.frequency = frequency;
   for (int k = 0; k < fine.samples; ++k) {
-    const sim::Complex v = std::polar(fine.at(0, kV)[k], fine.at(0, kTheta)[k]);
+    const Complex v = std::polar(fine.at(0, kV)[k], fine.at(0, kTheta)[k]);
     p.V.push_back(v);
-    p.I.push_back(std::conj(sim::Complex(fine.at(0, kP)[k], fine.at(0, kQ)[k]) / v));
+    p.I.push_back(std::conj(Complex(fine.at(0, kP)[k], fine.at(0, kQ)[k]) / v));
     const double* theta = fine.at(0, kTheta);
     p.df.push_back(k == 0 ? 0.0 : (theta[k] - theta[k - 1]) * fine.rate / (6.283185307179586 * frequency));
   }
@@ -71,7 +71,7 @@ Record measured(const sim::ReferenceRun& fine, const sim::Plant& plant, const Bl
   const double scale = plant.mva / kRecordMva;
   for (int k = 0; k <= static_cast<int>(std::lround(config.seconds * config.fine_rate)); k += stride) {
     const auto i = static_cast<std::size_t>(k);
-    const sim::Complex power = p.V[i] * std::conj(p.I[i]) * scale;
+    const Complex power = p.V[i] * std::conj(p.I[i]) * scale;
     double angle = std::arg(p.V[i]);
     if (!r.theta.empty())
       angle += 6.283185307179586 * std::round((r.theta.back() - angle) / 6.283185307179586);

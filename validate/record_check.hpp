@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "validate/plant_model.hpp"
 #include "validate/record.hpp"
 
 namespace swingbank::validate {
 
-struct PlantModel;
 
 enum class Severity { refuse, warn };
 

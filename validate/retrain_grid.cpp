@@ -37,11 +37,11 @@ void require_expressible(const PlantModel& model) {
 std::string raw_text(const PlantModel& model, const FitEvent& event) {
   const auto& plant = model.plant;
   const double scale = event.record.base.mva / plant.mva;
-  const sim::Complex S(event.start.P * scale, event.start.Q * scale);
+  const Complex S(event.start.P * scale, event.start.Q * scale);
   const double V = std::abs(event.start.voltage);
   double x = 0;
   for (const double line : kLines) x += line;
-  const sim::Complex far = V - sim::Complex(x / 10, x) * std::conj(S / V);
+  const Complex far = V - Complex(x / 10, x) * std::conj(S / V);
   const auto parameter = [&](int index) {
     return index < 0 ? 0.0 : plant.machine.p[static_cast<std::size_t>(index)];
   };

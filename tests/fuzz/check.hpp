@@ -40,15 +40,15 @@ bool accepted(const Action& action) {
   }
 }
 
-inline bool finite(sim::Complex z) { return std::isfinite(z.real()) && std::isfinite(z.imag()); }
+inline bool finite(Complex z) { return std::isfinite(z.real()) && std::isfinite(z.imag()); }
 
 /// The power flow of a network is finite or refused. Larger networks take too long here.
 inline void check_power_flow(const sim::Network& network) {
   if (network.buses.size() > 60) return;
   sim::PowerFlow flow;
   if (!accepted([&] { flow = sim::solve_power_flow(network); })) return;
-  for (const sim::Complex& v : flow.voltage) require(finite(v), "voltages are finite");
-  for (const sim::Complex& s : flow.generation) require(finite(s), "generation is finite");
+  for (const Complex& v : flow.voltage) require(finite(v), "voltages are finite");
+  for (const Complex& s : flow.generation) require(finite(s), "generation is finite");
 }
 
 /// What can be written reads back as it was.

@@ -39,7 +39,7 @@ struct Simulated {
 /// A grid of configs/networks with a fault at a bus, by the reference integrator. Its rtol of 1e-10 per step
 /// keeps its own error near 1e-9, far below what is tested. `change`: of the grid, before.
 inline Simulated simulate(const std::string& name, sim::Conventions conventions, int bus, double t_on,
-                          double t_off, double rate = 480.0, sim::Complex z = {},
+                          double t_off, double rate = 480.0, Complex z = {},
                           const std::function<void(sim::Grid&)>& change = {}) {
   Simulated s{sim::load_grid(source("configs/networks/" + name + ".raw"),
                              source("configs/networks/" + name + ".dyr"), conventions),
