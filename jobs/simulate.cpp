@@ -312,7 +312,8 @@ int main(int argc, char** argv) {
   app.add_option("--measure-seed", o.measure_seed, "seed of the instruments' noise and gaps")
       ->capture_default_str();
   app.add_option("--convention", o.convention,
-                 "psse: speed in the stator voltage and Pm/(1+w); andes: neither")
+                 "psse: governors set power; andes: torque; neither has speed in the stator voltage "
+                 "(configs/README.md)")
       ->check(CLI::IsMember({"psse", "andes"}))
       ->capture_default_str();
   app.add_option(
