@@ -1,5 +1,9 @@
 #pragma once
 // GENROU: round-rotor machine, one field and three damper circuits.
+//
+// Conventions. PSS/E sets power, Pm and D w both divided by speed, Te is not; no speed voltage. With its own
+// steps its records psse/GENROU agree to 0.0002 degrees; with speed voltage they miss by 0.009, with torque
+// by 0.045, without damping by 0.002. ANDES takes torques, no speed voltage (tests/reference/andes).
 #include "sim/core/effect.hpp"
 #include "sim/core/saturation.hpp"
 

@@ -1,5 +1,10 @@
 #pragma once
 // GENSAL: salient-pole machine, one field and one damper circuit in each axis.
+//
+// Conventions. As GENROU. With PSS/E's own steps its record psse/EXST1 (D = 4) agrees to 0.03 % of swing in
+// voltages and speed; with speed voltage it misses by 3, with torque by 1.8, without damping by 15 %. The
+// angle of psse_powersimulationsdynamics/GENSAL (D = 0) agrees to 0.0002 degrees over 10 s, with speed
+// voltage to 0.0009, with torque to 0.017.
 #include <fmt/format.h>
 
 #include "sim/core/effect.hpp"

@@ -4,6 +4,8 @@
 //
 // The factor Se depends on the air-gap flux, the flux on the stator current, and the current on the
 // subtransient reactances that Se divides: current() solves that by Newton's method in the one unknown Se.
+//
+// Conventions. Taken as GENROU's: no record at hand shows them.
 #include <fmt/format.h>
 
 #include "sim/core/effect.hpp"

@@ -16,7 +16,8 @@ inline std::filesystem::path record_folder(const std::string& name) {
   if (!std::filesystem::exists(root / name))
     throw std::runtime_error("no PSS/E records at " + (root / name).string() +
                              " (they are not part of this repository): set SWINGBANK_REFERENCE to the "
-                             "folder that holds psse/ and psse-test01/, or run .ci/run --without-psse");
+                             "folder that holds " +
+                             name + ", or run .ci/run --without-psse");
   return root / name;
 }
 /// Folder of one case of psse/, e.g. "SEXS".
