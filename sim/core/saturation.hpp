@@ -1,6 +1,8 @@
 #pragma once
 // Saturation of a synchronous machine as PSS/E gives it: by its factors Se at 1.0 and 1.2 pu flux, S1.0 = 0
 // for none. The field needs psi Se(psi) more current than the air-gap line says.
+#include <string_view>
+
 #include "sim/core/scalar.hpp"
 
 namespace swingbank::sim {
@@ -32,5 +34,36 @@ inline T exponential_saturation(const T& s10, const T& exponent, const T& flux_s
   using std::log;
   return s10 * exp(exponent * T(0.5) * log(flux_squared + T(1e-24)));
 }
+
+/// Either law as a choice of a machine: two coefficients a, b; Se of psi^2; which factors it passes through.
+struct QuadraticSaturation {
+  static constexpr std::string_view impossible = "no quadratic passes through both",
+                                    remedy = "give 1.2 S1.2 > S1.0, or S1.0 = 0 for no saturation";
+  static bool possible(double s10, double s12) { return !(s10 > 0) || 1.2 * s12 > s10; }
+  template <class T>
+  static void prepare(const T& s10, const T& s12, T& a, T& b) {
+    quadratic_saturation(s10, s12, a, b);
+  }
+  template <class T>
+  static T factor(const T& a, const T& b, const T& flux_squared) {
+    using std::sqrt;
+    const T psi = sqrt(flux_squared + T(1e-24));
+    return b * square(positive_part(psi - a)) / psi;
+  }
+};
+struct ExponentialSaturation {
+  static constexpr std::string_view impossible = "no power of the flux passes through both",
+                                    remedy = "give S1.2 > 0, or S1.0 = 0 for no saturation";
+  static bool possible(double s10, double s12) { return !(s10 > 0) || s12 > 0; }
+  template <class T>
+  static void prepare(const T& s10, const T& s12, T& a, T& b) {
+    a = s10;
+    b = saturation_exponent(s10, s12);
+  }
+  template <class T>
+  static T factor(const T& a, const T& b, const T& flux_squared) {
+    return exponential_saturation(a, b, flux_squared);
+  }
+};
 
 }  // namespace swingbank::sim

@@ -1,18 +1,14 @@
 #pragma once
 // EXAC1: brushless alternator-rectifier exciter of 1981.
-#include <fmt/format.h>
-
-#include "sim/core/blocks.hpp"
-#include "sim/core/effect.hpp"
+#include "sim/effects/shared/alternator_rectifier.hpp"
 
 namespace swingbank::sim::exciter_exac1 {
 
-struct Model {
+struct Model : shared::AlternatorRectifier<Model> {
   static constexpr std::string_view
       name = "EXAC1",
       title = "alternator-rectifier excitation system, type AC1 of 1981",
       source = "IEEE Committee Report, Excitation system models (1981), AC1; PSS/E EXAC1", dyr_name = "EXAC1";
-  static constexpr Slot slot = Slot::exciter;
   static constexpr std::string_view description = R"(
   Vc --> [ 1/(1 + s TR) ] --> Vm
   Vref + dVref - Vm + Vs + Vlimiter - Vf --> [ (1 + s TC)/(1 + s TB) ] --> [ KA/(1 + s TA) ] --> Vr
@@ -24,125 +20,21 @@ struct Model {
                                                        sqrt(3) (1 - IN)       IN <= 1, 0 beyond
   Ve Se(Ve) = B (Ve - A)^2 above A through (E1, SE1), (E2, SE2)
 )";
-  enum P { TR, TB, TC, KA, TA, VRMAX, VRMIN, TE, KF, TF, KC, KD, KE, E1, SE1, E2, SE2 };
-  static constexpr Parameter parameters[] = {
-      {"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)"},
-      {"TB", "TB", "s", 0.1, 0.0, 20.0, kNoNeutral, "lag (0: bypass)"},
-      {"TC", "TC", "s", 0.05, 0.0, 20.0, kNoNeutral, "lead"},
-      {"KA", "KA", "pu", 400.0, 1.0, 2000.0, kNoNeutral, "regulator gain"},
-      {"TA", "TA", "s", 0.02, 0.0, 10.0, kNoNeutral, "regulator time constant (0: none)"},
+  static constexpr auto parameters = parameters_with(
       {"VRMAX", "VRMAX", "pu", 6.03, 0.0, 100.0, kNoNeutral, "upper limit of the regulator"},
-      {"VRMIN", "VRMIN", "pu", -5.43, -100.0, 0.0, kNoNeutral, "lower limit of the regulator"},
-      {"TE", "TE", "s", 0.8, 0.01, 5.0, kNoNeutral, "alternator's time constant"},
-      {"KF", "KF", "pu", 0.03, 0.0, 1.0, 0.0, "rate feedback"},
-      {"TF", "TF", "s", 1.0, 0.02, 20.0, kNoNeutral, "rate feedback's time constant"},
-      {"KC", "KC", "pu", 0.2, 0.0, 1.0, 0.0, "rectifier's commutating reactance"},
-      {"KD", "KD", "pu", 0.38, 0.0, 2.0, 0.0, "alternator's armature reaction"},
-      {"KE", "KE", "pu", 1.0, 0.0, 2.0, kNoNeutral, "alternator's own field"},
-      {"E1", "E1", "pu", 4.18, 0.0, 20.0, kNoNeutral, "first point of saturation"},
-      {"SE1", "SE(E1)", "-", 0.1, 0.0, 2.0, 0.0, "saturation there"},
-      {"E2", "E2", "pu", 3.14, 0.0, 20.0, kNoNeutral, "second point of saturation"},
-      {"SE2", "SE(E2)", "-", 0.03, 0.0, 2.0, 0.0, "saturation there"}};
-  static constexpr int dyr_columns[] = {TR, TB, TC, KA, TA, VRMAX, VRMIN, TE, KF,
+      {"VRMIN", "VRMIN", "pu", -5.43, -100.0, 0.0, kNoNeutral, "lower limit of the regulator"});
+  static constexpr int dyr_columns[] = {TR, TB, TC, KA, TA, UPPER, LOWER, TE, KF,
                                         TF, KC, KD, KE, E1, SE1,   E2,    SE2};
-  enum C {
-    iTR,
-    lead,
-    iTB,
-    gain,
-    iTA,
-    iTE,
-    feedback,
-    iTF,
-    commutation,
-    demagnetising,
-    self,
-    satA,
-    satB,
-    vrmax,
-    vrmin,
-    none,
-    Vref,
-    coefficients
-  };
-  enum X { Vm, leadlag, Vr, Ve, rate };
-  /// What enters the regulator counts in Efd by its gain of some hundreds, within its lags.
-  static constexpr double kErrorWeight = 10.0;
+  enum { coefficients = alternator };
   static constexpr State states[] = {{"Vm", "pu", "measured voltage", kErrorWeight},
                                      {"leadlag", "pu", "state of the lead-lag", kErrorWeight},
-                                     {"Vr", "pu", "regulator output", 1.0, vrmin, vrmax},
+                                     {"Vr", "pu", "regulator output", 1.0, lower, upper},
                                      {"Ve", "pu", "voltage behind the rectifier", 1.0, none, -1},
                                      {"rate", "pu", "state of the rate feedback", kErrorWeight}};
 
-  static void check(const double* p, const std::string& where, Problems& problems) {
-    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-    };
-    for (int i : {TE, TF})
-      bad(!(p[i] > 0), fmt::format("{} = {:g} s", parameters[i].symbol, p[i]), "EXAC1 divides by it",
-          "give a value > 0");
-    bad(!(p[KA] > 0), fmt::format("KA = {:g}", p[KA]), "no gain, no exciter", "give KA > 0");
-    for (int i : {TR, TB, TA})
-      bad(!(p[i] >= 0), fmt::format("{} = {:g} s", parameters[i].symbol, p[i]), "a time constant",
-          "give a value >= 0");
-    for (int i : {KC, SE1, SE2})
-      bad(!(p[i] >= 0), fmt::format("{} = {:g}", parameters[i].symbol, p[i]),
-          "it can only take from the exciter's voltage", "give a value >= 0");
-    bad(p[E1] == p[E2] && p[SE1] != p[SE2], fmt::format("E1 = E2 = {:g} pu", p[E1]),
-        "one voltage cannot have two saturations", "give two points");
-    bad(!(p[VRMAX] > p[VRMIN]), fmt::format("VRMAX = {:g} pu with VRMIN = {:g} pu", p[VRMAX], p[VRMIN]),
-        "the regulator must have room to move", "give VRMAX > VRMIN");
-  }
-  static std::string_view unphysical(const double*) { return ""; }
-
   template <class T>
-  static void prepare(const T* p, const Conventions&, T* c) {
-    c[iTR] = inverse(p[TR]);
-    c[lead] = p[TC];
-    c[iTB] = inverse(p[TB]);
-    c[gain] = p[KA];
-    c[iTA] = inverse(p[TA]);
-    c[iTE] = T(1.0) / p[TE];
-    c[iTF] = T(1.0) / p[TF];
-    c[feedback] = p[KF] * c[iTF];
-    c[commutation] = p[KC];
-    c[demagnetising] = p[KD];
-    c[self] = p[KE];
-    const auto saturation = Quadratic<T>::through(p[E1], p[SE1], p[E2], p[SE2]);
-    c[satA] = saturation.A;
-    c[satB] = saturation.B;
-    c[vrmax] = p[VRMAX];
-    c[vrmin] = p[VRMIN];
-    c[none] = T(0.0);
-  }
-  /// The field voltage that keeps the alternator at `ve`.
-  template <class T>
-  static T field(const T* c, const T& ve, const T& Ifd) {
-    return c[self] * ve + Quadratic<T>{c[satA], c[satB]}(ve) + c[demagnetising] * Ifd;
-  }
-  template <class T>
-  static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
-    const T measured = lag(c[iTR], x[Vm], s.Vc, dx[Vm]);
-    const T ve = positive_part(x[Ve]);
-    const T Vfe = field(c, ve, s.Ifd);
-    const T stabilised = c[feedback] * washout(c[iTF], x[rate], Vfe, dx[rate]);
-    const T error = c[Vref] + s.dVref - measured + s.Vs + s.Vlimiter - stabilised;
-    const T u = lead_lag(c[lead], c[iTB], x[leadlag], error, dx[leadlag]);
-    const T vr = clamp(lag(c[iTA], x[Vr], c[gain] * u, dx[Vr]), c[vrmin], c[vrmax]);
-    dx[Ve] = (vr - Vfe) * c[iTE];
-    s.Efd = rectified(ve, c[commutation] * s.Ifd);
-  }
-  template <class T>
-  static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
-    if (!(value_of(s.Efd) > 0.0))
-      return fmt::format("Efd = {:.4f} pu is needed and a rectifier delivers none below zero",
-                         value_of(s.Efd));
-    x[Vm] = s.Vc;
-    x[Ve] = rectifier_source(s.Efd, p[KC] * s.Ifd);
-    x[Vr] = x[rate] = field(c, x[Ve], s.Ifd);
-    x[leadlag] = x[Vr] / p[KA];
-    c[Vref] = x[leadlag] + s.Vc - s.Vs - s.Vlimiter;
-    return {};
+  static T field_input(const T*, const T& output) {
+    return output;
   }
 };
 
