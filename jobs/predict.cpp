@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "jobs/record_for_network.hpp"
+#include "train/blas_kernels.hpp"
 #include "train/runtime.hpp"
 #include "validate/record_check.hpp"
 #include "validate/write_file.hpp"
@@ -165,6 +166,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 1;
   }
   try {
+    use_best_blas_kernels(argv);
     set_up_runtime(0);
     return run(o);
   } catch (const std::exception& error) {

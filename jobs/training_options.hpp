@@ -9,6 +9,7 @@
 
 #include "mpi/stop_signal.hpp"
 #include "sim/core/problem.hpp"
+#include "train/blas_kernels.hpp"
 #include "train/run.hpp"
 
 namespace swingbank {
@@ -86,6 +87,7 @@ int training_main(int argc, char** argv, CLI::App& app, TrainingOptions& options
       fmt::print("{}\n", read_experiment(options.experiment).print(options.preset, options.print));
       return 0;
     }
+    use_best_blas_kernels(argv);
     catch_stop_signals();
     return work(options.request());
   } catch (const std::exception& error) {

@@ -2,7 +2,6 @@
 
 #include <ATen/Context.h>
 #include <ATen/Parallel.h>
-#include <dlfcn.h>
 #include <fmt/format.h>
 #include <malloc.h>
 #include <sched.h>
@@ -11,16 +10,10 @@
 #include <cstdlib>
 
 #include "sim/core/problem.hpp"
+#include "train/blas_kernels.hpp"
 
 namespace swingbank {
 namespace {
-
-using Text = char* (*)();
-Text blas_function(const char* name) { return reinterpret_cast<Text>(dlsym(RTLD_DEFAULT, name)); }
-std::string blas_core() {
-  const Text core = blas_function("openblas_get_corename");
-  return core ? core() : "";
-}
 
 int environment_number(const char* name) {
   const char* text = std::getenv(name);
@@ -60,13 +53,7 @@ Runtime set_up_runtime(int threads) {
   Runtime runtime;
   runtime.threads = threads > 0 ? threads : default_threads();
   at::set_num_threads(runtime.threads);
-  const Text config = blas_function("openblas_get_config");
-  const char* forced =
-      std::getenv("OPENBLAS_CORETYPE");  // AVX2 kernels halve the speed of a processor with AVX-512
-  runtime.blas = config ? std::string(config()).substr(0, std::string("OpenBLAS 0.3.21").size()) + " " +
-                              blas_core() +
-                              (forced ? fmt::format(" (forced by OPENBLAS_CORETYPE={})", forced) : "")
-                        : "not OpenBLAS (slow: install libopenblas0-openmp)";
+  runtime.blas = blas_name(BlasFound::here());
   return runtime;
 }
 

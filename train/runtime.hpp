@@ -6,7 +6,7 @@ namespace swingbank {
 
 struct Runtime {
   int threads = 1;
-  std::string blas;  ///< library, version and kernels; says so if the environment forces the kernels
+  std::string blas;  ///< library, version and kernels: blas_name() of blas_kernels.hpp
   [[nodiscard]] std::string sentence() const;
 };
 /// Threads of the Slurm allocation (SLURM_CPUS_PER_TASK), of OMP_NUM_THREADS, else the cores this process may

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "train/adam.hpp"
+#include "train/blas_kernels.hpp"
 #include "train/networks/network.hpp"
 #include "train/runtime.hpp"
 
@@ -66,6 +67,7 @@ Cost median(const std::vector<Cost>& all) {
 
 int main(int argc, char** argv) {
   using namespace swingbank;
+  use_best_blas_kernels(argv);
   const auto argument = [&](int i, int otherwise) { return argc > i ? std::atoi(argv[i]) : otherwise; };
   const int batch = argument(1, 128), rounds = argument(2, 3);
   const Runtime runtime = set_up_runtime(argument(3, 0));
