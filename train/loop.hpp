@@ -30,6 +30,7 @@ struct LoopSettings {
   std::filesystem::path checkpoint;     ///< empty: none is written
   const nlohmann::json* run = nullptr;  ///< identity of the run; a checkpoint of another one is refused
   double checkpoint_every_s = 300.0;
+  double gflops = 0.0;         ///< what the processor makes of products [GFLOP/s]; 0: not known
   std::function<bool()> stop;  ///< asked before each batch; empty: stop_asked()
 };
 

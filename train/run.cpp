@@ -87,6 +87,7 @@ RunOutcome run(const ShardStream& stream, const RunRequest& r) {
   settings.seed = r.seed;
   settings.checkpoint = checkpoint;
   settings.run = &run_identity;
+  settings.gflops = r.runtime.gflops;
   if (r.epochs) settings.recipe.epochs = *r.epochs;
   const Labels& labels = stream.labels();
   const RowSplit split = r.generator

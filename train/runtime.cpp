@@ -10,6 +10,7 @@
 #include <cstdlib>
 
 #include "sim/core/problem.hpp"
+#include "train/blas_check.hpp"
 #include "train/blas_kernels.hpp"
 
 namespace swingbank {
@@ -54,6 +55,7 @@ Runtime set_up_runtime(int threads) {
   runtime.threads = threads > 0 ? threads : default_threads();
   at::set_num_threads(runtime.threads);
   runtime.blas = blas_name(BlasFound::here());
+  runtime.gflops = runtime.threads * blas_rate().product;
   return runtime;
 }
 

@@ -7,6 +7,8 @@ namespace swingbank {
 struct Runtime {
   int threads = 1;
   std::string blas;  ///< library, version and kernels: blas_name() of blas_kernels.hpp
+  double gflops =
+      0.0;  ///< single-precision products of all threads, from that of one [GFLOP/s]; 0: not known
   [[nodiscard]] std::string sentence() const;
 };
 /// Threads of the Slurm allocation (SLURM_CPUS_PER_TASK), of OMP_NUM_THREADS, else the cores this process may
