@@ -2,12 +2,12 @@
 
 #include <fcntl.h>
 #include <spawn.h>
-#include <sys/file.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <memory>
@@ -19,6 +19,8 @@
 #include "mpi/item_queue.hpp"
 #include "mpi/session.hpp"
 #include "mpi/stop_signal.hpp"
+#include "mpi/store/durable.hpp"
+#include "mpi/store/run_lock.hpp"
 #include "validate/fleet_report.hpp"
 #include "validate/write_file.hpp"
 
@@ -30,28 +32,12 @@ namespace {
 namespace fs = std::filesystem;
 using namespace validate;
 
-/// The folder belongs to one run at a time. The lock falls when the process ends, however it ends.
-class FolderLock {
- public:
-  explicit FolderLock(const fs::path& folder) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    const fs::path file = folder / ".lock";
-    descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-    if (descriptor_ < 0)
-      throw InputError({"cannot write", folder.string(), error ? error.message() : std::strerror(errno),
-                        "choose a writable folder with room on its disk"});
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
-      throw InputError({"a second run", folder.string(), "another swingbank diagnose --fleet writes there",
-                        "wait for it, or give another --out"});
-  }
-  ~FolderLock() { ::close(descriptor_); }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
- private:
-  int descriptor_;
-};
+std::unique_ptr<RunLock> lock_folder(const fs::path& folder) {
+  make_folder(folder);
+  return std::make_unique<RunLock>(
+      folder / ".lock", LockWords{"a second run", folder.string(), "wait for it, or give another --out"},
+      std::chrono::milliseconds(0));
+}
 
 /// Output and status of a program that was started with these arguments.
 struct Ended {
@@ -153,11 +139,11 @@ int run_fleet(const FleetCommand& c, int* argc, char*** argv) {
   catch_stop_signals();
   const int threads = c.threads >= 0 ? c.threads : ranks.on_this_machine() > 1 ? 1 : 0;
   Fleet fleet;
-  std::unique_ptr<FolderLock> lock;
+  std::unique_ptr<RunLock> lock;
   try {
     agree(ranks, c.fleet, [&] {
       fleet = load_fleet(c.fleet);
-      if (first) lock = std::make_unique<FolderLock>(c.out);
+      if (first) lock = lock_folder(c.out);
     });
   } catch (const InputError& error) {  // the same on all ranks
     if (first) fmt::print(stderr, "{}\n", error.what());

@@ -1,6 +1,7 @@
 #include "train/processes.hpp"
 
 #include <fmt/format.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -44,11 +45,16 @@ int wait_for(pid_t child, const std::vector<pid_t>& running) {
 
 int run_processes(int count, const std::function<int(Place)>& work) {
   if (count <= 1) return work({});
+  const pid_t parent = getpid();
   std::vector<pid_t> children;
   for (int i = 0; i < count; ++i) {
     std::fflush(nullptr);
     const pid_t child = fork();
-    if (child == 0) _exit(work({i, count}));
+    if (child == 0) {
+      prctl(PR_SET_PDEATHSIG, SIGTERM);  // nobody waits for it then: it saves a checkpoint and ends
+      if (getppid() != parent) _exit(1);
+      _exit(work({i, count}));
+    }
     if (child < 0) {
       const int error = errno;
       end_all(children, SIGTERM);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mpi/store/durable.hpp"
+#include "mpi/store/run_lock.hpp"
 #include "sim/core/problem.hpp"
 #include "train/random.hpp"
 #include "train/result.hpp"
@@ -81,6 +82,9 @@ RunOutcome run(const ShardStream& stream, const RunRequest& r) {
   if (already_done(file, run_identity)) return RunOutcome::already_done;
   make_folder(r.out);
   make_folder(checkpoint.parent_path());
+  RunLock lock(checkpoint.parent_path() / (name + ".lock"),
+               {"a second run", file.string(), "wait for it to end, or choose another --out"});
+  if (already_done(file, run_identity)) return RunOutcome::already_done;
 
   LoopSettings settings;
   settings.recipe = r.experiment.training(r.preset, r.network);
@@ -116,6 +120,7 @@ RunOutcome run(const ShardStream& stream, const RunRequest& r) {
     save_network(network_file(file), {stream, r, features, scale, split, run_identity}, *network);
   write_text(file, result_json(stream, r, {split, features, report, result}).dump(2) + "\n");
   std::filesystem::remove(checkpoint);
+  lock.withdraw(true);
   progress.line(fmt::format("MSE {:.4g} against {:.4g} for the mean (x {:.3f}{}), {}, best epoch {} of {}",
                             result.mse, result.baseline_mse, result.ratio,
                             result.H_ratio ? fmt::format(", H alone x {:.3f}", *result.H_ratio) : "",

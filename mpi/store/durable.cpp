@@ -25,6 +25,9 @@ std::string remedy_for(int error) {
     case EPERM:
     case EROFS:
       return "choose a folder you may write to, or mend its permissions";
+    case ENOTDIR:
+    case EEXIST:
+      return "choose another folder: a file stands in its place";
     case ENOENT:
       return "check the path";
     default:

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "mpi/store/run_lock.hpp"
 #include "sim/core/problem.hpp"
 #include "tests/train/fixture.hpp"
 #include "train/cross_validate.hpp"
@@ -157,6 +158,27 @@ TEST(Training, LearnsAndShuffledLabelsTeachNothing) {
   // percent, and what little was learnt by heart costs some more.
   EXPECT_GT(shuffled["ratio"], 0.9);
   EXPECT_LT(shuffled["ratio"], 1.25);
+}
+
+TEST(Training, ASecondProcessAtTheSameRunIsRefused) {
+  const World world("second");
+  RunRequest r = request(world, "cnn", 1);
+  make_folder(r.out / "checkpoints");
+  const auto file = r.out / "checkpoints" / (run_name(r) + ".lock");
+  {
+    const RunLock other(file, {"", "", ""});
+    try {
+      run(world.stream, r);
+      FAIL() << "went on";
+    } catch (const InputError& e) {
+      const std::string sentence = e.what();
+      EXPECT_NE(sentence.find("a second run at " + (r.out / (run_name(r) + ".json")).string()),
+                std::string::npos)
+          << sentence;
+    }
+  }
+  EXPECT_EQ(run(world.stream, r), RunOutcome::done);
+  EXPECT_FALSE(std::filesystem::exists(file));
 }
 
 TEST(Training, RecurrentNetworksLearn) {
