@@ -202,9 +202,7 @@ bool share_items(const Ranks& ranks, const SharedItems& shared) {
       take_until_none(ranks, shared);
     return ranks.from_first(complete ? 1 : 0) != 0;
   } catch (const std::exception& error) {  // the others would wait for ever
-    fmt::print(stderr, "{}\n", error.what());
-    MPI_Abort(ranks.world, 1);
-    throw;
+    end_all_ranks(error.what());
   }
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "mpi/store/hdf5_file.hpp"
+#include "mpi/store/shard_group.hpp"
 
 namespace swingbank {
 
@@ -47,6 +48,18 @@ MpiSession::~MpiSession() {
   H5close();  // before MPI_Finalize: HDF5 holds MPI objects
   MPI_Finalize();
   if (!temporary_.empty()) std::filesystem::remove_all(temporary_, ignored);
+}
+
+int run_on_all_ranks(const MpiSession& session, const std::function<int()>& work) {
+  try {
+    return work();
+  } catch (const AgreedError& e) {
+    if (session.rank() == 0) std::fprintf(stderr, "%s\n", e.what());
+  } catch (const std::exception& e) {
+    if (session.size() > 1) end_all_ranks(e.what());
+    std::fprintf(stderr, "%s\n", e.what());
+  }
+  return 1;
 }
 
 }  // namespace swingbank

@@ -3,6 +3,7 @@
 #include <mpi.h>
 
 #include <filesystem>
+#include <functional>
 
 namespace swingbank {
 
@@ -24,5 +25,10 @@ class MpiSession {
   int rank_ = 0, size_ = 1;
   std::filesystem::path temporary_;  ///< of a rank started by hand
 };
+
+/// Runs a program's work and returns its exit code, 1 after an exception. What `agree` threw is the same on
+/// all ranks: rank 0 prints it. Anything else is this rank's own: its reason is printed with its number, and
+/// all ranks end, because the others would wait for this one for ever.
+int run_on_all_ranks(const MpiSession& session, const std::function<int()>& work);
 
 }  // namespace swingbank

@@ -51,7 +51,7 @@ void Worker::run() {
     report = {};
     try {
       report.finished = make(static_cast<std::uint64_t>(lease));
-    } catch (const InputError& e) {
+    } catch (const AgreedError& e) {  // of the group
       report.problems = e.problems();
     }
   }

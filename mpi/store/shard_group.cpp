@@ -1,10 +1,11 @@
 #include "mpi/store/shard_group.hpp"
 
+#include <cstdio>
+#include <cstdlib>
 #include <numeric>
 
 #include "mpi/store/durable.hpp"
 #include "mpi/store/shard_layout.hpp"
-#include "sim/core/problem.hpp"
 
 namespace swingbank {
 
@@ -12,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-void send_text(MPI_Comm group, int from, std::string& text) {
+void share_text(MPI_Comm group, int from, std::string& text) {
   auto length = static_cast<unsigned long>(text.size());
   MPI_Bcast(&length, 1, MPI_UNSIGNED_LONG, from, group);
   text.resize(length);
@@ -46,9 +47,9 @@ h5::Handle access_list(MPI_Comm group) {
   return list;
 }
 
-}  // namespace
-
-void agree(MPI_Comm group, const std::string& where, const std::function<void()>& work) {
+/// Problems of the first rank that has any; the same on all.
+std::vector<Problem> gather_problems(MPI_Comm group, const std::string& where,
+                                     const std::function<void()>& work) {
   int rank, size;
   MPI_Comm_rank(group, &rank);
   MPI_Comm_size(group, &size);
@@ -63,13 +64,39 @@ void agree(MPI_Comm group, const std::string& where, const std::function<void()>
   }
   int mine = problems.empty() ? size : rank, first = size;
   MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, group);
-  if (first == size) return;
+  if (first == size) return {};
   auto count = static_cast<unsigned long>(problems.size());
   MPI_Bcast(&count, 1, MPI_UNSIGNED_LONG, first, group);
   problems.resize(count);
   for (auto& p : problems)
-    for (std::string* text : {&p.what, &p.where, &p.why, &p.remedy}) send_text(group, first, *text);
-  throw InputError(problems);
+    for (std::string* text : {&p.what, &p.where, &p.why, &p.remedy}) share_text(group, first, *text);
+  return problems;
+}
+
+}  // namespace
+
+/// Without fmt and strings: memory may be what is short.
+void end_all_ranks(const char* why) {
+  int rank = 0, size = 1;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &size);
+  std::fprintf(stderr,
+               "failure at rank %d of %d (%s): the run ends on all ranks; what is finished is safe, run "
+               "the command again to continue\n",
+               rank, size, why);
+  std::fflush(nullptr);
+  MPI_Abort(MPI_COMM_WORLD, 1);
+  std::_Exit(1);
+}
+
+void agree(MPI_Comm group, const std::string& where, const std::function<void()>& work) {
+  std::vector<Problem> problems;
+  try {
+    problems = gather_problems(group, where, work);
+  } catch (const std::exception& e) {
+    end_all_ranks(e.what());
+  }
+  if (!problems.empty()) throw AgreedError(problems);
 }
 
 ShardReceipt write_shard(const fs::path& file, const ShardData& part, MPI_Comm group) {
@@ -85,6 +112,7 @@ ShardReceipt write_shard(const fs::path& file, const ShardData& part, MPI_Comm g
   if (rank == 0) before[0] = before[1] = 0;
 
   const fs::path temporary = temporary_name(file);
+  std::uint64_t bytes = 0;
   try {
     // MPI-IO tells little about why it fails, so the system is asked first.
     agree(group, file.string(), [&] {
@@ -97,7 +125,9 @@ ShardReceipt write_shard(const fs::path& file, const ShardData& part, MPI_Comm g
     agree(group, file.string(), [&] { fill_shard(f, part, before[0], before[1]); });
     agree(group, file.string(), [&] { f.close(); });
     agree(group, file.string(), [&] {
-      if (rank == 0) publish(file);
+      if (rank != 0) return;
+      publish(file);
+      bytes = fs::file_size(file);
     });
   } catch (...) {
     if (rank == 0) {
@@ -106,7 +136,8 @@ ShardReceipt write_shard(const fs::path& file, const ShardData& part, MPI_Comm g
     }
     throw;
   }
-  return {hashes.size(), ids.size(), fs::file_size(file), shard_hash(hashes, ids, outcomes)};
+  MPI_Bcast(&bytes, 1, MPI_UINT64_T, 0, group);  // the new name may not be seen on other nodes yet (NFS)
+  return {hashes.size(), ids.size(), bytes, shard_hash(hashes, ids, outcomes)};
 }
 
 }  // namespace swingbank

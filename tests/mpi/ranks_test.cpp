@@ -176,5 +176,34 @@ TEST(Report, SurvivesTheJourney) {
   EXPECT_EQ(back.problems[0].remedy, r.problems[0].remedy);
 }
 
+TEST(Report, PathThatIsNoUtf8Travels) {
+  Report r;
+  r.problems = {{"disk full", "/data/m\xfcller", "no space", "free some"}};
+  EXPECT_EQ(unpack(pack(r)).problems.at(0).where, "/data/m\xEF\xBF\xBDller");  // U+FFFD
+}
+
+/// Where there are several ranks it ends them, so tests/mpi/failing_rank.sh runs it by itself.
+class FailingRank : public Ranks {};
+
+TEST_F(FailingRank, EndsAll) {
+  const int code = run_on_all_ranks(session(), [&] {
+    if (rank == size - 1) throw std::runtime_error("only here");
+    MPI_Barrier(MPI_COMM_WORLD);
+    return 0;
+  });
+  EXPECT_EQ(size, 1) << "went on";
+  EXPECT_EQ(code, 1);
+}
+
+TEST_F(Ranks, AgreedErrorIsAnExitCodeOfAll) {
+  const int code = run_on_all_ranks(session(), [&] {
+    agree(MPI_COMM_WORLD, "here", [&] {
+      if (rank == size - 1) throw std::runtime_error("only here");
+    });
+    return 0;
+  });
+  EXPECT_EQ(code, 1);
+}
+
 }  // namespace
 }  // namespace swingbank
