@@ -5,13 +5,18 @@
 
 #include <algorithm>
 #include <deque>
+#include <exception>
+#include <memory>
+#include <new>
 #include <optional>
 #include <set>
 
 #include "mpi/databank.hpp"
 #include "mpi/master.hpp"
+#include "mpi/shard_audit.hpp"
 #include "mpi/stop_signal.hpp"
 #include "mpi/store/durable.hpp"
+#include "mpi/store/run_lock.hpp"
 #include "mpi/store/shard_group.hpp"
 #include "mpi/worker.hpp"
 
@@ -20,6 +25,8 @@ namespace swingbank {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr const char* kLockFile = ".lock";
 
 /// Every rank must have read the same config and run the same kernel.
 void require_one_variant(MPI_Comm world, const std::string& hash, const std::string& kernel) {
@@ -38,6 +45,17 @@ void require_one_variant(MPI_Comm world, const std::string& hash, const std::str
   });
 }
 
+void make_room(std::vector<double>& values, std::size_t count, int rank) {
+  try {
+    values.resize(count);
+  } catch (const std::bad_alloc&) {
+    throw InputError({"no memory for the databank", fmt::format("rank {}", rank),
+                      fmt::format("every rank holds all of it, {:.1f} MB",
+                                  static_cast<double>(count * sizeof(double)) * 1e-6),
+                      "start fewer ranks on a machine, ask for more memory, or make fewer draws"});
+  }
+}
+
 /// Rank 0 draws; all others get the points.
 Databank shared_databank(const Study& study, MPI_Comm world) {
   int rank;
@@ -45,10 +63,12 @@ Databank shared_databank(const Study& study, MPI_Comm world) {
   Databank bank;
   bank.dimensions = study.config.box.size();
   const auto& base = study.grid.plants[static_cast<std::size_t>(study.plants[0])];
+  agree(world, "databank", [&] {  // before the drawing, which may take long
+    if (rank != 0) make_room(bank.values, study.config.points() * bank.dimensions, rank);
+  });
   agree(world, "databank", [&] {
     if (rank == 0) bank = draw_databank(study.config, base, study.config.points());
   });
-  bank.values.resize(study.config.points() * bank.dimensions);
   constexpr std::size_t piece = std::size_t{1} << 26;  // MPI counts in int
   for (std::size_t at = 0; at < bank.values.size(); at += piece)
     MPI_Bcast(bank.values.data() + at, static_cast<int>(std::min(piece, bank.values.size() - at)), MPI_DOUBLE,
@@ -80,8 +100,20 @@ DatasetHeader header_of(const Study& study, const ShardAttributes& a) {
   return h;
 }
 
-/// A folder is new, or it belongs to this very config.
-void claim_folder(const fs::path& folder, const DatasetHeader& header) {
+/// Whether a folder holds nothing but what a run leaves that was killed before its header stood.
+bool is_unclaimed(const fs::path& folder) {
+  const fs::path header = temporary_name(folder / "dataset.json");
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const fs::path name = entry.path().filename();
+    const bool ours = name == kLockFile || name == header.filename() ||
+                      (name == "shards" && entry.is_directory() && fs::is_empty(entry.path()));
+    if (!ours) return false;
+  }
+  return true;
+}
+
+/// A folder is new, or it belongs to this very config. Under the lock.
+void claim_folder(const fs::path& folder, const DatasetHeader& header, RunLock& lock) {
   if (fs::exists(folder / "dataset.json")) {
     const DatasetHeader found = read_header(folder);
     if (found.config_hash != header.config_hash)
@@ -91,25 +123,37 @@ void claim_folder(const fs::path& folder, const DatasetHeader& header) {
                         "give another folder, or the config, size, seed and build it was made with"});
     return;
   }
-  if (fs::exists(folder) && (!fs::is_directory(folder) || !fs::is_empty(folder)))
+  if (!is_unclaimed(folder)) {
+    lock.withdraw();
     throw InputError({"output folder in use", folder.string(), "it holds files but no dataset",
                       "give a new or empty folder"});
-  make_folder(folder / "shards");
+  }
   write_header(folder, header);
 }
 
-/// Temporary files of a run that was killed.
-void remove_leftovers(const fs::path& folder) {
+/// The folder for shards, without temporary files of a run that was killed.
+void clear_leftovers(const fs::path& folder) {
   make_folder(folder / "shards");
   for (const auto& entry : fs::directory_iterator(folder / "shards"))
     if (entry.path().extension() == ".part") fs::remove(entry.path());
 }
 
-/// Takes bad shards out of the journal. Before the run opens it, because the file is replaced.
-void repair(const fs::path& folder) {
-  const Journal lock(folder / "journal.jsonl");
-  for (const auto& bad : strike_bad_shards(folder))
-    spdlog::warn("to be made anew: {} at {} ({})", bad.problem.what, bad.problem.where, bad.problem.why);
+std::unique_ptr<RunLock> lock_folder(const fs::path& folder) {
+  make_folder(folder);
+  return std::make_unique<RunLock>(
+      folder / kLockFile,
+      LockWords{"dataset in use", folder.string(), "wait for it to end, or choose another folder"});
+}
+
+/// Bad shards are taken out of the journal, or refused.
+void settle(const fs::path& folder, const std::vector<BadShard>& bad, bool repair) {
+  Problems problems;
+  for (const auto& [shard, p] : bad) {
+    if (repair) spdlog::warn("to be made anew: {} at {} ({})", p.what, p.where, p.why);
+    if (!repair) problems.add(p.what, p.where, p.why, p.remedy);
+  }
+  problems.raise();
+  if (repair) strike_shards(folder, bad);
 }
 
 /// Shards still to make.
@@ -154,8 +198,8 @@ struct Groups {
     count = (workers + writers - 1) / writers;
     MPI_Comm_split(world, rank < first ? MPI_UNDEFINED : (rank - first) / writers, rank, &mine);
   }
-  ~Groups() {
-    if (mine != MPI_COMM_NULL) MPI_Comm_free(&mine);
+  ~Groups() {  // collective, so not while this rank alone unwinds from an exception
+    if (mine != MPI_COMM_NULL && std::uncaught_exceptions() == 0) MPI_Comm_free(&mine);
   }
   Groups(const Groups&) = delete;
   Groups& operator=(const Groups&) = delete;
@@ -188,24 +232,37 @@ int generate(const DatasetConfig& config, const GenerateOptions& o, MPI_Comm wor
   MPI_Comm_size(world, &size);
   std::optional<Study> loaded;
   std::string kernel, hash;
+  ShardAttributes attributes;
+  DatasetHeader header;
   agree(world, config.file.string(), [&] {
     loaded = load_study(config);
     kernel = kernel_variant(*loaded);
     hash = config_hash(config, kernel);
+    attributes = shard_attributes(*loaded, hash, kernel);
+    header = header_of(*loaded, attributes);
+    header_text(header);  // before the folder is touched
   });
   const Study& study = *loaded;
   require_one_variant(world, hash, kernel);
-  const ShardAttributes attributes = shard_attributes(study, hash, kernel);
-  const DatasetHeader header = header_of(study, attributes);
+
+  std::unique_ptr<RunLock> lock;  // falls after all else
+  std::vector<JournalLine> lines;
+  agree(world, o.folder.string(), [&] {
+    if (rank != 0) return;
+    lock = lock_folder(o.folder);
+    claim_folder(o.folder, header, *lock);
+    lines = read_journal(o.folder / "journal.jsonl");
+  });
+  const ShardAudit audit = audit_shards(world, o.folder, header, lines, o.repair || !o.trust);
+  if (audit.stopped) return kSubmitAgain;
 
   std::optional<Journal> journal;
   std::deque<std::uint64_t> missing;
   agree(world, o.folder.string(), [&] {
     if (rank != 0) return;
-    claim_folder(o.folder, header);
-    if (o.repair) repair(o.folder);
+    settle(o.folder, audit.bad, o.repair);
     journal.emplace(o.folder / "journal.jsonl");
-    remove_leftovers(o.folder);
+    clear_leftovers(o.folder);
     missing = missing_shards(o, header);
     const auto left = draws_in(missing, config);
     spdlog::info("{}: {} of {} draws to make in {} shards, {} ranks, kernel {}, config {}", o.folder.string(),
@@ -241,6 +298,20 @@ int generate(const DatasetConfig& config, const GenerateOptions& o, MPI_Comm wor
   int done = complete ? 1 : 0;
   MPI_Bcast(&done, 1, MPI_INT, 0, world);
   return done != 0 ? 0 : kSubmitAgain;
+}
+
+bool verify(const fs::path& folder, MPI_Comm world) {
+  int rank;
+  MPI_Comm_rank(world, &rank);
+  DatasetHeader header;
+  std::vector<JournalLine> lines;
+  agree(world, folder.string(), [&] {
+    header = read_header(folder);
+    if (rank == 0) lines = read_journal(folder / "journal.jsonl");
+  });
+  const ShardAudit audit = audit_shards(world, folder, header, lines, true);
+  agree(world, folder.string(), [&] { settle(folder, audit.bad, false); });
+  return !audit.stopped;
 }
 
 std::string describe(const Dataset& d) {

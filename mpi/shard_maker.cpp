@@ -12,10 +12,6 @@ namespace {
 constexpr double kNoVoltage = 1e-6;
 }  // namespace
 
-std::string_view draw_outcome_name(std::uint8_t outcome) {
-  return outcome == kRefused ? "refused" : sim::outcome_name(static_cast<sim::Outcome>(outcome));
-}
-
 /// A place for every row there could be; compacted once it is known which draws are stable.
 struct ShardMaker::Slots {
   std::uint64_t first;

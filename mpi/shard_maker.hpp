@@ -9,10 +9,6 @@
 
 namespace swingbank {
 
-/// What a draw came to; the numbers stand in the shards (/draws/outcome). The first four are sim::Outcome.
-constexpr std::uint8_t kRefused = 4;
-std::string_view draw_outcome_name(std::uint8_t outcome);
-
 class ShardMaker {
  public:
   ShardMaker(const Study& study, const Databank& bank);

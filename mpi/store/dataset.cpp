@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "mpi/store/durable.hpp"
-#include "mpi/store/journal.hpp"
 #include "sim/core/problem.hpp"
 
 namespace swingbank {
@@ -71,39 +69,20 @@ DatasetHeader from_json(const nlohmann::json& j) {
   return h;
 }
 
-constexpr const char* kRepair = "run generate with --repair on the dataset: it makes the shard anew";
+ShardInfo info_of(const fs::path& folder, const JournalLine& l, const DatasetHeader& h,
+                  std::uint64_t first_row) {
+  return {folder / l.file, l.shard,
+          l.rows,          first_row,
+          l.bytes,         l.hash,
+          h.config_hash,   {l.rows, h.channel_names.size(), h.samples, h.parameter_names.size()},
+          l.draws,         l.outcomes};
+}
 
-/// What is wrong with a journalled shard; `deep` reads it, else its length must do, which shows truncation.
-std::optional<Problem> fault_of(const fs::path& file, const JournalLine& line, const DatasetHeader& header,
-                                bool deep) {
-  std::error_code error;
-  const auto size = fs::file_size(file, error);
-  if (error) return Problem{"missing shard", file.string(), error.message(), kRepair};
-  if (size != line.bytes)
-    return Problem{
-        "truncated or changed shard", file.string(),
-        "it has " + std::to_string(size) + " bytes, the journal says " + std::to_string(line.bytes), kRepair};
-  if (line.shard >= header.shard_count())
-    return Problem{"shard " + std::to_string(line.shard), file.string(),
-                   "the dataset has " + std::to_string(header.shard_count()) + " shards",
-                   "restore dataset.json and journal.jsonl of one and the same dataset"};
-  if (!deep) return std::nullopt;
-  try {
-    const ShardData data = read_shard(file);
-    if (data.attributes.config_hash != header.config_hash)
-      return Problem{
-          "a shard of another config", file.string(),
-          "its config hash is " + data.attributes.config_hash + ", the dataset's " + header.config_hash,
-          kRepair};
-    if (const auto found = hex(shard_hash(data)); found != line.hash)
-      return Problem{"changed shard", file.string(),
-                     "its hash is " + found + ", the journal says " + line.hash, kRepair};
-  } catch (const InputError& e) {
-    Problem p = e.problems().front();
-    p.remedy = kRepair;
-    return p;
-  }
-  return std::nullopt;
+std::string text_of(const std::map<std::string, std::uint64_t>& outcomes) {
+  std::string text;
+  for (const auto& [name, count] : outcomes)
+    text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + name;
+  return text.empty() ? "none" : text;
 }
 
 std::string combine(const std::vector<ShardInfo>& shards) {
@@ -114,8 +93,17 @@ std::string combine(const std::vector<ShardInfo>& shards) {
 
 }  // namespace
 
+std::string header_text(const DatasetHeader& header) {
+  try {
+    return to_json(header).dump(1) + "\n";
+  } catch (const nlohmann::json::type_error& e) {
+    throw InputError({"a name that is no UTF-8", "the config '" + header.name + "' or a file it names",
+                      e.what(), "give the file a name in UTF-8"});
+  }
+}
+
 void write_header(const fs::path& folder, const DatasetHeader& header) {
-  write_text(folder / "dataset.json", to_json(header).dump(1) + "\n");
+  write_text(folder / "dataset.json", header_text(header));
 }
 
 DatasetHeader read_header(const fs::path& folder) {
@@ -144,11 +132,10 @@ Dataset open_dataset(const fs::path& folder, bool allow_incomplete) {
   std::ranges::sort(lines, {}, &JournalLine::shard);
   Problems problems;
   for (const auto& l : lines) {
-    ShardInfo s{folder / l.file, l.shard, l.rows, d.rows, l.bytes, l.hash, d.config_hash};
-    if (const auto p = fault_of(s.path, l, d, false)) problems.add(p->what, p->where, p->why, p->remedy);
+    if (const auto p = fault_of(folder, l, d, false)) problems.add(p->what, p->where, p->why, p->remedy);
+    d.shards.push_back(info_of(folder, l, d, d.rows));
     d.rows += l.rows;
     for (const auto& [name, count] : l.outcomes) d.outcomes[name] += count;
-    d.shards.push_back(std::move(s));
   }
   d.complete = d.shards.size() == d.shard_count();
   if (!d.complete && !allow_incomplete)
@@ -161,34 +148,70 @@ Dataset open_dataset(const fs::path& folder, bool allow_incomplete) {
   return d;
 }
 
-std::vector<BadShard> find_bad_shards(const fs::path& folder, bool deep) {
-  const DatasetHeader header = read_header(folder);
-  std::vector<BadShard> bad;
-  for (const auto& line : read_journal(folder / "journal.jsonl"))
-    if (const auto p = fault_of(folder / line.file, line, header, deep)) bad.push_back({line.shard, *p});
-  return bad;
+ShardData read_checked(const ShardInfo& s) {
+  ShardData data = read_shard(s.path, {}, &s.shape);
+  const auto fail = [&](const std::string& what, const std::string& why) {
+    throw InputError({what, s.path.string(), why, kRepairDataset});
+  };
+  if (data.attributes.config_hash != s.config_hash)
+    fail("a shard of another config",
+         "its config hash is " + data.attributes.config_hash + ", the dataset's " + s.config_hash);
+  if (const auto draws = data.draw_sample_id.size(); draws != s.draws)
+    fail("another number of draws",
+         "it has " + std::to_string(draws) + ", the journal says " + std::to_string(s.draws));
+  if (const auto outcomes = count_outcomes(data.draw_outcome, s.path); outcomes != s.outcomes)
+    fail("other outcomes", "it has " + text_of(outcomes) + ", the journal says " + text_of(s.outcomes));
+  if (const auto found = hex(shard_hash(data)); found != s.hash)
+    fail("changed shard", "its hash is " + found + ", the journal says " + s.hash);
+  return data;
 }
 
-std::vector<BadShard> strike_bad_shards(const fs::path& folder) {
-  auto bad = find_bad_shards(folder, true);
+std::optional<Problem> fault_of(const fs::path& folder, const JournalLine& line, const DatasetHeader& header,
+                                bool deep) {
+  const fs::path file = folder / line.file;
+  std::error_code error;
+  const auto size = fs::file_size(file, error);
+  if (error) return Problem{"missing shard", file.string(), error.message(), kRepairDataset};
+  if (size != line.bytes)
+    return Problem{
+        "truncated or changed shard", file.string(),
+        "it has " + std::to_string(size) + " bytes, the journal says " + std::to_string(line.bytes),
+        kRepairDataset};
+  if (line.shard >= header.shard_count())
+    return Problem{"shard " + std::to_string(line.shard), file.string(),
+                   "the dataset has " + std::to_string(header.shard_count()) + " shards",
+                   "restore dataset.json and journal.jsonl of one and the same dataset"};
+  if (!deep) return std::nullopt;
+  try {
+    read_checked(info_of(folder, line, header, 0));
+  } catch (const InputError& e) {
+    Problem p = e.problems().front();
+    p.remedy = kRepairDataset;
+    return p;
+  }
+  return std::nullopt;
+}
+
+void strike_shards(const fs::path& folder, const std::vector<BadShard>& bad) {
+  if (bad.empty()) return;
   auto lines = read_journal(folder / "journal.jsonl");
   std::erase_if(lines, [&](const JournalLine& l) {
     return std::ranges::find(bad, l.shard, &BadShard::shard) != bad.end();
   });
-  if (!bad.empty()) rewrite_journal(folder / "journal.jsonl", lines);
-  return bad;
+  rewrite_journal(folder / "journal.jsonl", lines);
 }
 
 void verify_dataset(const Dataset& dataset) {
   Problems problems;
-  for (const auto& bad : find_bad_shards(dataset.path, true))
-    problems.add(bad.problem.what, bad.problem.where, bad.problem.why, bad.problem.remedy);
+  for (const auto& line : read_journal(dataset.path / "journal.jsonl"))
+    if (const auto p = fault_of(dataset.path, line, dataset, true))
+      problems.add(p->what, p->where, p->why, p->remedy);
   problems.raise();
 }
 
 void read_rows(const ShardInfo& shard, std::uint64_t first, std::uint64_t count, RowBlock& out,
                const ShardFields& fields) {
-  read_rows(shard.path, first, count, out, shard.config_hash, fields);
+  read_rows(shard.path, first, count, out, shard.config_hash, fields, &shard.shape);
 }
 
 }  // namespace swingbank

@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "mpi/store/journal.hpp"
 #include "mpi/store/shard.hpp"
 #include "sim/core/problem.hpp"
 
@@ -33,6 +35,9 @@ struct ShardInfo {
   std::uint64_t bytes = 0;
   std::string hash;  ///< shard hash, 16 hex digits
   std::string config_hash;
+  ShardShape shape;  ///< by header and journal
+  std::uint64_t draws = 0;
+  std::map<std::string, std::uint64_t> outcomes;  ///< draws by outcome
 };
 
 struct Dataset : DatasetHeader {
@@ -52,17 +57,23 @@ struct BadShard {
   std::uint64_t shard;
   Problem problem;
 };
-/// Journalled shards that are missing, of another length, and, if `deep`, of another config or content.
-std::vector<BadShard> find_bad_shards(const std::filesystem::path& folder, bool deep);
-/// Takes bad shards (deep) out of the journal, so that generate makes them anew. Returns what they were.
-std::vector<BadShard> strike_bad_shards(const std::filesystem::path& folder);
-/// Reads every shard and compares its hash and config with the journal. Throws InputError with every shard at
-/// fault.
+/// What is wrong with a journalled shard of `folder`: missing, of another length, and, if `deep`, not as
+/// read_checked wants it. Reads the file if `deep`.
+std::optional<Problem> fault_of(const std::filesystem::path& folder, const JournalLine& line,
+                                const DatasetHeader& header, bool deep);
+/// Takes bad shards out of the journal, so that generate makes them anew.
+void strike_shards(const std::filesystem::path& folder, const std::vector<BadShard>& bad);
+/// Reads every shard as read_checked does. Throws InputError with every shard at fault.
 void verify_dataset(const Dataset& dataset);
-/// Rows first ... first+count-1 of one shard.
+/// Reads a whole shard and compares it with header and journal: config, shapes, rows, draws, outcomes, hash.
+/// Throws InputError naming the file; the remedy is --repair.
+ShardData read_checked(const ShardInfo& shard);
+/// Rows first ... first+count-1 of one shard. Checks config and shapes, not the hash.
 void read_rows(const ShardInfo& shard, std::uint64_t first, std::uint64_t count, RowBlock& out,
                const ShardFields& fields = {});
 
+/// What dataset.json holds. Throws InputError if a text of the header is no UTF-8, which JSON cannot hold.
+std::string header_text(const DatasetHeader& header);
 /// Writes dataset.json under a temporary name, flushes and renames.
 void write_header(const std::filesystem::path& folder, const DatasetHeader& header);
 DatasetHeader read_header(const std::filesystem::path& folder);

@@ -1,14 +1,11 @@
 #include "mpi/store/journal.hpp"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <thread>
 #include <utility>
 
 #include "mpi/store/durable.hpp"
@@ -85,25 +82,11 @@ void rewrite_journal(const std::filesystem::path& file, const std::vector<Journa
 Journal::Journal(std::filesystem::path file) : file_(std::move(file)) {
   fd_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   if (fd_ < 0) raise_file_error(file_, errno, "cannot open the journal");
-  lock();
   const std::string text = read_text(file_);
   if (const auto whole = whole_lines(text);
       whole != text.size() && ::ftruncate(fd_, static_cast<off_t>(whole)) != 0)
     raise_file_error(file_, errno, "cannot cut off the journal's half-written last line");
   flush_folder(file_.parent_path());
-}
-
-/// A run that was just ended may take a moment to go, so the lock is tried for a while.
-void Journal::lock() {
-  constexpr int kTries = 50;
-  for (int i = 0; ::flock(fd_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK; ++i) {
-    if (i == kTries) {
-      ::close(std::exchange(fd_, -1));
-      throw InputError({"dataset in use", file_.string(), "another process is writing it",
-                        "wait for it to end, or choose another folder"});
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  }
 }
 
 Journal::~Journal() {

@@ -30,8 +30,7 @@ std::vector<JournalLine> read_journal(const std::filesystem::path& file);
 void rewrite_journal(const std::filesystem::path& file, const std::vector<JournalLine>& lines);
 
 /// Appends lines; each is on the disk when `append` returns. Cuts off a half-written last line when it opens.
-/// Holds a lock as long as it lives: throws InputError if another process still writes the same dataset after
-/// five seconds.
+/// Whoever opens it holds the dataset's lock (run_lock.hpp).
 class Journal {
  public:
   explicit Journal(std::filesystem::path file);
@@ -41,7 +40,6 @@ class Journal {
   void append(const JournalLine& line);
 
  private:
-  void lock();
   std::filesystem::path file_;
   int fd_ = -1;
 };

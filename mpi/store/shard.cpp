@@ -5,6 +5,7 @@
 #include "mpi/store/durable.hpp"
 #include "mpi/store/shard_layout.hpp"
 #include "sim/core/problem.hpp"
+#include "sim/solve/trajectory.hpp"
 
 namespace swingbank {
 
@@ -13,8 +14,7 @@ namespace fs = std::filesystem;
 namespace {
 
 void bad_shard(const fs::path& file, const std::string& what, const std::string& why) {
-  throw InputError({what, file.string(), why,
-                    "delete the file and run generate on its dataset again: it makes the shard anew"});
+  throw InputError({what, file.string(), why, kRepairDataset});
 }
 
 ShardAttributes read_attributes(const h5::File& f, const fs::path& file) {
@@ -39,16 +39,32 @@ ShardAttributes read_attributes(const h5::File& f, const fs::path& file) {
   return a;
 }
 
-/// Shapes of a shard's arrays must agree with one another.
-void read_shape(const h5::File& f, const fs::path& file, RowBlock& out) {
+std::string text_of(const h5::Shape& shape) {
+  std::string text;
+  for (const auto n : shape) text += (text.empty() ? "" : " x ") + std::to_string(n);
+  return text.empty() ? "a single value" : text;
+}
+
+void require_array(const h5::File& f, const fs::path& file, const char* name, const h5::Shape& expected) {
+  if (const auto found = f.shape(name); found != expected)
+    bad_shard(file, std::string("wrong shape of ") + name,
+              "it is " + text_of(found) + ", not " + text_of(expected));
+}
+
+/// Shapes of a shard's arrays must agree with one another, and with what the dataset says of them.
+void read_shape(const h5::File& f, const fs::path& file, const ShardShape* dataset, RowBlock& out) {
   const auto records = f.shape("/records"), parameters = f.shape("/parameters");
   if (records.size() != 3 || parameters.size() != 2 || parameters[0] != records[0])
     bad_shard(file, "shapes that do not agree",
               "/records must be rows x channels x samples and /parameters rows x parameters");
-  for (const char* name : {"/sample_id", "/generator", "/fault", "/largest_spread"})
-    if (const auto s = f.shape(name); s.empty() || s[0] != records[0])
-      bad_shard(file, std::string("wrong number of rows in ") + name,
-                "/records has " + std::to_string(records[0]));
+  if (dataset != nullptr) {
+    require_array(f, file, "/records", {dataset->rows, dataset->channels, dataset->samples});
+    require_array(f, file, "/parameters", {dataset->rows, dataset->parameters});
+  }
+  for (const char* name : {"/sample_id", "/generator", "/largest_spread"})
+    require_array(f, file, name, {records[0]});
+  require_array(f, file, "/fault", {records[0], kFaultColumns});
+  if (f.has("/angle_valid")) require_array(f, file, "/angle_valid", {records[0], records[2]});
   out.channels = records[1];
   out.samples = records[2];
   out.parameter_count = parameters[1];
@@ -84,14 +100,21 @@ struct HashState {
 
 }  // namespace
 
-ShardData read_shard(const fs::path& file, const ShardFields& fields) {
+std::string_view draw_outcome_name(std::uint8_t outcome) {
+  return outcome == kRefused ? "refused" : sim::outcome_name(static_cast<sim::Outcome>(outcome));
+}
+
+ShardData read_shard(const fs::path& file, const ShardFields& fields, const ShardShape* shape) {
   const std::lock_guard guard(h5::lock());
   const h5::File f = h5::File::open(file);
   ShardData data;
   data.attributes = read_attributes(f, file);
-  read_shape(f, file, data);
+  read_shape(f, file, shape, data);
   read_block(f, 0, f.shape("/records")[0], fields, data);
   if (fields.draws) {
+    const auto ids = f.shape("/draws/sample_id");
+    if (ids.size() != 1) bad_shard(file, "wrong shape of /draws/sample_id", "it is " + text_of(ids));
+    require_array(f, file, "/draws/outcome", ids);
     f.read("/draws/sample_id", data.draw_sample_id);
     f.read("/draws/outcome", data.draw_outcome);
   }
@@ -99,7 +122,7 @@ ShardData read_shard(const fs::path& file, const ShardFields& fields) {
 }
 
 void read_rows(const fs::path& file, std::uint64_t first, std::uint64_t count, RowBlock& out,
-               const std::string& config_hash, const ShardFields& fields) {
+               const std::string& config_hash, const ShardFields& fields, const ShardShape* shape) {
   const std::lock_guard guard(h5::lock());
   const h5::File f = h5::File::open(file);
   if (!config_hash.empty()) {
@@ -108,7 +131,7 @@ void read_rows(const fs::path& file, std::uint64_t first, std::uint64_t count, R
       bad_shard(file, "a shard of another config",
                 "its config hash is " + found + ", the dataset's " + config_hash);
   }
-  read_shape(f, file, out);
+  read_shape(f, file, shape, out);
   read_block(f, first, count, fields, out);
 }
 
@@ -159,6 +182,18 @@ std::uint64_t shard_hash(const std::vector<std::uint64_t>& rows,
 
 std::uint64_t shard_hash(const ShardData& data) {
   return shard_hash(row_hashes(data), data.draw_sample_id, data.draw_outcome);
+}
+
+std::map<std::string, std::uint64_t> count_outcomes(const std::vector<std::uint8_t>& draw_outcome,
+                                                    const fs::path& file) {
+  std::map<std::string, std::uint64_t> counts;
+  for (const auto outcome : draw_outcome) {
+    if (outcome > kRefused)
+      bad_shard(file, "outcome " + std::to_string(outcome) + " in /draws/outcome",
+                "outcomes are numbered up to " + std::to_string(kRefused));
+    ++counts[std::string(draw_outcome_name(outcome))];
+  }
+  return counts;
 }
 
 }  // namespace swingbank

@@ -4,7 +4,9 @@
 // is not thread-safe, so they take one lock.
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace swingbank {
@@ -38,24 +40,36 @@ struct RowBlock {
 struct ShardData : RowBlock {
   ShardAttributes attributes;
   std::vector<std::uint64_t> draw_sample_id;  ///< every draw of the shard, stable or not
-  std::vector<std::uint8_t>
-      draw_outcome;  ///< 0 stable, 1 lost_synchronism, 2 not_finite, 3 step_too_small, 4 refused
+  std::vector<std::uint8_t> draw_outcome;     ///< 0 ... kRefused
 };
 
 constexpr std::size_t kFaultColumns = 5;
+/// What to do about a shard that cannot be trusted.
+constexpr const char* kRepairDataset = "run generate with --repair on the dataset: it makes the shard anew";
+/// What a draw came to; the numbers stand in /draws/outcome. The first four are sim::Outcome.
+constexpr std::uint8_t kRefused = 4;
+std::string_view draw_outcome_name(std::uint8_t outcome);
+
+/// What a dataset says of one of its shards before the file is opened.
+struct ShardShape {
+  std::uint64_t rows = 0, channels = 0, samples = 0, parameters = 0;
+};
 
 /// Which arrays a reader wants; what is not asked for stays empty.
 struct ShardFields {
   bool records = true, parameters = true, angle_valid = true, draws = true;
 };
 
-/// Reads a whole shard. Throws InputError naming the file if it is truncated, no shard, or inconsistent.
-ShardData read_shard(const std::filesystem::path& file, const ShardFields& fields = {});
+/// Reads a whole shard. Throws InputError naming the file if it is truncated, no shard, or inconsistent, and
+/// if its arrays are not as `shape` says; it is told before memory is taken for them.
+ShardData read_shard(const std::filesystem::path& file, const ShardFields& fields = {},
+                     const ShardShape* shape = nullptr);
 
 /// Reads rows first ... first+count-1 into `out`, whose buffers are reused. Throws InputError as read_shard
 /// does, and if `config_hash` is given and the file holds another one.
 void read_rows(const std::filesystem::path& file, std::uint64_t first, std::uint64_t count, RowBlock& out,
-               const std::string& config_hash = {}, const ShardFields& fields = {});
+               const std::string& config_hash = {}, const ShardFields& fields = {},
+               const ShardShape* shape = nullptr);
 
 /// Writes a shard under a temporary name, flushes it to the disk and renames it. Throws InputError naming the
 /// file if the disk is full or the folder cannot be written; nothing is left behind then.
@@ -68,5 +82,9 @@ std::uint64_t shard_hash(const std::vector<std::uint64_t>& rows,
                          const std::vector<std::uint64_t>& draw_sample_id,
                          const std::vector<std::uint8_t>& draw_outcome);
 std::uint64_t shard_hash(const ShardData& data);
+/// Draws by outcome; those that did not occur are left out. Throws InputError naming `file` for a number that
+/// is none.
+std::map<std::string, std::uint64_t> count_outcomes(const std::vector<std::uint8_t>& draw_outcome,
+                                                    const std::filesystem::path& file);
 
 }  // namespace swingbank

@@ -36,10 +36,9 @@ void lay_out_shard(h5::File& f, const ShardData& d, ShardSize n) {
   f.create_group("/draws");
   f.create<std::uint64_t>("/draws/sample_id", {n.draws});
   f.create<std::uint8_t>("/draws/outcome", {n.draws});
-  f.attribute(
-      "meaning",
-      std::vector<std::string>{"stable", "lost_synchronism", "not_finite", "step_too_small", "refused"},
-      "/draws/outcome");
+  std::vector<std::string> meaning;
+  for (std::uint8_t i = 0; i <= kRefused; ++i) meaning.emplace_back(draw_outcome_name(i));
+  f.attribute("meaning", meaning, "/draws/outcome");
 }
 
 void fill_shard(h5::File& f, const ShardData& d, std::uint64_t first_row, std::uint64_t first_draw) {

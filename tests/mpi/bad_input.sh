@@ -7,9 +7,9 @@ whole=$(hash_of "$work/data")
 
 # Two at once on one folder: the second is refused, after it has waited; the rest goes on meanwhile.
 two_at_once() {
-  exec 9<>"$work/data/journal.jsonl"
+  exec 9<>"$work/data/.lock"
   flock 9
-  expect 1 "another process is writing it" "${make[@]}" --out "$work/data"
+  expect 1 "dataset in use at" "${make[@]}" --out "$work/data"
 }
 mkdir "$work/busy"
 cp -r "$work/data" "$work/busy"

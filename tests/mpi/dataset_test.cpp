@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <fstream>
+#include <functional>
 
 #include "mpi/store/durable.hpp"
 #include "mpi/store/journal.hpp"
@@ -46,6 +47,7 @@ struct TwoShards : Folder {
     h.machine_model = a.machine_model;
     h.channel_names = a.channel_names;
     h.parameter_names = a.parameter_names;
+    h.samples = 9;
     h.draws = 10;
     h.draws_per_shard = 5;
     write_header(path, h);
@@ -106,6 +108,69 @@ TEST(DatasetFolder, ShardOfAnotherConfigIsFoundByVerify) {
   RowBlock b;
   EXPECT_THAT(sentence_of([&] { read_rows(set.shards[0], 0, 1, b); }),
               HasSubstr("a shard of another config"));
+}
+
+/// The journal's line of shard 0, changed by `edit`.
+void edit_line(const std::filesystem::path& folder, const std::function<void(JournalLine&)>& edit) {
+  auto lines = read_journal(folder / "journal.jsonl");
+  for (auto& l : lines)
+    if (l.shard == 0) edit(l);
+  rewrite_journal(folder / "journal.jsonl", lines);
+}
+
+TEST(DatasetFolder, JournalThatCountsOtherwiseIsFoundByVerify) {
+  const std::pair<std::function<void(JournalLine&)>, std::string> wrong[] = {
+      {[](JournalLine& l) { l.rows = 1'000'000'000'000'000; }, "wrong shape of /records"},
+      {[](JournalLine& l) { l.rows = 4; }, "wrong shape of /records"},
+      {[](JournalLine& l) { l.draws = 6; }, "another number of draws"},
+      {[](JournalLine& l) {
+         l.outcomes = {{"stable", 4}, {"refused", 1}};
+       },
+       "other outcomes"}};
+  for (const auto& [edit, what] : wrong) {
+    const TwoShards folder;
+    edit_line(folder.path, edit);
+    const auto file = (folder.path / "shards/shard-000000.h5").string();
+    EXPECT_THAT(sentence_of([&] { verify_dataset(open_dataset(folder.path)); }),
+                HasSubstr(what + " at " + file));
+  }
+}
+
+TEST(DatasetFolder, ShapesThatAreNotTheHeadersAreRefused) {
+  const std::pair<std::function<void(ShardData&)>, std::string> wrong[] = {
+      {[](ShardData& d) { d.samples = 3; }, "it is 5 x 2 x 3, not 5 x 2 x 9"},
+      {[](ShardData& d) {
+         d.attributes.channel_names = {"theta"};
+         d.channels = 1;
+       },
+       "/records"},
+      {[](ShardData& d) {
+         d.attributes.parameter_names = {"H"};
+         d.parameter_count = 1;
+       },
+       "/parameters"}};
+  for (const auto& [edit, what] : wrong) {
+    const TwoShards folder;
+    const auto file = folder.path / "shards/shard-000000.h5";
+    ShardData d = sample_shard(5, 0, 0);
+    edit(d);
+    write_shard(file, d);
+    edit_line(folder.path, [&](JournalLine& l) { l.bytes = std::filesystem::file_size(file); });
+    const Dataset set = open_dataset(folder.path);
+    RowBlock b;
+    EXPECT_THAT(sentence_of([&] { read_rows(set.shards[0], 0, 5, b); }), HasSubstr(what));
+    EXPECT_THAT(sentence_of([&] { read_checked(set.shards[0]); }), HasSubstr(what));
+    EXPECT_THAT(sentence_of([&] { verify_dataset(set); }), HasSubstr("--repair"));
+  }
+}
+
+TEST(DatasetFolder, HeaderThatJsonCannotHoldIsRefused) {
+  const Folder folder;
+  DatasetHeader h;
+  h.name = "b\xff";
+  h.draws_per_shard = 1;
+  EXPECT_THAT(sentence_of([&] { write_header(folder.path, h); }), HasSubstr("a name that is no UTF-8"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path));
 }
 
 TEST(DatasetFolder, NoDatasetIsNamed) {

@@ -102,6 +102,23 @@ TEST(Shard, TruncatedFileIsNamed) {
   EXPECT_THAT(sentence_of([&] { read_shard(file); }), HasSubstr(file.string() + " ("));
 }
 
+TEST(Shard, FaultsOfAnotherWidthAreRefused) {
+  const Folder folder;
+  const auto file = folder.path / "a.h5";
+  const ShardData d = sample_shard();
+  h5::File f = h5::File::create(file);
+  f.create<float>("/records", {d.rows, d.channels, d.samples});
+  f.create<double>("/parameters", {d.rows, d.parameter_count});
+  f.create<std::uint64_t>("/sample_id", {d.rows});
+  f.create<std::int32_t>("/generator", {d.rows});
+  f.create<double>("/fault", {d.rows, 1});
+  f.create<double>("/largest_spread", {d.rows});
+  f.close();
+  RowBlock b;
+  EXPECT_THAT(sentence_of([&] { read_rows(file, 0, 1, b); }),
+              HasSubstr("wrong shape of /fault at " + file.string() + " (it is 5 x 1, not 5 x 5)"));
+}
+
 TEST(Shard, AnotherConfigIsRefused) {
   const Folder folder;
   write_shard(folder.path / "a.h5", sample_shard());

@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# A shard that is not what was journalled is found by whoever reads it: verify, a run that continues, a training.
+source "$(dirname "$0")/common.bash"
+make=("$generate" "$configs/ieee14_genrou_bus3.toml" --draws 100 --draws-per-shard 20 --progress none)
+"${make[@]}" --out "$work/data" >/dev/null 2>&1
+whole=$(hash_of "$work/data")
+# alter FOLDER SHARD: a copy of the data with that shard spoilt at its length
+alter() {
+  cp -r "$work/data" "$1"
+  "$python3" - "$1/shards/shard-00000$2.h5" <<PYTHON
+import sys, h5py
+with h5py.File(sys.argv[1], "r+") as shard:
+    shard["parameters"][...] *= 1.5
+    shard["records"][...] = shard["records"][...][::-1]
+PYTHON
+}
+bad=$work/bad
+alter "$bad" 3
+[ "$(stat -c %s "$bad/shards/shard-000003.h5")" = "$(stat -c %s "$work/data/shards/shard-000003.h5")" ] || fail "another length"
+where="changed shard at $bad/shards/shard-000003.h5"
+expect 1 "$where" "$generate" --verify "$bad"
+expect 1 "$where" ranks 3 "$generate" --verify "$bad"
+expect 1 "$where" "${make[@]}" --out "$bad"
+grep -q -- "--repair" "$work/output" || fail "no remedy"
+expect 0 "dataset $whole" "${make[@]}" --trust --out "$bad"
+expect 0 "dataset $whole" ranks 3 "${make[@]}" --repair --out "$bad"
+expect 0 "every shard is as it was written" ranks 2 "$generate" --verify "$bad"
+
+# A journal that counts otherwise.
+for edit in 's/"rows":20/"rows":19/' 's/"draws":20/"draws":21/' 's/"stable":20/"stable":19/' 's/"rows":20/"rows":1000000000000000/'; do
+  rm -rf "$bad"
+  cp -r "$work/data" "$bad"
+  sed -i "/shard-000002/$edit" "$bad/journal.jsonl"
+  cmp -s "$bad/journal.jsonl" "$work/data/journal.jsonl" && fail "nothing edited: $edit"
+  expect 1 "at $bad/shards/shard-000002.h5" "$generate" --verify "$bad"
+  expect 0 "dataset $whole" "${make[@]}" --repair --out "$bad"
+done
