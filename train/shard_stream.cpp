@@ -13,7 +13,6 @@ namespace swingbank {
 namespace {
 constexpr std::size_t kBlock = 256, kWindow = 64;  // rows per block, blocks per window
 constexpr std::uint64_t kLongestRun = 1024, kLargestGap = 64;
-constexpr ShardFields kLabelsOnly{.records = false, .parameters = true, .angle_valid = false, .draws = false};
 constexpr ShardFields kRecordsOnly{
     .records = true, .parameters = false, .angle_valid = false, .draws = false};
 }  // namespace
@@ -23,36 +22,55 @@ ShardStream::ShardStream(Dataset dataset, const InputRecipe& recipe, const Strea
   if (dataset_.rows == 0)
     throw InputError({"no rows", dataset_.path.string(), "every draw was rejected, or none was made",
                       "see the outcomes in its journal and the ranges in its config"});
-  load_labels();
-  if (dataset_.rows * selection_.values() * sizeof(float) <= options_.memory_limit) load_series();
-}
-
-void ShardStream::load_labels() {
-  labels_.rows = dataset_.rows;
   labels_.parameters = dataset_.parameter_names.size();
-  RowBlock block;
+  const bool fits = dataset_.rows <= options_.memory_limit / (selection_.values() * sizeof(float));
   Problems problems;
   for (const auto& shard : dataset_.shards) {
-    read_rows(shard, 0, shard.rows, block, kLabelsOnly);
-    for (std::size_t i = 0; i < block.parameters.size(); ++i)
-      if (!std::isfinite(block.parameters[i]))
-        problems.add(
-            fmt::format("parameter {} is not a number", dataset_.parameter_names[i % labels_.parameters]),
-            fmt::format("{}, row {}", shard.path.string(), i / labels_.parameters),
-            "a network cannot be trained on it", "generate this shard again");
-    labels_.values.insert(labels_.values.end(), block.parameters.begin(), block.parameters.end());
-    labels_.sample_id.insert(labels_.sample_id.end(), block.sample_id.begin(), block.sample_id.end());
-    labels_.generator.insert(labels_.generator.end(), block.generator.begin(), block.generator.end());
+    try {
+      load(shard, fits);
+    } catch (const InputError& e) {
+      for (const auto& p : e.problems()) problems.add(p.what, p.where, p.why, p.remedy);
+    }
   }
   problems.raise();
+  labels_.rows = dataset_.rows;
 }
 
-void ShardStream::load_series() {
-  std::vector<std::uint64_t> all(dataset_.rows);
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
-  std::vector<float> series(dataset_.rows * selection_.values());
-  read(all, series.data());
-  series_ = std::move(series);
+void ShardStream::load(const ShardInfo& shard, bool fits) {
+  RowBlock block;
+  if (options_.trust)
+    read_rows(shard, 0, shard.rows, block,
+              {.records = fits, .parameters = true, .angle_valid = false, .draws = false});
+  else
+    block = read_checked(shard);
+  keep_labels(block, shard);
+  if (fits) keep_series(block, shard);
+}
+
+void ShardStream::keep_labels(const RowBlock& block, const ShardInfo& shard) {
+  Problems problems;
+  for (std::size_t i = 0; i < block.parameters.size(); ++i)
+    if (!std::isfinite(block.parameters[i]))
+      problems.add(
+          fmt::format("parameter {} is not a number", dataset_.parameter_names[i % labels_.parameters]),
+          fmt::format("{}, row {}", shard.path.string(), i / labels_.parameters),
+          "a network cannot be trained on it", "generate this shard again");
+  problems.raise();
+  labels_.values.insert(labels_.values.end(), block.parameters.begin(), block.parameters.end());
+  labels_.sample_id.insert(labels_.sample_id.end(), block.sample_id.begin(), block.sample_id.end());
+  labels_.generator.insert(labels_.generator.end(), block.generator.begin(), block.generator.end());
+}
+
+void ShardStream::keep_series(const RowBlock& block, const ShardInfo& shard) {
+  const std::size_t stride = block.channels * block.samples, values = selection_.values();
+  if (series_.empty()) series_.reserve(dataset_.rows * values);
+  const std::size_t before = series_.size();
+  series_.resize(before + block.rows * values);
+  for (std::size_t i = 0; i < block.rows; ++i) {
+    float* series = series_.data() + before + i * values;
+    selection_.apply(block.records.data() + i * stride, block.samples, series);
+    check_finite(series, shard, shard.first_row + i);
+  }
 }
 
 const ShardInfo& ShardStream::shard_of(std::uint64_t row) const {

@@ -22,12 +22,14 @@ struct Labels {
 struct StreamOptions {
   std::uint64_t memory_limit = std::uint64_t{8} << 30;  ///< [bytes]
   unsigned readers = 1;  ///< threads that read ahead; the bytes do not depend on it
+  bool trust = false;    ///< do not compare the shards' hashes with the journal
 };
 
 class ShardStream {
  public:
-  /// Reads all labels, and the series if they fit. Throws InputError naming the shard and row of a value that
-  /// is not finite.
+  /// Reads every shard once, a shard at a time, compares it with journal and header (read_checked), and keeps
+  /// the labels, and the series if they fit. Trusting, it reads only what it keeps and checks only shapes and
+  /// config. Throws InputError naming each shard at fault, and shard and row of a value that is not finite.
   ShardStream(Dataset dataset, const InputRecipe& recipe, const StreamOptions& options = {});
 
   [[nodiscard]] const Dataset& dataset() const { return dataset_; }
@@ -40,8 +42,9 @@ class ShardStream {
   void read(std::span<const std::uint64_t> rows, float* out) const;
 
  private:
-  void load_labels();
-  void load_series();
+  void load(const ShardInfo& shard, bool fits);
+  void keep_labels(const RowBlock& block, const ShardInfo& shard);
+  void keep_series(const RowBlock& block, const ShardInfo& shard);
   /// Reads one run of rows of a shard and copies those asked for.
   struct Wanted {
     std::uint64_t row;

@@ -20,7 +20,8 @@ import sys, h5py
 with h5py.File(sys.argv[1], "r+") as shard:
     shard["records"][1, 0, 40] = float("nan")
 PYTHON
-refuses "not a number in a shard" 'shard-000002.h5' validate "$work/nan" "$experiment"
+refuses "a shard that was changed" 'changed shard at .*shard-000002.h5.*--repair' validate "$work/nan" "$experiment"
+refuses "not a number in a shard" 'not a number at .*shard-000002.h5, row 1' validate "$work/nan" "$experiment" --trust
 leaves_nothing "$out"
 
 disk "$work/full" 64k

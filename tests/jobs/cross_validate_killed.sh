@@ -14,10 +14,7 @@ for ((i = 0; i < 300 && ${#children[@]} < 2; ++i)); do
   mapfile -t children < <(pgrep -P "$parent")
 done
 ((${#children[@]} == 2)) || fail "no two processes: $(cat "$work/log")"
-for ((i = 0; i < 300; ++i)); do # both are at their batches
-  if (($(grep -c 'samples (' "$work/log") >= 2)); then break; fi
-  sleep 0.1
-done
+sleep 1
 kill -KILL "$parent"
 wait "$parent" 2>/dev/null || true
 for ((i = 0; i < 300; ++i)); do

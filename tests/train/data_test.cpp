@@ -1,5 +1,6 @@
 // Stream, split, PCA and normalisation.
 #include <algorithm>
+#include <functional>
 #include <numeric>
 #include <set>
 
@@ -98,6 +99,71 @@ TEST(ShardStream, RefusesAValueThatIsNotANumber) {
   } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find("shard-1.h5, row 7"), std::string::npos) << e.what();
   }
+}
+
+std::string refusal(const Dataset& dataset, const StreamOptions& options) {
+  try {
+    const ShardStream stream(dataset, whole_record(), options);
+    return "accepted";
+  } catch (const InputError& e) {
+    return e.what();
+  }
+}
+
+/// Changes shard 1 behind the journal's back; its length is journalled as it is then.
+Dataset with_shard_1_changed(const Dataset& dataset, const std::function<void(ShardData&)>& change) {
+  const auto file = dataset.shards[1].path;
+  ShardData data = read_shard(file);
+  change(data);
+  write_shard(file, data);
+  auto lines = read_journal(dataset.path / "journal.jsonl");
+  lines[1].bytes = std::filesystem::file_size(file);
+  rewrite_journal(dataset.path / "journal.jsonl", lines);
+  return open_dataset(dataset.path);
+}
+
+TEST(ShardStream, RefusesWhatIsNotAsItWasJournalledUnlessTrusted) {
+  Folder folder("altered");
+  const Dataset altered = with_shard_1_changed(make_dataset(folder.path), [](ShardData& d) {
+    for (double& p : d.parameters) p *= 1.5;
+  });
+  for (const std::uint64_t limit : {std::uint64_t{0}, std::uint64_t{1} << 30}) {
+    const std::string sentence = refusal(altered, {.memory_limit = limit});
+    EXPECT_NE(sentence.find("changed shard at " + altered.shards[1].path.string()), std::string::npos)
+        << sentence;
+    EXPECT_NE(sentence.find("--repair"), std::string::npos) << sentence;
+    EXPECT_EQ(refusal(altered, {.memory_limit = limit, .trust = true}), "accepted");
+  }
+}
+
+TEST(ShardStream, RefusesOtherShapesTrustedOrNot) {
+  const std::function<void(ShardData&)> changes[] = {
+      [](ShardData& d) { d.samples = 3; },
+      [](ShardData& d) { d.attributes.channel_names = {"P"}, d.channels = 1; },
+      [](ShardData& d) {
+        d.attributes.parameter_names = {"H", "D"}, d.parameter_count = 2;
+      },
+      [](ShardData& d) { d.rows = 100; }};
+  for (const auto& change : changes)
+    for (const bool trust : {false, true}) {
+      Folder folder("shapes");
+      const Dataset dataset = with_shard_1_changed(make_dataset(folder.path), change);
+      EXPECT_NE(refusal(dataset, {.trust = trust}).find("wrong shape of /"), std::string::npos)
+          << refusal(dataset, {.trust = trust});
+    }
+}
+
+TEST(ShardStream, TrustChangesNothingThatIsRead) {
+  Folder folder("trust");
+  const Dataset dataset = make_dataset(folder.path);
+  const ShardStream checked(dataset, whole_record()), trusted(dataset, whole_record(), {.trust = true});
+  EXPECT_EQ(checked.labels().values, trusted.labels().values);
+  EXPECT_EQ(checked.labels().generator, trusted.labels().generator);
+  const auto rows = all_rows(dataset.rows);
+  std::vector<float> a(dataset.rows * checked.selection().values()), b(a.size());
+  checked.read(rows, a.data());
+  trusted.read(rows, b.data());
+  EXPECT_EQ(a, b);
 }
 
 TEST(EpochOrder, DependsOnSeedAndEpochOnly) {
