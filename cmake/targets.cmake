@@ -1,10 +1,9 @@
-# One function per kind of target, so that each folder's CMakeLists.txt only names its files.
+# Compiler flags, and how a command is declared.
 add_library(swingbank_options INTERFACE)
-target_include_directories(swingbank_options INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(swingbank_options INTERFACE -Wall -Wextra -Wshadow
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> # GCC 12 warns falsely about std::string concatenation
-  -fno-math-errno -fno-trapping-math
-  $<$<NOT:$<CONFIG:Debug>>:-O3>)
+  $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess> # lets ccache work beside precompiled headers
+  -fno-math-errno -fno-trapping-math)
 # Events, hypotheses and ranks share the cores; Eigen's own threads would spin beside them.
 target_compile_definitions(swingbank_options INTERFACE EIGEN_DONT_PARALLELIZE)
 # GCC 12's avx512fintrin.h trips this one wherever Eigen multiplies matrices (GCC bug 105593).
@@ -25,21 +24,34 @@ if(SWINGBANK_SANITIZE)
   target_link_options(swingbank_options INTERFACE -fsanitize=${SWINGBANK_SANITIZE})
 endif()
 
-# swingbank_library(name sources... LINK targets...)
-function(swingbank_library name)
-  cmake_parse_arguments(A "" "" "LINK" ${ARGN})
-  add_library(${name} STATIC ${A_UNPARSED_ARGUMENTS})
-  target_link_libraries(${name} PUBLIC swingbank_options ${A_LINK})
-endfunction()
+# Three kinds of sources: `hot` is simulation and fitting; `cold` reads, writes and talks; `train` is LibTorch's. Cold is
+# not below -O2: an inline function stands in the program once, compiled with either kind's options, and below -O2 GCC
+# makes no fused multiply-adds, so that the last bit of a result would depend on which one the linker took.
+add_library(swingbank_hot INTERFACE)
+target_compile_options(swingbank_hot INTERFACE $<$<NOT:$<CONFIG:Debug>>:-O3>)
+target_link_libraries(swingbank_hot INTERFACE swingbank_options fmt::fmt Eigen3::Eigen OpenMP::OpenMP_CXX)
+add_library(swingbank_cold INTERFACE)
+target_compile_options(swingbank_cold INTERFACE $<$<NOT:$<CONFIG:Debug>>:-O2>)
+target_link_libraries(swingbank_cold INTERFACE swingbank_options fmt::fmt nlohmann_json::nlohmann_json OpenMP::OpenMP_CXX)
+add_library(swingbank_train INTERFACE)
+target_link_libraries(swingbank_train INTERFACE swingbank_options fmt::fmt nlohmann_json::nlohmann_json OpenMP::OpenMP_CXX)
+target_compile_options(swingbank_train INTERFACE $<$<NOT:$<CONFIG:Debug>>:-O3>)
 
-# swingbank_command(name SUMMARY "one line" LINK targets...): jobs/<name>.cpp becomes bin/swingbank-<name>.
+# swingbank_command(name SUMMARY "one line" USES rooms... [SOURCES files...] [KIND train]): jobs/<name>.cpp becomes
+# bin/swingbank-<name>.
 # The summary stands here only: `swingbank --help` lists it, the command gets it as SWINGBANK_SUMMARY.
 function(swingbank_command name)
-  cmake_parse_arguments(A "" "SUMMARY" "LINK" ${ARGN})
+  cmake_parse_arguments(A "" "SUMMARY;KIND" "USES;SOURCES" ${ARGN})
   string(REPLACE "-" "_" file ${name})
-  add_executable(swingbank-${name} ${file}.cpp)
-  target_link_libraries(swingbank-${name} PRIVATE swingbank_options CLI11::CLI11 ${A_LINK})
-  target_compile_definitions(swingbank-${name} PRIVATE SWINGBANK_SUMMARY="${A_SUMMARY}")
+  list(TRANSFORM A_USES REPLACE / _)
+  list(TRANSFORM A_USES PREPEND swingbank_)
+  add_executable(swingbank-${name} ${file}.cpp ${A_SOURCES})
+  target_include_directories(swingbank-${name} PRIVATE ${PROJECT_BINARY_DIR}/rooms/jobs/own)
+  target_link_libraries(swingbank-${name} PRIVATE swingbank_cold CLI11::CLI11 ${A_USES})
+  target_compile_definitions(swingbank-${name} PRIVATE SWINGBANK_SUMMARY="${A_SUMMARY}" SWINGBANK_VERSION="${PROJECT_VERSION}")
+  if(NOT A_KIND STREQUAL "train")
+    swingbank_precompile(swingbank-${name} command)
+  endif()
   set_property(GLOBAL APPEND_STRING PROPERTY SWINGBANK_COMMANDS "{\"${name}\", \"${A_SUMMARY}\"},\n")
 endfunction()
 

@@ -5,12 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 
+#include "base/write_file.hpp"
 #include "jobs/event_records.hpp"
 #include "jobs/retrain_run.hpp"
-#include "sim/core/law.hpp"
-#include "validate/add_report.hpp"
-#include "validate/plant_file.hpp"
-#include "validate/write_file.hpp"
+#include "sim/laws/law.hpp"
+#include "validate/add/report.hpp"
+#include "validate/plant/plant_file.hpp"
 
 namespace {
 
@@ -24,24 +24,25 @@ struct Arguments {
   std::vector<std::string> records, laws;
   bool json = false, until_adequate = false, retrain = false;
   std::string truth;
-  AddOptions options;
-  RetrainOptions training;
+  add::AddOptions options;
+  retrain::RetrainOptions training;
 };
 
 /// Law files of the command line whose effects the plant has now.
-void keep_laws(PlantModel& model, const std::vector<std::pair<std::string, const sim::Effect*>>& laws) {
+void keep_laws(plant::PlantModel& model,
+               const std::vector<std::pair<std::string, const sim::Effect*>>& laws) {
   for (const auto& [file, effect] : laws)
     for (const auto& block : model.plant.controls)
       if (block.effect == effect && std::ranges::count(model.laws, std::filesystem::path(file)) == 0)
         model.laws.emplace_back(file);
 }
 
-void write(const Arguments& a, const PlantModel& model, const std::vector<std::string>& provenance,
+void write(const Arguments& a, const plant::PlantModel& model, const std::vector<std::string>& provenance,
            nlohmann::json result, const std::string& text) {
   const std::filesystem::path folder = a.out;
   result["format"] = "swingbank-add-1";
   result["command"] = a.command;
-  write_plant_file(folder / "model.toml", model, provenance);
+  plant::write_plant_file(folder / "model.toml", model, provenance);
   write_file(folder / "add.json", result.dump(1) + "\n");
   if (a.json)
     fmt::print("{}\n", result.dump(1));
@@ -66,29 +67,30 @@ void check_options(const Arguments& a) {
 }
 
 /// Two networks made (or found made), asked and compared. Empty if a signal stopped the making.
-std::optional<Retrained> retrain(const Arguments& a, const jobs::RetrainPrograms& programs,
-                                 const PlantModel& before, const Addition& added,
-                                 const std::vector<Record>& records) {
+std::optional<retrain::Retrained> retrain(const Arguments& a, const jobs::RetrainPrograms& programs,
+                                          const plant::PlantModel& before, const add::Addition& added,
+                                          const std::vector<record::Record>& records) {
   const std::filesystem::path folder = a.out;
-  const Truth truth = a.truth.empty() ? Truth{} : read_truth(a.truth, before);
-  const auto sides = write_retrain_configs(folder / "retrain", before, added, records, a.training);
+  const calibrate::Truth truth =
+      a.truth.empty() ? calibrate::Truth{} : calibrate::read_truth(a.truth, before);
+  const auto sides = retrain::write_retrain_configs(folder / "retrain", before, added, records, a.training);
   for (const auto& side : sides)
     if (!jobs::make_network(programs, side)) return std::nullopt;
-  const std::array<NetworkEstimate, 2> estimates = {
+  const std::array<calibrate::NetworkEstimate, 2> estimates = {
       jobs::ask_network(programs, sides[0], a.model, a.records),
       jobs::ask_network(programs, sides[1], (folder / "model.toml").string(), a.records)};
-  return compare_networks(estimates, before, added, truth);
+  return retrain::compare_networks(estimates, before, added, truth);
 }
 
-int run_retrain(const Arguments& a, const jobs::RetrainPrograms& programs, const PlantModel& before,
-                const Addition& done, const std::vector<Record>& records) {
+int run_retrain(const Arguments& a, const jobs::RetrainPrograms& programs, const plant::PlantModel& before,
+                const add::Addition& done, const std::vector<record::Record>& records) {
   const std::filesystem::path folder = a.out;
   const auto networks = retrain(a, programs, before, done, records);
   if (!networks) {
     fmt::print(stderr, "stopped on a signal; run the same command again to go on\n");
     return jobs::kStopped;
   }
-  nlohmann::json result = retrained_json(*networks);
+  nlohmann::json result = retrain::retrained_json(*networks);
   result["command"] = a.command;
   write_file(folder / "retrain.json", result.dump(1) + "\n");
   if (!a.json) fmt::print("\n{}\n", terminal_report(*networks));
@@ -99,25 +101,26 @@ int run(Arguments& a) {
   check_options(a);
   jobs::RetrainPrograms programs;
   if (a.retrain) programs = jobs::retrain_programs();
-  const PlantModel model = load_plant_model(a.model);
+  const plant::PlantModel model = plant::load_plant_model(a.model);
   std::vector<std::pair<std::string, const sim::Effect*>> laws;
-  for (const auto& file : a.laws) laws.emplace_back(file, &sim::load_law(std::filesystem::path(file)));
-  std::vector<Record> records = jobs::read_events(a.records, model);
-  held_out_events(records, a.options.calibrate.held_out);
+  for (const auto& file : a.laws) laws.emplace_back(file, &sim::laws::load_law(std::filesystem::path(file)));
+  std::vector<record::Record> records = jobs::read_events(a.records, model);
+  calibrate::held_out_events(records, a.options.calibrate.held_out);
   a.options.calibrate.progress = jobs::progress_line();
   if (a.until_adequate) {
-    Completion c = add_until_adequate(model, records, a.options);
+    add::Completion c = add::add_until_adequate(model, records, a.options);
     keep_laws(c.model, laws);
     std::vector<std::string> provenance = {"Command: " + a.command};
     for (const auto& one : c.added)
       for (const auto& line : provenance_lines(one, model, a.command)) provenance.push_back(line);
     provenance.push_back(c.sentence);
-    write(a, c.model, provenance, completion_json(c), terminal_report(c));
+    write(a, c.model, provenance, add::completion_json(c), terminal_report(c));
     return c.adequate ? 0 : kNotAdequate;
   }
-  Addition done = add_effect(model, find_hypothesis(model, a.effect), records, a.options);
+  add::Addition done = add::add_effect(model, add::find_hypothesis(model, a.effect), records, a.options);
   keep_laws(done.model, laws);
-  write(a, done.model, provenance_lines(done, model, a.command), addition_json(done), terminal_report(done));
+  write(a, done.model, provenance_lines(done, model, a.command), add::addition_json(done),
+        terminal_report(done));
   if (a.retrain)
     if (const int code = run_retrain(a, programs, model, done, records); code != 0) return code;
   return done.adequate && done.earns ? 0 : kNotAdequate;

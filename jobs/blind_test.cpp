@@ -7,15 +7,15 @@
 #include <cstdio>
 #include <optional>
 
+#include "base/stop_signal.hpp"
+#include "base/write_file.hpp"
 #include "jobs/item_progress.hpp"
-#include "mpi/item_queue.hpp"
-#include "mpi/session.hpp"
-#include "mpi/stop_signal.hpp"
-#include "validate/blind_case.hpp"
-#include "validate/blind_judge.hpp"
-#include "validate/blind_plan.hpp"
-#include "validate/blind_score.hpp"
-#include "validate/write_file.hpp"
+#include "mpi/ranks/item_queue.hpp"
+#include "mpi/ranks/session.hpp"
+#include "validate/blind/cases/case.hpp"
+#include "validate/blind/cases/plan.hpp"
+#include "validate/blind/score/judge.hpp"
+#include "validate/blind/score/score.hpp"
 
 namespace {
 using namespace swingbank;
@@ -46,10 +46,10 @@ struct Counts {
 };
 
 /// Works through the cases of this part, each on the rank that is free. Exit code, the same on all ranks.
-int share_cases(const Ranks& ranks, const Options& o, std::size_t count, const std::string& unit,
+int share_cases(const mpi::ranks::Ranks& ranks, const Options& o, std::size_t count, const std::string& unit,
                 const std::function<std::string(std::size_t)>& work, Counts& counts) {
-  const auto [part, parts] = read_part(o.part);
-  SharedItems shared;
+  const auto [part, parts] = blind::cases::read_part(o.part);
+  mpi::ranks::SharedItems shared;
   for (std::size_t k = 0; k < count; ++k)
     if (static_cast<int>(k % static_cast<std::size_t>(parts)) == part - 1) shared.items.push_back(k);
   jobs::ItemProgress progress(unit, shared.items.size());
@@ -59,7 +59,7 @@ int share_cases(const Ranks& ranks, const Options& o, std::size_t count, const s
     (fate == Fate::done ? counts.done : fate == Fate::failed ? counts.failed : counts.there) += 1;
     progress.line(result.substr(1), fate == Fate::was_there);
   };
-  if (!share_items(ranks, shared)) {
+  if (!mpi::ranks::share_items(ranks, shared)) {
     if (ranks.rank() == 0)
       fmt::print("stopped on a signal; finished cases are safe: run the same command again to continue\n");
     return kSubmitAgain;
@@ -68,14 +68,14 @@ int share_cases(const Ranks& ranks, const Options& o, std::size_t count, const s
 }
 
 /// One case of the plan. What cannot be drawn does not stop a long run.
-std::string make_one(const Options& o, const BlindConfig& config, const BlindSpec& spec,
-                     const std::string& name) {
+std::string make_one(const Options& o, const blind::cases::BlindConfig& config,
+                     const blind::cases::BlindSpec& spec, const std::string& name) {
   const fs::path folder = fs::path(o.out) / "cases" / name;
   if (fs::exists(folder)) return packed(Fate::was_there, name + ", was there");
   const auto start = std::chrono::steady_clock::now();
   try {
-    const BlindCase one = make_blind_case(config, spec);
-    write_blind_case(one, config, name, folder, fs::path(o.out) / "truth" / (name + ".json"));
+    const blind::cases::BlindCase one = blind::cases::make_blind_case(config, spec);
+    blind::cases::write_blind_case(one, config, name, folder, fs::path(o.out) / "truth" / (name + ".json"));
     return packed(Fate::done, fmt::format("{}, {} events, {} draws, {:.1f} s", name, one.records.size(),
                                           one.attempts, seconds_since(start)));
   } catch (const std::exception& error) {
@@ -83,21 +83,21 @@ std::string make_one(const Options& o, const BlindConfig& config, const BlindSpe
   }
 }
 
-int make(const Ranks& ranks, const Options& o) {
-  BlindConfig config;
-  BlindPlan plan;
-  agree(ranks, o.config, [&] {
-    config = load_blind_config(o.config);
-    plan = plan_blind(config, o.kinds, o.make, o.seed, o.size);
+int make(const mpi::ranks::Ranks& ranks, const Options& o) {
+  blind::cases::BlindConfig config;
+  blind::cases::BlindPlan plan;
+  mpi::ranks::agree(ranks, o.config, [&] {
+    config = blind::cases::load_blind_config(o.config);
+    plan = blind::cases::plan_blind(config, o.kinds, o.make, o.seed, o.size);
   });
-  agree(ranks, o.out, [&] {
-    if (ranks.rank() == 0) settle_plan(plan, config, o.out);
+  mpi::ranks::agree(ranks, o.out, [&] {
+    if (ranks.rank() == 0) blind::cases::settle_plan(plan, config, o.out);
   });
   const auto begin = std::chrono::steady_clock::now();
   Counts counts;
   const int code = share_cases(
       ranks, o, plan.cases.size(), "cases",
-      [&](std::size_t k) { return make_one(o, config, plan.cases[k], case_name(k)); }, counts);
+      [&](std::size_t k) { return make_one(o, config, plan.cases[k], blind::cases::case_name(k)); }, counts);
   if (ranks.rank() == 0)
     fmt::print("made {} cases in {:.1f} s, {} were there already, {} failed: {}\n", counts.done,
                seconds_since(begin), counts.there, counts.failed, o.out);
@@ -112,12 +112,13 @@ std::size_t count_cases(const fs::path& run) {
 }
 
 /// Judges the k-th of all cases.
-std::string judge_one(const fs::path& run, const BlindJudge& asked, std::size_t k, std::size_t count) {
+std::string judge_one(const fs::path& run, const blind::score::BlindJudge& asked, std::size_t k,
+                      std::size_t count) {
   std::string said;
   try {
-    const auto faults = judge_cases(
+    const auto faults = blind::score::judge_cases(
         run, asked, {static_cast<int>(k) + 1, static_cast<int>(count)},
-        [&](const std::string& name, const BlindVerdict& v) {
+        [&](const std::string& name, const blind::score::BlindVerdict& v) {
           said = fmt::format("{}: {}{}{}, {:.1f} s", name, v.verdict, v.effects.empty() ? "" : " ",
                              v.effects.empty() ? "" : v.effects.front(), v.seconds);
         });
@@ -128,18 +129,19 @@ std::string judge_one(const fs::path& run, const BlindJudge& asked, std::size_t 
   return said.empty() ? packed(Fate::was_there, "was judged already") : packed(Fate::done, said);
 }
 
-int judge(const Ranks& ranks, const Options& o) {
+int judge(const mpi::ranks::Ranks& ranks, const Options& o) {
   const fs::path run = o.out;
   std::size_t count = 0;
-  agree(ranks, o.out, [&] {
+  mpi::ranks::agree(ranks, o.out, [&] {
     if (fs::is_directory(run / "cases"))
       count = count_cases(run);
     else
       throw InputError({"no run", o.out, "it has no folder cases", "make cases first, with --make"});
   });
-  DiagnoseOptions options;
+  diagnose::DiagnoseOptions options;
   options.threads = o.threads >= 0 ? o.threads : ranks.on_this_machine() > 1 ? 1 : 0;
-  const BlindJudge asked = o.diagnose ? diagnosis_judge(options) : program_judge(o.judge, run / "verdicts");
+  const blind::score::BlindJudge asked = o.diagnose ? blind::score::diagnosis_judge(options)
+                                                    : blind::score::program_judge(o.judge, run / "verdicts");
   Counts counts;
   const int code = share_cases(
       ranks, o, count, "cases", [&](std::size_t k) { return judge_one(run, asked, k, count); }, counts);
@@ -151,10 +153,10 @@ int score(const Options& o) {
   if (o.targets.empty())
     throw InputError(
         {"no targets", "--targets", "a score is held against them", "give configs/blind/targets.toml"});
-  const BlindScore result = score_blind(o.out, o.targets);
-  const std::string text = score_markdown(result);
+  const blind::score::BlindScore result = blind::score::score_blind(o.out, o.targets);
+  const std::string text = blind::score::score_markdown(result);
   write_file(fs::path(o.out) / "score.md", text);
-  write_file(fs::path(o.out) / "score.json", score_json(result).dump(1) + "\n");
+  write_file(fs::path(o.out) / "score.json", blind::score::score_json(result).dump(1) + "\n");
   fmt::print("{}", text);
   return 0;
 }
@@ -169,7 +171,7 @@ void check(const Options& o) {
     throw InputError({"no config", "--config", "cases are drawn from one", "give configs/blind/cases.toml"});
 }
 
-int blind_test(const Ranks& ranks, const Options& o) {
+int blind_test(const mpi::ranks::Ranks& ranks, const Options& o) {
   check(o);
   if (o.make > 0)
     if (const int code = make(ranks, o); code != 0) return code;
@@ -181,9 +183,9 @@ int blind_test(const Ranks& ranks, const Options& o) {
 /// Under mpirun every rank comes here. What one of them throws ends all; it is told once where all throw the
 /// same.
 int on_ranks(int argc, char** argv, const Options& o) {
-  std::optional<MpiSession> session;
-  if (MpiSession::launched()) session.emplace(&argc, &argv);
-  const Ranks ranks{session ? MPI_COMM_WORLD : MPI_COMM_NULL};
+  std::optional<mpi::ranks::MpiSession> session;
+  if (mpi::ranks::MpiSession::launched()) session.emplace(&argc, &argv);
+  const mpi::ranks::Ranks ranks{session ? MPI_COMM_WORLD : MPI_COMM_NULL};
   catch_stop_signals();
   try {
     return blind_test(ranks, o);

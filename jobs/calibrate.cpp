@@ -5,13 +5,13 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 
+#include "base/own_command.hpp"
+#include "base/write_file.hpp"
 #include "jobs/event_records.hpp"
-#include "jobs/own_command.hpp"
-#include "validate/calibrate_network.hpp"
-#include "validate/calibrate_report.hpp"
-#include "validate/plant_file.hpp"
-#include "validate/side_by_side.hpp"
-#include "validate/write_file.hpp"
+#include "validate/calibrate/network.hpp"
+#include "validate/calibrate/report.hpp"
+#include "validate/calibrate/side_by_side.hpp"
+#include "validate/plant/plant_file.hpp"
 
 namespace {
 
@@ -24,16 +24,17 @@ struct Arguments {
   std::string model, out = "calibration", method = "fit", truth, network, start, command;
   std::vector<std::string> records;
   bool json = false;
-  CalibrateOptions options;
+  calibrate::CalibrateOptions options;
 };
 
-CurveFit fit_curves(const Arguments& a, const PlantModel& model, std::vector<Record> records) {
-  CurveFitOptions options;
+calibrate::CurveFit fit_curves(const Arguments& a, const plant::PlantModel& model,
+                               std::vector<record::Record> records) {
+  calibrate::CurveFitOptions options;
   options.held_out = a.options.held_out;
   options.fixed = a.options.fixed;
   options.events = a.options.events;
   options.adequate = a.options.adequate;
-  return curve_fit(model, std::move(records), options);
+  return calibrate::curve_fit(model, std::move(records), options);
 }
 
 void say(const Arguments& a, const nlohmann::json& result, const std::string& text) {
@@ -45,23 +46,24 @@ void say(const Arguments& a, const nlohmann::json& result, const std::string& te
     fmt::print("{}\nmodel: {}\n", text, (folder / "model.toml").string());
 }
 
-int run_baseline(const Arguments& a, const PlantModel& model, std::vector<Record> records,
-                 const Truth& truth) {
-  const CurveFit f = fit_curves(a, model, std::move(records));
-  write_plant_file(std::filesystem::path(a.out) / "model.toml", f.model,
-                   provenance_lines(f, model, a.command));
-  nlohmann::json result = curve_fit_json(f, truth);
+int run_baseline(const Arguments& a, const plant::PlantModel& model, std::vector<record::Record> records,
+                 const calibrate::Truth& truth) {
+  const calibrate::CurveFit f = fit_curves(a, model, std::move(records));
+  plant::write_plant_file(std::filesystem::path(a.out) / "model.toml", f.model,
+                          calibrate::provenance_lines(f, model, a.command));
+  nlohmann::json result = calibrate::curve_fit_json(f, truth);
   result["command"] = a.command;
-  say(a, result, terminal_report(f, truth));
+  say(a, result, calibrate::terminal_report(f, truth));
   return f.adequate ? 0 : kNotAdequate;
 }
 
 /// The network's estimate from the events that are fitted, by `swingbank predict` or as it was given.
-std::optional<NetworkEstimate> ask_network(const Arguments& a, const std::vector<Record>& records) {
-  const auto out = held_out_events(records, a.options.held_out);
+std::optional<calibrate::NetworkEstimate> ask_network(const Arguments& a,
+                                                      const std::vector<record::Record>& records) {
+  const auto out = calibrate::held_out_events(records, a.options.held_out);
   if (!a.start.empty()) {
-    NetworkEstimate given = read_estimate(a.start);
-    require_unseen(given, records, out);
+    calibrate::NetworkEstimate given = calibrate::read_estimate(a.start);
+    calibrate::require_unseen(given, records, out);
     return given;
   }
   if (a.network.empty()) return std::nullopt;
@@ -77,46 +79,47 @@ std::optional<NetworkEstimate> ask_network(const Arguments& a, const std::vector
   if (jobs::run_own(predict, words) != 0)
     throw InputError({"no estimate of the network", a.network, "swingbank predict says why above",
                       "correct that, or calibrate without --network"});
-  return read_estimate(file);
+  return calibrate::read_estimate(file);
 }
 
 int run(Arguments& a) {
-  const PlantModel model = load_plant_model(a.model);
-  const Truth truth = a.truth.empty() ? Truth{} : read_truth(a.truth, model);
-  std::vector<Record> records = jobs::read_events(a.records, model);
+  const plant::PlantModel model = plant::load_plant_model(a.model);
+  const calibrate::Truth truth = a.truth.empty() ? calibrate::Truth{} : calibrate::read_truth(a.truth, model);
+  std::vector<record::Record> records = jobs::read_events(a.records, model);
   if (a.method == "curve-fit" && !(a.network.empty() && a.start.empty()))
     throw InputError({"a network's start", "--method curve-fit",
                       "curve fitting starts from the model's own values", "give --method fit or both"});
   if (a.method == "curve-fit") return run_baseline(a, model, std::move(records), truth);
   const bool both = a.method == "both";
   const auto estimate = ask_network(a, records);
-  sim::Plant estimated;
+  sim::plant::Plant estimated;
   if (estimate) {
-    estimated = estimated_plant(*estimate, model, a.options.spread);
+    estimated = calibrate::estimated_plant(*estimate, model, a.options.spread);
     a.options.given.push_back({"network", estimated});
   }
-  std::vector<Record> again = both ? records : std::vector<Record>{};
-  const Calibration c = calibrate(model, std::move(records), a.options);
+  std::vector<record::Record> again = both ? records : std::vector<record::Record>{};
+  const calibrate::Calibration c = calibrate::calibrate(model, std::move(records), a.options);
   const std::filesystem::path folder = a.out;
-  std::string text = terminal_report(c);
-  nlohmann::json result = calibration_json(c);
+  std::string text = calibrate::terminal_report(c);
+  nlohmann::json result = calibrate::calibration_json(c);
   result["command"] = a.command;
-  std::vector<Way> ways = {way_of_model(c)};
+  std::vector<calibrate::Way> ways = {calibrate::way_of_model(c)};
   if (both) {
-    const CurveFit f = fit_curves(a, model, std::move(again));
-    write_plant_file(folder / "curve-fit.toml", f.model, provenance_lines(f, model, a.command));
-    result["curve_fit"] = curve_fit_json(f, truth);
-    ways.push_back(way_of(f, c));
+    const calibrate::CurveFit f = fit_curves(a, model, std::move(again));
+    plant::write_plant_file(folder / "curve-fit.toml", f.model,
+                            calibrate::provenance_lines(f, model, a.command));
+    result["curve_fit"] = calibrate::curve_fit_json(f, truth);
+    ways.push_back(calibrate::way_of(f, c));
   }
-  if (estimate) ways.push_back(way_of(*estimate, estimated, c));
-  ways.push_back(way_of(c));
+  if (estimate) ways.push_back(calibrate::way_of(*estimate, estimated, c));
+  ways.push_back(calibrate::way_of(c));
   if (ways.size() > 2 || !truth.empty()) {
-    text += "\n" + beside_report(ways, truth);
-    result["side_by_side"] = beside_json(ways, truth);
+    text += "\n" + calibrate::beside_report(ways, truth);
+    result["side_by_side"] = calibrate::beside_json(ways, truth);
   }
-  write_plant_file(folder / "model.toml", c.model, provenance_lines(c, a.command));
+  plant::write_plant_file(folder / "model.toml", c.model, calibrate::provenance_lines(c, a.command));
   say(a, result, text);
-  return c.adequacy == Adequacy::structure_poor ? kNotAdequate : 0;
+  return c.adequacy == calibrate::Adequacy::structure_poor ? kNotAdequate : 0;
 }
 
 void add_options(CLI::App& app, Arguments& a, bool& inner) {

@@ -6,10 +6,10 @@
 #include <charconv>
 #include <map>
 
-#include "validate/compare_report.hpp"
-#include "validate/record_check.hpp"
-#include "validate/system_compare.hpp"
-#include "validate/write_file.hpp"
+#include "base/write_file.hpp"
+#include "validate/check/check.hpp"
+#include "validate/compare/report.hpp"
+#include "validate/system/system.hpp"
 
 namespace {
 
@@ -53,12 +53,13 @@ std::string joined(int argc, char** argv) {
 }
 
 /// Every record, read before any is played, so that all faults of all files are told at once.
-std::vector<Record> read_records(const std::vector<std::string>& files, const RecordBase& base) {
-  std::vector<Record> records;
+std::vector<record::Record> read_records(const std::vector<std::string>& files,
+                                         const record::RecordBase& base) {
+  std::vector<record::Record> records;
   Problems problems;
   for (const auto& file : files) {
     try {
-      records.push_back(read_record(file, base));
+      records.push_back(record::read_record(file, base));
     } catch (const InputError& error) {
       for (const auto& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
     }
@@ -68,7 +69,7 @@ std::vector<Record> read_records(const std::vector<std::string>& files, const Re
 }
 
 /// Results of several records would overwrite each other if their file names were the same.
-void check_names(const std::vector<Record>& records) {
+void check_names(const std::vector<record::Record>& records) {
   Problems problems;
   for (std::size_t i = 0; i < records.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
@@ -79,13 +80,13 @@ void check_names(const std::vector<Record>& records) {
 }
 
 /// Warnings of each record's check. Throws InputError with the refusals of all of them.
-std::vector<std::vector<std::string>> check_records(const std::vector<Record>& records,
-                                                    const PlantModel& model) {
+std::vector<std::vector<std::string>> check_records(const std::vector<record::Record>& records,
+                                                    const plant::PlantModel& model) {
   std::vector<std::vector<std::string>> warnings(records.size());
   Problems refusals;
   for (std::size_t i = 0; i < records.size(); ++i)
-    for (const auto& [kind, severity, p] : check_record(records[i], plant_facts(model)))
-      if (severity == Severity::refuse)
+    for (const auto& [kind, severity, p] : check::check_record(records[i], check::plant_facts(model)))
+      if (severity == check::Severity::refuse)
         refusals.add(p.what, p.where, p.why, p.remedy);
       else
         warnings[i].push_back(p.sentence());
@@ -95,19 +96,19 @@ std::vector<std::vector<std::string>> check_records(const std::vector<Record>& r
 
 /// A whole grid at several terminals.
 int run_system(const std::string& file, const std::string& out, bool json, const std::string& command_line) {
-  const SystemCase system = load_system(file);
-  const SystemComparison c = compare_system(system);
-  const Provenance rows = system_provenance(system, command_line);
+  const system::SystemCase system = system::load_system(file);
+  const system::SystemComparison c = system::compare_system(system);
+  const report::Provenance rows = system::system_provenance(system, command_line);
   const std::filesystem::path folder = out;
-  const std::string result = system_json(system, c, rows);
+  const std::string result = system::system_json(system, c, rows);
   for (const auto& e : c.terminals)
-    write_file(folder / ("curves-" + e.record.name + ".csv"), csv_playback(e));
+    write_file(folder / ("curves-" + e.record.name + ".csv"), compare::csv_playback(e));
   write_file(folder / "compare.json", result);
-  write_file(folder / "report.html", system_html(system, c, rows));
+  write_file(folder / "report.html", system::system_html(system, c, rows));
   if (json)
     fmt::print("{}", result);
   else
-    fmt::print("{}\nreport: {}\n", system_text(system, c), (folder / "report.html").string());
+    fmt::print("{}\nreport: {}\n", system::system_text(system, c), (folder / "report.html").string());
   return c.adequacy.adequate ? 0 : kNotAdequate;
 }
 
@@ -118,7 +119,7 @@ int main(int argc, char** argv) {
   std::string model_file, system_file, out = "compare-report", drive = "voltage";
   std::vector<std::string> record_files, switches;
   bool json = false;
-  CompareOptions options;
+  compare::CompareOptions options;
   auto* model_option = app.add_option("--model", model_file, "plant file (configs/plants/README.md)");
   auto* records_option =
       app.add_option("--records,--record", record_files, "records (CSV, COMTRADE or HDF5), one or several");
@@ -159,37 +160,37 @@ int main(int argc, char** argv) {
   }
   try {
     if (!system_file.empty()) return run_system(system_file, out, json, joined(argc, argv));
-    options.drive = drive == "pq" ? DriveBy::power : DriveBy::voltage;
-    const PlantModel model = load_plant_model(model_file);
-    std::vector<Record> records = read_records(record_files, model.record_base);
+    options.drive = drive == "pq" ? compare::DriveBy::power : compare::DriveBy::voltage;
+    const plant::PlantModel model = plant::load_plant_model(model_file);
+    std::vector<record::Record> records = read_records(record_files, model.record_base);
     check_names(records);
     const auto warnings = check_records(records, model);
     std::vector<std::string> names;
     names.reserve(records.size());
     for (const auto& r : records) names.push_back(r.name);
     const auto instants = read_switchings(switches, names);
-    options.jumps = jumps_of(records, options.jump_threshold);
-    std::vector<EventComparison> events;
+    options.jumps = event::jumps_of(records, options.jump_threshold);
+    std::vector<compare::EventComparison> events;
     for (auto& record : records) {
       const auto given = instants.find(record.name);
       options.switchings = given == instants.end() ? std::vector<double>{} : given->second;
-      events.push_back(compare_event(model, std::move(record), options));
+      events.push_back(compare::compare_event(model, std::move(record), options));
       auto& notes = events.back().notes;
       const auto& warned = warnings[events.size() - 1];
       notes.insert(notes.begin(), warned.begin(), warned.end());
     }
-    const Adequacy adequacy = judge(events);
-    const Provenance rows = provenance(model, events, joined(argc, argv));
+    const compare::Adequacy adequacy = compare::judge(events);
+    const report::Provenance rows = compare::provenance(model, events, joined(argc, argv));
     const std::filesystem::path folder = out;
     for (const auto& e : events)
       write_file(folder / ("playback-" + std::filesystem::path(e.record.name).stem().string() + ".csv"),
-                 csv_playback(e));
-    write_file(folder / "compare.json", json_report(model, events, adequacy, rows));
-    write_file(folder / "report.html", html_report(model, events, adequacy, rows));
+                 compare::csv_playback(e));
+    write_file(folder / "compare.json", compare::json_report(model, events, adequacy, rows));
+    write_file(folder / "report.html", compare::html_report(model, events, adequacy, rows));
     if (json)
-      fmt::print("{}", json_report(model, events, adequacy, rows));
+      fmt::print("{}", compare::json_report(model, events, adequacy, rows));
     else
-      fmt::print("{}\nreport: {}\n", terminal_report(model, events, adequacy),
+      fmt::print("{}\nreport: {}\n", compare::terminal_report(model, events, adequacy),
                  (folder / "report.html").string());
     return adequacy.adequate ? 0 : kNotAdequate;
   } catch (const InputError& error) {

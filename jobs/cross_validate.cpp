@@ -1,14 +1,14 @@
 // swingbank cross-validate: leave one generator out (Tables V and VI). Several processes started by mpirun or
 // srun share the folds; a Slurm array task takes one with --fold.
-#include "train/cross_validate.hpp"
+#include "train/run/cross_validate.hpp"
 
 #include "jobs/training_options.hpp"
-#include "train/processes.hpp"
+#include "train/run/processes.hpp"
 
 namespace {
 using namespace swingbank;
 
-std::vector<std::int32_t> folds_of(const std::string& text, const Experiment& experiment) {
+std::vector<std::int32_t> folds_of(const std::string& text, const train::loop::Experiment& experiment) {
   if (text == "all") return experiment.folds;
   for (const std::int32_t fold : experiment.folds)
     if (std::to_string(fold) == text) return {fold};
@@ -19,12 +19,12 @@ std::vector<std::int32_t> folds_of(const std::string& text, const Experiment& ex
 }
 
 /// Folds of one process; errors become its exit code.
-int train_folds(const ShardStream& stream, RunRequest request, const std::vector<std::int32_t>& folds,
-                int threads) {
+int train_folds(const train::data::ShardStream& stream, train::run::RunRequest request,
+                const std::vector<std::int32_t>& folds, int threads) {
   try {
-    request.runtime = set_up_runtime(threads);
-    const RunOutcome outcome = cross_validate(stream, std::move(request), folds);
-    if (outcome == RunOutcome::already_done)
+    request.runtime = train::runtime::set_up_runtime(threads);
+    const train::run::RunOutcome outcome = train::run::cross_validate(stream, std::move(request), folds);
+    if (outcome == train::run::RunOutcome::already_done)
       fmt::print(stderr, "folds {}: done already\n", fmt::join(folds, ", "));
     return exit_code(outcome);
   } catch (const std::exception& error) {
@@ -43,22 +43,23 @@ int main(int argc, char** argv) {
   app.add_option("--processes", processes,
                  "processes that share the folds, each with its part of the threads (default: one "
                  "per core; 1 where mpirun or srun started several)");
-  return training_main(argc, argv, app, options, [&](const RunRequest& request) {
+  return training_main(argc, argv, app, options, [&](const train::run::RunRequest& request) {
     if (!request.experiment.leave_one_out)
       throw InputError({"this experiment leaves no generator out", options.experiment, "its split says so",
                         "use swingbank train"});
     if (processes < 0)
       throw InputError({fmt::format("{} processes", processes), "--processes", "somebody must do the work",
                         "use 1 or more"});
-    const Place place = launcher_place();
-    const auto folds = share_of(folds_of(fold, request.experiment), fold == "all" ? place : Place{});
+    const train::runtime::Place place = train::runtime::launcher_place();
+    const auto folds = train::run::share_of(folds_of(fold, request.experiment),
+                                            fold == "all" ? place : train::runtime::Place{});
     if (folds.empty()) return 0;  // more processes than folds
-    const int threads = options.threads > 0 ? options.threads : default_threads();
+    const int threads = options.threads > 0 ? options.threads : train::runtime::default_threads();
     const int wanted = processes > 0 ? processes : place.size > 1 ? 1 : threads;
     const int count = std::min(wanted, static_cast<int>(folds.size()));
-    const ShardStream stream = options.open(request);  // read once, shared by the processes
-    return run_processes(count, [&](Place mine) {
-      return train_folds(stream, request, share_of(folds, mine), std::max(1, threads / count));
+    const train::data::ShardStream stream = options.open(request);  // read once, shared by the processes
+    return train::run::run_processes(count, [&](train::runtime::Place mine) {
+      return train_folds(stream, request, train::run::share_of(folds, mine), std::max(1, threads / count));
     });
   });
 }

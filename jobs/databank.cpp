@@ -1,6 +1,6 @@
 // swingbank databank: draws the points of a dataset's databank and writes them, with the shares of what was
 // refused.
-#include "mpi/databank.hpp"
+#include "mpi/draw/databank.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,7 +9,7 @@
 #include <chrono>
 #include <cstdio>
 
-#include "mpi/store/durable.hpp"
+#include "base/durable.hpp"
 #include "mpi/store/hdf5_file.hpp"
 
 namespace {
@@ -21,7 +21,7 @@ struct Columns {
   std::vector<double> low, high;
 };
 
-Columns columns_of(const DatasetConfig& c) {
+Columns columns_of(const mpi::draw::DatasetConfig& c) {
   Columns all;
   for (const auto& b : c.box) {
     all.names.push_back(c.name_of(b));
@@ -33,7 +33,7 @@ Columns columns_of(const DatasetConfig& c) {
   return all;
 }
 
-void write_csv(const fs::path& file, const Databank& bank, const Columns& c) {
+void write_csv(const fs::path& file, const mpi::draw::Databank& bank, const Columns& c) {
   std::string text;
   for (std::size_t i = 0; i < c.names.size(); ++i)
     text += fmt::format("{}{} [{}]", i == 0 ? "" : ",", c.names[i], c.units[i]);
@@ -43,9 +43,10 @@ void write_csv(const fs::path& file, const Databank& bank, const Columns& c) {
   write_text(file, text);
 }
 
-void write_hdf5(const fs::path& file, const Databank& bank, const Columns& c, const DatasetConfig& config) {
+void write_hdf5(const fs::path& file, const mpi::draw::Databank& bank, const Columns& c,
+                const mpi::draw::DatasetConfig& config) {
   reserve(file, bank.values.size() * sizeof(double));
-  h5::File f = h5::File::create(temporary_name(file));
+  mpi::store::h5::File f = mpi::store::h5::File::create(temporary_name(file));
   f.attribute("format", std::string("swingbank-databank-1"));
   f.attribute("machine_model", config.model);
   f.attribute("seed", config.seed);
@@ -60,7 +61,7 @@ void write_hdf5(const fs::path& file, const Databank& bank, const Columns& c, co
   publish(file);
 }
 
-void report(const Databank& bank, double seconds) {
+void report(const mpi::draw::Databank& bank, double seconds) {
   const auto share = [&](std::uint64_t n) {
     return 100.0 * static_cast<double>(n) / static_cast<double>(bank.draws);
   };
@@ -72,17 +73,18 @@ void report(const Databank& bank, double seconds) {
              share(bank.too_close));
 }
 
-int run(const std::string& config_file, const Overrides& overrides, std::uint64_t points,
+int run(const std::string& config_file, const mpi::draw::Overrides& overrides, std::uint64_t points,
         const fs::path& out) {
-  const DatasetConfig config = read_dataset_config(config_file, overrides);
-  const Study study = load_study(config);
+  const mpi::draw::DatasetConfig config = mpi::draw::read_dataset_config(config_file, overrides);
+  const mpi::draw::Study study = mpi::draw::load_study(config);
   const auto extension = out.extension();
   if (!out.empty() && extension != ".csv" && extension != ".h5")
     throw InputError({"output format '" + extension.string() + "'", "--out " + out.string(),
                       "a databank is written as .csv or .h5", "end the name with one of these"});
   const auto start = std::chrono::steady_clock::now();
   const auto& base = study.grid.plants[static_cast<std::size_t>(study.plants[0])];
-  const Databank bank = draw_databank(config, base, points > 0 ? points : config.points());
+  const mpi::draw::Databank bank =
+      mpi::draw::draw_databank(config, base, points > 0 ? points : config.points());
   report(bank, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   if (extension == ".csv") write_csv(out, bank, columns_of(config));
   if (extension == ".h5") write_hdf5(out, bank, columns_of(config), config);
@@ -96,7 +98,7 @@ int main(int argc, char** argv) {
       "Draws the databank of a dataset: parameters that keep a distance from one another.\n"
       "  swingbank databank configs/datasets/ieee39_genrou.toml --points 60000 --out bank.h5"};
   std::string config, out;
-  Overrides overrides;
+  mpi::draw::Overrides overrides;
   std::uint64_t points = 0;
   app.add_option("config", config, "the dataset's config (TOML)")->required();
   app.add_option("--points", points, "number of points, instead of what the config's draws need")

@@ -4,11 +4,11 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "base/write_file.hpp"
 #include "jobs/event_records.hpp"
 #include "jobs/fleet_run.hpp"
-#include "validate/diagnosis_report.hpp"
-#include "validate/diagnosis_text.hpp"
-#include "validate/write_file.hpp"
+#include "validate/diagnose/report.hpp"
+#include "validate/diagnose/text.hpp"
 
 namespace {
 
@@ -18,8 +18,8 @@ using namespace swingbank::validate;
 constexpr int kNotAdequate = 3;
 
 /// The law that was found, as a file; its path, empty where none was.
-std::filesystem::path write_law(const Diagnosis& d, const std::filesystem::path& folder) {
-  const LawFinding* law = d.laws.found();
+std::filesystem::path write_law(const diagnose::Diagnosis& d, const std::filesystem::path& folder) {
+  const laws::LawFinding* law = d.laws.found();
   if (!law) return {};
   const auto file = folder / (law->judgement.hypothesis.name + ".toml");
   write_file(file, law->toml);
@@ -27,33 +27,33 @@ std::filesystem::path write_law(const Diagnosis& d, const std::filesystem::path&
 }
 
 int run(const std::string& model_file, const std::vector<std::string>& record_files, const std::string& out,
-        bool json, DiagnoseOptions options, const std::string& command_line) {
-  const PlantModel model = load_plant_model(model_file);
-  std::vector<Record> records = jobs::read_events(record_files, model);
+        bool json, diagnose::DiagnoseOptions options, const std::string& command_line) {
+  const plant::PlantModel model = plant::load_plant_model(model_file);
+  std::vector<record::Record> records = jobs::read_events(record_files, model);
   options.progress = jobs::progress_line();
-  const Diagnosis d = diagnose(model, std::move(records), options);
-  const Provenance provenance = diagnosis_provenance(model, d, command_line);
-  const auto result = diagnosis_json(model, d, provenance);
+  const diagnose::Diagnosis d = diagnose::diagnose(model, std::move(records), options);
+  const report::Provenance provenance = diagnose::diagnosis_provenance(model, d, command_line);
+  const auto result = diagnose::diagnosis_json(model, d, provenance);
   const std::filesystem::path folder = out;
   write_file(folder / "diagnosis.json", result.dump(1) + "\n");
-  write_file(folder / "report.html", diagnosis_html(model, d, provenance));
+  write_file(folder / "report.html", diagnose::diagnosis_html(model, d, provenance));
   const auto law_file = write_law(d, folder);
   if (json) {
     fmt::print("{}\n", result.dump(1));
   } else {
-    fmt::print("{}\nreport: {}\n", diagnosis_text(d), (folder / "report.html").string());
+    fmt::print("{}\nreport: {}\n", diagnose::diagnosis_text(d), (folder / "report.html").string());
     if (!law_file.empty())
       fmt::print("law: {0} (swingbank add {1} --law {0} adds it)\n", law_file.string(),
                  law_file.stem().string());
   }
-  return d.verdict == Verdict::adequate ? 0 : kNotAdequate;
+  return d.verdict == diagnose::Verdict::adequate ? 0 : kNotAdequate;
 }
 
 /// What a person may ask for.
 struct Command {
   std::string model, out = "diagnosis", plant;
   std::vector<std::string> records;
-  DiagnoseOptions options;
+  diagnose::DiagnoseOptions options;
   jobs::FleetCommand fleet;
 };
 

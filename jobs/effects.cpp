@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "sim/core/law.hpp"
-#include "sim/core/library.hpp"
+#include "sim/laws/law.hpp"
+#include "sim/library/library.hpp"
 
 namespace {
 using namespace swingbank;
@@ -35,7 +35,7 @@ std::string_view slot_meaning(Slot slot) {
 void print_list() {
   for (const Slot slot : kSlots) {
     bool any = false;
-    for (const Effect* e : every_effect()) {
+    for (const Effect* e : library::every_effect()) {
       if (e->slot != slot) continue;
       if (!std::exchange(any, true)) fmt::print("{}: {}\n", slot_name(slot), slot_meaning(slot));
       fmt::print("  {:<11} {}{}\n", e->name, e->title, e->law ? " (law file)" : "");
@@ -140,7 +140,7 @@ std::size_t letters_apart(std::string_view a, std::string_view b) {
 /// The five names most like `name`, nearest first.
 std::string nearest_names(const std::string& name) {
   std::vector<std::pair<std::size_t, std::string_view>> list;
-  for (const Effect* e : every_effect()) list.emplace_back(letters_apart(name, e->name), e->name);
+  for (const Effect* e : library::every_effect()) list.emplace_back(letters_apart(name, e->name), e->name);
   std::ranges::stable_sort(list, {}, [](const auto& one) { return one.first; });
   list.resize(std::min<std::size_t>(list.size(), 5));
   std::string names;
@@ -149,17 +149,17 @@ std::string nearest_names(const std::string& name) {
 }
 
 int run(const std::vector<std::string>& names, const std::vector<std::string>& laws, bool json) {
-  for (const auto& file : laws) load_law(file);
+  for (const auto& file : laws) laws::load_law(file);
   Problems problems;
   std::vector<const Effect*> chosen;
   for (const auto& name : names) {
-    chosen.push_back(find_effect(name));
+    chosen.push_back(library::find_effect(name));
     if (!chosen.back())
       problems.add("no effect '" + name + "'", "NAME", "the nearest names are " + nearest_names(name),
                    "choose one of these, or see them all with swingbank effects");
   }
   problems.raise();
-  const auto& shown = names.empty() ? every_effect() : chosen;
+  const auto& shown = names.empty() ? library::every_effect() : chosen;
   if (json) {
     Json all = Json::array();
     for (const Effect* e : shown) all.push_back(as_json(*e));

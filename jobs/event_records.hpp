@@ -11,31 +11,32 @@
 #include <string>
 #include <vector>
 
-#include "validate/plant_model.hpp"
-#include "validate/record.hpp"
-#include "validate/record_check.hpp"
+#include "validate/check/check.hpp"
+#include "validate/plant/plant_model.hpp"
+#include "validate/record/record.hpp"
 
 namespace swingbank::jobs {
 
 /// Reads and checks every record, so that all faults of all files are told at once; findings that do not
 /// refuse go to stderr.
-inline std::vector<validate::Record> read_events(const std::vector<std::string>& files,
-                                                 const validate::PlantModel& model) {
-  std::vector<validate::Record> records;
+inline std::vector<validate::record::Record> read_events(const std::vector<std::string>& files,
+                                                         const validate::plant::PlantModel& model) {
+  std::vector<validate::record::Record> records;
   Problems problems;
   const auto take = [&](const InputError& error) {
     for (const auto& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
   };
   for (const auto& file : files) {
     try {
-      validate::Record record = validate::read_record(file, model.record_base);
-      const auto findings = validate::check_record(record, validate::plant_facts(model));
+      validate::record::Record record = validate::record::read_record(file, model.record_base);
+      const auto findings = validate::check::check_record(record, validate::check::plant_facts(model));
       for (const auto& f : findings)
-        if (f.severity == validate::Severity::warn) fmt::print(stderr, "note: {}\n", f.problem.sentence());
+        if (f.severity == validate::check::Severity::warn)
+          fmt::print(stderr, "note: {}\n", f.problem.sentence());
       if (std::ranges::any_of(records, [&](const auto& other) { return other.name == record.name; }))
         problems.add("two records named " + record.name, "--records", "they could not be told apart",
                      "rename one of them");
-      validate::raise_refusals(findings);
+      validate::check::raise_refusals(findings);
       records.push_back(std::move(record));
     } catch (const InputError& error) {
       take(error);

@@ -14,15 +14,15 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/durable.hpp"
+#include "base/run_lock.hpp"
+#include "base/stop_signal.hpp"
+#include "base/write_file.hpp"
 #include "jobs/event_records.hpp"
 #include "jobs/item_progress.hpp"
-#include "mpi/item_queue.hpp"
-#include "mpi/session.hpp"
-#include "mpi/stop_signal.hpp"
-#include "mpi/store/durable.hpp"
-#include "mpi/store/run_lock.hpp"
-#include "validate/fleet_report.hpp"
-#include "validate/write_file.hpp"
+#include "mpi/ranks/item_queue.hpp"
+#include "mpi/ranks/session.hpp"
+#include "validate/fleet/report.hpp"
 
 extern char** environ;
 
@@ -73,9 +73,10 @@ Ended run_program(const std::string& program, const std::vector<std::string>& wo
 }
 
 /// What run_fleet_plant printed; a failed row if it ended otherwise.
-std::string plant_result(const FleetCommand& c, const FleetPlant& plant, int threads) {
+std::string plant_result(const jobs::FleetCommand& c, const fleet::FleetPlant& plant, int threads) {
   const auto failed = [&](const std::string& why) {
-    return nlohmann::json{{"was_there", false}, {"row", row_json(failed_row(plant.name, why))}}.dump();
+    return nlohmann::json{{"was_there", false}, {"row", fleet::row_json(fleet::failed_row(plant.name, why))}}
+        .dump();
   };
   try {
     const Ended e =
@@ -91,58 +92,58 @@ std::string plant_result(const FleetCommand& c, const FleetPlant& plant, int thr
   }
 }
 
-std::string describe(const FleetRow& row, bool was_there) {
+std::string describe(const fleet::FleetRow& row, bool was_there) {
   std::string text = row.plant + ": " + row.verdict;
   if (row.failed()) text += ": " + row.sentence.substr(0, row.sentence.find('\n'));
   for (const auto& effect : row.effects) text += " " + effect;
   return text + (was_there ? " (was there already)" : "");
 }
 
-int tell(const FleetCommand& c, const Fleet& fleet, const std::vector<FleetRow>& rows) {
+int tell(const jobs::FleetCommand& c, const fleet::Fleet& fleet, const std::vector<fleet::FleetRow>& rows) {
   const fs::path folder = c.out;
-  const std::string json = fleet_json(fleet, rows);
+  const std::string json = fleet::fleet_json(fleet, rows);
   write_file(folder / "fleet.json", json);
-  write_file(folder / "fleet.csv", fleet_csv(rows));
-  write_file(folder / "fleet.html", fleet_html(fleet, rows));
+  write_file(folder / "fleet.csv", fleet::fleet_csv(rows));
+  write_file(folder / "fleet.html", fleet::fleet_html(fleet, rows));
   if (c.json)
     fmt::print("{}", json);
   else
-    fmt::print("{}report: {}\n", fleet_text(rows), (folder / "fleet.html").string());
-  return fleet_code(rows);
+    fmt::print("{}report: {}\n", fleet::fleet_text(rows), (folder / "fleet.html").string());
+  return fleet::fleet_code(rows);
 }
 
 }  // namespace
 
-int run_fleet_plant(const FleetCommand& c, const std::string& name) {
+int run_fleet_plant(const jobs::FleetCommand& c, const std::string& name) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // killed with its rank: the next run must not find it still writing
   for (const int s : {SIGTERM, SIGINT, SIGUSR1}) std::signal(s, SIG_IGN);  // a soft stop lets it finish
-  const Fleet fleet = load_fleet(c.fleet);
-  const auto plant = std::ranges::find(fleet.plants, name, &FleetPlant::name);
+  const fleet::Fleet fleet = fleet::load_fleet(c.fleet);
+  const auto plant = std::ranges::find(fleet.plants, name, &fleet::FleetPlant::name);
   if (plant == fleet.plants.end())
     throw InputError(
         {"no plant " + name, c.fleet, "the fleet has no [plant." + name + "]", "name one of its plants"});
-  DiagnoseOptions options;
+  diagnose::DiagnoseOptions options;
   options.threads = std::max(c.threads, 0);
-  options.progress = [line = progress_line(), &name](const std::string& what, int done, int total) {
+  options.progress = [line = jobs::progress_line(), &name](const std::string& what, int done, int total) {
     line(name + ": " + what, done, total);
   };
-  const FleetOutcome o = diagnose_plant(fleet, *plant, c.out, options);
-  fmt::print("{}\n", nlohmann::json{{"was_there", o.was_there}, {"row", row_json(o.row)}}.dump());
+  const fleet::FleetOutcome o = fleet::diagnose_plant(fleet, *plant, c.out, options);
+  fmt::print("{}\n", nlohmann::json{{"was_there", o.was_there}, {"row", fleet::row_json(o.row)}}.dump());
   return 0;
 }
 
-int run_fleet(const FleetCommand& c, int* argc, char*** argv) {
-  std::optional<MpiSession> session;
-  if (MpiSession::launched()) session.emplace(argc, argv);
-  const Ranks ranks{session ? MPI_COMM_WORLD : MPI_COMM_NULL};
+int run_fleet(const jobs::FleetCommand& c, int* argc, char*** argv) {
+  std::optional<mpi::ranks::MpiSession> session;
+  if (mpi::ranks::MpiSession::launched()) session.emplace(argc, argv);
+  const mpi::ranks::Ranks ranks{session ? MPI_COMM_WORLD : MPI_COMM_NULL};
   const bool first = ranks.rank() == 0;
   catch_stop_signals();
   const int threads = c.threads >= 0 ? c.threads : ranks.on_this_machine() > 1 ? 1 : 0;
-  Fleet fleet;
+  fleet::Fleet fleet;
   std::unique_ptr<RunLock> lock;
   try {
-    agree(ranks, c.fleet, [&] {
-      fleet = load_fleet(c.fleet);
+    mpi::ranks::agree(ranks, c.fleet, [&] {
+      fleet = fleet::load_fleet(c.fleet);
       if (first) lock = lock_folder(c.out);
     });
   } catch (const InputError& error) {  // the same on all ranks
@@ -150,23 +151,23 @@ int run_fleet(const FleetCommand& c, int* argc, char*** argv) {
     return 1;
   }
 
-  std::vector<FleetRow> rows(fleet.plants.size());
-  ItemProgress progress("plants", rows.size());
-  SharedItems shared;
+  std::vector<fleet::FleetRow> rows(fleet.plants.size());
+  jobs::ItemProgress progress("plants", rows.size());
+  mpi::ranks::SharedItems shared;
   for (std::size_t i = 0; i < rows.size(); ++i) shared.items.push_back(i);
   shared.work = [&](std::size_t i) { return plant_result(c, fleet.plants[i], threads); };
   shared.done = [&](std::size_t i, const std::string& result) {
     const auto j = nlohmann::json::parse(result);
-    rows[i] = read_row(j.at("row").dump(), fleet.plants[i].name);
+    rows[i] = fleet::read_row(j.at("row").dump(), fleet.plants[i].name);
     progress.line(describe(rows[i], j.at("was_there")), j.at("was_there"));
   };
-  if (!share_items(ranks, shared)) {
+  if (!mpi::ranks::share_items(ranks, shared)) {
     if (first)
       fmt::print("stopped on a signal; finished plants are safe: run the same command again to continue\n");
     return kSubmitAgain;
   }
   int code = 0;
-  if (first) code = guarded("diagnose", [&] { return tell(c, fleet, rows); });
+  if (first) code = jobs::guarded("diagnose", [&] { return tell(c, fleet, rows); });
   return ranks.from_first(code);
 }
 

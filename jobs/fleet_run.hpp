@@ -2,7 +2,7 @@
 // swingbank diagnose --fleet: plants spread over ranks, each diagnosed by a process of its own.
 #include <string>
 
-#include "validate/fleet.hpp"
+#include "validate/fleet/fleet.hpp"
 
 namespace swingbank::jobs {
 

@@ -1,5 +1,5 @@
 // swingbank generate: simulates a dataset, on one rank or many, and continues where an earlier run ended.
-#include "mpi/generate.hpp"
+#include "mpi/ranks/generate.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -10,23 +10,24 @@
 #include <map>
 #include <optional>
 
-#include "mpi/session.hpp"
-#include "mpi/stop_signal.hpp"
-#include "mpi/store/shard_group.hpp"
+#include "base/stop_signal.hpp"
+#include "mpi/ranks/session.hpp"
+#include "mpi/ranks/shard_group.hpp"
 
 namespace {
 using namespace swingbank;
 
 struct Command {
   std::string config, verify;
-  Overrides overrides;
-  GenerateOptions options;
+  mpi::draw::Overrides overrides;
+  mpi::ranks::GenerateOptions options;
 };
 
-const std::map<std::string, Progress::Mode> kModes = {{"auto", Progress::Mode::automatic},
-                                                      {"bar", Progress::Mode::bar},
-                                                      {"lines", Progress::Mode::lines},
-                                                      {"none", Progress::Mode::none}};
+const std::map<std::string, mpi::ranks::Progress::Mode> kModes = {
+    {"auto", mpi::ranks::Progress::Mode::automatic},
+    {"bar", mpi::ranks::Progress::Mode::bar},
+    {"lines", mpi::ranks::Progress::Mode::lines},
+    {"none", mpi::ranks::Progress::Mode::none}};
 
 void declare(CLI::App& app, Command& c) {
   app.description(
@@ -67,30 +68,30 @@ void declare(CLI::App& app, Command& c) {
 
 int describe_to(bool first, const std::filesystem::path& folder, const char* more) {
   bool complete = false;
-  agree(MPI_COMM_WORLD, folder.string(), [&] {
+  mpi::ranks::agree(MPI_COMM_WORLD, folder.string(), [&] {
     if (!first) return;
-    const Dataset d = open_dataset(folder, true);
-    fmt::print("{}{}", describe(d), more);
+    const mpi::store::Dataset d = mpi::store::open_dataset(folder, true);
+    fmt::print("{}{}", mpi::ranks::describe(d), more);
     complete = d.complete;
   });
   return complete || !first ? 0 : kSubmitAgain;
 }
 
 int make(const Command& c) {
-  DatasetConfig config;
-  agree(MPI_COMM_WORLD, c.config, [&] {
+  mpi::draw::DatasetConfig config;
+  mpi::ranks::agree(MPI_COMM_WORLD, c.config, [&] {
     if (c.config.empty() || c.options.folder.empty())
       throw InputError({"nothing to do", "command line", "CONFIG and --out are needed, or --verify",
                         "see swingbank generate --help"});
-    config = read_dataset_config(c.config, c.overrides);
+    config = mpi::draw::read_dataset_config(c.config, c.overrides);
   });
-  return generate(config, c.options, MPI_COMM_WORLD);
+  return mpi::ranks::generate(config, c.options, MPI_COMM_WORLD);
 }
 
 int run(const Command& c, bool first) {
   catch_stop_signals();
   if (!c.verify.empty()) {
-    if (!verify(c.verify, MPI_COMM_WORLD)) return kSubmitAgain;
+    if (!mpi::ranks::verify(c.verify, MPI_COMM_WORLD)) return kSubmitAgain;
     return describe_to(first, c.verify, "every shard is as it was written\n");
   }
   const int code = make(c);
@@ -104,7 +105,7 @@ int run(const Command& c, bool first) {
 
 /// What the command line asks for instead of work: help, or an error. The same on all ranks, though each may
 /// have been started with words of its own.
-std::optional<int> parse(CLI::App& app, int argc, char** argv, const MpiSession& session) {
+std::optional<int> parse(CLI::App& app, int argc, char** argv, const mpi::ranks::MpiSession& session) {
   std::optional<CLI::ParseError> mine;
   try {
     app.parse(argc, argv);
@@ -121,14 +122,14 @@ std::optional<int> parse(CLI::App& app, int argc, char** argv, const MpiSession&
 }  // namespace
 
 int main(int argc, char** argv) {
-  MpiSession session(&argc, &argv);
+  mpi::ranks::MpiSession session(&argc, &argv);
   const bool first = session.rank() == 0;
   spdlog::set_default_logger(spdlog::stderr_color_mt("generate"));
   spdlog::set_pattern("%H:%M:%S %^%l%$ %v");
   CLI::App app;
   Command command;
   declare(app, command);
-  return run_on_all_ranks(session, [&] {
+  return mpi::ranks::run_on_all_ranks(session, [&] {
     const auto ended = parse(app, argc, argv, session);
     return ended ? *ended : run(command, first);
   });

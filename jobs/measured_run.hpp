@@ -5,13 +5,13 @@
 #include <utility>
 #include <vector>
 
-#include "sim/solve/measure_run.hpp"
-#include "sim/solve/reference.hpp"
+#include "sim/grid/measure_run.hpp"
+#include "sim/reference/reference.hpp"
 
 namespace swingbank::sim {
 
 /// A run as it is written; `frequency` is empty unless the run was measured.
-struct MeasuredRun : ReferenceRun {
+struct MeasuredRun : reference::ReferenceRun {
   std::vector<std::vector<double>> frequency;  ///< [plant][sample], as the instruments report it [Hz]
 };
 
@@ -49,21 +49,21 @@ class Instruments {
  public:
   Instruments(const std::vector<std::string>& texts, std::uint64_t seed, Problems& problems) : seed_(seed) {
     for (const auto& text : texts)
-      if (auto block = read_measurement(text, "--measure " + text, problems))
+      if (auto block = plant::read_measurement(text, "--measure " + text, problems))
         chain_.push_back(std::move(*block));
   }
 
   /// Plays by `play(rate factor, channels)` -> ReferenceRun, measures, and keeps the channels asked for. A
   /// chain with a memory sees the run at several times the rate, so that its windows are resolved.
   template <class Play>
-  MeasuredRun run(const Grid& grid, const std::vector<int>& plants, const std::vector<Channel>& channels,
-                  const Play& play) const {
-    double reach = memory(chain_);
+  MeasuredRun run(const grid::Grid& grid, const std::vector<int>& plants,
+                  const std::vector<Channel>& channels, const Play& play) const {
+    double reach = plant::memory(chain_);
     bool any = !chain_.empty();
     for (int p : plants) {
       const auto& own = grid.plants[static_cast<std::size_t>(p)].measurements;
       any = any || !own.empty();
-      reach = std::max(reach, memory(own) + memory(chain_));
+      reach = std::max(reach, plant::memory(own) + plant::memory(chain_));
     }
     if (!any) return {play(1, channels), {}};
     constexpr int kFiner = 8;
@@ -72,12 +72,12 @@ class Instruments {
     for (Channel c : {Channel::V, Channel::theta, Channel::P, Channel::Q})
       if (std::ranges::find(all, c) == all.end()) all.push_back(c);
     MeasuredRun run{play(factor, all), {}};
-    run.frequency = measure_run(grid, chain_, seed_, run);
+    run.frequency = grid::measure_run(grid, chain_, seed_, run);
     return thinned(run, factor, channels);
   }
 
  private:
-  std::vector<Block> chain_;
+  std::vector<plant::Block> chain_;
   std::uint64_t seed_;
 };
 

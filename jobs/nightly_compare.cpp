@@ -23,7 +23,7 @@
 #include <tuple>
 #include <vector>
 
-#include "sim/core/problem.hpp"
+#include "base/problem.hpp"
 
 namespace {
 

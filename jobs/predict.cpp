@@ -5,11 +5,11 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "base/write_file.hpp"
 #include "jobs/record_for_network.hpp"
-#include "train/blas_kernels.hpp"
-#include "train/runtime.hpp"
-#include "validate/record_check.hpp"
-#include "validate/write_file.hpp"
+#include "train/runtime/blas_kernels.hpp"
+#include "train/runtime/runtime.hpp"
+#include "validate/check/check.hpp"
 
 namespace {
 using namespace swingbank;
@@ -24,12 +24,12 @@ struct Options {
 };
 
 struct Estimated {
-  Record record;
+  record::Record record;
   NetworkInput input;
-  Estimate estimate;
+  train::run::Estimate estimate;
 };
 
-void require_same_machine(const NetworkInfo& network, const PlantModel& model) {
+void require_same_machine(const train::run::NetworkInfo& network, const plant::PlantModel& model) {
   const auto machine = std::string(model.plant.machine.effect->name);
   if (machine != network.machine_model)
     throw InputError({"a plant with " + machine, model.origin,
@@ -38,13 +38,13 @@ void require_same_machine(const NetworkInfo& network, const PlantModel& model) {
 }
 
 /// Every record, read and checked, so that all faults of all files are told at once.
-std::vector<Estimated> read_all(const Options& o, const PlantModel& model) {
+std::vector<Estimated> read_all(const Options& o, const plant::PlantModel& model) {
   std::vector<Estimated> all;
   Problems problems;
   for (const auto& file : o.records) {
     try {
-      all.push_back({read_record(file, model.record_base), {}, {}});
-      raise_refusals(check_record(all.back().record, plant_facts(model)));
+      all.push_back({record::read_record(file, model.record_base), {}, {}});
+      check::raise_refusals(check::check_record(all.back().record, check::plant_facts(model)));
     } catch (const InputError& error) {
       for (const auto& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
     }
@@ -61,9 +61,9 @@ std::pair<double, double> over_records(const std::vector<Estimated>& all, std::s
   return {mean, all.size() > 1 ? std::sqrt(square / static_cast<double>(all.size() - 1)) : 0.0};
 }
 
-ordered_json to_json(const SavedNetwork& network, const PlantModel& model,
+ordered_json to_json(const train::run::SavedNetwork& network, const plant::PlantModel& model,
                      const std::vector<Estimated>& all) {
-  const NetworkInfo& n = network.info();
+  const train::run::NetworkInfo& n = network.info();
   ordered_json j;
   j["format"] = "swingbank-estimate-1";
   j["software"] = "swingbank " SWINGBANK_VERSION;
@@ -100,7 +100,7 @@ ordered_json to_json(const SavedNetwork& network, const PlantModel& model,
   return j;
 }
 
-std::string table(const NetworkInfo& n, const std::vector<Estimated>& all) {
+std::string table(const train::run::NetworkInfo& n, const std::vector<Estimated>& all) {
   std::string text = fmt::format("{:<16}{:>12}{:>12}{:>12}  {:<6}{}\n", "parameter", "estimate", "spread",
                                  "scatter", "unit", "learnt within");
   for (std::size_t i = 0; i < n.parameters.size(); ++i) {
@@ -117,7 +117,7 @@ std::string table(const NetworkInfo& n, const std::vector<Estimated>& all) {
 
 /// A network answers whatever it is shown; this is how one sees that it was never shown anything like it. A
 /// generator that was left out may well swing somewhat more than those it was judged on.
-void warn_of_strangers(const NetworkInfo& n, const std::vector<Estimated>& all) {
+void warn_of_strangers(const train::run::NetworkInfo& n, const std::vector<Estimated>& all) {
   constexpr double kStrange = 1.5;
   for (const auto& e : all)
     if (e.estimate.input_rms > kStrange * n.input_rms_seen)
@@ -129,8 +129,8 @@ void warn_of_strangers(const NetworkInfo& n, const std::vector<Estimated>& all) 
 }
 
 int run(const Options& o) {
-  const SavedNetwork network = SavedNetwork::load(o.network);
-  const PlantModel model = load_plant_model(o.model);
+  const train::run::SavedNetwork network = train::run::SavedNetwork::load(o.network);
+  const plant::PlantModel model = plant::load_plant_model(o.model);
   require_same_machine(network.info(), model);
   std::vector<Estimated> all = read_all(o, model);
   if (o.event && all.size() > 1)
@@ -166,8 +166,8 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 1;
   }
   try {
-    use_best_blas_kernels(argv);
-    set_up_runtime(0);
+    train::runtime::use_best_blas_kernels(argv);
+    train::runtime::set_up_runtime(0);
     return run(o);
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());

@@ -7,9 +7,9 @@
 #include <map>
 #include <optional>
 
-#include "train/saved_network.hpp"
-#include "validate/plant_model.hpp"
-#include "validate/record_signals.hpp"
+#include "train/run/saved_network.hpp"
+#include "validate/check/signals.hpp"
+#include "validate/plant/plant_model.hpp"
 
 namespace swingbank {
 
@@ -23,15 +23,16 @@ struct NetworkInput {
 namespace record_detail {
 
 /// The record's series of a dataset's channel on the machine's base; empty if it was not measured.
-inline std::vector<double> series_of(const std::string& channel, const validate::Record& r,
-                                     const validate::PlantModel& model, const NetworkInfo& network) {
+inline std::vector<double> series_of(const std::string& channel, const validate::record::Record& r,
+                                     const validate::plant::PlantModel& model,
+                                     const train::run::NetworkInfo& network) {
   const std::map<std::string, const std::vector<double>*> direct = {
       {"P", &r.P},         {"Q", &r.Q},     {"V", &r.V},    {"theta", &r.theta},
       {"speed", &r.speed}, {"Efd", &r.Efd}, {"Ifd", &r.Ifd}};
   if (channel == "frequency" && network.frequency) {
     std::vector<double> f(r.t.size());
-    terminal_frequency(r.theta.data(), r.t.size(), r.rate(), model.conventions.frequency, *network.frequency,
-                       f.data());
+    sim::terminal_frequency(r.theta.data(), r.t.size(), r.rate(), model.conventions.frequency,
+                            *network.frequency, f.data());
     return f;
   }
   const auto found = direct.find(channel);
@@ -43,7 +44,7 @@ inline std::vector<double> series_of(const std::string& channel, const validate:
 }
 
 /// Straight line between neighbouring samples; `at` is inside the record.
-inline double between(const validate::Record& r, const std::vector<double>& x, double at) {
+inline double between(const validate::record::Record& r, const std::vector<double>& x, double at) {
   const double place = (at - r.t.front()) / r.step();
   const auto left = std::min(static_cast<std::size_t>(std::max(0.0, place + 1e-9)), x.size() - 2);
   const double part = std::clamp(place - static_cast<double>(left), 0.0, 1.0);
@@ -56,10 +57,11 @@ inline double between(const validate::Record& r, const std::vector<double>& x, d
 /// sample and what lies before the record's beginning are the medians of the samples before the event, for a
 /// dataset's records begin at rest. Throws InputError: no event found or none before it, a channel that was
 /// not measured, a record that ends too early.
-inline NetworkInput network_input(const validate::Record& record, const validate::PlantModel& model,
-                                  const NetworkInfo& network, std::optional<double> event_s) {
+inline NetworkInput network_input(const validate::record::Record& record,
+                                  const validate::plant::PlantModel& model,
+                                  const train::run::NetworkInfo& network, std::optional<double> event_s) {
   Problems problems;
-  const validate::Signals signals = validate::record_signals(record);
+  const validate::check::Signals signals = validate::check::record_signals(record);
   NetworkInput in;
   std::size_t quiet = signals.onset + 1;  // samples before the event
   in.event_s = event_s.value_or(record.t[signals.onset]);
@@ -92,7 +94,8 @@ inline NetworkInput network_input(const validate::Record& record, const validate
                    "give a record with it, or a network trained without it");
       continue;
     }
-    const double level = validate::median_of({x.begin(), x.begin() + static_cast<std::ptrdiff_t>(quiet)});
+    const double level =
+        validate::check::median_of({x.begin(), x.begin() + static_cast<std::ptrdiff_t>(quiet)});
     for (std::size_t k = 0; k < network.samples; ++k) {
       const double t = shift + static_cast<double>(k) / network.rate;
       const bool before = k == 0 || t < record.t.front();

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "jobs/own_command.hpp"
-#include "validate/retrain.hpp"
+#include "base/own_command.hpp"
+#include "validate/retrain/retrain.hpp"
 
 namespace swingbank::jobs {
 
@@ -25,7 +25,7 @@ inline RetrainPrograms retrain_programs() {
 }
 
 /// Dataset and network of one side. False if a signal stopped it. Throws InputError if a step fails.
-inline bool make_network(const RetrainPrograms& programs, const validate::RetrainSide& side) {
+inline bool make_network(const RetrainPrograms& programs, const validate::retrain::RetrainSide& side) {
   const auto step = [&](const std::filesystem::path& program, const std::vector<std::string>& words) {
     const int code = run_own(program, words);
     if (code != 0 && code != kStopped)
@@ -40,9 +40,10 @@ inline bool make_network(const RetrainPrograms& programs, const validate::Retrai
 }
 
 /// What the network of one side says of the records.
-inline validate::NetworkEstimate ask_network(const RetrainPrograms& programs,
-                                             const validate::RetrainSide& side, const std::string& model,
-                                             const std::vector<std::string>& records) {
+inline validate::calibrate::NetworkEstimate ask_network(const RetrainPrograms& programs,
+                                                        const validate::retrain::RetrainSide& side,
+                                                        const std::string& model,
+                                                        const std::vector<std::string>& records) {
   const auto file = side.folder / "estimates.json";
   std::vector<std::string> words = {"--network", side.results.string(), "--model",  model,
                                     "--out",     file.string(),         "--records"};
@@ -51,7 +52,7 @@ inline validate::NetworkEstimate ask_network(const RetrainPrograms& programs,
     throw InputError({fmt::format("no estimate by the network {} the effect", side.name),
                       side.results.string(), "swingbank predict says why above",
                       "correct that and run the command again"});
-  return validate::read_estimate(file);
+  return validate::calibrate::read_estimate(file);
 }
 
 }  // namespace swingbank::jobs

@@ -8,16 +8,16 @@
 #include <cstdio>
 #include <optional>
 
+#include "base/durable.hpp"
 #include "jobs/measured_run.hpp"
-#include "mpi/store/durable.hpp"
 #include "mpi/store/hdf5_file.hpp"
-#include "sim/core/law.hpp"
-#include "sim/network/event_text.hpp"
-#include "sim/solve/batch.hpp"
-#include "sim/solve/attach.hpp"
-#include "sim/solve/event_choice.hpp"
-#include "sim/solve/load_choice.hpp"
-#include "sim/solve/reference.hpp"
+#include "sim/formats/event_text.hpp"
+#include "sim/grid/attach.hpp"
+#include "sim/grid/event_choice.hpp"
+#include "sim/grid/load_choice.hpp"
+#include "sim/lanes/batch.hpp"
+#include "sim/laws/law.hpp"
+#include "sim/reference/reference.hpp"
 
 namespace {
 using namespace swingbank;
@@ -25,7 +25,7 @@ using namespace swingbank::sim;
 
 struct Options {
   std::string raw, dyr, convention = "psse", integrator = "reference";
-  EventTexts event;
+  grid::EventTexts event;
   std::vector<std::string> loads, laws, attached;
   std::vector<std::string> out, plants, channels, measured;
   std::uint64_t measure_seed = 1;
@@ -38,17 +38,17 @@ struct Options {
 };
 
 /// The option that a part of an event stands in.
-std::string event_option(EventPart part, const std::string& text) {
+std::string event_option(grid::EventPart part, const std::string& text) {
   constexpr const char* kOptions[] = {"--fault",     "--trip",      "--trip-generator", "--load-step",
                                       "--vref-step", "--pref-step", "--fault-type",     "--z0"};
   return kOptions[static_cast<int>(part)] + (text.empty() ? "" : " " + text);
 }
 
-std::vector<int> parse_plants(const Options& options, const Grid& grid, Problems& problems) {
+std::vector<int> parse_plants(const Options& options, const grid::Grid& grid, Problems& problems) {
   std::vector<int> list;
   for (const auto& name : options.plants) {
-    const auto at =
-        std::find_if(grid.plants.begin(), grid.plants.end(), [&](const Plant& p) { return p.name == name; });
+    const auto at = std::find_if(grid.plants.begin(), grid.plants.end(),
+                                 [&](const plant::Plant& p) { return p.name == name; });
     if (at != grid.plants.end()) {
       list.push_back(static_cast<int>(at - grid.plants.begin()));
       continue;
@@ -104,10 +104,10 @@ void check_options(const Options& options, Problems& problems) {
 
 double tolerance(const Options& o) { return o.tolerance.value_or(o.integrator == "lanes" ? 1e-6 : 1e-8); }
 
-ReferenceRun play(const Options& o, int finer, const Grid& grid, const Event& event, std::vector<int> plants,
-                  std::vector<Channel> channels, std::vector<int> buses) {
+reference::ReferenceRun play(const Options& o, int finer, const grid::Grid& grid, const network::Event& event,
+                             std::vector<int> plants, std::vector<Channel> channels, std::vector<int> buses) {
   if (o.integrator == "reference") {
-    ReferenceOptions options;
+    reference::ReferenceOptions options;
     options.t_end = o.t_end;
     options.rate = o.rate * finer;
     options.rtol = tolerance(o);
@@ -116,23 +116,23 @@ ReferenceRun play(const Options& o, int finer, const Grid& grid, const Event& ev
     options.channels = std::move(channels);
     options.buses = std::move(buses);
     options.after_switching = o.after_switching;
-    return run_reference(grid, event, options);
+    return reference::run_reference(grid, event, options);
   }
-  BatchOptions options;
+  lanes::BatchOptions options;
   options.t_end = o.t_end;
   options.rate = o.rate * finer;
   options.tolerance = tolerance(o);
   options.plants = std::move(plants);
   options.channels = std::move(channels);
-  Batch batch(grid, options);
-  ReferenceRun run;
+  lanes::Batch batch(grid, options);
+  reference::ReferenceRun run;
   bool given = false;
   batch.run(
-      [&](Job& job) {
+      [&](lanes::Job& job) {
         job.event = event;
         return !std::exchange(given, true);
       },
-      [&](const Job&, const Trajectory& t) { static_cast<Trajectory&>(run) = t; });
+      [&](const lanes::Job&, const Trajectory& t) { static_cast<Trajectory&>(run) = t; });
   return run;
 }
 
@@ -142,7 +142,7 @@ void put_cell(std::string& text, double value) {
   if (!std::isnan(value)) fmt::format_to(std::back_inserter(text), "{:.12g}", value);
 }
 
-void write_csv(const std::filesystem::path& file, const Grid& grid, const MeasuredRun& run) {
+void write_csv(const std::filesystem::path& file, const grid::Grid& grid, const MeasuredRun& run) {
   std::string text = "t_s";
   for (int plant : run.plants)
     for (Channel c : run.channels) {
@@ -172,7 +172,8 @@ std::string joined(const std::vector<std::string>& list) {
   return all;
 }
 
-void describe_run(h5::File& h, const Options& o, const Grid& grid, const ReferenceRun& run) {
+void describe_run(mpi::store::h5::File& h, const Options& o, const grid::Grid& grid,
+                  const reference::ReferenceRun& run) {
   h.attribute("format", std::string("swingbank-run-1"));
   h.attribute("network", o.raw);
   h.attribute("dynamics", o.dyr);
@@ -189,7 +190,7 @@ void describe_run(h5::File& h, const Options& o, const Grid& grid, const Referen
   h.attribute("load_steps", joined(o.event.load_steps));
   h.attribute("vref_steps", joined(o.event.vref_steps));
   h.attribute("pref_steps", joined(o.event.pref_steps));
-  h.attribute("loads", describe_loads(grid));
+  h.attribute("loads", grid::describe_loads(grid));
   h.attribute("laws", joined(o.laws));
   h.attribute("attached", joined(o.attached));
   h.attribute("measured", joined(o.measured));
@@ -213,15 +214,16 @@ void describe_run(h5::File& h, const Options& o, const Grid& grid, const Referen
   h.attribute("channel_units", units);
 }
 
-void write_hdf5(const std::filesystem::path& file, const Options& o, const Grid& grid,
+void write_hdf5(const std::filesystem::path& file, const Options& o, const grid::Grid& grid,
                 const MeasuredRun& run) {
-  const std::lock_guard guard(h5::lock());
+  const std::lock_guard guard(mpi::store::h5::lock());
   const auto samples = static_cast<hsize_t>(run.samples);
   reserve(file,
           (run.values.size() + run.bus_v.size() * 2 + (run.frequency.size() + 1) * samples) * sizeof(double) +
               65536);
-  h5::File h = h5::File::create(temporary_name(file));
-  const auto put = [&](const std::string& name, const h5::Shape& shape, const std::vector<double>& values) {
+  mpi::store::h5::File h = mpi::store::h5::File::create(temporary_name(file));
+  const auto put = [&](const std::string& name, const mpi::store::h5::Shape& shape,
+                       const std::vector<double>& values) {
     h.create<double>(name, shape);
     h.write(name, 0, shape[0], values.data());
   };
@@ -255,21 +257,23 @@ void write_hdf5(const std::filesystem::path& file, const Options& o, const Grid&
 int simulate(const Options& o) {
   Problems problems;
   check_options(o, problems);
-  DyrOptions models{o.ignore_models, {}};
-  for (const auto& text : o.map_models) add_model_map(models, text, "--map-model " + text, problems);
+  formats::DyrOptions models{o.ignore_models, {}};
+  for (const auto& text : o.map_models) formats::add_model_map(models, text, "--map-model " + text, problems);
   problems.raise();
-  for (const auto& file : o.laws) load_law(file);
-  Grid grid = load_grid(o.raw, o.dyr, o.convention == "andes" ? Conventions::andes() : Conventions::psse(),
-                        models, o.frequency_hz);
-  for (const auto& text : o.attached) attach(grid, text, "--attach " + text, problems);
-  if (o.load_model == "raw") loads_as_composed(grid, problems);
-  for (const auto& text : o.loads) choose_load(grid, text, "--load " + text, problems);
-  const Event event = read_event(o.event, grid, o.t_end, event_option, problems);
+  for (const auto& file : o.laws) laws::load_law(file);
+  grid::Grid grid =
+      grid::load_grid(o.raw, o.dyr, o.convention == "andes" ? Conventions::andes() : Conventions::psse(),
+                      models, o.frequency_hz);
+  for (const auto& text : o.attached) grid::attach(grid, text, "--attach " + text, problems);
+  if (o.load_model == "raw") grid::loads_as_composed(grid, problems);
+  for (const auto& text : o.loads) grid::choose_load(grid, text, "--load " + text, problems);
+  const network::Event event = grid::read_event(o.event, grid, o.t_end, event_option, problems);
   const auto plants = parse_plants(o, grid, problems);
   const auto channels = parse_channels(o, problems);
   const Instruments instruments(o.measured, o.measure_seed, problems);
   std::vector<int> buses;
-  for (int b : o.buses) buses.push_back(read_bus(std::to_string(b), grid.network, "--buses", problems));
+  for (int b : o.buses)
+    buses.push_back(formats::read_bus(std::to_string(b), grid.network, "--buses", problems));
   problems.raise();
 
   const auto begin = std::chrono::steady_clock::now();
@@ -285,7 +289,7 @@ int simulate(const Options& o) {
       write_hdf5(file, o, grid, run);
     fmt::print("wrote {}\n", file.string());
   }
-  fmt::print("loads: {}\n", describe_loads(grid));
+  fmt::print("loads: {}\n", grid::describe_loads(grid));
   fmt::print("{} at {:g} s, largest rotor angle spread {:.3f} deg, {}{:.3f} s wall time\n",
              outcome_name(run.outcome), run.stopped_at, run.largest_spread * 57.295779513082321,
              run.steps > 0 ? fmt::format("{} steps, ", run.steps) : "", wall);

@@ -1,22 +1,22 @@
 // swingbank tables: results of training runs as the thesis's Tables IV, V and VI, in Markdown, CSV and HTML.
-#include "validate/tables.hpp"
+#include "validate/report/tables.hpp"
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <set>
 
-#include "validate/write_file.hpp"
+#include "base/write_file.hpp"
 
 namespace {
 
 using namespace swingbank;
 using namespace swingbank::validate;
 
-Provenance sources(const std::vector<RunResult>& results, int argc, char** argv) {
+report::Provenance sources(const std::vector<report::RunResult>& results, int argc, char** argv) {
   std::string line = "swingbank tables";
   for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
-  Provenance rows = {{"command", line}, {"results read", std::to_string(results.size())}};
+  report::Provenance rows = {{"command", line}, {"results read", std::to_string(results.size())}};
   std::set<std::string> datasets, software;
   for (const auto& r : results) {
     datasets.insert(
@@ -42,8 +42,8 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 1;
   }
   try {
-    const auto results = read_results({folders.begin(), folders.end()});
-    const TablesReport report = make_tables(results, sources(results, argc, argv));
+    const auto results = report::read_results({folders.begin(), folders.end()});
+    const report::TablesReport report = report::make_tables(results, sources(results, argc, argv));
     const std::filesystem::path folder = out;
     for (const auto& [name, content] : report.csv) write_file(folder / name, content);
     write_file(folder / "tables.md", report.markdown);

@@ -5,14 +5,15 @@ int main(int argc, char** argv) {
   using namespace swingbank;
   CLI::App app{SWINGBANK_SUMMARY, "swingbank train"};
   TrainingOptions options;
-  return training_main(argc, argv, app, options, [&](RunRequest request) {
+  return training_main(argc, argv, app, options, [&](train::run::RunRequest request) {
     if (request.experiment.leave_one_out)
       throw InputError({"this experiment leaves generators out", options.experiment, "its split says so",
                         "use swingbank cross-validate"});
-    request.runtime = set_up_runtime(options.threads);
-    const ShardStream stream = options.open(request);
-    const RunOutcome outcome = run(stream, request);
-    if (outcome == RunOutcome::already_done) fmt::print(stderr, "{}: done already\n", run_name(request));
+    request.runtime = train::runtime::set_up_runtime(options.threads);
+    const train::data::ShardStream stream = options.open(request);
+    const train::run::RunOutcome outcome = train::run::run(stream, request);
+    if (outcome == train::run::RunOutcome::already_done)
+      fmt::print(stderr, "{}: done already\n", train::run::run_name(request));
     return exit_code(outcome);
   });
 }

@@ -7,10 +7,10 @@
 #include <optional>
 #include <string>
 
-#include "mpi/stop_signal.hpp"
-#include "sim/core/problem.hpp"
-#include "train/blas_kernels.hpp"
-#include "train/run.hpp"
+#include "base/problem.hpp"
+#include "base/stop_signal.hpp"
+#include "train/run/run.hpp"
+#include "train/runtime/blas_kernels.hpp"
 
 namespace swingbank {
 
@@ -49,15 +49,15 @@ struct TrainingOptions {
   }
 
   /// Throws InputError if an option that a run needs is missing.
-  [[nodiscard]] RunRequest request() const {
+  [[nodiscard]] train::run::RunRequest request() const {
     Problems problems;
     if (dataset.empty())
       problems.add("no dataset", "DATASET", "a run needs one",
                    "give the folder that `swingbank generate` wrote");
     if (out.empty()) problems.add("no output folder", "--out", "results need a place", "give a folder");
     problems.raise();
-    RunRequest r;
-    r.experiment = read_experiment(experiment);
+    train::run::RunRequest r;
+    r.experiment = train::loop::read_experiment(experiment);
     r.preset = preset;
     r.network = network.empty() ? r.experiment.preset(preset).networks.at(0) : network;
     r.seed = seed;
@@ -67,13 +67,15 @@ struct TrainingOptions {
     r.out = out;
     return r;
   }
-  [[nodiscard]] ShardStream open(const RunRequest& r) const {
+  [[nodiscard]] train::data::ShardStream open(const train::run::RunRequest& r) const {
     const auto bytes = static_cast<std::uint64_t>(memory_limit * static_cast<double>(std::uint64_t{1} << 30));
-    return {open_dataset(dataset), r.experiment.preset(preset).input, {bytes, readers, trust}};
+    return {mpi::store::open_dataset(dataset), r.experiment.preset(preset).input, {bytes, readers, trust}};
   }
 };
 
-inline int exit_code(RunOutcome outcome) { return outcome == RunOutcome::stopped ? kSubmitAgain : 0; }
+inline int exit_code(train::run::RunOutcome outcome) {
+  return outcome == train::run::RunOutcome::stopped ? kSubmitAgain : 0;
+}
 
 /// What both programs do around their work: options, printing, signals, errors.
 template <class Work>
@@ -86,10 +88,11 @@ int training_main(int argc, char** argv, CLI::App& app, TrainingOptions& options
   }
   try {
     if (!options.print.empty()) {
-      fmt::print("{}\n", read_experiment(options.experiment).print(options.preset, options.print));
+      fmt::print("{}\n",
+                 train::loop::read_experiment(options.experiment).print(options.preset, options.print));
       return 0;
     }
-    use_best_blas_kernels(argv);
+    train::runtime::use_best_blas_kernels(argv);
     catch_stop_signals();
     return work(options.request());
   } catch (const std::exception& error) {

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "mpi/store/durable.hpp"
-#include "sim/core/problem.hpp"
+#include "base/durable.hpp"
+#include "base/problem.hpp"
 
-namespace swingbank {
+namespace swingbank::mpi::store {
 
 namespace fs = std::filesystem;
 
@@ -214,4 +214,4 @@ void read_rows(const ShardInfo& shard, std::uint64_t first, std::uint64_t count,
   read_rows(shard.path, first, count, out, shard.config_hash, fields, &shard.shape);
 }
 
-}  // namespace swingbank
+}  // namespace swingbank::mpi::store

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "base/problem.hpp"
 #include "mpi/store/journal.hpp"
 #include "mpi/store/shard.hpp"
-#include "sim/core/problem.hpp"
 
-namespace swingbank {
+namespace swingbank::mpi::store {
 
 /// What dataset.json says; written before the first shard.
 struct DatasetHeader {
@@ -78,4 +78,4 @@ std::string header_text(const DatasetHeader& header);
 void write_header(const std::filesystem::path& folder, const DatasetHeader& header);
 DatasetHeader read_header(const std::filesystem::path& folder);
 
-}  // namespace swingbank
+}  // namespace swingbank::mpi::store

@@ -2,10 +2,10 @@
 
 #include <cerrno>
 
-#include "mpi/store/durable.hpp"
-#include "sim/core/problem.hpp"
+#include "base/durable.hpp"
+#include "base/problem.hpp"
 
-namespace swingbank::h5 {
+namespace swingbank::mpi::store::h5 {
 
 namespace {
 
@@ -232,4 +232,4 @@ double File::real_attribute(const std::string& name) const {
   return values[0];
 }
 
-}  // namespace swingbank::h5
+}  // namespace swingbank::mpi::store::h5

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace swingbank::h5 {
+namespace swingbank::mpi::store::h5 {
 
 /// HDF5 is not thread-safe: whoever uses it holds this lock.
 std::recursive_mutex& lock();
@@ -138,4 +138,4 @@ class File {
   Handle file_;
 };
 
-}  // namespace swingbank::h5
+}  // namespace swingbank::mpi::store::h5

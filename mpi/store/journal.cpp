@@ -8,10 +8,10 @@
 #include <set>
 #include <utility>
 
-#include "mpi/store/durable.hpp"
-#include "sim/core/problem.hpp"
+#include "base/durable.hpp"
+#include "base/problem.hpp"
 
-namespace swingbank {
+namespace swingbank::mpi::store {
 
 std::string journal_text(const JournalLine& l) {
   nlohmann::ordered_json j;
@@ -104,4 +104,4 @@ void Journal::append(const JournalLine& line) {
   raise_file_error(file_, error, "cannot write the journal");
 }
 
-}  // namespace swingbank
+}  // namespace swingbank::mpi::store

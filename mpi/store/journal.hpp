@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace swingbank {
+namespace swingbank::mpi::store {
 
 struct JournalLine {
   std::uint64_t shard = 0;
@@ -44,4 +44,4 @@ class Journal {
   int fd_ = -1;
 };
 
-}  // namespace swingbank
+}  // namespace swingbank::mpi::store

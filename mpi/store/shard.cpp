@@ -2,12 +2,12 @@
 
 #include <xxhash.h>
 
-#include "mpi/store/durable.hpp"
+#include "base/durable.hpp"
+#include "base/problem.hpp"
 #include "mpi/store/shard_layout.hpp"
-#include "sim/core/problem.hpp"
-#include "sim/solve/trajectory.hpp"
+#include "sim/core/trajectory.hpp"
 
-namespace swingbank {
+namespace swingbank::mpi::store {
 
 namespace fs = std::filesystem;
 
@@ -196,4 +196,4 @@ std::map<std::string, std::uint64_t> count_outcomes(const std::vector<std::uint8
   return counts;
 }
 
-}  // namespace swingbank
+}  // namespace swingbank::mpi::store

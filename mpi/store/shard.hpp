@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace swingbank {
+namespace swingbank::mpi::store {
 
 /// What the root group's attributes say.
 struct ShardAttributes {
@@ -87,4 +87,4 @@ std::uint64_t shard_hash(const ShardData& data);
 std::map<std::string, std::uint64_t> count_outcomes(const std::vector<std::uint8_t>& draw_outcome,
                                                     const std::filesystem::path& file);
 
-}  // namespace swingbank
+}  // namespace swingbank::mpi::store

@@ -1,6 +1,6 @@
 #include "mpi/store/shard_layout.hpp"
 
-namespace swingbank {
+namespace swingbank::mpi::store {
 
 void lay_out_shard(h5::File& f, const ShardData& d, ShardSize n) {
   const ShardAttributes& a = d.attributes;
@@ -53,4 +53,4 @@ void fill_shard(h5::File& f, const ShardData& d, std::uint64_t first_row, std::u
   f.write("/draws/outcome", first_draw, d.draw_outcome.size(), d.draw_outcome.data());
 }
 
-}  // namespace swingbank
+}  // namespace swingbank::mpi::store

@@ -3,7 +3,7 @@
 #include "mpi/store/hdf5_file.hpp"
 #include "mpi/store/shard.hpp"
 
-namespace swingbank {
+namespace swingbank::mpi::store {
 
 constexpr const char* kShardFormat = "swingbank-shard-1";
 
@@ -16,4 +16,4 @@ void lay_out_shard(h5::File& file, const ShardData& data, ShardSize size);
 /// Writes the rows and draws of `data` at the given places. Independent.
 void fill_shard(h5::File& file, const ShardData& data, std::uint64_t first_row, std::uint64_t first_draw);
 
-}  // namespace swingbank
+}  // namespace swingbank::mpi::store

@@ -22,7 +22,7 @@
 #include <tuple>
 #include <vector>
 
-#include "sim/core/problem.hpp"
+#include "base/problem.hpp"
 #include "sim/core/scalar.hpp"
 
 namespace swingbank::sim {

@@ -5,7 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::compensator_ieeevc {
+namespace swingbank::sim::effects::compensator_ieeevc {
 
 struct Model {
   static constexpr std::string_view name = "IEEEVC", title = "load compensation (line drop, reactive droop)",
@@ -50,4 +50,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::compensator_ieeevc
+}  // namespace swingbank::sim::effects::compensator_ieeevc

@@ -2,9 +2,9 @@
 // ESAC1A: brushless alternator-rectifier exciter.
 #include <algorithm>
 
-#include "sim/effects/shared/alternator_rectifier.hpp"
+#include "sim/effects/detail/alternator_rectifier.hpp"
 
-namespace swingbank::sim::exciter_esac1a {
+namespace swingbank::sim::effects::exciter_esac1a {
 
 struct Model : shared::AlternatorRectifier<Model> {
   static constexpr std::string_view name = "ESAC1A",
@@ -72,4 +72,4 @@ struct Model : shared::AlternatorRectifier<Model> {
   }
 };
 
-}  // namespace swingbank::sim::exciter_esac1a
+}  // namespace swingbank::sim::effects::exciter_esac1a

@@ -7,7 +7,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::exciter_esst4b {
+namespace swingbank::sim::effects::exciter_esst4b {
 
 struct Model {
   static constexpr std::string_view name = "ESST4B",
@@ -194,4 +194,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::exciter_esst4b
+}  // namespace swingbank::sim::effects::exciter_esst4b

@@ -1,8 +1,8 @@
 #pragma once
 // EXAC1: brushless alternator-rectifier exciter of 1981.
-#include "sim/effects/shared/alternator_rectifier.hpp"
+#include "sim/effects/detail/alternator_rectifier.hpp"
 
-namespace swingbank::sim::exciter_exac1 {
+namespace swingbank::sim::effects::exciter_exac1 {
 
 struct Model : shared::AlternatorRectifier<Model> {
   static constexpr std::string_view
@@ -38,4 +38,4 @@ struct Model : shared::AlternatorRectifier<Model> {
   }
 };
 
-}  // namespace swingbank::sim::exciter_exac1
+}  // namespace swingbank::sim::effects::exciter_exac1

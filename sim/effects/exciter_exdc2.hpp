@@ -1,8 +1,8 @@
 #pragma once
 // EXDC2: rotating direct-current exciter whose regulator is fed from the machine's terminal.
-#include "sim/effects/shared/rotating_dc.hpp"
+#include "sim/effects/detail/rotating_dc.hpp"
 
-namespace swingbank::sim::exciter_exdc2 {
+namespace swingbank::sim::effects::exciter_exdc2 {
 
 struct Model : shared::RotatingDc<Model> {
   static constexpr std::string_view name = "EXDC2",
@@ -107,4 +107,4 @@ struct Model : shared::RotatingDc<Model> {
   }
 };
 
-}  // namespace swingbank::sim::exciter_exdc2
+}  // namespace swingbank::sim::effects::exciter_exdc2

@@ -5,7 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::exciter_exst1 {
+namespace swingbank::sim::effects::exciter_exst1 {
 
 struct Model {
   static constexpr std::string_view name = "EXST1", title = "static excitation system, type ST1 of 1981",
@@ -96,4 +96,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::exciter_exst1
+}  // namespace swingbank::sim::effects::exciter_exst1

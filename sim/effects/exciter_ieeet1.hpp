@@ -1,8 +1,8 @@
 #pragma once
 // IEEET1: rotating direct-current exciter.
-#include "sim/effects/shared/rotating_dc.hpp"
+#include "sim/effects/detail/rotating_dc.hpp"
 
-namespace swingbank::sim::exciter_ieeet1 {
+namespace swingbank::sim::effects::exciter_ieeet1 {
 
 struct Model : shared::RotatingDc<Model> {
   static constexpr std::string_view name = "IEEET1", title = "rotating DC exciter, type 1 of 1968",
@@ -57,4 +57,4 @@ struct Model : shared::RotatingDc<Model> {
   }
 };
 
-}  // namespace swingbank::sim::exciter_ieeet1
+}  // namespace swingbank::sim::effects::exciter_ieeet1

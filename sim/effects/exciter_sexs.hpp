@@ -5,7 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::exciter_sexs {
+namespace swingbank::sim::effects::exciter_sexs {
 
 struct Model {
   static constexpr std::string_view name = "SEXS", title = "simplified excitation system",
@@ -69,4 +69,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::exciter_sexs
+}  // namespace swingbank::sim::effects::exciter_sexs

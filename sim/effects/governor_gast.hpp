@@ -5,7 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::governor_gast {
+namespace swingbank::sim::effects::governor_gast {
 
 struct Model {
   static constexpr std::string_view name = "GAST", title = "gas turbine and governor, temperature limit",
@@ -95,4 +95,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::governor_gast
+}  // namespace swingbank::sim::effects::governor_gast

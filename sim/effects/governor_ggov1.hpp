@@ -10,7 +10,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::governor_ggov1 {
+namespace swingbank::sim::effects::governor_ggov1 {
 
 struct Model {
   static constexpr std::string_view
@@ -327,4 +327,4 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
     bad(!(p[i] - p[i] == 0), value(i), "it must be finite", "give a number");
 }
 
-}  // namespace swingbank::sim::governor_ggov1
+}  // namespace swingbank::sim::effects::governor_ggov1

@@ -5,7 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::governor_hygov {
+namespace swingbank::sim::effects::governor_hygov {
 
 /// Below this opening the gate leaks: head = (flow/gate)^2 has no value at a shut gate [pu].
 constexpr double kLeak = 0.01;
@@ -103,4 +103,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::governor_hygov
+}  // namespace swingbank::sim::effects::governor_hygov

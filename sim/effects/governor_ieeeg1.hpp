@@ -5,7 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::governor_ieeeg1 {
+namespace swingbank::sim::effects::governor_ieeeg1 {
 
 struct Model {
   static constexpr std::string_view name = "IEEEG1", title = "steam turbine with reheat stages and governor",
@@ -150,4 +150,4 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
   if (!(p[db] >= 0)) problems.add(text(db), where, "half the width of a band", "give db >= 0");
 }
 
-}  // namespace swingbank::sim::governor_ieeeg1
+}  // namespace swingbank::sim::effects::governor_ieeeg1

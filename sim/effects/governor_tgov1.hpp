@@ -5,7 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::governor_tgov1 {
+namespace swingbank::sim::effects::governor_tgov1 {
 
 struct Model {
   static constexpr std::string_view name = "TGOV1", title = "steam turbine and governor",
@@ -74,4 +74,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::governor_tgov1
+}  // namespace swingbank::sim::effects::governor_tgov1

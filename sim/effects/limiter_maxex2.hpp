@@ -5,7 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::limiter_maxex2 {
+namespace swingbank::sim::effects::limiter_maxex2 {
 
 struct Model {
   static constexpr std::string_view name = "MAXEX2",
@@ -105,4 +105,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::limiter_maxex2
+}  // namespace swingbank::sim::effects::limiter_maxex2

@@ -5,7 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::limiter_uel1 {
+namespace swingbank::sim::effects::limiter_uel1 {
 
 struct Model {
   static constexpr std::string_view name = "UEL1",
@@ -132,4 +132,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::limiter_uel1
+}  // namespace swingbank::sim::effects::limiter_uel1

@@ -9,7 +9,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::load_cim5 {
+namespace swingbank::sim::effects::load_cim5 {
 
 /// A phasor of any scalar.
 template <class T>
@@ -369,4 +369,4 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
   for (const int i : {A, B, C0, D}) bad(!std::isfinite(p[i]), value(i), "it must be finite", "give a number");
 }
 
-}  // namespace swingbank::sim::load_cim5
+}  // namespace swingbank::sim::effects::load_cim5

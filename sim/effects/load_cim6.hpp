@@ -2,7 +2,7 @@
 // CIM6: the motor of CIM5 with its load torque given in full by the .dyr.
 #include "sim/effects/load_cim5.hpp"
 
-namespace swingbank::sim::load_cim6 {
+namespace swingbank::sim::effects::load_cim6 {
 
 struct Model : load_cim5::Model {
   static constexpr std::string_view name = "CIM6", title = "induction motor, load torque by its polynomial",
@@ -17,4 +17,4 @@ struct Model : load_cim5::Model {
                                         Mbase, Pmult, H,  VI, TI, TB, A,  B,  D,  E,  C0, Tnom};
 };
 
-}  // namespace swingbank::sim::load_cim6
+}  // namespace swingbank::sim::effects::load_cim6

@@ -7,7 +7,7 @@
 #include "sim/core/bus_frequency.hpp"
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::load_ieel {
+namespace swingbank::sim::effects::load_ieel {
 
 struct Model {
   static constexpr std::string_view name = "IEEL",
@@ -142,4 +142,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::load_ieel
+}  // namespace swingbank::sim::effects::load_ieel

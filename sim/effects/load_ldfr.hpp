@@ -7,7 +7,7 @@
 #include "sim/core/bus_frequency.hpp"
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::load_ldfr {
+namespace swingbank::sim::effects::load_ldfr {
 
 struct Model {
   static constexpr std::string_view name = "LDFR",
@@ -118,4 +118,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::load_ldfr
+}  // namespace swingbank::sim::effects::load_ldfr

@@ -7,7 +7,7 @@
 #include "sim/core/bus_frequency.hpp"
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::load_zip {
+namespace swingbank::sim::effects::load_zip {
 
 struct Model {
   static constexpr std::string_view
@@ -112,4 +112,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::load_zip
+}  // namespace swingbank::sim::effects::load_zip

@@ -8,7 +8,7 @@
 // here.
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::machine_gencls {
+namespace swingbank::sim::effects::machine_gencls {
 
 struct Model {
   static constexpr std::string_view name = "GENCLS", title = "classical machine",
@@ -91,4 +91,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::machine_gencls
+}  // namespace swingbank::sim::effects::machine_gencls

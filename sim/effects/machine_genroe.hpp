@@ -4,9 +4,9 @@
 // Conventions. As GENROU. With PSS/E's own steps its records psse_powersimulationsdynamics/GENROE agree to
 // 0.0002 degrees without damping, though their .dyr says D = 0.05, with which they miss by 0.002: no record
 // at hand shows the damping. With speed voltage they miss by 0.009, with torque by 0.047.
-#include "sim/effects/shared/round_rotor.hpp"
+#include "sim/effects/detail/round_rotor.hpp"
 
-namespace swingbank::sim::machine_genroe {
+namespace swingbank::sim::effects::machine_genroe {
 
 struct Model : shared::RoundRotor<Model, ExponentialSaturation> {
   static constexpr std::string_view name = "GENROE", title = "round-rotor machine, exponential saturation",
@@ -26,4 +26,4 @@ struct Model : shared::RoundRotor<Model, ExponentialSaturation> {
 )";
 };
 
-}  // namespace swingbank::sim::machine_genroe
+}  // namespace swingbank::sim::effects::machine_genroe

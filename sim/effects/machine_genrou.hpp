@@ -4,9 +4,9 @@
 // Conventions. PSS/E sets power, Pm and D w both divided by speed, Te is not; no speed voltage. With its own
 // steps its records psse/GENROU agree to 0.0002 degrees; with speed voltage they miss by 0.009, with torque
 // by 0.045, without damping by 0.002. ANDES takes torques, no speed voltage (tests/reference/andes).
-#include "sim/effects/shared/round_rotor.hpp"
+#include "sim/effects/detail/round_rotor.hpp"
 
-namespace swingbank::sim::machine_genrou {
+namespace swingbank::sim::effects::machine_genrou {
 
 struct Model : shared::RoundRotor<Model, QuadraticSaturation> {
   static constexpr std::string_view name = "GENROU", title = "round-rotor machine, quadratic saturation",
@@ -26,4 +26,4 @@ struct Model : shared::RoundRotor<Model, QuadraticSaturation> {
 )";
 };
 
-}  // namespace swingbank::sim::machine_genrou
+}  // namespace swingbank::sim::effects::machine_genrou

@@ -4,9 +4,9 @@
 // Conventions. As GENROU. With PSS/E's own steps its record psse_powersimulationsdynamics/GENSAE agrees to
 // 0.0001 degrees over 10 s, with speed voltage to 0.0016, with torque to 0.016. It has D = 0: no record at
 // hand shows the damping.
-#include "sim/effects/shared/salient_pole.hpp"
+#include "sim/effects/detail/salient_pole.hpp"
 
-namespace swingbank::sim::machine_gensae {
+namespace swingbank::sim::effects::machine_gensae {
 
 struct Model : shared::SalientPole {
   static constexpr std::string_view name = "GENSAE", title = "salient-pole machine, exponential saturation",
@@ -78,4 +78,4 @@ struct Model : shared::SalientPole {
   }
 };
 
-}  // namespace swingbank::sim::machine_gensae
+}  // namespace swingbank::sim::effects::machine_gensae

@@ -5,9 +5,9 @@
 // voltages and speed; with speed voltage it misses by 3, with torque by 1.8, without damping by 15 %. The
 // angle of psse_powersimulationsdynamics/GENSAL (D = 0) agrees to 0.0002 degrees over 10 s, with speed
 // voltage to 0.0009, with torque to 0.017.
-#include "sim/effects/shared/salient_pole.hpp"
+#include "sim/effects/detail/salient_pole.hpp"
 
-namespace swingbank::sim::machine_gensal {
+namespace swingbank::sim::effects::machine_gensal {
 
 struct Model : shared::SalientPole {
   static constexpr std::string_view name = "GENSAL", title = "salient-pole machine, quadratic saturation",
@@ -70,4 +70,4 @@ struct Model : shared::SalientPole {
   }
 };
 
-}  // namespace swingbank::sim::machine_gensal
+}  // namespace swingbank::sim::effects::machine_gensal

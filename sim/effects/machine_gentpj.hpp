@@ -11,7 +11,7 @@
 #include "sim/core/effect.hpp"
 #include "sim/core/saturation.hpp"
 
-namespace swingbank::sim::machine_gentpj {
+namespace swingbank::sim::effects::machine_gentpj {
 
 struct Model {
   static constexpr std::string_view
@@ -272,4 +272,4 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
                  "no quadratic passes through both", "give 1.2 S1.2 > S1.0, or S1.0 = 0 for no saturation");
 }
 
-}  // namespace swingbank::sim::machine_gentpj
+}  // namespace swingbank::sim::effects::machine_gentpj

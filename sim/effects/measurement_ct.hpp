@@ -4,7 +4,7 @@
 
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::measurement_ct {
+namespace swingbank::sim::effects::measurement_ct {
 
 struct Model {
   static constexpr std::string_view name = "CTERROR", title = "current transformer: gain and phase error",
@@ -35,4 +35,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::measurement_ct
+}  // namespace swingbank::sim::effects::measurement_ct

@@ -6,7 +6,7 @@
 #include "sim/core/sampled.hpp"
 #include "sim/core/window.hpp"
 
-namespace swingbank::sim::measurement_frequency {
+namespace swingbank::sim::effects::measurement_frequency {
 
 struct Model {
   static constexpr std::string_view name = "PMUFREQ", title = "frequency derived from the voltage's angle",
@@ -57,4 +57,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::measurement_frequency
+}  // namespace swingbank::sim::effects::measurement_frequency

@@ -7,7 +7,7 @@
 #include "sim/core/effect.hpp"
 #include "sim/core/noise.hpp"
 
-namespace swingbank::sim::measurement_gaps {
+namespace swingbank::sim::effects::measurement_gaps {
 
 struct Model {
   static constexpr std::string_view name = "GAPS", title = "missing samples",
@@ -51,4 +51,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::measurement_gaps
+}  // namespace swingbank::sim::effects::measurement_gaps

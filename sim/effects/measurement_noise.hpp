@@ -5,7 +5,7 @@
 #include "sim/core/effect.hpp"
 #include "sim/core/noise.hpp"
 
-namespace swingbank::sim::measurement_noise {
+namespace swingbank::sim::effects::measurement_noise {
 
 struct Model {
   static constexpr std::string_view name = "NOISE", title = "Gaussian noise of phasors and frequency",
@@ -61,4 +61,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::measurement_noise
+}  // namespace swingbank::sim::effects::measurement_noise

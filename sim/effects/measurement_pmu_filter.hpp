@@ -5,7 +5,7 @@
 #include "sim/core/effect.hpp"
 #include "sim/core/window.hpp"
 
-namespace swingbank::sim::measurement_pmu_filter {
+namespace swingbank::sim::effects::measurement_pmu_filter {
 
 /// Reference filters of class M: reports per second, cut-off reference Ffr [Hz], order at 16 samples a cycle.
 struct MClass {
@@ -106,4 +106,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::measurement_pmu_filter
+}  // namespace swingbank::sim::effects::measurement_pmu_filter

@@ -4,7 +4,7 @@
 
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::measurement_pt {
+namespace swingbank::sim::effects::measurement_pt {
 
 struct Model {
   static constexpr std::string_view name = "PTERROR", title = "voltage transformer: gain and phase error",
@@ -34,4 +34,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::measurement_pt
+}  // namespace swingbank::sim::effects::measurement_pt

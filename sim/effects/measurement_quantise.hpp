@@ -4,7 +4,7 @@
 
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::measurement_quantise {
+namespace swingbank::sim::effects::measurement_quantise {
 
 struct Model {
   static constexpr std::string_view name = "QUANTISE", title = "quantisation of magnitudes and angles",
@@ -48,4 +48,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::measurement_quantise
+}  // namespace swingbank::sim::effects::measurement_quantise

@@ -3,7 +3,7 @@
 #include "sim/core/effect.hpp"
 #include "sim/core/sampled.hpp"
 
-namespace swingbank::sim::measurement_skew {
+namespace swingbank::sim::effects::measurement_skew {
 
 struct Model {
   static constexpr std::string_view name = "SKEW", title = "time skew of the current against the voltage",
@@ -36,4 +36,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::measurement_skew
+}  // namespace swingbank::sim::effects::measurement_skew

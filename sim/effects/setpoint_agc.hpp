@@ -7,7 +7,7 @@
 #include "sim/core/drive.hpp"
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::setpoint_agc {
+namespace swingbank::sim::effects::setpoint_agc {
 
 struct Model {
   static constexpr std::string_view name = "AGCMOVES",
@@ -82,4 +82,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::setpoint_agc
+}  // namespace swingbank::sim::effects::setpoint_agc

@@ -1,8 +1,8 @@
 #pragma once
 // PREFRAMP: ramp of the governor's reference.
-#include "sim/effects/shared/setpoint_move.hpp"
+#include "sim/effects/detail/setpoint_move.hpp"
 
-namespace swingbank::sim::setpoint_pref_ramp {
+namespace swingbank::sim::effects::setpoint_pref_ramp {
 
 struct Model : shared::SetpointRamp<Model> {
   static constexpr std::string_view name = "PREFRAMP", title = "ramp of the governor's reference";
@@ -24,4 +24,4 @@ struct Model : shared::SetpointRamp<Model> {
   }
 };
 
-}  // namespace swingbank::sim::setpoint_pref_ramp
+}  // namespace swingbank::sim::effects::setpoint_pref_ramp

@@ -1,8 +1,8 @@
 #pragma once
 // PREFSTEP: step of the governor's reference.
-#include "sim/effects/shared/setpoint_move.hpp"
+#include "sim/effects/detail/setpoint_move.hpp"
 
-namespace swingbank::sim::setpoint_pref_step {
+namespace swingbank::sim::effects::setpoint_pref_step {
 
 struct Model : shared::SetpointStep<Model> {
   static constexpr std::string_view name = "PREFSTEP", title = "step of the governor's reference";
@@ -23,4 +23,4 @@ struct Model : shared::SetpointStep<Model> {
   }
 };
 
-}  // namespace swingbank::sim::setpoint_pref_step
+}  // namespace swingbank::sim::effects::setpoint_pref_step

@@ -1,8 +1,8 @@
 #pragma once
 // VREFRAMP: ramp of the exciter's reference.
-#include "sim/effects/shared/setpoint_move.hpp"
+#include "sim/effects/detail/setpoint_move.hpp"
 
-namespace swingbank::sim::setpoint_vref_ramp {
+namespace swingbank::sim::effects::setpoint_vref_ramp {
 
 struct Model : shared::SetpointRamp<Model> {
   static constexpr std::string_view name = "VREFRAMP", title = "ramp of the exciter's reference";
@@ -24,4 +24,4 @@ struct Model : shared::SetpointRamp<Model> {
   }
 };
 
-}  // namespace swingbank::sim::setpoint_vref_ramp
+}  // namespace swingbank::sim::effects::setpoint_vref_ramp

@@ -1,8 +1,8 @@
 #pragma once
 // VREFSTEP: step of the exciter's reference.
-#include "sim/effects/shared/setpoint_move.hpp"
+#include "sim/effects/detail/setpoint_move.hpp"
 
-namespace swingbank::sim::setpoint_vref_step {
+namespace swingbank::sim::effects::setpoint_vref_step {
 
 struct Model : shared::SetpointStep<Model> {
   static constexpr std::string_view name = "VREFSTEP", title = "step of the exciter's reference";
@@ -23,4 +23,4 @@ struct Model : shared::SetpointStep<Model> {
   }
 };
 
-}  // namespace swingbank::sim::setpoint_vref_step
+}  // namespace swingbank::sim::effects::setpoint_vref_step

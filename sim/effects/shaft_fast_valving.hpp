@@ -7,7 +7,7 @@
 #include "sim/core/drive.hpp"
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::shaft_fast_valving {
+namespace swingbank::sim::effects::shaft_fast_valving {
 
 struct Model {
   static constexpr std::string_view name = "FASTVALVE", title = "fast valving",
@@ -61,4 +61,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::shaft_fast_valving
+}  // namespace swingbank::sim::effects::shaft_fast_valving

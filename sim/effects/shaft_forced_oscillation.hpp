@@ -5,7 +5,7 @@
 #include "sim/core/drive.hpp"
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::shaft_forced_oscillation {
+namespace swingbank::sim::effects::shaft_forced_oscillation {
 
 struct Model {
   static constexpr std::string_view name = "FORCEDOSC", title = "forced oscillation of the mechanical torque",
@@ -59,4 +59,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::shaft_forced_oscillation
+}  // namespace swingbank::sim::effects::shaft_forced_oscillation

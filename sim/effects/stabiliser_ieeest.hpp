@@ -8,7 +8,7 @@
 #include "sim/core/bus_frequency.hpp"
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::stabiliser_ieeest {
+namespace swingbank::sim::effects::stabiliser_ieeest {
 
 struct Model {
   static constexpr std::string_view name = "IEEEST", title = "IEEE power system stabiliser of 1981",
@@ -242,4 +242,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::stabiliser_ieeest
+}  // namespace swingbank::sim::effects::stabiliser_ieeest

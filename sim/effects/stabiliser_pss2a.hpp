@@ -2,7 +2,7 @@
 // PSS2A: PSS2B without its third lead-lag and without limits of the inputs.
 #include "sim/effects/stabiliser_pss2b.hpp"
 
-namespace swingbank::sim::stabiliser_pss2a {
+namespace swingbank::sim::effects::stabiliser_pss2a {
 
 struct Model {
   using B = stabiliser_pss2b::Model;
@@ -71,4 +71,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::stabiliser_pss2a
+}  // namespace swingbank::sim::effects::stabiliser_pss2a

@@ -5,7 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::stabiliser_pss2b {
+namespace swingbank::sim::effects::stabiliser_pss2b {
 
 struct Model {
   static constexpr std::string_view name = "PSS2B",
@@ -264,4 +264,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::stabiliser_pss2b
+}  // namespace swingbank::sim::effects::stabiliser_pss2b

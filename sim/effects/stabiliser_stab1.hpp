@@ -5,7 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::stabiliser_stab1 {
+namespace swingbank::sim::effects::stabiliser_stab1 {
 
 struct Model {
   static constexpr std::string_view name = "STAB1", title = "speed-sensitive stabiliser",
@@ -70,4 +70,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::stabiliser_stab1
+}  // namespace swingbank::sim::effects::stabiliser_stab1

@@ -4,7 +4,7 @@
 
 #include "sim/core/effect.hpp"
 
-namespace swingbank::sim::transformer_stepup {
+namespace swingbank::sim::effects::transformer_stepup {
 
 struct Model {
   static constexpr std::string_view name = "STEPUP", title = "step-up transformer",
@@ -42,4 +42,4 @@ struct Model {
   }
 };
 
-}  // namespace swingbank::sim::transformer_stepup
+}  // namespace swingbank::sim::effects::transformer_stepup

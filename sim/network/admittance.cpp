@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "sim/core/problem.hpp"
+#include "base/problem.hpp"
 #include "sim/network/connectivity.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::network {
 namespace {
 
 using Entries = std::vector<Eigen::Triplet<Complex>>;
@@ -137,4 +137,4 @@ ReducedNetwork reduce(const Network& network, const PowerFlow& flow, const Topol
   return reduced;
 }
 
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::network

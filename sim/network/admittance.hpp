@@ -7,7 +7,7 @@
 #include "sim/network/event.hpp"
 #include "sim/network/powerflow.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::network {
 
 /// Bus admittance matrix [pu] of branches and shunts alone (what the power flow uses). n x n.
 Eigen::SparseMatrix<Complex> bus_admittance(const Network& network, const Topology& topology = {});
@@ -33,4 +33,4 @@ struct ReducedNetwork {
 ReducedNetwork reduce(const Network& network, const PowerFlow& flow, const Topology& topology,
                       const std::vector<int>& kept, const std::vector<int>& without = {});
 
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::network

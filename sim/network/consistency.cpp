@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <map>
 
-namespace swingbank::sim {
+namespace swingbank::sim::network {
 namespace {
 
 const Bus& at(const Network& n, int bus) { return n.buses[static_cast<std::size_t>(bus)]; }
@@ -69,4 +69,4 @@ void check_finite(const Network& n, const std::string& file, Problems& problems)
     report("generator '" + g.id + "'", g.bus, {g.p, g.q, g.vset, g.mva, g.zr, g.zx, g.q_min, g.q_max});
 }
 
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::network

@@ -3,10 +3,10 @@
 #include <functional>
 #include <string>
 
-#include "sim/core/problem.hpp"
+#include "base/problem.hpp"
 #include "sim/network/network.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::network {
 
 /// Takes out of service what stands at an isolated bus (type 4): loads and shunts are removed, branches and
 /// generators marked.
@@ -18,4 +18,4 @@ void check_held_voltages(const Network& network, const std::function<std::string
 /// Notes everything with a number that is not finite: quotients of extreme values. `file`: for messages.
 void check_finite(const Network& network, const std::string& file, Problems& problems);
 
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::network

@@ -6,9 +6,9 @@
 #include <map>
 #include <set>
 
-#include "sim/core/problem.hpp"
+#include "base/problem.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::network {
 namespace {
 
 std::string seconds(double t) { return std::to_string(t) + " s"; }
@@ -246,4 +246,4 @@ std::vector<Segment> segments(const Event& event, const Network& network,
   return result;
 }
 
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::network

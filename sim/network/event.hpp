@@ -6,7 +6,7 @@
 
 #include "sim/network/network.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::network {
 
 /// Three-phase fault at a bus from t_on to t_off [s] through impedance z [pu on base_mva]; z = 0 is bolted (V
 /// = 0).
@@ -79,4 +79,4 @@ struct Segment {
 std::vector<Segment> segments(const Event& event, const Network& network,
                               const std::vector<double>& instants = {});
 
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::network

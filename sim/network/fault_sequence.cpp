@@ -7,7 +7,7 @@
 
 #include "sim/network/admittance.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::network {
 namespace {
 
 /// What is in force during the fault, without the fault.
@@ -96,4 +96,4 @@ void make_unbalanced(Event& event, FaultType type, std::optional<Complex> z0, co
   fault.z = fault_impedance(type, z2, z0.value_or(Complex{}), fault.z);
 }
 
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::network

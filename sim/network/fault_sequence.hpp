@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "sim/core/problem.hpp"
+#include "base/problem.hpp"
 #include "sim/network/event.hpp"
 #include "sim/network/powerflow.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::network {
 
 enum class FaultType { three_phase, line_to_ground, two_phase, two_phase_to_ground };
 /// "3ph", "slg", "ll", "llg"; none for any other text.
@@ -42,4 +42,4 @@ Complex negative_sequence_impedance(const Network& network, const PowerFlow& flo
 void make_unbalanced(Event& event, FaultType type, std::optional<Complex> z0, const Network& network,
                      const PowerFlow& flow, const std::vector<SequenceSource>& sources, Problems& problems);
 
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::network

@@ -4,7 +4,7 @@
 
 #include "sim/network/connectivity.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::network {
 
 int Network::bus_index(int number) const {
   for (std::size_t i = 0; i < buses.size(); ++i)
@@ -61,4 +61,4 @@ std::string bus_list(const Network& network, const std::vector<int>& buses) {
   return (buses.size() == 1 ? "bus " : "buses ") + text;
 }
 
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::network

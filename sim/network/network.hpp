@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/core/complex.hpp"
+#include "base/complex.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::network {
 
 enum class BusType { load = 1, generator = 2, slack = 3, isolated = 4 };
 
@@ -67,4 +67,4 @@ struct Network {
   [[nodiscard]] int branch_index(int from, int to, const std::string& circuit) const;
 };
 
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::network

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/core/problem.hpp"
+#include "base/problem.hpp"
 #include "sim/network/admittance.hpp"
 #include "sim/network/connectivity.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::network {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -233,4 +233,4 @@ PowerFlow solve_power_flow(const Network& network, double tolerance, int limit) 
   return flow;
 }
 
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::network

@@ -4,7 +4,7 @@
 
 #include "sim/network/network.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::network {
 
 struct PowerFlow {
   std::vector<Complex> voltage;  ///< per bus [pu]
@@ -19,4 +19,4 @@ struct PowerFlow {
 /// on divergence (naming the bus with the largest mismatch), an islanded bus, a missing or second slack bus.
 PowerFlow solve_power_flow(const Network& network, double tolerance = 1e-12, int limit = 30);
 
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::network

@@ -15,12 +15,12 @@
 #include <string>
 #include <vector>
 
-#include "train/adam.hpp"
-#include "train/blas_check.hpp"
-#include "train/blas_kernels.hpp"
-#include "train/loop.hpp"
+#include "train/loop/adam.hpp"
+#include "train/loop/loop.hpp"
 #include "train/networks/network.hpp"
-#include "train/runtime.hpp"
+#include "train/runtime/blas_check.hpp"
+#include "train/runtime/blas_kernels.hpp"
+#include "train/runtime/runtime.hpp"
 
 namespace {
 using namespace swingbank;
@@ -52,9 +52,9 @@ double product(std::int64_t batch, std::int64_t m, std::int64_t k, std::int64_t 
 /// Samples per second of steps on records of 6 x 48, batch 64, as in the presets `quick` and `nightly`.
 double training(const std::string& name) {
   constexpr std::int64_t kBatch = 64, kChannels = 6, kSamples = 48;
-  seed_torch(1);
-  const auto network = make_network(name, {kChannels, kSamples, 2, {0.5f, 0.5f}});
-  Adam adam(network->parameters());
+  train::loop::seed_torch(1);
+  const auto network = train::networks::make_network(name, {kChannels, kSamples, 2, {0.5f, 0.5f}});
+  train::loop::Adam adam(network->parameters());
   const at::Tensor x = at::randn({kBatch, kChannels, kSamples}), y = at::rand({kBatch, 2});
   return kBatch / seconds(3, [&] {
            (network->forward(x, true) - y).square().mean().backward();
@@ -63,14 +63,14 @@ double training(const std::string& name) {
 }
 
 std::vector<Row> measure() {
-  (void)set_up_runtime(1);
-  const BlasRate& rate = blas_rate();
+  (void)train::runtime::set_up_runtime(1);
+  const train::runtime::BlasRate& rate = train::runtime::blas_rate();
   std::vector<Row> rows = {{"multiply-adds of the processor", "GFLOP/s", rate.multiply_adds},
                            {"512 x 512 x 512", "GFLOP/s", rate.product},
                            {"GRU's states, 64 x 512 x 1536", "GFLOP/s", product(1, 64, 512, 1536)},
                            {"CNN's spectra, 9 of 64 x 256 x 512", "GFLOP/s", product(9, 64, 256, 512)},
                            {"CNN's dense layer, 64 x 3072 x 1024", "GFLOP/s", product(1, 64, 3072, 1024)}};
-  for (const auto& record : all_networks())
+  for (const auto& record : train::networks::all_networks())
     rows.push_back(
         {fmt::format("training, {}", record.name), "samples/s", training(std::string(record.name))});
   return rows;

@@ -9,10 +9,10 @@
 #include <ctime>
 #include <vector>
 
-#include "train/adam.hpp"
-#include "train/blas_kernels.hpp"
+#include "train/loop/adam.hpp"
 #include "train/networks/network.hpp"
-#include "train/runtime.hpp"
+#include "train/runtime/blas_kernels.hpp"
+#include "train/runtime/runtime.hpp"
 
 namespace {
 namespace nn = torch::nn;
@@ -67,20 +67,20 @@ Cost median(const std::vector<Cost>& all) {
 
 int main(int argc, char** argv) {
   using namespace swingbank;
-  use_best_blas_kernels(argv);
+  train::runtime::use_best_blas_kernels(argv);
   const auto argument = [&](int i, int otherwise) { return argc > i ? std::atoi(argv[i]) : otherwise; };
   const int batch = argument(1, 128), rounds = argument(2, 3);
-  const Runtime runtime = set_up_runtime(argument(3, 0));
+  const train::runtime::Runtime runtime = train::runtime::set_up_runtime(argument(3, 0));
   fmt::print("thesis CNN, {} x {} inputs, batch {}, {}\n", kChannels, kSamples, batch, runtime.sentence());
   torch::manual_seed(1);
   const Tensor x = torch::randn({batch, kChannels, kSamples}), y = torch::rand({batch, kOutputs});
 
   Direct direct;
   torch::optim::Adam torch_adam(direct.parameters(), 1e-3);
-  const auto network =
-      make_network("cnn", {kChannels, kSamples, kOutputs, std::vector<float>(kOutputs, 0.5f)});
-  Adam adam(network->parameters());
-  fmt::print("{} weights\n", parameter_count(*network));
+  const auto network = train::networks::make_network(
+      "cnn", {kChannels, kSamples, kOutputs, std::vector<float>(kOutputs, 0.5f)});
+  train::loop::Adam adam(network->parameters());
+  fmt::print("{} weights\n", train::networks::parameter_count(*network));
   const auto direct_step = [&] {
     torch_adam.zero_grad();
     (direct.forward(x) - y).square().mean().backward();

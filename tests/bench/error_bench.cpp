@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "kernel_events.hpp"
-#include "sim/solve/reference.hpp"
+#include "sim/reference/reference.hpp"
+#include "tests/bench/kernel_events.hpp"
 
 namespace {
 using namespace swingbank::sim;
@@ -19,19 +19,20 @@ struct Worst {
   int compared = 0, beyond = 0, differ = 0;  ///< events: compared, beyond 1e-4, with another outcome
 };
 
-Trajectory reference(const Grid& grid, const Job& job) {
-  Grid changed = grid;
-  for (auto& [plant, as] : changed_plants(grid, job)) changed.plants[static_cast<std::size_t>(plant)] = as;
-  return run_reference(changed, job.event, ReferenceOptions{});
+Trajectory reference(const grid::Grid& grid, const lanes::Job& job) {
+  grid::Grid changed = grid;
+  for (auto& [plant, as] : lanes::changed_plants(grid, job))
+    changed.plants[static_cast<std::size_t>(plant)] = as;
+  return reference::run_reference(changed, job.event, reference::ReferenceOptions{});
 }
 
-bool near_switching(const Job& job, double t) {
-  return std::ranges::any_of(job.event.faults, [t](const BusFault& f) {
+bool near_switching(const lanes::Job& job, double t) {
+  return std::ranges::any_of(job.event.faults, [t](const network::BusFault& f) {
     return std::abs(t - f.t_on) < 2e-3 || std::abs(t - f.t_off) < 2e-3;
   });
 }
 
-double row_error(const Job& job, const Trajectory& run, const double* a, const double* b) {
+double row_error(const lanes::Job& job, const Trajectory& run, const double* a, const double* b) {
   const auto [low, high] = std::minmax_element(b, b + run.samples);
   double worst = 0.0;
   for (int k = 0; k < run.samples; ++k)
@@ -39,7 +40,7 @@ double row_error(const Job& job, const Trajectory& run, const double* a, const d
   return worst / std::max(1.0, *high - *low);
 }
 
-void compare(const Grid& grid, const Job& job, const Trajectory& run, Worst& worst) {
+void compare(const grid::Grid& grid, const lanes::Job& job, const Trajectory& run, Worst& worst) {
   const Trajectory ida = reference(grid, job);
   if (ida.outcome != run.outcome) ++worst.differ;
   if (ida.outcome != Outcome::stable || run.outcome != Outcome::stable) return;
@@ -57,13 +58,13 @@ void compare(const Grid& grid, const Job& job, const Trajectory& run, Worst& wor
   worst.beyond += event > 1e-4;
 }
 
-void report(const char* what, const Grid& grid, int count) {
+void report(const char* what, const grid::Grid& grid, int count) {
   const auto list = jobs(grid, count);
   std::size_t at = 0;
   Worst worst;
-  Batch batch(grid, BatchOptions{});
-  batch.run([&](Job& job) { return at < list.size() && (job = list[at++], true); },
-            [&](const Job& job, const Trajectory& run) { compare(grid, job, run, worst); });
+  lanes::Batch batch(grid, lanes::BatchOptions{});
+  batch.run([&](lanes::Job& job) { return at < list.size() && (job = list[at++], true); },
+            [&](const lanes::Job& job, const Trajectory& run) { compare(grid, job, run, worst); });
   std::printf("%-16s worst error %.2g (%s), %d of %d stable events beyond 1e-4, %d with another outcome\n",
               what, worst.error, worst.where.c_str(), worst.beyond, worst.compared, worst.differ);
 }
@@ -75,7 +76,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   try {
-    const Grid grid = load_grid(argv[1], argv[2], Conventions::psse());
+    const grid::Grid grid = grid::load_grid(argv[1], argv[2], Conventions::psse());
     const int count = argc > 3 ? std::atoi(argv[3]) : 400;
     report("machines alone", grid, count);
     report("controls on all", controlled(grid), count);

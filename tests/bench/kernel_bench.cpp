@@ -8,9 +8,9 @@
 #include <ctime>
 #include <string_view>
 
-#include "kernel_events.hpp"
 #include "sim/core/pack.hpp"
-#include "sim/solve/reference.hpp"
+#include "sim/reference/reference.hpp"
+#include "tests/bench/kernel_events.hpp"
 
 namespace {
 using namespace swingbank::sim;
@@ -33,29 +33,29 @@ struct Case {
 };
 
 /// Adds one round's rate. The reference integrator, some hundred times slower, makes fewer events.
-void round(Case& c, const Grid& grid, const std::vector<Job>& list) {
+void round(Case& c, const grid::Grid& grid, const std::vector<lanes::Job>& list) {
   c.stable = c.events = 0;
   const double start = cpu_seconds();
   if (c.lanes == 0) {
-    ReferenceOptions options;
+    reference::ReferenceOptions options;
     for (; c.events < static_cast<int>(list.size()) && c.events < kReferenceEvents; ++c.events) {
-      const Job& job = list[static_cast<std::size_t>(c.events)];
-      Grid changed = grid;
-      for (auto& [plant, as] : changed_plants(grid, job))
+      const lanes::Job& job = list[static_cast<std::size_t>(c.events)];
+      grid::Grid changed = grid;
+      for (auto& [plant, as] : lanes::changed_plants(grid, job))
         changed.plants[static_cast<std::size_t>(plant)] = as;
-      c.stable += run_reference(changed, job.event, options).outcome == Outcome::stable;
+      c.stable += reference::run_reference(changed, job.event, options).outcome == Outcome::stable;
     }
   } else {
-    BatchOptions options;
+    lanes::BatchOptions options;
     options.lanes = c.lanes;
     if (c.one) options.plants = {3};
 #ifdef SWINGBANK_COUNT_FLOPS
     pack_operations = 0;
 #endif
     std::size_t at = 0;
-    Batch batch(grid, options);
-    batch.run([&](Job& job) { return at < list.size() && (job = list[at++], true); },
-              [&](const Job&, const Trajectory& t) { c.stable += t.outcome == Outcome::stable; });
+    lanes::Batch batch(grid, options);
+    batch.run([&](lanes::Job& job) { return at < list.size() && (job = list[at++], true); },
+              [&](const lanes::Job&, const Trajectory& t) { c.stable += t.outcome == Outcome::stable; });
     c.events = static_cast<int>(list.size());
 #ifdef SWINGBANK_COUNT_FLOPS
     c.operations = static_cast<double>(pack_operations) / c.events;
@@ -91,10 +91,10 @@ int main(int argc, char** argv) {
     return 1;
   }
   try {
-    const Grid grid = load_grid(argv[1], argv[2], Conventions::psse());
+    const grid::Grid grid = grid::load_grid(argv[1], argv[2], Conventions::psse());
     const int count = argc > 3 ? std::atoi(argv[3]) : 400, rounds = argc > 4 ? std::atoi(argv[4]) : 3;
     const auto list = jobs(grid, count);
-    const Grid with_controls = controlled(grid);
+    const grid::Grid with_controls = controlled(grid);
     std::vector<Case> cases = {{"scalar, all generators recorded", 1, false, false},
                                {"4 lanes, all generators recorded", 4, false, false},
                                {"8 lanes, all generators recorded", 8, false, false},

@@ -2,17 +2,17 @@
 // What the kernel's benchmarks run: events and grids.
 #include <random>
 
-#include "sim/core/library.hpp"
-#include "sim/solve/batch.hpp"
+#include "sim/lanes/batch.hpp"
+#include "sim/library/library.hpp"
 
 namespace swingbank::sim {
 
 /// Random bolted faults of 0.05-0.2 s at any bus; one random machine with parameters within 10 % of the
 /// file's.
-inline std::vector<Job> jobs(const Grid& grid, int count) {
+inline std::vector<lanes::Job> jobs(const grid::Grid& grid, int count) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> u(0.0, 1.0);
-  std::vector<Job> list(static_cast<std::size_t>(count));
+  std::vector<lanes::Job> list(static_cast<std::size_t>(count));
   for (std::size_t i = 0; i < list.size(); ++i) {
     auto& job = list[i];
     job.id = i;
@@ -28,10 +28,10 @@ inline std::vector<Job> jobs(const Grid& grid, int count) {
 }
 
 /// The same grid with an exciter, a governor and a stabiliser at standard values on every machine.
-inline Grid controlled(Grid grid) {
-  for (Plant& plant : grid.plants)
+inline grid::Grid controlled(grid::Grid grid) {
+  for (plant::Plant& plant : grid.plants)
     for (const char* name : {"TGOV1", "IEEEST", "SEXS"}) {
-      const Effect& e = *find_effect(name);
+      const Effect& e = *library::find_effect(name);
       plant.controls.push_back({&e, e.standard_parameters()});
     }
   return grid;

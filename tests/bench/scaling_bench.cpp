@@ -8,8 +8,8 @@
 #include <ctime>
 #include <vector>
 
-#include "sim/solve/batch.hpp"
-#include "synthetic_grid.hpp"
+#include "sim/lanes/batch.hpp"
+#include "tests/bench/synthetic_grid.hpp"
 
 namespace {
 using namespace swingbank::sim;
@@ -21,21 +21,21 @@ double cpu_seconds() {
 }
 
 /// Seconds of processor time per event of 15 s, and how many ended stable.
-double seconds_per_event(const Grid& grid, int events, int& stable) {
-  BatchOptions options;
+double seconds_per_event(const grid::Grid& grid, int events, int& stable) {
+  lanes::BatchOptions options;
   options.plants = {0};
-  Batch batch(grid, options);
+  lanes::Batch batch(grid, options);
   int given = 0;
   stable = 0;
   const double start = cpu_seconds();
   batch.run(
-      [&](Job& job) {
+      [&](lanes::Job& job) {
         if (given == events) return false;
         job.event.faults = {{2 * (given % static_cast<int>(grid.plants.size())), 1.0, 1.06, {}}};
         ++given;
         return true;
       },
-      [&](const Job&, const Trajectory& t) { stable += t.outcome == Outcome::stable; });
+      [&](const lanes::Job&, const Trajectory& t) { stable += t.outcome == Outcome::stable; });
   return (cpu_seconds() - start) / events;
 }
 }  // namespace
@@ -46,7 +46,7 @@ int main(int argc, char** argv) {
   std::vector<std::vector<double>> times(sizes.size());
   std::vector<int> stable(sizes.size());
   try {
-    std::vector<Grid> grids;
+    std::vector<grid::Grid> grids;
     for (int n : sizes) grids.push_back(synthetic(n));
     for (int round = 0; round < rounds; ++round)
       for (std::size_t i = 0; i < sizes.size(); ++i)

@@ -5,12 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <map>
 
-#include "sim/core/library.hpp"
-#include "sim/solve/block_text.hpp"
+#include "sim/library/library.hpp"
+#include "sim/plant/block_text.hpp"
 #include "tests/blind/second/drives.hpp"
-#include "validate/blind_effects.hpp"
-#include "validate/blind_plan.hpp"
-#include "validate/blind_world.hpp"
+#include "validate/blind/cases/detail/effects.hpp"
+#include "validate/blind/cases/detail/world.hpp"
+#include "validate/blind/cases/plan.hpp"
 
 namespace {
 using namespace swingbank;
@@ -22,7 +22,7 @@ constexpr double kMva = 200.0;  ///< of every machine here
 
 struct Unstable {};
 
-second::MachineData draw_machine(BlindDraw& d) {
+second::MachineData draw_machine(blind::cases::BlindDraw& d) {
   const auto about = [&](double x) { return x * d.uniform(0.9, 1.1); };
   second::MachineData m{about(6.5),  about(0.06), about(0.9),  about(0.08), about(4.0),
                         0.0,         about(1.8),  about(1.65), about(0.36), about(0.58),
@@ -33,7 +33,7 @@ second::MachineData draw_machine(BlindDraw& d) {
 }
 
 /// A fault on the line to the grid, anywhere from 20 to 90 % of its length.
-BlindEvent fault(second::Setup& s, BlindDraw& d) {
+blind::cases::BlindEvent fault(second::Setup& s, blind::cases::BlindDraw& d) {
   const second::Phasor line(d.uniform(0.01, 0.03), d.uniform(0.15, 0.35));
   const second::Phasor zf(d.uniform(0, 0.02), d.uniform(0.005, 0.15));
   const double along = d.uniform(0.2, 0.9), on = d.uniform(1.5, 2.0), off = on + d.uniform(0.06, 0.14);
@@ -45,7 +45,7 @@ BlindEvent fault(second::Setup& s, BlindDraw& d) {
           {},
           {on, off}};
 }
-BlindEvent frequency_dip(second::Setup& s, BlindDraw& d) {
+blind::cases::BlindEvent frequency_dip(second::Setup& s, blind::cases::BlindDraw& d) {
   const second::Phasor line(d.uniform(0.01, 0.03), d.uniform(0.15, 0.35));
   s.grid = {{0, second::holding_source(s, line), line}};
   s.dip = {d.uniform(1.5, 2.0), -d.uniform(0.003, 0.008), d.uniform(1.5, 3.0)};
@@ -53,7 +53,7 @@ BlindEvent frequency_dip(second::Setup& s, BlindDraw& d) {
 }
 
 /// Hides a kind in the setup at a size between 0 and 1 of what is usual.
-void hide(const std::string& kind, double size, second::Setup& s, BlindDraw& d) {
+void hide(const std::string& kind, double size, second::Setup& s, blind::cases::BlindDraw& d) {
   if (kind == "SEXS") {
     s.exciter = second::Sexs{.ratio = 0.1, .TB = 10, .K = 200 * size, .TE = 0.05, .low = -4, .high = 5.5};
   } else if (kind == "TGOV1") {
@@ -83,28 +83,28 @@ const std::vector<std::string> kKinds = {"SEXS",       "TGOV1",     "saturation"
                                          "STEPUP",     "CTERROR",   "sawtooth",   "fieldloss",
                                          "limitcycle", "stickslip", "randomwalk"};
 
-Record record_of(const second::Output& out) {
+record::Record record_of(const second::Output& out) {
   for (std::size_t k = 0; k < out.t.size(); ++k)
     if (!(std::abs(out.w[k]) < 0.02) || !std::isfinite(out.P[k])) throw Unstable{};
-  Record r;
-  r.base.mva = kRecordMva;
+  record::Record r;
+  r.base.mva = blind::cases::kRecordMva;
   r.t = out.t, r.V = out.V, r.theta = out.theta, r.P = out.P, r.Q = out.Q, r.speed = out.w, r.Ifd = out.Ifd;
   for (auto* channel : {&r.P, &r.Q})
-    for (double& value : *channel) value *= kMva / kRecordMva;
+    for (double& value : *channel) value *= kMva / blind::cases::kRecordMva;
   return r;
 }
 
-sim::Block block(const std::string& name, const std::map<std::string, double>& values) {
-  sim::Block b{sim::find_effect(name), {}};
+sim::plant::Block block(const std::string& name, const std::map<std::string, double>& values) {
+  sim::plant::Block b{sim::library::find_effect(name), {}};
   b.p = b.effect->standard_parameters();
   for (const auto& [key, value] : values)
     b.p.at(static_cast<std::size_t>(b.effect->parameter_index(key))) = value;
   return b;
 }
 /// What the owner knows, for the model file: parameters right.
-sim::Plant known_plant(const second::Setup& s) {
+sim::plant::Plant known_plant(const second::Setup& s) {
   const auto& m = s.machine;
-  sim::Plant p;
+  sim::plant::Plant p;
   p.mva = kMva;
   p.name = "second";
   p.machine = block("GENROU", {{"Tdop", m.Tdo1},
@@ -132,8 +132,9 @@ sim::Plant known_plant(const second::Setup& s) {
   return p;
 }
 
-BlindCase make(const BlindConfig& config, const BlindSpec& spec, BlindDraw& d) {
-  BlindCase made;
+blind::cases::BlindCase make(const blind::cases::BlindConfig& config, const blind::cases::BlindSpec& spec,
+                             blind::cases::BlindDraw& d) {
+  blind::cases::BlindCase made;
   made.spec = spec;
   made.maker = "second";
   made.grid_name = "thevenin";
@@ -149,11 +150,11 @@ BlindCase make(const BlindConfig& config, const BlindSpec& spec, BlindDraw& d) {
   if (kind == "IEEEST" || (kind != "SEXS" && d.coin()))
     plain.exciter =
         second::Sexs{.ratio = 0.1, .TB = 10, .K = d.uniform(80, 150), .TE = 0.05, .low = -4, .high = 5.5};
-  BlindTruth truth;
+  blind::cases::BlindTruth truth;
   truth.scale = d.log_uniform(0.02, 1.0);
   second::Setup with = plain;
   hide(kind, truth.scale, with, d);
-  std::vector<Record> without;
+  std::vector<record::Record> without;
   for (int k = 0; k < config.faults + config.frequency_events; ++k) {
     second::Setup a = plain, b = with;
     a.dip = {};
@@ -164,23 +165,26 @@ BlindCase make(const BlindConfig& config, const BlindSpec& spec, BlindDraw& d) {
   }
   made.model = made.truth = known_plant(plain);
   if (!kind.empty()) {
-    const BlindSize size(made.model, made.conventions, made.events, without,
-                         made.noise * kMva / without.front().base.mva, made.noise * config.voltage_noise);
+    const blind::cases::BlindSize size(made.model, made.conventions, made.events, without,
+                                       made.noise * kMva / without.front().base.mva,
+                                       made.noise * config.voltage_noise);
     truth.kind = spec.hidden.front();
     truth.left = size.left(made.records);
     truth.visible = size.visible(made.records);
     made.hidden.push_back(truth);
   }
-  if (!mislead(made.model.machine, config.wrong, d)) throw Unstable{};
-  for (Record& record : made.records) add_noise(record, config, made.noise, kMva, made.channels, d);
+  if (!blind::cases::mislead(made.model.machine, config.wrong, d)) throw Unstable{};
+  for (record::Record& record : made.records)
+    blind::cases::add_noise(record, config, made.noise, kMva, made.channels, d);
   return made;
 }
 
-BlindCase make_stable(const BlindConfig& config, const BlindSpec& spec) {
+blind::cases::BlindCase make_stable(const blind::cases::BlindConfig& config,
+                                    const blind::cases::BlindSpec& spec) {
   for (std::uint64_t attempt = 0; attempt < 60; ++attempt) {
-    BlindDraw draw(spec.seed, spec.index, 0x5ec0 + attempt);
+    blind::cases::BlindDraw draw(spec.seed, spec.index, 0x5ec0 + attempt);
     try {
-      BlindCase made = make(config, spec, draw);
+      blind::cases::BlindCase made = make(config, spec, draw);
       made.attempts = static_cast<int>(attempt) + 1;
       return made;
     } catch (const Unstable&) {  // drawn again
@@ -191,17 +195,19 @@ BlindCase make_stable(const BlindConfig& config, const BlindSpec& spec) {
 }
 
 int run(const std::string& file, const std::string& out, int count, std::uint64_t seed) {
-  BlindConfig config = load_blind_config(file);
-  std::erase_if(config.kinds,
-                [](const BlindKind& k) { return std::ranges::find(kKinds, k.name) == kKinds.end(); });
-  const BlindPlan plan = plan_blind(config, {"listed", "odd", "none"}, count, seed, 0);
-  settle_plan(plan, config, out);
+  blind::cases::BlindConfig config = blind::cases::load_blind_config(file);
+  std::erase_if(config.kinds, [](const blind::cases::BlindKind& k) {
+    return std::ranges::find(kKinds, k.name) == kKinds.end();
+  });
+  const blind::cases::BlindPlan plan =
+      blind::cases::plan_blind(config, {"listed", "odd", "none"}, count, seed, 0);
+  blind::cases::settle_plan(plan, config, out);
   for (std::size_t k = 0; k < plan.cases.size(); ++k) {
-    const std::string name = case_name(k);
+    const std::string name = blind::cases::case_name(k);
     const fs::path folder = fs::path(out) / "cases" / name;
     if (fs::exists(folder)) continue;
-    write_blind_case(make_stable(config, plan.cases[k]), config, name, folder,
-                     fs::path(out) / "truth" / (name + ".json"));
+    blind::cases::write_blind_case(make_stable(config, plan.cases[k]), config, name, folder,
+                                   fs::path(out) / "truth" / (name + ".json"));
     fmt::print("{} of {}\n", k + 1, plan.cases.size());
   }
   return 0;

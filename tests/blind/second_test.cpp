@@ -5,16 +5,16 @@
 #include <cmath>
 #include <map>
 
-#include "sim/core/library.hpp"
-#include "sim/solve/block_text.hpp"
+#include "sim/library/library.hpp"
+#include "sim/plant/block_text.hpp"
 #include "tests/blind/second/drives.hpp"
-#include "validate/play_in.hpp"
+#include "validate/playin/play_in.hpp"
 
 namespace swingbank {
 namespace {
 
 namespace second = blind_second;
-using validate::Record;
+using validate::record::Record;
 
 constexpr double kOn = 1.5137, kOff = 1.6219;  ///< of the fault, off the sampling grid [s]
 /// Interpolating V between samples at 240/s costs up to 2e-5 pu (validate/README.md: 1.2e-6 at 120/s without
@@ -32,16 +32,16 @@ second::Setup base() {
   return s;
 }
 
-sim::Block block(const std::string& name, const std::map<std::string, double>& values) {
-  sim::Block b{sim::find_effect(name), {}};
+sim::plant::Block block(const std::string& name, const std::map<std::string, double>& values) {
+  sim::plant::Block b{sim::library::find_effect(name), {}};
   b.p = b.effect->standard_parameters();
   for (const auto& [parameter, value] : values)
     b.p.at(static_cast<std::size_t>(b.effect->parameter_index(parameter))) = value;
   return b;
 }
 
-sim::Plant plant(const second::Setup& s) {
-  sim::Plant p;
+sim::plant::Plant plant(const second::Setup& s) {
+  sim::plant::Plant p;
   p.mva = 100.0;
   const auto& m = s.machine;
   p.machine = block("GENROU", {{"Tdop", m.Tdo1},
@@ -73,17 +73,19 @@ Record record_of(const second::Output& out) {
 }
 
 /// Largest difference of P and Q between the record and the played-in plant [pu].
-double largest_difference(const second::Setup& s, const sim::Plant& p) {
+double largest_difference(const second::Setup& s, const sim::plant::Plant& p) {
   const Record r = record_of(second::simulate(s, 8.0, 240.0));
-  const validate::VoltageCurve curve(r, {{.time = kOn}, {.time = kOff}});
-  const auto model = validate::play_in(p, sim::Conventions::psse(), r, curve);
+  const validate::playin::VoltageCurve curve(r, {{.time = kOn}, {.time = kOff}});
+  const auto model = validate::playin::play_in(p, sim::Conventions::psse(), r, curve);
   double largest = 0;
   for (std::size_t k = 0; k < r.t.size(); ++k)
     largest = std::max({largest, std::abs(r.P[k] - model.P[k]), std::abs(r.Q[k] - model.Q[k])});
   return largest;
 }
 
-void put(sim::Plant& p, sim::Block b) { ASSERT_FALSE(sim::place(p, std::move(b), "test").has_value()); }
+void put(sim::plant::Plant& p, sim::plant::Block b) {
+  ASSERT_FALSE(sim::plant::place(p, std::move(b), "test").has_value());
+}
 
 TEST(SecondWriting, MachineAgrees) { EXPECT_LT(largest_difference(base(), plant(base())), kTolerance); }
 
@@ -116,7 +118,7 @@ TEST(SecondWriting, SaturationAgrees) {
 TEST(SecondWriting, SexsAgrees) {
   second::Setup s = base();
   s.exciter = second::Sexs{.ratio = 0.1, .TB = 10, .K = 120, .TE = 0.05, .low = -4, .high = 4};
-  sim::Plant p = plant(s);
+  sim::plant::Plant p = plant(s);
   EXPECT_GT(largest_difference(s, p), 10 * kTolerance);
   put(p, block("SEXS", {{"TAoverTB", 0.1}, {"TB", 10}, {"K", 120}, {"TE", 0.05}, {"EMIN", -4}, {"EMAX", 4}}));
   EXPECT_LT(largest_difference(s, p), kTolerance);
@@ -125,7 +127,7 @@ TEST(SecondWriting, SexsAgrees) {
 TEST(SecondWriting, Tgov1Agrees) {
   second::Setup s = base();
   s.governor = second::Tgov1{.R = 0.04, .T1 = 0.4, .high = 0.75, .low = 0, .T2 = 2, .T3 = 7, .Dt = 0.2};
-  sim::Plant p = plant(s);
+  sim::plant::Plant p = plant(s);
   EXPECT_GT(largest_difference(s, p), 10 * kTolerance);
   put(p, block("TGOV1",
                {{"R", 0.04}, {"T1", 0.4}, {"VMAX", 0.75}, {"VMIN", 0}, {"T2", 2}, {"T3", 7}, {"Dt", 0.2}}));
@@ -136,7 +138,7 @@ TEST(SecondWriting, IeeestAgrees) {
   second::Setup s = base();
   s.exciter = second::Sexs{.ratio = 0.1, .TB = 10, .K = 100, .TE = 0.05, .low = -4, .high = 5};
   s.stabiliser = second::Ieeest{.KS = 12, .high = 0.05, .low = -0.05};
-  sim::Plant p = plant(s);
+  sim::plant::Plant p = plant(s);
   put(p, block("SEXS", {{"TAoverTB", 0.1}, {"TB", 10}, {"K", 100}, {"TE", 0.05}, {"EMIN", -4}, {"EMAX", 5}}));
   EXPECT_GT(largest_difference(s, p), 10 * kTolerance);
   put(p, block("IEEEST", {{"ICS", 1},
@@ -161,7 +163,7 @@ TEST(SecondWriting, IeeestAgrees) {
 TEST(SecondWriting, StepUpAgrees) {
   second::Setup s = base();
   s.transformer = {0.003, 0.12};
-  sim::Plant p = plant(s);
+  sim::plant::Plant p = plant(s);
   EXPECT_GT(largest_difference(s, p), 10 * kTolerance);
   p.transformer = block("STEPUP", {{"R", 0.003}, {"X", 0.12}, {"ratio", 1.0}});
   EXPECT_LT(largest_difference(s, p), kTolerance);
@@ -177,7 +179,7 @@ TEST(SecondWriting, CurrentTransformerErrorAgrees) {
     p.I.push_back(std::conj(std::complex<double>(a.P[k], a.Q[k]) / p.V.back()));
     p.df.push_back(0.0);
   }
-  const sim::Block ct = block("CTERROR", {{"gain", 0.01}, {"phase", 0.02}});
+  const sim::plant::Block ct = block("CTERROR", {{"gain", 0.01}, {"phase", 0.02}});
   ct.effect->measure(ct.p.data(), 0, p);
   for (std::size_t k = 0; k < a.t.size(); ++k) {
     const auto power = p.V[k] * std::conj(p.I[k]);

@@ -9,10 +9,10 @@
 #include <cstdlib>
 #include <string>
 
-#include "sim/core/problem.hpp"
+#include "base/problem.hpp"
+#include "sim/formats/psse.hpp"
 #include "sim/network/network.hpp"
 #include "sim/network/powerflow.hpp"
-#include "sim/network/psse.hpp"
 
 namespace swingbank::fuzz {
 
@@ -43,22 +43,23 @@ bool accepted(const Action& action) {
 inline bool finite(Complex z) { return std::isfinite(z.real()) && std::isfinite(z.imag()); }
 
 /// The power flow of a network is finite or refused. Larger networks take too long here.
-inline void check_power_flow(const sim::Network& network) {
+inline void check_power_flow(const sim::network::Network& network) {
   if (network.buses.size() > 60) return;
-  sim::PowerFlow flow;
-  if (!accepted([&] { flow = sim::solve_power_flow(network); })) return;
+  sim::network::PowerFlow flow;
+  if (!accepted([&] { flow = sim::network::solve_power_flow(network); })) return;
   for (const Complex& v : flow.voltage) require(finite(v), "voltages are finite");
   for (const Complex& s : flow.generation) require(finite(s), "generation is finite");
 }
 
 /// What can be written reads back as it was.
-inline void check_round_trip(const sim::Network& network) {
+inline void check_round_trip(const sim::network::Network& network) {
   for (const int version : {33, 35}) {
     std::string once;
-    if (!accepted([&] { once = sim::raw_text(network, version, "written"); })) return;
-    sim::Network again;
-    require(accepted([&] { again = sim::parse_raw(once, "written"); }), "what was written can be read");
-    require(sim::raw_text(again, version, "again") == once, "a second round trip changes nothing");
+    if (!accepted([&] { once = sim::formats::raw_text(network, version, "written"); })) return;
+    sim::network::Network again;
+    require(accepted([&] { again = sim::formats::parse_raw(once, "written"); }),
+            "what was written can be read");
+    require(sim::formats::raw_text(again, version, "again") == once, "a second round trip changes nothing");
   }
 }
 

@@ -1,5 +1,5 @@
 // PSS/E .dyr: bytes -> models of a fixed grid of three machines -> operating point.
-#include "sim/solve/grid.hpp"
+#include "sim/grid/grid.hpp"
 #include "tests/fuzz/check.hpp"
 
 namespace {
@@ -22,19 +22,19 @@ void check(const std::vector<double>& values, const char* what) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace swingbank;
   fuzz::quiet();
-  static const sim::Network network = sim::parse_raw(kGrid, "grid");
+  static const sim::network::Network network = sim::formats::parse_raw(kGrid, "grid");
   const std::string text(reinterpret_cast<const char*>(data), size);
-  sim::Grid grid;
+  sim::grid::Grid grid;
   if (!fuzz::accepted([&] {
-        grid =
-            sim::make_grid(network, sim::parse_dyr(text, "case.dyr"), "case.dyr", sim::Conventions::psse());
+        grid = sim::grid::make_grid(network, sim::formats::parse_dyr(text, "case.dyr"), "case.dyr",
+                                    sim::Conventions::psse());
       }))
     return 0;
-  for (const sim::Plant& plant : grid.plants) {
-    sim::Operating point;
+  for (const sim::plant::Plant& plant : grid.plants) {
+    sim::plant::Operating point;
     if (!fuzz::accepted([&] {
-          point = sim::operating_point(plant, grid.flow.voltage[static_cast<std::size_t>(plant.bus)],
-                                       grid.network.base_mva, grid.conventions);
+          point = sim::plant::operating_point(plant, grid.flow.voltage[static_cast<std::size_t>(plant.bus)],
+                                              grid.network.base_mva, grid.conventions);
         }))
       continue;
     check(point.x, "states are finite");

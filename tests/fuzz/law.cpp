@@ -1,8 +1,8 @@
 // Law files: bytes -> effect -> a round-rotor machine with it at its operating point.
-#include "sim/core/law.hpp"
+#include "sim/laws/law.hpp"
 
-#include "sim/core/library.hpp"
-#include "sim/solve/grid.hpp"
+#include "sim/grid/grid.hpp"
+#include "sim/library/library.hpp"
 #include "tests/fuzz/check.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -10,15 +10,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::quiet();
   const std::string text(reinterpret_cast<const char*>(data), size);
   sim::Effect law;
-  if (!fuzz::accepted([&] { law = sim::make_law(text, "law.toml"); })) return 0;
-  static const sim::Effect* const machine = sim::find_effect("GENROU");
-  sim::Plant plant;
+  if (!fuzz::accepted([&] { law = sim::laws::make_law(text, "law.toml"); })) return 0;
+  static const sim::Effect* const machine = sim::library::find_effect("GENROU");
+  sim::plant::Plant plant;
   plant.name = "fuzzed";
   plant.generation = {0.5, 0.1};  // [pu on 100 MVA]
   plant.machine = {machine, machine->standard_parameters()};
   plant.controls = {{&law, law.standard_parameters()}};
-  sim::Operating point;
-  if (!fuzz::accepted([&] { point = sim::operating_point(plant, 1.0, 100.0, sim::Conventions::psse()); }))
+  sim::plant::Operating point;
+  if (!fuzz::accepted(
+          [&] { point = sim::plant::operating_point(plant, 1.0, 100.0, sim::Conventions::psse()); }))
     return 0;
   for (const double v : point.x) fuzz::require(std::isfinite(v), "states are finite");
   for (const double v : point.c) fuzz::require(std::isfinite(v), "coefficients are finite");

@@ -1,5 +1,5 @@
 // MATPOWER .m: bytes -> network -> power flow.
-#include "sim/network/matpower.hpp"
+#include "sim/formats/matpower.hpp"
 
 #include "tests/fuzz/check.hpp"
 
@@ -7,8 +7,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace swingbank;
   fuzz::quiet();
   const std::string text(reinterpret_cast<const char*>(data), size);
-  sim::Network network;
-  if (!fuzz::accepted([&] { network = sim::parse_matpower(text, "case.m", 60.0); })) return 0;
+  sim::network::Network network;
+  if (!fuzz::accepted([&] { network = sim::formats::parse_matpower(text, "case.m", 60.0); })) return 0;
   fuzz::check_power_flow(network);
   return 0;
 }

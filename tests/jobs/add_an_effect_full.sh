@@ -47,10 +47,10 @@ commands=("$work"/command*.sh)
 ((${#commands[@]} == 3)) || fail "${#commands[@]} command blocks in the document, 3 expected"
 
 # What is built was named before: nothing in the tree was edited.
-built=(swingbank swingbank-effects swingbank-simulate swingbank-generate swingbank-compare test_sim)
+built=(swingbank swingbank-effects swingbank-simulate swingbank-generate swingbank-compare test_sim_effects)
 cmake --build "$build" --target "${built[@]}" >"$work/build.log" 2>&1 || fail "the build: $(tail -n 40 "$work/build.log")"
 echo "ok: built after $SECONDS s"
-"$build/bin/test_sim" --gtest_filter='*onformance.*:Fluxlim.*-*Full.*' >"$work/test.log" 2>&1 || fail "conformance: $(grep -A5 -E 'Failure|FAILED' "$work/test.log" | head -40)"
+"$build/bin/test_sim_effects" --gtest_filter='*onformance.*:Fluxlim.*-*Full.*' >"$work/test.log" 2>&1 || fail "conformance: $(grep -A5 -E 'Failure|FAILED' "$work/test.log" | head -40)"
 grep -q '\[       OK \] Fluxlim.FollowsTheExcessWithItsLag' "$work/test.log" || fail "the header's own test did not run"
 for suite in Conformance PlantConformance; do
   grep -q "tests\? from $suite " "$work/test.log" || fail "$suite did not run"

@@ -3,13 +3,13 @@
 // one ReLU output per parameter. N is the input length. Inside, time is the first dimension.
 #include <ATen/ATen.h>
 
-#include "sim/core/problem.hpp"
-#include "train/networks/layers.hpp"
+#include "base/problem.hpp"
+#include "train/networks/detail/layers.hpp"
+#include "train/networks/detail/pool_relu.hpp"
+#include "train/networks/detail/spectral_conv.hpp"
 #include "train/networks/network.hpp"
-#include "train/pool_relu.hpp"
-#include "train/spectral_conv.hpp"
 
-namespace swingbank {
+namespace swingbank::train::networks {
 namespace {
 using at::Tensor;
 constexpr std::int64_t kFirst = 256, kSecond = 512, kPoolFirst = 4, kPoolSecond = 2, kHidden = 1024,
@@ -71,4 +71,4 @@ std::unique_ptr<Network> make_network_cnn(const NetworkShape& shape) {
   return std::make_unique<Cnn>(shape);
 }
 
-}  // namespace swingbank
+}  // namespace swingbank::train::networks

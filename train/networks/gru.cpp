@@ -1,7 +1,7 @@
 // The thesis's GRU: 512 units, the last state into one ReLU output per parameter.
-#include "train/networks/recurrent.hpp"
+#include "train/networks/detail/recurrent.hpp"
 
-namespace swingbank {
+namespace swingbank::train::networks {
 namespace {
 class Gru final : public Network {
  public:
@@ -28,4 +28,4 @@ class Gru final : public Network {
 
 std::unique_ptr<Network> make_network_gru(const NetworkShape& shape) { return std::make_unique<Gru>(shape); }
 
-}  // namespace swingbank
+}  // namespace swingbank::train::networks

@@ -1,7 +1,7 @@
 // The thesis's LSTM: 512 units, the last state into one ReLU output per parameter.
-#include "train/networks/recurrent.hpp"
+#include "train/networks/detail/recurrent.hpp"
 
-namespace swingbank {
+namespace swingbank::train::networks {
 namespace {
 class Lstm final : public Network {
  public:
@@ -30,4 +30,4 @@ std::unique_ptr<Network> make_network_lstm(const NetworkShape& shape) {
   return std::make_unique<Lstm>(shape);
 }
 
-}  // namespace swingbank
+}  // namespace swingbank::train::networks

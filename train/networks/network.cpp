@@ -2,9 +2,9 @@
 
 #include <ATen/ATen.h>
 
-#include "sim/core/problem.hpp"
+#include "base/problem.hpp"
 
-namespace swingbank {
+namespace swingbank::train::networks {
 
 std::unique_ptr<Network> make_network(const std::string& name, const NetworkShape& shape) {
   std::string names;
@@ -22,4 +22,4 @@ std::int64_t parameter_count(Network& network) {
   return count;
 }
 
-}  // namespace swingbank
+}  // namespace swingbank::train::networks

@@ -11,7 +11,7 @@ namespace at {
 class Tensor;
 }
 
-namespace swingbank {
+namespace swingbank::train::networks {
 
 /// outputs is the number of parameters estimated; output_bias (one each) is where the output layer starts, in
 /// the scaled units of Features: the mean of the training targets, so that no ReLU is dead at the first step.
@@ -41,4 +41,4 @@ std::unique_ptr<Network> make_network(const std::string& name, const NetworkShap
 /// Number of weights.
 std::int64_t parameter_count(Network& network);
 
-}  // namespace swingbank
+}  // namespace swingbank::train::networks

@@ -1,5 +1,5 @@
 // IEEEVC: the regulated voltage by complex arithmetic, droop and line drop, nothing at zero.
-#include "control_bench.hpp"
+#include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
 namespace {

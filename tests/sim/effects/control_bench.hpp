@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "sim/core/effect.hpp"
-#include "sim/core/library.hpp"
+#include "sim/library/library.hpp"
 
 namespace swingbank::sim::test {
 
@@ -31,7 +31,7 @@ class ControlBench {
   /// The effect at its standard values with `changes`, brought to steady state at `at`.
   explicit ControlBench(const std::string& name, const Changes& changes = {}, Signals<double> at = rated(),
                         Conventions conventions = Conventions::psse())
-      : effect_(find_effect(name)), in(at) {
+      : effect_(library::find_effect(name)), in(at) {
     if (!effect_) throw std::runtime_error("no effect " + name);
     p = effect_->standard_parameters();
     for (const auto& [parameter, value] : changes)

@@ -3,18 +3,18 @@
 #include <complex>
 #include <numbers>
 
-#include "../reference_support.hpp"
-#include "sim/core/library.hpp"
-#include "sim/solve/batch.hpp"
+#include "sim/lanes/batch.hpp"
+#include "sim/library/library.hpp"
+#include "tests/sim/reference/reference_support.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::effects {
 namespace {
 
 using Values = std::vector<double>;
 
 /// The signals a drive leaves behind at time t; Tm is 0.8 before.
 Signals<double> at(const char* name, const Values& p, double t) {
-  const Effect& e = *find_effect(name);
+  const Effect& e = *library::find_effect(name);
   Values c(static_cast<std::size_t>(e.coefficients));
   const auto& ops = e.get<double>();
   ops.prepare(p.data(), Conventions::psse(), c.data());
@@ -72,7 +72,7 @@ TEST(Drives, ForcedOscillationIsASine) {
 
 TEST(Drives, EveryJumpAndKinkIsNamed) {
   const auto instants = [](const char* name, const Values& p) {
-    return find_effect(name)->instants(nullptr, p.data());
+    return library::find_effect(name)->instants(nullptr, p.data());
   };
   EXPECT_EQ(instants("VREFSTEP", {0.0, 2.0, 3.0}), (Values{2.0, 3.0}));
   EXPECT_EQ(instants("PREFRAMP", {0.0, 2.0, 3.0}), (Values{2.0, 5.0}));
@@ -85,7 +85,7 @@ TEST(Drives, EveryJumpAndKinkIsNamed) {
 TEST(Drives, RefuseWhatCannotBe) {
   const auto count = [](const char* name, const Values& p) {
     Problems problems;
-    find_effect(name)->check(nullptr, p.data(), "here", problems);
+    library::find_effect(name)->check(nullptr, p.data(), "here", problems);
     return problems.list().size();
   };
   EXPECT_EQ(count("VREFSTEP", {0.1, -1.0, -2.0}), 2u);
@@ -97,33 +97,33 @@ TEST(Drives, RefuseWhatCannotBe) {
 
 /// Two infinite buses; the second has an exciter and a governor, whose responses are then known in closed
 /// form: neither speed nor terminal voltage ever moves.
-Grid two_infinite_buses() {
-  Grid grid = test::two_machine_grid(Conventions::psse());
-  Plant& plant = grid.plants[1];
-  plant.machine = {find_effect("GENCLS"), {0.0, 0.0, 0.0, 1e-6}};
-  plant.controls = {{find_effect("SEXS"), {1.0, 0.0, 20.0, 0.5, -10.0, 10.0}},
-                    {find_effect("TGOV1"), {0.05, 0.4, 2.0, -2.0, 0.0, 0.0, 0.0, 0.0}}};
+grid::Grid two_infinite_buses() {
+  grid::Grid grid = test::two_machine_grid(Conventions::psse());
+  plant::Plant& plant = grid.plants[1];
+  plant.machine = {library::find_effect("GENCLS"), {0.0, 0.0, 0.0, 1e-6}};
+  plant.controls = {{library::find_effect("SEXS"), {1.0, 0.0, 20.0, 0.5, -10.0, 10.0}},
+                    {library::find_effect("TGOV1"), {0.05, 0.4, 2.0, -2.0, 0.0, 0.0, 0.0, 0.0}}};
   return grid;
 }
-void add(Plant& plant, const char* name, Values p) {
-  plant.controls.push_back({find_effect(name), std::move(p)});
-  std::ranges::stable_sort(plant.controls, {}, [](const Block& b) { return b.effect->slot; });
+void add(plant::Plant& plant, const char* name, Values p) {
+  plant.controls.push_back({library::find_effect(name), std::move(p)});
+  std::ranges::stable_sort(plant.controls, {}, [](const plant::Block& b) { return b.effect->slot; });
 }
-ReferenceRun reference(const Grid& grid, double t_end = 8.0) {
-  ReferenceOptions options;
+reference::ReferenceRun reference(const grid::Grid& grid, double t_end = 8.0) {
+  reference::ReferenceOptions options;
   options.t_end = t_end;
   options.plants = {1};
-  return run_reference(grid, {}, options);
+  return reference::run_reference(grid, {}, options);
 }
-Trajectory lanes(const Grid& grid, double t_end = 8.0) {
-  BatchOptions options;
+Trajectory lanes(const grid::Grid& grid, double t_end = 8.0) {
+  lanes::BatchOptions options;
   options.t_end = t_end;
   options.plants = {1};
-  Batch batch(grid, options);
+  lanes::Batch batch(grid, options);
   Trajectory run;
   bool given = false;
-  batch.run([&](Job&) { return !std::exchange(given, true); },
-            [&](const Job&, const Trajectory& t) { run = t; });
+  batch.run([&](lanes::Job&) { return !std::exchange(given, true); },
+            [&](const lanes::Job&, const Trajectory& t) { run = t; });
   return run;
 }
 /// Largest distance of a channel's departure from its first value from `expected(t)`.
@@ -143,7 +143,7 @@ double lagged_ramp(double tau, double T) { return tau <= 0.0 ? 0.0 : tau - T * l
 constexpr double kReference = 1e-6, kLanes = 1e-5;
 
 TEST(Drives, VrefStepIsLaggedByTheExciter) {
-  Grid grid = two_infinite_buses();
+  grid::Grid grid = two_infinite_buses();
   add(grid.plants[1], "VREFSTEP", {0.01, 2.0, 5.0});
   const auto expected = [](double t) { return 20.0 * 0.01 * (lagged(t - 2.0, 0.5) - lagged(t - 5.0, 0.5)); };
   EXPECT_LE(worst(reference(grid), Channel::Efd, expected), kReference);
@@ -151,7 +151,7 @@ TEST(Drives, VrefStepIsLaggedByTheExciter) {
 }
 
 TEST(Drives, PrefRampIsLaggedByTheGovernor) {
-  Grid grid = two_infinite_buses();
+  grid::Grid grid = two_infinite_buses();
   add(grid.plants[1], "PREFRAMP", {0.1, 1.0, 3.0});
   const auto expected = [](double t) {
     return 0.1 / 3.0 * (lagged_ramp(t - 1.0, 0.4) - lagged_ramp(t - 4.0, 0.4));
@@ -161,7 +161,7 @@ TEST(Drives, PrefRampIsLaggedByTheGovernor) {
 }
 
 TEST(Drives, AgcMovesAreLaggedByTheGovernor) {
-  Grid grid = two_infinite_buses();
+  grid::Grid grid = two_infinite_buses();
   add(grid.plants[1], "AGCMOVES", {1.0, 2.0, 1.0, 0.1, -0.05, 0.02, 0.0, 0.0, 0.0});
   const auto expected = [](double t) {
     double sum = 0.0;
@@ -174,7 +174,7 @@ TEST(Drives, AgcMovesAreLaggedByTheGovernor) {
 }
 
 TEST(Drives, FastValvingActsAfterTheGovernor) {
-  Grid grid = two_infinite_buses();
+  grid::Grid grid = two_infinite_buses();
   const double before = reference(grid, 1.0).at(0, static_cast<int>(Channel::Tm))[0];
   add(grid.plants[1], "FASTVALVE", {0.4, 2.0, 0.1, 0.5, 2.0});
   const auto expected = [&](double t) {
@@ -188,18 +188,19 @@ TEST(Drives, FastValvingActsAfterTheGovernor) {
 
 /// A classical machine swings linearly for a small torque: speed = A s / (2 H s^2 + D s + w0 Ks).
 TEST(Drives, ForcedOscillationSwingsTheMachineAsTheLinearModelSays) {
-  Grid grid = test::two_machine_grid(Conventions::andes());
-  Plant& plant = grid.plants[1];
+  grid::Grid grid = test::two_machine_grid(Conventions::andes());
+  plant::Plant& plant = grid.plants[1];
   constexpr double H = 3.0, D = 20.0, A = 1e-4, f = 0.7, start = 1.0, x = 0.25;
-  plant.machine = {find_effect("GENCLS"), {H, D, 0.0, x}};
-  const auto operating = operating_point(plant, grid.flow.voltage[2], 100.0, grid.conventions);
+  plant.machine = {library::find_effect("GENCLS"), {H, D, 0.0, x}};
+  const auto operating = plant::operating_point(plant, grid.flow.voltage[2], 100.0, grid.conventions);
   add(plant, "FORCEDOSC", {A, f, 0.0, start, 1e5});
-  const ReferenceRun run = reference(grid, 15.0);
+  const reference::ReferenceRun run = reference(grid, 15.0);
   const double w = 2.0 * std::numbers::pi * f, w0 = 2.0 * std::numbers::pi * 60.0;
   // Synchronising torque from a second run, shifted in torque for good: Ks = change of torque / of angle.
-  Grid shifted = grid;
-  shifted.plants[1].controls = {{find_effect("FORCEDOSC"), {A, 1e-3, std::numbers::pi / 2, 1.0, 1e5}}};
-  const ReferenceRun still = reference(shifted, 15.0);
+  grid::Grid shifted = grid;
+  shifted.plants[1].controls = {
+      {library::find_effect("FORCEDOSC"), {A, 1e-3, std::numbers::pi / 2, 1.0, 1e5}}};
+  const reference::ReferenceRun still = reference(shifted, 15.0);
   const double* angle = still.at(0, static_cast<int>(Channel::delta));
   const int end = still.samples - 1;
   const double torque = A * std::cos(2.0 * std::numbers::pi * 1e-3 * (end / still.rate - start));
@@ -231,16 +232,18 @@ TEST(Drives, AreExactlySilentBeforeTheirFirstInstant) {
       {"FASTVALVE", {{0.5, 2.0, 0.1, 0.2, 1.0}, {0.0, 2.0, 0.1, 0.2, 1.0}}},
       {"FORCEDOSC", {{0.1, 0.5, 1.0, 2.0, 1e5}, {0.0, 0.5, 1.0, 2.0, 1e5}}}};
   for (const auto& [name, values] : drives) {
-    Grid grid = test::two_machine_grid(Conventions::psse());
-    grid.plants[1].controls = {{find_effect("SEXS"), find_effect("SEXS")->standard_parameters()},
-                               {find_effect("TGOV1"), find_effect("TGOV1")->standard_parameters()}};
-    Grid silent = grid;
+    grid::Grid grid = test::two_machine_grid(Conventions::psse());
+    grid.plants[1].controls = {
+        {library::find_effect("SEXS"), library::find_effect("SEXS")->standard_parameters()},
+        {library::find_effect("TGOV1"), library::find_effect("TGOV1")->standard_parameters()}};
+    grid::Grid silent = grid;
     add(grid.plants[1], name, values.first);
     add(silent.plants[1], name, values.second);
-    const Event event{{{1, 1.0, 1.05, {0.0, 0.1}}}, {}};  // so that there is something to disturb
-    ReferenceOptions options;
+    const network::Event event{{{1, 1.0, 1.05, {0.0, 0.1}}}, {}};  // so that there is something to disturb
+    reference::ReferenceOptions options;
     options.t_end = 4.0;
-    const ReferenceRun a = run_reference(grid, event, options), b = run_reference(silent, event, options);
+    const reference::ReferenceRun a = reference::run_reference(grid, event, options),
+                                  b = reference::run_reference(silent, event, options);
     double later = 0.0;
     for (int row = 0; row < a.rows(); ++row)
       for (int k = 0; k < a.samples; ++k) {
@@ -254,4 +257,4 @@ TEST(Drives, AreExactlySilentBeforeTheirFirstInstant) {
 }
 
 }  // namespace
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::effects

@@ -1,6 +1,6 @@
 // ESAC1A: rectifier against its definition, transfer function against the diagram, ceilings and release.
-#include "control_bench.hpp"
 #include "sim/core/blocks.hpp"
+#include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
 namespace {

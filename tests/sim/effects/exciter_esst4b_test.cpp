@@ -2,7 +2,7 @@
 // regulators and their release, what cannot be held.
 #include <numbers>
 
-#include "control_bench.hpp"
+#include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
 namespace {

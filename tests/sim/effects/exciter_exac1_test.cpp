@@ -1,5 +1,5 @@
 // EXAC1: transfer function against the diagram, ceiling and release, what it cannot hold.
-#include "control_bench.hpp"
+#include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
 namespace {

@@ -1,5 +1,5 @@
 // EXDC2: transfer function against the diagram, ceiling that falls with V, limits that move, what zeros mean.
-#include "control_bench.hpp"
+#include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
 namespace {

@@ -1,5 +1,5 @@
 // EXST1: transfer function against its diagram, limits of the error and ceilings that follow V and Ifd.
-#include "control_bench.hpp"
+#include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
 namespace {

@@ -1,5 +1,5 @@
 // IEEET1: transfer function against the diagram, ceiling by saturation, release, what zeros mean.
-#include "control_bench.hpp"
+#include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
 namespace {

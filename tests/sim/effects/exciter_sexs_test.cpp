@@ -1,5 +1,5 @@
 // SEXS: step response in closed form, ceilings without wind-up, bypasses.
-#include "control_bench.hpp"
+#include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
 namespace {

@@ -1,5 +1,5 @@
 // GAST: transfer function below the temperature limit, the limit's own steady state, limits without wind-up.
-#include "control_bench.hpp"
+#include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
 namespace {

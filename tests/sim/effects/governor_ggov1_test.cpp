@@ -1,6 +1,6 @@
 // GGOV1: transfer function of the governor's path for every droop code, steady droop, each limiter's own
 // response, release without wind-up, refusals.
-#include "control_bench.hpp"
+#include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
 namespace {

@@ -1,5 +1,5 @@
 // HYGOV: transfer function of governor and water column, droop, gate velocity and limits without wind-up.
-#include "control_bench.hpp"
+#include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
 namespace {

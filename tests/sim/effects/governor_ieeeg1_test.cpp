@@ -1,5 +1,5 @@
 // IEEEG1: transfer function, droop, speed and position limits of the valve without wind-up, dead-band.
-#include "control_bench.hpp"
+#include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
 namespace {

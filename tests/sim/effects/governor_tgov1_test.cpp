@@ -1,5 +1,5 @@
 // TGOV1: step of the reference in closed form, droop, dead-band, valve limits without wind-up, bypasses.
-#include "control_bench.hpp"
+#include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
 namespace {

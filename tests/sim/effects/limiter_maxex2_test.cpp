@@ -1,5 +1,5 @@
 // MAXEX2: inverse time, reset, latch, ramp, limit and return.
-#include "control_bench.hpp"
+#include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
 namespace {

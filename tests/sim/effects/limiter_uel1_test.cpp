@@ -1,5 +1,5 @@
 // UEL1: its circle in the P-Q plane, transfer function outside, wind-up and return, what it refuses.
-#include "control_bench.hpp"
+#include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
 namespace {

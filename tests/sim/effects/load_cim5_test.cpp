@@ -4,13 +4,13 @@
 
 #include <gmock/gmock.h>
 
-#include "sim/core/library.hpp"
-#include "sim/solve/batch.hpp"
-#include "sim/solve/load_choice.hpp"
-#include "sim/solve/load_equations.hpp"
-#include "tests/sim/reference_support.hpp"
+#include "sim/grid/load_choice.hpp"
+#include "sim/lanes/batch.hpp"
+#include "sim/library/library.hpp"
+#include "sim/plant/load_equations.hpp"
+#include "tests/sim/reference/reference_support.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::effects {
 namespace {
 
 using ::testing::HasSubstr;
@@ -24,10 +24,10 @@ struct Motor {
   explicit Motor(const Changes& changes, Complex power = {0.8, 0.3}) {
     load.name = "1";
     load.consumption = power;
-    load.block = {find_effect("CIM5"), find_effect("CIM5")->standard_parameters()};
+    load.block = {library::find_effect("CIM5"), library::find_effect("CIM5")->standard_parameters()};
     at("Mbase") = 100.0;
     for (const auto& [name, value] : changes) at(name) = value;
-    o = load_operating_point(load, load.block.p, kV0, 100.0, Conventions::psse());
+    o = plant::load_operating_point(load, load.block.p, kV0, 100.0, Conventions::psse());
   }
   double& at(const char* name) {
     return load.block.p[static_cast<std::size_t>(load.block.effect->parameter_index(name))];
@@ -39,18 +39,18 @@ struct Motor {
   }
   [[nodiscard]] std::vector<double> derivative(Complex v) const {
     std::vector<double> dx(o.x.size());
-    LoadEquations<double>(load).derivative(o.c.data(), o.x.data(), evaluated(v), dx.data());
+    plant::LoadEquations<double>(load).derivative(o.c.data(), o.x.data(), evaluated(v), dx.data());
     return dx;
   }
   [[nodiscard]] Signals<double> evaluated(Complex v) const {
     Signals<double> s;
     s.Vr = v.real();
     s.Vi = v.imag();
-    LoadEquations<double>(load).current(o.c.data(), o.x.data(), s);
+    plant::LoadEquations<double>(load).current(o.c.data(), o.x.data(), s);
     return s;
   }
-  Consumer load;
-  Operating o;
+  plant::Consumer load;
+  plant::Operating o;
 };
 
 Complex parallel(Complex a, Complex b) { return a * b / (a + b); }
@@ -140,7 +140,7 @@ void refused(const Changes& changes, Complex power, const char* part) {
 TEST(LoadCim5, WhatCannotRunIsRefused) {
   refused({{"Mbase", 20.0}}, {0.8, 0.3}, "the motor pulls out at ");
   refused({}, {-0.8, 0.3}, "a motor draws power");
-  const Effect& effect = *find_effect("CIM5");
+  const Effect& effect = *library::find_effect("CIM5");
   for (const auto& [name, value] : {std::pair{"VI", 0.7},
                                     {"IT", 3.0},
                                     {"R2", 0.1},
@@ -157,35 +157,35 @@ TEST(LoadCim5, WhatCannotRunIsRefused) {
   }
 }
 
-Trajectory compared(const Grid& grid, const Event& event) {
-  ReferenceOptions exact;
+Trajectory compared(const grid::Grid& grid, const network::Event& event) {
+  reference::ReferenceOptions exact;
   exact.t_end = 5.0;
-  BatchOptions options;
+  lanes::BatchOptions options;
   options.t_end = exact.t_end;
   options.rate = exact.rate;
-  Batch batch(grid, options);
+  lanes::Batch batch(grid, options);
   Trajectory kept;
   bool given = false;
-  batch.run([&](Job& job) { return !std::exchange(given, true) && (job.event = event, true); },
-            [&](const Job&, const Trajectory& run) {
+  batch.run([&](lanes::Job& job) { return !std::exchange(given, true) && (job.event = event, true); },
+            [&](const lanes::Job&, const Trajectory& run) {
               kept = run;
-              EXPECT_LE(test::largest_difference(run, run_reference(grid, event, exact)),
+              EXPECT_LE(test::largest_difference(run, reference::run_reference(grid, event, exact)),
                         1e-4);  // the limit asked for
             });
   return kept;
 }
 
 TEST(LoadCim5, LanesEqualTheReference) {
-  Grid grid = test::configured_grid("ieee39_genrou", Conventions::psse());
+  grid::Grid grid = test::configured_grid("ieee39_genrou", Conventions::psse());
   Problems problems;
-  choose_load(grid, "8:CIM5:Pmult=1.4", "--load", problems);
-  choose_load(grid, "20:CIM5:IT=2,R2=0.02,X2=0.3,S1=0.06,S2=0.6,E=0", "--load", problems);
-  choose_load(grid, "4:CIM5:IT=1,R2=0.02,X2=0.3,Mbase=700", "--load", problems);
+  grid::choose_load(grid, "8:CIM5:Pmult=1.4", "--load", problems);
+  grid::choose_load(grid, "20:CIM5:IT=2,R2=0.02,X2=0.3,S1=0.06,S2=0.6,E=0", "--load", problems);
+  grid::choose_load(grid, "4:CIM5:IT=1,R2=0.02,X2=0.3,Mbase=700", "--load", problems);
   problems.raise();
-  Event event;
+  network::Event event;
   event.faults = {{grid.network.bus_index(8), 1.0, 1.08, {}}};
   EXPECT_EQ(compared(grid, event).outcome, Outcome::stable);
 }
 
 }  // namespace
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::effects

@@ -3,10 +3,10 @@
 
 #include <gmock/gmock.h>
 
-#include "sim/core/library.hpp"
-#include "sim/solve/load_equations.hpp"
+#include "sim/library/library.hpp"
+#include "sim/plant/load_equations.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::effects {
 namespace {
 
 using ::testing::HasSubstr;
@@ -14,17 +14,18 @@ using Changes = std::vector<std::pair<const char*, double>>;
 
 /// Power drawn at voltage v of a load that draws 0.8 + j0.3 pu at 0.98 pu.
 Complex drawn(const char* name, const Changes& changes, Complex v) {
-  Consumer load;
+  plant::Consumer load;
   load.name = "1";
   load.consumption = {0.8, 0.3};
-  load.block = {find_effect(name), find_effect(name)->standard_parameters()};
+  load.block = {library::find_effect(name), library::find_effect(name)->standard_parameters()};
   for (const auto& [parameter, value] : changes)
     load.block.p[static_cast<std::size_t>(load.block.effect->parameter_index(parameter))] = value;
-  const auto o = load_operating_point(load, load.block.p, std::polar(0.98, 0.3), 100.0, Conventions::psse());
+  const auto o =
+      plant::load_operating_point(load, load.block.p, std::polar(0.98, 0.3), 100.0, Conventions::psse());
   Signals<double> s;
   s.Vr = v.real();
   s.Vi = v.imag();
-  LoadEquations<double>(load).current(o.c.data(), o.x.data(), s);
+  plant::LoadEquations<double>(load).current(o.c.data(), o.x.data(), s);
   return -v * std::conj(Complex(s.Ir, s.Ii));
 }
 const Changes kParts = {{"a1", 0.5}, {"a2", 0.2}, {"a3", 0.4},  {"a4", 0.7}, {"a5", 0.0}, {"a6", 0.1},
@@ -69,7 +70,7 @@ TEST(LoadIeel, WhatCannotRunIsRefused) {
     } catch (const InputError& e) {
       EXPECT_THAT(e.what(), HasSubstr(part));
     }
-  const Effect& effect = *find_effect("IEEL");
+  const Effect& effect = *library::find_effect("IEEL");
   for (const auto& [name, value] : {std::pair{"n2", -1.0}, {"Tf", 0.0}, {"Vi", 0.0}}) {
     auto p = effect.standard_parameters();
     p[static_cast<std::size_t>(effect.parameter_index(name))] = value;
@@ -80,4 +81,4 @@ TEST(LoadIeel, WhatCannotRunIsRefused) {
 }
 
 }  // namespace
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::effects

@@ -3,29 +3,30 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/core/library.hpp"
 #include "sim/effects/load_cim6.hpp"
-#include "sim/solve/load_equations.hpp"
+#include "sim/library/library.hpp"
+#include "sim/plant/load_equations.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::effects {
 namespace {
 
-Consumer consumer(const char* effect, const std::vector<std::pair<const char*, double>>& values) {
-  Consumer load;
+plant::Consumer consumer(const char* effect, const std::vector<std::pair<const char*, double>>& values) {
+  plant::Consumer load;
   load.name = "1";
   load.consumption = {0.8, 0.3};
-  load.block = {find_effect(effect), find_effect(effect)->standard_parameters()};
+  load.block = {library::find_effect(effect), library::find_effect(effect)->standard_parameters()};
   for (const auto& [name, value] : values)
     load.block.p[static_cast<std::size_t>(load.block.effect->parameter_index(name))] = value;
   return load;
 }
 /// Power drawn at voltage v of a load that draws 0.8 + j0.3 pu at 0.98 pu.
-Complex drawn(const Consumer& load, Complex v) {
-  const auto o = load_operating_point(load, load.block.p, std::polar(0.98, 0.3), 100.0, Conventions::psse());
+Complex drawn(const plant::Consumer& load, Complex v) {
+  const auto o =
+      plant::load_operating_point(load, load.block.p, std::polar(0.98, 0.3), 100.0, Conventions::psse());
   Signals<double> s;
   s.Vr = v.real();
   s.Vi = v.imag();
-  LoadEquations<double>(load).current(o.c.data(), o.x.data(), s);
+  plant::LoadEquations<double>(load).current(o.c.data(), o.x.data(), s);
   return -v * std::conj(Complex(s.Ir, s.Ii));
 }
 
@@ -56,4 +57,4 @@ TEST(LoadCim6, IsCim5WithTheSameTorque) {
 }
 
 }  // namespace
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::effects

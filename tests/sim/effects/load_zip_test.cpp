@@ -3,36 +3,36 @@
 
 #include <gmock/gmock.h>
 
-#include "sim/core/library.hpp"
-#include "sim/solve/batch.hpp"
-#include "sim/solve/load_choice.hpp"
-#include "sim/solve/load_equations.hpp"
-#include "tests/sim/reference_support.hpp"
+#include "sim/grid/load_choice.hpp"
+#include "sim/lanes/batch.hpp"
+#include "sim/library/library.hpp"
+#include "sim/plant/load_equations.hpp"
+#include "tests/sim/reference/reference_support.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::effects {
 namespace {
 
 using ::testing::HasSubstr;
 constexpr auto kGrid = "ieee39_genrou";
 
-Consumer consumer(std::vector<std::pair<const char*, double>> values) {
-  Consumer load;
+plant::Consumer consumer(std::vector<std::pair<const char*, double>> values) {
+  plant::Consumer load;
   load.name = "1";
   load.consumption = {0.8, 0.3};
-  load.block = {find_effect("ZIP"), find_effect("ZIP")->standard_parameters()};
+  load.block = {library::find_effect("ZIP"), library::find_effect("ZIP")->standard_parameters()};
   for (const auto& [name, value] : values)
     load.block.p[static_cast<std::size_t>(load.block.effect->parameter_index(name))] = value;
   return load;
 }
 
 /// Power drawn at voltage v of a load that draws 0.8 + j0.3 pu at 0.98 pu.
-Complex drawn(const Consumer& load, Complex v) {
+Complex drawn(const plant::Consumer& load, Complex v) {
   const Complex v0 = std::polar(0.98, 0.3);
-  const auto o = load_operating_point(load, load.block.p, v0, 100.0, Conventions::psse());
+  const auto o = plant::load_operating_point(load, load.block.p, v0, 100.0, Conventions::psse());
   Signals<double> s;
   s.Vr = v.real();
   s.Vi = v.imag();
-  LoadEquations<double>(load).current(o.c.data(), o.x.data(), s);
+  plant::LoadEquations<double>(load).current(o.c.data(), o.x.data(), s);
   return -v * std::conj(Complex(s.Ir, s.Ii));
 }
 
@@ -76,10 +76,10 @@ TEST(LoadZip, RefusesAnOperatingPointBelowItsThreshold) {
 }
 
 TEST(LoadZip, EveryFaultOfAChoiceIsReported) {
-  Grid grid = test::configured_grid(kGrid, Conventions::psse());
+  grid::Grid grid = test::configured_grid(kGrid, Conventions::psse());
   Problems problems;
   for (const char* text : {"8", "8:GENROU", "99:ZIP", "8:ZIP:Pp=x,Pz=1", "8:ZIP:Tf=0"})
-    choose_load(grid, text, std::string("--load ") + text, problems);
+    grid::choose_load(grid, text, std::string("--load ") + text, problems);
   try {
     problems.raise();
     FAIL();
@@ -90,18 +90,18 @@ TEST(LoadZip, EveryFaultOfAChoiceIsReported) {
   }
 }
 
-void lanes_equal_reference(const Grid& grid, const Event& event) {
-  const ReferenceRun reference = run_reference(grid, event, {});
+void lanes_equal_reference(const grid::Grid& grid, const network::Event& event) {
+  const reference::ReferenceRun reference = reference::run_reference(grid, event, {});
   ASSERT_EQ(reference.outcome, Outcome::stable);
   ASSERT_EQ(reference.plants.size(), grid.plants.size());
-  Batch batch(grid, BatchOptions{});
+  lanes::Batch batch(grid, lanes::BatchOptions{});
   bool given = false, done = false;
   batch.run(
-      [&](Job& job) {
+      [&](lanes::Job& job) {
         job.event = event;
         return !std::exchange(given, true);
       },
-      [&](const Job&, const Trajectory& run) {
+      [&](const lanes::Job&, const Trajectory& run) {
         done = true;
         EXPECT_EQ(run.outcome, Outcome::stable);
         EXPECT_LE(test::largest_difference(run, reference), 1e-4);  // the bound asked for
@@ -110,29 +110,32 @@ void lanes_equal_reference(const Grid& grid, const Event& event) {
 }
 
 TEST(LoadZip, LanesEqualTheReferenceWithAFaultAtALoadBus) {
-  Grid grid = test::configured_grid(kGrid, Conventions::psse());
+  grid::Grid grid = test::configured_grid(kGrid, Conventions::psse());
   Problems problems;
-  choose_load(grid, "8:ZIP:Pp=0.4,Pi=0.3,Qp=0.2,Qi=0.3,Kpf=1.5,Kqf=-1", "--load", problems);
-  choose_load(grid, "20:ZIP:Pi=1", "--load", problems);
+  grid::choose_load(grid, "8:ZIP:Pp=0.4,Pi=0.3,Qp=0.2,Qi=0.3,Kpf=1.5,Kqf=-1", "--load", problems);
+  grid::choose_load(grid, "20:ZIP:Pi=1", "--load", problems);
   problems.raise();
-  Event event;
+  network::Event event;
   event.faults = {{grid.network.bus_index(8), 1.0, 1.08, {}}};
   lanes_equal_reference(grid, event);
 }
 
 TEST(LoadZip, ImpedanceAloneIsTheDefaultLoad) {
-  const Grid plain = test::configured_grid(kGrid, Conventions::psse());
-  Grid grid = plain;
+  const grid::Grid plain = test::configured_grid(kGrid, Conventions::psse());
+  grid::Grid grid = plain;
   Problems problems;
-  for (const Load& l : plain.network.loads)
-    choose_load(grid, std::to_string(plain.network.buses[static_cast<std::size_t>(l.bus)].number) + ":ZIP",
-                "--load", problems);
+  for (const network::Load& l : plain.network.loads)
+    grid::choose_load(grid,
+                      std::to_string(plain.network.buses[static_cast<std::size_t>(l.bus)].number) + ":ZIP",
+                      "--load", problems);
   problems.raise();
-  Event event;
+  network::Event event;
   event.faults = {{4, 1.0, 1.1, {}}};
   // Two integrations at rtol 1e-8 of the same equations; the reference's own error is below 1e-6.
-  EXPECT_LE(test::largest_difference(run_reference(grid, event, {}), run_reference(plain, event, {})), 1e-6);
+  EXPECT_LE(test::largest_difference(reference::run_reference(grid, event, {}),
+                                     reference::run_reference(plain, event, {})),
+            1e-6);
 }
 
 }  // namespace
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::effects

@@ -6,14 +6,15 @@
 #include <vector>
 
 #include "sim/core/effect.hpp"
-#include "sim/core/library.hpp"
 #include "sim/core/saturation.hpp"
+#include "sim/library/library.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::effects {
 namespace {
 
 struct Machine {
-  Machine(const char* name, double s10, double s12, double ir, double ii) : effect(*find_effect(name)) {
+  Machine(const char* name, double s10, double s12, double ir, double ii)
+      : effect(*library::find_effect(name)) {
     p = effect.standard_parameters();
     at("S10") = s10;
     at("S12") = s12;
@@ -79,7 +80,7 @@ TEST(ExponentialSaturation, SingularValuesAreRefused) {
   for (const char* name : {"GENROE", "GENSAE"})
     for (const auto& [parameter, value] :
          {std::pair{"Tdopp", 0.0}, {"Xdp", 0.1}, {"Xd", 0.1}, {"H", 0.0}, {"S12", 0.0}}) {
-      const Effect& effect = *find_effect(name);
+      const Effect& effect = *library::find_effect(name);
       auto p = effect.standard_parameters();
       p[static_cast<std::size_t>(effect.parameter_index(parameter))] = value;
       Problems problems;
@@ -89,4 +90,4 @@ TEST(ExponentialSaturation, SingularValuesAreRefused) {
 }
 
 }  // namespace
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::effects

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "sim/core/effect.hpp"
-#include "sim/core/library.hpp"
+#include "sim/library/library.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::effects {
 namespace {
 
 /// V = 1, I = 1 (unity power factor), Xd = 1.2, Xq = 0.75, Ra = 0: the q axis lies along 1 + j 0.75, a 3-4-5
@@ -23,7 +23,7 @@ struct Machine {
     effect.get<double>().prepare(p.data(), Conventions::psse(), c.data());
     refused = effect.get<double>().machine.steady(p.data(), c.data(), s, x.data());
   }
-  const Effect& effect = *find_effect("GENSAL");
+  const Effect& effect = *library::find_effect("GENSAL");
   std::vector<double> p, c, x;
   Signals<double> s;
   std::string refused;
@@ -49,7 +49,7 @@ TEST(MachineGensal, SaturationAddsToTheFieldOfTheDirectAxisOnly) {
 }
 
 TEST(MachineGensal, SingularValuesAreRefused) {
-  const Effect& effect = *find_effect("GENSAL");
+  const Effect& effect = *library::find_effect("GENSAL");
   for (const auto& [name, value] : {std::pair{"Tdopp", 0.0}, {"Xdp", 0.1}, {"H", 0.0}, {"S12", 0.05}}) {
     auto p = effect.standard_parameters();
     p[static_cast<std::size_t>(effect.parameter_index(name))] = value;
@@ -60,4 +60,4 @@ TEST(MachineGensal, SingularValuesAreRefused) {
 }
 
 }  // namespace
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::effects

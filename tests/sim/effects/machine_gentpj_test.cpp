@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "sim/core/effect.hpp"
-#include "sim/core/library.hpp"
-#include "sim/solve/batch.hpp"
-#include "tests/sim/reference_support.hpp"
+#include "sim/lanes/batch.hpp"
+#include "sim/library/library.hpp"
+#include "tests/sim/reference/reference_support.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::effects {
 namespace {
 
 using Changes = std::vector<std::pair<const char*, double>>;
@@ -19,7 +19,7 @@ using Changes = std::vector<std::pair<const char*, double>>;
 struct Machine {
   Machine(const char* name, const Changes& changes, Complex v, Complex i,
           Conventions conventions = Conventions::psse())
-      : effect(*find_effect(name)) {
+      : effect(*library::find_effect(name)) {
     p = effect.standard_parameters();
     for (const auto& [parameter, value] : changes) at(parameter) = value;
     c.resize(static_cast<std::size_t>(effect.coefficients));
@@ -142,76 +142,77 @@ TEST(MachineGentpj, CurrentIsConsistentWithItsSaturation) {
 }
 
 /// Lanes against the reference: bolted faults at plant 3 and elsewhere, loss of plant 3.
-void expect_lanes_equal_the_reference(const Grid& grid) {
-  const Plant& mine = grid.plants[3];
-  std::vector<Event> events(3);
+void expect_lanes_equal_the_reference(const grid::Grid& grid) {
+  const plant::Plant& mine = grid.plants[3];
+  std::vector<network::Event> events(3);
   events[0].faults = {{mine.bus, 1.0, 1.06, {}}};
   events[1].faults = {{grid.network.bus_index(16), 1.0, 1.08, {}}};
   events[2].generator_trips = {{mine.generator, 1.0}};
-  ReferenceOptions exact;
+  reference::ReferenceOptions exact;
   exact.t_end = 5.0;
-  BatchOptions options;
+  lanes::BatchOptions options;
   options.t_end = exact.t_end;
   options.rate = exact.rate;
   std::size_t next = 0, done = 0;
-  Batch batch(grid, options);
+  lanes::Batch batch(grid, options);
   batch.run(
-      [&](Job& job) {
+      [&](lanes::Job& job) {
         if (next == events.size()) return false;
         job.id = next;
         job.event = events[next++];
         return true;
       },
-      [&](const Job& job, const Trajectory& run) {
+      [&](const lanes::Job& job, const Trajectory& run) {
         ++done;
         EXPECT_EQ(run.outcome, Outcome::stable) << job.id;
         // the bound asked for
-        EXPECT_LE(test::largest_difference(run, run_reference(grid, job.event, exact)), 1e-4) << job.id;
+        EXPECT_LE(test::largest_difference(run, reference::run_reference(grid, job.event, exact)), 1e-4)
+            << job.id;
       });
   EXPECT_EQ(done, events.size());
 }
 
 /// Every second machine of IEEE 39 a GENTPJ.
-Grid every_second() {
-  Grid grid = test::configured_grid("ieee39_dataset_genrou", Conventions::psse());
-  const Effect& gentpj = *find_effect("GENTPJ");
+grid::Grid every_second() {
+  grid::Grid grid = test::configured_grid("ieee39_dataset_genrou", Conventions::psse());
+  const Effect& gentpj = *library::find_effect("GENTPJ");
   for (std::size_t i = 1; i < grid.plants.size(); i += 2)
     grid.plants[i].machine = {&gentpj, gentpj.standard_parameters()};
   return grid;
 }
 TEST(MachineGentpj, LanesEqualTheReference) { expect_lanes_equal_the_reference(every_second()); }
 TEST(MachineGentpj, LanesEqualTheReferenceBehindTransformers) {
-  Grid grid = every_second();
+  grid::Grid grid = every_second();
   for (const std::size_t i : {3, 4, 7})
-    grid.plants[i].transformer = {find_effect("STEPUP"), {0.004, 0.12, 1.04}};
+    grid.plants[i].transformer = {library::find_effect("STEPUP"), {0.004, 0.12, 1.04}};
   expect_lanes_equal_the_reference(grid);
 }
 /// Without saturation, behind a transformer too, it is the GENROU of the test above.
 TEST(MachineGentpj, BehindATransformerWithoutSaturationItIsGenrou) {
-  Grid linear = test::two_machine_grid(Conventions::psse());
-  Plant& plant = linear.plants[1];
-  plant.transformer = {find_effect("STEPUP"), {0.004, 0.12, 1.04}};
-  Grid mine = linear;
-  const auto set = [](Plant& p, const char* effect, const Changes& changes) {
-    p.machine = {find_effect(effect), find_effect(effect)->standard_parameters()};
+  grid::Grid linear = test::two_machine_grid(Conventions::psse());
+  plant::Plant& plant = linear.plants[1];
+  plant.transformer = {library::find_effect("STEPUP"), {0.004, 0.12, 1.04}};
+  grid::Grid mine = linear;
+  const auto set = [](plant::Plant& p, const char* effect, const Changes& changes) {
+    p.machine = {library::find_effect(effect), library::find_effect(effect)->standard_parameters()};
     for (const auto& [name, value] : changes)
       p.machine.p[static_cast<std::size_t>(p.machine.effect->parameter_index(name))] = value;
   };
   set(plant, "GENROU", {{"S10", 0.0}, {"S12", 0.0}, {"Xdpp", 0.25}, {"Xl", 0.25}, {"Xqp", 0.5}});
   set(mine.plants[1], "GENTPJ",
       {{"S10", 0.0}, {"S12", 0.0}, {"Xdpp", 0.25}, {"Xqpp", 0.25}, {"Kis", 0.2}, {"Xqp", 0.5}});
-  Event event;
+  network::Event event;
   event.faults = {{linear.network.bus_index(2), 1.0, 1.1, {0.0, 0.05}}};
-  ReferenceOptions options;
+  reference::ReferenceOptions options;
   options.t_end = 4.0;
   // two runs of IDA at rtol 1e-8 with other rounding
-  EXPECT_LE(
-      test::largest_difference(run_reference(linear, event, options), run_reference(mine, event, options)),
-      1e-6);
+  EXPECT_LE(test::largest_difference(reference::run_reference(linear, event, options),
+                                     reference::run_reference(mine, event, options)),
+            1e-6);
 }
 
 TEST(MachineGentpj, SingularValuesAreRefused) {
-  const Effect& effect = *find_effect("GENTPJ");
+  const Effect& effect = *library::find_effect("GENTPJ");
   for (const auto& [name, value] : {std::pair{"Tdopp", 0.0},
                                     {"Xdp", 0.25},
                                     {"Xqp", 0.2},
@@ -238,4 +239,4 @@ TEST(MachineGentpj, AMachineWithoutTransientCircuitInTheQuadratureAxis) {
 }
 
 }  // namespace
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::effects

@@ -1,10 +1,10 @@
 // Runs over every registered measurement, with no edit when one is added.
 #include <cstring>
 
-#include "measurement_bench.hpp"
-#include "sim/core/library.hpp"
+#include "sim/library/library.hpp"
+#include "tests/sim/effects/measurement_bench.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::effects {
 namespace {
 
 using test::measured;
@@ -12,7 +12,7 @@ using test::swing;
 
 std::vector<const Effect*> instruments() {
   std::vector<const Effect*> list;
-  for (const Effect* e : every_effect())
+  for (const Effect* e : library::every_effect())
     if (e->slot == Slot::measurement) list.push_back(e);
   return list;
 }
@@ -145,4 +145,4 @@ TEST(MeasurementConformance, ReachesNoFurtherThanItsMemory) {
 }
 
 }  // namespace
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::effects

@@ -1,7 +1,7 @@
 // Windows of class P and M and the frequency they give, against what their formulas say by hand.
-#include "measurement_bench.hpp"
+#include "tests/sim/effects/measurement_bench.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::effects {
 namespace {
 
 using test::kPi;
@@ -168,4 +168,4 @@ TEST(PmuFrequency, TheEndsUseWhatThereIs) {
 }
 
 }  // namespace
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::effects

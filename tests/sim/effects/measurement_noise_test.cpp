@@ -1,9 +1,9 @@
 // Noise, gaps and steps: what statistics and rounding say by hand.
 #include <algorithm>
 
-#include "measurement_bench.hpp"
+#include "tests/sim/effects/measurement_bench.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::effects {
 namespace {
 
 using test::measured;
@@ -118,4 +118,4 @@ TEST(Quantise, RoundsToTheNearestStep) {
 }
 
 }  // namespace
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::effects

@@ -1,7 +1,7 @@
 // Current and voltage transformers, and the skew between the channels, by hand.
-#include "measurement_bench.hpp"
+#include "tests/sim/effects/measurement_bench.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::effects {
 namespace {
 
 using test::kPi;
@@ -75,4 +75,4 @@ TEST(Skew, OutsideTheRecordTheCurrentStandsStill) {
 }
 
 }  // namespace
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::effects

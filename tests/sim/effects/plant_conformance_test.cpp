@@ -6,22 +6,22 @@
 #include <algorithm>
 #include <random>
 
-#include "sim/core/library.hpp"
-#include "sim/solve/load_equations.hpp"
-#include "sim/solve/plant_equations.hpp"
+#include "sim/library/library.hpp"
+#include "sim/plant/equations.hpp"
+#include "sim/plant/load_equations.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::effects {
 namespace {
 
 constexpr double kBase = 100.0;
 const Complex kVoltage = std::polar(1.02, 0.1), kPower(0.6, 0.15);
 
-Block standard(const Effect& effect) { return {&effect, effect.standard_parameters()}; }
-Block standard(const char* name) { return standard(*find_effect(name)); }
+plant::Block standard(const Effect& effect) { return {&effect, effect.standard_parameters()}; }
+plant::Block standard(const char* name) { return standard(*library::find_effect(name)); }
 
 /// A plant with the effect in its slot, and where its signal would lead nowhere, with what reads it.
-Plant host(const Effect& effect) {
-  Plant plant;
+plant::Plant host(const Effect& effect) {
+  plant::Plant plant;
   plant.name = std::string(effect.name);
   plant.bus = 0;
   plant.generation = kPower;
@@ -31,25 +31,25 @@ Plant host(const Effect& effect) {
   if (is_control(slot)) plant.controls.push_back(standard(effect));
   if (slot != Slot::exciter) plant.controls.push_back(standard("SEXS"));
   if (slot != Slot::governor) plant.controls.push_back(standard("TGOV1"));
-  std::ranges::stable_sort(plant.controls, {}, [](const Block& b) { return b.effect->slot; });
+  std::ranges::stable_sort(plant.controls, {}, [](const plant::Block& b) { return b.effect->slot; });
   return plant;
 }
-Block& own_block(Plant& plant, const Effect& effect) {
+plant::Block& own_block(plant::Plant& plant, const Effect& effect) {
   if (effect.slot == Slot::transformer) return plant.transformer;
-  for (Block& b : plant.controls)
+  for (plant::Block& b : plant.controls)
     if (b.effect == &effect) return b;
   throw std::logic_error("not there");
 }
 
 std::vector<const Effect*> guests() {
   std::vector<const Effect*> list;
-  for (const Effect* e : every_effect())
+  for (const Effect* e : library::every_effect())
     if (is_control(e->slot) || e->slot == Slot::transformer) list.push_back(e);
   return list;
 }
 std::vector<const Effect*> loads() {
   std::vector<const Effect*> list;
-  for (const Effect* e : every_effect())
+  for (const Effect* e : library::every_effect())
     if (e->slot == Slot::load) list.push_back(e);
   return list;
 }
@@ -69,17 +69,18 @@ std::vector<double> draw(const Effect& e, std::mt19937_64& random) {
   return e.standard_parameters();
 }
 
-std::vector<std::vector<double>> parameters(const Plant& plant) {
+std::vector<std::vector<double>> parameters(const plant::Plant& plant) {
   std::vector<std::vector<double>> all{plant.machine.p};
   if (plant.transformer.effect) all.push_back(plant.transformer.p);
-  for (const Block& b : plant.controls) all.push_back(b.p);
+  for (const plant::Block& b : plant.controls) all.push_back(b.p);
   return all;
 }
 
 /// What an integrator sees of a plant driven by the voltage at its bus: every derivative, P, Q, Efd, Tm.
 template <class T>
-std::vector<T> outputs(const Plant& plant, const OperatingOf<T>& o, const std::vector<T>& x, double t) {
-  const PlantEquations<T> equations(plant);
+std::vector<T> outputs(const plant::Plant& plant, const plant::OperatingOf<T>& o, const std::vector<T>& x,
+                       double t) {
+  const plant::PlantEquations<T> equations(plant);
   std::vector<T> m(static_cast<std::size_t>(equations.scratch()), T(0.0)), out(x.size(), T(0.0));
   Signals<T> s;
   s.Vpr = T(kVoltage.real() - 0.03);  // off the operating point
@@ -97,47 +98,47 @@ std::vector<T> outputs(const Plant& plant, const OperatingOf<T>& o, const std::v
 }
 
 /// States moved off equilibrium.
-std::vector<double> shifts(const Plant& plant, std::mt19937_64& random) {
+std::vector<double> shifts(const plant::Plant& plant, std::mt19937_64& random) {
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   std::vector<double> list;
-  const auto add = [&](const Block& b) {
+  const auto add = [&](const plant::Block& b) {
     for (std::size_t i = 0; i < b.effect->states.size(); ++i)
       list.push_back((b.effect == plant.machine.effect && i == 1 ? 0.005 : 0.02) * u(random));
   };
   add(plant.machine);
-  for (const Block& b : plant.controls) add(b);
+  for (const plant::Block& b : plant.controls) add(b);
   return list;
 }
 
 /// A time at which every drive acts: half a second after its first jump.
-double busy_time(const Plant& plant) {
-  const auto instants = instants_of(plant);
+double busy_time(const plant::Plant& plant) {
+  const auto instants = plant::instants_of(plant);
   return instants.empty() ? 1.0 : instants.front() + 0.5;
 }
 
 TEST(PlantConformance, StandsStillAtItsOperatingPoint) {
   std::mt19937_64 random(11);
   for (const Effect* e : guests()) {
-    Plant plant = host(*e);
+    plant::Plant plant = host(*e);
     for (int trial = 0; trial < 20; ++trial) {
       own_block(plant, *e).p = draw(*e, random);
       // operating_point itself evaluates every derivative and refuses more than 1e-9 per second
-      EXPECT_NO_THROW(operating_point(plant, kVoltage, kBase, Conventions::psse())) << e->name;
-      EXPECT_NO_THROW(operating_point(plant, kVoltage, kBase, Conventions::andes())) << e->name;
+      EXPECT_NO_THROW(plant::operating_point(plant, kVoltage, kBase, Conventions::psse())) << e->name;
+      EXPECT_NO_THROW(plant::operating_point(plant, kVoltage, kBase, Conventions::andes())) << e->name;
     }
   }
 }
 
 template <class P>
 void lanes_equal_double(const Effect& e, std::mt19937_64& random) {
-  Plant plant = host(e);
+  plant::Plant plant = host(e);
   std::vector<std::vector<double>> alone;
-  OperatingOf<P> together;
+  plant::OperatingOf<P> together;
   std::vector<P> x;
   double t = busy_time(plant);
   for (int l = 0; l < P::lanes; ++l) {
     own_block(plant, e).p = draw(e, random);
-    const Operating o = operating_point(plant, kVoltage, kBase, Conventions::psse());
+    const plant::Operating o = plant::operating_point(plant, kVoltage, kBase, Conventions::psse());
     auto states = o.x;
     const auto shift = shifts(plant, random);
     for (std::size_t i = 0; i < states.size(); ++i) states[i] += shift[i];
@@ -167,9 +168,9 @@ TEST(PlantConformance, LanesEqualDouble) {
 }
 
 template <class T>
-std::vector<T> moved(const Plant& plant, const std::vector<std::vector<T>>& p,
+std::vector<T> moved(const plant::Plant& plant, const std::vector<std::vector<T>>& p,
                      const std::vector<double>& shift) {
-  const auto o = operating_point_of<T>(plant, p, kVoltage, kBase, Conventions::psse());
+  const auto o = plant::operating_point_of<T>(plant, p, kVoltage, kBase, Conventions::psse());
   auto x = o.x;
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = x[i] + T(shift[i]);
   return outputs<T>(plant, o, x, busy_time(plant));
@@ -178,11 +179,11 @@ std::vector<T> moved(const Plant& plant, const std::vector<std::vector<T>>& p,
 TEST(PlantConformance, DualsEqualCentralDifferences) {
   std::mt19937_64 random(13);
   for (const Effect* e : guests()) {
-    Plant plant = host(*e);
+    plant::Plant plant = host(*e);
     own_block(plant, *e).p = draw(*e, random);
     const std::size_t block = e->slot == Slot::transformer ? 1 : [&] {
       std::size_t k = 1;
-      for (const Block& b : plant.controls) {
+      for (const plant::Block& b : plant.controls) {
         if (b.effect == e) return k;
         ++k;
       }
@@ -222,8 +223,8 @@ TEST(PlantConformance, VanishesAtNeutral) {
   std::mt19937_64 random(14);
   for (const Effect* e : guests()) {
     if (e->slot == Slot::exciter || e->slot == Slot::governor) continue;  // they are never nothing
-    Plant with = host(*e);
-    Block& own = own_block(with, *e);
+    plant::Plant with = host(*e);
+    plant::Block& own = own_block(with, *e);
     bool any = false;
     for (std::size_t i = 0; i < own.p.size(); ++i) {
       const double neutral = e->parameters[i].neutral;
@@ -232,13 +233,13 @@ TEST(PlantConformance, VanishesAtNeutral) {
       any = true;
     }
     if (!any) continue;
-    Plant without = with;
+    plant::Plant without = with;
     if (e->slot == Slot::transformer)
       without.transformer = {};
     else
-      std::erase_if(without.controls, [&](const Block& b) { return b.effect == e; });
-    const Operating a = operating_point(with, kVoltage, kBase, Conventions::psse()),
-                    b = operating_point(without, kVoltage, kBase, Conventions::psse());
+      std::erase_if(without.controls, [&](const plant::Block& b) { return b.effect == e; });
+    const plant::Operating a = plant::operating_point(with, kVoltage, kBase, Conventions::psse()),
+                           b = plant::operating_point(without, kVoltage, kBase, Conventions::psse());
     const double t = busy_time(with);
     const auto x = outputs<double>(with, a, a.x, t), y = outputs<double>(without, b, b.x, t);
     for (std::size_t i = 0; i < 4; ++i)  // P, Q, Efd, Tm: rounding only
@@ -246,8 +247,8 @@ TEST(PlantConformance, VanishesAtNeutral) {
   }
 }
 
-Consumer consumer(const Effect& e, const std::vector<double>& p) {
-  Consumer c;
+plant::Consumer consumer(const Effect& e, const std::vector<double>& p) {
+  plant::Consumer c;
   c.name = std::string(e.name);
   c.bus = 0;
   c.mva = kBase;
@@ -256,8 +257,9 @@ Consumer consumer(const Effect& e, const std::vector<double>& p) {
   return c;
 }
 template <class T>
-std::vector<T> load_outputs(const Consumer& load, const OperatingOf<T>& o, const std::vector<T>& x) {
-  const LoadEquations<T> equations(load);
+std::vector<T> load_outputs(const plant::Consumer& load, const plant::OperatingOf<T>& o,
+                            const std::vector<T>& x) {
+  const plant::LoadEquations<T> equations(load);
   Signals<T> s;
   s.Vr = T(kVoltage.real() - 0.1);
   s.Vi = T(kVoltage.imag() + 0.02);
@@ -273,12 +275,13 @@ TEST(LoadConformance, StandsStillAndLanesEqualDouble) {
   std::mt19937_64 random(15);
   std::uniform_real_distribution<double> u(-0.02, 0.02);
   for (const Effect* e : loads()) {
-    OperatingOf<P8> together;
+    plant::OperatingOf<P8> together;
     std::vector<P8> x;
     std::vector<std::vector<double>> alone;
     for (int l = 0; l < P8::lanes; ++l) {
-      const Consumer load = consumer(*e, draw(*e, random));
-      const Operating o = load_operating_point(load, load.block.p, kVoltage, kBase, Conventions::psse());
+      const plant::Consumer load = consumer(*e, draw(*e, random));
+      const plant::Operating o =
+          plant::load_operating_point(load, load.block.p, kVoltage, kBase, Conventions::psse());
       auto states = o.x;
       for (double& v : states) v += u(random);
       alone.push_back(load_outputs<double>(load, o, states));
@@ -299,10 +302,10 @@ TEST(LoadConformance, StandsStillAndLanesEqualDouble) {
 TEST(LoadConformance, DualsEqualCentralDifferences) {
   std::mt19937_64 random(16);
   for (const Effect* e : loads()) {
-    const Consumer load = consumer(*e, draw(*e, random));
+    const plant::Consumer load = consumer(*e, draw(*e, random));
     const auto value = [&](const auto& p) {
       using T = typename std::decay_t<decltype(p)>::value_type;
-      const auto o = load_operating_point<T>(load, p, kVoltage, kBase, Conventions::psse());
+      const auto o = plant::load_operating_point<T>(load, p, kVoltage, kBase, Conventions::psse());
       auto x = o.x;
       for (auto& v : x) v = v + T(0.01);
       return load_outputs<T>(load, o, x);
@@ -327,4 +330,4 @@ TEST(LoadConformance, DualsEqualCentralDifferences) {
 }
 
 }  // namespace
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::effects

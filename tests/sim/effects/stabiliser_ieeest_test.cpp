@@ -1,5 +1,5 @@
 // IEEEST: transfer function against the product of its diagram, limits, cut-off by voltage, zeros.
-#include "control_bench.hpp"
+#include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
 namespace {

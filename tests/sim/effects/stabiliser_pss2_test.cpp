@@ -1,6 +1,6 @@
 // PSS2B and PSS2A: transfer function from both inputs against the product of their diagram, the
 // ramp-tracking filter's order, ramps of power that are not seen, limits, zeros.
-#include "control_bench.hpp"
+#include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
 namespace {

@@ -1,5 +1,5 @@
 // STAB1: transfer function against its diagram, limits both ways, bypasses.
-#include "control_bench.hpp"
+#include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
 namespace {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/sim/network/raw_case.hpp"
+#include "tests/sim/formats/raw_case.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::network {
 namespace {
 
 using ::testing::ElementsAre;
@@ -41,7 +41,7 @@ class Reduction : public ::testing::Test {
   Reduction() {
     for (const Generator& g : network.generators) kept.push_back(g.bus);
   }
-  Network network = read_raw(std::string(SWINGBANK_SOURCE) + "/configs/networks/ieee39_genrou.raw");
+  Network network = formats::read_raw(std::string(SWINGBANK_SOURCE) + "/configs/networks/ieee39_genrou.raw");
   PowerFlow flow = solve_power_flow(network);
   std::vector<int> kept;
 
@@ -137,8 +137,9 @@ TEST_F(Reduction, PartsLeftWithoutGeneratorAreNamed) {
   for (const auto& [a, b] : lines) t.open.push_back(network.branch_index(a, b, "1"));
   std::ranges::sort(t.open);
   for (const int i : t.open) ASSERT_GE(i, 0);
-  EXPECT_THAT(sentences_of([&] { reduce(network, flow, t, kept); }), HasSubstr("buses 7, 8 are islanded"));
-  EXPECT_THAT(sentences_of([&] { dynamic_admittance(network, flow, t); }), HasSubstr("tripped"));
+  EXPECT_THAT(formats::sentences_of([&] { reduce(network, flow, t, kept); }),
+              HasSubstr("buses 7, 8 are islanded"));
+  EXPECT_THAT(formats::sentences_of([&] { dynamic_admittance(network, flow, t); }), HasSubstr("tripped"));
 }
 
 TEST_F(Reduction, APartWithAGeneratorRunsOnAlone) {
@@ -155,7 +156,7 @@ TEST_F(Reduction, AnIsolatedBusDoesNotDisturb) {
 }
 
 TEST(BusAdmittance, OfATapPhaseShiftAndLineShunts) {
-  RawCase c;
+  formats::RawCase c;
   c.branches = "101,103,'1',0.01,0.1,0.2,1,1,1,0.001,0.002,0.003,0.004\n102,103,'1',0,0.12\n";
   c.transformers = "101,102,0,'1',1,1,1,0.005,-0.006,2,'',1\n0.02,0.2\n1.1,0,30\n1.0,0\n";
   const Eigen::MatrixXcd y = bus_admittance(c.read());
@@ -171,4 +172,4 @@ TEST(BusAdmittance, OfATapPhaseShiftAndLineShunts) {
 }
 
 }  // namespace
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::network

@@ -4,9 +4,9 @@
 
 #include <limits>
 
-#include "tests/sim/network/raw_case.hpp"
+#include "tests/sim/formats/raw_case.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::network {
 namespace {
 
 using ::testing::ElementsAre;
@@ -16,7 +16,7 @@ using ::testing::Pair;
 
 class Segments : public ::testing::Test {
  protected:
-  Network network = RawCase{}.read();
+  Network network = formats::RawCase{}.read();
 };
 
 TEST_F(Segments, NoEventIsOneSegment) {
@@ -71,7 +71,7 @@ TEST_F(Segments, EveryFaultOfAnEventIsReported) {
                      {0, nan, 2.0, {}},
                      {0, 5.0, 6.0, {-1, 0}}},
                     {{0, 2.0, 2.0}, {1, 1.0, {}}, {-1, 1.0, {}}, {0, 3.0, {}}, {0, 4.0, 5.0}}};
-  const std::string text = sentences_of([&] { segments(event, network); });
+  const std::string text = formats::sentences_of([&] { segments(event, network); });
   for (const char* what :
        {"end = 1.9", "start = -1.0", "two overlapping faults at event, bus 102", "fault at bus index 77",
         "fault at an isolated bus at event, bus 200", "start = nan", "fault impedance -1.0", "end = 2.0",
@@ -81,4 +81,4 @@ TEST_F(Segments, EveryFaultOfAnEventIsReported) {
 }
 
 }  // namespace
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::network

@@ -5,15 +5,15 @@
 #include <cmath>
 
 #include "sim/network/admittance.hpp"
-#include "tests/sim/network/raw_case.hpp"
+#include "tests/sim/formats/raw_case.hpp"
 
-namespace swingbank::sim {
+namespace swingbank::sim::network {
 namespace {
 
 using ::testing::HasSubstr;
 
 Network committed(const std::string& name) {
-  return read_raw(std::string(SWINGBANK_SOURCE) + "/configs/networks/" + name + ".raw");
+  return formats::read_raw(std::string(SWINGBANK_SOURCE) + "/configs/networks/" + name + ".raw");
 }
 
 /// Largest power mismatch of a voltage solution, from the admittance matrix and the loads alone.
@@ -81,7 +81,7 @@ TEST(PowerFlow, Figures) {  // from the reference JSON, so that file and reader 
 
 /// Slack of 1 pu, a reactance and one load, solved by hand.
 Network two_buses(Complex power, Complex current, Complex admittance) {
-  RawCase c;
+  formats::RawCase c;
   c.buses = "1,'A',100,3,1,1,1,1.0,0\n2,'B',100,1,1,1,1,1.0,0\n";
   c.loads = "";
   c.generators = "1,'1',0,0,1,-1,1.0\n";
@@ -135,7 +135,7 @@ TEST(PowerFlow, MachinesAtOneBusShareByRating) {
 TEST(PowerFlow, DivergenceNamesTheWorstBusWithUnits) {
   Network n = committed("ieee14_genrou");
   n.loads[2].power *= 40.0;  // bus 4: 19 pu through a few lines
-  const std::string text = sentences_of([&] { solve_power_flow(n); });
+  const std::string text = formats::sentences_of([&] { solve_power_flow(n); });
   EXPECT_THAT(text, HasSubstr("diverges, worst at bus "));
   EXPECT_THAT(text, HasSubstr(" MVA)"));
   EXPECT_THAT(text, HasSubstr("ieee14_genrou.raw"));
@@ -147,7 +147,7 @@ TEST(PowerFlow, IslandsAreNamed) {
     if (n.buses[static_cast<std::size_t>(b.from)].number == 7 &&
         n.buses[static_cast<std::size_t>(b.to)].number == 8)
       b.in_service = false;
-  EXPECT_THAT(sentences_of([&] { solve_power_flow(n); }), HasSubstr("bus 8 is islanded"));
+  EXPECT_THAT(formats::sentences_of([&] { solve_power_flow(n); }), HasSubstr("bus 8 is islanded"));
 }
 
 TEST(PowerFlow, AnIsolatedBusIsLeftOut) {
@@ -161,13 +161,14 @@ TEST(PowerFlow, AnIsolatedBusIsLeftOut) {
 TEST(PowerFlow, OneSlackBusIsNeeded) {
   Network none = committed("ieee14_genrou"), two = none, idle = none;
   none.buses[0].type = BusType::generator;
-  EXPECT_THAT(sentences_of([&] { solve_power_flow(none); }), HasSubstr("no slack bus"));
+  EXPECT_THAT(formats::sentences_of([&] { solve_power_flow(none); }), HasSubstr("no slack bus"));
   two.buses[1].type = BusType::slack;
-  EXPECT_THAT(sentences_of([&] { solve_power_flow(two); }), HasSubstr("several slack buses: buses 1, 2"));
+  EXPECT_THAT(formats::sentences_of([&] { solve_power_flow(two); }),
+              HasSubstr("several slack buses: buses 1, 2"));
   idle.generators[0].in_service = false;
-  EXPECT_THAT(sentences_of([&] { solve_power_flow(idle); }),
+  EXPECT_THAT(formats::sentences_of([&] { solve_power_flow(idle); }),
               HasSubstr("slack bus 1 has no generator in service"));
 }
 
 }  // namespace
-}  // namespace swingbank::sim
+}  // namespace swingbank::sim::network

@@ -1,0 +1,252 @@
+#include "base/config.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+namespace swingbank {
+
+namespace fs = std::filesystem;
+
+struct Config::Tree {
+  toml::table root;
+  std::set<std::string> asked;  ///< leaves and tables someone has read
+
+  [[nodiscard]] const toml::node* at(const std::string& key) const { return root.at_path(key).node(); }
+};
+
+namespace {
+
+std::string place(const fs::path& name, const toml::source_position& p) {
+  return fmt::format("{}:{}:{}", name.string(), p.line, p.column);
+}
+
+std::string slurp(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  if (fs::is_directory(file) || !(text << in.rdbuf()))
+    throw InputError({"cannot read the config", file.string(),
+                      fs::exists(file) ? "it cannot be opened as a file" : "there is no such file",
+                      "check the path"});
+  return text.str();
+}
+
+std::string list(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, ", ")); }
+
+// What a node of TOML is called, and how it becomes a T.
+bool convert(const toml::node& n, bool& v) { return n.is_boolean() && (v = n.as_boolean()->get(), true); }
+bool convert(const toml::node& n, std::int64_t& v) {
+  return n.is_integer() && (v = n.as_integer()->get(), true);
+}
+bool convert(const toml::node& n, std::string& v) {
+  return n.is_string() && (v = n.as_string()->get(), true);
+}
+bool convert(const toml::node& n, double& v) {
+  if (n.is_integer()) return v = static_cast<double>(n.as_integer()->get()), true;
+  return n.is_floating_point() && (v = n.as_floating_point()->get(), true);
+}
+template <class T>
+bool convert(const toml::node& n, std::vector<T>& v) {
+  if (!n.is_array()) return false;
+  for (const auto& element : *n.as_array()) {
+    T one{};
+    if (!convert(element, one)) return false;
+    v.push_back(one);
+  }
+  return true;
+}
+
+std::string kind(const bool*) { return "true or false"; }
+std::string kind(const std::int64_t*) { return "an integer"; }
+std::string kind(const double*) { return "a number"; }
+std::string kind(const std::string*) { return "a text in quotes"; }
+template <class T>
+std::string kind(const std::vector<T>*) {
+  return "a list, each element " + kind(static_cast<const T*>(nullptr));
+}
+
+bool inside(double v, const Range& r) { return std::isfinite(v) && v >= r.low && v <= r.high; }
+bool inside(std::int64_t v, const Range& r) { return inside(static_cast<double>(v), r); }
+bool inside(bool, const Range&) { return true; }
+bool inside(const std::string&, const Range&) { return true; }
+template <class T>
+bool inside(const std::vector<T>& v, const Range& r) {
+  for (const auto& one : v)
+    if (!inside(one, r)) return false;
+  return true;
+}
+
+std::string describe(const Range& r) {
+  const std::string unit = r.unit.empty() ? "" : " " + r.unit;
+  if (std::isinf(r.low) && std::isinf(r.high)) return "a finite number" + unit;
+  if (std::isinf(r.high)) return fmt::format("at least {}{}", r.low, unit);
+  if (std::isinf(r.low)) return fmt::format("at most {}{}", r.high, unit);
+  return fmt::format("{} to {}{}", r.low, r.high, unit);
+}
+
+std::string written(const toml::node& n) {
+  std::ostringstream text;
+  n.visit([&](const auto& value) { text << value; });
+  return text.str();
+}
+
+/// Every leaf that nobody asked for.
+void unknown(const toml::table& table, const std::string& prefix, const std::set<std::string>& asked,
+             const fs::path& name, Problems& problems) {
+  std::vector<std::string> known;
+  for (const auto& key : asked)
+    if (key.starts_with(prefix) && key.find('.', prefix.size()) == std::string::npos)
+      known.push_back(key.substr(prefix.size()));
+  for (const auto& [key, node] : table) {
+    const std::string full = prefix + std::string(key.str());
+    if (asked.contains(full)) continue;
+    const bool inner = node.is_table() && asked.lower_bound(full + ".") != asked.end() &&
+                       asked.lower_bound(full + ".")->starts_with(full + ".");
+    if (inner)
+      unknown(*node.as_table(), full + ".", asked, name, problems);
+    else
+      problems.add("unknown key " + full, place(name, key.source().begin),
+                   prefix.empty() ? "nothing reads it"
+                                  : "nothing reads it in [" + prefix.substr(0, prefix.size() - 1) + "]",
+                   known.empty() ? "remove it" : "remove it or use one of: " + list(known));
+  }
+}
+
+}  // namespace
+
+Config::Config(const fs::path& file) : Config(slurp(file), file) {}
+
+Config::Config(const std::string& text, const fs::path& name) : name_(name), tree_(std::make_shared<Tree>()) {
+  try {
+    tree_->root = toml::parse(text, name.string());
+  } catch (const toml::parse_error& e) {
+    throw InputError(
+        {"not TOML", place(name, e.source().begin), std::string(e.description()), "mend the line"});
+  }
+}
+
+bool Config::has(const std::string& key) const { return tree_->at(key) != nullptr; }
+bool Config::is_array(const std::string& key) const { return has(key) && tree_->at(key)->is_array(); }
+bool Config::is_text(const std::string& key) const { return has(key) && tree_->at(key)->is_string(); }
+
+std::vector<std::string> Config::keys(const std::string& table) const {
+  std::vector<std::string> names;
+  const toml::node* n = tree_->at(table);
+  if (n != nullptr && n->is_table())
+    for (const auto& [key, node] : *n->as_table()) names.emplace_back(key.str());
+  return names;
+}
+
+std::string Config::where(const std::string& key) const {
+  return has(key) ? place(name_, tree_->at(key)->source().begin) : name_.string();
+}
+
+std::pair<unsigned, unsigned> Config::position(const std::string& key) const {
+  if (!has(key)) return {0, 0};
+  const auto begin = tree_->at(key)->source().begin;
+  return {begin.line, begin.column};
+}
+
+void Config::ignore(const std::string& key) { tree_->asked.insert(key); }
+
+void Config::problem(const std::string& key, const std::string& what, const std::string& why,
+                     const std::string& remedy) {
+  problems_.add(what, where(key), why, remedy);
+}
+
+template <class T>
+bool Config::take(const std::string& key, T& value, const Range& range) {
+  tree_->asked.insert(key);
+  const toml::node* n = tree_->at(key);
+  if (n == nullptr) return false;
+  T found{};
+  if (!convert(*n, found)) {
+    problem(key, key + " = " + written(*n), "it must be " + kind(static_cast<const T*>(nullptr)),
+            "write it as such");
+  } else if (!inside(found, range)) {
+    problem(key, key + " = " + written(*n), "it must be " + describe(range), "give such a value");
+  } else {
+    value = std::move(found);
+  }
+  return true;
+}
+
+template <class T>
+T Config::require(const std::string& key, const Range& range) {
+  T value{};
+  if (!take(key, value, range))
+    problem(key, "missing key " + key, "it has no default",
+            "add it: " + kind(static_cast<const T*>(nullptr)) +
+                (std::isinf(range.low) && std::isinf(range.high) ? "" : ", " + describe(range)));
+  return value;
+}
+
+template <class T>
+T Config::optional(const std::string& key, T otherwise, const Range& range) {
+  take(key, otherwise, range);
+  return otherwise;
+}
+
+std::string Config::choice(const std::string& key, const std::vector<std::string>& words) {
+  if (!has(key)) {
+    tree_->asked.insert(key);
+    problem(key, "missing key " + key, "it has no default", "add it: one of " + list(words));
+    return {};
+  }
+  return choice(key, words, {});
+}
+
+std::string Config::choice(const std::string& key, const std::vector<std::string>& words,
+                           const std::string& otherwise) {
+  std::string word = otherwise;
+  if (!take(key, word, {}) || word.empty()) return word;
+  if (std::find(words.begin(), words.end(), word) == words.end())
+    problem(key, key + " = '" + word + "'", "there is no such choice", "use one of: " + list(words));
+  return word;
+}
+
+fs::path Config::file(const std::string& key) {
+  const auto text = require<std::string>(key);
+  if (text.empty()) return {};
+  const fs::path path = fs::path(text).is_absolute() ? fs::path(text) : name_.parent_path() / text;
+  if (!fs::is_regular_file(path))
+    problem(key, key + " = '" + text + "'", "there is no file " + path.lexically_normal().string(),
+            "correct the path; it is relative to the config's folder");
+  return path.lexically_normal();
+}
+
+std::pair<double, double> Config::interval(const std::string& key, const Range& range) {
+  const auto v = require<std::vector<double>>(key, range);
+  if (v.size() == 2 && v[0] <= v[1]) return {v[0], v[1]};
+  if (is_array(key) && v.size() != 2 && !v.empty())
+    problem(key, key + " has " + std::to_string(v.size()) + " numbers", "an interval has two",
+            "write [low, high]");
+  if (v.size() == 2)
+    problem(key, fmt::format("{} = [{}, {}]", key, v[0], v[1]), "the low end lies above the high end",
+            "write [low, high]");
+  return {0.0, 0.0};
+}
+
+void Config::raise() {
+  unknown(tree_->root, "", tree_->asked, name_, problems_);
+  problems_.raise();
+}
+
+#define SWINGBANK_CONFIG_TYPE(T)                                   \
+  template T Config::require<T>(const std::string&, const Range&); \
+  template T Config::optional<T>(const std::string&, T, const Range&);
+SWINGBANK_CONFIG_TYPE(bool)
+SWINGBANK_CONFIG_TYPE(std::int64_t)
+SWINGBANK_CONFIG_TYPE(double)
+SWINGBANK_CONFIG_TYPE(std::string)
+SWINGBANK_CONFIG_TYPE(std::vector<std::int64_t>)
+SWINGBANK_CONFIG_TYPE(std::vector<double>)
+SWINGBANK_CONFIG_TYPE(std::vector<std::string>)
+#undef SWINGBANK_CONFIG_TYPE
+
+}  // namespace swingbank

@@ -1,0 +1,130 @@
+#include "base/durable.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "base/problem.hpp"
+
+namespace swingbank {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string remedy_for(int error) {
+  switch (error) {
+    case ENOSPC:
+    case EDQUOT:
+      return "free some space or choose another folder, then run the command again: it continues";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return "choose a folder you may write to, or mend its permissions";
+    case ENOTDIR:
+    case EEXIST:
+      return "choose another folder: a file stands in its place";
+    case ENOENT:
+      return "check the path";
+    default:
+      return "check the disk, then run the command again";
+  }
+}
+
+class Descriptor {
+ public:
+  Descriptor(const fs::path& file, int flags) : fd_(::open(file.c_str(), flags | O_CLOEXEC, 0644)) {}
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  [[nodiscard]] int get() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+}  // namespace
+
+void raise_file_error(const fs::path& file, int error, const std::string& what) {
+  throw InputError({what, file.string(), std::strerror(error), remedy_for(error)});
+}
+
+fs::path temporary_name(const fs::path& file) {
+  return file.parent_path() / ("." + file.filename().string() + ".part");
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) raise_file_error(folder, error.value(), "cannot create the folder");
+}
+
+void flush_folder(const fs::path& folder) {
+  const Descriptor d(folder.empty() ? "." : folder, O_RDONLY | O_DIRECTORY);
+  if (d.get() < 0 || ::fsync(d.get()) != 0) raise_file_error(folder, errno, "cannot flush the folder");
+}
+
+void reserve(const fs::path& file, std::uint64_t bytes) {
+  const fs::path temporary = temporary_name(file);
+  const Descriptor d(temporary, O_WRONLY | O_CREAT | O_TRUNC);
+  if (d.get() < 0) raise_file_error(file, errno, "cannot write the file");
+  const int error = bytes == 0 ? 0 : ::posix_fallocate(d.get(), 0, static_cast<off_t>(bytes));
+  if (error == 0 || error == EOPNOTSUPP || error == EINVAL) return;
+  ::unlink(temporary.c_str());
+  raise_file_error(file, error, "cannot reserve " + std::to_string(bytes) + " bytes for the file");
+}
+
+void publish(const fs::path& file) {
+  const fs::path temporary = temporary_name(file);
+  const auto fail = [&](const std::string& what) {
+    const int error = errno;
+    ::unlink(temporary.c_str());
+    raise_file_error(file, error, what);
+  };
+  {
+    const Descriptor d(temporary, O_RDONLY);
+    if (d.get() < 0 || ::fsync(d.get()) != 0) fail("cannot flush the file to the disk");
+  }
+  if (::rename(temporary.c_str(), file.c_str()) != 0) fail("cannot give the file its final name");
+  flush_folder(file.parent_path());
+}
+
+void write_text(const fs::path& file, const std::string& text) {
+  const fs::path temporary = temporary_name(file);
+  const Descriptor d(temporary, O_WRONLY | O_CREAT | O_TRUNC);
+  if (d.get() < 0) raise_file_error(file, errno, "cannot write the file");
+  for (std::size_t at = 0; at < text.size();) {
+    const ssize_t n = ::write(d.get(), text.data() + at, text.size() - at);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) {
+      const int error = errno;
+      ::unlink(temporary.c_str());
+      raise_file_error(file, error, "cannot write the file");
+    }
+    at += static_cast<std::size_t>(n);
+  }
+  publish(file);
+}
+
+std::string read_text(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) raise_file_error(file, errno, "cannot read the file");
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (in.bad()) raise_file_error(file, EIO, "cannot read the file");
+  return text.str();
+}
+
+std::string hex(std::uint64_t value) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
+  return text;
+}
+
+}  // namespace swingbank

@@ -1,0 +1,81 @@
+#pragma once
+// Other commands of this build, run as programs of their own: so that calibrate and add need not link the
+// libraries that train and generate do.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/problem.hpp"
+
+extern char** environ;
+
+namespace swingbank::jobs {
+
+inline std::filesystem::path own_folder() {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path();
+}
+
+/// Path of swingbank-<command>, which stands in this program's own folder. Throws InputError where this build
+/// does not have it; `remedy`: what to do then.
+inline std::filesystem::path own_command(const std::string& command, const std::string& remedy) {
+  const auto program = own_folder() / ("swingbank-" + command);
+  if (::access(program.c_str(), X_OK) != 0)
+    throw InputError({"swingbank " + command, program.string(), "this build does not have it", remedy});
+  return program;
+}
+
+/// Runs it to its end; what it prints is left out unless `shown`, its messages (stderr) are not. The exit
+/// code; 128 + signal if a signal ended it. Throws InputError where it cannot be started.
+inline int run_own(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+                   bool shown = false) {
+  std::vector<std::string> words = {program.string()};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (auto& w : words) argv.push_back(w.data());
+  argv.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  if (!shown) posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  pid_t child = 0;
+  const int failed = ::posix_spawnp(&child, argv[0], &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failed != 0)
+    throw InputError({"a program that does not start", program.string(), std::string(::strerror(failed)),
+                      "check that it can be run"});
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+/// A folder for files that are gone when it goes out of scope.
+class Scratch {
+ public:
+  Scratch() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "swingbank-XXXXXX").string();
+    if (::mkdtemp(pattern.data()) == nullptr)
+      throw InputError({"no scratch folder", pattern, std::string(::strerror(errno)), "set TMPDIR"});
+    folder_ = pattern;
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  ~Scratch() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace swingbank::jobs

@@ -1,0 +1,112 @@
+#include "base/run_lock.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <thread>
+#include <utility>
+
+#include "base/durable.hpp"
+#include "base/problem.hpp"
+
+namespace swingbank {
+
+namespace {
+
+/// Text of a lock file. It may have been written by anybody, so only printable characters are told.
+std::string owner_in(int fd) {
+  std::array<char, 200> text{};
+  const ssize_t n = ::pread(fd, text.data(), text.size(), 0);
+  std::string owner(text.data(), static_cast<std::size_t>(std::max<ssize_t>(n, 0)));
+  std::erase_if(owner, [](char c) { return c < ' ' || c > '~'; });
+  return owner.empty() ? "another process" : owner;
+}
+
+std::string this_process() {
+  std::array<char, 256> host{};
+  if (::gethostname(host.data(), host.size() - 1) != 0) std::strcpy(host.data(), "an unknown host");
+  std::string owner = "process " + std::to_string(::getpid()) + " on " + host.data();
+  if (const char* job = std::getenv("SLURM_JOB_ID")) owner += ", Slurm job " + std::string(job);
+  return owner;
+}
+
+}  // namespace
+
+RunLock::RunLock(std::filesystem::path file, LockWords words, std::chrono::milliseconds patience)
+    : file_(std::move(file)), words_(std::move(words)) {
+  const auto end = std::chrono::steady_clock::now() + patience;
+  try {
+    for (;;) {
+      open();
+      if (try_lock()) {
+        if (is_the_one_of_that_name()) break;
+      } else {
+        if (std::chrono::steady_clock::now() >= end) refuse();
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      }
+      ::close(std::exchange(fd_, -1));
+    }
+  } catch (...) {
+    if (fd_ >= 0) ::close(fd_);
+    throw;
+  }
+  write_owner();
+}
+
+RunLock::~RunLock() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+void RunLock::open() {
+  constexpr int kFlags = O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW;
+  fd_ = ::open(file_.c_str(), kFlags | O_EXCL, 0644);
+  created_ = fd_ >= 0;
+  if (fd_ < 0 && errno == EEXIST) fd_ = ::open(file_.c_str(), kFlags, 0644);
+  if (fd_ < 0) raise_file_error(file_, errno, "cannot open the lock file");
+}
+
+bool RunLock::try_lock() {
+  int result;
+  do {
+    result = ::flock(fd_, LOCK_EX | LOCK_NB);
+  } while (result != 0 && errno == EINTR);
+  if (result == 0) return true;
+  if (errno == EWOULDBLOCK) return false;
+  const std::string why = std::strerror(errno);
+  withdraw();
+  throw InputError(
+      {"cannot lock the folder", file_.string(),
+       "this file system does not lock files: " + why + "; two runs could write here at once",
+       "choose a folder on another disk, or have this one mounted with locks (Lustre: -o flock)"});
+}
+
+/// A holder may have withdrawn the file between opening and locking it; the lock is then on no file at all.
+bool RunLock::is_the_one_of_that_name() const {
+  struct stat held {
+  }, named{};
+  return ::fstat(fd_, &held) == 0 && ::stat(file_.c_str(), &named) == 0 && held.st_dev == named.st_dev &&
+         held.st_ino == named.st_ino;
+}
+
+void RunLock::refuse() const {
+  throw InputError({words_.what, words_.where, owner_in(fd_) + " holds it", words_.remedy});
+}
+
+/// For people only: a full disk, which cannot take it, is no reason to refuse.
+void RunLock::write_owner() const {
+  const std::string owner = this_process() + "\n";
+  if (::ftruncate(fd_, 0) == 0 && ::pwrite(fd_, owner.data(), owner.size(), 0) < 0) return;
+}
+
+void RunLock::withdraw(bool always) {
+  if (fd_ >= 0 && (created_ || always)) ::unlink(file_.c_str());
+}
+
+}  // namespace swingbank

@@ -1,0 +1,14 @@
+#pragma once
+// Result files appear complete or not at all.
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace swingbank {
+
+/// Writes to a temporary name beside `file`, flushes it to the disk and renames it; makes the folder if
+/// needed. Throws InputError (no permission, full disk), leaving nothing under the final name that was not
+/// there before.
+void write_file(const std::filesystem::path& file, std::string_view content);
+
+}  // namespace swingbank

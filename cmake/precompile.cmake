@@ -1,0 +1,28 @@
+# Headers that most sources read, parsed once per kind of target. A preset without them (SWINGBANK_PRECOMPILE=OFF) shows
+# what a source forgot to include.
+option(SWINGBANK_PRECOMPILE "Parse the headers of the standard library, fmt, Eigen and others once" ON)
+
+# swingbank_precompiled(kind targets... HEADERS <header>...): the targets give include folders and options.
+function(swingbank_precompiled kind)
+  cmake_parse_arguments(A "" "" "HEADERS" ${ARGN})
+  if(NOT SWINGBANK_PRECOMPILE)
+    return()
+  endif()
+  set(unit ${PROJECT_BINARY_DIR}/precompiled/${kind}.cpp)
+  file(CONFIGURE OUTPUT ${unit} CONTENT "// Generated: holds the precompiled headers '${kind}'.\n")
+  add_library(swingbank_precompiled_${kind} OBJECT ${unit})
+  target_link_libraries(swingbank_precompiled_${kind} PRIVATE ${A_UNPARSED_ARGUMENTS})
+  target_precompile_headers(swingbank_precompiled_${kind} PRIVATE ${A_HEADERS})
+endfunction()
+
+# swingbank_precompile(target kind)
+function(swingbank_precompile target kind)
+  if(TARGET swingbank_precompiled_${kind})
+    target_precompile_headers(${target} REUSE_FROM swingbank_precompiled_${kind})
+  endif()
+endfunction()
+
+set(standard <algorithm> <array> <cmath> <complex> <filesystem> <functional> <map> <memory> <numbers> <optional> <ranges>
+  <set> <span> <string> <string_view> <utility> <vector> <fmt/format.h>)
+swingbank_precompiled(hot swingbank_hot HEADERS ${standard} <Eigen/Dense>)
+swingbank_precompiled(cold swingbank_cold HEADERS ${standard} <fstream> <sstream> <nlohmann/json.hpp>)

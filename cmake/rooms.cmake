@@ -1,0 +1,46 @@
+# A room is a folder with one purpose. It becomes a target `swingbank_<path with _ for />`, its namespace is its path,
+# its tests lie in tests/<path>.
+#   swingbank_room(validate/fit [KIND hot|cold|train] [USES room...] [INSIDE room...] [LINK target...] [SOURCES file...])
+# USES: rooms whose headers this room's public headers include. INSIDE: rooms that only its sources include.
+# KIND: `hot` (default) is optimised as far as the compiler goes; `cold` is not worth it (readers, reports, commands);
+# `train` reads LibTorch's headers.
+# What is in <room>/detail/ is private: nobody else can include it. Each room has two include roots in the build folder,
+# made of links: `public` holds its public headers, `own` the whole room. A target sees its own room and the public
+# headers of the rooms it names, so any other include does not compile.
+function(swingbank_room path)
+  cmake_parse_arguments(A "" "KIND" "USES;INSIDE;LINK;SOURCES" ${ARGN})
+  string(REPLACE / _ name ${path})
+  set(room swingbank_${name})
+  set(folder ${PROJECT_SOURCE_DIR}/${path})
+  set(roots ${PROJECT_BINARY_DIR}/rooms/${name})
+  file(REMOVE_RECURSE ${roots})
+  cmake_path(GET path PARENT_PATH parent)
+  file(MAKE_DIRECTORY ${roots}/own/${parent} ${roots}/public/${path})
+  file(CREATE_LINK ${folder} ${roots}/own/${path} SYMBOLIC)
+  file(GLOB headers CONFIGURE_DEPENDS ${folder}/*.hpp)
+  foreach(header ${headers})
+    cmake_path(GET header FILENAME file)
+    file(CREATE_LINK ${header} ${roots}/public/${path}/${file} SYMBOLIC)
+  endforeach()
+  file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp ${folder}/detail/*.cpp)
+  list(APPEND sources ${A_SOURCES})
+  list(TRANSFORM A_USES REPLACE / _)
+  list(TRANSFORM A_USES PREPEND swingbank_)
+  list(TRANSFORM A_INSIDE REPLACE / _)
+  list(TRANSFORM A_INSIDE PREPEND swingbank_)
+  if(NOT A_KIND)
+    set(A_KIND hot)
+  endif()
+  if(sources)
+    add_library(${room} STATIC ${sources})
+    target_include_directories(${room} BEFORE PRIVATE ${roots}/own)
+    target_include_directories(${room} PUBLIC ${roots}/public)
+    target_link_libraries(${room} PUBLIC swingbank_options ${A_USES} ${A_LINK} PRIVATE swingbank_${A_KIND} ${A_INSIDE})
+    swingbank_precompile(${room} ${A_KIND})
+  else()
+    add_library(${room} INTERFACE)
+    target_include_directories(${room} INTERFACE ${roots}/public)
+    target_link_libraries(${room} INTERFACE swingbank_options ${A_USES} ${A_LINK})
+  endif()
+  set_property(TARGET ${room} PROPERTY SWINGBANK_INSIDE "${A_INSIDE}") # its tests see what its sources see
+endfunction()

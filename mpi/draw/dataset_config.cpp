@@ -1,0 +1,358 @@
+#include "mpi/draw/dataset_config.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "base/config.hpp"
+#include "base/durable.hpp"
+#include "mpi/draw/detail/plant_blocks.hpp"
+#include "sim/grid/attach.hpp"
+#include "sim/laws/law.hpp"
+#include "sim/library/library.hpp"
+
+namespace swingbank::mpi::draw {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<int> numbers(const std::vector<std::int64_t>& v) { return {v.begin(), v.end()}; }
+const Range kBusNumber{1, 999997, ""};
+const Range kCount{1, 1e12, ""};
+
+std::string parameter_list(const sim::Effect& e) {
+  std::string all;
+  for (const auto& p : e.parameters)
+    if (!p.is_code()) all += (all.empty() ? "" : ", ") + std::string(p.name);
+  return all.empty() ? "none" : all;
+}
+
+/// A table of boxes: name = [low, high] is sampled, name = value is held. Bounds come from the effect's
+/// records. `owner`: the effect, nullptr for the machine.
+void read_box(Config& c, const std::string& table, const sim::Effect& effect, const sim::Effect* owner,
+              std::vector<Box>& box) {
+  std::vector<Box> found;
+  for (const auto& name : c.keys(table)) {
+    const std::string key = table + "." + name;
+    const int index = effect.parameter_index(name);
+    if (index < 0 || effect.parameters[static_cast<std::size_t>(index)].is_code()) {
+      c.problem(key, (index < 0 ? "unknown parameter " : "parameter ") + name,
+                std::string(effect.name) +
+                    (index < 0 ? " has no such parameter" : " takes it as a code, which is never sampled"),
+                "use one of: " + parameter_list(effect));
+      c.ignore(key);
+      continue;
+    }
+    const auto& record = effect.parameters[static_cast<std::size_t>(index)];
+    const Range possible{record.low, record.high, std::string(record.unit)};
+    if (c.is_array(key)) {
+      const auto [low, high] = c.interval(key, possible);
+      found.push_back({index, low, high, owner});
+    } else {
+      const double value = c.require<double>(key, possible);
+      found.push_back({index, value, value, owner});
+    }
+  }
+  std::ranges::sort(found, {}, &Box::index);
+  box.insert(box.end(), found.begin(), found.end());
+}
+
+/// [vary.effects.NAME]: parameters of what stands around the machine.
+void read_effect_boxes(Config& c, std::vector<Box>& box) {
+  std::vector<std::pair<const sim::Effect*, std::string>> tables;
+  for (const auto& name : c.keys("vary.effects")) {
+    const std::string table = "vary.effects." + name;
+    const sim::Effect* effect = sim::library::find_effect(name);
+    const auto known = [&](const auto& t) { return t.first == effect; };
+    std::string why;
+    if (effect == nullptr)
+      why = "there is no such effect; law files stand under `laws`";
+    else if (effect->slot == sim::Slot::machine)
+      why = "it is a machine, whose parameters stand in [vary.box]";
+    else if (effect->slot != sim::Slot::transformer && !sim::is_control(effect->slot))
+      why = "it is a " + std::string(sim::slot_name(effect->slot)) + ", no part of a plant's equations";
+    else if (std::ranges::any_of(tables, known))
+      why = "another table of this config names the same effect";
+    else {
+      tables.emplace_back(effect, table);
+      continue;
+    }
+    c.problem(table, "effect " + name, why, "name an effect that the varied generators have");
+    c.ignore(table);
+  }
+  std::ranges::sort(tables, {},
+                    [](const auto& t) { return std::pair(t.first->slot, std::string(t.first->name)); });
+  for (const auto& [effect, table] : tables) read_box(c, table, *effect, effect, box);
+}
+
+/// `laws` are read first: what they add may be attached and varied.
+void read_effects(Config& c, DatasetConfig& d) {
+  for (const auto& text : c.optional<std::vector<std::string>>("laws", {})) {
+    d.laws.push_back((c.name().parent_path() / text).lexically_normal());
+    try {
+      sim::laws::load_law(d.laws.back());
+    } catch (const InputError& e) {
+      for (const auto& p : e.problems()) c.problem("laws", p.what, p.where + ": " + p.why, p.remedy);
+    }
+  }
+  Problems problems;
+  for (const auto& text : c.optional<std::vector<std::string>>("attach", {})) {
+    d.attachments.push_back(sim::plant::read_attachment(text, "attach = '" + text + "'", problems));
+    const sim::Effect* effect = d.attachments.back().block.effect;
+    if (effect != nullptr && effect->slot == sim::Slot::measurement)
+      problems.add(std::string(effect->name), "attach = '" + text + "'",
+                   "a dataset holds what the plant does, not what an instrument makes of it", "leave it out");
+  }
+  for (const auto& p : problems.list()) c.problem("attach", p.what, p.where + ": " + p.why, p.remedy);
+}
+
+void read_vary(Config& c, DatasetConfig& d) {
+  d.vary = c.choice("vary.who", {"one", "all"}) == "all" ? Vary::all : Vary::one;
+  d.generators = numbers(c.require<std::vector<std::int64_t>>("vary.generators", kBusNumber));
+  if (c.has("vary.generators") && d.generators.empty())
+    c.problem("vary.generators", "no generator", "a dataset varies at least one",
+              "list bus numbers of generators");
+  d.model = c.require<std::string>("vary.model");
+  const sim::Effect* effect = sim::library::find_effect(d.model);
+  if (effect == nullptr || effect->slot != sim::Slot::machine) {
+    if (!d.model.empty())
+      c.problem("vary.model", "model " + d.model, "it is no machine model of this program",
+                "use one of: " + sim::library::effect_names(sim::Slot::machine));
+    c.ignore("vary.box");  // cannot be judged without the model
+    return;
+  }
+  d.model = effect->name;
+  read_box(c, "vary.box", *effect, nullptr, d.box);
+  read_effect_boxes(c, d.box);
+  if (std::ranges::none_of(d.box, &Box::sampled))
+    c.problem("vary.box", "no parameter varies", "no entry of [vary.box] or [vary.effects.…] is an interval",
+              "write at least one as name = [low, high]");
+}
+
+void read_fault(Config& c, FaultConfig& f) {
+  if (c.is_text("fault.buses"))
+    c.choice("fault.buses", {"any"});
+  else
+    f.buses = numbers(c.require<std::vector<std::int64_t>>("fault.buses", kBusNumber));
+  f.except = numbers(c.optional<std::vector<std::int64_t>>("fault.except", {}, kBusNumber));
+  f.start = c.optional<double>("fault.start", f.start, {0.0, 1e4, "s"});
+  std::tie(f.shortest, f.longest) = c.interval("fault.duration", {1e-4, 100.0, "s"});
+  f.r = c.optional<double>("fault.r", 0.0, {0.0, 1e3, "pu"});
+  f.x = c.optional<double>("fault.x", 0.0, {0.0, 1e3, "pu"});
+  f.per_point = static_cast<std::uint64_t>(c.optional<std::int64_t>("fault.per_point", 1, kCount));
+}
+
+void read_record(Config& c, RecordConfig& r) {
+  r.t_end = c.require<double>("record.t_end", {0.01, 1e4, "s"});
+  r.rate = c.require<double>("record.rate", {1.0, 1e5, "1/s"});
+  r.channels = c.require<std::vector<std::string>>("record.channels");
+  std::vector<std::string> known;
+  for (const auto& k : sim::kChannels) known.emplace_back(k.name);
+  known.emplace_back("frequency");
+  for (const auto& name : r.channels)
+    if (std::ranges::find(known, name) == known.end())
+      c.problem("record.channels", "channel '" + name + "'", "there is no such channel",
+                fmt::format("use some of: {}", fmt::join(known, ", ")));
+  if (std::ranges::find(r.channels, "frequency") == r.channels.end()) return;
+  r.frequency.washout = c.require<double>("record.frequency_washout", {1e-3, 100.0, "s"});
+  r.frequency.filter = c.require<double>("record.frequency_filter", {1e-3, 100.0, "s"});
+  if (r.frequency.washout == r.frequency.filter && r.frequency.filter > 0)
+    c.problem("record.frequency_filter", "frequency_filter equal to frequency_washout",
+              "the filter's two time constants must differ", "change one of them");
+}
+
+void read_databank(Config& c, DatabankConfig& b) {
+  b.policy = c.choice("databank.policy", {"physical", "literal"}, "physical") == "literal" ? Policy::literal
+                                                                                           : Policy::physical;
+  b.distance = c.require<double>("databank.distance", {0.0, 1e6, ""});
+  b.scaled = c.choice("databank.scale", {"raw", "scaled"}, "raw") == "scaled";
+  b.candidates_per_point =
+      c.optional<double>("databank.candidates_per_point", b.candidates_per_point, {1.0, 1e9, ""});
+}
+
+}  // namespace
+
+std::size_t RecordConfig::samples() const {
+  return static_cast<std::size_t>(std::floor(t_end * rate + 1e-9));
+}
+
+const sim::Effect& DatasetConfig::effect() const { return *sim::library::find_effect(model); }
+
+const sim::Effect& DatasetConfig::effect_of(const Box& b) const {
+  return b.effect == nullptr ? effect() : *b.effect;
+}
+
+const sim::Parameter& DatasetConfig::record_of(const Box& b) const {
+  return effect_of(b).parameters[static_cast<std::size_t>(b.index)];
+}
+
+std::string DatasetConfig::name_of(const Box& b) const {
+  return (b.effect == nullptr ? "" : std::string(b.effect->name) + ".") + std::string(record_of(b).name);
+}
+
+std::vector<const sim::Effect*> DatasetConfig::other_effects() const {
+  std::vector<const sim::Effect*> all;
+  for (const auto& b : box)
+    if (b.effect != nullptr && std::ranges::find(all, b.effect) == all.end()) all.push_back(b.effect);
+  return all;
+}
+
+std::uint64_t DatasetConfig::points() const {
+  const std::uint64_t groups = (draws + fault.per_point - 1) / fault.per_point;
+  return vary == Vary::all ? groups * generators.size() : groups;
+}
+
+namespace {
+/// "30:SEXS:TAoverTB=0.1,TB=10,…" with every parameter, so that a standard value that moves shows in the
+/// hash.
+std::string written(const sim::plant::Attachment& a) {
+  std::string text = a.plant + ":" + std::string(a.block.effect->name);
+  for (std::size_t i = 0; i < a.block.p.size(); ++i)
+    text += fmt::format("{}{}={}", i == 0 ? ":" : ",", a.block.effect->parameters[i].name, a.block.p[i]);
+  return text;
+}
+}  // namespace
+
+std::string DatasetConfig::canonical() const {
+  std::string text;
+  const auto line = [&](std::string_view key, const auto& value) {
+    text += fmt::format("{} = {}\n", key, value);
+  };
+  // Absent keys leave no line, so that configs without them keep their hash.
+  if (!models.ignore.empty()) line("ignore_models", models.ignore);
+  for (const auto& [from, to] : models.map) line("map_models", from + "=" + to);
+  if (frequency_hz) line("frequency_hz", *frequency_hz);
+  for (const auto& a : attachments) line("attach", written(a));
+  line("convention", psse ? "psse" : "andes");
+  line("draws", draws);
+  line("draws_per_shard", draws_per_shard);
+  line("seed", seed);
+  line("vary.who", vary == Vary::all ? "all" : "one");
+  line("vary.generators", generators);
+  line("vary.model", model);
+  for (const auto& b : box)
+    line((b.effect == nullptr ? "vary.box." : "vary.effects.") + name_of(b),
+         std::vector<double>{b.low, b.high});
+  line("databank.policy", databank.policy == Policy::literal ? "literal" : "physical");
+  line("databank.distance", databank.distance);
+  line("databank.scale", databank.scaled ? "scaled" : "raw");
+  line("fault.buses", fault.buses);
+  line("fault.except", fault.except);
+  line("fault.start", fault.start);
+  line("fault.duration", std::vector<double>{fault.shortest, fault.longest});
+  line("fault.impedance", std::vector<double>{fault.r, fault.x});
+  line("fault.per_point", fault.per_point);
+  line("record.t_end", record.t_end);
+  line("record.rate", record.rate);
+  line("record.channels", fmt::format("{}", fmt::join(record.channels, ", ")));
+  line("record.frequency", std::vector<double>{record.frequency.washout, record.frequency.filter});
+  line("kernel.tolerance", tolerance);
+  return text;
+}
+
+DatasetConfig read_dataset_config(const fs::path& file, const Overrides& overrides) {
+  Config c(file);
+  DatasetConfig d;
+  d.file = file;
+  d.raw = c.file("raw");
+  d.dyr = c.file("dyr");
+  d.models = sim::formats::read_dyr_options(c, "");
+  if (c.has("frequency_hz")) d.frequency_hz = c.require<double>("frequency_hz", {1.0, 1000.0, "Hz"});
+  d.psse = c.choice("convention", {"psse", "andes"}) != "andes";
+  d.draws = static_cast<std::uint64_t>(c.require<std::int64_t>("draws", kCount));
+  d.draws_per_shard =
+      static_cast<std::uint64_t>(c.optional<std::int64_t>("draws_per_shard", 512, {1, 1e6, ""}));
+  d.seed = static_cast<std::uint64_t>(c.optional<std::int64_t>("seed", 1, {0, 9e18, ""}));
+  read_effects(c, d);
+  read_vary(c, d);
+  read_databank(c, d.databank);
+  read_fault(c, d.fault);
+  read_record(c, d.record);
+  d.tolerance = c.optional<double>("kernel.tolerance", 1e-6, {1e-12, 1e-2, ""});
+  d.lanes = static_cast<int>(c.optional<std::int64_t>("kernel.lanes", 0, {0, 8, ""}));
+  if (d.fault.start + d.fault.longest >= d.record.t_end && d.record.t_end > 0)
+    c.problem("fault.start", fmt::format("a fault until {} s", d.fault.start + d.fault.longest),
+              fmt::format("the record ends at {} s", d.record.t_end),
+              "let the fault end before the record does");
+  c.raise();
+  d.draws = overrides.draws.value_or(d.draws);
+  d.seed = overrides.seed.value_or(d.seed);
+  d.draws_per_shard = overrides.draws_per_shard.value_or(d.draws_per_shard);
+  d.fault.per_point = overrides.faults_per_point.value_or(d.fault.per_point);
+  return d;
+}
+
+Study load_study(const DatasetConfig& config) {
+  Study s{config, {}, {}, {}};
+  s.grid = sim::grid::load_grid(config.raw, config.dyr,
+                                config.psse ? sim::Conventions::psse() : sim::Conventions::andes(),
+                                config.models, config.frequency_hz);
+  const auto& network = s.grid.network;
+  s.grid.conventions.frequency = network.frequency;
+  Problems problems;
+  for (const auto& a : config.attachments) sim::grid::attach(s.grid, a, config.file.string(), problems);
+  for (int number : config.generators) {
+    const int bus = network.bus_index(number);
+    const auto here = [&](const sim::plant::Plant& p) { return bus >= 0 && p.bus == bus; };
+    const auto count = std::ranges::count_if(s.grid.plants, here);
+    const auto plant = std::ranges::find_if(s.grid.plants, here);
+    if (count != 1)
+      problems.add(fmt::format("generator {} of vary.generators", number), config.file.string(),
+                   fmt::format("{} has {} generators in service at this bus", config.raw.string(), count),
+                   "name buses with one generator");
+    else if (plant->machine.effect != &config.effect())
+      problems.add(fmt::format("generator {} of vary.generators", number), config.file.string(),
+                   fmt::format("its machine in {} is {}, not {}", config.dyr.string(),
+                               plant->machine.effect->name, config.model),
+                   "change vary.model or the .dyr");
+    else
+      s.plants.push_back(static_cast<int>(plant - s.grid.plants.begin()));
+    if (count != 1) continue;
+    for (const sim::Effect* effect : config.other_effects())
+      if (const auto n = block_count(*plant, *effect); n != 1)
+        problems.add(fmt::format("generator {} of vary.generators", number), config.file.string(),
+                     fmt::format("it has {} {} with parameters in [vary.effects.{}]", n == 0 ? "no" : "two",
+                                 effect->name, effect->name),
+                     n == 0 ? fmt::format("add \"{}:{}\" to attach", plant->name, effect->name)
+                            : "leave one of them in the .dyr");
+  }
+  const auto index_of = [&](int number, const char* key) {
+    const int bus = network.bus_index(number);
+    if (bus < 0)
+      problems.add(fmt::format("bus {} of {}", number, key), config.file.string(),
+                   "there is no such bus in " + config.raw.string(), "name buses of the network");
+    return bus;
+  };
+  std::vector<int> except;
+  for (int number : config.fault.except) except.push_back(index_of(number, "fault.except"));
+  const auto allow = [&](int bus) {
+    if (bus >= 0 && std::ranges::find(except, bus) == except.end()) s.fault_buses.push_back(bus);
+  };
+  for (int number : config.fault.buses) allow(index_of(number, "fault.buses"));
+  if (config.fault.buses.empty())
+    for (std::size_t i = 0; i < network.buses.size(); ++i)
+      if (network.buses[i].type != sim::network::BusType::isolated) allow(static_cast<int>(i));
+  if (s.fault_buses.empty())
+    problems.add("no bus to fault", config.file.string(), "fault.except leaves none of fault.buses",
+                 "name more buses");
+  problems.raise();
+  return s;
+}
+
+std::string config_hash(const DatasetConfig& config, const std::string& kernel) {
+  std::string text = config.canonical() + kernel + "\n";
+  std::vector<fs::path> files = {config.raw, config.dyr};
+  files.insert(files.end(), config.laws.begin(), config.laws.end());
+  for (const auto& file : files) {
+    const std::string content = read_text(file);
+    text += hex(XXH3_64bits(content.data(), content.size())) + "\n";
+  }
+  return hex(XXH3_64bits(text.data(), text.size()));
+}
+
+}  // namespace swingbank::mpi::draw

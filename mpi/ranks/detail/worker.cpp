@@ -1,0 +1,60 @@
+#include "mpi/ranks/detail/worker.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "base/durable.hpp"
+#include "base/stop_signal.hpp"
+#include "mpi/ranks/shard_group.hpp"
+
+namespace swingbank::mpi::ranks {
+
+std::string shard_file_name(std::uint64_t shard) { return fmt::format("shards/shard-{:06}.h5", shard); }
+
+store::JournalLine Worker::make(std::uint64_t shard) {
+  int rank, size;
+  MPI_Comm_rank(group, &rank);
+  MPI_Comm_size(group, &size);
+  const draw::DatasetConfig& c = study.config;
+  const std::uint64_t first = shard * c.draws_per_shard, draws = std::min(c.draws_per_shard, c.draws - first);
+  const auto n = static_cast<std::uint64_t>(size), r = static_cast<std::uint64_t>(rank);
+  const std::uint64_t from = draws * r / n, to = draws * (r + 1) / n;
+  store::ShardData part;
+  agree(group, fmt::format("shard {}", shard), [&] {
+    part = maker.make(first + from, to - from, tick);
+    part.attributes = attributes;
+    part.attributes.shard = shard;
+  });
+  const ShardReceipt receipt = write_shard(folder / shard_file_name(shard), part, group);
+
+  std::array<std::uint64_t, store::kRefused + 1> mine{}, all{};
+  for (const auto outcome : part.draw_outcome) ++mine[outcome];
+  MPI_Allreduce(mine.data(), all.data(), static_cast<int>(all.size()), MPI_UINT64_T, MPI_SUM, group);
+  store::JournalLine line{
+      shard, shard_file_name(shard), receipt.draws, receipt.rows, receipt.bytes, hex(receipt.hash), {}};
+  for (std::uint8_t i = 0; i <= store::kRefused; ++i)
+    if (all[i] > 0) line.outcomes[std::string(store::draw_outcome_name(i))] = all[i];
+  return line;
+}
+
+void Worker::run() {
+  int rank;
+  MPI_Comm_rank(group, &rank);
+  Report report;
+  for (;;) {
+    report.stop = stop_asked();
+    std::int64_t lease = rank == 0 ? exchange(report) : 0;
+    MPI_Bcast(&lease, 1, MPI_INT64_T, 0, group);
+    if (lease == kNoMore) return;
+    report = {};
+    try {
+      report.finished = make(static_cast<std::uint64_t>(lease));
+    } catch (const AgreedError& e) {  // of the group
+      report.problems = e.problems();
+    }
+  }
+}
+
+}  // namespace swingbank::mpi::ranks

@@ -1,0 +1,31 @@
+#pragma once
+// A worker: a group of ranks that makes one leased shard after the other. Each rank simulates a part of the
+// shard's draws; all write it together through the MPI-IO driver.
+#include <functional>
+
+#include "mpi/draw/shard_maker.hpp"
+#include "mpi/ranks/detail/message.hpp"
+
+namespace swingbank::mpi::ranks {
+
+struct Worker {
+  const draw::Study& study;
+  draw::ShardMaker& maker;
+  store::ShardAttributes attributes;
+  std::filesystem::path folder;
+  MPI_Comm group;  ///< rank 0 of it is the leader
+  /// Leader only: hands in a report, returns the next shard or kNoMore.
+  std::function<std::int64_t(const Report&)> exchange;
+  /// Called now and then with the number of draws finished since.
+  std::function<void(std::uint64_t)> tick;
+
+  /// Works until there is no more.
+  void run();
+  /// Makes one shard. Collective over the group; throws InputError on all its ranks alike.
+  store::JournalLine make(std::uint64_t shard);
+};
+
+/// Name of a shard's file below the dataset folder: "shards/shard-000012.h5".
+std::string shard_file_name(std::uint64_t shard);
+
+}  // namespace swingbank::mpi::ranks

@@ -1,0 +1,332 @@
+#include "mpi/ranks/generate.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <deque>
+#include <exception>
+#include <memory>
+#include <new>
+#include <optional>
+#include <set>
+
+#include "base/durable.hpp"
+#include "base/run_lock.hpp"
+#include "base/stop_signal.hpp"
+#include "mpi/draw/databank.hpp"
+#include "mpi/ranks/detail/master.hpp"
+#include "mpi/ranks/detail/shard_audit.hpp"
+#include "mpi/ranks/detail/worker.hpp"
+#include "mpi/ranks/shard_group.hpp"
+
+namespace swingbank::mpi::ranks {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kLockFile = ".lock";
+
+/// Every rank must have read the same config and run the same kernel.
+void require_one_variant(MPI_Comm world, const std::string& hash, const std::string& kernel) {
+  int rank;
+  MPI_Comm_rank(world, &rank);
+  char mine[160] = {}, first[160] = {};
+  fmt::format_to_n(mine, sizeof mine - 1, "config {}, kernel {}", hash, kernel);
+  std::copy_n(mine, sizeof mine, first);
+  MPI_Bcast(first, sizeof first, MPI_CHAR, 0, world);
+  agree(world, "start", [&] {
+    if (std::string(mine) != first)
+      throw InputError({"ranks that would make different data", fmt::format("rank {}", rank),
+                        fmt::format("it has {}, rank 0 has {}", mine, first),
+                        "start the same build with the same config on every node, or a build for the common "
+                        "instruction set (preset portable)"});
+  });
+}
+
+void make_room(std::vector<double>& values, std::size_t count, int rank) {
+  try {
+    values.resize(count);
+  } catch (const std::bad_alloc&) {
+    throw InputError({"no memory for the databank", fmt::format("rank {}", rank),
+                      fmt::format("every rank holds all of it, {:.1f} MB",
+                                  static_cast<double>(count * sizeof(double)) * 1e-6),
+                      "start fewer ranks on a machine, ask for more memory, or make fewer draws"});
+  }
+}
+
+/// Rank 0 draws; all others get the points.
+draw::Databank shared_databank(const draw::Study& study, MPI_Comm world) {
+  int rank;
+  MPI_Comm_rank(world, &rank);
+  draw::Databank bank;
+  bank.dimensions = study.config.box.size();
+  const auto& base = study.grid.plants[static_cast<std::size_t>(study.plants[0])];
+  agree(world, "databank", [&] {  // before the drawing, which may take long
+    if (rank != 0) make_room(bank.values, study.config.points() * bank.dimensions, rank);
+  });
+  agree(world, "databank", [&] {
+    if (rank == 0) bank = draw::draw_databank(study.config, base, study.config.points());
+  });
+  constexpr std::size_t piece = std::size_t{1} << 26;  // MPI counts in int
+  for (std::size_t at = 0; at < bank.values.size(); at += piece)
+    MPI_Bcast(bank.values.data() + at, static_cast<int>(std::min(piece, bank.values.size() - at)), MPI_DOUBLE,
+              0, world);
+  return bank;
+}
+
+store::DatasetHeader header_of(const draw::Study& study, const store::ShardAttributes& a) {
+  const draw::DatasetConfig& c = study.config;
+  store::DatasetHeader h;
+  h.name = c.file.stem().string();
+  h.config_hash = a.config_hash;
+  h.kernel = a.kernel;
+  h.software = a.software;
+  h.machine_model = a.machine_model;
+  h.config = c.canonical();
+  h.seed = c.seed;
+  h.draws = c.draws;
+  h.draws_per_shard = c.draws_per_shard;
+  h.rate = c.record.rate;
+  h.samples = c.record.samples();
+  h.channel_names = a.channel_names;
+  h.channel_units = a.channel_units;
+  h.parameter_names = a.parameter_names;
+  h.parameter_units = a.parameter_units;
+  h.parameter_low = a.parameter_low;
+  h.parameter_high = a.parameter_high;
+  h.parameter_effects = a.parameter_effects;
+  return h;
+}
+
+/// Whether a folder holds nothing but what a run leaves that was killed before its header stood.
+bool is_unclaimed(const fs::path& folder) {
+  const fs::path header = temporary_name(folder / "dataset.json");
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const fs::path name = entry.path().filename();
+    const bool ours = name == kLockFile || name == header.filename() ||
+                      (name == "shards" && entry.is_directory() && fs::is_empty(entry.path()));
+    if (!ours) return false;
+  }
+  return true;
+}
+
+/// A folder is new, or it belongs to this very config. Under the lock.
+void claim_folder(const fs::path& folder, const store::DatasetHeader& header, RunLock& lock) {
+  if (fs::exists(folder / "dataset.json")) {
+    const store::DatasetHeader found = store::read_header(folder);
+    if (found.config_hash != header.config_hash)
+      throw InputError({"a dataset of another config", folder.string(),
+                        fmt::format("its config hash is {} (kernel {}), this run's is {} (kernel {})",
+                                    found.config_hash, found.kernel, header.config_hash, header.kernel),
+                        "give another folder, or the config, size, seed and build it was made with"});
+    return;
+  }
+  if (!is_unclaimed(folder)) {
+    lock.withdraw();
+    throw InputError({"output folder in use", folder.string(), "it holds files but no dataset",
+                      "give a new or empty folder"});
+  }
+  store::write_header(folder, header);
+}
+
+/// The folder for shards, without temporary files of a run that was killed.
+void clear_leftovers(const fs::path& folder) {
+  make_folder(folder / "shards");
+  for (const auto& entry : fs::directory_iterator(folder / "shards"))
+    if (entry.path().extension() == ".part") fs::remove(entry.path());
+}
+
+std::unique_ptr<RunLock> lock_folder(const fs::path& folder) {
+  make_folder(folder);
+  return std::make_unique<RunLock>(
+      folder / kLockFile,
+      LockWords{"dataset in use", folder.string(), "wait for it to end, or choose another folder"});
+}
+
+/// Bad shards are taken out of the journal, or refused.
+void settle(const fs::path& folder, const std::vector<store::BadShard>& bad, bool repair) {
+  Problems problems;
+  for (const auto& [shard, p] : bad) {
+    if (repair) spdlog::warn("to be made anew: {} at {} ({})", p.what, p.where, p.why);
+    if (!repair) problems.add(p.what, p.where, p.why, p.remedy);
+  }
+  problems.raise();
+  if (repair) store::strike_shards(folder, bad);
+}
+
+/// Shards still to make.
+std::deque<std::uint64_t> missing_shards(const GenerateOptions& o, const store::DatasetHeader& header) {
+  std::set<std::uint64_t> there;
+  for (const auto& s : store::open_dataset(o.folder, true).shards) there.insert(s.shard);
+  std::deque<std::uint64_t> missing;
+  for (std::uint64_t s = 0; s < header.shard_count(); ++s)
+    if (!there.contains(s)) missing.push_back(s);
+  return missing;
+}
+
+std::uint64_t draws_in(const std::deque<std::uint64_t>& shards, const draw::DatasetConfig& c) {
+  std::uint64_t n = 0;
+  for (const auto s : shards) n += std::min(c.draws_per_shard, c.draws - s * c.draws_per_shard);
+  return n;
+}
+
+/// What a leader other than rank 0 does to get a shard.
+std::int64_t ask_master(MPI_Comm world, const Report& report, double timeout) {
+  const std::string text = pack(report);
+  MPI_Send(text.data(), static_cast<int>(text.size()), MPI_CHAR, 0, kReportTag, world);
+  if (!wait_for(world, 0, kLeaseTag, timeout)) {
+    fmt::print(stderr,
+               "no answer from rank 0 for {:.0f} s (it hangs or is gone): the run ends; finished shards are "
+               "safe, run the command again to continue\n",
+               timeout);
+    MPI_Abort(world, 1);
+  }
+  std::int64_t lease;
+  MPI_Recv(&lease, 1, MPI_INT64_T, 0, kLeaseTag, world, MPI_STATUS_IGNORE);
+  return lease;
+}
+
+/// Ranks that work, cut into groups of writers; a rank that only leads has none.
+struct Groups {
+  MPI_Comm mine = MPI_COMM_NULL;
+  int count = 0;
+  Groups(MPI_Comm world, int rank, int size, int writers, bool dedicated) {
+    const int first = dedicated ? 1 : 0, workers = size - first;
+    writers = std::min(writers, workers);
+    count = (workers + writers - 1) / writers;
+    MPI_Comm_split(world, rank < first ? MPI_UNDEFINED : (rank - first) / writers, rank, &mine);
+  }
+  ~Groups() {  // collective, so not while this rank alone unwinds from an exception
+    if (mine != MPI_COMM_NULL && std::uncaught_exceptions() == 0) MPI_Comm_free(&mine);
+  }
+  Groups(const Groups&) = delete;
+  Groups& operator=(const Groups&) = delete;
+};
+
+/// Rank 0: leads, and works between two polls unless it is dedicated.
+void lead(Worker* worker, Master& master, Progress& progress) {
+  if (worker != nullptr) {
+    std::uint64_t counted = 0;  // of the shard at hand: this rank's own part of its group's draws
+    worker->exchange = [&](const Report& r) {
+      if (r.finished) progress.add(r.finished->draws - std::min(counted, r.finished->draws));
+      counted = 0;
+      return master.exchange(r);
+    };
+    worker->tick = [&](std::uint64_t n) {
+      counted += n;
+      progress.add(n);
+      master.poll();
+    };
+    worker->run();
+  }
+  master.serve_to_the_end();
+}
+
+}  // namespace
+
+int generate(const draw::DatasetConfig& config, const GenerateOptions& o, MPI_Comm world) {
+  int rank, size;
+  MPI_Comm_rank(world, &rank);
+  MPI_Comm_size(world, &size);
+  std::optional<draw::Study> loaded;
+  std::string kernel, hash;
+  store::ShardAttributes attributes;
+  store::DatasetHeader header;
+  agree(world, config.file.string(), [&] {
+    loaded = draw::load_study(config);
+    kernel = draw::kernel_variant(*loaded);
+    hash = draw::config_hash(config, kernel);
+    attributes = draw::shard_attributes(*loaded, hash, kernel);
+    header = header_of(*loaded, attributes);
+    store::header_text(header);  // before the folder is touched
+  });
+  const draw::Study& study = *loaded;
+  require_one_variant(world, hash, kernel);
+
+  std::unique_ptr<RunLock> lock;  // falls after all else
+  std::vector<store::JournalLine> lines;
+  agree(world, o.folder.string(), [&] {
+    if (rank != 0) return;
+    lock = lock_folder(o.folder);
+    claim_folder(o.folder, header, *lock);
+    lines = store::read_journal(o.folder / "journal.jsonl");
+  });
+  const ShardAudit audit = audit_shards(world, o.folder, header, lines, o.repair || !o.trust);
+  if (audit.stopped) return kSubmitAgain;
+
+  std::optional<store::Journal> journal;
+  std::deque<std::uint64_t> missing;
+  agree(world, o.folder.string(), [&] {
+    if (rank != 0) return;
+    settle(o.folder, audit.bad, o.repair);
+    journal.emplace(o.folder / "journal.jsonl");
+    clear_leftovers(o.folder);
+    missing = missing_shards(o, header);
+    const auto left = draws_in(missing, config);
+    spdlog::info("{}: {} of {} draws to make in {} shards, {} ranks, kernel {}, config {}", o.folder.string(),
+                 left, config.draws, missing.size(), size, kernel, hash);
+  });
+
+  const draw::Databank bank = shared_databank(study, world);
+  const Groups groups(world, rank, size, o.writer_ranks, o.dedicated_master && size > 1);
+  draw::ShardMaker maker(study, bank);
+  Worker worker{study,
+                maker,
+                attributes,
+                o.folder,
+                groups.mine,
+                [&](const Report& r) { return ask_master(world, r, o.lease_timeout); },
+                [](std::uint64_t) {}};
+  bool complete = true;
+  Problems problems;
+  if (rank == 0) {
+    Progress progress(o.progress, "draws", config.draws, config.draws - draws_in(missing, config));
+    const bool works = groups.mine != MPI_COMM_NULL;
+    Master master(world, *journal, progress, missing, groups.count - (works ? 1 : 0), o.lease_timeout);
+    lead(works ? &worker : nullptr, master, progress);
+    progress.finish();
+    problems = master.problems();
+    complete = master.all_made();
+    const double spent = progress.seconds();
+    spdlog::info("{:.0f} draws in {:.1f} s: {:.0f} draws/s", progress.rate() * spent, spent, progress.rate());
+  } else {
+    worker.run();
+  }
+  agree(world, o.folder.string(), [&] { problems.raise(); });
+  int done = complete ? 1 : 0;
+  MPI_Bcast(&done, 1, MPI_INT, 0, world);
+  return done != 0 ? 0 : kSubmitAgain;
+}
+
+bool verify(const fs::path& folder, MPI_Comm world) {
+  int rank;
+  MPI_Comm_rank(world, &rank);
+  store::DatasetHeader header;
+  std::vector<store::JournalLine> lines;
+  agree(world, folder.string(), [&] {
+    header = store::read_header(folder);
+    if (rank == 0) lines = store::read_journal(folder / "journal.jsonl");
+  });
+  const ShardAudit audit = audit_shards(world, folder, header, lines, true);
+  agree(world, folder.string(), [&] { settle(folder, audit.bad, false); });
+  return !audit.stopped;
+}
+
+std::string describe(const store::Dataset& d) {
+  std::uint64_t bytes = 0, draws = 0;
+  for (const auto& s : d.shards) bytes += s.bytes;
+  for (const auto& [name, count] : d.outcomes) draws += count;
+  std::string text =
+      fmt::format("dataset {}: {} rows of {} x {} samples at {:g}/s, {:.1f} MB in {} of {} shards\n",
+                  d.path.string(), d.rows, d.channel_names.size(), d.samples, d.rate,
+                  static_cast<double>(bytes) / 1e6, d.shards.size(), d.shard_count());
+  for (const auto& [name, count] : d.outcomes)
+    text += fmt::format(
+        "  {:<18}{:>10} draws  {:5.1f} %\n", name, count,
+        100.0 * static_cast<double>(count) / static_cast<double>(std::max<std::uint64_t>(draws, 1)));
+  return text + fmt::format("  config {}  dataset {}\n", d.config_hash, d.complete ? d.hash : "unfinished");
+}
+
+}  // namespace swingbank::mpi::ranks

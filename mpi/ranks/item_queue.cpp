@@ -1,0 +1,209 @@
+#include "mpi/ranks/item_queue.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <exception>
+#include <optional>
+#include <thread>
+
+#include "base/stop_signal.hpp"
+#include "mpi/ranks/detail/message.hpp"
+#include "mpi/ranks/shard_group.hpp"
+
+namespace swingbank::mpi::ranks {
+namespace {
+
+constexpr int kFinishedTag = 11, kItemTag = 12;
+constexpr std::int64_t kNone = -1;
+constexpr auto kPause = std::chrono::milliseconds(2);  // between two looks; items take seconds
+
+/// What a rank tells rank 0: "item stop result"; item -1: none finished yet.
+std::string packed(std::int64_t item, const std::string& result) {
+  return fmt::format("{} {} {}", item, stop_asked() ? 1 : 0, result);
+}
+struct Told {
+  std::int64_t item;
+  bool stop;
+  std::string result;
+};
+Told unpacked(const std::string& text) {
+  const auto first = text.find(' '), second = text.find(' ', first + 1);
+  return {std::stoll(text.substr(0, first)), text[first + 1] == '1', text.substr(second + 1)};
+}
+
+/// The work of rank 0 itself, beside its answering: a thread that takes one item at a time.
+class OwnHand {
+ public:
+  explicit OwnHand(const SharedItems& shared) : thread_([this, &shared] { run(shared); }) {}
+  ~OwnHand() {
+    end_ = true;
+    thread_.join();
+  }
+  OwnHand(const OwnHand&) = delete;
+  OwnHand& operator=(const OwnHand&) = delete;
+  [[nodiscard]] bool idle() const { return state_ == State::idle; }
+  void give(std::size_t item) {
+    item_ = item;
+    state_ = State::working;
+  }
+  /// The item it has finished since the last look; throws what the work threw.
+  std::optional<std::pair<std::size_t, std::string>> finished() {
+    if (state_ != State::finished) return {};
+    if (failure_) std::rethrow_exception(failure_);
+    std::pair out(item_, std::move(result_));
+    state_ = State::idle;
+    return out;
+  }
+
+ private:
+  enum class State { idle, working, finished };
+  void run(const SharedItems& shared) {
+    while (!end_) {
+      if (state_ == State::working) {
+        try {
+          result_ = shared.work(item_);
+        } catch (...) {
+          failure_ = std::current_exception();
+        }
+        state_ = State::finished;
+      }
+      std::this_thread::sleep_for(kPause);
+    }
+  }
+  std::atomic<State> state_ = State::idle;
+  std::atomic<bool> end_ = false;
+  std::size_t item_ = 0;  // these belong to whom state_ says
+  std::string result_;
+  std::exception_ptr failure_;
+  std::thread thread_;  // last: it uses the others
+};
+
+/// Rank 0: gives out items, to the others and to its own hand, until all are done.
+class Giver {
+ public:
+  Giver(const Ranks& ranks, const SharedItems& shared)
+      : ranks_(ranks), shared_(shared), left_(shared.items.begin(), shared.items.end()), hand_(shared) {}
+  bool run() {
+    int others = ranks_.size() - 1;
+    while (others > 0 || !hand_.idle() || (!left_.empty() && !stop_)) {
+      stop_ = stop_ || stop_asked();
+      answer(others);
+      if (auto own = hand_.finished()) finish(own->first, own->second);
+      if (hand_.idle())
+        if (const auto item = next(); item != kNone) hand_.give(static_cast<std::size_t>(item));
+      std::this_thread::sleep_for(kPause);
+    }
+    return done_ == shared_.items.size();
+  }
+
+ private:
+  std::int64_t next() {
+    if (left_.empty() || stop_) return kNone;
+    const std::size_t item = left_.front();
+    left_.pop_front();
+    return static_cast<std::int64_t>(item);
+  }
+  void finish(std::size_t item, const std::string& result) {
+    ++done_;
+    shared_.done(item, result);
+  }
+  void answer(int& others) {
+    for (int there = 1; there != 0;) {
+      MPI_Status status;
+      MPI_Iprobe(MPI_ANY_SOURCE, kFinishedTag, ranks_.world, &there, &status);
+      if (there == 0) return;
+      int length;
+      MPI_Get_count(&status, MPI_CHAR, &length);
+      std::string text(static_cast<std::size_t>(length), '\0');
+      MPI_Recv(text.data(), length, MPI_CHAR, status.MPI_SOURCE, kFinishedTag, ranks_.world,
+               MPI_STATUS_IGNORE);
+      const Told told = unpacked(text);
+      stop_ = stop_ || told.stop;
+      std::int64_t item = next();
+      MPI_Send(&item, 1, MPI_INT64_T, status.MPI_SOURCE, kItemTag, ranks_.world);
+      if (item == kNone) --others;
+      if (told.item != kNone) finish(static_cast<std::size_t>(told.item), told.result);
+    }
+  }
+
+  const Ranks& ranks_;
+  const SharedItems& shared_;
+  std::deque<std::size_t> left_;
+  OwnHand hand_;
+  std::size_t done_ = 0;
+  bool stop_ = false;
+};
+
+/// Every other rank: hands in what is finished, takes the next.
+void take_until_none(const Ranks& ranks, const SharedItems& shared) {
+  std::string text = packed(kNone, "");
+  for (;;) {
+    MPI_Send(text.data(), static_cast<int>(text.size()), MPI_CHAR, 0, kFinishedTag, ranks.world);
+    wait_for(ranks.world, 0, kItemTag, 0);
+    std::int64_t item;
+    MPI_Recv(&item, 1, MPI_INT64_T, 0, kItemTag, ranks.world, MPI_STATUS_IGNORE);
+    if (item == kNone) return;
+    text = packed(item, shared.work(static_cast<std::size_t>(item)));
+  }
+}
+
+bool alone(const SharedItems& shared) {
+  for (const std::size_t item : shared.items) {
+    if (stop_asked()) return false;
+    shared.done(item, shared.work(item));
+  }
+  return true;
+}
+
+}  // namespace
+
+int Ranks::rank() const {
+  int r = 0;
+  if (world != MPI_COMM_NULL) MPI_Comm_rank(world, &r);
+  return r;
+}
+int Ranks::size() const {
+  int n = 1;
+  if (world != MPI_COMM_NULL) MPI_Comm_size(world, &n);
+  return n;
+}
+int Ranks::on_this_machine() const {
+  if (world == MPI_COMM_NULL) return 1;
+  MPI_Comm here;
+  MPI_Comm_split_type(world, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
+  int n;
+  MPI_Comm_size(here, &n);
+  MPI_Comm_free(&here);
+  return n;
+}
+int Ranks::from_first(int value) const {
+  if (world != MPI_COMM_NULL) MPI_Bcast(&value, 1, MPI_INT, 0, world);
+  return value;
+}
+
+void agree(const Ranks& ranks, const std::string& where, const std::function<void()>& prepare) {
+  if (ranks.world == MPI_COMM_NULL)
+    prepare();
+  else
+    agree(ranks.world, where, prepare);
+}
+
+bool share_items(const Ranks& ranks, const SharedItems& shared) {
+  if (ranks.size() == 1) return alone(shared);
+  try {
+    bool complete = false;
+    if (ranks.rank() == 0)
+      complete = Giver(ranks, shared).run();
+    else
+      take_until_none(ranks, shared);
+    return ranks.from_first(complete ? 1 : 0) != 0;
+  } catch (const std::exception& error) {  // the others would wait for ever
+    end_all_ranks(error.what());
+  }
+}
+
+}  // namespace swingbank::mpi::ranks

@@ -1,0 +1,65 @@
+#include "mpi/ranks/session.hpp"
+
+#include <hdf5.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "mpi/ranks/shard_group.hpp"
+#include "mpi/store/hdf5_file.hpp"
+
+namespace swingbank::mpi::ranks {
+
+bool MpiSession::launched() {
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "SLURM_STEP_ID"})
+    if (std::getenv(name) != nullptr) return true;
+  return false;
+}
+
+MpiSession::MpiSession(int* argc, char*** argv) {
+  ::setenv("OMPI_MCA_fbtl_posix_read_datasieving", "0", 1);
+  if (!launched()) {
+    // Started by hand, one rank needs no daemon beside it. Such ranks share one folder of temporary files,
+    // where the first to end removes the others' (OpenMPI 4.1.4): each gets its own.
+    ::setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+    ::setenv("OMPI_MCA_pml", "ob1", 0);  // it talks to nobody: looking for fast networks takes 0.2 s
+    std::string folder = (std::filesystem::temp_directory_path() / "swingbank-mpi-XXXXXX").string();
+    if (::mkdtemp(folder.data()) != nullptr) {
+      temporary_ = folder;
+      ::setenv("OMPI_MCA_orte_tmpdir_base", folder.c_str(), 1);
+    }
+  }
+  H5dont_atexit();  // ~MpiSession ends it
+  int provided;
+  MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+  MPI_Comm_size(MPI_COMM_WORLD, &size_);
+}
+
+MpiSession::~MpiSession() {
+  std::error_code ignored;
+  if (store::h5::close_failed) {  // H5close, which MPI_Finalize calls too, would crash on that file
+    std::fflush(nullptr);
+    if (!temporary_.empty()) std::filesystem::remove_all(temporary_, ignored);
+    ::_exit(EXIT_FAILURE);
+  }
+  H5close();  // before MPI_Finalize: HDF5 holds MPI objects
+  MPI_Finalize();
+  if (!temporary_.empty()) std::filesystem::remove_all(temporary_, ignored);
+}
+
+int run_on_all_ranks(const MpiSession& session, const std::function<int()>& work) {
+  try {
+    return work();
+  } catch (const AgreedError& e) {
+    if (session.rank() == 0) std::fprintf(stderr, "%s\n", e.what());
+  } catch (const std::exception& e) {
+    if (session.size() > 1) end_all_ranks(e.what());
+    std::fprintf(stderr, "%s\n", e.what());
+  }
+  return 1;
+}
+
+}  // namespace swingbank::mpi::ranks

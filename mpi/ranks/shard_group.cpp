@@ -1,0 +1,143 @@
+#include "mpi/ranks/shard_group.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+#include <numeric>
+
+#include "base/durable.hpp"
+#include "mpi/store/shard_layout.hpp"
+
+namespace swingbank::mpi::ranks {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void share_text(MPI_Comm group, int from, std::string& text) {
+  auto length = static_cast<unsigned long>(text.size());
+  MPI_Bcast(&length, 1, MPI_UNSIGNED_LONG, from, group);
+  text.resize(length);
+  MPI_Bcast(text.data(), static_cast<int>(length), MPI_CHAR, from, group);
+}
+
+/// What the arrays of all ranks will take on the disk, and room for HDF5's own few kilobytes.
+std::uint64_t size_on_disk(const store::ShardData& part, std::uint64_t rows, std::uint64_t draws) {
+  const std::uint64_t fixed =
+      sizeof(std::uint64_t) + sizeof(std::int32_t) + sizeof(double) * (store::kFaultColumns + 1);
+  const std::uint64_t row =
+      part.channels * part.samples * sizeof(float) + part.parameter_count * sizeof(double) + fixed;
+  constexpr std::uint64_t own = 64 * 1024;
+  return rows * row + draws * (sizeof(std::uint64_t) + 1) + own;
+}
+
+template <class T>
+std::vector<T> gather(MPI_Comm group, const std::vector<T>& mine, int size) {
+  int bytes = static_cast<int>(mine.size() * sizeof(T));
+  std::vector<int> counts(static_cast<std::size_t>(size)), offsets(counts.size());
+  MPI_Allgather(&bytes, 1, MPI_INT, counts.data(), 1, MPI_INT, group);
+  std::exclusive_scan(counts.begin(), counts.end(), offsets.begin(), 0);
+  std::vector<T> all(static_cast<std::size_t>(offsets.back() + counts.back()) / sizeof(T));
+  MPI_Allgatherv(mine.data(), bytes, MPI_BYTE, all.data(), counts.data(), offsets.data(), MPI_BYTE, group);
+  return all;
+}
+
+store::h5::Handle access_list(MPI_Comm group) {
+  store::h5::Handle list(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_fapl_mpio(list.get(), group, MPI_INFO_NULL);
+  return list;
+}
+
+/// Problems of the first rank that has any; the same on all.
+std::vector<Problem> gather_problems(MPI_Comm group, const std::string& where,
+                                     const std::function<void()>& work) {
+  int rank, size;
+  MPI_Comm_rank(group, &rank);
+  MPI_Comm_size(group, &size);
+  std::vector<Problem> problems;
+  try {
+    work();
+  } catch (const InputError& e) {
+    problems = e.problems();
+  } catch (const std::exception& e) {
+    problems.push_back({"failure", where, e.what(),
+                        "run the command again; if it fails again, report it with this message"});
+  }
+  int mine = problems.empty() ? size : rank, first = size;
+  MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, group);
+  if (first == size) return {};
+  auto count = static_cast<unsigned long>(problems.size());
+  MPI_Bcast(&count, 1, MPI_UNSIGNED_LONG, first, group);
+  problems.resize(count);
+  for (auto& p : problems)
+    for (std::string* text : {&p.what, &p.where, &p.why, &p.remedy}) share_text(group, first, *text);
+  return problems;
+}
+
+}  // namespace
+
+/// Without fmt and strings: memory may be what is short.
+void end_all_ranks(const char* why) {
+  int rank = 0, size = 1;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &size);
+  std::fprintf(stderr,
+               "failure at rank %d of %d (%s): the run ends on all ranks; what is finished is safe, run "
+               "the command again to continue\n",
+               rank, size, why);
+  std::fflush(nullptr);
+  MPI_Abort(MPI_COMM_WORLD, 1);
+  std::_Exit(1);
+}
+
+void agree(MPI_Comm group, const std::string& where, const std::function<void()>& work) {
+  std::vector<Problem> problems;
+  try {
+    problems = gather_problems(group, where, work);
+  } catch (const std::exception& e) {
+    end_all_ranks(e.what());
+  }
+  if (!problems.empty()) throw AgreedError(problems);
+}
+
+ShardReceipt write_shard(const fs::path& file, const store::ShardData& part, MPI_Comm group) {
+  const std::lock_guard guard(store::h5::lock());
+  int rank, size;
+  MPI_Comm_rank(group, &rank);
+  MPI_Comm_size(group, &size);
+  const auto hashes = gather(group, store::row_hashes(part), size);
+  const auto ids = gather(group, part.draw_sample_id, size);
+  const auto outcomes = gather(group, part.draw_outcome, size);
+  std::uint64_t mine[2] = {part.rows, part.draw_sample_id.size()}, before[2] = {0, 0};
+  MPI_Exscan(mine, before, 2, MPI_UINT64_T, MPI_SUM, group);
+  if (rank == 0) before[0] = before[1] = 0;
+
+  const fs::path temporary = temporary_name(file);
+  std::uint64_t bytes = 0;
+  try {
+    // MPI-IO tells little about why it fails, so the system is asked first.
+    agree(group, file.string(), [&] {
+      if (rank == 0) reserve(file, size_on_disk(part, hashes.size(), ids.size()));
+    });
+    store::h5::File f;
+    const store::h5::Handle access = access_list(group);
+    agree(group, file.string(), [&] { f = store::h5::File::create(temporary, access.get()); });
+    agree(group, file.string(), [&] { store::lay_out_shard(f, part, {hashes.size(), ids.size()}); });
+    agree(group, file.string(), [&] { store::fill_shard(f, part, before[0], before[1]); });
+    agree(group, file.string(), [&] { f.close(); });
+    agree(group, file.string(), [&] {
+      if (rank != 0) return;
+      publish(file);
+      bytes = fs::file_size(file);
+    });
+  } catch (...) {
+    if (rank == 0) {
+      std::error_code ignored;
+      fs::remove(temporary, ignored);
+    }
+    throw;
+  }
+  MPI_Bcast(&bytes, 1, MPI_UINT64_T, 0, group);  // the new name may not be seen on other nodes yet (NFS)
+  return {hashes.size(), ids.size(), bytes, store::shard_hash(hashes, ids, outcomes)};
+}
+
+}  // namespace swingbank::mpi::ranks

@@ -1,0 +1,83 @@
+#pragma once
+// What a run returns, whichever integrator made it.
+#include <cstddef>
+#include <new>
+#include <string_view>
+#include <vector>
+
+#include "sim/core/channel.hpp"
+
+namespace swingbank::sim {
+
+enum class Outcome { stable, lost_synchronism, not_finite, step_too_small };
+constexpr std::string_view outcome_name(Outcome o) {
+  constexpr std::string_view names[] = {"stable", "lost_synchronism", "not_finite", "step_too_small"};
+  return names[static_cast<int>(o)];
+}
+
+/// Memory on cache line boundaries, so that a pack of samples is one whole line.
+template <class T>
+struct CacheAligned {
+  using value_type = T;
+  static constexpr std::align_val_t kLine{64};
+  CacheAligned() = default;
+  template <class U>
+  CacheAligned(const CacheAligned<U>&) {
+  }  // NOLINT(google-explicit-constructor): the allocator protocol asks for it
+  T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), kLine)); }
+  void deallocate(T* p, std::size_t) { ::operator delete(p, kLine); }
+  friend bool operator==(const CacheAligned&, const CacheAligned&) { return true; }
+};
+
+/// Samples at t = k/rate, k = 0..samples-1. At a switching instant the sample is the value just before it,
+/// unless asked otherwise.
+struct Trajectory {
+  double rate = 0.0;  ///< [1/s]
+  int samples = 0;
+  int stride = 0;           ///< distance between rows of `values`: at least `samples`
+  std::vector<int> plants;  ///< which plants, by index in the grid
+  std::vector<Channel> channels;
+  std::vector<double, CacheAligned<double>> values;  ///< rows [plant][channel], see at() and packed()
+  int directions = 0;                                ///< sensitivities carried along
+  std::vector<double, CacheAligned<double>> slopes;  ///< like values, once per direction: see slope()
+  Outcome outcome = Outcome::stable;
+  double stopped_at = 0.0;      ///< [s]: t_end, or when synchronism was lost
+  double largest_spread = 0.0;  ///< largest pairwise rotor angle difference seen [rad]
+
+  [[nodiscard]] int rows() const { return static_cast<int>(plants.size() * channels.size()); }
+  /// Makes room for every row; with `whole_lines` each row starts on a cache line.
+  void allocate(bool whole_lines) {
+    constexpr int kDoublesPerLine = 8;
+    stride = whole_lines ? (samples + kDoublesPerLine - 1) / kDoublesPerLine * kDoublesPerLine : samples;
+    values.resize(static_cast<std::size_t>(rows()) * static_cast<std::size_t>(stride));
+    slopes.resize(values.size() * static_cast<std::size_t>(directions));
+  }
+  /// Derivative of at(plant, channel) along a direction.
+  [[nodiscard]] double* slope(int direction, int plant, int channel) {
+    return slopes.data() + static_cast<std::ptrdiff_t>(direction * rows() +
+                                                       plant * static_cast<int>(channels.size()) + channel) *
+                               stride;
+  }
+  [[nodiscard]] const double* slope(int direction, int plant, int channel) const {
+    return const_cast<Trajectory*>(this)->slope(direction, plant, channel);
+  }
+  [[nodiscard]] double* row(int i) { return values.data() + static_cast<std::ptrdiff_t>(i) * stride; }
+  [[nodiscard]] const double* row(int i) const {
+    return values.data() + static_cast<std::ptrdiff_t>(i) * stride;
+  }
+  [[nodiscard]] double* at(int plant, int channel) {
+    return row(plant * static_cast<int>(channels.size()) + channel);
+  }
+  [[nodiscard]] const double* at(int plant, int channel) const {
+    return row(plant * static_cast<int>(channels.size()) + channel);
+  }
+  /// [plant][channel][sample] without gaps.
+  [[nodiscard]] std::vector<double> packed() const {
+    std::vector<double> all;
+    all.reserve(static_cast<std::size_t>(rows()) * static_cast<std::size_t>(samples));
+    for (int i = 0; i < rows(); ++i) all.insert(all.end(), row(i), row(i) + samples);
+    return all;
+  }
+};
+
+}  // namespace swingbank::sim

@@ -1,0 +1,137 @@
+#pragma once
+// The brushless exciter of EXAC1 and ESAC1A: regulator, alternator, rectifier. A Model names the regulator's
+// limits, may add coefficients after `alternator`, and says what of the regulator's output reaches the
+// alternator's field: field_input(c, output).
+#include <fmt/format.h>
+
+#include "sim/core/blocks.hpp"
+#include "sim/core/effect.hpp"
+
+namespace swingbank::sim::effects::shared {
+
+template <class Model>
+struct AlternatorRectifier {
+  static constexpr Slot slot = Slot::exciter;
+  enum P { TR, TB, TC, KA, TA, UPPER, LOWER, TE, KF, TF, KC, KD, KE, E1, SE1, E2, SE2, parameter_count };
+  /// The parameters, `upper` and `lower` being the regulator's limits.
+  static constexpr std::array<Parameter, parameter_count> parameters_with(const Parameter& upper,
+                                                                          const Parameter& lower) {
+    return {{{"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)"},
+             {"TB", "TB", "s", 0.1, 0.0, 20.0, kNoNeutral, "lag (0: bypass)"},
+             {"TC", "TC", "s", 0.05, 0.0, 20.0, kNoNeutral, "lead"},
+             {"KA", "KA", "pu", 400.0, 1.0, 2000.0, kNoNeutral, "regulator gain"},
+             {"TA", "TA", "s", 0.02, 0.0, 10.0, kNoNeutral, "regulator time constant (0: none)"},
+             upper,
+             lower,
+             {"TE", "TE", "s", 0.8, 0.01, 5.0, kNoNeutral, "alternator's time constant"},
+             {"KF", "KF", "pu", 0.03, 0.0, 1.0, 0.0, "rate feedback"},
+             {"TF", "TF", "s", 1.0, 0.02, 20.0, kNoNeutral, "rate feedback's time constant"},
+             {"KC", "KC", "pu", 0.2, 0.0, 1.0, 0.0, "rectifier's commutating reactance"},
+             {"KD", "KD", "pu", 0.38, 0.0, 2.0, 0.0, "alternator's armature reaction"},
+             {"KE", "KE", "pu", 1.0, 0.0, 2.0, kNoNeutral, "alternator's own field"},
+             {"E1", "E1", "pu", 4.18, 0.0, 20.0, kNoNeutral, "first point of saturation"},
+             {"SE1", "SE(E1)", "-", 0.1, 0.0, 2.0, 0.0, "saturation there"},
+             {"E2", "E2", "pu", 3.14, 0.0, 20.0, kNoNeutral, "second point of saturation"},
+             {"SE2", "SE(E2)", "-", 0.03, 0.0, 2.0, 0.0, "saturation there"}}};
+  }
+  enum C {
+    iTR,
+    lead,
+    iTB,
+    gain,
+    iTA,
+    upper,
+    lower,
+    iTE,
+    feedback,
+    iTF,
+    commutation,
+    demagnetising,
+    self,
+    satA,
+    satB,
+    none,
+    Vref,
+    alternator
+  };
+  enum X { Vm, leadlag, regulator, Ve, rate };
+  /// What enters the regulator counts in Efd by its gain of some hundreds, within its lags.
+  static constexpr double kErrorWeight = 10.0;
+
+  static void check(const double* p, const std::string& where, Problems& problems);
+  static std::string_view unphysical(const double*) { return ""; }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions&, T* c) {
+    c[iTR] = inverse(p[TR]);
+    c[lead] = p[TC];
+    c[iTB] = inverse(p[TB]);
+    c[gain] = p[KA];
+    c[iTA] = inverse(p[TA]);
+    c[upper] = p[UPPER];
+    c[lower] = p[LOWER];
+    c[iTE] = T(1.0) / p[TE];
+    c[iTF] = T(1.0) / p[TF];
+    c[feedback] = p[KF] * c[iTF];
+    c[commutation] = p[KC];
+    c[demagnetising] = p[KD];
+    c[self] = p[KE];
+    const auto saturation = Quadratic<T>::through(p[E1], p[SE1], p[E2], p[SE2]);
+    c[satA] = saturation.A;
+    c[satB] = saturation.B;
+    c[none] = T(0.0);
+  }
+  /// The field voltage that keeps the alternator at `ve`.
+  template <class T>
+  static T field(const T* c, const T& ve, const T& Ifd) {
+    return c[self] * ve + Quadratic<T>{c[satA], c[satB]}(ve) + c[demagnetising] * Ifd;
+  }
+  template <class T>
+  static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
+    const T measured = lag(c[iTR], x[Vm], s.Vc, dx[Vm]);
+    const T ve = positive_part(x[Ve]);
+    const T Vfe = field(c, ve, s.Ifd);
+    const T stabilised = c[feedback] * washout(c[iTF], x[rate], Vfe, dx[rate]);
+    const T error = c[Vref] + s.dVref - measured + s.Vs + s.Vlimiter - stabilised;
+    const T u = lead_lag(c[lead], c[iTB], x[leadlag], error, dx[leadlag]);
+    const T output = clamp(lag(c[iTA], x[regulator], c[gain] * u, dx[regulator]), c[lower], c[upper]);
+    dx[Ve] = (Model::field_input(c, output) - Vfe) * c[iTE];
+    s.Efd = rectified(ve, c[commutation] * s.Ifd);
+  }
+  template <class T>
+  static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
+    if (!(value_of(s.Efd) > 0.0))
+      return fmt::format("Efd = {:.4f} pu is needed and a rectifier delivers none below zero",
+                         value_of(s.Efd));
+    x[Vm] = s.Vc;
+    x[Ve] = rectifier_source(s.Efd, p[KC] * s.Ifd);
+    x[regulator] = x[rate] = field(c, x[Ve], s.Ifd);
+    x[leadlag] = x[regulator] / p[KA];
+    c[Vref] = x[leadlag] + s.Vc - s.Vs - s.Vlimiter;
+    return {};
+  }
+};
+
+template <class Model>
+void AlternatorRectifier<Model>::check(const double* p, const std::string& where, Problems& problems) {
+  const auto symbol = [](int i) { return Model::parameters[static_cast<std::size_t>(i)].symbol; };
+  const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
+    if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
+  };
+  for (int i : {TE, TF})
+    bad(!(p[i] > 0), fmt::format("{} = {:g} s", symbol(i), p[i]),
+        fmt::format("{} divides by it", Model::name), "give a value > 0");
+  bad(!(p[KA] > 0), fmt::format("KA = {:g}", p[KA]), "no gain, no exciter", "give KA > 0");
+  for (int i : {TR, TB, TA})
+    bad(!(p[i] >= 0), fmt::format("{} = {:g} s", symbol(i), p[i]), "a time constant", "give a value >= 0");
+  for (int i : {KC, SE1, SE2})
+    bad(!(p[i] >= 0), fmt::format("{} = {:g}", symbol(i), p[i]),
+        "it can only take from the exciter's voltage", "give a value >= 0");
+  bad(p[E1] == p[E2] && p[SE1] != p[SE2], fmt::format("E1 = E2 = {:g} pu", p[E1]),
+      "one voltage cannot have two saturations", "give two points");
+  bad(!(p[UPPER] > p[LOWER]),
+      fmt::format("{} = {:g} pu with {} = {:g} pu", symbol(UPPER), p[UPPER], symbol(LOWER), p[LOWER]),
+      "the regulator must have room to move", fmt::format("give {} > {}", symbol(UPPER), symbol(LOWER)));
+}
+
+}  // namespace swingbank::sim::effects::shared

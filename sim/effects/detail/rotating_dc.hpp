@@ -1,0 +1,113 @@
+#pragma once
+// The rotating direct-current exciter of IEEET1 and EXDC2: saturation, rate feedback, and what PSS/E finds
+// for VRMAX = 0 and KE = 0. A Model has the parameters, coefficients and states named here, in its own order,
+// and the regulator.
+#include <fmt/format.h>
+
+#include <initializer_list>
+
+#include "sim/core/blocks.hpp"
+#include "sim/core/effect.hpp"
+
+namespace swingbank::sim::effects::shared {
+
+template <class Model>
+struct RotatingDc {
+  static constexpr Slot slot = Slot::exciter;
+  static constexpr Parameter
+      kTR = {"TR", "TR", "s", 0.02, 0.0, 0.5, 0.0, "voltage transducer (0: none)"},
+      kKE = {"KE", "KE", "pu", 1.0, -1.0, 2.0, kNoNeutral, "exciter's own field (0: by the operating point)"},
+      kTE = {"TE", "TE", "s", 0.8, 0.01, 5.0, kNoNeutral, "exciter time constant"},
+      kTF = {"TF", "TF", "s", 1.0, 0.02, 20.0, kNoNeutral, "rate feedback's time constant"},
+      kSwitch = {"Switch", "Switch", "code",     0.0,
+                 0.0,      1.0,      kNoNeutral, "kept by PSS/E for files; without effect"},
+      kE1 = {"E1", "E1", "pu", 2.4, 0.0, 20.0, kNoNeutral, "first point of saturation"},
+      kSE1 = {"SE1", "SE(E1)", "-", 0.03, 0.0, 2.0, 0.0, "saturation there"},
+      kE2 = {"E2", "E2", "pu", 5.0, 0.0, 20.0, kNoNeutral, "second point of saturation"},
+      kSE2 = {"SE2", "SE(E2)", "-", 0.5, 0.0, 2.0, 0.0, "saturation there"};
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    check_with({Model::TR, Model::TA}, p, where, problems);
+  }
+  /// `bypassed`: time constants that may be zero.
+  static void check_with(std::initializer_list<int> bypassed, const double* p, const std::string& where,
+                         Problems& problems);
+  static std::string_view unphysical(const double*) { return ""; }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions&, T* c) {
+    using M = Model;
+    const T zero(0.0);
+    c[M::iTR] = inverse(p[M::TR]);
+    c[M::gain] = p[M::KA];
+    c[M::iTA] = inverse(p[M::TA]);
+    const auto given = p[M::VRMAX] * p[M::VRMAX] > zero;
+    const T found = (p[M::SE2] + positive_part(p[M::KE])) * p[M::E2];
+    c[M::vrmax] = select(given, p[M::VRMAX], found);
+    c[M::vrmin] = select(given, p[M::VRMIN], zero - found);
+    c[M::self] = p[M::KE];
+    c[M::iTE] = T(1.0) / p[M::TE];
+    c[M::iTF] = T(1.0) / p[M::TF];
+    c[M::feedback] = p[M::KF] * c[M::iTF];
+    const auto saturation = Quadratic<T>::through(p[M::E1], p[M::SE1], p[M::E2], p[M::SE2]);
+    c[M::satA] = saturation.A;
+    c[M::satB] = saturation.B;
+  }
+  /// What the regulator is to remove.
+  template <class T>
+  static T voltage_error(const T* c, const T* x, const Signals<T>& s, T* dx) {
+    using M = Model;
+    const T measured = lag(c[M::iTR], x[M::Vm], s.Vc, dx[M::Vm]);
+    const T stabilised = c[M::feedback] * washout(c[M::iTF], x[M::rate], x[M::Efd], dx[M::rate]);
+    return c[M::Vref] + s.dVref - measured + s.Vs + s.Vlimiter - stabilised;
+  }
+  /// From the regulator's output to the field voltage.
+  template <class T>
+  static void excite(const T* c, const T* x, const T& vr, Signals<T>& s, T* dx) {
+    using M = Model;
+    dx[M::Efd] = (vr - c[M::self] * x[M::Efd] - Quadratic<T>{c[M::satA], c[M::satB]}(x[M::Efd])) * c[M::iTE];
+    s.Efd = x[M::Efd];
+  }
+  template <class T>
+  static std::string steady_exciter(const T* p, T* c, Signals<T>& s, T* x) {
+    using M = Model;
+    const T saturation = Quadratic<T>{c[M::satA], c[M::satB]}(s.Efd);
+    if (value_of(p[M::KE]) == 0.0 && !(value_of(s.Efd) > 0.0))
+      return fmt::format("KE = 0 is found from Efd, and Efd = {:.4f} pu is not above zero", value_of(s.Efd));
+    const auto given = p[M::KE] * p[M::KE] > T(0.0);
+    c[M::self] = select(given, p[M::KE], (T(0.1) * c[M::vrmax] - saturation) / select(given, T(1.0), s.Efd));
+    x[M::Vm] = s.Vc;
+    x[M::Efd] = x[M::rate] = s.Efd;
+    x[M::Vr] = c[M::self] * s.Efd + saturation;
+    return {};
+  }
+};
+
+template <class Model>
+void RotatingDc<Model>::check_with(std::initializer_list<int> bypassed, const double* p,
+                                   const std::string& where, Problems& problems) {
+  using M = Model;
+  const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
+    if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
+  };
+  for (int i : {M::TE, M::TF})
+    bad(!(p[i] > 0), fmt::format("{} = {:g} s", M::parameters[i].symbol, p[i]),
+        fmt::format("{} divides by it", M::name), "give a value > 0");
+  bad(!(p[M::KA] > 0), fmt::format("KA = {:g}", p[M::KA]), "no gain, no exciter", "give KA > 0");
+  for (int i : bypassed)
+    bad(!(p[i] >= 0), fmt::format("{} = {:g} s", M::parameters[i].symbol, p[i]), "a time constant",
+        "give a value >= 0");
+  for (int i : {M::SE1, M::SE2})
+    bad(!(p[i] >= 0), fmt::format("{} = {:g}", M::parameters[i].symbol, p[i]),
+        "saturation can only take from the exciter's voltage", "give a value >= 0");
+  bad(p[M::E1] == p[M::E2] && p[M::SE1] != p[M::SE2], fmt::format("E1 = E2 = {:g} pu", p[M::E1]),
+      "one voltage cannot have two saturations", "give two points");
+  bad(p[M::VRMAX] == 0.0 && !((p[M::SE2] + (p[M::KE] > 0.0 ? p[M::KE] : 0.0)) * p[M::E2] > 0.0),
+      "VRMAX = 0 pu with SE(E2) = 0 or E2 = 0", "VRMAX is then found from the saturation at E2",
+      "give VRMAX, or saturation");
+  bad(p[M::VRMAX] != 0.0 && !(p[M::VRMAX] > p[M::VRMIN]),
+      fmt::format("VRMAX = {:g} pu with VRMIN = {:g} pu", p[M::VRMAX], p[M::VRMIN]),
+      "Vr must have room to move", "give VRMAX > VRMIN");
+}
+
+}  // namespace swingbank::sim::effects::shared

@@ -1,0 +1,133 @@
+#pragma once
+// The salient-pole machine of GENSAL and GENSAE: one field and one damper circuit in each axis. A Model says
+// what saturates: it adds its coefficients after `circuits` and writes prepare, electrical, derivative and
+// steady in terms of what stands here.
+#include <fmt/format.h>
+
+#include "sim/core/effect.hpp"
+#include "sim/core/saturation.hpp"
+
+namespace swingbank::sim::effects::shared {
+
+struct SalientPole {
+  static constexpr Slot slot = Slot::machine;
+  enum P { Tdop, Tdopp, Tqopp, H, D, Xd, Xq, Xdp, Xdpp, Xl, S10, S12, Ra, parameter_count };
+  /// All parameters; what the saturation factors are of is told by their meaning.
+  static constexpr std::array<Parameter, parameter_count> parameters_with(std::string_view s10,
+                                                                          std::string_view s12) {
+    return {{{"Tdop", "T'do", "s", 6.0, 0.5, 20.0, kNoNeutral, "d-axis transient open-circuit time constant"},
+             {"Tdopp", "T''do", "s", 0.05, 0.005, 999.0, kNoNeutral,
+              "d-axis subtransient open-circuit time constant"},
+             {"Tqopp", "T''qo", "s", 0.08, 0.005, 999.0, kNoNeutral,
+              "q-axis subtransient open-circuit time constant"},
+             {"H", "H", "s", 4.0, 0.1, 20.0, kNoNeutral, "inertia constant"},
+             {"D", "D", "pu", 0.0, 0.0, 20.0, 0.0, "damping torque per unit speed deviation"},
+             {"Xd", "Xd", "pu", 1.2, 0.1, 4.0, kNoNeutral, "d-axis synchronous reactance"},
+             {"Xq", "Xq", "pu", 0.75, 0.1, 4.0, kNoNeutral, "q-axis synchronous reactance"},
+             {"Xdp", "X'd", "pu", 0.35, 0.02, 2.5, kNoNeutral, "d-axis transient reactance"},
+             {"Xdpp", "X''d", "pu", 0.25, 0.01, 1.0, kNoNeutral, "subtransient reactance, both axes"},
+             {"Xl", "Xl", "pu", 0.15, 0.0, 0.9, kNoNeutral, "stator leakage reactance"},
+             {"S10", "S1.0", "-", 0.1, 0.0, 2.0, 0.0, s10},
+             {"S12", "S1.2", "-", 0.4, 0.0, 10.0, 0.0, s12},
+             {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance"}}};
+  }
+  /// As the round-rotor machine's: above a steep saturation knee a flux error counts tenfold in the field
+  /// current.
+  static constexpr double kFluxWeight = 10.0;
+  enum X { delta, speed, Eqp, psi1d, psi2q };
+  static constexpr State states[] = {{"delta", "rad", "rotor angle in the synchronous frame"},
+                                     {"speed", "pu", "speed deviation", 100.0},
+                                     {"Eqp", "pu", "q-axis transient voltage", kFluxWeight},
+                                     {"psi1d", "pu", "d-axis damper flux", kFluxWeight},
+                                     {"psi2q", "pu", "q-axis subtransient flux", kFluxWeight}};
+  static constexpr int dyr_columns[] = {Tdop, Tdopp, Tqopp, H, D, Xd, Xq, Xdp, Xdpp, Xl, S10, S12};
+  static constexpr int raw_resistance = Ra, raw_reactance = -1;
+  enum C { gd1, gd2, xdl, dXd, dXq, kd, iTdop, iTdopp, iTqopp, i2H, kD, W0, speed_voltage, power, circuits };
+  enum M { sn, cs, pd, Id, Iq, td, rotor };  ///< a Model's own scratch begins at `rotor`
+
+  static void check_circuits(std::string_view name, const double* p, const std::string& where,
+                             Problems& problems) {
+    constexpr auto parameters = parameters_with("", "");
+    for (const int i : {H, Tdop, Tdopp, Tqopp, Xdpp})
+      if (!(p[i] > 0))
+        problems.add(fmt::format("{} = {:g} {}", parameters[static_cast<std::size_t>(i)].symbol, p[i],
+                                 parameters[static_cast<std::size_t>(i)].unit),
+                     where, fmt::format("{} divides by it", name),
+                     "give a value > 0 (PSS/E: 999 s for a damper that is not there)");
+    if (!(p[Xdp] > p[Xl]))
+      problems.add(fmt::format("X'd = {:g} pu with Xl = {:g} pu", p[Xdp], p[Xl]), where,
+                   fmt::format("{} divides by X'd - Xl", name), "give X'd > Xl");
+  }
+  template <class Saturation>
+  static void check_saturation(const double* p, const std::string& where, Problems& problems) {
+    if (!Saturation::possible(p[S10], p[S12]))
+      problems.add(fmt::format("S1.0 = {:g} with S1.2 = {:g}", p[S10], p[S12]), where,
+                   std::string(Saturation::impossible), std::string(Saturation::remedy));
+  }
+  static std::string_view unphysical(const double* p) {
+    if (!(p[Xd] > p[Xdp] && p[Xdp] > p[Xdpp] && p[Xdpp] > p[Xl])) return "Xd > X'd > X''d > Xl";
+    if (!(p[Xq] > p[Xdpp])) return "Xq > X''q";
+    if (!(p[Tdop] > p[Tdopp])) return "T'do > T''do";
+    if (p[S10] > 0 && !(p[S12] > p[S10])) return "S1.2 > S1.0";
+    return "";
+  }
+
+  template <class T>
+  static void prepare_circuits(const T* p, const Conventions& conventions, T* c) {
+    c[xdl] = p[Xdp] - p[Xl];
+    c[gd1] = (p[Xdpp] - p[Xl]) / c[xdl];
+    c[gd2] = T(1.0) - c[gd1];
+    c[dXd] = p[Xd] - p[Xdp];
+    c[dXq] = p[Xq] - p[Xdpp];
+    c[kd] = (p[Xdp] - p[Xdpp]) / (c[xdl] * c[xdl]);
+    c[iTdop] = T(1.0) / p[Tdop];
+    c[iTdopp] = T(1.0) / p[Tdopp];
+    c[iTqopp] = T(1.0) / p[Tqopp];
+    c[i2H] = T(0.5) / p[H];
+    c[kD] = p[D];
+    c[W0] = T(2.0 * 3.14159265358979323846 * conventions.frequency);
+    c[speed_voltage] = T(conventions.speed_voltage ? 1.0 : 0.0);
+    c[power] = T(conventions.mechanical_power ? 1.0 : 0.0);
+  }
+  template <class T>
+  static void source_impedance(const T* p, T& r, T& x) {
+    r = p[Ra];
+    x = p[Xdpp];
+  }
+  template <class T>
+  static void emf(const T* c, const T* x, T* m, T& er, T& ei) {
+    sincos(x[delta], m[sn], m[cs]);
+    m[pd] = c[gd1] * x[Eqp] + c[gd2] * x[psi1d];
+    const T w = T(1.0) + c[speed_voltage] * x[speed];
+    const T eq = m[pd] * w, ed = T(0.0) - x[psi2q] * w;
+    er = ed * m[sn] + eq * m[cs];
+    ei = eq * m[sn] - ed * m[cs];
+  }
+  /// All but the field current.
+  template <class T>
+  static void stator(const T* c, const T* x, T* m, Signals<T>& s) {
+    m[Id] = s.Ir * m[sn] - s.Ii * m[cs];
+    m[Iq] = s.Ir * m[cs] + s.Ii * m[sn];
+    m[td] = x[psi1d] + c[xdl] * m[Id] - x[Eqp];
+    s.speed = x[speed];
+    s.Te = m[pd] * m[Iq] - x[psi2q] * m[Id];
+  }
+  /// The field current that the saturation adds to.
+  template <class T>
+  static T unsaturated_field(const T* c, const T* x, const T* m) {
+    return x[Eqp] + c[dXd] * (m[Id] - c[kd] * m[td]);
+  }
+  /// `excited`: what the q-axis damper sees of its own flux, with saturation psi''q (1 + ks Se).
+  template <class T>
+  static void rotor_derivative(const T* c, const T* x, const T* m, const Signals<T>& s, const T& excited,
+                               T* dx) {
+    const T driving = (s.Tm - c[kD] * x[speed]) / (T(1.0) + c[power] * x[speed]);
+    dx[delta] = c[W0] * x[speed];
+    dx[speed] = (driving - s.Te) * c[i2H];
+    dx[Eqp] = (s.Efd - s.Ifd) * c[iTdop];
+    dx[psi1d] = T(0.0) - m[td] * c[iTdopp];
+    dx[psi2q] = (T(0.0) - excited - c[dXq] * m[Iq]) * c[iTqopp];
+  }
+};
+
+}  // namespace swingbank::sim::effects::shared

@@ -1,0 +1,85 @@
+#pragma once
+// What steps and ramps of a set-point have in common. A Model says what it moves, moved(signals), and how
+// far, in its first parameter `amount`.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "sim/core/drive.hpp"
+#include "sim/core/effect.hpp"
+
+namespace swingbank::sim::effects::shared {
+
+struct SetpointMove {
+  static constexpr std::string_view source = "disturbance drive: no model explains it; shape by definition";
+  static constexpr Slot slot = Slot::setpoint;
+
+  static void check_start(double start, const std::string& where, Problems& problems) {
+    if (!(start >= 0))
+      problems.add(fmt::format("start = {:g} s", start), where, "a run begins at 0 s", "give start >= 0");
+  }
+  static std::string_view unphysical(const double*) { return ""; }
+
+  template <class T>
+  static std::string steady(const T*, T*, Signals<T>&, T*) {
+    return {};
+  }
+};
+
+/// `amount` from start until just before end.
+template <class Model>
+struct SetpointStep : SetpointMove {
+  enum P { amount, start, end };
+  static constexpr Parameter kStart = {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNeutral, "when the step comes"};
+  static constexpr Parameter kEnd = {"end", "t2", "s",        1e5,
+                                     0.0,   1e5,  kNoNeutral, "when it goes (100000: never)"};
+  enum C { coefficients = end + 1 };
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    check_start(p[start], where, problems);
+    if (!(p[end] > p[start]))
+      problems.add(fmt::format("end = {:g} s with start = {:g} s", p[end], p[start]), where,
+                   "a step ends after it came", "give end > start");
+  }
+  static std::vector<double> instants(const double* p) { return {p[start], p[end]}; }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions&, T* c) {
+    std::copy(p, p + coefficients, c);
+  }
+  template <class T>
+  static void evaluate(const T* c, const T*, Signals<T>& s, T*) {
+    T& setpoint = Model::moved(s);
+    setpoint = setpoint + between(s.t, c[start], c[end], c[amount]);
+  }
+};
+
+/// From 0 at start in a straight line to `amount` at start + duration, where it stays.
+template <class Model>
+struct SetpointRamp : SetpointMove {
+  enum P { amount, start, duration };
+  static constexpr Parameter kStart = {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNeutral, "when the ramp begins"};
+  static constexpr Parameter kDuration = {"duration", "T", "s",        5.0,
+                                          0.0,        1e5, kNoNeutral, "how long the ramp lasts (0: a step)"};
+  enum C { coefficients = duration + 1 };
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    check_start(p[start], where, problems);
+    if (!(p[duration] >= 0))
+      problems.add(fmt::format("duration = {:g} s", p[duration]), where, "a ramp goes forward in time",
+                   "give duration >= 0");
+  }
+  static std::vector<double> instants(const double* p) { return {p[start], p[start] + p[duration]}; }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions&, T* c) {
+    std::copy(p, p + coefficients, c);
+  }
+  template <class T>
+  static void evaluate(const T* c, const T*, Signals<T>& s, T*) {
+    T& setpoint = Model::moved(s);
+    setpoint = setpoint + c[amount] * ramp(s.t, c[start], c[duration]);
+  }
+};
+
+}  // namespace swingbank::sim::effects::shared

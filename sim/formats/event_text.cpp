@@ -1,0 +1,175 @@
+#include "sim/formats/event_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <vector>
+
+namespace swingbank::sim::formats {
+namespace {
+
+std::vector<std::string> fields(const std::string& text) {
+  std::vector<std::string> list(1);
+  for (const char c : text)
+    if (c == ':')
+      list.emplace_back();
+    else
+      list.back() += c;
+  return list;
+}
+
+double number(const std::string& text, const std::string& where, Problems& problems) {
+  double value = 0.0;
+  const char* end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, value);
+  if (read.ec == std::errc{} && read.ptr == end && std::isfinite(value)) return value;
+  problems.add("'" + text + "' is not a number", where, "a finite number is needed here",
+               "write it like 2.05");
+  return 0.0;
+}
+
+double instant(const std::string& text, double t_end, const std::string& where, Problems& problems) {
+  const double t = number(text, where, problems);
+  if (t > t_end)
+    problems.add(fmt::format("an event at {:g} s in a run of {:g} s", t, t_end), where,
+                 "it would not be played", "choose an earlier instant or raise --t-end");
+  return t;
+}
+
+/// The fields of `text`, or none with a problem if their number is not `least` to `most`.
+std::vector<std::string> fields(const std::string& text, std::size_t least, std::size_t most,
+                                const std::string& form, const std::string& where, Problems& problems) {
+  auto part = fields(text);
+  if (part.size() >= least && part.size() <= most) return part;
+  problems.add(fmt::format("{} fields", part.size()), where, "the form is " + form, "give every field");
+  return {};
+}
+
+int bus_number(const network::Network& network, const network::Generator& g) {
+  return network.buses[static_cast<std::size_t>(g.bus)].number;
+}
+
+}  // namespace
+
+int generator_named(const network::Network& network, const std::string& text, const std::string& where,
+                    Problems& problems) {
+  const auto slash = text.find('/');
+  const std::string bus = text.substr(0, slash), id = slash == text.npos ? "" : text.substr(slash + 1);
+  std::string names, same;
+  int found = -1, count = 0;
+  for (std::size_t i = 0; i < network.generators.size(); ++i) {
+    const network::Generator& g = network.generators[i];
+    if (!g.in_service) continue;
+    const std::string name = std::to_string(bus_number(network, g)) + "/" + g.id;
+    names += (names.empty() ? "" : ", ") + name;
+    if (std::to_string(bus_number(network, g)) != bus || (slash != text.npos && g.id != id)) continue;
+    same += (same.empty() ? "" : ", ") + name;
+    found = static_cast<int>(i);
+    ++count;
+  }
+  if (count == 1) return found;
+  if (count == 0)
+    problems.add("no generator " + text, where, network.origin + " has in service " + names,
+                 "name one of these");
+  else
+    problems.add("generator " + text, where, "the bus has " + same, "name one of these");
+  return -1;
+}
+
+int read_bus(const std::string& text, const network::Network& network, const std::string& where,
+             Problems& problems) {
+  for (std::size_t i = 0; i < network.buses.size(); ++i)
+    if (std::to_string(network.buses[i].number) == text) return static_cast<int>(i);
+  problems.add("no bus " + text, where, network.origin + " has no bus of that number",
+               "give a bus number of that file");
+  return -1;
+}
+
+network::BusFault read_fault(const std::string& text, const network::Network& network, double t_end,
+                             const std::string& where, Problems& problems) {
+  const auto part = fields(text);
+  if (part.size() != 3 && part.size() != 5) {
+    problems.add(
+        fmt::format("{} fields", part.size()), where, "a fault is BUS:T_ON:T_OFF or BUS:T_ON:T_OFF:R:X",
+        "give bus number, start [s], end [s] and, if it is not bolted, R and X [pu on the network's base]");
+    return {-1, 0.0, 0.0};
+  }
+  network::BusFault fault{read_bus(part[0], network, where, problems), number(part[1], where, problems),
+                          number(part[2], where, problems)};
+  if (part.size() == 5) fault.z = {number(part[3], where, problems), number(part[4], where, problems)};
+  if (fault.t_off > t_end)
+    problems.add(fmt::format("fault to {} s in a run of {} s", fault.t_off, t_end), where,
+                 "the run ends before the fault does", "shorten the fault or let the run end later");
+  return fault;
+}
+
+network::LineTrip read_line_trip(const std::string& text, const network::Network& network, double t_end,
+                                 const std::string& where, Problems& problems) {
+  const auto part = fields(text);
+  if (part.size() != 4 && part.size() != 5) {
+    problems.add(
+        fmt::format("{} fields", part.size()), where,
+        "a trip is FROM:TO:CKT:T_OPEN or FROM:TO:CKT:T_OPEN:T_CLOSE",
+        "give two bus numbers, the circuit's id, the instant it opens [s] and, if it does, closes [s]");
+    return {-1, 0.0, {}};
+  }
+  network::LineTrip trip{-1, number(part[3], where, problems), {}};
+  const int from = read_bus(part[0], network, where, problems),
+            to = read_bus(part[1], network, where, problems);
+  if (from >= 0 && to >= 0) {
+    const auto bus = [&](int i) { return network.buses[static_cast<std::size_t>(i)].number; };
+    trip.branch = network.branch_index(bus(from), bus(to), part[2]);
+    if (trip.branch < 0)
+      problems.add(fmt::format("no branch {}-{} circuit {}", part[0], part[1], part[2]), where,
+                   network.origin + " has no branch of that name",
+                   "give a branch of that file with its circuit id");
+  }
+  if (part.size() == 5) trip.t_close = number(part[4], where, problems);
+  if (std::max(trip.t_open, trip.t_close.value_or(0.0)) > t_end)
+    problems.add(fmt::format("switching after the run's end at {} s", t_end), where, "it would not be played",
+                 "choose earlier instants or let the run end later");
+  return trip;
+}
+
+Complex read_impedance(const std::string& text, const std::string& where, Problems& problems) {
+  const auto part = fields(text);
+  if (part.size() == 2) return {number(part[0], where, problems), number(part[1], where, problems)};
+  problems.add(text, where, "the form is R:X", "give both, in pu on the network's base");
+  return {};
+}
+
+network::GeneratorTrip read_generator_trip(const std::string& text, const network::Network& network,
+                                           double t_end, const std::string& where, Problems& problems) {
+  const auto part = fields(text, 2, 3, "BUS[/ID]:T[:PART] in s and parts of the whole", where, problems);
+  if (part.empty()) return {-1, 0.0};
+  const int generator = generator_named(network, part[0], where, problems);
+  const double t = instant(part[1], t_end, where, problems);
+  return {generator, t, part.size() == 3 ? number(part[2], where, problems) : 1.0};
+}
+
+network::LoadStep read_load_step(const std::string& text, const network::Network& network, double t_end,
+                                 const std::string& where, Problems& problems) {
+  network::LoadStep step{-1, {}, 0.0, {}};
+  const auto part = fields(text, 4, 5, "BUS:P:Q:T_ON[:T_OFF] in MW, Mvar and s", where, problems);
+  if (part.empty()) return step;
+  step.bus = read_bus(part[0], network, where, problems);
+  const double p = number(part[1], where, problems), q = number(part[2], where, problems);
+  step.power = Complex(p, q) / network.base_mva;
+  step.t_on = instant(part[3], t_end, where, problems);
+  if (part.size() == 5) step.t_off = instant(part[4], t_end, where, problems);
+  return step;
+}
+
+network::SetpointStep read_setpoint_step(const std::string& text, const network::Network& network,
+                                         double t_end, bool voltage, const std::string& where,
+                                         Problems& problems) {
+  const auto part = fields(text, 3, 3, "BUS[/ID]:T:STEP in s and pu", where, problems);
+  if (part.empty()) return {-1, 0.0, 0.0, 0.0};
+  const int generator = generator_named(network, part[0], where, problems);
+  const double t = instant(part[1], t_end, where, problems), step = number(part[2], where, problems);
+  return {generator, t, voltage ? step : 0.0, voltage ? 0.0 : step};
+}
+
+}  // namespace swingbank::sim::formats

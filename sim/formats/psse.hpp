@@ -1,0 +1,79 @@
+#pragma once
+// PSS/E .raw (versions 32 to 35) and .dyr files.
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/config.hpp"
+#include "base/problem.hpp"
+#include "sim/network/network.hpp"
+
+namespace swingbank::sim::formats {
+
+/// Reads a .raw file. Throws InputError with every fault of the file, each with its line number.
+///
+/// Read: header, bus, load, fixed shunt, generator, branch, system switching device (a closed one is a line
+/// of its X), transformer with two windings, with three (a star point becomes a bus of its own, numbered
+/// above every bus of the file, and each winding a transformer to it); CW 1-3, CZ 1-3, CM 1-2; switched shunt
+/// (BINIT as a fixed shunt, its steps and control are not modelled). Passed over, because they change nothing
+/// in the equations: lines that begin with '@!', system-wide data, names of areas, zones and owners,
+/// inter-area transfer, impedance correction tables that no transformer uses, multi-section line groupings,
+/// ratings, names of branches, vector groups, voltage limits, tap and load-flow controls (taps stay where
+/// they are), substations whose buses are in one piece. Refused, naming section and line: dc lines, FACTS and
+/// GNE devices, induction machines, transformers with a correction table, generators with remote regulation
+/// or a step-up transformer (RT, XT) off its nominal ratio (GTAP), distributed generation inside a load,
+/// buses that a substation's open switches split. Reactive limits are kept but not enforced. Out-of-service
+/// loads and shunts are left out; what stands at an isolated bus (type 4) is out of service, as in PSS/E.
+///
+/// Defaults of PSS/E for fields left empty: bus BASKV 0, IDE 1, VM 1, VA 0; load and shunt ID '1', STATUS 1,
+/// powers 0, AREA, ZONE and OWNER 1 (a load's: its bus's); generator ID '1', PG 0, QG 0, QT 9999, QB -9999,
+/// VS 1, IREG 0, MBASE = SBASE, ZR 0, ZX 1, RT 0, XT 0, GTAP 1, STAT 1; branch CKT '1', R 0, B 0, line shunts
+/// 0, ST 1; transformer K 0, CKT '1', CW 1, CZ 1, CM 1, MAG1 0, MAG2 0, STAT 1, R 0, SBASE = SBASE of the
+/// system, WINDV 1 (CW 2: BASKV), NOMV 0 (= BASKV), ANG 0, TAB 0, VMSTAR 1, ANSTAR 0; SBASE 100. Everything
+/// else (bus numbers, X of branches, switches and transformers, REV, BASFRQ) must be given.
+network::Network read_raw(const std::filesystem::path& file);
+/// The same from a text; `name` stands for the file in messages.
+network::Network parse_raw(const std::string& text, const std::string& name);
+
+/// Writes version 32, 33, 34 or 35; reading it back gives the same values to the last bit (`origin` apart).
+/// Lines come first, then transformers. Throws InputError where the file cannot be written or a branch has no
+/// .raw form: a tap or phase shift on a branch not marked as a transformer, charging or a far-end shunt on a
+/// transformer.
+void write_raw(const network::Network& network, const std::filesystem::path& file, int version = 33);
+/// The text of it; `name` stands for the file in messages.
+std::string raw_text(const network::Network& network, int version, const std::string& name);
+
+/// One record of a .dyr file, model parameters as they stand there.
+struct DyrRecord {
+  int bus;                ///< bus number
+  std::string model, id;  ///< model in capitals
+  std::vector<double> values;
+  int line;            ///< where it starts
+  std::string user{};  ///< name of a user-written model (model USRMDL and its like), otherwise empty
+  Problems faults{};   ///< parameters that are no numbers: of account only if the model is used
+};
+/// What to do with models of a .dyr that are not available here. Names in any case; a user-written model may
+/// be given by its own name or as USRMDL.
+struct DyrOptions {
+  std::vector<std::string> ignore;         ///< left out, with a warning
+  std::map<std::string, std::string> map;  ///< read as if they were another model of as many parameters
+};
+/// "FROM=TO" of a command line or config as an entry of DyrOptions::map; `where` names the option.
+void add_model_map(DyrOptions& options, const std::string& text, const std::string& where,
+                   Problems& problems);
+
+/// The keys `ignore_models` (names) and `map_models` (FROM=TO) of a config, both optional; `prefix`: "" or
+/// the table they stand in with its dot.
+DyrOptions read_dyr_options(Config& config, const std::string& prefix);
+
+/// Reads a .dyr file: records end with '/', may span lines; what follows the '/' and lines that begin with
+/// '//' are comments. Parameters that are no numbers are noted in the record, everything else wrong with the
+/// file is thrown together as an InputError, with line numbers. An ignored or mapped name that the file does
+/// not hold is a fault too.
+std::vector<DyrRecord> read_dyr(const std::filesystem::path& file, const DyrOptions& options = {});
+/// The same from a text; `name` stands for the file in messages.
+std::vector<DyrRecord> parse_dyr(const std::string& text, const std::string& name,
+                                 const DyrOptions& options = {});
+
+}  // namespace swingbank::sim::formats

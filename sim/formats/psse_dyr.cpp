@@ -1,0 +1,160 @@
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+#include "sim/formats/psse.hpp"
+#include "sim/formats/psse_text.hpp"
+
+namespace swingbank::sim::formats {
+namespace {
+
+std::string capitals(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return text;
+}
+
+/// A line that is a comment as a whole, also between the lines of a record.
+bool is_comment(const std::string& line) {
+  const auto first = line.find_first_not_of(" \t");
+  return first != std::string::npos && line.compare(first, 2, "//") == 0;
+}
+
+class DyrReader {
+ public:
+  DyrReader(std::vector<std::string> lines, std::string name, const DyrOptions& options)
+      : lines_(std::move(lines)), name_(std::move(name)) {
+    for (const auto& model : options.ignore) ignore_.insert(capitals(model));
+    for (const auto& [from, to] : options.map) map_.emplace(capitals(from), capitals(to));
+  }
+
+  std::vector<DyrRecord> read() {
+    psse::Record open;
+    for (std::size_t i = 0; i < lines_.size(); ++i) {
+      if (is_comment(lines_[i])) continue;
+      auto piece = psse::split(lines_[i], static_cast<int>(i) + 1, name_, problems_);
+      if (open.fields.empty()) open.line = piece.line;
+      open.fields.insert(open.fields.end(), piece.fields.begin(), piece.fields.end());
+      if (!piece.ended || open.fields.empty()) continue;
+      finish(open);
+      open.fields.clear();
+    }
+    if (!open.fields.empty())
+      problems_.add("a record has no end", where(open.line),
+                    "records end with '/'; the file may be truncated",
+                    "end the record with '/' or restore the file");
+    check_names();
+    if (!problems_.empty())
+      for (const DyrRecord& record : out_) problems_.add(record.faults);
+    problems_.raise();
+    if (!ignored_.empty()) spdlog::warn("{}: ignored, as asked: {}", name_, ignored_);
+    return std::move(out_);
+  }
+
+ private:
+  [[nodiscard]] std::string where(int line) const { return name_ + ":" + std::to_string(line); }
+
+  void finish(const psse::Record& record) {
+    psse::Fields fields(record, name_, problems_);
+    const std::string model = capitals(fields.text(1, ""));
+    const bool user = model.starts_with("USR");
+    // Their name is the last text before the numbers: after the id, or in its place.
+    const bool named_fourth = user && fields.size() > 3 && record.fields[3].quoted;
+    const std::string user_name = user ? capitals(fields.text(named_fourth ? 3 : 2, "")) : "";
+    if (leave_out(model, user_name, record.line)) return;
+    if (fields.size() < 3) {
+      problems_.add("incomplete record", fields.where(),
+                    "a record is: bus number, 'MODEL', id, parameters, /",
+                    "complete the record or remove it");
+      return;
+    }
+    DyrRecord dyr{
+        fields.integer(0, "bus number"), mapped(model, user_name), fields.text(2, ""), {}, record.line};
+    dyr.user = dyr.model == model ? user_name : "";
+    psse::Fields numbers(record, name_, dyr.faults);
+    for (std::size_t i = named_fourth ? 4 : 3; i < fields.size(); ++i)
+      dyr.values.push_back(static_cast<double>(
+          numbers.number(i, (dyr.model + " parameter " + std::to_string(i - 2)).c_str())));
+    out_.push_back(std::move(dyr));
+  }
+
+  bool leave_out(const std::string& model, const std::string& user, int line) {
+    for (const std::string& name : {user, model}) {
+      if (name.empty() || !ignore_.contains(name)) continue;
+      used_.insert(name);
+      ignored_ += (ignored_.empty() ? "" : ", ") + name + " on line " + std::to_string(line);
+      return true;
+    }
+    return false;
+  }
+
+  std::string mapped(const std::string& model, const std::string& user) {
+    for (const std::string& name : {user, model}) {
+      const auto found = map_.find(name);
+      if (name.empty() || found == map_.end()) continue;
+      used_.insert(name);
+      return found->second;
+    }
+    return model;
+  }
+
+  void check_names() {
+    std::set<std::string> asked = ignore_;
+    for (const auto& [from, to] : map_) {
+      if (asked.contains(from))
+        problems_.add("model " + from + " is both ignored and mapped", name_,
+                      "only one of the two can be done", "drop one of the two options");
+      asked.insert(from);
+    }
+    for (const std::string& name : asked)
+      if (!used_.contains(name) && !(ignore_.contains(name) && map_.contains(name)))
+        problems_.add("no model " + name + " to ignore or map", name_, "the file has no record of that name",
+                      "correct the name or drop the option");
+  }
+
+  std::vector<std::string> lines_;
+  std::string name_;
+  std::set<std::string> ignore_, used_;
+  std::map<std::string, std::string> map_;
+  std::string ignored_;
+  Problems problems_;
+  std::vector<DyrRecord> out_;
+};
+
+}  // namespace
+
+void add_model_map(DyrOptions& options, const std::string& text, const std::string& where,
+                   Problems& problems) {
+  const auto cut = text.find('=');
+  if (cut == 0 || cut == std::string::npos || cut + 1 == text.size()) {
+    problems.add("'" + text + "'", where, "a mapping is FROM=TO", "write it like GENROA=GENROU");
+    return;
+  }
+  const std::string from = capitals(text.substr(0, cut));
+  if (!options.map.emplace(from, text.substr(cut + 1)).second)
+    problems.add("model " + from + " is mapped twice", where, "a model can stand for one other only",
+                 "keep one of the mappings");
+}
+
+DyrOptions read_dyr_options(Config& config, const std::string& prefix) {
+  DyrOptions options;
+  options.ignore = config.optional<std::vector<std::string>>(prefix + "ignore_models", {});
+  const std::string key = prefix + "map_models";
+  Problems problems;
+  for (const auto& text : config.optional<std::vector<std::string>>(key, {}))
+    add_model_map(options, text, config.where(key), problems);
+  for (const Problem& p : problems.list()) config.problem(key, p.what, p.why, p.remedy);
+  return options;
+}
+
+std::vector<DyrRecord> read_dyr(const std::filesystem::path& file, const DyrOptions& options) {
+  return DyrReader(psse::read_lines(file), file.string(), options).read();
+}
+std::vector<DyrRecord> parse_dyr(const std::string& text, const std::string& name,
+                                 const DyrOptions& options) {
+  return DyrReader(psse::lines_of(text), name, options).read();
+}
+
+}  // namespace swingbank::sim::formats

@@ -1,0 +1,181 @@
+// The records of a .raw that take one line each: buses, loads, shunts, generators, branches, switches.
+#include <algorithm>
+#include <cmath>
+
+#include "sim/formats/detail/psse_raw.hpp"
+
+namespace swingbank::sim::formats::psse {
+
+void RawReader::bus(const Record& record) {
+  Fields f(record, file_, problems_);
+  network::Bus b{};
+  b.number = f.integer(0, "bus number");
+  b.name = f.text(1, "");
+  b.kv = static_cast<double>(f.number(2, "BASKV", 0.0L));
+  const int type = f.integer(3, "IDE", 1);
+  b.area = f.integer(4, "AREA", 1);
+  b.zone = f.integer(5, "ZONE", 1);
+  b.owner = f.integer(6, "OWNER", 1);
+  b.vm = static_cast<double>(f.number(7, "VM", 1.0L));
+  b.va = static_cast<double>(f.number(8, "VA", 0.0L) / kDegrees);
+  if (b.number <= 0)
+    problems_.add("bus number " + std::to_string(b.number), f.where(), "numbers are positive",
+                  "give a positive number");
+  if (type < 1 || type > 4)
+    problems_.add("IDE = " + std::to_string(type), f.where(), "bus types are 1 to 4",
+                  "give 1 (load), 2 (generator), 3 (slack) or 4 (isolated)");
+  if (type != 4 && !(b.vm > 0))
+    problems_.add("VM = " + shortest(b.vm) + " pu", f.where(), "the power flow starts from it",
+                  "give a voltage > 0 pu");
+  b.type = static_cast<network::BusType>(type);
+  once("bus " + std::to_string(b.number), f);
+  index_.emplace(b.number, static_cast<int>(network_.buses.size()));
+  network_.buses.push_back(std::move(b));
+}
+
+void RawReader::load(const Record& record) {
+  Fields f(record, file_, problems_);
+  network::Load l{};
+  l.bus = find_bus(f.integer(0, "bus number"), f);
+  l.id = f.text(1, "1");
+  const bool on = status(f.integer(2, "STATUS", 1), "STATUS", f);
+  const network::Bus of = l.bus < 0 ? network::Bus{} : network_.buses[static_cast<std::size_t>(l.bus)];
+  l.area = f.integer(3, "AREA", of.area);
+  l.zone = f.integer(4, "ZONE", of.zone);
+  l.owner = f.integer(11, "OWNER", of.owner);
+  const auto mw = [&](std::size_t i, const char* name) { return pu(f.number(i, name, 0.0L)); };
+  l.power = {mw(5, "PL"), mw(6, "QL")};
+  l.current = {mw(7, "IP"), mw(8, "IQ")};
+  l.admittance = {mw(9, "YP"),
+                  pu(0.0L - f.number(10, "YQ", 0.0L))};  // PSS/E counts YQ as susceptance, not as consumption
+  if (version_ >= 34 && f.integer(16, "DGENM", 0) != 0 && on &&
+      (f.number(14, "DGENP", 0.0L) != 0 || f.number(15, "DGENQ", 0.0L) != 0))
+    problems_.add("DGENM = " + f.text(16, ""), f.where(),
+                  "distributed generation inside a load is not modelled",
+                  "subtract DGENP and DGENQ from PL and QL and set DGENM to 0");
+  once("load '" + l.id + "' at bus " + f.text(0, ""), f);
+  if (on && l.bus >= 0) network_.loads.push_back(std::move(l));
+}
+
+void RawReader::fixed_shunt(const Record& record) {
+  Fields f(record, file_, problems_);
+  network::Shunt s{};
+  s.bus = find_bus(f.integer(0, "bus number"), f);
+  s.id = f.text(1, "1");
+  const bool on = status(f.integer(2, "STATUS", 1), "STATUS", f);
+  s.admittance = {pu(f.number(3, "GL", 0.0L)), pu(f.number(4, "BL", 0.0L))};
+  once("fixed shunt '" + s.id + "' at bus " + f.text(0, ""), f);
+  if (on && s.bus >= 0) network_.shunts.push_back(std::move(s));
+}
+
+void RawReader::switched_shunt(const Record& record) {
+  Fields f(record, file_, problems_);
+  const int number = f.integer(0, "bus number");
+  const std::string id = columns_.switched_id ? f.text(columns_.switched_id, "1") : "1";
+  network::Shunt s{};
+  s.bus = find_bus(number, f);
+  const bool on = status(f.integer(columns_.switched_status, "STAT", 1), "STAT", f);
+  s.admittance = {0.0, pu(f.number(columns_.switched_binit, "BINIT", 0.0L))};
+  once("switched shunt" + (columns_.switched_id ? " '" + id + "'" : "") + " at bus " + std::to_string(number),
+       f);
+  if (!on || s.bus < 0 || s.admittance.imag() == 0.0) return;
+  s.id = id == "1" ? "SW" : "SW" + id;
+  while (std::ranges::any_of(network_.shunts,
+                             [&](const network::Shunt& o) { return o.bus == s.bus && o.id == s.id; }))
+    s.id += "+";  // a fixed shunt bears this id: both must be writable as fixed shunts
+  network_.shunts.push_back(std::move(s));
+}
+
+void RawReader::generator(const Record& record) {
+  Fields f(record, file_, problems_);
+  network::Generator g{};
+  const int number = f.integer(0, "bus number");
+  g.bus = find_bus(number, f);
+  g.id = f.text(1, "1");
+  g.p = pu(f.number(2, "PG", 0.0L));
+  g.q = pu(f.number(3, "QG", 0.0L));
+  g.q_max = pu(f.number(4, "QT", 9999.0L));
+  g.q_min = pu(f.number(5, "QB", -9999.0L));
+  g.vset = static_cast<double>(f.number(6, "VS", 1.0L));
+  const int regulated = f.integer(7, "IREG", 0);
+  const std::size_t base = columns_.gen_base;
+  g.mva = static_cast<double>(f.number(base, "MBASE", base_));
+  g.zr = static_cast<double>(f.number(base + 1, "ZR", 0.0L));
+  g.zx = static_cast<double>(f.number(base + 2, "ZX", 1.0L));
+  g.rt = static_cast<double>(f.number(base + 3, "RT", 0.0L));
+  g.xt = static_cast<double>(f.number(base + 4, "XT", 0.0L));
+  const bool step_up = g.rt != 0.0 || g.xt != 0.0;
+  const double tap = static_cast<double>(f.number(base + 5, "GTAP", 1.0L));
+  g.in_service = status(f.integer(columns_.gen_status, "STAT", 1), "STAT", f);
+  once("generator '" + g.id + "' at bus " + std::to_string(number), f);
+  if (!(g.mva > 0))
+    problems_.add("MBASE = " + shortest(g.mva) + " MVA", f.where(),
+                  "the machine's per-unit values refer to it", "give a base > 0 MVA");
+  if (g.in_service && !(g.vset > 0))
+    problems_.add("VS = " + shortest(g.vset) + " pu", f.where(), "it is the voltage the generator holds",
+                  "give a voltage > 0 pu");
+  if (g.in_service && regulated != 0 && regulated != number)
+    problems_.add("IREG = " + std::to_string(regulated), f.where(),
+                  "regulation of a remote bus is not modelled",
+                  "set IREG to 0 and VS to the generator's own solved voltage");
+  if (g.in_service && step_up && !(g.rt >= 0 && g.xt >= 0))
+    problems_.add("RT = " + shortest(g.rt) + " pu, XT = " + shortest(g.xt) + " pu", f.where(),
+                  "a step-up transformer has losses and leakage", "give RT >= 0 and XT >= 0");
+  if (g.in_service && step_up && tap != 1.0)
+    problems_.add("GTAP = " + shortest(tap), f.where(),
+                  "a step-up transformer inside the generator record is modelled at its nominal ratio",
+                  "enter it as a transformer between two buses");
+  if (g.bus < 0) return;
+  generator_line_[network_.generators.size()] = record.line;
+  network_.generators.push_back(std::move(g));
+}
+
+void RawReader::branch(const Record& record) {
+  Fields f(record, file_, problems_);
+  network::Branch b{};
+  // A minus sign before the second bus only marks the metered end.
+  const int from = f.integer(0, "from bus"), to = std::abs(f.integer(1, "to bus"));
+  b.from = find_bus(from, f);
+  b.to = find_bus(to, f);
+  b.circuit = f.text(2, "1");
+  const auto value = [&](std::size_t i, const char* name, std::optional<long double> fallback) {
+    return static_cast<double>(f.number(i, name, fallback));
+  };
+  const std::size_t gi = columns_.branch_shunts;
+  b.r = value(3, "R", 0.0L);
+  b.x = value(4, "X", {});
+  b.b = value(5, "B", 0.0L);
+  b.shunt_from = {value(gi, "GI", 0.0L), value(gi + 1, "BI", 0.0L)};
+  b.shunt_to = {value(gi + 2, "GJ", 0.0L), value(gi + 3, "BJ", 0.0L)};
+  b.in_service = status(f.integer(columns_.branch_status, "ST", 1), "ST", f);
+  once_branch(from, to, b.circuit, f);
+  if (b.from == b.to && b.from >= 0)
+    problems_.add("a branch from bus " + std::to_string(from) + " to itself", f.where(), "it joins nothing",
+                  "correct the bus numbers");
+  if (b.r == 0.0 && b.x == 0.0)
+    problems_.add("R = X = 0", f.where(), "a branch without impedance has no admittance",
+                  "merge the two buses or give an impedance");
+  if (b.from >= 0 && b.to >= 0) network_.branches.push_back(std::move(b));
+}
+
+// A closed switch is a line of its reactance; NSTAT, the ratings and the kind of switch change nothing.
+void RawReader::switching_device(const Record& record) {
+  Fields f(record, file_, problems_);
+  network::Branch b{};
+  const int from = f.integer(0, "from bus"), to = f.integer(1, "to bus");
+  b.from = find_bus(from, f);
+  b.to = find_bus(to, f);
+  b.circuit = f.text(2, "1");
+  b.x = static_cast<double>(f.number(3, "X"));
+  b.in_service = status(f.integer(16, "STAT", 1), "STAT", f);
+  once_branch(from, to, b.circuit, f);
+  if (b.from == b.to && b.from >= 0)
+    problems_.add("a switch from bus " + std::to_string(from) + " to itself", f.where(), "it joins nothing",
+                  "correct the bus numbers");
+  if (b.x == 0.0)
+    problems_.add("X = 0", f.where(), "a switch without reactance has no admittance",
+                  "merge the two buses or give a reactance");
+  if (b.from >= 0 && b.to >= 0) network_.branches.push_back(std::move(b));
+}
+
+}  // namespace swingbank::sim::formats::psse

@@ -1,0 +1,97 @@
+// Substations of versions 34 and 35: the nodes and switches behind the buses. The bus sections above already
+// describe the grid with its closed switches merged, so a substation changes nothing as long as every bus is
+// in one piece. One that its open switches split, or that a closed switch joins to another, is refused.
+// Source: PSS/E data format manual, "Substation Data".
+#include <functional>
+
+#include "sim/formats/detail/psse_raw.hpp"
+
+namespace swingbank::sim::formats::psse {
+
+struct RawReader::Substation {
+  struct Node {
+    int bus, root, line;  ///< root: the node itself at first
+  };
+  std::string name;
+  std::map<int, Node> nodes;
+  std::map<int, int> terminals;  ///< node with equipment -> line
+  int root(int node) {
+    while (nodes.at(node).root != node) node = nodes.at(node).root;
+    return node;
+  }
+};
+
+/// Rows up to the '0' that ends one of a substation's three blocks; false if the file ends before it.
+bool RawReader::part_of_substation(const char* name, const std::function<void(const Record&)>& row) {
+  while (auto record = next()) {
+    if (ends_section(*record)) return true;
+    if (ends_file(*record)) {
+      put_back(*record);
+      return false;
+    }
+    row(*record);
+  }
+  problems_.add(std::string("the file ends in the ") + name + " of a substation",
+                file_ + ":" + std::to_string(lines_.size()), "the file is truncated", "restore the file");
+  return false;
+}
+
+void RawReader::substation(const Record& first) {
+  Substation station;
+  station.name = Fields(first, file_, problems_).text(1, "");
+  const auto known = [&](int node, const Fields& f) {
+    if (station.nodes.contains(node)) return true;
+    problems_.add("node " + std::to_string(node) + " is not in the substation's nodes", f.where(),
+                  "the record refers to it", "add the node or correct the number");
+    return false;
+  };
+  const bool whole =
+      part_of_substation("nodes",
+                         [&](const Record& record) {
+                           Fields f(record, file_, problems_);
+                           const int node = f.integer(0, "node number"), bus = f.integer(2, "bus number");
+                           find_bus(bus, f);
+                           status(f.integer(3, "STATUS", 1), "STATUS", f);
+                           if (!station.nodes.emplace(node, Substation::Node{bus, node, record.line}).second)
+                             problems_.add("node " + std::to_string(node) + " appears twice", f.where(),
+                                           "a node of a substation stands once",
+                                           "remove one or give it another number");
+                         }) &&
+      part_of_substation("switches",
+                         [&](const Record& record) {
+                           Fields f(record, file_, problems_);
+                           const int a = f.integer(0, "from node"), b = f.integer(1, "to node");
+                           const bool closed = status(f.integer(5, "STATUS", 1), "STATUS", f);
+                           if (known(a, f) && known(b, f) && closed)
+                             station.nodes.at(station.root(a)).root = station.root(b);
+                         }) &&
+      part_of_substation("terminals", [&](const Record& record) {
+        Fields f(record, file_, problems_);
+        const int bus = f.integer(0, "bus number"), node = f.integer(1, "node number");
+        find_bus(bus, f);
+        if (known(node, f)) station.terminals.emplace(node, record.line);
+      });
+  if (whole) check_substation(station);
+}
+
+void RawReader::check_substation(const Substation& read) {
+  Substation station = read;
+  std::map<int, int> piece_of, bus_of;  // bus -> root of its nodes with equipment, and back
+  const auto where = [&](int line) { return file_ + ":" + std::to_string(line); };
+  for (const auto& [node, line] : station.terminals) {
+    const int bus = station.nodes.at(node).bus, root = station.root(node);
+    const auto [piece, fresh] = piece_of.emplace(bus, root);
+    if (!fresh && piece->second != root)
+      problems_.add("open switches split bus " + std::to_string(bus), where(line),
+                    "sections of a bus in substation '" + station.name + "' are not modelled",
+                    "close the switches or make the sections buses of their own");
+    const auto [owner, first] = bus_of.emplace(root, bus);
+    if (!first && owner->second != bus)
+      problems_.add(
+          "closed switches join buses " + std::to_string(owner->second) + " and " + std::to_string(bus),
+          where(line), "a connection without impedance in substation '" + station.name + "' is not modelled",
+          "open a switch or make the two buses one");
+  }
+}
+
+}  // namespace swingbank::sim::formats::psse

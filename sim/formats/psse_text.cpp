@@ -1,0 +1,204 @@
+#include "sim/formats/psse_text.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+namespace swingbank::sim::formats::psse {
+namespace {
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  if (first == std::string::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+bool blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+
+/// Reads a quoted field from its opening quote at `i`; leaves `i` behind the closing one. False if there is
+/// none.
+bool quoted_field(const std::string& line, std::size_t& i, Field& field) {
+  const char mark = line[i++];
+  field.quoted = true;
+  for (; i < line.size(); ++i) {
+    if (line[i] != mark) {
+      field.text += line[i];
+    } else if (i + 1 < line.size() && line[i + 1] == mark) {
+      field.text += line[i++];  // a doubled quote stands for itself
+    } else {
+      ++i;
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<std::string> read_lines(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  if (!in || std::filesystem::is_directory(file))
+    throw InputError({"cannot read the file", file.string(),
+                      std::filesystem::exists(file) ? "no permission, or not a file" : "it does not exist",
+                      "check the path"});
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+bool ends_section(const Record& record) {
+  return !record.fields.empty() && !record.fields[0].quoted && record.fields[0].text == "0";
+}
+bool ends_file(const Record& record) {
+  return !record.fields.empty() && !record.fields[0].quoted &&
+         (record.fields[0].text == "Q" || record.fields[0].text == "q");
+}
+
+Record split(const std::string& line, int number, const std::string& file, Problems& problems) {
+  Record record{number, false, {}};
+  bool separated = true;  // a comma or the start of the line lies behind: the next comma means an empty field
+  for (std::size_t i = 0; i < line.size();) {
+    const char c = line[i];
+    if (blank(c)) {
+      ++i;
+    } else if (c == '/') {
+      record.ended = true;
+      break;
+    } else if (c == ',') {
+      if (separated) record.fields.push_back({});
+      separated = true;
+      ++i;
+    } else {
+      Field field;
+      if (c == '\'' || c == '"') {
+        if (!quoted_field(line, i, field))
+          problems.add("a quote is not closed", file + ":" + std::to_string(number),
+                       "the name runs to the end of the line", "close it with " + std::string(1, c));
+      } else {
+        while (i < line.size() && !blank(line[i]) && line[i] != ',' && line[i] != '/')
+          field.text += line[i++];
+      }
+      field.text = trimmed(field.text);
+      record.fields.push_back(field);
+      separated = false;
+    }
+  }
+  return record;
+}
+
+const Field* Fields::given(std::size_t i) const {
+  if (i >= record_.fields.size()) return nullptr;
+  const Field& f = record_.fields[i];
+  return f.text.empty() && !f.quoted ? nullptr : &f;
+}
+
+void Fields::missing(const char* name) {
+  problems_.add(std::string(name) + " is missing", where(), "it has no default", "give " + std::string(name));
+}
+
+int Fields::integer(std::size_t i, const char* name, std::optional<int> fallback) {
+  const Field* f = given(i);
+  if (!f) {
+    if (!fallback) missing(name);
+    return fallback.value_or(0);
+  }
+  char* end = nullptr;
+  errno = 0;
+  const long value = std::strtol(f->text.c_str(), &end, 10);
+  if (f->text.empty() || *end != '\0' || errno != 0 || value > 999999999 || value < -999999999) {
+    problems_.add(std::string(name) + " = '" + f->text + "'", where(), "it is not a whole number",
+                  "give a whole number for " + std::string(name));
+    return fallback.value_or(0);
+  }
+  return static_cast<int>(value);
+}
+
+long double Fields::number(std::size_t i, const char* name, std::optional<long double> fallback) {
+  const Field* f = given(i);
+  if (!f) {
+    if (!fallback) missing(name);
+    return fallback.value_or(0.0L);
+  }
+  if (const auto value = parse_number(f->text)) return *value;
+  problems_.add(std::string(name) + " = '" + f->text + "'", where(), "it is not a finite number",
+                "give a number for " + std::string(name));
+  return fallback.value_or(0.0L);
+}
+
+std::string Fields::text(std::size_t i, const std::string& fallback) const {
+  const Field* f = given(i);
+  return f ? f->text : fallback;
+}
+
+std::optional<long double> parse_number(std::string text) {
+  if (text.empty() || text.find_first_not_of("0123456789+-.eEdD") != std::string::npos) return {};
+  for (char& c : text)
+    if (c == 'd' || c == 'D') c = 'e';
+  char* end = nullptr;
+  const long double value = std::strtold(text.c_str(), &end);
+  // A value beyond the range of double would turn to infinity later on.
+  if (*end != '\0' || !std::isfinite(static_cast<double>(value))) return {};
+  return value;
+}
+
+std::string shortest(double value, long double scale) {
+  if (!std::isfinite(value)) return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";  // in messages
+  const long double scaled = scale * static_cast<long double>(value);
+  char text[64];
+  // As many digits as stand before the point, so that 100 is not written as 1e+02.
+  const int whole = value == 0.0 ? 1 : static_cast<int>(std::floor(std::log10(std::abs(scaled)))) + 1;
+  for (int digits = std::clamp(whole, 1, 12); digits <= 21; ++digits) {
+    std::snprintf(text, sizeof text, "%.*Lg", digits, scaled);
+    if (static_cast<double>(std::strtold(text, nullptr) / scale) == value) break;
+  }
+  return text;
+}
+
+std::string quote(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("''") : std::string(1, c);
+  return quoted + "'";
+}
+
+void write_whole(const std::filesystem::path& file, const std::string& text) {
+  const std::string temporary = file.string() + ".part." + std::to_string(::getpid());
+  const auto fail = [&](const char* step) {
+    const std::string reason = std::strerror(errno);
+    ::unlink(temporary.c_str());
+    throw InputError({std::string("cannot ") + step + " the file", file.string(), reason,
+                      "check the folder, its permissions and the free space"});
+  };
+  const int descriptor = ::open(temporary.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0644);
+  if (descriptor < 0) fail("create");
+  for (std::size_t done = 0; done < text.size();) {
+    const auto n = ::write(descriptor, text.data() + done, text.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) {
+      ::close(descriptor);
+      fail("write");
+    }
+    done += static_cast<std::size_t>(n);
+  }
+  if (::fsync(descriptor) != 0) {
+    ::close(descriptor);
+    fail("write");
+  }
+  if (::close(descriptor) != 0) fail("write");
+  if (::rename(temporary.c_str(), file.c_str()) != 0) fail("rename");
+}
+
+}  // namespace swingbank::sim::formats::psse

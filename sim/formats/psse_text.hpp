@@ -1,0 +1,71 @@
+#pragma once
+// PSS/E free format: fields separated by commas or blanks, names in quotes, a record ends at '/'. Used by the
+// readers and writers of .raw and .dyr only.
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/problem.hpp"
+
+namespace swingbank::sim::formats::psse {
+
+struct Field {
+  std::string text;  ///< without quotes, blanks at both ends removed
+  bool quoted = false;
+};
+/// One record, or one line of a record. An empty unquoted field stands for "left at its default".
+struct Record {
+  int line = 0;        ///< in the file, from 1
+  bool ended = false;  ///< a '/' closed it
+  std::vector<Field> fields;
+};
+
+/// Lines of a text file without their line ends. Throws InputError if it cannot be read.
+std::vector<std::string> read_lines(const std::filesystem::path& file);
+/// The same of a text.
+std::vector<std::string> lines_of(const std::string& text);
+/// Splits one line. An open quote is reported in `problems`.
+Record split(const std::string& line, int number, const std::string& file, Problems& problems);
+
+/// A record that begins with 0 ends a section, one that begins with Q the file.
+bool ends_section(const Record& record);
+bool ends_file(const Record& record);
+
+/// Typed access to the fields of a record: what is missing or no number goes to `problems`, with file and
+/// line.
+class Fields {
+ public:
+  Fields(const Record& record, std::string file, Problems& problems)
+      : record_(record), file_(std::move(file)), problems_(problems) {}
+  /// Without a fallback the field is required. Returns the fallback (or zero) where there is no valid value.
+  int integer(std::size_t i, const char* name, std::optional<int> fallback = {});
+  long double number(std::size_t i, const char* name, std::optional<long double> fallback = {});
+  std::string text(std::size_t i, const std::string& fallback) const;
+  [[nodiscard]] int line() const { return record_.line; }
+  [[nodiscard]] std::string where() const { return file_ + ":" + std::to_string(record_.line); }
+  [[nodiscard]] std::size_t size() const { return record_.fields.size(); }
+
+ private:
+  [[nodiscard]] const Field* given(std::size_t i) const;
+  void missing(const char* name);
+  const Record& record_;
+  std::string file_;
+  Problems& problems_;
+};
+
+/// A finite decimal number, 'D' exponents included; nothing if the text is anything else.
+std::optional<long double> parse_number(std::string text);
+
+/// The shortest decimal of `scale * value` that reads back as `value`, when the reader divides by `scale` in
+/// extended precision. Extended, because not every double x has a double y with y/scale == x.
+std::string shortest(double value, long double scale = 1.0L);
+/// Degrees in a radian: files hold degrees, the network radians.
+constexpr long double kDegrees = 180.0L / 3.14159265358979323846264338327950288L;
+/// 'name', with quotes inside doubled.
+std::string quote(const std::string& text);
+
+/// Writes `text` under a temporary name in the same folder, fsyncs and renames. Throws InputError.
+void write_whole(const std::filesystem::path& file, const std::string& text);
+
+}  // namespace swingbank::sim::formats::psse

@@ -1,0 +1,226 @@
+// Transformers with two and three windings. In per unit on bus voltages a winding is an ideal ratio t:1. Two
+// windings are t1:1, the impedance, 1:t2; moved to one side: tap = t1/t2 with impedance z t2^2. Three
+// windings meet in a star point of their own: per winding t:1 and its share of the three impedances measured
+// between pairs. Source: PSS/E Program Operation Manual, "Transformer Data".
+#include <cmath>
+
+#include "sim/formats/detail/psse_raw.hpp"
+
+namespace swingbank::sim::formats::psse {
+
+using Impedance = std::complex<long double>;
+
+struct RawReader::Codes {
+  int cw, cz, cm;
+};
+
+namespace {
+
+void unknown_code(const char* name, int value, int last, const Fields& f, Problems& problems) {
+  problems.add(std::string(name) + " = " + std::to_string(value), f.where(),
+               "the codes are 1 to " + std::to_string(last), "give one of them");
+}
+
+/// Turns ratio of one winding in per unit of its bus voltage. Fields: WINDV, NOMV.
+long double turns(int cw, long double kv, Fields& f, const char* name, Problems& problems) {
+  if (cw != 1 && !(kv > 0)) {
+    problems.add("CW = " + std::to_string(cw), f.where(),
+                 "the bus has no BASKV to refer the winding voltage to",
+                 "give BASKV of the bus or use CW = 1");
+    return 1.0L;
+  }
+  const long double winding = f.number(0, name, cw == 2 ? kv : 1.0L);
+  const long double nominal = f.number(1, "NOMV", 0.0L);
+  if (!(winding > 0)) {
+    problems.add(std::string(name) + " = " + shortest(static_cast<double>(winding)), f.where(),
+                 "a winding needs turns", "give a value > 0");
+    return 1.0L;
+  }
+  if (cw == 2) return winding / kv;
+  if (cw == 3 && nominal != 0) return winding * nominal / kv;
+  return winding;
+}
+
+/// Series impedance between one pair of windings ("1-2"), in per unit on the system base and bus voltages;
+/// its fields R, X, SBASE begin at `first`.
+Impedance series(int cz, long double base, Fields& f, std::size_t first, const std::string& pair,
+                 Problems& problems, long double& mva) {
+  long double r = f.number(first, ("R" + pair).c_str(), 0.0L), x = f.number(first + 1, ("X" + pair).c_str());
+  mva = f.number(first + 2, ("SBASE" + pair).c_str(), base);
+  if (!(mva > 0)) {
+    problems.add("SBASE" + pair + " = " + shortest(static_cast<double>(mva)) + " MVA", f.where(),
+                 "the impedance refers to it", "give a base > 0 MVA");
+    mva = base;
+  }
+  if (cz == 3) {  // R is the load loss in W, X the magnitude of the impedance
+    r = r / 1e6L / mva;
+    if (std::abs(x) < r) {
+      problems.add("X" + pair + " = " + shortest(static_cast<double>(x)) + " pu", f.where(),
+                   "the load loss alone makes a larger impedance",
+                   "correct the loss in W or the impedance in pu");
+    } else {
+      x = std::copysign(std::sqrt(x * x - r * r), x);
+    }
+  }
+  const long double scale = cz == 1 ? 1.0L : base / mva;
+  return {r * scale, x * scale};
+}
+
+}  // namespace
+
+void RawReader::transformer(const Record& first) {
+  Fields f(first, file_, problems_);
+  const int k = f.integer(2, "K", 0);
+  const std::size_t lines = k == 0 ? 4 : 5;
+  std::vector<Record> rows{first};
+  while (rows.size() < lines) {
+    auto record = next();
+    if (!record) return;  // the section reports the truncation
+    if (record->fields.size() == 1 && (ends_section(*record) || ends_file(*record))) {
+      put_back(*record);  // the section's end belongs to the section
+      problems_.add("a transformer with " + std::to_string(rows.size()) + " lines", f.where(),
+                    k == 0 ? "one with two windings takes 4" : "one with three windings takes 5",
+                    "complete the record");
+      return;
+    }
+    rows.push_back(std::move(*record));
+  }
+  std::array<int, 3> ends{find_bus(f.integer(0, "from bus"), f), find_bus(f.integer(1, "to bus"), f), -1};
+  if (k != 0) ends[2] = find_bus(k, f);
+  if (ends[0] < 0 || ends[1] < 0) return;
+  if (k == 0) return two_windings(rows, ends[0], ends[1]);
+  if (ends[2] >= 0) three_windings(rows, ends);
+}
+
+RawReader::Codes RawReader::codes(Fields& head) {
+  const Codes c{head.integer(4, "CW", 1), head.integer(5, "CZ", 1), head.integer(6, "CM", 1)};
+  if (c.cw < 1 || c.cw > 3) unknown_code("CW", c.cw, 3, head, problems_);
+  if (c.cz < 1 || c.cz > 3) unknown_code("CZ", c.cz, 3, head, problems_);
+  if (c.cm < 1 || c.cm > 2) unknown_code("CM", c.cm, 2, head, problems_);
+  return c;
+}
+
+void RawReader::no_table(Fields& winding, std::size_t number) {
+  const std::string name = "TAB" + std::to_string(number);
+  const int table = winding.integer(columns_.winding_table, name.c_str(), 0);
+  if (table != 0)
+    problems_.add(name + " = " + std::to_string(table), winding.where(),
+                  "impedance correction tables are not modelled",
+                  "enter the impedance at the present tap and set " + name + " to 0");
+}
+
+Complex RawReader::magnetising(Fields& head, Fields& winding, const Codes& codes, long double mva,
+                               const network::Bus& bus) {
+  long double g = head.number(7, "MAG1", 0.0L), m = head.number(8, "MAG2", 0.0L);
+  if (codes.cm == 2) {  // MAG1: no-load loss in W, MAG2: exciting current in pu of SBASE1-2 and NOMV1
+    const long double nominal = winding.number(1, "NOMV1", 0.0L);
+    const long double volt = nominal > 0 && bus.kv > 0 ? static_cast<long double>(bus.kv) / nominal : 1.0L;
+    g = g / 1e6L / base_ * volt * volt;
+    m = m * mva / base_ * volt * volt;
+    if (std::abs(m) < g) {
+      problems_.add("MAG2 = " + head.text(8, "0") + " pu", head.where(),
+                    "the no-load loss alone draws a larger current", "correct MAG1 in W or MAG2 in pu");
+    } else {
+      m = -std::sqrt(m * m - g * g);
+    }
+  }
+  return {static_cast<double>(g), static_cast<double>(m)};
+}
+
+void RawReader::two_windings(std::span<const Record> rows, int from, int to) {
+  Fields head(rows[0], file_, problems_), impedance(rows[1], file_, problems_), w1(rows[2], file_, problems_),
+      w2(rows[3], file_, problems_);
+  const Codes code = codes(head);
+  network::Branch b{};
+  b.transformer = true;
+  b.from = from;
+  b.to = to;
+  b.circuit = head.text(3, "1");
+  b.in_service = status(head.integer(11, "STAT", 1), "STAT", head);
+  long double mva = base_;
+  const Impedance z = series(code.cz, base_, impedance, 0, "1-2", problems_, mva);
+  if (z == Impedance{})
+    problems_.add("R1-2 = X1-2 = 0", impedance.where(), "a transformer without impedance has no admittance",
+                  "merge the two buses or give an impedance");
+  const long double t1 = turns(code.cw, at(from).kv, w1, "WINDV1", problems_),
+                    t2 = turns(code.cw, at(to).kv, w2, "WINDV2", problems_);
+  b.r = static_cast<double>(z.real() * t2 * t2);
+  b.x = static_cast<double>(z.imag() * t2 * t2);
+  b.tap = static_cast<double>(t1 / t2);
+  b.shift = static_cast<double>(w1.number(2, "ANG1", 0.0L) / kDegrees);
+  no_table(w1, 1);
+  b.shunt_from = magnetising(head, w1, code, mva, at(from));
+  once_branch(at(from).number, at(to).number, b.circuit, head);
+  if (from == to)
+    problems_.add("a transformer from bus " + std::to_string(at(from).number) + " to itself", head.where(),
+                  "it joins nothing", "correct the bus numbers");
+  network_.branches.push_back(std::move(b));
+}
+
+int RawReader::star_point(Fields& head, Fields& impedances, const std::array<int, 3>& ends, bool in_service) {
+  const auto number = [&](int i) { return std::to_string(at(ends[static_cast<std::size_t>(i)]).number); };
+  network::Bus star{};
+  // Above every number of the file, in order of the transformers.
+  star.number = index_.rbegin()->first + 1 + static_cast<int>(stars_.size());
+  star.name = "STAR " + number(0) + "-" + number(1) + "-" + number(2) + " " + head.text(3, "1");
+  star.kv = 0.0;  // windings of three voltages meet here: there is no nominal one
+  star.type = in_service ? network::BusType::load : network::BusType::isolated;
+  star.vm = static_cast<double>(impedances.number(9, "VMSTAR", 1.0L));
+  star.va = static_cast<double>(impedances.number(10, "ANSTAR", 0.0L) / kDegrees);
+  if (!(star.vm > 0))
+    problems_.add("VMSTAR = " + shortest(star.vm) + " pu", impedances.where(),
+                  "the power flow starts from it", "give a voltage > 0 pu");
+  const int index = static_cast<int>(network_.buses.size());
+  network_.buses.push_back(std::move(star));
+  stars_.insert(index);
+  return index;
+}
+
+void RawReader::three_windings(std::span<const Record> rows, const std::array<int, 3>& ends) {
+  Fields head(rows[0], file_, problems_), impedances(rows[1], file_, problems_);
+  const Codes code = codes(head);
+  const std::string circuit = head.text(3, "1");
+  const int status = head.integer(11, "STAT", 1);  // 2, 3, 4: winding 2, 3, 1 alone is out
+  if (status < 0 || status > 4)
+    problems_.add("STAT = " + std::to_string(status), head.where(),
+                  "with three windings it is 0 (out), 1 (in) or 2, 3, 4 (winding 2, 3 or 1 out)",
+                  "give one of these");
+  long double mva = base_, other = base_;
+  const Impedance z12 = series(code.cz, base_, impedances, 0, "1-2", problems_, mva),
+                  z23 = series(code.cz, base_, impedances, 3, "2-3", problems_, other),
+                  z31 = series(code.cz, base_, impedances, 6, "3-1", problems_, other);
+  const std::array<Impedance, 3> z{(z12 + z31 - z23) / 2.0L, (z12 + z23 - z31) / 2.0L,
+                                   (z23 + z31 - z12) / 2.0L};
+  const std::array<int, 3> out{4, 2, 3};
+  const std::array<const char*, 3> names{"WINDV1", "WINDV2", "WINDV3"};
+  std::string identity = "transformer " + std::to_string(at(ends[0]).number);
+  for (std::size_t i = 1; i < 3; ++i) identity += "-" + std::to_string(at(ends[i]).number);
+  once(identity + " circuit '" + circuit + "'", head);
+  if (ends[0] == ends[1] || ends[1] == ends[2] || ends[2] == ends[0])
+    problems_.add("two windings at one bus", head.where(), "they would be short-circuited",
+                  "correct the bus numbers");
+  const int star = star_point(head, impedances, ends, status != 0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    Fields w(rows[2 + i], file_, problems_);
+    network::Branch b{};
+    b.transformer = true;
+    b.from = ends[i];
+    b.to = star;
+    b.circuit = circuit;
+    b.in_service = status != 0 && status != out[i];
+    // Less than the rounding of the three values it is the difference of is zero.
+    if (std::abs(z[i]) <= 1e-12L * (std::abs(z12) + std::abs(z23) + std::abs(z31)))
+      problems_.add("winding " + std::to_string(i + 1) + " has no impedance of its own", impedances.where(),
+                    "the three impedances leave nothing for it between its bus and the star point",
+                    "change one of them by a small amount, like 1e-4 pu");
+    b.r = static_cast<double>(z[i].real());
+    b.x = static_cast<double>(z[i].imag());
+    b.tap = static_cast<double>(turns(code.cw, at(ends[i]).kv, w, names[i], problems_));
+    b.shift = static_cast<double>(w.number(2, "ANG", 0.0L) / kDegrees);
+    no_table(w, i + 1);
+    if (i == 0) b.shunt_from = magnetising(head, w, code, mva, at(ends[0]));
+    network_.branches.push_back(std::move(b));
+  }
+}
+
+}  // namespace swingbank::sim::formats::psse

@@ -1,0 +1,85 @@
+#include "sim/grid/event_choice.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "sim/formats/event_text.hpp"
+#include "sim/network/fault_sequence.hpp"
+#include "sim/plant/equations.hpp"
+
+namespace swingbank::sim::grid {
+namespace {
+
+/// Machines behind their step-up transformers, at the impedance the positive sequence has of them.
+std::vector<network::SequenceSource> sequence_sources(const Grid& grid) {
+  std::vector<network::SequenceSource> list;
+  for (const plant::Plant& plant : grid.plants) {
+    const plant::Operating at =
+        plant::operating_point(plant, grid.flow.voltage[static_cast<std::size_t>(plant.bus)],
+                               grid.network.base_mva, grid.conventions);
+    const double* joint = at.c.data() + plant.machine.effect->coefficients;
+    const Complex own = 1.0 / Complex(joint[plant::joint_r], joint[plant::joint_x]);
+    list.push_back({plant.bus, plant.generator, own * plant.mva / grid.network.base_mva});
+  }
+  return list;
+}
+
+void choose_fault_type(const EventTexts& texts, const Grid& grid, const EventPlace& place,
+                       network::Event& event, Problems& problems) {
+  const auto type = network::fault_type(texts.fault_type);
+  if (!type)
+    problems.add("'" + texts.fault_type + "'", place(EventPart::fault_type, ""),
+                 "a fault is 3ph, slg, ll or llg", "write one of these");
+  std::optional<Complex> z0;
+  if (!texts.z0.empty()) z0 = formats::read_impedance(texts.z0, place(EventPart::z0, ""), problems);
+  if (problems.empty())
+    network::make_unbalanced(event, *type, z0, grid.network, grid.flow, sequence_sources(grid), problems);
+}
+
+/// A step of a reference that nothing follows would be lost without a word.
+void check_followers(const Grid& grid, const EventPlace& place, const network::Event& event,
+                     Problems& problems) {
+  for (const network::SetpointStep& step : event.setpoint_steps) {
+    const auto plant = std::ranges::find(grid.plants, step.generator, &plant::Plant::generator);
+    if (plant == grid.plants.end()) continue;
+    const auto lacks = [&](Slot slot) {
+      return std::ranges::none_of(plant->controls,
+                                  [&](const plant::Block& b) { return b.effect->slot == slot; });
+    };
+    if (step.dVref != 0 && lacks(Slot::exciter))
+      problems.add("a step of Vref at plant " + plant->name, place(EventPart::vref_step, ""),
+                   "it has no exciter", "choose a plant with one, or add one to the .dyr");
+    if (step.dPref != 0 && lacks(Slot::governor))
+      problems.add("a step of Pref at plant " + plant->name, place(EventPart::pref_step, ""),
+                   "it has no governor", "choose a plant with one, or add one to the .dyr");
+  }
+}
+
+}  // namespace
+
+network::Event read_event(const EventTexts& texts, const Grid& grid, double t_end, const EventPlace& place,
+                          Problems& problems) {
+  const network::Network& n = grid.network;
+  network::Event event;
+  for (const auto& text : texts.faults)
+    event.faults.push_back(formats::read_fault(text, n, t_end, place(EventPart::fault, text), problems));
+  for (const auto& text : texts.trips)
+    event.trips.push_back(formats::read_line_trip(text, n, t_end, place(EventPart::trip, text), problems));
+  for (const auto& text : texts.generator_trips)
+    event.generator_trips.push_back(
+        formats::read_generator_trip(text, n, t_end, place(EventPart::generator_trip, text), problems));
+  for (const auto& text : texts.load_steps)
+    event.load_steps.push_back(
+        formats::read_load_step(text, n, t_end, place(EventPart::load_step, text), problems));
+  for (const auto& text : texts.vref_steps)
+    event.setpoint_steps.push_back(
+        formats::read_setpoint_step(text, n, t_end, true, place(EventPart::vref_step, text), problems));
+  for (const auto& text : texts.pref_steps)
+    event.setpoint_steps.push_back(
+        formats::read_setpoint_step(text, n, t_end, false, place(EventPart::pref_step, text), problems));
+  choose_fault_type(texts, grid, place, event, problems);
+  check_followers(grid, place, event, problems);
+  return event;
+}
+
+}  // namespace swingbank::sim::grid

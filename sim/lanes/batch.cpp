@@ -1,0 +1,99 @@
+#include "sim/lanes/batch.hpp"
+
+#include <fmt/format.h>
+
+#include "sim/lanes/detail/lanes.hpp"
+
+namespace swingbank::sim::lanes {
+
+namespace {
+constexpr std::string_view instruction_set() {
+#if defined(__AVX512F__)
+  return "avx512";
+#elif defined(__AVX2__)
+  return "avx2";
+#else
+  return "baseline";
+#endif
+}
+constexpr int widest() {
+#if defined(__AVX512F__)
+  return 8;
+#else
+  return 4;
+#endif
+}
+
+struct Engine {
+  virtual ~Engine() = default;
+  virtual void run(const std::function<bool(Job&)>& next,
+                   const std::function<void(const Job&, const Trajectory&)>& done) = 0;
+};
+template <class T>
+struct EngineOf final : Engine {
+  EngineOf(const grid::Grid& grid, const BatchOptions& options) : lanes(grid, options) {}
+  void run(const std::function<bool(Job&)>& next,
+           const std::function<void(const Job&, const Trajectory&)>& done) override {
+    lanes.run(next, done);
+  }
+  Lanes<T> lanes;
+};
+}  // namespace
+
+struct Batch::Impl {
+  BatchOptions options;
+  std::unique_ptr<Engine> engine;
+};
+
+std::map<int, plant::Plant> changed_plants(const grid::Grid& grid, const Job& job) {
+  std::map<int, plant::Plant> changed;
+  const auto plant = [&](int index) -> plant::Plant& {
+    return changed.try_emplace(index, grid.plants[static_cast<std::size_t>(index)]).first->second;
+  };
+  for (const auto& [index, values] : job.machine_parameters) plant(index).machine.p = values;
+  for (const auto& [index, control, values] : job.control_parameters) {
+    plant::Plant& changing = plant(index);
+    (control == kTransformer ? changing.transformer : changing.controls[static_cast<std::size_t>(control)])
+        .p = values;
+  }
+  return changed;
+}
+
+Batch::Batch(const grid::Grid& grid, BatchOptions options) : impl_(std::make_unique<Impl>()) {
+  if (options.lanes == 0) options.lanes = options.sensitivities ? 8 : widest();
+  impl_->options = options;
+  if (options.sensitivities) {
+    if (options.lanes != 8)
+      throw InputError({fmt::format("{} lanes with sensitivities", options.lanes), "option lanes",
+                        "sensitivities are built for 8", "choose 8, or 0"});
+    impl_->engine = std::make_unique<EngineOf<D8P8>>(grid, options);
+    return;
+  }
+  switch (options.lanes) {
+    case 1:
+      impl_->engine = std::make_unique<EngineOf<double>>(grid, options);
+      break;
+    case 4:
+      impl_->engine = std::make_unique<EngineOf<P4>>(grid, options);
+      break;
+    case 8:
+      impl_->engine = std::make_unique<EngineOf<P8>>(grid, options);
+      break;
+    default:
+      throw InputError({fmt::format("{} lanes", options.lanes), "option lanes",
+                        "the kernel is built for 1, 4 and 8", "choose one of these, or 0 for the widest"});
+  }
+}
+Batch::~Batch() = default;
+
+void Batch::run(const std::function<bool(Job&)>& next,
+                const std::function<void(const Job&, const Trajectory&)>& done) {
+  impl_->engine->run(next, done);
+}
+
+std::string Batch::variant() const {
+  return fmt::format("dp54 lanes={} isa={} tol={:g}", impl_->options.lanes, instruction_set(),
+                     impl_->options.tolerance);
+}
+
+}  // namespace swingbank::sim::lanes

@@ -1,0 +1,70 @@
+#pragma once
+// The engine: free-running adaptive lanes. Dormand-Prince 5(4); each lane of a pack runs its own event with
+// its own time, step, acceptance and refill from the queue; lanes share no arithmetic, so a sample's bytes do
+// not depend on which lane or batch it rode in.
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "sim/core/trajectory.hpp"
+#include "sim/grid/grid.hpp"
+#include "sim/network/event.hpp"
+
+namespace swingbank::sim::lanes {
+
+struct BatchOptions {
+  double t_end = 15.0, rate = 120.0;
+  double tolerance = 1e-6;                  ///< error per step, weighted maximum norm over the states
+  std::vector<int> plants;                  ///< recorded; empty: all
+  std::vector<Channel> channels;            ///< recorded; empty: all of kChannels
+  int lanes = 0;                            ///< 1, 4 or 8; 0: the widest this build was made for
+  double lose_at = 3.14159265358979323846;  ///< pairwise rotor angle difference that ends a run [rad]
+  bool sensitivities = false;               ///< carry derivatives along Job::seeds; always 8 lanes
+};
+
+/// A parameter a sensitivity is wanted for. The step control weighs the sensitivity's error times `scale`
+/// like that of the value itself.
+struct Seed {
+  int plant;
+  int block;  ///< 0: machine, then transformer if there is one, then controls
+  int parameter;
+  double scale;  ///< [unit of the parameter]
+};
+
+constexpr int kTransformer = -1;  ///< in place of a control: the plant's step-up transformer
+
+/// One run to make: the event and the plants' parameters. Plants that are not listed keep the grid's own.
+struct Job {
+  std::uint64_t id = 0;
+  network::Event event;
+  std::vector<std::pair<int, std::vector<double>>>
+      machine_parameters;  ///< plant index, values in record order
+  struct Control {
+    int plant, control;  ///< index of the plant, and of the block among its controls; kTransformer
+    std::vector<double> values;
+    friend bool operator==(const Control&, const Control&) = default;
+  };
+  std::vector<Control> control_parameters = {};
+  std::vector<Seed> seeds = {};  ///< at most kDirections; only where BatchOptions::sensitivities
+};
+
+/// The plants a job changes, by index.
+std::map<int, plant::Plant> changed_plants(const grid::Grid& grid, const Job& job);
+
+class Batch {
+ public:
+  Batch(const grid::Grid& grid, BatchOptions options);
+  ~Batch();
+  /// Runs jobs until `next` returns false. `done` is called once per job, in the order they finish; the
+  /// trajectory is only valid during the call. An InputError of a job (operating point refused) is thrown.
+  void run(const std::function<bool(Job&)>& next,
+           const std::function<void(const Job&, const Trajectory&)>& done);
+  /// "dp54 lanes=8 isa=avx512 tol=1e-06": part of a dataset's config hash.
+  [[nodiscard]] std::string variant() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace swingbank::sim::lanes

@@ -1,0 +1,106 @@
+#pragma once
+// Lanes: the matrices of the lanes' networks. Few sources: a matrix per lane; many: one for all lanes and
+// what each changes in it.
+#include "sim/lanes/detail/lanes.hpp"
+
+namespace swingbank::sim::lanes {
+
+/// Grids of many sources share the grid's own matrix. Slopes differ by lane in every entry, Newton's method
+/// reads the lanes' matrices, and one lane has nobody to share with.
+template <class T>
+void Lanes<T>::share() {
+  shares_ = Traits::directions == 0 && kLanes > 1 && nonlinear_.empty() && n_ >= SharedNetwork<T>::kMany;
+  if (!shares_) return;
+  const auto n = static_cast<std::size_t>(n_);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double* z = &base_[i].c[static_cast<std::size_t>(grid_.plants[i].machine.effect->coefficients)];
+    own_r_.push_back(z[plant::joint_r]);
+    own_x_.push_back(z[plant::joint_x]);
+  }
+  shared_.assign(network_.matrix({}, own_r_, own_x_));
+  switched_.emplace(grid_, own_r_, own_x_);
+  if (BusFactors factors; factors.factor(switched_->closed())) shared_.assign(factors, switched_->plants());
+  recorded_rows_.resize(kLanes);
+  const std::size_t rows = SharedRows::padded(std::max(n, recorded_.size()));
+  for (auto* v : {&ir_, &ii_}) v->assign(rows, T(0.0));
+}
+
+/// Puts a lane's matrix into place.
+template <class T>
+const Terminals& Lanes<T>::set_matrix(int lane, const network::Topology& topology) {
+  if (shares_) return set_shared(lane, topology);
+  const auto l = static_cast<std::size_t>(lane);
+  const InternalMatrix& matrix = network_.matrix(topology, lane_r_[l], lane_x_[l]);
+  for (std::size_t i = 0; i < matrix.g.size(); ++i) {
+    Traits::set(per_lane_.g[i], lane, matrix.g[i]);
+    Traits::set(per_lane_.b[i], lane, matrix.b[i]);
+  }
+  if constexpr (Traits::directions > 0) matrix_slopes(lane, matrix);
+  return matrix;
+}
+
+template <class T>
+const Terminals& Lanes<T>::set_shared(int lane, const network::Topology& topology) {
+  const auto l = static_cast<std::size_t>(lane);
+  if (const auto products = few_products(lane, topology)) {
+    shared_.set(lane, *products);
+    recorded_rows_[l].assign(shared_.own(), recorded_, *products);
+    return terminals_;
+  }
+  const InternalMatrix& matrix = network_.matrix(topology, lane_r_[l], lane_x_[l]);
+  shared_.set(lane, matrix);
+  recorded_rows_[l].assign(matrix, recorded_);
+  return matrix;
+}
+
+/// What the lane's topology and machines change, and in terminals_ how the sources are then connected; none
+/// where that takes too many products.
+template <class T>
+std::optional<LowRank> Lanes<T>::few_products(int lane, const network::Topology& topology) {
+  const auto l = static_cast<std::size_t>(lane);
+  std::vector<ImpedanceChange> changes;
+  for (std::size_t i = 0; i < plants_.size(); ++i)
+    if (lane_r_[l][i] != own_r_[i] || lane_x_[l][i] != own_x_[i])
+      changes.push_back({static_cast<int>(i), {lane_r_[l][i] - own_r_[i], lane_x_[l][i] - own_x_[i]}});
+  const int most = SharedNetwork<T>::most_products(plants_.size()) - static_cast<int>(changes.size());
+  if (most < 0) return {};
+  auto products = switched_->change(topology, most);
+  if (products) {
+    terminals_ = shared_.own();
+    const auto bolted = network::bolted_buses(topology);
+    for (std::size_t i = 0; i < plants_.size(); ++i)
+      terminals_.grounded[i] = std::ranges::count(bolted, grid_.plants[i].bus) > 0;
+  } else {
+    const InternalMatrix& matrix = network_.matrix(topology, own_r_, own_x_);
+    terminals_ = matrix;
+    products = difference(matrix, shared_.own(), most);
+  }
+  if (products) add_impedances(*products, shared_.own(), changes);
+  return products;
+}
+
+/// M = (G + jB) changes with a source's impedance by dM = -M[:,k] dz M[k,:].
+template <class T>
+void Lanes<T>::matrix_slopes(int lane, const InternalMatrix& matrix) {
+  const auto n = static_cast<std::size_t>(sources_);
+  for (int d = 0; d < Traits::directions; ++d)
+    for (std::size_t k = 0; k < plants_.size(); ++k) {
+      const T* z = source_impedance(per_lane_, static_cast<int>(k));
+      const auto slope = [&](const T& v) {
+        return LaneTraits<Flat>::get(v.d[static_cast<std::size_t>(d)], lane);
+      };
+      const Complex dz(slope(z[0]), slope(z[1]));
+      if (dz == Complex{}) continue;
+      const auto m = [&](std::size_t i, std::size_t j) {
+        return Complex(matrix.g[i * n + j], matrix.b[i * n + j]);
+      };
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j) {
+          const Complex dm = -m(i, k) * dz * m(k, j);
+          Traits::set_slope(per_lane_.g[i * n + j], lane, d, dm.real());
+          Traits::set_slope(per_lane_.b[i * n + j], lane, d, dm.imag());
+        }
+    }
+}
+
+}  // namespace swingbank::sim::lanes

@@ -1,0 +1,179 @@
+#pragma once
+// The network of many sources: I = (M + sum_k u_k w_k^T) E. M is the grid's own matrix, the same for all
+// lanes, as sparse factors of the whole network or as it stands; what a lane's switching and machines change
+// in it are few outer products. Matrices lane by lane would leave the caches. A lane's bits do not depend on
+// what the others hold: products that only they have add zero.
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+#include "sim/lanes/detail/bus_factors.hpp"
+#include "sim/lanes/detail/lane_traits.hpp"
+#include "sim/lanes/detail/matrix_rows.hpp"
+#include "sim/lanes/detail/switched_network.hpp"
+
+namespace swingbank::sim::lanes {
+
+template <class T>
+class SharedNetwork {
+ public:
+  /// From so many sources on it is faster than a matrix per lane.
+  static constexpr int kMany = 32;
+  /// Up to so many products a lane's are less work than a matrix of its own.
+  static constexpr int most_products(std::size_t sources) { return static_cast<int>(sources / 2); }
+
+  void assign(const InternalMatrix& own);
+  /// Factors of the network that `own` is of, if they are less work.
+  void assign(const BusFactors& factors, const std::vector<Feed>& plants);
+  [[nodiscard]] bool factored() const { return factors_.buses() > 0; }
+  [[nodiscard]] const InternalMatrix& own() const { return own_; }
+  /// Puts a lane's matrix into place: own() + products, or one by itself.
+  void set(int lane, const LowRank& products);
+  void set(int lane, const InternalMatrix& matrix);
+  /// All currents; ir, ii with room for SharedRows::padded of them.
+  void solve(const T* er, const T* ei, T* ir, T* ii);
+
+ private:
+  using Traits = LaneTraits<T>;
+  static constexpr int kLanes = Traits::lanes;
+  /// One outer product of every lane.
+  struct Product {
+    std::vector<T> ur, ui, wr, wi;
+  };
+  void solve_own(const T* er, const T* ei, T* ir, T* ii);
+  void correct(const T* er, const T* ei, T* ir, T* ii);
+  void replace(const T* er, const T* ei, T* ir, T* ii) const;
+
+  InternalMatrix own_;
+  SharedRows rows_;
+  BusFactors factors_;        ///< in place of rows_ where there are any
+  std::vector<Feed> plants_;  ///< buses as `factors_` places them
+  std::vector<T> vr_, vi_;    ///< scratch: at the buses
+  std::vector<Product> products_;
+  std::vector<T> sum_r_, sum_i_;  ///< scratch: w_k^T E
+  std::array<int, kLanes> rank_{};
+  int most_ = 0;          ///< of rank_
+  unsigned whole_ = 0;    ///< lanes with a matrix of their own
+  std::vector<T> g_, b_;  ///< their matrices; empty until one is needed
+};
+
+template <class T>
+void SharedNetwork<T>::assign(const InternalMatrix& own) {
+  own_ = own;
+  std::vector<int> all(own.grounded.size());
+  std::iota(all.begin(), all.end(), 0);
+  rows_.assign(own, all);
+}
+
+template <class T>
+void SharedNetwork<T>::assign(const BusFactors& factors, const std::vector<Feed>& plants) {
+  if (2 * (factors.entries() + 2 * factors.buses()) > plants.size() * plants.size()) return;
+  factors_ = factors;
+  plants_ = plants;
+  for (Feed& plant : plants_) plant.bus = factors.place(plant.bus);
+  for (auto* v : {&vr_, &vi_}) v->resize(factors.buses());
+}
+
+template <class T>
+void SharedNetwork<T>::set(int lane, const LowRank& products) {
+  whole_ &= ~(1U << lane);
+  const std::size_t n = own_.grounded.size();
+  rank_[static_cast<std::size_t>(lane)] = products.rank;
+  most_ = *std::ranges::max_element(rank_);
+  while (static_cast<int>(products_.size()) < most_) {
+    const std::vector<T> zeros(n, T(0.0));
+    products_.push_back({zeros, zeros, zeros, zeros});
+  }
+  for (auto* v : {&sum_r_, &sum_i_}) v->resize(products_.size());
+  for (std::size_t k = 0; k < products_.size(); ++k) {
+    const bool has = static_cast<int>(k) < products.rank;
+    const auto put = [&](std::vector<T>& to, const std::vector<double>& from) {
+      for (std::size_t i = 0; i < n; ++i) Traits::set(to[i], lane, has ? from[k * n + i] : 0.0);
+    };
+    put(products_[k].ur, products.ur);
+    put(products_[k].ui, products.ui);
+    put(products_[k].wr, products.wr);
+    put(products_[k].wi, products.wi);
+  }
+}
+
+template <class T>
+void SharedNetwork<T>::set(int lane, const InternalMatrix& matrix) {
+  set(lane, LowRank{});
+  whole_ |= 1U << lane;
+  for (auto* v : {&g_, &b_}) v->resize(matrix.g.size(), T(0.0));
+  for (std::size_t i = 0; i < matrix.g.size(); ++i) {
+    Traits::set(g_[i], lane, matrix.g[i]);
+    Traits::set(b_[i], lane, matrix.b[i]);
+  }
+}
+
+template <class T>
+inline void SharedNetwork<T>::solve(const T* er, const T* ei, T* ir, T* ii) {
+  solve_own(er, ei, ir, ii);
+  correct(er, ei, ir, ii);
+  if (whole_ != 0) replace(er, ei, ir, ii);
+}
+
+/// Without what the lanes change.
+template <class T>
+inline void SharedNetwork<T>::solve_own(const T* er, const T* ei, T* ir, T* ii) {
+  if (!factored()) return rows_.times(er, ei, ir, ii);
+  for (auto* v : {&vr_, &vi_}) std::ranges::fill(*v, T(0.0));
+  for (std::size_t k = 0; k < plants_.size(); ++k) {
+    const T g(plants_[k].source.real()), b(plants_[k].source.imag());
+    T &real = vr_[static_cast<std::size_t>(plants_[k].bus)],
+      &imaginary = vi_[static_cast<std::size_t>(plants_[k].bus)];
+    real = real + g * er[k];
+    real = real - b * ei[k];
+    imaginary = imaginary + g * ei[k];
+    imaginary = imaginary + b * er[k];
+  }
+  factors_.solve(vr_.data(), vi_.data());
+  for (std::size_t k = 0; k < plants_.size(); ++k) {
+    const T g(plants_[k].own.real()), b(plants_[k].own.imag());
+    const T real = er[k] - vr_[static_cast<std::size_t>(plants_[k].bus)],
+            imaginary = ei[k] - vi_[static_cast<std::size_t>(plants_[k].bus)];
+    ir[k] = g * real - b * imaginary;
+    ii[k] = g * imaginary + b * real;
+  }
+}
+
+/// Adds sum_k u_k (w_k^T E), summed by itself: a lane whose own products are fewer adds +0 like one with
+/// none.
+template <class T>
+inline void SharedNetwork<T>::correct(const T* er, const T* ei, T* ir, T* ii) {
+  const std::size_t n = own_.grounded.size();
+  const auto most = static_cast<std::size_t>(most_);
+  for (std::size_t k = 0; k < most; ++k) {
+    const Product& p = products_[k];
+    row_times(p.wr.data(), p.wi.data(), er, ei, static_cast<int>(n), sum_r_[k], sum_i_[k]);
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    T r(0.0), x(0.0);
+    for (std::size_t k = 0; k < most; ++k) {
+      const Product& p = products_[k];
+      r = r + p.ur[i] * sum_r_[k];
+      r = r - p.ui[i] * sum_i_[k];
+      x = x + p.ur[i] * sum_i_[k];
+      x = x + p.ui[i] * sum_r_[k];
+    }
+    ir[i] = ir[i] + r;
+    ii[i] = ii[i] + x;
+  }
+}
+
+/// The currents of lanes with a matrix of their own.
+template <class T>
+inline void SharedNetwork<T>::replace(const T* er, const T* ei, T* ir, T* ii) const {
+  const std::size_t n = own_.grounded.size();
+  const auto whole = Traits::mask(whole_);
+  for (std::size_t i = 0; i < n; ++i) {
+    T r, x;
+    row_times(&g_[i * n], &b_[i * n], er, ei, static_cast<int>(n), r, x);
+    ir[i] = select(whole, r, ir[i]);
+    ii[i] = select(whole, x, ii[i]);
+  }
+}
+
+}  // namespace swingbank::sim::lanes

@@ -1,0 +1,228 @@
+#pragma once
+// Lanes: the free-running loop. Every pack step advances each lane by its own step; a lane accepts, rejects,
+// switches and refills alone.
+#include "sim/lanes/detail/lanes.hpp"
+
+namespace swingbank::sim::lanes {
+
+/// First stage of the lanes that were loaded or switched; the others keep theirs (first same as last).
+template <class T>
+void Lanes<T>::evaluate_fresh() {
+  if (timed_) {
+    alignas(64) double now[kLanes];
+    for (int l = 0; l < kLanes; ++l) now[l] = lanes_[static_cast<std::size_t>(l)].clock.t;
+    time_ = Traits::constant(LaneTraits<Flat>::load(now));
+  }
+  derivative(y_.data(), kept_.data());
+  const auto fresh = Traits::mask(fresh_);
+  for (Watch& watch : watched_) {
+    watch.start = select(fresh, watch.last, watch.start);
+    watch.rested = select(fresh, Flat(0.0), watch.rested);
+  }
+  for (std::size_t i = 0; i < y_.size(); ++i) k_[0][i] = select(fresh, kept_[i], k_[0][i]);
+  fresh_ = 0;
+}
+
+template <class T>
+template <int Stage>
+void Lanes<T>::stage(const T& h) {
+  const T* y = y_.data();
+  T* trial = trial_.data();
+  for (const int state : moving_) {
+    const auto i = static_cast<std::size_t>(state);
+    T sum = T(plant::dp54::a[Stage][0]) * k_[0][i];
+    for (int j = 1; j < Stage; ++j)
+      if (plant::dp54::a[Stage][j] != 0.0) sum = sum + T(plant::dp54::a[Stage][j]) * k_[j][i];
+    trial[i] = y[i] + h * sum;
+  }
+  if (timed_) time_ = start_ + T(plant::dp54::c[Stage]) * h;
+  derivative(trial, k_[Stage].data());
+}
+
+/// Largest weighted error over the states, in units of the tolerance.
+template <class T>
+typename Lanes<T>::Flat Lanes<T>::scaled_error(const Flat& h) const {
+  Flat worst(0.0);
+  const auto add = [&worst](const Flat& e) { worst = select(e <= worst, worst, e); };  // so a NaN wins
+  for (const int state : moving_) add(own_error(static_cast<std::size_t>(state)));
+  if (weighs_)
+    for (const Weighed& w : weighed_)
+      add(own_error(static_cast<std::size_t>(w.state)) *
+          Traits::value(per_lane_.c[static_cast<std::size_t>(w.coefficient)]));
+  for (const Watch& watch : watched_) {
+    const Flat kink = has_kink(watch);
+    for (int i = watch.first; i < watch.first + watch.count; ++i)
+      add(kink * kink_error(static_cast<std::size_t>(i)));
+  }
+  for (const int i : bent_) add(kink_error(static_cast<std::size_t>(i)));
+  for (const int i : stopped_) {
+    const auto state = static_cast<std::size_t>(i);
+    add(leaves_limit(state) * kink_error(state));
+  }
+  return worst * h;
+}
+
+/// The method's own estimate of a state's error over h, weighted.
+template <class T>
+typename Lanes<T>::Flat Lanes<T>::own_error(std::size_t state) const {
+  T sum = T(plant::dp54::error[0]) * k_[0][state];
+  for (int j = 2; j < plant::dp54::kStages; ++j) sum = sum + T(plant::dp54::error[j]) * k_[j][state];
+  return Traits::magnitude(sum) * Flat(weight_[state]);
+}
+
+/// 1 where a state held at its limit comes off it within the step, else 0.
+template <class T>
+typename Lanes<T>::Flat Lanes<T>::leaves_limit(std::size_t state) const {
+  const Flat zero(0.0), one(1.0), first = Traits::magnitude(k_[0][state]),
+                                  last = Traits::magnitude(k_[plant::dp54::kStages - 1][state]);
+  return select(first <= zero, select(last <= zero, zero, one), zero);
+}
+
+/// 1 where Vs comes to a limit within the step or leaves one, else 0.
+template <class T>
+typename Lanes<T>::Flat Lanes<T>::has_kink(const Watch& watch) const {
+  const Flat zero(0.0), one(1.0);
+  const Flat moves = select(watch.same + watch.rested <= zero, zero, one);
+  return select(Flat(plant::dp54::kStages - 1) <= watch.same, zero, moves);
+}
+
+/// After a stage's evaluation.
+template <class T>
+void Lanes<T>::watch_stage(Watch& watch, const T& vs) {
+  const Flat now = Traits::value(vs), zero(0.0), one(1.0);
+  watch.rested_next = select(now <= watch.last, select(watch.last <= now, one, zero), zero);
+  watch.same = watch.same + watch.rested_next;
+  watch.last = now;
+}
+
+/// What a kink within the step may leave in a state, over h, weighted: see dp54::kink.
+template <class T>
+typename Lanes<T>::Flat Lanes<T>::kink_error(std::size_t state) const {
+  Flat worst(0.0);
+  for (const auto& difference : plant::dp54::kink) {
+    T sum =
+        T(difference[2]) * k_[2][state] + T(difference[3]) * k_[3][state] + T(difference[6]) * k_[6][state];
+    sum = sum + T(difference[0]) * k_[0][state] + T(difference[4]) * k_[4][state];
+    const Flat e = Traits::magnitude(sum);
+    worst = select(e <= worst, worst, e);
+  }
+  return worst * Flat(kKinkShare * std::max(weight_[state], kKinkWeight / options_.tolerance));
+}
+
+template <class T>
+T Lanes<T>::spread(const T* x) const {
+  T low(std::numeric_limits<double>::max()), high = -low;
+  for (std::size_t i = 0; i < plants_.size(); ++i) {
+    const T& delta = x[plants_[i].x];
+    if (tripped_ != 0) {
+      const auto on = per_lane_.on[i] > T(0.5);
+      low = minimum(low, select(on, delta, low));
+      high = maximum(high, select(on, delta, high));
+    } else {
+      low = minimum(low, delta);
+      high = maximum(high, delta);
+    }
+  }
+  return maximum(high - low, T(0.0));
+}
+
+template <class T>
+void Lanes<T>::commit(unsigned accepted) {
+  const auto ok = Traits::mask(accepted);
+  for (const int state : moving_) {
+    const auto i = static_cast<std::size_t>(state);
+    y_[i] = select(ok, trial_[i], y_[i]);
+    k_[0][i] = select(ok, k_[6][i], k_[0][i]);
+  }
+  for (Watch& watch : watched_) {
+    watch.start = select(ok, watch.last, watch.start);
+    watch.rested = select(ok, watch.rested_next, watch.rested);
+  }
+  if (limited_) clamp_states();
+}
+
+/// States that overshot a limit within the step go back to it; their lanes' first stage is then evaluated
+/// anew.
+template <class T>
+void Lanes<T>::clamp_states() {
+  T moved(0.0);
+  for (const auto& p : plants_)
+    p.equations.clamp_states(&per_lane_.c[static_cast<std::size_t>(p.c)], &y_[static_cast<std::size_t>(p.x)],
+                             moved);
+  alignas(64) double by[kLanes];
+  LaneTraits<Flat>::store(Traits::value(moved), by);
+  for (int l = 0; l < kLanes; ++l)
+    if (by[l] > 0.0) fresh_ |= 1U << l;
+}
+
+/// After a step: lanes that lost synchronism or came to their end are handed over, lanes at a switching
+/// switch.
+template <class T>
+void Lanes<T>::settle(unsigned accepted, const Next& next, const Done& done) {
+  alignas(64) double angle[kLanes];
+  LaneTraits<Flat>::store(Traits::value(spread(y_.data())), angle);
+  for (int l = 0; l < kLanes; ++l) {
+    auto& run = lanes_[static_cast<std::size_t>(l)];
+    if (!((active_ >> l) & 1U)) continue;
+    if (!((accepted >> l) & 1U)) {
+      if (run.clock.h > LaneClock::kShortest) continue;
+      hand_over(l, std::isfinite(angle[l]) ? Outcome::step_too_small : Outcome::not_finite, done);
+      refill(l, next, done);
+      continue;
+    }
+    if (angle[l] > run.record.largest_spread) run.record.largest_spread = angle[l];
+    const bool lost = angle[l] > options_.lose_at;
+    if (lost || run.clock.t >= options_.t_end) {
+      hand_over(l, lost ? Outcome::lost_synchronism : Outcome::stable, done);
+      refill(l, next, done);
+    } else if (run.clock.t >= run.clock.next) {
+      evaluate_pending(l, run.pending);  // before the matrices change
+      ++run.segment;
+      enter_segment(l);
+    }
+  }
+}
+
+template <class T>
+void Lanes<T>::run(const Next& next, const Done& done) {
+  active_ = 0;
+  for (int l = 0; l < kLanes; ++l) refill(l, next, done);
+  while (active_ != 0) {
+    if (fresh_ != 0) evaluate_fresh();
+    alignas(64) double tried[kLanes], error[kLanes];
+    alignas(64) double start[kLanes];
+    bool reaches[kLanes];
+    for (int l = 0; l < kLanes; ++l) tried[l] = lanes_[static_cast<std::size_t>(l)].clock.step(reaches[l]);
+    const Flat step = LaneTraits<Flat>::load(tried);
+    const T h = Traits::constant(step);
+    if (timed_) {
+      for (int l = 0; l < kLanes; ++l) start[l] = lanes_[static_cast<std::size_t>(l)].clock.t;
+      start_ = Traits::constant(LaneTraits<Flat>::load(start));
+    }
+    for (Watch& watch : watched_) {
+      watch.last = watch.start;
+      watch.same = Flat(0.0);
+    }
+    stage<1>(h);
+    stage<2>(h);
+    stage<3>(h);
+    stage<4>(h);
+    stage<5>(h);
+    stage<6>(h);
+    LaneTraits<Flat>::store(scaled_error(step), error);
+    unsigned accepted = 0;
+    for (int l = 0; l < kLanes; ++l) {
+      if (!((active_ >> l) & 1U)) continue;
+      auto& clock = lanes_[static_cast<std::size_t>(l)].clock;
+      start[l] = clock.t;
+      if (!clock.judge(tried[l], error[l])) continue;
+      accepted |= 1U << l;
+      clock.t = reaches[l] ? clock.next : clock.t + tried[l];
+    }
+    record_step(h, accepted, start, tried);
+    commit(accepted);
+    settle(accepted, next, done);
+  }
+}
+
+}  // namespace swingbank::sim::lanes

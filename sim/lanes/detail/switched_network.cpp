@@ -1,0 +1,99 @@
+#include "sim/lanes/detail/switched_network.hpp"
+
+#include <algorithm>
+
+#include "sim/network/admittance.hpp"
+
+namespace swingbank::sim::lanes {
+
+namespace {
+/// Of the small system, below which the products have lost three digits.
+constexpr double kLeastCondition = 1e-3;
+}  // namespace
+
+SwitchedNetwork::SwitchedNetwork(const grid::Grid& grid, const std::vector<double>& r,
+                                 const std::vector<double>& x)
+    : grid_(grid), own_(network::dynamic_admittance(grid.network, grid.flow, {})) {
+  closed_ = own_;
+  for (std::size_t i = 0; i < grid.plants.size(); ++i) {
+    const plant::Plant& plant = grid.plants[i];
+    const Complex own = 1.0 / Complex(r[i], x[i]);
+    plants_.push_back({plant.bus, own * (plant.mva / grid.network.base_mva), own});
+    closed_.coeffRef(plant.bus, plant.bus) += plants_[i].source;
+  }
+  closed_.makeCompressed();
+  factors_.compute(closed_);
+  transposed_.compute(Sparse(closed_.transpose()));
+  sound_ = factors_.info() == Eigen::Success && transposed_.info() == Eigen::Success;
+}
+
+Eigen::MatrixXcd SwitchedNetwork::unit_currents(const std::vector<int>& buses) const {
+  const auto count = static_cast<Eigen::Index>(buses.size());
+  Eigen::MatrixXcd at = Eigen::MatrixXcd::Zero(own_.rows(), count);
+  for (Eigen::Index k = 0; k < count; ++k) at(buses[static_cast<std::size_t>(k)], k) = 1.0;
+  return at;
+}
+
+std::optional<SwitchedNetwork::Touched> SwitchedNetwork::touch(const network::Topology& topology,
+                                                               int most) const {
+  const Sparse added = network::dynamic_admittance(grid_.network, grid_.flow, topology) - own_;
+  Touched touched;
+  touched.buses = network::bolted_buses(topology);
+  const auto each = [&](const auto& what) {
+    for (int j = 0; j < added.outerSize(); ++j)
+      for (Sparse::InnerIterator e(added, j); e; ++e)
+        if (e.value() != Complex{}) what(static_cast<int>(e.row()), j, e.value());
+  };
+  each([&](int row, int column, Complex) {
+    touched.buses.push_back(row);
+    touched.buses.push_back(column);
+  });
+  auto& buses = touched.buses;
+  std::ranges::sort(buses);
+  buses.erase(std::unique(buses.begin(), buses.end()), buses.end());
+  if (static_cast<int>(buses.size()) > most) return {};
+  const auto count = static_cast<Eigen::Index>(buses.size());
+  const auto place = [&](int bus) { return std::ranges::lower_bound(buses, bus) - buses.begin(); };
+  touched.admittance = Eigen::MatrixXcd::Zero(count, count);
+  each([&](int row, int column, Complex value) { touched.admittance(place(row), place(column)) = value; });
+  touched.voltage = factors_.solve(unit_currents(buses));
+  return touched;
+}
+
+/// Into the touched buses, per unit of their voltages before: J = -Y (V + Z J), where bolted V + Z J = 0.
+std::optional<Eigen::MatrixXcd> SwitchedNetwork::currents(const Touched& touched,
+                                                          const std::vector<int>& bolted) const {
+  const auto count = touched.admittance.rows();
+  const Eigen::MatrixXcd z = touched.voltage(touched.buses, Eigen::all);
+  Eigen::MatrixXcd a = Eigen::MatrixXcd::Identity(count, count) + touched.admittance * z;
+  Eigen::MatrixXcd b = -touched.admittance;
+  for (Eigen::Index k = 0; k < count; ++k)
+    if (std::ranges::count(bolted, touched.buses[static_cast<std::size_t>(k)])) {
+      a.row(k) = z.row(k) / z(k, k);
+      b.row(k).setZero();
+      b(k, k) = -1.0 / z(k, k);
+    }
+  const Eigen::PartialPivLU<Eigen::MatrixXcd> lu(a);
+  if (!(lu.rcond() > kLeastCondition)) return {};
+  return lu.solve(b);
+}
+
+std::optional<LowRank> SwitchedNetwork::change(const network::Topology& topology, int most) const {
+  LowRank out;
+  if (topology == network::Topology{}) return out;
+  if (!sound_ || !topology.tripped.empty() || !topology.partly_tripped.empty()) return {};
+  const auto touched = touch(topology, most);
+  if (!touched) return {};
+  if (touched->buses.empty()) return out;
+  const auto into = currents(*touched, network::bolted_buses(topology));
+  if (!into) return {};
+  const Eigen::MatrixXcd v = touched->voltage * *into;
+  const Eigen::MatrixXcd before = transposed_.solve(unit_currents(touched->buses));
+  out.rank = static_cast<int>(v.cols());
+  for (Eigen::Index k = 0; k < v.cols(); ++k)
+    for (const Feed& plant : plants_)
+      out.add(-plant.own * v(plant.bus, k), before(plant.bus, k) * plant.source);
+  return out;
+}
+
+}  // namespace swingbank::sim::lanes

@@ -1,0 +1,266 @@
+#pragma once
+// One plant's equations, whatever effects it is made of, in the order every integrator evaluates them:
+//   emf -> (network: current) -> terminal -> machine.electrical -> controls in order of Slot ->
+//   machine.derivative -> non-windup limits
+// States of a plant lie back to back, machine first; coefficients likewise, with the plant's own (Joint)
+// after the machine's.
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "sim/plant/plant.hpp"
+
+namespace swingbank::sim::plant {
+
+/// What a plant knows besides its effects' coefficients: impedance [pu on the machine's base] of the machine
+/// alone (rm, xm), and with the step-up transformer as the grid sees it (r, x); the transformer's ratio.
+enum Joint { joint_rm, joint_xm, joint_ratio, joint_r, joint_x, kJoint };
+
+template <class T>
+class PlantEquations {
+ public:
+  explicit PlantEquations(const Plant& plant) : machine_(plant.machine.effect->get<T>().machine) {
+    const Effect& machine = *plant.machine.effect;
+    scratch_ = machine.scratch;
+    joint_ = machine.coefficients;
+    has_transformer_ = plant.transformer.effect != nullptr;
+    limits(machine, 0);
+    states_ = static_cast<int>(machine.states.size());
+    coefficients_ = joint_ + kJoint;
+    for (const Block& block : plant.controls) {
+      controls_.push_back({block.effect->get<T>().control, block.effect->law.get(), states_, coefficients_});
+      limits(*block.effect, coefficients_);
+      states_ += static_cast<int>(block.effect->states.size());
+      coefficients_ += block.effect->coefficients;
+    }
+  }
+  [[nodiscard]] int states() const { return states_; }
+  [[nodiscard]] int coefficients() const { return coefficients_; }
+  [[nodiscard]] int scratch() const { return scratch_; }
+  /// Whether anything but the machine must be evaluated.
+  [[nodiscard]] bool machine_alone() const { return controls_.empty() && !has_transformer_ && !nonlinear(); }
+  /// Whether the current is no linear function of emf and voltage: see current().
+  [[nodiscard]] bool nonlinear() const { return machine_.current != nullptr; }
+  [[nodiscard]] bool limited() const { return !limits_.empty(); }
+
+  /// Voltage er + j ei as the grid sees it behind r + jx [pu, network frame]. m: scratch() values, kept for
+  /// derivative().
+  void emf(const T* c, const T* x, T* m, T& er, T& ei) const {
+    machine_.emf(c, x, m, er, ei);
+    if (!has_transformer_) return;
+    er = er * c[joint_ + joint_ratio];
+    ei = ei * c[joint_ + joint_ratio];
+  }
+  /// Where nonlinear(): Vr, Vi at the terminal -> Ir, Ii, after emf().
+  void current(const T* c, const T* x, T* m, Signals<T>& s) const { machine_.current(c, x, m, s); }
+  [[nodiscard]] const T* impedance(const T* c) const { return c + joint_ + joint_r; }
+  /// Of the machine alone.
+  [[nodiscard]] const T* machine_impedance(const T* c) const { return c + joint_ + joint_rm; }
+  /// Of the step-up transformer; none: nullptr.
+  [[nodiscard]] const T* ratio(const T* c) const {
+    return has_transformer_ ? c + joint_ + joint_ratio : nullptr;
+  }
+
+  /// Vr, Vi at the terminal and Vpr, Vpi at the grid's side, with er + j ei from emf() and the current Ir, Ii
+  /// into the grid, which becomes that of the machine.
+  void voltages(const T* c, const T& er, const T& ei, Signals<T>& s) const {
+    const T* j = c + joint_;
+    if (!has_transformer_) {
+      s.Vr = er - j[joint_r] * s.Ir + j[joint_x] * s.Ii;
+      s.Vi = ei - j[joint_r] * s.Ii - j[joint_x] * s.Ir;
+      return;
+    }
+    s.Vpr = er - j[joint_r] * s.Ir + j[joint_x] * s.Ii;
+    s.Vpi = ei - j[joint_r] * s.Ii - j[joint_x] * s.Ir;
+    through_transformer(c, s);
+  }
+  /// The same from the voltage Vpr, Vpi at the grid's side: of no use behind V = 0.
+  void through_transformer(const T* c, Signals<T>& s) const {
+    const T* j = c + joint_;
+    const T n = j[joint_ratio], in = T(1.0) / n;
+    s.Ir = s.Ir * n;
+    s.Ii = s.Ii * n;
+    // machine's terminal = grid's side / n + zt It, and n^2 zt = (r + jx) - n^2 (rm + j xm)
+    const T rt = j[joint_r] * in * in - j[joint_rm], xt = j[joint_x] * in * in - j[joint_xm];
+    s.Vr = s.Vpr * in + rt * s.Ir - xt * s.Ii;
+    s.Vi = s.Vpi * in + rt * s.Ii + xt * s.Ir;
+  }
+
+  /// Voltage and current at the grid's side from Vr, Vi and Ir, Ii of the machine.
+  [[nodiscard]] std::pair<std::complex<T>, std::complex<T>> to_grid(const T* c, const Signals<T>& s) const {
+    const std::complex<T> v(s.Vr, s.Vi), i(s.Ir, s.Ii);
+    if (!has_transformer_) return {v, i};
+    const T* j = c + joint_;
+    const T n = j[joint_ratio];
+    const std::complex<T> zt(j[joint_r] / (n * n) - j[joint_rm], j[joint_x] / (n * n) - j[joint_xm]);
+    return {n * (v - zt * i), i / n};
+  }
+
+  /// Currents and terminal voltage from the voltage Vpr, Vpi in s at the grid's side, after emf(). Returns
+  /// the current into the grid in ir, ii.
+  void from_grid(const T* c, const T* x, T* m, const T& er, const T& ei, Signals<T>& s, T& ir, T& ii) const {
+    if (nonlinear() && !has_transformer_) {
+      s.Vr = s.Vpr;
+      s.Vi = s.Vpi;
+      current(c, x, m, s);
+      ir = s.Ir;
+      ii = s.Ii;
+      return;
+    }
+    const T* j = c + joint_;
+    const T dr = er - s.Vpr, di = ei - s.Vpi;
+    const T k = T(1.0) / (j[joint_r] * j[joint_r] + j[joint_x] * j[joint_x]);
+    s.Ir = ir = (j[joint_r] * dr + j[joint_x] * di) * k;
+    s.Ii = ii = (j[joint_r] * di - j[joint_x] * dr) * k;
+    if (has_transformer_) {
+      through_transformer(c, s);
+      if (nonlinear()) nonlinear_through_transformer(c, x, m, s, ir, ii);
+      return;
+    }
+    s.Vr = s.Vpr;
+    s.Vi = s.Vpi;
+  }
+
+  /// After voltages() or from_grid(). In s.Efd and s.Tm stand the values held where no exciter or governor
+  /// sets them, in s.dVref, s.dPref and s.t what the event brings. Fills every other signal, and dx with
+  /// states() derivatives [1/s].
+  void derivative(const T* c, const T* x, T* m, Signals<T>& s, T* dx) const {
+    signals(c, x, m, s, dx);
+    machine_.derivative(c, x, m, s, dx);
+    hold_at_limits(c, x, dx);
+  }
+  /// The same with torque and field voltage added to what the controls give.
+  void derivative_with(const T* c, const T* x, T* m, const T& torque, const T& field, Signals<T>& s,
+                       T* dx) const {
+    signals(c, x, m, s, dx);
+    s.Tm = s.Tm + torque;
+    s.Efd = s.Efd + field;
+    machine_.derivative(c, x, m, s, dx);
+    hold_at_limits(c, x, dx);
+  }
+  /// The same where machine_alone(): only Ir and Ii are needed.
+  void machine_derivative(const T* c, const T* x, T* m, Signals<T>& s, T* dx) const {
+    machine_.electrical(c, x, m, s);
+    machine_.derivative(c, x, m, s, dx);
+  }
+  /// Every signal; dx gets the controls' derivatives.
+  void signals(const T* c, const T* x, T* m, Signals<T>& s, T* dx) const {
+    terminal(s);
+    machine_.electrical(c, x, m, s);
+    for (const Control& k : controls_) k.ops.evaluate(k.law, c + k.coefficient, x + k.state, s, dx + k.state);
+  }
+  /// Takes states back to the limits they have crossed within a step; adds to `moved` how far.
+  void clamp_states(const T* c, T* x, T& moved) const {
+    for (const Limit& l : limits_) {
+      const T before = x[l.state];
+      if (l.low >= 0) x[l.state] = select(before < c[l.low], c[l.low], before);
+      if (l.high >= 0) x[l.state] = select(x[l.state] > c[l.high], c[l.high], x[l.state]);
+      moved = moved + positive_part(x[l.state] - before) + positive_part(before - x[l.state]);
+    }
+  }
+  /// Power into the grid: behind a transformer that of its far side.
+  void grid_power(const T* c, const Signals<T>& s, T& P, T& Q) const {
+    P = s.P;
+    Q = s.Q;
+    if (!has_transformer_) return;
+    const T in = T(1.0) / c[joint_ + joint_ratio];
+    P = (s.Vpr * s.Ir + s.Vpi * s.Ii) * in;
+    Q = (s.Vpi * s.Ir - s.Vpr * s.Ii) * in;
+  }
+  /// Voltage at the grid's side.
+  void grid_voltage(const Signals<T>& s, T& vr, T& vi) const {
+    vr = has_transformer_ ? s.Vpr : s.Vr;
+    vi = has_transformer_ ? s.Vpi : s.Vi;
+  }
+  [[nodiscard]] T grid_magnitude(const Signals<T>& s, const T& vr, const T& vi) const {
+    using std::sqrt;
+    return has_transformer_ ? sqrt(vr * vr + vi * vi + T(1e-24)) : s.V;
+  }
+
+ private:
+  struct Control {
+    ControlOps<T> ops;
+    const void* law;
+    int state, coefficient;
+  };
+  struct Limit {
+    int state, low, high;
+  };
+  void limits(const Effect& effect, int coefficient) {
+    for (std::size_t i = 0; i < effect.states.size(); ++i) {
+      const State& state = effect.states[i];
+      if (state.low < 0 && state.high < 0) continue;
+      limits_.push_back({states_ + static_cast<int>(i), state.low < 0 ? -1 : coefficient + state.low,
+                         state.high < 0 ? -1 : coefficient + state.high});
+    }
+  }
+  void hold_at_limits(const T* c, const T* x, T* dx) const {
+    for (const Limit& l : limits_) {
+      T& d = dx[l.state];
+      if (l.low >= 0) d = select(x[l.state] > c[l.low], d, positive_part(d));
+      if (l.high >= 0) d = select(x[l.state] < c[l.high], d, T(0.0) - positive_part(T(0.0) - d));
+    }
+  }
+  /// The terminal voltage at which the machine's own current is the one the transformer carries: Newton's
+  /// method from the Vr, Vi in s, slopes by differences, whose error only slows it. No current where it is
+  /// not found, as of the machine alone.
+  void nonlinear_through_transformer(const T* c, const T* x, T* m, Signals<T>& s, T& ir, T& ii) const {
+    constexpr int kLimit = 20;
+    constexpr int kMore = std::is_same_v<T, double> ? 0 : 2;       // slopes of duals come after their values
+    constexpr double kNudge = 1e-6, kNear = 1e-9, kLongest = 0.3;  // [pu]
+    const T* j = c + joint_;
+    const T in = T(1.0) / j[joint_ratio];
+    const T rt = j[joint_r] * in * in - j[joint_rm], xt = j[joint_x] * in * in - j[joint_xm];
+    const T ar = s.Vpr * in, ai = s.Vpi * in;
+    const auto rest = [&](const T& vr, const T& vi, T& fr, T& fi) {
+      s.Vr = vr;
+      s.Vi = vi;
+      current(c, x, m, s);
+      fr = vr - ar - rt * s.Ir + xt * s.Ii;
+      fi = vi - ai - rt * s.Ii - xt * s.Ir;
+    };
+    T vr = s.Vr, vi = s.Vi;
+    int calm = 0;
+    for (int step = 0; step < kLimit && calm <= kMore; ++step) {
+      T fr, fi, a, b, d, e;
+      rest(vr + T(kNudge), vi, a, d);
+      rest(vr, vi + T(kNudge), b, e);
+      rest(vr, vi, fr, fi);
+      a = (a - fr) * T(1 / kNudge), b = (b - fr) * T(1 / kNudge);
+      d = (d - fi) * T(1 / kNudge), e = (e - fi) * T(1 / kNudge);
+      const T over = T(1.0) / (a * e - b * d), dr = (e * fr - b * fi) * over, di = (a * fi - d * fr) * over;
+      const double largest = std::max(std::abs(value_of(dr)), std::abs(value_of(di)));
+      const T scale(kLongest / std::max(kLongest, largest));
+      vr = vr - scale * dr;
+      vi = vi - scale * di;
+      if (largest < kNear) ++calm;
+    }
+    T unused;
+    rest(vr, vi, unused, unused);
+    if (calm == 0) s.Ir = T(std::numeric_limits<double>::quiet_NaN());
+    ir = s.Ir * in;
+    ii = s.Ii * in;
+  }
+  /// P, Q and V from terminal voltage and current.
+  static void terminal(Signals<T>& s) {
+    using std::sqrt;
+    s.P = s.Vr * s.Ir + s.Vi * s.Ii;
+    s.Q = s.Vi * s.Ir - s.Vr * s.Ii;
+    s.V = sqrt(s.Vr * s.Vr + s.Vi * s.Vi + T(1e-24));  // a dual needs a slope at V = 0
+    s.Vc = s.V;
+    s.Vs = T(0.0);
+    s.Vlimiter = T(0.0);
+  }
+
+  MachineOps<T> machine_;
+  std::vector<Control> controls_;
+  std::vector<Limit> limits_;
+  bool has_transformer_ = false;
+  int joint_ = 0, states_ = 0, coefficients_ = 0, scratch_ = 0;
+};
+
+}  // namespace swingbank::sim::plant

@@ -1,0 +1,18 @@
+#include "sim/plant/plant.hpp"
+
+#include <algorithm>
+
+namespace swingbank::sim::plant {
+
+std::vector<double> instants_of(const Plant& plant) {
+  std::vector<double> all;
+  for (const Block& block : plant.controls) {
+    if (!block.effect->instants) continue;
+    const auto more = block.effect->instants(block.effect->law.get(), block.p.data());
+    all.insert(all.end(), more.begin(), more.end());
+  }
+  std::ranges::sort(all);
+  return all;
+}
+
+}  // namespace swingbank::sim::plant

@@ -1,0 +1,331 @@
+#include "sim/reference/detail/system.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/SparseLU>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "sim/network/admittance.hpp"
+#include "sim/network/connectivity.hpp"
+
+namespace swingbank::sim::reference {
+namespace {
+
+int delta_state(const Effect& machine) {
+  for (std::size_t i = 0; i < machine.states.size(); ++i)
+    if (machine.states[i].name == "delta") return static_cast<int>(i);
+  return -1;
+}
+
+/// Buses that no machine and no fault can hold to a voltage: their equations have no solution.
+std::vector<int> cut_off(const grid::Grid& grid, const network::Topology& topology) {
+  const std::vector<int> island = network::islands(grid.network, topology.open);
+  std::vector<bool> held(island.size() + 1, false);
+  for (const plant::Plant& plant : grid.plants)
+    if (!std::ranges::binary_search(topology.tripped, plant.generator)) held[island[plant.bus] + 1] = true;
+  for (const auto& [bus, z] : topology.faults) held[island[bus] + 1] = true;
+  held[0] = true;  // isolated buses (-1) are out of the grid
+  std::vector<int> lost;
+  for (int b = 0; b < static_cast<int>(island.size()); ++b)
+    if (!held[island[b] + 1]) lost.push_back(b);
+  return lost;
+}
+
+template <class T>
+const std::vector<T>& coefficients(const ReferencePlants::Unit& unit) {
+  if constexpr (std::is_same_v<T, double>)
+    return unit.operating.c;
+  else
+    return unit.coefficients;
+}
+template <class T>
+const auto& plant_equations(const ReferencePlants::Unit& unit) {
+  if constexpr (std::is_same_v<T, double>)
+    return *unit.equations;
+  else
+    return *unit.sensitivities;
+}
+template <class T>
+const auto& load_equations(const ReferencePlants::Unit& unit) {
+  if constexpr (std::is_same_v<T, double>)
+    return *unit.consumption;
+  else
+    return *unit.consumption_sensitivities;
+}
+
+}  // namespace
+
+ReferencePlants::ReferencePlants(const grid::Grid& grid) {
+  units_.reserve(grid.plants.size() + grid.loads.size());
+  const auto place = [&](Unit unit) {
+    unit.coefficients.assign(unit.operating.c.begin(), unit.operating.c.end());
+    unit.first = states_;
+    states_ += unit.states;
+    units_.push_back(std::move(unit));
+  };
+  for (const plant::Plant& plant : grid.plants) {
+    Unit unit;
+    unit.plant = &plant;
+    unit.operating =
+        plant::operating_point(plant, grid.flow.voltage[plant.bus], grid.network.base_mva, grid.conventions);
+    unit.equations.emplace(plant);
+    unit.sensitivities.emplace(plant);
+    unit.bus = plant.bus;
+    unit.states = unit.equations->states();
+    unit.delta = delta_state(*plant.machine.effect);
+    unit.scale = plant.mva / grid.network.base_mva;
+    place(std::move(unit));
+    const auto more = plant::instants_of(plant);
+    instants_.insert(instants_.end(), more.begin(), more.end());
+  }
+  for (const plant::Consumer& load : grid.loads) {
+    Unit unit;
+    unit.load = &load;
+    unit.operating = plant::load_operating_point(load, load.block.p, grid.flow.voltage[load.bus],
+                                                 grid.network.base_mva, grid.conventions);
+    unit.consumption.emplace(load);
+    unit.consumption_sensitivities.emplace(load);
+    unit.bus = load.bus;
+    unit.states = unit.consumption->states();
+    unit.delta = -1;
+    unit.scale = load.mva / grid.network.base_mva;
+    place(std::move(unit));
+  }
+}
+
+ReferenceSystem::ReferenceSystem(const grid::Grid& grid, const ReferencePlants& plants,
+                                 const network::Segment& segment, double end)
+    : plants_(plants),
+      grid_(grid),
+      buses_(static_cast<int>(grid.network.buses.size())),
+      last_moment_(end - plant::kBeforeSwitching),
+      bolted_(buses_, false),
+      connected_(plants.units().size(), 1.0),
+      setpoint_(plants.units().size()) {
+  for (std::size_t u = 0; u < plants.units().size(); ++u) {
+    if (!plants.units()[u].plant) continue;
+    const int generator = plants.units()[u].plant->generator;
+    connected_[u] = segment.topology.connected(generator);
+    for (const network::Setpoint& move : segment.setpoints)
+      if (move.generator == generator) setpoint_[u] = move;
+  }
+  if (const std::vector<int> lost = cut_off(grid, segment.topology); !lost.empty())
+    throw InputError({"cut off: " + network::bus_list(grid.network, lost), grid.network.origin,
+                      "no machine and no fault is left in that part of the grid",
+                      "keep a branch to it closed, or take it out of the network"});
+  build_network(grid, segment.topology);
+  build_pattern();
+}
+
+void ReferenceSystem::build_network(const grid::Grid& grid, const network::Topology& topology) {
+  for (int b : network::bolted_buses(topology)) bolted_[b] = true;
+  for (int b = 0; b < buses_; ++b)
+    if (grid.network.buses[b].type == network::BusType::isolated)
+      bolted_[b] = true;  // out of the grid: V = 0
+  y_ = network::dynamic_admittance(grid.network, grid.flow, topology, grid.modelled_loads());
+  y_.prune([&](Eigen::Index row, Eigen::Index, const Complex&) { return !bolted_[row]; });
+}
+
+void ReferenceSystem::build_pattern() {
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto add = [&](int row, int col, double value) { entries.emplace_back(row, col, value); };
+  for (int b = 0; b < buses_; ++b) {
+    const int row = bus_row(b);
+    if (bolted_[b]) {
+      add(row, row, 1.0);
+      add(row + 1, row + 1, 1.0);
+    }
+    for (decltype(y_)::InnerIterator it(y_, b); it; ++it) {
+      const int col = bus_row(static_cast<int>(it.col()));
+      add(row, col, it.value().real());
+      add(row, col + 1, -it.value().imag());
+      add(row + 1, col, it.value().imag());
+      add(row + 1, col + 1, it.value().real());
+    }
+  }
+  std::vector<std::vector<int>> members;
+  for (const Unit& unit : plants_.units()) {
+    std::vector<int>& index = members.emplace_back(unit.states);
+    std::iota(index.begin(), index.end(), unit.first);
+    index.push_back(bus_row(unit.bus));
+    index.push_back(bus_row(unit.bus) + 1);
+    for (int col : index)
+      for (int row : index)
+        if (row < plants_.states() || !bolted_[unit.bus]) add(row, col, 0.0);
+  }
+  constant_.resize(size(), size());
+  constant_.setFromTriplets(entries.begin(), entries.end());
+  constant_.makeCompressed();
+
+  const auto* outer = constant_.outerIndexPtr();
+  const auto* inner = constant_.innerIndexPtr();
+  places_.assign(members.size(), {});
+  for (std::size_t u = 0; u < members.size(); ++u)
+    for (int col : members[u])
+      for (int row : members[u]) {
+        const auto* place = std::lower_bound(inner + outer[col], inner + outer[col + 1], row);
+        const bool found = place != inner + outer[col + 1] && *place == row;
+        const bool fixed = row >= plants_.states() && bolted_[plants_.units()[u].bus];
+        places_[u].push_back(found && !fixed ? static_cast<int>(place - inner) : -1);
+      }
+}
+
+/// One unit at bus voltage vr + j vi: signals, derivatives of its states, current into the grid.
+template <class T>
+Signals<T> ReferenceSystem::evaluate(std::size_t u, double t, const T* x, const T& vr, const T& vi, T* dx,
+                                     T& ir, T& ii) const {
+  const Unit& unit = plants_.units()[u];
+  const T* c = coefficients<T>(unit).data();
+  Signals<T> s;
+  s.Vpr = s.Vr = vr;
+  s.Vpi = s.Vi = vi;
+  s.t = T(std::min(t, last_moment_));
+  if (unit.load) {
+    load_equations<T>(unit).current(c, x, s);
+    load_equations<T>(unit).derivative(c, x, s, dx);
+    ir = s.Ir;
+    ii = s.Ii;
+    return s;
+  }
+  s.Efd = T(unit.operating.Efd);
+  s.Tm = T(unit.operating.Tm);
+  s.dVref = T(setpoint_[u].dVref);
+  s.dPref = T(setpoint_[u].dPref);
+  const auto& equations = plant_equations<T>(unit);
+  std::vector<T> m(equations.scratch());
+  T er, ei;
+  equations.emf(c, x, m.data(), er, ei);
+  if (tripped(u)) {  // stands still, open-circuited
+    s.Vpr = er;
+    s.Vpi = ei;
+  }
+  equations.from_grid(c, x, m.data(), er, ei, s, ir, ii);
+  equations.derivative(c, x, m.data(), s, dx);
+  if (tripped(u)) std::fill(dx, dx + unit.states, T(0.0));
+  return s;
+}
+
+Signals<double> ReferenceSystem::signals(std::size_t u, double t, const double* y, Complex& current,
+                                         double* dx) const {
+  const Unit& unit = plants_.units()[u];
+  std::vector<double> unused(unit.states);
+  const double* v = y + bus_row(unit.bus);
+  double ir, ii;
+  const auto s = evaluate<double>(u, t, y + unit.first, v[0], v[1], dx ? dx : unused.data(), ir, ii);
+  current = {ir, ii};
+  return s;
+}
+
+void ReferenceSystem::solve_voltages(double t, double* y) const {
+  constexpr int limit = 50;
+  constexpr double tolerance = 1e-12;  // [pu of voltage]: rounding of a matrix of faults and lines is below
+  for (int b = 0; b < buses_; ++b)
+    if (bolted_[b]) y[bus_row(b)] = y[bus_row(b) + 1] = 0.0;
+  std::vector<double> yp(size(), 0.0), f(size());
+  Eigen::SparseMatrix<double> j = constant_;
+  for (int iteration = 0; iteration < limit; ++iteration) {
+    residual(t, y, yp.data(), f.data());
+    jacobian(t, 0.0, y, j.valuePtr());
+    const Eigen::SparseMatrix<double> jv = j.bottomRightCorner(2 * buses_, 2 * buses_);
+    Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(jv);
+    if (lu.info() != Eigen::Success) break;
+    const Eigen::Map<const Eigen::VectorXd> rest(f.data() + plants_.states(), 2 * buses_);
+    Eigen::VectorXd step = lu.solve(rest);
+    step += lu.solve(rest - jv * step).eval();  // a fault impedance of 1e-6 pu stretches the scale
+    double largest = step.cwiseAbs().maxCoeff();
+    if (!std::isfinite(largest)) break;
+    if (largest > 1.0) step *= 1.0 / largest;  // a load of constant power may throw the first steps far
+    for (int i = 0; i < 2 * buses_; ++i) y[plants_.states() + i] -= step[i];
+    for (int b = 0; b < buses_; ++b)
+      if (bolted_[b]) y[bus_row(b)] = y[bus_row(b) + 1] = 0.0;
+    if (largest < tolerance) return;
+  }
+  throw InputError({"no voltages satisfy the network", fmt::format("t = {:g} s", t),
+                    "the loads and sources have no common solution after this switching",
+                    "use load models that give way at low voltage, or another event"});
+}
+
+void ReferenceSystem::derivatives(double t, const double* y, double* yp) const {
+  std::fill(yp, yp + size(), 0.0);
+  Complex unused;
+  for (std::size_t u = 0; u < plants_.units().size(); ++u)
+    (void)signals(u, t, y, unused, yp + plants_.units()[u].first);
+}
+
+void ReferenceSystem::residual(double t, const double* y, const double* yp, double* f) const {
+  for (int b = 0; b < buses_; ++b) {
+    const double* v = y + bus_row(b);
+    Complex current = bolted_[b] ? Complex(v[0], v[1]) : Complex();
+    for (decltype(y_)::InnerIterator it(y_, b); it; ++it) {
+      const double* w = y + bus_row(static_cast<int>(it.col()));
+      current += it.value() * Complex(w[0], w[1]);
+    }
+    f[bus_row(b)] = current.real();
+    f[bus_row(b) + 1] = current.imag();
+  }
+  for (std::size_t u = 0; u < plants_.units().size(); ++u) {
+    const Unit& unit = plants_.units()[u];
+    double* dx = f + unit.first;
+    Complex current;
+    (void)signals(u, t, y, current, dx);
+    for (int i = 0; i < unit.states; ++i) dx[i] = yp[unit.first + i] - dx[i];
+    if (bolted_[unit.bus] || tripped(u)) continue;
+    const double scale = unit.scale * connected_[u];
+    f[bus_row(unit.bus)] -= current.real() * scale;
+    f[bus_row(unit.bus) + 1] -= current.imag() * scale;
+  }
+}
+
+std::vector<double> ReferenceSystem::error_weights() const {
+  constexpr double kStabiliser = 30.0, kExciter = 10.0, kMachine = 10.0;  // decision 05
+  std::vector<double> weight(static_cast<std::size_t>(size()), 1.0);
+  for (const Unit& unit : plants_.units()) {
+    if (!unit.plant) continue;
+    double* at = std::fill_n(weight.data() + unit.first, unit.plant->machine.effect->states.size(), kMachine);
+    for (const plant::Block& block : unit.plant->controls) {
+      const Slot slot = block.effect->slot;
+      const double w = slot == Slot::stabiliser ? kStabiliser : slot == Slot::exciter ? kExciter : 1.0;
+      at = std::fill_n(at, block.effect->states.size(), w);
+    }
+  }
+  return weight;
+}
+
+bool ReferenceSystem::clamp_states(double* y) const {
+  double moved = 0.0;
+  for (const Unit& unit : plants_.units())
+    if (unit.equations) unit.equations->clamp_states(unit.operating.c.data(), y + unit.first, moved);
+  return moved > 0.0;
+}
+
+void ReferenceSystem::jacobian(double t, double a, const double* y, double* values) const {
+  std::copy(constant_.valuePtr(), constant_.valuePtr() + constant_.nonZeros(), values);
+  for (std::size_t u = 0; u < plants_.units().size(); ++u) unit_jacobian(u, t, a, y, values);
+}
+
+void ReferenceSystem::unit_jacobian(std::size_t u, double t, double a, const double* y,
+                                    double* values) const {
+  const Unit& unit = plants_.units()[u];
+  const int n = unit.states, members = n + 2, row = bus_row(unit.bus);
+  const double scale = unit.scale * connected_[u];
+  std::vector<D8> x(members), dx(n);
+  for (int from = 0; from < members; from += kDirections) {
+    for (int i = 0; i < members; ++i) x[i] = D8(i < n ? y[unit.first + i] : y[row + i - n]);
+    const int to = std::min(from + kDirections, members);
+    for (int i = from; i < to; ++i) x[i].d[i - from] = 1.0;
+    D8 ir, ii;
+    (void)evaluate<D8>(u, t, x.data(), x[n], x[n + 1], dx.data(), ir, ii);
+    for (int col = from; col < to; ++col) {
+      const int* place = places_[u].data() + col * members;
+      const int k = col - from;
+      for (int i = 0; i < n; ++i) values[place[i]] += (i == col ? a : 0.0) - dx[i].d[k];
+      if (tripped(u)) continue;
+      if (place[n] >= 0) values[place[n]] -= ir.d[k] * scale;
+      if (place[n + 1] >= 0) values[place[n + 1]] -= ii.d[k] * scale;
+    }
+  }
+}
+
+}  // namespace swingbank::sim::reference

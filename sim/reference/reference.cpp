@@ -1,0 +1,314 @@
+#include "sim/reference/reference.hpp"
+
+#include <ida/ida.h>
+#include <nvector/nvector_serial.h>
+#include <sundials/sundials_context.h>
+#include <sunlinsol/sunlinsol_klu.h>
+#include <sunmatrix/sunmatrix_sparse.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+#include "sim/reference/detail/system.hpp"
+
+namespace swingbank::sim::reference {
+namespace {
+
+constexpr double kSameInstant = 1e-9;  ///< a sample this close to a switching instant belongs to it [s]
+
+void require(int flag, const char* call) {
+  if (flag < 0)
+    throw std::runtime_error(std::string(call) + " failed with SUNDIALS code " + std::to_string(flag));
+}
+
+/// What IDA hands back to the functions below.
+struct SegmentProblem {
+  const ReferenceSystem& system;
+  const ReferenceOptions& options;
+  std::vector<double> weight;  ///< per unknown, of its error
+};
+
+int residual(realtype t, N_Vector y, N_Vector yp, N_Vector f, void* user) {
+  const auto& system = static_cast<const SegmentProblem*>(user)->system;
+  system.residual(t, N_VGetArrayPointer(y), N_VGetArrayPointer(yp), N_VGetArrayPointer(f));
+  const double* value = N_VGetArrayPointer(f);
+  // 1 asks IDA for a smaller step instead of going on with a value that is none.
+  return std::all_of(value, value + system.size(), [](double v) { return std::isfinite(v); }) ? 0 : 1;
+}
+
+int jacobian(realtype t, realtype a, N_Vector y, N_Vector, N_Vector, SUNMatrix j, void* user, N_Vector,
+             N_Vector, N_Vector) {
+  const auto& system = static_cast<const SegmentProblem*>(user)->system;
+  const auto& pattern = system.pattern();
+  std::copy(pattern.outerIndexPtr(), pattern.outerIndexPtr() + pattern.cols() + 1,
+            SUNSparseMatrix_IndexPointers(j));
+  std::copy(pattern.innerIndexPtr(), pattern.innerIndexPtr() + pattern.nonZeros(),
+            SUNSparseMatrix_IndexValues(j));
+  system.jacobian(t, a, N_VGetArrayPointer(y), SUNSparseMatrix_Data(j));
+  return 0;
+}
+
+/// IDA weighs errors by their root mean square over all unknowns. Times sqrt(n) the tolerance holds for each
+/// single one, however large the grid; an unknown that others see through a gain counts by its weight.
+int error_weights(N_Vector y, N_Vector weights, void* user) {
+  const auto& problem = *static_cast<const SegmentProblem*>(user);
+  const double* value = N_VGetArrayPointer(y);
+  double* to = N_VGetArrayPointer(weights);
+  const double all = std::sqrt(static_cast<double>(problem.weight.size()));
+  for (std::size_t i = 0; i < problem.weight.size(); ++i)
+    to[i] = all * problem.weight[i] / (problem.options.rtol * std::abs(value[i]) + problem.options.atol);
+  return 0;
+}
+
+void quiet(int, const char*, const char*, char*, void*) {}  // failures come back as return values
+
+struct FreeContext {
+  void operator()(SUNContext c) const { SUNContext_Free(&c); }
+};
+struct FreeVector {
+  void operator()(N_Vector v) const { N_VDestroy(v); }
+};
+struct FreeMatrix {
+  void operator()(SUNMatrix m) const { SUNMatDestroy(m); }
+};
+struct FreeSolver {
+  void operator()(SUNLinearSolver s) const { SUNLinSolFree(s); }
+};
+struct FreeIda {
+  void operator()(void* m) const { IDAFree(&m); }
+};
+template <class Handle, class Free>
+using Owner = std::unique_ptr<std::remove_pointer_t<Handle>, Free>;
+
+/// IDA on one segment: from consistent values at `start` up to exactly `end`.
+class SegmentSolver {
+ public:
+  SegmentSolver(SUNContext context, const ReferenceSystem& system, N_Vector y, N_Vector yp, double start,
+                double end, const ReferenceOptions& options)
+      : y_(y), yp_(yp), problem_{system, options, system.error_weights()} {
+    matrix_.reset(
+        SUNSparseMatrix(system.size(), system.size(), system.pattern().nonZeros(), CSC_MAT, context));
+    solver_.reset(SUNLinSol_KLU(y, matrix_.get(), context));
+    ida_.reset(IDACreate(context));
+    require(IDASetErrHandlerFn(ida_.get(), quiet, nullptr), "IDASetErrHandlerFn");
+    require(IDAInit(ida_.get(), residual, start, y, yp), "IDAInit");
+    require(IDASetUserData(ida_.get(), &problem_), "IDASetUserData");
+    require(IDAWFtolerances(ida_.get(), error_weights), "IDAWFtolerances");
+    require(IDASetLinearSolver(ida_.get(), solver_.get(), matrix_.get()), "IDASetLinearSolver");
+    require(IDASetJacFn(ida_.get(), jacobian), "IDASetJacFn");
+    require(IDASetMaxNumSteps(ida_.get(), 1'000'000), "IDASetMaxNumSteps");
+    require(IDASetStopTime(ida_.get(), end), "IDASetStopTime");
+  }
+  /// Advances y and y' to time t; false when IDA cannot.
+  bool advance(double t) {
+    realtype reached = 0;
+    return IDASolve(ida_.get(), t, &reached, y_, yp_, IDA_NORMAL) >= 0;
+  }
+  [[nodiscard]] long steps() const {
+    long n = 0;
+    IDAGetNumSteps(ida_.get(), &n);
+    return n;
+  }
+
+ private:
+  N_Vector y_, yp_;
+  SegmentProblem problem_;
+  Owner<SUNMatrix, FreeMatrix> matrix_;
+  Owner<SUNLinearSolver, FreeSolver> solver_;
+  std::unique_ptr<void, FreeIda> ida_;
+};
+
+/// Writes samples into the trajectory and watches the rotor angles.
+class Recorder {
+ public:
+  Recorder(const grid::Grid& grid, const ReferencePlants& plants, const ReferenceOptions& options,
+           ReferenceRun& run)
+      : plants_(plants), options_(options), run_(run), angle_(grid.network.buses.size()) {
+    run.rate = options.rate;
+    run.samples = static_cast<int>(std::floor(options.t_end * options.rate + 1e-9)) + 1;
+    run.plants = options.plants;
+    if (run.plants.empty())
+      for (int i = 0; i < static_cast<int>(grid.plants.size()); ++i) run.plants.push_back(i);
+    run.channels = options.channels;
+    if (run.channels.empty())
+      for (const auto& record : kChannels) run.channels.push_back(record.channel);
+    run.buses = options.buses;
+    run.allocate(false);
+    run.bus_v.assign(run.buses.size() * run.samples, 0.0);
+    run.bus_theta.assign(run.buses.size() * run.samples, 0.0);
+    for (std::size_t b = 0; b < angle_.size(); ++b) angle_[b] = std::arg(grid.flow.voltage[b]);
+  }
+  /// Records sample k from y (whose voltages are zero at the system's bolted buses). False: the run ends
+  /// here.
+  bool record(int k, const ReferenceSystem& system, const double* y) {
+    const double* v = y + plants_.states();
+    for (std::size_t b = 0; b < angle_.size(); ++b)
+      if (!system.bolted(static_cast<int>(b)))
+        angle_[b] = nearest(std::atan2(v[2 * b + 1], v[2 * b]), angle_[b]);
+    for (std::size_t i = 0; i < run_.plants.size(); ++i) record_plant(i, k, system, y);
+    for (std::size_t i = 0; i < run_.buses.size(); ++i) {
+      const auto b = static_cast<std::size_t>(run_.buses[i]);
+      run_.bus_v[i * run_.samples + k] = std::hypot(v[2 * b], v[2 * b + 1]);
+      run_.bus_theta[i * run_.samples + k] = angle_[b];
+    }
+    const double spread = angle_spread(system, y);
+    run_.largest_spread = std::max(run_.largest_spread, spread);
+    if (spread >= options_.lose_at) return finish(k, Outcome::lost_synchronism);
+    if (!std::all_of(y, y + system.size(), [](double value) { return std::isfinite(value); }))
+      return finish(k, Outcome::not_finite);
+    return true;
+  }
+  /// Ends the run at sample k: what comes later repeats the value of sample k. Returns false.
+  bool finish(int k, Outcome outcome) {
+    run_.outcome = outcome;
+    run_.stopped_at = k / options_.rate;
+    const auto hold = [&](auto& values) {
+      for (std::size_t row = 0; row * run_.samples < values.size(); ++row) {
+        double* first = values.data() + row * run_.samples;
+        std::fill(first + k + 1, first + run_.samples, first[k]);
+      }
+    };
+    hold(run_.values);
+    hold(run_.bus_v);
+    hold(run_.bus_theta);
+    return false;
+  }
+
+ private:
+  /// The angle plus the multiple of 2 pi that brings it closest to the last one.
+  static double nearest(double angle, double last) {
+    constexpr double kTurn = 2.0 * 3.14159265358979323846;
+    return angle + kTurn * std::nearbyint((last - angle) / kTurn);
+  }
+  void record_plant(std::size_t i, int k, const ReferenceSystem& system, const double* y) {
+    const auto u = static_cast<std::size_t>(run_.plants[i]);
+    const auto& unit = plants_.units()[u];
+    Complex current;
+    const Signals<double> s = system.signals(u, k / options_.rate, y, current);
+    const Complex v = system.tripped(u) ? Complex(s.Vpr, s.Vpi)
+                                        : Complex(y[plants_.states() + 2 * unit.bus],
+                                                  y[plants_.states() + 2 * unit.bus + 1]);
+    const Complex power = system.tripped(u) ? Complex() : system.connected(u) * v * std::conj(current);
+    for (std::size_t c = 0; c < run_.channels.size(); ++c) {
+      double& value = run_.at(static_cast<int>(i), static_cast<int>(c))[k];
+      switch (run_.channels[c]) {
+        case Channel::delta:
+          value = unit.delta < 0 ? 0.0 : y[unit.first + unit.delta];
+          break;
+        case Channel::speed:
+          value = s.speed;
+          break;
+        case Channel::P:
+          value = power.real();
+          break;
+        case Channel::Q:
+          value = power.imag();
+          break;
+        case Channel::V:
+          value = std::abs(v);
+          break;
+        case Channel::theta:
+          value = angle_[static_cast<std::size_t>(unit.bus)];
+          if (system.tripped(u)) value = nearest(std::arg(v), k > 0 ? (&value)[-1] : value);
+          break;
+        case Channel::Efd:
+          value = s.Efd;
+          break;
+        case Channel::Ifd:
+          value = s.Ifd;
+          break;
+        case Channel::Tm:
+          value = s.Tm;
+          break;
+      }
+    }
+  }
+  [[nodiscard]] double angle_spread(const ReferenceSystem& system, const double* y) const {
+    double low = 1e300, high = -1e300;
+    for (std::size_t u = 0; u < plants_.units().size(); ++u) {
+      const auto& unit = plants_.units()[u];
+      if (unit.delta < 0 || system.tripped(u)) continue;
+      low = std::min(low, y[unit.first + unit.delta]);
+      high = std::max(high, y[unit.first + unit.delta]);
+    }
+    return std::max(0.0, high - low);
+  }
+
+  const ReferencePlants& plants_;
+  const ReferenceOptions& options_;
+  ReferenceRun& run_;
+  std::vector<double> angle_;  ///< per bus, last value while V = 0 [rad]
+};
+
+void operating_values(const grid::Grid& grid, const ReferencePlants& plants, double* y) {
+  for (const auto& unit : plants.units())
+    std::copy(unit.operating.x.begin(), unit.operating.x.end(), y + unit.first);
+  for (std::size_t b = 0; b < grid.flow.voltage.size(); ++b) {
+    y[plants.states() + 2 * b] = grid.flow.voltage[b].real();
+    y[plants.states() + 2 * b + 1] = grid.flow.voltage[b].imag();
+  }
+}
+
+}  // namespace
+
+ReferenceRun run_reference(const grid::Grid& grid, const network::Event& event,
+                           const ReferenceOptions& options) {
+  ReferenceRun run;
+  const ReferencePlants plants(grid);
+  Recorder recorder(grid, plants, options, run);
+  const std::vector<network::Segment> parts = network::segments(event, grid.network, plants.instants());
+
+  SUNContext raw = nullptr;
+  require(SUNContext_Create(nullptr, &raw), "SUNContext_Create");
+  const Owner<SUNContext, FreeContext> context(raw);
+  const auto length = plants.states() + 2 * static_cast<sunindextype>(grid.network.buses.size());
+  const Owner<N_Vector, FreeVector> y(N_VNew_Serial(length, raw)), yp(N_VNew_Serial(length, raw));
+  double* values = N_VGetArrayPointer(y.get());
+  operating_values(grid, plants, values);
+
+  int k = 0;
+  // The left limit at t = 0 is the operating point itself, even if the event starts there.
+  if (!options.after_switching ||
+      (parts.front().topology == network::Topology{} && parts.front().setpoints.empty())) {
+    if (!recorder.record(k++, ReferenceSystem(grid, plants, {}, options.t_end), values)) return run;
+  }
+  for (std::size_t p = 0; p < parts.size() && parts[p].start < options.t_end + kSameInstant; ++p) {
+    const double start = parts[p].start;
+    const bool last = p + 1 == parts.size() || parts[p + 1].start > options.t_end;
+    const double end = last ? options.t_end : parts[p + 1].start;
+    const ReferenceSystem system(grid, plants, parts[p], last ? 2 * options.t_end + 1.0 : end);
+    (void)system.clamp_states(values);
+    system.solve_voltages(start, values);
+    system.derivatives(start, values, N_VGetArrayPointer(yp.get()));
+    const auto time = [&] { return k / options.rate; };
+    if (k < run.samples && time() < start + kSameInstant && !recorder.record(k++, system, values)) return run;
+    if (end - start < kSameInstant) continue;
+
+    SegmentSolver solver(raw, system, y.get(), yp.get(), start, end, options);
+    // A sample at the end of the segment is this segment's left limit, or the next one's first value.
+    const double until = last || !options.after_switching ? end + kSameInstant : end - kSameInstant;
+    while (k < run.samples && time() < until) {
+      if (!solver.advance(std::min(time(), end))) {
+        run.steps += solver.steps();
+        recorder.finish(std::max(k - 1, 0), Outcome::step_too_small);
+        return run;
+      }
+      if (!recorder.record(k++, system, values)) {
+        run.steps += solver.steps();
+        return run;
+      }
+    }
+    const bool reached = solver.advance(end);
+    run.steps += solver.steps();
+    if (!reached) {
+      recorder.finish(std::max(k - 1, 0), Outcome::step_too_small);
+      return run;
+    }
+  }
+  run.stopped_at = options.t_end;
+  return run;
+}
+
+}  // namespace swingbank::sim::reference

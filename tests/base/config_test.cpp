@@ -1,0 +1,83 @@
+#include "base/config.hpp"
+
+#include <gmock/gmock.h>
+
+#include <functional>
+
+namespace swingbank {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::string sentence_of(Config& c) {
+  try {
+    c.raise();
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "nothing thrown";
+}
+
+TEST(StrictConfig, ReadsWhatIsThere) {
+  Config c("a = 1\nb = 2\ns = 'x'\n[t]\nlist = [1, 2.5]\nbox = [0.5, 1]\nwords = ['u', 'v']\n", "c.toml");
+  EXPECT_EQ(c.require<std::int64_t>("a"), 1);
+  EXPECT_EQ(c.require<double>("b"), 2.0);  // an integer is a number
+  EXPECT_EQ(c.require<std::string>("s"), "x");
+  EXPECT_EQ(c.require<std::vector<double>>("t.list"), (std::vector<double>{1.0, 2.5}));
+  EXPECT_EQ(c.interval("t.box"), (std::pair{0.5, 1.0}));
+  EXPECT_EQ(c.require<std::vector<std::string>>("t.words").size(), 2u);
+  EXPECT_EQ(c.optional<double>("absent", 3.5), 3.5);
+  EXPECT_NO_THROW(c.raise());
+}
+
+TEST(StrictConfig, AllProblemsAtOnceWithLines) {
+  Config c("a = 'one'\nb = 7\nzzz = 1\n[t]\nunheard = 2\nbox = [3, 1]\nmode = 'blue'\n", "c.toml");
+  c.require<std::int64_t>("a");
+  c.require<double>("b", {0.0, 5.0, "s"});
+  c.require<bool>("gone");
+  c.interval("t.box");
+  c.choice("t.mode", {"red", "green"});
+  const std::string s = sentence_of(c);
+  EXPECT_THAT(s, HasSubstr("c.toml:1:5 (it must be an integer)"));
+  EXPECT_THAT(s, HasSubstr("c.toml:2:5 (it must be 0 to 5 s)"));
+  EXPECT_THAT(s, HasSubstr("missing key gone at c.toml"));
+  EXPECT_THAT(s, HasSubstr("unknown key zzz at c.toml:3:1"));
+  EXPECT_THAT(s, HasSubstr("unknown key t.unheard at c.toml:5:1"));
+  EXPECT_THAT(s, HasSubstr("c.toml:6:7 (the low end lies above the high end)"));
+  EXPECT_THAT(s, HasSubstr("use one of: red, green"));
+}
+
+TEST(StrictConfig, UnknownTableIsNamedOnce) {
+  Config c("a = 1\n[other]\nx = 1\ny = 2\n", "c.toml");
+  c.require<std::int64_t>("a");
+  const std::string s = sentence_of(c);
+  EXPECT_THAT(s, HasSubstr("unknown key other at c.toml:2:2"));
+  EXPECT_THAT(s, Not(HasSubstr("other.x")));
+}
+
+TEST(StrictConfig, NotANumberIsRefused) {
+  Config c("a = nan\nb = inf\n", "c.toml");
+  c.require<double>("a");
+  c.require<double>("b");
+  EXPECT_THAT(sentence_of(c), HasSubstr("c.toml:2:5 (it must be a finite number)"));
+}
+
+TEST(StrictConfig, SyntaxErrorHasItsLine) {
+  try {
+    Config c("a = 1\nb = \n", "c.toml");
+    FAIL() << "nothing thrown";
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("not TOML at c.toml:2:"));
+  }
+}
+
+TEST(StrictConfig, MissingFileIsNamed) {
+  EXPECT_THROW(Config(std::filesystem::path("/nonexistent/x.toml")), InputError);
+  Config c("raw = 'no.raw'\n", "folder/c.toml");
+  c.file("raw");
+  EXPECT_THAT(sentence_of(c), HasSubstr("there is no file folder/no.raw"));
+}
+
+}  // namespace
+}  // namespace swingbank

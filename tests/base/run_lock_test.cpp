@@ -1,0 +1,126 @@
+#include "base/run_lock.hpp"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <sys/file.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <utility>
+
+#include "base/durable.hpp"
+#include "base/problem.hpp"
+#include "tests/mpi/store/sample_shard.hpp"
+
+namespace {
+int answer = 0;        // error that the next locks meet; 0: none
+int answers_left = 0;  // how many of them
+std::function<void()> before_next;
+}  // namespace
+
+/// Stands before libc's: a file system that does not lock is not at hand everywhere.
+extern "C" int flock(int fd, int operation) noexcept {
+  if (answers_left > 0) {
+    --answers_left;
+    errno = answer;
+    return -1;
+  }
+  if (before_next) std::exchange(before_next, nullptr)();
+  return static_cast<int>(::syscall(SYS_flock, fd, operation));
+}
+
+namespace swingbank {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+struct RunLockFile : ::testing::Test {
+  void TearDown() override { answers_left = 0; }
+  [[nodiscard]] std::unique_ptr<RunLock> lock() const {
+    return std::make_unique<RunLock>(file, LockWords{"dataset in use", "/data", "wait for it"},
+                                     std::chrono::milliseconds(0));
+  }
+  [[nodiscard]] std::string refusal() const {
+    try {
+      (void)lock();
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "taken";
+  }
+  test::Folder folder;
+  std::filesystem::path file = folder.path / ".lock";
+};
+
+TEST_F(RunLockFile, SecondIsRefusedAndToldWhoHoldsIt) {
+  ::setenv("SLURM_JOB_ID", "4711", 1);
+  const auto first = lock();
+  ::unsetenv("SLURM_JOB_ID");
+  EXPECT_THAT(refusal(),
+              AllOf(HasSubstr("dataset in use at /data (process " + std::to_string(::getpid()) + " on "),
+                    HasSubstr(", Slurm job 4711 holds it): wait for it")));
+}
+
+TEST_F(RunLockFile, FallsWithItsHolderAndTheFileStays) {
+  lock().reset();
+  EXPECT_TRUE(std::filesystem::exists(file));
+  EXPECT_EQ(refusal(), "taken");
+}
+
+TEST_F(RunLockFile, FileSystemWithoutLocksIsNeitherFreeNorInUse) {
+  for (const int error : {ENOSYS, ENOLCK, EOPNOTSUPP}) {
+    answer = error;
+    answers_left = 1;
+    EXPECT_THAT(refusal(), AllOf(HasSubstr("this file system does not lock files"),
+                                 HasSubstr(std::strerror(error)), Not(HasSubstr("in use"))));
+    EXPECT_FALSE(std::filesystem::exists(file));
+  }
+}
+
+TEST_F(RunLockFile, InterruptedCallIsMadeAgain) {
+  answer = EINTR;
+  answers_left = 3;
+  EXPECT_EQ(refusal(), "taken");
+  EXPECT_EQ(answers_left, 0);
+}
+
+TEST_F(RunLockFile, FileWithdrawnBetweenOpeningAndLockingIsNotEnough) {
+  before_next = [&] { std::filesystem::remove(file); };
+  const auto first = lock();
+  EXPECT_TRUE(std::filesystem::exists(file));
+  EXPECT_THAT(refusal(), HasSubstr("in use"));
+}
+
+TEST_F(RunLockFile, WithdrawsOnlyWhatItMade) {
+  write_text(file, "");
+  lock()->withdraw();
+  EXPECT_TRUE(std::filesystem::exists(file));
+  std::filesystem::remove(file);
+  lock()->withdraw();
+  EXPECT_FALSE(std::filesystem::exists(file));
+}
+
+TEST_F(RunLockFile, ForeignTextInTheFileIsToldWithoutItsControlCharacters) {
+  write_text(file, "\x1b[31mred\nsecond line");
+  const int held = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_EQ(::flock(held, LOCK_EX | LOCK_NB), 0);
+  EXPECT_THAT(refusal(), HasSubstr("([31mredsecond line holds it)"));
+  ::close(held);
+}
+
+TEST_F(RunLockFile, LinkIsNotFollowed) {
+  const auto precious = folder.path / "precious";
+  write_text(precious, "text");
+  std::filesystem::create_symlink("precious", file);
+  EXPECT_THAT(refusal(), HasSubstr("cannot open the lock file at " + file.string()));
+  EXPECT_EQ(read_text(precious), "text");
+}
+
+}  // namespace
+}  // namespace swingbank

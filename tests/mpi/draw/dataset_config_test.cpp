@@ -1,0 +1,121 @@
+#include "mpi/draw/dataset_config.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "base/durable.hpp"
+#include "tests/mpi/store/sample_shard.hpp"
+
+namespace swingbank::mpi::draw {
+namespace {
+
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+
+const fs::path kConfigs = fs::path(SWINGBANK_SOURCE) / "configs/datasets";
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+/// The thesis's IEEE 14 config with one thing changed, beside copies of its network.
+struct Changed : test::Folder {
+  Changed() {
+    fs::create_directory(path / "datasets");
+    fs::create_directory(path / "networks");
+    for (const char* end : {".raw", ".dyr"})
+      fs::copy(kConfigs / ("../networks/ieee14_dataset_genrou" + std::string(end)), path / "networks");
+  }
+  DatasetConfig read(const std::string& from = "", const std::string& to = "",
+                     const Overrides& o = {}) const {
+    const std::string text = read_text(kConfigs / "ieee14_genrou_bus3.toml");
+    write_text(path / "datasets/c.toml", from.empty() ? text : replaced(text, from, to));
+    return read_dataset_config(path / "datasets/c.toml", o);
+  }
+  std::string refusal(const std::string& from, const std::string& to) const {
+    try {
+      load_study(read(from, to));
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "nothing thrown";
+  }
+};
+
+TEST(DatasetConfigFile, EveryConfigOfTheProjectLoads) {
+  int count = 0;
+  for (const auto& entry : fs::directory_iterator(kConfigs)) {
+    if (entry.path().extension() != ".toml") continue;
+    const Study s = load_study(read_dataset_config(entry.path()));
+    EXPECT_EQ(s.plants.size(), s.config.generators.size()) << entry.path();
+    ++count;
+  }
+  EXPECT_GE(count, 3);
+}
+
+TEST(DatasetConfigFile, ValuesArriveWhereTheyBelong) {
+  const Changed folder;
+  const Study s = load_study(folder.read());
+  const DatasetConfig& c = s.config;
+  EXPECT_EQ(c.points(), 60000u);
+  EXPECT_EQ(c.record.samples(), 900u);
+  EXPECT_EQ(c.box.size(), 14u);  // the thesis's fourteen; Ra stays as in the .dyr
+  EXPECT_EQ(std::ranges::count_if(c.box, &Box::sampled), 13);
+  EXPECT_EQ(s.fault_buses.size(), 13u);  // any of 14 but bus 3
+  EXPECT_EQ(std::ranges::count(s.fault_buses, s.grid.network.bus_index(3)), 0);
+  EXPECT_EQ(s.grid.plants[static_cast<std::size_t>(s.plants[0])].name, "3");
+}
+
+TEST(DatasetConfigFile, RefusalsNameLineAndRemedy) {
+  const Changed folder;
+  EXPECT_THAT(folder.refusal("H = [1.0, 10.0]", "H = [1.0, 99.0]"), HasSubstr("it must be 0.1 to 20 s"));
+  EXPECT_THAT(folder.refusal("H = [1.0, 10.0]", "J = [1.0, 10.0]"), HasSubstr("unknown parameter J"));
+  EXPECT_THAT(folder.refusal("model = \"GENROU\"", "model = \"GENSOL\""),
+              HasSubstr("use one of: GENCLS, GENROE"));
+  EXPECT_THAT(folder.refusal("model = \"GENROU\"\n\n[vary.box]", "model = \"GENCLS\"\n\n[vary.box]"),
+              HasSubstr("unknown parameter Tdop"));
+  EXPECT_THAT(folder.refusal("\"Efd\"", "\"Efg\""), HasSubstr("channel 'Efg'"));
+  EXPECT_THAT(folder.refusal("t_end = 15.0", "t_end = 2.1"), HasSubstr("the record ends at 2.1 s"));
+  EXPECT_THAT(folder.refusal("generators = [3]", "generators = [4]"),
+              HasSubstr("has 0 generators in service"));
+  EXPECT_THAT(folder.refusal("except = [3]", "except = [33]"), HasSubstr("bus 33 of fault.except"));
+  EXPECT_THAT(folder.refusal("seed = 1", "sede = 1"), HasSubstr("unknown key sede at"));
+}
+
+TEST(DatasetConfigFile, HashChangesWithEverythingBytesDependOn) {
+  const Changed folder;
+  const std::string base = config_hash(folder.read(), "k");
+  EXPECT_EQ(base.size(), 16u);
+  EXPECT_EQ(config_hash(folder.read("seed = 1", "seed = 1 # a remark"), "k"), base);
+  const std::pair<const char*, const char*> changes[] = {{"seed = 1", "seed = 2"},
+                                                         {"draws = 720000", "draws = 720001"},
+                                                         {"draws_per_shard = 1000", "draws_per_shard = 999"},
+                                                         {"convention = \"psse\"", "convention = \"andes\""},
+                                                         {"H = [1.0, 10.0]", "H = [1.0, 9.0]"},
+                                                         {"Xdpp = 0.3", "Xdpp = 0.29"},
+                                                         {"\"physical\"", "\"literal\""},
+                                                         {"distance = 0.7", "distance = 0.6"},
+                                                         {"\"raw\"", "\"scaled\""},
+                                                         {"except = [3]", "except = [3, 4]"},
+                                                         {"start = 2.0", "start = 2.5"},
+                                                         {"[0.05, 0.2]", "[0.05, 0.21]"},
+                                                         {"per_point = 12", "per_point = 11"},
+                                                         {"t_end = 15.0", "t_end = 14.0"},
+                                                         {"rate = 60.0", "rate = 30.0"},
+                                                         {"\"P\", \"Q\"", "\"Q\", \"P\""}};
+  for (const auto& [from, to] : changes) EXPECT_NE(config_hash(folder.read(from, to), "k"), base) << to;
+  EXPECT_NE(config_hash(folder.read(), "another kernel"), base);
+  Overrides o;
+  o.seed = 2;
+  EXPECT_EQ(config_hash(folder.read("", "", o), "k"), config_hash(folder.read("seed = 1", "seed = 2"), "k"));
+  const auto raw = folder.path / "networks/ieee14_dataset_genrou.raw";
+  write_text(raw, read_text(raw) + " ");
+  EXPECT_NE(config_hash(folder.read(), "k"), base);
+}
+
+}  // namespace
+}  // namespace swingbank::mpi::draw

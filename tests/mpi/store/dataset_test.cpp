@@ -1,0 +1,206 @@
+#include "mpi/store/dataset.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <functional>
+
+#include "base/durable.hpp"
+#include "base/problem.hpp"
+#include "mpi/store/journal.hpp"
+#include "tests/mpi/store/sample_shard.hpp"
+
+namespace swingbank::mpi::store {
+namespace {
+
+using test::Folder;
+using test::sample_shard;
+using ::testing::HasSubstr;
+
+std::string sentence_of(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "nothing thrown";
+}
+
+JournalLine line_of(const std::filesystem::path& folder, std::uint64_t shard, const ShardData& d) {
+  const std::string file = "shards/shard-00000" + std::to_string(shard) + ".h5";
+  write_shard(folder / file, d);
+  return {shard,
+          file,
+          d.draw_sample_id.size(),
+          d.rows,
+          std::filesystem::file_size(folder / file),
+          hex(shard_hash(d)),
+          {{"stable", d.rows}}};
+}
+
+/// Two shards of five rows.
+struct TwoShards : Folder {
+  TwoShards() {
+    const auto a = sample_shard().attributes;
+    DatasetHeader h;
+    h.config_hash = a.config_hash;
+    h.machine_model = a.machine_model;
+    h.channel_names = a.channel_names;
+    h.parameter_names = a.parameter_names;
+    h.samples = 9;
+    h.draws = 10;
+    h.draws_per_shard = 5;
+    write_header(path, h);
+    Journal journal(path / "journal.jsonl");
+    journal.append(line_of(path, 1, sample_shard(5, 5, 1)));  // order of finishing is not order of number
+    journal.append(line_of(path, 0, sample_shard(5, 0, 0)));
+  }
+};
+
+TEST(DatasetFolder, OpensInOrderOfShards) {
+  const TwoShards folder;
+  const Dataset d = open_dataset(folder.path);
+  EXPECT_EQ(d.rows, 10u);
+  ASSERT_EQ(d.shards.size(), 2u);
+  EXPECT_EQ(d.shards[1].first_row, 5u);
+  EXPECT_EQ(d.outcomes.at("stable"), 10u);
+  EXPECT_TRUE(d.complete);
+  EXPECT_NO_THROW(verify_dataset(d));
+  RowBlock b;
+  read_rows(d.shards[1], 0, 1, b);
+  EXPECT_EQ(b.sample_id[0], 5u);
+}
+
+TEST(DatasetFolder, UnfinishedIsRefusedUnlessAllowed) {
+  const TwoShards folder;
+  const std::string text = read_text(folder.path / "journal.jsonl");
+  write_text(folder.path / "journal.jsonl", text.substr(0, text.find('\n') + 1));
+  EXPECT_THAT(sentence_of([&] { open_dataset(folder.path); }), HasSubstr("1 of 2 shards"));
+  EXPECT_FALSE(open_dataset(folder.path, true).complete);
+}
+
+TEST(DatasetFolder, TruncatedShardIsNamed) {
+  const TwoShards folder;
+  const auto file = folder.path / "shards/shard-000001.h5";
+  std::filesystem::resize_file(file, 100);
+  EXPECT_THAT(sentence_of([&] { open_dataset(folder.path); }),
+              HasSubstr("truncated or changed shard at " + file.string()));
+}
+
+TEST(DatasetFolder, ChangedRowIsFoundByVerify) {
+  const TwoShards folder;
+  const auto file = folder.path / "shards/shard-000000.h5";
+  ShardData d = read_shard(file);
+  d.records[4] += 1.0F;
+  write_shard(file, d);  // same length
+  const Dataset set = open_dataset(folder.path);
+  EXPECT_THAT(sentence_of([&] { verify_dataset(set); }), HasSubstr("changed shard at " + file.string()));
+}
+
+TEST(DatasetFolder, ShardOfAnotherConfigIsFoundByVerify) {
+  const TwoShards folder;
+  const auto file = folder.path / "shards/shard-000000.h5";
+  ShardData d = read_shard(file);
+  d.attributes.config_hash = "ffffffffffffffff";
+  write_shard(file, d);
+  const Dataset set = open_dataset(folder.path);
+  EXPECT_THAT(sentence_of([&] { verify_dataset(set); }), HasSubstr("a shard of another config"));
+  RowBlock b;
+  EXPECT_THAT(sentence_of([&] { read_rows(set.shards[0], 0, 1, b); }),
+              HasSubstr("a shard of another config"));
+}
+
+/// The journal's line of shard 0, changed by `edit`.
+void edit_line(const std::filesystem::path& folder, const std::function<void(JournalLine&)>& edit) {
+  auto lines = read_journal(folder / "journal.jsonl");
+  for (auto& l : lines)
+    if (l.shard == 0) edit(l);
+  rewrite_journal(folder / "journal.jsonl", lines);
+}
+
+TEST(DatasetFolder, JournalThatCountsOtherwiseIsFoundByVerify) {
+  const std::pair<std::function<void(JournalLine&)>, std::string> wrong[] = {
+      {[](JournalLine& l) { l.rows = 1'000'000'000'000'000; }, "wrong shape of /records"},
+      {[](JournalLine& l) { l.rows = 4; }, "wrong shape of /records"},
+      {[](JournalLine& l) { l.draws = 6; }, "another number of draws"},
+      {[](JournalLine& l) {
+         l.outcomes = {{"stable", 4}, {"refused", 1}};
+       },
+       "other outcomes"}};
+  for (const auto& [edit, what] : wrong) {
+    const TwoShards folder;
+    edit_line(folder.path, edit);
+    const auto file = (folder.path / "shards/shard-000000.h5").string();
+    EXPECT_THAT(sentence_of([&] { verify_dataset(open_dataset(folder.path)); }),
+                HasSubstr(what + " at " + file));
+  }
+}
+
+TEST(DatasetFolder, ShapesThatAreNotTheHeadersAreRefused) {
+  const std::pair<std::function<void(ShardData&)>, std::string> wrong[] = {
+      {[](ShardData& d) { d.samples = 3; }, "it is 5 x 2 x 3, not 5 x 2 x 9"},
+      {[](ShardData& d) {
+         d.attributes.channel_names = {"theta"};
+         d.channels = 1;
+       },
+       "/records"},
+      {[](ShardData& d) {
+         d.attributes.parameter_names = {"H"};
+         d.parameter_count = 1;
+       },
+       "/parameters"}};
+  for (const auto& [edit, what] : wrong) {
+    const TwoShards folder;
+    const auto file = folder.path / "shards/shard-000000.h5";
+    ShardData d = sample_shard(5, 0, 0);
+    edit(d);
+    write_shard(file, d);
+    edit_line(folder.path, [&](JournalLine& l) { l.bytes = std::filesystem::file_size(file); });
+    const Dataset set = open_dataset(folder.path);
+    RowBlock b;
+    EXPECT_THAT(sentence_of([&] { read_rows(set.shards[0], 0, 5, b); }), HasSubstr(what));
+    EXPECT_THAT(sentence_of([&] { read_checked(set.shards[0]); }), HasSubstr(what));
+    EXPECT_THAT(sentence_of([&] { verify_dataset(set); }), HasSubstr("--repair"));
+  }
+}
+
+TEST(DatasetFolder, HeaderThatJsonCannotHoldIsRefused) {
+  const Folder folder;
+  DatasetHeader h;
+  h.name = "b\xff";
+  h.draws_per_shard = 1;
+  EXPECT_THAT(sentence_of([&] { write_header(folder.path, h); }), HasSubstr("a name that is no UTF-8"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path));
+}
+
+TEST(DatasetFolder, NoDatasetIsNamed) {
+  const Folder folder;
+  EXPECT_THAT(sentence_of([&] { open_dataset(folder.path); }), HasSubstr("holds no dataset.json"));
+}
+
+TEST(JournalFile, HalfWrittenLastLineIsLeftOutAndCutOff) {
+  const TwoShards folder;
+  const auto file = folder.path / "journal.jsonl";
+  std::ofstream(file, std::ios::app) << "{\"shard\":2,\"fi";
+  EXPECT_EQ(read_journal(file).size(), 2u);
+  {
+    Journal journal(file);
+    journal.append({2, "shards/c.h5", 5, 5, 1, "0000000000000000", {}});
+  }
+  const auto lines = read_journal(file);
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_EQ(lines[2].shard, 2u);
+}
+
+TEST(JournalFile, OtherDamageIsRefusedWithLineNumbers) {
+  const TwoShards folder;
+  const auto file = folder.path / "journal.jsonl";
+  const std::string text = read_text(file);
+  write_text(file, "garbage\n" + text + text);
+  const std::string sentence = sentence_of([&] { read_journal(file); });
+  EXPECT_THAT(sentence, HasSubstr("damaged journal line at " + file.string() + ":1"));
+  EXPECT_THAT(sentence, HasSubstr("shard 1 twice at " + file.string() + ":4"));
+}
+
+}  // namespace
+}  // namespace swingbank::mpi::store

@@ -1,0 +1,146 @@
+#include "mpi/store/shard.hpp"
+
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <thread>
+
+#include "base/durable.hpp"
+#include "base/problem.hpp"
+#include "mpi/store/hdf5_file.hpp"
+#include "tests/mpi/store/sample_shard.hpp"
+
+namespace swingbank::mpi::store {
+namespace {
+
+using test::Folder;
+using test::sample_shard;
+using ::testing::HasSubstr;
+
+std::string sentence_of(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "nothing thrown";
+}
+
+TEST(Shard, ComesBackAsWritten) {
+  const Folder folder;
+  const ShardData d = sample_shard();
+  write_shard(folder.path / "a.h5", d);
+  const ShardData r = read_shard(folder.path / "a.h5");
+  EXPECT_EQ(r.records, d.records);
+  EXPECT_EQ(r.parameters, d.parameters);
+  EXPECT_EQ(r.sample_id, d.sample_id);
+  EXPECT_EQ(r.generator, d.generator);
+  EXPECT_EQ(r.fault, d.fault);
+  EXPECT_EQ(r.angle_valid, d.angle_valid);
+  EXPECT_EQ(r.draw_outcome, d.draw_outcome);
+  EXPECT_EQ(r.attributes.channel_names, d.attributes.channel_names);
+  EXPECT_EQ(r.attributes.parameter_high, d.attributes.parameter_high);
+  EXPECT_EQ(r.attributes.seed, 7u);
+  EXPECT_EQ(shard_hash(r), shard_hash(d));
+  EXPECT_FALSE(std::filesystem::exists(temporary_name(folder.path / "a.h5")));
+}
+
+TEST(Shard, RangeOfRows) {
+  const Folder folder;
+  write_shard(folder.path / "a.h5", sample_shard());
+  RowBlock b;
+  read_rows(folder.path / "a.h5", 2, 2, b);
+  ASSERT_EQ(b.rows, 2u);
+  EXPECT_EQ(b.records.size(), 2u * 2 * 9);
+  EXPECT_EQ(b.records[0], 2000.0F);
+  EXPECT_EQ(b.records[9], 2010.0F);
+  EXPECT_EQ(b.sample_id, (std::vector<std::uint64_t>{2, 3}));
+  read_rows(folder.path / "a.h5", 4, 1, b, {}, {.records = false});
+  EXPECT_TRUE(b.records.empty());
+  EXPECT_EQ(b.parameters, (std::vector<double>{5.0, 2.0}));
+  EXPECT_THAT(sentence_of([&] { read_rows(folder.path / "a.h5", 4, 2, b); }),
+              HasSubstr("the array has 5 rows"));
+}
+
+TEST(Shard, EmptyShardIsReadable) {
+  const Folder folder;
+  write_shard(folder.path / "a.h5", sample_shard(0));
+  const ShardData r = read_shard(folder.path / "a.h5");
+  EXPECT_EQ(r.rows, 0u);
+  EXPECT_EQ(r.samples, 9u);
+}
+
+TEST(Shard, EqualContentMakesEqualBytes) {
+  const Folder folder;
+  write_shard(folder.path / "a.h5", sample_shard());
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5's times count seconds
+  write_shard(folder.path / "b.h5", sample_shard());
+  EXPECT_EQ(read_text(folder.path / "a.h5"), read_text(folder.path / "b.h5"));
+}
+
+TEST(Shard, EveryByteOfARowCounts) {
+  const std::uint64_t hash = shard_hash(sample_shard());
+  ShardData d = sample_shard();
+  d.records.back() += 1.0F;
+  EXPECT_NE(shard_hash(d), hash);
+  d = sample_shard();
+  d.generator[0] = 99;
+  EXPECT_NE(shard_hash(d), hash);
+  d = sample_shard();
+  d.angle_valid[3] = 0;
+  EXPECT_NE(shard_hash(d), hash);
+  d = sample_shard();
+  d.draw_outcome[1] = 2;
+  EXPECT_NE(shard_hash(d), hash);
+}
+
+TEST(Shard, TruncatedFileIsNamed) {
+  const Folder folder;
+  const auto file = folder.path / "a.h5";
+  write_shard(file, sample_shard());
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+  EXPECT_THAT(sentence_of([&] { read_shard(file); }), HasSubstr(file.string() + " ("));
+}
+
+TEST(Shard, FaultsOfAnotherWidthAreRefused) {
+  const Folder folder;
+  const auto file = folder.path / "a.h5";
+  const ShardData d = sample_shard();
+  h5::File f = h5::File::create(file);
+  f.create<float>("/records", {d.rows, d.channels, d.samples});
+  f.create<double>("/parameters", {d.rows, d.parameter_count});
+  f.create<std::uint64_t>("/sample_id", {d.rows});
+  f.create<std::int32_t>("/generator", {d.rows});
+  f.create<double>("/fault", {d.rows, 1});
+  f.create<double>("/largest_spread", {d.rows});
+  f.close();
+  RowBlock b;
+  EXPECT_THAT(sentence_of([&] { read_rows(file, 0, 1, b); }),
+              HasSubstr("wrong shape of /fault at " + file.string() + " (it is 5 x 1, not 5 x 5)"));
+}
+
+TEST(Shard, AnotherConfigIsRefused) {
+  const Folder folder;
+  write_shard(folder.path / "a.h5", sample_shard());
+  RowBlock b;
+  EXPECT_THAT(sentence_of([&] { read_rows(folder.path / "a.h5", 0, 1, b, "ffffffffffffffff"); }),
+              HasSubstr("another config"));
+}
+
+TEST(Shard, ForeignHdf5IsRefused) {
+  const Folder folder;
+  h5::File f = h5::File::create(folder.path / "a.h5");
+  f.create<double>("/x", {3});
+  f.close();
+  EXPECT_THAT(sentence_of([&] { read_shard(folder.path / "a.h5"); }), HasSubstr("/@format"));
+}
+
+TEST(Shard, FolderThatCannotBeMadeIsNamed) {
+  const Folder folder;
+  write_text(folder.path / "file", "not a folder");
+  EXPECT_THAT(sentence_of([&] { write_shard(folder.path / "file" / "a.h5", sample_shard()); }),
+              HasSubstr("cannot create the folder"));
+}
+
+}  // namespace
+}  // namespace swingbank::mpi::store

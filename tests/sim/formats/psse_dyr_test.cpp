@@ -1,0 +1,103 @@
+#include <gmock/gmock.h>
+
+#include "tests/sim/formats/raw_case.hpp"
+
+namespace swingbank::sim::formats {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+std::vector<DyrRecord> read(const std::string& text, const DyrOptions& options = {}) {
+  const ScratchFile file("case.dyr", text);
+  return read_dyr(file.path, options);
+}
+
+TEST(PsseDyr, RecordsSpanLinesAndEndAtASlash) {
+  const auto r = read(
+      "/ a comment line\n\n  101 'GENCLS' 1   3.5  0.0 / infinite bus, nearly\n102, genrou, '2 ' 8.0 "
+      "0.3E-01\n   0.4D0,\n  -1\n/\n103 \"X Y\" A1 /");
+  ASSERT_EQ(r.size(), 3u);
+  EXPECT_EQ(r[0].bus, 101);
+  EXPECT_EQ(r[0].model, "GENCLS");
+  EXPECT_EQ(r[0].id, "1");
+  EXPECT_THAT(r[0].values, ElementsAre(3.5, 0.0));
+  EXPECT_EQ(r[0].line, 3);
+  EXPECT_EQ(r[1].model, "GENROU");
+  EXPECT_EQ(r[1].id, "2");
+  EXPECT_THAT(r[1].values, ElementsAre(8.0, 0.03, 0.4, -1.0));
+  EXPECT_EQ(r[1].line, 4);
+  EXPECT_EQ(r[2].model, "X Y");
+  EXPECT_EQ(r[2].id, "A1");
+  EXPECT_TRUE(r[2].values.empty());
+}
+
+TEST(PsseDyr, EveryFaultIsReportedAtOnceWithItsLine) {
+  const auto problems = problems_of([] {
+    read(
+        "101 'GENCLS' 1 3.5 nan /\nx 'GENCLS' 1 1 0 /\n103 /\n104 'GENCLS' 1 1,,2 /\n105 'GENCLS 1 1 /\n106 "
+        "'GENCLS' 1 3.0\n 0.0\n");
+  });
+  std::string all;
+  for (const Problem& p : problems) all += p.sentence() + "\n";
+  EXPECT_THAT(all, HasSubstr("GENCLS parameter 2 = 'nan' at "));
+  EXPECT_THAT(all, HasSubstr("case.dyr:1"));
+  EXPECT_THAT(all, HasSubstr("bus number = 'x'"));
+  EXPECT_THAT(all, HasSubstr("case.dyr:2"));
+  EXPECT_THAT(all, HasSubstr("incomplete record"));
+  EXPECT_THAT(all, HasSubstr("case.dyr:3"));
+  EXPECT_THAT(all, HasSubstr("GENCLS parameter 2 is missing"));
+  EXPECT_THAT(all, HasSubstr("case.dyr:4"));
+  EXPECT_THAT(all, HasSubstr("a quote is not closed"));
+  EXPECT_THAT(all, HasSubstr("case.dyr:5"));
+  EXPECT_THAT(all, HasSubstr("a record has no end"));
+}
+
+TEST(PsseDyr, CommentLinesMayStandWithinRecords) {
+  const auto r = read(
+      "// head\n101 'GENCLS' 1 3.5 // rest / of / line\n102 'GENROU' 1 8.0\n  // inside, 'quote\n0.03 /\n");
+  ASSERT_EQ(r.size(), 2u);
+  EXPECT_THAT(r[0].values, ElementsAre(3.5));
+  EXPECT_THAT(r[1].values, ElementsAre(8.0, 0.03));
+}
+
+TEST(PsseDyr, TextInAModelThatIsNotUsedIsOnlyNoted) {
+  const auto r =
+      read("101 'XYZ' 1 2.0 'text' 3.0 /\n102 'USRMDL' 1 'MyGov' 1 1 0 /\n0 'USRMSC' 'MYREL' 512 0 /\n");
+  ASSERT_EQ(r.size(), 3u);
+  EXPECT_EQ(r[0].faults.list().size(), 1u);
+  EXPECT_EQ(r[1].model, "USRMDL");
+  EXPECT_EQ(r[1].user, "MYGOV");
+  EXPECT_THAT(r[1].values, ElementsAre(1.0, 1.0, 0.0));
+  EXPECT_EQ(r[2].user, "MYREL");
+}
+
+TEST(PsseDyr, ModelsAreIgnoredOrMappedByName) {
+  const std::string text =
+      "101 'GENCLS' 1 3.0 0 /\n101 'IEEEX9' 1 1 2 /\n101 'USRMDL' 1 'MYGOV' 5 0 /\n101 'TGOVX' 1 7 8 /\n";
+  DyrOptions options;
+  options.ignore = {"ieeex9", "MyGov"};
+  Problems problems;
+  add_model_map(options, "tgovx=tgov1", "--map-model", problems);
+  EXPECT_TRUE(problems.empty());
+  const auto r = read(text, options);
+  ASSERT_EQ(r.size(), 2u);
+  EXPECT_EQ(r[0].model, "GENCLS");
+  EXPECT_EQ(r[1].model, "TGOV1");
+  EXPECT_THAT(r[1].values, ElementsAre(7.0, 8.0));
+  options.map = {{"MYGOV", "TGOV1"}};
+  EXPECT_THAT(sentences_of([&] { read(text, options); }), HasSubstr("MYGOV is both ignored and mapped"));
+  options = {{"NOTHERE"}, {}};
+  EXPECT_THAT(sentences_of([&] { read(text, options); }), HasSubstr("no model NOTHERE to ignore or map"));
+  add_model_map(options, "A=B", "--map-model", problems);
+  add_model_map(options, "a=C", "--map-model", problems);
+  for (const char* bad : {"", "A", "=B", "A="}) add_model_map(options, bad, "--map-model", problems);
+  EXPECT_EQ(problems.list().size(), 5u);
+}
+
+TEST(PsseDyr, AMissingFileIsNamed) {
+  EXPECT_THAT(sentences_of([] { read_dyr("/nowhere/case.dyr"); }), HasSubstr("/nowhere/case.dyr"));
+}
+
+}  // namespace
+}  // namespace swingbank::sim::formats

@@ -1,0 +1,256 @@
+#include "sim/lanes/detail/shared_network.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "sim/lanes/batch.hpp"
+#include "sim/lanes/detail/switched_network.hpp"
+#include "sim/reference/reference.hpp"
+#include "tests/bench/synthetic_grid.hpp"
+
+namespace swingbank::sim::lanes {
+namespace {
+
+constexpr int kMachines = 41;  // no whole number of rows together
+constexpr int kMost = SharedNetwork<P8>::most_products(kMachines);
+constexpr std::size_t kSubtransient = 10;  // X'' among the parameters of GENROU
+
+const grid::Grid& grid() {
+  static const grid::Grid made = synthetic(kMachines);
+  return made;
+}
+
+/// A topology's matrix; the first `changed` machines have other impedances.
+InternalMatrix matrix(const network::Topology& topology, int changed = 0) {
+  const std::vector<double> r(kMachines, 0.002);
+  std::vector<double> x(kMachines, 0.25);
+  for (int i = 0; i < changed; ++i) x[static_cast<std::size_t>(i)] *= 1.02 + 0.01 * i;
+  return InternalNetwork(grid()).matrix(topology, r, x);
+}
+
+/// What is left of the matrix after `from` and the products: its largest entry.
+double rest(const InternalMatrix& of, const InternalMatrix& from, const LowRank& products) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < kMachines; ++i)
+    for (std::size_t j = 0; j < kMachines; ++j) {
+      Complex left(of.g[i * kMachines + j] - from.g[i * kMachines + j],
+                   of.b[i * kMachines + j] - from.b[i * kMachines + j]);
+      for (std::size_t k = 0; k < products.ur.size(); k += kMachines)
+        left -=
+            Complex(products.ur[k + i], products.ui[k + i]) * Complex(products.wr[k + j], products.wi[k + j]);
+      largest = std::max(largest, std::abs(left));
+    }
+  return largest;
+}
+
+/// How many products a difference takes; -1: more than kMost.
+int rank(const InternalMatrix& of) {
+  const InternalMatrix from = matrix({});
+  const auto found = difference(of, from, kMost);
+  if (!found) return -1;
+  EXPECT_LE(rest(of, from, *found), 1e-12);
+  return found->rank;
+}
+
+TEST(LowRank, WhatAnEventChangesIsAFewProducts) {
+  EXPECT_EQ(rank(matrix({})), 0);
+  EXPECT_EQ(rank(matrix({.faults = {{4, {}}}})), 1);
+  EXPECT_EQ(rank(matrix({.faults = {{4, {0.01, 0.1}}}})), 1);
+  EXPECT_EQ(rank(matrix({.faults = {{5, {}}}})), 1);  // at a machine's own bus
+  EXPECT_EQ(rank(matrix({.open = {1}})), 1);
+  EXPECT_EQ(rank(matrix({.tripped = {3}})), 1);
+  EXPECT_EQ(rank(matrix({.load_steps = {{6, {0.3, 0.1}}}})), 1);
+  EXPECT_EQ(rank(matrix({}, 1)), 1);
+  EXPECT_EQ(rank(matrix({.faults = {{4, {}}}, .open = {1}}, 3)), 5);
+  EXPECT_EQ(rank(matrix({.faults = {{4, {}}}}, kMost - 1)), kMost);
+  EXPECT_EQ(rank(matrix({.faults = {{4, {}}}}, kMost)), -1);
+}
+
+TEST(LowRank, OtherImpedancesAreOneProductEach) {
+  for (const network::Topology& topology :
+       {network::Topology{}, network::Topology{.faults = {{5, {}}}}, network::Topology{.tripped = {1}}}) {
+    LowRank products;
+    std::vector<ImpedanceChange> changes;
+    for (int i = 0; i < 4; ++i) changes.push_back({i, {0.0, 0.25 * (0.02 + 0.01 * i)}});
+    const InternalMatrix from = matrix(topology);
+    add_impedances(products, from, changes);
+    EXPECT_EQ(products.rank, 4);
+    EXPECT_LE(rest(matrix(topology, 4), from, products), 1e-12);
+    EXPECT_GE(rest(matrix(topology, 4), from, {}), 1e-3);
+    auto both = *difference(from, matrix({}), kMost);  // and of products before
+    add_impedances(both, matrix({}), changes);
+    EXPECT_LE(rest(matrix(topology, 4), matrix({}), both), 1e-12);
+  }
+}
+
+TEST(SwitchedNetwork, ChangesWhatReducingAnewDoes) {
+  grid::Grid shifted = grid();  // no symmetric matrix
+  shifted.network.branches[2].shift = 0.3;
+  const std::vector<double> r(kMachines, 0.002), x(kMachines, 0.25);
+  const SwitchedNetwork switched(shifted, r, x);
+  InternalNetwork network(shifted);
+  const InternalMatrix own = network.matrix({}, r, x);
+  const auto off = [&](const network::Topology& topology) {
+    const auto products = switched.change(topology, kMost);
+    return products ? rest(network.matrix(topology, r, x), own, *products) : -1.0;
+  };
+  for (const network::Topology& topology :
+       std::vector<network::Topology>{{},
+                                      {.faults = {{4, {}}}},
+                                      {.faults = {{5, {}}}},  // at a machine's own bus
+                                      {.faults = {{4, {0.01, 0.1}}}},
+                                      {.open = {1}},
+                                      {.open = {2}},
+                                      {.load_steps = {{6, {0.3, 0.1}}}},
+                                      {.faults = {{0, {}}, {7, {}}}, .open = {1, 2}}}) {
+    const double left = off(topology);
+    EXPECT_GE(left, 0.0);
+    EXPECT_LE(left, 1e-12);
+  }
+  EXPECT_EQ(off({.tripped = {3}}), -1.0);
+  EXPECT_EQ(off({.partly_tripped = {{3, 0.5}}}), -1.0);
+  EXPECT_FALSE(switched.change({.open = {1, 4, 6, 9, 11}}, 5));  // six buses
+}
+
+/// A voltage of every source and lane.
+std::vector<P8> voltages(double phase) {
+  std::vector<P8> e(kMachines);
+  for (int i = 0; i < kMachines; ++i)
+    for (int l = 0; l < 8; ++l) e[static_cast<std::size_t>(i)].set(l, std::cos(phase + 0.7 * i + 0.3 * l));
+  return e;
+}
+
+TEST(BusFactors, AreNotMadeWherePivotsWouldHaveToBeChosen) {
+  BusFactors::Sparse crossed(2, 2);
+  crossed.insert(0, 1) = crossed.insert(1, 0) = 1.0;
+  EXPECT_FALSE(BusFactors().factor(crossed));
+}
+
+/// As rows of the matrix, as factors of the whole network.
+class SharedNetworkForms : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Both, SharedNetworkForms, testing::Bool());
+
+TEST_P(SharedNetworkForms, EveryLaneHasTheCurrentsOfItsOwnMatrix) {
+  const std::array<InternalMatrix, 8> lanes = {matrix({}),
+                                               matrix({.faults = {{4, {}}}}),
+                                               matrix({.faults = {{4, {}}}}, kMost),  // no few products
+                                               matrix({.open = {1}}, 3),
+                                               matrix({}, kMachines),
+                                               matrix({.tripped = {3}}),
+                                               matrix({}, 1),
+                                               matrix({.load_steps = {{6, {0.3, 0.1}}}})};
+  SharedNetwork<P8> network;
+  const SwitchedNetwork switched(grid(), std::vector<double>(kMachines, 0.002),
+                                 std::vector<double>(kMachines, 0.25));
+  BusFactors factors;
+  ASSERT_TRUE(factors.factor(switched.closed()));
+  network.assign(matrix({}));
+  if (GetParam()) network.assign(factors, switched.plants());
+  EXPECT_EQ(network.factored(), GetParam());
+  const auto set = [&](int lane, const InternalMatrix& m) {
+    if (const auto few = difference(m, network.own(), kMost))
+      network.set(lane, *few);
+    else
+      network.set(lane, m);
+  };
+  for (int l = 7; l >= 0; --l) set(l, lanes[static_cast<std::size_t>(l % 3)]);  // of these nothing may stay
+  for (int l = 0; l < 8; ++l) set(l, lanes[static_cast<std::size_t>(l)]);
+  const auto er = voltages(0.0), ei = voltages(1.0);
+  std::vector<P8> ir(SharedRows::padded(kMachines)), ii = ir;
+  network.solve(er.data(), ei.data(), ir.data(), ii.data());
+  for (int l = 0; l < 8; ++l) {
+    const InternalMatrix& m = lanes[static_cast<std::size_t>(l)];
+    for (std::size_t i = 0; i < kMachines; ++i) {
+      Complex sum;
+      for (std::size_t j = 0; j < kMachines; ++j)
+        sum += Complex(m.g[i * kMachines + j], m.b[i * kMachines + j]) * Complex(er[j][l], ei[j][l]);
+      EXPECT_NEAR(ir[i][l], sum.real(), 1e-12) << "lane " << l;
+      EXPECT_NEAR(ii[i][l], sum.imag(), 1e-12) << "lane " << l;
+    }
+  }
+}
+
+/// Faults, opened lines, lost generators, load steps, and machines of another impedance: few; so many that a
+/// fault is one product too many; all.
+std::vector<Job> jobs() {
+  std::vector<Job> list(20);
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    Job& job = list[k];
+    const int at = static_cast<int>(k);
+    job.id = k;
+    if (k != 7) job.event.faults = {{3 * at, 0.2, 0.23 + 0.002 * at, {}}};
+    if (k % 4 == 1) job.event.trips = {{5 * at + 1, 0.3, 0.6 + 0.01 * at}};
+    if (k % 6 == 4) job.event.generator_trips = {{30, 0.35, k == 4 ? 1.0 : 0.4}};
+    if (k % 6 == 5) job.event.load_steps = {{20, {0.3, 0.1}, 0.15, 0.7}};
+    const int changed = k % 5 == 2 ? kMachines : k % 5 == 3 ? kMost : at % 3;
+    for (int i = 0; i < changed; ++i) {
+      auto p = grid().plants[static_cast<std::size_t>(i)].machine.p;
+      p[kSubtransient] *= 0.9 + 0.005 * ((i + at) % 8);
+      job.machine_parameters.push_back({i, p});
+    }
+  }
+  return list;
+}
+
+std::map<std::uint64_t, Trajectory> run(const std::vector<Job>& list, BatchOptions options) {
+  static_assert(kMachines >= SharedNetwork<P8>::kMany);
+  options.t_end = 1.0;
+  Batch batch(grid(), options);
+  std::map<std::uint64_t, Trajectory> all;
+  std::size_t at = 0;
+  batch.run([&](Job& job) { return at < list.size() && (job = list[at++], true); },
+            [&](const Job& job, const Trajectory& t) { all[job.id] = t; });
+  return all;
+}
+
+TEST(LanesOfManySources, AreTheRunsWithAMatrixEach) {
+  BatchOptions one, eight;
+  one.lanes = 1;  // shares with nobody
+  eight.lanes = 8;
+  const auto a = run(jobs(), one), b = run(jobs(), eight);
+  eight.plants = {17, 2};
+  const auto two = run(jobs(), eight);
+  for (const auto& [id, t] : a) {
+    ASSERT_EQ(t.outcome, Outcome::stable) << id;
+    const auto x = t.packed(), y = b.at(id).packed();
+    for (std::size_t i = 0; i < x.size(); ++i) ASSERT_NEAR(x[i], y[i], 1e-9) << id;
+    for (int p = 0; p < 2; ++p)
+      for (int c = 0; c < kChannelCount; ++c)
+        for (int k = 0; k < t.samples; ++k)
+          ASSERT_NEAR(t.at(eight.plants[static_cast<std::size_t>(p)], c)[k], two.at(id).at(p, c)[k], 1e-9);
+  }
+}
+
+TEST(LanesOfManySources, AgreeWithTheReference) {
+  std::vector<Job> list = jobs();
+  std::erase_if(list, [](const Job& job) { return job.id != 5 && job.id != 10; });
+  for (Job& job : list) job.machine_parameters.clear();
+  reference::ReferenceOptions options;
+  options.t_end = 1.0;
+  for (const auto& [id, t] : run(list, {})) {
+    const auto& job = *std::ranges::find(list, id, &Job::id);
+    const auto x = t.packed(), y = reference::run_reference(grid(), job.event, options).packed();
+    ASSERT_EQ(x.size(), y.size());
+    for (std::size_t i = 0; i < x.size(); ++i) ASSERT_NEAR(x[i], y[i], 1e-4) << id;
+  }
+}
+
+TEST(LanesOfManySources, ARecordDoesNotDependOnItsLaneOrNeighbours) {
+  auto list = jobs();
+  for (const int lanes : {4, 8}) {
+    BatchOptions options;
+    options.lanes = lanes;
+    const auto forward = run(list, options);
+    std::reverse(list.begin(), list.end());
+    const auto backward = run(list, options);
+    for (const Job& job : list) {
+      const auto alone = run({job}, options);
+      EXPECT_EQ(forward.at(job.id).packed(), backward.at(job.id).packed()) << job.id;  // to the last bit
+      EXPECT_EQ(forward.at(job.id).packed(), alone.at(job.id).packed()) << job.id;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace swingbank::sim::lanes

@@ -1,0 +1,183 @@
+#pragma once
+// Our equations integrated the way PSS/E integrates its own, as read off its records. With it a difference
+// between record and equations is one of modelling.
+//   x(t + h) = x(t) + h (3 f(t) - f(t - h))/2, at a switching instant f is the mean of the derivatives before
+//     and after it;
+//   some exciters take shorter steps of the same kind within each, everything else standing still;
+//   Efd is what the exciter's states at t make of voltage and field current at t - h;
+//   HYGOV's power, not TGOV1's, is that of t - h.
+#include <vector>
+
+#include "sim/reference/detail/system.hpp"
+
+namespace swingbank::sim::test {
+
+class PsseStepper {
+ public:
+  PsseStepper(const grid::Grid& grid, const network::Event& event, double h, double end, int exciter_steps)
+      : h_(h),
+        exciter_steps_(exciter_steps),
+        plants_(grid),
+        parts_(network::segments(event, grid.network, plants_.instants())),
+        before_(grid, plants_, parts_.at(0), 2 * end),
+        after_(grid, plants_, parts_.at(1), 2 * end),
+        system_(&before_),
+        states_(static_cast<std::size_t>(plants_.states())),
+        y_(static_cast<std::size_t>(before_.size())),
+        f_(y_),
+        f_before_(y_),
+        fine_f_before_(y_) {
+    if (parts_.size() != 2) throw std::runtime_error("one switching instant is expected");
+    for (const auto& unit : plants_.units())
+      std::copy(unit.operating.x.begin(), unit.operating.x.end(), y_.begin() + unit.first);
+    for (std::size_t b = 0; b < grid.flow.voltage.size(); ++b) {
+      y_[states_ + 2 * b] = grid.flow.voltage[b].real();
+      y_[states_ + 2 * b + 1] = grid.flow.voltage[b].imag();
+    }
+    last_ = y_;
+    for (std::size_t u = 0; u < plants_.units().size(); ++u) find_controls(u);
+  }
+  [[nodiscard]] long switching() const { return std::lround(parts_[1].start / h_); }
+
+  /// Solves the network at t and keeps the states' derivatives; after the switching: their mean.
+  void derive(double t) {
+    system_->solve_voltages(t, y_.data());
+    system_->derivatives(t, y_.data(), f_.data());
+    for (const Exciter& e : exciters_)
+      f_[e.flux] += (late_field_voltage(e, t) - signals(e.unit, t).Efd) / e.time_constant;
+    for (Governor& g : late_governors_) {
+      g.now = signals(g.unit, t).Tm;
+      f_[g.speed] += (g.last - g.now) / (1.0 + y_[g.speed]) / (2.0 * g.inertia);
+    }
+  }
+  void switch_over(double t) {
+    const auto f = f_;
+    system_ = &after_;
+    derive(t);
+    for (std::size_t i = 0; i < states_; ++i) f_[i] = 0.5 * (f_[i] + f[i]);
+  }
+  /// From t to t + h.
+  void advance(double t) {
+    const auto at_t = y_;
+    const auto exciters = advanced_exciters(t);
+    for (std::size_t i = 0; i < states_; ++i) y_[i] += h_ * (1.5 * f_[i] - 0.5 * f_before_[i]);
+    for (const Exciter& e : exciters_)
+      for (std::size_t i = e.first; i < e.end; ++i) y_[i] = exciters[i];
+    (void)system_->clamp_states(y_.data());
+    for (Governor& g : late_governors_) g.last = g.now;
+    f_before_ = f_;
+    last_ = at_t;
+  }
+  /// What PSS/E prints of a plant at t.
+  [[nodiscard]] Signals<double> printed(std::size_t plant, double t) const {
+    auto s = signals(plant, t);
+    for (const Exciter& e : exciters_)
+      if (e.unit == plant) s.Efd = late_field_voltage(e, t);
+    return s;
+  }
+  [[nodiscard]] const double* states(std::size_t plant) const {
+    return y_.data() + plants_.units()[plant].first;
+  }
+  /// Real and imaginary voltage of every bus [pu].
+  [[nodiscard]] const double* voltages() const { return y_.data() + states_; }
+
+ private:
+  struct Exciter {
+    std::size_t unit, first, end;  ///< places of its states
+    std::size_t flux;              ///< place of E'q, which Efd drives
+    double time_constant;          ///< over this T'do [s]
+  };
+  struct Governor {
+    std::size_t unit, speed;  ///< place of the speed deviation
+    double inertia;           ///< H [s]
+    double last, now;         ///< power at t - h and t [pu]
+  };
+  void find_controls(std::size_t u) {
+    const auto& unit = plants_.units()[u];
+    if (!unit.plant) return;
+    const plant::Block& machine = unit.plant->machine;
+    auto place = static_cast<std::size_t>(unit.first);
+    Exciter e{u, 0, 0, 0, 0.0};
+    for (std::size_t i = 0; i < machine.effect->states.size(); ++i, ++place)
+      if (machine.effect->states[i].name == "Eqp") e.flux = place;
+    const auto parameter = [&](const char* name) {
+      return machine.p.at(static_cast<std::size_t>(machine.effect->parameter_index(name)));
+    };
+    for (const plant::Block& block : unit.plant->controls) {
+      if (block.effect->slot == Slot::exciter) {
+        e.first = place;
+        e.end = place + block.effect->states.size();
+        e.time_constant = parameter("Tdop");
+        exciters_.push_back(e);
+      }
+      if (block.effect->name == "HYGOV")
+        late_governors_.push_back({u, static_cast<std::size_t>(unit.first) + 1, parameter("H"),
+                                   unit.operating.Tm, unit.operating.Tm});
+      place += block.effect->states.size();
+    }
+  }
+  [[nodiscard]] Signals<double> signals(std::size_t unit, double t) const {
+    Complex current;
+    return system_->signals(unit, t, y_.data(), current);
+  }
+  [[nodiscard]] double late_field_voltage(const Exciter& e, double t) const {
+    auto mixed = last_;
+    for (std::size_t i = e.first; i < e.end; ++i) mixed[i] = y_[i];
+    Complex current;
+    return system_->signals(e.unit, t, mixed.data(), current).Efd;
+  }
+  /// All states, with the exciters' at t + h.
+  std::vector<double> advanced_exciters(double t) {
+    auto fine = y_, f = f_;
+    for (int k = 0; k < exciter_steps_; ++k) {
+      if (k > 0) system_->derivatives(t, fine.data(), f.data());
+      for (const Exciter& e : exciters_)
+        for (std::size_t i = e.first; i < e.end; ++i)
+          fine[i] += h_ / exciter_steps_ * (1.5 * f[i] - 0.5 * fine_f_before_[i]);
+      (void)system_->clamp_states(fine.data());
+      fine_f_before_ = f;
+    }
+    return fine;
+  }
+
+  double h_;
+  int exciter_steps_;
+  reference::ReferencePlants plants_;
+  std::vector<network::Segment> parts_;
+  reference::ReferenceSystem before_, after_;
+  const reference::ReferenceSystem* system_;
+  std::size_t states_;
+  std::vector<double> y_, last_;  ///< states and voltages at t and at t - h
+  std::vector<double> f_, f_before_, fine_f_before_;
+  std::vector<Exciter> exciters_;
+  std::vector<Governor> late_governors_;
+};
+
+/// Calls see(time, signals, states) of plant `plant` every h seconds until `end` [s], twice at the switching
+/// instant, which is event's only one and a multiple of h. A fourth argument of `see`, if it takes one, is
+/// the real and imaginary voltage of every bus [pu]. `exciter_steps`: how many the exciters take within h.
+template <class See>
+void step_as_psse(const grid::Grid& grid, const network::Event& event, std::size_t plant, double h,
+                  double end, const See& see, int exciter_steps = 1) {
+  PsseStepper stepper(grid, event, h, end, exciter_steps);
+  const auto show = [&](double t) {
+    const auto s = stepper.printed(plant, t);
+    if constexpr (requires { see(t, s, stepper.states(plant), stepper.voltages()); })
+      see(t, s, stepper.states(plant), stepper.voltages());
+    else
+      see(t, s, stepper.states(plant));
+  };
+  const auto steps = std::lround(end / h);
+  for (long k = 0; k <= steps; ++k) {
+    const double t = static_cast<double>(k) * h;
+    stepper.derive(t);
+    show(t);
+    if (k == stepper.switching()) {
+      stepper.switch_over(t);
+      show(t);
+    }
+    stepper.advance(t);
+  }
+}
+
+}  // namespace swingbank::sim::test

@@ -1,0 +1,108 @@
+#include <ATen/ATen.h>
+#include <gtest/gtest.h>
+#include <torch/optim/adam.h>
+
+#include <set>
+
+#include "base/problem.hpp"
+#include "train/loop/adam.hpp"
+#include "train/networks/network.hpp"
+
+namespace swingbank::train::networks {
+namespace {
+
+NetworkShape shape(std::int64_t channels, std::int64_t samples, std::int64_t outputs) {
+  return {channels, samples, outputs, std::vector<float>(static_cast<std::size_t>(outputs), 2.0f)};
+}
+
+TEST(Networks, AreRegisteredByTheirFiles) {
+  std::set<std::string_view> names;
+  for (const auto& record : all_networks()) names.insert(record.name);
+  EXPECT_EQ(names, (std::set<std::string_view>{"cnn", "gru", "lstm"}));
+  try {
+    (void)make_network("transformer", shape(2, 40, 3));
+    FAIL() << "an unknown network was made";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("cnn, gru, lstm"), std::string::npos) << e.what();
+  }
+}
+
+TEST(Networks, GiveOneOutputPerParameterStartedAtTheMean) {
+  for (const auto& record : all_networks()) {
+    at::manual_seed(1);
+    const auto network = make_network(std::string(record.name), shape(3, 40, 5));
+    const at::Tensor y = network->forward(at::randn({7, 3, 40}), false);
+    EXPECT_EQ(y.sizes(), (at::IntArrayRef{7, 5})) << record.name;
+    // Hidden activations are of order 1 and weights of order 1/sqrt(inputs): the bias of 2 dominates.
+    EXPECT_LT((y - 2.0).abs().max().item<double>(), 1.5) << record.name;
+    EXPECT_GT(y.std().item<double>(), 0.0) << record.name;
+  }
+}
+
+TEST(Networks, OutputIsNeverNegative) {
+  for (const auto& record : all_networks()) {
+    auto s = shape(3, 40, 2);
+    s.output_bias = {-5.0f, 5.0f};
+    const auto network = make_network(std::string(record.name), s);
+    const at::Tensor y = network->forward(at::randn({7, 3, 40}), false);
+    EXPECT_EQ(y.select(1, 0).abs().max().item<double>(), 0.0) << record.name;
+    EXPECT_GT(y.select(1, 1).min().item<double>(), 0.0) << record.name;
+  }
+}
+
+TEST(Networks, HaveTheThesisCounts) {
+  // kernel 112, lengths 450 -> 112 -> 56
+  const std::int64_t conv = 6 * 112 * 256 + 256 + 256 * 112 * 512 + 512;
+  const std::int64_t dense = 56 * 512 * 1024 + 1024 + 1024 * 256 + 256 + 256 * 14 + 14;
+  EXPECT_EQ(parameter_count(*make_network("cnn", shape(6, 450, 14))), conv + dense);
+  EXPECT_NEAR(static_cast<double>(conv + dense), 44.5e6, 0.05e6);  // the figure of the thesis's layers
+  const std::int64_t out = 512 * 14 + 14;
+  EXPECT_EQ(parameter_count(*make_network("lstm", shape(6, 450, 14))), 4 * 512 * (6 + 512 + 2) + out);
+  EXPECT_EQ(parameter_count(*make_network("gru", shape(6, 450, 14))), 3 * 512 * (6 + 512 + 2) + out);
+}
+
+TEST(Networks, DropoutFollowsTheSeed) {
+  const auto network = make_network("cnn", shape(3, 40, 2));
+  const at::Tensor x = at::randn({7, 3, 40});
+  const auto with_seed = [&](std::uint64_t seed) {
+    at::manual_seed(seed);
+    return network->forward(x, true);
+  };
+  EXPECT_TRUE(at::equal(with_seed(5), with_seed(5)));
+  EXPECT_FALSE(at::equal(with_seed(5), with_seed(6)));
+}
+
+TEST(Networks, CnnRefusesAShortSeries) {
+  EXPECT_THROW((void)make_network("cnn", shape(3, 7, 2)), InputError);
+}
+
+TEST(Adam, EqualsTorchAdam) {
+  at::manual_seed(2);
+  const at::Tensor start = at::randn({301}), target = at::randn({301});
+  at::Tensor ours = start.clone().requires_grad_(true), theirs = start.clone().requires_grad_(true);
+  loop::Adam adam({ours});
+  torch::optim::Adam reference({theirs}, torch::optim::AdamOptions(1e-2));
+  for (int step = 0; step < 200; ++step) {
+    ((ours - target).pow(4).sum() / 4.0).backward();
+    adam.step(1e-2);
+    reference.zero_grad();
+    ((theirs - target).pow(4).sum() / 4.0).backward();
+    reference.step();
+  }
+  EXPECT_GT((ours - start).abs().max().item<double>(), 0.5);
+  // 200 steps of 1e-2, each rounded to 2^-24 relative, in another order of operations.
+  EXPECT_LT((ours - theirs).abs().max().item<double>(), 2e-5);
+}
+
+TEST(Adam, LeavesParametersWithoutGradientAndClearsGradients) {
+  at::Tensor used = at::ones({3}).requires_grad_(true), unused = at::ones({3}).requires_grad_(true);
+  loop::Adam adam({used, unused});
+  used.sum().backward();
+  adam.step(0.1);
+  EXPECT_FALSE(used.grad().defined());
+  EXPECT_NEAR(used[0].item<double>(), 0.9, 1e-6);  // Adam's first step is the rate itself
+  EXPECT_EQ(unused[0].item<double>(), 1.0);
+}
+
+}  // namespace
+}  // namespace swingbank::train::networks

@@ -1,0 +1,11 @@
+// One thread per test process: the tests run side by side.
+#include <gtest/gtest.h>
+
+#include "train/runtime/runtime.hpp"
+
+namespace {
+struct OneThread : testing::Environment {
+  void SetUp() override { (void)swingbank::train::runtime::set_up_runtime(1); }
+};
+[[maybe_unused]] const auto* const one_thread = testing::AddGlobalTestEnvironment(new OneThread);
+}  // namespace

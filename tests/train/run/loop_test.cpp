@@ -1,0 +1,257 @@
+// Training on a made-up data set: it learns, shuffled labels teach nothing, and a resumed run equals an
+// unbroken one.
+#include "train/loop/loop.hpp"
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "base/problem.hpp"
+#include "base/run_lock.hpp"
+#include "tests/train/data/fixture.hpp"
+#include "train/run/cross_validate.hpp"
+#include "train/run/detail/result.hpp"
+
+namespace swingbank::train::run {
+namespace {
+using namespace test;
+using nlohmann::json;
+
+struct World {
+  test::Folder folder;
+  mpi::store::Dataset dataset;
+  data::ShardStream stream;
+  explicit World(const std::string& name, std::size_t rows = 300, std::size_t samples = 16)
+      : folder(name),
+        dataset(test::make_dataset(folder.path / "data", plan(rows, samples))),
+        stream(dataset, test::whole_record(plan(rows, samples))) {}
+  static test::Plan plan(std::size_t rows, std::size_t samples) {
+    test::Plan p;
+    p.rows = rows;
+    p.rows_per_shard = rows / 2 + 1;
+    p.samples = samples;
+    p.rate = 8.0;
+    return p;
+  }
+};
+
+loop::TrainingRecipe recipe(std::size_t epochs) { return {epochs, 32, 1e-3, "cosine", 100, 0.1}; }
+
+/// An experiment of one preset and network, without a file.
+RunRequest request(const World& world, const std::string& network, std::size_t epochs) {
+  RunRequest r;
+  r.experiment.table = "V";
+  r.experiment.leave_one_out = true;
+  for (int g = 30; g < 40; ++g) r.experiment.folds.push_back(g);
+  loop::Preset p;
+  p.name = "quick";
+  p.networks = {network};
+  p.input = test::whole_record(World::plan(world.dataset.rows, world.dataset.samples));
+  p.training[network] = recipe(epochs);
+  r.experiment.presets["quick"] = p;
+  r.preset = "quick";
+  r.network = network;
+  r.generator = 33;
+  r.out = world.folder.path / "out";
+  r.runtime = {1, "test"};
+  r.quiet = true;
+  return r;
+}
+
+json result_of(const RunRequest& r) {
+  std::ifstream in(r.out / (run_name(r) + ".json"));
+  return json::parse(in);
+}
+
+TEST(Training, ResumedRunEqualsAnUnbrokenOneBitForBit) {
+  const World world("resume", 150);
+  const data::RowSplit split = data::leave_one_out(world.stream.labels(), 33, 0.1, 1);
+  const data::TargetScale scale = data::TargetScale::fit(world.stream.labels().values, 3, split.train);
+  const auto targets = scaled_targets(world.stream.labels(), scale, split, false, 1);
+  const data::Features features = data::Features::fit(world.stream, split.train, 0);
+  const loop::LoopData data{world.stream, features, split.train, split.validation, targets};
+  const networks::NetworkShape shape{2, 16, 3, {2.0f, 2.0f, 1.0f}};
+  const json run = {{"test", 1}};
+  for (const std::string name : {"cnn", "gru"}) {
+    const auto train = [&](const std::string& checkpoint, const std::vector<int>& stops,
+                           loop::LoopReport& report) {
+      std::vector<float> out;
+      for (std::size_t part = 0; part <= stops.size(); ++part) {
+        loop::seed_torch(9);
+        const auto network = networks::make_network(name, shape);
+        int batches = 0;
+        loop::LoopSettings settings;
+        settings.recipe = recipe(4);
+        settings.checkpoint = world.folder.path / checkpoint;
+        settings.run = &run;
+        if (part < stops.size()) settings.stop = [&] { return batches++ == stops[part]; };
+        loop::TrainingProgress progress("test", 1, true);
+        report = loop::train_network(*network, data, settings, progress);
+        EXPECT_EQ(report.finished, part == stops.size());
+        out = loop::predict(*network, world.stream, features, split.test);
+      }
+      return out;
+    };
+    loop::LoopReport whole, broken;
+    const auto expected = train(name + "-a", {}, whole);
+    const auto got =
+        train(name + "-b", {8, 3}, broken);  // 4 batches an epoch: after 2 epochs, then within one
+    EXPECT_EQ(got, expected) << name;
+    EXPECT_EQ(broken.epochs, 4u);
+    EXPECT_EQ(broken.best_epoch, whole.best_epoch);
+    EXPECT_EQ(broken.validation, whole.validation);
+  }
+}
+
+TEST(Training, RefusesADamagedOrForeignCheckpoint) {
+  const World world("damaged");
+  const data::RowSplit split = data::leave_one_out(world.stream.labels(), 33, 0.1, 1);
+  const data::TargetScale scale = data::TargetScale::fit(world.stream.labels().values, 3, split.train);
+  const auto targets = scaled_targets(world.stream.labels(), scale, split, false, 1);
+  const data::Features features = data::Features::fit(world.stream, split.train, 0);
+  const loop::LoopData data{world.stream, features, split.train, split.validation, targets};
+  const auto file = world.folder.path / "run.checkpoint";
+  const json run = {{"test", 1}}, other = {{"test", 2}};
+  const auto train = [&](const json& identity, int stop_after) {
+    loop::seed_torch(9);
+    const auto network = networks::make_network("cnn", {2, 16, 3, {2.0f, 2.0f, 1.0f}});
+    loop::LoopSettings settings;
+    settings.recipe = recipe(1);
+    settings.checkpoint = file;
+    settings.run = &identity;
+    int batches = 0;
+    settings.stop = [&] { return batches++ == stop_after; };
+    loop::TrainingProgress progress("test", 1, true);
+    return loop::train_network(*network, data, settings, progress).finished;
+  };
+  ASSERT_FALSE(train(run, 2));
+  EXPECT_THROW((void)train(other, 2), InputError);
+  {
+    std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
+    bytes.seekp(5000);
+    bytes.put('\x7f');
+    bytes.put('\x01');
+  }
+  EXPECT_THROW((void)train(run, 2), InputError);
+  std::filesystem::resize_file(file, 6000);
+  EXPECT_THROW((void)train(run, 2), InputError);
+}
+
+TEST(Training, LearnsAndShuffledLabelsTeachNothing) {
+  const World world("learn", 800);
+  RunRequest r = request(world, "cnn", 4);
+  ASSERT_EQ(run(world.stream, r), RunOutcome::done);
+  const json learnt = result_of(r);
+  EXPECT_LT(learnt["ratio"], 0.5);
+  EXPECT_LT(learnt["H_ratio"], 0.5);
+  EXPECT_EQ(learnt["generator"], 33);
+  EXPECT_EQ(learnt["test_rows"], 80);
+  EXPECT_EQ(learnt["train_rows"].get<int>() + learnt["validation_rows"].get<int>(), 720);
+  // The constant third parameter is learnt exactly and flatters the mean over all.
+  EXPECT_NEAR(learnt["mse_varied_only"].get<double>() / learnt["mse"].get<double>(), 1.5, 1e-3);
+  EXPECT_TRUE(learnt["per_parameter"][2]["relative"].is_null());
+  EXPECT_EQ(run(world.stream, r), RunOutcome::already_done);
+  EXPECT_TRUE(std::filesystem::is_empty(r.out / "checkpoints"));
+
+  r.shuffle_labels = true;
+  ASSERT_EQ(run(world.stream, r), RunOutcome::done);
+  const json shuffled = result_of(r);
+  // Test rows keep their labels, so nothing can be known of them; 80 rows scatter the quotient by some
+  // percent, and what little was learnt by heart costs some more.
+  EXPECT_GT(shuffled["ratio"], 0.9);
+  EXPECT_LT(shuffled["ratio"], 1.25);
+}
+
+TEST(Training, ASecondProcessAtTheSameRunIsRefused) {
+  const World world("second");
+  RunRequest r = request(world, "cnn", 1);
+  make_folder(r.out / "checkpoints");
+  const auto file = r.out / "checkpoints" / (run_name(r) + ".lock");
+  {
+    const RunLock other(file, {"", "", ""});
+    try {
+      run(world.stream, r);
+      FAIL() << "went on";
+    } catch (const InputError& e) {
+      const std::string sentence = e.what();
+      EXPECT_NE(sentence.find("a second run at " + (r.out / (run_name(r) + ".json")).string()),
+                std::string::npos)
+          << sentence;
+    }
+  }
+  EXPECT_EQ(run(world.stream, r), RunOutcome::done);
+  EXPECT_FALSE(std::filesystem::exists(file));
+}
+
+TEST(Training, RecurrentNetworksLearn) {
+  const World world("recurrent", 500, 8);
+  for (const std::string name : {"lstm", "gru"}) {
+    RunRequest r = request(world, name, 3);
+    ASSERT_EQ(run(world.stream, r), RunOutcome::done);
+    EXPECT_LT(result_of(r)["H_ratio"], 0.7) << name;
+  }
+}
+
+TEST(Training, TheLeftOutGeneratorLeavesNoTraceInTheWeights) {
+  // The same run on two data sets that differ in the left-out generator's records only.
+  const World world("trace");
+  test::Folder folder("moved");
+  test::Plan moved = World::plan(300, 16);
+  moved.shift_generator = 33;
+  const data::ShardStream other(test::make_dataset(folder.path, moved), test::whole_record(moved));
+  const auto outputs = [&](const data::ShardStream& stream, int generator) {
+    const data::RowSplit split = data::leave_one_out(stream.labels(), generator, 0.1, 1);
+    const data::TargetScale scale = data::TargetScale::fit(stream.labels().values, 3, split.train);
+    const auto targets = scaled_targets(stream.labels(), scale, split, false, 1);
+    const data::Features features = data::Features::fit(stream, split.train, 0);
+    loop::seed_torch(9);
+    const auto network = networks::make_network("cnn", {2, 16, 3, {2.0f, 2.0f, 1.0f}});
+    loop::LoopSettings settings;
+    settings.recipe = recipe(2);
+    loop::TrainingProgress progress("test", 1, true);
+    (void)loop::train_network(*network, {stream, features, split.train, split.validation, targets}, settings,
+                              progress);
+    return loop::predict(*network, stream, features, split.train);
+  };
+  EXPECT_EQ(outputs(world.stream, 33), outputs(other, 33));
+  EXPECT_NE(outputs(world.stream, 34), outputs(other, 34));  // where it is seen, it shows
+}
+
+TEST(Training, RefusesAResultOfOtherData) {
+  const World world("foreign");
+  RunRequest r = request(world, "cnn", 1);
+  ASSERT_EQ(run(world.stream, r), RunOutcome::done);
+  r.experiment.presets["quick"].training["cnn"].batch = 16;
+  EXPECT_THROW((void)run(world.stream, r), InputError);
+}
+
+TEST(Training, SaysWhereItDiverged) {
+  const World world("diverge");
+  RunRequest r = request(world, "cnn", 3);
+  r.experiment.presets["quick"].training["cnn"].learning_rate = 1e30;
+  try {
+    (void)run(world.stream, r);
+    FAIL() << "a rate of 1e30 trained";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("lower learning_rate"), std::string::npos) << e.what();
+  }
+}
+
+TEST(CrossValidate, ProcessesShareTheFolds) {
+  const std::vector<std::int32_t> folds = {30, 31, 32, 33, 34};
+  EXPECT_EQ(share_of(folds, {0, 2}), (std::vector<std::int32_t>{30, 32, 34}));
+  EXPECT_EQ(share_of(folds, {1, 2}), (std::vector<std::int32_t>{31, 33}));
+  EXPECT_EQ(share_of(folds, {0, 1}), folds);
+  EXPECT_TRUE(share_of(folds, {5, 6}).empty());
+}
+
+TEST(LearningRate, FallsAlongACosineAfterAWarmUp) {
+  const loop::TrainingRecipe constant{10, 32, 1e-3, "constant", 5, 0.1},
+      cosine{10, 32, 1e-3, "cosine", 5, 0.1};
+  EXPECT_EQ(loop::learning_rate(constant, 999, 1000), 1e-3);
+  EXPECT_LT(loop::learning_rate(cosine, 0, 1000), 1e-4);
+  EXPECT_NEAR(loop::learning_rate(cosine, 500, 1000), 0.505e-3, 1e-6);
+  EXPECT_NEAR(loop::learning_rate(cosine, 999, 1000), 1e-5, 1e-7);
+}
+
+}  // namespace
+}  // namespace swingbank::train::run

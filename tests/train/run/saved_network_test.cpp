@@ -1,0 +1,181 @@
+// A saved network gives the very output that the trained one gave.
+#include "train/run/saved_network.hpp"
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "base/problem.hpp"
+#include "tests/train/data/fixture.hpp"
+#include "train/loop/loop.hpp"
+#include "train/run/detail/result.hpp"
+
+namespace swingbank::train::run {
+namespace {
+using namespace test;
+using nlohmann::json;
+
+struct World {
+  test::Folder folder;
+  test::Plan plan;
+  mpi::store::Dataset dataset;
+  data::ShardStream stream;
+  explicit World(const std::string& name, data::InputForm form = data::InputForm::relative)
+      : folder(name),
+        plan(small()),
+        dataset(test::make_dataset(folder.path / "data", plan)),
+        stream(dataset, input(plan, form)) {}
+  static test::Plan small() {
+    test::Plan p;
+    p.rows = 300;
+    p.samples = 32;
+    p.rate = 16.0;
+    return p;
+  }
+  static data::InputRecipe input(const test::Plan& plan, data::InputForm form) {
+    data::InputRecipe r = test::whole_record(plan);
+    r.channels = {"speed", "P"};  // not in the order of the records
+    r.slice = 2;
+    r.form = form;
+    return r;
+  }
+  RunRequest request(const std::string& network, std::size_t pca = 0) const {
+    RunRequest r;
+    r.experiment.table = "V";
+    loop::Preset p;
+    p.name = "quick";
+    p.networks = {network};
+    p.input = input(plan, stream.selection().form);
+    p.pca_components = pca;
+    p.training[network] = {2, 32, 1e-3, "cosine", 100, 0.1};
+    r.experiment.presets["quick"] = p;
+    r.preset = "quick";
+    r.network = network;
+    r.generator = 33;
+    r.out = folder.path / "out";
+    r.runtime = {1, "test"};
+    r.quiet = true;
+    return r;
+  }
+};
+
+/// Row of the dataset as an estimate wants it: channels speed, P.
+std::vector<float> record_of(const World& world, std::uint64_t row, std::size_t samples) {
+  const mpi::store::ShardInfo& shard = world.dataset.shards[row / world.plan.rows_per_shard];
+  mpi::store::RowBlock block;
+  mpi::store::read_rows(shard, row - shard.first_row, 1, block);
+  std::vector<float> out;
+  for (const std::size_t channel : {1, 0})
+    out.insert(out.end(), block.records.begin() + static_cast<std::ptrdiff_t>(channel * block.samples),
+               block.records.begin() + static_cast<std::ptrdiff_t>(channel * block.samples + samples));
+  return out;
+}
+
+json result_of(const RunRequest& r) {
+  std::ifstream in(r.out / (run_name(r) + ".json"));
+  return json::parse(in);
+}
+
+TEST(SavedNetwork, EstimatesWhatTheTrainedNetworkDid) {
+  for (const auto& [network, pca] :
+       {std::pair{"cnn", std::size_t{0}}, {"cnn", std::size_t{5}}, {"gru", std::size_t{0}}}) {
+    const World world(std::string("saved-") + network + std::to_string(pca), data::InputForm::both);
+    const RunRequest r = world.request(network, pca);
+    ASSERT_EQ(run(world.stream, r), RunOutcome::done);
+    const SavedNetwork saved = SavedNetwork::load(r.out);
+    const NetworkInfo& info = saved.info();
+    EXPECT_EQ(info.channels, (std::vector<std::string>{"speed", "P"}));
+    EXPECT_EQ(info.left_out, 33);
+    EXPECT_EQ(info.rate, 16.0);
+    EXPECT_FALSE(info.fault_start);  // made-up data do not say
+    // The result's errors on the test rows are those of the saved network, row by row.
+    const data::RowSplit split = data::leave_one_out(world.stream.labels(), 33, 0.1, 1);
+    std::vector<double> square(3, 0.0);
+    for (const std::uint64_t row : split.test) {
+      const Estimate e = saved.estimate(record_of(world, row, info.samples));
+      EXPECT_GT(e.input_rms, 0.1);
+      for (std::size_t p = 0; p < 3; ++p) {
+        const double error = e.values[p] - world.stream.labels().values[row * 3 + p];
+        square[p] += error * error / static_cast<double>(split.test.size());
+      }
+    }
+    const json result = result_of(r);
+    for (std::size_t p = 0; p < 3; ++p)
+      // One row at a time instead of a batch: single-precision sums in another order.
+      EXPECT_NEAR(square[p], result["per_parameter"][p]["mse"].get<double>(), 1e-4 * square[p] + 1e-9)
+          << network;
+  }
+}
+
+TEST(SavedNetwork, SpreadIsThatOfTheValidationRows) {
+  const World world("spread");
+  const RunRequest r = world.request("cnn");
+  ASSERT_EQ(run(world.stream, r), RunOutcome::done);
+  const SavedNetwork saved = SavedNetwork::load(r.out / (run_name(r) + ".network"));
+  const data::RowSplit split = data::leave_one_out(world.stream.labels(), 33, 0.1, 1);
+  double sum = 0.0, square = 0.0, largest = 0.0;
+  for (const std::uint64_t row : split.validation) {
+    const Estimate e = saved.estimate(record_of(world, row, saved.info().samples));
+    const double error = e.values[0] - world.stream.labels().values[row * 3];
+    sum += error;
+    square += error * error;
+    largest = std::max(largest, e.input_rms);
+  }
+  const auto n = static_cast<double>(split.validation.size());
+  const EstimatedParameter& h = saved.info().parameters.at(0);
+  EXPECT_EQ(h.name, "H");
+  EXPECT_EQ(h.unit, "s");
+  EXPECT_EQ(h.effect, "TEST");
+  // One row at a time instead of a batch: single-precision sums in another order.
+  EXPECT_NEAR(h.bias, sum / n, 1e-4);
+  EXPECT_NEAR(h.spread, std::sqrt(square / n), 1e-4);
+  EXPECT_NEAR(saved.info().input_rms_seen, largest, 1e-5);
+  EXPECT_GT(h.spread, 0.01);
+}
+
+TEST(SavedNetwork, RefusesWhatIsNone) {
+  const World world("none");
+  RunRequest r = world.request("cnn");
+  const auto refusal = [](const std::filesystem::path& path) {
+    try {
+      (void)SavedNetwork::load(path);
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string("nothing thrown");
+  };
+  const auto has = [](const std::string& text, const std::string& part) {
+    return text.find(part) != text.npos;
+  };
+  r.save_network = false;
+  ASSERT_EQ(run(world.stream, r), RunOutcome::done);
+  EXPECT_TRUE(has(refusal(r.out), "holds no .network file"));
+  EXPECT_TRUE(has(refusal(r.out / "x.network"), "there is no such file"));
+  r.save_network = true;
+  r.seed = 2;
+  ASSERT_EQ(run(world.stream, r), RunOutcome::done);
+  const auto file = r.out / (run_name(r) + ".network");
+  std::filesystem::copy(file, r.out / "other.network");
+  EXPECT_TRUE(has(refusal(r.out), "2 networks"));
+  std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
+  bytes.seekp(-5000, std::ios::end);
+  bytes.put('\x7f');
+  bytes.put('\x01');
+  bytes.close();
+  EXPECT_TRUE(has(refusal(file), "its checksum is wrong"));
+  std::filesystem::resize_file(file, 6000);
+  EXPECT_TRUE(has(refusal(file), "network file cannot be used"));
+}
+
+TEST(TargetScale, ABoxBelowZeroIsLiftedToZero) {
+  const std::vector<double> values = {-4, 1, -2, 2, -3, 3};
+  const std::vector<std::uint64_t> rows = {0, 1, 2};
+  const std::vector<double> low = {-5, 0.5};
+  const data::TargetScale scale = data::TargetScale::fit(values, 2, rows, low);
+  EXPECT_EQ(scale.origin, (std::vector<double>{-5, 0}));
+  EXPECT_GT(scale.scaled(-4.9, 0), 0.0);                          // a ReLU can say it
+  EXPECT_NEAR(scale.raw(scale.scaled(-3.7, 0), 0), -3.7, 1e-15);  // rounding
+  EXPECT_EQ(scale.scaled(2.0, 1), 2.0 / scale.unit[1]);
+}
+
+}  // namespace
+}  // namespace swingbank::train::run

@@ -1,0 +1,217 @@
+// Blind cases: what is in them, what is not, and whether the same seed gives the same one.
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <set>
+
+#include "sim/library/library.hpp"
+#include "tests/validate/playin/support.hpp"
+#include "validate/blind/cases/detail/effects.hpp"
+#include "validate/blind/cases/detail/world.hpp"
+#include "validate/blind/cases/plan.hpp"
+#include "validate/plant/plant_model.hpp"
+
+namespace swingbank::validate::blind::cases {
+namespace {
+
+namespace fs = std::filesystem;
+
+BlindConfig tiny() { return load_blind_config(test::source("configs/blind/tiny.toml")); }
+
+BlindCase make(const BlindConfig& config, const char* kind, double size = 5) {
+  BlindSpec spec{11, 1, {}, size};
+  if (*kind) spec.hidden.push_back(config.kind(kind));
+  return make_blind_case(config, spec);
+}
+
+std::string all_csv(const BlindCase& made) {
+  std::string text;
+  for (const auto& record : made.records) text += record_csv(record);
+  return text;
+}
+
+/// How far each parameter of the model is off.
+void expect_misled(const BlindCase& made, const BlindConfig& config) {
+  for (std::size_t k = 0; k < made.truth.machine.p.size(); ++k) {
+    const double right = made.truth.machine.p[k];
+    if (right == 0.0) {
+      EXPECT_EQ(made.model.machine.p[k], 0.0);
+      continue;
+    }
+    const double off = std::abs(made.model.machine.p[k] / right - 1.0);
+    EXPECT_GE(off, config.wrong.first - 1e-12);  // rounding of one product and one quotient
+    EXPECT_LE(off, config.wrong.second + 1e-12);
+  }
+}
+
+TEST(BlindCase, HidesTheEffectInTheTruthOnly) {
+  const BlindConfig config = tiny();
+  const BlindCase made = make(config, "SEXS");
+  const auto has = [](const sim::plant::Plant& plant) {
+    return std::ranges::any_of(plant.controls,
+                               [](const sim::plant::Block& b) { return b.effect->name == "SEXS"; });
+  };
+  EXPECT_TRUE(has(made.truth));
+  EXPECT_FALSE(has(made.model));
+  ASSERT_EQ(made.hidden.size(), 1U);
+  expect_misled(made, config);
+}
+
+TEST(BlindCase, SizeIsTheOneAskedFor) {
+  const BlindCase made = make(tiny(), "FORCEDOSC", 6);
+  ASSERT_EQ(made.hidden.size(), 1U);
+  EXPECT_DOUBLE_EQ(made.hidden[0].wanted, 60.0);
+  EXPECT_NEAR(made.hidden[0].left, 60.0, 6.0);  // sizes are sought to 10 %
+  EXPECT_GT(made.hidden[0].scale, 0.0);
+}
+
+TEST(BlindCase, NothingHiddenIsWrongParametersOnly) {
+  const BlindConfig config = tiny();
+  const BlindCase made = make(config, "");
+  EXPECT_TRUE(made.hidden.empty());
+  EXPECT_EQ(made.truth.controls.size(), made.model.controls.size());
+  expect_misled(made, config);
+}
+
+TEST(BlindCase, SameSeedSameBytes) {
+  const BlindConfig config = tiny();
+  const BlindCase a = make(config, "sawtooth"), b = make(config, "sawtooth");
+  EXPECT_EQ(all_csv(a), all_csv(b));
+  BlindSpec other{12, 1, {config.kind("sawtooth")}, 5};
+  EXPECT_NE(all_csv(a), all_csv(make_blind_case(config, other)));
+}
+
+TEST(BlindCase, SwitchingsLieOffTheSamples) {
+  const BlindCase made = make(tiny(), "");
+  ASSERT_EQ(made.events.size(), 3U);
+  for (const auto& event : made.events)
+    for (const double t : event.switchings) {
+      EXPECT_GE(t, 1.5);
+      EXPECT_GT(std::abs(t * 960 - std::round(t * 960)), 0.01);
+    }
+}
+
+TEST(BlindCase, FolderHoldsNothingOfTheTruth) {
+  const BlindConfig config = tiny();
+  const BlindCase made = make(config, "FORCEDOSC");
+  const fs::path folder = fs::path(testing::TempDir()) / ("blind_case_" + std::to_string(::getpid()));
+  fs::remove_all(folder);
+  write_blind_case(made, config, "c0001", folder / "cases" / "c0001", folder / "truth" / "c0001.json");
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder / "cases" / "c0001")) {
+    names.insert(entry.path().filename().string());
+    std::ifstream in(entry.path());
+    const std::string text((std::istreambuf_iterator<char>(in)), {});
+    EXPECT_THAT(text, testing::Not(testing::HasSubstr("FORCEDOSC")));
+  }
+  EXPECT_THAT(names, testing::ElementsAre("event1.csv", "event2.csv", "event3.csv", "model.toml"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "cases"), {}), 1);  // nothing half-written is left
+
+  const plant::PlantModel model = plant::load_plant_model(folder / "cases" / "c0001" / "model.toml");
+  EXPECT_EQ(model.plant.machine.p, made.model.machine.p);  // to the last bit
+  const record::Record record =
+      record::read_record(folder / "cases" / "c0001" / "event1.csv", model.record_base);
+  EXPECT_EQ(record.samples(), 361);
+  EXPECT_EQ(record.speed.empty(), !made.channels);
+  fs::remove_all(folder);
+}
+
+TEST(BlindCase, NoiseIsTheStatedOne) {
+  const BlindConfig config = tiny();
+  record::Record record;
+  record.P.assign(20'000, 0.0);
+  record.Q = record.V = record.theta = record.speed = record.Ifd = record.P;
+  BlindDraw draw(1, 2, 3);
+  add_noise(record, config, 0.002, 300.0, true, draw);
+  const auto deviation = [](const std::vector<double>& x) {
+    double sum = 0;
+    for (const double value : x) sum += value * value;
+    return std::sqrt(sum / static_cast<double>(x.size()));
+  };
+  // 20,000 draws give a standard deviation to 0.5 %; four of these.
+  EXPECT_NEAR(deviation(record.P), 0.006, 0.02 * 0.006);    // 0.2 % of 300 MVA on 100 MVA
+  EXPECT_NEAR(deviation(record.V), 0.0002, 0.02 * 0.0002);  // a tenth of 0.2 %, as the config says
+  EXPECT_NEAR(deviation(record.theta), 0.0002, 0.02 * 0.0002);
+  EXPECT_NEAR(deviation(record.speed), 2e-5, 0.02 * 2e-5);
+}
+
+/// A run of constant phasors with a step of P at the middle.
+sim::reference::ReferenceRun step_of_power(double rate, int samples) {
+  sim::reference::ReferenceRun run;
+  run.rate = rate;
+  run.samples = samples;
+  run.plants = {0};
+  run.channels = {sim::Channel::V, sim::Channel::theta, sim::Channel::P,
+                  sim::Channel::Q, sim::Channel::speed, sim::Channel::Ifd};
+  run.allocate(false);
+  for (int k = 0; k < samples; ++k) {
+    run.at(0, 0)[k] = 1.0;
+    run.at(0, 2)[k] = k < samples / 2 ? 0.5 : 0.7;
+  }
+  return run;
+}
+
+TEST(BlindRecord, FilterIsTwoCyclesLongAndKeepsConstants) {
+  BlindConfig config = tiny();
+  config.seconds = 2.0;
+  config.rate = config.fine_rate = 960.0;
+  sim::plant::Plant plant;
+  plant.mva = 100.0;
+  const auto run = step_of_power(960, 2001);
+  const record::Record plain = measured(run, plant, config, 60.0, false, 0);
+  const record::Record filtered = measured(run, plant, config, 60.0, true, 0);
+  // 15 samples to either side at 16 samples a cycle; rounding of a weighted sum elsewhere.
+  for (int k = 0; k <= 1920; ++k) {
+    const bool away = k < 1000 - 15 || k >= 1000 + 15;
+    if (away) {
+      EXPECT_NEAR(filtered.P[k], plain.P[k], 1e-14) << k;
+    }
+  }
+  EXPECT_NEAR(filtered.P[999] + filtered.P[1000], 1.2, 1e-14);  // symmetric about the step
+  EXPECT_GT(filtered.P[990], 0.5 + 1e-4);
+}
+
+TEST(BlindEffects, OddOnesAreInNoList) {
+  EXPECT_GE(odd_effects().size(), 5U);
+  for (const auto& odd : odd_effects()) {
+    EXPECT_EQ(sim::library::find_effect(odd.name), nullptr) << odd.name;
+    EXPECT_EQ(blind_effect(std::string(odd.name)), &odd);
+  }
+}
+
+TEST(BlindPlan, IssueMixtureAndNoOrderThatTells) {
+  const BlindConfig config = load_blind_config(test::source("configs/blind/cases.toml"));
+  const BlindPlan plan = plan_blind(config, {}, 500, 4, 0);
+  int none = 0, listed = 0, odd = 0, pairs = 0, first_none = 0;
+  std::set<std::string> kinds;
+  for (std::size_t k = 0; k < plan.cases.size(); ++k) {
+    const auto& hidden = plan.cases[k].hidden;
+    none += hidden.empty() ? 1 : 0;
+    if (k < 100) first_none += hidden.empty() ? 1 : 0;
+    pairs += hidden.size() == 2 ? 1 : 0;
+    if (hidden.size() == 1) ++(hidden[0]->listed ? listed : odd);
+    if (hidden.size() == 1 && hidden[0]->listed) kinds.insert(hidden[0]->name);
+  }
+  EXPECT_EQ(none, 200);
+  EXPECT_EQ(listed, 200);
+  EXPECT_EQ(odd, 60);
+  EXPECT_EQ(pairs, 40);
+  EXPECT_GE(kinds.size(), 20U);
+  EXPECT_NEAR(first_none, 40, 20);  // shuffled: four standard deviations of a draw of 100
+  const BlindPlan again = plan_blind(config, {}, 500, 4, 0);
+  for (std::size_t k = 0; k < plan.cases.size(); ++k) EXPECT_EQ(plan.cases[k].hidden, again.cases[k].hidden);
+}
+
+TEST(BlindPlan, UnknownKindsAreNamedTogether) {
+  const BlindConfig config = tiny();
+  const auto all = test::messages([&] { plan_blind(config, {"SEX", "FORCED"}, 2, 1, 0); });
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_THAT(all[0], testing::HasSubstr("no kind 'SEX'"));
+  EXPECT_THAT(all[1], testing::HasSubstr("FORCEDOSC"));
+}
+
+}  // namespace
+}  // namespace swingbank::validate::blind::cases

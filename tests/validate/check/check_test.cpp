@@ -1,0 +1,142 @@
+// Every mistake a record can come with is made to sound records and recognised; sound ones pass.
+#include "validate/check/check.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tests/validate/playin/support.hpp"
+
+namespace swingbank::validate::check {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+std::string told(const std::vector<Finding>& findings) {
+  std::string all;
+  for (const auto& f : findings)
+    all += fmt::format("{} {}: {}\n", f.severity == Severity::refuse ? "refuse" : "warn", f.kind,
+                       f.problem.sentence());
+  return all;
+}
+bool refused(const std::vector<Finding>& findings, const std::string& kind) {
+  return std::ranges::any_of(
+      findings, [&](const Finding& f) { return f.severity == Severity::refuse && f.kind == kind; });
+}
+
+record::Record example(int i) {
+  return record::read_record(test::source(fmt::format("configs/records/record-example/avr_ev{}.csv", i)), {});
+}
+
+/// The record as a file in the units of its name would hold it, with other words in the header or other
+/// figures: the way mistakes really come about.
+struct Written {
+  std::string V = "V_pu", theta = "theta_rad", P = "P_pu", Q = "Q_pu", f = "f_pu";
+  std::function<void(std::vector<double>& row)> edit = [](auto&) {};  ///< t, V, theta, P, Q, f
+  record::RecordBase base = {};
+  double from = -1, to = 1e9;  ///< part of the record [s]
+  bool with_frequency = true;
+};
+record::Record rewritten(const record::Record& r, const Written& w) {
+  std::string text =
+      fmt::format("t_s,{},{},{},{}{}\n", w.V, w.theta, w.P, w.Q, w.with_frequency ? "," + w.f : "");
+  for (std::size_t k = 0; k < r.t.size(); ++k) {
+    if (r.t[k] < w.from || r.t[k] > w.to) continue;
+    std::vector<double> row{r.t[k], r.V[k], r.theta_as_written[k], r.P[k], r.Q[k], 1 + r.f[k]};
+    w.edit(row);
+    text += fmt::format("{:.7f},{:.7f},{:.7f},{:.7f},{:.7f}", row[0], row[1], row[2], row[3], row[4]);
+    text += w.with_frequency ? fmt::format(",{:.7f}\n", row[5]) : "\n";
+  }
+  return record::parse_record(text, "rewritten.csv", w.base);
+}
+
+struct Mistake {
+  const char *name, *kind;
+  Written written;
+  double mva = 100;
+};
+void PrintTo(const Mistake& m, std::ostream* out) { *out << m.name; }
+
+std::vector<Mistake> mistakes() {
+  using Row = std::vector<double>&;
+  std::vector<Mistake> all = {
+      {"too_short", "too_short", {.from = 1.5, .to = 2.5}},
+      {"nothing_after_the_event", "too_short", {.to = 2.6}},
+      {"begins_in_the_fault", "no_pre_event", {.from = 2.05}},
+      {"begins_after_the_fault", "no_pre_event", {.from = 2.3}},
+      {"ends_before_the_event", "no_event", {.to = 1.98}},
+      {"power_in_MW", "wrong_base", {.edit = [](Row x) { x[3] *= 100, x[4] *= 100; }}},
+      {"power_in_pu_named_MW", "wrong_base", {.P = "P_MW", .Q = "Q_Mvar"}},
+      // The example's machine, six times as large: on its own base the figures stay, on 100 MVA they are
+      // 6-fold.
+      {"power_on_the_machine_base", "wrong_base", {}, 600},
+      {"power_on_the_system_base",
+       "wrong_base",
+       {.edit = [](Row x) { x[3] *= 6, x[4] *= 6; }, .base = {600, 60, 0}},
+       600},
+      {"swapped_P_Q", "swapped_channels", {.edit = [](Row x) { std::swap(x[3], x[4]); }}},
+      {"swapped_V_theta",
+       "swapped_channels",
+       {.edit = [](Row x) { x[2] = std::exchange(x[1], x[2] + 1.5); }, .to = 4}},
+      {"degrees_as_radians", "angle_unit", {.edit = [](Row x) { x[2] /= kDegree; }}},
+      {"degrees_as_radians_no_frequency",
+       "angle_unit",
+       {.edit = [](Row x) { x[2] /= kDegree; }, .with_frequency = false}},
+      {"wrapped_degrees_as_radians",
+       "angle_unit",
+       {.edit = [](Row x) { x[2] = std::remainder(x[2] / kDegree + 178, 360); }, .with_frequency = false}},
+      {"radians_as_degrees", "angle_unit", {.theta = "theta_deg"}},
+      {"kV_as_pu", "voltage_unit", {.edit = [](Row x) { x[1] *= 22; }}},
+      {"kV_as_pu_with_base", "voltage_unit", {.edit = [](Row x) { x[1] *= 138; }, .base = {100, 60, 138}}},
+      {"percent_as_pu", "voltage_unit", {.edit = [](Row x) { x[1] *= 100; }}},
+      {"line_to_neutral",
+       "voltage_unit",
+       {.V = "V_kV", .edit = [](Row x) { x[1] *= 138 / std::numbers::sqrt3; }, .base = {100, 60, 138}}},
+      {"frequency_of_50_Hz", "nominal_frequency", {.f = "f_hz", .edit = [](Row x) { x[5] *= 50; }}},
+      {"angle_of_50_Hz",
+       "nominal_frequency",
+       {.edit = [](Row x) { x[2] -= 2 * std::numbers::pi * 10 * x[0]; }, .with_frequency = false}},
+      {"frequency_deviation_as_pu", "frequency_unit", {.edit = [](Row x) { x[5] -= 1; }}},
+      {"hertz_as_pu", "frequency_unit", {.edit = [](Row x) { x[5] *= 60; }}},
+      {"into_the_machine", "power_sign", {.edit = [](Row x) { x[3] = -x[3], x[4] = -x[4]; }}},
+      {"drifting", "unsteady", {.edit = [](Row x) { x[3] += x[0] < 2 ? 0.1 * x[0] : 0.2; }}},
+      {"oscillating", "unsteady", {.edit = [](Row x) { x[3] += 0.1 * std::sin(6 * x[0]); }}},
+      {"lost_samples_as_zeros",
+       "dropout",
+       {.edit =
+            [](Row x) {
+              if (x[0] > 5 && x[0] < 5.2) x = {x[0], 0, 0, 0, 0, 1};
+            }}},
+  };
+  return all;
+}
+
+class RecordMistakeTest : public ::testing::TestWithParam<Mistake> {};
+TEST_P(RecordMistakeTest, IsRecognised) {
+  const Mistake& m = GetParam();
+  for (int i = 1; i <= 4; ++i) {
+    const auto findings = check_record(rewritten(example(i), m.written), {m.mva, 60});
+    EXPECT_TRUE(refused(findings, m.kind)) << "event " << i << "\n" << told(findings);
+    EXPECT_THROW(raise_refusals(findings), InputError);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(All, RecordMistakeTest, ::testing::ValuesIn(mistakes()),
+                         [](const auto& each) { return std::string(each.param.name); });
+
+TEST(RecordCheckTest, ANegativeMagnitudeIsRefusedOnReading) {
+  const Written w{.edit = [](auto& x) { std::swap(x[1], x[2]); }};
+  EXPECT_THAT(test::messages([&] { rewritten(example(1), w); }),
+              ::testing::ElementsAre(::testing::HasSubstr("are their columns swapped?")));
+}
+TEST(RecordCheckTest, TheExamplePasses) {
+  for (int i = 1; i <= 4; ++i) {
+    const record::Record r = example(i);
+    EXPECT_EQ(told(check_record(r, {100, 60})), "") << r.name;
+    EXPECT_EQ(told(check_record(rewritten(r, {}), {100, 60})), "") << r.name;
+  }
+}
+
+}  // namespace
+}  // namespace swingbank::validate::check

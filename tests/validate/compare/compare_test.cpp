@@ -1,0 +1,265 @@
+#include "validate/compare/compare.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "sim/library/library.hpp"
+#include "tests/validate/playin/support.hpp"
+#include "validate/compare/report.hpp"
+
+namespace swingbank::validate::compare {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+plant::PlantModel example_model() {
+  return plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+}
+EventComparison example_event(const CompareOptions& options = {}) {
+  const plant::PlantModel model = example_model();
+  return compare_event(
+      model,
+      record::read_record(test::source("configs/records/record-example/avr_ev1.csv"), model.record_base),
+      options);
+}
+std::vector<std::string> names(const std::vector<Window>& windows) {
+  std::vector<std::string> all;
+  for (const auto& w : windows) all.push_back(w.name);
+  return all;
+}
+
+/// The right model of a simulated event, instants off the samples, noise 0.1 %: nothing but noise may be
+/// left.
+struct RightModel {
+  test::Simulated s = test::simulate("ieee39_genrou", sim::Conventions::psse(), 16, 2.0062, 2.1131);
+  plant::PlantModel model;
+  record::Record record;
+  RightModel() {
+    model.name = "right";
+    model.plant = s.grid.plants[3];
+    model.conventions = s.grid.conventions;
+    record = test::record_of(s, 3, 8, 0.001);
+    model.record_base = record.base;
+  }
+};
+
+TEST(CompareTest, ARightModelLeavesTheNoise) {
+  const RightModel right;
+  const EventComparison e = compare_event(right.model, right.record);
+  EXPECT_TRUE(e.detected);
+  EXPECT_TRUE(e.fitted);
+  for (const auto& c : e.channels) {
+    EXPECT_NEAR(c.noise, 0.001, 0.0003);  // 120 samples; the noise of V adds to that of P and Q
+    // Windows of a few samples scatter by 1/sqrt(2 n): 30 % for the 6 samples of the fault.
+    for (const auto& w : c.windows) EXPECT_LT(w.in_noise, 1.7);
+    EXPECT_GT(c.whole.in_noise, 0.8);
+  }
+}
+TEST(CompareTest, ARightModelIsAdequate) {
+  const RightModel right;
+  std::vector<EventComparison> events = {compare_event(right.model, right.record)};
+  const Adequacy a = judge(events);
+  EXPECT_TRUE(a.adequate) << a.sentence;
+  EXPECT_EQ(a.exceeding, 0);
+  EXPECT_THAT(a.sentence, HasSubstr("Adequate"));
+}
+/// What the P-class filter of IEEE C37.118.1 (a triangle over two cycles) makes of a record at 480/s, kept at
+/// 60/s; then noise as record_of.
+record::Record filtered(const record::Record& fine, double noise) {
+  constexpr int kHalf = 7, kStride = 8;
+  std::mt19937_64 generator(8);
+  std::normal_distribution<double> normal;
+  record::Record r;
+  r.name = fine.name;
+  r.base = fine.base;
+  for (int k = kStride; k + kStride < fine.samples(); k += kStride) {
+    Complex v = 0, i = 0;
+    for (int j = -kHalf; j <= kHalf; ++j) {
+      const auto at = static_cast<std::size_t>(k + j);
+      const double weight = (1 - std::abs(j) / (kHalf + 1.0)) / (kHalf + 1.0);
+      const Complex u = std::polar(fine.V[at], fine.theta[at]);
+      v += weight * u;
+      i += weight * std::conj(Complex(fine.P[at], fine.Q[at]) / u);
+    }
+    const Complex power = v * std::conj(i);
+    r.t.push_back(fine.t[static_cast<std::size_t>(k)]);
+    r.V.push_back(std::abs(v) + 0.1 * noise * normal(generator));
+    r.theta.push_back(std::arg(v) + 0.1 * noise * normal(generator));
+    r.P.push_back(power.real() + noise * normal(generator));
+    r.Q.push_back(power.imag() + noise * normal(generator));
+  }
+  return r;
+}
+TEST(CompareTest, BehindAFilterARightModelIsAdequateAndAWrongOneNot) {
+  RightModel right;
+  const record::Record record = filtered(test::record_of(right.s, 3, 1), 0.001);
+  std::vector<EventComparison> events = {compare_event(right.model, record)};
+  EXPECT_GE(std::ranges::count(events[0].left_out, 1), 4);  // two jumps, two samples at least each
+  EXPECT_NEAR(events[0].switchings.front().time, 2.0062, 0.002);
+  const Adequacy a = judge(events);
+  EXPECT_TRUE(a.adequate) << a.sentence;
+  right.model.plant.machine
+      .p[static_cast<std::size_t>(right.model.plant.machine.effect->parameter_index("H"))] *= 1.15;
+  std::vector<EventComparison> off = {compare_event(right.model, record)};
+  EXPECT_FALSE(judge(off).adequate);
+}
+/// Behind a regulator what noise of V leaves is slow, and larger than the channels' own noise.
+TEST(CompareTest, NoiseOfTheVoltageBehindARegulatorIsNoMisfit) {
+  plant::PlantModel model = example_model();
+  const sim::Effect* sexs = sim::library::find_effect("SEXS");
+  model.plant.controls.push_back({sexs, {0.1, 10, 100, 0.05, -4.0, 5.0}});  // as the records were made
+  std::vector<EventComparison> events;
+  for (const char* name : {"avr_ev1.csv", "avr_ev2.csv", "avr_ev3.csv", "avr_ev4.csv"})
+    events.push_back(compare_event(
+        model, record::read_record(test::source(std::string("configs/records/record-example/") + name),
+                                   model.record_base)));
+  const Adequacy a = judge(events);
+  EXPECT_TRUE(a.adequate) << a.sentence;
+}
+/// A time constant of a hundredth of a sample takes more steps than a fit grants, and play-in has them.
+TEST(CompareTest, WhereTheFitCannotRunThePlayInStands) {
+  RightModel right;
+  right.model.plant.controls.push_back(
+      {sim::library::find_effect("TGOV1"), {0.5, 1e-4, 2.0, -1.0, 1.0, 10.0, 0.0, 0.0}});
+  const EventComparison e = compare_event(right.model, right.record);
+  EXPECT_FALSE(e.fitted);
+  ASSERT_EQ(e.channels.size(), 2U);
+  for (const auto& c : e.channels) EXPECT_LT(c.whole.in_noise, 10) << c.name;  // by the middles: 5.2, 2.9
+  ASSERT_FALSE(e.notes.empty());
+  EXPECT_THAT(e.notes.front(), HasSubstr("could not be moved"));
+  EXPECT_THAT(e.notes.front(), HasSubstr("play-in stops"));
+}
+TEST(CompareTest, AnInadequateModelIsCalledSo) {
+  std::vector<EventComparison> events = {example_event({.switchings = {2.0, 2.1}, .play_in = {}})};
+  const Adequacy a = judge(events);
+  EXPECT_FALSE(a.adequate);
+  EXPECT_THAT(a.sentence, HasSubstr("Not adequate"));
+  // The missing exciter raises the field voltage; nothing in P before the event is wrong.
+  EXPECT_THAT(a.sentence, HasSubstr("Efd"));
+  EXPECT_FALSE(events[0].channels[0].map.rows[0].all.exceeds());
+}
+TEST(CompareTest, ComparesWhatIsRecorded) {
+  const EventComparison e = example_event({.switchings = {2.0, 2.1}, .play_in = {}});
+  std::vector<std::string> channels;
+  for (const auto& c : e.channels) channels.push_back(c.name);
+  EXPECT_THAT(channels, ElementsAre("P", "Q", "speed", "Efd", "Ifd"));
+  EXPECT_NEAR(e.channels[2].noise, 2e-5, 4e-6);  // as made; 121 samples: 3 s.e. are 19 %
+}
+TEST(CompareTest, PowerDrivesTheModelToo) {
+  const RightModel right;
+  CompareOptions options;
+  options.drive = DriveBy::power;
+  std::vector<EventComparison> events = {compare_event(right.model, right.record, options)};
+  const Adequacy a = judge(events);
+  const EventComparison& e = events[0];
+  EXPECT_EQ(e.channels[0].name, "V");
+  EXPECT_EQ(e.channels[1].name, "frequency");
+  EXPECT_FALSE(e.channels[1].judged);
+  // Noise of 1e-4 pu on V and, through X'' of some tenths, of 1e-3 pu on Q.
+  EXPECT_LT(e.channels[0].noise, 5e-4);
+  EXPECT_TRUE(a.adequate) << a.sentence;
+  RightModel wrong;
+  wrong.model.plant.machine
+      .p[static_cast<std::size_t>(wrong.model.plant.machine.effect->parameter_index("Tdop"))] *= 0.5;
+  std::vector<EventComparison> off = {compare_event(wrong.model, wrong.record, options)};
+  EXPECT_FALSE(judge(off).adequate);
+}
+TEST(CompareTest, UntilLeavesOutTheRest) {
+  const EventComparison e = example_event({.switchings = {2.0, 2.1}, .play_in = {.until = 6.0}});
+  EXPECT_NEAR(e.record.t.back(), 6.0, 1e-6);
+  EXPECT_EQ(e.channels[0].residual.size(), e.record.t.size());
+  EXPECT_THAT(test::messages([] { example_event({.switchings = {}, .play_in = {.until = 0.3}}); }),
+              ElementsAre(HasSubstr("--until 0.3 s")));
+}
+TEST(CompareTest, AWrongParameterShowsAndDoesNotBendTheInstants) {
+  RightModel wrong;
+  wrong.model.plant.machine
+      .p[static_cast<std::size_t>(wrong.model.plant.machine.effect->parameter_index("H"))] *= 1.3;
+  const EventComparison e = compare_event(wrong.model, wrong.record);
+  EXPECT_FALSE(e.fitted);
+  EXPECT_GT(e.channels[0].whole.in_noise, 3);
+}
+TEST(CompareTest, AMissingExciterShowsInQ) {
+  // The record's plant has an exciter, the model has none: Q is off by tens of Mvar for seconds, P far less.
+  const EventComparison e = example_event({.switchings = {2.0, 2.1}, .play_in = {}});
+  const auto& p = e.channels[0];
+  const auto& q = e.channels[1];
+  EXPECT_NEAR(p.noise, 0.002, 0.0005);  // as made: 0.2 % of 100 MVA
+  EXPECT_NEAR(q.noise, 0.002, 0.0005);
+  EXPECT_LT(q.windows[0].in_noise, 1.1);
+  EXPECT_GT(q.windows[2].in_noise, 50);
+  EXPECT_GT(q.windows[3].in_noise, 50);
+  EXPECT_LT(p.windows[4].in_noise, 1.5);
+  EXPECT_GT(q.whole.rms, 10 * p.whole.rms);
+}
+TEST(CompareTest, WindowsFollowTheSwitchings) {
+  const EventComparison e = example_event();
+  EXPECT_THAT(names(e.windows),
+              ElementsAre("pre-event", "fault", "0–1 s after", "1–5 s after", "> 5 s after"));
+  EXPECT_EQ(e.channels[0].windows[0].samples, 121);  // 0 to 2 s at 60/s, both included
+  EXPECT_EQ(e.channels[0].windows[1].samples, 6);
+  int sum = 0;
+  for (const auto& w : e.channels[0].windows) sum += w.samples;
+  EXPECT_EQ(sum, e.record.samples());
+  EXPECT_THAT(names(event_windows(e.record, {{.time = 2.0}}, 1.0)),
+              ElementsAre("pre-event", "0–1 s after", "1–5 s after", "> 5 s after"));
+  EXPECT_THAT(names(event_windows(e.record, {}, 14.5)), ElementsAre("pre-event", "0–1 s after"));
+}
+TEST(CompareTest, ResidualIsModelledMinusMeasured) {
+  const EventComparison e = example_event();
+  const auto& q = e.channels[1];
+  EXPECT_DOUBLE_EQ(q.residual[500], q.modelled[500] - q.measured[500]);
+  double worst = 0;
+  for (const double r : q.residual) worst = std::max(worst, std::abs(r));
+  EXPECT_EQ(q.whole.worst, worst);
+}
+
+TEST(CompareReportTest, JsonHoldsTheNumbers) {
+  std::vector<EventComparison> events = {example_event()};
+  const Adequacy adequacy = judge(events);
+  const auto j = nlohmann::json::parse(json_report(example_model(), events, adequacy, {{"command", "x"}}));
+  EXPECT_EQ(j["events"][0]["channels"][1]["name"], "Q");
+  EXPECT_DOUBLE_EQ(j["events"][0]["channels"][1]["whole"]["rms_pu"], events[0].channels[1].whole.rms);
+  EXPECT_EQ(j["events"][0]["channels"][1]["windows"].size(), 5u);
+  const auto& map = j["events"][0]["channels"][1]["map"];
+  ASSERT_EQ(map.size(), 5u * 5u + 1);  // windows times (all and four bands), and the whole record
+  EXPECT_EQ(map[12]["window"], "0–1 s after");
+  EXPECT_EQ(map[12]["band"], "0.1–0.8 Hz");
+  EXPECT_DOUBLE_EQ(map[12]["rms_in_noise"], events[0].channels[1].map.rows[2].bands[1].in_noise);
+  EXPECT_TRUE(map[1]["rms_in_noise"].is_null());  // 2 s hold nothing below 0.1 Hz
+  EXPECT_EQ(j["adequate"], false);
+}
+TEST(CompareReportTest, PageAsksForNothing) {
+  std::vector<EventComparison> events = {example_event()};
+  const Adequacy adequacy = judge(events);
+  const std::string html = html_report(example_model(), events, adequacy,
+                                       provenance(example_model(), events, "swingbank compare <x>"));
+  const std::string library(report::dygraphs_script());
+  const auto at = html.find(library);
+  ASSERT_NE(at, std::string::npos);
+  const std::string own = html.substr(0, at) + html.substr(at + library.size());
+  for (const char* word : {"<link", "src=", "@import", "url(", "http:", "https:"})
+    EXPECT_EQ(own.find(word), std::string::npos) << word;
+  EXPECT_EQ(library.find("sourceMappingURL"), std::string::npos);  // what a browser would fetch
+  EXPECT_NE(own.find("swingbank compare &lt;x&gt;"), std::string::npos);
+  EXPECT_NE(own.find("name=\"viewport\""), std::string::npos);
+}
+TEST(CompareReportTest, TerminalReportCarriesUnits) {
+  std::vector<EventComparison> events = {example_event()};
+  const Adequacy adequacy = judge(events);
+  const std::string text = terminal_report(example_model(), events, adequacy);
+  for (const char* word : {" MW", " Mvar", " mHz", "noise", "Not adequate", "avr_ev1.csv"})
+    EXPECT_THAT(text, HasSubstr(word));
+}
+TEST(CompareReportTest, PlaybackHasOneLineASample) {
+  const EventComparison e = example_event();
+  const std::string text = csv_playback(e);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), e.record.samples() + 1);
+}
+
+}  // namespace
+}  // namespace swingbank::validate::compare

@@ -1,0 +1,93 @@
+// The example records, whose machine has an exciter that the model lacks: diagnosed from P and Q alone.
+#include "validate/diagnose/diagnose.hpp"
+
+#include <gmock/gmock.h>
+
+#include "sim/library/library.hpp"
+#include "tests/validate/playin/support.hpp"
+#include "validate/playin/instruments.hpp"
+
+namespace swingbank::validate::diagnose {
+namespace {
+
+std::vector<record::Record> example_records(const plant::PlantModel& model) {
+  std::vector<record::Record> records;
+  for (int i = 1; i <= 4; ++i)
+    records.push_back(record::read_record(
+        test::source("configs/records/record-example/avr_ev" + std::to_string(i) + ".csv"),
+        model.record_base));
+  return records;
+}
+
+TEST(Hypotheses, EveryEffectThatFitsAndEveryNeutralGroupJoins) {
+  const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  std::vector<std::string> names;
+  for (const auto& h : hypothesis::all_hypotheses(model.plant, model.conventions)) names.push_back(h.name);
+  for (const sim::Effect& e : sim::library::all_effects()) {
+    const bool instrument = e.slot == sim::Slot::measurement && playin::can_be_taken_back(e);
+    const bool joins =
+        (e.slot == sim::Slot::transformer || sim::is_control(e.slot) || instrument) && e.instants == nullptr;
+    EXPECT_EQ(std::ranges::count(names, e.name), joins ? 1 : 0) << e.name;
+  }
+  EXPECT_THAT(names, testing::IsSupersetOf({"GENROU:D", "GENROU:S10,S12", "GENROU:Ra", "speed-voltage"}));
+}
+TEST(Hypotheses, NoneFillsAnOccupiedSlot) {
+  plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  const auto* sexs = sim::library::find_effect("SEXS");
+  model.plant.controls.push_back({sexs, sexs->standard_parameters()});
+  for (const auto& h : hypothesis::all_hypotheses(model.plant, model.conventions))
+    EXPECT_NE(h.slot, static_cast<int>(sim::Slot::exciter)) << h.name;
+}
+TEST(FindSwitchings, SmearedJumpsAreFoundAndMarked) {
+  const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  record::Record r = example_records(model).front();
+  std::vector<char> smeared;
+  const auto sharp = event::find_switchings(r, playin::kJumpThreshold, event::Jumps::either, smeared);
+  ASSERT_EQ(sharp.size(), 2u);
+  EXPECT_EQ(std::ranges::count(smeared, 1), 0);
+  // a filter that takes the mean of each sample and the next
+  for (std::size_t k = 0; k + 1 < r.t.size(); ++k) {
+    const Complex v = (std::polar(r.V[k], r.theta[k]) + std::polar(r.V[k + 1], r.theta[k + 1])) / 2.0;
+    r.V[k] = std::abs(v);
+    r.theta[k] += std::arg(v * std::polar(1.0, -r.theta[k]));
+  }
+  const auto found = event::find_switchings(r, playin::kJumpThreshold, event::Jumps::either, smeared);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_GE(std::ranges::count(smeared, 1), 4);
+  for (std::size_t k = 0; k < 2; ++k)
+    EXPECT_LE(std::abs(found[k].time - sharp[k].time), found[k].uncertainty);
+}
+
+TEST(DiagnoseFull, TheMissingExciterIsNamed) {
+  const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  DiagnoseOptions options;
+  options.measured_states = false;
+  const Diagnosis d = diagnose(model, example_records(model), options);
+  EXPECT_NE(d.verdict, Verdict::adequate);
+  EXPECT_NE(d.verdict, Verdict::unexplained);
+  EXPECT_EQ(d.side, hypothesis::Side::excitation);
+  EXPECT_THAT(d.effects, testing::ElementsAre("SEXS"));
+  // A free field voltage closes the gap, a free torque does not.
+  EXPECT_LT(d.field.misfit(), 1.1);
+  EXPECT_GT(d.torque.misfit(), 100);
+  const hypothesis::Judgement& best = d.ranked.front();
+  for (const auto& h : best.held_out) {
+    EXPECT_GT(h.before, 100) << h.record;
+    EXPECT_LT(h.after, 1.1) << h.record;  // 1 + 3 standard deviations of chi2 per value, and a little
+  }
+  // The truth (configs/records/README.md) within three standard errors.
+  for (const auto& p : best.fit.parameters) {
+    if (p.name == "TE") {
+      EXPECT_NEAR(p.value, 0.05, 3 * p.error);
+    }
+    if (p.name == "K") {
+      EXPECT_NEAR(p.value, 100, 3 * p.error);
+    }
+    if (p.name == "H") {
+      EXPECT_NEAR(p.value, 6.54, 3 * p.error);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace swingbank::validate::diagnose

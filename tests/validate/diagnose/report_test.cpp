@@ -1,0 +1,267 @@
+// The page and the JSON of a diagnosis say the same, and a browser shows the page without complaint.
+#include "validate/diagnose/report.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "tests/validate/playin/support.hpp"
+#include "tests/validate/report/browser.hpp"
+#include "validate/compare/error_map_table.hpp"
+
+namespace swingbank::validate::diagnose {
+namespace {
+
+using ::testing::ElementsAreArray;
+using ::testing::HasSubstr;
+
+/// Two events of the example, whose exciter the model lacks. The fits are cut short: what is shown is tested
+/// here, not how good it is.
+struct Example {
+  plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  Diagnosis d;
+  report::Provenance rows;
+  Example() {
+    std::vector<record::Record> records;
+    for (const char* name : {"avr_ev1.csv", "avr_ev3.csv"})
+      records.push_back(record::read_record(
+          test::source(std::string("configs/records/record-example/") + name), model.record_base));
+    d.events = event::prepare_events(model, std::move(records));
+    fit::FitOptions brief;
+    brief.iterations = 2;
+    d.base =
+        fit::fit(model.plant, model.conventions, d.events, fit::free_parameters(model.plant, 0.2), brief);
+    if (!d.base.failed.empty()) throw std::runtime_error(d.base.failed);
+    for (hypothesis::Hypothesis& h : hypothesis::all_hypotheses(model.plant, model.conventions)) {
+      if (h.name.find("SEXS") == std::string::npos || !d.ranked.empty()) continue;
+      hypothesis::Judgement j;
+      j.fit = fit::fit(hypothesis::started(h, h.starts.front()), h.conventions, d.events, h.free, brief);
+      if (!j.fit.failed.empty()) throw std::runtime_error(j.fit.failed);
+      j.gain = d.base.chi2 - j.fit.chi2;
+      j.accepted = true;
+      for (const event::FitEvent& e : d.events) j.held_out.push_back({e.record.name, 400, 2.25});
+      j.hypothesis = std::move(h);
+      d.ranked.push_back(std::move(j));
+    }
+    hypothesis::Judgement refused = d.ranked.front();
+    refused.hypothesis.name = "A < B";  // a name that must be escaped
+    refused.accepted = false;
+    refused.gain = 3;
+    refused.why_not = "evidence 3, below 25";
+    refused.held_out.clear();
+    d.ranked.push_back(refused);
+    d.field = {fit::InputKind::field, d.base};
+    for (auto& e : d.field.fit.events) e.state.input = {{0, 2, 3, 15}, {0, 0, 0.8, 0.1}};
+    d.verdict = Verdict::missing;
+    d.side = hypothesis::Side::excitation;
+    d.effects = {d.ranked.front().hypothesis.name};
+    d.sentence = "The exciter <SEXS> is missing.";
+    rows = diagnosis_provenance(model, d, "swingbank diagnose --model <m>");
+  }
+};
+const Example& example() {
+  static const Example e;
+  return e;
+}
+nlohmann::json figures() { return diagnosis_json(example().model, example().d, example().rows); }
+const std::string& page() {
+  static const std::string html = diagnosis_html(example().model, example().d, example().rows);
+  return html;
+}
+
+/// Texts of the rows of the table after `caption`, entities resolved.
+std::vector<std::vector<std::string>> table_after(const std::string& html, const std::string& caption) {
+  const auto begin = html.find("<tbody>", html.find(caption)), end = html.find("</tbody>", begin);
+  std::vector<std::vector<std::string>> rows;
+  const std::string body = html.substr(begin, end - begin);
+  static const std::regex row("<tr>(.*?)</tr>"), cell("<td[^>]*>([^<]*)</td>"), gt("&gt;"), lt("&lt;");
+  for (std::sregex_iterator r(body.begin(), body.end(), row), none; r != none; ++r) {
+    const std::string text = (*r)[1];
+    rows.emplace_back();
+    for (std::sregex_iterator c(text.begin(), text.end(), cell); c != none; ++c)
+      rows.back().push_back(std::regex_replace(std::regex_replace((*c)[1].str(), gt, ">"), lt, "<"));
+  }
+  return rows;
+}
+std::string cell_text(const nlohmann::json& cell) {
+  if (cell["rms_in_noise"].is_null()) return "–";
+  const double ratio = cell["rms_in_noise"];
+  return compare::times_noise(ratio) + (ratio > cell["bound_in_noise"].get<double>() ? " *" : "");
+}
+
+TEST(DiagnosisReportTest, ErrorMapsEqualTheJson) {
+  const auto j = figures();
+  ASSERT_EQ(j["events"].size(), 2u);
+  for (const auto& e : j["events"]) {
+    const auto rows = table_after(page(), "Error map of " + e["record"].get<std::string>());
+    std::vector<std::vector<std::string>> expected;
+    for (const auto& c : e["channels"]) {
+      const auto& map = c["map_after"];
+      for (std::size_t i = 0; i + 1 < map.size();
+           i += 5) {  // all and four bands; the whole record comes last
+        const double rms = map[i]["rms_pu"].get<double>() * c["units_in_pu"].get<double>();
+        expected.push_back({c["name"], map[i]["window"], ""});
+        char text[64];
+        std::snprintf(text, sizeof text, "%.3g %s", rms, c["unit"].get<std::string>().c_str());
+        expected.back()[2] = text;
+        for (std::size_t b = 0; b < 5; ++b) expected.back().push_back(cell_text(map[i + b]));
+      }
+    }
+    EXPECT_EQ(rows, expected);
+  }
+}
+TEST(DiagnosisReportTest, TablesEqualTheJson) {
+  const auto j = figures();
+  const auto at_a_glance = table_after(page(), "Error of each event");
+  ASSERT_EQ(at_a_glance.size(), 2u);
+  for (std::size_t e = 0; e < 2; ++e) {
+    const auto& event = j["events"][e];
+    EXPECT_THAT(at_a_glance[e], ElementsAreArray({event["record"].get<std::string>(),
+                                                  compare::times_noise(event["rms_in_noise_before"]),
+                                                  compare::times_noise(event["rms_in_noise_after"]),
+                                                  std::string("20 ×"), std::string("1.5 ×")}));
+  }
+  const auto parameters = table_after(page(), "95 % intervals.");
+  const auto& told = j["after"]["parameters"];
+  ASSERT_EQ(parameters.size(), told.size());
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    EXPECT_EQ(parameters[i][0],
+              told[i]["block"].get<std::string>() + " " + told[i]["name"].get<std::string>());
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", told[i]["value"].get<double>());
+    EXPECT_EQ(parameters[i][4], text);
+  }
+  EXPECT_EQ(j["hypotheses"][1]["name"], "A < B");
+  EXPECT_EQ(j["missing_field_voltage"]["events"][0]["value_pu"][2], 0.8);
+  EXPECT_TRUE(j["missing_torque"].is_null());
+}
+TEST(DiagnosisReportTest, WhatIsAddedLowersTheError) {
+  const auto j = figures();  // an exciter, even fitted in haste, is nearer to the truth than none
+  EXPECT_LT(j["after"]["rms_in_noise"], j["before"]["rms_in_noise"]);
+}
+TEST(DiagnosisReportTest, TheVerdictComesFirst) {
+  const auto verdict = page().find("The exciter &lt;SEXS&gt; is missing.");
+  ASSERT_NE(verdict, std::string::npos);
+  EXPECT_LT(verdict, page().find("<table"));
+  EXPECT_LT(verdict, page().find("<h2"));
+}
+TEST(DiagnosisReportTest, AnAdequateModelNeedsNothingAdded) {
+  Diagnosis d = example().d;
+  d.verdict = Verdict::adequate;
+  d.sentence = "The model is adequate.";
+  const auto j = diagnosis_json(example().model, d, {});
+  EXPECT_TRUE(j["after"].is_null());
+  EXPECT_FALSE(j["events"][0]["channels"][0].contains("map_after"));
+  EXPECT_THAT(diagnosis_html(example().model, d, {}), HasSubstr("verdict good"));
+}
+TEST(DiagnosisReportTest, WhatNothingExplainsIsShownAsInput) {
+  Diagnosis d = example().d;
+  d.verdict = Verdict::unexplained;
+  d.ranked.front().accepted = false;
+  const auto j = diagnosis_json(example().model, d, {});
+  EXPECT_EQ(j["after"]["with"], "the inferred field voltage");
+  EXPECT_THAT(diagnosis_html(example().model, d, {}), HasSubstr("verdict bad"));
+}
+
+/// The example where nothing known was accepted but a law for the field voltage was, ahead of one that was
+/// not.
+Diagnosis with_laws() {
+  Diagnosis d = example().d;
+  d.laws.kind = fit::InputKind::field;
+  d.laws.ranked.resize(7);
+  laws::LawFinding found;
+  for (std::size_t e = 0; e < d.events.size(); ++e) {
+    laws::LawTrace trace;
+    trace.t = {0, 1, 2, 3, 4};
+    for (auto& signal : trace.signal) signal = {0, 0.1, -0.2, 0.3, 0.1};
+    trace.knots = {0, 2, 4};
+    trace.input = {0, 0.5, 0.25};
+    d.laws.traces.push_back(trace);
+    found.law.course.push_back({0, 0.375, 0.125});
+  }
+  found.law.family = "lagged";
+  found.law.signal = "V";
+  found.law.explained = 0.83;
+  found.words = "-20 * V < 0.5";
+  found.judgement = d.ranked.front();
+  found.judgement.hypothesis.name = "LAW1";
+  found.judgement.accepted = true;
+  laws::LawFinding refused = found;
+  refused.judgement.hypothesis.name = "LAW2";
+  refused.judgement.accepted = false;
+  refused.judgement.why_not = "it worsens <ev3>";
+  refused.judgement.held_out.clear();
+  d.laws.findings = {found, refused};
+  return d;
+}
+
+TEST(DiagnosisReportTest, LawsStandOnThePageAsInTheJson) {
+  const Diagnosis d = with_laws();
+  const std::string html = diagnosis_html(example().model, d, {});
+  const auto section = html.find("A law for it");
+  ASSERT_NE(section, std::string::npos);
+  EXPECT_THAT(html, HasSubstr("7 kinds of laws were ranked"));
+  EXPECT_THAT(html, HasSubstr("Found: -20 * V &lt; 0.5."));
+  EXPECT_THAT(html, HasSubstr("inferred field voltage"));
+  const auto rows = table_after(html.substr(section), "share of the input");
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0][0], "LAW1");
+  EXPECT_EQ(rows[0][1], "83 %");
+  EXPECT_EQ(rows[0][4], "≤ 1.50 ×");  // the example's unseen chi2 per value is 2.25
+  EXPECT_EQ(rows[0][5], "accepted");
+  EXPECT_EQ(rows[1][4], "–");
+  EXPECT_EQ(rows[1][5], "it worsens <ev3>");
+  const auto told = diagnosis_json(example().model, d, {})["laws"];
+  EXPECT_EQ(told["input"], "field_voltage");
+  EXPECT_EQ(told["found"], "LAW1");
+  EXPECT_EQ(told["fitted"][1]["why_not"], "it worsens <ev3>");
+}
+TEST(DiagnosisReportTest, WhereNoLawHoldsThePageSaysSo) {
+  Diagnosis d = with_laws();
+  d.laws.findings.erase(d.laws.findings.begin());
+  const std::string html = diagnosis_html(example().model, d, {});
+  EXPECT_THAT(html, HasSubstr("No law predicts unseen events: none is offered."));
+  EXPECT_THAT(html, testing::Not(HasSubstr("Found:")));
+  EXPECT_TRUE(diagnosis_json(example().model, d, {})["laws"]["found"].is_null());
+}
+TEST(DiagnosisReportTest, WithoutASearchForLawsThePageIsSilent) {
+  EXPECT_THAT(page(), testing::Not(HasSubstr("A law for it")));
+  EXPECT_TRUE(figures()["laws"].is_null());
+}
+
+TEST(DiagnosisPageTest, ABrowserShowsIt) {
+  // A drag from 30 % to 60 % of the first chart's width, as a person would zoom.
+  const std::string zoom = R"js(<script>
+    const box=[...document.getElementById("chart0").querySelectorAll("canvas")].pop(), r=box.getBoundingClientRect();
+    const mouse=(what,x,on)=>on.dispatchEvent(new MouseEvent(what,{bubbles:true,cancelable:true,view:window,button:0,buttons:1,
+      clientX:r.left+x*r.width,clientY:r.top+60,screenX:r.left+x*r.width,screenY:r.top+60}));
+    mouse("mousedown",.3,box);mouse("mousemove",.6,document);mouse("mouseup",.6,document);
+    const group=Object.values(groups)[0];
+    document.body.dataset.result=JSON.stringify({all:charts[0].rows.length,zoomed:group.map(g=>g.xAxisRange()),
+      charts:document.querySelectorAll(".chart canvas").length,figures:JSON.parse(document.getElementById("figures").textContent),
+      wide:document.documentElement.scrollWidth,inner:innerWidth});
+  </script>)js";
+  const test::Shown shown = test::show(page(), zoom);
+  EXPECT_EQ(shown.complaints, "");
+  const auto& result = shown.result;
+  EXPECT_EQ(result["figures"], figures());
+  EXPECT_GT(result["charts"].get<int>(), 20);  // two canvases each, overlay and residual of five channels
+  const double from = result["zoomed"][0][0], to = result["zoomed"][0][1];
+  EXPECT_GT(from, 2.5);  // of 0 to 15 s; the axis takes some of the width
+  EXPECT_LT(to, 10.0);
+  EXPECT_GT(to, from + 2);
+  for (const auto& range : result["zoomed"])
+    EXPECT_EQ(range, result["zoomed"][0]);     // the event's charts follow
+  EXPECT_LE(result["wide"], result["inner"]);  // on a telephone nothing needs scrolling sideways but tables
+}
+TEST(DiagnosisPageTest, ABrowsersComplaintsAreSeen) {
+  EXPECT_THAT(
+      test::show("<!doctype html><body>", "<script>document.body.dataset.result='1';nothing.there()</script>")
+          .complaints,
+      HasSubstr("nothing is not defined"));
+}
+
+}  // namespace
+}  // namespace swingbank::validate::diagnose

@@ -1,0 +1,115 @@
+// Which steps of the voltage are switchings: jumps, small ones too, but not a swing however fast.
+#include "validate/event/event.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include "tests/validate/playin/support.hpp"
+
+namespace swingbank::validate::event {
+namespace {
+
+/// Ten seconds at 60/s of V(t) and theta(t), with noise of 1e-4 pu.
+record::Record record_of(
+    const std::function<double(double)>& V,
+    const std::function<double(double)>& theta = [](double) { return 0.1; }) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal(0, 1e-4);
+  record::Record r;
+  for (int k = 0; k < 600; ++k) {
+    r.t.push_back(k / 60.0);
+    r.V.push_back(V(r.t.back()) + normal(random));
+    r.theta.push_back(theta(r.t.back()) + normal(random));
+  }
+  return r;
+}
+std::vector<playin::Switching> switchings_of(const record::Record& r) {
+  std::vector<char> smeared;
+  return find_switchings(r, playin::kJumpThreshold / 2, Jumps::either, smeared);
+}
+
+TEST(FindSwitchings, AFastSwingIsNone) {
+  // 4 rad within a second, up to 5.4 rad/s: a step of 0.09 pu differs from those two further by 0.016 pu
+  const record::Record r = record_of([](double) { return 1.0; },
+                                     [](double t) { return 0.1 + 2 * (1 + std::erf((t - 4) / 0.42)); });
+  for (const auto& s : switchings_of(r)) ADD_FAILURE() << "switching at " << s.time << " s";
+}
+TEST(FindSwitchings, ASmallJumpIsOne) {
+  const auto found = switchings_of(record_of([](double t) { return t <= 3.0 ? 1.0 : 0.985; }));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NEAR(found.front().time, 3.0 + 0.5 / 60, 0.51 / 60);  // within its sample interval
+}
+TEST(FindSwitchings, AJumpOutOfASwingIsOne) {
+  const auto found = switchings_of(
+      record_of([](double t) { return (t <= 5.0 ? 1.0 : 0.8) + 0.05 * std::sin(2 * std::numbers::pi * t); }));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NEAR(found.front().time, 5.0 + 0.5 / 60, 0.51 / 60);
+}
+/// A fault from 3 s to 3.1 s, then a swing of 3 Hz past the voltage's minimum, as near loss of synchronism.
+record::Record near_loss() {
+  return record_of(
+      [](double t) {
+        if (t <= 3.0) return 1.0;
+        if (t <= 3.1) return 0.35;
+        return 0.9 - 0.55 * std::exp(-std::pow((t - 3.5) / 0.035, 2));
+      },
+      [](double t) { return t <= 3.1 ? 0.1 : 0.5 + 0.6 * std::erf((t - 3.5) / 0.05); });
+}
+/// Each phasor the mean of itself and the next.
+record::Record filtered(record::Record r) {
+  const auto at = [&](std::size_t k) { return std::polar(r.V[k], r.theta[k]); };
+  for (std::size_t k = 0; k + 1 < r.t.size(); ++k) {
+    const auto v = (at(k) + at(k + 1)) / 2.0;
+    r.V[k] = std::abs(v);
+    r.theta[k] = std::arg(v);
+  }
+  return r;
+}
+
+TEST(FindSwitchings, ASwingBesideSharpJumpsIsNone) {
+  const record::Record r = near_loss();
+  std::vector<char> smeared;
+  const auto either = find_switchings(r, playin::kJumpThreshold / 2, Jumps::either, smeared);
+  ASSERT_GT(either.size(), 2U) << "the swing was meant to be taken for a smeared jump";
+  ASSERT_EQ(jumps_of({r}, playin::kJumpThreshold), Jumps::sharp);
+  const auto found = find_switchings(r, playin::kJumpThreshold / 2, Jumps::sharp, smeared);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_NEAR(found[0].time, 3.0, 1.0 / 60);
+  EXPECT_NEAR(found[1].time, 3.1, 1.0 / 60);
+  EXPECT_EQ(std::ranges::count(smeared, 1), 0);
+}
+TEST(FindSwitchings, OneInstrumentSmearsAllOrNone) {
+  const record::Record quiet = record_of([](double) { return 1.0; });
+  EXPECT_EQ(jumps_of({quiet, near_loss()}, playin::kJumpThreshold), Jumps::sharp);
+  EXPECT_EQ(jumps_of({quiet, filtered(near_loss())}, playin::kJumpThreshold), Jumps::spread);
+}
+TEST(FindSwitchings, NoiseIsNone) {
+  EXPECT_TRUE(switchings_of(record_of([](double) { return 1.0; })).empty());
+}
+/// The filter smears every jump over as many samples, the swing is wider.
+TEST(PrepareEvents, BehindAFilterAWiderSwingIsNone) {
+  record::Record r = filtered(near_loss());
+  r.P.assign(r.t.size(), 0.4);
+  r.Q.assign(r.t.size(), 0.1);
+  std::vector<char> smeared;
+  const auto found = find_switchings(r, playin::kJumpThreshold / 2, Jumps::spread, smeared);
+  ASSERT_EQ(found.size(), 3U) << "the swing was meant to be taken for a smeared jump";
+  ASSERT_GT(found[2].uncertainty, found[0].uncertainty + r.step());
+  const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  const FitEvent e = prepare_events(model, {r}).front();
+  ASSERT_EQ(e.switchings.size(), 2U);
+  EXPECT_NEAR(e.switchings[0].time, 3.0, 1.0 / 60);
+  EXPECT_NEAR(e.switchings[1].time, 3.1, 1.0 / 60);
+  for (std::size_t k = 0; k < r.t.size(); ++k) {
+    const bool beside = std::min(std::abs(r.t[k] - 3.0), std::abs(r.t[k] - 3.1)) < 1.5 * r.step();
+    EXPECT_EQ(e.smeared[k] != 0, beside) << "at " << r.t[k] << " s";
+  }
+  EXPECT_EQ(e.clean.t.size(), r.t.size() - 6);  // the swing's samples are played in
+}
+
+}  // namespace
+}  // namespace swingbank::validate::event

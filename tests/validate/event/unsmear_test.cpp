@@ -1,0 +1,114 @@
+// A fault of three samples behind a filter of two cycles: what was smeared comes back.
+#include "validate/event/detail/unsmear.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace swingbank::validate::event {
+namespace {
+
+constexpr double kOn = 1.8583, kRate = 60.0, kCycle = 1 / 60.0, kPi = std::numbers::pi;
+
+struct Fault {
+  double off = 1.9155, V = 0.75;
+};
+Complex truth(const Fault& f, double t) {
+  if (t <= kOn) return 1.0;
+  if (t <= f.off) return std::polar(f.V - 0.2 * (t - kOn), 0.05 + 0.8 * (t - kOn));
+  return std::polar(0.95 + 0.03 * (1 - std::exp(-(t - f.off) / 0.2)), 0.1 + 0.3 * (t - f.off));
+}
+/// Reaches `half` to either side.
+struct Filter {
+  double half;
+  double (*weight)(double u, double half);
+};
+constexpr Filter kTriangle = {kCycle, [](double u, double half) { return 1 - std::abs(u) / half; }};
+/// Class M for 60 reports a second (IEEE Std C37.118.1): order 164 at 16 samples a cycle, Ffr 8.19 Hz.
+constexpr Filter kClassM = {164 / 32.0 * kCycle, [](double u, double half) {
+                              const double x = 4 * kPi * 8.19 * u;
+                              return std::sin(x) / x * (0.54 + 0.46 * std::cos(kPi * u / half));
+                            }};
+Complex averaged(const Fault& fault, const Filter& filter, double t) {
+  constexpr int kSteps = 4000;
+  Complex sum = 0;
+  double weight = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double u = filter.half * (2.0 * (i + 0.5) / kSteps - 1), w = filter.weight(u, filter.half);
+    sum += w * truth(fault, t + u);
+    weight += w;
+  }
+  return sum / weight;
+}
+FitEvent event(double noise, const Fault& fault = {}, const Filter& filter = kTriangle) {
+  FitEvent e;
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal(0, noise);
+  e.record.base.frequency = 60;
+  for (int k = 0; k < 240; ++k) {
+    const double t = k / kRate;
+    const Complex v = averaged(fault, filter, t);
+    e.record.t.push_back(t);
+    e.record.V.push_back(std::abs(v) + normal(random));
+    e.record.theta.push_back(std::arg(v) + normal(random));
+  }
+  e.switchings = find_switchings(e.record, playin::kJumpThreshold, Jumps::spread, e.smeared);
+  e.clean.base = e.record.base;
+  for (std::size_t k = 0; k < e.record.t.size(); ++k) {
+    if (e.smeared[k]) continue;
+    e.clean.t.push_back(e.record.t[k]);
+    e.clean.V.push_back(e.record.V[k]);
+    e.clean.theta.push_back(e.record.theta[k]);
+  }
+  e.start.samples = 90;
+  return e;
+}
+double worst_within(const FitEvent& e, const Fault& fault = {}) {
+  const playin::VoltageCurve curve(e.clean, e.switchings);
+  double worst = 0;
+  for (double t = kOn + 1e-3; t < fault.off; t += 1e-3)
+    worst = std::max(worst, std::abs(curve(1, t) - truth(fault, t)));
+  return worst;
+}
+
+TEST(Unsmear, ShortFaultComesBack) {
+  std::vector<FitEvent> events = {event(0.0)};
+  const double before = worst_within(events.front());
+  const FilterWindow window = unsmear(events);
+  EXPECT_EQ(window.shape, FilterWindow::Shape::triangle);
+  EXPECT_NEAR(window.half, kCycle, 1e-9);
+  ASSERT_EQ(events.front().switchings.size(), 2u);
+  // the fault's voltage bends by 3e-5 between chord and arc, the cubic before and after by less; against
+  // jumps of 0.25 pu over a window of 17 ms that moves an instant by some microseconds
+  EXPECT_NEAR(events.front().switchings[0].time, kOn, 5e-5);
+  EXPECT_NEAR(events.front().switchings[1].time, Fault{}.off, 5e-5);
+  EXPECT_LT(worst_within(events.front()), 2e-3);
+  EXPECT_GT(before, 2e-2) << "there was nothing to bring back";
+}
+TEST(Unsmear, NoiseMovesItLittle) {
+  std::vector<FitEvent> events = {event(2e-4)};
+  unsmear(events);
+  // one smeared sample tells an instant to 2e-4 pu / (0.25 pu / 17 ms); slopes of the fault to a few times
+  // more
+  EXPECT_NEAR(events.front().switchings[0].time, kOn, 3e-4);
+  EXPECT_NEAR(events.front().switchings[1].time, Fault{}.off, 3e-4);
+  EXPECT_LT(worst_within(events.front()), 5e-3);
+}
+/// Class M rings to both sides of a jump: no triangle and no box makes of a deep fault what it does.
+TEST(Unsmear, WhereNoWindowAnswersAFaultWithoutACleanSampleStillHasAVoltage) {
+  const Fault deep = {.off = 1.92, .V = 0.3};
+  std::vector<FitEvent> events = {event(1e-4, deep, kClassM)};
+  FitEvent& e = events.front();
+  EXPECT_THROW(playin::VoltageCurve(e.clean, e.switchings), InputError) << "a sample was meant to be missing";
+  EXPECT_EQ(unsmear(events).half, 0.0);
+  ASSERT_EQ(e.switchings.size(), 2u);
+  for (const playin::Switching& s : e.switchings) EXPECT_EQ(s.uncertainty, e.record.step());
+  EXPECT_NEAR(e.switchings[0].time, kOn, kCycle);
+  EXPECT_NEAR(e.switchings[1].time, deep.off, kCycle);
+  EXPECT_LT(worst_within(e, deep), 0.1);  // of jumps of 0.7 pu; 0.06 as measured
+}
+
+}  // namespace
+}  // namespace swingbank::validate::event

@@ -1,0 +1,42 @@
+#pragma once
+// An example event and its plant, with an exciter whose lower limit is never met.
+#include "sim/library/library.hpp"
+#include "tests/validate/playin/support.hpp"
+#include "validate/fit/fit.hpp"
+#include "validate/playin/instruments.hpp"
+
+namespace swingbank::validate::fit {
+
+/// What the plant answers to the event from `at`.
+inline playin::Response answer(const event::FitEvent& e, const EventState& at, const sim::plant::Plant& plant,
+                               const sim::Conventions& conventions) {
+  const playin::VoltageCurve curve(e.played(), switchings_at(e, at));
+  playin::Drive run = drive_at(plant, conventions, e, at);
+  run.curve = &curve;
+  return playin::observe(run);
+}
+
+struct ExciterExample {
+  plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  std::vector<event::FitEvent> events;
+  double spread;  ///< believed of every parameter
+  /// TE [s] of the exciter; 0.05 is true.
+  explicit ExciterExample(double believed, double TE = 0.05) : spread(believed) {
+    model.plant.controls.push_back({sim::library::find_effect("SEXS"), {0.1, 10, 100, TE, -4.0, 5.0}});
+    record::Record r =
+        record::read_record(test::source("configs/records/record-example/avr_ev1.csv"), model.record_base);
+    events = event::prepare_events(model, {r}, {.measured_states = false});
+  }
+  [[nodiscard]] std::vector<FreeParameter> free(const std::vector<std::string>& names) const {
+    std::vector<FreeParameter> some;
+    for (const auto& f : free_parameters(model.plant, spread))
+      if (std::ranges::count(names, parameter_record(model.plant, f.block, f.index).name) > 0)
+        some.push_back(f);
+    return some;
+  }
+  [[nodiscard]] Fit fitted(const std::vector<std::string>& names, const FitOptions& options = {}) const {
+    return fit(model.plant, model.conventions, events, free(names), options);
+  }
+};
+
+}  // namespace swingbank::validate::fit

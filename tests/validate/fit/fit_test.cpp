@@ -1,0 +1,73 @@
+// What a fit says of the structure's evidence: parameters count as far as the records decide them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "sim/library/library.hpp"
+#include "tests/validate/fit/exciter_example.hpp"
+#include "validate/fit/detail/cost.hpp"
+
+namespace swingbank::validate::fit {
+namespace {
+
+constexpr double kSpread = 0.2;
+
+TEST(FitEvidence, AParameterThatTheRecordsDoNotDecideAddsNothing) {
+  const Fit f = ExciterExample(kSpread).fitted({"EMIN"});
+  ASSERT_EQ(f.parameters.size(), 1U);
+  EXPECT_LT(f.parameters.front().decided, 1e-9);  // the records never meet that limit
+  EXPECT_NEAR(f.occam, 0.0, 1e-9);
+}
+TEST(FitEvidence, AParameterDecidedToSigmaAddsTheLogOfWhatWasBelieved) {
+  const Fit f = ExciterExample(kSpread).fitted({"H"});
+  ASSERT_EQ(f.parameters.size(), 1U);
+  const auto& H = f.parameters.front();
+  const double sigma = H.error / H.value;  // H is fitted as a logarithm
+  EXPECT_LT(sigma, 0.1 * kSpread);         // or the records decide nothing
+  EXPECT_NEAR(f.occam, 2 * std::log(kSpread / sigma), 1e-9);
+  EXPECT_DOUBLE_EQ(criterion(f), f.chi2 + f.belief + f.occam);
+}
+TEST(FitEvidence, AStructureIsNotBlamedForWhatCannotBeSeen) {
+  const ExciterExample example(kSpread);
+  const Fit without = example.fitted({"H"}), with = example.fitted({"H", "EMIN"});
+  ASSERT_EQ(with.parameters.size(), 2U);
+  // two searches end within 1e-5 of chi2, some 2000
+  EXPECT_NEAR(criterion(with), criterion(without), 0.05);
+}
+TEST(FitAxis, ParametersAtOneBoundAreEqualWhereverTheyStarted) {
+  const auto from = [](double start) { return fitting::Axis{{}, start, 0.1, 1e3, true, 1.0}; };
+  for (const double bound : {0.1, 0.2, 0.3, 0.7, 5.0})
+    for (const double start : {15.0, 30.0, 60.0, 7.3}) {
+      EXPECT_EQ(from(start).value(from(start).z(bound)), from(60).value(from(60).z(bound))) << bound;
+      EXPECT_NEAR(from(start).value(from(start).z(bound)), bound, 1e-11 * bound);
+    }
+}
+TEST(FitBlocks, AreCountedThroughTransformerControlsAndInstruments) {
+  sim::plant::Plant plant = ExciterExample(kSpread).model.plant;
+  const sim::Effect *transformer = sim::library::find_effect("STEPUP"),
+                    *instrument = sim::library::find_effect("CTERROR");
+  for (const bool stepped : {false, true}) {
+    if (stepped) plant.transformer = {transformer, transformer->standard_parameters()};
+    plant.measurements = {{instrument, instrument->standard_parameters()}};
+    const int last = block_count(plant) - 1;
+    EXPECT_EQ(find_block(plant, *plant.machine.effect), 0);
+    EXPECT_EQ(find_block(plant, *transformer), stepped ? 1 : -1);
+    EXPECT_EQ(find_block(plant, *sim::library::find_effect("SEXS")), last - 1);
+    EXPECT_EQ(find_block(plant, *instrument), last);
+    parameter_value(plant, last, 1) = 0.25;
+    EXPECT_EQ(values_of(plant, {{.block = last, .index = 1}}), std::vector{0.25});
+    EXPECT_EQ(plant.measurements.front().p[1], 0.25);
+    EXPECT_THROW((void)parameter_value(plant, last + 1, 0), std::out_of_range);
+    EXPECT_THROW((void)parameter_value(plant, find_block(plant, *sim::library::find_effect("TGOV1")), 0),
+                 std::out_of_range);
+  }
+}
+TEST(FitEvidence, AFailedFitIsTheWorst) {
+  Fit f;
+  f.failed = "it cannot be run";
+  EXPECT_EQ(criterion(f), std::numeric_limits<double>::infinity());
+}
+
+}  // namespace
+}  // namespace swingbank::validate::fit

@@ -1,0 +1,51 @@
+// Noise of the played-in voltage in the answers of two structures.
+#include "validate/fit/passed_noise.hpp"
+
+#include <gtest/gtest.h>
+
+#include "sim/library/library.hpp"
+#include "tests/validate/fit/exciter_example.hpp"
+
+namespace swingbank::validate::fit {
+namespace {
+
+class PassedNoiseTest : public ::testing::Test {
+ protected:
+  /// The example's plant whose current is late by that many samples.
+  sim::plant::Plant late(double samples) const {
+    sim::plant::Plant plant = example_.model.plant;
+    plant.measurements.push_back(
+        {sim::library::find_effect("SKEW"), {samples * example_.events.front().record.step()}});
+    return plant;
+  }
+  sim::plant::Plant with_reactance(double share) const {
+    sim::plant::Plant plant = example_.model.plant;
+    for (const FreeParameter& f : example_.free({"Xdpp"})) parameter_value(plant, f.block, f.index) *= share;
+    return plant;
+  }
+  double less_with(const sim::plant::Plant& plant) const {
+    return passed_.less_with(plant, example_.model.conventions);
+  }
+  const ExciterExample example_{0.2};
+  const PassedNoise passed_{example_.model.plant, example_.model.conventions, example_.events,
+                            Eigen::Vector2d(4e-8, 4e-8)};
+};
+
+TEST_F(PassedNoiseTest, ACurrentReadBetweenSamplesPassesLess) {
+  ASSERT_GT(passed_.own(), 0.0);
+  // a spline's weights at mid-interval are 0.60 twice, -0.13 twice, 0.03 ...: their squares sum to 0.76
+  EXPECT_NEAR(less_with(late(0.5)) / passed_.own(), 0.24, 0.03);
+}
+TEST_F(PassedNoiseTest, AWholeSamplePassesAsMuch) {
+  // but for what V and current of one moment have in common
+  EXPECT_NEAR(less_with(late(1.0)) / passed_.own(), 0.0, 0.02);
+}
+TEST_F(PassedNoiseTest, ALargerReactancePassesLess) {
+  EXPECT_GT(less_with(with_reactance(1.1)), 0.05 * passed_.own());
+}
+TEST_F(PassedNoiseTest, WhatCannotBeRunCountsAsPassingAsMuch) {
+  EXPECT_EQ(less_with(with_reactance(std::nan(""))), 0.0);
+}
+
+}  // namespace
+}  // namespace swingbank::validate::fit

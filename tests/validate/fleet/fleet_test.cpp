@@ -1,0 +1,190 @@
+// Fleets: their files, what a plant leaves behind, the table.
+#include "validate/fleet/fleet.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "validate/fleet/report.hpp"
+
+namespace swingbank::validate::fleet {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// A folder of one test's own.
+class FleetFiles : public ::testing::Test {
+ protected:
+  FleetFiles() {
+    std::string name = (fs::temp_directory_path() / "swingbank-fleet-XXXXXX").string();
+    folder = ::mkdtemp(name.data());
+  }
+  ~FleetFiles() override { fs::remove_all(folder); }
+  fs::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder / name) << text;
+    return folder / name;
+  }
+  std::string problems(const std::string& text) const {
+    try {
+      load_fleet(write("fleet.toml", text));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  fs::path folder;
+};
+
+std::string slurp(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+FleetRow row(const std::string& plant, const std::string& verdict) {
+  FleetRow r;
+  r.plant = plant;
+  r.verdict = verdict;
+  r.side = "none";
+  r.left = 1.01;
+  r.evidence = r.unseen_before = r.unseen_after = r.chance = kNaN;
+  r.events = 3;
+  r.sentence = "A sentence, with a comma.";
+  r.inputs = "0123456789abcdef";
+  return r;
+}
+FleetRow named() {
+  FleetRow r = row("b", "confusable");
+  r.effects = {"SEXS"};
+  r.equivalent = {"ESST1A"};
+  r.side = "excitation";
+  r.evidence = 412.25;
+  r.unseen_before = 26.4;
+  r.unseen_after = 1.02;
+  r.chance = 3e-5;
+  return r;
+}
+
+TEST_F(FleetFiles, CommonOptionsHoldWhereAPlantSaysNothing) {
+  const Fleet fleet = load_fleet(write("fleet.toml", R"(
+[options]
+power_only = true
+spread = 0.3
+[plant.b]
+model = "m.toml"
+records = ["e1.csv", "e*.csv"]
+[plant.a]
+model = "/elsewhere/m.toml"
+records = ["e.csv"]
+power_only = false
+spread = 0.1
+)"));
+  ASSERT_EQ(fleet.plants.size(), 2);
+  EXPECT_EQ(fleet.plants[0].name, "a");  // in order of names
+  EXPECT_EQ(fleet.plants[0].model, "/elsewhere/m.toml");
+  EXPECT_FALSE(fleet.plants[0].power_only);
+  EXPECT_EQ(fleet.plants[0].spread, 0.1);
+  EXPECT_EQ(fleet.plants[1].model, folder / "m.toml");
+  EXPECT_TRUE(fleet.plants[1].power_only);
+  EXPECT_EQ(fleet.plants[1].spread, 0.3);
+  EXPECT_EQ(fleet.plants[1].records, (std::vector<std::string>{"e1.csv", "e*.csv"}));
+}
+
+TEST_F(FleetFiles, EveryFaultIsToldAtOnce) {
+  const std::string said = problems(R"(
+[options]
+spread = -1
+[plant.a]
+model = 3
+records = []
+colour = "red"
+)");
+  for (const char* words : {"options.spread", "plant.a.model", "no record", "colour"})
+    EXPECT_THAT(said, HasSubstr(words));
+  EXPECT_THAT(problems("[options]\npower_only = true\n"), HasSubstr("no plant"));
+  EXPECT_THAT(problems("[plant.\"../a\"]\nmodel = \"m\"\nrecords = [\"e\"]\n"),
+              HasSubstr("name becomes that of a folder"));
+  EXPECT_THAT(problems("[plant"), HasSubstr("fleet.toml"));
+  EXPECT_THROW(load_fleet(folder / "nowhere.toml"), InputError);
+}
+
+TEST_F(FleetFiles, APlantThatCannotBeReadIsARowWithAllItsProblems) {
+  const Fleet fleet = load_fleet(write("fleet.toml", R"(
+[plant.a]
+model = "no-model.toml"
+records = ["no-record.csv", "none*.csv"]
+)"));
+  const FleetOutcome o = diagnose_plant(fleet, fleet.plants[0], folder / "out", {});
+  EXPECT_TRUE(o.row.failed());
+  for (const char* words : {"no-model.toml", "no-record.csv", "none*.csv"})
+    EXPECT_THAT(o.row.sentence, HasSubstr(words));
+  const FleetRow read = read_row(slurp(folder / "out/a/plant.json"), "plant.json");
+  EXPECT_EQ(read.sentence, o.row.sentence);
+  EXPECT_FALSE(fs::exists(folder / "out/.a.part"));
+}
+
+TEST_F(FleetFiles, WhatNoFleetHasWrittenIsNotReplaced) {
+  const Fleet fleet =
+      load_fleet(write("fleet.toml", "[plant.a]\nmodel = \"m.toml\"\nrecords = [\"e.csv\"]\n"));
+  fs::create_directories(folder / "out/a");
+  write("out/a/thesis.txt", "years of work");
+  const FleetOutcome o = diagnose_plant(fleet, fleet.plants[0], folder / "out", {});
+  EXPECT_TRUE(o.row.failed());
+  EXPECT_THAT(o.row.sentence, HasSubstr("no fleet run has written"));
+  EXPECT_EQ(slurp(folder / "out/a/thesis.txt"), "years of work");
+  EXPECT_FALSE(fs::exists(folder / "out/a/plant.json"));
+}
+
+TEST(FleetRows, AreReadBackAsWritten) {
+  const FleetRow a = named(), b = read_row(row_json(a).dump(), "here");
+  EXPECT_EQ(row_json(a), row_json(b));
+  EXPECT_EQ(b.evidence, a.evidence);
+  const FleetRow failed = failed_row("x", "no file"), back = read_row(row_json(failed).dump(), "here");
+  EXPECT_TRUE(back.failed());
+  EXPECT_TRUE(std::isnan(back.evidence));
+  EXPECT_THROW(read_row("{}", "here"), InputError);
+  EXPECT_THROW(read_row("{\"format\": ", "here"), InputError);
+}
+
+TEST(FleetTables, SayWhatWasFoundAndExitCodesFollow) {
+  const Fleet fleet{"f.toml", "", {}};
+  const std::vector<FleetRow> sound = {row("a", "adequate")}, found = {row("a", "adequate"), named()},
+                              broken = {row("a", "adequate"), named(),
+                                        failed_row("c", "no file\nand no model")};
+  EXPECT_EQ(fleet_code(sound), 0);
+  EXPECT_EQ(fleet_code(found), 3);
+  EXPECT_EQ(fleet_code(broken), 1);
+  const std::string text = fleet_text(broken);
+  for (const char* words : {"SEXS or ESST1A", "26 × → 1.0 ×", "≤ 3e-05", "c failed: no file",
+                            "3 plants: 1 adequate, 1 with an effect named, 0 unexplained, 1 failed."})
+    EXPECT_THAT(text, HasSubstr(words));
+  EXPECT_THAT(fleet_csv(broken), HasSubstr("\"A sentence, with a comma.\""));
+  EXPECT_THAT(fleet_csv(broken),
+              HasSubstr("b,confusable,SEXS,ESST1A,excitation,412.25,1.01,26.4,1.02,3e-05,3,"));
+  const std::string page = fleet_html(fleet, broken);
+  EXPECT_THAT(page, HasSubstr("<a href=\"b/report.html\">b</a>"));
+  EXPECT_THAT(page, Not(HasSubstr("c/report.html")));  // it has none
+  const auto j = nlohmann::json::parse(fleet_json(fleet, broken));
+  EXPECT_EQ(j["plants"].size(), 3);
+  EXPECT_TRUE(j["plants"][2]["evidence"].is_null());
+}
+
+TEST(FleetChance, IsThatOfTheChiSquareDistribution) {
+  // Tables of the distribution: 5 % at 3.841, 5.991, 7.815, 9.488, 18.307 for 1, 2, 3, 4, 10 degrees (4
+  // digits).
+  const std::pair<int, double> quantiles[] = {{1, 3.841}, {2, 5.991}, {3, 7.815}, {4, 9.488}, {10, 18.307}};
+  for (const auto& [k, x] : quantiles) EXPECT_NEAR(chance_of(x, k, 1), 0.05, 2e-5) << k;
+  EXPECT_DOUBLE_EQ(chance_of(20, 1, 30), 30 * chance_of(20, 1, 1));
+  EXPECT_EQ(chance_of(-50, 1, 30), 1);
+  EXPECT_DOUBLE_EQ(chance_of(10, 0, 1), std::exp(-5.0));
+}
+
+}  // namespace
+}  // namespace swingbank::validate::fleet

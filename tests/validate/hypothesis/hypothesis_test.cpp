@@ -1,0 +1,72 @@
+// What is tried: every start of every hypothesis is a plant that can be.
+#include "validate/hypothesis/hypothesis.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "sim/library/library.hpp"
+#include "tests/validate/fit/exciter_example.hpp"
+#include "validate/fit/detail/cost.hpp"
+
+namespace swingbank::validate::hypothesis {
+namespace {
+
+std::vector<Hypothesis> hypotheses() {
+  const plant::PlantModel model = fit::ExciterExample(0.2).model;
+  return all_hypotheses(model.plant, model.conventions);
+}
+
+TEST(Hypotheses, EveryStartIsSound) {
+  std::set<std::string> drawn;
+  for (const Hypothesis& h : hypotheses()) {
+    if (h.drawn) drawn.insert(h.name);
+    for (const auto& start : h.starts) EXPECT_TRUE(fit::fitting::can_run(started(h, start))) << h.name;
+  }
+  EXPECT_TRUE(drawn.contains("MAXEX2"));  // three points of one curve, which keep their order
+  EXPECT_TRUE(drawn.contains("TGOV1"));
+}
+TEST(Hypotheses, StartsAreTheStandardValuesThenDraws) {
+  for (const Hypothesis& h : hypotheses()) {
+    if (!h.drawn) continue;
+    EXPECT_EQ(h.starts.size(), 40U) << h.name;
+    EXPECT_EQ(h.starts.front(), fit::values_of(h.plant, h.free)) << h.name;
+    EXPECT_EQ(std::set(h.starts.begin(), h.starts.end()).size(), h.starts.size()) << h.name;
+  }
+}
+TEST(Hypotheses, FurtherDrawsAreOthers) {
+  for (const Hypothesis& h : hypotheses()) {
+    if (!h.drawn) continue;
+    const std::set known(h.starts.begin(), h.starts.end());
+    const auto further = further_draws(h, h.free.size(), 20, 15.0);
+    EXPECT_EQ(further.size(), 20U) << h.name;
+    for (const auto& draw : further) EXPECT_FALSE(known.contains(draw)) << h.name;
+  }
+}
+TEST(Hypotheses, AReplacementStandsAloneInItsSlot) {
+  const plant::PlantModel model = fit::ExciterExample(0.2).model;  // its only control is SEXS
+  const auto all = all_replacements(model.plant, model.conventions);
+  std::size_t exciters = 0;
+  for (const sim::Effect* effect : sim::library::every_effect())
+    exciters += effect->slot == sim::Slot::exciter;
+  EXPECT_EQ(all.size(), exciters - 1);
+  for (const Hypothesis& h : all) {
+    EXPECT_TRUE(h.name.ends_with(" in place of SEXS")) << h.name;
+    ASSERT_EQ(h.plant.controls.size(), 1U) << h.name;
+    EXPECT_EQ(h.slot, static_cast<int>(sim::Slot::exciter)) << h.name;
+    EXPECT_TRUE(h.name.starts_with(h.plant.controls.front().effect->name)) << h.name;
+    EXPECT_FALSE(h.name.starts_with("SEXS"));
+    EXPECT_TRUE(fit::fitting::can_run(h.plant)) << h.name;
+  }
+}
+TEST(Triangle, HasTheProductsOfTheColumns) {
+  event::RowMatrix e = event::RowMatrix::Random(50, 6);
+  e.col(3) = 2 * e.col(0) - e.col(1);  // what the others make leaves nothing of its own
+  const event::RowMatrix r = fit::fitting::triangle_of(e);
+  EXPECT_LT((r.transpose() * r - e.transpose() * e).cwiseAbs().maxCoeff(), 1e-12);  // sums of 50, rounded
+  EXPECT_EQ(r.row(3).cwiseAbs().maxCoeff(), 0.0);
+  for (Eigen::Index i = 1; i < r.rows(); ++i) EXPECT_EQ(r.row(i).head(i).cwiseAbs().maxCoeff(), 0.0);
+}
+
+}  // namespace
+}  // namespace swingbank::validate::hypothesis

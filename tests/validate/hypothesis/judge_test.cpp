@@ -1,0 +1,73 @@
+// What events left out of a fit say against an effect.
+#include "validate/hypothesis/judge.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "tests/validate/fit/exciter_example.hpp"
+
+namespace swingbank::validate::hypothesis {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr double kAdequate = 1.12;
+
+/// An event of 1,000 values whose cost per value goes from `before` to `after`.
+HeldOut event(const std::string& name, double before, double after) {
+  HeldOut h;
+  h.record = name;
+  h.values = 1000;
+  h.before = h.cost_before = before;
+  h.after = h.cost_after = after;
+  return h;
+}
+
+TEST(Objection, NoneToWhatPredictsEveryEvent) {
+  EXPECT_THAT(objection({event("a", 3.0, 1.0), event("b", 1.2, 1.01)}, 2000, kAdequate), IsEmpty());
+}
+TEST(Objection, AnEventThatIsUntouchedMayScatter) {
+  EXPECT_THAT(objection({event("a", 3.0, 1.0), event("b", 1.0, 1.01)}, 2000, kAdequate), IsEmpty());
+}
+TEST(Objection, AnEventMayNotPayForTheOthers) {
+  EXPECT_NEAR(event("b", 1.0, 1.03).saves(), -30, 1e-9);
+  // 30 of chi2: above 20, and above a tenth of this evidence
+  EXPECT_THAT(objection({event("a", 1.2, 1.0), event("b", 1.0, 1.03)}, 200, kAdequate),
+              HasSubstr("improve b"));
+  // ... and below a tenth of this one, still as good as noise
+  EXPECT_THAT(objection({event("a", 3.0, 1.0), event("b", 1.0, 1.03)}, 2000, kAdequate), IsEmpty());
+}
+TEST(Objection, AnEventThatWasBadMayNotBecomeWorse) {
+  EXPECT_THAT(objection({event("a", 30.0, 1.0), event("b", 2.0, 2.1)}, 29000, kAdequate),
+              HasSubstr("improve b"));
+}
+TEST(Objection, AnEventWithoutWhichNothingCouldBeFittedIsNotPredicted) {
+  HeldOut none = event("b", 1.0, 1.0);
+  none.cost_after = std::numeric_limits<double>::infinity();
+  EXPECT_THAT(objection({event("a", 3.0, 1.0), none}, 2000, kAdequate), HasSubstr("b when"));
+}
+TEST(HeldOutEvents, AFitThatFailsWithoutOnePredictsNothing) {
+  fit::ExciterExample example(0.2);
+  example.events.push_back(example.events.front());
+  const fit::Fit whole = example.fitted({"H"}, {.iterations = 0});
+  const Trial trial{example.events, 0.2, kAdequate};
+  const auto hold = [&](const fit::Fit& f) {
+    return hold_out(trial, example.model.plant, example.model.conventions, example.free({"H", "EMAX"}), f);
+  };
+  EXPECT_LT(hold(whole).front().cost_after, 1e6);
+  fit::Fit impossible = whole;
+  for (const auto& f : example.free({"EMAX"}))
+    fit::parameter_value(impossible.plant, f.block, f.index) = 0.5;  // Efd stands above it
+  EXPECT_GT(hold(impossible).front().cost_after, 1e300);
+}
+TEST(Objection, AnEventMustBePredictedNotOnlyImproved) {
+  EXPECT_THAT(objection({event("a", 3.0, 1.0), event("b", 3.0, 1.5)}, 3500, kAdequate),
+              HasSubstr("predict b"));
+  // a tenth of what it was will do: the plain misfit is judged apart
+  EXPECT_THAT(objection({event("a", 3.0, 1.0), event("b", 30.0, 1.5)}, 30000, kAdequate), IsEmpty());
+}
+
+}  // namespace
+}  // namespace swingbank::validate::hypothesis

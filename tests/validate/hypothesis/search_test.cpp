@@ -1,0 +1,98 @@
+// What is tried beside a structure, and in the place of a part of it.
+#include "validate/hypothesis/search.hpp"
+
+#include <gmock/gmock.h>
+
+#include "sim/library/library.hpp"
+#include "tests/validate/fit/exciter_example.hpp"
+
+namespace swingbank::validate::hypothesis {
+namespace {
+
+using testing::Contains;
+using testing::IsEmpty;
+using testing::Not;
+
+class Exchange : public ::testing::Test {
+ protected:
+  [[nodiscard]] static Hypothesis named(const std::vector<Hypothesis>& all, const std::string& name) {
+    const auto found = std::ranges::find(all, name, &Hypothesis::name);
+    if (found == all.end()) throw std::runtime_error("no hypothesis " + name);
+    return *found;
+  }
+  /// `name` in the model alone, fitted to `value` of its first parameter.
+  [[nodiscard]] Judgement alone(const std::string& name, double value) const {
+    Judgement j;
+    j.hypothesis = named(all_hypotheses(model().plant, model().conventions), name);
+    j.fit = base_;
+    j.fit.plant = j.hypothesis.plant;
+    const fit::FreeParameter& f = j.hypothesis.free.front();
+    fit::parameter_value(j.fit.plant, f.block, f.index) = value;
+    return j;
+  }
+  /// `second` beside what is fitted already.
+  [[nodiscard]] Judgement beside(const Judgement& first, const std::string& second, double value) const {
+    const Stage then = after(stage_, first);
+    Judgement j;
+    j.hypothesis = named(all_hypotheses(then.plant, then.conventions), second);
+    j.fit = base_;
+    j.fit.plant = j.hypothesis.plant;
+    const fit::FreeParameter& f = j.hypothesis.free.front();
+    fit::parameter_value(j.fit.plant, f.block, f.index) = value;
+    bring(then, j.hypothesis);
+    return j;
+  }
+  [[nodiscard]] static std::vector<std::string> names(const std::vector<Judgement>& list) {
+    std::vector<std::string> all;
+    for (const auto& j : list) all.push_back(full_name(j.hypothesis));
+    return all;
+  }
+  [[nodiscard]] const plant::PlantModel& model() const { return example_.model; }
+  const fit::ExciterExample example_{0.2};
+  const fit::Fit base_ = example_.fitted({"H"}, {.iterations = 0});
+  const Stage stage_{.events = example_.events,
+                     .plant = example_.model.plant,
+                     .conventions = example_.model.conventions,
+                     .fit = base_};
+};
+
+TEST_F(Exchange, RivalsOfTheSlotStandBesideTheSecondAsItWasFitted) {
+  const Judgement pair = beside(alone("TGOV1", 0.06), "STEPUP", 0.07);
+  const auto rivals = exchanges(stage_, pair, {});
+  EXPECT_THAT(names(rivals), testing::UnorderedElementsAre("STEPUP + GAST", "STEPUP + GGOV1",
+                                                           "STEPUP + HYGOV", "STEPUP + IEEEG1"));
+  for (const Judgement& j : rivals) {
+    EXPECT_FALSE(j.fit.failed.empty());
+    // believed to be what it was before any fit, and starting where the pair's fit ended
+    const int block = fit::find_block(j.hypothesis.plant, *sim::library::find_effect("STEPUP"));
+    const int index = pair.hypothesis.free.front().index;
+    const auto at = std::ranges::find_if(
+        j.hypothesis.free, [&](const fit::FreeParameter& f) { return f.block == block && f.index == index; });
+    ASSERT_NE(at, j.hypothesis.free.end());
+    EXPECT_EQ(fit::parameter_value(j.fit.plant, block, index), 0.07);
+    EXPECT_EQ(fit::parameter_value(j.hypothesis.plant, block, index),
+              fit::parameter_value(pair.hypothesis.plant, pair.hypothesis.free.front().block, index));
+    for (const auto& start : j.hypothesis.starts)
+      EXPECT_EQ(start[static_cast<std::size_t>(at - j.hypothesis.free.begin())], 0.07);
+  }
+}
+TEST_F(Exchange, WhatHoldsAloneIsARivalTooAndStartsAsItWasFound) {
+  const Judgement pair = beside(alone("TGOV1", 0.06), "STEPUP", 0.07);
+  Judgement holds = alone("CTERROR", 0.01), does_not = alone("PTERROR", 0.01);
+  holds.accepted = true;
+  const auto rivals = exchanges(stage_, pair, {holds, does_not});
+  EXPECT_THAT(names(rivals), Contains("STEPUP + CTERROR"));
+  EXPECT_THAT(names(rivals), Not(Contains("STEPUP + PTERROR")));
+  const auto found =
+      std::ranges::find(rivals, "CTERROR", [](const Judgement& j) { return j.hypothesis.name; });
+  ASSERT_NE(found, rivals.end());
+  const fit::FreeParameter& f = found->hypothesis.free.front();
+  EXPECT_EQ(fit::parameter_value(found->fit.plant, f.block, f.index), 0.01);
+}
+TEST_F(Exchange, NothingStandsWithoutWhatItNeeds) {
+  Judgement pair = beside(alone("TGOV1", 0.06), "TGOV1:db", 0.001);
+  EXPECT_THAT(exchanges(stage_, pair, {}), IsEmpty());
+}
+
+}  // namespace
+}  // namespace swingbank::validate::hypothesis

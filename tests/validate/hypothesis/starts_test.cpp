@@ -1,0 +1,78 @@
+// Where hypotheses start beside a model that nearly fits.
+#include "validate/hypothesis/detail/starts.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/validate/fit/exciter_example.hpp"
+
+namespace swingbank::validate::hypothesis {
+namespace {
+
+/// Squared change of the first event's answer by these values, in units of noise; the rest as fitted.
+double moved(const Stage& stage, const Hypothesis& h, const std::vector<double>& start) {
+  sim::plant::Plant plant = started(h, start);
+  for (const auto& p : stage.fit.parameters)
+    fit::parameter_value(plant, fit::find_block(plant, fit::block_effect(stage.plant, p.where.block)),
+                         p.where.index) = p.value;
+  const event::FitEvent& e = stage.events.front();
+  const fit::EventFit& at = stage.fit.events.front();
+  const playin::Response r = answer(e, at.state, plant, stage.conventions);
+  double square = 0;
+  for (std::size_t c = 0; c < e.channels.size(); ++c)
+    for (std::size_t k = 0; k < e.record.t.size(); ++k)
+      square +=
+          std::pow((r.of(e.channels[c])[k] - at.model[c][k]) / e.noise[static_cast<Eigen::Index>(c)], 2);
+  return square;
+}
+
+TEST(Starts, ALimiterStartsWhereItActs) {
+  const fit::ExciterExample example(0.2);
+  const fit::Fit nearly = example.fitted({"H", "Xd", "Xd'", "K"});
+  ASSERT_TRUE(nearly.failed.empty()) << nearly.failed;
+  const Stage stage{.events = example.events,
+                    .plant = example.model.plant,
+                    .conventions = example.model.conventions,
+                    .fit = nearly};
+  auto all = all_hypotheses(stage.plant, stage.conventions);
+  const auto limiter = std::ranges::find(all, "MAXEX2", &Hypothesis::name);
+  ASSERT_NE(limiter, all.end());
+  ASSERT_LT(moved(stage, *limiter, limiter->starts.front()), 1e-3) << "it was meant to wait";
+  const Candidate c = StartFinder(stage).of(*limiter);
+  ASSERT_GE(c.hypothesis.starts.size(), 10U);
+  for (std::size_t k = 0; k < 10; ++k) EXPECT_GT(moved(stage, c.hypothesis, c.hypothesis.starts[k]), 10) << k;
+}
+
+TEST(Starts, WhatTheFitHasBentStartsAsTheModelHasIt) {
+  const fit::ExciterExample example(0.2);
+  fit::Fit bent = example.fitted({"H", "K", "TE"}, {.iterations = 0});
+  const auto moved_to = [&](const std::string& name, double share) {
+    auto& p = *std::ranges::find(bent.parameters, name, &fit::FittedParameter::name);
+    p.value = share * p.start;
+  };
+  const Stage stage{.events = example.events,
+                    .plant = example.model.plant,
+                    .conventions = example.model.conventions,
+                    .fit = bent};
+  auto all = all_hypotheses(stage.plant, stage.conventions);
+  const Hypothesis& h = *std::ranges::find(all, "IEEEVC", &Hypothesis::name);
+  const auto free = free_of(h, stage.spread);
+  const auto share = [&](const std::vector<double>& values, const std::string& name) {
+    for (std::size_t i = 0; i < free.size(); ++i)
+      if (fit::parameter_record(h.plant, free[i].block, free[i].index).name == name)
+        return values[i] / fit::parameter_value(h.plant, free[i].block, free[i].index);
+    return std::nan("");
+  };
+  moved_to("H", 1.3);
+  moved_to("K", 1.3);
+  moved_to("TE", 1.3);
+  EXPECT_TRUE(StartFinder(stage).unbent(h).empty()) << "within two standard deviations of the belief";
+  moved_to("K", 0.6);
+  const auto values = StartFinder(stage).unbent(h);
+  ASSERT_FALSE(values.empty());
+  EXPECT_DOUBLE_EQ(share(values, "K"), 1.0);
+  EXPECT_DOUBLE_EQ(share(values, "TE"), 1.0) << "of the same block";
+  EXPECT_DOUBLE_EQ(share(values, "H"), 1.3) << "of another block";
+}
+
+}  // namespace
+}  // namespace swingbank::validate::hypothesis

@@ -1,0 +1,116 @@
+#include "validate/plant/plant_model.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "tests/validate/playin/support.hpp"
+
+namespace swingbank::validate::plant {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+std::string example() {
+  std::ifstream in(test::source("configs/plants/ieee14_bus2.toml"));
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  const auto at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return text.replace(at, what.size(), by);
+}
+/// Loads a plant file of this content.
+class PlantModelTest : public ::testing::Test {
+ protected:
+  PlantModel load(const std::string& text) {
+    std::ofstream(file_) << text;
+    return load_plant_model(file_);
+  }
+  std::vector<std::string> faults(const std::string& text) {
+    return test::messages([&] { load(text); });
+  }
+  void TearDown() override { std::filesystem::remove(file_); }
+  std::filesystem::path file_ =
+      std::filesystem::temp_directory_path() / ("swingbank_plant_" + std::to_string(::getpid()) + ".toml");
+};
+
+TEST_F(PlantModelTest, ReadsTheExample) {
+  const PlantModel m = load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  EXPECT_EQ(m.name, "IEEE 14, bus 2");
+  EXPECT_EQ(m.plant.machine.effect->name, "GENROU");
+  EXPECT_EQ(m.plant.mva, 100);
+  const auto* effect = m.plant.machine.effect;
+  EXPECT_EQ(m.plant.machine.p[static_cast<std::size_t>(effect->parameter_index("Tdop"))], 6.5);
+  EXPECT_EQ(m.plant.machine.p[static_cast<std::size_t>(effect->parameter_index("Xl"))], 0.18);
+  EXPECT_FALSE(m.conventions.speed_voltage);
+  EXPECT_TRUE(m.plant.controls.empty());
+}
+TEST_F(PlantModelTest, ReadsLawsBesideIt) {
+  const std::string law = test::source("configs/laws/torque_voltage_dip.toml");
+  const std::string shaft =
+      "\n[shaft]\neffect = \"DIPTORQUE\"\nloss = 0.2\nthreshold = 0.1\ndepth = 0.3\nrecovery = 2.0\n";
+  const PlantModel m = load("laws = [\"" + law + "\"]\n" + example() + shaft);
+  ASSERT_EQ(m.plant.controls.size(), 1u);
+  EXPECT_EQ(m.plant.controls[0].effect->name, "DIPTORQUE");
+  EXPECT_EQ(m.plant.controls[0].p, (std::vector<double>{0.2, 0.1, 0.3, 2.0}));
+  EXPECT_THAT(faults("laws = [\"none.toml\"]\n" + example()),
+              ElementsAre(AllOf(HasSubstr("no readable law file"), HasSubstr("none.toml"))));
+}
+TEST_F(PlantModelTest, EveryParameterMustBeThere) {
+  EXPECT_THAT(faults(replaced(example(), "Xqp = 0.6\n", "")), ElementsAre(HasSubstr("machine.Xqp")));
+}
+TEST_F(PlantModelTest, UnknownParametersListTheKnownOnes) {
+  EXPECT_THAT(faults(replaced(example(), "Ra = 0.0", "Ra = 0.0\nXddp = 0.2")),
+              ElementsAre(AllOf(HasSubstr("Xddp"), HasSubstr("Xdpp"), HasSubstr("Tqopp"))));
+}
+TEST_F(PlantModelTest, UnknownEffectsListTheKnownOnes) {
+  EXPECT_THAT(faults(replaced(example(), "\"GENROU\"", "\"GENSOL\"")),
+              Contains(AllOf(HasSubstr("GENSOL"), HasSubstr("GENCLS"), HasSubstr("GENROU"))));
+}
+TEST_F(PlantModelTest, ValuesMustBePossibleAndConsistent) {
+  EXPECT_THAT(faults(replaced(example(), "H = 6.54", "H = 654")),
+              ElementsAre(AllOf(HasSubstr("H = 654"), HasSubstr("20"))));
+  EXPECT_THAT(faults(replaced(example(), "Xdp = 0.4", "Xdp = 0.1")),
+              ElementsAre(HasSubstr("GENROU divides by X'd - Xl")));
+  EXPECT_THAT(faults(replaced(example(), "H = 6.54", "H = \"6.54\"")), ElementsAre(HasSubstr("machine.H")));
+}
+TEST_F(PlantModelTest, AllFaultsAtOnce) {
+  const auto all =
+      faults(replaced(replaced(replaced(example(), "Xqp = 0.6\n", ""), "frequency_hz = 60.0\n", ""),
+                      "[record]", "[recordings]"));
+  EXPECT_THAT(all, Contains(HasSubstr("Xqp")));
+  EXPECT_THAT(all, Contains(HasSubstr("frequency_hz")));
+  EXPECT_THAT(all, Contains(HasSubstr("record.base_mva")));
+  EXPECT_THAT(all, Contains(HasSubstr("recordings")));
+}
+TEST_F(PlantModelTest, TakesAGeneratorOfAGrid) {
+  const std::string folder = test::source("configs/networks").string();
+  const std::string text =
+      "[plant]\nname = \"31\"\nfrequency_hz = 60.0\nconventions = \"psse\"\n[record]\nbase_mva = "
+      "100.0\n[grid]\nraw = \"" +
+      folder + "/ieee39_genrou.raw\"\ndyr = \"" + folder + "/ieee39_genrou.dyr\"\nbus = 31\n";
+  const sim::grid::Grid grid = sim::grid::load_grid(folder + "/ieee39_genrou.raw",
+                                                    folder + "/ieee39_genrou.dyr", sim::Conventions::psse());
+  const auto wanted = std::find_if(grid.plants.begin(), grid.plants.end(),
+                                   [](const sim::plant::Plant& p) { return p.name == "31"; });
+  ASSERT_NE(wanted, grid.plants.end());
+  const PlantModel m = load(text);
+  EXPECT_EQ(m.plant.machine.p, wanted->machine.p);
+  EXPECT_EQ(m.plant.mva, wanted->mva);
+  EXPECT_THAT(faults(replaced(text, "bus = 31", "bus = 31\nid = \"7\"")),
+              ElementsAre(AllOf(HasSubstr("no plant at bus 31 with id 7"), HasSubstr("30, 31"))));
+  EXPECT_THAT(faults(replaced(text, "frequency_hz = 60.0", "frequency_hz = 50.0")),
+              ElementsAre(HasSubstr("the grid's .raw says 60 Hz")));
+  EXPECT_THAT(faults(replaced(text, "bus = 31", "bus = 16")), ElementsAre(HasSubstr("no plant at bus 16")));
+  EXPECT_THAT(faults(replaced(text, "name = \"31\"", "name = \"31\"\nbase_mva = 10.0")),
+              Contains(HasSubstr("beside [grid]")));
+}
+
+}  // namespace
+}  // namespace swingbank::validate::plant

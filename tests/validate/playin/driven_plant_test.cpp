@@ -1,0 +1,187 @@
+// Slopes of a driven plant's answer against central differences, for every kind of direction.
+#include "validate/playin/driven_plant.hpp"
+
+#include <gtest/gtest.h>
+
+#include "sim/library/library.hpp"
+#include "validate/plant/plant_model.hpp"
+#include "validate/playin/play_in.hpp"
+
+namespace swingbank::validate::playin {
+namespace {
+
+using Kind = Direction::Kind;
+
+/// The example's fault and a GENROU with the exciter and governor that make every direction matter.
+class DrivenPlantTest : public ::testing::Test {
+ protected:
+  DrivenPlantTest() {
+    const std::filesystem::path configs = std::filesystem::path(SWINGBANK_SOURCE) / "configs";
+    model_ = plant::load_plant_model(configs / "plants" / "ieee14_bus2.toml");
+    for (const char* name : {"TGOV1", "SEXS"}) {
+      const auto* effect = sim::library::find_effect(name);
+      model_.plant.controls.push_back({effect, effect->standard_parameters()});
+    }
+    record_ = record::read_record(configs / "records" / "record-example" / "avr_ev1.csv", model_.record_base);
+    switchings_ = detect_switchings(record_);
+    knots_ = {0.5, 1.5, 2.5, 4.0};
+    zeros_.assign(knots_.size(), 0.0);
+  }
+  /// The answer with every direction moved by `by` units.
+  Response answer(const std::vector<Direction>& along, double by, bool slopes = false) {
+    plant::PlantModel model = model_;
+    auto switchings = switchings_;
+    Drive run{.plant = &model.plant, .conventions = model.conventions, .record = &record_};
+    run.start = pre_event_point(record_, switchings, 1.0);
+    run.torque = {knots_, zeros_};
+    run.field = {knots_, zeros_};
+    run.until = 6.0;
+    for (const Direction& d : along) {
+      const double move = by * d.scale;
+      const auto index = static_cast<std::size_t>(d.index);
+      switch (d.kind) {
+        case Kind::parameter: {
+          auto& p = d.block == 0 ? model.plant.machine.p
+                                 : model.plant.controls[static_cast<std::size_t>(d.block - 1)].p;
+          p[index] += move;
+          break;
+        }
+        case Kind::switching:
+          switchings[index].time += move;
+          break;
+        case Kind::P:
+          run.start.P += move;
+          break;
+        case Kind::Q:
+          run.start.Q += move;
+          break;
+        case Kind::angle:
+          run.angle += move;
+          break;
+        case Kind::speed:
+          run.speed += move;
+          break;
+        case Kind::torque:
+          run.torque.value[index] += move;
+          break;
+        case Kind::field:
+          run.field.value[index] += move;
+          break;
+      }
+    }
+    const VoltageCurve curve(record_, switchings);
+    run.curve = &curve;
+    return drive(run, slopes ? std::span(along) : std::span<const Direction>());
+  }
+  void expect_slopes(const std::vector<Direction>& directions) {
+    const Response at = answer(directions, 0.0, true);
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+      const Response up = answer({directions[i]}, 1.0), down = answer({directions[i]}, -1.0);
+      for (int o = 0; o < kOutputs; ++o) {
+        double worst = 0, largest = 0;
+        for (std::size_t k = 0; k < at.value[o].size(); ++k) {
+          const double difference = (up.value[o][k] - down.value[o][k]) / 2;
+          worst = std::max(worst, std::abs(difference - at.slopes[i].value[o][k]));
+          largest = std::max(largest, std::abs(difference));
+        }
+        // the difference quotient's own error: curvature over 2e-4 of the value
+        EXPECT_LE(worst, 1e-4 * largest + 1e-9)
+            << "direction " << i << ", " << output_name(static_cast<Output>(o));
+      }
+    }
+  }
+  plant::PlantModel model_;
+  record::Record record_;
+  std::vector<Switching> switchings_;
+  std::vector<double> knots_, zeros_;
+};
+
+TEST_F(DrivenPlantTest, SlopesAlongEveryParameter) {
+  std::vector<Direction> directions;
+  const auto blocks = sim::plant::block_parameters(model_.plant);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const auto* effect = b == 0 ? model_.plant.machine.effect : model_.plant.controls[b - 1].effect;
+    for (std::size_t p = 0; p < blocks[b].size(); ++p) {
+      const auto name = effect->parameters[p].name;
+      // S10 = S12 = 0 and a dead-band of 0 have no two sides; ceilings that are not reached no slope
+      if (name == "S10" || name == "S12" || name == "deadband" || blocks[b][p] == 0.0) continue;
+      directions.push_back({Kind::parameter, static_cast<int>(b), static_cast<int>(p), 1e-4 * blocks[b][p]});
+    }
+  }
+  EXPECT_GT(directions.size(), 15u);
+  expect_slopes(directions);
+}
+TEST_F(DrivenPlantTest, SlopesAlongNuisances) {
+  expect_slopes({{Kind::switching, 0, 0, 1e-5},
+                 {Kind::switching, 0, 1, 1e-5},
+                 {Kind::P, 0, 0, 1e-5},
+                 {Kind::Q, 0, 0, 1e-5},
+                 {Kind::angle, 0, 0, 1e-5},
+                 {Kind::speed, 0, 0, 1e-6}});
+}
+/// The current of a GENTPJ is found by Newton's method, its terminal behind the transformer by another one.
+TEST_F(DrivenPlantTest, SlopesThroughATransformerAndASaturatedStator) {
+  const auto* gentpj = sim::library::find_effect("GENTPJ");
+  model_.plant.machine = {gentpj, gentpj->standard_parameters()};
+  model_.plant.transformer = {sim::library::find_effect("STEPUP"), {0.004, 0.12, 1.04}};
+  std::vector<Direction> directions = {
+      {Kind::switching, 0, 1, 1e-5}, {Kind::P, 0, 0, 1e-5}, {Kind::Q, 0, 0, 1e-5}, {Kind::angle, 0, 0, 1e-5}};
+  for (const char* name : {"H", "Xdp", "Xdpp", "Xqpp", "Xl", "S10", "S12", "Kis"}) {
+    const int p = gentpj->parameter_index(name);
+    directions.push_back({Kind::parameter, 0, p, 1e-4 * model_.plant.machine.p[static_cast<std::size_t>(p)]});
+  }
+  expect_slopes(directions);
+}
+TEST_F(DrivenPlantTest, SlopesAlongAddedInputs) {
+  expect_slopes({{Kind::torque, 0, 1, 1e-4},
+                 {Kind::torque, 0, 2, 1e-4},
+                 {Kind::field, 0, 1, 1e-4},
+                 {Kind::field, 0, 3, 1e-4}});
+}
+TEST_F(DrivenPlantTest, LinearPlantAnswersASmallStep) {
+  // V and theta step by little at the start and stay: states and outputs of the linear plant against play-in
+  for (const Complex factor : {Complex(1 + 1e-5, 0), std::polar(1.0, 1e-5)}) {
+    record::Record quiet = record_;
+    const OperatingPoint start = pre_event_point(record_, switchings_, 1.0);
+    std::ranges::fill(quiet.V, std::abs(start.voltage));
+    std::ranges::fill(quiet.theta, std::arg(start.voltage));
+    const VoltageCurve curve(quiet, {});
+    Drive run{.plant = &model_.plant, .conventions = model_.conventions, .record = &quiet, .curve = &curve};
+    run.start = start;
+    run.until = 3.0;
+    const LinearPlant plant = linearise(run);
+    const Response still = drive(run);
+    run.voltage_factor = factor;
+    const Response moved = drive(run);
+    const Eigen::Vector2d u(std::abs(factor) - 1, std::arg(factor));
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(plant.A.rows());
+    double t = quiet.t.front();
+    Eigen::MatrixXd worst = Eigen::MatrixXd::Zero(kOutputs, 2);  // difference, size
+    for (std::size_t k = 0; k < moved.value[0].size(); ++k) {
+      constexpr int kParts = 2000;  // of a sample interval: explicit steps, right to 1e-4
+      for (const double h = (quiet.t[k] - t) / kParts; t < quiet.t[k] - h / 2; t += h)
+        x += h * (plant.A * x + plant.B * u);
+      t = quiet.t[k];
+      const Eigen::VectorXd y = plant.C * x + plant.D * u;
+      for (int o = 0; o < kOutputs; ++o) {
+        const double by = moved.value[o][k] - still.value[o][k];
+        worst(o, 0) = std::max(worst(o, 0), std::abs(by - y[o]));
+        worst(o, 1) = std::max(worst(o, 1), std::abs(by));
+      }
+    }
+    for (int o = 0; o < kOutputs; ++o)
+      // the step's own curvature and the explicit steps' error
+      EXPECT_LE(worst(o, 0), 2e-3 * worst(o, 1) + 1e-10) << output_name(static_cast<Output>(o));
+  }
+}
+TEST_F(DrivenPlantTest, AddedInputIsPiecewiseLinear) {
+  const PiecewiseLinear f{{1.0, 2.0, 4.0}, {0.0, 1.0, -1.0}};
+  EXPECT_EQ(f(0.9), 0.0);
+  EXPECT_EQ(f(1.5), 0.5);
+  EXPECT_EQ(f(3.0), 0.0);
+  EXPECT_EQ(f(4.0), -1.0);
+  EXPECT_EQ(f(4.1), 0.0);
+}
+
+}  // namespace
+}  // namespace swingbank::validate::playin

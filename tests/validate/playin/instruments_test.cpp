@@ -1,0 +1,148 @@
+// A driven plant seen through instruments: what they change is taken back from what is played in, and put on
+// the answer.
+#include "validate/playin/instruments.hpp"
+
+#include <gtest/gtest.h>
+
+#include "sim/library/library.hpp"
+#include "sim/plant/measure.hpp"
+#include "validate/fit/fit.hpp"
+#include "validate/playin/play_in.hpp"
+
+namespace swingbank::validate::playin {
+namespace {
+
+using Kind = Direction::Kind;
+
+sim::plant::Block instrument(const std::string& text) {
+  Problems problems;
+  const auto block = sim::plant::read_measurement(text, "test", problems);
+  problems.raise();
+  return *block;
+}
+
+class InstrumentsTest : public ::testing::Test {
+ protected:
+  InstrumentsTest() {
+    const std::filesystem::path configs = std::filesystem::path(SWINGBANK_SOURCE) / "configs";
+    model_ = plant::load_plant_model(configs / "plants" / "ieee14_bus2.toml");
+    record_ = record::read_record(configs / "records" / "record-example" / "avr_ev1.csv", model_.record_base);
+    switchings_ = detect_switchings(record_);
+  }
+  Drive run_with(const sim::plant::Plant& plant, const record::Record& record,
+                 const VoltageCurve& curve) const {
+    Drive run{.plant = &plant, .conventions = model_.conventions, .record = &record, .curve = &curve};
+    run.start = pre_event_point(record, switchings_, 1.0);
+    run.tolerance = 1e-9;
+    return run;
+  }
+  /// What `chain` makes of the record's voltage and of the plant's own answer to it.
+  record::Record seen_through(const std::vector<sim::plant::Block>& chain) const {
+    const VoltageCurve curve(record_, switchings_);
+    const Response plain = drive(run_with(model_.plant, record_, curve));
+    record::Record seen = record_;
+    sim::plant::TerminalRecord terminal{
+        record_.V, record_.theta, plain.of(Output::P), plain.of(Output::Q), {}};
+    auto phasors = sim::plant::phasors_of(terminal, 60.0, 60.0, "test");
+    sim::plant::measure(chain, 1, phasors);
+    terminal = sim::plant::terminal_of(phasors, record_.theta.front());
+    seen.V = terminal.V;
+    seen.theta = terminal.theta;
+    seen.P = terminal.P;
+    seen.Q = terminal.Q;
+    return seen;
+  }
+  plant::PlantModel model_;
+  record::Record record_;
+  std::vector<Switching> switchings_;
+};
+
+TEST_F(InstrumentsTest, ErrorsOfTransformersAreTakenBackAndPutOnAgain) {
+  const std::vector<sim::plant::Block> chain = {instrument("PTERROR:gain=0.02,phase=0.03"),
+                                                instrument("CTERROR:gain=-0.01,phase=-0.02")};
+  record::Record seen = seen_through(chain);
+  sim::plant::Plant plant = model_.plant;
+  plant.measurements = chain;
+  const VoltageCurve own(record_, switchings_), shown(seen, switchings_);
+  Drive run = run_with(plant, seen, shown);
+  // the operating point as the instruments show it
+  const Drive plain = run_with(model_.plant, record_, own);
+  const Complex factor = std::polar(1.02, 0.03) * std::conj(std::polar(0.99, -0.02));
+  const Complex power = Complex(plain.start.P, plain.start.Q) * factor;
+  run.start = plain.start;
+  run.start.voltage *= std::polar(1.02, 0.03);
+  run.start.P = power.real();
+  run.start.Q = power.imag();
+  const Response r = observe(run);
+  // the integrator's tolerance of 1e-9 per step, a few thousand steps
+  for (std::size_t k = 0; k < r.of(Output::P).size(); ++k) {
+    EXPECT_NEAR(r.of(Output::P)[k], seen.P[k], 1e-6) << k;
+    EXPECT_NEAR(r.of(Output::Q)[k], seen.Q[k], 1e-6) << k;
+  }
+}
+
+TEST_F(InstrumentsTest, SkewIsSeenAtTheJump) {
+  sim::plant::Plant plant = model_.plant;
+  const VoltageCurve curve(record_, switchings_);
+  const Response plain = drive(run_with(plant, record_, curve));
+  plant.measurements = {instrument("SKEW:skew=0.0166")};
+  const Response late = observe(run_with(plant, record_, curve));
+  // the first sample of the fault, nearer to the switching than the skew, still shows the current before it
+  double largest = 0;
+  int moved = 0;
+  for (std::size_t k = 0; k < late.of(Output::P).size(); ++k) {
+    const double d = std::abs(late.of(Output::Q)[k] - plain.of(Output::Q)[k]);
+    largest = std::max(largest, d);
+    moved += d > 0.05;
+  }
+  EXPECT_GT(largest, 0.1);
+  EXPECT_LE(moved, 4);
+}
+
+TEST_F(InstrumentsTest, SlopesAreThoseOfDifferences) {
+  sim::plant::Plant plant = model_.plant;
+  plant.measurements = {instrument("PTERROR:gain=0.02,phase=0.03"), instrument("SKEW:skew=0.004")};
+  const int first = static_cast<int>(sim::plant::block_parameters(plant).size());
+  const std::vector<Direction> along = {
+      {Kind::parameter, 0, 0, 1e-4},     {Kind::P, 0, 0, 1e-4},
+      {Kind::parameter, first, 0, 1e-4}, {Kind::Q, 0, 0, 1e-4},
+      {Kind::parameter, first, 1, 1e-4}, {Kind::parameter, first + 1, 0, 1e-4}};
+  const VoltageCurve curve(record_, switchings_);
+  const Drive run = run_with(plant, record_, curve);
+  const Response at = observe(run, along);
+  for (std::size_t d = 0; d < along.size(); ++d) {
+    const auto moved = [&](double by) {
+      Drive other = run;
+      sim::plant::Plant changed = plant;
+      other.plant = &changed;
+      const double move = by * along[d].scale;
+      if (along[d].kind == Kind::parameter)
+        fit::parameter_value(changed, along[d].block, along[d].index) += move;
+      if (along[d].kind == Kind::P) other.start.P += move;
+      if (along[d].kind == Kind::Q) other.start.Q += move;
+      return observe(other);
+    };
+    const Response up = moved(1), down = moved(-1);
+    for (const Output o : {Output::P, Output::Q}) {
+      double worst = 0, largest = 0;
+      for (std::size_t k = 0; k < at.of(o).size(); ++k) {
+        const double difference = (up.of(o)[k] - down.of(o)[k]) / 2;
+        worst = std::max(worst, std::abs(difference - at.slopes[d].value[static_cast<int>(o)][k]));
+        largest = std::max(largest, std::abs(difference));
+      }
+      // beside a jump the skewed curve has corners: a difference quotient over 2e-4 s straddles them
+      EXPECT_LE(worst, 2e-2 * largest + 1e-8) << "direction " << d << ", " << output_name(o);
+      EXPECT_GT(largest, 0) << "direction " << d;
+    }
+  }
+}
+
+TEST(Instruments, ChanceStepsAndFiltersCannotBeTakenBack) {
+  for (const char* name : {"CTERROR", "PTERROR", "SKEW"})
+    EXPECT_TRUE(can_be_taken_back(*sim::library::find_effect(name))) << name;
+  for (const char* name : {"NOISE", "GAPS", "QUANTISE", "PMUFILTER"})
+    EXPECT_FALSE(can_be_taken_back(*sim::library::find_effect(name))) << name;
+}
+
+}  // namespace
+}  // namespace swingbank::validate::playin

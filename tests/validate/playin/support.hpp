@@ -1,0 +1,112 @@
+#pragma once
+// Simulated events, and records made of them, shared by the tests of play-in and compare.
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "sim/library/library.hpp"
+#include "sim/reference/reference.hpp"
+#include "validate/playin/voltage_curve.hpp"
+#include "validate/record/record.hpp"
+
+namespace swingbank::validate::test {
+
+inline std::filesystem::path source(const std::string& path) {
+  return std::filesystem::path(SWINGBANK_SOURCE) / path;
+}
+
+/// The messages of the InputError that `action` throws; empty if it throws none.
+template <class F>
+std::vector<std::string> messages(F action) {
+  std::vector<std::string> all;
+  try {
+    action();
+  } catch (const InputError& error) {
+    for (const auto& p : error.problems()) all.push_back(p.sentence());
+  }
+  return all;
+}
+
+struct Simulated {
+  sim::grid::Grid grid;
+  double t_on, t_off;
+  sim::reference::ReferenceRun before, after;  ///< at switching instants the value just before, just after
+};
+
+/// A grid of configs/networks with a fault at a bus, by the reference integrator. Its rtol of 1e-10 per step
+/// keeps its own error near 1e-9, far below what is tested. `change`: of the grid, before.
+inline Simulated simulate(const std::string& name, sim::Conventions conventions, int bus, double t_on,
+                          double t_off, double rate = 480.0, Complex z = {},
+                          const std::function<void(sim::grid::Grid&)>& change = {}) {
+  Simulated s{sim::grid::load_grid(source("configs/networks/" + name + ".raw"),
+                                   source("configs/networks/" + name + ".dyr"), conventions),
+              t_on,
+              t_off,
+              {},
+              {}};
+  if (change) change(s.grid);
+  sim::network::Event event;
+  event.faults.push_back({s.grid.network.bus_index(bus), t_on, t_off, z});
+  sim::reference::ReferenceOptions options;
+  options.rate = rate;
+  options.t_end = 10.0;
+  options.rtol = 1e-10;
+  options.atol = 1e-12;
+  options.channels = {sim::Channel::V, sim::Channel::theta, sim::Channel::P, sim::Channel::Q,
+                      sim::Channel::speed};
+  s.before = sim::reference::run_reference(s.grid, event, options);
+  options.after_switching = true;
+  s.after = sim::reference::run_reference(s.grid, event, options);
+  return s;
+}
+
+/// Every machine a GENTPJ, whose current is no linear function of its voltage, behind a transformer.
+inline void put_behind_transformers(sim::grid::Grid& grid) {
+  for (sim::plant::Plant& plant : grid.plants) {
+    const sim::Effect* gentpj = sim::library::find_effect("GENTPJ");
+    plant.machine = {gentpj, gentpj->standard_parameters()};
+    plant.transformer = {sim::library::find_effect("STEPUP"), {0.004, 0.12, 1.04}};
+  }
+}
+
+/// The record of one plant at every `stride`-th sample, P and Q on the machine's own base; Gaussian noise of
+/// `noise` pu on P and Q and a tenth of it on V and theta.
+inline record::Record record_of(const Simulated& s, int plant, int stride, double noise = 0.0) {
+  record::Record r;
+  r.name = "simulated.csv";
+  r.base.mva = s.grid.plants[static_cast<std::size_t>(plant)].mva;
+  std::mt19937_64 generator(7);
+  std::normal_distribution<double> normal;
+  const auto add = [&](std::vector<double>& channel, int c, int k, double sigma) {
+    channel.push_back(s.before.at(plant, c)[k] + sigma * normal(generator));
+  };
+  for (int k = 0; k < s.before.samples; k += stride) {
+    r.t.push_back(k / s.before.rate);
+    add(r.V, 0, k, noise / 10);
+    add(r.theta, 1, k, noise / 10);
+    add(r.P, 2, k, noise);
+    add(r.Q, 3, k, noise);
+  }
+  return r;
+}
+
+/// The exact instants; with both one-sided voltages if asked (they must be samples of the run).
+inline std::vector<playin::Switching> instants(const Simulated& s, int plant, bool one_sided) {
+  std::vector<playin::Switching> list;
+  for (const double t : {s.t_on, s.t_off}) {
+    playin::Switching w{.time = t};
+    if (one_sided) {
+      const auto k = static_cast<int>(std::lround(t * s.before.rate));
+      w.has_before = w.has_after = true;
+      w.before = std::polar(s.before.at(plant, 0)[k], s.before.at(plant, 1)[k]);
+      w.after = std::polar(s.after.at(plant, 0)[k], s.after.at(plant, 1)[k]);
+    }
+    list.push_back(w);
+  }
+  return list;
+}
+
+}  // namespace swingbank::validate::test

@@ -1,0 +1,88 @@
+#include "validate/playin/voltage_curve.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/validate/playin/support.hpp"
+
+namespace swingbank::validate::playin {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+/// V(t) = 1 + t^3/10 before 1 s, 0.5 + t^2/20 until 1.5 s, 0.9 + t/50 after, at 20/s; theta = 0.
+double law(double t) { return t <= 1 ? 1 + t * t * t / 10 : t <= 1.5 ? 0.5 + t * t / 20 : 0.9 + t / 50; }
+record::Record stepped() {
+  record::Record r;
+  r.name = "stepped";
+  for (int k = 0; k <= 60; ++k) {
+    r.t.push_back(k / 20.0);
+    r.V.push_back(law(r.t.back()));
+    r.theta.push_back(0);
+  }
+  return r;
+}
+
+TEST(VoltageCurveTest, IsExactForCubicsUpToTheJumps) {
+  const VoltageCurve curve(stepped(), {{.time = 1.0}, {.time = 1.5}});
+  ASSERT_EQ(curve.segments(), 3);
+  for (const double t : {0.0, 0.013, 0.97, 1.0}) EXPECT_NEAR(curve(0, t).real(), 1 + t * t * t / 10, 1e-13);
+  for (const double t : {1.0, 1.02, 1.33, 1.5})
+    EXPECT_NEAR(curve(1, t).real(), 0.5 + t * t / 20, 1e-13);  // extrapolated back to 1.0
+  for (const double t : {1.5, 1.51, 2.99}) EXPECT_NEAR(curve(2, t).real(), 0.9 + t / 50, 1e-13);
+}
+TEST(VoltageCurveTest, ShortSegmentsTakeWhatTheyHave) {
+  // 1, 2 and 3 points between the jumps: constant, line, parabola.
+  for (const int points : {1, 2, 3}) {
+    const double off = 1.0 + points / 20.0;
+    record::Record r = stepped();
+    for (int k = 21; k <= 20 + points; ++k)
+      r.V[static_cast<std::size_t>(k)] = points == 1   ? 0.3
+                                         : points == 2 ? 0.3 + r.t[static_cast<std::size_t>(k)]
+                                                       : law(r.t[static_cast<std::size_t>(k)]);
+    const VoltageCurve curve(r, {{.time = 1.0}, {.time = off}});
+    const double t = 1.01;
+    EXPECT_NEAR(curve(1, t).real(), points == 1 ? 0.3 : points == 2 ? 0.3 + t : 0.5 + t * t / 20, 1e-12);
+  }
+}
+TEST(VoltageCurveTest, OneSidedValuesAreHit) {
+  Switching s{
+      .time = 1.02, .has_before = true, .has_after = true, .before = {1.2, 0.1}, .after = {0.4, -0.2}};
+  const VoltageCurve curve(stepped(), {s});
+  EXPECT_NEAR(std::abs(curve(0, 1.02) - s.before), 0, 1e-14);
+  EXPECT_NEAR(std::abs(curve(1, 1.02) - s.after), 0, 1e-14);
+}
+TEST(VoltageCurveTest, RefusesSegmentsWithoutSamples) {
+  EXPECT_THAT(test::messages([] {
+                VoltageCurve(stepped(), {{.time = 1.01}, {.time = 1.02}});
+              }),
+              ElementsAre(HasSubstr("no sample between")));
+  EXPECT_THAT(test::messages([] { VoltageCurve(stepped(), {{.time = -1.0}}); }),
+              ElementsAre(HasSubstr("no sample between")));
+  EXPECT_THAT(test::messages([] { VoltageCurve(stepped(), {{.time = 3.5}}); }),
+              ElementsAre(HasSubstr("no sample between")));
+}
+
+TEST(DetectTest, FindsTheFaultsOfTheExampleRecords) {
+  const double truth[4][2] = {{2.0, 2.1}, {2.0, 2.08}, {2.0, 2.2}, {2.0, 2.15}};  // configs/records/README.md
+  for (int i = 0; i < 4; ++i) {
+    const record::Record r = record::read_record(
+        test::source("configs/records/record-example/avr_ev" + std::to_string(i + 1) + ".csv"), {});
+    const auto found = detect_switchings(r);
+    ASSERT_EQ(found.size(), 2u) << "event " << i + 1;
+    for (int j = 0; j < 2; ++j)
+      EXPECT_LE(std::abs(found[static_cast<std::size_t>(j)].time - truth[i][j]),
+                found[static_cast<std::size_t>(j)].uncertainty + 1e-6);
+  }
+}
+TEST(DetectTest, FindsAFaultOfOneSampleAndNothingInAQuietRecord) {
+  record::Record r = stepped();
+  std::fill(r.V.begin(), r.V.end(), 1.0);
+  EXPECT_TRUE(detect_switchings(r).empty());
+  r.V[30] = 0.2;
+  EXPECT_EQ(detect_switchings(r).size(), 2u);
+}
+
+}  // namespace
+}  // namespace swingbank::validate::playin

@@ -1,0 +1,430 @@
+// COMTRADE in all its forms, written here from the standard's layout (C37.111-1999 and -2013, 7 and 8).
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <numbers>
+
+#include "tests/validate/playin/support.hpp"
+#include "validate/check/check.hpp"
+#include "validate/record/formats.hpp"
+
+namespace swingbank::validate::record {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr double kPi = std::numbers::pi, kTurn = 2 * kPi;
+const RecordBase kBase{200, 60, 138};
+
+struct Channel {
+  std::string id, phase, component, unit;
+  double a = 0.001, b = 0;
+  std::function<double(double)> value;  ///< of time [s], on the side that `side` names
+  double skew_us = 0, primary = 1, secondary = 1;
+  char side = 'P';
+};
+
+/// Writes a pair of files. `edit` may spoil the lines of the configuration.
+struct Writer {
+  int revision = 1999;
+  std::string kind = "ASCII";
+  double rate = 60, nominal = 60;
+  int samples = 90, status = 0;
+  bool stamps_only = false, nanoseconds = false;
+  double multiplier = 1;
+  std::vector<Channel> channels;
+  std::function<void(std::vector<std::string>& cfg)> edit = [](auto&) {};
+  int missing = -1;  ///< sample whose first channel is marked missing
+
+  [[nodiscard]] std::string cfg() const {
+    std::vector<std::string> lines{
+        fmt::format("station,device,{}", revision),
+        fmt::format("{},{}A,{}D", channels.size() + static_cast<std::size_t>(status), channels.size(),
+                    status)};
+    int n = 0;
+    for (const auto& c : channels)
+      lines.push_back(fmt::format("{},{},{},{},{},{},{},{},-32767,32767,{},{},{}", ++n, c.id, c.phase,
+                                  c.component, c.unit, c.a, c.b, c.skew_us, c.primary, c.secondary, c.side));
+    for (int d = 0; d < status; ++d) lines.push_back(fmt::format("{},trip,,,0", d + 1));
+    lines.push_back(fmt::format("{}", nominal));
+    lines.push_back(stamps_only ? "0" : "1");
+    lines.push_back(fmt::format("{},{}", stamps_only ? 0 : rate, samples));
+    const char* const fraction = nanoseconds ? "250000000" : "250000";
+    lines.push_back(fmt::format("01/05/2024,12:00:00.{}", fraction));
+    lines.push_back(fmt::format("01/05/2024,12:00:01.{}", fraction));
+    lines.push_back(kind);
+    lines.push_back(fmt::format("{}", multiplier));
+    if (revision == 2013) lines.insert(lines.end(), {"0,0", "0,3"});
+    edit(lines);
+    std::string all;
+    for (const auto& l : lines) all += l + "\r\n";
+    return all;
+  }
+
+  [[nodiscard]] std::string dat() const {
+    std::string all;
+    const auto put = [&](auto value) {
+      char bytes[sizeof value];
+      std::memcpy(bytes, &value, sizeof value);  // tests run on little-endian machines, as the format is
+      all.append(bytes, sizeof value);
+    };
+    for (int k = 0; k < samples; ++k) {
+      const double t = k / rate;
+      const auto stamp = static_cast<std::uint32_t>(std::lround(t * (nanoseconds ? 1e9 : 1e6) / multiplier));
+      if (kind == "ASCII")
+        all += fmt::format("{},{}", k + 1, stamp);
+      else
+        put(static_cast<std::uint32_t>(k + 1)), put(stamp);
+      for (const auto& c : channels) {
+        const bool lost = k == missing && &c == channels.data();
+        const double x = (c.value(t + 1e-6 * c.skew_us) - c.b) / c.a;
+        if (kind == "ASCII")
+          all += lost ? std::string(revision == 1999 ? ",99999" : ",") : fmt::format(",{:.0f}", x);
+        else if (kind == "BINARY")
+          put(lost ? std::int16_t{-32768} : static_cast<std::int16_t>(std::lround(x)));
+        else if (kind == "BINARY32")
+          put(lost ? std::numeric_limits<std::int32_t>::min() : static_cast<std::int32_t>(std::lround(x)));
+        else
+          put(lost ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(x));
+      }
+      if (kind == "ASCII") {
+        for (int d = 0; d < status; ++d) all += ",1";
+        all += "\r\n";
+      } else {
+        for (int d = 0; d < (status + 15) / 16; ++d) put(std::uint16_t{1});
+      }
+    }
+    return all;
+  }
+  Record read(const RecordBase& base = kBase, const ReadOptions& options = {}) const {
+    return record_of_comtrade(parse_comtrade(cfg(), dat(), "e.cfg", "e.dat"), "e.cfg", base, options);
+  }
+  [[nodiscard]] std::vector<std::string> faults(const RecordBase& base = kBase,
+                                                const ReadOptions& options = {}) const {
+    return test::messages([&] { read(base, options); });
+  }
+};
+
+/// 1.02 pu, 10 degrees, 80 MW, 20 Mvar, slowly moving.
+double slow(double t) { return 0.05 * std::sin(kTurn * 0.5 * t); }
+Writer phasors(int revision = 1999, const std::string& kind = "ASCII") {
+  Writer w;
+  w.revision = revision;
+  w.kind = kind;
+  w.channels = {{"V1 MAG", "", "G7", "kV", 0.01, 0, [](double t) { return 138 * (1.02 + slow(t)); }},
+                {"V1 ANG", "", "G7", "deg", 0.01, 0, [](double t) { return 10 + 100 * slow(t); }},
+                {"P", "", "G7", "MW", 0.01, 0.5, [](double t) { return 80 + 100 * slow(t); }},
+                {"Q", "", "G7", "MVAR", 0.01, 0, [](double t) { return 20 - 100 * slow(t); }},
+                {"SPARE", "", "G7", "V", 0.01, 0, [](double) { return 0.0; }}};
+  return w;
+}
+
+struct Form {
+  int revision;
+  const char* kind;
+  int status;
+};
+class ComtradeFormTest : public ::testing::TestWithParam<Form> {};
+TEST_P(ComtradeFormTest, PhasorsReadBack) {
+  Writer w = phasors(GetParam().revision, GetParam().kind);
+  w.status = GetParam().status;
+  const Record r = w.read();
+  ASSERT_EQ(r.samples(), 90);
+  EXPECT_DOUBLE_EQ(r.rate(), 60);
+  for (std::size_t k = 0; k < 90; ++k) {
+    const double t = static_cast<double>(k) / 60;
+    // Half a step of the integers, in pu and rad.
+    EXPECT_NEAR(r.V[k], 1.02 + slow(t), 0.0051 / 138);
+    EXPECT_NEAR(r.theta[k], (10 + 100 * slow(t)) * kPi / 180, 0.0051 * kPi / 180);
+    EXPECT_NEAR(r.P[k], 0.4 + 0.5 * slow(t), 0.0051 / 200);
+    EXPECT_NEAR(r.Q[k], 0.1 - 0.5 * slow(t), 0.0051 / 200);
+  }
+  EXPECT_EQ(r.start, "01/05/2024,12:00:00.250000");
+  EXPECT_EQ(r.format, fmt::format("COMTRADE {} {}", GetParam().revision, GetParam().kind));
+  EXPECT_THAT(r.ignored, ElementsAre("SPARE"));
+}
+INSTANTIATE_TEST_SUITE_P(All, ComtradeFormTest,
+                         ::testing::Values(Form{1999, "ASCII", 3}, Form{1999, "BINARY", 0},
+                                           Form{1999, "BINARY", 17}, Form{2013, "ASCII", 0},
+                                           Form{2013, "BINARY", 16}, Form{2013, "BINARY32", 1},
+                                           Form{2013, "FLOAT32", 2}),
+                         [](const auto& each) {
+                           return fmt::format("{}_{}_{}", each.param.revision, each.param.kind,
+                                              each.param.status);
+                         });
+
+/// Waveforms of phasors that move slowly, with the sign of a generator's current.
+struct Machine {
+  double hertz_off = 0, harmonic = 0, negative = 0;
+  [[nodiscard]] double V(double t) const { return 1.02 + slow(t); }
+  [[nodiscard]] double theta(double t) const { return 0.3 + kTurn * hertz_off * t + slow(t); }
+  [[nodiscard]] Complex current(double t) const {  // pu on 200 MVA
+    return std::conj(Complex(0.4 + slow(t), 0.1) / std::polar(V(t), theta(t)));
+  }
+  /// Phase p in units of `peak` at 1 pu.
+  [[nodiscard]] double wave(Complex x, double t, int p, double peak) const {
+    const double w = kTurn * 60 * t, shift = -kTurn / 3 * p;
+    const double base = std::abs(x) * std::cos(w + std::arg(x) + shift);
+    return peak * (base + negative * std::cos(w - shift) + harmonic * std::cos(5 * (w + shift)));
+  }
+};
+Writer waveforms(const Machine& m, double rate = 4800, int samples = 4800) {
+  Writer w;
+  w.rate = rate;
+  w.samples = samples;
+  w.revision = 2013;
+  w.kind = "FLOAT32";
+  const double volts = 138 * std::sqrt(2.0 / 3),
+               amperes = 1e3 * 200 / (std::sqrt(3.0) * 138) * std::sqrt(2.0);
+  for (int p = 0; p < 3; ++p) {
+    const std::string phase(1, static_cast<char>('A' + p));
+    w.channels.push_back({"V" + phase, phase, "G7", "kV", 1, 0,
+                          [=](double t) { return m.wave(std::polar(m.V(t), m.theta(t)), t, p, volts); }});
+    w.channels.push_back(
+        {"I" + phase, phase, "G7", "A", 1, 0, [=](double t) { return m.wave(m.current(t), t, p, amperes); }});
+  }
+  return w;
+}
+/// Largest error of V, theta, P and Q against the machine at the record's own instants.
+double largest_error(const Record& r, const Machine& m) {
+  double worst = 0;
+  for (std::size_t k = 0; k < r.t.size(); ++k) {
+    const double t = r.t[k];
+    const double turns = std::remainder(r.theta[k] - m.theta(t), kTurn);
+    worst = std::max({worst, std::abs(r.V[k] - m.V(t)), std::abs(turns), std::abs(r.P[k] - 0.4 - slow(t)),
+                      std::abs(r.Q[k] - 0.1)});
+  }
+  return worst;
+}
+
+TEST(RecordComtradeTest, WaveformsBecomePhasors) {
+  const Record r = waveforms({}).read();
+  EXPECT_DOUBLE_EQ(r.rate(), 60);
+  EXPECT_EQ(r.samples(), 60);  // as many whole cycles
+  EXPECT_THAT(r.notes, Contains(HasSubstr("window of one cycle")));
+  // The mean over a cycle of what moves at 0.5 Hz: 0.05 (2 pi 0.5/60)^2 / 24 and less; floats add 1e-6.
+  EXPECT_LT(largest_error(r, {}), 1e-5);
+  EXPECT_DOUBLE_EQ(waveforms({}).read(kBase, {.phasor_rate = 240}).rate(), 240);
+}
+TEST(RecordComtradeTest, HarmonicsAndImbalanceDropOut) {
+  const Machine m{.harmonic = 0.05, .negative = 0.03};
+  // A cycle of exactly 80 samples is orthogonal to both.
+  EXPECT_LT(largest_error(waveforms(m).read(), m), 1e-5);
+}
+TEST(RecordComtradeTest, OffNominalFrequency) {
+  const Machine m{.hertz_off = 0.5};
+  // 1 - sinc(0.5/60) = 1.1e-4 in V, twice that in P.
+  EXPECT_LT(largest_error(waveforms(m).read(), m), 3e-4);
+}
+TEST(RecordComtradeTest, ACycleNeedNotHoldAWholeNumberOfSamples) {
+  // 3,000/s at 60 Hz: 50; 2,500/s: 41.67, of which the ends count in part; ripple of the order (2 pi/41.67)^2
+  // / 24.
+  EXPECT_LT(largest_error(waveforms({}, 3000, 3000).read(), {}), 1e-5);
+  EXPECT_LT(largest_error(waveforms({}, 2500, 2500).read(), {}), 2e-3);
+}
+TEST(RecordComtradeTest, SecondaryValuesVoltsAndSkew) {
+  Writer w = waveforms({});
+  for (auto& c : w.channels) {
+    const auto primary = c.value;
+    const bool volt = c.unit == "kV";
+    c.primary = volt ? 138000 : 1200;
+    c.secondary = volt ? 115 : 5;
+    c.side = 's';
+    c.unit = volt ? "V" : "A";
+    const double factor = volt ? 1e3 * 115 / 138000 : 5.0 / 1200;
+    c.value = [=](double t) { return factor * primary(t); };
+    c.skew_us = volt ? 0 : 100;
+  }
+  // 100 us of skew would be 2.2 degrees if it were left alone: 0.015 pu of Q.
+  EXPECT_LT(largest_error(w.read(), {}), 1e-4);
+}
+TEST(RecordComtradeTest, PhasesInOtherSpellings) {
+  Writer w = waveforms({});
+  const char* const names[] = {"UL1", "IL1", "UL2", "IL2", "UL3", "IL3"};
+  for (std::size_t c = 0; c < 6; ++c) w.channels[c].phase = "", w.channels[c].id = names[c];
+  EXPECT_LT(largest_error(w.read(), {}), 1e-5);
+}
+TEST(RecordComtradeTest, OneCircuitOfSeveral) {
+  Writer w = waveforms({});
+  for (int p = 0; p < 3; ++p) {
+    Channel other = w.channels[static_cast<std::size_t>(2 * p + 1)];
+    other.component = "line 3";
+    other.value = [](double) { return 0.0; };
+    w.channels.push_back(other);
+  }
+  EXPECT_THAT(w.faults(),
+              ElementsAre(AllOf(HasSubstr("several three-phase current"), HasSubstr("G7, line 3"))));
+  EXPECT_LT(largest_error(w.read(kBase, {.terminal = "G7"}), {}), 1e-5);
+}
+TEST(RecordComtradeTest, TimesFromStamps) {
+  Writer w = phasors(2013, "BINARY");
+  w.stamps_only = true;
+  EXPECT_NEAR(w.read().rate(), 60, 1e-3);  // microseconds
+  w.nanoseconds = true;
+  EXPECT_NEAR(w.read().rate(), 60, 1e-6);
+  w = phasors();
+  w.stamps_only = true;
+  w.multiplier = 1000;  // stamps in milliseconds: rounded, so put on the even grid
+  const Record r = w.read();
+  EXPECT_DOUBLE_EQ(r.rate(), 60);
+  EXPECT_THAT(r.notes, Contains(HasSubstr("rounded to 1 ms")));
+}
+TEST(RecordComtradeTest, StampsAndRateThatDisagreeAreNoted) {
+  Writer w = phasors();
+  w.edit = [](auto& lines) { lines[9] = "30,90"; };
+  EXPECT_THAT(w.read().notes, Contains(HasSubstr("the rate was taken")));
+}
+
+TEST(RecordComtradeTest, FaultsOfTheConfiguration) {
+  Writer w = phasors();
+  w.edit = [](auto& lines) {
+    lines[8] = "2", lines[9] = "60,40", lines.insert(lines.begin() + 10, "240,90");
+  };
+  EXPECT_THAT(w.faults(),
+              ElementsAre(AllOf(HasSubstr("several sampling rates (60 and 240"), HasSubstr("e.cfg:11"))));
+  w.edit = [](auto& lines) { lines[0] = "station,device"; };
+  EXPECT_THAT(w.faults(), ElementsAre(HasSubstr("1991")));
+  w.edit = [](auto& lines) { lines[1] = "6,5A,0D"; };
+  EXPECT_THAT(w.faults(), ElementsAre(AllOf(HasSubstr("numbers of channels"), HasSubstr("e.cfg:2"))));
+  w.edit = [](auto& lines) {
+    lines[2] = "1,V1 MAG,,G7,kV,x,0,0,0,0,1,1,P", lines[4] = "3,P,,G7,MW,1,0", lines[12] = "BINARY32";
+  };
+  EXPECT_THAT(w.faults(), ElementsAre(AllOf(HasSubstr("multiplier a = 'x'"), HasSubstr("e.cfg:3")),
+                                      AllOf(HasSubstr("7 fields"), HasSubstr("e.cfg:5")),
+                                      AllOf(HasSubstr("BINARY32"), HasSubstr("1999"))));
+  w.edit = [](auto& lines) { lines.resize(8); };
+  EXPECT_THAT(w.faults(), ElementsAre(AllOf(HasSubstr("end of the configuration"), HasSubstr("e.cfg:9"))));
+  w.edit = [](auto& lines) { lines[2] = "1,V1 MAG,,G7,kV,1,0,0,0,0,0,0,S"; };
+  EXPECT_THAT(w.faults(), ElementsAre(HasSubstr("ratio 0/0")));
+}
+TEST(RecordComtradeTest, FaultsOfTheData) {
+  Writer w = phasors(1999, "BINARY");
+  const auto read = [&](const std::string& dat) {
+    return test::messages([&] { parse_comtrade(w.cfg(), dat, "e.cfg", "e.dat"); });
+  };
+  EXPECT_THAT(read(w.dat().substr(0, 18 * 60 + 7)),
+              ElementsAre(AllOf(HasSubstr("7 bytes left over"), HasSubstr("byte 1080")),
+                          AllOf(HasSubstr("60 samples"), HasSubstr("has 90"))));
+  std::string gap = w.dat();
+  gap.erase(18 * 40, 18 * 2);
+  EXPECT_THAT(read(gap),
+              ElementsAre(HasSubstr("88 samples"), AllOf(HasSubstr("sample number 43"),
+                                                         HasSubstr("bytes 720-737"), HasSubstr("41 was"))));
+  w = phasors(1999, "ASCII");
+  std::string broken = w.dat();
+  broken.replace(broken.find(",", broken.find("\n40,") + 8), 2, ",x");
+  EXPECT_THAT(read(broken), ElementsAre(AllOf(HasSubstr("no number"), HasSubstr("e.dat:40"))));
+}
+TEST(RecordComtradeTest, MarkedSamplesAreMissing) {
+  for (const auto& [revision, kind] :
+       {std::pair{1999, "ASCII"}, {2013, "ASCII"}, {1999, "BINARY"}, {2013, "BINARY32"}, {2013, "FLOAT32"}}) {
+    Writer w = phasors(revision, kind);
+    w.missing = 50;
+    EXPECT_THAT(w.faults(), ElementsAre(AllOf(HasSubstr("V1 MAG"), HasSubstr("marked missing")))) << kind;
+  }
+  Writer w = waveforms({});
+  w.missing = 50;
+  EXPECT_THAT(w.faults(),
+              Contains(AllOf(HasSubstr("VA"), HasSubstr("marked missing"), HasSubstr("bytes 1600-"))));
+}
+TEST(RecordComtradeTest, WaveformsThatCannotBeUsed) {
+  Writer w = waveforms({});
+  EXPECT_THAT(w.faults({200, 60, 0}), ElementsAre(HasSubstr("base_kv")));
+  EXPECT_THAT(w.faults({200, 50, 138}), ElementsAre(AllOf(HasSubstr("60 Hz grid"), HasSubstr("for 50 Hz"))));
+  w.channels.erase(w.channels.begin());
+  EXPECT_THAT(w.faults(), ElementsAre(HasSubstr("no three-phase voltage")));
+  EXPECT_THAT(waveforms({}, 240, 240).faults(), Contains(HasSubstr("at least 8 samples")));
+}
+
+class ComtradeFileTest : public ::testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  void write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+  }
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / fmt::format("comtrade-{}", ::getpid());
+};
+TEST_F(ComtradeFileTest, EitherFileOfThePairNamesIt) {
+  const Writer w = phasors(1999, "BINARY");
+  write("e.cfg", w.cfg());
+  write("e.dat", w.dat());
+  const Record r = read_record(folder_ / "e.cfg", kBase);
+  EXPECT_EQ(r.samples(), 90);
+  EXPECT_EQ(r.name, "e.cfg");
+  EXPECT_EQ(read_record(folder_ / "e.dat", kBase).hash, r.hash);
+  write("F.CFG", w.cfg());
+  write("F.DAT", w.dat());
+  EXPECT_EQ(read_record(folder_ / "F.CFG", kBase).hash, r.hash);
+  write("alone.cfg", w.cfg());
+  EXPECT_THAT(test::messages([&] { read_record(folder_ / "alone.cfg", kBase); }),
+              ElementsAre(HasSubstr("alone.dat")));
+}
+TEST_F(ComtradeFileTest, OneFile) {
+  for (const char* kind : {"ASCII", "BINARY", "FLOAT32"}) {
+    const Writer w = phasors(2013, kind);
+    const std::string dat = w.dat();
+    const std::string heading =
+        std::string(kind) == "ASCII" ? "ASCII" : fmt::format("{}: {}", kind, dat.size());
+    write("e.cff", "--- file type: CFG ---\r\n" + w.cfg() +
+                       "--- file type: INF ---\r\n\r\n--- file type: HDR ---\r\n\r\n" +
+                       "--- file type: DAT " + heading + " ---\r\n" + dat);
+    EXPECT_EQ(read_record(folder_ / "e.cff", kBase).samples(), 90) << kind;
+  }
+  write("e.cff", "nothing");
+  EXPECT_THAT(test::messages([&] { read_record(folder_ / "e.cff", kBase); }),
+              ElementsAre(HasSubstr("e.cff")));
+}
+
+TEST(RecordComtradeTest, AFaultSeenByAFaultRecorderIsASoundRecord) {
+  // The waveforms that a simulated fault means at a terminal, 64 samples a cycle, between samples linear in V
+  // and I.
+  const test::Simulated s = test::simulate("ieee14_genrou", sim::Conventions::psse(), 4, 2.0041, 2.1083);
+  const Record fine = test::record_of(s, 1, 1);
+  Writer w;
+  w.revision = 2013;
+  w.kind = "FLOAT32";
+  w.rate = 3840;
+  w.samples = static_cast<int>(9.9 * w.rate);
+  const RecordBase base{fine.base.mva, 60, 18};
+  const double volts = 18 * std::sqrt(2.0 / 3),
+               amperes = fine.base.mva / (std::sqrt(3.0) * 18) * std::sqrt(2.0);
+  const auto at = [&](double t, bool current) {
+    const auto k = std::min(static_cast<std::size_t>(t * 480), fine.t.size() - 2);
+    const double x = t * 480 - static_cast<double>(k);
+    const auto phasor = [&](std::size_t j) {
+      const Complex v = std::polar(fine.V[j], fine.theta[j]);
+      return current ? std::conj(Complex(fine.P[j], fine.Q[j]) / v) : v;
+    };
+    return (1 - x) * phasor(k) + x * phasor(k + 1);
+  };
+  for (int p = 0; p < 3; ++p)
+    for (const bool current : {false, true})
+      w.channels.push_back(
+          {current ? "I" : "V", std::string(1, static_cast<char>('A' + p)), "G2", current ? "kA" : "kV", 1, 0,
+           [=](double t) { return Machine{}.wave(at(t, current), t, p, current ? amperes : volts); }});
+  const Record r = w.read(base);
+  std::string told;
+  for (const auto& f : check::check_record(r, {fine.base.mva, 60})) told += f.problem.sentence() + "\n";
+  EXPECT_EQ(told, "");
+  // Away from the switchings phasors equal the simulated values: what the window averages moves by 1e-4 in a
+  // cycle.
+  for (std::size_t k = 0; k < r.t.size(); ++k) {
+    if (r.t[k] > 1.9 && r.t[k] < 2.3) continue;
+    EXPECT_NEAR(r.V[k], std::abs(at(r.t[k], false)), 3e-4) << r.t[k];
+    EXPECT_NEAR(r.P[k], std::real(at(r.t[k], false) * std::conj(at(r.t[k], true))), 1e-3) << r.t[k];
+  }
+}
+
+}  // namespace
+}  // namespace swingbank::validate::record

@@ -1,0 +1,79 @@
+// A run as `swingbank simulate --out run.h5` writes it (docs/formats.md), read as a record.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+
+#include "mpi/store/hdf5_file.hpp"
+#include "tests/validate/playin/support.hpp"
+
+namespace swingbank::validate::record {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class RecordHdf5Test : public ::testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  /// Two plants with delta, P, Q, V, theta; value = plant + channel / 10 + time / 100.
+  void write(const std::string& format, hsize_t channels = 5) {
+    const std::lock_guard guard(mpi::store::h5::lock());
+    mpi::store::h5::File h = mpi::store::h5::File::create(file_);
+    std::vector<double> time, values;
+    for (int k = 0; k < 50; ++k) time.push_back(k / 60.0);
+    for (int plant = 0; plant < 2; ++plant)
+      for (int c = 0; c < static_cast<int>(channels); ++c)
+        for (const double t : time) values.push_back(plant + c / 10.0 + t / 100);
+    h.create<double>("/time", {50});
+    h.write("/time", 0, 50, time.data());
+    h.create<double>("/records", {2, channels, 50});
+    h.write("/records", 0, 2, values.data());
+    h.attribute("format", format);
+    h.attribute("plant_names", std::vector<std::string>{"GENROU 1", "GENROU 7"});
+    h.attribute("plant_base_mva", std::vector<double>{100, 300});
+    h.attribute("channel_names", std::vector<std::string>{"delta", "P", "Q", "V", "theta"});
+    h.attribute("channel_units", std::vector<std::string>{"rad", "pu", "pu", "pu", "rad"});
+    h.close();
+  }
+  std::vector<std::string> faults(const std::string& terminal) {
+    return test::messages([&] { read_record(file_.string() + terminal, {}); });
+  }
+  std::filesystem::path folder_ = std::filesystem::temp_directory_path() / fmt::format("run-{}", ::getpid());
+  std::filesystem::path file_ = folder_ / "run.h5";
+};
+
+TEST_F(RecordHdf5Test, OnePlantOnTheRecordsBase) {
+  write("swingbank-run-1");
+  const Record r = read_record(file_.string() + "#GENROU 7", {150, 60, 0});
+  ASSERT_EQ(r.samples(), 50);
+  const double t = 7 / 60.0;
+  EXPECT_DOUBLE_EQ(r.t[7], t);
+  EXPECT_DOUBLE_EQ(r.P[7], (1.1 + t / 100) * 2);  // 300 MVA to 150 MVA
+  EXPECT_DOUBLE_EQ(r.Q[7], (1.2 + t / 100) * 2);
+  EXPECT_DOUBLE_EQ(r.V[7], 1.3 + t / 100);
+  EXPECT_DOUBLE_EQ(r.theta[7], 1.4 + t / 100);
+  EXPECT_EQ(r.terminal, "GENROU 7");
+  EXPECT_EQ(r.name, "run.h5#GENROU 7");
+  EXPECT_THAT(r.ignored, ElementsAre("delta"));
+}
+TEST_F(RecordHdf5Test, SeveralPlantsOrNoSuchPlant) {
+  write("swingbank-run-1");
+  EXPECT_THAT(faults(""), ElementsAre(AllOf(HasSubstr("several plants"), HasSubstr("GENROU 1, GENROU 7"))));
+  EXPECT_THAT(faults("#GENROU 2"), ElementsAre(HasSubstr("no plant 'GENROU 2'")));
+}
+TEST_F(RecordHdf5Test, FilesThatAreNoRuns) {
+  write("swingbank-run-2");
+  EXPECT_THAT(faults("#GENROU 7"), ElementsAre(HasSubstr("no run")));
+  write("swingbank-run-1", 4);
+  EXPECT_THAT(faults("#GENROU 7"), ElementsAre(HasSubstr("parts do not fit")));
+  EXPECT_THAT(faults("-missing.h5"), ElementsAre(HasSubstr("run.h5-missing.h5")));
+}
+
+}  // namespace
+}  // namespace swingbank::validate::record

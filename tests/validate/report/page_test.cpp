@@ -1,0 +1,73 @@
+#include "validate/report/page.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "base/write_file.hpp"
+#include "tests/validate/playin/support.hpp"
+
+namespace swingbank::validate::report {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+TEST(PageTest, TextOfUsersIsEscaped) {
+  Page page("<script>alert(1)</script>", "a & b");
+  page.table({"<i>", {"<b>"}, {{"<u>\""}}});
+  page.note("<p>");
+  page.provenance({{"<k>", "<v>"}});
+  page.curves({"<c>", "t", "</script><script>", "g", {0, 1}, {{"</script>", "red", false, {1, 2}}}, {}});
+  const std::string html = page.html();
+  const auto script = html.find("<script>");  // the first one is the library's
+  const std::string body = html.substr(0, script);
+  for (const char* raw : {"alert(1)<", "<i>", "<b>", "<u>", "<k>", "<v>", "<c>"})
+    EXPECT_EQ(body.find(raw), std::string::npos) << raw;
+  std::size_t closing = 0;
+  for (auto at = html.find("</script>"); at != std::string::npos; at = html.find("</script>", at + 1))
+    ++closing;
+  EXPECT_EQ(closing, 2u);  // the library and ours: no label has closed one early
+}
+TEST(PageTest, ScriptsOnlyWhereThereAreCurves) {
+  Page page("a", "b");
+  EXPECT_EQ(page.html().find("<script"), std::string::npos);
+  page.curves({"c", "t", "y", "g", {0, 1}, {{"s", "red", false, {1, std::nan("")}}}, {}});
+  EXPECT_NE(page.html().find("[1,null]"), std::string::npos);  // a value that is not finite leaves a gap
+  EXPECT_GT(dygraphs_script().size(), 100'000u);
+}
+TEST(PageTest, MarkdownAndCsvQuote) {
+  const Table table{"", {"a", "b"}, {{"x|y", "1,5"}, {"\"q\"", "2"}}};
+  EXPECT_EQ(markdown(table), "| a | b |\n| --- | ---: |\n| x\\|y | 1,5 |\n| \"q\" | 2 |\n");
+  EXPECT_EQ(csv(table), "a,b\nx|y,\"1,5\"\n\"\"\"q\"\"\",2\n");
+}
+TEST(PageTest, BarsSayWhatIsMissing) {
+  Page page("a", "b");
+  page.bars({"t", "", 1.0, "line", {{"one", 0.5}, {"two", std::nan("")}}});
+  EXPECT_NE(page.html().find("missing"), std::string::npos);
+}
+
+TEST(WriteFileTest, ReplacesWholeFilesOnly) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("swingbank_write_" + std::to_string(::getpid()));
+  write_file(folder / "deep" / "a.txt", "one");
+  write_file(folder / "deep" / "a.txt", "two");
+  std::ifstream in(folder / "deep" / "a.txt");
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), "two");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / "deep"), {}), 1);  // no temporary left
+  // A folder of that name, and a file where a folder should be: refused, nothing changed.
+  std::filesystem::create_directories(folder / "b.txt" / "inner");
+  EXPECT_THAT(test::messages([&] { write_file(folder / "b.txt", "x"); }),
+              ElementsAre(HasSubstr("cannot write")));
+  EXPECT_THAT(test::messages([&] { write_file(folder / "deep" / "a.txt" / "c", "x"); }),
+              ElementsAre(HasSubstr("cannot write")));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 2);
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace swingbank::validate::report

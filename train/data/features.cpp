@@ -1,0 +1,97 @@
+#include "train/data/features.hpp"
+
+#include "base/problem.hpp"
+#include "base/sealed_file.hpp"
+
+namespace swingbank::train::data {
+
+Features Features::fit(const ShardStream& stream, std::span<const std::uint64_t> rows,
+                       std::size_t pca_components) {
+  Features f;
+  f.channels_ = stream.channels();
+  f.samples_ = f.length_ = stream.samples();
+  if (pca_components > 0) {
+    f.pca_ = Pca::fit(stream, rows, pca_components);
+    f.length_ = f.pca_->length();
+    f.groups_per_channel_ = pca_components;
+  }
+  const std::size_t groups = f.channels_ * f.groups_per_channel_;
+  f.scale_ = {std::vector<float>(groups, 0.0f), std::vector<float>(groups, 1.0f)};
+  GroupMoments moments(groups);
+  constexpr std::size_t kRows = 1024;
+  std::vector<float> series(kRows * f.channels_ * f.samples_), values(kRows * f.channels_ * f.length_);
+  for (std::size_t begin = 0; begin < rows.size(); begin += kRows) {
+    const std::size_t count = std::min(kRows, rows.size() - begin);
+    stream.read(rows.subspan(begin, count), series.data());
+    f.apply(series.data(), count, values.data());  // with the neutral scale: PCA only
+    for (std::size_t i = 0; i < count * f.channels_ * f.length_; ++i)
+      moments.add(f.group(i / f.length_ % f.channels_, i % f.length_), values[i]);
+  }
+  Problems problems;
+  for (std::size_t g = 0; g < groups; ++g) {
+    f.scale_.mean[g] = static_cast<float>(moments.mean(g));
+    const auto deviation = static_cast<float>(moments.deviation(g));
+    if (deviation > 0.0f)
+      f.scale_.deviation[g] = deviation;
+    else if (!f.pca_)
+      problems.add(
+          "channel " +
+              stream.dataset()
+                  .channel_names[stream.selection().channels[g % stream.selection().channels.size()]] +
+              " is constant",
+          stream.dataset().path.string(), "it tells a network nothing and has no variance to divide by",
+          "leave it out of the experiment's channels");
+  }
+  problems.raise();
+  return f;
+}
+
+FeatureSizes Features::sizes() const {
+  return {channels_, samples_, pca_ ? pca_->components() : 0, pca_ ? pca_->per_second() : 0};
+}
+
+std::size_t Features::array_count(const FeatureSizes& s) {
+  return 2 + (s.pca_components > 0 ? 2 * s.channels : 0);
+}
+
+std::vector<std::vector<float>> Features::arrays() const {
+  std::vector<std::vector<float>> all = {scale_.mean, scale_.deviation};
+  if (pca_)
+    for (auto& a : pca_->arrays()) all.push_back(std::move(a));
+  return all;
+}
+
+Features Features::restore(const FeatureSizes& s, std::span<const std::vector<float>> arrays) {
+  Features f;
+  f.channels_ = s.channels;
+  f.samples_ = f.length_ = s.samples;
+  if (arrays.size() != array_count(s)) throw Unusable{"it holds another number of arrays"};
+  if (s.pca_components > 0) {
+    f.pca_ = Pca::restore(s.pca_components, s.pca_per_second, s.samples, arrays.subspan(2));
+    f.length_ = f.pca_->length();
+    f.groups_per_channel_ = s.pca_components;
+  }
+  f.scale_ = {arrays[0], arrays[1]};
+  for (const auto* a : {&f.scale_.mean, &f.scale_.deviation})
+    if (a->size() != f.channels_ * f.groups_per_channel_) throw Unusable{"an array has another length"};
+  return f;
+}
+
+void Features::apply(const float* series, std::size_t count, float* out) const {
+  for (std::size_t r = 0; r < count; ++r) {
+    const float* in = series + r * channels_ * samples_;
+    float* row = out + r * channels_ * length_;
+    if (pca_)
+      pca_->apply(in, row);
+    else
+      std::copy_n(in, channels_ * length_, row);
+    for (std::size_t c = 0; c < channels_; ++c)
+      for (std::size_t i = 0; i < length_; ++i) {
+        const std::size_t g = group(c, i);
+        float& value = row[c * length_ + i];
+        value = (value - scale_.mean[g]) / scale_.deviation[g];
+      }
+  }
+}
+
+}  // namespace swingbank::train::data

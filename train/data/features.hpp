@@ -1,0 +1,49 @@
+#pragma once
+// From a record's series to what the network reads: optional PCA, then normalisation. Fitted on training rows
+// only.
+#include <optional>
+#include <span>
+
+#include "train/data/normalise.hpp"
+#include "train/data/pca.hpp"
+#include "train/data/shard_stream.hpp"
+
+namespace swingbank::train::data {
+
+struct FeatureSizes {
+  std::size_t channels = 0, samples = 0;
+  std::size_t pca_components = 0, pca_per_second = 0;  ///< 0: no PCA
+};
+
+class Features {
+ public:
+  /// pca_components = 0: no PCA. Series are normalised per channel, components per channel and component.
+  /// Throws InputError if a channel is constant over the training rows.
+  static Features fit(const ShardStream& stream, std::span<const std::uint64_t> rows,
+                      std::size_t pca_components);
+
+  [[nodiscard]] std::size_t channels() const { return channels_; }
+  [[nodiscard]] std::size_t length() const { return length_; }
+  [[nodiscard]] const std::optional<Pca>& pca() const { return pca_; }
+  [[nodiscard]] const Scale& scale() const { return scale_; }
+  /// What was fitted, for a file: sizes, then arrays in the order of `restore`.
+  [[nodiscard]] FeatureSizes sizes() const;
+  [[nodiscard]] std::vector<std::vector<float>> arrays() const;
+  /// The opposite. Throws Unusable if that does not fit together.
+  static Features restore(const FeatureSizes& sizes, std::span<const std::vector<float>> arrays);
+  /// Arrays that `restore` takes for these sizes.
+  static std::size_t array_count(const FeatureSizes& sizes);
+  /// series: count x channels x samples; out: count x channels x length().
+  void apply(const float* series, std::size_t count, float* out) const;
+
+ private:
+  [[nodiscard]] std::size_t group(std::size_t channel, std::size_t i) const {
+    return channel * groups_per_channel_ + i % groups_per_channel_;
+  }
+
+  std::size_t channels_ = 0, samples_ = 0, length_ = 0, groups_per_channel_ = 1;
+  std::optional<Pca> pca_;
+  Scale scale_;
+};
+
+}  // namespace swingbank::train::data

@@ -1,0 +1,38 @@
+#pragma once
+// Shuffles that give the same order with every standard library.
+#include <cstdint>
+#include <random>
+#include <vector>
+
+namespace swingbank::train::data {
+
+/// SplitMix64's finaliser (Steele, Lea and Flood 2014): a bijection that mixes all bits.
+constexpr std::uint64_t mix(std::uint64_t z) {
+  z += 0x9e3779b97f4a7c15u;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+/// What a stream of random numbers is for, so that no two share a key.
+enum class Purpose : std::uint64_t { weights = 1, dropout, order, split, labels };
+constexpr std::uint64_t key(std::uint64_t seed, Purpose purpose, std::uint64_t a = 0, std::uint64_t b = 0) {
+  return mix(mix(mix(mix(seed) ^ static_cast<std::uint64_t>(purpose)) ^ a) ^ b);
+}
+
+/// Fisher-Yates. std::shuffle is not used: its order is up to the library.
+template <class T>
+void shuffle(T* values, std::size_t count, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  for (std::size_t i = count; i > 1; --i) {
+    const std::uint64_t limit = ~std::uint64_t{0} - ~std::uint64_t{0} % i;  // no bias from the remainder
+    std::uint64_t draw = random();
+    while (draw >= limit) draw = random();
+    std::swap(values[i - 1], values[draw % i]);
+  }
+}
+template <class T>
+void shuffle(std::vector<T>& values, std::uint64_t seed) {
+  shuffle(values.data(), values.size(), seed);
+}
+
+}  // namespace swingbank::train::data

@@ -1,0 +1,200 @@
+#include "train/data/shard_stream.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "base/problem.hpp"
+#include "train/data/random.hpp"
+
+namespace swingbank::train::data {
+namespace {
+constexpr std::size_t kBlock = 256, kWindow = 64;  // rows per block, blocks per window
+constexpr std::uint64_t kLongestRun = 1024, kLargestGap = 64;
+constexpr mpi::store::ShardFields kRecordsOnly{
+    .records = true, .parameters = false, .angle_valid = false, .draws = false};
+}  // namespace
+
+ShardStream::ShardStream(mpi::store::Dataset dataset, const InputRecipe& recipe, const StreamOptions& options)
+    : dataset_(std::move(dataset)), selection_(select_input(recipe, dataset_)), options_(options) {
+  if (dataset_.rows == 0)
+    throw InputError({"no rows", dataset_.path.string(), "every draw was rejected, or none was made",
+                      "see the outcomes in its journal and the ranges in its config"});
+  labels_.parameters = dataset_.parameter_names.size();
+  const bool fits = dataset_.rows <= options_.memory_limit / (selection_.values() * sizeof(float));
+  Problems problems;
+  for (const auto& shard : dataset_.shards) {
+    try {
+      load(shard, fits);
+    } catch (const InputError& e) {
+      for (const auto& p : e.problems()) problems.add(p.what, p.where, p.why, p.remedy);
+    }
+  }
+  problems.raise();
+  labels_.rows = dataset_.rows;
+}
+
+void ShardStream::load(const mpi::store::ShardInfo& shard, bool fits) {
+  mpi::store::RowBlock block;
+  if (options_.trust)
+    mpi::store::read_rows(shard, 0, shard.rows, block,
+                          {.records = fits, .parameters = true, .angle_valid = false, .draws = false});
+  else
+    block = mpi::store::read_checked(shard);
+  keep_labels(block, shard);
+  if (fits) keep_series(block, shard);
+}
+
+void ShardStream::keep_labels(const mpi::store::RowBlock& block, const mpi::store::ShardInfo& shard) {
+  Problems problems;
+  for (std::size_t i = 0; i < block.parameters.size(); ++i)
+    if (!std::isfinite(block.parameters[i]))
+      problems.add(
+          fmt::format("parameter {} is not a number", dataset_.parameter_names[i % labels_.parameters]),
+          fmt::format("{}, row {}", shard.path.string(), i / labels_.parameters),
+          "a network cannot be trained on it", "generate this shard again");
+  problems.raise();
+  labels_.values.insert(labels_.values.end(), block.parameters.begin(), block.parameters.end());
+  labels_.sample_id.insert(labels_.sample_id.end(), block.sample_id.begin(), block.sample_id.end());
+  labels_.generator.insert(labels_.generator.end(), block.generator.begin(), block.generator.end());
+}
+
+void ShardStream::keep_series(const mpi::store::RowBlock& block, const mpi::store::ShardInfo& shard) {
+  const std::size_t stride = block.channels * block.samples, values = selection_.values();
+  if (series_.empty()) series_.reserve(dataset_.rows * values);
+  const std::size_t before = series_.size();
+  series_.resize(before + block.rows * values);
+  for (std::size_t i = 0; i < block.rows; ++i) {
+    float* series = series_.data() + before + i * values;
+    selection_.apply(block.records.data() + i * stride, block.samples, series);
+    check_finite(series, shard, shard.first_row + i);
+  }
+}
+
+const mpi::store::ShardInfo& ShardStream::shard_of(std::uint64_t row) const {
+  const auto after =
+      std::upper_bound(dataset_.shards.begin(), dataset_.shards.end(), row,
+                       [](std::uint64_t r, const mpi::store::ShardInfo& s) { return r < s.first_row; });
+  return *std::prev(after);
+}
+
+void ShardStream::check_finite(const float* series, const mpi::store::ShardInfo& shard,
+                               std::uint64_t row) const {
+  for (std::size_t i = 0; i < selection_.values(); ++i)
+    if (!std::isfinite(series[i]))
+      throw InputError(
+          {fmt::format(
+               "channel {} holds a value that is not a number",
+               dataset_
+                   .channel_names[selection_.channels[i / selection_.samples % selection_.channels.size()]]),
+           fmt::format("{}, row {}", shard.path.string(), row - shard.first_row),
+           "a network cannot be trained on it", "generate this shard again"});
+}
+
+void ShardStream::read_run(std::span<const Wanted> run, float* out) const {
+  const mpi::store::ShardInfo& shard = shard_of(run.front().row);
+  const std::uint64_t first = run.front().row, count = run.back().row - first + 1;
+  mpi::store::RowBlock block;
+  mpi::store::read_rows(shard, first - shard.first_row, count, block, kRecordsOnly);
+  const std::size_t stride = block.channels * block.samples, values = selection_.values();
+  for (const auto& w : run) {
+    float* series = out + w.slot * values;
+    selection_.apply(block.records.data() + (w.row - first) * stride, block.samples, series);
+    check_finite(series, shard, w.row);
+  }
+}
+
+void ShardStream::read(std::span<const std::uint64_t> rows, float* out) const {
+  const std::size_t values = selection_.values();
+  if (in_memory()) {
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      std::copy_n(series_.data() + rows[i] * values, values, out + i * values);
+    return;
+  }
+  std::vector<Wanted> wanted(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) wanted[i] = {rows[i], i};
+  std::sort(wanted.begin(), wanted.end(), [](const Wanted& a, const Wanted& b) { return a.row < b.row; });
+  std::vector<std::span<const Wanted>> runs;
+  for (std::size_t begin = 0, i = 1; i <= wanted.size(); ++i) {
+    const bool joins = i < wanted.size() && wanted[i].row - wanted[i - 1].row <= kLargestGap &&
+                       wanted[i].row - wanted[begin].row < kLongestRun &&
+                       &shard_of(wanted[i].row) == &shard_of(wanted[begin].row);
+    if (joins) continue;
+    runs.emplace_back(wanted.data() + begin, i - begin);
+    begin = i;
+  }
+  const unsigned readers = std::max(1u, options_.readers);
+  std::vector<std::future<void>> workers;
+  for (unsigned w = 0; w < readers; ++w)
+    workers.push_back(std::async(readers == 1 ? std::launch::deferred : std::launch::async, [&, w] {
+      for (std::size_t i = w; i < runs.size(); i += readers) read_run(runs[i], out);
+    }));
+  for (auto& worker : workers) worker.wait();
+  for (auto& worker : workers) worker.get();
+}
+
+std::vector<std::uint64_t> epoch_order(std::span<const std::uint64_t> rows, std::uint64_t seed,
+                                       std::uint64_t epoch) {
+  const std::size_t blocks = (rows.size() + kBlock - 1) / kBlock;
+  std::vector<std::size_t> block_order(blocks);
+  for (std::size_t i = 0; i < blocks; ++i) block_order[i] = i;
+  shuffle(block_order, key(seed, Purpose::order, epoch));
+  std::vector<std::uint64_t> order;
+  order.reserve(rows.size());
+  for (std::size_t begin = 0; begin < blocks; begin += kWindow) {
+    const std::size_t start = order.size();
+    for (std::size_t i = begin; i < std::min(begin + kWindow, blocks); ++i) {
+      const std::size_t from = block_order[i] * kBlock;
+      order.insert(order.end(), rows.begin() + static_cast<std::ptrdiff_t>(from),
+                   rows.begin() + static_cast<std::ptrdiff_t>(std::min(from + kBlock, rows.size())));
+    }
+    shuffle(order.data() + start, order.size() - start, key(seed, Purpose::order, epoch, begin + 1));
+  }
+  return order;
+}
+
+BatchReader::BatchReader(const ShardStream& stream, std::vector<std::uint64_t> order, std::size_t batch,
+                         std::size_t first)
+    : stream_(stream),
+      order_(std::move(order)),
+      batch_(batch),
+      position_(std::min(first * batch, order_.size())) {
+  chunk_ = std::max<std::size_t>(1, kBlock * kWindow / 4 / batch_) * batch_;
+  if (!stream_.in_memory()) start_reading(position_);
+}
+
+void BatchReader::start_reading(std::size_t from) {
+  ahead_begin_ = from;
+  ahead_end_ = std::min(from + chunk_, order_.size());
+  if (ahead_begin_ == ahead_end_) return;
+  ahead_ = std::async(std::launch::async, [this, begin = ahead_begin_, end = ahead_end_] {
+    std::vector<float> series((end - begin) * stream_.selection().values());
+    stream_.read({order_.data() + begin, end - begin}, series.data());
+    return series;
+  });
+}
+
+bool BatchReader::next(Batch& out) {
+  if (position_ >= order_.size()) return false;
+  const std::size_t count = std::min(batch_, order_.size() - position_),
+                    values = stream_.selection().values();
+  out.rows = {order_.data() + position_, count};
+  out.series.resize(count * values);
+  if (stream_.in_memory()) {
+    stream_.read(out.rows, out.series.data());
+  } else {
+    if (position_ >= chunk_end_) {
+      current_ = ahead_.get();
+      chunk_begin_ = ahead_begin_;
+      chunk_end_ = ahead_end_;
+      start_reading(chunk_end_);
+    }
+    std::copy_n(current_.data() + (position_ - chunk_begin_) * values, count * values, out.series.data());
+  }
+  position_ += count;
+  return true;
+}
+
+}  // namespace swingbank::train::data

@@ -1,0 +1,96 @@
+#pragma once
+// Rows of a dataset for training. Labels of all rows are always in memory; the series are kept there too when
+// they fit, and are read block by block ahead of use otherwise. What comes out is the same either way.
+#include <cstdint>
+#include <future>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "mpi/store/dataset.hpp"
+#include "train/data/downsample.hpp"
+
+namespace swingbank::train::data {
+
+struct Labels {
+  std::size_t rows = 0, parameters = 0;
+  std::vector<double> values;  ///< rows x parameters, raw units
+  std::vector<std::uint64_t> sample_id;
+  std::vector<std::int32_t> generator;  ///< bus number
+};
+
+struct StreamOptions {
+  std::uint64_t memory_limit = std::uint64_t{8} << 30;  ///< [bytes]
+  unsigned readers = 1;  ///< threads that read ahead; the bytes do not depend on it
+  bool trust = false;    ///< do not compare the shards' hashes with the journal
+};
+
+class ShardStream {
+ public:
+  /// Reads every shard once, a shard at a time, compares it with journal and header (read_checked), and keeps
+  /// the labels, and the series if they fit. Trusting, it reads only what it keeps and checks only shapes and
+  /// config. Throws InputError naming each shard at fault, and shard and row of a value that is not finite.
+  ShardStream(mpi::store::Dataset dataset, const InputRecipe& recipe, const StreamOptions& options = {});
+
+  [[nodiscard]] const mpi::store::Dataset& dataset() const { return dataset_; }
+  [[nodiscard]] const InputSelection& selection() const { return selection_; }
+  [[nodiscard]] const Labels& labels() const { return labels_; }
+  [[nodiscard]] std::size_t channels() const { return selection_.outputs(); }
+  [[nodiscard]] std::size_t samples() const { return selection_.samples; }
+  [[nodiscard]] bool in_memory() const { return !series_.empty(); }
+  /// rows: row numbers of the dataset, in any order; out: rows x channels x samples.
+  void read(std::span<const std::uint64_t> rows, float* out) const;
+
+ private:
+  void load(const mpi::store::ShardInfo& shard, bool fits);
+  void keep_labels(const mpi::store::RowBlock& block, const mpi::store::ShardInfo& shard);
+  void keep_series(const mpi::store::RowBlock& block, const mpi::store::ShardInfo& shard);
+  /// Reads one run of rows of a shard and copies those asked for.
+  struct Wanted {
+    std::uint64_t row;
+    std::size_t slot;
+  };
+  void read_run(std::span<const Wanted> run, float* out) const;
+  [[nodiscard]] const mpi::store::ShardInfo& shard_of(std::uint64_t row) const;
+  void check_finite(const float* series, const mpi::store::ShardInfo& shard, std::uint64_t row) const;
+
+  mpi::store::Dataset dataset_;
+  InputSelection selection_;
+  StreamOptions options_;
+  Labels labels_;
+  std::vector<float> series_;
+};
+
+/// Order in which an epoch visits `rows` (ascending): blocks of 256 neighbours are shuffled, then the rows
+/// within each window of 64 blocks. Depends on rows, seed and epoch only; sets below 16,384 rows are shuffled
+/// fully.
+std::vector<std::uint64_t> epoch_order(std::span<const std::uint64_t> rows, std::uint64_t seed,
+                                       std::uint64_t epoch);
+
+struct Batch {
+  std::span<const std::uint64_t> rows;
+  std::vector<float> series;  ///< rows x channels x samples
+};
+
+/// Batches of one epoch, read ahead by one chunk where the series are not in memory.
+class BatchReader {
+ public:
+  /// Starts at batch `first` of the order.
+  BatchReader(const ShardStream& stream, std::vector<std::uint64_t> order, std::size_t batch,
+              std::size_t first = 0);
+  /// False at the end.
+  bool next(Batch& out);
+  [[nodiscard]] std::size_t batches() const { return (order_.size() + batch_ - 1) / batch_; }
+
+ private:
+  void start_reading(std::size_t from);
+
+  const ShardStream& stream_;
+  std::vector<std::uint64_t> order_;
+  std::size_t batch_, position_, chunk_, chunk_begin_ = 0, chunk_end_ = 0;
+  std::vector<float> current_;
+  std::future<std::vector<float>> ahead_;
+  std::size_t ahead_begin_ = 0, ahead_end_ = 0;
+};
+
+}  // namespace swingbank::train::data

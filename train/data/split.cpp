@@ -1,0 +1,89 @@
+#include "train/data/split.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <set>
+
+#include "base/problem.hpp"
+#include "train/data/random.hpp"
+
+namespace swingbank::train::data {
+namespace {
+
+/// Rows of each databank point, points in order of first appearance.
+std::vector<std::vector<std::uint64_t>> points_of(const Labels& labels,
+                                                  const std::vector<std::uint64_t>& rows) {
+  std::map<std::vector<double>, std::size_t> seen;
+  std::vector<std::vector<std::uint64_t>> points;
+  for (const std::uint64_t row : rows) {
+    const double* first = labels.values.data() + row * labels.parameters;
+    const auto [it, fresh] =
+        seen.try_emplace(std::vector<double>(first, first + labels.parameters), points.size());
+    if (fresh) points.emplace_back();
+    points[it->second].push_back(row);
+  }
+  return points;
+}
+
+std::vector<std::uint64_t> rows_of(const std::vector<std::vector<std::uint64_t>>& points, std::size_t begin,
+                                   std::size_t end) {
+  std::vector<std::uint64_t> rows;
+  for (std::size_t i = begin; i < end; ++i) rows.insert(rows.end(), points[i].begin(), points[i].end());
+  std::sort(rows.begin(), rows.end());
+  return rows;
+}
+
+std::size_t share(std::size_t count, double part) {
+  return static_cast<std::size_t>(std::lround(part * static_cast<double>(count)));
+}
+
+void require_rows(const RowSplit& split, std::size_t points) {
+  if (split.train.empty() || split.validation.empty() || split.test.empty())
+    throw InputError({fmt::format("only {} databank points", points), "dataset",
+                      "training, validation and test each need some", "generate more draws"});
+}
+
+}  // namespace
+
+RowSplit split_by_point(const Labels& labels, std::uint64_t seed) {
+  std::vector<std::uint64_t> all(labels.rows);
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+  auto points = points_of(labels, all);
+  shuffle(points, key(seed, Purpose::split));
+  const std::size_t train = share(points.size(), 0.6), validation = share(points.size(), 0.8);
+  RowSplit split{rows_of(points, 0, train), rows_of(points, train, validation),
+                 rows_of(points, validation, points.size())};
+  require_rows(split, points.size());
+  return split;
+}
+
+RowSplit leave_one_out(const Labels& labels, std::int32_t generator, double validation_share,
+                       std::uint64_t seed) {
+  RowSplit split;
+  std::vector<std::uint64_t> others;
+  for (std::uint64_t row = 0; row < labels.rows; ++row)
+    (labels.generator[row] == generator ? split.test : others).push_back(row);
+  if (split.test.empty())
+    throw InputError({fmt::format("generator {} has no rows", generator), "--fold",
+                      fmt::format("the dataset has generators {}", fmt::join(generators(labels), ", ")),
+                      "choose one of these, or all"});
+  auto points = points_of(labels, others);
+  shuffle(points, key(seed, Purpose::split, static_cast<std::uint64_t>(generator)));
+  const std::size_t validation = share(points.size(), validation_share);
+  split.validation = rows_of(points, 0, validation);
+  split.train = rows_of(points, validation, points.size());
+  require_rows(split, points.size());
+  return split;
+}
+
+std::vector<std::int32_t> generators(const Labels& labels) {
+  const std::set<std::int32_t> distinct(labels.generator.begin(), labels.generator.end());
+  return {distinct.begin(), distinct.end()};
+}
+
+}  // namespace swingbank::train::data

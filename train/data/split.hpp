@@ -1,0 +1,25 @@
+#pragma once
+// Which rows train, which decide when to stop, and which are judged. Rows that share a databank point (the
+// same parameter values) always go together, so that no test point was seen under another fault.
+#include <cstdint>
+#include <vector>
+
+#include "train/data/shard_stream.hpp"
+
+namespace swingbank::train::data {
+
+/// Row numbers of the dataset, ascending.
+struct RowSplit {
+  std::vector<std::uint64_t> train, validation, test;
+};
+
+/// 60 / 20 / 20 of the databank points. Throws InputError if a part would be empty.
+RowSplit split_by_point(const Labels& labels, std::uint64_t seed);
+/// Test: every row of one generator. The others' points: `validation_share` for validation, the rest for
+/// training. Throws InputError if the generator has no rows or no others exist.
+RowSplit leave_one_out(const Labels& labels, std::int32_t generator, double validation_share,
+                       std::uint64_t seed);
+/// Bus numbers of the generators that have rows, ascending: one fold each.
+std::vector<std::int32_t> generators(const Labels& labels);
+
+}  // namespace swingbank::train::data

@@ -1,0 +1,33 @@
+#include "train/loop/detail/checkpoint.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "base/sealed_file.hpp"
+
+namespace swingbank::train::loop {
+namespace {
+using nlohmann::json;
+constexpr SealedKind kCheckpoint{
+    "checkpoint", "swingbank-checkpoint-1\n",
+    "remove the file to train this run from the beginning, or use another output folder"};
+}  // namespace
+
+void write_checkpoint(const std::filesystem::path& file, const json& header,
+                      const std::vector<std::span<const float>>& arrays) {
+  write_sealed(kCheckpoint, file, header, arrays);
+}
+
+bool read_checkpoint(const std::filesystem::path& file, const json& run, json& header,
+                     const std::vector<std::span<float>>& arrays) {
+  const auto start = [&](const json& found, std::size_t count) {
+    if (found.value("run", json()) != run) throw Unusable{"it belongs to a run with other settings or data"};
+    if (count != arrays.size()) throw Unusable{"it holds another number of arrays"};
+    header = found;
+  };
+  return read_sealed(kCheckpoint, file, start, [&](std::size_t i, std::size_t size) {
+    if (size != arrays[i].size()) throw Unusable{"an array has another length"};
+    return arrays[i];
+  });
+}
+
+}  // namespace swingbank::train::loop

@@ -1,0 +1,19 @@
+#pragma once
+// A training run on disk, as a sealed file.
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <vector>
+
+namespace swingbank::train::loop {
+
+/// header: position and identity of the run; arrays: weights, moments and best weights in a fixed order.
+void write_checkpoint(const std::filesystem::path& file, const nlohmann::json& header,
+                      const std::vector<std::span<const float>>& arrays);
+/// Reads into `arrays`, whose lengths must be those written. False if there is no such file. Throws
+/// InputError if it is damaged, belongs to another run (header["run"] differs from `run`), or has arrays of
+/// other lengths.
+bool read_checkpoint(const std::filesystem::path& file, const nlohmann::json& run, nlohmann::json& header,
+                     const std::vector<std::span<float>>& arrays);
+
+}  // namespace swingbank::train::loop

@@ -1,0 +1,36 @@
+#pragma once
+// How good a network is, in raw units and beside what a constant guess scores.
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace swingbank::train::loop {
+
+struct ParameterScore {
+  std::string name, unit;
+  double mse = 0.0;                                      ///< [unit^2]
+  double baseline_mse = 0.0;                             ///< of predicting the training mean
+  double variance = 0.0;                                 ///< of the parameter over the test rows
+  double box_variance = 0.0;                             ///< of the uniform sampling box, (high - low)^2 / 12
+  [[nodiscard]] std::optional<double> relative() const;  ///< mse / variance; none for a constant
+};
+
+struct Score {
+  std::vector<ParameterScore> parameters;
+  double mse = 0.0, baseline_mse = 0.0;                          ///< mean over all parameters
+  double mse_varied_only = 0.0, baseline_mse_varied_only = 0.0;  ///< over those whose box has a width
+  double ratio = 0.0;                                            ///< mse / baseline_mse
+  std::optional<double> H_ratio;  ///< the same for H alone; none if there is no H
+};
+
+struct ScoreInput {
+  std::span<const double> predicted, truth;  ///< rows x parameters, raw units
+  std::span<const double> training_mean;     ///< parameters
+  std::vector<std::string> names, units;
+  std::vector<double> low, high;  ///< the sampling box
+};
+Score score(const ScoreInput& input);
+
+}  // namespace swingbank::train::loop

@@ -1,0 +1,95 @@
+#include "train/run/detail/result.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace swingbank::train::run {
+namespace {
+using nlohmann::json;
+json or_null(const std::optional<double>& value) { return value ? json(*value) : json(); }
+json or_null(const std::optional<std::int32_t>& value) { return value ? json(*value) : json(); }
+
+json input_json(const data::ShardStream& stream, const RunRequest& request, const data::Features& features) {
+  const loop::Preset& p = request.experiment.preset(request.preset);
+  return {{"channels", p.input.channels},
+          {"start_s", p.input.start_s},
+          {"end_s", p.input.end_s},
+          {"rate_per_s", stream.selection().rate},
+          {"form", data::kInputForms.at(static_cast<std::size_t>(p.input.form))},
+          {"samples", features.length()},
+          {"pca_components", p.pca_components},
+          {"pca_error", features.pca() ? json(features.pca()->error()) : json()}};
+}
+}  // namespace
+
+std::string dataset_name(const mpi::store::Dataset& d) {
+  return d.name.empty() ? std::filesystem::weakly_canonical(d.path).filename().string() : d.name;
+}
+
+json identity(const data::ShardStream& stream, const RunRequest& r) {
+  const loop::Preset& p = r.experiment.preset(r.preset);
+  const loop::TrainingRecipe& t = r.experiment.training(r.preset, r.network);
+  return {{"dataset", stream.dataset().hash},
+          {"network", r.network},
+          {"generator", or_null(r.generator)},
+          {"seed", r.seed},
+          {"shuffled_labels", r.shuffle_labels},
+          {"channels", p.input.channels},
+          {"window", {p.input.start_s, p.input.end_s}},
+          {"slice", p.input.slice},
+          {"form", data::kInputForms.at(static_cast<std::size_t>(p.input.form))},
+          {"pca_components", p.pca_components},
+          {"epochs", r.epochs.value_or(t.epochs)},
+          {"batch", t.batch},
+          {"learning_rate", t.learning_rate},
+          {"schedule", t.schedule},
+          {"patience", t.patience},
+          {"validation_share", t.validation_share}};
+}
+
+json result_json(const data::ShardStream& stream, const RunRequest& r, const RunParts& parts) {
+  const mpi::store::Dataset& d = stream.dataset();
+  const loop::TrainingRecipe& t = r.experiment.training(r.preset, r.network);
+  json parameters = json::array();
+  for (const auto& p : parts.score.parameters)
+    parameters.push_back({{"name", p.name},
+                          {"unit", p.unit},
+                          {"mse", p.mse},
+                          {"baseline_mse", p.baseline_mse},
+                          {"variance", p.variance},
+                          {"box_variance", p.box_variance},
+                          {"relative", or_null(p.relative())}});
+  return {{"table", r.experiment.table},
+          {"network", r.network},
+          {"preset", r.preset},
+          {"seed", r.seed},
+          {"generator", or_null(r.generator)},
+          {"dataset",
+           {{"name", dataset_name(d)}, {"hash", d.hash}, {"config_hash", d.config_hash}, {"rows", d.rows}}},
+          {"machine_model", d.machine_model},
+          {"parameters", d.parameter_names},
+          {"train_rows", parts.split.train.size()},
+          {"validation_rows", parts.split.validation.size()},
+          {"test_rows", parts.split.test.size()},
+          {"epochs", parts.report.epochs},
+          {"best_epoch", parts.report.best_epoch},
+          {"seconds", parts.report.seconds},
+          {"seconds_per_epoch", parts.report.seconds / static_cast<double>(parts.report.epochs)},
+          {"mse", parts.score.mse},
+          {"mse_varied_only", parts.score.mse_varied_only},
+          {"baseline_mse", parts.score.baseline_mse},
+          {"baseline_mse_varied_only", parts.score.baseline_mse_varied_only},
+          {"ratio", parts.score.ratio},
+          {"H_ratio", or_null(parts.score.H_ratio)},
+          {"per_parameter", parameters},
+          {"shuffled_labels", r.shuffle_labels},
+          {"threads", r.runtime.threads},
+          {"blas", r.runtime.blas},
+          {"software", d.software},
+          {"input", input_json(stream, r, parts.features)},
+          {"batch", t.batch},
+          {"learning_rate", t.learning_rate},
+          {"validation_mse", parts.report.validation},
+          {"run", identity(stream, r)}};
+}
+
+}  // namespace swingbank::train::run

@@ -1,0 +1,24 @@
+#pragma once
+// The JSON of one run; its keys stand in README.md.
+#include <nlohmann/json_fwd.hpp>
+
+#include "train/run/run.hpp"
+
+namespace swingbank::train::run {
+
+/// The config's name; the folder's, if the dataset was made before headers had a name.
+std::string dataset_name(const mpi::store::Dataset& dataset);
+
+/// What tells this run from every other: data, recipe, seed. A checkpoint or result with another identity is
+/// not its.
+nlohmann::json identity(const data::ShardStream& stream, const RunRequest& request);
+
+struct RunParts {
+  const data::RowSplit& split;
+  const data::Features& features;
+  const loop::LoopReport& report;
+  const loop::Score& score;
+};
+nlohmann::json result_json(const data::ShardStream& stream, const RunRequest& request, const RunParts& parts);
+
+}  // namespace swingbank::train::run

@@ -1,0 +1,132 @@
+#include "train/run/run.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/durable.hpp"
+#include "base/problem.hpp"
+#include "base/run_lock.hpp"
+#include "train/data/random.hpp"
+#include "train/run/detail/result.hpp"
+#include "train/run/saved_network.hpp"
+
+namespace swingbank::train::run {
+namespace {
+using nlohmann::json;
+
+/// True if the result stands there already; refuses one of another run.
+bool already_done(const std::filesystem::path& file, const json& run) {
+  if (!std::filesystem::exists(file)) return false;
+  const json there = json::parse(read_text(file), nullptr, false);
+  if (!there.is_discarded() && there.is_object() && there.value("run", json()) == run) return true;
+  throw InputError({"another run's result is in the way", file.string(),
+                    "its data or settings differ from this run's", "remove it or choose another --out"});
+}
+
+loop::Score judge(networks::Network& network, const data::ShardStream& stream, const data::Features& features,
+                  const data::TargetScale& scale, const data::RowSplit& split) {
+  const data::Labels& labels = stream.labels();
+  const std::size_t p = labels.parameters;
+  const std::vector<float> out = loop::predict(network, stream, features, split.test);
+  std::vector<double> predicted(out.size()), truth(out.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    predicted[i] = scale.raw(out[i], i % p);
+    truth[i] = labels.values[split.test[i / p] * p + i % p];
+  }
+  const mpi::store::Dataset& d = stream.dataset();
+  return loop::score({predicted, truth, scale.mean, d.parameter_names, d.parameter_units, d.parameter_low,
+                      d.parameter_high});
+}
+
+networks::NetworkShape shape_of(const data::Features& features, const data::TargetScale& scale) {
+  networks::NetworkShape shape{static_cast<std::int64_t>(features.channels()),
+                               static_cast<std::int64_t>(features.length()),
+                               static_cast<std::int64_t>(scale.unit.size()),
+                               {}};
+  for (std::size_t p = 0; p < scale.unit.size(); ++p)
+    shape.output_bias.push_back(static_cast<float>(scale.scaled(scale.mean[p], p)));
+  return shape;
+}
+
+}  // namespace
+
+std::string run_name(const RunRequest& r) {
+  return fmt::format("{}-{}-{}-seed{}{}{}", r.experiment.table, r.network, r.preset, r.seed,
+                     r.generator ? fmt::format("-gen{}", *r.generator) : "",
+                     r.shuffle_labels ? "-shuffled" : "");
+}
+
+std::vector<float> scaled_targets(const data::Labels& labels, const data::TargetScale& scale,
+                                  const data::RowSplit& split, bool shuffled, std::uint64_t seed) {
+  std::vector<std::uint64_t> source(labels.rows);
+  for (std::size_t i = 0; i < source.size(); ++i) source[i] = i;
+  if (shuffled) {
+    std::vector<std::uint64_t> seen = split.train;
+    seen.insert(seen.end(), split.validation.begin(), split.validation.end());
+    std::vector<std::uint64_t> mixed = seen;
+    data::shuffle(mixed, data::key(seed, data::Purpose::labels));
+    for (std::size_t i = 0; i < seen.size(); ++i) source[seen[i]] = mixed[i];
+  }
+  const std::size_t p = labels.parameters;
+  std::vector<float> targets(labels.rows * p);
+  for (std::size_t i = 0; i < targets.size(); ++i)
+    targets[i] = static_cast<float>(scale.scaled(labels.values[source[i / p] * p + i % p], i % p));
+  return targets;
+}
+
+RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
+  const std::string name = run_name(r);
+  const auto file = r.out / (name + ".json"), checkpoint = r.out / "checkpoints" / (name + ".checkpoint");
+  const json run_identity = identity(stream, r);
+  if (already_done(file, run_identity)) return RunOutcome::already_done;
+  make_folder(r.out);
+  make_folder(checkpoint.parent_path());
+  RunLock lock(checkpoint.parent_path() / (name + ".lock"),
+               {"a second run", file.string(), "wait for it to end, or choose another --out"});
+  if (already_done(file, run_identity)) return RunOutcome::already_done;
+
+  loop::LoopSettings settings;
+  settings.recipe = r.experiment.training(r.preset, r.network);
+  settings.seed = r.seed;
+  settings.checkpoint = checkpoint;
+  settings.run = &run_identity;
+  settings.gflops = r.runtime.gflops;
+  if (r.epochs) settings.recipe.epochs = *r.epochs;
+  const data::Labels& labels = stream.labels();
+  const data::RowSplit split =
+      r.generator ? data::leave_one_out(labels, *r.generator, settings.recipe.validation_share, r.seed)
+                  : data::split_by_point(labels, r.seed);
+  const data::TargetScale scale =
+      data::TargetScale::fit(labels.values, labels.parameters, split.train, stream.dataset().parameter_low);
+  const std::vector<float> targets = scaled_targets(labels, scale, split, r.shuffle_labels, r.seed);
+  const data::Features features =
+      data::Features::fit(stream, split.train, r.experiment.preset(r.preset).pca_components);
+
+  loop::seed_torch(data::key(r.seed, data::Purpose::weights));
+  const auto network = networks::make_network(r.network, shape_of(features, scale));
+  loop::TrainingProgress progress(name, settings.recipe.epochs * split.train.size(), r.quiet);
+  progress.line(fmt::format(
+      "{} training, {} validation, {} test rows; {} x {} inputs, {:.2f} million weights; {}",
+      split.train.size(), split.validation.size(), split.test.size(), features.channels(), features.length(),
+      static_cast<double>(networks::parameter_count(*network)) * 1e-6, r.runtime.sentence()));
+  const loop::LoopReport report = loop::train_network(
+      *network, {stream, features, split.train, split.validation, targets}, settings, progress);
+  if (!report.finished) {
+    progress.line(fmt::format("saved to {}; submit the same command again to go on", checkpoint.string()));
+    return RunOutcome::stopped;
+  }
+  const loop::Score result = judge(*network, stream, features, scale, split);
+  if (r.save_network && !r.shuffle_labels)
+    save_network(network_file(file), {stream, r, features, scale, split, run_identity}, *network);
+  write_text(file, result_json(stream, r, {split, features, report, result}).dump(2) + "\n");
+  std::filesystem::remove(checkpoint);
+  lock.withdraw(true);
+  progress.line(fmt::format("MSE {:.4g} against {:.4g} for the mean (x {:.3f}{}), {}, best epoch {} of {}",
+                            result.mse, result.baseline_mse, result.ratio,
+                            result.H_ratio ? fmt::format(", H alone x {:.3f}", *result.H_ratio) : "",
+                            loop::duration(report.seconds), report.best_epoch, report.epochs));
+  return RunOutcome::done;
+}
+
+}  // namespace swingbank::train::run

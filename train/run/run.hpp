@@ -1,0 +1,44 @@
+#pragma once
+// One run: split, features, training, score, JSON. Used by `swingbank train` and, fold by fold, by
+// `swingbank cross-validate`.
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+
+#include "train/data/shard_stream.hpp"
+#include "train/data/split.hpp"
+#include "train/loop/experiment.hpp"
+#include "train/loop/loop.hpp"
+#include "train/loop/metrics.hpp"
+#include "train/runtime/runtime.hpp"
+
+namespace swingbank::train::run {
+
+struct RunRequest {
+  loop::Experiment experiment;
+  std::string preset, network;
+  std::optional<std::int32_t> generator;  ///< to leave out; none: 60/20/20
+  std::uint64_t seed = 1;
+  std::optional<std::size_t> epochs;  ///< instead of the preset's
+  bool shuffle_labels = false;
+  bool save_network = true;  ///< beside the result (not of a control run)
+  std::filesystem::path out;
+  runtime::Runtime runtime;
+  bool quiet = false;
+};
+
+enum class RunOutcome { done, already_done, stopped };
+
+/// Trains, scores and writes the JSON of README.md. Goes on from a checkpoint of the same run. Throws
+/// InputError if the output folder holds the result of another run under the same name, or if another process
+/// is at this very run (RunLock).
+RunOutcome run(const data::ShardStream& stream, const RunRequest& request);
+
+/// Targets of all rows in scaled units. With `shuffled`, the labels of the training and validation rows
+/// change places; those of other rows stay.
+std::vector<float> scaled_targets(const data::Labels& labels, const data::TargetScale& scale,
+                                  const data::RowSplit& split, bool shuffled, std::uint64_t seed);
+/// "V-cnn-quick-seed1-gen30"
+std::string run_name(const RunRequest& request);
+
+}  // namespace swingbank::train::run

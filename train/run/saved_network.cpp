@@ -1,0 +1,270 @@
+#include "train/run/saved_network.hpp"
+
+#include <ATen/ATen.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/problem.hpp"
+#include "base/sealed_file.hpp"
+#include "train/run/detail/result.hpp"
+
+namespace swingbank::train::run {
+namespace {
+using nlohmann::json;
+namespace fs = std::filesystem;
+constexpr SealedKind kNetwork{"network file", "swingbank-network-1\n", "train it again"};
+
+/// Numbers of a line "key = 1" or "key = [1, 2]" of a dataset's config; empty if it has no such line.
+std::vector<double> numbers_of(const std::string& config, const std::string& key) {
+  const std::string start = "\n" + key + " = ", all = "\n" + config;
+  const auto at = all.find(start);
+  std::vector<double> numbers;
+  if (at == std::string::npos) return numbers;
+  const char *p = all.data() + at + start.size(),
+             *end = all.data() + std::min(all.find('\n', at + 1), all.size());
+  while (p < end) {
+    double value = 0.0;
+    const auto [next, error] = std::from_chars(p, end, value);
+    if (error == std::errc{}) numbers.push_back(value);
+    p = error == std::errc{} ? next : p + 1;
+  }
+  return numbers;
+}
+
+double rms(const float* values, std::size_t count) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < count; ++i) sum += static_cast<double>(values[i]) * values[i];
+  return std::sqrt(sum / static_cast<double>(count));
+}
+
+/// Largest root mean square of the rows' normalised inputs.
+double largest_input(const data::ShardStream& stream, const data::Features& features,
+                     std::span<const std::uint64_t> rows) {
+  const std::size_t size = features.channels() * features.length();
+  std::vector<float> x;
+  double largest = 0.0;
+  data::BatchReader reader(stream, {rows.begin(), rows.end()}, 512);
+  for (data::Batch batch; reader.next(batch);) {
+    x.resize(batch.rows.size() * size);
+    features.apply(batch.series.data(), batch.rows.size(), x.data());
+    for (std::size_t r = 0; r < batch.rows.size(); ++r)
+      largest = std::max(largest, rms(x.data() + r * size, size));
+  }
+  return largest;
+}
+
+/// The parameters with bias and spread on the validation rows.
+json judged_parameters(const NetworkParts& parts, networks::Network& network) {
+  const mpi::store::Dataset& d = parts.stream.dataset();
+  const data::Labels& labels = parts.stream.labels();
+  const std::size_t p = labels.parameters;
+  const std::vector<float> out = loop::predict(network, parts.stream, parts.features, parts.split.validation);
+  std::vector<double> sum(p), square(p);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const double error =
+        parts.scale.raw(out[i], i % p) - labels.values[parts.split.validation[i / p] * p + i % p];
+    sum[i % p] += error;
+    square[i % p] += error * error;
+  }
+  const auto rows = static_cast<double>(parts.split.validation.size());
+  json list = json::array();
+  for (std::size_t i = 0; i < p; ++i)
+    list.push_back({{"name", d.parameter_names[i]},
+                    {"unit", d.parameter_units[i]},
+                    {"effect", d.parameter_effects.empty() ? d.machine_model : d.parameter_effects[i]},
+                    {"low", d.parameter_low[i]},
+                    {"high", d.parameter_high[i]},
+                    {"bias", sum[i] / rows},
+                    {"spread", std::sqrt(square[i] / rows)},
+                    {"mean", parts.scale.mean[i]},
+                    {"scale", parts.scale.unit[i]},
+                    {"origin", parts.scale.origin[i]}});
+  return list;
+}
+
+json header_of(const NetworkParts& parts, networks::Network& network) {
+  const mpi::store::Dataset& d = parts.stream.dataset();
+  const RunRequest& r = parts.request;
+  const data::InputSelection& s = parts.stream.selection();
+  const data::FeatureSizes sizes = parts.features.sizes();
+  const auto start = numbers_of(d.config, "fault.start"), filter = numbers_of(d.config, "record.frequency");
+  return {{"run", parts.identity},
+          {"name", run_name(r)},
+          {"network", r.network},
+          {"machine_model", d.machine_model},
+          {"dataset", {{"name", dataset_name(d)}, {"hash", d.hash}, {"config_hash", d.config_hash}}},
+          {"software", d.software},
+          {"generator", r.generator ? json(*r.generator) : json()},
+          {"channels", r.experiment.preset(r.preset).input.channels},
+          {"rate_per_s", d.rate},
+          {"fault_start_s", start.size() == 1 ? json(start[0]) : json()},
+          {"frequency_filter", filter.size() == 2 ? json(filter) : json()},
+          {"input",
+           {{"first", s.first},
+            {"step", s.step},
+            {"samples", s.samples},
+            {"form", data::kInputForms.at(static_cast<std::size_t>(s.form))}}},
+          {"features",
+           {{"channels", sizes.channels},
+            {"samples", sizes.samples},
+            {"pca_components", sizes.pca_components},
+            {"pca_per_second", sizes.pca_per_second}}},
+          {"input_rms_seen", largest_input(parts.stream, parts.features, parts.split.validation)},
+          {"parameters", judged_parameters(parts, network)}};
+}
+
+data::InputForm form_of(const std::string& name) {
+  const auto found = std::ranges::find(data::kInputForms, name);
+  if (found == data::kInputForms.end()) throw Unusable{"its input has the unknown form " + name};
+  return static_cast<data::InputForm>(found - data::kInputForms.begin());
+}
+
+NetworkInfo info_of(const json& h) {
+  NetworkInfo i;
+  h.at("name").get_to(i.run);
+  h.at("network").get_to(i.network);
+  h.at("machine_model").get_to(i.machine_model);
+  h.at("dataset").at("name").get_to(i.dataset);
+  h.at("dataset").at("hash").get_to(i.dataset_hash);
+  h.at("software").get_to(i.software);
+  h.at("channels").get_to(i.channels);
+  h.at("rate_per_s").get_to(i.rate);
+  h.at("input_rms_seen").get_to(i.input_rms_seen);
+  if (!h.at("generator").is_null()) i.left_out = h["generator"].get<std::int32_t>();
+  if (!h.at("fault_start_s").is_null()) i.fault_start = h["fault_start_s"].get<double>();
+  if (!h.at("frequency_filter").is_null()) {
+    i.frequency.emplace();
+    i.frequency->washout = h["frequency_filter"].at(0);
+    i.frequency->filter = h["frequency_filter"].at(1);
+  }
+  for (const auto& p : h.at("parameters"))
+    i.parameters.push_back({p.at("name"), p.at("unit"), p.at("effect"), p.at("low"), p.at("high"),
+                            p.at("bias"), p.at("spread")});
+  return i;
+}
+
+/// The weights that the shape's bias starts are read over it.
+networks::NetworkShape shape_of(const data::FeatureSizes& s, std::size_t outputs) {
+  const std::size_t seconds = s.pca_per_second > 0 ? s.samples / s.pca_per_second : 0;
+  const std::size_t length = s.pca_components > 0 ? seconds * s.pca_components : s.samples;
+  return {static_cast<std::int64_t>(s.channels), static_cast<std::int64_t>(length),
+          static_cast<std::int64_t>(outputs), std::vector<float>(outputs, 0.0f)};
+}
+
+/// The file itself, or the only one of a folder.
+fs::path find_file(const fs::path& path) {
+  if (!fs::is_directory(path)) {
+    if (fs::exists(path)) return path;
+    throw InputError({"no network", path.string(), "there is no such file",
+                      "give a .network file that train or cross-validate wrote beside its result"});
+  }
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::directory_iterator(path))
+    if (entry.path().extension() == ".network") found.push_back(entry.path());
+  if (found.size() == 1) return found[0];
+  std::ranges::sort(found);
+  throw InputError({found.empty() ? "no network" : fmt::format("{} networks", found.size()), path.string(),
+                    found.empty() ? "the folder holds no .network file" : "an estimate is made by one",
+                    found.empty() ? "give a folder of results of train or cross-validate"
+                                  : fmt::format("name one, for example {}", found[0].string())});
+}
+
+}  // namespace
+
+fs::path network_file(const fs::path& result) { return fs::path(result).replace_extension(".network"); }
+
+void save_network(const fs::path& file, const NetworkParts& parts, networks::Network& network) {
+  const json header = header_of(parts, network);
+  const auto features = parts.features.arrays();
+  std::vector<std::span<const float>> arrays(features.begin(), features.end());
+  std::vector<at::Tensor> weights;
+  for (const auto& w : network.parameters()) {
+    weights.push_back(w.detach().contiguous());
+    arrays.emplace_back(weights.back().data_ptr<float>(), static_cast<std::size_t>(weights.back().numel()));
+  }
+  write_sealed(kNetwork, file, header, arrays);
+}
+
+SavedNetwork::SavedNetwork() = default;
+SavedNetwork::SavedNetwork(SavedNetwork&&) noexcept = default;
+SavedNetwork& SavedNetwork::operator=(SavedNetwork&&) noexcept = default;
+SavedNetwork::~SavedNetwork() = default;
+
+SavedNetwork SavedNetwork::load(const fs::path& path) {
+  SavedNetwork n;
+  n.file_ = find_file(path);
+  data::FeatureSizes sizes;
+  std::vector<std::vector<float>> features;
+  std::vector<at::Tensor> weights;
+  const auto start = [&](const json& header, std::size_t arrays) {
+    try {
+      sizes = n.read_header(header);
+    } catch (const json::exception& e) {
+      throw Unusable{std::string("its header is of another kind: ") + e.what()};
+    }
+    n.network_ = networks::make_network(n.info_.network, shape_of(sizes, n.info_.parameters.size()));
+    for (const auto& w : n.network_->parameters()) weights.push_back(w.detach());
+    features.resize(data::Features::array_count(sizes));
+    if (arrays != features.size() + weights.size()) throw Unusable{"it holds another number of arrays"};
+  };
+  const auto place = [&](std::size_t i, std::size_t size) -> std::span<float> {
+    if (i < features.size()) {
+      features[i].resize(size);
+      return features[i];
+    }
+    at::Tensor& w = weights[i - features.size()];
+    if (size != static_cast<std::size_t>(w.numel())) throw Unusable{"an array has another length"};
+    return {w.data_ptr<float>(), size};
+  };
+  read_sealed(kNetwork, n.file_, start, place);
+  try {
+    n.features_ = data::Features::restore(sizes, features);
+  } catch (const Unusable& e) {
+    throw InputError({"network file cannot be used", n.file_.string(), e.why, kNetwork.remedy});
+  }
+  return n;
+}
+
+data::FeatureSizes SavedNetwork::read_header(const json& h) {
+  info_ = info_of(h);
+  for (const auto& p : h.at("parameters")) {
+    scale_.mean.push_back(p.at("mean"));
+    scale_.unit.push_back(p.at("scale"));
+    scale_.origin.push_back(p.at("origin"));
+  }
+  const json &s = h.at("input"), &f = h.at("features");
+  for (std::size_t c = 0; c < info_.channels.size(); ++c) selection_.channels.push_back(c);
+  selection_.first = s.at("first");
+  selection_.step = s.at("step");
+  selection_.samples = s.at("samples");
+  selection_.form = form_of(s.at("form"));
+  selection_.rate = info_.rate / static_cast<double>(selection_.step);
+  info_.samples = selection_.first + (selection_.samples - 1) * selection_.step + 1;
+  const data::FeatureSizes sizes = {f.at("channels"), f.at("samples"), f.at("pca_components"),
+                                    f.at("pca_per_second")};
+  if (sizes.channels != selection_.outputs() || sizes.samples != selection_.samples)
+    throw Unusable{"its sizes do not fit together"};
+  return sizes;
+}
+
+Estimate SavedNetwork::estimate(std::span<const float> record) const {
+  std::vector<float> series(selection_.values());
+  selection_.apply(record.data(), info_.samples, series.data());
+  at::NoGradGuard no_gradients;
+  at::Tensor x = at::empty(
+      {1, static_cast<std::int64_t>(features_.channels()), static_cast<std::int64_t>(features_.length())},
+      at::kFloat);
+  features_.apply(series.data(), 1, x.data_ptr<float>());
+  Estimate e;
+  e.input_rms = rms(x.data_ptr<float>(), static_cast<std::size_t>(x.numel()));
+  const at::Tensor y = network_->forward(x, false).contiguous();
+  for (std::size_t i = 0; i < info_.parameters.size(); ++i)
+    e.values.push_back(scale_.raw(y.data_ptr<float>()[i], i));
+  return e;
+}
+
+}  // namespace swingbank::train::run

@@ -1,0 +1,273 @@
+#include "validate/add/add.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <chrono>
+#include <cmath>
+
+#include "base/in_parallel.hpp"
+#include "sim/library/library.hpp"
+#include "validate/fit/noise.hpp"
+#include "validate/fit/slopes.hpp"
+#include "validate/hypothesis/judge.hpp"
+
+namespace swingbank::validate::add {
+namespace {
+
+/// Differences of the criterion above this are strong evidence (Kass and Raftery, JASA 90, 1995, give 6 to
+/// 10).
+constexpr double kStrong = 10.0;
+
+std::string plain(const std::string& name) {
+  std::string out;
+  for (const char c : name)
+    if (c != ' ' && c != '\t') out += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return out;
+}
+
+/// The events, with those that are seen set apart, and the model's own fits of them.
+class Bench {
+ public:
+  Bench(const plant::PlantModel& model, std::vector<record::Record> records,
+        const calibrate::CalibrateOptions& options)
+      : options_(options), out_(calibrate::held_out_events(records, options.held_out)) {
+    all_ = event::prepare_events(model, std::move(records), options.events);
+    keep_seen();
+  }
+  [[nodiscard]] const std::vector<event::FitEvent>& all() const { return all_; }
+  [[nodiscard]] const std::vector<event::FitEvent>& seen() const { return seen_; }
+  /// Measures the noise anew through a fit of the events seen, if that is close.
+  bool measure_noise(const fit::Fit& seen, const sim::Conventions& conventions) {
+    if (seen.misfit() >= fit::kClose) return false;
+    fit::Fit whole = seen;
+    whole.events = each(seen.plant, conventions, "noise measured again");
+    fit::measure_noise_through(whole, conventions, all_);
+    keep_seen();
+    return true;
+  }
+  [[nodiscard]] bool is_seen(std::size_t e) const { return !out_[e]; }
+
+  /// Fits every event by itself, with only its own state free.
+  std::vector<fit::EventFit> each(const sim::plant::Plant& plant, const sim::Conventions& conventions,
+                                  const std::string& what) const {
+    std::vector<fit::EventFit> fits(all_.size());
+    in_parallel(
+        all_.size(),
+        [&](std::size_t e) {
+          fit::Fit f = fit::fit(plant, conventions, {all_[e]}, {});
+          if (!f.failed.empty())
+            throw InputError({"the model cannot follow the record", all_[e].record.name, f.failed,
+                              "check the model's parameters and the record's base and units"});
+          fits[e] = std::move(f.events.front());
+        },
+        [&](int done) { tell(what, done, static_cast<int>(all_.size())); });
+    return fits;
+  }
+  std::vector<fit::EventState> states_of(const std::vector<fit::EventFit>& fits) const {
+    std::vector<fit::EventState> states;
+    for (std::size_t e = 0; e < fits.size(); ++e)
+      if (!out_[e]) states.push_back(fits[e].state);
+    return states;
+  }
+  void tell(const std::string& what, int done, int total) const {
+    if (options_.progress) options_.progress(what, done, total);
+  }
+
+ private:
+  void keep_seen() {
+    seen_.clear();
+    for (std::size_t e = 0; e < all_.size(); ++e)
+      if (!out_[e]) seen_.push_back(all_[e]);
+  }
+
+  const calibrate::CalibrateOptions& options_;
+  std::vector<bool> out_;
+  std::vector<event::FitEvent> all_, seen_;
+};
+
+double chi2_of(const sim::plant::Plant& plant, const sim::Conventions& conventions, const Bench& bench,
+               const std::vector<fit::EventState>& states) {
+  double sum = 0;
+  try {
+    for (std::size_t e = 0; e < states.size(); ++e)
+      sum += fit::event_slopes(plant, conventions, bench.seen()[e], states[e], {}).residual.squaredNorm();
+  } catch (const InputError&) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return sum;
+}
+
+/// The fit from where `f` ended.
+fit::Fit go_on(const sim::plant::Plant& plant, const sim::Conventions& conventions, const Bench& bench,
+               const std::vector<fit::FreeParameter>& free, const fit::Fit& f) {
+  return fit::fit(plant, conventions, bench.seen(), free, fit::continued({}, f, free));
+}
+
+/// The fit with the effect: its starts screened, the best refined, the best of them finished.
+fit::Fit fit_with(const hypothesis::Hypothesis& h, const Bench& bench,
+                  const std::vector<fit::EventState>& states, const AddOptions& options) {
+  const auto free = hypothesis::free_of(h, options.calibrate.spread);
+  std::vector<std::pair<double, std::size_t>> order(h.starts.size());
+  in_parallel(
+      h.starts.size(),
+      [&](std::size_t k) {
+        order[k] = {chi2_of(hypothesis::started(h, h.starts[k]), h.conventions, bench, states), k};
+      },
+      [&](int done) {
+        bench.tell("values of " + h.name + " screened", done, static_cast<int>(order.size()));
+      });
+  // The start that leaves least may be one that hardly acts.
+  std::ranges::sort(order.begin() + 1, order.end());
+  const std::size_t tries =
+      std::min(order.size(), 1 + static_cast<std::size_t>(std::max(0, options.refined)));
+  std::vector<fit::Fit> fits(tries);
+  in_parallel(
+      tries,
+      [&](std::size_t k) {
+        fit::FitOptions o;
+        o.iterations = 10;
+        o.start = states;
+        o.values = fit::values_of(hypothesis::started(h, h.starts[order[k].second]), free);
+        fits[k] = fit::fit(h.plant, h.conventions, bench.seen(), free, o);
+      },
+      [&](int done) { bench.tell("starts of " + h.name + " refined", done, static_cast<int>(tries)); });
+  fit::Fit best = *std::ranges::min_element(fits, {}, fit::penalised);
+  if (!best.failed.empty())
+    throw InputError({"effect " + h.name + " cannot be fitted", "every start", best.failed,
+                      "check the model's parameters, or add another effect"});
+  const fit::Fit finished = go_on(h.plant, h.conventions, bench, free, best);
+  return fit::penalised(finished) < fit::penalised(best) ? finished : best;
+}
+
+fit::Fit fit_without(const plant::PlantModel& model, const Bench& bench,
+                     const std::vector<fit::EventState>& states, double spread) {
+  fit::FitOptions o;
+  o.start = states;
+  return fit::fit(model.plant, model.conventions, bench.seen(), fit::free_parameters(model.plant, spread), o);
+}
+
+std::string own_values(const Addition& a) {
+  std::string text;
+  for (int i = 0; i < a.own; ++i) {
+    const auto& p = a.parameters[static_cast<std::size_t>(i)];
+    text += fmt::format("{}{} = {:.4g} {} ({:.4g} to {:.4g})", text.empty() ? "" : ", ", p.name, p.value,
+                        p.unit, p.low, p.high);
+  }
+  return text;
+}
+
+std::string sentence_of(const Addition& a) {
+  double before = 0, without = 0, after = 0;
+  const bool any_unseen = std::ranges::any_of(a.events, [](const auto& e) { return !e.score.seen; });
+  int n = 0;
+  for (const auto& e : a.events) {
+    if (any_unseen && e.score.seen) continue;
+    before += e.score.before;
+    without += e.refitted;
+    after += e.score.after;
+    ++n;
+  }
+  const std::string where = any_unseen ? "events it was not fitted to" : "the events (none was held out)";
+  std::string text = fmt::format(
+      "{} {}: on {} chi2 per value goes from {:.3g} ({:.3g} after refitting without it) to {:.3g}.",
+      a.hypothesis.what, a.earns ? "added" : "does not earn its place", where, before / n, without / n,
+      after / n);
+  if (a.own > 0) text += " " + own_values(a) + ".";
+  text += a.adequate ? " Nothing but noise is left." : " More than noise is left: something else is missing.";
+  return text;
+}
+
+}  // namespace
+
+hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std::string& name) {
+  const auto named = [&](const hypothesis::Hypothesis& h) { return plain(h.name) == plain(name); };
+  auto all = hypothesis::all_hypotheses(model.plant, model.conventions);
+  std::string names;
+  for (const auto& h : all) names += (names.empty() ? "" : ", ") + h.name;
+  std::ranges::move(hypothesis::all_replacements(model.plant, model.conventions), std::back_inserter(all));
+  if (const auto found = std::ranges::find_if(all, named); found != all.end()) return *found;
+  const sim::Effect* effect = sim::library::find_effect(name);
+  const std::string remedy = "use one of " + names + ", or load a law with --law";
+  if (effect == nullptr)
+    throw InputError({"effect '" + name + "'", "swingbank add", "there is no effect of that name", remedy});
+  if (effect->instants)
+    throw InputError({"effect " + std::string(effect->name), "swingbank add",
+                      "it acts at given instants and so belongs to one event, not to the plant",
+                      "write it into the model file by hand"});
+  throw InputError({"effect " + std::string(effect->name), "swingbank add",
+                    "the plant has no room in slot " + std::string(sim::slot_name(effect->slot)),
+                    "write \"" + std::string(effect->name) +
+                        " in place of ...\" with the name of what stands there, or " + remedy});
+}
+
+Addition add_effect(const plant::PlantModel& model, const hypothesis::Hypothesis& hypothesis,
+                    std::vector<record::Record> records, const AddOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  Bench bench(model, std::move(records), options.calibrate);
+  auto before = bench.each(model.plant, model.conventions, "events with the model as it is");
+  const auto states = bench.states_of(before);
+  Addition a;
+  a.hypothesis = hypothesis;
+  a.model = model;
+  a.without = fit_without(model, bench, states, options.calibrate.spread);
+  if (!a.without.failed.empty())
+    throw InputError({"the model cannot be fitted", model.origin, a.without.failed, "correct the model"});
+  a.with = fit_with(hypothesis, bench, states, options);
+  if (bench.measure_noise(a.with, hypothesis.conventions)) {
+    const double spread = options.calibrate.spread;
+    before = bench.each(model.plant, model.conventions, "events with the model as it is");
+    a.without =
+        go_on(model.plant, model.conventions, bench, fit::free_parameters(model.plant, spread), a.without);
+    a.with = go_on(hypothesis.plant, hypothesis.conventions, bench, hypothesis::free_of(hypothesis, spread),
+                   a.with);
+  }
+  a.own = static_cast<int>(hypothesis.free.size());
+  a.parameters = a.with.parameters;
+  // The effect's parameters stand last in a fit.
+  std::rotate(a.parameters.begin(), a.parameters.end() - a.own, a.parameters.end());
+  a.evidence = fit::criterion(a.without) - fit::criterion(a.with);
+  const auto refitted = bench.each(a.without.plant, model.conventions, "events without the effect");
+  const auto after = bench.each(a.with.plant, hypothesis.conventions, "events with the effect");
+  a.adequate = a.earns = true;
+  for (std::size_t e = 0; e < bench.all().size(); ++e) {
+    AddedEvent event{
+        calibrate::score_event(bench.all()[e], before[e], after[e], bench.is_seen(e),
+                               calibrate::pre_event_samples(bench.all()), options.calibrate.adequate),
+        refitted[e].misfit()};
+    a.adequate = a.adequate && event.score.adequate();
+    a.earns = a.earns && (event.score.seen || event.improves() || event.score.adequate());
+    a.events.push_back(std::move(event));
+  }
+  a.earns = a.earns && a.evidence > kStrong;
+  a.model.plant = a.with.plant;
+  a.model.conventions = hypothesis.conventions;
+  a.prepared = bench.all();
+  a.sentence = sentence_of(a);
+  a.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return a;
+}
+
+Removal try_without(const plant::PlantModel& model, std::size_t control, std::vector<record::Record> records,
+                    const AddOptions& options) {
+  Bench bench(model, std::move(records), options.calibrate);
+  Removal r;
+  r.effect = model.plant.controls[control].effect->name;
+  r.model = model;
+  r.model.plant.controls.erase(r.model.plant.controls.begin() + static_cast<std::ptrdiff_t>(control));
+  const auto states = bench.states_of(bench.each(model.plant, model.conventions, "events with " + r.effect));
+  const double spread = options.calibrate.spread;
+  fit::Fit with = fit_without(model, bench, states, spread),
+           without = fit_without(r.model, bench, states, spread);
+  if (with.failed.empty() && without.failed.empty() && bench.measure_noise(with, model.conventions)) {
+    with = go_on(model.plant, model.conventions, bench, fit::free_parameters(model.plant, spread), with);
+    without =
+        go_on(r.model.plant, model.conventions, bench, fit::free_parameters(r.model.plant, spread), without);
+  }
+  r.evidence = fit::criterion(without) - fit::criterion(with);
+  if (without.failed.empty()) r.model.plant = without.plant;
+  return r;
+}
+
+}  // namespace swingbank::validate::add

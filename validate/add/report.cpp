@@ -1,0 +1,139 @@
+#include "validate/add/report.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <ctime>
+
+#include "validate/calibrate/report.hpp"
+
+namespace swingbank::validate::add {
+namespace {
+
+using nlohmann::json;
+
+json finite(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+report::Table values_table(const Addition& a) {
+  report::Table t{
+      "Parameters",
+      {"parameter", "unit", "start", "value", "std. error", "95 % interval", "decided by records", ""},
+      {}};
+  for (std::size_t i = 0; i < a.parameters.size(); ++i) {
+    const auto& p = a.parameters[i];
+    const bool own = i < static_cast<std::size_t>(a.own);
+    t.rows.push_back({p.block + "." + p.name, p.unit, fmt::format("{:.4g}", p.start),
+                      fmt::format("{:.4g}", p.value), fmt::format("{:.2g}", p.error),
+                      fmt::format("{:.4g} to {:.4g}", p.low, p.high),
+                      fmt::format("{:.0f} %", 100 * p.decided),
+                      std::string(own ? "added" : "") + (p.at_bound ? " at its bound" : "")});
+  }
+  return t;
+}
+
+json parameter_json(const fit::FittedParameter& p, bool own) {
+  return {{"effect", p.block},
+          {"name", p.name},
+          {"unit", p.unit},
+          {"added", own},
+          {"start", p.start},
+          {"value", p.value},
+          {"standard_error", finite(p.error)},
+          {"low_95", finite(p.low)},
+          {"high_95", finite(p.high)},
+          {"decided_by_records", finite(p.decided)},
+          {"at_bound", p.at_bound}};
+}
+
+}  // namespace
+
+report::Table addition_table(const Addition& a) {
+  report::Table t{"Events",
+                  {"event", "", "channel", "noise", "rms before", "rms after", "misfit before", "refitted",
+                   "after", "limit"},
+                  {}};
+  for (const auto& event : a.events) {
+    const calibrate::EventScore& e = event.score;
+    t.rows.push_back({e.record, e.seen ? "fitted" : "UNSEEN", "all", "", "", "",
+                      fmt::format("{:.3g}", e.before), fmt::format("{:.3g}", event.refitted),
+                      fmt::format("{:.3g}{}", e.after, e.adequate() ? "" : " !"),
+                      fmt::format("{:.3g}", e.limit)});
+    for (const auto& c : e.channels)
+      t.rows.push_back(
+          {"", "", std::string(playin::output_name(c.channel)), fmt::format("{:.3g} {}", c.noise, c.unit),
+           fmt::format("{:.3g} {}", c.rms_before, c.unit), fmt::format("{:.3g} {}", c.rms_after, c.unit),
+           fmt::format("{:.3g}", c.misfit_before), "", fmt::format("{:.3g}", c.misfit_after), ""});
+  }
+  return t;
+}
+
+std::string terminal_report(const Addition& a) {
+  return a.sentence + "\n\n" + calibrate::aligned(addition_table(a)) + "\n" +
+         calibrate::aligned(values_table(a)) +
+         fmt::format("\nEvidence (twice the log of the Bayes factor): {:.1f}; above 10 is strong.\n",
+                     a.evidence);
+}
+
+json addition_json(const Addition& a) {
+  json j = {{"effect", a.hypothesis.name},
+            {"what", a.hypothesis.what},
+            {"side", hypothesis::side_name(a.hypothesis.side)},
+            {"sentence", a.sentence},
+            {"earns_its_place", a.earns},
+            {"adequate", a.adequate},
+            {"evidence_bic", finite(a.evidence)},
+            {"misfit_refitted_without", a.without.misfit()},
+            {"misfit_with", a.with.misfit()},
+            {"seconds", a.seconds},
+            {"events", json::array()},
+            {"parameters", json::array()}};
+  for (const auto& e : a.events) {
+    json event = calibrate::event_json(e.score);
+    event["misfit_refitted_without"] = finite(e.refitted);
+    j["events"].push_back(event);
+  }
+  for (std::size_t i = 0; i < a.parameters.size(); ++i)
+    j["parameters"].push_back(parameter_json(a.parameters[i], i < static_cast<std::size_t>(a.own)));
+  return j;
+}
+
+std::vector<std::string> provenance_lines(const Addition& a, const plant::PlantModel& from,
+                                          const std::string& command_line) {
+  std::string fitted, unseen;
+  for (std::size_t e = 0; e < a.events.size(); ++e) {
+    auto& list = a.events[e].score.seen ? fitted : unseen;
+    list += fmt::format("{}{} (xxh64 {:016x})", list.empty() ? "" : ", ", a.prepared[e].record.name,
+                        a.prepared[e].record.hash);
+  }
+  std::vector<std::string> lines = {
+      fmt::format("{} added by swingbank {} on {:%Y-%m-%d %H:%M} UTC.", a.hypothesis.what, SWINGBANK_VERSION,
+                  fmt::gmtime(std::time(nullptr))),
+      "Command: " + command_line, fmt::format("To the model {} (xxh64 {:016x}).", from.origin, from.hash),
+      "Fitted to: " + fitted};
+  if (!unseen.empty()) lines.push_back("Not fitted to, but tried on: " + unseen);
+  lines.push_back(a.sentence);
+  return lines;
+}
+
+std::string terminal_report(const Completion& c) {
+  std::string text;
+  for (const auto& a : c.added) text += terminal_report(a) + "\n";
+  for (const auto& r : c.removed)
+    text += fmt::format("{} taken out again: it no longer earns its place (evidence {:.1f}).\n", r.effect,
+                        r.evidence);
+  return text + c.sentence + "\n";
+}
+
+json completion_json(const Completion& c) {
+  json j = {{"sentence", c.sentence},
+            {"adequate", c.adequate},
+            {"added", json::array()},
+            {"removed", json::array()}};
+  for (const auto& a : c.added) j["added"].push_back(addition_json(a));
+  for (const auto& r : c.removed)
+    j["removed"].push_back({{"effect", r.effect}, {"evidence_bic", finite(r.evidence)}});
+  return j;
+}
+
+}  // namespace swingbank::validate::add

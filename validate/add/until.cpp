@@ -1,0 +1,93 @@
+// Diagnosis and addition in turn, until nothing but noise is left or nothing helps.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "sim/library/library.hpp"
+#include "validate/add/add.hpp"
+#include "validate/diagnose/diagnose.hpp"
+
+namespace swingbank::validate::add {
+namespace {
+
+std::vector<record::Record> seen_of(const std::vector<record::Record>& records,
+                                    const std::vector<std::string>& held_out) {
+  const auto out = calibrate::held_out_events(records, held_out);
+  std::vector<record::Record> seen;
+  for (std::size_t k = 0; k < records.size(); ++k)
+    if (!out[k]) seen.push_back(records[k]);
+  return seen;
+}
+
+/// The effect that the diagnosis names. Where it names nothing because more than one effect is missing, this
+/// is the hypothesis with the best evidence among those that improve every event they were not fitted to.
+std::string next_effect(const diagnose::Diagnosis& d) {
+  if (!d.effects.empty()) return d.effects.front();
+  const auto helps = [](const hypothesis::Judgement& j) {
+    return !j.held_out.empty() &&
+           std::ranges::all_of(j.held_out, [](const hypothesis::HeldOut& h) { return h.after < h.before; });
+  };
+  const auto best = std::ranges::find_if(d.ranked, helps);
+  return best == d.ranked.end() ? "" : best->hypothesis.name;
+}
+
+/// Takes out every added control that no longer earns its place.
+void prune(Completion& c, const std::vector<record::Record>& records, const AddOptions& options) {
+  for (std::size_t a = 0; a + 1 < c.added.size(); ++a) {
+    const sim::Effect* effect = sim::library::find_effect(c.added[a].hypothesis.name);
+    const auto& controls = c.model.plant.controls;
+    const auto at = std::ranges::find(controls, effect, &sim::plant::Block::effect);
+    if (effect == nullptr || at == controls.end()) continue;
+    Removal r = try_without(c.model, static_cast<std::size_t>(at - controls.begin()), records, options);
+    if (r.evidence > 0) continue;
+    c.model = r.model;
+    c.removed.push_back(std::move(r));
+  }
+}
+
+}  // namespace
+
+Completion add_until_adequate(const plant::PlantModel& model, const std::vector<record::Record>& records,
+                              const AddOptions& options, int most) {
+  Completion c;
+  c.model = model;
+  diagnose::DiagnoseOptions how;
+  how.spread = options.calibrate.spread;
+  how.adequate = options.calibrate.adequate;
+  how.measured_states = options.calibrate.events.measured_states;
+  how.progress = options.calibrate.progress;
+  std::string names;
+  while (static_cast<int>(c.added.size()) < most) {
+    const diagnose::Diagnosis d =
+        diagnose::diagnose(c.model, seen_of(records, options.calibrate.held_out), how);
+    if (d.verdict == diagnose::Verdict::adequate) {
+      c.adequate = true;
+      c.sentence = c.added.empty() ? d.sentence : "Adequate with " + names + ": " + d.sentence;
+      return c;
+    }
+    const std::string next = next_effect(d);
+    if (next.empty()) {
+      c.sentence = (names.empty() ? "" : "With " + names + ": ") + d.sentence;
+      return c;
+    }
+    Addition a = add_effect(c.model, find_hypothesis(c.model, next), records, options);
+    if (!a.earns) {
+      c.sentence = a.sentence;
+      return c;
+    }
+    names += (names.empty() ? "" : ", ") + a.hypothesis.name;
+    c.model = a.model;
+    const bool done = a.adequate;
+    c.added.push_back(std::move(a));
+    prune(c, records, options);
+    if (done) {
+      c.adequate = true;
+      c.sentence = "Adequate with " + names + ": nothing but noise is left in any event.";
+      return c;
+    }
+  }
+  c.sentence = fmt::format("{} effects were added ({}), and more than noise is left.", most, names);
+  return c;
+}
+
+}  // namespace swingbank::validate::add

@@ -1,0 +1,195 @@
+#include "validate/blind/cases/case.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "validate/blind/cases/detail/world.hpp"
+
+namespace swingbank::validate::blind::cases {
+namespace {
+
+using Scales = std::vector<std::optional<double>>;
+
+constexpr int kAttempts = 60;    ///< whole worlds drawn before giving up
+constexpr int kEventTries = 12;  ///< draws of one event within a world
+constexpr double kDip = 0.05;    ///< a fault that moves V by less at the plant is drawn again [pu]
+constexpr double kSpeed = 0.02;  ///< deviation of the speed below which no governor trips a unit [pu]
+constexpr double kClose = 0.1;   ///< a size is met within that part of it
+constexpr int kSizeTries = 8;    ///< simulations of all events while a size is sought
+
+constexpr double kHuge = 1e300;  ///< size of what cannot be simulated
+
+/// A draw that cannot be simulated; another one is made.
+struct Unstable {};
+
+class Maker {
+ public:
+  Maker(const BlindConfig& config, const BlindSpec& spec, BlindDraw& draw)
+      : config_(config), spec_(spec), draw_(draw), world_(config, spec.hidden, draw) {
+    made_.spec = spec;
+    made_.noise = config.noise[draw.below(config.noise.size())];
+    made_.pmu_filter = draw.coin(config.filter_share);
+    for (const BlindKind* kind : spec.hidden)  // the instrument is what is in question
+      if (kind->side == "measurement") made_.pmu_filter = false;
+    made_.channels = draw.coin(config.channels_share);
+    made_.controlled = world_.controlled();
+    made_.grid_name = world_.grid_name();
+    seed_ = draw.bits();
+  }
+  BlindCase make() {
+    draw_events();
+    choose_sizes();
+    const sim::grid::Grid grid = world_.grid(scales_);
+    made_.truth = target(grid);
+    made_.conventions = grid.conventions;
+    made_.plant_name = made_.truth.name;
+    draw_model();
+    made_.records = records(grid);
+    for (record::Record& record : made_.records)
+      add_noise(record, config_, made_.noise, made_.truth.mva, made_.channels, draw_);
+    return made_;
+  }
+
+ private:
+  [[nodiscard]] const sim::plant::Plant& target(const sim::grid::Grid& grid) const {
+    return grid.plants[static_cast<std::size_t>(world_.plant())];
+  }
+  /// The run of one event; throws Unstable where it does not stay in bounds.
+  [[nodiscard]] sim::reference::ReferenceRun run(const sim::grid::Grid& grid, const BlindEvent& event) const {
+    sim::reference::ReferenceRun fine = simulate_fine(grid, world_.plant(), event, config_);
+    if (fine.outcome != sim::Outcome::stable) throw Unstable{};
+    for (int k = 0; k < fine.samples; ++k)
+      if (!(std::abs(fine.at(0, 4)[k]) < kSpeed)) throw Unstable{};
+    return fine;
+  }
+  [[nodiscard]] std::vector<record::Record> records(const sim::grid::Grid& grid) const {
+    std::vector<record::Record> all;
+    for (std::size_t e = 0; e < made_.events.size(); ++e)
+      all.push_back(measured(run(grid, made_.events[e]), target(grid), config_, grid.conventions.frequency,
+                             made_.pmu_filter, seed_ + e));
+    return all;
+  }
+  void draw_events() {
+    for (int k = 0; k < config_.faults + config_.frequency_events; ++k) made_.events.push_back(draw_event(k));
+  }
+  BlindEvent draw_event(int k) {
+    for (int i = 0; i < kEventTries; ++i) {
+      const bool fault = k < config_.faults;
+      BlindEvent event = fault ? draw_fault(world_, draw_) : draw_frequency_event(world_, draw_);
+      try {
+        const sim::reference::ReferenceRun fine = run(world_.plain(), event);
+        const double* v = fine.at(0, 0);
+        if (fault && v[0] - *std::min_element(v, v + fine.samples) < kDip) continue;
+        plain_.push_back(measured(fine, target(world_.plain()), config_, world_.plain().conventions.frequency,
+                                  made_.pmu_filter, seed_ + static_cast<std::uint64_t>(k)));
+        return event;
+      } catch (const Unstable&) {  // drawn again
+      }
+    }
+    throw Unstable{};
+  }
+  /// Seeks the scale at which an effect has its size: what is left grows steadily with the scale, almost
+  /// in proportion where the path is linear.
+  void choose_sizes() {
+    if (spec_.hidden.empty()) return;
+    const sim::grid::Grid& plain = world_.plain();
+    const BlindSize size(target(plain), plain.conventions, made_.events, plain_,
+                         made_.noise * target(plain).mva / plain_.front().base.mva,
+                         made_.noise * config_.voltage_noise);
+    scales_.assign(spec_.hidden.size(), {});
+    Scales found = scales_;
+    for (std::size_t k = 0; k < spec_.hidden.size(); ++k) {
+      const BlindKind& kind = *spec_.hidden[k];
+      BlindTruth truth;
+      truth.kind = &kind;
+      const double factor =
+          spec_.size > 0 ? spec_.size : draw_.log_uniform(config_.size.first, config_.size.second);
+      truth.wanted = factor * kind.limit;
+      Scales alone = scales_;
+      seek(size, k, alone, truth);
+      found[k] = truth.scale;
+      made_.hidden.push_back(truth);
+    }
+    scales_ = found;
+  }
+  void seek(const BlindSize& size, std::size_t k, Scales& alone, BlindTruth& truth) {
+    double low = 0.0, high = 1.0, low_left = 0.0, high_left = kHuge, scale = 1.0, best = kHuge;
+    const bool logarithmic = truth.kind->logarithmic;
+    for (int i = 0; i < kSizeTries; ++i) {
+      alone[k] = scale;
+      const auto [left, visible] = sizes(size, alone);
+      const double miss = std::abs(std::log(left / truth.wanted));
+      if (left < kHuge && miss < best) {
+        best = miss;
+        truth.scale = scale;
+        truth.left = left;
+        truth.visible = visible;
+      }
+      const bool end = left < truth.wanted ? scale == 1.0 : scale == 0.0;
+      if (miss < std::log1p(kClose) || end) break;
+      (left > truth.wanted ? high : low) = scale;
+      (left > truth.wanted ? high_left : low_left) = left;
+      scale = next_scale(logarithmic, truth.wanted, low, low_left, high, high_left);
+    }
+    // An effect that stays below its own detection limit at full size shows nothing in these events.
+    if (best == kHuge || truth.left < truth.kind->limit) throw Unstable{};
+  }
+  /// Size left and visible at these scales; huge where the grid does not stay stable.
+  [[nodiscard]] std::pair<double, double> sizes(const BlindSize& size, const Scales& scales) const {
+    try {
+      const std::vector<record::Record> with = records(world_.grid(scales));
+      return {size.left(with), size.visible(with)};
+    } catch (const Unstable&) {  // too strong: larger than anything asked for
+      return {kHuge, kHuge};
+    }
+  }
+  static double next_scale(bool logarithmic, double wanted, double low, double low_left, double high,
+                           double high_left) {
+    const double middle = 0.5 * (low + high);
+    if (high_left >= kHuge) return middle;
+    if (logarithmic && low_left == 0.0) return 0.0;  // tries whether even the smallest is too large
+    double guess = high * wanted / high_left;
+    if (logarithmic)
+      guess = low + (high - low) * std::log(wanted / low_left) / std::log(high_left / low_left);
+    return guess > low && guess < high ? guess : middle;
+  }
+  /// The owner's model: no hidden effect, every machine parameter off by 10 to 20 % (or as configured).
+  void draw_model() {
+    made_.model = target(world_.plain());
+    if (!mislead(made_.model.machine, config_.wrong, draw_)) throw Unstable{};
+  }
+
+  const BlindConfig& config_;
+  const BlindSpec& spec_;
+  BlindDraw& draw_;
+  BlindWorld world_;
+  BlindCase made_;
+  std::vector<record::Record> plain_;  ///< without hidden effects or noise
+  Scales scales_;
+  std::uint64_t seed_ = 0;
+};
+
+}  // namespace
+
+BlindCase make_blind_case(const BlindConfig& config, const BlindSpec& spec) {
+  std::string last = "the grid lost synchronism or a speed left 2 %";
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    BlindDraw draw(spec.seed, spec.index, static_cast<std::uint64_t>(attempt));
+    try {
+      BlindCase made = Maker(config, spec, draw).make();
+      made.attempts = attempt + 1;
+      return made;
+    } catch (const Unstable&) {  // another world
+    } catch (const InputError& error) {
+      last = error.what();
+    }
+  }
+  throw InputError({fmt::format("no stable case in {} draws", kAttempts),
+                    fmt::format("seed {}, case {}", spec.seed, spec.index), last,
+                    "check the kinds of the config"});
+}
+
+}  // namespace swingbank::validate::blind::cases

@@ -1,0 +1,121 @@
+#include "validate/blind/cases/config.hpp"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <sstream>
+
+#include "base/config.hpp"
+#include "sim/plant/block_text.hpp"
+#include "validate/blind/cases/detail/effects.hpp"
+
+namespace swingbank::validate::blind::cases {
+namespace {
+
+const std::vector<std::string> kSides = {"mechanical", "excitation", "machine", "measurement", "none"};
+
+bool parse(std::string_view text, double& value) {
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+  return read.ec == std::errc{} && read.ptr == text.data() + text.size();
+}
+
+/// "TARGET.PARAM=NEUTRAL:FULL".
+BlindPath read_path(Config& config, const std::string& key, const std::string& text) {
+  const auto dot = text.find('.'), equal = text.find('=', dot), colon = text.find(':', equal);
+  BlindPath path{};
+  if (dot != text.npos && equal != text.npos && colon != text.npos) {
+    path.target = text.substr(0, dot);
+    path.parameter = text.substr(dot + 1, equal - dot - 1);
+    if (parse(text.substr(equal + 1, colon - equal - 1), path.neutral) &&
+        parse(text.substr(colon + 1), path.full))
+      return path;
+  }
+  config.problem(key, "'" + text + "'", "a path is EFFECT.PARAM=NEUTRAL:FULL",
+                 "write it like machine.S10=0:0.12");
+  return path;
+}
+
+void check_blocks(Config& config, const std::string& key, const std::vector<std::string>& texts) {
+  for (const auto& text : texts) {
+    Problems problems;
+    blind_block(text, config.where(key), problems);
+    for (const auto& p : problems.list()) config.problem(key, p.what, p.why, p.remedy);
+  }
+}
+
+void check_path(Config& config, const std::string& key, const BlindPath& path) {
+  if (path.target == "conventions" && path.parameter == "speed_voltage") return;
+  const sim::Effect* effect = blind_effect(path.target == "machine" ? "GENROU" : path.target);
+  if (effect && effect->parameter_index(path.parameter) >= 0) return;
+  config.problem(key, path.target + "." + path.parameter, "no effect has such a parameter",
+                 "swingbank effects lists them; machine means GENROU");
+}
+
+BlindKind read_kind(Config& config, const std::string& name) {
+  const std::string at = "kind." + name + ".";
+  BlindKind kind;
+  kind.name = name;
+  kind.side = config.choice(at + "side", kSides);
+  kind.listed = config.optional<bool>(at + "listed", true);
+  kind.drawn = config.optional<bool>(at + "drawn", true);
+  kind.base = config.optional<std::vector<std::string>>(at + "base", {});
+  kind.hidden = config.optional<std::vector<std::string>>(at + "hidden", {});
+  kind.answers = config.optional<std::vector<std::string>>(at + "answers", {name});
+  kind.logarithmic = config.choice(at + "spacing", {"linear", "log"}, "linear") == "log";
+  kind.limit = config.require<double>(at + "limit", {1e-3, 1e6, "noise"});
+  check_blocks(config, at + "base", kind.base);
+  check_blocks(config, at + "hidden", kind.hidden);
+  for (const auto& text : config.require<std::vector<std::string>>(at + "path")) {
+    kind.path.push_back(read_path(config, at + "path", text));
+    check_path(config, at + "path", kind.path.back());
+    if (kind.logarithmic && !(kind.path.back().neutral * kind.path.back().full > 0))
+      config.problem(at + "path", "'" + text + "'", "a logarithmic path cannot pass through 0",
+                     "give both ends the same sign, or spacing = \"linear\"");
+  }
+  return kind;
+}
+
+}  // namespace
+
+const BlindKind* BlindConfig::kind(const std::string& name) const {
+  const auto at = std::ranges::find(kinds, name, &BlindKind::name);
+  return at == kinds.end() ? nullptr : &*at;
+}
+
+BlindConfig load_blind_config(const std::filesystem::path& file) {
+  Config config(file);
+  BlindConfig b;
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  b.hash = XXH64(text.str().data(), text.str().size(), 0);
+  b.noise = config.require<std::vector<double>>("record.noise", {0.0, 0.1, "of machine MVA"});
+  b.voltage_noise = config.require<double>("record.voltage_noise", {0.0, 10.0, "of noise"});
+  b.speed_noise = config.require<double>("record.speed_noise", {0.0, 0.1, "pu"});
+  b.seconds = config.require<double>("record.seconds", {4.0, 120.0, "s"});
+  b.rate = config.require<double>("record.rate", {10.0, 240.0, "1/s"});
+  b.fine_rate = config.require<double>("record.fine_rate", {60.0, 7680.0, "1/s"});
+  b.faults = static_cast<int>(config.require<std::int64_t>("events.faults", {0, 50}));
+  b.frequency_events = static_cast<int>(config.require<std::int64_t>("events.frequency", {0, 50}));
+  b.wrong = config.interval("model.wrong", {0.0, 0.5});
+  b.size = config.interval("size", {0.1, 1e4, "detection limits"});
+  b.spread = config.require<double>("model.spread", {0.0, 0.5});
+  b.filter_share = config.require<double>("record.filter_share", {0.0, 1.0});
+  b.channels_share = config.require<double>("record.channels_share", {0.0, 1.0});
+  b.controlled_share = config.require<double>("events.controlled_share", {0.0, 1.0});
+  for (const auto& name : config.keys("grid"))
+    b.grids.push_back({config.file("grid." + name + ".raw"), config.file("grid." + name + ".dyr"),
+                       config.require<std::vector<std::int64_t>>("grid." + name + ".buses", {1.0})});
+  for (const auto& name : config.keys("kind")) b.kinds.push_back(read_kind(config, name));
+  if (b.grids.empty())
+    config.problem("grid", "no [grid.NAME]", "cases are simulated on a grid", "give one grid at least");
+  if (std::abs(b.fine_rate / b.rate - std::round(b.fine_rate / b.rate)) > 1e-9)
+    config.problem("record.fine_rate", fmt::format("fine_rate = {:g} 1/s", b.fine_rate),
+                   fmt::format("it is no multiple of rate = {:g} 1/s", b.rate), "make it one");
+  config.raise();
+  return b;
+}
+
+}  // namespace swingbank::validate::blind::cases

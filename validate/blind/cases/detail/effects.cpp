@@ -1,0 +1,27 @@
+#include "validate/blind/cases/detail/effects.hpp"
+
+#include "sim/library/library.hpp"
+#include "sim/plant/block_text.hpp"
+
+namespace swingbank::validate::blind::cases {
+
+const sim::Effect* blind_effect(const std::string& name) {
+  for (const auto& odd : odd_effects())
+    if (odd.name == name) return &odd;
+  return sim::library::find_effect(name);
+}
+
+sim::plant::Block blind_block(const std::string& text, const std::string& where, Problems& problems) {
+  const auto colon = text.find(':');
+  sim::plant::Block block{blind_effect(text.substr(0, colon)), {}};
+  if (!block.effect) {
+    problems.add("no effect '" + text.substr(0, colon) + "'", where,
+                 "there are " + sim::library::effect_names(), "choose one of these");
+    return {};
+  }
+  block.p = block.effect->standard_parameters();
+  if (colon != text.npos) sim::plant::set_parameters(block, text.substr(colon + 1), where, problems);
+  return block;
+}
+
+}  // namespace swingbank::validate::blind::cases

@@ -1,0 +1,119 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "validate/blind/cases/detail/world.hpp"
+
+namespace swingbank::validate::blind::cases {
+namespace {
+
+enum FineChannel { kV, kTheta, kP, kQ, kSpeed, kIfd };
+
+/// The reference P-class filter of IEEE Std C37.118.1-2011, annex C: triangular over two cycles of nominal
+/// frequency, w(k) = 1 - 2|k|/(N + 2), here normalised. Ends are held.
+std::vector<Complex> p_class(const std::vector<Complex>& x, double rate, double frequency) {
+  const int half = static_cast<int>(std::lround(rate / frequency)) - 1;
+  const int last = static_cast<int>(x.size()) - 1;
+  std::vector<double> weight;
+  double sum = 0;
+  for (int k = -half; k <= half; ++k) {
+    weight.push_back(1.0 - std::abs(k) / (half + 1.0));
+    sum += weight.back();
+  }
+  std::vector<Complex> y(x.size());
+  for (int i = 0; i <= last; ++i)
+    for (int k = -half; k <= half; ++k)
+      y[static_cast<std::size_t>(i)] += weight[static_cast<std::size_t>(k + half)] / sum *
+                                        x[static_cast<std::size_t>(std::clamp(i + k, 0, last))];
+  return y;
+}
+
+sim::Phasors phasors(const sim::reference::ReferenceRun& fine, double frequency) {
+  sim::Phasors p;
+  p.rate = fine.rate;
+  p.frequency = frequency;
+  for (int k = 0; k < fine.samples; ++k) {
+    const Complex v = std::polar(fine.at(0, kV)[k], fine.at(0, kTheta)[k]);
+    p.V.push_back(v);
+    p.I.push_back(std::conj(Complex(fine.at(0, kP)[k], fine.at(0, kQ)[k]) / v));
+    const double* theta = fine.at(0, kTheta);
+    p.df.push_back(k == 0 ? 0.0 : (theta[k] - theta[k - 1]) * fine.rate / (6.283185307179586 * frequency));
+  }
+  return p;
+}
+
+}  // namespace
+
+sim::reference::ReferenceRun simulate_fine(const sim::grid::Grid& grid, int plant, const BlindEvent& event,
+                                           const BlindConfig& config) {
+  sim::reference::ReferenceOptions options;
+  options.rate = config.fine_rate;
+  options.t_end = config.seconds + 0.05;  // the filter looks ahead
+  options.plants = {plant};
+  options.channels = {sim::Channel::V, sim::Channel::theta, sim::Channel::P,
+                      sim::Channel::Q, sim::Channel::speed, sim::Channel::Ifd};
+  return sim::reference::run_reference(grid, event.event, options);
+}
+
+record::Record measured(const sim::reference::ReferenceRun& fine, const sim::plant::Plant& plant,
+                        const BlindConfig& config, double frequency, bool pmu_filter, std::uint64_t seed) {
+  sim::Phasors p = phasors(fine, frequency);
+  for (const sim::plant::Block& block : plant.measurements) block.effect->measure(block.p.data(), seed, p);
+  if (pmu_filter) {
+    p.V = p_class(p.V, fine.rate, frequency);
+    p.I = p_class(p.I, fine.rate, frequency);
+  }
+  record::Record r;
+  r.base.mva = kRecordMva;
+  r.base.frequency = frequency;
+  const int stride = static_cast<int>(std::lround(config.fine_rate / config.rate));
+  const double scale = plant.mva / kRecordMva;
+  for (int k = 0; k <= static_cast<int>(std::lround(config.seconds * config.fine_rate)); k += stride) {
+    const auto i = static_cast<std::size_t>(k);
+    const Complex power = p.V[i] * std::conj(p.I[i]) * scale;
+    double angle = std::arg(p.V[i]);
+    if (!r.theta.empty())
+      angle += 6.283185307179586 * std::round((r.theta.back() - angle) / 6.283185307179586);
+    r.t.push_back(static_cast<double>(k / stride) / config.rate);
+    r.V.push_back(std::abs(p.V[i]));
+    r.theta.push_back(angle);
+    r.P.push_back(power.real());
+    r.Q.push_back(power.imag());
+    r.speed.push_back(fine.at(0, kSpeed)[k]);
+    r.Ifd.push_back(fine.at(0, kIfd)[k]);
+  }
+  return r;
+}
+
+void add_noise(record::Record& record, const BlindConfig& config, double noise, double mva, bool channels,
+               BlindDraw& draw) {
+  const auto add = [&](std::vector<double>& values, double sigma) {
+    for (double& value : values) value += sigma * draw.normal();
+  };
+  add(record.V, noise * config.voltage_noise);
+  add(record.theta, noise * config.voltage_noise);
+  add(record.P, noise * mva / kRecordMva);
+  add(record.Q, noise * mva / kRecordMva);
+  add(record.speed, config.speed_noise);
+  add(record.Ifd, noise);
+  if (channels) return;
+  record.speed.clear();
+  record.Ifd.clear();
+}
+
+std::string record_csv(const record::Record& record) {
+  std::string text = "t_s,V_pu,theta_rad,P_pu,Q_pu";
+  if (!record.speed.empty()) text += ",omega_pu,Ifd_pu";
+  text += '\n';
+  for (std::size_t k = 0; k < record.t.size(); ++k) {
+    fmt::format_to(std::back_inserter(text), "{:.6f},{:.7g},{:.7g},{:.7g},{:.7g}", record.t[k], record.V[k],
+                   record.theta[k], record.P[k], record.Q[k]);
+    if (!record.speed.empty())
+      fmt::format_to(std::back_inserter(text), ",{:.9g},{:.7g}", 1.0 + record.speed[k], record.Ifd[k]);
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace swingbank::validate::blind::cases

@@ -1,0 +1,158 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "validate/blind/cases/detail/world.hpp"
+#include "validate/fit/fit.hpp"
+#include "validate/fit/noise.hpp"
+#include "validate/playin/play_in.hpp"
+
+namespace swingbank::validate::blind::cases {
+namespace {
+
+constexpr double kTolerance = 1e-7;      ///< of the integration: a thousandth of the smallest noise
+constexpr double kSwitchingUnit = 2e-4;  ///< one unit of a switching instant [s]
+constexpr Eigen::Index kStates = 4;      ///< of an event's start: P, Q, angle, speed
+
+/// P and Q of the compared samples, one after the other.
+Eigen::VectorXd interleaved(const event::FitEvent& e, const std::vector<double>& P,
+                            const std::vector<double>& Q) {
+  Eigen::VectorXd all(e.values());
+  Eigen::Index row = 0;
+  for (std::size_t k = 0; k < P.size(); ++k) {
+    if (!e.compared(k)) continue;
+    all[row++] = P[k];
+    all[row++] = Q[k];
+  }
+  return all;
+}
+
+/// Marks samples next to a switching. A current that is late by a thousandth of a second shows in one of
+/// these alone, where a diagnosis cannot tell it from the instant.
+std::vector<char> beside_switchings(const record::Record& record, const std::vector<double>& switchings) {
+  std::vector<char> beside;
+  for (const double t : record.t)
+    beside.push_back(std::ranges::any_of(
+        switchings, [&](double instant) { return std::abs(t - instant) < record.step(); }));
+  return beside;
+}
+
+/// An event whose noise has these standard deviations.
+event::FitEvent noise_of(const sim::plant::Plant& plant, const sim::Conventions& conventions,
+                         const record::Record& record, const BlindEvent& event, double power,
+                         double voltage) {
+  event::FitEvent e;
+  e.record = record;
+  for (const double t : event.switchings) e.switchings.push_back({.time = t});
+  e.left_out = beside_switchings(record, event.switchings);
+  e.channels = {playin::Output::P, playin::Output::Q};
+  e.start = playin::pre_event_point(record, e.switchings, 1.0);
+  const playin::VoltageCurve curve(record, e.switchings);
+  const playin::LinearPlant linear = playin::linearise(
+      {.plant = &plant, .conventions = conventions, .record = &e.record, .curve = &curve, .start = e.start});
+  const Eigen::Vector2d variance(std::pow(voltage / std::abs(e.start.voltage), 2), voltage * voltage);
+  const Eigen::Matrix2d at_once =
+      linear.D.topRows(2) * variance.asDiagonal() * linear.D.topRows(2).transpose();
+  const Eigen::Matrix2d white = at_once + power * power * Eigen::Matrix2d::Identity();
+  e.noise = white.diagonal().cwiseSqrt();
+  e.whitening = white.llt().matrixL().solve(Eigen::Matrix2d::Identity());
+  e.memory = std::make_shared<event::Innovations>(fit::slow_noise(linear, e, variance), record.samples(),
+                                                  e.left_out);
+  return e;
+}
+
+}  // namespace
+
+BlindSize::BlindSize(const sim::plant::Plant& plant, const sim::Conventions& conventions,
+                     const std::vector<BlindEvent>& events, std::vector<record::Record> plain,
+                     double power_noise, double voltage_noise)
+    : plant_(plant), conventions_(conventions), events_(events), plain_(std::move(plain)) {
+  for (std::size_t e = 0; e < plain_.size(); ++e) {
+    noise_.push_back(noise_of(plant_, conventions_, plain_[e], events_[e], power_noise, voltage_noise));
+    plain_residual_.push_back(Eigen::VectorXd::Zero(noise_[e].values()));
+    plain_residual_.back() = residual(e, plain_[e]);
+  }
+  auto columns = static_cast<Eigen::Index>(fit::free_parameters(plant_, 1.0).size());
+  for (std::size_t e = 0; e < events_.size(); ++e) columns += own_columns(e);
+  columns_ = event::RowMatrix::Zero(first_row(plain_.size()), columns);
+  for (std::size_t e = 0; e < plain_.size(); ++e) add_columns(e);
+}
+
+Eigen::Index BlindSize::own_columns(std::size_t event) const {
+  return static_cast<Eigen::Index>(events_[event].switchings.size()) + kStates;
+}
+
+Eigen::Index BlindSize::first_row(std::size_t event) const {
+  Eigen::Index row = 0;
+  for (std::size_t e = 0; e < event; ++e) row += noise_[e].values();
+  return row;
+}
+
+playin::Response BlindSize::answer(std::size_t event, const record::Record& record,
+                                   const std::vector<playin::Direction>& along) const {
+  std::vector<playin::Switching> instants;
+  for (const double t : events_[event].switchings) instants.push_back({.time = t});
+  const playin::VoltageCurve curve(record, instants);
+  return playin::drive({.plant = &plant_,
+                        .conventions = conventions_,
+                        .record = &record,
+                        .curve = &curve,
+                        .start = playin::pre_event_point(record, instants, 1.0),
+                        .tolerance = kTolerance},
+                       along);
+}
+
+Eigen::VectorXd BlindSize::residual(std::size_t event, const record::Record& record) const {
+  // what interpolation and filter leave even without the effect is taken off
+  const playin::Response r = answer(event, record, {});
+  return interleaved(noise_[event], record.P, record.Q) -
+         interleaved(noise_[event], r.of(playin::Output::P), r.of(playin::Output::Q)) -
+         plain_residual_[event];
+}
+
+void BlindSize::add_columns(std::size_t event) {
+  using Kind = playin::Direction::Kind;
+  std::vector<playin::Direction> along;
+  for (const fit::FreeParameter& f : fit::free_parameters(plant_, 1.0))
+    along.push_back({Kind::parameter, f.block, f.index, fit::parameter_value(plant_, f.block, f.index)});
+  const std::size_t shared = along.size();
+  for (std::size_t s = 0; s < events_[event].switchings.size(); ++s)
+    along.push_back({Kind::switching, 0, static_cast<int>(s), kSwitchingUnit});
+  for (const Kind kind : {Kind::P, Kind::Q, Kind::angle, Kind::speed}) along.push_back({kind, 0, 0, 1.0});
+  const playin::Response r = answer(event, plain_[event], along);
+
+  auto first = static_cast<Eigen::Index>(shared);  // columns of this event's own
+  for (std::size_t e = 0; e < event; ++e) first += own_columns(e);
+  event::RowMatrix own = event::RowMatrix::Zero(noise_[event].values(), columns_.cols());
+  for (std::size_t d = 0; d < along.size(); ++d) {
+    const auto& slope = r.slopes[d].value;
+    const auto at = static_cast<Eigen::Index>(d);
+    own.col(d < shared ? at : first + at - static_cast<Eigen::Index>(shared)) =
+        interleaved(noise_[event], slope[static_cast<int>(playin::Output::P)],
+                    slope[static_cast<int>(playin::Output::Q)]);
+  }
+  noise_[event].whiten(own);
+  columns_.middleRows(first_row(event), own.rows()) = own;
+}
+
+double BlindSize::visible(const std::vector<record::Record>& with) const {
+  double sum = 0;
+  for (std::size_t e = 0; e < with.size(); ++e)
+    for (std::size_t k = 0; k < with[e].t.size(); ++k)
+      if (noise_[e].compared(k))
+        sum += std::pow((with[e].P[k] - plain_[e].P[k]) / noise_[e].noise[0], 2) +
+               std::pow((with[e].Q[k] - plain_[e].Q[k]) / noise_[e].noise[1], 2);
+  return std::sqrt(sum);
+}
+
+double BlindSize::left(const std::vector<record::Record>& with) const {
+  Eigen::VectorXd all(columns_.rows());
+  for (std::size_t e = 0; e < with.size(); ++e) {
+    event::RowMatrix r = residual(e, with[e]);
+    noise_[e].whiten(r);
+    all.segment(first_row(e), r.rows()) = r;
+  }
+  return (all - columns_ * columns_.colPivHouseholderQr().solve(all)).norm();
+}
+
+}  // namespace swingbank::validate::blind::cases

@@ -1,0 +1,49 @@
+#pragma once
+// The score of a blind run: verdicts against the sealed truth, as rates with their 95 % intervals.
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "base/rate.hpp"
+#include "validate/blind/score/verdict.hpp"
+
+namespace swingbank::validate::blind::score {
+
+/// One case: what was hidden and what was said.
+struct ScoredCase {
+  std::string name;
+  std::vector<std::string> kinds, sides;          ///< of the hidden effects
+  std::vector<std::vector<std::string>> answers;  ///< names that count as right, per hidden effect
+  bool listed = true;                             ///< every hidden effect is in the list of hypotheses
+  double size = 0;                                ///< smallest of the hidden effects, in detection limits
+  bool channels = false;                          ///< speed and Ifd measured too
+  BlindVerdict verdict;
+
+  [[nodiscard]] bool first_right() const;      ///< the first effect named is the hidden one
+  [[nodiscard]] bool right_or_in_set() const;  ///< or it is in the stated confusion set
+  [[nodiscard]] bool all_named() const;        ///< every hidden effect is named
+  [[nodiscard]] bool all_in_set() const;       ///< or one entry of the stated set ("A + B") names every one
+  [[nodiscard]] bool side_right() const;
+};
+
+struct BlindScore {
+  std::vector<ScoredCase> cases;
+  std::vector<std::string> unjudged;  ///< cases without a verdict
+  std::map<std::string, Rate> rates;  ///< by name: see score_blind
+  std::map<std::string, double> targets;
+  std::map<std::string, std::map<std::string, int>> confusion;  ///< [kind][what was said first]
+  std::map<std::string, std::vector<Rate>> by_size;             ///< "PQ", "all": right first, per size class
+  double median_seconds = 0, longest_seconds = 0;
+};
+/// Lower edges of the size classes [detection limits].
+inline constexpr double kSizeEdges[] = {0.0, 1.0, 2.0, 4.0, 7.0};
+
+/// Reads RUN/truth and RUN/verdicts. `targets` (a TOML file's [target]) sets a least rate for each rate it
+/// names. Throws InputError with every fault of the files.
+BlindScore score_blind(const std::filesystem::path& run, const std::filesystem::path& targets);
+std::string score_markdown(const BlindScore& score);
+nlohmann::json score_json(const BlindScore& score);
+
+}  // namespace swingbank::validate::blind::score

@@ -1,0 +1,393 @@
+#include "validate/calibrate/calibrate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "base/in_parallel.hpp"
+#include "validate/calibrate/detail/identify.hpp"
+#include "validate/calibrate/detail/screen.hpp"
+#include "validate/calibrate/detail/voltage_noise.hpp"
+#include "validate/fit/noise.hpp"
+
+namespace swingbank::validate::calibrate {
+namespace {
+
+fit::Fit alone(const plant::PlantModel& model, const sim::plant::Plant& plant, const event::FitEvent& event) {
+  fit::Fit f = fit::fit(plant, model.conventions, {event}, {});
+  if (!f.failed.empty())
+    throw InputError({"the model cannot follow the record", event.record.name, f.failed,
+                      "check the model's parameters and the record's base and units"});
+  return f;
+}
+
+/// chi2 of all events with their states as given; infinite where the plant cannot be driven.
+double chi2_of(const sim::plant::Plant& plant, const sim::Conventions& conventions,
+               const std::vector<event::FitEvent>& events, const std::vector<fit::EventState>& states) {
+  double sum = 0;
+  try {
+    for (std::size_t e = 0; e < events.size(); ++e) {
+      const fit::EventSlopes s = fit::event_slopes(plant, conventions, events[e], states[e], {});
+      sum += s.residual.squaredNorm();
+    }
+  } catch (const InputError&) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return sum;
+}
+
+class Run {
+ public:
+  Run(const plant::PlantModel& model, std::vector<record::Record> records, const CalibrateOptions& options)
+      : model_(model),
+        options_(options),
+        out_(held_out_events(records, options.held_out)),
+        free_(chosen_parameters(model.plant, options.spread, options.fixed)) {
+    c_.model = model;
+    c_.prepared = event::prepare_events(model, std::move(records), options.events);
+    for (std::size_t e = 0; e < c_.prepared.size(); ++e)
+      if (!out_[e]) seen_.push_back(c_.prepared[e]);
+  }
+
+  Calibration run() {
+    const auto begin = std::chrono::steady_clock::now();
+    before_ = each_alone(model_.plant, "events with the model as it is");
+    search();
+    shift_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(free_.size()));
+    if (c_.fit.misfit() <= kClose) {
+      whiten_voltage_noise();
+      undo_voltage_noise();
+    }
+    after_ = each_alone(c_.fit.plant, "events with the fitted model");
+    c_.model.plant = c_.fit.plant;
+    for (const auto& f : after_) c_.states.push_back(f.state);
+    learn();
+    judge();
+    c_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return std::move(c_);
+  }
+
+ private:
+  void tell(const std::string& what, int done, int total) const {
+    if (options_.progress) options_.progress(what, done, total);
+  }
+  /// Fits every event by itself, with only its own state free. Events that were seen keep the state of the
+  /// common fit if that is better.
+  std::vector<fit::EventFit> each_alone(const sim::plant::Plant& plant, const std::string& what) const {
+    std::vector<fit::EventFit> fits(c_.prepared.size());
+    in_parallel(
+        c_.prepared.size(),
+        [&](std::size_t e) { fits[e] = std::move(alone(model_, plant, c_.prepared[e]).events.front()); },
+        [&](int done) { tell(what, done, static_cast<int>(fits.size())); });
+    return fits;
+  }
+
+  void search() {
+    std::vector<fit::EventState> states;
+    for (std::size_t e = 0; e < before_.size(); ++e)
+      if (!out_[e]) states.push_back(before_[e].state);
+    const Screen screen(model_.plant, free_, options_.seed);
+    std::vector<std::vector<double>> draws(static_cast<std::size_t>(std::max(0, options_.draws)));
+    std::vector<std::pair<double, std::size_t>> order(draws.size());
+    in_parallel(
+        draws.size(),
+        [&](std::size_t k) {
+          draws[k] = screen.draw(k);
+          order[k] = {chi2_of(screen.with(draws[k]), model_.conventions, seen_, states), k};
+        },
+        [&](int done) { tell("parameter sets screened", done, options_.draws); });
+    std::ranges::sort(order);
+    std::vector<std::vector<double>> starts = {screen.own()};
+    c_.started = {{.name = "model", .before = chi2_of(model_.plant, model_.conventions, seen_, states)}};
+    for (const auto& g : options_.given) {
+      starts.push_back(fit::values_of(g.plant, free_));
+      c_.started.push_back(
+          {.name = g.name, .before = chi2_of(screen.with(starts.back()), model_.conventions, seen_, states)});
+    }
+    const auto refined = static_cast<std::size_t>(std::max(0, options_.starts));
+    for (std::size_t k = 0; k < order.size() && k < refined; ++k) {
+      if (!std::isfinite(order[k].first)) continue;
+      starts.push_back(draws[order[k].second]);
+      c_.started.push_back({.name = fmt::format("draw {}", order[k].second + 1), .before = order[k].first});
+    }
+
+    std::vector<fit::Fit> fits(starts.size());
+    in_parallel(
+        starts.size(),
+        [&](std::size_t k) {
+          fit::FitOptions o;
+          o.start = states;
+          o.values = starts[k];
+          fits[k] = fit::fit(model_.plant, model_.conventions, seen_, free_, o);
+        },
+        [&](int done) { tell("starts refined", done, static_cast<int>(starts.size())); });
+    choose(fits);
+  }
+  void choose(std::vector<fit::Fit>& fits) {
+    const auto cost = [](const fit::Fit& f) {
+      return f.failed.empty() ? f.chi2 + f.belief : std::numeric_limits<double>::infinity();
+    };
+    const auto best = std::ranges::min_element(fits, {}, cost);
+    if (!best->failed.empty())
+      throw InputError({"no start can be evaluated", model_.origin, best->failed, "correct the model"});
+    c_.starts = static_cast<int>(fits.size());
+    // near means 1 % of the cost, or what one parameter's standard error costs
+    const double near = std::max(1.0, 0.01 * cost(*best));
+    double values = 0;
+    for (const auto& e : seen_) values += e.values();
+    for (std::size_t k = 0; k < fits.size(); ++k) {
+      auto& start = c_.started[k];
+      start.before /= values;
+      start.after = fits[k].failed.empty() ? fits[k].misfit() : std::numeric_limits<double>::infinity();
+      start.agrees = cost(fits[k]) <= cost(*best) + near;
+      c_.agreeing += start.agrees;
+    }
+    c_.converged = best->converged;
+    c_.fit = *best;
+  }
+
+  static constexpr double kClose = 1.5;  ///< misfit above which something else pulls harder
+
+  /// Predicts from sample to sample what noise of the played-in voltage becomes behind the fitted plant; the
+  /// fit goes on with the rest.
+  void whiten_voltage_noise() {
+    fit::Fit whole;
+    whole.plant = c_.fit.plant;
+    whole.events = each_alone(whole.plant, "noise of the voltage");
+    noise_ = fit::voltage_noise(whole, c_.prepared);
+    fit::remember_noise(whole, model_.conventions, c_.prepared);
+    if (std::ranges::none_of(c_.prepared, [](const event::FitEvent& e) { return e.memory != nullptr; }))
+      return;
+    fit::FitOptions o;
+    o.values = fit::values_of(whole.plant, free_);
+    seen_.clear();
+    for (std::size_t e = 0; e < c_.prepared.size(); ++e) {
+      if (out_[e]) continue;
+      seen_.push_back(c_.prepared[e]);
+      o.start.push_back(whole.events[e].state);
+    }
+    c_.fit = fit::fit(model_.plant, model_.conventions, seen_, free_, o);
+    if (!c_.fit.failed.empty())
+      throw InputError(
+          {"the fitted model cannot be run again", model_.origin, c_.fit.failed, "fix parameters"});
+    before_ = each_alone(model_.plant, "events with the model as it is");
+  }
+  /// Takes one Newton step back from where noise of the played-in voltage has pulled the fit.
+  void undo_voltage_noise() {
+    const auto n = static_cast<Eigen::Index>(free_.size());
+    std::vector<fit::EventSlopes> slopes(seen_.size());
+    in_parallel(
+        slopes.size(),
+        [&](std::size_t e) {
+          slopes[e] =
+              fit::event_slopes(c_.fit.plant, model_.conventions, seen_[e], c_.fit.events[e].state, free_);
+        },
+        [&](int done) { tell("noise of the voltage", done, static_cast<int>(slopes.size())); });
+    pull_ = voltage_pull(c_.fit.plant, model_.conventions, seen_, noise_.variance, free_);
+    c_.voltage_noise = noise_.share;
+    Eigen::MatrixXd data = Eigen::MatrixXd::Zero(n, n);
+    for (const auto& s : slopes) data += fit::information(s);
+    const Eigen::VectorXd step = with_belief(real(data)).ldlt().solve(pull_.score);
+    sim::plant::Plant plant = c_.fit.plant;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const auto& f = free_[static_cast<std::size_t>(i)];
+      const auto& record = fit::parameter_record(plant, f.block, f.index);
+      double& value = fit::parameter_value(plant, f.block, f.index);
+      const double move = fit::axis_unit(c_.fit.plant, f) * step[i], old = value;
+      value = std::clamp(old > 0 ? old * std::exp(move / old) : old + move, std::min(old, record.low),
+                         std::max(old, record.high));
+      shift_[i] = value - old;
+    }
+    if (!possible(plant)) {
+      shift_.setZero();
+      return;
+    }
+    c_.fit.plant = plant;
+    for (Eigen::Index i = 0; i < n; ++i) c_.fit.parameters[static_cast<std::size_t>(i)].value += shift_[i];
+  }
+  /// Information less what noise pretends; no direction of it is below zero.
+  Eigen::MatrixXd real(const Eigen::MatrixXd& data) const {
+    if (pull_.information.size() == 0) return data;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(data - pull_.information);
+    return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
+           eigen.eigenvectors().transpose();
+  }
+  Eigen::MatrixXd with_belief(Eigen::MatrixXd data) const {
+    if (options_.spread > 0) data.diagonal().array() += 1.0;
+    return data;
+  }
+
+  /// Fills in errors, correlations, what is not decided, and the event that would decide it.
+  void learn() {
+    std::vector<fit::EventSlopes> slopes(c_.prepared.size());
+    in_parallel(
+        slopes.size(),
+        [&](std::size_t e) {
+          slopes[e] =
+              fit::event_slopes(c_.fit.plant, model_.conventions, c_.prepared[e], c_.states[e], free_);
+        },
+        [&](int done) { tell("sensitivities", done, static_cast<int>(slopes.size())); });
+    const auto n = static_cast<Eigen::Index>(free_.size());
+    const Eigen::MatrixXd belief = options_.spread > 0 ? Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n))
+                                                       : Eigen::MatrixXd(Eigen::MatrixXd::Zero(n, n));
+    Eigen::MatrixXd data = Eigen::MatrixXd::Zero(n, n), scores = data;
+    for (std::size_t e = 0; e < slopes.size(); ++e) {
+      if (out_[e]) continue;
+      data += fit::information(slopes[e]);
+      scores += fit::score_covariance(slopes[e],
+                                      static_cast<int>(std::lround(kColour / c_.prepared[e].record.step())));
+    }
+    data = real(data);
+    const Eigen::MatrixXd inverse = (data + belief).ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+    const Eigen::MatrixXd robust = inverse * (scores + belief) * inverse;
+    Eigen::VectorXd unit(n), widening(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      unit[i] = fit::axis_unit(c_.fit.plant, free_[static_cast<std::size_t>(i)]);
+      widening[i] = std::sqrt(std::max(1.0, robust(i, i) / inverse(i, i)));
+    }
+    fill_parameters(inverse, unit, widening);
+    c_.blurs = find_blurs(data, unit);
+    try_others(data + belief, inverse, unit, widening);
+    for (std::size_t e = 0; e < slopes.size(); ++e)  // what uncertain parameters add to events they never saw
+      allowance_.push_back(out_[e] ? (fit::information(slopes[e]) * robust).trace() / c_.prepared[e].values()
+                                   : 0.0);
+  }
+  static constexpr double kColour = 0.5;  ///< how far apart samples of coloured noise count together [s]
+
+  void fill_parameters(const Eigen::MatrixXd& inverse, const Eigen::VectorXd& unit,
+                       const Eigen::VectorXd& widening) {
+    constexpr double kNormal95 = 1.959963985;
+    const auto n = inverse.rows();
+    c_.correlation.resize(n, n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index j = 0; j < n; ++j)
+        c_.correlation(i, j) = inverse(i, j) / std::sqrt(inverse(i, i) * inverse(j, j));
+      CalibratedParameter p{.fit = c_.fit.parameters[static_cast<std::size_t>(i)]};
+      const auto& record = fit::parameter_record(c_.fit.plant, p.fit.where.block, p.fit.where.index);
+      p.shift = shift_[i];
+      p.curvature_error = unit[i] * std::sqrt(inverse(i, i));
+      p.fit.error = p.curvature_error * widening[i];
+      const double reach = kNormal95 * p.fit.error;
+      const bool logarithmic = p.fit.start > 0;
+      p.fit.low = std::max(record.low,
+                           logarithmic ? p.fit.value * std::exp(-reach / p.fit.value) : p.fit.value - reach);
+      p.fit.high = std::min(record.high,
+                            logarithmic ? p.fit.value * std::exp(reach / p.fit.value) : p.fit.value + reach);
+      c_.parameters.push_back(p);
+    }
+  }
+  void try_others(const Eigen::MatrixXd& known, const Eigen::MatrixXd& inverse, const Eigen::VectorXd& unit,
+                  const Eigen::VectorXd& widening) {
+    std::vector<fit::EventState> states;
+    for (std::size_t e = 0; e < out_.size(); ++e)
+      if (!out_[e]) states.push_back(c_.states[e]);
+    const auto n = known.rows();
+    for (const auto& tried :
+         try_events(c_.fit.plant, model_.conventions, seen_, states, noise_.variance, free_)) {
+      const Eigen::MatrixXd with = (known + tried.information).ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+      Candidate candidate{tried.what, {}};
+      for (Eigen::Index i = 0; i < n; ++i) {
+        candidate.error.push_back(unit[i] * std::sqrt(with(i, i)) * widening[i]);
+        auto& p = c_.parameters[static_cast<std::size_t>(i)];
+        const double narrowed = std::sqrt(with(i, i) / inverse(i, i));
+        if (narrowed < std::min(0.8, p.narrowed)) {
+          p.narrowed = narrowed;
+          p.best_candidate = static_cast<int>(c_.candidates.size());
+        }
+      }
+      c_.candidates.push_back(candidate);
+    }
+  }
+
+  /// Allows for what taking the noise back costs. The optimum itself lay lower, so this cost is no sign of a
+  /// missing effect.
+  void allow_correction() {
+    double cost = 0, values = 0;
+    for (std::size_t e = 0, seen = 0; e < after_.size(); ++e) {
+      if (out_[e]) continue;
+      const double more = std::max(0.0, after_[e].chi2 - c_.fit.events[seen++].chi2);
+      allowance_[e] += more / after_[e].values;
+      cost += more;
+      values += after_[e].values;
+    }
+    for (std::size_t e = 0; e < after_.size(); ++e)
+      if (out_[e]) allowance_[e] += cost / values;
+  }
+  void judge() {
+    if (shift_.squaredNorm() > 0) allow_correction();
+    double before = 0, after = 0, values = 0, spare = 0;
+    bool holds = true, held = true;
+    for (std::size_t e = 0; e < c_.prepared.size(); ++e) {
+      EventScore s = score_event(c_.prepared[e], before_[e], after_[e], !out_[e],
+                                 pre_event_samples(c_.prepared), options_.adequate);
+      s.limit += allowance_[e];
+      holds = holds && s.adequate();
+      held = held && s.before <= s.limit;
+      if (s.seen) {
+        before += before_[e].chi2;
+        after += after_[e].chi2;
+        values += before_[e].values;
+        spare = std::max(spare, s.limit);
+      }
+      c_.events.push_back(s);
+    }
+    c_.before = before / values;
+    c_.after = after / values;
+    c_.limit = spare;
+    c_.adequacy = !holds ? Adequacy::structure_poor : held ? Adequacy::adequate : Adequacy::parameters_poor;
+    c_.sentence = sentence();
+  }
+  std::string sentence() const {
+    const std::string left = fmt::format("chi2 per value {:.3g} -> {:.3g}, noise alone leaves at most {:.3g}",
+                                         c_.before, c_.after, c_.limit);
+    if (c_.adequacy == Adequacy::structure_poor) return poor_structure(left);
+    if (c_.adequacy == Adequacy::adequate)
+      return "Adequate: nothing but noise was left before calibration, and is left after it (" + left + ").";
+    std::vector<std::pair<double, std::string>> moves;
+    for (const auto& p : c_.parameters)
+      moves.emplace_back(
+          std::abs(p.fit.value - p.fit.start) / p.fit.error,
+          fmt::format("{} {:.4g} -> {:.4g} {}", p.fit.name, p.fit.start, p.fit.value, p.fit.unit));
+    std::ranges::sort(moves, std::greater{});
+    std::string most;
+    for (std::size_t k = 0; k < moves.size() && k < 3; ++k)
+      if (moves[k].first > 2) most += (most.empty() ? "" : ", ") + moves[k].second;
+    return "The parameters were poor, the structure holds: after calibration nothing but noise is left (" +
+           left + ")." + (most.empty() ? "" : " Furthest off, in standard errors: " + most + ".");
+  }
+  std::string poor_structure(const std::string& left) const {
+    const EventScore* worst = &c_.events.front();
+    for (const auto& s : c_.events)
+      if (s.after / s.limit > worst->after / worst->limit) worst = &s;
+    const auto channel = std::ranges::max_element(worst->channels, {}, &ChannelScore::misfit_after);
+    return fmt::format(
+        "Something is missing in the structure: what is left survives the refit of "
+        "every parameter ({}). Most of it stands in {} of {}: {:.3g} {} rms where "
+        "the noise is {:.3g} {}. 'swingbank diagnose' looks for what is missing.",
+        left, playin::output_name(channel->channel), worst->record, channel->rms_after, channel->unit,
+        channel->noise, channel->unit);
+  }
+
+  const plant::PlantModel& model_;
+  const CalibrateOptions& options_;
+  std::vector<bool> out_;
+  std::vector<fit::FreeParameter> free_;
+  std::vector<event::FitEvent> seen_;
+  std::vector<fit::EventFit> before_, after_;
+  std::vector<double> allowance_;
+  fit::VoltageNoise noise_;
+  VoltagePull pull_;
+  Eigen::VectorXd shift_;
+  Calibration c_;
+};
+
+}  // namespace
+
+Calibration calibrate(const plant::PlantModel& model, std::vector<record::Record> records,
+                      const CalibrateOptions& options) {
+  return Run(model, std::move(records), options).run();
+}
+
+}  // namespace swingbank::validate::calibrate

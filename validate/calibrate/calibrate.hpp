@@ -1,0 +1,136 @@
+#pragma once
+// Calibration: the free parameters of the present structure fitted to several events at once, from several
+// starts; what the records decide and what they cannot; and whether the structure holds after that, on the
+// events it was fitted to and on those left out.
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "validate/fit/fit.hpp"
+
+namespace swingbank::validate::calibrate {
+
+/// A further start of the search, and the name that reports give it.
+struct GivenStart {
+  std::string name;
+  sim::plant::Plant plant;
+};
+
+struct CalibrateOptions {
+  double spread = 0.2;  ///< relative uncertainty believed of the parameters
+  int draws = 24;       ///< parameter sets tried as starts
+  int starts = 2;       ///< how many of these are refined beside the model's own values
+  std::uint64_t seed = 1;
+  std::vector<std::string> held_out;  ///< record names (or their numbers, from 1) left out of the fit
+  std::vector<std::string> fixed;     ///< "GENROU.Xl": stays as it is
+  std::vector<GivenStart> given;      ///< starts beside the model's own values and those drawn
+  double adequate = 1.12;  ///< chi2 per value that interpolation and the played-in voltage may leave
+  event::FitEventOptions events = {};
+  /// Called with what is done, done and total; may be empty.
+  std::function<void(const std::string& what, int done, int total)> progress = {};
+};
+
+/// One channel of one event. `scale` makes its unit of the record's pu.
+struct ChannelScore {
+  playin::Output channel;
+  std::string unit;
+  double scale = 1;
+  double noise = 0;                            ///< [unit]
+  double rms_before = 0, rms_after = 0;        ///< of model - measured [unit]
+  double misfit_before = 0, misfit_after = 0;  ///< (rms / noise)^2; 1 means that nothing but noise is left
+};
+struct EventScore {
+  std::string record;
+  bool seen = true;              ///< false: left out of the fit; only its own state was fitted
+  double before = 0, after = 0;  ///< chi2 per value
+  double limit = 0;              ///< limit of chi2 per value; above it, more than noise is left
+  double colour = 0;             ///< correlation of neighbouring samples of the pre-event residual
+  std::vector<ChannelScore> channels;
+  [[nodiscard]] bool adequate() const { return after <= limit; }
+};
+
+/// Parameters that move together without the records noticing.
+struct Blur {
+  struct Member {
+    int parameter;  ///< index into Calibration::parameters
+    double change;  ///< along the direction [unit of the parameter], for one standard deviation
+  };
+  std::vector<Member> members;  ///< the largest first
+  double decided = 0;           ///< share of this direction that the records decide
+  bool alone = false;           ///< one parameter by itself: it leaves no trace in the records
+};
+
+/// An event that the records do not hold, tried in simulation.
+struct Candidate {
+  std::string what;
+  std::vector<double> error;  ///< standard error of each parameter with this event added [unit]
+};
+
+struct CalibratedParameter {
+  fit::FittedParameter fit;    ///< error and interval: widened where the residual is coloured
+  double curvature_error = 0;  ///< standard error as the curvature alone says
+  double shift = 0;            ///< shift by noise of the played-in voltage, which has been taken back [unit]
+  int best_candidate = -1;     ///< index of the event that would narrow the error most; -1: none by a fifth
+  double narrowed = 1;         ///< its error with that event / without
+};
+
+enum class Adequacy {
+  adequate,         ///< before and after: the parameters were as good
+  parameters_poor,  ///< only after: the structure holds, the parameters did not
+  structure_poor,   ///< what is left survives the refit: something is missing
+};
+
+/// One start of the search.
+struct StartScore {
+  std::string name;              ///< "model", "network", "draw 3"
+  double before = 0, after = 0;  ///< chi2 per value over the events seen; infinite where it cannot be run
+  bool agrees = false;           ///< came to the best optimum
+};
+
+struct Calibration {
+  plant::PlantModel model;  ///< with the fitted values
+  Adequacy adequacy = Adequacy::adequate;
+  std::string sentence;
+  std::vector<CalibratedParameter> parameters;
+  Eigen::MatrixXd correlation;
+  std::vector<Blur> blurs;
+  std::vector<Candidate> candidates;
+  std::vector<EventScore> events;
+  double before = 0, after = 0, limit = 0;  ///< chi2 per value over the events seen
+  int starts = 0, agreeing = 0;             ///< refined starts; how many came to the same optimum
+  std::vector<StartScore> started;          ///< each refined start: the model's own, those given, those drawn
+  bool converged = false;
+  double voltage_noise = 0;               ///< share of the pre-event movement of V that is the instrument's
+  fit::Fit fit;                           ///< of the events seen
+  std::vector<fit::EventState> states;    ///< of every event, at the fitted parameters
+  std::vector<event::FitEvent> prepared;  ///< every event, in the order given
+  double seconds = 0;
+};
+
+/// Throws InputError: no events, unknown names in `held_out` or `fixed`, all events held out, records without
+/// a pre-event, a model that cannot hold its operating point.
+Calibration calibrate(const plant::PlantModel& model, std::vector<record::Record> records,
+                      const CalibrateOptions& options);
+
+/// The plant's free parameters without those in `fixed` ("GENROU.Xl" or "Xl"). Throws InputError: unknown
+/// names, none left.
+std::vector<fit::FreeParameter> chosen_parameters(const sim::plant::Plant& plant, double spread,
+                                                  const std::vector<std::string>& fixed);
+
+/// Which of the events are left out: by record name (with or without ending) or number from 1.
+std::vector<bool> held_out_events(const std::vector<record::Record>& records,
+                                  const std::vector<std::string>& names);
+
+/// Number of samples that the noise was estimated from, less one for each event.
+int pre_event_samples(const std::vector<event::FitEvent>& events);
+
+/// Limit of chi2 per value for nothing but noise, which one in a thousand exceeds. It allows for residuals as
+/// coloured as the event's pre-event stretch and for a noise that was estimated from `pre_event` samples, and
+/// is at least `least`.
+double misfit_limit(const event::FitEvent& event, const fit::EventFit& fitted, int pre_event, double least);
+
+/// Misfit of one event before and after, seen or not.
+EventScore score_event(const event::FitEvent& event, const fit::EventFit& before, const fit::EventFit& after,
+                       bool seen, int pre_event, double least);
+
+}  // namespace swingbank::validate::calibrate

@@ -1,0 +1,267 @@
+#include "validate/calibrate/curve_fit.hpp"
+
+#include <ceres/ceres.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+namespace swingbank::validate::calibrate {
+namespace {
+
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// What stands fixed: z[i] = value of parameter i over its start.
+struct Setting {
+  const plant::PlantModel& model;
+  const std::vector<fit::FreeParameter>& free;
+  std::vector<double> start;
+
+  [[nodiscard]] sim::plant::Plant plant(const double* z) const {
+    sim::plant::Plant moved = model.plant;
+    for (std::size_t i = 0; i < free.size(); ++i)
+      fit::parameter_value(moved, free[i].block, free[i].index) = start[i] * z[i];
+    return moved;
+  }
+};
+
+bool can_run(const sim::plant::Plant& plant) {
+  Problems problems;
+  const auto check = [&](const sim::plant::Block& b) {
+    if (b.effect) b.effect->check(b.effect->law.get(), b.p.data(), "", problems);
+  };
+  check(plant.machine);
+  check(plant.transformer);
+  for (const auto& b : plant.controls) check(b);
+  return problems.list().empty();
+}
+
+playin::Response answer(const Setting& setting, const sim::plant::Plant& plant, const event::FitEvent& event,
+                        const std::vector<playin::Direction>& along = {}) {
+  const playin::VoltageCurve curve(event.played(), event.switchings);
+  playin::Drive run{.plant = &plant, .conventions = setting.model.conventions, .record = &event.record};
+  run.curve = &curve;
+  run.start = event.start;
+  run.tolerance = fit::FitOptions{}.tolerance;
+  run.least_step = event.record.step() / 40;
+  run.step_limit = 15 * event.record.samples();
+  return playin::drive(run, along);
+}
+
+/// P and Q of the model less those measured [pu], and their slopes along z.
+class EventResidual : public ceres::CostFunction {
+ public:
+  EventResidual(const Setting& setting, const event::FitEvent& event) : setting_(setting), event_(event) {
+    set_num_residuals(event.values());
+    mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(setting.free.size()));
+  }
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    const sim::plant::Plant plant = setting_.plant(blocks[0]);
+    if (!can_run(plant)) return false;
+    double* slopes = jacobians ? jacobians[0] : nullptr;
+    std::vector<playin::Direction> along;
+    if (slopes)
+      for (std::size_t i = 0; i < setting_.free.size(); ++i)
+        along.push_back({playin::Direction::Kind::parameter, setting_.free[i].block, setting_.free[i].index,
+                         setting_.start[i]});
+    try {
+      const playin::Response r = answer(setting_, plant, event_, along);
+      const auto width = static_cast<int>(setting_.free.size());
+      write(r.value, true, residuals, 1, 0);
+      for (std::size_t i = 0; i < along.size(); ++i)
+        write(r.slopes[i].value, false, slopes, width, static_cast<int>(i));
+    } catch (const InputError&) {
+      return false;  // the search turns back
+    }
+    return true;
+  }
+
+ private:
+  void write(const std::vector<double>* values, bool less_measured, double* to, int stride,
+             int column) const {
+    Eigen::Index row = 0;
+    for (std::size_t k = 0; k < event_.record.t.size(); ++k) {
+      if (!event_.compared(k)) continue;
+      for (const playin::Output o : event_.channels) {
+        const double measured = less_measured ? event_.measured(o)[k] : 0.0;
+        to[row++ * stride + column] = values[static_cast<int>(o)][k] - measured;
+      }
+    }
+  }
+
+  const Setting& setting_;
+  const event::FitEvent& event_;
+};
+
+/// The event as the fitted curves meet it, in units of noise as everywhere else.
+fit::EventFit as_played(const Setting& setting, const sim::plant::Plant& plant,
+                        const event::FitEvent& event) {
+  fit::EventFit f;
+  fit::compare(event, answer(setting, plant, event), f);
+  return f;
+}
+
+/// Inverse over the parameters that have any slope; infinite for the others, or for all where those left are
+/// singular.
+Eigen::MatrixXd inverse(const Eigen::MatrixXd& curvature) {
+  std::vector<Eigen::Index> moving;
+  for (Eigen::Index i = 0; i < curvature.rows(); ++i)
+    if (curvature(i, i) > 0) moving.push_back(i);
+  Eigen::MatrixXd back =
+      Eigen::MatrixXd::Constant(curvature.rows(), curvature.cols(), std::numeric_limits<double>::infinity());
+  const Eigen::MatrixXd part = curvature(moving, moving);
+  const Eigen::FullPivLU<Eigen::MatrixXd> solved(part);
+  if (!moving.empty() && solved.isInvertible()) back(moving, moving) = solved.inverse();
+  return back;
+}
+
+class Run {
+ public:
+  Run(const plant::PlantModel& model, std::vector<record::Record> records, const CurveFitOptions& options)
+      : options_(options),
+        out_(held_out_events(records, options.held_out)),
+        free_(chosen_parameters(model.plant, 0.0, options.fixed)),
+        setting_{model, free_, {}} {
+    event::FitEventOptions events = options.events;
+    events.measured_states = false;
+    events_ = event::prepare_events(model, std::move(records), events);
+    fit_.model = model;
+    for (const auto& f : free_)
+      setting_.start.push_back(sim::plant::block_parameters(
+          model.plant)[static_cast<std::size_t>(f.block)][static_cast<std::size_t>(f.index)]);
+    z_.assign(free_.size(), 1.0);
+  }
+
+  CurveFit run() {
+    const auto begin = std::chrono::steady_clock::now();
+    std::vector<fit::EventFit> before;
+    for (const auto& event : events_) before.push_back(played(setting_.model.plant, event));
+    search();
+    fit_.model.plant = setting_.plant(z_.data());
+    intervals();
+    judge(before);
+    fit_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return std::move(fit_);
+  }
+
+ private:
+  fit::EventFit played(const sim::plant::Plant& plant, const event::FitEvent& event) const {
+    try {
+      return as_played(setting_, plant, event);
+    } catch (const InputError& error) {
+      throw InputError({"the model cannot follow the record", event.record.name,
+                        error.problems().front().sentence(),
+                        "check the model's parameters and the record's base and units"});
+    }
+  }
+  void search() {
+    ceres::Problem problem;
+    for (std::size_t e = 0; e < events_.size(); ++e)
+      if (!out_[e]) problem.AddResidualBlock(new EventResidual(setting_, events_[e]), nullptr, {z_.data()});
+    for (std::size_t i = 0; i < free_.size(); ++i) {
+      const auto& record = fit::parameter_record(fit_.model.plant, free_[i].block, free_[i].index);
+      const double a = record.low / setting_.start[i], b = record.high / setting_.start[i];
+      problem.SetParameterLowerBound(z_.data(), static_cast<int>(i), std::min(a, b));
+      problem.SetParameterUpperBound(z_.data(), static_cast<int>(i), std::max(a, b));
+    }
+    ceres::Solver::Options o;
+    o.max_num_iterations = options_.iterations;
+    o.linear_solver_type = ceres::DENSE_QR;
+    o.logging_type = ceres::SILENT;
+    o.num_threads = 2;
+    o.max_num_consecutive_invalid_steps = 20;
+    ceres::Solver::Summary summary;
+    ceres::Solve(o, &problem, &summary);
+    fit_.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);
+    fit_.converged = summary.termination_type == ceres::CONVERGENCE;
+  }
+  /// As such tools state them: from the curvature and the residual's own size, noise taken as white.
+  void intervals() {
+    const auto n = static_cast<Eigen::Index>(free_.size());
+    Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(n, n);
+    double squares = 0;
+    int values = 0;
+    for (std::size_t e = 0; e < events_.size(); ++e) {
+      if (out_[e]) continue;
+      const EventResidual cost(setting_, events_[e]);
+      Eigen::VectorXd residual(events_[e].values());
+      RowMatrix slopes(events_[e].values(), n);
+      const double* blocks[] = {z_.data()};
+      double* jacobians[] = {slopes.data()};
+      if (!cost.Evaluate(blocks, residual.data(), jacobians)) continue;
+      curvature += slopes.transpose() * slopes;
+      squares += residual.squaredNorm();
+      values += events_[e].values();
+    }
+    const Eigen::MatrixXd covariance =
+        inverse(curvature) * squares / std::max(1, values - static_cast<int>(n));
+    constexpr double kNormal95 = 1.959963985;
+    for (std::size_t i = 0; i < free_.size(); ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      const auto& record = fit::parameter_record(fit_.model.plant, free_[i].block, free_[i].index);
+      fit::FittedParameter p;
+      p.where = free_[i];
+      p.block = fit::block_effect(fit_.model.plant, free_[i].block).name;
+      p.name = record.name;
+      p.unit = record.unit;
+      p.start = setting_.start[i];
+      p.value = p.start * z_[i];
+      p.error = std::abs(p.start) * std::sqrt(covariance(at, at));
+      p.low = p.value - kNormal95 * p.error;
+      p.high = p.value + kNormal95 * p.error;
+      const double edge = 1e-6 * std::abs(p.start);
+      p.at_bound = p.value <= record.low + edge || p.value >= record.high - edge;
+      fit_.parameters.push_back(p);
+    }
+  }
+  void judge(const std::vector<fit::EventFit>& before) {
+    double chi2[2] = {0, 0}, squares[2] = {0, 0};
+    int values = 0;
+    fit_.adequate = true;
+    for (std::size_t e = 0; e < events_.size(); ++e) {
+      const fit::EventFit after = played(fit_.model.plant, events_[e]);
+      fit_.events.push_back(
+          score_event(events_[e], before[e], after, !out_[e], pre_event_samples(events_), options_.adequate));
+      const EventScore& score = fit_.events.back();
+      fit_.adequate = fit_.adequate && score.adequate();
+      if (out_[e]) continue;
+      fit_.limit = std::max(fit_.limit, score.limit);
+      chi2[0] += before[e].chi2;
+      chi2[1] += after.chi2;
+      values += after.values;
+      const int samples = after.values / static_cast<int>(score.channels.size());
+      for (const auto& c : score.channels) {
+        squares[0] += samples * std::pow(c.rms_before / c.scale, 2);
+        squares[1] += samples * std::pow(c.rms_after / c.scale, 2);
+      }
+    }
+    fit_.before = chi2[0] / values;
+    fit_.after = chi2[1] / values;
+    fit_.rms_before = std::sqrt(squares[0] / values);
+    fit_.rms_after = std::sqrt(squares[1] / values);
+    fit_.sentence = fmt::format(
+        "Curve fitting {} after {} iterations: P and Q are missed by {:.3g} pu rms instead "
+        "of {:.3g} pu; chi2 per value {:.3g} -> {:.3g}, noise alone leaves at most {:.3g}.",
+        fit_.converged ? "ended" : "did not end", fit_.iterations, fit_.rms_after, fit_.rms_before,
+        fit_.before, fit_.after, fit_.limit);
+  }
+
+  const CurveFitOptions& options_;
+  std::vector<bool> out_;
+  std::vector<fit::FreeParameter> free_;
+  Setting setting_;
+  std::vector<event::FitEvent> events_;
+  std::vector<double> z_;
+  CurveFit fit_;
+};
+
+}  // namespace
+
+CurveFit curve_fit(const plant::PlantModel& model, std::vector<record::Record> records,
+                   const CurveFitOptions& options) {
+  return Run(model, std::move(records), options).run();
+}
+
+}  // namespace swingbank::validate::calibrate

@@ -1,0 +1,159 @@
+#include "validate/calibrate/detail/identify.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "validate/fit/noise.hpp"
+
+namespace swingbank::validate::calibrate {
+namespace {
+
+constexpr double kSeconds = 20.0;  ///< length of an event that is tried
+constexpr double kAt = 2.0;        ///< when it happens [s]
+
+/// An event of the same plant, from the same operating point, with a voltage of its own.
+class Trial {
+ public:
+  Trial(const event::FitEvent& like, const std::vector<double>& switchings) : event_(like) {
+    record::Record& r = event_.record;
+    const double step = r.step(), first = r.t.front();
+    r.t.clear();
+    for (int k = 0; k * step <= kSeconds; ++k) r.t.push_back(first + k * step);
+    event_.switchings.clear();
+    for (const double t : switchings)  // off the samples, as such instants are
+      event_.switchings.push_back(
+          {.time = first + std::floor(t / step) * step + 0.4 * step, .uncertainty = 0.5 * step});
+    event_.start.drift = 0;
+    event_.smeared.clear();
+    event_.left_out.clear();
+    event_.memory = nullptr;
+  }
+  /// V as a multiple of the operating point's, and the frequency deviation [Hz], both of time.
+  template <class V, class F>
+  event::FitEvent with(V voltage, F frequency) {
+    record::Record& r = event_.record;
+    const double V0 = std::abs(event_.start.voltage);
+    double theta = std::arg(event_.start.voltage);
+    r.V.clear();
+    r.theta.clear();
+    for (const double t : r.t) {
+      r.V.push_back(V0 * voltage(t - r.t.front()));
+      r.theta.push_back(theta);
+      theta += 2 * std::numbers::pi * frequency(t - r.t.front()) * r.step();
+    }
+    for (auto* channel : {&r.P, &r.Q, &r.speed, &r.Efd, &r.Ifd}) channel->assign(r.t.size(), 0.0);
+    return event_;
+  }
+
+ private:
+  event::FitEvent event_;
+};
+
+event::FitEvent frequency_event(const event::FitEvent& like) {
+  return Trial(like, {}).with(
+      [](double) { return 1.0; },
+      [](double t) { return t < kAt ? 0.0 : -0.3 * (1 - std::exp(-(t - kAt) / 1.5)); });
+}
+event::FitEvent deep_fault(const event::FitEvent& like) {
+  const double end = kAt + 0.15;
+  return Trial(like, {kAt, end})
+      .with(
+          [end](double t) {
+            return t <= kAt ? 1.0 : t <= end ? 0.2 : 1.0 - 0.1 * std::exp(-(t - end) / 0.5);
+          },
+          [](double) { return 0.0; });
+}
+event::FitEvent voltage_step(const event::FitEvent& like) {
+  return Trial(like, {kAt}).with([](double t) { return t <= kAt ? 1.0 : 0.97; }, [](double) { return 0.0; });
+}
+
+/// The voltage rises as after a load rejection.
+event::FitEvent voltage_rise(const event::FitEvent& like) {
+  const double end = kAt + 3.0;
+  return Trial(like, {kAt, end})
+      .with([end](double t) { return t <= kAt || t > end ? 1.0 : 1.15; }, [](double) { return 0.0; });
+}
+
+fit::EventState at_rest(const event::FitEvent& event) {
+  fit::EventState state;
+  for (const auto& s : event.switchings) state.switchings.push_back(s.time);
+  return state;
+}
+
+/// The same event with speed, Efd and Ifd in place of what was recorded, measured as well as is usual.
+event::FitEvent inner_channels(event::FitEvent event) {
+  event.channels = {playin::Output::speed, playin::Output::Efd, playin::Output::Ifd};
+  for (auto* channel : {&event.record.speed, &event.record.Efd, &event.record.Ifd})
+    channel->assign(event.record.t.size(), 0.0);
+  event.noise.resize(3);
+  event.noise << 2e-5, 2e-3, 2e-3;  // [pu]: 1 mHz, 0.2 %
+  event.whitening = event.noise.cwiseInverse().asDiagonal();
+  return event;
+}
+
+}  // namespace
+
+std::vector<Blur> find_blurs(const Eigen::MatrixXd& information, const Eigen::VectorXd& unit) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
+  std::vector<Blur> blurs;
+  for (Eigen::Index k = 0; k < information.rows(); ++k) {
+    const double value = std::max(0.0, eigen.eigenvalues()[k]), decided = value / (1 + value);
+    if (decided >= 0.5) break;  // eigenvalues increase
+    const Eigen::VectorXd v = eigen.eigenvectors().col(k);
+    Blur blur;
+    blur.decided = decided;
+    for (Eigen::Index i = 0; i < v.size(); ++i)
+      if (std::abs(v[i]) >= 0.3)
+        blur.members.push_back({static_cast<int>(i), v[i] * unit[i] / std::sqrt(1 + value)});
+    std::ranges::sort(blur.members, std::ranges::greater{},
+                      [&](const Blur::Member& m) { return std::abs(v[m.parameter]); });
+    blur.alone = blur.members.size() == 1;
+    blurs.push_back(blur);
+  }
+  return blurs;
+}
+
+std::vector<TriedEvent> try_events(const sim::plant::Plant& plant, const sim::Conventions& conventions,
+                                   const std::vector<event::FitEvent>& events,
+                                   const std::vector<fit::EventState>& states,
+                                   const Eigen::Vector2d& variance,
+                                   const std::vector<fit::FreeParameter>& free) {
+  std::vector<TriedEvent> tried;
+  const event::FitEvent& like = events.front();
+  const auto learnt = [&](event::FitEvent event, const fit::EventState& state) {
+    event.memory = fit::memory_of(plant, conventions, event, variance);
+    return fit::information(fit::event_slopes(plant, conventions, event, state, free));
+  };
+  const auto attempt = [&](const std::string& what, const event::FitEvent& event,
+                           const fit::EventState& state) {
+    try {
+      tried.push_back({what, learnt(event, state)});
+    } catch (const InputError&) {  // the plant does not survive that event: nothing is learnt from it
+    }
+  };
+  const double V = std::abs(like.start.voltage);
+  for (const auto& [what, event] : {
+           std::pair{std::string("a frequency event (-0.3 Hz within 5 s)"), frequency_event(like)},
+           std::pair{fmt::format("a deep fault (V to {:.2f} pu for 0.15 s)", 0.2 * V), deep_fault(like)},
+           std::pair{fmt::format("a lasting step of the voltage (-3 %, to {:.3f} pu)", 0.97 * V),
+                     voltage_step(like)},
+           std::pair{fmt::format("a load rejection (V up by 15 %, to {:.2f} pu, for 3 s)", 1.15 * V),
+                     voltage_rise(like)},
+       })
+    attempt(what, event, at_rest(event));
+  if (std::ranges::count(like.channels, playin::Output::Ifd) == 0) {
+    TriedEvent inner{"the same events with speed, Efd and Ifd recorded", {}};
+    inner.information =
+        Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(free.size()), static_cast<Eigen::Index>(free.size()));
+    for (std::size_t e = 0; e < events.size(); ++e)
+      inner.information += learnt(inner_channels(events[e]), states[e]);
+    tried.push_back(inner);
+  }
+  return tried;
+}
+
+}  // namespace swingbank::validate::calibrate

@@ -1,0 +1,25 @@
+#pragma once
+// What the records cannot tell, and which event could.
+#include "validate/calibrate/calibrate.hpp"
+#include "validate/fit/slopes.hpp"
+
+namespace swingbank::validate::calibrate {
+
+/// Directions of the information matrix (in units of belief) that the records decide less than half.
+/// `unit`: axis_unit of each parameter.
+std::vector<Blur> find_blurs(const Eigen::MatrixXd& information, const Eigen::VectorXd& unit);
+
+/// Information of events that were not recorded, made by driving the plant with plain voltages: a frequency
+/// event, a deep fault, a lasting step of the voltage. Where speed, Efd and Ifd were not recorded, the same
+/// events with them follow. `variance` is that of the played-in voltage's noise [V/V, rad].
+struct TriedEvent {
+  std::string what;
+  Eigen::MatrixXd information;
+};
+std::vector<TriedEvent> try_events(const sim::plant::Plant& plant, const sim::Conventions& conventions,
+                                   const std::vector<event::FitEvent>& events,
+                                   const std::vector<fit::EventState>& states,
+                                   const Eigen::Vector2d& variance,
+                                   const std::vector<fit::FreeParameter>& free);
+
+}  // namespace swingbank::validate::calibrate

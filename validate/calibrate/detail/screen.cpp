@@ -1,0 +1,58 @@
+#include "validate/calibrate/detail/screen.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/core/noise.hpp"
+#include "validate/fit/slopes.hpp"
+
+namespace swingbank::validate::calibrate {
+
+bool possible(const sim::plant::Plant& plant) {
+  Problems problems;
+  bool physical = true;
+  const auto check = [&](const sim::plant::Block& b) {
+    if (!b.effect) return;
+    b.effect->check(b.effect->law.get(), b.p.data(), "", problems);
+    physical = physical && (!b.effect->unphysical || b.effect->unphysical(b.p.data()).empty());
+  };
+  check(plant.machine);
+  check(plant.transformer);
+  for (const auto& b : plant.controls) check(b);
+  return physical && problems.empty();
+}
+
+std::vector<double> Screen::draw(std::uint64_t k) const {
+  for (std::uint32_t attempt = 0; attempt < 100; ++attempt) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < free_.size(); ++i)
+      values.push_back(one(free_[i], sim::normal_pair(seed_ + k, attempt, i)[0]));
+    if (possible(with(values))) return values;
+  }
+  return own();
+}
+
+sim::plant::Plant Screen::with(const std::vector<double>& values) const {
+  sim::plant::Plant plant = plant_;
+  for (std::size_t i = 0; i < free_.size(); ++i)
+    fit::parameter_value(plant, free_[i].block, free_[i].index) = values[i];
+  return plant;
+}
+
+std::vector<double> Screen::own() const {
+  sim::plant::Plant plant = plant_;
+  std::vector<double> values;
+  for (const auto& f : free_) values.push_back(fit::parameter_value(plant, f.block, f.index));
+  return values;
+}
+
+double Screen::one(const fit::FreeParameter& f, double normal) const {
+  const auto& record = fit::parameter_record(plant_, f.block, f.index);
+  sim::plant::Plant plant = plant_;
+  const double value = fit::parameter_value(plant, f.block, f.index);
+  const double moved =
+      value > 0 ? value * std::exp(f.spread * normal) : value + normal * fit::axis_unit(plant_, f);
+  return std::clamp(moved, record.low, record.high);
+}
+
+}  // namespace swingbank::validate::calibrate

@@ -1,0 +1,112 @@
+#include "validate/calibrate/network.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/durable.hpp"
+#include "sim/library/library.hpp"
+
+namespace swingbank::validate::calibrate {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kBridged = 3.0;  ///< standard deviations of what is believed of a parameter
+
+NetworkEstimate parse(const json& j, const std::filesystem::path& file) {
+  NetworkEstimate e;
+  e.file = file.string();
+  const json& n = j.at("network");
+  e.network = n.at("file");
+  e.kind = n.at("kind");
+  e.machine = n.at("machine_model");
+  e.dataset = n.at("dataset");
+  for (const json& p : j.at("parameters"))
+    e.parameters.push_back({p.at("name"), p.at("effect"), p.at("unit"), p.at("estimate"), p.at("spread"),
+                            p.at("scatter"), p.at("low"), p.at("high")});
+  for (const json& r : j.at("records"))
+    e.records.push_back({r.at("file"), r.at("hash"), r.value("estimates", std::vector<double>())});
+  return e;
+}
+
+/// Whether a plant believed to be `value`, `spread` off, may be one of those between low and high.
+bool within_reach(double value, double low, double high, double spread) {
+  const double reach = kBridged * spread * std::abs(value);
+  return value == 0 || (value + reach >= low - 1e-9 && value - reach <= high + 1e-9);
+}
+
+}  // namespace
+
+NetworkEstimate read_estimate(const std::filesystem::path& file) {
+  const json j = json::parse(read_text(file), nullptr, false);
+  if (j.is_object() && j.value("format", "") == "swingbank-estimate-1") {
+    try {
+      return parse(j, file);
+    } catch (const json::exception&) {  // said below
+    }
+  }
+  throw InputError({"no estimate of a network", file.string(), "it is not what predict writes",
+                    "make one with 'swingbank predict --out FILE'"});
+}
+
+sim::plant::Plant estimated_plant(const NetworkEstimate& estimate, const plant::PlantModel& model,
+                                  double spread) {
+  Problems problems;
+  sim::plant::Plant plant = model.plant;
+  const auto machine = std::string(plant.machine.effect->name);
+  if (machine != estimate.machine) {
+    problems.add("a plant with " + machine, model.origin,
+                 "the network " + estimate.network + " was trained on " + estimate.machine,
+                 "give a network of the plant's machine model");
+    problems.raise();
+  }
+  std::string absent;
+  for (const auto& p : estimate.parameters) {
+    const sim::Effect* effect = sim::library::find_effect(p.effect);
+    const int block = effect ? fit::find_block(plant, *effect) : -1;
+    if (block < 0) {
+      if (absent.find(p.effect) == std::string::npos) absent += (absent.empty() ? "" : ", ") + p.effect;
+      continue;
+    }
+    const int index = fit::block_effect(plant, block).parameter_index(p.plain());
+    if (index < 0) {
+      problems.add("parameter " + p.full(), estimate.network, p.effect + " has no such parameter",
+                   "train a network with this version");
+      continue;
+    }
+    double& value = fit::parameter_value(plant, block, index);
+    if (!within_reach(value, p.low, p.high, spread)) {
+      const std::string learnt = p.learnt() ? fmt::format("was trained on {:g} to {:g}", p.low, p.high)
+                                            : fmt::format("holds it at {:g}", p.low);
+      problems.add(fmt::format("{} = {:g} {}", p.full(), value, p.unit), model.origin,
+                   fmt::format("the network {} {}, further than {:g} x --spread away", estimate.network,
+                               learnt, kBridged),
+                   "train a network about this plant (swingbank add --retrain shows how), or widen --spread");
+      continue;
+    }
+    const auto& record = fit::parameter_record(plant, block, index);
+    if (p.learnt()) value = std::clamp(p.value, record.low, record.high);
+  }
+  if (!absent.empty())
+    problems.add("a plant without " + absent, model.origin,
+                 "the network " + estimate.network + " was trained on plants with it",
+                 "add it to the model ('swingbank add'), or give a network trained without it");
+  problems.raise();
+  return plant;
+}
+
+void require_unseen(const NetworkEstimate& estimate, const std::vector<record::Record>& records,
+                    const std::vector<bool>& held_out) {
+  Problems problems;
+  for (std::size_t k = 0; k < records.size(); ++k)
+    if (held_out[k] && std::ranges::count(estimate.records, fmt::format("{:016x}", records[k].hash),
+                                          &NetworkEstimate::Seen::hash) > 0)
+      problems.add("an estimate made of " + records[k].name, estimate.file, "that event is held out",
+                   "make the estimate of the other events, or let it in");
+  problems.raise();
+}
+
+}  // namespace swingbank::validate::calibrate

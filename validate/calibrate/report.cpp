@@ -1,0 +1,278 @@
+#include "validate/calibrate/report.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+
+namespace swingbank::validate::calibrate {
+namespace {
+
+using nlohmann::json;
+
+std::string name_of(const fit::FittedParameter& p) { return p.block + "." + p.name; }
+
+/// Bytes of UTF-8 that begin a character.
+std::size_t width(const std::string& text) {
+  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; }));
+}
+/// JSON has no infinity and no NaN.
+json finite(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+std::string percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
+
+/// Moved by more than 2.5 times what its spread believes: the belief pulls it back, and others with it.
+bool strained(const fit::FittedParameter& p) {
+  const bool logarithmic = p.start > 0 && p.value > 0;
+  const double moved = logarithmic ? std::abs(std::log(p.value / p.start)) : 0.0;
+  return p.where.spread > 0 && moved > 2.5 * p.where.spread;
+}
+
+std::string notes(const Calibration& c, std::size_t i) {
+  const auto& p = c.parameters[i];
+  std::string text = p.fit.at_bound ? "at its bound" : "";
+  if (strained(p.fit)) text += std::string(text.empty() ? "" : "; ") + "further off than --spread believes";
+  if (p.fit.decided < 0.5) text += std::string(text.empty() ? "" : "; ") + "not identified";
+  return text;
+}
+
+std::string identify_text(const Calibration& c) {
+  std::string text;
+  for (const auto& p : c.parameters) {
+    if (p.fit.decided >= 0.5) continue;
+    text += fmt::format("  {}: ", name_of(p.fit));
+    text += p.best_candidate < 0
+                ? std::string("none of the events tried would narrow it by a fifth\n")
+                : fmt::format("{} would narrow its error {:.1f} times ({:.2g} -> {:.2g} {})\n",
+                              c.candidates[static_cast<std::size_t>(p.best_candidate)].what, 1 / p.narrowed,
+                              p.fit.error, p.fit.error * p.narrowed, p.fit.unit);
+  }
+  return text;
+}
+
+std::string starts_text(const Calibration& c) {
+  std::string text = "Starts, chi2 per value before -> after, noise taken as white:";
+  for (const auto& s : c.started)
+    text += fmt::format(" {} {:.3g} -> {:.3g}{};", s.name, s.before, s.after,
+                        s.agrees ? "" : " (another optimum)");
+  text.back() = '.';
+  return text + "\n";
+}
+
+json parameter_json(const Calibration& c, std::size_t i) {
+  const auto& p = c.parameters[i];
+  json j = {{"effect", p.fit.block},
+            {"name", p.fit.name},
+            {"unit", p.fit.unit},
+            {"start", p.fit.start},
+            {"value", p.fit.value},
+            {"standard_error", finite(p.fit.error)},
+            {"standard_error_white_noise", finite(p.curvature_error)},
+            {"low_95", finite(p.fit.low)},
+            {"high_95", finite(p.fit.high)},
+            {"decided_by_records", finite(p.fit.decided)},
+            {"voltage_noise_correction", p.shift},
+            {"at_bound", p.fit.at_bound},
+            {"beyond_belief", strained(p.fit)}};
+  j["would_be_narrowed_by"] =
+      p.best_candidate < 0 ? json(nullptr)
+                           : json{{"event", c.candidates[static_cast<std::size_t>(p.best_candidate)].what},
+                                  {"factor", p.narrowed}};
+  return j;
+}
+
+}  // namespace
+
+std::string adequacy_name(Adequacy adequacy) {
+  switch (adequacy) {
+    case Adequacy::adequate:
+      return "adequate";
+    case Adequacy::parameters_poor:
+      return "parameters were poor";
+    case Adequacy::structure_poor:
+      break;
+  }
+  return "structure not adequate";
+}
+
+std::string describe(const Calibration& c, const Blur& blur) {
+  std::string members;
+  for (const auto& m : blur.members) {
+    const auto& p = c.parameters[static_cast<std::size_t>(m.parameter)].fit;
+    members += fmt::format("{}{} {:+.2g} {}", members.empty() ? "" : ", ", name_of(p), m.change, p.unit);
+  }
+  if (blur.alone)
+    return name_of(c.parameters[static_cast<std::size_t>(blur.members.front().parameter)].fit) +
+           " leaves no trace in these records by itself (" + percent(blur.decided) + " decided)";
+  return "cannot be told apart: " + members + " together change nothing that these records show (" +
+         percent(blur.decided) + " decided)";
+}
+
+report::Table parameter_table(const Calibration& c) {
+  report::Table t{
+      "Parameters",
+      {"parameter", "unit", "start", "value", "std. error", "95 % interval", "decided by records", ""},
+      {}};
+  for (std::size_t i = 0; i < c.parameters.size(); ++i) {
+    const auto& p = c.parameters[i].fit;
+    t.rows.push_back({name_of(p), p.unit, fmt::format("{:.4g}", p.start), fmt::format("{:.4g}", p.value),
+                      fmt::format("{:.2g}", p.error), fmt::format("{:.4g} to {:.4g}", p.low, p.high),
+                      percent(p.decided), notes(c, i)});
+  }
+  return t;
+}
+
+report::Table event_table(const std::vector<EventScore>& events) {
+  report::Table t{
+      "Events",
+      {"event", "", "channel", "noise", "rms before", "rms after", "misfit before", "after", "limit"},
+      {}};
+  for (const auto& e : events) {
+    t.rows.push_back(
+        {e.record, e.seen ? "fitted" : "unseen", "all", "", "", "", fmt::format("{:.3g}", e.before),
+         fmt::format("{:.3g}{}", e.after, e.adequate() ? "" : " !"), fmt::format("{:.3g}", e.limit)});
+    for (const auto& ch : e.channels)
+      t.rows.push_back(
+          {"", "", std::string(playin::output_name(ch.channel)), fmt::format("{:.3g} {}", ch.noise, ch.unit),
+           fmt::format("{:.3g} {}", ch.rms_before, ch.unit), fmt::format("{:.3g} {}", ch.rms_after, ch.unit),
+           fmt::format("{:.3g}", ch.misfit_before), fmt::format("{:.3g}", ch.misfit_after), ""});
+  }
+  return t;
+}
+
+std::string aligned(const report::Table& table) {
+  std::vector<std::size_t> widths(table.header.size(), 0);
+  for (std::size_t c = 0; c < widths.size(); ++c) {
+    widths[c] = width(table.header[c]);
+    for (const auto& row : table.rows) widths[c] = std::max(widths[c], width(row[c].text));
+  }
+  std::string text;
+  const auto line = [&](auto cell) {
+    std::string one;
+    for (std::size_t c = 0; c < widths.size(); ++c) {
+      const std::string& content = cell(c);
+      const std::string pad(widths[c] - width(content), ' ');
+      one += (c == 0 ? "  " : "  ") + (c == 0 ? content + pad : pad + content);
+    }
+    one.erase(one.find_last_not_of(' ') + 1);
+    text += one + "\n";
+  };
+  line([&](std::size_t c) -> const std::string& { return table.header[c]; });
+  for (const auto& row : table.rows) line([&](std::size_t c) -> const std::string& { return row[c].text; });
+  return text;
+}
+
+std::string terminal_report(const Calibration& c) {
+  std::string text =
+      c.sentence + "\n\n" + aligned(event_table(c.events)) + "\n" + aligned(parameter_table(c));
+  text += fmt::format("\n{} of {} starts came to this optimum{}.\n", c.agreeing, c.starts,
+                      c.converged ? "" : "; the search had not ended when its iterations did");
+  if (c.started.size() > 1) text += starts_text(c);
+  const auto coloured = std::ranges::max_element(c.events, {}, &EventScore::colour);
+  if (coloured->colour > 0.2)
+    text += fmt::format(
+        "The noise is coloured: neighbouring samples before the event correlate by {:.2f} in {}; limits and "
+        "errors are widened for it.\n",
+        coloured->colour, coloured->record);
+  if (std::ranges::any_of(c.parameters, [](const auto& p) { return strained(p.fit); }))
+    text +=
+        "Some values lie further from the model's than --spread believes; the belief pulls at them and "
+        "at what moves with them. Calibrate again from the new model, or with a larger --spread.\n";
+  for (const auto& blur : c.blurs) text += "- " + describe(c, blur) + "\n";
+  const std::string events = identify_text(c);
+  if (!events.empty()) text += "Which event would tell:\n" + events;
+  return text;
+}
+
+json event_json(const EventScore& e) {
+  json j = {{"record", e.record},
+            {"seen", e.seen},
+            {"misfit_before", finite(e.before)},
+            {"misfit_after", finite(e.after)},
+            {"misfit_limit", e.limit},
+            {"adequate", e.adequate()},
+            {"noise_correlation", finite(e.colour)},
+            {"channels", json::array()}};
+  for (const auto& ch : e.channels)
+    j["channels"].push_back({{"name", playin::output_name(ch.channel)},
+                             {"unit", ch.unit},
+                             {"noise", ch.noise},
+                             {"rms_before", finite(ch.rms_before)},
+                             {"rms_after", finite(ch.rms_after)},
+                             {"misfit_before", finite(ch.misfit_before)},
+                             {"misfit_after", finite(ch.misfit_after)}});
+  return j;
+}
+
+json calibration_json(const Calibration& c) {
+  json j = {{"format", "swingbank-calibrate-1"},
+            {"version", SWINGBANK_VERSION},
+            {"model", c.model.origin},
+            {"model_xxh64", fmt::format("{:016x}", c.model.hash)},
+            {"verdict", adequacy_name(c.adequacy)},
+            {"sentence", c.sentence},
+            {"misfit_before", c.before},
+            {"misfit_after", c.after},
+            {"misfit_limit", c.limit},
+            {"starts", c.starts},
+            {"starts_agreeing", c.agreeing},
+            {"started", json::array()},
+            {"converged", c.converged},
+            {"voltage_noise_share", c.voltage_noise},
+            {"seconds", c.seconds},
+            {"events", json::array()},
+            {"parameters", json::array()},
+            {"correlation", json::array()},
+            {"not_told_apart", json::array()},
+            {"events_tried", json::array()}};
+  for (const auto& s : c.started)
+    j["started"].push_back({{"name", s.name},
+                            {"misfit_before", finite(s.before)},
+                            {"misfit_after", finite(s.after)},
+                            {"agrees", s.agrees}});
+  for (const auto& e : c.events) j["events"].push_back(event_json(e));
+  for (std::size_t i = 0; i < c.parameters.size(); ++i) {
+    j["parameters"].push_back(parameter_json(c, i));
+    json row = json::array();
+    for (Eigen::Index k = 0; k < c.correlation.cols(); ++k)
+      row.push_back(c.correlation(static_cast<Eigen::Index>(i), k));
+    j["correlation"].push_back(row);
+  }
+  for (const auto& blur : c.blurs) {
+    json members = json::array();
+    for (const auto& m : blur.members) {
+      const auto& p = c.parameters[static_cast<std::size_t>(m.parameter)].fit;
+      members.push_back({{"parameter", name_of(p)}, {"change", m.change}, {"unit", p.unit}});
+    }
+    j["not_told_apart"].push_back({{"members", members}, {"decided_by_records", blur.decided}});
+  }
+  for (const auto& candidate : c.candidates)
+    j["events_tried"].push_back({{"event", candidate.what}, {"standard_errors", candidate.error}});
+  return j;
+}
+
+std::vector<std::string> provenance_lines(const Calibration& c, const std::string& command_line) {
+  std::string fitted, unseen;
+  for (const auto& e : c.prepared) {
+    const auto score = std::ranges::find(c.events, e.record.name, &EventScore::record);
+    auto& list = score == c.events.end() || score->seen ? fitted : unseen;
+    list += fmt::format("{}{} (xxh64 {:016x})", list.empty() ? "" : ", ", e.record.name, e.record.hash);
+  }
+  std::string names;
+  for (const auto& p : c.parameters) names += (names.empty() ? "" : ", ") + name_of(p.fit);
+  std::vector<std::string> lines = {
+      fmt::format("Calibrated by swingbank {} on {:%Y-%m-%d %H:%M} UTC.", SWINGBANK_VERSION,
+                  fmt::gmtime(std::time(nullptr))),
+      "Command: " + command_line,
+      fmt::format("From the model {} (xxh64 {:016x}).", c.model.origin, c.model.hash),
+      "Fitted to: " + fitted};
+  if (!unseen.empty()) lines.push_back("Not fitted to, but tried on: " + unseen);
+  lines.push_back("Fitted parameters: " + names + "; every other value is as in that model.");
+  lines.push_back(fmt::format("Misfit (chi2 per value) {:.4g} before, {:.4g} after: {}.", c.before, c.after,
+                              adequacy_name(c.adequacy)));
+  return lines;
+}
+
+}  // namespace swingbank::validate::calibrate

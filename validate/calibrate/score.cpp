@@ -1,0 +1,138 @@
+// Misfit of events and channels beside what noise alone leaves; which events and parameters take part.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "validate/calibrate/calibrate.hpp"
+
+namespace swingbank::validate::calibrate {
+namespace {
+
+constexpr double kOneInThousand = 3.09;  ///< quantile of the normal distribution, one-sided
+constexpr int kLags = 10;                ///< samples over which noise may be coloured
+
+/// Correlations of the whitened residual before the event at lags 1..kLags, its channels pooled.
+std::vector<double> correlations(const event::FitEvent& event, const fit::EventFit& fitted) {
+  std::vector<double> sums(kLags + 1, 0.0);
+  const int n = std::min(event.start.samples, event.record.samples());
+  for (const auto& channel : fitted.residual) {
+    double mean = 0;
+    for (int k = 0; k < n; ++k) mean += channel[static_cast<std::size_t>(k)] / n;
+    for (int lag = 0; lag <= kLags; ++lag)
+      for (int k = lag; k < n; ++k)
+        sums[static_cast<std::size_t>(lag)] += (channel[static_cast<std::size_t>(k)] - mean) *
+                                               (channel[static_cast<std::size_t>(k - lag)] - mean);
+  }
+  std::vector<double> rho;
+  for (int lag = 1; lag <= kLags; ++lag)
+    rho.push_back(sums[0] > 0 ? sums[static_cast<std::size_t>(lag)] / sums[0] : 0.0);
+  return rho;
+}
+
+/// Root mean square of model - measured over what is compared [pu].
+double rms(const event::FitEvent& event, const fit::EventFit& fitted, std::size_t c) {
+  const auto& measured = event.measured(event.channels[c]);
+  double sum = 0;
+  int compared = 0;
+  for (std::size_t k = 0; k < measured.size(); ++k) {
+    if (!event.compared(k)) continue;
+    sum += std::pow(fitted.model[c][k] - measured[k], 2);
+    ++compared;
+  }
+  return std::sqrt(sum / compared);
+}
+
+}  // namespace
+
+double misfit_limit(const event::FitEvent& event, const fit::EventFit& fitted, int pre_event, double least) {
+  double spread = 1;  // of a sum of squares of a coloured series (Bartlett), against a white one
+  const int n = std::max(2, event.start.samples);
+  for (const double r : correlations(event, fitted))
+    spread += 2 * std::max(0.0, r * r - 1.0 / n);  // 1/n is what white noise shows
+  const double samples = 2 * spread / event.values();
+  const double estimate =
+      2 * spread / (static_cast<double>(event.channels.size()) * std::max(1, pre_event - 1));
+  return std::max(least, 1 + kOneInThousand * std::sqrt(samples + estimate));
+}
+
+int pre_event_samples(const std::vector<event::FitEvent>& events) {
+  int sum = 0;
+  for (const auto& e : events) sum += e.start.samples - 1;
+  return sum;
+}
+
+EventScore score_event(const event::FitEvent& event, const fit::EventFit& before, const fit::EventFit& after,
+                       bool seen, int pre_event, double least) {
+  EventScore s;
+  s.record = event.record.name;
+  s.seen = seen;
+  s.before = before.misfit();
+  s.after = after.misfit();
+  s.limit = misfit_limit(event, after, pre_event, least);
+  s.colour = correlations(event, after).front();
+  for (std::size_t c = 0; c < event.channels.size(); ++c) {
+    ChannelScore channel;
+    channel.channel = event.channels[c];
+    const bool power = channel.channel == playin::Output::P || channel.channel == playin::Output::Q;
+    channel.unit = !power ? "pu" : channel.channel == playin::Output::P ? "MW" : "Mvar";
+    channel.scale = power ? event.record.base.mva : 1.0;
+    const double noise = event.noise[static_cast<Eigen::Index>(c)];
+    channel.noise = channel.scale * noise;
+    channel.rms_before = channel.scale * rms(event, before, c);
+    channel.rms_after = channel.scale * rms(event, after, c);
+    channel.misfit_before = std::pow(channel.rms_before / channel.noise, 2);
+    channel.misfit_after = std::pow(channel.rms_after / channel.noise, 2);
+    s.channels.push_back(channel);
+  }
+  return s;
+}
+
+std::vector<bool> held_out_events(const std::vector<record::Record>& records,
+                                  const std::vector<std::string>& names) {
+  std::vector<bool> out(records.size(), false);
+  Problems problems;
+  std::string all;
+  for (const auto& r : records) all += (all.empty() ? "" : ", ") + r.name;
+  for (const auto& name : names) {
+    bool found = false;
+    for (std::size_t k = 0; k < records.size(); ++k)
+      if (name == records[k].name || name == std::filesystem::path(records[k].name).stem().string() ||
+          name == std::to_string(k + 1))
+        out[k] = found = true;
+    if (!found)
+      problems.add("event '" + name + "'", "--hold-out", "no record has that name or number",
+                   "use one of " + all + ", or a number from 1 to " + std::to_string(records.size()));
+  }
+  if (records.empty())
+    problems.add("no record", "--records", "there is nothing to fit", "give at least one event");
+  else if (std::ranges::count(out, false) == 0)
+    problems.add("every event is held out", "--hold-out", "none is left to fit",
+                 records.size() == 1 ? "give more records" : "leave at least one in");
+  problems.raise();
+  return out;
+}
+
+std::vector<fit::FreeParameter> chosen_parameters(const sim::plant::Plant& plant, double spread,
+                                                  const std::vector<std::string>& fixed) {
+  std::vector<fit::FreeParameter> free = fit::free_parameters(plant, spread);
+  Problems problems;
+  std::string all;
+  const auto name_of = [&](const fit::FreeParameter& f) {
+    return fmt::format("{}.{}", fit::block_effect(plant, f.block).name,
+                       fit::parameter_record(plant, f.block, f.index).name);
+  };
+  for (const auto& f : free) all += (all.empty() ? "" : ", ") + name_of(f);
+  for (const auto& one : fixed)
+    if (std::erase_if(free, [&](const fit::FreeParameter& f) {
+          return name_of(f) == one || fit::parameter_record(plant, f.block, f.index).name == one;
+        }) == 0)
+      problems.add("parameter '" + one + "'", "--fix", "the fit has no such free parameter",
+                   "use one of " + all);
+  if (free.empty() && problems.empty())
+    problems.add("no free parameter", plant.name, "all are fixed, zero, or codes", "leave some free");
+  problems.raise();
+  return free;
+}
+
+}  // namespace swingbank::validate::calibrate

@@ -1,0 +1,350 @@
+#include "validate/calibrate/side_by_side.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <limits>
+
+#include "base/durable.hpp"
+#include "base/in_parallel.hpp"
+#include "validate/calibrate/report.hpp"
+
+namespace swingbank::validate::calibrate {
+namespace {
+
+using nlohmann::json;
+
+json finite(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+Way::Value value_of(const fit::FittedParameter& p) {
+  return {p.block + "." + p.name, p.unit, p.value, p.low, p.high};
+}
+
+void add_block(Truth& truth, const sim::Effect* effect, const std::vector<double>& values) {
+  if (effect == nullptr) return;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    truth[std::string(effect->name) + "." + std::string(effect->parameters[i].name)] = values[i];
+}
+
+Truth truth_of(const sim::plant::Plant& plant) {
+  Truth truth;
+  add_block(truth, plant.machine.effect, plant.machine.p);
+  add_block(truth, plant.transformer.effect, plant.transformer.p);
+  for (const auto& b : plant.controls) add_block(truth, b.effect, b.p);
+  return truth;
+}
+
+void require_base(double mva, const plant::PlantModel& model, const std::string& where) {
+  if (std::abs(mva - model.plant.mva) > 1e-6 * model.plant.mva)
+    throw InputError({fmt::format("a truth on {:g} MVA", mva), where,
+                      fmt::format("the model's parameters are on {:g} MVA", model.plant.mva),
+                      "give the truth of the same machine"});
+}
+
+/// What `blind-test` writes: effects with their parameters by name.
+Truth blind_truth(const std::filesystem::path& file, const plant::PlantModel& model) {
+  const json j = json::parse(read_text(file), nullptr, false);
+  const InputError wrong({"no truth", file.string(), "it is not what blind-test seals",
+                          "give a plant file (.toml) or a truth of blind-test (.json)"});
+  if (!j.is_object() || !j.contains("true_plant")) throw wrong;
+  Truth truth;
+  try {
+    require_base(j.at("machine_mva").get<double>(), model, file.string());
+    const auto take = [&](const json& block) {
+      for (const auto& [name, value] : block.at("parameters").items())
+        truth[block.at("effect").get<std::string>() + "." + name] = value.get<double>();
+    };
+    take(j.at("true_plant").at("machine"));
+    for (const auto& block : j.at("true_plant").at("controls")) take(block);
+  } catch (const json::exception&) {
+    throw wrong;
+  }
+  return truth;
+}
+
+std::string interval(const Way::Value& v) {
+  if (!std::isfinite(v.low) || !std::isfinite(v.high)) return "none";
+  return v.high > v.low ? fmt::format("{:.4g} to {:.4g}", v.low, v.high) : "";
+}
+bool has_interval(const Way& way) {
+  return std::ranges::any_of(way.values, [](const auto& v) { return !interval(v).empty(); });
+}
+const Way::Value* find(const Way& way, const std::string& parameter) {
+  const auto at = std::ranges::find(way.values, parameter, &Way::Value::parameter);
+  return at == way.values.end() ? nullptr : &*at;
+}
+/// Every parameter of any way, in the order met.
+std::vector<const Way::Value*> all_parameters(const std::vector<Way>& ways) {
+  std::vector<const Way::Value*> all;
+  for (const auto& way : ways)
+    for (const auto& v : way.values)
+      if (std::ranges::none_of(all, [&](const auto* known) { return known->parameter == v.parameter; }))
+        all.push_back(&v);
+  return all;
+}
+const ChannelScore* channel_of(const EventScore& event, playin::Output channel) {
+  const auto at = std::ranges::find(event.channels, channel, &ChannelScore::channel);
+  return at == event.channels.end() ? nullptr : &*at;
+}
+
+/// Every event of the calibration with another plant's parameters and a state of its own.
+std::vector<EventScore> try_plant(const sim::plant::Plant& plant, const Calibration& c) {
+  std::vector<EventScore> events = c.events;
+  in_parallel(
+      c.prepared.size(),
+      [&](std::size_t e) {
+        const fit::Fit own = fit::fit(plant, c.model.conventions, {c.prepared[e]}, {});
+        EventScore& to = events[e];
+        if (!own.failed.empty()) {
+          to.after = std::numeric_limits<double>::infinity();
+          for (auto& ch : to.channels) ch.rms_after = ch.misfit_after = to.after;
+          return;
+        }
+        const EventScore score = score_event(c.prepared[e], own.events.front(), own.events.front(), to.seen,
+                                             pre_event_samples(c.prepared), 1.0);
+        to.after = score.after;
+        for (std::size_t k = 0; k < score.channels.size(); ++k) {
+          to.channels[k].rms_after = score.channels[k].rms_after;
+          to.channels[k].misfit_after = score.channels[k].misfit_after;
+        }
+      },
+      [](int) {});
+  return events;
+}
+
+}  // namespace
+
+Truth read_truth(const std::filesystem::path& file, const plant::PlantModel& model) {
+  if (file.extension() == ".json") return blind_truth(file, model);
+  const plant::PlantModel truth = plant::load_plant_model(file);
+  require_base(truth.plant.mva, model, file.string());
+  return truth_of(truth.plant);
+}
+
+Way way_of_model(const Calibration& c) {
+  Way way{"model", {}, c.events};
+  for (const auto& p : c.parameters)
+    way.values.push_back({p.fit.block + "." + p.fit.name, p.fit.unit, p.fit.start, p.fit.start, p.fit.start});
+  for (auto& e : way.events) {
+    e.after = e.before;
+    for (auto& ch : e.channels) {
+      ch.rms_after = ch.rms_before;
+      ch.misfit_after = ch.misfit_before;
+    }
+  }
+  return way;
+}
+
+Way way_of(const Calibration& c) {
+  Way way{"calibrate", {}, c.events};
+  for (const auto& p : c.parameters) way.values.push_back(value_of(p.fit));
+  return way;
+}
+
+Way way_of(const CurveFit& f, const Calibration& c) {
+  Way way{"curve fit", {}, try_plant(f.model.plant, c)};
+  for (const auto& p : f.parameters) way.values.push_back(value_of(p));
+  return way;
+}
+
+Way way_of(const NetworkEstimate& estimate, const sim::plant::Plant& plant, const Calibration& c) {
+  constexpr double kNormal95 = 1.959963985;
+  Way way{"network", {}, try_plant(plant, c)};
+  for (const auto& p : estimate.parameters)
+    if (p.learnt())
+      way.values.push_back(
+          {p.full(), p.unit, p.value, p.value - kNormal95 * p.spread, p.value + kNormal95 * p.spread});
+  return way;
+}
+
+Distance distance(const Way& way, const Truth& truth) {
+  Distance d;
+  double squares = 0;
+  int relative = 0;
+  for (const auto& v : way.values) {
+    const auto at = truth.find(v.parameter);
+    if (at == truth.end()) continue;
+    ++d.parameters;
+    if (std::isfinite(v.low) && std::isfinite(v.high)) {
+      ++d.intervals;
+      d.held += v.low <= at->second && at->second <= v.high;
+    }
+    d.mse += std::pow(v.value - at->second, 2);
+    if (at->second == 0) continue;
+    squares += std::pow((v.value - at->second) / at->second, 2);
+    ++relative;
+  }
+  if (d.parameters > 0) d.mse /= d.parameters;
+  if (relative > 0) d.relative = std::sqrt(squares / relative);
+  return d;
+}
+
+report::Table parameters_beside(const std::vector<Way>& ways, const Truth& truth) {
+  report::Table t{"Parameters", {"parameter", "unit"}, {}};
+  for (const auto& way : ways) {
+    t.header.push_back(way.name);
+    if (has_interval(way)) t.header.push_back("95 % interval");
+    if (!truth.empty()) t.header.push_back("error");
+  }
+  if (!truth.empty()) t.header.push_back("truth");
+  for (const auto* p : all_parameters(ways)) {
+    const auto known = truth.find(p->parameter);
+    std::vector<report::Cell> row = {p->parameter, p->unit};
+    for (const auto& way : ways) {
+      const Way::Value* v = find(way, p->parameter);
+      row.emplace_back(v ? fmt::format("{:.4g}", v->value) : "");
+      if (has_interval(way)) row.emplace_back(v ? interval(*v) : "");
+      if (truth.empty()) continue;
+      const bool told = v != nullptr && known != truth.end() && known->second != 0;
+      row.emplace_back(
+          told ? fmt::format("{:+.2g} %", 100 * (v->value - known->second) / std::abs(known->second)) : "");
+    }
+    if (!truth.empty()) row.emplace_back(known == truth.end() ? "" : fmt::format("{:.4g}", known->second));
+    t.rows.push_back(std::move(row));
+  }
+  return t;
+}
+
+report::Table events_beside(const std::vector<Way>& ways) {
+  report::Table t{"Events", {"event", "", "channel", "noise"}, {}};
+  for (const auto& way : ways) t.header.push_back(way.name);
+  for (std::size_t e = 0; e < ways.front().events.size(); ++e) {
+    const EventScore& first = ways.front().events[e];
+    std::vector<report::Cell> row = {first.record, first.seen ? "fitted" : "UNSEEN", "chi2/value", ""};
+    for (const auto& way : ways) row.emplace_back(fmt::format("{:.3g}", way.events[e].after));
+    t.rows.push_back(std::move(row));
+    for (const auto& ch : first.channels) {
+      row = {"", "", std::string(playin::output_name(ch.channel)) + " rms",
+             fmt::format("{:.3g} {}", ch.noise, ch.unit)};
+      for (const auto& way : ways) {
+        const ChannelScore* own = channel_of(way.events[e], ch.channel);
+        row.emplace_back(own ? fmt::format("{:.3g} {}", own->rms_after, own->unit) : "");
+      }
+      t.rows.push_back(std::move(row));
+    }
+  }
+  return t;
+}
+
+std::string beside_report(const std::vector<Way>& ways, const Truth& truth) {
+  std::string text =
+      "Side by side (every event with its own switching instants and start; only the parameters "
+      "differ):\n" +
+      aligned(events_beside(ways)) + "\n" + aligned(parameters_beside(ways, truth));
+  if (truth.empty()) return text;
+  text += "\n";
+  for (const auto& way : ways) {
+    const Distance d = distance(way, truth);
+    text += fmt::format("{}: {:.3g} % rms from the truth, mean squared error {:.3g} (raw units)", way.name,
+                        100 * d.relative, d.mse);
+    if (has_interval(way)) text += fmt::format(", {} of {} intervals hold the truth", d.held, d.intervals);
+    text += "\n";
+  }
+  return text;
+}
+
+json beside_json(const std::vector<Way>& ways, const Truth& truth) {
+  json all = json::array();
+  for (const auto& way : ways) {
+    json j = {{"way", way.name}, {"parameters", json::array()}, {"events", json::array()}};
+    for (const auto& v : way.values) {
+      const auto known = truth.find(v.parameter);
+      j["parameters"].push_back({{"parameter", v.parameter},
+                                 {"unit", v.unit},
+                                 {"value", v.value},
+                                 {"low_95", finite(v.low)},
+                                 {"high_95", finite(v.high)},
+                                 {"truth", known == truth.end() ? json(nullptr) : json(known->second)}});
+    }
+    for (const auto& e : way.events) {
+      json channels = json::array();
+      for (const auto& ch : e.channels)
+        channels.push_back(
+            {{"name", playin::output_name(ch.channel)}, {"unit", ch.unit}, {"rms", finite(ch.rms_after)}});
+      j["events"].push_back(
+          {{"record", e.record}, {"seen", e.seen}, {"misfit", finite(e.after)}, {"channels", channels}});
+    }
+    if (!truth.empty()) {
+      const Distance d = distance(way, truth);
+      j["truth"] = {{"parameters", d.parameters},
+                    {"intervals", has_interval(way) ? json(d.intervals) : json(nullptr)},
+                    {"inside_interval", has_interval(way) ? json(d.held) : json(nullptr)},
+                    {"rms_relative", d.relative},
+                    {"mse_raw_units", d.mse}};
+    }
+    all.push_back(j);
+  }
+  return all;
+}
+
+std::string terminal_report(const CurveFit& f, const Truth& truth) {
+  const Way way{"curve fit",
+                [&] {
+                  std::vector<Way::Value> values;
+                  for (const auto& p : f.parameters) values.push_back(value_of(p));
+                  return values;
+                }(),
+                f.events};
+  std::string text =
+      f.sentence + "\n\n" + aligned(event_table(f.events)) + "\n" + aligned(parameters_beside({way}, truth));
+  for (const auto& p : f.parameters)
+    if (p.at_bound) text += fmt::format("{}.{} ended at its bound.\n", p.block, p.name);
+  if (truth.empty()) return text;
+  const Distance d = distance(way, truth);
+  return text + fmt::format(
+                    "\n{:.3g} % rms from the truth, mean squared error {:.3g} (raw units), {} of {} "
+                    "intervals hold the truth\n",
+                    100 * d.relative, d.mse, d.held, d.intervals);
+}
+
+json curve_fit_json(const CurveFit& f, const Truth& truth) {
+  json j = {{"format", "swingbank-curve-fit-1"},
+            {"version", SWINGBANK_VERSION},
+            {"model", f.model.origin},
+            {"model_xxh64", fmt::format("{:016x}", f.model.hash)},
+            {"sentence", f.sentence},
+            {"rms_before_pu", f.rms_before},
+            {"rms_after_pu", f.rms_after},
+            {"misfit_before", finite(f.before)},
+            {"misfit_after", finite(f.after)},
+            {"misfit_limit", f.limit},
+            {"adequate", f.adequate},
+            {"converged", f.converged},
+            {"iterations", f.iterations},
+            {"seconds", f.seconds},
+            {"events", json::array()},
+            {"parameters", json::array()}};
+  for (const auto& e : f.events) j["events"].push_back(event_json(e));
+  for (const auto& p : f.parameters) {
+    const auto known = truth.find(p.block + "." + p.name);
+    j["parameters"].push_back({{"effect", p.block},
+                               {"name", p.name},
+                               {"unit", p.unit},
+                               {"start", p.start},
+                               {"value", p.value},
+                               {"standard_error", finite(p.error)},
+                               {"low_95", finite(p.low)},
+                               {"high_95", finite(p.high)},
+                               {"at_bound", p.at_bound},
+                               {"truth", known == truth.end() ? json(nullptr) : json(known->second)}});
+  }
+  return j;
+}
+
+std::vector<std::string> provenance_lines(const CurveFit& f, const plant::PlantModel& from,
+                                          const std::string& command_line) {
+  std::string fitted;
+  for (const auto& e : f.events)
+    if (e.seen) fitted += (fitted.empty() ? "" : ", ") + e.record;
+  return {fmt::format(
+              "Fitted by least squares of the curves (baseline) by swingbank {} on {:%Y-%m-%d %H:%M} UTC.",
+              SWINGBANK_VERSION, fmt::gmtime(std::time(nullptr))),
+          "Command: " + command_line,
+          fmt::format("From the model {} (xxh64 {:016x}).", from.origin, from.hash), "Fitted to: " + fitted,
+          f.sentence};
+}
+
+}  // namespace swingbank::validate::calibrate

@@ -1,0 +1,401 @@
+#include "validate/check/check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "validate/check/detail/jumps.hpp"
+#include "validate/check/detail/mistakes.hpp"
+#include "validate/check/signals.hpp"
+#include "validate/plant/plant_model.hpp"
+
+namespace swingbank::validate::check {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+bool within(double x, double low, double high) { return x >= low && x <= high; }
+/// Is x near target, to a share of it?
+bool near(double x, double target, double share) { return std::abs(x - target) <= share * std::abs(target); }
+
+double square(double x) { return x * x; }
+
+class Check {
+ public:
+  Check(const record::Record& record, const PlantFacts& plant) : r_(record), plant_(plant) {}
+
+  std::vector<Finding> run() {
+    if (!complete()) return std::move(findings_);
+    signals_ = record_signals(r_);
+    jumps_ = find_jumps(r_);
+    dropouts();
+    event();
+    voltage();
+    frequency();
+    speed();
+    angle();
+    power();
+    jumps();
+    std::ranges::stable_sort(findings_, {}, [](const Finding& f) { return f.severity; });
+    return std::move(findings_);
+  }
+
+ private:
+  void add(std::string kind, Severity severity, std::string what, std::string why, std::string remedy) {
+    // The first word on a kind is the best founded; another test of the same adds nothing.
+    if (std::ranges::find(findings_, kind, &Finding::kind) != findings_.end()) return;
+    findings_.push_back(
+        {std::move(kind), severity, {std::move(what), r_.name, std::move(why), std::move(remedy)}});
+  }
+  void refuse(std::string kind, std::string what, std::string why, std::string remedy) {
+    add(std::move(kind), Severity::refuse, std::move(what), std::move(why), std::move(remedy));
+  }
+  void warn(std::string kind, std::string what, std::string why, std::string remedy) {
+    add(std::move(kind), Severity::warn, std::move(what), std::move(why), std::move(remedy));
+  }
+  [[nodiscard]] bool found(std::string_view kind) const {
+    return std::ranges::find(findings_, kind, &Finding::kind) != findings_.end();
+  }
+
+  /// Records that were not read from a file may hold anything.
+  bool complete() {
+    const std::size_t n = r_.t.size();
+    if (r_.samples() < record::kFewestSamples)
+      refuse("too_short", fmt::format("{} samples", n),
+             fmt::format("at least {} are needed", record::kFewestSamples), "give a longer record");
+    for (const auto* c : {&r_.V, &r_.theta, &r_.P, &r_.Q})
+      if (c->size() != n)
+        refuse("incomplete", "channels of unequal length", "V, theta, P and Q need a value per time",
+               "complete them");
+    for (const auto* c : {&r_.t, &r_.V, &r_.theta, &r_.P, &r_.Q, &r_.f, &r_.speed, &r_.Efd, &r_.Ifd})
+      for (std::size_t k = 0; k < c->size(); ++k)
+        if (!std::isfinite((*c)[k]))
+          refuse("not_finite", fmt::format("sample {}", k), "a value is not finite",
+                 "fill the gap at the source, or cut the record before it");
+    return findings_.empty();
+  }
+
+  void dropouts() {
+    std::size_t zeros = 0, first = 0;
+    for (std::size_t k = 0; k < r_.t.size(); ++k)
+      if (r_.V[k] == 0 && r_.theta[k] == 0 && r_.P[k] == 0 && r_.Q[k] == 0 && zeros++ == 0) first = k;
+    if (zeros > 0 && zeros < r_.t.size())
+      refuse("dropout",
+             fmt::format("{} samples with all channels zero, first at t = {:.4g} s", zeros, r_.t[first]),
+             "instruments write zeros where data were lost", "fill the gap at the source, or cut the record");
+    if (signals_.longest_hold >= 3)
+      warn("held_samples",
+           fmt::format("{} samples repeat the one before, from t = {:.4g} s", signals_.longest_hold,
+                       r_.t[signals_.hold_at]),
+           "all channels stand still although the record has noise",
+           "check whether the instrument held its last value while data were lost");
+  }
+
+  void event() {
+    const double length = r_.t.back() - r_.t.front();
+    if (length < 2)
+      refuse("too_short", fmt::format("{:.3g} s", length),
+             "a response to an event cannot be judged from less than 2 s", "give a longer record");
+    if (!signals_.event) {
+      refuse(
+          "no_event", "no event",
+          fmt::format("nothing leaves the noise: V stays within {:.2g} pu, P within {:.2g} pu of the machine",
+                      signals_.V.reach, signals_.P.reach * machine_per_record()),
+          "give a record that holds a fault, a switching or a frequency event");
+      return;
+    }
+    const double before = r_.t[signals_.onset] - r_.t.front();
+    if (signals_.onset < 10 || before < 0.2) {
+      refuse("no_pre_event", fmt::format("{:.3g} s before the event", before),
+             "the model starts from the steady state before the event, which the record must show",
+             "export it from at least 1 s before the event");
+      return;
+    }
+    const double after = r_.t.back() - r_.t[signals_.last];
+    if (after < 1)
+      refuse("too_short", fmt::format("{:.3g} s after the event", after),
+             "a response cannot be judged from less than 1 s", "export at least 5 s after the event");
+    steadiness();
+  }
+
+  /// Powers must stand still before the event, or the equilibrium that the model starts in is not the
+  /// plant's.
+  void steadiness() {
+    for (const auto& [name, s] : {std::pair{"P", &signals_.P}, {"Q", &signals_.Q}}) {
+      const double scale = machine_per_record();
+      const double drift = std::abs(s->drift) * scale, swing = s->swing * scale;
+      const double limit = 0.005;  // pu of the machine; ambient changes of load stay below it
+      if (drift > std::max(limit, 6 * s->drift_error * scale))
+        add("unsteady", drift > 0.05 ? Severity::refuse : Severity::warn,
+            fmt::format("{} drifts by {:.2g} pu of the machine before the event", name, drift),
+            "the model starts in equilibrium there", "start the record later, or in a steadier hour");
+      else if (swing > std::max(limit, 3 * s->white * scale))
+        add("unsteady", swing > 0.05 ? Severity::refuse : Severity::warn,
+            fmt::format("{} swings by {:.2g} pu of the machine (rms) before the event", name, swing),
+            "the model starts in equilibrium there", "start the record later, or in a steadier hour");
+    }
+  }
+
+  void voltage() {
+    const double v = signals_.V.level, theta = signals_.theta_level;
+    if (within(v, 0.7, 1.3)) return;
+    const std::string what = fmt::format("V = {:.4g} pu before the event", v);
+    if (within(theta, 0.85, 1.15) || within(theta / kDegree, 0.85, 1.15))
+      refuse("swapped_channels", what + fmt::format(" and theta = {:.4g} rad", theta),
+             "the angle looks like a voltage in pu", "exchange the columns of V and theta");
+    else if (r_.base.kv > 0 && (near(v, r_.base.kv, 0.25) || near(v, 1e3 * r_.base.kv, 0.25)))
+      refuse("voltage_unit", what,
+             fmt::format("that is a voltage in kV or V ({:g} kV nominal) taken as pu", r_.base.kv),
+             "name the column V_kV");
+    else if (near(v, std::numbers::sqrt3, 0.12) || near(v, 1 / std::numbers::sqrt3, 0.12))
+      refuse("voltage_unit", what, "that is off by sqrt(3)",
+             v < 1 ? "V is line to neutral: name the column V_kV_ln, or give base_kv line to neutral's "
+                     "sqrt(3) fold"
+                   : "base_kv is line to line; give it so, or name the column V_kV");
+    else if (within(v, 70, 130))
+      refuse("voltage_unit", what, "that may be a voltage in percent, or in kV, taken as pu",
+             "name the column V_kV and give base_kv, or divide by 100");
+    else if (v > 1.3)
+      refuse("voltage_unit", what, "that may be a voltage in kV taken as pu",
+             "name the column V_kV and give base_kv under [record] in the plant file");
+    else
+      refuse("voltage_unit", what, "a plant runs near 1 pu", "check the column of V, its unit and base_kv");
+  }
+
+  /// 50 and 60 Hz, as a share of the model's nominal frequency.
+  [[nodiscard]] bool other_nominal(double ratio) const {
+    const double other = std::abs(plant_.frequency - 60) < 5 ? 50.0 : 60.0;
+    return near(ratio, other / plant_.frequency, 0.02);
+  }
+  [[nodiscard]] double other_hz() const { return std::abs(plant_.frequency - 60) < 5 ? 50 : 60; }
+
+  void frequency() {
+    if (!r_.f.empty()) {
+      const double ratio = 1 + median_of(r_.f), hz = ratio * r_.base.frequency;
+      const std::string what = fmt::format("a frequency of {:.4g} Hz", hz);
+      if (other_nominal(ratio))
+        refuse("nominal_frequency", what, fmt::format("the model is for {:g} Hz", plant_.frequency),
+               fmt::format("set frequency_hz = {:g} in the plant file, or take that plant's own record",
+                           other_hz()));
+      else if (std::abs(ratio) < 0.03)
+        refuse("frequency_unit", what, "f looks like a deviation, or per unit taken as Hz",
+               "give f_pu with 1 at nominal frequency, or f_hz");
+      else if (within(ratio, 40, 70))
+        refuse("frequency_unit", what, "f is in Hz but was taken as pu", "name the column f_hz");
+      else if (!within(ratio, 0.93, 1.07))
+        refuse("frequency_unit", what, "a plant runs near nominal frequency",
+               "check the column of f and its unit");
+    }
+    const double hz = signals_.angle_rate / (2 * std::numbers::pi);
+    if (std::abs(hz) < 2) return;
+    const bool ten = near(std::abs(hz), 10, 0.1);
+    refuse(
+        ten ? "nominal_frequency" : "angle_frame",
+        fmt::format("the angle turns by {:.3g} Hz before the event", hz),
+        ten ? fmt::format(
+                  "the record is of a {:g} Hz grid, or its angle in another frame than the model's {:g} Hz",
+                  other_hz(), plant_.frequency)
+            : std::string("it is not in the frame of nominal frequency, or its unit is wrong"),
+        ten ? fmt::format("set frequency_hz = {:g} in the plant file, or take that plant's own record",
+                          other_hz())
+            : std::string(
+                  "give the angle of the phasor against nominal frequency, in rad or degrees as named"));
+  }
+
+  void speed() {
+    if (r_.speed.empty()) return;
+    const double s = median_of(r_.speed);
+    if (std::abs(s) < 0.07) return;
+    const std::string what = fmt::format("a speed deviation of {:.4g} pu", s);
+    if (near(s, 1, 0.05))
+      refuse("speed_unit", what, "the speed is 1 at nominal", "name the column omega_pu");
+    else if (near(s, -1, 0.05))
+      refuse("speed_unit", what, "the column holds deviations", "name the column speed_pu");
+    else if (other_nominal(1 + s))
+      refuse("nominal_frequency", what, fmt::format("the model is for {:g} Hz", plant_.frequency),
+             "take that plant's own record");
+    else
+      refuse("speed_unit", what, "a machine runs near nominal speed", "give the speed in pu");
+  }
+
+  void angle() {
+    const char* const name_deg = "name the column theta_deg";
+    if (signals_.wraps_of_360 || std::abs(signals_.first_angle) > 2.1 * std::numbers::pi)
+      refuse("angle_unit", fmt::format("an angle of {:.4g} rad", signals_.first_angle),
+             "angles in radians stay within a turn: these are degrees taken as radians", name_deg);
+    // A frequency or speed in a wrong unit says nothing about the angle.
+    const double ratio = found("frequency_unit") || found("speed_unit") ? 0 : signals_.angle_per_frequency;
+    if (within(ratio, 18, 180))
+      refuse("angle_unit",
+             fmt::format("an angle that turns {:.0f} times as fast as the frequency says", ratio),
+             "degrees were taken as radians", name_deg);
+    else if (ratio > 0 && within(1 / ratio, 18, 180))
+      refuse("angle_unit",
+             fmt::format("an angle that turns {:.0f} times slower than the frequency says", 1 / ratio),
+             "radians were taken as degrees", "name the column theta_rad");
+    else if (signals_.fast_angle > 2 * std::numbers::pi * 4)
+      refuse("angle_unit", fmt::format("an angle that turns by {:.3g} rad/s", signals_.fast_angle),
+             "no machine swings so fast; degrees taken as radians do", name_deg);
+  }
+
+  [[nodiscard]] double machine_per_record() const { return plant_.mva > 0 ? r_.base.mva / plant_.mva : 1.0; }
+
+  /// Factors by which P and Q may be wrong, and what to do about each.
+  struct Base {
+    double factor;  ///< true value = value * factor
+    std::string why, remedy;
+  };
+  [[nodiscard]] std::vector<Base> bases() const {
+    const std::string set = "set base_mva under [record] in the plant file to ";
+    std::vector<Base> all{
+        {1 / r_.base.mva, "P and Q are in MW and Mvar but were taken as pu",
+         "name the columns P_MW and Q_Mvar"},
+        {r_.base.mva, "P and Q are in pu but were taken as MW and Mvar", "name the columns P_pu and Q_pu"},
+        {1e3, "P and Q are off by 1000", "give P_MW and Q_Mvar"},
+        {1e-3, "P and Q are off by 1000, like kW taken as MW", "give P_MW and Q_Mvar"}};
+    if (plant_.mva > 0 && !near(plant_.mva, r_.base.mva, 0.3))
+      all.push_back({plant_.mva / r_.base.mva,
+                     fmt::format("P and Q are in pu on the machine's {:g} MVA, not on {:g} MVA", plant_.mva,
+                                 r_.base.mva),
+                     set + fmt::format("{:g}", plant_.mva)});
+    if (!near(r_.base.mva, 100, 0.3))
+      all.push_back({100 / r_.base.mva,
+                     fmt::format("P and Q are in pu on 100 MVA, not on {:g} MVA", r_.base.mva), set + "100"});
+    return all;
+  }
+
+  void power() {
+    const double s = std::hypot(signals_.P.level, signals_.Q.level), on_machine = s * machine_per_record();
+    if (on_machine <= 1.6) return;
+    const std::string what =
+        fmt::format("{:.4g} pu of the machine's {:g} MVA before the event", on_machine, plant_.mva);
+    for (const auto& b : bases())
+      if (b.factor < 1 && within(on_machine * b.factor, 0.05, 1.2)) {
+        refuse("wrong_base", what, "likely " + b.why, b.remedy);
+        return;
+      }
+    refuse("wrong_base", what, "no machine runs at that",
+           "check the units of P and Q, base_mva of the record and of the plant");
+  }
+
+  void jumps() {
+    if (found("voltage_unit") || found("angle_unit") || found("angle_frame")) return;
+    const int delay = power_delay(r_, jumps_);
+    if (delay != 0)
+      warn("time_skew",
+           fmt::format("P and Q jump {:.0f} ms {} the voltage", 1e3 * std::abs(delay) * r_.step(),
+                       delay > 0 ? "after" : "before"),
+           "they were stamped by different clocks or filters", "shift them so that they jump together");
+    const JumpFit as_is = fit_jumps(r_, jumps_, delay);
+    const Mistake* best = nullptr;
+    double least = 1;
+    for (const auto& m : mistakes()) {
+      const record::Record alternative = reinterpreted(m.reinterpret);
+      const std::vector<Jump> there = find_jumps(alternative);
+      const JumpFit fit = fit_jumps(alternative, there, delay), same = fit_jumps(r_, there, delay);
+      const double noise = noise_share(fit);
+      if (!(fit.reactance > 0 && noise < 0.1 && fit.misfit < 0.01 + 2 * noise)) continue;
+      if (m.turn > 0 && std::ranges::none_of(there, [&](const Jump& j) { return turned(j) > m.turn; }))
+        continue;
+      // Sound records leave below 0.03 beside their noise (tests/validate/check/sound_test.cpp).
+      const bool sound =
+          same.reactance > 0 && (same.misfit < m.sound + 2 * noise || same.misfit < 5 * fit.misfit);
+      // Of two mistakes that explain the jumps about as well, the commoner one is taken, which stands first.
+      if (!sound && fit.misfit < least / 2) best = &m, least = fit.misfit;
+    }
+    if (best && apart())
+      warn("time_skew", "voltage and current jump up to a sample apart", "one of them is late",
+           "mend its time stamps, or let `swingbank diagnose` fit the skew (SKEW)");
+    else if (best)
+      refuse(best->kind, "voltage and current that do not jump together as at a machine's terminals",
+             best->why, best->remedy);
+    else if (as_is.reactance > 0 && as_is.misfit < 0.03 + 3 * noise_share(as_is) && noise_share(as_is) < 0.1)
+      reactance(as_is.reactance * plant_.mva / r_.base.mva);
+  }
+
+  /// Whether the jumps belong together once each of them takes in one more interval: after it, before it, or
+  /// both.
+  [[nodiscard]] bool apart() const {
+    constexpr std::array<std::pair<std::size_t, std::size_t>, 3> kWider = {{{1, 1}, {0, 1}, {1, 0}}};
+    return std::ranges::any_of(kWider, [this](const auto& wider) {
+      std::vector<Jump> wide;
+      for (const Jump& j : jumps_)
+        if (j.before >= wider.first) wide.push_back({j.before - wider.first, j.after + wider.second});
+      const JumpFit fit = fit_jumps(r_, wide, 0);
+      const double noise = noise_share(fit);
+      return fit.reactance > 0 && noise < 0.1 && fit.misfit < 0.03 + 2 * noise;
+    });
+  }
+  /// How far the angle as written jumps [rad].
+  [[nodiscard]] double turned(const Jump& j) const {
+    const std::vector<double>& theta = r_.theta_as_written.empty() ? r_.theta : r_.theta_as_written;
+    return std::abs(theta[j.after] - theta[j.before]);
+  }
+
+  /// Share of the squared jumps that is noise: a jump is a combination of four samples that carries five
+  /// times the variance of one.
+  [[nodiscard]] double noise_share(const JumpFit& fit) const {
+    return 10 * square(signals_.V.white) / fit.voltage +
+           5 * (square(signals_.P.white) + square(signals_.Q.white)) / fit.current;
+  }
+
+  [[nodiscard]] record::Record reinterpreted(const Reinterpret& reinterpret) const {
+    record::Record other;
+    other.t = r_.t;
+    for (std::size_t k = 0; k < r_.t.size(); ++k) {
+      const double theta = r_.theta_as_written.empty() ? r_.theta[k] : r_.theta_as_written[k];
+      const Reading x = reinterpret({r_.V[k], theta, r_.P[k], r_.Q[k]});
+      other.V.push_back(x.V);
+      other.theta.push_back(x.theta);
+      other.P.push_back(x.P);
+      other.Q.push_back(x.Q);
+    }
+    return other;
+  }
+
+  /// X'' of machines is 0.1 to 0.4 pu, with a step-up transformer up to 0.6.
+  void reactance(double x) {
+    if (!(plant_.mva > 0) || within(x, 0.08, 0.8)) return;
+    const Base* best = nullptr;
+    const std::vector<Base> all = bases();
+    const auto distance = [](double z) { return std::abs(std::log(z / 0.25)); };
+    for (const auto& b : all)  // P times factor makes X over factor
+      if (distance(x / b.factor) < (best ? distance(x / best->factor) : std::log(2.5))) best = &b;
+    const std::string what =
+        fmt::format("jumps of P and Q that mean a reactance of {:.3g} pu of the machine", x);
+    if (best && !within(x, 0.06, 1.0))
+      refuse("wrong_base", what, "likely " + best->why, best->remedy);
+    else
+      warn("wrong_base", what, "machines have 0.1 to 0.4", "check base_mva of the record and of the plant");
+  }
+
+  const record::Record& r_;
+  PlantFacts plant_;
+  Signals signals_;
+  std::vector<Jump> jumps_;
+  std::vector<Finding> findings_;
+};
+
+}  // namespace
+
+PlantFacts plant_facts(const plant::PlantModel& model) {
+  return {model.plant.mva, model.record_base.frequency};
+}
+
+std::vector<Finding> check_record(const record::Record& record, const PlantFacts& plant) {
+  return Check(record, plant).run();
+}
+
+void raise_refusals(const std::vector<Finding>& findings) {
+  Problems problems;
+  for (const auto& f : findings)
+    if (f.severity == Severity::refuse)
+      problems.add(f.problem.what, f.problem.where, f.problem.why, f.problem.remedy);
+  problems.raise();
+}
+
+}  // namespace swingbank::validate::check

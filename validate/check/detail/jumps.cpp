@@ -1,0 +1,105 @@
+#include "validate/check/detail/jumps.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "validate/playin/voltage_curve.hpp"
+
+namespace swingbank::validate::check {
+namespace {
+
+double written_theta(const record::Record& r, std::size_t k) {
+  return r.theta_as_written.empty() ? r.theta[k] : r.theta_as_written[k];
+}
+
+/// Filters smear a jump over several intervals: changes over three of them that stand out from those nearby.
+std::vector<Jump> smeared(const record::Record& r) {
+  constexpr double kLeast = 0.03;  // pu
+  std::vector<Jump> jumps;
+  const std::size_t n = r.V.size();
+  std::vector<double> size(n, 0.0);
+  for (std::size_t k = 1; k + 2 < n; ++k)
+    size[k] = std::abs(std::polar(r.V[k + 2], r.theta[k + 2]) - std::polar(r.V[k - 1], r.theta[k - 1]));
+  std::vector<double> sorted = size;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(n / 2);
+  std::ranges::nth_element(sorted, middle);
+  const double limit = std::max(kLeast, 5 * *middle);
+  for (std::size_t k = 5; k + 5 < n; ++k) {
+    const auto at = size.begin() + static_cast<std::ptrdiff_t>(k);
+    if (*at > limit && *at == *std::max_element(at - 4, at + 5) && *at > 4 * std::max(*(at - 4), *(at + 4)))
+      jumps.push_back({k - 1, k + 2});
+  }
+  return jumps;
+}
+
+}  // namespace
+
+std::vector<Jump> find_jumps(const record::Record& r) {
+  if (r.samples() < 12) return {};
+  std::vector<Jump> jumps;
+  for (const auto& s : playin::detect_switchings(r)) {
+    const auto k = static_cast<std::size_t>(std::ranges::upper_bound(r.t, s.time) - r.t.begin());
+    if (k >= 1 && k < r.t.size()) jumps.push_back({k - 1, k});
+  }
+  for (const auto& wide : smeared(r)) {
+    const auto close = [&](const Jump& j) { return j.before + 4 > wide.before && wide.after + 4 > j.after; };
+    if (std::ranges::none_of(jumps, close)) jumps.push_back(wide);
+  }
+  std::ranges::sort(jumps, {}, &Jump::before);
+  return jumps;
+}
+
+JumpFit fit_jumps(const record::Record& r, const std::vector<Jump>& jumps, int delay) {
+  double cross = 0, current = 0, voltage = 0, count = 0;  // sums of Re(dV conj(-j dI)), |dI|^2, |dV|^2
+  struct Phasors {
+    Complex v, i;
+  };
+  const auto at = [&](std::size_t k) {
+    const auto late = static_cast<std::size_t>(static_cast<long>(k) + delay);
+    const Complex v = std::polar(std::abs(r.V[k]), written_theta(r, k));
+    return Phasors{v, std::conj(Complex(r.P[late], r.Q[late]) / v)};
+  };
+  for (const auto& j : jumps) {
+    if (static_cast<long>(j.before) - 1 + std::min(delay, 0) < 0) continue;
+    if (j.after + 1 + static_cast<std::size_t>(std::max(delay, 0)) >= r.t.size()) continue;
+    // The rotor swings meanwhile: the mean of the steps on either side is taken off the jump. One and the
+    // same linear operation on voltage and current keeps the relation between their jumps.
+    const Phasors p[] = {at(j.before - 1), at(j.before), at(j.after), at(j.after + 1)};
+    if (std::ranges::any_of(p, [](const Phasors& x) { return !(std::abs(x.v) > 0.02); })) continue;
+    const double half = static_cast<double>(j.after - j.before) / 2;
+    const Complex dv = p[2].v - p[1].v - half * (p[1].v - p[0].v + p[3].v - p[2].v);
+    const Complex di = p[2].i - p[1].i - half * (p[1].i - p[0].i + p[3].i - p[2].i);
+    cross += std::real(dv * std::conj(Complex(0, -1) * di));
+    current += std::norm(di);
+    voltage += std::norm(dv);
+    ++count;
+  }
+  if (!(current > 0) || !(voltage > 0)) return {std::nan(""), std::nan(""), 0, 0};
+  return {cross / current, 1 - cross * cross / (current * voltage), voltage / count, current / count};
+}
+
+int power_delay(const record::Record& r, const std::vector<Jump>& jumps) {
+  constexpr int kFarthest = 6;  // samples
+  int delay = 0;
+  bool first = true;
+  const auto n = static_cast<int>(r.t.size());
+  for (const auto& j : jumps) {
+    const int width = static_cast<int>(j.after - j.before), k = static_cast<int>(j.before);
+    if (k < kFarthest + 1 || k + width + kFarthest >= n) continue;
+    const auto step = [&](int m) {
+      const auto a = static_cast<std::size_t>(k + m), b = static_cast<std::size_t>(k + m + width);
+      return std::hypot(r.P[b] - r.P[a], r.Q[b] - r.Q[a]);
+    };
+    int best = 0;
+    for (int m = -kFarthest; m <= kFarthest; ++m)
+      if (step(m) > step(best)) best = m;
+    // Other switchings nearby, or a flat choice, tell nothing.
+    if (best != 0 && !(step(best) > 4 * step(0))) best = 0;
+    if (!first && best != delay) return 0;
+    delay = best;
+    first = false;
+  }
+  return delay;
+}
+
+}  // namespace swingbank::validate::check

@@ -1,0 +1,239 @@
+#include "validate/check/signals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+#include <span>
+
+#include "validate/check/detail/jumps.hpp"
+
+namespace swingbank::validate::check {
+namespace {
+
+/// Gaussian noise of this standard deviation leaves second differences with this median magnitude: 0.6745
+/// times sqrt(1 + 4 + 1).
+constexpr double kSecondDifference = 0.6745 * 2.449489742783178;
+
+/// Straight line through values at 0, 1, 2 …
+struct Line {
+  double middle = 0, slope = 0, spread = 0;  ///< spread: standard deviation about it
+};
+Line fit_line(std::span<const double> y) {
+  const auto n = static_cast<double>(y.size());
+  double mean = 0, xy = 0, xx = 0, square = 0;
+  for (const double v : y) mean += v / n;
+  for (std::size_t k = 0; k < y.size(); ++k) {
+    const double x = static_cast<double>(k) - (n - 1) / 2;
+    xy += x * (y[k] - mean);
+    xx += x * x;
+  }
+  const double slope = xx > 0 ? xy / xx : 0.0;
+  for (std::size_t k = 0; k < y.size(); ++k)
+    square += std::pow(y[k] - mean - slope * (static_cast<double>(k) - (n - 1) / 2), 2);
+  return {mean, slope, n > 2 ? std::sqrt(square / (n - 2)) : 0.0};
+}
+
+/// White noise from second differences; filters make noise that changes slowly, which only the spread of the
+/// quietest second sees.
+void find_noise(const std::vector<double>& y, double rate, SignalFacts& facts) {
+  std::vector<double> second;
+  for (std::size_t k = 1; k + 1 < y.size(); ++k) second.push_back(std::abs(y[k - 1] - 2 * y[k] + y[k + 1]));
+  const auto width = std::clamp<std::size_t>(static_cast<std::size_t>(rate), 10, y.size());
+  double quietest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k + width <= y.size(); k += std::max<std::size_t>(width / 2, 1))
+    quietest = std::min(quietest, fit_line(std::span(y).subspan(k, width)).spread);
+  facts.white = median_of(std::move(second)) / kSecondDifference;
+  facts.quietest = quietest;
+  facts.noise = std::max(facts.white, quietest);
+}
+
+std::span<const double> until(const std::vector<double>& y, std::size_t last) {
+  return std::span(y).first(std::min(last + 1, y.size()));
+}
+double median_in(std::span<const double> y) { return median_of(std::vector<double>(y.begin(), y.end())); }
+
+/// The first of two neighbouring samples that both leave `level` by more than `reach`; size if there is none.
+std::size_t leaves(const std::vector<double>& y, double level, double reach) {
+  for (std::size_t k = 0; k + 1 < y.size(); ++k)
+    if (std::abs(y[k] - level) > reach && std::abs(y[k + 1] - level) > reach) return k;
+  return y.size();
+}
+
+/// The first sample by which the frequency, as the angle turns over half a second, has changed by more than
+/// 20 mHz and the noise: what a slow event shows before anything else. Size if there is none.
+std::size_t turns_faster(const record::Record& r) {
+  constexpr double kSpan = 0.5, kLeast = 2 * std::numbers::pi * 0.02;  // s, rad/s
+  const auto m = static_cast<std::size_t>(kSpan * r.rate());
+  const std::size_t n = r.theta.size();
+  if (m < 1 || n < m + 20) return n;
+  std::vector<double> turned(n - m);
+  for (std::size_t k = 0; k + m < n; ++k) turned[k] = r.theta[k + m] - r.theta[k];
+  SignalFacts noise;
+  find_noise(r.theta, r.rate(), noise);
+  const double reach = std::max(6 * 1.1 * std::numbers::sqrt2 * noise.white, kLeast * kSpan);
+  const std::size_t k = leaves(turned, median_in(std::span(turned).first(10)), reach);
+  return k < turned.size() ? k + m : n;
+}
+
+/// The event begins before its first clear jump where that is smeared, or an earlier one too small: the first
+/// step of the voltage within half a second that stands out from those before.
+std::size_t step_before(const record::Record& r, std::size_t jump) {
+  std::vector<double> steps;
+  for (std::size_t k = 0; k < jump; ++k)
+    steps.push_back(std::abs(std::polar(r.V[k + 1], r.theta[k + 1]) - std::polar(r.V[k], r.theta[k])));
+  const double limit = std::max(10 * median_in(steps), 0.002);
+  const auto back = static_cast<std::size_t>(0.5 * r.rate());
+  for (std::size_t k = jump > back ? jump - back : 0; k < jump; ++k)
+    if (steps[k] > limit) return k;
+  return jump;
+}
+
+/// Where the event begins: before the first jump, or where a channel first leaves the noise about its first
+/// samples.
+void find_event(const record::Record& r, Signals& s) {
+  const auto jumps = find_jumps(r);
+  const std::size_t n = r.t.size();
+  if (!jumps.empty()) {
+    s.event = true;
+    s.onset = step_before(r, jumps.front().before);
+    s.last = jumps.back().before;
+    return;
+  }
+  std::size_t first = n;
+  const std::pair<const std::vector<double>*, SignalFacts*> channels[] = {
+      {&r.V, &s.V}, {&r.P, &s.P}, {&r.Q, &s.Q}};
+  for (const auto& [y, facts] : channels) {
+    // Six standard deviations: pure noise stays below five in ten thousand samples. The floor is what
+    // rounding leaves of records without noise.
+    const double reach = std::max(6 * facts->noise, 1e-4);
+    first = std::min(first, leaves(*y, median_in(std::span(*y).first(10)), reach * 1.1));
+  }
+  first = std::min(first, turns_faster(r));
+  s.event = s.slow = first < n;
+  s.onset = s.last = first > 0 && first < n ? first - 1 : 0;
+}
+
+void describe(const record::Record& r, const std::vector<double>& y, const Signals& s, SignalFacts& facts) {
+  // Measuring windows reach over the event: leave out 50 ms before it.
+  const auto guard = static_cast<std::size_t>(std::ceil(0.05 * r.rate()));
+  // A slow event is seen only some time after it began.
+  const std::size_t clear = s.slow ? s.onset / 2 : s.onset > guard ? s.onset - guard : 0;
+  const auto before = s.event ? until(y, clear) : std::span<const double>(y);
+  facts.level = median_in(before);
+  for (const double v : y) facts.reach = std::max(facts.reach, std::abs(v - facts.level));
+  if (before.size() < 10) return;
+  const Line line = fit_line(before);
+  const auto n = static_cast<double>(before.size());
+  facts.drift = line.slope * (n - 1);
+  facts.swing = line.spread;
+  facts.drift_error = std::max(line.spread, facts.noise) * std::sqrt(12 / n);
+}
+
+/// Median over steps that are no jumps.
+std::vector<double> smooth_steps(const std::vector<double>& y) {
+  std::vector<double> steps;
+  for (std::size_t k = 0; k + 1 < y.size(); ++k) steps.push_back(y[k + 1] - y[k]);
+  return steps;
+}
+
+/// Running mean over 2m + 1 values.
+std::vector<double> smoothed(const std::vector<double>& y, std::size_t m) {
+  std::vector<double> mean;
+  for (std::size_t k = m; k + m < y.size(); ++k) {
+    double sum = 0;
+    for (std::size_t j = k - m; j <= k + m; ++j) sum += y[j];
+    mean.push_back(sum / static_cast<double>(2 * m + 1));
+  }
+  return mean;
+}
+
+/// Slope of the angle [pu of nominal frequency] over frequency or speed, where both clearly move together.
+double angle_per_frequency(const record::Record& r, const std::vector<double>& theta) {
+  const std::vector<double>& f = r.f.empty() ? r.speed : r.f;
+  if (f.size() != theta.size() || f.size() < 40) return 0;
+  std::vector<double> rate = smooth_steps(theta), mid;
+  for (double& v : rate) v /= r.step() * 2 * std::numbers::pi * r.base.frequency;
+  // Jumps of the angle and its turns are no rates: leave the largest out.
+  std::vector<double> size(rate.size());
+  std::ranges::transform(rate, size.begin(), [](double v) { return std::abs(v); });
+  std::vector<double> sorted = size;
+  const auto rank = static_cast<std::ptrdiff_t>(sorted.size() * 97 / 100);
+  std::ranges::nth_element(sorted, sorted.begin() + rank);
+  for (std::size_t k = 0; k < rate.size(); ++k)
+    if (size[k] > sorted[static_cast<std::size_t>(rank)]) rate[k] = k > 0 ? rate[k - 1] : 0.0;
+  for (std::size_t k = 0; k + 1 < f.size(); ++k) mid.push_back((f[k] + f[k + 1]) / 2);
+  const auto m = static_cast<std::size_t>(std::clamp(0.1 * r.rate(), 1.0, 30.0));
+  const std::vector<double> a = smoothed(rate, m), b = smoothed(mid, m);
+  double am = 0, bm = 0, aa = 0, bb = 0, ab = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    am += a[k] / static_cast<double>(a.size());
+    bm += b[k] / static_cast<double>(a.size());
+  }
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    aa += (a[k] - am) * (a[k] - am);
+    bb += (b[k] - bm) * (b[k] - bm);
+    ab += (a[k] - am) * (b[k] - bm);
+  }
+  if (!(aa > 0) || !(bb > 0) || ab < 0.7 * std::sqrt(aa * bb)) return 0;
+  return std::sqrt(aa / bb);
+}
+
+void describe_angle(const record::Record& r, Signals& s) {
+  const std::vector<double>& theta = r.theta_as_written.empty() ? r.theta : r.theta_as_written;
+  s.first_angle = theta.front();
+  s.theta_level = median_in(s.event ? until(theta, s.onset) : std::span<const double>(theta));
+  std::vector<double> steps = smooth_steps(theta);
+  for (const double d : steps) s.wraps_of_360 = s.wraps_of_360 || (std::abs(d) > 320 && std::abs(d) < 400);
+  const std::vector<double> turns = smooth_steps(r.theta);
+  s.angle_rate =
+      median_in(s.event && s.onset >= 2 ? until(turns, s.onset - 1) : std::span<const double>(turns)) /
+      r.step();
+  // Over 0.1 s, so that noise does not count.
+  const auto apart = std::max<std::size_t>(1, static_cast<std::size_t>(0.1 * r.rate()));
+  std::vector<double> fast;
+  for (std::size_t k = 0; k + apart < theta.size(); ++k)
+    fast.push_back(std::abs(theta[k + apart] - theta[k]) / (static_cast<double>(apart) * r.step()));
+  const auto rank = static_cast<std::ptrdiff_t>(fast.size() * 70 / 100);
+  std::ranges::nth_element(fast, fast.begin() + rank);
+  s.fast_angle = fast[static_cast<std::size_t>(rank)];
+  s.angle_per_frequency = angle_per_frequency(r, theta);
+}
+
+void find_holds(const record::Record& r, Signals& s) {
+  if (!(s.P.quietest > 2e-5)) return;  // without noise standing still is no sign of anything
+  std::size_t run = 0;
+  for (std::size_t k = 1; k < r.t.size(); ++k) {
+    const bool same =
+        r.V[k] == r.V[k - 1] && r.theta[k] == r.theta[k - 1] && r.P[k] == r.P[k - 1] && r.Q[k] == r.Q[k - 1];
+    run = same ? run + 1 : 0;
+    if (run > s.longest_hold) s.longest_hold = run, s.hold_at = k + 1 - run;
+  }
+}
+
+}  // namespace
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+Signals record_signals(const record::Record& r) {
+  Signals s;
+  const double rate = r.rate();
+  find_noise(r.V, rate, s.V);
+  find_noise(r.P, rate, s.P);
+  find_noise(r.Q, rate, s.Q);
+  find_event(r, s);
+  describe(r, r.V, s, s.V);
+  describe(r, r.P, s, s.P);
+  describe(r, r.Q, s, s.Q);
+  describe_angle(r, s);
+  find_holds(r, s);
+  return s;
+}
+
+}  // namespace swingbank::validate::check

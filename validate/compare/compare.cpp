@@ -1,0 +1,350 @@
+#include "validate/compare/compare.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "validate/compare/detail/fitted.hpp"
+#include "validate/compare/error_map_table.hpp"
+
+namespace swingbank::validate::compare {
+namespace {
+
+/// Rounding of a file with 8 digits leaves residuals of this size. Below it there is no noise to compare
+/// with.
+constexpr double kNoNoise = 1e-7;
+
+WindowError measure(const std::vector<double>& t, const std::vector<double>& residual,
+                    const std::vector<char>& left_out, const Window& window, bool first, double noise) {
+  WindowError e;
+  double sum = 0, square = 0;
+  for (std::size_t k = 0; k < t.size(); ++k) {
+    if ((!left_out.empty() && left_out[k]) || t[k] > window.to ||
+        !(t[k] > window.from || (first && t[k] == window.from)))
+      continue;
+    ++e.samples;
+    sum += residual[k];
+    square += residual[k] * residual[k];
+    if (std::abs(residual[k]) > e.worst) e.worst = std::abs(residual[k]), e.worst_at = t[k];
+  }
+  if (e.samples > 0) {
+    e.mean = sum / e.samples;
+    e.rms = std::sqrt(square / e.samples);
+  }
+  e.in_noise = noise > 0 ? e.rms / noise : std::numeric_limits<double>::quiet_NaN();
+  return e;
+}
+
+/// Standard deviation of the first n values.
+double spread(const std::vector<double>& values, int n) {
+  double mean = 0, square = 0;
+  for (int k = 0; k < n; ++k) mean += values[static_cast<std::size_t>(k)] / n;
+  for (int k = 0; k < n; ++k) square += std::pow(values[static_cast<std::size_t>(k)] - mean, 2);
+  const double s = std::sqrt(square / (n - 1));
+  return s > kNoNoise ? s : 0.0;
+}
+
+/// Samples that are left out in the middle of a window, on a straight line between their neighbours.
+std::vector<double> bridged(std::vector<double> values, const std::vector<char>& left_out) {
+  for (std::size_t k = 0; k < left_out.size(); ++k) {
+    if (!left_out[k]) continue;
+    std::size_t end = k;
+    while (end < left_out.size() && left_out[end]) ++end;
+    const double from = k > 0 ? values[k - 1] : 0.0, to = end < values.size() ? values[end] : from;
+    const double steps = static_cast<double>(end - k + 1);
+    for (std::size_t i = k; i < end; ++i)
+      values[i] = from + (to - from) * static_cast<double>(i - k + 1) / steps;
+    k = end;
+  }
+  return values;
+}
+
+/// Measures every channel, once the event's playback is there.
+void measure_channels(const plant::PlantModel& model, DriveBy drive, const playin::PlayInOptions& options,
+                      EventComparison& e) {
+  const bool power = drive == DriveBy::power;
+  e.doubt.clear();
+  if (!power) add_doubt(model, e);
+  e.windows = event_windows(e.record, e.switchings, options.pre_event, e.left_out);
+  e.channels.clear();
+  const record::RecordBase& base = e.record.base;
+  const auto add = [&](const ChannelRule& channel, const std::vector<double>& measured,
+                       const std::vector<double>& modelled) {
+    if (!measured.empty()) e.channels.push_back(compare_channel(channel, measured, modelled, e));
+  };
+  if (power) {
+    add({"V", "pu", 1, event::kLeastNoise, true, true, "fault"}, e.record.V, e.playback.V);
+    add({"frequency", "mHz", 1e3 * base.frequency, event::kLeastSpeedNoise, true, false},
+        frequency_of(e.record.t, e.record.theta, base.frequency),
+        frequency_of(e.record.t, e.playback.theta, base.frequency));
+  }
+  const auto add_output = [&](playin::Output o, const std::vector<double>& measured,
+                              const std::vector<double>& modelled, bool starts_at_mean, bool judged) {
+    const ChannelUnit u = channel_unit(o, base);
+    add({std::string(playin::output_name(o)), u.name, u.scale, u.floor, starts_at_mean, judged}, measured,
+        modelled);
+  };
+  if (!power) {
+    add_output(playin::Output::P, e.record.P, e.playback.P, true, true);
+    add_output(playin::Output::Q, e.record.Q, e.playback.Q, true, true);
+  }
+  add_output(playin::Output::speed, e.record.speed, e.playback.speed, false, !power);
+  add_output(playin::Output::Efd, e.record.Efd, e.playback.Efd, false, true);
+  add_output(playin::Output::Ifd, e.record.Ifd, e.playback.Ifd, false, true);
+}
+
+/// Plays the record in with the event's switchings and measures every channel.
+void play(const plant::PlantModel& model, DriveBy drive, const playin::PlayInOptions& options,
+          EventComparison& e) {
+  const playin::VoltageCurve curve(e.record, e.switchings);
+  e.switchings = curve.switchings();
+  e.playback = drive == DriveBy::power
+                   ? playin::play_in_power(model.plant, model.conventions, e.record, e.switchings, options)
+                   : playin::play_in(model.plant, model.conventions, e.record, curve, options);
+  measure_channels(model, drive, options, e);
+}
+
+/// Whether nothing but noise is left of the event by itself.
+bool explained(const EventComparison& e) {
+  std::vector<EventComparison> one = {e};
+  return judge(one).adequate;
+}
+
+/// The record without what comes after `last`. Throws InputError if too little is left.
+record::Record until(record::Record r, double last) {
+  const auto kept =
+      static_cast<std::size_t>(std::ranges::upper_bound(r.t, last + 1e-4 * r.step()) - r.t.begin());
+  if (kept == r.t.size()) return r;
+  if (kept < record::kFewestSamples)
+    throw InputError({fmt::format("{} samples", kept), r.name,
+                      fmt::format("--until {:g} s leaves fewer than {}", last, record::kFewestSamples),
+                      "give a later --until"});
+  for (auto* channel :
+       {&r.t, &r.V, &r.theta, &r.P, &r.Q, &r.f, &r.speed, &r.Efd, &r.Ifd, &r.theta_as_written})
+    if (!channel->empty()) channel->resize(kept);
+  return r;
+}
+
+/// One cell of all maps, and what it is called.
+struct NamedCell {
+  const EventComparison* event;
+  const ChannelComparison* channel;
+  std::string where;
+  const MapCell* cell;
+};
+std::vector<NamedCell> all_cells(const std::vector<EventComparison>& events) {
+  std::vector<NamedCell> all;
+  for (const auto& e : events)
+    for (const auto& c : e.channels) {
+      if (!c.judged) continue;
+      const auto add = [&](const std::string& where, const MapCell& cell) {
+        if (!cell.empty()) all.push_back({&e, &c, where, &cell});
+      };
+      add("over the whole record", c.map.whole);
+      for (std::size_t w = 0; w < c.map.rows.size(); ++w) {
+        const auto& row = c.map.rows[w];
+        add("in the window “" + e.windows[w].name + "”", row.all);
+        for (std::size_t b = 0; b < row.bands.size(); ++b)
+          add(fmt::format("in the window “{}” at {}", e.windows[w].name, error_bands()[b].name),
+              row.bands[b]);
+      }
+    }
+  return all;
+}
+
+/// Says how the instants were treated. `failed` is why they could not be moved, and empty where they could.
+std::string describe_fit(const EventComparison& e, bool tried, const std::string& failed) {
+  if (e.fitted) return "within that they were moved to where P and Q are met best.";
+  if (!failed.empty())
+    return "they could not be moved within that, so the middle of each interval was taken (" + failed + ").";
+  return tried ? "moving them within that does not explain P and Q, so the middle of each interval was taken."
+               : "the middle of each interval was taken.";
+}
+
+void explain(EventComparison& e, bool tried, const std::string& failed) {
+  if (const auto smeared = std::ranges::count(e.left_out, 1); smeared > 0)
+    e.notes.push_back(fmt::format(
+        "The instrument's filter has smeared the jumps over {} samples: these are neither played in nor "
+        "compared, and instants and start were moved to where the rest is met best.",
+        smeared));
+  else if (e.detected && !e.switchings.empty())
+    e.notes.push_back(
+        fmt::format("The switching instants were found in the record, which tells each to ± {:.1f} ms only; "
+                    "{} Give them with --switch where they are known.",
+                    1e3 * e.switchings.front().uncertainty, describe_fit(e, tried, failed)));
+  if (e.switchings.empty())
+    e.notes.push_back(
+        "The voltage does not jump anywhere: the first seconds are taken for the steady state "
+        "(--pre-event).");
+  if (e.playback.start.drift != 0)
+    e.notes.push_back(
+        fmt::format("Before the event the angle turns by {:.3g} rad/s (frequency {:+.2f} mHz off nominal): "
+                    "the model starts in equilibrium in that frame.",
+                    e.playback.start.drift, 1e3 * e.playback.start.drift / (2 * 3.14159265358979323846)));
+  if (!e.record.ignored.empty()) {
+    std::string all;
+    for (const auto& name : e.record.ignored) all += (all.empty() ? "" : ", ") + name;
+    e.notes.push_back("Columns that were not read: " + all + ".");
+  }
+}
+
+}  // namespace
+
+ChannelComparison compare_channel(const ChannelRule& channel, const std::vector<double>& measured,
+                                  const std::vector<double>& modelled, const EventComparison& event) {
+  ChannelComparison c;
+  c.name = channel.name;
+  c.unit = channel.unit;
+  c.scale = channel.scale;
+  c.judged = channel.judged;
+  c.measured = measured;
+  c.modelled = modelled;
+  c.residual.resize(measured.size());
+  std::ranges::transform(modelled, measured, c.residual.begin(), std::minus<>());
+  const int quiet = event.playback.start.samples;
+  c.noise = spread(c.residual, quiet);
+  const auto& t = event.record.t;
+  const auto measured_in = [&](const Window& window, bool first) {
+    return measure(t, c.residual, event.left_out, window, first, c.noise);
+  };
+  c.whole = measured_in({"whole record", t.front(), t.back()}, true);
+  for (std::size_t w = 0; w < event.windows.size(); ++w)
+    c.windows.push_back(measured_in(event.windows[w], w == 0));
+  const auto seen = bridged(c.residual, event.left_out);
+  const std::span<const double> all(seen);
+  const auto doubt = event.doubt.find(channel.name);
+  c.map = error_map(t, all, event.windows,
+                    estimate_noise(all.first(static_cast<std::size_t>(quiet)), channel.floor),
+                    {.quiet = quiet,
+                     .starts_at_mean = channel.starts_at_mean,
+                     .skip = channel.skip,
+                     .shapes = doubt == event.doubt.end() ? nullptr : &doubt->second});
+  return c;
+}
+
+std::vector<double> frequency_of(const std::vector<double>& t, const std::vector<double>& theta,
+                                 double nominal) {
+  std::vector<double> f;
+  for (std::size_t k = 0; k < t.size(); ++k) {
+    const std::size_t a = k == 0 ? 0 : k - 1, b = std::min(k + 1, t.size() - 1);
+    f.push_back((theta[b] - theta[a]) / (t[b] - t[a]) / (2 * std::numbers::pi * nominal));
+  }
+  return f;
+}
+
+std::vector<Window> event_windows(const record::Record& record,
+                                  const std::vector<playin::Switching>& switchings, double pre_event,
+                                  const std::vector<char>& left_out) {
+  const auto out = [&](std::size_t k) { return !left_out.empty() && left_out[k]; };
+  const double first = record.t.front(), end = record.t.back(), slack = 1e-4 * record.step();
+  const bool switched = !switchings.empty();
+  const double begins = slack + (switched ? switchings.front().time : std::min(first + pre_event, end));
+  const double over = slack + (switched ? switchings.back().time : std::min(first + pre_event, end));
+  const Window all[] = {{"pre-event", first, begins},
+                        {"fault", begins, over},
+                        {"0–1 s after", over, over + 1},
+                        {"1–5 s after", over + 1, over + 5},
+                        {"> 5 s after", over + 5, end + slack}};
+  std::vector<Window> windows;
+  for (const auto& w : all) {
+    const auto inside = [&](double t) { return t <= w.to && (t > w.from || (&w == all && t == w.from)); };
+    Window kept = w;
+    const auto begin = static_cast<std::size_t>(std::ranges::find_if(record.t, inside) - record.t.begin());
+    std::size_t from = begin, to = begin;
+    while (to < record.t.size() && inside(record.t[to])) ++to;
+    while (from < to && out(from)) kept.from = record.t[from++];
+    while (to > from && out(to - 1)) kept.to = record.t[--to] - slack;
+    if (to > from) windows.push_back(kept);
+  }
+  return windows;
+}
+
+ChannelUnit channel_unit(playin::Output output, const record::RecordBase& base) {
+  switch (output) {
+    case playin::Output::P:
+      return {"MW", base.mva, event::kLeastNoise};
+    case playin::Output::Q:
+      return {"Mvar", base.mva, event::kLeastNoise};
+    case playin::Output::speed:
+      return {"mHz", 1e3 * base.frequency, event::kLeastSpeedNoise};
+    default:
+      return {"pu", 1, event::kLeastNoise};
+  }
+}
+
+EventComparison compare_event(const plant::PlantModel& model, record::Record record,
+                              const CompareOptions& options) {
+  EventComparison e;
+  e.record = until(std::move(record), options.play_in.until);
+  e.detected = options.switchings.empty();
+  const event::Jumps jumps = options.jumps == event::Jumps::either
+                                 ? event::jumps_of({e.record}, options.jump_threshold)
+                                 : options.jumps;
+  std::string failed;
+  const auto fitted = [&] {
+    EventComparison other = e;
+    play_fitted(model, options, jumps, other);
+    measure_channels(model, DriveBy::voltage, options.play_in, other);
+    return other;
+  };
+  if (e.detected && jumps == event::Jumps::spread && options.drive == DriveBy::voltage) {
+    e = fitted();
+  } else {
+    if (e.detected)
+      e.switchings = playin::detect_switchings(e.record, options.jump_threshold);
+    else
+      for (const double t : options.switchings) e.switchings.push_back({.time = t});
+    play(model, DriveBy::voltage, options.play_in, e);
+    if (e.detected && options.fit_switchings && !e.switchings.empty()) {
+      try {
+        if (EventComparison other = fitted(); explained(other)) e = std::move(other);
+      } catch (const InputError& error) {  // a fit may take fewer steps, and the play-in above stands
+        failed = error.problems().front().sentence();
+      }
+    }
+  }
+  explain(e, options.fit_switchings, failed);
+  if (options.drive == DriveBy::power) {  // with the instants that the voltage told
+    play(model, DriveBy::power, options.play_in, e);
+    e.notes.push_back(
+        "P and Q drive the model. No network holds its angle, so a small lasting error of P grows into one "
+        "of frequency and speed: both are shown, the verdict is about the voltage and the field. During a "
+        "fault the voltage answers many times as strongly to noise of P and Q, so that window is not judged.");
+  }
+  return e;
+}
+
+Adequacy judge(std::vector<EventComparison>& events) {
+  std::vector<ErrorMap*> maps;
+  for (auto& e : events)
+    for (auto& c : e.channels)
+      if (c.judged) maps.push_back(&c.map);
+  set_bounds(maps, kFalseAlarm);
+  Adequacy a;
+  const NamedCell* worst = nullptr;
+  const auto cells = all_cells(events);
+  for (const auto& named : cells) {
+    ++a.cells;
+    a.exceeding += named.cell->exceeds() ? 1 : 0;
+    if (!worst || named.cell->in_noise / named.cell->bound > worst->cell->in_noise / worst->cell->bound)
+      worst = &named;
+  }
+  a.adequate = a.exceeding == 0;
+  a.sentence =
+      a.adequate
+          ? fmt::format("Adequate: each of {} cells is within what noise alone allows", a.cells)
+          : fmt::format("Not adequate: {} of {} cells exceed what noise alone allows", a.exceeding, a.cells);
+  a.sentence += fmt::format(" (with probability {:g} % for all of them together).", 100 * (1 - kFalseAlarm));
+  if (worst)
+    a.sentence +=
+        fmt::format(" {}: {} {} of {}, RMS {:.3g} {}, {} noise where {} is allowed.",
+                    a.adequate ? "Nearest to its bound" : "Furthest off", worst->channel->name, worst->where,
+                    worst->event->record.name, worst->cell->rms * worst->channel->scale, worst->channel->unit,
+                    times_noise(worst->cell->in_noise), times_noise(worst->cell->bound));
+  return a;
+}
+
+}  // namespace swingbank::validate::compare

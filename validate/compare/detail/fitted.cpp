@@ -1,0 +1,57 @@
+#include "validate/compare/detail/fitted.hpp"
+
+#include "validate/fit/fit.hpp"
+#include "validate/fit/voltage_doubt.hpp"
+#include "validate/playin/instruments.hpp"
+
+namespace swingbank::validate::compare {
+
+void play_fitted(const plant::PlantModel& model, const CompareOptions& options, event::Jumps jumps,
+                 EventComparison& e) {
+  const auto events = event::prepare_events(
+      model, {e.record},
+      {.jump_threshold = options.jump_threshold, .pre_event = options.play_in.pre_event, .jumps = jumps});
+  const event::FitEvent& event = events.front();
+  const fit::Fit f = fit::fit(model.plant, model.conventions, events, {});
+  if (!f.failed.empty())
+    throw InputError({"the model cannot follow the record", e.record.name, f.failed,
+                      "check the model's parameters and the record's base and units"});
+  const fit::EventState& state = f.events.front().state;
+  const playin::VoltageCurve curve(event.played(), fit::switchings_at(event, state));
+  playin::Drive run = fit::drive_at(model.plant, model.conventions, event, state);
+  run.curve = &curve;
+  playin::Response r = playin::observe(run);
+  const auto take = [&](playin::Output o) { return std::move(r.value[static_cast<int>(o)]); };
+  e.playback = playin::Playback{};
+  e.playback.start = run.start;
+  e.playback.steps = r.steps;
+  e.playback.P = take(playin::Output::P);
+  e.playback.Q = take(playin::Output::Q);
+  e.playback.speed = take(playin::Output::speed);
+  e.playback.Efd = take(playin::Output::Efd);
+  e.playback.Ifd = take(playin::Output::Ifd);
+  e.switchings = curve.switchings();
+  e.fitted = !e.switchings.empty();
+  if (jumps == event::Jumps::spread) e.left_out = event.left_out;
+}
+
+void add_doubt(const plant::PlantModel& model, EventComparison& e) {
+  event::FitEvent event;
+  event.record = e.record;
+  event.start = e.playback.start;
+  event.smeared = e.left_out;  // those beside a jump too
+  for (const playin::Switching& s : e.switchings)
+    if (s.uncertainty > 0) event.switchings.push_back(s);
+  for (const playin::Output o : {playin::Output::P, playin::Output::Q, playin::Output::speed,
+                                 playin::Output::Efd, playin::Output::Ifd})
+    if (!event.measured(o).empty()) event.channels.push_back(o);
+  const auto n = static_cast<Eigen::Index>(event.channels.size());
+  event.noise = Eigen::VectorXd::Ones(n);  // what the channels' own noise is stands in the map
+  event.whitening = Eigen::MatrixXd::Identity(n, n);
+  e.doubt.clear();
+  for (const auto& shape : fit::voltage_doubt(model.plant, model.conventions, event).shapes)
+    for (std::size_t c = 0; c < event.channels.size(); ++c)
+      e.doubt[std::string(playin::output_name(event.channels[c]))].push_back(shape[c]);
+}
+
+}  // namespace swingbank::validate::compare

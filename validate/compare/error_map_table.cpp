@@ -1,0 +1,119 @@
+#include "validate/compare/error_map_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+namespace swingbank::validate::compare {
+namespace {
+
+/// Shade of a cell: 0 (good) within the bound, at once visible beyond it, and 1 from 25 × the bound, which is
+/// beyond dispute. The scale is logarithmic.
+double shade(const MapCell& cell) {
+  if (cell.empty() || !std::isfinite(cell.bound)) return -1;
+  if (!cell.exceeds()) return 0;
+  return std::clamp(0.35 + 0.65 * std::log(cell.in_noise / cell.bound) / std::log(25.0), 0.0, 1.0);
+}
+
+report::Cell map_cell(const MapCell& cell) {
+  if (cell.empty()) return {"–"};
+  return {times_noise(cell.in_noise) + (cell.exceeds() ? " *" : ""), shade(cell)};
+}
+
+std::vector<std::string> columns(bool with_event) {
+  std::vector<std::string> names;
+  if (with_event) names.emplace_back("event");
+  for (const char* name : {"channel", "window", "RMS", "all"}) names.emplace_back(name);
+  for (const Band& band : error_bands()) names.emplace_back(band.name);
+  return names;
+}
+
+void add_row(report::Table& table, const LabelledMap& m, const std::string& window, const ErrorMap::Row& row,
+             bool with_event) {
+  std::vector<report::Cell> cells;
+  if (with_event) cells.emplace_back(m.event);
+  cells.emplace_back(m.channel);
+  cells.emplace_back(window);
+  cells.emplace_back(row.all.empty() ? "–" : fmt::format("{:.3g} {}", row.all.rms * m.scale, m.unit));
+  cells.push_back(map_cell(row.all));
+  for (const MapCell& cell : row.bands) cells.push_back(map_cell(cell));
+  table.rows.push_back(std::move(cells));
+}
+
+void keep_worse(MapCell& worst, const MapCell& cell) {
+  if (cell.empty()) return;
+  if (worst.empty() || cell.in_noise / cell.bound > worst.in_noise / worst.bound) worst = cell;
+}
+
+constexpr const char* kCaption =
+    "Residual per window of time and band of frequency in units of noise: 1 × means "
+    "that nothing but noise is left. A star marks what exceeds the bound that noise "
+    "alone keeps in all cells together; “–”: the window is too short for the band.";
+
+}  // namespace
+
+std::string times_noise(double in_noise) {
+  if (!std::isfinite(in_noise)) return "–";
+  return in_noise < 9.95 ? fmt::format("{:.1f} ×", in_noise) : fmt::format("{:.0f} ×", in_noise);
+}
+
+report::Table map_table(const std::vector<LabelledMap>& maps) {
+  std::set<std::string> events;
+  for (const auto& m : maps) events.insert(m.event);
+  const bool with_event = events.size() > 1;
+  report::Table table{kCaption, columns(with_event), {}};
+  for (const auto& m : maps)
+    for (std::size_t w = 0; w < m.windows->size(); ++w)
+      add_row(table, m, (*m.windows)[w].name, m.map->rows[w], with_event);
+  return table;
+}
+
+report::Table worst_map_table(const std::vector<LabelledMap>& maps) {
+  report::Table table{
+      std::string(kCaption) + " Each cell shows the worst of all events.", columns(false), {}};
+  std::vector<std::string> channels;
+  for (const auto& m : maps)
+    if (std::ranges::find(channels, m.channel) == channels.end()) channels.push_back(m.channel);
+  for (const auto& channel : channels)
+    for (const char* window : {"pre-event", "fault", "0–1 s after", "1–5 s after", "> 5 s after"}) {
+      ErrorMap::Row worst;
+      worst.bands.resize(error_bands().size());
+      const LabelledMap* of = nullptr;
+      for (const auto& m : maps)
+        for (std::size_t w = 0; w < m.windows->size(); ++w) {
+          if (m.channel != channel || (*m.windows)[w].name != window) continue;
+          of = &m;
+          keep_worse(worst.all, m.map->rows[w].all);
+          for (std::size_t b = 0; b < worst.bands.size(); ++b)
+            keep_worse(worst.bands[b], m.map->rows[w].bands[b]);
+        }
+      if (of) add_row(table, *of, window, worst, false);
+    }
+  return table;
+}
+
+nlohmann::json map_json(const std::vector<Window>& windows, const ErrorMap& map) {
+  auto rows = nlohmann::json::array();
+  const auto add = [&](const std::string& window, std::string_view band, const MapCell& cell) {
+    nlohmann::json j = {{"window", window}, {"band", band}, {"values", cell.values}};
+    const auto number = [&](double v) {
+      return cell.empty() || !std::isfinite(v) ? nlohmann::json(nullptr) : nlohmann::json(v);
+    };
+    j["rms_pu"] = number(cell.rms);
+    j["rms_in_noise"] = number(cell.in_noise);
+    j["bound_in_noise"] = number(cell.bound);
+    rows.push_back(std::move(j));
+  };
+  for (std::size_t w = 0; w < windows.size(); ++w) {
+    add(windows[w].name, "all", map.rows[w].all);
+    for (std::size_t b = 0; b < map.rows[w].bands.size(); ++b)
+      add(windows[w].name, error_bands()[b].name, map.rows[w].bands[b]);
+  }
+  add("whole record", "all", map.whole);
+  return rows;
+}
+
+}  // namespace swingbank::validate::compare

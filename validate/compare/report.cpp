@@ -1,0 +1,218 @@
+#include "validate/compare/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "validate/compare/error_map_table.hpp"
+
+namespace swingbank::validate::compare {
+namespace {
+
+std::vector<LabelledMap> maps_of(const std::vector<EventComparison>& events) {
+  std::vector<LabelledMap> maps;
+  for (const auto& e : events)
+    for (const auto& c : e.channels)
+      maps.push_back({e.record.name, c.name, c.unit, c.scale, &e.windows, &c.map});
+  return maps;
+}
+
+std::string describe_instants(const EventComparison& e) {
+  if (e.switchings.empty()) return "none";
+  std::string text;
+  for (const auto& s : e.switchings) text += (text.empty() ? "" : ", ") + fmt::format("{:.4f} s", s.time);
+  return text + (!e.detected ? " (given)" : e.fitted ? " (found and fitted)" : " (found)");
+}
+
+std::vector<std::pair<double, double>> fault_bands(const EventComparison& e) {
+  if (e.switchings.empty()) return {};
+  return {{e.switchings.front().time, e.switchings.back().time}};
+}
+
+void add_event(report::Page& page, const EventComparison& e) {
+  page.section(e.record.name);
+  page.text(fmt::format(
+      "{} samples at {:.6g} per second. Switching: {}. Start: P = {:.2f} MW, Q = {:.2f} Mvar, V = {:.4f} pu.",
+      e.record.samples(), e.record.rate(), describe_instants(e), e.playback.start.P * e.record.base.mva,
+      e.playback.start.Q * e.record.base.mva, std::abs(e.playback.start.voltage)));
+  for (const auto& note : e.notes) page.note(note);
+  for (const auto& c : e.channels) {
+    const auto in_units = [&](std::vector<double> v) {
+      for (auto& x : v) x *= c.scale;
+      return v;
+    };
+    report::Curves overlay{c.name + ", measured and modelled",
+                           "t [s]",
+                           c.name + " [" + c.unit + "]",
+                           e.record.name,
+                           e.record.t,
+                           {},
+                           fault_bands(e)};
+    overlay.series.push_back({c.name + " measured", "#8a97a5", true, in_units(c.measured)});
+    overlay.series.push_back({c.name + " modelled", "#c0392b", false, in_units(c.modelled)});
+    page.curves(overlay);
+    report::Curves residual{c.name + " residual (modelled − measured)",
+                            "t [s]",
+                            "[" + c.unit + "]",
+                            e.record.name,
+                            e.record.t,
+                            {},
+                            fault_bands(e)};
+    residual.series.push_back({c.name + " residual", "#0b5cad", false, in_units(c.residual)});
+    page.curves(residual);
+  }
+}
+
+nlohmann::json to_json(const WindowError& w) {
+  nlohmann::json j = {{"samples", w.samples},
+                      {"rms_pu", w.rms},
+                      {"mean_pu", w.mean},
+                      {"worst_pu", w.worst},
+                      {"worst_at_s", w.worst_at}};
+  j["rms_in_noise"] = std::isfinite(w.in_noise) ? nlohmann::json(w.in_noise) : nlohmann::json(nullptr);
+  return j;
+}
+
+nlohmann::json to_json(const EventComparison& e) {
+  nlohmann::json j = {{"record", e.record.name},
+                      {"record_xxh64", fmt::format("{:016x}", e.record.hash)},
+                      {"samples", e.record.samples()},
+                      {"rate_per_s", e.record.rate()},
+                      {"switchings_found", e.detected},
+                      {"switchings_fitted", e.fitted},
+                      {"start",
+                       {{"P_pu", e.playback.start.P},
+                        {"Q_pu", e.playback.start.Q},
+                        {"V_pu", std::abs(e.playback.start.voltage)}}},
+                      {"notes", e.notes}};
+  j["switchings"] = j["channels"] = nlohmann::json::array();
+  for (const auto& s : e.switchings)
+    j["switchings"].push_back({{"t_s", s.time}, {"uncertainty_s", s.uncertainty}});
+  for (const auto& c : e.channels) {
+    nlohmann::json channel = {{"name", c.name},     {"unit", c.unit},      {"units_in_pu", c.scale},
+                              {"judged", c.judged}, {"noise_pu", c.noise}, {"whole", to_json(c.whole)}};
+    channel["windows"] = nlohmann::json::array();
+    for (std::size_t w = 0; w < e.windows.size(); ++w) {
+      auto window = to_json(c.windows[w]);
+      window["name"] = e.windows[w].name;
+      window["from_s"] = e.windows[w].from;
+      window["to_s"] = e.windows[w].to;
+      channel["windows"].push_back(window);
+    }
+    channel["map"] = map_json(e.windows, c.map);
+    j["channels"].push_back(channel);
+  }
+  return j;
+}
+
+}  // namespace
+
+report::Table error_summary(const std::vector<EventComparison>& events) {
+  report::Table table{"Residual (modelled − measured) over the whole record.",
+                      {"event", "channel", "RMS", "RMS [pu]", "largest", "at", "noise σ", "RMS / noise"},
+                      {}};
+  for (const auto& e : events)
+    for (const auto& c : e.channels)
+      table.rows.push_back({e.record.name, c.name, fmt::format("{:.3f} {}", c.whole.rms * c.scale, c.unit),
+                            fmt::format("{:.6f}", c.whole.rms),
+                            fmt::format("{:.3f} {}", c.whole.worst * c.scale, c.unit),
+                            fmt::format("{:.3f} s", c.whole.worst_at),
+                            c.noise > 0 ? fmt::format("{:.3f} {}", c.noise * c.scale, c.unit) : "none",
+                            times_noise(c.map.whole.in_noise) + (c.map.whole.exceeds() ? " *" : "")});
+  return table;
+}
+
+report::Table error_map(const std::vector<EventComparison>& events) { return map_table(maps_of(events)); }
+
+std::string terminal_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
+                            const Adequacy& adequacy) {
+  std::string out =
+      fmt::format("{} ({}): measured against modelled\n\n", model.name, model.plant.machine.effect->name);
+  const auto maps = maps_of(events);
+  out += report::padded(error_summary(events));
+  out += events.size() > 1 ? "\nIn units of noise, per window and band, worst of all events:\n" +
+                                 report::padded(worst_map_table(maps))
+                           : "\nIn units of noise, per window and band:\n" + report::padded(map_table(maps));
+  out += "* exceeds what noise alone allows\n";
+  for (const auto& e : events) {
+    out += fmt::format("\n{}: switching at {}\n", e.record.name, describe_instants(e));
+    for (const auto& note : e.notes) out += "  note: " + note + "\n";
+  }
+  return out + "\n" + adequacy.sentence + "\n";
+}
+
+std::string json_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
+                        const Adequacy& adequacy, const report::Provenance& rows) {
+  nlohmann::json j = {{"format", "swingbank-compare-2"},
+                      {"adequate", adequacy.adequate},
+                      {"verdict", adequacy.sentence},
+                      {"cells", adequacy.cells},
+                      {"cells_exceeding", adequacy.exceeding},
+                      {"false_alarm_probability", kFalseAlarm},
+                      {"model",
+                       {{"name", model.name},
+                        {"file", model.origin},
+                        {"xxh64", fmt::format("{:016x}", model.hash)},
+                        {"mva", model.plant.mva}}},
+                      {"base_mva", model.record_base.mva},
+                      {"frequency_hz", model.record_base.frequency}};
+  j["events"] = nlohmann::json::array();
+  for (const auto& e : events) j["events"].push_back(to_json(e));
+  for (const auto& [name, value] : rows) j["provenance"][name] = value;
+  return j.dump(2) + "\n";
+}
+
+std::string csv_playback(const EventComparison& e) {
+  std::string out = "t_s,V_pu,theta_rad";
+  for (const auto& c : e.channels) out += fmt::format(",{0}_measured_pu,{0}_modelled_pu", c.name);
+  out += "\n";
+  for (std::size_t k = 0; k < e.record.t.size(); ++k) {
+    out += fmt::format("{:.9g},{:.9g},{:.9g}", e.record.t[k], e.record.V[k], e.record.theta[k]);
+    for (const auto& c : e.channels) out += fmt::format(",{:.9g},{:.9g}", c.measured[k], c.modelled[k]);
+    out += "\n";
+  }
+  return out;
+}
+
+std::string html_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
+                        const Adequacy& adequacy, const report::Provenance& rows) {
+  report::Page page("Measured against modelled: " + model.name,
+                    fmt::format("{} of {:g} MVA; the recorded {} played into the model, and what it "
+                                "answers with is compared.",
+                                model.plant.machine.effect->name, model.plant.mva,
+                                events.front().playback.P.empty() ? "P and Q are" : "terminal voltage is"));
+  page.verdict(adequacy.sentence, adequacy.adequate ? report::Tone::good : report::Tone::bad);
+  const auto maps = maps_of(events);
+  page.table(events.size() > 1 ? worst_map_table(maps) : map_table(maps));
+  page.table(error_summary(events));
+  page.text(
+      "Drag across a chart to zoom in on a stretch of time (all charts of an event follow); double-click to "
+      "see the whole record. The shaded band is the fault.");
+  for (const auto& e : events) {
+    add_event(page, e);
+    if (events.size() > 1) page.table(map_table(maps_of({e})));
+  }
+  page.provenance(rows);
+  return page.html();
+}
+
+report::Provenance provenance(const plant::PlantModel& model, const std::vector<EventComparison>& events,
+                              const std::string& command_line) {
+  report::Provenance rows = {{"command", command_line},
+                             {"software", "swingbank " SWINGBANK_VERSION},
+                             {"model", fmt::format("{}, XXH64 {:016x}", model.origin, model.hash)}};
+  rows.emplace_back(
+      "conventions",
+      fmt::format(
+          "{}; {}; {:g} Hz",
+          model.conventions.speed_voltage ? "speed in the stator voltage" : "no speed in the stator voltage",
+          model.conventions.mechanical_power ? "mechanical power held" : "mechanical torque held",
+          model.conventions.frequency));
+  for (const auto& e : events)
+    rows.emplace_back("record", fmt::format("{}, XXH64 {:016x}", e.record.name, e.record.hash));
+  return rows;
+}
+
+}  // namespace swingbank::validate::compare

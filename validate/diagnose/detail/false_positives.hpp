@@ -1,0 +1,17 @@
+#pragma once
+// What the last blind cases measured (docs/blind-test.md), to be said beside each verdict. Changed with the
+// document, after new cases; never after a look at cases already judged.
+#include <string>
+
+#include "base/rate.hpp"
+
+namespace swingbank::validate::diagnose {
+
+/// Cases in which nothing was hidden that were given an effect, as judged before anything was mended on them:
+/// seeds 1128960556, 400997928 and 138707171.
+inline const Rate kFalsePositives{2, 110};
+
+/// "In k of n blind cases in which nothing was hidden an effect was named (95 %: a to b %)."
+std::string false_positive_note();
+
+}  // namespace swingbank::validate::diagnose

@@ -1,0 +1,142 @@
+#include "validate/diagnose/detail/report_laws.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "validate/laws/regression.hpp"
+
+namespace swingbank::validate::diagnose {
+namespace {
+
+constexpr const char* kInferred = "#7d3c98";
+constexpr const char* kLaw = "#d68910";
+
+std::string input_name(const laws::LawSearch& s) {
+  return s.kind == fit::InputKind::torque ? "inferred torque" : "inferred field voltage";
+}
+/// The law whose course is drawn: the one found, else none.
+const laws::LawFinding* drawn(const Diagnosis& d) { return d.laws.found(); }
+
+void add_scatters(const Diagnosis& d, report::Page& page) {
+  const laws::LawSearch& s = d.laws;
+  const laws::LawRegression regression(s.traces);
+  std::vector<report::Scatter> all;
+  for (std::size_t signal = 0; signal < laws::kLawSignals.size(); ++signal) {
+    laws::Course course;
+    for (const auto& t : s.traces) course.push_back(t.signal[signal]);
+    const auto x = regression.by_event(regression.at_knots(course));
+    report::Scatter plot{std::string(laws::kLawSignals[signal].expression),
+                         std::string(laws::kLawSignals[signal].expression) + " [pu]",
+                         input_name(s) + " [pu]",
+                         {{"inferred", kInferred, {}}}};
+    if (drawn(d)) plot.groups.push_back({"law", kLaw, {}});
+    for (std::size_t e = 0; e < s.traces.size(); ++e)
+      for (std::size_t k = 0; k < x[e].size(); ++k) {
+        plot.groups[0].points.emplace_back(x[e][k], s.traces[e].input[k]);
+        if (drawn(d)) plot.groups[1].points.emplace_back(x[e][k], drawn(d)->law.course[e][k]);
+      }
+    all.push_back(std::move(plot));
+  }
+  page.scatters(all);
+}
+void add_courses(const Diagnosis& d, report::Page& page) {
+  const laws::LawSearch& s = d.laws;
+  for (std::size_t e = 0; e < s.traces.size(); ++e) {
+    const std::string& name = d.events[e].record.name;
+    report::Curves c{name + ": " + input_name(s), "t [s]", "[pu]", name + " law", s.traces[e].knots, {}, {}};
+    c.series.push_back({"inferred", kInferred, false, s.traces[e].input});
+    if (drawn(d)) c.series.push_back({"law", kLaw, false, drawn(d)->law.course[e]});
+    page.curves(c);
+  }
+}
+std::string unseen_words(const laws::LawFinding& f) {
+  double worst = 0;
+  for (const auto& u : f.judgement.held_out) worst = std::max(worst, std::sqrt(u.after));
+  return f.judgement.held_out.empty() ? "–" : fmt::format("≤ {:.2f} ×", worst);
+}
+
+nlohmann::json number(double v) { return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(nullptr); }
+
+nlohmann::json finding_json(const laws::LawFinding& f) {
+  const hypothesis::Judgement& j = f.judgement;
+  nlohmann::json law = {{"name", j.hypothesis.name},
+                        {"words", f.words},
+                        {"family", f.law.family},
+                        {"signal", f.law.signal},
+                        {"accepted", j.accepted},
+                        {"why_not", j.why_not},
+                        {"evidence", number(j.gain)},
+                        {"rms_in_noise", number(std::sqrt(j.fit.misfit()))},
+                        {"explained_of_input", number(f.law.explained)},
+                        {"law_file", f.toml},
+                        {"parameters", nlohmann::json::array()},
+                        {"unseen", nlohmann::json::array()}};
+  for (const auto& p : j.fit.parameters)
+    if (p.where.block == j.hypothesis.free.front().block)
+      law["parameters"].push_back({{"name", p.name},
+                                   {"unit", p.unit},
+                                   {"value", p.value},
+                                   {"low_95", number(p.low)},
+                                   {"high_95", number(p.high)}});
+  for (const auto& u : j.held_out)
+    law["unseen"].push_back({{"record", u.record},
+                             {"rms_in_noise_before", number(std::sqrt(u.before))},
+                             {"rms_in_noise_after", number(std::sqrt(u.after))}});
+  return law;
+}
+
+}  // namespace
+
+void laws_on_page(const Diagnosis& d, report::Page& page) {
+  const laws::LawSearch& s = d.laws;
+  if (s.kind == fit::InputKind::none) return;
+  page.section("A law for it");
+  page.text(fmt::format(
+      "No known effect explains the records. The {} that would is plotted here over time and against "
+      "every signal that a law could read. {} kinds of laws were ranked on it (at once, lagged, washed "
+      "out, limited, dead-banded, curved, periodic, or set off at a time or by the voltage), the leading "
+      "{} fitted to the records. A law is offered only if it predicts events that it was not fitted to.",
+      input_name(s), s.ranked.size(), s.findings.size()));
+  if (const laws::LawFinding* f = s.found())
+    page.note(fmt::format("Found: {}.", f->words));
+  else
+    page.note("No law predicts unseen events: none is offered.");
+  add_courses(d, page);
+  add_scatters(d, page);
+  report::Table table{
+      "", {"law", "share of the input", "evidence", "error left", "unseen events", "judged", "what"}, {}};
+  for (const auto& f : s.findings)
+    table.rows.push_back({f.judgement.hypothesis.name, fmt::format("{:.0f} %", 100 * f.law.explained),
+                          fmt::format("{:.1f}", f.judgement.gain),
+                          fmt::format("{:.2f} ×", std::sqrt(f.judgement.fit.misfit())), unseen_words(f),
+                          f.judgement.accepted ? "accepted" : f.judgement.why_not, f.words});
+  if (!table.rows.empty()) page.table(table);
+}
+
+nlohmann::json laws_json(const Diagnosis& d) {
+  const laws::LawSearch& s = d.laws;
+  if (s.kind == fit::InputKind::none) return nullptr;
+  nlohmann::json j = {{"input", s.kind == fit::InputKind::torque ? "torque" : "field_voltage"},
+                      {"found", s.found() ? nlohmann::json(s.found()->judgement.hypothesis.name) : nullptr},
+                      {"ranked", s.ranked.size()},
+                      {"seconds", s.seconds},
+                      {"fitted", nlohmann::json::array()}};
+  for (const auto& f : s.findings) j["fitted"].push_back(finding_json(f));
+  return j;
+}
+
+std::string laws_text(const Diagnosis& d) {
+  const laws::LawSearch& s = d.laws;
+  if (s.kind == fit::InputKind::none) return {};
+  std::string text = fmt::format("\nLaws for the {} ({} ranked; evidence, chi2 per value left, judgement):\n",
+                                 input_name(s), s.ranked.size());
+  for (const auto& f : s.findings)
+    text += fmt::format("  {:>10.1f} {:>8.3f}  {}: {}\n", f.judgement.gain, f.judgement.fit.misfit(),
+                        f.judgement.accepted ? "accepted" : f.judgement.why_not, f.words);
+  if (!s.found()) text += "  none predicts events that it was not fitted to\n";
+  return text;
+}
+
+}  // namespace swingbank::validate::diagnose

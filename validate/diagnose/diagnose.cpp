@@ -1,0 +1,371 @@
+#include "validate/diagnose/diagnose.hpp"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include "base/in_parallel.hpp"
+#include "validate/diagnose/detail/verdict.hpp"
+#include "validate/fit/noise.hpp"
+#include "validate/hypothesis/search.hpp"
+
+namespace swingbank::validate::diagnose {
+namespace {
+
+/// A long fit may add this much evidence to a short one. A hypothesis that lies further behind the best is
+/// not judged.
+constexpr double kWorthJudging = 200;
+/// So many hypotheses are judged where none holds.
+constexpr int kAtLeast = 3;
+/// A second effect needs this much evidence and this fall of chi2, because what the first effect or the
+/// instruments leave unexplained looks like a second one (60 in a development case).
+constexpr double kSecond = 80;
+/// A rival is near the best one from this share of its evidence.
+constexpr double kNear = 0.2;
+/// The model alone is fitted once more from the kWaysOut leading extensions. The better fit counts if it
+/// gains kEscape of the first one's evidence, and this may happen kBases times.
+constexpr std::size_t kWaysOut = 2;
+constexpr double kEscape = 0.5;
+constexpr int kBases = 2;
+
+/// Steps of the fits that go on with the noise measured again.
+constexpr int kOnwards = 4;
+
+class Diagnoser {
+ public:
+  Diagnoser(const plant::PlantModel& model, std::vector<record::Record> records,
+            const DiagnoseOptions& options)
+      : model_(model), options_(options) {
+    if (records.size() < 2)
+      throw InputError({fmt::format("{} event", records.size()), "--records",
+                        "an effect is believed only if it predicts an event that it was not fitted to",
+                        "give records of two events or more"});
+    result_.events =
+        event::prepare_events(model, std::move(records), {.measured_states = options.measured_states});
+    result_.conventions = model.conventions;
+    threads_ = options.threads > 0 ? options.threads : omp_get_num_procs();
+  }
+
+  Diagnosis run() {
+    const auto begin = std::chrono::steady_clock::now();
+    const std::vector<event::FitEvent> prepared = result_.events;
+    fit::FitOptions from;
+    for (int round = 0;; ++round) {
+      fit_base(from);
+      const hypothesis::Stage stage = model_stage();
+      result_.ranked = hypothesis::try_hypotheses(
+          stage, hypothesis::all_hypotheses(stage.plant, stage.conventions), options_.progress);
+      if (round == kBases || !better_base(from)) break;
+      result_.events = prepared;  // the noise was measured through the worse base
+    }
+    try_replacements();
+    measure_noise_again();
+    passed_.emplace(result_.base.plant, model_.conventions, result_.events,
+                    fit::voltage_noise(result_.base, result_.events).variance);
+    held_out_base_ = hypothesis::hold_out(trial(), model_.plant, model_.conventions, {}, result_.base);
+    infer_inputs();
+    search();
+    settle({model_, trial(), result_.base, held_out_base_, result_.torque, result_.field, threads_},
+           options_.progress, result_);
+    result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return std::move(result_);
+  }
+
+ private:
+  void fit_base(fit::FitOptions o) {
+    report("base", 0, 1);
+    const auto free = fit::free_parameters(model_.plant, options_.spread);
+    result_.base = fit::fit(model_.plant, model_.conventions, result_.events, free, o);
+    if (result_.base.failed.empty()) {
+      fit::measure_noise_through(result_.base, model_.conventions, result_.events);
+      o = fit::continued({}, result_.base, free);
+      result_.base = fit::fit(model_.plant, model_.conventions, result_.events, free, o);
+    }
+    if (!result_.base.failed.empty())
+      throw InputError({"the model cannot be fitted", model_.origin, result_.base.failed,
+                        "correct the model or leave the record out"});
+    report("base", 1, 1);
+  }
+  /// Whether the model alone fits much better from where its leading extensions ended. Then these were ways
+  /// out of a poor minimum. `from` gets the better fit's values.
+  bool better_base(fit::FitOptions& from) const {
+    if (result_.ranked.empty() || result_.ranked.front().gain < hypothesis::kEvidence) return false;
+    hypothesis::Judgement base;
+    base.hypothesis.plant = model_.plant;
+    base.hypothesis.conventions = model_.conventions;
+    base.fit = result_.base;
+    for (std::size_t k = 0; k < std::min<std::size_t>(kWaysOut, result_.ranked.size()); ++k)
+      if (result_.ranked[k].fitted) hypothesis::try_from(model_stage(), result_.ranked[k].fit, base);
+    from = fit::continued({}, base.fit, fit::free_parameters(model_.plant, options_.spread));
+    return fit::penalised(result_.base) - fit::penalised(base.fit) > kEscape * result_.ranked.front().gain;
+  }
+  /// Where no addition leaves only noise, an effect that is there may be of another kind.
+  void try_replacements() {
+    const auto fits = [&](const fit::Fit& f) { return f.misfit() <= options_.adequate; };
+    if (fits(result_.base) || (!result_.ranked.empty() && fits(result_.ranked.front().fit))) return;
+    const hypothesis::Stage stage = model_stage();
+    auto others = hypothesis::try_hypotheses(
+        stage, hypothesis::all_replacements(stage.plant, stage.conventions), options_.progress);
+    std::ranges::move(others, std::back_inserter(result_.ranked));
+    std::ranges::stable_sort(result_.ranked, std::greater<>(), &hypothesis::Judgement::gain);
+  }
+  /// A base that fits badly hides the noise. The noise is then measured through the leading extension, and
+  /// all fits go on with it.
+  void measure_noise_again() {
+    if (result_.ranked.empty() || result_.base.misfit() < fit::kClose) return;
+    const hypothesis::Judgement& best = result_.ranked.front();
+    if (!best.fitted || best.fit.misfit() >= fit::kClose) return;
+    fit::measure_noise_through(best.fit, best.hypothesis.conventions, result_.events);
+    const auto go_on = [&](const sim::plant::Plant& plant, const sim::Conventions& conventions,
+                           const std::vector<fit::FreeParameter>& free, fit::Fit& f) {
+      fit::FitOptions o = fit::continued({}, f, free);
+      o.iterations = kOnwards;
+      if (fit::Fit next = fit::fit(plant, conventions, result_.events, free, o); next.failed.empty())
+        f = next;
+    };
+    go_on(model_.plant, model_.conventions, fit::free_parameters(model_.plant, options_.spread),
+          result_.base);
+    each(result_.ranked, "noise measured again", [&](hypothesis::Judgement& j) {
+      if (!j.fitted) return;
+      go_on(j.hypothesis.plant, j.hypothesis.conventions, hypothesis::free_of(j.hypothesis, options_.spread),
+            j.fit);
+      j.gain = fit::criterion(result_.base) - fit::criterion(j.fit);
+    });
+    std::ranges::stable_sort(result_.ranked, std::greater<>(), &hypothesis::Judgement::gain);
+  }
+  void infer_inputs() {
+    fit::FitOptions from;  // parameters that are bent far out of shape are no start
+    if (result_.base.misfit() < fit::kClose)
+      from = fit::continued({}, result_.base, fit::free_parameters(model_.plant, options_.spread));
+    const auto infer = [&](std::size_t i) {
+      hypothesis::MissingInput& m = i == 0 ? result_.torque : result_.field;
+      m = hypothesis::infer_input(i == 0 ? fit::InputKind::torque : fit::InputKind::field, model_.plant,
+                                  model_.conventions, result_.events, options_.spread, from);
+    };
+    in_parallel(
+        2, infer, [&](int done) { report("missing input", done, 2); }, threads_);
+  }
+
+  /// Judges the leading hypotheses. Then tries each hypothesis beside the one that holds or, where none does,
+  /// beside the best two.
+  void search() {
+    const hypothesis::Stage stage = model_stage();
+    judge_leading(result_.ranked);
+    if (result_.ranked.empty()) return;
+    const hypothesis::Judgement best = result_.ranked.front();
+    if (!best.accepted && result_.base.misfit() <= options_.adequate) return;
+    auto pairs = best.accepted ? judged_beside(stage, best) : try_pairs(stage);
+    try_alone(pairs);
+    const auto unneeded = [&](const hypothesis::Judgement& j) { return !j.accepted || !needed(j); };
+    std::erase_if(pairs, unneeded);
+    if (!pairs.empty()) {  // the first effect was chosen while the second was missing
+      auto others = exchanged(stage, pairs.front());
+      std::erase_if(others, unneeded);
+      std::ranges::move(others, std::back_inserter(pairs));
+      std::ranges::stable_sort(pairs, std::greater<>(), &hypothesis::Judgement::gain);
+    }
+    keep_one_order(pairs);
+    result_.ranked.insert(result_.ranked.begin(), std::make_move_iterator(pairs.begin()),
+                          std::make_move_iterator(pairs.end()));
+  }
+  [[nodiscard]] hypothesis::Stage model_stage() const {
+    return {.events = result_.events,
+            .plant = model_.plant,
+            .conventions = model_.conventions,
+            .fit = result_.base,
+            .spread = options_.spread,
+            .threads = threads_};
+  }
+  /// Tries pairs beside the best single hypotheses, one of each slot. The next single one is tried only if no
+  /// pair beside the one before holds.
+  std::vector<hypothesis::Judgement> try_pairs(const hypothesis::Stage& stage) {
+    std::vector<const hypothesis::Judgement*> firsts;
+    for (const auto& j : result_.ranked) {
+      const bool taken = std::ranges::any_of(firsts, [&](const hypothesis::Judgement* f) {
+        return j.hypothesis.slot >= 0 && f->hypothesis.slot == j.hypothesis.slot;
+      });
+      if (!taken && j.gain >= trial().evidence && j.fitted && !j.hypothesis.replaces &&
+          static_cast<int>(firsts.size()) < options_.firsts)
+        firsts.push_back(&j);
+    }
+    std::vector<hypothesis::Judgement> pairs;
+    for (const hypothesis::Judgement* first : firsts) {
+      std::ranges::move(judged_beside(stage, *first), std::back_inserter(pairs));
+      best_first(pairs);
+      if (!pairs.empty() && pairs.front().accepted) break;
+    }
+    return pairs;
+  }
+  [[nodiscard]] std::vector<hypothesis::Judgement> judged_beside(const hypothesis::Stage& stage,
+                                                                 const hypothesis::Judgement& first) const {
+    auto pairs = beside(stage, first);
+    judge_leading(pairs);
+    return pairs;
+  }
+  /// Rivals of a pair's first effect, fitted in its place: those of its slot, and whatever else holds alone.
+  [[nodiscard]] std::vector<hypothesis::Judgement> exchanged(const hypothesis::Stage& stage,
+                                                             const hypothesis::Judgement& pair) const {
+    auto rivals = hypothesis::exchanges(stage, pair, result_.ranked);
+    each(rivals, "in place of " + pair.hypothesis.with, [&](hypothesis::Judgement& j) {
+      hypothesis::try_exchange(stage, pair, j);
+      j.gain = fit::criterion(result_.base) - fit::criterion(j.fit);
+    });
+    std::erase_if(rivals, [](const hypothesis::Judgement& j) { return !j.fit.failed.empty(); });
+    std::ranges::stable_sort(rivals, std::greater<>(), &hypothesis::Judgement::gain);
+    std::erase_if(rivals, [&](const hypothesis::Judgement& j) { return j.gain < pair.gain - kWorthJudging; });
+    each(rivals, "unseen events", [&](hypothesis::Judgement& j) { judge_all(j); });
+    return rivals;
+  }
+  /// Fits every hypothesis beside one that is taken as given; the evidence is that of both.
+  [[nodiscard]] std::vector<hypothesis::Judgement> beside(const hypothesis::Stage& stage,
+                                                          const hypothesis::Judgement& first) const {
+    const hypothesis::Stage then = hypothesis::after(stage, first);
+    auto pairs = hypothesis::try_hypotheses(then, hypothesis::all_hypotheses(then.plant, then.conventions),
+                                            options_.progress);
+    // a rival of the best hypothesis may only have started badly
+    const int slot = pairs.empty() || pairs.front().gain < kSecond ? -1 : pairs.front().hypothesis.slot;
+    std::erase_if(pairs, [&](const hypothesis::Judgement& j) {
+      return j.gain < kSecond && (slot < 0 || j.hypothesis.slot != slot || !j.fitted);
+    });
+    for (auto& pair : pairs) pair.gain += first.gain;
+    return pairs;
+  }
+  /// Keeps the better one of "A beside B" and "B beside A".
+  static void keep_one_order(std::vector<hypothesis::Judgement>& pairs) {
+    std::vector<hypothesis::Judgement> kept;
+    for (hypothesis::Judgement& j : pairs)
+      if (std::ranges::none_of(kept, [&](const hypothesis::Judgement& known) {
+            return known.hypothesis.with == j.hypothesis.name && known.hypothesis.name == j.hypothesis.with;
+          }))
+        kept.push_back(std::move(j));
+    pairs = std::move(kept);
+  }
+  /// Fits each of the best pair's effects alone, from where the pair ended. What looks like a second effect
+  /// may only be a better start for the first.
+  void try_alone(const std::vector<hypothesis::Judgement>& pairs) {
+    if (pairs.empty() || !pairs.front().accepted) return;
+    const hypothesis::Judgement& pair = pairs.front();
+    for (hypothesis::Judgement& single : result_.ranked) {
+      const std::string& name = single.hypothesis.name;
+      if (!single.fitted || (name != pair.hypothesis.name && name != pair.hypothesis.with)) continue;
+      const double before = fit::penalised(single.fit);
+      hypothesis::try_from(model_stage(), pair.fit, single);
+      if (!(fit::penalised(single.fit) < before - 1)) continue;
+      single.accepted = false;
+      single.why_not.clear();
+      judge_all(single);
+    }
+    best_first(result_.ranked);
+  }
+  /// Whether a pair explains what no single effect explains. A rival that was not taken may fit as well.
+  [[nodiscard]] bool needed(const hypothesis::Judgement& pair) const {
+    return std::ranges::none_of(result_.ranked, [&](const hypothesis::Judgement& single) {
+      return single.accepted &&
+             (single.fit.chi2 - pair.fit.chi2 < kSecond || pair.gain - single.gain < kSecond);
+    });
+  }
+  /// Judges the hypotheses that might still be as good as the best one, and puts accepted ones first. Where
+  /// none of them holds, three are judged.
+  void judge_leading(std::vector<hypothesis::Judgement>& tried) const {
+    if (tried.empty()) return;
+    give_rivals_a_chance(tried);
+    const int most = std::min(options_.leading, static_cast<int>(tried.size()));
+    int leading = 0;
+    for (double best = tried.front().gain;;) {  // judging may take away some of the first ones' evidence
+      const int judged = leading;
+      while (leading < most && tried[static_cast<std::size_t>(leading)].gain > best - kWorthJudging)
+        ++leading;
+      if (leading == judged) break;
+      judge_some(tried, judged, leading);
+      best = best_gain({tried.begin(), tried.begin() + leading});
+    }
+    const bool none = std::ranges::none_of(tried, &hypothesis::Judgement::accepted);
+    if (none && leading < kAtLeast) judge_some(tried, leading, std::min(kAtLeast, most));
+    best_first(tried);
+  }
+  /// The best evidence among the accepted ones, or among all where none is accepted.
+  static double best_gain(std::span<const hypothesis::Judgement> judged) {
+    const auto better = [](const hypothesis::Judgement& x, const hypothesis::Judgement& y) {
+      return x.accepted != y.accepted ? y.accepted : x.gain < y.gain;
+    };
+    return std::ranges::max_element(judged, better)->gain;
+  }
+  void judge_some(std::vector<hypothesis::Judgement>& tried, int from, int to) const {
+    each(std::span(tried).subspan(static_cast<std::size_t>(from), static_cast<std::size_t>(to - from)),
+         "unseen events", [&](hypothesis::Judgement& j) { judge_all(j); });
+  }
+  /// Judges on unseen events, and beside the inputs that are free in time.
+  void judge_all(hypothesis::Judgement& j) const {
+    hypothesis::judge(trial(), result_.base, held_out_base_, j);
+    for (const auto& [m, what] : {std::pair(&result_.torque, "torque"), {&result_.field, "field voltage"}})
+      if (j.accepted && m->explains(result_.base) > result_.base.chi2 - j.fit.chi2) {
+        j.accepted = false;
+        j.why_not = fmt::format("a {} free in time explains more", what);
+      }
+  }
+  static void best_first(std::vector<hypothesis::Judgement>& judged) {
+    std::ranges::stable_sort(judged, [](const hypothesis::Judgement& x, const hypothesis::Judgement& y) {
+      return x.accepted != y.accepted ? x.accepted : x.gain > y.gain;
+    });
+  }
+
+  /// Rivals of the best in its slot are fitted from further starts, if they come near it at all.
+  void give_rivals_a_chance(std::vector<hypothesis::Judgement>& tried) const {
+    const int slot = tried.front().hypothesis.slot;
+    if (slot < 0) return;
+    const double near = kNear * tried.front().gain;
+    const auto rivals =
+        std::stable_partition(tried.begin(), tried.end(), [&](const hypothesis::Judgement& j) {
+          return j.hypothesis.slot == slot && j.gain > near && j.fitted;
+        });
+    const hypothesis::Stage stage = model_stage();
+    const fit::Fit leader =
+        std::ranges::max_element(tried.begin(), rivals, {}, &hypothesis::Judgement::gain)->fit;
+    each({tried.begin(), rivals}, "further starts", [&](hypothesis::Judgement& j) {
+      hypothesis::try_further(stage, leader, j);
+      j.gain = fit::criterion(result_.base) - fit::criterion(j.fit);
+    });
+    std::ranges::stable_sort(tried, std::greater<>(), &hypothesis::Judgement::gain);
+  }
+  /// Does something with each judgement, on all cores.
+  template <class F>
+  void each(std::span<hypothesis::Judgement> tried, const std::string& what, F act) const {
+    in_parallel(
+        tried.size(), [&](std::size_t k) { act(tried[k]); },
+        [&](int done, std::size_t k) {
+          report(what + " " + hypothesis::full_name(tried[k].hypothesis), done,
+                 static_cast<int>(tried.size()));
+        },
+        threads_);
+  }
+
+  [[nodiscard]] hypothesis::Trial trial() const {
+    return {result_.events, options_.spread, options_.adequate, hypothesis::kEvidence,
+            passed_ ? &*passed_ : nullptr};
+  }
+
+  void report(const std::string& what, int done, int total) const {
+    if (options_.progress) options_.progress(what, done, total);
+  }
+
+  const plant::PlantModel& model_;
+  const DiagnoseOptions& options_;
+  Diagnosis result_;
+  std::vector<hypothesis::HeldOut> held_out_base_;
+  std::optional<fit::PassedNoise> passed_;
+  int threads_;
+};
+
+}  // namespace
+
+Diagnosis diagnose(const plant::PlantModel& model, std::vector<record::Record> records,
+                   const DiagnoseOptions& options) {
+  return Diagnoser(model, std::move(records), options).run();
+}
+
+}  // namespace swingbank::validate::diagnose

@@ -1,0 +1,55 @@
+#pragma once
+// Which physical effect does the model lack? The missing input is inferred first (which side?), then every
+// hypothesis is fitted by itself and judged on events it was not fitted to.
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "validate/fit/fit.hpp"
+#include "validate/hypothesis/judge.hpp"
+#include "validate/hypothesis/missing_input.hpp"
+#include "validate/laws/search.hpp"
+
+namespace swingbank::validate::diagnose {
+
+enum class Verdict {
+  adequate,     ///< nothing but noise is left
+  missing,      ///< one effect is missing, and it is named
+  confusable,   ///< one of several, which these records cannot tell apart
+  unexplained,  ///< none of the known effects explains it
+};
+std::string_view verdict_name(Verdict verdict);
+
+struct Diagnosis {
+  Verdict verdict = Verdict::adequate;
+  hypothesis::Side side = hypothesis::Side::none;
+  std::string sentence;                 ///< the verdict as a grid engineer reads it
+  std::vector<std::string> effects;     ///< names of one effect, or of several that act together
+  std::vector<std::string> equivalent;  ///< names that explain the records as well
+  /// What would tell the best one from the first of `equivalent`; empty without one.
+  std::string would_decide;
+  fit::Fit base;  ///< the present structure, refitted
+  hypothesis::MissingInput torque, field;
+  laws::LawSearch laws;  ///< laws that were searched, where no known effect explains the records
+  std::vector<hypothesis::Judgement> ranked;  ///< best first
+  std::vector<event::FitEvent> events;
+  sim::Conventions conventions;  ///< of the model
+  double seconds = 0;
+};
+
+struct DiagnoseOptions {
+  double spread = 0.2;     ///< relative uncertainty believed of the model's parameters
+  double adequate = 1.12;  ///< chi2 per value up to which nothing but noise is left
+  int threads = 0;         ///< 0: as many as there are cores
+  bool measured_states = true;
+  int leading = 9;  ///< hypotheses at most that are judged on events left out
+  int firsts = 2;   ///< where no hypothesis holds alone, a second one is tried beside so many, in turn
+  /// Called with what is done, done and total; may be empty.
+  std::function<void(const std::string& what, int done, int total)> progress;
+};
+
+/// Throws InputError as its parts do; needs at least two events to judge.
+Diagnosis diagnose(const plant::PlantModel& model, std::vector<record::Record> records,
+                   const DiagnoseOptions& options = {});
+
+}  // namespace swingbank::validate::diagnose

@@ -1,0 +1,257 @@
+#include "validate/diagnose/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "validate/compare/error_map_table.hpp"
+#include "validate/diagnose/detail/false_positives.hpp"
+#include "validate/diagnose/detail/report_laws.hpp"
+#include "validate/fit/voltage_doubt.hpp"
+
+namespace swingbank::validate::diagnose {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kBand99 = 2.5758;  // standard deviations that hold 99 % of normal numbers
+
+nlohmann::json number(double v) { return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(nullptr); }
+
+const hypothesis::MissingInput* better_input(const Diagnosis& d) {
+  const bool torque = !d.torque.fit.events.empty(), field = !d.field.fit.events.empty();
+  if (torque && (!field || d.torque.misfit() <= d.field.misfit())) return &d.torque;
+  return field ? &d.field : nullptr;
+}
+
+/// Model less measured [pu].
+std::vector<double> difference(const std::vector<double>& model, const std::vector<double>& measured) {
+  std::vector<double> r(measured.size());
+  std::ranges::transform(model, measured, r.begin(), std::minus<>());
+  return r;
+}
+double share_inside(const event::FitEvent& e, const std::vector<double>& residual, double band) {
+  int inside = 0, compared = 0;
+  for (std::size_t k = 0; k < residual.size(); ++k) {
+    if (!e.compared(k)) continue;
+    ++compared;
+    inside += std::abs(residual[k]) <= band ? 1 : 0;
+  }
+  return static_cast<double>(inside) / compared;
+}
+/// Of one channel.
+std::vector<std::vector<double>> shapes_of(const fit::VoltageDoubt& doubt, std::size_t channel) {
+  std::vector<std::vector<double>> shapes;
+  for (const auto& shape : doubt.shapes) shapes.push_back(shape[channel]);
+  return shapes;
+}
+
+/// What the played-in voltage's errors leave in an event, before and after.
+struct Doubts {
+  fit::VoltageDoubt before, after;
+};
+
+ReportChannel channel_of(const Diagnosis& d, const fit::Fit* after, std::size_t e, std::size_t c,
+                         const std::vector<compare::Window>& windows, const Doubts& doubts) {
+  const event::FitEvent& event = d.events[e];
+  const playin::Output output = event.channels[c];
+  const compare::ChannelUnit unit = compare::channel_unit(output, event.record.base);
+  ReportChannel r;
+  r.name = playin::output_name(output);
+  r.unit = unit.name;
+  r.scale = unit.scale;
+  r.measured = event.measured(output);
+  const auto quiet = static_cast<std::size_t>(event.start.samples);
+  // Before the event the residual is the channel's noise, unless a fit bends the start to mimic what is
+  // missing: the quieter of the two is believed.
+  const auto noise_of = [&](const fit::Fit& fit) {
+    const auto residual = difference(fit.events[e].model[c], r.measured);
+    return compare::estimate_noise(std::span(residual).first(quiet), unit.floor);
+  };
+  compare::NoiseModel noise = noise_of(d.base);
+  if (after)
+    if (compare::NoiseModel other = noise_of(*after); other.sigma < noise.sigma) noise = std::move(other);
+  r.noise = noise.sigma;
+  const auto judge_one = [&](const fit::Fit& fit, const fit::VoltageDoubt& doubt, std::vector<double>& model,
+                             compare::ErrorMap& map, double& inside) {
+    model = fit.events[e].model[c];
+    const auto residual = difference(model, r.measured);
+    inside = share_inside(event, residual, kBand99 * r.noise);
+    const auto shapes = shapes_of(doubt, c);
+    map = compare::error_map(event.record.t, residual, windows, noise,
+                             {.quiet = static_cast<int>(quiet), .shapes = &shapes});
+  };
+  judge_one(d.base, doubts.before, r.before, r.map_before, r.inside_before);
+  if (after) judge_one(*after, doubts.after, r.after, r.map_after, r.inside_after);
+  return r;
+}
+
+void bound(std::vector<ReportEvent>& events, compare::ErrorMap ReportChannel::*which) {
+  std::vector<compare::ErrorMap*> maps;
+  for (auto& e : events)
+    for (auto& c : e.channels) maps.push_back(&(c.*which));
+  compare::set_bounds(maps, compare::kFalseAlarm);
+}
+
+nlohmann::json parameters_json(const fit::Fit& fit) {
+  auto rows = nlohmann::json::array();
+  for (const auto& p : fit.parameters)
+    rows.push_back({{"block", p.block},
+                    {"name", p.name},
+                    {"unit", p.unit},
+                    {"start", p.start},
+                    {"value", p.value},
+                    {"error", number(p.error)},
+                    {"low_95", number(p.low)},
+                    {"high_95", number(p.high)},
+                    {"at_bound", p.at_bound},
+                    {"told_by_records", number(p.decided)}});
+  return rows;
+}
+
+nlohmann::json input_json(const Diagnosis& d, const hypothesis::MissingInput& input) {
+  if (input.fit.events.empty()) return nullptr;
+  nlohmann::json j = {{"rms_in_noise", number(std::sqrt(input.misfit()))},
+                      {"events", nlohmann::json::array()}};
+  for (std::size_t e = 0; e < input.fit.events.size(); ++e)
+    j["events"].push_back(
+        {{"record", d.events[e].record.name}, {"t_s", input.of(e).t}, {"value_pu", input.of(e).value}});
+  return j;
+}
+
+nlohmann::json event_json(const ReportEvent& e, bool with_after) {
+  const record::Record& r = e.event->record;
+  nlohmann::json j = {{"record", r.name},
+                      {"record_xxh64", fmt::format("{:016x}", r.hash)},
+                      {"samples", r.samples()},
+                      {"rate_per_s", r.rate()},
+                      {"rms_in_noise_before", number(e.before)},
+                      {"rms_in_noise_after", with_after ? number(e.after) : nullptr},
+                      {"unseen_rms_in_noise_before", number(e.unseen_before)},
+                      {"unseen_rms_in_noise_after", number(e.unseen_after)},
+                      {"channels", nlohmann::json::array()}};
+  for (const auto& c : e.channels) {
+    nlohmann::json k = {{"name", c.name},
+                        {"unit", c.unit},
+                        {"units_in_pu", c.scale},
+                        {"noise_pu", c.noise},
+                        {"inside_99_before", c.inside_before},
+                        {"map_before", compare::map_json(e.windows, c.map_before)}};
+    if (with_after) {
+      k["inside_99_after"] = c.inside_after;
+      k["map_after"] = compare::map_json(e.windows, c.map_after);
+    }
+    j["channels"].push_back(std::move(k));
+  }
+  return j;
+}
+
+nlohmann::json hypothesis_json(const hypothesis::Judgement& h) {
+  nlohmann::json j = {{"name", hypothesis::full_name(h.hypothesis)},
+                      {"what", h.hypothesis.what},
+                      {"side", hypothesis::side_name(h.hypothesis.side)},
+                      {"accepted", h.accepted},
+                      {"why_not", h.why_not},
+                      {"evidence", number(h.gain)},
+                      {"size", number(h.size)},
+                      {"rms_in_noise", h.fit.values > 0 ? number(std::sqrt(h.fit.misfit())) : nullptr},
+                      {"unseen", nlohmann::json::array()}};
+  for (const auto& u : h.held_out)
+    j["unseen"].push_back({{"record", u.record},
+                           {"rms_in_noise_before", number(std::sqrt(u.before))},
+                           {"rms_in_noise_after", number(std::sqrt(u.after))},
+                           {"cost_per_value_before", number(u.cost_before)},
+                           {"cost_per_value_after", number(u.cost_after)}});
+  return j;
+}
+
+}  // namespace
+
+ReportFigures report_figures(const Diagnosis& d) {
+  ReportFigures figures;
+  const bool named = !d.ranked.empty() && d.ranked.front().accepted && !d.ranked.front().fit.events.empty();
+  const hypothesis::Judgement* best = named ? &d.ranked.front() : nullptr;
+  if (!best && d.laws.found()) best = &d.laws.found()->judgement;
+  if (d.verdict != Verdict::adequate && best) {
+    figures.after = &best->fit;
+    figures.after_name = hypothesis::full_name(best->hypothesis);
+  } else if (d.verdict == Verdict::unexplained) {
+    if (const hypothesis::MissingInput* input = better_input(d)) {
+      figures.after = &input->fit;
+      figures.after_name =
+          input->kind == fit::InputKind::torque ? "the inferred torque" : "the inferred field voltage";
+    }
+  }
+  for (std::size_t e = 0; e < d.events.size(); ++e) {
+    ReportEvent r;
+    r.event = &d.events[e];
+    r.windows = compare::event_windows(r.event->record, r.event->switchings,
+                                       event::FitEventOptions{}.pre_event, r.event->smeared);
+    Doubts doubts{fit::voltage_doubt(d.base.plant, d.conventions, *r.event), {}};
+    if (figures.after) doubts.after = fit::voltage_doubt(figures.after->plant, d.conventions, *r.event);
+    for (std::size_t c = 0; c < r.event->channels.size(); ++c)
+      r.channels.push_back(channel_of(d, figures.after, e, c, r.windows, doubts));
+    r.before = std::sqrt(d.base.events[e].misfit());
+    r.after = figures.after ? std::sqrt(figures.after->events[e].misfit()) : kNaN;
+    r.unseen_before = r.unseen_after = kNaN;
+    if (best && figures.after == &best->fit && e < best->held_out.size()) {
+      r.unseen_before = std::sqrt(best->held_out[e].before);
+      r.unseen_after = std::sqrt(best->held_out[e].after);
+    }
+    figures.events.push_back(std::move(r));
+  }
+  bound(figures.events, &ReportChannel::map_before);
+  if (figures.after) bound(figures.events, &ReportChannel::map_after);
+  return figures;
+}
+
+nlohmann::json diagnosis_json(const plant::PlantModel& model, const Diagnosis& d,
+                              const report::Provenance& rows) {
+  const ReportFigures figures = report_figures(d);
+  nlohmann::json j = {
+      {"format", "swingbank-diagnosis-1"},
+      {"verdict", verdict_name(d.verdict)},
+      {"sentence", d.sentence},
+      {"false_positives", {{"given_an_effect", kFalsePositives.hits}, {"nothing_hidden", kFalsePositives.n}}},
+      {"side", hypothesis::side_name(d.side)},
+      {"effects", d.effects},
+      {"equivalent", d.equivalent},
+      {"would_decide", d.would_decide},
+      {"seconds", d.seconds},
+      {"model",
+       {{"name", model.name},
+        {"file", model.origin},
+        {"xxh64", fmt::format("{:016x}", model.hash)},
+        {"mva", model.plant.mva}}}};
+  j["before"] = {{"rms_in_noise", number(std::sqrt(d.base.misfit()))},
+                 {"parameters", parameters_json(d.base)}};
+  if (figures.after)
+    j["after"] = {{"with", figures.after_name},
+                  {"rms_in_noise", number(std::sqrt(figures.after->misfit()))},
+                  {"parameters", parameters_json(*figures.after)}};
+  else
+    j["after"] = nullptr;
+  j["missing_torque"] = input_json(d, d.torque);
+  j["missing_field_voltage"] = input_json(d, d.field);
+  j["laws"] = laws_json(d);
+  j["hypotheses"] = nlohmann::json::array();
+  for (const auto& h : d.ranked) j["hypotheses"].push_back(hypothesis_json(h));
+  j["events"] = nlohmann::json::array();
+  for (const auto& e : figures.events) j["events"].push_back(event_json(e, figures.after != nullptr));
+  for (const auto& [name, value] : rows) j["provenance"].push_back({{"what", name}, {"value", value}});
+  return j;
+}
+
+report::Provenance diagnosis_provenance(const plant::PlantModel& model, const Diagnosis& d,
+                                        const std::string& command_line) {
+  report::Provenance rows = {{"command", command_line},
+                             {"software", "swingbank " SWINGBANK_VERSION},
+                             {"model", fmt::format("{}, XXH64 {:016x}", model.origin, model.hash)}};
+  for (const auto& e : d.events)
+    rows.emplace_back("record", fmt::format("{}, XXH64 {:016x}", e.record.name, e.record.hash));
+  return rows;
+}
+
+}  // namespace swingbank::validate::diagnose

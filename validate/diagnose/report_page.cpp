@@ -1,0 +1,308 @@
+// The page of a diagnosis: verdict, figures, evidence, events, provenance.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "validate/compare/error_map_table.hpp"
+#include "validate/diagnose/detail/false_positives.hpp"
+#include "validate/diagnose/detail/report_laws.hpp"
+#include "validate/diagnose/report.hpp"
+
+namespace swingbank::validate::diagnose {
+namespace {
+
+constexpr const char* kMeasured = "#8a97a5";
+constexpr const char* kBefore = "#c0392b";
+constexpr const char* kAfter = "#0b5cad";
+constexpr double kBand99 = 2.5758;  // standard deviations that hold 99 % of normal numbers
+constexpr std::size_t kBars = 12;   // hypotheses drawn; the table holds all
+
+std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
+std::string value_text(double v) { return std::isfinite(v) ? fmt::format("{:.4g}", v) : "–"; }
+
+std::vector<std::pair<double, double>> fault_bands(const event::FitEvent& e) {
+  if (e.switchings.empty()) return {};
+  return {{e.switchings.front().time, e.switchings.back().time}};
+}
+
+class DiagnosisPage {
+ public:
+  DiagnosisPage(const plant::PlantModel& model, const Diagnosis& d, const report::Provenance& rows)
+      : model_(model),
+        d_(d),
+        rows_(rows),
+        figures_(report_figures(d)),
+        page_("Diagnosis: " + model.name,
+              fmt::format("{} of {:g} MVA · {} {} · recorded terminal voltage played into the model",
+                          model.plant.machine.effect->name, model.plant.mva, d.events.size(),
+                          d.events.size() == 1 ? "event" : "events")) {}
+
+  std::string html() {
+    page_.verdict(d_.sentence, d_.verdict == Verdict::adequate      ? report::Tone::good
+                               : d_.verdict == Verdict::unexplained ? report::Tone::bad
+                                                                    : report::Tone::found);
+    page_.text(false_positive_note());
+    at_a_glance();
+    error_maps();
+    sides();
+    hypotheses();
+    laws_on_page(d_, page_);
+    parameters();
+    page_.section("Events");
+    page_.text(
+        "Drag across a chart to zoom in on a stretch of time (all charts of an event follow); double-click "
+        "to see the whole record. Shaded upright: the fault. Shaded level: the 99 % band of the noise.");
+    for (std::size_t e = 0; e < figures_.events.size(); ++e) event(e);
+    method();
+    page_.provenance(rows_);
+    page_.data("figures", diagnosis_json(model_, d_, rows_).dump());
+    return page_.html();
+  }
+
+ private:
+  [[nodiscard]] bool with_after() const { return figures_.after != nullptr; }
+
+  void at_a_glance() {
+    report::Table table{
+        "Error of each event: RMS of the residual over all channels, "
+        "in units of noise. 1 × means that nothing but noise is left.",
+        {"event", "model as it is, refitted"},
+        {}};
+    if (with_after()) table.header.push_back("with " + figures_.after_name);
+    const bool unseen = std::ranges::any_of(
+        figures_.events, [](const ReportEvent& e) { return std::isfinite(e.unseen_after); });
+    if (unseen) {
+      table.header.emplace_back("not fitted to it: as it is");
+      table.header.push_back("not fitted to it: with " + figures_.after_name);
+    }
+    for (const auto& e : figures_.events) {
+      std::vector<report::Cell> row = {e.event->record.name, compare::times_noise(e.before)};
+      if (with_after()) row.emplace_back(compare::times_noise(e.after));
+      if (unseen) {
+        row.emplace_back(compare::times_noise(e.unseen_before));
+        row.emplace_back(compare::times_noise(e.unseen_after));
+      }
+      table.rows.push_back(std::move(row));
+    }
+    page_.table(table);
+    tolerance();
+  }
+  /// How much of each channel lies within the stated tolerance.
+  void tolerance() {
+    report::Table table{
+        "Share of samples within the stated tolerance, the 99 % band of each channel's noise; noise alone "
+        "gives 99 %.",
+        {"event", "channel", "tolerance", "model as it is, refitted"},
+        {}};
+    if (with_after()) table.header.push_back("with " + figures_.after_name);
+    for (const auto& e : figures_.events)
+      for (const auto& c : e.channels) {
+        std::vector<report::Cell> row = {e.event->record.name, c.name,
+                                         fmt::format("± {:.3g} {}", kBand99 * c.noise * c.scale, c.unit),
+                                         percent(c.inside_before)};
+        if (with_after()) row.emplace_back(percent(c.inside_after));
+        table.rows.push_back(std::move(row));
+      }
+    page_.table(table);
+  }
+
+  [[nodiscard]] std::vector<compare::LabelledMap> maps(compare::ErrorMap ReportChannel::*which) const {
+    std::vector<compare::LabelledMap> all;
+    for (const auto& e : figures_.events)
+      for (const auto& c : e.channels)
+        all.push_back({e.event->record.name, c.name, c.unit, c.scale, &e.windows, &(c.*which)});
+    return all;
+  }
+  void error_maps() {
+    page_.section("Where the model is wrong");
+    report::Table before = compare::worst_map_table(maps(&ReportChannel::map_before));
+    before.caption = "The model as it is, its parameters refitted. " + before.caption;
+    page_.table(before);
+    if (!with_after()) return;
+    report::Table after = compare::worst_map_table(maps(&ReportChannel::map_after));
+    after.caption = "With " + figures_.after_name + ". Same units.";
+    page_.table(after);
+  }
+
+  void sides() {
+    if (d_.torque.fit.events.empty() && d_.field.fit.events.empty()) return;
+    page_.section("Which side");
+    page_.text(
+        "Before any effect was asked for, a torque and then a field voltage, free in time, were added to the "
+        "model such "
+        "that it answers as measured. The one that leaves less is the side where something is missing.");
+    report::Bars bars{"Error left [× noise]", "×", 1.0, "noise alone", {}};
+    const auto add = [&](const std::string& name, double misfit) {
+      const double left = std::sqrt(misfit);
+      bars.bars.push_back({name, left, left < 1.5});
+    };
+    add("as it is", d_.base.misfit());
+    if (!d_.torque.fit.events.empty()) add("with a free torque", d_.torque.misfit());
+    if (!d_.field.fit.events.empty()) add("with a free field voltage", d_.field.misfit());
+    page_.bars(bars);
+    if (d_.side != hypothesis::Side::none)
+      page_.text(fmt::format("Side: {}.", hypothesis::side_name(d_.side)));
+  }
+
+  void hypotheses() {
+    if (d_.ranked.empty()) return;
+    page_.section("What could be missing");
+    page_.text(fmt::format(
+        "{} effects were added one at a time. A score test beside the refitted model says first what each "
+        "could gain; what promises something is fitted, the model's parameters with it. "
+        "Evidence is twice the logarithm of how much likelier the effect makes the records (Laplace's "
+        "approximation): from {:.0f} it is accepted, below 0 the effect does not pay "
+        "for its parameters. "
+        "The leading ones were then judged on events left out of the fit.",
+        d_.ranked.size(), hypothesis::kEvidence));
+    const double most = std::max(1.0, d_.ranked.front().gain);
+    report::Bars bars{"Evidence (logarithmic)", "", std::log10(hypothesis::kEvidence), "accepted", {}};
+    for (std::size_t i = 0; i < std::min(kBars, d_.ranked.size()); ++i)
+      bars.bars.push_back({hypothesis::full_name(d_.ranked[i].hypothesis),
+                           std::log10(std::max(1.0, d_.ranked[i].gain)),
+                           d_.ranked[i].accepted || (d_.ranked[i].gain >= most && most > 10),
+                           fmt::format("{:.0f}", d_.ranked[i].gain)});
+    page_.bars(bars);
+    report::Table table{
+        "", {"hypothesis", "what", "side", "evidence", "error left", "unseen events", "judged"}, {}};
+    for (const auto& h : d_.ranked) {
+      double worst = 0;
+      for (const auto& u : h.held_out) worst = std::max(worst, std::sqrt(u.after));
+      table.rows.push_back({hypothesis::full_name(h.hypothesis), h.hypothesis.what,
+                            std::string(hypothesis::side_name(h.hypothesis.side)),
+                            fmt::format("{:.1f}", h.gain),
+                            h.fit.values > 0 ? compare::times_noise(std::sqrt(h.fit.misfit())) : "–",
+                            h.held_out.empty() ? "–" : "≤ " + compare::times_noise(worst),
+                            h.accepted ? "accepted" : h.why_not});
+    }
+    page_.table(table);
+  }
+
+  void parameters() {
+    page_.section("Parameters");
+    const fit::Fit& last = with_after() ? *figures_.after : d_.base;
+    report::Table table{
+        "95 % intervals. The last column says how much of the interval "
+        "the records decide; the rest is what was believed before.",
+        {"parameter", "unit", "model file", "refitted as it is"},
+        {}};
+    if (with_after()) table.header.push_back("with " + figures_.after_name);
+    table.header.insert(table.header.end(), {"95 % interval", "told by the records"});
+    for (const auto& p : last.parameters) {
+      const auto base = std::ranges::find_if(d_.base.parameters, [&](const fit::FittedParameter& b) {
+        return b.block == p.block && b.name == p.name;
+      });
+      const bool known = base != d_.base.parameters.end();
+      std::vector<report::Cell> row = {p.block + " " + p.name, p.unit, known ? value_text(base->start) : "–",
+                                       known ? value_text(base->value) : "–"};
+      if (with_after()) row.emplace_back(value_text(p.value));
+      row.emplace_back(std::isfinite(p.error)
+                           ? fmt::format("{} … {}{}", value_text(p.low), value_text(p.high),
+                                         p.at_bound ? " (at its bound)" : "")
+                           : "–");
+      row.emplace_back(std::isfinite(p.decided) ? fmt::format("{:.0f} %", 100 * p.decided) : "–");
+      table.rows.push_back(std::move(row));
+    }
+    page_.table(table);
+  }
+
+  void event(std::size_t index) {
+    const ReportEvent& e = figures_.events[index];
+    const record::Record& r = e.event->record;
+    page_.subsection(r.name);
+    std::string instants;
+    for (const auto& s : e.event->switchings)
+      instants += fmt::format("{}{:.3f} s", instants.empty() ? "" : ", ", s.time);
+    page_.text(fmt::format(
+        "{} samples at {:.6g} per second. Switching: {}. Start: P = {:.2f} MW, Q = {:.2f} Mvar, V = "
+        "{:.4f} pu.",
+        r.samples(), r.rate(), instants.empty() ? "none" : instants, e.event->start.P * r.base.mva,
+        e.event->start.Q * r.base.mva, std::abs(e.event->start.voltage)));
+    for (const auto& c : e.channels) channel(e, c);
+    input(index, d_.torque, "Inferred missing torque", "added to Tm [pu]");
+    input(index, d_.field, "Inferred missing field voltage", "added to Efd [pu]");
+    if (figures_.events.size() < 2) return;
+    std::vector<compare::LabelledMap> own;
+    for (const auto& c : e.channels)
+      own.push_back(
+          {r.name, c.name, c.unit, c.scale, &e.windows, with_after() ? &c.map_after : &c.map_before});
+    report::Table table = compare::map_table(own);
+    table.caption =
+        fmt::format("Error map of {}{}.", r.name, with_after() ? ", with " + figures_.after_name : "");
+    page_.table(table);
+  }
+  void channel(const ReportEvent& e, const ReportChannel& c) {
+    const record::Record& r = e.event->record;
+    const auto in_units = [&](std::vector<double> v) {
+      for (auto& x : v) x *= c.scale;
+      return v;
+    };
+    const auto residual = [&](const std::vector<double>& model) {
+      std::vector<double> v(model.size());
+      for (std::size_t k = 0; k < v.size(); ++k) v[k] = (model[k] - c.measured[k]) * c.scale;
+      return v;
+    };
+    report::Curves overlay{c.name, "t [s]", c.name + " [" + c.unit + "]", r.name,
+                           r.t,    {},      fault_bands(*e.event)};
+    overlay.series.push_back({"measured", kMeasured, true, in_units(c.measured)});
+    overlay.series.push_back({"model as it is", kBefore, false, in_units(c.before)});
+    report::Curves rest{c.name + " residual (modelled − measured)",
+                        "t [s]",
+                        "[" + c.unit + "]",
+                        r.name,
+                        r.t,
+                        {},
+                        fault_bands(*e.event)};
+    rest.tolerance = kBand99 * c.noise * c.scale;
+    rest.series.push_back({"model as it is", kBefore, false, residual(c.before)});
+    if (with_after()) {
+      overlay.series.push_back({"with " + figures_.after_name, kAfter, false, in_units(c.after)});
+      rest.series.push_back({"with " + figures_.after_name, kAfter, false, residual(c.after)});
+    }
+    page_.curves(overlay);
+    page_.curves(rest);
+  }
+  void input(std::size_t index, const hypothesis::MissingInput& m, const std::string& title,
+             const std::string& label) {
+    if (index >= m.fit.events.size() || m.of(index).t.empty()) return;
+    const std::string& name = figures_.events[index].event->record.name;
+    report::Curves curves{
+        title, "t [s]", label, name, m.of(index).t, {}, fault_bands(*figures_.events[index].event)};
+    curves.series.push_back({title, "#7d3c98", false, m.of(index).value});
+    page_.curves(curves);
+  }
+
+  void method() {
+    page_.section("How to read this");
+    page_.text(
+        "The recorded voltage and angle of the terminal drive the model; what it answers is laid over what "
+        "was measured, "
+        "event by event, as verification reports under NERC MOD-026 and MOD-027 (plants) and MOD-033 "
+        "(systems) do. These "
+        "standards set no numerical tolerance; stated here is the 99 % band of the noise, estimated before "
+        "each event.");
+    page_.text(
+        "“As it is” means the present structure with its parameters fitted to all events: what "
+        "is wrong then is not a matter of parameters. A cell of the error map is the part of "
+        "the residual in a window of time and a band of frequency, over what noise alone leaves "
+        "there; the bound is kept by noise alone in all cells together with 99.9 % probability.");
+    page_.text(fmt::format("Computed in {:.0f} s.", d_.seconds));
+  }
+
+  const plant::PlantModel& model_;
+  const Diagnosis& d_;
+  const report::Provenance& rows_;
+  ReportFigures figures_;
+  report::Page page_;
+};
+
+}  // namespace
+
+std::string diagnosis_html(const plant::PlantModel& model, const Diagnosis& diagnosis,
+                           const report::Provenance& provenance) {
+  return DiagnosisPage(model, diagnosis, provenance).html();
+}
+
+}  // namespace swingbank::validate::diagnose

@@ -1,0 +1,62 @@
+#include "validate/diagnose/text.hpp"
+
+#include <fmt/format.h>
+
+#include "validate/diagnose/detail/false_positives.hpp"
+#include "validate/diagnose/detail/report_laws.hpp"
+
+namespace swingbank::validate::diagnose {
+namespace {
+
+constexpr std::size_t kShown = 12;
+
+void add_inputs(const Diagnosis& d, std::string& text) {
+  text += fmt::format(
+      "\n"
+      "What is left [chi2 per value; 1: noise]: {:.2f} with the parameters refitted, "
+      "{:.2f} with a torque free in time, {:.2f} with a field voltage free in time.\n",
+      d.base.misfit(), d.torque.misfit(), d.field.misfit());
+}
+void add_hypotheses(const Diagnosis& d, std::string& text) {
+  text += fmt::format("\n{:<18} {:<12} {:>12} {:>10} {:>22}  {}\n", "hypothesis", "side", "evidence", "left",
+                      "unseen: before, after", "judgement");
+  for (std::size_t i = 0; i < d.ranked.size() && i < kShown; ++i) {
+    const hypothesis::Judgement& j = d.ranked[i];
+    double before = 0, after = 0;
+    for (const auto& h : j.held_out) {
+      before += h.before / static_cast<double>(j.held_out.size());
+      after += h.after / static_cast<double>(j.held_out.size());
+    }
+    text += fmt::format("{:<18} {:<12} {:>12.1f} {:>10.3f} {:>22}  {}\n", hypothesis::full_name(j.hypothesis),
+                        hypothesis::side_name(j.hypothesis.side), j.gain, j.fit.misfit(),
+                        j.held_out.empty() ? "" : fmt::format("{:.2f}, {:.3f}", before, after),
+                        j.accepted ? "accepted" : j.why_not);
+  }
+  if (d.ranked.size() > kShown)
+    text += fmt::format("and {} more that explain less\n", d.ranked.size() - kShown);
+}
+void add_parameters(const Diagnosis& d, std::string& text) {
+  const bool named = !d.ranked.empty() && d.ranked.front().accepted;
+  const laws::LawFinding* law = named ? nullptr : d.laws.found();
+  const fit::Fit& fit = named ? d.ranked.front().fit : law ? law->judgement.fit : d.base;
+  text += fmt::format("\n{:<10} {:<10} {:>12} {:>12} {:>26} {:>6}\n", "block", "parameter", "model", "fitted",
+                      "95 % interval", "unit");
+  for (const auto& p : fit.parameters)
+    text += fmt::format("{:<10} {:<10} {:>12.5g} {:>12.5g} {:>26} {:>6}{}\n", p.block, p.name, p.start,
+                        p.value, fmt::format("{:.4g} to {:.4g}", p.low, p.high), p.unit,
+                        p.decided < 0.5 ? "  (the records hardly tell)" : "");
+}
+
+}  // namespace
+
+std::string diagnosis_text(const Diagnosis& d) {
+  std::string text = d.sentence + "\n" + false_positive_note() + "\n";
+  add_inputs(d, text);
+  add_hypotheses(d, text);
+  text += laws_text(d);
+  add_parameters(d, text);
+  text += fmt::format("\n{} events, {:.1f} s\n", d.events.size(), d.seconds);
+  return text;
+}
+
+}  // namespace swingbank::validate::diagnose

@@ -1,0 +1,276 @@
+#pragma once
+// What a fit minimises: residuals of each event, beliefs, and the bends of an added input, as Ceres takes
+// them. For fit.cpp and score_test.cpp only.
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "validate/fit/fit.hpp"
+#include "validate/playin/instruments.hpp"
+
+namespace swingbank::validate::fit::fitting {
+
+using Kind = playin::Direction::Kind;
+
+constexpr int kStates = 4;  ///< P, Q, angle, speed
+/// One unit of each state, as the search steps: it is far below any effect and far above rounding.
+inline constexpr double kStateScale[kStates] = {1e-3, 1e-3, 1e-3, 1e-5};
+inline constexpr Kind kStateKind[kStates] = {Kind::P, Kind::Q, Kind::angle, Kind::speed};
+/// A start is believed to be off by so many of those units, because a plant nearly stands still before an
+/// event.
+inline constexpr double kStateBelief[kStates] = {20, 20, 20, 20};
+constexpr double kSwitchScale = 1e-3;  ///< [s]
+
+/// A free parameter as the search sees it: z = 0 at the start, steps of order 1.
+struct Axis {
+  FreeParameter where;
+  double start, low, high;  ///< of the parameter
+  bool logarithmic;
+  double unit;  ///< of z, where linear
+  /// The value is rounded to 40 binary digits, so that parameters at the same bound stay equal wherever they
+  /// started from.
+  [[nodiscard]] double value(double z) const {
+    const double v = logarithmic ? start * std::exp(z) : start + unit * z;
+    if (v == 0 || !std::isfinite(v)) return v;
+    const int digits = 39 - std::ilogb(v);
+    return std::ldexp(std::nearbyint(std::ldexp(v, digits)), -digits);
+  }
+  [[nodiscard]] double slope(double z) const { return logarithmic ? value(z) : unit; }
+  [[nodiscard]] double z(double v) const { return logarithmic ? std::log(v / start) : (v - start) / unit; }
+  /// Standard deviation of the belief in z.
+  [[nodiscard]] double spread() const { return where.spread; }
+};
+
+inline Axis make_axis(const sim::plant::Plant& plant, const FreeParameter& f) {
+  const sim::Parameter& record = parameter_record(plant, f.block, f.index);
+  const double start = parameter_value(plant, f.block, f.index);
+  Axis a{f, start, record.low, record.high, start > 0, 1.0};
+  if (a.logarithmic) {
+    a.low = std::max(a.low, 1e-3 * start);
+    a.high = std::min(a.high, 1e3 * start);
+  } else {
+    a.unit = start != 0 ? std::abs(start) : 0.05 * std::min(record.high - record.low, 20.0);
+  }
+  return a;
+}
+
+/// What stands fixed during a fit.
+struct Setting {
+  const sim::plant::Plant* plant;
+  const sim::Conventions* conventions;
+  const std::vector<event::FitEvent>* events;
+  std::vector<Axis> axes;
+  double tolerance;
+  InputKind input;
+  std::vector<std::vector<double>> knots;  ///< of the input, per event [s]
+};
+
+inline sim::plant::Plant moved(const Setting& s, const double* z) {
+  sim::plant::Plant plant = *s.plant;
+  for (std::size_t i = 0; i < s.axes.size(); ++i)
+    parameter_value(plant, s.axes[i].where.block, s.axes[i].where.index) = s.axes[i].value(z[i]);
+  return plant;
+}
+
+/// Whether the equations can be run with these parameters.
+inline bool can_run(const sim::plant::Plant& plant) {
+  Problems problems;
+  const auto check = [&](const sim::plant::Block& b) {
+    b.effect->check(b.effect->law.get(), b.p.data(), "", problems);
+  };
+  check(plant.machine);
+  if (plant.transformer.effect) check(plant.transformer);
+  for (const auto* list : {&plant.controls, &plant.measurements})
+    for (const auto& b : *list) check(b);
+  return problems.list().empty();
+}
+
+/// An event's state as the search sees it, without an input.
+inline std::vector<double> state_of(const event::FitEvent& event, const EventState& from) {
+  std::vector<double> s;
+  for (std::size_t k = 0; k < event.switchings.size(); ++k)
+    s.push_back((from.switchings[k] - event.switchings[k].time) / kSwitchScale);
+  const double values[kStates] = {from.P, from.Q, from.angle, from.speed};
+  for (int k = 0; k < kStates; ++k) s.push_back(values[k] / kStateScale[k]);
+  return s;
+}
+
+/// The reverse.
+inline EventState event_state(const event::FitEvent& event, const double* s) {
+  EventState at;
+  for (const auto& w : event.switchings) at.switchings.push_back(w.time + kSwitchScale * *s++);
+  at.P = kStateScale[0] * s[0];
+  at.Q = kStateScale[1] * s[1];
+  at.angle = kStateScale[2] * s[2];
+  at.speed = kStateScale[3] * s[3];
+  return at;
+}
+
+/// R, upper triangular, has the same products of columns as e: R'R = e'e. A column that the others make
+/// leaves a zero row.
+inline event::RowMatrix triangle_of(const event::RowMatrix& e) {
+  constexpr double kRounding = 1e-14;  // of a squared norm
+  event::RowMatrix r = e.transpose() * e;
+  const Eigen::Index n = r.cols();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double whole = e.col(i).squaredNorm(), left = r(i, i);
+    if (left <= kRounding * whole) {
+      r.row(i).setZero();
+    } else {
+      r.row(i).tail(n - i) /= std::sqrt(left);
+      for (Eigen::Index k = i + 1; k < n; ++k) r.row(k).tail(n - k) -= r(i, k) * r.row(i).tail(n - k);
+    }
+    r.row(i).head(i).setZero();
+  }
+  return r;
+}
+
+/// What one event costs. The parameter blocks are z of the plant (absent if none is free) and the state of
+/// the event. Ceres asks for nothing but products of residuals and slopes, so it gets the triangle that has
+/// these products, with one row for each column instead of one for each value.
+class EventCost : public ceres::CostFunction {
+ public:
+  EventCost(const Setting& setting, std::size_t event)
+      : setting_(setting), event_((*setting.events)[event]), knots_(setting.knots[event]) {
+    set_num_residuals(static_cast<int>(setting.axes.size() + state_size()) + 1);
+    if (!setting.axes.empty())
+      mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(setting.axes.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(state_size()));
+  }
+  [[nodiscard]] std::size_t state_size() const { return event_.switchings.size() + kStates + knots_.size(); }
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    const bool has_axes = !setting_.axes.empty();
+    const event::RowMatrix e =
+        values(has_axes ? blocks[0] : nullptr, blocks[has_axes ? 1 : 0], jacobians != nullptr);
+    if (e.size() == 0) return false;
+    const Eigen::Index rows = num_residuals();
+    Eigen::Map<Eigen::VectorXd> residual(residuals, rows);
+    if (!jacobians) {
+      residual.setZero();
+      residual[rows - 1] = e.norm();
+      return true;
+    }
+    const event::RowMatrix r = triangle_of(e);
+    residual = r.col(rows - 1);
+    Eigen::Index at = 0;
+    for (const std::int32_t size : parameter_block_sizes()) {
+      if (double* block = *jacobians++)
+        Eigen::Map<event::RowMatrix>(block, rows, size) = r.middleCols(at, size);
+      at += size;
+    }
+    return true;
+  }
+  /// Whitened residuals of all values in the last column, and before it the slopes by z and by the state
+  /// where asked. Empty where the plant cannot be run.
+  [[nodiscard]] event::RowMatrix values(const double* z, const double* state, bool slopes) const {
+    const sim::plant::Plant plant = moved(setting_, z);
+    if (!can_run(plant)) return {};
+    std::vector<playin::Direction> along;
+    if (slopes) {
+      for (std::size_t i = 0; i < setting_.axes.size(); ++i) {
+        const Axis& a = setting_.axes[i];
+        along.push_back({Kind::parameter, a.where.block, a.where.index, a.slope(z[i])});
+      }
+      add_state_directions(along);
+    }
+    try {
+      auto switchings = event_.switchings;
+      playin::Drive run = make_drive(plant, state, switchings);
+      const playin::VoltageCurve curve(event_.played(), switchings);
+      run.curve = &curve;
+      const playin::Response r = playin::observe(run, along);
+      const auto n = static_cast<Eigen::Index>(along.size());
+      event::RowMatrix e(event_.values(), n + 1);
+      for (Eigen::Index d = 0; d < n; ++d)
+        e.col(d) = event_.collected(r.slopes[static_cast<std::size_t>(d)].value, false);
+      e.col(n) = event_.collected(r.value, true);
+      event_.whiten(e);
+      return e;
+    } catch (const InputError&) {
+      return {};
+    }
+  }
+  /// Makes the run at a state; `switchings` get their moved instants.
+  playin::Drive make_drive(const sim::plant::Plant& plant, const double* state,
+                           std::vector<playin::Switching>& switchings) const {
+    const EventState at = event_state(event_, state);
+    switchings = switchings_at(event_, at);
+    playin::Drive run = drive_at(plant, *setting_.conventions, event_, at);
+    run.tolerance = setting_.tolerance;
+    const double* s = state + switchings.size();
+    if (setting_.input == InputKind::none) return run;
+    playin::PiecewiseLinear& input = setting_.input == InputKind::torque ? run.torque : run.field;
+    input.t = knots_;
+    input.value.assign(s + kStates, s + kStates + knots_.size());
+    return run;
+  }
+
+ private:
+  void add_state_directions(std::vector<playin::Direction>& along) const {
+    for (std::size_t k = 0; k < event_.switchings.size(); ++k)
+      along.push_back({Kind::switching, 0, static_cast<int>(k), kSwitchScale});
+    for (int k = 0; k < kStates; ++k) along.push_back({kStateKind[k], 0, 0, kStateScale[k]});
+    const Kind kind = setting_.input == InputKind::torque ? Kind::torque : Kind::field;
+    for (std::size_t k = 0; k < knots_.size(); ++k) along.push_back({kind, 0, static_cast<int>(k), 1.0});
+  }
+  const Setting& setting_;
+  const event::FitEvent& event_;
+  const std::vector<double>& knots_;
+};
+
+/// Bends of an input that begins at `first` of the event's state, in units of `bend`; the first knot and the
+/// first slope count as bends from zero, so that nothing is inferred before it is needed.
+class Bends : public ceres::CostFunction {
+ public:
+  Bends(std::size_t size, std::size_t first, double bend) : size_(size), first_(first), weight_(1 / bend) {
+    set_num_residuals(static_cast<int>(size - first));
+    mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(size));
+  }
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    const double* u = blocks[0] + first_;
+    const std::size_t n = size_ - first_;
+    double* j = jacobians ? jacobians[0] : nullptr;
+    if (j) std::fill(j, j + n * size_, 0.0);
+    for (std::size_t k = 0; k < n; ++k) {
+      const double one = k >= 1 ? u[k - 1] : 0.0, two = k >= 2 ? u[k - 2] : 0.0;
+      residuals[k] = weight_ * (u[k] - 2 * one + two);
+      if (!j) continue;
+      double* row = j + k * size_ + first_;
+      row[k] = weight_;
+      if (k >= 1) row[static_cast<std::ptrdiff_t>(k) - 1] = -2 * weight_;
+      if (k >= 2) row[static_cast<std::ptrdiff_t>(k) - 2] = weight_;
+    }
+    return true;
+  }
+
+ private:
+  std::size_t size_, first_;
+  double weight_;
+};
+
+/// The belief in each parameter: one residual z/spread, in units of the misfit reached.
+class Belief : public ceres::CostFunction {
+ public:
+  Belief(std::vector<double> spread, const double* discrepancy)
+      : spread_(std::move(spread)), discrepancy_(discrepancy) {
+    set_num_residuals(static_cast<int>(spread_.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(spread_.size()));
+  }
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    const std::size_t n = spread_.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const double weight = spread_[i] > 0 ? std::sqrt(*discrepancy_) / spread_[i] : 0.0;
+      residuals[i] = weight * blocks[0][i];
+      if (jacobians && jacobians[0])
+        for (std::size_t j = 0; j < n; ++j) jacobians[0][i * n + j] = i == j ? weight : 0.0;
+    }
+    return true;
+  }
+
+ private:
+  std::vector<double> spread_;
+  const double* discrepancy_;
+};
+
+}  // namespace swingbank::validate::fit::fitting

@@ -1,0 +1,345 @@
+#include "validate/fit/fit.hpp"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "validate/fit/detail/cost.hpp"
+
+namespace swingbank::validate::fit {
+namespace {
+
+using namespace fitting;
+
+/// A search of a few steps must not end on refused steps, which cost no slopes. So kRefused more steps are
+/// tried where at most kFew are allowed.
+constexpr int kFew = 4, kRefused = 3;
+
+/// Counts the steps taken, and stops the search when they are enough.
+class Steps : public ceres::IterationCallback {
+ public:
+  explicit Steps(int enough) : enough_(enough) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    if (summary.iteration > 0 && summary.step_is_successful) ++taken_;
+    return taken_ < enough_ ? ceres::SOLVER_CONTINUE : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+  }
+  [[nodiscard]] int taken() const { return taken_; }
+
+ private:
+  int enough_, taken_ = 0;
+};
+
+class Search {
+ public:
+  Search(const Setting& setting, const FitOptions& options) : setting_(setting), options_(options) {
+    z_.assign(setting.axes.size(), 0.0);
+    for (std::size_t i = 0; i < options.values.size(); ++i) {
+      const Axis& axis = setting.axes[i];
+      z_[i] = axis.z(
+          std::clamp(options.values[i], std::min(axis.low, axis.start), std::max(axis.high, axis.start)));
+    }
+    const auto& events = *setting.events;
+    ceres::Problem::Options owned;
+    problem_ = std::make_unique<ceres::Problem>(owned);
+    for (std::size_t e = 0; e < events.size(); ++e) states_.push_back(start_of(e));
+    for (std::size_t e = 0; e < events.size(); ++e) add_event(e);
+    if (!z_.empty()) add_beliefs();
+  }
+
+  Fit run() {
+    Fit fit;
+    double cost = 0;
+    if (!problem_->Evaluate({}, &cost, nullptr, nullptr, nullptr)) {
+      fit.failed = reason();
+      return fit;
+    }
+    for (int left = options_.iterations; left > 0;) {
+      const double before = discrepancy_ = misfit();
+      const int most = before > kClose ? std::min(left, kRound) : left;
+      fit.converged = solve(most, fit.iterations);
+      left = options_.iterations - fit.iterations;
+      if (before <= kClose || misfit() > 0.95 * before) break;
+    }
+    fit.plant = moved(setting_, z_.data());
+    collect_events(fit);
+    collect_parameters(fit);
+    return fit;
+  }
+
+ private:
+  static constexpr double kClose = 1.5;  ///< misfit at which beliefs count as they stand
+  static constexpr int kRound = 4;       ///< iterations between two looks at the misfit
+
+  /// chi2 per value, at least 1.
+  double misfit() const {
+    double chi2 = 0;
+    int values = 0;
+    for (std::size_t e = 0; e < costs_.size(); ++e) {
+      std::vector<double> residual(static_cast<std::size_t>(costs_[e]->num_residuals()));
+      std::vector<const double*> blocks;
+      if (!z_.empty()) blocks.push_back(z_.data());
+      blocks.push_back(states_[e].data());
+      if (!costs_[e]->Evaluate(blocks.data(), residual.data(), nullptr)) return 1.0;
+      for (const double r : residual) chi2 += r * r;
+      values += (*setting_.events)[e].values();
+    }
+    return std::max(1.0, chi2 / values);
+  }
+  /// One search of at most so many iterations; true if it converged.
+  bool solve(int iterations, int& done) {
+    // a start that cannot be evaluated comes back in the summary: no line of the log
+    static const bool quiet = (FLAGS_minloglevel = google::GLOG_FATAL, true);
+    static_cast<void>(quiet);
+    ceres::Solver::Options o;
+    Steps steps(iterations);
+    o.callbacks.push_back(&steps);
+    o.max_num_iterations = iterations > 0 && iterations <= kFew ? iterations + kRefused : iterations;
+    o.function_tolerance = options_.enough;
+    o.linear_solver_type =
+        setting_.input == InputKind::none ? ceres::DENSE_NORMAL_CHOLESKY : ceres::SPARSE_NORMAL_CHOLESKY;
+    o.logging_type = ceres::SILENT;
+    o.num_threads = 1;  // hypotheses run side by side
+    o.initial_trust_region_radius = 1e2;
+    o.max_num_consecutive_invalid_steps = 12;
+    // A step that bounds cut short is tried as it is, because a search along it costs several Jacobians a
+    // step.
+    o.max_num_line_search_step_size_iterations = 0;
+    ceres::Solver::Summary summary;
+    ceres::Solve(o, problem_.get(), &summary);
+    done += std::max(1, steps.taken());
+    return summary.termination_type == ceres::CONVERGENCE;
+  }
+
+  std::vector<double> start_of(std::size_t e) const {
+    const event::FitEvent& event = (*setting_.events)[e];
+    const std::size_t knots = setting_.knots[e].size();
+    if (options_.start.empty()) return std::vector<double>(event.switchings.size() + kStates + knots, 0.0);
+    const EventState& from = options_.start[e];
+    std::vector<double> s = state_of(event, from);
+    s.resize(s.size() + knots);
+    if (setting_.input != InputKind::none)
+      std::ranges::copy(from.input.value, s.end() - static_cast<std::ptrdiff_t>(from.input.value.size()));
+    return s;
+  }
+  void add_event(std::size_t e) {
+    const event::FitEvent& event = (*setting_.events)[e];
+    auto* cost = new EventCost(setting_, e);  // the problem owns it
+    costs_.push_back(cost);
+    std::vector<double*> blocks;
+    if (!z_.empty()) blocks.push_back(z_.data());
+    blocks.push_back(states_[e].data());
+    problem_->AddResidualBlock(cost, nullptr, blocks);
+    std::vector<double> spread(event.switchings.size(), 0.0);
+    spread.insert(spread.end(), std::begin(kStateBelief), std::end(kStateBelief));
+    spread.resize(states_[e].size(), 0.0);
+    problem_->AddResidualBlock(new Belief(spread, &discrepancy_), nullptr, {states_[e].data()});
+    if (const std::size_t first = event.switchings.size() + kStates; first < states_[e].size())
+      problem_->AddResidualBlock(new Bends(states_[e].size(), first, options_.bend), nullptr,
+                                 {states_[e].data()});
+    // an instant on a sample would change sides with it
+    const double edge = 1e-3 * event.record.step();
+    std::vector<int> fixed;
+    for (std::size_t k = 0; k < event.switchings.size(); ++k) {
+      const double room = (event.switchings[k].uncertainty - edge) / kSwitchScale;
+      if (room <= 0) {
+        fixed.push_back(static_cast<int>(k));
+        continue;
+      }
+      problem_->SetParameterLowerBound(states_[e].data(), static_cast<int>(k), -room);
+      problem_->SetParameterUpperBound(states_[e].data(), static_cast<int>(k), room);
+    }
+    if (!fixed.empty())
+      problem_->SetManifold(states_[e].data(),
+                            new ceres::SubsetManifold(static_cast<int>(states_[e].size()), fixed));
+  }
+  void add_beliefs() {
+    std::vector<double> spread;
+    for (std::size_t i = 0; i < setting_.axes.size(); ++i) {
+      const Axis& a = setting_.axes[i];
+      spread.push_back(a.spread());
+      problem_->SetParameterLowerBound(z_.data(), static_cast<int>(i), std::min(0.0, a.z(a.low)));
+      problem_->SetParameterUpperBound(z_.data(), static_cast<int>(i), std::max(0.0, a.z(a.high)));
+    }
+    problem_->AddResidualBlock(new Belief(spread, &discrepancy_), nullptr, {z_.data()});
+  }
+  /// Why the start cannot be evaluated.
+  std::string reason() const {
+    const sim::plant::Plant plant = moved(setting_, z_.data());
+    try {
+      for (std::size_t e = 0; e < states_.size(); ++e) {
+        auto switchings = (*setting_.events)[e].switchings;
+        playin::Drive run = costs_[e]->make_drive(plant, states_[e].data(), switchings);
+        const playin::VoltageCurve curve((*setting_.events)[e].played(), switchings);
+        run.curve = &curve;
+        playin::observe(run);
+      }
+    } catch (const InputError& error) {
+      return error.problems().front().sentence();
+    }
+    return "its parameters contradict each other";
+  }
+
+  void collect_events(Fit& fit) const {
+    for (std::size_t e = 0; e < states_.size(); ++e) {
+      const event::FitEvent& event = (*setting_.events)[e];
+      EventFit f;
+      auto switchings = event.switchings;
+      playin::Drive run = costs_[e]->make_drive(fit.plant, states_[e].data(), switchings);
+      const playin::VoltageCurve curve(event.played(), switchings);
+      run.curve = &curve;
+      const playin::Response r = playin::observe(run);
+      f.state = event_state(event, states_[e].data());
+      if (setting_.input != InputKind::none)
+        f.state.input = setting_.input == InputKind::torque ? run.torque : run.field;
+      compare(event, r, f);
+      fit.chi2 += f.chi2;
+      fit.values += f.values;
+      fit.fitted += static_cast<int>(switchings.size()) + kStates;
+      fit.events.push_back(std::move(f));
+    }
+    fit.fitted += static_cast<int>(z_.size());
+  }
+  /// Collects the values and their errors: the inverse of the curvature, with the events' states projected
+  /// out.
+  void collect_parameters(Fit& fit) const {
+    const auto n = static_cast<Eigen::Index>(z_.size());
+    if (n == 0) return;
+    Eigen::MatrixXd with_belief = Eigen::MatrixXd::Zero(n, n);
+    if (options_.errors)
+      for (std::size_t e = 0; e < costs_.size(); ++e) add_curvature(e, with_belief);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double spread = setting_.axes[static_cast<std::size_t>(i)].spread();
+      if (spread > 0) with_belief(i, i) += 1 / (spread * spread);
+      fit.belief += spread > 0 ? std::pow(z_[static_cast<std::size_t>(i)] / spread, 2) : 0.0;
+    }
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Constant(n, n, std::nan(""));
+    fit.occam = std::nan("");
+    if (options_.errors) {
+      const auto known = with_belief.ldlt();
+      covariance = known.solve(Eigen::MatrixXd::Identity(n, n));
+      fit.occam = known.vectorD().array().log().sum();
+      for (const Axis& a : setting_.axes) fit.occam += a.spread() > 0 ? 2 * std::log(a.spread()) : 0.0;
+    }
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Axis& a = setting_.axes[static_cast<std::size_t>(i)];
+      const double z = z_[static_cast<std::size_t>(i)];
+      const auto& record = parameter_record(fit.plant, a.where.block, a.where.index);
+      const double error = std::sqrt(covariance(i, i));
+      FittedParameter p;
+      p.where = a.where;
+      p.block = block_effect(fit.plant, a.where.block).name;
+      p.name = record.name;
+      p.unit = record.unit;
+      p.start = a.start;
+      p.value = a.value(z);
+      p.error = a.slope(z) * error;
+      constexpr double kNormal95 = 1.959963985;
+      p.low = std::max(a.low, a.value(z - kNormal95 * error));
+      p.high = std::min(a.high, a.value(z + kNormal95 * error));
+      p.at_bound = z <= a.z(a.low) + 1e-6 || z >= a.z(a.high) - 1e-6;
+      p.decided = a.spread() > 0 ? std::clamp(1 - error * error / (a.spread() * a.spread()), 0.0, 1.0) : 1.0;
+      fit.parameters.push_back(p);
+    }
+  }
+  void add_curvature(std::size_t e, Eigen::MatrixXd& curvature) const {
+    using Row = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    const auto rows = static_cast<Eigen::Index>(costs_[e]->num_residuals());
+    Row by_z(rows, static_cast<Eigen::Index>(z_.size())),
+        by_state(rows, static_cast<Eigen::Index>(states_[e].size()));
+    Eigen::VectorXd residual(rows);
+    const double* blocks[] = {z_.data(), states_[e].data()};
+    double* jacobians[] = {by_z.data(), by_state.data()};
+    if (!costs_[e]->Evaluate(blocks, residual.data(), jacobians)) return;
+    Eigen::MatrixXd s = by_state.transpose() * by_state;
+    const auto switchings = static_cast<Eigen::Index>((*setting_.events)[e].switchings.size());
+    for (Eigen::Index k = 0; k < kStates; ++k)
+      s(switchings + k, switchings + k) += 1 / (kStateBelief[k] * kStateBelief[k]);
+    add_bends(e, s);
+    const Eigen::MatrixXd cross = by_state.transpose() * by_z;
+    curvature += by_z.transpose() * by_z - cross.transpose() * s.ldlt().solve(cross);
+  }
+
+  void add_bends(std::size_t e, Eigen::MatrixXd& s) const {
+    const std::size_t size = states_[e].size(), first = size - setting_.knots[e].size();
+    if (first == size) return;
+    const Bends bends(size, first, options_.bend);
+    using Row = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    Row j(size - first, size);
+    std::vector<double> unused(size - first);
+    const double* blocks[] = {states_[e].data()};
+    double* jacobians[] = {j.data()};
+    bends.Evaluate(blocks, unused.data(), jacobians);
+    s += j.transpose() * j;
+  }
+
+  const Setting& setting_;
+  const FitOptions& options_;
+  double discrepancy_ = 1.0;
+  std::vector<double> z_;
+  std::vector<std::vector<double>> states_;
+  std::vector<EventCost*> costs_;
+  std::unique_ptr<ceres::Problem> problem_;
+};
+
+}  // namespace
+
+double penalised(const Fit& f) {
+  return f.failed.empty() ? f.chi2 + f.belief : std::numeric_limits<double>::infinity();
+}
+double criterion(const Fit& f) { return penalised(f) + f.occam; }
+
+std::vector<playin::Switching> switchings_at(const event::FitEvent& event, const EventState& state) {
+  auto switchings = event.switchings;
+  for (std::size_t k = 0; k < switchings.size(); ++k) switchings[k].time = state.switchings[k];
+  return switchings;
+}
+
+playin::Drive drive_at(const sim::plant::Plant& plant, const sim::Conventions& conventions,
+                       const event::FitEvent& event, const EventState& state) {
+  playin::Drive run{.plant = &plant, .conventions = conventions, .record = &event.record};
+  run.start = event.start;
+  run.start.P += state.P;
+  run.start.Q += state.Q;
+  run.angle = state.angle;
+  run.speed = state.speed;
+  run.tolerance = kFitTolerance;
+  // a limit that is met and left within one sample is no reason for short steps
+  run.least_step = event.record.step() / 40;
+  run.step_limit = 15 * event.record.samples();
+  return run;
+}
+
+void compare(const event::FitEvent& event, const playin::Response& answer, EventFit& f) {
+  for (const playin::Output o : event.channels) f.model.push_back(answer.of(o));
+  event::RowMatrix e = event.collected(answer.value, true);
+  event.whiten(e);
+  f.values = event.values();
+  f.chi2 = e.squaredNorm();
+  f.residual.assign(event.channels.size(), std::vector<double>(event.record.t.size(), 0.0));
+  Eigen::Index row = 0;
+  for (std::size_t k = 0; k < event.record.t.size(); ++k)
+    for (std::size_t c = 0; event.compared(k) && c < event.channels.size(); ++c)
+      f.residual[c][k] = e(row++, 0);
+}
+
+FitOptions continued(FitOptions o, const Fit& f, const std::vector<FreeParameter>& free) {
+  o.values = values_of(f.plant, free);
+  o.start.clear();
+  for (const auto& e : f.events) o.start.push_back(e.state);
+  return o;
+}
+
+Fit fit(const sim::plant::Plant& plant, const sim::Conventions& conventions,
+        const std::vector<event::FitEvent>& events, const std::vector<FreeParameter>& free,
+        const FitOptions& options) {
+  Setting setting{&plant, &conventions, &events, {}, options.tolerance, options.input, {}};
+  setting.knots.resize(events.size());
+  if (options.input != InputKind::none)
+    for (std::size_t e = 0; e < events.size(); ++e) setting.knots[e] = options.start[e].input.t;
+  for (const auto& f : free) setting.axes.push_back(make_axis(plant, f));
+  return Search(setting, options).run();
+}
+
+}  // namespace swingbank::validate::fit

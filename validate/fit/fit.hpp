@@ -1,0 +1,126 @@
+#pragma once
+// Least squares over several events at once: the plant's free parameters, common to all, and what belongs to
+// one event only (when exactly it was switched, where exactly the plant stood). Levenberg-Marquardt (Ceres)
+// on the sensitivities of the driven plant.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "validate/event/event.hpp"
+
+namespace swingbank::validate::fit {
+
+/// A parameter that may move. `spread` is how far its value is believed to be off: relative where the
+/// parameter is positive by nature (it is then fitted as a logarithm), absolute otherwise; 0: no belief.
+struct FreeParameter {
+  int block = 0, index = 0;  ///< as in sim::block_parameters; instruments (Plant::measurements) follow
+  double spread = 0.3;
+};
+
+/// Parameters of a block that a fit may move: no codes, none that sits at its neutral value or at zero, and
+/// none that says when something happens.
+std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, int block, double spread);
+/// The same of all blocks but the instruments.
+std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, double spread);
+
+/// What is known of one parameter.
+const sim::Parameter& parameter_record(const sim::plant::Plant& plant, int block, int index);
+const sim::Effect& block_effect(const sim::plant::Plant& plant, int block);
+double& parameter_value(sim::plant::Plant& plant, int block, int index);
+double parameter_value(const sim::plant::Plant& plant, int block, int index);
+/// Present values of the free parameters.
+std::vector<double> values_of(const sim::plant::Plant& plant, const std::vector<FreeParameter>& free);
+/// Machine, transformer, controls and instruments.
+int block_count(const sim::plant::Plant& plant);
+/// Index of the first block with that effect; -1: the plant has none.
+int find_block(const sim::plant::Plant& plant, const sim::Effect& effect);
+
+/// An input that no model makes, free in time.
+enum class InputKind { none, torque, field };
+
+/// What belongs to one event.
+struct EventState {
+  std::vector<double> switchings;             ///< [s]
+  double P = 0, Q = 0, angle = 0, speed = 0;  ///< offsets of the operating point and of the first states
+  playin::PiecewiseLinear input = {};         ///< what was added to Tm or Efd [pu]
+};
+
+struct EventFit {
+  EventState state;
+  double chi2 = 0;                         ///< sum of squared whitened residuals
+  int values = 0;                          ///< how many
+  std::vector<std::vector<double>> model;  ///< [channel][sample]
+  std::vector<std::vector<double>>
+      residual;  ///< model - measured, whitened: [channel][sample]; 0 where not compared
+  /// chi2 per value: 1 where nothing but noise is left.
+  [[nodiscard]] double misfit() const { return chi2 / values; }
+};
+
+struct FittedParameter {
+  FreeParameter where;
+  std::string block, name, unit;
+  double start = 0, value = 0;
+  double error = 0;          ///< standard error from the curvature [unit]; NaN where the fit is singular
+  double low = 0, high = 0;  ///< 95 % interval [unit], within the physical bounds
+  bool at_bound = false;
+  /// Share of the interval that the records decide; the belief decides the rest. 0: the records decide
+  /// nothing, 1: all.
+  double decided = 0;
+};
+
+struct Fit {
+  sim::plant::Plant plant;  ///< with the fitted values
+  std::vector<FittedParameter> parameters;
+  std::vector<EventFit> events;
+  double chi2 = 0, belief = 0;  ///< chi2 of the data, and the cost of the beliefs
+  int values = 0, fitted = 0;   ///< numbers compared; free numbers, those of the events included
+  /// Log determinant of what records and beliefs know of the parameters, in units of what the beliefs knew. A
+  /// parameter that the records do not decide adds nothing. NaN without errors.
+  double occam = 0;
+  int iterations = 0;
+  bool converged = false;
+  std::string failed;  ///< why the start could not be evaluated; empty if it could
+  [[nodiscard]] double misfit() const { return chi2 / values; }
+};
+
+/// The cost that is minimised, where nothing but noise is left; infinite if the fit failed.
+double penalised(const Fit& f);
+/// -2 log of the structure's evidence by Laplace's approximation (MacKay, Neural Computation 4, 1992, p.
+/// 415), up to what all structures share. Needs a fit with errors.
+double criterion(const Fit& f);
+
+constexpr double kFitTolerance = 1e-5;  ///< of the integration
+
+struct FitOptions {
+  int iterations = 30;
+  double tolerance = kFitTolerance;    ///< of the integration
+  double enough = 1e-5;                ///< relative change of the cost at which the fit stops
+  std::vector<EventState> start = {};  ///< of the events; empty: as prepared
+  std::vector<double> values = {};     ///< of the free parameters, to start from; empty: the plant's
+  InputKind input = InputKind::none;   ///< fitted too, on the knots of `start`'s inputs
+  bool errors = true;                  ///< of the parameters too: one more look at all slopes
+  double bend = 0.01;                  ///< second difference that the input is believed to have [pu]
+};
+
+/// Options to go on where `f` ended; beliefs stay about the plant that is fitted.
+FitOptions continued(FitOptions o, const Fit& f, const std::vector<FreeParameter>& free);
+
+/// The event's switchings at the instants that `state` has.
+std::vector<playin::Switching> switchings_at(const event::FitEvent& event, const EventState& state);
+/// The event played into a plant from `state`, as fits do it. The caller still sets the curve, which goes
+/// through those switchings.
+playin::Drive drive_at(const sim::plant::Plant& plant, const sim::Conventions& conventions,
+                       const event::FitEvent& event, const EventState& state);
+/// Fills in everything but the state: what `answer` leaves of the event.
+void compare(const event::FitEvent& event, const playin::Response& answer, EventFit& fit);
+
+/// Fits `free` parameters of the plant and every event's own state. A start that cannot be evaluated gives
+/// `failed`; parameters that cannot be are never reached, the search turns back. While the structure is wrong
+/// the misfit is large, and beliefs would count for nothing: parameters would be bent out of all reason to
+/// mimic what is missing. So beliefs weigh as if the noise were as large as the misfit reached, and give way
+/// as it falls.
+Fit fit(const sim::plant::Plant& plant, const sim::Conventions& conventions,
+        const std::vector<event::FitEvent>& events, const std::vector<FreeParameter>& free,
+        const FitOptions& options = {});
+
+}  // namespace swingbank::validate::fit

@@ -1,0 +1,279 @@
+#include "validate/fit/noise.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include "sim/core/noise.hpp"
+
+namespace swingbank::validate::fit {
+namespace {
+
+/// Samples this close to a switching on either side are left out [s].
+constexpr double kBeside = 0.1;
+/// Median of the square of a normal variable, in units of its variance.
+constexpr double kMedianOfSquare = 0.4549;
+constexpr double kSecondDifference = 6;  ///< variance of x[k-1] - 2 x[k] + x[k+1], in that of white x
+/// Standard deviation of log(second differences / variance) of n white samples is sqrt(kOfRatio / n): the
+/// variance's 2 and the differences' 3.89, less twice the covariance's 2.
+constexpr double kOfRatio = 2 * 0.944;
+
+/// Residual of a channel, one event after the other. Samples that do not count interrupt it.
+struct Channel {
+  std::vector<double> square;        ///< second differences, of the whole records
+  double quiet = 0, quiet_hf = 0;    ///< before the events: variance, mean square second difference
+  int samples = 0, differences = 0;  ///< how many of each
+};
+
+void add(const event::FitEvent& e, const EventFit& f, std::size_t c, Channel& channel) {
+  const auto& measured = e.measured(e.channels[c]);
+  const auto residual = [&](std::size_t k) { return f.model[c][k] - measured[k]; };
+  const auto counts = [&](std::size_t k) {
+    return e.compared(k) && std::ranges::none_of(e.switchings, [&](const playin::Switching& s) {
+             return std::abs(e.record.t[k] - s.time) < kBeside;
+           });
+  };
+  const auto before = static_cast<std::size_t>(e.start.samples);
+  double mean = 0;
+  for (std::size_t k = 0; k < before; ++k) mean += residual(k) / static_cast<double>(before);
+  for (std::size_t k = 0; k < before; ++k) channel.quiet += std::pow(residual(k) - mean, 2);
+  channel.samples += e.start.samples - 1;
+  for (std::size_t k = 1; k + 1 < e.record.t.size(); ++k) {
+    if (!counts(k - 1) || !counts(k) || !counts(k + 1)) continue;
+    const double d = std::pow(residual(k - 1) - 2 * residual(k) + residual(k + 1), 2);
+    channel.square.push_back(d);
+    if (k + 1 >= before) continue;
+    channel.quiet_hf += d;
+    ++channel.differences;
+  }
+}
+
+/// Variance of the noise over that of the pre-event stretch; 1 where that is not white.
+double ratio(Channel channel) {
+  const double variance = channel.quiet / channel.samples, hf = channel.quiet_hf / channel.differences;
+  const double off = std::log(hf / (kSecondDifference * variance));
+  if (!(std::abs(off) < 3 * std::sqrt(kOfRatio / channel.samples))) return 1.0;
+  const auto middle = channel.square.begin() + static_cast<std::ptrdiff_t>(channel.square.size() / 2);
+  std::ranges::nth_element(channel.square, middle);
+  return *middle / kMedianOfSquare / kSecondDifference / variance;
+}
+
+constexpr double kLow = 3.0, kHigh = 10.0;  ///< band in which the voltage's noise is measured [Hz]
+constexpr double kGuess = 2e-3;             ///< V may be off by this share of itself beside a switching
+/// Where V was brought back, the square of kGuess is this many times larger.
+constexpr char kSmeared = 40;
+constexpr double kLeft = 0.01;  ///< at least this share of a channel's variance is its own noise
+/// Slow noise matters from this share of the variance of white noise.
+constexpr double kMatters = 1e-3;
+
+/// The first `count` values less their mean and slope.
+std::vector<double> detrended(const std::vector<double>& x, int count) {
+  double mean = 0, slope = 0, spread = 0;
+  const double middle = 0.5 * (count - 1);
+  for (int k = 0; k < count; ++k) mean += x[static_cast<std::size_t>(k)] / count;
+  for (int k = 0; k < count; ++k) {
+    slope += (k - middle) * (x[static_cast<std::size_t>(k)] - mean);
+    spread += (k - middle) * (k - middle);
+  }
+  std::vector<double> rest;
+  for (int k = 0; k < count; ++k)
+    rest.push_back(x[static_cast<std::size_t>(k)] - mean - slope / spread * (k - middle));
+  return rest;
+}
+
+/// Variances of the white noise that would have the density that V (relative) and theta [rad] show in the
+/// band before the events.
+Eigen::Vector2d moving_in_band(const std::vector<event::FitEvent>& events) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  int lines = 0;
+  for (const event::FitEvent& e : events) {
+    const int n = e.start.samples;
+    auto V = detrended(e.record.V, n), theta = detrended(e.record.theta, n);
+    const double turn = 2 * std::numbers::pi * e.record.step(), line = 1 / (n * e.record.step());
+    for (int m = static_cast<int>(std::ceil(kLow / line)); m * line <= kHigh && 2 * m < n; ++m, ++lines) {
+      Complex by_v = 0, by_theta = 0;
+      for (int k = 0; k < n; ++k) {
+        const Complex wave = std::polar(1.0, turn * m * line * k);
+        by_v += wave * V[static_cast<std::size_t>(k)] / std::abs(e.start.voltage);
+        by_theta += wave * theta[static_cast<std::size_t>(k)];
+      }
+      sum += Eigen::Vector2d(std::norm(by_v), std::norm(by_theta)) / n;
+    }
+  }
+  return lines > 0 ? Eigen::Vector2d(sum / lines) : Eigen::Vector2d(Eigen::Vector2d::Zero());
+}
+
+/// How much of the answer's own movement before the events is found in the residual: 1 if the voltage moves
+/// only by noise of its instrument, 0 if the plant answers all of the movement. Returns the larger value
+/// where that cannot be told.
+double instrument_share(const Fit& fit, const std::vector<event::FitEvent>& events) {
+  double cross = 0, own = 0;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const event::FitEvent& e = events[i];
+    const int n = e.start.samples;
+    for (std::size_t c = 0; c < e.channels.size(); ++c) {
+      const double noise = e.noise[static_cast<Eigen::Index>(c)];
+      const auto answer = detrended(fit.events[i].model[c], n),
+                 measured = detrended(e.measured(e.channels[c]), n);
+      for (std::size_t k = 0; k < answer.size(); ++k) {
+        cross += answer[k] * (answer[k] - measured[k]) / (noise * noise);
+        own += answer[k] * answer[k] / (noise * noise);
+      }
+    }
+  }
+  return own > 0 ? std::clamp((cross + std::sqrt(own)) / own, 0.0, 1.0) : 1.0;
+}
+
+/// Whether the slow part of any channel's noise has a variance worth speaking of by the record's end.
+bool matters(const event::SlowNoise& s, const event::FitEvent& e) {
+  Eigen::MatrixXd P = s.P;
+  for (int k = 0; k < e.record.samples(); ++k) P = (s.A * P * s.A.transpose() + s.Q).eval();
+  const Eigen::MatrixXd slow = e.whitening * s.C * P * s.C.transpose() * e.whitening.transpose();
+  return slow.diagonal().maxCoeff() > kMatters;
+}
+
+}  // namespace
+
+void sharpen_noise(const Fit& fit, std::vector<event::FitEvent>& events) {
+  std::vector<event::FitEvent> sharper = events;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    Eigen::VectorXd scale(events[i].noise.size());
+    for (std::size_t c = 0; c < events[i].channels.size(); ++c) {
+      Channel channel;
+      for (std::size_t e = 0; e < events.size(); ++e)
+        if (events[e].channels == events[i].channels) add(events[e], fit.events[e], c, channel);
+      scale[static_cast<Eigen::Index>(c)] =
+          channel.samples > 0 && channel.differences > 0 ? std::sqrt(ratio(std::move(channel))) : 1.0;
+    }
+    sharper[i].noise = events[i].noise.cwiseProduct(scale);
+    sharper[i].whitening = events[i].whitening * scale.cwiseInverse().asDiagonal();
+  }
+  events = std::move(sharper);
+}
+
+event::SlowNoise slow_noise(const playin::LinearPlant& plant, const event::FitEvent& e,
+                            const Eigen::Vector2d& variance) {
+  const Eigen::Index n = plant.A.rows(), m = n + 2, count = static_cast<Eigen::Index>(e.channels.size());
+  Eigen::MatrixXd C(count, n), D(count, 2);
+  for (Eigen::Index c = 0; c < count; ++c) {
+    C.row(c) = plant.C.row(static_cast<Eigen::Index>(e.channels[static_cast<std::size_t>(c)]));
+    D.row(c) = plant.D.row(static_cast<Eigen::Index>(e.channels[static_cast<std::size_t>(c)]));
+  }
+  // the voltage is taken as straight over one sample: x1 = F x0 + G u0 + H (u1 - u0)
+  const double h = e.record.step();
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(n + 4, n + 4);
+  whole.topLeftCorner(n, n) = h * plant.A;
+  whole.block(0, n, n, 2) = h * plant.B;
+  whole.block(n, n + 2, 2, 2).setIdentity();
+  whole = whole.exp().eval();
+  const Eigen::MatrixXd F = whole.topLeftCorner(n, n), G = whole.block(0, n, n, 2),
+                        H = whole.topRightCorner(n, 2);
+  const Eigen::MatrixXd in = F * H + G - H, through = D + C * H;
+  const Eigen::MatrixXd V = variance.asDiagonal();
+
+  event::SlowNoise s;
+  s.A = Eigen::MatrixXd::Identity(m, m);
+  s.A.topLeftCorner(n, n) = F;
+  s.A.topRightCorner(n, 2) = G;
+  s.C.resize(count, m);
+  s.C << C, D;
+  s.P = s.Q = Eigen::MatrixXd::Zero(m, m);
+  s.P.bottomRightCorner(2, 2) = V / e.start.samples;
+  s.Q.topLeftCorner(n, n) = in * V * in.transpose();
+  // the voltage is only guessed between the samples about a switching
+  s.jump = Eigen::MatrixXd::Zero(m, m);
+  s.jump.topLeftCorner(n, n) = kGuess * kGuess * in * in.transpose();
+  s.doubtful.assign(e.record.t.size(), 0);
+  for (std::size_t k = 0; k + 1 < e.record.t.size(); ++k) {
+    const bool switched = std::ranges::any_of(e.switchings, [&](const playin::Switching& w) {
+      return e.record.t[k] <= w.time && w.time < e.record.t[k + 1];
+    });
+    s.doubtful[k] = !e.smeared.empty() && e.smeared[k] ? kSmeared : switched ? 1 : 0;
+  }
+  s.M = Eigen::MatrixXd::Zero(m, count);
+  s.M.topRows(n) = in * V * through.transpose();
+  // the measured noise already holds what the voltage's noise does at once, and the rest cannot be less than
+  // nothing
+  const Eigen::MatrixXd scale = e.noise.asDiagonal(), unit = e.noise.cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd white = unit * e.whitening.inverse();
+  const Eigen::MatrixXd at_once = unit * through * V * through.transpose() * unit;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> rest(white * white.transpose() - at_once);
+  const Eigen::VectorXd left = rest.eigenvalues().cwiseMax(kLeft);
+  s.S = scale * (at_once + rest.eigenvectors() * left.asDiagonal() * rest.eigenvectors().transpose()) * scale;
+  return s;
+}
+
+event::FitEvent minute_of_noise(const event::FitEvent& like, const Eigen::Vector2d& deviation) {
+  constexpr double kSeconds = 60.0;
+  event::FitEvent event = like;
+  record::Record& r = event.record;
+  const double step = r.step(), first = r.t.front();
+  const auto samples = static_cast<std::size_t>(kSeconds / step);
+  for (auto* channel : {&r.t, &r.V, &r.theta}) channel->resize(samples);
+  for (std::size_t k = 0; k < samples; ++k) {
+    const auto normal = sim::normal_pair(1, 0, k);
+    r.t[k] = first + static_cast<double>(k) * step;
+    r.V[k] = std::abs(like.start.voltage) * (1 + deviation[0] * normal[0]);
+    r.theta[k] = std::arg(like.start.voltage) + deviation[1] * normal[1];
+  }
+  for (auto* channel : {&r.P, &r.Q, &r.speed, &r.Efd, &r.Ifd}) channel->assign(samples, 0.0);
+  event.switchings.clear();
+  event.smeared.clear();
+  event.left_out.clear();
+  event.start.drift = 0;
+  return event;
+}
+
+std::shared_ptr<const event::Innovations> memory_of(const sim::plant::Plant& plant,
+                                                    const sim::Conventions& conventions,
+                                                    const event::FitEvent& e,
+                                                    const Eigen::Vector2d& variance) {
+  const playin::VoltageCurve curve(e.played(), e.switchings);
+  const playin::Drive at{
+      .plant = &plant, .conventions = conventions, .record = &e.record, .curve = &curve, .start = e.start};
+  const event::SlowNoise noise = slow_noise(playin::linearise(at), e, variance);
+  if (!matters(noise, e)) return nullptr;
+  return std::make_shared<event::Innovations>(noise, e.record.samples(), e.left_out);
+}
+
+VoltageNoise voltage_noise(const Fit& fit, const std::vector<event::FitEvent>& events) {
+  const double share = instrument_share(fit, events);
+  return {share, share * moving_in_band(events)};
+}
+
+void remember_noise(const Fit& fit, const sim::Conventions& conventions,
+                    std::vector<event::FitEvent>& events) {
+  const Eigen::Vector2d variance = voltage_noise(fit, events).variance;
+  for (event::FitEvent& e : events) e.memory = memory_of(fit.plant, conventions, e, variance);
+}
+
+void measure_noise_through(const Fit& fit, const sim::Conventions& conventions,
+                           std::vector<event::FitEvent>& events) {
+  if (fit.misfit() < kClose) event::measure_noise(fit.plant, conventions, events);
+  sharpen_noise(fit, events);
+  remember_noise(fit, conventions, events);
+}
+
+double slow_remainder(const Fit& fit, const std::vector<event::FitEvent>& events) {
+  double worst = 0;
+  for (const double seconds : {0.5, 1.0, 2.0})
+    for (std::size_t c = 0; c < events.front().channels.size(); ++c) {
+      double power = 0;
+      int blocks = 0;
+      for (std::size_t i = 0; i < events.size(); ++i) {
+        if (events[i].channels != events.front().channels) continue;
+        const auto& residual = fit.events[i].residual[c];
+        const auto length = static_cast<std::size_t>(std::lround(seconds / events[i].record.step()));
+        for (std::size_t first = 0; first + length <= residual.size(); first += length, ++blocks) {
+          double sum = 0;
+          for (std::size_t k = first; k < first + length; ++k) sum += residual[k];
+          power += sum * sum / static_cast<double>(length);
+        }
+      }
+      if (blocks > 0) worst = std::max(worst, (power / blocks - 1) / std::sqrt(2.0 / blocks));
+    }
+  return worst;
+}
+
+}  // namespace swingbank::validate::fit

@@ -1,0 +1,49 @@
+#include "validate/fit/passed_noise.hpp"
+
+#include <cmath>
+
+#include "validate/fit/fit.hpp"
+#include "validate/fit/noise.hpp"
+#include "validate/playin/instruments.hpp"
+
+namespace swingbank::validate::fit {
+namespace {
+
+playin::Response answer(const sim::plant::Plant& plant, const sim::Conventions& conventions,
+                        const event::FitEvent& e) {
+  const playin::VoltageCurve curve(e.record, {});
+  playin::Drive run = drive_at(plant, conventions, e, {});
+  run.curve = &curve;
+  return playin::observe(run);
+}
+
+}  // namespace
+
+PassedNoise::PassedNoise(const sim::plant::Plant& plant, const sim::Conventions& conventions,
+                         const std::vector<event::FitEvent>& events, const Eigen::Vector2d& variance)
+    : quiet_(minute_of_noise(events.front(), Eigen::Vector2d::Zero())),
+      noisy_(minute_of_noise(events.front(), variance.cwiseSqrt())) {
+  noisy_.memory = memory_of(plant, conventions, quiet_, variance);
+  double values = 0;
+  for (const event::FitEvent& e : events) values += e.values();
+  times_ = values / noisy_.values();
+  own_ = passed(plant, conventions);
+}
+
+double PassedNoise::less_with(const sim::plant::Plant& plant, const sim::Conventions& conventions) const {
+  const double less = own_ - passed(plant, conventions);
+  return std::isnan(less) ? 0.0 : less;
+}
+
+double PassedNoise::passed(const sim::plant::Plant& plant, const sim::Conventions& conventions) const {
+  try {
+    event::RowMatrix moved = noisy_.collected(answer(plant, conventions, noisy_).value, false);
+    moved -= quiet_.collected(answer(plant, conventions, quiet_).value, false);
+    noisy_.whiten(moved);
+    return times_ * moved.squaredNorm();
+  } catch (const InputError&) {
+    return std::nan("");
+  }
+}
+
+}  // namespace swingbank::validate::fit

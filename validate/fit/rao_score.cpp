@@ -1,0 +1,163 @@
+#include "validate/fit/rao_score.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "validate/fit/detail/cost.hpp"
+
+namespace swingbank::validate::fit {
+namespace {
+
+using namespace fitting;
+
+/// Share of a combination of changes, each of length 1, that counts as one of its own.
+constexpr double kOwn = 0.02;
+/// Share of a change that rounding leaves where the structure could make all of it.
+constexpr double kRounding = 1e-7;
+/// Two runs of one model may differ by this squared norm, because other states make other steps.
+constexpr double kOtherSteps = 4;
+
+/// The residual of one event at the fit, and its slopes.
+struct Slopes {
+  Eigen::VectorXd residual;
+  event::RowMatrix by_parameter, by_state;
+};
+
+Slopes slopes_of(const Setting& setting, std::size_t event, const std::vector<double>& z,
+                 const std::vector<double>& state) {
+  const auto parameters = static_cast<Eigen::Index>(z.size()),
+             states = static_cast<Eigen::Index>(state.size());
+  const event::RowMatrix e = EventCost(setting, event).values(z.data(), state.data(), true);
+  if (e.size() == 0)
+    throw InputError({"the fitted model cannot be run", (*setting.events)[event].record.name,
+                      "it could while it was fitted", "report this"});
+  return {e.rightCols(1), e.leftCols(parameters), e.middleCols(parameters, states)};
+}
+
+}  // namespace
+
+ScoreTest::ScoreTest(const std::vector<event::FitEvent>& events, const sim::plant::Plant& plant,
+                     const sim::Conventions& conventions, const Fit& fit)
+    : events_(events), fit_(fit) {
+  Setting setting{&plant, &conventions, &events, {}, kFitTolerance, InputKind::none, {}};
+  setting.knots.resize(events.size());
+  std::vector<double> at, belief;  // where the fit ended, and what was believed there
+  for (const auto& p : fit.parameters) {
+    setting.axes.push_back(make_axis(plant, p.where));
+    at.push_back(setting.axes.back().z(p.value));
+    belief.push_back(p.where.spread > 0 ? 1 / (p.where.spread * p.where.spread) : 0.0);
+  }
+  const std::vector<double> z = at;
+  std::vector<Slopes> each;
+  Eigen::Index rows = 0;
+  for (std::size_t e = 0; e < events.size(); ++e) {
+    const std::vector<double> state = state_of(events[e], fit.events[e].state);
+    each.push_back(slopes_of(setting, e, z, state));
+    rows += each.back().residual.size();
+    at.insert(at.end(), state.begin(), state.end());
+    belief.insert(belief.end(), events[e].switchings.size(), 0.0);
+    for (const double b : kStateBelief) belief.push_back(1 / (b * b));
+  }
+  residual_.resize(rows);
+  slopes_ = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(at.size()));
+  Eigen::Index row = 0, column = static_cast<Eigen::Index>(z.size());
+  for (const Slopes& s : each) {
+    const Eigen::Index n = s.residual.size();
+    residual_.segment(row, n) = s.residual;
+    slopes_.block(row, 0, n, s.by_parameter.cols()) = s.by_parameter;
+    slopes_.block(row, column, n, s.by_state.cols()) = s.by_state;
+    row += n;
+    column += s.by_state.cols();
+  }
+  const Eigen::Map<const Eigen::VectorXd> where(at.data(), column), weight(belief.data(), column);
+  Eigen::MatrixXd curvature = slopes_.transpose() * slopes_;
+  curvature.diagonal() += weight;
+  known_.compute(curvature);
+  gradient_ = slopes_.transpose() * residual_ + weight.cwiseProduct(where);
+}
+
+std::optional<Eigen::MatrixXd> ScoreTest::run(const sim::plant::Plant& plant,
+                                              const sim::Conventions& conventions,
+                                              const std::vector<playin::Direction>& along) const {
+  if (!can_run(plant)) return std::nullopt;
+  Eigen::MatrixXd all(residual_.size(), 1 + static_cast<Eigen::Index>(along.size()));
+  Eigen::Index row = 0;
+  try {
+    for (std::size_t e = 0; e < events_.size(); ++e) {
+      const event::FitEvent& event = events_[e];
+      const EventState& at = fit_.events[e].state;
+      const playin::VoltageCurve curve(event.played(), switchings_at(event, at));
+      playin::Drive drive = drive_at(plant, conventions, event, at);
+      drive.curve = &curve;
+      const playin::Response r = playin::observe(drive, along);
+      event::RowMatrix some(event.values(), all.cols());
+      some.col(0) = event.collected(r.value, true);
+      for (std::size_t d = 0; d < along.size(); ++d)
+        some.col(1 + static_cast<Eigen::Index>(d)) = event.collected(r.slopes[d].value, false);
+      event.whiten(some);
+      all.middleRows(row, some.rows()) = some;
+      row += some.rows();
+    }
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+  if (!all.allFinite()) return std::nullopt;
+  return all;
+}
+
+ScoreTest::Change ScoreTest::less_shared(Eigen::VectorXd answer) const {
+  Change change;
+  change.shared = slopes_.transpose() * answer;
+  const Eigen::VectorXd taken = known_.solve(change.shared);
+  change.whole = answer.squaredNorm();
+  change.square = std::max(0.0, change.whole - change.shared.dot(taken));
+  if (change.square < kRounding * change.whole) change.square = 0;
+  change.along = answer.dot(residual_) - gradient_.dot(taken);
+  change.answer = std::move(answer);
+  return change;
+}
+
+std::optional<ScoreTest::Change> ScoreTest::change_to(const sim::plant::Plant& plant,
+                                                      const sim::Conventions& conventions) const {
+  const auto all = run(plant, conventions, {});
+  if (!all) return std::nullopt;
+  Change change = less_shared(all->col(0) - residual_);
+  if (change.square < kOtherSteps) change.square = 0;
+  return change;
+}
+
+std::vector<ScoreTest::Change> ScoreTest::slopes(const sim::plant::Plant& plant,
+                                                 const sim::Conventions& conventions,
+                                                 const std::vector<playin::Direction>& along) const {
+  std::vector<Change> changes;
+  if (const auto all = run(plant, conventions, along))
+    for (Eigen::Index d = 1; d < all->cols(); ++d) changes.push_back(less_shared(all->col(d)));
+  return changes;
+}
+
+double ScoreTest::joint_gain(const std::vector<Change>& changes) const {
+  if (changes.empty()) return 0.0;
+  const auto n = static_cast<Eigen::Index>(changes.size());
+  Eigen::MatrixXd square = Eigen::MatrixXd::Zero(n, n);
+  Eigen::VectorXd along = Eigen::VectorXd::Zero(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Change& a = changes[static_cast<std::size_t>(i)];
+    if (!(a.square > 0)) continue;
+    along[i] = a.along / std::sqrt(a.square);
+    const Eigen::VectorXd taken = known_.solve(a.shared);
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      const Change& b = changes[static_cast<std::size_t>(j)];
+      if (!(b.square > 0)) continue;
+      square(i, j) = square(j, i) =
+          (a.answer.dot(b.answer) - b.shared.dot(taken)) / std::sqrt(a.square * b.square);
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> of(square);
+  double gain = 0;
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (of.eigenvalues()[i] > kOwn)
+      gain += std::pow(of.eigenvectors().col(i).dot(along), 2) / of.eigenvalues()[i] - 1;
+  return gain;
+}
+
+}  // namespace swingbank::validate::fit

@@ -1,0 +1,59 @@
+#pragma once
+// What a change of the model would gain beside a fitted structure, before anything is fitted: the score test
+// (Rao, Proc. Cambridge Philos. Soc. 44, 1948, p. 50). The part of the change that the structure's own
+// parameters and the events' instants and starts could make is taken out.
+#include <Eigen/Dense>
+#include <optional>
+#include <vector>
+
+#include "validate/fit/fit.hpp"
+
+namespace swingbank::validate::fit {
+
+class ScoreTest {
+ public:
+  /// `fit` is that of `plant`, at its minimum. The constructor takes one look at all slopes.
+  ScoreTest(const std::vector<event::FitEvent>& events, const sim::plant::Plant& plant,
+            const sim::Conventions& conventions, const Fit& fit);
+
+  /// A change of the whitened answer, one event after the other, and the part of it that the structure could
+  /// make itself.
+  struct Change {
+    Eigen::VectorXd answer, shared;
+    double along = 0;   ///< slope of half the cost at no change; negative: it helps
+    double square = 0;  ///< squared norm of what is left without that part
+    double whole = 0;   ///< squared norm before anything was taken out
+    /// By how much chi2 would fall if the answer were straight.
+    [[nodiscard]] double gain() const { return square > 0 && along < 0 ? along * along / square : 0.0; }
+    /// By how much chi2 would rise with the whole change.
+    [[nodiscard]] double rise() const { return square + 2 * along; }
+    /// The share of the change that would be best.
+    [[nodiscard]] double share() const { return square > 0 ? -along / square : 0.0; }
+  };
+  /// The change from the structure's answer to that of another plant; none if that plant cannot be run.
+  [[nodiscard]] std::optional<Change> change_to(const sim::plant::Plant& plant,
+                                                const sim::Conventions& conventions) const;
+  /// Slopes of another plant's answer, which should be near the structure's. Empty if it cannot be run.
+  [[nodiscard]] std::vector<Change> slopes(const sim::plant::Plant& plant,
+                                           const sim::Conventions& conventions,
+                                           const std::vector<playin::Direction>& along) const;
+  /// By how much chi2 would fall by the best combination of these changes, less what noise alone would give
+  /// it, which is 1 for each direction. Directions in which the changes hardly differ are left out.
+  [[nodiscard]] double joint_gain(const std::vector<Change>& changes) const;
+
+ private:
+  /// Answers (less the measured ones) and slopes of a run, whitened: [value][0: answer, then slopes].
+  [[nodiscard]] std::optional<Eigen::MatrixXd> run(const sim::plant::Plant& plant,
+                                                   const sim::Conventions& conventions,
+                                                   const std::vector<playin::Direction>& along) const;
+  [[nodiscard]] Change less_shared(Eigen::VectorXd answer) const;
+
+  const std::vector<event::FitEvent>& events_;
+  const Fit& fit_;
+  Eigen::VectorXd residual_;            ///< whitened
+  Eigen::MatrixXd slopes_;              ///< [value][parameter, then each event's own]
+  Eigen::LDLT<Eigen::MatrixXd> known_;  ///< slopes' and beliefs' curvature
+  Eigen::VectorXd gradient_;            ///< of half the cost: what the fit left over
+};
+
+}  // namespace swingbank::validate::fit

@@ -1,0 +1,96 @@
+#include "validate/fit/slopes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace swingbank::validate::fit {
+namespace {
+
+using Kind = playin::Direction::Kind;
+
+/// How far each state of an event is believed to be off, as in the fit.
+constexpr double kStateSpread[] = {0.02, 0.02, 0.02, 2e-4};  // P, Q [pu], angle [rad], speed [pu]
+constexpr Kind kStateKind[] = {Kind::P, Kind::Q, Kind::angle, Kind::speed};
+
+std::vector<playin::Direction> state_directions(const event::FitEvent& event) {
+  std::vector<playin::Direction> along;
+  for (std::size_t k = 0; k < event.switchings.size(); ++k)
+    if (event.switchings[k].uncertainty > 0)
+      along.push_back({Kind::switching, 0, static_cast<int>(k), event.switchings[k].uncertainty});
+  for (std::size_t k = 0; k < std::size(kStateKind); ++k)
+    along.push_back({kStateKind[k], 0, 0, kStateSpread[k]});
+  return along;
+}
+
+/// [compared sample * channels + channel], whitened.
+Eigen::VectorXd whitened(const event::FitEvent& event, const std::vector<double>* values,
+                         bool less_measured) {
+  event::RowMatrix all = event.collected(values, less_measured);
+  event.whiten(all);
+  return all;
+}
+
+}  // namespace
+
+double axis_unit(const sim::plant::Plant& plant, const FreeParameter& f) {
+  const auto& record = parameter_record(plant, f.block, f.index);
+  const double value = sim::plant::block_parameters(
+      plant)[static_cast<std::size_t>(f.block)][static_cast<std::size_t>(f.index)];
+  const double size = value != 0 ? std::abs(value) : 0.05 * std::min(record.high - record.low, 20.0);
+  return (f.spread > 0 ? f.spread : 1.0) * size;
+}
+
+EventSlopes event_slopes(const sim::plant::Plant& plant, const sim::Conventions& conventions,
+                         const event::FitEvent& event, const EventState& state,
+                         const std::vector<FreeParameter>& free) {
+  std::vector<playin::Direction> along;
+  for (const auto& f : free) along.push_back({Kind::parameter, f.block, f.index, axis_unit(plant, f)});
+  std::ranges::move(state_directions(event), std::back_inserter(along));
+  auto switchings = event.switchings;
+  for (std::size_t k = 0; k < switchings.size(); ++k) switchings[k].time = state.switchings[k];
+  const playin::VoltageCurve curve(event.played(), switchings);
+  playin::Drive run{.plant = &plant, .conventions = conventions, .record = &event.record, .curve = &curve};
+  run.start = event.start;
+  run.start.P += state.P;
+  run.start.Q += state.Q;
+  run.angle = state.angle;
+  run.speed = state.speed;
+  run.tolerance = 1e-7;  // slopes are then accurate to 1e-5 of themselves
+  const playin::Response r = playin::drive(run, along);
+
+  EventSlopes back;
+  back.channels = static_cast<int>(event.channels.size());
+  back.residual = whitened(event, r.value, true);
+  const auto parameters = static_cast<Eigen::Index>(free.size());
+  const auto states = static_cast<Eigen::Index>(along.size()) - parameters;
+  back.slopes.resize(event.values(), parameters);
+  Eigen::MatrixXd own(event.values(), states);
+  for (Eigen::Index d = 0; d < parameters + states; ++d) {
+    const Eigen::VectorXd column = whitened(event, r.slopes[static_cast<std::size_t>(d)].value, false);
+    (d < parameters ? back.slopes.col(d) : own.col(d - parameters)) = column;
+  }
+  // the states, with their beliefs of one unit each, absorb what the projection takes out
+  const Eigen::MatrixXd inner = own.transpose() * own + Eigen::MatrixXd::Identity(states, states);
+  const auto solved = inner.ldlt();
+  back.slopes -= own * solved.solve(own.transpose() * back.slopes).eval();
+  return back;
+}
+
+Eigen::MatrixXd information(const EventSlopes& e) { return e.slopes.transpose() * e.slopes; }
+
+Eigen::MatrixXd score_covariance(const EventSlopes& e, int lags) {
+  const Eigen::Index n = e.channels, samples = e.residual.size() / n;
+  Eigen::MatrixXd scores(samples, e.slopes.cols());
+  for (Eigen::Index k = 0; k < samples; ++k)
+    scores.row(k) = e.residual.segment(k * n, n).transpose() * e.slopes.middleRows(k * n, n);
+  Eigen::MatrixXd sum = scores.transpose() * scores;
+  for (int lag = 1; lag <= lags && lag < samples; ++lag) {
+    const double weight = 1.0 - lag / (lags + 1.0);
+    const Eigen::MatrixXd cross =
+        scores.topRows(samples - lag).transpose() * scores.bottomRows(samples - lag);
+    sum += weight * (cross + cross.transpose());
+  }
+  return sum;
+}
+
+}  // namespace swingbank::validate::fit

@@ -1,0 +1,77 @@
+#include "validate/fit/voltage_doubt.hpp"
+
+#include <cmath>
+
+#include "sim/core/noise.hpp"
+#include "validate/fit/noise.hpp"
+
+namespace swingbank::validate::fit {
+namespace {
+
+/// Variance of white noise, by second differences of the first n values.
+double white_variance(const std::vector<double>& values, int n) {
+  double sum = 0;
+  for (int k = 1; k + 1 < n; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    sum += std::pow(values[i - 1] - 2 * values[i] + values[i + 1], 2);
+  }
+  return sum / (6.0 * std::max(1, n - 2));
+}
+
+/// Columns whose products with themselves make up a covariance of rank two.
+Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> of(covariance);
+  return of.eigenvectors().rightCols(2) * of.eigenvalues().tail(2).cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
+/// The plant's answer to kicks of its states: [channel][sample].
+template <class Kick>
+VoltageDoubt::Shape answer(const event::SlowNoise& noise, std::size_t samples, Kick kick) {
+  VoltageDoubt::Shape shape(static_cast<std::size_t>(noise.C.rows()), std::vector<double>(samples, 0.0));
+  Eigen::VectorXd x = kick(-1);
+  for (std::size_t k = 0; k < samples; ++k) {
+    const Eigen::VectorXd seen = noise.C * x;
+    for (std::size_t c = 0; c < shape.size(); ++c) shape[c][k] = seen[static_cast<Eigen::Index>(c)];
+    x = noise.A * x + kick(static_cast<int>(k));
+  }
+  return shape;
+}
+
+}  // namespace
+
+VoltageDoubt voltage_doubt(const sim::plant::Plant& plant, const sim::Conventions& conventions,
+                           const event::FitEvent& e) {
+  constexpr std::uint32_t kDraws = 48;  // so many draws tell a variance to 20 %
+  const std::size_t samples = e.record.t.size();
+  const Eigen::Vector2d variance(white_variance(e.record.V, e.start.samples) / std::norm(e.start.voltage),
+                                 white_variance(e.record.theta, e.start.samples));
+  const playin::VoltageCurve curve(e.record, {});
+  const event::SlowNoise noise = slow_noise(playin::linearise({.plant = &plant,
+                                                               .conventions = conventions,
+                                                               .record = &e.record,
+                                                               .curve = &curve,
+                                                               .start = e.start}),
+                                            e, variance);
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(noise.A.rows());
+  VoltageDoubt doubt;
+  for (const Eigen::Index j : {0, 1}) {
+    Eigen::VectorXd mean = none;
+    mean[none.size() - 2 + j] = std::sqrt(variance[j] / e.start.samples);
+    doubt.shapes.push_back(answer(noise, samples, [&](int k) { return k < 0 ? mean : none; }));
+  }
+  const Eigen::MatrixXd moved = root_of(noise.Q) / std::sqrt(kDraws), guessed = root_of(noise.jump);
+  for (std::uint32_t d = 0; d < kDraws && variance.maxCoeff() > 0; ++d)
+    doubt.shapes.push_back(answer(noise, samples, [&](int k) -> Eigen::VectorXd {
+      if (k < 0) return none;
+      const auto normal = sim::normal_pair(1, d, static_cast<std::uint64_t>(k));
+      return moved * Eigen::Vector2d(normal[0], normal[1]);
+    }));
+  for (std::size_t at = 0; at < samples; ++at)
+    for (Eigen::Index j = 0; noise.doubtful[at] > 0 && j < 2; ++j)
+      doubt.shapes.push_back(answer(noise, samples, [&](int k) -> Eigen::VectorXd {
+        return k == static_cast<int>(at) ? (std::sqrt(noise.doubtful[at]) * guessed.col(j)).eval() : none;
+      }));
+  return doubt;
+}
+
+}  // namespace swingbank::validate::fit

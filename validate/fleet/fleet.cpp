@@ -1,0 +1,332 @@
+// Fleet files, and what one plant of a fleet leaves behind.
+#include "validate/fleet/fleet.hpp"
+
+#include <fmt/format.h>
+#include <glob.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "base/config.hpp"
+#include "base/write_file.hpp"
+#include "validate/check/check.hpp"
+#include "validate/diagnose/report.hpp"
+#include "validate/record/formats.hpp"
+
+namespace swingbank::validate::fleet {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr const char* kFormat = "swingbank-fleet-plant-1";
+
+bool is_name(const std::string& name) {
+  const auto allowed = [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; };
+  return !name.empty() && name.size() <= 100 && std::ranges::all_of(name, allowed);
+}
+
+FleetPlant read_plant(Config& c, const std::string& name, const fs::path& folder, const FleetPlant& common) {
+  const std::string at = "plant." + name + ".";
+  FleetPlant p = common;
+  p.name = name;
+  p.model = folder / c.require<std::string>(at + "model");
+  p.records = c.require<std::vector<std::string>>(at + "records");
+  p.spread = c.optional<double>(at + "spread", common.spread, {0.001, 2.0, "relative"});
+  p.power_only = c.optional<bool>(at + "power_only", common.power_only);
+  if (c.has(at + "records") && p.records.empty())
+    c.problem(at + "records", "no record", "a diagnosis needs those of two events or more",
+              "list files or globs");
+  return p;
+}
+
+/// Files that a name or glob stands for, in order; "RUN.h5#TERMINAL" keeps its terminal.
+std::vector<std::string> matching(const std::string& text, const fs::path& folder, Problems& problems) {
+  const std::string whole = (folder / text).string();
+  if (whole.find_first_of("*?[") == std::string::npos || fs::exists(whole)) return {whole};
+  const auto mark = whole.rfind('#');
+  const bool marked = mark != std::string::npos && whole.find('/', mark) == std::string::npos;
+  const std::string pattern = marked ? whole.substr(0, mark) : whole,
+                    terminal = marked ? whole.substr(mark) : "";
+  glob_t found{};
+  std::vector<std::string> files;
+  if (::glob(pattern.c_str(), 0, nullptr, &found) == 0)
+    for (std::size_t i = 0; i < found.gl_pathc; ++i) files.push_back(found.gl_pathv[i] + terminal);
+  ::globfree(&found);
+  if (files.empty())
+    problems.add("no record", "records '" + text + "'", "no file matches " + pattern,
+                 "check folder and pattern");
+  return files;
+}
+
+/// A plant with everything read.
+struct Loaded {
+  plant::PlantModel model;
+  std::vector<std::string> files;
+  std::vector<record::Record> records;
+  std::vector<std::string> notes;
+};
+
+Loaded load(const Fleet& fleet, const FleetPlant& plant) {
+  Loaded l;
+  Problems problems;
+  const auto attempt = [&](const auto& action) {
+    try {
+      action();
+    } catch (const InputError& error) {
+      for (const auto& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
+    }
+  };
+  attempt([&] { l.model = plant::load_plant_model(plant.model); });
+  for (const auto& text : plant.records)
+    for (auto& file : matching(text, fleet.folder, problems)) l.files.push_back(std::move(file));
+  for (const auto& file : l.files)
+    attempt([&] {
+      record::Record record = record::read_record(file, l.model.record_base);
+      if (std::ranges::find(l.records, record.name, &record::Record::name) != l.records.end())
+        problems.add("two records named " + record.name, file, "they could not be told apart",
+                     "rename one of them");
+      if (l.model.plant.machine.effect == nullptr) return;  // the model has its own problems
+      const auto findings = check::check_record(record, check::plant_facts(l.model));
+      for (const auto& f : findings)
+        if (f.severity == check::Severity::warn) l.notes.push_back(f.problem.sentence());
+      check::raise_refusals(findings);
+      l.records.push_back(std::move(record));
+    });
+  problems.raise();
+  return l;
+}
+
+json block_json(const sim::plant::Block& b) {
+  if (b.effect == nullptr) return nullptr;
+  json values = json::array();  // bits, so that no digit is lost
+  for (const double v : b.p) values.push_back(fmt::format("{:a}", v));
+  return {std::string(b.effect->name), values};
+}
+
+/// Hash of all that the diagnosis depends on. A plant file may refer to others (laws, a grid): the values
+/// they gave and the laws' own bytes count.
+std::string inputs_of(const Loaded& l, const FleetPlant& plant) {
+  const plant::PlantModel& m = l.model;
+  json j = {kFormat, SWINGBANK_VERSION, plant.name, fmt::format("{:016x}", m.hash)};
+  j.push_back({plant.spread, plant.power_only});
+  j.push_back({m.plant.mva, m.conventions.speed_voltage, m.conventions.mechanical_power,
+               m.conventions.frequency, m.record_base.mva, m.record_base.frequency, m.record_base.kv});
+  j.push_back(block_json(m.plant.machine));
+  j.push_back(block_json(m.plant.transformer));
+  for (const auto& b : m.plant.controls) j.push_back(block_json(b));
+  for (const auto& b : m.plant.measurements) j.push_back(block_json(b));
+  for (const auto& law : m.laws) {
+    const std::string bytes = record::read_bytes(law);
+    j.push_back(XXH64(bytes.data(), bytes.size(), 0));
+  }
+  for (const auto& r : l.records) j.push_back({r.name, r.terminal, r.hash});
+  const std::string text = j.dump();
+  return fmt::format("{:016x}", XXH64(text.data(), text.size(), 0));
+}
+
+FleetRow row_of(const diagnose::Diagnosis& d) {
+  FleetRow row;
+  row.verdict = diagnose::verdict_name(d.verdict);
+  row.effects = d.effects;
+  row.equivalent = d.equivalent;
+  row.side = hypothesis::side_name(d.side);
+  row.left = std::sqrt(d.base.misfit());
+  row.events = static_cast<int>(d.events.size());
+  row.sentence = d.sentence;
+  row.evidence = row.unseen_before = row.unseen_after = row.chance = kNaN;
+  if (d.ranked.empty() || d.verdict == diagnose::Verdict::adequate) return row;
+  const hypothesis::Judgement& best = d.ranked.front();
+  if (!best.accepted) return row;
+  row.evidence = best.gain;
+  const int tried = static_cast<int>(d.ranked.size());
+  row.chance =
+      chance_of(fit::penalised(d.base) - fit::penalised(best.fit), best.fit.fitted - d.base.fitted, tried);
+  double before = 0, after = 0;
+  for (const auto& h : best.held_out) {
+    before += h.before / static_cast<double>(best.held_out.size());
+    after += h.after / static_cast<double>(best.held_out.size());
+  }
+  if (!best.held_out.empty()) row.unseen_before = std::sqrt(before), row.unseen_after = std::sqrt(after);
+  return row;
+}
+
+/// The row that an earlier run left, if it is of the same inputs and its diagnosis is there.
+bool finished(const fs::path& folder, const std::string& inputs, FleetRow& row) {
+  if (!fs::exists(folder / "diagnosis.json") || !fs::exists(folder / "report.html")) return false;
+  try {
+    row = read_row(record::read_bytes(folder / "plant.json"), (folder / "plant.json").string());
+  } catch (const InputError&) {
+    return false;
+  }
+  return row.inputs == inputs && !row.failed();
+}
+
+/// Puts a folder that was filled under a temporary name in place of what an earlier run left.
+void put_in_place(const fs::path& temporary, const fs::path& folder) {
+  const fs::path old = folder.parent_path() / ("." + folder.filename().string() + ".old");
+  fs::remove_all(old);
+  if (fs::exists(folder)) fs::rename(folder, old);
+  fs::rename(temporary, folder);
+  fs::remove_all(old);
+}
+
+/// Only what a fleet run has written is replaced.
+void check_ours(const fs::path& folder) {
+  if (!fs::exists(folder) || fs::exists(folder / "plant.json")) return;
+  throw InputError({"a folder that no fleet run has written", folder.string(), "it has no plant.json",
+                    "move it away, or give another --out"});
+}
+
+std::string plant_json(const FleetRow& row) { return row_json(row).dump(1) + "\n"; }
+
+std::string command_of(const FleetPlant& plant, const std::vector<std::string>& files) {
+  std::string text = fmt::format("swingbank diagnose --model {} --records", plant.model.string());
+  for (const auto& file : files) text += " " + file;
+  text += fmt::format(" --spread {:g}", plant.spread);
+  return text + (plant.power_only ? " --power-only" : "");
+}
+
+}  // namespace
+
+Fleet load_fleet(const fs::path& file) {
+  Config c(file);
+  Fleet fleet{file, file.parent_path(), {}};
+  FleetPlant common;
+  common.spread = c.optional<double>("options.spread", common.spread, {0.001, 2.0, "relative"});
+  common.power_only = c.optional<bool>("options.power_only", false);
+  for (const auto& name : c.keys("plant")) {
+    if (is_name(name)) {
+      fleet.plants.push_back(read_plant(c, name, fleet.folder, common));
+      continue;
+    }
+    c.problem("plant", "plant '" + name + "'", "the name becomes that of a folder",
+              "use letters, digits, - and _ only");
+    c.ignore("plant");
+  }
+  if (c.keys("plant").empty())
+    c.problem("plant", "no plant", "a fleet has one [plant.NAME] at least", "see configs/fleet/README.md");
+  c.raise();
+  return fleet;
+}
+
+double chance_of(double fall, int added, int hypotheses) {
+  double chance = 0;
+  if (added <= 0) {
+    chance = std::exp(-std::max(fall, 0.0) / 2);
+  } else {
+    const double x = std::max(fall, 0.0);
+    chance = added % 2 == 1 ? std::erfc(std::sqrt(x / 2)) : std::exp(-x / 2);
+    for (double k = added % 2 == 1 ? 1 : 2; k < added; k += 2)
+      chance += std::exp(k / 2 * std::log(x / 2) - x / 2 - std::lgamma(k / 2 + 1));
+  }
+  return std::min(1.0, chance * hypotheses);
+}
+
+FleetOutcome diagnose_plant(const Fleet& fleet, const FleetPlant& plant, const fs::path& out,
+                            const diagnose::DiagnoseOptions& given) {
+  const fs::path folder = out / plant.name, temporary = out / ("." + plant.name + ".part");
+  const auto failed = [&](const std::string& why) {
+    const FleetRow row = failed_row(plant.name, why);
+    try {  // nothing that an earlier run said of other inputs may stay
+      check_ours(folder);
+      fs::remove_all(temporary);
+      write_file(temporary / "plant.json", plant_json(row));
+      put_in_place(temporary, folder);
+    } catch (const std::exception&) {  // the row says enough; it is printed in any case
+    }
+    return FleetOutcome{row, false};
+  };
+  try {
+    check_ours(folder);
+    Loaded l = load(fleet, plant);
+    const std::string inputs = inputs_of(l, plant);
+    FleetOutcome o;
+    if (finished(folder, inputs, o.row)) {
+      o.was_there = true;
+      return o;
+    }
+    diagnose::DiagnoseOptions options = given;
+    options.spread = plant.spread;
+    options.measured_states = !plant.power_only;
+    const diagnose::Diagnosis d = diagnose::diagnose(l.model, std::move(l.records), options);
+    o.row = row_of(d);
+    o.row.plant = plant.name;
+    o.row.inputs = inputs;
+    const report::Provenance rows = diagnose::diagnosis_provenance(l.model, d, command_of(plant, l.files));
+    fs::remove_all(temporary);
+    write_file(temporary / "diagnosis.json", diagnose::diagnosis_json(l.model, d, rows).dump(1) + "\n");
+    write_file(temporary / "report.html", diagnose::diagnosis_html(l.model, d, rows));
+    std::string notes;
+    for (const auto& note : l.notes) notes += note + "\n";
+    if (!notes.empty()) write_file(temporary / "notes.txt", notes);
+    write_file(temporary / "plant.json", plant_json(o.row));
+    put_in_place(temporary, folder);
+    return o;
+  } catch (const std::exception& error) {  // also what no input explains: the others must go on
+    return failed(error.what());
+  }
+}
+
+namespace {
+json number(double v) { return std::isfinite(v) ? json(v) : json(nullptr); }
+double number_of(const json& j, const char* key) {
+  return j.at(key).is_null() ? kNaN : j.at(key).get<double>();
+}
+}  // namespace
+
+FleetRow failed_row(const std::string& plant, const std::string& why) {
+  FleetRow row;
+  row.plant = plant;
+  row.verdict = "failed";
+  row.side = "none";
+  row.evidence = row.left = row.unseen_before = row.unseen_after = row.chance = kNaN;
+  row.sentence = why;
+  return row;
+}
+
+json row_json(const FleetRow& r) {
+  return {{"format", kFormat},
+          {"plant", r.plant},
+          {"verdict", r.verdict},
+          {"effects", r.effects},
+          {"equivalent", r.equivalent},
+          {"side", r.side},
+          {"evidence", number(r.evidence)},
+          {"rms_in_noise_refitted", number(r.left)},
+          {"unseen_rms_in_noise_before", number(r.unseen_before)},
+          {"unseen_rms_in_noise_after", number(r.unseen_after)},
+          {"probability_by_noise_alone_at_most", number(r.chance)},
+          {"events", r.events},
+          {"sentence", r.sentence},
+          {"inputs_xxh64", r.inputs}};
+}
+
+FleetRow read_row(const std::string& text, const std::string& where) {
+  try {
+    const json j = json::parse(text);
+    if (j.at("format") != kFormat) throw std::invalid_argument("its format is not " + std::string(kFormat));
+    return {j.at("plant"),
+            j.at("verdict"),
+            j.at("effects"),
+            j.at("equivalent"),
+            j.at("side"),
+            number_of(j, "evidence"),
+            number_of(j, "rms_in_noise_refitted"),
+            number_of(j, "unseen_rms_in_noise_before"),
+            number_of(j, "unseen_rms_in_noise_after"),
+            number_of(j, "probability_by_noise_alone_at_most"),
+            j.at("events"),
+            j.at("sentence"),
+            j.at("inputs_xxh64")};
+  } catch (const std::exception& error) {
+    throw InputError(
+        {"no result of a plant", where, error.what(), "remove its folder and run the command again"});
+  }
+}
+
+}  // namespace swingbank::validate::fleet

@@ -1,0 +1,162 @@
+#include "validate/fleet/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "validate/compare/error_map_table.hpp"
+
+namespace swingbank::validate::fleet {
+namespace {
+
+std::string joined(const std::vector<std::string>& words, const char* between) {
+  std::string all;
+  for (const auto& w : words) all += (all.empty() ? "" : between) + w;
+  return all;
+}
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+/// "SEXS", "TGOV1 + SEXS", "SEXS or ESST1A".
+std::string effect_text(const FleetRow& r) {
+  std::string text = joined(r.effects, " + ");
+  for (const auto& other : r.equivalent) text += (text.empty() ? "" : " or ") + other;
+  return text.empty() ? "–" : text;
+}
+std::string chance_text(double chance) {
+  if (!std::isfinite(chance)) return "–";
+  return chance < 1e-12 ? "< 1e-12" : fmt::format("≤ {:.0e}", chance);
+}
+std::string number_text(double v) { return std::isfinite(v) ? fmt::format("{:.6g}", v) : ""; }
+
+double verdict_shade(const FleetRow& r) {
+  return r.adequate() ? 0.0 : r.failed() || r.verdict == "unexplained" ? 1.0 : 0.5;
+}
+
+std::vector<report::Cell> row_cells(const FleetRow& r) {
+  if (r.failed()) return {r.plant, report::Cell(r.verdict, 1.0), "–", "–", "–", "–", "–", "–"};
+  const bool judged = std::isfinite(r.unseen_after);
+  return {r.plant,
+          report::Cell(r.verdict, verdict_shade(r)),
+          effect_text(r),
+          r.side == "none" ? "–" : r.side,
+          std::isfinite(r.evidence) ? fmt::format("{:.0f}", r.evidence) : "–",
+          compare::times_noise(r.left),
+          judged ? compare::times_noise(r.unseen_before) + " → " + compare::times_noise(r.unseen_after) : "–",
+          chance_text(r.chance)};
+}
+
+int count(const std::vector<FleetRow>& rows, std::initializer_list<const char*> verdicts) {
+  return static_cast<int>(std::ranges::count_if(rows, [&](const FleetRow& r) {
+    return std::ranges::any_of(verdicts, [&](const char* v) { return r.verdict == v; });
+  }));
+}
+
+}  // namespace
+
+report::Table fleet_table(const std::vector<FleetRow>& rows) {
+  report::Table table{
+      "Errors are RMS over all channels in units of noise: 1 × means that nothing but noise is left. "
+      "“Refitted” is "
+      "the model as it is with its parameters fitted; the next column is of events left out of the fit, "
+      "without and "
+      "with the effect. The last bounds the probability that noise alone gives any hypothesis this evidence.",
+      {"plant", "verdict", "effect", "side", "evidence", "error, refitted", "unseen: before → after",
+       "by noise alone"},
+      {}};
+  for (const auto& r : rows) table.rows.push_back(row_cells(r));
+  return table;
+}
+
+std::string fleet_summary(const std::vector<FleetRow>& rows) {
+  return fmt::format("{} {}: {} adequate, {} with an effect named, {} unexplained, {} failed.", rows.size(),
+                     rows.size() == 1 ? "plant" : "plants", count(rows, {"adequate"}),
+                     count(rows, {"missing", "confusable"}), count(rows, {"unexplained"}),
+                     count(rows, {"failed"}));
+}
+
+std::string fleet_caution(const std::vector<FleetRow>& rows) {
+  double any = 0;  // expected number of effects that noise alone names
+  bool named = false;
+  for (const auto& r : rows)
+    if (std::isfinite(r.chance)) any += r.chance, named = true;
+  std::string text = "False verdicts: ";
+  if (named)
+    text += fmt::format(
+        "noise alone would name an effect at any of the plants that have one named with a "
+        "probability of at most {:.0e}. That leaves out noise of the played-in voltage, "
+        "instruments in error, records of another plant, effects that are not in the list. ",
+        std::clamp(any, 1e-12, 1.0));
+  return text +
+         "How often the diagnosis names an effect where nothing is missing, or misses one, is for the blind "
+         "test to say "
+         "(docs/blind-test.md).";
+}
+
+std::string fleet_text(const std::vector<FleetRow>& rows) {
+  std::string text = report::padded(fleet_table(rows), 4);
+  for (const auto& r : rows)
+    if (r.failed()) text += fmt::format("{} failed: {}\n", r.plant, first_line(r.sentence));
+  return text + "\n" + fleet_summary(rows) + "\n" + fleet_caution(rows) + "\n";
+}
+
+std::string fleet_json(const Fleet& fleet, const std::vector<FleetRow>& rows) {
+  nlohmann::json j = {{"format", "swingbank-fleet-1"},
+                      {"fleet", fleet.file.string()},
+                      {"software", "swingbank " SWINGBANK_VERSION},
+                      {"summary", fleet_summary(rows)},
+                      {"caution", fleet_caution(rows)},
+                      {"adequate", count(rows, {"adequate"})},
+                      {"failed", count(rows, {"failed"})},
+                      {"plants", nlohmann::json::array()}};
+  for (const auto& r : rows) j["plants"].push_back(row_json(r));
+  return j.dump(1) + "\n";
+}
+
+std::string fleet_csv(const std::vector<FleetRow>& rows) {
+  report::Table table{"",
+                      {"plant", "verdict", "effects", "equivalent", "side", "evidence_bic",
+                       "rms_refitted_noise", "unseen_rms_before_noise", "unseen_rms_after_noise",
+                       "probability_by_noise_alone_at_most", "events", "sentence", "inputs_xxh64"},
+                      {}};
+  for (const auto& r : rows)
+    table.rows.push_back({r.plant, r.verdict, joined(r.effects, ";"), joined(r.equivalent, ";"), r.side,
+                          number_text(r.evidence), number_text(r.left), number_text(r.unseen_before),
+                          number_text(r.unseen_after), number_text(r.chance), std::to_string(r.events),
+                          r.sentence, r.inputs});
+  return report::csv(table);
+}
+
+std::string fleet_html(const Fleet& fleet, const std::vector<FleetRow>& rows) {
+  report::Page page("Fleet: " + fleet.file.stem().string(), "every plant diagnosed from its own records");
+  const bool good = fleet_code(rows) == 0, failed = count(rows, {"failed", "unexplained"}) > 0;
+  page.verdict(fleet_summary(rows), good     ? report::Tone::good
+                                    : failed ? report::Tone::bad
+                                             : report::Tone::found);
+  report::Table table = fleet_table(rows);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (!rows[i].failed()) table.rows[i].front().link = rows[i].plant + "/report.html";
+  page.table(table);
+  page.note(fleet_caution(rows));
+  page.section("Verdicts");
+  for (const auto& r : rows) {
+    page.subsection(r.plant);
+    for (std::size_t at = 0; at < r.sentence.size();) {  // a problem per line
+      const std::size_t end = std::min(r.sentence.find('\n', at), r.sentence.size());
+      page.text(r.sentence.substr(at, end - at));
+      at = end + 1;
+    }
+  }
+  page.provenance({{"command", "swingbank diagnose --fleet " + fleet.file.string()},
+                   {"software", "swingbank " SWINGBANK_VERSION}});
+  page.data("figures", fleet_json(fleet, rows));
+  return page.html();
+}
+
+int fleet_code(const std::vector<FleetRow>& rows) {
+  if (count(rows, {"failed"}) > 0) return 1;
+  return std::ranges::all_of(rows, &FleetRow::adequate) ? 0 : 3;
+}
+
+}  // namespace swingbank::validate::fleet

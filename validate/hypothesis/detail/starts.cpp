@@ -1,0 +1,311 @@
+#include "validate/hypothesis/detail/starts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "validate/playin/instruments.hpp"
+
+namespace swingbank::validate::hypothesis {
+namespace {
+
+/// The score test looks at kScored starts, and the misfit is taken of kScreened starts.
+constexpr std::size_t kScored = 6, kScreened = 10;
+/// The score test looks at more draws where the standard values do not act, because each of them picks up
+/// elsewhere.
+constexpr std::size_t kProvoked = 30;
+/// Misfit of a stage that nearly fits.
+constexpr double kNear = 1.5;
+/// Shares of the standard amplitude: kSmall is where the answer is straight, kLeastShare is the least that a
+/// start has.
+constexpr double kSmall = 0.01, kLeastShare = 1e-3;
+/// Standard deviations of the belief from which a parameter is bent.
+constexpr double kBent = 2.0;
+/// Rise of chi2, as a multiple of what it is, from which no start leads back.
+constexpr double kOutOfReach = 100;
+/// Draws that act are looked for among kProvoking draws. A draw acts if the squared change of an event's
+/// answer, in units of noise, exceeds kActs.
+constexpr std::size_t kProvoking = 80;
+/// On the way from a draw that cannot be run to one that does nothing, kHalvings halvings find the first
+/// point that runs. A start lies beyond this point by one of these shares of the rest of the way.
+constexpr std::array<double, 4> kBeyond = {0.02, 0.05, 0.1, 0.2};
+constexpr int kHalvings = 6;
+constexpr double kActs = 10;
+/// An effect that is off still changes the answer a little, because more states make other steps. It is off
+/// if its squared answer is below kOff of that of the standard values. Where a limiter's timer runs, the
+/// steps differ by more, but by less than what acts (kActs) and than a tenth of the answer (kOffBeside of its
+/// square).
+constexpr double kOff = 1e-6, kOffBeside = 0.01;
+
+}  // namespace
+
+StartFinder::StartFinder(const Stage& stage) : stage_(stage) {
+  if (stage.fit.misfit() < kNear) score_.emplace(stage.events, stage.plant, stage.conventions, stage.fit);
+}
+
+Candidate StartFinder::of(Hypothesis h) const {
+  Candidate c;
+  bring(stage_, h);
+  const bool provoked = provoke(h);
+  if (score_)
+    score(h, provoked ? kProvoked : kScored, c);
+  else
+    screen(h, c);
+  c.hypothesis = std::move(h);
+  return c;
+}
+
+sim::plant::Plant StartFinder::believed(const Hypothesis& h) const {
+  sim::plant::Plant plant = started(h, h.starts.front());
+  for (const fit::FreeParameter& f : stage_.own) {
+    const int block = fit::find_block(plant, fit::block_effect(stage_.plant, f.block));
+    fit::parameter_value(plant, block, f.index) = fit::parameter_value(stage_.plant, f.block, f.index);
+  }
+  return plant;
+}
+std::vector<double> StartFinder::unbent(const Hypothesis& h) const {
+  std::vector<int> bent;
+  for (const auto& p : stage_.fit.parameters) {
+    const bool own = std::ranges::any_of(stage_.own, [&](const fit::FreeParameter& f) {
+      return f.block == p.where.block && f.index == p.where.index;
+    });
+    if (!own && p.start > 0 && std::abs(std::log(p.value / p.start)) > kBent * p.where.spread)
+      bent.push_back(p.where.block);
+  }
+  if (bent.empty()) return {};
+  const auto free = free_of(h, stage_.spread);
+  sim::plant::Plant plant = with_values(h, free, beside_fit(h, h.starts.front()));
+  for (const auto& p : stage_.fit.parameters)
+    if (const int block = fit::find_block(plant, fit::block_effect(stage_.plant, p.where.block));
+        block >= 0 && std::ranges::count(bent, p.where.block) > 0)
+      fit::parameter_value(plant, block, p.where.index) = p.start;
+  return fit::values_of(plant, free);
+}
+bool StartFinder::provoke(Hypothesis& h) const {
+  if (!h.drawn || largest_move(h, h.starts.front()) > kActs) return false;
+  const std::size_t own = h.free.size() - stage_.own.size();
+  std::vector<std::vector<double>> acting, idle, failing;
+  for (auto& draw :
+       further_draws(h, own, kProvoking,
+                     stage_.events.front().record.t.back() - stage_.events.front().record.t.front())) {
+    draw.insert(draw.end(), h.starts.front().begin() + static_cast<std::ptrdiff_t>(own),
+                h.starts.front().end());
+    const double move = largest_move(h, draw);
+    (move > kActs ? acting : std::isnan(move) ? failing : idle).push_back(std::move(draw));
+    if (acting.size() == kProvoked) break;
+  }
+  if (!idle.empty() && !failing.empty())
+    for (std::size_t k = 0; k < kProvoking && acting.size() < kProvoked; ++k)
+      if (auto start =
+              between(h, failing[k % failing.size()], idle[k % idle.size()], kBeyond[k % kBeyond.size()]))
+        acting.push_back(std::move(*start));
+  if (acting.empty()) return false;
+  h.starts = std::move(acting);
+  return true;
+}
+std::optional<std::vector<double>> StartFinder::between(const Hypothesis& h,
+                                                        const std::vector<double>& failing,
+                                                        const std::vector<double>& idle,
+                                                        double beyond) const {
+  const auto at = [&](double share) {
+    auto values = failing;
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] += share * (idle[i] - values[i]);
+    return values;
+  };
+  double fails = 0, runs = 1;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = 0.5 * (fails + runs);
+    (std::isnan(moves(h, beside(h, at(middle)), 0)) ? fails : runs) = middle;
+  }
+  auto start = at(runs + beyond * (1 - runs));
+  if (largest_move(h, start) > kActs) return start;
+  return std::nullopt;
+}
+void StartFinder::screen(const Hypothesis& h, Candidate& c) const {
+  struct Start {
+    double misfit;
+    sim::plant::Plant plant;
+  };
+  std::vector<Start> starts;
+  bool acts = false;
+  for (const auto& values : std::span(h.starts).first(std::min(kScreened, h.starts.size()))) {
+    Start s{0, started(h, values)};
+    if (answer(s.plant, h, s.misfit, acts)) starts.push_back(std::move(s));
+  }
+  if (!starts.empty()) std::ranges::sort(starts.begin() + 1, starts.end(), {}, &Start::misfit);
+  if (acts && !starts.empty()) {
+    nest(h, c);
+    for (auto& s : starts) c.starts.push_back(std::move(s.plant));
+  }
+}
+std::vector<double> StartFinder::beside_fit(const Hypothesis& h, const std::vector<double>& start) const {
+  sim::plant::Plant plant = started(h, start);
+  for (const auto& p : stage_.fit.parameters) {
+    const int block = fit::find_block(plant, fit::block_effect(stage_.plant, p.where.block));
+    if (block >= 0) fit::parameter_value(plant, block, p.where.index) = p.value;
+  }
+  return fit::values_of(plant, free_of(h, stage_.spread));
+}
+sim::plant::Plant StartFinder::with_values(const Hypothesis& h, const std::vector<fit::FreeParameter>& free,
+                                           const std::vector<double>& values) {
+  sim::plant::Plant plant = h.plant;
+  for (std::size_t i = 0; i < free.size(); ++i)
+    fit::parameter_value(plant, free[i].block, free[i].index) = values[i];
+  return plant;
+}
+void StartFinder::nest(const Hypothesis& h, Candidate& c) const {
+  const auto free = free_of(h, stage_.spread);
+  for (const auto& start : std::span(h.starts).first(std::min(kScreened, h.starts.size()))) {
+    auto values = beside_fit(h, start);
+    double misfit = 0;
+    bool acts = true;
+    if (answer(with_values(h, free, values), h, misfit, acts))
+      c.nested.emplace_back(misfit, std::move(values));
+  }
+  if (!c.nested.empty()) std::ranges::sort(c.nested.begin() + 1, c.nested.end());
+}
+std::vector<std::size_t> StartFinder::amplitudes(const Hypothesis& h,
+                                                 const std::vector<double>& standard) const {
+  const auto free = free_of(h, stage_.spread);
+  std::vector<std::size_t> found;
+  std::size_t event = 0;  // the first event in which the effect acts
+  double whole = 0;
+  for (std::size_t e = 0; e < stage_.events.size() && !(whole > kActs); ++e)
+    if (const double square = moves(h, with_values(h, free, standard), e); square > whole)
+      event = e, whole = square;
+  for (std::size_t i = free.size() - h.free.size(); i < free.size(); ++i) {
+    const double neutral = fit::parameter_record(h.plant, free[i].block, free[i].index).neutral;
+    if (!(neutral < standard[i]) && !(neutral > standard[i])) continue;
+    auto off = standard;
+    off[i] = neutral;
+    if (moves(h, with_values(h, free, off), event) <
+        std::max(kOff * whole, std::min(kActs, kOffBeside * whole)))
+      found.push_back(i);
+  }
+  return found;
+}
+sim::plant::Plant StartFinder::beside(const Hypothesis& h, const std::vector<double>& start) const {
+  return with_values(h, free_of(h, stage_.spread), beside_fit(h, start));
+}
+double StartFinder::largest_move(const Hypothesis& h, const std::vector<double>& start) const {
+  const sim::plant::Plant plant = beside(h, start);
+  double most = 0;
+  for (std::size_t e = 0; e < stage_.events.size() && !(most > kActs) && !std::isnan(most); ++e) {
+    const double move = moves(h, plant, e);
+    if (!(move <= most)) most = move;
+  }
+  return most;
+}
+double StartFinder::moves(const Hypothesis& h, const sim::plant::Plant& plant, std::size_t event) const {
+  const event::FitEvent& e = stage_.events[event];
+  const fit::EventFit& at = stage_.fit.events[event];
+  try {
+    const playin::VoltageCurve curve(e.played(), fit::switchings_at(e, at.state));
+    playin::Drive run = fit::drive_at(plant, h.conventions, e, at.state);
+    run.curve = &curve;
+    const playin::Response r = playin::observe(run);
+    double square = 0;
+    for (std::size_t c = 0; c < e.channels.size(); ++c)
+      for (std::size_t k = 0; k < r.of(e.channels[c]).size(); ++k)
+        square +=
+            std::pow((r.of(e.channels[c])[k] - at.model[c][k]) / e.noise[static_cast<Eigen::Index>(c)], 2);
+    return square;
+  } catch (const InputError&) {
+    return std::nan("");
+  }
+}
+void StartFinder::score(const Hypothesis& h, std::size_t looks, Candidate& c) const {
+  const auto free = free_of(h, stage_.spread);
+  const auto standard = beside_fit(h, h.starts.front());
+  const auto which = amplitudes(h, standard);
+  const auto at = [&](std::vector<double> values, double share) {
+    for (const std::size_t i : which) {
+      const double neutral = fit::parameter_record(h.plant, free[i].block, free[i].index).neutral;
+      values[i] = neutral + share * (values[i] - neutral);
+    }
+    return values;
+  };
+  std::vector<fit::ScoreTest::Change> changes;
+  std::vector<std::pair<double, std::vector<double>>> starts;
+  std::size_t looked_at = 0;
+  for (const auto& start : h.starts) {
+    const bool scored = looked_at++ < looks;
+    if (!scored && !which.empty()) break;
+    const auto values = beside_fit(h, start);
+    auto whole = score_->change_to(with_values(h, free, values), h.conventions);
+    if (!whole) continue;
+    if (which.empty()) starts.emplace_back(whole->rise(), values);
+    if (!scored) continue;
+    double gain = whole->gain(), share = std::clamp(whole->share(), kLeastShare, 1.0);
+    changes.push_back(std::move(*whole));
+    std::vector<playin::Direction> along;
+    for (std::size_t i = free.size() - h.free.size(); i < free.size(); ++i) {
+      const double neutral = fit::parameter_record(h.plant, free[i].block, free[i].index).neutral;
+      const bool asked = which.empty() ? !std::isnan(neutral) : std::ranges::count(which, i) > 0;
+      if (asked)
+        along.push_back(
+            {playin::Direction::Kind::parameter, free[i].block, free[i].index, values[i] - neutral});
+    }
+    if (!along.empty())
+      for (auto& slope : score_->slopes(with_values(h, free, at(values, kSmall)), h.conventions, along)) {
+        if (!which.empty() && slope.gain() > gain)
+          gain = slope.gain(), share = std::clamp(slope.share(), kLeastShare, 1.0);
+        changes.push_back(std::move(slope));
+      }
+    if (!which.empty()) starts.emplace_back(-gain, at(values, share));
+  }
+  c.promise = score_->joint_gain(changes);
+  if (starts.empty() || std::ranges::none_of(changes, [](const auto& x) { return x.square > 0; })) return;
+  c.starts = {believed(h)};
+  // the gain of a few large changes says little about that of a small one
+  if (c.promise < kHopeless && (!which.empty() || starts.size() >= std::min(h.starts.size(), looks))) return;
+  c.unbent = unbent(h);
+  const double reach = kOutOfReach * stage_.fit.chi2;
+  if (!which.empty() || starts.front().first < reach) c.nested.emplace_back(0.0, standard);
+  std::ranges::sort(starts);
+  for (auto& start : starts)
+    if (c.nested.empty() || (c.nested.size() < kTries && start.first < reach))
+      c.nested.push_back(std::move(start));
+}
+bool StartFinder::answer(const sim::plant::Plant& plant, const Hypothesis& h, double& misfit,
+                         bool& acts) const {
+  misfit = 0;
+  try {
+    for (const event::FitEvent& e : stage_.events) {
+      const playin::VoltageCurve curve(e.played(), e.switchings);
+      playin::Drive run = fit::drive_at(plant, h.conventions, e, {});
+      run.curve = &curve;
+      const playin::Response r = playin::observe(run);
+      if (!acts) {
+        run.plant = &stage_.plant;
+        run.conventions = stage_.conventions;
+        acts = differ(r, playin::observe(run), e);
+      }
+      misfit += misfit_of(r, e);
+    }
+  } catch (const InputError&) {
+    return false;
+  }
+  return std::isfinite(misfit);
+}
+bool StartFinder::differ(const playin::Response& x, const playin::Response& y, const event::FitEvent& e) {
+  for (std::size_t c = 0; c < e.channels.size(); ++c)
+    for (std::size_t k = 0; k < x.of(e.channels[c]).size(); ++k)
+      if (std::abs(x.of(e.channels[c])[k] - y.of(e.channels[c])[k]) >
+          1e-2 * e.noise[static_cast<Eigen::Index>(c)])
+        return true;
+  return false;
+}
+double StartFinder::misfit_of(const playin::Response& r, const event::FitEvent& e) {
+  double sum = 0;
+  for (std::size_t c = 0; c < e.channels.size(); ++c)
+    for (std::size_t k = 0; k < r.of(e.channels[c]).size(); ++k)
+      if (e.compared(k))
+        sum += std::pow(
+            (r.of(e.channels[c])[k] - e.measured(e.channels[c])[k]) / e.noise[static_cast<Eigen::Index>(c)],
+            2);
+  return sum;
+}
+
+}  // namespace swingbank::validate::hypothesis

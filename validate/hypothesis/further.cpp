@@ -1,0 +1,180 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "validate/hypothesis/search.hpp"
+#include "validate/playin/instruments.hpp"
+
+namespace swingbank::validate::hypothesis {
+namespace {
+
+/// Copies the values of the `free` parameters of `like` from one plant to another, where both have them.
+void copy_values(const sim::plant::Plant& from, const sim::plant::Plant& like,
+                 const std::vector<fit::FreeParameter>& free, sim::plant::Plant& to) {
+  for (const fit::FreeParameter& f : free) {
+    const sim::Effect& effect = fit::block_effect(like, f.block);
+    const int source = fit::find_block(from, effect), target = fit::find_block(to, effect);
+    if (source >= 0 && target >= 0)
+      fit::parameter_value(to, target, f.index) = fit::parameter_value(from, source, f.index);
+  }
+}
+
+/// Returns `values` of the hypothesis's free parameters, but takes those of its slot from the leader's effect
+/// there wherever that has a parameter of the same name and unit. Effects of one slot share the names of
+/// their textbooks.
+std::vector<double> by_name(const Hypothesis& h, std::vector<double> values,
+                            const sim::plant::Plant& leader) {
+  int there = 0;
+  while (there < fit::block_count(leader) &&
+         static_cast<int>(fit::block_effect(leader, there).slot) != h.slot)
+    ++there;
+  if (there == fit::block_count(leader)) return values;
+  const auto& known = fit::block_effect(leader, there).parameters;
+  for (std::size_t i = 0; i < h.free.size(); ++i) {
+    const fit::FreeParameter& f = h.free[i];
+    if (static_cast<int>(fit::block_effect(h.plant, f.block).slot) != h.slot) continue;
+    const sim::Parameter& own = fit::parameter_record(h.plant, f.block, f.index);
+    const auto same = std::ranges::find_if(
+        known, [&](const sim::Parameter& p) { return p.name == own.name && p.unit == own.unit; });
+    if (same == known.end()) continue;
+    const double value = fit::parameter_value(leader, there, static_cast<int>(same - known.begin()));
+    values[i] = std::clamp(value, own.low, own.high);
+  }
+  return values;
+}
+
+}  // namespace
+
+double left_by(const sim::plant::Plant& plant, const sim::Conventions& conventions,
+               const std::vector<event::FitEvent>& events, const std::vector<fit::EventState>& states) {
+  double chi2 = 0;
+  try {
+    for (std::size_t e = 0; e < events.size(); ++e) {
+      const playin::VoltageCurve curve(events[e].played(), fit::switchings_at(events[e], states[e]));
+      playin::Drive run = fit::drive_at(plant, conventions, events[e], states[e]);
+      run.curve = &curve;
+      fit::EventFit f;
+      fit::compare(events[e], playin::observe(run), f);
+      chi2 += f.chi2;
+    }
+  } catch (const InputError&) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return chi2;
+}
+
+void try_further(const Stage& stage, const fit::Fit& leader, Judgement& j) {
+  constexpr std::size_t kFurther = 2;
+  constexpr int kOwnSteps = 8, kAllSteps = 10;
+  const Hypothesis& h = j.hypothesis;
+  // parameters that both share start at the leader's values
+  Hypothesis led = h;
+  for (const auto& p : leader.parameters) {
+    const sim::Effect& effect = fit::block_effect(leader.plant, p.where.block);
+    const int block = fit::find_block(led.plant, effect);
+    if (block >= 0 && fit::find_block(stage.plant, effect) >= 0)
+      fit::parameter_value(led.plant, block, p.where.index) = p.value;
+  }
+  std::vector<fit::EventState> states;
+  for (const auto& e : leader.events) states.push_back(e.state);
+  auto starts = h.starts;
+  starts.push_back(fit::values_of(j.fit.plant, h.free));
+  starts.push_back(by_name(h, starts.back(), leader.plant));
+  std::vector<std::pair<double, const std::vector<double>*>> order;
+  for (const auto& start : starts)
+    if (const double left = left_by(started(led, start), h.conventions, stage.events, states);
+        std::isfinite(left))
+      order.emplace_back(left, &start);
+  std::ranges::sort(order);
+  const auto free = free_of(h, stage.spread);
+  for (std::size_t k = 0; k < std::min(kFurther, order.size()); ++k) {
+    fit::FitOptions o;
+    o.errors = false;
+    o.start = states;
+    o.iterations = kOwnSteps;
+    o.values = *order[k].second;
+    const fit::Fit own = fit::fit(led.plant, h.conventions, stage.events, h.free, o);
+    if (!own.failed.empty()) continue;
+    o = fit::continued(o, own, free);
+    o.errors = true;
+    o.iterations = kAllSteps;
+    if (fit::Fit f = fit::fit(h.plant, h.conventions, stage.events, free, o);
+        f.failed.empty() && penalised(f) < fit::penalised(j.fit))
+      j.fit = std::move(f);
+  }
+}
+
+void try_exchange(const Stage& stage, const Judgement& pair, Judgement& j) {
+  constexpr double kBehind = 10;
+  const auto free = free_of(j.hypothesis, stage.spread);
+  if (fit::Fit f = fit::fit(j.hypothesis.plant, j.hypothesis.conventions, stage.events, free,
+                            fit::continued({}, j.fit, free));
+      f.failed.empty())
+    j.fit = std::move(f);
+  if (fit::penalised(j.fit) > penalised(pair.fit) + kBehind) try_further(stage, pair.fit, j);
+}
+
+void try_from(const Stage& stage, const fit::Fit& other, Judgement& j) {
+  const Hypothesis& h = j.hypothesis;
+  const auto free = free_of(h, stage.spread);
+  fit::FitOptions o;
+  for (const fit::FreeParameter& f : free) {
+    const int block = fit::find_block(other.plant, fit::block_effect(h.plant, f.block));
+    o.values.push_back(block >= 0 ? fit::parameter_value(other.plant, block, f.index)
+                                  : fit::parameter_value(j.fit.plant, f.block, f.index));
+  }
+  for (const auto& e : other.events) o.start.push_back(e.state);
+  if (fit::Fit f = fit::fit(h.plant, h.conventions, stage.events, free, o);
+      f.failed.empty() && penalised(f) < fit::penalised(j.fit))
+    j.fit = std::move(f);
+}
+
+Stage after(const Stage& stage, const Judgement& j) {
+  return {stage.events, j.hypothesis.plant, j.hypothesis.conventions,
+          j.fit,        j.hypothesis.free,  j.hypothesis.name,
+          stage.spread, stage.threads};
+}
+
+void bring(const Stage& stage, Hypothesis& h) {
+  h.with = stage.with;
+  for (const fit::FreeParameter& f : stage.own) {
+    const int block = fit::find_block(h.plant, fit::block_effect(stage.plant, f.block));
+    h.free.push_back({block, f.index, f.spread});
+    const double value = fit::parameter_value(stage.fit.plant, f.block, f.index);
+    for (auto& start : h.starts) start.push_back(value);
+  }
+}
+
+std::vector<Judgement> exchanges(const Stage& stage, const Judgement& pair,
+                                 const std::vector<Judgement>& alone) {
+  const auto all = all_hypotheses(stage.plant, stage.conventions);
+  const auto first = std::ranges::find(all, pair.hypothesis.with, &Hypothesis::name),
+             second = std::ranges::find(all, pair.hypothesis.name, &Hypothesis::name);
+  if (first == all.end() || second == all.end()) return {};  // one effect needs the other to be there
+  Judgement stays;
+  stays.hypothesis = *second;
+  stays.fit.plant = second->plant;
+  copy_values(pair.fit.plant, second->plant, second->free, stays.fit.plant);
+  const Stage then = after(stage, stays);
+  std::vector<Judgement> rivals;
+  for (Hypothesis& h : all_hypotheses(then.plant, then.conventions)) {
+    const auto known = std::ranges::find(alone, h.name, [](const Judgement& j) { return j.hypothesis.name; });
+    const bool in_slot = first->slot >= 0 && h.slot == first->slot;
+    const bool holds = known != alone.end() && known->accepted && known->hypothesis.with.empty();
+    if (h.name == first->name || h.name == second->name || !(in_slot || holds)) continue;
+    const bool found = known != alone.end() && known->fitted;
+    const fit::Fit& from = found ? known->fit : pair.fit;
+    Judgement j;
+    j.fit.failed = "not fitted";
+    j.fit.plant = h.plant;
+    copy_values(from.plant, h.plant, free_of(h, stage.spread), j.fit.plant);
+    copy_values(pair.fit.plant, then.plant, then.own, j.fit.plant);
+    for (const auto& e : from.events) j.fit.events.emplace_back().state = e.state;
+    bring(then, h);
+    j.hypothesis = std::move(h);
+    rivals.push_back(std::move(j));
+  }
+  return rivals;
+}
+
+}  // namespace swingbank::validate::hypothesis

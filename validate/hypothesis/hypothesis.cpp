@@ -1,0 +1,293 @@
+#include "validate/hypothesis/hypothesis.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "sim/library/library.hpp"
+#include "validate/playin/instruments.hpp"
+
+namespace swingbank::validate::hypothesis {
+namespace {
+
+using sim::Slot;
+
+constexpr std::size_t kDraws = 39;    ///< draws of an effect's parameters, as starts
+constexpr std::size_t kRedraws = 20;  ///< tries for each draw until one is sound, at most
+constexpr double kShortest = 3e-3;    ///< the shortest draw takes this share of the time allowed
+constexpr double kSpread = 1.0;       ///< an added effect's parameters are believed within a factor e
+
+Side side_of(Slot slot) {
+  switch (slot) {
+    case Slot::governor:
+    case Slot::shaft:
+      return Side::mechanical;
+    case Slot::exciter:
+    case Slot::stabiliser:
+    case Slot::limiter:
+    case Slot::compensator:
+    case Slot::setpoint:
+      return Side::excitation;
+    case Slot::measurement:
+      return Side::measurement;
+    case Slot::machine:
+    case Slot::transformer:
+    case Slot::load:
+      break;
+  }
+  return Side::machine;
+}
+
+bool sound(const sim::plant::Block& b) {
+  Problems problems;
+  b.effect->check(b.effect->law.get(), b.p.data(), "", problems);
+  return problems.list().empty();
+}
+
+bool sound_block(const sim::plant::Plant& plant, int block) {
+  return sound({&fit::block_effect(plant, block),
+                sim::plant::block_parameters(plant)[static_cast<std::size_t>(block)]});
+}
+
+/// Puts the block where its slot's order asks for. Returns its index, counted as in FreeParameter.
+int insert(sim::plant::Plant& plant, sim::plant::Block block) {
+  const int first = plant.transformer.effect ? 2 : 1;
+  if (block.effect->slot == Slot::transformer) {
+    plant.transformer = std::move(block);
+    return 1;
+  }
+  if (block.effect->slot == Slot::measurement) {
+    plant.measurements.push_back(std::move(block));
+    return first + static_cast<int>(plant.controls.size() + plant.measurements.size()) - 1;
+  }
+  const auto at = std::ranges::upper_bound(plant.controls, block.effect->slot, {},
+                                           [](const sim::plant::Block& b) { return b.effect->slot; });
+  const auto index = static_cast<int>(at - plant.controls.begin());
+  plant.controls.insert(at, std::move(block));
+  return first + index;
+}
+
+bool occupied(const sim::plant::Plant& plant, const sim::Effect& effect) {
+  if (effect.slot == Slot::transformer) return plant.transformer.effect != nullptr;
+  for (const auto* list : {&plant.controls, &plant.measurements})
+    for (const sim::plant::Block& b : *list)
+      if (b.effect == &effect || (b.effect->slot == effect.slot && !sim::is_shared(effect.slot))) return true;
+  return false;
+}
+
+/// Draws about the values that the plant has of `free`, parameters of one block. Only trying finds the draws
+/// that lie where the records ask for. Half of the width is common to all parameters of a unit, so that
+/// points of one curve and its times keep their order. A draw that contradicts itself is drawn again. If
+/// `within` is above 0, the longest time is at most about that [s].
+std::vector<std::vector<double>> draws(const sim::plant::Plant& plant,
+                                       const std::vector<fit::FreeParameter>& free, std::size_t count,
+                                       unsigned seed, double within = 0) {
+  double longest = 0;
+  for (const auto& f : free)
+    if (fit::parameter_record(plant, f.block, f.index).unit == "s")
+      longest = std::max(longest, fit::parameter_value(plant, f.block, f.index));
+  std::mt19937_64 random(seed);  // the same draws every time: a diagnosis can be repeated
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform;
+  sim::plant::Plant drawn = plant;
+  std::vector<std::vector<double>> all;
+  for (std::size_t tries = 0; all.size() < count && tries < kRedraws * count; ++tries) {
+    std::map<std::string_view, double> common;
+    const double shorter =
+        longest > 0 && within > 0 ? std::pow(kShortest, uniform(random)) * within / longest : 1;
+    std::vector<double> values;
+    for (const auto& f : free) {
+      const auto& p = fit::parameter_record(plant, f.block, f.index);
+      // gains are believed within decades, times and limits within a factor
+      const double width = p.low > 0 && p.high / p.low >= 1000 ? 2.0 : 0.8;
+      const double whole = common.try_emplace(p.unit, normal(random)).first->second;
+      const bool bounded = p.unit == "s" && within > 0;
+      const double factor = (bounded ? shorter : std::exp(width * std::sqrt(0.5) * whole)) *
+                            std::exp(width * std::sqrt(0.5) * normal(random));
+      values.push_back(std::clamp(fit::parameter_value(plant, f.block, f.index) * factor, p.low, p.high));
+      fit::parameter_value(drawn, f.block, f.index) = values.back();
+    }
+    if (free.empty() || sound_block(drawn, free.front().block)) all.push_back(std::move(values));
+  }
+  return all;
+}
+
+/// An instrument is nearly right: its errors are small, and their answer straight.
+void start_near_neutral(Hypothesis& h, int block) {
+  const sim::Effect& effect = fit::block_effect(h.plant, block);
+  for (std::size_t i = 0; i < effect.parameters.size(); ++i)
+    if (!effect.parameters[i].is_code()) h.free.push_back({block, static_cast<int>(i), kSpread});
+  for (const double share : {0.002, -0.002}) {
+    std::vector<double> values;
+    for (const auto& f : h.free) {
+      const auto& p = effect.parameters[static_cast<std::size_t>(f.index)];
+      values.push_back(std::clamp(p.neutral + share * (p.high - p.low), p.low, p.high));
+    }
+    h.starts.push_back(values);
+  }
+}
+
+/// The effect in a slot that has room for it.
+Hypothesis added_to(const sim::plant::Plant& base, const sim::Conventions& conventions,
+                    const sim::Effect& effect) {
+  Hypothesis h;
+  h.name = effect.name;
+  h.what = fmt::format("{} {} ({})", sim::slot_name(effect.slot), effect.name, effect.title);
+  h.side = side_of(effect.slot);
+  if (!sim::is_shared(effect.slot)) h.slot = static_cast<int>(effect.slot);
+  h.plant = base;
+  h.conventions = conventions;
+  const int block = insert(h.plant, {&effect, effect.standard_parameters()});
+  if (effect.slot == Slot::measurement) {
+    start_near_neutral(h, block);
+  } else {
+    h.free = fit::free_parameters(h.plant, block, kSpread);
+    h.starts = draws(h.plant, h.free, kDraws, 1);
+    h.starts.insert(h.starts.begin(), fit::values_of(h.plant, h.free));
+    h.drawn = true;
+  }
+  return h;
+}
+
+void add_effects(const sim::plant::Plant& base, const sim::Conventions& conventions,
+                 std::vector<Hypothesis>& all) {
+  for (const sim::Effect* effect : sim::library::every_effect()) {
+    const bool instrument = effect->slot == Slot::measurement;
+    const bool fits = effect->slot == Slot::transformer || sim::is_control(effect->slot) || instrument;
+    if (!fits || effect->instants || occupied(base, *effect)) continue;
+    if (instrument && !playin::can_be_taken_back(*effect)) continue;
+    all.push_back(added_to(base, conventions, *effect));
+  }
+}
+
+/// "S10" -> "S": parameters of one name with different numbers describe one curve.
+std::string_view stem(std::string_view name) {
+  while (!name.empty() && std::isdigit(static_cast<unsigned char>(name.back()))) name.remove_suffix(1);
+  return name;
+}
+
+void add_neutral_groups(const sim::plant::Plant& base, const sim::Conventions& conventions,
+                        std::vector<Hypothesis>& all) {
+  const auto blocks = sim::plant::block_parameters(base);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const sim::Effect& effect = fit::block_effect(base, static_cast<int>(b));
+    std::vector<std::vector<int>> groups;
+    for (std::size_t i = 0; i < blocks[b].size(); ++i) {
+      const auto& p = effect.parameters[i];
+      if (p.is_code() || blocks[b][i] != p.neutral) continue;
+      const bool joins =
+          !groups.empty() &&
+          stem(effect.parameters[static_cast<std::size_t>(groups.back().back())].name) == stem(p.name) &&
+          stem(p.name) != p.name;
+      if (joins)
+        groups.back().push_back(static_cast<int>(i));
+      else
+        groups.push_back({static_cast<int>(i)});
+    }
+    for (const auto& group : groups) {
+      Hypothesis h;
+      std::string names, meanings;
+      for (const int i : group) {
+        const auto& p = effect.parameters[static_cast<std::size_t>(i)];
+        names += (names.empty() ? "" : ",") + std::string(p.name);
+        meanings += (meanings.empty() ? "" : ", ") + std::string(p.meaning);
+      }
+      h.name = fmt::format("{}:{}", effect.name, names);
+      h.what = fmt::format("{} of {} ({})", names, effect.name, meanings);
+      h.side = side_of(effect.slot);
+      h.plant = base;
+      h.conventions = conventions;
+      for (const double share : {0.02, 0.1, 0.3, -0.02, -0.1}) {
+        std::vector<double> values;
+        sim::plant::Block moved{&effect, blocks[b]};
+        for (std::size_t k = 0; k < group.size(); ++k) {
+          const auto& p = effect.parameters[static_cast<std::size_t>(group[k])];
+          const double room = share > 0 ? p.high - p.neutral : p.neutral - p.low;
+          // a curve's later points lie above its earlier ones
+          const double v = p.neutral + share * room * static_cast<double>(k + 1) * (k > 0 ? 2.0 : 1.0);
+          values.push_back(v);
+          moved.p[static_cast<std::size_t>(group[k])] = v;
+        }
+        const bool inside = std::ranges::all_of(values, [&](double v) { return v != 0.0; });
+        if (!inside || !sound(moved)) continue;
+        if (h.starts.empty())
+          for (std::size_t k = 0; k < group.size(); ++k)
+            fit::parameter_value(h.plant, static_cast<int>(b), group[k]) = values[k];
+        h.starts.push_back(values);
+      }
+      if (h.starts.empty()) continue;
+      for (const int i : group) h.free.push_back({static_cast<int>(b), i, 2.0});
+      all.push_back(std::move(h));
+    }
+  }
+}
+
+void add_conventions(const sim::plant::Plant& base, const sim::Conventions& conventions,
+                     std::vector<Hypothesis>& all) {
+  Hypothesis h;
+  h.name = "speed-voltage";
+  h.what = "speed in the stator voltage (E'' = (1 + w) psi'')";
+  h.side = Side::machine;
+  h.plant = base;
+  h.conventions = conventions;
+  h.conventions.speed_voltage = !conventions.speed_voltage;
+  h.starts = {{}};
+  all.push_back(std::move(h));
+}
+
+}  // namespace
+
+std::string_view side_name(Side side) {
+  constexpr std::array<std::string_view, 5> names = {"none", "mechanical", "excitation", "machine",
+                                                     "measurement"};
+  return names[static_cast<std::size_t>(side)];
+}
+
+std::vector<Hypothesis> all_hypotheses(const sim::plant::Plant& base, const sim::Conventions& conventions) {
+  std::vector<Hypothesis> all;
+  add_effects(base, conventions, all);
+  add_neutral_groups(base, conventions, all);
+  add_conventions(base, conventions, all);
+  return all;
+}
+
+std::vector<Hypothesis> all_replacements(const sim::plant::Plant& base, const sim::Conventions& conventions) {
+  std::vector<Hypothesis> all;
+  for (std::size_t c = 0; c < base.controls.size(); ++c) {
+    const sim::Effect& there = *base.controls[c].effect;
+    if (sim::is_shared(there.slot)) continue;
+    sim::plant::Plant room = base;
+    room.controls.erase(room.controls.begin() + static_cast<std::ptrdiff_t>(c));
+    for (const sim::Effect* effect : sim::library::every_effect()) {
+      if (effect->slot != there.slot || effect == &there || effect->instants) continue;
+      Hypothesis h = added_to(room, conventions, *effect);
+      h.name += fmt::format(" in place of {}", there.name);
+      h.what += fmt::format(" in place of {}", there.name);
+      h.replaces = true;
+      all.push_back(std::move(h));
+    }
+  }
+  return all;
+}
+
+std::vector<std::vector<double>> further_draws(const Hypothesis& h, std::size_t own, std::size_t count,
+                                               double within) {
+  return draws(h.plant, {h.free.begin(), h.free.begin() + static_cast<std::ptrdiff_t>(own)}, count, 2,
+               within);
+}
+
+std::string full_name(const Hypothesis& h) { return h.with.empty() ? h.name : h.with + " + " + h.name; }
+
+sim::plant::Plant started(const Hypothesis& h, const std::vector<double>& start) {
+  sim::plant::Plant plant = h.plant;
+  for (std::size_t i = 0; i < h.free.size(); ++i)
+    fit::parameter_value(plant, h.free[i].block, h.free[i].index) = start[i];
+  return plant;
+}
+
+}  // namespace swingbank::validate::hypothesis

@@ -1,0 +1,44 @@
+#pragma once
+// What could be missing: every registered effect in a slot that has room, every group of parameters at their
+// neutral values, every measurement fault, every convention. And what could be of another kind: every control
+// in a slot that holds only one control. Nothing is listed by name: an effect joins by existing.
+#include <string>
+#include <vector>
+
+#include "validate/fit/fit.hpp"
+
+namespace swingbank::validate::hypothesis {
+
+enum class Side { none, mechanical, excitation, machine, measurement };
+std::string_view side_name(Side side);
+
+struct Hypothesis {
+  std::string name;       ///< "SEXS", "GENROU:S10,S12", "EXST1 in place of SEXS"
+  std::string what;       ///< "exciter SEXS (simplified excitation system)"
+  std::string with = {};  ///< name of what was added before it; empty: nothing
+  Side side = Side::none;
+  bool replaces = false;    ///< it takes the place of the control that stands in its slot
+  int slot = -1;            ///< slot that the effect would fill (sim::Slot); -1: none is filled
+  sim::plant::Plant plant;  ///< the base with the hypothesis added, at a value to start from
+  sim::Conventions conventions;
+  std::vector<fit::FreeParameter> free;     ///< parameters that the hypothesis brings
+  std::vector<std::vector<double>> starts;  ///< values of `free`, tried in turn
+  bool drawn = false;                       ///< whether the starts after the first are draws about it
+};
+
+/// Everything that may be added to the plant. Some of it may change nothing there (a stabiliser without an
+/// exciter), which only trying shows. Effects that act at given instants belong to one event and are not
+/// among them.
+std::vector<Hypothesis> all_hypotheses(const sim::plant::Plant& base, const sim::Conventions& conventions);
+/// Every control of the plant that has its slot to itself, replaced by every other effect of that slot.
+std::vector<Hypothesis> all_replacements(const sim::plant::Plant& base, const sim::Conventions& conventions);
+/// More draws of the hypothesis's first `own` free parameters than the starts it came with. Their longest
+/// time is about `within` [s] at most.
+std::vector<std::vector<double>> further_draws(const Hypothesis& h, std::size_t own, std::size_t count,
+                                               double within);
+/// Its name after that of what was added before: "SEXS + GENROU:Ra".
+std::string full_name(const Hypothesis& h);
+/// The hypothesis's plant with `start` as values of its free parameters.
+sim::plant::Plant started(const Hypothesis& h, const std::vector<double>& start);
+
+}  // namespace swingbank::validate::hypothesis

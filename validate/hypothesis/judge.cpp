@@ -1,0 +1,109 @@
+#include "validate/hypothesis/judge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace swingbank::validate::hypothesis {
+namespace {
+
+/// An event in which the effect hardly acts may be predicted worse by this factor, which is the scatter of
+/// the refit itself.
+constexpr double kWorse = 1.02;
+/// An effect may cost an unseen event no more than the larger of kCosts in chi2 and of kCostsShare of its
+/// evidence. An effect that is really missing costs it nothing.
+constexpr double kCosts = 20, kCostsShare = 0.1;
+/// An unseen event is predicted if its cost per value is at most kPredicts, or at most kFalls of what it was.
+constexpr double kPredicts = 1.25, kFalls = 0.1;
+/// A short fit has no errors, so the finished one takes its place unless its criterion is worse by this.
+constexpr double kSame = 0.5;
+
+}  // namespace
+
+std::vector<fit::FreeParameter> free_of(const Hypothesis& h, double spread) {
+  std::vector<fit::FreeParameter> free;
+  for (const auto& f : fit::free_parameters(h.plant, spread))
+    if (std::ranges::none_of(h.free, [&](const fit::FreeParameter& own) {
+          return own.block == f.block && own.index == f.index;
+        }))
+      free.push_back(f);
+  free.insert(free.end(), h.free.begin(), h.free.end());
+  return free;
+}
+
+std::vector<HeldOut> hold_out(const Trial& trial, const sim::plant::Plant& plant,
+                              const sim::Conventions& conventions,
+                              const std::vector<fit::FreeParameter>& free, const fit::Fit& whole) {
+  std::vector<HeldOut> out(trial.events.size());
+  for (std::size_t left = 0; left < trial.events.size(); ++left) {
+    std::vector<event::FitEvent> others;
+    fit::FitOptions o;
+    o.iterations = 6;
+    o.errors = false;
+    for (std::size_t e = 0; e < trial.events.size(); ++e)
+      if (e != left) {
+        others.push_back(trial.events[e]);
+        o.start.push_back(whole.events[e].state);
+      }
+    out[left].record = trial.events[left].record.name;
+    out[left].values = trial.events[left].values();
+    if (others.empty()) continue;
+    const auto& all = free.empty() ? fit::free_parameters(plant, trial.spread) : free;
+    o.values = fit::values_of(whole.plant, all);
+    const fit::Fit seen = fit::fit(plant, conventions, others, all, o);
+    fit::FitOptions unseen;
+    const fit::Fit f =
+        fit::fit(seen.failed.empty() ? seen.plant : plant, conventions, {trial.events[left]}, {}, unseen);
+    out[left].after = f.failed.empty() ? f.misfit() : 1e300;
+    out[left].cost_after = seen.failed.empty()
+                               ? (fit::penalised(whole) - fit::penalised(seen)) / whole.events[left].values
+                               : std::numeric_limits<double>::infinity();
+  }
+  return out;
+}
+
+std::string objection(const std::vector<HeldOut>& held_out, double evidence, double adequate) {
+  for (const HeldOut& h : held_out)
+    if ((h.cost_after > kWorse * h.cost_before && h.cost_after > adequate) ||
+        h.saves() < -std::max(kCosts, kCostsShare * evidence))
+      return fmt::format("does not improve {} when that is not fitted", h.record);
+  for (const HeldOut& h : held_out)
+    if (h.cost_after > kPredicts && h.cost_after > kFalls * h.cost_before)
+      return fmt::format("does not predict {} when that is not fitted", h.record);
+  return "";
+}
+
+void judge(const Trial& trial, const fit::Fit& base, const std::vector<HeldOut>& held_out_base,
+           Judgement& j) {
+  if (!j.fitted) return;
+  const auto free = free_of(j.hypothesis, trial.spread);
+  fit::FitOptions o;
+  o.values = fit::values_of(j.fit.plant, free);
+  for (const auto& e : j.fit.events) o.start.push_back(e.state);
+  if (fit::Fit f = fit::fit(j.hypothesis.plant, j.hypothesis.conventions, trial.events, free, o);
+      f.failed.empty() && penalised(f) < fit::penalised(j.fit) + kSame)
+    j.fit = std::move(f);
+  j.gain = fit::criterion(base) - fit::criterion(j.fit);
+  if (trial.passed) j.gain -= std::max(0.0, trial.passed->less_with(j.fit.plant, j.hypothesis.conventions));
+  j.size = std::sqrt(std::max(0.0, base.chi2 - j.fit.chi2));
+  if (j.gain < trial.evidence) {
+    j.why_not = fmt::format("evidence {:.0f}, below {:.0f}", j.gain, trial.evidence);
+    return;
+  }
+  j.held_out = hold_out(trial, j.hypothesis.plant, j.hypothesis.conventions, free, j.fit);
+  for (std::size_t e = 0; e < j.held_out.size(); ++e) {
+    j.held_out[e].before = held_out_base[e].after;
+    j.held_out[e].cost_before = held_out_base[e].cost_after;
+  }
+  j.why_not = objection(j.held_out, j.gain, trial.adequate);
+  if (!j.why_not.empty()) return;
+  if (j.fit.misfit() > trial.adequate) {
+    j.why_not = fmt::format("leaves {:.2f} of the noise's variance", j.fit.misfit());
+    return;
+  }
+  j.accepted = true;
+}
+
+}  // namespace swingbank::validate::hypothesis

@@ -1,0 +1,67 @@
+#pragma once
+// How a hypothesis is judged: fitted to all events, then by what it predicts for events left out of the fit.
+#include <string>
+#include <vector>
+
+#include "validate/fit/fit.hpp"
+#include "validate/fit/passed_noise.hpp"
+#include "validate/hypothesis/hypothesis.hpp"
+
+namespace swingbank::validate::hypothesis {
+
+/// What a left-out event says of an effect, by the model fitted to the other events with and without it.
+struct HeldOut {
+  std::string record;
+  double before = 0, after = 0;  ///< chi2 per value
+  /// By how much the cost of the fit grows for each value when this event joins it. This is the event's chi2,
+  /// less what the other events leave open of the parameters.
+  double cost_before = 0, cost_after = 0;
+  int values = 0;  ///< numbers compared
+  /// What the effect takes off the cost of the whole event; negative where the effect costs.
+  [[nodiscard]] double saves() const { return (cost_before - cost_after) * values; }
+};
+
+/// One hypothesis, fitted and judged.
+struct Judgement {
+  Hypothesis hypothesis;
+  fit::Fit fit;                   ///< to all events
+  double gain = 0;                ///< criterion(base) - criterion(with it): evidence in its favour
+  double size = 0;                ///< what it adds to the answer: norm of the change / noise, per sqrt(value)
+  std::vector<HeldOut> held_out;  ///< empty where judging was not worth it
+  bool fitted = true;             ///< false: the score test gave no hope; `fit` is without it
+  bool accepted = false;
+  std::string why_not;  ///< empty where accepted
+};
+
+/// Evidence from which a hypothesis is accepted. Thirty development cases with nothing hidden
+/// gave the best of some thirty wrong ones 20 at most.
+constexpr double kEvidence = 40;
+
+/// Parameters of the plant that a refit may move, then the hypothesis's own parameters.
+std::vector<fit::FreeParameter> free_of(const Hypothesis& h, double spread);
+
+/// Events to judge on, and what is known of them without any hypothesis.
+struct Trial {
+  const std::vector<event::FitEvent>& events;
+  double spread;                ///< believed of the model's parameters
+  double adequate;              ///< chi2 per value up to which nothing but noise is left
+  double evidence = kEvidence;  ///< from which a hypothesis is accepted
+  /// Noise of the voltage that the base passes into its answer: to pass less of it is no evidence. Null: this
+  /// noise is not considered.
+  const fit::PassedNoise* passed = nullptr;
+};
+
+/// Predicts each event by the structure fitted to the other events. Empty `free` means the plant's own
+/// parameters.
+std::vector<HeldOut> hold_out(const Trial& trial, const sim::plant::Plant& plant,
+                              const sim::Conventions& conventions,
+                              const std::vector<fit::FreeParameter>& free, const fit::Fit& whole);
+/// Says which left-out event speaks against an effect of this evidence, and how. Empty if none does.
+/// `adequate` is that of Trial.
+std::string objection(const std::vector<HeldOut>& held_out, double evidence, double adequate);
+/// Does nothing if `j` was not fitted. Otherwise finishes its fit and accepts it if its evidence is strong,
+/// every left-out event is predicted better than by the base, and nothing but noise is left. If not, says why
+/// not.
+void judge(const Trial& trial, const fit::Fit& base, const std::vector<HeldOut>& held_out_base, Judgement& j);
+
+}  // namespace swingbank::validate::hypothesis

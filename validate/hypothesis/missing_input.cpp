@@ -1,0 +1,57 @@
+#include "validate/hypothesis/missing_input.hpp"
+
+#include <algorithm>
+
+namespace swingbank::validate::hypothesis {
+namespace {
+
+/// Knots from the first switching (without one: the end of the steady window) on: close together while the
+/// rotor swings, wider later.
+std::vector<double> knots_of(const event::FitEvent& event) {
+  const double begin = event.switchings.empty()
+                           ? event.record.t[static_cast<std::size_t>(event.start.samples - 1)]
+                           : event.switchings.front().time;
+  const double end = event.record.t.back();
+  constexpr double kFine = 0.1, kGrowth = 1.06, kCoarse = 0.4;  // [s]; a swing takes about a second
+  std::vector<double> knots;
+  double gap = kFine;
+  for (double t = begin; t < end - 0.5 * gap; t += gap) {
+    knots.push_back(t);
+    if (t > begin + 2.0) gap = std::min(kCoarse, gap * kGrowth);
+  }
+  knots.push_back(end);
+  return knots;
+}
+
+}  // namespace
+
+double MissingInput::explains(const fit::Fit& without) const {
+  std::size_t knots = 0;
+  for (const auto& e : fit.events) knots += e.state.input.t.size();
+  return without.chi2 - fit.chi2 - 2.0 * static_cast<double>(knots);
+}
+
+MissingInput infer_input(fit::InputKind kind, const sim::plant::Plant& plant,
+                         const sim::Conventions& conventions, const std::vector<event::FitEvent>& events,
+                         double spread, const fit::FitOptions& start) {
+  MissingInput found{kind, {}};
+  fit::FitOptions options = start;
+  options.input = kind;
+  options.bend = kind == fit::InputKind::torque ? 0.01 : 0.1;  // a second difference between knots [pu]
+  options.iterations = 8;
+  options.enough = 1e-3;
+  if (options.start.empty())
+    for (const event::FitEvent& e : events) {
+      fit::EventState state;
+      for (const auto& s : e.switchings) state.switchings.push_back(s.time);
+      options.start.push_back(state);
+    }
+  for (std::size_t e = 0; e < events.size(); ++e) {
+    options.start[e].input.t = knots_of(events[e]);
+    options.start[e].input.value.assign(options.start[e].input.t.size(), 0.0);
+  }
+  found.fit = fit::fit(plant, conventions, events, fit::free_parameters(plant, spread), options);
+  return found;
+}
+
+}  // namespace swingbank::validate::hypothesis

@@ -1,0 +1,27 @@
+#pragma once
+// The input that closes the gap: a torque or a field voltage, free in time, that makes the present structure
+// answer as measured. The side is told by which of the two can do it. The input's course is the evidence and,
+// where no known effect explains it, the material for a law.
+#include "validate/fit/fit.hpp"
+
+namespace swingbank::validate::hypothesis {
+
+/// The input of each event: straight pieces between knots, with a penalty on their bends.
+struct MissingInput {
+  fit::InputKind kind = fit::InputKind::torque;
+  fit::Fit fit;  ///< the plant refitted with the input; the events' states carry `input`
+  [[nodiscard]] double misfit() const { return fit.misfit(); }
+  /// What the input explains of the chi2 that `without` leaves, less twice the number of its knots (Akaike
+  /// 1974).
+  [[nodiscard]] double explains(const fit::Fit& without) const;
+  [[nodiscard]] const playin::PiecewiseLinear& of(std::size_t event) const {
+    return fit.events[event].state.input;
+  }
+};
+
+/// Infers the input while the plant's parameters are free within `spread`.
+MissingInput infer_input(fit::InputKind kind, const sim::plant::Plant& plant,
+                         const sim::Conventions& conventions, const std::vector<event::FitEvent>& events,
+                         double spread, const fit::FitOptions& start);
+
+}  // namespace swingbank::validate::hypothesis

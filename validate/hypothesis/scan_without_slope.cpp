@@ -1,0 +1,145 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <span>
+
+#include "validate/hypothesis/search.hpp"
+#include "validate/playin/instruments.hpp"
+
+namespace swingbank::validate::hypothesis {
+namespace {
+
+constexpr std::array<double, 10> kMultiples = {0.3, 0.5, 0.7, 0.85, 0.95, 1.05, 1.18, 1.4, 2.0, 3.3};
+/// Multiples at which it shows whether a parameter acts at all.
+constexpr double kLess = 0.7, kMore = 1.4;
+/// A parameter acts if it changes chi2 by this much.
+constexpr double kActs = 1;
+/// The kFitted multiples that leave least get kOwnSteps steps of the parameters that have slopes. The kBest
+/// best of these get kAllSteps steps of all parameters.
+constexpr std::size_t kFitted = 12, kBest = 2;
+constexpr int kOwnSteps = 3, kAllSteps = 9;
+/// So many rounds at most, as long as each round gains kWorthARound.
+constexpr int kRounds = 4;
+constexpr double kWorthARound = 10;
+
+class BlindScan {
+ public:
+  BlindScan(const Stage& stage, const Hypothesis& h, const fit::Fit& from)
+      : stage_(stage), h_(h), from_(from) {
+    for (const auto& e : from.events) states_.push_back(e.state);
+    std::vector<char> seen;
+    try {
+      seen = slopes();
+    } catch (const InputError&) {  // a run with slopes takes other steps, and this one cannot be run
+      return;
+    }
+    for (std::size_t i = 0; i < h.free.size(); ++i) (seen[i] ? seen_ : blind_).push_back(h.free[i]);
+    std::erase_if(blind_, [this](const fit::FreeParameter& f) { return idle(f); });
+  }
+  /// The best of the values tried. Parameters of the hypothesis that have slopes are fitted for a few steps;
+  /// everything else is as `from` has it.
+  [[nodiscard]] std::vector<fit::Fit> best() const {
+    std::vector<std::pair<double, sim::plant::Plant>> starts;
+    for (const auto& group : groups())
+      for (const double multiple : kMultiples) {
+        sim::plant::Plant plant = multiplied(group, multiple);
+        if (const double left = left_by(plant, h_.conventions, stage_.events, states_); std::isfinite(left))
+          starts.emplace_back(left, std::move(plant));
+      }
+    std::ranges::sort(starts, {}, &std::pair<double, sim::plant::Plant>::first);
+    std::vector<fit::Fit> tried;
+    for (const auto& start : std::span(starts).first(std::min(kFitted, starts.size())))
+      if (fit::Fit f = beside(start.second); f.failed.empty()) tried.push_back(std::move(f));
+    std::ranges::sort(tried, {}, &fit::Fit::chi2);
+    if (tried.size() > kBest) tried.resize(kBest);
+    return tried;
+  }
+
+ private:
+  using Group = std::vector<fit::FreeParameter>;
+
+  /// For each parameter of the hypothesis, whether any event's answer has a slope along it.
+  [[nodiscard]] std::vector<char> slopes() const {
+    std::vector<playin::Direction> along;
+    for (const fit::FreeParameter& f : h_.free)
+      along.push_back({playin::Direction::Kind::parameter, f.block, f.index, 1.0});
+    std::vector<char> seen(along.size(), 0);
+    for (std::size_t e = 0; e < stage_.events.size(); ++e) {
+      const event::FitEvent& event = stage_.events[e];
+      const playin::VoltageCurve curve(event.played(), fit::switchings_at(event, states_[e]));
+      playin::Drive run = fit::drive_at(from_.plant, h_.conventions, event, states_[e]);
+      run.curve = &curve;
+      const playin::Response r = playin::observe(run, along);
+      for (std::size_t d = 0; d < along.size(); ++d)
+        if (event.collected(r.slopes[d].value, false).squaredNorm() > 0) seen[d] = 1;
+    }
+    return seen;
+  }
+  [[nodiscard]] sim::plant::Plant multiplied(const Group& group, double by) const {
+    sim::plant::Plant plant = from_.plant;
+    for (const fit::FreeParameter& f : group) {
+      double& value = fit::parameter_value(plant, f.block, f.index);
+      const sim::Parameter& record = fit::parameter_record(plant, f.block, f.index);
+      value = std::clamp(value * by, record.low, record.high);
+    }
+    return plant;
+  }
+  /// Whether neither a smaller nor a larger value changes anything.
+  [[nodiscard]] bool idle(const fit::FreeParameter& f) const {
+    return std::ranges::all_of(std::array{kLess, kMore}, [&](double by) {
+      const double left = left_by(multiplied({f}, by), h_.conventions, stage_.events, states_);
+      return std::abs(left - from_.chi2) < kActs;
+    });
+  }
+  /// Each parameter by itself, and all parameters of one unit together, so that the points of a curve do not
+  /// cross.
+  [[nodiscard]] std::vector<Group> groups() const {
+    std::vector<Group> all;
+    std::map<std::string, Group> by_unit;
+    for (const fit::FreeParameter& f : blind_) {
+      all.push_back({f});
+      by_unit[std::string(fit::parameter_record(from_.plant, f.block, f.index).unit)].push_back(f);
+    }
+    for (auto& [unit, group] : by_unit)
+      if (group.size() > 1) all.push_back(std::move(group));
+    return all;
+  }
+  [[nodiscard]] fit::Fit beside(const sim::plant::Plant& plant) const {
+    fit::FitOptions o;
+    o.errors = false;
+    o.iterations = kOwnSteps;
+    o.start = states_;
+    return fit::fit(plant, h_.conventions, stage_.events, seen_, o);
+  }
+
+  const Stage& stage_;
+  const Hypothesis& h_;
+  const fit::Fit& from_;
+  std::vector<fit::EventState> states_;
+  std::vector<fit::FreeParameter> seen_, blind_;
+};
+
+}  // namespace
+
+fit::Fit past_blind(const Stage& stage, const Hypothesis& h, const sim::plant::Plant& believed,
+                    fit::Fit from) {
+  const auto free = free_of(h, stage.spread);
+  for (int round = 0; round < kRounds && from.failed.empty(); ++round) {
+    fit::Fit best = from;
+    for (const fit::Fit& start : BlindScan(stage, h, from).best()) {
+      fit::FitOptions o = fit::continued({}, start, free);
+      o.errors = false;
+      o.iterations = kAllSteps;
+      if (fit::Fit f = fit::fit(believed, h.conventions, stage.events, free, o);
+          fit::penalised(f) < fit::penalised(best))
+        best = std::move(f);
+    }
+    const bool worth = fit::penalised(best) < fit::penalised(from) - kWorthARound;
+    from = std::move(best);
+    if (!worth) break;
+  }
+  return from;
+}
+
+}  // namespace swingbank::validate::hypothesis

@@ -1,0 +1,248 @@
+#include "validate/hypothesis/search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/in_parallel.hpp"
+#include "validate/hypothesis/detail/starts.hpp"
+
+namespace swingbank::validate::hypothesis {
+namespace {
+
+/// Steps of the fits: from each start, from the best two of them, and from the stage's fit.
+constexpr int kFirstSteps = 4, kMoreSteps = 8, kNestedSteps = 12;
+/// Steps from each start beside a stage that nearly fits, and from the best of them.
+constexpr int kNearSteps = 3, kOnwardSteps = 9;
+/// Steps of the fit that starts with the blocks which the stage has bent as the model has them.
+constexpr int kUnbentSteps = 8;
+/// A fit goes on in so many rounds at most, as long as each round gains kWorthARound.
+constexpr int kRounds = 5;
+constexpr double kWorthARound = 10;
+/// A fit that is still worse than the stage goes on only if a round leaves less than this share of the
+/// distance to the stage.
+constexpr double kComing = 0.8;
+/// Misfit of the stage below which its fitted values are good starts for everything but what is missing.
+constexpr double kNested = 4;
+/// All hypotheses try kFirst starts. Further starts are tried from a share of kFairAtFirst of the best one's
+/// gain, and a hypothesis is fitted on from a share of kFair.
+constexpr std::size_t kFirst = 2;
+constexpr double kFairAtFirst = 0.05, kFair = 0.2;
+/// What lies this little behind the best one goes on in any case.
+constexpr double kCloseBehind = 200;
+
+class Searcher {
+ public:
+  Searcher(const Stage& stage, const SearchProgress& report)
+      : stage_(stage), report_(report), starts_(stage) {}
+
+  std::vector<Judgement> run(std::vector<Hypothesis> all) {
+    const auto candidates = screened(std::move(all));
+    std::vector<Judgement> tried(candidates.size());
+    if (starts_.near()) {
+      std::vector<std::vector<fit::Fit>> begun(candidates.size());
+      each(candidates, "first steps ", [&](std::size_t i) { near_first(candidates[i], begun[i]); });
+      auto onward = promising(candidates, begun, kFair);
+      // a fit that is worse than nothing has not arrived yet, and another start is left
+      for (std::size_t i = 0; i < candidates.size(); ++i)
+        if (!candidates[i].unbent.empty() && gain_of(begun[i]) < 0) onward[i] = 1;
+      each(candidates, "fit ", [&](std::size_t i) {
+        const Candidate& c = candidates[i];
+        if (c.nested.empty())
+          tried[i] = hopeless(c);
+        else
+          tried[i] = onward[i] ? near_onward(c, std::move(begun[i])) : judgement(c, std::move(begun[i]));
+      });
+    } else {
+      std::vector<std::vector<fit::Fit>> begun(candidates.size());
+      each(candidates, "first steps ", [&](std::size_t i) { first_steps(candidates[i], kFirst, begun[i]); });
+      const auto fair = promising(candidates, begun, kFairAtFirst);
+      each(candidates, "first steps ", [&](std::size_t i) {
+        if (fair[i]) first_steps(candidates[i], kTries, begun[i]);
+      });
+      const auto onward = promising(candidates, begun, kFair);
+      each(candidates, "fit ", [&](std::size_t i) {
+        tried[i] = onward[i] ? more_steps(candidates[i], begun[i]) : judgement(candidates[i], begun[i]);
+      });
+    }
+    std::erase_if(tried, [](const Judgement& j) { return j.fit.events.empty(); });
+    std::ranges::sort(tried, std::greater<>(), &Judgement::gain);
+    return tried;
+  }
+
+ private:
+  template <class F>
+  void each(const std::vector<Candidate>& candidates, const std::string& what, F act) const {
+    in_parallel(
+        candidates.size(), act,
+        [&](int done, std::size_t i) {
+          report(what + candidates[i].hypothesis.name, done, candidates.size());
+        },
+        stage_.threads);
+  }
+  /// Every hypothesis that acts here.
+  std::vector<Candidate> screened(std::vector<Hypothesis> all) const {
+    std::vector<Candidate> candidates(all.size());
+    in_parallel(
+        all.size(), [&](std::size_t i) { candidates[i] = starts_.of(std::move(all[i])); },
+        [&](int done) { report("hypotheses", done, all.size()); }, stage_.threads);
+    std::erase_if(candidates, [](const Candidate& c) { return c.starts.empty(); });
+    return candidates;
+  }
+  fit::Fit attempt(const Candidate& c, const sim::plant::Plant& start, const fit::FitOptions& o) const {
+    return fit::fit(start, c.hypothesis.conventions, stage_.events, free_of(c.hypothesis, stage_.spread), o);
+  }
+  /// Fits the first `tries` starts, the standard values and then the draws, leaving out those that `fits`
+  /// holds already.
+  void first_steps(const Candidate& c, std::size_t tries, std::vector<fit::Fit>& fits) const {
+    fit::FitOptions o;
+    o.errors = false;
+    o.iterations = kFirstSteps;
+    for (std::size_t k = fits.size(); k < std::min(c.starts.size(), tries); ++k)
+      fits.push_back(attempt(c, c.starts[k], o));
+  }
+  /// What the best of the fits gains over the stage; minus infinity if there is none.
+  double gain_of(const std::vector<fit::Fit>& fits) const {
+    double gain = -std::numeric_limits<double>::infinity();
+    for (const fit::Fit& f : fits) gain = std::max(gain, fit::penalised(stage_.fit) - fit::penalised(f));
+    return gain;
+  }
+  /// Marks the hypotheses whose first steps gain a fair share of what the best one's do, and the rivals of
+  /// its slot.
+  std::vector<char> promising(const std::vector<Candidate>& candidates,
+                              const std::vector<std::vector<fit::Fit>>& begun, double share) const {
+    std::vector<double> gains;
+    for (const auto& fits : begun) gains.push_back(gain_of(fits));
+    const auto best = std::ranges::max_element(gains);
+    std::vector<char> onward;
+    for (std::size_t i = 0; i < gains.size(); ++i) {
+      const int slot = candidates[static_cast<std::size_t>(best - gains.begin())].hypothesis.slot;
+      onward.push_back(*best <= 0 || gains[i] >= share * *best || gains[i] > *best - kCloseBehind ||
+                       (slot >= 0 && candidates[i].hypothesis.slot == slot));
+    }
+    return onward;
+  }
+  /// Goes on from the best draw and from the standard values. These are not left out for being slow, because
+  /// draws that hardly act always look better at first. Beliefs are about the start, not about where its
+  /// first steps led.
+  Judgement more_steps(const Candidate& c, const std::vector<fit::Fit>& begun) const {
+    const auto free = free_of(c.hypothesis, stage_.spread);
+    fit::FitOptions o;
+    o.errors = false;
+    o.iterations = kMoreSteps;
+    std::vector<fit::Fit> fits;
+    std::size_t best = 0;
+    for (std::size_t k = 1; k < begun.size(); ++k)
+      if (begun[k].failed.empty() && (best == 0 || fit::penalised(begun[k]) < fit::penalised(begun[best])))
+        best = k;
+    for (const std::size_t k : {std::size_t{0}, best})
+      if (begun[k].failed.empty() && (k > 0 || fits.empty()))
+        fits.push_back(attempt(c, c.starts[k], fit::continued(o, begun[k], free)));
+    std::erase_if(fits, [](const fit::Fit& f) { return !f.failed.empty(); });
+    const bool worse = fits.empty() || fit::penalised(*std::ranges::min_element(fits, {}, fit::penalised)) >
+                                           penalised(stage_.fit);
+    if (!c.nested.empty() && (worse || stage_.fit.misfit() < kNested)) {
+      o.iterations = kNestedSteps;
+      o.values = std::ranges::min_element(c.nested)->second;
+      o.start.clear();
+      for (const auto& e : stage_.fit.events) o.start.push_back(e.state);
+      if (fit::Fit f = attempt(c, c.starts.front(), o); f.failed.empty()) fits.push_back(std::move(f));
+    }
+    return judgement(c, scanned(c, std::move(fits)));
+  }
+  Judgement hopeless(const Candidate& c) const {
+    Judgement j;
+    j.hypothesis = c.hypothesis;
+    j.fit = stage_.fit;
+    j.fitted = false;
+    j.gain = c.promise;
+    j.why_not = fmt::format("chi2 would fall by some {:.0f}: not worth a fit", c.promise);
+    return j;
+  }
+  /// Fits from the values and states at which a stage that nearly fits has ended.
+  fit::Fit from_stage(const Candidate& c, const std::vector<double>& values, int steps) const {
+    fit::FitOptions o;
+    o.errors = false;
+    o.iterations = steps;
+    o.values = values;
+    for (const auto& e : stage_.fit.events) o.start.push_back(e.state);
+    return attempt(c, c.starts.front(), o);
+  }
+  void near_first(const Candidate& c, std::vector<fit::Fit>& fits) const {
+    for (std::size_t k = 0; k < std::min(c.nested.size(), kTries); ++k)
+      if (fit::Fit f = from_stage(c, c.nested[k].second, kNearSteps); f.failed.empty())
+        fits.push_back(std::move(f));
+  }
+  Judgement near_onward(const Candidate& c, std::vector<fit::Fit> fits) const {
+    if (fits.empty()) return judgement(c, fits);
+    fit::Fit best = in_rounds(c, *std::ranges::min_element(fits, {}, fit::penalised));
+    if (!c.unbent.empty())
+      if (fit::Fit f = from_stage(c, c.unbent, kUnbentSteps);
+          fit::penalised(f) < fit::penalised(best) + kCloseBehind)
+        fits.push_back(in_rounds(c, std::move(f)));
+    fits.push_back(std::move(best));
+    return judgement(c, scanned(c, std::move(fits)));
+  }
+  /// The best of the fits, after parameters without a slope have been scanned as well.
+  std::vector<fit::Fit> scanned(const Candidate& c, std::vector<fit::Fit> fits) const {
+    if (fits.empty()) return fits;
+    return {past_blind(stage_, c.hypothesis, c.starts.front(),
+                       std::move(*std::ranges::min_element(fits, {}, fit::penalised)))};
+  }
+  /// Fits on in rounds, as long as that is worth it.
+  fit::Fit in_rounds(const Candidate& c, fit::Fit best) const {
+    fit::FitOptions o;
+    o.errors = false;
+    o.iterations = kOnwardSteps;
+    const auto free = free_of(c.hypothesis, stage_.spread);
+    for (int round = 0; round < kRounds; ++round) {
+      const fit::Fit from = std::exchange(best, attempt(c, c.starts.front(), fit::continued(o, best, free)));
+      const double left = fit::penalised(best) - fit::penalised(stage_.fit);
+      const bool gets_there = left < kComing * (fit::penalised(from) - fit::penalised(stage_.fit));
+      if (best.converged || fit::penalised(best) > penalised(from) - kWorthARound ||
+          (left > 0 && !gets_there))
+        break;
+    }
+    return best;
+  }
+  /// Makes a judgement of the best of the fits.
+  Judgement judgement(const Candidate& c, std::vector<fit::Fit> fits) const {
+    Judgement j;
+    j.hypothesis = c.hypothesis;
+    std::erase_if(fits, [](const fit::Fit& f) { return !f.failed.empty(); });
+    if (fits.empty()) return j;
+    j.fit = with_errors(c, std::move(*std::ranges::min_element(fits, {}, fit::penalised)));
+    j.gain = fit::criterion(stage_.fit) - fit::criterion(j.fit);
+    return j;
+  }
+  /// The same fit with errors, which its evidence needs.
+  fit::Fit with_errors(const Candidate& c, fit::Fit f) const {
+    const auto free = free_of(c.hypothesis, stage_.spread);
+    fit::FitOptions o = fit::continued({}, f, free);
+    o.iterations = 0;
+    fit::Fit known = fit::fit(c.starts.front(), c.hypothesis.conventions, stage_.events, free, o);
+    if (!known.failed.empty()) return f;
+    known.iterations = f.iterations;
+    known.converged = f.converged;
+    return known;
+  }
+  void report(const std::string& what, int done, std::size_t total) const {
+    if (!report_) return;
+    report_(stage_.with.empty() ? what : what + " beside " + stage_.with, done, static_cast<int>(total));
+  }
+
+  const Stage& stage_;
+  const SearchProgress& report_;
+  StartFinder starts_;
+};
+
+}  // namespace
+
+std::vector<Judgement> try_hypotheses(const Stage& stage, std::vector<Hypothesis> all,
+                                      const SearchProgress& report) {
+  return Searcher(stage, report).run(std::move(all));
+}
+
+}  // namespace swingbank::validate::hypothesis

@@ -1,0 +1,65 @@
+#pragma once
+// Every hypothesis tried by itself on one structure: started from draws, fitted for a short while, in order
+// of its evidence. Judging the leading ones on unseen events comes after (judge).
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "validate/hypothesis/judge.hpp"
+
+namespace swingbank::validate::hypothesis {
+
+/// Called with what is done, done and total; may be empty.
+using SearchProgress = std::function<void(const std::string& what, int done, int total)>;
+
+/// A structure that a hypothesis may be added to.
+struct Stage {
+  const std::vector<event::FitEvent>& events;
+  sim::plant::Plant plant;  ///< holds the nominal values, which beliefs are about
+  sim::Conventions conventions;
+  const fit::Fit& fit;  ///< of this structure
+  std::vector<fit::FreeParameter> own =
+      {};                 ///< parameters that earlier stages brought, as numbered in `plant`
+  std::string with = {};  ///< name of what was added; empty: the model as it was given
+  double spread = 0.2;    ///< believed of the model's parameters
+  int threads = 1;
+};
+
+/// Fits the hypotheses and does not judge them. Returns the best first and leaves out those that do not act.
+/// `gain` is over the stage's fit.
+std::vector<Judgement> try_hypotheses(const Stage& stage, std::vector<Hypothesis> all,
+                                      const SearchProgress& report = {});
+
+/// chi2 of a plant with each event at its entry of `states`; infinite where the plant cannot be run.
+double left_by(const sim::plant::Plant& plant, const sim::Conventions& conventions,
+               const std::vector<event::FitEvent>& events, const std::vector<fit::EventState>& states);
+
+/// Goes on where `from` ended, with the parameters that act without a slope: a limiter's timer ends at an
+/// instant, and no sensitivity follows an instant. Such parameters of `h` are tried at multiples of their
+/// values, and everything is fitted on from the best, as long as that gains. Beliefs are about `believed`.
+fit::Fit past_blind(const Stage& stage, const Hypothesis& h, const sim::plant::Plant& believed,
+                    fit::Fit from);
+
+/// Fits `j`, as try_hypotheses left it, from further starts, with the machine as the leading hypothesis of
+/// its slot found it. A rival must not lose by a poor start.
+void try_further(const Stage& stage, const fit::Fit& leader, Judgement& j);
+
+/// Fits `j` from where the fit of another structure ended.
+void try_from(const Stage& stage, const fit::Fit& other, Judgement& j);
+
+/// The stage at which `j`, added to `stage`, is there already.
+Stage after(const Stage& stage, const Judgement& j);
+
+/// Frees in `h` the parameters that earlier stages brought, at their fitted values.
+void bring(const Stage& stage, Hypothesis& h);
+
+/// What could stand in the place of a pair's first effect, beside its second one: whatever fills the first
+/// one's slot, and those of `alone` that are accepted. These are not fitted. `fit` has the values and states
+/// to start from: the first effect's as `alone` found them, the second effect's as the pair has them.
+std::vector<Judgement> exchanges(const Stage& stage, const Judgement& pair,
+                                 const std::vector<Judgement>& alone);
+/// Fits one of the exchanges. If it ends behind the pair, it is fitted from further starts with the machine
+/// as in the pair.
+void try_exchange(const Stage& stage, const Judgement& pair, Judgement& j);
+
+}  // namespace swingbank::validate::hypothesis

@@ -1,0 +1,59 @@
+// The inferred input and the signals of the plant that has it.
+#include "validate/laws/detail/traces.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace swingbank::validate::laws {
+namespace {
+
+/// First switching after which the voltage leaves its band; NaN: it never does.
+double trigger_of(const event::FitEvent& e, double level) {
+  const record::Record& r = e.played();
+  if (level > 0)
+    for (std::size_t k = static_cast<std::size_t>(e.start.samples); k < r.t.size(); ++k)
+      if (std::abs(r.V[k] - std::abs(e.start.voltage)) > level) return r.t[k];
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+std::vector<LawTrace> law_traces(const plant::PlantModel& model, const std::vector<event::FitEvent>& events,
+                                 const hypothesis::MissingInput& input, double level) {
+  std::vector<LawTrace> all;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const event::FitEvent& e = events[i];
+    const fit::EventState& state = input.fit.events[i].state;
+    const auto switchings = fit::switchings_at(e, state);
+    const playin::VoltageCurve curve(e.played(), switchings);
+    playin::Drive run = fit::drive_at(input.fit.plant, model.conventions, e, state);
+    run.curve = &curve;
+    (input.kind == fit::InputKind::torque ? run.torque : run.field) = state.input;
+    const playin::Response r = playin::drive(run);
+    const double to_machine = e.record.base.mva / input.fit.plant.mva;
+    LawTrace t;
+    t.t = e.record.t;
+    t.knots = state.input.t;
+    t.input = state.input.value;
+    t.begin = t.knots.front();
+    t.trigger = trigger_of(e, level);
+    const auto deviation = [&](const std::vector<double>& x, double scale) {
+      std::vector<double> d;
+      for (const double v : x) d.push_back(scale * (v - x.front()));
+      return d;
+    };
+    std::vector<double> V;  // as played in: smooth across what an instrument smeared
+    for (std::size_t k = 0, segment = 0; k < t.t.size(); ++k) {
+      while (segment < switchings.size() && t.t[k] > switchings[segment].time) ++segment;
+      V.push_back(std::abs(curve(static_cast<int>(segment), t.t[k])) - std::abs(e.start.voltage));
+    }
+    t.signal = {r.of(playin::Output::speed), V, deviation(r.of(playin::Output::P), to_machine),
+                deviation(r.of(playin::Output::Q), to_machine), deviation(r.of(playin::Output::Ifd), 1.0)};
+    t.rest =
+        input.kind == fit::InputKind::torque ? run.start.P * to_machine : r.of(playin::Output::Efd).front();
+    all.push_back(std::move(t));
+  }
+  return all;
+}
+
+}  // namespace swingbank::validate::laws

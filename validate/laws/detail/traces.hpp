@@ -1,0 +1,13 @@
+#pragma once
+// What laws are searched in.
+#include "validate/hypothesis/missing_input.hpp"
+#include "validate/laws/candidate.hpp"
+
+namespace swingbank::validate::laws {
+
+/// One trace per event; signals are those of the plant driven with the inferred input. `level` as from
+/// trigger_level.
+std::vector<LawTrace> law_traces(const plant::PlantModel& model, const std::vector<event::FitEvent>& events,
+                                 const hypothesis::MissingInput& input, double level);
+
+}  // namespace swingbank::validate::laws

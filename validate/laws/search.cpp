@@ -1,0 +1,224 @@
+#include "validate/laws/search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "base/in_parallel.hpp"
+#include "sim/laws/law.hpp"
+#include "validate/laws/detail/course.hpp"
+#include "validate/laws/detail/text.hpp"
+#include "validate/laws/detail/traces.hpp"
+
+namespace swingbank::validate::laws {
+namespace {
+
+constexpr double kLawSpread = 1.0;  ///< a law's numbers are believed within a factor e of the regression's
+constexpr double kLeastExplained = 0.3;  ///< share of the inferred input below which a law is not tried
+constexpr std::size_t kFitted = 8;       ///< laws fitted to the records
+constexpr std::size_t kPerSignal = 3;    ///< laws of one signal that are fitted, at most
+constexpr std::size_t kJudged = 3;       ///< laws judged on events left out
+/// An input is worth a law if it leaves at most this share of the base's misfit.
+constexpr double kExplains = 0.3;
+/// An input explains as much as the better one if it leaves no more than this many times what that leaves.
+constexpr double kAsMuch = 1.5;
+/// Judging would be in vain if the first fit leaves this chi2 per value or more.
+constexpr double kHopeless = 2;
+
+/// Whether every word of `a`'s family is one of `b`'s; then `b` is `a` with something added.
+bool within(const LawCandidate& a, const LawCandidate& b) {
+  const auto words = [](const std::string& family) {
+    std::set<std::string> all;
+    for (std::size_t at = 0; at < family.size();) {
+      const auto comma = std::min(family.find(", ", at), family.size());
+      all.insert(family.substr(at, comma - at));
+      at = comma + 2;
+    }
+    all.erase("static");
+    return all;
+  };
+  return a.signal == b.signal && std::ranges::includes(words(b.family), words(a.family));
+}
+/// The leading laws. Not all of them are of one signal, and none of them is a better one with something
+/// added.
+std::vector<LawCandidate> leading(const std::vector<LawCandidate>& ranked) {
+  std::map<std::string, std::size_t> of_signal;
+  std::vector<LawCandidate> chosen;
+  for (const auto& law : ranked) {
+    if (chosen.size() == kFitted || law.explained < kLeastExplained) break;
+    if (std::ranges::any_of(chosen, [&](const LawCandidate& c) { return within(c, law); })) continue;
+    if (of_signal[law.signal]++ < kPerSignal) chosen.push_back(law);
+  }
+  return chosen;
+}
+/// By how much a law must answer better before it is preferred. A time of the record means something only
+/// where records begin alike, and a law in proportion to the start says more than one that is not.
+double handicap(const LawCandidate& law) {
+  return (law.signal == "time" ? 6.0 : 0.0) + (law.family.ends_with("in proportion") ? 3.0 : 0.0);
+}
+
+std::string source_of(const std::vector<event::FitEvent>& events) {
+  std::string names;
+  for (const auto& e : events) names += (names.empty() ? "" : ", ") + e.record.name;
+  return "found by swingbank diagnose in " + names;
+}
+
+/// The present values of `from` in a plant that has one block more.
+std::vector<double> values_in(const sim::plant::Plant& from, const sim::plant::Block& law, int block,
+                              const std::vector<fit::FreeParameter>& free) {
+  sim::plant::Plant own = from;
+  std::vector<double> values;
+  for (const auto& f : free)
+    values.push_back(f.block == block
+                         ? law.p[static_cast<std::size_t>(f.index)]
+                         : fit::parameter_value(own, f.block > block ? f.block - 1 : f.block, f.index));
+  return values;
+}
+
+class Searcher {
+ public:
+  Searcher(const Unexplained& c, const hypothesis::MissingInput& input, const LawProgress& report)
+      : case_(c), input_(input), report_(report) {}
+
+  LawSearch run() {
+    const auto begin = std::chrono::steady_clock::now();
+    LawSearch s;
+    s.kind = input_.kind;
+    const double level = trigger_level(case_.trial.events);
+    s.traces = law_traces(case_.model, case_.trial.events, input_, level);
+    s.ranked = law_candidates(s.kind, s.traces, level);
+    tell("laws ranked", 1, 1);
+    const auto tried = leading(s.ranked);
+    s.findings.resize(tried.size());
+    in_turn("law", tried.size(), [&](std::size_t k) { s.findings[k] = fitted(tried[k]); });
+    std::erase_if(s.findings, [](const LawFinding& f) { return f.judgement.fit.events.empty(); });
+    const auto by_gain = [](const LawFinding& a, const LawFinding& b) {
+      if (a.judgement.accepted != b.judgement.accepted) return a.judgement.accepted;
+      return a.judgement.gain - handicap(a.law) > b.judgement.gain - handicap(b.law);
+    };
+    std::ranges::stable_sort(s.findings, by_gain);
+    in_turn("unseen events, law", std::min(kJudged, s.findings.size()),
+            [&](std::size_t k) { settle(s.findings[k]); });
+    std::ranges::stable_sort(s.findings, by_gain);
+    for (LawFinding& f : s.findings) write_out(f, s.traces);
+    s.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return s;
+  }
+
+ private:
+  template <class Work>
+  void in_turn(const std::string& what, std::size_t n, Work work) {
+    in_parallel(
+        n, work, [&](int done) { tell(what, done, static_cast<int>(n)); }, case_.threads);
+  }
+  void tell(const std::string& what, int done, int total) const {
+    if (report_) report_(what, done, total);
+  }
+
+  [[nodiscard]] LawFinding fitted(const LawCandidate& law) const {
+    LawFinding f;
+    f.law = law;
+    f.effect = std::make_shared<const sim::Effect>(
+        sim::laws::make_law(law_toml(law, source_of(case_.trial.events)), law_name(law) + ".toml"));
+    hypothesis::Hypothesis& h = f.judgement.hypothesis;
+    h.name = law_name(law);
+    h.side = law.kind == fit::InputKind::torque ? hypothesis::Side::mechanical : hypothesis::Side::excitation;
+    h.conventions = case_.model.conventions;
+    int block = 0;
+    h.plant = with_law(case_.model.plant, *f.effect, block);
+    for (std::size_t i = 0; i < law.parameters.size(); ++i)
+      h.free.push_back({block, static_cast<int>(i), kLawSpread});
+    h.starts = {f.effect->standard_parameters()};
+    const auto free = hypothesis::free_of(h, case_.trial.spread);
+    fit::FitOptions o;
+    o.iterations = 10;
+    o.values = values_in(input_.fit.plant, {f.effect.get(), h.starts.front()}, block, free);
+    for (const auto& e : input_.fit.events) o.start.push_back(e.state);
+    fit::Fit found = fit::fit(h.plant, h.conventions, case_.trial.events, free, o);
+    if (!found.failed.empty()) return f;
+    f.judgement.fit = std::move(found);
+    f.judgement.gain = fit::criterion(case_.base) - fit::criterion(f.judgement.fit);
+    return f;
+  }
+  void settle(LawFinding& f) const {
+    const double left = f.judgement.fit.misfit();
+    if (left > kHopeless) {
+      f.judgement.why_not = fmt::format("leaves {:.2f} of the noise's variance", left);
+      return;
+    }
+    hypothesis::judge(case_.trial, case_.base, case_.held_out_base, f.judgement);
+  }
+  void write_out(LawFinding& f, const std::vector<LawTrace>& traces) const {
+    if (f.judgement.why_not.empty() && !f.judgement.accepted)
+      f.judgement.why_not = "not judged: others answer better";
+    const auto& own = f.judgement.hypothesis.free;
+    std::vector<fit::FittedParameter> values;
+    for (const auto& p : f.judgement.fit.parameters)
+      if (p.where.block == own.front().block) values.push_back(p);
+    for (const auto& p : values)
+      for (auto& mine : f.law.parameters)
+        if (mine.name == p.name) mine.value = p.value;
+    std::vector<double> fitted;
+    for (const auto& p : f.law.parameters) fitted.push_back(p.value);
+    const LawRegression regression(traces);
+    f.law.course =
+        regression.by_event(regression.at_knots(law_course(*f.effect, fitted, f.law.kind, traces)));
+    f.words = law_words(f.law, values);
+    f.judgement.hypothesis.what = f.words;
+    f.toml = law_toml(f.law, source_of(case_.trial.events));
+  }
+
+  const Unexplained& case_;
+  const hypothesis::MissingInput& input_;
+  const LawProgress& report_;
+};
+
+}  // namespace
+
+sim::plant::Plant with_law(const sim::plant::Plant& plant, const sim::Effect& effect, int& block) {
+  sim::plant::Plant with = plant;
+  const auto at = std::ranges::upper_bound(with.controls, effect.slot, {},
+                                           [](const sim::plant::Block& b) { return b.effect->slot; });
+  block = (plant.transformer.effect ? 2 : 1) + static_cast<int>(at - with.controls.begin());
+  with.controls.insert(at, {&effect, effect.standard_parameters()});
+  return with;
+}
+
+LawSearch search_laws(const Unexplained& case_, const LawProgress& report) {
+  const auto left = [](const hypothesis::MissingInput& m) {
+    return m.fit.events.empty() ? 1e300 : m.misfit();
+  };
+  const bool torque = left(case_.torque) < left(case_.field);
+  const hypothesis::MissingInput &first = torque ? case_.torque : case_.field,
+                                 &second = torque ? case_.field : case_.torque;
+  const auto explains = [&](const hypothesis::MissingInput& m) {
+    return left(m) < std::max(case_.trial.adequate, kExplains * case_.base.misfit());
+  };
+  if (!explains(first)) return {};
+  LawSearch found = Searcher(case_, first, report).run();
+  if (found.found() || !explains(second) || left(second) > kAsMuch * left(first)) return found;
+  LawSearch other = Searcher(case_, second, report).run();
+  other.seconds += found.seconds;
+  return other.found() ? std::move(other) : std::move(found);
+}
+
+std::string law_sentence(const LawSearch& search, std::size_t hypotheses) {
+  const LawFinding* law = search.found();
+  if (!law) return {};
+  double before = 0, after = 0;
+  const auto& unseen = law->judgement.held_out;
+  for (const auto& h : unseen) {
+    before += h.before / static_cast<double>(unseen.size());
+    after += h.after / static_cast<double>(unseen.size());
+  }
+  return fmt::format(
+      "None of the {} known effects explains it; {} does: on events it was not fitted to, the error falls "
+      "from {:.1f} × noise to {:.2f} × noise.",
+      hypotheses, law->words, std::sqrt(before), std::sqrt(after));
+}
+
+}  // namespace swingbank::validate::laws

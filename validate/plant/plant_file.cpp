@@ -1,0 +1,172 @@
+#include "validate/plant/plant_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "base/write_file.hpp"
+#include "sim/laws/law.hpp"
+
+namespace swingbank::validate::plant {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The shortest text that reads back to the same bits, with a point or exponent.
+std::string number(double value) {
+  std::string text = fmt::format("{}", value);
+  if (text.find_first_of(".e") == std::string::npos) text += ".0";
+  return text;
+}
+/// As a TOML basic string.
+std::string in_quotes(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\')
+      out += std::string("\\") + c;
+    else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+      out += fmt::format("\\u{:04X}", static_cast<unsigned>(static_cast<unsigned char>(c)));
+    else
+      out += c;
+  }
+  return out + '"';
+}
+/// As comment lines: text that may hold anything.
+std::string comment(const std::string& text) {
+  std::string out = "# ";
+  for (const char c : text) {
+    if (c == '\n')
+      out += "\n# ";
+    else
+      out += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
+  }
+  return out + "\n";
+}
+
+void append_block(std::string& text, const sim::plant::Block& block) {
+  const sim::Effect& effect = *block.effect;
+  const std::string slot(sim::slot_name(effect.slot));
+  text += sim::is_shared(effect.slot) ? "\n[[" + slot + "]]" : "\n[" + slot + "]";
+  text += "\neffect = " + in_quotes(effect.name) + "  " + comment(std::string(effect.title));
+  for (std::size_t i = 0; i < block.p.size(); ++i) {
+    const auto& p = effect.parameters[i];
+    const std::string entry = fmt::format("{} = {}", p.name, number(block.p[i]));
+    text += fmt::format("{:<28} ", entry) + comment(fmt::format("[{}] {}", p.unit, p.meaning));
+  }
+}
+
+std::vector<const sim::plant::Block*> blocks_of(const PlantModel& model) {
+  std::vector<const sim::plant::Block*> all = {&model.plant.machine};
+  if (model.plant.transformer.effect) all.push_back(&model.plant.transformer);
+  for (const auto* list : {&model.plant.controls, &model.plant.measurements})
+    for (const auto& block : *list) all.push_back(&block);
+  return all;
+}
+
+std::string compose(const PlantModel& model, const std::vector<std::string>& provenance,
+                    const std::vector<std::string>& laws) {
+  std::string text;
+  for (const auto& line : provenance) text += comment(line);
+  std::string list;
+  for (const auto& law : laws) list += (list.empty() ? "" : ", ") + in_quotes(law);
+  if (!laws.empty()) text += "laws = [" + list + "]\n";
+  const bool power = model.conventions.mechanical_power;
+  text += fmt::format(
+      "[plant]\nname = {}\nbase_mva = {}  # machine base [MVA], of all per-unit values below\n"
+      "frequency_hz = {}\nconventions = \"{}\"  # the governor sets {}\nspeed_voltage = {}  # speed in the "
+      "stator voltage\n",
+      in_quotes(model.name), number(model.plant.mva), number(model.conventions.frequency),
+      power ? "psse" : "andes", power ? "power" : "torque", model.conventions.speed_voltage);
+  text += fmt::format("\n[record]\nbase_mva = {}  # base of P_pu and Q_pu in the records [MVA]\n",
+                      number(model.record_base.mva));
+  if (model.record_base.kv > 0)
+    text += fmt::format("base_kv = {}  # base of voltages in kV\n", number(model.record_base.kv));
+  for (const auto* block : blocks_of(model)) append_block(text, *block);
+  return text;
+}
+
+std::string slurp(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  if (!(text << in.rdbuf()))
+    throw InputError({"no readable law file", file.string(), "the model's effects come from it",
+                      "put it back where it was"});
+  return text.str();
+}
+
+/// Law files under names of their own, without folders.
+std::vector<std::string> law_names(const PlantModel& model) {
+  std::vector<std::string> names;
+  Problems problems;
+  for (const auto& law : model.laws) {
+    if (std::ranges::count(names, law.filename().string()))
+      problems.add("two law files named " + law.filename().string(), law.string(),
+                   "their copies would overwrite each other", "rename one of them");
+    names.push_back(law.filename().string());
+  }
+  problems.raise();
+  return names;
+}
+
+/// `text`, with absolute paths of its laws, must read back to the model.
+void check(const PlantModel& model, const std::vector<std::string>& provenance) {
+  std::vector<std::string> laws;
+  for (const auto& law : model.laws) laws.push_back(fs::absolute(law).string());
+  const PlantModel back = parse_plant_model(compose(model, provenance, laws), model.name + " as written");
+  const std::string why = difference(model, back);
+  if (!why.empty())
+    throw InputError({"plant file of " + model.name, "writing it", why + " does not read back",
+                      "report this as an error of the program"});
+}
+
+bool same(double a, double b) { return a == b; }  // no NaN gets into a plant
+
+std::string block_difference(const sim::plant::Block& a, const sim::plant::Block& b) {
+  if (a.effect != b.effect)
+    return fmt::format("effect {} against {}", a.effect ? a.effect->name : "none",
+                       b.effect ? b.effect->name : "none");
+  for (std::size_t i = 0; i < a.p.size(); ++i)
+    if (!same(a.p[i], b.p[i]))
+      return fmt::format("{}.{} = {} against {} {}", a.effect->name, a.effect->parameters[i].name, a.p[i],
+                         b.p[i], a.effect->parameters[i].unit);
+  return {};
+}
+
+}  // namespace
+
+std::string difference(const PlantModel& a, const PlantModel& b) {
+  if (a.name != b.name) return "the name";
+  if (!same(a.plant.mva, b.plant.mva)) return "the machine's base";
+  if (!same(a.record_base.mva, b.record_base.mva) || !same(a.record_base.kv, b.record_base.kv))
+    return "the records' base";
+  if (!same(a.conventions.frequency, b.conventions.frequency) ||
+      a.conventions.speed_voltage != b.conventions.speed_voltage ||
+      a.conventions.mechanical_power != b.conventions.mechanical_power)
+    return "the conventions";
+  const auto left = blocks_of(a), right = blocks_of(b);
+  if (left.size() != right.size()) return "the number of effects";
+  for (std::size_t k = 0; k < left.size(); ++k)
+    if (auto why = block_difference(*left[k], *right[k]); !why.empty()) return why;
+  return {};
+}
+
+std::string plant_text(const PlantModel& model, const std::vector<std::string>& provenance) {
+  check(model, provenance);
+  return compose(model, provenance, law_names(model));
+}
+
+void write_plant_file(const fs::path& file, const PlantModel& model,
+                      const std::vector<std::string>& provenance) {
+  const std::string text = plant_text(model, provenance);
+  const auto names = law_names(model);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const fs::path copy = file.parent_path() / names[k];
+    std::error_code none;
+    if (!fs::equivalent(copy, model.laws[k], none)) write_file(copy, slurp(model.laws[k]));
+  }
+  write_file(file, text);
+}
+
+}  // namespace swingbank::validate::plant

@@ -1,0 +1,380 @@
+#include "validate/playin/driven_plant.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "sim/plant/equations.hpp"
+#include "sim/plant/tableau.hpp"
+
+namespace swingbank::validate::playin {
+namespace {
+
+using sim::D8;
+using Kind = Direction::Kind;
+
+/// Height at t of the hat over knot k, straight to its neighbours.
+double hat(const std::vector<double>& knots, std::size_t k, double t) {
+  if (t < knots.front() || t > knots.back()) return 0.0;
+  if (t < knots[k]) return k == 0 ? 0.0 : std::max(0.0, (t - knots[k - 1]) / (knots[k] - knots[k - 1]));
+  if (k + 1 == knots.size()) return t == knots[k] ? 1.0 : 0.0;
+  return std::max(0.0, (knots[k + 1] - t) / (knots[k + 1] - knots[k]));
+}
+
+/// An embedded Runge-Kutta pair whose last stage is the first of the next step.
+struct Pair {
+  int stages;
+  double exponent;  ///< of the error in step control
+  const double (*a)[6];
+  const double *c, *error;
+};
+constexpr Pair kFine{sim::plant::dp54::kStages, -1.0 / 5, sim::plant::dp54::a, sim::plant::dp54::c,
+                     sim::plant::dp54::error};
+/// Bogacki and Shampine 3(2), Appl. Math. Lett. 2 (1989) 321: half the work where a step must end at every
+/// sample anyway and the voltage is noisy.
+constexpr double kRoughA[4][6] = {{}, {1.0 / 2}, {0.0, 3.0 / 4}, {2.0 / 9, 1.0 / 3, 4.0 / 9}};
+constexpr double kRoughC[4] = {0.0, 1.0 / 2, 3.0 / 4, 1.0};
+constexpr double kRoughError[4] = {2.0 / 9 - 7.0 / 24, 1.0 / 3 - 1.0 / 4, 4.0 / 9 - 1.0 / 3, -1.0 / 8};
+constexpr Pair kRough{4, -1.0 / 3, kRoughA, kRoughC, kRoughError};
+constexpr double kRoughFrom = 1e-5;  ///< tolerance
+
+template <class T>
+struct Seeds;  // what a scalar makes of directions
+template <>
+struct Seeds<double> {
+  static void add(double&, std::size_t, double) {}
+  static double slope(double, std::size_t) { return 0.0; }
+  static double times(double factor, double x) { return factor * x; }
+  static double size(double x) { return std::abs(x); }
+};
+template <>
+struct Seeds<D8> {
+  static void add(D8& x, std::size_t direction, double by) { x.d[direction] += by; }
+  static double slope(const D8& x, std::size_t direction) { return x.d[direction]; }
+  static D8 times(double factor, const D8& x) { return sim::chain(x, factor * x.a, factor); }
+  /// Slopes count a hundredth: a fit forgives them more than a value.
+  static double size(const D8& x) {
+    double worst = std::abs(x.a);
+    for (const double d : x.d) worst = std::max(worst, 1e-2 * std::abs(d));
+    return worst;
+  }
+};
+
+template <class T>
+class Driven {
+ public:
+  Driven(const Drive& run, std::span<const Direction> directions)
+      : run_(run),
+        directions_(directions),
+        equations_(*run.plant),
+        scratch_(static_cast<std::size_t>(equations_.scratch())) {
+    start();
+    const std::size_t n = x_.size();
+    for (auto& k : k_) k.resize(n);
+    trial_.resize(n);
+    collect_instants();
+  }
+
+  Response run() {
+    Response back;
+    back.slopes.resize(directions_.size());
+    const record::Record& r = *run_.record;
+    const double slack = 1e-4 * r.step();  // as in VoltageCurve: a sample at a switching belongs before it
+    t_ = r.t.front();
+    for (const double sample : r.t) {
+      if (sample > run_.until) break;
+      while (next_ < instants_.size() && sample > instants_[next_].time + slack) pass_instant();
+      advance(sample);
+      record(back);
+    }
+    back.steps = steps_;
+    return back;
+  }
+
+  /// Slopes of derivative and outputs at the start: by states, then by V and theta.
+  LinearPlant linear() {
+    const auto n = static_cast<Eigen::Index>(x_.size());
+    Eigen::MatrixXd by(n + kOutputs, n + 2);
+    const double to_record = run_.plant->mva / run_.record->base.mva;
+    const Complex v = run_.start.voltage;
+    for (Eigen::Index first = 0; first < n + 2; first += sim::kDirections) {
+      const Eigen::Index count = std::min<Eigen::Index>(sim::kDirections, n + 2 - first);
+      auto x = x_;
+      for (T& value : x) value = value + T(1e-9);  // beside the corner that a dead-band of no width has
+      T vr(v.real()), vi(v.imag());
+      for (Eigen::Index i = 0; i < count; ++i) {
+        const auto d = static_cast<std::size_t>(i);
+        if (first + i < n) Seeds<T>::add(x[static_cast<std::size_t>(first + i)], d, 1.0);
+        const Complex slope = first + i == n ? v : first + i == n + 1 ? Complex(0, 1) * v : Complex();
+        Seeds<T>::add(vr, d, slope.real());
+        Seeds<T>::add(vi, d, slope.imag());
+      }
+      evaluate_at(vr, vi, run_.record->t.front(), x.data(), signals_, trial_.data());
+      const auto out = outputs(to_record);
+      for (Eigen::Index i = 0; i < count; ++i)
+        for (Eigen::Index j = 0; j < n + kOutputs; ++j)
+          by(j, first + i) = Seeds<T>::slope(
+              j < n ? trial_[static_cast<std::size_t>(j)] : out[static_cast<std::size_t>(j - n)],
+              static_cast<std::size_t>(i));
+    }
+    return {by.topLeftCorner(n, n), by.topRightCorner(n, 2), by.bottomLeftCorner(kOutputs, n),
+            by.bottomRightCorner(kOutputs, 2)};
+  }
+
+ private:
+  struct Instant {
+    double time;
+    int switching;  ///< of the curve; -1: of an effect
+  };
+
+  void start() {
+    const sim::plant::Plant& plant = *run_.plant;
+    std::vector<std::vector<T>> p;
+    for (const auto& block : sim::plant::block_parameters(plant)) p.emplace_back(block.begin(), block.end());
+    const double to_machine = run_.record->base.mva / plant.mva;
+    T P(run_.start.P * to_machine), Q(run_.start.Q * to_machine);
+    each([&](const Direction& d, std::size_t i) {
+      if (d.kind == Kind::parameter)
+        Seeds<T>::add(p[static_cast<std::size_t>(d.block)][static_cast<std::size_t>(d.index)], i, d.scale);
+      if (d.kind == Kind::P) Seeds<T>::add(P, i, d.scale * to_machine);
+      if (d.kind == Kind::Q) Seeds<T>::add(Q, i, d.scale * to_machine);
+    });
+    auto at = sim::plant::operating_point_of<T>(plant, p, run_.start.voltage, P, Q, run_.conventions);
+    c_ = std::move(at.c);
+    x_ = std::move(at.x);
+    Efd_ = at.Efd;
+    Tm_ = at.Tm;
+    x_[0] = x_[0] + T(run_.angle);
+    x_[1] = x_[1] + T(run_.speed);
+    each([&](const Direction& d, std::size_t i) {
+      if (d.kind == Kind::angle) Seeds<T>::add(x_[0], i, d.scale);
+      if (d.kind == Kind::speed) Seeds<T>::add(x_[1], i, d.scale);
+    });
+    has_torque_ = !run_.torque.t.empty();
+    has_field_ = !run_.field.t.empty();
+  }
+  void collect_instants() {
+    const auto& switchings = run_.curve->switchings();
+    for (std::size_t k = 0; k < switchings.size(); ++k)
+      instants_.push_back({switchings[k].time, static_cast<int>(k)});
+    for (const double t : sim::plant::instants_of(*run_.plant))
+      if (t > run_.record->t.front() && t < run_.record->t.back()) instants_.push_back({t, -1});
+    std::ranges::stable_sort(instants_, {}, &Instant::time);
+    look_ahead();
+  }
+  /// As seen from a frame that turns with the pre-event angle.
+  Complex voltage(double t) const {
+    const Complex v = run_.voltage_factor * (*run_.curve)(segment_, t);
+    return run_.start.drift == 0 ? v : v * std::polar(1.0, -run_.start.drift * t);
+  }
+  template <class F>
+  void each(F f) const {
+    for (std::size_t i = 0; i < directions_.size(); ++i) f(directions_[i], i);
+  }
+
+  /// Signals and derivative at states x and time t.
+  void evaluate(double t, const T* x, sim::Signals<T>& s, T* dx) {
+    const Complex v = voltage(t);
+    evaluate_at(T(v.real()), T(v.imag()), t, x, s, dx);
+  }
+  void evaluate_at(T vr, T vi, double t, const T* x, sim::Signals<T>& s, T* dx) {
+    s.Efd = Efd_;
+    s.Tm = Tm_;
+    s.dVref = T(0.0);
+    s.dPref = T(0.0);
+    s.t = T(std::min(t, last_moment_));
+    s.Vpr = vr;
+    s.Vpi = vi;
+    T er, ei, ir, ii;
+    equations_.emf(c_.data(), x, scratch_.data(), er, ei);
+    equations_.from_grid(c_.data(), x, scratch_.data(), er, ei, s, ir, ii);
+    if (!has_torque_ && !has_field_) return equations_.derivative(c_.data(), x, scratch_.data(), s, dx);
+    equations_.derivative_with(c_.data(), x, scratch_.data(), added(run_.torque, Kind::torque, t),
+                               added(run_.field, Kind::field, t), s, dx);
+  }
+  T added(const PiecewiseLinear& input, Kind kind, double t) const {
+    T value(input(t));
+    each([&](const Direction& d, std::size_t i) {
+      if (d.kind == kind)
+        Seeds<T>::add(value, i, d.scale * hat(input.t, static_cast<std::size_t>(d.index), t));
+    });
+    return value;
+  }
+
+  /// Integrates to the next instant and over to its other side.
+  void pass_instant() {
+    const Instant at = instants_[next_];
+    advance(at.time);
+    const T* before = derivative_at(at.time, 0);
+    ++next_;
+    look_ahead();
+    fresh_ = true;
+    if (at.switching < 0) return;
+    ++segment_;
+    const T* after = derivative_at(at.time, 1);
+    each([&](const Direction& d, std::size_t i) {
+      if (d.kind != Kind::switching || d.index != at.switching) return;
+      for (std::size_t j = 0; j < x_.size(); ++j)
+        Seeds<T>::add(x_[j], i, d.scale * (sim::value_of(before[j]) - sim::value_of(after[j])));
+    });
+  }
+  /// Effects see at most the next instant less a moment.
+  void look_ahead() {
+    last_moment_ = next_ < instants_.size() ? instants_[next_].time - sim::plant::kBeforeSwitching : 1e300;
+  }
+  const T* derivative_at(double t, std::size_t keep) {
+    evaluate(t, x_.data(), signals_, k_[keep].data());
+    return k_[keep].data();
+  }
+
+  void advance(double to) {
+    while (t_ < to) {
+      const double left = to - t_;
+      const bool reaches = h_ >= left * (1 - 1e-12);
+      const double h = reaches ? left : h_;
+      double error = attempt(h);
+      if (h <= run_.least_step && error > 1 && std::isfinite(error)) error = 1;
+      if (error <= 1) {
+        t_ = reaches ? to : t_ + h;
+        std::swap(x_, trial_);
+        std::swap(k_.front(), k_[static_cast<std::size_t>(pair_.stages - 1)]);
+        T moved(0.0);
+        equations_.clamp_states(c_.data(), x_.data(), moved);
+        fresh_ = sim::value_of(moved) > 0;
+      } else if (h < 1e-9) {
+        give_up();
+      }
+      const double factor =
+          std::isfinite(error) ? std::clamp(0.9 * grown(error + 1e-12, pair_.exponent), 0.2, 5.0) : 0.2;
+      const bool cut_short = reaches && error <= 1;  // short for the instant's sake, not the error's
+      h_ = cut_short ? std::max(h_, h * factor) : h * factor;
+      if (++steps_ > run_.step_limit) give_up();
+    }
+    t_ = std::max(t_, to);
+  }
+  static double grown(double error, double exponent) {
+    return sim::plant::dp54::rough_power(static_cast<float>(error), static_cast<float>(exponent));
+  }
+  /// Makes k_[0] and the signals those of the states as they stand.
+  void refresh() {
+    if (fresh_) evaluate(t_, x_.data(), signals_, k_[0].data());
+    fresh_ = false;
+  }
+  double attempt(double h) {
+    refresh();
+    return &pair_ == &kRough ? attempt<kRough>(h, std::make_integer_sequence<int, kRough.stages - 1>{})
+                             : attempt<kFine>(h, std::make_integer_sequence<int, kFine.stages - 1>{});
+  }
+  template <const Pair& pair, int... Before>
+  double attempt(double h, std::integer_sequence<int, Before...>) {
+    (stage<pair, Before + 1>(h), ...);
+    return scaled_error<pair>(h);
+  }
+  /// weights[0] k_[0] to weights[last] k_[last] of one state.
+  template <int last>
+  T weighted(const double* weights, std::size_t state) const {
+    T sum = Seeds<T>::times(weights[0], k_[0][state]);
+    for (std::size_t j = 1; j <= last; ++j)
+      if (weights[j] != 0.0) sum = sum + Seeds<T>::times(weights[j], k_[j][state]);
+    return sum;
+  }
+  template <const Pair& pair, int at>
+  void stage(double h) {
+    for (std::size_t i = 0; i < x_.size(); ++i)
+      trial_[i] = x_[i] + Seeds<T>::times(h, weighted<at - 1>(pair.a[at], i));
+    evaluate(t_ + pair.c[at] * h, trial_.data(), signals_, k_[at].data());
+  }
+  template <const Pair& pair>
+  double scaled_error(double h) const {
+    double worst = 0;
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      const T e = weighted<pair.stages - 1>(pair.error, i);
+      const double ratio = h * Seeds<T>::size(e) / (run_.tolerance * (1 + std::abs(sim::value_of(x_[i]))));
+      if (!std::isfinite(ratio)) return ratio;
+      worst = std::max(worst, ratio);
+    }
+    return worst;
+  }
+
+  void record(Response& back) {
+    refresh();
+    const double to_record = run_.plant->mva / run_.record->base.mva;
+    // the frame turns with the pre-event angle
+    const double frame = run_.start.drift / (2 * std::numbers::pi * run_.conventions.frequency);
+    back.voltage.push_back(voltage(t_));
+    auto out = outputs(to_record);
+    out[static_cast<std::size_t>(Output::speed)] = signals_.speed + T(frame);
+    for (int o = 0; o < kOutputs; ++o) {
+      back.value[o].push_back(sim::value_of(out[static_cast<std::size_t>(o)]));
+      for (std::size_t d = 0; d < directions_.size(); ++d)
+        back.slopes[d].value[o].push_back(Seeds<T>::slope(out[static_cast<std::size_t>(o)], d));
+    }
+  }
+  /// By the signals as they stand.
+  std::array<T, kOutputs> outputs(double to_record) const {
+    T P, Q;
+    equations_.grid_power(c_.data(), signals_, P, Q);
+    return {P * T(to_record), Q * T(to_record), signals_.speed, signals_.Efd, signals_.Ifd};
+  }
+  [[noreturn]] void give_up() const {
+    throw InputError({"play-in stops", fmt::format("t = {:.4f} s", t_),
+                      "the plant's equations cannot be integrated further with this voltage",
+                      "check the parameters (time constants, limits) and the record at that time"});
+  }
+
+  const Drive& run_;
+  const Pair& pair_ = run_.tolerance < kRoughFrom ? kFine : kRough;
+  bool fresh_ = true;  ///< k_[0] must be evaluated anew
+  std::span<const Direction> directions_;
+  sim::plant::PlantEquations<T> equations_;
+  std::vector<T> c_, x_, trial_, scratch_;
+  std::array<std::vector<T>, 7> k_;
+  T Efd_, Tm_;
+  sim::Signals<T> signals_;
+  bool has_torque_ = false, has_field_ = false;
+  std::vector<Instant> instants_;
+  std::size_t next_ = 0;
+  int segment_ = 0, steps_ = 0;
+  double t_ = 0, h_ = 1e-3, last_moment_ = 1e300;
+};
+
+}  // namespace
+
+double PiecewiseLinear::operator()(double at) const {
+  if (t.empty() || at < t.front() || at > t.back()) return 0.0;
+  if (t.size() == 1) return value.front();
+  const auto above = std::upper_bound(t.begin() + 1, t.end() - 1, at);
+  const auto k = static_cast<std::size_t>(above - t.begin()) - 1;
+  const double share = (at - t[k]) / (t[k + 1] - t[k]);
+  return (1 - share) * value[k] + share * value[k + 1];
+}
+
+std::string_view output_name(Output output) {
+  constexpr std::array<std::string_view, kOutputs> names = {"P", "Q", "speed", "Efd", "Ifd"};
+  return names[static_cast<std::size_t>(output)];
+}
+
+LinearPlant linearise(const Drive& run) { return Driven<D8>(run, {}).linear(); }
+
+Response drive(const Drive& run, std::span<const Direction> directions) {
+  if (directions.empty()) return Driven<double>(run, {}).run();
+  Response all;
+  constexpr std::size_t kAtOnce = sim::kDirections;
+  for (std::size_t first = 0; first < directions.size(); first += kAtOnce) {
+    Response some =
+        Driven<D8>(run, directions.subspan(first, std::min(kAtOnce, directions.size() - first))).run();
+    if (first == 0) {
+      all = std::move(some);
+      continue;
+    }
+    std::ranges::move(some.slopes, std::back_inserter(all.slopes));
+    all.steps += some.steps;
+  }
+  return all;
+}
+
+}  // namespace swingbank::validate::playin

@@ -1,0 +1,94 @@
+#pragma once
+// One plant driven by a terminal voltage: no network is needed, what the network did is in the voltage. The
+// same equations run on doubles (what does the plant answer?) and on duals (and how does the answer move with
+// parameters, switching instants, the start, and torque or field voltage that no model explains?).
+#include <Eigen/Dense>
+#include <span>
+#include <vector>
+
+#include "sim/plant/plant.hpp"
+#include "validate/playin/voltage_curve.hpp"
+#include "validate/record/record.hpp"
+
+namespace swingbank::validate::playin {
+
+/// Mean terminal state before the event: where the model starts.
+struct OperatingPoint {
+  int samples = 0;      ///< of the pre-event window, from the record's first
+  Complex voltage;      ///< at t = 0 of the record [pu]
+  double P = 0, Q = 0;  ///< [pu on the record's base]
+  double drift = 0;     ///< slope of theta [rad/s]; 0 where it cannot be told from noise
+};
+
+/// A function of time through (t[k], value[k]), straight between them, zero outside.
+struct PiecewiseLinear {
+  std::vector<double> t, value;  ///< t [s], increasing
+  [[nodiscard]] double operator()(double at) const;
+};
+
+/// What the plant answers at each sample of the record.
+enum class Output { P, Q, speed, Efd, Ifd };
+constexpr int kOutputs = 5;
+std::string_view output_name(Output output);
+
+/// One run: who is driven, by what, from where. P and Q of the answer are per unit on the record's base, the
+/// other outputs on the machine's.
+struct Drive {
+  const sim::plant::Plant* plant = nullptr;
+  sim::Conventions conventions = {};
+  const record::Record* record = nullptr;
+  const VoltageCurve* curve = nullptr;
+  Complex voltage_factor = 1;  ///< what the curve is multiplied by
+  OperatingPoint start = {};
+  double angle = 0, speed = 0;              ///< offset of the first two states from equilibrium [rad], [pu]
+  PiecewiseLinear torque = {}, field = {};  ///< added to Tm, Efd [pu]
+  double tolerance = 1e-10;                 ///< error per step, relative to 1 + |state|
+  double until = 1e300;                     ///< samples after it are left out [s]
+  double least_step = 0.0;                  ///< steps this short are taken whatever their error; 0: never [s]
+  int step_limit = 2'000'000;               ///< steps before it gives up
+};
+
+/// What a slope is taken along; `scale` is one unit of the direction, and slopes are per such unit.
+struct Direction {
+  enum class Kind {
+    parameter,  ///< `index` of block `block` (sim::block_parameters' order)
+    switching,  ///< instant `index` of the curve [s]
+    P,          ///< of the operating point [pu on the record's base]
+    Q,          ///< likewise
+    angle,      ///< at the start [rad]
+    speed,      ///< at the start [pu]
+    torque,     ///< knot `index` of Drive::torque [pu]
+    field,      ///< knot `index` of Drive::field [pu]
+  };
+  Kind kind;
+  int block = 0, index = 0;
+  double scale = 1.0;
+  friend bool operator==(const Direction&, const Direction&) = default;
+};
+
+/// Answer [output][sample], and slopes [direction][output][sample].
+struct Response {
+  std::vector<double> value[kOutputs];
+  struct Slope {
+    std::vector<double> value[kOutputs];
+  };
+  std::vector<Slope> slopes;
+  std::vector<Complex> voltage;  ///< that drove the plant, per sample [pu]
+  int steps = 0;                 ///< of the integrator
+  [[nodiscard]] const std::vector<double>& of(Output o) const { return value[static_cast<int>(o)]; }
+};
+
+/// Plays the curve into the plant. Steps end at every sample, switching and instant of an effect; at a
+/// switching instant that is a direction, slopes jump by the difference of the derivatives on its two sides.
+/// Throws InputError if the operating point cannot be held or the equations cannot be integrated.
+Response drive(const Drive& run, std::span<const Direction> directions = {});
+
+/// How the plant moves about a run's start: x' = A x + B u, y = C x + D u with u = (change of V over V,
+/// change of theta [rad]) and y = all outputs, in the units of Response.
+struct LinearPlant {
+  Eigen::MatrixXd A, B, C, D;
+};
+/// Throws InputError if the operating point cannot be held.
+LinearPlant linearise(const Drive& run);
+
+}  // namespace swingbank::validate::playin

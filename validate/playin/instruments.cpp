@@ -1,0 +1,217 @@
+#include "validate/playin/instruments.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/plant/measure.hpp"
+
+namespace swingbank::validate::playin {
+namespace {
+
+using Kind = Direction::Kind;
+
+/// Where instruments have a memory, the answer has so many samples for each sample of the record. A jump is
+/// then smeared over a time that is shorter by this factor.
+constexpr int kFine = 8;
+/// Step of a parameter as a share of its range; it is of no consequence to the slope's error.
+constexpr double kMove = 1e-5;
+
+/// What the chain of instruments makes of standing phasors.
+struct Standing {
+  Complex V = 1, I = 1;
+};
+
+sim::Phasors phasors(const std::vector<Complex>& V, const std::vector<double>& P,
+                     const std::vector<double>& Q, double rate, double frequency) {
+  sim::Phasors p{rate, frequency, V, {}, std::vector<double>(V.size(), 0.0)};
+  for (std::size_t k = 0; k < V.size(); ++k) p.I.push_back(std::conj(Complex(P[k], Q[k]) / V[k]));
+  return p;
+}
+
+Standing standing(const std::vector<sim::plant::Block>& chain, double rate, double frequency) {
+  const auto beside = static_cast<std::size_t>(std::ceil(sim::plant::memory(chain) * rate)) + 2;
+  const std::vector<Complex> one(2 * beside + 1, 1.0);
+  sim::Phasors p{rate, frequency, one, one, std::vector<double>(one.size(), 0.0)};
+  sim::plant::measure(chain, 1, p);
+  return {p.V[beside], p.I[beside]};
+}
+
+/// Values of P and Q after the chain, every `stride`-th.
+struct Power {
+  std::vector<double> P, Q;
+};
+Power measured(const std::vector<sim::plant::Block>& chain, sim::Phasors p, std::size_t stride) {
+  sim::plant::measure(chain, 1, p);
+  Power power;
+  for (std::size_t k = 0; k < p.V.size(); k += stride) {
+    const Complex s = p.V[k] * std::conj(p.I[k]);
+    power.P.push_back(s.real());
+    power.Q.push_back(s.imag());
+  }
+  return power;
+}
+
+template <class T>
+void thin(std::vector<T>& values, std::size_t stride) {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < values.size(); k += stride) values[kept++] = values[k];
+  values.resize(kept);
+}
+
+/// One run, and its slopes along directions that are not parameters of the instruments.
+class Observed {
+ public:
+  Observed(const Drive& run, std::span<const Direction> directions)
+      : run_(run), chain_(run.plant->measurements), inner_(run), directions_(directions) {
+    const record::Record& r = *run.record;
+    const double rate = 1 / r.step(), frequency = run.conventions.frequency;
+    const Standing gain = standing(chain_, rate, frequency);
+    back_ = 1.0 / (gain.V * std::conj(gain.I));
+    inner_.voltage_factor = run.voltage_factor / gain.V;
+    inner_.start.voltage = run.start.voltage / gain.V;
+    const Complex power = Complex(run.start.P, run.start.Q) * back_;
+    inner_.start.P = power.real();
+    inner_.start.Q = power.imag();
+    if (sim::plant::memory(chain_) > 0) refine(r);
+  }
+  Response run() {
+    Response r = drive(inner_, directions_);
+    turn_starts(r);
+    const double rate = static_cast<double>(stride_) / run_.record->step();
+    const double frequency = run_.conventions.frequency;
+    auto& P = r.value[static_cast<int>(Output::P)];
+    auto& Q = r.value[static_cast<int>(Output::Q)];
+    const Power seen = measured(chain_, phasors(r.voltage, P, Q, rate, frequency), stride_);
+    for (auto& slope : r.slopes) {
+      auto& dP = slope.value[static_cast<int>(Output::P)];
+      auto& dQ = slope.value[static_cast<int>(Output::Q)];
+      double largest = 1e-12;
+      for (std::size_t k = 0; k < dP.size(); ++k)
+        largest = std::max({largest, std::abs(dP[k]), std::abs(dQ[k])});
+      const double step = 1e-6 / largest;
+      std::vector<double> movedP(P), movedQ(Q);
+      for (std::size_t k = 0; k < P.size(); ++k) {
+        movedP[k] += step * dP[k];
+        movedQ[k] += step * dQ[k];
+      }
+      const Power moved = measured(chain_, phasors(r.voltage, movedP, movedQ, rate, frequency), stride_);
+      for (auto& values : slope.value) thin(values, stride_);
+      for (std::size_t k = 0; k < seen.P.size(); ++k) {
+        dP[k] = (moved.P[k] - seen.P[k]) / step;
+        dQ[k] = (moved.Q[k] - seen.Q[k]) / step;
+      }
+    }
+    for (auto& values : r.value) thin(values, stride_);
+    thin(r.voltage, stride_);
+    P = seen.P;
+    Q = seen.Q;
+    return r;
+  }
+
+ private:
+  void refine(const record::Record& r) {
+    stride_ = kFine;
+    fine_.name = r.name;
+    fine_.base = r.base;
+    for (std::size_t k = 0; k + 1 < r.t.size(); ++k)
+      for (int i = 0; i < kFine; ++i) fine_.t.push_back(r.t[k] + (r.t[k + 1] - r.t[k]) * i / kFine);
+    fine_.t.push_back(r.t.back());
+    inner_.record = &fine_;
+    inner_.step_limit = run_.step_limit * kFine;
+  }
+  /// Turns slopes along P and Q of the start. They are asked for as measured, and were taken as they are in
+  /// the plant.
+  void turn_starts(Response& r) const {
+    const auto find = [&](Kind kind) {
+      return std::ranges::find(directions_, kind, &Direction::kind) - directions_.begin();
+    };
+    const auto p = static_cast<std::size_t>(find(Kind::P)), q = static_cast<std::size_t>(find(Kind::Q));
+    if (p == directions_.size() || q == directions_.size()) return;
+    const double toP = directions_[p].scale, toQ = directions_[q].scale;
+    for (int o = 0; o < kOutputs; ++o)
+      for (std::size_t k = 0; k < r.slopes[p].value[o].size(); ++k) {
+        double &a = r.slopes[p].value[o][k], &b = r.slopes[q].value[o][k];
+        const double byP = a / toP, byQ = b / toQ;
+        a = toP * (back_.real() * byP + back_.imag() * byQ);
+        b = toQ * (back_.real() * byQ - back_.imag() * byP);
+      }
+  }
+
+  const Drive& run_;
+  const std::vector<sim::plant::Block>& chain_;
+  Drive inner_;
+  std::span<const Direction> directions_;
+  record::Record fine_;
+  Complex back_ = 1;  ///< power in the plant per power measured, of standing phasors
+  std::size_t stride_ = 1;
+};
+
+/// Slope along a parameter of an instrument.
+Response::Slope along(const Drive& run, std::size_t block, const Direction& d) {
+  const auto i = static_cast<std::size_t>(d.index);
+  const auto& record = run.plant->measurements[block].effect->parameters[i];
+  const double move = kMove * (record.high - record.low);
+  sim::plant::Plant plant = *run.plant;
+  Drive moved = run;
+  moved.plant = &plant;
+  const double value = plant.measurements[block].p[i];
+  plant.measurements[block].p[i] = value + move;
+  const Response above = Observed(moved, {}).run();
+  plant.measurements[block].p[i] = value - move;
+  const Response below = Observed(moved, {}).run();
+  Response::Slope slope;
+  for (int o = 0; o < kOutputs; ++o)
+    for (std::size_t k = 0; k < above.value[o].size(); ++k)
+      slope.value[o].push_back(d.scale * (above.value[o][k] - below.value[o][k]) / (2 * move));
+  return slope;
+}
+
+}  // namespace
+
+Response observe(const Drive& run, std::span<const Direction> directions) {
+  if (run.plant->measurements.empty()) return drive(run, directions);
+  const auto first = sim::plant::block_parameters(*run.plant).size();
+  const auto instrument = [&](const Direction& d) {
+    return d.kind == Kind::parameter && static_cast<std::size_t>(d.block) >= first;
+  };
+  std::vector<Direction> others;
+  std::ranges::copy_if(directions, std::back_inserter(others),
+                       [&](const Direction& d) { return !instrument(d); });
+  Response r = Observed(run, others).run();
+  std::vector<Response::Slope> slopes;
+  std::size_t next = 0;
+  for (const Direction& d : directions)
+    slopes.push_back(instrument(d) ? along(run, static_cast<std::size_t>(d.block) - first, d)
+                                   : std::move(r.slopes[next++]));
+  r.slopes = std::move(slopes);
+  return r;
+}
+
+bool can_be_taken_back(const sim::Effect& instrument) {
+  constexpr double kAway = 0.05;  // of the range: beyond what rounding hides
+  auto p = instrument.standard_parameters();
+  for (std::size_t i = 0; i < p.size(); ++i)
+    if (const auto& record = instrument.parameters[i]; !record.is_code())
+      p[i] = std::clamp(p[i] + kAway * (record.high - record.low), record.low, record.high);
+  constexpr int kSamples = 64;
+  constexpr double kRate = 240.0;
+  sim::Phasors once{kRate, 60.0, {}, {}, std::vector<double>(kSamples, 0.0)};
+  for (int k = 0; k < kSamples; ++k) {
+    once.V.push_back(std::polar(1.0 + 1e-3 * k, 2e-3 * k));
+    once.I.push_back(std::polar(0.7 - 2e-3 * k, 1e-3 * k));
+  }
+  const auto before = once.V;
+  sim::Phasors twice = once;
+  for (auto* channel : {&twice.V, &twice.I})
+    for (auto& x : *channel) x *= 2.0;
+  instrument.measure(p.data(), 1, once);
+  instrument.measure(p.data(), 2, twice);
+  for (std::size_t k = 0; k < kSamples; ++k)
+    if (!(std::abs(twice.V[k] - 2.0 * once.V[k]) < 1e-9 && std::abs(twice.I[k] - 2.0 * once.I[k]) < 1e-9))
+      return false;
+  for (std::size_t k = 0; k < kSamples; ++k)
+    if (!(std::abs(once.V[k] / before[k] - once.V[0] / before[0]) < 1e-9)) return false;
+  return true;
+}
+
+}  // namespace swingbank::validate::playin

@@ -1,0 +1,135 @@
+#include "validate/playin/voltage_curve.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace swingbank::validate::playin {
+namespace {
+
+Complex phasor(const record::Record& r, std::size_t k) { return std::polar(r.V[k], r.theta[k]); }
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+/// Second derivatives of the not-a-knot cubic through n >= 4 knots: the third derivative is continuous at the
+/// second and the last but one. Tridiagonal after the end values are eliminated (de Boor, A Practical Guide
+/// to Splines, IV).
+std::vector<Complex> not_a_knot(const std::vector<double>& t, const std::vector<Complex>& v) {
+  const std::size_t n = t.size();
+  std::vector<double> h(n - 1), low(n), diagonal(n), high(n);
+  std::vector<Complex> right(n), m(n);
+  for (std::size_t i = 0; i + 1 < n; ++i) h[i] = t[i + 1] - t[i];
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    low[i] = h[i - 1];
+    diagonal[i] = 2 * (h[i - 1] + h[i]);
+    high[i] = h[i];
+    right[i] = 6.0 * ((v[i + 1] - v[i]) / h[i] - (v[i] - v[i - 1]) / h[i - 1]);
+  }
+  // m0 = m1 + (m1 - m2) h0/h1, and likewise at the other end.
+  const double first = h[0] / h[1], last = h[n - 2] / h[n - 3];
+  diagonal[1] += low[1] * (1 + first);
+  high[1] -= low[1] * first;
+  diagonal[n - 2] += high[n - 2] * (1 + last);
+  low[n - 2] -= high[n - 2] * last;
+  for (std::size_t i = 2; i + 1 < n; ++i) {
+    const double factor = low[i] / diagonal[i - 1];
+    diagonal[i] -= factor * high[i - 1];
+    right[i] -= factor * right[i - 1];
+  }
+  m[n - 2] = right[n - 2] / diagonal[n - 2];
+  for (std::size_t i = n - 3; i >= 1; --i) m[i] = (right[i] - high[i] * m[i + 1]) / diagonal[i];
+  m[0] = m[1] + (m[1] - m[2]) * first;
+  m[n - 1] = m[n - 2] + (m[n - 2] - m[n - 3]) * last;
+  return m;
+}
+
+}  // namespace
+
+std::vector<Switching> detect_switchings(const record::Record& record, double threshold) {
+  const std::size_t steps = record.t.size() - 1;
+  std::vector<Complex> step(steps);
+  for (std::size_t k = 0; k < steps; ++k) step[k] = phasor(record, k + 1) - phasor(record, k);
+  // A jump differs from both neighbours; a step beside a jump differs from one of them only.
+  std::vector<double> spike(steps, 0.0);
+  for (std::size_t k = 1; k + 1 < steps; ++k)
+    spike[k] = std::min(std::abs(step[k] - step[k - 1]), std::abs(step[k] - step[k + 1]));
+  const double limit = std::max(threshold, 10 * median(spike));
+  std::vector<Switching> found;
+  for (std::size_t k = 1; k + 1 < steps; ++k)
+    if (spike[k] > limit) {
+      const double half = (record.t[k + 1] - record.t[k]) / 2;
+      found.push_back({record.t[k] + half, half});
+    }
+  return found;
+}
+
+VoltageCurve::VoltageCurve(const record::Record& record, std::vector<Switching> switchings)
+    : switchings_(std::move(switchings)) {
+  std::ranges::sort(switchings_, {}, &Switching::time);
+  const double slack = 1e-4 * record.step();  // what printing times with 6 decimals leaves
+  Problems problems;
+  std::size_t k = 0;
+  for (std::size_t s = 0; s <= switchings_.size(); ++s) {
+    const bool is_last = s == switchings_.size();
+    Segment segment;
+    segment.end = is_last ? record.t.back() : switchings_[s].time;
+    const auto add = [&](double t, Complex v) {
+      segment.t.push_back(t);
+      segment.v.push_back(v);
+    };
+    if (s > 0 && switchings_[s - 1].has_after) add(switchings_[s - 1].time, switchings_[s - 1].after);
+    for (; k < record.t.size() && (is_last || record.t[k] <= segment.end + slack); ++k)
+      if (is_last || !switchings_[s].has_before || record.t[k] < segment.end - slack)
+        add(record.t[k], phasor(record, k));
+    if (!is_last && switchings_[s].has_before) add(segment.end, switchings_[s].before);
+    if (segment.t.empty())
+      problems.add(fmt::format("no sample between t = {:g} s and t = {:g} s",
+                               s > 0 ? switchings_[s - 1].time : record.t.front(), segment.end),
+                   record.name, "the voltage there cannot be known",
+                   "give switching instants inside the record, with a sample between them");
+    else
+      fit(segment);
+    segments_.push_back(std::move(segment));
+  }
+  problems.raise();
+}
+
+void VoltageCurve::fit(Segment& segment) {
+  const auto& t = segment.t;
+  const auto& v = segment.v;
+  segment.slope2.assign(t.size(), Complex{});
+  if (t.size() == 3) {
+    const Complex curve =
+        2.0 * ((v[2] - v[1]) / (t[2] - t[1]) - (v[1] - v[0]) / (t[1] - t[0])) / (t[2] - t[0]);
+    segment.slope2.assign(3, curve);
+  } else if (t.size() > 3) {
+    segment.slope2 = not_a_knot(t, v);
+    segment.rate = static_cast<double>(t.size() - 3) / (t[t.size() - 2] - t[1]);
+  }
+}
+
+/// The last knot at or before t that has another behind it; the first where t lies before all.
+std::size_t VoltageCurve::interval(const Segment& s, double t) {
+  const std::size_t last = s.t.size() - 2;
+  const double guess = (t - s.t[1]) * s.rate + 1;
+  std::size_t i = guess < 0 ? 0 : std::min(last, static_cast<std::size_t>(guess));
+  while (i < last && s.t[i + 1] <= t) ++i;
+  while (i > 0 && t < s.t[i]) --i;
+  return i;
+}
+
+Complex VoltageCurve::operator()(int index, double t) const {
+  const Segment& s = segments_[static_cast<std::size_t>(index)];
+  if (s.t.size() == 1) return s.v[0];
+  const std::size_t i = interval(s, t);
+  const double h = s.t[i + 1] - s.t[i], b = (t - s.t[i]) / h, a = 1 - b;
+  return a * s.v[i] + b * s.v[i + 1] +
+         ((a * a * a - a) * s.slope2[i] + (b * b * b - b) * s.slope2[i + 1]) * (h * h / 6);
+}
+
+}  // namespace swingbank::validate::playin

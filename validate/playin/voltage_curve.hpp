@@ -1,0 +1,55 @@
+#pragma once
+// The recorded terminal voltage as a function of time: smooth between switching instants, never across one.
+#include <vector>
+
+#include "base/complex.hpp"
+#include "validate/record/record.hpp"
+
+namespace swingbank::validate::playin {
+
+/// An instant at which the network changed. The voltage jumps there; samples at `time` itself count as before
+/// it.
+struct Switching {
+  double time = 0;         ///< [s]
+  double uncertainty = 0;  ///< it lies within time ± uncertainty [s]; 0: known
+  bool has_before = false, has_after = false;
+  Complex before{}, after{};  ///< one-sided voltages at `time` [pu], where they are known
+};
+
+/// Steps of the voltage larger than this [pu] in one sample interval are taken for switching.
+constexpr double kJumpThreshold = 0.02;
+
+/// Finds the sample intervals in which the voltage jumps: its step differs from both neighbouring steps by
+/// more than `threshold` [pu] and more than ten times the usual difference (noise). Each is placed in the
+/// middle of its interval, with half the interval as uncertainty.
+std::vector<Switching> detect_switchings(const record::Record& record, double threshold = kJumpThreshold);
+
+/// Cubic spline (not-a-knot) through the voltage phasors of each segment, extrapolated to its ends. Phasors,
+/// not V and theta: they stay smooth where V is near zero and theta turns. Segments of 3, 2 or 1 points get
+/// the parabola, line or constant through them.
+class VoltageCurve {
+ public:
+  /// Throws InputError if switchings lie outside the record or leave a segment without any point.
+  VoltageCurve(const record::Record& record, std::vector<Switching> switchings);
+
+  [[nodiscard]] int segments() const { return static_cast<int>(segments_.size()); }
+  /// Last instant of a segment [s]; the first instant of the next.
+  [[nodiscard]] double end(int segment) const { return segments_[static_cast<std::size_t>(segment)].end; }
+  /// Voltage phasor [pu] of the given segment at t [s].
+  [[nodiscard]] Complex operator()(int segment, double t) const;
+  [[nodiscard]] const std::vector<Switching>& switchings() const { return switchings_; }
+
+ private:
+  struct Segment {
+    double end = 0;
+    std::vector<double> t;
+    std::vector<Complex> v, slope2;  ///< knots and second derivatives there
+    double rate = 0;                 ///< inner knots per second, all but evenly spaced; 0: too few
+  };
+  static void fit(Segment& segment);
+  static std::size_t interval(const Segment& segment, double t);
+  std::vector<Switching> switchings_;
+  std::vector<Segment> segments_;
+};
+
+}  // namespace swingbank::validate::playin

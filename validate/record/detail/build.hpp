@@ -1,0 +1,65 @@
+#pragma once
+// What all readers of records share: the choice of columns, the list of faults, and the way from columns as
+// written to a Record.
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "validate/record/detail/columns.hpp"
+
+namespace swingbank::validate::record {
+
+struct Heading {
+  std::string name;  ///< as the file writes it
+  std::optional<ColumnMeaning> meaning;
+};
+
+/// Faults of single samples. Neighbouring samples with the same fault become one sentence.
+class SampleFaults {
+ public:
+  /// Where samples first … last stand: "r.csv:5-9".
+  using Where = std::function<std::string(std::size_t first, std::size_t last)>;
+  explicit SampleFaults(Where where) : where_(std::move(where)) {}
+  /// `subject` is what may repeat (a column), `what` is told of the first sample.
+  void add(const std::string& subject, std::string what, std::size_t sample, std::string why,
+           std::string remedy);
+  [[nodiscard]] std::string where(std::size_t sample) const { return where_(sample, sample); }
+  /// Adds them to `problems`, in order; a long list is cut.
+  void tell(Problems& problems, const std::string& file) const;
+
+ private:
+  struct Fault {
+    std::string subject, what, why, remedy;
+    std::size_t first, last;
+  };
+  Where where_;
+  std::vector<Fault> faults_;
+};
+
+struct RawColumn {
+  std::string name;
+  ColumnMeaning meaning;
+  std::vector<double> values;  ///< as written; NaN where a fault was told
+};
+
+/// A file's columns, before units, and what only its reader knows.
+struct RawRecord {
+  std::vector<RawColumn> columns;
+  double time_resolution = 0;  ///< what the times are rounded to [in their own unit]; 0: not known
+  Record about;                ///< name, format, terminal, start, ignored, notes
+};
+
+/// Columns to read, in the file's order. Unknown ones go to `about.ignored`. Of several terminals the one
+/// asked for is taken, or the only complete one. Adds a problem for each column that is repeated, unitless or
+/// missing.
+std::vector<std::size_t> choose_columns(const std::vector<Heading>& headings, const ReadOptions& options,
+                                        const RecordBase& base, const std::string& where, Record& about,
+                                        Problems& problems);
+
+/// Converts units and times, computes power from the current where P and Q are not given, and makes the angle
+/// continuous. Throws InputError with `problems`, `faults` and what it finds itself.
+Record build_record(RawRecord raw, const RecordBase& base, SampleFaults faults, Problems problems,
+                    const std::string& file);
+
+}  // namespace swingbank::validate::record

@@ -1,0 +1,271 @@
+#include "validate/record/detail/columns.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <numbers>
+
+namespace swingbank::validate::record {
+namespace {
+
+struct Alias {
+  std::string_view name;  ///< normalised
+  Quantity quantity;
+  bool deviation = false;
+};
+using Q = Quantity;
+/// Names of quantities, without units. V1 is the positive sequence; VMP, VAP, IMP, IAP (also with the last
+/// two letters exchanged) are signal types of synchrophasor exchange files.
+constexpr Alias kAliases[] = {
+    {"t", Q::time},
+    {"time", Q::time},
+    {"timestamp", Q::time},
+    {"datetime", Q::time},
+    {"utc", Q::time},
+    {"timeutc", Q::time},
+    {"v", Q::V},
+    {"vm", Q::V},
+    {"vt", Q::V},
+    {"vmag", Q::V},
+    {"vterm", Q::V},
+    {"v1", Q::V},
+    {"v1mag", Q::V},
+    {"v1magnitude", Q::V},
+    {"vmp", Q::V},
+    {"vpm", Q::V},
+    {"voltage", Q::V},
+    {"voltagemag", Q::V},
+    {"voltagemagnitude", Q::V},
+    {"terminalvoltage", Q::V},
+    {"theta", Q::theta},
+    {"angle", Q::theta},
+    {"vang", Q::theta},
+    {"vangle", Q::theta},
+    {"v1ang", Q::theta},
+    {"v1angle", Q::theta},
+    {"vap", Q::theta},
+    {"vpa", Q::theta},
+    {"voltageang", Q::theta},
+    {"voltageangle", Q::theta},
+    {"phaseangle", Q::theta},
+    {"f", Q::f},
+    {"freq", Q::f},
+    {"frequency", Q::f},
+    {"p", Q::P},
+    {"pe", Q::P},
+    {"pgen", Q::P},
+    {"activepower", Q::P},
+    {"realpower", Q::P},
+    {"power", Q::P},
+    {"q", Q::Q},
+    {"qe", Q::Q},
+    {"qgen", Q::Q},
+    {"reactivepower", Q::Q},
+    {"speed", Q::speed, true},
+    {"speeddeviation", Q::speed, true},
+    {"omega", Q::speed},
+    {"w", Q::speed},
+    {"rotorspeed", Q::speed},
+    {"efd", Q::Efd},
+    {"fieldvoltage", Q::Efd},
+    {"ifd", Q::Ifd},
+    {"fieldcurrent", Q::Ifd},
+    {"i", Q::I},
+    {"imag", Q::I},
+    {"i1", Q::I},
+    {"i1mag", Q::I},
+    {"i1magnitude", Q::I},
+    {"imp", Q::I},
+    {"ipm", Q::I},
+    {"current", Q::I},
+    {"currentmag", Q::I},
+    {"currentmagnitude", Q::I},
+    {"phi", Q::phi},
+    {"iang", Q::phi},
+    {"iangle", Q::phi},
+    {"i1ang", Q::phi},
+    {"i1angle", Q::phi},
+    {"iap", Q::phi},
+    {"ipa", Q::phi},
+    {"currentang", Q::phi},
+    {"currentangle", Q::phi},
+};
+
+struct UnitName {
+  std::string_view name;  ///< normalised
+  Unit unit;
+};
+constexpr UnitName kUnits[] = {
+    {"s", Unit::second},       {"sec", Unit::second},       {"seconds", Unit::second},
+    {"ms", Unit::millisecond}, {"us", Unit::microsecond},   {"pu", Unit::pu},
+    {"kv", Unit::kilovolt},    {"kvll", Unit::kilovolt},    {"v", Unit::volt},
+    {"vll", Unit::volt},       {"kvln", Unit::kilovolt_ln}, {"vln", Unit::volt_ln},
+    {"rad", Unit::radian},     {"radians", Unit::radian},   {"deg", Unit::degree},
+    {"degree", Unit::degree},  {"degrees", Unit::degree},   {"°", Unit::degree},
+    {"hz", Unit::hertz},       {"mw", Unit::megawatt},      {"mvar", Unit::megavar},
+    {"mvars", Unit::megavar},  {"ka", Unit::kiloampere},    {"a", Unit::ampere},
+    {"amps", Unit::ampere},
+};
+
+/// Headings that are a unit and yet say what they are.
+constexpr struct {
+  std::string_view name;
+  Quantity quantity;
+  Unit unit;
+} kUnitHeadings[] = {
+    {"mw", Q::P, Unit::megawatt},
+    {"mvar", Q::Q, Unit::megavar},
+    {"hz", Q::f, Unit::hertz},
+};
+
+bool fits(Quantity q, Unit u) {
+  switch (q) {
+    case Q::time:
+      return u == Unit::second || u == Unit::millisecond || u == Unit::microsecond;
+    case Q::V:
+      return u == Unit::pu || u == Unit::kilovolt || u == Unit::volt || u == Unit::kilovolt_ln ||
+             u == Unit::volt_ln;
+    case Q::theta:
+    case Q::phi:
+      return u == Unit::radian || u == Unit::degree;
+    case Q::f:
+      return u == Unit::pu || u == Unit::hertz;
+    case Q::P:
+      return u == Unit::pu || u == Unit::megawatt;
+    case Q::Q:
+      return u == Unit::pu || u == Unit::megavar;
+    case Q::I:
+      return u == Unit::pu || u == Unit::kiloampere || u == Unit::ampere;
+    case Q::speed:
+    case Q::Efd:
+    case Q::Ifd:
+      return u == Unit::pu;
+  }
+  return false;
+}
+
+const Alias* find_alias(std::string_view name) {
+  const auto found = std::ranges::find(kAliases, name, &Alias::name);
+  return found == std::end(kAliases) ? nullptr : &*found;
+}
+std::optional<Unit> find_unit(std::string_view text) {
+  const std::string name = normalised(text);
+  const auto found = std::ranges::find(kUnits, name, &UnitName::name);
+  return found == std::end(kUnits) ? std::nullopt : std::optional(found->unit);
+}
+
+ColumnMeaning meaning(const Alias& alias, std::optional<Unit> unit) {
+  if (unit && !fits(alias.quantity, *unit)) unit.reset();
+  return {alias.quantity, unit, alias.deviation, {}};
+}
+
+/// "V (kV)" or "P [MW]": the part before, and the unit inside.
+std::optional<ColumnMeaning> bracketed(std::string_view heading) {
+  const char last = heading.empty() ? '\0' : heading.back();
+  if (last != ')' && last != ']') return std::nullopt;
+  const auto open = heading.rfind(last == ')' ? '(' : '[');
+  if (open == std::string_view::npos) return std::nullopt;
+  const Alias* alias = find_alias(normalised(heading.substr(0, open)));
+  if (!alias) return std::nullopt;
+  return meaning(*alias, find_unit(heading.substr(open + 1, heading.size() - open - 2)));
+}
+
+/// "V_kV_ln", "theta deg", "P/MW": the longest ending that is a unit.
+std::optional<ColumnMeaning> suffixed(std::string_view heading) {
+  for (std::size_t at = heading.find_first_of("_ /-"); at != std::string_view::npos;
+       at = heading.find_first_of("_ /-", at + 1)) {
+    const Alias* alias = find_alias(normalised(heading.substr(0, at)));
+    const auto unit = find_unit(heading.substr(at + 1));
+    if (alias && unit && fits(alias->quantity, *unit)) return meaning(*alias, unit);
+  }
+  return std::nullopt;
+}
+
+std::optional<ColumnMeaning> without_terminal(std::string_view heading, std::string_view unit) {
+  if (const auto m = bracketed(heading)) return m;
+  if (const auto m = suffixed(heading)) return m;
+  const std::string name = normalised(heading);
+  if (const Alias* alias = find_alias(name)) return meaning(*alias, find_unit(unit));
+  for (const auto& u : kUnitHeadings)
+    if (name == u.name) return ColumnMeaning{u.quantity, u.unit, false, {}};
+  // A name we know with something behind it that is no unit: better asked about than left out.
+  if (const Alias* alias = find_alias(normalised(heading.substr(0, heading.find('_')))))
+    return meaning(*alias, std::nullopt);
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string normalised(std::string_view text) {
+  std::string name;
+  for (const char c : text)
+    if (std::isalnum(static_cast<unsigned char>(c)) || static_cast<unsigned char>(c) >= 0x80)
+      name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return name;
+}
+
+std::optional<ColumnMeaning> column_meaning(std::string_view heading, std::string_view unit) {
+  if (auto m = without_terminal(heading, unit)) return m;
+  for (std::size_t at = heading.find_first_of(".:"); at != std::string_view::npos;
+       at = heading.find_first_of(".:", at + 1))
+    if (auto m = without_terminal(heading.substr(at + 1), unit)) {
+      m->terminal = heading.substr(0, at);
+      return m;
+    }
+  return std::nullopt;
+}
+
+bool is_unit(std::string_view text) { return find_unit(text).has_value(); }
+
+std::string names_of(Quantity q) {
+  constexpr std::string_view names[kQuantities] = {
+      "t_s, t_ms",  "V_pu, V_kV, V_kV_ln", "theta_rad, theta_deg", "f_pu, f_hz",
+      "P_pu, P_MW", "Q_pu, Q_Mvar",        "omega_pu, speed_pu",   "Efd_pu",
+      "Ifd_pu",     "I_pu, I_A, I_kA",     "phi_rad, phi_deg",
+  };
+  return std::string(names[static_cast<int>(q)]);
+}
+
+bool needs_kv(Unit unit) {
+  return unit == Unit::kilovolt || unit == Unit::volt || unit == Unit::kilovolt_ln || unit == Unit::volt_ln ||
+         unit == Unit::kiloampere || unit == Unit::ampere;
+}
+
+double to_record_units(const ColumnMeaning& column, double v, const RecordBase& base) {
+  const bool nominal_is_one = column.quantity == Q::f || (column.quantity == Q::speed && !column.deviation);
+  switch (column.unit.value_or(Unit::pu)) {
+    case Unit::second:
+    case Unit::stamp:
+    case Unit::radian:
+      return v;
+    case Unit::pu:
+      return nominal_is_one ? v - 1 : v;
+    case Unit::millisecond:
+      return v * 1e-3;
+    case Unit::microsecond:
+      return v * 1e-6;
+    case Unit::kilovolt:
+      return v / base.kv;
+    case Unit::volt:
+      return v * 1e-3 / base.kv;
+    case Unit::kilovolt_ln:
+      return v * std::numbers::sqrt3 / base.kv;
+    case Unit::volt_ln:
+      return v * 1e-3 * std::numbers::sqrt3 / base.kv;
+    case Unit::degree:
+      return v * std::numbers::pi / 180;
+    case Unit::hertz:
+      return v / base.frequency - 1;
+    case Unit::megawatt:
+    case Unit::megavar:
+      return v / base.mva;
+    case Unit::kiloampere:
+      return v * std::numbers::sqrt3 * base.kv / base.mva;
+    case Unit::ampere:
+      return v * 1e-3 * std::numbers::sqrt3 * base.kv / base.mva;
+  }
+  return v;
+}
+
+}  // namespace swingbank::validate::record

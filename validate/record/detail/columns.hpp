@@ -1,0 +1,59 @@
+#pragma once
+// Which quantity and unit a column's name means. The tables here are the documentation's source
+// (validate/README.md).
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "validate/record/record.hpp"
+
+namespace swingbank::validate::record {
+
+enum class Quantity { time, V, theta, f, P, Q, speed, Efd, Ifd, I, phi };
+constexpr int kQuantities = 11;
+enum class Unit {
+  second,
+  millisecond,
+  microsecond,
+  stamp,
+  pu,
+  kilovolt,
+  volt,
+  kilovolt_ln,
+  volt_ln,
+  radian,
+  degree,
+  hertz,
+  megawatt,
+  megavar,
+  kiloampere,
+  ampere
+};
+
+struct ColumnMeaning {
+  Quantity quantity;
+  std::optional<Unit> unit;  ///< none: a known quantity whose unit is missing or not known
+  bool deviation = false;    ///< pu values are deviations from nominal (speed), not 1 at nominal (omega)
+  std::string terminal;      ///< prefix of the name: "G2" of "G2.V_pu"
+};
+
+/// What a heading means: "V_pu", "V (kV)", "P [MW]", "G2.theta_rad", or "VOLTAGE_MAG" where another header
+/// line gives `unit`. Case, blanks, '_' and '-' within names do not matter. None: not a quantity we read.
+std::optional<ColumnMeaning> column_meaning(std::string_view heading, std::string_view unit = {});
+
+/// Is the text a unit we know ("kV", "deg.", "p.u.")?
+bool is_unit(std::string_view text);
+
+/// Names a column of the quantity can have, with units: "P_pu, P_MW".
+std::string names_of(Quantity q);
+
+/// Brings a value to the record's units: s, pu, rad; frequency and speed to deviations [pu].
+double to_record_units(const ColumnMeaning& column, double value, const RecordBase& base);
+
+/// Does the unit need base.kv?
+bool needs_kv(Unit unit);
+
+/// Lower case, letters and digits only ("°" counts as a letter): how names are compared.
+std::string normalised(std::string_view text);
+
+}  // namespace swingbank::validate::record

@@ -1,0 +1,223 @@
+#include "validate/record/detail/comtrade_cfg.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+
+namespace swingbank::validate::record {
+namespace {
+
+std::string_view trim(std::string_view s) {
+  constexpr std::string_view blank = " \t\r\x1a";
+  const auto first = s.find_first_not_of(blank);
+  if (first == std::string_view::npos) return {};
+  return s.substr(first, s.find_last_not_of(blank) - first + 1);
+}
+std::string upper(std::string_view s) {
+  std::string r(s);
+  std::ranges::transform(r, r.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return r;
+}
+
+class Config {
+ public:
+  Config(std::string_view text, std::string name, Problems& problems)
+      : rest_(text), name_(std::move(name)), problems_(problems) {}
+
+  ComtradeConfig read() {
+    if (!station() || !channels()) return std::move(c_);
+    rates();
+    times();
+    return std::move(c_);
+  }
+
+ private:
+  using Fields = std::vector<std::string_view>;
+
+  Fields next() {
+    ++number_;
+    if (rest_.empty()) {
+      if (!ended_) fault("end of the configuration", "lines are missing", "export it again");
+      ended_ = true;
+      return {};
+    }
+    return comtrade_fields(comtrade_line(rest_));
+  }
+  void fault(std::string what, std::string why, std::string remedy) {
+    if (ended_) return;  // one sentence for a file that ends early
+    problems_.add(std::move(what), fmt::format("{}:{}", name_, number_), std::move(why), std::move(remedy));
+  }
+
+  double number(const Fields& fields, std::size_t i, const char* what) {
+    const auto v = i < fields.size() ? comtrade_number(fields[i]) : std::nullopt;
+    if (!v)
+      fault(fmt::format("{} = '{}'", what, i < fields.size() ? fields[i] : ""), "this is no number",
+            "export the configuration again");
+    return v.value_or(0);
+  }
+
+  bool station() {
+    const Fields f = next();
+    if (f.size() < 3 || f[2].empty()) {
+      fault("a configuration without revision", "that is COMTRADE of 1991; 1999 and 2013 are read",
+            "export it as COMTRADE 1999 or 2013");
+      return false;
+    }
+    c_.about.station = f[0];
+    c_.about.device = f[1];
+    const double year = number(f, 2, "revision year");
+    c_.about.revision = year == 1999 || year == 2013 ? static_cast<int>(year) : 0;
+    if (c_.about.revision == 0)
+      fault(fmt::format("revision '{}'", f[2]), "1999 and 2013 are read",
+            "export it as COMTRADE 1999 or 2013");
+    return c_.about.revision != 0;
+  }
+
+  /// "4A" -> 4; negative if it is none.
+  static long count(std::string_view field, char letter) {
+    if (field.empty() || std::toupper(static_cast<unsigned char>(field.back())) != letter) return -1;
+    field.remove_suffix(1);
+    long n = -1;
+    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), n);
+    return error == std::errc{} && end == field.data() + field.size() && n < 1'000'000 ? n : -1;
+  }
+
+  bool channels() {
+    const Fields f = next();
+    const long analogue = f.size() > 1 ? count(f[1], 'A') : -1, status = f.size() > 2 ? count(f[2], 'D') : -1;
+    if (analogue < 1 || status < 0 ||
+        number(f, 0, "number of channels") != static_cast<double>(analogue + status)) {
+      fault("the numbers of channels", "total, analogue (with A) and status (with D) must agree",
+            "export the configuration again");
+      return false;
+    }
+    c_.status = static_cast<int>(status);
+    for (long k = 0; k < analogue && !ended_; ++k) channel(k);
+    for (long k = 0; k < status && !ended_; ++k) next();
+    return !ended_;
+  }
+
+  void channel(long k) {
+    const Fields f = next();
+    if (ended_) return;
+    if (f.size() < 13) {
+      fault(fmt::format("analogue channel with {} fields", f.size()), "there must be 13",
+            "export the configuration again");
+      return;
+    }
+    if (number(f, 0, "channel number") != static_cast<double>(k + 1))
+      fault(fmt::format("channel number '{}'", f[0]), fmt::format("channel {} comes here", k + 1),
+            "export the configuration again");
+    ComtradeChannel c;
+    c.id = f[1];
+    c.phase = f[2];
+    c.component = f[3];
+    c.unit = f[4];
+    c.a = number(f, 5, "multiplier a");
+    c.b = number(f, 6, "offset b");
+    c.skew = 1e-6 * (f[7].empty() ? 0.0 : number(f, 7, "skew"));
+    c.primary = number(f, 10, "primary ratio");
+    c.secondary = number(f, 11, "secondary ratio");
+    const std::string side = upper(f[12]);
+    c.secondary_values = side == "S";
+    if (side != "P" && side != "S")
+      fault(fmt::format("side '{}'", f[12]), "it must be P (primary) or S (secondary)",
+            "export the configuration again");
+    if (c.secondary_values && !(c.primary > 0 && c.secondary > 0))
+      fault(fmt::format("ratio {:g}/{:g}", c.primary, c.secondary),
+            "values on the secondary side need a ratio", "enter it in the instrument, or mark the channel P");
+    c_.about.channels.push_back(std::move(c));
+  }
+
+  void rates() {
+    c_.about.nominal = number(next(), 0, "line frequency");
+    const double n = number(next(), 0, "number of sampling rates");
+    if (!(n >= 0 && n < 1000)) {
+      fault("the number of sampling rates", "0 to 999 make sense", "export the configuration again");
+      return;
+    }
+    for (int k = 0; k < std::max(1.0, n) && !ended_; ++k) {
+      const Fields f = next();
+      if (ended_) return;
+      const double rate = number(f, 0, "sampling rate"), last = number(f, 1, "last sample");
+      if (k > 0 && rate != c_.rate)
+        fault(fmt::format("several sampling rates ({:g} and {:g} per second)", c_.rate, rate),
+              "a record must be sampled evenly", "export the stretch with one rate");
+      if (rate < 0 || last < 1 || last > 1e9)
+        fault(fmt::format("rate {:g}, last sample {:g}", rate, last), "neither can be",
+              "export the configuration again");
+      c_.rate = n == 0 ? 0 : rate;
+      c_.samples = static_cast<long>(std::clamp(last, 0.0, 1e9));
+    }
+  }
+
+  void times() {
+    const std::string_view first = comtrade_line(rest_);
+    ++number_;
+    c_.about.start = trim(first);
+    // Stamps are in microseconds, or nanoseconds where the dates have so many digits (2013, 7.4.7).
+    const auto point = first.rfind('.');
+    std::size_t digits = 0;
+    while (point != std::string_view::npos && point + 1 + digits < first.size() &&
+           std::isdigit(static_cast<unsigned char>(first[point + 1 + digits])) != 0)
+      ++digits;
+    next();  // trigger
+    const Fields kind = next();
+    c_.about.kind = kind.empty() ? "" : upper(kind[0]);
+    const auto& k = c_.about.kind;
+    if (k != "ASCII" && k != "BINARY" && (c_.about.revision == 1999 || (k != "BINARY32" && k != "FLOAT32")))
+      fault(fmt::format("data type '{}'", k),
+            c_.about.revision == 1999 ? "1999 has ASCII and BINARY"
+                                      : "there are ASCII, BINARY, BINARY32 and FLOAT32",
+            "export the data again");
+    const double multiplier = number(next(), 0, "time multiplier");
+    c_.stamp = (digits > 6 ? 1e-9 : 1e-6) * multiplier;
+    if (!(multiplier > 0))
+      fault("the time multiplier", "it must be positive", "export the configuration again");
+  }
+
+  std::string_view rest_;
+  std::string name_;
+  Problems& problems_;
+  ComtradeConfig c_;
+  int number_ = 0;
+  bool ended_ = false;
+};
+
+}  // namespace
+
+std::vector<std::string_view> comtrade_fields(std::string_view line) {
+  std::vector<std::string_view> fields;
+  for (std::size_t at = 0;;) {
+    const auto comma = line.find(',', at);
+    fields.push_back(trim(line.substr(at, comma - at)));
+    if (comma == std::string_view::npos) return fields;
+    at = comma + 1;
+  }
+}
+
+std::optional<double> comtrade_number(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double v = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), v);
+  if (text.empty() || error != std::errc{} || end != text.data() + text.size() || !std::isfinite(v))
+    return std::nullopt;
+  return v;
+}
+
+std::string_view comtrade_line(std::string_view& text) {
+  const auto end = text.find('\n');
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  return line;
+}
+
+ComtradeConfig parse_comtrade_config(std::string_view cfg, const std::string& name, Problems& problems) {
+  if (cfg.starts_with("\xEF\xBB\xBF")) cfg.remove_prefix(3);
+  return Config(cfg, name, problems).read();
+}
+
+}  // namespace swingbank::validate::record

@@ -1,0 +1,138 @@
+#include "validate/report/run_result.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <tuple>
+
+namespace swingbank::validate::report {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// Reads keys of one JSON object, collecting what is missing or of the wrong type.
+class Object {
+ public:
+  Object(const json& object, std::string where, Problems& problems)
+      : object_(object), where_(std::move(where)), problems_(problems) {}
+
+  template <class T>
+  void get(const char* key, T& value) {
+    const auto at = object_.find(key);
+    if (at == object_.end()) return fault(key, "it is missing");
+    try {
+      value = at->get<T>();
+    } catch (const json::exception&) {
+      return fault(key, "its type is wrong");
+    }
+    if constexpr (std::is_same_v<T, double>)
+      if (!std::isfinite(value)) fault(key, "it is not finite");
+  }
+  void fault(const char* key, const std::string& why) {
+    problems_.add(fmt::format("key '{}'", key), where_, why,
+                  "write the result again with this version's swingbank train");
+  }
+  [[nodiscard]] const json& value() const { return object_; }
+
+ private:
+  const json& object_;
+  std::string where_;
+  Problems& problems_;
+};
+
+void read_parameters(Object& o, const std::string& where, RunResult& r, Problems& problems) {
+  json list;
+  o.get("per_parameter", list);
+  if (!list.is_array()) return o.fault("per_parameter", "it is no list");
+  for (const auto& item : list) {
+    Object p(item, where + " per_parameter", problems);
+    ParameterScore score;
+    p.get("name", score.name);
+    p.get("unit", score.unit);
+    p.get("mse", score.mse);
+    p.get("variance", score.variance);
+    if (item.contains("relative") && item["relative"].is_number())
+      score.relative = item["relative"].get<double>();
+    r.parameters.push_back(std::move(score));
+  }
+}
+
+RunResult read_result(const fs::path& file, Problems& problems) {
+  RunResult r;
+  r.file = file;
+  std::ifstream in(file);
+  const json parsed = json::parse(in, nullptr, false);
+  if (!parsed.is_object()) {
+    problems.add("no JSON object", file.string(), "the file is damaged or is no result",
+                 "remove it or make the run again");
+    return r;
+  }
+  Object o(parsed, file.string(), problems);
+  o.get("table", r.table);
+  o.get("network", r.network);
+  o.get("preset", r.preset);
+  o.get("seed", r.seed);
+  if (parsed.contains("generator") && !parsed["generator"].is_null()) o.get("generator", r.generator);
+  json dataset = json::object();
+  o.get("dataset", dataset);
+  Object d(dataset, file.string() + " dataset", problems);
+  d.get("name", r.dataset);
+  d.get("hash", r.dataset_hash);
+  d.get("config_hash", r.config_hash);
+  d.get("rows", r.rows);
+  o.get("train_rows", r.train_rows);
+  o.get("test_rows", r.test_rows);
+  o.get("epochs", r.epochs);
+  o.get("best_epoch", r.best_epoch);
+  o.get("seconds", r.seconds);
+  o.get("seconds_per_epoch", r.seconds_per_epoch);
+  o.get("mse", r.mse);
+  o.get("mse_varied_only", r.mse_varied_only);
+  o.get("baseline_mse", r.baseline_mse);
+  o.get("ratio", r.ratio);
+  if (parsed.contains("H_ratio") && parsed["H_ratio"].is_null())
+    r.H_ratio = std::numeric_limits<double>::quiet_NaN();  // H does not vary in that dataset
+  else
+    o.get("H_ratio", r.H_ratio);
+  o.get("shuffled_labels", r.shuffled);
+  o.get("software", r.software);
+  read_parameters(o, file.string(), r, problems);
+  return r;
+}
+
+auto identity(const RunResult& r) {
+  return std::tie(r.table, r.network, r.preset, r.dataset_hash, r.rows, r.seed, r.generator, r.shuffled);
+}
+
+}  // namespace
+
+std::vector<RunResult> read_results(const std::vector<fs::path>& folders) {
+  std::vector<RunResult> results;
+  Problems problems;
+  for (const auto& folder : folders) {
+    std::vector<fs::path> files;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error))
+      if (entry.path().extension() == ".json") files.push_back(entry.path());
+    if (error || files.empty())
+      problems.add("no results", folder.string(), error ? error.message() : "there is no .json file in it",
+                   "give a folder that swingbank train or cross-validate wrote");
+    std::ranges::sort(files);
+    for (const auto& file : files) results.push_back(read_result(file, problems));
+  }
+  problems.raise();
+  for (std::size_t i = 0; i < results.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (identity(results[i]) == identity(results[j]))
+        problems.add("a second result of the same run", results[i].file.string(),
+                     "it is also in " + results[j].file.string(), "give one of the folders");
+  problems.raise();
+  return results;
+}
+
+}  // namespace swingbank::validate::report

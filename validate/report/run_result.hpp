@@ -1,0 +1,39 @@
+#pragma once
+// One training run as `swingbank train` and `swingbank cross-validate` write it (train/README.md lists the
+// keys).
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/problem.hpp"
+
+namespace swingbank::validate::report {
+
+struct ParameterScore {
+  std::string name, unit;
+  double mse = 0, variance = 0;
+  std::optional<double> relative;  ///< mse / variance; none for a parameter that does not vary
+};
+struct RunResult {
+  std::filesystem::path file;
+  std::string table, network, preset;
+  std::int64_t seed = 0;
+  int generator = 0;  ///< bus of the generator left out; 0: none
+  std::string dataset, dataset_hash, config_hash;
+  std::int64_t rows = 0, train_rows = 0, test_rows = 0, epochs = 0, best_epoch = 0;
+  double seconds = 0, seconds_per_epoch = 0;
+  double mse = 0, mse_varied_only = 0, baseline_mse = 0, ratio = 0;
+  double H_ratio = 0;  ///< NaN where H does not vary
+  std::vector<ParameterScore> parameters;
+  bool shuffled = false;
+  std::string software;
+};
+
+/// Reads every *.json of the folders, in order of their names. Throws InputError with every fault of every
+/// file: not JSON, missing or mistyped keys, values that are not finite, two different results for one run, a
+/// folder without any.
+std::vector<RunResult> read_results(const std::vector<std::filesystem::path>& folders);
+
+}  // namespace swingbank::validate::report

@@ -1,0 +1,39 @@
+#pragma once
+// The thesis's Tables IV, V and VI, reproduced: each of our figures beside the thesis's and beside what a
+// constant guess scores. A run that was not made is shown as missing.
+#include <string>
+#include <vector>
+
+#include "validate/report/page.hpp"
+#include "validate/report/run_result.hpp"
+
+namespace swingbank::validate::report {
+
+/// A score of at most half of predict-the-mean is the project's own mark of having learnt.
+constexpr double kLearnt = 0.5;
+
+/// The runs of one table made with one network, preset, dataset and seed.
+struct TableBlock {
+  std::string table, network, preset, dataset;
+  std::int64_t rows = 0, seed = 0;
+  bool shuffled = false;
+  std::vector<RunResult> runs;  ///< in order of the generator
+};
+/// Runs grouped and sorted: by table, then control runs last, network, preset, rows and seed.
+std::vector<TableBlock> group_results(std::vector<RunResult> results);
+
+/// "Table V, cnn": one row per generator or, for Table IV, one; missing ones are named as such.
+Table score_table(const TableBlock& block);
+/// Error of each parameter relative to its variance over the test rows: median and worst over the runs.
+Table parameter_table(const TableBlock& block);
+/// The ratio to predict-the-mean per run.
+Bars ratio_bars(const TableBlock& block);
+
+struct TablesReport {
+  std::string markdown, html;
+  std::vector<std::pair<std::string, std::string>> csv;  ///< file name, content: one per table with results
+};
+/// `sources`: for the provenance.
+TablesReport make_tables(const std::vector<RunResult>& results, const Provenance& sources);
+
+}  // namespace swingbank::validate::report

@@ -1,0 +1,235 @@
+#include "validate/retrain/retrain.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "validate/calibrate/report.hpp"
+
+namespace swingbank::validate::retrain {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr const char* kSides[2] = {"without", "with"};
+
+json finite(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+const calibrate::NetworkEstimate::Parameter* find(const calibrate::NetworkEstimate& e,
+                                                  const std::string& full) {
+  const auto at = std::ranges::find_if(e.parameters, [&](const auto& p) { return p.full() == full; });
+  return at == e.parameters.end() ? nullptr : &*at;
+}
+
+/// What the estimates are held against.
+calibrate::Truth reference_of(const add::Addition& added, const calibrate::Truth& truth) {
+  if (!truth.empty()) return truth;
+  calibrate::Truth fitted;
+  for (const auto& p : added.parameters) fitted[p.block + "." + p.name] = p.value;
+  return fitted;
+}
+
+/// Parameters with a reference, those of both networks first.
+std::vector<RetrainedParameter> parameters_of(const std::array<calibrate::NetworkEstimate, 2>& estimates,
+                                              const calibrate::Truth& reference) {
+  std::vector<RetrainedParameter> all;
+  for (const auto& p : estimates[1].parameters) {
+    const auto known = reference.find(p.full());
+    if (!p.learnt() || known == reference.end()) continue;
+    RetrainedParameter r;
+    r.name = p.full();
+    r.unit = p.unit;
+    r.reference = known->second;
+    r.deviation = (p.high - p.low) / std::sqrt(12.0);
+    r.middle = std::abs((p.high + p.low) / 2 - r.reference) / r.deviation;
+    const auto* other = find(estimates[0], r.name);
+    r.own = other == nullptr || !other->learnt();
+    all.push_back(r);
+  }
+  std::ranges::stable_sort(all, {}, &RetrainedParameter::own);
+  return all;
+}
+
+double estimate_of(const calibrate::NetworkEstimate& e, std::size_t record, const std::string& full) {
+  for (std::size_t i = 0; i < e.parameters.size(); ++i)
+    if (e.parameters[i].full() == full) return e.records[record].values[i];
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+/// The model with a network's estimates, averaged over the events seen.
+sim::plant::Plant seen_plant(const calibrate::NetworkEstimate& e, const plant::PlantModel& model,
+                             const std::vector<RetrainedEvent>& events) {
+  sim::plant::Plant plant = model.plant;
+  const auto blocks = static_cast<int>(sim::plant::block_parameters(plant).size());
+  for (int b = 0; b < blocks; ++b) {
+    const sim::Effect& effect = fit::block_effect(plant, b);
+    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+      const auto* p = find(e, std::string(effect.name) + "." + std::string(effect.parameters[i].name));
+      if (p == nullptr || !p->learnt()) continue;
+      double sum = 0;
+      int n = 0;
+      for (std::size_t k = 0; k < events.size(); ++k) {
+        if (!events[k].seen) continue;
+        sum += estimate_of(e, k, p->full());
+        ++n;
+      }
+      if (n > 0)
+        fit::parameter_value(plant, b, static_cast<int>(i)) =
+            std::clamp(sum / n, effect.parameters[i].low, effect.parameters[i].high);
+    }
+  }
+  return plant;
+}
+
+/// What a plant leaves of an event that has a state of its own.
+void leave(const sim::plant::Plant& plant, const sim::Conventions& conventions, const event::FitEvent& event,
+           double& misfit, double& rms) {
+  misfit = rms = kInfinity;
+  const fit::Fit own = fit::fit(plant, conventions, {event}, {});
+  if (!own.failed.empty()) return;
+  misfit = own.misfit();
+  const auto& model = own.events.front().model;
+  double sum = 0;
+  std::size_t n = 0;
+  for (std::size_t c = 0; c < 2; ++c) {  // P and Q stand first
+    const auto& measured = event.measured(event.channels[c]);
+    for (std::size_t k = 0; k < measured.size(); ++k, ++n) sum += std::pow(model[c][k] - measured[k], 2);
+  }
+  rms = event.record.base.mva * std::sqrt(sum / static_cast<double>(n));
+}
+
+std::string figure(double value) {
+  return std::isfinite(value) ? fmt::format("{:.3g}", value) : "cannot be run";
+}
+std::string power(double rms) {
+  return std::isfinite(rms) ? fmt::format("{:.3g} MW, Mvar", rms) : "cannot be run";
+}
+
+std::string sentence_of(const Retrained& r, const add::Addition& added) {
+  std::string text = fmt::format(
+      "On events not fitted, the network without {} misses the {} by {:.3g} standard deviations of the "
+      "values drawn, "
+      "the one with it by {:.3g}: {:.3g} times less (the middle of the intervals by {:.3g}).",
+      added.hypothesis.name, r.truth ? "true parameters" : "fitted parameters", r.error[0], r.error[1],
+      r.fall(), r.middle);
+  if (r.error[1] > r.middle)
+    text +=
+        " That is no better than the middle: train it on more (--train-draws, --train-epochs) before "
+        "trusting it.";
+  if (!std::isfinite(r.rms[1])) return text + " With its estimates the plant cannot be run.";
+  return text + fmt::format(" With its estimates P and Q are missed by {} rms; with those of the other {}.",
+                            power(r.rms[1]),
+                            std::isfinite(r.rms[0]) ? "by " + power(r.rms[0]) : "the plant cannot be run");
+}
+
+}  // namespace
+
+Retrained compare_networks(const std::array<calibrate::NetworkEstimate, 2>& estimates,
+                           const plant::PlantModel& before, const add::Addition& added,
+                           const calibrate::Truth& truth) {
+  Retrained r;
+  r.truth = !truth.empty();
+  r.parameters = parameters_of(estimates, reference_of(added, truth));
+  const auto shared = std::ranges::count(r.parameters, false, &RetrainedParameter::own);
+  for (const auto& e : added.events) r.events.push_back({e.score.record, e.score.seen});
+  const auto unseen = std::ranges::count(r.events, false, &RetrainedEvent::seen);
+  Problems problems;
+  if (unseen == 0)
+    problems.add("no event held out", "--retrain",
+                 "networks are judged on events that the effect was not fitted to",
+                 "hold out at least one with --hold-out");
+  if (shared == 0)
+    problems.add("no parameter that both networks learnt", estimates[0].network, "nothing can be compared",
+                 "vary the machine's parameters in the dataset config");
+  problems.raise();
+  for (auto& p : r.parameters)
+    for (std::size_t side = p.own ? 1 : 0; side < 2; ++side)
+      for (std::size_t e = 0; e < r.events.size(); ++e) {
+        const double value = estimate_of(estimates[side], e, p.name);
+        const double square = std::pow((value - p.reference) / p.deviation, 2);
+        if (!p.own) r.events[e].parameter_error[side] += square / static_cast<double>(shared);
+        if (r.events[e].seen) continue;
+        p.estimate[side] += value / static_cast<double>(unseen);
+        p.error[side] += square / static_cast<double>(unseen);
+        if (!p.own) r.error[side] += square / static_cast<double>(unseen * shared);
+      }
+  for (auto& p : r.parameters) {
+    for (auto& e : p.error) e = std::sqrt(e);
+    if (!p.own) r.middle += p.middle * p.middle / static_cast<double>(shared);
+  }
+  r.middle = std::sqrt(r.middle);
+  for (auto& e : r.error) e = std::sqrt(e);
+  const sim::plant::Plant plants[2] = {seen_plant(estimates[0], before, r.events),
+                                       seen_plant(estimates[1], added.model, r.events)};
+  const sim::Conventions conventions[2] = {before.conventions, added.model.conventions};
+  for (std::size_t e = 0; e < r.events.size(); ++e)
+    for (std::size_t side = 0; side < 2; ++side) {
+      auto& event = r.events[e];
+      event.parameter_error[side] = std::sqrt(event.parameter_error[side]);
+      leave(plants[side], conventions[side], added.prepared[e], event.misfit[side], event.rms[side]);
+      if (!event.seen) r.rms[side] += event.rms[side] * event.rms[side] / static_cast<double>(unseen);
+    }
+  for (auto& rms : r.rms) rms = std::sqrt(rms);
+  r.sentence = sentence_of(r, added);
+  return r;
+}
+
+std::string terminal_report(const Retrained& r) {
+  report::Table t{"Networks",
+                  {"parameter", "unit", r.truth ? "truth" : "fitted", "without", "error", "with", "error",
+                   "middle's error"},
+                  {}};
+  for (const auto& p : r.parameters)
+    t.rows.push_back({p.name, p.unit, fmt::format("{:.4g}", p.reference),
+                      p.own ? std::string() : fmt::format("{:.4g}", p.estimate[0]),
+                      p.own ? std::string() : fmt::format("{:.2f}", p.error[0]),
+                      fmt::format("{:.4g}", p.estimate[1]), fmt::format("{:.2f}", p.error[1]),
+                      fmt::format("{:.2f}", p.middle)});
+  t.rows.push_back({"rms of those of both", "", "", "", fmt::format("{:.2f}", r.error[0]), "",
+                    fmt::format("{:.2f}", r.error[1]), fmt::format("{:.2f}", r.middle)});
+  report::Table events{"Events",
+                       {"event", "", "parameter error without", "with", "P, Q rms without", "with",
+                        "chi2/value without", "with"},
+                       {}};
+  for (const auto& e : r.events)
+    events.rows.push_back({e.record, e.seen ? "fitted" : "UNSEEN",
+                           fmt::format("{:.2f}", e.parameter_error[0]),
+                           fmt::format("{:.2f}", e.parameter_error[1]), power(e.rms[0]), power(e.rms[1]),
+                           figure(e.misfit[0]), figure(e.misfit[1])});
+  return r.sentence +
+         "\n\nEstimates on the unseen events; errors in standard deviations of the values drawn:\n" +
+         calibrate::aligned(t) + "\nP and Q with each network's estimates from the fitted events:\n" +
+         calibrate::aligned(events);
+}
+
+json retrained_json(const Retrained& r) {
+  json j = {{"format", "swingbank-retrain-1"},
+            {"sentence", r.sentence},
+            {"reference", r.truth ? "truth" : "fitted"},
+            {"parameter_error", {{"without", r.error[0]}, {"with", r.error[1]}, {"middle", r.middle}}},
+            {"fall", finite(r.fall())},
+            {"rms_unseen_mw_mvar", {{"without", finite(r.rms[0])}, {"with", finite(r.rms[1])}}},
+            {"parameters", json::array()},
+            {"events", json::array()}};
+  for (const auto& p : r.parameters) {
+    json one = {{"parameter", p.name},      {"unit", p.unit},         {"reference", p.reference},
+                {"deviation", p.deviation}, {"of_the_effect", p.own}, {"middle_error", p.middle}};
+    for (std::size_t side = p.own ? 1 : 0; side < 2; ++side)
+      one[kSides[side]] = {{"estimate", finite(p.estimate[side])}, {"error", finite(p.error[side])}};
+    j["parameters"].push_back(one);
+  }
+  for (const auto& e : r.events) {
+    json one = {{"record", e.record}, {"seen", e.seen}};
+    for (std::size_t side = 0; side < 2; ++side)
+      one[kSides[side]] = {{"parameter_error", e.parameter_error[side]},
+                           {"rms_mw_mvar", finite(e.rms[side])},
+                           {"misfit", finite(e.misfit[side])}};
+    j["events"].push_back(one);
+  }
+  return j;
+}
+
+}  // namespace swingbank::validate::retrain

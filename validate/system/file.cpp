@@ -1,0 +1,254 @@
+// System files: a grid, an event, and the records of several terminals.
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/config.hpp"
+#include "sim/formats/event_text.hpp"
+#include "sim/grid/attach.hpp"
+#include "sim/grid/load_choice.hpp"
+#include "sim/laws/law.hpp"
+#include "sim/plant/measure.hpp"
+#include "validate/check/check.hpp"
+#include "validate/record/formats.hpp"
+#include "validate/system/system.hpp"
+
+namespace swingbank::validate::system {
+namespace {
+
+namespace fs = std::filesystem;
+using Texts = std::vector<std::string>;
+
+std::uint64_t hash_of(const fs::path& file) {
+  const std::string bytes = record::read_bytes(file);
+  return XXH64(bytes.data(), bytes.size(), 0);
+}
+
+/// Problems of a part, told at the key they belong to.
+void tell(Config& c, const std::string& key, const Problems& problems) {
+  for (const auto& p : problems.list()) c.problem(key, p.what, p.where + ": " + p.why, p.remedy);
+}
+template <class F>
+void attempt(Config& c, const std::string& key, F action) {
+  try {
+    action();
+  } catch (const InputError& error) {
+    for (const auto& p : error.problems()) c.problem(key, p.what, p.where + ": " + p.why, p.remedy);
+  }
+}
+
+constexpr const char* kParts[] = {"fault",     "trip",      "trip_generator", "load_step",
+                                  "vref_step", "pref_step", "fault_type",     "z0"};
+std::string event_key(sim::grid::EventPart part) {
+  return std::string("event.") + kParts[static_cast<int>(part)];
+}
+
+sim::grid::EventTexts read_texts(Config& c) {
+  const auto list = [&](sim::grid::EventPart part) { return c.optional<Texts>(event_key(part), {}); };
+  sim::grid::EventTexts t;
+  t.faults = list(sim::grid::EventPart::fault);
+  t.trips = list(sim::grid::EventPart::trip);
+  t.generator_trips = list(sim::grid::EventPart::generator_trip);
+  t.load_steps = list(sim::grid::EventPart::load_step);
+  t.vref_steps = list(sim::grid::EventPart::vref_step);
+  t.pref_steps = list(sim::grid::EventPart::pref_step);
+  t.fault_type = c.choice(event_key(sim::grid::EventPart::fault_type), {"3ph", "slg", "ll", "llg"}, "3ph");
+  t.z0 = c.optional<std::string>(event_key(sim::grid::EventPart::z0), "");
+  if (t.faults.empty() && t.trips.empty() && t.generator_trips.empty() && t.load_steps.empty() &&
+      t.vref_steps.empty() && t.pref_steps.empty())
+    c.problem("event", "no event", "nothing would happen in the simulation",
+              "give fault, trip, trip_generator, load_step, vref_step or pref_step as swingbank simulate "
+              "takes them");
+  return t;
+}
+
+void read_grid(Config& c, SystemCase& s) {
+  for (const auto& name : c.optional<Texts>("laws", {}))
+    attempt(c, "laws", [&] {
+      const fs::path law = (c.name().parent_path() / name).lexically_normal();
+      sim::laws::load_law(law);
+      s.laws.emplace_back(law, hash_of(law));
+    });
+  s.raw = c.file("system.raw");
+  s.dyr = c.file("system.dyr");
+  const auto conventions = c.choice("system.conventions", {"psse", "andes"}) == "andes"
+                               ? sim::Conventions::andes()
+                               : sim::Conventions::psse();
+  std::optional<double> hz;
+  if (c.has("system.frequency_hz")) hz = c.require<double>("system.frequency_hz", {1.0, 1000.0, "Hz"});
+  const sim::formats::DyrOptions models = sim::formats::read_dyr_options(c, "system.");
+  const auto attached = c.optional<Texts>("system.attach", {}), loads = c.optional<Texts>("system.load", {});
+  const bool composed = c.choice("system.loads", {"impedance", "raw"}, "impedance") == "raw";
+  if (!c.sound()) return;
+  s.raw_hash = hash_of(s.raw);
+  s.dyr_hash = hash_of(s.dyr);
+  attempt(c, "system.raw", [&] { s.grid = sim::grid::load_grid(s.raw, s.dyr, conventions, models, hz); });
+  if (!c.sound()) return;
+  Problems problems;
+  for (const auto& text : attached) sim::grid::attach(s.grid, text, "attach " + text, problems);
+  tell(c, "system.attach", problems);
+  problems = {};
+  if (composed) sim::grid::loads_as_composed(s.grid, problems);
+  for (const auto& text : loads) sim::grid::choose_load(s.grid, text, "load " + text, problems);
+  tell(c, "system.load", problems);
+}
+
+/// Index of a plant of the grid; -1 with a problem.
+int plant_named(Config& c, const std::string& key, const std::string& name, const sim::grid::Grid& grid) {
+  std::string all;
+  for (std::size_t i = 0; i < grid.plants.size(); ++i) {
+    if (grid.plants[i].name == name) return static_cast<int>(i);
+    all += (all.empty() ? "" : ", ") + grid.plants[i].name;
+  }
+  c.problem(key, "no plant " + name, "the plants are " + all, "name one of these");
+  return -1;
+}
+
+/// What can be said of a record of a bus, which has no power.
+void check_bus_record(const record::Record& r, Problems& problems) {
+  const double level = std::accumulate(r.V.begin(), r.V.end(), 0.0) / static_cast<double>(r.V.size());
+  if (level < 0.5 || level > 1.5)
+    problems.add(fmt::format("V = {:.4g} pu on average", level), r.name, "a bus stands near 1 pu",
+                 "name the column by its unit (V_kV with record.base_kv), or give per-unit values");
+}
+
+/// Whether an instrument answers, and always the same: a model has neither noise nor gaps.
+bool is_repeatable(const sim::plant::Block& instrument, double frequency) {
+  constexpr int kSamples = 240;
+  sim::Phasors one{60.0, frequency, {}, {}, std::vector<double>(kSamples, 0.0)};
+  for (int k = 0; k < kSamples; ++k) {
+    one.V.push_back(std::polar(1.0, 1e-3 * k));
+    one.I.push_back(std::polar(0.5, 2e-3 * k));
+  }
+  sim::Phasors other = one;
+  instrument.effect->measure(instrument.p.data(), 1, one);
+  instrument.effect->measure(instrument.p.data(), 2, other);
+  return one.V == other.V && one.I == other.I;  // a sample that is missing is not a number
+}
+
+/// Those of the plant, then those of the file.
+void add_instruments(Config& c, const std::string& key, const SystemCase& s, SystemTerminal& t) {
+  if (t.plant >= 0) t.instruments = s.grid.plants[static_cast<std::size_t>(t.plant)].measurements;
+  Problems problems;
+  for (const auto& text : c.optional<Texts>(key, {}))
+    if (auto block = sim::plant::read_measurement(text, "instrument " + text, problems))
+      t.instruments.push_back(std::move(*block));
+  tell(c, key, problems);
+  for (const sim::plant::Block& block : t.instruments)
+    attempt(c, key, [&] {
+      if (!is_repeatable(block, s.base.frequency))
+        throw InputError({"an instrument that draws random numbers", std::string(block.effect->name),
+                          "how much noise a record has is seen in it", "leave it out"});
+    });
+}
+
+void read_terminal(Config& c, const std::string& name, SystemCase& s) {
+  const std::string at = "terminal." + name + ".";
+  SystemTerminal t;
+  t.name = name;
+  const bool is_bus = c.has(at + "bus");
+  if (is_bus == c.has(at + "plant"))
+    c.problem("terminal." + name, "terminal " + name, "it is at a plant or at a bus",
+              "give plant or bus, one of them");
+  const auto number = c.optional<std::int64_t>(at + "bus", 0, {1, 999999, ""});
+  const auto plant = c.optional<std::string>(at + "plant", "");
+  const auto file = c.require<std::string>(at + "record");
+  if (!c.sound()) return;
+  if (is_bus) {
+    Problems problems;
+    t.bus = sim::formats::read_bus(std::to_string(number), s.grid.network, "terminal " + name, problems);
+    tell(c, at + "bus", problems);
+  } else {
+    t.plant = plant_named(c, at + "plant", plant, s.grid);
+    if (t.plant >= 0) t.bus = s.grid.plants[static_cast<std::size_t>(t.plant)].bus;
+  }
+  add_instruments(c, at + "instruments", s, t);
+  if (t.bus < 0) return;
+  attempt(c, at + "record", [&] {
+    t.record = record::read_record(c.name().parent_path() / file, s.base, {.power = !is_bus});
+    Problems problems;
+    if (is_bus) {
+      t.record.P.clear();
+      t.record.Q.clear();
+      check_bus_record(t.record, problems);
+    } else {
+      auto findings = check::check_record(
+          t.record, {s.grid.plants[static_cast<std::size_t>(t.plant)].mva, s.base.frequency});
+      // Far from the event a terminal may hardly feel it; that is no fault of the record.
+      std::erase_if(findings, [](const check::Finding& f) { return f.kind == "no_event"; });
+      for (const auto& f : findings)
+        if (f.severity == check::Severity::warn) t.warnings.push_back(f.problem.sentence());
+      check::raise_refusals(findings);
+    }
+    problems.raise();
+    s.terminals.push_back(std::move(t));
+  });
+}
+
+/// Clocks must be common: seconds since an epoch were taken off each record by itself.
+void check_clocks(Config& c, const SystemCase& s) {
+  for (const auto& t : s.terminals)
+    if (t.record.start != s.terminals.front().record.start)
+      c.problem("terminal." + t.name + ".record", "a record that starts at " + t.record.start,
+                "that of " + s.terminals.front().name + " starts at " + s.terminals.front().record.start,
+                "export all records from the same instant, or with times relative to one");
+  double end = 0;
+  for (const auto& t : s.terminals) end = std::max(end, t.record.t.back());
+  for (const auto& t : s.terminals)
+    if (t.record.t.back() < end - 60 || t.record.t.front() > s.terminals.front().record.t.front() + 60)
+      c.problem("terminal." + t.name + ".record",
+                fmt::format("times from {:g} to {:g} s", t.record.t.front(), t.record.t.back()),
+                "they do not fit those of the other terminals", "give all records on one clock");
+}
+
+}  // namespace
+
+SystemCase load_system(const fs::path& file) {
+  Config c(file);
+  SystemCase s;
+  s.file = file;
+  s.hash = hash_of(file);
+  s.name = c.require<std::string>("system.name");
+  s.base.mva = c.require<double>("record.base_mva", {1e-9, 1e9, "MVA"});
+  s.base.kv = c.optional<double>("record.base_kv", 0.0, {1e-9, 1e9, "kV"});
+  s.texts = read_texts(c);
+  s.find_instants = c.choice("event.instants", {"given", "found"}, "given") == "found";
+  s.steady_state = c.choice("compare.steady_state", {"judge", "shift"}, "judge") == "shift"
+                       ? SteadyState::shift
+                       : SteadyState::judge;
+  s.tolerance = c.optional<double>("compare.tolerance", s.tolerance, {1e-12, 1e-4, "relative"});
+  const auto reference = c.optional<std::string>("compare.reference", "");
+  read_grid(c, s);
+  if (c.sound()) s.base.frequency = s.grid.network.frequency;
+  const auto names = c.keys("terminal");
+  if (names.empty())
+    c.problem("terminal", "no terminal", "nothing was measured", "give one [terminal.NAME] at least");
+  if (!c.sound()) {  // the grid's faults first; what refers to it cannot be told yet
+    c.ignore("terminal");
+    c.raise();
+  }
+  for (const auto& name : names) read_terminal(c, name, s);
+  for (std::size_t i = 0; i < s.terminals.size(); ++i)
+    if (s.terminals[i].name == reference) s.reference = static_cast<int>(i);
+  if (c.sound() && !reference.empty() && s.reference < 0)
+    c.problem("compare.reference", "no terminal " + reference, "angles are relative to it",
+              "name one of [terminal.NAME]");
+  if (c.sound()) {
+    check_clocks(c, s);
+    double end = s.terminals.front().record.t.back();
+    for (const auto& t : s.terminals) end = std::min(end, t.record.t.back());
+    Problems problems;
+    const auto place = [](sim::grid::EventPart part, const std::string& text) {
+      return std::string(kParts[static_cast<int>(part)]) + (text.empty() ? "" : " '" + text + "'");
+    };
+    s.event = sim::grid::read_event(s.texts, s.grid, end, place, problems);
+    for (const auto& p : problems.list()) c.problem("event", p.what, p.where + ": " + p.why, p.remedy);
+  }
+  c.raise();
+  return s;
+}
+
+}  // namespace swingbank::validate::system

@@ -1,0 +1,165 @@
+// When the event of a system comparison happened, by the records.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "sim/plant/measure.hpp"
+#include "validate/event/event.hpp"
+#include "validate/system/detail/run.hpp"
+
+namespace swingbank::validate::system {
+namespace {
+
+constexpr double kAfter = 1.0;  // s after the last switching that a fit looks at
+
+/// Instants of the jumps in one record.
+std::vector<playin::Switching> jumps_of(const record::Record& r) {
+  std::vector<char> smeared;
+  return event::find_switchings(r, playin::kJumpThreshold, event::Jumps::either, smeared);
+}
+
+/// Up to `end`, everything that is looked at.
+SystemCase shortened(SystemCase s, double end) {
+  for (auto& t : s.terminals) {
+    record::Record& r = t.record;
+    const auto kept = static_cast<std::size_t>(std::ranges::upper_bound(r.t, end) - r.t.begin());
+    for (auto* channel :
+         {&r.t, &r.V, &r.theta, &r.P, &r.Q, &r.f, &r.speed, &r.Efd, &r.Ifd, &r.theta_as_written})
+      if (!channel->empty()) channel->resize(std::max<std::size_t>(kept, 2));
+  }
+  return s;
+}
+
+class InstantFit {
+ public:
+  InstantFit(const SystemCase& system, std::vector<double> written, std::vector<double> found)
+      : s_(shortened(system, found.back() + kAfter)), written_(std::move(written)), best_(std::move(found)) {
+    mark_smeared();
+  }
+
+  /// Golden section on one instant after the other, within `reach` of where it was found.
+  std::vector<double> run(double reach) {
+    constexpr double kGolden = 0.6180339887498949;
+    constexpr int kSweeps = 2, kSteps = 9;  // 9 steps leave 1.3 % of the interval
+    constexpr double kEnough = 2.5e-4;      // [s]; a filter makes intervals long
+    const auto middle = best_;
+    for (int sweep = 0; sweep < kSweeps; ++sweep)
+      for (std::size_t k = 0; k < best_.size(); ++k) {
+        double low = middle[k] - reach, high = middle[k] + reach;
+        if (k > 0) low = std::max(low, best_[k - 1] + 1e-4);
+        if (k + 1 < best_.size()) high = std::min(high, best_[k + 1] - 1e-4);
+        double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
+        double at_a = misfit(k, a), at_b = misfit(k, b);
+        for (int step = 0; step < kSteps || high - low > kEnough; ++step)
+          if (at_a < at_b) {
+            high = b, b = a, at_b = at_a;
+            a = high - kGolden * (high - low), at_a = misfit(k, a);
+          } else {
+            low = a, a = b, at_a = at_b;
+            b = low + kGolden * (high - low), at_b = misfit(k, b);
+          }
+        best_[k] = at_a < at_b ? a : b;
+      }
+    return best_;
+  }
+
+ private:
+  void mark_smeared() {
+    const auto declared = [](const SystemTerminal& t) { return sim::plant::memory(t.instruments) > 0; };
+    std::vector<record::Record> records;
+    for (const SystemTerminal& t : s_.terminals)
+      if (!declared(t)) records.push_back(t.record);
+    const event::Jumps jumps = event::jumps_of(records, playin::kJumpThreshold);
+    for (const SystemTerminal& t : s_.terminals) {
+      smeared_.emplace_back(t.record.t.size(), 0);
+      if (!declared(t) && jumps == event::Jumps::spread)
+        event::find_switchings(t.record, playin::kJumpThreshold / 2, jumps, smeared_.back());
+    }
+  }
+  /// Sum of squares over every terminal, in units of the pre-event's spread, with instant k at t.
+  double misfit(std::size_t k, double t) {
+    auto instants = best_;
+    instants[k] = t;
+    const sim::network::Event event = moved(s_.event, [&](double at) {
+      return instants[static_cast<std::size_t>(std::ranges::lower_bound(written_, at) - written_.begin())];
+    });
+    const SystemRun run = run_system(s_, event);
+    double sum = 0;
+    for (std::size_t i = 0; i < s_.terminals.size(); ++i) {
+      const record::Record& r = s_.terminals[i].record;
+      const Modelled& m = run.answers[i];
+      const auto of = [&](const std::vector<double>& measured, const std::vector<double>& modelled) {
+        return squares(r.t, measured, modelled, smeared_[i]);
+      };
+      sum += of(r.V, m.V) + of(r.P, m.P) + of(r.Q, m.Q);
+    }
+    return sum;
+  }
+  [[nodiscard]] double squares(const std::vector<double>& t, const std::vector<double>& measured,
+                               const std::vector<double>& modelled, const std::vector<char>& smeared) const {
+    if (measured.empty()) return 0;
+    const auto quiet = static_cast<std::size_t>(
+        std::max<std::ptrdiff_t>(std::ranges::lower_bound(t, best_.front() - 0.05) - t.begin(), 2));
+    double mean = 0, spread = 0, sum = 0;
+    for (std::size_t k = 0; k < quiet; ++k) mean += (modelled[k] - measured[k]) / static_cast<double>(quiet);
+    for (std::size_t k = 0; k < quiet; ++k)
+      spread += std::pow(modelled[k] - measured[k] - mean, 2) / static_cast<double>(quiet);
+    for (std::size_t k = 0; k < t.size(); ++k)
+      if (!smeared[k]) sum += std::pow(modelled[k] - measured[k] - mean, 2);
+    return sum / (spread + event::kLeastNoise * event::kLeastNoise);
+  }
+
+  SystemCase s_;
+  std::vector<double> written_, best_;
+  /// By terminal: samples smeared by a filter that is not declared, so that no instant meets them.
+  std::vector<std::vector<char>> smeared_;
+};
+
+}  // namespace
+
+std::vector<double> found_instants(const SystemCase& s, double& uncertainty) {
+  const auto written = instants_of(s.event);
+  std::vector<double> sum(written.size(), 0.0);
+  int votes = 0;
+  std::string counts;
+  uncertainty = 0;
+  for (const auto& t : s.terminals) {
+    const auto jumps = jumps_of(t.record);
+    counts += fmt::format("{}{} in {}", counts.empty() ? "" : ", ", jumps.size(), t.name);
+    if (jumps.size() != written.size()) continue;
+    ++votes;
+    for (std::size_t k = 0; k < jumps.size(); ++k) {
+      sum[k] += jumps[k].time;
+      uncertainty = std::max(uncertainty, jumps[k].uncertainty);
+    }
+  }
+  if (votes == 0)
+    throw InputError({fmt::format("{} switching instants", written.size()),
+                      s.file.string() + ", event.instants",
+                      "no record shows as many jumps of the voltage (" + counts + ")",
+                      "give the instants (event.instants = \"given\")"});
+  for (double& t : sum) t /= votes;
+  return InstantFit(s, written, sum).run(uncertainty);
+}
+
+std::string clock_doubt(const record::Record& record, const std::vector<double>& instants) {
+  const auto jumps = jumps_of(record);
+  if (jumps.size() != instants.size()) return {};
+  constexpr double kSlack = 1e-3;  // s; what stamps may be off
+  bool off = false;
+  std::string seen;
+  for (std::size_t k = 0; k < jumps.size(); ++k) {
+    off = off || std::abs(jumps[k].time - instants[k]) > jumps[k].uncertainty + kSlack;
+    seen += fmt::format("{}{:.4f} s", seen.empty() ? "" : ", ", jumps[k].time);
+  }
+  if (!off) return {};
+  return fmt::format(
+      "The voltage of {} jumps at {} (± {:.1f} ms), not at the event's instants: check its clock, or have "
+      "them found "
+      "(event.instants = \"found\").",
+      record.name, seen, 1e3 * jumps.front().uncertainty);
+}
+
+}  // namespace swingbank::validate::system

@@ -1,0 +1,274 @@
+// A system comparison for a terminal, as JSON and as a page.
+#include "validate/compare/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "validate/compare/error_map_table.hpp"
+#include "validate/system/system.hpp"
+
+namespace swingbank::validate::system {
+namespace {
+
+using nlohmann::json;
+
+json number(double v) { return std::isfinite(v) ? json(v) : json(nullptr); }
+
+std::vector<compare::LabelledMap> maps_of(const std::vector<compare::EventComparison>& terminals) {
+  std::vector<compare::LabelledMap> maps;
+  for (const auto& e : terminals)
+    for (const auto& c : e.channels)
+      maps.push_back({e.record.name, c.name, c.unit, c.scale, &e.windows, &c.map});
+  return maps;
+}
+/// Tables of events, said of terminals.
+report::Table of_terminals(report::Table table) {
+  for (auto& h : table.header)
+    if (h == "event") h = "terminal";
+  if (const auto at = table.caption.find("worst of all events"); at != std::string::npos)
+    table.caption.replace(at, 19, "worst of all terminals");
+  return table;
+}
+
+/// RMS and largest error of every channel, whole record.
+report::Table summary(const std::vector<compare::EventComparison>& terminals) {
+  report::Table table{"Residual (modelled − measured) over the whole record.",
+                      {"terminal", "channel", "RMS", "largest", "at", "noise σ", "RMS / noise"},
+                      {}};
+  for (const auto& e : terminals)
+    for (const auto& c : e.channels) {
+      const auto in_units = [&](double v) { return fmt::format("{:.3g} {}", v * c.scale, c.unit); };
+      table.rows.push_back(
+          {e.record.name, c.name, in_units(c.whole.rms), in_units(c.whole.worst),
+           fmt::format("{:.3f} s", c.whole.worst_at), c.noise > 0 ? in_units(c.noise) : "none",
+           compare::times_noise(c.map.whole.in_noise) + (c.map.whole.exceeds() ? " *" : "")});
+    }
+  return table;
+}
+
+std::string place_of(const SystemCase& s, const SystemTerminal& t) {
+  return t.plant >= 0 ? "plant " + s.grid.plants[static_cast<std::size_t>(t.plant)].name
+                      : fmt::format("bus {}", s.grid.network.buses[static_cast<std::size_t>(t.bus)].number);
+}
+std::string instants_text(const SystemComparison& c) {
+  std::string text;
+  for (const double t : c.instants) text += (text.empty() ? "" : ", ") + fmt::format("{:.4f} s", t);
+  return text + (c.uncertainty > 0 ? " (found)" : " (given)");
+}
+std::vector<std::string> event_lines(const sim::grid::EventTexts& t) {
+  std::vector<std::string> lines;
+  const auto add = [&](const char* what, const std::vector<std::string>& texts) {
+    for (const auto& text : texts) lines.push_back(std::string(what) + " " + text);
+  };
+  add("fault", t.faults);
+  add("trip", t.trips);
+  add("trip of generator", t.generator_trips);
+  add("load step", t.load_steps);
+  add("step of Vref", t.vref_steps);
+  add("step of Pref", t.pref_steps);
+  return lines;
+}
+
+/// What model and records differ by before the event.
+report::Table initial_table(const SystemCase& s, const SystemComparison& c) {
+  report::Table table{
+      "Before the event: model less record, mean.", {"terminal", "at", "V", "angle", "P", "Q"}, {}};
+  const double scales[] = {1, 57.29577951308232, s.base.mva, s.base.mva};
+  const char* units[] = {"pu", "deg", "MW", "Mvar"};
+  for (std::size_t i = 0; i < s.terminals.size(); ++i) {
+    std::vector<report::Cell> row = {s.terminals[i].name, place_of(s, s.terminals[i])};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double v = c.initial[4 * i + k];
+      row.emplace_back(std::isfinite(v) ? fmt::format("{:+.4f} {}", v * scales[k], units[k]) : "–");
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+json channel_json(const compare::EventComparison& e, const compare::ChannelComparison& c) {
+  return {{"name", c.name},
+          {"unit", c.unit},
+          {"units_in_pu", c.scale},
+          {"noise_pu", c.noise},
+          {"rms_pu", c.whole.rms},
+          {"mean_pu", c.whole.mean},
+          {"worst_pu", c.whole.worst},
+          {"worst_at_s", c.whole.worst_at},
+          {"map", compare::map_json(e.windows, c.map)}};
+}
+
+json terminal_json(const SystemCase& s, const SystemComparison& c, std::size_t i) {
+  const SystemTerminal& t = s.terminals[i];
+  const compare::EventComparison& e = c.terminals[i];
+  json j = {{"name", t.name},
+            {"at", place_of(s, t)},
+            {"record", t.record.name},
+            {"record_xxh64", fmt::format("{:016x}", t.record.hash)},
+            {"samples", t.record.samples()},
+            {"rate_per_s", t.record.rate()},
+            {"warnings", t.warnings},
+            {"instruments", json::array()},
+            {"initial",
+             {{"V_pu", number(c.initial[4 * i])},
+              {"angle_rad", number(c.initial[4 * i + 1])},
+              {"P_pu", number(c.initial[4 * i + 2])},
+              {"Q_pu", number(c.initial[4 * i + 3])}}},
+            {"channels", json::array()}};
+  for (const auto& block : t.instruments) j["instruments"].push_back(block.effect->name);
+  for (const auto& channel : e.channels) j["channels"].push_back(channel_json(e, channel));
+  return j;
+}
+
+void add_terminal(report::Page& page, const SystemCase& s, const SystemComparison& c, std::size_t i) {
+  const SystemTerminal& t = s.terminals[i];
+  const compare::EventComparison& e = c.terminals[i];
+  page.section(t.name);
+  page.text(fmt::format("At {}. {}: {} samples at {:.6g} per second.", place_of(s, t), t.record.name,
+                        t.record.samples(), t.record.rate()));
+  for (const auto& note : e.notes) page.note(note);
+  const std::vector<std::pair<double, double>> fault = {{c.instants.front(), c.instants.back()}};
+  for (const auto& channel : e.channels) {
+    const auto curves = [&](const std::string& title, const std::string& label) {
+      return report::Curves{title, "t [s]", label, "system", e.record.t, {}, fault};
+    };
+    const auto in_units = [&](std::vector<double> v) {
+      for (auto& x : v) x *= channel.scale;
+      return v;
+    };
+    report::Curves overlay =
+        curves(channel.name + ", measured and modelled", channel.name + " [" + channel.unit + "]");
+    overlay.series.push_back({channel.name + " measured", "#8a97a5", true, in_units(channel.measured)});
+    overlay.series.push_back({channel.name + " modelled", "#c0392b", false, in_units(channel.modelled)});
+    page.curves(overlay);
+    report::Curves residual =
+        curves(channel.name + " residual (modelled − measured)", "[" + channel.unit + "]");
+    residual.series.push_back({channel.name + " residual", "#0b5cad", false, in_units(channel.residual)});
+    page.curves(residual);
+  }
+  if (c.terminals.size() > 1) page.table(of_terminals(compare::map_table(maps_of({e}))));
+}
+
+}  // namespace
+
+report::Table ranking_table(const SystemCase& s, const SystemComparison& c) {
+  report::Table table{
+      "Terminals, the one that fails most first. “Alone”: the recorded voltage of a "
+      "plant played into its own model, so that neither the grid nor other plants "
+      "can be to blame; those that fail so come first. Numbers are the largest cell "
+      "of the error map over its bound: above 1 noise alone does not explain it.",
+      {"terminal", "at", "in the grid", "furthest off", "alone", "furthest off, alone"},
+      {}};
+  for (const auto& r : c.ranking) {
+    const auto ratio = [](double worst) {
+      return report::Cell(fmt::format("{:.3g}", worst), worst > 1 ? 1.0 : 0.0);
+    };
+    table.rows.push_back({s.terminals[r.terminal].name, place_of(s, s.terminals[r.terminal]), ratio(r.worst),
+                          r.where, r.alone ? ratio(r.alone_worst) : report::Cell("–"),
+                          r.alone                 ? r.alone_where
+                          : r.alone_where.empty() ? "–"
+                                                  : "not possible"});
+  }
+  return table;
+}
+
+std::string system_text(const SystemCase& s, const SystemComparison& c) {
+  std::string out = fmt::format("{}: measured against the simulation of the whole grid\n\n", s.name);
+  out += report::padded(summary(c.terminals));
+  out += "\nIn units of noise, per window and band" +
+         std::string(c.terminals.size() > 1 ? ", worst of all terminals" : "") + ":\n";
+  const auto maps = maps_of(c.terminals);
+  out += report::padded(c.terminals.size() > 1 ? compare::worst_map_table(maps) : compare::map_table(maps));
+  out += "* exceeds what noise alone allows\n\nBefore the event, model less record:\n";
+  out += report::padded(initial_table(s, c));
+  out += "\nTerminals, the one that fails most first (largest cell over its bound):\n";
+  out += report::padded(ranking_table(s, c), 6);
+  out += "\nswitching at " + instants_text(c) + "\n";
+  for (const auto& note : c.notes) out += "note: " + note + "\n";
+  for (const auto& e : c.terminals)
+    for (const auto& note : e.notes) out += "note on " + e.record.name + ": " + note + "\n";
+  return out + "\n" + c.adequacy.sentence + "\n" + c.culprit + "\n";
+}
+
+std::string system_json(const SystemCase& s, const SystemComparison& c, const report::Provenance& rows) {
+  json j = {{"format", "swingbank-system-compare-1"},
+            {"name", s.name},
+            {"adequate", c.adequacy.adequate},
+            {"verdict", c.adequacy.sentence},
+            {"culprit", c.culprit},
+            {"cells", c.adequacy.cells},
+            {"cells_exceeding", c.adequacy.exceeding},
+            {"false_alarm_probability", compare::kFalseAlarm},
+            {"event", event_lines(s.texts)},
+            {"instants_s", c.instants},
+            {"instants_found", s.find_instants},
+            {"instants_uncertainty_s", c.uncertainty},
+            {"outcome", sim::outcome_name(c.outcome)},
+            {"reference",
+             s.reference < 0 ? json(nullptr) : json(s.terminals[static_cast<std::size_t>(s.reference)].name)},
+            {"steady_state", s.steady_state == SteadyState::shift ? "shift" : "judge"},
+            {"base_mva", s.base.mva},
+            {"frequency_hz", s.base.frequency},
+            {"notes", c.notes}};
+  j["ranking"] = j["terminals"] = json::array();
+  for (const auto& r : c.ranking)
+    j["ranking"].push_back({{"terminal", s.terminals[r.terminal].name},
+                            {"worst_over_bound", r.worst},
+                            {"where", r.where},
+                            {"alone_adequate", r.alone ? json(r.alone->adequate) : json(nullptr)},
+                            {"alone_worst_over_bound", r.alone ? json(r.alone_worst) : json(nullptr)},
+                            {"alone_where", r.alone_where}});
+  for (std::size_t i = 0; i < c.terminals.size(); ++i) j["terminals"].push_back(terminal_json(s, c, i));
+  for (const auto& [name, value] : rows) j["provenance"].push_back({{"what", name}, {"value", value}});
+  return j.dump(1) + "\n";
+}
+
+std::string system_html(const SystemCase& s, const SystemComparison& c, const report::Provenance& rows) {
+  report::Page page(
+      "Measured against modelled: " + s.name,
+      fmt::format("{} buses, {} plants; the event simulated in the whole grid, compared at {} {}.",
+                  s.grid.network.buses.size(), s.grid.plants.size(), s.terminals.size(),
+                  s.terminals.size() == 1 ? "terminal" : "terminals"));
+  page.verdict(c.adequacy.sentence + " " + c.culprit,
+               c.adequacy.adequate ? report::Tone::good : report::Tone::bad);
+  for (const auto& note : c.notes) page.note(note);
+  page.table(ranking_table(s, c));
+  const auto maps = maps_of(c.terminals);
+  page.table(
+      of_terminals(c.terminals.size() > 1 ? compare::worst_map_table(maps) : compare::map_table(maps)));
+  page.table(summary(c.terminals));
+  page.table(initial_table(s, c));
+  std::string event;
+  for (const auto& line : event_lines(s.texts)) event += (event.empty() ? "" : "; ") + line;
+  page.text("Event: " + event + ". Switching: " + instants_text(c) + ".");
+  page.text(
+      "Drag across a chart to zoom in on a stretch of time (all charts follow); double-click to see the "
+      "whole record. "
+      "The shaded band is the fault.");
+  for (const auto& r : c.ranking) add_terminal(page, s, c, r.terminal);
+  page.provenance(rows);
+  page.data("figures", system_json(s, c, rows));
+  return page.html();
+}
+
+report::Provenance system_provenance(const SystemCase& s, const std::string& command_line) {
+  const auto hashed = [](const std::filesystem::path& file, std::uint64_t hash) {
+    return fmt::format("{}, XXH64 {:016x}", file.string(), hash);
+  };
+  report::Provenance rows = {
+      {"command", command_line},
+      {"software", "swingbank " SWINGBANK_VERSION},
+      {"system", hashed(s.file, s.hash)},
+      {"network", hashed(s.raw, s.raw_hash)},
+      {"dynamics", hashed(s.dyr, s.dyr_hash)},
+      {"integrator", fmt::format("IDA on the unreduced grid, relative tolerance {:g}", s.tolerance)}};
+  for (const auto& [file, hash] : s.laws) rows.emplace_back("law", hashed(file, hash));
+  for (const auto& t : s.terminals)
+    rows.emplace_back("record of " + t.name, hashed(t.record.name, t.record.hash));
+  return rows;
+}
+
+}  // namespace swingbank::validate::system

@@ -1,0 +1,299 @@
+// The event in the full grid beside the records of its terminals.
+#include "validate/system/system.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <set>
+
+#include "sim/plant/measure.hpp"
+#include "validate/compare/error_map_table.hpp"
+#include "validate/event/event.hpp"
+#include "validate/playin/instruments.hpp"
+#include "validate/system/detail/run.hpp"
+
+namespace swingbank::validate::system {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr int kFewestQuiet = 5;  // samples before the event, from which its noise is estimated
+
+double mean_of(const std::vector<double>& v, std::size_t n) {
+  return std::accumulate(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(n), 0.0) / static_cast<double>(n);
+}
+/// a - b, whole turns taken off such that it starts within half a turn of zero.
+std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> d(a.size());
+  std::ranges::transform(a, b, d.begin(), std::minus<>());
+  const double turns = kTurn * std::round(d.front() / kTurn);
+  for (double& v : d) v -= turns;
+  return d;
+}
+
+/// How far to either side of a switching instruments without a declared filter smear it, by their records
+/// [s]. 0: they do not.
+double smear_of(const SystemCase& system) {
+  std::vector<record::Record> records;
+  for (const SystemTerminal& t : system.terminals)
+    if (!(sim::plant::memory(t.instruments) > 0)) records.push_back(t.record);
+  if (event::jumps_of(records, playin::kJumpThreshold) != event::Jumps::spread) return 0;
+  double farthest = 0;
+  for (const record::Record& r : records) {
+    std::vector<char> smeared;
+    for (const playin::Switching& s :
+         event::find_switchings(r, playin::kJumpThreshold / 2, event::Jumps::spread, smeared))
+      farthest = std::max(farthest, s.uncertainty);
+  }
+  return farthest;
+}
+
+/// Compares one terminal after the other.
+class Comparer {
+ public:
+  Comparer(const SystemCase& system, const SystemRun& run, SystemComparison& out)
+      : s_(system), run_(run), out_(out), undeclared_(smear_of(system)) {}
+
+  void terminal(std::size_t i) {
+    const SystemTerminal& t = s_.terminals[i];
+    const double smear = smear_at(t);
+    compare::EventComparison e;
+    e.record = t.record;
+    e.record.name = t.name;
+    e.notes = t.warnings;
+    for (const double at : out_.instants)
+      e.switchings.push_back({.time = at, .uncertainty = out_.uncertainty});
+    e.detected = s_.find_instants;
+    if (const auto doubt = clock_doubt(t.record, out_.instants); !doubt.empty()) e.notes.push_back(doubt);
+    leave_out_smeared(e, smear);
+    const double begins = out_.instants.front() - smear + 1e-4 * t.record.step();
+    e.playback.start.samples =
+        static_cast<int>(std::ranges::upper_bound(t.record.t, begins) - t.record.t.begin());
+    if (e.playback.start.samples < kFewestQuiet)
+      throw InputError({fmt::format("{} samples before the event", e.playback.start.samples),
+                        "terminal " + t.name, "noise and steady state are seen there",
+                        "start the record at least 1 s before the event"});
+    e.windows = compare::event_windows(e.record, e.switchings, 1.0, e.left_out);
+    channels(i, e);
+    out_.terminals.push_back(std::move(e));
+  }
+
+ private:
+  /// How far to either side of a switching the terminal's samples are not compared [s]. This is its filter's
+  /// window, and the stretch that the cubic through the simulation's samples bends beside a jump. Within it
+  /// an instant that is wrong by a fraction of a millisecond shows.
+  [[nodiscard]] double smear_at(const SystemTerminal& t) const {
+    const double memory = sim::plant::memory(t.instruments);
+    return memory > 0 ? memory + 2 * t.record.step() / kFine : undeclared_;
+  }
+  void leave_out_smeared(compare::EventComparison& e, double smear) const {
+    if (!(smear > 0)) return;
+    for (const double t : e.record.t)
+      e.left_out.push_back(
+          std::ranges::any_of(out_.instants, [&](double at) { return std::abs(t - at) <= smear; }));
+    e.notes.push_back(fmt::format(
+        "The instruments' filters smear switchings by up to {:.0f} ms to either side: samples there are not "
+        "compared.",
+        1e3 * smear));
+  }
+  void channels(std::size_t i, compare::EventComparison& e) {
+    const Modelled& m = run_.answers[i];
+    const record::Record& r = s_.terminals[i].record;
+    // While a bolted fault holds V near zero its angle is noise.
+    const bool gone = std::ranges::any_of(r.V, [](double v) { return v < 0.05; });
+    out_.initial.push_back(add(e, {"V", "pu", 1, event::kLeastNoise, shift()}, r.V, m.V));
+    out_.initial.push_back(angle(i, e, gone));
+    const record::RecordBase& base = s_.base;
+    const auto output = [&](playin::Output o, const std::vector<double>& measured,
+                            const std::vector<double>& modelled) {
+      const compare::ChannelUnit u = compare::channel_unit(o, base);
+      return add(e, {std::string(playin::output_name(o)), u.name, u.scale, u.floor, shift()}, measured,
+                 modelled);
+    };
+    out_.initial.push_back(output(playin::Output::P, r.P, m.P));
+    out_.initial.push_back(output(playin::Output::Q, r.Q, m.Q));
+    output(playin::Output::speed, r.speed, m.speed);
+    output(playin::Output::Efd, r.Efd, m.Efd);
+    output(playin::Output::Ifd, r.Ifd, m.Ifd);
+  }
+  /// Compares angles relative to the reference where there is one. The reference's own angle, and all angles
+  /// where there is no reference, are compared as frequency. Returns the angle that the model starts off by;
+  /// NaN where the frequency is compared.
+  double angle(std::size_t i, compare::EventComparison& e, bool gone) {
+    const auto reference = static_cast<std::size_t>(std::max(s_.reference, 0));
+    const record::Record &r = s_.terminals[i].record, &other = s_.terminals[reference].record;
+    const std::string_view skip = gone ? "fault" : "";
+    if (s_.reference < 0 || i == reference) {
+      const double nominal = s_.base.frequency;
+      add(e, {"frequency", "mHz", 1e3 * nominal, event::kLeastSpeedNoise, shift(), true, skip},
+          compare::frequency_of(r.t, r.theta, nominal),
+          compare::frequency_of(r.t, run_.answers[i].theta, nominal));
+      return kNaN;
+    }
+    if (other.samples() != r.samples() || std::abs(other.t.front() - r.t.front()) > 1e-3 * r.step() ||
+        std::abs(other.step() - r.step()) > 1e-6 * r.step())
+      throw InputError({"angles sampled at other instants",
+                        "terminals " + e.record.name + " and " + s_.terminals[reference].name,
+                        "the angle between them cannot be taken sample by sample",
+                        "export both at the same rate, or leave compare.reference out"});
+    const auto measured = difference(r.theta, other.theta);
+    auto modelled = difference(run_.answers[i].theta, run_.answers[reference].theta);
+    const double turns = kTurn * std::round((modelled.front() - measured.front()) / kTurn);
+    for (double& v : modelled) v -= turns;
+    return add(e, {"angle", "deg", 360 / kTurn, event::kLeastNoise, shift(), true, skip}, measured, modelled);
+  }
+  [[nodiscard]] bool shift() const { return s_.steady_state == SteadyState::shift; }
+
+  /// Adds a channel. Returns what the model starts off by; NaN where nothing was measured.
+  double add(compare::EventComparison& e, const compare::ChannelRule& rule,
+             const std::vector<double>& measured, std::vector<double> modelled) {
+    if (measured.empty()) return kNaN;
+    const auto quiet = static_cast<std::size_t>(e.playback.start.samples);
+    const double off = mean_of(modelled, quiet) - mean_of(measured, quiet);
+    if (shift())
+      for (double& v : modelled) v -= off;
+    e.channels.push_back(compare::compare_channel(rule, measured, modelled, e));
+    return off;
+  }
+
+  const SystemCase& s_;
+  const SystemRun& run_;
+  SystemComparison& out_;
+  double undeclared_;
+};
+
+/// The cell of a comparison that is furthest beyond its bound, or nearest to it.
+std::pair<double, std::string> worst_cell(const compare::EventComparison& e) {
+  double worst = 0;
+  std::string where;
+  const auto look = [&](const compare::ChannelComparison& c, const std::string& place,
+                        const compare::MapCell& cell) {
+    if (cell.empty() || !(cell.in_noise / cell.bound > worst)) return;
+    worst = cell.in_noise / cell.bound;
+    where = fmt::format("{} {}, {} noise ({:.3g} {})", c.name, place, compare::times_noise(cell.in_noise),
+                        cell.rms * c.scale, c.unit);
+  };
+  for (const auto& c : e.channels) {
+    if (!c.judged) continue;
+    for (std::size_t w = 0; w < c.map.rows.size(); ++w) {
+      look(c, e.windows[w].name, c.map.rows[w].all);
+      for (std::size_t b = 0; b < c.map.rows[w].bands.size(); ++b)
+        look(c, fmt::format("{} at {}", e.windows[w].name, compare::error_bands()[b].name),
+             c.map.rows[w].bands[b]);
+    }
+    look(c, "whole record", c.map.whole);
+  }
+  return {worst, where};
+}
+
+/// A plant's record played into its own model.
+void play_alone(const SystemCase& s, SystemComparison& c, TerminalRank& rank) {
+  const SystemTerminal& t = s.terminals[rank.terminal];
+  plant::PlantModel model;
+  model.name = t.name;
+  model.plant = s.grid.plants[static_cast<std::size_t>(t.plant)];
+  // a filter is left out: what it does to the played-in voltage it does to P and Q too
+  model.plant.measurements.clear();
+  std::ranges::copy_if(t.instruments, std::back_inserter(model.plant.measurements),
+                       [](const sim::plant::Block& b) { return playin::can_be_taken_back(*b.effect); });
+  model.conventions = s.grid.conventions;
+  model.record_base = s.base;
+  compare::CompareOptions options;
+  // else by its own jumps; smeared samples are played in where instants are given
+  const bool smeared = event::jumps_of({t.record}, playin::kJumpThreshold) == event::Jumps::spread;
+  if (!smeared && clock_doubt(t.record, c.instants).empty()) options.switchings = c.instants;
+  try {
+    std::vector<compare::EventComparison> one = {compare::compare_event(model, t.record, options)};
+    one.front().record.name = t.name;
+    rank.alone = compare::judge(one);
+    std::tie(rank.alone_worst, rank.alone_where) = worst_cell(one.front());
+  } catch (const InputError& error) {
+    rank.alone_where = "could not be played in: " + error.problems().front().sentence();
+    c.terminals[rank.terminal].notes.push_back("Alone, its record " + rank.alone_where);
+  }
+}
+
+bool fails_alone(const TerminalRank& r) { return r.alone && !r.alone->adequate; }
+
+void rank_terminals(const SystemCase& s, SystemComparison& c) {
+  for (std::size_t i = 0; i < c.terminals.size(); ++i) {
+    TerminalRank r;
+    r.terminal = i;
+    std::tie(r.worst, r.where) = worst_cell(c.terminals[i]);
+    if (s.terminals[i].plant >= 0) play_alone(s, c, r);
+    c.ranking.push_back(std::move(r));
+  }
+  std::ranges::stable_sort(c.ranking, [](const TerminalRank& a, const TerminalRank& b) {
+    if (fails_alone(a) != fails_alone(b)) return fails_alone(a);
+    return fails_alone(a) ? a.alone_worst > b.alone_worst : a.worst > b.worst;
+  });
+  const TerminalRank& first = c.ranking.front();
+  const auto failing = std::ranges::count_if(c.ranking, fails_alone);
+  const auto played =
+      std::ranges::count_if(c.ranking, [](const TerminalRank& r) { return r.alone.has_value(); });
+  if (c.adequacy.adequate)
+    c.culprit = "Every terminal is met.";
+  else if (failing > 0)
+    c.culprit = fmt::format(
+        "Terminal {} fails most: its plant's model does not answer its own recorded voltage either ({}); "
+        "look there "
+        "first.{}",
+        s.terminals[first.terminal].name, first.alone_where,
+        failing > 1 ? fmt::format(" {} more plants fail so.", failing - 1) : "");
+  else
+    c.culprit =
+        fmt::format("Terminal {} fails most ({}).{}", s.terminals[first.terminal].name, first.where,
+                    played > 0 ? " Every recorded plant answers its own recorded voltage as measured, so the "
+                                 "error is in the network, the loads, the event, or a plant without a record."
+                               : "");
+}
+
+}  // namespace
+
+SystemComparison compare_system(const SystemCase& s) {
+  SystemComparison c;
+  c.instants = instants_of(s.event);
+  sim::network::Event event = s.event;
+  if (s.find_instants) {
+    const auto written = c.instants;
+    c.instants = found_instants(s, c.uncertainty);
+    event = moved(event, [&](double t) {
+      const auto at = std::ranges::lower_bound(written, t) - written.begin();
+      return c.instants[static_cast<std::size_t>(at)];
+    });
+  }
+  for (const auto& t : s.terminals)
+    if (c.instants.front() < t.record.t.front())
+      throw InputError({fmt::format("an event at {:g} s", c.instants.front()), "terminal " + t.name,
+                        fmt::format("its record begins at {:g} s", t.record.t.front()),
+                        "give the event's instants on the records' clock"});
+  const SystemRun run = run_system(s, event);
+  c.outcome = run.outcome;
+  c.stopped_at = run.stopped_at;
+  Comparer comparer(s, run, c);
+  for (std::size_t i = 0; i < s.terminals.size(); ++i) comparer.terminal(i);
+  c.adequacy = compare::judge(c.terminals);
+  rank_terminals(s, c);
+  if (c.outcome != sim::Outcome::stable)
+    c.notes.push_back(
+        fmt::format("The simulation ended at {:.3f} s: {}. What follows repeats its last value.",
+                    c.stopped_at, sim::outcome_name(c.outcome)));
+  if (s.find_instants)
+    c.notes.push_back(
+        fmt::format("The records tell each switching instant to ± {:.1f} ms; within that they were moved to "
+                    "where model and "
+                    "records agree best. Give them (event.instants = \"given\") where they are known.",
+                    1e3 * c.uncertainty));
+  if (s.steady_state == SteadyState::shift)
+    c.notes.push_back(
+        "What differs before the event was taken off every channel (compare.steady_state = "
+        "\"shift\"): only what the event does is judged. The table of the steady state shows it.");
+  return c;
+}
+
+}  // namespace swingbank::validate::system
