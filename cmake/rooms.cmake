@@ -42,5 +42,6 @@ function(swingbank_room path)
     target_include_directories(${room} INTERFACE ${roots}/public)
     target_link_libraries(${room} INTERFACE swingbank_options ${A_USES} ${A_LINK})
   endif()
+  set_property(GLOBAL APPEND PROPERTY SWINGBANK_ROOMS ${room})
   set_property(TARGET ${room} PROPERTY SWINGBANK_INSIDE "${A_INSIDE}") # its tests see what its sources see
 endfunction()
