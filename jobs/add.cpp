@@ -136,7 +136,8 @@ int main(int argc, char** argv) {
   app.add_option("effect", a.effect,
                  "effect, law or parameter group (SEXS, GENROU:S10,S12); 'swingbank effects' lists them");
   app.add_option("--model", a.model, "plant file (configs/plants/README.md)")->required();
-  app.add_option("--records,--record", a.records, "records of the events (validate/README.md)")->required();
+  app.add_option("--records,--record", a.records, "records of the events (validate/record/README.md)")
+      ->required();
   app.add_option("--out", a.out, "folder for model.toml and add.json")->capture_default_str();
   app.add_option("--law", a.laws, "law file (.toml) whose effect may be added; may be repeated");
   app.add_option("--hold-out", c.held_out,

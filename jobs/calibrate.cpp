@@ -125,7 +125,8 @@ int run(Arguments& a) {
 void add_options(CLI::App& app, Arguments& a, bool& inner) {
   auto& o = a.options;
   app.add_option("--model", a.model, "plant file (configs/plants/README.md)")->required();
-  app.add_option("--records,--record", a.records, "records of the events (validate/README.md)")->required();
+  app.add_option("--records,--record", a.records, "records of the events (validate/record/README.md)")
+      ->required();
   app.add_option("--out", a.out, "folder for model.toml and calibrate.json")->capture_default_str();
   app.add_option("--method", a.method,
                  "fit; curve-fit: the usual way, least squares of P and Q from the model's own values, as a "

@@ -127,7 +127,7 @@ int main(int argc, char** argv) {
   records_option->needs(model_option);
   auto* system_option = app.add_option("--system", system_file,
                                        "instead of both: a system file, a grid with an event and records of "
-                                       "several terminals (validate/README.md)")
+                                       "several terminals (validate/record/README.md)")
                             ->excludes(model_option);
   app.add_option("--drive", drive,
                  "what drives the model: voltage (V and angle; P and Q are compared) or pq (the reverse)")

@@ -60,7 +60,7 @@ struct Command {
 void declare(CLI::App& app, Command& c) {
   auto* model = app.add_option("--model", c.model, "plant file (configs/plants/README.md)");
   auto* records =
-      app.add_option("--records,--record", c.records, "records of the events (validate/README.md)");
+      app.add_option("--records,--record", c.records, "records of the events (validate/record/README.md)");
   model->needs(records);
   records->needs(model);
   auto* fleet = app.add_option("--fleet", c.fleet.fleet,

@@ -1,7 +1,7 @@
 #pragma once
 // One shard of a dataset: the HDF5 file that docs/formats.md describes. Reading works without MPI; writing
-// through the MPI-IO driver stands in shard_group.hpp. All functions may be called from several threads: HDF5
-// is not thread-safe, so they take one lock.
+// through the MPI-IO driver stands in mpi/ranks/shard_group.hpp. All functions may be called from several
+// threads: HDF5 is not thread-safe, so they take one lock.
 #include <cstdint>
 #include <filesystem>
 #include <map>

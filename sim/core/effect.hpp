@@ -1,5 +1,5 @@
 #pragma once
-// The effect contract. An effect is one header in sim/effects that declares a `struct Model` with
+// The effect contract: what one header in sim/effects says of its effect. It declares a `struct Model` with
 //   name, title, source, slot     what it is, where its equations come from, where it sits
 //   description                   block diagram and equations as text; `swingbank effects NAME` prints it
 //   parameters[], states[]        one record each; nowhere else is a parameter declared

@@ -1,5 +1,5 @@
 #pragma once
-// Frequency as an instrument at the terminal sees it: the filtered derivative of the voltage angle,
+// Frequency as an instrument at the terminal sees it: the filtered derivative of the voltage angle.
 //   f(s) = s theta(s) / (2 pi f0 (1 + s Tw)(1 + s Tf))          [pu deviation]
 // By partial fractions it is the difference of two first-order lags of theta, over 2 pi f0 (Tf - Tw). Each
 // lag is integrated exactly for an angle that runs linearly from sample to sample. It starts settled, so f(0)

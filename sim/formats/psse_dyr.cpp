@@ -1,3 +1,4 @@
+// The reader of a .dyr: its records one by one, and which models are to be ignored or mapped.
 #include <spdlog/spdlog.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// The writer of a .raw, versions 32 to 35: what was read comes back to the last bit.
 #include <array>
 
 #include "sim/formats/psse.hpp"

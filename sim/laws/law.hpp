@@ -1,5 +1,5 @@
 #pragma once
-// Law files: effects that are read, not compiled. docs/add-an-effect.md shows how one is written,
+// Law files: effects that are read, not compiled. How one is written stands in docs/add-an-effect.md;
 // configs/laws/ has examples. A law runs wherever a compiled effect does: in the reference, in the lanes
 // kernel and with duals.
 #include <filesystem>

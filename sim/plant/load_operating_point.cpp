@@ -1,3 +1,4 @@
+// Back-initialisation of one modelled load from its bus voltage and the power it draws.
 #include <fmt/format.h>
 
 #include <cmath>

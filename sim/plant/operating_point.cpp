@@ -1,3 +1,4 @@
+// Back-initialisation of one plant, controls included, from its terminal voltage and generation.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -45,7 +45,7 @@ constexpr double kBeforeSwitching = 1e-9;
 /// A plant brought to its operating point. T: double, or a dual where derivatives are wanted.
 template <class T>
 struct OperatingOf {
-  std::vector<T> c;  ///< coefficients: machine, Joint (plant_equations.hpp), controls
+  std::vector<T> c;  ///< coefficients: machine, Joint (equations.hpp), controls
   std::vector<T> x;  ///< states: machine, controls
   T Efd, Tm;         ///< held where exciter or governor slot is empty
   Signals<T> s;      ///< every signal at the operating point

@@ -17,8 +17,8 @@ namespace second = blind_second;
 using validate::record::Record;
 
 constexpr double kOn = 1.5137, kOff = 1.6219;  ///< of the fault, off the sampling grid [s]
-/// Interpolating V between samples at 240/s costs up to 2e-5 pu (validate/README.md: 1.2e-6 at 120/s without
-/// a controller's gain behind it, 2.6e-5 at 60/s); a wrong coefficient costs a thousand times that.
+/// Interpolating V between samples at 240/s costs up to 2e-5 pu (validate/playin/README.md: 1.2e-6 at 120/s
+/// without a controller's gain behind it, 2.6e-5 at 60/s); a wrong coefficient costs a thousand times that.
 constexpr double kTolerance = 2e-4;
 
 second::Setup base() {

@@ -1,6 +1,6 @@
 #pragma once
-// What a network of this folder is. networks/<name>.cpp defines make_network_<name>; the list of all of them
-// is generated from the file names by CMake, so that a new file is the whole registration.
+// What a network of this folder is. A file networks/<name>.cpp defines make_network_<name>; the list of all
+// of them is generated from the file names by CMake, so that a new file is the whole registration.
 #include <cstdint>
 #include <memory>
 #include <string>

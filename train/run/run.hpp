@@ -29,9 +29,9 @@ struct RunRequest {
 
 enum class RunOutcome { done, already_done, stopped };
 
-/// Trains, scores and writes the JSON of README.md. Goes on from a checkpoint of the same run. Throws
-/// InputError if the output folder holds the result of another run under the same name, or if another process
-/// is at this very run (RunLock).
+/// Trains, scores and writes the JSON of train/run/README.md. Goes on from a checkpoint of the same run.
+/// Throws InputError if the output folder holds the result of another run under the same name, or if another
+/// process is at this very run (RunLock).
 RunOutcome run(const data::ShardStream& stream, const RunRequest& request);
 
 /// Targets of all rows in scaled units. With `shuffled`, the labels of the training and validation rows

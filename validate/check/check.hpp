@@ -12,7 +12,7 @@ namespace swingbank::validate::check {
 enum class Severity { refuse, warn };
 
 struct Finding {
-  std::string kind;  ///< a stable word for programs: "too_short", "wrong_base", … (validate/README.md)
+  std::string kind;  ///< a stable word for programs: "too_short", "wrong_base", … (validate/check/README.md)
   Severity severity = Severity::refuse;
   Problem problem;
 };

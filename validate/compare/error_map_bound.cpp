@@ -1,4 +1,5 @@
-// Quantiles of the F distribution (and of chi-square) by the incomplete beta (gamma) function.
+// What noise alone stays below in an error map: quantiles of the F distribution (and of chi-square) by the
+// incomplete beta (gamma) function.
 #include <cmath>
 
 #include "validate/compare/error_map.hpp"

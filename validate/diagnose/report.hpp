@@ -37,7 +37,7 @@ struct ReportFigures {
 /// `diagnosis`, which must outlive it.
 ReportFigures report_figures(const Diagnosis& diagnosis);
 
-/// Verdict, evidence, parameters and error maps; no samples (validate/README.md).
+/// Verdict, evidence, parameters and error maps; no samples (validate/diagnose/README.md).
 nlohmann::json diagnosis_json(const plant::PlantModel& model, const Diagnosis& diagnosis,
                               const report::Provenance& provenance);
 /// One self-contained page. The JSON is part of it (element "figures"), so that a program can read what a

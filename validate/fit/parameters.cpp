@@ -1,3 +1,4 @@
+// Which parameters of a plant are free, and the way to their values.
 #include <algorithm>
 #include <stdexcept>
 

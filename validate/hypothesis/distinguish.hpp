@@ -1,5 +1,5 @@
 #pragma once
-// Two hypotheses explain the records as well: what would tell them apart?
+// What would tell two hypotheses apart that explain the records as well.
 #include <string>
 
 #include "validate/hypothesis/judge.hpp"

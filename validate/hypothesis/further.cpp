@@ -1,3 +1,4 @@
+// Rivals and pairs fitted once more from further starts, with the machine as the leading hypothesis found it.
 #include <algorithm>
 #include <cmath>
 #include <limits>

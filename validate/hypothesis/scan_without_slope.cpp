@@ -1,3 +1,4 @@
+// A scan over parameters that act without a slope, as the time of a limiter's timer does.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 // Small laws u = f(signal) or u = f(time) that could be the inferred input. They are enumerated over grids of
 // their few numbers, and each is judged by how much of the input's course it takes away. This is cheap, so
-// thousands can be tried; the leading ones are then fitted to the records themselves (law_search.hpp).
+// thousands can be tried; the leading ones are then fitted to the records themselves (search.hpp).
 #include <array>
 #include <limits>
 #include <string>

@@ -52,12 +52,12 @@ struct ReadOptions {
 };
 
 /// Reads a record; the name's ending says what it is: .cfg/.dat or .cff COMTRADE, .h5 a run of
-/// `swingbank simulate`, anything else text in columns (validate/README.md lists names, units and dialects).
-/// "FILE#TERMINAL" picks one terminal of several. Columns that are not measurements of the terminal are left
-/// out and listed in `ignored`. Throws InputError with every fault of the file: missing, repeated or unitless
-/// columns, ragged lines, values that are missing or no finite numbers, times that do not increase or are
-/// unevenly spaced, too few samples. Each names its lines or bytes. What a readable record means is for
-/// check_record (record_check.hpp).
+/// `swingbank simulate`, anything else text in columns (validate/record/README.md lists names, units and
+/// dialects). "FILE#TERMINAL" picks one terminal of several. Columns that are not measurements of the
+/// terminal are left out and listed in `ignored`. Throws InputError with every fault of the file: missing,
+/// repeated or unitless columns, ragged lines, values that are missing or no finite numbers, times that do
+/// not increase or are unevenly spaced, too few samples. Each names its lines or bytes. What a readable
+/// record means is for check_record (validate/check/check.hpp).
 Record read_record(const std::filesystem::path& file, const RecordBase& base,
                    const ReadOptions& options = {});
 

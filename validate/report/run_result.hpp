@@ -1,6 +1,6 @@
 #pragma once
-// One training run as `swingbank train` and `swingbank cross-validate` write it (train/README.md lists the
-// keys).
+// One training run as `swingbank train` and `swingbank cross-validate` write it (train/run/README.md lists
+// the keys).
 #include <cstdint>
 #include <filesystem>
 #include <optional>

@@ -38,8 +38,8 @@ struct SystemCase {
   double tolerance = 1e-8;  ///< of the integrator
   std::vector<SystemTerminal> terminals;
 };
-/// Reads a system file (validate/README.md), its grid and every record. Throws InputError with every fault of
-/// each of them.
+/// Reads a system file (configs/systems/README.md), its grid and every record. Throws InputError with every
+/// fault of each of them.
 SystemCase load_system(const std::filesystem::path& file);
 
 /// How one terminal fares.

@@ -1,6 +1,7 @@
 #pragma once
-// Is there a point within a distance? Points are sorted into cells of the distance's size along the few axes
-// that are much longer than it; 60,000 GENROU points at 0.7 then need some hundred comparisons per candidate.
+// Whether another point lies within a distance. Points are sorted into cells of the distance's size along the
+// few axes that are much longer than it; 60,000 GENROU points at 0.7 then need some hundred comparisons per
+// candidate.
 #include <cstdint>
 #include <unordered_map>
 #include <vector>

@@ -80,14 +80,14 @@ class Lanes {
     T last_moment;          ///< largest time effects may see [s]
   };
 
-  // one evaluation (lanes_equations.hpp)
+  // one evaluation (equations.hpp)
   void emfs(Constants& k, const T* x);
   void current(const Constants& k, std::size_t plant, Signals<T>& s) const;
   void shared_current(std::size_t at, const Constants& k, std::size_t plant, Signals<T>& s) const;
   void inputs(const Constants& k, std::size_t plant, Signals<T>& s) const;
   void derivative(const T* x, T* dx);
 
-  // sources whose current is no linear function of the voltage (lanes_algebra.hpp)
+  // sources whose current is no linear function of the voltage (algebra.hpp)
   void solve_algebra(Constants& k, const T* x);
   void source_emf(const Constants& k, const T* x, int source, const T& vr, const T& vi, T& er, T& ei);
   const T* source_impedance(const Constants& k, int source) const;
@@ -95,7 +95,7 @@ class Lanes {
   const T* ratio(const Constants& k, int source) const;
   Flat newton_step(Constants& k, const T* x);
 
-  // recording (lanes_record.hpp)
+  // recording (record.hpp)
   void record_step(const T& h, unsigned accepted, const double* start, const double* tried);
   void interpolate(const T& h, const double* start, const double* tried);
   void dense(std::size_t state, const T& h, Flat* rows) const;
@@ -106,14 +106,14 @@ class Lanes {
   void outputs(std::size_t row_plant, const T* x, LaneRun& run, int count);
   void hold(LaneRun& run, int until) const;
 
-  // the lanes' matrices (lanes_network.hpp)
+  // the lanes' matrices (network.hpp)
   void share();
   const Terminals& set_matrix(int lane, const network::Topology& topology);
   const Terminals& set_shared(int lane, const network::Topology& topology);
   std::optional<LowRank> few_products(int lane, const network::Topology& topology);
   void matrix_slopes(int lane, const InternalMatrix& matrix);
 
-  // loading (lanes_load.hpp)
+  // loading (load.hpp)
   void load(int lane);
   void build_slices();
   void reserve();
@@ -131,7 +131,7 @@ class Lanes {
   void begin_record(LaneRun& run) const;
   void hand_over(int lane, Outcome outcome, const Done& done);
 
-  // stepping (lanes_step.hpp)
+  // stepping (step.hpp)
   void evaluate_fresh();
   template <int Stage>
   void stage(const T& h);

@@ -81,7 +81,7 @@ TEST(CurveFit, FindsTheTruthWhereItsAssumptionsHold) {
   const CurveFit f = curve_fit(model, records, options);
   EXPECT_TRUE(f.converged) << f.sentence;
   EXPECT_LT(f.rms_after,
-            2e-4);  // what splines through 60 samples/s leave (validate/README.md: 2.6e-5 to 1e-3)
+            2e-4);  // what splines through 60 samples/s leave (validate/playin/README.md: 2.6e-5 to 1e-3)
   ASSERT_EQ(f.parameters.size(), 4U);
   for (const auto& p : f.parameters) {
     const double value = fit::parameter_value(truth.plant, p.where.block, p.where.index);

@@ -52,8 +52,8 @@ Errors errors(const test::Simulated& s, int stride) {
 TEST(DrivenByPowerTest, ReproducesVoltageAndAngleOfEveryGenrou) {
   // A bolted fault in the middle of the grid; near it the lower of two solutions is the true one.
   // Extrapolating P and Q to the jumps costs as much as that of V does (1.5e-9 pu at 480/s,
-  // validate/README.md), times 1/X''. A speed error of e, which nothing pulls back, turns the angle by 377 e
-  // T: two orders more after 8 s.
+  // validate/playin/README.md), times 1/X''. A speed error of e, which nothing pulls back, turns the angle by
+  // 377 e T: two orders more after 8 s.
   const Errors e = errors(test::simulate("ieee39_genrou", sim::Conventions::psse(), 16, 2.0, 2.1), 1);
   EXPECT_LT(e.V, 1e-7);
   EXPECT_LT(e.speed, 1e-8);

@@ -1,5 +1,5 @@
 #pragma once
-// The JSON of one run; its keys stand in README.md.
+// The JSON of one run; its keys stand in train/run/README.md.
 #include <nlohmann/json_fwd.hpp>
 
 #include "train/run/run.hpp"

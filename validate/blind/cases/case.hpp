@@ -1,7 +1,7 @@
 #pragma once
 // Blind cases: records of one plant in which an effect is hidden that its model file lacks, made by a path
 // independent of the one that will judge them - IDA on the unreduced grid, sampled at another rate than any
-// of our integrators, switchings off the sampling grid. validate/README.md describes the files.
+// of our integrators, switchings off the sampling grid. The files are described in docs/blind-test.md.
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -62,7 +62,7 @@ BlindCase make_blind_case(const BlindConfig& config, const BlindSpec& spec);
 void write_blind_case(const BlindCase& made, const BlindConfig& config, const std::string& name,
                       const std::filesystem::path& folder, const std::filesystem::path& truth);
 
-/// A record as CSV, with the columns of validate/README.md.
+/// A record as CSV, with the columns of validate/record/README.md.
 std::string record_csv(const record::Record& record);
 
 }  // namespace swingbank::validate::blind::cases

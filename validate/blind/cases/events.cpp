@@ -1,3 +1,5 @@
+// The events of a blind case, drawn: load steps, faults, frequency events, at instants that are no sample of
+// any rate in use.
 #include <fmt/format.h>
 
 #include <cmath>

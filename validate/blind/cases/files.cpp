@@ -1,3 +1,4 @@
+// The folder of a blind case (model and records) and its truth, as files.
 #include <fmt/format.h>
 
 #include "base/write_file.hpp"

@@ -1,3 +1,4 @@
+// What instruments make of a run: phasors, filter, noise, and the record as CSV.
 #include <fmt/format.h>
 
 #include <algorithm>

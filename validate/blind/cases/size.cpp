@@ -1,3 +1,4 @@
+// How large the hidden effect is in the records of a case, in units of their noise.
 #include <algorithm>
 #include <cmath>
 #include <utility>

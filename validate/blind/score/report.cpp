@@ -1,3 +1,4 @@
+// The score of a blind run as Markdown and as JSON.
 #include <fmt/format.h>
 
 #include <set>

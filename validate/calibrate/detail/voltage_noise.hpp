@@ -1,8 +1,8 @@
 #pragma once
-// Noise of the measured voltage goes through the plant into the answer that the record is compared with, and
-// into the slopes along the parameters. A fit is then pulled to where the plant passes least of this noise
-// (reactances too large), and counts slopes that are noise as information. Whitening does not remove either;
-// both are computed here and taken back.
+// What noise of the measured voltage does to a calibration. It goes through the plant into the answer that
+// the record is compared with, and into the slopes along the parameters. A fit is then pulled to where the
+// plant passes least of this noise (reactances too large), and counts slopes that are noise as information.
+// Whitening does not remove either; both are computed here and taken back.
 #include "validate/fit/slopes.hpp"
 
 namespace swingbank::validate::calibrate {

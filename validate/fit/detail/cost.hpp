@@ -1,6 +1,6 @@
 #pragma once
 // What a fit minimises: residuals of each event, beliefs, and the bends of an added input, as Ceres takes
-// them. For fit.cpp and score_test.cpp only.
+// them. For fit.cpp and rao_score.cpp only.
 #include <ceres/ceres.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 #pragma once
-// What laws are searched in.
+// What laws are searched in: the inferred input and the signals along the events.
 #include "validate/hypothesis/missing_input.hpp"
 #include "validate/laws/candidate.hpp"
 

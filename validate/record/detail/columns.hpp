@@ -1,6 +1,6 @@
 #pragma once
 // Which quantity and unit a column's name means. The tables here are the documentation's source
-// (validate/README.md).
+// (validate/record/README.md).
 #include <optional>
 #include <string>
 #include <string_view>

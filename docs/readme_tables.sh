@@ -1,0 +1,151 @@
+#!/usr/bin/env bash
+# Writes into each room's README.md what the sources say of themselves.
+#   bash docs/readme_tables.sh [--check]
+#     --check  changes nothing; exits with 1 and names each README that is out of date
+# Between `<!-- uses -->` and `<!-- end of uses -->` stand the rooms that the room names in its CMakeLists.txt. Between
+# `<!-- files -->` and `<!-- end of files -->` stands one row per file: each header, and each source without a header of
+# its name. A row holds the first sentence of the file's head comment, or an effect's name and title. The order of rows
+# is kept, because it is the order in which data meets the files; a new file comes last, a vanished one is dropped.
+# shellcheck disable=SC2016 # backticks are Markdown here
+set -euo pipefail
+shopt -s nullglob
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+check=0
+case ${1-} in
+  '') ;;
+  --check) check=1 ;;
+  *) echo "unknown option at '$1' (docs/readme_tables.sh knows --check only): leave it out" >&2; exit 1 ;;
+esac
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# Each line of a CMakeLists.txt that makes a room: its words, in one line.
+awk 'FNR == 1 { text = "" }
+  /^swingbank_room\(/ { text = " " }
+  text != "" { sub(/#.*/, ""); text = text " " $0 }
+  text ~ /\)/ { gsub(/swingbank_room\(|\)/, "", text); $0 = text; $1 = $1; print; text = "" }' \
+  base/CMakeLists.txt {sim,mpi,train,validate}/CMakeLists.txt >"$work/rooms"
+
+# uses ROOM: the rooms it names, as links.
+uses() {
+  awk -v room="$1" '
+    function link(other) { return "[" other "](" up other "/README.md)" }
+    $1 == room {
+      up = room
+      gsub(/[^\/]+/, "..", up)
+      up = up "/"
+      for (i = 2; i <= NF; ++i)
+        if ($i ~ /^(USES|INSIDE|LINK|SOURCES|KIND)$/) key = $i
+        else if (key == "USES") public = public (public ? ", " : "") link($i)
+        else if (key == "INSIDE") inside = inside (inside ? ", " : "") link($i)
+      print "May use: " (public ? public : "no other room") "." (inside ? " Its sources alone also use: " inside "." : "")
+    }' "$work/rooms"
+}
+
+# files ROOM: without extension, those of detail/ last
+files() {
+  local path
+  for path in "$1"/*.hpp "$1"/*.cpp "$1"/detail/*.hpp "$1"/detail/*.cpp; do
+    if [[ $path == *.cpp && -e ${path%.cpp}.hpp ]]; then continue; fi
+    path=${path#"$1"/}
+    printf '%s\n' "${path%.*}"
+  done
+}
+
+# says FILE: name and title of an effect, else the first sentence of the head comment. A full stop ends it unless it
+# stands in parentheses or behind an initial.
+says() {
+  local effect=0
+  if [[ $1 == sim/effects/* && $1 != */detail/* ]]; then effect=1; fi
+  awk -v effect="$effect" '
+    function first_sentence(s,   i, c, depth) {
+      for (i = 1; i < length(s); ++i) {
+        c = substr(s, i, 1)
+        if (c == "(") ++depth
+        if (c == ")") --depth
+        if (c == "." && !depth && substr(s, i + 1, 2) ~ /^ [A-Z"(]/ && substr(s, i - 2, 2) !~ /[ .][A-Z]/)
+          return substr(s, 1, i - 1)
+      }
+      sub(/[.:]$/, "", s)
+      return s
+    }
+    function as_cell(s,   i, c, cell, code) { # what Markdown would read as markup, outside `code`
+      for (i = 1; i <= length(s); ++i) {
+        c = substr(s, i, 1)
+        if (c == "`") code = !code
+        cell = cell (c == "|" || (!code && c ~ /[<*]/) ? "\\" c : c)
+      }
+      return cell
+    }
+    function quoted(word,   s) { # the text behind `word =`
+      if (!match(declared, word " = \"[^\"]*\"")) return ""
+      s = substr(declared, RSTART, RLENGTH)
+      gsub(/^[^"]*"|"$/, "", s)
+      return s
+    }
+    FNR == 1 && /^#pragma once/ { next }
+    !behind && /^\/\/ ?[^ ]/ { sub(/^\/\/ ?/, ""); text = text (text ? " " : "") $0; next }
+    { behind = 1 }
+    effect && /^  static constexpr std::string_view( name = |$)/ { inside = 1 }
+    inside { sub(/^ +/, ""); declared = declared " " $0; if (/;/) exit }
+    END {
+      gsub(/= +"/, "= \"", declared)
+      gsub(/" +"/, "", declared)
+      print as_cell(quoted("title") ? quoted("name") ": " quoted("title") : first_sentence(text))
+    }' "$1"
+}
+
+# table ROOM
+table() {
+  local name file said
+  files "$1" >"$work/there"
+  sed -n '/^<!-- files -->$/,/^<!-- end of files -->$/s/^| `\([^`]*\)` |.*/\1/p' "$1/README.md" >"$work/listed"
+  printf '%s\n' '| file | what |' '|---|---|'
+  { grep -Fxf "$work/there" "$work/listed" || true; grep -vFxf "$work/listed" "$work/there" || true; } |
+    while read -r name; do
+      file=$1/$name.hpp
+      [[ -e $file ]] || file=$1/$name.cpp
+      said=$(says "$file")
+      if [[ -z $said ]]; then
+        echo "no head comment at $file (the table of its room takes its first sentence): say there what the file is" >&2
+        return 1
+      fi
+      printf '| `%s` | %s |\n' "$name" "$said"
+    done
+}
+
+# written ROOM: its README with both parts as they should be
+written() {
+  uses "$1" >"$work/uses"
+  table "$1" >"$work/files"
+  awk -v folder="$work" '
+    /^<!-- (uses|files) -->$/ {
+      print
+      part = folder "/" $2
+      while ((getline line < part) > 0) print line
+      skip = 1
+    }
+    /^<!-- end of (uses|files) -->$/ { skip = 0 }
+    !skip' "$1/README.md"
+}
+
+failed=0
+while read -r room _; do
+  readme=$room/README.md
+  for mark in uses files; do
+    if ! grep -qx -e "<!-- $mark -->" "$readme" || ! grep -qx -e "<!-- end of $mark -->" "$readme"; then
+      echo "no '<!-- $mark -->' ... '<!-- end of $mark -->' at $readme (each room has one): write both lines" >&2
+      exit 1
+    fi
+  done
+  written "$room" >"$work/README.md"
+  if cmp -s "$work/README.md" "$readme"; then continue; fi
+  if ((check)); then
+    echo "out of date at $readme (the sources say something else of themselves): run bash docs/readme_tables.sh" >&2
+    failed=1
+  else
+    cp "$work/README.md" "$readme"
+    echo "written: $readme"
+  fi
+done <"$work/rooms"
+exit "$failed"

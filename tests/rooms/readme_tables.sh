@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# The tables of files in the rooms' READMEs say what the sources say of themselves; a file that appears, or a head
+# comment that changes, is noticed, and what vanished is dropped.
+set -euo pipefail
+cd "${SWINGBANK_SOURCE:?}"
+bash docs/readme_tables.sh --check
+copy=$(mktemp -d)
+trap 'rm -rf "$copy"' EXIT
+tar -cf - --exclude='*.cpp' docs/readme_tables.sh base sim mpi train validate | tar -xf - -C "$copy"
+# What only sources say, as in this copy without them, is out of date.
+if bash "$copy/docs/readme_tables.sh" --check 2>"$copy/said"; then
+  echo "vanished sources went unnoticed" >&2
+  exit 1
+fi
+grep -q 'sim/formats/README.md' "$copy/said"
+bash "$copy/docs/readme_tables.sh" >"$copy/said"
+bash "$copy/docs/readme_tables.sh" --check
+if grep -q '`psse_equipment`' "$copy/sim/formats/README.md"; then
+  echo "a vanished source keeps its row" >&2
+  exit 1
+fi
+printf '%s\n' '#pragma once' '// A clock (see J. Harrison, 1759). It is not used.' >"$copy/base/clock.hpp"
+bash "$copy/docs/readme_tables.sh" >"$copy/said"
+last=$(sed '/^<!-- end of files -->$/q' "$copy/base/README.md" | tail -n 2 | head -n 1)
+if [[ $last != '| `clock` | A clock (see J. Harrison, 1759) |' ]]; then
+  echo "the row of a new header is: $last" >&2
+  exit 1
+fi
