@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
-# The tables of files in the rooms' READMEs say what the sources say of themselves; a file that appears, or a head
-# comment that changes, is noticed, and what vanished is dropped.
+# The tables of files in the rooms' READMEs say what the sources say of themselves: a file that vanished is noticed and
+# dropped, a new one gets a row. docs/architecture.svg shows the rooms that the CMakeLists.txt files name, without circles.
 set -euo pipefail
 cd "${SWINGBANK_SOURCE:?}"
 bash docs/readme_tables.sh --check
+python3 docs/architecture.py --check
 copy=$(mktemp -d)
 trap 'rm -rf "$copy"' EXIT
-tar -cf - --exclude='*.cpp' docs/readme_tables.sh base sim mpi train validate | tar -xf - -C "$copy"
+tar -cf - --exclude='*.cpp' docs/readme_tables.sh docs/architecture.py base sim mpi train validate | tar -xf - -C "$copy"
 # What only sources say, as in this copy without them, is out of date.
 if bash "$copy/docs/readme_tables.sh" --check 2>"$copy/said"; then
   echo "vanished sources went unnoticed" >&2
@@ -26,3 +27,9 @@ if [[ $last != '| `clock` | A clock (see J. Harrison, 1759) |' ]]; then
   echo "the row of a new header is: $last" >&2
   exit 1
 fi
+sed -i 's/^swingbank_room(sim\/core USES base)/swingbank_room(sim\/core USES base validate\/fleet)/' "$copy/sim/CMakeLists.txt"
+if python3 "$copy/docs/architecture.py" --check 2>"$copy/said"; then
+  echo "a circle of rooms went unnoticed" >&2
+  exit 1
+fi
+grep -q 'a circle at the swingbank_room lines' "$copy/said"
