@@ -16,7 +16,7 @@ namespace swingbank::mpi::store::h5 {
 /// HDF5 is not thread-safe: whoever uses it holds this lock.
 std::recursive_mutex& lock();
 
-/// Something could not be closed (full disk). HDF5 1.10 then crashes in H5close, which MPI_Finalize and
+/// Something could not be closed (full disk). HDF5 1.10 then crashes in H5close, which MPI's end and
 /// exit() call too.
 inline std::atomic<bool> close_failed = false;
 

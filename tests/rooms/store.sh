@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# Readers of a dataset need no MPI: mpi/store makes no MPI call, neither in its sources nor in what was compiled of them.
+set -euo pipefail
+cd "${SWINGBANK_SOURCE:?}"
+failed=0
+if grep -rn 'MPI_' mpi/store; then
+  echo "mpi/store calls MPI: what several ranks do together belongs into mpi/ranks" >&2
+  failed=1
+fi
+find_library() { find "${SWINGBANK_BIN:?}/.." -name "libswingbank_mpi_$1.a" -print -quit; }
+calls() {
+  local library
+  library=$(find_library "$1")
+  [ -n "$library" ] || { echo "no library of mpi/$1 was built" >&2; exit 1; }
+  nm -u "$library" | grep -c ' MPI_' || true
+}
+if [ "$(calls ranks)" -eq 0 ]; then
+  echo "no MPI call is found in mpi/ranks either: this way of looking finds nothing" >&2
+  failed=1
+fi
+if [ "$(calls store)" -ne 0 ]; then
+  echo "the compiled mpi/store calls MPI" >&2
+  failed=1
+fi
+exit "$failed"
