@@ -82,7 +82,7 @@ json addition_json(const Addition& a) {
             {"sentence", a.sentence},
             {"earns_its_place", a.earns},
             {"adequate", a.adequate},
-            {"evidence_bic", finite(a.evidence)},
+            {"evidence", finite(a.evidence)},
             {"misfit_refitted_without", a.without.misfit()},
             {"misfit_with", a.with.misfit()},
             {"seconds", a.seconds},
@@ -132,7 +132,7 @@ json completion_json(const Completion& c) {
             {"removed", json::array()}};
   for (const auto& a : c.added) j["added"].push_back(addition_json(a));
   for (const auto& r : c.removed)
-    j["removed"].push_back({{"effect", r.effect}, {"evidence_bic", finite(r.evidence)}});
+    j["removed"].push_back({{"effect", r.effect}, {"evidence", finite(r.evidence)}});
   return j;
 }
 

@@ -116,8 +116,8 @@ std::string fleet_json(const Fleet& fleet, const std::vector<FleetRow>& rows) {
 
 std::string fleet_csv(const std::vector<FleetRow>& rows) {
   report::Table table{"",
-                      {"plant", "verdict", "effects", "equivalent", "side", "evidence_bic",
-                       "rms_refitted_noise", "unseen_rms_before_noise", "unseen_rms_after_noise",
+                      {"plant", "verdict", "effects", "equivalent", "side", "evidence", "rms_refitted_noise",
+                       "unseen_rms_before_noise", "unseen_rms_after_noise",
                        "probability_by_noise_alone_at_most", "events", "sentence", "inputs_xxh64"},
                       {}};
   for (const auto& r : rows)

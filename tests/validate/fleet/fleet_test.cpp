@@ -165,6 +165,7 @@ TEST(FleetTables, SayWhatWasFoundAndExitCodesFollow) {
   for (const char* words : {"SEXS or ESST1A", "26 × → 1.0 ×", "≤ 3e-05", "c failed: no file",
                             "3 plants: 1 adequate, 1 with an effect named, 0 unexplained, 1 failed."})
     EXPECT_THAT(text, HasSubstr(words));
+  EXPECT_THAT(fleet_csv(broken), HasSubstr("plant,verdict,effects,equivalent,side,evidence,rms_refitted"));
   EXPECT_THAT(fleet_csv(broken), HasSubstr("\"A sentence, with a comma.\""));
   EXPECT_THAT(fleet_csv(broken),
               HasSubstr("b,confusable,SEXS,ESST1A,excitation,412.25,1.01,26.4,1.02,3e-05,3,"));
@@ -173,6 +174,7 @@ TEST(FleetTables, SayWhatWasFoundAndExitCodesFollow) {
   EXPECT_THAT(page, Not(HasSubstr("c/report.html")));  // it has none
   const auto j = nlohmann::json::parse(fleet_json(fleet, broken));
   EXPECT_EQ(j["plants"].size(), 3);
+  EXPECT_EQ(j["plants"][1]["evidence"], 412.25);
   EXPECT_TRUE(j["plants"][2]["evidence"].is_null());
 }
 
