@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 #include "base/problem.hpp"
 
@@ -28,6 +29,8 @@ std::string remedy_for(int error) {
     case ENOTDIR:
     case EEXIST:
       return "choose another folder: a file stands in its place";
+    case EISDIR:
+      return "choose another name: a folder stands in its place";
     case ENOENT:
       return "check the path";
     default:
@@ -37,7 +40,8 @@ std::string remedy_for(int error) {
 
 class Descriptor {
  public:
-  Descriptor(const fs::path& file, int flags) : fd_(::open(file.c_str(), flags | O_CLOEXEC, 0644)) {}
+  Descriptor(const fs::path& file, int flags) : Descriptor(::open(file.c_str(), flags | O_CLOEXEC)) {}
+  explicit Descriptor(int fd) : fd_(fd) {}
   ~Descriptor() {
     if (fd_ >= 0) ::close(fd_);
   }
@@ -48,6 +52,13 @@ class Descriptor {
  private:
   int fd_;
 };
+
+/// Opens the temporary file for writing. What stood there is removed first, and a link that is made meanwhile
+/// is refused.
+int open_new(const fs::path& temporary) {
+  if (::unlink(temporary.c_str()) != 0 && errno != ENOENT) return -1;
+  return ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644);
+}
 
 }  // namespace
 
@@ -72,7 +83,7 @@ void flush_folder(const fs::path& folder) {
 
 void reserve(const fs::path& file, std::uint64_t bytes) {
   const fs::path temporary = temporary_name(file);
-  const Descriptor d(temporary, O_WRONLY | O_CREAT | O_TRUNC);
+  const Descriptor d(open_new(temporary));
   if (d.get() < 0) raise_file_error(file, errno, "cannot write the file");
   const int error = bytes == 0 ? 0 : ::posix_fallocate(d.get(), 0, static_cast<off_t>(bytes));
   if (error == 0 || error == EOPNOTSUPP || error == EINVAL) return;
@@ -88,28 +99,47 @@ void publish(const fs::path& file) {
     raise_file_error(file, error, what);
   };
   {
-    const Descriptor d(temporary, O_RDONLY);
+    const Descriptor d(temporary, O_RDONLY | O_NOFOLLOW);
     if (d.get() < 0 || ::fsync(d.get()) != 0) fail("cannot flush the file to the disk");
   }
   if (::rename(temporary.c_str(), file.c_str()) != 0) fail("cannot give the file its final name");
   flush_folder(file.parent_path());
 }
 
-void write_text(const fs::path& file, const std::string& text) {
-  const fs::path temporary = temporary_name(file);
-  const Descriptor d(temporary, O_WRONLY | O_CREAT | O_TRUNC);
-  if (d.get() < 0) raise_file_error(file, errno, "cannot write the file");
-  for (std::size_t at = 0; at < text.size();) {
-    const ssize_t n = ::write(d.get(), text.data() + at, text.size() - at);
+NewFile::NewFile(fs::path file, std::string failure)
+    : file_(std::move(file)), failure_(std::move(failure)), fd_(open_new(temporary_name(file_))) {
+  if (fd_ < 0) fail();
+}
+
+NewFile::~NewFile() {
+  if (fd_ < 0) return;
+  ::close(fd_);
+  ::unlink(temporary_name(file_).c_str());
+}
+
+void NewFile::fail() const { raise_file_error(file_, errno, failure_); }
+
+void NewFile::write(const void* data, std::size_t bytes) {
+  for (const char* from = static_cast<const char*>(data); bytes > 0;) {
+    const ssize_t n = ::write(fd_, from, bytes);
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) {
-      const int error = errno;
-      ::unlink(temporary.c_str());
-      raise_file_error(file, error, "cannot write the file");
-    }
-    at += static_cast<std::size_t>(n);
+    if (n <= 0) fail();
+    from += n;
+    bytes -= static_cast<std::size_t>(n);
   }
-  publish(file);
+}
+
+void NewFile::publish() {
+  const fs::path temporary = temporary_name(file_);
+  if (::fsync(fd_) != 0 || ::rename(temporary.c_str(), file_.c_str()) != 0) fail();
+  if (::close(std::exchange(fd_, -1)) != 0) fail();
+  flush_folder(file_.parent_path());
+}
+
+void write_text(const fs::path& file, std::string_view text) {
+  NewFile f(file);
+  f.write(text.data(), text.size());
+  f.publish();
 }
 
 std::string read_text(const fs::path& file) {

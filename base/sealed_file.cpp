@@ -2,7 +2,6 @@
 
 #include <xxhash.h>
 
-#include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <memory>
@@ -63,11 +62,10 @@ void read_all(std::ifstream& in, std::uint64_t length, const SealedKind& kind,
 void write_sealed(const SealedKind& kind, const std::filesystem::path& file, const json& header,
                   const std::vector<std::span<const float>>& arrays) {
   Hash hash;
-  errno = 0;
-  std::ofstream out(temporary_name(file), std::ios::binary | std::ios::trunc);
+  NewFile out(file, std::string(kind.what) + " cannot be written");
   const auto put = [&](const void* data, std::size_t bytes) {
     hash.add(data, bytes);
-    out.write(static_cast<const char*>(data), static_cast<std::streamsize>(bytes));
+    out.write(data, bytes);
   };
   const auto put_size = [&](std::uint64_t n) { put(&n, sizeof n); };
   const std::string text = header.dump();
@@ -80,15 +78,8 @@ void write_sealed(const SealedKind& kind, const std::filesystem::path& file, con
     put(a.data(), a.size_bytes());
   }
   const std::uint64_t seal = hash.value();
-  out.write(reinterpret_cast<const char*>(&seal), sizeof seal);
-  out.close();
-  if (!out) {
-    const int error = errno;
-    std::error_code ignored;
-    std::filesystem::remove(temporary_name(file), ignored);
-    raise_file_error(file, error, std::string(kind.what) + " cannot be written");
-  }
-  publish(file);
+  out.write(&seal, sizeof seal);
+  out.publish();
 }
 
 bool read_sealed(const SealedKind& kind, const std::filesystem::path& file,

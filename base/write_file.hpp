@@ -6,9 +6,8 @@
 
 namespace swingbank {
 
-/// Writes to a temporary name beside `file`, flushes it to the disk and renames it; makes the folder if
-/// needed. Throws InputError (no permission, full disk), leaving nothing under the final name that was not
-/// there before.
+/// Makes the folder if needed, and writes as write_text does. Throws InputError (no permission, full disk),
+/// leaving nothing under the final name that was not there before.
 void write_file(const std::filesystem::path& file, std::string_view content);
 
 }  // namespace swingbank

@@ -139,6 +139,7 @@ void write_shard(const fs::path& file, const ShardData& data) {
   const std::lock_guard guard(h5::lock());
   make_folder(file.parent_path());
   const fs::path temporary = temporary_name(file);
+  reserve(file, 0);
   try {
     h5::File f = h5::File::create(temporary);
     lay_out_shard(f, data, {data.rows, data.draw_sample_id.size()});

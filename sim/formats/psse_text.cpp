@@ -1,8 +1,5 @@
 #include "sim/formats/psse_text.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
@@ -172,33 +169,6 @@ std::string quote(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? std::string("''") : std::string(1, c);
   return quoted + "'";
-}
-
-void write_whole(const std::filesystem::path& file, const std::string& text) {
-  const std::string temporary = file.string() + ".part." + std::to_string(::getpid());
-  const auto fail = [&](const char* step) {
-    const std::string reason = std::strerror(errno);
-    ::unlink(temporary.c_str());
-    throw InputError({std::string("cannot ") + step + " the file", file.string(), reason,
-                      "check the folder, its permissions and the free space"});
-  };
-  const int descriptor = ::open(temporary.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0644);
-  if (descriptor < 0) fail("create");
-  for (std::size_t done = 0; done < text.size();) {
-    const auto n = ::write(descriptor, text.data() + done, text.size() - done);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) {
-      ::close(descriptor);
-      fail("write");
-    }
-    done += static_cast<std::size_t>(n);
-  }
-  if (::fsync(descriptor) != 0) {
-    ::close(descriptor);
-    fail("write");
-  }
-  if (::close(descriptor) != 0) fail("write");
-  if (::rename(temporary.c_str(), file.c_str()) != 0) fail("rename");
 }
 
 }  // namespace swingbank::sim::formats::psse

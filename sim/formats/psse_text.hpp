@@ -65,7 +65,4 @@ constexpr long double kDegrees = 180.0L / 3.14159265358979323846264338327950288L
 /// 'name', with quotes inside doubled.
 std::string quote(const std::string& text);
 
-/// Writes `text` under a temporary name in the same folder, fsyncs and renames. Throws InputError.
-void write_whole(const std::filesystem::path& file, const std::string& text);
-
 }  // namespace swingbank::sim::formats::psse

@@ -1,6 +1,7 @@
 // The writer of a .raw, versions 32 to 35: what was read comes back to the last bit.
 #include <array>
 
+#include "base/durable.hpp"
 #include "sim/formats/psse.hpp"
 #include "sim/formats/psse_text.hpp"
 
@@ -194,7 +195,7 @@ std::string raw_text(const network::Network& network, int version, const std::st
   return RawWriter(network, version).text();
 }
 void write_raw(const network::Network& network, const std::filesystem::path& file, int version) {
-  psse::write_whole(file, raw_text(network, version, file.string()));
+  write_text(file, raw_text(network, version, file.string()));
 }
 
 }  // namespace swingbank::sim::formats

@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 
+#include "base/durable.hpp"
 #include "sim/formats/matpower.hpp"
 #include "sim/formats/psse_text.hpp"
 #include "sim/grid/load_choice.hpp"
@@ -395,7 +396,7 @@ void write_dyr(const Grid& grid, const std::filesystem::path& file) {
                        problems, is_composed(*raw.effect) ? &raw : nullptr);
   }
   problems.raise();
-  formats::psse::write_whole(file, text);
+  write_text(file, text);
 }
 
 }  // namespace swingbank::sim::grid

@@ -104,7 +104,7 @@ TEST(PsseWrite, AnImpossiblePathLeavesNothingBehind) {
   // A folder stands where the file should go: the rename fails and the temporary file is removed.
   const ScratchFile file("out.raw");
   std::filesystem::create_directories(file.path / "inside");
-  EXPECT_THAT(sentences_of([&] { write_raw(n, file.path); }), HasSubstr("cannot rename"));
+  EXPECT_THAT(sentences_of([&] { write_raw(n, file.path); }), HasSubstr("cannot write the file"));
   int left = 0;
   for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(file.path.parent_path()))
     ++left;

@@ -2,13 +2,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 
-#include "base/write_file.hpp"
 #include "tests/validate/playin/support.hpp"
 
 namespace swingbank::validate::report {
@@ -49,24 +46,6 @@ TEST(PageTest, BarsSayWhatIsMissing) {
   Page page("a", "b");
   page.bars({"t", "", 1.0, "line", {{"one", 0.5}, {"two", std::nan("")}}});
   EXPECT_NE(page.html().find("missing"), std::string::npos);
-}
-
-TEST(WriteFileTest, ReplacesWholeFilesOnly) {
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("swingbank_write_" + std::to_string(::getpid()));
-  write_file(folder / "deep" / "a.txt", "one");
-  write_file(folder / "deep" / "a.txt", "two");
-  std::ifstream in(folder / "deep" / "a.txt");
-  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), "two");
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / "deep"), {}), 1);  // no temporary left
-  // A folder of that name, and a file where a folder should be: refused, nothing changed.
-  std::filesystem::create_directories(folder / "b.txt" / "inner");
-  EXPECT_THAT(test::messages([&] { write_file(folder / "b.txt", "x"); }),
-              ElementsAre(HasSubstr("cannot write")));
-  EXPECT_THAT(test::messages([&] { write_file(folder / "deep" / "a.txt" / "c", "x"); }),
-              ElementsAre(HasSubstr("cannot write")));
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 2);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace
