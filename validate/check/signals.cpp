@@ -8,6 +8,7 @@
 #include <span>
 
 #include "validate/check/detail/jumps.hpp"
+#include "validate/playin/instants.hpp"
 
 namespace swingbank::validate::check {
 namespace {
@@ -54,13 +55,6 @@ std::span<const double> until(const std::vector<double>& y, std::size_t last) {
 }
 double median_in(std::span<const double> y) { return median_of(std::vector<double>(y.begin(), y.end())); }
 
-/// The first of two neighbouring samples that both leave `level` by more than `reach`; size if there is none.
-std::size_t leaves(const std::vector<double>& y, double level, double reach) {
-  for (std::size_t k = 0; k + 1 < y.size(); ++k)
-    if (std::abs(y[k] - level) > reach && std::abs(y[k + 1] - level) > reach) return k;
-  return y.size();
-}
-
 /// The first sample by which the frequency, as the angle turns over half a second, has changed by more than
 /// 20 mHz and the noise: what a slow event shows before anything else. Size if there is none.
 std::size_t turns_faster(const record::Record& r) {
@@ -73,7 +67,8 @@ std::size_t turns_faster(const record::Record& r) {
   SignalFacts noise;
   find_noise(r.theta, r.rate(), noise);
   const double reach = std::max(6 * 1.1 * std::numbers::sqrt2 * noise.white, kLeast * kSpan);
-  const std::size_t k = leaves(turned, median_in(std::span(turned).first(10)), reach);
+  const std::size_t k =
+      playin::leaves(turned, {.level = median_in(std::span(turned).first(10)), .reach = reach});
   return k < turned.size() ? k + m : n;
 }
 
@@ -81,8 +76,8 @@ std::size_t turns_faster(const record::Record& r) {
 /// step of the voltage within half a second that stands out from those before.
 std::size_t step_before(const record::Record& r, std::size_t jump) {
   std::vector<double> steps;
-  for (std::size_t k = 0; k < jump; ++k)
-    steps.push_back(std::abs(std::polar(r.V[k + 1], r.theta[k + 1]) - std::polar(r.V[k], r.theta[k])));
+  const std::vector<Complex> all = playin::voltage_steps(r);
+  for (std::size_t k = 0; k < jump; ++k) steps.push_back(std::abs(all[k]));
   const double limit = std::max(10 * median_in(steps), 0.002);
   const auto back = static_cast<std::size_t>(0.5 * r.rate());
   for (std::size_t k = jump > back ? jump - back : 0; k < jump; ++k)
@@ -108,7 +103,8 @@ void find_event(const record::Record& r, Signals& s) {
     // Six standard deviations: pure noise stays below five in ten thousand samples. The floor is what
     // rounding leaves of records without noise.
     const double reach = std::max(6 * facts->noise, 1e-4);
-    first = std::min(first, leaves(*y, median_in(std::span(*y).first(10)), reach * 1.1));
+    first = std::min(first,
+                     playin::leaves(*y, {.level = median_in(std::span(*y).first(10)), .reach = reach * 1.1}));
   }
   first = std::min(first, turns_faster(r));
   s.event = s.slow = first < n;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "validate/event/detail/unsmear.hpp"
+#include "validate/playin/instants.hpp"
 #include "validate/playin/instruments.hpp"
 #include "validate/playin/play_in.hpp"
 
@@ -13,14 +14,6 @@ double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
   return *middle;
-}
-
-/// Steps of the voltage from each sample to the next [pu].
-std::vector<Complex> steps_of(const record::Record& r) {
-  const auto phasor = [&](std::size_t k) { return std::polar(r.V[k], r.theta[k]); };
-  std::vector<Complex> step;
-  for (std::size_t k = 0; k + 1 < r.t.size(); ++k) step.push_back(phasor(k + 1) - phasor(k));
-  return step;
 }
 
 /// How much each step stands out from the steps two and three before and after it [pu].
@@ -85,7 +78,7 @@ bool is_sharp(const record::Record& r, const std::vector<playin::Switching>& fou
   if (found.empty()) return false;
   const auto k = static_cast<std::size_t>(
       std::ranges::find_if(r.t, [&](double t) { return t > found.front().time; }) - r.t.begin());
-  const auto step = steps_of(r);
+  const auto step = playin::voltage_steps(r);
   return std::abs(step[k - 1]) > kClear * threshold &&
          std::abs(step[k - 2]) < kBegins * std::abs(step[k - 1]);
 }
@@ -112,9 +105,8 @@ double still_until(const record::Record& r) {
   for (std::size_t k = 0; k < n; ++k) mean += r.V[k] / static_cast<double>(n);
   for (std::size_t k = 0; k < n; ++k) square += std::pow(r.V[k] - mean, 2) / static_cast<double>(n - 1);
   const double limit = std::max(kOff * std::sqrt(square), kLeastNoise);
-  for (std::size_t k = n; k + 1 < r.V.size(); ++k)
-    if (std::min(std::abs(r.V[k] - mean), std::abs(r.V[k + 1] - mean)) > limit) return r.t[k - 1];
-  return r.t.back();
+  const std::size_t k = playin::leaves(r.V, {.level = mean, .reach = limit, .from = n});
+  return k < r.V.size() ? r.t[k - 1] : r.t.back();
 }
 
 FitEvent prepare(record::Record record, const FitEventOptions& options, Jumps jumps) {
@@ -209,7 +201,7 @@ Jumps jumps_of(const std::vector<record::Record>& records, double threshold) {
 std::vector<playin::Switching> find_switchings(const record::Record& record, double threshold, Jumps jumps,
                                                std::vector<char>& smeared) {
   smeared.assign(record.t.size(), 0);
-  const auto step = steps_of(record);
+  const auto step = playin::voltage_steps(record);
   const auto d = prominence(step);
   const double limit = std::max(threshold, 10 * median(d));
   std::vector<playin::Switching> found;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "validate/playin/instants.hpp"
+
 namespace swingbank::validate::playin {
 namespace {
 
@@ -51,9 +53,8 @@ std::vector<Complex> not_a_knot(const std::vector<double>& t, const std::vector<
 }  // namespace
 
 std::vector<Switching> detect_switchings(const record::Record& record, double threshold) {
-  const std::size_t steps = record.t.size() - 1;
-  std::vector<Complex> step(steps);
-  for (std::size_t k = 0; k < steps; ++k) step[k] = phasor(record, k + 1) - phasor(record, k);
+  const std::vector<Complex> step = voltage_steps(record);
+  const std::size_t steps = step.size();
   // A jump differs from both neighbours; a step beside a jump differs from one of them only.
   std::vector<double> spike(steps, 0.0);
   for (std::size_t k = 1; k + 1 < steps; ++k)

@@ -4,15 +4,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "validate/playin/instants.hpp"
+
 namespace swingbank::validate::laws {
 namespace {
 
 /// First switching after which the voltage leaves its band; NaN: it never does.
 double trigger_of(const event::FitEvent& e, double level) {
   const record::Record& r = e.played();
-  if (level > 0)
-    for (std::size_t k = static_cast<std::size_t>(e.start.samples); k < r.t.size(); ++k)
-      if (std::abs(r.V[k] - std::abs(e.start.voltage)) > level) return r.t[k];
+  const auto first = static_cast<std::size_t>(e.start.samples);
+  const std::size_t k =
+      playin::leaves(r.V, {.level = std::abs(e.start.voltage), .reach = level, .from = first, .in_a_row = 1});
+  if (level > 0 && k < r.V.size()) return r.t[k];
   return std::numeric_limits<double>::quiet_NaN();
 }
 

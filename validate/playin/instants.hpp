@@ -1,0 +1,26 @@
+#pragma once
+// What finders of an event's instants have in common: how the voltage steps, and when a signal leaves where
+// it stood.
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "base/complex.hpp"
+#include "validate/record/record.hpp"
+
+namespace swingbank::validate::playin {
+
+/// Change of the voltage phasor over each sample interval [pu].
+std::vector<Complex> voltage_steps(const record::Record& record);
+
+/// When a signal counts as having left its level.
+struct Leaving {
+  double level = 0,
+         reach = 0;          ///< both in the signal's unit; it has left where it is further off than `reach`
+  std::size_t from = 0;      ///< first sample that is looked at
+  std::size_t in_a_row = 2;  ///< so many neighbouring samples have left; noise alone seldom takes two
+};
+/// The first sample of those; the signal's length where there is none.
+std::size_t leaves(std::span<const double> signal, const Leaving& rule);
+
+}  // namespace swingbank::validate::playin
