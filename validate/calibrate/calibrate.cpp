@@ -11,6 +11,7 @@
 #include "validate/calibrate/detail/screen.hpp"
 #include "validate/calibrate/detail/voltage_noise.hpp"
 #include "validate/fit/noise.hpp"
+#include "validate/playin/can_run.hpp"
 
 namespace swingbank::validate::calibrate {
 namespace {
@@ -200,7 +201,7 @@ class Run {
                          std::max(old, record.high));
       shift_[i] = value - old;
     }
-    if (!possible(plant)) {
+    if (!playin::can_exist(plant)) {
       shift_.setZero();
       return;
     }

@@ -112,8 +112,8 @@ struct Calibration {
 Calibration calibrate(const plant::PlantModel& model, std::vector<record::Record> records,
                       const CalibrateOptions& options);
 
-/// The plant's free parameters without those in `fixed` ("GENROU.Xl" or "Xl"). Throws InputError: unknown
-/// names, none left.
+/// The plant's free parameters, and the errors of its instruments that can be taken back, without those in
+/// `fixed` ("GENROU.Xl" or "Xl"). Throws InputError: unknown names, none left.
 std::vector<fit::FreeParameter> chosen_parameters(const sim::plant::Plant& plant, double spread,
                                                   const std::vector<std::string>& fixed);
 

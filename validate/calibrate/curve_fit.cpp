@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "validate/playin/can_run.hpp"
+
 namespace swingbank::validate::calibrate {
 namespace {
 
@@ -27,29 +29,6 @@ struct Setting {
   }
 };
 
-bool can_run(const sim::plant::Plant& plant) {
-  Problems problems;
-  const auto check = [&](const sim::plant::Block& b) {
-    if (b.effect) b.effect->check(b.effect->law.get(), b.p.data(), "", problems);
-  };
-  check(plant.machine);
-  check(plant.transformer);
-  for (const auto& b : plant.controls) check(b);
-  return problems.list().empty();
-}
-
-playin::Response answer(const Setting& setting, const sim::plant::Plant& plant, const event::FitEvent& event,
-                        const std::vector<playin::Direction>& along = {}) {
-  const playin::VoltageCurve curve(event.played(), event.switchings);
-  playin::Drive run{.plant = &plant, .conventions = setting.model.conventions, .record = &event.record};
-  run.curve = &curve;
-  run.start = event.start;
-  run.tolerance = fit::FitOptions{}.tolerance;
-  run.least_step = event.record.step() / 40;
-  run.step_limit = 15 * event.record.samples();
-  return playin::drive(run, along);
-}
-
 /// P and Q of the model less those measured [pu], and their slopes along z.
 class EventResidual : public ceres::CostFunction {
  public:
@@ -59,7 +38,7 @@ class EventResidual : public ceres::CostFunction {
   }
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     const sim::plant::Plant plant = setting_.plant(blocks[0]);
-    if (!can_run(plant)) return false;
+    if (!playin::can_run(plant)) return false;
     double* slopes = jacobians ? jacobians[0] : nullptr;
     std::vector<playin::Direction> along;
     if (slopes)
@@ -67,7 +46,7 @@ class EventResidual : public ceres::CostFunction {
         along.push_back({playin::Direction::Kind::parameter, setting_.free[i].block, setting_.free[i].index,
                          setting_.start[i]});
     try {
-      const playin::Response r = answer(setting_, plant, event_, along);
+      const playin::Response r = event::play(plant, setting_.model.conventions, event_, {}, along);
       const auto width = static_cast<int>(setting_.free.size());
       write(r.value, true, residuals, 1, 0);
       for (std::size_t i = 0; i < along.size(); ++i)
@@ -99,7 +78,7 @@ class EventResidual : public ceres::CostFunction {
 fit::EventFit as_played(const Setting& setting, const sim::plant::Plant& plant,
                         const event::FitEvent& event) {
   fit::EventFit f;
-  fit::compare(event, answer(setting, plant, event), f);
+  fit::compare(event, event::play(plant, setting.model.conventions, event, {}), f);
   return f;
 }
 

@@ -1,9 +1,9 @@
 #pragma once
 // The usual way, as a baseline: curves of P and Q fitted by least squares from the model's own values, as
-// parameter derivation tools do it (EPRI's PPPD, MATLAB's lsqnonlin). The plant is driven by the same
-// equations as in `calibrate`; nothing else is shared. Switching instants stand half-way between samples,
-// every event starts where the pre-event mean says, samples weigh alike, nothing is believed of a parameter
-// but its bounds, and there is one start.
+// parameter derivation tools do it (EPRI's PPPD, MATLAB's lsqnonlin). The model is the file's, with its
+// instruments, and is played as in `calibrate`; nothing else is shared. Switching instants stand half-way
+// between samples, every event starts where the pre-event mean says, samples weigh alike, nothing is believed
+// of a parameter but its bounds, and there is one start.
 #include <functional>
 #include <string>
 #include <vector>

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "validate/calibrate/calibrate.hpp"
+#include "validate/playin/instruments.hpp"
 
 namespace swingbank::validate::calibrate {
 namespace {
@@ -116,6 +117,10 @@ std::vector<bool> held_out_events(const std::vector<record::Record>& records,
 std::vector<fit::FreeParameter> chosen_parameters(const sim::plant::Plant& plant, double spread,
                                                   const std::vector<std::string>& fixed) {
   std::vector<fit::FreeParameter> free = fit::free_parameters(plant, spread);
+  const auto instruments = static_cast<int>(sim::plant::block_parameters(plant).size());
+  for (int block = instruments; block < fit::block_count(plant); ++block)
+    if (playin::can_be_taken_back(fit::block_effect(plant, block)))
+      std::ranges::copy(fit::free_parameters(plant, block, spread), std::back_inserter(free));
   Problems problems;
   std::string all;
   const auto name_of = [&](const fit::FreeParameter& f) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "validate/event/detail/unsmear.hpp"
+#include "validate/event/play.hpp"
 #include "validate/playin/instants.hpp"
-#include "validate/playin/instruments.hpp"
 #include "validate/playin/play_in.hpp"
 
 namespace swingbank::validate::event {
@@ -166,15 +166,9 @@ std::vector<char> left_out(const FitEvent& e) {
 /// Residual before the event, [channel][sample], with each channel's mean taken off.
 Eigen::MatrixXd quiet_residual(const sim::plant::Plant& plant, const sim::Conventions& conventions,
                                const FitEvent& e) {
-  const playin::VoltageCurve curve(e.played(), e.switchings);
-  const playin::Response r =
-      playin::observe({.plant = &plant,
-                       .conventions = conventions,
-                       .record = &e.record,
-                       .curve = &curve,
-                       .start = e.start,
-                       .tolerance = 1e-8,
-                       .until = e.record.t[static_cast<std::size_t>(e.start.samples - 1)]});
+  const Playing how{
+      .tolerance = 1e-8, .hasty = false, .until = e.record.t[static_cast<std::size_t>(e.start.samples - 1)]};
+  const playin::Response r = play(plant, conventions, e, {}, {}, how);
   Eigen::MatrixXd residual(e.channels.size(), e.start.samples);
   for (std::size_t c = 0; c < e.channels.size(); ++c)
     for (int k = 0; k < e.start.samples; ++k)

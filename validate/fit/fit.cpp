@@ -169,11 +169,7 @@ class Search {
     const sim::plant::Plant plant = moved(setting_, z_.data());
     try {
       for (std::size_t e = 0; e < states_.size(); ++e) {
-        auto switchings = (*setting_.events)[e].switchings;
-        playin::Drive run = costs_[e]->make_drive(plant, states_[e].data(), switchings);
-        const playin::VoltageCurve curve((*setting_.events)[e].played(), switchings);
-        run.curve = &curve;
-        playin::observe(run);
+        static_cast<void>(costs_[e]->answer(plant, costs_[e]->at(states_[e].data())));
       }
     } catch (const InputError& error) {
       return error.problems().front().sentence();
@@ -185,18 +181,12 @@ class Search {
     for (std::size_t e = 0; e < states_.size(); ++e) {
       const event::FitEvent& event = (*setting_.events)[e];
       EventFit f;
-      auto switchings = event.switchings;
-      playin::Drive run = costs_[e]->make_drive(fit.plant, states_[e].data(), switchings);
-      const playin::VoltageCurve curve(event.played(), switchings);
-      run.curve = &curve;
-      const playin::Response r = playin::observe(run);
-      f.state = event_state(event, states_[e].data());
-      if (setting_.input != InputKind::none)
-        f.state.input = setting_.input == InputKind::torque ? run.torque : run.field;
+      f.state = costs_[e]->at(states_[e].data());
+      const playin::Response r = costs_[e]->answer(fit.plant, f.state);
       compare(event, r, f);
       fit.chi2 += f.chi2;
       fit.values += f.values;
-      fit.fitted += static_cast<int>(switchings.size()) + kStates;
+      fit.fitted += static_cast<int>(event.switchings.size()) + kStates;
       fit.events.push_back(std::move(f));
     }
     fit.fitted += static_cast<int>(z_.size());
@@ -289,27 +279,6 @@ double penalised(const Fit& f) {
   return f.failed.empty() ? f.chi2 + f.belief : std::numeric_limits<double>::infinity();
 }
 double criterion(const Fit& f) { return penalised(f) + f.occam; }
-
-std::vector<playin::Switching> switchings_at(const event::FitEvent& event, const EventState& state) {
-  auto switchings = event.switchings;
-  for (std::size_t k = 0; k < switchings.size(); ++k) switchings[k].time = state.switchings[k];
-  return switchings;
-}
-
-playin::Drive drive_at(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                       const event::FitEvent& event, const EventState& state) {
-  playin::Drive run{.plant = &plant, .conventions = conventions, .record = &event.record};
-  run.start = event.start;
-  run.start.P += state.P;
-  run.start.Q += state.Q;
-  run.angle = state.angle;
-  run.speed = state.speed;
-  run.tolerance = kFitTolerance;
-  // a limit that is met and left within one sample is no reason for short steps
-  run.least_step = event.record.step() / 40;
-  run.step_limit = 15 * event.record.samples();
-  return run;
-}
 
 void compare(const event::FitEvent& event, const playin::Response& answer, EventFit& f) {
   for (const playin::Output o : event.channels) f.model.push_back(answer.of(o));

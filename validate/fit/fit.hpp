@@ -6,9 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "validate/event/event.hpp"
+#include "validate/event/play.hpp"
 
 namespace swingbank::validate::fit {
+
+using event::EventState, event::InputKind;
 
 /// A parameter that may move. `spread` is how far its value is believed to be off: relative where the
 /// parameter is positive by nature (it is then fitted as a logarithm), absolute otherwise; 0: no belief.
@@ -25,6 +27,7 @@ std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, doubl
 
 /// What is known of one parameter.
 const sim::Parameter& parameter_record(const sim::plant::Plant& plant, int block, int index);
+const sim::plant::Block& block_at(const sim::plant::Plant& plant, int block);
 const sim::Effect& block_effect(const sim::plant::Plant& plant, int block);
 double& parameter_value(sim::plant::Plant& plant, int block, int index);
 double parameter_value(const sim::plant::Plant& plant, int block, int index);
@@ -34,16 +37,6 @@ std::vector<double> values_of(const sim::plant::Plant& plant, const std::vector<
 int block_count(const sim::plant::Plant& plant);
 /// Index of the first block with that effect; -1: the plant has none.
 int find_block(const sim::plant::Plant& plant, const sim::Effect& effect);
-
-/// An input that no model makes, free in time.
-enum class InputKind { none, torque, field };
-
-/// What belongs to one event.
-struct EventState {
-  std::vector<double> switchings;             ///< [s]
-  double P = 0, Q = 0, angle = 0, speed = 0;  ///< offsets of the operating point and of the first states
-  playin::PiecewiseLinear input = {};         ///< what was added to Tm or Efd [pu]
-};
 
 struct EventFit {
   EventState state;
@@ -89,7 +82,7 @@ double penalised(const Fit& f);
 /// 415), up to what all structures share. Needs a fit with errors.
 double criterion(const Fit& f);
 
-constexpr double kFitTolerance = 1e-5;  ///< of the integration
+constexpr double kFitTolerance = event::Playing{}.tolerance;  ///< of the integration
 
 struct FitOptions {
   int iterations = 30;
@@ -105,12 +98,6 @@ struct FitOptions {
 /// Options to go on where `f` ended; beliefs stay about the plant that is fitted.
 FitOptions continued(FitOptions o, const Fit& f, const std::vector<FreeParameter>& free);
 
-/// The event's switchings at the instants that `state` has.
-std::vector<playin::Switching> switchings_at(const event::FitEvent& event, const EventState& state);
-/// The event played into a plant from `state`, as fits do it. The caller still sets the curve, which goes
-/// through those switchings.
-playin::Drive drive_at(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                       const event::FitEvent& event, const EventState& state);
 /// Fills in everything but the state: what `answer` leaves of the event.
 void compare(const event::FitEvent& event, const playin::Response& answer, EventFit& fit);
 

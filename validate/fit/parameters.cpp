@@ -22,6 +22,9 @@ auto& block_of(Plant& plant, int block) {
 
 }  // namespace
 
+const sim::plant::Block& block_at(const sim::plant::Plant& plant, int block) {
+  return block_of(plant, block);
+}
 const sim::Effect& block_effect(const sim::plant::Plant& plant, int block) {
   return *block_of(plant, block).effect;
 }

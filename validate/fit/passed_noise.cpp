@@ -4,20 +4,8 @@
 
 #include "validate/fit/fit.hpp"
 #include "validate/fit/noise.hpp"
-#include "validate/playin/instruments.hpp"
 
 namespace swingbank::validate::fit {
-namespace {
-
-playin::Response answer(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                        const event::FitEvent& e) {
-  const playin::VoltageCurve curve(e.record, {});
-  playin::Drive run = drive_at(plant, conventions, e, {});
-  run.curve = &curve;
-  return playin::observe(run);
-}
-
-}  // namespace
 
 PassedNoise::PassedNoise(const sim::plant::Plant& plant, const sim::Conventions& conventions,
                          const std::vector<event::FitEvent>& events, const Eigen::Vector2d& variance)
@@ -37,8 +25,8 @@ double PassedNoise::less_with(const sim::plant::Plant& plant, const sim::Convent
 
 double PassedNoise::passed(const sim::plant::Plant& plant, const sim::Conventions& conventions) const {
   try {
-    event::RowMatrix moved = noisy_.collected(answer(plant, conventions, noisy_).value, false);
-    moved -= quiet_.collected(answer(plant, conventions, quiet_).value, false);
+    event::RowMatrix moved = noisy_.collected(event::play(plant, conventions, noisy_, {}).value, false);
+    moved -= quiet_.collected(event::play(plant, conventions, quiet_, {}).value, false);
     noisy_.whiten(moved);
     return times_ * moved.squaredNorm();
   } catch (const InputError&) {

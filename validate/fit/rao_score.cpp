@@ -79,17 +79,13 @@ ScoreTest::ScoreTest(const std::vector<event::FitEvent>& events, const sim::plan
 std::optional<Eigen::MatrixXd> ScoreTest::run(const sim::plant::Plant& plant,
                                               const sim::Conventions& conventions,
                                               const std::vector<playin::Direction>& along) const {
-  if (!can_run(plant)) return std::nullopt;
+  if (!playin::can_run(plant)) return std::nullopt;
   Eigen::MatrixXd all(residual_.size(), 1 + static_cast<Eigen::Index>(along.size()));
   Eigen::Index row = 0;
   try {
     for (std::size_t e = 0; e < events_.size(); ++e) {
       const event::FitEvent& event = events_[e];
-      const EventState& at = fit_.events[e].state;
-      const playin::VoltageCurve curve(event.played(), switchings_at(event, at));
-      playin::Drive drive = drive_at(plant, conventions, event, at);
-      drive.curve = &curve;
-      const playin::Response r = playin::observe(drive, along);
+      const playin::Response r = event::play(plant, conventions, event, fit_.events[e].state, along);
       event::RowMatrix some(event.values(), all.cols());
       some.col(0) = event.collected(r.value, true);
       for (std::size_t d = 0; d < along.size(); ++d)

@@ -12,6 +12,9 @@ using Kind = playin::Direction::Kind;
 constexpr double kStateSpread[] = {0.02, 0.02, 0.02, 2e-4};  // P, Q [pu], angle [rad], speed [pu]
 constexpr Kind kStateKind[] = {Kind::P, Kind::Q, Kind::angle, Kind::speed};
 
+/// Slopes are then accurate to 1e-5 of themselves.
+constexpr event::Playing kExact{.tolerance = 1e-7, .hasty = false};
+
 std::vector<playin::Direction> state_directions(const event::FitEvent& event) {
   std::vector<playin::Direction> along;
   for (std::size_t k = 0; k < event.switchings.size(); ++k)
@@ -34,8 +37,7 @@ Eigen::VectorXd whitened(const event::FitEvent& event, const std::vector<double>
 
 double axis_unit(const sim::plant::Plant& plant, const FreeParameter& f) {
   const auto& record = parameter_record(plant, f.block, f.index);
-  const double value = sim::plant::block_parameters(
-      plant)[static_cast<std::size_t>(f.block)][static_cast<std::size_t>(f.index)];
+  const double value = parameter_value(plant, f.block, f.index);
   const double size = value != 0 ? std::abs(value) : 0.05 * std::min(record.high - record.low, 20.0);
   return (f.spread > 0 ? f.spread : 1.0) * size;
 }
@@ -46,17 +48,7 @@ EventSlopes event_slopes(const sim::plant::Plant& plant, const sim::Conventions&
   std::vector<playin::Direction> along;
   for (const auto& f : free) along.push_back({Kind::parameter, f.block, f.index, axis_unit(plant, f)});
   std::ranges::move(state_directions(event), std::back_inserter(along));
-  auto switchings = event.switchings;
-  for (std::size_t k = 0; k < switchings.size(); ++k) switchings[k].time = state.switchings[k];
-  const playin::VoltageCurve curve(event.played(), switchings);
-  playin::Drive run{.plant = &plant, .conventions = conventions, .record = &event.record, .curve = &curve};
-  run.start = event.start;
-  run.start.P += state.P;
-  run.start.Q += state.Q;
-  run.angle = state.angle;
-  run.speed = state.speed;
-  run.tolerance = 1e-7;  // slopes are then accurate to 1e-5 of themselves
-  const playin::Response r = playin::drive(run, along);
+  const playin::Response r = event::play(plant, conventions, event, state, along, kExact);
 
   EventSlopes back;
   back.channels = static_cast<int>(event.channels.size());

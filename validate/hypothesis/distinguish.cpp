@@ -6,8 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "validate/playin/instruments.hpp"
-
 namespace swingbank::validate::hypothesis {
 namespace {
 
@@ -20,10 +18,7 @@ constexpr double kSure = 10;
 constexpr double kLasting = 0.02;
 
 playin::Response response_of(const Judgement& j, const event::FitEvent& e, const fit::EventState& state) {
-  const playin::VoltageCurve curve(e.played(), fit::switchings_at(e, state));
-  playin::Drive run = fit::drive_at(j.fit.plant, j.hypothesis.conventions, e, state);
-  run.curve = &curve;
-  return playin::observe(run);
+  return event::play(j.fit.plant, j.hypothesis.conventions, e, state);
 }
 
 double norm_of_difference(const std::vector<double>& x, const std::vector<double>& y, double noise) {

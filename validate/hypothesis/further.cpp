@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "validate/hypothesis/search.hpp"
-#include "validate/playin/instruments.hpp"
 
 namespace swingbank::validate::hypothesis {
 namespace {
@@ -51,11 +50,8 @@ double left_by(const sim::plant::Plant& plant, const sim::Conventions& conventio
   double chi2 = 0;
   try {
     for (std::size_t e = 0; e < events.size(); ++e) {
-      const playin::VoltageCurve curve(events[e].played(), fit::switchings_at(events[e], states[e]));
-      playin::Drive run = fit::drive_at(plant, conventions, events[e], states[e]);
-      run.curve = &curve;
       fit::EventFit f;
-      fit::compare(events[e], playin::observe(run), f);
+      fit::compare(events[e], event::play(plant, conventions, events[e], states[e]), f);
       chi2 += f.chi2;
     }
   } catch (const InputError&) {

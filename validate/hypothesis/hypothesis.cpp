@@ -10,6 +10,7 @@
 #include <random>
 
 #include "sim/library/library.hpp"
+#include "validate/playin/can_run.hpp"
 #include "validate/playin/instruments.hpp"
 
 namespace swingbank::validate::hypothesis {
@@ -41,17 +42,6 @@ Side side_of(Slot slot) {
       break;
   }
   return Side::machine;
-}
-
-bool sound(const sim::plant::Block& b) {
-  Problems problems;
-  b.effect->check(b.effect->law.get(), b.p.data(), "", problems);
-  return problems.list().empty();
-}
-
-bool sound_block(const sim::plant::Plant& plant, int block) {
-  return sound({&fit::block_effect(plant, block),
-                sim::plant::block_parameters(plant)[static_cast<std::size_t>(block)]});
 }
 
 /// Puts the block where its slot's order asks for. Returns its index, counted as in FreeParameter.
@@ -112,7 +102,8 @@ std::vector<std::vector<double>> draws(const sim::plant::Plant& plant,
       values.push_back(std::clamp(fit::parameter_value(plant, f.block, f.index) * factor, p.low, p.high));
       fit::parameter_value(drawn, f.block, f.index) = values.back();
     }
-    if (free.empty() || sound_block(drawn, free.front().block)) all.push_back(std::move(values));
+    if (free.empty() || playin::can_run(fit::block_at(drawn, free.front().block)))
+      all.push_back(std::move(values));
   }
   return all;
 }
@@ -214,7 +205,7 @@ void add_neutral_groups(const sim::plant::Plant& base, const sim::Conventions& c
           moved.p[static_cast<std::size_t>(group[k])] = v;
         }
         const bool inside = std::ranges::all_of(values, [&](double v) { return v != 0.0; });
-        if (!inside || !sound(moved)) continue;
+        if (!inside || !playin::can_run(moved)) continue;
         if (h.starts.empty())
           for (std::size_t k = 0; k < group.size(); ++k)
             fit::parameter_value(h.plant, static_cast<int>(b), group[k]) = values[k];

@@ -6,7 +6,6 @@
 #include <span>
 
 #include "validate/hypothesis/search.hpp"
-#include "validate/playin/instruments.hpp"
 
 namespace swingbank::validate::hypothesis {
 namespace {
@@ -68,10 +67,7 @@ class BlindScan {
     std::vector<char> seen(along.size(), 0);
     for (std::size_t e = 0; e < stage_.events.size(); ++e) {
       const event::FitEvent& event = stage_.events[e];
-      const playin::VoltageCurve curve(event.played(), fit::switchings_at(event, states_[e]));
-      playin::Drive run = fit::drive_at(from_.plant, h_.conventions, event, states_[e]);
-      run.curve = &curve;
-      const playin::Response r = playin::observe(run, along);
+      const playin::Response r = event::play(from_.plant, h_.conventions, event, states_[e], along);
       for (std::size_t d = 0; d < along.size(); ++d)
         if (event.collected(r.slopes[d].value, false).squaredNorm() > 0) seen[d] = 1;
     }

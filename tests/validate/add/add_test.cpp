@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/library/library.hpp"
-#include "tests/validate/playin/support.hpp"
+#include "tests/validate/playin/instrument_example.hpp"
 
 namespace swingbank::validate::add {
 namespace {
@@ -82,6 +82,33 @@ TEST(Add, WhatIsThereIsMissedWhereItIsTakenOut) {
   EXPECT_EQ(r.effect, "SEXS");
   EXPECT_GT(r.evidence, 1000);  // Q is off by fifty times its noise without it
   EXPECT_TRUE(r.model.plant.controls.empty());
+}
+
+TEST(Add, AnInstrumentThatIsMissingIsFound) {
+  const test::InstrumentExample example({test::instrument("CTERROR:gain=0.03,phase=-0.04")});
+  plant::PlantModel model = example.truth;
+  model.plant.measurements.clear();
+  AddOptions options = power_only();
+  options.calibrate.held_out = {"2"};
+  const Addition a = add_effect(model, find_hypothesis(model, "CTERROR"), example.records, options);
+  EXPECT_TRUE(a.earns) << a.sentence;
+  EXPECT_TRUE(a.adequate) << a.sentence;
+  ASSERT_EQ(a.own, 2);
+  EXPECT_LE(a.parameters[1].low, -0.04);
+  EXPECT_GE(a.parameters[1].high, -0.04);
+  EXPECT_LT(a.parameters[1].error, 0.01);
+}
+
+TEST(Add, AnEffectIsScreenedThroughTheInstrumentsOfTheModel) {
+  const test::InstrumentExample example({test::instrument("CTERROR:gain=0.03,phase=-0.04")});
+  plant::PlantModel model = example.truth;
+  model.plant.controls.clear();
+  AddOptions options = power_only();
+  options.calibrate.held_out = {"2"};
+  options.refined = 1;
+  const Addition a = add_effect(model, find_hypothesis(model, "SEXS"), example.records, options);
+  EXPECT_TRUE(a.earns) << a.sentence;
+  EXPECT_TRUE(a.adequate) << a.sentence;
 }
 
 TEST(Add, NamesAreFoundAsWrittenAndOthersListed) {

@@ -3,17 +3,13 @@
 #include "sim/library/library.hpp"
 #include "tests/validate/playin/support.hpp"
 #include "validate/fit/fit.hpp"
-#include "validate/playin/instruments.hpp"
 
 namespace swingbank::validate::fit {
 
 /// What the plant answers to the event from `at`.
 inline playin::Response answer(const event::FitEvent& e, const EventState& at, const sim::plant::Plant& plant,
                                const sim::Conventions& conventions) {
-  const playin::VoltageCurve curve(e.played(), switchings_at(e, at));
-  playin::Drive run = drive_at(plant, conventions, e, at);
-  run.curve = &curve;
-  return playin::observe(run);
+  return event::play(plant, conventions, e, at);
 }
 
 struct ExciterExample {

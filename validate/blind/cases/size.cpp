@@ -91,16 +91,10 @@ Eigen::Index BlindSize::first_row(std::size_t event) const {
 
 playin::Response BlindSize::answer(std::size_t event, const record::Record& record,
                                    const std::vector<playin::Direction>& along) const {
-  std::vector<playin::Switching> instants;
-  for (const double t : events_[event].switchings) instants.push_back({.time = t});
-  const playin::VoltageCurve curve(record, instants);
-  return playin::drive({.plant = &plant_,
-                        .conventions = conventions_,
-                        .record = &record,
-                        .curve = &curve,
-                        .start = playin::pre_event_point(record, instants, 1.0),
-                        .tolerance = kTolerance},
-                       along);
+  event::FitEvent played = noise_[event];
+  played.record = record;
+  played.start = playin::pre_event_point(record, played.switchings, 1.0);
+  return event::play(plant_, conventions_, played, {}, along, {.tolerance = kTolerance, .hasty = false});
 }
 
 Eigen::VectorXd BlindSize::residual(std::size_t event, const record::Record& record) const {

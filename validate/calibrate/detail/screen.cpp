@@ -5,29 +5,16 @@
 
 #include "sim/core/noise.hpp"
 #include "validate/fit/slopes.hpp"
+#include "validate/playin/can_run.hpp"
 
 namespace swingbank::validate::calibrate {
-
-bool possible(const sim::plant::Plant& plant) {
-  Problems problems;
-  bool physical = true;
-  const auto check = [&](const sim::plant::Block& b) {
-    if (!b.effect) return;
-    b.effect->check(b.effect->law.get(), b.p.data(), "", problems);
-    physical = physical && (!b.effect->unphysical || b.effect->unphysical(b.p.data()).empty());
-  };
-  check(plant.machine);
-  check(plant.transformer);
-  for (const auto& b : plant.controls) check(b);
-  return physical && problems.empty();
-}
 
 std::vector<double> Screen::draw(std::uint64_t k) const {
   for (std::uint32_t attempt = 0; attempt < 100; ++attempt) {
     std::vector<double> values;
     for (std::size_t i = 0; i < free_.size(); ++i)
       values.push_back(one(free_[i], sim::normal_pair(seed_ + k, attempt, i)[0]));
-    if (possible(with(values))) return values;
+    if (playin::can_exist(with(values))) return values;
   }
   return own();
 }

@@ -7,9 +7,6 @@
 
 namespace swingbank::validate::calibrate {
 
-/// Whether the equations can be run with these parameters and a machine can have them.
-bool possible(const sim::plant::Plant& plant);
-
 /// Parameter sets about the model's own, the best of which are worth a search.
 class Screen {
  public:

@@ -2,7 +2,6 @@
 
 #include "validate/fit/fit.hpp"
 #include "validate/fit/voltage_doubt.hpp"
-#include "validate/playin/instruments.hpp"
 
 namespace swingbank::validate::compare {
 
@@ -17,20 +16,17 @@ void play_fitted(const plant::PlantModel& model, const CompareOptions& options, 
     throw InputError({"the model cannot follow the record", e.record.name, f.failed,
                       "check the model's parameters and the record's base and units"});
   const fit::EventState& state = f.events.front().state;
-  const playin::VoltageCurve curve(event.played(), fit::switchings_at(event, state));
-  playin::Drive run = fit::drive_at(model.plant, model.conventions, event, state);
-  run.curve = &curve;
-  playin::Response r = playin::observe(run);
+  playin::Response r = event::play(model.plant, model.conventions, event, state);
   const auto take = [&](playin::Output o) { return std::move(r.value[static_cast<int>(o)]); };
   e.playback = playin::Playback{};
-  e.playback.start = run.start;
+  e.playback.start = event::start_at(event, state);
   e.playback.steps = r.steps;
   e.playback.P = take(playin::Output::P);
   e.playback.Q = take(playin::Output::Q);
   e.playback.speed = take(playin::Output::speed);
   e.playback.Efd = take(playin::Output::Efd);
   e.playback.Ifd = take(playin::Output::Ifd);
-  e.switchings = curve.switchings();
+  e.switchings = event::switchings_at(event, state);
   e.fitted = !e.switchings.empty();
   if (jumps == event::Jumps::spread) e.left_out = event.left_out;
 }

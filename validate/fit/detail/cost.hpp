@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "validate/fit/fit.hpp"
-#include "validate/playin/instruments.hpp"
+#include "validate/playin/can_run.hpp"
 
 namespace swingbank::validate::fit::fitting {
 
@@ -71,19 +71,6 @@ inline sim::plant::Plant moved(const Setting& s, const double* z) {
   for (std::size_t i = 0; i < s.axes.size(); ++i)
     parameter_value(plant, s.axes[i].where.block, s.axes[i].where.index) = s.axes[i].value(z[i]);
   return plant;
-}
-
-/// Whether the equations can be run with these parameters.
-inline bool can_run(const sim::plant::Plant& plant) {
-  Problems problems;
-  const auto check = [&](const sim::plant::Block& b) {
-    b.effect->check(b.effect->law.get(), b.p.data(), "", problems);
-  };
-  check(plant.machine);
-  if (plant.transformer.effect) check(plant.transformer);
-  for (const auto* list : {&plant.controls, &plant.measurements})
-    for (const auto& b : *list) check(b);
-  return problems.list().empty();
 }
 
 /// An event's state as the search sees it, without an input.
@@ -165,7 +152,7 @@ class EventCost : public ceres::CostFunction {
   /// where asked. Empty where the plant cannot be run.
   [[nodiscard]] event::RowMatrix values(const double* z, const double* state, bool slopes) const {
     const sim::plant::Plant plant = moved(setting_, z);
-    if (!can_run(plant)) return {};
+    if (!playin::can_run(plant)) return {};
     std::vector<playin::Direction> along;
     if (slopes) {
       for (std::size_t i = 0; i < setting_.axes.size(); ++i) {
@@ -175,11 +162,7 @@ class EventCost : public ceres::CostFunction {
       add_state_directions(along);
     }
     try {
-      auto switchings = event_.switchings;
-      playin::Drive run = make_drive(plant, state, switchings);
-      const playin::VoltageCurve curve(event_.played(), switchings);
-      run.curve = &curve;
-      const playin::Response r = playin::observe(run, along);
+      const playin::Response r = answer(plant, at(state), along);
       const auto n = static_cast<Eigen::Index>(along.size());
       event::RowMatrix e(event_.values(), n + 1);
       for (Eigen::Index d = 0; d < n; ++d)
@@ -191,19 +174,20 @@ class EventCost : public ceres::CostFunction {
       return {};
     }
   }
-  /// Makes the run at a state; `switchings` get their moved instants.
-  playin::Drive make_drive(const sim::plant::Plant& plant, const double* state,
-                           std::vector<playin::Switching>& switchings) const {
-    const EventState at = event_state(event_, state);
-    switchings = switchings_at(event_, at);
-    playin::Drive run = drive_at(plant, *setting_.conventions, event_, at);
-    run.tolerance = setting_.tolerance;
-    const double* s = state + switchings.size();
-    if (setting_.input == InputKind::none) return run;
-    playin::PiecewiseLinear& input = setting_.input == InputKind::torque ? run.torque : run.field;
-    input.t = knots_;
-    input.value.assign(s + kStates, s + kStates + knots_.size());
-    return run;
+  /// The event's state from the search's numbers, with the input where one is fitted.
+  [[nodiscard]] EventState at(const double* state) const {
+    EventState whole = event_state(event_, state);
+    if (setting_.input == InputKind::none) return whole;
+    const double* s = state + event_.switchings.size() + kStates;
+    whole.input.t = knots_;
+    whole.input.value.assign(s, s + knots_.size());
+    return whole;
+  }
+  /// What the plant answers to the event.
+  [[nodiscard]] playin::Response answer(const sim::plant::Plant& plant, const EventState& state,
+                                        std::span<const playin::Direction> along = {}) const {
+    return event::play(plant, *setting_.conventions, event_, state, along,
+                       {.tolerance = setting_.tolerance, .input = setting_.input});
   }
 
  private:

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <span>
 
-#include "validate/playin/instruments.hpp"
-
 namespace swingbank::validate::hypothesis {
 namespace {
 
@@ -201,10 +199,7 @@ double StartFinder::moves(const Hypothesis& h, const sim::plant::Plant& plant, s
   const event::FitEvent& e = stage_.events[event];
   const fit::EventFit& at = stage_.fit.events[event];
   try {
-    const playin::VoltageCurve curve(e.played(), fit::switchings_at(e, at.state));
-    playin::Drive run = fit::drive_at(plant, h.conventions, e, at.state);
-    run.curve = &curve;
-    const playin::Response r = playin::observe(run);
+    const playin::Response r = event::play(plant, h.conventions, e, at.state);
     double square = 0;
     for (std::size_t c = 0; c < e.channels.size(); ++c)
       for (std::size_t k = 0; k < r.of(e.channels[c]).size(); ++k)
@@ -273,15 +268,8 @@ bool StartFinder::answer(const sim::plant::Plant& plant, const Hypothesis& h, do
   misfit = 0;
   try {
     for (const event::FitEvent& e : stage_.events) {
-      const playin::VoltageCurve curve(e.played(), e.switchings);
-      playin::Drive run = fit::drive_at(plant, h.conventions, e, {});
-      run.curve = &curve;
-      const playin::Response r = playin::observe(run);
-      if (!acts) {
-        run.plant = &stage_.plant;
-        run.conventions = stage_.conventions;
-        acts = differ(r, playin::observe(run), e);
-      }
+      const playin::Response r = event::play(plant, h.conventions, e, {});
+      if (!acts) acts = differ(r, event::play(stage_.plant, stage_.conventions, e, {}), e);
       misfit += misfit_of(r, e);
     }
   } catch (const InputError&) {

@@ -27,12 +27,11 @@ std::vector<LawTrace> law_traces(const plant::PlantModel& model, const std::vect
   for (std::size_t i = 0; i < events.size(); ++i) {
     const event::FitEvent& e = events[i];
     const fit::EventState& state = input.fit.events[i].state;
-    const auto switchings = fit::switchings_at(e, state);
+    const auto switchings = event::switchings_at(e, state);
     const playin::VoltageCurve curve(e.played(), switchings);
-    playin::Drive run = fit::drive_at(input.fit.plant, model.conventions, e, state);
-    run.curve = &curve;
-    (input.kind == fit::InputKind::torque ? run.torque : run.field) = state.input;
-    const playin::Response r = playin::drive(run);
+    // The signals are those that the instruments show, as the fit had them.
+    const playin::Response r =
+        event::play(input.fit.plant, model.conventions, e, state, {}, {.input = input.kind});
     const double to_machine = e.record.base.mva / input.fit.plant.mva;
     LawTrace t;
     t.t = e.record.t;
@@ -52,8 +51,8 @@ std::vector<LawTrace> law_traces(const plant::PlantModel& model, const std::vect
     }
     t.signal = {r.of(playin::Output::speed), V, deviation(r.of(playin::Output::P), to_machine),
                 deviation(r.of(playin::Output::Q), to_machine), deviation(r.of(playin::Output::Ifd), 1.0)};
-    t.rest =
-        input.kind == fit::InputKind::torque ? run.start.P * to_machine : r.of(playin::Output::Efd).front();
+    t.rest = input.kind == fit::InputKind::torque ? event::start_at(e, state).P * to_machine
+                                                  : r.of(playin::Output::Efd).front();
     all.push_back(std::move(t));
   }
   return all;

@@ -1,0 +1,98 @@
+// A plant whose file says through which instruments it was recorded: fit, starts, slopes and errors are all
+// of the plant as these show it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/validate/playin/instrument_example.hpp"
+#include "validate/calibrate/calibrate.hpp"
+#include "validate/calibrate/curve_fit.hpp"
+
+namespace swingbank::validate::calibrate {
+namespace {
+
+using ::testing::Contains;
+
+constexpr const char* kMoving[] = {"H", "Xdp", "Tdop", "K", "TE", "gain", "phase", "skew"};
+
+/// The truth with some parameters 10 % off, up and down in turn; all others are fixed.
+struct Wrong {
+  plant::PlantModel model;
+  std::vector<std::string> fixed;
+  explicit Wrong(const plant::PlantModel& truth) : model(truth) {
+    int sign = 1;
+    for (const auto& f : chosen_parameters(truth.plant, 0.2, {})) {
+      const auto name = fit::parameter_record(truth.plant, f.block, f.index).name;
+      if (std::ranges::find(kMoving, name) == std::end(kMoving))
+        fixed.emplace_back(name);
+      else
+        fit::parameter_value(model.plant, f.block, f.index) *= 1 + 0.1 * (sign = -sign);
+    }
+  }
+};
+
+class SeenThrough : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(SeenThrough, TheTruthLiesInTheIntervals) {
+  const test::InstrumentExample example({test::instrument(GetParam())});
+  const Wrong wrong(example.truth);
+  CalibrateOptions options;
+  options.draws = options.starts = 0;
+  options.fixed = wrong.fixed;
+  const Calibration c = calibrate(wrong.model, example.records, options);
+  EXPECT_NE(c.adequacy, Adequacy::structure_poor) << c.sentence;
+  // What the starts' scores and the events' fits compare is the same, but for the colour of the noise.
+  EXPECT_LT(std::abs(std::log(c.started.front().before / c.before)), std::log(1.5));
+  std::vector<std::string> names, outside;
+  for (const CalibratedParameter& p : c.parameters) {
+    const double truth = fit::parameter_value(example.truth.plant, p.fit.where.block, p.fit.where.index);
+    names.emplace_back(p.fit.name);
+    if (truth < p.fit.low || truth > p.fit.high) outside.emplace_back(p.fit.name);
+    EXPECT_NEAR(p.fit.value, truth, 3 * p.fit.error) << p.fit.name;
+    EXPECT_LT(p.fit.error, 2 * p.curvature_error) << p.fit.name;  // the residual is noise, as believed
+  }
+  EXPECT_LE(outside.size(), 1U) << ::testing::PrintToString(outside);
+  const auto& instrument = example.truth.plant.measurements.front();
+  for (std::size_t i = 0; i < instrument.p.size(); ++i) {
+    const std::string name(instrument.effect->parameters[i].name);
+    EXPECT_THAT(names, Contains(name));
+    EXPECT_THAT(outside, ::testing::Not(Contains(name)));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Calibrate, SeenThrough,
+                         ::testing::Values("CTERROR:gain=0.03,phase=-0.04", "SKEW:skew=0.008"),
+                         [](const auto& info) {
+                           const std::string text = info.param;
+                           return text.substr(0, text.find(':'));
+                         });
+
+// A filter's window is known; it is never fitted.
+TEST(CalibrateSeenThrough, AFilterBelongsToTheModelButIsNotFitted) {
+  plant::PlantModel model;
+  model.plant.machine = {sim::library::find_effect("GENROU"),
+                         sim::library::find_effect("GENROU")->standard_parameters()};
+  model.plant.measurements = {test::instrument("PMUFILTER"), test::instrument("SKEW:skew=0.002")};
+  for (const auto& f : chosen_parameters(model.plant, 0.2, {}))
+    EXPECT_STRNE(fit::block_effect(model.plant, f.block).name.data(), "PMUFILTER");
+  EXPECT_THAT(chosen_parameters(model.plant, 0.2, {}),
+              Contains(::testing::Field(&fit::FreeParameter::block, fit::block_count(model.plant) - 1)));
+}
+
+TEST(CurveFitSeenThrough, TheInstrumentsBelongToTheModel) {
+  const test::InstrumentExample example({test::instrument("CTERROR:gain=0.03,phase=-0.04")});
+  const Wrong wrong(example.truth);
+  CurveFitOptions options;
+  options.fixed = wrong.fixed;
+  const CurveFit f = curve_fit(wrong.model, example.records, options);
+  EXPECT_TRUE(f.converged) << f.sentence;
+  for (const auto& p : f.parameters)
+    if (p.name == "H" || p.name == "Xdp" || p.name == "phase") {
+      const double truth = fit::parameter_value(example.truth.plant, p.where.block, p.where.index);
+      EXPECT_NEAR(p.value, truth, 0.03 * std::abs(truth)) << p.name;  // instants are off by up to 2.7 ms
+    }
+}
+
+}  // namespace
+}  // namespace swingbank::validate::calibrate

@@ -1,0 +1,102 @@
+// Slopes of an event's answer are those of what the fit compares: the plant as its instruments show it.
+#include "validate/fit/slopes.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/validate/playin/instrument_example.hpp"
+
+namespace swingbank::validate::fit {
+namespace {
+
+constexpr event::Playing kExact{.tolerance = 1e-9, .hasty = false};
+
+struct Slopes : ::testing::TestWithParam<const char*> {
+  const test::InstrumentExample example{{test::instrument(GetParam())}};
+  const plant::PlantModel& model = example.truth;
+  const std::vector<event::FitEvent> events =
+      event::prepare_events(model, example.records, {.measured_states = false});
+  const event::FitEvent& event = events.front();
+
+  [[nodiscard]] Eigen::VectorXd whitened(const sim::plant::Plant& plant, const EventState& state) const {
+    event::RowMatrix all =
+        event.collected(event::play(plant, model.conventions, event, state, {}, kExact).value, true);
+    event.whiten(all);
+    return all;
+  }
+  /// Central difference of the whitened residual per `by`.
+  template <class Move>
+  [[nodiscard]] Eigen::VectorXd difference(Move move) const {
+    constexpr double kStep = 1e-3;
+    const auto at = [&](double step) {
+      sim::plant::Plant plant = model.plant;
+      EventState state;
+      for (const auto& s : event.switchings) state.switchings.push_back(s.time);
+      move(plant, state, step);
+      return whitened(plant, state);
+    };
+    return (at(kStep) - at(-kStep)) / (2 * kStep);
+  }
+};
+
+TEST_P(Slopes, ResidualIsThatOfTheFit) {
+  const Fit f = fit(model.plant, model.conventions, {event}, {});
+  ASSERT_TRUE(f.failed.empty()) << f.failed;
+  EXPECT_LT(f.misfit(), 1.2);  // the plant and its instruments are the true ones
+  const EventSlopes s = event_slopes(model.plant, model.conventions, event, f.events.front().state, {});
+  EXPECT_NEAR(s.residual.squaredNorm(), f.chi2, 1e-2 * f.chi2);  // the fit integrates to 1e-5
+}
+
+TEST_P(Slopes, AreThoseOfDifferences) {
+  const int last = block_count(model.plant) - 1;
+  std::vector<FreeParameter> free = {{0, model.plant.machine.effect->parameter_index("H"), 0.2},
+                                     {0, model.plant.machine.effect->parameter_index("Xdp"), 0.2},
+                                     {1, model.plant.controls.front().effect->parameter_index("K"), 0.2}};
+  for (const FreeParameter& f : free_parameters(model.plant, last, 0.2)) free.push_back(f);
+  ASSERT_GT(free.size(), 3U);
+  EXPECT_NEAR(axis_unit(model.plant, free.back()),
+              0.2 * std::abs(parameter_value(model.plant, last, free.back().index)), 1e-15);
+  const EventSlopes s = event_slopes(model.plant, model.conventions, event, {}, free);
+
+  const auto columns = static_cast<Eigen::Index>(free.size());
+  Eigen::MatrixXd slopes(event.values(), columns);
+  for (Eigen::Index i = 0; i < columns; ++i) {
+    const FreeParameter& f = free[static_cast<std::size_t>(i)];
+    slopes.col(i) = difference([&](sim::plant::Plant& plant, EventState&, double by) {
+      parameter_value(plant, f.block, f.index) += by * axis_unit(model.plant, f);
+    });
+  }
+  // what the event's own state absorbs of them, each believed to be off by so much
+  std::vector<Eigen::VectorXd> own;
+  for (std::size_t k = 0; k < event.switchings.size(); ++k)
+    if (const double off = event.switchings[k].uncertainty; off > 0)
+      own.push_back(difference(
+          [&](sim::plant::Plant&, EventState& state, double by) { state.switchings[k] += by * off; }));
+  own.push_back(difference([](sim::plant::Plant&, EventState& state, double by) { state.P += by * 0.02; }));
+  own.push_back(difference([](sim::plant::Plant&, EventState& state, double by) { state.Q += by * 0.02; }));
+  own.push_back(
+      difference([](sim::plant::Plant&, EventState& state, double by) { state.angle += by * 0.02; }));
+  own.push_back(
+      difference([](sim::plant::Plant&, EventState& state, double by) { state.speed += by * 2e-4; }));
+  Eigen::MatrixXd states(event.values(), static_cast<Eigen::Index>(own.size()));
+  for (std::size_t k = 0; k < own.size(); ++k) states.col(static_cast<Eigen::Index>(k)) = own[k];
+  const Eigen::MatrixXd inner =
+      states.transpose() * states + Eigen::MatrixXd::Identity(states.cols(), states.cols());
+  slopes -= states * inner.ldlt().solve(states.transpose() * slopes).eval();
+  for (Eigen::Index i = 0; i < columns; ++i) {
+    const auto name = parameter_record(model.plant, free[static_cast<std::size_t>(i)].block,
+                                       free[static_cast<std::size_t>(i)].index)
+                          .name;
+    EXPECT_GT(slopes.col(i).norm(), 0.1) << name;  // or the records say nothing of it
+    EXPECT_LT((s.slopes.col(i) - slopes.col(i)).norm(), 2e-2 * slopes.col(i).norm()) << name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Instruments, Slopes,
+                         ::testing::Values("CTERROR:gain=0.02,phase=-0.03", "SKEW:skew=0.006"),
+                         [](const auto& info) {
+                           const std::string text = info.param;
+                           return text.substr(0, text.find(':'));
+                         });
+
+}  // namespace
+}  // namespace swingbank::validate::fit

@@ -1,0 +1,64 @@
+// One answer to whether a plant can be run, for all of its blocks.
+#include "validate/playin/can_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include "sim/library/library.hpp"
+
+namespace swingbank::validate::playin {
+namespace {
+
+sim::plant::Block standard(const std::string& name) {
+  const sim::Effect* effect = sim::library::find_effect(name);
+  return {effect, effect->standard_parameters()};
+}
+double& value(sim::plant::Block& block, const std::string& name) {
+  return block.p.at(static_cast<std::size_t>(block.effect->parameter_index(name)));
+}
+
+struct CanRun : ::testing::Test {
+  sim::plant::Plant plant;
+  CanRun() {
+    plant.machine = standard("GENROU");
+    plant.transformer = standard("STEPUP");
+    plant.controls = {standard("SEXS"), standard("TGOV1")};
+    plant.measurements = {standard("PTERROR"), standard("CTERROR")};
+  }
+  void refuse() const {
+    EXPECT_FALSE(can_run(plant));
+    EXPECT_FALSE(can_exist(plant));
+  }
+};
+
+TEST_F(CanRun, AStandardPlantCan) {
+  EXPECT_TRUE(can_run(plant));
+  EXPECT_TRUE(can_exist(plant));
+  plant.transformer = {};
+  EXPECT_TRUE(can_exist(plant));
+}
+TEST_F(CanRun, TheMachineIsAsked) {
+  value(plant.machine, "H") = -1;
+  refuse();
+}
+TEST_F(CanRun, TheTransformerIsAsked) {
+  value(plant.transformer, "ratio") = 0;
+  refuse();
+}
+TEST_F(CanRun, EveryControlIsAsked) {
+  plant.controls.back().p.assign(plant.controls.back().p.size(), -1);
+  EXPECT_TRUE(can_run(plant.controls.front()));
+  EXPECT_FALSE(can_run(plant.controls.back()));
+  refuse();
+}
+TEST_F(CanRun, EveryInstrumentIsAsked) {
+  value(plant.measurements.back(), "gain") = -2;  // nothing of the current is left
+  refuse();
+}
+TEST_F(CanRun, WhatNoMachineHasMayRun) {
+  value(plant.machine, "Xqp") = 1.01 * value(plant.machine, "Xq");  // X'q above Xq
+  EXPECT_TRUE(can_run(plant));
+  EXPECT_FALSE(can_exist(plant));
+}
+
+}  // namespace
+}  // namespace swingbank::validate::playin

@@ -1,0 +1,42 @@
+#include "validate/event/play.hpp"
+
+#include "validate/playin/instruments.hpp"
+
+namespace swingbank::validate::event {
+
+std::vector<playin::Switching> switchings_at(const FitEvent& event, const EventState& state) {
+  auto switchings = event.switchings;
+  for (std::size_t k = 0; k < state.switchings.size(); ++k) switchings[k].time = state.switchings[k];
+  return switchings;
+}
+
+playin::OperatingPoint start_at(const FitEvent& event, const EventState& state) {
+  playin::OperatingPoint start = event.start;
+  start.P += state.P;
+  start.Q += state.Q;
+  return start;
+}
+
+playin::Response play(const sim::plant::Plant& plant, const sim::Conventions& conventions,
+                      const FitEvent& event, const EventState& state,
+                      std::span<const playin::Direction> along, const Playing& how) {
+  const playin::VoltageCurve curve(event.played(), switchings_at(event, state));
+  playin::Drive run{.plant = &plant,
+                    .conventions = conventions,
+                    .record = &event.record,
+                    .curve = &curve,
+                    .start = start_at(event, state),
+                    .angle = state.angle,
+                    .speed = state.speed,
+                    .tolerance = how.tolerance,
+                    .until = how.until};
+  if (how.hasty) {
+    run.least_step = event.record.step() / 40;
+    run.step_limit = 15 * event.record.samples();
+  }
+  if (how.input == InputKind::torque) run.torque = state.input;
+  if (how.input == InputKind::field) run.field = state.input;
+  return playin::observe(run, along);
+}
+
+}  // namespace swingbank::validate::event

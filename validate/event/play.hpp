@@ -1,0 +1,42 @@
+#pragma once
+// The one way in which an event is played into a plant: from the event's own state, and through the plant's
+// own instruments, which show what was recorded.
+#include <span>
+#include <vector>
+
+#include "validate/event/event.hpp"
+
+namespace swingbank::validate::event {
+
+/// An input that no model makes, free in time.
+enum class InputKind { none, torque, field };
+
+/// What belongs to one event.
+struct EventState {
+  std::vector<double> switchings;             ///< [s]; empty: where they were found
+  double P = 0, Q = 0, angle = 0, speed = 0;  ///< offsets of the operating point and of the first states
+  playin::PiecewiseLinear input = {};         ///< what was added to Tm or Efd [pu]
+};
+
+/// How an event is played.
+struct Playing {
+  double tolerance = 1e-5;  ///< error per step, relative to 1 + |state|
+  /// Steps down to a fortieth of the sample interval are taken whatever their error, because a limit that is
+  /// met and left within one sample is no reason for shorter ones; after 15 steps a sample it gives up.
+  /// False: neither.
+  bool hasty = true;
+  InputKind input = InputKind::none;  ///< where the state's input acts
+  double until = 1e300;               ///< samples after it are left out [s]
+};
+
+/// The event's switchings at the instants that `state` has.
+std::vector<playin::Switching> switchings_at(const FitEvent& event, const EventState& state);
+/// The operating point with the offsets that `state` has.
+playin::OperatingPoint start_at(const FitEvent& event, const EventState& state);
+/// What the plant answers as its instruments show it, and slopes along the directions. Throws InputError as
+/// playin::observe.
+playin::Response play(const sim::plant::Plant& plant, const sim::Conventions& conventions,
+                      const FitEvent& event, const EventState& state,
+                      std::span<const playin::Direction> along = {}, const Playing& how = {});
+
+}  // namespace swingbank::validate::event
