@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.hpp"
+
 namespace swingbank {
 namespace {
 
 double wilson(const Rate& r, double sign) {
   if (r.n == 0) return sign < 0 ? 0.0 : 1.0;
-  constexpr double z = 1.959963984540054;
+  constexpr double z = constants::normal95;
   const double n = r.n, p = r.value(), zz = z * z / n;
   return (p + zz / 2 + sign * z * std::sqrt(p * (1 - p) / n + zz / (4 * n))) / (1 + zz);
 }

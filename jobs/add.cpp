@@ -11,13 +11,12 @@
 #include "sim/laws/law.hpp"
 #include "validate/add/report.hpp"
 #include "validate/plant/plant_file.hpp"
+#include "validate/thresholds/adequacy.hpp"
 
 namespace {
 
 using namespace swingbank;
 using namespace swingbank::validate;
-
-constexpr int kNotAdequate = 3;
 
 struct Arguments {
   std::string effect, model, out = "added", command;
@@ -115,7 +114,7 @@ int run(Arguments& a) {
       for (const auto& line : provenance_lines(one, model, a.command)) provenance.push_back(line);
     provenance.push_back(c.sentence);
     write(a, c.model, provenance, add::completion_json(c), terminal_report(c));
-    return c.adequate ? 0 : kNotAdequate;
+    return c.adequate ? 0 : thresholds::kNotAdequate;
   }
   add::Addition done = add::add_effect(model, add::find_hypothesis(model, a.effect), records, a.options);
   keep_laws(done.model, laws);
@@ -123,7 +122,7 @@ int run(Arguments& a) {
         terminal_report(done));
   if (a.retrain)
     if (const int code = run_retrain(a, programs, model, done, records); code != 0) return code;
-  return done.adequate && done.earns ? 0 : kNotAdequate;
+  return done.adequate && done.earns ? 0 : thresholds::kNotAdequate;
 }
 
 }  // namespace

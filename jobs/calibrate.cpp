@@ -12,13 +12,12 @@
 #include "validate/calibrate/report.hpp"
 #include "validate/calibrate/side_by_side.hpp"
 #include "validate/plant/plant_file.hpp"
+#include "validate/thresholds/adequacy.hpp"
 
 namespace {
 
 using namespace swingbank;
 using namespace swingbank::validate;
-
-constexpr int kNotAdequate = 3;
 
 struct Arguments {
   std::string model, out = "calibration", method = "fit", truth, network, start, command;
@@ -54,7 +53,7 @@ int run_baseline(const Arguments& a, const plant::PlantModel& model, std::vector
   nlohmann::json result = calibrate::curve_fit_json(f, truth);
   result["command"] = a.command;
   say(a, result, calibrate::terminal_report(f, truth));
-  return f.adequate ? 0 : kNotAdequate;
+  return f.adequate ? 0 : thresholds::kNotAdequate;
 }
 
 /// The network's estimate from the events that are fitted, by `swingbank predict` or as it was given.
@@ -119,7 +118,7 @@ int run(Arguments& a) {
   }
   plant::write_plant_file(folder / "model.toml", c.model, calibrate::provenance_lines(c, a.command));
   say(a, result, text);
-  return c.adequacy == calibrate::Adequacy::structure_poor ? kNotAdequate : 0;
+  return c.adequacy == calibrate::Adequacy::structure_poor ? thresholds::kNotAdequate : 0;
 }
 
 void add_options(CLI::App& app, Arguments& a, bool& inner) {

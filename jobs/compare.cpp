@@ -10,10 +10,9 @@
 #include "validate/check/check.hpp"
 #include "validate/compare/report.hpp"
 #include "validate/system/system.hpp"
+#include "validate/thresholds/adequacy.hpp"
 
 namespace {
-
-constexpr int kNotAdequate = 3;  // exit code
 
 using namespace swingbank;
 using namespace swingbank::validate;
@@ -109,7 +108,7 @@ int run_system(const std::string& file, const std::string& out, bool json, const
     fmt::print("{}", result);
   else
     fmt::print("{}\nreport: {}\n", system::system_text(system, c), (folder / "report.html").string());
-  return c.adequacy.adequate ? 0 : kNotAdequate;
+  return c.adequacy.adequate ? 0 : thresholds::kNotAdequate;
 }
 
 }  // namespace
@@ -192,7 +191,7 @@ int main(int argc, char** argv) {
     else
       fmt::print("{}\nreport: {}\n", compare::terminal_report(model, events, adequacy),
                  (folder / "report.html").string());
-    return adequacy.adequate ? 0 : kNotAdequate;
+    return adequacy.adequate ? 0 : thresholds::kNotAdequate;
   } catch (const InputError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 1;

@@ -9,13 +9,12 @@
 #include "jobs/fleet_run.hpp"
 #include "validate/diagnose/report.hpp"
 #include "validate/diagnose/text.hpp"
+#include "validate/thresholds/list.hpp"
 
 namespace {
 
 using namespace swingbank;
 using namespace swingbank::validate;
-
-constexpr int kNotAdequate = 3;
 
 /// The law that was found, as a file; its path, empty where none was.
 std::filesystem::path write_law(const diagnose::Diagnosis& d, const std::filesystem::path& folder) {
@@ -46,16 +45,25 @@ int run(const std::string& model_file, const std::vector<std::string>& record_fi
       fmt::print("law: {0} (swingbank add {1} --law {0} adds it)\n", law_file.string(),
                  law_file.stem().string());
   }
-  return d.verdict == diagnose::Verdict::adequate ? 0 : kNotAdequate;
+  return d.verdict == diagnose::Verdict::adequate ? 0 : thresholds::kNotAdequate;
 }
 
 /// What a person may ask for.
 struct Command {
   std::string model, out = "diagnosis", plant;
   std::vector<std::string> records;
+  bool thresholds = false;
   diagnose::DiagnoseOptions options;
   jobs::FleetCommand fleet;
 };
+
+int print_thresholds(bool json) {
+  if (json)
+    fmt::print("{}\n", thresholds::thresholds_json().dump(1));
+  else
+    fmt::print("{}", diagnose::thresholds_text());
+  return 0;
+}
 
 void declare(CLI::App& app, Command& c) {
   auto* model = app.add_option("--model", c.model, "plant file (configs/plants/README.md)");
@@ -88,6 +96,11 @@ void declare(CLI::App& app, Command& c) {
          "leave recorded speed, Efd and Ifd aside: compare P and Q only; of a fleet it stands in its file")
       ->excludes(fleet);
   app.add_flag("--json", c.fleet.json, "print the result as JSON instead of text");
+  app.add_flag(
+         "--thresholds", c.thresholds,
+         "print every number on which a verdict hangs, with unit and reason (with --json as JSON), and end")
+      ->excludes(model)
+      ->excludes(fleet);
   app.footer(
       "Exit codes: 0 adequate, 3 something is missing or unexplained, 1 bad "
       "input. Of a fleet: 0 all plants are adequate, 3 some plant is not, 1 "
@@ -102,12 +115,13 @@ int main(int argc, char** argv) {
   declare(app, c);
   try {
     app.parse(argc, argv);
-    if (c.model.empty() && c.fleet.fleet.empty())
+    if (!c.thresholds && c.model.empty() && c.fleet.fleet.empty())
       throw CLI::RequiredError("--model with --records, or --fleet,");
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 1;
   }
   return jobs::guarded("diagnose", [&] {
+    if (c.thresholds) return print_thresholds(c.fleet.json);
     c.fleet.out = c.out;
     if (!c.plant.empty()) return jobs::run_fleet_plant(c.fleet, c.plant);
     if (!c.fleet.fleet.empty()) return jobs::run_fleet(c.fleet, &argc, &argv);

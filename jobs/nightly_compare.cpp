@@ -33,7 +33,7 @@ using swingbank::Problem;
 using swingbank::Problems;
 
 constexpr std::size_t kNightsNeeded = 3;
-constexpr double kLeastNoise =
+constexpr double kLeastRelativeNoise =
     0.01;  // a change of less than 3 % is of no interest even if the nights agree exactly
 
 struct Cell {
@@ -133,7 +133,7 @@ std::vector<Change> changes_of(const std::string& date, const Nights& nights) {
       change.before = median(found->second);
       change.nights = found->second.size();
       const auto& pool = residuals[{cell.table, cell.network}];
-      if (!pool.empty()) change.noise = std::max(kLeastNoise, 1.4826 * median(pool));
+      if (!pool.empty()) change.noise = std::max(kLeastRelativeNoise, 1.4826 * median(pool));
     }
     changes.push_back(change);
   }

@@ -12,13 +12,10 @@
 #include "validate/fit/noise.hpp"
 #include "validate/fit/slopes.hpp"
 #include "validate/hypothesis/judge.hpp"
+#include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::add {
 namespace {
-
-/// Differences of the criterion above this are strong evidence (Kass and Raftery, JASA 90, 1995, give 6 to
-/// 10).
-constexpr double kStrong = 10.0;
 
 std::string plain(const std::string& name) {
   std::string out;
@@ -40,7 +37,7 @@ class Bench {
   [[nodiscard]] const std::vector<event::FitEvent>& seen() const { return seen_; }
   /// Measures the noise anew through a fit of the events seen, if that is close.
   bool measure_noise(const fit::Fit& seen, const sim::Conventions& conventions) {
-    if (seen.misfit() >= fit::kClose) return false;
+    if (seen.misfit() >= thresholds::noise.measurable) return false;
     fit::Fit whole = seen;
     whole.events = each(seen.plant, conventions, "noise measured again");
     fit::measure_noise_through(whole, conventions, all_);
@@ -230,17 +227,20 @@ Addition add_effect(const plant::PlantModel& model, const hypothesis::Hypothesis
   a.evidence = fit::criterion(a.without) - fit::criterion(a.with);
   const auto refitted = bench.each(a.without.plant, model.conventions, "events without the effect");
   const auto after = bench.each(a.with.plant, hypothesis.conventions, "events with the effect");
-  a.adequate = a.earns = true;
+  a.earns = true;
+  std::vector<calibrate::EventScore> scores;
   for (std::size_t e = 0; e < bench.all().size(); ++e) {
     AddedEvent event{
         calibrate::score_event(bench.all()[e], before[e], after[e], bench.is_seen(e),
                                calibrate::pre_event_samples(bench.all()), options.calibrate.adequate),
         refitted[e].misfit()};
-    a.adequate = a.adequate && event.score.adequate();
+    scores.push_back(event.score);
     a.earns = a.earns && (event.score.seen || event.improves() || event.score.adequate());
     a.events.push_back(std::move(event));
   }
-  a.earns = a.earns && a.evidence > kStrong;
+  a.ruling = thresholds::judged_by_events(scores);
+  a.adequate = a.ruling.adequate;
+  a.earns = a.earns && a.evidence > thresholds::addition.strong;
   a.model.plant = a.with.plant;
   a.model.conventions = hypothesis.conventions;
   a.prepared = bench.all();

@@ -26,9 +26,11 @@ struct Addition {
       parameters;  ///< all parameters that were free; those of the effect come first
   int own = 0;     ///< how many are the effect's
   std::vector<AddedEvent> events;
-  double evidence = 0;    ///< criterion() without - with, over the events seen: above 10 is strong
-  bool earns = false;     ///< evidence is strong, and no unseen event is worse with it
-  bool adequate = false;  ///< nothing but noise is left in any event
+  double evidence = 0;        ///< criterion() without - with, over the events seen: it earns its place above
+                              ///< thresholds::addition.strong
+  bool earns = false;         ///< evidence is strong, and no unseen event is worse with it
+  bool adequate = false;      ///< nothing but noise is left in any event
+  thresholds::Ruling ruling;  ///< what decided whether it is
   std::string sentence;
   std::vector<event::FitEvent> prepared;
   fit::Fit without, with;
@@ -48,7 +50,8 @@ Addition add_effect(const plant::PlantModel& model, const hypothesis::Hypothesis
 struct Removal {
   std::string effect;
   plant::PlantModel model;
-  double evidence = 0;  ///< criterion() without - with: below 0 the effect does not earn its place
+  double evidence =
+      0;  ///< criterion() without - with: at addition.stays and below the effect does not earn its place
 };
 Removal try_without(const plant::PlantModel& model, std::size_t control, std::vector<record::Record> records,
                     const AddOptions& options);

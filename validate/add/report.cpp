@@ -3,10 +3,12 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 
 #include "validate/calibrate/report.hpp"
+#include "validate/thresholds/list.hpp"
 
 namespace swingbank::validate::add {
 namespace {
@@ -14,6 +16,19 @@ namespace {
 using nlohmann::json;
 
 json finite(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+/// By which criterion an effect earns its place here, beside what diagnose asks of one.
+std::string judged_by(const Addition& a) {
+  const bool any_unseen = std::ranges::any_of(a.events, [](const auto& e) { return !e.score.seen; });
+  return fmt::format(
+      "{} {} its place by the criterion of add: evidence above {:g} for an effect that was named, and {}. Diagnose, "
+      "which takes the best of many, asks for {:g}, that every event be predicted by the others, and that no input "
+      "free in time explain more.",
+      a.hypothesis.name, a.earns ? "earns" : "does not earn", thresholds::addition.strong.value,
+      any_unseen ? "no unseen event worse with it (unless nothing but noise is left there)"
+                 : "no event was held out to try it on",
+      thresholds::evidence.accepted.value);
+}
 
 report::Table values_table(const Addition& a) {
   report::Table t{
@@ -71,8 +86,9 @@ report::Table addition_table(const Addition& a) {
 std::string terminal_report(const Addition& a) {
   return a.sentence + "\n\n" + calibrate::aligned(addition_table(a)) + "\n" +
          calibrate::aligned(values_table(a)) +
-         fmt::format("\nEvidence (twice the log of the Bayes factor): {:.1f}; above 10 is strong.\n",
-                     a.evidence);
+         fmt::format(
+             "\nEvidence (twice the log of the Bayes factor): {:.1f}; above {:g} is strong.\n{}\n{}\n",
+             a.evidence, thresholds::addition.strong.value, judged_by(a), thresholds::ruling_text(a.ruling));
 }
 
 json addition_json(const Addition& a) {
@@ -82,6 +98,8 @@ json addition_json(const Addition& a) {
             {"sentence", a.sentence},
             {"earns_its_place", a.earns},
             {"adequate", a.adequate},
+            {"adequacy", thresholds::ruling_json(a.ruling)},
+            {"evidence_needed", thresholds::addition.strong.value},
             {"evidence", finite(a.evidence)},
             {"misfit_refitted_without", a.without.misfit()},
             {"misfit_with", a.with.misfit()},

@@ -6,6 +6,7 @@
 #include "sim/library/library.hpp"
 #include "validate/add/add.hpp"
 #include "validate/diagnose/diagnose.hpp"
+#include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::add {
 namespace {
@@ -39,7 +40,7 @@ void prune(Completion& c, const std::vector<record::Record>& records, const AddO
     const auto at = std::ranges::find(controls, effect, &sim::plant::Block::effect);
     if (effect == nullptr || at == controls.end()) continue;
     Removal r = try_without(c.model, static_cast<std::size_t>(at - controls.begin()), records, options);
-    if (r.evidence > 0) continue;
+    if (r.evidence > thresholds::addition.stays) continue;
     c.model = r.model;
     c.removed.push_back(std::move(r));
   }

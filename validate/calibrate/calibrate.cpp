@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/constants.hpp"
 #include "base/in_parallel.hpp"
 #include "validate/calibrate/detail/identify.hpp"
 #include "validate/calibrate/detail/screen.hpp"
@@ -57,7 +58,7 @@ class Run {
     before_ = each_alone(model_.plant, "events with the model as it is");
     search();
     shift_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(free_.size()));
-    if (c_.fit.misfit() <= kClose) {
+    if (c_.fit.misfit() <= thresholds::noise.taken_back) {
       whiten_voltage_noise();
       undo_voltage_noise();
     }
@@ -134,8 +135,8 @@ class Run {
     if (!best->failed.empty())
       throw InputError({"no start can be evaluated", model_.origin, best->failed, "correct the model"});
     c_.starts = static_cast<int>(fits.size());
-    // near means 1 % of the cost, or what one parameter's standard error costs
-    const double near = std::max(1.0, 0.01 * cost(*best));
+    const double near =
+        std::max(thresholds::parameters.agrees_least.value, thresholds::parameters.agrees * cost(*best));
     double values = 0;
     for (const auto& e : seen_) values += e.values();
     for (std::size_t k = 0; k < fits.size(); ++k) {
@@ -148,8 +149,6 @@ class Run {
     c_.converged = best->converged;
     c_.fit = *best;
   }
-
-  static constexpr double kClose = 1.5;  ///< misfit above which something else pulls harder
 
   /// Predicts from sample to sample what noise of the played-in voltage becomes behind the fitted plant; the
   /// fit goes on with the rest.
@@ -259,7 +258,6 @@ class Run {
 
   void fill_parameters(const Eigen::MatrixXd& inverse, const Eigen::VectorXd& unit,
                        const Eigen::VectorXd& widening) {
-    constexpr double kNormal95 = 1.959963985;
     const auto n = inverse.rows();
     c_.correlation.resize(n, n);
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -270,7 +268,7 @@ class Run {
       p.shift = shift_[i];
       p.curvature_error = unit[i] * std::sqrt(inverse(i, i));
       p.fit.error = p.curvature_error * widening[i];
-      const double reach = kNormal95 * p.fit.error;
+      const double reach = constants::normal95 * p.fit.error;
       const bool logarithmic = p.fit.start > 0;
       p.fit.low = std::max(record.low,
                            logarithmic ? p.fit.value * std::exp(-reach / p.fit.value) : p.fit.value - reach);
@@ -293,7 +291,7 @@ class Run {
         candidate.error.push_back(unit[i] * std::sqrt(with(i, i)) * widening[i]);
         auto& p = c_.parameters[static_cast<std::size_t>(i)];
         const double narrowed = std::sqrt(with(i, i) / inverse(i, i));
-        if (narrowed < std::min(0.8, p.narrowed)) {
+        if (narrowed < std::min(thresholds::parameters.narrowed.value, p.narrowed)) {
           p.narrowed = narrowed;
           p.best_candidate = static_cast<int>(c_.candidates.size());
         }
@@ -319,13 +317,12 @@ class Run {
   void judge() {
     if (shift_.squaredNorm() > 0) allow_correction();
     double before = 0, after = 0, values = 0, spare = 0;
-    bool holds = true, held = true;
+    bool held = true;
     for (std::size_t e = 0; e < c_.prepared.size(); ++e) {
       EventScore s = score_event(c_.prepared[e], before_[e], after_[e], !out_[e],
                                  pre_event_samples(c_.prepared), options_.adequate);
       s.limit += allowance_[e];
-      holds = holds && s.adequate();
-      held = held && s.before <= s.limit;
+      held = held && thresholds::within_limit(s.before, s.limit);
       if (s.seen) {
         before += before_[e].chi2;
         after += after_[e].chi2;
@@ -337,7 +334,10 @@ class Run {
     c_.before = before / values;
     c_.after = after / values;
     c_.limit = spare;
-    c_.adequacy = !holds ? Adequacy::structure_poor : held ? Adequacy::adequate : Adequacy::parameters_poor;
+    c_.ruling = thresholds::judged_by_events(c_.events);
+    c_.adequacy = !c_.ruling.adequate ? Adequacy::structure_poor
+                  : held              ? Adequacy::adequate
+                                      : Adequacy::parameters_poor;
     c_.sentence = sentence();
   }
   std::string sentence() const {
@@ -354,7 +354,7 @@ class Run {
     std::ranges::sort(moves, std::greater{});
     std::string most;
     for (std::size_t k = 0; k < moves.size() && k < 3; ++k)
-      if (moves[k].first > 2) most += (most.empty() ? "" : ", ") + moves[k].second;
+      if (moves[k].first > thresholds::parameters.moved) most += (most.empty() ? "" : ", ") + moves[k].second;
     return "The parameters were poor, the structure holds: after calibration nothing but noise is left (" +
            left + ")." + (most.empty() ? "" : " Furthest off, in standard errors: " + most + ".");
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "validate/fit/fit.hpp"
+#include "validate/thresholds/adequacy.hpp"
 
 namespace swingbank::validate::calibrate {
 
@@ -17,14 +18,15 @@ struct GivenStart {
 };
 
 struct CalibrateOptions {
-  double spread = 0.2;  ///< relative uncertainty believed of the parameters
-  int draws = 24;       ///< parameter sets tried as starts
-  int starts = 2;       ///< how many of these are refined beside the model's own values
+  double spread = thresholds::parameters.spread;  ///< relative uncertainty believed of the parameters
+  int draws = 24;                                 ///< parameter sets tried as starts
+  int starts = 2;  ///< how many of these are refined beside the model's own values
   std::uint64_t seed = 1;
   std::vector<std::string> held_out;  ///< record names (or their numbers, from 1) left out of the fit
   std::vector<std::string> fixed;     ///< "GENROU.Xl": stays as it is
   std::vector<GivenStart> given;      ///< starts beside the model's own values and those drawn
-  double adequate = 1.12;  ///< chi2 per value that interpolation and the played-in voltage may leave
+  double adequate =
+      thresholds::adequacy.misfit;  ///< chi2 per value that interpolation and the played-in voltage may leave
   event::FitEventOptions events = {};
   /// Called with what is done, done and total; may be empty.
   std::function<void(const std::string& what, int done, int total)> progress = {};
@@ -46,7 +48,7 @@ struct EventScore {
   double limit = 0;              ///< limit of chi2 per value; above it, more than noise is left
   double colour = 0;             ///< correlation of neighbouring samples of the pre-event residual
   std::vector<ChannelScore> channels;
-  [[nodiscard]] bool adequate() const { return after <= limit; }
+  [[nodiscard]] bool adequate() const { return thresholds::within_limit(after, limit); }
 };
 
 /// Parameters that move together without the records noticing.
@@ -90,6 +92,7 @@ struct StartScore {
 struct Calibration {
   plant::PlantModel model;  ///< with the fitted values
   Adequacy adequacy = Adequacy::adequate;
+  thresholds::Ruling ruling;  ///< what decided whether the structure holds
   std::string sentence;
   std::vector<CalibratedParameter> parameters;
   Eigen::MatrixXd correlation;

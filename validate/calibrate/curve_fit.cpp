@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/constants.hpp"
 #include "validate/playin/can_run.hpp"
 
 namespace swingbank::validate::calibrate {
@@ -176,7 +177,6 @@ class Run {
     }
     const Eigen::MatrixXd covariance =
         inverse(curvature) * squares / std::max(1, values - static_cast<int>(n));
-    constexpr double kNormal95 = 1.959963985;
     for (std::size_t i = 0; i < free_.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i);
       const auto& record = fit::parameter_record(fit_.model.plant, free_[i].block, free_[i].index);
@@ -188,8 +188,8 @@ class Run {
       p.start = setting_.start[i];
       p.value = p.start * z_[i];
       p.error = std::abs(p.start) * std::sqrt(covariance(at, at));
-      p.low = p.value - kNormal95 * p.error;
-      p.high = p.value + kNormal95 * p.error;
+      p.low = p.value - constants::normal95 * p.error;
+      p.high = p.value + constants::normal95 * p.error;
       const double edge = 1e-6 * std::abs(p.start);
       p.at_bound = p.value <= record.low + edge || p.value >= record.high - edge;
       fit_.parameters.push_back(p);
@@ -198,13 +198,11 @@ class Run {
   void judge(const std::vector<fit::EventFit>& before) {
     double chi2[2] = {0, 0}, squares[2] = {0, 0};
     int values = 0;
-    fit_.adequate = true;
     for (std::size_t e = 0; e < events_.size(); ++e) {
       const fit::EventFit after = played(fit_.model.plant, events_[e]);
       fit_.events.push_back(
           score_event(events_[e], before[e], after, !out_[e], pre_event_samples(events_), options_.adequate));
       const EventScore& score = fit_.events.back();
-      fit_.adequate = fit_.adequate && score.adequate();
       if (out_[e]) continue;
       fit_.limit = std::max(fit_.limit, score.limit);
       chi2[0] += before[e].chi2;
@@ -216,6 +214,7 @@ class Run {
         squares[1] += samples * std::pow(c.rms_after / c.scale, 2);
       }
     }
+    fit_.adequate = thresholds::judged_by_events(fit_.events).adequate;
     fit_.before = chi2[0] / values;
     fit_.after = chi2[1] / values;
     fit_.rms_before = std::sqrt(squares[0] / values);

@@ -17,7 +17,7 @@ struct CurveFitOptions {
   std::vector<std::string> fixed;      ///< "GENROU.Xl": stays as it is
   event::FitEventOptions events = {};  ///< measured_states is not used: P and Q are fitted
   int iterations = 200;
-  double adequate = 1.12;  ///< as CalibrateOptions::adequate
+  double adequate = thresholds::adequacy.misfit;  ///< as CalibrateOptions::adequate
 };
 
 struct CurveFit {

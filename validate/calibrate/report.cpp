@@ -7,6 +7,8 @@
 #include <cmath>
 #include <ctime>
 
+#include "validate/thresholds/list.hpp"
+
 namespace swingbank::validate::calibrate {
 namespace {
 
@@ -23,25 +25,26 @@ json finite(double value) { return std::isfinite(value) ? json(value) : json(nul
 
 std::string percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
 
-/// Moved by more than 2.5 times what its spread believes: the belief pulls it back, and others with it.
+/// Moved far beyond what its spread believes: the belief pulls it back, and others with it.
 bool strained(const fit::FittedParameter& p) {
   const bool logarithmic = p.start > 0 && p.value > 0;
   const double moved = logarithmic ? std::abs(std::log(p.value / p.start)) : 0.0;
-  return p.where.spread > 0 && moved > 2.5 * p.where.spread;
+  return p.where.spread > 0 && moved > thresholds::parameters.beyond_belief * p.where.spread;
 }
 
 std::string notes(const Calibration& c, std::size_t i) {
   const auto& p = c.parameters[i];
   std::string text = p.fit.at_bound ? "at its bound" : "";
   if (strained(p.fit)) text += std::string(text.empty() ? "" : "; ") + "further off than --spread believes";
-  if (p.fit.decided < 0.5) text += std::string(text.empty() ? "" : "; ") + "not identified";
+  if (p.fit.decided < thresholds::parameters.identified)
+    text += std::string(text.empty() ? "" : "; ") + "not identified";
   return text;
 }
 
 std::string identify_text(const Calibration& c) {
   std::string text;
   for (const auto& p : c.parameters) {
-    if (p.fit.decided >= 0.5) continue;
+    if (p.fit.decided >= thresholds::parameters.identified) continue;
     text += fmt::format("  {}: ", name_of(p.fit));
     text += p.best_candidate < 0
                 ? std::string("none of the events tried would narrow it by a fifth\n")
@@ -165,8 +168,8 @@ std::string aligned(const report::Table& table) {
 }
 
 std::string terminal_report(const Calibration& c) {
-  std::string text =
-      c.sentence + "\n\n" + aligned(event_table(c.events)) + "\n" + aligned(parameter_table(c));
+  std::string text = c.sentence + "\n" + thresholds::ruling_text(c.ruling) + "\n\n" +
+                     aligned(event_table(c.events)) + "\n" + aligned(parameter_table(c));
   text += fmt::format("\n{} of {} starts came to this optimum{}.\n", c.agreeing, c.starts,
                       c.converged ? "" : "; the search had not ended when its iterations did");
   if (c.started.size() > 1) text += starts_text(c);
@@ -212,6 +215,7 @@ json calibration_json(const Calibration& c) {
             {"model", c.model.origin},
             {"model_xxh64", fmt::format("{:016x}", c.model.hash)},
             {"verdict", adequacy_name(c.adequacy)},
+            {"adequacy", thresholds::ruling_json(c.ruling)},
             {"sentence", c.sentence},
             {"misfit_before", c.before},
             {"misfit_after", c.after},

@@ -10,8 +10,7 @@
 namespace swingbank::validate::calibrate {
 namespace {
 
-constexpr double kOneInThousand = 3.09;  ///< quantile of the normal distribution, one-sided
-constexpr int kLags = 10;                ///< samples over which noise may be coloured
+constexpr int kLags = 10;  ///< samples over which noise may be coloured
 
 /// Correlations of the whitened residual before the event at lags 1..kLags, its channels pooled.
 std::vector<double> correlations(const event::FitEvent& event, const fit::EventFit& fitted) {
@@ -54,7 +53,7 @@ double misfit_limit(const event::FitEvent& event, const fit::EventFit& fitted, i
   const double samples = 2 * spread / event.values();
   const double estimate =
       2 * spread / (static_cast<double>(event.channels.size()) * std::max(1, pre_event - 1));
-  return std::max(least, 1 + kOneInThousand * std::sqrt(samples + estimate));
+  return thresholds::event_limit(std::sqrt(samples + estimate), least);
 }
 
 int pre_event_samples(const std::vector<event::FitEvent>& events) {

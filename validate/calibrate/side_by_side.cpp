@@ -8,6 +8,7 @@
 #include <ctime>
 #include <limits>
 
+#include "base/constants.hpp"
 #include "base/durable.hpp"
 #include "base/in_parallel.hpp"
 #include "validate/calibrate/report.hpp"
@@ -151,12 +152,11 @@ Way way_of(const CurveFit& f, const Calibration& c) {
 }
 
 Way way_of(const NetworkEstimate& estimate, const sim::plant::Plant& plant, const Calibration& c) {
-  constexpr double kNormal95 = 1.959963985;
   Way way{"network", {}, try_plant(plant, c)};
   for (const auto& p : estimate.parameters)
     if (p.learnt())
-      way.values.push_back(
-          {p.full(), p.unit, p.value, p.value - kNormal95 * p.spread, p.value + kNormal95 * p.spread});
+      way.values.push_back({p.full(), p.unit, p.value, p.value - constants::normal95 * p.spread,
+                            p.value + constants::normal95 * p.spread});
   return way;
 }
 

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/constants.hpp"
 #include "validate/check/detail/jumps.hpp"
 #include "validate/check/detail/mistakes.hpp"
 #include "validate/check/signals.hpp"
@@ -15,8 +16,6 @@
 
 namespace swingbank::validate::check {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 bool within(double x, double low, double high) { return x >= low && x <= high; }
 /// Is x near target, to a share of it?
@@ -144,7 +143,7 @@ class Check {
     const double v = signals_.V.level, theta = signals_.theta_level;
     if (within(v, 0.7, 1.3)) return;
     const std::string what = fmt::format("V = {:.4g} pu before the event", v);
-    if (within(theta, 0.85, 1.15) || within(theta / kDegree, 0.85, 1.15))
+    if (within(theta, 0.85, 1.15) || within(theta / constants::degree, 0.85, 1.15))
       refuse("swapped_channels", what + fmt::format(" and theta = {:.4g} rad", theta),
              "the angle looks like a voltage in pu", "exchange the columns of V and theta");
     else if (r_.base.kv > 0 && (near(v, r_.base.kv, 0.25) || near(v, 1e3 * r_.base.kv, 0.25)))
@@ -190,7 +189,7 @@ class Check {
         refuse("frequency_unit", what, "a plant runs near nominal frequency",
                "check the column of f and its unit");
     }
-    const double hz = signals_.angle_rate / (2 * std::numbers::pi);
+    const double hz = signals_.angle_rate / constants::turn;
     if (std::abs(hz) < 2) return;
     const bool ten = near(std::abs(hz), 10, 0.1);
     refuse(
@@ -224,7 +223,7 @@ class Check {
 
   void angle() {
     const char* const name_deg = "name the column theta_deg";
-    if (signals_.wraps_of_360 || std::abs(signals_.first_angle) > 2.1 * std::numbers::pi)
+    if (signals_.wraps_of_360 || std::abs(signals_.first_angle) > 2.1 * constants::pi)
       refuse("angle_unit", fmt::format("an angle of {:.4g} rad", signals_.first_angle),
              "angles in radians stay within a turn: these are degrees taken as radians", name_deg);
     // A frequency or speed in a wrong unit says nothing about the angle.
@@ -237,7 +236,7 @@ class Check {
       refuse("angle_unit",
              fmt::format("an angle that turns {:.0f} times slower than the frequency says", 1 / ratio),
              "radians were taken as degrees", "name the column theta_rad");
-    else if (signals_.fast_angle > 2 * std::numbers::pi * 4)
+    else if (signals_.fast_angle > constants::turn * 4)
       refuse("angle_unit", fmt::format("an angle that turns by {:.3g} rad/s", signals_.fast_angle),
              "no machine swings so fast; degrees taken as radians do", name_deg);
   }

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <span>
 
+#include "base/constants.hpp"
 #include "validate/check/detail/jumps.hpp"
 #include "validate/playin/instants.hpp"
 
@@ -15,7 +16,7 @@ namespace {
 
 /// Gaussian noise of this standard deviation leaves second differences with this median magnitude: 0.6745
 /// times sqrt(1 + 4 + 1).
-constexpr double kSecondDifference = 0.6745 * 2.449489742783178;
+constexpr double kMedianSecondDifference = 0.6745 * 2.449489742783178;
 
 /// Straight line through values at 0, 1, 2 …
 struct Line {
@@ -45,7 +46,7 @@ void find_noise(const std::vector<double>& y, double rate, SignalFacts& facts) {
   double quietest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k + width <= y.size(); k += std::max<std::size_t>(width / 2, 1))
     quietest = std::min(quietest, fit_line(std::span(y).subspan(k, width)).spread);
-  facts.white = median_of(std::move(second)) / kSecondDifference;
+  facts.white = median_of(std::move(second)) / kMedianSecondDifference;
   facts.quietest = quietest;
   facts.noise = std::max(facts.white, quietest);
 }
@@ -58,7 +59,7 @@ double median_in(std::span<const double> y) { return median_of(std::vector<doubl
 /// The first sample by which the frequency, as the angle turns over half a second, has changed by more than
 /// 20 mHz and the noise: what a slow event shows before anything else. Size if there is none.
 std::size_t turns_faster(const record::Record& r) {
-  constexpr double kSpan = 0.5, kLeast = 2 * std::numbers::pi * 0.02;  // s, rad/s
+  constexpr double kSpan = 0.5, kLeastDrift = constants::turn * 0.02;  // s, rad/s
   const auto m = static_cast<std::size_t>(kSpan * r.rate());
   const std::size_t n = r.theta.size();
   if (m < 1 || n < m + 20) return n;
@@ -66,7 +67,7 @@ std::size_t turns_faster(const record::Record& r) {
   for (std::size_t k = 0; k + m < n; ++k) turned[k] = r.theta[k + m] - r.theta[k];
   SignalFacts noise;
   find_noise(r.theta, r.rate(), noise);
-  const double reach = std::max(6 * 1.1 * std::numbers::sqrt2 * noise.white, kLeast * kSpan);
+  const double reach = std::max(6 * 1.1 * std::numbers::sqrt2 * noise.white, kLeastDrift * kSpan);
   const std::size_t k =
       playin::leaves(turned, {.level = median_in(std::span(turned).first(10)), .reach = reach});
   return k < turned.size() ? k + m : n;
@@ -150,7 +151,7 @@ double angle_per_frequency(const record::Record& r, const std::vector<double>& t
   const std::vector<double>& f = r.f.empty() ? r.speed : r.f;
   if (f.size() != theta.size() || f.size() < 40) return 0;
   std::vector<double> rate = smooth_steps(theta), mid;
-  for (double& v : rate) v /= r.step() * 2 * std::numbers::pi * r.base.frequency;
+  for (double& v : rate) v /= r.step() * constants::turn * r.base.frequency;
   // Jumps of the angle and its turns are no rates: leave the largest out.
   std::vector<double> size(rate.size());
   std::ranges::transform(rate, size.begin(), [](double v) { return std::abs(v); });

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "base/constants.hpp"
 #include "validate/compare/detail/fitted.hpp"
 #include "validate/compare/error_map_table.hpp"
 
@@ -183,7 +183,7 @@ void explain(EventComparison& e, bool tried, const std::string& failed) {
     e.notes.push_back(
         fmt::format("Before the event the angle turns by {:.3g} rad/s (frequency {:+.2f} mHz off nominal): "
                     "the model starts in equilibrium in that frame.",
-                    e.playback.start.drift, 1e3 * e.playback.start.drift / (2 * 3.14159265358979323846)));
+                    e.playback.start.drift, 1e3 * e.playback.start.drift / constants::turn));
   if (!e.record.ignored.empty()) {
     std::string all;
     for (const auto& name : e.record.ignored) all += (all.empty() ? "" : ", ") + name;
@@ -230,7 +230,7 @@ std::vector<double> frequency_of(const std::vector<double>& t, const std::vector
   std::vector<double> f;
   for (std::size_t k = 0; k < t.size(); ++k) {
     const std::size_t a = k == 0 ? 0 : k - 1, b = std::min(k + 1, t.size() - 1);
-    f.push_back((theta[b] - theta[a]) / (t[b] - t[a]) / (2 * std::numbers::pi * nominal));
+    f.push_back((theta[b] - theta[a]) / (t[b] - t[a]) / (constants::turn * nominal));
   }
   return f;
 }
@@ -322,7 +322,7 @@ Adequacy judge(std::vector<EventComparison>& events) {
   for (auto& e : events)
     for (auto& c : e.channels)
       if (c.judged) maps.push_back(&c.map);
-  set_bounds(maps, kFalseAlarm);
+  set_bounds(maps, thresholds::adequacy.false_alarm);
   Adequacy a;
   const NamedCell* worst = nullptr;
   const auto cells = all_cells(events);
@@ -332,12 +332,14 @@ Adequacy judge(std::vector<EventComparison>& events) {
     if (!worst || named.cell->in_noise / named.cell->bound > worst->cell->in_noise / worst->cell->bound)
       worst = &named;
   }
-  a.adequate = a.exceeding == 0;
+  a.ruling = thresholds::judged_by_cells(a.exceeding, a.cells);
+  a.adequate = a.ruling.adequate;
   a.sentence =
       a.adequate
           ? fmt::format("Adequate: each of {} cells is within what noise alone allows", a.cells)
           : fmt::format("Not adequate: {} of {} cells exceed what noise alone allows", a.exceeding, a.cells);
-  a.sentence += fmt::format(" (with probability {:g} % for all of them together).", 100 * (1 - kFalseAlarm));
+  a.sentence += fmt::format(" (with probability {:g} % for all of them together).",
+                            100 * (1 - thresholds::adequacy.false_alarm));
   if (worst)
     a.sentence +=
         fmt::format(" {}: {} {} of {}, RMS {:.3g} {}, {} noise where {} is allowed.",

@@ -9,6 +9,7 @@
 #include "validate/plant/plant_model.hpp"
 #include "validate/playin/play_in.hpp"
 #include "validate/record/record.hpp"
+#include "validate/thresholds/adequacy.hpp"
 
 namespace swingbank::validate::compare {
 
@@ -100,18 +101,16 @@ std::vector<Window> event_windows(const record::Record& record,
 EventComparison compare_event(const plant::PlantModel& model, record::Record record,
                               const CompareOptions& options = {});
 
-/// Noise alone exceeds any of the judged cells of an adequate model with this probability.
-constexpr double kFalseAlarm = 0.001;
-
 /// Is nothing but noise left?
 struct Adequacy {
   bool adequate = false;
   int cells = 0, exceeding = 0;  ///< of all maps, the whole records included
   std::string sentence;          ///< verdict, criterion and the cell that is furthest off
+  thresholds::Ruling ruling;     ///< Criterion::cells
 };
 /// Sets the bounds of all maps and judges by them: a model is adequate if every cell of every map, every
 /// window over all frequencies and every channel's whole record stays within what noise allows, with
-/// probability 1 - kFalseAlarm for all of them together.
+/// probability 1 - adequacy.false_alarm for all of them together.
 Adequacy judge(std::vector<EventComparison>& events);
 
 }  // namespace swingbank::validate::compare

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <numbers>
 #include <numeric>
 #include <unsupported/Eigen/FFT>
+
+#include "base/constants.hpp"
 
 namespace swingbank::validate::compare {
 namespace {
@@ -54,7 +55,7 @@ class Cosines {
  public:
   explicit Cosines(std::size_t n) : n_(n), table_(4 * n) {
     for (std::size_t i = 0; i < 4 * n; ++i)
-      table_[i] = std::cos(std::numbers::pi * static_cast<double>(i) / (2.0 * static_cast<double>(n)));
+      table_[i] = std::cos(constants::pi * static_cast<double>(i) / (2.0 * static_cast<double>(n)));
   }
   /// Every mode's coefficient by the discrete cosine transform, which is a Fourier transform of the samples
   /// in the order even ones up, odd ones down (Makhoul 1980).
@@ -174,9 +175,9 @@ NoiseModel estimate_noise(std::span<const double> quiet, double floor) {
   if (r[0] > floor * floor) a = autoregression(r, n);
   std::vector<double>& c = noise.covariance;
   c = {r[0]};
-  constexpr std::size_t kLongest =
+  constexpr std::size_t kLongestCovariance =
       400;  // samples; the noise of a slowly filtered channel is forgotten by then
-  while (!a.empty() && c.size() < kLongest) {
+  while (!a.empty() && c.size() < kLongestCovariance) {
     const std::size_t lag = c.size();
     double next = 0;
     if (lag <= a.size())

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "validate/compare/error_map_table.hpp"
+#include "validate/thresholds/list.hpp"
 
 namespace swingbank::validate::compare {
 namespace {
@@ -140,7 +141,7 @@ std::string terminal_report(const plant::PlantModel& model, const std::vector<Ev
     out += fmt::format("\n{}: switching at {}\n", e.record.name, describe_instants(e));
     for (const auto& note : e.notes) out += "  note: " + note + "\n";
   }
-  return out + "\n" + adequacy.sentence + "\n";
+  return out + "\n" + adequacy.sentence + "\n" + thresholds::ruling_text(adequacy.ruling) + "\n";
 }
 
 std::string json_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
@@ -148,9 +149,10 @@ std::string json_report(const plant::PlantModel& model, const std::vector<EventC
   nlohmann::json j = {{"format", "swingbank-compare-2"},
                       {"adequate", adequacy.adequate},
                       {"verdict", adequacy.sentence},
+                      {"adequacy", thresholds::ruling_json(adequacy.ruling)},
                       {"cells", adequacy.cells},
                       {"cells_exceeding", adequacy.exceeding},
-                      {"false_alarm_probability", kFalseAlarm},
+                      {"false_alarm_probability", thresholds::adequacy.false_alarm.value},
                       {"model",
                        {{"name", model.name},
                         {"file", model.origin},

@@ -17,20 +17,10 @@
 namespace swingbank::validate::diagnose {
 namespace {
 
-/// A long fit may add this much evidence to a short one. A hypothesis that lies further behind the best is
-/// not judged.
-constexpr double kWorthJudging = 200;
 /// So many hypotheses are judged where none holds.
 constexpr int kAtLeast = 3;
-/// A second effect needs this much evidence and this fall of chi2, because what the first effect or the
-/// instruments leave unexplained looks like a second one (60 in a development case).
-constexpr double kSecond = 80;
-/// A rival is near the best one from this share of its evidence.
-constexpr double kNear = 0.2;
-/// The model alone is fitted once more from the kWaysOut leading extensions. The better fit counts if it
-/// gains kEscape of the first one's evidence, and this may happen kBases times.
+/// The model alone is fitted once more from the kWaysOut leading extensions, kBases times at most.
 constexpr std::size_t kWaysOut = 2;
-constexpr double kEscape = 0.5;
 constexpr int kBases = 2;
 
 /// Steps of the fits that go on with the noise measured again.
@@ -94,7 +84,7 @@ class Diagnoser {
   /// Whether the model alone fits much better from where its leading extensions ended. Then these were ways
   /// out of a poor minimum. `from` gets the better fit's values.
   bool better_base(fit::FitOptions& from) const {
-    if (result_.ranked.empty() || result_.ranked.front().gain < hypothesis::kEvidence) return false;
+    if (result_.ranked.empty() || result_.ranked.front().gain < thresholds::evidence.accepted) return false;
     hypothesis::Judgement base;
     base.hypothesis.plant = model_.plant;
     base.hypothesis.conventions = model_.conventions;
@@ -102,7 +92,8 @@ class Diagnoser {
     for (std::size_t k = 0; k < std::min<std::size_t>(kWaysOut, result_.ranked.size()); ++k)
       if (result_.ranked[k].fitted) hypothesis::try_from(model_stage(), result_.ranked[k].fit, base);
     from = fit::continued({}, base.fit, fit::free_parameters(model_.plant, options_.spread));
-    return fit::penalised(result_.base) - fit::penalised(base.fit) > kEscape * result_.ranked.front().gain;
+    return fit::penalised(result_.base) - fit::penalised(base.fit) >
+           thresholds::evidence.escape * result_.ranked.front().gain;
   }
   /// Where no addition leaves only noise, an effect that is there may be of another kind.
   void try_replacements() {
@@ -117,9 +108,9 @@ class Diagnoser {
   /// A base that fits badly hides the noise. The noise is then measured through the leading extension, and
   /// all fits go on with it.
   void measure_noise_again() {
-    if (result_.ranked.empty() || result_.base.misfit() < fit::kClose) return;
+    if (result_.ranked.empty() || result_.base.misfit() < thresholds::noise.measurable) return;
     const hypothesis::Judgement& best = result_.ranked.front();
-    if (!best.fitted || best.fit.misfit() >= fit::kClose) return;
+    if (!best.fitted || best.fit.misfit() >= thresholds::noise.measurable) return;
     fit::measure_noise_through(best.fit, best.hypothesis.conventions, result_.events);
     const auto go_on = [&](const sim::plant::Plant& plant, const sim::Conventions& conventions,
                            const std::vector<fit::FreeParameter>& free, fit::Fit& f) {
@@ -140,7 +131,7 @@ class Diagnoser {
   }
   void infer_inputs() {
     fit::FitOptions from;  // parameters that are bent far out of shape are no start
-    if (result_.base.misfit() < fit::kClose)
+    if (result_.base.misfit() < thresholds::noise.measurable)
       from = fit::continued({}, result_.base, fit::free_parameters(model_.plant, options_.spread));
     const auto infer = [&](std::size_t i) {
       hypothesis::MissingInput& m = i == 0 ? result_.torque : result_.field;
@@ -217,7 +208,9 @@ class Diagnoser {
     });
     std::erase_if(rivals, [](const hypothesis::Judgement& j) { return !j.fit.failed.empty(); });
     std::ranges::stable_sort(rivals, std::greater<>(), &hypothesis::Judgement::gain);
-    std::erase_if(rivals, [&](const hypothesis::Judgement& j) { return j.gain < pair.gain - kWorthJudging; });
+    std::erase_if(rivals, [&](const hypothesis::Judgement& j) {
+      return j.gain < pair.gain - thresholds::evidence.within_reach;
+    });
     each(rivals, "unseen events", [&](hypothesis::Judgement& j) { judge_all(j); });
     return rivals;
   }
@@ -228,9 +221,11 @@ class Diagnoser {
     auto pairs = hypothesis::try_hypotheses(then, hypothesis::all_hypotheses(then.plant, then.conventions),
                                             options_.progress);
     // a rival of the best hypothesis may only have started badly
-    const int slot = pairs.empty() || pairs.front().gain < kSecond ? -1 : pairs.front().hypothesis.slot;
+    const int slot = pairs.empty() || pairs.front().gain < thresholds::evidence.second
+                         ? -1
+                         : pairs.front().hypothesis.slot;
     std::erase_if(pairs, [&](const hypothesis::Judgement& j) {
-      return j.gain < kSecond && (slot < 0 || j.hypothesis.slot != slot || !j.fitted);
+      return j.gain < thresholds::evidence.second && (slot < 0 || j.hypothesis.slot != slot || !j.fitted);
     });
     for (auto& pair : pairs) pair.gain += first.gain;
     return pairs;
@@ -265,8 +260,8 @@ class Diagnoser {
   /// Whether a pair explains what no single effect explains. A rival that was not taken may fit as well.
   [[nodiscard]] bool needed(const hypothesis::Judgement& pair) const {
     return std::ranges::none_of(result_.ranked, [&](const hypothesis::Judgement& single) {
-      return single.accepted &&
-             (single.fit.chi2 - pair.fit.chi2 < kSecond || pair.gain - single.gain < kSecond);
+      return single.accepted && (single.fit.chi2 - pair.fit.chi2 < thresholds::evidence.second ||
+                                 pair.gain - single.gain < thresholds::evidence.second);
     });
   }
   /// Judges the hypotheses that might still be as good as the best one, and puts accepted ones first. Where
@@ -278,7 +273,8 @@ class Diagnoser {
     int leading = 0;
     for (double best = tried.front().gain;;) {  // judging may take away some of the first ones' evidence
       const int judged = leading;
-      while (leading < most && tried[static_cast<std::size_t>(leading)].gain > best - kWorthJudging)
+      while (leading < most &&
+             tried[static_cast<std::size_t>(leading)].gain > best - thresholds::evidence.within_reach)
         ++leading;
       if (leading == judged) break;
       judge_some(tried, judged, leading);
@@ -318,7 +314,7 @@ class Diagnoser {
   void give_rivals_a_chance(std::vector<hypothesis::Judgement>& tried) const {
     const int slot = tried.front().hypothesis.slot;
     if (slot < 0) return;
-    const double near = kNear * tried.front().gain;
+    const double near = thresholds::evidence.near * tried.front().gain;
     const auto rivals =
         std::stable_partition(tried.begin(), tried.end(), [&](const hypothesis::Judgement& j) {
           return j.hypothesis.slot == slot && j.gain > near && j.fitted;
@@ -345,7 +341,7 @@ class Diagnoser {
   }
 
   [[nodiscard]] hypothesis::Trial trial() const {
-    return {result_.events, options_.spread, options_.adequate, hypothesis::kEvidence,
+    return {result_.events, options_.spread, options_.adequate, thresholds::evidence.accepted,
             passed_ ? &*passed_ : nullptr};
   }
 

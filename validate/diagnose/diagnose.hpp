@@ -9,6 +9,7 @@
 #include "validate/hypothesis/judge.hpp"
 #include "validate/hypothesis/missing_input.hpp"
 #include "validate/laws/search.hpp"
+#include "validate/thresholds/adequacy.hpp"
 
 namespace swingbank::validate::diagnose {
 
@@ -23,6 +24,7 @@ std::string_view verdict_name(Verdict verdict);
 struct Diagnosis {
   Verdict verdict = Verdict::adequate;
   hypothesis::Side side = hypothesis::Side::none;
+  thresholds::Ruling ruling;            ///< what decided whether the model is adequate
   std::string sentence;                 ///< the verdict as a grid engineer reads it
   std::vector<std::string> effects;     ///< names of one effect, or of several that act together
   std::vector<std::string> equivalent;  ///< names that explain the records as well
@@ -38,9 +40,9 @@ struct Diagnosis {
 };
 
 struct DiagnoseOptions {
-  double spread = 0.2;     ///< relative uncertainty believed of the model's parameters
-  double adequate = 1.12;  ///< chi2 per value up to which nothing but noise is left
-  int threads = 0;         ///< 0: as many as there are cores
+  double spread = thresholds::parameters.spread;  ///< relative uncertainty believed of the model's parameters
+  double adequate = thresholds::adequacy.misfit;  ///< chi2 per value up to which nothing but noise is left
+  int threads = 0;                                ///< 0: as many as there are cores
   bool measured_states = true;
   int leading = 9;  ///< hypotheses at most that are judged on events left out
   int firsts = 2;   ///< where no hypothesis holds alone, a second one is tried beside so many, in turn

@@ -7,16 +7,17 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "base/constants.hpp"
 #include "validate/compare/error_map_table.hpp"
 #include "validate/diagnose/detail/false_positives.hpp"
 #include "validate/diagnose/detail/report_laws.hpp"
 #include "validate/fit/voltage_doubt.hpp"
+#include "validate/thresholds/list.hpp"
 
 namespace swingbank::validate::diagnose {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kBand99 = 2.5758;  // standard deviations that hold 99 % of normal numbers
 
 nlohmann::json number(double v) { return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(nullptr); }
 
@@ -78,7 +79,7 @@ ReportChannel channel_of(const Diagnosis& d, const fit::Fit* after, std::size_t 
                              compare::ErrorMap& map, double& inside) {
     model = fit.events[e].model[c];
     const auto residual = difference(model, r.measured);
-    inside = share_inside(event, residual, kBand99 * r.noise);
+    inside = share_inside(event, residual, constants::normal99 * r.noise);
     const auto shapes = shapes_of(doubt, c);
     map = compare::error_map(event.record.t, residual, windows, noise,
                              {.quiet = static_cast<int>(quiet), .shapes = &shapes});
@@ -92,7 +93,7 @@ void bound(std::vector<ReportEvent>& events, compare::ErrorMap ReportChannel::*w
   std::vector<compare::ErrorMap*> maps;
   for (auto& e : events)
     for (auto& c : e.channels) maps.push_back(&(c.*which));
-  compare::set_bounds(maps, compare::kFalseAlarm);
+  compare::set_bounds(maps, thresholds::adequacy.false_alarm);
 }
 
 nlohmann::json parameters_json(const fit::Fit& fit) {
@@ -214,6 +215,7 @@ nlohmann::json diagnosis_json(const plant::PlantModel& model, const Diagnosis& d
       {"format", "swingbank-diagnosis-1"},
       {"verdict", verdict_name(d.verdict)},
       {"sentence", d.sentence},
+      {"adequacy", thresholds::ruling_json(d.ruling)},
       {"false_positives", {{"given_an_effect", kFalsePositives.hits}, {"nothing_hidden", kFalsePositives.n}}},
       {"side", hypothesis::side_name(d.side)},
       {"effects", d.effects},

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/constants.hpp"
 #include "validate/compare/error_map_table.hpp"
 #include "validate/diagnose/detail/false_positives.hpp"
 #include "validate/diagnose/detail/report_laws.hpp"
@@ -16,8 +17,7 @@ namespace {
 constexpr const char* kMeasured = "#8a97a5";
 constexpr const char* kBefore = "#c0392b";
 constexpr const char* kAfter = "#0b5cad";
-constexpr double kBand99 = 2.5758;  // standard deviations that hold 99 % of normal numbers
-constexpr std::size_t kBars = 12;   // hypotheses drawn; the table holds all
+constexpr std::size_t kBars = 12;  // hypotheses drawn; the table holds all
 
 std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
 std::string value_text(double v) { return std::isfinite(v) ? fmt::format("{:.4g}", v) : "–"; }
@@ -99,9 +99,10 @@ class DiagnosisPage {
     if (with_after()) table.header.push_back("with " + figures_.after_name);
     for (const auto& e : figures_.events)
       for (const auto& c : e.channels) {
-        std::vector<report::Cell> row = {e.event->record.name, c.name,
-                                         fmt::format("± {:.3g} {}", kBand99 * c.noise * c.scale, c.unit),
-                                         percent(c.inside_before)};
+        std::vector<report::Cell> row = {
+            e.event->record.name, c.name,
+            fmt::format("± {:.3g} {}", constants::normal99 * c.noise * c.scale, c.unit),
+            percent(c.inside_before)};
         if (with_after()) row.emplace_back(percent(c.inside_after));
         table.rows.push_back(std::move(row));
       }
@@ -156,9 +157,10 @@ class DiagnosisPage {
         "approximation): from {:.0f} it is accepted, below 0 the effect does not pay "
         "for its parameters. "
         "The leading ones were then judged on events left out of the fit.",
-        d_.ranked.size(), hypothesis::kEvidence));
+        d_.ranked.size(), thresholds::evidence.accepted.value));
     const double most = std::max(1.0, d_.ranked.front().gain);
-    report::Bars bars{"Evidence (logarithmic)", "", std::log10(hypothesis::kEvidence), "accepted", {}};
+    report::Bars bars{
+        "Evidence (logarithmic)", "", std::log10(thresholds::evidence.accepted.value), "accepted", {}};
     for (std::size_t i = 0; i < std::min(kBars, d_.ranked.size()); ++i)
       bars.bars.push_back({hypothesis::full_name(d_.ranked[i].hypothesis),
                            std::log10(std::max(1.0, d_.ranked[i].gain)),
@@ -255,7 +257,7 @@ class DiagnosisPage {
                         r.t,
                         {},
                         fault_bands(*e.event)};
-    rest.tolerance = kBand99 * c.noise * c.scale;
+    rest.tolerance = constants::normal99 * c.noise * c.scale;
     rest.series.push_back({"model as it is", kBefore, false, residual(c.before)});
     if (with_after()) {
       overlay.series.push_back({"with " + figures_.after_name, kAfter, false, in_units(c.after)});

@@ -4,11 +4,13 @@
 
 #include "validate/diagnose/detail/false_positives.hpp"
 #include "validate/diagnose/detail/report_laws.hpp"
+#include "validate/report/page.hpp"
+#include "validate/thresholds/list.hpp"
 
 namespace swingbank::validate::diagnose {
 namespace {
 
-constexpr std::size_t kShown = 12;
+constexpr std::size_t kHypothesesShown = 12;
 
 void add_inputs(const Diagnosis& d, std::string& text) {
   text += fmt::format(
@@ -20,7 +22,7 @@ void add_inputs(const Diagnosis& d, std::string& text) {
 void add_hypotheses(const Diagnosis& d, std::string& text) {
   text += fmt::format("\n{:<18} {:<12} {:>12} {:>10} {:>22}  {}\n", "hypothesis", "side", "evidence", "left",
                       "unseen: before, after", "judgement");
-  for (std::size_t i = 0; i < d.ranked.size() && i < kShown; ++i) {
+  for (std::size_t i = 0; i < d.ranked.size() && i < kHypothesesShown; ++i) {
     const hypothesis::Judgement& j = d.ranked[i];
     double before = 0, after = 0;
     for (const auto& h : j.held_out) {
@@ -32,8 +34,8 @@ void add_hypotheses(const Diagnosis& d, std::string& text) {
                         j.held_out.empty() ? "" : fmt::format("{:.2f}, {:.3f}", before, after),
                         j.accepted ? "accepted" : j.why_not);
   }
-  if (d.ranked.size() > kShown)
-    text += fmt::format("and {} more that explain less\n", d.ranked.size() - kShown);
+  if (d.ranked.size() > kHypothesesShown)
+    text += fmt::format("and {} more that explain less\n", d.ranked.size() - kHypothesesShown);
 }
 void add_parameters(const Diagnosis& d, std::string& text) {
   const bool named = !d.ranked.empty() && d.ranked.front().accepted;
@@ -44,19 +46,28 @@ void add_parameters(const Diagnosis& d, std::string& text) {
   for (const auto& p : fit.parameters)
     text += fmt::format("{:<10} {:<10} {:>12.5g} {:>12.5g} {:>26} {:>6}{}\n", p.block, p.name, p.start,
                         p.value, fmt::format("{:.4g} to {:.4g}", p.low, p.high), p.unit,
-                        p.decided < 0.5 ? "  (the records hardly tell)" : "");
+                        p.decided < thresholds::parameters.identified ? "  (the records hardly tell)" : "");
 }
 
 }  // namespace
 
 std::string diagnosis_text(const Diagnosis& d) {
-  std::string text = d.sentence + "\n" + false_positive_note() + "\n";
+  std::string text =
+      d.sentence + "\n" + thresholds::ruling_text(d.ruling) + "\n" + false_positive_note() + "\n";
   add_inputs(d, text);
   add_hypotheses(d, text);
   text += laws_text(d);
   add_parameters(d, text);
   text += fmt::format("\n{} events, {:.1f} s\n", d.events.size(), d.seconds);
   return text;
+}
+
+std::string thresholds_text() {
+  report::Table table{"Thresholds", {"threshold", "value", "unit", "why"}, {}};
+  for (const auto& t : thresholds::all_thresholds())
+    table.rows.push_back(
+        {std::string(t.name), fmt::format("{:g}", t.value), std::string(t.unit), std::string(t.why)});
+  return report::padded(table, table.header.size());
 }
 
 }  // namespace swingbank::validate::diagnose

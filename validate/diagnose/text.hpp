@@ -7,5 +7,7 @@
 namespace swingbank::validate::diagnose {
 
 std::string diagnosis_text(const Diagnosis& diagnosis);
+/// Every threshold of a verdict with value, unit and why.
+std::string thresholds_text();
 
 }  // namespace swingbank::validate::diagnose

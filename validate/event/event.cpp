@@ -98,13 +98,13 @@ record::Record without(const record::Record& record, const std::vector<char>& sm
 
 /// Last sample before V leaves what it was in the first half second. This needs no switching to be found.
 double still_until(const record::Record& r) {
-  constexpr double kFirst = 0.5, kOff = 8;  // [s]; standard deviations
-  const auto n = static_cast<std::size_t>(std::lround(kFirst / r.step()));
+  constexpr double kFirstStretch = 0.5, kOffMean = 8;  // [s]; standard deviations
+  const auto n = static_cast<std::size_t>(std::lround(kFirstStretch / r.step()));
   if (n < 3 || n + 1 >= r.V.size()) return r.t.back();
   double mean = 0, square = 0;
   for (std::size_t k = 0; k < n; ++k) mean += r.V[k] / static_cast<double>(n);
   for (std::size_t k = 0; k < n; ++k) square += std::pow(r.V[k] - mean, 2) / static_cast<double>(n - 1);
-  const double limit = std::max(kOff * std::sqrt(square), kLeastNoise);
+  const double limit = std::max(kOffMean * std::sqrt(square), kLeastNoise);
   const std::size_t k = playin::leaves(r.V, {.level = mean, .reach = limit, .from = n});
   return k < r.V.size() ? r.t[k - 1] : r.t.back();
 }

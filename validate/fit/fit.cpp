@@ -6,16 +6,18 @@
 #include <cmath>
 #include <limits>
 
+#include "base/constants.hpp"
 #include "validate/fit/detail/cost.hpp"
+#include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::fit {
 namespace {
 
 using namespace fitting;
 
-/// A search of a few steps must not end on refused steps, which cost no slopes. So kRefused more steps are
-/// tried where at most kFew are allowed.
-constexpr int kFew = 4, kRefused = 3;
+/// A search of a few steps must not end on refused steps, which cost no slopes. So kRefusedSteps more steps
+/// are tried where at most kFewSteps are allowed.
+constexpr int kFewSteps = 4, kRefusedSteps = 3;
 
 /// Counts the steps taken, and stops the search when they are enough.
 class Steps : public ceres::IterationCallback {
@@ -57,10 +59,10 @@ class Search {
     }
     for (int left = options_.iterations; left > 0;) {
       const double before = discrepancy_ = misfit();
-      const int most = before > kClose ? std::min(left, kRound) : left;
+      const int most = before > thresholds::noise.believed ? std::min(left, kRound) : left;
       fit.converged = solve(most, fit.iterations);
       left = options_.iterations - fit.iterations;
-      if (before <= kClose || misfit() > 0.95 * before) break;
+      if (before <= thresholds::noise.believed || misfit() > 0.95 * before) break;
     }
     fit.plant = moved(setting_, z_.data());
     collect_events(fit);
@@ -69,8 +71,7 @@ class Search {
   }
 
  private:
-  static constexpr double kClose = 1.5;  ///< misfit at which beliefs count as they stand
-  static constexpr int kRound = 4;       ///< iterations between two looks at the misfit
+  static constexpr int kRound = 4;  ///< iterations between two looks at the misfit
 
   /// chi2 per value, at least 1.
   double misfit() const {
@@ -95,7 +96,8 @@ class Search {
     ceres::Solver::Options o;
     Steps steps(iterations);
     o.callbacks.push_back(&steps);
-    o.max_num_iterations = iterations > 0 && iterations <= kFew ? iterations + kRefused : iterations;
+    o.max_num_iterations =
+        iterations > 0 && iterations <= kFewSteps ? iterations + kRefusedSteps : iterations;
     o.function_tolerance = options_.enough;
     o.linear_solver_type =
         setting_.input == InputKind::none ? ceres::DENSE_NORMAL_CHOLESKY : ceres::SPARSE_NORMAL_CHOLESKY;
@@ -225,9 +227,8 @@ class Search {
       p.start = a.start;
       p.value = a.value(z);
       p.error = a.slope(z) * error;
-      constexpr double kNormal95 = 1.959963985;
-      p.low = std::max(a.low, a.value(z - kNormal95 * error));
-      p.high = std::min(a.high, a.value(z + kNormal95 * error));
+      p.low = std::max(a.low, a.value(z - constants::normal95 * error));
+      p.high = std::min(a.high, a.value(z + constants::normal95 * error));
       p.at_bound = z <= a.z(a.low) + 1e-6 || z >= a.z(a.high) - 1e-6;
       p.decided = a.spread() > 0 ? std::clamp(1 - error * error / (a.spread() * a.spread()), 0.0, 1.0) : 1.0;
       fit.parameters.push_back(p);

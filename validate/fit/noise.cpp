@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <unsupported/Eigen/MatrixFunctions>
 
+#include "base/constants.hpp"
 #include "sim/core/noise.hpp"
+#include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::fit {
 namespace {
@@ -63,7 +64,7 @@ constexpr double kLow = 3.0, kHigh = 10.0;  ///< band in which the voltage's noi
 constexpr double kGuess = 2e-3;             ///< V may be off by this share of itself beside a switching
 /// Where V was brought back, the square of kGuess is this many times larger.
 constexpr char kSmeared = 40;
-constexpr double kLeft = 0.01;  ///< at least this share of a channel's variance is its own noise
+constexpr double kLeastOwnNoise = 0.01;  ///< at least this share of a channel's variance is its own noise
 /// Slow noise matters from this share of the variance of white noise.
 constexpr double kMatters = 1e-3;
 
@@ -90,7 +91,7 @@ Eigen::Vector2d moving_in_band(const std::vector<event::FitEvent>& events) {
   for (const event::FitEvent& e : events) {
     const int n = e.start.samples;
     auto V = detrended(e.record.V, n), theta = detrended(e.record.theta, n);
-    const double turn = 2 * std::numbers::pi * e.record.step(), line = 1 / (n * e.record.step());
+    const double turn = constants::turn * e.record.step(), line = 1 / (n * e.record.step());
     for (int m = static_cast<int>(std::ceil(kLow / line)); m * line <= kHigh && 2 * m < n; ++m, ++lines) {
       Complex by_v = 0, by_theta = 0;
       for (int k = 0; k < n; ++k) {
@@ -199,17 +200,17 @@ event::SlowNoise slow_noise(const playin::LinearPlant& plant, const event::FitEv
   const Eigen::MatrixXd white = unit * e.whitening.inverse();
   const Eigen::MatrixXd at_once = unit * through * V * through.transpose() * unit;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> rest(white * white.transpose() - at_once);
-  const Eigen::VectorXd left = rest.eigenvalues().cwiseMax(kLeft);
+  const Eigen::VectorXd left = rest.eigenvalues().cwiseMax(kLeastOwnNoise);
   s.S = scale * (at_once + rest.eigenvectors() * left.asDiagonal() * rest.eigenvectors().transpose()) * scale;
   return s;
 }
 
 event::FitEvent minute_of_noise(const event::FitEvent& like, const Eigen::Vector2d& deviation) {
-  constexpr double kSeconds = 60.0;
+  constexpr double kMinute = 60.0;
   event::FitEvent event = like;
   record::Record& r = event.record;
   const double step = r.step(), first = r.t.front();
-  const auto samples = static_cast<std::size_t>(kSeconds / step);
+  const auto samples = static_cast<std::size_t>(kMinute / step);
   for (auto* channel : {&r.t, &r.V, &r.theta}) channel->resize(samples);
   for (std::size_t k = 0; k < samples; ++k) {
     const auto normal = sim::normal_pair(1, 0, k);
@@ -250,7 +251,7 @@ void remember_noise(const Fit& fit, const sim::Conventions& conventions,
 
 void measure_noise_through(const Fit& fit, const sim::Conventions& conventions,
                            std::vector<event::FitEvent>& events) {
-  if (fit.misfit() < kClose) event::measure_noise(fit.plant, conventions, events);
+  if (fit.misfit() < thresholds::noise.measurable) event::measure_noise(fit.plant, conventions, events);
   sharpen_noise(fit, events);
   remember_noise(fit, conventions, events);
 }

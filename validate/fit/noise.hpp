@@ -45,10 +45,6 @@ event::FitEvent minute_of_noise(const event::FitEvent& like, const Eigen::Vector
 void remember_noise(const Fit& fit, const sim::Conventions& conventions,
                     std::vector<event::FitEvent>& events);
 
-/// The noise can be measured through a structure whose misfit is below this, because its reactances are near
-/// enough.
-constexpr double kClose = 4;
-
 /// Measures the events' noise anew through a fit of whatever structure: its variance where the fit is close,
 /// its size from sample to sample, and its memory.
 void measure_noise_through(const Fit& fit, const sim::Conventions& conventions,

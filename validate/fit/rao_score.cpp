@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "validate/fit/detail/cost.hpp"
+#include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::fit {
 namespace {
@@ -13,9 +14,7 @@ using namespace fitting;
 /// Share of a combination of changes, each of length 1, that counts as one of its own.
 constexpr double kOwn = 0.02;
 /// Share of a change that rounding leaves where the structure could make all of it.
-constexpr double kRounding = 1e-7;
-/// Two runs of one model may differ by this squared norm, because other states make other steps.
-constexpr double kOtherSteps = 4;
+constexpr double kScoreRounding = 1e-7;
 
 /// The residual of one event at the fit, and its slopes.
 struct Slopes {
@@ -107,7 +106,7 @@ ScoreTest::Change ScoreTest::less_shared(Eigen::VectorXd answer) const {
   const Eigen::VectorXd taken = known_.solve(change.shared);
   change.whole = answer.squaredNorm();
   change.square = std::max(0.0, change.whole - change.shared.dot(taken));
-  if (change.square < kRounding * change.whole) change.square = 0;
+  if (change.square < kScoreRounding * change.whole) change.square = 0;
   change.along = answer.dot(residual_) - gradient_.dot(taken);
   change.answer = std::move(answer);
   return change;
@@ -118,7 +117,7 @@ std::optional<ScoreTest::Change> ScoreTest::change_to(const sim::plant::Plant& p
   const auto all = run(plant, conventions, {});
   if (!all) return std::nullopt;
   Change change = less_shared(all->col(0) - residual_);
-  if (change.square < kOtherSteps) change.square = 0;
+  if (change.square < thresholds::search.other_steps) change.square = 0;
   return change;
 }
 

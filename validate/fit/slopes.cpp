@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "validate/fit/detail/states.hpp"
+
 namespace swingbank::validate::fit {
 namespace {
 
 using Kind = playin::Direction::Kind;
-
-/// How far each state of an event is believed to be off, as in the fit.
-constexpr double kStateSpread[] = {0.02, 0.02, 0.02, 2e-4};  // P, Q [pu], angle [rad], speed [pu]
-constexpr Kind kStateKind[] = {Kind::P, Kind::Q, Kind::angle, Kind::speed};
 
 /// Slopes are then accurate to 1e-5 of themselves.
 constexpr event::Playing kExact{.tolerance = 1e-7, .hasty = false};

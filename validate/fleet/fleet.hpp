@@ -4,6 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "validate/diagnose/diagnose.hpp"
+#include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::fleet {
 
@@ -11,8 +12,8 @@ struct FleetPlant {
   std::string name;                  ///< letters, digits, - and _: also the name of its folder
   std::filesystem::path model;       ///< plant file
   std::vector<std::string> records;  ///< as written: files and globs, below `Fleet::folder` where relative
-  double spread = 0.2;               ///< as DiagnoseOptions::spread
-  bool power_only = false;           ///< leave recorded speed, Efd and Ifd aside
+  double spread = thresholds::parameters.spread;  ///< as DiagnoseOptions::spread
+  bool power_only = false;                        ///< leave recorded speed, Efd and Ifd aside
 };
 struct Fleet {
   std::filesystem::path file, folder;

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "validate/compare/error_map_table.hpp"
+#include "validate/thresholds/adequacy.hpp"
 
 namespace swingbank::validate::fleet {
 namespace {
@@ -156,7 +157,7 @@ std::string fleet_html(const Fleet& fleet, const std::vector<FleetRow>& rows) {
 
 int fleet_code(const std::vector<FleetRow>& rows) {
   if (count(rows, {"failed"}) > 0) return 1;
-  return std::ranges::all_of(rows, &FleetRow::adequate) ? 0 : 3;
+  return std::ranges::all_of(rows, &FleetRow::adequate) ? 0 : thresholds::kNotAdequate;
 }
 
 }  // namespace swingbank::validate::fleet

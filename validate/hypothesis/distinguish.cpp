@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "base/constants.hpp"
 
 namespace swingbank::validate::hypothesis {
 namespace {
@@ -32,7 +33,7 @@ bool frequency_stays_off(const std::vector<event::FitEvent>& events) {
   return std::ranges::any_of(events, [](const event::FitEvent& e) {
     const auto& r = e.record;
     const std::size_t last = r.t.size() - 1, from = last - std::min(last, r.t.size() / 5);
-    const double turns = (r.theta[last] - r.theta[from]) / (2 * std::numbers::pi);
+    const double turns = (r.theta[last] - r.theta[from]) / constants::turn;
     return std::abs(turns / (r.t[last] - r.t[from])) > kLasting;
   });
 }

@@ -102,13 +102,13 @@ void try_further(const Stage& stage, const fit::Fit& leader, Judgement& j) {
 }
 
 void try_exchange(const Stage& stage, const Judgement& pair, Judgement& j) {
-  constexpr double kBehind = 10;
   const auto free = free_of(j.hypothesis, stage.spread);
   if (fit::Fit f = fit::fit(j.hypothesis.plant, j.hypothesis.conventions, stage.events, free,
                             fit::continued({}, j.fit, free));
       f.failed.empty())
     j.fit = std::move(f);
-  if (fit::penalised(j.fit) > penalised(pair.fit) + kBehind) try_further(stage, pair.fit, j);
+  if (fit::penalised(j.fit) > penalised(pair.fit) + thresholds::search.exchange_behind)
+    try_further(stage, pair.fit, j);
 }
 
 void try_from(const Stage& stage, const fit::Fit& other, Judgement& j) {

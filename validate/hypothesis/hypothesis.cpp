@@ -18,10 +18,10 @@ namespace {
 
 using sim::Slot;
 
-constexpr std::size_t kDraws = 39;    ///< draws of an effect's parameters, as starts
-constexpr std::size_t kRedraws = 20;  ///< tries for each draw until one is sound, at most
-constexpr double kShortest = 3e-3;    ///< the shortest draw takes this share of the time allowed
-constexpr double kSpread = 1.0;       ///< an added effect's parameters are believed within a factor e
+constexpr std::size_t kDrawnStarts = 39;  ///< draws of an effect's parameters, as starts
+constexpr std::size_t kRedraws = 20;      ///< tries for each draw until one is sound, at most
+constexpr double kShortestDraw = 3e-3;    ///< the shortest draw takes this share of the time allowed
+constexpr double kAddedSpread = 1.0;      ///< an added effect's parameters are believed within a factor e
 
 Side side_of(Slot slot) {
   switch (slot) {
@@ -89,7 +89,7 @@ std::vector<std::vector<double>> draws(const sim::plant::Plant& plant,
   for (std::size_t tries = 0; all.size() < count && tries < kRedraws * count; ++tries) {
     std::map<std::string_view, double> common;
     const double shorter =
-        longest > 0 && within > 0 ? std::pow(kShortest, uniform(random)) * within / longest : 1;
+        longest > 0 && within > 0 ? std::pow(kShortestDraw, uniform(random)) * within / longest : 1;
     std::vector<double> values;
     for (const auto& f : free) {
       const auto& p = fit::parameter_record(plant, f.block, f.index);
@@ -112,7 +112,7 @@ std::vector<std::vector<double>> draws(const sim::plant::Plant& plant,
 void start_near_neutral(Hypothesis& h, int block) {
   const sim::Effect& effect = fit::block_effect(h.plant, block);
   for (std::size_t i = 0; i < effect.parameters.size(); ++i)
-    if (!effect.parameters[i].is_code()) h.free.push_back({block, static_cast<int>(i), kSpread});
+    if (!effect.parameters[i].is_code()) h.free.push_back({block, static_cast<int>(i), kAddedSpread});
   for (const double share : {0.002, -0.002}) {
     std::vector<double> values;
     for (const auto& f : h.free) {
@@ -137,8 +137,8 @@ Hypothesis added_to(const sim::plant::Plant& base, const sim::Conventions& conve
   if (effect.slot == Slot::measurement) {
     start_near_neutral(h, block);
   } else {
-    h.free = fit::free_parameters(h.plant, block, kSpread);
-    h.starts = draws(h.plant, h.free, kDraws, 1);
+    h.free = fit::free_parameters(h.plant, block, kAddedSpread);
+    h.starts = draws(h.plant, h.free, kDrawnStarts, 1);
     h.starts.insert(h.starts.begin(), fit::values_of(h.plant, h.free));
     h.drawn = true;
   }

@@ -7,21 +7,6 @@
 #include <limits>
 
 namespace swingbank::validate::hypothesis {
-namespace {
-
-/// An event in which the effect hardly acts may be predicted worse by this factor, which is the scatter of
-/// the refit itself.
-constexpr double kWorse = 1.02;
-/// An effect may cost an unseen event no more than the larger of kCosts in chi2 and of kCostsShare of its
-/// evidence. An effect that is really missing costs it nothing.
-constexpr double kCosts = 20, kCostsShare = 0.1;
-/// An unseen event is predicted if its cost per value is at most kPredicts, or at most kFalls of what it was.
-constexpr double kPredicts = 1.25, kFalls = 0.1;
-/// A short fit has no errors, so the finished one takes its place unless its criterion is worse by this.
-constexpr double kSame = 0.5;
-
-}  // namespace
-
 std::vector<fit::FreeParameter> free_of(const Hypothesis& h, double spread) {
   std::vector<fit::FreeParameter> free;
   for (const auto& f : fit::free_parameters(h.plant, spread))
@@ -66,11 +51,12 @@ std::vector<HeldOut> hold_out(const Trial& trial, const sim::plant::Plant& plant
 
 std::string objection(const std::vector<HeldOut>& held_out, double evidence, double adequate) {
   for (const HeldOut& h : held_out)
-    if ((h.cost_after > kWorse * h.cost_before && h.cost_after > adequate) ||
-        h.saves() < -std::max(kCosts, kCostsShare * evidence))
+    if ((h.cost_after > thresholds::held_out.worse * h.cost_before && h.cost_after > adequate) ||
+        h.saves() < -std::max(thresholds::held_out.costs.value, thresholds::held_out.costs_share * evidence))
       return fmt::format("does not improve {} when that is not fitted", h.record);
   for (const HeldOut& h : held_out)
-    if (h.cost_after > kPredicts && h.cost_after > kFalls * h.cost_before)
+    if (h.cost_after > thresholds::held_out.predicts &&
+        h.cost_after > thresholds::held_out.falls * h.cost_before)
       return fmt::format("does not predict {} when that is not fitted", h.record);
   return "";
 }
@@ -83,7 +69,7 @@ void judge(const Trial& trial, const fit::Fit& base, const std::vector<HeldOut>&
   o.values = fit::values_of(j.fit.plant, free);
   for (const auto& e : j.fit.events) o.start.push_back(e.state);
   if (fit::Fit f = fit::fit(j.hypothesis.plant, j.hypothesis.conventions, trial.events, free, o);
-      f.failed.empty() && penalised(f) < fit::penalised(j.fit) + kSame)
+      f.failed.empty() && penalised(f) < fit::penalised(j.fit) + thresholds::evidence.same_fit)
     j.fit = std::move(f);
   j.gain = fit::criterion(base) - fit::criterion(j.fit);
   if (trial.passed) j.gain -= std::max(0.0, trial.passed->less_with(j.fit.plant, j.hypothesis.conventions));

@@ -6,6 +6,7 @@
 #include "validate/fit/fit.hpp"
 #include "validate/fit/passed_noise.hpp"
 #include "validate/hypothesis/hypothesis.hpp"
+#include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::hypothesis {
 
@@ -33,19 +34,15 @@ struct Judgement {
   std::string why_not;  ///< empty where accepted
 };
 
-/// Evidence from which a hypothesis is accepted. Thirty development cases with nothing hidden
-/// gave the best of some thirty wrong ones 20 at most.
-constexpr double kEvidence = 40;
-
 /// Parameters of the plant that a refit may move, then the hypothesis's own parameters.
 std::vector<fit::FreeParameter> free_of(const Hypothesis& h, double spread);
 
 /// Events to judge on, and what is known of them without any hypothesis.
 struct Trial {
   const std::vector<event::FitEvent>& events;
-  double spread;                ///< believed of the model's parameters
-  double adequate;              ///< chi2 per value up to which nothing but noise is left
-  double evidence = kEvidence;  ///< from which a hypothesis is accepted
+  double spread;                                    ///< believed of the model's parameters
+  double adequate;                                  ///< chi2 per value up to which nothing but noise is left
+  double evidence = thresholds::evidence.accepted;  ///< from which a hypothesis is accepted
   /// Noise of the voltage that the base passes into its answer: to pass less of it is no evidence. Null: this
   /// noise is not considered.
   const fit::PassedNoise* passed = nullptr;

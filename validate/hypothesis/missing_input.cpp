@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "validate/thresholds/thresholds.hpp"
+
 namespace swingbank::validate::hypothesis {
 namespace {
 
@@ -12,12 +14,12 @@ std::vector<double> knots_of(const event::FitEvent& event) {
                            ? event.record.t[static_cast<std::size_t>(event.start.samples - 1)]
                            : event.switchings.front().time;
   const double end = event.record.t.back();
-  constexpr double kFine = 0.1, kGrowth = 1.06, kCoarse = 0.4;  // [s]; a swing takes about a second
+  constexpr double kFineKnots = 0.1, kGrowth = 1.06, kCoarseKnots = 0.4;  // [s]; a swing takes about a second
   std::vector<double> knots;
-  double gap = kFine;
+  double gap = kFineKnots;
   for (double t = begin; t < end - 0.5 * gap; t += gap) {
     knots.push_back(t);
-    if (t > begin + 2.0) gap = std::min(kCoarse, gap * kGrowth);
+    if (t > begin + 2.0) gap = std::min(kCoarseKnots, gap * kGrowth);
   }
   knots.push_back(end);
   return knots;
@@ -28,7 +30,7 @@ std::vector<double> knots_of(const event::FitEvent& event) {
 double MissingInput::explains(const fit::Fit& without) const {
   std::size_t knots = 0;
   for (const auto& e : fit.events) knots += e.state.input.t.size();
-  return without.chi2 - fit.chi2 - 2.0 * static_cast<double>(knots);
+  return without.chi2 - fit.chi2 - thresholds::adequacy.knot * static_cast<double>(knots);
 }
 
 MissingInput infer_input(fit::InputKind kind, const sim::plant::Plant& plant,

@@ -12,16 +12,13 @@ namespace {
 
 constexpr std::array<double, 10> kMultiples = {0.3, 0.5, 0.7, 0.85, 0.95, 1.05, 1.18, 1.4, 2.0, 3.3};
 /// Multiples at which it shows whether a parameter acts at all.
-constexpr double kLess = 0.7, kMore = 1.4;
-/// A parameter acts if it changes chi2 by this much.
-constexpr double kActs = 1;
-/// The kFitted multiples that leave least get kOwnSteps steps of the parameters that have slopes. The kBest
-/// best of these get kAllSteps steps of all parameters.
-constexpr std::size_t kFitted = 12, kBest = 2;
-constexpr int kOwnSteps = 3, kAllSteps = 9;
-/// So many rounds at most, as long as each round gains kWorthARound.
-constexpr int kRounds = 4;
-constexpr double kWorthARound = 10;
+constexpr double kScanLess = 0.7, kScanMore = 1.4;
+/// The kScanFitted multiples that leave least get kScanOwnSteps steps of the parameters that have slopes. The
+/// kBest best of these get kScanAllSteps steps of all parameters.
+constexpr std::size_t kScanFitted = 12, kBest = 2;
+constexpr int kScanOwnSteps = 3, kScanAllSteps = 9;
+/// So many rounds at most.
+constexpr int kScanRounds = 4;
 
 class BlindScan {
  public:
@@ -49,7 +46,7 @@ class BlindScan {
       }
     std::ranges::sort(starts, {}, &std::pair<double, sim::plant::Plant>::first);
     std::vector<fit::Fit> tried;
-    for (const auto& start : std::span(starts).first(std::min(kFitted, starts.size())))
+    for (const auto& start : std::span(starts).first(std::min(kScanFitted, starts.size())))
       if (fit::Fit f = beside(start.second); f.failed.empty()) tried.push_back(std::move(f));
     std::ranges::sort(tried, {}, &fit::Fit::chi2);
     if (tried.size() > kBest) tried.resize(kBest);
@@ -84,9 +81,9 @@ class BlindScan {
   }
   /// Whether neither a smaller nor a larger value changes anything.
   [[nodiscard]] bool idle(const fit::FreeParameter& f) const {
-    return std::ranges::all_of(std::array{kLess, kMore}, [&](double by) {
+    return std::ranges::all_of(std::array{kScanLess, kScanMore}, [&](double by) {
       const double left = left_by(multiplied({f}, by), h_.conventions, stage_.events, states_);
-      return std::abs(left - from_.chi2) < kActs;
+      return std::abs(left - from_.chi2) < thresholds::search.without_slope;
     });
   }
   /// Each parameter by itself, and all parameters of one unit together, so that the points of a curve do not
@@ -105,7 +102,7 @@ class BlindScan {
   [[nodiscard]] fit::Fit beside(const sim::plant::Plant& plant) const {
     fit::FitOptions o;
     o.errors = false;
-    o.iterations = kOwnSteps;
+    o.iterations = kScanOwnSteps;
     o.start = states_;
     return fit::fit(plant, h_.conventions, stage_.events, seen_, o);
   }
@@ -122,17 +119,17 @@ class BlindScan {
 fit::Fit past_blind(const Stage& stage, const Hypothesis& h, const sim::plant::Plant& believed,
                     fit::Fit from) {
   const auto free = free_of(h, stage.spread);
-  for (int round = 0; round < kRounds && from.failed.empty(); ++round) {
+  for (int round = 0; round < kScanRounds && from.failed.empty(); ++round) {
     fit::Fit best = from;
     for (const fit::Fit& start : BlindScan(stage, h, from).best()) {
       fit::FitOptions o = fit::continued({}, start, free);
       o.errors = false;
-      o.iterations = kAllSteps;
+      o.iterations = kScanAllSteps;
       if (fit::Fit f = fit::fit(believed, h.conventions, stage.events, free, o);
           fit::penalised(f) < fit::penalised(best))
         best = std::move(f);
     }
-    const bool worth = fit::penalised(best) < fit::penalised(from) - kWorthARound;
+    const bool worth = fit::penalised(best) < fit::penalised(from) - thresholds::search.worth_a_round;
     from = std::move(best);
     if (!worth) break;
   }

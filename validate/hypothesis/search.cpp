@@ -18,20 +18,10 @@ constexpr int kFirstSteps = 4, kMoreSteps = 8, kNestedSteps = 12;
 constexpr int kNearSteps = 3, kOnwardSteps = 9;
 /// Steps of the fit that starts with the blocks which the stage has bent as the model has them.
 constexpr int kUnbentSteps = 8;
-/// A fit goes on in so many rounds at most, as long as each round gains kWorthARound.
+/// A fit goes on in so many rounds at most.
 constexpr int kRounds = 5;
-constexpr double kWorthARound = 10;
-/// A fit that is still worse than the stage goes on only if a round leaves less than this share of the
-/// distance to the stage.
-constexpr double kComing = 0.8;
-/// Misfit of the stage below which its fitted values are good starts for everything but what is missing.
-constexpr double kNested = 4;
-/// All hypotheses try kFirst starts. Further starts are tried from a share of kFairAtFirst of the best one's
-/// gain, and a hypothesis is fitted on from a share of kFair.
-constexpr std::size_t kFirst = 2;
-constexpr double kFairAtFirst = 0.05, kFair = 0.2;
-/// What lies this little behind the best one goes on in any case.
-constexpr double kCloseBehind = 200;
+/// All hypotheses try so many starts.
+constexpr std::size_t kFirstStarts = 2;
 
 class Searcher {
  public:
@@ -44,7 +34,7 @@ class Searcher {
     if (starts_.near()) {
       std::vector<std::vector<fit::Fit>> begun(candidates.size());
       each(candidates, "first steps ", [&](std::size_t i) { near_first(candidates[i], begun[i]); });
-      auto onward = promising(candidates, begun, kFair);
+      auto onward = promising(candidates, begun, thresholds::search.fair);
       // a fit that is worse than nothing has not arrived yet, and another start is left
       for (std::size_t i = 0; i < candidates.size(); ++i)
         if (!candidates[i].unbent.empty() && gain_of(begun[i]) < 0) onward[i] = 1;
@@ -57,12 +47,13 @@ class Searcher {
       });
     } else {
       std::vector<std::vector<fit::Fit>> begun(candidates.size());
-      each(candidates, "first steps ", [&](std::size_t i) { first_steps(candidates[i], kFirst, begun[i]); });
-      const auto fair = promising(candidates, begun, kFairAtFirst);
+      each(candidates, "first steps ",
+           [&](std::size_t i) { first_steps(candidates[i], kFirstStarts, begun[i]); });
+      const auto fair = promising(candidates, begun, thresholds::search.fair_at_first);
       each(candidates, "first steps ", [&](std::size_t i) {
         if (fair[i]) first_steps(candidates[i], kTries, begun[i]);
       });
-      const auto onward = promising(candidates, begun, kFair);
+      const auto onward = promising(candidates, begun, thresholds::search.fair);
       each(candidates, "fit ", [&](std::size_t i) {
         tried[i] = onward[i] ? more_steps(candidates[i], begun[i]) : judgement(candidates[i], begun[i]);
       });
@@ -119,7 +110,8 @@ class Searcher {
     std::vector<char> onward;
     for (std::size_t i = 0; i < gains.size(); ++i) {
       const int slot = candidates[static_cast<std::size_t>(best - gains.begin())].hypothesis.slot;
-      onward.push_back(*best <= 0 || gains[i] >= share * *best || gains[i] > *best - kCloseBehind ||
+      onward.push_back(*best <= 0 || gains[i] >= share * *best ||
+                       gains[i] > *best - thresholds::evidence.within_reach ||
                        (slot >= 0 && candidates[i].hypothesis.slot == slot));
     }
     return onward;
@@ -143,7 +135,7 @@ class Searcher {
     std::erase_if(fits, [](const fit::Fit& f) { return !f.failed.empty(); });
     const bool worse = fits.empty() || fit::penalised(*std::ranges::min_element(fits, {}, fit::penalised)) >
                                            penalised(stage_.fit);
-    if (!c.nested.empty() && (worse || stage_.fit.misfit() < kNested)) {
+    if (!c.nested.empty() && (worse || stage_.fit.misfit() < thresholds::search.nested)) {
       o.iterations = kNestedSteps;
       o.values = std::ranges::min_element(c.nested)->second;
       o.start.clear();
@@ -180,7 +172,7 @@ class Searcher {
     fit::Fit best = in_rounds(c, *std::ranges::min_element(fits, {}, fit::penalised));
     if (!c.unbent.empty())
       if (fit::Fit f = from_stage(c, c.unbent, kUnbentSteps);
-          fit::penalised(f) < fit::penalised(best) + kCloseBehind)
+          fit::penalised(f) < fit::penalised(best) + thresholds::evidence.within_reach)
         fits.push_back(in_rounds(c, std::move(f)));
     fits.push_back(std::move(best));
     return judgement(c, scanned(c, std::move(fits)));
@@ -200,8 +192,9 @@ class Searcher {
     for (int round = 0; round < kRounds; ++round) {
       const fit::Fit from = std::exchange(best, attempt(c, c.starts.front(), fit::continued(o, best, free)));
       const double left = fit::penalised(best) - fit::penalised(stage_.fit);
-      const bool gets_there = left < kComing * (fit::penalised(from) - fit::penalised(stage_.fit));
-      if (best.converged || fit::penalised(best) > penalised(from) - kWorthARound ||
+      const bool gets_there =
+          left < thresholds::search.coming * (fit::penalised(from) - fit::penalised(stage_.fit));
+      if (best.converged || fit::penalised(best) > penalised(from) - thresholds::search.worth_a_round ||
           (left > 0 && !gets_there))
         break;
     }

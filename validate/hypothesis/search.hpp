@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "validate/hypothesis/judge.hpp"
+#include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::hypothesis {
 
@@ -21,7 +22,7 @@ struct Stage {
   std::vector<fit::FreeParameter> own =
       {};                 ///< parameters that earlier stages brought, as numbered in `plant`
   std::string with = {};  ///< name of what was added; empty: the model as it was given
-  double spread = 0.2;    ///< believed of the model's parameters
+  double spread = thresholds::parameters.spread;  ///< believed of the model's parameters
   int threads = 1;
 };
 

@@ -205,7 +205,7 @@ std::vector<LawTrace> thinned(std::vector<LawTrace> traces) {
 }  // namespace
 
 double trigger_level(const std::vector<event::FitEvent>& events) {
-  constexpr double kLeast = 0.01;  // [pu]; instruments and ambient changes stay below
+  constexpr double kLeastTrigger = 0.01;  // [pu]; instruments and ambient changes stay below
   double smallest = 1e300, noise = 0;
   for (const event::FitEvent& e : events) {
     const double rest = std::abs(e.start.voltage);
@@ -218,8 +218,8 @@ double trigger_level(const std::vector<event::FitEvent>& events) {
     }
     if (!e.switchings.empty()) smallest = std::min(smallest, most);
   }
-  if (smallest > 1e299 || smallest / 2 < std::max(kLeast, 3 * noise)) return 0;
-  return std::max({kLeast, 3 * noise, std::min(0.1, smallest / 2)});
+  if (smallest > 1e299 || smallest / 2 < std::max(kLeastTrigger, 3 * noise)) return 0;
+  return std::max({kLeastTrigger, 3 * noise, std::min(0.1, smallest / 2)});
 }
 
 std::vector<LawCandidate> law_candidates(fit::InputKind kind, const std::vector<LawTrace>& traces,

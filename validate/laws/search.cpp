@@ -13,21 +13,15 @@
 #include "validate/laws/detail/course.hpp"
 #include "validate/laws/detail/text.hpp"
 #include "validate/laws/detail/traces.hpp"
+#include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::laws {
 namespace {
 
-constexpr double kLawSpread = 1.0;  ///< a law's numbers are believed within a factor e of the regression's
-constexpr double kLeastExplained = 0.3;  ///< share of the inferred input below which a law is not tried
-constexpr std::size_t kFitted = 8;       ///< laws fitted to the records
-constexpr std::size_t kPerSignal = 3;    ///< laws of one signal that are fitted, at most
-constexpr std::size_t kJudged = 3;       ///< laws judged on events left out
-/// An input is worth a law if it leaves at most this share of the base's misfit.
-constexpr double kExplains = 0.3;
-/// An input explains as much as the better one if it leaves no more than this many times what that leaves.
-constexpr double kAsMuch = 1.5;
-/// Judging would be in vain if the first fit leaves this chi2 per value or more.
-constexpr double kHopeless = 2;
+constexpr double kLawSpread = 1.0;     ///< a law's numbers are believed within a factor e of the regression's
+constexpr std::size_t kFitted = 8;     ///< laws fitted to the records
+constexpr std::size_t kPerSignal = 3;  ///< laws of one signal that are fitted, at most
+constexpr std::size_t kJudged = 3;     ///< laws judged on events left out
 
 /// Whether every word of `a`'s family is one of `b`'s; then `b` is `a` with something added.
 bool within(const LawCandidate& a, const LawCandidate& b) {
@@ -49,7 +43,7 @@ std::vector<LawCandidate> leading(const std::vector<LawCandidate>& ranked) {
   std::map<std::string, std::size_t> of_signal;
   std::vector<LawCandidate> chosen;
   for (const auto& law : ranked) {
-    if (chosen.size() == kFitted || law.explained < kLeastExplained) break;
+    if (chosen.size() == kFitted || law.explained < thresholds::laws.least_explained) break;
     if (std::ranges::any_of(chosen, [&](const LawCandidate& c) { return within(c, law); })) continue;
     if (of_signal[law.signal]++ < kPerSignal) chosen.push_back(law);
   }
@@ -58,7 +52,8 @@ std::vector<LawCandidate> leading(const std::vector<LawCandidate>& ranked) {
 /// By how much a law must answer better before it is preferred. A time of the record means something only
 /// where records begin alike, and a law in proportion to the start says more than one that is not.
 double handicap(const LawCandidate& law) {
-  return (law.signal == "time" ? 6.0 : 0.0) + (law.family.ends_with("in proportion") ? 3.0 : 0.0);
+  return (law.signal == "time" ? thresholds::laws.own_time.value : 0.0) +
+         (law.family.ends_with("in proportion") ? thresholds::laws.in_proportion.value : 0.0);
 }
 
 std::string source_of(const std::vector<event::FitEvent>& events) {
@@ -146,7 +141,7 @@ class Searcher {
   }
   void settle(LawFinding& f) const {
     const double left = f.judgement.fit.misfit();
-    if (left > kHopeless) {
+    if (left > thresholds::laws.judged_below) {
       f.judgement.why_not = fmt::format("leaves {:.2f} of the noise's variance", left);
       return;
     }
@@ -196,11 +191,12 @@ LawSearch search_laws(const Unexplained& case_, const LawProgress& report) {
   const hypothesis::MissingInput &first = torque ? case_.torque : case_.field,
                                  &second = torque ? case_.field : case_.torque;
   const auto explains = [&](const hypothesis::MissingInput& m) {
-    return left(m) < std::max(case_.trial.adequate, kExplains * case_.base.misfit());
+    return left(m) < std::max(case_.trial.adequate, thresholds::laws.explains * case_.base.misfit());
   };
   if (!explains(first)) return {};
   LawSearch found = Searcher(case_, first, report).run();
-  if (found.found() || !explains(second) || left(second) > kAsMuch * left(first)) return found;
+  if (found.found() || !explains(second) || left(second) > thresholds::laws.as_much * left(first))
+    return found;
   LawSearch other = Searcher(case_, second, report).run();
   other.seconds += found.seconds;
   return other.found() ? std::move(other) : std::move(found);

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "base/constants.hpp"
 #include "sim/plant/equations.hpp"
 #include "sim/plant/tableau.hpp"
 
@@ -32,14 +32,14 @@ struct Pair {
   const double (*a)[6];
   const double *c, *error;
 };
-constexpr Pair kFine{sim::plant::dp54::kStages, -1.0 / 5, sim::plant::dp54::a, sim::plant::dp54::c,
-                     sim::plant::dp54::error};
+constexpr Pair kFineSteps{sim::plant::dp54::kStages, -1.0 / 5, sim::plant::dp54::a, sim::plant::dp54::c,
+                          sim::plant::dp54::error};
 /// Bogacki and Shampine 3(2), Appl. Math. Lett. 2 (1989) 321: half the work where a step must end at every
 /// sample anyway and the voltage is noisy.
 constexpr double kRoughA[4][6] = {{}, {1.0 / 2}, {0.0, 3.0 / 4}, {2.0 / 9, 1.0 / 3, 4.0 / 9}};
 constexpr double kRoughC[4] = {0.0, 1.0 / 2, 3.0 / 4, 1.0};
 constexpr double kRoughError[4] = {2.0 / 9 - 7.0 / 24, 1.0 / 3 - 1.0 / 4, 4.0 / 9 - 1.0 / 3, -1.0 / 8};
-constexpr Pair kRough{4, -1.0 / 3, kRoughA, kRoughC, kRoughError};
+constexpr Pair kRoughSteps{4, -1.0 / 3, kRoughA, kRoughC, kRoughError};
 constexpr double kRoughFrom = 1e-5;  ///< tolerance
 
 template <class T>
@@ -266,8 +266,9 @@ class Driven {
   }
   double attempt(double h) {
     refresh();
-    return &pair_ == &kRough ? attempt<kRough>(h, std::make_integer_sequence<int, kRough.stages - 1>{})
-                             : attempt<kFine>(h, std::make_integer_sequence<int, kFine.stages - 1>{});
+    return &pair_ == &kRoughSteps
+               ? attempt<kRoughSteps>(h, std::make_integer_sequence<int, kRoughSteps.stages - 1>{})
+               : attempt<kFineSteps>(h, std::make_integer_sequence<int, kFineSteps.stages - 1>{});
   }
   template <const Pair& pair, int... Before>
   double attempt(double h, std::integer_sequence<int, Before...>) {
@@ -304,7 +305,7 @@ class Driven {
     refresh();
     const double to_record = run_.plant->mva / run_.record->base.mva;
     // the frame turns with the pre-event angle
-    const double frame = run_.start.drift / (2 * std::numbers::pi * run_.conventions.frequency);
+    const double frame = run_.start.drift / (constants::turn * run_.conventions.frequency);
     back.voltage.push_back(voltage(t_));
     auto out = outputs(to_record);
     out[static_cast<std::size_t>(Output::speed)] = signals_.speed + T(frame);
@@ -327,7 +328,7 @@ class Driven {
   }
 
   const Drive& run_;
-  const Pair& pair_ = run_.tolerance < kRoughFrom ? kFine : kRough;
+  const Pair& pair_ = run_.tolerance < kRoughFrom ? kFineSteps : kRoughSteps;
   bool fresh_ = true;  ///< k_[0] must be evaluated anew
   std::span<const Direction> directions_;
   sim::plant::PlantEquations<T> equations_;

@@ -193,10 +193,10 @@ bool can_be_taken_back(const sim::Effect& instrument) {
   for (std::size_t i = 0; i < p.size(); ++i)
     if (const auto& record = instrument.parameters[i]; !record.is_code())
       p[i] = std::clamp(p[i] + kAway * (record.high - record.low), record.low, record.high);
-  constexpr int kSamples = 64;
+  constexpr int kProbeSamples = 64;
   constexpr double kRate = 240.0;
-  sim::Phasors once{kRate, 60.0, {}, {}, std::vector<double>(kSamples, 0.0)};
-  for (int k = 0; k < kSamples; ++k) {
+  sim::Phasors once{kRate, 60.0, {}, {}, std::vector<double>(kProbeSamples, 0.0)};
+  for (int k = 0; k < kProbeSamples; ++k) {
     once.V.push_back(std::polar(1.0 + 1e-3 * k, 2e-3 * k));
     once.I.push_back(std::polar(0.7 - 2e-3 * k, 1e-3 * k));
   }
@@ -206,10 +206,10 @@ bool can_be_taken_back(const sim::Effect& instrument) {
     for (auto& x : *channel) x *= 2.0;
   instrument.measure(p.data(), 1, once);
   instrument.measure(p.data(), 2, twice);
-  for (std::size_t k = 0; k < kSamples; ++k)
+  for (std::size_t k = 0; k < kProbeSamples; ++k)
     if (!(std::abs(twice.V[k] - 2.0 * once.V[k]) < 1e-9 && std::abs(twice.I[k] - 2.0 * once.I[k]) < 1e-9))
       return false;
-  for (std::size_t k = 0; k < kSamples; ++k)
+  for (std::size_t k = 0; k < kProbeSamples; ++k)
     if (!(std::abs(once.V[k] / before[k] - once.V[0] / before[0]) < 1e-9)) return false;
   return true;
 }

@@ -17,8 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kDecided = 0.5;  ///< share of an interval that records decide, above which it is varied
-constexpr int kLongest = 8, kShortest = 2;  ///< what networks read of an event [s]
-constexpr int kComponents = 4;              ///< of each second
+constexpr int kLongestWindow = 8, kShortestWindow = 2;  ///< what networks read of an event [s]
+constexpr int kComponents = 4;                          ///< of each second
 
 /// Six digits: a fit repeated on another machine gives the same config.
 double rounded(double value, int digits) { return std::stod(fmt::format("{:.{}g}", value, digits)); }
@@ -158,15 +158,15 @@ std::vector<std::string> channels_of(const add::Addition& added, const std::vect
 
 /// Whole seconds behind the event that every record holds.
 int seconds_of(const add::Addition& added) {
-  double least = kLongest;
+  double least = kLongestWindow;
   Problems problems;
   for (const auto& e : added.prepared) {
     const double event = e.switchings.empty() ? e.record.t[static_cast<std::size_t>(e.start.samples - 1)]
                                               : e.switchings.front().time;
     const double left = e.record.t.back() - event - e.record.step();
-    if (left < kShortest)
+    if (left < kShortestWindow)
       problems.add(fmt::format("a record that ends {:.3g} s after its event", left), e.record.name,
-                   fmt::format("networks read {} s or more", kShortest), "give a longer record");
+                   fmt::format("networks read {} s or more", kShortestWindow), "give a longer record");
     least = std::min(least, left);
   }
   problems.raise();

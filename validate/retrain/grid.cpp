@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/constants.hpp"
 #include "base/write_file.hpp"
 #include "validate/retrain/retrain.hpp"
 
@@ -53,12 +53,11 @@ std::string raw_text(const plant::PlantModel& model, const event::FitEvent& even
       fmt::format("0, {}, 33, 0, 0, {}\nPlant {} behind lines\nwritten by swingbank add --retrain\n",
                   plant.mva, model.conventions.frequency, model.name);
   for (int bus = 1; bus <= 4; ++bus)
-    text +=
-        fmt::format("{0}, 'BUS {0}', 110, {1}, 1, 1, 1, {2}, {3}, 1.1, 0.9, 1.1, 0.9\n", bus,
-                    bus == 1   ? 2
-                    : bus == 4 ? 3
-                               : 1,
-                    bus == 4 ? std::abs(far) : V, bus == 4 ? std::arg(far) * 180 / std::numbers::pi : 0.0);
+    text += fmt::format("{0}, 'BUS {0}', 110, {1}, 1, 1, 1, {2}, {3}, 1.1, 0.9, 1.1, 0.9\n", bus,
+                        bus == 1   ? 2
+                        : bus == 4 ? 3
+                                   : 1,
+                        bus == 4 ? std::abs(far) : V, bus == 4 ? std::arg(far) * 180 / constants::pi : 0.0);
   text += "0 / end of bus data\n0 / end of load data\n0 / end of fixed shunt data\n";
   const auto generator = [&](int bus, double p, double q, double v, double mva, double r, double reactance) {
     text +=

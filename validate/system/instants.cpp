@@ -12,7 +12,7 @@
 namespace swingbank::validate::system {
 namespace {
 
-constexpr double kAfter = 1.0;  // s after the last switching that a fit looks at
+constexpr double kAfterLast = 1.0;  // s after the last switching that a fit looks at
 
 /// Instants of the jumps in one record.
 std::vector<playin::Switching> jumps_of(const record::Record& r) {
@@ -35,7 +35,9 @@ SystemCase shortened(SystemCase s, double end) {
 class InstantFit {
  public:
   InstantFit(const SystemCase& system, std::vector<double> written, std::vector<double> found)
-      : s_(shortened(system, found.back() + kAfter)), written_(std::move(written)), best_(std::move(found)) {
+      : s_(shortened(system, found.back() + kAfterLast)),
+        written_(std::move(written)),
+        best_(std::move(found)) {
     mark_smeared();
   }
 

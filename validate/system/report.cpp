@@ -7,8 +7,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/constants.hpp"
 #include "validate/compare/error_map_table.hpp"
 #include "validate/system/system.hpp"
+#include "validate/thresholds/list.hpp"
 
 namespace swingbank::validate::system {
 namespace {
@@ -76,7 +78,7 @@ std::vector<std::string> event_lines(const sim::grid::EventTexts& t) {
 report::Table initial_table(const SystemCase& s, const SystemComparison& c) {
   report::Table table{
       "Before the event: model less record, mean.", {"terminal", "at", "V", "angle", "P", "Q"}, {}};
-  const double scales[] = {1, 57.29577951308232, s.base.mva, s.base.mva};
+  const double scales[] = {1, constants::degrees_in_radian, s.base.mva, s.base.mva};
   const char* units[] = {"pu", "deg", "MW", "Mvar"};
   for (std::size_t i = 0; i < s.terminals.size(); ++i) {
     std::vector<report::Cell> row = {s.terminals[i].name, place_of(s, s.terminals[i])};
@@ -190,7 +192,8 @@ std::string system_text(const SystemCase& s, const SystemComparison& c) {
   for (const auto& note : c.notes) out += "note: " + note + "\n";
   for (const auto& e : c.terminals)
     for (const auto& note : e.notes) out += "note on " + e.record.name + ": " + note + "\n";
-  return out + "\n" + c.adequacy.sentence + "\n" + c.culprit + "\n";
+  return out + "\n" + c.adequacy.sentence + "\n" + thresholds::ruling_text(c.adequacy.ruling) + "\n" +
+         c.culprit + "\n";
 }
 
 std::string system_json(const SystemCase& s, const SystemComparison& c, const report::Provenance& rows) {
@@ -198,10 +201,11 @@ std::string system_json(const SystemCase& s, const SystemComparison& c, const re
             {"name", s.name},
             {"adequate", c.adequacy.adequate},
             {"verdict", c.adequacy.sentence},
+            {"adequacy", thresholds::ruling_json(c.adequacy.ruling)},
             {"culprit", c.culprit},
             {"cells", c.adequacy.cells},
             {"cells_exceeding", c.adequacy.exceeding},
-            {"false_alarm_probability", compare::kFalseAlarm},
+            {"false_alarm_probability", thresholds::adequacy.false_alarm.value},
             {"event", event_lines(s.texts)},
             {"instants_s", c.instants},
             {"instants_found", s.find_instants},

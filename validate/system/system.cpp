@@ -7,10 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <numeric>
 #include <set>
 
+#include "base/constants.hpp"
 #include "sim/plant/measure.hpp"
 #include "validate/compare/error_map_table.hpp"
 #include "validate/event/event.hpp"
@@ -20,7 +20,6 @@
 namespace swingbank::validate::system {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kFewestQuiet = 5;  // samples before the event, from which its noise is estimated
 
@@ -31,7 +30,7 @@ double mean_of(const std::vector<double>& v, std::size_t n) {
 std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> d(a.size());
   std::ranges::transform(a, b, d.begin(), std::minus<>());
-  const double turns = kTurn * std::round(d.front() / kTurn);
+  const double turns = constants::turn * std::round(d.front() / constants::turn);
   for (double& v : d) v -= turns;
   return d;
 }
@@ -143,9 +142,11 @@ class Comparer {
                         "export both at the same rate, or leave compare.reference out"});
     const auto measured = difference(r.theta, other.theta);
     auto modelled = difference(run_.answers[i].theta, run_.answers[reference].theta);
-    const double turns = kTurn * std::round((modelled.front() - measured.front()) / kTurn);
+    const double turns =
+        constants::turn * std::round((modelled.front() - measured.front()) / constants::turn);
     for (double& v : modelled) v -= turns;
-    return add(e, {"angle", "deg", 360 / kTurn, event::kLeastNoise, shift(), true, skip}, measured, modelled);
+    return add(e, {"angle", "deg", 360 / constants::turn, event::kLeastNoise, shift(), true, skip}, measured,
+               modelled);
   }
   [[nodiscard]] bool shift() const { return s_.steady_state == SteadyState::shift; }
 

@@ -148,7 +148,7 @@ struct Case {
   fit::Fit base;
   std::vector<hypothesis::HeldOut> held_out;
   hypothesis::MissingInput torque, field;
-  static constexpr double kSpread = 0.2, kAdequate = 1.12;
+  static constexpr double kSpread = thresholds::parameters.spread, kAdequate = thresholds::adequacy.misfit;
 
   template <class Change>
   Case(const std::vector<int>& numbers, const sim::Effect* law, Change change) {
@@ -213,7 +213,8 @@ TEST(LawSearchTest, ATorqueLimitedAboveASpeedIsFoundAndPredicts) {
   EXPECT_THAT(f.law.family, testing::StartsWith("limited"));
   for (const auto& h : f.judgement.held_out) {
     EXPECT_GT(h.before, 5) << h.record;
-    EXPECT_LT(h.after, 1.12) << h.record;  // chi2 per value of 1802 numbers: 1 + 3.6 standard deviations
+    EXPECT_LT(h.after, thresholds::adequacy.misfit.value)
+        << h.record;  // chi2 per value of 1802 numbers: 1 + 3.6 standard deviations
   }
   for (const auto& p : f.judgement.fit.parameters) {
     if (p.name == "L") {
@@ -236,7 +237,8 @@ TEST(LawSearchFull, APulseAtATimeOfTheRecordIsFoundAndPredicts) {
   const LawSearch s = Case({1, 2, 3}, &law, [](int, playin::Drive&) {}).search();
   ASSERT_NE(s.found(), nullptr);
   EXPECT_THAT(s.found()->law.family, testing::StartsWith("pulse"));
-  for (const auto& h : s.found()->judgement.held_out) EXPECT_LT(h.after, 1.12) << h.record;
+  for (const auto& h : s.found()->judgement.held_out)
+    EXPECT_LT(h.after, thresholds::adequacy.misfit.value) << h.record;
 }
 TEST(LawSearchFull, AnOscillationIsFoundAndPredicts) {
   const sim::Effect law = torque_law("0.02 * clamp((t - 3) / 0.05, 0, 1) * sin(2 * pi * 0.7 * t)");
@@ -261,7 +263,7 @@ TEST(LawSearchFull, ARandomTorqueGivesNoLaw) {
     }
   });
   ASSERT_GT(c.base.misfit(), 2);
-  ASSERT_LT(c.torque.misfit(), 1.12);
+  ASSERT_LT(c.torque.misfit(), thresholds::adequacy.misfit.value);
   const LawSearch s = c.search();
   EXPECT_GT(s.ranked.size(), 60u);
   EXPECT_EQ(s.found(), nullptr) << s.found()->words;

@@ -13,12 +13,12 @@ namespace {
 
 using Scales = std::vector<std::optional<double>>;
 
-constexpr int kAttempts = 60;    ///< whole worlds drawn before giving up
-constexpr int kEventTries = 12;  ///< draws of one event within a world
-constexpr double kDip = 0.05;    ///< a fault that moves V by less at the plant is drawn again [pu]
-constexpr double kSpeed = 0.02;  ///< deviation of the speed below which no governor trips a unit [pu]
-constexpr double kClose = 0.1;   ///< a size is met within that part of it
-constexpr int kSizeTries = 8;    ///< simulations of all events while a size is sought
+constexpr int kAttempts = 60;     ///< whole worlds drawn before giving up
+constexpr int kEventTries = 12;   ///< draws of one event within a world
+constexpr double kDip = 0.05;     ///< a fault that moves V by less at the plant is drawn again [pu]
+constexpr double kSpeed = 0.02;   ///< deviation of the speed below which no governor trips a unit [pu]
+constexpr double kSizeMet = 0.1;  ///< a size is met within that part of it
+constexpr int kSizeTries = 8;     ///< simulations of all events while a size is sought
 
 constexpr double kHuge = 1e300;  ///< size of what cannot be simulated
 
@@ -129,7 +129,7 @@ class Maker {
         truth.visible = visible;
       }
       const bool end = left < truth.wanted ? scale == 1.0 : scale == 0.0;
-      if (miss < std::log1p(kClose) || end) break;
+      if (miss < std::log1p(kSizeMet) || end) break;
       (left > truth.wanted ? high : low) = scale;
       (left > truth.wanted ? high_left : low_left) = left;
       scale = next_scale(logarithmic, truth.wanted, low, low_left, high, high_left);

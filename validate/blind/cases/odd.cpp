@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/constants.hpp"
 #include "validate/blind/cases/detail/effects.hpp"
 
 namespace swingbank::validate::blind::cases {
@@ -12,8 +13,7 @@ namespace {
 
 using namespace sim;
 
-constexpr double kLongest = 130.0;  ///< no record lasts longer [s]
-constexpr double kTurn = 6.283185307179586;
+constexpr double kLongestRecord = 130.0;  ///< no record lasts longer [s]
 
 /// What every odd drive is: any parameters, no check of its own beyond their ranges.
 struct Odd {
@@ -33,7 +33,7 @@ struct Sawtooth : Odd {
   static constexpr std::array<sim::State, 0> states{};
   static std::vector<double> instants(const double* p) {
     std::vector<double> all;
-    for (double t = p[start]; t < kLongest; t += 1.0 / p[f]) all.push_back(t);
+    for (double t = p[start]; t < kLongestRecord; t += 1.0 / p[f]) all.push_back(t);
     return all;
   }
   template <class T>
@@ -60,7 +60,7 @@ struct RandomWalk : Odd {
   static constexpr std::array<sim::State, 0> states{};
   static std::vector<double> instants(const double* p) {
     std::vector<double> all;
-    for (double t = p[start]; t < kLongest; t += p[step]) all.push_back(t);
+    for (double t = p[start]; t < kLongestRecord; t += p[step]) all.push_back(t);
     return all;
   }
   /// In [-1, 1), from the number of walk and knot.
@@ -118,7 +118,7 @@ struct LimitCycle : Odd {
   static constexpr sim::State states[] = {{"a", "-", "cycle"}, {"b", "-", "its rate"}};
   template <class T>
   static void evaluate(const T* c, const T* x, sim::Signals<T>& s, T* dx) {
-    const T w = T(kTurn) * c[f];
+    const T w = T(constants::turn) * c[f];
     dx[0] = w * x[1];
     dx[1] = w * (c[growth] * (T(1.0) - x[0] * x[0]) * x[1] - x[0]) + T(20.0) * (c[V0] - s.V);
     s.Efd = s.Efd + c[A] * x[0];

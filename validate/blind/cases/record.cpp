@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.hpp"
 #include "validate/blind/cases/detail/world.hpp"
 
 namespace swingbank::validate::blind::cases {
@@ -39,7 +40,7 @@ sim::Phasors phasors(const sim::reference::ReferenceRun& fine, double frequency)
     p.V.push_back(v);
     p.I.push_back(std::conj(Complex(fine.at(0, kP)[k], fine.at(0, kQ)[k]) / v));
     const double* theta = fine.at(0, kTheta);
-    p.df.push_back(k == 0 ? 0.0 : (theta[k] - theta[k - 1]) * fine.rate / (6.283185307179586 * frequency));
+    p.df.push_back(k == 0 ? 0.0 : (theta[k] - theta[k - 1]) * fine.rate / (constants::turn * frequency));
   }
   return p;
 }
@@ -74,8 +75,7 @@ record::Record measured(const sim::reference::ReferenceRun& fine, const sim::pla
     const auto i = static_cast<std::size_t>(k);
     const Complex power = p.V[i] * std::conj(p.I[i]) * scale;
     double angle = std::arg(p.V[i]);
-    if (!r.theta.empty())
-      angle += 6.283185307179586 * std::round((r.theta.back() - angle) / 6.283185307179586);
+    if (!r.theta.empty()) angle += constants::turn * std::round((r.theta.back() - angle) / constants::turn);
     r.t.push_back(static_cast<double>(k / stride) / config.rate);
     r.V.push_back(std::abs(p.V[i]));
     r.theta.push_back(angle);

@@ -11,7 +11,7 @@
 namespace swingbank::validate::blind::cases {
 namespace {
 
-constexpr double kTolerance = 1e-7;      ///< of the integration: a thousandth of the smallest noise
+constexpr double kRunTolerance = 1e-7;   ///< of the integration: a thousandth of the smallest noise
 constexpr double kSwitchingUnit = 2e-4;  ///< one unit of a switching instant [s]
 constexpr Eigen::Index kStates = 4;      ///< of an event's start: P, Q, angle, speed
 
@@ -94,7 +94,7 @@ playin::Response BlindSize::answer(std::size_t event, const record::Record& reco
   event::FitEvent played = noise_[event];
   played.record = record;
   played.start = playin::pre_event_point(record, played.switchings, 1.0);
-  return event::play(plant_, conventions_, played, {}, along, {.tolerance = kTolerance, .hasty = false});
+  return event::play(plant_, conventions_, played, {}, along, {.tolerance = kRunTolerance, .hasty = false});
 }
 
 Eigen::VectorXd BlindSize::residual(std::size_t event, const record::Record& record) const {

@@ -4,16 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
+#include "base/constants.hpp"
 #include "validate/fit/noise.hpp"
+#include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::calibrate {
 namespace {
 
-constexpr double kSeconds = 20.0;  ///< length of an event that is tried
-constexpr double kAt = 2.0;        ///< when it happens [s]
+constexpr double kTriedSeconds = 20.0;  ///< length of an event that is tried
+constexpr double kAt = 2.0;             ///< when it happens [s]
 
 /// An event of the same plant, from the same operating point, with a voltage of its own.
 class Trial {
@@ -22,7 +23,7 @@ class Trial {
     record::Record& r = event_.record;
     const double step = r.step(), first = r.t.front();
     r.t.clear();
-    for (int k = 0; k * step <= kSeconds; ++k) r.t.push_back(first + k * step);
+    for (int k = 0; k * step <= kTriedSeconds; ++k) r.t.push_back(first + k * step);
     event_.switchings.clear();
     for (const double t : switchings)  // off the samples, as such instants are
       event_.switchings.push_back(
@@ -43,7 +44,7 @@ class Trial {
     for (const double t : r.t) {
       r.V.push_back(V0 * voltage(t - r.t.front()));
       r.theta.push_back(theta);
-      theta += 2 * std::numbers::pi * frequency(t - r.t.front()) * r.step();
+      theta += constants::turn * frequency(t - r.t.front()) * r.step();
     }
     for (auto* channel : {&r.P, &r.Q, &r.speed, &r.Efd, &r.Ifd}) channel->assign(r.t.size(), 0.0);
     return event_;
@@ -102,12 +103,12 @@ std::vector<Blur> find_blurs(const Eigen::MatrixXd& information, const Eigen::Ve
   std::vector<Blur> blurs;
   for (Eigen::Index k = 0; k < information.rows(); ++k) {
     const double value = std::max(0.0, eigen.eigenvalues()[k]), decided = value / (1 + value);
-    if (decided >= 0.5) break;  // eigenvalues increase
+    if (decided >= thresholds::parameters.identified) break;  // eigenvalues increase
     const Eigen::VectorXd v = eigen.eigenvectors().col(k);
     Blur blur;
     blur.decided = decided;
     for (Eigen::Index i = 0; i < v.size(); ++i)
-      if (std::abs(v[i]) >= 0.3)
+      if (std::abs(v[i]) >= thresholds::parameters.member)
         blur.members.push_back({static_cast<int>(i), v[i] * unit[i] / std::sqrt(1 + value)});
     std::ranges::sort(blur.members, std::ranges::greater{},
                       [&](const Blur::Member& m) { return std::abs(v[m.parameter]); });

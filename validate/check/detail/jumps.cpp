@@ -14,7 +14,7 @@ double written_theta(const record::Record& r, std::size_t k) {
 
 /// Filters smear a jump over several intervals: changes over three of them that stand out from those nearby.
 std::vector<Jump> smeared(const record::Record& r) {
-  constexpr double kLeast = 0.03;  // pu
+  constexpr double kLeastJump = 0.03;  // pu
   std::vector<Jump> jumps;
   const std::size_t n = r.V.size();
   std::vector<double> size(n, 0.0);
@@ -23,7 +23,7 @@ std::vector<Jump> smeared(const record::Record& r) {
   std::vector<double> sorted = size;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(n / 2);
   std::ranges::nth_element(sorted, middle);
-  const double limit = std::max(kLeast, 5 * *middle);
+  const double limit = std::max(kLeastJump, 5 * *middle);
   for (std::size_t k = 5; k + 5 < n; ++k) {
     const auto at = size.begin() + static_cast<std::ptrdiff_t>(k);
     if (*at > limit && *at == *std::max_element(at - 4, at + 5) && *at > 4 * std::max(*(at - 4), *(at + 4)))

@@ -1,8 +1,9 @@
 #pragma once
 // Ways in which the four columns of a record get confused, tried where its jumps make no sense as they are.
 #include <functional>
-#include <numbers>
 #include <vector>
+
+#include "base/constants.hpp"
 
 namespace swingbank::validate::check {
 
@@ -20,7 +21,6 @@ struct Mistake {
   double turn = 0;      ///< the angle as written must jump by this at least [rad]
 };
 inline const std::vector<Mistake>& mistakes() {
-  constexpr double kDegree = std::numbers::pi / 180;
   static const std::vector<Mistake> list = {
       {"swapped_channels", "with P and Q exchanged they fit", "exchange the columns of P and Q",
        [](const Reading& x) {
@@ -32,12 +32,12 @@ inline const std::vector<Mistake>& mistakes() {
        }},
       {"angle_unit", "with theta in degrees they fit", "name the column theta_deg",
        [](const Reading& x) {
-         return Reading{x.V, x.theta * kDegree, x.P, x.Q};
+         return Reading{x.V, x.theta * constants::degree, x.P, x.Q};
        },
        0.015, 0.1},  // where it hardly jumps, no angle at all would fit nearly as well
       {"angle_unit", "with theta in radians they fit", "name the column theta_rad",
        [](const Reading& x) {
-         return Reading{x.V, x.theta / kDegree, x.P, x.Q};
+         return Reading{x.V, x.theta / constants::degree, x.P, x.Q};
        },
        0.006},  // too small an angle hides where V jumps more; too large a one fits no sound record
       {"q_sign", "with the sign of Q changed they fit", "change the sign of Q",

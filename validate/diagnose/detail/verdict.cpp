@@ -13,22 +13,12 @@
 namespace swingbank::validate::diagnose {
 namespace {
 
-/// Rivals within this evidence cannot be told apart.
-constexpr double kApart = 25;
-/// An effect shows in one event alone if that event holds more than this share of what the effect takes off
-/// the cost of all unseen events (kAlone), and if the others, fitted without it, leave more than this share
-/// of its error (kForetold).
-constexpr double kAlone = 0.8, kForetold = 0.5;
-
-/// The slow part of what noise leaves may exceed that of white noise by this many standard deviations
-/// (slow_remainder). Thirty development cases with nothing hidden had 3.9 at most.
-constexpr double kSlow = 8;
-
 /// Whether the records cannot tell `j` from `best`. They cannot if their evidences are close. Nor can they if
 /// both leave about the same chi2, because the evidence then only prefers the simpler one.
 bool as_good(const hypothesis::Judgement& j, const hypothesis::Judgement& best) {
-  return best.gain - j.gain < kApart ||
-         (j.hypothesis.with == best.hypothesis.with && j.fit.chi2 - best.fit.chi2 < kApart);
+  return best.gain - j.gain < thresholds::evidence.apart ||
+         (j.hypothesis.with == best.hypothesis.with &&
+          j.fit.chi2 - best.fit.chi2 < thresholds::evidence.apart);
 }
 
 std::string capitalised(std::string text) {
@@ -47,7 +37,8 @@ std::string fall_of_error(const fit::Fit& base, const hypothesis::Judgement& bes
   }
   const auto most = std::ranges::max_element(best.held_out, {}, &hypothesis::HeldOut::saves);
   const auto e = static_cast<std::size_t>(most - best.held_out.begin());
-  if (most->saves() > kAlone * saved && most->after > kForetold * most->before)
+  if (most->saves() > thresholds::held_out.alone * saved &&
+      most->after > thresholds::held_out.foretold * most->before)
     return fmt::format(
         "it shows in {} alone, so that no other event foretells it; fitted there too, the error falls from "
         "{:.2f} × noise to {:.2f} × noise",
@@ -58,6 +49,7 @@ std::string fall_of_error(const fit::Fit& base, const hypothesis::Judgement& bes
 
 void name_best(Diagnosis& d) {
   const hypothesis::Judgement& best = d.ranked.front();
+  d.ruling = thresholds::judged_by_evidence(hypothesis::full_name(best.hypothesis), best.gain);
   d.side = best.hypothesis.side;
   if (!best.hypothesis.with.empty()) d.effects.push_back(best.hypothesis.with);
   d.effects.push_back(best.hypothesis.name);
@@ -91,10 +83,11 @@ std::string_view verdict_name(Verdict verdict) {
 
 void settle(const laws::Unexplained& judged, const laws::LawProgress& progress, Diagnosis& d) {
   const auto& r = d.ranked;
-  const bool quiet = d.base.misfit() <= judged.trial.adequate && slow_remainder(d.base, d.events) < kSlow &&
-                     d.torque.explains(d.base) <= 0 && d.field.explains(d.base) <= 0;
   if (!r.empty() && r.front().accepted) return name_best(d);
-  if (quiet) {
+  d.ruling = thresholds::judged_by_remainder({d.base.misfit(), slow_remainder(d.base, d.events),
+                                              d.torque.explains(d.base), d.field.explains(d.base)},
+                                             judged.trial.adequate);
+  if (d.ruling.adequate) {
     d.verdict = Verdict::adequate;
     d.sentence = fmt::format(
         "The model is adequate: after refitting its parameters nothing but noise is left (chi2 per value "

@@ -8,9 +8,9 @@
 namespace swingbank::validate::event {
 namespace {
 
-constexpr int kFew = 3;     ///< clean samples from which a segment is known well enough
-constexpr int kNodes = 96;  ///< nodes of a window's integral
-constexpr int kGrid = 12;   ///< instants tried along each side of a bracket
+constexpr int kFewClean = 3;  ///< clean samples from which a segment is known well enough
+constexpr int kNodes = 96;    ///< nodes of a window's integral
+constexpr int kGrid = 12;     ///< instants tried along each side of a bracket
 /// Rounds around the best one, each with brackets of a quarter of the last ones' width.
 constexpr int kZooms = 5;
 constexpr double kGood =
@@ -147,7 +147,7 @@ std::vector<std::size_t> short_segments(const FitEvent& e) {
   };
   std::vector<std::size_t> found;
   for (std::size_t s = 0; s + 1 < e.switchings.size(); ++s)
-    if (clean(s + 1) < kFew && clean(s) > kFew && clean(s + 2) > kFew) found.push_back(s);
+    if (clean(s + 1) < kFewClean && clean(s) > kFewClean && clean(s + 2) > kFewClean) found.push_back(s);
   return found;
 }
 
@@ -197,8 +197,8 @@ void fill(FitEvent& e, const Segment& s) {
   const double edge = 1e-3 * e.record.step();
   copy([&](double t) { return t < s.a - edge; });
   double last = filled.theta.back();
-  for (int i = 0; i < kFew; ++i) {
-    const double t = s.a + (s.b - s.a) * (i + 0.5) / kFew;
+  for (int i = 0; i < kFewClean; ++i) {
+    const double t = s.a + (s.b - s.a) * (i + 0.5) / kFewClean;
     const Complex v = s.mean + s.slope * (t - s.centre);
     last += std::arg(v * std::polar(1.0, -last));
     add(t, std::abs(v), last);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "validate/fit/detail/states.hpp"
 #include "validate/fit/fit.hpp"
 #include "validate/playin/can_run.hpp"
 
@@ -13,13 +14,6 @@ namespace swingbank::validate::fit::fitting {
 
 using Kind = playin::Direction::Kind;
 
-constexpr int kStates = 4;  ///< P, Q, angle, speed
-/// One unit of each state, as the search steps: it is far below any effect and far above rounding.
-inline constexpr double kStateScale[kStates] = {1e-3, 1e-3, 1e-3, 1e-5};
-inline constexpr Kind kStateKind[kStates] = {Kind::P, Kind::Q, Kind::angle, Kind::speed};
-/// A start is believed to be off by so many of those units, because a plant nearly stands still before an
-/// event.
-inline constexpr double kStateBelief[kStates] = {20, 20, 20, 20};
 constexpr double kSwitchScale = 1e-3;  ///< [s]
 
 /// A free parameter as the search sees it: z = 0 at the start, steps of order 1.
@@ -97,12 +91,12 @@ inline EventState event_state(const event::FitEvent& event, const double* s) {
 /// R, upper triangular, has the same products of columns as e: R'R = e'e. A column that the others make
 /// leaves a zero row.
 inline event::RowMatrix triangle_of(const event::RowMatrix& e) {
-  constexpr double kRounding = 1e-14;  // of a squared norm
+  constexpr double kNormRounding = 1e-14;  // of a squared norm
   event::RowMatrix r = e.transpose() * e;
   const Eigen::Index n = r.cols();
   for (Eigen::Index i = 0; i < n; ++i) {
     const double whole = e.col(i).squaredNorm(), left = r(i, i);
-    if (left <= kRounding * whole) {
+    if (left <= kNormRounding * whole) {
       r.row(i).setZero();
     } else {
       r.row(i).tail(n - i) /= std::sqrt(left);

@@ -13,33 +13,21 @@ constexpr std::size_t kScored = 6, kScreened = 10;
 /// The score test looks at more draws where the standard values do not act, because each of them picks up
 /// elsewhere.
 constexpr std::size_t kProvoked = 30;
-/// Misfit of a stage that nearly fits.
-constexpr double kNear = 1.5;
 /// Shares of the standard amplitude: kSmall is where the answer is straight, kLeastShare is the least that a
 /// start has.
 constexpr double kSmall = 0.01, kLeastShare = 1e-3;
-/// Standard deviations of the belief from which a parameter is bent.
-constexpr double kBent = 2.0;
-/// Rise of chi2, as a multiple of what it is, from which no start leads back.
-constexpr double kOutOfReach = 100;
-/// Draws that act are looked for among kProvoking draws. A draw acts if the squared change of an event's
-/// answer, in units of noise, exceeds kActs.
+/// Draws that act are looked for among so many.
 constexpr std::size_t kProvoking = 80;
 /// On the way from a draw that cannot be run to one that does nothing, kHalvings halvings find the first
 /// point that runs. A start lies beyond this point by one of these shares of the rest of the way.
 constexpr std::array<double, 4> kBeyond = {0.02, 0.05, 0.1, 0.2};
 constexpr int kHalvings = 6;
-constexpr double kActs = 10;
-/// An effect that is off still changes the answer a little, because more states make other steps. It is off
-/// if its squared answer is below kOff of that of the standard values. Where a limiter's timer runs, the
-/// steps differ by more, but by less than what acts (kActs) and than a tenth of the answer (kOffBeside of its
-/// square).
-constexpr double kOff = 1e-6, kOffBeside = 0.01;
 
 }  // namespace
 
 StartFinder::StartFinder(const Stage& stage) : stage_(stage) {
-  if (stage.fit.misfit() < kNear) score_.emplace(stage.events, stage.plant, stage.conventions, stage.fit);
+  if (stage.fit.misfit() < thresholds::search.nearly_fits)
+    score_.emplace(stage.events, stage.plant, stage.conventions, stage.fit);
 }
 
 Candidate StartFinder::of(Hypothesis h) const {
@@ -68,7 +56,8 @@ std::vector<double> StartFinder::unbent(const Hypothesis& h) const {
     const bool own = std::ranges::any_of(stage_.own, [&](const fit::FreeParameter& f) {
       return f.block == p.where.block && f.index == p.where.index;
     });
-    if (!own && p.start > 0 && std::abs(std::log(p.value / p.start)) > kBent * p.where.spread)
+    if (!own && p.start > 0 &&
+        std::abs(std::log(p.value / p.start)) > thresholds::search.bent * p.where.spread)
       bent.push_back(p.where.block);
   }
   if (bent.empty()) return {};
@@ -81,7 +70,7 @@ std::vector<double> StartFinder::unbent(const Hypothesis& h) const {
   return fit::values_of(plant, free);
 }
 bool StartFinder::provoke(Hypothesis& h) const {
-  if (!h.drawn || largest_move(h, h.starts.front()) > kActs) return false;
+  if (!h.drawn || largest_move(h, h.starts.front()) > thresholds::search.acting) return false;
   const std::size_t own = h.free.size() - stage_.own.size();
   std::vector<std::vector<double>> acting, idle, failing;
   for (auto& draw :
@@ -90,7 +79,10 @@ bool StartFinder::provoke(Hypothesis& h) const {
     draw.insert(draw.end(), h.starts.front().begin() + static_cast<std::ptrdiff_t>(own),
                 h.starts.front().end());
     const double move = largest_move(h, draw);
-    (move > kActs ? acting : std::isnan(move) ? failing : idle).push_back(std::move(draw));
+    (move > thresholds::search.acting ? acting
+     : std::isnan(move)               ? failing
+                                      : idle)
+        .push_back(std::move(draw));
     if (acting.size() == kProvoked) break;
   }
   if (!idle.empty() && !failing.empty())
@@ -117,7 +109,7 @@ std::optional<std::vector<double>> StartFinder::between(const Hypothesis& h,
     (std::isnan(moves(h, beside(h, at(middle)), 0)) ? fails : runs) = middle;
   }
   auto start = at(runs + beyond * (1 - runs));
-  if (largest_move(h, start) > kActs) return start;
+  if (largest_move(h, start) > thresholds::search.acting) return start;
   return std::nullopt;
 }
 void StartFinder::screen(const Hypothesis& h, Candidate& c) const {
@@ -169,7 +161,7 @@ std::vector<std::size_t> StartFinder::amplitudes(const Hypothesis& h,
   std::vector<std::size_t> found;
   std::size_t event = 0;  // the first event in which the effect acts
   double whole = 0;
-  for (std::size_t e = 0; e < stage_.events.size() && !(whole > kActs); ++e)
+  for (std::size_t e = 0; e < stage_.events.size() && !(whole > thresholds::search.acting); ++e)
     if (const double square = moves(h, with_values(h, free, standard), e); square > whole)
       event = e, whole = square;
   for (std::size_t i = free.size() - h.free.size(); i < free.size(); ++i) {
@@ -178,7 +170,8 @@ std::vector<std::size_t> StartFinder::amplitudes(const Hypothesis& h,
     auto off = standard;
     off[i] = neutral;
     if (moves(h, with_values(h, free, off), event) <
-        std::max(kOff * whole, std::min(kActs, kOffBeside * whole)))
+        std::max(thresholds::search.off * whole,
+                 std::min(thresholds::search.acting.value, thresholds::search.off_beside * whole)))
       found.push_back(i);
   }
   return found;
@@ -189,7 +182,8 @@ sim::plant::Plant StartFinder::beside(const Hypothesis& h, const std::vector<dou
 double StartFinder::largest_move(const Hypothesis& h, const std::vector<double>& start) const {
   const sim::plant::Plant plant = beside(h, start);
   double most = 0;
-  for (std::size_t e = 0; e < stage_.events.size() && !(most > kActs) && !std::isnan(most); ++e) {
+  for (std::size_t e = 0;
+       e < stage_.events.size() && !(most > thresholds::search.acting) && !std::isnan(most); ++e) {
     const double move = moves(h, plant, e);
     if (!(move <= most)) most = move;
   }
@@ -254,9 +248,11 @@ void StartFinder::score(const Hypothesis& h, std::size_t looks, Candidate& c) co
   if (starts.empty() || std::ranges::none_of(changes, [](const auto& x) { return x.square > 0; })) return;
   c.starts = {believed(h)};
   // the gain of a few large changes says little about that of a small one
-  if (c.promise < kHopeless && (!which.empty() || starts.size() >= std::min(h.starts.size(), looks))) return;
+  if (c.promise < thresholds::search.hopeless &&
+      (!which.empty() || starts.size() >= std::min(h.starts.size(), looks)))
+    return;
   c.unbent = unbent(h);
-  const double reach = kOutOfReach * stage_.fit.chi2;
+  const double reach = thresholds::search.out_of_reach * stage_.fit.chi2;
   if (!which.empty() || starts.front().first < reach) c.nested.emplace_back(0.0, standard);
   std::ranges::sort(starts);
   for (auto& start : starts)

@@ -10,9 +10,6 @@ namespace swingbank::validate::hypothesis {
 
 /// So many starts are fitted.
 constexpr std::size_t kTries = 4;
-/// A hypothesis is not worth a fit if chi2 would fall by less than this, which is half the evidence asked
-/// for.
-constexpr double kHopeless = 20;
 
 /// A hypothesis with its starts: its standard values, then draws in order of the misfit that they leave
 /// before any fit. A draw that leaves the least misfit may be one that hardly acts.

@@ -4,20 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "base/constants.hpp"
 
 namespace swingbank::validate::laws {
 namespace {
 
 /// Length of every beginning and end [s], since a jump would have no slope to follow.
 constexpr double kRise = 0.05;
-constexpr double kEdge = 0.1;  ///< sine at which a square wave is at its height, for the same reason
-constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kEdge = 0.1;   ///< sine at which a square wave is at its height, for the same reason
 constexpr int kHarmonics = 16;  ///< harmonics of a sawtooth; those left out hold 4 % of its square
 
 double edge(double tau) { return std::clamp(tau / kRise, 0.0, 1.0); }
 double sawtooth(double turns) { return 2 * (turns - std::floor(turns)) - 1; }
-double square(double turns) { return std::clamp(std::sin(kTurn * turns) / kEdge, -1.0, 1.0); }
+double square(double turns) { return std::clamp(std::sin(constants::turn * turns) / kEdge, -1.0, 1.0); }
 /// The sawtooth as a Fourier series, for law files know no remainder; turn = pi f tau.
 std::string sawtooth_series() {
   std::string text;

@@ -4,15 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/constants.hpp"
 #include "validate/laws/detail/shapes.hpp"
 
 namespace swingbank::validate::laws {
 namespace {
 
 using Kind = LawShape::Kind;
-constexpr double kTurn = 2 * std::numbers::pi;
 
 /// Where time is counted from.
 struct Clock {
@@ -62,8 +61,10 @@ class Timed {
     };
     std::vector<Eigen::VectorXd> columns;
     if (shape.kind == Kind::sine) {
-      columns.push_back(column([&](double tau) { return shape.course(tau, b) * std::sin(kTurn * b * tau); }));
-      columns.push_back(column([&](double tau) { return shape.course(tau, b) * std::cos(kTurn * b * tau); }));
+      columns.push_back(
+          column([&](double tau) { return shape.course(tau, b) * std::sin(constants::turn * b * tau); }));
+      columns.push_back(
+          column([&](double tau) { return shape.course(tau, b) * std::cos(constants::turn * b * tau); }));
     } else {
       columns.push_back(column([&](double tau) { return shape.course(tau, b); }));
     }
@@ -153,9 +154,9 @@ class Timed {
     const double middle =
         std::round((clock.triggered ? (last_ - first_) / 2 : (first_ + last_) / 2) * 10) / 10;
     double phase =
-        std::atan2(at.answer.factors[1], at.answer.factors[0]) + kTurn * at.b * (middle - at.begin);
-    phase -= kTurn * std::floor(phase / kTurn);
-    if (phase < 0.3) phase += kTurn;  // a logarithmic scale needs room below
+        std::atan2(at.answer.factors[1], at.answer.factors[0]) + constants::turn * at.b * (middle - at.begin);
+    phase -= constants::turn * std::floor(phase / constants::turn);
+    if (phase < 0.3) phase += constants::turn;  // a logarithmic scale needs room below
     law.parameters.push_back({"phase", "rad", phase, 0, 20, false, "phase in the middle of the records"});
     law.body += fmt::format("turned = \"{} - {:g}\"\n", now, middle);
     replace(law.words, "{centre}",

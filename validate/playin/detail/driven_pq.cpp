@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
+#include "base/constants.hpp"
 #include "sim/plant/equations.hpp"
 #include "sim/plant/tableau.hpp"
 
@@ -172,7 +172,7 @@ class DrivenByPower {
 
   void record(double t) {
     if (!evaluate(t, x_.data(), k_[0].data())) give_up();
-    const double turn = 2 * std::numbers::pi;
+    const double turn = constants::turn;
     const double theta = std::arg(voltage_) + run_.start.drift * t;
     const double last = answer_.theta.empty() ? run_.record->theta.front() : answer_.theta.back();
     answer_.V.push_back(std::abs(voltage_));

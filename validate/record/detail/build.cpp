@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <set>
 #include <utility>
 
+#include "base/constants.hpp"
 #include "validate/record/detail/times.hpp"
 
 namespace swingbank::validate::record {
@@ -123,9 +123,8 @@ void power_from_current(Record& r, const std::vector<double>& current, const std
 
 /// Angles are known up to turns; a continuous one is kept, so that plots and differences make sense.
 void unwrap(std::vector<double>& angle) {
-  constexpr double turn = 2 * std::numbers::pi;
   for (std::size_t k = 1; k < angle.size(); ++k)
-    angle[k] -= turn * std::round((angle[k] - angle[k - 1]) / turn);
+    angle[k] -= constants::turn * std::round((angle[k] - angle[k - 1]) / constants::turn);
 }
 
 void check_magnitudes(const Record& r, SampleFaults& faults) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/constants.hpp"
+
 namespace swingbank::validate::record {
 namespace {
 
@@ -254,7 +256,7 @@ double to_record_units(const ColumnMeaning& column, double v, const RecordBase& 
     case Unit::volt_ln:
       return v * 1e-3 * std::numbers::sqrt3 / base.kv;
     case Unit::degree:
-      return v * std::numbers::pi / 180;
+      return v * constants::pi / 180;
     case Unit::hertz:
       return v / base.frequency - 1;
     case Unit::megawatt:

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/constants.hpp"
+
 namespace swingbank::validate::record {
 namespace {
 
@@ -30,11 +32,11 @@ Complex fourier(const std::vector<double>& samples, double rate, double skew, do
 
 PhasorTrack positive_sequence(const Waveforms& waves, double nominal, double phasors_per_second) {
   PhasorTrack track;
-  const double omega = 2 * std::numbers::pi * nominal, cycle = 1 / nominal;
+  const double omega = constants::turn * nominal, cycle = 1 / nominal;
   const auto n = std::min({waves.samples[0].size(), waves.samples[1].size(), waves.samples[2].size()});
   if (n == 0) return track;
   const double end = (static_cast<double>(n) - 0.5) / waves.rate;
-  const Complex turn = std::polar(1.0, 2 * std::numbers::pi / 3), turns[] = {1.0, turn, turn * turn};
+  const Complex turn = std::polar(1.0, constants::turn / 3), turns[] = {1.0, turn, turn * turn};
   for (std::size_t j = 0;; ++j) {
     const double middle = (cycle - 1 / waves.rate) / 2 + static_cast<double>(j) / phasors_per_second;
     if (middle + cycle / 2 > end + 1e-9) return track;

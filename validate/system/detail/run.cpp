@@ -3,18 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <set>
 #include <tuple>
 
+#include "base/constants.hpp"
 #include "sim/core/window.hpp"
 #include "sim/plant/measure.hpp"
 #include "sim/reference/reference.hpp"
 
 namespace swingbank::validate::system {
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 std::vector<double> scaled(const double* values, int n, double factor) {
   std::vector<double> out(values, values + n);
@@ -23,7 +21,7 @@ std::vector<double> scaled(const double* values, int n, double factor) {
 }
 void unwrap(std::vector<double>& angle) {
   for (std::size_t k = 1; k < angle.size(); ++k)
-    angle[k] -= kTurn * std::round((angle[k] - angle[k - 1]) / kTurn);
+    angle[k] -= constants::turn * std::round((angle[k] - angle[k - 1]) / constants::turn);
 }
 
 /// A jump between two samples would pass for a ramp about their middle: the nearer one takes a share of it,

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <random>
 
+#include "base/constants.hpp"
+
 namespace swingbank::validate::blind::cases {
 
 class BlindDraw {
@@ -24,7 +26,7 @@ class BlindDraw {
   /// Standard normal (Box and Muller).
   double normal() {
     const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
-    return radius * std::cos(6.283185307179586 * uniform());
+    return radius * std::cos(constants::turn * uniform());
   }
 
  private:

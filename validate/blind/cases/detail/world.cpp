@@ -12,7 +12,7 @@
 namespace swingbank::validate::blind::cases {
 namespace {
 
-constexpr int kTries = 200;  ///< draws of one block until its checks accept it
+constexpr int kBlockTries = 200;  ///< draws of one block until its checks accept it
 
 [[noreturn]] void refuse(const std::string& what, const std::string& why) {
   throw InputError({what, "blind case", why, "change the kinds in the config"});
@@ -79,7 +79,7 @@ void set_path(sim::plant::Plant& plant, sim::Conventions& conventions, const Bli
 void jitter(sim::plant::Block& block, double spread, BlindDraw& draw) {
   const sim::Effect& effect = *block.effect;
   const std::vector<double> middle = block.p;
-  for (int k = 0; k < kTries; ++k) {
+  for (int k = 0; k < kBlockTries; ++k) {
     for (std::size_t i = 0; i < middle.size(); ++i) {
       const sim::Parameter& record = effect.parameters[i];
       const double factor = draw.uniform(1.0 - spread, 1.0 + spread);

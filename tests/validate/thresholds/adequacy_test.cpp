@@ -1,0 +1,77 @@
+// Which criterion decides whether a model is adequate, at its limit and beside it.
+#include "validate/thresholds/adequacy.hpp"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "validate/thresholds/list.hpp"
+
+namespace swingbank::validate::thresholds {
+namespace {
+
+using testing::HasSubstr;
+
+struct Event {
+  std::string record;
+  double after, limit;
+};
+
+TEST(Adequacy, OneCellBeyondItsBoundIsEnough) {
+  EXPECT_TRUE(judged_by_cells(0, 405).adequate);
+  const Ruling one = judged_by_cells(1, 405);
+  EXPECT_FALSE(one.adequate);
+  EXPECT_EQ(one.by, Criterion::cells);
+  EXPECT_THAT(ruling_text(one), HasSubstr("(of 405): 1 cells"));
+}
+
+TEST(Adequacy, AnEventsLimitIsAtLeastWhatInterpolationLeaves) {
+  EXPECT_DOUBLE_EQ(event_limit(0.01, 1.12), 1.12);
+  EXPECT_DOUBLE_EQ(event_limit(0.1, 1.12), 1 + 3.09 * 0.1);
+}
+
+TEST(Adequacy, TheEventFurthestOffItsOwnLimitDecides) {
+  const std::vector<Event> events = {{"a", 1.19, 1.2}, {"b", 1.14, 1.12}, {"c", 1.3, 1.4}};
+  const Ruling ruling = judged_by_events(events);
+  EXPECT_FALSE(ruling.adequate);
+  EXPECT_EQ(ruling.where, "b");
+  EXPECT_DOUBLE_EQ(ruling.value, 1.14);
+  EXPECT_DOUBLE_EQ(ruling.limit, 1.12);
+  EXPECT_TRUE(judged_by_events(std::vector<Event>{{"a", 1.2, 1.2}}).adequate);
+  EXPECT_FALSE(judged_by_events(std::vector<Event>{{"b", 1.14, 1.12}, {"a", 1.1, 1.2}}).adequate);
+}
+
+TEST(Adequacy, AnEventThatCannotBeComparedIsNotAdequate) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(judged_by_events(std::vector<Event>{{"a", nan, 1.2}, {"b", 1.0, 1.2}}).adequate);
+}
+
+TEST(Adequacy, DiagnoseNamesTheFirstCriterionThatFails) {
+  const Refitted good{.misfit = 1.12, .slow = 7.9, .torque = 0, .field = -40};
+  const auto by = [](Refitted r) { return judged_by_remainder(r, adequacy.misfit); };
+  EXPECT_TRUE(by(good).adequate);
+  EXPECT_EQ(by(good).by, Criterion::misfit);
+  Refitted r = good;
+  r.misfit = 1.13;
+  EXPECT_EQ(by(r).by, Criterion::misfit);
+  EXPECT_FALSE(by(r).adequate);
+  r = good;
+  r.slow = 8;
+  EXPECT_EQ(by(r).by, Criterion::slow);
+  EXPECT_FALSE(by(r).adequate);
+  r = good;
+  r.field = 0.5;
+  EXPECT_EQ(by(r).by, Criterion::free_input);
+  EXPECT_EQ(by(r).where, "field voltage");
+  EXPECT_FALSE(by(r).adequate);
+}
+
+TEST(Adequacy, ANamedEffectDecidesByItsEvidence) {
+  const Ruling ruling = judged_by_evidence("SEXS", 1234.5);
+  EXPECT_FALSE(ruling.adequate);
+  EXPECT_EQ(ruling_json(ruling).at("criterion"), "named_effect");
+  EXPECT_EQ(ruling_json(ruling).at("limit"), evidence.accepted.value);
+}
+
+}  // namespace
+}  // namespace swingbank::validate::thresholds

@@ -1,0 +1,52 @@
+#include "validate/thresholds/adequacy.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace swingbank::validate::thresholds {
+
+const CriterionRecord& criterion_record(Criterion criterion) {
+  static constexpr std::array<CriterionRecord, 6> records = {{
+      {"cells", "cells of the error maps beyond what noise alone allows, the model as it is", "cells", "at"},
+      {"events", "chi2 per value of the event furthest off, parameters refitted", "chi2 per value", "up to"},
+      {"misfit", "chi2 per value over all events, parameters refitted", "chi2 per value", "up to"},
+      {"slow", "slow remainder of the residual, parameters refitted", "standard deviations", "below"},
+      {"free_input", "what an input free in time explains beyond its knots", "chi2", "up to"},
+      {"named_effect", "evidence of the effect that is named", "chi2", "below"},
+  }};
+  return records[static_cast<std::size_t>(criterion)];
+}
+
+Ruling judged_by_cells(int exceeding, int cells) {
+  return {Criterion::cells, exceeding == 0, static_cast<double>(exceeding), 0, fmt::format("of {}", cells)};
+}
+
+double event_limit(double spread, double least) {
+  return std::max(least, 1 + adequacy.one_in_thousand * spread);
+}
+
+Ruling judged_by_remainder(const Refitted& r, double least) {
+  const Ruling misfit{Criterion::misfit, r.misfit <= least, r.misfit, least},
+      slow{Criterion::slow, r.slow < adequacy.slow, r.slow, adequacy.slow},
+      torque{Criterion::free_input, r.torque <= adequacy.free_input, r.torque, adequacy.free_input, "torque"},
+      field{Criterion::free_input, r.field <= adequacy.free_input, r.field, adequacy.free_input,
+            "field voltage"};
+  for (const Ruling& one : {misfit, slow, torque, field})
+    if (!one.adequate) return one;
+  return misfit;
+}
+
+Ruling judged_by_evidence(const std::string& effect, double strength) {
+  return {Criterion::named_effect, false, strength, evidence.accepted, effect};
+}
+
+std::string ruling_text(const Ruling& ruling) {
+  const CriterionRecord& r = criterion_record(ruling.by);
+  return fmt::format("Judged by the criterion '{}', {}{}: {:.4g} {}, adequate {} {:.4g}.", r.name, r.asks,
+                     ruling.where.empty() ? "" : " (" + ruling.where + ")", ruling.value, r.unit,
+                     r.while_adequate, ruling.limit);
+}
+
+}  // namespace swingbank::validate::thresholds

@@ -1,0 +1,49 @@
+#include "validate/thresholds/list.hpp"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace swingbank::validate::thresholds {
+namespace {
+
+/// A stage holds nothing but thresholds, so it is an array of them.
+template <class Stage>
+void add(const Stage& stage, std::vector<Threshold>& all) {
+  static_assert(sizeof(Stage) % sizeof(Threshold) == 0);
+  const auto records = std::bit_cast<std::array<Threshold, sizeof(Stage) / sizeof(Threshold)>>(stage);
+  all.insert(all.end(), records.begin(), records.end());
+}
+
+}  // namespace
+
+std::vector<Threshold> all_thresholds() {
+  std::vector<Threshold> all;
+  add(evidence, all);
+  add(held_out, all);
+  add(adequacy, all);
+  add(noise, all);
+  add(search, all);
+  add(laws, all);
+  add(addition, all);
+  add(parameters, all);
+  return all;
+}
+
+nlohmann::json thresholds_json() {
+  auto all = nlohmann::json::array();
+  for (const Threshold& t : all_thresholds())
+    all.push_back({{"name", t.name}, {"value", t.value}, {"unit", t.unit}, {"why", t.why}});
+  return all;
+}
+
+nlohmann::json ruling_json(const Ruling& ruling) {
+  const CriterionRecord& r = criterion_record(ruling.by);
+  nlohmann::json j = {{"criterion", r.name},   {"asks", r.asks}, {"adequate", ruling.adequate},
+                      {"limit", ruling.limit}, {"unit", r.unit}, {"where", ruling.where}};
+  j["value"] = std::isfinite(ruling.value) ? nlohmann::json(ruling.value) : nlohmann::json(nullptr);
+  return j;
+}
+
+}  // namespace swingbank::validate::thresholds

@@ -1,0 +1,17 @@
+#pragma once
+// All thresholds, in the order of the stages, and how reports write them.
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "validate/thresholds/adequacy.hpp"
+#include "validate/thresholds/thresholds.hpp"
+
+namespace swingbank::validate::thresholds {
+
+std::vector<Threshold> all_thresholds();
+/// [{"name", "value", "unit", "why"}]
+nlohmann::json thresholds_json();
+/// {"criterion", "asks", "adequate", "value", "limit", "unit", "where"}; value null where it is not finite.
+nlohmann::json ruling_json(const Ruling& ruling);
+
+}  // namespace swingbank::validate::thresholds

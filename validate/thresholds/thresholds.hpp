@@ -1,0 +1,214 @@
+#pragma once
+// Every number on which a verdict hangs: what counts as noise, as evidence, as predicted, as adequate. One
+// struct per stage, one record per threshold; `swingbank diagnose --thresholds` prints them all. A number
+// that says how long a search goes on (steps, starts, rounds) decides no verdict and stands where the search
+// is.
+#include <string_view>
+
+namespace swingbank::validate::thresholds {
+
+struct Threshold {
+  std::string_view name;  ///< stage.field
+  double value;
+  std::string_view unit;
+  std::string_view
+      why;  ///< what it decides, and the decision record (docs/decisions) or the source it comes from
+  constexpr operator double() const { return value; }  // NOLINT: it is that number wherever it is compared
+};
+
+/// Evidence is twice the log of a Bayes factor by Laplace's approximation, so it is counted in units of chi2
+/// (decision 18).
+struct Evidence {
+  Threshold accepted{
+      "evidence.accepted", 40, "chi2",
+      "diagnose accepts an effect from here; the best of some thirty wrong ones had 20 at most in thirty "
+      "development cases with nothing hidden (decisions 16 and 18)"};
+  Threshold second{
+      "evidence.second", 80, "chi2",
+      "a pair of effects leaves that much less than every single one, in evidence and in chi2, because "
+      "what the first effect or the instruments leave looks like a second one (decision 20)"};
+  Threshold within_reach{
+      "evidence.within_reach", 200, "chi2",
+      "a long fit may add this much to a short one; what lies further behind the best is neither "
+      "fitted on for that reason nor judged (decision 19)"};
+  Threshold apart{
+      "evidence.apart", 25, "chi2",
+      "rivals within this evidence, or this chi2, of the best one cannot be told from it; in development "
+      "cases 1 to 10 lay between the first three (log of the blind test, scorings)"};
+  Threshold near{"evidence.near", 0.2, "share of the best one's evidence",
+                 "from here a rival of the leader's slot gets further starts (decision 19)"};
+  Threshold escape{
+      "evidence.escape", 0.5, "share of the leading extension's evidence",
+      "where a better start of the model alone explains more, the diagnosis begins anew (decision 19)"};
+  Threshold same_fit{
+      "evidence.same_fit", 0.5, "chi2",
+      "a finished fit takes the place of a short one, which has no errors, unless it is worse by more"};
+};
+inline constexpr Evidence evidence;
+
+/// What an unseen event says of an effect (decision 18).
+struct HeldOut {
+  Threshold worse{
+      "held_out.worse", 1.02, "ratio of costs",
+      "an event in which the effect hardly acts may be predicted worse by this: the refit's own scatter "
+      "(decision 18)"};
+  Threshold costs{
+      "held_out.costs", 20, "chi2",
+      "an effect may cost no unseen event more, or costs_share if that is more; what is really missing "
+      "costs nothing (decision 18)"};
+  Threshold costs_share{"held_out.costs_share", 0.1, "share of the effect's evidence",
+                        "see costs (decision 18)"};
+  Threshold predicts{"held_out.predicts", 1.25, "chi2 per value",
+                     "an unseen event with this cost at most is predicted (decision 18)"};
+  Threshold falls{"held_out.falls", 0.1, "share of the cost without the effect",
+                  "an unseen event whose cost falls to this is predicted too (decision 18)"};
+  Threshold alone{
+      "held_out.alone", 0.8, "share of what the effect saves on unseen events",
+      "an effect shows in one event alone if that event holds more; no other event can foretell it then"};
+  Threshold foretold{"held_out.foretold", 0.5, "share of that event's chi2",
+                     "and if the others, fitted without it, leave more of it than this"};
+};
+inline constexpr HeldOut held_out;
+
+/// Whether nothing but noise is left; adequacy.hpp says which command asks which of these.
+struct Adequacy {
+  Threshold misfit{
+      "adequacy.misfit", 1.12, "chi2 per value",
+      "splines through noisy samples of the played-in voltage leave up to this (decisions 16 and 17)"};
+  Threshold slow{
+      "adequacy.slow", 8, "standard deviations",
+      "means of the residual over 0.5 to 2 s may exceed those of white noise by this; thirty development "
+      "cases with nothing hidden had 3.9 at most (log of the diagnosis, entry 46)"};
+  Threshold knot{"adequacy.knot", 2, "chi2 per knot",
+                 "what a knot of an input that is free in time must earn (Akaike; decision 18)"};
+  Threshold free_input{"adequacy.free_input", 0, "chi2 beyond the knots' price",
+                       "above this a free torque or field voltage explains something: an input is missing "
+                       "(decision 18)"};
+  Threshold one_in_thousand{
+      "adequacy.one_in_thousand", 3.09, "standard deviations",
+      "one-sided quantile of the normal distribution: noise alone exceeds an event's limit once "
+      "in a thousand (calibrate, add)"};
+  Threshold false_alarm{
+      "adequacy.false_alarm", 0.001, "probability",
+      "with which noise alone exceeds any of the cells of all of compare's error maps together"};
+};
+inline constexpr Adequacy adequacy;
+
+/// From which misfit on something else than noise governs a fit.
+struct Noise {
+  Threshold measurable{
+      "noise.measurable", 4, "chi2 per value",
+      "noise can be measured through a structure that misfits by less, because its reactances are "
+      "near enough (decision 16)"};
+  Threshold believed{"noise.believed", 1.5, "chi2 per value",
+                     "up to this misfit beliefs about parameters weigh as they stand (decision 15)"};
+  Threshold taken_back{
+      "noise.taken_back", 1.5, "chi2 per value",
+      "up to this misfit calibrate takes back what noise of the voltage did; above it something else "
+      "pulls harder (decision 17)"};
+};
+inline constexpr Noise noise;
+
+/// Which hypotheses are fitted, and how far (decision 19).
+struct Search {
+  Threshold hopeless{
+      "search.hopeless", evidence.accepted / 2, "chi2",
+      "a hypothesis is not fitted if the score test promises less: half the evidence asked for "
+      "(decision 19)"};
+  Threshold nearly_fits{"search.nearly_fits", 1.5, "chi2 per value",
+                        "below this misfit of the stage the score test chooses the starts (decision 19)"};
+  Threshold nested{"search.nested", 4, "chi2 per value",
+                   "below this misfit the stage's fitted values are good starts for all but what is missing "
+                   "(decision 19)"};
+  Threshold fair_at_first{"search.fair_at_first", 0.05, "share of the best gain",
+                          "from here further starts are tried (decision 19)"};
+  Threshold fair{"search.fair", 0.2, "share of the best gain",
+                 "from here a hypothesis is fitted on (decision 19)"};
+  Threshold worth_a_round{"search.worth_a_round", 10, "chi2",
+                          "a fit goes on while a round gains this (decision 19)"};
+  Threshold coming{"search.coming", 0.8, "share of the distance to the stage",
+                   "a fit that is worse than the stage goes on only if a round leaves less of the distance "
+                   "(decision 19)"};
+  Threshold exchange_behind{"search.exchange_behind", 10, "chi2",
+                            "a rival of a pair's first effect that is behind by more gets further starts "
+                            "(decision 20)"};
+  Threshold bent{"search.bent", 2, "standard deviations of the belief",
+                 "from here a parameter counts as bent by the refit (decision 19)"};
+  Threshold out_of_reach{"search.out_of_reach", 100, "multiple of chi2",
+                         "from a start that raises chi2 by more no fit leads back (decision 19)"};
+  Threshold acting{"search.acting", 10, "chi2",
+                   "a start acts if the squared change of an event's answer exceeds this (decision 19)"};
+  Threshold off{"search.off", 1e-6, "share of the standard start's squared answer",
+                "below this an effect is off: more states make other steps (decision 19)"};
+  Threshold off_beside{
+      "search.off_beside", 0.01, "share of the standard start's squared answer",
+      "as off, where a limiter's timer runs and the answer stays below acting (decision 19)"};
+  Threshold without_slope{
+      "search.without_slope", 1, "chi2",
+      "a parameter whose changes move chi2 by less does not act at all and is not scanned "
+      "(decision 19)"};
+  Threshold other_steps{"search.other_steps", 4, "chi2",
+                        "two runs of one model may differ by this, because other states make other steps"};
+};
+inline constexpr Search search;
+
+/// Laws from the inferred input (decision 21).
+struct Laws {
+  Threshold explains{"laws.explains", 0.3, "share of the base's misfit",
+                     "an input is worth a law if it leaves no more: it takes away 70 % (decision 21)"};
+  Threshold as_much{
+      "laws.as_much", 1.5, "ratio of misfits",
+      "an input explains as much as the better one if it leaves no more than this many times what that "
+      "leaves (decision 21)"};
+  Threshold least_explained{"laws.least_explained", 0.3, "share of the inferred input",
+                            "a law that explains less is not fitted (decision 21)"};
+  Threshold judged_below{"laws.judged_below", 2, "chi2 per value",
+                         "judging a law is in vain if its first fit leaves more (decision 21)"};
+  Threshold own_time{
+      "laws.own_time", 6, "chi2",
+      "a law of the record's own time must be better by this, because it means something only where "
+      "records begin alike (decision 21)"};
+  Threshold in_proportion{"laws.in_proportion", 3, "chi2",
+                          "a law in proportion to the start must be better by this than one that is not "
+                          "(decision 21)"};
+};
+inline constexpr Laws laws;
+
+/// `swingbank add`: a person has named the effect, so one hypothesis stands against one other. Diagnose asks
+/// for four times as much evidence because it takes the best of some thirty, and chance offers that many
+/// wrong ones.
+struct Addition {
+  Threshold strong{
+      "addition.strong", 10, "chi2",
+      "an effect that a person names earns its place above this, if no unseen event is worse with it: "
+      "strong evidence of one hypothesis against one other (Kass and Raftery, JASA 90, 1995: 6 to 10); "
+      "the best of many, which diagnose takes, needs evidence.accepted"};
+  Threshold stays{"addition.stays", 0, "chi2",
+                  "an effect added before is taken out again if what came later leaves it no more"};
+};
+inline constexpr Addition addition;
+
+/// What calibrate and the tables say of a parameter (decision 17).
+struct Parameters {
+  Threshold spread{"parameters.spread", 0.2, "relative",
+                   "standard deviation believed of a model's parameters, unless --spread says otherwise "
+                   "(decision 15)"};
+  Threshold identified{
+      "parameters.identified", 0.5, "share decided by the records",
+      "a parameter, or a direction of several, that the records decide less is not identified"};
+  Threshold member{"parameters.member", 0.3, "component of a unit vector",
+                   "a parameter belongs to a group that the records cannot tell apart from here"};
+  Threshold narrowed{"parameters.narrowed", 0.8, "ratio of standard errors",
+                     "a further event is recommended if it narrows a parameter's error to less"};
+  Threshold agrees{
+      "parameters.agrees", 0.01, "share of the cost",
+      "a start that ends this near the best one came to the same optimum; agrees_least if that is more"};
+  Threshold agrees_least{"parameters.agrees_least", 1, "chi2", "what one parameter's standard error costs"};
+  Threshold moved{"parameters.moved", 2, "standard errors",
+                  "a parameter that calibration moved by more is named in the verdict"};
+  Threshold beyond_belief{"parameters.beyond_belief", 2.5, "standard deviations of the belief",
+                          "a fitted value further from the model's is noted"};
+};
+inline constexpr Parameters parameters;
+
+}  // namespace swingbank::validate::thresholds
