@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "base/constants.hpp"
 #include "base/durable.hpp"
 #include "jobs/measured_run.hpp"
 #include "mpi/store/hdf5_file.hpp"
@@ -291,7 +292,7 @@ int simulate(const Options& o) {
   }
   fmt::print("loads: {}\n", grid::describe_loads(grid));
   fmt::print("{} at {:g} s, largest rotor angle spread {:.3f} deg, {}{:.3f} s wall time\n",
-             outcome_name(run.outcome), run.stopped_at, run.largest_spread * 57.295779513082321,
+             outcome_name(run.outcome), run.stopped_at, run.largest_spread * constants::degrees_in_radian,
              run.steps > 0 ? fmt::format("{} steps, ", run.steps) : "", wall);
   return 0;
 }

@@ -2,6 +2,7 @@
 // Frequency of a bus from its voltage phasor.
 #include <cmath>
 
+#include "base/constants.hpp"
 #include "sim/core/scalar.hpp"
 
 namespace swingbank::sim {
@@ -9,7 +10,7 @@ namespace swingbank::sim {
 /// 1/(2 pi f0 Tf): what bus_frequency() multiplies the angle's lead by. `inverse_Tf` [1/s].
 template <class T>
 inline T frequency_slope(const T& inverse_Tf, double f0) {
-  return inverse_Tf * T(1.0 / (2.0 * 3.14159265358979323846 * f0));
+  return inverse_Tf * T(1.0 / (constants::turn * f0));
 }
 
 /// Frequency deviation [pu] from a voltage and the same behind a lag, x = V/(1 + s Tf):

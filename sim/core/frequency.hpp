@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "base/constants.hpp"
+
 namespace swingbank::sim {
 
 struct FrequencyFilter {
@@ -18,7 +20,6 @@ struct FrequencyFilter {
 /// f0].
 inline void terminal_frequency(const double* theta, std::size_t samples, double rate, double f0,
                                const FrequencyFilter& constants, double* out) {
-  constexpr double pi = 3.14159265358979323846;
   struct Lag {
     double keep, before, after, x;  // x <- keep x + before u_k + after u_k+1, in angles less the first
     Lag(double T, double h) : keep(std::exp(-h / T)), x(0.0) {
@@ -29,13 +30,13 @@ inline void terminal_frequency(const double* theta, std::size_t samples, double 
     double step(double u0, double u1) { return x = keep * x + before * u0 + after * u1; }
   };
   Lag w(constants.washout, 1.0 / rate), f(constants.filter, 1.0 / rate);
-  const double scale = 1.0 / (2.0 * pi * f0 * (constants.filter - constants.washout));
+  const double scale = 1.0 / (constants::turn * f0 * (constants.filter - constants.washout));
   double turned = 0.0, last = 0.0;
   if (samples > 0) out[0] = 0.0;
   for (std::size_t k = 1; k < samples; ++k) {
     const double jump = theta[k] - theta[k - 1];
-    turned -=
-        2.0 * pi * std::round(jump / (2.0 * pi));  // an angle does not leap by half a turn between samples
+    turned -= constants::turn *
+              std::round(jump / constants::turn);  // an angle does not leap by half a turn between samples
     const double u = theta[k] - theta[0] + turned;
     out[k] = scale * (w.step(last, u) - f.step(last, u));
     last = u;

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "base/constants.hpp"
+
 namespace swingbank::sim {
 
 /// Two independent numbers in (0, 1], 53 bits.
@@ -24,7 +26,7 @@ inline std::array<double, 2> uniform_pair(std::uint64_t seed, std::uint32_t stre
 /// Two independent numbers of the standard normal distribution (Box-Muller).
 inline std::array<double, 2> normal_pair(std::uint64_t seed, std::uint32_t stream, std::uint64_t sample) {
   const auto u = uniform_pair(seed, stream, sample);
-  const double radius = std::sqrt(-2.0 * std::log(u[0])), angle = 6.28318530717958647692 * u[1];
+  const double radius = std::sqrt(-2.0 * std::log(u[0])), angle = constants::turn * u[1];
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 

@@ -6,6 +6,8 @@
 #include <cstdint>
 #ifdef __AVX512F__
 #include <immintrin.h>
+
+#include "base/constants.hpp"
 #endif
 
 namespace swingbank::sim {
@@ -142,7 +144,7 @@ inline Pack<N> atan2(Pack<N> y, Pack<N> x) {
   const P numerator = select(big, -b, select(mid, a - b, a));
   P denominator = select(big, a, select(mid, a + b, b));
   denominator = select(denominator > P(0.0), denominator, P(1.0));
-  const P offset = select(big, P(1.57079632679489661923), select(mid, P(0.78539816339744830962), P(0.0)));
+  const P offset = select(big, P(constants::pi / 2), select(mid, P(constants::pi / 4), P(0.0)));
   const P t = numerator / denominator, z = t * t;
   const P p = (((P(-8.750608600031904122785e-1) * z + P(-1.615753718733365076637e1)) * z +
                 P(-7.500855792314704667340e1)) *
@@ -157,7 +159,7 @@ inline Pack<N> atan2(Pack<N> y, Pack<N> x) {
                   z +
               P(1.945506571482613964425e2);
   P r = offset + (t + t * (z * p / q));
-  r = select(x < P(0.0), P(3.14159265358979323846) - r, r);
+  r = select(x < P(0.0), P(constants::pi) - r, r);
   return P((typename P::Vector)((Mask)r.v | ((Mask)y.v & sign_bit)));
 }
 

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "base/constants.hpp"
+
 namespace swingbank::sim {
 
 /// Cubic convolution: what a sample adds to the curve at a distance of u samples. It reproduces parabolas (R.
@@ -72,11 +74,11 @@ std::vector<T> averaged(const std::vector<T>& y, const std::vector<double>& weig
 /// Angles [rad] continuous from sample to sample; NaN stays NaN.
 template <class Complex>
 std::vector<double> continuous_angles(const std::vector<Complex>& phasors) {
-  constexpr double kTurn = 6.28318530717958647692;
   std::vector<double> angles;
   double last = 0.0;
   for (const Complex& v : phasors) {
-    const double angle = std::arg(v), near = angle + kTurn * std::nearbyint((last - angle) / kTurn);
+    const double angle = std::arg(v),
+                 near = angle + constants::turn * std::nearbyint((last - angle) / constants::turn);
     if (std::isfinite(near)) last = near;
     angles.push_back(near);
   }
@@ -86,11 +88,11 @@ std::vector<double> continuous_angles(const std::vector<Complex>& phasors) {
 /// Frequency deviation [pu] of angles [rad]: central difference, one-sided at the ends.
 inline std::vector<double> frequency_deviation(const std::vector<double>& angles, double rate,
                                                double frequency) {
-  constexpr double kTurn = 6.28318530717958647692;
   std::vector<double> df(angles.size(), 0.0);
   for (std::size_t k = 0; k < angles.size(); ++k) {
     const std::size_t a = k > 0 ? k - 1 : k, b = std::min(k + 1, angles.size() - 1);
-    if (b > a) df[k] = (angles[b] - angles[a]) * rate / (static_cast<double>(b - a) * kTurn * frequency);
+    if (b > a)
+      df[k] = (angles[b] - angles[a]) * rate / (static_cast<double>(b - a) * constants::turn * frequency);
   }
   return df;
 }

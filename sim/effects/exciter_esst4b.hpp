@@ -2,8 +2,7 @@
 // ESST4B: static excitation from a potential or compound source, two PI regulators.
 #include <fmt/format.h>
 
-#include <numbers>
-
+#include "base/constants.hpp"
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 
@@ -128,7 +127,7 @@ struct Model {
     c[iTR] = inverse(p[TR]);
     c[iTA] = inverse(p[TA]);
     T sine, cosine;
-    sincos(p[THETAP] * T(std::numbers::pi / 180.0), sine, cosine);
+    sincos(p[THETAP] * T(constants::degree), sine, cosine);
     c[voltage_r] = p[KP] * cosine;
     c[voltage_i] = p[KP] * sine;
     c[current_r] = T(0.0) - c[voltage_i] * p[XL];  // of j (KI + KP' XL)

@@ -85,9 +85,9 @@ struct Model {
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
     // A dispatch at the limit exceeds it by what the power flow rounds: the limit is then where it stands.
-    constexpr double kRounding = 1e-9;
+    constexpr double kLimitRounding = 1e-9;
     c[ambient] = select(p[AT] < s.Tm, s.Tm, p[AT]);
-    if (value_of(s.Tm) > value_of(p[AT]) + kRounding)
+    if (value_of(s.Tm) > value_of(p[AT]) + kLimitRounding)
       return fmt::format("it would need {:.4g} pu of power, above its temperature limit AT = {:.4g} pu",
                          value_of(s.Tm), value_of(p[AT]));
     x[fuel] = x[flow] = x[exhaust] = c[Pref] = s.Tm;

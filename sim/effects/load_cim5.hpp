@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "base/constants.hpp"
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 
@@ -156,7 +157,7 @@ struct Model {
     c[a2] = p[Xm] * (c[g12] + c[g22]);
     c[ra] = p[Ra];
     c[xs] = p[Xa] + p[Xm] * (one - c[a1] - c[a2]);
-    c[w0] = T(2.0 * 3.14159265358979323846 * conventions.frequency);
+    c[w0] = T(constants::turn * conventions.frequency);
     c[w1] = c[w0] * p[R1];
     c[w2] = c[w0] * p[R2];
     const auto q = Quadratic<T>::through(p[E1], p[S1], p[E2], p[S2]);

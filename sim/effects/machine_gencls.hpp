@@ -6,6 +6,7 @@
 // with Pe undivided by 0.115. ANDES takes torques (tests/reference/andes). No speed voltage: there are no
 // flux linkages. No record at hand has Ra, so none shows whether PSS/E counts its loss in Pe, as is done
 // here.
+#include "base/constants.hpp"
 #include "sim/core/effect.hpp"
 
 namespace swingbank::sim::effects::machine_gencls {
@@ -50,7 +51,7 @@ struct Model {
     c[moves] = select(p[H] > T(0.0), T(1.0), T(0.0));
     c[i2H] = select(p[H] > T(0.0), T(0.5) / p[H], T(0.0));
     c[kD] = p[D];
-    c[W0] = T(2.0 * 3.14159265358979323846 * conventions.frequency) * c[moves];
+    c[W0] = T(constants::turn * conventions.frequency) * c[moves];
     c[power] = T(conventions.mechanical_power ? 1.0 : 0.0);
   }
   template <class T>

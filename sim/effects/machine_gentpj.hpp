@@ -8,6 +8,7 @@
 // Conventions. Taken as GENROU's: no record at hand shows them.
 #include <fmt/format.h>
 
+#include "base/constants.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/core/saturation.hpp"
 
@@ -125,7 +126,7 @@ struct Model {
     c[iTqopp] = T(1.0) / p[Tqopp];
     c[i2H] = T(0.5) / p[H];
     c[kD] = p[D];
-    c[W0] = T(2.0 * 3.14159265358979323846 * conventions.frequency);
+    c[W0] = T(constants::turn * conventions.frequency);
     c[speed_voltage] = T(conventions.speed_voltage ? 1.0 : 0.0);
     c[power] = T(conventions.mechanical_power ? 1.0 : 0.0);
   }
@@ -176,14 +177,14 @@ struct Model {
   template <class T>
   static void current(const T* c, const T* /*x*/, T* m, Signals<T>& s) {
     // Each step squares the error: four or five leave rounding, S1.2 = 1.2 takes seven, one more for duals.
-    constexpr int kSteps = 8;
+    constexpr int kNewtonSteps = 8;
     constexpr double kFlattest = 0.1;  // where saturation feeds itself a step must not run away
     constexpr double kResidual = 1e-9;
     const T vd = s.Vr * m[sn] - s.Vi * m[cs], vq = s.Vr * m[cs] + s.Vi * m[sn];
     const T a = m[ed] - vd, b = m[eq] - vq;
     T id, iq, did, diq, slope, rest;
     T sigma(0.0);
-    for (int step = 0; step < kSteps; ++step) {
+    for (int step = 0; step < kNewtonSteps; ++step) {
       stator(c, sigma, a, b, id, iq, did, diq);
       const T u = magnetisation(c, vd, vq, id, iq, did, diq, slope);
       const T above = positive_part(u - c[A]), inverse_u = T(1.0) / u;

@@ -2,6 +2,7 @@
 // PMUFREQ: how an instrument derives frequency from the voltage's angle.
 #include <fmt/format.h>
 
+#include "base/constants.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/core/sampled.hpp"
 #include "sim/core/window.hpp"
@@ -44,7 +45,6 @@ struct Model {
 
   /// `length` of the difference in samples.
   static void difference(double length, Phasors& phasors) {
-    constexpr double kTurn = 6.28318530717958647692;
     const std::vector<double> angles = continuous_angles(phasors.V);
     const SampledCurve<double> theta(angles);
     const double last = static_cast<double>(angles.size()) - 1.0;
@@ -52,7 +52,9 @@ struct Model {
     for (std::size_t k = 0; k < angles.size(); ++k) {
       const double at = static_cast<double>(k);
       const double a = std::max(0.0, at - 0.5 * length), b = std::min(last, at + 0.5 * length);
-      if (b > a) phasors.df[k] = (theta(b) - theta(a)) * phasors.rate / ((b - a) * kTurn * phasors.frequency);
+      if (b > a)
+        phasors.df[k] =
+            (theta(b) - theta(a)) * phasors.rate / ((b - a) * constants::turn * phasors.frequency);
     }
   }
 };

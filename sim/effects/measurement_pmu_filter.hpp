@@ -2,6 +2,7 @@
 // PMUFILTER: the filter of a phasor measurement unit, class P or M.
 #include <fmt/format.h>
 
+#include "base/constants.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/core/window.hpp"
 
@@ -80,18 +81,17 @@ struct Model {
   /// Throws InputError where class M has no window for these reports at the system's frequency.
   static void measure(const double* p, std::uint64_t, Phasors& phasors) {
     if (p[scale] == 0.0) return;
-    constexpr double kPi = 3.14159265358979323846;
     const double f0 = phasors.frequency, half = half_length(p, f0);
     if (p[klass] == 1.0 && half == 0.0)
       throw InputError({fmt::format("class M at {:g} reports per second", p[reports]),
                         fmt::format("PMUFILTER, {:g} Hz", f0), "the standard has no such window",
                         f0 == 50.0 ? "give reports = 10, 25, 50 or 100"
                                    : "give reports = 10, 12, 15, 20, 30, 60 or 120 (in a 60 Hz system)"});
-    const double cut = p[klass] == 1.0 ? 4.0 * kPi * find(f0, p[reports])->Ffr / p[scale] : 0.0;
+    const double cut = p[klass] == 1.0 ? 4.0 * constants::pi * find(f0, p[reports])->Ffr / p[scale] : 0.0;
     const auto window = [&](double t) {
       if (p[klass] == 0.0) return 1.0 - std::fabs(t) / half;
       const double x = cut * t, sinc = std::fabs(x) < 1e-4 ? 1.0 - x * x / 6.0 : std::sin(x) / x;
-      return sinc * (0.54 + 0.46 * std::cos(kPi * t / half));
+      return sinc * (0.54 + 0.46 * std::cos(constants::pi * t / half));
     };
     const auto weights = window_weights(window, half, 1.0 / phasors.rate);
     phasors.V = averaged(phasors.V, weights);
@@ -99,7 +99,7 @@ struct Model {
     phasors.df = frequency_deviation(continuous_angles(phasors.V), phasors.rate, f0);
     if (p[klass] == 1.0 || p[compensation] == 0.0) return;
     for (std::size_t k = 0; k < phasors.V.size(); ++k) {
-      const double gain = std::sin(0.5 * kPi * (1.0 + 1.625 * p[scale] * phasors.df[k]));
+      const double gain = std::sin(0.5 * constants::pi * (1.0 + 1.625 * p[scale] * phasors.df[k]));
       phasors.V[k] /= gain;
       phasors.I[k] /= gain;
     }

@@ -2,6 +2,7 @@
 // FORCEDOSC: an oscillation forced upon the shaft.
 #include <fmt/format.h>
 
+#include "base/constants.hpp"
 #include "sim/core/drive.hpp"
 #include "sim/core/effect.hpp"
 
@@ -21,7 +22,7 @@ struct Model {
   static constexpr Parameter parameters[] = {
       {"amplitude", "A", "pu", 0.0, -1.0, 1.0, 0.0, "amplitude of the torque"},
       {"frequency", "f", "Hz", 0.5, 1e-3, 60.0, kNoNeutral, "frequency of the oscillation"},
-      {"phase", "phi", "rad", 0.0, -6.2831853071795862, 6.2831853071795862, kNoNeutral, "phase at `start`"},
+      {"phase", "phi", "rad", 0.0, -constants::turn, constants::turn, kNoNeutral, "phase at `start`"},
       {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNeutral, "when it begins"},
       {"end", "t2", "s", 1e5, 0.0, 1e5, kNoNeutral, "when it ends (100000: never)"}};
   enum C { kA, w, phi, t1, t2, coefficients };
@@ -42,7 +43,7 @@ struct Model {
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {
     c[kA] = p[amplitude];
-    c[w] = T(2.0 * 3.14159265358979323846) * p[frequency];
+    c[w] = T(constants::turn) * p[frequency];
     c[phi] = p[phase];
     c[t1] = p[start];
     c[t2] = p[end];

@@ -90,7 +90,7 @@ struct Model {
   static constexpr int dyr_columns[] = {IC1, REM1, IC2, REM2,   M,      N,      TW1,    TW2,    T6,    TW3,
                                         TW4, T7,   KS2, KS3,    T8,     T9,     KS1,    T1,     T2,    T3,
                                         T4,  T10,  T11, VS1MAX, VS1MIN, VS2MAX, VS2MIN, VSTMAX, VSTMIN};
-  static constexpr int kSlots = 8;  ///< first-order lags the ramp-tracking filter may have
+  static constexpr int kRampLags = 8;  ///< first-order lags the ramp-tracking filter may have
   enum C {
     a1,  // weights of speed, P, Tm - P, V in the first input
     a2 = a1 + 4,
@@ -116,10 +116,10 @@ struct Model {
     low,
     high,
     lead,
-    slow = lead + kSlots,
-    coefficients = slow + kSlots
+    slow = lead + kRampLags,
+    coefficients = slow + kRampLags
   };
-  enum X { w1, w2, y1, w3, w4, y2, ramp, lead1 = ramp + kSlots, lead2, lead3 };
+  enum X { w1, w2, y1, w3, w4, y2, ramp, lead1 = ramp + kRampLags, lead2, lead3 };
   /// Behind every state stand KS1 and the leads, some tens together, and an exciter's gain.
   static constexpr double kGainWeight = 10.0;
   static constexpr State states[] = {
@@ -162,7 +162,7 @@ struct Model {
     for (int i : {M, N})
       bad(!(p[i] >= 0.0) || p[i] != static_cast<int>(p[i]), says(i), "it counts lags and stages",
           "give a whole number >= 0");
-    bad(p[M] * p[N] > kSlots, fmt::format("M = {:g} with N = {:g}", p[M], p[N]),
+    bad(p[M] * p[N] > kRampLags, fmt::format("M = {:g} with N = {:g}", p[M], p[N]),
         "the ramp-tracking filter has at most 8 lags", "give M N <= 8");
     for (int i : {TW1, TW3, T9})
       bad(!(p[i] > 0), says(i) + " s", fmt::format("{} divides by it", who), "give a value > 0");
@@ -211,14 +211,14 @@ struct Model {
     const double codes[] = {1.0, 3.0, 4.0, 5.0};
     for (int i = 0; i < 4; ++i) w[i] = select(square(code - T(codes[i])) < T(0.25), T(1.0), T(0.0));
   }
-  /// N stages of M lags each in a row of kSlots; the first of a stage has the lead, the others pass it on.
+  /// N stages of M lags each in a row of kRampLags; the first of a stage has the lead, the others pass it on.
   template <class T>
   static void ramp_tracking(const T* p, T* c) {
     const T zero(0.0);
-    for (int k = 0; k < kSlots; ++k) {
+    for (int k = 0; k < kRampLags; ++k) {
       c[slow + k] = select(T(k + 0.5) < p[M] * p[N], inverse(p[T9]), zero);
       c[lead + k] = zero;
-      for (int stage = 0; stage < kSlots; ++stage)
+      for (int stage = 0; stage < kRampLags; ++stage)
         c[lead + k] = select(square(p[M] * T(stage) - T(k)) < T(0.25), p[T8], c[lead + k]);
     }
   }
@@ -241,7 +241,7 @@ struct Model {
     const T first = lag(c[iT6], x[y1], washed1, dx[y1]);
     const T second = lag(c[iT7], x[y2], c[ks2] * washed2, dx[y2]);
     T r = first + c[ks3] * second;
-    for (int k = 0; k < kSlots; ++k) r = lead_lag(c[lead + k], c[slow + k], x[ramp + k], r, dx[ramp + k]);
+    for (int k = 0; k < kRampLags; ++k) r = lead_lag(c[lead + k], c[slow + k], x[ramp + k], r, dx[ramp + k]);
     const T a = lead_lag(c[t1], c[it2], x[lead1], c[ks1] * (r - second), dx[lead1]);
     const T b = lead_lag(c[t3], c[it4], x[lead2], a, dx[lead2]);
     s.Vs = clamp(lead_lag(c[t10], c[it11], x[lead3], b, dx[lead3]), c[low], c[high]);

@@ -2,6 +2,7 @@
 // PSS/E free format: fields separated by commas or blanks, names in quotes, a record ends at '/'. Used by the
 // readers and writers of .raw and .dyr only.
 #include <filesystem>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -61,7 +62,7 @@ std::optional<long double> parse_number(std::string text);
 /// extended precision. Extended, because not every double x has a double y with y/scale == x.
 std::string shortest(double value, long double scale = 1.0L);
 /// Degrees in a radian: files hold degrees, the network radians.
-constexpr long double kDegrees = 180.0L / 3.14159265358979323846264338327950288L;
+constexpr long double kDegrees = 180.0L / std::numbers::pi_v<long double>;
 /// 'name', with quotes inside doubled.
 std::string quote(const std::string& text);
 

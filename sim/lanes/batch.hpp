@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "base/constants.hpp"
 #include "sim/core/trajectory.hpp"
 #include "sim/grid/grid.hpp"
 #include "sim/network/event.hpp"
@@ -14,12 +15,12 @@ namespace swingbank::sim::lanes {
 
 struct BatchOptions {
   double t_end = 15.0, rate = 120.0;
-  double tolerance = 1e-6;                  ///< error per step, weighted maximum norm over the states
-  std::vector<int> plants;                  ///< recorded; empty: all
-  std::vector<Channel> channels;            ///< recorded; empty: all of kChannels
-  int lanes = 0;                            ///< 1, 4 or 8; 0: the widest this build was made for
-  double lose_at = 3.14159265358979323846;  ///< pairwise rotor angle difference that ends a run [rad]
-  bool sensitivities = false;               ///< carry derivatives along Job::seeds; always 8 lanes
+  double tolerance = 1e-6;         ///< error per step, weighted maximum norm over the states
+  std::vector<int> plants;         ///< recorded; empty: all
+  std::vector<Channel> channels;   ///< recorded; empty: all of kChannels
+  int lanes = 0;                   ///< 1, 4 or 8; 0: the widest this build was made for
+  double lose_at = constants::pi;  ///< pairwise rotor angle difference that ends a run [rad]
+  bool sensitivities = false;      ///< carry derivatives along Job::seeds; always 8 lanes
 };
 
 /// A parameter a sensitivity is wanted for. The step control weighs the sensitivity's error times `scale`

@@ -1,6 +1,7 @@
 // Expressions of a law file: where they stand, what their names mean.
 #include <fmt/format.h>
 
+#include "base/constants.hpp"
 #include "sim/laws/detail/reader.hpp"
 
 namespace swingbank::sim::laws {
@@ -34,7 +35,7 @@ void Reader::problem(const std::string& key, std::size_t offset, std::string wha
 /// The text at `key` as a tree; a number counts as its text. Nothing if it is missing or wrong, which is
 /// noted.
 std::optional<Expression> Reader::expression(const std::string& key, bool condition) {
-  constexpr std::size_t kLongest = 10000;
+  constexpr std::size_t kLongestText = 10000;
   Expression e{key, {}, nullptr};
   if (config_.has(key) && !config_.is_text(key)) {
     const auto number = config_.require<double>(key);
@@ -46,8 +47,8 @@ std::optional<Expression> Reader::expression(const std::string& key, bool condit
   e.text = config_.require<std::string>(key);
   if (!config_.is_text(key)) return {};
   Fault fault;
-  if (e.text.size() > kLongest)
-    fault = {0, fmt::format("{} characters", e.text.size()), fmt::format("at most {} are read", kLongest),
+  if (e.text.size() > kLongestText)
+    fault = {0, fmt::format("{} characters", e.text.size()), fmt::format("at most {} are read", kLongestText),
              "split it with [signals]"};
   else
     e.tree = condition ? parse_condition(e.text, fault) : parse_value(e.text, fault);
@@ -130,7 +131,7 @@ std::string Reader::names() const {
 }
 
 int Reader::look_up(const Node& n, const std::string& key) {
-  if (n.name == "pi") return graph_.constant(3.14159265358979323846);
+  if (n.name == "pi") return graph_.constant(constants::pi);
   if (n.name == "frequency") return graph_.coefficient(kFrequency, true);
   if (const auto at = parameter_.find(n.name); at != parameter_.end())
     return graph_.coefficient(kFirstParameter + at->second, true);

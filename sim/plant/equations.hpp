@@ -210,8 +210,9 @@ class PlantEquations {
   /// not found, as of the machine alone.
   void nonlinear_through_transformer(const T* c, const T* x, T* m, Signals<T>& s, T& ir, T& ii) const {
     constexpr int kLimit = 20;
-    constexpr int kMore = std::is_same_v<T, double> ? 0 : 2;       // slopes of duals come after their values
-    constexpr double kNudge = 1e-6, kNear = 1e-9, kLongest = 0.3;  // [pu]
+    constexpr int kMoreForDuals =
+        std::is_same_v<T, double> ? 0 : 2;  // slopes of duals come after their values
+    constexpr double kNudge = 1e-6, kNearRoot = 1e-9, kLongestMove = 0.3;  // [pu]
     const T* j = c + joint_;
     const T in = T(1.0) / j[joint_ratio];
     const T rt = j[joint_r] * in * in - j[joint_rm], xt = j[joint_x] * in * in - j[joint_xm];
@@ -225,7 +226,7 @@ class PlantEquations {
     };
     T vr = s.Vr, vi = s.Vi;
     int calm = 0;
-    for (int step = 0; step < kLimit && calm <= kMore; ++step) {
+    for (int step = 0; step < kLimit && calm <= kMoreForDuals; ++step) {
       T fr, fi, a, b, d, e;
       rest(vr + T(kNudge), vi, a, d);
       rest(vr, vi + T(kNudge), b, e);
@@ -234,10 +235,10 @@ class PlantEquations {
       d = (d - fi) * T(1 / kNudge), e = (e - fi) * T(1 / kNudge);
       const T over = T(1.0) / (a * e - b * d), dr = (e * fr - b * fi) * over, di = (a * fi - d * fr) * over;
       const double largest = std::max(std::abs(value_of(dr)), std::abs(value_of(di)));
-      const T scale(kLongest / std::max(kLongest, largest));
+      const T scale(kLongestMove / std::max(kLongestMove, largest));
       vr = vr - scale * dr;
       vi = vi - scale * di;
-      if (largest < kNear) ++calm;
+      if (largest < kNearRoot) ++calm;
     }
     T unused;
     rest(vr, vi, unused, unused);

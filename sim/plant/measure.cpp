@@ -5,18 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.hpp"
 #include "sim/core/noise.hpp"
 #include "sim/core/window.hpp"
 #include "sim/library/library.hpp"
 #include "sim/plant/block_text.hpp"
 
 namespace swingbank::sim::plant {
-namespace {
-
-constexpr double kTurn = 6.28318530717958647692;
-
-}  // namespace
-
 Phasors phasors_of(const TerminalRecord& record, double rate, double frequency, const std::string& where) {
   Phasors phasors{rate, frequency, {}, {}, record.df};
   if (phasors.df.empty()) phasors.df = frequency_deviation(record.theta, rate, frequency);
@@ -38,7 +33,8 @@ TerminalRecord terminal_of(const Phasors& phasors, double first_theta) {
   double last = first_theta;
   for (std::size_t k = 0; k < phasors.V.size(); ++k) {
     const Complex v = phasors.V[k], power = v * std::conj(phasors.I[k]);
-    const double angle = std::arg(v), theta = angle + kTurn * std::nearbyint((last - angle) / kTurn);
+    const double angle = std::arg(v),
+                 theta = angle + constants::turn * std::nearbyint((last - angle) / constants::turn);
     if (std::isfinite(theta)) last = theta;
     record.V.push_back(std::abs(v));
     record.theta.push_back(theta);

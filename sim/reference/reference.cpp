@@ -11,6 +11,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "base/constants.hpp"
 #include "sim/reference/detail/system.hpp"
 
 namespace swingbank::sim::reference {
@@ -179,8 +180,7 @@ class Recorder {
  private:
   /// The angle plus the multiple of 2 pi that brings it closest to the last one.
   static double nearest(double angle, double last) {
-    constexpr double kTurn = 2.0 * 3.14159265358979323846;
-    return angle + kTurn * std::nearbyint((last - angle) / kTurn);
+    return angle + constants::turn * std::nearbyint((last - angle) / constants::turn);
   }
   void record_plant(std::size_t i, int k, const ReferenceSystem& system, const double* y) {
     const auto u = static_cast<std::size_t>(run_.plants[i]);

@@ -1,6 +1,7 @@
 #pragma once
 // The reference integrator: SUNDIALS IDA with KLU on the unreduced differential-algebraic equations (all bus
 // voltages are unknowns). Slow and exact: the fast kernel is tested against it.
+#include "base/constants.hpp"
 #include "sim/core/trajectory.hpp"
 #include "sim/grid/grid.hpp"
 #include "sim/network/event.hpp"
@@ -9,12 +10,12 @@ namespace swingbank::sim::reference {
 
 struct ReferenceOptions {
   double t_end = 15.0, rate = 120.0;
-  double rtol = 1e-8, atol = 1e-10;         ///< error per step of every single unknown
-  std::vector<int> plants;                  ///< empty: all
-  std::vector<Channel> channels;            ///< empty: all of kChannels
-  std::vector<int> buses;                   ///< whose voltage is recorded as well, by index in the network
-  bool after_switching = false;             ///< at a switching instant give the value just after it
-  double lose_at = 3.14159265358979323846;  ///< pairwise rotor angle difference that ends a run [rad]
+  double rtol = 1e-8, atol = 1e-10;  ///< error per step of every single unknown
+  std::vector<int> plants;           ///< empty: all
+  std::vector<Channel> channels;     ///< empty: all of kChannels
+  std::vector<int> buses;            ///< whose voltage is recorded as well, by index in the network
+  bool after_switching = false;      ///< at a switching instant give the value just after it
+  double lose_at = constants::pi;    ///< pairwise rotor angle difference that ends a run [rad]
 };
 
 /// After a loss of synchronism (or any other end before t_end) the remaining samples repeat the last value.

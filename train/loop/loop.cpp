@@ -6,9 +6,9 @@
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 
+#include "base/constants.hpp"
 #include "base/problem.hpp"
 #include "base/stop_signal.hpp"
 #include "train/data/random.hpp"
@@ -237,7 +237,7 @@ double learning_rate(const TrainingRecipe& recipe, std::uint64_t step, std::uint
   if (recipe.schedule != "cosine") return recipe.learning_rate;
   const double all = static_cast<double>(steps), s = static_cast<double>(step);
   const double warm_up = std::min(1.0, (s + 1.0) / (0.02 * all + 1.0));
-  return recipe.learning_rate * warm_up * (0.01 + 0.99 * 0.5 * (1.0 + std::cos(std::numbers::pi * s / all)));
+  return recipe.learning_rate * warm_up * (0.01 + 0.99 * 0.5 * (1.0 + std::cos(constants::pi * s / all)));
 }
 
 void seed_torch(std::uint64_t seed) {

@@ -135,8 +135,8 @@ std::string BlasRate::sentence() const {
 std::string BlasRate::warning() const {
   // Kernels as wide as the processor make 60 % and more, SSE kernels 17 % beside AVX-512:
   // docs/performance.md.
-  constexpr double kLeast = 0.4;
-  if (share() >= kLeast) return "";
+  constexpr double kLeastOfPeak = 0.4;
+  if (share() >= kLeastOfPeak) return "";
   return Problem{
       fmt::format("{:.0f} GFLOP/s", product), "BLAS",
       fmt::format("one core makes {:.0f} GFLOP/s of multiply-adds, of which good kernels reach 60 % and more",

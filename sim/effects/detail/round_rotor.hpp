@@ -1,6 +1,7 @@
 #pragma once
 // The round-rotor machine of GENROU and GENROE: one field and three damper circuits. They differ in how the
 // subtransient flux saturates, QuadraticSaturation or ExponentialSaturation.
+#include "base/constants.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/core/saturation.hpp"
 
@@ -97,7 +98,7 @@ struct RoundRotor {
     c[iTqopp] = T(1.0) / p[Tqopp];
     c[i2H] = T(0.5) / p[H];
     c[kD] = p[D];
-    c[W0] = T(2.0 * 3.14159265358979323846 * conventions.frequency);
+    c[W0] = T(constants::turn * conventions.frequency);
     c[speed_voltage] = T(conventions.speed_voltage ? 1.0 : 0.0);
     c[power] = T(conventions.mechanical_power ? 1.0 : 0.0);
   }

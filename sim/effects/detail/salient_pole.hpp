@@ -4,6 +4,7 @@
 // steady in terms of what stands here.
 #include <fmt/format.h>
 
+#include "base/constants.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/core/saturation.hpp"
 
@@ -85,7 +86,7 @@ struct SalientPole {
     c[iTqopp] = T(1.0) / p[Tqopp];
     c[i2H] = T(0.5) / p[H];
     c[kD] = p[D];
-    c[W0] = T(2.0 * 3.14159265358979323846 * conventions.frequency);
+    c[W0] = T(constants::turn * conventions.frequency);
     c[speed_voltage] = T(conventions.speed_voltage ? 1.0 : 0.0);
     c[power] = T(conventions.mechanical_power ? 1.0 : 0.0);
   }

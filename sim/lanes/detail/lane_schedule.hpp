@@ -14,10 +14,10 @@ struct LaneClock {
   double h = 0.0;     ///< step the controller asks for [s]
   double next = 0.0;  ///< next instant the step must not cross: a switching or the end [s]
   float last_error = 1.0F;
-  static constexpr double kFirst = 0.006, kLongest = 0.25, kShortest = 1e-9;
+  static constexpr double kFirstStep = 0.006, kLongestStep = 0.25, kShortestStep = 1e-9;
 
   void restart(double next_switch) {
-    h = kFirst;
+    h = kFirstStep;
     last_error = 1.0F;
     next = next_switch;
   }
@@ -40,7 +40,7 @@ struct LaneClock {
       const double grown = tried * f;
       const bool cut_short = tried < 0.999 * h;
       h = cut_short && grown < h ? h : grown;
-      if (h > kLongest) h = kLongest;
+      if (h > kLongestStep) h = kLongestStep;
       last_error = e < 1e-3F ? 1e-3F : e;
     } else {
       const float f = 0.85F * plant::dp54::rough_power(e, -0.2F);

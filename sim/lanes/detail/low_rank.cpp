@@ -6,7 +6,8 @@
 namespace swingbank::sim::lanes {
 
 namespace {
-constexpr double kRounding = 1e-13;  ///< of the matrix' largest entry: both are solutions of linear systems
+constexpr double kSolveRounding =
+    1e-13;  ///< of the matrix' largest entry: both are solutions of linear systems
 
 double square(double a, double b) { return a * a + b * b; }
 
@@ -60,7 +61,7 @@ std::optional<LowRank> difference(const InternalMatrix& matrix, const InternalMa
   for (;;) {
     double size = 0.0;
     const std::size_t pivot = rest.largest(size);
-    if (size <= kRounding * kRounding * whole) return out;
+    if (size <= kSolveRounding * kSolveRounding * whole) return out;
     if (out.rank == most) return {};
     rest.eliminate(pivot, out);
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/constants.hpp"
 #include "sim/lanes/detail/lanes.hpp"
 
 namespace swingbank::sim::lanes {
@@ -246,7 +247,7 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
           break;
         }
         using std::atan2;
-        const T two_pi(6.28318530717958647692);
+        const T two_pi(constants::turn);
         const T angle = atan2(vi, vr);
         v = angle + two_pi * round_nearest((x[p.x] - angle) / two_pi);  // the turn in which the rotor is
         run.theta[k] = Traits::get(v, count - 1);

@@ -35,7 +35,7 @@ class SharedNetwork {
 
  private:
   using Traits = LaneTraits<T>;
-  static constexpr int kLanes = Traits::lanes;
+  static constexpr int kLanes = LaneTraits<T>::lanes;
   /// One outer product of every lane.
   struct Product {
     std::vector<T> ur, ui, wr, wi;

@@ -165,7 +165,7 @@ void Lanes<T>::settle(unsigned accepted, const Next& next, const Done& done) {
     auto& run = lanes_[static_cast<std::size_t>(l)];
     if (!((active_ >> l) & 1U)) continue;
     if (!((accepted >> l) & 1U)) {
-      if (run.clock.h > LaneClock::kShortest) continue;
+      if (run.clock.h > LaneClock::kShortestStep) continue;
       hand_over(l, std::isfinite(angle[l]) ? Outcome::step_too_small : Outcome::not_finite, done);
       refill(l, next, done);
       continue;

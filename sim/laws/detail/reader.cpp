@@ -12,7 +12,7 @@ struct Output {
   std::string_view name;
   Slot replaced, added;  ///< machine: it cannot be
 };
-constexpr std::array kOutputs = {
+constexpr std::array kLawOutputs = {
     Output{"Vc", Slot::compensator, Slot::compensator}, Output{"dVref", Slot::machine, Slot::setpoint},
     Output{"dPref", Slot::machine, Slot::setpoint},     Output{"Vs", Slot::stabiliser, Slot::stabiliser},
     Output{"Vlimiter", Slot::machine, Slot::limiter},   Output{"Efd", Slot::exciter, Slot::exciter},
@@ -72,11 +72,11 @@ void Reader::read_head() {
 
 void Reader::read_entry_point() {
   std::vector<std::string> outputs;
-  for (const Output& o : kOutputs) outputs.emplace_back(o.name);
+  for (const Output& o : kLawOutputs) outputs.emplace_back(o.name);
   const std::string name = config_.choice("output", outputs);
   const bool replaces = config_.choice("action", {"replace", "add"}) == "replace";
-  const auto* at = std::ranges::find(kOutputs, name, &Output::name);
-  if (at == kOutputs.end()) at = &kOutputs.back();
+  const auto* at = std::ranges::find(kLawOutputs, name, &Output::name);
+  if (at == kLawOutputs.end()) at = &kLawOutputs.back();
   law_.replaces = replaces;
   law_.output = signal_index(at->name);
   law_.slot = replaces ? at->replaced : at->added;

@@ -4,7 +4,8 @@
 #include <torch/csrc/autograd/custom_function.h>
 
 #include <cmath>
-#include <numbers>
+
+#include "base/constants.hpp"
 
 namespace swingbank::train::networks {
 using at::Tensor;
@@ -31,7 +32,7 @@ Tensor waves(std::int64_t period, std::int64_t first, std::int64_t n, bool folde
     const double weight = folded ? (alone ? 1.0 : 2.0) / static_cast<double>(period) : 1.0;
     for (std::int64_t i = 0; i < n; ++i) {
       const std::int64_t turn = ((f * (first + i)) % period + period) % period;  // exact before the cosine
-      const double angle = 2.0 * std::numbers::pi * static_cast<double>(turn) / static_cast<double>(period);
+      const double angle = constants::turn * static_cast<double>(turn) / static_cast<double>(period);
       out[f * n + i] = static_cast<float>(weight * std::cos(angle));
       out[(f_count + f) * n + i] = static_cast<float>(-weight * std::sin(angle));
     }
