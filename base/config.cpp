@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <set>
 #include <sstream>
+
+#include "base/input_file.hpp"
 
 namespace swingbank {
 
@@ -24,16 +25,6 @@ namespace {
 
 std::string place(const fs::path& name, const toml::source_position& p) {
   return fmt::format("{}:{}:{}", name.string(), p.line, p.column);
-}
-
-std::string slurp(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (fs::is_directory(file) || !(text << in.rdbuf()))
-    throw InputError({"cannot read the config", file.string(),
-                      fs::exists(file) ? "it cannot be opened as a file" : "there is no such file",
-                      "check the path"});
-  return text.str();
 }
 
 std::string list(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, ", ")); }
@@ -119,7 +110,8 @@ void unknown(const toml::table& table, const std::string& prefix, const std::set
 
 }  // namespace
 
-Config::Config(const fs::path& file) : Config(slurp(file), file) {}
+Config::Config(const fs::path& file)
+    : Config(read_input(file, "cannot read the config", "check the path"), file) {}
 
 Config::Config(const std::string& text, const fs::path& name) : name_(name), tree_(std::make_shared<Tree>()) {
   try {

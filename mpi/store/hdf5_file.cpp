@@ -3,6 +3,7 @@
 #include <cerrno>
 
 #include "base/durable.hpp"
+#include "base/input_file.hpp"
 #include "base/problem.hpp"
 
 namespace swingbank::mpi::store::h5 {
@@ -64,7 +65,8 @@ File File::open(const std::filesystem::path& file) {
   silence();
   File f;
   f.name_ = file;
-  if (!std::filesystem::exists(file)) raise_file_error(file, ENOENT, "cannot open the HDF5 file");
+  if (!std::filesystem::exists(file))
+    throw InputError(unreadable(file, "cannot open the HDF5 file", "check the path"));
   f.file_ = Handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!f.file_) f.fail("cannot open the HDF5 file", "");
   return f;

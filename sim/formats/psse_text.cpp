@@ -6,8 +6,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <sstream>
+
+#include "base/input_file.hpp"
 
 namespace swingbank::sim::formats::psse {
 namespace {
@@ -40,14 +41,7 @@ bool quoted_field(const std::string& line, std::size_t& i, Field& field) {
 }  // namespace
 
 std::vector<std::string> read_lines(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  if (!in || std::filesystem::is_directory(file))
-    throw InputError({"cannot read the file", file.string(),
-                      std::filesystem::exists(file) ? "no permission, or not a file" : "it does not exist",
-                      "check the path"});
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
-  return lines;
+  return lines_of(read_input(file, "cannot read the file", "check the path"));
 }
 
 std::vector<std::string> lines_of(const std::string& text) {

@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <map>
-#include <sstream>
 
+#include "base/input_file.hpp"
 #include "sim/laws/detail/definition.hpp"
 #include "sim/library/library.hpp"
 
@@ -170,14 +169,7 @@ const Effect& load_law(const std::string& text, const std::filesystem::path& nam
 }
 
 const Effect& load_law(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (std::filesystem::is_directory(file) || !(text << in.rdbuf()))
-    throw InputError(
-        {"no readable law file", file.string(),
-         std::filesystem::exists(file) ? "it cannot be opened or is empty" : "there is no such file",
-         "give the path of a law .toml"});
-  return load_law(text.str(), file);
+  return load_law(read_input(file, "no readable law file", "give the path of a law .toml"), file);
 }
 
 }  // namespace swingbank::sim::laws

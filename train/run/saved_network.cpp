@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/input_file.hpp"
 #include "base/problem.hpp"
 #include "base/sealed_file.hpp"
 #include "train/run/detail/result.hpp"
@@ -159,8 +160,8 @@ networks::NetworkShape shape_of(const data::FeatureSizes& s, std::size_t outputs
 fs::path find_file(const fs::path& path) {
   if (!fs::is_directory(path)) {
     if (fs::exists(path)) return path;
-    throw InputError({"no network", path.string(), "there is no such file",
-                      "give a .network file that train or cross-validate wrote beside its result"});
+    throw InputError(unreadable(path, "no network",
+                                "give a .network file that train or cross-validate wrote beside its result"));
   }
   std::vector<fs::path> found;
   for (const auto& entry : fs::directory_iterator(path))

@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
+#include "base/input_file.hpp"
 #include "base/write_file.hpp"
 #include "sim/laws/law.hpp"
 
@@ -87,15 +86,6 @@ std::string compose(const PlantModel& model, const std::vector<std::string>& pro
   return text;
 }
 
-std::string slurp(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (!(text << in.rdbuf()))
-    throw InputError({"no readable law file", file.string(), "the model's effects come from it",
-                      "put it back where it was"});
-  return text.str();
-}
-
 /// Law files under names of their own, without folders.
 std::vector<std::string> law_names(const PlantModel& model) {
   std::vector<std::string> names;
@@ -164,7 +154,9 @@ void write_plant_file(const fs::path& file, const PlantModel& model,
   for (std::size_t k = 0; k < names.size(); ++k) {
     const fs::path copy = file.parent_path() / names[k];
     std::error_code none;
-    if (!fs::equivalent(copy, model.laws[k], none)) write_file(copy, slurp(model.laws[k]));
+    if (!fs::equivalent(copy, model.laws[k], none))
+      write_file(copy, read_input(model.laws[k], "no readable law file, from which the model's effects come",
+                                  "put it back where it was"));
   }
   write_file(file, text);
 }

@@ -4,10 +4,9 @@
 #include <xxhash.h>
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
 #include "base/config.hpp"
+#include "base/input_file.hpp"
 #include "sim/laws/law.hpp"
 #include "sim/library/library.hpp"
 
@@ -156,18 +155,12 @@ void read_from_grid(Config& config, PlantModel& model) {
   model.plant = find_plant(config, grid, bus, id);
 }
 
-std::string slurp(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (fs::is_directory(file) || !(text << in.rdbuf()))
-    throw InputError({"no readable plant file", file.string(), "it cannot be opened or is empty",
-                      "give the path of a plant .toml"});
-  return text.str();
-}
-
 }  // namespace
 
-PlantModel load_plant_model(const fs::path& file) { return parse_plant_model(slurp(file), file); }
+PlantModel load_plant_model(const fs::path& file) {
+  return parse_plant_model(read_input(file, "no readable plant file", "give the path of a plant .toml"),
+                           file);
+}
 
 PlantModel parse_plant_model(const std::string& text, const fs::path& file) {
   Config config(text, file);

@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
-#include <sstream>
 
+#include "base/input_file.hpp"
 #include "validate/record/formats.hpp"
 
 namespace swingbank::validate::record {
@@ -62,12 +61,7 @@ Record read_comtrade(const std::filesystem::path& file, const RecordBase& base, 
 }  // namespace
 
 std::string read_bytes(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf()))
-    throw InputError({"no readable record", file.string(), "the file cannot be opened or is empty",
-                      "give the path of a record"});
-  return std::move(text).str();
+  return read_input(file, "no readable record", "give the path of a record");
 }
 
 Record read_record(const std::filesystem::path& named, const RecordBase& base, const ReadOptions& given) {

@@ -1,0 +1,81 @@
+#include "base/input_file.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+namespace swingbank {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The shell hands a pattern on as it is where no file matches it.
+bool is_pattern(const fs::path& file) {
+  return file.filename().string().find_first_of("*?[") != std::string::npos;
+}
+
+/// "configs/plants/x.toml" or "plants/x.toml" among the examples; of a pattern its folder.
+fs::path example_of(const fs::path& file, const fs::path& examples) {
+  if (examples.empty() || file.is_absolute()) return {};
+  std::error_code ignored;
+  for (const fs::path& root : {examples.parent_path(), examples}) {
+    const fs::path candidate = root / file;
+    if (!is_pattern(file) && fs::is_regular_file(candidate, ignored)) return candidate;
+    if (is_pattern(file) && file.has_parent_path() && fs::is_directory(candidate.parent_path(), ignored))
+      return candidate.parent_path();
+  }
+  return {};
+}
+
+std::string reason(const fs::path& file) {
+  std::error_code error;
+  if (fs::is_directory(file, error)) return "it is a folder";
+  if (fs::exists(file, error)) {
+    errno = 0;
+    const bool opens = std::ifstream(file, std::ios::binary).is_open();
+    if (!opens && errno != 0) return std::strerror(errno);
+    return fs::is_empty(file, error) ? "it is empty" : "it cannot be read";
+  }
+  std::string why =
+      is_pattern(file) ? "there is no such file, and none that matches" : "there is no such file";
+  if (file.is_relative()) why += "; it was looked for in " + fs::current_path(error).string();
+  return why;
+}
+
+}  // namespace
+
+fs::path example_configs() {
+  std::error_code error;
+  const fs::path own = fs::read_symlink("/proc/self/exe", error).parent_path();
+  if (error) return {};
+  // The second is the build folder's, whatever an installation is laid out like.
+  for (const char* way : {SWINGBANK_CONFIGS_FROM_BIN, "../share/swingbank/configs"}) {
+    const fs::path folder = fs::canonical(own / way, error);
+    if (!error && fs::is_directory(folder, error)) return folder;
+  }
+  return {};
+}
+
+Problem unreadable(const fs::path& file, const std::string& what, const std::string& remedy,
+                   const fs::path& examples) {
+  std::error_code ignored;
+  const fs::path example = fs::exists(file, ignored) ? fs::path() : example_of(file, examples);
+  if (example.empty()) return {what, file.string(), reason(file), remedy};
+  return {what, file.string(), reason(file),
+          "Swingbank's example is " + example.string() + ": give that, or run cp -r " + examples.string() +
+              " . once to have all examples here"};
+}
+
+std::string read_input(const fs::path& file, const std::string& what, const std::string& remedy) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  std::error_code ignored;
+  if (!in || fs::is_directory(file, ignored) || !(text << in.rdbuf()))
+    throw InputError(unreadable(file, what, remedy));
+  return std::move(text).str();
+}
+
+}  // namespace swingbank
