@@ -128,7 +128,7 @@ int run(Arguments& a) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{SWINGBANK_SUMMARY};
+  CLI::App app{SWINGBANK_SUMMARY, "swingbank add"};
   Arguments a;
   bool inner = true;
   auto& c = a.options.calibrate;

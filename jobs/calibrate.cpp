@@ -167,7 +167,7 @@ void add_options(CLI::App& app, Arguments& a, bool& inner) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{SWINGBANK_SUMMARY};
+  CLI::App app{SWINGBANK_SUMMARY, "swingbank calibrate"};
   Arguments a;
   bool inner = true;
   add_options(app, a, inner);

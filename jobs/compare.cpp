@@ -114,7 +114,7 @@ int run_system(const std::string& file, const std::string& out, bool json, const
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{SWINGBANK_SUMMARY};
+  CLI::App app{SWINGBANK_SUMMARY, "swingbank compare"};
   std::string model_file, system_file, out = "compare-report", drive = "voltage";
   std::vector<std::string> record_files, switches;
   bool json = false;

@@ -96,7 +96,8 @@ int run(const std::string& config_file, const mpi::draw::Overrides& overrides, s
 int main(int argc, char** argv) {
   CLI::App app{
       "Draws the databank of a dataset: parameters that keep a distance from one another.\n"
-      "  swingbank databank configs/datasets/ieee39_genrou.toml --points 60000 --out bank.h5"};
+      "  swingbank databank configs/datasets/ieee39_genrou.toml --points 60000 --out bank.h5",
+      "swingbank databank"};
   std::string config, out;
   mpi::draw::Overrides overrides;
   std::uint64_t points = 0;

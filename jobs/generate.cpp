@@ -30,6 +30,7 @@ const std::map<std::string, mpi::ranks::Progress::Mode> kModes = {
     {"none", mpi::ranks::Progress::Mode::none}};
 
 void declare(CLI::App& app, Command& c) {
+  app.name("swingbank generate");
   app.description(
       "Simulates the dataset that a config describes into a folder of HDF5 shards (docs/formats.md).\n"
       "  swingbank generate configs/datasets/ieee39_gencls.toml --draws 4000 --out data/gencls\n"

@@ -81,7 +81,7 @@ std::string nearest(std::string_view wanted, const std::vector<Command>& command
 
 void print_help(const std::vector<Command>& commands) {
   fmt::print("swingbank {}: power-plant model validation at scale\n\n", SWINGBANK_VERSION);
-  fmt::print("usage: swingbank <command> [arguments]\n       swingbank <command> --help\n\ncommands:\n");
+  fmt::print("Usage: swingbank <command> [arguments]\n  or:  swingbank <command> --help\n\nCommands:\n");
   std::size_t width = 0;
   for (const auto& command : commands) width = std::max(width, command.name.size());
   for (const auto& command : commands) fmt::print("  {:<{}}  {}\n", command.name, width, command.summary);

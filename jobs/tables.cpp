@@ -31,7 +31,7 @@ report::Provenance sources(const std::vector<report::RunResult>& results, int ar
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{SWINGBANK_SUMMARY};
+  CLI::App app{SWINGBANK_SUMMARY, "swingbank tables"};
   std::vector<std::string> folders;
   std::string out;
   app.add_option("results", folders, "folders with the JSON files of train and cross-validate")->required();
