@@ -54,6 +54,7 @@ function(swingbank_command name)
     swingbank_precompile(swingbank-${name} command)
   endif()
   set_property(GLOBAL APPEND_STRING PROPERTY SWINGBANK_COMMANDS "{\"${name}\", \"${A_SUMMARY}\"},\n")
+  set_property(GLOBAL APPEND PROPERTY SWINGBANK_PROGRAMS swingbank-${name})
 endfunction()
 
 # Writes the table of all commands, in the order they were declared, for the dispatcher.

@@ -1,0 +1,22 @@
+# cmake --install <build folder> [--prefix <folder>]: programs, example configs, documents, man pages and completion.
+# Nothing is built. What is made from the programs' --help comes first, so that nothing is installed where that fails.
+get_property(programs GLOBAL PROPERTY SWINGBANK_PROGRAMS)
+set(made ${PROJECT_BINARY_DIR}/from_help)
+install(CODE "execute_process(COMMAND bash \"${PROJECT_SOURCE_DIR}/cmake/from_help.sh\" \"$<TARGET_FILE_DIR:swingbank>\"
+  ${PROJECT_VERSION} \"${made}\" COMMAND_ERROR_IS_FATAL ANY)")
+install(DIRECTORY ${made}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR})
+install(FILES ${made}/completion.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME swingbank)
+install(TARGETS swingbank ${programs} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(DIRECTORY configs DESTINATION ${CMAKE_INSTALL_DATADIR}/swingbank)
+
+# README.md's links lead to the same paths beside it.
+install(FILES README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
+file(GLOB_RECURSE readmes CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} cmake/README.md configs/README.md
+  jobs/README.md mpi/README.md sim/README.md slurm/README.md tests/README.md train/README.md validate/README.md)
+foreach(readme ${readmes})
+  cmake_path(GET readme PARENT_PATH folder)
+  install(FILES ${readme} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder})
+endforeach()
+# The chart library is part of programs and reports; its licence asks for this notice.
+install(FILES ${DYGRAPHS_COPYRIGHT} DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME dygraphs.copyright)
