@@ -108,9 +108,7 @@ class Run {
     events.measured_states = false;
     events_ = event::prepare_events(model, std::move(records), events);
     fit_.model = model;
-    for (const auto& f : free_)
-      setting_.start.push_back(sim::plant::block_parameters(
-          model.plant)[static_cast<std::size_t>(f.block)][static_cast<std::size_t>(f.index)]);
+    setting_.start = fit::values_of(model.plant, free_);
     z_.assign(free_.size(), 1.0);
   }
 
