@@ -91,7 +91,7 @@ say "fast tier"
 run_tests fast "$build" -L fast -j "$(nproc)"
 if ((!fast_only)); then
   say "full tier"
-  run_tests full "$build" -L full
+  run_tests full "$build" -L full -j "$(nproc)" # scripts among them run alone
 fi
 if ((${#failed[@]})); then
   cat "$source_folder"/build/fuzz/found/*/summary.txt 2>/dev/null || true

@@ -6,9 +6,9 @@
 #include <cstdint>
 #ifdef __AVX512F__
 #include <immintrin.h>
+#endif
 
 #include "base/constants.hpp"
-#endif
 
 namespace swingbank::sim {
 
