@@ -96,7 +96,7 @@ TEST_P(Durable, WhereAFolderStandsNothingIsLeft) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Writers, Durable, ::testing::ValuesIn(kWriters),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& which) { return which.param.name; });
 
 /// While it lives, no file of this process grows beyond so many bytes.
 class SmallFiles {

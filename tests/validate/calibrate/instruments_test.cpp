@@ -63,8 +63,8 @@ TEST_P(SeenThrough, TheTruthLiesInTheIntervals) {
 
 INSTANTIATE_TEST_SUITE_P(Calibrate, SeenThrough,
                          ::testing::Values("CTERROR:gain=0.03,phase=-0.04", "SKEW:skew=0.008"),
-                         [](const auto& info) {
-                           const std::string text = info.param;
+                         [](const auto& which) {
+                           const std::string text = which.param;
                            return text.substr(0, text.find(':'));
                          });
 

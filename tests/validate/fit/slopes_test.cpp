@@ -93,8 +93,8 @@ TEST_P(Slopes, AreThoseOfDifferences) {
 
 INSTANTIATE_TEST_SUITE_P(Instruments, Slopes,
                          ::testing::Values("CTERROR:gain=0.02,phase=-0.03", "SKEW:skew=0.006"),
-                         [](const auto& info) {
-                           const std::string text = info.param;
+                         [](const auto& which) {
+                           const std::string text = which.param;
                            return text.substr(0, text.find(':'));
                          });
 

@@ -8,6 +8,7 @@
 #include "sim/library/library.hpp"
 #include "tests/validate/fit/exciter_example.hpp"
 #include "validate/fit/detail/cost.hpp"
+#include "validate/playin/can_run.hpp"
 
 namespace swingbank::validate::hypothesis {
 namespace {
@@ -21,7 +22,7 @@ TEST(Hypotheses, EveryStartIsSound) {
   std::set<std::string> drawn;
   for (const Hypothesis& h : hypotheses()) {
     if (h.drawn) drawn.insert(h.name);
-    for (const auto& start : h.starts) EXPECT_TRUE(fit::fitting::can_run(started(h, start))) << h.name;
+    for (const auto& start : h.starts) EXPECT_TRUE(playin::can_run(started(h, start))) << h.name;
   }
   EXPECT_TRUE(drawn.contains("MAXEX2"));  // three points of one curve, which keep their order
   EXPECT_TRUE(drawn.contains("TGOV1"));
@@ -56,7 +57,7 @@ TEST(Hypotheses, AReplacementStandsAloneInItsSlot) {
     EXPECT_EQ(h.slot, static_cast<int>(sim::Slot::exciter)) << h.name;
     EXPECT_TRUE(h.name.starts_with(h.plant.controls.front().effect->name)) << h.name;
     EXPECT_FALSE(h.name.starts_with("SEXS"));
-    EXPECT_TRUE(fit::fitting::can_run(h.plant)) << h.name;
+    EXPECT_TRUE(playin::can_run(h.plant)) << h.name;
   }
 }
 TEST(Triangle, HasTheProductsOfTheColumns) {

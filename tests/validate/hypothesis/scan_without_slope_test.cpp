@@ -26,7 +26,7 @@ TEST(Blind, ATimerIsFoundThatNoSlopeSees) {
                          p.where.index) = p.value;
   event::FitEvent& event = example.events.front();
   const fit::EventFit& at = nearly.events.front();
-  const playin::Response limited = answer(event, at.state, with, h.conventions);
+  const playin::Response limited = fit::answer(event, at.state, with, h.conventions);
   double square = 0;
   for (std::size_t c = 0; c < event.channels.size(); ++c) {
     const playin::Output o = event.channels[c];

@@ -16,7 +16,7 @@ double moved(const Stage& stage, const Hypothesis& h, const std::vector<double>&
                          p.where.index) = p.value;
   const event::FitEvent& e = stage.events.front();
   const fit::EventFit& at = stage.fit.events.front();
-  const playin::Response r = answer(e, at.state, plant, stage.conventions);
+  const playin::Response r = fit::answer(e, at.state, plant, stage.conventions);
   double square = 0;
   for (std::size_t c = 0; c < e.channels.size(); ++c)
     for (std::size_t k = 0; k < e.record.t.size(); ++k)
