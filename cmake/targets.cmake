@@ -24,6 +24,9 @@ if(SWINGBANK_SANITIZE)
   target_compile_options(swingbank_options INTERFACE -fsanitize=${SWINGBANK_SANITIZE} -fno-omit-frame-pointer)
   target_link_options(swingbank_options INTERFACE -fsanitize=${SWINGBANK_SANITIZE})
 endif()
+if(SWINGBANK_FUZZ)
+  target_compile_options(swingbank_options INTERFACE -fsanitize=fuzzer-no-link -fno-sanitize-recover=undefined -Wno-psabi)
+endif()
 
 # Three kinds of sources: `hot` is simulation and fitting; `cold` reads, writes and talks; `train` is LibTorch's. Cold is
 # not below -O2: an inline function stands in the program once, compiled with either kind's options, and below -O2 GCC

@@ -3,6 +3,7 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "base/durable.hpp"
@@ -104,6 +105,26 @@ std::string header_text(const DatasetHeader& header) {
 
 void write_header(const fs::path& folder, const DatasetHeader& header) {
   write_text(folder / "dataset.json", header_text(header));
+}
+
+std::string config_text(const DatasetHeader& header, const std::string& key) {
+  const std::string start = "\n" + key + " = ", all = "\n" + header.config;
+  const auto at = all.find(start);
+  if (at == std::string::npos) return {};
+  const auto from = at + start.size();
+  return all.substr(from, std::min(all.find('\n', from), all.size()) - from);
+}
+
+std::vector<double> config_numbers(const DatasetHeader& header, const std::string& key) {
+  const std::string text = config_text(header, key);
+  std::vector<double> numbers;
+  for (const char *p = text.data(), *end = p + text.size(); p < end;) {
+    double value = 0.0;
+    const auto [next, error] = std::from_chars(p, end, value);
+    if (error == std::errc{}) numbers.push_back(value);
+    p = error == std::errc{} ? next : p + 1;
+  }
+  return numbers;
 }
 
 DatasetHeader read_header(const fs::path& folder) {

@@ -72,6 +72,11 @@ ShardData read_checked(const ShardInfo& shard);
 void read_rows(const ShardInfo& shard, std::uint64_t first, std::uint64_t count, RowBlock& out,
                const ShardFields& fields = {});
 
+/// Numbers of a line "key = 1" or "key = [1, 2]" of a dataset's config; empty if it has no such line.
+std::vector<double> config_numbers(const DatasetHeader& header, const std::string& key);
+/// What stands behind "key = " in a dataset's config; empty if it has no such line.
+std::string config_text(const DatasetHeader& header, const std::string& key);
+
 /// What dataset.json holds. Throws InputError if a text of the header is no UTF-8, which JSON cannot hold.
 std::string header_text(const DatasetHeader& header);
 /// Writes dataset.json under a temporary name, flushes and renames.

@@ -9,6 +9,7 @@
 //   the equations of its kind     MachineOps, ControlOps, TransformerOps or LoadOps below
 //   steady<T>()                   back-initialisation from the operating point
 //   instants()                    optional: when its equations jump in time
+//   closed_form()                 of a machine, optional: its parameters from a record, without a search
 //   measure(), memory()           of a measurement: what it makes of the phasors, and how far it reaches
 // CMake finds the header and writes the registry; nothing is edited. T runs over `Scalars`.
 #include <array>
@@ -180,6 +181,8 @@ struct OpsFor<std::tuple<T...>> {
   using type = std::tuple<Ops<T>...>;
 };
 
+struct Recording;
+
 /// One registered effect, its types erased.
 struct Effect {
   std::string_view name, title, source, description, dyr_name;
@@ -200,6 +203,9 @@ struct Effect {
   double (*memory)(const double* p);
   OpsFor<Scalars>::type ops;
   std::shared_ptr<const void> law = nullptr;  ///< data of an effect read from a file
+  /// Values of all parameters by linear least squares from a record that is free of noise, best first; those
+  /// that a record does not show are taken from `known`. nullptr: nobody has found how.
+  std::vector<std::vector<double>> (*closed_form)(const Recording& record, const double* known) = nullptr;
 
   template <class T>
   [[nodiscard]] const Ops<T>& get() const {
@@ -262,6 +268,7 @@ Effect make_effect() {
     e.instants = +[](const void*, const double* p) { return M::instants(p); };
   if constexpr (requires { &M::measure; }) e.measure = &M::measure;
   if constexpr (requires { &M::memory; }) e.memory = &M::memory;
+  if constexpr (requires { &M::closed_form; }) e.closed_form = &M::closed_form;
   e.ops = make_all_ops<M>(static_cast<Scalars*>(nullptr));
   return e;
 }

@@ -8,6 +8,7 @@
 // here.
 #include "base/constants.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/direct/swing.hpp"
 
 namespace swingbank::sim::effects::machine_gencls {
 
@@ -89,6 +90,11 @@ struct Model {
     s.Tm = er * s.Ir + ei * s.Ii;
     s.Efd = c[E];
     return {};
+  }
+  /// H and D; Ra and X'd act on the fluxes alone and stay as they are.
+  static std::vector<std::vector<double>> closed_form(const Recording& record, const double* known) {
+    const direct::Swing found = direct::swing_of(record, known[Ra], direct::Divided::all);
+    return {{found.H, found.D, known[Ra], known[Xdp]}};
   }
 };
 

@@ -4,6 +4,7 @@
 // Conventions. PSS/E sets power, Pm and D w both divided by speed, Te is not; no speed voltage. With its own
 // steps its records psse/GENROU agree to 0.0002 degrees; with speed voltage they miss by 0.009, with torque
 // by 0.045, without damping by 0.002. ANDES takes torques, no speed voltage (tests/reference/andes).
+#include "sim/direct/round_rotor.hpp"
 #include "sim/effects/detail/round_rotor.hpp"
 
 namespace swingbank::sim::effects::machine_genrou {
@@ -24,6 +25,13 @@ struct Model : shared::RoundRotor<Model, QuadraticSaturation> {
    kd = (X'd - X'')/(X'd - Xl)^2   kq = (X'q - X'')/(X'q - Xl)^2   ks = (Xq - Xl)/(Xd - Xl)
    2H dw/dt = Tm - Te - D w   (convention: (Pm - D w)/(1 + w) - Te)      Te = psi''d Iq - psi''q Id
 )";
+  static std::vector<std::vector<double>> closed_form(const Recording& record, const double* known) {
+    std::vector<std::vector<double>> all;
+    for (const direct::RoundRotor& r : direct::round_rotor(record, known[Ra], known[Xdpp]))
+      all.push_back({r.Tdop, r.Tdopp, r.Tqop, r.Tqopp, r.H, r.D, r.Xd, r.Xq, r.Xdp, r.Xqp, known[Xdpp], r.Xl,
+                     r.S10, r.S12, known[Ra]});
+    return all;
+  }
 };
 
 }  // namespace swingbank::sim::effects::machine_genrou

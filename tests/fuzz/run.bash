@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the fuzz targets and runs each from its committed corpus, two at a time.
+# Builds the fuzz targets (preset fuzz) and runs each from its committed corpus, two at a time.
 #   bash tests/fuzz/run.bash SECONDS [TARGET...]
 #     SECONDS   time of each target
 #     TARGET    default every tests/fuzz/*.cpp
@@ -38,9 +38,7 @@ built() {
 }
 rm -rf "$build/found/build"
 mkdir -p "$build"
-built cmake -S "$source_folder" -B "$build" -G Ninja -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ \
-  -DCMAKE_BUILD_TYPE=Debug -DSWINGBANK_ARCH=x86-64-v2 -DSWINGBANK_FUZZ=ON -DSWINGBANK_TESTS=OFF -DSWINGBANK_TRAIN=OFF \
-  -DSWINGBANK_BENCH=OFF
+built cmake -S "$source_folder" --preset fuzz
 built cmake --build "$build" --target "${targets[@]/#/fuzz_}"
 
 # run_target NAME

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/config.hpp"
+#include "train/direct/direct.hpp"
 #include "train/networks/network.hpp"
 
 namespace swingbank::train::loop {
@@ -16,6 +17,7 @@ const std::vector<std::string> kSchedules = {"constant", "cosine"};
 std::vector<std::string> network_names() {
   std::vector<std::string> names;
   for (const auto& record : networks::all_networks()) names.emplace_back(record.name);
+  names.insert(names.end(), direct::kMethods.begin(), direct::kMethods.end());
   return names;
 }
 

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <nlohmann/json.hpp>
 
 #include "base/durable.hpp"
 #include "base/problem.hpp"
 #include "base/run_lock.hpp"
 #include "train/data/random.hpp"
+#include "train/direct/direct.hpp"
 #include "train/run/detail/result.hpp"
 #include "train/run/saved_network.hpp"
 
@@ -24,19 +26,22 @@ bool already_done(const std::filesystem::path& file, const json& run) {
                     "its data or settings differ from this run's", "remove it or choose another --out"});
 }
 
-loop::Score judge(networks::Network& network, const data::ShardStream& stream, const data::Features& features,
+/// `predicted`: test rows x parameters, raw units.
+loop::Score judge(const std::vector<double>& predicted, const data::ShardStream& stream,
                   const data::TargetScale& scale, const data::RowSplit& split) {
   const data::Labels& labels = stream.labels();
   const std::size_t p = labels.parameters;
-  const std::vector<float> out = loop::predict(network, stream, features, split.test);
-  std::vector<double> predicted(out.size()), truth(out.size());
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    predicted[i] = scale.raw(out[i], i % p);
-    truth[i] = labels.values[split.test[i / p] * p + i % p];
-  }
+  std::vector<double> truth(predicted.size());
+  for (std::size_t i = 0; i < truth.size(); ++i) truth[i] = labels.values[split.test[i / p] * p + i % p];
   const mpi::store::Dataset& d = stream.dataset();
   return loop::score({predicted, truth, scale.mean, d.parameter_names, d.parameter_units, d.parameter_low,
                       d.parameter_high});
+}
+
+std::vector<double> raw_outputs(const std::vector<float>& out, const data::TargetScale& scale) {
+  std::vector<double> raw(out.size());
+  for (std::size_t i = 0; i < out.size(); ++i) raw[i] = scale.raw(out[i], i % scale.mean.size());
+  return raw;
 }
 
 networks::NetworkShape shape_of(const data::Features& features, const data::TargetScale& scale) {
@@ -47,6 +52,36 @@ networks::NetworkShape shape_of(const data::Features& features, const data::Targ
   for (std::size_t p = 0; p < scale.unit.size(); ++p)
     shape.output_bias.push_back(static_cast<float>(scale.scaled(scale.mean[p], p)));
   return shape;
+}
+
+std::string scored(const loop::Score& s, double seconds) {
+  return fmt::format("MSE {:.4g} against {:.4g} for the mean (x {:.3g}{}), {}", s.mse, s.baseline_mse, s.ratio,
+                     s.H_ratio ? fmt::format(", H alone x {:.3g}", *s.H_ratio) : "", loop::duration(seconds));
+}
+
+struct DirectRun {
+  const std::filesystem::path& file;
+  const std::string& name;
+  const json& identity;
+  const data::RowSplit& split;
+  const data::TargetScale& scale;
+};
+/// Nothing is trained and nothing is saved half done: a run takes minutes at most.
+RunOutcome run_direct(const data::ShardStream& stream, const RunRequest& r, const DirectRun& d) {
+  if (r.shuffle_labels)
+    throw InputError({"a control run of " + r.network, "--shuffle-labels", "it is not trained on labels",
+                      "leave it out, or choose a network"});
+  loop::TrainingProgress progress(d.name, d.split.test.size(), r.quiet);
+  progress.line(fmt::format("{} test rows, nothing to train", d.split.test.size()));
+  const auto begin = std::chrono::steady_clock::now();
+  const auto found = direct::estimate(stream.dataset(), d.split.test, r.network,
+                                      [&](std::size_t done) { progress.update(done, "rows estimated"); });
+  loop::LoopReport report;
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const loop::Score result = judge(found, stream, d.scale, d.split);
+  write_text(d.file, result_json(stream, r, {d.split, nullptr, report, result}).dump(2) + "\n");
+  progress.line(scored(result, report.seconds));
+  return RunOutcome::done;
 }
 
 }  // namespace
@@ -99,6 +134,7 @@ RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
                   : data::split_by_point(labels, r.seed);
   const data::TargetScale scale =
       data::TargetScale::fit(labels.values, labels.parameters, split.train, stream.dataset().parameter_low);
+  if (direct::is_method(r.network)) return run_direct(stream, r, {file, name, run_identity, split, scale});
   const std::vector<float> targets = scaled_targets(labels, scale, split, r.shuffle_labels, r.seed);
   const data::Features features =
       data::Features::fit(stream, split.train, r.experiment.preset(r.preset).pca_components);
@@ -116,16 +152,15 @@ RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
     progress.line(fmt::format("saved to {}; submit the same command again to go on", checkpoint.string()));
     return RunOutcome::stopped;
   }
-  const loop::Score result = judge(*network, stream, features, scale, split);
+  const loop::Score result =
+      judge(raw_outputs(loop::predict(*network, stream, features, split.test), scale), stream, scale, split);
   if (r.save_network && !r.shuffle_labels)
     save_network(network_file(file), {stream, r, features, scale, split, run_identity}, *network);
-  write_text(file, result_json(stream, r, {split, features, report, result}).dump(2) + "\n");
+  write_text(file, result_json(stream, r, {split, &features, report, result}).dump(2) + "\n");
   std::filesystem::remove(checkpoint);
   lock.withdraw(true);
-  progress.line(fmt::format("MSE {:.4g} against {:.4g} for the mean (x {:.3f}{}), {}, best epoch {} of {}",
-                            result.mse, result.baseline_mse, result.ratio,
-                            result.H_ratio ? fmt::format(", H alone x {:.3f}", *result.H_ratio) : "",
-                            loop::duration(report.seconds), report.best_epoch, report.epochs));
+  progress.line(fmt::format("{}, best epoch {} of {}", scored(result, report.seconds), report.best_epoch,
+                            report.epochs));
   return RunOutcome::done;
 }
 

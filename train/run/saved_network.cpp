@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -18,23 +17,6 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 constexpr SealedKind kNetwork{"network file", "swingbank-network-1\n", "train it again"};
-
-/// Numbers of a line "key = 1" or "key = [1, 2]" of a dataset's config; empty if it has no such line.
-std::vector<double> numbers_of(const std::string& config, const std::string& key) {
-  const std::string start = "\n" + key + " = ", all = "\n" + config;
-  const auto at = all.find(start);
-  std::vector<double> numbers;
-  if (at == std::string::npos) return numbers;
-  const char *p = all.data() + at + start.size(),
-             *end = all.data() + std::min(all.find('\n', at + 1), all.size());
-  while (p < end) {
-    double value = 0.0;
-    const auto [next, error] = std::from_chars(p, end, value);
-    if (error == std::errc{}) numbers.push_back(value);
-    p = error == std::errc{} ? next : p + 1;
-  }
-  return numbers;
-}
 
 double rms(const float* values, std::size_t count) {
   double sum = 0.0;
@@ -92,7 +74,7 @@ json header_of(const NetworkParts& parts, networks::Network& network) {
   const RunRequest& r = parts.request;
   const data::InputSelection& s = parts.stream.selection();
   const data::FeatureSizes sizes = parts.features.sizes();
-  const auto start = numbers_of(d.config, "fault.start"), filter = numbers_of(d.config, "record.frequency");
+  const auto start = mpi::store::config_numbers(d, "fault.start"), filter = mpi::store::config_numbers(d, "record.frequency");
   return {{"run", parts.identity},
           {"name", run_name(r)},
           {"network", r.network},

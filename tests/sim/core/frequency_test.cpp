@@ -49,6 +49,16 @@ TEST(TerminalFrequency, RampFollowsTheAnalyticAnswer) {
   }
 }
 
+TEST(TerminalFrequency, GivesTheAngleBack) {
+  std::vector<double> theta;
+  for (int k = 0; k < 1800; ++k)  // leaps and swings
+    theta.push_back(0.3 + (k > 240 ? -0.4 : 0.0) + 0.8 * std::sin(0.02 * k) + (k == 900 ? 1.0 : 0.0));
+  const auto f = frequency_of(theta);
+  std::vector<double> back(theta.size());
+  terminal_angle(f.data(), f.size(), kRate, kF0, kConstants, back.data());
+  for (std::size_t k = 0; k < theta.size(); ++k) EXPECT_NEAR(back[k], theta[k] - theta[0], 1e-11) << k;
+}
+
 TEST(TerminalFrequency, ConstantAngleGivesZero) {
   for (double v : frequency_of(std::vector<double>(50, -2.5))) EXPECT_EQ(v, 0.0);
 }

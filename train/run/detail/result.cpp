@@ -1,5 +1,6 @@
 #include "train/run/detail/result.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace swingbank::train::run {
@@ -73,7 +74,8 @@ json result_json(const data::ShardStream& stream, const RunRequest& r, const Run
           {"epochs", parts.report.epochs},
           {"best_epoch", parts.report.best_epoch},
           {"seconds", parts.report.seconds},
-          {"seconds_per_epoch", parts.report.seconds / static_cast<double>(parts.report.epochs)},
+          {"seconds_per_epoch",
+           parts.report.seconds / static_cast<double>(std::max<std::size_t>(parts.report.epochs, 1))},
           {"mse", parts.score.mse},
           {"mse_varied_only", parts.score.mse_varied_only},
           {"baseline_mse", parts.score.baseline_mse},
@@ -85,7 +87,7 @@ json result_json(const data::ShardStream& stream, const RunRequest& r, const Run
           {"threads", r.runtime.threads},
           {"blas", r.runtime.blas},
           {"software", d.software},
-          {"input", input_json(stream, r, parts.features)},
+          {"input", parts.features ? input_json(stream, r, *parts.features) : json()},
           {"batch", t.batch},
           {"learning_rate", t.learning_rate},
           {"validation_mse", parts.report.validation},

@@ -15,7 +15,7 @@ nlohmann::json identity(const data::ShardStream& stream, const RunRequest& reque
 
 struct RunParts {
   const data::RowSplit& split;
-  const data::Features& features;
+  const data::Features* features;  ///< nullptr: nothing was trained
   const loop::LoopReport& report;
   const loop::Score& score;
 };

@@ -1,0 +1,36 @@
+#include "sim/direct/integral.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace swingbank::sim::direct {
+
+Eigen::VectorXd integral(const Eigen::VectorXd& f, double step) {
+  const Eigen::Index n = f.size();
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(n);
+  if (n < 4) return sum;
+  const double part = step / 24;
+  // Each interval's share of the cubic through the four samples about it (Gregory).
+  for (Eigen::Index k = 0; k + 1 < n; ++k) {
+    double area = 0;
+    if (k == 0)
+      area = 9 * f[0] + 19 * f[1] - 5 * f[2] + f[3];
+    else if (k + 2 == n)
+      area = 9 * f[n - 1] + 19 * f[n - 2] - 5 * f[n - 3] + f[n - 4];
+    else
+      area = 13 * (f[k] + f[k + 1]) - f[k - 1] - f[k + 2];
+    sum[k + 1] = sum[k] + part * area;
+  }
+  return sum;
+}
+
+std::size_t behind_last_leap(std::span<const double> V) {
+  constexpr double kLeast = 0.01, kShare = 0.2;  // [pu]; of the largest step
+  double largest = kLeast;
+  for (std::size_t k = 1; k < V.size(); ++k) largest = std::max(largest, std::abs(V[k] - V[k - 1]));
+  for (std::size_t k = V.size(); k-- > 1;)
+    if (std::abs(V[k] - V[k - 1]) > kShare * largest) return k;
+  return 0;
+}
+
+}  // namespace swingbank::sim::direct

@@ -1,0 +1,245 @@
+#include "sim/direct/refine.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "sim/direct/detail/turning.hpp"
+#include "sim/direct/integral.hpp"
+
+namespace swingbank::sim::direct {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr std::size_t kAngleAndSpeed = 2;  ///< states that are measured: the first two of every machine
+
+
+/// A machine driven by voltage, angle and speed as recorded.
+class Driven {
+ public:
+  Driven(const Effect& machine, const Recording& record, double longest)
+      : machine_(machine), record_(record), first_(behind_last_leap(record.V)) {
+    std::vector<double> p = machine.standard_parameters();
+    const auto count = std::min(static_cast<std::size_t>(longest / record.step), record.V.size() - first_);
+    whole_ = turning(record, 0.0, 0.0, 0, first_ + count);
+    steps_ = (count - 1) / 2;
+  }
+  [[nodiscard]] std::size_t fluxes() const { return machine_.states.size() - kAngleAndSpeed; }
+  [[nodiscard]] Index outputs() const { return static_cast<Index>(steps_ * compared()); }
+
+  /// Residuals over the stretch. `offset`: of the angle against the steady state's; `flux`: at its start.
+  template <class T>
+  std::vector<T> residuals(const std::vector<T>& p, const T& offset, const std::vector<T>& flux) const {
+    Machine<T> m(machine_, record_.conventions, p, whole_);
+    std::vector<T> x = flux, out;
+    out.reserve(steps_ * compared());
+    for (std::size_t k = 0; k < steps_; ++k) {
+      const std::size_t at = first_ + 2 * k;
+      compare(m, at, offset, x, out);
+      step(m, {at, at + 1, at + 2}, 2 * record_.step, offset, x);
+    }
+    return out;
+  }
+  /// The fluxes that the steady state has by the stretch's start. The fault's edges fall between samples, so
+  /// this is a start for the fit and no more.
+  std::vector<double> fluxes_at_start(const std::vector<double>& p) const {
+    Machine<double> m(machine_, record_.conventions, p, whole_);
+    std::vector<double> x(m.x.begin() + kAngleAndSpeed, m.x.end());
+    for (std::size_t k = 0; k < first_; ++k) step(m, {k, k, k + 1}, record_.step, 0.0, x);
+    return x;
+  }
+
+ private:
+  template <class T>
+  struct Machine {
+    const Ops<T>& ops;
+    std::vector<T> c, x, scratch, dx;
+    Signals<T> s;  ///< with Efd and Tm of the steady state
+    T r, xm, angle0;
+    Machine(const Effect& effect, const Conventions& conventions, const std::vector<T>& p, const Turning& t)
+        : ops(effect.get<T>()),
+          c(static_cast<std::size_t>(effect.coefficients)),
+          x(effect.states.size()),
+          scratch(static_cast<std::size_t>(effect.scratch)),
+          dx(effect.states.size()) {
+      ops.prepare(p.data(), conventions, c.data());
+      ops.machine.source_impedance(p.data(), r, xm);
+      s.Vr = T(t.V[0]);
+      s.Ir = T(t.current0.real());
+      s.Ii = T(t.current0.imag());
+      ops.machine.steady(p.data(), c.data(), s, x.data());
+      angle0 = x[0];
+    }
+    /// Voltage behind the impedance at a sample, with the fluxes x.
+    void emf(double relative, double speed, const T& offset, const std::vector<T>& flux, T& er, T& ei) {
+      x[0] = angle0 + offset + T(relative);
+      x[1] = T(speed);
+      std::ranges::copy(flux, x.begin() + kAngleAndSpeed);
+      ops.machine.emf(c.data(), x.data(), scratch.data(), er, ei);
+    }
+    /// Current into the voltage V of the sample, then everything that follows from it.
+    void electrical(double V, const T& er, const T& ei) {
+      const T dr = er - T(V), k = T(1.0) / (r * r + xm * xm);
+      s.Vr = T(V);
+      s.Ir = (r * dr + xm * ei) * k;
+      s.Ii = (r * ei - xm * dr) * k;
+      ops.machine.electrical(c.data(), x.data(), scratch.data(), s);
+    }
+  };
+
+  [[nodiscard]] std::size_t compared() const { return whole_.Ifd.size() > 0 ? 3 : 2; }
+  template <class T>
+  void compare(Machine<T>& m, std::size_t at, const T& offset, const std::vector<T>& flux,
+               std::vector<T>& out) const {
+    const auto i = static_cast<Index>(at);
+    T er, ei;
+    m.emf(whole_.relative[i], whole_.speed[i], offset, flux, er, ei);
+    m.electrical(whole_.V[i], er, ei);
+    // current in the terminal's frame: `turning` has taken the rotor's movement off
+    const std::complex<double> current = whole_.current[i] * std::polar(1.0, whole_.relative[i]);
+    out.push_back((m.s.Ir - T(current.real())) * m.xm);
+    out.push_back((m.s.Ii - T(current.imag())) * m.xm);
+    if (whole_.Ifd.size() > 0) out.push_back(m.s.Ifd - T(whole_.Ifd[i]));
+  }
+  template <class T>
+  std::vector<T> slopes(Machine<T>& m, std::size_t at, const T& offset, const std::vector<T>& flux) const {
+    const auto i = static_cast<Index>(at);
+    T er, ei;
+    m.emf(whole_.relative[i], whole_.speed[i], offset, flux, er, ei);
+    m.electrical(whole_.V[i], er, ei);
+    m.ops.machine.derivative(m.c.data(), m.x.data(), m.scratch.data(), m.s, m.dx.data());
+    return {m.dx.begin() + kAngleAndSpeed, m.dx.end()};
+  }
+  /// One step of the classical fourth-order method over samples first, middle, last.
+  template <class T>
+  void step(Machine<T>& m, const std::array<std::size_t, 3>& at, double h, const T& offset,
+            std::vector<T>& x) const {
+    const auto moved = [&](const std::vector<T>& by, double share) {
+      std::vector<T> y = x;
+      for (std::size_t i = 0; i < y.size(); ++i) y[i] = y[i] + T(share) * by[i];
+      return y;
+    };
+    const auto a = slopes(m, at[0], offset, x);
+    const auto b = slopes(m, at[1], offset, moved(a, h / 2));
+    const auto c = slopes(m, at[1], offset, moved(b, h / 2));
+    const auto d = slopes(m, at[2], offset, moved(c, h));
+    for (std::size_t i = 0; i < x.size(); ++i)
+      x[i] = x[i] + T(h / 6) * (a[i] + T(2.0) * (b[i] + c[i]) + d[i]);
+  }
+
+  const Effect& machine_;
+  const Recording& record_;
+  std::size_t first_, steps_ = 0;
+  Turning whole_;
+};
+
+/// Values and slopes of the residuals at `z`: free parameters, offset, fluxes; each times its scale.
+class Problem {
+ public:
+  Problem(const Driven& driven, std::vector<double> p, std::span<const int> free, VectorXd scale)
+      : driven_(driven), p_(std::move(p)), free_(free), scale_(std::move(scale)) {}
+  [[nodiscard]] VectorXd values(const VectorXd& z) const {
+    const auto r = of<double>(z, -1);
+    return Eigen::Map<const VectorXd>(r.data(), static_cast<Index>(r.size()));
+  }
+  [[nodiscard]] MatrixXd slopes(const VectorXd& z) const {
+    MatrixXd jacobian(driven_.outputs(), z.size());
+    for (Index first = 0; first < z.size(); first += kDirections) {
+      const auto r = of<D8>(z, first);
+      for (Index k = 0; k < std::min<Index>(kDirections, z.size() - first); ++k)
+        for (std::size_t i = 0; i < r.size(); ++i)
+          jacobian(static_cast<Index>(i), first + k) = r[i].d[static_cast<std::size_t>(k)];
+    }
+    return jacobian;
+  }
+  [[nodiscard]] std::vector<double> parameters(const VectorXd& z) const {
+    std::vector<double> p = p_;
+    for (std::size_t k = 0; k < free_.size(); ++k)
+      p[static_cast<std::size_t>(free_[k])] = z[static_cast<Index>(k)] * scale_[static_cast<Index>(k)];
+    return p;
+  }
+
+ private:
+  template <class T>
+  std::vector<T> of(const VectorXd& z, Index first) const {
+    const auto at = [&](Index k) {
+      T x(z[k] * scale_[k]);
+      if constexpr (!std::is_same_v<T, double>)
+        if (k >= first && k < first + kDirections) x.d[static_cast<std::size_t>(k - first)] = scale_[k];
+      return x;
+    };
+    std::vector<T> p(p_.begin(), p_.end()), flux;
+    const auto n = static_cast<Index>(free_.size());
+    for (Index k = 0; k < n; ++k) p[static_cast<std::size_t>(free_[static_cast<std::size_t>(k)])] = at(k);
+    for (Index k = n + 1; k < z.size(); ++k) flux.push_back(at(k));
+    return driven_.residuals<T>(p, at(n), flux);
+  }
+
+  const Driven& driven_;
+  std::vector<double> p_;
+  std::span<const int> free_;
+  VectorXd scale_;
+};
+
+double cost_of(const VectorXd& r) {
+  const double sum = r.squaredNorm();
+  return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+Refined refine(const Effect& machine, const Recording& record, std::vector<double> start,
+               std::span<const int> free, std::span<const double> low, std::span<const double> high,
+               const RefineOptions& options) {
+  const Driven driven(machine, record, options.longest);
+  const auto n = static_cast<Index>(free.size()), all = n + 1 + static_cast<Index>(driven.fluxes());
+  VectorXd scale = VectorXd::Ones(all), z = VectorXd::Zero(all);
+  VectorXd least = VectorXd::Constant(all, -1e9), most = VectorXd::Constant(all, 1e9);
+  for (Index k = 0; k < n; ++k) {
+    const auto i = static_cast<std::size_t>(free[static_cast<std::size_t>(k)]);
+    const auto b = static_cast<std::size_t>(k);
+    start[i] = std::clamp(start[i], low[b], high[b]);
+    scale[k] = high[b] - low[b];
+    z[k] = start[i] / scale[k];
+    least[k] = low[b] / scale[k];
+    most[k] = high[b] / scale[k];
+  }
+  const auto flux = driven.fluxes_at_start(start);
+  for (std::size_t k = 0; k < flux.size(); ++k) z[n + 1 + static_cast<Index>(k)] = flux[k];
+  const Problem problem(driven, start, free, scale);
+
+  VectorXd r = problem.values(z);
+  double cost = cost_of(r), damping = 1e-3;
+  int done = 0;
+  constexpr int kTrials = 8;
+  constexpr double kEnough = 1e-12;  // of the cost, in one iteration
+  for (bool better = std::isfinite(cost); better && done < options.iterations; ++done) {
+    const MatrixXd J = problem.slopes(z);
+    const MatrixXd G = J.transpose() * J;
+    const VectorXd g = J.transpose() * r;
+    better = false;
+    for (int trial = 0; trial < kTrials && !better; ++trial) {
+      MatrixXd damped = G;
+      damped.diagonal() += damping * G.diagonal() + VectorXd::Constant(all, 1e-14 * G.trace());
+      const VectorXd next = (z - damped.ldlt().solve(g)).cwiseMax(least).cwiseMin(most);
+      const VectorXd value = problem.values(next);
+      const double now = cost_of(value);
+      if (now < cost) {
+        better = now < cost * (1 - kEnough);
+        z = next;
+        r = value;
+        cost = now;
+        damping = std::max(damping / 10, 1e-12);
+        if (!better) break;
+      } else {
+        damping *= 10;
+      }
+    }
+  }
+  return {problem.parameters(z), std::sqrt(cost / static_cast<double>(driven.outputs())), done};
+}
+
+}  // namespace swingbank::sim::direct

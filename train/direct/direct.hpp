@@ -1,0 +1,25 @@
+#pragma once
+// Estimates without training: by the machine's closed form, alone or refined. They stand in the tables beside
+// the networks, as what a person with the equations would do.
+#include <array>
+#include <functional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "mpi/store/dataset.hpp"
+
+namespace swingbank::train::direct {
+
+/// "closed-form": linear least squares. "refined": Levenberg-Marquardt on the machine's equations from there.
+inline constexpr std::array<std::string_view, 2> kMethods = {"closed-form", "refined"};
+bool is_method(std::string_view name);
+
+/// rows x parameters in raw units, inside the sampling box, for rows of the dataset in ascending order. The
+/// records count whole and at full rate, whatever a network would see of them. `tell`: called with the number
+/// of rows done. Throws InputError if the machine has no closed form, a channel that it needs is not recorded,
+/// or parameters of other effects vary.
+std::vector<double> estimate(const mpi::store::Dataset& dataset, std::span<const std::uint64_t> rows,
+                             std::string_view method, const std::function<void(std::size_t)>& tell = {});
+
+}  // namespace swingbank::train::direct
