@@ -111,7 +111,7 @@ std::string table(const train::run::NetworkInfo& n, const std::vector<Estimated>
                     p.high > p.low ? fmt::format("{:g} to {:g}", p.low, p.high) : "held, not learnt");
   }
   return text +
-         "spread: root mean square error on the network's validation records; scatter: between these "
+         "spread: root mean square error on records of a generator (or values) it was not trained on; scatter: between these "
          "records\n";
 }
 

@@ -32,8 +32,8 @@ class FrequencyLags {
   /// The angle [rad] that makes the frequency deviation f [pu]: the exact inverse, which is stable.
   double angle(double f) {
     const double held = washout_.keep * washout_.x - filter_.keep * filter_.x;
-    const double u = (f / scale_ - held - (washout_.before - filter_.before) * last_) /
-                     (washout_.after - filter_.after);
+    const double u =
+        (f / scale_ - held - (washout_.before - filter_.before) * last_) / (washout_.after - filter_.after);
     washout_.step(last_, u);
     filter_.step(last_, u);
     return last_ = u;

@@ -8,8 +8,8 @@ namespace swingbank::sim {
 
 /// The first samples are steady: the event begins later. The angle is continuous (unwrapped).
 struct Recording {
-  double step = 0.0;        ///< [s]
-  Conventions conventions;  ///< of whatever made the record
+  double step = 0.0;                          ///< [s]
+  Conventions conventions;                    ///< of whatever made the record
   std::vector<double> V, theta, P, Q, speed;  ///< [pu], theta [rad]; P and Q out of the machine
   std::vector<double> Ifd;                    ///< [pu, 1 on the air-gap line]; empty: not recorded
 };

@@ -16,7 +16,6 @@ using Eigen::VectorXd;
 
 constexpr std::size_t kAngleAndSpeed = 2;  ///< states that are measured: the first two of every machine
 
-
 /// A machine driven by voltage, angle and speed as recorded.
 class Driven {
  public:

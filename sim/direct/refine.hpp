@@ -20,11 +20,11 @@ struct RefineOptions {
   double longest = 6.0;  ///< of the stretch [s]
 };
 
-/// `machine`: an effect of the machine slot whose voltage lies behind a constant impedance. `free`: indices of
-/// the parameters to fit, kept between `low` and `high`; the others stay as in `start`. `angle`: of the rotor
-/// against the terminal at the first sample [rad]; it is free as well, as are the states at the stretch's
-/// start. H and D do not act here. What is compared: the voltage behind the impedance, and the field current
-/// where recorded. Compared at every second sample.
+/// `machine`: an effect of the machine slot whose voltage lies behind a constant impedance. `free`: indices
+/// of the parameters to fit, kept between `low` and `high`; the others stay as in `start`. `angle`: of the
+/// rotor against the terminal at the first sample [rad]; it is free as well, as are the states at the
+/// stretch's start. H and D do not act here. What is compared: the voltage behind the impedance, and the
+/// field current where recorded. Compared at every second sample.
 Refined refine(const Effect& machine, const Recording& record, std::vector<double> start,
                std::span<const int> free, std::span<const double> low, std::span<const double> high,
                const RefineOptions& options = {});

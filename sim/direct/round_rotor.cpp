@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 
 constexpr double kLongest = 6.0;  ///< of the stretch [s]: later the machine has little left to say
 constexpr int kAngles = 161, kKnees = 61, kReactances = 201;  ///< points of the three grids
-constexpr double kSaliency = 2.4;       ///< largest (Xq - X'')/(1 + ks Se) that is looked at [pu]
+constexpr double kSaliency = 2.4;  ///< largest (Xq - X'')/(1 + ks Se) that is looked at [pu]
 
 /// Solves columns x = target for scaled columns, and what is left as a root mean square.
 struct Solved {
@@ -34,8 +34,8 @@ Solved solve(const MatrixXd& columns, const VectorXd& target, double samples) {
 
 /// The field circuit and the d axis' damper, linear once the angle is given:
 ///   int psi_d = -T''do (psi_d - psi_d0) + T''do gd1/T'do J + int J/T'do - (X'd - X'') int i_d + E'q0 t,
-/// J the integral of Efd - Ifd. Every column is a sum of two that do not depend on the angle, times its cosine
-/// and sine, so their triangle is found once.
+/// J the integral of Efd - Ifd. Every column is a sum of two that do not depend on the angle, times its
+/// cosine and sine, so their triangle is found once.
 class DirectAxis {
  public:
   explicit DirectAxis(const Turning& t) : samples_(static_cast<double>(t.V.size())) {
@@ -141,13 +141,13 @@ struct QuadratureAxis {
   Dampers dampers;
 };
 /// Both dampers of the q axis, twice integrated:
-///   iint psi_q = -A1 int psi_q - A2 psi_q - (Xq - X'') iint i_q - B1 int i_q - ks iint sigma - r ks int sigma
+///   iint psi_q = -A1 int psi_q - A2 psi_q - (Xq - X'') iint i_q - B1 int i_q - ks iint sigma - r ks int
+///   sigma
 ///   + straight line,   sigma = psi_q Se,   ks = (Xq - Xl)/(Xd - Xl), which three passes settle.
 QuadratureAxis quadrature(const Axes& axes, double step, double A, double B, const RoundRotor& r) {
   const Index n = axes.psi_q.size();
   VectorXd bent(n);
-  for (Index k = 0; k < n; ++k)
-    bent[k] = axes.psi_q[k] * se(A, B, std::hypot(axes.psi_d[k], axes.psi_q[k]));
+  for (Index k = 0; k < n; ++k) bent[k] = axes.psi_q[k] * se(A, B, std::hypot(axes.psi_d[k], axes.psi_q[k]));
   const VectorXd flux = integral(axes.psi_q, step), current = integral(axes.i_q, step);
   const VectorXd field = integral(bent, step), field2 = integral(field, step), flux2 = integral(flux, step);
   MatrixXd columns(n, 7);

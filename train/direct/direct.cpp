@@ -45,7 +45,7 @@ class Rows {
     if (filter.size() == 2) filter_ = {filter[0], filter[1]};
     const double hz = frequency.size() == 1 ? frequency[0] : kSystemFrequency;
     conventions_ = store::config_text(d, "convention") == "andes" ? sim::Conventions::andes(hz)
-                                                                    : sim::Conventions::psse(hz);
+                                                                  : sim::Conventions::psse(hz);
     standard_ = effect_->standard_parameters();
     for (std::size_t k = 0; k < d.parameter_names.size(); ++k) {
       const int index = effect_->parameter_index(d.parameter_names[k]);

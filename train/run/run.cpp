@@ -55,8 +55,9 @@ networks::NetworkShape shape_of(const data::Features& features, const data::Targ
 }
 
 std::string scored(const loop::Score& s, double seconds) {
-  return fmt::format("MSE {:.4g} against {:.4g} for the mean (x {:.3g}{}), {}", s.mse, s.baseline_mse, s.ratio,
-                     s.H_ratio ? fmt::format(", H alone x {:.3g}", *s.H_ratio) : "", loop::duration(seconds));
+  return fmt::format("MSE {:.4g} against {:.4g} for the mean (x {:.3g}{}), {}", s.mse, s.baseline_mse,
+                     s.ratio, s.H_ratio ? fmt::format(", H alone x {:.3g}", *s.H_ratio) : "",
+                     loop::duration(seconds));
 }
 
 struct DirectRun {

@@ -40,20 +40,20 @@ double largest_input(const data::ShardStream& stream, const data::Features& feat
   return largest;
 }
 
-/// The parameters with bias and spread on the validation rows.
+/// The parameters with bias and spread on the test rows, which training never saw: where one generator is
+/// left out, they are that generator's.
 json judged_parameters(const NetworkParts& parts, networks::Network& network) {
   const mpi::store::Dataset& d = parts.stream.dataset();
   const data::Labels& labels = parts.stream.labels();
   const std::size_t p = labels.parameters;
-  const std::vector<float> out = loop::predict(network, parts.stream, parts.features, parts.split.validation);
+  const std::vector<float> out = loop::predict(network, parts.stream, parts.features, parts.split.test);
   std::vector<double> sum(p), square(p);
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const double error =
-        parts.scale.raw(out[i], i % p) - labels.values[parts.split.validation[i / p] * p + i % p];
+    const double error = parts.scale.raw(out[i], i % p) - labels.values[parts.split.test[i / p] * p + i % p];
     sum[i % p] += error;
     square[i % p] += error * error;
   }
-  const auto rows = static_cast<double>(parts.split.validation.size());
+  const auto rows = static_cast<double>(parts.split.test.size());
   json list = json::array();
   for (std::size_t i = 0; i < p; ++i)
     list.push_back({{"name", d.parameter_names[i]},
@@ -74,7 +74,8 @@ json header_of(const NetworkParts& parts, networks::Network& network) {
   const RunRequest& r = parts.request;
   const data::InputSelection& s = parts.stream.selection();
   const data::FeatureSizes sizes = parts.features.sizes();
-  const auto start = mpi::store::config_numbers(d, "fault.start"), filter = mpi::store::config_numbers(d, "record.frequency");
+  const auto start = mpi::store::config_numbers(d, "fault.start"),
+             filter = mpi::store::config_numbers(d, "record.frequency");
   return {{"run", parts.identity},
           {"name", run_name(r)},
           {"network", r.network},

@@ -9,9 +9,6 @@
 
 namespace swingbank::validate::report {
 
-/// A score of at most half of predict-the-mean is the project's own mark of having learnt.
-constexpr double kLearnt = 0.5;
-
 /// The runs of one table made with one network, preset, dataset and seed.
 struct TableBlock {
   std::string table, network, preset, dataset;

@@ -11,8 +11,8 @@ namespace swingbank::sim::direct {
 ///   psi_d + j psi_q = flux exp(-j angle),   i_q - j i_d = current exp(-j angle).
 struct Turning {
   Eigen::VectorXcd flux, current;
-  Eigen::VectorXd V, speed, P, Ifd;  ///< of the stretch; P is the air-gap power [pu]
-  Eigen::VectorXd relative;          ///< rotor against terminal, less the value at the start [rad]
+  Eigen::VectorXd V, speed, P, Ifd;      ///< of the stretch; P is the air-gap power [pu]
+  Eigen::VectorXd relative;              ///< rotor against terminal, less the value at the start [rad]
   std::complex<double> flux0, current0;  ///< at the first sample, in the terminal's frame
   double Ifd0 = 0, P0 = 0;               ///< at the first sample
   double field_before = 0;  ///< integral of Ifd0 - Ifd from the first sample to the stretch's [pu s]

@@ -26,16 +26,15 @@ std::vector<Recording> recorded(const grid::Grid& grid, int bus, double cleared)
     r.conventions = grid.conventions;
     std::vector<double>* channels[] = {&r.V, &r.theta, &r.P, &r.Q, &r.speed, &r.Ifd};
     for (int c = 0; c < 6; ++c)
-      for (int k = 0; k < run.samples; ++k)
-        channels[c]->push_back(static_cast<float>(run.at(plant, c)[k]));
+      for (int k = 0; k < run.samples; ++k) channels[c]->push_back(static_cast<float>(run.at(plant, c)[k]));
     all.push_back(std::move(r));
   }
   return all;
 }
 
 /// In GENROU's order: T'do, T''do, T'qo, T''qo, H, D, Xd, Xq, X'd, X'q, X''d, Xl, S1.0, S1.2, Ra.
-const std::vector<double> kClosedForm = {0.005, 0.01,  0.15, 0.7, 1e-4, 1e-3, 0.04, 0.06,
-                                         0.007, 0.3,   0,    0.4, 0.9,  0.2,  0};
+const std::vector<double> kClosedForm = {0.005, 0.01, 0.15, 0.7, 1e-4, 1e-3, 0.04, 0.06,
+                                         0.007, 0.3,  0,    0.4, 0.9,  0.2,  0};
 const std::vector<double> kRefined = {2e-4, 3e-3, 1e-3, 3e-3, 1e-4, 1e-3, 1e-4, 2e-4,
                                       1e-4, 1e-3, 0,    2e-3, 2e-3, 2e-4, 0};
 
@@ -59,8 +58,8 @@ void expect_near(const std::vector<double>& found, const std::vector<double>& tr
         << plant.name << " " << plant.machine.effect->parameters[k].name;
 }
 
-// The shares are the worst of these twenty records, doubled. The closed form's own weak ones are T''qo, Xl and
-// the saturation, which an integral hardly shows.
+// The shares are the worst of these twenty records, doubled. The closed form's own weak ones are T''qo, Xl
+// and the saturation, which an integral hardly shows.
 TEST(Direct, FindsEveryParameterOfEveryMachine) {
   const auto grid = test::configured_grid("ieee39_dataset_genrou", Conventions::psse());
   for (const auto& [bus, cleared] : {std::pair{16, 2.063}, {4, 2.087}}) {
@@ -81,8 +80,8 @@ TEST(Direct, FindsEveryParameterOfEveryMachine) {
 
 TEST(Direct, FindsInertiaAndDampingOfClassicalMachines) {
   for (const bool psse : {true, false}) {
-    const auto grid = test::configured_grid("ieee39_dataset_gencls",
-                                            psse ? Conventions::psse() : Conventions::andes());
+    const auto grid =
+        test::configured_grid("ieee39_dataset_gencls", psse ? Conventions::psse() : Conventions::andes());
     const auto records = recorded(grid, 16, 2.063);
     for (std::size_t i = 0; i < records.size(); ++i) {
       const auto& truth = grid.plants[i].machine.p;

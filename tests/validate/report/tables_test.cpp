@@ -94,6 +94,16 @@ TEST_F(TablesTest, PutsEachCellBesideThesisAndBaseline) {
   EXPECT_THAT(score_table(blocks[0]).caption,
               AllOf(HasSubstr("seed 1"), HasSubstr("6000 rows"), HasSubstr("quick")));
 }
+TEST_F(TablesTest, WhatTheThesisHasNotStandsBesideItsBest) {
+  auto gru = result("IV", "closed-form", 0, 0.001);
+  gru["epochs"] = 0;
+  write("a", gru);
+  const auto blocks = group_results(read());
+  const auto cells = row(score_table(blocks[0]), "CLOSED-FORM");
+  EXPECT_EQ(cells[2], "0.0079");  // the thesis's GRU
+  EXPECT_EQ(cells[8], "not trained");
+  EXPECT_THAT(make_tables(read(), {}).markdown, HasSubstr("1 of 1 runs score below the thesis"));
+}
 TEST_F(TablesTest, MissingRunsAreNamedNotInvented) {
   write("a", result("VI", "cnn", 31, 0.3));
   const auto blocks = group_results(read());
