@@ -33,14 +33,14 @@ class Bench {
     all_ = event::prepare_events(model, std::move(records), options.events);
     keep_seen();
   }
-  [[nodiscard]] const std::vector<event::FitEvent>& all() const { return all_; }
-  [[nodiscard]] const std::vector<event::FitEvent>& seen() const { return seen_; }
+  [[nodiscard]] const event::WhitenedEvents& all() const { return all_; }
+  [[nodiscard]] const event::WhitenedEvents& seen() const { return seen_; }
   /// Measures the noise anew through a fit of the events seen, if that is close.
   bool measure_noise(const fit::Fit& seen, const sim::Conventions& conventions) {
     if (seen.misfit() >= thresholds::noise.measurable) return false;
     fit::Fit whole = seen;
     whole.events = each(seen.plant, conventions, "noise measured again");
-    fit::measure_noise_through(whole, conventions, all_);
+    all_ = all_.with(fit::measure_noise_through(whole, conventions, all_));
     keep_seen();
     return true;
   }
@@ -53,7 +53,7 @@ class Bench {
     in_parallel(
         all_.size(),
         [&](std::size_t e) {
-          fit::Fit f = fit::fit(plant, conventions, {all_[e]}, {});
+          fit::Fit f = fit::fit(plant, conventions, all_.alone(e), {});
           if (!f.failed.empty())
             throw InputError({"the model cannot follow the record", all_[e].record.name, f.failed,
                               "check the model's parameters and the record's base and units"});
@@ -74,14 +74,15 @@ class Bench {
 
  private:
   void keep_seen() {
-    seen_.clear();
+    std::vector<std::size_t> seen;
     for (std::size_t e = 0; e < all_.size(); ++e)
-      if (!out_[e]) seen_.push_back(all_[e]);
+      if (!out_[e]) seen.push_back(e);
+    seen_ = all_.only(seen);
   }
 
   const calibrate::CalibrateOptions& options_;
   std::vector<bool> out_;
-  std::vector<event::FitEvent> all_, seen_;
+  event::WhitenedEvents all_, seen_;
 };
 
 double chi2_of(const sim::plant::Plant& plant, const sim::Conventions& conventions, const Bench& bench,
@@ -89,7 +90,8 @@ double chi2_of(const sim::plant::Plant& plant, const sim::Conventions& conventio
   double sum = 0;
   try {
     for (std::size_t e = 0; e < states.size(); ++e)
-      sum += fit::event_slopes(plant, conventions, bench.seen()[e], states[e], {}).residual.squaredNorm();
+      sum += fit::event_slopes(plant, conventions, bench.seen().whitened(e), states[e], {})
+                 .residual.squaredNorm();
   } catch (const InputError&) {
     return std::numeric_limits<double>::infinity();
   }
@@ -130,12 +132,12 @@ fit::Fit fit_with(const hypothesis::Hypothesis& h, const Bench& bench,
         fits[k] = fit::fit(h.plant, h.conventions, bench.seen(), free, o);
       },
       [&](int done) { bench.tell("starts of " + h.name + " refined", done, static_cast<int>(tries)); });
-  fit::Fit best = *std::ranges::min_element(fits, {}, fit::penalised);
+  fit::Fit best = *std::ranges::min_element(fits, fit::better);
   if (!best.failed.empty())
     throw InputError({"effect " + h.name + " cannot be fitted", "every start", best.failed,
                       "check the model's parameters, or add another effect"});
   const fit::Fit finished = go_on(h.plant, h.conventions, bench, free, best);
-  return fit::penalised(finished) < fit::penalised(best) ? finished : best;
+  return fit::better(finished, best) ? finished : best;
 }
 
 fit::Fit fit_without(const plant::PlantModel& model, const Bench& bench,
@@ -224,14 +226,14 @@ Addition add_effect(const plant::PlantModel& model, const hypothesis::Hypothesis
   a.parameters = a.with.parameters;
   // The effect's parameters stand last in a fit.
   std::rotate(a.parameters.begin(), a.parameters.end() - a.own, a.parameters.end());
-  a.evidence = fit::criterion(a.without) - fit::criterion(a.with);
+  a.evidence = fit::gain(a.without, a.with, fit::criterion);
   const auto refitted = bench.each(a.without.plant, model.conventions, "events without the effect");
   const auto after = bench.each(a.with.plant, hypothesis.conventions, "events with the effect");
   a.earns = true;
   std::vector<calibrate::EventScore> scores;
   for (std::size_t e = 0; e < bench.all().size(); ++e) {
     AddedEvent event{
-        calibrate::score_event(bench.all()[e], before[e], after[e], bench.is_seen(e),
+        calibrate::score_event(bench.all().whitened(e), before[e], after[e], bench.is_seen(e),
                                calibrate::pre_event_samples(bench.all()), options.calibrate.adequate),
         refitted[e].misfit()};
     scores.push_back(event.score);
@@ -265,7 +267,7 @@ Removal try_without(const plant::PlantModel& model, std::size_t control, std::ve
     without =
         go_on(r.model.plant, model.conventions, bench, fit::free_parameters(r.model.plant, spread), without);
   }
-  r.evidence = fit::criterion(without) - fit::criterion(with);
+  r.evidence = fit::gain(without, with, fit::criterion);
   if (without.failed.empty()) r.model.plant = without.plant;
   return r;
 }

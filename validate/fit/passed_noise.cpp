@@ -8,10 +8,11 @@
 namespace swingbank::validate::fit {
 
 PassedNoise::PassedNoise(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                         const std::vector<event::FitEvent>& events, const Eigen::Vector2d& variance)
+                         const event::WhitenedEvents& events, const Eigen::Vector2d& variance)
     : quiet_(minute_of_noise(events.front(), Eigen::Vector2d::Zero())),
-      noisy_(minute_of_noise(events.front(), variance.cwiseSqrt())) {
-  noisy_.memory = memory_of(plant, conventions, quiet_, variance);
+      noisy_(minute_of_noise(events.front(), variance.cwiseSqrt())),
+      noise_(events.noise(0)) {
+  noise_.memory = memory_of(plant, conventions, {quiet_, noise_}, variance);
   double values = 0;
   for (const event::FitEvent& e : events) values += e.values();
   times_ = values / noisy_.values();
@@ -27,7 +28,7 @@ double PassedNoise::passed(const sim::plant::Plant& plant, const sim::Convention
   try {
     event::RowMatrix moved = noisy_.collected(event::play(plant, conventions, noisy_, {}).value, false);
     moved -= quiet_.collected(event::play(plant, conventions, quiet_, {}).value, false);
-    noisy_.whiten(moved);
+    noise_.whiten(moved);
     return times_ * moved.squaredNorm();
   } catch (const InputError&) {
     return std::nan("");

@@ -35,9 +35,10 @@ Slopes slopes_of(const Setting& setting, std::size_t event, const std::vector<do
 
 }  // namespace
 
-ScoreTest::ScoreTest(const std::vector<event::FitEvent>& events, const sim::plant::Plant& plant,
+ScoreTest::ScoreTest(const event::WhitenedEvents& events, const sim::plant::Plant& plant,
                      const sim::Conventions& conventions, const Fit& fit)
     : events_(events), fit_(fit) {
+  require_noise_of(events, fit);
   Setting setting{&plant, &conventions, &events, {}, kFitTolerance, InputKind::none, {}};
   setting.knots.resize(events.size());
   std::vector<double> at, belief;  // where the fit ended, and what was believed there
@@ -89,7 +90,7 @@ std::optional<Eigen::MatrixXd> ScoreTest::run(const sim::plant::Plant& plant,
       some.col(0) = event.collected(r.value, true);
       for (std::size_t d = 0; d < along.size(); ++d)
         some.col(1 + static_cast<Eigen::Index>(d)) = event.collected(r.slopes[d].value, false);
-      event.whiten(some);
+      events_.noise(e).whiten(some);
       all.middleRows(row, some.rows()) = some;
       row += some.rows();
     }

@@ -12,8 +12,9 @@ namespace swingbank::validate::fit {
 
 class ScoreTest {
  public:
-  /// `fit` is that of `plant`, at its minimum. The constructor takes one look at all slopes.
-  ScoreTest(const std::vector<event::FitEvent>& events, const sim::plant::Plant& plant,
+  /// `fit` is that of `plant`, at its minimum and made with the noise of `events`. The constructor takes one
+  /// look at all slopes.
+  ScoreTest(const event::WhitenedEvents& events, const sim::plant::Plant& plant,
             const sim::Conventions& conventions, const Fit& fit);
 
   /// A change of the whitened answer, one event after the other, and the part of it that the structure could
@@ -48,7 +49,7 @@ class ScoreTest {
                                                    const std::vector<playin::Direction>& along) const;
   [[nodiscard]] Change less_shared(Eigen::VectorXd answer) const;
 
-  const std::vector<event::FitEvent>& events_;
+  const event::WhitenedEvents& events_;
   const Fit& fit_;
   Eigen::VectorXd residual_;            ///< whitened
   Eigen::MatrixXd slopes_;              ///< [value][parameter, then each event's own]

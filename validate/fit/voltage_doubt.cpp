@@ -40,7 +40,8 @@ VoltageDoubt::Shape answer(const event::SlowNoise& noise, std::size_t samples, K
 }  // namespace
 
 VoltageDoubt voltage_doubt(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                           const event::FitEvent& e) {
+                           event::WhitenedEvent whitened) {
+  const event::FitEvent& e = whitened.event;
   constexpr std::uint32_t kDraws = 48;  // so many draws tell a variance to 20 %
   const std::size_t samples = e.record.t.size();
   const Eigen::Vector2d variance(white_variance(e.record.V, e.start.samples) / std::norm(e.start.voltage),
@@ -51,7 +52,7 @@ VoltageDoubt voltage_doubt(const sim::plant::Plant& plant, const sim::Convention
                                                                .record = &e.record,
                                                                .curve = &curve,
                                                                .start = e.start}),
-                                            e, variance);
+                                            whitened, variance);
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(noise.A.rows());
   VoltageDoubt doubt;
   for (const Eigen::Index j : {0, 1}) {

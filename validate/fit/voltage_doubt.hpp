@@ -14,6 +14,6 @@ struct VoltageDoubt {
   std::vector<Shape> shapes;
 };
 VoltageDoubt voltage_doubt(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                           const event::FitEvent& event);
+                           event::WhitenedEvent event);
 
 }  // namespace swingbank::validate::fit

@@ -144,8 +144,7 @@ FleetRow row_of(const diagnose::Diagnosis& d) {
   if (!best.accepted) return row;
   row.evidence = best.gain;
   const int tried = static_cast<int>(d.ranked.size());
-  row.chance =
-      chance_of(fit::penalised(d.base) - fit::penalised(best.fit), best.fit.fitted - d.base.fitted, tried);
+  row.chance = chance_of(fit::gain(d.base, best.fit), best.fit.fitted - d.base.fitted, tried);
   double before = 0, after = 0;
   for (const auto& h : best.held_out) {
     before += h.before / static_cast<double>(best.held_out.size());

@@ -46,12 +46,12 @@ std::vector<double> by_name(const Hypothesis& h, std::vector<double> values,
 }  // namespace
 
 double left_by(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-               const std::vector<event::FitEvent>& events, const std::vector<fit::EventState>& states) {
+               const event::WhitenedEvents& events, const std::vector<fit::EventState>& states) {
   double chi2 = 0;
   try {
     for (std::size_t e = 0; e < events.size(); ++e) {
       fit::EventFit f;
-      fit::compare(events[e], event::play(plant, conventions, events[e], states[e]), f);
+      fit::compare(events, e, event::play(plant, conventions, events[e], states[e]), f);
       chi2 += f.chi2;
     }
   } catch (const InputError&) {
@@ -96,7 +96,7 @@ void try_further(const Stage& stage, const fit::Fit& leader, Judgement& j) {
     o.errors = true;
     o.iterations = kAllSteps;
     if (fit::Fit f = fit::fit(h.plant, h.conventions, stage.events, free, o);
-        f.failed.empty() && penalised(f) < fit::penalised(j.fit))
+        f.failed.empty() && fit::better(f, j.fit))
       j.fit = std::move(f);
   }
 }
@@ -107,8 +107,7 @@ void try_exchange(const Stage& stage, const Judgement& pair, Judgement& j) {
                             fit::continued({}, j.fit, free));
       f.failed.empty())
     j.fit = std::move(f);
-  if (fit::penalised(j.fit) > penalised(pair.fit) + thresholds::search.exchange_behind)
-    try_further(stage, pair.fit, j);
+  if (fit::gain(j.fit, pair.fit) > thresholds::search.exchange_behind) try_further(stage, pair.fit, j);
 }
 
 void try_from(const Stage& stage, const fit::Fit& other, Judgement& j) {
@@ -122,7 +121,7 @@ void try_from(const Stage& stage, const fit::Fit& other, Judgement& j) {
   }
   for (const auto& e : other.events) o.start.push_back(e.state);
   if (fit::Fit f = fit::fit(h.plant, h.conventions, stage.events, free, o);
-      f.failed.empty() && penalised(f) < fit::penalised(j.fit))
+      f.failed.empty() && fit::better(f, j.fit))
     j.fit = std::move(f);
 }
 

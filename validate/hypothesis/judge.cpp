@@ -23,15 +23,12 @@ std::vector<HeldOut> hold_out(const Trial& trial, const sim::plant::Plant& plant
                               const std::vector<fit::FreeParameter>& free, const fit::Fit& whole) {
   std::vector<HeldOut> out(trial.events.size());
   for (std::size_t left = 0; left < trial.events.size(); ++left) {
-    std::vector<event::FitEvent> others;
+    const event::WhitenedEvents others = trial.events.without(left);
     fit::FitOptions o;
     o.iterations = 6;
     o.errors = false;
     for (std::size_t e = 0; e < trial.events.size(); ++e)
-      if (e != left) {
-        others.push_back(trial.events[e]);
-        o.start.push_back(whole.events[e].state);
-      }
+      if (e != left) o.start.push_back(whole.events[e].state);
     out[left].record = trial.events[left].record.name;
     out[left].values = trial.events[left].values();
     if (others.empty()) continue;
@@ -40,11 +37,10 @@ std::vector<HeldOut> hold_out(const Trial& trial, const sim::plant::Plant& plant
     const fit::Fit seen = fit::fit(plant, conventions, others, all, o);
     fit::FitOptions unseen;
     const fit::Fit f =
-        fit::fit(seen.failed.empty() ? seen.plant : plant, conventions, {trial.events[left]}, {}, unseen);
+        fit::fit(seen.failed.empty() ? seen.plant : plant, conventions, trial.events.alone(left), {}, unseen);
     out[left].after = f.failed.empty() ? f.misfit() : 1e300;
-    out[left].cost_after = seen.failed.empty()
-                               ? (fit::penalised(whole) - fit::penalised(seen)) / whole.events[left].values
-                               : std::numeric_limits<double>::infinity();
+    out[left].cost_after = seen.failed.empty() ? fit::gain(whole, seen) / whole.events[left].values
+                                               : std::numeric_limits<double>::infinity();
   }
   return out;
 }
@@ -69,11 +65,11 @@ void judge(const Trial& trial, const fit::Fit& base, const std::vector<HeldOut>&
   o.values = fit::values_of(j.fit.plant, free);
   for (const auto& e : j.fit.events) o.start.push_back(e.state);
   if (fit::Fit f = fit::fit(j.hypothesis.plant, j.hypothesis.conventions, trial.events, free, o);
-      f.failed.empty() && penalised(f) < fit::penalised(j.fit) + thresholds::evidence.same_fit)
+      f.failed.empty() && fit::gain(j.fit, f) > -thresholds::evidence.same_fit)
     j.fit = std::move(f);
-  j.gain = fit::criterion(base) - fit::criterion(j.fit);
+  j.gain = fit::gain(base, j.fit, fit::criterion);
   if (trial.passed) j.gain -= std::max(0.0, trial.passed->less_with(j.fit.plant, j.hypothesis.conventions));
-  j.size = std::sqrt(std::max(0.0, base.chi2 - j.fit.chi2));
+  j.size = std::sqrt(std::max(0.0, fit::gain(base, j.fit, fit::data_cost)));
   if (j.gain < trial.evidence) {
     j.why_not = fmt::format("evidence {:.0f}, below {:.0f}", j.gain, trial.evidence);
     return;

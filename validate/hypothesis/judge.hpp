@@ -39,7 +39,7 @@ std::vector<fit::FreeParameter> free_of(const Hypothesis& h, double spread);
 
 /// Events to judge on, and what is known of them without any hypothesis.
 struct Trial {
-  const std::vector<event::FitEvent>& events;
+  const event::WhitenedEvents& events;
   double spread;                                    ///< believed of the model's parameters
   double adequate;                                  ///< chi2 per value up to which nothing but noise is left
   double evidence = thresholds::evidence.accepted;  ///< from which a hypothesis is accepted

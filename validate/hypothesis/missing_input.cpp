@@ -30,11 +30,11 @@ std::vector<double> knots_of(const event::FitEvent& event) {
 double MissingInput::explains(const fit::Fit& without) const {
   std::size_t knots = 0;
   for (const auto& e : fit.events) knots += e.state.input.t.size();
-  return without.chi2 - fit.chi2 - thresholds::adequacy.knot * static_cast<double>(knots);
+  return fit::gain(without, fit, fit::data_cost) - thresholds::adequacy.knot * static_cast<double>(knots);
 }
 
 MissingInput infer_input(fit::InputKind kind, const sim::plant::Plant& plant,
-                         const sim::Conventions& conventions, const std::vector<event::FitEvent>& events,
+                         const sim::Conventions& conventions, const event::WhitenedEvents& events,
                          double spread, const fit::FitOptions& start) {
   MissingInput found{kind, {}};
   fit::FitOptions options = start;

@@ -24,6 +24,7 @@ class BlindScan {
  public:
   BlindScan(const Stage& stage, const Hypothesis& h, const fit::Fit& from)
       : stage_(stage), h_(h), from_(from) {
+    fit::require_noise_of(stage.events, from);
     for (const auto& e : from.events) states_.push_back(e.state);
     std::vector<char> seen;
     try {
@@ -48,7 +49,8 @@ class BlindScan {
     std::vector<fit::Fit> tried;
     for (const auto& start : std::span(starts).first(std::min(kScanFitted, starts.size())))
       if (fit::Fit f = beside(start.second); f.failed.empty()) tried.push_back(std::move(f));
-    std::ranges::sort(tried, {}, &fit::Fit::chi2);
+    std::ranges::sort(
+        tried, [](const fit::Fit& a, const fit::Fit& b) { return fit::gain(b, a, fit::data_cost) > 0; });
     if (tried.size() > kBest) tried.resize(kBest);
     return tried;
   }
@@ -125,11 +127,10 @@ fit::Fit past_blind(const Stage& stage, const Hypothesis& h, const sim::plant::P
       fit::FitOptions o = fit::continued({}, start, free);
       o.errors = false;
       o.iterations = kScanAllSteps;
-      if (fit::Fit f = fit::fit(believed, h.conventions, stage.events, free, o);
-          fit::penalised(f) < fit::penalised(best))
+      if (fit::Fit f = fit::fit(believed, h.conventions, stage.events, free, o); fit::better(f, best))
         best = std::move(f);
     }
-    const bool worth = fit::penalised(best) < fit::penalised(from) - thresholds::search.worth_a_round;
+    const bool worth = fit::gain(from, best) > thresholds::search.worth_a_round;
     from = std::move(best);
     if (!worth) break;
   }

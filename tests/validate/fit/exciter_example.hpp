@@ -14,7 +14,7 @@ inline playin::Response answer(const event::FitEvent& e, const EventState& at, c
 
 struct ExciterExample {
   plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
-  std::vector<event::FitEvent> events;
+  event::WhitenedEvents events;
   double spread;  ///< believed of every parameter
   /// TE [s] of the exciter; 0.05 is true.
   explicit ExciterExample(double believed, double TE = 0.05) : spread(believed) {

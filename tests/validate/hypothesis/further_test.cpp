@@ -14,10 +14,11 @@ class Further : public ::testing::Test {
     parameter(truth_.plant, "KA") = 20.0;
     parameter(truth_.plant, "TE") = 4.0;
     parameter(truth_.plant, "TF") = 12.0;
-    event::FitEvent& e = events_.front();
+    event::FitEvent e = events_.front();
     const playin::Response r = fit::answer(e, base_.events.front().state, truth_.plant, truth_.conventions);
     e.record.P = r.of(playin::Output::P);
     e.record.Q = r.of(playin::Output::Q);
+    events_ = {{e}, events_.noise_model()};
   }
   [[nodiscard]] Hypothesis named(const std::string& name) const {
     const auto all = all_hypotheses(model_.plant, model_.conventions);
@@ -45,7 +46,7 @@ class Further : public ::testing::Test {
     return fit::penalised(j.fit);
   }
   const plant::PlantModel model_ = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
-  std::vector<event::FitEvent> events_ = event::prepare_events(
+  event::WhitenedEvents events_ = event::prepare_events(
       model_,
       {record::read_record(test::source("configs/records/record-example/avr_ev1.csv"), model_.record_base)},
       {.measured_states = false});

@@ -50,7 +50,7 @@ TEST(Objection, AnEventWithoutWhichNothingCouldBeFittedIsNotPredicted) {
 }
 TEST(HeldOutEvents, AFitThatFailsWithoutOnePredictsNothing) {
   fit::ExciterExample example(0.2);
-  example.events.push_back(example.events.front());
+  example.events = example.events.only({0, 0});
   const fit::Fit whole = example.fitted({"H"}, {.iterations = 0});
   const Trial trial{example.events, 0.2, kAdequate};
   const auto hold = [&](const fit::Fit& f) {

@@ -24,7 +24,7 @@ TEST(Blind, ATimerIsFoundThatNoSlopeSees) {
   for (const auto& p : nearly.parameters)
     fit::parameter_value(with, fit::find_block(with, fit::block_effect(stage.plant, p.where.block)),
                          p.where.index) = p.value;
-  event::FitEvent& event = example.events.front();
+  event::FitEvent event = example.events.front();
   const fit::EventFit& at = nearly.events.front();
   const playin::Response limited = fit::answer(event, at.state, with, h.conventions);
   double square = 0;
@@ -34,9 +34,10 @@ TEST(Blind, ATimerIsFoundThatNoSlopeSees) {
     for (std::size_t k = 0; k < channel.size(); ++k) {
       const double change = limited.of(o)[k] - at.model[c][k];
       channel[k] += change;
-      square += std::pow(change / event.noise[static_cast<Eigen::Index>(c)], 2);
+      square += std::pow(change / example.events.noise(0).deviation[static_cast<Eigen::Index>(c)], 2);
     }
   }
+  example.events = {{event}, example.events.noise_model()};
   ASSERT_GT(square, 400) << "it was meant to act";
   const auto fitted_from = [&](const sim::plant::Plant& plant) {
     fit::FitOptions o;

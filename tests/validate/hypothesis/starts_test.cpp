@@ -20,8 +20,9 @@ double moved(const Stage& stage, const Hypothesis& h, const std::vector<double>&
   double square = 0;
   for (std::size_t c = 0; c < e.channels.size(); ++c)
     for (std::size_t k = 0; k < e.record.t.size(); ++k)
-      square +=
-          std::pow((r.of(e.channels[c])[k] - at.model[c][k]) / e.noise[static_cast<Eigen::Index>(c)], 2);
+      square += std::pow((r.of(e.channels[c])[k] - at.model[c][k]) /
+                             stage.events.noise(0).deviation[static_cast<Eigen::Index>(c)],
+                         2);
   return square;
 }
 

@@ -144,7 +144,7 @@ TEST(LawText, NumbersComeWithUnitAndInterval) {
 /// Records of the example's events as a plant answers that has parameters a tenth off and something more.
 struct Case {
   plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
-  std::vector<event::FitEvent> events;
+  event::WhitenedEvents events;
   fit::Fit base;
   std::vector<hypothesis::HeldOut> held_out;
   hypothesis::MissingInput torque, field;

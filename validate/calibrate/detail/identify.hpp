@@ -17,7 +17,7 @@ struct TriedEvent {
   Eigen::MatrixXd information;
 };
 std::vector<TriedEvent> try_events(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                                   const std::vector<event::FitEvent>& events,
+                                   const event::WhitenedEvents& events,
                                    const std::vector<fit::EventState>& states,
                                    const Eigen::Vector2d& variance,
                                    const std::vector<fit::FreeParameter>& free);

@@ -42,10 +42,11 @@ void add_doubt(const plant::PlantModel& model, EventComparison& e) {
                                  playin::Output::Efd, playin::Output::Ifd})
     if (!event.measured(o).empty()) event.channels.push_back(o);
   const auto n = static_cast<Eigen::Index>(event.channels.size());
-  event.noise = Eigen::VectorXd::Ones(n);  // what the channels' own noise is stands in the map
-  event.whitening = Eigen::MatrixXd::Identity(n, n);
+  // what the channels' own noise is stands in the map
+  const event::EventNoise unit{.deviation = Eigen::VectorXd::Ones(n),
+                               .whitening = Eigen::MatrixXd::Identity(n, n)};
   e.doubt.clear();
-  for (const auto& shape : fit::voltage_doubt(model.plant, model.conventions, event).shapes)
+  for (const auto& shape : fit::voltage_doubt(model.plant, model.conventions, {event, unit}).shapes)
     for (std::size_t c = 0; c < event.channels.size(); ++c)
       e.doubt[std::string(playin::output_name(event.channels[c]))].push_back(shape[c]);
 }

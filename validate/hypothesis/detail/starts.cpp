@@ -191,6 +191,7 @@ double StartFinder::largest_move(const Hypothesis& h, const std::vector<double>&
 }
 double StartFinder::moves(const Hypothesis& h, const sim::plant::Plant& plant, std::size_t event) const {
   const event::FitEvent& e = stage_.events[event];
+  const Eigen::VectorXd& noise = stage_.events.noise(event).deviation;
   const fit::EventFit& at = stage_.fit.events[event];
   try {
     const playin::Response r = event::play(plant, h.conventions, e, at.state);
@@ -198,7 +199,7 @@ double StartFinder::moves(const Hypothesis& h, const sim::plant::Plant& plant, s
     for (std::size_t c = 0; c < e.channels.size(); ++c)
       for (std::size_t k = 0; k < r.of(e.channels[c]).size(); ++k)
         square +=
-            std::pow((r.of(e.channels[c])[k] - at.model[c][k]) / e.noise[static_cast<Eigen::Index>(c)], 2);
+            std::pow((r.of(e.channels[c])[k] - at.model[c][k]) / noise[static_cast<Eigen::Index>(c)], 2);
     return square;
   } catch (const InputError&) {
     return std::nan("");
@@ -263,9 +264,10 @@ bool StartFinder::answer(const sim::plant::Plant& plant, const Hypothesis& h, do
                          bool& acts) const {
   misfit = 0;
   try {
-    for (const event::FitEvent& e : stage_.events) {
-      const playin::Response r = event::play(plant, h.conventions, e, {});
-      if (!acts) acts = differ(r, event::play(stage_.plant, stage_.conventions, e, {}), e);
+    for (std::size_t i = 0; i < stage_.events.size(); ++i) {
+      const event::WhitenedEvent e = stage_.events.whitened(i);
+      const playin::Response r = event::play(plant, h.conventions, e.event, {});
+      if (!acts) acts = differ(r, event::play(stage_.plant, stage_.conventions, e.event, {}), e);
       misfit += misfit_of(r, e);
     }
   } catch (const InputError&) {
@@ -273,22 +275,25 @@ bool StartFinder::answer(const sim::plant::Plant& plant, const Hypothesis& h, do
   }
   return std::isfinite(misfit);
 }
-bool StartFinder::differ(const playin::Response& x, const playin::Response& y, const event::FitEvent& e) {
+bool StartFinder::differ(const playin::Response& x, const playin::Response& y,
+                         const event::WhitenedEvent& of) {
+  const event::FitEvent& e = of.event;
   for (std::size_t c = 0; c < e.channels.size(); ++c)
     for (std::size_t k = 0; k < x.of(e.channels[c]).size(); ++k)
       if (std::abs(x.of(e.channels[c])[k] - y.of(e.channels[c])[k]) >
-          1e-2 * e.noise[static_cast<Eigen::Index>(c)])
+          1e-2 * of.noise.deviation[static_cast<Eigen::Index>(c)])
         return true;
   return false;
 }
-double StartFinder::misfit_of(const playin::Response& r, const event::FitEvent& e) {
+double StartFinder::misfit_of(const playin::Response& r, const event::WhitenedEvent& of) {
+  const event::FitEvent& e = of.event;
   double sum = 0;
   for (std::size_t c = 0; c < e.channels.size(); ++c)
     for (std::size_t k = 0; k < r.of(e.channels[c]).size(); ++k)
       if (e.compared(k))
-        sum += std::pow(
-            (r.of(e.channels[c])[k] - e.measured(e.channels[c])[k]) / e.noise[static_cast<Eigen::Index>(c)],
-            2);
+        sum += std::pow((r.of(e.channels[c])[k] - e.measured(e.channels[c])[k]) /
+                            of.noise.deviation[static_cast<Eigen::Index>(c)],
+                        2);
   return sum;
 }
 

@@ -21,7 +21,7 @@ double trigger_of(const event::FitEvent& e, double level) {
 
 }  // namespace
 
-std::vector<LawTrace> law_traces(const plant::PlantModel& model, const std::vector<event::FitEvent>& events,
+std::vector<LawTrace> law_traces(const plant::PlantModel& model, const event::WhitenedEvents& events,
                                  const hypothesis::MissingInput& input, double level) {
   std::vector<LawTrace> all;
   for (std::size_t i = 0; i < events.size(); ++i) {

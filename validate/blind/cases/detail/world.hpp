@@ -92,7 +92,8 @@ class BlindSize {
   sim::Conventions conventions_;
   std::vector<BlindEvent> events_;
   std::vector<record::Record> plain_;
-  std::vector<event::FitEvent> noise_;           ///< how to whiten each event
+  std::vector<event::FitEvent> prepared_;
+  std::vector<event::EventNoise> noise_;         ///< of each event
   std::vector<Eigen::VectorXd> plain_residual_;  ///< [event][sample * 2 + channel] [pu]
   event::RowMatrix
       columns_;  ///< directions that a refit may use, whitened: [event, sample, channel][direction]
