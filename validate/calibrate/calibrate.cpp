@@ -19,7 +19,7 @@ namespace {
 
 fit::Fit alone(const plant::PlantModel& model, const sim::plant::Plant& plant,
                const event::WhitenedEvents& event) {
-  fit::Fit f = fit::fit(plant, model.conventions, event, {});
+  fit::Fit f = fit::fit({plant, model.conventions}, event, {});
   if (!f.failed.empty())
     throw InputError({"the model cannot follow the record", event.front().record.name, f.failed,
                       "check the model's parameters and the record's base and units"});
@@ -27,12 +27,12 @@ fit::Fit alone(const plant::PlantModel& model, const sim::plant::Plant& plant,
 }
 
 /// chi2 of all events with their states as given; infinite where the plant cannot be driven.
-double chi2_of(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-               const event::WhitenedEvents& events, const std::vector<fit::EventState>& states) {
+double chi2_of(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+               const std::vector<fit::EventState>& states) {
   double sum = 0;
   try {
     for (std::size_t e = 0; e < events.size(); ++e) {
-      const fit::EventSlopes s = fit::event_slopes(plant, conventions, events.whitened(e), states[e], {});
+      const fit::EventSlopes s = fit::event_slopes(tested, events.whitened(e), states[e], {});
       sum += s.residual.squaredNorm();
     }
   } catch (const InputError&) {
@@ -101,16 +101,17 @@ class Run {
         draws.size(),
         [&](std::size_t k) {
           draws[k] = screen.draw(k);
-          order[k] = {chi2_of(screen.with(draws[k]), model_.conventions, seen_, states), k};
+          order[k] = {chi2_of({screen.with(draws[k]), model_.conventions}, seen_, states), k};
         },
         [&](int done) { tell("parameter sets screened", done, options_.draws); });
     std::ranges::sort(order);
     std::vector<std::vector<double>> starts = {screen.own()};
-    c_.started = {{.name = "model", .before = chi2_of(model_.plant, model_.conventions, seen_, states)}};
+    c_.started = {{.name = "model", .before = chi2_of(model_.under_test(), seen_, states)}};
     for (const auto& g : options_.given) {
       starts.push_back(fit::values_of(g.plant, free_));
       c_.started.push_back(
-          {.name = g.name, .before = chi2_of(screen.with(starts.back()), model_.conventions, seen_, states)});
+          {.name = g.name,
+           .before = chi2_of({screen.with(starts.back()), model_.conventions}, seen_, states)});
     }
     const auto refined = static_cast<std::size_t>(std::max(0, options_.starts));
     for (std::size_t k = 0; k < order.size() && k < refined; ++k) {
@@ -126,7 +127,7 @@ class Run {
           fit::FitOptions o;
           o.start = states;
           o.values = starts[k];
-          fits[k] = fit::fit(model_.plant, model_.conventions, seen_, free_, o);
+          fits[k] = fit::fit(model_.under_test(), seen_, free_, o);
         },
         [&](int done) { tell("starts refined", done, static_cast<int>(starts.size())); });
     choose(fits);
@@ -169,7 +170,7 @@ class Run {
     fit::FitOptions o;
     o.values = fit::values_of(whole.plant, free_);
     for (const std::size_t e : fitted_) o.start.push_back(whole.events[e].state);
-    c_.fit = fit::fit(model_.plant, model_.conventions, seen_, free_, o);
+    c_.fit = fit::fit(model_.under_test(), seen_, free_, o);
     if (!c_.fit.failed.empty())
       throw InputError(
           {"the fitted model cannot be run again", model_.origin, c_.fit.failed, "fix parameters"});
@@ -182,11 +183,11 @@ class Run {
     in_parallel(
         slopes.size(),
         [&](std::size_t e) {
-          slopes[e] = fit::event_slopes(c_.fit.plant, model_.conventions, seen_.whitened(e),
+          slopes[e] = fit::event_slopes({c_.fit.plant, model_.conventions}, seen_.whitened(e),
                                         c_.fit.events[e].state, free_);
         },
         [&](int done) { tell("noise of the voltage", done, static_cast<int>(slopes.size())); });
-    pull_ = voltage_pull(c_.fit.plant, model_.conventions, seen_, noise_.variance, free_);
+    pull_ = voltage_pull({c_.fit.plant, model_.conventions}, seen_, noise_.variance, free_);
     c_.voltage_noise = noise_.share;
     Eigen::MatrixXd data = Eigen::MatrixXd::Zero(n, n);
     for (const auto& s : slopes) data += fit::information(s);
@@ -226,7 +227,7 @@ class Run {
     in_parallel(
         slopes.size(),
         [&](std::size_t e) {
-          slopes[e] = fit::event_slopes(c_.fit.plant, model_.conventions, c_.prepared.whitened(e),
+          slopes[e] = fit::event_slopes({c_.fit.plant, model_.conventions}, c_.prepared.whitened(e),
                                         c_.states[e], free_);
         },
         [&](int done) { tell("sensitivities", done, static_cast<int>(slopes.size())); });
@@ -285,7 +286,7 @@ class Run {
       if (!out_[e]) states.push_back(c_.states[e]);
     const auto n = known.rows();
     for (const auto& tried :
-         try_events(c_.fit.plant, model_.conventions, seen_, states, noise_.variance, free_)) {
+         try_events({c_.fit.plant, model_.conventions}, seen_, states, noise_.variance, free_)) {
       const Eigen::MatrixXd with = (known + tried.information).ldlt().solve(Eigen::MatrixXd::Identity(n, n));
       Candidate candidate{tried.what, {}};
       for (Eigen::Index i = 0; i < n; ++i) {

@@ -47,7 +47,7 @@ class EventResidual : public ceres::CostFunction {
         along.push_back({playin::Direction::Kind::parameter, setting_.free[i].block, setting_.free[i].index,
                          setting_.start[i]});
     try {
-      const playin::Response r = event::play(plant, setting_.model.conventions, event_, {}, along);
+      const playin::Response r = event::play({plant, setting_.model.conventions}, event_, {}, along);
       const auto width = static_cast<int>(setting_.free.size());
       write(r.value, true, residuals, 1, 0);
       for (std::size_t i = 0; i < along.size(); ++i)
@@ -79,7 +79,7 @@ class EventResidual : public ceres::CostFunction {
 fit::EventFit as_played(const Setting& setting, const sim::plant::Plant& plant,
                         const event::WhitenedEvents& events, std::size_t e) {
   fit::EventFit f;
-  fit::compare(events, e, event::play(plant, setting.model.conventions, events[e], {}), f);
+  fit::compare(events, e, event::play({plant, setting.model.conventions}, events[e], {}), f);
   return f;
 }
 

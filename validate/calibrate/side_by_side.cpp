@@ -97,7 +97,7 @@ std::vector<EventScore> try_plant(const sim::plant::Plant& plant, const Calibrat
   in_parallel(
       c.prepared.size(),
       [&](std::size_t e) {
-        const fit::Fit own = fit::fit(plant, c.model.conventions, c.prepared.alone(e), {});
+        const fit::Fit own = fit::fit({plant, c.model.conventions}, c.prepared.alone(e), {});
         EventScore& to = events[e];
         if (!own.failed.empty()) {
           to.after = std::numeric_limits<double>::infinity();

@@ -48,16 +48,16 @@ class Diagnoser {
     for (int round = 0;; ++round) {
       fit_base(from);
       const hypothesis::Stage stage = model_stage();
-      result_.ranked = hypothesis::try_hypotheses(
-          stage, hypothesis::all_hypotheses(stage.plant, stage.conventions), options_.progress);
+      result_.ranked = hypothesis::try_hypotheses(stage, hypothesis::all_hypotheses(stage.under_test()),
+                                                  options_.progress);
       if (round == kBases || !better_base(from)) break;
       result_.events = prepared;  // the noise was measured through the worse base
     }
     try_replacements();
     measure_noise_again();
-    passed_.emplace(result_.base.plant, model_.conventions, result_.events,
+    passed_.emplace(sim::plant::PlantUnderTest{result_.base.plant, model_.conventions}, result_.events,
                     fit::voltage_noise(result_.base, result_.events).variance);
-    held_out_base_ = hypothesis::hold_out(trial(), model_.plant, model_.conventions, {}, result_.base);
+    held_out_base_ = hypothesis::hold_out(trial(), model_.under_test(), {}, result_.base);
     infer_inputs();
     search();
     settle({model_, trial(), result_.base, held_out_base_, result_.torque, result_.field, threads_},
@@ -70,12 +70,12 @@ class Diagnoser {
   void fit_base(fit::FitOptions o) {
     report("base", 0, 1);
     const auto free = fit::free_parameters(model_.plant, options_.spread);
-    result_.base = fit::fit(model_.plant, model_.conventions, result_.events, free, o);
+    result_.base = fit::fit(model_.under_test(), result_.events, free, o);
     if (result_.base.failed.empty()) {
       result_.events =
           result_.events.with(fit::measure_noise_through(result_.base, model_.conventions, result_.events));
       o = fit::continued({}, result_.base, free);
-      result_.base = fit::fit(model_.plant, model_.conventions, result_.events, free, o);
+      result_.base = fit::fit(model_.under_test(), result_.events, free, o);
     }
     require_fitted_base();
     report("base", 1, 1);
@@ -103,8 +103,8 @@ class Diagnoser {
     const auto fits = [&](const fit::Fit& f) { return f.misfit() <= options_.adequate; };
     if (fits(result_.base) || (!result_.ranked.empty() && fits(result_.ranked.front().fit))) return;
     const hypothesis::Stage stage = model_stage();
-    auto others = hypothesis::try_hypotheses(
-        stage, hypothesis::all_replacements(stage.plant, stage.conventions), options_.progress);
+    auto others = hypothesis::try_hypotheses(stage, hypothesis::all_replacements(stage.under_test()),
+                                             options_.progress);
     std::ranges::move(others, std::back_inserter(result_.ranked));
     std::ranges::stable_sort(result_.ranked, std::greater<>(), &hypothesis::Judgement::gain);
   }
@@ -117,19 +117,18 @@ class Diagnoser {
     if (!best.fitted || best.fit.misfit() >= thresholds::noise.measurable) return;
     result_.events = result_.events.with(
         fit::measure_noise_through(best.fit, best.hypothesis.conventions, result_.events));
-    const auto go_on = [&](const sim::plant::Plant& plant, const sim::Conventions& conventions,
+    const auto go_on = [&](const sim::plant::PlantUnderTest& tested,
                            const std::vector<fit::FreeParameter>& free, const fit::Fit& f) {
       fit::FitOptions o = fit::continued({}, f, free);
       o.iterations = kOnwards;
-      return fit::fit(plant, conventions, result_.events, free, o);
+      return fit::fit(tested, result_.events, free, o);
     };
-    result_.base = go_on(model_.plant, model_.conventions,
-                         fit::free_parameters(model_.plant, options_.spread), result_.base);
+    result_.base =
+        go_on(model_.under_test(), fit::free_parameters(model_.plant, options_.spread), result_.base);
     require_fitted_base();
     each(result_.ranked, "noise measured again", [&](hypothesis::Judgement& j) {
       if (!j.fitted) return;
-      j.fit = go_on(j.hypothesis.plant, j.hypothesis.conventions,
-                    hypothesis::free_of(j.hypothesis, options_.spread), j.fit);
+      j.fit = go_on(j.hypothesis.under_test(), hypothesis::free_of(j.hypothesis, options_.spread), j.fit);
       j.gain = fit::gain(result_.base, j.fit, fit::criterion);
     });
     std::erase_if(result_.ranked, [](const hypothesis::Judgement& j) { return !j.fit.failed.empty(); });
@@ -141,8 +140,8 @@ class Diagnoser {
       from = fit::continued({}, result_.base, fit::free_parameters(model_.plant, options_.spread));
     const auto infer = [&](std::size_t i) {
       hypothesis::MissingInput& m = i == 0 ? result_.torque : result_.field;
-      m = hypothesis::infer_input(i == 0 ? fit::InputKind::torque : fit::InputKind::field, model_.plant,
-                                  model_.conventions, result_.events, options_.spread, from);
+      m = hypothesis::infer_input(i == 0 ? fit::InputKind::torque : fit::InputKind::field,
+                                  model_.under_test(), result_.events, options_.spread, from);
     };
     in_parallel(
         2, infer, [&](int done) { report("missing input", done, 2); }, threads_);
@@ -224,8 +223,8 @@ class Diagnoser {
   [[nodiscard]] std::vector<hypothesis::Judgement> beside(const hypothesis::Stage& stage,
                                                           const hypothesis::Judgement& first) const {
     const hypothesis::Stage then = hypothesis::after(stage, first);
-    auto pairs = hypothesis::try_hypotheses(then, hypothesis::all_hypotheses(then.plant, then.conventions),
-                                            options_.progress);
+    auto pairs =
+        hypothesis::try_hypotheses(then, hypothesis::all_hypotheses(then.under_test()), options_.progress);
     // a rival of the best hypothesis may only have started badly
     const int slot = pairs.empty() || pairs.front().gain < thresholds::evidence.second
                          ? -1

@@ -164,11 +164,10 @@ std::vector<char> left_out(const FitEvent& e) {
 }
 
 /// Residual before the event, [channel][sample], with each channel's mean taken off.
-Eigen::MatrixXd quiet_residual(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                               const FitEvent& e) {
+Eigen::MatrixXd quiet_residual(const sim::plant::PlantUnderTest& tested, const FitEvent& e) {
   const Playing how{
       .tolerance = 1e-8, .hasty = false, .until = e.record.t[static_cast<std::size_t>(e.start.samples - 1)]};
-  const playin::Response r = play(plant, conventions, e, {}, {}, how);
+  const playin::Response r = play(tested, e, {}, {}, how);
   Eigen::MatrixXd residual(e.channels.size(), e.start.samples);
   for (std::size_t c = 0; c < e.channels.size(); ++c)
     for (int k = 0; k < e.start.samples; ++k)
@@ -180,8 +179,7 @@ Eigen::MatrixXd quiet_residual(const sim::plant::Plant& plant, const sim::Conven
 
 /// Noise of each event by the pre-event residuals of all events that have the same channels.
 template <class Events>
-NoiseModel noise_through(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                         const Events& events) {
+NoiseModel noise_through(const sim::plant::PlantUnderTest& tested, const Events& events) {
   std::vector<EventNoise> noise;
   for (const FitEvent& e : events) {
     const auto n = static_cast<Eigen::Index>(e.channels.size());
@@ -189,7 +187,7 @@ NoiseModel noise_through(const sim::plant::Plant& plant, const sim::Conventions&
     int freedom = 0;
     for (const FitEvent& other : events) {
       if (other.channels != e.channels) continue;
-      const Eigen::MatrixXd residual = quiet_residual(plant, conventions, other);
+      const Eigen::MatrixXd residual = quiet_residual(tested, other);
       scatter += residual * residual.transpose();
       freedom += other.start.samples - 1;
     }
@@ -258,13 +256,12 @@ WhitenedEvents prepare_events(const plant::PlantModel& model, std::vector<record
   if (jumps == Jumps::spread) drop_swings(events);
   unsmear(events);
   for (FitEvent& e : events) e.left_out = left_out(e);
-  NoiseModel noise = noise_through(model.plant, model.conventions, events);
+  NoiseModel noise = noise_through(model.under_test(), events);
   return {std::move(events), std::move(noise)};
 }
 
-NoiseModel measure_noise(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                         const WhitenedEvents& events) {
-  return noise_through(plant, conventions, events);
+NoiseModel measure_noise(const sim::plant::PlantUnderTest& tested, const WhitenedEvents& events) {
+  return noise_through(tested, events);
 }
 
 }  // namespace swingbank::validate::event

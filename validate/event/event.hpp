@@ -3,6 +3,7 @@
 // in each channel.
 #include <vector>
 
+#include "sim/plant/under_test.hpp"
 #include "validate/event/whitened_events.hpp"
 #include "validate/plant/plant_model.hpp"
 
@@ -37,8 +38,7 @@ WhitenedEvents prepare_events(const plant::PlantModel& model, std::vector<record
 
 /// Measures the noise anew with another model of the plant, because a reactance that is wrong by a fifth
 /// makes the noise wrong by a fifth. The noise is white.
-NoiseModel measure_noise(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                         const WhitenedEvents& events);
+NoiseModel measure_noise(const sim::plant::PlantUnderTest& tested, const WhitenedEvents& events);
 
 /// Interpolation between samples leaves residuals of this size where a record has no noise at all [pu].
 constexpr double kLeastNoise = 1e-4;

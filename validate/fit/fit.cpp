@@ -328,14 +328,13 @@ FitOptions continued(FitOptions o, const Fit& f, const std::vector<FreeParameter
   return o;
 }
 
-Fit fit(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-        const event::WhitenedEvents& events, const std::vector<FreeParameter>& free,
-        const FitOptions& options) {
-  Setting setting{&plant, &conventions, &events, {}, options.tolerance, options.input, {}};
+Fit fit(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+        const std::vector<FreeParameter>& free, const FitOptions& options) {
+  Setting setting{&tested.plant, &tested.conventions, &events, {}, options.tolerance, options.input, {}};
   setting.knots.resize(events.size());
   if (options.input != InputKind::none)
     for (std::size_t e = 0; e < events.size(); ++e) setting.knots[e] = options.start[e].input.t;
-  for (const auto& f : free) setting.axes.push_back(make_axis(plant, f));
+  for (const auto& f : free) setting.axes.push_back(make_axis(tested.plant, f));
   return Search(setting, options).run();
 }
 

@@ -125,8 +125,7 @@ void compare(const event::WhitenedEvents& events, std::size_t event, const playi
 /// the misfit is large, and beliefs would count for nothing: parameters would be bent out of all reason to
 /// mimic what is missing. So beliefs weigh as if the noise were as large as the misfit reached, and give way
 /// as it falls.
-Fit fit(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-        const event::WhitenedEvents& events, const std::vector<FreeParameter>& free,
-        const FitOptions& options = {});
+Fit fit(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+        const std::vector<FreeParameter>& free, const FitOptions& options = {});
 
 }  // namespace swingbank::validate::fit

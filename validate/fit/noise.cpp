@@ -230,14 +230,16 @@ event::FitEvent minute_of_noise(const event::FitEvent& like, const Eigen::Vector
   return event;
 }
 
-std::shared_ptr<const event::Innovations> memory_of(const sim::plant::Plant& plant,
-                                                    const sim::Conventions& conventions,
+std::shared_ptr<const event::Innovations> memory_of(const sim::plant::PlantUnderTest& tested,
                                                     event::WhitenedEvent whitened,
                                                     const Eigen::Vector2d& variance) {
   const event::FitEvent& e = whitened.event;
   const playin::VoltageCurve curve(e.played(), e.switchings);
-  const playin::Drive at{
-      .plant = &plant, .conventions = conventions, .record = &e.record, .curve = &curve, .start = e.start};
+  const playin::Drive at{.plant = &tested.plant,
+                         .conventions = tested.conventions,
+                         .record = &e.record,
+                         .curve = &curve,
+                         .start = e.start};
   const event::SlowNoise noise = slow_noise(playin::linearise(at), whitened, variance);
   if (!matters(noise, whitened)) return nullptr;
   return std::make_shared<event::Innovations>(noise, e.record.samples(), e.left_out);
@@ -254,7 +256,7 @@ event::NoiseModel remember_noise(const Fit& fit, const sim::Conventions& convent
   std::vector<event::EventNoise> noise;
   for (std::size_t e = 0; e < events.size(); ++e) {
     noise.push_back(events.noise(e));
-    noise.back().memory = memory_of(fit.plant, conventions, events.whitened(e), variance);
+    noise.back().memory = memory_of({fit.plant, conventions}, events.whitened(e), variance);
   }
   return event::NoiseModel(std::move(noise));
 }
@@ -263,7 +265,7 @@ event::NoiseModel measure_noise_through(const Fit& fit, const sim::Conventions& 
                                         const event::WhitenedEvents& events) {
   event::WhitenedEvents measured = events;
   if (fit.misfit() < thresholds::noise.measurable)
-    measured = measured.with(event::measure_noise(fit.plant, conventions, measured));
+    measured = measured.with(event::measure_noise({fit.plant, conventions}, measured));
   measured = measured.with(sharpen_noise(fit, measured));
   return remember_noise(fit, conventions, measured);
 }

@@ -18,8 +18,7 @@ event::SlowNoise slow_noise(const playin::LinearPlant& plant, event::WhitenedEve
                             const Eigen::Vector2d& variance);
 
 /// The memory of an event's noise by slow_noise() about its start; none where slow noise hardly matters.
-std::shared_ptr<const event::Innovations> memory_of(const sim::plant::Plant& plant,
-                                                    const sim::Conventions& conventions,
+std::shared_ptr<const event::Innovations> memory_of(const sim::plant::PlantUnderTest& tested,
                                                     event::WhitenedEvent event,
                                                     const Eigen::Vector2d& variance);
 

@@ -40,14 +40,13 @@ double axis_unit(const sim::plant::Plant& plant, const FreeParameter& f) {
   return (f.spread > 0 ? f.spread : 1.0) * size;
 }
 
-EventSlopes event_slopes(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                         event::WhitenedEvent e, const EventState& state,
-                         const std::vector<FreeParameter>& free) {
+EventSlopes event_slopes(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent e,
+                         const EventState& state, const std::vector<FreeParameter>& free) {
   const event::FitEvent& event = e.event;
   std::vector<playin::Direction> along;
-  for (const auto& f : free) along.push_back({Kind::parameter, f.block, f.index, axis_unit(plant, f)});
+  for (const auto& f : free) along.push_back({Kind::parameter, f.block, f.index, axis_unit(tested.plant, f)});
   std::ranges::move(state_directions(event), std::back_inserter(along));
-  const playin::Response r = event::play(plant, conventions, event, state, along, kExact);
+  const playin::Response r = event::play(tested, event, state, along, kExact);
 
   EventSlopes back;
   back.channels = static_cast<int>(event.channels.size());

@@ -19,7 +19,7 @@ constexpr double kSure = 10;
 constexpr double kLasting = 0.02;
 
 playin::Response response_of(const Judgement& j, const event::FitEvent& e, const fit::EventState& state) {
-  return event::play(j.fit.plant, j.hypothesis.conventions, e, state);
+  return event::play({j.fit.plant, j.hypothesis.conventions}, e, state);
 }
 
 double norm_of_difference(const std::vector<double>& x, const std::vector<double>& y, double noise) {

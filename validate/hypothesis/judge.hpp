@@ -50,8 +50,7 @@ struct Trial {
 
 /// Predicts each event by the structure fitted to the other events. Empty `free` means the plant's own
 /// parameters.
-std::vector<HeldOut> hold_out(const Trial& trial, const sim::plant::Plant& plant,
-                              const sim::Conventions& conventions,
+std::vector<HeldOut> hold_out(const Trial& trial, const sim::plant::PlantUnderTest& tested,
                               const std::vector<fit::FreeParameter>& free, const fit::Fit& whole);
 /// Says which left-out event speaks against an effect of this evidence, and how. Empty if none does.
 /// `adequate` is that of Trial.

@@ -33,9 +33,8 @@ double MissingInput::explains(const fit::Fit& without) const {
   return fit::gain(without, fit, fit::data_cost) - thresholds::adequacy.knot * static_cast<double>(knots);
 }
 
-MissingInput infer_input(fit::InputKind kind, const sim::plant::Plant& plant,
-                         const sim::Conventions& conventions, const event::WhitenedEvents& events,
-                         double spread, const fit::FitOptions& start) {
+MissingInput infer_input(fit::InputKind kind, const sim::plant::PlantUnderTest& tested,
+                         const event::WhitenedEvents& events, double spread, const fit::FitOptions& start) {
   MissingInput found{kind, {}};
   fit::FitOptions options = start;
   options.input = kind;
@@ -52,7 +51,7 @@ MissingInput infer_input(fit::InputKind kind, const sim::plant::Plant& plant,
     options.start[e].input.t = knots_of(events[e]);
     options.start[e].input.value.assign(options.start[e].input.t.size(), 0.0);
   }
-  found.fit = fit::fit(plant, conventions, events, fit::free_parameters(plant, spread), options);
+  found.fit = fit::fit(tested, events, fit::free_parameters(tested.plant, spread), options);
   return found;
 }
 

@@ -83,7 +83,8 @@ class Searcher {
     return candidates;
   }
   fit::Fit attempt(const Candidate& c, const sim::plant::Plant& start, const fit::FitOptions& o) const {
-    return fit::fit(start, c.hypothesis.conventions, stage_.events, free_of(c.hypothesis, stage_.spread), o);
+    return fit::fit({start, c.hypothesis.conventions}, stage_.events, free_of(c.hypothesis, stage_.spread),
+                    o);
   }
   /// Fits the first `tries` starts, the standard values and then the draws, leaving out those that `fits`
   /// holds already.
@@ -212,7 +213,7 @@ class Searcher {
     const auto free = free_of(c.hypothesis, stage_.spread);
     fit::FitOptions o = fit::continued({}, f, free);
     o.iterations = 0;
-    fit::Fit known = fit::fit(c.starts.front(), c.hypothesis.conventions, stage_.events, free, o);
+    fit::Fit known = fit::fit({c.starts.front(), c.hypothesis.conventions}, stage_.events, free, o);
     if (!known.failed.empty()) return f;
     known.iterations = f.iterations;
     known.converged = f.converged;

@@ -133,7 +133,7 @@ class Searcher {
     o.iterations = 10;
     o.values = values_in(input_.fit.plant, {f.effect.get(), h.starts.front()}, block, free);
     for (const auto& e : input_.fit.events) o.start.push_back(e.state);
-    fit::Fit found = fit::fit(h.plant, h.conventions, case_.trial.events, free, o);
+    fit::Fit found = fit::fit(h.under_test(), case_.trial.events, free, o);
     if (!found.failed.empty()) return f;
     f.judgement.fit = std::move(found);
     f.judgement.gain = fit::gain(case_.base, f.judgement.fit, fit::criterion);

@@ -7,9 +7,9 @@
 namespace swingbank::validate::fit {
 
 /// What the plant answers to the event from `at`.
-inline playin::Response answer(const event::FitEvent& e, const EventState& at, const sim::plant::Plant& plant,
-                               const sim::Conventions& conventions) {
-  return event::play(plant, conventions, e, at);
+inline playin::Response answer(const event::FitEvent& e, const EventState& at,
+                               const sim::plant::PlantUnderTest& tested) {
+  return event::play(tested, e, at);
 }
 
 struct ExciterExample {
@@ -31,7 +31,7 @@ struct ExciterExample {
     return some;
   }
   [[nodiscard]] Fit fitted(const std::vector<std::string>& names, const FitOptions& options = {}) const {
-    return fit(model.plant, model.conventions, events, free(names), options);
+    return fit(model.under_test(), events, free(names), options);
   }
 };
 

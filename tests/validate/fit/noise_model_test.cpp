@@ -17,8 +17,7 @@ struct NoiseModels : ::testing::Test {
       example.events.with(measure_noise_through(first, example.model.conventions, example.events));
 
   [[nodiscard]] Fit fitted_to(const event::WhitenedEvents& events) const {
-    return fit(example.model.plant, example.model.conventions, events, example.free({"H", "K"}),
-               {.iterations = 2});
+    return fit(example.model.under_test(), events, example.free({"H", "K"}), {.iterations = 2});
   }
 };
 
@@ -36,8 +35,8 @@ TEST_F(NoiseModels, FitsWithDifferentNoiseCannotBeCompared) {
   EXPECT_NO_THROW(require_noise_of(again, other));
 }
 TEST_F(NoiseModels, EqualNumbersOfTwoMeasurementsAreStillTwo) {
-  const event::WhitenedEvents twice = example.events.with(
-      event::measure_noise(example.model.plant, example.model.conventions, example.events));
+  const event::WhitenedEvents twice =
+      example.events.with(event::measure_noise(example.model.under_test(), example.events));
   EXPECT_EQ(twice.noise(0).deviation, example.events.noise(0).deviation);
   EXPECT_THROW(static_cast<void>(gain(first, fitted_to(twice))), std::logic_error);
 }

@@ -19,7 +19,7 @@ struct Slopes : ::testing::TestWithParam<const char*> {
 
   [[nodiscard]] Eigen::VectorXd whitened(const sim::plant::Plant& plant, const EventState& state) const {
     event::RowMatrix all =
-        event.collected(event::play(plant, model.conventions, event, state, {}, kExact).value, true);
+        event.collected(event::play({plant, model.conventions}, event, state, {}, kExact).value, true);
     events.noise(0).whiten(all);
     return all;
   }
@@ -39,11 +39,10 @@ struct Slopes : ::testing::TestWithParam<const char*> {
 };
 
 TEST_P(Slopes, ResidualIsThatOfTheFit) {
-  const Fit f = fit(model.plant, model.conventions, events.alone(0), {});
+  const Fit f = fit(model.under_test(), events.alone(0), {});
   ASSERT_TRUE(f.failed.empty()) << f.failed;
   EXPECT_LT(f.misfit(), 1.2);  // the plant and its instruments are the true ones
-  const EventSlopes s =
-      event_slopes(model.plant, model.conventions, events.whitened(0), f.events.front().state, {});
+  const EventSlopes s = event_slopes(model.under_test(), events.whitened(0), f.events.front().state, {});
   EXPECT_NEAR(s.residual.squaredNorm(), f.chi2, 1e-2 * f.chi2);  // the fit integrates to 1e-5
 }
 
@@ -56,7 +55,7 @@ TEST_P(Slopes, AreThoseOfDifferences) {
   ASSERT_GT(free.size(), 3U);
   EXPECT_NEAR(axis_unit(model.plant, free.back()),
               0.2 * std::abs(parameter_value(model.plant, last, free.back().index)), 1e-15);
-  const EventSlopes s = event_slopes(model.plant, model.conventions, events.whitened(0), {}, free);
+  const EventSlopes s = event_slopes(model.under_test(), events.whitened(0), {}, free);
 
   const auto columns = static_cast<Eigen::Index>(free.size());
   Eigen::MatrixXd slopes(event.values(), columns);

@@ -15,13 +15,13 @@ class Further : public ::testing::Test {
     parameter(truth_.plant, "TE") = 4.0;
     parameter(truth_.plant, "TF") = 12.0;
     event::FitEvent e = events_.front();
-    const playin::Response r = fit::answer(e, base_.events.front().state, truth_.plant, truth_.conventions);
+    const playin::Response r = fit::answer(e, base_.events.front().state, truth_.under_test());
     e.record.P = r.of(playin::Output::P);
     e.record.Q = r.of(playin::Output::Q);
     events_ = {{e}, events_.noise_model()};
   }
   [[nodiscard]] Hypothesis named(const std::string& name) const {
-    const auto all = all_hypotheses(model_.plant, model_.conventions);
+    const auto all = all_hypotheses(model_.under_test());
     return *std::ranges::find(all, name, &Hypothesis::name);
   }
   static double& parameter(sim::plant::Plant& plant, const std::string& name) {
@@ -38,8 +38,7 @@ class Further : public ::testing::Test {
     j.hypothesis.starts.resize(1);
     fit::FitOptions o;
     o.iterations = 2;
-    j.fit = fit::fit(j.hypothesis.plant, j.hypothesis.conventions, events_,
-                     free_of(j.hypothesis, stage_.spread), o);
+    j.fit = fit::fit(j.hypothesis.under_test(), events_, free_of(j.hypothesis, stage_.spread), o);
     fit::Fit lead = base_;
     lead.plant = leader;
     try_further(stage_, lead, j);
@@ -50,7 +49,7 @@ class Further : public ::testing::Test {
       model_,
       {record::read_record(test::source("configs/records/record-example/avr_ev1.csv"), model_.record_base)},
       {.measured_states = false});
-  const fit::Fit base_ = fit::fit(model_.plant, model_.conventions, events_, {}, {.iterations = 0});
+  const fit::Fit base_ = fit::fit(model_.under_test(), events_, {}, {.iterations = 0});
   Hypothesis truth_ = named("ESAC1A");
   const Stage stage_{
       .events = events_, .plant = model_.plant, .conventions = model_.conventions, .fit = base_};

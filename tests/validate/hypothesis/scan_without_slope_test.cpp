@@ -15,7 +15,7 @@ TEST(Blind, ATimerIsFoundThatNoSlopeSees) {
                     .plant = example.model.plant,
                     .conventions = example.model.conventions,
                     .fit = nearly};
-  auto all = all_hypotheses(stage.plant, stage.conventions);
+  auto all = all_hypotheses(stage.under_test());
   const Hypothesis h = StartFinder(stage).of(*std::ranges::find(all, "MAXEX2", &Hypothesis::name)).hypothesis;
   const auto free = free_of(h, stage.spread);
 
@@ -26,7 +26,7 @@ TEST(Blind, ATimerIsFoundThatNoSlopeSees) {
                          p.where.index) = p.value;
   event::FitEvent event = example.events.front();
   const fit::EventFit& at = nearly.events.front();
-  const playin::Response limited = fit::answer(event, at.state, with, h.conventions);
+  const playin::Response limited = fit::answer(event, at.state, {with, h.conventions});
   double square = 0;
   for (std::size_t c = 0; c < event.channels.size(); ++c) {
     const playin::Output o = event.channels[c];
@@ -43,7 +43,7 @@ TEST(Blind, ATimerIsFoundThatNoSlopeSees) {
     fit::FitOptions o;
     o.values = fit::values_of(plant, free);
     o.start = {at.state};
-    return fit::fit(h.plant, h.conventions, stage.events, free, o);
+    return fit::fit(h.under_test(), stage.events, free, o);
   };
   sim::plant::Plant slow = with;
   for (const fit::FreeParameter& f : h.free)

@@ -49,11 +49,14 @@ event::FitEvent prepared(const record::Record& record, const BlindEvent& event) 
 }
 
 /// The noise of an event where P and Q, and V and theta, have these standard deviations.
-event::EventNoise noise_of(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                           const event::FitEvent& e, double power, double voltage) {
+event::EventNoise noise_of(const sim::plant::PlantUnderTest& tested, const event::FitEvent& e, double power,
+                           double voltage) {
   const playin::VoltageCurve curve(e.record, e.switchings);
-  const playin::LinearPlant linear = playin::linearise(
-      {.plant = &plant, .conventions = conventions, .record = &e.record, .curve = &curve, .start = e.start});
+  const playin::LinearPlant linear = playin::linearise({.plant = &tested.plant,
+                                                        .conventions = tested.conventions,
+                                                        .record = &e.record,
+                                                        .curve = &curve,
+                                                        .start = e.start});
   const Eigen::Vector2d variance(std::pow(voltage / std::abs(e.start.voltage), 2), voltage * voltage);
   const Eigen::Matrix2d at_once =
       linear.D.topRows(2) * variance.asDiagonal() * linear.D.topRows(2).transpose();
@@ -67,13 +70,12 @@ event::EventNoise noise_of(const sim::plant::Plant& plant, const sim::Convention
 
 }  // namespace
 
-BlindSize::BlindSize(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                     const std::vector<BlindEvent>& events, std::vector<record::Record> plain,
-                     double power_noise, double voltage_noise)
-    : plant_(plant), conventions_(conventions), events_(events), plain_(std::move(plain)) {
+BlindSize::BlindSize(const sim::plant::PlantUnderTest& tested, const std::vector<BlindEvent>& events,
+                     std::vector<record::Record> plain, double power_noise, double voltage_noise)
+    : plant_(tested.plant), conventions_(tested.conventions), events_(events), plain_(std::move(plain)) {
   for (std::size_t e = 0; e < plain_.size(); ++e) {
     prepared_.push_back(prepared(plain_[e], events_[e]));
-    noise_.push_back(noise_of(plant_, conventions_, prepared_[e], power_noise, voltage_noise));
+    noise_.push_back(noise_of({plant_, conventions_}, prepared_[e], power_noise, voltage_noise));
     plain_residual_.push_back(Eigen::VectorXd::Zero(prepared_[e].values()));
     plain_residual_.back() = residual(e, plain_[e]);
   }
@@ -98,7 +100,7 @@ playin::Response BlindSize::answer(std::size_t event, const record::Record& reco
   event::FitEvent played = prepared_[event];
   played.record = record;
   played.start = playin::pre_event_point(record, played.switchings, 1.0);
-  return event::play(plant_, conventions_, played, {}, along, {.tolerance = kRunTolerance, .hasty = false});
+  return event::play({plant_, conventions_}, played, {}, along, {.tolerance = kRunTolerance, .hasty = false});
 }
 
 Eigen::VectorXd BlindSize::residual(std::size_t event, const record::Record& record) const {

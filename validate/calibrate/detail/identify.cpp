@@ -121,7 +121,7 @@ std::vector<Blur> find_blurs(const Eigen::MatrixXd& information, const Eigen::Ve
   return blurs;
 }
 
-std::vector<TriedEvent> try_events(const sim::plant::Plant& plant, const sim::Conventions& conventions,
+std::vector<TriedEvent> try_events(const sim::plant::PlantUnderTest& tested,
                                    const event::WhitenedEvents& events,
                                    const std::vector<fit::EventState>& states,
                                    const Eigen::Vector2d& variance,
@@ -130,8 +130,8 @@ std::vector<TriedEvent> try_events(const sim::plant::Plant& plant, const sim::Co
   const event::FitEvent& like = events.front();
   const auto learnt = [&](const event::FitEvent& event, event::EventNoise noise,
                           const fit::EventState& state) {
-    noise.memory = fit::memory_of(plant, conventions, {event, noise}, variance);
-    return fit::information(fit::event_slopes(plant, conventions, {event, noise}, state, free));
+    noise.memory = fit::memory_of(tested, {event, noise}, variance);
+    return fit::information(fit::event_slopes(tested, {event, noise}, state, free));
   };
   const auto attempt = [&](const std::string& what, const event::FitEvent& event,
                            const fit::EventState& state) {

@@ -31,7 +31,7 @@ std::vector<LawTrace> law_traces(const plant::PlantModel& model, const event::Wh
     const playin::VoltageCurve curve(e.played(), switchings);
     // The signals are those that the instruments show, as the fit had them.
     const playin::Response r =
-        event::play(input.fit.plant, model.conventions, e, state, {}, {.input = input.kind});
+        event::play({input.fit.plant, model.conventions}, e, state, {}, {.input = input.kind});
     const double to_machine = e.record.base.mva / input.fit.plant.mva;
     LawTrace t;
     t.t = e.record.t;
