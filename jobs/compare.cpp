@@ -7,7 +7,7 @@
 #include <map>
 
 #include "base/write_file.hpp"
-#include "validate/check/check.hpp"
+#include "validate/check/record_set.hpp"
 #include "validate/compare/report.hpp"
 #include "validate/system/system.hpp"
 #include "validate/thresholds/adequacy.hpp"
@@ -49,48 +49,6 @@ std::string joined(int argc, char** argv) {
   std::string line = "swingbank compare";
   for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
   return line;
-}
-
-/// Every record, read before any is played, so that all faults of all files are told at once.
-std::vector<record::Record> read_records(const std::vector<std::string>& files,
-                                         const record::RecordBase& base) {
-  std::vector<record::Record> records;
-  Problems problems;
-  for (const auto& file : files) {
-    try {
-      records.push_back(record::read_record(file, base));
-    } catch (const InputError& error) {
-      for (const auto& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
-    }
-  }
-  problems.raise();
-  return records;
-}
-
-/// Results of several records would overwrite each other if their file names were the same.
-void check_names(const std::vector<record::Record>& records) {
-  Problems problems;
-  for (std::size_t i = 0; i < records.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (records[i].name == records[j].name)
-        problems.add("two records named " + records[i].name, "--record",
-                     "their results would overwrite each other", "rename one of them");
-  problems.raise();
-}
-
-/// Warnings of each record's check. Throws InputError with the refusals of all of them.
-std::vector<std::vector<std::string>> check_records(const std::vector<record::Record>& records,
-                                                    const plant::PlantModel& model) {
-  std::vector<std::vector<std::string>> warnings(records.size());
-  Problems refusals;
-  for (std::size_t i = 0; i < records.size(); ++i)
-    for (const auto& [kind, severity, p] : check::check_record(records[i], check::plant_facts(model)))
-      if (severity == check::Severity::refuse)
-        refusals.add(p.what, p.where, p.why, p.remedy);
-      else
-        warnings[i].push_back(p.sentence());
-  refusals.raise();
-  return warnings;
 }
 
 /// A whole grid at several terminals.
@@ -161,9 +119,7 @@ int main(int argc, char** argv) {
     if (!system_file.empty()) return run_system(system_file, out, json, joined(argc, argv));
     options.drive = drive == "pq" ? compare::DriveBy::power : compare::DriveBy::voltage;
     const plant::PlantModel model = plant::load_plant_model(model_file);
-    std::vector<record::Record> records = read_records(record_files, model.record_base);
-    check_names(records);
-    const auto warnings = check_records(records, model);
+    auto [records, warnings] = check::read_records(record_files, model);
     std::vector<std::string> names;
     names.reserve(records.size());
     for (const auto& r : records) names.push_back(r.name);

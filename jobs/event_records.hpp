@@ -4,14 +4,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "validate/check/check.hpp"
+#include "validate/check/record_set.hpp"
 #include "validate/plant/plant_model.hpp"
 #include "validate/record/record.hpp"
 
@@ -21,29 +20,12 @@ namespace swingbank::jobs {
 /// refuse go to stderr.
 inline std::vector<validate::record::Record> read_events(const std::vector<std::string>& files,
                                                          const validate::plant::PlantModel& model) {
-  std::vector<validate::record::Record> records;
   Problems problems;
-  const auto take = [&](const InputError& error) {
-    for (const auto& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
-  };
-  for (const auto& file : files) {
-    try {
-      validate::record::Record record = validate::record::read_record(file, model.record_base);
-      const auto findings = validate::check::check_record(record, validate::check::plant_facts(model));
-      for (const auto& f : findings)
-        if (f.severity == validate::check::Severity::warn)
-          fmt::print(stderr, "note: {}\n", f.problem.sentence());
-      if (std::ranges::any_of(records, [&](const auto& other) { return other.name == record.name; }))
-        problems.add("two records named " + record.name, "--records", "they could not be told apart",
-                     "rename one of them");
-      validate::check::raise_refusals(findings);
-      records.push_back(std::move(record));
-    } catch (const InputError& error) {
-      take(error);
-    }
-  }
+  validate::check::RecordSet set = validate::check::read_records(files, model, problems);
+  for (const auto& warnings : set.warnings)
+    for (const auto& warning : warnings) fmt::print(stderr, "note: {}\n", warning);
   problems.raise();
-  return records;
+  return std::move(set.records);
 }
 
 /// Writes "what: done of total" over itself where stderr is a terminal, elsewhere as a line every ten

@@ -9,7 +9,7 @@
 #include "jobs/record_for_network.hpp"
 #include "train/runtime/blas_kernels.hpp"
 #include "train/runtime/runtime.hpp"
-#include "validate/check/check.hpp"
+#include "validate/check/record_set.hpp"
 
 namespace {
 using namespace swingbank;
@@ -40,16 +40,8 @@ void require_same_machine(const train::run::NetworkInfo& network, const plant::P
 /// Every record, read and checked, so that all faults of all files are told at once.
 std::vector<Estimated> read_all(const Options& o, const plant::PlantModel& model) {
   std::vector<Estimated> all;
-  Problems problems;
-  for (const auto& file : o.records) {
-    try {
-      all.push_back({record::read_record(file, model.record_base), {}, {}});
-      check::raise_refusals(check::check_record(all.back().record, check::plant_facts(model)));
-    } catch (const InputError& error) {
-      for (const auto& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
-    }
-  }
-  problems.raise();
+  for (record::Record& record : check::read_records(o.records, model).records)
+    all.push_back({std::move(record), {}, {}});
   return all;
 }
 

@@ -165,7 +165,7 @@ blind::cases::BlindCase make(const blind::cases::BlindConfig& config, const blin
   }
   made.model = made.truth = known_plant(plain);
   if (!kind.empty()) {
-    const blind::cases::BlindSize size(made.model, made.conventions, made.events, without,
+    const blind::cases::BlindSize size({made.model, made.conventions}, made.events, without,
                                        made.noise * kMva / without.front().base.mva,
                                        made.noise * config.voltage_noise);
     truth.kind = spec.hidden.front();

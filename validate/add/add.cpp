@@ -33,27 +33,26 @@ class Bench {
     all_ = event::prepare_events(model, std::move(records), options.events);
     keep_seen();
   }
-  [[nodiscard]] const std::vector<event::FitEvent>& all() const { return all_; }
-  [[nodiscard]] const std::vector<event::FitEvent>& seen() const { return seen_; }
+  [[nodiscard]] const event::WhitenedEvents& all() const { return all_; }
+  [[nodiscard]] const event::WhitenedEvents& seen() const { return seen_; }
   /// Measures the noise anew through a fit of the events seen, if that is close.
   bool measure_noise(const fit::Fit& seen, const sim::Conventions& conventions) {
     if (seen.misfit() >= thresholds::noise.measurable) return false;
     fit::Fit whole = seen;
-    whole.events = each(seen.plant, conventions, "noise measured again");
-    fit::measure_noise_through(whole, conventions, all_);
+    whole.events = each({seen.plant, conventions}, "noise measured again");
+    all_ = all_.with(fit::measure_noise_through(whole, conventions, all_));
     keep_seen();
     return true;
   }
   [[nodiscard]] bool is_seen(std::size_t e) const { return !out_[e]; }
 
   /// Fits every event by itself, with only its own state free.
-  std::vector<fit::EventFit> each(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                                  const std::string& what) const {
+  std::vector<fit::EventFit> each(const sim::plant::PlantUnderTest& tested, const std::string& what) const {
     std::vector<fit::EventFit> fits(all_.size());
     in_parallel(
         all_.size(),
         [&](std::size_t e) {
-          fit::Fit f = fit::fit(plant, conventions, {all_[e]}, {});
+          fit::Fit f = fit::fit(tested, all_.alone(e), {});
           if (!f.failed.empty())
             throw InputError({"the model cannot follow the record", all_[e].record.name, f.failed,
                               "check the model's parameters and the record's base and units"});
@@ -74,22 +73,23 @@ class Bench {
 
  private:
   void keep_seen() {
-    seen_.clear();
+    std::vector<std::size_t> seen;
     for (std::size_t e = 0; e < all_.size(); ++e)
-      if (!out_[e]) seen_.push_back(all_[e]);
+      if (!out_[e]) seen.push_back(e);
+    seen_ = all_.only(seen);
   }
 
   const calibrate::CalibrateOptions& options_;
   std::vector<bool> out_;
-  std::vector<event::FitEvent> all_, seen_;
+  event::WhitenedEvents all_, seen_;
 };
 
-double chi2_of(const sim::plant::Plant& plant, const sim::Conventions& conventions, const Bench& bench,
+double chi2_of(const sim::plant::PlantUnderTest& tested, const Bench& bench,
                const std::vector<fit::EventState>& states) {
   double sum = 0;
   try {
     for (std::size_t e = 0; e < states.size(); ++e)
-      sum += fit::event_slopes(plant, conventions, bench.seen()[e], states[e], {}).residual.squaredNorm();
+      sum += fit::event_slopes(tested, bench.seen().whitened(e), states[e], {}).residual.squaredNorm();
   } catch (const InputError&) {
     return std::numeric_limits<double>::infinity();
   }
@@ -97,9 +97,9 @@ double chi2_of(const sim::plant::Plant& plant, const sim::Conventions& conventio
 }
 
 /// The fit from where `f` ended.
-fit::Fit go_on(const sim::plant::Plant& plant, const sim::Conventions& conventions, const Bench& bench,
+fit::Fit go_on(const sim::plant::PlantUnderTest& tested, const Bench& bench,
                const std::vector<fit::FreeParameter>& free, const fit::Fit& f) {
-  return fit::fit(plant, conventions, bench.seen(), free, fit::continued({}, f, free));
+  return fit::fit(tested, bench.seen(), free, fit::continued({}, f, free));
 }
 
 /// The fit with the effect: its starts screened, the best refined, the best of them finished.
@@ -110,7 +110,7 @@ fit::Fit fit_with(const hypothesis::Hypothesis& h, const Bench& bench,
   in_parallel(
       h.starts.size(),
       [&](std::size_t k) {
-        order[k] = {chi2_of(hypothesis::started(h, h.starts[k]), h.conventions, bench, states), k};
+        order[k] = {chi2_of({hypothesis::started(h, h.starts[k]), h.conventions}, bench, states), k};
       },
       [&](int done) {
         bench.tell("values of " + h.name + " screened", done, static_cast<int>(order.size()));
@@ -127,22 +127,22 @@ fit::Fit fit_with(const hypothesis::Hypothesis& h, const Bench& bench,
         o.iterations = 10;
         o.start = states;
         o.values = fit::values_of(hypothesis::started(h, h.starts[order[k].second]), free);
-        fits[k] = fit::fit(h.plant, h.conventions, bench.seen(), free, o);
+        fits[k] = fit::fit(h.under_test(), bench.seen(), free, o);
       },
       [&](int done) { bench.tell("starts of " + h.name + " refined", done, static_cast<int>(tries)); });
-  fit::Fit best = *std::ranges::min_element(fits, {}, fit::penalised);
+  fit::Fit best = *std::ranges::min_element(fits, fit::better);
   if (!best.failed.empty())
     throw InputError({"effect " + h.name + " cannot be fitted", "every start", best.failed,
                       "check the model's parameters, or add another effect"});
-  const fit::Fit finished = go_on(h.plant, h.conventions, bench, free, best);
-  return fit::penalised(finished) < fit::penalised(best) ? finished : best;
+  const fit::Fit finished = go_on(h.under_test(), bench, free, best);
+  return fit::better(finished, best) ? finished : best;
 }
 
 fit::Fit fit_without(const plant::PlantModel& model, const Bench& bench,
                      const std::vector<fit::EventState>& states, double spread) {
   fit::FitOptions o;
   o.start = states;
-  return fit::fit(model.plant, model.conventions, bench.seen(), fit::free_parameters(model.plant, spread), o);
+  return fit::fit(model.under_test(), bench.seen(), fit::free_parameters(model.plant, spread), o);
 }
 
 std::string own_values(const Addition& a) {
@@ -180,10 +180,10 @@ std::string sentence_of(const Addition& a) {
 
 hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std::string& name) {
   const auto named = [&](const hypothesis::Hypothesis& h) { return plain(h.name) == plain(name); };
-  auto all = hypothesis::all_hypotheses(model.plant, model.conventions);
+  auto all = hypothesis::all_hypotheses(model.under_test());
   std::string names;
   for (const auto& h : all) names += (names.empty() ? "" : ", ") + h.name;
-  std::ranges::move(hypothesis::all_replacements(model.plant, model.conventions), std::back_inserter(all));
+  std::ranges::move(hypothesis::all_replacements(model.under_test()), std::back_inserter(all));
   if (const auto found = std::ranges::find_if(all, named); found != all.end()) return *found;
   const sim::Effect* effect = sim::library::find_effect(name);
   const std::string remedy = "use one of " + names + ", or load a law with --law";
@@ -203,7 +203,7 @@ Addition add_effect(const plant::PlantModel& model, const hypothesis::Hypothesis
                     std::vector<record::Record> records, const AddOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   Bench bench(model, std::move(records), options.calibrate);
-  auto before = bench.each(model.plant, model.conventions, "events with the model as it is");
+  auto before = bench.each(model.under_test(), "events with the model as it is");
   const auto states = bench.states_of(before);
   Addition a;
   a.hypothesis = hypothesis;
@@ -214,24 +214,22 @@ Addition add_effect(const plant::PlantModel& model, const hypothesis::Hypothesis
   a.with = fit_with(hypothesis, bench, states, options);
   if (bench.measure_noise(a.with, hypothesis.conventions)) {
     const double spread = options.calibrate.spread;
-    before = bench.each(model.plant, model.conventions, "events with the model as it is");
-    a.without =
-        go_on(model.plant, model.conventions, bench, fit::free_parameters(model.plant, spread), a.without);
-    a.with = go_on(hypothesis.plant, hypothesis.conventions, bench, hypothesis::free_of(hypothesis, spread),
-                   a.with);
+    before = bench.each(model.under_test(), "events with the model as it is");
+    a.without = go_on(model.under_test(), bench, fit::free_parameters(model.plant, spread), a.without);
+    a.with = go_on(hypothesis.under_test(), bench, hypothesis::free_of(hypothesis, spread), a.with);
   }
   a.own = static_cast<int>(hypothesis.free.size());
   a.parameters = a.with.parameters;
   // The effect's parameters stand last in a fit.
   std::rotate(a.parameters.begin(), a.parameters.end() - a.own, a.parameters.end());
-  a.evidence = fit::criterion(a.without) - fit::criterion(a.with);
-  const auto refitted = bench.each(a.without.plant, model.conventions, "events without the effect");
-  const auto after = bench.each(a.with.plant, hypothesis.conventions, "events with the effect");
+  a.evidence = fit::gain(a.without, a.with, fit::criterion);
+  const auto refitted = bench.each({a.without.plant, model.conventions}, "events without the effect");
+  const auto after = bench.each({a.with.plant, hypothesis.conventions}, "events with the effect");
   a.earns = true;
   std::vector<calibrate::EventScore> scores;
   for (std::size_t e = 0; e < bench.all().size(); ++e) {
     AddedEvent event{
-        calibrate::score_event(bench.all()[e], before[e], after[e], bench.is_seen(e),
+        calibrate::score_event(bench.all().whitened(e), before[e], after[e], bench.is_seen(e),
                                calibrate::pre_event_samples(bench.all()), options.calibrate.adequate),
         refitted[e].misfit()};
     scores.push_back(event.score);
@@ -256,16 +254,16 @@ Removal try_without(const plant::PlantModel& model, std::size_t control, std::ve
   r.effect = model.plant.controls[control].effect->name;
   r.model = model;
   r.model.plant.controls.erase(r.model.plant.controls.begin() + static_cast<std::ptrdiff_t>(control));
-  const auto states = bench.states_of(bench.each(model.plant, model.conventions, "events with " + r.effect));
+  const auto states = bench.states_of(bench.each(model.under_test(), "events with " + r.effect));
   const double spread = options.calibrate.spread;
   fit::Fit with = fit_without(model, bench, states, spread),
            without = fit_without(r.model, bench, states, spread);
   if (with.failed.empty() && without.failed.empty() && bench.measure_noise(with, model.conventions)) {
-    with = go_on(model.plant, model.conventions, bench, fit::free_parameters(model.plant, spread), with);
-    without =
-        go_on(r.model.plant, model.conventions, bench, fit::free_parameters(r.model.plant, spread), without);
+    with = go_on(model.under_test(), bench, fit::free_parameters(model.plant, spread), with);
+    without = go_on({r.model.plant, model.conventions}, bench, fit::free_parameters(r.model.plant, spread),
+                    without);
   }
-  r.evidence = fit::criterion(without) - fit::criterion(with);
+  r.evidence = fit::gain(without, with, fit::criterion);
   if (without.failed.empty()) r.model.plant = without.plant;
   return r;
 }

@@ -32,7 +32,7 @@ struct Addition {
   bool adequate = false;      ///< nothing but noise is left in any event
   thresholds::Ruling ruling;  ///< what decided whether it is
   std::string sentence;
-  std::vector<event::FitEvent> prepared;
+  event::WhitenedEvents prepared;
   fit::Fit without, with;
   double seconds = 0;
 };

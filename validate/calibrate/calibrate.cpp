@@ -17,21 +17,22 @@
 namespace swingbank::validate::calibrate {
 namespace {
 
-fit::Fit alone(const plant::PlantModel& model, const sim::plant::Plant& plant, const event::FitEvent& event) {
-  fit::Fit f = fit::fit(plant, model.conventions, {event}, {});
+fit::Fit alone(const plant::PlantModel& model, const sim::plant::Plant& plant,
+               const event::WhitenedEvents& event) {
+  fit::Fit f = fit::fit({plant, model.conventions}, event, {});
   if (!f.failed.empty())
-    throw InputError({"the model cannot follow the record", event.record.name, f.failed,
+    throw InputError({"the model cannot follow the record", event.front().record.name, f.failed,
                       "check the model's parameters and the record's base and units"});
   return f;
 }
 
 /// chi2 of all events with their states as given; infinite where the plant cannot be driven.
-double chi2_of(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-               const std::vector<event::FitEvent>& events, const std::vector<fit::EventState>& states) {
+double chi2_of(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+               const std::vector<fit::EventState>& states) {
   double sum = 0;
   try {
     for (std::size_t e = 0; e < events.size(); ++e) {
-      const fit::EventSlopes s = fit::event_slopes(plant, conventions, events[e], states[e], {});
+      const fit::EventSlopes s = fit::event_slopes(tested, events.whitened(e), states[e], {});
       sum += s.residual.squaredNorm();
     }
   } catch (const InputError&) {
@@ -50,7 +51,8 @@ class Run {
     c_.model = model;
     c_.prepared = event::prepare_events(model, std::move(records), options.events);
     for (std::size_t e = 0; e < c_.prepared.size(); ++e)
-      if (!out_[e]) seen_.push_back(c_.prepared[e]);
+      if (!out_[e]) fitted_.push_back(e);
+    seen_ = c_.prepared.only(fitted_);
   }
 
   Calibration run() {
@@ -81,7 +83,9 @@ class Run {
     std::vector<fit::EventFit> fits(c_.prepared.size());
     in_parallel(
         c_.prepared.size(),
-        [&](std::size_t e) { fits[e] = std::move(alone(model_, plant, c_.prepared[e]).events.front()); },
+        [&](std::size_t e) {
+          fits[e] = std::move(alone(model_, plant, c_.prepared.alone(e)).events.front());
+        },
         [&](int done) { tell(what, done, static_cast<int>(fits.size())); });
     return fits;
   }
@@ -97,16 +101,17 @@ class Run {
         draws.size(),
         [&](std::size_t k) {
           draws[k] = screen.draw(k);
-          order[k] = {chi2_of(screen.with(draws[k]), model_.conventions, seen_, states), k};
+          order[k] = {chi2_of({screen.with(draws[k]), model_.conventions}, seen_, states), k};
         },
         [&](int done) { tell("parameter sets screened", done, options_.draws); });
     std::ranges::sort(order);
     std::vector<std::vector<double>> starts = {screen.own()};
-    c_.started = {{.name = "model", .before = chi2_of(model_.plant, model_.conventions, seen_, states)}};
+    c_.started = {{.name = "model", .before = chi2_of(model_.under_test(), seen_, states)}};
     for (const auto& g : options_.given) {
       starts.push_back(fit::values_of(g.plant, free_));
       c_.started.push_back(
-          {.name = g.name, .before = chi2_of(screen.with(starts.back()), model_.conventions, seen_, states)});
+          {.name = g.name,
+           .before = chi2_of({screen.with(starts.back()), model_.conventions}, seen_, states)});
     }
     const auto refined = static_cast<std::size_t>(std::max(0, options_.starts));
     for (std::size_t k = 0; k < order.size() && k < refined; ++k) {
@@ -122,28 +127,25 @@ class Run {
           fit::FitOptions o;
           o.start = states;
           o.values = starts[k];
-          fits[k] = fit::fit(model_.plant, model_.conventions, seen_, free_, o);
+          fits[k] = fit::fit(model_.under_test(), seen_, free_, o);
         },
         [&](int done) { tell("starts refined", done, static_cast<int>(starts.size())); });
     choose(fits);
   }
   void choose(std::vector<fit::Fit>& fits) {
-    const auto cost = [](const fit::Fit& f) {
-      return f.failed.empty() ? f.chi2 + f.belief : std::numeric_limits<double>::infinity();
-    };
-    const auto best = std::ranges::min_element(fits, {}, cost);
+    const auto best = std::ranges::min_element(fits, fit::better);
     if (!best->failed.empty())
       throw InputError({"no start can be evaluated", model_.origin, best->failed, "correct the model"});
     c_.starts = static_cast<int>(fits.size());
-    const double near =
-        std::max(thresholds::parameters.agrees_least.value, thresholds::parameters.agrees * cost(*best));
+    const double near = std::max(thresholds::parameters.agrees_least.value,
+                                 thresholds::parameters.agrees * fit::penalised(*best));
     double values = 0;
     for (const auto& e : seen_) values += e.values();
     for (std::size_t k = 0; k < fits.size(); ++k) {
       auto& start = c_.started[k];
       start.before /= values;
       start.after = fits[k].failed.empty() ? fits[k].misfit() : std::numeric_limits<double>::infinity();
-      start.agrees = cost(fits[k]) <= cost(*best) + near;
+      start.agrees = fit::gain(fits[k], *best) <= near;
       c_.agreeing += start.agrees;
     }
     c_.converged = best->converged;
@@ -157,18 +159,18 @@ class Run {
     whole.plant = c_.fit.plant;
     whole.events = each_alone(whole.plant, "noise of the voltage");
     noise_ = fit::voltage_noise(whole, c_.prepared);
-    fit::remember_noise(whole, model_.conventions, c_.prepared);
-    if (std::ranges::none_of(c_.prepared, [](const event::FitEvent& e) { return e.memory != nullptr; }))
-      return;
+    const event::WhitenedEvents remembered =
+        c_.prepared.with(fit::remember_noise(whole, model_.conventions, c_.prepared));
+    bool any_memory = false;
+    for (std::size_t e = 0; e < remembered.size(); ++e)
+      any_memory = any_memory || remembered.noise(e).memory != nullptr;
+    if (!any_memory) return;
+    c_.prepared = remembered;
+    seen_ = remembered.only(fitted_);
     fit::FitOptions o;
     o.values = fit::values_of(whole.plant, free_);
-    seen_.clear();
-    for (std::size_t e = 0; e < c_.prepared.size(); ++e) {
-      if (out_[e]) continue;
-      seen_.push_back(c_.prepared[e]);
-      o.start.push_back(whole.events[e].state);
-    }
-    c_.fit = fit::fit(model_.plant, model_.conventions, seen_, free_, o);
+    for (const std::size_t e : fitted_) o.start.push_back(whole.events[e].state);
+    c_.fit = fit::fit(model_.under_test(), seen_, free_, o);
     if (!c_.fit.failed.empty())
       throw InputError(
           {"the fitted model cannot be run again", model_.origin, c_.fit.failed, "fix parameters"});
@@ -181,11 +183,11 @@ class Run {
     in_parallel(
         slopes.size(),
         [&](std::size_t e) {
-          slopes[e] =
-              fit::event_slopes(c_.fit.plant, model_.conventions, seen_[e], c_.fit.events[e].state, free_);
+          slopes[e] = fit::event_slopes({c_.fit.plant, model_.conventions}, seen_.whitened(e),
+                                        c_.fit.events[e].state, free_);
         },
         [&](int done) { tell("noise of the voltage", done, static_cast<int>(slopes.size())); });
-    pull_ = voltage_pull(c_.fit.plant, model_.conventions, seen_, noise_.variance, free_);
+    pull_ = voltage_pull({c_.fit.plant, model_.conventions}, seen_, noise_.variance, free_);
     c_.voltage_noise = noise_.share;
     Eigen::MatrixXd data = Eigen::MatrixXd::Zero(n, n);
     for (const auto& s : slopes) data += fit::information(s);
@@ -225,8 +227,8 @@ class Run {
     in_parallel(
         slopes.size(),
         [&](std::size_t e) {
-          slopes[e] =
-              fit::event_slopes(c_.fit.plant, model_.conventions, c_.prepared[e], c_.states[e], free_);
+          slopes[e] = fit::event_slopes({c_.fit.plant, model_.conventions}, c_.prepared.whitened(e),
+                                        c_.states[e], free_);
         },
         [&](int done) { tell("sensitivities", done, static_cast<int>(slopes.size())); });
     const auto n = static_cast<Eigen::Index>(free_.size());
@@ -284,7 +286,7 @@ class Run {
       if (!out_[e]) states.push_back(c_.states[e]);
     const auto n = known.rows();
     for (const auto& tried :
-         try_events(c_.fit.plant, model_.conventions, seen_, states, noise_.variance, free_)) {
+         try_events({c_.fit.plant, model_.conventions}, seen_, states, noise_.variance, free_)) {
       const Eigen::MatrixXd with = (known + tried.information).ldlt().solve(Eigen::MatrixXd::Identity(n, n));
       Candidate candidate{tried.what, {}};
       for (Eigen::Index i = 0; i < n; ++i) {
@@ -306,7 +308,7 @@ class Run {
     double cost = 0, values = 0;
     for (std::size_t e = 0, seen = 0; e < after_.size(); ++e) {
       if (out_[e]) continue;
-      const double more = std::max(0.0, after_[e].chi2 - c_.fit.events[seen++].chi2);
+      const double more = std::max(0.0, fit::gain(after_[e], c_.fit.events[seen++]));
       allowance_[e] += more / after_[e].values;
       cost += more;
       values += after_[e].values;
@@ -319,7 +321,7 @@ class Run {
     double before = 0, after = 0, values = 0, spare = 0;
     bool held = true;
     for (std::size_t e = 0; e < c_.prepared.size(); ++e) {
-      EventScore s = score_event(c_.prepared[e], before_[e], after_[e], !out_[e],
+      EventScore s = score_event(c_.prepared.whitened(e), before_[e], after_[e], !out_[e],
                                  pre_event_samples(c_.prepared), options_.adequate);
       s.limit += allowance_[e];
       held = held && thresholds::within_limit(s.before, s.limit);
@@ -375,7 +377,8 @@ class Run {
   const CalibrateOptions& options_;
   std::vector<bool> out_;
   std::vector<fit::FreeParameter> free_;
-  std::vector<event::FitEvent> seen_;
+  std::vector<std::size_t> fitted_;  ///< the events that are not left out
+  event::WhitenedEvents seen_;       ///< these events
   std::vector<fit::EventFit> before_, after_;
   std::vector<double> allowance_;
   fit::VoltageNoise noise_;

@@ -103,10 +103,10 @@ struct Calibration {
   int starts = 0, agreeing = 0;             ///< refined starts; how many came to the same optimum
   std::vector<StartScore> started;          ///< each refined start: the model's own, those given, those drawn
   bool converged = false;
-  double voltage_noise = 0;               ///< share of the pre-event movement of V that is the instrument's
-  fit::Fit fit;                           ///< of the events seen
-  std::vector<fit::EventState> states;    ///< of every event, at the fitted parameters
-  std::vector<event::FitEvent> prepared;  ///< every event, in the order given
+  double voltage_noise = 0;             ///< share of the pre-event movement of V that is the instrument's
+  fit::Fit fit;                         ///< of the events seen
+  std::vector<fit::EventState> states;  ///< of every event, at the fitted parameters
+  event::WhitenedEvents prepared;       ///< every event, in the order given
   double seconds = 0;
 };
 
@@ -125,15 +125,15 @@ std::vector<bool> held_out_events(const std::vector<record::Record>& records,
                                   const std::vector<std::string>& names);
 
 /// Number of samples that the noise was estimated from, less one for each event.
-int pre_event_samples(const std::vector<event::FitEvent>& events);
+int pre_event_samples(const event::WhitenedEvents& events);
 
 /// Limit of chi2 per value for nothing but noise, which one in a thousand exceeds. It allows for residuals as
 /// coloured as the event's pre-event stretch and for a noise that was estimated from `pre_event` samples, and
 /// is at least `least`.
 double misfit_limit(const event::FitEvent& event, const fit::EventFit& fitted, int pre_event, double least);
 
-/// Misfit of one event before and after, seen or not.
-EventScore score_event(const event::FitEvent& event, const fit::EventFit& before, const fit::EventFit& after,
+/// Misfit of one event before and after, seen or not. Both fits were made with the noise of `event`.
+EventScore score_event(event::WhitenedEvent event, const fit::EventFit& before, const fit::EventFit& after,
                        bool seen, int pre_event, double least);
 
 }  // namespace swingbank::validate::calibrate

@@ -47,7 +47,7 @@ class EventResidual : public ceres::CostFunction {
         along.push_back({playin::Direction::Kind::parameter, setting_.free[i].block, setting_.free[i].index,
                          setting_.start[i]});
     try {
-      const playin::Response r = event::play(plant, setting_.model.conventions, event_, {}, along);
+      const playin::Response r = event::play({plant, setting_.model.conventions}, event_, {}, along);
       const auto width = static_cast<int>(setting_.free.size());
       write(r.value, true, residuals, 1, 0);
       for (std::size_t i = 0; i < along.size(); ++i)
@@ -77,9 +77,9 @@ class EventResidual : public ceres::CostFunction {
 
 /// The event as the fitted curves meet it, in units of noise as everywhere else.
 fit::EventFit as_played(const Setting& setting, const sim::plant::Plant& plant,
-                        const event::FitEvent& event) {
+                        const event::WhitenedEvents& events, std::size_t e) {
   fit::EventFit f;
-  fit::compare(event, event::play(plant, setting.model.conventions, event, {}), f);
+  fit::compare(events, e, event::play({plant, setting.model.conventions}, events[e], {}), f);
   return f;
 }
 
@@ -115,7 +115,7 @@ class Run {
   CurveFit run() {
     const auto begin = std::chrono::steady_clock::now();
     std::vector<fit::EventFit> before;
-    for (const auto& event : events_) before.push_back(played(setting_.model.plant, event));
+    for (std::size_t e = 0; e < events_.size(); ++e) before.push_back(played(setting_.model.plant, e));
     search();
     fit_.model.plant = setting_.plant(z_.data());
     intervals();
@@ -125,11 +125,11 @@ class Run {
   }
 
  private:
-  fit::EventFit played(const sim::plant::Plant& plant, const event::FitEvent& event) const {
+  fit::EventFit played(const sim::plant::Plant& plant, std::size_t e) const {
     try {
-      return as_played(setting_, plant, event);
+      return as_played(setting_, plant, events_, e);
     } catch (const InputError& error) {
-      throw InputError({"the model cannot follow the record", event.record.name,
+      throw InputError({"the model cannot follow the record", events_[e].record.name,
                         error.problems().front().sentence(),
                         "check the model's parameters and the record's base and units"});
     }
@@ -197,9 +197,9 @@ class Run {
     double chi2[2] = {0, 0}, squares[2] = {0, 0};
     int values = 0;
     for (std::size_t e = 0; e < events_.size(); ++e) {
-      const fit::EventFit after = played(fit_.model.plant, events_[e]);
-      fit_.events.push_back(
-          score_event(events_[e], before[e], after, !out_[e], pre_event_samples(events_), options_.adequate));
+      const fit::EventFit after = played(fit_.model.plant, e);
+      fit_.events.push_back(score_event(events_.whitened(e), before[e], after, !out_[e],
+                                        pre_event_samples(events_), options_.adequate));
       const EventScore& score = fit_.events.back();
       if (out_[e]) continue;
       fit_.limit = std::max(fit_.limit, score.limit);
@@ -228,7 +228,7 @@ class Run {
   std::vector<bool> out_;
   std::vector<fit::FreeParameter> free_;
   Setting setting_;
-  std::vector<event::FitEvent> events_;
+  event::WhitenedEvents events_;
   std::vector<double> z_;
   CurveFit fit_;
 };

@@ -56,17 +56,19 @@ double misfit_limit(const event::FitEvent& event, const fit::EventFit& fitted, i
   return thresholds::event_limit(std::sqrt(samples + estimate), least);
 }
 
-int pre_event_samples(const std::vector<event::FitEvent>& events) {
+int pre_event_samples(const event::WhitenedEvents& events) {
   int sum = 0;
   for (const auto& e : events) sum += e.start.samples - 1;
   return sum;
 }
 
-EventScore score_event(const event::FitEvent& event, const fit::EventFit& before, const fit::EventFit& after,
+EventScore score_event(event::WhitenedEvent whitened, const fit::EventFit& before, const fit::EventFit& after,
                        bool seen, int pre_event, double least) {
+  const event::FitEvent& event = whitened.event;
   EventScore s;
   s.record = event.record.name;
   s.seen = seen;
+  fit::require_same_noise(before, after);
   s.before = before.misfit();
   s.after = after.misfit();
   s.limit = misfit_limit(event, after, pre_event, least);
@@ -77,7 +79,7 @@ EventScore score_event(const event::FitEvent& event, const fit::EventFit& before
     const bool power = channel.channel == playin::Output::P || channel.channel == playin::Output::Q;
     channel.unit = !power ? "pu" : channel.channel == playin::Output::P ? "MW" : "Mvar";
     channel.scale = power ? event.record.base.mva : 1.0;
-    const double noise = event.noise[static_cast<Eigen::Index>(c)];
+    const double noise = whitened.noise.deviation[static_cast<Eigen::Index>(c)];
     channel.noise = channel.scale * noise;
     channel.rms_before = channel.scale * rms(event, before, c);
     channel.rms_after = channel.scale * rms(event, after, c);

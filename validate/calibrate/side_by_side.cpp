@@ -97,15 +97,15 @@ std::vector<EventScore> try_plant(const sim::plant::Plant& plant, const Calibrat
   in_parallel(
       c.prepared.size(),
       [&](std::size_t e) {
-        const fit::Fit own = fit::fit(plant, c.model.conventions, {c.prepared[e]}, {});
+        const fit::Fit own = fit::fit({plant, c.model.conventions}, c.prepared.alone(e), {});
         EventScore& to = events[e];
         if (!own.failed.empty()) {
           to.after = std::numeric_limits<double>::infinity();
           for (auto& ch : to.channels) ch.rms_after = ch.misfit_after = to.after;
           return;
         }
-        const EventScore score = score_event(c.prepared[e], own.events.front(), own.events.front(), to.seen,
-                                             pre_event_samples(c.prepared), 1.0);
+        const EventScore score = score_event(c.prepared.whitened(e), own.events.front(), own.events.front(),
+                                             to.seen, pre_event_samples(c.prepared), 1.0);
         to.after = score.after;
         for (std::size_t k = 0; k < score.channels.size(); ++k) {
           to.channels[k].rms_after = score.channels[k].rms_after;

@@ -102,8 +102,8 @@ void play(const plant::PlantModel& model, DriveBy drive, const playin::PlayInOpt
   const playin::VoltageCurve curve(e.record, e.switchings);
   e.switchings = curve.switchings();
   e.playback = drive == DriveBy::power
-                   ? playin::play_in_power(model.plant, model.conventions, e.record, e.switchings, options)
-                   : playin::play_in(model.plant, model.conventions, e.record, curve, options);
+                   ? playin::play_in_power(model.under_test(), e.record, e.switchings, options)
+                   : playin::play_in(model.under_test(), e.record, curve, options);
   measure_channels(model, drive, options, e);
 }
 

@@ -43,21 +43,21 @@ class Diagnoser {
 
   Diagnosis run() {
     const auto begin = std::chrono::steady_clock::now();
-    const std::vector<event::FitEvent> prepared = result_.events;
+    const event::WhitenedEvents prepared = result_.events;
     fit::FitOptions from;
     for (int round = 0;; ++round) {
       fit_base(from);
       const hypothesis::Stage stage = model_stage();
-      result_.ranked = hypothesis::try_hypotheses(
-          stage, hypothesis::all_hypotheses(stage.plant, stage.conventions), options_.progress);
+      result_.ranked = hypothesis::try_hypotheses(stage, hypothesis::all_hypotheses(stage.under_test()),
+                                                  options_.progress);
       if (round == kBases || !better_base(from)) break;
       result_.events = prepared;  // the noise was measured through the worse base
     }
     try_replacements();
     measure_noise_again();
-    passed_.emplace(result_.base.plant, model_.conventions, result_.events,
+    passed_.emplace(sim::plant::PlantUnderTest{result_.base.plant, model_.conventions}, result_.events,
                     fit::voltage_noise(result_.base, result_.events).variance);
-    held_out_base_ = hypothesis::hold_out(trial(), model_.plant, model_.conventions, {}, result_.base);
+    held_out_base_ = hypothesis::hold_out(trial(), model_.under_test(), {}, result_.base);
     infer_inputs();
     search();
     settle({model_, trial(), result_.base, held_out_base_, result_.torque, result_.field, threads_},
@@ -70,16 +70,20 @@ class Diagnoser {
   void fit_base(fit::FitOptions o) {
     report("base", 0, 1);
     const auto free = fit::free_parameters(model_.plant, options_.spread);
-    result_.base = fit::fit(model_.plant, model_.conventions, result_.events, free, o);
+    result_.base = fit::fit(model_.under_test(), result_.events, free, o);
     if (result_.base.failed.empty()) {
-      fit::measure_noise_through(result_.base, model_.conventions, result_.events);
+      result_.events =
+          result_.events.with(fit::measure_noise_through(result_.base, model_.conventions, result_.events));
       o = fit::continued({}, result_.base, free);
-      result_.base = fit::fit(model_.plant, model_.conventions, result_.events, free, o);
+      result_.base = fit::fit(model_.under_test(), result_.events, free, o);
     }
+    require_fitted_base();
+    report("base", 1, 1);
+  }
+  void require_fitted_base() const {
     if (!result_.base.failed.empty())
       throw InputError({"the model cannot be fitted", model_.origin, result_.base.failed,
                         "correct the model or leave the record out"});
-    report("base", 1, 1);
   }
   /// Whether the model alone fits much better from where its leading extensions ended. Then these were ways
   /// out of a poor minimum. `from` gets the better fit's values.
@@ -92,41 +96,42 @@ class Diagnoser {
     for (std::size_t k = 0; k < std::min<std::size_t>(kWaysOut, result_.ranked.size()); ++k)
       if (result_.ranked[k].fitted) hypothesis::try_from(model_stage(), result_.ranked[k].fit, base);
     from = fit::continued({}, base.fit, fit::free_parameters(model_.plant, options_.spread));
-    return fit::penalised(result_.base) - fit::penalised(base.fit) >
-           thresholds::evidence.escape * result_.ranked.front().gain;
+    return fit::gain(result_.base, base.fit) > thresholds::evidence.escape * result_.ranked.front().gain;
   }
   /// Where no addition leaves only noise, an effect that is there may be of another kind.
   void try_replacements() {
     const auto fits = [&](const fit::Fit& f) { return f.misfit() <= options_.adequate; };
     if (fits(result_.base) || (!result_.ranked.empty() && fits(result_.ranked.front().fit))) return;
     const hypothesis::Stage stage = model_stage();
-    auto others = hypothesis::try_hypotheses(
-        stage, hypothesis::all_replacements(stage.plant, stage.conventions), options_.progress);
+    auto others = hypothesis::try_hypotheses(stage, hypothesis::all_replacements(stage.under_test()),
+                                             options_.progress);
     std::ranges::move(others, std::back_inserter(result_.ranked));
     std::ranges::stable_sort(result_.ranked, std::greater<>(), &hypothesis::Judgement::gain);
   }
   /// A base that fits badly hides the noise. The noise is then measured through the leading extension, and
-  /// all fits go on with it.
+  /// all fits go on with it. A hypothesis that does not come along is dropped, because its cost is in units
+  /// of the former noise.
   void measure_noise_again() {
     if (result_.ranked.empty() || result_.base.misfit() < thresholds::noise.measurable) return;
     const hypothesis::Judgement& best = result_.ranked.front();
     if (!best.fitted || best.fit.misfit() >= thresholds::noise.measurable) return;
-    fit::measure_noise_through(best.fit, best.hypothesis.conventions, result_.events);
-    const auto go_on = [&](const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                           const std::vector<fit::FreeParameter>& free, fit::Fit& f) {
+    result_.events = result_.events.with(
+        fit::measure_noise_through(best.fit, best.hypothesis.conventions, result_.events));
+    const auto go_on = [&](const sim::plant::PlantUnderTest& tested,
+                           const std::vector<fit::FreeParameter>& free, const fit::Fit& f) {
       fit::FitOptions o = fit::continued({}, f, free);
       o.iterations = kOnwards;
-      if (fit::Fit next = fit::fit(plant, conventions, result_.events, free, o); next.failed.empty())
-        f = next;
+      return fit::fit(tested, result_.events, free, o);
     };
-    go_on(model_.plant, model_.conventions, fit::free_parameters(model_.plant, options_.spread),
-          result_.base);
+    result_.base =
+        go_on(model_.under_test(), fit::free_parameters(model_.plant, options_.spread), result_.base);
+    require_fitted_base();
     each(result_.ranked, "noise measured again", [&](hypothesis::Judgement& j) {
       if (!j.fitted) return;
-      go_on(j.hypothesis.plant, j.hypothesis.conventions, hypothesis::free_of(j.hypothesis, options_.spread),
-            j.fit);
-      j.gain = fit::criterion(result_.base) - fit::criterion(j.fit);
+      j.fit = go_on(j.hypothesis.under_test(), hypothesis::free_of(j.hypothesis, options_.spread), j.fit);
+      j.gain = fit::gain(result_.base, j.fit, fit::criterion);
     });
+    std::erase_if(result_.ranked, [](const hypothesis::Judgement& j) { return !j.fit.failed.empty(); });
     std::ranges::stable_sort(result_.ranked, std::greater<>(), &hypothesis::Judgement::gain);
   }
   void infer_inputs() {
@@ -135,8 +140,8 @@ class Diagnoser {
       from = fit::continued({}, result_.base, fit::free_parameters(model_.plant, options_.spread));
     const auto infer = [&](std::size_t i) {
       hypothesis::MissingInput& m = i == 0 ? result_.torque : result_.field;
-      m = hypothesis::infer_input(i == 0 ? fit::InputKind::torque : fit::InputKind::field, model_.plant,
-                                  model_.conventions, result_.events, options_.spread, from);
+      m = hypothesis::infer_input(i == 0 ? fit::InputKind::torque : fit::InputKind::field,
+                                  model_.under_test(), result_.events, options_.spread, from);
     };
     in_parallel(
         2, infer, [&](int done) { report("missing input", done, 2); }, threads_);
@@ -204,7 +209,7 @@ class Diagnoser {
     auto rivals = hypothesis::exchanges(stage, pair, result_.ranked);
     each(rivals, "in place of " + pair.hypothesis.with, [&](hypothesis::Judgement& j) {
       hypothesis::try_exchange(stage, pair, j);
-      j.gain = fit::criterion(result_.base) - fit::criterion(j.fit);
+      j.gain = fit::gain(result_.base, j.fit, fit::criterion);
     });
     std::erase_if(rivals, [](const hypothesis::Judgement& j) { return !j.fit.failed.empty(); });
     std::ranges::stable_sort(rivals, std::greater<>(), &hypothesis::Judgement::gain);
@@ -218,8 +223,8 @@ class Diagnoser {
   [[nodiscard]] std::vector<hypothesis::Judgement> beside(const hypothesis::Stage& stage,
                                                           const hypothesis::Judgement& first) const {
     const hypothesis::Stage then = hypothesis::after(stage, first);
-    auto pairs = hypothesis::try_hypotheses(then, hypothesis::all_hypotheses(then.plant, then.conventions),
-                                            options_.progress);
+    auto pairs =
+        hypothesis::try_hypotheses(then, hypothesis::all_hypotheses(then.under_test()), options_.progress);
     // a rival of the best hypothesis may only have started badly
     const int slot = pairs.empty() || pairs.front().gain < thresholds::evidence.second
                          ? -1
@@ -248,9 +253,9 @@ class Diagnoser {
     for (hypothesis::Judgement& single : result_.ranked) {
       const std::string& name = single.hypothesis.name;
       if (!single.fitted || (name != pair.hypothesis.name && name != pair.hypothesis.with)) continue;
-      const double before = fit::penalised(single.fit);
+      const fit::Fit before = single.fit;
       hypothesis::try_from(model_stage(), pair.fit, single);
-      if (!(fit::penalised(single.fit) < before - 1)) continue;
+      if (!(fit::gain(before, single.fit) > 1)) continue;
       single.accepted = false;
       single.why_not.clear();
       judge_all(single);
@@ -260,8 +265,9 @@ class Diagnoser {
   /// Whether a pair explains what no single effect explains. A rival that was not taken may fit as well.
   [[nodiscard]] bool needed(const hypothesis::Judgement& pair) const {
     return std::ranges::none_of(result_.ranked, [&](const hypothesis::Judgement& single) {
-      return single.accepted && (single.fit.chi2 - pair.fit.chi2 < thresholds::evidence.second ||
-                                 pair.gain - single.gain < thresholds::evidence.second);
+      return single.accepted &&
+             (fit::gain(single.fit, pair.fit, fit::data_cost) < thresholds::evidence.second ||
+              pair.gain - single.gain < thresholds::evidence.second);
     });
   }
   /// Judges the hypotheses that might still be as good as the best one, and puts accepted ones first. Where
@@ -299,7 +305,7 @@ class Diagnoser {
   void judge_all(hypothesis::Judgement& j) const {
     hypothesis::judge(trial(), result_.base, held_out_base_, j);
     for (const auto& [m, what] : {std::pair(&result_.torque, "torque"), {&result_.field, "field voltage"}})
-      if (j.accepted && m->explains(result_.base) > result_.base.chi2 - j.fit.chi2) {
+      if (j.accepted && m->explains(result_.base) > fit::gain(result_.base, j.fit, fit::data_cost)) {
         j.accepted = false;
         j.why_not = fmt::format("a {} free in time explains more", what);
       }
@@ -324,7 +330,7 @@ class Diagnoser {
         std::ranges::max_element(tried.begin(), rivals, {}, &hypothesis::Judgement::gain)->fit;
     each({tried.begin(), rivals}, "further starts", [&](hypothesis::Judgement& j) {
       hypothesis::try_further(stage, leader, j);
-      j.gain = fit::criterion(result_.base) - fit::criterion(j.fit);
+      j.gain = fit::gain(result_.base, j.fit, fit::criterion);
     });
     std::ranges::stable_sort(tried, std::greater<>(), &hypothesis::Judgement::gain);
   }

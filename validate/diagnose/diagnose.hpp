@@ -34,8 +34,8 @@ struct Diagnosis {
   hypothesis::MissingInput torque, field;
   laws::LawSearch laws;  ///< laws that were searched, where no known effect explains the records
   std::vector<hypothesis::Judgement> ranked;  ///< best first
-  std::vector<event::FitEvent> events;
-  sim::Conventions conventions;  ///< of the model
+  event::WhitenedEvents events;               ///< with the noise in which all fits are measured
+  sim::Conventions conventions;               ///< of the model
   double seconds = 0;
 };
 

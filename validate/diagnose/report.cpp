@@ -190,8 +190,9 @@ ReportFigures report_figures(const Diagnosis& d) {
     r.event = &d.events[e];
     r.windows = compare::event_windows(r.event->record, r.event->switchings,
                                        event::FitEventOptions{}.pre_event, r.event->smeared);
-    Doubts doubts{fit::voltage_doubt(d.base.plant, d.conventions, *r.event), {}};
-    if (figures.after) doubts.after = fit::voltage_doubt(figures.after->plant, d.conventions, *r.event);
+    Doubts doubts{fit::voltage_doubt({d.base.plant, d.conventions}, d.events.whitened(e)), {}};
+    if (figures.after)
+      doubts.after = fit::voltage_doubt({figures.after->plant, d.conventions}, d.events.whitened(e));
     for (std::size_t c = 0; c < r.event->channels.size(); ++c)
       r.channels.push_back(channel_of(d, figures.after, e, c, r.windows, doubts));
     r.before = std::sqrt(d.base.events[e].misfit());

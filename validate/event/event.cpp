@@ -164,11 +164,10 @@ std::vector<char> left_out(const FitEvent& e) {
 }
 
 /// Residual before the event, [channel][sample], with each channel's mean taken off.
-Eigen::MatrixXd quiet_residual(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                               const FitEvent& e) {
+Eigen::MatrixXd quiet_residual(const sim::plant::PlantUnderTest& tested, const FitEvent& e) {
   const Playing how{
       .tolerance = 1e-8, .hasty = false, .until = e.record.t[static_cast<std::size_t>(e.start.samples - 1)]};
-  const playin::Response r = play(plant, conventions, e, {}, {}, how);
+  const playin::Response r = play(tested, e, {}, {}, how);
   Eigen::MatrixXd residual(e.channels.size(), e.start.samples);
   for (std::size_t c = 0; c < e.channels.size(); ++c)
     for (int k = 0; k < e.start.samples; ++k)
@@ -176,6 +175,31 @@ Eigen::MatrixXd quiet_residual(const sim::plant::Plant& plant, const sim::Conven
                                                   e.measured(e.channels[c])[static_cast<std::size_t>(k)];
   residual.colwise() -= residual.rowwise().mean().eval();
   return residual;
+}
+
+/// Noise of each event by the pre-event residuals of all events that have the same channels.
+template <class Events>
+NoiseModel noise_through(const sim::plant::PlantUnderTest& tested, const Events& events) {
+  std::vector<EventNoise> noise;
+  for (const FitEvent& e : events) {
+    const auto n = static_cast<Eigen::Index>(e.channels.size());
+    Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(n, n);
+    int freedom = 0;
+    for (const FitEvent& other : events) {
+      if (other.channels != e.channels) continue;
+      const Eigen::MatrixXd residual = quiet_residual(tested, other);
+      scatter += residual * residual.transpose();
+      freedom += other.start.samples - 1;
+    }
+    Eigen::MatrixXd covariance = scatter / freedom;
+    for (Eigen::Index c = 0; c < n; ++c) {
+      const bool speed = e.channels[static_cast<std::size_t>(c)] == playin::Output::speed;
+      covariance(c, c) += std::pow(speed ? kLeastSpeedNoise : kLeastNoise, 2);
+    }
+    noise.push_back({.deviation = covariance.diagonal().cwiseSqrt(),
+                     .whitening = covariance.llt().matrixL().solve(Eigen::MatrixXd::Identity(n, n))});
+  }
+  return NoiseModel(std::move(noise));
 }
 
 }  // namespace
@@ -223,42 +247,8 @@ std::vector<playin::Switching> find_switchings(const record::Record& record, dou
   return found;
 }
 
-const std::vector<double>& FitEvent::measured(playin::Output o) const {
-  switch (o) {
-    case playin::Output::P:
-      return record.P;
-    case playin::Output::Q:
-      return record.Q;
-    case playin::Output::speed:
-      return record.speed;
-    case playin::Output::Efd:
-      return record.Efd;
-    case playin::Output::Ifd:
-      break;
-  }
-  return record.Ifd;
-}
-
-Eigen::VectorXd FitEvent::collected(const std::vector<double>* values, bool less_measured) const {
-  Eigen::VectorXd all(this->values());
-  Eigen::Index row = 0;
-  for (std::size_t k = 0; k < record.t.size(); ++k) {
-    if (!compared(k)) continue;
-    for (const playin::Output o : channels)
-      all[row++] = values[static_cast<int>(o)][k] - (less_measured ? measured(o)[k] : 0.0);
-  }
-  return all;
-}
-
-void FitEvent::whiten(RowMatrix& e) const {
-  if (memory) return memory->whiten(e);
-  const Eigen::Index n = whitening.rows();
-  for (Eigen::Index row = 0; row < e.rows(); row += n)
-    e.middleRows(row, n) = (whitening.triangularView<Eigen::Lower>() * e.middleRows(row, n)).eval();
-}
-
-std::vector<FitEvent> prepare_events(const plant::PlantModel& model, std::vector<record::Record> records,
-                                     const FitEventOptions& options) {
+WhitenedEvents prepare_events(const plant::PlantModel& model, std::vector<record::Record> records,
+                              const FitEventOptions& options) {
   std::vector<FitEvent> events;
   const Jumps jumps =
       options.jumps == Jumps::either ? jumps_of(records, options.jump_threshold) : options.jumps;
@@ -266,30 +256,12 @@ std::vector<FitEvent> prepare_events(const plant::PlantModel& model, std::vector
   if (jumps == Jumps::spread) drop_swings(events);
   unsmear(events);
   for (FitEvent& e : events) e.left_out = left_out(e);
-  measure_noise(model.plant, model.conventions, events);
-  return events;
+  NoiseModel noise = noise_through(model.under_test(), events);
+  return {std::move(events), std::move(noise)};
 }
 
-void measure_noise(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                   std::vector<FitEvent>& events) {
-  for (FitEvent& e : events) {
-    const auto n = static_cast<Eigen::Index>(e.channels.size());
-    Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(n, n);
-    int freedom = 0;
-    for (const FitEvent& other : events) {
-      if (other.channels != e.channels) continue;
-      const Eigen::MatrixXd residual = quiet_residual(plant, conventions, other);
-      scatter += residual * residual.transpose();
-      freedom += other.start.samples - 1;
-    }
-    Eigen::MatrixXd covariance = scatter / freedom;
-    for (Eigen::Index c = 0; c < n; ++c) {
-      const bool speed = e.channels[static_cast<std::size_t>(c)] == playin::Output::speed;
-      covariance(c, c) += std::pow(speed ? kLeastSpeedNoise : kLeastNoise, 2);
-    }
-    e.noise = covariance.diagonal().cwiseSqrt();
-    e.whitening = covariance.llt().matrixL().solve(Eigen::MatrixXd::Identity(n, n));
-  }
+NoiseModel measure_noise(const sim::plant::PlantUnderTest& tested, const WhitenedEvents& events) {
+  return noise_through(tested, events);
 }
 
 }  // namespace swingbank::validate::event

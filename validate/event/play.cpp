@@ -17,12 +17,11 @@ playin::OperatingPoint start_at(const FitEvent& event, const EventState& state) 
   return start;
 }
 
-playin::Response play(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                      const FitEvent& event, const EventState& state,
-                      std::span<const playin::Direction> along, const Playing& how) {
+playin::Response play(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
+                      const EventState& state, std::span<const playin::Direction> along, const Playing& how) {
   const playin::VoltageCurve curve(event.played(), switchings_at(event, state));
-  playin::Drive run{.plant = &plant,
-                    .conventions = conventions,
+  playin::Drive run{.plant = &tested.plant,
+                    .conventions = tested.conventions,
                     .record = &event.record,
                     .curve = &curve,
                     .start = start_at(event, state),

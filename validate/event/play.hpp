@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "sim/plant/under_test.hpp"
 #include "validate/event/event.hpp"
 
 namespace swingbank::validate::event {
@@ -35,8 +36,8 @@ std::vector<playin::Switching> switchings_at(const FitEvent& event, const EventS
 playin::OperatingPoint start_at(const FitEvent& event, const EventState& state);
 /// What the plant answers as its instruments show it, and slopes along the directions. Throws InputError as
 /// playin::observe.
-playin::Response play(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                      const FitEvent& event, const EventState& state,
-                      std::span<const playin::Direction> along = {}, const Playing& how = {});
+playin::Response play(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
+                      const EventState& state, std::span<const playin::Direction> along = {},
+                      const Playing& how = {});
 
 }  // namespace swingbank::validate::event

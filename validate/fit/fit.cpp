@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "base/constants.hpp"
 #include "validate/fit/detail/cost.hpp"
@@ -52,6 +53,7 @@ class Search {
 
   Fit run() {
     Fit fit;
+    fit.noise = setting_.events->noise_model();
     double cost = 0;
     if (!problem_->Evaluate({}, &cost, nullptr, nullptr, nullptr)) {
       fit.failed = reason();
@@ -185,7 +187,7 @@ class Search {
       EventFit f;
       f.state = costs_[e]->at(states_[e].data());
       const playin::Response r = costs_[e]->answer(fit.plant, f.state);
-      compare(event, r, f);
+      compare(*setting_.events, e, r, f);
       fit.chi2 += f.chi2;
       fit.values += f.values;
       fit.fitted += static_cast<int>(event.switchings.size()) + kStates;
@@ -274,17 +276,42 @@ class Search {
   std::unique_ptr<ceres::Problem> problem_;
 };
 
+void require_same(const event::NoiseModel& a, const event::NoiseModel& b) {
+  if (a != b)
+    throw std::logic_error(
+        "two fits are compared that were made with different noise, so that their costs are "
+        "in different units: fit both again with the noise that was measured last");
+}
+
 }  // namespace
 
 double penalised(const Fit& f) {
   return f.failed.empty() ? f.chi2 + f.belief : std::numeric_limits<double>::infinity();
 }
 double criterion(const Fit& f) { return penalised(f) + f.occam; }
+double data_cost(const Fit& f) { return f.failed.empty() ? f.chi2 : std::numeric_limits<double>::infinity(); }
 
-void compare(const event::FitEvent& event, const playin::Response& answer, EventFit& f) {
+double gain(const Fit& from, const Fit& to, double (*cost)(const Fit&)) {
+  if (from.failed.empty() && to.failed.empty()) require_same(from.noise, to.noise);
+  return cost(from) - cost(to);
+}
+double gain(const EventFit& from, const EventFit& to) {
+  require_same_noise(from, to);
+  return from.chi2 - to.chi2;
+}
+void require_same_noise(const EventFit& a, const EventFit& b) { require_same(a.noise, b.noise); }
+bool better(const Fit& a, const Fit& b) { return gain(b, a) > 0; }
+void require_noise_of(const event::WhitenedEvents& events, const Fit& fit) {
+  if (fit.failed.empty()) require_same(fit.noise, events.noise_model());
+}
+
+void compare(const event::WhitenedEvents& events, std::size_t which, const playin::Response& answer,
+             EventFit& f) {
+  const event::FitEvent& event = events[which];
   for (const playin::Output o : event.channels) f.model.push_back(answer.of(o));
   event::RowMatrix e = event.collected(answer.value, true);
-  event.whiten(e);
+  events.noise(which).whiten(e);
+  f.noise = events.noise_model();
   f.values = event.values();
   f.chi2 = e.squaredNorm();
   f.residual.assign(event.channels.size(), std::vector<double>(event.record.t.size(), 0.0));
@@ -301,14 +328,13 @@ FitOptions continued(FitOptions o, const Fit& f, const std::vector<FreeParameter
   return o;
 }
 
-Fit fit(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-        const std::vector<event::FitEvent>& events, const std::vector<FreeParameter>& free,
-        const FitOptions& options) {
-  Setting setting{&plant, &conventions, &events, {}, options.tolerance, options.input, {}};
+Fit fit(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+        const std::vector<FreeParameter>& free, const FitOptions& options) {
+  Setting setting{&tested.plant, &tested.conventions, &events, {}, options.tolerance, options.input, {}};
   setting.knots.resize(events.size());
   if (options.input != InputKind::none)
     for (std::size_t e = 0; e < events.size(); ++e) setting.knots[e] = options.start[e].input.t;
-  for (const auto& f : free) setting.axes.push_back(make_axis(plant, f));
+  for (const auto& f : free) setting.axes.push_back(make_axis(tested.plant, f));
   return Search(setting, options).run();
 }
 

@@ -44,7 +44,8 @@ struct EventFit {
   int values = 0;                          ///< how many
   std::vector<std::vector<double>> model;  ///< [channel][sample]
   std::vector<std::vector<double>>
-      residual;  ///< model - measured, whitened: [channel][sample]; 0 where not compared
+      residual;             ///< model - measured, whitened: [channel][sample]; 0 where not compared
+  event::NoiseModel noise;  ///< what chi2 and residual are measured in
   /// chi2 per value: 1 where nothing but noise is left.
   [[nodiscard]] double misfit() const { return chi2 / values; }
 };
@@ -65,6 +66,7 @@ struct Fit {
   sim::plant::Plant plant;  ///< with the fitted values
   std::vector<FittedParameter> parameters;
   std::vector<EventFit> events;
+  event::NoiseModel noise;      ///< what chi2 is measured in
   double chi2 = 0, belief = 0;  ///< chi2 of the data, and the cost of the beliefs
   int values = 0, fitted = 0;   ///< numbers compared; free numbers, those of the events included
   /// Log determinant of what records and beliefs know of the parameters, in units of what the beliefs knew. A
@@ -81,6 +83,22 @@ double penalised(const Fit& f);
 /// -2 log of the structure's evidence by Laplace's approximation (MacKay, Neural Computation 4, 1992, p.
 /// 415), up to what all structures share. Needs a fit with errors.
 double criterion(const Fit& f);
+/// chi2 of the data alone; infinite if the fit failed.
+double data_cost(const Fit& f);
+
+/// By how much a cost falls from one fit to another; negative if it rises. Every comparison of two fits goes
+/// through here. Throws std::logic_error where they were made with different noise, because their costs are
+/// then in different units. A fit that failed costs infinitely much in any unit.
+double gain(const Fit& from, const Fit& to, double (*cost)(const Fit&) = penalised);
+/// The same for chi2 of one event.
+double gain(const EventFit& from, const EventFit& to);
+/// Whether the first fit costs less than the second.
+bool better(const Fit& a, const Fit& b);
+/// Throws std::logic_error where gain() would, for fits that are set beside each other.
+void require_same_noise(const EventFit& a, const EventFit& b);
+/// Throws std::logic_error where `fit` was not made with the noise of `events`, so that what an answer leaves
+/// of them cannot be held against it.
+void require_noise_of(const event::WhitenedEvents& events, const Fit& fit);
 
 constexpr double kFitTolerance = event::Playing{}.tolerance;  ///< of the integration
 
@@ -98,16 +116,16 @@ struct FitOptions {
 /// Options to go on where `f` ended; beliefs stay about the plant that is fitted.
 FitOptions continued(FitOptions o, const Fit& f, const std::vector<FreeParameter>& free);
 
-/// Fills in everything but the state: what `answer` leaves of the event.
-void compare(const event::FitEvent& event, const playin::Response& answer, EventFit& fit);
+/// Fills in everything but the state: what `answer` leaves of that event.
+void compare(const event::WhitenedEvents& events, std::size_t event, const playin::Response& answer,
+             EventFit& fit);
 
 /// Fits `free` parameters of the plant and every event's own state. A start that cannot be evaluated gives
 /// `failed`; parameters that cannot be are never reached, the search turns back. While the structure is wrong
 /// the misfit is large, and beliefs would count for nothing: parameters would be bent out of all reason to
 /// mimic what is missing. So beliefs weigh as if the noise were as large as the misfit reached, and give way
 /// as it falls.
-Fit fit(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-        const std::vector<event::FitEvent>& events, const std::vector<FreeParameter>& free,
-        const FitOptions& options = {});
+Fit fit(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+        const std::vector<FreeParameter>& free, const FitOptions& options = {});
 
 }  // namespace swingbank::validate::fit

@@ -85,7 +85,7 @@ std::vector<double> detrended(const std::vector<double>& x, int count) {
 
 /// Variances of the white noise that would have the density that V (relative) and theta [rad] show in the
 /// band before the events.
-Eigen::Vector2d moving_in_band(const std::vector<event::FitEvent>& events) {
+Eigen::Vector2d moving_in_band(const event::WhitenedEvents& events) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   int lines = 0;
   for (const event::FitEvent& e : events) {
@@ -108,13 +108,13 @@ Eigen::Vector2d moving_in_band(const std::vector<event::FitEvent>& events) {
 /// How much of the answer's own movement before the events is found in the residual: 1 if the voltage moves
 /// only by noise of its instrument, 0 if the plant answers all of the movement. Returns the larger value
 /// where that cannot be told.
-double instrument_share(const Fit& fit, const std::vector<event::FitEvent>& events) {
+double instrument_share(const Fit& fit, const event::WhitenedEvents& events) {
   double cross = 0, own = 0;
   for (std::size_t i = 0; i < events.size(); ++i) {
     const event::FitEvent& e = events[i];
     const int n = e.start.samples;
     for (std::size_t c = 0; c < e.channels.size(); ++c) {
-      const double noise = e.noise[static_cast<Eigen::Index>(c)];
+      const double noise = events.noise(i).deviation[static_cast<Eigen::Index>(c)];
       const auto answer = detrended(fit.events[i].model[c], n),
                  measured = detrended(e.measured(e.channels[c]), n);
       for (std::size_t k = 0; k < answer.size(); ++k) {
@@ -127,19 +127,20 @@ double instrument_share(const Fit& fit, const std::vector<event::FitEvent>& even
 }
 
 /// Whether the slow part of any channel's noise has a variance worth speaking of by the record's end.
-bool matters(const event::SlowNoise& s, const event::FitEvent& e) {
+bool matters(const event::SlowNoise& s, const event::WhitenedEvent& e) {
   Eigen::MatrixXd P = s.P;
-  for (int k = 0; k < e.record.samples(); ++k) P = (s.A * P * s.A.transpose() + s.Q).eval();
-  const Eigen::MatrixXd slow = e.whitening * s.C * P * s.C.transpose() * e.whitening.transpose();
+  for (int k = 0; k < e.event.record.samples(); ++k) P = (s.A * P * s.A.transpose() + s.Q).eval();
+  const Eigen::MatrixXd slow = e.noise.whitening * s.C * P * s.C.transpose() * e.noise.whitening.transpose();
   return slow.diagonal().maxCoeff() > kMatters;
 }
 
 }  // namespace
 
-void sharpen_noise(const Fit& fit, std::vector<event::FitEvent>& events) {
-  std::vector<event::FitEvent> sharper = events;
+event::NoiseModel sharpen_noise(const Fit& fit, const event::WhitenedEvents& events) {
+  std::vector<event::EventNoise> sharper;
   for (std::size_t i = 0; i < events.size(); ++i) {
-    Eigen::VectorXd scale(events[i].noise.size());
+    const event::EventNoise& noise = events.noise(i);
+    Eigen::VectorXd scale(noise.deviation.size());
     for (std::size_t c = 0; c < events[i].channels.size(); ++c) {
       Channel channel;
       for (std::size_t e = 0; e < events.size(); ++e)
@@ -147,14 +148,16 @@ void sharpen_noise(const Fit& fit, std::vector<event::FitEvent>& events) {
       scale[static_cast<Eigen::Index>(c)] =
           channel.samples > 0 && channel.differences > 0 ? std::sqrt(ratio(std::move(channel))) : 1.0;
     }
-    sharper[i].noise = events[i].noise.cwiseProduct(scale);
-    sharper[i].whitening = events[i].whitening * scale.cwiseInverse().asDiagonal();
+    sharper.push_back({noise.deviation.cwiseProduct(scale),
+                       noise.whitening * scale.cwiseInverse().asDiagonal(), noise.memory});
   }
-  events = std::move(sharper);
+  return event::NoiseModel(std::move(sharper));
 }
 
-event::SlowNoise slow_noise(const playin::LinearPlant& plant, const event::FitEvent& e,
+event::SlowNoise slow_noise(const playin::LinearPlant& plant, event::WhitenedEvent whitened,
                             const Eigen::Vector2d& variance) {
+  const event::FitEvent& e = whitened.event;
+  const event::EventNoise& noise = whitened.noise;
   const Eigen::Index n = plant.A.rows(), m = n + 2, count = static_cast<Eigen::Index>(e.channels.size());
   Eigen::MatrixXd C(count, n), D(count, 2);
   for (Eigen::Index c = 0; c < count; ++c) {
@@ -196,8 +199,9 @@ event::SlowNoise slow_noise(const playin::LinearPlant& plant, const event::FitEv
   s.M.topRows(n) = in * V * through.transpose();
   // the measured noise already holds what the voltage's noise does at once, and the rest cannot be less than
   // nothing
-  const Eigen::MatrixXd scale = e.noise.asDiagonal(), unit = e.noise.cwiseInverse().asDiagonal();
-  const Eigen::MatrixXd white = unit * e.whitening.inverse();
+  const Eigen::MatrixXd scale = noise.deviation.asDiagonal(),
+                        unit = noise.deviation.cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd white = unit * noise.whitening.inverse();
   const Eigen::MatrixXd at_once = unit * through * V * through.transpose() * unit;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> rest(white * white.transpose() - at_once);
   const Eigen::VectorXd left = rest.eigenvalues().cwiseMax(kLeastOwnNoise);
@@ -226,37 +230,47 @@ event::FitEvent minute_of_noise(const event::FitEvent& like, const Eigen::Vector
   return event;
 }
 
-std::shared_ptr<const event::Innovations> memory_of(const sim::plant::Plant& plant,
-                                                    const sim::Conventions& conventions,
-                                                    const event::FitEvent& e,
+std::shared_ptr<const event::Innovations> memory_of(const sim::plant::PlantUnderTest& tested,
+                                                    event::WhitenedEvent whitened,
                                                     const Eigen::Vector2d& variance) {
+  const event::FitEvent& e = whitened.event;
   const playin::VoltageCurve curve(e.played(), e.switchings);
-  const playin::Drive at{
-      .plant = &plant, .conventions = conventions, .record = &e.record, .curve = &curve, .start = e.start};
-  const event::SlowNoise noise = slow_noise(playin::linearise(at), e, variance);
-  if (!matters(noise, e)) return nullptr;
+  const playin::Drive at{.plant = &tested.plant,
+                         .conventions = tested.conventions,
+                         .record = &e.record,
+                         .curve = &curve,
+                         .start = e.start};
+  const event::SlowNoise noise = slow_noise(playin::linearise(at), whitened, variance);
+  if (!matters(noise, whitened)) return nullptr;
   return std::make_shared<event::Innovations>(noise, e.record.samples(), e.left_out);
 }
 
-VoltageNoise voltage_noise(const Fit& fit, const std::vector<event::FitEvent>& events) {
+VoltageNoise voltage_noise(const Fit& fit, const event::WhitenedEvents& events) {
   const double share = instrument_share(fit, events);
   return {share, share * moving_in_band(events)};
 }
 
-void remember_noise(const Fit& fit, const sim::Conventions& conventions,
-                    std::vector<event::FitEvent>& events) {
+event::NoiseModel remember_noise(const Fit& fit, const sim::Conventions& conventions,
+                                 const event::WhitenedEvents& events) {
   const Eigen::Vector2d variance = voltage_noise(fit, events).variance;
-  for (event::FitEvent& e : events) e.memory = memory_of(fit.plant, conventions, e, variance);
+  std::vector<event::EventNoise> noise;
+  for (std::size_t e = 0; e < events.size(); ++e) {
+    noise.push_back(events.noise(e));
+    noise.back().memory = memory_of({fit.plant, conventions}, events.whitened(e), variance);
+  }
+  return event::NoiseModel(std::move(noise));
 }
 
-void measure_noise_through(const Fit& fit, const sim::Conventions& conventions,
-                           std::vector<event::FitEvent>& events) {
-  if (fit.misfit() < thresholds::noise.measurable) event::measure_noise(fit.plant, conventions, events);
-  sharpen_noise(fit, events);
-  remember_noise(fit, conventions, events);
+event::NoiseModel measure_noise_through(const Fit& fit, const sim::Conventions& conventions,
+                                        const event::WhitenedEvents& events) {
+  event::WhitenedEvents measured = events;
+  if (fit.misfit() < thresholds::noise.measurable)
+    measured = measured.with(event::measure_noise({fit.plant, conventions}, measured));
+  measured = measured.with(sharpen_noise(fit, measured));
+  return remember_noise(fit, conventions, measured);
 }
 
-double slow_remainder(const Fit& fit, const std::vector<event::FitEvent>& events) {
+double slow_remainder(const Fit& fit, const event::WhitenedEvents& events) {
   double worst = 0;
   for (const double seconds : {0.5, 1.0, 2.0})
     for (std::size_t c = 0; c < events.front().channels.size(); ++c) {

@@ -5,22 +5,21 @@
 
 namespace swingbank::validate::fit {
 
-/// Scales every channel's noise to what the residual of `fit` shows from sample to sample. The measure is the
-/// median of the squared second differences, which neither a slow misfit nor the moments around a switching
-/// move. It supposes white noise, so the noise stays that of the pre-event stretch where the residual before
-/// the events is not white.
-void sharpen_noise(const Fit& fit, std::vector<event::FitEvent>& events);
+/// The events' noise with every channel's scaled to what the residual of `fit` shows from sample to sample.
+/// The measure is the median of the squared second differences, which neither a slow misfit nor the moments
+/// around a switching move. It supposes white noise, so the noise stays that of the pre-event stretch where
+/// the residual before the events is not white.
+event::NoiseModel sharpen_noise(const Fit& fit, const event::WhitenedEvents& events);
 
 /// Noise of the played-in voltage, of these variances [V/V, rad], as the plant answers it. The states are the
 /// plant's, less what the latest sample did to them, and the mean error of V and theta over the pre-event
 /// window, from which everything is counted. `event` gives the whitening, the channels and the start.
-event::SlowNoise slow_noise(const playin::LinearPlant& plant, const event::FitEvent& event,
+event::SlowNoise slow_noise(const playin::LinearPlant& plant, event::WhitenedEvent event,
                             const Eigen::Vector2d& variance);
 
 /// The memory of an event's noise by slow_noise() about its start; none where slow noise hardly matters.
-std::shared_ptr<const event::Innovations> memory_of(const sim::plant::Plant& plant,
-                                                    const sim::Conventions& conventions,
-                                                    const event::FitEvent& event,
+std::shared_ptr<const event::Innovations> memory_of(const sim::plant::PlantUnderTest& tested,
+                                                    event::WhitenedEvent event,
                                                     const Eigen::Vector2d& variance);
 
 /// Noise of the played-in voltage, measured by what moves before the events.
@@ -33,25 +32,25 @@ struct VoltageNoise {
   /// rad]. Below this band the grid itself moves, and above it instruments filter.
   Eigen::Vector2d variance = Eigen::Vector2d::Zero();
 };
-VoltageNoise voltage_noise(const Fit& fit, const std::vector<event::FitEvent>& events);
+VoltageNoise voltage_noise(const Fit& fit, const event::WhitenedEvents& events);
 
 /// A minute at the operating point of `like`, with V and theta moved by that many standard deviations of
 /// noise. Answers are compared with zero.
 event::FitEvent minute_of_noise(const event::FitEvent& like, const Eigen::Vector2d& deviation);
 
 /// Noise of the played-in voltage passes exciter and rotor, and what comes out is slow. This follows it
-/// through the plant's equations about each event's start, and gives the events' noise that memory where it
-/// matters.
-void remember_noise(const Fit& fit, const sim::Conventions& conventions,
-                    std::vector<event::FitEvent>& events);
+/// through the plant's equations about each event's start, and returns the events' noise with that memory
+/// where it matters.
+event::NoiseModel remember_noise(const Fit& fit, const sim::Conventions& conventions,
+                                 const event::WhitenedEvents& events);
 
 /// Measures the events' noise anew through a fit of whatever structure: its variance where the fit is close,
-/// its size from sample to sample, and its memory.
-void measure_noise_through(const Fit& fit, const sim::Conventions& conventions,
-                           std::vector<event::FitEvent>& events);
+/// its size from sample to sample, and its memory. Costs measured in it cannot be held against earlier ones.
+event::NoiseModel measure_noise_through(const Fit& fit, const sim::Conventions& conventions,
+                                        const event::WhitenedEvents& events);
 
 /// How far the power of slow means of the residual (over 0.5, 1 and 2 s) lies above that of white noise, in
 /// standard deviations, for the channel and length where it is largest.
-double slow_remainder(const Fit& fit, const std::vector<event::FitEvent>& events);
+double slow_remainder(const Fit& fit, const event::WhitenedEvents& events);
 
 }  // namespace swingbank::validate::fit

@@ -10,20 +10,21 @@ class PassedNoise {
  public:
   /// Takes the structure that others are held against. Noise of these variances [V/V, rad] is played in for a
   /// minute at the first event's operating point, and whitened as the residual of this structure is.
-  PassedNoise(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-              const std::vector<event::FitEvent>& events, const Eigen::Vector2d& variance);
+  PassedNoise(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+              const Eigen::Vector2d& variance);
   /// By how much chi2 of all events falls with another structure because it passes less noise. Negative if it
   /// passes more, 0 where it cannot be run.
-  [[nodiscard]] double less_with(const sim::plant::Plant& plant, const sim::Conventions& conventions) const;
+  [[nodiscard]] double less_with(const sim::plant::PlantUnderTest& tested) const;
   /// Chi2 of all events that the structure's own passed noise makes.
   [[nodiscard]] double own() const { return own_; }
 
  private:
   /// Chi2 that a plant's passed noise makes; NaN where it cannot be run.
-  [[nodiscard]] double passed(const sim::plant::Plant& plant, const sim::Conventions& conventions) const;
+  [[nodiscard]] double passed(const sim::plant::PlantUnderTest& tested) const;
 
   event::FitEvent quiet_, noisy_;
-  double times_ = 0;  ///< values of the events per value of the minute
+  event::EventNoise noise_;  ///< of both
+  double times_ = 0;         ///< values of the events per value of the minute
   double own_ = 0;
 };
 

@@ -35,14 +35,15 @@ Slopes slopes_of(const Setting& setting, std::size_t event, const std::vector<do
 
 }  // namespace
 
-ScoreTest::ScoreTest(const std::vector<event::FitEvent>& events, const sim::plant::Plant& plant,
-                     const sim::Conventions& conventions, const Fit& fit)
+ScoreTest::ScoreTest(const event::WhitenedEvents& events, const sim::plant::PlantUnderTest& tested,
+                     const Fit& fit)
     : events_(events), fit_(fit) {
-  Setting setting{&plant, &conventions, &events, {}, kFitTolerance, InputKind::none, {}};
+  require_noise_of(events, fit);
+  Setting setting{&tested.plant, &tested.conventions, &events, {}, kFitTolerance, InputKind::none, {}};
   setting.knots.resize(events.size());
   std::vector<double> at, belief;  // where the fit ended, and what was believed there
   for (const auto& p : fit.parameters) {
-    setting.axes.push_back(make_axis(plant, p.where));
+    setting.axes.push_back(make_axis(tested.plant, p.where));
     at.push_back(setting.axes.back().z(p.value));
     belief.push_back(p.where.spread > 0 ? 1 / (p.where.spread * p.where.spread) : 0.0);
   }
@@ -75,21 +76,20 @@ ScoreTest::ScoreTest(const std::vector<event::FitEvent>& events, const sim::plan
   gradient_ = slopes_.transpose() * residual_ + weight.cwiseProduct(where);
 }
 
-std::optional<Eigen::MatrixXd> ScoreTest::run(const sim::plant::Plant& plant,
-                                              const sim::Conventions& conventions,
+std::optional<Eigen::MatrixXd> ScoreTest::run(const sim::plant::PlantUnderTest& tested,
                                               const std::vector<playin::Direction>& along) const {
-  if (!playin::can_run(plant)) return std::nullopt;
+  if (!playin::can_run(tested.plant)) return std::nullopt;
   Eigen::MatrixXd all(residual_.size(), 1 + static_cast<Eigen::Index>(along.size()));
   Eigen::Index row = 0;
   try {
     for (std::size_t e = 0; e < events_.size(); ++e) {
       const event::FitEvent& event = events_[e];
-      const playin::Response r = event::play(plant, conventions, event, fit_.events[e].state, along);
+      const playin::Response r = event::play(tested, event, fit_.events[e].state, along);
       event::RowMatrix some(event.values(), all.cols());
       some.col(0) = event.collected(r.value, true);
       for (std::size_t d = 0; d < along.size(); ++d)
         some.col(1 + static_cast<Eigen::Index>(d)) = event.collected(r.slopes[d].value, false);
-      event.whiten(some);
+      events_.noise(e).whiten(some);
       all.middleRows(row, some.rows()) = some;
       row += some.rows();
     }
@@ -112,20 +112,18 @@ ScoreTest::Change ScoreTest::less_shared(Eigen::VectorXd answer) const {
   return change;
 }
 
-std::optional<ScoreTest::Change> ScoreTest::change_to(const sim::plant::Plant& plant,
-                                                      const sim::Conventions& conventions) const {
-  const auto all = run(plant, conventions, {});
+std::optional<ScoreTest::Change> ScoreTest::change_to(const sim::plant::PlantUnderTest& tested) const {
+  const auto all = run(tested, {});
   if (!all) return std::nullopt;
   Change change = less_shared(all->col(0) - residual_);
   if (change.square < thresholds::search.other_steps) change.square = 0;
   return change;
 }
 
-std::vector<ScoreTest::Change> ScoreTest::slopes(const sim::plant::Plant& plant,
-                                                 const sim::Conventions& conventions,
+std::vector<ScoreTest::Change> ScoreTest::slopes(const sim::plant::PlantUnderTest& tested,
                                                  const std::vector<playin::Direction>& along) const {
   std::vector<Change> changes;
-  if (const auto all = run(plant, conventions, along))
+  if (const auto all = run(tested, along))
     for (Eigen::Index d = 1; d < all->cols(); ++d) changes.push_back(less_shared(all->col(d)));
   return changes;
 }

@@ -12,9 +12,9 @@ namespace swingbank::validate::fit {
 
 class ScoreTest {
  public:
-  /// `fit` is that of `plant`, at its minimum. The constructor takes one look at all slopes.
-  ScoreTest(const std::vector<event::FitEvent>& events, const sim::plant::Plant& plant,
-            const sim::Conventions& conventions, const Fit& fit);
+  /// `fit` is that of `plant`, at its minimum and made with the noise of `events`. The constructor takes one
+  /// look at all slopes.
+  ScoreTest(const event::WhitenedEvents& events, const sim::plant::PlantUnderTest& tested, const Fit& fit);
 
   /// A change of the whitened answer, one event after the other, and the part of it that the structure could
   /// make itself.
@@ -31,11 +31,9 @@ class ScoreTest {
     [[nodiscard]] double share() const { return square > 0 ? -along / square : 0.0; }
   };
   /// The change from the structure's answer to that of another plant; none if that plant cannot be run.
-  [[nodiscard]] std::optional<Change> change_to(const sim::plant::Plant& plant,
-                                                const sim::Conventions& conventions) const;
+  [[nodiscard]] std::optional<Change> change_to(const sim::plant::PlantUnderTest& tested) const;
   /// Slopes of another plant's answer, which should be near the structure's. Empty if it cannot be run.
-  [[nodiscard]] std::vector<Change> slopes(const sim::plant::Plant& plant,
-                                           const sim::Conventions& conventions,
+  [[nodiscard]] std::vector<Change> slopes(const sim::plant::PlantUnderTest& tested,
                                            const std::vector<playin::Direction>& along) const;
   /// By how much chi2 would fall by the best combination of these changes, less what noise alone would give
   /// it, which is 1 for each direction. Directions in which the changes hardly differ are left out.
@@ -43,12 +41,11 @@ class ScoreTest {
 
  private:
   /// Answers (less the measured ones) and slopes of a run, whitened: [value][0: answer, then slopes].
-  [[nodiscard]] std::optional<Eigen::MatrixXd> run(const sim::plant::Plant& plant,
-                                                   const sim::Conventions& conventions,
+  [[nodiscard]] std::optional<Eigen::MatrixXd> run(const sim::plant::PlantUnderTest& tested,
                                                    const std::vector<playin::Direction>& along) const;
   [[nodiscard]] Change less_shared(Eigen::VectorXd answer) const;
 
-  const std::vector<event::FitEvent>& events_;
+  const event::WhitenedEvents& events_;
   const Fit& fit_;
   Eigen::VectorXd residual_;            ///< whitened
   Eigen::MatrixXd slopes_;              ///< [value][parameter, then each event's own]

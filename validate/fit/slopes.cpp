@@ -24,10 +24,10 @@ std::vector<playin::Direction> state_directions(const event::FitEvent& event) {
 }
 
 /// [compared sample * channels + channel], whitened.
-Eigen::VectorXd whitened(const event::FitEvent& event, const std::vector<double>* values,
+Eigen::VectorXd whitened(const event::WhitenedEvent& e, const std::vector<double>* values,
                          bool less_measured) {
-  event::RowMatrix all = event.collected(values, less_measured);
-  event.whiten(all);
+  event::RowMatrix all = e.event.collected(values, less_measured);
+  e.noise.whiten(all);
   return all;
 }
 
@@ -40,23 +40,23 @@ double axis_unit(const sim::plant::Plant& plant, const FreeParameter& f) {
   return (f.spread > 0 ? f.spread : 1.0) * size;
 }
 
-EventSlopes event_slopes(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                         const event::FitEvent& event, const EventState& state,
-                         const std::vector<FreeParameter>& free) {
+EventSlopes event_slopes(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent e,
+                         const EventState& state, const std::vector<FreeParameter>& free) {
+  const event::FitEvent& event = e.event;
   std::vector<playin::Direction> along;
-  for (const auto& f : free) along.push_back({Kind::parameter, f.block, f.index, axis_unit(plant, f)});
+  for (const auto& f : free) along.push_back({Kind::parameter, f.block, f.index, axis_unit(tested.plant, f)});
   std::ranges::move(state_directions(event), std::back_inserter(along));
-  const playin::Response r = event::play(plant, conventions, event, state, along, kExact);
+  const playin::Response r = event::play(tested, event, state, along, kExact);
 
   EventSlopes back;
   back.channels = static_cast<int>(event.channels.size());
-  back.residual = whitened(event, r.value, true);
+  back.residual = whitened(e, r.value, true);
   const auto parameters = static_cast<Eigen::Index>(free.size());
   const auto states = static_cast<Eigen::Index>(along.size()) - parameters;
   back.slopes.resize(event.values(), parameters);
   Eigen::MatrixXd own(event.values(), states);
   for (Eigen::Index d = 0; d < parameters + states; ++d) {
-    const Eigen::VectorXd column = whitened(event, r.slopes[static_cast<std::size_t>(d)].value, false);
+    const Eigen::VectorXd column = whitened(e, r.slopes[static_cast<std::size_t>(d)].value, false);
     (d < parameters ? back.slopes.col(d) : own.col(d - parameters)) = column;
   }
   // the states, with their beliefs of one unit each, absorb what the projection takes out

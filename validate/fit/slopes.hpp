@@ -21,9 +21,8 @@ struct EventSlopes {
 
 /// The event's own state (instants, operating point, start) is projected out of both. Throws InputError where
 /// the plant cannot be driven.
-EventSlopes event_slopes(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                         const event::FitEvent& event, const EventState& state,
-                         const std::vector<FreeParameter>& free);
+EventSlopes event_slopes(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent event,
+                         const EventState& state, const std::vector<FreeParameter>& free);
 
 /// J'J of one event: information on the parameters, in units of what their spreads believe.
 Eigen::MatrixXd information(const EventSlopes& e);

@@ -13,7 +13,6 @@ struct VoltageDoubt {
   using Shape = std::vector<std::vector<double>>;  ///< [channel][sample]
   std::vector<Shape> shapes;
 };
-VoltageDoubt voltage_doubt(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                           const event::FitEvent& event);
+VoltageDoubt voltage_doubt(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent event);
 
 }  // namespace swingbank::validate::fit

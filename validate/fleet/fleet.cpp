@@ -12,7 +12,7 @@
 
 #include "base/config.hpp"
 #include "base/write_file.hpp"
-#include "validate/check/check.hpp"
+#include "validate/check/record_set.hpp"
 #include "validate/diagnose/report.hpp"
 #include "validate/record/formats.hpp"
 
@@ -74,30 +74,17 @@ struct Loaded {
 Loaded load(const Fleet& fleet, const FleetPlant& plant) {
   Loaded l;
   Problems problems;
-  const auto attempt = [&](const auto& action) {
-    try {
-      action();
-    } catch (const InputError& error) {
-      for (const auto& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
-    }
-  };
-  attempt([&] { l.model = plant::load_plant_model(plant.model); });
+  try {
+    l.model = plant::load_plant_model(plant.model);
+  } catch (const InputError& error) {
+    for (const auto& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
+  }
   for (const auto& text : plant.records)
     for (auto& file : matching(text, fleet.folder, problems)) l.files.push_back(std::move(file));
-  for (const auto& file : l.files)
-    attempt([&] {
-      record::Record record = record::read_record(file, l.model.record_base);
-      if (std::ranges::find(l.records, record.name, &record::Record::name) != l.records.end())
-        problems.add("two records named " + record.name, file, "they could not be told apart",
-                     "rename one of them");
-      if (l.model.plant.machine.effect == nullptr) return;  // the model has its own problems
-      const auto findings = check::check_record(record, check::plant_facts(l.model));
-      for (const auto& f : findings)
-        if (f.severity == check::Severity::warn) l.notes.push_back(f.problem.sentence());
-      check::raise_refusals(findings);
-      l.records.push_back(std::move(record));
-    });
+  auto [records, warnings] = check::read_records(l.files, l.model, problems);
   problems.raise();
+  l.records = std::move(records);
+  for (const auto& some : warnings) std::ranges::copy(some, std::back_inserter(l.notes));
   return l;
 }
 
@@ -144,8 +131,7 @@ FleetRow row_of(const diagnose::Diagnosis& d) {
   if (!best.accepted) return row;
   row.evidence = best.gain;
   const int tried = static_cast<int>(d.ranked.size());
-  row.chance =
-      chance_of(fit::penalised(d.base) - fit::penalised(best.fit), best.fit.fitted - d.base.fitted, tried);
+  row.chance = chance_of(fit::gain(d.base, best.fit), best.fit.fitted - d.base.fitted, tried);
   double before = 0, after = 0;
   for (const auto& h : best.held_out) {
     before += h.before / static_cast<double>(best.held_out.size());

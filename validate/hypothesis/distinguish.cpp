@@ -19,7 +19,7 @@ constexpr double kSure = 10;
 constexpr double kLasting = 0.02;
 
 playin::Response response_of(const Judgement& j, const event::FitEvent& e, const fit::EventState& state) {
-  return event::play(j.fit.plant, j.hypothesis.conventions, e, state);
+  return event::play({j.fit.plant, j.hypothesis.conventions}, e, state);
 }
 
 double norm_of_difference(const std::vector<double>& x, const std::vector<double>& y, double noise) {
@@ -29,7 +29,7 @@ double norm_of_difference(const std::vector<double>& x, const std::vector<double
 }
 
 /// Whether the frequency at the terminal stays off after some event.
-bool frequency_stays_off(const std::vector<event::FitEvent>& events) {
+bool frequency_stays_off(const event::WhitenedEvents& events) {
   return std::ranges::any_of(events, [](const event::FitEvent& e) {
     const auto& r = e.record;
     const std::size_t last = r.t.size() - 1, from = last - std::min(last, r.t.size() / 5);
@@ -40,8 +40,7 @@ bool frequency_stays_off(const std::vector<event::FitEvent>& events) {
 
 }  // namespace
 
-std::string what_would_decide(const Judgement& x, const Judgement& y,
-                              const std::vector<event::FitEvent>& events) {
+std::string what_would_decide(const Judgement& x, const Judgement& y, const event::WhitenedEvents& events) {
   double differs[playin::kOutputs] = {};
   for (std::size_t e = 0; e < events.size(); ++e) {
     const playin::Response a = response_of(x, events[e], x.fit.events[e].state);

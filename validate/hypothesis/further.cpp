@@ -45,13 +45,13 @@ std::vector<double> by_name(const Hypothesis& h, std::vector<double> values,
 
 }  // namespace
 
-double left_by(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-               const std::vector<event::FitEvent>& events, const std::vector<fit::EventState>& states) {
+double left_by(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+               const std::vector<fit::EventState>& states) {
   double chi2 = 0;
   try {
     for (std::size_t e = 0; e < events.size(); ++e) {
       fit::EventFit f;
-      fit::compare(events[e], event::play(plant, conventions, events[e], states[e]), f);
+      fit::compare(events, e, event::play(tested, events[e], states[e]), f);
       chi2 += f.chi2;
     }
   } catch (const InputError&) {
@@ -79,7 +79,7 @@ void try_further(const Stage& stage, const fit::Fit& leader, Judgement& j) {
   starts.push_back(by_name(h, starts.back(), leader.plant));
   std::vector<std::pair<double, const std::vector<double>*>> order;
   for (const auto& start : starts)
-    if (const double left = left_by(started(led, start), h.conventions, stage.events, states);
+    if (const double left = left_by({started(led, start), h.conventions}, stage.events, states);
         std::isfinite(left))
       order.emplace_back(left, &start);
   std::ranges::sort(order);
@@ -90,25 +90,23 @@ void try_further(const Stage& stage, const fit::Fit& leader, Judgement& j) {
     o.start = states;
     o.iterations = kOwnSteps;
     o.values = *order[k].second;
-    const fit::Fit own = fit::fit(led.plant, h.conventions, stage.events, h.free, o);
+    const fit::Fit own = fit::fit({led.plant, h.conventions}, stage.events, h.free, o);
     if (!own.failed.empty()) continue;
     o = fit::continued(o, own, free);
     o.errors = true;
     o.iterations = kAllSteps;
-    if (fit::Fit f = fit::fit(h.plant, h.conventions, stage.events, free, o);
-        f.failed.empty() && penalised(f) < fit::penalised(j.fit))
+    if (fit::Fit f = fit::fit(h.under_test(), stage.events, free, o);
+        f.failed.empty() && fit::better(f, j.fit))
       j.fit = std::move(f);
   }
 }
 
 void try_exchange(const Stage& stage, const Judgement& pair, Judgement& j) {
   const auto free = free_of(j.hypothesis, stage.spread);
-  if (fit::Fit f = fit::fit(j.hypothesis.plant, j.hypothesis.conventions, stage.events, free,
-                            fit::continued({}, j.fit, free));
+  if (fit::Fit f = fit::fit(j.hypothesis.under_test(), stage.events, free, fit::continued({}, j.fit, free));
       f.failed.empty())
     j.fit = std::move(f);
-  if (fit::penalised(j.fit) > penalised(pair.fit) + thresholds::search.exchange_behind)
-    try_further(stage, pair.fit, j);
+  if (fit::gain(j.fit, pair.fit) > thresholds::search.exchange_behind) try_further(stage, pair.fit, j);
 }
 
 void try_from(const Stage& stage, const fit::Fit& other, Judgement& j) {
@@ -121,8 +119,7 @@ void try_from(const Stage& stage, const fit::Fit& other, Judgement& j) {
                                   : fit::parameter_value(j.fit.plant, f.block, f.index));
   }
   for (const auto& e : other.events) o.start.push_back(e.state);
-  if (fit::Fit f = fit::fit(h.plant, h.conventions, stage.events, free, o);
-      f.failed.empty() && penalised(f) < fit::penalised(j.fit))
+  if (fit::Fit f = fit::fit(h.under_test(), stage.events, free, o); f.failed.empty() && fit::better(f, j.fit))
     j.fit = std::move(f);
 }
 
@@ -144,7 +141,7 @@ void bring(const Stage& stage, Hypothesis& h) {
 
 std::vector<Judgement> exchanges(const Stage& stage, const Judgement& pair,
                                  const std::vector<Judgement>& alone) {
-  const auto all = all_hypotheses(stage.plant, stage.conventions);
+  const auto all = all_hypotheses(stage.under_test());
   const auto first = std::ranges::find(all, pair.hypothesis.with, &Hypothesis::name),
              second = std::ranges::find(all, pair.hypothesis.name, &Hypothesis::name);
   if (first == all.end() || second == all.end()) return {};  // one effect needs the other to be there
@@ -154,7 +151,7 @@ std::vector<Judgement> exchanges(const Stage& stage, const Judgement& pair,
   copy_values(pair.fit.plant, second->plant, second->free, stays.fit.plant);
   const Stage then = after(stage, stays);
   std::vector<Judgement> rivals;
-  for (Hypothesis& h : all_hypotheses(then.plant, then.conventions)) {
+  for (Hypothesis& h : all_hypotheses(then.under_test())) {
     const auto known = std::ranges::find(alone, h.name, [](const Judgement& j) { return j.hypothesis.name; });
     const bool in_slot = first->slot >= 0 && h.slot == first->slot;
     const bool holds = known != alone.end() && known->accepted && known->hypothesis.with.empty();

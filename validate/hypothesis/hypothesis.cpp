@@ -124,15 +124,14 @@ void start_near_neutral(Hypothesis& h, int block) {
 }
 
 /// The effect in a slot that has room for it.
-Hypothesis added_to(const sim::plant::Plant& base, const sim::Conventions& conventions,
-                    const sim::Effect& effect) {
+Hypothesis added_to(const sim::plant::PlantUnderTest& tested, const sim::Effect& effect) {
   Hypothesis h;
   h.name = effect.name;
   h.what = fmt::format("{} {} ({})", sim::slot_name(effect.slot), effect.name, effect.title);
   h.side = side_of(effect.slot);
   if (!sim::is_shared(effect.slot)) h.slot = static_cast<int>(effect.slot);
-  h.plant = base;
-  h.conventions = conventions;
+  h.plant = tested.plant;
+  h.conventions = tested.conventions;
   const int block = insert(h.plant, {&effect, effect.standard_parameters()});
   if (effect.slot == Slot::measurement) {
     start_near_neutral(h, block);
@@ -145,14 +144,13 @@ Hypothesis added_to(const sim::plant::Plant& base, const sim::Conventions& conve
   return h;
 }
 
-void add_effects(const sim::plant::Plant& base, const sim::Conventions& conventions,
-                 std::vector<Hypothesis>& all) {
+void add_effects(const sim::plant::PlantUnderTest& tested, std::vector<Hypothesis>& all) {
   for (const sim::Effect* effect : sim::library::every_effect()) {
     const bool instrument = effect->slot == Slot::measurement;
     const bool fits = effect->slot == Slot::transformer || sim::is_control(effect->slot) || instrument;
-    if (!fits || effect->instants || occupied(base, *effect)) continue;
+    if (!fits || effect->instants || occupied(tested.plant, *effect)) continue;
     if (instrument && !playin::can_be_taken_back(*effect)) continue;
-    all.push_back(added_to(base, conventions, *effect));
+    all.push_back(added_to(tested, *effect));
   }
 }
 
@@ -162,11 +160,10 @@ std::string_view stem(std::string_view name) {
   return name;
 }
 
-void add_neutral_groups(const sim::plant::Plant& base, const sim::Conventions& conventions,
-                        std::vector<Hypothesis>& all) {
-  const auto blocks = sim::plant::block_parameters(base);
+void add_neutral_groups(const sim::plant::PlantUnderTest& tested, std::vector<Hypothesis>& all) {
+  const auto blocks = sim::plant::block_parameters(tested.plant);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
-    const sim::Effect& effect = fit::block_effect(base, static_cast<int>(b));
+    const sim::Effect& effect = fit::block_effect(tested.plant, static_cast<int>(b));
     std::vector<std::vector<int>> groups;
     for (std::size_t i = 0; i < blocks[b].size(); ++i) {
       const auto& p = effect.parameters[i];
@@ -191,8 +188,8 @@ void add_neutral_groups(const sim::plant::Plant& base, const sim::Conventions& c
       h.name = fmt::format("{}:{}", effect.name, names);
       h.what = fmt::format("{} of {} ({})", names, effect.name, meanings);
       h.side = side_of(effect.slot);
-      h.plant = base;
-      h.conventions = conventions;
+      h.plant = tested.plant;
+      h.conventions = tested.conventions;
       for (const double share : {0.02, 0.1, 0.3, -0.02, -0.1}) {
         std::vector<double> values;
         sim::plant::Block moved{&effect, blocks[b]};
@@ -218,15 +215,14 @@ void add_neutral_groups(const sim::plant::Plant& base, const sim::Conventions& c
   }
 }
 
-void add_conventions(const sim::plant::Plant& base, const sim::Conventions& conventions,
-                     std::vector<Hypothesis>& all) {
+void add_conventions(const sim::plant::PlantUnderTest& tested, std::vector<Hypothesis>& all) {
   Hypothesis h;
   h.name = "speed-voltage";
   h.what = "speed in the stator voltage (E'' = (1 + w) psi'')";
   h.side = Side::machine;
-  h.plant = base;
-  h.conventions = conventions;
-  h.conventions.speed_voltage = !conventions.speed_voltage;
+  h.plant = tested.plant;
+  h.conventions = tested.conventions;
+  h.conventions.speed_voltage = !tested.conventions.speed_voltage;
   h.starts = {{}};
   all.push_back(std::move(h));
 }
@@ -239,24 +235,24 @@ std::string_view side_name(Side side) {
   return names[static_cast<std::size_t>(side)];
 }
 
-std::vector<Hypothesis> all_hypotheses(const sim::plant::Plant& base, const sim::Conventions& conventions) {
+std::vector<Hypothesis> all_hypotheses(const sim::plant::PlantUnderTest& tested) {
   std::vector<Hypothesis> all;
-  add_effects(base, conventions, all);
-  add_neutral_groups(base, conventions, all);
-  add_conventions(base, conventions, all);
+  add_effects(tested, all);
+  add_neutral_groups(tested, all);
+  add_conventions(tested, all);
   return all;
 }
 
-std::vector<Hypothesis> all_replacements(const sim::plant::Plant& base, const sim::Conventions& conventions) {
+std::vector<Hypothesis> all_replacements(const sim::plant::PlantUnderTest& tested) {
   std::vector<Hypothesis> all;
-  for (std::size_t c = 0; c < base.controls.size(); ++c) {
-    const sim::Effect& there = *base.controls[c].effect;
+  for (std::size_t c = 0; c < tested.plant.controls.size(); ++c) {
+    const sim::Effect& there = *tested.plant.controls[c].effect;
     if (sim::is_shared(there.slot)) continue;
-    sim::plant::Plant room = base;
+    sim::plant::Plant room = tested.plant;
     room.controls.erase(room.controls.begin() + static_cast<std::ptrdiff_t>(c));
     for (const sim::Effect* effect : sim::library::every_effect()) {
       if (effect->slot != there.slot || effect == &there || effect->instants) continue;
-      Hypothesis h = added_to(room, conventions, *effect);
+      Hypothesis h = added_to({room, tested.conventions}, *effect);
       h.name += fmt::format(" in place of {}", there.name);
       h.what += fmt::format(" in place of {}", there.name);
       h.replaces = true;

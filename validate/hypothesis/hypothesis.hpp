@@ -24,14 +24,15 @@ struct Hypothesis {
   std::vector<fit::FreeParameter> free;     ///< parameters that the hypothesis brings
   std::vector<std::vector<double>> starts;  ///< values of `free`, tried in turn
   bool drawn = false;                       ///< whether the starts after the first are draws about it
+  [[nodiscard]] sim::plant::PlantUnderTest under_test() const { return {plant, conventions}; }
 };
 
 /// Everything that may be added to the plant. Some of it may change nothing there (a stabiliser without an
 /// exciter), which only trying shows. Effects that act at given instants belong to one event and are not
 /// among them.
-std::vector<Hypothesis> all_hypotheses(const sim::plant::Plant& base, const sim::Conventions& conventions);
+std::vector<Hypothesis> all_hypotheses(const sim::plant::PlantUnderTest& tested);
 /// Every control of the plant that has its slot to itself, replaced by every other effect of that slot.
-std::vector<Hypothesis> all_replacements(const sim::plant::Plant& base, const sim::Conventions& conventions);
+std::vector<Hypothesis> all_replacements(const sim::plant::PlantUnderTest& tested);
 /// More draws of the hypothesis's first `own` free parameters than the starts it came with. Their longest
 /// time is about `within` [s] at most.
 std::vector<std::vector<double>> further_draws(const Hypothesis& h, std::size_t own, std::size_t count,

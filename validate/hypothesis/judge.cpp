@@ -18,33 +18,28 @@ std::vector<fit::FreeParameter> free_of(const Hypothesis& h, double spread) {
   return free;
 }
 
-std::vector<HeldOut> hold_out(const Trial& trial, const sim::plant::Plant& plant,
-                              const sim::Conventions& conventions,
+std::vector<HeldOut> hold_out(const Trial& trial, const sim::plant::PlantUnderTest& tested,
                               const std::vector<fit::FreeParameter>& free, const fit::Fit& whole) {
   std::vector<HeldOut> out(trial.events.size());
   for (std::size_t left = 0; left < trial.events.size(); ++left) {
-    std::vector<event::FitEvent> others;
+    const event::WhitenedEvents others = trial.events.without(left);
     fit::FitOptions o;
     o.iterations = 6;
     o.errors = false;
     for (std::size_t e = 0; e < trial.events.size(); ++e)
-      if (e != left) {
-        others.push_back(trial.events[e]);
-        o.start.push_back(whole.events[e].state);
-      }
+      if (e != left) o.start.push_back(whole.events[e].state);
     out[left].record = trial.events[left].record.name;
     out[left].values = trial.events[left].values();
     if (others.empty()) continue;
-    const auto& all = free.empty() ? fit::free_parameters(plant, trial.spread) : free;
+    const auto& all = free.empty() ? fit::free_parameters(tested.plant, trial.spread) : free;
     o.values = fit::values_of(whole.plant, all);
-    const fit::Fit seen = fit::fit(plant, conventions, others, all, o);
+    const fit::Fit seen = fit::fit(tested, others, all, o);
     fit::FitOptions unseen;
-    const fit::Fit f =
-        fit::fit(seen.failed.empty() ? seen.plant : plant, conventions, {trial.events[left]}, {}, unseen);
+    const fit::Fit f = fit::fit({seen.failed.empty() ? seen.plant : tested.plant, tested.conventions},
+                                trial.events.alone(left), {}, unseen);
     out[left].after = f.failed.empty() ? f.misfit() : 1e300;
-    out[left].cost_after = seen.failed.empty()
-                               ? (fit::penalised(whole) - fit::penalised(seen)) / whole.events[left].values
-                               : std::numeric_limits<double>::infinity();
+    out[left].cost_after = seen.failed.empty() ? fit::gain(whole, seen) / whole.events[left].values
+                                               : std::numeric_limits<double>::infinity();
   }
   return out;
 }
@@ -68,17 +63,17 @@ void judge(const Trial& trial, const fit::Fit& base, const std::vector<HeldOut>&
   fit::FitOptions o;
   o.values = fit::values_of(j.fit.plant, free);
   for (const auto& e : j.fit.events) o.start.push_back(e.state);
-  if (fit::Fit f = fit::fit(j.hypothesis.plant, j.hypothesis.conventions, trial.events, free, o);
-      f.failed.empty() && penalised(f) < fit::penalised(j.fit) + thresholds::evidence.same_fit)
+  if (fit::Fit f = fit::fit(j.hypothesis.under_test(), trial.events, free, o);
+      f.failed.empty() && fit::gain(j.fit, f) > -thresholds::evidence.same_fit)
     j.fit = std::move(f);
-  j.gain = fit::criterion(base) - fit::criterion(j.fit);
-  if (trial.passed) j.gain -= std::max(0.0, trial.passed->less_with(j.fit.plant, j.hypothesis.conventions));
-  j.size = std::sqrt(std::max(0.0, base.chi2 - j.fit.chi2));
+  j.gain = fit::gain(base, j.fit, fit::criterion);
+  if (trial.passed) j.gain -= std::max(0.0, trial.passed->less_with({j.fit.plant, j.hypothesis.conventions}));
+  j.size = std::sqrt(std::max(0.0, fit::gain(base, j.fit, fit::data_cost)));
   if (j.gain < trial.evidence) {
     j.why_not = fmt::format("evidence {:.0f}, below {:.0f}", j.gain, trial.evidence);
     return;
   }
-  j.held_out = hold_out(trial, j.hypothesis.plant, j.hypothesis.conventions, free, j.fit);
+  j.held_out = hold_out(trial, j.hypothesis.under_test(), free, j.fit);
   for (std::size_t e = 0; e < j.held_out.size(); ++e) {
     j.held_out[e].before = held_out_base[e].after;
     j.held_out[e].cost_before = held_out_base[e].cost_after;

@@ -39,7 +39,7 @@ std::vector<fit::FreeParameter> free_of(const Hypothesis& h, double spread);
 
 /// Events to judge on, and what is known of them without any hypothesis.
 struct Trial {
-  const std::vector<event::FitEvent>& events;
+  const event::WhitenedEvents& events;
   double spread;                                    ///< believed of the model's parameters
   double adequate;                                  ///< chi2 per value up to which nothing but noise is left
   double evidence = thresholds::evidence.accepted;  ///< from which a hypothesis is accepted
@@ -50,8 +50,7 @@ struct Trial {
 
 /// Predicts each event by the structure fitted to the other events. Empty `free` means the plant's own
 /// parameters.
-std::vector<HeldOut> hold_out(const Trial& trial, const sim::plant::Plant& plant,
-                              const sim::Conventions& conventions,
+std::vector<HeldOut> hold_out(const Trial& trial, const sim::plant::PlantUnderTest& tested,
                               const std::vector<fit::FreeParameter>& free, const fit::Fit& whole);
 /// Says which left-out event speaks against an effect of this evidence, and how. Empty if none does.
 /// `adequate` is that of Trial.

@@ -30,12 +30,11 @@ std::vector<double> knots_of(const event::FitEvent& event) {
 double MissingInput::explains(const fit::Fit& without) const {
   std::size_t knots = 0;
   for (const auto& e : fit.events) knots += e.state.input.t.size();
-  return without.chi2 - fit.chi2 - thresholds::adequacy.knot * static_cast<double>(knots);
+  return fit::gain(without, fit, fit::data_cost) - thresholds::adequacy.knot * static_cast<double>(knots);
 }
 
-MissingInput infer_input(fit::InputKind kind, const sim::plant::Plant& plant,
-                         const sim::Conventions& conventions, const std::vector<event::FitEvent>& events,
-                         double spread, const fit::FitOptions& start) {
+MissingInput infer_input(fit::InputKind kind, const sim::plant::PlantUnderTest& tested,
+                         const event::WhitenedEvents& events, double spread, const fit::FitOptions& start) {
   MissingInput found{kind, {}};
   fit::FitOptions options = start;
   options.input = kind;
@@ -52,7 +51,7 @@ MissingInput infer_input(fit::InputKind kind, const sim::plant::Plant& plant,
     options.start[e].input.t = knots_of(events[e]);
     options.start[e].input.value.assign(options.start[e].input.t.size(), 0.0);
   }
-  found.fit = fit::fit(plant, conventions, events, fit::free_parameters(plant, spread), options);
+  found.fit = fit::fit(tested, events, fit::free_parameters(tested.plant, spread), options);
   return found;
 }
 

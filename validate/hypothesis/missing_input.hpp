@@ -20,8 +20,7 @@ struct MissingInput {
 };
 
 /// Infers the input while the plant's parameters are free within `spread`.
-MissingInput infer_input(fit::InputKind kind, const sim::plant::Plant& plant,
-                         const sim::Conventions& conventions, const std::vector<event::FitEvent>& events,
-                         double spread, const fit::FitOptions& start);
+MissingInput infer_input(fit::InputKind kind, const sim::plant::PlantUnderTest& tested,
+                         const event::WhitenedEvents& events, double spread, const fit::FitOptions& start);
 
 }  // namespace swingbank::validate::hypothesis

@@ -24,6 +24,7 @@ class BlindScan {
  public:
   BlindScan(const Stage& stage, const Hypothesis& h, const fit::Fit& from)
       : stage_(stage), h_(h), from_(from) {
+    fit::require_noise_of(stage.events, from);
     for (const auto& e : from.events) states_.push_back(e.state);
     std::vector<char> seen;
     try {
@@ -41,14 +42,15 @@ class BlindScan {
     for (const auto& group : groups())
       for (const double multiple : kMultiples) {
         sim::plant::Plant plant = multiplied(group, multiple);
-        if (const double left = left_by(plant, h_.conventions, stage_.events, states_); std::isfinite(left))
+        if (const double left = left_by({plant, h_.conventions}, stage_.events, states_); std::isfinite(left))
           starts.emplace_back(left, std::move(plant));
       }
     std::ranges::sort(starts, {}, &std::pair<double, sim::plant::Plant>::first);
     std::vector<fit::Fit> tried;
     for (const auto& start : std::span(starts).first(std::min(kScanFitted, starts.size())))
       if (fit::Fit f = beside(start.second); f.failed.empty()) tried.push_back(std::move(f));
-    std::ranges::sort(tried, {}, &fit::Fit::chi2);
+    std::ranges::sort(
+        tried, [](const fit::Fit& a, const fit::Fit& b) { return fit::gain(b, a, fit::data_cost) > 0; });
     if (tried.size() > kBest) tried.resize(kBest);
     return tried;
   }
@@ -64,7 +66,7 @@ class BlindScan {
     std::vector<char> seen(along.size(), 0);
     for (std::size_t e = 0; e < stage_.events.size(); ++e) {
       const event::FitEvent& event = stage_.events[e];
-      const playin::Response r = event::play(from_.plant, h_.conventions, event, states_[e], along);
+      const playin::Response r = event::play({from_.plant, h_.conventions}, event, states_[e], along);
       for (std::size_t d = 0; d < along.size(); ++d)
         if (event.collected(r.slopes[d].value, false).squaredNorm() > 0) seen[d] = 1;
     }
@@ -82,7 +84,7 @@ class BlindScan {
   /// Whether neither a smaller nor a larger value changes anything.
   [[nodiscard]] bool idle(const fit::FreeParameter& f) const {
     return std::ranges::all_of(std::array{kScanLess, kScanMore}, [&](double by) {
-      const double left = left_by(multiplied({f}, by), h_.conventions, stage_.events, states_);
+      const double left = left_by({multiplied({f}, by), h_.conventions}, stage_.events, states_);
       return std::abs(left - from_.chi2) < thresholds::search.without_slope;
     });
   }
@@ -104,7 +106,7 @@ class BlindScan {
     o.errors = false;
     o.iterations = kScanOwnSteps;
     o.start = states_;
-    return fit::fit(plant, h_.conventions, stage_.events, seen_, o);
+    return fit::fit({plant, h_.conventions}, stage_.events, seen_, o);
   }
 
   const Stage& stage_;
@@ -125,11 +127,10 @@ fit::Fit past_blind(const Stage& stage, const Hypothesis& h, const sim::plant::P
       fit::FitOptions o = fit::continued({}, start, free);
       o.errors = false;
       o.iterations = kScanAllSteps;
-      if (fit::Fit f = fit::fit(believed, h.conventions, stage.events, free, o);
-          fit::penalised(f) < fit::penalised(best))
+      if (fit::Fit f = fit::fit({believed, h.conventions}, stage.events, free, o); fit::better(f, best))
         best = std::move(f);
     }
-    const bool worth = fit::penalised(best) < fit::penalised(from) - thresholds::search.worth_a_round;
+    const bool worth = fit::gain(from, best) > thresholds::search.worth_a_round;
     from = std::move(best);
     if (!worth) break;
   }

@@ -83,7 +83,8 @@ class Searcher {
     return candidates;
   }
   fit::Fit attempt(const Candidate& c, const sim::plant::Plant& start, const fit::FitOptions& o) const {
-    return fit::fit(start, c.hypothesis.conventions, stage_.events, free_of(c.hypothesis, stage_.spread), o);
+    return fit::fit({start, c.hypothesis.conventions}, stage_.events, free_of(c.hypothesis, stage_.spread),
+                    o);
   }
   /// Fits the first `tries` starts, the standard values and then the draws, leaving out those that `fits`
   /// holds already.
@@ -97,7 +98,7 @@ class Searcher {
   /// What the best of the fits gains over the stage; minus infinity if there is none.
   double gain_of(const std::vector<fit::Fit>& fits) const {
     double gain = -std::numeric_limits<double>::infinity();
-    for (const fit::Fit& f : fits) gain = std::max(gain, fit::penalised(stage_.fit) - fit::penalised(f));
+    for (const fit::Fit& f : fits) gain = std::max(gain, fit::gain(stage_.fit, f));
     return gain;
   }
   /// Marks the hypotheses whose first steps gain a fair share of what the best one's do, and the rivals of
@@ -127,14 +128,12 @@ class Searcher {
     std::vector<fit::Fit> fits;
     std::size_t best = 0;
     for (std::size_t k = 1; k < begun.size(); ++k)
-      if (begun[k].failed.empty() && (best == 0 || fit::penalised(begun[k]) < fit::penalised(begun[best])))
-        best = k;
+      if (begun[k].failed.empty() && (best == 0 || fit::better(begun[k], begun[best]))) best = k;
     for (const std::size_t k : {std::size_t{0}, best})
       if (begun[k].failed.empty() && (k > 0 || fits.empty()))
         fits.push_back(attempt(c, c.starts[k], fit::continued(o, begun[k], free)));
     std::erase_if(fits, [](const fit::Fit& f) { return !f.failed.empty(); });
-    const bool worse = fits.empty() || fit::penalised(*std::ranges::min_element(fits, {}, fit::penalised)) >
-                                           penalised(stage_.fit);
+    const bool worse = fits.empty() || fit::better(stage_.fit, *std::ranges::min_element(fits, fit::better));
     if (!c.nested.empty() && (worse || stage_.fit.misfit() < thresholds::search.nested)) {
       o.iterations = kNestedSteps;
       o.values = std::ranges::min_element(c.nested)->second;
@@ -169,10 +168,10 @@ class Searcher {
   }
   Judgement near_onward(const Candidate& c, std::vector<fit::Fit> fits) const {
     if (fits.empty()) return judgement(c, fits);
-    fit::Fit best = in_rounds(c, *std::ranges::min_element(fits, {}, fit::penalised));
+    fit::Fit best = in_rounds(c, *std::ranges::min_element(fits, fit::better));
     if (!c.unbent.empty())
       if (fit::Fit f = from_stage(c, c.unbent, kUnbentSteps);
-          fit::penalised(f) < fit::penalised(best) + thresholds::evidence.within_reach)
+          fit::gain(best, f) > -thresholds::evidence.within_reach)
         fits.push_back(in_rounds(c, std::move(f)));
     fits.push_back(std::move(best));
     return judgement(c, scanned(c, std::move(fits)));
@@ -181,7 +180,7 @@ class Searcher {
   std::vector<fit::Fit> scanned(const Candidate& c, std::vector<fit::Fit> fits) const {
     if (fits.empty()) return fits;
     return {past_blind(stage_, c.hypothesis, c.starts.front(),
-                       std::move(*std::ranges::min_element(fits, {}, fit::penalised)))};
+                       std::move(*std::ranges::min_element(fits, fit::better)))};
   }
   /// Fits on in rounds, as long as that is worth it.
   fit::Fit in_rounds(const Candidate& c, fit::Fit best) const {
@@ -191,10 +190,9 @@ class Searcher {
     const auto free = free_of(c.hypothesis, stage_.spread);
     for (int round = 0; round < kRounds; ++round) {
       const fit::Fit from = std::exchange(best, attempt(c, c.starts.front(), fit::continued(o, best, free)));
-      const double left = fit::penalised(best) - fit::penalised(stage_.fit);
-      const bool gets_there =
-          left < thresholds::search.coming * (fit::penalised(from) - fit::penalised(stage_.fit));
-      if (best.converged || fit::penalised(best) > penalised(from) - thresholds::search.worth_a_round ||
+      const double left = fit::gain(best, stage_.fit);
+      const bool gets_there = left < thresholds::search.coming * fit::gain(from, stage_.fit);
+      if (best.converged || fit::gain(from, best) < thresholds::search.worth_a_round ||
           (left > 0 && !gets_there))
         break;
     }
@@ -206,8 +204,8 @@ class Searcher {
     j.hypothesis = c.hypothesis;
     std::erase_if(fits, [](const fit::Fit& f) { return !f.failed.empty(); });
     if (fits.empty()) return j;
-    j.fit = with_errors(c, std::move(*std::ranges::min_element(fits, {}, fit::penalised)));
-    j.gain = fit::criterion(stage_.fit) - fit::criterion(j.fit);
+    j.fit = with_errors(c, std::move(*std::ranges::min_element(fits, fit::better)));
+    j.gain = fit::gain(stage_.fit, j.fit, fit::criterion);
     return j;
   }
   /// The same fit with errors, which its evidence needs.
@@ -215,7 +213,7 @@ class Searcher {
     const auto free = free_of(c.hypothesis, stage_.spread);
     fit::FitOptions o = fit::continued({}, f, free);
     o.iterations = 0;
-    fit::Fit known = fit::fit(c.starts.front(), c.hypothesis.conventions, stage_.events, free, o);
+    fit::Fit known = fit::fit({c.starts.front(), c.hypothesis.conventions}, stage_.events, free, o);
     if (!known.failed.empty()) return f;
     known.iterations = f.iterations;
     known.converged = f.converged;

@@ -15,7 +15,7 @@ using SearchProgress = std::function<void(const std::string& what, int done, int
 
 /// A structure that a hypothesis may be added to.
 struct Stage {
-  const std::vector<event::FitEvent>& events;
+  const event::WhitenedEvents& events;
   sim::plant::Plant plant;  ///< holds the nominal values, which beliefs are about
   sim::Conventions conventions;
   const fit::Fit& fit;  ///< of this structure
@@ -24,6 +24,7 @@ struct Stage {
   std::string with = {};  ///< name of what was added; empty: the model as it was given
   double spread = thresholds::parameters.spread;  ///< believed of the model's parameters
   int threads = 1;
+  [[nodiscard]] sim::plant::PlantUnderTest under_test() const { return {plant, conventions}; }
 };
 
 /// Fits the hypotheses and does not judge them. Returns the best first and leaves out those that do not act.
@@ -32,8 +33,8 @@ std::vector<Judgement> try_hypotheses(const Stage& stage, std::vector<Hypothesis
                                       const SearchProgress& report = {});
 
 /// chi2 of a plant with each event at its entry of `states`; infinite where the plant cannot be run.
-double left_by(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-               const std::vector<event::FitEvent>& events, const std::vector<fit::EventState>& states);
+double left_by(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+               const std::vector<fit::EventState>& states);
 
 /// Goes on where `from` ended, with the parameters that act without a slope: a limiter's timer ends at an
 /// instant, and no sensitivity follows an instant. Such parameters of `h` are tried at multiples of their

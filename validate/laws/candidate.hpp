@@ -57,7 +57,7 @@ struct LawCandidate {
 
 /// Deviation of the voltage that counts as an event [pu]. It is well above the voltage's noise, and half of
 /// what the smallest event with a switching shows. 0: no event shows any.
-double trigger_level(const std::vector<event::FitEvent>& events);
+double trigger_level(const event::WhitenedEvents& events);
 
 /// The best of each family and signal, best first. `level` as from trigger_level.
 std::vector<LawCandidate> law_candidates(fit::InputKind kind, const std::vector<LawTrace>& traces,

@@ -204,7 +204,7 @@ std::vector<LawTrace> thinned(std::vector<LawTrace> traces) {
 
 }  // namespace
 
-double trigger_level(const std::vector<event::FitEvent>& events) {
+double trigger_level(const event::WhitenedEvents& events) {
   constexpr double kLeastTrigger = 0.01;  // [pu]; instruments and ambient changes stay below
   double smallest = 1e300, noise = 0;
   for (const event::FitEvent& e : events) {

@@ -56,7 +56,7 @@ double handicap(const LawCandidate& law) {
          (law.family.ends_with("in proportion") ? thresholds::laws.in_proportion.value : 0.0);
 }
 
-std::string source_of(const std::vector<event::FitEvent>& events) {
+std::string source_of(const event::WhitenedEvents& events) {
   std::string names;
   for (const auto& e : events) names += (names.empty() ? "" : ", ") + e.record.name;
   return "found by swingbank diagnose in " + names;
@@ -133,10 +133,10 @@ class Searcher {
     o.iterations = 10;
     o.values = values_in(input_.fit.plant, {f.effect.get(), h.starts.front()}, block, free);
     for (const auto& e : input_.fit.events) o.start.push_back(e.state);
-    fit::Fit found = fit::fit(h.plant, h.conventions, case_.trial.events, free, o);
+    fit::Fit found = fit::fit(h.under_test(), case_.trial.events, free, o);
     if (!found.failed.empty()) return f;
     f.judgement.fit = std::move(found);
-    f.judgement.gain = fit::criterion(case_.base) - fit::criterion(f.judgement.fit);
+    f.judgement.gain = fit::gain(case_.base, f.judgement.fit, fit::criterion);
     return f;
   }
   void settle(LawFinding& f) const {

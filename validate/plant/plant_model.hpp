@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/grid/grid.hpp"
+#include "sim/plant/under_test.hpp"
 #include "validate/record/record.hpp"
 
 namespace swingbank::validate::plant {
@@ -18,6 +19,7 @@ struct PlantModel {
   sim::Conventions conventions;
   record::RecordBase record_base;                ///< what "pu" means in the records of this plant
   std::vector<std::filesystem::path> laws = {};  ///< law files that its effects come from
+  [[nodiscard]] sim::plant::PlantUnderTest under_test() const { return {plant, conventions}; }
 };
 
 /// Reads a plant file (configs/plants/README.md describes it). Every parameter of every effect must be given

@@ -55,12 +55,12 @@ OperatingPoint pre_event_point(const record::Record& record, const std::vector<S
   return point;
 }
 
-Playback play_in(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                 const record::Record& record, const VoltageCurve& curve, const PlayInOptions& options) {
+Playback play_in(const sim::plant::PlantUnderTest& tested, const record::Record& record,
+                 const VoltageCurve& curve, const PlayInOptions& options) {
   Playback back;
   back.start = pre_event_point(record, curve.switchings(), options.pre_event);
-  Response response = observe({.plant = &plant,
-                               .conventions = conventions,
+  Response response = observe({.plant = &tested.plant,
+                               .conventions = tested.conventions,
                                .record = &record,
                                .curve = &curve,
                                .start = back.start,
@@ -78,14 +78,13 @@ Playback play_in(const sim::plant::Plant& plant, const sim::Conventions& convent
   return back;
 }
 
-Playback play_in_power(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                       const record::Record& record, const std::vector<Switching>& switchings,
-                       const PlayInOptions& options) {
+Playback play_in_power(const sim::plant::PlantUnderTest& tested, const record::Record& record,
+                       const std::vector<Switching>& switchings, const PlayInOptions& options) {
   const VoltageCurve voltage(record, switchings), power = power_curve(record, switchings);
   Playback back;
   back.start = pre_event_point(record, switchings, options.pre_event);
-  PowerResponse response = drive_by_power({.plant = &plant,
-                                           .conventions = conventions,
+  PowerResponse response = drive_by_power({.plant = &tested.plant,
+                                           .conventions = tested.conventions,
                                            .record = &record,
                                            .power = &power,
                                            .voltage = &voltage,

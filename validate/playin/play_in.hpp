@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "sim/plant/under_test.hpp"
 #include "validate/playin/driven_plant.hpp"
 
 namespace swingbank::validate::playin {
@@ -34,13 +35,12 @@ struct Playback {
 /// governor slots hold Efd and Tm there. Where the pre-event angle turns evenly, the frame turns with it.
 /// Throws InputError if the operating point cannot be held, or the equations cannot be integrated (state and
 /// time are named).
-Playback play_in(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                 const record::Record& record, const VoltageCurve& curve, const PlayInOptions& options = {});
+Playback play_in(const sim::plant::PlantUnderTest& tested, const record::Record& record,
+                 const VoltageCurve& curve, const PlayInOptions& options = {});
 
 /// The reverse: P and Q of the record drive the plant, V and theta are its answer; P and Q stay empty. Throws
 /// also where no terminal voltage delivers them.
-Playback play_in_power(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                       const record::Record& record, const std::vector<Switching>& switchings,
-                       const PlayInOptions& options = {});
+Playback play_in_power(const sim::plant::PlantUnderTest& tested, const record::Record& record,
+                       const std::vector<Switching>& switchings, const PlayInOptions& options = {});
 
 }  // namespace swingbank::validate::playin

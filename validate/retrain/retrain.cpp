@@ -85,12 +85,13 @@ sim::plant::Plant seen_plant(const calibrate::NetworkEstimate& e, const plant::P
 }
 
 /// What a plant leaves of an event that has a state of its own.
-void leave(const sim::plant::Plant& plant, const sim::Conventions& conventions, const event::FitEvent& event,
-           double& misfit, double& rms) {
+void leave(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& alone, double& misfit,
+           double& rms) {
   misfit = rms = kInfinity;
-  const fit::Fit own = fit::fit(plant, conventions, {event}, {});
+  const fit::Fit own = fit::fit(tested, alone, {});
   if (!own.failed.empty()) return;
   misfit = own.misfit();
+  const event::FitEvent& event = alone.front();
   const auto& model = own.events.front().model;
   double sum = 0;
   std::size_t n = 0;
@@ -164,12 +165,12 @@ Retrained compare_networks(const std::array<calibrate::NetworkEstimate, 2>& esti
   for (auto& e : r.error) e = std::sqrt(e);
   const sim::plant::Plant plants[2] = {seen_plant(estimates[0], before, r.events),
                                        seen_plant(estimates[1], added.model, r.events)};
-  const sim::Conventions conventions[2] = {before.conventions, added.model.conventions};
+  const sim::Conventions conventions[2] = {{before.conventions, added.model.conventions}};
   for (std::size_t e = 0; e < r.events.size(); ++e)
     for (std::size_t side = 0; side < 2; ++side) {
       auto& event = r.events[e];
       event.parameter_error[side] = std::sqrt(event.parameter_error[side]);
-      leave(plants[side], conventions[side], added.prepared[e], event.misfit[side], event.rms[side]);
+      leave({plants[side], conventions[side]}, added.prepared.alone(e), event.misfit[side], event.rms[side]);
       if (!event.seen) r.rms[side] += event.rms[side] * event.rms[side] / static_cast<double>(unseen);
     }
   for (auto& rms : r.rms) rms = std::sqrt(rms);

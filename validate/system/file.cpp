@@ -12,7 +12,7 @@
 #include "sim/grid/load_choice.hpp"
 #include "sim/laws/law.hpp"
 #include "sim/plant/measure.hpp"
-#include "validate/check/check.hpp"
+#include "validate/check/record_set.hpp"
 #include "validate/record/formats.hpp"
 #include "validate/system/system.hpp"
 
@@ -179,9 +179,7 @@ void read_terminal(Config& c, const std::string& name, SystemCase& s) {
           t.record, {s.grid.plants[static_cast<std::size_t>(t.plant)].mva, s.base.frequency});
       // Far from the event a terminal may hardly feel it; that is no fault of the record.
       std::erase_if(findings, [](const check::Finding& f) { return f.kind == "no_event"; });
-      for (const auto& f : findings)
-        if (f.severity == check::Severity::warn) t.warnings.push_back(f.problem.sentence());
-      check::raise_refusals(findings);
+      t.warnings = check::warnings_of(findings);
     }
     problems.raise();
     s.terminals.push_back(std::move(t));

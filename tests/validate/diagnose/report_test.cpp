@@ -31,13 +31,12 @@ struct Example {
     d.events = event::prepare_events(model, std::move(records));
     fit::FitOptions brief;
     brief.iterations = 2;
-    d.base =
-        fit::fit(model.plant, model.conventions, d.events, fit::free_parameters(model.plant, 0.2), brief);
+    d.base = fit::fit(model.under_test(), d.events, fit::free_parameters(model.plant, 0.2), brief);
     if (!d.base.failed.empty()) throw std::runtime_error(d.base.failed);
-    for (hypothesis::Hypothesis& h : hypothesis::all_hypotheses(model.plant, model.conventions)) {
+    for (hypothesis::Hypothesis& h : hypothesis::all_hypotheses(model.under_test())) {
       if (h.name.find("SEXS") == std::string::npos || !d.ranked.empty()) continue;
       hypothesis::Judgement j;
-      j.fit = fit::fit(hypothesis::started(h, h.starts.front()), h.conventions, d.events, h.free, brief);
+      j.fit = fit::fit({hypothesis::started(h, h.starts.front()), h.conventions}, d.events, h.free, brief);
       if (!j.fit.failed.empty()) throw std::runtime_error(j.fit.failed);
       j.gain = d.base.chi2 - j.fit.chi2;
       j.accepted = true;

@@ -57,7 +57,7 @@ TEST(Innovations, EqualTheCholeskyFactorOfTheWholeCovariance) {
 /// Five quiet records of a machine with a regulator of gain 200, as its model answers their noisy voltage.
 struct Quiet {
   plant::PlantModel model;
-  std::vector<FitEvent> events;
+  WhitenedEvents events;
   fit::Fit fit;
 
   explicit Quiet(const char* exciter) {
@@ -73,6 +73,7 @@ struct Quiet {
     std::mt19937_64 random(11);
     std::normal_distribution<double> normal;
     fit.plant = model.plant;
+    std::vector<record::Record> records;
     for (int i = 0; i < 5; ++i) {
       record::Record r;
       r.name = "quiet";
@@ -84,16 +85,15 @@ struct Quiet {
         r.P.push_back(0.4 + kPower * normal(random));
         r.Q.push_back(0.1 + kPower * normal(random));
       }
-      events.push_back(prepare_events(model, {r}).front());
-      FitEvent& e = events.back();
-      e.noise.setConstant(kPower);
+      records.push_back(std::move(r));
     }
-    measure_noise(model.plant, model.conventions, events);
+    events = prepare_events(model, std::move(records));
   }
   /// Residuals of the model as it is.
   void answer() {
     fit.events.clear();
-    for (const FitEvent& e : events) {
+    for (std::size_t i = 0; i < events.size(); ++i) {
+      const FitEvent& e = events[i];
       const playin::VoltageCurve curve(e.record, {});
       playin::Drive run{.plant = &model.plant,
                         .conventions = model.conventions,
@@ -102,7 +102,7 @@ struct Quiet {
                         .start = e.start};
       run.tolerance = 1e-7;
       fit::EventFit f;
-      fit::compare(e, playin::drive(run), f);
+      fit::compare(events, i, playin::drive(run), f);
       fit.events.push_back(std::move(f));
     }
   }
@@ -125,8 +125,8 @@ TEST(RememberNoise, WhitensWhatARegulatorMakesOfTheVoltagesNoise) {
   Quiet quiet("SEXS");
   quiet.answer();
   EXPECT_GT(quiet.slow_power(), 3.0);  // or there is nothing to whiten
-  fit::remember_noise(quiet.fit, quiet.model.conventions, quiet.events);
-  ASSERT_TRUE(quiet.events.front().memory);
+  quiet.events = quiet.events.with(fit::remember_noise(quiet.fit, quiet.model.conventions, quiet.events));
+  ASSERT_TRUE(quiet.events.noise(0).memory);
   quiet.answer();
   // 75 squares scatter by 16 %, the measured noise of V by a fifth more
   EXPECT_NEAR(quiet.slow_power(), 1.0, 0.6);

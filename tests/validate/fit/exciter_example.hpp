@@ -7,14 +7,14 @@
 namespace swingbank::validate::fit {
 
 /// What the plant answers to the event from `at`.
-inline playin::Response answer(const event::FitEvent& e, const EventState& at, const sim::plant::Plant& plant,
-                               const sim::Conventions& conventions) {
-  return event::play(plant, conventions, e, at);
+inline playin::Response answer(const event::FitEvent& e, const EventState& at,
+                               const sim::plant::PlantUnderTest& tested) {
+  return event::play(tested, e, at);
 }
 
 struct ExciterExample {
   plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
-  std::vector<event::FitEvent> events;
+  event::WhitenedEvents events;
   double spread;  ///< believed of every parameter
   /// TE [s] of the exciter; 0.05 is true.
   explicit ExciterExample(double believed, double TE = 0.05) : spread(believed) {
@@ -31,7 +31,7 @@ struct ExciterExample {
     return some;
   }
   [[nodiscard]] Fit fitted(const std::vector<std::string>& names, const FitOptions& options = {}) const {
-    return fit(model.plant, model.conventions, events, free(names), options);
+    return fit(model.under_test(), events, free(names), options);
   }
 };
 

@@ -12,7 +12,7 @@ constexpr int kSamples = 900, kQuiet = 90;
 constexpr double kSigma = 2e-3;
 
 struct Case {
-  std::vector<event::FitEvent> events;
+  event::WhitenedEvents events;
   Fit fit;
 };
 /// Events whose residual is noise of that colour (1: white) on a slow misfit of ten times its size; the
@@ -21,6 +21,8 @@ Case make(double colour, double assumed) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal(0, kSigma);
   Case c;
+  std::vector<event::FitEvent> events;
+  std::vector<event::EventNoise> noise;
   for (int i = 0; i < 5; ++i) {
     event::FitEvent e;
     EventFit f;
@@ -37,11 +39,12 @@ Case make(double colour, double assumed) {
     }
     e.start.samples = kQuiet;
     e.channels = {playin::Output::P, playin::Output::Q};
-    e.noise = Eigen::VectorXd::Constant(2, assumed * kSigma);
-    e.whitening = Eigen::MatrixXd::Identity(2, 2) / (assumed * kSigma);
-    c.events.push_back(std::move(e));
+    noise.push_back({.deviation = Eigen::VectorXd::Constant(2, assumed * kSigma),
+                     .whitening = Eigen::MatrixXd::Identity(2, 2) / (assumed * kSigma)});
+    events.push_back(std::move(e));
     c.fit.events.push_back(std::move(f));
   }
+  c.events = {std::move(events), event::NoiseModel(std::move(noise))};
   return c;
 }
 
@@ -52,14 +55,16 @@ TEST(SharpenNoise, WhiteNoiseIsMeasuredToAFewPerCent) {
   for (const auto& e : c.events)
     for (int k = 0; k < kQuiet; ++k) quiet += std::pow(e.record.P[static_cast<std::size_t>(k)] - 0.5, 2);
   quiet = std::sqrt(quiet / (5 * kQuiet));
-  for (auto& e : c.events) {
-    e.noise[0] = quiet;
-    e.whitening(0, 0) = 1 / quiet;
+  std::vector<event::EventNoise> noise;
+  for (std::size_t e = 0; e < c.events.size(); ++e) {
+    noise.push_back(c.events.noise(e));
+    noise.back().deviation[0] = quiet;
+    noise.back().whitening(0, 0) = 1 / quiet;
   }
-  sharpen_noise(c.fit, c.events);
+  const event::NoiseModel sharp = sharpen_noise(c.fit, c.events.with(event::NoiseModel(std::move(noise))));
   // the median of 4400 squares scatters by 2.6 %, so its root by 1.3 %; pre-event means cost 1 % more
-  EXPECT_NEAR(c.events[0].noise[0], kSigma, 0.05 * kSigma);
-  EXPECT_NEAR(c.events[0].whitening(0, 0) * c.events[0].noise[0], 1.0, 1e-12);
+  EXPECT_NEAR(sharp.of(0).deviation[0], kSigma, 0.05 * kSigma);
+  EXPECT_NEAR(sharp.of(0).whitening(0, 0) * sharp.of(0).deviation[0], 1.0, 1e-12);
 }
 TEST(SlowRemainder, IsFewStandardDeviationsOfWhiteNoiseAndManyOfSlow) {
   std::mt19937_64 random(3);
@@ -88,9 +93,8 @@ TEST(SlowRemainder, IsFewStandardDeviationsOfWhiteNoiseAndManyOfSlow) {
 }
 TEST(SharpenNoise, ColouredNoiseIsLeftAlone) {
   Case c = make(0.3, 1.0);
-  const double before = c.events[0].noise[0];
-  sharpen_noise(c.fit, c.events);
-  EXPECT_EQ(c.events[0].noise[0], before);
+  const event::NoiseModel sharp = sharpen_noise(c.fit, c.events);
+  EXPECT_EQ(sharp.of(0).deviation[0], c.events.noise(0).deviation[0]);
 }
 
 }  // namespace

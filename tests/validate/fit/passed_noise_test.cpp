@@ -24,11 +24,10 @@ class PassedNoiseTest : public ::testing::Test {
     return plant;
   }
   double less_with(const sim::plant::Plant& plant) const {
-    return passed_.less_with(plant, example_.model.conventions);
+    return passed_.less_with({plant, example_.model.conventions});
   }
   const ExciterExample example_{0.2};
-  const PassedNoise passed_{example_.model.plant, example_.model.conventions, example_.events,
-                            Eigen::Vector2d(4e-8, 4e-8)};
+  const PassedNoise passed_{example_.model.under_test(), example_.events, Eigen::Vector2d(4e-8, 4e-8)};
 };
 
 TEST_F(PassedNoiseTest, ACurrentReadBetweenSamplesPassesLess) {

@@ -21,14 +21,14 @@ struct Example : ExciterExample {
     for (const auto& f : free(names))
       along.push_back({playin::Direction::Kind::parameter, f.block, f.index,
                        parameter_value(stage.plant, f.block, f.index)});
-    return score.slopes(stage.plant, model.conventions, along);
+    return score.slopes({stage.plant, model.conventions}, along);
   }
 };
 
 TEST(ScoreTest, ForetellsWhatAFitGains) {
   const Example e;
   const Fit stage = e.stage_of({"H", "Xdp"}), with = e.stage_of({"H", "Xdp", "TE"});
-  const ScoreTest score(e.events, e.model.plant, e.model.conventions, stage);
+  const ScoreTest score(e.events, e.model.under_test(), stage);
   const auto changes = e.slopes(score, stage, {"TE"});
   ASSERT_EQ(changes.size(), 1U);
   const double gained = penalised(stage) - penalised(with);
@@ -39,13 +39,13 @@ TEST(ScoreTest, ForetellsWhatAFitGains) {
 TEST(ScoreTest, WhatTheStructureCanDoItselfIsNoGain) {
   const Example e;
   const Fit stage = e.stage_of({"H", "Xdp"});
-  const ScoreTest score(e.events, e.model.plant, e.model.conventions, stage);
+  const ScoreTest score(e.events, e.model.under_test(), stage);
   for (const auto& c : e.slopes(score, stage, {"H", "Xdp"})) EXPECT_LT(c.gain(), 0.1);  // of chi2, 1 by noise
 }
 TEST(ScoreTest, ChangesOfOneKindCountOnce) {
   const Example e;
   const Fit stage = e.stage_of({"H", "Xdp"});
-  const ScoreTest score(e.events, e.model.plant, e.model.conventions, stage);
+  const ScoreTest score(e.events, e.model.under_test(), stage);
   const auto one = e.slopes(score, stage, {"TE"});
   ASSERT_EQ(one.size(), 1U);
   EXPECT_NEAR(score.joint_gain({one[0], one[0]}), one[0].gain() - 1, 1e-6 * one[0].gain());
@@ -54,11 +54,11 @@ TEST(ScoreTest, ChangesOfOneKindCountOnce) {
 TEST(ScoreTest, APlantThatCannotBeRunGivesNothing) {
   const Example e;
   const Fit stage = e.stage_of({"H"});
-  const ScoreTest score(e.events, e.model.plant, e.model.conventions, stage);
+  const ScoreTest score(e.events, e.model.under_test(), stage);
   sim::plant::Plant broken = stage.plant;
   broken.controls.front().p[3] = -1.0;  // a negative time constant
-  EXPECT_FALSE(score.change_to(broken, e.model.conventions));
-  EXPECT_TRUE(score.slopes(broken, e.model.conventions, {}).empty());
+  EXPECT_FALSE(score.change_to({broken, e.model.conventions}));
+  EXPECT_TRUE(score.slopes({broken, e.model.conventions}, {}).empty());
 }
 
 }  // namespace

@@ -13,14 +13,14 @@ constexpr event::Playing kExact{.tolerance = 1e-9, .hasty = false};
 struct Slopes : ::testing::TestWithParam<const char*> {
   const test::InstrumentExample example{{test::instrument(GetParam())}};
   const plant::PlantModel& model = example.truth;
-  const std::vector<event::FitEvent> events =
+  const event::WhitenedEvents events =
       event::prepare_events(model, example.records, {.measured_states = false});
   const event::FitEvent& event = events.front();
 
   [[nodiscard]] Eigen::VectorXd whitened(const sim::plant::Plant& plant, const EventState& state) const {
     event::RowMatrix all =
-        event.collected(event::play(plant, model.conventions, event, state, {}, kExact).value, true);
-    event.whiten(all);
+        event.collected(event::play({plant, model.conventions}, event, state, {}, kExact).value, true);
+    events.noise(0).whiten(all);
     return all;
   }
   /// Central difference of the whitened residual per `by`.
@@ -39,10 +39,10 @@ struct Slopes : ::testing::TestWithParam<const char*> {
 };
 
 TEST_P(Slopes, ResidualIsThatOfTheFit) {
-  const Fit f = fit(model.plant, model.conventions, {event}, {});
+  const Fit f = fit(model.under_test(), events.alone(0), {});
   ASSERT_TRUE(f.failed.empty()) << f.failed;
   EXPECT_LT(f.misfit(), 1.2);  // the plant and its instruments are the true ones
-  const EventSlopes s = event_slopes(model.plant, model.conventions, event, f.events.front().state, {});
+  const EventSlopes s = event_slopes(model.under_test(), events.whitened(0), f.events.front().state, {});
   EXPECT_NEAR(s.residual.squaredNorm(), f.chi2, 1e-2 * f.chi2);  // the fit integrates to 1e-5
 }
 
@@ -55,7 +55,7 @@ TEST_P(Slopes, AreThoseOfDifferences) {
   ASSERT_GT(free.size(), 3U);
   EXPECT_NEAR(axis_unit(model.plant, free.back()),
               0.2 * std::abs(parameter_value(model.plant, last, free.back().index)), 1e-15);
-  const EventSlopes s = event_slopes(model.plant, model.conventions, event, {}, free);
+  const EventSlopes s = event_slopes(model.under_test(), events.whitened(0), {}, free);
 
   const auto columns = static_cast<Eigen::Index>(free.size());
   Eigen::MatrixXd slopes(event.values(), columns);

@@ -14,13 +14,14 @@ class Further : public ::testing::Test {
     parameter(truth_.plant, "KA") = 20.0;
     parameter(truth_.plant, "TE") = 4.0;
     parameter(truth_.plant, "TF") = 12.0;
-    event::FitEvent& e = events_.front();
-    const playin::Response r = fit::answer(e, base_.events.front().state, truth_.plant, truth_.conventions);
+    event::FitEvent e = events_.front();
+    const playin::Response r = fit::answer(e, base_.events.front().state, truth_.under_test());
     e.record.P = r.of(playin::Output::P);
     e.record.Q = r.of(playin::Output::Q);
+    events_ = {{e}, events_.noise_model()};
   }
   [[nodiscard]] Hypothesis named(const std::string& name) const {
-    const auto all = all_hypotheses(model_.plant, model_.conventions);
+    const auto all = all_hypotheses(model_.under_test());
     return *std::ranges::find(all, name, &Hypothesis::name);
   }
   static double& parameter(sim::plant::Plant& plant, const std::string& name) {
@@ -37,19 +38,18 @@ class Further : public ::testing::Test {
     j.hypothesis.starts.resize(1);
     fit::FitOptions o;
     o.iterations = 2;
-    j.fit = fit::fit(j.hypothesis.plant, j.hypothesis.conventions, events_,
-                     free_of(j.hypothesis, stage_.spread), o);
+    j.fit = fit::fit(j.hypothesis.under_test(), events_, free_of(j.hypothesis, stage_.spread), o);
     fit::Fit lead = base_;
     lead.plant = leader;
     try_further(stage_, lead, j);
     return fit::penalised(j.fit);
   }
   const plant::PlantModel model_ = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
-  std::vector<event::FitEvent> events_ = event::prepare_events(
+  event::WhitenedEvents events_ = event::prepare_events(
       model_,
       {record::read_record(test::source("configs/records/record-example/avr_ev1.csv"), model_.record_base)},
       {.measured_states = false});
-  const fit::Fit base_ = fit::fit(model_.plant, model_.conventions, events_, {}, {.iterations = 0});
+  const fit::Fit base_ = fit::fit(model_.under_test(), events_, {}, {.iterations = 0});
   Hypothesis truth_ = named("ESAC1A");
   const Stage stage_{
       .events = events_, .plant = model_.plant, .conventions = model_.conventions, .fit = base_};

@@ -50,11 +50,11 @@ TEST(Objection, AnEventWithoutWhichNothingCouldBeFittedIsNotPredicted) {
 }
 TEST(HeldOutEvents, AFitThatFailsWithoutOnePredictsNothing) {
   fit::ExciterExample example(0.2);
-  example.events.push_back(example.events.front());
+  example.events = example.events.only({0, 0});
   const fit::Fit whole = example.fitted({"H"}, {.iterations = 0});
   const Trial trial{example.events, 0.2, kAdequate};
   const auto hold = [&](const fit::Fit& f) {
-    return hold_out(trial, example.model.plant, example.model.conventions, example.free({"H", "EMAX"}), f);
+    return hold_out(trial, example.model.under_test(), example.free({"H", "EMAX"}), f);
   };
   EXPECT_LT(hold(whole).front().cost_after, 1e6);
   fit::Fit impossible = whole;

@@ -15,7 +15,7 @@ TEST(Blind, ATimerIsFoundThatNoSlopeSees) {
                     .plant = example.model.plant,
                     .conventions = example.model.conventions,
                     .fit = nearly};
-  auto all = all_hypotheses(stage.plant, stage.conventions);
+  auto all = all_hypotheses(stage.under_test());
   const Hypothesis h = StartFinder(stage).of(*std::ranges::find(all, "MAXEX2", &Hypothesis::name)).hypothesis;
   const auto free = free_of(h, stage.spread);
 
@@ -24,9 +24,9 @@ TEST(Blind, ATimerIsFoundThatNoSlopeSees) {
   for (const auto& p : nearly.parameters)
     fit::parameter_value(with, fit::find_block(with, fit::block_effect(stage.plant, p.where.block)),
                          p.where.index) = p.value;
-  event::FitEvent& event = example.events.front();
+  event::FitEvent event = example.events.front();
   const fit::EventFit& at = nearly.events.front();
-  const playin::Response limited = fit::answer(event, at.state, with, h.conventions);
+  const playin::Response limited = fit::answer(event, at.state, {with, h.conventions});
   double square = 0;
   for (std::size_t c = 0; c < event.channels.size(); ++c) {
     const playin::Output o = event.channels[c];
@@ -34,15 +34,16 @@ TEST(Blind, ATimerIsFoundThatNoSlopeSees) {
     for (std::size_t k = 0; k < channel.size(); ++k) {
       const double change = limited.of(o)[k] - at.model[c][k];
       channel[k] += change;
-      square += std::pow(change / event.noise[static_cast<Eigen::Index>(c)], 2);
+      square += std::pow(change / example.events.noise(0).deviation[static_cast<Eigen::Index>(c)], 2);
     }
   }
+  example.events = {{event}, example.events.noise_model()};
   ASSERT_GT(square, 400) << "it was meant to act";
   const auto fitted_from = [&](const sim::plant::Plant& plant) {
     fit::FitOptions o;
     o.values = fit::values_of(plant, free);
     o.start = {at.state};
-    return fit::fit(h.plant, h.conventions, stage.events, free, o);
+    return fit::fit(h.under_test(), stage.events, free, o);
   };
   sim::plant::Plant slow = with;
   for (const fit::FreeParameter& f : h.free)

@@ -34,7 +34,7 @@ class Exchange : public ::testing::Test {
   [[nodiscard]] Judgement beside(const Judgement& first, const std::string& second, double value) const {
     const Stage then = after(stage_, first);
     Judgement j;
-    j.hypothesis = named(all_hypotheses(then.plant, then.conventions), second);
+    j.hypothesis = named(all_hypotheses(then.under_test()), second);
     j.fit = base_;
     j.fit.plant = j.hypothesis.plant;
     const fit::FreeParameter& f = j.hypothesis.free.front();

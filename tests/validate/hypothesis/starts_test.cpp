@@ -16,12 +16,13 @@ double moved(const Stage& stage, const Hypothesis& h, const std::vector<double>&
                          p.where.index) = p.value;
   const event::FitEvent& e = stage.events.front();
   const fit::EventFit& at = stage.fit.events.front();
-  const playin::Response r = fit::answer(e, at.state, plant, stage.conventions);
+  const playin::Response r = fit::answer(e, at.state, {plant, stage.conventions});
   double square = 0;
   for (std::size_t c = 0; c < e.channels.size(); ++c)
     for (std::size_t k = 0; k < e.record.t.size(); ++k)
-      square +=
-          std::pow((r.of(e.channels[c])[k] - at.model[c][k]) / e.noise[static_cast<Eigen::Index>(c)], 2);
+      square += std::pow((r.of(e.channels[c])[k] - at.model[c][k]) /
+                             stage.events.noise(0).deviation[static_cast<Eigen::Index>(c)],
+                         2);
   return square;
 }
 
@@ -33,7 +34,7 @@ TEST(Starts, ALimiterStartsWhereItActs) {
                     .plant = example.model.plant,
                     .conventions = example.model.conventions,
                     .fit = nearly};
-  auto all = all_hypotheses(stage.plant, stage.conventions);
+  auto all = all_hypotheses(stage.under_test());
   const auto limiter = std::ranges::find(all, "MAXEX2", &Hypothesis::name);
   ASSERT_NE(limiter, all.end());
   ASSERT_LT(moved(stage, *limiter, limiter->starts.front()), 1e-3) << "it was meant to wait";
@@ -53,7 +54,7 @@ TEST(Starts, WhatTheFitHasBentStartsAsTheModelHasIt) {
                     .plant = example.model.plant,
                     .conventions = example.model.conventions,
                     .fit = bent};
-  auto all = all_hypotheses(stage.plant, stage.conventions);
+  auto all = all_hypotheses(stage.under_test());
   const Hypothesis& h = *std::ranges::find(all, "IEEEVC", &Hypothesis::name);
   const auto free = free_of(h, stage.spread);
   const auto share = [&](const std::vector<double>& values, const std::string& name) {

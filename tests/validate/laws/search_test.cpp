@@ -144,7 +144,7 @@ TEST(LawText, NumbersComeWithUnitAndInterval) {
 /// Records of the example's events as a plant answers that has parameters a tenth off and something more.
 struct Case {
   plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
-  std::vector<event::FitEvent> events;
+  event::WhitenedEvents events;
   fit::Fit base;
   std::vector<hypothesis::HeldOut> held_out;
   hypothesis::MissingInput torque, field;
@@ -181,11 +181,10 @@ struct Case {
       records.push_back(std::move(r));
     }
     events = event::prepare_events(model, std::move(records), {.measured_states = false});
-    base = fit::fit(model.plant, model.conventions, events, fit::free_parameters(model.plant, kSpread), {});
+    base = fit::fit(model.under_test(), events, fit::free_parameters(model.plant, kSpread), {});
     const hypothesis::Trial trial{events, kSpread, kAdequate};
-    held_out = hypothesis::hold_out(trial, model.plant, model.conventions, {}, base);
-    torque =
-        hypothesis::infer_input(fit::InputKind::torque, model.plant, model.conventions, events, kSpread, {});
+    held_out = hypothesis::hold_out(trial, model.under_test(), {}, base);
+    torque = hypothesis::infer_input(fit::InputKind::torque, model.under_test(), events, kSpread, {});
   }
   LawSearch search(int threads = 2) {
     return search_laws({model, {events, kSpread, kAdequate}, base, held_out, torque, field, threads});

@@ -16,11 +16,11 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-PowerResponse play_back(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                        const record::Record& r, const std::vector<Switching>& switchings) {
+PowerResponse play_back(const sim::plant::PlantUnderTest& tested, const record::Record& r,
+                        const std::vector<Switching>& switchings) {
   const VoltageCurve voltage(r, switchings), power = power_curve(r, switchings);
-  return drive_by_power({.plant = &plant,
-                         .conventions = conventions,
+  return drive_by_power({.plant = &tested.plant,
+                         .conventions = tested.conventions,
                          .record = &r,
                          .power = &power,
                          .voltage = &voltage,
@@ -40,7 +40,7 @@ Errors errors(const test::Simulated& s, int stride) {
   for (int plant = 0; plant < static_cast<int>(s.grid.plants.size()); ++plant) {
     record::Record r = test::record_of(s, plant, stride);
     for (int k = 0; k < s.before.samples; k += stride) r.speed.push_back(s.before.at(plant, 4)[k]);
-    const PowerResponse back = play_back(s.grid.plants[static_cast<std::size_t>(plant)], s.grid.conventions,
+    const PowerResponse back = play_back({s.grid.plants[static_cast<std::size_t>(plant)], s.grid.conventions},
                                          r, test::instants(s, plant, false));
     e.V = std::max(e.V, worst(back.V, r.V));
     e.theta = std::max(e.theta, worst(back.theta, r.theta));
@@ -74,8 +74,9 @@ TEST(DrivenByPowerTest, RefusesPowerThatNoVoltageDelivers) {
   const test::Simulated s = test::simulate("ieee39_gencls", sim::Conventions::psse(), 16, 2.0, 2.1, 60);
   record::Record r = test::record_of(s, 2, 1);
   for (std::size_t k = 300; k < 400; ++k) r.P[k] *= 30;
-  EXPECT_THAT(test::messages(
-                  [&] { play_back(s.grid.plants[2], s.grid.conventions, r, test::instants(s, 2, false)); }),
+  EXPECT_THAT(test::messages([&] {
+                play_back({s.grid.plants[2], s.grid.conventions}, r, test::instants(s, 2, false));
+              }),
               ElementsAre(HasSubstr("no terminal voltage for P = ")));
 }
 
@@ -85,7 +86,7 @@ TEST(DrivenByPowerTest, SeesAWrongReactance) {
   sim::plant::Plant wrong = s.grid.plants[2];
   wrong.machine.p[static_cast<std::size_t>(wrong.machine.effect->parameter_index("Xdp"))] *= 1.2;
   // 20 % of X'd, times a change of current of some tenths, is more than a hundredth of the voltage.
-  EXPECT_GT(worst(play_back(wrong, s.grid.conventions, r, test::instants(s, 2, false)).V, r.V), 0.01);
+  EXPECT_GT(worst(play_back({wrong, s.grid.conventions}, r, test::instants(s, 2, false)).V, r.V), 0.01);
 }
 
 }  // namespace

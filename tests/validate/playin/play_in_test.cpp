@@ -30,7 +30,7 @@ double playback_error(const test::Simulated& s, int stride, bool one_sided) {
     const record::Record r = test::record_of(s, plant, stride);
     const VoltageCurve curve(r, test::instants(s, plant, one_sided));
     const Playback back =
-        play_in(s.grid.plants[static_cast<std::size_t>(plant)], s.grid.conventions, r, curve);
+        play_in({s.grid.plants[static_cast<std::size_t>(plant)], s.grid.conventions}, r, curve);
     error = std::max({error, worst(back.P, r.P), worst(back.Q, r.Q)});
   }
   return error;
@@ -170,11 +170,11 @@ TEST(PlayInTest, AnOffNominalFrequencyTurnsTheFrame) {
   const test::Simulated& s = genrou();
   record::Record r = test::record_of(s, 3, 4);
   const Playback still =
-      play_in(s.grid.plants[3], s.grid.conventions, r, VoltageCurve(r, test::instants(s, 3, false)));
+      play_in({s.grid.plants[3], s.grid.conventions}, r, VoltageCurve(r, test::instants(s, 3, false)));
   const double drift = 2 * std::numbers::pi * 0.02;  // 20 mHz
   for (std::size_t k = 0; k < r.t.size(); ++k) r.theta[k] += drift * r.t[k];
   const Playback turning =
-      play_in(s.grid.plants[3], s.grid.conventions, r, VoltageCurve(r, test::instants(s, 3, false)));
+      play_in({s.grid.plants[3], s.grid.conventions}, r, VoltageCurve(r, test::instants(s, 3, false)));
   EXPECT_NEAR(turning.start.drift, drift, 1e-6);
   // Phasors of 120/s turn by 1 mrad per sample; splines through them differ by h^4 of that: a few 1e-6 pu.
   EXPECT_LT(worst(turning.P, still.P), 1e-5);
@@ -188,8 +188,8 @@ TEST(PlayInTest, UsesTheRecordsOwnBase) {
   for (auto* channel : {&system.P, &system.Q})
     for (auto& v : *channel) v *= factor;
   const auto at = test::instants(s, 1, true);
-  const Playback a = play_in(s.grid.plants[1], s.grid.conventions, own, VoltageCurve(own, at));
-  const Playback b = play_in(s.grid.plants[1], s.grid.conventions, system, VoltageCurve(system, at));
+  const Playback a = play_in({s.grid.plants[1], s.grid.conventions}, own, VoltageCurve(own, at));
+  const Playback b = play_in({s.grid.plants[1], s.grid.conventions}, system, VoltageCurve(system, at));
   for (std::size_t k = 0; k < a.P.size(); ++k) ASSERT_NEAR(a.P[k] * factor, b.P[k], 1e-9);
 }
 

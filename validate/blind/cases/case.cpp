@@ -96,7 +96,7 @@ class Maker {
   void choose_sizes() {
     if (spec_.hidden.empty()) return;
     const sim::grid::Grid& plain = world_.plain();
-    const BlindSize size(target(plain), plain.conventions, made_.events, plain_,
+    const BlindSize size({target(plain), plain.conventions}, made_.events, plain_,
                          made_.noise * target(plain).mva / plain_.front().base.mva,
                          made_.noise * config_.voltage_noise);
     scales_.assign(spec_.hidden.size(), {});

@@ -38,39 +38,45 @@ std::vector<char> beside_switchings(const record::Record& record, const std::vec
   return beside;
 }
 
-/// An event whose noise has these standard deviations.
-event::FitEvent noise_of(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                         const record::Record& record, const BlindEvent& event, double power,
-                         double voltage) {
+event::FitEvent prepared(const record::Record& record, const BlindEvent& event) {
   event::FitEvent e;
   e.record = record;
   for (const double t : event.switchings) e.switchings.push_back({.time = t});
   e.left_out = beside_switchings(record, event.switchings);
   e.channels = {playin::Output::P, playin::Output::Q};
   e.start = playin::pre_event_point(record, e.switchings, 1.0);
-  const playin::VoltageCurve curve(record, e.switchings);
-  const playin::LinearPlant linear = playin::linearise(
-      {.plant = &plant, .conventions = conventions, .record = &e.record, .curve = &curve, .start = e.start});
+  return e;
+}
+
+/// The noise of an event where P and Q, and V and theta, have these standard deviations.
+event::EventNoise noise_of(const sim::plant::PlantUnderTest& tested, const event::FitEvent& e, double power,
+                           double voltage) {
+  const playin::VoltageCurve curve(e.record, e.switchings);
+  const playin::LinearPlant linear = playin::linearise({.plant = &tested.plant,
+                                                        .conventions = tested.conventions,
+                                                        .record = &e.record,
+                                                        .curve = &curve,
+                                                        .start = e.start});
   const Eigen::Vector2d variance(std::pow(voltage / std::abs(e.start.voltage), 2), voltage * voltage);
   const Eigen::Matrix2d at_once =
       linear.D.topRows(2) * variance.asDiagonal() * linear.D.topRows(2).transpose();
   const Eigen::Matrix2d white = at_once + power * power * Eigen::Matrix2d::Identity();
-  e.noise = white.diagonal().cwiseSqrt();
-  e.whitening = white.llt().matrixL().solve(Eigen::Matrix2d::Identity());
-  e.memory = std::make_shared<event::Innovations>(fit::slow_noise(linear, e, variance), record.samples(),
-                                                  e.left_out);
-  return e;
+  event::EventNoise noise{.deviation = white.diagonal().cwiseSqrt(),
+                          .whitening = white.llt().matrixL().solve(Eigen::Matrix2d::Identity())};
+  noise.memory = std::make_shared<event::Innovations>(fit::slow_noise(linear, {e, noise}, variance),
+                                                      e.record.samples(), e.left_out);
+  return noise;
 }
 
 }  // namespace
 
-BlindSize::BlindSize(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                     const std::vector<BlindEvent>& events, std::vector<record::Record> plain,
-                     double power_noise, double voltage_noise)
-    : plant_(plant), conventions_(conventions), events_(events), plain_(std::move(plain)) {
+BlindSize::BlindSize(const sim::plant::PlantUnderTest& tested, const std::vector<BlindEvent>& events,
+                     std::vector<record::Record> plain, double power_noise, double voltage_noise)
+    : plant_(tested.plant), conventions_(tested.conventions), events_(events), plain_(std::move(plain)) {
   for (std::size_t e = 0; e < plain_.size(); ++e) {
-    noise_.push_back(noise_of(plant_, conventions_, plain_[e], events_[e], power_noise, voltage_noise));
-    plain_residual_.push_back(Eigen::VectorXd::Zero(noise_[e].values()));
+    prepared_.push_back(prepared(plain_[e], events_[e]));
+    noise_.push_back(noise_of({plant_, conventions_}, prepared_[e], power_noise, voltage_noise));
+    plain_residual_.push_back(Eigen::VectorXd::Zero(prepared_[e].values()));
     plain_residual_.back() = residual(e, plain_[e]);
   }
   auto columns = static_cast<Eigen::Index>(fit::free_parameters(plant_, 1.0).size());
@@ -85,23 +91,23 @@ Eigen::Index BlindSize::own_columns(std::size_t event) const {
 
 Eigen::Index BlindSize::first_row(std::size_t event) const {
   Eigen::Index row = 0;
-  for (std::size_t e = 0; e < event; ++e) row += noise_[e].values();
+  for (std::size_t e = 0; e < event; ++e) row += prepared_[e].values();
   return row;
 }
 
 playin::Response BlindSize::answer(std::size_t event, const record::Record& record,
                                    const std::vector<playin::Direction>& along) const {
-  event::FitEvent played = noise_[event];
+  event::FitEvent played = prepared_[event];
   played.record = record;
   played.start = playin::pre_event_point(record, played.switchings, 1.0);
-  return event::play(plant_, conventions_, played, {}, along, {.tolerance = kRunTolerance, .hasty = false});
+  return event::play({plant_, conventions_}, played, {}, along, {.tolerance = kRunTolerance, .hasty = false});
 }
 
 Eigen::VectorXd BlindSize::residual(std::size_t event, const record::Record& record) const {
   // what interpolation and filter leave even without the effect is taken off
   const playin::Response r = answer(event, record, {});
-  return interleaved(noise_[event], record.P, record.Q) -
-         interleaved(noise_[event], r.of(playin::Output::P), r.of(playin::Output::Q)) -
+  return interleaved(prepared_[event], record.P, record.Q) -
+         interleaved(prepared_[event], r.of(playin::Output::P), r.of(playin::Output::Q)) -
          plain_residual_[event];
 }
 
@@ -118,12 +124,12 @@ void BlindSize::add_columns(std::size_t event) {
 
   auto first = static_cast<Eigen::Index>(shared);  // columns of this event's own
   for (std::size_t e = 0; e < event; ++e) first += own_columns(e);
-  event::RowMatrix own = event::RowMatrix::Zero(noise_[event].values(), columns_.cols());
+  event::RowMatrix own = event::RowMatrix::Zero(prepared_[event].values(), columns_.cols());
   for (std::size_t d = 0; d < along.size(); ++d) {
     const auto& slope = r.slopes[d].value;
     const auto at = static_cast<Eigen::Index>(d);
     own.col(d < shared ? at : first + at - static_cast<Eigen::Index>(shared)) =
-        interleaved(noise_[event], slope[static_cast<int>(playin::Output::P)],
+        interleaved(prepared_[event], slope[static_cast<int>(playin::Output::P)],
                     slope[static_cast<int>(playin::Output::Q)]);
   }
   noise_[event].whiten(own);
@@ -134,9 +140,9 @@ double BlindSize::visible(const std::vector<record::Record>& with) const {
   double sum = 0;
   for (std::size_t e = 0; e < with.size(); ++e)
     for (std::size_t k = 0; k < with[e].t.size(); ++k)
-      if (noise_[e].compared(k))
-        sum += std::pow((with[e].P[k] - plain_[e].P[k]) / noise_[e].noise[0], 2) +
-               std::pow((with[e].Q[k] - plain_[e].Q[k]) / noise_[e].noise[1], 2);
+      if (prepared_[e].compared(k))
+        sum += std::pow((with[e].P[k] - plain_[e].P[k]) / noise_[e].deviation[0], 2) +
+               std::pow((with[e].Q[k] - plain_[e].Q[k]) / noise_[e].deviation[1], 2);
   return std::sqrt(sum);
 }
 

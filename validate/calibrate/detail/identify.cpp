@@ -31,7 +31,6 @@ class Trial {
     event_.start.drift = 0;
     event_.smeared.clear();
     event_.left_out.clear();
-    event_.memory = nullptr;
   }
   /// V as a multiple of the operating point's, and the frequency deviation [Hz], both of time.
   template <class V, class F>
@@ -90,10 +89,14 @@ event::FitEvent inner_channels(event::FitEvent event) {
   event.channels = {playin::Output::speed, playin::Output::Efd, playin::Output::Ifd};
   for (auto* channel : {&event.record.speed, &event.record.Efd, &event.record.Ifd})
     channel->assign(event.record.t.size(), 0.0);
-  event.noise.resize(3);
-  event.noise << 2e-5, 2e-3, 2e-3;  // [pu]: 1 mHz, 0.2 %
-  event.whitening = event.noise.cwiseInverse().asDiagonal();
   return event;
+}
+event::EventNoise inner_noise() {
+  event::EventNoise noise;
+  noise.deviation.resize(3);
+  noise.deviation << 2e-5, 2e-3, 2e-3;  // [pu]: 1 mHz, 0.2 %
+  noise.whitening = noise.deviation.cwiseInverse().asDiagonal();
+  return noise;
 }
 
 }  // namespace
@@ -118,21 +121,22 @@ std::vector<Blur> find_blurs(const Eigen::MatrixXd& information, const Eigen::Ve
   return blurs;
 }
 
-std::vector<TriedEvent> try_events(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                                   const std::vector<event::FitEvent>& events,
+std::vector<TriedEvent> try_events(const sim::plant::PlantUnderTest& tested,
+                                   const event::WhitenedEvents& events,
                                    const std::vector<fit::EventState>& states,
                                    const Eigen::Vector2d& variance,
                                    const std::vector<fit::FreeParameter>& free) {
   std::vector<TriedEvent> tried;
   const event::FitEvent& like = events.front();
-  const auto learnt = [&](event::FitEvent event, const fit::EventState& state) {
-    event.memory = fit::memory_of(plant, conventions, event, variance);
-    return fit::information(fit::event_slopes(plant, conventions, event, state, free));
+  const auto learnt = [&](const event::FitEvent& event, event::EventNoise noise,
+                          const fit::EventState& state) {
+    noise.memory = fit::memory_of(tested, {event, noise}, variance);
+    return fit::information(fit::event_slopes(tested, {event, noise}, state, free));
   };
   const auto attempt = [&](const std::string& what, const event::FitEvent& event,
                            const fit::EventState& state) {
     try {
-      tried.push_back({what, learnt(event, state)});
+      tried.push_back({what, learnt(event, events.noise(0), state)});
     } catch (const InputError&) {  // the plant does not survive that event: nothing is learnt from it
     }
   };
@@ -151,7 +155,7 @@ std::vector<TriedEvent> try_events(const sim::plant::Plant& plant, const sim::Co
     inner.information =
         Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(free.size()), static_cast<Eigen::Index>(free.size()));
     for (std::size_t e = 0; e < events.size(); ++e)
-      inner.information += learnt(inner_channels(events[e]), states[e]);
+      inner.information += learnt(inner_channels(events[e]), inner_noise(), states[e]);
     tried.push_back(inner);
   }
   return tried;

@@ -16,8 +16,8 @@ struct TriedEvent {
   std::string what;
   Eigen::MatrixXd information;
 };
-std::vector<TriedEvent> try_events(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                                   const std::vector<event::FitEvent>& events,
+std::vector<TriedEvent> try_events(const sim::plant::PlantUnderTest& tested,
+                                   const event::WhitenedEvents& events,
                                    const std::vector<fit::EventState>& states,
                                    const Eigen::Vector2d& variance,
                                    const std::vector<fit::FreeParameter>& free);

@@ -14,8 +14,7 @@ struct VoltagePull {
 
 /// White noise of these variances [V/V, rad], played into the plant for a minute at the operating point of
 /// the first event; the residual is whitened as the event's is.
-VoltagePull voltage_pull(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-                         const std::vector<event::FitEvent>& events, const Eigen::Vector2d& variance,
-                         const std::vector<fit::FreeParameter>& free);
+VoltagePull voltage_pull(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+                         const Eigen::Vector2d& variance, const std::vector<fit::FreeParameter>& free);
 
 }  // namespace swingbank::validate::calibrate

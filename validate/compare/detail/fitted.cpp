@@ -11,12 +11,12 @@ void play_fitted(const plant::PlantModel& model, const CompareOptions& options, 
       model, {e.record},
       {.jump_threshold = options.jump_threshold, .pre_event = options.play_in.pre_event, .jumps = jumps});
   const event::FitEvent& event = events.front();
-  const fit::Fit f = fit::fit(model.plant, model.conventions, events, {});
+  const fit::Fit f = fit::fit(model.under_test(), events, {});
   if (!f.failed.empty())
     throw InputError({"the model cannot follow the record", e.record.name, f.failed,
                       "check the model's parameters and the record's base and units"});
   const fit::EventState& state = f.events.front().state;
-  playin::Response r = event::play(model.plant, model.conventions, event, state);
+  playin::Response r = event::play(model.under_test(), event, state);
   const auto take = [&](playin::Output o) { return std::move(r.value[static_cast<int>(o)]); };
   e.playback = playin::Playback{};
   e.playback.start = event::start_at(event, state);
@@ -42,10 +42,11 @@ void add_doubt(const plant::PlantModel& model, EventComparison& e) {
                                  playin::Output::Efd, playin::Output::Ifd})
     if (!event.measured(o).empty()) event.channels.push_back(o);
   const auto n = static_cast<Eigen::Index>(event.channels.size());
-  event.noise = Eigen::VectorXd::Ones(n);  // what the channels' own noise is stands in the map
-  event.whitening = Eigen::MatrixXd::Identity(n, n);
+  // what the channels' own noise is stands in the map
+  const event::EventNoise unit{.deviation = Eigen::VectorXd::Ones(n),
+                               .whitening = Eigen::MatrixXd::Identity(n, n)};
   e.doubt.clear();
-  for (const auto& shape : fit::voltage_doubt(model.plant, model.conventions, event).shapes)
+  for (const auto& shape : fit::voltage_doubt(model.under_test(), {event, unit}).shapes)
     for (std::size_t c = 0; c < event.channels.size(); ++c)
       e.doubt[std::string(playin::output_name(event.channels[c]))].push_back(shape[c]);
 }

@@ -18,7 +18,7 @@ namespace {
 bool as_good(const hypothesis::Judgement& j, const hypothesis::Judgement& best) {
   return best.gain - j.gain < thresholds::evidence.apart ||
          (j.hypothesis.with == best.hypothesis.with &&
-          j.fit.chi2 - best.fit.chi2 < thresholds::evidence.apart);
+          fit::gain(j.fit, best.fit, fit::data_cost) < thresholds::evidence.apart);
 }
 
 std::string capitalised(std::string text) {

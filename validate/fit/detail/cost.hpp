@@ -53,7 +53,7 @@ inline Axis make_axis(const sim::plant::Plant& plant, const FreeParameter& f) {
 struct Setting {
   const sim::plant::Plant* plant;
   const sim::Conventions* conventions;
-  const std::vector<event::FitEvent>* events;
+  const event::WhitenedEvents* events;
   std::vector<Axis> axes;
   double tolerance;
   InputKind input;
@@ -113,7 +113,10 @@ inline event::RowMatrix triangle_of(const event::RowMatrix& e) {
 class EventCost : public ceres::CostFunction {
  public:
   EventCost(const Setting& setting, std::size_t event)
-      : setting_(setting), event_((*setting.events)[event]), knots_(setting.knots[event]) {
+      : setting_(setting),
+        event_((*setting.events)[event]),
+        noise_(setting.events->noise(event)),
+        knots_(setting.knots[event]) {
     set_num_residuals(static_cast<int>(setting.axes.size() + state_size()) + 1);
     if (!setting.axes.empty())
       mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(setting.axes.size()));
@@ -162,7 +165,7 @@ class EventCost : public ceres::CostFunction {
       for (Eigen::Index d = 0; d < n; ++d)
         e.col(d) = event_.collected(r.slopes[static_cast<std::size_t>(d)].value, false);
       e.col(n) = event_.collected(r.value, true);
-      event_.whiten(e);
+      noise_.whiten(e);
       return e;
     } catch (const InputError&) {
       return {};
@@ -194,6 +197,7 @@ class EventCost : public ceres::CostFunction {
   }
   const Setting& setting_;
   const event::FitEvent& event_;
+  const event::EventNoise& noise_;
   const std::vector<double>& knots_;
 };
 

@@ -27,7 +27,7 @@ constexpr int kHalvings = 6;
 
 StartFinder::StartFinder(const Stage& stage) : stage_(stage) {
   if (stage.fit.misfit() < thresholds::search.nearly_fits)
-    score_.emplace(stage.events, stage.plant, stage.conventions, stage.fit);
+    score_.emplace(stage.events, stage.under_test(), stage.fit);
 }
 
 Candidate StartFinder::of(Hypothesis h) const {
@@ -191,14 +191,15 @@ double StartFinder::largest_move(const Hypothesis& h, const std::vector<double>&
 }
 double StartFinder::moves(const Hypothesis& h, const sim::plant::Plant& plant, std::size_t event) const {
   const event::FitEvent& e = stage_.events[event];
+  const Eigen::VectorXd& noise = stage_.events.noise(event).deviation;
   const fit::EventFit& at = stage_.fit.events[event];
   try {
-    const playin::Response r = event::play(plant, h.conventions, e, at.state);
+    const playin::Response r = event::play({plant, h.conventions}, e, at.state);
     double square = 0;
     for (std::size_t c = 0; c < e.channels.size(); ++c)
       for (std::size_t k = 0; k < r.of(e.channels[c]).size(); ++k)
         square +=
-            std::pow((r.of(e.channels[c])[k] - at.model[c][k]) / e.noise[static_cast<Eigen::Index>(c)], 2);
+            std::pow((r.of(e.channels[c])[k] - at.model[c][k]) / noise[static_cast<Eigen::Index>(c)], 2);
     return square;
   } catch (const InputError&) {
     return std::nan("");
@@ -222,7 +223,7 @@ void StartFinder::score(const Hypothesis& h, std::size_t looks, Candidate& c) co
     const bool scored = looked_at++ < looks;
     if (!scored && !which.empty()) break;
     const auto values = beside_fit(h, start);
-    auto whole = score_->change_to(with_values(h, free, values), h.conventions);
+    auto whole = score_->change_to({with_values(h, free, values), h.conventions});
     if (!whole) continue;
     if (which.empty()) starts.emplace_back(whole->rise(), values);
     if (!scored) continue;
@@ -237,7 +238,7 @@ void StartFinder::score(const Hypothesis& h, std::size_t looks, Candidate& c) co
             {playin::Direction::Kind::parameter, free[i].block, free[i].index, values[i] - neutral});
     }
     if (!along.empty())
-      for (auto& slope : score_->slopes(with_values(h, free, at(values, kSmall)), h.conventions, along)) {
+      for (auto& slope : score_->slopes({with_values(h, free, at(values, kSmall)), h.conventions}, along)) {
         if (!which.empty() && slope.gain() > gain)
           gain = slope.gain(), share = std::clamp(slope.share(), kLeastShare, 1.0);
         changes.push_back(std::move(slope));
@@ -263,9 +264,10 @@ bool StartFinder::answer(const sim::plant::Plant& plant, const Hypothesis& h, do
                          bool& acts) const {
   misfit = 0;
   try {
-    for (const event::FitEvent& e : stage_.events) {
-      const playin::Response r = event::play(plant, h.conventions, e, {});
-      if (!acts) acts = differ(r, event::play(stage_.plant, stage_.conventions, e, {}), e);
+    for (std::size_t i = 0; i < stage_.events.size(); ++i) {
+      const event::WhitenedEvent e = stage_.events.whitened(i);
+      const playin::Response r = event::play({plant, h.conventions}, e.event, {});
+      if (!acts) acts = differ(r, event::play(stage_.under_test(), e.event, {}), e);
       misfit += misfit_of(r, e);
     }
   } catch (const InputError&) {
@@ -273,22 +275,25 @@ bool StartFinder::answer(const sim::plant::Plant& plant, const Hypothesis& h, do
   }
   return std::isfinite(misfit);
 }
-bool StartFinder::differ(const playin::Response& x, const playin::Response& y, const event::FitEvent& e) {
+bool StartFinder::differ(const playin::Response& x, const playin::Response& y,
+                         const event::WhitenedEvent& of) {
+  const event::FitEvent& e = of.event;
   for (std::size_t c = 0; c < e.channels.size(); ++c)
     for (std::size_t k = 0; k < x.of(e.channels[c]).size(); ++k)
       if (std::abs(x.of(e.channels[c])[k] - y.of(e.channels[c])[k]) >
-          1e-2 * e.noise[static_cast<Eigen::Index>(c)])
+          1e-2 * of.noise.deviation[static_cast<Eigen::Index>(c)])
         return true;
   return false;
 }
-double StartFinder::misfit_of(const playin::Response& r, const event::FitEvent& e) {
+double StartFinder::misfit_of(const playin::Response& r, const event::WhitenedEvent& of) {
+  const event::FitEvent& e = of.event;
   double sum = 0;
   for (std::size_t c = 0; c < e.channels.size(); ++c)
     for (std::size_t k = 0; k < r.of(e.channels[c]).size(); ++k)
       if (e.compared(k))
-        sum += std::pow(
-            (r.of(e.channels[c])[k] - e.measured(e.channels[c])[k]) / e.noise[static_cast<Eigen::Index>(c)],
-            2);
+        sum += std::pow((r.of(e.channels[c])[k] - e.measured(e.channels[c])[k]) /
+                            of.noise.deviation[static_cast<Eigen::Index>(c)],
+                        2);
   return sum;
 }
 

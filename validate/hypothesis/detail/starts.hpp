@@ -79,8 +79,8 @@ class StartFinder {
                             bool& acts) const;
   /// Whether two answers differ by a hundredth of the noise somewhere.
   [[nodiscard]] static bool differ(const playin::Response& x, const playin::Response& y,
-                                   const event::FitEvent& e);
-  [[nodiscard]] static double misfit_of(const playin::Response& r, const event::FitEvent& e);
+                                   const event::WhitenedEvent& of);
+  [[nodiscard]] static double misfit_of(const playin::Response& r, const event::WhitenedEvent& of);
 
   const Stage& stage_;
   std::optional<fit::ScoreTest> score_;

@@ -21,7 +21,7 @@ double trigger_of(const event::FitEvent& e, double level) {
 
 }  // namespace
 
-std::vector<LawTrace> law_traces(const plant::PlantModel& model, const std::vector<event::FitEvent>& events,
+std::vector<LawTrace> law_traces(const plant::PlantModel& model, const event::WhitenedEvents& events,
                                  const hypothesis::MissingInput& input, double level) {
   std::vector<LawTrace> all;
   for (std::size_t i = 0; i < events.size(); ++i) {
@@ -31,7 +31,7 @@ std::vector<LawTrace> law_traces(const plant::PlantModel& model, const std::vect
     const playin::VoltageCurve curve(e.played(), switchings);
     // The signals are those that the instruments show, as the fit had them.
     const playin::Response r =
-        event::play(input.fit.plant, model.conventions, e, state, {}, {.input = input.kind});
+        event::play({input.fit.plant, model.conventions}, e, state, {}, {.input = input.kind});
     const double to_machine = e.record.base.mva / input.fit.plant.mva;
     LawTrace t;
     t.t = e.record.t;

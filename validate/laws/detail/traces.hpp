@@ -7,7 +7,7 @@ namespace swingbank::validate::laws {
 
 /// One trace per event; signals are those of the plant driven with the inferred input. `level` as from
 /// trigger_level.
-std::vector<LawTrace> law_traces(const plant::PlantModel& model, const std::vector<event::FitEvent>& events,
+std::vector<LawTrace> law_traces(const plant::PlantModel& model, const event::WhitenedEvents& events,
                                  const hypothesis::MissingInput& input, double level);
 
 }  // namespace swingbank::validate::laws

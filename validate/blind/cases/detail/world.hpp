@@ -70,9 +70,8 @@ class BlindSize {
  public:
   /// `plain`: records without the hidden effects; `plant`: the model that explains them; standard deviations
   /// of P and Q, and of V and theta [pu on the records' base, rad].
-  BlindSize(const sim::plant::Plant& plant, const sim::Conventions& conventions,
-            const std::vector<BlindEvent>& events, std::vector<record::Record> plain, double power_noise,
-            double voltage_noise);
+  BlindSize(const sim::plant::PlantUnderTest& tested, const std::vector<BlindEvent>& events,
+            std::vector<record::Record> plain, double power_noise, double voltage_noise);
   [[nodiscard]] double visible(const std::vector<record::Record>& with) const;
   /// Size of what is left after a linear refit of the machine's parameters, and of each event's instants and
   /// start.
@@ -92,7 +91,8 @@ class BlindSize {
   sim::Conventions conventions_;
   std::vector<BlindEvent> events_;
   std::vector<record::Record> plain_;
-  std::vector<event::FitEvent> noise_;           ///< how to whiten each event
+  std::vector<event::FitEvent> prepared_;
+  std::vector<event::EventNoise> noise_;         ///< of each event
   std::vector<Eigen::VectorXd> plain_residual_;  ///< [event][sample * 2 + channel] [pu]
   event::RowMatrix
       columns_;  ///< directions that a refit may use, whitened: [event, sample, channel][direction]

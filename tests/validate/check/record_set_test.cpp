@@ -1,0 +1,51 @@
+// Records of one plant are read, named and checked together, and all that is wrong is told at once.
+#include "validate/check/record_set.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/validate/playin/support.hpp"
+
+namespace swingbank::validate::check {
+namespace {
+
+const std::string kFirst = test::source("configs/records/record-example/avr_ev1.csv").string(),
+                  kSecond = test::source("configs/records/record-example/avr_ev2.csv").string();
+
+struct RecordSets : ::testing::Test {
+  plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+};
+
+TEST_F(RecordSets, KeepTheOrderGiven) {
+  const RecordSet set = read_records({kSecond, kFirst}, model);
+  ASSERT_EQ(set.records.size(), 2U);
+  EXPECT_EQ(set.records.front().name, "avr_ev2.csv");
+  EXPECT_EQ(set.warnings.size(), 2U);
+}
+TEST_F(RecordSets, TellEveryProblemOfEveryFileAtOnce) {
+  model.plant.mva = 1;  // the records' power is then forty times what the machine can give
+  try {
+    read_records({kFirst, "none.csv", kFirst}, model);
+    FAIL() << "nothing was refused";
+  } catch (const InputError& error) {
+    const std::string told = error.what();
+    EXPECT_THAT(told, ::testing::HasSubstr("none.csv"));
+    EXPECT_THAT(told, ::testing::HasSubstr("two records named avr_ev1.csv"));
+    EXPECT_GE(error.problems().size(), 3U) << told;  // the check refuses the record besides
+  }
+}
+TEST_F(RecordSets, JoinTheProblemsThatAreKnownAlready) {
+  Problems problems;
+  problems.add("a plant", "plants.csv", "it has no name", "give it one");
+  const RecordSet set = read_records({kFirst, "none.csv"}, model, problems);
+  EXPECT_EQ(set.records.size(), 1U);
+  EXPECT_THROW(problems.raise(), InputError);
+}
+TEST_F(RecordSets, AreNotCheckedAgainstAModelThatWasNotRead) {
+  Problems problems;
+  EXPECT_EQ(read_records({kFirst}, plant::PlantModel{}, problems).records.size(), 1U);
+  EXPECT_TRUE(problems.empty());
+}
+
+}  // namespace
+}  // namespace swingbank::validate::check

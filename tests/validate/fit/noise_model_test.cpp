@@ -1,0 +1,71 @@
+// Noise is a value: measuring it changes no event, and fits made with different noise are never compared.
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "tests/validate/fit/exciter_example.hpp"
+#include "validate/fit/noise.hpp"
+
+namespace swingbank::validate::fit {
+namespace {
+
+struct NoiseModels : ::testing::Test {
+  const ExciterExample example{0.2};
+  const Fit first = example.fitted({"H"}, {.iterations = 2});
+  /// The same events with the noise measured once more through that fit.
+  const event::WhitenedEvents again =
+      example.events.with(measure_noise_through(first, example.model.conventions, example.events));
+
+  [[nodiscard]] Fit fitted_to(const event::WhitenedEvents& events) const {
+    return fit(example.model.under_test(), events, example.free({"H", "K"}), {.iterations = 2});
+  }
+};
+
+TEST_F(NoiseModels, FitsWithDifferentNoiseCannotBeCompared) {
+  const Fit same = fitted_to(example.events), other = fitted_to(again);
+  ASSERT_TRUE(first.failed.empty() && same.failed.empty() && other.failed.empty());
+  EXPECT_GT(gain(first, same), 0);  // one parameter more is free
+  EXPECT_TRUE(better(same, first));
+  EXPECT_DOUBLE_EQ(gain(first, same, data_cost), first.chi2 - same.chi2);
+  EXPECT_THROW(static_cast<void>(gain(first, other)), std::logic_error);
+  EXPECT_THROW(static_cast<void>(gain(first, other, criterion)), std::logic_error);
+  EXPECT_THROW(static_cast<void>(better(other, first)), std::logic_error);
+  EXPECT_THROW(static_cast<void>(gain(first.events.front(), other.events.front())), std::logic_error);
+  EXPECT_THROW(require_noise_of(again, first), std::logic_error);
+  EXPECT_NO_THROW(require_noise_of(again, other));
+}
+TEST_F(NoiseModels, EqualNumbersOfTwoMeasurementsAreStillTwo) {
+  const event::WhitenedEvents twice =
+      example.events.with(event::measure_noise(example.model.under_test(), example.events));
+  EXPECT_EQ(twice.noise(0).deviation, example.events.noise(0).deviation);
+  EXPECT_THROW(static_cast<void>(gain(first, fitted_to(twice))), std::logic_error);
+}
+TEST_F(NoiseModels, SomeOfTheEventsKeepTheMeasurement) {
+  EXPECT_NO_THROW(static_cast<void>(gain(first, fitted_to(example.events.only({0})))));
+}
+TEST_F(NoiseModels, AFitThatFailedIsWorseInAnyUnit) {
+  Fit failed;
+  failed.failed = "not fitted";
+  EXPECT_TRUE(better(first, failed));
+  EXPECT_FALSE(better(failed, first));
+}
+TEST_F(NoiseModels, MeasuringLeavesTheEventsUntouched) {
+  const event::EventNoise before = example.events.noise(0);
+  const event::NoiseModel measured = example.events.noise_model();
+  const event::FitEvent* const where = &example.events.front();
+  const Fit whole = fitted_to(example.events);
+  const event::NoiseModel sharp = sharpen_noise(whole, example.events),
+                          remembered = remember_noise(whole, example.model.conventions, example.events),
+                          through = measure_noise_through(whole, example.model.conventions, example.events);
+  for (const auto* other : {&sharp, &remembered, &through}) EXPECT_FALSE(*other == measured);
+  EXPECT_TRUE(example.events.noise_model() == measured);
+  EXPECT_EQ(&example.events.front(), where);
+  EXPECT_EQ(example.events.noise(0).deviation, before.deviation);
+  EXPECT_EQ(example.events.noise(0).whitening, before.whitening);
+  EXPECT_EQ(example.events.noise(0).memory, before.memory);
+  EXPECT_EQ(&example.events.with(through).front(), where);  // the events are shared
+  EXPECT_THROW(static_cast<void>(example.events.only({0, 0}).with(through)), std::logic_error);
+}
+
+}  // namespace
+}  // namespace swingbank::validate::fit
