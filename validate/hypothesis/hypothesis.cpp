@@ -9,7 +9,6 @@
 #include <map>
 #include <random>
 
-#include "sim/library/library.hpp"
 #include "validate/playin/can_run.hpp"
 #include "validate/playin/instruments.hpp"
 
@@ -146,8 +145,8 @@ Hypothesis added_to(const sim::plant::Plant& base, const sim::Conventions& conve
 }
 
 void add_effects(const sim::plant::Plant& base, const sim::Conventions& conventions,
-                 std::vector<Hypothesis>& all) {
-  for (const sim::Effect* effect : sim::library::every_effect()) {
+                 const sim::library::EffectLibrary& library, std::vector<Hypothesis>& all) {
+  for (const sim::Effect* effect : library.all()) {
     const bool instrument = effect->slot == Slot::measurement;
     const bool fits = effect->slot == Slot::transformer || sim::is_control(effect->slot) || instrument;
     if (!fits || effect->instants || occupied(base, *effect)) continue;
@@ -239,22 +238,24 @@ std::string_view side_name(Side side) {
   return names[static_cast<std::size_t>(side)];
 }
 
-std::vector<Hypothesis> all_hypotheses(const sim::plant::Plant& base, const sim::Conventions& conventions) {
+std::vector<Hypothesis> all_hypotheses(const sim::plant::Plant& base, const sim::Conventions& conventions,
+                                       const sim::library::EffectLibrary& library) {
   std::vector<Hypothesis> all;
-  add_effects(base, conventions, all);
+  add_effects(base, conventions, library, all);
   add_neutral_groups(base, conventions, all);
   add_conventions(base, conventions, all);
   return all;
 }
 
-std::vector<Hypothesis> all_replacements(const sim::plant::Plant& base, const sim::Conventions& conventions) {
+std::vector<Hypothesis> all_replacements(const sim::plant::Plant& base, const sim::Conventions& conventions,
+                                         const sim::library::EffectLibrary& library) {
   std::vector<Hypothesis> all;
   for (std::size_t c = 0; c < base.controls.size(); ++c) {
     const sim::Effect& there = *base.controls[c].effect;
     if (sim::is_shared(there.slot)) continue;
     sim::plant::Plant room = base;
     room.controls.erase(room.controls.begin() + static_cast<std::ptrdiff_t>(c));
-    for (const sim::Effect* effect : sim::library::every_effect()) {
+    for (const sim::Effect* effect : library.all()) {
       if (effect->slot != there.slot || effect == &there || effect->instants) continue;
       Hypothesis h = added_to(room, conventions, *effect);
       h.name += fmt::format(" in place of {}", there.name);

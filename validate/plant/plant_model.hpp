@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/grid/grid.hpp"
+#include "sim/library/library.hpp"
 #include "validate/record/record.hpp"
 
 namespace swingbank::validate::plant {
@@ -18,6 +19,9 @@ struct PlantModel {
   sim::Conventions conventions;
   record::RecordBase record_base;                ///< what "pu" means in the records of this plant
   std::vector<std::filesystem::path> laws = {};  ///< law files that its effects come from
+  /// Compiled effects and those of `laws`. The plant's blocks point into it, so a plant taken out of the
+  /// model must not outlive the model and its copies.
+  sim::library::EffectLibrary library = {};
 };
 
 /// Reads a plant file (configs/plants/README.md describes it). Every parameter of every effect must be given

@@ -34,7 +34,8 @@ struct Example {
     d.base =
         fit::fit(model.plant, model.conventions, d.events, fit::free_parameters(model.plant, 0.2), brief);
     if (!d.base.failed.empty()) throw std::runtime_error(d.base.failed);
-    for (hypothesis::Hypothesis& h : hypothesis::all_hypotheses(model.plant, model.conventions)) {
+    for (hypothesis::Hypothesis& h :
+         hypothesis::all_hypotheses(model.plant, model.conventions, model.library)) {
       if (h.name.find("SEXS") == std::string::npos || !d.ranked.empty()) continue;
       hypothesis::Judgement j;
       j.fit = fit::fit(hypothesis::started(h, h.starts.front()), h.conventions, d.events, h.free, brief);
