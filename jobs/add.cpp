@@ -100,9 +100,10 @@ int run(Arguments& a) {
   check_options(a);
   jobs::RetrainPrograms programs;
   if (a.retrain) programs = jobs::retrain_programs();
-  const plant::PlantModel model = plant::load_plant_model(a.model);
+  plant::PlantModel model = plant::load_plant_model(a.model);
   std::vector<std::pair<std::string, const sim::Effect*>> laws;
-  for (const auto& file : a.laws) laws.emplace_back(file, &sim::laws::load_law(std::filesystem::path(file)));
+  for (const auto& file : a.laws)
+    laws.emplace_back(file, &sim::laws::load_law(std::filesystem::path(file), model.library));
   std::vector<record::Record> records = jobs::read_events(a.records, model);
   calibrate::held_out_events(records, a.options.calibrate.held_out);
   a.options.calibrate.progress = jobs::progress_line();

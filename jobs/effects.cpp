@@ -1,4 +1,4 @@
-// swingbank effects [NAME...]: what the registry holds, from the effects' own records.
+// swingbank effects [NAME...]: what the library holds, from the effects' own records.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -32,10 +32,10 @@ std::string_view slot_meaning(Slot slot) {
   return meanings[static_cast<std::size_t>(slot)];
 }
 
-void print_list() {
+void print_list(const library::EffectLibrary& library) {
   for (const Slot slot : kSlots) {
     bool any = false;
-    for (const Effect* e : library::every_effect()) {
+    for (const Effect* e : library.all()) {
       if (e->slot != slot) continue;
       if (!std::exchange(any, true)) fmt::print("{}: {}\n", slot_name(slot), slot_meaning(slot));
       fmt::print("  {:<11} {}{}\n", e->name, e->title, e->law ? " (law file)" : "");
@@ -138,9 +138,9 @@ std::size_t letters_apart(std::string_view a, std::string_view b) {
 }
 
 /// The five names most like `name`, nearest first.
-std::string nearest_names(const std::string& name) {
+std::string nearest_names(const library::EffectLibrary& library, const std::string& name) {
   std::vector<std::pair<std::size_t, std::string_view>> list;
-  for (const Effect* e : library::every_effect()) list.emplace_back(letters_apart(name, e->name), e->name);
+  for (const Effect* e : library.all()) list.emplace_back(letters_apart(name, e->name), e->name);
   std::ranges::stable_sort(list, {}, [](const auto& one) { return one.first; });
   list.resize(std::min<std::size_t>(list.size(), 5));
   std::string names;
@@ -149,23 +149,25 @@ std::string nearest_names(const std::string& name) {
 }
 
 int run(const std::vector<std::string>& names, const std::vector<std::string>& laws, bool json) {
-  for (const auto& file : laws) laws::load_law(file);
+  library::EffectLibrary library;
+  for (const auto& file : laws) laws::load_law(file, library);
   Problems problems;
   std::vector<const Effect*> chosen;
   for (const auto& name : names) {
-    chosen.push_back(library::find_effect(name));
+    chosen.push_back(library.find(name));
     if (!chosen.back())
-      problems.add("no effect '" + name + "'", "NAME", "the nearest names are " + nearest_names(name),
+      problems.add("no effect '" + name + "'", "NAME",
+                   "the nearest names are " + nearest_names(library, name),
                    "choose one of these, or see them all with swingbank effects");
   }
   problems.raise();
-  const auto& shown = names.empty() ? library::every_effect() : chosen;
+  const auto& shown = names.empty() ? library.all() : chosen;
   if (json) {
     Json all = Json::array();
     for (const Effect* e : shown) all.push_back(as_json(*e));
     fmt::print("{}\n", all.dump(1));
   } else if (names.empty()) {
-    print_list();
+    print_list(library);
   } else {
     for (const Effect* e : shown) {
       if (e != shown.front()) fmt::print("\n");

@@ -19,7 +19,7 @@ struct FleetCommand {
 int run_fleet(const FleetCommand& command, int* argc, char*** argv);
 
 /// One plant of the fleet, in this process; prints {"was_there", "row"} on stdout. What run_fleet starts, so
-/// that a law that one plant brings is no hypothesis of another, and a crash costs one plant.
+/// that a crash, or a plant that runs out of memory, costs one plant.
 int run_fleet_plant(const FleetCommand& command, const std::string& plant);
 
 }  // namespace swingbank::jobs

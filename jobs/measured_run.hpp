@@ -47,9 +47,11 @@ inline MeasuredRun thinned(const MeasuredRun& run, int factor, const std::vector
 /// The instruments of a run: those of the plants and those of the command line, which all plants share.
 class Instruments {
  public:
-  Instruments(const std::vector<std::string>& texts, std::uint64_t seed, Problems& problems) : seed_(seed) {
+  Instruments(const std::vector<std::string>& texts, const library::EffectLibrary& library,
+              std::uint64_t seed, Problems& problems)
+      : seed_(seed) {
     for (const auto& text : texts)
-      if (auto block = plant::read_measurement(text, "--measure " + text, problems))
+      if (auto block = plant::read_measurement(text, library, "--measure " + text, problems))
         chain_.push_back(std::move(*block));
   }
 

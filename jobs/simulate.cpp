@@ -18,6 +18,7 @@
 #include "sim/grid/load_choice.hpp"
 #include "sim/lanes/batch.hpp"
 #include "sim/laws/law.hpp"
+#include "sim/library/library.hpp"
 #include "sim/reference/reference.hpp"
 
 namespace {
@@ -261,17 +262,19 @@ int simulate(const Options& o) {
   formats::DyrOptions models{o.ignore_models, {}};
   for (const auto& text : o.map_models) formats::add_model_map(models, text, "--map-model " + text, problems);
   problems.raise();
-  for (const auto& file : o.laws) laws::load_law(file);
+  library::EffectLibrary library;
+  for (const auto& file : o.laws) laws::load_law(file, library);
   grid::Grid grid =
       grid::load_grid(o.raw, o.dyr, o.convention == "andes" ? Conventions::andes() : Conventions::psse(),
                       models, o.frequency_hz);
+  grid.library = library;
   for (const auto& text : o.attached) grid::attach(grid, text, "--attach " + text, problems);
   if (o.load_model == "raw") grid::loads_as_composed(grid, problems);
   for (const auto& text : o.loads) grid::choose_load(grid, text, "--load " + text, problems);
   const network::Event event = grid::read_event(o.event, grid, o.t_end, event_option, problems);
   const auto plants = parse_plants(o, grid, problems);
   const auto channels = parse_channels(o, problems);
-  const Instruments instruments(o.measured, o.measure_seed, problems);
+  const Instruments instruments(o.measured, library, o.measure_seed, problems);
   std::vector<int> buses;
   for (int b : o.buses)
     buses.push_back(formats::read_bus(std::to_string(b), grid.network, "--buses", problems));

@@ -13,7 +13,6 @@
 #include "mpi/draw/detail/plant_blocks.hpp"
 #include "sim/grid/attach.hpp"
 #include "sim/laws/law.hpp"
-#include "sim/library/library.hpp"
 
 namespace swingbank::mpi::draw {
 
@@ -63,11 +62,11 @@ void read_box(Config& c, const std::string& table, const sim::Effect& effect, co
 }
 
 /// [vary.effects.NAME]: parameters of what stands around the machine.
-void read_effect_boxes(Config& c, std::vector<Box>& box) {
+void read_effect_boxes(Config& c, const sim::library::EffectLibrary& library, std::vector<Box>& box) {
   std::vector<std::pair<const sim::Effect*, std::string>> tables;
   for (const auto& name : c.keys("vary.effects")) {
     const std::string table = "vary.effects." + name;
-    const sim::Effect* effect = sim::library::find_effect(name);
+    const sim::Effect* effect = library.find(name);
     const auto known = [&](const auto& t) { return t.first == effect; };
     std::string why;
     if (effect == nullptr)
@@ -95,14 +94,15 @@ void read_effects(Config& c, DatasetConfig& d) {
   for (const auto& text : c.optional<std::vector<std::string>>("laws", {})) {
     d.laws.push_back((c.name().parent_path() / text).lexically_normal());
     try {
-      sim::laws::load_law(d.laws.back());
+      sim::laws::load_law(d.laws.back(), d.library);
     } catch (const InputError& e) {
       for (const auto& p : e.problems()) c.problem("laws", p.what, p.where + ": " + p.why, p.remedy);
     }
   }
   Problems problems;
   for (const auto& text : c.optional<std::vector<std::string>>("attach", {})) {
-    d.attachments.push_back(sim::plant::read_attachment(text, "attach = '" + text + "'", problems));
+    d.attachments.push_back(
+        sim::plant::read_attachment(text, d.library, "attach = '" + text + "'", problems));
     const sim::Effect* effect = d.attachments.back().block.effect;
     if (effect != nullptr && effect->slot == sim::Slot::measurement)
       problems.add(std::string(effect->name), "attach = '" + text + "'",
@@ -118,17 +118,17 @@ void read_vary(Config& c, DatasetConfig& d) {
     c.problem("vary.generators", "no generator", "a dataset varies at least one",
               "list bus numbers of generators");
   d.model = c.require<std::string>("vary.model");
-  const sim::Effect* effect = sim::library::find_effect(d.model);
+  const sim::Effect* effect = d.library.find(d.model);
   if (effect == nullptr || effect->slot != sim::Slot::machine) {
     if (!d.model.empty())
       c.problem("vary.model", "model " + d.model, "it is no machine model of this program",
-                "use one of: " + sim::library::effect_names(sim::Slot::machine));
+                "use one of: " + d.library.names(sim::Slot::machine));
     c.ignore("vary.box");  // cannot be judged without the model
     return;
   }
   d.model = effect->name;
   read_box(c, "vary.box", *effect, nullptr, d.box);
-  read_effect_boxes(c, d.box);
+  read_effect_boxes(c, d.library, d.box);
   if (std::ranges::none_of(d.box, &Box::sampled))
     c.problem("vary.box", "no parameter varies", "no entry of [vary.box] or [vary.effects.…] is an interval",
               "write at least one as name = [low, high]");
@@ -181,7 +181,7 @@ std::size_t RecordConfig::samples() const {
   return static_cast<std::size_t>(std::floor(t_end * rate + 1e-9));
 }
 
-const sim::Effect& DatasetConfig::effect() const { return *sim::library::find_effect(model); }
+const sim::Effect& DatasetConfig::effect() const { return *library.find(model); }
 
 const sim::Effect& DatasetConfig::effect_of(const Box& b) const {
   return b.effect == nullptr ? effect() : *b.effect;
@@ -294,6 +294,7 @@ Study load_study(const DatasetConfig& config) {
                                 config.models, config.frequency_hz);
   const auto& network = s.grid.network;
   s.grid.conventions.frequency = network.frequency;
+  s.grid.library = config.library;
   Problems problems;
   for (const auto& a : config.attachments) sim::grid::attach(s.grid, a, config.file.string(), problems);
   for (int number : config.generators) {

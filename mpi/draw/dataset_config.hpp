@@ -9,6 +9,7 @@
 #include "sim/core/frequency.hpp"
 #include "sim/grid/grid.hpp"
 #include "sim/lanes/batch.hpp"
+#include "sim/library/library.hpp"
 #include "sim/plant/block_text.hpp"
 
 namespace swingbank::mpi::draw {
@@ -60,6 +61,7 @@ struct DatasetConfig {
   /// The machine's in record order, then those of other effects in order of slot, name and record.
   std::vector<Box> box;
   std::vector<std::filesystem::path> laws;          ///< law files; read with the config
+  sim::library::EffectLibrary library;              ///< owns the laws that box and attachments point to
   std::vector<sim::plant::Attachment> attachments;  ///< effects that the .dyr lacks
   DatabankConfig databank;
   FaultConfig fault;

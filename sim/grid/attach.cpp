@@ -19,7 +19,7 @@ void attach(Grid& grid, const plant::Attachment& a, const std::string& where, Pr
 }
 
 void attach(Grid& grid, const std::string& text, const std::string& where, Problems& problems) {
-  attach(grid, plant::read_attachment(text, where, problems), where, problems);
+  attach(grid, plant::read_attachment(text, grid.library, where, problems), where, problems);
 }
 
 }  // namespace swingbank::sim::grid

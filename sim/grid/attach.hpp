@@ -11,7 +11,7 @@ namespace swingbank::sim::grid {
 void attach(Grid& grid, const plant::Attachment& attachment, const std::string& where, Problems& problems);
 
 /// "PLANT:EFFECT[:PARAM=VALUE,...]" puts an effect into a plant ("all": into every plant): any slot but
-/// machine and load. read_attachment() and the above in one.
+/// machine and load. read_attachment() with the effects of Grid::library and the above in one.
 void attach(Grid& grid, const std::string& text, const std::string& where, Problems& problems);
 
 }  // namespace swingbank::sim::grid

@@ -13,7 +13,6 @@
 #include "sim/formats/matpower.hpp"
 #include "sim/formats/psse_text.hpp"
 #include "sim/grid/load_choice.hpp"
-#include "sim/library/library.hpp"
 
 namespace swingbank::sim::grid {
 namespace {
@@ -25,7 +24,7 @@ constexpr std::array kEndings = {"BL", "OW", "ZN", "AR", "AL"};
 /// The effect with this name in a .dyr (case matters not), or nullptr.
 const Effect* effect_named(std::string_view model) {
   const auto same = [](unsigned char a, unsigned char b) { return std::toupper(a) == std::toupper(b); };
-  for (const Effect& e : library::all_effects())
+  for (const Effect& e : library::compiled_effects())
     if (!e.dyr_name.empty() && std::ranges::equal(e.dyr_name, model, same)) return &e;
   return nullptr;
 }
@@ -42,7 +41,7 @@ std::pair<const Effect*, Reach> effect_of_dyr(std::string model) {
 }
 std::string dyr_names() {
   std::string names;
-  for (const Effect& e : library::all_effects())
+  for (const Effect& e : library::compiled_effects())
     if (!e.dyr_name.empty()) names += (names.empty() ? "" : ", ") + std::string(e.dyr_name);
   return names;
 }
@@ -50,7 +49,7 @@ std::string dyr_names() {
 /// The step-up transformer that a .raw keeps in the generator's record.
 bool has_transformer(const network::Generator& g) { return g.rt != 0.0 || g.xt != 0.0; }
 plant::Block transformer_of(const network::Generator& g) {
-  plant::Block block{library::find_effect("STEPUP"), {}};
+  plant::Block block{library::compiled().find("STEPUP"), {}};
   block.p = block.effect->standard_parameters();
   block.p[static_cast<std::size_t>(block.effect->parameter_index("R"))] = g.rt;
   block.p[static_cast<std::size_t>(block.effect->parameter_index("X"))] = g.xt;
@@ -257,7 +256,7 @@ class GridMaker {
   }
   static std::string machine_names() {
     std::string names;
-    for (const Effect& e : library::all_effects())
+    for (const Effect& e : library::compiled_effects())
       if (e.slot == Slot::machine && !e.dyr_name.empty())
         names += (names.empty() ? "" : ", ") + std::string(e.dyr_name);
     return names;

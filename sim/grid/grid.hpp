@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/formats/psse.hpp"
+#include "sim/library/library.hpp"
 #include "sim/network/powerflow.hpp"
 #include "sim/plant/plant.hpp"
 
@@ -18,6 +19,7 @@ struct Grid {
   Conventions conventions;
   std::vector<plant::Plant> plants;
   std::vector<plant::Consumer> loads;
+  library::EffectLibrary library;  ///< owns the laws that its plants have; attach() takes effects from it
 
   /// Indices into Network::loads of the loads with a model of their own, sorted.
   [[nodiscard]] std::vector<int> modelled_loads() const;

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <utility>
 
-#include "sim/library/library.hpp"
 #include "sim/network/admittance.hpp"
 #include "sim/plant/block_text.hpp"
 
@@ -112,7 +111,7 @@ void compose(const Grid& grid, int load, plant::Block& block, const std::string&
 }
 
 void loads_as_composed(Grid& grid, Problems& problems) {
-  const Effect* zip = library::find_effect("ZIP");
+  const Effect* zip = library::compiled().find("ZIP");
   for (std::size_t i = 0; i < grid.network.loads.size(); ++i) {
     const network::Load& l = grid.network.loads[i];
     if (l.power == Complex{} && l.current == Complex{}) continue;
@@ -132,10 +131,10 @@ void choose_load(Grid& grid, const std::string& text, const std::string& where, 
     return;
   }
   const std::string name = text.substr(first + 1, second == text.npos ? text.npos : second - first - 1);
-  const Effect* effect = library::find_effect(name);
+  const Effect* effect = grid.library.find(name);
   if (!effect || effect->slot != Slot::load) {
     problems.add("no load model '" + name + "'", where,
-                 "the load models are " + library::effect_names(Slot::load), "choose one of these");
+                 "the load models are " + grid.library.names(Slot::load), "choose one of these");
     return;
   }
   plant::Block block{effect, effect->standard_parameters()};

@@ -20,7 +20,8 @@ void compose(const Grid& grid, int load, plant::Block& block, const std::string&
 
 /// One load from "BUS[/ID]:EFFECT[:PARAM=VALUE,...]"; without ID every load at the bus, with * in place
 /// of BUS every load that has no model yet and draws something. Parameters not named keep the effect's
-/// standard value. Replaces the model a load has. `where` names option or config line.
+/// standard value; the effects are those of Grid::library. Replaces the model a load has. `where` names
+/// option or config line.
 void choose_load(Grid& grid, const std::string& text, const std::string& where, Problems& problems);
 
 /// Gives one load of the network a model; replaces the one it has. The effect's check() and a load that draws

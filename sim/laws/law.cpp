@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <map>
 
 #include "base/input_file.hpp"
 #include "sim/laws/detail/definition.hpp"
-#include "sim/library/library.hpp"
 
 namespace swingbank::sim::laws {
 namespace {
@@ -157,19 +155,22 @@ Effect make_law(const std::string& text, const std::filesystem::path& name) {
   return laws::make_effect(read_definition(text, name));
 }
 
-const Effect& load_law(const std::string& text, const std::filesystem::path& name) {
-  static std::map<std::string, const Effect*> known;  // by text
-  const auto found = known.find(text);
-  if (found != known.end()) return *found->second;
-  Effect effect = make_law(text, name);
-  if (library::find_effect(effect.name))
-    throw InputError({"a second effect " + std::string(effect.name), name.string(),
-                      "a compiled effect or another law file has the name", "choose another name"});
-  return *known.emplace(text, &library::add_effect(std::move(effect))).first->second;
+bool same_effect(const Effect& a, const Effect& b) {
+  return &a == &b || (a.law && b.law && of(a.law.get()).text == of(b.law.get()).text);
 }
 
-const Effect& load_law(const std::filesystem::path& file) {
-  return load_law(read_input(file, "no readable law file", "give the path of a law .toml"), file);
+const Effect& load_law(const std::string& text, const std::filesystem::path& name,
+                       library::EffectLibrary& library) {
+  Effect effect = make_law(text, name);
+  const Effect* there = library.find(effect.name);
+  if (there == nullptr) return library.add(std::move(effect));
+  if (same_effect(*there, effect)) return *there;
+  throw InputError({"a second effect " + std::string(effect.name), name.string(),
+                    "a compiled effect or another law file has the name", "choose another name"});
+}
+
+const Effect& load_law(const std::filesystem::path& file, library::EffectLibrary& library) {
+  return load_law(read_input(file, "no readable law file", "give the path of a law .toml"), file, library);
 }
 
 }  // namespace swingbank::sim::laws

@@ -6,16 +6,22 @@
 #include <string>
 
 #include "sim/core/effect.hpp"
+#include "sim/library/library.hpp"
 
 namespace swingbank::sim::laws {
 
-/// Reads a law and adds it to the effects; from then on find_effect() knows it. Reading the same text again
-/// gives the same effect. Throws InputError with every fault of the file (file:line:column), or if another
-/// effect has the name.
-const Effect& load_law(const std::filesystem::path& file);
+/// Reads a law and adds it to a library; from then on its find() knows it. Reading the same text again gives
+/// the same effect. Throws InputError with every fault of the file (file:line:column), or if another effect
+/// of the library has the name.
+const Effect& load_law(const std::filesystem::path& file, library::EffectLibrary& library);
 /// The same from a text; `name` stands for the file in messages.
-const Effect& load_law(const std::string& text, const std::filesystem::path& name);
+const Effect& load_law(const std::string& text, const std::filesystem::path& name,
+                       library::EffectLibrary& library);
 /// The same without adding it.
 Effect make_law(const std::string& text, const std::filesystem::path& name);
+
+/// Whether two effects are one: the same compiled one, or laws of the same text, whichever library holds
+/// them.
+bool same_effect(const Effect& a, const Effect& b);
 
 }  // namespace swingbank::sim::laws

@@ -4,8 +4,6 @@
 #include <charconv>
 #include <cmath>
 
-#include "sim/library/library.hpp"
-
 namespace swingbank::sim::plant {
 
 void set_parameters(Block& block, const std::string& text, const std::string& where, Problems& problems) {
@@ -59,7 +57,8 @@ std::optional<Problem> place(Plant& plant, Block block, const std::string& where
   return {};
 }
 
-Attachment read_attachment(const std::string& text, const std::string& where, Problems& problems) {
+Attachment read_attachment(const std::string& text, const library::EffectLibrary& library,
+                           const std::string& where, Problems& problems) {
   const auto first = text.find(':'), second = first == text.npos ? text.npos : text.find(':', first + 1);
   if (first == text.npos) {
     problems.add("'" + text + "'", where, "an effect is attached by PLANT:EFFECT[:PARAM=VALUE,...]",
@@ -68,9 +67,9 @@ Attachment read_attachment(const std::string& text, const std::string& where, Pr
   }
   Attachment a{text.substr(0, first), {}};
   const std::string name = text.substr(first + 1, second == text.npos ? text.npos : second - first - 1);
-  const Effect* effect = library::find_effect(name);
+  const Effect* effect = library.find(name);
   if (!effect) {
-    problems.add("no effect '" + name + "'", where, "there are " + library::effect_names(),
+    problems.add("no effect '" + name + "'", where, "there are " + library.names(),
                  "choose one of these, or give its file with --law");
     return {};
   }

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "sim/library/library.hpp"
 #include "sim/plant/plant.hpp"
 
 namespace swingbank::sim::plant {
@@ -15,9 +16,10 @@ struct Attachment {
   std::string plant;
   Block block;  ///< effect == nullptr: the text was at fault
 };
-/// Reads "PLANT:EFFECT[:PARAM=VALUE,...]". Parameters not named keep the effect's standard value. Unknown
-/// names and what the effect's check() refuses become problems.
-Attachment read_attachment(const std::string& text, const std::string& where, Problems& problems);
+/// Reads "PLANT:EFFECT[:PARAM=VALUE,...]" with the effects of `library`. Parameters not named keep the
+/// effect's standard value. Unknown names and what the effect's check() refuses become problems.
+Attachment read_attachment(const std::string& text, const library::EffectLibrary& library,
+                           const std::string& where, Problems& problems);
 /// Puts a block into its slot of a plant, after what stands there already. Why it cannot, or nothing.
 std::optional<Problem> place(Plant& plant, Block block, const std::string& where);
 

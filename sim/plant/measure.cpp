@@ -8,7 +8,6 @@
 #include "base/constants.hpp"
 #include "sim/core/noise.hpp"
 #include "sim/core/window.hpp"
-#include "sim/library/library.hpp"
 #include "sim/plant/block_text.hpp"
 
 namespace swingbank::sim::plant {
@@ -56,12 +55,13 @@ double memory(std::span<const Block> chain) {
   return sum;
 }
 
-std::optional<Block> read_measurement(const std::string& text, const std::string& where, Problems& problems) {
+std::optional<Block> read_measurement(const std::string& text, const library::EffectLibrary& library,
+                                      const std::string& where, Problems& problems) {
   const auto colon = text.find(':');
-  const Effect* effect = library::find_effect(text.substr(0, colon));
+  const Effect* effect = library.find(text.substr(0, colon));
   if (!effect || effect->slot != Slot::measurement) {
     problems.add("no measurement effect '" + text.substr(0, colon) + "'", where,
-                 "there are " + library::effect_names(Slot::measurement),
+                 "there are " + library.names(Slot::measurement),
                  "write EFFECT[:PARAM=VALUE,...] with one of these");
     return {};
   }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/library/library.hpp"
 #include "sim/plant/plant.hpp"
 
 namespace swingbank::sim::plant {
@@ -30,7 +31,9 @@ void measure(std::span<const Block> chain, std::uint64_t seed, Phasors& phasors)
 /// How far an output of the whole chain reaches to either side [s].
 double memory(std::span<const Block> chain);
 
-/// "EFFECT[:PARAM=VALUE,...]" of the measurement slot. What is wrong becomes problems that name `where`.
-std::optional<Block> read_measurement(const std::string& text, const std::string& where, Problems& problems);
+/// "EFFECT[:PARAM=VALUE,...]" of the measurement slot, with the effects of `library`. What is wrong becomes
+/// problems that name `where`.
+std::optional<Block> read_measurement(const std::string& text, const library::EffectLibrary& library,
+                                      const std::string& where, Problems& problems);
 
 }  // namespace swingbank::sim::plant

@@ -31,7 +31,7 @@ inline std::vector<lanes::Job> jobs(const grid::Grid& grid, int count) {
 inline grid::Grid controlled(grid::Grid grid) {
   for (plant::Plant& plant : grid.plants)
     for (const char* name : {"TGOV1", "IEEEST", "SEXS"}) {
-      const Effect& e = *library::find_effect(name);
+      const Effect& e = *library::compiled().find(name);
       plant.controls.push_back({&e, e.standard_parameters()});
     }
   return grid;

@@ -33,7 +33,7 @@ second::Setup base() {
 }
 
 sim::plant::Block block(const std::string& name, const std::map<std::string, double>& values) {
-  sim::plant::Block b{sim::library::find_effect(name), {}};
+  sim::plant::Block b{sim::library::compiled().find(name), {}};
   b.p = b.effect->standard_parameters();
   for (const auto& [parameter, value] : values)
     b.p.at(static_cast<std::size_t>(b.effect->parameter_index(parameter))) = value;

@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string text(reinterpret_cast<const char*>(data), size);
   sim::Effect law;
   if (!fuzz::accepted([&] { law = sim::laws::make_law(text, "law.toml"); })) return 0;
-  static const sim::Effect* const machine = sim::library::find_effect("GENROU");
+  static const sim::Effect* const machine = sim::library::compiled().find("GENROU");
   sim::plant::Plant plant;
   plant.name = "fuzzed";
   plant.generation = {0.5, 0.1};  // [pu on 100 MVA]

@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "base/in_parallel.hpp"
-#include "sim/library/library.hpp"
 #include "validate/fit/noise.hpp"
 #include "validate/fit/slopes.hpp"
 #include "validate/hypothesis/judge.hpp"
@@ -180,12 +179,12 @@ std::string sentence_of(const Addition& a) {
 
 hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std::string& name) {
   const auto named = [&](const hypothesis::Hypothesis& h) { return plain(h.name) == plain(name); };
-  auto all = hypothesis::all_hypotheses(model.under_test());
+  auto all = hypothesis::all_hypotheses(model.under_test(), model.library);
   std::string names;
   for (const auto& h : all) names += (names.empty() ? "" : ", ") + h.name;
-  std::ranges::move(hypothesis::all_replacements(model.under_test()), std::back_inserter(all));
+  std::ranges::move(hypothesis::all_replacements(model.under_test(), model.library), std::back_inserter(all));
   if (const auto found = std::ranges::find_if(all, named); found != all.end()) return *found;
-  const sim::Effect* effect = sim::library::find_effect(name);
+  const sim::Effect* effect = model.library.find(name);
   const std::string remedy = "use one of " + names + ", or load a law with --law";
   if (effect == nullptr)
     throw InputError({"effect '" + name + "'", "swingbank add", "there is no effect of that name", remedy});

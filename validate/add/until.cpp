@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "sim/library/library.hpp"
 #include "validate/add/add.hpp"
 #include "validate/diagnose/diagnose.hpp"
 #include "validate/thresholds/thresholds.hpp"
@@ -35,7 +34,7 @@ std::string next_effect(const diagnose::Diagnosis& d) {
 /// Takes out every added control that no longer earns its place.
 void prune(Completion& c, const std::vector<record::Record>& records, const AddOptions& options) {
   for (std::size_t a = 0; a + 1 < c.added.size(); ++a) {
-    const sim::Effect* effect = sim::library::find_effect(c.added[a].hypothesis.name);
+    const sim::Effect* effect = c.model.library.find(c.added[a].hypothesis.name);
     const auto& controls = c.model.plant.controls;
     const auto at = std::ranges::find(controls, effect, &sim::plant::Block::effect);
     if (effect == nullptr || at == controls.end()) continue;

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "base/durable.hpp"
-#include "sim/library/library.hpp"
 
 namespace swingbank::validate::calibrate {
 namespace {
@@ -65,7 +64,7 @@ sim::plant::Plant estimated_plant(const NetworkEstimate& estimate, const plant::
   }
   std::string absent;
   for (const auto& p : estimate.parameters) {
-    const sim::Effect* effect = sim::library::find_effect(p.effect);
+    const sim::Effect* effect = model.library.find(p.effect);
     const int block = effect ? fit::find_block(plant, *effect) : -1;
     if (block < 0) {
       if (absent.find(p.effect) == std::string::npos) absent += (absent.empty() ? "" : ", ") + p.effect;

@@ -48,8 +48,8 @@ class Diagnoser {
     for (int round = 0;; ++round) {
       fit_base(from);
       const hypothesis::Stage stage = model_stage();
-      result_.ranked = hypothesis::try_hypotheses(stage, hypothesis::all_hypotheses(stage.under_test()),
-                                                  options_.progress);
+      result_.ranked = hypothesis::try_hypotheses(
+          stage, hypothesis::all_hypotheses(stage.under_test(), stage.library), options_.progress);
       if (round == kBases || !better_base(from)) break;
       result_.events = prepared;  // the noise was measured through the worse base
     }
@@ -103,8 +103,8 @@ class Diagnoser {
     const auto fits = [&](const fit::Fit& f) { return f.misfit() <= options_.adequate; };
     if (fits(result_.base) || (!result_.ranked.empty() && fits(result_.ranked.front().fit))) return;
     const hypothesis::Stage stage = model_stage();
-    auto others = hypothesis::try_hypotheses(stage, hypothesis::all_replacements(stage.under_test()),
-                                             options_.progress);
+    auto others = hypothesis::try_hypotheses(
+        stage, hypothesis::all_replacements(stage.under_test(), stage.library), options_.progress);
     std::ranges::move(others, std::back_inserter(result_.ranked));
     std::ranges::stable_sort(result_.ranked, std::greater<>(), &hypothesis::Judgement::gain);
   }
@@ -173,6 +173,7 @@ class Diagnoser {
     return {.events = result_.events,
             .plant = model_.plant,
             .conventions = model_.conventions,
+            .library = model_.library,
             .fit = result_.base,
             .spread = options_.spread,
             .threads = threads_};
@@ -223,8 +224,8 @@ class Diagnoser {
   [[nodiscard]] std::vector<hypothesis::Judgement> beside(const hypothesis::Stage& stage,
                                                           const hypothesis::Judgement& first) const {
     const hypothesis::Stage then = hypothesis::after(stage, first);
-    auto pairs =
-        hypothesis::try_hypotheses(then, hypothesis::all_hypotheses(then.under_test()), options_.progress);
+    auto pairs = hypothesis::try_hypotheses(then, hypothesis::all_hypotheses(then.under_test(), then.library),
+                                            options_.progress);
     // a rival of the best hypothesis may only have started badly
     const int slot = pairs.empty() || pairs.front().gain < thresholds::evidence.second
                          ? -1

@@ -124,9 +124,9 @@ void try_from(const Stage& stage, const fit::Fit& other, Judgement& j) {
 }
 
 Stage after(const Stage& stage, const Judgement& j) {
-  return {stage.events, j.hypothesis.plant, j.hypothesis.conventions,
-          j.fit,        j.hypothesis.free,  j.hypothesis.name,
-          stage.spread, stage.threads};
+  return {stage.events, j.hypothesis.plant, j.hypothesis.conventions, stage.library,
+          j.fit,        j.hypothesis.free,  j.hypothesis.name,        stage.spread,
+          stage.threads};
 }
 
 void bring(const Stage& stage, Hypothesis& h) {
@@ -141,7 +141,7 @@ void bring(const Stage& stage, Hypothesis& h) {
 
 std::vector<Judgement> exchanges(const Stage& stage, const Judgement& pair,
                                  const std::vector<Judgement>& alone) {
-  const auto all = all_hypotheses(stage.under_test());
+  const auto all = all_hypotheses(stage.under_test(), stage.library);
   const auto first = std::ranges::find(all, pair.hypothesis.with, &Hypothesis::name),
              second = std::ranges::find(all, pair.hypothesis.name, &Hypothesis::name);
   if (first == all.end() || second == all.end()) return {};  // one effect needs the other to be there
@@ -151,7 +151,7 @@ std::vector<Judgement> exchanges(const Stage& stage, const Judgement& pair,
   copy_values(pair.fit.plant, second->plant, second->free, stays.fit.plant);
   const Stage then = after(stage, stays);
   std::vector<Judgement> rivals;
-  for (Hypothesis& h : all_hypotheses(then.under_test())) {
+  for (Hypothesis& h : all_hypotheses(then.under_test(), then.library)) {
     const auto known = std::ranges::find(alone, h.name, [](const Judgement& j) { return j.hypothesis.name; });
     const bool in_slot = first->slot >= 0 && h.slot == first->slot;
     const bool holds = known != alone.end() && known->accepted && known->hypothesis.with.empty();

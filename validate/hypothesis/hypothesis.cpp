@@ -9,7 +9,6 @@
 #include <map>
 #include <random>
 
-#include "sim/library/library.hpp"
 #include "validate/playin/can_run.hpp"
 #include "validate/playin/instruments.hpp"
 
@@ -144,8 +143,9 @@ Hypothesis added_to(const sim::plant::PlantUnderTest& tested, const sim::Effect&
   return h;
 }
 
-void add_effects(const sim::plant::PlantUnderTest& tested, std::vector<Hypothesis>& all) {
-  for (const sim::Effect* effect : sim::library::every_effect()) {
+void add_effects(const sim::plant::PlantUnderTest& tested, const sim::library::EffectLibrary& library,
+                 std::vector<Hypothesis>& all) {
+  for (const sim::Effect* effect : library.all()) {
     const bool instrument = effect->slot == Slot::measurement;
     const bool fits = effect->slot == Slot::transformer || sim::is_control(effect->slot) || instrument;
     if (!fits || effect->instants || occupied(tested.plant, *effect)) continue;
@@ -235,22 +235,24 @@ std::string_view side_name(Side side) {
   return names[static_cast<std::size_t>(side)];
 }
 
-std::vector<Hypothesis> all_hypotheses(const sim::plant::PlantUnderTest& tested) {
+std::vector<Hypothesis> all_hypotheses(const sim::plant::PlantUnderTest& tested,
+                                       const sim::library::EffectLibrary& library) {
   std::vector<Hypothesis> all;
-  add_effects(tested, all);
+  add_effects(tested, library, all);
   add_neutral_groups(tested, all);
   add_conventions(tested, all);
   return all;
 }
 
-std::vector<Hypothesis> all_replacements(const sim::plant::PlantUnderTest& tested) {
+std::vector<Hypothesis> all_replacements(const sim::plant::PlantUnderTest& tested,
+                                         const sim::library::EffectLibrary& library) {
   std::vector<Hypothesis> all;
   for (std::size_t c = 0; c < tested.plant.controls.size(); ++c) {
     const sim::Effect& there = *tested.plant.controls[c].effect;
     if (sim::is_shared(there.slot)) continue;
     sim::plant::Plant room = tested.plant;
     room.controls.erase(room.controls.begin() + static_cast<std::ptrdiff_t>(c));
-    for (const sim::Effect* effect : sim::library::every_effect()) {
+    for (const sim::Effect* effect : library.all()) {
       if (effect->slot != there.slot || effect == &there || effect->instants) continue;
       Hypothesis h = added_to({room, tested.conventions}, *effect);
       h.name += fmt::format(" in place of {}", there.name);

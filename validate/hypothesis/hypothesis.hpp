@@ -1,10 +1,11 @@
 #pragma once
-// What could be missing: every registered effect in a slot that has room, every group of parameters at their
-// neutral values, every measurement fault, every convention. And what could be of another kind: every control
-// in a slot that holds only one control. Nothing is listed by name: an effect joins by existing.
+// What could be missing: every effect of a library in a slot that has room, every group of parameters at
+// their neutral values, every measurement fault, every convention. And what could be of another kind: every
+// control in a slot that holds only one control. Nothing is listed by name: an effect joins by existing.
 #include <string>
 #include <vector>
 
+#include "sim/library/library.hpp"
 #include "validate/fit/fit.hpp"
 
 namespace swingbank::validate::hypothesis {
@@ -27,12 +28,14 @@ struct Hypothesis {
   [[nodiscard]] sim::plant::PlantUnderTest under_test() const { return {plant, conventions}; }
 };
 
-/// Everything that may be added to the plant. Some of it may change nothing there (a stabiliser without an
-/// exciter), which only trying shows. Effects that act at given instants belong to one event and are not
-/// among them.
-std::vector<Hypothesis> all_hypotheses(const sim::plant::PlantUnderTest& tested);
+/// Everything of the library that may be added to the plant. The hypotheses refer to its effects. Some of it
+/// may change nothing there (a stabiliser without an exciter), which only trying shows. Effects that act at
+/// given instants belong to one event and are not among them.
+std::vector<Hypothesis> all_hypotheses(const sim::plant::PlantUnderTest& tested,
+                                       const sim::library::EffectLibrary& library);
 /// Every control of the plant that has its slot to itself, replaced by every other effect of that slot.
-std::vector<Hypothesis> all_replacements(const sim::plant::PlantUnderTest& tested);
+std::vector<Hypothesis> all_replacements(const sim::plant::PlantUnderTest& tested,
+                                         const sim::library::EffectLibrary& library);
 /// More draws of the hypothesis's first `own` free parameters than the starts it came with. Their longest
 /// time is about `within` [s] at most.
 std::vector<std::vector<double>> further_draws(const Hypothesis& h, std::size_t own, std::size_t count,

@@ -18,7 +18,8 @@ struct Stage {
   const event::WhitenedEvents& events;
   sim::plant::Plant plant;  ///< holds the nominal values, which beliefs are about
   sim::Conventions conventions;
-  const fit::Fit& fit;  ///< of this structure
+  const sim::library::EffectLibrary& library;  ///< whose effects may be added
+  const fit::Fit& fit;                         ///< of this structure
   std::vector<fit::FreeParameter> own =
       {};                 ///< parameters that earlier stages brought, as numbered in `plant`
   std::string with = {};  ///< name of what was added; empty: the model as it was given

@@ -114,7 +114,7 @@ void check(const PlantModel& model, const std::vector<std::string>& provenance) 
 bool same(double a, double b) { return a == b; }  // no NaN gets into a plant
 
 std::string block_difference(const sim::plant::Block& a, const sim::plant::Block& b) {
-  if (a.effect != b.effect)
+  if (!a.effect || !b.effect ? a.effect != b.effect : !sim::laws::same_effect(*a.effect, *b.effect))
     return fmt::format("effect {} against {}", a.effect ? a.effect->name : "none",
                        b.effect ? b.effect->name : "none");
   for (std::size_t i = 0; i < a.p.size(); ++i)

@@ -8,7 +8,6 @@
 #include "base/config.hpp"
 #include "base/input_file.hpp"
 #include "sim/laws/law.hpp"
-#include "sim/library/library.hpp"
 
 namespace swingbank::validate::plant {
 namespace {
@@ -18,19 +17,21 @@ using sim::Slot;
 
 constexpr double kSmallest = 1e-9;  ///< bases and frequencies are above zero
 
+using sim::library::EffectLibrary;
+
 /// Names of the effects of one slot, as a config may write them.
-std::vector<std::string> effects_of(Slot slot) {
+std::vector<std::string> effects_of(const EffectLibrary& library, Slot slot) {
   std::vector<std::string> names;
-  for (const auto* e : sim::library::every_effect())
+  for (const auto* e : library.all())
     if (e->slot == slot) names.emplace_back(e->name);
   return names;
 }
 
 /// One section: the effect's name and every one of its parameters; checked for consistency if all could be
 /// read. `section` is a slot's name, or "limiter[1]".
-sim::plant::Block read_block(Config& config, Slot slot, const std::string& section) {
-  sim::plant::Block block{sim::library::find_effect(config.choice(section + ".effect", effects_of(slot))),
-                          {}};
+sim::plant::Block read_block(Config& config, const EffectLibrary& library, Slot slot,
+                             const std::string& section) {
+  sim::plant::Block block{library.find(config.choice(section + ".effect", effects_of(library, slot))), {}};
   if (!block.effect || block.effect->slot != slot) return {};
   const bool sound = config.sound();
   for (const auto& p : block.effect->parameters)
@@ -44,13 +45,13 @@ sim::plant::Block read_block(Config& config, Slot slot, const std::string& secti
 }
 
 /// Every [[section]] of a slot that takes several effects.
-std::vector<sim::plant::Block> read_several(Config& config, Slot slot) {
+std::vector<sim::plant::Block> read_several(Config& config, const EffectLibrary& library, Slot slot) {
   const std::string name(sim::slot_name(slot));
   config.ignore(name);  // its keys are compared below
   std::vector<sim::plant::Block> blocks;
   for (int k = 0; config.has(fmt::format("{}[{}]", name, k)); ++k) {
     const std::string section = fmt::format("{}[{}]", name, k);
-    const sim::plant::Block block = read_block(config, slot, section);
+    const sim::plant::Block block = read_block(config, library, slot, section);
     if (!block.effect) continue;
     std::vector<std::string> known = {"effect"};
     for (const auto& p : block.effect->parameters) known.emplace_back(p.name);
@@ -64,39 +65,40 @@ std::vector<sim::plant::Block> read_several(Config& config, Slot slot) {
 }
 
 /// The effects of one slot: one [section], or several [[section]] where they add up.
-void read_slot(Config& config, Slot slot, std::vector<sim::plant::Block>& into) {
+void read_slot(Config& config, const EffectLibrary& library, Slot slot,
+               std::vector<sim::plant::Block>& into) {
   const std::string section(sim::slot_name(slot));
-  if (!config.is_array(section)) return into.push_back(read_block(config, slot, section));
+  if (!config.is_array(section)) return into.push_back(read_block(config, library, slot, section));
   if (!sim::is_shared(slot)) {
     config.ignore(section);
     return config.problem(section, "several [[" + section + "]]", "a plant has room for one",
                           "write one [" + section + "]");
   }
-  std::ranges::move(read_several(config, slot), std::back_inserter(into));
+  std::ranges::move(read_several(config, library, slot), std::back_inserter(into));
 }
 
-void read_blocks(Config& config, sim::plant::Plant& plant) {
-  plant.machine = read_block(config, Slot::machine, "machine");
+void read_blocks(Config& config, const EffectLibrary& library, sim::plant::Plant& plant) {
+  plant.machine = read_block(config, library, Slot::machine, "machine");
   for (const Slot slot : sim::kSlots) {
     const std::string section(sim::slot_name(slot));
     if (slot == Slot::machine || slot == Slot::load || !config.has(section)) continue;
-    if (effects_of(slot).empty())
+    if (effects_of(library, slot).empty())
       config.problem(section, "section [" + section + "]", "this build has no effect of that kind",
                      "remove it; the slot holds its input at the operating point");
     else if (slot == Slot::transformer)
-      plant.transformer = read_block(config, slot, section);
+      plant.transformer = read_block(config, library, slot, section);
     else
-      read_slot(config, slot, slot == Slot::measurement ? plant.measurements : plant.controls);
+      read_slot(config, library, slot, slot == Slot::measurement ? plant.measurements : plant.controls);
   }
 }
 
-/// Law files of the plant: their effects are known from here on.
-std::vector<fs::path> read_laws(Config& config) {
+/// Law files of the plant: the library knows their effects from here on.
+std::vector<fs::path> read_laws(Config& config, EffectLibrary& library) {
   std::vector<fs::path> files;
   for (const auto& name : config.optional<std::vector<std::string>>("laws", {})) {
     const fs::path file = (config.name().parent_path() / name).lexically_normal();
     try {
-      sim::laws::load_law(file);
+      sim::laws::load_law(file, library);
       files.push_back(file);
     } catch (const InputError& error) {
       for (const auto& p : error.problems())
@@ -167,7 +169,7 @@ PlantModel parse_plant_model(const std::string& text, const fs::path& file) {
   PlantModel model;
   model.origin = file.string();
   model.hash = XXH64(text.data(), text.size(), 0);
-  model.laws = read_laws(config);
+  model.laws = read_laws(config, model.library);
   model.name = config.require<std::string>("plant.name");
   config.optional<std::string>("plant.origin", "");
   const auto hz = config.require<double>("plant.frequency_hz", {kSmallest, 1000.0, "Hz"});
@@ -180,7 +182,7 @@ PlantModel parse_plant_model(const std::string& text, const fs::path& file) {
   } else {
     model.plant.mva = config.require<double>("plant.base_mva", {kSmallest, 1e9, "MVA"});
     model.plant.name = model.name;
-    read_blocks(config, model.plant);
+    read_blocks(config, model.library, model.plant);
   }
   config.raise();
   return model;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/grid/grid.hpp"
+#include "sim/library/library.hpp"
 #include "sim/plant/under_test.hpp"
 #include "validate/record/record.hpp"
 
@@ -20,6 +21,9 @@ struct PlantModel {
   record::RecordBase record_base;                ///< what "pu" means in the records of this plant
   std::vector<std::filesystem::path> laws = {};  ///< law files that its effects come from
   [[nodiscard]] sim::plant::PlantUnderTest under_test() const { return {plant, conventions}; }
+  /// Compiled effects and those of `laws`. The plant's blocks point into it, so a plant taken out of the
+  /// model must not outlive the model and its copies.
+  sim::library::EffectLibrary library = {};
 };
 
 /// Reads a plant file (configs/plants/README.md describes it). Every parameter of every effect must be given

@@ -11,6 +11,7 @@
 #include "sim/grid/attach.hpp"
 #include "sim/grid/load_choice.hpp"
 #include "sim/laws/law.hpp"
+#include "sim/library/library.hpp"
 #include "sim/plant/measure.hpp"
 #include "validate/check/record_set.hpp"
 #include "validate/record/formats.hpp"
@@ -66,10 +67,11 @@ sim::grid::EventTexts read_texts(Config& c) {
 }
 
 void read_grid(Config& c, SystemCase& s) {
+  sim::library::EffectLibrary library;
   for (const auto& name : c.optional<Texts>("laws", {}))
     attempt(c, "laws", [&] {
       const fs::path law = (c.name().parent_path() / name).lexically_normal();
-      sim::laws::load_law(law);
+      sim::laws::load_law(law, library);
       s.laws.emplace_back(law, hash_of(law));
     });
   s.raw = c.file("system.raw");
@@ -87,6 +89,7 @@ void read_grid(Config& c, SystemCase& s) {
   s.dyr_hash = hash_of(s.dyr);
   attempt(c, "system.raw", [&] { s.grid = sim::grid::load_grid(s.raw, s.dyr, conventions, models, hz); });
   if (!c.sound()) return;
+  s.grid.library = library;
   Problems problems;
   for (const auto& text : attached) sim::grid::attach(s.grid, text, "attach " + text, problems);
   tell(c, "system.attach", problems);
@@ -134,7 +137,7 @@ void add_instruments(Config& c, const std::string& key, const SystemCase& s, Sys
   if (t.plant >= 0) t.instruments = s.grid.plants[static_cast<std::size_t>(t.plant)].measurements;
   Problems problems;
   for (const auto& text : c.optional<Texts>(key, {}))
-    if (auto block = sim::plant::read_measurement(text, "instrument " + text, problems))
+    if (auto block = sim::plant::read_measurement(text, s.grid.library, "instrument " + text, problems))
       t.instruments.push_back(std::move(*block));
   tell(c, key, problems);
   for (const sim::plant::Block& block : t.instruments)

@@ -20,6 +20,7 @@ struct Requirement {
 };
 
 struct Definition {
+  std::string text;  ///< of the file, as it was read
   std::string name, title, source, description;
   std::deque<std::string> texts;  ///< what the records' string_views refer to
   std::vector<Parameter> parameters;

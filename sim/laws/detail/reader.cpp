@@ -342,7 +342,9 @@ Definition Reader::read() {
 }
 
 Definition read_definition(const std::string& text, const std::filesystem::path& name) {
-  return Reader(text, name).read();
+  Definition law = Reader(text, name).read();
+  law.text = text;
+  return law;
 }
 
 }  // namespace swingbank::sim::laws

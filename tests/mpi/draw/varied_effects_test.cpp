@@ -182,7 +182,7 @@ TEST(VariedEffects, RowsAreRunsOfAPlantWithTheseParameters) { expect_rows_are_ru
 
 TEST(VariedEffects, AStepUpTransformerVariesToo) {
   DatasetConfig c = config({{"attach = [", "attach = [\"all:STEPUP\", "}});
-  const sim::Effect* stepup = sim::library::find_effect("STEPUP");
+  const sim::Effect* stepup = sim::library::compiled().find("STEPUP");
   c.box.push_back({stepup->parameter_index("X"), 0.02, 0.2, stepup});
   expect_rows_are_runs(c);
 }

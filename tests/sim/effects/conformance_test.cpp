@@ -69,15 +69,15 @@ std::vector<double> draw(const Effect& e, std::mt19937_64& random) {
 
 std::vector<const Effect*> machines() {
   std::vector<const Effect*> list;
-  for (const auto& e : library::all_effects())
+  for (const auto& e : library::compiled_effects())
     if (e.slot == Slot::machine) list.push_back(&e);
   return list;
 }
 
 TEST(Conformance, RecordsAreComplete) {
-  ASSERT_FALSE(library::all_effects().empty());
+  ASSERT_FALSE(library::compiled_effects().empty());
   std::set<std::string_view> names;
-  for (const auto& e : library::all_effects()) {
+  for (const auto& e : library::compiled_effects()) {
     EXPECT_TRUE(names.insert(e.name).second) << e.name << " twice";
     EXPECT_FALSE(e.source.empty()) << e.name;
     std::set<std::string_view> parameters;
@@ -164,7 +164,7 @@ TEST(Conformance, StatesStandStillWithoutTheirMovers) {
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   int tested = 0;
-  for (const auto& e : library::all_effects())
+  for (const auto& e : library::compiled_effects())
     for (std::size_t i = 0; i < e.states.size(); ++i) {
       const auto [first, second] = e.states[i].moved_by;
       if (first < 0) continue;

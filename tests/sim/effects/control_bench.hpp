@@ -29,14 +29,13 @@ class ControlBench {
     return s;
   }
   /// The effect at its standard values with `changes`, brought to steady state at `at`.
-  explicit ControlBench(const std::string& name, const Changes& changes = {}, Signals<double> at = rated(),
+  explicit ControlBench(const Effect& effect, const Changes& changes = {}, Signals<double> at = rated(),
                         Conventions conventions = Conventions::psse())
-      : effect_(library::find_effect(name)), in(at) {
-    if (!effect_) throw std::runtime_error("no effect " + name);
+      : effect_(&effect), in(at) {
     p = effect_->standard_parameters();
     for (const auto& [parameter, value] : changes)
       p.at(static_cast<std::size_t>(effect_->parameter_index(parameter))) = value;
-    effect_->check(effect_->law.get(), p.data(), name, problems);
+    effect_->check(effect_->law.get(), p.data(), std::string(effect.name), problems);
     c.assign(static_cast<std::size_t>(effect_->coefficients), 0.0);
     x.assign(effect_->states.size(), 0.0);
     ops().prepare(p.data(), conventions, c.data());
@@ -44,6 +43,10 @@ class ControlBench {
     refused = ops().control.steady(effect_->law.get(), p.data(), c.data(), s, x.data());
     within_limits();
   }
+  /// The same with a compiled effect.
+  explicit ControlBench(const std::string& name, const Changes& changes = {}, Signals<double> at = rated(),
+                        Conventions conventions = Conventions::psse())
+      : ControlBench(compiled(name), changes, at, conventions) {}
 
   /// Signals as the control leaves them, at the present inputs and states.
   [[nodiscard]] Signals<double> out() const {
@@ -111,6 +114,11 @@ class ControlBench {
   }
 
  private:
+  static const Effect& compiled(const std::string& name) {
+    const Effect* effect = library::compiled().find(name);
+    if (!effect) throw std::runtime_error("no effect " + name);
+    return *effect;
+  }
   const Effect* effect_;
 
  public:

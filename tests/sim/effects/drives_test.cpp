@@ -14,7 +14,7 @@ using Values = std::vector<double>;
 
 /// The signals a drive leaves behind at time t; Tm is 0.8 before.
 Signals<double> at(const char* name, const Values& p, double t) {
-  const Effect& e = *library::find_effect(name);
+  const Effect& e = *library::compiled().find(name);
   Values c(static_cast<std::size_t>(e.coefficients));
   const auto& ops = e.get<double>();
   ops.prepare(p.data(), Conventions::psse(), c.data());
@@ -72,7 +72,7 @@ TEST(Drives, ForcedOscillationIsASine) {
 
 TEST(Drives, EveryJumpAndKinkIsNamed) {
   const auto instants = [](const char* name, const Values& p) {
-    return library::find_effect(name)->instants(nullptr, p.data());
+    return library::compiled().find(name)->instants(nullptr, p.data());
   };
   EXPECT_EQ(instants("VREFSTEP", {0.0, 2.0, 3.0}), (Values{2.0, 3.0}));
   EXPECT_EQ(instants("PREFRAMP", {0.0, 2.0, 3.0}), (Values{2.0, 5.0}));
@@ -85,7 +85,7 @@ TEST(Drives, EveryJumpAndKinkIsNamed) {
 TEST(Drives, RefuseWhatCannotBe) {
   const auto count = [](const char* name, const Values& p) {
     Problems problems;
-    library::find_effect(name)->check(nullptr, p.data(), "here", problems);
+    library::compiled().find(name)->check(nullptr, p.data(), "here", problems);
     return problems.list().size();
   };
   EXPECT_EQ(count("VREFSTEP", {0.1, -1.0, -2.0}), 2u);
@@ -100,13 +100,13 @@ TEST(Drives, RefuseWhatCannotBe) {
 grid::Grid two_infinite_buses() {
   grid::Grid grid = test::two_machine_grid(Conventions::psse());
   plant::Plant& plant = grid.plants[1];
-  plant.machine = {library::find_effect("GENCLS"), {0.0, 0.0, 0.0, 1e-6}};
-  plant.controls = {{library::find_effect("SEXS"), {1.0, 0.0, 20.0, 0.5, -10.0, 10.0}},
-                    {library::find_effect("TGOV1"), {0.05, 0.4, 2.0, -2.0, 0.0, 0.0, 0.0, 0.0}}};
+  plant.machine = {library::compiled().find("GENCLS"), {0.0, 0.0, 0.0, 1e-6}};
+  plant.controls = {{library::compiled().find("SEXS"), {1.0, 0.0, 20.0, 0.5, -10.0, 10.0}},
+                    {library::compiled().find("TGOV1"), {0.05, 0.4, 2.0, -2.0, 0.0, 0.0, 0.0, 0.0}}};
   return grid;
 }
 void add(plant::Plant& plant, const char* name, Values p) {
-  plant.controls.push_back({library::find_effect(name), std::move(p)});
+  plant.controls.push_back({library::compiled().find(name), std::move(p)});
   std::ranges::stable_sort(plant.controls, {}, [](const plant::Block& b) { return b.effect->slot; });
 }
 reference::ReferenceRun reference(const grid::Grid& grid, double t_end = 8.0) {
@@ -191,7 +191,7 @@ TEST(Drives, ForcedOscillationSwingsTheMachineAsTheLinearModelSays) {
   grid::Grid grid = test::two_machine_grid(Conventions::andes());
   plant::Plant& plant = grid.plants[1];
   constexpr double H = 3.0, D = 20.0, A = 1e-4, f = 0.7, start = 1.0, x = 0.25;
-  plant.machine = {library::find_effect("GENCLS"), {H, D, 0.0, x}};
+  plant.machine = {library::compiled().find("GENCLS"), {H, D, 0.0, x}};
   const auto operating = plant::operating_point(plant, grid.flow.voltage[2], 100.0, grid.conventions);
   add(plant, "FORCEDOSC", {A, f, 0.0, start, 1e5});
   const reference::ReferenceRun run = reference(grid, 15.0);
@@ -199,7 +199,7 @@ TEST(Drives, ForcedOscillationSwingsTheMachineAsTheLinearModelSays) {
   // Synchronising torque from a second run, shifted in torque for good: Ks = change of torque / of angle.
   grid::Grid shifted = grid;
   shifted.plants[1].controls = {
-      {library::find_effect("FORCEDOSC"), {A, 1e-3, std::numbers::pi / 2, 1.0, 1e5}}};
+      {library::compiled().find("FORCEDOSC"), {A, 1e-3, std::numbers::pi / 2, 1.0, 1e5}}};
   const reference::ReferenceRun still = reference(shifted, 15.0);
   const double* angle = still.at(0, static_cast<int>(Channel::delta));
   const int end = still.samples - 1;
@@ -234,8 +234,8 @@ TEST(Drives, AreExactlySilentBeforeTheirFirstInstant) {
   for (const auto& [name, values] : drives) {
     grid::Grid grid = test::two_machine_grid(Conventions::psse());
     grid.plants[1].controls = {
-        {library::find_effect("SEXS"), library::find_effect("SEXS")->standard_parameters()},
-        {library::find_effect("TGOV1"), library::find_effect("TGOV1")->standard_parameters()}};
+        {library::compiled().find("SEXS"), library::compiled().find("SEXS")->standard_parameters()},
+        {library::compiled().find("TGOV1"), library::compiled().find("TGOV1")->standard_parameters()}};
     grid::Grid silent = grid;
     add(grid.plants[1], name, values.first);
     add(silent.plants[1], name, values.second);

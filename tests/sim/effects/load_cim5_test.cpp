@@ -24,7 +24,7 @@ struct Motor {
   explicit Motor(const Changes& changes, Complex power = {0.8, 0.3}) {
     load.name = "1";
     load.consumption = power;
-    load.block = {library::find_effect("CIM5"), library::find_effect("CIM5")->standard_parameters()};
+    load.block = {library::compiled().find("CIM5"), library::compiled().find("CIM5")->standard_parameters()};
     at("Mbase") = 100.0;
     for (const auto& [name, value] : changes) at(name) = value;
     o = plant::load_operating_point(load, load.block.p, kV0, 100.0, Conventions::psse());
@@ -140,7 +140,7 @@ void refused(const Changes& changes, Complex power, const char* part) {
 TEST(LoadCim5, WhatCannotRunIsRefused) {
   refused({{"Mbase", 20.0}}, {0.8, 0.3}, "the motor pulls out at ");
   refused({}, {-0.8, 0.3}, "a motor draws power");
-  const Effect& effect = *library::find_effect("CIM5");
+  const Effect& effect = *library::compiled().find("CIM5");
   for (const auto& [name, value] : {std::pair{"VI", 0.7},
                                     {"IT", 3.0},
                                     {"R2", 0.1},

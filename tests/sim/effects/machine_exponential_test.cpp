@@ -14,7 +14,7 @@ namespace {
 
 struct Machine {
   Machine(const char* name, double s10, double s12, double ir, double ii)
-      : effect(*library::find_effect(name)) {
+      : effect(*library::compiled().find(name)) {
     p = effect.standard_parameters();
     at("S10") = s10;
     at("S12") = s12;
@@ -80,7 +80,7 @@ TEST(ExponentialSaturation, SingularValuesAreRefused) {
   for (const char* name : {"GENROE", "GENSAE"})
     for (const auto& [parameter, value] :
          {std::pair{"Tdopp", 0.0}, {"Xdp", 0.1}, {"Xd", 0.1}, {"H", 0.0}, {"S12", 0.0}}) {
-      const Effect& effect = *library::find_effect(name);
+      const Effect& effect = *library::compiled().find(name);
       auto p = effect.standard_parameters();
       p[static_cast<std::size_t>(effect.parameter_index(parameter))] = value;
       Problems problems;

@@ -23,7 +23,7 @@ struct Machine {
     effect.get<double>().prepare(p.data(), Conventions::psse(), c.data());
     refused = effect.get<double>().machine.steady(p.data(), c.data(), s, x.data());
   }
-  const Effect& effect = *library::find_effect("GENSAL");
+  const Effect& effect = *library::compiled().find("GENSAL");
   std::vector<double> p, c, x;
   Signals<double> s;
   std::string refused;
@@ -49,7 +49,7 @@ TEST(MachineGensal, SaturationAddsToTheFieldOfTheDirectAxisOnly) {
 }
 
 TEST(MachineGensal, SingularValuesAreRefused) {
-  const Effect& effect = *library::find_effect("GENSAL");
+  const Effect& effect = *library::compiled().find("GENSAL");
   for (const auto& [name, value] : {std::pair{"Tdopp", 0.0}, {"Xdp", 0.1}, {"H", 0.0}, {"S12", 0.05}}) {
     auto p = effect.standard_parameters();
     p[static_cast<std::size_t>(effect.parameter_index(name))] = value;

@@ -19,7 +19,7 @@ using Changes = std::vector<std::pair<const char*, double>>;
 struct Machine {
   Machine(const char* name, const Changes& changes, Complex v, Complex i,
           Conventions conventions = Conventions::psse())
-      : effect(*library::find_effect(name)) {
+      : effect(*library::compiled().find(name)) {
     p = effect.standard_parameters();
     for (const auto& [parameter, value] : changes) at(parameter) = value;
     c.resize(static_cast<std::size_t>(effect.coefficients));
@@ -175,7 +175,7 @@ void expect_lanes_equal_the_reference(const grid::Grid& grid) {
 /// Every second machine of IEEE 39 a GENTPJ.
 grid::Grid every_second() {
   grid::Grid grid = test::configured_grid("ieee39_dataset_genrou", Conventions::psse());
-  const Effect& gentpj = *library::find_effect("GENTPJ");
+  const Effect& gentpj = *library::compiled().find("GENTPJ");
   for (std::size_t i = 1; i < grid.plants.size(); i += 2)
     grid.plants[i].machine = {&gentpj, gentpj.standard_parameters()};
   return grid;
@@ -184,17 +184,17 @@ TEST(MachineGentpj, LanesEqualTheReference) { expect_lanes_equal_the_reference(e
 TEST(MachineGentpj, LanesEqualTheReferenceBehindTransformers) {
   grid::Grid grid = every_second();
   for (const std::size_t i : {3, 4, 7})
-    grid.plants[i].transformer = {library::find_effect("STEPUP"), {0.004, 0.12, 1.04}};
+    grid.plants[i].transformer = {library::compiled().find("STEPUP"), {0.004, 0.12, 1.04}};
   expect_lanes_equal_the_reference(grid);
 }
 /// Without saturation, behind a transformer too, it is the GENROU of the test above.
 TEST(MachineGentpj, BehindATransformerWithoutSaturationItIsGenrou) {
   grid::Grid linear = test::two_machine_grid(Conventions::psse());
   plant::Plant& plant = linear.plants[1];
-  plant.transformer = {library::find_effect("STEPUP"), {0.004, 0.12, 1.04}};
+  plant.transformer = {library::compiled().find("STEPUP"), {0.004, 0.12, 1.04}};
   grid::Grid mine = linear;
   const auto set = [](plant::Plant& p, const char* effect, const Changes& changes) {
-    p.machine = {library::find_effect(effect), library::find_effect(effect)->standard_parameters()};
+    p.machine = {library::compiled().find(effect), library::compiled().find(effect)->standard_parameters()};
     for (const auto& [name, value] : changes)
       p.machine.p[static_cast<std::size_t>(p.machine.effect->parameter_index(name))] = value;
   };
@@ -212,7 +212,7 @@ TEST(MachineGentpj, BehindATransformerWithoutSaturationItIsGenrou) {
 }
 
 TEST(MachineGentpj, SingularValuesAreRefused) {
-  const Effect& effect = *library::find_effect("GENTPJ");
+  const Effect& effect = *library::compiled().find("GENTPJ");
   for (const auto& [name, value] : {std::pair{"Tdopp", 0.0},
                                     {"Xdp", 0.25},
                                     {"Xqp", 0.2},

@@ -22,7 +22,7 @@ inline Phasors swing(double rate, double seconds = 4.0) {
   return p;
 }
 
-inline const Effect& effect(const char* name) { return *library::find_effect(name); }
+inline const Effect& effect(const char* name) { return *library::compiled().find(name); }
 
 /// What the instrument with these parameters makes of phasors.
 inline Phasors measured(const Effect& e, const std::vector<double>& p, Phasors phasors,

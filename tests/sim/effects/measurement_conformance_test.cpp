@@ -12,7 +12,7 @@ using test::swing;
 
 std::vector<const Effect*> instruments() {
   std::vector<const Effect*> list;
-  for (const Effect* e : library::every_effect())
+  for (const Effect* e : library::compiled().all())
     if (e->slot == Slot::measurement) list.push_back(e);
   return list;
 }

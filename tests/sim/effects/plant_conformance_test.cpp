@@ -17,7 +17,7 @@ constexpr double kBase = 100.0;
 const Complex kVoltage = std::polar(1.02, 0.1), kPower(0.6, 0.15);
 
 plant::Block standard(const Effect& effect) { return {&effect, effect.standard_parameters()}; }
-plant::Block standard(const char* name) { return standard(*library::find_effect(name)); }
+plant::Block standard(const char* name) { return standard(*library::compiled().find(name)); }
 
 /// A plant with the effect in its slot, and where its signal would lead nowhere, with what reads it.
 plant::Plant host(const Effect& effect) {
@@ -43,13 +43,13 @@ plant::Block& own_block(plant::Plant& plant, const Effect& effect) {
 
 std::vector<const Effect*> guests() {
   std::vector<const Effect*> list;
-  for (const Effect* e : library::every_effect())
+  for (const Effect* e : library::compiled().all())
     if (is_control(e->slot) || e->slot == Slot::transformer) list.push_back(e);
   return list;
 }
 std::vector<const Effect*> loads() {
   std::vector<const Effect*> list;
-  for (const Effect* e : library::every_effect())
+  for (const Effect* e : library::compiled().all())
     if (e->slot == Slot::load) list.push_back(e);
   return list;
 }

@@ -84,7 +84,7 @@ Pair grids(Conventions conventions, const formats::DyrRecord& machine = kGenrou)
   net.generators[1].p = power.real();
   net.generators[1].vset = std::abs(v[1]);
   pair.plant = grid::make_grid(std::move(net), models(2, machine), "plant", conventions);
-  pair.plant.plants[1].transformer = {library::find_effect("STEPUP"), {kR, kX, kRatio}};
+  pair.plant.plants[1].transformer = {library::compiled().find("STEPUP"), {kR, kX, kRatio}};
   return pair;
 }
 
@@ -132,7 +132,7 @@ TEST(TransformerStepup, RecordsTheGridsSide) {
 TEST(TransformerStepup, NeutralValuesChangeNothing) {
   grid::Grid with = grid::make_grid(network(true), models(3), "neutral", Conventions::psse());
   const reference::ReferenceRun without = reference(with, {});
-  with.plants[1].transformer = {library::find_effect("STEPUP"), {0.0, 0.0, 1.0}};
+  with.plants[1].transformer = {library::compiled().find("STEPUP"), {0.0, 0.0, 1.0}};
   // The same equations in another order of operations.
   EXPECT_LE(test::largest_difference(reference(with, {}), without), 1e-8);
 }
@@ -140,7 +140,7 @@ TEST(TransformerStepup, NeutralValuesChangeNothing) {
 TEST(TransformerStepup, RefusesWhatIsNoTransformer) {
   const double wrong[] = {-0.01, -0.1, 0.0};
   Problems problems;
-  library::find_effect("STEPUP")->check(nullptr, wrong, "here", problems);
+  library::compiled().find("STEPUP")->check(nullptr, wrong, "here", problems);
   ASSERT_EQ(problems.list().size(), 3u);
   EXPECT_EQ(problems.list()[1].sentence(), "X = -0.1 pu at here (leakage is inductive): give X >= 0");
 }

@@ -11,7 +11,7 @@ using testing::HasSubstr;
 
 plant::Block block(const std::string& text) {
   Problems problems;
-  const auto read = plant::read_measurement(text, "test", problems);
+  const auto read = plant::read_measurement(text, library::compiled(), "test", problems);
   problems.raise();
   return *read;
 }
@@ -85,7 +85,7 @@ TEST(Measure, ReadsAChainAndSaysWhatIsWrong) {
            {"CTERROR:gain=x", "its value is no number"},
            {"CTERROR:gain=-2", "nothing of the current would be left"}}) {
     Problems problems;
-    EXPECT_FALSE(plant::read_measurement(text, "--measure", problems)) << text;
+    EXPECT_FALSE(plant::read_measurement(text, library::compiled(), "--measure", problems)) << text;
     ASSERT_EQ(problems.list().size(), 1u) << text;
     EXPECT_THAT(problems.list()[0].sentence(), HasSubstr(expected));
   }

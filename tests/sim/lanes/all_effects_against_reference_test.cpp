@@ -137,7 +137,7 @@ void compare(const grid::Grid& grid, Draws& draws, Tally& tally) {
 /// Every effect that takes part in a simulation.
 std::set<std::string_view> all_names() {
   std::set<std::string_view> names;
-  for (const Effect* e : library::every_effect())
+  for (const Effect* e : library::compiled().all())
     if (e->slot != Slot::measurement) names.insert(e->name);
   return names;
 }

@@ -22,8 +22,8 @@ grid::Grid host(const Effect& effect) {
   if (effect.slot == Slot::machine) plant.machine = standard(effect);
   if (effect.slot == Slot::transformer) plant.transformer = standard(effect);
   if (is_control(effect.slot)) plant.controls.push_back(standard(effect));
-  if (effect.slot != Slot::exciter) plant.controls.push_back(standard(*library::find_effect("SEXS")));
-  if (effect.slot != Slot::governor) plant.controls.push_back(standard(*library::find_effect("TGOV1")));
+  if (effect.slot != Slot::exciter) plant.controls.push_back(standard(*library::compiled().find("SEXS")));
+  if (effect.slot != Slot::governor) plant.controls.push_back(standard(*library::compiled().find("TGOV1")));
   std::ranges::stable_sort(plant.controls, {}, [](const plant::Block& b) { return b.effect->slot; });
   return grid;
 }
@@ -35,7 +35,7 @@ int block_index(const grid::Grid& grid, const Effect& effect) {
 }
 std::vector<const Effect*> effects_of_a_plant() {
   std::vector<const Effect*> list;
-  for (const Effect* e : library::every_effect())
+  for (const Effect* e : library::compiled().all())
     if (e->slot != Slot::load && e->slot != Slot::measurement) list.push_back(e);
   return list;
 }
@@ -180,11 +180,11 @@ TEST(AllSensitivitiesFull, EqualCentralDifferences) {
 
 /// A machine whose current is no linear function of the voltage, its terminal behind a transformer.
 TEST(AllSensitivitiesFull, EqualCentralDifferencesBehindATransformer) {
-  grid::Grid grid = host(*library::find_effect("GENTPJ"));
-  grid.plants[kPlant].transformer = {library::find_effect("STEPUP"), {0.004, 0.12, 1.04}};
+  grid::Grid grid = host(*library::compiled().find("GENTPJ"));
+  grid.plants[kPlant].transformer = {library::compiled().find("STEPUP"), {0.004, 0.12, 1.04}};
   for (const char* name : {"GENTPJ", "STEPUP"}) {
     Worst worst;
-    compare_with_quotients(grid, *library::find_effect(name), worst);
+    compare_with_quotients(grid, *library::compiled().find(name), worst);
     EXPECT_GT(worst.columns, 0);
     EXPECT_LT(worst.value, 1e-5) << worst.where;
   }
@@ -238,8 +238,8 @@ TEST(AllSensitivitiesFull, EqualThoseOfCvodes) {
 
 /// Through ceilings, released again: a limit that stops a state stops its slope, and gives it its own.
 TEST(AllSensitivities, ThroughALimitEqualCentralDifferences) {
-  grid::Grid grid = host(*library::find_effect("SEXS"));
-  const Effect& sexs = *library::find_effect("SEXS");
+  grid::Grid grid = host(*library::compiled().find("SEXS"));
+  const Effect& sexs = *library::compiled().find("SEXS");
   const int block = block_index(grid, sexs);
   const auto emax = sexs.parameter_index("EMAX");
   const Seed ceiling{kPlant, block, emax, 1.0};

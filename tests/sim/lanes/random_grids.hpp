@@ -28,7 +28,7 @@ class Draws {
 
 inline std::vector<const Effect*> effects_in(Slot slot) {
   std::vector<const Effect*> list;
-  for (const Effect* e : library::every_effect())
+  for (const Effect* e : library::compiled().all())
     if (e->slot == slot) list.push_back(e);
   return list;
 }

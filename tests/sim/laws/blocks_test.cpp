@@ -8,17 +8,16 @@ namespace {
 
 using test::kHead;
 using test::law_of;
+using test::sexs_law;
 
 // blocks
 std::complex<double> of_block(const std::string& block, double omega, const std::string& more = "") {
-  const std::string text = fmt::format(
-      "name = \"B\"\n{}output = \"Vs\"\naction = \"replace\"\ninput = \"speed\"\nchain = "
-      "[\"b\"]\n{}\n[blocks.b]\n{}\n",
-      kHead, more, block);
-  static int count = 0;
-  std::string named = text;
-  named.replace(named.find("\"B\""), 3, fmt::format("\"BLOCK{}\"", count++));
-  test::ControlBench bench(std::string(load_law(named, "block.toml").name));
+  const Effect law = make_law(
+      fmt::format("name = \"B\"\n{}output = \"Vs\"\naction = \"replace\"\ninput = \"speed\"\nchain = "
+                  "[\"b\"]\n{}\n[blocks.b]\n{}\n",
+                  kHead, more, block),
+      "block.toml");
+  test::ControlBench bench(law);
   EXPECT_EQ(bench.refused, "") << block;
   if (!bench.x.empty()) return bench.response(&Signals<double>::speed, &Signals<double>::Vs, omega);
   const double before = bench.out().Vs;
@@ -70,8 +69,8 @@ T = 1.5
 T = {{ unit = "s", standard = 0.5, low = 0.01, high = 5, meaning = "lag" }}
 )law",
                                        kHead);
-  (void)load_law(text, "feedback.toml");
-  test::ControlBench bench("FEEDBACK");
+  const Effect law = make_law(text, "feedback.toml");
+  test::ControlBench bench(law);
   ASSERT_EQ(bench.refused, "");
   const std::complex<double> s(0.0, 2.0), forward = 10.0 / (1.0 + 0.5 * s),
                                           back = 0.2 * 1.5 * s / (1.0 + 1.5 * s);
@@ -80,9 +79,6 @@ T = {{ unit = "s", standard = 0.5, low = 0.01, high = 5, meaning = "lag" }}
               0.0, 1e-8);
 }
 
-const Effect& sexs_law() {
-  return load_law(std::filesystem::path(SWINGBANK_SOURCE) / "configs/laws/sexs.toml");
-}
 // operating point
 std::string refusal(const std::string& text, Signals<double> s = test::ControlBench::rated()) {
   const Effect law = make_law(text, "x.toml");

@@ -134,21 +134,31 @@ V1 = "V * 2"
 }
 
 TEST(LawFile, UnreadableFilesAreRefused) {
-  EXPECT_THROW(load_law("/nowhere.toml"), InputError);
+  library::EffectLibrary library;
+  EXPECT_THROW(load_law("/nowhere.toml", library), InputError);
   EXPECT_THROW(make_law("not toml at all [", "x"), InputError);
   EXPECT_THROW(make_law("", "x"), InputError);
   EXPECT_THROW(make_law(std::string(200000, '#'), "x"), InputError);
 }
 
 TEST(LawFile, TheSameTextIsTheSameEffectAndANameIsTakenOnce) {
+  library::EffectLibrary library;
   std::string text = one_value("speed");
-  text.replace(text.find("ONE"), 3, "TWICE");
-  const Effect& first = load_law(text, "a.toml");
-  EXPECT_EQ(&load_law(text, "a.toml"), &first);
-  EXPECT_EQ(library::find_effect("twice"), &first);
-  EXPECT_THROW(load_law(text + "\n", "b.toml"), InputError);
-  text.replace(text.find("TWICE"), 5, "SEXS");
-  EXPECT_THROW(load_law(text, "c.toml"), InputError);
+  const Effect& first = load_law(text, "a.toml", library);
+  EXPECT_EQ(&load_law(text, "a.toml", library), &first);
+  EXPECT_EQ(library.find("one"), &first);
+  EXPECT_THROW(load_law(text + "\n", "b.toml", library), InputError);
+  text.replace(text.find("ONE"), 3, "SEXS");
+  EXPECT_THROW(load_law(text, "c.toml", library), InputError);
+}
+
+TEST(LawFile, OneTextInTwoLibrariesIsTheSameEffect) {
+  library::EffectLibrary one, other, changed;
+  const Effect& law = load_law(one_value("speed"), "a.toml", one);
+  EXPECT_TRUE(same_effect(law, load_law(one_value("speed"), "b.toml", other)));
+  EXPECT_FALSE(same_effect(law, load_law(one_value("2 * speed"), "a.toml", changed)));
+  EXPECT_FALSE(same_effect(law, *one.find("SEXS")));
+  EXPECT_TRUE(same_effect(*one.find("SEXS"), *other.find("SEXS")));
 }
 
 TEST(LawFile, InstantsAreThoseOfTheParameters) {

@@ -13,11 +13,9 @@ namespace {
 
 using test::kHead;
 using test::law_of;
+using test::sexs_law;
 
 // against the compiled exciter
-const Effect& sexs_law() {
-  return load_law(std::filesystem::path(SWINGBANK_SOURCE) / "configs/laws/sexs.toml");
-}
 grid::Grid with_exciter(const Effect& exciter, std::vector<double> p) {
   grid::Grid grid = test::two_machine_grid(Conventions::psse());
   grid.plants[1].controls = {{&exciter, std::move(p)}};
@@ -52,7 +50,7 @@ TEST(LawFile, SexsAsALawEqualsTheCompiledOne) {
                                                  {1.0, 0.0, 50.0, 0.2, -4.0, 4.0}};    // lead-lag bypassed
   bool reached = false;
   for (const auto& p : sets) {
-    const grid::Grid compiled = with_exciter(*library::find_effect("SEXS"), p),
+    const grid::Grid compiled = with_exciter(*library::compiled().find("SEXS"), p),
                      law = with_exciter(sexs_law(), p);
     for (const int lanes : {1, 4, 8}) {
       const Trajectory a = lanes_run(compiled, lanes), b = lanes_run(law, lanes);
@@ -122,17 +120,17 @@ TE = { unit = "s", standard = 0.1, low = 0.001, high = 5.0, meaning = "exciter" 
 
 TEST(LawFile, ThreeWaysOfWritingAnExciterAgree) {
   const std::vector<double> p = {0.5, 2.0, 20.0, 0.05, -10.0, 10.0};
-  const reference::ReferenceRun compiled = reference_run(with_exciter(*library::find_effect("SEXS"), p));
+  const reference::ReferenceRun compiled = reference_run(with_exciter(*library::compiled().find("SEXS"), p));
+  const Effect by_expressions = make_law(kByExpressions, "e"),
+               by_transfer_function = make_law(kByTransferFunction, "t");
   // Other unknowns and other roundings: what two runs at rtol 1e-8 differ by.
-  EXPECT_LE(test::largest_difference(compiled, reference_run(with_exciter(load_law(kByExpressions, "e"), p))),
-            1e-6);
-  const grid::Grid tf = with_exciter(load_law(kByTransferFunction, "t"), {0.5, 2.0, 20.0, 0.05});
+  EXPECT_LE(test::largest_difference(compiled, reference_run(with_exciter(by_expressions, p))), 1e-6);
+  const grid::Grid tf = with_exciter(by_transfer_function, {0.5, 2.0, 20.0, 0.05});
   EXPECT_LE(test::largest_difference(compiled, reference_run(tf)), 1e-6);
 }
 
 TEST(LawFile, ALimitedStateDoesNotWindUp) {
-  sexs_law();
-  test::ControlBench bench("SEXSLAW",
+  test::ControlBench bench(sexs_law(),
                            {{"TAoverTB", 1.0}, {"K", 10.0}, {"TE", 0.5}, {"EMAX", 3.0}, {"EMIN", 0.0}});
   ASSERT_EQ(bench.refused, "");
   EXPECT_LE(bench.largest_derivative(),
@@ -172,8 +170,8 @@ band = { unit = "pu", standard = 0.0005, low = 0.0, high = 0.1, meaning = "dead-
 limit = { unit = "pu", standard = 0.1, low = 0.01, high = 1.0, meaning = "limit" }
 )law";
 grid::Grid nonlinear_grid() {
-  const Effect& law = load_law(kNonlinear, "n");
-  grid::Grid grid = with_exciter(*library::find_effect("SEXS"), {0.5, 2.0, 20.0, 0.05, -10.0, 10.0});
+  grid::Grid grid = with_exciter(*library::compiled().find("SEXS"), {0.5, 2.0, 20.0, 0.05, -10.0, 10.0});
+  const Effect& law = load_law(kNonlinear, "n", grid.library);
   grid.plants[1].controls.insert(grid.plants[1].controls.begin(), {&law, law.standard_parameters()});
   return grid;
 }
@@ -223,7 +221,8 @@ Signals<double> disturbed() {
 TEST(LawFile, PacksEqualDouble) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> u(0.8, 1.2);
-  for (const Effect* law : {&sexs_law(), &load_law(kNonlinear, "n"), &load_law(kByTransferFunction, "t")}) {
+  const Effect nonlinear = make_law(kNonlinear, "n"), transfer = make_law(kByTransferFunction, "t");
+  for (const Effect* law : {&sexs_law(), &nonlinear, &transfer}) {
     std::vector<std::vector<double>> each;
     std::vector<P8> packed(law->parameters.size());
     for (int lane = 0; lane < 8; ++lane) {
@@ -243,7 +242,8 @@ TEST(LawFile, PacksEqualDouble) {
 }
 
 TEST(LawFile, DualsEqualCentralDifferences) {
-  for (const Effect* law : {&sexs_law(), &load_law(kNonlinear, "n"), &load_law(kByTransferFunction, "t")}) {
+  const Effect nonlinear = make_law(kNonlinear, "n"), transfer = make_law(kByTransferFunction, "t");
+  for (const Effect* law : {&sexs_law(), &nonlinear, &transfer}) {
     const auto p = law->standard_parameters();
     for (std::size_t j = 0; j < p.size(); ++j) {
       std::vector<D8> dual(p.begin(), p.end());
@@ -271,8 +271,9 @@ TEST(LawFile, DualsEqualCentralDifferences) {
 
 /// An integrator with nothing to limit rests at its limit, and leaves it without delay.
 TEST(LawFile, AStateMayRestAtItsLimit) {
-  (void)load_law(std::filesystem::path(SWINGBANK_SOURCE) / "configs/laws/limiter_field_current.toml");
-  test::ControlBench bench("FIELDLIMIT");
+  library::EffectLibrary library;
+  test::ControlBench bench(
+      load_law(std::filesystem::path(SWINGBANK_SOURCE) / "configs/laws/limiter_field_current.toml", library));
   ASSERT_EQ(bench.refused, "");
   EXPECT_EQ(bench.out().Vlimiter, 0.0);
   EXPECT_EQ(bench.largest_derivative(), 0.0);
@@ -289,13 +290,14 @@ TEST(LawFile, TheExamplesAreSound) {
   for (const auto& file :
        std::filesystem::directory_iterator(std::string(SWINGBANK_SOURCE) + "/configs/laws")) {
     if (file.path().extension() != ".toml") continue;
-    const Effect& law = load_law(file.path());
+    library::EffectLibrary library;
+    const Effect& law = load_law(file.path(), library);
     Problems problems;
     law.check(law.law.get(), law.standard_parameters().data(), file.path().string(), problems);
     EXPECT_TRUE(problems.empty()) << file.path();
     EXPECT_FALSE(law.description.empty());
     // A plant with it stands still and runs through a fault.
-    grid::Grid grid = with_exciter(*library::find_effect("SEXS"), {0.5, 2.0, 20.0, 0.05, -10.0, 10.0});
+    grid::Grid grid = with_exciter(*library::compiled().find("SEXS"), {0.5, 2.0, 20.0, 0.05, -10.0, 10.0});
     auto& controls = grid.plants[1].controls;
     if (law.slot == Slot::exciter) controls.clear();
     controls.push_back({&law, law.standard_parameters()});

@@ -18,7 +18,8 @@ using ::testing::HasSubstr;
 plant::PlantModel example(bool with_exciter) {
   plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   if (with_exciter)
-    model.plant.controls.push_back({sim::library::find_effect("SEXS"), {0.1, 10.0, 100.0, 0.05, -4.0, 5.0}});
+    model.plant.controls.push_back(
+        {sim::library::compiled().find("SEXS"), {0.1, 10.0, 100.0, 0.05, -4.0, 5.0}});
   return model;
 }
 std::vector<record::Record> records(const plant::PlantModel& model, int count = 2) {

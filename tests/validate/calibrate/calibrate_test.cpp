@@ -20,7 +20,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 sim::plant::Block sexs(double gain_ratio, double gain, double TB, double TE) {
-  return {sim::library::find_effect("SEXS"), {gain_ratio, TB, gain, TE, -4.0, 5.0}};
+  return {sim::library::compiled().find("SEXS"), {gain_ratio, TB, gain, TE, -4.0, 5.0}};
 }
 std::vector<record::Record> example_records(const plant::PlantModel& model, int count) {
   std::vector<record::Record> records;

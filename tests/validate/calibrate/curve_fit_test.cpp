@@ -21,7 +21,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 sim::plant::Block sexs(double gain_ratio, double gain, double TB, double TE) {
-  return {sim::library::find_effect("SEXS"), {gain_ratio, TB, gain, TE, -4.0, 5.0}};
+  return {sim::library::compiled().find("SEXS"), {gain_ratio, TB, gain, TE, -4.0, 5.0}};
 }
 plant::PlantModel example() {
   return plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));

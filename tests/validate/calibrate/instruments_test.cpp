@@ -71,8 +71,8 @@ INSTANTIATE_TEST_SUITE_P(Calibrate, SeenThrough,
 // A filter's window is known; it is never fitted.
 TEST(CalibrateSeenThrough, AFilterBelongsToTheModelButIsNotFitted) {
   plant::PlantModel model;
-  model.plant.machine = {sim::library::find_effect("GENROU"),
-                         sim::library::find_effect("GENROU")->standard_parameters()};
+  model.plant.machine = {sim::library::compiled().find("GENROU"),
+                         sim::library::compiled().find("GENROU")->standard_parameters()};
   model.plant.measurements = {test::instrument("PMUFILTER"), test::instrument("SKEW:skew=0.002")};
   for (const auto& f : chosen_parameters(model.plant, 0.2, {}))
     EXPECT_STRNE(fit::block_effect(model.plant, f.block).name.data(), "PMUFILTER");

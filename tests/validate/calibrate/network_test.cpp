@@ -94,7 +94,7 @@ TEST(NetworkStart, NetworksOfOtherPlantsAreToldApart) {
 
 TEST(NetworkStart, IsOneOfTheStartsAndStandsBesideTheFit) {
   plant::PlantModel model = example();
-  model.plant.controls.push_back({sim::library::find_effect("SEXS"), {0.1, 10, 100, 0.05, -4, 5}});
+  model.plant.controls.push_back({sim::library::compiled().find("SEXS"), {0.1, 10, 100, 0.05, -4, 5}});
   const EstimateFile file(Parameters{estimate_json("H", 8.0, 1, 10), estimate_json("Tdop", 5.0, 2, 10)});
   const NetworkEstimate estimate = file.read();
   const sim::plant::Plant plant = estimated_plant(estimate, model, 0.2);

@@ -110,7 +110,7 @@ TEST(CompareTest, BehindAFilterARightModelIsAdequateAndAWrongOneNot) {
 /// Behind a regulator what noise of V leaves is slow, and larger than the channels' own noise.
 TEST(CompareTest, NoiseOfTheVoltageBehindARegulatorIsNoMisfit) {
   plant::PlantModel model = example_model();
-  const sim::Effect* sexs = sim::library::find_effect("SEXS");
+  const sim::Effect* sexs = sim::library::compiled().find("SEXS");
   model.plant.controls.push_back({sexs, {0.1, 10, 100, 0.05, -4.0, 5.0}});  // as the records were made
   std::vector<EventComparison> events;
   for (const char* name : {"avr_ev1.csv", "avr_ev2.csv", "avr_ev3.csv", "avr_ev4.csv"})
@@ -124,7 +124,7 @@ TEST(CompareTest, NoiseOfTheVoltageBehindARegulatorIsNoMisfit) {
 TEST(CompareTest, WhereTheFitCannotRunThePlayInStands) {
   RightModel right;
   right.model.plant.controls.push_back(
-      {sim::library::find_effect("TGOV1"), {0.5, 1e-4, 2.0, -1.0, 1.0, 10.0, 0.0, 0.0}});
+      {sim::library::compiled().find("TGOV1"), {0.5, 1e-4, 2.0, -1.0, 1.0, 10.0, 0.0, 0.0}});
   const EventComparison e = compare_event(right.model, right.record);
   EXPECT_FALSE(e.fitted);
   ASSERT_EQ(e.channels.size(), 2U);

@@ -22,8 +22,8 @@ std::vector<record::Record> example_records(const plant::PlantModel& model) {
 TEST(Hypotheses, EveryEffectThatFitsAndEveryNeutralGroupJoins) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   std::vector<std::string> names;
-  for (const auto& h : hypothesis::all_hypotheses(model.under_test())) names.push_back(h.name);
-  for (const sim::Effect& e : sim::library::all_effects()) {
+  for (const auto& h : hypothesis::all_hypotheses(model.under_test(), model.library)) names.push_back(h.name);
+  for (const sim::Effect& e : sim::library::compiled_effects()) {
     const bool instrument = e.slot == sim::Slot::measurement && playin::can_be_taken_back(e);
     const bool joins =
         (e.slot == sim::Slot::transformer || sim::is_control(e.slot) || instrument) && e.instants == nullptr;
@@ -33,9 +33,9 @@ TEST(Hypotheses, EveryEffectThatFitsAndEveryNeutralGroupJoins) {
 }
 TEST(Hypotheses, NoneFillsAnOccupiedSlot) {
   plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
-  const auto* sexs = sim::library::find_effect("SEXS");
+  const auto* sexs = sim::library::compiled().find("SEXS");
   model.plant.controls.push_back({sexs, sexs->standard_parameters()});
-  for (const auto& h : hypothesis::all_hypotheses(model.under_test()))
+  for (const auto& h : hypothesis::all_hypotheses(model.under_test(), model.library))
     EXPECT_NE(h.slot, static_cast<int>(sim::Slot::exciter)) << h.name;
 }
 TEST(FindSwitchings, SmearedJumpsAreFoundAndMarked) {

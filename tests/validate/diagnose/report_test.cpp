@@ -33,7 +33,7 @@ struct Example {
     brief.iterations = 2;
     d.base = fit::fit(model.under_test(), d.events, fit::free_parameters(model.plant, 0.2), brief);
     if (!d.base.failed.empty()) throw std::runtime_error(d.base.failed);
-    for (hypothesis::Hypothesis& h : hypothesis::all_hypotheses(model.under_test())) {
+    for (hypothesis::Hypothesis& h : hypothesis::all_hypotheses(model.under_test(), model.library)) {
       if (h.name.find("SEXS") == std::string::npos || !d.ranked.empty()) continue;
       hypothesis::Judgement j;
       j.fit = fit::fit({hypothesis::started(h, h.starts.front()), h.conventions}, d.events, h.free, brief);

@@ -65,7 +65,7 @@ struct Quiet {
     const std::filesystem::path configs = std::filesystem::path(SWINGBANK_SOURCE) / "configs";
     model = plant::load_plant_model(configs / "plants" / "ieee14_bus2.toml");
     if (*exciter) {
-      const auto* effect = sim::library::find_effect(exciter);
+      const auto* effect = sim::library::compiled().find(exciter);
       auto p = effect->standard_parameters();
       p[static_cast<std::size_t>(effect->parameter_index("K"))] = 200;
       model.plant.controls.push_back({effect, p});

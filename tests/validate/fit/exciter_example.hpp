@@ -18,7 +18,7 @@ struct ExciterExample {
   double spread;  ///< believed of every parameter
   /// TE [s] of the exciter; 0.05 is true.
   explicit ExciterExample(double believed, double TE = 0.05) : spread(believed) {
-    model.plant.controls.push_back({sim::library::find_effect("SEXS"), {0.1, 10, 100, TE, -4.0, 5.0}});
+    model.plant.controls.push_back({sim::library::compiled().find("SEXS"), {0.1, 10, 100, TE, -4.0, 5.0}});
     record::Record r =
         record::read_record(test::source("configs/records/record-example/avr_ev1.csv"), model.record_base);
     events = event::prepare_events(model, {r}, {.measured_states = false});

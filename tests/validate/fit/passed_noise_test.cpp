@@ -15,7 +15,7 @@ class PassedNoiseTest : public ::testing::Test {
   sim::plant::Plant late(double samples) const {
     sim::plant::Plant plant = example_.model.plant;
     plant.measurements.push_back(
-        {sim::library::find_effect("SKEW"), {samples * example_.events.front().record.step()}});
+        {sim::library::compiled().find("SKEW"), {samples * example_.events.front().record.step()}});
     return plant;
   }
   sim::plant::Plant with_reactance(double share) const {

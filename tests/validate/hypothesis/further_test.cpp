@@ -21,7 +21,7 @@ class Further : public ::testing::Test {
     events_ = {{e}, events_.noise_model()};
   }
   [[nodiscard]] Hypothesis named(const std::string& name) const {
-    const auto all = all_hypotheses(model_.under_test());
+    const auto all = all_hypotheses(model_.under_test(), model_.library);
     return *std::ranges::find(all, name, &Hypothesis::name);
   }
   static double& parameter(sim::plant::Plant& plant, const std::string& name) {
@@ -51,8 +51,11 @@ class Further : public ::testing::Test {
       {.measured_states = false});
   const fit::Fit base_ = fit::fit(model_.under_test(), events_, {}, {.iterations = 0});
   Hypothesis truth_ = named("ESAC1A");
-  const Stage stage_{
-      .events = events_, .plant = model_.plant, .conventions = model_.conventions, .fit = base_};
+  const Stage stage_{.events = events_,
+                     .plant = model_.plant,
+                     .conventions = model_.conventions,
+                     .library = model_.library,
+                     .fit = base_};
 };
 
 TEST_F(Further, ARivalStartsFromWhatTheLeaderCallsByTheSameName) {

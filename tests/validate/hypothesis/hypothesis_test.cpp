@@ -15,7 +15,7 @@ namespace {
 
 std::vector<Hypothesis> hypotheses() {
   const plant::PlantModel model = fit::ExciterExample(0.2).model;
-  return all_hypotheses(model.under_test());
+  return all_hypotheses(model.under_test(), model.library);
 }
 
 TEST(Hypotheses, EveryStartIsSound) {
@@ -46,9 +46,9 @@ TEST(Hypotheses, FurtherDrawsAreOthers) {
 }
 TEST(Hypotheses, AReplacementStandsAloneInItsSlot) {
   const plant::PlantModel model = fit::ExciterExample(0.2).model;  // its only control is SEXS
-  const auto all = all_replacements(model.under_test());
+  const auto all = all_replacements(model.under_test(), model.library);
   std::size_t exciters = 0;
-  for (const sim::Effect* effect : sim::library::every_effect())
+  for (const sim::Effect* effect : sim::library::compiled().all())
     exciters += effect->slot == sim::Slot::exciter;
   EXPECT_EQ(all.size(), exciters - 1);
   for (const Hypothesis& h : all) {

@@ -14,8 +14,9 @@ TEST(Blind, ATimerIsFoundThatNoSlopeSees) {
   const Stage stage{.events = example.events,
                     .plant = example.model.plant,
                     .conventions = example.model.conventions,
+                    .library = example.model.library,
                     .fit = nearly};
-  auto all = all_hypotheses(stage.under_test());
+  auto all = all_hypotheses(stage.under_test(), stage.library);
   const Hypothesis h = StartFinder(stage).of(*std::ranges::find(all, "MAXEX2", &Hypothesis::name)).hypothesis;
   const auto free = free_of(h, stage.spread);
 

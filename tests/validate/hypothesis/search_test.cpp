@@ -23,7 +23,7 @@ class Exchange : public ::testing::Test {
   /// `name` in the model alone, fitted to `value` of its first parameter.
   [[nodiscard]] Judgement alone(const std::string& name, double value) const {
     Judgement j;
-    j.hypothesis = named(all_hypotheses(model().plant, model().conventions), name);
+    j.hypothesis = named(all_hypotheses(model().plant, model().conventions, model().library), name);
     j.fit = base_;
     j.fit.plant = j.hypothesis.plant;
     const fit::FreeParameter& f = j.hypothesis.free.front();
@@ -34,7 +34,7 @@ class Exchange : public ::testing::Test {
   [[nodiscard]] Judgement beside(const Judgement& first, const std::string& second, double value) const {
     const Stage then = after(stage_, first);
     Judgement j;
-    j.hypothesis = named(all_hypotheses(then.under_test()), second);
+    j.hypothesis = named(all_hypotheses(then.under_test(), then.library), second);
     j.fit = base_;
     j.fit.plant = j.hypothesis.plant;
     const fit::FreeParameter& f = j.hypothesis.free.front();
@@ -53,6 +53,7 @@ class Exchange : public ::testing::Test {
   const Stage stage_{.events = example_.events,
                      .plant = example_.model.plant,
                      .conventions = example_.model.conventions,
+                     .library = example_.model.library,
                      .fit = base_};
 };
 
@@ -64,7 +65,7 @@ TEST_F(Exchange, RivalsOfTheSlotStandBesideTheSecondAsItWasFitted) {
   for (const Judgement& j : rivals) {
     EXPECT_FALSE(j.fit.failed.empty());
     // believed to be what it was before any fit, and starting where the pair's fit ended
-    const int block = fit::find_block(j.hypothesis.plant, *sim::library::find_effect("STEPUP"));
+    const int block = fit::find_block(j.hypothesis.plant, *sim::library::compiled().find("STEPUP"));
     const int index = pair.hypothesis.free.front().index;
     const auto at = std::ranges::find_if(
         j.hypothesis.free, [&](const fit::FreeParameter& f) { return f.block == block && f.index == index; });

@@ -33,8 +33,9 @@ TEST(Starts, ALimiterStartsWhereItActs) {
   const Stage stage{.events = example.events,
                     .plant = example.model.plant,
                     .conventions = example.model.conventions,
+                    .library = example.model.library,
                     .fit = nearly};
-  auto all = all_hypotheses(stage.under_test());
+  auto all = all_hypotheses(stage.under_test(), stage.library);
   const auto limiter = std::ranges::find(all, "MAXEX2", &Hypothesis::name);
   ASSERT_NE(limiter, all.end());
   ASSERT_LT(moved(stage, *limiter, limiter->starts.front()), 1e-3) << "it was meant to wait";
@@ -53,8 +54,9 @@ TEST(Starts, WhatTheFitHasBentStartsAsTheModelHasIt) {
   const Stage stage{.events = example.events,
                     .plant = example.model.plant,
                     .conventions = example.model.conventions,
+                    .library = example.model.library,
                     .fit = bent};
-  auto all = all_hypotheses(stage.under_test());
+  auto all = all_hypotheses(stage.under_test(), stage.library);
   const Hypothesis& h = *std::ranges::find(all, "IEEEVC", &Hypothesis::name);
   const auto free = free_of(h, stage.spread);
   const auto share = [&](const std::vector<double>& values, const std::string& name) {

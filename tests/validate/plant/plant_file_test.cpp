@@ -41,7 +41,7 @@ class PlantFileTest : public ::testing::Test {
 };
 
 TEST_F(PlantFileTest, EveryEffectReadsBackToTheLastBit) {
-  for (const auto* effect : sim::library::every_effect()) {
+  for (const auto* effect : sim::library::compiled().all()) {
     PlantModel m = example();
     const sim::plant::Block block{effect, awkward(*effect)};
     switch (effect->slot) {
@@ -65,7 +65,7 @@ TEST_F(PlantFileTest, EveryEffectReadsBackToTheLastBit) {
 
 TEST_F(PlantFileTest, SeveralEffectsOfASharedSlotStayInOrder) {
   PlantModel m = example();
-  for (const auto* effect : sim::library::every_effect())
+  for (const auto* effect : sim::library::compiled().all())
     if (sim::is_shared(effect->slot))
       (effect->slot == sim::Slot::measurement ? m.plant.measurements : m.plant.controls)
           .push_back({effect, awkward(*effect)});

@@ -5,8 +5,11 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <thread>
 
+#include "base/write_file.hpp"
 #include "tests/validate/playin/support.hpp"
+#include "validate/plant/plant_file.hpp"
 
 namespace swingbank::validate::plant {
 namespace {
@@ -61,6 +64,38 @@ TEST_F(PlantModelTest, ReadsLawsBesideIt) {
   EXPECT_EQ(m.plant.controls[0].p, (std::vector<double>{0.2, 0.1, 0.3, 2.0}));
   EXPECT_THAT(faults("laws = [\"none.toml\"]\n" + example()),
               ElementsAre(AllOf(HasSubstr("no readable law file"), HasSubstr("none.toml"))));
+}
+/// Plants in files of their own folders, each with a law of the same file name and effect.
+TEST_F(PlantModelTest, ThreadsReadPlantsWhoseLawsHaveOneName) {
+  const auto folder = file_.parent_path() / file_.stem();
+  const auto read = [&](const std::string& depth) {
+    const auto own = folder / depth;
+    write_file(own / "law.toml",
+               "name = \"MINE\"\ntitle = \"dip\"\nsource = \"test\"\noutput = \"Tm\"\naction = \"add\"\n"
+               "value = \"" +
+                   depth + " * K * (V - V0)\"\n[parameters]\nK = { unit = \"pu\", standard = " + depth +
+                   ", low = 0.0, high = 9.0, meaning = \"gain\" }\n");
+    write_file(own / "plant.toml",
+               "laws = [\"law.toml\"]\n" + example() + "\n[shaft]\neffect = \"MINE\"\nK = 1.0\n");
+    return load_plant_model(own / "plant.toml");
+  };
+  const std::vector<std::string> depths = {"1.5", "2.5"};
+  std::vector<PlantModel> models(depths.size());
+  {
+    std::vector<std::jthread> threads;
+    for (std::size_t k = 0; k < depths.size(); ++k)
+      threads.emplace_back([&, k] {
+        for (int round = 0; round < 20; ++round) models[k] = read(depths[k]);
+      });
+  }
+  std::filesystem::remove_all(folder);
+  for (std::size_t k = 0; k < depths.size(); ++k) {
+    const sim::Effect* effect = models[k].plant.controls.at(0).effect;
+    EXPECT_EQ(models[k].library.find("MINE"), effect);
+    EXPECT_EQ(effect->standard_parameters().at(0), std::stod(depths[k]));
+  }
+  EXPECT_NE(difference(models[0], models[1]), "") << "laws of other texts are other effects";
+  EXPECT_EQ(load_plant_model(test::source("configs/plants/ieee14_bus2.toml")).library.find("MINE"), nullptr);
 }
 TEST_F(PlantModelTest, EveryParameterMustBeThere) {
   EXPECT_THAT(faults(replaced(example(), "Xqp = 0.6\n", "")), ElementsAre(HasSubstr("machine.Xqp")));

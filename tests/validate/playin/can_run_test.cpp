@@ -9,7 +9,7 @@ namespace swingbank::validate::playin {
 namespace {
 
 sim::plant::Block standard(const std::string& name) {
-  const sim::Effect* effect = sim::library::find_effect(name);
+  const sim::Effect* effect = sim::library::compiled().find(name);
   return {effect, effect->standard_parameters()};
 }
 double& value(sim::plant::Block& block, const std::string& name) {

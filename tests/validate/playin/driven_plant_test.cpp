@@ -19,7 +19,7 @@ class DrivenPlantTest : public ::testing::Test {
     const std::filesystem::path configs = std::filesystem::path(SWINGBANK_SOURCE) / "configs";
     model_ = plant::load_plant_model(configs / "plants" / "ieee14_bus2.toml");
     for (const char* name : {"TGOV1", "SEXS"}) {
-      const auto* effect = sim::library::find_effect(name);
+      const auto* effect = sim::library::compiled().find(name);
       model_.plant.controls.push_back({effect, effect->standard_parameters()});
     }
     record_ = record::read_record(configs / "records" / "record-example" / "avr_ev1.csv", model_.record_base);
@@ -121,9 +121,9 @@ TEST_F(DrivenPlantTest, SlopesAlongNuisances) {
 }
 /// The current of a GENTPJ is found by Newton's method, its terminal behind the transformer by another one.
 TEST_F(DrivenPlantTest, SlopesThroughATransformerAndASaturatedStator) {
-  const auto* gentpj = sim::library::find_effect("GENTPJ");
+  const auto* gentpj = sim::library::compiled().find("GENTPJ");
   model_.plant.machine = {gentpj, gentpj->standard_parameters()};
-  model_.plant.transformer = {sim::library::find_effect("STEPUP"), {0.004, 0.12, 1.04}};
+  model_.plant.transformer = {sim::library::compiled().find("STEPUP"), {0.004, 0.12, 1.04}};
   std::vector<Direction> directions = {
       {Kind::switching, 0, 1, 1e-5}, {Kind::P, 0, 0, 1e-5}, {Kind::Q, 0, 0, 1e-5}, {Kind::angle, 0, 0, 1e-5}};
   for (const char* name : {"H", "Xdp", "Xdpp", "Xqpp", "Xl", "S10", "S12", "Kis"}) {

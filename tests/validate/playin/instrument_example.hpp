@@ -11,7 +11,7 @@ namespace swingbank::validate::test {
 
 inline sim::plant::Block instrument(const std::string& text) {
   Problems problems;
-  const auto block = sim::plant::read_measurement(text, "test", problems);
+  const auto block = sim::plant::read_measurement(text, sim::library::compiled(), "test", problems);
   problems.raise();
   return *block;
 }
@@ -55,7 +55,7 @@ struct InstrumentExample {
   explicit InstrumentExample(const std::vector<sim::plant::Block>& chain) {
     const auto with_exciter = [](sim::grid::Grid& grid) {
       std::ranges::find(grid.plants, "2", &sim::plant::Plant::name)
-          ->controls.push_back({sim::library::find_effect("SEXS"), {0.1, 10.0, 100.0, 0.05, -4.0, 5.0}});
+          ->controls.push_back({sim::library::compiled().find("SEXS"), {0.1, 10.0, 100.0, 0.05, -4.0, 5.0}});
     };
     for (const auto& [bus, seconds] : {std::pair{5, 0.1043}, {9, 0.1527}}) {
       const double at = 2.0 + 0.4 / 60;

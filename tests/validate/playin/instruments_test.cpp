@@ -16,7 +16,7 @@ using Kind = Direction::Kind;
 
 sim::plant::Block instrument(const std::string& text) {
   Problems problems;
-  const auto block = sim::plant::read_measurement(text, "test", problems);
+  const auto block = sim::plant::read_measurement(text, sim::library::compiled(), "test", problems);
   problems.raise();
   return *block;
 }
@@ -139,9 +139,9 @@ TEST_F(InstrumentsTest, SlopesAreThoseOfDifferences) {
 
 TEST(Instruments, ChanceStepsAndFiltersCannotBeTakenBack) {
   for (const char* name : {"CTERROR", "PTERROR", "SKEW"})
-    EXPECT_TRUE(can_be_taken_back(*sim::library::find_effect(name))) << name;
+    EXPECT_TRUE(can_be_taken_back(*sim::library::compiled().find(name))) << name;
   for (const char* name : {"NOISE", "GAPS", "QUANTISE", "PMUFILTER"})
-    EXPECT_FALSE(can_be_taken_back(*sim::library::find_effect(name))) << name;
+    EXPECT_FALSE(can_be_taken_back(*sim::library::compiled().find(name))) << name;
 }
 
 }  // namespace

@@ -66,9 +66,9 @@ inline Simulated simulate(const std::string& name, sim::Conventions conventions,
 /// Every machine a GENTPJ, whose current is no linear function of its voltage, behind a transformer.
 inline void put_behind_transformers(sim::grid::Grid& grid) {
   for (sim::plant::Plant& plant : grid.plants) {
-    const sim::Effect* gentpj = sim::library::find_effect("GENTPJ");
+    const sim::Effect* gentpj = sim::library::compiled().find("GENTPJ");
     plant.machine = {gentpj, gentpj->standard_parameters()};
-    plant.transformer = {sim::library::find_effect("STEPUP"), {0.004, 0.12, 1.04}};
+    plant.transformer = {sim::library::compiled().find("STEPUP"), {0.004, 0.12, 1.04}};
   }
 }
 

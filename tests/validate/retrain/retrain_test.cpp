@@ -43,10 +43,11 @@ struct Example {
           test::source(fmt::format("configs/records/record-example/avr_ev{}.csv", k)), before.record_base));
     added.hypothesis = add::find_hypothesis(before, "SEXS");
     added.model = before;
-    added.model.plant.controls.push_back({sim::library::find_effect("SEXS"), {0.1, 10, 100, 0.05, -4, 5}});
+    added.model.plant.controls.push_back(
+        {sim::library::compiled().find("SEXS"), {0.1, 10, 100, 0.05, -4, 5}});
     added.prepared = event::prepare_events(before, records);
     const double decided[] = {1, 1, 0.9, 0.7, 0, 0.3};
-    const auto& effect = *sim::library::find_effect("SEXS");
+    const auto& effect = *sim::library::compiled().find("SEXS");
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
       fit::FittedParameter p;
       p.where = {1, static_cast<int>(i), 0.2};

@@ -177,7 +177,7 @@ TEST(BlindRecord, FilterIsTwoCyclesLongAndKeepsConstants) {
 TEST(BlindEffects, OddOnesAreInNoList) {
   EXPECT_GE(odd_effects().size(), 5U);
   for (const auto& odd : odd_effects()) {
-    EXPECT_EQ(sim::library::find_effect(odd.name), nullptr) << odd.name;
+    EXPECT_EQ(sim::library::compiled().find(odd.name), nullptr) << odd.name;
     EXPECT_EQ(blind_effect(std::string(odd.name)), &odd);
   }
 }

@@ -8,7 +8,7 @@ namespace swingbank::validate::blind::cases {
 const sim::Effect* blind_effect(const std::string& name) {
   for (const auto& odd : odd_effects())
     if (odd.name == name) return &odd;
-  return sim::library::find_effect(name);
+  return sim::library::compiled().find(name);
 }
 
 sim::plant::Block blind_block(const std::string& text, const std::string& where, Problems& problems) {
@@ -16,7 +16,7 @@ sim::plant::Block blind_block(const std::string& text, const std::string& where,
   sim::plant::Block block{blind_effect(text.substr(0, colon)), {}};
   if (!block.effect) {
     problems.add("no effect '" + text.substr(0, colon) + "'", where,
-                 "there are " + sim::library::effect_names(), "choose one of these");
+                 "there are " + sim::library::compiled().names(), "choose one of these");
     return {};
   }
   block.p = block.effect->standard_parameters();

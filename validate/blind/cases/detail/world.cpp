@@ -36,7 +36,7 @@ sim::plant::Block block_of(const std::string& text) {
 }
 
 void put(sim::plant::Plant& plant, sim::plant::Block block) {
-  const bool odd = sim::library::find_effect(block.effect->name) != block.effect;
+  const bool odd = sim::library::compiled().find(block.effect->name) != block.effect;
   if (odd) {  // several may act where a slot holds one: after everything else of that slot
     plant.controls.push_back(std::move(block));
     std::ranges::stable_sort(plant.controls, {}, [](const sim::plant::Block& b) { return b.effect->slot; });

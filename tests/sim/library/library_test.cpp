@@ -1,0 +1,105 @@
+// Libraries are values: what is added to one, no other sees.
+#include "sim/library/library.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "sim/laws/law.hpp"
+
+namespace swingbank::sim::library {
+namespace {
+
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// A law called MINE with one parameter and `factor` in its equation and description.
+std::string law(double factor) {
+  return fmt::format(R"law(name = "MINE"
+title = "{0} times the speed"
+source = "test"
+output = "Vs"
+action = "add"
+value = "{0} * K * speed"
+[parameters]
+K = {{ unit = "pu", standard = {0}, low = 0.0, high = 1000.0, neutral = 0.0, meaning = "gain" }}
+)law",
+                     factor);
+}
+double standard(const EffectLibrary& library) { return library.find("MINE")->standard_parameters().at(0); }
+
+TEST(EffectLibrary, HoldsTheCompiledEffects) {
+  const EffectLibrary library;
+  ASSERT_EQ(library.all().size(), compiled_effects().size());
+  for (const Effect& effect : compiled_effects()) EXPECT_EQ(library.find(effect.name), &effect);
+  EXPECT_EQ(library.find("genrou"), library.find("GENROU"));
+  EXPECT_EQ(library.find("MINE"), nullptr);
+  EXPECT_THAT(library.names(Slot::machine), HasSubstr("GENROU"));
+  EXPECT_THAT(library.names(Slot::machine), Not(HasSubstr("SEXS")));
+}
+
+TEST(EffectLibrary, TwoWithLawsOfOneNameDoNotSeeEachOther) {
+  EffectLibrary one, other;
+  laws::load_law(law(2.0), "law.toml", one);
+  laws::load_law(law(3.0), "law.toml", other);
+  EXPECT_EQ(standard(one), 2.0);
+  EXPECT_EQ(standard(other), 3.0);
+  EXPECT_EQ(compiled().find("MINE"), nullptr);
+  EXPECT_THAT(one.names(), EndsWith(", MINE"));
+  EXPECT_THAT(one.names(Slot::stabiliser), EndsWith(", MINE"));
+}
+
+TEST(EffectLibrary, ACopySharesWhatWasThereAndNotWhatComesLater) {
+  EffectLibrary copy;
+  const Effect* shared = nullptr;
+  {
+    EffectLibrary first;
+    shared = &laws::load_law(law(2.0), "law.toml", first);
+    copy = first;
+    std::string later = law(3.0);
+    later.replace(later.find("MINE"), 4, "LATER");
+    laws::load_law(later, "later.toml", first);
+  }
+  EXPECT_EQ(copy.find("MINE"), shared);  // it lives although the library that read it does not
+  EXPECT_EQ(shared->standard_parameters(), std::vector<double>{2.0});
+  EXPECT_EQ(copy.find("LATER"), nullptr);
+}
+
+TEST(EffectLibrary, ATakenNameIsRefused) {
+  EffectLibrary library;
+  library.add(laws::make_law(law(2.0), "law.toml"));
+  try {
+    library.add(laws::make_law(law(3.0), "law.toml"));
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("a second effect 'MINE'"));
+  }
+  Effect compiled_name = laws::make_law(law(3.0), "law.toml");
+  compiled_name.name = "sexs";
+  EXPECT_THROW(library.add(compiled_name), InputError);
+  EXPECT_EQ(standard(library), 2.0);
+  EXPECT_EQ(library.all().size(), compiled_effects().size() + 1);
+}
+
+TEST(EffectLibrary, ThreadsThatReadLawsOfOneNameGetEachTheirOwn) {
+  constexpr int kThreads = 4, kRounds = 50;
+  std::vector<int> own(kThreads);
+  {
+    std::vector<std::jthread> threads;
+    for (int t = 0; t < kThreads; ++t)
+      threads.emplace_back([t, &own] {
+        for (int k = 0; k < kRounds; ++k) {
+          EffectLibrary library;
+          laws::load_law(law(1.0 + t), "law.toml", library);
+          own[static_cast<std::size_t>(t)] += standard(library) == 1.0 + t;
+        }
+      });
+  }
+  EXPECT_EQ(own, std::vector<int>(kThreads, kRounds));
+}
+
+}  // namespace
+}  // namespace swingbank::sim::library
