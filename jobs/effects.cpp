@@ -57,6 +57,36 @@ void print_table(const std::vector<std::vector<std::string>>& rows) {
   }
 }
 
+/// Where the values of an effect come from, numbered as they come up.
+class Footnotes {
+ public:
+  /// "1", or "1 2" where the bounds have another source than the standard value.
+  std::string marks(const Parameter& p) {
+    const auto standard = number_of(p.standard_from), bounds = number_of(p.bounds_from);
+    return standard == bounds ? fmt::format("{}", standard) : fmt::format("{} {}", standard, bounds);
+  }
+  void print() const {
+    fmt::print("\nsources (where two are given: of the standard value, of the bounds)\n");
+    for (std::size_t i = 0; i < texts_.size(); ++i) fmt::print("  {:>2}  {}\n", i + 1, texts_[i]);
+    for (const Work* work : works_)
+      fmt::print("  {}: {}, {} ({}), {}\n", work->id, work->author, work->title, work->edition, work->where);
+  }
+
+ private:
+  std::size_t number_of(const Source& source) {
+    const std::string text = as_text(source);
+    auto at = std::ranges::find(texts_, text);
+    if (at == texts_.end()) {
+      at = texts_.insert(at, text);
+      if (source.work->published() && std::ranges::find(works_, source.work) == works_.end())
+        works_.push_back(source.work);
+    }
+    return static_cast<std::size_t>(at - texts_.begin()) + 1;
+  }
+  std::vector<std::string> texts_;
+  std::vector<const Work*> works_;
+};
+
 void describe(const Effect& e) {
   fmt::print("{}: {}\nslot: {} ({})\nsource: {}\n", e.name, e.title, slot_name(e.slot), slot_meaning(e.slot),
              e.source);
@@ -67,12 +97,15 @@ void describe(const Effect& e) {
   }
   if (!e.parameters.empty()) {
     std::vector<std::vector<std::string>> rows = {
-        {"name", "symbol", "unit", "standard", "lowest", "highest", "neutral", "meaning"}};
+        {"name", "symbol", "unit", "standard", "lowest", "highest", "neutral", "sources", "meaning"}};
+    Footnotes sources;
     for (const Parameter& p : e.parameters)
       rows.push_back({std::string(p.name), std::string(p.symbol), std::string(p.unit), number(p.standard),
-                      number(p.low), number(p.high), number(p.neutral), std::string(p.meaning)});
+                      number(p.low), number(p.high), number(p.neutral), sources.marks(p),
+                      std::string(p.meaning)});
     fmt::print("\nparameters (neutral: where the influence vanishes; unit code: a choice)\n");
     print_table(rows);
+    sources.print();
   }
   if (!e.states.empty()) {
     std::vector<std::vector<std::string>> rows = {{"name", "unit", "meaning"}};
@@ -106,6 +139,8 @@ Json as_json(const Effect& e) {
                                {"low", value(p.low)},
                                {"high", value(p.high)},
                                {"neutral", value(p.neutral)},
+                               {"standard_from", as_text(p.standard_from)},
+                               {"bounds_from", as_text(p.bounds_from)},
                                {"meaning", p.meaning}});
   for (const State& s : e.states)
     j["states"].push_back({{"name", s.name}, {"unit", s.unit}, {"meaning", s.meaning}});

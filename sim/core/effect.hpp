@@ -3,6 +3,7 @@
 //   name, title, source, slot     what it is, where its equations come from, where it sits
 //   description                   block diagram and equations as text; `swingbank effects NAME` prints it
 //   parameters[], states[]        one record each; nowhere else is a parameter declared
+//   standards_from, bounds_from   where the numbers of those records come from that do not say it themselves
 //   dyr_name, dyr_columns[]       PSS/E .dyr model name and column order ("" and none if it has none)
 //   check(), unphysical()         singular values (refused always), orderings (refused in physical draws)
 //   prepare<T>()                  parameters -> coefficients, so that no division stays in the loop
@@ -12,6 +13,7 @@
 //   closed_form()                 of a machine, optional: its parameters from a record, without a search
 //   measure(), memory()           of a measurement: what it makes of the phasors, and how far it reaches
 // CMake finds the header and writes the registry; nothing is edited. T runs over `Scalars`.
+#include <algorithm>
 #include <array>
 #include <complex>
 #include <cstdint>
@@ -24,6 +26,7 @@
 #include <vector>
 
 #include "base/problem.hpp"
+#include "sim/core/literature.hpp"
 #include "sim/core/scalar.hpp"
 
 namespace swingbank::sim {
@@ -54,17 +57,21 @@ constexpr bool is_shared(Slot slot) {
 }
 
 constexpr double kNoNeutral = std::numeric_limits<double>::quiet_NaN();
+/// In a parameter's record before its bounds' source: its standard value has the effect's source.
+constexpr Source kAsEffect = {};
 
 /// One parameter of an effect. `low` and `high` bound what is physically possible; a dataset's sampling box
 /// stands in its own config and is checked against them. `neutral` is the value at which the parameter's
 /// influence vanishes (NaN: there is none). The unit "code" marks a choice among whole numbers: never
-/// sampled, never fitted.
+/// sampled, never fitted. The two sources are the effect's own, standards_from and bounds_from, where a
+/// record gives none.
 struct Parameter {
   std::string_view name;    ///< identifier in configs, HDF5 and tables: "Xdp"
   std::string_view symbol;  ///< as engineers write it: "X'd"
   std::string_view unit;    ///< "pu", "s"
   double standard, low, high, neutral;
   std::string_view meaning;
+  Source standard_from = {}, bounds_from = {};
   [[nodiscard]] constexpr bool is_code() const { return unit == "code"; }
 };
 
@@ -243,15 +250,37 @@ std::tuple<Ops<T>...> make_all_ops(std::tuple<T...>*) {
   return {make_ops<M, T>()...};
 }
 
+/// The records of M, each with the sources of its values.
+template <class M>
+constexpr auto sourced_parameters() {
+  std::array<Parameter, std::size(M::parameters)> all{};
+  std::copy(std::begin(M::parameters), std::end(M::parameters), all.begin());
+  for (Parameter& p : all) {
+    if constexpr (requires { M::standards_from; })
+      if (!p.standard_from.given()) p.standard_from = M::standards_from;
+    if constexpr (requires { M::bounds_from; })
+      if (!p.bounds_from.given()) p.bounds_from = M::bounds_from;
+  }
+  return all;
+}
+template <class M>
+inline constexpr auto kSourced = sourced_parameters<M>();
+
 template <class M>
 Effect make_effect() {
+  static_assert(std::all_of(kSourced<M>.begin(), kSourced<M>.end(),
+                            [](const Parameter& p) { return p.standard_from.given(); }),
+                "a standard value has no source: give standards_from, or one in the parameter's record");
+  static_assert(std::all_of(kSourced<M>.begin(), kSourced<M>.end(),
+                            [](const Parameter& p) { return p.bounds_from.given(); }),
+                "bounds have no source: give bounds_from, or one in the parameter's record");
   Effect e{};
   e.name = M::name;
   e.title = M::title;
   e.source = M::source;
   e.description = M::description;
   e.slot = M::slot;
-  e.parameters = M::parameters;
+  e.parameters = kSourced<M>;
   if constexpr (requires { M::states[0]; }) e.states = M::states;
   if constexpr (requires { M::dyr_name; }) e.dyr_name = M::dyr_name;
   if constexpr (requires { M::dyr_columns[0]; }) e.dyr_columns = M::dyr_columns;

@@ -17,6 +17,10 @@ struct Model {
   XC > 0: droop, a machine that shares reactive power; XC < 0: regulates a point behind part of the transformer
 )";
   enum P { RC, XC };
+  static constexpr Source standards_from =
+      literature::own("no resistance; half the reactance of the standard step-up transformer");
+  static constexpr Source bounds_from =
+      literature::own("half of the 1 pu at which the compensated voltage vanishes");
   static constexpr Parameter parameters[] = {
       {"RC", "RC", "pu", 0.0, -0.5, 0.5, 0.0, "compensating resistance"},
       {"XC", "XC", "pu", 0.05, -0.5, 0.5, 0.0, "compensating reactance"}};

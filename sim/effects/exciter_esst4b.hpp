@@ -5,6 +5,7 @@
 #include "base/constants.hpp"
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::exciter_esst4b {
 
@@ -26,8 +27,13 @@ struct Model {
   VE = |KP' V + j (KI + KP' XL) I|, KP' = KP at angle THETAP         (V, I: phasors at the terminal)
 )";
   enum P { TR, KPR, KIR, VRMAX, VRMIN, TA, KPM, KIM, VMMAX, VMMIN, KG, KP, KI, VBMAX, KC, XL, THETAP };
+  static constexpr Source kCase = literature::openipsl("test of ESST4B");
+  static constexpr Source kRange = literature::sienna("ESST4B");
+  static constexpr Source standards_from = literature::cim("ExcIEEEST4B");
+  static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
-      {"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)"},
+      {"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)",
+       literature::own("as EXST1's; CIM has none"), kRange},
       {"KPR", "KPR", "pu", 10.75, 0.0, 1000.0, kNoNeutral, "voltage regulator, proportional"},
       {"KIR", "KIR", "1/s", 10.75, 0.0, 1000.0, kNoNeutral, "voltage regulator, integral"},
       {"VRMAX", "VRMAX", "pu", 1.0, 0.0, 100.0, kNoNeutral, "upper limit of the voltage regulator"},
@@ -35,15 +41,18 @@ struct Model {
       {"TA", "TA", "s", 0.02, 0.0, 10.0, 0.0, "lag between the regulators (0: none)"},
       {"KPM", "KPM", "pu", 1.0, 0.0, 1000.0, kNoNeutral, "inner regulator, proportional"},
       {"KIM", "KIM", "1/s", 0.0, 0.0, 1000.0, kNoNeutral, "inner regulator, integral"},
-      {"VMMAX", "VMMAX", "pu", 1.0, 0.0, 100.0, kNoNeutral, "upper limit of the inner regulator"},
-      {"VMMIN", "VMMIN", "pu", -0.87, -100.0, 0.0, kNoNeutral, "lower limit of the inner regulator"},
-      {"KG", "KG", "pu", 0.0, 0.0, 1.1, kNoNeutral, "feedback of Efd to the inner regulator"},
+      {"VMMAX", "VMMAX", "pu", 1.0, 0.0, 100.0, kNoNeutral, "upper limit of the inner regulator", kCase},
+      {"VMMIN", "VMMIN", "pu", -0.87, -100.0, 0.0, kNoNeutral, "lower limit of the inner regulator", kCase},
+      {"KG", "KG", "pu", 0.0, 0.0, 1.1, kNoNeutral, "feedback of Efd to the inner regulator", kAsEffect,
+       kRange},
       {"KP", "KP", "pu", 9.3, 0.0, 20.0, kNoNeutral, "source, from voltage"},
       {"KI", "KI", "pu", 0.0, 0.0, 20.0, 0.0, "source, from current"},
       {"VBMAX", "VBMAX", "pu", 11.63, 0.1, 100.0, kNoNeutral, "upper limit of the source"},
-      {"KC", "KC", "pu", 0.124, 0.0, 1.0, 0.0, "rectifier's commutating reactance"},
-      {"XL", "XL", "pu", 0.0, 0.0, 0.5, 0.0, "reactance of the source's voltage part"},
-      {"THETAP", "THETAP", "deg", 0.0, -90.0, 90.0, kNoNeutral, "angle of the source's voltage part"}};
+      {"KC", "KC", "pu", 0.124, 0.0, 1.0, 0.0, "rectifier's commutating reactance",
+       literature::own("CIM's XL; its KC is 0.113"), kRange},
+      {"XL", "XL", "pu", 0.0, 0.0, 0.5, 0.0, "reactance of the source's voltage part", kCase, kRange},
+      {"THETAP", "THETAP", "deg", 0.0, -90.0, 90.0, kNoNeutral, "angle of the source's voltage part",
+       kAsEffect, kRange}};
   static constexpr int dyr_columns[] = {TR,    KPR, KIR, VRMAX, VRMIN, TA, KPM, KIM,   VMMAX,
                                         VMMIN, KG,  KP,  KI,    VBMAX, KC, XL,  THETAP};
   enum C {

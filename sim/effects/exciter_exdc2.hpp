@@ -1,6 +1,7 @@
 #pragma once
 // EXDC2: rotating direct-current exciter whose regulator is fed from the machine's terminal.
 #include "sim/effects/detail/rotating_dc.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::exciter_exdc2 {
 
@@ -22,18 +23,25 @@ struct Model : shared::RotatingDc<Model> {
   KE = 0: KE = VRMAX/(10 Efd) - Se(Efd) at the operating point, which puts Vr at a tenth of VRMAX
 )";
   enum P { TR, KA, TA, TB, TC, VRMAX, VRMIN, KE, TE, KF, TF, SWITCH, E1, SE1, E2, SE2 };
+  static constexpr Source standards_from = literature::andes("EXDC2, commit 29076bd");
+  static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
       kTR,
-      {"KA", "KA", "pu", 100.0, 1.0, 1000.0, kNoNeutral, "regulator gain"},
-      {"TA", "TA", "s", 0.05, 0.0, 10.0, kNoNeutral, "regulator time constant (0: none)"},
-      {"TB", "TB", "s", 2.0, 0.0, 50.0, kNoNeutral, "lag (0: bypass)"},
-      {"TC", "TC", "s", 1.0, 0.0, 50.0, kNoNeutral, "lead"},
+      {"KA", "KA", "pu", 100.0, 1.0, 1000.0, kNoNeutral, "regulator gain",
+       literature::own("among the case files' 40 to 200")},
+      {"TA", "TA", "s", 0.05, 0.0, 10.0, kNoNeutral, "regulator time constant (0: none)",
+       literature::griddyn("dynamicsWECC.dyr")},
+      {"TB", "TB", "s", 2.0, 0.0, 50.0, kNoNeutral, "lag (0: bypass)",
+       literature::own("half the gain in transients; the case files have hardly any")},
+      {"TC", "TC", "s", 1.0, 0.0, 50.0, kNoNeutral, "lead",
+       literature::own("half the gain in transients; the case files have hardly any")},
       {"VRMAX", "VRMAX", "pu", 7.3, 0.0, 100.0, kNoNeutral,
        "upper limit of Vr at rated voltage (0: by saturation at E2)"},
       {"VRMIN", "VRMIN", "pu", -7.3, -100.0, 0.0, kNoNeutral, "lower limit of Vr at rated voltage"},
       kKE,
       kTE,
-      {"KF", "KF", "pu", 0.08, 0.0, 1.0, 0.0, "rate feedback"},
+      {"KF", "KF", "pu", 0.08, 0.0, 1.0, 0.0, "rate feedback",
+       literature::own("among the case files' 0.05 to 0.10")},
       kTF,
       kSwitch,
       kE1,

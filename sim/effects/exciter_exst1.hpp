@@ -4,6 +4,7 @@
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::exciter_exst1 {
 
@@ -21,16 +22,20 @@ struct Model {
   Vf = s KF/(1 + s TF) Va
 )";
   enum P { TR, VIMAX, VIMIN, TC, TB, KA, TA, VRMAX, VRMIN, KC, KF, TF };
+  static constexpr Source kCase = literature::psid("EXST1/TVC_System.dyr");
+  static constexpr Source standards_from = literature::cim("ExcST1A");
+  static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
-      {"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)"},
-      {"VIMAX", "VIMAX", "pu", 5.0, 0.0, 100.0, kNoNeutral, "upper limit of the voltage error"},
-      {"VIMIN", "VIMIN", "pu", -5.0, -100.0, 0.0, kNoNeutral, "lower limit of the voltage error"},
+      {"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)", kCase},
+      {"VIMAX", "VIMAX", "pu", 5.0, 0.0, 100.0, kNoNeutral, "upper limit of the voltage error", kCase},
+      {"VIMIN", "VIMIN", "pu", -5.0, -100.0, 0.0, kNoNeutral, "lower limit of the voltage error", kCase},
       {"TC", "TC", "s", 1.0, 0.0, 30.0, kNoNeutral, "lead"},
       {"TB", "TB", "s", 10.0, 0.0, 100.0, kNoNeutral, "lag (0: bypass)"},
-      {"KA", "KA", "pu", 200.0, 1.0, 2000.0, kNoNeutral, "gain"},
+      {"KA", "KA", "pu", 200.0, 1.0, 2000.0, kNoNeutral, "gain", kCase},
       {"TA", "TA", "s", 0.02, 0.001, 2.0, kNoNeutral, "regulator time constant"},
-      {"VRMAX", "VRMAX", "pu", 6.0, 0.5, 100.0, kNoNeutral, "upper ceiling at rated voltage"},
-      {"VRMIN", "VRMIN", "pu", -5.0, -100.0, 0.5, kNoNeutral, "lower ceiling at rated voltage"},
+      {"VRMAX", "VRMAX", "pu", 6.0, 0.5, 100.0, kNoNeutral, "upper ceiling at rated voltage", kCase},
+      {"VRMIN", "VRMIN", "pu", -5.0, -100.0, 0.5, kNoNeutral, "lower ceiling at rated voltage",
+       literature::own("a bridge inverts a little less than it rectifies")},
       {"KC", "KC", "pu", 0.05, 0.0, 1.0, 0.0, "ceilings' drop by field current"},
       {"KF", "KF", "pu", 0.0, 0.0, 1.0, 0.0, "rate feedback"},
       {"TF", "TF", "s", 1.0, 0.01, 20.0, kNoNeutral, "rate feedback's time constant"}};

@@ -1,6 +1,7 @@
 #pragma once
 // IEEET1: rotating direct-current exciter.
 #include "sim/effects/detail/rotating_dc.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::exciter_ieeet1 {
 
@@ -19,15 +20,19 @@ struct Model : shared::RotatingDc<Model> {
   KE = 0: KE = VRMAX/(10 Efd) - Se(Efd) at the operating point, which puts Vr at a tenth of VRMAX
 )";
   enum P { TR, KA, TA, VRMAX, VRMIN, KE, TE, KF, TF, SWITCH, E1, SE1, E2, SE2 };
+  static constexpr Source standards_from = literature::andes("IEEET1, commit 066781b");
+  static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
       kTR,
-      {"KA", "KA", "pu", 40.0, 1.0, 1000.0, kNoNeutral, "regulator gain"},
-      {"TA", "TA", "s", 0.1, 0.0, 10.0, kNoNeutral, "regulator time constant (0: none)"},
+      {"KA", "KA", "pu", 40.0, 1.0, 1000.0, kNoNeutral, "regulator gain",
+       literature::andes("EXDC2, commit 29076bd")},
+      {"TA", "TA", "s", 0.1, 0.0, 10.0, kNoNeutral, "regulator time constant (0: none)",
+       literature::own("among the case files' 0.001 to 0.2 s")},
       {"VRMAX", "VRMAX", "pu", 7.3, 0.0, 100.0, kNoNeutral, "upper limit of Vr (0: by saturation at E2)"},
       {"VRMIN", "VRMIN", "pu", -7.3, -100.0, 0.0, kNoNeutral, "lower limit of Vr"},
       kKE,
       kTE,
-      {"KF", "KF", "pu", 0.03, 0.0, 1.0, 0.0, "rate feedback"},
+      {"KF", "KF", "pu", 0.03, 0.0, 1.0, 0.0, "rate feedback", literature::andes("EXDC2, commit 29076bd")},
       kTF,
       kSwitch,
       kE1,

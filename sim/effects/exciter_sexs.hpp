@@ -4,6 +4,7 @@
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::exciter_sexs {
 
@@ -19,12 +20,16 @@ struct Model {
   TE dEfd/dt = K y - Efd        TE = 0: Efd = K y
 )";
   enum P { TAoverTB, TB, K, TE, EMIN, EMAX };
+  static constexpr Source standards_from = literature::cim("ExcSEXS");
+  static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
       {"TAoverTB", "TA/TB", "-", 0.1, 0.0, 10.0, 1.0, "lead over lag time constant"},
       {"TB", "TB", "s", 10.0, 0.0, 100.0, kNoNeutral, "lag time constant (0: none)"},
       {"K", "K", "pu", 100.0, 0.5, 2000.0, kNoNeutral, "gain"},
-      {"TE", "TE", "s", 0.1, 0.0, 5.0, kNoNeutral, "exciter time constant (0: none)"},
-      {"EMIN", "EMIN", "pu", -4.0, -100.0, 0.0, kNoNeutral, "lower ceiling of Efd"},
+      {"TE", "TE", "s", 0.1, 0.0, 5.0, kNoNeutral, "exciter time constant (0: none)",
+       literature::powerful_cases("ACTIVSg2000.dyr")},
+      {"EMIN", "EMIN", "pu", -4.0, -100.0, 0.0, kNoNeutral, "lower ceiling of Efd",
+       literature::own("a bridge inverts a little less than it rectifies; CIM has -5")},
       {"EMAX", "EMAX", "pu", 5.0, 0.5, 100.0, kNoNeutral, "upper ceiling of Efd"}};
   static constexpr int dyr_columns[] = {TAoverTB, TB, K, TE, EMIN, EMAX};
   enum C { TA, iTB, gain, iTE, low, high, Vref, coefficients };

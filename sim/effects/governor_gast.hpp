@@ -4,6 +4,7 @@
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::governor_gast {
 
@@ -21,17 +22,25 @@ struct Model {
   T2 dflow/dt = fuel - flow      T3 dexhaust/dt = flow - exhaust      Pm = flow - Dturb w
 )";
   enum P { R, T1, T2, T3, AT, KT, VMAX, VMIN, Dturb, db };
+  static constexpr Source standards_from = literature::gridpack("240busWECC_2018_PSS_mod.dyr");
+  static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
-      {"R", "R", "pu", 0.05, 0.005, 1.0, kNoNeutral, "permanent droop"},
-      {"T1", "T1", "s", 0.4, 0.01, 10.0, kNoNeutral, "fuel valve time constant"},
-      {"T2", "T2", "s", 0.1, 0.0, 10.0, kNoNeutral, "combustion chamber time constant (0: none)"},
+      {"R", "R", "pu", 0.05, 0.005, 1.0, kNoNeutral, "permanent droop",
+       literature::psid("GAST/ThreeBus_GAST.dyr")},
+      {"T1", "T1", "s", 0.4, 0.01, 10.0, kNoNeutral, "fuel valve time constant",
+       literature::own("among the case files' 0.2 to 0.5 s")},
+      {"T2", "T2", "s", 0.1, 0.0, 10.0, kNoNeutral, "combustion chamber time constant (0: none)",
+       literature::own("faster than the case files' 0.2 to 0.5 s")},
       {"T3", "T3", "s", 3.0, 0.0, 30.0, kNoNeutral, "exhaust temperature measurement (0: none)"},
       {"AT", "AT", "pu", 1.0, 0.1, 5.0, kNoNeutral, "ambient temperature load limit"},
       {"KT", "KT", "pu", 2.0, 0.0, 20.0, kNoNeutral, "gain of the temperature limit"},
-      {"VMAX", "VMAX", "pu", 1.1, 0.1, 5.0, kNoNeutral, "upper limit of the fuel valve"},
-      {"VMIN", "VMIN", "pu", -0.05, -1.0, 1.0, kNoNeutral, "lower limit of the fuel valve"},
+      {"VMAX", "VMAX", "pu", 1.1, 0.1, 5.0, kNoNeutral, "upper limit of the fuel valve",
+       literature::psid("GAST/ThreeBus_GAST.dyr")},
+      {"VMIN", "VMIN", "pu", -0.05, -1.0, 1.0, kNoNeutral, "lower limit of the fuel valve",
+       literature::own("a little below no load; the case files have 0")},
       {"Dturb", "Dturb", "pu", 0.0, 0.0, 5.0, 0.0, "turbine damping, power per speed"},
-      {"db", "db", "pu", 0.0, 0.0, 0.02, 0.0, "half width of the intentional dead-band of the speed"}};
+      {"db", "db", "pu", 0.0, 0.0, 0.02, 0.0, "half width of the intentional dead-band of the speed",
+       shared::kNothing, shared::kDeadBand}};
   static constexpr int dyr_columns[] = {R, T1, T2, T3, AT, KT, VMAX, VMIN, Dturb};
   enum C { iR, iT1, iT2, iT3, ambient, gain, high, low, damping, band, Pref, coefficients };
   enum X { fuel, flow, exhaust };

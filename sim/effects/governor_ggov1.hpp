@@ -9,6 +9,7 @@
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::governor_ggov1 {
 
@@ -68,11 +69,16 @@ struct Model {
     Rup,
     Rdown
   };
+  static constexpr Source standards_from = literature::openipsl("test of GGOV1");
+  static constexpr Source bounds_from = literature::own(
+      "the sign the equations need; the far end at least five times CIM's typical value (GovCT1), or 99 and 999 for none");
   static constexpr Parameter parameters[] = {
       {"Rselect", "Rselect", "code", 1.0, -2.0, 1.0, kNoNeutral,
-       "droop of: 1 electrical power, 0 nothing, -1 valve, -2 requested stroke"},
-      {"Flag", "Flag", "code", 0.0, 0.0, 1.0, kNoNeutral, "1: fuel flow in proportion to speed"},
-      {"R", "R", "pu", 0.04, 0.0, 1.0, kNoNeutral, "permanent droop"},
+       "droop of: 1 electrical power, 0 nothing, -1 valve, -2 requested stroke", literature::cim("GovCT1"),
+       shared::kCode},
+      {"Flag", "Flag", "code", 0.0, 0.0, 1.0, kNoNeutral, "1: fuel flow in proportion to speed", kAsEffect,
+       shared::kCode},
+      {"R", "R", "pu", 0.04, 0.0, 1.0, kNoNeutral, "permanent droop", literature::cim("GovCT1")},
       {"Tpelec", "Tpelec", "s", 1.0, 0.0, 30.0, kNoNeutral, "power transducer (0: none)"},
       {"maxerr", "maxerr", "pu", 0.05, 0.0, 1.0, kNoNeutral, "upper limit of the speed error"},
       {"minerr", "minerr", "pu", -0.05, -1.0, 0.0, kNoNeutral, "lower limit of the speed error"},
@@ -80,14 +86,17 @@ struct Model {
       {"Kigov", "Kigov", "1/s", 2.0, 0.0, 50.0, kNoNeutral, "integral gain"},
       {"Kdgov", "Kdgov", "s", 0.0, 0.0, 50.0, 0.0, "derivative gain"},
       {"Tdgov", "Tdgov", "s", 1.0, 0.0, 10.0, kNoNeutral, "time constant of the derivative"},
-      {"Vmax", "Vmax", "pu", 1.0, 0.0, 2.0, kNoNeutral, "upper limit of the valve"},
-      {"Vmin", "Vmin", "pu", 0.15, -0.5, 1.0, kNoNeutral, "lower limit of the valve"},
+      {"Vmax", "Vmax", "pu", 1.0, 0.0, 2.0, kNoNeutral, "upper limit of the valve", kAsEffect,
+       literature::own("twice the rated opening")},
+      {"Vmin", "Vmin", "pu", 0.15, -0.5, 1.0, kNoNeutral, "lower limit of the valve", kAsEffect,
+       literature::own("from half closed beyond the seat to the rated opening")},
       {"Tact", "Tact", "s", 0.5, 0.01, 20.0, kNoNeutral, "actuator time constant"},
       {"Kturb", "Kturb", "pu/pu", 1.5, 0.1, 10.0, kNoNeutral, "turbine gain"},
       {"Wfnl", "Wfnl", "pu", 0.2, 0.0, 1.0, kNoNeutral, "fuel flow at no load"},
       {"Tb", "Tb", "s", 0.1, 0.0, 20.0, kNoNeutral, "turbine lag (0: none)"},
       {"Tc", "Tc", "s", 0.0, 0.0, 20.0, kNoNeutral, "turbine lead"},
-      {"Teng", "Teng", "s", 0.0, 0.0, 0.0, 0.0, "transport delay of a diesel engine: 0 only"},
+      {"Teng", "Teng", "s", 0.0, 0.0, 0.0, 0.0, "transport delay of a diesel engine: 0 only", kAsEffect,
+       shared::kNotModelled},
       {"Tfload", "Tfload", "s", 3.0, 0.0, 30.0, kNoNeutral, "load limiter's measurement (0: none)"},
       {"Kpload", "Kpload", "pu/pu", 2.0, 0.0, 50.0, kNoNeutral, "load limiter, proportional gain"},
       {"Kiload", "Kiload", "1/s", 0.67, 0.0, 20.0, kNoNeutral, "load limiter, integral gain"},
@@ -100,7 +109,8 @@ struct Model {
       {"Aset", "Aset", "pu/s", 0.1, 0.0, 99.0, kNoNeutral, "acceleration limiter's reference"},
       {"Ka", "Ka", "1/s", 10.0, 0.0, 999.0, 0.0, "acceleration limiter's gain (0: none)"},
       {"Ta", "Ta", "s", 0.1, 0.0, 10.0, kNoNeutral, "acceleration limiter's measurement"},
-      {"Trate", "Trate", "MW", 0.0, 0.0, 10000.0, 0.0, "turbine rating (0: the machine's base)"},
+      {"Trate", "Trate", "MW", 0.0, 0.0, 10000.0, 0.0, "turbine rating (0: the machine's base)", kAsEffect,
+       literature::own("larger than any turbine")},
       {"db", "db", "pu", 0.0, 0.0, 0.1, 0.0, "half width of the dead-band of the speed error"},
       {"Tsa", "Tsa", "s", 4.0, 0.0, 50.0, kNoNeutral, "exhaust temperature, lead"},
       {"Tsb", "Tsb", "s", 5.0, 0.0, 50.0, kNoNeutral, "exhaust temperature, lag (0: none)"},

@@ -4,6 +4,7 @@
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::governor_hygov {
 
@@ -27,8 +28,11 @@ struct Model {
   Pm = At h (q - qNL) - Dturb w g
 )";
   enum P { R, r, Tr, Tf, Tg, VELM, GMAX, GMIN, TW, At, Dturb, qNL, db };
+  static constexpr Source standards_from = literature::cim("GovHydro1");
+  static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
-      {"R", "R", "pu", 0.05, 0.0, 1.0, kNoNeutral, "permanent droop"},
+      {"R", "R", "pu", 0.05, 0.0, 1.0, kNoNeutral, "permanent droop",
+       literature::psid("HYGOV/ThreeBus_HYGOV.dyr")},
       {"r", "r", "pu", 0.3, 0.01, 5.0, kNoNeutral, "temporary droop"},
       {"Tr", "Tr", "s", 5.0, 0.1, 60.0, kNoNeutral, "governor (dashpot) time constant"},
       {"Tf", "Tf", "s", 0.05, 0.005, 5.0, kNoNeutral, "filter time constant"},
@@ -38,9 +42,11 @@ struct Model {
       {"GMIN", "GMIN", "pu", 0.0, 0.0, 1.0, kNoNeutral, "lower limit of the gate"},
       {"TW", "TW", "s", 1.0, 0.05, 30.0, kNoNeutral, "water starting time"},
       {"At", "At", "pu", 1.2, 0.3, 5.0, kNoNeutral, "turbine gain"},
-      {"Dturb", "Dturb", "pu", 0.0, 0.0, 5.0, 0.0, "turbine damping, power per speed at full gate"},
+      {"Dturb", "Dturb", "pu", 0.0, 0.0, 5.0, 0.0, "turbine damping, power per speed at full gate",
+       literature::psid("HYGOV/ThreeBus_HYGOV.dyr")},
       {"qNL", "qNL", "pu", 0.08, 0.0, 0.5, kNoNeutral, "flow at no load"},
-      {"db", "db", "pu", 0.0, 0.0, 0.02, 0.0, "half width of the intentional dead-band of the speed"}};
+      {"db", "db", "pu", 0.0, 0.0, 0.02, 0.0, "half width of the intentional dead-band of the speed",
+       shared::kNothing, shared::kDeadBand}};
   static constexpr int dyr_columns[] = {R, r, Tr, Tf, Tg, VELM, GMAX, GMIN, TW, At, Dturb, qNL};
   enum C { droop, ir, iTr, iTf, iTg, rate, high, low, iTW, gain, damping, idle, band, nref, coefficients };
   enum X { filter, desired, gate, flow };

@@ -4,6 +4,7 @@
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::governor_ieeeg1 {
 
@@ -26,30 +27,52 @@ struct Model {
   One shaft only: JBUS, M and the shares K2, K4, K6, K8 of a second generator are zero.
 )";
   enum P { JBUS, M, K, T1, T2, T3, UO, UC, PMAX, PMIN, T4, K1, K2, T5, K3, K4, T6, K5, K6, T7, K7, K8, db };
+  static constexpr Source kNone = literature::derived("there is no low-pressure generator");
+  static constexpr Source kStageShare =
+      literature::own("a share, half as much again where shares do not make 1");
+  static constexpr Source standards_from = literature::cim("GovSteamIEEE1");
+  static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
-      {"JBUS", "JBUS", "code", 0.0, 0.0, 0.0, 0.0, "bus of the low-pressure generator (0: there is none)"},
-      {"M", "M", "code", 0.0, 0.0, 0.0, 0.0, "number of the low-pressure generator (0: there is none)"},
-      {"K", "K", "pu", 20.0, 1.0, 200.0, kNoNeutral, "gain, the reciprocal of droop"},
-      {"T1", "T1", "s", 0.2, 0.0, 100.0, kNoNeutral, "lag of the governor (0: neither lag nor lead)"},
-      {"T2", "T2", "s", 0.05, 0.0, 10.0, kNoNeutral, "lead of the governor"},
-      {"T3", "T3", "s", 0.2, 0.02, 10.0, kNoNeutral, "servo time constant"},
-      {"UO", "UO", "pu/s", 0.2, 0.01, 10.0, kNoNeutral, "largest opening speed"},
-      {"UC", "UC", "pu/s", -0.3, -10.0, -0.01, kNoNeutral, "largest closing speed, negative"},
+      {"JBUS", "JBUS", "code", 0.0, 0.0, 0.0, 0.0, "bus of the low-pressure generator (0: there is none)",
+       kNone, shared::kNotModelled},
+      {"M", "M", "code", 0.0, 0.0, 0.0, 0.0, "number of the low-pressure generator (0: there is none)", kNone,
+       shared::kNotModelled},
+      {"K", "K", "pu", 20.0, 1.0, 200.0, kNoNeutral, "gain, the reciprocal of droop",
+       literature::andes("IEEEG1, commit 073cb96")},
+      {"T1", "T1", "s", 0.2, 0.0, 100.0, kNoNeutral, "lag of the governor (0: neither lag nor lead)",
+       literature::own("a short lag")},
+      {"T2", "T2", "s", 0.05, 0.0, 10.0, kNoNeutral, "lead of the governor",
+       literature::own("a quarter of T1, so that the lead acts")},
+      {"T3", "T3", "s", 0.2, 0.02, 10.0, kNoNeutral, "servo time constant",
+       literature::openipsl("test of IEEEG1")},
+      {"UO", "UO", "pu/s", 0.2, 0.01, 10.0, kNoNeutral, "largest opening speed",
+       literature::own("the whole stroke in 5 s")},
+      {"UC", "UC", "pu/s", -0.3, -10.0, -0.01, kNoNeutral, "largest closing speed, negative",
+       literature::own("the whole stroke in 3.3 s")},
       {"PMAX", "PMAX", "pu", 1.0, 0.1, 5.0, kNoNeutral, "upper limit of the valve"},
       {"PMIN", "PMIN", "pu", 0.0, -1.0, 1.0, kNoNeutral, "lower limit of the valve"},
       {"T4", "T4", "s", 0.3, 0.0, 10.0, kNoNeutral, "steam bowl time constant (0: none)"},
-      {"K1", "K1", "pu", 0.3, 0.0, 1.5, 0.0, "share of power before the first reheater"},
-      {"K2", "K2", "pu", 0.0, 0.0, 0.0, 0.0, "the same, of the low-pressure generator"},
-      {"T5", "T5", "s", 7.0, 0.0, 60.0, kNoNeutral, "time constant of the first reheater (0: none)"},
-      {"K3", "K3", "pu", 0.4, 0.0, 1.5, 0.0, "share of power after the first reheater"},
-      {"K4", "K4", "pu", 0.0, 0.0, 0.0, 0.0, "the same, of the low-pressure generator"},
+      {"K1", "K1", "pu", 0.3, 0.0, 1.5, 0.0, "share of power before the first reheater",
+       literature::steps("IEEE39.dyr"), kStageShare},
+      {"K2", "K2", "pu", 0.0, 0.0, 0.0, 0.0, "the same, of the low-pressure generator", kAsEffect,
+       shared::kNotModelled},
+      {"T5", "T5", "s", 7.0, 0.0, 60.0, kNoNeutral, "time constant of the first reheater (0: none)",
+       literature::own("near the case files' 7.5 to 8.3 s")},
+      {"K3", "K3", "pu", 0.4, 0.0, 1.5, 0.0, "share of power after the first reheater",
+       literature::own("with K1 the shares make 1"), kStageShare},
+      {"K4", "K4", "pu", 0.0, 0.0, 0.0, 0.0, "the same, of the low-pressure generator", kAsEffect,
+       shared::kNotModelled},
       {"T6", "T6", "s", 0.5, 0.0, 60.0, kNoNeutral, "time constant of the crossover (0: none)"},
-      {"K5", "K5", "pu", 0.3, 0.0, 1.5, 0.0, "share of power after the crossover"},
-      {"K6", "K6", "pu", 0.0, 0.0, 0.0, 0.0, "the same, of the low-pressure generator"},
+      {"K5", "K5", "pu", 0.3, 0.0, 1.5, 0.0, "share of power after the crossover",
+       literature::own("with K1 the shares make 1"), kStageShare},
+      {"K6", "K6", "pu", 0.0, 0.0, 0.0, 0.0, "the same, of the low-pressure generator", kAsEffect,
+       shared::kNotModelled},
       {"T7", "T7", "s", 0.0, 0.0, 60.0, kNoNeutral, "time constant of the last stage (0: none)"},
-      {"K7", "K7", "pu", 0.0, 0.0, 1.5, 0.0, "share of power after the last stage"},
-      {"K8", "K8", "pu", 0.0, 0.0, 0.0, 0.0, "the same, of the low-pressure generator"},
-      {"db", "db", "pu", 0.0, 0.0, 0.02, 0.0, "half width of the intentional dead-band of the speed"}};
+      {"K7", "K7", "pu", 0.0, 0.0, 1.5, 0.0, "share of power after the last stage", kAsEffect, kStageShare},
+      {"K8", "K8", "pu", 0.0, 0.0, 0.0, 0.0, "the same, of the low-pressure generator", kAsEffect,
+       shared::kNotModelled},
+      {"db", "db", "pu", 0.0, 0.0, 0.02, 0.0, "half width of the intentional dead-band of the speed",
+       shared::kNothing, shared::kDeadBand}};
   static constexpr int dyr_columns[] = {JBUS, M,  K,  T1, T2, T3, UO, UC, PMAX, PMIN, T4,
                                         K1,   K2, T5, K3, K4, T6, K5, K6, T7,   K7,   K8};
   enum C {

@@ -4,6 +4,7 @@
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::governor_tgov1 {
 
@@ -20,15 +21,22 @@ struct Model {
   T3 dx/dt = valve - x        Pm = x + (T2/T3)(valve - x) - Dt w
 )";
   enum P { R, T1, VMAX, VMIN, T2, T3, Dt, db };
+  static constexpr Source standards_from = literature::cim("GovSteam0");
+  static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
       {"R", "R", "pu", 0.05, 0.005, 1.0, kNoNeutral, "permanent droop"},
       {"T1", "T1", "s", 0.5, 0.0, 10.0, kNoNeutral, "steam bowl time constant (0: none)"},
       {"VMAX", "VMAX", "pu", 1.0, 0.1, 5.0, kNoNeutral, "upper limit of the valve"},
-      {"VMIN", "VMIN", "pu", 0.0, -1.0, 1.0, kNoNeutral, "lower limit of the valve"},
-      {"T2", "T2", "s", 2.0, 0.0, 30.0, kNoNeutral, "numerator; T2/T3 is the high-pressure share of power"},
-      {"T3", "T3", "s", 7.0, 0.0, 60.0, kNoNeutral, "reheater time constant (0: none)"},
+      {"VMIN", "VMIN", "pu", 0.0, -1.0, 1.0, kNoNeutral, "lower limit of the valve", kAsEffect,
+       literature::own(
+           "no turbine brakes with more than its rating; -1.5 of dynamicsWECC.dyr (GridDyn) and -999 lie beyond")},
+      {"T2", "T2", "s", 2.0, 0.0, 30.0, kNoNeutral, "numerator; T2/T3 is the high-pressure share of power",
+       literature::own("a high-pressure share of 2/7; CIM has 3 of 10 s")},
+      {"T3", "T3", "s", 7.0, 0.0, 60.0, kNoNeutral, "reheater time constant (0: none)",
+       literature::own("CIM has 10 s")},
       {"Dt", "Dt", "pu", 0.0, 0.0, 5.0, 0.0, "turbine damping, power per speed"},
-      {"db", "db", "pu", 0.0, 0.0, 0.02, 0.0, "half width of the intentional dead-band of the speed"}};
+      {"db", "db", "pu", 0.0, 0.0, 0.02, 0.0, "half width of the intentional dead-band of the speed",
+       shared::kNothing, shared::kDeadBand}};
   static constexpr int dyr_columns[] = {R, T1, VMAX, VMIN, T2, T3, Dt};
   enum C { iR, iT1, high, low, lead, iT3, damping, band, Pref, coefficients };
   enum X { valve, reheat };

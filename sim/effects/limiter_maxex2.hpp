@@ -4,6 +4,7 @@
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::limiter_maxex2 {
 
@@ -21,18 +22,28 @@ struct Model {
   Vlimiter = Vlimiter + Voel
 )";
   enum P { M, EFDRATED, EFD1, TIME1, EFD2, TIME2, EFD3, TIME3, EFDDES, KMX, VLOW };
+  static constexpr Source standards_from = literature::cim("OverexcLimX2");
+  static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
-      {"M", "M", "code", 1.0, 0.0, 1.0, kNoNeutral, "limited quantity: 1 field current"},
-      {"EFDRATED", "EFDRATED", "pu", 2.6, 0.5, 10.0, kNoNeutral, "rated field current"},
+      {"M", "M", "code", 1.0, 0.0, 1.0, kNoNeutral, "limited quantity: 1 field current",
+       literature::derived("the only one modelled"), shared::kCode},
+      {"EFDRATED", "EFDRATED", "pu", 2.6, 0.5, 10.0, kNoNeutral, "rated field current",
+       literature::own(
+           "field current of a loaded machine with Xd = 1.8, in units of the air-gap line; CIM has 1.05")},
       {"EFD1", "EFD1", "-", 1.1, 0.5, 5.0, kNoNeutral, "pickup, of rated"},
-      {"TIME1", "TIME1", "s", 60.0, 0.1, 1000.0, kNoNeutral, "time to operate there"},
-      {"EFD2", "EFD2", "-", 1.25, 0.5, 5.0, kNoNeutral, "middle point, of rated"},
-      {"TIME2", "TIME2", "s", 30.0, 0.1, 1000.0, kNoNeutral, "time to operate there"},
+      {"TIME1", "TIME1", "s", 60.0, 0.1, 1000.0, kNoNeutral, "time to operate there",
+       literature::own("CIM has 120 s")},
+      {"EFD2", "EFD2", "-", 1.25, 0.5, 5.0, kNoNeutral, "middle point, of rated",
+       literature::own("CIM has 1.2")},
+      {"TIME2", "TIME2", "s", 30.0, 0.1, 1000.0, kNoNeutral, "time to operate there",
+       literature::own("CIM has 40 s")},
       {"EFD3", "EFD3", "-", 1.5, 0.5, 10.0, kNoNeutral, "upper point, of rated"},
       {"TIME3", "TIME3", "s", 15.0, 0.01, 1000.0, kNoNeutral, "time to operate there and beyond"},
       {"EFDDES", "EFDDES", "-", 1.0, 0.5, 5.0, kNoNeutral, "field current it regulates to, of rated"},
-      {"KMX", "KMX", "1/s", 0.02, 0.0, 10.0, 0.0, "gain of the integrator"},
-      {"VLOW", "VLOW", "pu", -0.1, -10.0, 0.0, kNoNeutral, "lower limit of the output"}};
+      {"KMX", "KMX", "1/s", 0.02, 0.0, 10.0, 0.0, "gain of the integrator",
+       literature::own("ten times CIM's, to act within a record")},
+      {"VLOW", "VLOW", "pu", -0.1, -10.0, 0.0, kNoNeutral, "lower limit of the output",
+       literature::own("a tenth of the voltage")}};
   static constexpr int dyr_columns[] = {M,    EFDRATED, EFD1,   TIME1, EFD2, TIME2,
                                         EFD3, TIME3,    EFDDES, KMX,   VLOW};
   enum C { irated, i1, i2, i3, t1, t2, slope12, slope23, wanted, gain, low, zero, top, coefficients };

@@ -4,6 +4,7 @@
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::limiter_uel1 {
 
@@ -21,22 +22,30 @@ struct Model {
   Vlimiter = Vlimiter + Vuel         (at the exciter's summing point; TU2, TU4 = 0: bypass)
 )";
   enum P { KUR, KUC, KUF, VURMAX, VUCMAX, KUI, KUL, VUIMAX, VUIMIN, TU1, TU2, TU3, TU4, VULMAX, VULMIN };
+  static constexpr Source standards_from = literature::cim("UnderexcLimIEEE1");
+  static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
       {"KUR", "KUR", "pu", 1.95, 0.0, 100.0, kNoNeutral, "radius"},
       {"KUC", "KUC", "pu", 1.38, 0.0, 100.0, kNoNeutral, "centre on the Q axis"},
-      {"KUF", "KUF", "pu", 0.0, 0.0, 100.0, 0.0, "gain of the exciter's rate feedback (only 0)"},
+      {"KUF", "KUF", "pu", 0.0, 0.0, 100.0, 0.0, "gain of the exciter's rate feedback (only 0)",
+       literature::derived("0 only is modelled; CIM has 3.3")},
       {"VURMAX", "VURMAX", "pu", 5.8, 0.0, 100.0, kNoNeutral, "upper limit of KUR V"},
       {"VUCMAX", "VUCMAX", "pu", 5.8, 0.0, 100.0, kNoNeutral, "upper limit of |KUC V - j I|"},
-      {"KUI", "KUI", "1/s", 0.5, 0.0, 1000.0, 0.0, "integral gain"},
-      {"KUL", "KUL", "pu", 0.5, 0.0, 1000.0, 0.0, "proportional gain"},
-      {"VUIMAX", "VUIMAX", "pu", 0.25, 0.0, 100.0, kNoNeutral, "upper limit of the integrator"},
-      {"VUIMIN", "VUIMIN", "pu", 0.0, -100.0, 0.0, kNoNeutral, "lower limit of the integrator"},
+      {"KUI", "KUI", "1/s", 0.5, 0.0, 1000.0, 0.0, "integral gain", literature::own("CIM has 0")},
+      {"KUL", "KUL", "pu", 0.5, 0.0, 1000.0, 0.0, "proportional gain",
+       literature::own("CIM's 100 serves a takeover gate")},
+      {"VUIMAX", "VUIMAX", "pu", 0.25, 0.0, 100.0, kNoNeutral, "upper limit of the integrator",
+       literature::own("a quarter of the voltage; CIM has 18 for VULMAX")},
+      {"VUIMIN", "VUIMIN", "pu", 0.0, -100.0, 0.0, kNoNeutral, "lower limit of the integrator",
+       literature::derived("it may only raise the voltage")},
       {"TU1", "TU1", "s", 0.0, 0.0, 20.0, kNoNeutral, "first lead"},
       {"TU2", "TU2", "s", 0.05, 0.0, 20.0, kNoNeutral, "first lag (0: bypass)"},
       {"TU3", "TU3", "s", 0.0, 0.0, 20.0, kNoNeutral, "second lead"},
       {"TU4", "TU4", "s", 0.0, 0.0, 20.0, kNoNeutral, "second lag (0: bypass)"},
-      {"VULMAX", "VULMAX", "pu", 0.25, 0.0, 100.0, kNoNeutral, "upper limit of the output"},
-      {"VULMIN", "VULMIN", "pu", 0.0, -100.0, 0.0, kNoNeutral, "lower limit of the output (only 0)"}};
+      {"VULMAX", "VULMAX", "pu", 0.25, 0.0, 100.0, kNoNeutral, "upper limit of the output",
+       literature::own("a quarter of the voltage; CIM has 18 for VULMAX")},
+      {"VULMIN", "VULMIN", "pu", 0.0, -100.0, 0.0, kNoNeutral, "lower limit of the output (only 0)",
+       literature::derived("it may only raise the voltage")}};
   static constexpr int dyr_columns[] = {KUR,    KUC, KUF, VURMAX, VUCMAX, KUI,    KUL,   VUIMAX,
                                         VUIMIN, TU1, TU2, TU3,    TU4,    VULMAX, VULMIN};
   enum C {

@@ -9,6 +9,7 @@
 #include "base/constants.hpp"
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::load_cim5 {
 
@@ -73,31 +74,48 @@ struct Model {
     C0,
     D
   };
+  static constexpr Source kMotor = literature::task_force("motor data, large industrial motor");
+  static constexpr Source kSquare = literature::own("a load torque with the square of the speed");
+  static constexpr Source kNoRelay = literature::derived("without effect, for the relay is not modelled");
+  static constexpr Source kSteep = literature::own("twice the flux, and steeper than a motor saturates");
+  static constexpr Source kTorque = literature::own("five times the torque; the fifth power");
+  static constexpr Source standards_from = literature::own("off: no second cage, no saturation, no relay");
+  static constexpr Source bounds_from = literature::own(
+      "the sign the equations need; the far end several times that of the task force's motors");
   static constexpr Parameter parameters[] = {
-      {"IT", "IT", "code", 1.0, 1.0, 2.0, kNoNeutral, "circuit of the two cages"},
-      {"Ra", "Ra", "pu", 0.013, 0.0, 0.2, 0.0, "stator resistance"},
-      {"Xa", "Xa", "pu", 0.067, 0.0, 0.5, kNoNeutral, "stator leakage reactance"},
-      {"Xm", "Xm", "pu", 3.8, 0.5, 10.0, kNoNeutral, "magnetising reactance"},
-      {"R1", "R1", "pu", 0.009, 0.001, 0.5, kNoNeutral, "first cage's resistance"},
-      {"X1", "X1", "pu", 0.17, 0.01, 1.0, kNoNeutral, "first cage's leakage reactance"},
+      {"IT", "IT", "code", 1.0, 1.0, 2.0, kNoNeutral, "circuit of the two cages",
+       literature::own("with one cage both are the same"), shared::kCode},
+      {"Ra", "Ra", "pu", 0.013, 0.0, 0.2, 0.0, "stator resistance", kMotor},
+      {"Xa", "Xa", "pu", 0.067, 0.0, 0.5, kNoNeutral, "stator leakage reactance", kMotor},
+      {"Xm", "Xm", "pu", 3.8, 0.5, 10.0, kNoNeutral, "magnetising reactance", kMotor},
+      {"R1", "R1", "pu", 0.009, 0.001, 0.5, kNoNeutral, "first cage's resistance", kMotor},
+      {"X1", "X1", "pu", 0.17, 0.01, 1.0, kNoNeutral, "first cage's leakage reactance", kMotor},
       {"R2", "R2", "pu", 0.0, 0.0, 0.5, kNoNeutral, "second cage's resistance (0: no second cage)"},
       {"X2", "X2", "pu", 0.0, 0.0, 1.0, kNoNeutral, "second cage's leakage reactance"},
-      {"E1", "E1", "pu", 1.0, 0.0, 2.0, kNoNeutral, "flux of the first saturation factor"},
-      {"S1", "S(E1)", "-", 0.0, 0.0, 2.0, 0.0, "saturation factor at E1"},
-      {"E2", "E2", "pu", 1.2, 0.0, 2.0, kNoNeutral, "flux of the second saturation factor"},
-      {"S2", "S(E2)", "-", 0.0, 0.0, 5.0, 0.0, "saturation factor at E2 (both 0: none)"},
-      {"Mbase", "MBASE", "MVA", 0.0, 0.0, 100000.0, kNoNeutral, "motor base (0: by PMULT)"},
-      {"Pmult", "PMULT", "MVA/MW", 1.25, 0.1, 10.0, kNoNeutral, "motor base per load"},
-      {"H", "H", "s", 0.8, 0.05, 10.0, kNoNeutral, "inertia constant"},
-      {"VI", "VI", "pu", 0.0, 0.0, 0.0, 0.0, "voltage of the relay that trips the motor: 0 (none) only"},
-      {"TI", "TI", "cycles", 0.0, 0.0, 999.0, kNoNeutral, "time of that relay"},
-      {"TB", "TB", "cycles", 0.0, 0.0, 999.0, kNoNeutral, "time of its breaker"},
-      {"E", "E", "-", 2.0, 0.0, 5.0, kNoNeutral, "exponent of the speed in the load torque"},
-      {"Tnom", "TNOM", "pu", 0.0, 0.0, 5.0, kNoNeutral, "load torque at rated speed, for starting only"},
-      {"A", "A", "-", 0.0, -5.0, 5.0, 0.0, "load torque with the square of the speed"},
-      {"B", "B", "-", 0.0, -5.0, 5.0, 0.0, "load torque with the speed"},
-      {"C0", "C0", "-", 0.0, -5.0, 5.0, 0.0, "constant load torque"},
-      {"D", "D", "-", 1.0, -5.0, 5.0, kNoNeutral, "load torque with the speed to the power E"}};
+      {"E1", "E1", "pu", 1.0, 0.0, 2.0, kNoNeutral, "flux of the first saturation factor", kAsEffect, kSteep},
+      {"S1", "S(E1)", "-", 0.0, 0.0, 2.0, 0.0, "saturation factor at E1", kAsEffect, kSteep},
+      {"E2", "E2", "pu", 1.2, 0.0, 2.0, kNoNeutral, "flux of the second saturation factor", kAsEffect,
+       kSteep},
+      {"S2", "S(E2)", "-", 0.0, 0.0, 5.0, 0.0, "saturation factor at E2 (both 0: none)", kAsEffect, kSteep},
+      {"Mbase", "MBASE", "MVA", 0.0, 0.0, 100000.0, kNoNeutral, "motor base (0: by PMULT)",
+       literature::own("PMULT gives it"), literature::own("larger than any load")},
+      {"Pmult", "PMULT", "MVA/MW", 1.25, 0.1, 10.0, kNoNeutral, "motor base per load",
+       literature::cim("LoadMotor: 1/Lfac"), literature::own("loaded from a tenth to ten times")},
+      {"H", "H", "s", 0.8, 0.05, 10.0, kNoNeutral, "inertia constant",
+       literature::own("twice CIM's 0.4 (LoadMotor)")},
+      {"VI", "VI", "pu", 0.0, 0.0, 0.0, 0.0, "voltage of the relay that trips the motor: 0 (none) only",
+       kAsEffect, shared::kNotModelled},
+      {"TI", "TI", "cycles", 0.0, 0.0, 999.0, kNoNeutral, "time of that relay", kAsEffect, kNoRelay},
+      {"TB", "TB", "cycles", 0.0, 0.0, 999.0, kNoNeutral, "time of its breaker", kAsEffect, kNoRelay},
+      {"E", "E", "-", 2.0, 0.0, 5.0, kNoNeutral, "exponent of the speed in the load torque", kSquare,
+       kTorque},
+      {"Tnom", "TNOM", "pu", 0.0, 0.0, 5.0, kNoNeutral, "load torque at rated speed, for starting only",
+       kAsEffect, kTorque},
+      {"A", "A", "-", 0.0, -5.0, 5.0, 0.0, "load torque with the square of the speed", kAsEffect, kTorque},
+      {"B", "B", "-", 0.0, -5.0, 5.0, 0.0, "load torque with the speed", kAsEffect, kTorque},
+      {"C0", "C0", "-", 0.0, -5.0, 5.0, 0.0, "constant load torque", kAsEffect, kTorque},
+      {"D", "D", "-", 1.0, -5.0, 5.0, kNoNeutral, "load torque with the speed to the power E", kSquare,
+       kTorque}};
   static constexpr int dyr_columns[] = {IT, Ra, Xa,    Xm,    R1, X1, R2, X2, E1, S1,
                                         E2, S2, Mbase, Pmult, H,  VI, TI, TB, E,  Tnom};
   enum X { psi1r, psi1i, psi2r, psi2i, slip };

@@ -6,6 +6,7 @@
 
 #include "sim/core/bus_frequency.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::load_ieel {
 
@@ -25,6 +26,10 @@ struct Model {
       df = Im(V conj x) / (|V| |x|) / (2 pi f0 Tf)
 )";
   enum P { a1, a2, a3, a4, a5, a6, a7, a8, n1, n2, n3, n4, n5, n6, Vp, Vi, Tf };
+  static constexpr Source standards_from =
+      literature::own("a constant impedance; the other exponents are those of current and power");
+  static constexpr Source bounds_from =
+      literature::own("more than ten times the load, and powers beyond 10, are no load");
   static constexpr Parameter parameters[] = {
       {"a1", "a1", "-", 1.0, -10.0, 10.0, kNoNeutral, "part of P with V to the power n1"},
       {"a2", "a2", "-", 0.0, -10.0, 10.0, 0.0, "part of P with V to the power n2"},
@@ -40,9 +45,12 @@ struct Model {
       {"n4", "n4", "-", 2.0, 0.0, 10.0, kNoNeutral, "exponent of the voltage"},
       {"n5", "n5", "-", 1.0, 0.0, 10.0, kNoNeutral, "exponent of the voltage"},
       {"n6", "n6", "-", 0.0, 0.0, 10.0, kNoNeutral, "exponent of the voltage"},
-      {"Vp", "Vp", "pu", 0.7, 0.05, 1.0, kNoNeutral, "voltage below which terms with n < 1 are impedances"},
-      {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNeutral, "voltage below which terms with n < 2 are impedances"},
-      {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNeutral, "lag behind which the frequency is measured"}};
+      {"Vp", "Vp", "pu", 0.7, 0.05, 1.0, kNoNeutral, "voltage below which terms with n < 1 are impedances",
+       shared::kPowerThreshold, shared::kThreshold},
+      {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNeutral, "voltage below which terms with n < 2 are impedances",
+       shared::kCurrentThreshold, shared::kThreshold},
+      {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNeutral, "lag behind which the frequency is measured",
+       shared::kThreeCycles, shared::kFrequencyLag}};
   static constexpr int dyr_columns[] = {a1, a2, a3, a4, a5, a6, a7, a8, n1, n2, n3, n4, n5, n6};
   enum X { xr, xi };
   /// An error of x counts in P by a7/(2 pi f0 Tf), a tenth or so.

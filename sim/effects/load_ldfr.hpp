@@ -6,6 +6,7 @@
 
 #include "sim/core/bus_frequency.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::load_ldfr {
 
@@ -24,18 +25,25 @@ struct Model {
       df = Im(V conj x) / (|V| |x|) / (2 pi f0 Tf)
 )";
   enum P { m, n, r, s, Pi, Pp, Qi, Qp, Vp, Vi, Tf };
+  static constexpr Source standards_from =
+      literature::own("half of the load at constant power, each part with its own power of the frequency");
+  static constexpr Source bounds_from =
+      literature::own("at 1.05 of the frequency the power 20 is 2.7 times the load");
   static constexpr Parameter parameters[] = {
       {"m", "m", "-", 1.5, -20.0, 20.0, 0.0, "power of the frequency in the constant power part of P"},
       {"n", "n", "-", -1.0, -20.0, 20.0, 0.0, "power of the frequency in the constant power part of Q"},
       {"r", "r", "-", 1.0, -20.0, 20.0, 0.0, "power of the frequency in the constant current part of P"},
       {"s", "s", "-", 0.0, -20.0, 20.0, 0.0, "power of the frequency in the constant current part of Q"},
-      {"Pi", "Pi", "-", 0.0, 0.0, 1.0, 0.0, "part of P at constant current"},
-      {"Pp", "Pp", "-", 0.5, 0.0, 1.0, 0.0, "part of P at constant power"},
-      {"Qi", "Qi", "-", 0.0, 0.0, 1.0, 0.0, "part of Q at constant current"},
-      {"Qp", "Qp", "-", 0.5, 0.0, 1.0, 0.0, "part of Q at constant power"},
-      {"Vp", "Vp", "pu", 0.7, 0.05, 1.0, kNoNeutral, "voltage below which the power part is an impedance"},
-      {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNeutral, "voltage below which the current part is an impedance"},
-      {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNeutral, "lag behind which the frequency is measured"}};
+      {"Pi", "Pi", "-", 0.0, 0.0, 1.0, 0.0, "part of P at constant current", kAsEffect, shared::kShare},
+      {"Pp", "Pp", "-", 0.5, 0.0, 1.0, 0.0, "part of P at constant power", kAsEffect, shared::kShare},
+      {"Qi", "Qi", "-", 0.0, 0.0, 1.0, 0.0, "part of Q at constant current", kAsEffect, shared::kShare},
+      {"Qp", "Qp", "-", 0.5, 0.0, 1.0, 0.0, "part of Q at constant power", kAsEffect, shared::kShare},
+      {"Vp", "Vp", "pu", 0.7, 0.05, 1.0, kNoNeutral, "voltage below which the power part is an impedance",
+       shared::kPowerThreshold, shared::kThreshold},
+      {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNeutral, "voltage below which the current part is an impedance",
+       shared::kCurrentThreshold, shared::kThreshold},
+      {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNeutral, "lag behind which the frequency is measured",
+       shared::kThreeCycles, shared::kFrequencyLag}};
   static constexpr int dyr_columns[] = {m, n, r, s};
   enum X { xr, xi };
   /// An error of x counts in P by m/(2 pi f0 Tf), a tenth or so.

@@ -6,6 +6,7 @@
 
 #include "sim/core/bus_frequency.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::load_zip {
 
@@ -26,16 +27,23 @@ struct Model {
       df = Im(V conj x) / (|V| |x|) / (2 pi f0 Tf)
 )";
   enum P { Pi, Pp, Qi, Qp, Vp, Vi, Kpf, Kqf, Tf };
+  static constexpr Source standards_from = literature::own("a constant impedance");
+  static constexpr Source bounds_from = shared::kShare;
   static constexpr Parameter parameters[] = {
       {"Pi", "Pi", "-", 0.0, 0.0, 1.0, 0.0, "part of P at constant current"},
       {"Pp", "Pp", "-", 0.0, 0.0, 1.0, 0.0, "part of P at constant power"},
       {"Qi", "Qi", "-", 0.0, 0.0, 1.0, 0.0, "part of Q at constant current"},
       {"Qp", "Qp", "-", 0.0, 0.0, 1.0, 0.0, "part of Q at constant power"},
-      {"Vp", "Vp", "pu", 0.7, 0.05, 1.0, kNoNeutral, "voltage below which the power part is an impedance"},
-      {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNeutral, "voltage below which the current part is an impedance"},
-      {"Kpf", "Kpf", "pu/pu", 0.0, -10.0, 10.0, 0.0, "change of P per change of frequency"},
-      {"Kqf", "Kqf", "pu/pu", 0.0, -10.0, 10.0, 0.0, "change of Q per change of frequency"},
-      {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNeutral, "lag behind which the frequency is measured"}};
+      {"Vp", "Vp", "pu", 0.7, 0.05, 1.0, kNoNeutral, "voltage below which the power part is an impedance",
+       shared::kPowerThreshold, shared::kThreshold},
+      {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNeutral, "voltage below which the current part is an impedance",
+       shared::kCurrentThreshold, shared::kThreshold},
+      {"Kpf", "Kpf", "pu/pu", 0.0, -10.0, 10.0, 0.0, "change of P per change of frequency", kAsEffect,
+       literature::own("ten per cent of load for each of frequency")},
+      {"Kqf", "Kqf", "pu/pu", 0.0, -10.0, 10.0, 0.0, "change of Q per change of frequency", kAsEffect,
+       literature::own("ten per cent of load for each of frequency")},
+      {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNeutral, "lag behind which the frequency is measured",
+       shared::kThreeCycles, shared::kFrequencyLag}};
   enum X { xr, xi };
   /// An error of x counts in P by Kpf/(2 pi f0 Tf), a tenth or so.
   static constexpr State states[] = {{"xr", "pu", "lagged voltage, real", 0.1},

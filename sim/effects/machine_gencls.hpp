@@ -9,6 +9,7 @@
 #include "base/constants.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/direct/swing.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::machine_gencls {
 
@@ -22,11 +23,17 @@ struct Model {
   H = 0 is PSS/E's infinite bus: angle and speed stay where they are.
 )";
   enum P { H, D, Ra, Xdp };
+  static constexpr Source standards_from = literature::kundur("within table 4.2");
+  static constexpr Source bounds_from = shared::kBeyondKundur;
   static constexpr Parameter parameters[] = {
-      {"H", "H", "s", 5.0, 0.0, 20.0, kNoNeutral, "inertia constant (0: infinite bus)"},
-      {"D", "D", "pu", 0.0, 0.0, 20.0, 0.0, "damping torque per unit speed deviation"},
-      {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance"},
-      {"Xdp", "X'd", "pu", 0.3, 1e-6, 2.5, kNoNeutral, "transient reactance"}};
+      {"H", "H", "s", 5.0, 0.0, 20.0, kNoNeutral, "inertia constant (0: infinite bus)",
+       literature::kundur("within table 3.2"),
+       literature::own("0 is an infinite bus; three times Kundur's table 3.2")},
+      {"D", "D", "pu", 0.0, 0.0, 20.0, 0.0, "damping torque per unit speed deviation", shared::kNothing,
+       shared::kDamping},
+      {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance", shared::kNeglected},
+      {"Xdp", "X'd", "pu", 0.3, 1e-6, 2.5, kNoNeutral, "transient reactance", kAsEffect,
+       literature::own("an infinite bus has hardly any")}};
   enum X { delta, speed };
   static constexpr State states[] = {{"delta", "rad", "rotor angle in the synchronous frame"},
                                      {"speed", "pu", "speed deviation", 100.0}};

@@ -11,6 +11,7 @@
 #include "base/constants.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/core/saturation.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::machine_gentpj {
 
@@ -38,25 +39,36 @@ struct Model {
    Without saturation this is GENROU with Xl = X'' in its rotor circuits.
 )";
   enum P { Tdop, Tdopp, Tqop, Tqopp, H, D, Xd, Xq, Xdp, Xqp, Xdpp, Xqpp, Xl, S10, S12, Kis, Ra };
+  static constexpr Source standards_from = literature::kundur("within table 4.2, thermal units");
+  static constexpr Source bounds_from = shared::kBeyondKundur;
   static constexpr Parameter parameters[] = {
       {"Tdop", "T'do", "s", 7.0, 0.5, 20.0, kNoNeutral, "d-axis transient open-circuit time constant"},
       {"Tdopp", "T''do", "s", 0.04, 0.005, 0.5, kNoNeutral, "d-axis subtransient open-circuit time constant"},
       {"Tqop", "T'qo", "s", 0.8, 0.0, 5.0, kNoNeutral,
-       "q-axis transient open-circuit time constant (0, with X'q = Xq: no such circuit)"},
-      {"Tqopp", "T''qo", "s", 0.06, 0.005, 0.5, kNoNeutral, "q-axis subtransient open-circuit time constant"},
-      {"H", "H", "s", 5.0, 0.1, 20.0, kNoNeutral, "inertia constant"},
-      {"D", "D", "pu", 0.0, 0.0, 20.0, 0.0, "damping torque per unit speed deviation"},
-      {"Xd", "Xd", "pu", 1.8, 0.1, 4.0, kNoNeutral, "d-axis synchronous reactance"},
-      {"Xq", "Xq", "pu", 1.7, 0.1, 4.0, kNoNeutral, "q-axis synchronous reactance"},
-      {"Xdp", "X'd", "pu", 0.3, 0.02, 2.5, kNoNeutral, "d-axis transient reactance"},
-      {"Xqp", "X'q", "pu", 0.55, 0.02, 4.0, kNoNeutral, "q-axis transient reactance"},
-      {"Xdpp", "X''d", "pu", 0.25, 0.01, 1.0, kNoNeutral, "d-axis subtransient reactance"},
-      {"Xqpp", "X''q", "pu", 0.27, 0.01, 1.0, kNoNeutral, "q-axis subtransient reactance"},
+       "q-axis transient open-circuit time constant (0, with X'q = Xq: no such circuit)", kAsEffect,
+       literature::derived("0 is no such circuit")},
+      {"Tqopp", "T''qo", "s", 0.06, 0.005, 0.5, kNoNeutral, "q-axis subtransient open-circuit time constant",
+       shared::kSlowDamper},
+      {"H", "H", "s", 5.0, 0.1, 20.0, kNoNeutral, "inertia constant", shared::kThermalInertia},
+      {"D", "D", "pu", 0.0, 0.0, 20.0, 0.0, "damping torque per unit speed deviation",
+       literature::cim("RotatingMachineDynamics"), shared::kDamping},
+      {"Xd", "Xd", "pu", 1.8, 0.1, 4.0, kNoNeutral, "d-axis synchronous reactance", shared::kTwoAreas},
+      {"Xq", "Xq", "pu", 1.7, 0.1, 4.0, kNoNeutral, "q-axis synchronous reactance", shared::kTwoAreas},
+      {"Xdp", "X'd", "pu", 0.3, 0.02, 2.5, kNoNeutral, "d-axis transient reactance", shared::kTwoAreas},
+      {"Xqp", "X'q", "pu", 0.55, 0.02, 4.0, kNoNeutral, "q-axis transient reactance", shared::kTwoAreas,
+       literature::derived("as far as Xq, where there is no such circuit")},
+      {"Xdpp", "X''d", "pu", 0.25, 0.01, 1.0, kNoNeutral, "d-axis subtransient reactance", shared::kTwoAreas},
+      {"Xqpp", "X''q", "pu", 0.27, 0.01, 1.0, kNoNeutral, "q-axis subtransient reactance",
+       literature::own("other than X''d, so that the saliency acts")},
       {"Xl", "Xl", "pu", 0.15, 0.0, 0.9, kNoNeutral, "stator leakage reactance"},
-      {"S10", "S1.0", "-", 0.1, 0.0, 2.0, 0.0, "saturation factor at 1.0 pu flux (0: none)"},
-      {"S12", "S1.2", "-", 0.4, 0.0, 10.0, 0.0, "saturation factor at 1.2 pu flux"},
-      {"Kis", "Kis", "pu/pu", 0.05, 0.0, 0.5, 0.0, "flux that a stator current stands for in the saturation"},
-      {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance"}};
+      {"S10", "S1.0", "-", 0.1, 0.0, 2.0, 0.0, "saturation factor at 1.0 pu flux (0: none)",
+       shared::kMildSaturation, shared::kSaturation},
+      {"S12", "S1.2", "-", 0.4, 0.0, 10.0, 0.0, "saturation factor at 1.2 pu flux", shared::kMildSaturation,
+       shared::kSaturation},
+      {"Kis", "Kis", "pu/pu", 0.05, 0.0, 0.5, 0.0, "flux that a stator current stands for in the saturation",
+       literature::own("not 0, so that the current acts on the saturation; CIM has 0"),
+       literature::own("half of the current as flux")},
+      {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance", shared::kNeglected}};
   /// Where saturation is steep a flux error counts tenfold in the field current, as in GENROU.
   static constexpr double kFluxWeight = 10.0;
   enum X { delta, speed, Eqp, Edp, psid, psiq };

@@ -6,6 +6,7 @@
 #include "sim/core/effect.hpp"
 #include "sim/core/sampled.hpp"
 #include "sim/core/window.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::measurement_frequency {
 
@@ -23,6 +24,9 @@ struct Model {
   V and I are not touched. At the record's ends the difference is taken over what there is.
 )";
   enum P { span, smoothing };
+  static constexpr Source standards_from = shared::kNothing;
+  static constexpr Source bounds_from =
+      literature::own("longer than an instrument may take; no time is negative");
   static constexpr Parameter parameters[] = {
       {"span", "Td", "s", 0.0, 0.0, 2.0, 0.0, "time over which the angle is differenced"},
       {"smoothing", "Ts", "s", 0.0, 0.0, 5.0, 0.0, "length of the average after it"}};

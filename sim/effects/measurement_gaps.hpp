@@ -6,6 +6,7 @@
 
 #include "sim/core/effect.hpp"
 #include "sim/core/noise.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::measurement_gaps {
 
@@ -22,9 +23,12 @@ struct Model {
   there.
 )";
   enum P { rate, length };
+  static constexpr Source standards_from = shared::kNothing;
+  static constexpr Source bounds_from = literature::own("more and longer than a record that can be used has");
   static constexpr Parameter parameters[] = {
       {"rate", "lambda", "1/s", 0.0, 0.0, 100.0, 0.0, "gaps that begin per second of good record"},
-      {"length", "L", "s", 0.1, 1e-3, 60.0, kNoNeutral, "mean length of a gap"}};
+      {"length", "L", "s", 0.1, 1e-3, 60.0, kNoNeutral, "mean length of a gap",
+       literature::own("six samples of 60 a second")}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     if (!(p[rate] >= 0))

@@ -4,6 +4,7 @@
 
 #include "sim/core/effect.hpp"
 #include "sim/core/noise.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::measurement_noise {
 
@@ -22,6 +23,8 @@ struct Model {
   gives the same noise. White at the rate of the samples it is applied to: a filter after it colours it.
 )";
   enum P { relative, V, I, angle, frequency };
+  static constexpr Source standards_from = shared::kNothing;
+  static constexpr Source bounds_from = shared::kNoMeasurement;
   static constexpr Parameter parameters[] = {
       {"relative", "sr", "pu", 0.0, 0.0, 0.1, 0.0, "standard deviation of either magnitude, of itself"},
       {"V", "sV", "pu", 0.0, 0.0, 0.1, 0.0, "standard deviation of the voltage's real and imaginary part"},

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::measurement_pt {
 
@@ -17,6 +18,8 @@ struct Model {
   Class 0.5 allows gain = 0.005 pu and phase = 0.0058 rad (20 minutes of arc) at rated voltage.
 )";
   enum P { gain, phase };
+  static constexpr Source standards_from = shared::kNothing;
+  static constexpr Source bounds_from = shared::kBeyondClass;
   static constexpr Parameter parameters[] = {
       {"gain", "eps", "pu", 0.0, -0.5, 0.5, 0.0, "error of the voltage's magnitude, of itself"},
       {"phase", "dphi", "rad", 0.0, -0.5, 0.5, 0.0, "error of the voltage's angle, positive: leading"}};

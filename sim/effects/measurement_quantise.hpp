@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::measurement_quantise {
 
@@ -19,6 +20,8 @@ struct Model {
   a frequency 0.001 Hz.
 )";
   enum P { V, I, angle, frequency };
+  static constexpr Source standards_from = shared::kNothing;
+  static constexpr Source bounds_from = shared::kNoMeasurement;
   static constexpr Parameter parameters[] = {
       {"V", "qV", "pu", 0.0, 0.0, 0.1, 0.0, "step of the voltage's magnitude"},
       {"I", "qI", "pu", 0.0, 0.0, 0.1, 0.0, "step of the current's magnitude"},

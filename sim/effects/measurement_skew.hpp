@@ -2,6 +2,7 @@
 // SKEW: the current channel is late against the voltage channel.
 #include "sim/core/effect.hpp"
 #include "sim/core/sampled.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::measurement_skew {
 
@@ -20,6 +21,9 @@ struct Model {
   jump is smeared. Outside the record the current stands still.
 )";
   enum P { skew };
+  static constexpr Source standards_from = shared::kNothing;
+  static constexpr Source bounds_from =
+      literature::own("beyond a second two records are of different events");
   static constexpr Parameter parameters[] = {
       {"skew", "tau", "s", 0.0, -1.0, 1.0, 0.0, "by how much the current is late"}};
 

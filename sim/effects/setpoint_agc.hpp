@@ -6,6 +6,7 @@
 
 #include "sim/core/drive.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::setpoint_agc {
 
@@ -27,10 +28,16 @@ struct Model {
 )";
   enum P { start, interval, duration, move1, move2, move3, move4, move5, move6 };
   static constexpr int kMoves = 6;
+  static constexpr Source standards_from = shared::kNothing;
+  static constexpr Source bounds_from = shared::kRating;
   static constexpr Parameter parameters[] = {
-      {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNeutral, "when the first move begins"},
-      {"interval", "Ti", "s", 4.0, 0.1, 1e5, kNoNeutral, "from one command to the next"},
-      {"duration", "Tr", "s", 2.0, 0.0, 1e5, kNoNeutral, "how long one move takes (0: a step)"},
+      {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNeutral, "when the first move begins", shared::kAfterRest,
+       shared::kAnyTime},
+      {"interval", "Ti", "s", 4.0, 0.1, 1e5, kNoNeutral, "from one command to the next",
+       literature::kundur("11.1.6, every few seconds"),
+       literature::own("a tenth of a second, to longer than any record")},
+      {"duration", "Tr", "s", 2.0, 0.0, 1e5, kNoNeutral, "how long one move takes (0: a step)",
+       literature::own("half of the interval"), shared::kAnyTime},
       {"move1", "dP1", "pu", 0.0, -1.0, 1.0, 0.0, "first move of the governor's reference"},
       {"move2", "dP2", "pu", 0.0, -1.0, 1.0, 0.0, "second move, on top"},
       {"move3", "dP3", "pu", 0.0, -1.0, 1.0, 0.0, "third move, on top"},

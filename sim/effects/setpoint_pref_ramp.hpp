@@ -1,6 +1,7 @@
 #pragma once
 // PREFRAMP: ramp of the governor's reference.
 #include "sim/effects/detail/setpoint_move.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::setpoint_pref_ramp {
 
@@ -13,6 +14,7 @@ struct Model : shared::SetpointRamp<Model> {
                         t1   t1 + T
   Before t1 exactly zero; stays at `amount` after t1 + T.
 )";
+  static constexpr Source bounds_from = shared::kRating;
   static constexpr Parameter parameters[] = {
       {"amount", "dPref", "pu", 0.0, -1.0, 1.0, 0.0, "how far the reference of the governor is moved"},
       kStart,

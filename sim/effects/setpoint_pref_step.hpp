@@ -1,6 +1,7 @@
 #pragma once
 // PREFSTEP: step of the governor's reference.
 #include "sim/effects/detail/setpoint_move.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::setpoint_pref_step {
 
@@ -12,6 +13,7 @@ struct Model : shared::SetpointStep<Model> {
                           t1     t2
   Before t1 and from t2 on exactly zero.
 )";
+  static constexpr Source bounds_from = shared::kRating;
   static constexpr Parameter parameters[] = {
       {"amount", "dPref", "pu", 0.0, -1.0, 1.0, 0.0, "how far the reference of the governor is moved"},
       kStart,

@@ -13,6 +13,7 @@ struct Model : shared::SetpointRamp<Model> {
                         t1   t1 + T
   Before t1 exactly zero; stays at `amount` after t1 + T.
 )";
+  static constexpr Source bounds_from = literature::own("half of the rated voltage");
   static constexpr Parameter parameters[] = {
       {"amount", "dVref", "pu", 0.0, -0.5, 0.5, 0.0, "how far the reference of the exciter is moved"},
       kStart,

@@ -12,6 +12,7 @@ struct Model : shared::SetpointStep<Model> {
                           t1     t2
   Before t1 and from t2 on exactly zero.
 )";
+  static constexpr Source bounds_from = literature::own("half of the rated voltage");
   static constexpr Parameter parameters[] = {
       {"amount", "dVref", "pu", 0.0, -0.5, 0.5, 0.0, "how far the reference of the exciter is moved"},
       kStart,

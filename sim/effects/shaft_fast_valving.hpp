@@ -6,6 +6,7 @@
 
 #include "sim/core/drive.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::shaft_fast_valving {
 
@@ -25,12 +26,18 @@ struct Model {
   Before `start` exactly nothing is changed.
 )";
   enum P { drop, start, closing, hold, opening };
+  static constexpr Source standards_from = shared::kNothing;
+  static constexpr Source bounds_from = shared::kAnyTime;
   static constexpr Parameter parameters[] = {
-      {"drop", "k", "-", 0.0, 0.0, 1.0, 0.0, "part of the torque the valves take away"},
-      {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNeutral, "when the valves begin to close"},
-      {"closing", "Tc", "s", 0.15, 0.0, 100.0, kNoNeutral, "how long they close (0: at once)"},
-      {"hold", "Th", "s", 0.2, 0.0, 1e5, kNoNeutral, "how long they stay closed"},
-      {"opening", "To", "s", 3.0, 0.0, 1e5, kNoNeutral, "how long they reopen (0: at once)"}};
+      {"drop", "k", "-", 0.0, 0.0, 1.0, 0.0, "part of the torque the valves take away", kAsEffect,
+       shared::kShare},
+      {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNeutral, "when the valves begin to close", shared::kAfterRest},
+      {"closing", "Tc", "s", 0.15, 0.0, 100.0, kNoNeutral, "how long they close (0: at once)",
+       literature::kundur("17.1.5, 0.1 to 0.2 s"), literature::own("longer than any valve takes")},
+      {"hold", "Th", "s", 0.2, 0.0, 1e5, kNoNeutral, "how long they stay closed",
+       literature::own("a little longer than they close")},
+      {"opening", "To", "s", 3.0, 0.0, 1e5, kNoNeutral, "how long they reopen (0: at once)",
+       literature::kundur("17.1.5, over seconds")}};
   enum C { coefficients = opening + 1 };
 
   static void check(const double* p, const std::string& where, Problems& problems) {

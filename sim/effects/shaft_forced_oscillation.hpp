@@ -5,6 +5,7 @@
 #include "base/constants.hpp"
 #include "sim/core/drive.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::shaft_forced_oscillation {
 
@@ -19,12 +20,17 @@ struct Model {
   Before `start` and from `end` on exactly nothing is added.
 )";
   enum P { amplitude, frequency, phase, start, end };
+  static constexpr Source standards_from = shared::kNothing;
+  static constexpr Source bounds_from = shared::kAnyTime;
   static constexpr Parameter parameters[] = {
-      {"amplitude", "A", "pu", 0.0, -1.0, 1.0, 0.0, "amplitude of the torque"},
-      {"frequency", "f", "Hz", 0.5, 1e-3, 60.0, kNoNeutral, "frequency of the oscillation"},
-      {"phase", "phi", "rad", 0.0, -constants::turn, constants::turn, kNoNeutral, "phase at `start`"},
-      {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNeutral, "when it begins"},
-      {"end", "t2", "s", 1e5, 0.0, 1e5, kNoNeutral, "when it ends (100000: never)"}};
+      {"amplitude", "A", "pu", 0.0, -1.0, 1.0, 0.0, "amplitude of the torque", kAsEffect, shared::kRating},
+      {"frequency", "f", "Hz", 0.5, 1e-3, 60.0, kNoNeutral, "frequency of the oscillation",
+       literature::own("between two areas"), literature::own("from minutes to the frequency of the grid")},
+      {"phase", "phi", "rad", 0.0, -constants::turn, constants::turn, kNoNeutral, "phase at `start`",
+       literature::derived("a sine"), literature::derived("a turn either way")},
+      {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNeutral, "when it begins", shared::kAfterRest},
+      {"end", "t2", "s", 1e5, 0.0, 1e5, kNoNeutral, "when it ends (100000: never)",
+       literature::derived("never")}};
   enum C { kA, w, phi, t1, t2, coefficients };
 
   static void check(const double* p, const std::string& where, Problems& problems) {

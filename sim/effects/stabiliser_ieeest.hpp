@@ -7,6 +7,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/bus_frequency.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::stabiliser_ieeest {
 
@@ -28,16 +29,24 @@ struct Model {
   Vs = 0 while Vc > VCU or Vc < VCL (a zero switches that side off). T2, T4 = 0: bypass; T6 = 0: KS alone.
 )";
   enum P { ICS, IB, A1, A2, A3, A4, A5, A6, T1, T2, T3, T4, T5, T6, KS, LSMAX, LSMIN, VCU, VCL, Tf };
+  static constexpr Source kCase = literature::psid("IEEEST/ThreeBus_IEEEST.dyr");
+  static constexpr Source standards_from =
+      literature::own("of the speed, two equal leads of five; no published sample was found");
+  static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
       {"ICS", "ICS", "code", 1.0, 1.0, 6.0, kNoNeutral,
-       "input: 1 speed, 2 frequency, 3 electrical, 4 accelerating power, 5 voltage, 6 its slope"},
-      {"IB", "IB", "code", 0.0, 0.0, 999997.0, kNoNeutral, "remote bus (0: the machine's own)"},
-      {"A1", "A1", "s", 0.06, 0.0, 10.0, 0.0, "filter denominator 1, first order"},
-      {"A2", "A2", "s^2", 0.0016, 0.0, 10.0, 0.0, "filter denominator 1, second order"},
+       "input: 1 speed, 2 frequency, 3 electrical, 4 accelerating power, 5 voltage, 6 its slope", kCase,
+       literature::sienna("IEEEST")},
+      {"IB", "IB", "code", 0.0, 0.0, 999997.0, kNoNeutral, "remote bus (0: the machine's own)", kCase,
+       shared::kBusNumber},
+      {"A1", "A1", "s", 0.06, 0.0, 10.0, 0.0, "filter denominator 1, first order",
+       literature::own("near CIM's PSS1A, 0.061 and 0.0017")},
+      {"A2", "A2", "s^2", 0.0016, 0.0, 10.0, 0.0, "filter denominator 1, second order",
+       literature::own("near CIM's PSS1A, 0.061 and 0.0017")},
       {"A3", "A3", "s", 0.03, 0.0, 10.0, 0.0, "filter denominator 2, first order"},
       {"A4", "A4", "s^2", 0.0004, 0.0, 10.0, 0.0, "filter denominator 2, second order"},
-      {"A5", "A5", "s", 0.0, -10.0, 10.0, 0.0, "filter numerator, first order"},
-      {"A6", "A6", "s^2", 0.0, -10.0, 10.0, 0.0, "filter numerator, second order"},
+      {"A5", "A5", "s", 0.0, -10.0, 10.0, 0.0, "filter numerator, first order", kCase},
+      {"A6", "A6", "s^2", 0.0, -10.0, 10.0, 0.0, "filter numerator, second order", kCase},
       {"T1", "T1", "s", 0.1, 0.0, 20.0, kNoNeutral, "first lead"},
       {"T2", "T2", "s", 0.02, 0.0, 20.0, kNoNeutral, "first lag (0: bypass)"},
       {"T3", "T3", "s", 0.1, 0.0, 20.0, kNoNeutral, "second lead"},
@@ -45,11 +54,14 @@ struct Model {
       {"T5", "T5", "s", 5.0, 0.0, 50.0, kNoNeutral, "washout numerator"},
       {"T6", "T6", "s", 5.0, 0.0, 50.0, kNoNeutral, "washout denominator (0: bypass)"},
       {"KS", "KS", "pu", 10.0, -1000.0, 1000.0, 0.0, "gain"},
-      {"LSMAX", "LSMAX", "pu", 0.1, 0.0, 10.0, kNoNeutral, "upper limit of Vs"},
-      {"LSMIN", "LSMIN", "pu", -0.1, -10.0, 0.0, kNoNeutral, "lower limit of Vs"},
-      {"VCU", "VCU", "pu", 1.25, 0.0, 10.0, 0.0, "no output above this voltage (0: off)"},
+      {"LSMAX", "LSMAX", "pu", 0.1, 0.0, 10.0, kNoNeutral, "upper limit of Vs", kCase},
+      {"LSMIN", "LSMIN", "pu", -0.1, -10.0, 0.0, kNoNeutral, "lower limit of Vs", kCase},
+      {"VCU", "VCU", "pu", 1.25, 0.0, 10.0, 0.0, "no output above this voltage (0: off)",
+       literature::sienna("IEEEST, its largest")},
       {"VCL", "VCL", "pu", 0.7, -10.0, 1.0, 0.0, "no output below this voltage (0: off)"},
-      {"Tf", "Tf", "s", 0.04, 0.005, 1.0, kNoNeutral, "lag behind which frequency or slope is measured"}};
+      {"Tf", "Tf", "s", 0.04, 0.005, 1.0, kNoNeutral, "lag behind which frequency or slope is measured",
+       literature::own("two and a half cycles of 60 Hz"),
+       literature::own("from a quarter of a cycle of 50 Hz to a second")}};
   static constexpr int dyr_columns[] = {ICS, IB, A1, A2, A3, A4,    A5,    A6,  T1, T2,
                                         T3,  T4, T5, T6, KS, LSMAX, LSMIN, VCU, VCL};
   enum C {

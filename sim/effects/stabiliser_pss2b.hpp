@@ -4,6 +4,7 @@
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::stabiliser_pss2b {
 
@@ -56,31 +57,44 @@ struct Model {
     VSTMIN,
     parameter_count
   };
+  static constexpr Source kRange = literature::sienna("PSS2B");
+  static constexpr Source standards_from = literature::cim("PssIEEE2B");
+  static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
       {"IC1", "IC1", "code", 1.0, 1.0, 6.0, kNoNeutral,
-       "first input: 1 speed, 3 electrical, 4 accelerating power, 5 voltage"},
-      {"REMBUS1", "REMBUS1", "code", 0.0, 0.0, 999997.0, kNoNeutral, "its remote bus (0: the machine's own)"},
-      {"IC2", "IC2", "code", 3.0, 1.0, 6.0, kNoNeutral, "second input, as the first"},
-      {"REMBUS2", "REMBUS2", "code", 0.0, 0.0, 999997.0, kNoNeutral, "its remote bus (0: the machine's own)"},
-      {"M", "M", "code", 5.0, 0.0, 8.0, kNoNeutral, "ramp-tracking filter: lags per stage"},
-      {"N", "N", "code", 1.0, 0.0, 8.0, kNoNeutral, "ramp-tracking filter: stages, M N <= 8"},
+       "first input: 1 speed, 3 electrical, 4 accelerating power, 5 voltage", kAsEffect, kRange},
+      {"REMBUS1", "REMBUS1", "code", 0.0, 0.0, 999997.0, kNoNeutral, "its remote bus (0: the machine's own)",
+       literature::own("the machine's own bus"), shared::kBusNumber},
+      {"IC2", "IC2", "code", 3.0, 1.0, 6.0, kNoNeutral, "second input, as the first", kAsEffect, kRange},
+      {"REMBUS2", "REMBUS2", "code", 0.0, 0.0, 999997.0, kNoNeutral, "its remote bus (0: the machine's own)",
+       literature::own("the machine's own bus"), shared::kBusNumber},
+      {"M", "M", "code", 5.0, 0.0, 8.0, kNoNeutral, "ramp-tracking filter: lags per stage", kAsEffect,
+       kRange},
+      {"N", "N", "code", 1.0, 0.0, 8.0, kNoNeutral, "ramp-tracking filter: stages, M N <= 8", kAsEffect,
+       kRange},
       {"Tw1", "Tw1", "s", 2.0, 0.01, 100.0, kNoNeutral, "first washout of the first input"},
       {"Tw2", "Tw2", "s", 2.0, 0.0, 100.0, kNoNeutral, "second washout of the first input (0: bypass)"},
-      {"T6", "T6", "s", 0.02, 0.0, 10.0, kNoNeutral, "lag of the first input (0: bypass)"},
+      {"T6", "T6", "s", 0.02, 0.0, 10.0, kNoNeutral, "lag of the first input (0: bypass)",
+       literature::own("one cycle of 50 Hz; CIM has none")},
       {"Tw3", "Tw3", "s", 2.0, 0.01, 100.0, kNoNeutral, "first washout of the second input"},
       {"Tw4", "Tw4", "s", 0.0, 0.0, 100.0, kNoNeutral, "second washout of the second input (0: bypass)"},
       {"T7", "T7", "s", 2.0, 0.0, 100.0, kNoNeutral, "lag of the second input (0: bypass)"},
       {"KS2", "KS2", "pu", 0.2, -10.0, 10.0, kNoNeutral, "gain of the second input, about T7/(2 H)"},
       {"KS3", "KS3", "pu", 1.0, -10.0, 10.0, kNoNeutral, "its gain into the ramp-tracking filter"},
-      {"T8", "T8", "s", 0.5, 0.0, 10.0, kNoNeutral, "ramp-tracking filter's lead, about M T9"},
+      {"T8", "T8", "s", 0.5, 0.0, 10.0, kNoNeutral, "ramp-tracking filter's lead, about M T9",
+       literature::derived("M T9, so that a ramp passes; CIM has 0.2")},
       {"T9", "T9", "s", 0.1, 0.005, 10.0, kNoNeutral, "ramp-tracking filter's lag"},
-      {"KS1", "KS1", "pu", 10.0, -1000.0, 1000.0, 0.0, "gain"},
-      {"T1", "T1", "s", 0.25, 0.0, 20.0, kNoNeutral, "first lead"},
-      {"T2", "T2", "s", 0.03, 0.0, 20.0, kNoNeutral, "first lag (0: bypass)"},
-      {"T3", "T3", "s", 0.15, 0.0, 20.0, kNoNeutral, "second lead"},
-      {"T4", "T4", "s", 0.03, 0.0, 20.0, kNoNeutral, "second lag (0: bypass)"},
-      {"T10", "T10", "s", 0.02, 0.0, 20.0, kNoNeutral, "third lead"},
-      {"T11", "T11", "s", 0.03, 0.0, 20.0, kNoNeutral, "third lag (0: bypass)"},
+      {"KS1", "KS1", "pu", 10.0, -1000.0, 1000.0, 0.0, "gain", literature::own("CIM has 12")},
+      {"T1", "T1", "s", 0.25, 0.0, 20.0, kNoNeutral, "first lead", literature::own("CIM has 0.12")},
+      {"T2", "T2", "s", 0.03, 0.0, 20.0, kNoNeutral, "first lag (0: bypass)",
+       literature::own("CIM has 0.02")},
+      {"T3", "T3", "s", 0.15, 0.0, 20.0, kNoNeutral, "second lead", literature::own("CIM has 0.3")},
+      {"T4", "T4", "s", 0.03, 0.0, 20.0, kNoNeutral, "second lag (0: bypass)",
+       literature::own("CIM has 0.02")},
+      {"T10", "T10", "s", 0.02, 0.0, 20.0, kNoNeutral, "third lead",
+       literature::own("hardly any; CIM has none")},
+      {"T11", "T11", "s", 0.03, 0.0, 20.0, kNoNeutral, "third lag (0: bypass)",
+       literature::own("hardly any; CIM has none")},
       {"VS1MAX", "VS1MAX", "pu", 2.0, 0.0, 100.0, kNoNeutral, "upper limit of the first input"},
       {"VS1MIN", "VS1MIN", "pu", -2.0, -100.0, 0.0, kNoNeutral, "lower limit of the first input"},
       {"VS2MAX", "VS2MAX", "pu", 2.0, 0.0, 100.0, kNoNeutral, "upper limit of the second input"},

@@ -4,6 +4,7 @@
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::stabiliser_stab1 {
 
@@ -18,6 +19,9 @@ struct Model {
   given as K/T, T, T1/T3, T3, T2/T4, T4; T3 = 0 or T4 = 0: bypass
 )";
   enum P { KT, TW, T1_T3, T3, T2_T4, T4, HLIM };
+  static constexpr Source standards_from =
+      literature::own("leads of 0.25/0.05 s and 0.16/0.04 s; no published sample was found");
+  static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
       {"KT", "K/T", "pu", 10.0, -1000.0, 1000.0, 0.0, "gain above the washout's corner"},
       {"TW", "T", "s", 5.0, 0.01, 50.0, kNoNeutral, "washout"},

@@ -17,9 +17,12 @@ struct Model {
   R, X per unit on the machine's base; no charging, no magnetising current.
 )";
   enum P { R, X, ratio };
+  static constexpr Source standards_from = literature::own("no losses, nominal ratio");
+  static constexpr Source bounds_from = literature::own("far beyond a power transformer");
   static constexpr Parameter parameters[] = {
       {"R", "R", "pu", 0.0, 0.0, 0.1, 0.0, "resistance on the machine's base"},
-      {"X", "X", "pu", 0.1, 0.0, 1.0, 0.0, "leakage reactance on the machine's base"},
+      {"X", "X", "pu", 0.1, 0.0, 1.0, 0.0, "leakage reactance on the machine's base",
+       literature::own("the usual tenth")},
       {"ratio", "n", "-", 1.0, 0.5, 2.0, 1.0, "grid side over machine side, off nominal"}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {

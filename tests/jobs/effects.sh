@@ -35,22 +35,26 @@ for e in everything:
     assert e["title"] and e["source"] and e["description"].strip(), e["name"]
     for p in e["parameters"]:
         assert p["low"] <= p["standard"] <= p["high"] and p["unit"] and p["meaning"], (e["name"], p)
+        assert p["standard_from"] and p["bounds_from"], (e["name"], p)
 
 sexs, gaps = json.loads((work / "two.json").read_text())
 assert sexs["dyr"] == {"name": "SEXS", "columns": ["TAoverTB", "TB", "K", "TE", "EMIN", "EMAX"]}
 gain = next(p for p in sexs["parameters"] if p["name"] == "K")
 assert gain["standard"] == 100 and gain["neutral"] is None
+assert gain["standard_from"] == "CIM: ExcSEXS" and gain["bounds_from"].startswith("own choice: ")
 assert "dyr" not in gaps and gaps["parameters"][0]["neutral"] == 0
 
 two = (work / "two.txt").read_text()
 assert "SEXS: simplified excitation system" in two and "GENROU: round-rotor machine" in two
 assert "TE dEfd/dt = K y - Efd" in two  # the equations
-assert re.search(r"^  K +K +pu +100 +0\.5 +2000 +- +gain$", two, re.M), two
+assert re.search(r"^  K +K +pu +100 +0\.5 +2000 +- +1 2 +gain$", two, re.M), two
 assert ".dyr: BUS 'SEXS' ID TA/TB TB K TE EMIN EMAX /" in two
+assert re.search(r"^   1  CIM: ExcSEXS$", two, re.M) and "  CIM: IEC and ENTSO-E, " in two
 assert "source: " in two and re.search(r"^  Efd +pu +field voltage$", two, re.M)
 
 law = (work / "law.txt").read_text()
 assert "DIPTORQUE: torque lost in a voltage dip" in law and "recovery" in law
+assert "configs/laws/torque_voltage_dip.toml" in law  # the file is its numbers' source
 assert "DIPTORQUE" in (work / "laws.txt").read_text() and "DIPTORQUE" not in listed
 PYTHON
 

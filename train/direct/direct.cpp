@@ -26,7 +26,7 @@ class Rows {
   explicit Rows(const store::Dataset& d) : dataset_(d) {
     Problems problems;
     const std::string where = (d.path / "dataset.json").string();
-    effect_ = sim::library::find_effect(d.machine_model);
+    effect_ = sim::library::compiled().find(d.machine_model);
     if (!effect_ || !effect_->closed_form)
       problems.add("no closed form for " + d.machine_model, where,
                    "nobody has written one for this machine's equations",

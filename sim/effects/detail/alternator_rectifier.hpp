@@ -6,6 +6,7 @@
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::shared {
 
@@ -13,20 +14,27 @@ template <class Model>
 struct AlternatorRectifier {
   static constexpr Slot slot = Slot::exciter;
   enum P { TR, TB, TC, KA, TA, UPPER, LOWER, TE, KF, TF, KC, KD, KE, E1, SE1, E2, SE2, parameter_count };
+  static constexpr Source kRange = literature::sienna("ESAC1A");
+  static constexpr Source standards_from = literature::cim("ExcIEEEAC1A");
+  static constexpr Source bounds_from = kBeyondCases;
   /// The parameters, `upper` and `lower` being the regulator's limits.
   static constexpr std::array<Parameter, parameter_count> parameters_with(const Parameter& upper,
                                                                           const Parameter& lower) {
-    return {{{"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)"},
-             {"TB", "TB", "s", 0.1, 0.0, 20.0, kNoNeutral, "lag (0: bypass)"},
-             {"TC", "TC", "s", 0.05, 0.0, 20.0, kNoNeutral, "lead"},
+    return {{{"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)",
+              literature::psid("AC1A/ThreeBus_ESAC1A.dyr"), kRange},
+             {"TB", "TB", "s", 0.1, 0.0, 20.0, kNoNeutral, "lag (0: bypass)",
+              literature::psid("AC1A/ThreeBus_ESAC1A.dyr"), kRange},
+             {"TC", "TC", "s", 0.05, 0.0, 20.0, kNoNeutral, "lead",
+              literature::own("half of TB, so that the lead acts; CIM has 0 for both"), kRange},
              {"KA", "KA", "pu", 400.0, 1.0, 2000.0, kNoNeutral, "regulator gain"},
-             {"TA", "TA", "s", 0.02, 0.0, 10.0, kNoNeutral, "regulator time constant (0: none)"},
+             {"TA", "TA", "s", 0.02, 0.0, 10.0, kNoNeutral, "regulator time constant (0: none)", kAsEffect,
+              kRange},
              upper,
              lower,
              {"TE", "TE", "s", 0.8, 0.01, 5.0, kNoNeutral, "alternator's time constant"},
              {"KF", "KF", "pu", 0.03, 0.0, 1.0, 0.0, "rate feedback"},
              {"TF", "TF", "s", 1.0, 0.02, 20.0, kNoNeutral, "rate feedback's time constant"},
-             {"KC", "KC", "pu", 0.2, 0.0, 1.0, 0.0, "rectifier's commutating reactance"},
+             {"KC", "KC", "pu", 0.2, 0.0, 1.0, 0.0, "rectifier's commutating reactance", kAsEffect, kRange},
              {"KD", "KD", "pu", 0.38, 0.0, 2.0, 0.0, "alternator's armature reaction"},
              {"KE", "KE", "pu", 1.0, 0.0, 2.0, kNoNeutral, "alternator's own field"},
              {"E1", "E1", "pu", 4.18, 0.0, 20.0, kNoNeutral, "first point of saturation"},

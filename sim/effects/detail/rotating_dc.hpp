@@ -8,23 +8,33 @@
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::shared {
 
 template <class Model>
 struct RotatingDc {
   static constexpr Slot slot = Slot::exciter;
+  static constexpr Source kDefault = literature::andes("IEEET1, commit 066781b");
+  static constexpr Source kMild = literature::own("a saturation that is hardly felt at rated excitation");
+  static constexpr Source kRange = literature::sienna("IEEET1");
+  static constexpr Source kTwice = literature::own("PowerSystems.jl's -1 to 1, and twice as far up");
+  static constexpr Source kSteep =
+      literature::own("not negative; seven records of dynamicsWECC.dyr (GridDyn) lie beyond, at 3.05");
   static constexpr Parameter
-      kTR = {"TR", "TR", "s", 0.02, 0.0, 0.5, 0.0, "voltage transducer (0: none)"},
-      kKE = {"KE", "KE", "pu", 1.0, -1.0, 2.0, kNoNeutral, "exciter's own field (0: by the operating point)"},
-      kTE = {"TE", "TE", "s", 0.8, 0.01, 5.0, kNoNeutral, "exciter time constant"},
-      kTF = {"TF", "TF", "s", 1.0, 0.02, 20.0, kNoNeutral, "rate feedback's time constant"},
+      kTR = {"TR", "TR", "s", 0.02, 0.0, 0.5, 0.0, "voltage transducer (0: none)", kDefault, kRange},
+      kKE = {"KE",     "KE",  "pu",       1.0,
+             -1.0,     2.0,   kNoNeutral, "exciter's own field (0: by the operating point)",
+             kDefault, kTwice},
+      kTE = {"TE", "TE", "s", 0.8, 0.01, 5.0, kNoNeutral, "exciter time constant", kDefault},
+      kTF = {"TF", "TF", "s", 1.0, 0.02, 20.0, kNoNeutral, "rate feedback's time constant", kDefault},
       kSwitch = {"Switch", "Switch", "code",     0.0,
-                 0.0,      1.0,      kNoNeutral, "kept by PSS/E for files; without effect"},
-      kE1 = {"E1", "E1", "pu", 2.4, 0.0, 20.0, kNoNeutral, "first point of saturation"},
-      kSE1 = {"SE1", "SE(E1)", "-", 0.03, 0.0, 2.0, 0.0, "saturation there"},
-      kE2 = {"E2", "E2", "pu", 5.0, 0.0, 20.0, kNoNeutral, "second point of saturation"},
-      kSE2 = {"SE2", "SE(E2)", "-", 0.5, 0.0, 2.0, 0.0, "saturation there"};
+                 0.0,      1.0,      kNoNeutral, "kept by PSS/E for files; without effect",
+                 kDefault, kCode},
+      kE1 = {"E1", "E1", "pu", 2.4, 0.0, 20.0, kNoNeutral, "first point of saturation", kMild},
+      kSE1 = {"SE1", "SE(E1)", "-", 0.03, 0.0, 2.0, 0.0, "saturation there", kMild},
+      kE2 = {"E2", "E2", "pu", 5.0, 0.0, 20.0, kNoNeutral, "second point of saturation", kMild},
+      kSE2 = {"SE2", "SE(E2)", "-", 0.5, 0.0, 2.0, 0.0, "saturation there", kMild, kSteep};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     check_with({Model::TR, Model::TA}, p, where, problems);

@@ -7,30 +7,38 @@
 #include "base/constants.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/core/saturation.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::shared {
 
 struct SalientPole {
   static constexpr Slot slot = Slot::machine;
   enum P { Tdop, Tdopp, Tqopp, H, D, Xd, Xq, Xdp, Xdpp, Xl, S10, S12, Ra, parameter_count };
+  static constexpr Source kAsRound = literature::own("as the round rotor's");
+  static constexpr Source kNoDamper =
+      literature::psid("EXAC1/TVC_System.dyr, where 999 stands for no damper");
+  static constexpr Source standards_from = literature::kundur("within table 4.2, hydraulic units");
+  static constexpr Source bounds_from = kBeyondKundur;
   /// All parameters; what the saturation factors are of is told by their meaning.
   static constexpr std::array<Parameter, parameter_count> parameters_with(std::string_view s10,
                                                                           std::string_view s12) {
     return {{{"Tdop", "T'do", "s", 6.0, 0.5, 20.0, kNoNeutral, "d-axis transient open-circuit time constant"},
              {"Tdopp", "T''do", "s", 0.05, 0.005, 999.0, kNoNeutral,
-              "d-axis subtransient open-circuit time constant"},
+              "d-axis subtransient open-circuit time constant", kAsEffect, kNoDamper},
              {"Tqopp", "T''qo", "s", 0.08, 0.005, 999.0, kNoNeutral,
-              "q-axis subtransient open-circuit time constant"},
-             {"H", "H", "s", 4.0, 0.1, 20.0, kNoNeutral, "inertia constant"},
-             {"D", "D", "pu", 0.0, 0.0, 20.0, 0.0, "damping torque per unit speed deviation"},
+              "q-axis subtransient open-circuit time constant", kAsEffect, kNoDamper},
+             {"H", "H", "s", 4.0, 0.1, 20.0, kNoNeutral, "inertia constant",
+              literature::kundur("within table 3.2, hydraulic units")},
+             {"D", "D", "pu", 0.0, 0.0, 20.0, 0.0, "damping torque per unit speed deviation",
+              literature::cim("RotatingMachineDynamics"), kDamping},
              {"Xd", "Xd", "pu", 1.2, 0.1, 4.0, kNoNeutral, "d-axis synchronous reactance"},
              {"Xq", "Xq", "pu", 0.75, 0.1, 4.0, kNoNeutral, "q-axis synchronous reactance"},
              {"Xdp", "X'd", "pu", 0.35, 0.02, 2.5, kNoNeutral, "d-axis transient reactance"},
              {"Xdpp", "X''d", "pu", 0.25, 0.01, 1.0, kNoNeutral, "subtransient reactance, both axes"},
              {"Xl", "Xl", "pu", 0.15, 0.0, 0.9, kNoNeutral, "stator leakage reactance"},
-             {"S10", "S1.0", "-", 0.1, 0.0, 2.0, 0.0, s10},
-             {"S12", "S1.2", "-", 0.4, 0.0, 10.0, 0.0, s12},
-             {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance"}}};
+             {"S10", "S1.0", "-", 0.1, 0.0, 2.0, 0.0, s10, kAsRound, kSaturation},
+             {"S12", "S1.2", "-", 0.4, 0.0, 10.0, 0.0, s12, kAsRound, kSaturation},
+             {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance", kNeglected}}};
   }
   /// As the round-rotor machine's: above a steep saturation knee a flux error counts tenfold in the field
   /// current.

@@ -7,11 +7,13 @@
 
 #include "sim/core/drive.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::shared {
 
 struct SetpointMove {
   static constexpr std::string_view source = "disturbance drive: no model explains it; shape by definition";
+  static constexpr Source standards_from = kNothing;
   static constexpr Slot slot = Slot::setpoint;
 
   static void check_start(double start, const std::string& where, Problems& problems) {
@@ -30,9 +32,18 @@ struct SetpointMove {
 template <class Model>
 struct SetpointStep : SetpointMove {
   enum P { amount, start, end };
-  static constexpr Parameter kStart = {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNeutral, "when the step comes"};
-  static constexpr Parameter kEnd = {"end", "t2", "s",        1e5,
-                                     0.0,   1e5,  kNoNeutral, "when it goes (100000: never)"};
+  static constexpr Parameter kStart = {
+      "start", "t1", "s", 1.0, 0.0, 1e5, kNoNeutral, "when the step comes", kAfterRest, kAnyTime};
+  static constexpr Parameter kEnd = {"end",
+                                     "t2",
+                                     "s",
+                                     1e5,
+                                     0.0,
+                                     1e5,
+                                     kNoNeutral,
+                                     "when it goes (100000: never)",
+                                     literature::derived("never"),
+                                     kAnyTime};
   enum C { coefficients = end + 1 };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
@@ -58,9 +69,18 @@ struct SetpointStep : SetpointMove {
 template <class Model>
 struct SetpointRamp : SetpointMove {
   enum P { amount, start, duration };
-  static constexpr Parameter kStart = {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNeutral, "when the ramp begins"};
-  static constexpr Parameter kDuration = {"duration", "T", "s",        5.0,
-                                          0.0,        1e5, kNoNeutral, "how long the ramp lasts (0: a step)"};
+  static constexpr Parameter kStart = {
+      "start", "t1", "s", 1.0, 0.0, 1e5, kNoNeutral, "when the ramp begins", kAfterRest, kAnyTime};
+  static constexpr Parameter kDuration = {"duration",
+                                          "T",
+                                          "s",
+                                          5.0,
+                                          0.0,
+                                          1e5,
+                                          kNoNeutral,
+                                          "how long the ramp lasts (0: a step)",
+                                          literature::own("a few seconds"),
+                                          kAnyTime};
   enum C { coefficients = duration + 1 };
 
   static void check(const double* p, const std::string& where, Problems& problems) {

@@ -22,7 +22,7 @@ constexpr std::size_t kMostStates = 40, kMostParameters = 100, kLargestFile = 10
 }  // namespace
 
 Reader::Reader(const std::string& text, const std::filesystem::path& name)
-    : text_(text), config_(text, name) {}
+    : text_(text), file_(name.string()), config_(text, name) {}
 
 /// Names in a table, as they follow one another in the file. Names that cannot be written in an expression
 /// are noted and left out.
@@ -108,6 +108,8 @@ void Reader::read_parameters() {
     p.neutral = config_.has(key + "neutral") ? config_.require<double>(key + "neutral", range)
                                              : config_.optional<double>(key + "neutral", kNoNeutral);
     p.meaning = keep(config_.require<std::string>(key + "meaning"));
+    const auto source = config_.optional<std::string>(key + "source", file_);
+    p.standard_from = p.bounds_from = literature::law(keep(source));
     parameter_.emplace(name, static_cast<int>(law_.parameters.size()));
     law_.parameters.push_back(p);
   }

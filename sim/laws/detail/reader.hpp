@@ -82,7 +82,7 @@ class Reader {
   int add_state(const std::string& name, const std::string& meaning);
   double state_weight(const std::string& key);
 
-  std::string text_;
+  std::string text_, file_;
   Config config_;
   Problems problems_;
   Definition law_;

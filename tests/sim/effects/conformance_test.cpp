@@ -86,6 +86,7 @@ TEST(Conformance, RecordsAreComplete) {
       EXPECT_LE(r.low, r.standard) << e.name << "." << r.name;
       EXPECT_LE(r.standard, r.high) << e.name << "." << r.name;
       EXPECT_FALSE(r.unit.empty() || r.meaning.empty()) << e.name << "." << r.name;
+      EXPECT_TRUE(r.standard_from.given() && r.bounds_from.given()) << e.name << "." << r.name;
       if (r.neutral == r.neutral) {  // not NaN: it has one
         EXPECT_TRUE(r.low <= r.neutral && r.neutral <= r.high) << e.name << "." << r.name;
       }

@@ -161,6 +161,17 @@ TEST(LawFile, OneTextInTwoLibrariesIsTheSameEffect) {
   EXPECT_TRUE(same_effect(*one.find("SEXS"), *other.find("SEXS")));
 }
 
+TEST(LawFile, AValuesSourceIsWhatTheParameterSaysOrTheFile) {
+  const Effect law = make_law(law_of("Vs", "add", R"law(value = "a * b * 0"
+[parameters]
+a = { unit = "pu", standard = 1, low = 0, high = 2, meaning = "said", source = "a plant's data sheet" }
+b = { unit = "pu", standard = 1, low = 0, high = 2, meaning = "not said" })law"),
+                              "plant.toml");
+  EXPECT_EQ(as_text(law.parameters[0].standard_from), "a plant's data sheet");
+  EXPECT_EQ(as_text(law.parameters[0].bounds_from), "a plant's data sheet");
+  EXPECT_EQ(as_text(law.parameters[1].standard_from), "plant.toml");
+}
+
 TEST(LawFile, InstantsAreThoseOfTheParameters) {
   const Effect law = make_law(law_of("Tm", "add", R"law(value = "select(t < start, 0, 0.1)"
 instants = ["start", "start + 2"]

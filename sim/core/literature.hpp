@@ -1,0 +1,68 @@
+#pragma once
+// Where the numbers of the effects come from: the works they were read in, and the two kinds of reason that
+// stand in a work's place. A number's source is written as a call, cim("ExcSEXS") or own("twice the rating").
+#include <string>
+#include <string_view>
+
+namespace swingbank::sim {
+
+struct Work;
+
+/// A work and the place in it; for the two kinds of reason the place is the reason.
+struct Source {
+  const Work* work = nullptr;
+  std::string_view place;
+  [[nodiscard]] constexpr bool given() const { return work && !place.empty(); }
+};
+
+struct Work {
+  std::string_view id, author, edition, title, where;  ///< edition: year, version or commit
+  constexpr Source operator()(std::string_view place) const { return {this, place}; }
+  [[nodiscard]] constexpr bool published() const { return !title.empty(); }
+};
+
+/// "CIM: ExcSEXS"; the place alone where the work has no name.
+inline std::string as_text(const Source& source) {
+  const std::string place(source.place);
+  return source.work->id.empty() ? place : std::string(source.work->id) + ": " + place;
+}
+
+namespace literature {
+
+/// It follows from the equations, from what is modelled of them or from what the number is.
+inline constexpr Work derived{"derived", "", "", "", ""};
+/// Swingbank chose it, for the reason given.
+inline constexpr Work own{"own choice", "", "", "", ""};
+/// What a law file says of its numbers.
+inline constexpr Work law{"", "", "", "", ""};
+
+inline constexpr Work kundur{"Kundur", "P. Kundur", "1994", "Power System Stability and Control",
+                             "McGraw-Hill"};
+inline constexpr Work task_force{"IEEE Task Force", "IEEE Task Force on Load Representation", "1995",
+                                 "Standard load models for power flow and dynamic performance simulation",
+                                 "IEEE Trans. Power Syst. 10 (3), 1302"};
+inline constexpr Work c37{"IEEE C37.118.1", "IEEE", "2011", "Synchrophasor Measurements for Power Systems",
+                          "IEEE Standards"};
+inline constexpr Work psse{"PSS/E", "Siemens PTI", "32 to 35", "Program Operation Manual and Model Library",
+                           "with the program"};
+inline constexpr Work cim{"CIM", "IEC and ENTSO-E", "CGMES 2.4.15",
+                          "Dynamics profile (IEC 61970-302): typical values of the standard models",
+                          "class comments in github.com/sogno-platform/cimpy, commit 0678496"};
+inline constexpr Work sienna{"PowerSystems.jl", "NREL", "1.8", "Validation ranges of the PSS/E models",
+                             "github.com/NREL-Sienna/PowerSystems.jl, src/models/generated"};
+inline constexpr Work andes{"ANDES", "CURENT", "1.x", "Default values of the PSS/E models",
+                            "github.com/CURENT/andes, andes/models"};
+
+// The case files: .dyr and PSS/E models of public projects.
+inline constexpr Work psid{"PowerSimulationsDynamics.jl", "NREL", "d94d74e", "PSS/E test cases",
+                           "github.com/NREL-Sienna/PowerSimulationsDynamics.jl, test/benchmarks/psse"};
+inline constexpr Work openipsl{"OpenIPSL", "ALSETLab", "fe8aa5c", "Single-machine tests of the PSS/E models",
+                               "github.com/OpenIPSL/OpenIPSL"};
+inline constexpr Work gridpack{"GridPACK", "PNNL", "bea5ce1", "Case files", "github.com/GridOPTICS/GridPACK"};
+inline constexpr Work griddyn{"GridDyn", "LLNL", "96b5751", "Case files", "github.com/LLNL/GridDyn"};
+inline constexpr Work steps{"STEPS", "Changgang Li", "e5579d2", "Case files", "github.com/changgang/steps"};
+inline constexpr Work powerful_cases{"PowerfulCases", "Hantao Cui", "b44f5d5", "Case files",
+                                     "github.com/cuihantao/PowerfulCases"};
+
+}  // namespace literature
+}  // namespace swingbank::sim

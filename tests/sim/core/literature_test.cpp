@@ -1,0 +1,39 @@
+// Sources of parameters' values: what is said once for an effect, and what a record says itself.
+#include <gtest/gtest.h>
+
+#include "sim/core/effect.hpp"
+
+namespace swingbank::sim {
+namespace {
+
+constexpr Source kPage = literature::kundur("table 4.2"), kChosen = literature::own("for this test");
+
+struct Model {
+  static constexpr Source standards_from = kPage, bounds_from = kChosen;
+  static constexpr Parameter parameters[] = {
+      {"a", "a", "s", 1.0, 0.0, 2.0, kNoNeutral, "of the effect"},
+      {"b", "b", "s", 1.0, 0.0, 2.0, kNoNeutral, "standard of its own", literature::cim("GovGAST")},
+      {"c", "c", "s", 1.0, 0.0, 2.0, kNoNeutral, "bounds of their own", kAsEffect,
+       literature::derived("a time")}};
+};
+
+TEST(Literature, ARecordsSourceStandsBeforeTheEffects) {
+  const auto& [a, b, c] = kSourced<Model>;
+  EXPECT_EQ(as_text(a.standard_from), "Kundur: table 4.2");
+  EXPECT_EQ(as_text(a.bounds_from), "own choice: for this test");
+  EXPECT_EQ(as_text(b.standard_from), "CIM: GovGAST");
+  EXPECT_EQ(as_text(b.bounds_from), "own choice: for this test");
+  EXPECT_EQ(as_text(c.standard_from), "Kundur: table 4.2");
+  EXPECT_EQ(as_text(c.bounds_from), "derived: a time");
+}
+
+TEST(Literature, AReasonIsNoPublishedWork) {
+  EXPECT_TRUE(kPage.work->published());
+  EXPECT_FALSE(kChosen.work->published());
+  EXPECT_EQ(as_text(literature::law("my_limiter.toml")), "my_limiter.toml");
+  EXPECT_FALSE(Source{}.given());
+  EXPECT_FALSE(literature::own("").given());
+}
+
+}  // namespace
+}  // namespace swingbank::sim
