@@ -144,6 +144,30 @@ fit::Fit fit_without(const plant::PlantModel& model, const Bench& bench,
   return fit::fit(model.under_test(), bench.seen(), fit::free_parameters(model.plant, spread), o);
 }
 
+/// Of each event, what the uncertainty of the fitted parameters adds to it if it was not seen.
+std::vector<double> allowances(const sim::plant::PlantUnderTest& fitted, const Bench& bench,
+                               const std::vector<fit::EventFit>& fits,
+                               const std::vector<fit::FreeParameter>& free) {
+  std::vector<Eigen::MatrixXd> known(fits.size());
+  in_parallel(
+      fits.size(),
+      [&](std::size_t e) {
+        known[e] = fit::information(fit::event_slopes(fitted, bench.all().whitened(e), fits[e].state, free));
+      },
+      [&](int done) { bench.tell("sensitivities", done, static_cast<int>(fits.size())); });
+  const auto n = static_cast<Eigen::Index>(free.size());
+  const Eigen::MatrixXd belief = Eigen::MatrixXd::Identity(n, n);
+  Eigen::MatrixXd all = belief;
+  for (std::size_t e = 0; e < known.size(); ++e)
+    if (bench.is_seen(e)) all += known[e];
+  const Eigen::MatrixXd covariance = all.ldlt().solve(belief);
+  std::vector<double> added;
+  for (std::size_t e = 0; e < known.size(); ++e)
+    added.push_back(
+        bench.is_seen(e) ? 0.0 : calibrate::unseen_allowance(known[e], covariance, bench.all()[e].values()));
+  return added;
+}
+
 std::string own_values(const Addition& a) {
   std::string text;
   for (int i = 0; i < a.own; ++i) {
@@ -224,6 +248,8 @@ Addition add_effect(const plant::PlantModel& model, const hypothesis::Hypothesis
   a.evidence = fit::gain(a.without, a.with, fit::criterion);
   const auto refitted = bench.each({a.without.plant, model.conventions}, "events without the effect");
   const auto after = bench.each({a.with.plant, hypothesis.conventions}, "events with the effect");
+  const auto allowed = allowances({a.with.plant, hypothesis.conventions}, bench, after,
+                                  hypothesis::free_of(hypothesis, options.calibrate.spread));
   a.earns = true;
   std::vector<calibrate::EventScore> scores;
   for (std::size_t e = 0; e < bench.all().size(); ++e) {
@@ -231,6 +257,7 @@ Addition add_effect(const plant::PlantModel& model, const hypothesis::Hypothesis
         calibrate::score_event(bench.all().whitened(e), before[e], after[e], bench.is_seen(e),
                                calibrate::pre_event_samples(bench.all()), options.calibrate.adequate),
         refitted[e].misfit()};
+    event.score.limit += allowed[e];
     scores.push_back(event.score);
     a.earns = a.earns && (event.score.seen || event.improves() || event.score.adequate());
     a.events.push_back(std::move(event));

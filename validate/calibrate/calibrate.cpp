@@ -253,8 +253,8 @@ class Run {
     c_.blurs = find_blurs(data, unit);
     try_others(data + belief, inverse, unit, widening);
     for (std::size_t e = 0; e < slopes.size(); ++e)  // what uncertain parameters add to events they never saw
-      allowance_.push_back(out_[e] ? (fit::information(slopes[e]) * robust).trace() / c_.prepared[e].values()
-                                   : 0.0);
+      allowance_.push_back(
+          out_[e] ? unseen_allowance(fit::information(slopes[e]), robust, c_.prepared[e].values()) : 0.0);
   }
   static constexpr double kColour = 0.5;  ///< how far apart samples of coloured noise count together [s]
 

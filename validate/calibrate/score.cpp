@@ -6,6 +6,7 @@
 
 #include "validate/calibrate/calibrate.hpp"
 #include "validate/playin/instruments.hpp"
+#include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::calibrate {
 namespace {
@@ -60,6 +61,13 @@ int pre_event_samples(const event::WhitenedEvents& events) {
   int sum = 0;
   for (const auto& e : events) sum += e.start.samples - 1;
   return sum;
+}
+
+double unseen_allowance(const Eigen::MatrixXd& information, const Eigen::MatrixXd& covariance, int values) {
+  // chi2 is |J d + e|^2 for an error d of the parameters and white noise e
+  const Eigen::MatrixXd form = information * covariance;
+  const double mean = form.trace(), variance = 2 * (form * form).trace() + 4 * mean;
+  return (mean + thresholds::adequacy.one_in_thousand * std::sqrt(std::max(variance, 0.0))) / values;
 }
 
 EventScore score_event(event::WhitenedEvent whitened, const fit::EventFit& before, const fit::EventFit& after,

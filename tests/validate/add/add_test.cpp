@@ -93,6 +93,7 @@ TEST(Add, AnInstrumentThatIsMissingIsFound) {
   options.calibrate.held_out = {"2"};
   const Addition a = add_effect(model, find_hypothesis(model, "CTERROR"), example.records, options);
   EXPECT_TRUE(a.earns) << a.sentence;
+  EXPECT_TRUE(a.adequate) << a.sentence;
   ASSERT_EQ(a.own, 2);
   EXPECT_LE(a.parameters[1].low, -0.04);
   EXPECT_GE(a.parameters[1].high, -0.04);
@@ -108,6 +109,7 @@ TEST(Add, AnEffectIsScreenedThroughTheInstrumentsOfTheModel) {
   options.refined = 1;
   const Addition a = add_effect(model, find_hypothesis(model, "SEXS"), example.records, options);
   EXPECT_TRUE(a.earns) << a.sentence;
+  EXPECT_TRUE(a.adequate) << a.sentence;
 }
 
 TEST(Add, NamesAreFoundAsWrittenAndOthersListed) {

@@ -88,9 +88,10 @@ TEST(CurveFitSeenThrough, TheInstrumentsBelongToTheModel) {
   const CurveFit f = curve_fit(wrong.model, example.records, options);
   EXPECT_TRUE(f.converged) << f.sentence;
   for (const auto& p : f.parameters)
-    if (p.name == "H" || p.name == "Xdp") {
+    if (p.name == "H" || p.name == "Xdp" || p.name == "phase") {
       const double truth = fit::parameter_value(example.truth.plant, p.where.block, p.where.index);
-      EXPECT_NEAR(p.value, truth, 0.03 * std::abs(truth)) << p.name;  // instants are off by up to 2.7 ms
+      // instants are off by up to 2.7 ms; the phase's own standard error is 4 % of it
+      EXPECT_NEAR(p.value, truth, (p.name == "phase" ? 0.12 : 0.03) * std::abs(truth)) << p.name;
     }
 }
 
