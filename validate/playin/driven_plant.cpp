@@ -143,7 +143,7 @@ class Driven {
       if (d.kind == Kind::P) Seeds<T>::add(P, i, d.scale * to_machine);
       if (d.kind == Kind::Q) Seeds<T>::add(Q, i, d.scale * to_machine);
     });
-    auto at = sim::plant::operating_point_of<T>(plant, p, run_.start.voltage, P, {Q, run_.conventions});
+    auto at = sim::plant::operating_point_of<T>(plant, p, run_.start.voltage, P, Q, run_.conventions);
     c_ = std::move(at.c);
     x_ = std::move(at.x);
     Efd_ = at.Efd;

@@ -183,7 +183,7 @@ class EventCost : public ceres::CostFunction {
   /// What the plant answers to the event.
   [[nodiscard]] playin::Response answer(const sim::plant::Plant& plant, const EventState& state,
                                         std::span<const playin::Direction> along = {}) const {
-    return event::play(plant, *setting_.conventions, event_, state, along,
+    return event::play({plant, *setting_.conventions}, event_, state, along,
                        {.tolerance = setting_.tolerance, .input = setting_.input});
   }
 

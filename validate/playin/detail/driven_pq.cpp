@@ -23,7 +23,7 @@ class DrivenByPower {
         to_machine_(run.record->base.mva / run.plant->mva) {
     auto at = sim::plant::operating_point_of<double>(*run.plant, sim::plant::block_parameters(*run.plant),
                                                      run.start.voltage, run.start.P * to_machine_,
-                                                     {run.start.Q * to_machine_, run.conventions});
+                                                     run.start.Q * to_machine_, run.conventions);
     c_ = std::move(at.c);
     x_ = std::move(at.x);
     Efd_ = at.Efd;
