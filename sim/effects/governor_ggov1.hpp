@@ -71,7 +71,7 @@ struct Model {
   };
   static constexpr Source standards_from = literature::openipsl("test of GGOV1");
   static constexpr Source bounds_from = literature::own(
-      "the sign the equations need; the far end at least five times CIM's typical value (GovCT1), or 99 and 999 for none");
+      "the sign the equations need; at the far end five times CIM's GovCT1 or more, or 99 and 999 (none)");
   static constexpr Parameter parameters[] = {
       {"Rselect", "Rselect", "code", 1.0, -2.0, 1.0, kNoNeutral,
        "droop of: 1 electrical power, 0 nothing, -1 valve, -2 requested stroke", literature::cim("GovCT1"),

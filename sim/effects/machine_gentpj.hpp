@@ -46,7 +46,7 @@ struct Model {
       {"Tdopp", "T''do", "s", 0.04, 0.005, 0.5, kNoNeutral, "d-axis subtransient open-circuit time constant"},
       {"Tqop", "T'qo", "s", 0.8, 0.0, 5.0, kNoNeutral,
        "q-axis transient open-circuit time constant (0, with X'q = Xq: no such circuit)", kAsEffect,
-       literature::derived("0 is no such circuit")},
+       literature::own("0 is no such circuit; more than twice Kundur's 2 s (table 4.2)")},
       {"Tqopp", "T''qo", "s", 0.06, 0.005, 0.5, kNoNeutral, "q-axis subtransient open-circuit time constant",
        shared::kSlowDamper},
       {"H", "H", "s", 5.0, 0.1, 20.0, kNoNeutral, "inertia constant", shared::kThermalInertia},

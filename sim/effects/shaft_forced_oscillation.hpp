@@ -29,8 +29,7 @@ struct Model {
       {"phase", "phi", "rad", 0.0, -constants::turn, constants::turn, kNoNeutral, "phase at `start`",
        literature::derived("a sine"), literature::derived("a turn either way")},
       {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNeutral, "when it begins", shared::kAfterRest},
-      {"end", "t2", "s", 1e5, 0.0, 1e5, kNoNeutral, "when it ends (100000: never)",
-       literature::derived("never")}};
+      {"end", "t2", "s", 1e5, 0.0, 1e5, kNoNeutral, "when it ends (100000: never)", shared::kNever}};
   enum C { kA, w, phi, t1, t2, coefficients };
 
   static void check(const double* p, const std::string& where, Problems& problems) {

@@ -34,16 +34,8 @@ struct SetpointStep : SetpointMove {
   enum P { amount, start, end };
   static constexpr Parameter kStart = {
       "start", "t1", "s", 1.0, 0.0, 1e5, kNoNeutral, "when the step comes", kAfterRest, kAnyTime};
-  static constexpr Parameter kEnd = {"end",
-                                     "t2",
-                                     "s",
-                                     1e5,
-                                     0.0,
-                                     1e5,
-                                     kNoNeutral,
-                                     "when it goes (100000: never)",
-                                     literature::derived("never"),
-                                     kAnyTime};
+  static constexpr Parameter kEnd = {
+      "end", "t2", "s", 1e5, 0.0, 1e5, kNoNeutral, "when it goes (100000: never)", kNever, kAnyTime};
   enum C { coefficients = end + 1 };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
@@ -71,16 +63,9 @@ struct SetpointRamp : SetpointMove {
   enum P { amount, start, duration };
   static constexpr Parameter kStart = {
       "start", "t1", "s", 1.0, 0.0, 1e5, kNoNeutral, "when the ramp begins", kAfterRest, kAnyTime};
-  static constexpr Parameter kDuration = {"duration",
-                                          "T",
-                                          "s",
-                                          5.0,
-                                          0.0,
-                                          1e5,
-                                          kNoNeutral,
-                                          "how long the ramp lasts (0: a step)",
-                                          literature::own("a few seconds"),
-                                          kAnyTime};
+  static constexpr Parameter kDuration = {
+      "duration",  "T",     "s", 5.0, 0.0, 1e5, kNoNeutral, "how long the ramp lasts (0: a step)",
+      kFewSeconds, kAnyTime};
   enum C { coefficients = duration + 1 };
 
   static void check(const double* p, const std::string& where, Problems& problems) {

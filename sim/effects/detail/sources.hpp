@@ -36,6 +36,8 @@ inline constexpr Source kTwoAreas = literature::kundur("example 12.6, the two-ar
 inline constexpr Source kThermalInertia = literature::kundur("within table 3.2, thermal units");
 inline constexpr Source kSlowDamper = literature::own("just above Kundur's 0.02 to 0.05 s (table 4.2)");
 inline constexpr Source kMildSaturation = literature::psid("GAST/dyn_data.dyr");
+inline constexpr Source kNever = literature::own("never, in a record of less than a day");
+inline constexpr Source kFewSeconds = literature::own("a few seconds");
 inline constexpr Source kAfterRest = literature::own("after a second of rest");
 
 }  // namespace swingbank::sim::effects::shared
