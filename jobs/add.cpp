@@ -2,10 +2,10 @@
 // every event; with --retrain also what the effect does to a trained network.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <optional>
 
 #include "base/write_file.hpp"
+#include "jobs/command_line.hpp"
 #include "jobs/event_records.hpp"
 #include "jobs/retrain_run.hpp"
 #include "sim/laws/law.hpp"
@@ -129,64 +129,57 @@ int run(Arguments& a) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{SWINGBANK_SUMMARY, "swingbank add"};
+  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank add");
   Arguments a;
   bool inner = true;
   auto& c = a.options.calibrate;
-  app.add_option("effect", a.effect,
-                 "effect, law or parameter group (SEXS, GENROU:S10,S12); 'swingbank effects' lists them");
-  app.add_option("--model", a.model, "plant file (configs/plants/README.md)")->required();
-  app.add_option("--records,--record", a.records, "records of the events (validate/record/README.md)")
-      ->required();
-  app.add_option("--out", a.out, "folder for model.toml and add.json")->capture_default_str();
-  app.add_option("--law", a.laws, "law file (.toml) whose effect may be added; may be repeated");
-  app.add_option("--hold-out", c.held_out,
-                 "record (name or number from 1) left out of the fit and used to judge it; may be repeated");
-  app.add_flag("--until-adequate", a.until_adequate,
-               "diagnose and add, one effect at a time, until nothing but noise is left");
-  app.add_flag(
+  line.add("effect", a.effect,
+           "effect, law or parameter group (SEXS, GENROU:S10,S12); 'swingbank effects' lists them");
+  line.add("--model", a.model, "plant file (configs/plants/README.md)").required();
+  line.add("--records,--record", a.records, "records of the events (validate/record/README.md)").required();
+  line.add("--out", a.out, "folder for model.toml and add.json").shows_default();
+  line.add("--law", a.laws, "law file (.toml) whose effect may be added; may be repeated");
+  line.add("--hold-out", c.held_out,
+           "record (name or number from 1) left out of the fit and used to judge it; may be repeated");
+  line.add_flag("--until-adequate", a.until_adequate,
+                "diagnose and add, one effect at a time, until nothing but noise is left");
+  line.add_flag(
       "--retrain", a.retrain,
       "train a network on the plant without and one with the effect, and compare them on these records "
       "(folder OUT/retrain; run again to go on)");
-  app.add_option("--dataset", a.training.dataset,
-                 "--retrain: config of a dataset about this plant in its grid, without the effect "
-                 "(default: the plant behind three lines and a large machine)")
-      ->check(CLI::ExistingFile);
-  app.add_option("--train-draws", a.training.draws, "--retrain: events simulated for each network")
-      ->capture_default_str()
-      ->check(CLI::Range(50, 100'000'000));
-  app.add_option("--train-epochs", a.training.epochs, "--retrain: passes through them")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 100'000));
-  app.add_option("--train-network", a.training.network, "--retrain: cnn, gru or lstm")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"cnn", "gru", "lstm"}));
-  app.add_option(
-         "--train-range", a.training.range,
-         "--retrain: the effect's parameters are drawn from 1/RANGE of to RANGE times what was fitted; "
-         "without --dataset the machine's too, about the model's values")
-      ->capture_default_str()
-      ->check(CLI::Range(1.05, 100.0));
-  app.add_option("--truth", a.truth,
-                 "--retrain: plant file (or blind-test's truth) to judge the networks by");
-  app.add_option("--spread", c.spread, "relative uncertainty believed of the model's parameters")
-      ->capture_default_str()
-      ->check(CLI::Range(0.001, 2.0));
-  app.add_option("--jump-threshold", c.events.jump_threshold,
-                 "smallest jump of the voltage taken for switching [pu]")
-      ->capture_default_str();
-  app.add_option("--pre-event", c.events.pre_event, "steady stretch of records without switching [s]")
-      ->capture_default_str();
-  app.add_flag("!--power-only", inner, "leave recorded speed, Efd and Ifd aside: compare P and Q only");
-  app.add_flag("--json", a.json, "print the result as JSON instead of tables");
-  app.footer(
+  line.add("--dataset", a.training.dataset,
+           "--retrain: config of a dataset about this plant in its grid, without the effect "
+           "(default: the plant behind three lines and a large machine)")
+      .existing_file();
+  line.add("--train-draws", a.training.draws, "--retrain: events simulated for each network")
+      .shows_default()
+      .between(50, 100'000'000);
+  line.add("--train-epochs", a.training.epochs, "--retrain: passes through them")
+      .shows_default()
+      .between(1, 100'000);
+  line.add("--train-network", a.training.network, "--retrain: cnn, gru or lstm")
+      .shows_default()
+      .one_of({"cnn", "gru", "lstm"});
+  line.add("--train-range", a.training.range,
+           "--retrain: the effect's parameters are drawn from 1/RANGE of to RANGE times what was fitted; "
+           "without --dataset the machine's too, about the model's values")
+      .shows_default()
+      .between(1.05, 100.0);
+  line.add("--truth", a.truth, "--retrain: plant file (or blind-test's truth) to judge the networks by");
+  line.add("--spread", c.spread, "relative uncertainty believed of the model's parameters")
+      .shows_default()
+      .between(0.001, 2.0);
+  line.add("--jump-threshold", c.events.jump_threshold,
+           "smallest jump of the voltage taken for switching [pu]")
+      .shows_default();
+  line.add("--pre-event", c.events.pre_event, "steady stretch of records without switching [s]")
+      .shows_default();
+  line.add_flag_off("--power-only", inner, "leave recorded speed, Efd and Ifd aside: compare P and Q only");
+  line.add_flag("--json", a.json, "print the result as JSON instead of tables");
+  line.footer(
       "Exit codes: 0 the effect earns its place and nothing but noise is left, 3 it does not or more is "
       "left, 1 bad input, 2 a training stopped on a signal: run again to go on.");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 1;
-  }
+  if (!line.parse(argc, argv)) return line.end();
   c.events.measured_states = inner;
   a.command = jobs::command_line("add", argc, argv);
   return jobs::guarded("add", [&] { return run(a); });

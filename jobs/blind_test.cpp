@@ -1,7 +1,6 @@
 // swingbank blind-test: makes records in which an effect is hidden, and scores what a diagnosis said of them.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -9,6 +8,7 @@
 
 #include "base/stop_signal.hpp"
 #include "base/write_file.hpp"
+#include "jobs/command_line.hpp"
 #include "jobs/item_progress.hpp"
 #include "mpi/ranks/item_queue.hpp"
 #include "mpi/ranks/session.hpp"
@@ -198,36 +198,32 @@ int on_ranks(int argc, char** argv, const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{SWINGBANK_SUMMARY, "swingbank blind-test"};
+  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank blind-test");
   Options o;
-  app.add_option("--config", o.config, "what --make draws from: configs/blind/cases.toml, tiny.toml");
-  app.add_option("--out", o.out, "folder of the run: cases/, truth/, verdicts/, score.md")->required();
-  app.add_option("--make", o.make, "make that many cases (those that are there stay)");
-  app.add_option("--seed", o.seed, "seed of the run")->capture_default_str();
-  app.add_option(
-         "--kinds", o.kinds,
-         "kinds to hide, comma-separated: kinds of the config, A+B for two at once, none, listed, odd, "
-         "pairs (default: the mixture of docs/blind-test.md)")
-      ->delimiter(',');
-  app.add_option("--size", o.size, "size of every effect, in detection limits (default: drawn)");
-  app.add_flag("--diagnose", o.diagnose, "diagnose every case without a verdict, as swingbank diagnose does");
-  app.add_option("--judge", o.judge,
-                 "program to run as PROGRAM CASE_FOLDER VERDICT_FILE on every case without a verdict");
-  app.add_flag("--score", o.score, "hold the verdicts against the truth: score.md, score.json");
-  app.add_option("--targets", o.targets, "rates asked for, configs/blind/targets.toml");
-  app.add_option(
-         "--threads", o.threads,
-         "of one diagnosis; 0: one per core (default: that, or 1 where several ranks share the machine)")
-      ->check(CLI::Range(0, 4096));
-  app.add_option(
-         "--part", o.part,
-         "K/N: only every N-th case, from the K-th; for job arrays. Under mpirun the ranks share those")
-      ->capture_default_str();
+  line.add("--config", o.config, "what --make draws from: configs/blind/cases.toml, tiny.toml");
+  line.add("--out", o.out, "folder of the run: cases/, truth/, verdicts/, score.md").required();
+  line.add("--make", o.make, "make that many cases (those that are there stay)");
+  line.add("--seed", o.seed, "seed of the run").shows_default();
+  line.add("--kinds", o.kinds,
+           "kinds to hide, comma-separated: kinds of the config, A+B for two at once, none, listed, odd, "
+           "pairs (default: the mixture of docs/blind-test.md)")
+      .comma_separated();
+  line.add("--size", o.size, "size of every effect, in detection limits (default: drawn)");
+  line.add_flag("--diagnose", o.diagnose,
+                "diagnose every case without a verdict, as swingbank diagnose does");
+  line.add("--judge", o.judge,
+           "program to run as PROGRAM CASE_FOLDER VERDICT_FILE on every case without a verdict");
+  line.add_flag("--score", o.score, "hold the verdicts against the truth: score.md, score.json");
+  line.add("--targets", o.targets, "rates asked for, configs/blind/targets.toml");
+  line.add("--threads", o.threads,
+           "of one diagnosis; 0: one per core (default: that, or 1 where several ranks share the machine)")
+      .between(0, 4096);
+  line.add("--part", o.part,
+           "K/N: only every N-th case, from the K-th; for job arrays. Under mpirun the ranks share those")
+      .shows_default();
+  if (!line.parse(argc, argv)) return line.end();
   try {
-    app.parse(argc, argv);
     return on_ranks(argc, argv, o);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 1;
   } catch (const std::exception& e) {
     fmt::print(stderr, "{}\n", e.what());
     return 1;

@@ -2,11 +2,11 @@
 // by plain curve fitting, or both side by side.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <optional>
 
 #include "base/own_command.hpp"
 #include "base/write_file.hpp"
+#include "jobs/command_line.hpp"
 #include "jobs/event_records.hpp"
 #include "validate/calibrate/network.hpp"
 #include "validate/calibrate/report.hpp"
@@ -121,45 +121,41 @@ int run(Arguments& a) {
   return c.adequacy == calibrate::Adequacy::structure_poor ? thresholds::kNotAdequate : 0;
 }
 
-void add_options(CLI::App& app, Arguments& a, bool& inner) {
+void add_options(jobs::CommandLine& line, Arguments& a, bool& inner) {
   auto& o = a.options;
-  app.add_option("--model", a.model, "plant file (configs/plants/README.md)")->required();
-  app.add_option("--records,--record", a.records, "records of the events (validate/record/README.md)")
-      ->required();
-  app.add_option("--out", a.out, "folder for model.toml and calibrate.json")->capture_default_str();
-  app.add_option("--method", a.method,
-                 "fit; curve-fit: the usual way, least squares of P and Q from the model's own values, as a "
-                 "baseline; both: side by side")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"fit", "curve-fit", "both"}));
-  auto* network =
-      app.add_option("--network", a.network,
-                     "trained network (file.network, or a folder with one): its estimate is one of the "
-                     "starts, and is shown beside the fit");
-  app.add_option("--start", a.start, "the same from what 'swingbank predict --out FILE' wrote")
-      ->excludes(network);
-  app.add_option("--truth", a.truth, "plant file (or blind-test's truth) to compare the parameters with");
-  app.add_option("--hold-out", o.held_out,
-                 "record (name or number from 1) left out of the fit and used to judge it; may be repeated");
-  app.add_option("--spread", o.spread, "relative uncertainty believed of the model's parameters")
-      ->capture_default_str()
-      ->check(CLI::Range(0.001, 2.0));
-  app.add_option("--fix", o.fixed, "parameter that stays as it is (GENROU.Xl); may be repeated");
-  app.add_option("--draws", o.draws, "parameter sets tried as starts")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 100000));
-  app.add_option("--starts", o.starts, "how many of them are refined, beside the model's own values")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 1000));
-  app.add_option("--seed", o.seed, "of the draws")->capture_default_str();
-  app.add_option("--jump-threshold", o.events.jump_threshold,
-                 "smallest jump of the voltage taken for switching [pu]")
-      ->capture_default_str();
-  app.add_option("--pre-event", o.events.pre_event, "steady stretch of records without switching [s]")
-      ->capture_default_str();
-  app.add_flag("!--power-only", inner, "leave recorded speed, Efd and Ifd aside: compare P and Q only");
-  app.add_flag("--json", a.json, "print the result as JSON instead of tables");
-  app.footer(
+  line.add("--model", a.model, "plant file (configs/plants/README.md)").required();
+  line.add("--records,--record", a.records, "records of the events (validate/record/README.md)").required();
+  line.add("--out", a.out, "folder for model.toml and calibrate.json").shows_default();
+  line.add("--method", a.method,
+           "fit; curve-fit: the usual way, least squares of P and Q from the model's own values, as a "
+           "baseline; both: side by side")
+      .shows_default()
+      .one_of({"fit", "curve-fit", "both"});
+  const jobs::Option network =
+      line.add("--network", a.network,
+               "trained network (file.network, or a folder with one): its estimate is one of the "
+               "starts, and is shown beside the fit");
+  line.add("--start", a.start, "the same from what 'swingbank predict --out FILE' wrote").excludes(network);
+  line.add("--truth", a.truth, "plant file (or blind-test's truth) to compare the parameters with");
+  line.add("--hold-out", o.held_out,
+           "record (name or number from 1) left out of the fit and used to judge it; may be repeated");
+  line.add("--spread", o.spread, "relative uncertainty believed of the model's parameters")
+      .shows_default()
+      .between(0.001, 2.0);
+  line.add("--fix", o.fixed, "parameter that stays as it is (GENROU.Xl); may be repeated");
+  line.add("--draws", o.draws, "parameter sets tried as starts").shows_default().between(0, 100000);
+  line.add("--starts", o.starts, "how many of them are refined, beside the model's own values")
+      .shows_default()
+      .between(0, 1000);
+  line.add("--seed", o.seed, "of the draws").shows_default();
+  line.add("--jump-threshold", o.events.jump_threshold,
+           "smallest jump of the voltage taken for switching [pu]")
+      .shows_default();
+  line.add("--pre-event", o.events.pre_event, "steady stretch of records without switching [s]")
+      .shows_default();
+  line.add_flag_off("--power-only", inner, "leave recorded speed, Efd and Ifd aside: compare P and Q only");
+  line.add_flag("--json", a.json, "print the result as JSON instead of tables");
+  line.footer(
       "Exit codes: 0 the structure holds, 3 something is missing in it "
       "(curve-fit: more than noise is left), 1 bad input.");
 }
@@ -167,15 +163,11 @@ void add_options(CLI::App& app, Arguments& a, bool& inner) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{SWINGBANK_SUMMARY, "swingbank calibrate"};
+  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank calibrate");
   Arguments a;
   bool inner = true;
-  add_options(app, a, inner);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 1;
-  }
+  add_options(line, a, inner);
+  if (!line.parse(argc, argv)) return line.end();
   a.options.progress = jobs::progress_line();
   a.options.events.measured_states = inner;
   a.command = jobs::command_line("calibrate", argc, argv);

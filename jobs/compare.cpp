@@ -1,12 +1,12 @@
 // swingbank compare: plays records into a plant model and sets measured beside modelled P and Q.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <map>
 
 #include "base/write_file.hpp"
+#include "jobs/command_line.hpp"
 #include "validate/check/record_set.hpp"
 #include "validate/compare/report.hpp"
 #include "validate/system/system.hpp"
@@ -72,49 +72,44 @@ int run_system(const std::string& file, const std::string& out, bool json, const
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{SWINGBANK_SUMMARY, "swingbank compare"};
+  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank compare");
   std::string model_file, system_file, out = "compare-report", drive = "voltage";
   std::vector<std::string> record_files, switches;
   bool json = false;
   compare::CompareOptions options;
-  auto* model_option = app.add_option("--model", model_file, "plant file (configs/plants/README.md)");
-  auto* records_option =
-      app.add_option("--records,--record", record_files, "records (CSV, COMTRADE or HDF5), one or several");
-  model_option->needs(records_option);
-  records_option->needs(model_option);
-  auto* system_option = app.add_option("--system", system_file,
-                                       "instead of both: a system file, a grid with an event and records of "
-                                       "several terminals (validate/record/README.md)")
-                            ->excludes(model_option);
-  app.add_option("--drive", drive,
-                 "what drives the model: voltage (V and angle; P and Q are compared) or pq (the reverse)")
-      ->check(CLI::IsMember({"voltage", "pq"}))
-      ->capture_default_str()
-      ->excludes(system_option);
-  app.add_option("--switch", switches,
-                 "switching instant [s], or FILE=instant; default: found by the voltage's jumps and fitted")
-      ->excludes(system_option);
-  app.add_flag("!--no-fit", options.fit_switchings,
-               "leave found instants in the middle of their sample interval")
-      ->excludes(system_option);
-  app.add_option("--jump-threshold", options.jump_threshold,
-                 "smallest jump of the voltage taken for switching [pu]")
-      ->capture_default_str()
-      ->excludes(system_option);
-  app.add_option("--pre-event", options.play_in.pre_event, "steady stretch of records without switching [s]")
-      ->capture_default_str()
-      ->excludes(system_option);
-  app.add_option("--until", options.play_in.until, "leave out what comes later [s]")->excludes(system_option);
-  app.add_option("--out", out, "folder for report.html, compare.json and the curves as CSV")
-      ->capture_default_str();
-  app.add_flag("--json", json, "print the result as JSON instead of tables");
-  try {
-    app.parse(argc, argv);
-    if (model_file.empty() && system_file.empty())
-      throw CLI::RequiredError("--model with --record, or --system,");
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 1;
-  }
+  const jobs::Option model_option = line.add("--model", model_file, "plant file (configs/plants/README.md)");
+  const jobs::Option records_option =
+      line.add("--records,--record", record_files, "records (CSV, COMTRADE or HDF5), one or several");
+  model_option.needs(records_option);
+  records_option.needs(model_option);
+  const jobs::Option system_option =
+      line.add("--system", system_file,
+               "instead of both: a system file, a grid with an event and records of "
+               "several terminals (validate/record/README.md)")
+          .excludes(model_option);
+  line.add("--drive", drive,
+           "what drives the model: voltage (V and angle; P and Q are compared) or pq (the reverse)")
+      .one_of({"voltage", "pq"})
+      .shows_default()
+      .excludes(system_option);
+  line.add("--switch", switches,
+           "switching instant [s], or FILE=instant; default: found by the voltage's jumps and fitted")
+      .excludes(system_option);
+  line.add_flag_off("--no-fit", options.fit_switchings,
+                    "leave found instants in the middle of their sample interval")
+      .excludes(system_option);
+  line.add("--jump-threshold", options.jump_threshold,
+           "smallest jump of the voltage taken for switching [pu]")
+      .shows_default()
+      .excludes(system_option);
+  line.add("--pre-event", options.play_in.pre_event, "steady stretch of records without switching [s]")
+      .shows_default()
+      .excludes(system_option);
+  line.add("--until", options.play_in.until, "leave out what comes later [s]").excludes(system_option);
+  line.add("--out", out, "folder for report.html, compare.json and the curves as CSV").shows_default();
+  line.add_flag("--json", json, "print the result as JSON instead of tables");
+  if (!line.parse(argc, argv)) return line.end();
+  if (model_file.empty() && system_file.empty()) return line.lacks("--model with --record, or --system,");
   try {
     if (!system_file.empty()) return run_system(system_file, out, json, joined(argc, argv));
     options.drive = drive == "pq" ? compare::DriveBy::power : compare::DriveBy::voltage;

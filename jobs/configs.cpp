@@ -1,21 +1,16 @@
 // swingbank configs: where the example configs lie.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
 #include "base/input_file.hpp"
+#include "jobs/command_line.hpp"
 
 int main(int argc, char** argv) {
-  CLI::App app{SWINGBANK_SUMMARY, "swingbank configs"};
-  app.footer(
+  swingbank::jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank configs");
+  line.footer(
       "To have them here, and to change them:\n"
       "  cp -r \"$(swingbank configs)\" .\n"
       "Paths inside a config refer to the folder of that config.");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 1;
-  }
+  if (!line.parse(argc, argv)) return line.end();
   const auto folder = swingbank::example_configs();
   if (folder.empty()) {
     const swingbank::Problem problem{"no example configs", "share/swingbank/configs",

@@ -35,15 +35,15 @@ int train_folds(const train::data::ShardStream& stream, train::run::RunRequest r
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{SWINGBANK_SUMMARY, "swingbank cross-validate"};
+  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank cross-validate");
   TrainingOptions options;
   std::string fold = "all";
   int processes = 0;
-  app.add_option("--fold", fold, "bus number of the generator to leave out, or all")->capture_default_str();
-  app.add_option("--processes", processes,
-                 "processes that share the folds, each with its part of the threads (default: one "
-                 "per core; 1 where mpirun or srun started several)");
-  return training_main(argc, argv, app, options, [&](const train::run::RunRequest& request) {
+  line.add("--fold", fold, "bus number of the generator to leave out, or all").shows_default();
+  line.add("--processes", processes,
+           "processes that share the folds, each with its part of the threads (default: one "
+           "per core; 1 where mpirun or srun started several)");
+  return training_main(argc, argv, line, options, [&](const train::run::RunRequest& request) {
     if (!request.experiment.leave_one_out)
       throw InputError({"this experiment leaves no generator out", options.experiment, "its split says so",
                         "use swingbank train"});

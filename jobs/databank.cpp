@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 
 #include "base/durable.hpp"
+#include "jobs/command_line.hpp"
 #include "mpi/store/hdf5_file.hpp"
 
 namespace {
@@ -94,23 +94,20 @@ int run(const std::string& config_file, const mpi::draw::Overrides& overrides, s
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{
+  jobs::CommandLine line(
       "Draws the databank of a dataset: parameters that keep a distance from one another.\n"
       "  swingbank databank configs/datasets/ieee39_genrou.toml --points 60000 --out bank.h5",
-      "swingbank databank"};
+      "swingbank databank");
   std::string config, out;
   mpi::draw::Overrides overrides;
   std::uint64_t points = 0;
-  app.add_option("config", config, "the dataset's config (TOML)")->required();
-  app.add_option("--points", points, "number of points, instead of what the config's draws need")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--seed", overrides.seed, "seed, instead of the config's")->check(CLI::NonNegativeNumber);
-  app.add_option("--out", out, "file to write: .csv or .h5");
+  line.add("config", config, "the dataset's config (TOML)").required();
+  line.add("--points", points, "number of points, instead of what the config's draws need").positive();
+  line.add("--seed", overrides.seed, "seed, instead of the config's").not_negative();
+  line.add("--out", out, "file to write: .csv or .h5");
+  if (!line.parse(argc, argv)) return line.end();
   try {
-    app.parse(argc, argv);
     return run(config, overrides, points, out);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 1;
   } catch (const std::exception& e) {
     fmt::print(stderr, "{}\n", e.what());
     return 1;

@@ -1,10 +1,10 @@
 // swingbank diagnose: which physical effect does the model of a plant lack?
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "base/write_file.hpp"
+#include "jobs/command_line.hpp"
 #include "jobs/event_records.hpp"
 #include "jobs/fleet_run.hpp"
 #include "validate/diagnose/report.hpp"
@@ -65,43 +65,42 @@ int print_thresholds(bool json) {
   return 0;
 }
 
-void declare(CLI::App& app, Command& c) {
-  auto* model = app.add_option("--model", c.model, "plant file (configs/plants/README.md)");
-  auto* records =
-      app.add_option("--records,--record", c.records, "records of the events (validate/record/README.md)");
-  model->needs(records);
-  records->needs(model);
-  auto* fleet = app.add_option("--fleet", c.fleet.fleet,
-                               "instead of both: a fleet file, many plants with their records "
-                               "(configs/fleet/README.md); under mpirun each rank takes one plant at a time")
-                    ->excludes(model);
-  app.add_option("--plant", c.plant, "of the fleet only this plant; its result as JSON, no table")
-      ->needs(fleet);
-  app.add_option("--out", c.out,
-                 "folder for report.html, diagnosis.json and, where one is found, the law file; of a fleet "
-                 "for fleet.html, fleet.json, fleet.csv and "
-                 "a folder per plant")
-      ->capture_default_str();
-  app.add_option("--spread", c.options.spread,
-                 "relative uncertainty believed of the model's parameters; of a fleet it stands in its file")
-      ->capture_default_str()
-      ->check(CLI::Range(0.001, 2.0))
-      ->excludes(fleet);
-  app.add_option(
-         "--threads", c.fleet.threads,
-         "of one diagnosis; 0: one per core (default: that, or 1 where several ranks share the machine)")
-      ->check(CLI::Range(0, 4096));
-  app.add_flag(
-         "!--power-only", c.options.measured_states,
-         "leave recorded speed, Efd and Ifd aside: compare P and Q only; of a fleet it stands in its file")
-      ->excludes(fleet);
-  app.add_flag("--json", c.fleet.json, "print the result as JSON instead of text");
-  app.add_flag(
-         "--thresholds", c.thresholds,
-         "print every number on which a verdict hangs, with unit and reason (with --json as JSON), and end")
-      ->excludes(model)
-      ->excludes(fleet);
-  app.footer(
+void declare(jobs::CommandLine& line, Command& c) {
+  const jobs::Option model = line.add("--model", c.model, "plant file (configs/plants/README.md)");
+  const jobs::Option records =
+      line.add("--records,--record", c.records, "records of the events (validate/record/README.md)");
+  model.needs(records);
+  records.needs(model);
+  const jobs::Option fleet =
+      line.add("--fleet", c.fleet.fleet,
+               "instead of both: a fleet file, many plants with their records "
+               "(configs/fleet/README.md); under mpirun each rank takes one plant at a time")
+          .excludes(model);
+  line.add("--plant", c.plant, "of the fleet only this plant; its result as JSON, no table").needs(fleet);
+  line.add("--out", c.out,
+           "folder for report.html, diagnosis.json and, where one is found, the law file; of a fleet "
+           "for fleet.html, fleet.json, fleet.csv and "
+           "a folder per plant")
+      .shows_default();
+  line.add("--spread", c.options.spread,
+           "relative uncertainty believed of the model's parameters; of a fleet it stands in its file")
+      .shows_default()
+      .between(0.001, 2.0)
+      .excludes(fleet);
+  line.add("--threads", c.fleet.threads,
+           "of one diagnosis; 0: one per core (default: that, or 1 where several ranks share the machine)")
+      .between(0, 4096);
+  line.add_flag_off(
+          "--power-only", c.options.measured_states,
+          "leave recorded speed, Efd and Ifd aside: compare P and Q only; of a fleet it stands in its file")
+      .excludes(fleet);
+  line.add_flag("--json", c.fleet.json, "print the result as JSON instead of text");
+  line.add_flag(
+          "--thresholds", c.thresholds,
+          "print every number on which a verdict hangs, with unit and reason (with --json as JSON), and end")
+      .excludes(model)
+      .excludes(fleet);
+  line.footer(
       "Exit codes: 0 adequate, 3 something is missing or unexplained, 1 bad "
       "input. Of a fleet: 0 all plants are adequate, 3 some plant is not, 1 "
       "some plant failed, 2 stopped by a signal (run it again to continue).");
@@ -110,16 +109,12 @@ void declare(CLI::App& app, Command& c) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{SWINGBANK_SUMMARY, "swingbank diagnose"};
+  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank diagnose");
   Command c;
-  declare(app, c);
-  try {
-    app.parse(argc, argv);
-    if (!c.thresholds && c.model.empty() && c.fleet.fleet.empty())
-      throw CLI::RequiredError("--model with --records, or --fleet,");
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 1;
-  }
+  declare(line, c);
+  if (!line.parse(argc, argv)) return line.end();
+  if (!c.thresholds && c.model.empty() && c.fleet.fleet.empty())
+    return line.lacks("--model with --records, or --fleet,");
   return jobs::guarded("diagnose", [&] {
     if (c.thresholds) return print_thresholds(c.fleet.json);
     c.fleet.out = c.out;

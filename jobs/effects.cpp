@@ -1,13 +1,13 @@
 // swingbank effects [NAME...]: what the library holds, from the effects' own records.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "jobs/command_line.hpp"
 #include "sim/laws/law.hpp"
 #include "sim/library/library.hpp"
 
@@ -214,21 +214,18 @@ int run(const std::vector<std::string>& names, const std::vector<std::string>& l
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{
+  jobs::CommandLine line(
       "Lists the effects the simulator knows, by the place they take; with a NAME, its block diagram, "
       "equations, parameters, states and source.",
-      "swingbank effects"};
+      "swingbank effects");
   std::vector<std::string> names, laws;
   bool json = false;
-  app.add_option("NAME", names, "effects, e.g. GENROU SEXS");
-  app.add_option("--law", laws, "law file (.toml) whose effect is added; may be repeated")
-      ->allow_extra_args(false);
-  app.add_flag("--json", json, "the same for machines: an array with one object per effect");
+  line.add("NAME", names, "effects, e.g. GENROU SEXS");
+  line.add("--law", laws, "law file (.toml) whose effect is added; may be repeated").one_value_a_mention();
+  line.add_flag("--json", json, "the same for machines: an array with one object per effect");
+  if (!line.parse(argc, argv)) return line.end();
   try {
-    app.parse(argc, argv);
     return run(names, laws, json);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 1;
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 1;

@@ -5,66 +5,53 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
-#include <map>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "base/stop_signal.hpp"
+#include "jobs/command_line.hpp"
 #include "mpi/ranks/session.hpp"
 #include "mpi/ranks/shard_group.hpp"
 
 namespace {
 using namespace swingbank;
 
+/// Words of --progress, in the order of Progress::Mode.
+const std::vector<std::string> kModes = {"auto", "bar", "lines", "none"};
+
 struct Command {
   std::string config, verify;
+  int mode = 0;  ///< place in kModes
   mpi::draw::Overrides overrides;
   mpi::ranks::GenerateOptions options;
 };
 
-const std::map<std::string, mpi::ranks::Progress::Mode> kModes = {
-    {"auto", mpi::ranks::Progress::Mode::automatic},
-    {"bar", mpi::ranks::Progress::Mode::bar},
-    {"lines", mpi::ranks::Progress::Mode::lines},
-    {"none", mpi::ranks::Progress::Mode::none}};
-
-void declare(CLI::App& app, Command& c) {
-  app.name("swingbank generate");
-  app.description(
-      "Simulates the dataset that a config describes into a folder of HDF5 shards (docs/formats.md).\n"
-      "  swingbank generate configs/datasets/ieee39_gencls.toml --draws 4000 --out data/gencls\n"
-      "  mpirun -np 8 swingbank generate ... on more cores: the data are the same to the last byte.\n"
-      "Run again, it makes what is missing. SIGTERM, SIGUSR1 or Ctrl-C end it softly: exit code 2, "
-      "run it again.");
-  app.add_option("config", c.config, "the dataset's config (TOML)");
-  app.add_option("--out", c.options.folder,
-                 "dataset folder; new, empty, or an unfinished one of the same config");
-  app.add_option("--draws", c.overrides.draws, "number of simulated events, instead of the config's")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--seed", c.overrides.seed, "seed, instead of the config's")->check(CLI::NonNegativeNumber);
-  app.add_option("--faults-per-point", c.overrides.faults_per_point,
-                 "faults simulated for each databank point, instead of the config's")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--draws-per-shard", c.overrides.draws_per_shard, "instead of the config's")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--writer-ranks", c.options.writer_ranks,
-                 "ranks that make and write a shard together (default 1)")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--lease-timeout", c.options.lease_timeout,
-                 "the run ends if a shard takes longer [s] (default 600; 0: never)")
-      ->check(CLI::NonNegativeNumber);
-  app.add_flag("--dedicated-master", c.options.dedicated_master, "rank 0 only leads; for many ranks");
-  app.add_flag("--repair", c.options.repair, "check every shard there is and make bad ones anew");
-  app.add_flag(
-         "--trust", c.options.trust,
-         "continue without reading the shards there are (0.15 s for 268 MB on one rank): only their lengths "
-         "are checked")
-      ->excludes("--repair");
-  app.add_option("--progress", c.options.progress, "auto, bar, lines or none")
-      ->transform(CLI::CheckedTransformer(kModes));
-  app.add_option("--verify", c.verify,
-                 "only check this dataset folder: every shard against journal and header");
+void declare(jobs::CommandLine& line, Command& c) {
+  line.add("config", c.config, "the dataset's config (TOML)");
+  line.add("--out", c.options.folder, "dataset folder; new, empty, or an unfinished one of the same config");
+  line.add("--draws", c.overrides.draws, "number of simulated events, instead of the config's").positive();
+  line.add("--seed", c.overrides.seed, "seed, instead of the config's").not_negative();
+  line.add("--faults-per-point", c.overrides.faults_per_point,
+           "faults simulated for each databank point, instead of the config's")
+      .positive();
+  line.add("--draws-per-shard", c.overrides.draws_per_shard, "instead of the config's").positive();
+  line.add("--writer-ranks", c.options.writer_ranks, "ranks that make and write a shard together (default 1)")
+      .positive();
+  line.add("--lease-timeout", c.options.lease_timeout,
+           "the run ends if a shard takes longer [s] (default 600; 0: never)")
+      .not_negative();
+  line.add_flag("--dedicated-master", c.options.dedicated_master, "rank 0 only leads; for many ranks");
+  const jobs::Option repair =
+      line.add_flag("--repair", c.options.repair, "check every shard there is and make bad ones anew");
+  line.add_flag(
+          "--trust", c.options.trust,
+          "continue without reading the shards there are (0.15 s for 268 MB on one rank): only their lengths "
+          "are checked")
+      .excludes(repair);
+  line.add_choice("--progress", c.mode, kModes, "auto, bar, lines or none");
+  line.add("--verify", c.verify, "only check this dataset folder: every shard against journal and header");
 }
 
 int describe_to(bool first, const std::filesystem::path& folder, const char* more) {
@@ -106,17 +93,13 @@ int run(const Command& c, bool first) {
 
 /// What the command line asks for instead of work: help, or an error. The same on all ranks, though each may
 /// have been started with words of its own.
-std::optional<int> parse(CLI::App& app, int argc, char** argv, const mpi::ranks::MpiSession& session) {
-  std::optional<CLI::ParseError> mine;
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    mine = e;
-  }
-  int ends = mine ? session.rank() : session.size(), first = ends;
+std::optional<int> parse(jobs::CommandLine& line, int argc, char** argv,
+                         const mpi::ranks::MpiSession& session) {
+  const bool works = line.parse(argc, argv);
+  int ends = works ? session.size() : session.rank(), first = ends;
   MPI_Allreduce(&ends, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
   if (first == session.size()) return std::nullopt;
-  int code = first == session.rank() && app.exit(*mine) != 0 ? 1 : 0;
+  int code = first == session.rank() ? line.end() : 0;
   MPI_Bcast(&code, 1, MPI_INT, first, MPI_COMM_WORLD);
   return code;
 }
@@ -127,11 +110,19 @@ int main(int argc, char** argv) {
   const bool first = session.rank() == 0;
   spdlog::set_default_logger(spdlog::stderr_color_mt("generate"));
   spdlog::set_pattern("%H:%M:%S %^%l%$ %v");
-  CLI::App app;
+  jobs::CommandLine line(
+      "Simulates the dataset that a config describes into a folder of HDF5 shards (docs/formats.md).\n"
+      "  swingbank generate configs/datasets/ieee39_gencls.toml --draws 4000 --out data/gencls\n"
+      "  mpirun -np 8 swingbank generate ... on more cores: the data are the same to the last byte.\n"
+      "Run again, it makes what is missing. SIGTERM, SIGUSR1 or Ctrl-C end it softly: exit code 2, "
+      "run it again.",
+      "swingbank generate");
   Command command;
-  declare(app, command);
+  declare(line, command);
   return mpi::ranks::run_on_all_ranks(session, [&] {
-    const auto ended = parse(app, argc, argv, session);
-    return ended ? *ended : run(command, first);
+    const auto ended = parse(line, argc, argv, session);
+    if (ended) return *ended;
+    command.options.progress = static_cast<mpi::ranks::Progress::Mode>(command.mode);
+    return run(command, first);
   });
 }

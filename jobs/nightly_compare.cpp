@@ -11,7 +11,6 @@
 // With fewer than three nights before, the change is printed and no verdict given.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -24,6 +23,7 @@
 #include <vector>
 
 #include "base/problem.hpp"
+#include "jobs/command_line.hpp"
 
 namespace {
 
@@ -176,15 +176,11 @@ void print_report(const std::string& date, std::vector<Change> changes) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{SWINGBANK_SUMMARY, "swingbank nightly-compare"};
+  swingbank::jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank nightly-compare");
   std::string folder, date;
-  app.add_option("folder", folder, "folder of nights, as jobs/nightly.sh writes it")->required();
-  app.add_option("--night", date, "YYYY-MM-DD (default: the last one)");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 1;
-  }
+  line.add("folder", folder, "folder of nights, as jobs/nightly.sh writes it").required();
+  line.add("--night", date, "YYYY-MM-DD (default: the last one)");
+  if (!line.parse(argc, argv)) return line.end();
   try {
     const Nights nights = read_nights(folder);
     if (nights.empty() || (!date.empty() && !nights.contains(date))) {

@@ -1,11 +1,11 @@
 // swingbank predict: a trained network's estimate of a plant's parameters from measured records.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "base/write_file.hpp"
+#include "jobs/command_line.hpp"
 #include "jobs/record_for_network.hpp"
 #include "train/runtime/blas_kernels.hpp"
 #include "train/runtime/runtime.hpp"
@@ -141,22 +141,16 @@ int run(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{SWINGBANK_SUMMARY, "swingbank predict"};
+  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank predict");
   Options o;
-  app.add_option("--network", o.network,
-                 "file.network that train or cross-validate wrote, or a folder with one")
-      ->required();
-  app.add_option("--model", o.model, "plant file: machine model and base, bases of the records")->required();
-  app.add_option("--records,--record", o.records, "records (CSV, COMTRADE or HDF5), one or several")
-      ->required();
-  app.add_option("--event", o.event, "when the event begins [s] (default: found)");
-  app.add_option("--out", o.out, "write the estimate as JSON to this file");
-  app.add_flag("--json", o.json, "print the estimate as JSON instead of a table");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 1;
-  }
+  line.add("--network", o.network, "file.network that train or cross-validate wrote, or a folder with one")
+      .required();
+  line.add("--model", o.model, "plant file: machine model and base, bases of the records").required();
+  line.add("--records,--record", o.records, "records (CSV, COMTRADE or HDF5), one or several").required();
+  line.add("--event", o.event, "when the event begins [s] (default: found)");
+  line.add("--out", o.out, "write the estimate as JSON to this file");
+  line.add_flag("--json", o.json, "print the estimate as JSON instead of a table");
+  if (!line.parse(argc, argv)) return line.end();
   try {
     train::runtime::use_best_blas_kernels(argv);
     train::runtime::set_up_runtime(0);

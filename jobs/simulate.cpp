@@ -1,7 +1,6 @@
 // swingbank simulate: plays one event and writes every recorded quantity as CSV, HDF5 or both, with units.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -10,6 +9,7 @@
 
 #include "base/constants.hpp"
 #include "base/durable.hpp"
+#include "jobs/command_line.hpp"
 #include "jobs/measured_run.hpp"
 #include "mpi/store/hdf5_file.hpp"
 #include "sim/formats/event_text.hpp"
@@ -303,73 +303,67 @@ int simulate(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{SWINGBANK_SUMMARY, "swingbank simulate"};
+  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank simulate");
   Options o;
-  app.add_option("--raw", o.raw, "network, PSS/E .raw version 32 to 35 or MATPOWER .m")->required();
-  app.add_option("--dyr", o.dyr, "dynamic models, PSS/E .dyr")->required();
-  app.add_option("--frequency-hz", o.frequency_hz, "nominal frequency [Hz], which a .m does not hold");
-  app.add_option("--ignore-model", o.ignore_models, "name of a .dyr model to leave out; may be repeated");
-  app.add_option("--map-model", o.map_models,
-                 "FROM=TO: read a .dyr model as another with as many parameters; may be repeated");
-  app.add_option("--law", o.laws, "law file (.toml) whose effect --attach may use; may be repeated");
-  app.add_option("--attach", o.attached,
-                 "PLANT:EFFECT[:PARAM=VALUE,...]: an effect added to a plant (or to all); may be repeated");
-  app.add_option("--measure", o.measured,
-                 "EFFECT[:PARAM=VALUE,...]: an instrument between every recorded plant and the record, after "
-                 "those before it; may be repeated");
-  app.add_option("--measure-seed", o.measure_seed, "seed of the instruments' noise and gaps")
-      ->capture_default_str();
-  app.add_option("--convention", o.convention,
-                 "psse: governors set power; andes: torque; neither has speed in the stator voltage "
-                 "(configs/README.md)")
-      ->check(CLI::IsMember({"psse", "andes"}))
-      ->capture_default_str();
-  app.add_option(
-      "--fault", o.event.faults,
-      "BUS:T_ON:T_OFF[:R:X], bolted without R and X [s, pu on the network's base]; may be repeated");
-  app.add_option("--fault-type", o.event.fault_type,
-                 "3ph, or by sequence equivalents slg: line to ground, ll: two-phase, llg: two-phase to "
-                 "ground; R and X of --fault are then the fault's own")
-      ->check(CLI::IsMember({"3ph", "slg", "ll", "llg"}))
-      ->capture_default_str();
-  app.add_option("--z0", o.event.z0,
-                 "R:X, zero-sequence impedance of the grid at the fault [pu on the network's base]; needed "
-                 "by slg and llg");
-  app.add_option("--trip", o.event.trips, "FROM:TO:CKT:T_OPEN[:T_CLOSE] [s]; may be repeated");
-  app.add_option("--trip-generator", o.event.generator_trips,
-                 "BUS[/ID]:T[:PART] [s, of its units], for good, without PART all; may be repeated");
-  app.add_option("--load-step", o.event.load_steps,
-                 "BUS:P:Q:T_ON[:T_OFF] [MW, Mvar, s], consumption added as constant admittance; may be "
-                 "repeated");
-  app.add_option("--vref-step", o.event.vref_steps, "BUS[/ID]:T:STEP [s, pu]; may be repeated");
-  app.add_option("--pref-step", o.event.pref_steps, "BUS[/ID]:T:STEP [s, pu]; may be repeated");
-  app.add_option("--loads", o.load_model,
-                 "impedance: every load at constant impedance; raw: as the .raw composes it of constant "
-                 "power, current and admittance; those with a model in the .dyr keep it")
-      ->check(CLI::IsMember({"impedance", "raw"}))
-      ->capture_default_str();
-  app.add_option("--load", o.loads,
-                 "BUS[/ID]:EFFECT[:PARAM=VALUE,...], a model for one load; may be repeated");
-  app.add_option("--t-end", o.t_end, "end of the run [s]")->capture_default_str();
-  app.add_option("--rate", o.rate, "samples per second [1/s]")->capture_default_str();
-  app.add_option("--integrator", o.integrator,
-                 "reference: IDA on the unreduced equations; lanes: the engine of generate")
-      ->check(CLI::IsMember({"reference", "lanes"}))
-      ->capture_default_str();
-  app.add_option("--tolerance", o.tolerance, "relative error per step (reference 1e-8, lanes 1e-6)");
-  app.add_option("--out", o.out, "file to write, .csv or .h5; may be repeated")->required();
-  app.add_option("--plants", o.plants, "plants to record, comma-separated (default: all)")->delimiter(',');
-  app.add_option("--channels", o.channels, "channels to record, comma-separated (default: all)")
-      ->delimiter(',');
-  app.add_option("--buses", o.buses, "buses whose voltage is recorded too, comma-separated numbers")
-      ->delimiter(',');
-  app.add_flag("--after-switching", o.after_switching,
-               "a sample at a switching instant shows the value just after it");
+  line.add("--raw", o.raw, "network, PSS/E .raw version 32 to 35 or MATPOWER .m").required();
+  line.add("--dyr", o.dyr, "dynamic models, PSS/E .dyr").required();
+  line.add("--frequency-hz", o.frequency_hz, "nominal frequency [Hz], which a .m does not hold");
+  line.add("--ignore-model", o.ignore_models, "name of a .dyr model to leave out; may be repeated");
+  line.add("--map-model", o.map_models,
+           "FROM=TO: read a .dyr model as another with as many parameters; may be repeated");
+  line.add("--law", o.laws, "law file (.toml) whose effect --attach may use; may be repeated");
+  line.add("--attach", o.attached,
+           "PLANT:EFFECT[:PARAM=VALUE,...]: an effect added to a plant (or to all); may be repeated");
+  line.add("--measure", o.measured,
+           "EFFECT[:PARAM=VALUE,...]: an instrument between every recorded plant and the record, after "
+           "those before it; may be repeated");
+  line.add("--measure-seed", o.measure_seed, "seed of the instruments' noise and gaps").shows_default();
+  line.add("--convention", o.convention,
+           "psse: governors set power; andes: torque; neither has speed in the stator voltage "
+           "(configs/README.md)")
+      .one_of({"psse", "andes"})
+      .shows_default();
+  line.add("--fault", o.event.faults,
+           "BUS:T_ON:T_OFF[:R:X], bolted without R and X [s, pu on the network's base]; may be repeated");
+  line.add("--fault-type", o.event.fault_type,
+           "3ph, or by sequence equivalents slg: line to ground, ll: two-phase, llg: two-phase to "
+           "ground; R and X of --fault are then the fault's own")
+      .one_of({"3ph", "slg", "ll", "llg"})
+      .shows_default();
+  line.add("--z0", o.event.z0,
+           "R:X, zero-sequence impedance of the grid at the fault [pu on the network's base]; needed "
+           "by slg and llg");
+  line.add("--trip", o.event.trips, "FROM:TO:CKT:T_OPEN[:T_CLOSE] [s]; may be repeated");
+  line.add("--trip-generator", o.event.generator_trips,
+           "BUS[/ID]:T[:PART] [s, of its units], for good, without PART all; may be repeated");
+  line.add("--load-step", o.event.load_steps,
+           "BUS:P:Q:T_ON[:T_OFF] [MW, Mvar, s], consumption added as constant admittance; may be "
+           "repeated");
+  line.add("--vref-step", o.event.vref_steps, "BUS[/ID]:T:STEP [s, pu]; may be repeated");
+  line.add("--pref-step", o.event.pref_steps, "BUS[/ID]:T:STEP [s, pu]; may be repeated");
+  line.add("--loads", o.load_model,
+           "impedance: every load at constant impedance; raw: as the .raw composes it of constant "
+           "power, current and admittance; those with a model in the .dyr keep it")
+      .one_of({"impedance", "raw"})
+      .shows_default();
+  line.add("--load", o.loads, "BUS[/ID]:EFFECT[:PARAM=VALUE,...], a model for one load; may be repeated");
+  line.add("--t-end", o.t_end, "end of the run [s]").shows_default();
+  line.add("--rate", o.rate, "samples per second [1/s]").shows_default();
+  line.add("--integrator", o.integrator,
+           "reference: IDA on the unreduced equations; lanes: the engine of generate")
+      .one_of({"reference", "lanes"})
+      .shows_default();
+  line.add("--tolerance", o.tolerance, "relative error per step (reference 1e-8, lanes 1e-6)");
+  line.add("--out", o.out, "file to write, .csv or .h5; may be repeated").required();
+  line.add("--plants", o.plants, "plants to record, comma-separated (default: all)").comma_separated();
+  line.add("--channels", o.channels, "channels to record, comma-separated (default: all)").comma_separated();
+  line.add("--buses", o.buses, "buses whose voltage is recorded too, comma-separated numbers")
+      .comma_separated();
+  line.add_flag("--after-switching", o.after_switching,
+                "a sample at a switching instant shows the value just after it");
+  if (!line.parse(argc, argv)) return line.end();
   try {
-    app.parse(argc, argv);
     return simulate(o);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 1;
   } catch (const std::exception& e) {
     fmt::print(stderr, "{}\n", e.what());
     return 1;

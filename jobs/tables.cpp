@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <set>
 
 #include "base/write_file.hpp"
+#include "jobs/command_line.hpp"
 
 namespace {
 
@@ -31,16 +31,12 @@ report::Provenance sources(const std::vector<report::RunResult>& results, int ar
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{SWINGBANK_SUMMARY, "swingbank tables"};
+  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank tables");
   std::vector<std::string> folders;
   std::string out;
-  app.add_option("results", folders, "folders with the JSON files of train and cross-validate")->required();
-  app.add_option("--out", out, "folder for tables.md, tables.html and one CSV per table")->required();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 1;
-  }
+  line.add("results", folders, "folders with the JSON files of train and cross-validate").required();
+  line.add("--out", out, "folder for tables.md, tables.html and one CSV per table").required();
+  if (!line.parse(argc, argv)) return line.end();
   try {
     const auto results = report::read_results({folders.begin(), folders.end()});
     const report::TablesReport report = report::make_tables(results, sources(results, argc, argv));

@@ -3,9 +3,9 @@
 
 int main(int argc, char** argv) {
   using namespace swingbank;
-  CLI::App app{SWINGBANK_SUMMARY, "swingbank train"};
+  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank train");
   TrainingOptions options;
-  return training_main(argc, argv, app, options, [&](train::run::RunRequest request) {
+  return training_main(argc, argv, line, options, [&](train::run::RunRequest request) {
     if (request.experiment.leave_one_out)
       throw InputError({"this experiment leaves generators out", options.experiment, "its split says so",
                         "use swingbank cross-validate"});

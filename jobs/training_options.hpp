@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 
 #include "base/problem.hpp"
 #include "base/stop_signal.hpp"
+#include "jobs/command_line.hpp"
 #include "train/run/run.hpp"
 #include "train/runtime/blas_kernels.hpp"
 
@@ -23,29 +23,25 @@ struct TrainingOptions {
   double memory_limit = 8.0;  // [GiB]
   bool shuffle_labels = false, save_network = true, trust = false;
 
-  void add_to(CLI::App& app) {
-    app.add_option("DATASET", dataset, "folder that `swingbank generate` wrote");
-    app.add_option("--experiment", experiment, "file of configs/experiments: table, dataset, presets")
-        ->required();
-    app.add_option("--preset", preset, "preset of the experiment: quick, nightly or thesis")
-        ->capture_default_str();
-    app.add_option("--network", network, "network of the preset (default: its first)");
-    app.add_option("--out", out, "folder for the result files");
-    app.add_option("--seed", seed, "seed of weights, dropout, order and split")->capture_default_str();
-    app.add_option("--epochs", epochs, "instead of the preset's");
-    app.add_option("--threads", threads,
-                   "default: the Slurm allocation, OMP_NUM_THREADS or the cores, shared by the processes");
-    app.add_option("--readers", readers, "threads that read shards which do not fit in memory")
-        ->capture_default_str();
-    app.add_option("--memory-limit", memory_limit, "series up to this size stay in memory [GiB]")
-        ->capture_default_str();
-    app.add_flag("--trust", trust,
-                 "do not compare the shards with the hashes in the dataset's journal (0.1 s for 268 MB)");
-    app.add_flag("--shuffle-labels", shuffle_labels, "control run: must score about as the mean does");
-    app.add_flag("!--no-network", save_network,
-                 "do not write the trained network beside its result (4 bytes a weight)");
-    app.add_option("--print", print,
-                   "print one entry of the experiment and end: table, dataset, draws, networks, folds");
+  void add_to(jobs::CommandLine& line) {
+    line.add("DATASET", dataset, "folder that `swingbank generate` wrote");
+    line.add("--experiment", experiment, "file of configs/experiments: table, dataset, presets").required();
+    line.add("--preset", preset, "preset of the experiment: quick, nightly or thesis").shows_default();
+    line.add("--network", network, "network of the preset (default: its first)");
+    line.add("--out", out, "folder for the result files");
+    line.add("--seed", seed, "seed of weights, dropout, order and split").shows_default();
+    line.add("--epochs", epochs, "instead of the preset's");
+    line.add("--threads", threads,
+             "default: the Slurm allocation, OMP_NUM_THREADS or the cores, shared by the processes");
+    line.add("--readers", readers, "threads that read shards which do not fit in memory").shows_default();
+    line.add("--memory-limit", memory_limit, "series up to this size stay in memory [GiB]").shows_default();
+    line.add_flag("--trust", trust,
+                  "do not compare the shards with the hashes in the dataset's journal (0.1 s for 268 MB)");
+    line.add_flag("--shuffle-labels", shuffle_labels, "control run: must score about as the mean does");
+    line.add_flag_off("--no-network", save_network,
+                      "do not write the trained network beside its result (4 bytes a weight)");
+    line.add("--print", print,
+             "print one entry of the experiment and end: table, dataset, draws, networks, folds");
   }
 
   /// Throws InputError if an option that a run needs is missing.
@@ -79,13 +75,10 @@ inline int exit_code(train::run::RunOutcome outcome) {
 
 /// What both programs do around their work: options, printing, signals, errors.
 template <class Work>
-int training_main(int argc, char** argv, CLI::App& app, TrainingOptions& options, const Work& work) {
-  options.add_to(app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 1;
-  }
+int training_main(int argc, char** argv, jobs::CommandLine& line, TrainingOptions& options,
+                  const Work& work) {
+  options.add_to(line);
+  if (!line.parse(argc, argv)) return line.end();
   try {
     if (!options.print.empty()) {
       fmt::print("{}\n",

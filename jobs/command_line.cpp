@@ -1,0 +1,136 @@
+#include "jobs/command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <utility>
+
+namespace swingbank::jobs {
+namespace {
+
+/// CLI11 calls an enumeration's value ENUM in the help.
+enum class Place : int {};
+
+int exit_code(const CLI::App& app, const CLI::ParseError& why) { return app.exit(why) == 0 ? 0 : 1; }
+
+}  // namespace
+
+struct CommandLine::Parser {
+  CLI::App app;
+  std::optional<CLI::ParseError> ended = std::nullopt;
+};
+
+const Option& Option::required() const {
+  option_->required();
+  return *this;
+}
+const Option& Option::shows_default() const {
+  option_->capture_default_str();
+  return *this;
+}
+const Option& Option::one_of(const std::vector<std::string>& words) const {
+  option_->check(CLI::IsMember(words));
+  return *this;
+}
+const Option& Option::between(int low, int high) const {
+  option_->check(CLI::Range(low, high));
+  return *this;
+}
+const Option& Option::between(double low, double high) const {
+  option_->check(CLI::Range(low, high));
+  return *this;
+}
+const Option& Option::positive() const {
+  option_->check(CLI::PositiveNumber);
+  return *this;
+}
+const Option& Option::not_negative() const {
+  option_->check(CLI::NonNegativeNumber);
+  return *this;
+}
+const Option& Option::existing_file() const {
+  option_->check(CLI::ExistingFile);
+  return *this;
+}
+const Option& Option::comma_separated() const {
+  option_->delimiter(',');
+  return *this;
+}
+const Option& Option::one_value_a_mention() const {
+  option_->allow_extra_args(false);
+  return *this;
+}
+const Option& Option::needs(Option other) const {
+  option_->needs(other.option_);
+  return *this;
+}
+const Option& Option::excludes(Option other) const {
+  option_->excludes(other.option_);
+  return *this;
+}
+
+CommandLine::CommandLine(const std::string& summary, const std::string& name)
+    : parser_(new Parser{CLI::App(summary, name)}) {}
+CommandLine::~CommandLine() = default;
+
+Option CommandLine::add(const std::string& names, std::string& value, const std::string& meaning) {
+  return Option(parser_->app.add_option(names, value, meaning));
+}
+Option CommandLine::add(const std::string& names, std::filesystem::path& value, const std::string& meaning) {
+  return Option(parser_->app.add_option(names, value, meaning));
+}
+Option CommandLine::add(const std::string& names, int& value, const std::string& meaning) {
+  return Option(parser_->app.add_option(names, value, meaning));
+}
+Option CommandLine::add(const std::string& names, unsigned& value, const std::string& meaning) {
+  return Option(parser_->app.add_option(names, value, meaning));
+}
+Option CommandLine::add(const std::string& names, std::uint64_t& value, const std::string& meaning) {
+  return Option(parser_->app.add_option(names, value, meaning));
+}
+Option CommandLine::add(const std::string& names, double& value, const std::string& meaning) {
+  return Option(parser_->app.add_option(names, value, meaning));
+}
+Option CommandLine::add(const std::string& names, std::optional<std::uint64_t>& value,
+                        const std::string& meaning) {
+  return Option(parser_->app.add_option(names, value, meaning));
+}
+Option CommandLine::add(const std::string& names, std::optional<double>& value, const std::string& meaning) {
+  return Option(parser_->app.add_option(names, value, meaning));
+}
+Option CommandLine::add(const std::string& names, std::vector<std::string>& value,
+                        const std::string& meaning) {
+  return Option(parser_->app.add_option(names, value, meaning));
+}
+Option CommandLine::add(const std::string& names, std::vector<int>& value, const std::string& meaning) {
+  return Option(parser_->app.add_option(names, value, meaning));
+}
+Option CommandLine::add_choice(const std::string& names, int& place, const std::vector<std::string>& words,
+                               const std::string& meaning) {
+  const std::function<void(const Place&)> keep = [&place](Place chosen) { place = static_cast<int>(chosen); };
+  CLI::TransformPairs<Place> places;
+  for (const auto& word : words) places.emplace_back(word, static_cast<Place>(places.size()));
+  return Option(
+      parser_->app.add_option_function(names, keep, meaning)->transform(CLI::CheckedTransformer(places)));
+}
+Option CommandLine::add_flag(const std::string& names, bool& on, const std::string& meaning) {
+  return Option(parser_->app.add_flag(names, on, meaning));
+}
+Option CommandLine::add_flag_off(const std::string& name, bool& on, const std::string& meaning) {
+  return Option(parser_->app.add_flag("!" + name, on, meaning));
+}
+void CommandLine::footer(const std::string& text) { parser_->app.footer(text); }
+
+bool CommandLine::parse(int argc, char** argv) {
+  try {
+    parser_->app.parse(argc, argv);
+    return true;
+  } catch (const CLI::ParseError& why) {
+    parser_->ended = why;
+    return false;
+  }
+}
+int CommandLine::end() const { return parser_->ended ? exit_code(parser_->app, *parser_->ended) : 0; }
+int CommandLine::lacks(const std::string& what) const {
+  return exit_code(parser_->app, CLI::RequiredError(what));
+}
+
+}  // namespace swingbank::jobs
