@@ -132,6 +132,10 @@ int pre_event_samples(const event::WhitenedEvents& events);
 /// is at least `least`.
 double misfit_limit(const event::FitEvent& event, const fit::EventFit& fitted, int pre_event, double least);
 
+/// What uncertain parameters add to the chi2 per value of an event that they were not fitted to; one event in
+/// a thousand exceeds it. `information`: of that event; `covariance` of the parameters in the same units.
+double unseen_allowance(const Eigen::MatrixXd& information, const Eigen::MatrixXd& covariance, int values);
+
 /// Misfit of one event before and after, seen or not. Both fits were made with the noise of `event`.
 EventScore score_event(event::WhitenedEvent event, const fit::EventFit& before, const fit::EventFit& after,
                        bool seen, int pre_event, double least);
