@@ -165,7 +165,7 @@ Retrained compare_networks(const std::array<calibrate::NetworkEstimate, 2>& esti
   for (auto& e : r.error) e = std::sqrt(e);
   const sim::plant::Plant plants[2] = {seen_plant(estimates[0], before, r.events),
                                        seen_plant(estimates[1], added.model, r.events)};
-  const sim::Conventions conventions[2] = {{before.conventions, added.model.conventions}};
+  const sim::Conventions conventions[2] = {before.conventions, added.model.conventions};
   for (std::size_t e = 0; e < r.events.size(); ++e)
     for (std::size_t side = 0; side < 2; ++side) {
       auto& event = r.events[e];
