@@ -23,7 +23,7 @@ class Exchange : public ::testing::Test {
   /// `name` in the model alone, fitted to `value` of its first parameter.
   [[nodiscard]] Judgement alone(const std::string& name, double value) const {
     Judgement j;
-    j.hypothesis = named(all_hypotheses(model().plant, model().conventions, model().library), name);
+    j.hypothesis = named(all_hypotheses(model().under_test(), model().library), name);
     j.fit = base_;
     j.fit.plant = j.hypothesis.plant;
     const fit::FreeParameter& f = j.hypothesis.free.front();

@@ -146,7 +146,7 @@ TEST(PlayInTest, SeesAWrongParameter) {
   sim::plant::Plant wrong = genrou().grid.plants[2];
   wrong.machine.p[static_cast<std::size_t>(wrong.machine.effect->parameter_index("H"))] *= 1.1;
   const Playback back =
-      play_in(wrong, genrou().grid.conventions, r, VoltageCurve(r, test::instants(genrou(), 2, true)));
+      play_in({wrong, genrou().grid.conventions}, r, VoltageCurve(r, test::instants(genrou(), 2, true)));
   EXPECT_GT(worst(back.P, r.P),
             0.01);  // 10 % of H moves P by some per cent of the machine in its first swing
 }
@@ -160,7 +160,7 @@ TEST(PlayInTest, StaysAtRestWhenNothingHappens) {
     r.P.push_back(0.8);
     r.Q.push_back(0.1);
   }
-  const Playback back = play_in(genrou().grid.plants[0], genrou().grid.conventions, r, VoltageCurve(r, {}));
+  const Playback back = play_in({genrou().grid.plants[0], genrou().grid.conventions}, r, VoltageCurve(r, {}));
   EXPECT_LT(worst(back.P, r.P),
             1e-10);  // a mean of equal numbers and an exact initialisation: rounding alone
   EXPECT_LT(worst(back.Q, r.Q), 1e-10);
