@@ -72,7 +72,7 @@ class Cosines {
   }
   /// Variance of a coefficient under noise: sum over lags d of covariance times sum_i b(i) b(i + d), which
   /// is a geometric series.
-  [[nodiscard]] double variance(const NoiseModel& noise, std::size_t k) const {
+  [[nodiscard]] double variance(const ChannelNoise& noise, std::size_t k) const {
     const double n = static_cast<double>(n_);
     double sum = noise.covariance[0];
     for (std::size_t lag = 1; lag < std::min(noise.covariance.size(), n_); ++lag) {
@@ -122,7 +122,7 @@ struct WindowFilling {
   std::vector<Filling> bands{std::size(kBands)};
 };
 
-WindowFilling fill(std::span<const double> x, double step, const NoiseModel& noise, double start_error,
+WindowFilling fill(std::span<const double> x, double step, const ChannelNoise& noise, double start_error,
                    bool skip_mean, const std::vector<std::span<const double>>& shapes) {
   WindowFilling f;
   Cosines cosines(x.size());
@@ -156,20 +156,20 @@ std::pair<std::size_t, std::size_t> samples_of(std::span<const double> t, const 
 
 std::span<const Band> error_bands() { return kBands; }
 
-double NoiseModel::slow() const {
+double ChannelNoise::slow() const {
   double sum = covariance[0];
   for (std::size_t d = 1; d < covariance.size(); ++d) sum += 2 * covariance[d];
   return std::max(sum, 0.0);
 }
 
-NoiseModel white_noise(double sigma) { return {.sigma = sigma, .covariance = {sigma * sigma}}; }
+ChannelNoise white_noise(double sigma) { return {.sigma = sigma, .covariance = {sigma * sigma}}; }
 
-NoiseModel estimate_noise(std::span<const double> quiet, double floor) {
+ChannelNoise estimate_noise(std::span<const double> quiet, double floor) {
   const auto n = quiet.size();
   const int most = std::clamp(static_cast<int>(n) / 15, 0, 8);
   std::vector<double> r = autocovariance(quiet, most);
   const double bessel = static_cast<double>(n) / static_cast<double>(n - 1);
-  NoiseModel noise;
+  ChannelNoise noise;
   noise.samples = static_cast<int>(n);
   std::vector<double> a;
   if (r[0] > floor * floor) a = autoregression(r, n);
@@ -196,7 +196,7 @@ NoiseModel estimate_noise(std::span<const double> quiet, double floor) {
 }
 
 ErrorMap error_map(std::span<const double> t, std::span<const double> residual,
-                   const std::vector<Window>& windows, const NoiseModel& noise,
+                   const std::vector<Window>& windows, const ChannelNoise& noise,
                    const ErrorMapOptions& options) {
   ErrorMap map;
   map.freedom = noise.freedom;

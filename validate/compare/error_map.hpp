@@ -24,7 +24,7 @@ struct Band {
 std::span<const Band> error_bands();
 
 /// Stationary noise of one channel.
-struct NoiseModel {
+struct ChannelNoise {
   double sigma = 0;                ///< standard deviation [pu]
   std::vector<double> covariance;  ///< at lags of 0, 1, ... samples [pu^2]; zero beyond
   int samples = 0;                 ///< number of samples it was estimated from; 0: known
@@ -36,9 +36,9 @@ struct NoiseModel {
 /// Noise from a stretch in which nothing happens: its mean is taken off, and an autoregressive model
 /// (Levinson; order by BIC, at most 8) says how the noise is coloured. `floor` [pu] is added as white noise:
 /// what a computation leaves where a record has no noise. Needs at least 3 samples.
-NoiseModel estimate_noise(std::span<const double> quiet, double floor);
+ChannelNoise estimate_noise(std::span<const double> quiet, double floor);
 /// Known white noise.
-NoiseModel white_noise(double sigma);
+ChannelNoise white_noise(double sigma);
 
 struct MapCell {
   /// Independent values in the cell; 0: the window is too short for the band, nothing is known.
@@ -78,7 +78,7 @@ struct ErrorMapOptions {
 /// mean of such a window is in `all` only. After the first window the mean also carries the error of the
 /// start. A large component leaks: of one of 100 x some 3 x are seen two bands away.
 ErrorMap error_map(std::span<const double> t, std::span<const double> residual,
-                   const std::vector<Window>& windows, const NoiseModel& noise,
+                   const std::vector<Window>& windows, const ChannelNoise& noise,
                    const ErrorMapOptions& options = {});
 
 /// The bound that sqrt(mean square of `values` noise values / estimated variance) exceeds with this

@@ -71,9 +71,9 @@ ReportChannel channel_of(const Diagnosis& d, const fit::Fit* after, std::size_t 
     const auto residual = difference(fit.events[e].model[c], r.measured);
     return compare::estimate_noise(std::span(residual).first(quiet), unit.floor);
   };
-  compare::NoiseModel noise = noise_of(d.base);
+  compare::ChannelNoise noise = noise_of(d.base);
   if (after)
-    if (compare::NoiseModel other = noise_of(*after); other.sigma < noise.sigma) noise = std::move(other);
+    if (compare::ChannelNoise other = noise_of(*after); other.sigma < noise.sigma) noise = std::move(other);
   r.noise = noise.sigma;
   const auto judge_one = [&](const fit::Fit& fit, const fit::VoltageDoubt& doubt, std::vector<double>& model,
                              compare::ErrorMap& map, double& inside) {

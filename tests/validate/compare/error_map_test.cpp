@@ -62,12 +62,12 @@ void expect_unit(double colour, bool estimated) {
   constexpr int kDraws = 150;
   std::vector<std::vector<double>> sum(5, std::vector<double>(5));
   const auto w = windows();
-  NoiseModel known = white_noise(1);
+  ChannelNoise known = white_noise(1);
   for (int d = 1; colour > 0 && d < 60; ++d) known.covariance.push_back(std::pow(colour, d));
   int values[5][5] = {};
   for (unsigned draw = 0; draw < kDraws; ++draw) {
     const auto x = noise(1, colour, 100 + draw);
-    const NoiseModel model = estimated ? estimate_noise(std::span(x).first(121), 1e-4) : known;
+    const ChannelNoise model = estimated ? estimate_noise(std::span(x).first(121), 1e-4) : known;
     const ErrorMap map = error_map(t, x, w, model);
     for (std::size_t i = 0; i < 5; ++i)
       for (std::size_t b = 0; b < 5; ++b) {
@@ -141,7 +141,7 @@ TEST(ErrorMapTest, TheStartsOwnErrorIsNoise) {
 
 TEST(NoiseModelTest, EstimatesSpreadAndColour) {
   const auto x = noise(0.002, 0.7, 3, 4000);
-  const NoiseModel model = estimate_noise(x, 1e-5);
+  const ChannelNoise model = estimate_noise(x, 1e-5);
   EXPECT_NEAR(model.sigma, 0.002, 0.0002);  // 4000 samples correlated over 3: 3 s.e. are 8 %
   EXPECT_NEAR(model.covariance[1] / model.covariance[0], 0.7, 0.05);
   // (1 + a) / (1 - a) = 5.7 times the variance; 3 s.e. of an AR(1) spectrum at zero are 20 %.
