@@ -192,7 +192,8 @@ const sim::Parameter& DatasetConfig::record_of(const Box& b) const {
 }
 
 std::string DatasetConfig::name_of(const Box& b) const {
-  return (b.effect == nullptr ? "" : std::string(b.effect->name) + ".") + std::string(record_of(b).name);
+  const std::string effect(b.effect == nullptr ? "" : b.effect->name);
+  return sim::plant::ParameterName{effect, std::string(record_of(b).name)}.text();
 }
 
 std::vector<const sim::Effect*> DatasetConfig::other_effects() const {
@@ -315,7 +316,7 @@ Study load_study(const DatasetConfig& config) {
       s.plants.push_back(static_cast<int>(plant - s.grid.plants.begin()));
     if (count != 1) continue;
     for (const sim::Effect* effect : config.other_effects())
-      if (const auto n = block_count(*plant, *effect); n != 1)
+      if (const int n = times_in(*plant, *effect); n != 1)
         problems.add(fmt::format("generator {} of vary.generators", number), config.file.string(),
                      fmt::format("it has {} {} with parameters in [vary.effects.{}]", n == 0 ? "no" : "two",
                                  effect->name, effect->name),

@@ -50,12 +50,7 @@ std::map<int, plant::Plant> changed_plants(const grid::Grid& grid, const Job& jo
   const auto plant = [&](int index) -> plant::Plant& {
     return changed.try_emplace(index, grid.plants[static_cast<std::size_t>(index)]).first->second;
   };
-  for (const auto& [index, values] : job.machine_parameters) plant(index).machine.p = values;
-  for (const auto& [index, control, values] : job.control_parameters) {
-    plant::Plant& changing = plant(index);
-    (control == kTransformer ? changing.transformer : changing.controls[static_cast<std::size_t>(control)])
-        .p = values;
-  }
+  for (const auto& [index, block, values] : job.parameters) plant::block_at(plant(index), block).p = values;
   return changed;
 }
 

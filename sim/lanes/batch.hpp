@@ -10,6 +10,7 @@
 #include "sim/core/trajectory.hpp"
 #include "sim/grid/grid.hpp"
 #include "sim/network/event.hpp"
+#include "sim/plant/parameter_id.hpp"
 
 namespace swingbank::sim::lanes {
 
@@ -27,25 +28,20 @@ struct BatchOptions {
 /// like that of the value itself.
 struct Seed {
   int plant;
-  int block;  ///< 0: machine, then transformer if there is one, then controls
-  int parameter;
-  double scale;  ///< [unit of the parameter]
+  plant::ParameterId parameter;  ///< of the machine, the transformer or a control
+  double scale;                  ///< [unit of the parameter]
 };
-
-constexpr int kTransformer = -1;  ///< in place of a control: the plant's step-up transformer
 
 /// One run to make: the event and the plants' parameters. Plants that are not listed keep the grid's own.
 struct Job {
   std::uint64_t id = 0;
   network::Event event;
-  std::vector<std::pair<int, std::vector<double>>>
-      machine_parameters;  ///< plant index, values in record order
-  struct Control {
-    int plant, control;  ///< index of the plant, and of the block among its controls; kTransformer
-    std::vector<double> values;
-    friend bool operator==(const Control&, const Control&) = default;
+  struct BlockValues {
+    int plant, block;            ///< index of the plant, and number of the block (sim/plant/parameter_id.hpp)
+    std::vector<double> values;  ///< in record order
+    friend bool operator==(const BlockValues&, const BlockValues&) = default;
   };
-  std::vector<Control> control_parameters = {};
+  std::vector<BlockValues> parameters = {};
   std::vector<Seed> seeds = {};  ///< at most kDirections; only where BatchOptions::sensitivities
 };
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "sim/plant/equations.hpp"
-#include "sim/plant/plant.hpp"
+#include "sim/plant/parameter_id.hpp"
 
 namespace swingbank::sim::plant {
 namespace {
@@ -202,13 +202,6 @@ template OperatingOf<D8> operating_point_of(const Plant&, const std::vector<std:
 Operating operating_point(const Plant& plant, Complex voltage, double base_mva,
                           const Conventions& conventions) {
   return operating_point_of<double>(plant, block_parameters(plant), voltage, base_mva, conventions);
-}
-
-std::vector<std::vector<double>> block_parameters(const Plant& plant) {
-  std::vector<std::vector<double>> parameters{plant.machine.p};
-  if (plant.transformer.effect) parameters.push_back(plant.transformer.p);
-  for (const Block& control : plant.controls) parameters.push_back(control.p);
-  return parameters;
 }
 
 }  // namespace swingbank::sim::plant

@@ -34,8 +34,6 @@ struct Consumer {
   Complex consumption;  ///< P + jQ at the operating point [pu on the network's base]
   Block block;
 };
-/// Values of every block of a plant: machine, transformer if there is one, controls.
-std::vector<std::vector<double>> block_parameters(const Plant& plant);
 
 /// When the plant's effects jump in time, sorted [s].
 std::vector<double> instants_of(const Plant& plant);
@@ -58,7 +56,7 @@ using Operating = OperatingOf<double>;
 /// exceeds 1e-9.
 Operating operating_point(const Plant& plant, Complex voltage, double base_mva,
                           const Conventions& conventions);
-/// The same with the values of every block given as T (machine, transformer if there is one, controls).
+/// The same with the values of every block given as T, in the order of block_parameters().
 template <class T>
 OperatingOf<T> operating_point_of(const Plant& plant, const std::vector<std::vector<T>>& parameters,
                                   Complex voltage, double base_mva, const Conventions& conventions);

@@ -22,7 +22,7 @@ inline std::vector<lanes::Job> jobs(const grid::Grid& grid, int count) {
     auto p = grid.plants[plant].machine.p;
     for (auto& v : p) v *= 0.9 + 0.2 * u(random);
     if (grid.plants[plant].machine.effect->unphysical(p.data()).empty())
-      job.machine_parameters.push_back({static_cast<int>(plant), p});
+      job.parameters.push_back({static_cast<int>(plant), sim::plant::kMachineBlock, p});
   }
   return list;
 }

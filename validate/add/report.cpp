@@ -38,9 +38,8 @@ report::Table values_table(const Addition& a) {
   for (std::size_t i = 0; i < a.parameters.size(); ++i) {
     const auto& p = a.parameters[i];
     const bool own = i < static_cast<std::size_t>(a.own);
-    t.rows.push_back({p.block + "." + p.name, p.unit, fmt::format("{:.4g}", p.start),
-                      fmt::format("{:.4g}", p.value), fmt::format("{:.2g}", p.error),
-                      fmt::format("{:.4g} to {:.4g}", p.low, p.high),
+    t.rows.push_back({p.full_name(), p.unit, fmt::format("{:.4g}", p.start), fmt::format("{:.4g}", p.value),
+                      fmt::format("{:.2g}", p.error), fmt::format("{:.4g} to {:.4g}", p.low, p.high),
                       fmt::format("{:.0f} %", 100 * p.decided),
                       std::string(own ? "added" : "") + (p.at_bound ? " at its bound" : "")});
   }

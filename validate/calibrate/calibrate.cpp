@@ -195,8 +195,8 @@ class Run {
     sim::plant::Plant plant = c_.fit.plant;
     for (Eigen::Index i = 0; i < n; ++i) {
       const auto& f = free_[static_cast<std::size_t>(i)];
-      const auto& record = fit::parameter_record(plant, f.block, f.index);
-      double& value = fit::parameter_value(plant, f.block, f.index);
+      const auto& record = sim::plant::parameter_record(plant, f.id);
+      double& value = sim::plant::parameter_value(plant, f.id);
       const double move = fit::axis_unit(c_.fit.plant, f) * step[i], old = value;
       value = std::clamp(old > 0 ? old * std::exp(move / old) : old + move, std::min(old, record.low),
                          std::max(old, record.high));
@@ -266,7 +266,7 @@ class Run {
       for (Eigen::Index j = 0; j < n; ++j)
         c_.correlation(i, j) = inverse(i, j) / std::sqrt(inverse(i, i) * inverse(j, j));
       CalibratedParameter p{.fit = c_.fit.parameters[static_cast<std::size_t>(i)]};
-      const auto& record = fit::parameter_record(c_.fit.plant, p.fit.where.block, p.fit.where.index);
+      const auto& record = sim::plant::parameter_record(c_.fit.plant, p.fit.where.id);
       p.shift = shift_[i];
       p.curvature_error = unit[i] * std::sqrt(inverse(i, i));
       p.fit.error = p.curvature_error * widening[i];

@@ -25,7 +25,7 @@ struct Setting {
   [[nodiscard]] sim::plant::Plant plant(const double* z) const {
     sim::plant::Plant moved = model.plant;
     for (std::size_t i = 0; i < free.size(); ++i)
-      fit::parameter_value(moved, free[i].block, free[i].index) = start[i] * z[i];
+      sim::plant::parameter_value(moved, free[i].id) = start[i] * z[i];
     return moved;
   }
 };
@@ -44,8 +44,9 @@ class EventResidual : public ceres::CostFunction {
     std::vector<playin::Direction> along;
     if (slopes)
       for (std::size_t i = 0; i < setting_.free.size(); ++i)
-        along.push_back({playin::Direction::Kind::parameter, setting_.free[i].block, setting_.free[i].index,
-                         setting_.start[i]});
+        along.push_back({.kind = playin::Direction::Kind::parameter,
+                         .parameter = setting_.free[i].id,
+                         .scale = setting_.start[i]});
     try {
       const playin::Response r = event::play({plant, setting_.model.conventions}, event_, {}, along);
       const auto width = static_cast<int>(setting_.free.size());
@@ -139,7 +140,7 @@ class Run {
     for (std::size_t e = 0; e < events_.size(); ++e)
       if (!out_[e]) problem.AddResidualBlock(new EventResidual(setting_, events_[e]), nullptr, {z_.data()});
     for (std::size_t i = 0; i < free_.size(); ++i) {
-      const auto& record = fit::parameter_record(fit_.model.plant, free_[i].block, free_[i].index);
+      const auto& record = sim::plant::parameter_record(fit_.model.plant, free_[i].id);
       const double a = record.low / setting_.start[i], b = record.high / setting_.start[i];
       problem.SetParameterLowerBound(z_.data(), static_cast<int>(i), std::min(a, b));
       problem.SetParameterUpperBound(z_.data(), static_cast<int>(i), std::max(a, b));
@@ -177,10 +178,10 @@ class Run {
         inverse(curvature) * squares / std::max(1, values - static_cast<int>(n));
     for (std::size_t i = 0; i < free_.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i);
-      const auto& record = fit::parameter_record(fit_.model.plant, free_[i].block, free_[i].index);
+      const auto& record = sim::plant::parameter_record(fit_.model.plant, free_[i].id);
       fit::FittedParameter p;
       p.where = free_[i];
-      p.block = fit::block_effect(fit_.model.plant, free_[i].block).name;
+      p.block = sim::plant::block_effect(fit_.model.plant, free_[i].id.block).name;
       p.name = record.name;
       p.unit = record.unit;
       p.start = setting_.start[i];

@@ -65,18 +65,18 @@ sim::plant::Plant estimated_plant(const NetworkEstimate& estimate, const plant::
   std::string absent;
   for (const auto& p : estimate.parameters) {
     const sim::Effect* effect = model.library.find(p.effect);
-    const int block = effect ? fit::find_block(plant, *effect) : -1;
-    if (block < 0) {
+    const auto block = effect ? sim::plant::find_block(plant, *effect) : std::nullopt;
+    if (!block) {
       if (absent.find(p.effect) == std::string::npos) absent += (absent.empty() ? "" : ", ") + p.effect;
       continue;
     }
-    const int index = fit::block_effect(plant, block).parameter_index(p.plain());
+    const int index = effect->parameter_index(p.plain());
     if (index < 0) {
       problems.add("parameter " + p.full(), estimate.network, p.effect + " has no such parameter",
                    "train a network with this version");
       continue;
     }
-    double& value = fit::parameter_value(plant, block, index);
+    double& value = sim::plant::parameter_value(plant, {*block, index});
     if (!within_reach(value, p.low, p.high, spread)) {
       const std::string learnt = p.learnt() ? fmt::format("was trained on {:g} to {:g}", p.low, p.high)
                                             : fmt::format("holds it at {:g}", p.low);
@@ -86,7 +86,7 @@ sim::plant::Plant estimated_plant(const NetworkEstimate& estimate, const plant::
                    "train a network about this plant (swingbank add --retrain shows how), or widen --spread");
       continue;
     }
-    const auto& record = fit::parameter_record(plant, block, index);
+    const auto& record = sim::plant::parameter_record(plant, {*block, index});
     if (p.learnt()) value = std::clamp(p.value, record.low, record.high);
   }
   if (!absent.empty())

@@ -17,8 +17,10 @@ struct NetworkEstimate {
     double spread = 0, scatter = 0;  ///< rms error on the network's validation records; between the records
     double low = 0, high = 0;        ///< learnt within; equal: held
     [[nodiscard]] bool learnt() const { return high > low; }
-    [[nodiscard]] std::string plain() const { return name.substr(name.find('.') + 1); }  ///< "K"
-    [[nodiscard]] std::string full() const { return effect + "." + plain(); }            ///< "SEXS.K"
+    /// "K".
+    [[nodiscard]] std::string plain() const { return sim::plant::read_parameter_name(name).parameter; }
+    /// "SEXS.K".
+    [[nodiscard]] std::string full() const { return sim::plant::ParameterName{effect, plain()}.text(); }
   };
   std::vector<Parameter> parameters;
   struct Seen {

@@ -14,8 +14,6 @@ namespace {
 
 using nlohmann::json;
 
-std::string name_of(const fit::FittedParameter& p) { return p.block + "." + p.name; }
-
 /// Bytes of UTF-8 that begin a character.
 std::size_t width(const std::string& text) {
   return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; }));
@@ -45,7 +43,7 @@ std::string identify_text(const Calibration& c) {
   std::string text;
   for (const auto& p : c.parameters) {
     if (p.fit.decided >= thresholds::parameters.identified) continue;
-    text += fmt::format("  {}: ", name_of(p.fit));
+    text += fmt::format("  {}: ", p.fit.full_name());
     text += p.best_candidate < 0
                 ? std::string("none of the events tried would narrow it by a fifth\n")
                 : fmt::format("{} would narrow its error {:.1f} times ({:.2g} -> {:.2g} {})\n",
@@ -104,10 +102,10 @@ std::string describe(const Calibration& c, const Blur& blur) {
   std::string members;
   for (const auto& m : blur.members) {
     const auto& p = c.parameters[static_cast<std::size_t>(m.parameter)].fit;
-    members += fmt::format("{}{} {:+.2g} {}", members.empty() ? "" : ", ", name_of(p), m.change, p.unit);
+    members += fmt::format("{}{} {:+.2g} {}", members.empty() ? "" : ", ", p.full_name(), m.change, p.unit);
   }
   if (blur.alone)
-    return name_of(c.parameters[static_cast<std::size_t>(blur.members.front().parameter)].fit) +
+    return c.parameters[static_cast<std::size_t>(blur.members.front().parameter)].fit.full_name() +
            " leaves no trace in these records by itself (" + percent(blur.decided) + " decided)";
   return "cannot be told apart: " + members + " together change nothing that these records show (" +
          percent(blur.decided) + " decided)";
@@ -120,7 +118,7 @@ report::Table parameter_table(const Calibration& c) {
       {}};
   for (std::size_t i = 0; i < c.parameters.size(); ++i) {
     const auto& p = c.parameters[i].fit;
-    t.rows.push_back({name_of(p), p.unit, fmt::format("{:.4g}", p.start), fmt::format("{:.4g}", p.value),
+    t.rows.push_back({p.full_name(), p.unit, fmt::format("{:.4g}", p.start), fmt::format("{:.4g}", p.value),
                       fmt::format("{:.2g}", p.error), fmt::format("{:.4g} to {:.4g}", p.low, p.high),
                       percent(p.decided), notes(c, i)});
   }
@@ -248,7 +246,7 @@ json calibration_json(const Calibration& c) {
     json members = json::array();
     for (const auto& m : blur.members) {
       const auto& p = c.parameters[static_cast<std::size_t>(m.parameter)].fit;
-      members.push_back({{"parameter", name_of(p)}, {"change", m.change}, {"unit", p.unit}});
+      members.push_back({{"parameter", p.full_name()}, {"change", m.change}, {"unit", p.unit}});
     }
     j["not_told_apart"].push_back({{"members", members}, {"decided_by_records", blur.decided}});
   }
@@ -265,7 +263,7 @@ std::vector<std::string> provenance_lines(const Calibration& c, const std::strin
     list += fmt::format("{}{} (xxh64 {:016x})", list.empty() ? "" : ", ", e.record.name, e.record.hash);
   }
   std::string names;
-  for (const auto& p : c.parameters) names += (names.empty() ? "" : ", ") + name_of(p.fit);
+  for (const auto& p : c.parameters) names += (names.empty() ? "" : ", ") + p.fit.full_name();
   std::vector<std::string> lines = {
       fmt::format("Calibrated by swingbank {} on {:%Y-%m-%d %H:%M} UTC.", SWINGBANK_VERSION,
                   fmt::gmtime(std::time(nullptr))),

@@ -126,23 +126,15 @@ std::vector<bool> held_out_events(const std::vector<record::Record>& records,
 std::vector<fit::FreeParameter> chosen_parameters(const sim::plant::Plant& plant, double spread,
                                                   const std::vector<std::string>& fixed) {
   std::vector<fit::FreeParameter> free = fit::free_parameters(plant, spread);
-  const auto instruments = static_cast<int>(sim::plant::block_parameters(plant).size());
-  for (int block = instruments; block < fit::block_count(plant); ++block)
-    if (playin::can_be_taken_back(fit::block_effect(plant, block)))
+  for (int block = sim::plant::first_measurement(plant); block < sim::plant::block_count(plant); ++block)
+    if (playin::can_be_taken_back(sim::plant::block_effect(plant, block)))
       std::ranges::copy(fit::free_parameters(plant, block, spread), std::back_inserter(free));
   Problems problems;
-  std::string all;
-  const auto name_of = [&](const fit::FreeParameter& f) {
-    return fmt::format("{}.{}", fit::block_effect(plant, f.block).name,
-                       fit::parameter_record(plant, f.block, f.index).name);
-  };
-  for (const auto& f : free) all += (all.empty() ? "" : ", ") + name_of(f);
-  for (const auto& one : fixed)
-    if (std::erase_if(free, [&](const fit::FreeParameter& f) {
-          return name_of(f) == one || fit::parameter_record(plant, f.block, f.index).name == one;
-        }) == 0)
-      problems.add("parameter '" + one + "'", "--fix", "the fit has no such free parameter",
-                   "use one of " + all);
+  std::vector<sim::plant::ParameterId> ids;
+  for (const auto& f : free) ids.push_back(f.id);
+  const auto held =
+      sim::plant::find_parameters(plant, ids, fixed, "--fix", "the fit has no such free parameter", problems);
+  std::erase_if(free, [&](const fit::FreeParameter& f) { return std::ranges::count(held, f.id) > 0; });
   if (free.empty() && problems.empty())
     problems.add("no free parameter", plant.name, "all are fixed, zero, or codes", "leave some free");
   problems.raise();

@@ -20,21 +20,13 @@ using nlohmann::json;
 
 json finite(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
-Way::Value value_of(const fit::FittedParameter& p) {
-  return {p.block + "." + p.name, p.unit, p.value, p.low, p.high};
-}
-
-void add_block(Truth& truth, const sim::Effect* effect, const std::vector<double>& values) {
-  if (effect == nullptr) return;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    truth[std::string(effect->name) + "." + std::string(effect->parameters[i].name)] = values[i];
-}
+Way::Value value_of(const fit::FittedParameter& p) { return {p.full_name(), p.unit, p.value, p.low, p.high}; }
 
 Truth truth_of(const sim::plant::Plant& plant) {
   Truth truth;
-  add_block(truth, plant.machine.effect, plant.machine.p);
-  add_block(truth, plant.transformer.effect, plant.transformer.p);
-  for (const auto& b : plant.controls) add_block(truth, b.effect, b.p);
+  for (int block = 0; block < sim::plant::first_measurement(plant); ++block)
+    for (const sim::plant::ParameterId id : sim::plant::parameters_of(plant, block))
+      truth[sim::plant::parameter_name(plant, id).text()] = sim::plant::parameter_value(plant, id);
   return truth;
 }
 
@@ -56,7 +48,8 @@ Truth blind_truth(const std::filesystem::path& file, const plant::PlantModel& mo
     require_base(j.at("machine_mva").get<double>(), model, file.string());
     const auto take = [&](const json& block) {
       for (const auto& [name, value] : block.at("parameters").items())
-        truth[block.at("effect").get<std::string>() + "." + name] = value.get<double>();
+        truth[sim::plant::ParameterName{block.at("effect").get<std::string>(), name}.text()] =
+            value.get<double>();
     };
     take(j.at("true_plant").at("machine"));
     for (const auto& block : j.at("true_plant").at("controls")) take(block);
@@ -128,7 +121,7 @@ Truth read_truth(const std::filesystem::path& file, const plant::PlantModel& mod
 Way way_of_model(const Calibration& c) {
   Way way{"model", {}, c.events};
   for (const auto& p : c.parameters)
-    way.values.push_back({p.fit.block + "." + p.fit.name, p.fit.unit, p.fit.start, p.fit.start, p.fit.start});
+    way.values.push_back({p.fit.full_name(), p.fit.unit, p.fit.start, p.fit.start, p.fit.start});
   for (auto& e : way.events) {
     e.after = e.before;
     for (auto& ch : e.channels) {
@@ -291,7 +284,7 @@ std::string terminal_report(const CurveFit& f, const Truth& truth) {
   std::string text =
       f.sentence + "\n\n" + aligned(event_table(f.events)) + "\n" + aligned(parameters_beside({way}, truth));
   for (const auto& p : f.parameters)
-    if (p.at_bound) text += fmt::format("{}.{} ended at its bound.\n", p.block, p.name);
+    if (p.at_bound) text += p.full_name() + " ended at its bound.\n";
   if (truth.empty()) return text;
   const Distance d = distance(way, truth);
   return text + fmt::format(
@@ -319,7 +312,7 @@ json curve_fit_json(const CurveFit& f, const Truth& truth) {
             {"parameters", json::array()}};
   for (const auto& e : f.events) j["events"].push_back(event_json(e));
   for (const auto& p : f.parameters) {
-    const auto known = truth.find(p.block + "." + p.name);
+    const auto known = truth.find(p.full_name());
     j["parameters"].push_back({{"effect", p.block},
                                {"name", p.name},
                                {"unit", p.unit},

@@ -219,11 +219,11 @@ class Search {
     for (Eigen::Index i = 0; i < n; ++i) {
       const Axis& a = setting_.axes[static_cast<std::size_t>(i)];
       const double z = z_[static_cast<std::size_t>(i)];
-      const auto& record = parameter_record(fit.plant, a.where.block, a.where.index);
+      const auto& record = parameter_record(fit.plant, a.where.id);
       const double error = std::sqrt(covariance(i, i));
       FittedParameter p;
       p.where = a.where;
-      p.block = block_effect(fit.plant, a.where.block).name;
+      p.block = block_effect(fit.plant, a.where.id.block).name;
       p.name = record.name;
       p.unit = record.unit;
       p.start = a.start;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/plant/parameter_id.hpp"
 #include "validate/event/play.hpp"
 
 namespace swingbank::validate::fit {
@@ -15,7 +16,7 @@ using event::EventState, event::InputKind;
 /// A parameter that may move. `spread` is how far its value is believed to be off: relative where the
 /// parameter is positive by nature (it is then fitted as a logarithm), absolute otherwise; 0: no belief.
 struct FreeParameter {
-  int block = 0, index = 0;  ///< as in sim::block_parameters; instruments (Plant::measurements) follow
+  sim::plant::ParameterId id;
   double spread = 0.3;
 };
 
@@ -25,18 +26,8 @@ std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, int b
 /// The same of all blocks but the instruments.
 std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, double spread);
 
-/// What is known of one parameter.
-const sim::Parameter& parameter_record(const sim::plant::Plant& plant, int block, int index);
-const sim::plant::Block& block_at(const sim::plant::Plant& plant, int block);
-const sim::Effect& block_effect(const sim::plant::Plant& plant, int block);
-double& parameter_value(sim::plant::Plant& plant, int block, int index);
-double parameter_value(const sim::plant::Plant& plant, int block, int index);
 /// Present values of the free parameters.
 std::vector<double> values_of(const sim::plant::Plant& plant, const std::vector<FreeParameter>& free);
-/// Machine, transformer, controls and instruments.
-int block_count(const sim::plant::Plant& plant);
-/// Index of the first block with that effect; -1: the plant has none.
-int find_block(const sim::plant::Plant& plant, const sim::Effect& effect);
 
 struct EventFit {
   EventState state;
@@ -57,6 +48,7 @@ struct FittedParameter {
   double error = 0;          ///< standard error from the curvature [unit]; NaN where the fit is singular
   double low = 0, high = 0;  ///< 95 % interval [unit], within the physical bounds
   bool at_bound = false;
+  [[nodiscard]] std::string full_name() const { return sim::plant::ParameterName{block, name}.text(); }
   /// Share of the interval that the records decide; the belief decides the rest. 0: the records decide
   /// nothing, 1: all.
   double decided = 0;

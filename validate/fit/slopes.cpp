@@ -17,9 +17,10 @@ std::vector<playin::Direction> state_directions(const event::FitEvent& event) {
   std::vector<playin::Direction> along;
   for (std::size_t k = 0; k < event.switchings.size(); ++k)
     if (event.switchings[k].uncertainty > 0)
-      along.push_back({Kind::switching, 0, static_cast<int>(k), event.switchings[k].uncertainty});
+      along.push_back(
+          {.kind = Kind::switching, .index = static_cast<int>(k), .scale = event.switchings[k].uncertainty});
   for (std::size_t k = 0; k < std::size(kStateKind); ++k)
-    along.push_back({kStateKind[k], 0, 0, kStateSpread[k]});
+    along.push_back({.kind = kStateKind[k], .scale = kStateSpread[k]});
   return along;
 }
 
@@ -34,8 +35,8 @@ Eigen::VectorXd whitened(const event::WhitenedEvent& e, const std::vector<double
 }  // namespace
 
 double axis_unit(const sim::plant::Plant& plant, const FreeParameter& f) {
-  const auto& record = parameter_record(plant, f.block, f.index);
-  const double value = parameter_value(plant, f.block, f.index);
+  const auto& record = parameter_record(plant, f.id);
+  const double value = parameter_value(plant, f.id);
   const double size = value != 0 ? std::abs(value) : 0.05 * std::min(record.high - record.low, 20.0);
   return (f.spread > 0 ? f.spread : 1.0) * size;
 }
@@ -44,7 +45,8 @@ EventSlopes event_slopes(const sim::plant::PlantUnderTest& tested, event::Whiten
                          const EventState& state, const std::vector<FreeParameter>& free) {
   const event::FitEvent& event = e.event;
   std::vector<playin::Direction> along;
-  for (const auto& f : free) along.push_back({Kind::parameter, f.block, f.index, axis_unit(tested.plant, f)});
+  for (const auto& f : free)
+    along.push_back({.kind = Kind::parameter, .parameter = f.id, .scale = axis_unit(tested.plant, f)});
   std::ranges::move(state_directions(event), std::back_inserter(along));
   const playin::Response r = event::play(tested, event, state, along, kExact);
 

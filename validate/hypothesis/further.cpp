@@ -12,10 +12,10 @@ namespace {
 void copy_values(const sim::plant::Plant& from, const sim::plant::Plant& like,
                  const std::vector<fit::FreeParameter>& free, sim::plant::Plant& to) {
   for (const fit::FreeParameter& f : free) {
-    const sim::Effect& effect = fit::block_effect(like, f.block);
-    const int source = fit::find_block(from, effect), target = fit::find_block(to, effect);
-    if (source >= 0 && target >= 0)
-      fit::parameter_value(to, target, f.index) = fit::parameter_value(from, source, f.index);
+    const auto source = sim::plant::same_parameter(from, like, f.id),
+               target = sim::plant::same_parameter(to, like, f.id);
+    if (source && target)
+      sim::plant::parameter_value(to, *target) = sim::plant::parameter_value(from, *source);
   }
 }
 
@@ -25,19 +25,19 @@ void copy_values(const sim::plant::Plant& from, const sim::plant::Plant& like,
 std::vector<double> by_name(const Hypothesis& h, std::vector<double> values,
                             const sim::plant::Plant& leader) {
   int there = 0;
-  while (there < fit::block_count(leader) &&
-         static_cast<int>(fit::block_effect(leader, there).slot) != h.slot)
+  while (there < sim::plant::block_count(leader) &&
+         static_cast<int>(sim::plant::block_effect(leader, there).slot) != h.slot)
     ++there;
-  if (there == fit::block_count(leader)) return values;
-  const auto& known = fit::block_effect(leader, there).parameters;
+  if (there == sim::plant::block_count(leader)) return values;
+  const auto& known = sim::plant::block_effect(leader, there).parameters;
   for (std::size_t i = 0; i < h.free.size(); ++i) {
     const fit::FreeParameter& f = h.free[i];
-    if (static_cast<int>(fit::block_effect(h.plant, f.block).slot) != h.slot) continue;
-    const sim::Parameter& own = fit::parameter_record(h.plant, f.block, f.index);
+    if (static_cast<int>(sim::plant::block_effect(h.plant, f.id.block).slot) != h.slot) continue;
+    const sim::Parameter& own = sim::plant::parameter_record(h.plant, f.id);
     const auto same = std::ranges::find_if(
         known, [&](const sim::Parameter& p) { return p.name == own.name && p.unit == own.unit; });
     if (same == known.end()) continue;
-    const double value = fit::parameter_value(leader, there, static_cast<int>(same - known.begin()));
+    const double value = sim::plant::parameter_value(leader, {there, static_cast<int>(same - known.begin())});
     values[i] = std::clamp(value, own.low, own.high);
   }
   return values;
@@ -67,10 +67,9 @@ void try_further(const Stage& stage, const fit::Fit& leader, Judgement& j) {
   // parameters that both share start at the leader's values
   Hypothesis led = h;
   for (const auto& p : leader.parameters) {
-    const sim::Effect& effect = fit::block_effect(leader.plant, p.where.block);
-    const int block = fit::find_block(led.plant, effect);
-    if (block >= 0 && fit::find_block(stage.plant, effect) >= 0)
-      fit::parameter_value(led.plant, block, p.where.index) = p.value;
+    const auto id = sim::plant::same_parameter(led.plant, leader.plant, p.where.id);
+    if (id && sim::plant::same_parameter(stage.plant, leader.plant, p.where.id))
+      sim::plant::parameter_value(led.plant, *id) = p.value;
   }
   std::vector<fit::EventState> states;
   for (const auto& e : leader.events) states.push_back(e.state);
@@ -114,9 +113,9 @@ void try_from(const Stage& stage, const fit::Fit& other, Judgement& j) {
   const auto free = free_of(h, stage.spread);
   fit::FitOptions o;
   for (const fit::FreeParameter& f : free) {
-    const int block = fit::find_block(other.plant, fit::block_effect(h.plant, f.block));
-    o.values.push_back(block >= 0 ? fit::parameter_value(other.plant, block, f.index)
-                                  : fit::parameter_value(j.fit.plant, f.block, f.index));
+    const auto id = sim::plant::same_parameter(other.plant, h.plant, f.id);
+    o.values.push_back(id ? sim::plant::parameter_value(other.plant, *id)
+                          : sim::plant::parameter_value(j.fit.plant, f.id));
   }
   for (const auto& e : other.events) o.start.push_back(e.state);
   if (fit::Fit f = fit::fit(h.under_test(), stage.events, free, o); f.failed.empty() && fit::better(f, j.fit))
@@ -132,9 +131,8 @@ Stage after(const Stage& stage, const Judgement& j) {
 void bring(const Stage& stage, Hypothesis& h) {
   h.with = stage.with;
   for (const fit::FreeParameter& f : stage.own) {
-    const int block = fit::find_block(h.plant, fit::block_effect(stage.plant, f.block));
-    h.free.push_back({block, f.index, f.spread});
-    const double value = fit::parameter_value(stage.fit.plant, f.block, f.index);
+    h.free.push_back({sim::plant::same_parameter(h.plant, stage.plant, f.id).value(), f.spread});
+    const double value = sim::plant::parameter_value(stage.fit.plant, f.id);
     for (auto& start : h.starts) start.push_back(value);
   }
 }

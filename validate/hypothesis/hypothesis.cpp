@@ -43,24 +43,6 @@ Side side_of(Slot slot) {
   return Side::machine;
 }
 
-/// Puts the block where its slot's order asks for. Returns its index, counted as in FreeParameter.
-int insert(sim::plant::Plant& plant, sim::plant::Block block) {
-  const int first = plant.transformer.effect ? 2 : 1;
-  if (block.effect->slot == Slot::transformer) {
-    plant.transformer = std::move(block);
-    return 1;
-  }
-  if (block.effect->slot == Slot::measurement) {
-    plant.measurements.push_back(std::move(block));
-    return first + static_cast<int>(plant.controls.size() + plant.measurements.size()) - 1;
-  }
-  const auto at = std::ranges::upper_bound(plant.controls, block.effect->slot, {},
-                                           [](const sim::plant::Block& b) { return b.effect->slot; });
-  const auto index = static_cast<int>(at - plant.controls.begin());
-  plant.controls.insert(at, std::move(block));
-  return first + index;
-}
-
 bool occupied(const sim::plant::Plant& plant, const sim::Effect& effect) {
   if (effect.slot == Slot::transformer) return plant.transformer.effect != nullptr;
   for (const auto* list : {&plant.controls, &plant.measurements})
@@ -78,8 +60,8 @@ std::vector<std::vector<double>> draws(const sim::plant::Plant& plant,
                                        unsigned seed, double within = 0) {
   double longest = 0;
   for (const auto& f : free)
-    if (fit::parameter_record(plant, f.block, f.index).unit == "s")
-      longest = std::max(longest, fit::parameter_value(plant, f.block, f.index));
+    if (sim::plant::parameter_record(plant, f.id).unit == "s")
+      longest = std::max(longest, sim::plant::parameter_value(plant, f.id));
   std::mt19937_64 random(seed);  // the same draws every time: a diagnosis can be repeated
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform;
@@ -91,17 +73,17 @@ std::vector<std::vector<double>> draws(const sim::plant::Plant& plant,
         longest > 0 && within > 0 ? std::pow(kShortestDraw, uniform(random)) * within / longest : 1;
     std::vector<double> values;
     for (const auto& f : free) {
-      const auto& p = fit::parameter_record(plant, f.block, f.index);
+      const auto& p = sim::plant::parameter_record(plant, f.id);
       // gains are believed within decades, times and limits within a factor
       const double width = p.low > 0 && p.high / p.low >= 1000 ? 2.0 : 0.8;
       const double whole = common.try_emplace(p.unit, normal(random)).first->second;
       const bool bounded = p.unit == "s" && within > 0;
       const double factor = (bounded ? shorter : std::exp(width * std::sqrt(0.5) * whole)) *
                             std::exp(width * std::sqrt(0.5) * normal(random));
-      values.push_back(std::clamp(fit::parameter_value(plant, f.block, f.index) * factor, p.low, p.high));
-      fit::parameter_value(drawn, f.block, f.index) = values.back();
+      values.push_back(std::clamp(sim::plant::parameter_value(plant, f.id) * factor, p.low, p.high));
+      sim::plant::parameter_value(drawn, f.id) = values.back();
     }
-    if (free.empty() || playin::can_run(fit::block_at(drawn, free.front().block)))
+    if (free.empty() || playin::can_run(sim::plant::block_at(drawn, free.front().id.block)))
       all.push_back(std::move(values));
   }
   return all;
@@ -109,13 +91,13 @@ std::vector<std::vector<double>> draws(const sim::plant::Plant& plant,
 
 /// An instrument is nearly right: its errors are small, and their answer straight.
 void start_near_neutral(Hypothesis& h, int block) {
-  const sim::Effect& effect = fit::block_effect(h.plant, block);
+  const sim::Effect& effect = sim::plant::block_effect(h.plant, block);
   for (std::size_t i = 0; i < effect.parameters.size(); ++i)
-    if (!effect.parameters[i].is_code()) h.free.push_back({block, static_cast<int>(i), kAddedSpread});
+    if (!effect.parameters[i].is_code()) h.free.push_back({{block, static_cast<int>(i)}, kAddedSpread});
   for (const double share : {0.002, -0.002}) {
     std::vector<double> values;
     for (const auto& f : h.free) {
-      const auto& p = effect.parameters[static_cast<std::size_t>(f.index)];
+      const auto& p = sim::plant::parameter_record(h.plant, f.id);
       values.push_back(std::clamp(p.neutral + share * (p.high - p.low), p.low, p.high));
     }
     h.starts.push_back(values);
@@ -131,7 +113,7 @@ Hypothesis added_to(const sim::plant::PlantUnderTest& tested, const sim::Effect&
   if (!sim::is_shared(effect.slot)) h.slot = static_cast<int>(effect.slot);
   h.plant = tested.plant;
   h.conventions = tested.conventions;
-  const int block = insert(h.plant, {&effect, effect.standard_parameters()});
+  const int block = sim::plant::insert_block(h.plant, {&effect, effect.standard_parameters()});
   if (effect.slot == Slot::measurement) {
     start_near_neutral(h, block);
   } else {
@@ -161,13 +143,13 @@ std::string_view stem(std::string_view name) {
 }
 
 void add_neutral_groups(const sim::plant::PlantUnderTest& tested, std::vector<Hypothesis>& all) {
-  const auto blocks = sim::plant::block_parameters(tested.plant);
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    const sim::Effect& effect = fit::block_effect(tested.plant, static_cast<int>(b));
+  for (int b = 0; b < sim::plant::first_measurement(tested.plant); ++b) {
+    const sim::plant::Block& block = sim::plant::block_at(tested.plant, b);
+    const sim::Effect& effect = *block.effect;
     std::vector<std::vector<int>> groups;
-    for (std::size_t i = 0; i < blocks[b].size(); ++i) {
+    for (std::size_t i = 0; i < block.p.size(); ++i) {
       const auto& p = effect.parameters[i];
-      if (p.is_code() || blocks[b][i] != p.neutral) continue;
+      if (p.is_code() || block.p[i] != p.neutral) continue;
       const bool joins =
           !groups.empty() &&
           stem(effect.parameters[static_cast<std::size_t>(groups.back().back())].name) == stem(p.name) &&
@@ -192,7 +174,7 @@ void add_neutral_groups(const sim::plant::PlantUnderTest& tested, std::vector<Hy
       h.conventions = tested.conventions;
       for (const double share : {0.02, 0.1, 0.3, -0.02, -0.1}) {
         std::vector<double> values;
-        sim::plant::Block moved{&effect, blocks[b]};
+        sim::plant::Block moved = block;
         for (std::size_t k = 0; k < group.size(); ++k) {
           const auto& p = effect.parameters[static_cast<std::size_t>(group[k])];
           const double room = share > 0 ? p.high - p.neutral : p.neutral - p.low;
@@ -205,11 +187,11 @@ void add_neutral_groups(const sim::plant::PlantUnderTest& tested, std::vector<Hy
         if (!inside || !playin::can_run(moved)) continue;
         if (h.starts.empty())
           for (std::size_t k = 0; k < group.size(); ++k)
-            fit::parameter_value(h.plant, static_cast<int>(b), group[k]) = values[k];
+            sim::plant::parameter_value(h.plant, {b, group[k]}) = values[k];
         h.starts.push_back(values);
       }
       if (h.starts.empty()) continue;
-      for (const int i : group) h.free.push_back({static_cast<int>(b), i, 2.0});
+      for (const int i : group) h.free.push_back({{b, i}, 2.0});
       all.push_back(std::move(h));
     }
   }
@@ -274,8 +256,7 @@ std::string full_name(const Hypothesis& h) { return h.with.empty() ? h.name : h.
 
 sim::plant::Plant started(const Hypothesis& h, const std::vector<double>& start) {
   sim::plant::Plant plant = h.plant;
-  for (std::size_t i = 0; i < h.free.size(); ++i)
-    fit::parameter_value(plant, h.free[i].block, h.free[i].index) = start[i];
+  for (std::size_t i = 0; i < h.free.size(); ++i) sim::plant::parameter_value(plant, h.free[i].id) = start[i];
   return plant;
 }
 

@@ -10,9 +10,7 @@ namespace swingbank::validate::hypothesis {
 std::vector<fit::FreeParameter> free_of(const Hypothesis& h, double spread) {
   std::vector<fit::FreeParameter> free;
   for (const auto& f : fit::free_parameters(h.plant, spread))
-    if (std::ranges::none_of(h.free, [&](const fit::FreeParameter& own) {
-          return own.block == f.block && own.index == f.index;
-        }))
+    if (std::ranges::none_of(h.free, [&](const fit::FreeParameter& own) { return own.id == f.id; }))
       free.push_back(f);
   free.insert(free.end(), h.free.begin(), h.free.end());
   return free;

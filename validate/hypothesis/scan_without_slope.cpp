@@ -62,7 +62,7 @@ class BlindScan {
   [[nodiscard]] std::vector<char> slopes() const {
     std::vector<playin::Direction> along;
     for (const fit::FreeParameter& f : h_.free)
-      along.push_back({playin::Direction::Kind::parameter, f.block, f.index, 1.0});
+      along.push_back({.kind = playin::Direction::Kind::parameter, .parameter = f.id});
     std::vector<char> seen(along.size(), 0);
     for (std::size_t e = 0; e < stage_.events.size(); ++e) {
       const event::FitEvent& event = stage_.events[e];
@@ -75,8 +75,8 @@ class BlindScan {
   [[nodiscard]] sim::plant::Plant multiplied(const Group& group, double by) const {
     sim::plant::Plant plant = from_.plant;
     for (const fit::FreeParameter& f : group) {
-      double& value = fit::parameter_value(plant, f.block, f.index);
-      const sim::Parameter& record = fit::parameter_record(plant, f.block, f.index);
+      double& value = sim::plant::parameter_value(plant, f.id);
+      const sim::Parameter& record = sim::plant::parameter_record(plant, f.id);
       value = std::clamp(value * by, record.low, record.high);
     }
     return plant;
@@ -95,7 +95,7 @@ class BlindScan {
     std::map<std::string, Group> by_unit;
     for (const fit::FreeParameter& f : blind_) {
       all.push_back({f});
-      by_unit[std::string(fit::parameter_record(from_.plant, f.block, f.index).unit)].push_back(f);
+      by_unit[std::string(sim::plant::parameter_record(from_.plant, f.id).unit)].push_back(f);
     }
     for (auto& [unit, group] : by_unit)
       if (group.size() > 1) all.push_back(std::move(group));

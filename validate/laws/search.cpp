@@ -65,12 +65,12 @@ std::string source_of(const event::WhitenedEvents& events) {
 /// The present values of `from` in a plant that has one block more.
 std::vector<double> values_in(const sim::plant::Plant& from, const sim::plant::Block& law, int block,
                               const std::vector<fit::FreeParameter>& free) {
-  sim::plant::Plant own = from;
   std::vector<double> values;
-  for (const auto& f : free)
-    values.push_back(f.block == block
-                         ? law.p[static_cast<std::size_t>(f.index)]
-                         : fit::parameter_value(own, f.block > block ? f.block - 1 : f.block, f.index));
+  for (const auto& f : free) {
+    const auto [at, index] = f.id;
+    values.push_back(at == block ? law.p[static_cast<std::size_t>(index)]
+                                 : sim::plant::parameter_value(from, {at > block ? at - 1 : at, index}));
+  }
   return values;
 }
 
@@ -126,7 +126,7 @@ class Searcher {
     int block = 0;
     h.plant = with_law(case_.model.plant, *f.effect, block);
     for (std::size_t i = 0; i < law.parameters.size(); ++i)
-      h.free.push_back({block, static_cast<int>(i), kLawSpread});
+      h.free.push_back({{block, static_cast<int>(i)}, kLawSpread});
     h.starts = {f.effect->standard_parameters()};
     const auto free = hypothesis::free_of(h, case_.trial.spread);
     fit::FitOptions o;
@@ -153,7 +153,7 @@ class Searcher {
     const auto& own = f.judgement.hypothesis.free;
     std::vector<fit::FittedParameter> values;
     for (const auto& p : f.judgement.fit.parameters)
-      if (p.where.block == own.front().block) values.push_back(p);
+      if (p.where.id.block == own.front().id.block) values.push_back(p);
     for (const auto& p : values)
       for (auto& mine : f.law.parameters)
         if (mine.name == p.name) mine.value = p.value;
@@ -176,10 +176,7 @@ class Searcher {
 
 sim::plant::Plant with_law(const sim::plant::Plant& plant, const sim::Effect& effect, int& block) {
   sim::plant::Plant with = plant;
-  const auto at = std::ranges::upper_bound(with.controls, effect.slot, {},
-                                           [](const sim::plant::Block& b) { return b.effect->slot; });
-  block = (plant.transformer.effect ? 2 : 1) + static_cast<int>(at - with.controls.begin());
-  with.controls.insert(at, {&effect, effect.standard_parameters()});
+  block = sim::plant::insert_block(with, {&effect, effect.standard_parameters()});
   return with;
 }
 

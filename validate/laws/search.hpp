@@ -49,8 +49,7 @@ LawSearch search_laws(const Unexplained& case_, const LawProgress& report = {});
 /// "None of the 31 known effects explains it; a torque of ... does: ..."; empty without an accepted law.
 std::string law_sentence(const LawSearch& search, std::size_t hypotheses);
 
-/// The plant with the law's effect behind what stands in its slot. `block` becomes its index, counted as in
-/// FreeParameter.
+/// The plant with the law's effect behind what stands in its slot. `block` becomes its number.
 sim::plant::Plant with_law(const sim::plant::Plant& plant, const sim::Effect& effect, int& block);
 
 }  // namespace swingbank::validate::laws

@@ -138,8 +138,9 @@ class Driven {
     const double to_machine = run_.record->base.mva / plant.mva;
     T P(run_.start.P * to_machine), Q(run_.start.Q * to_machine);
     each([&](const Direction& d, std::size_t i) {
+      const auto [block, index] = d.parameter;
       if (d.kind == Kind::parameter)
-        Seeds<T>::add(p[static_cast<std::size_t>(d.block)][static_cast<std::size_t>(d.index)], i, d.scale);
+        Seeds<T>::add(p[static_cast<std::size_t>(block)][static_cast<std::size_t>(index)], i, d.scale);
       if (d.kind == Kind::P) Seeds<T>::add(P, i, d.scale * to_machine);
       if (d.kind == Kind::Q) Seeds<T>::add(Q, i, d.scale * to_machine);
     });

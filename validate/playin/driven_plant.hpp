@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/plant/plant.hpp"
+#include "sim/plant/parameter_id.hpp"
 #include "validate/playin/voltage_curve.hpp"
 #include "validate/record/record.hpp"
 
@@ -51,7 +51,7 @@ struct Drive {
 /// What a slope is taken along; `scale` is one unit of the direction, and slopes are per such unit.
 struct Direction {
   enum class Kind {
-    parameter,  ///< `index` of block `block` (sim::block_parameters' order)
+    parameter,  ///< `parameter` of the plant
     switching,  ///< instant `index` of the curve [s]
     P,          ///< of the operating point [pu on the record's base]
     Q,          ///< likewise
@@ -61,7 +61,8 @@ struct Direction {
     field,      ///< knot `index` of Drive::field [pu]
   };
   Kind kind;
-  int block = 0, index = 0;
+  sim::plant::ParameterId parameter = {};  ///< of Kind::parameter
+  int index = 0;                           ///< of an instant or knot
   double scale = 1.0;
   friend bool operator==(const Direction&, const Direction&) = default;
 };

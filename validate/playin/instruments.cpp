@@ -147,17 +147,17 @@ class Observed {
 };
 
 /// Slope along a parameter of an instrument.
-Response::Slope along(const Drive& run, std::size_t block, const Direction& d) {
-  const auto i = static_cast<std::size_t>(d.index);
-  const auto& record = run.plant->measurements[block].effect->parameters[i];
+Response::Slope along(const Drive& run, const Direction& d) {
+  const auto& record = sim::plant::parameter_record(*run.plant, d.parameter);
   const double move = kMove * (record.high - record.low);
   sim::plant::Plant plant = *run.plant;
   Drive moved = run;
   moved.plant = &plant;
-  const double value = plant.measurements[block].p[i];
-  plant.measurements[block].p[i] = value + move;
+  double& varied = sim::plant::parameter_value(plant, d.parameter);
+  const double value = varied;
+  varied = value + move;
   const Response above = Observed(moved, {}).run();
-  plant.measurements[block].p[i] = value - move;
+  varied = value - move;
   const Response below = Observed(moved, {}).run();
   Response::Slope slope;
   for (int o = 0; o < kOutputs; ++o)
@@ -170,9 +170,9 @@ Response::Slope along(const Drive& run, std::size_t block, const Direction& d) {
 
 Response observe(const Drive& run, std::span<const Direction> directions) {
   if (run.plant->measurements.empty()) return drive(run, directions);
-  const auto first = sim::plant::block_parameters(*run.plant).size();
+  const int first = sim::plant::first_measurement(*run.plant);
   const auto instrument = [&](const Direction& d) {
-    return d.kind == Kind::parameter && static_cast<std::size_t>(d.block) >= first;
+    return d.kind == Kind::parameter && d.parameter.block >= first;
   };
   std::vector<Direction> others;
   std::ranges::copy_if(directions, std::back_inserter(others),
@@ -181,8 +181,7 @@ Response observe(const Drive& run, std::span<const Direction> directions) {
   std::vector<Response::Slope> slopes;
   std::size_t next = 0;
   for (const Direction& d : directions)
-    slopes.push_back(instrument(d) ? along(run, static_cast<std::size_t>(d.block) - first, d)
-                                   : std::move(r.slopes[next++]));
+    slopes.push_back(instrument(d) ? along(run, d) : std::move(r.slopes[next++]));
   r.slopes = std::move(slopes);
   return r;
 }

@@ -9,7 +9,8 @@ namespace swingbank::validate::playin {
 /// voltage and from the operating point. How they smear a moving phasor is not taken back; their window
 /// around a jump is left out of a fit instead (FitEvent::smeared). The answer's current is smeared as they
 /// do. The chain must be linear. Directions may also be parameters of the instruments, whose blocks follow
-/// those of sim::block_parameters; slopes along these are central differences. Throws InputError as drive().
+/// those of sim::plant::block_parameters(); slopes along these are central differences. Throws InputError as
+/// drive().
 Response observe(const Drive& run, std::span<const Direction> directions = {});
 
 /// Whether what instruments of this kind do, away from neutral, can be taken back: they answer twice the

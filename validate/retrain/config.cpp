@@ -124,7 +124,7 @@ void add_effect_to(toml::table& dataset, const Base& base, const add::Addition& 
   const auto machine = std::string(added.model.plant.machine.effect->name);
   for (int i = 0; i < added.own; ++i) {
     const auto& p = added.parameters[static_cast<std::size_t>(i)];
-    const auto& record = fit::parameter_record(added.model.plant, p.where.block, p.where.index);
+    const auto& record = sim::plant::parameter_record(added.model.plant, p.where.id);
     auto& box =
         p.block == machine ? below(dataset, {"vary", "box"}) : below(dataset, {"vary", "effects", p.block});
     const double value = rounded(p.value, 6);

@@ -111,9 +111,9 @@ std::string config_text(const plant::PlantModel& model, double range) {
   if (!attached.empty()) text += "attach = " + list_of(attached) + "\n";
   text += fmt::format("\n[vary]\nwho = \"one\"\ngenerators = [1]\nmodel = \"{}\"\n\n[vary.box]\n",
                       plant.machine.effect->name);
-  for (const auto& f : fit::free_parameters(plant, 0, 0.2)) {
-    const auto& record = fit::parameter_record(plant, 0, f.index);
-    const double value = plant.machine.p[static_cast<std::size_t>(f.index)];
+  for (const auto& f : fit::free_parameters(plant, sim::plant::kMachineBlock, 0.2)) {
+    const auto& record = sim::plant::parameter_record(plant, f.id);
+    const double value = sim::plant::parameter_value(plant, f.id);
     const double one = value / range, other = value * range;
     text += fmt::format("{} = [{}, {}]\n", record.name, std::max(record.low, std::min(one, other)),
                         std::min(record.high, std::max(one, other)));

@@ -28,7 +28,7 @@ const calibrate::NetworkEstimate::Parameter* find(const calibrate::NetworkEstima
 calibrate::Truth reference_of(const add::Addition& added, const calibrate::Truth& truth) {
   if (!truth.empty()) return truth;
   calibrate::Truth fitted;
-  for (const auto& p : added.parameters) fitted[p.block + "." + p.name] = p.value;
+  for (const auto& p : added.parameters) fitted[p.full_name()] = p.value;
   return fitted;
 }
 
@@ -63,11 +63,9 @@ double estimate_of(const calibrate::NetworkEstimate& e, std::size_t record, cons
 sim::plant::Plant seen_plant(const calibrate::NetworkEstimate& e, const plant::PlantModel& model,
                              const std::vector<RetrainedEvent>& events) {
   sim::plant::Plant plant = model.plant;
-  const auto blocks = static_cast<int>(sim::plant::block_parameters(plant).size());
-  for (int b = 0; b < blocks; ++b) {
-    const sim::Effect& effect = fit::block_effect(plant, b);
-    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
-      const auto* p = find(e, std::string(effect.name) + "." + std::string(effect.parameters[i].name));
+  for (int block = 0; block < sim::plant::first_measurement(plant); ++block) {
+    for (const sim::plant::ParameterId id : sim::plant::parameters_of(plant, block)) {
+      const auto* p = find(e, sim::plant::parameter_name(plant, id).text());
       if (p == nullptr || !p->learnt()) continue;
       double sum = 0;
       int n = 0;
@@ -76,9 +74,8 @@ sim::plant::Plant seen_plant(const calibrate::NetworkEstimate& e, const plant::P
         sum += estimate_of(e, k, p->full());
         ++n;
       }
-      if (n > 0)
-        fit::parameter_value(plant, b, static_cast<int>(i)) =
-            std::clamp(sum / n, effect.parameters[i].low, effect.parameters[i].high);
+      const sim::Parameter& record = sim::plant::parameter_record(plant, id);
+      if (n > 0) sim::plant::parameter_value(plant, id) = std::clamp(sum / n, record.low, record.high);
     }
   }
   return plant;

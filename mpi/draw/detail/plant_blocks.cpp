@@ -4,10 +4,11 @@
 
 namespace swingbank::mpi::draw {
 
-std::size_t block_count(const sim::plant::Plant& plant, const sim::Effect& effect) {
-  const auto same = [&](const sim::plant::Block& b) { return b.effect == &effect; };
-  return static_cast<std::size_t>(std::ranges::count_if(plant.controls, same)) +
-         (same(plant.transformer) ? 1 : 0);
+int times_in(const sim::plant::Plant& plant, const sim::Effect& effect) {
+  int count = 0;
+  for (int block = sim::plant::kMachineBlock + 1; block < sim::plant::first_measurement(plant); ++block)
+    if (&sim::plant::block_effect(plant, block) == &effect) ++count;
+  return count;
 }
 
 namespace {
@@ -24,38 +25,30 @@ std::string objection_to(const sim::plant::Block& block, Policy policy) {
 std::string objection(const DatasetConfig& config, const sim::plant::Plant& plant) {
   std::string why = objection_to(plant.machine, config.databank.policy);
   const auto judge = [&](const sim::plant::Block& block) {
-    const auto its = [&](const Box& b) { return b.effect != nullptr && b.effect == block.effect; };
+    const auto its = [&](const Box& b) { return b.effect == block.effect; };
     if (why.empty() && std::ranges::any_of(config.box, its))
       why = objection_to(block, config.databank.policy);
   };
-  judge(plant.transformer);
-  std::ranges::for_each(plant.controls, judge);
+  for (int block = sim::plant::kMachineBlock + 1; block < sim::plant::first_measurement(plant); ++block)
+    judge(sim::plant::block_at(plant, block));
   return why;
 }
 
 BoxedPlant::BoxedPlant(const DatasetConfig& config, const sim::plant::Plant& plant) : plant_(plant) {
-  const auto place_of = [&](const sim::Effect* effect) -> sim::plant::Block& {
-    if (effect == nullptr) return plant_.machine;
-    if (plant_.transformer.effect == effect) return plant_.transformer;
-    return *std::ranges::find(plant_.controls, effect, &sim::plant::Block::effect);
+  const auto block_of = [&](const sim::Effect* effect) {
+    return effect == nullptr ? sim::plant::kMachineBlock : sim::plant::find_block(plant_, *effect).value();
   };
-  for (const auto& b : config.box)
-    values_.push_back(&place_of(b.effect).p[static_cast<std::size_t>(b.index)]);
-  for (const sim::Effect* effect : config.other_effects()) {
-    const sim::plant::Block& block = place_of(effect);
-    changed_.push_back({&block == &plant_.transformer ? sim::lanes::kTransformer
-                                                      : static_cast<int>(&block - plant_.controls.data()),
-                        &block});
-  }
+  for (const auto& b : config.box) boxed_.push_back({block_of(b.effect), b.index});
+  for (const sim::Effect* effect : config.other_effects()) changed_.push_back(block_of(effect));
 }
 
 void BoxedPlant::set(const double* x) {
-  for (double* value : values_) *value = *x++;
+  for (const sim::plant::ParameterId id : boxed_) sim::plant::parameter_value(plant_, id) = *x++;
 }
 
 void BoxedPlant::put_into(sim::lanes::Job& job, int index) const {
-  job.machine_parameters.emplace_back(index, plant_.machine.p);
-  for (const auto& c : changed_) job.control_parameters.push_back({index, c.control, c.block->p});
+  for (const int block : changed_)
+    job.parameters.push_back({index, block, sim::plant::block_at(plant_, block).p});
 }
 
 }  // namespace swingbank::mpi::draw

@@ -4,11 +4,12 @@
 #include <vector>
 
 #include "mpi/draw/dataset_config.hpp"
+#include "sim/plant/parameter_id.hpp"
 
 namespace swingbank::mpi::draw {
 
 /// How often an effect stands in a plant, as its step-up transformer or a control.
-std::size_t block_count(const sim::plant::Plant& plant, const sim::Effect& effect);
+int times_in(const sim::plant::Plant& plant, const sim::Effect& effect);
 
 /// Why the plant's machine and the effects of the box may not have the values they have, or empty: "singular:
 /// ..." always, under the physical policy also "not Xd > X'd".
@@ -18,8 +19,6 @@ std::string objection(const DatasetConfig& config, const sim::plant::Plant& plan
 class BoxedPlant {
  public:
   BoxedPlant(const DatasetConfig& config, const sim::plant::Plant& plant);
-  BoxedPlant(const BoxedPlant&) = delete;
-  BoxedPlant& operator=(const BoxedPlant&) = delete;
 
   [[nodiscard]] const sim::plant::Plant& plant() const { return plant_; }
   /// x: a value per entry of the box.
@@ -28,13 +27,9 @@ class BoxedPlant {
   void put_into(sim::lanes::Job& job, int index) const;
 
  private:
-  struct Changed {
-    int control;  ///< index among the plant's controls, or sim::kTransformer
-    const sim::plant::Block* block;
-  };
   sim::plant::Plant plant_;
-  std::vector<double*> values_;   ///< per entry of the box
-  std::vector<Changed> changed_;  ///< besides the machine
+  std::vector<sim::plant::ParameterId> boxed_;              ///< per entry of the box
+  std::vector<int> changed_ = {sim::plant::kMachineBlock};  ///< blocks that a job sets
 };
 
 }  // namespace swingbank::mpi::draw

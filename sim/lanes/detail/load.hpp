@@ -220,10 +220,12 @@ void Lanes<T>::load_seeded(int lane, const std::map<int, plant::Plant>& changed)
     std::vector<std::vector<D8>> parameters;
     for (const auto& values : plant::block_parameters(plant))
       parameters.emplace_back(values.begin(), values.end());
-    for (std::size_t d = 0; d < seeds.size(); ++d)
+    for (std::size_t d = 0; d < seeds.size(); ++d) {
+      const auto [block, parameter] = seeds[d].parameter;
       if (seeds[d].plant == index)
-        parameters[static_cast<std::size_t>(seeds[d].block)][static_cast<std::size_t>(seeds[d].parameter)]
-            .d[d] = seeds[d].scale;
+        parameters[static_cast<std::size_t>(block)][static_cast<std::size_t>(parameter)].d[d] =
+            seeds[d].scale;
+    }
     load_plant(lane, static_cast<std::size_t>(index),
                plant::operating_point_of<D8>(plant, parameters,
                                              grid_.flow.voltage[static_cast<std::size_t>(plant.bus)],

@@ -47,8 +47,8 @@ TEST(Sampling, GeneratorsTakeTurnsAndFaultsShareAPoint) {
   }
   Case twelve("ieee14_genrou_bus3", 36);
   const Sampler shared(twelve.study, twelve.bank);
-  EXPECT_EQ(shared.draw(0).job.machine_parameters, shared.draw(11).job.machine_parameters);
-  EXPECT_NE(shared.draw(11).job.machine_parameters, shared.draw(12).job.machine_parameters);
+  EXPECT_EQ(shared.draw(0).job.parameters, shared.draw(11).job.parameters);
+  EXPECT_NE(shared.draw(11).job.parameters, shared.draw(12).job.parameters);
   EXPECT_NE(shared.draw(0).job.event.faults[0].t_off, shared.draw(1).job.event.faults[0].t_off);
 }
 

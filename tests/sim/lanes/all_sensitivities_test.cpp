@@ -9,7 +9,6 @@
 namespace swingbank::sim::lanes {
 namespace {
 
-using test::block_of;
 constexpr int kPlant = 1;
 constexpr int kAtOnce = kDirections;
 
@@ -28,10 +27,7 @@ grid::Grid host(const Effect& effect) {
   return grid;
 }
 int block_index(const grid::Grid& grid, const Effect& effect) {
-  for (int block = 0;; ++block) {
-    plant::Plant plant = grid.plants[kPlant];
-    if (block_of(plant, block).effect == &effect) return block;
-  }
+  return plant::find_block(grid.plants[kPlant], effect).value();
 }
 std::vector<const Effect*> effects_of_a_plant() {
   std::vector<const Effect*> list;
@@ -57,7 +53,7 @@ std::vector<Seed> seeds(const grid::Grid& grid, const Effect& e) {
     // At zero a time constant is a bypass, a limit or a stage is off: there is no derivative across its
     // onset.
     if (record.is_code() || p[i] == 0.0 || moves_an_instant(e, p, i)) continue;
-    list.push_back({kPlant, block, static_cast<int>(i), std::abs(p[i])});
+    list.push_back({kPlant, {block, static_cast<int>(i)}, std::abs(p[i])});
   }
   return list;
 }
@@ -92,7 +88,7 @@ std::vector<std::vector<double>> quotients(const grid::Grid& grid, const network
                                            const Seed& seed, double step, double tolerance) {
   const auto moved = [&](double by) {
     grid::Grid other = grid;
-    test::value_of(other.plants[kPlant], seed) += by * seed.scale;
+    plant::parameter_value(other.plants[kPlant], seed.parameter) += by * seed.scale;
     Job job;
     job.event = event;
     Trajectory run = play(other, options(tolerance), job);
@@ -119,9 +115,8 @@ struct Worst {
     where = what;
   }
 };
-std::string column_name(const Effect& e, const Seed& seed, int row) {
-  return std::string(e.name) + "." +
-         std::string(e.parameters[static_cast<std::size_t>(seed.parameter)].name) + " in " +
+std::string column_name(const grid::Grid& grid, const Seed& seed, int row) {
+  return plant::parameter_name(grid.plants[kPlant], seed.parameter).text() + " in " +
          std::string(kChannels[static_cast<std::size_t>(row)].name);
 }
 
@@ -153,9 +148,9 @@ void compare_with_quotients(const grid::Grid& grid, const Effect& e, Worst& wors
           error = std::max(error, std::abs(own[k] - expected[static_cast<std::size_t>(k)]));
         }
         if (largest >= floor)
-          worst.add(error / largest, column_name(e, some[d], row));
+          worst.add(error / largest, column_name(grid, some[d], row));
         else
-          EXPECT_LT(error, 1e-8) << column_name(e, some[d], row);  // nothing where there is nothing
+          EXPECT_LT(error, 1e-8) << column_name(grid, some[d], row);  // nothing where there is nothing
       }
     }
   }
@@ -217,7 +212,7 @@ void compare_with_cvodes(const Effect& e, Worst& worst) {
         error = std::max(error, std::abs(own[k] - expected[static_cast<std::size_t>(k)]));
       }
       if (largest >= floor)
-        worst.add(std::max(0.0, error - own_error) / largest, column_name(e, some[d], state));
+        worst.add(std::max(0.0, error - own_error) / largest, column_name(grid, some[d], state));
     }
 }
 
@@ -242,9 +237,9 @@ TEST(AllSensitivities, ThroughALimitEqualCentralDifferences) {
   const Effect& sexs = *library::compiled().find("SEXS");
   const int block = block_index(grid, sexs);
   const auto emax = sexs.parameter_index("EMAX");
-  const Seed ceiling{kPlant, block, emax, 1.0};
-  test::value_of(grid.plants[kPlant], ceiling) = 2.5;
-  std::vector<Seed> some = {ceiling, {kPlant, block, sexs.parameter_index("K"), 100.0}, {kPlant, 0, 0, 1.0}};
+  const Seed ceiling{kPlant, {block, emax}, 1.0};
+  plant::parameter_value(grid.plants[kPlant], ceiling.parameter) = 2.5;
+  std::vector<Seed> some = {ceiling, {kPlant, {block, sexs.parameter_index("K")}, 100.0}, {kPlant, {}, 1.0}};
   network::Event event;
   event.faults = {{1, 0.1, 0.35, {0.0, 0.2}}};
   const Trajectory dual = with_slopes(grid, event, some);

@@ -58,11 +58,12 @@ std::vector<Case> stable_cases(const grid::Grid& grid, std::size_t count) {
     Job job;
     job.id = id;
     const int plant = draws.index(grid.plants.size());
-    job.machine_parameters = {{plant, physical_genrou(*grid.plants[plant].machine.effect, draws)}};
+    job.parameters = {
+        {plant, plant::kMachineBlock, physical_genrou(*grid.plants[plant].machine.effect, draws)}};
     const int bus = draws.index(grid.network.buses.size());
     job.event.faults = {{bus, 2.0, 2.0 + draws.uniform(0.05, 0.2), {}}};
     grid::Grid drawn = grid;
-    drawn.plants[plant].machine.p = job.machine_parameters[0].second;
+    drawn.plants[plant].machine.p = job.parameters[0].values;
     reference::ReferenceRun run = reference::run_reference(drawn, job.event, {});
     if (run.outcome == Outcome::stable) cases.push_back({std::move(job), std::move(run)});
   }

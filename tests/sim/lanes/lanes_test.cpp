@@ -25,7 +25,7 @@ std::vector<Job> random_jobs(int count, unsigned seed) {
     jobs[i].event.faults.push_back({static_cast<int>(u(random) * 39), 0.5, 0.55 + 0.15 * u(random), {}});
     auto p = ieee39().plants[i % 10].machine.p;
     for (auto& v : p) v *= 0.97 + 0.06 * u(random);
-    jobs[i].machine_parameters.push_back({static_cast<int>(i % 10), p});
+    jobs[i].parameters.push_back({static_cast<int>(i % 10), plant::kMachineBlock, p});
   }
   return jobs;
 }

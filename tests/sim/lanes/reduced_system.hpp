@@ -16,17 +16,6 @@
 
 namespace swingbank::sim::test {
 
-/// The block of a plant that a seed means: 0 the machine, then the transformer if there is one, then
-/// controls.
-inline plant::Block& block_of(plant::Plant& plant, int block) {
-  if (block == 0) return plant.machine;
-  if (plant.transformer.effect && block == 1) return plant.transformer;
-  return plant.controls.at(static_cast<std::size_t>(block - (plant.transformer.effect ? 2 : 1)));
-}
-inline double& value_of(plant::Plant& plant, const lanes::Seed& seed) {
-  return block_of(plant, seed.block).p.at(static_cast<std::size_t>(seed.parameter));
-}
-
 class ReducedSystem {
  public:
   ReducedSystem(const grid::Grid& grid, const network::Event& event, std::vector<lanes::Seed> seeds)
@@ -34,7 +23,7 @@ class ReducedSystem {
         topology_(network::segments(event, grid.network).front().topology),
         seeds_(std::move(seeds)) {
     for (const lanes::Seed& seed : seeds_)
-      p.push_back(value_of(grid_.plants[static_cast<std::size_t>(seed.plant)], seed));
+      p.push_back(plant::parameter_value(grid_.plants[static_cast<std::size_t>(seed.plant)], seed.parameter));
   }
   ReducedSystem(const ReducedSystem&) = delete;  // network_ refers to grid_
   ReducedSystem& operator=(const ReducedSystem&) = delete;
@@ -89,7 +78,8 @@ class ReducedSystem {
     if (used_ == p) return;
     used_ = p;
     for (std::size_t i = 0; i < seeds_.size(); ++i)
-      value_of(grid_.plants[static_cast<std::size_t>(seeds_[i].plant)], seeds_[i]) = p[i];
+      plant::parameter_value(grid_.plants[static_cast<std::size_t>(seeds_[i].plant)], seeds_[i].parameter) =
+          p[i];
     at_.clear();
     std::vector<double> r, x;
     for (const plant::Plant& each : grid_.plants) {

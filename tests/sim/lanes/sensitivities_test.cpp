@@ -31,7 +31,9 @@ std::vector<Seed> seeds(const grid::Grid& grid, int plant, const std::vector<con
   const plant::Block& machine = grid.plants[static_cast<std::size_t>(plant)].machine;
   for (const char* name : names) {
     const int index = machine.effect->parameter_index(name);
-    list.push_back({plant, 0, index, std::max(0.1, std::abs(machine.p[static_cast<std::size_t>(index)]))});
+    list.push_back({plant,
+                    {plant::kMachineBlock, index},
+                    std::max(0.1, std::abs(machine.p[static_cast<std::size_t>(index)]))});
   }
   return list;
 }
@@ -73,13 +75,12 @@ TEST(Sensitivities, EqualCentralDifferences) {
       Job moved;
       moved.event = job.event;
       auto p = grid.plants[plant].machine.p;
-      p[static_cast<std::size_t>(seed.parameter)] += s == 0 ? h : -h;
-      moved.machine_parameters.emplace_back(plant, p);
+      p[static_cast<std::size_t>(seed.parameter.index)] += s == 0 ? h : -h;
+      moved.parameters.push_back({plant, plant::kMachineBlock, p});
       side[s] = play(grid, options, moved);
     }
-    const bool at_edge =
-        grid.plants[plant].machine.p[static_cast<std::size_t>(seed.parameter)] == 0.0 &&
-        grid.plants[plant].machine.effect->parameters[static_cast<std::size_t>(seed.parameter)].name == "S10";
+    const bool at_edge = plant::parameter_value(grid.plants[plant], seed.parameter) == 0.0 &&
+                         plant::parameter_record(grid.plants[plant], seed.parameter).name == "S10";
     if (at_edge) continue;  // no saturation in this file: there is no derivative across its onset
     for (int row = 0; row < dual.rows(); ++row) {
       std::vector<double> quotient(static_cast<std::size_t>(dual.samples));

@@ -187,7 +187,7 @@ std::vector<Job> jobs() {
     for (int i = 0; i < changed; ++i) {
       auto p = grid().plants[static_cast<std::size_t>(i)].machine.p;
       p[kSubtransient] *= 0.9 + 0.005 * ((i + at) % 8);
-      job.machine_parameters.push_back({i, p});
+      job.parameters.push_back({i, plant::kMachineBlock, p});
     }
   }
   return list;
@@ -225,7 +225,7 @@ TEST(LanesOfManySources, AreTheRunsWithAMatrixEach) {
 TEST(LanesOfManySources, AgreeWithTheReference) {
   std::vector<Job> list = jobs();
   std::erase_if(list, [](const Job& job) { return job.id != 5 && job.id != 10; });
-  for (Job& job : list) job.machine_parameters.clear();
+  for (Job& job : list) job.parameters.clear();
   reference::ReferenceOptions options;
   options.t_end = 1.0;
   for (const auto& [id, t] : run(list, {})) {

@@ -62,9 +62,9 @@ TEST(Add, IntervalsHoldTheTruth) {
   ASSERT_EQ(a.parameters.size(), 17U);
   std::vector<std::string> outside;
   for (const auto& p : a.parameters) {
-    const double value = fit::parameter_value(truth.plant, p.where.block, p.where.index);
-    if (value < p.low || value > p.high) outside.push_back(p.block + "." + p.name);
-    EXPECT_NEAR(p.value, value, 3 * p.error) << p.block << "." << p.name;
+    const double value = sim::plant::parameter_value(truth.plant, p.where.id);
+    if (value < p.low || value > p.high) outside.push_back(p.full_name());
+    EXPECT_NEAR(p.value, value, 3 * p.error) << p.full_name();
   }
   EXPECT_LE(outside.size(), 1U) << testing::PrintToString(outside);
   EXPECT_THAT(outside, testing::Not(testing::Contains("SEXS.TAoverTB")));

@@ -94,9 +94,9 @@ plant::PlantModel wrong(const sim::plant::Plant& truth) {
   model.record_base.mva = truth.mva;
   int sign = 1;
   for (const auto& f : fit::free_parameters(truth, 0.2)) {
-    const auto name = fit::parameter_record(truth, f.block, f.index).name;
+    const auto name = sim::plant::parameter_record(truth, f.id).name;
     if (name == "EMIN" || name == "EMAX") continue;
-    fit::parameter_value(model.plant, f.block, f.index) *= 1 + 0.1 * (sign = -sign);
+    sim::plant::parameter_value(model.plant, f.id) *= 1 + 0.1 * (sign = -sign);
   }
   return model;
 }
@@ -210,7 +210,7 @@ Coverage coverage(double power, double voltage, int copies) {
     sum.by_parameter.resize(c.parameters.size());
     for (std::size_t i = 0; i < c.parameters.size(); ++i) {
       const auto& p = c.parameters[i];
-      const double value = fit::parameter_value(truth, p.fit.where.block, p.fit.where.index);
+      const double value = sim::plant::parameter_value(truth, p.fit.where.id);
       const bool inside = p.fit.low <= value && value <= p.fit.high;
       ++sum.tries;
       sum.covered += inside;

@@ -37,9 +37,9 @@ std::vector<record::Record> example_records(const plant::PlantModel& model, int 
 plant::PlantModel off(plant::PlantModel model) {
   int sign = 1;
   for (const auto& f : fit::free_parameters(model.plant, 0.2)) {
-    const auto name = fit::parameter_record(model.plant, f.block, f.index).name;
+    const auto name = sim::plant::parameter_record(model.plant, f.id).name;
     if (name == "EMIN" || name == "EMAX") continue;
-    fit::parameter_value(model.plant, f.block, f.index) *= 1 + 0.1 * (sign = -sign);
+    sim::plant::parameter_value(model.plant, f.id) *= 1 + 0.1 * (sign = -sign);
   }
   return model;
 }
@@ -72,9 +72,9 @@ TEST(CurveFit, FindsTheTruthWhereItsAssumptionsHold) {
   plant::PlantModel model = truth;
   int sign = 1;
   for (const auto& p : fit::free_parameters(truth.plant, 0.2)) {
-    const auto name = fit::parameter_record(truth.plant, p.block, p.index).name;
+    const auto name = sim::plant::parameter_record(truth.plant, p.id).name;
     if (name == "H" || name == "Xd" || name == "Xdp" || name == "Xdpp")
-      fit::parameter_value(model.plant, p.block, p.index) *= 1 + 0.15 * (sign = -sign);
+      sim::plant::parameter_value(model.plant, p.id) *= 1 + 0.15 * (sign = -sign);
     else
       options.fixed.push_back("GENROU." + std::string(name));
   }
@@ -84,7 +84,7 @@ TEST(CurveFit, FindsTheTruthWhereItsAssumptionsHold) {
             2e-4);  // what splines through 60 samples/s leave (validate/playin/README.md: 2.6e-5 to 1e-3)
   ASSERT_EQ(f.parameters.size(), 4U);
   for (const auto& p : f.parameters) {
-    const double value = fit::parameter_value(truth.plant, p.where.block, p.where.index);
+    const double value = sim::plant::parameter_value(truth.plant, p.where.id);
     EXPECT_NEAR(p.value, value, 0.01 * value) << p.name;  // 2e-4 pu of the 0.02 pu that 15 % make
     EXPECT_LE(p.low, p.value);
     EXPECT_GE(p.high, p.value);

@@ -70,7 +70,9 @@ TEST(NetworkStart, TakesWhatWasLearntWithinPhysicalBounds) {
   EXPECT_EQ(value(plant, "H"), 7.0);
   EXPECT_EQ(value(plant, "Xdpp"), 0.3);  // held by the dataset: the plant's own value stays
   EXPECT_EQ(value(plant, "Xl"),
-            fit::parameter_record(plant, 0, plant.machine.effect->parameter_index("Xl")).low);
+            sim::plant::parameter_record(
+                plant, {sim::plant::kMachineBlock, plant.machine.effect->parameter_index("Xl")})
+                .low);
   EXPECT_EQ(value(plant, "Xq"), value(model.plant, "Xq"));
 }
 
@@ -103,7 +105,7 @@ TEST(NetworkStart, IsOneOfTheStartsAndStandsBesideTheFit) {
   options.draws = options.starts = 0;
   options.given = {{"network", plant}};
   for (const auto& f : fit::free_parameters(model.plant, 0.2)) {
-    const auto name = std::string(fit::parameter_record(model.plant, f.block, f.index).name);
+    const auto name = std::string(sim::plant::parameter_record(model.plant, f.id).name);
     if (name != "H" && name != "Tdop") options.fixed.push_back(name);
   }
   const Calibration c = calibrate(model, {event(model, 1)}, options);

@@ -26,8 +26,7 @@ struct ExciterExample {
   [[nodiscard]] std::vector<FreeParameter> free(const std::vector<std::string>& names) const {
     std::vector<FreeParameter> some;
     for (const auto& f : free_parameters(model.plant, spread))
-      if (std::ranges::count(names, parameter_record(model.plant, f.block, f.index).name) > 0)
-        some.push_back(f);
+      if (std::ranges::count(names, parameter_record(model.plant, f.id).name) > 0) some.push_back(f);
     return some;
   }
   [[nodiscard]] Fit fitted(const std::vector<std::string>& names, const FitOptions& options = {}) const {

@@ -43,26 +43,6 @@ TEST(FitAxis, ParametersAtOneBoundAreEqualWhereverTheyStarted) {
       EXPECT_NEAR(from(start).value(from(start).z(bound)), bound, 1e-11 * bound);
     }
 }
-TEST(FitBlocks, AreCountedThroughTransformerControlsAndInstruments) {
-  sim::plant::Plant plant = ExciterExample(kSpread).model.plant;
-  const sim::Effect *transformer = sim::library::compiled().find("STEPUP"),
-                    *instrument = sim::library::compiled().find("CTERROR");
-  for (const bool stepped : {false, true}) {
-    if (stepped) plant.transformer = {transformer, transformer->standard_parameters()};
-    plant.measurements = {{instrument, instrument->standard_parameters()}};
-    const int last = block_count(plant) - 1;
-    EXPECT_EQ(find_block(plant, *plant.machine.effect), 0);
-    EXPECT_EQ(find_block(plant, *transformer), stepped ? 1 : -1);
-    EXPECT_EQ(find_block(plant, *sim::library::compiled().find("SEXS")), last - 1);
-    EXPECT_EQ(find_block(plant, *instrument), last);
-    parameter_value(plant, last, 1) = 0.25;
-    EXPECT_EQ(values_of(plant, {{.block = last, .index = 1}}), std::vector{0.25});
-    EXPECT_EQ(plant.measurements.front().p[1], 0.25);
-    EXPECT_THROW((void)parameter_value(plant, last + 1, 0), std::out_of_range);
-    EXPECT_THROW((void)parameter_value(plant, find_block(plant, *sim::library::compiled().find("TGOV1")), 0),
-                 std::out_of_range);
-  }
-}
 TEST(FitEvidence, AFailedFitIsTheWorst) {
   Fit f;
   f.failed = "it cannot be run";

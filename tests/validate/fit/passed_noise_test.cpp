@@ -20,7 +20,7 @@ class PassedNoiseTest : public ::testing::Test {
   }
   sim::plant::Plant with_reactance(double share) const {
     sim::plant::Plant plant = example_.model.plant;
-    for (const FreeParameter& f : example_.free({"Xdpp"})) parameter_value(plant, f.block, f.index) *= share;
+    for (const FreeParameter& f : example_.free({"Xdpp"})) parameter_value(plant, f.id) *= share;
     return plant;
   }
   double less_with(const sim::plant::Plant& plant) const {

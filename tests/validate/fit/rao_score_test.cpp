@@ -19,8 +19,9 @@ struct Example : ExciterExample {
                                                       const std::vector<std::string>& names) const {
     std::vector<playin::Direction> along;
     for (const auto& f : free(names))
-      along.push_back({playin::Direction::Kind::parameter, f.block, f.index,
-                       parameter_value(stage.plant, f.block, f.index)});
+      along.push_back({.kind = playin::Direction::Kind::parameter,
+                       .parameter = f.id,
+                       .scale = parameter_value(stage.plant, f.id)});
     return score.slopes({stage.plant, model.conventions}, along);
   }
 };

@@ -48,13 +48,13 @@ TEST_P(Slopes, ResidualIsThatOfTheFit) {
 
 TEST_P(Slopes, AreThoseOfDifferences) {
   const int last = block_count(model.plant) - 1;
-  std::vector<FreeParameter> free = {{0, model.plant.machine.effect->parameter_index("H"), 0.2},
-                                     {0, model.plant.machine.effect->parameter_index("Xdp"), 0.2},
-                                     {1, model.plant.controls.front().effect->parameter_index("K"), 0.2}};
+  std::vector<FreeParameter> free = {{{0, model.plant.machine.effect->parameter_index("H")}, 0.2},
+                                     {{0, model.plant.machine.effect->parameter_index("Xdp")}, 0.2},
+                                     {{1, model.plant.controls.front().effect->parameter_index("K")}, 0.2}};
   for (const FreeParameter& f : free_parameters(model.plant, last, 0.2)) free.push_back(f);
   ASSERT_GT(free.size(), 3U);
   EXPECT_NEAR(axis_unit(model.plant, free.back()),
-              0.2 * std::abs(parameter_value(model.plant, last, free.back().index)), 1e-15);
+              0.2 * std::abs(parameter_value(model.plant, free.back().id)), 1e-15);
   const EventSlopes s = event_slopes(model.under_test(), events.whitened(0), {}, free);
 
   const auto columns = static_cast<Eigen::Index>(free.size());
@@ -62,7 +62,7 @@ TEST_P(Slopes, AreThoseOfDifferences) {
   for (Eigen::Index i = 0; i < columns; ++i) {
     const FreeParameter& f = free[static_cast<std::size_t>(i)];
     slopes.col(i) = difference([&](sim::plant::Plant& plant, EventState&, double by) {
-      parameter_value(plant, f.block, f.index) += by * axis_unit(model.plant, f);
+      parameter_value(plant, f.id) += by * axis_unit(model.plant, f);
     });
   }
   // what the event's own state absorbs of them, each believed to be off by so much
@@ -83,9 +83,7 @@ TEST_P(Slopes, AreThoseOfDifferences) {
       states.transpose() * states + Eigen::MatrixXd::Identity(states.cols(), states.cols());
   slopes -= states * inner.ldlt().solve(states.transpose() * slopes).eval();
   for (Eigen::Index i = 0; i < columns; ++i) {
-    const auto name = parameter_record(model.plant, free[static_cast<std::size_t>(i)].block,
-                                       free[static_cast<std::size_t>(i)].index)
-                          .name;
+    const auto name = parameter_record(model.plant, free[static_cast<std::size_t>(i)].id).name;
     EXPECT_GT(slopes.col(i).norm(), 0.1) << name;  // or the records say nothing of it
     EXPECT_LT((s.slopes.col(i) - slopes.col(i)).norm(), 2e-2 * slopes.col(i).norm()) << name;
   }

@@ -59,7 +59,7 @@ TEST(HeldOutEvents, AFitThatFailsWithoutOnePredictsNothing) {
   EXPECT_LT(hold(whole).front().cost_after, 1e6);
   fit::Fit impossible = whole;
   for (const auto& f : example.free({"EMAX"}))
-    fit::parameter_value(impossible.plant, f.block, f.index) = 0.5;  // Efd stands above it
+    sim::plant::parameter_value(impossible.plant, f.id) = 0.5;  // Efd stands above it
   EXPECT_GT(hold(impossible).front().cost_after, 1e300);
 }
 TEST(Objection, AnEventMustBePredictedNotOnlyImproved) {

@@ -23,8 +23,8 @@ TEST(Blind, ATimerIsFoundThatNoSlopeSees) {
   // The record becomes what the plant would do with a limiter; its timer then gets twice as long.
   sim::plant::Plant with = started(h, h.starts.front());
   for (const auto& p : nearly.parameters)
-    fit::parameter_value(with, fit::find_block(with, fit::block_effect(stage.plant, p.where.block)),
-                         p.where.index) = p.value;
+    sim::plant::parameter_value(with, sim::plant::same_parameter(with, stage.plant, p.where.id).value()) =
+        p.value;
   event::FitEvent event = example.events.front();
   const fit::EventFit& at = nearly.events.front();
   const playin::Response limited = fit::answer(event, at.state, {with, h.conventions});
@@ -48,8 +48,8 @@ TEST(Blind, ATimerIsFoundThatNoSlopeSees) {
   };
   sim::plant::Plant slow = with;
   for (const fit::FreeParameter& f : h.free)
-    if (std::string(fit::parameter_record(slow, f.block, f.index).name).starts_with("TIME"))
-      fit::parameter_value(slow, f.block, f.index) *= 2;
+    if (std::string(sim::plant::parameter_record(slow, f.id).name).starts_with("TIME"))
+      sim::plant::parameter_value(slow, f.id) *= 2;
   const fit::Fit best = fitted_from(with), stuck = fitted_from(slow);
   ASSERT_GT(fit::penalised(stuck), fit::penalised(best) + 100) << "slopes would do";
   EXPECT_LT(fit::penalised(past_blind(stage, h, h.plant, stuck)), fit::penalised(best) + 20);

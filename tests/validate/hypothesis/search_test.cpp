@@ -27,7 +27,7 @@ class Exchange : public ::testing::Test {
     j.fit = base_;
     j.fit.plant = j.hypothesis.plant;
     const fit::FreeParameter& f = j.hypothesis.free.front();
-    fit::parameter_value(j.fit.plant, f.block, f.index) = value;
+    sim::plant::parameter_value(j.fit.plant, f.id) = value;
     return j;
   }
   /// `second` beside what is fitted already.
@@ -38,7 +38,7 @@ class Exchange : public ::testing::Test {
     j.fit = base_;
     j.fit.plant = j.hypothesis.plant;
     const fit::FreeParameter& f = j.hypothesis.free.front();
-    fit::parameter_value(j.fit.plant, f.block, f.index) = value;
+    sim::plant::parameter_value(j.fit.plant, f.id) = value;
     bring(then, j.hypothesis);
     return j;
   }
@@ -65,14 +65,14 @@ TEST_F(Exchange, RivalsOfTheSlotStandBesideTheSecondAsItWasFitted) {
   for (const Judgement& j : rivals) {
     EXPECT_FALSE(j.fit.failed.empty());
     // believed to be what it was before any fit, and starting where the pair's fit ended
-    const int block = fit::find_block(j.hypothesis.plant, *sim::library::compiled().find("STEPUP"));
-    const int index = pair.hypothesis.free.front().index;
-    const auto at = std::ranges::find_if(
-        j.hypothesis.free, [&](const fit::FreeParameter& f) { return f.block == block && f.index == index; });
+    const sim::plant::ParameterId own = pair.hypothesis.free.front().id;
+    const auto id = sim::plant::same_parameter(j.hypothesis.plant, pair.hypothesis.plant, own).value();
+    EXPECT_EQ(sim::plant::block_effect(j.hypothesis.plant, id.block).name, "STEPUP");
+    const auto at = std::ranges::find(j.hypothesis.free, id, &fit::FreeParameter::id);
     ASSERT_NE(at, j.hypothesis.free.end());
-    EXPECT_EQ(fit::parameter_value(j.fit.plant, block, index), 0.07);
-    EXPECT_EQ(fit::parameter_value(j.hypothesis.plant, block, index),
-              fit::parameter_value(pair.hypothesis.plant, pair.hypothesis.free.front().block, index));
+    EXPECT_EQ(sim::plant::parameter_value(j.fit.plant, id), 0.07);
+    EXPECT_EQ(sim::plant::parameter_value(j.hypothesis.plant, id),
+              sim::plant::parameter_value(pair.hypothesis.plant, own));
     for (const auto& start : j.hypothesis.starts)
       EXPECT_EQ(start[static_cast<std::size_t>(at - j.hypothesis.free.begin())], 0.07);
   }
@@ -88,7 +88,7 @@ TEST_F(Exchange, WhatHoldsAloneIsARivalTooAndStartsAsItWasFound) {
       std::ranges::find(rivals, "CTERROR", [](const Judgement& j) { return j.hypothesis.name; });
   ASSERT_NE(found, rivals.end());
   const fit::FreeParameter& f = found->hypothesis.free.front();
-  EXPECT_EQ(fit::parameter_value(found->fit.plant, f.block, f.index), 0.01);
+  EXPECT_EQ(sim::plant::parameter_value(found->fit.plant, f.id), 0.01);
 }
 TEST_F(Exchange, NothingStandsWithoutWhatItNeeds) {
   Judgement pair = beside(alone("TGOV1", 0.06), "TGOV1:db", 0.001);

@@ -12,8 +12,8 @@ namespace {
 double moved(const Stage& stage, const Hypothesis& h, const std::vector<double>& start) {
   sim::plant::Plant plant = started(h, start);
   for (const auto& p : stage.fit.parameters)
-    fit::parameter_value(plant, fit::find_block(plant, fit::block_effect(stage.plant, p.where.block)),
-                         p.where.index) = p.value;
+    sim::plant::parameter_value(plant, sim::plant::same_parameter(plant, stage.plant, p.where.id).value()) =
+        p.value;
   const event::FitEvent& e = stage.events.front();
   const fit::EventFit& at = stage.fit.events.front();
   const playin::Response r = fit::answer(e, at.state, {plant, stage.conventions});
@@ -61,8 +61,8 @@ TEST(Starts, WhatTheFitHasBentStartsAsTheModelHasIt) {
   const auto free = free_of(h, stage.spread);
   const auto share = [&](const std::vector<double>& values, const std::string& name) {
     for (std::size_t i = 0; i < free.size(); ++i)
-      if (fit::parameter_record(h.plant, free[i].block, free[i].index).name == name)
-        return values[i] / fit::parameter_value(h.plant, free[i].block, free[i].index);
+      if (sim::plant::parameter_record(h.plant, free[i].id).name == name)
+        return values[i] / sim::plant::parameter_value(h.plant, free[i].id);
     return std::nan("");
   };
   moved_to("H", 1.3);

@@ -154,7 +154,7 @@ struct Case {
   Case(const std::vector<int>& numbers, const sim::Effect* law, Change change) {
     plant::PlantModel truth = model;
     for (const auto& f : fit::free_parameters(truth.plant, kSpread))
-      fit::parameter_value(truth.plant, f.block, f.index) *= 1 + 0.1 * std::sin(3.0 * f.index + 1);
+      sim::plant::parameter_value(truth.plant, f.id) *= 1 + 0.1 * std::sin(3.0 * f.id.index + 1);
     int block = 0;
     if (law) truth.plant = with_law(truth.plant, *law, block);
     std::mt19937_64 generator(3);

@@ -40,12 +40,9 @@ class DrivenPlantTest : public ::testing::Test {
       const double move = by * d.scale;
       const auto index = static_cast<std::size_t>(d.index);
       switch (d.kind) {
-        case Kind::parameter: {
-          auto& p = d.block == 0 ? model.plant.machine.p
-                                 : model.plant.controls[static_cast<std::size_t>(d.block - 1)].p;
-          p[index] += move;
+        case Kind::parameter:
+          sim::plant::parameter_value(model.plant, d.parameter) += move;
           break;
-        }
         case Kind::switching:
           switchings[index].time += move;
           break;
@@ -105,38 +102,44 @@ TEST_F(DrivenPlantTest, SlopesAlongEveryParameter) {
       const auto name = effect->parameters[p].name;
       // S10 = S12 = 0 and a dead-band of 0 have no two sides; ceilings that are not reached no slope
       if (name == "S10" || name == "S12" || name == "deadband" || blocks[b][p] == 0.0) continue;
-      directions.push_back({Kind::parameter, static_cast<int>(b), static_cast<int>(p), 1e-4 * blocks[b][p]});
+      directions.push_back({.kind = Kind::parameter,
+                            .parameter = {static_cast<int>(b), static_cast<int>(p)},
+                            .scale = 1e-4 * blocks[b][p]});
     }
   }
   EXPECT_GT(directions.size(), 15u);
   expect_slopes(directions);
 }
 TEST_F(DrivenPlantTest, SlopesAlongNuisances) {
-  expect_slopes({{Kind::switching, 0, 0, 1e-5},
-                 {Kind::switching, 0, 1, 1e-5},
-                 {Kind::P, 0, 0, 1e-5},
-                 {Kind::Q, 0, 0, 1e-5},
-                 {Kind::angle, 0, 0, 1e-5},
-                 {Kind::speed, 0, 0, 1e-6}});
+  expect_slopes({{.kind = Kind::switching, .index = 0, .scale = 1e-5},
+                 {.kind = Kind::switching, .index = 1, .scale = 1e-5},
+                 {.kind = Kind::P, .scale = 1e-5},
+                 {.kind = Kind::Q, .scale = 1e-5},
+                 {.kind = Kind::angle, .scale = 1e-5},
+                 {.kind = Kind::speed, .scale = 1e-6}});
 }
 /// The current of a GENTPJ is found by Newton's method, its terminal behind the transformer by another one.
 TEST_F(DrivenPlantTest, SlopesThroughATransformerAndASaturatedStator) {
   const auto* gentpj = sim::library::compiled().find("GENTPJ");
   model_.plant.machine = {gentpj, gentpj->standard_parameters()};
   model_.plant.transformer = {sim::library::compiled().find("STEPUP"), {0.004, 0.12, 1.04}};
-  std::vector<Direction> directions = {
-      {Kind::switching, 0, 1, 1e-5}, {Kind::P, 0, 0, 1e-5}, {Kind::Q, 0, 0, 1e-5}, {Kind::angle, 0, 0, 1e-5}};
+  std::vector<Direction> directions = {{.kind = Kind::switching, .index = 1, .scale = 1e-5},
+                                       {.kind = Kind::P, .scale = 1e-5},
+                                       {.kind = Kind::Q, .scale = 1e-5},
+                                       {.kind = Kind::angle, .scale = 1e-5}};
   for (const char* name : {"H", "Xdp", "Xdpp", "Xqpp", "Xl", "S10", "S12", "Kis"}) {
     const int p = gentpj->parameter_index(name);
-    directions.push_back({Kind::parameter, 0, p, 1e-4 * model_.plant.machine.p[static_cast<std::size_t>(p)]});
+    directions.push_back({.kind = Kind::parameter,
+                          .parameter = {sim::plant::kMachineBlock, p},
+                          .scale = 1e-4 * model_.plant.machine.p[static_cast<std::size_t>(p)]});
   }
   expect_slopes(directions);
 }
 TEST_F(DrivenPlantTest, SlopesAlongAddedInputs) {
-  expect_slopes({{Kind::torque, 0, 1, 1e-4},
-                 {Kind::torque, 0, 2, 1e-4},
-                 {Kind::field, 0, 1, 1e-4},
-                 {Kind::field, 0, 3, 1e-4}});
+  expect_slopes({{.kind = Kind::torque, .index = 1, .scale = 1e-4},
+                 {.kind = Kind::torque, .index = 2, .scale = 1e-4},
+                 {.kind = Kind::field, .index = 1, .scale = 1e-4},
+                 {.kind = Kind::field, .index = 3, .scale = 1e-4}});
 }
 TEST_F(DrivenPlantTest, LinearPlantAnswersASmallStep) {
   // V and theta step by little at the start and stay: states and outputs of the linear plant against play-in

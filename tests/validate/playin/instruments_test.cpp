@@ -102,11 +102,14 @@ TEST_F(InstrumentsTest, SkewIsSeenAtTheJump) {
 TEST_F(InstrumentsTest, SlopesAreThoseOfDifferences) {
   sim::plant::Plant plant = model_.plant;
   plant.measurements = {instrument("PTERROR:gain=0.02,phase=0.03"), instrument("SKEW:skew=0.004")};
-  const int first = static_cast<int>(sim::plant::block_parameters(plant).size());
+  const int first = sim::plant::first_measurement(plant);
   const std::vector<Direction> along = {
-      {Kind::parameter, 0, 0, 1e-4},     {Kind::P, 0, 0, 1e-4},
-      {Kind::parameter, first, 0, 1e-4}, {Kind::Q, 0, 0, 1e-4},
-      {Kind::parameter, first, 1, 1e-4}, {Kind::parameter, first + 1, 0, 1e-4}};
+      {.kind = Kind::parameter, .parameter = {0, 0}, .scale = 1e-4},
+      {.kind = Kind::P, .scale = 1e-4},
+      {.kind = Kind::parameter, .parameter = {first, 0}, .scale = 1e-4},
+      {.kind = Kind::Q, .scale = 1e-4},
+      {.kind = Kind::parameter, .parameter = {first, 1}, .scale = 1e-4},
+      {.kind = Kind::parameter, .parameter = {first + 1, 0}, .scale = 1e-4}};
   const VoltageCurve curve(record_, switchings_);
   const Drive run = run_with(plant, record_, curve);
   const Response at = observe(run, along);
@@ -116,8 +119,7 @@ TEST_F(InstrumentsTest, SlopesAreThoseOfDifferences) {
       sim::plant::Plant changed = plant;
       other.plant = &changed;
       const double move = by * along[d].scale;
-      if (along[d].kind == Kind::parameter)
-        fit::parameter_value(changed, along[d].block, along[d].index) += move;
+      if (along[d].kind == Kind::parameter) sim::plant::parameter_value(changed, along[d].parameter) += move;
       if (along[d].kind == Kind::P) other.start.P += move;
       if (along[d].kind == Kind::Q) other.start.Q += move;
       return observe(other);

@@ -50,7 +50,7 @@ struct Example {
     const auto& effect = *sim::library::compiled().find("SEXS");
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
       fit::FittedParameter p;
-      p.where = {1, static_cast<int>(i), 0.2};
+      p.where = {{1, static_cast<int>(i)}, 0.2};
       p.block = "SEXS";
       p.name = effect.parameters[i].name;
       p.value = added.model.plant.controls[0].p[i];

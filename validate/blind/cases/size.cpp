@@ -115,11 +115,12 @@ void BlindSize::add_columns(std::size_t event) {
   using Kind = playin::Direction::Kind;
   std::vector<playin::Direction> along;
   for (const fit::FreeParameter& f : fit::free_parameters(plant_, 1.0))
-    along.push_back({Kind::parameter, f.block, f.index, fit::parameter_value(plant_, f.block, f.index)});
+    along.push_back(
+        {.kind = Kind::parameter, .parameter = f.id, .scale = sim::plant::parameter_value(plant_, f.id)});
   const std::size_t shared = along.size();
   for (std::size_t s = 0; s < events_[event].switchings.size(); ++s)
-    along.push_back({Kind::switching, 0, static_cast<int>(s), kSwitchingUnit});
-  for (const Kind kind : {Kind::P, Kind::Q, Kind::angle, Kind::speed}) along.push_back({kind, 0, 0, 1.0});
+    along.push_back({.kind = Kind::switching, .index = static_cast<int>(s), .scale = kSwitchingUnit});
+  for (const Kind kind : {Kind::P, Kind::Q, Kind::angle, Kind::speed}) along.push_back({.kind = kind});
   const playin::Response r = answer(event, plain_[event], along);
 
   auto first = static_cast<Eigen::Index>(shared);  // columns of this event's own

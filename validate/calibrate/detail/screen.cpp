@@ -21,22 +21,21 @@ std::vector<double> Screen::draw(std::uint64_t k) const {
 
 sim::plant::Plant Screen::with(const std::vector<double>& values) const {
   sim::plant::Plant plant = plant_;
-  for (std::size_t i = 0; i < free_.size(); ++i)
-    fit::parameter_value(plant, free_[i].block, free_[i].index) = values[i];
+  for (std::size_t i = 0; i < free_.size(); ++i) sim::plant::parameter_value(plant, free_[i].id) = values[i];
   return plant;
 }
 
 std::vector<double> Screen::own() const {
   sim::plant::Plant plant = plant_;
   std::vector<double> values;
-  for (const auto& f : free_) values.push_back(fit::parameter_value(plant, f.block, f.index));
+  for (const auto& f : free_) values.push_back(sim::plant::parameter_value(plant, f.id));
   return values;
 }
 
 double Screen::one(const fit::FreeParameter& f, double normal) const {
-  const auto& record = fit::parameter_record(plant_, f.block, f.index);
+  const auto& record = sim::plant::parameter_record(plant_, f.id);
   sim::plant::Plant plant = plant_;
-  const double value = fit::parameter_value(plant, f.block, f.index);
+  const double value = sim::plant::parameter_value(plant, f.id);
   const double moved =
       value > 0 ? value * std::exp(f.spread * normal) : value + normal * fit::axis_unit(plant_, f);
   return std::clamp(moved, record.low, record.high);

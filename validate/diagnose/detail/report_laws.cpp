@@ -74,7 +74,7 @@ nlohmann::json finding_json(const laws::LawFinding& f) {
                         {"parameters", nlohmann::json::array()},
                         {"unseen", nlohmann::json::array()}};
   for (const auto& p : j.fit.parameters)
-    if (p.where.block == j.hypothesis.free.front().block)
+    if (p.where.id.block == j.hypothesis.free.front().id.block)
       law["parameters"].push_back({{"name", p.name},
                                    {"unit", p.unit},
                                    {"value", p.value},

@@ -37,8 +37,8 @@ struct Axis {
 };
 
 inline Axis make_axis(const sim::plant::Plant& plant, const FreeParameter& f) {
-  const sim::Parameter& record = parameter_record(plant, f.block, f.index);
-  const double start = parameter_value(plant, f.block, f.index);
+  const sim::Parameter& record = parameter_record(plant, f.id);
+  const double start = parameter_value(plant, f.id);
   Axis a{f, start, record.low, record.high, start > 0, 1.0};
   if (a.logarithmic) {
     a.low = std::max(a.low, 1e-3 * start);
@@ -63,7 +63,7 @@ struct Setting {
 inline sim::plant::Plant moved(const Setting& s, const double* z) {
   sim::plant::Plant plant = *s.plant;
   for (std::size_t i = 0; i < s.axes.size(); ++i)
-    parameter_value(plant, s.axes[i].where.block, s.axes[i].where.index) = s.axes[i].value(z[i]);
+    parameter_value(plant, s.axes[i].where.id) = s.axes[i].value(z[i]);
   return plant;
 }
 
@@ -154,7 +154,7 @@ class EventCost : public ceres::CostFunction {
     if (slopes) {
       for (std::size_t i = 0; i < setting_.axes.size(); ++i) {
         const Axis& a = setting_.axes[i];
-        along.push_back({Kind::parameter, a.where.block, a.where.index, a.slope(z[i])});
+        along.push_back({.kind = Kind::parameter, .parameter = a.where.id, .scale = a.slope(z[i])});
       }
       add_state_directions(along);
     }
@@ -190,10 +190,11 @@ class EventCost : public ceres::CostFunction {
  private:
   void add_state_directions(std::vector<playin::Direction>& along) const {
     for (std::size_t k = 0; k < event_.switchings.size(); ++k)
-      along.push_back({Kind::switching, 0, static_cast<int>(k), kSwitchScale});
-    for (int k = 0; k < kStates; ++k) along.push_back({kStateKind[k], 0, 0, kStateScale[k]});
+      along.push_back({.kind = Kind::switching, .index = static_cast<int>(k), .scale = kSwitchScale});
+    for (int k = 0; k < kStates; ++k) along.push_back({.kind = kStateKind[k], .scale = kStateScale[k]});
     const Kind kind = setting_.input == InputKind::torque ? Kind::torque : Kind::field;
-    for (std::size_t k = 0; k < knots_.size(); ++k) along.push_back({kind, 0, static_cast<int>(k), 1.0});
+    for (std::size_t k = 0; k < knots_.size(); ++k)
+      along.push_back({.kind = kind, .index = static_cast<int>(k)});
   }
   const Setting& setting_;
   const event::FitEvent& event_;

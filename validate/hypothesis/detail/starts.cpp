@@ -45,28 +45,27 @@ Candidate StartFinder::of(Hypothesis h) const {
 sim::plant::Plant StartFinder::believed(const Hypothesis& h) const {
   sim::plant::Plant plant = started(h, h.starts.front());
   for (const fit::FreeParameter& f : stage_.own) {
-    const int block = fit::find_block(plant, fit::block_effect(stage_.plant, f.block));
-    fit::parameter_value(plant, block, f.index) = fit::parameter_value(stage_.plant, f.block, f.index);
+    const auto id = sim::plant::same_parameter(plant, stage_.plant, f.id).value();
+    sim::plant::parameter_value(plant, id) = sim::plant::parameter_value(stage_.plant, f.id);
   }
   return plant;
 }
 std::vector<double> StartFinder::unbent(const Hypothesis& h) const {
   std::vector<int> bent;
   for (const auto& p : stage_.fit.parameters) {
-    const bool own = std::ranges::any_of(stage_.own, [&](const fit::FreeParameter& f) {
-      return f.block == p.where.block && f.index == p.where.index;
-    });
+    const bool own =
+        std::ranges::any_of(stage_.own, [&](const fit::FreeParameter& f) { return f.id == p.where.id; });
     if (!own && p.start > 0 &&
         std::abs(std::log(p.value / p.start)) > thresholds::search.bent * p.where.spread)
-      bent.push_back(p.where.block);
+      bent.push_back(p.where.id.block);
   }
   if (bent.empty()) return {};
   const auto free = free_of(h, stage_.spread);
   sim::plant::Plant plant = with_values(h, free, beside_fit(h, h.starts.front()));
   for (const auto& p : stage_.fit.parameters)
-    if (const int block = fit::find_block(plant, fit::block_effect(stage_.plant, p.where.block));
-        block >= 0 && std::ranges::count(bent, p.where.block) > 0)
-      fit::parameter_value(plant, block, p.where.index) = p.start;
+    if (const auto id = sim::plant::same_parameter(plant, stage_.plant, p.where.id);
+        id && std::ranges::count(bent, p.where.id.block) > 0)
+      sim::plant::parameter_value(plant, *id) = p.start;
   return fit::values_of(plant, free);
 }
 bool StartFinder::provoke(Hypothesis& h) const {
@@ -131,17 +130,15 @@ void StartFinder::screen(const Hypothesis& h, Candidate& c) const {
 }
 std::vector<double> StartFinder::beside_fit(const Hypothesis& h, const std::vector<double>& start) const {
   sim::plant::Plant plant = started(h, start);
-  for (const auto& p : stage_.fit.parameters) {
-    const int block = fit::find_block(plant, fit::block_effect(stage_.plant, p.where.block));
-    if (block >= 0) fit::parameter_value(plant, block, p.where.index) = p.value;
-  }
+  for (const auto& p : stage_.fit.parameters)
+    if (const auto id = sim::plant::same_parameter(plant, stage_.plant, p.where.id))
+      sim::plant::parameter_value(plant, *id) = p.value;
   return fit::values_of(plant, free_of(h, stage_.spread));
 }
 sim::plant::Plant StartFinder::with_values(const Hypothesis& h, const std::vector<fit::FreeParameter>& free,
                                            const std::vector<double>& values) {
   sim::plant::Plant plant = h.plant;
-  for (std::size_t i = 0; i < free.size(); ++i)
-    fit::parameter_value(plant, free[i].block, free[i].index) = values[i];
+  for (std::size_t i = 0; i < free.size(); ++i) sim::plant::parameter_value(plant, free[i].id) = values[i];
   return plant;
 }
 void StartFinder::nest(const Hypothesis& h, Candidate& c) const {
@@ -165,7 +162,7 @@ std::vector<std::size_t> StartFinder::amplitudes(const Hypothesis& h,
     if (const double square = moves(h, with_values(h, free, standard), e); square > whole)
       event = e, whole = square;
   for (std::size_t i = free.size() - h.free.size(); i < free.size(); ++i) {
-    const double neutral = fit::parameter_record(h.plant, free[i].block, free[i].index).neutral;
+    const double neutral = sim::plant::parameter_record(h.plant, free[i].id).neutral;
     if (!(neutral < standard[i]) && !(neutral > standard[i])) continue;
     auto off = standard;
     off[i] = neutral;
@@ -211,7 +208,7 @@ void StartFinder::score(const Hypothesis& h, std::size_t looks, Candidate& c) co
   const auto which = amplitudes(h, standard);
   const auto at = [&](std::vector<double> values, double share) {
     for (const std::size_t i : which) {
-      const double neutral = fit::parameter_record(h.plant, free[i].block, free[i].index).neutral;
+      const double neutral = sim::plant::parameter_record(h.plant, free[i].id).neutral;
       values[i] = neutral + share * (values[i] - neutral);
     }
     return values;
@@ -231,11 +228,12 @@ void StartFinder::score(const Hypothesis& h, std::size_t looks, Candidate& c) co
     changes.push_back(std::move(*whole));
     std::vector<playin::Direction> along;
     for (std::size_t i = free.size() - h.free.size(); i < free.size(); ++i) {
-      const double neutral = fit::parameter_record(h.plant, free[i].block, free[i].index).neutral;
+      const double neutral = sim::plant::parameter_record(h.plant, free[i].id).neutral;
       const bool asked = which.empty() ? !std::isnan(neutral) : std::ranges::count(which, i) > 0;
       if (asked)
-        along.push_back(
-            {playin::Direction::Kind::parameter, free[i].block, free[i].index, values[i] - neutral});
+        along.push_back({.kind = playin::Direction::Kind::parameter,
+                         .parameter = free[i].id,
+                         .scale = values[i] - neutral});
     }
     if (!along.empty())
       for (auto& slope : score_->slopes({with_values(h, free, at(values, kSmall)), h.conventions}, along)) {

@@ -51,7 +51,7 @@ double along(const BlindPath& path, double scale, bool logarithmic) {
 }
 
 bool set(sim::plant::Block& block, const BlindPath& path, double value) {
-  if (!block.effect || block.effect->name != path.target) return false;
+  if (block.effect->name != path.target) return false;
   block.p[static_cast<std::size_t>(block.effect->parameter_index(path.parameter))] = value;
   return true;
 }
@@ -68,10 +68,8 @@ void set_path(sim::plant::Plant& plant, sim::Conventions& conventions, const Bli
     plant.machine.p[static_cast<std::size_t>(index)] = value;
     return;
   }
-  if (set(plant.transformer, path, value)) return;
-  for (auto* list : {&plant.controls, &plant.measurements})
-    for (sim::plant::Block& block : *list)
-      if (set(block, path, value)) return;
+  for (int block = sim::plant::kMachineBlock + 1; block < sim::plant::block_count(plant); ++block)
+    if (set(sim::plant::block_at(plant, block), path, value)) return;
 }
 
 }  // namespace
