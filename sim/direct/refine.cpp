@@ -214,7 +214,7 @@ Refined refine(const Effect& machine, const Recording& record, std::vector<doubl
   double cost = cost_of(r), damping = 1e-3;
   int done = 0;
   constexpr int kTrials = 8;
-  constexpr double kEnough = 1e-12;  // of the cost, in one iteration
+  constexpr double kCostSettles = 1e-12;  // of the cost, in one iteration
   for (bool better = std::isfinite(cost); better && done < options.iterations; ++done) {
     const MatrixXd J = problem.slopes(z);
     const MatrixXd G = J.transpose() * J;
@@ -227,7 +227,7 @@ Refined refine(const Effect& machine, const Recording& record, std::vector<doubl
       const VectorXd value = problem.values(next);
       const double now = cost_of(value);
       if (now < cost) {
-        better = now < cost * (1 - kEnough);
+        better = now < cost * (1 - kCostSettles);
         z = next;
         r = value;
         cost = now;

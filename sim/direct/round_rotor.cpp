@@ -109,8 +109,9 @@ Field field(const VectorXd& beyond, const VectorXd& armature, const Axes& axes) 
     f.left = (beyond - f.dXd * armature - f.B * bent).norm() / std::sqrt(static_cast<double>(beyond.size()));
     return f;
   };
-  constexpr double kLowest = -1.2, kHighest = 1.0;  // A of S1.2/S1.0 from 1 to where nothing saturates
-  const auto found = minima([&](double A) { return at(A).left; }, kLowest, kHighest, kKnees);
+  constexpr double kLowestKnee = -1.2,
+                   kHighestKnee = 1.0;  // A of S1.2/S1.0 from 1 to where nothing saturates
+  const auto found = minima([&](double A) { return at(A).left; }, kLowestKnee, kHighestKnee, kKnees);
   return at(found.front().at);
 }
 
@@ -128,9 +129,9 @@ Dampers dampers(double A1, double A2, double B1, double Xq, double Xl, double Xd
     if (d) *d = {Xqp, T, Tpp};
     return std::abs(small * T + Tpp * g * (dXq - m * small) - B1) + 1e-2 * std::max(-inside, 0.0);
   };
-  constexpr double kClear = 0.01;  // of both ends [pu]
-  const auto found = minima([&](double x) { return at(x, nullptr); }, Xdpp + kClear,
-                            std::max(Xq - kClear, Xdpp + 2 * kClear), kReactances);
+  constexpr double kOffEnds = 0.01;  // of both ends [pu]
+  const auto found = minima([&](double x) { return at(x, nullptr); }, Xdpp + kOffEnds,
+                            std::max(Xq - kOffEnds, Xdpp + 2 * kOffEnds), kReactances);
   Dampers d;
   at(found.front().at, &d);
   return d;

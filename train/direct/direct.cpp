@@ -16,7 +16,7 @@ namespace swingbank::train::direct {
 namespace {
 
 namespace store = mpi::store;
-constexpr std::size_t kBlock = 512;      ///< rows read at once
+constexpr std::size_t kRowsRead = 512;   ///< rows read at once
 constexpr std::size_t kCandidates = 2;   ///< of the closed form, that are refined
 constexpr double kSystemFrequency = 60;  ///< of a .raw that says nothing else [Hz]
 
@@ -142,7 +142,7 @@ std::vector<double> estimate(const store::Dataset& d, std::span<const std::uint6
     while (done < rows.size() && rows[done] < end) {
       const std::uint64_t first = rows[done];
       std::size_t last = done;
-      while (last < rows.size() && rows[last] < std::min<std::uint64_t>(end, first + kBlock)) ++last;
+      while (last < rows.size() && rows[last] < std::min<std::uint64_t>(end, first + kRowsRead)) ++last;
       store::RowBlock block;
       store::read_rows(shard, first - shard.first_row, rows[last - 1] - first + 1, block);
       in_parallel(
