@@ -6,7 +6,7 @@
 #     --sanitize      also the fast tier's unit tests under the address and undefined-behaviour sanitizers (their build
 #                     takes longer than all the rest: Eigen's sparse solvers are slow to compile with checks)
 #     --ci            as on the integration machine: warnings are errors, the scripts and the formatting are checked,
-#                     each fuzz target runs for 30 s
+#                     each fuzz target runs for 30 s, and the tests of the rooms that read files run under both sanitizers
 # PSS/E's records are looked for in $SWINGBANK_REFERENCE, else in ../shared/reference beside the repository.
 set -euo pipefail
 
@@ -39,6 +39,16 @@ check_reference() {
   fi
   SWINGBANK_REFERENCE=$(cd "$folder" && pwd)
   export SWINGBANK_REFERENCE
+}
+
+# The build of the fuzz targets also has the tests of the rooms that read a user's files.
+run_readers() {
+  local folder=$source_folder/build/fuzz test
+  cmake --build "$folder" --target tests_of_readers >"$folder.log" 2>&1 || { grep -m 12 -E 'error|FAILED' "$folder.log" >&2; return 1; }
+  for test in "$folder"/bin/test_*; do
+    echo "$(basename "$test")"
+    "$test" --gtest_brief=1 --gtest_filter=-*Full.* || return 1
+  done
 }
 
 check_scripts() {
@@ -82,6 +92,9 @@ fi
 if ((ci)); then
   say "fuzz targets"
   bash "$source_folder/tests/fuzz/run.bash" 30 || failed+=(fuzz)
+  say "readers' tests under the sanitizers"
+  LSAN_OPTIONS=suppressions=$source_folder/tests/leaks.txt:print_suppressions=0 UBSAN_OPTIONS=print_stacktrace=1 \
+    run_readers || failed+=(readers)
 fi
 if ((sanitize)); then
   say "fast tier under the sanitizers"
