@@ -76,7 +76,7 @@ Record record_of(const second::Output& out) {
 double largest_difference(const second::Setup& s, const sim::plant::Plant& p) {
   const Record r = record_of(second::simulate(s, 8.0, 240.0));
   const validate::playin::VoltageCurve curve(r, {{.time = kOn}, {.time = kOff}});
-  const auto model = validate::playin::play_in(p, sim::Conventions::psse(), r, curve);
+  const auto model = validate::playin::play_in({p, sim::Conventions::psse()}, r, curve);
   double largest = 0;
   for (std::size_t k = 0; k < r.t.size(); ++k)
     largest = std::max({largest, std::abs(r.P[k] - model.P[k]), std::abs(r.Q[k] - model.Q[k])});
