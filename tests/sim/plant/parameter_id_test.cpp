@@ -1,4 +1,4 @@
-include "sim/plant/parameter_id.hpp"
+#include "sim/plant/parameter_id.hpp"
 
     include<gmock / gmock.h>
         include<gtest / gtest.h>
