@@ -90,7 +90,9 @@ TEST(Sensitivities, EqualCentralDifferences) {
       // the limit asked for; the quotient's third-order term is 1e-8 relative, the integrators' errors 1e-7
       EXPECT_LT(worst_column(dual, static_cast<int>(d), quotient, row), 1e-5)
           << "row " << row << " by "
-          << grid.plants[plant].machine.effect->parameters[static_cast<std::size_t>(seed.parameter.index)].name;
+          << grid.plants[plant]
+                 .machine.effect->parameters[static_cast<std::size_t>(seed.parameter.index)]
+                 .name;
     }
   }
 }
