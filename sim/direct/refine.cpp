@@ -3,7 +3,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
+#include "sim/core/noise.hpp"
 #include "sim/direct/detail/turning.hpp"
 #include "sim/direct/integral.hpp"
 
@@ -141,16 +144,19 @@ class Problem {
   Problem(const Driven& driven, std::vector<double> p, std::span<const int> free, VectorXd scale)
       : driven_(driven), p_(std::move(p)), free_(free), scale_(std::move(scale)) {}
   [[nodiscard]] VectorXd values(const VectorXd& z) const {
-    const auto r = of<double>(z, -1);
+    const auto r = of<double>(z, {});
     return Eigen::Map<const VectorXd>(r.data(), static_cast<Index>(r.size()));
   }
-  [[nodiscard]] MatrixXd slopes(const VectorXd& z) const {
-    MatrixXd jacobian(driven_.outputs(), z.size());
-    for (Index first = 0; first < z.size(); first += kDirections) {
-      const auto r = of<D8>(z, first);
-      for (Index k = 0; k < std::min<Index>(kDirections, z.size() - first); ++k)
+  /// Along some of the unknowns.
+  [[nodiscard]] MatrixXd slopes(const VectorXd& z, const std::vector<Index>& along) const {
+    MatrixXd jacobian(driven_.outputs(), static_cast<Index>(along.size()));
+    for (std::size_t first = 0; first < along.size(); first += kDirections) {
+      const auto some =
+          std::span(along).subspan(first, std::min<std::size_t>(kDirections, along.size() - first));
+      const auto r = of<D8>(z, some);
+      for (std::size_t k = 0; k < some.size(); ++k)
         for (std::size_t i = 0; i < r.size(); ++i)
-          jacobian(static_cast<Index>(i), first + k) = r[i].d[static_cast<std::size_t>(k)];
+          jacobian(static_cast<Index>(i), static_cast<Index>(first + k)) = r[i].d[k];
     }
     return jacobian;
   }
@@ -163,11 +169,12 @@ class Problem {
 
  private:
   template <class T>
-  std::vector<T> of(const VectorXd& z, Index first) const {
+  std::vector<T> of(const VectorXd& z, std::span<const Index> along) const {
     const auto at = [&](Index k) {
       T x(z[k] * scale_[k]);
       if constexpr (!std::is_same_v<T, double>)
-        if (k >= first && k < first + kDirections) x.d[static_cast<std::size_t>(k - first)] = scale_[k];
+        if (const auto d = std::ranges::find(along, k); d != along.end())
+          x.d[static_cast<std::size_t>(d - along.begin())] = scale_[k];
       return x;
     };
     std::vector<T> p(p_.begin(), p_.end()), flux;
@@ -183,12 +190,65 @@ class Problem {
   VectorXd scale_;
 };
 
+/// Leaves out what does not act on the fluxes, like inertia and damping.
+MatrixXd without_idle(const MatrixXd& J, std::vector<Index>& acting) {
+  std::vector<Index> columns, kept;
+  for (Index k = 0; k < J.cols(); ++k)
+    if (J.col(k).squaredNorm() > 0) {
+      columns.push_back(k);
+      kept.push_back(acting[static_cast<std::size_t>(k)]);
+    }
+  acting = kept;
+  return J(Eigen::all, columns);
+}
+
 double cost_of(const VectorXd& r) {
   const double sum = r.squaredNorm();
   return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
 }
 
+/// Misfit that a right answer leaves: what the integration leaves of a record in single precision, or the
+/// noise of P before the event.
+double exact(const Recording& record) {
+  constexpr double kIntegration = 1e-5, kOfNoise = 3;  // [pu]; standard deviations
+  const std::size_t n = std::max<std::size_t>(2, behind_last_leap(record.V) / 2);
+  double mean = 0, square = 0;
+  for (std::size_t k = 0; k < n; ++k) mean += record.P[k] / static_cast<double>(n);
+  for (std::size_t k = 0; k < n; ++k) square += std::pow(record.P[k] - mean, 2) / static_cast<double>(n - 1);
+  return std::max(kIntegration, kOfNoise * std::sqrt(square));
+}
+
+/// A start about `p`: each free parameter half way to a value drawn from its bounds.
+std::vector<double> drawn_about(std::vector<double> p, std::uint32_t draw, std::span<const int> free,
+                                std::span<const double> low, std::span<const double> high) {
+  constexpr std::uint64_t kSeed = 1;
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    const double u = uniform_pair(kSeed, draw, k)[0];
+    double& value = p[static_cast<std::size_t>(free[k])];
+    value = 0.5 * (value + low[k] + u * (high[k] - low[k]));
+  }
+  return p;
+}
+
 }  // namespace
+
+Refined refine_best(const Effect& machine, const Recording& record,
+                    std::span<const std::vector<double>> candidates, std::span<const int> free,
+                    std::span<const double> low, std::span<const double> high, const RefineOptions& options) {
+  constexpr std::uint32_t kFurtherStarts = 8;
+  const double enough = exact(record);
+  Refined best{candidates.front(), std::numeric_limits<double>::infinity()};
+  const auto take = [&](const std::vector<double>& start) {
+    Refined r = refine(machine, record, start, free, low, high, options);
+    for (const int k : r.idle)
+      r.p[static_cast<std::size_t>(k)] = candidates.front()[static_cast<std::size_t>(k)];
+    if (r.misfit < best.misfit) best = r;
+  };
+  for (std::size_t k = 0; k < candidates.size() && best.misfit > enough; ++k) take(candidates[k]);
+  for (std::uint32_t k = 0; k < kFurtherStarts && best.misfit > enough; ++k)
+    take(drawn_about(best.p, k, free, low, high));
+  return best;
+}
 
 Refined refine(const Effect& machine, const Recording& record, std::vector<double> start,
                std::span<const int> free, std::span<const double> low, std::span<const double> high,
@@ -215,15 +275,22 @@ Refined refine(const Effect& machine, const Recording& record, std::vector<doubl
   int done = 0;
   constexpr int kTrials = 8;
   constexpr double kCostSettles = 1e-12;  // of the cost, in one iteration
+  std::vector<Index> acting(static_cast<std::size_t>(all));
+  std::iota(acting.begin(), acting.end(), Index{0});
   for (bool better = std::isfinite(cost); better && done < options.iterations; ++done) {
-    const MatrixXd J = problem.slopes(z);
+    MatrixXd J = problem.slopes(z, acting);
+    if (done == 0) J = without_idle(J, acting);
     const MatrixXd G = J.transpose() * J;
     const VectorXd g = J.transpose() * r;
+    const auto count = static_cast<Index>(acting.size());
     better = false;
     for (int trial = 0; trial < kTrials && !better; ++trial) {
       MatrixXd damped = G;
-      damped.diagonal() += damping * G.diagonal() + VectorXd::Constant(all, 1e-14 * G.trace());
-      const VectorXd next = (z - damped.ldlt().solve(g)).cwiseMax(least).cwiseMin(most);
+      damped.diagonal() += damping * G.diagonal() + VectorXd::Constant(count, 1e-14 * G.trace());
+      const VectorXd move = damped.ldlt().solve(g);
+      VectorXd next = z;
+      for (Index k = 0; k < count; ++k) next[acting[static_cast<std::size_t>(k)]] -= move[k];
+      next = next.cwiseMax(least).cwiseMin(most);
       const VectorXd value = problem.values(next);
       const double now = cost_of(value);
       if (now < cost) {
@@ -238,7 +305,10 @@ Refined refine(const Effect& machine, const Recording& record, std::vector<doubl
       }
     }
   }
-  return {problem.parameters(z), std::sqrt(cost / static_cast<double>(driven.outputs())), done};
+  Refined found{problem.parameters(z), std::sqrt(cost / static_cast<double>(driven.outputs())), done};
+  for (Index k = 0; k < n; ++k)
+    if (std::ranges::find(acting, k) == acting.end()) found.idle.push_back(free[static_cast<std::size_t>(k)]);
+  return found;
 }
 
 }  // namespace swingbank::sim::direct

@@ -17,7 +17,6 @@ namespace {
 
 namespace store = mpi::store;
 constexpr std::size_t kRowsRead = 512;   ///< rows read at once
-constexpr std::size_t kCandidates = 2;   ///< of the closed form, that are refined
 constexpr double kSystemFrequency = 60;  ///< of a .raw that says nothing else [Hz]
 
 /// What a row of the dataset is made of.
@@ -65,7 +64,7 @@ class Rows {
     const sim::Recording r = recording(block, row);
     auto found = effect_->closed_form(r, standard_.data());
     if (found.empty()) found.push_back(standard_);
-    if (refined) found = {refine(r, found)};
+    if (refined) found = {sim::direct::refine_best(*effect_, r, found, free_, low_, high_).p};
     for (std::size_t k = 0; k < index_.size(); ++k) {
       const double low = dataset_.parameter_low[k], high = dataset_.parameter_high[k];
       const double value = found.front()[static_cast<std::size_t>(index_[k])];
@@ -107,18 +106,6 @@ class Rows {
     }
     return r;
   }
-  [[nodiscard]] std::vector<double> refine(const sim::Recording& r,
-                                           const std::vector<std::vector<double>>& candidates) const {
-    sim::direct::Refined best;
-    best.misfit = std::numeric_limits<double>::infinity();
-    best.p = candidates.front();
-    for (std::size_t k = 0; k < std::min(candidates.size(), kCandidates); ++k) {
-      const auto found = sim::direct::refine(*effect_, r, candidates[k], free_, low_, high_);
-      if (found.misfit < best.misfit) best = found;
-    }
-    return best.p;
-  }
-
   const store::Dataset& dataset_;
   const sim::Effect* effect_ = nullptr;
   sim::Conventions conventions_;
