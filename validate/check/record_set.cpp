@@ -16,12 +16,14 @@ void read_into(RecordSet& set, const std::string& file, const plant::PlantModel&
                  "they could not be told apart, and their results would overwrite each other",
                  "rename one of them");
   std::vector<std::string> warnings;
-  if (model.plant.machine.effect != nullptr)
-    for (const auto& [kind, severity, problem] : check_record(record, plant_facts(model)))
+  if (model.plant.machine.effect != nullptr) {
+    for (const auto& [kind, severity, problem] : check_record(record, plant_facts(model))) {
       if (severity == Severity::refuse)
         add_all({problem}, problems);
       else
         warnings.push_back(problem.sentence());
+    }
+  }
   set.records.push_back(std::move(record));
   set.warnings.push_back(std::move(warnings));
 }
