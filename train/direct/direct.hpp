@@ -17,8 +17,8 @@ bool is_method(std::string_view name);
 
 /// rows x parameters in raw units, inside the sampling box, for rows of the dataset in ascending order. The
 /// records count whole and at full rate, whatever a network would see of them. `tell`: called with the number
-/// of rows done. Throws InputError if the machine has no closed form, a channel that it needs is not recorded,
-/// or parameters of other effects vary.
+/// of rows done. Throws InputError if the machine has no closed form, a channel that it needs is not
+/// recorded, or parameters of other effects vary.
 std::vector<double> estimate(const mpi::store::Dataset& dataset, std::span<const std::uint64_t> rows,
                              std::string_view method, const std::function<void(std::size_t)>& tell = {});
 
