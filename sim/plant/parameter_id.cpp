@@ -96,18 +96,18 @@ std::vector<ParameterId> find_parameters(const Plant& plant, const std::vector<P
                                          const std::string& why, Problems& problems) {
   std::vector<ParameterId> left = among, found;
   for (const auto& text : texts) {
-    const auto meant = std::ranges::stable_partition(left, [&](ParameterId id) {
+    const auto meant = std::stable_partition(left.begin(), left.end(), [&](ParameterId id) {
       const ParameterName name = parameter_name(plant, id);
       return name.text() != text && name.parameter != text;
     });
-    if (meant.empty()) {
+    if (meant == left.end()) {
       std::string names;
       for (const ParameterId id : among)
         names += (names.empty() ? "" : ", ") + parameter_name(plant, id).text();
       problems.add("parameter '" + text + "'", where, why, "use one of " + names);
     }
-    found.insert(found.end(), meant.begin(), meant.end());
-    left.erase(meant.begin(), meant.end());
+    found.insert(found.end(), meant, left.end());
+    left.erase(meant, left.end());
   }
   return found;
 }
