@@ -24,13 +24,28 @@ Eigen::VectorXd integral(const Eigen::VectorXd& f, double step) {
   return sum;
 }
 
-std::size_t behind_last_leap(std::span<const double> V) {
+namespace {
+/// Step of the voltage from which on it leaps [pu].
+double leap(std::span<const double> V) {
   constexpr double kLeast = 0.01, kShare = 0.2;  // [pu]; of the largest step
   double largest = kLeast;
   for (std::size_t k = 1; k < V.size(); ++k) largest = std::max(largest, std::abs(V[k] - V[k - 1]));
+  return kShare * largest;
+}
+}  // namespace
+
+std::size_t behind_last_leap(std::span<const double> V) {
+  const double limit = leap(V);
   for (std::size_t k = V.size(); k-- > 1;)
-    if (std::abs(V[k] - V[k - 1]) > kShare * largest) return k;
+    if (std::abs(V[k] - V[k - 1]) > limit) return k;
   return 0;
+}
+
+std::size_t before_first_leap(std::span<const double> V) {
+  const double limit = leap(V);
+  for (std::size_t k = 1; k < V.size(); ++k)
+    if (std::abs(V[k] - V[k - 1]) > limit) return k;
+  return V.size();
 }
 
 }  // namespace swingbank::sim::direct

@@ -15,4 +15,7 @@ constexpr std::size_t kShortestStretch = 40;
 /// a fifth of the largest one and of 0.01 pu. 0 if nothing leaps.
 std::size_t behind_last_leap(std::span<const double> V);
 
+/// How many samples lie before the first such leap; all if nothing leaps.
+std::size_t before_first_leap(std::span<const double> V);
+
 }  // namespace swingbank::sim::direct

@@ -1,10 +1,11 @@
 #include "sim/direct/refine.hpp"
 
-#include <Eigen/Dense>
+#include <ceres/ceres.h>
+
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "sim/core/noise.hpp"
 #include "sim/direct/detail/turning.hpp"
@@ -16,6 +17,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr std::size_t kAngleAndSpeed = 2;  ///< states that are measured: the first two of every machine
 
@@ -138,27 +140,30 @@ class Driven {
   Turning whole_;
 };
 
-/// Values and slopes of the residuals at `z`: free parameters, offset, fluxes; each times its scale.
-class Problem {
+/// Residuals and their slopes for Ceres. The unknowns: free parameters, offset, fluxes; each times its scale.
+class Residuals : public ceres::CostFunction {
  public:
-  Problem(const Driven& driven, std::vector<double> p, std::span<const int> free, VectorXd scale)
-      : driven_(driven), p_(std::move(p)), free_(free), scale_(std::move(scale)) {}
-  [[nodiscard]] VectorXd values(const VectorXd& z) const {
-    const auto r = of<double>(z, {});
-    return Eigen::Map<const VectorXd>(r.data(), static_cast<Index>(r.size()));
+  Residuals(const Driven& driven, std::vector<double> p, std::span<const int> free, VectorXd scale)
+      : driven_(driven), p_(std::move(p)), free_(free), scale_(std::move(scale)) {
+    set_num_residuals(static_cast<int>(driven_.outputs()));
+    mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(scale_.size()));
   }
-  /// Along some of the unknowns.
-  [[nodiscard]] MatrixXd slopes(const VectorXd& z, const std::vector<Index>& along) const {
-    MatrixXd jacobian(driven_.outputs(), static_cast<Index>(along.size()));
-    for (std::size_t first = 0; first < along.size(); first += kDirections) {
-      const auto some =
-          std::span(along).subspan(first, std::min<std::size_t>(kDirections, along.size() - first));
-      const auto r = of<D8>(z, some);
-      for (std::size_t k = 0; k < some.size(); ++k)
-        for (std::size_t i = 0; i < r.size(); ++i)
-          jacobian(static_cast<Index>(i), static_cast<Index>(first + k)) = r[i].d[k];
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    const auto values = of<double>(blocks[0], -1);
+    std::ranges::copy(values, residuals);
+    bool finite = std::ranges::all_of(values, [](double r) { return std::isfinite(r); });
+    if (!jacobians || !jacobians[0]) return finite;
+    const Index width = scale_.size();
+    for (Index first = 0; first < width; first += kDirections) {
+      const auto r = of<D8>(blocks[0], first);
+      for (Index k = first; k < std::min<Index>(first + kDirections, width); ++k)
+        for (std::size_t i = 0; i < r.size(); ++i) {
+          const double slope = r[i].d[static_cast<std::size_t>(k - first)];
+          jacobians[0][static_cast<Index>(i) * width + k] = slope;
+          finite = finite && std::isfinite(slope);
+        }
     }
-    return jacobian;
+    return finite;
   }
   [[nodiscard]] std::vector<double> parameters(const VectorXd& z) const {
     std::vector<double> p = p_;
@@ -169,18 +174,17 @@ class Problem {
 
  private:
   template <class T>
-  std::vector<T> of(const VectorXd& z, std::span<const Index> along) const {
+  std::vector<T> of(const double* z, Index first) const {
     const auto at = [&](Index k) {
       T x(z[k] * scale_[k]);
       if constexpr (!std::is_same_v<T, double>)
-        if (const auto d = std::ranges::find(along, k); d != along.end())
-          x.d[static_cast<std::size_t>(d - along.begin())] = scale_[k];
+        if (k >= first && k < first + kDirections) x.d[static_cast<std::size_t>(k - first)] = scale_[k];
       return x;
     };
     std::vector<T> p(p_.begin(), p_.end()), flux;
     const auto n = static_cast<Index>(free_.size());
     for (Index k = 0; k < n; ++k) p[static_cast<std::size_t>(free_[static_cast<std::size_t>(k)])] = at(k);
-    for (Index k = n + 1; k < z.size(); ++k) flux.push_back(at(k));
+    for (Index k = n + 1; k < scale_.size(); ++k) flux.push_back(at(k));
     return driven_.residuals<T>(p, at(n), flux);
   }
 
@@ -190,28 +194,25 @@ class Problem {
   VectorXd scale_;
 };
 
-/// Leaves out what does not act on the fluxes, like inertia and damping.
-MatrixXd without_idle(const MatrixXd& J, std::vector<Index>& acting) {
-  std::vector<Index> columns, kept;
-  for (Index k = 0; k < J.cols(); ++k)
-    if (J.col(k).squaredNorm() > 0) {
-      columns.push_back(k);
-      kept.push_back(acting[static_cast<std::size_t>(k)]);
-    }
-  acting = kept;
-  return J(Eigen::all, columns);
-}
-
-double cost_of(const VectorXd& r) {
-  const double sum = r.squaredNorm();
-  return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
+ceres::Solver::Options options_of(const RefineOptions& options) {
+  constexpr double kSettled = 1e-9;  // relative change of the cost and of the unknowns
+  ceres::Solver::Options o;
+  o.max_num_iterations = options.iterations;
+  o.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  o.logging_type = ceres::SILENT;
+  o.num_threads = 1;  // records run side by side
+  o.function_tolerance = o.parameter_tolerance = kSettled;
+  o.gradient_tolerance = 0;
+  o.max_num_consecutive_invalid_steps = 12;
+  o.max_num_line_search_step_size_iterations = 0;  // a step that bounds cut short is tried as it is
+  return o;
 }
 
 /// Misfit that a right answer leaves: what the integration leaves of a record in single precision, or the
 /// noise of P before the event.
 double exact(const Recording& record) {
   constexpr double kIntegration = 1e-5, kOfNoise = 3;  // [pu]; standard deviations
-  const std::size_t n = std::max<std::size_t>(2, behind_last_leap(record.V) / 2);
+  const std::size_t n = std::max<std::size_t>(2, before_first_leap(record.V));
   double mean = 0, square = 0;
   for (std::size_t k = 0; k < n; ++k) mean += record.P[k] / static_cast<double>(n);
   for (std::size_t k = 0; k < n; ++k) square += std::pow(record.P[k] - mean, 2) / static_cast<double>(n - 1);
@@ -240,8 +241,10 @@ Refined refine_best(const Effect& machine, const Recording& record,
   Refined best{candidates.front(), std::numeric_limits<double>::infinity()};
   const auto take = [&](const std::vector<double>& start) {
     Refined r = refine(machine, record, start, free, low, high, options);
-    for (const int k : r.idle)
-      r.p[static_cast<std::size_t>(k)] = candidates.front()[static_cast<std::size_t>(k)];
+    for (const int k : r.idle) {
+      const auto i = static_cast<std::size_t>(free[static_cast<std::size_t>(k)]);
+      r.p[i] = candidates.front()[i];
+    }
     if (r.misfit < best.misfit) best = r;
   };
   for (std::size_t k = 0; k < candidates.size() && best.misfit > enough; ++k) take(candidates[k]);
@@ -256,59 +259,40 @@ Refined refine(const Effect& machine, const Recording& record, std::vector<doubl
   const Driven driven(machine, record, options.longest);
   const auto n = static_cast<Index>(free.size()), all = n + 1 + static_cast<Index>(driven.fluxes());
   VectorXd scale = VectorXd::Ones(all), z = VectorXd::Zero(all);
-  VectorXd least = VectorXd::Constant(all, -1e9), most = VectorXd::Constant(all, 1e9);
   for (Index k = 0; k < n; ++k) {
     const auto i = static_cast<std::size_t>(free[static_cast<std::size_t>(k)]);
     const auto b = static_cast<std::size_t>(k);
     start[i] = std::clamp(start[i], low[b], high[b]);
     scale[k] = high[b] - low[b];
     z[k] = start[i] / scale[k];
-    least[k] = low[b] / scale[k];
-    most[k] = high[b] / scale[k];
   }
   const auto flux = driven.fluxes_at_start(start);
   for (std::size_t k = 0; k < flux.size(); ++k) z[n + 1 + static_cast<Index>(k)] = flux[k];
-  const Problem problem(driven, start, free, scale);
-
-  VectorXd r = problem.values(z);
-  double cost = cost_of(r), damping = 1e-3;
-  int done = 0;
-  constexpr int kTrials = 8;
-  constexpr double kCostSettles = 1e-12;  // of the cost, in one iteration
-  std::vector<Index> acting(static_cast<std::size_t>(all));
-  std::iota(acting.begin(), acting.end(), Index{0});
-  for (bool better = std::isfinite(cost); better && done < options.iterations; ++done) {
-    MatrixXd J = problem.slopes(z, acting);
-    if (done == 0) J = without_idle(J, acting);
-    const MatrixXd G = J.transpose() * J;
-    const VectorXd g = J.transpose() * r;
-    const auto count = static_cast<Index>(acting.size());
-    better = false;
-    for (int trial = 0; trial < kTrials && !better; ++trial) {
-      MatrixXd damped = G;
-      damped.diagonal() += damping * G.diagonal() + VectorXd::Constant(count, 1e-14 * G.trace());
-      const VectorXd move = damped.ldlt().solve(g);
-      VectorXd next = z;
-      for (Index k = 0; k < count; ++k) next[acting[static_cast<std::size_t>(k)]] -= move[k];
-      next = next.cwiseMax(least).cwiseMin(most);
-      const VectorXd value = problem.values(next);
-      const double now = cost_of(value);
-      if (now < cost) {
-        better = now < cost * (1 - kCostSettles);
-        z = next;
-        r = value;
-        cost = now;
-        damping = std::max(damping / 10, 1e-12);
-        if (!better) break;
-      } else {
-        damping *= 10;
-      }
-    }
-  }
-  Refined found{problem.parameters(z), std::sqrt(cost / static_cast<double>(driven.outputs())), done};
+  Residuals residuals(driven, start, free, scale);
+  const double* blocks[] = {z.data()};
+  VectorXd values(driven.outputs());
+  RowMatrix slopes(driven.outputs(), all);
+  double* jacobians[] = {slopes.data()};
+  if (!residuals.Evaluate(blocks, values.data(), jacobians))
+    return {start, std::numeric_limits<double>::infinity()};
+  std::vector<int> idle;  // like inertia and damping
   for (Index k = 0; k < n; ++k)
-    if (std::ranges::find(acting, k) == acting.end()) found.idle.push_back(free[static_cast<std::size_t>(k)]);
-  return found;
+    if (slopes.col(k).squaredNorm() == 0) idle.push_back(static_cast<int>(k));
+
+  ceres::Problem::Options borrowed;
+  borrowed.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem problem(borrowed);
+  problem.AddResidualBlock(&residuals, nullptr, z.data());
+  if (!idle.empty()) problem.SetManifold(z.data(), new ceres::SubsetManifold(static_cast<int>(all), idle));
+  for (Index k = 0; k < n; ++k) {
+    const auto b = static_cast<std::size_t>(k);
+    problem.SetParameterLowerBound(z.data(), static_cast<int>(k), low[b] / scale[k]);
+    problem.SetParameterUpperBound(z.data(), static_cast<int>(k), high[b] / scale[k]);
+  }
+  ceres::Solver::Summary summary;
+  ceres::Solve(options_of(options), &problem, &summary);
+  return {residuals.parameters(z), std::sqrt(2 * summary.final_cost / static_cast<double>(driven.outputs())),
+          static_cast<int>(summary.iterations.size()) - 1, idle};
 }
 
 }  // namespace swingbank::sim::direct

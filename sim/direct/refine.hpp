@@ -14,10 +14,10 @@ struct Refined {
   std::vector<double> p;  ///< of every parameter of the effect
   double misfit = 0;      ///< root mean square of the compared values [pu]
   int iterations = 0;
-  std::vector<int> idle = {};  ///< of the free parameters, those that do not act on the fluxes
+  std::vector<int> idle = {};  ///< places in `free` of those that do not act on the fluxes; they stay
 };
 struct RefineOptions {
-  int iterations = 14;
+  int iterations = 25;   ///< steps that were refused count too
   double longest = 6.0;  ///< of the stretch [s]
 };
 
@@ -31,7 +31,7 @@ Refined refine(const Effect& machine, const Recording& record, std::vector<doubl
                const RefineOptions& options = {});
 
 /// Refines the candidates in turn and returns the best, as soon as one is as close as the record's own noise
-/// lets it. Where none is, further starts are drawn about the best.
+/// before the event lets it be. Where none is, further starts are drawn about the best.
 Refined refine_best(const Effect& machine, const Recording& record,
                     std::span<const std::vector<double>> candidates, std::span<const int> free,
                     std::span<const double> low, std::span<const double> high,

@@ -132,8 +132,10 @@ int pre_event_samples(const event::WhitenedEvents& events);
 /// is at least `least`.
 double misfit_limit(const event::FitEvent& event, const fit::EventFit& fitted, int pre_event, double least);
 
-/// What uncertain parameters add to the chi2 per value of an event that they were not fitted to; one event in
-/// a thousand exceeds it. `information`: of that event; `covariance` of the parameters in the same units.
+/// What uncertain parameters add to the chi2 per value of an event that they were not fitted to: mean
+/// and 3.09 standard deviations. One event in a thousand exceeds it where the uncertainty is that of many
+/// directions, and two in a hundred where one direction governs, because a single square has a longer tail.
+/// `information`: of that event; `covariance` of the parameters in the same units.
 double unseen_allowance(const Eigen::MatrixXd& information, const Eigen::MatrixXd& covariance, int values);
 
 /// Misfit of one event before and after, seen or not. Both fits were made with the noise of `event`.

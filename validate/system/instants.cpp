@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/golden_section.hpp"
 #include "sim/plant/measure.hpp"
 #include "validate/event/event.hpp"
 #include "validate/system/detail/run.hpp"
@@ -43,7 +44,6 @@ class InstantFit {
 
   /// Golden section on one instant after the other, within `reach` of where it was found.
   std::vector<double> run(double reach) {
-    constexpr double kGolden = 0.6180339887498949;
     constexpr int kSweeps = 2, kSteps = 9;  // 9 steps leave 1.3 % of the interval
     constexpr double kEnough = 2.5e-4;      // [s]; a filter makes intervals long
     const auto middle = best_;
@@ -52,17 +52,9 @@ class InstantFit {
         double low = middle[k] - reach, high = middle[k] + reach;
         if (k > 0) low = std::max(low, best_[k - 1] + 1e-4);
         if (k + 1 < best_.size()) high = std::min(high, best_[k + 1] - 1e-4);
-        double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
-        double at_a = misfit(k, a), at_b = misfit(k, b);
-        for (int step = 0; step < kSteps || high - low > kEnough; ++step)
-          if (at_a < at_b) {
-            high = b, b = a, at_b = at_a;
-            a = high - kGolden * (high - low), at_a = misfit(k, a);
-          } else {
-            low = a, a = b, at_a = at_b;
-            b = low + kGolden * (high - low), at_b = misfit(k, b);
-          }
-        best_[k] = at_a < at_b ? a : b;
+        best_[k] = golden_section([&](double at) { return misfit(k, at); }, low, high,
+                                  [](int step, double width) { return step < kSteps || width > kEnough; })
+                       .at;
       }
     return best_;
   }

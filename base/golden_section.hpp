@@ -1,0 +1,34 @@
+#pragma once
+// A minimum of a function of one variable, between two bounds that enclose it.
+namespace swingbank {
+
+struct Minimum {
+  double at = 0, value = 0;
+};
+
+/// Golden sections: every step takes 38 % off the interval. Goes on while more(steps so far, width of what is
+/// left) holds.
+template <class F, class More>
+Minimum golden_section(const F& f, double low, double high, const More& more) {
+  constexpr double kGolden = 0.6180339887498949;
+  double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
+  double at_a = f(a), at_b = f(b);
+  for (int step = 0; more(step, high - low); ++step) {
+    if (at_a < at_b) {
+      high = b;
+      b = a;
+      at_b = at_a;
+      a = high - kGolden * (high - low);
+      at_a = f(a);
+    } else {
+      low = a;
+      a = b;
+      at_a = at_b;
+      b = low + kGolden * (high - low);
+      at_b = f(b);
+    }
+  }
+  return at_a < at_b ? Minimum{a, at_a} : Minimum{b, at_b};
+}
+
+}  // namespace swingbank

@@ -1,0 +1,43 @@
+// What an event that was not fitted to may hold: the limit is exceeded once in a thousand.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "validate/calibrate/calibrate.hpp"
+
+namespace swingbank::validate::calibrate {
+namespace {
+
+// Three parameters with errors of very different weight move 200 values with noise of one. A normal
+// distribution's 3.09 is exceeded by one in a thousand; a form of few squares has a longer tail.
+TEST(UnseenAllowance, IsSeldomExceededAndNotIdle) {
+  constexpr int kValues = 200, kParameters = 3, kDraws = 20000;
+  std::mt19937_64 generator(5);
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd slopes(kValues, kParameters);
+  for (double& x : slopes.reshaped()) x = normal(generator);
+  const Eigen::Vector3d deviation(1.0, 0.1, 0.01);
+  const Eigen::MatrixXd covariance = deviation.cwiseAbs2().asDiagonal();
+  const double allowed = unseen_allowance(slopes.transpose() * slopes, covariance, kValues);
+  int beyond = 0;
+  double mean = 0;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    Eigen::VectorXd moved(kParameters), noise(kValues);
+    for (int k = 0; k < kParameters; ++k) moved[k] = deviation[k] * normal(generator);
+    for (double& x : noise) x = normal(generator);
+    const double added = ((slopes * moved + noise).squaredNorm() - noise.squaredNorm()) / kValues;
+    mean += added / kDraws;
+    beyond += added > allowed;
+  }
+  EXPECT_LT(beyond, kDraws / 50);  // of one square, 3.09 deviations leave 2.1 %: z^2 > 1 + 3.09 sqrt(2)
+  EXPECT_GT(beyond, 0);            // and no limit that nothing reaches
+  EXPECT_GT(allowed, 2 * mean);
+}
+
+TEST(UnseenAllowance, IsNothingWhereTheParametersAreKnown) {
+  const Eigen::MatrixXd information = Eigen::MatrixXd::Identity(4, 4);
+  EXPECT_EQ(unseen_allowance(information, Eigen::MatrixXd::Zero(4, 4), 100), 0);
+}
+
+}  // namespace
+}  // namespace swingbank::validate::calibrate
