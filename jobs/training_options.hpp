@@ -15,7 +15,7 @@
 namespace swingbank {
 
 struct TrainingOptions {
-  std::string dataset, experiment, preset = "quick", network, out, print;
+  std::string dataset, training_rows, experiment, preset = "quick", network, out, print;
   std::uint64_t seed = 1;
   std::size_t epochs = 0;
   int threads = 0;
@@ -25,6 +25,8 @@ struct TrainingOptions {
 
   void add_to(jobs::CommandLine& line) {
     line.add("DATASET", dataset, "folder that `swingbank generate` wrote");
+    line.add("--training-rows", training_rows,
+             "folder of a second dataset whose rows only train (the experiment's training_dataset)");
     line.add("--experiment", experiment, "file of configs/experiments: table, dataset, presets").required();
     line.add("--preset", preset, "preset of the experiment: quick, nightly or thesis").shows_default();
     line.add("--network", network, "network of the preset (default: its first)");
@@ -65,7 +67,12 @@ struct TrainingOptions {
   }
   [[nodiscard]] train::data::ShardStream open(const train::run::RunRequest& r) const {
     const auto bytes = static_cast<std::uint64_t>(memory_limit * static_cast<double>(std::uint64_t{1} << 30));
-    return {mpi::store::open_dataset(dataset), r.experiment.preset(preset).input, {bytes, readers, trust}};
+    std::optional<mpi::store::Dataset> more;
+    if (!training_rows.empty()) more = mpi::store::open_dataset(training_rows);
+    return {mpi::store::open_dataset(dataset),
+            r.experiment.input(preset, r.network).recipe,
+            {bytes, readers, trust},
+            more};
   }
 };
 

@@ -11,6 +11,7 @@
 namespace swingbank::train::data {
 
 void InputSelection::apply(const float* record, std::size_t record_samples, float* out) const {
+  if (physics) return physics->apply(record, record_samples, out);
   const auto copy = [&](bool deviation, float* to) {
     for (const std::size_t c : channels) {
       const float* series = record + c * record_samples;
@@ -29,6 +30,34 @@ void InputSelection::apply(const float* record, std::size_t record_samples, floa
   if (rms > 0.0f)
     for (std::size_t i = 0; i < channels.size() * samples; ++i) deviations[i] /= rms;
 }
+
+namespace {
+
+/// The reactance behind which E is formed: the one that the box holds or samples, in its middle.
+double shown_reactance(const mpi::store::DatasetHeader& d) {
+  constexpr double kTypical = 0.3;  // of X'd and X''d; E is an input, and any value near the true one serves
+  for (const char* name : {"Xdpp", "Xdp"}) {
+    const auto at = std::ranges::find(d.parameter_names, name) - d.parameter_names.begin();
+    const auto i = static_cast<std::size_t>(at);
+    if (i < d.parameter_names.size()) return 0.5 * (d.parameter_low[i] + d.parameter_high[i]);
+  }
+  return kTypical;
+}
+
+/// The dataset's fault begins at one instant, before which its records are steady.
+Physics physics_of(const InputRecipe& recipe, const mpi::store::DatasetHeader& d) {
+  const auto event = mpi::store::config_numbers(d, "fault.start");
+  if (event.size() != 1)
+    throw InputError({"no instant of the fault", "form",
+                      "the dataset's config has no line fault.start, and what is steady lies before it",
+                      "choose another form, or generate the dataset anew"});
+  std::vector<std::string> names = d.channel_names;  // those that are not asked for stay unseen
+  for (auto& name : names)
+    if (std::ranges::find(recipe.channels, name) == recipe.channels.end()) name.clear();
+  return {names, {d.rate, recipe.start_s, recipe.end_s, event.front(), shown_reactance(d)}};
+}
+
+}  // namespace
 
 InputSelection select_input(const InputRecipe& recipe, const mpi::store::DatasetHeader& dataset) {
   Problems problems;
@@ -57,6 +86,10 @@ InputSelection select_input(const InputRecipe& recipe, const mpi::store::Dataset
   s.samples = (end - s.first + s.step - 1) / s.step;
   s.form = recipe.form;
   s.rate = dataset.rate / static_cast<double>(s.step);
+  if (s.form == InputForm::physics) {
+    s.physics = physics_of(recipe, dataset);
+    s.samples = s.physics->cells();
+  }
   return s;
 }
 

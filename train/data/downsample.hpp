@@ -1,10 +1,12 @@
 #pragma once
 // Which part of a record a network reads: channels by name, a time window, and slicing (every n-th sample).
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "mpi/store/dataset.hpp"
+#include "train/data/physics.hpp"
 
 namespace swingbank::train::data {
 
@@ -16,9 +18,10 @@ enum class InputForm {
               ///< machine's H and D follow from the ratio of its channels, so this shows a large machine that
               ///< moves little like any other
   both,       ///< the absolute channels, then the relative ones
+  physics,    ///< what the machine's equations are written in, and steady values behind it (Physics)
 };
 /// Names as experiments write them, in order of the enumeration.
-inline const std::vector<std::string> kInputForms = {"absolute", "deviation", "relative", "both"};
+inline const std::vector<std::string> kInputForms = {"absolute", "deviation", "relative", "both", "physics"};
 
 /// As an experiment's preset states it.
 struct InputRecipe {
@@ -33,11 +36,16 @@ struct InputSelection {
   std::vector<std::size_t> channels;  ///< indices into the record's channels
   std::size_t first = 0, step = 1, samples = 0;
   InputForm form = InputForm::absolute;
-  double rate = 0.0;  ///< after slicing [1/s]
+  double rate = 0.0;               ///< after slicing [1/s]
+  std::optional<Physics> physics;  ///< of that form; it then makes the series
 
-  [[nodiscard]] std::size_t outputs() const { return channels.size() * (form == InputForm::both ? 2 : 1); }
-  [[nodiscard]] std::size_t values() const { return outputs() * samples; }
-  /// record: channels x record_samples of one row; out: outputs() x samples.
+  [[nodiscard]] std::size_t outputs() const {
+    return physics ? physics->channels() : channels.size() * (form == InputForm::both ? 2 : 1);
+  }
+  /// Values behind the series.
+  [[nodiscard]] std::size_t levels() const { return physics ? physics->levels() : 0; }
+  [[nodiscard]] std::size_t values() const { return outputs() * samples + levels(); }
+  /// record: channels x record_samples of one row; out: outputs() x samples, then levels().
   void apply(const float* record, std::size_t record_samples, float* out) const;
 };
 

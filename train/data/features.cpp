@@ -4,9 +4,15 @@
 #include "base/sealed_file.hpp"
 
 namespace swingbank::train::data {
+namespace {
+WhiteningSizes whitening_sizes(const FeatureSizes& s) {
+  return {s.channels, s.samples, s.levels, s.pca_components, s.kept};
+}
+}  // namespace
 
 Features Features::fit(const ShardStream& stream, std::span<const std::uint64_t> rows,
                        std::size_t pca_components) {
+  if (stream.selection().physics) return of(Whitening::fit(stream, rows, pca_components));
   Features f;
   f.channels_ = stream.channels();
   f.samples_ = f.length_ = stream.samples();
@@ -46,15 +52,30 @@ Features Features::fit(const ShardStream& stream, std::span<const std::uint64_t>
   return f;
 }
 
+Features Features::of(Whitening whitening) {
+  Features f;
+  f.channels_ = 1;
+  f.samples_ = whitening.sizes().samples;
+  f.length_ = whitening.length();
+  f.whitening_ = std::move(whitening);
+  return f;
+}
+
 FeatureSizes Features::sizes() const {
+  if (whitening_) {
+    const WhiteningSizes& w = whitening_->sizes();
+    return {w.channels, w.samples, w.components, 0, w.levels, w.kept};
+  }
   return {channels_, samples_, pca_ ? pca_->components() : 0, pca_ ? pca_->per_second() : 0};
 }
 
 std::size_t Features::array_count(const FeatureSizes& s) {
+  if (s.kept > 0) return Whitening::array_count(whitening_sizes(s));
   return 2 + (s.pca_components > 0 ? 2 * s.channels : 0);
 }
 
 std::vector<std::vector<float>> Features::arrays() const {
+  if (whitening_) return whitening_->arrays();
   std::vector<std::vector<float>> all = {scale_.mean, scale_.deviation};
   if (pca_)
     for (auto& a : pca_->arrays()) all.push_back(std::move(a));
@@ -62,6 +83,7 @@ std::vector<std::vector<float>> Features::arrays() const {
 }
 
 Features Features::restore(const FeatureSizes& s, std::span<const std::vector<float>> arrays) {
+  if (s.kept > 0) return of(Whitening::restore(whitening_sizes(s), arrays));
   Features f;
   f.channels_ = s.channels;
   f.samples_ = f.length_ = s.samples;
@@ -78,6 +100,7 @@ Features Features::restore(const FeatureSizes& s, std::span<const std::vector<fl
 }
 
 void Features::apply(const float* series, std::size_t count, float* out) const {
+  if (whitening_) return whitening_->apply(series, count, out);
   for (std::size_t r = 0; r < count; ++r) {
     const float* in = series + r * channels_ * samples_;
     float* row = out + r * channels_ * length_;

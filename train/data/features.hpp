@@ -1,27 +1,31 @@
 #pragma once
-// From a record's series to what the network reads: optional PCA, then normalisation. Fitted on training rows
-// only.
+// From a record's series to what the network reads: PCA of each second where asked for and normalisation, or
+// the whitening of the form "physics". Fitted on training rows only.
 #include <optional>
 #include <span>
 
 #include "train/data/normalise.hpp"
 #include "train/data/pca.hpp"
 #include "train/data/shard_stream.hpp"
+#include "train/data/whitening.hpp"
 
 namespace swingbank::train::data {
 
 struct FeatureSizes {
   std::size_t channels = 0, samples = 0;
   std::size_t pca_components = 0, pca_per_second = 0;  ///< 0: no PCA
+  std::size_t levels = 0, kept = 0;                    ///< of a whitening; kept 0: none
 };
 
 class Features {
  public:
   /// pca_components = 0: no PCA. Series are normalised per channel, components per channel and component.
-  /// Throws InputError if a channel is constant over the training rows.
+  /// Throws InputError if a channel is constant over the training rows. The form "physics" is whitened, with
+  /// so many components a channel.
   static Features fit(const ShardStream& stream, std::span<const std::uint64_t> rows,
                       std::size_t pca_components);
 
+  /// A whitened row is one channel.
   [[nodiscard]] std::size_t channels() const { return channels_; }
   [[nodiscard]] std::size_t length() const { return length_; }
   [[nodiscard]] const std::optional<Pca>& pca() const { return pca_; }
@@ -33,16 +37,18 @@ class Features {
   static Features restore(const FeatureSizes& sizes, std::span<const std::vector<float>> arrays);
   /// Arrays that `restore` takes for these sizes.
   static std::size_t array_count(const FeatureSizes& sizes);
-  /// series: count x channels x samples; out: count x channels x length().
+  /// series: count rows as the stream gives them; out: count x channels() x length().
   void apply(const float* series, std::size_t count, float* out) const;
 
  private:
+  static Features of(Whitening whitening);
   [[nodiscard]] std::size_t group(std::size_t channel, std::size_t i) const {
     return channel * groups_per_channel_ + i % groups_per_channel_;
   }
 
   std::size_t channels_ = 0, samples_ = 0, length_ = 0, groups_per_channel_ = 1;
   std::optional<Pca> pca_;
+  std::optional<Whitening> whitening_;
   Scale scale_;
 };
 

@@ -36,13 +36,17 @@ struct Scale {
 /// exciter's lower ceiling), its low end takes the place of zero. A constant parameter is divided by its
 /// magnitude.
 struct TargetScale {
-  std::vector<double> mean;    ///< of the training targets, raw units: the predict-the-mean baseline
-  std::vector<double> unit;    ///< raw = scaled x unit + origin
-  std::vector<double> origin;  ///< 0, or the box's low end below it
+  std::vector<double> mean;      ///< of the training targets, raw units: the predict-the-mean baseline
+  std::vector<double> unit;      ///< raw = scaled x unit + origin
+  std::vector<double> origin;    ///< 0, or the box's low end below it
+  std::vector<double> variance;  ///< of the training targets, raw units
   /// values: all rows x parameters, raw units; rows: training rows; low: of the box (empty: none is
   /// negative).
   static TargetScale fit(const std::vector<double>& values, std::size_t parameters,
                          std::span<const std::uint64_t> rows, std::span<const double> low = {});
+  /// For the squared errors of scaled parameters: variance to the `power`, mean 1; 0 for one that is
+  /// constant, unless power is 0.
+  [[nodiscard]] std::vector<float> weights(double power) const;
   [[nodiscard]] double scaled(double raw, std::size_t parameter) const {
     return (raw - origin[parameter]) / unit[parameter];
   }

@@ -17,15 +17,21 @@ constexpr mpi::store::ShardFields kRecordsOnly{
     .records = true, .parameters = false, .angle_valid = false, .draws = false};
 }  // namespace
 
-ShardStream::ShardStream(mpi::store::Dataset dataset, const InputRecipe& recipe, const StreamOptions& options)
-    : dataset_(std::move(dataset)), selection_(select_input(recipe, dataset_)), options_(options) {
+ShardStream::ShardStream(mpi::store::Dataset dataset, const InputRecipe& recipe, const StreamOptions& options,
+                         const std::optional<mpi::store::Dataset>& more)
+    : dataset_(std::move(dataset)),
+      shards_(dataset_.shards),
+      rows_(dataset_.rows),
+      selection_(select_input(recipe, dataset_)),
+      options_(options) {
   if (dataset_.rows == 0)
     throw InputError({"no rows", dataset_.path.string(), "every draw was rejected, or none was made",
                       "see the outcomes in its journal and the ranges in its config"});
   labels_.parameters = dataset_.parameter_names.size();
-  const bool fits = dataset_.rows <= options_.memory_limit / (selection_.values() * sizeof(float));
+  if (more) append(*more);
+  const bool fits = rows_ <= options_.memory_limit / (selection_.values() * sizeof(float));
   Problems problems;
-  for (const auto& shard : dataset_.shards) {
+  for (const auto& shard : shards_) {
     try {
       load(shard, fits);
     } catch (const InputError& e) {
@@ -33,7 +39,39 @@ ShardStream::ShardStream(mpi::store::Dataset dataset, const InputRecipe& recipe,
     }
   }
   problems.raise();
-  labels_.rows = dataset_.rows;
+  labels_.rows = rows_;
+  labels_.judged = dataset_.rows;
+}
+
+void ShardStream::append(const mpi::store::Dataset& more) {
+  const mpi::store::Dataset& d = dataset_;
+  const auto filter = [](const mpi::store::Dataset& of) {
+    return mpi::store::config_numbers(of, "record.frequency");
+  };
+  const auto start = [](const mpi::store::Dataset& of) {
+    return mpi::store::config_numbers(of, "fault.start");
+  };
+  Problems problems;
+  const auto same = [&](bool equal, const char* what) {
+    if (!equal)
+      problems.add(std::string("another ") + what, more.path.string(),
+                   "rows that only train must be of the same kind as those of " + d.path.string(),
+                   "generate them from a config with the same [record] and [vary]");
+  };
+  same(more.channel_names == d.channel_names, "list of channels");
+  same(more.rate == d.rate && more.samples == d.samples, "rate or length");
+  same(filter(more) == filter(d), "frequency filter");
+  same(start(more) == start(d), "instant of the fault");
+  same(more.machine_model == d.machine_model && more.parameter_names == d.parameter_names,
+       "list of parameters");
+  same(more.parameter_low == d.parameter_low && more.parameter_high == d.parameter_high, "sampling box");
+  problems.raise();
+  for (mpi::store::ShardInfo shard : more.shards) {
+    shard.first_row += rows_;
+    shards_.push_back(std::move(shard));
+  }
+  rows_ += more.rows;
+  more_hash_ = more.hash;
 }
 
 void ShardStream::load(const mpi::store::ShardInfo& shard, bool fits) {
@@ -63,7 +101,7 @@ void ShardStream::keep_labels(const mpi::store::RowBlock& block, const mpi::stor
 
 void ShardStream::keep_series(const mpi::store::RowBlock& block, const mpi::store::ShardInfo& shard) {
   const std::size_t stride = block.channels * block.samples, values = selection_.values();
-  if (series_.empty()) series_.reserve(dataset_.rows * values);
+  if (series_.empty()) series_.reserve(rows_ * values);
   const std::size_t before = series_.size();
   series_.resize(before + block.rows * values);
   for (std::size_t i = 0; i < block.rows; ++i) {
@@ -75,7 +113,7 @@ void ShardStream::keep_series(const mpi::store::RowBlock& block, const mpi::stor
 
 const mpi::store::ShardInfo& ShardStream::shard_of(std::uint64_t row) const {
   const auto after =
-      std::upper_bound(dataset_.shards.begin(), dataset_.shards.end(), row,
+      std::upper_bound(shards_.begin(), shards_.end(), row,
                        [](std::uint64_t r, const mpi::store::ShardInfo& s) { return r < s.first_row; });
   return *std::prev(after);
 }

@@ -14,6 +14,7 @@ namespace swingbank::train::data {
 
 struct Labels {
   std::size_t rows = 0, parameters = 0;
+  std::size_t judged = 0;      ///< rows of the dataset itself; those behind them only train
   std::vector<double> values;  ///< rows x parameters, raw units
   std::vector<std::uint64_t> sample_id;
   std::vector<std::int32_t> generator;  ///< bus number
@@ -30,9 +31,14 @@ class ShardStream {
   /// Reads every shard once, a shard at a time, compares it with journal and header (read_checked), and keeps
   /// the labels, and the series if they fit. Trusting, it reads only what it keeps and checks only shapes and
   /// config. Throws InputError naming each shard at fault, and shard and row of a value that is not finite.
-  ShardStream(mpi::store::Dataset dataset, const InputRecipe& recipe, const StreamOptions& options = {});
+  /// `more`: a dataset whose rows follow and only train; it must hold the same channels, samples and
+  /// parameters.
+  ShardStream(mpi::store::Dataset dataset, const InputRecipe& recipe, const StreamOptions& options = {},
+              const std::optional<mpi::store::Dataset>& more = {});
 
   [[nodiscard]] const mpi::store::Dataset& dataset() const { return dataset_; }
+  /// Hash of the rows that only train; empty without.
+  [[nodiscard]] const std::string& more_hash() const { return more_hash_; }
   [[nodiscard]] const InputSelection& selection() const { return selection_; }
   [[nodiscard]] const Labels& labels() const { return labels_; }
   [[nodiscard]] std::size_t channels() const { return selection_.outputs(); }
@@ -42,6 +48,7 @@ class ShardStream {
   void read(std::span<const std::uint64_t> rows, float* out) const;
 
  private:
+  void append(const mpi::store::Dataset& more);
   void load(const mpi::store::ShardInfo& shard, bool fits);
   void keep_labels(const mpi::store::RowBlock& block, const mpi::store::ShardInfo& shard);
   void keep_series(const mpi::store::RowBlock& block, const mpi::store::ShardInfo& shard);
@@ -55,6 +62,9 @@ class ShardStream {
   void check_finite(const float* series, const mpi::store::ShardInfo& shard, std::uint64_t row) const;
 
   mpi::store::Dataset dataset_;
+  std::string more_hash_;
+  std::vector<mpi::store::ShardInfo> shards_;  ///< of both, rows counted on
+  std::size_t rows_ = 0;
   InputSelection selection_;
   StreamOptions options_;
   Labels labels_;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <numeric>
+#include <optional>
 #include <set>
 
 #include "base/problem.hpp"
@@ -15,19 +17,48 @@
 namespace swingbank::train::data {
 namespace {
 
-/// Rows of each databank point, points in order of first appearance.
+/// Sets of rows that grow together.
+class Groups {
+ public:
+  explicit Groups(std::size_t rows) : above_(rows) {
+    std::iota(above_.begin(), above_.end(), std::size_t{0});
+  }
+  std::size_t first_of(std::size_t i) {
+    while (above_[i] != i) i = above_[i] = above_[above_[i]];
+    return i;
+  }
+  void join(std::size_t a, std::size_t b) {
+    a = first_of(a);
+    b = first_of(b);
+    above_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::size_t> above_;
+};
+
+/// Rows that share a databank point or an event, groups in order of first appearance.
 std::vector<std::vector<std::uint64_t>> points_of(const Labels& labels,
                                                   const std::vector<std::uint64_t>& rows) {
-  std::map<std::vector<double>, std::size_t> seen;
-  std::vector<std::vector<std::uint64_t>> points;
-  for (const std::uint64_t row : rows) {
-    const double* first = labels.values.data() + row * labels.parameters;
-    const auto [it, fresh] =
-        seen.try_emplace(std::vector<double>(first, first + labels.parameters), points.size());
-    if (fresh) points.emplace_back();
-    points[it->second].push_back(row);
+  std::map<std::vector<double>, std::size_t> point;
+  std::map<std::uint64_t, std::size_t> event;
+  Groups groups(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double* first = labels.values.data() + rows[i] * labels.parameters;
+    groups.join(i, point.try_emplace(std::vector<double>(first, first + labels.parameters), i).first->second);
+    groups.join(i, event.try_emplace(labels.sample_id[rows[i]], i).first->second);
   }
+  std::map<std::size_t, std::vector<std::uint64_t>> found;  // by their first row
+  for (std::size_t i = 0; i < rows.size(); ++i) found[groups.first_of(i)].push_back(rows[i]);
+  std::vector<std::vector<std::uint64_t>> points;
+  for (auto& [first, members] : found) points.push_back(std::move(members));
   return points;
+}
+
+/// Appends the rows that only train.
+void add_training_rows(const Labels& labels, std::optional<std::int32_t> left_out, RowSplit& split) {
+  for (std::uint64_t row = labels.judged; row < labels.rows; ++row)
+    if (labels.generator[row] != left_out) split.train.push_back(row);
 }
 
 std::vector<std::uint64_t> rows_of(const std::vector<std::vector<std::uint64_t>>& points, std::size_t begin,
@@ -51,7 +82,7 @@ void require_rows(const RowSplit& split, std::size_t points) {
 }  // namespace
 
 RowSplit split_by_point(const Labels& labels, std::uint64_t seed) {
-  std::vector<std::uint64_t> all(labels.rows);
+  std::vector<std::uint64_t> all(labels.judged);
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
   auto points = points_of(labels, all);
   shuffle(points, key(seed, Purpose::split));
@@ -59,6 +90,7 @@ RowSplit split_by_point(const Labels& labels, std::uint64_t seed) {
   RowSplit split{rows_of(points, 0, train), rows_of(points, train, validation),
                  rows_of(points, validation, points.size())};
   require_rows(split, points.size());
+  add_training_rows(labels, std::nullopt, split);
   return split;
 }
 
@@ -66,7 +98,7 @@ RowSplit leave_one_out(const Labels& labels, std::int32_t generator, double vali
                        std::uint64_t seed) {
   RowSplit split;
   std::vector<std::uint64_t> others;
-  for (std::uint64_t row = 0; row < labels.rows; ++row)
+  for (std::uint64_t row = 0; row < labels.judged; ++row)
     (labels.generator[row] == generator ? split.test : others).push_back(row);
   if (split.test.empty())
     throw InputError({fmt::format("generator {} has no rows", generator), "--fold",
@@ -78,6 +110,7 @@ RowSplit leave_one_out(const Labels& labels, std::int32_t generator, double vali
   split.validation = rows_of(points, 0, validation);
   split.train = rows_of(points, validation, points.size());
   require_rows(split, points.size());
+  add_training_rows(labels, generator, split);
   return split;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // Which rows train, which decide when to stop, and which are judged. Rows that share a databank point (the
-// same parameter values) always go together, so that no test point was seen under another fault.
+// same parameter values) or an event always go together, so that no test point was seen under another fault
+// and no test event at another machine. Rows behind Labels::judged only train.
 #include <cstdint>
 #include <vector>
 
@@ -13,7 +14,7 @@ struct RowSplit {
   std::vector<std::uint64_t> train, validation, test;
 };
 
-/// 60 / 20 / 20 of the databank points. Throws InputError if a part would be empty.
+/// 60 / 20 / 20 of the groups of rows. Throws InputError if a part would be empty.
 RowSplit split_by_point(const Labels& labels, std::uint64_t seed);
 /// Test: every row of one generator. The others' points: `validation_share` for validation, the rest for
 /// training. Throws InputError if the generator has no rows or no others exist.

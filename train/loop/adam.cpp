@@ -19,7 +19,16 @@ Adam::Adam(std::vector<at::Tensor> parameters, double beta1, double beta2, doubl
 Adam::~Adam() = default;
 Adam::Adam(Adam&&) noexcept = default;
 
-void Adam::step(double learning_rate) {
+double Adam::gradient_length() const {
+  double square = 0.0;
+  for (const auto& p : parameters_)
+    if (p.grad().defined()) square += p.grad().square().sum().item<double>();
+  return std::sqrt(square);
+}
+
+void Adam::step(double learning_rate, double decay, double longest) {
+  const double length = longest > 0.0 ? gradient_length() : 0.0;
+  const auto shorten = static_cast<float>(length > longest ? longest / length : 1.0);
   ++steps_;
   const auto t = static_cast<double>(steps_);
   const auto rate = static_cast<float>(learning_rate / (1.0 - std::pow(beta1_, t)));
@@ -33,12 +42,13 @@ void Adam::step(double learning_rate) {
     const at::Tensor gradient = p.grad().contiguous();
     float *w = p.data_ptr<float>(), *m = first_[i].data_ptr<float>(), *v = second_[i].data_ptr<float>();
     const float* g = gradient.data_ptr<float>();
+    const auto keep = static_cast<float>(p.dim() > 1 ? 1.0 - learning_rate * decay : 1.0);
     at::parallel_for(0, p.numel(), 1 << 15, [=](std::int64_t begin, std::int64_t end) {
       for (std::int64_t k = begin; k < end; ++k) {
-        const float mk = b1 * m[k] + a1 * g[k], vk = b2 * v[k] + a2 * g[k] * g[k];
+        const float gk = shorten * g[k], mk = b1 * m[k] + a1 * gk, vk = b2 * v[k] + a2 * gk * gk;
         m[k] = mk;
         v[k] = vk;
-        w[k] -= rate * mk / (std::sqrt(vk) * root + eps);
+        w[k] = keep * w[k] - rate * mk / (std::sqrt(vk) * root + eps);
       }
     });
     p.mutable_grad() = at::Tensor();

@@ -1,5 +1,6 @@
 #pragma once
-// Adam (Kingma and Ba 2015, algorithm 1) in one pass over memory per step.
+// Adam (Kingma and Ba 2015, algorithm 1) in one pass over memory per step, with decoupled weight decay
+// (Loshchilov and Hutter 2019) and a longest gradient where asked for.
 #include <cstdint>
 #include <vector>
 
@@ -18,14 +19,17 @@ class Adam {
   Adam(Adam&&) noexcept;
 
   /// One step with the gradients the parameters hold; parameters without a gradient stay. Clears the
-  /// gradients.
-  void step(double learning_rate);
+  /// gradients. `decay`: matrices shrink by learning_rate x decay. `longest`: the gradient of all parameters
+  /// together is shortened to it; 0: it stays.
+  void step(double learning_rate, double decay = 0.0, double longest = 0.0);
   [[nodiscard]] std::int64_t steps() const { return steps_; }
   void set_steps(std::int64_t steps) { steps_ = steps; }
   /// First moments of all parameters, then second moments: what a checkpoint holds.
   [[nodiscard]] std::vector<at::Tensor> moments() const;
 
  private:
+  [[nodiscard]] double gradient_length() const;
+
   std::vector<at::Tensor> parameters_, first_, second_;
   double beta1_, beta2_, epsilon_;
   std::int64_t steps_ = 0;

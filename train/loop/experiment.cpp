@@ -21,56 +21,81 @@ std::vector<std::string> network_names() {
   return names;
 }
 
-std::size_t count(Config& c, const std::string& key, double low) {
-  return static_cast<std::size_t>(c.require<std::int64_t>(key, {low, 1e12}));
+/// Reads keys of one table; where `common` is given, its values stand for keys that the table leaves out.
+class Keys {
+ public:
+  Keys(Config& c, std::string at, bool complete) : c_(c), at_(std::move(at)), complete_(complete) {}
+  void whole(const char* key, double low, std::size_t& value) {
+    const Range range{low, 1e12};
+    value = static_cast<std::size_t>(
+        complete_ ? c_.require<std::int64_t>(name(key), range)
+                  : c_.optional<std::int64_t>(name(key), static_cast<std::int64_t>(value), range));
+  }
+  void number(const char* key, const Range& range, double& value) {
+    value = complete_ ? c_.require<double>(name(key), range) : c_.optional<double>(name(key), value, range);
+  }
+  void choice(const char* key, const std::vector<std::string>& choices, std::string& value) {
+    value = complete_ ? c_.choice(name(key), choices) : c_.choice(name(key), choices, value);
+  }
+  void names(const char* key, std::vector<std::string>& value) {
+    if (complete_ || c_.has(name(key))) value = c_.require<std::vector<std::string>>(name(key));
+  }
+
+ private:
+  [[nodiscard]] std::string name(const char* key) const { return at_ + "." + key; }
+  Config& c_;
+  std::string at_;
+  bool complete_;
+};
+
+void read_training(Config& c, const std::string& at, bool complete, TrainingRecipe& t) {
+  Keys k(c, at, complete);
+  k.whole("epochs", 1, t.epochs);
+  k.whole("batch", 1, t.batch);
+  k.number("learning_rate", {1e-8, 1.0}, t.learning_rate);
+  k.choice("schedule", kSchedules, t.schedule);
+  k.whole("patience", 1, t.patience);
+  if (complete) k.number("validation_share", {0.01, 0.5}, t.validation_share);
+  Keys extra(c, at, false);
+  extra.number("loss_power", {0.0, 1.0}, t.loss_power);
+  extra.number("weight_decay", {0.0, 1.0}, t.weight_decay);
+  extra.number("clip", {0.0, 1e6}, t.clip);
+  extra.number("average", {0.0, 0.99999}, t.average);
 }
 
-TrainingRecipe read_training(Config& c, const std::string& at) {
-  TrainingRecipe t;
-  t.epochs = count(c, at + ".epochs", 1);
-  t.batch = count(c, at + ".batch", 1);
-  t.learning_rate = c.require<double>(at + ".learning_rate", {1e-8, 1.0});
-  t.schedule = c.choice(at + ".schedule", kSchedules);
-  t.patience = count(c, at + ".patience", 1);
-  t.validation_share = c.require<double>(at + ".validation_share", {0.01, 0.5});
-  return t;
+void read_input(Config& c, const std::string& at, bool complete, NetworkInput& i) {
+  Keys k(c, at, complete);
+  k.names("channels", i.recipe.channels);
+  k.number("start_s", {0.0, 1e6, "s"}, i.recipe.start_s);
+  k.number("end_s", {0.0, 1e6, "s"}, i.recipe.end_s);
+  k.whole("slice", 1, i.recipe.slice);
+  std::string form = data::kInputForms.at(static_cast<std::size_t>(i.recipe.form));
+  k.choice("form", data::kInputForms, form);
+  i.recipe.form =
+      static_cast<data::InputForm>(std::ranges::find(data::kInputForms, form) - data::kInputForms.begin());
+  k.whole("pca_components", 0, i.pca_components);
 }
 
 /// A table named after a network changes what stands in it for that network only.
-TrainingRecipe override_training(Config& c, const std::string& at, TrainingRecipe t) {
-  const auto whole = [&](const char* key, std::size_t& value) {
-    value = static_cast<std::size_t>(
-        c.optional<std::int64_t>(at + key, static_cast<std::int64_t>(value), {1, 1e12}));
-  };
-  whole(".epochs", t.epochs);
-  whole(".batch", t.batch);
-  whole(".patience", t.patience);
-  t.learning_rate = c.optional<double>(at + ".learning_rate", t.learning_rate, {1e-8, 1.0});
-  t.schedule = c.choice(at + ".schedule", kSchedules, t.schedule);
-  return t;
-}
-
 Preset read_preset(Config& c, const std::string& name) {
   const std::string at = "preset." + name;
   Preset p;
   p.name = name;
-  p.draws = count(c, at + ".draws", 1);
+  p.draws = static_cast<std::uint64_t>(c.require<std::int64_t>(at + ".draws", {1, 1e12}));
   p.networks = c.require<std::vector<std::string>>(at + ".networks");
-  p.input.channels = c.require<std::vector<std::string>>(at + ".channels");
-  p.input.start_s = c.require<double>(at + ".start_s", {0.0, 1e6, "s"});
-  p.input.end_s = c.require<double>(at + ".end_s", {0.0, 1e6, "s"});
-  p.input.slice = count(c, at + ".slice", 1);
-  const auto form = c.choice(at + ".form", data::kInputForms);
-  p.input.form = static_cast<data::InputForm>(
-      std::find(data::kInputForms.begin(), data::kInputForms.end(), form) - data::kInputForms.begin());
-  p.pca_components = count(c, at + ".pca_components", 0);
-  const TrainingRecipe common = read_training(c, at);
+  if (c.has("training_dataset"))
+    p.training_draws = static_cast<std::uint64_t>(c.require<std::int64_t>(at + ".training_draws", {0, 1e12}));
+  NetworkInput input;
+  TrainingRecipe training;
+  read_input(c, at, true, input);
+  read_training(c, at, true, training);
   const auto known = network_names();
   for (const auto& network : p.networks) {
     if (std::find(known.begin(), known.end(), network) == known.end())
       c.problem(at + ".networks", fmt::format("no network called '{}'", network),
                 "train/networks has no such file", fmt::format("choose among {}", fmt::join(known, ", ")));
-    p.training[network] = override_training(c, at + "." + network, common);
+    read_input(c, at + "." + network, false, p.input[network] = input);
+    read_training(c, at + "." + network, false, p.training[network] = training);
   }
   return p;
 }
@@ -84,6 +109,7 @@ Experiment read_experiment(const std::filesystem::path& file) {
   e.table = c.has("table") ? c.choice("table", {"IV", "V", "VI"}) : file.stem().string();
   e.title = c.require<std::string>("title");
   e.dataset = c.file("dataset");
+  if (c.has("training_dataset")) e.training_dataset = c.file("training_dataset");
   e.leave_one_out =
       c.choice("split", {"leave-one-generator-out", "by-databank-point"}) == "leave-one-generator-out";
   if (e.leave_one_out)
@@ -105,14 +131,27 @@ const Preset& Experiment::preset(const std::string& name) const {
                     fmt::format("{} has {}", file.string(), fmt::join(names, ", ")), "choose one of these"});
 }
 
-const TrainingRecipe& Experiment::training(const std::string& preset_name, const std::string& network) const {
-  const Preset& p = preset(preset_name);
-  const auto found = p.training.find(network);
-  if (found != p.training.end()) return found->second;
+namespace {
+template <class Value>
+const Value& of_network(const Experiment& e, const Preset& p, const std::map<std::string, Value>& values,
+                        const std::string& network) {
+  const auto found = values.find(network);
+  if (found != values.end()) return found->second;
   throw InputError(
       {fmt::format("network '{}' is not in this experiment", network), "--network",
-       fmt::format("preset {} of {} trains {}", preset_name, file.string(), fmt::join(p.networks, ", ")),
+       fmt::format("preset {} of {} trains {}", p.name, e.file.string(), fmt::join(p.networks, ", ")),
        "choose one of these or add it to the preset's networks"});
+}
+}  // namespace
+
+const TrainingRecipe& Experiment::training(const std::string& preset_name, const std::string& network) const {
+  const Preset& p = preset(preset_name);
+  return of_network(*this, p, p.training, network);
+}
+
+const NetworkInput& Experiment::input(const std::string& preset_name, const std::string& network) const {
+  const Preset& p = preset(preset_name);
+  return of_network(*this, p, p.input, network);
 }
 
 std::string Experiment::print(const std::string& preset_name, const std::string& what) const {
@@ -120,10 +159,12 @@ std::string Experiment::print(const std::string& preset_name, const std::string&
   if (what == "table") return table;
   if (what == "dataset") return dataset.string();
   if (what == "draws") return std::to_string(p.draws);
+  if (what == "training_dataset") return training_dataset.empty() ? "none" : training_dataset.string();
+  if (what == "training_draws") return std::to_string(p.training_draws);
   if (what == "networks") return fmt::format("{}", fmt::join(p.networks, "\n"));
   if (what == "folds") return folds.empty() ? "none" : fmt::format("{}", fmt::join(folds, "\n"));
   throw InputError({fmt::format("'{}' cannot be printed", what), "--print", "an experiment has no such entry",
-                    "choose among table, dataset, draws, networks, folds"});
+                    "choose among table, dataset, draws, training_dataset, training_draws, networks, folds"});
 }
 
 }  // namespace swingbank::train::loop

@@ -18,14 +18,26 @@ struct TrainingRecipe {
       schedule;  ///< "constant", or "cosine": falls to a hundredth over the epochs, after a short warm-up
   std::size_t patience = 0;       ///< epochs without a better validation error before stopping
   double validation_share = 0.0;  ///< of the training generators' databank points (leave-one-generator-out)
+  /// A parameter's squared error, in units of its variance, counts as its variance to this power: 0 counts
+  /// all parameters alike, 1 as the tables do (raw units).
+  double loss_power = 0.0;
+  double weight_decay = 0.0;  ///< of matrices, per step and learning rate (Loshchilov and Hutter 2019)
+  double clip = 0.0;          ///< longest gradient; 0: any
+  double average = 0.0;       ///< share that the averaged weights keep a step; 0: the last weights count
+};
+
+/// What a network reads.
+struct NetworkInput {
+  data::InputRecipe recipe;
+  std::size_t pca_components = 0;  ///< per second and channel, per channel of the form "physics"; 0: none
 };
 
 struct Preset {
   std::string name;
-  std::uint64_t draws = 0;  ///< events to simulate
+  std::uint64_t draws = 0;           ///< events to simulate
+  std::uint64_t training_draws = 0;  ///< events of the training dataset; 0: none
   std::vector<std::string> networks;
-  data::InputRecipe input;
-  std::size_t pca_components = 0;                  ///< per second and channel; 0: none
+  std::map<std::string, NetworkInput> input;       ///< by network
   std::map<std::string, TrainingRecipe> training;  ///< by network
 };
 
@@ -33,16 +45,18 @@ struct Experiment {
   std::filesystem::path file;
   std::string table;  ///< "IV", "V" or "VI" of the thesis; else the file's own name, which results then bear
   std::string title;
-  std::filesystem::path dataset;    ///< its config
-  bool leave_one_out = false;       ///< otherwise 60/20/20 by databank point
-  std::vector<std::int32_t> folds;  ///< generators (bus numbers) to leave out, empty for a split
+  std::filesystem::path dataset;           ///< its config
+  std::filesystem::path training_dataset;  ///< config of rows that only train; empty: none
+  bool leave_one_out = false;              ///< otherwise 60/20/20 by databank point
+  std::vector<std::int32_t> folds;         ///< generators (bus numbers) to leave out, empty for a split
   std::map<std::string, Preset> presets;
 
   /// Throws InputError that lists what there is.
   [[nodiscard]] const Preset& preset(const std::string& name) const;
   [[nodiscard]] const TrainingRecipe& training(const std::string& preset, const std::string& network) const;
-  /// One word or list for scripts: table, dataset, draws, networks, folds ("none" for a split), one a line.
-  /// Throws InputError for another key.
+  [[nodiscard]] const NetworkInput& input(const std::string& preset, const std::string& network) const;
+  /// One word or list for scripts: table, dataset, draws, training_dataset, training_draws, networks, folds
+  /// ("none" for a split), one a line. Throws InputError for another key.
   [[nodiscard]] std::string print(const std::string& preset, const std::string& key) const;
 };
 

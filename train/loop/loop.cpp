@@ -54,6 +54,12 @@ class Loop {
         adam_(weights_) {
     outputs_ = static_cast<std::int64_t>(data.targets.size() / data.stream.labels().rows);
     for (const auto& w : weights_) best_.push_back(w.detach().clone());
+    if (settings.recipe.average > 0.0)
+      for (const auto& w : weights_) average_.push_back(w.detach().clone());
+    loss_weights_ =
+        data.weights.empty()
+            ? at::ones({outputs_}, at::kFloat)
+            : at::tensor(at::ArrayRef<float>(data.weights.data(), data.weights.size()), at::kFloat);
     batches_ = (data.train.size() + settings.recipe.batch - 1) / settings.recipe.batch;
   }
 
@@ -98,7 +104,7 @@ class Loop {
     std::optional<runtime::ProductCount> count;
     if (settings_.gflops > 0.0 && operations_per_row_ == 0.0) count.emplace();
     const Tensor error = network_.forward(inputs_of(batch, data_.features), true) - targets_of(batch.rows);
-    const Tensor loss = error.square().mean();
+    const Tensor loss = (error.square() * loss_weights_).mean();
     const double value = loss.item<double>();
     if (!std::isfinite(value))
       throw InputError({"the training loss is not a number",
@@ -107,7 +113,9 @@ class Loop {
     loss.backward();
     if (count) operations_per_row_ = count->operations() / static_cast<double>(batch.rows.size());
     const auto done = at_.epoch * batches_ + at_.batch;
-    adam_.step(learning_rate(settings_.recipe, done, settings_.recipe.epochs * batches_));
+    const TrainingRecipe& recipe = settings_.recipe;
+    adam_.step(learning_rate(recipe, done, recipe.epochs * batches_), recipe.weight_decay, recipe.clip);
+    average_in(static_cast<double>(done));
     at_.loss_sum += value * static_cast<double>(batch.rows.size());
     at_.rows += static_cast<double>(batch.rows.size());
     ++at_.batch;
@@ -124,15 +132,38 @@ class Loop {
                        samples_per_s, 100.0 * samples_per_s / most, most);
   }
 
+  /// The mean starts short, so that the first weights are soon forgotten.
+  void average_in(double step) {
+    if (average_.empty()) return;
+    const double keep = std::min(settings_.recipe.average, (1.0 + step) / (10.0 + step));
+    at::NoGradGuard no_gradients;
+    for (std::size_t i = 0; i < weights_.size(); ++i) average_[i].lerp_(weights_[i], 1.0 - keep);
+  }
+  /// The weights change places with their mean.
+  void swap_average() {
+    at::NoGradGuard no_gradients;
+    for (std::size_t i = 0; i < average_.size(); ++i) {
+      const Tensor now = weights_[i].detach().clone();
+      weights_[i].copy_(average_[i]);
+      average_[i].copy_(now);
+    }
+  }
+
   /// Validation error of the epoch; keeps the weights if it is the least so far. `samples_per_s`: of its
   /// training.
   void judge(double samples_per_s) {
+    swap_average();
+    judge_weights(samples_per_s);
+    swap_average();
+  }
+  void judge_weights(double samples_per_s) {
     const std::vector<float> out = predict(network_, data_.stream, data_.features, data_.validation);
+    const float* weight = loss_weights_.data_ptr<float>();
     double sum = 0.0;
     for (std::size_t i = 0; i < out.size(); ++i) {
       const auto p = static_cast<std::size_t>(outputs_);
       const double e = out[i] - data_.targets[data_.validation[i / p] * p + i % p];
-      sum += e * e;
+      sum += e * e * weight[i % p];
     }
     const double error = sum / static_cast<double>(out.size());
     const bool better = error < at_.best;
@@ -162,6 +193,7 @@ class Loop {
     std::vector<Tensor> all = weights_;
     for (const auto& m : adam_.moments()) all.push_back(m);
     all.insert(all.end(), best_.begin(), best_.end());
+    all.insert(all.end(), average_.begin(), average_.end());
     std::vector<std::span<Value>> spans;
     for (auto& t : all) spans.emplace_back(t.data_ptr<float>(), static_cast<std::size_t>(t.numel()));
     return spans;
@@ -205,8 +237,9 @@ class Loop {
   const LoopData& data_;
   const LoopSettings& settings_;
   TrainingProgress& progress_;
-  std::vector<Tensor> weights_, best_;
+  std::vector<Tensor> weights_, best_, average_;  // the last empty unless weights are averaged
   Adam adam_;
+  Tensor loss_weights_;
   std::int64_t outputs_ = 0;
   std::size_t batches_ = 0;
   double operations_per_row_ = 0.0;  // of the products of a training step; 0: not counted

@@ -22,6 +22,7 @@ struct LoopData {
   const data::Features& features;
   std::span<const std::uint64_t> train, validation;  ///< row numbers, ascending
   std::span<const float> targets;                    ///< all rows of the dataset x outputs, scaled
+  std::span<const float> weights = {};  ///< of the outputs' squared errors, mean 1; empty: all alike
 };
 
 struct LoopSettings {
@@ -37,8 +38,9 @@ struct LoopSettings {
 struct LoopReport {
   bool finished = false;  ///< false: stopped on request, after a checkpoint
   std::size_t epochs = 0, best_epoch = 0;
-  double seconds = 0.0;     ///< wall clock, those before a resume included [s]
-  double validation = 0.0;  ///< mean squared error of the best epoch on the validation rows, scaled units
+  double seconds = 0.0;  ///< wall clock, those before a resume included [s]
+  double validation =
+      0.0;  ///< mean squared error of the best epoch on the validation rows, scaled units, weighted
 };
 
 /// Trains; the network ends with the weights of its best epoch. Throws InputError if the loss stops being a

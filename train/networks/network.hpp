@@ -23,7 +23,7 @@ struct NetworkShape {
 class Network {
  public:
   virtual ~Network() = default;
-  /// x: batch x channels x samples; returns batch x outputs >= 0. `training` switches dropout on.
+  /// x: batch x channels x samples; returns batch x outputs. `training` switches dropout on.
   virtual at::Tensor forward(const at::Tensor& x, bool training) = 0;
   /// Leaves to be trained, in a fixed order.
   virtual std::vector<at::Tensor> parameters() = 0;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 
@@ -26,21 +27,25 @@ bool already_done(const std::filesystem::path& file, const json& run) {
                     "its data or settings differ from this run's", "remove it or choose another --out"});
 }
 
-/// `predicted`: test rows x parameters, raw units.
+/// `predicted`: `rows` x parameters, raw units.
 loop::Score judge(const std::vector<double>& predicted, const data::ShardStream& stream,
-                  const data::TargetScale& scale, const data::RowSplit& split) {
+                  const data::TargetScale& scale, std::span<const std::uint64_t> rows) {
   const data::Labels& labels = stream.labels();
   const std::size_t p = labels.parameters;
   std::vector<double> truth(predicted.size());
-  for (std::size_t i = 0; i < truth.size(); ++i) truth[i] = labels.values[split.test[i / p] * p + i % p];
+  for (std::size_t i = 0; i < truth.size(); ++i) truth[i] = labels.values[rows[i / p] * p + i % p];
   const mpi::store::Dataset& d = stream.dataset();
   return loop::score({predicted, truth, scale.mean, d.parameter_names, d.parameter_units, d.parameter_low,
                       d.parameter_high});
 }
 
-std::vector<double> raw_outputs(const std::vector<float>& out, const data::TargetScale& scale) {
+/// Raw units, inside the sampling box: outside of it there is no truth to be near to.
+std::vector<double> raw_outputs(const std::vector<float>& out, const data::TargetScale& scale,
+                                const mpi::store::DatasetHeader& d) {
   std::vector<double> raw(out.size());
-  for (std::size_t i = 0; i < out.size(); ++i) raw[i] = scale.raw(out[i], i % scale.mean.size());
+  const std::size_t p = scale.mean.size();
+  for (std::size_t i = 0; i < out.size(); ++i)
+    raw[i] = std::clamp(scale.raw(out[i], i % p), d.parameter_low[i % p], d.parameter_high[i % p]);
   return raw;
 }
 
@@ -79,7 +84,7 @@ RunOutcome run_direct(const data::ShardStream& stream, const RunRequest& r, cons
                                       [&](std::size_t done) { progress.update(done, "rows estimated"); });
   loop::LoopReport report;
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  const loop::Score result = judge(found, stream, d.scale, d.split);
+  const loop::Score result = judge(found, stream, d.scale, d.split.test);
   write_text(d.file, result_json(stream, r, {d.split, nullptr, report, result}).dump(2) + "\n");
   progress.line(scored(result, report.seconds));
   return RunOutcome::done;
@@ -138,7 +143,7 @@ RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
   if (direct::is_method(r.network)) return run_direct(stream, r, {file, name, run_identity, split, scale});
   const std::vector<float> targets = scaled_targets(labels, scale, split, r.shuffle_labels, r.seed);
   const data::Features features =
-      data::Features::fit(stream, split.train, r.experiment.preset(r.preset).pca_components);
+      data::Features::fit(stream, split.train, r.experiment.input(r.preset, r.network).pca_components);
 
   loop::seed_torch(data::key(r.seed, data::Purpose::weights));
   const auto network = networks::make_network(r.network, shape_of(features, scale));
@@ -147,21 +152,26 @@ RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
       "{} training, {} validation, {} test rows; {} x {} inputs, {:.2f} million weights; {}",
       split.train.size(), split.validation.size(), split.test.size(), features.channels(), features.length(),
       static_cast<double>(networks::parameter_count(*network)) * 1e-6, r.runtime.sentence()));
+  const std::vector<float> weights = scale.weights(settings.recipe.loss_power);
   const loop::LoopReport report = loop::train_network(
-      *network, {stream, features, split.train, split.validation, targets}, settings, progress);
+      *network, {stream, features, split.train, split.validation, targets, weights}, settings, progress);
   if (!report.finished) {
     progress.line(fmt::format("saved to {}; submit the same command again to go on", checkpoint.string()));
     return RunOutcome::stopped;
   }
-  const loop::Score result =
-      judge(raw_outputs(loop::predict(*network, stream, features, split.test), scale), stream, scale, split);
+  const auto judged = [&](std::span<const std::uint64_t> rows) {
+    return judge(raw_outputs(loop::predict(*network, stream, features, rows), scale, stream.dataset()),
+                 stream, scale, rows);
+  };
+  const loop::Score result = judged(split.test);
+  const double seen = judged(split.validation).mse;
   if (r.save_network && !r.shuffle_labels)
     save_network(network_file(file), {stream, r, features, scale, split, run_identity}, *network);
-  write_text(file, result_json(stream, r, {split, &features, report, result}).dump(2) + "\n");
+  write_text(file, result_json(stream, r, {split, &features, report, result, seen}).dump(2) + "\n");
   std::filesystem::remove(checkpoint);
   lock.withdraw(true);
-  progress.line(fmt::format("{}, best epoch {} of {}", scored(result, report.seconds), report.best_epoch,
-                            report.epochs));
+  progress.line(fmt::format("{}; MSE {:.4g} on rows of generators that trained; best epoch {} of {}",
+                            scored(result, report.seconds), seen, report.best_epoch, report.epochs));
   return RunOutcome::done;
 }
 

@@ -49,7 +49,9 @@ json judged_parameters(const NetworkParts& parts, networks::Network& network) {
   const std::vector<float> out = loop::predict(network, parts.stream, parts.features, parts.split.test);
   std::vector<double> sum(p), square(p);
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const double error = parts.scale.raw(out[i], i % p) - labels.values[parts.split.test[i / p] * p + i % p];
+    const double estimate =
+        std::clamp(parts.scale.raw(out[i], i % p), d.parameter_low[i % p], d.parameter_high[i % p]);
+    const double error = estimate - labels.values[parts.split.test[i / p] * p + i % p];
     sum[i % p] += error;
     square[i % p] += error * error;
   }
@@ -69,6 +71,12 @@ json judged_parameters(const NetworkParts& parts, networks::Network& network) {
   return list;
 }
 
+json physics_json(const data::InputSelection& s) {
+  if (!s.physics) return {};
+  const data::PhysicsWindow& w = s.physics->window();
+  return {{"start_s", w.start_s}, {"end_s", w.end_s}, {"event_s", w.event_s}, {"reactance", w.reactance}};
+}
+
 json header_of(const NetworkParts& parts, networks::Network& network) {
   const mpi::store::Dataset& d = parts.stream.dataset();
   const RunRequest& r = parts.request;
@@ -83,7 +91,7 @@ json header_of(const NetworkParts& parts, networks::Network& network) {
           {"dataset", {{"name", dataset_name(d)}, {"hash", d.hash}, {"config_hash", d.config_hash}}},
           {"software", d.software},
           {"generator", r.generator ? json(*r.generator) : json()},
-          {"channels", r.experiment.preset(r.preset).input.channels},
+          {"channels", r.experiment.input(r.preset, r.network).recipe.channels},
           {"rate_per_s", d.rate},
           {"fault_start_s", start.size() == 1 ? json(start[0]) : json()},
           {"frequency_filter", filter.size() == 2 ? json(filter) : json()},
@@ -96,7 +104,10 @@ json header_of(const NetworkParts& parts, networks::Network& network) {
            {{"channels", sizes.channels},
             {"samples", sizes.samples},
             {"pca_components", sizes.pca_components},
-            {"pca_per_second", sizes.pca_per_second}}},
+            {"pca_per_second", sizes.pca_per_second},
+            {"levels", sizes.levels},
+            {"kept", sizes.kept}}},
+          {"physics", physics_json(s)},
           {"input_rms_seen", largest_input(parts.stream, parts.features, parts.split.validation)},
           {"parameters", judged_parameters(parts, network)}};
 }
@@ -133,6 +144,9 @@ NetworkInfo info_of(const json& h) {
 
 /// The weights that the shape's bias starts are read over it.
 networks::NetworkShape shape_of(const data::FeatureSizes& s, std::size_t outputs) {
+  if (s.kept > 0)
+    return {1, static_cast<std::int64_t>(s.kept + s.levels + 1), static_cast<std::int64_t>(outputs),
+            std::vector<float>(outputs, 0.0f)};
   const std::size_t seconds = s.pca_per_second > 0 ? s.samples / s.pca_per_second : 0;
   const std::size_t length = s.pca_components > 0 ? seconds * s.pca_components : s.samples;
   return {static_cast<std::int64_t>(s.channels), static_cast<std::int64_t>(length),
@@ -228,8 +242,13 @@ data::FeatureSizes SavedNetwork::read_header(const json& h) {
   selection_.form = form_of(s.at("form"));
   selection_.rate = info_.rate / static_cast<double>(selection_.step);
   info_.samples = selection_.first + (selection_.samples - 1) * selection_.step + 1;
-  const data::FeatureSizes sizes = {f.at("channels"), f.at("samples"), f.at("pca_components"),
-                                    f.at("pca_per_second")};
+  if (const json& w = h.at("physics"); !w.is_null()) {
+    selection_.physics.emplace(info_.channels, data::PhysicsWindow{info_.rate, w.at("start_s"), w.at("end_s"),
+                                                                   w.at("event_s"), w.at("reactance")});
+    info_.samples = selection_.physics->samples();
+  }
+  const data::FeatureSizes sizes = {f.at("channels"),       f.at("samples"), f.at("pca_components"),
+                                    f.at("pca_per_second"), f.at("levels"),  f.at("kept")};
   if (sizes.channels != selection_.outputs() || sizes.samples != selection_.samples)
     throw Unusable{"its sizes do not fit together"};
   return sizes;
@@ -247,7 +266,8 @@ Estimate SavedNetwork::estimate(std::span<const float> record) const {
   e.input_rms = rms(x.data_ptr<float>(), static_cast<std::size_t>(x.numel()));
   const at::Tensor y = network_->forward(x, false).contiguous();
   for (std::size_t i = 0; i < info_.parameters.size(); ++i)
-    e.values.push_back(scale_.raw(y.data_ptr<float>()[i], i));
+    e.values.push_back(
+        std::clamp(scale_.raw(y.data_ptr<float>()[i], i), info_.parameters[i].low, info_.parameters[i].high));
   return e;
 }
 

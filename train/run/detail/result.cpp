@@ -10,12 +10,12 @@ json or_null(const std::optional<double>& value) { return value ? json(*value) :
 json or_null(const std::optional<std::int32_t>& value) { return value ? json(*value) : json(); }
 
 json input_json(const data::ShardStream& stream, const RunRequest& request, const data::Features& features) {
-  const loop::Preset& p = request.experiment.preset(request.preset);
-  return {{"channels", p.input.channels},
-          {"start_s", p.input.start_s},
-          {"end_s", p.input.end_s},
+  const loop::NetworkInput& p = request.experiment.input(request.preset, request.network);
+  return {{"channels", p.recipe.channels},
+          {"start_s", p.recipe.start_s},
+          {"end_s", p.recipe.end_s},
           {"rate_per_s", stream.selection().rate},
-          {"form", data::kInputForms.at(static_cast<std::size_t>(p.input.form))},
+          {"form", data::kInputForms.at(static_cast<std::size_t>(p.recipe.form))},
           {"samples", features.length()},
           {"pca_components", p.pca_components},
           {"pca_error", features.pca() ? json(features.pca()->error()) : json()}};
@@ -27,24 +27,29 @@ std::string dataset_name(const mpi::store::Dataset& d) {
 }
 
 json identity(const data::ShardStream& stream, const RunRequest& r) {
-  const loop::Preset& p = r.experiment.preset(r.preset);
+  const loop::NetworkInput& p = r.experiment.input(r.preset, r.network);
   const loop::TrainingRecipe& t = r.experiment.training(r.preset, r.network);
   return {{"dataset", stream.dataset().hash},
+          {"training_dataset", stream.more_hash()},
           {"network", r.network},
           {"generator", or_null(r.generator)},
           {"seed", r.seed},
           {"shuffled_labels", r.shuffle_labels},
-          {"channels", p.input.channels},
-          {"window", {p.input.start_s, p.input.end_s}},
-          {"slice", p.input.slice},
-          {"form", data::kInputForms.at(static_cast<std::size_t>(p.input.form))},
+          {"channels", p.recipe.channels},
+          {"window", {p.recipe.start_s, p.recipe.end_s}},
+          {"slice", p.recipe.slice},
+          {"form", data::kInputForms.at(static_cast<std::size_t>(p.recipe.form))},
           {"pca_components", p.pca_components},
           {"epochs", r.epochs.value_or(t.epochs)},
           {"batch", t.batch},
           {"learning_rate", t.learning_rate},
           {"schedule", t.schedule},
           {"patience", t.patience},
-          {"validation_share", t.validation_share}};
+          {"validation_share", t.validation_share},
+          {"loss_power", t.loss_power},
+          {"weight_decay", t.weight_decay},
+          {"clip", t.clip},
+          {"average", t.average}};
 }
 
 json result_json(const data::ShardStream& stream, const RunRequest& r, const RunParts& parts) {
@@ -78,6 +83,7 @@ json result_json(const data::ShardStream& stream, const RunRequest& r, const Run
            parts.report.seconds / static_cast<double>(std::max<std::size_t>(parts.report.epochs, 1))},
           {"mse", parts.score.mse},
           {"mse_varied_only", parts.score.mse_varied_only},
+          {"seen_mse", or_null(parts.seen_mse)},
           {"baseline_mse", parts.score.baseline_mse},
           {"baseline_mse_varied_only", parts.score.baseline_mse_varied_only},
           {"ratio", parts.score.ratio},

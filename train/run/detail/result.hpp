@@ -18,6 +18,7 @@ struct RunParts {
   const data::Features* features;  ///< nullptr: nothing was trained
   const loop::LoopReport& report;
   const loop::Score& score;
+  std::optional<double> seen_mse = {};  ///< of the validation rows, raw units
 };
 nlohmann::json result_json(const data::ShardStream& stream, const RunRequest& request, const RunParts& parts);
 

@@ -1,0 +1,150 @@
+#include "train/data/whitening.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/problem.hpp"
+#include "base/sealed_file.hpp"
+
+namespace swingbank::train::data {
+namespace {
+
+using Eigen::Index;
+constexpr std::size_t kRowsToFit = 20000;  ///< thirty times the directions that are fitted
+constexpr float kSmallest = 1e-6f;         ///< size of a row that does not move [pu]
+constexpr double kRank = 1e-9;  ///< share of the largest variance below which a direction is rounding
+
+using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+struct Moments {
+  Eigen::RowVectorXd mean;
+  Eigen::MatrixXd covariance;
+};
+template <class M>
+Moments moments(const M& x) {
+  const Eigen::MatrixXd wide = x.template cast<double>();
+  const Eigen::RowVectorXd mean = wide.colwise().mean();
+  const Eigen::MatrixXd from = wide.rowwise() - mean;
+  return {mean, from.transpose() * from / static_cast<double>(x.rows())};
+}
+
+std::vector<float> flat(const float* values, Index count) { return {values, values + count}; }
+
+}  // namespace
+
+Whitening Whitening::fit(const ShardStream& stream, std::span<const std::uint64_t> rows,
+                         std::size_t components) {
+  const InputSelection& s = stream.selection();
+  if (components == 0 || components > s.samples)
+    throw InputError({fmt::format("{} components of {} samples", components, s.samples), "pca_components",
+                      "a channel has between 1 and as many as samples", "choose such a number"});
+  Whitening w;
+  w.sizes_ = {s.outputs(), s.samples, s.levels(), components, 0};
+  const std::size_t every = std::max<std::size_t>(1, rows.size() / kRowsToFit);
+  std::vector<std::uint64_t> some;
+  for (std::size_t i = 0; i < rows.size(); i += every) some.push_back(rows[i]);
+  Rows series(static_cast<Index>(some.size()), static_cast<Index>(s.values()));
+  stream.read(some, series.data());
+  w.fit_bases(series);
+  w.fit_whole(w.components(series.data(), some.size()));
+  return w;
+}
+
+void Whitening::fit_bases(const Rows& series) {
+  const auto n = static_cast<Index>(sizes_.samples), k = static_cast<Index>(sizes_.components);
+  const Eigen::ArrayXf size =
+      (series.leftCols(n).rowwise().squaredNorm() / static_cast<float>(n)).cwiseSqrt().array() + kSmallest;
+  for (Index c = 0; c < static_cast<Index>(sizes_.channels); ++c) {
+    const Rows own = (series.middleCols(c * n, n).array().colwise() / size).matrix();
+    const Moments m = moments(own);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(m.covariance);
+    mean_.push_back(m.mean.cast<float>());
+    basis_.push_back(solver.eigenvectors().rightCols(k).rowwise().reverse().cast<float>());
+  }
+}
+
+void Whitening::fit_whole(const Rows& components) {
+  centre_ = components.cast<double>().colwise().mean().cast<float>();
+  const Rows from = components.rowwise() - centre_;
+  unit_ = (from.cast<double>().colwise().squaredNorm() / static_cast<double>(from.rows()))
+              .cwiseSqrt()
+              .cast<float>();
+  for (float& u : unit_)
+    if (u == 0.0f) u = 1.0f;
+  const Rows scaled = (from.array().rowwise() / unit_.array()).matrix();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(moments(scaled).covariance);
+  const Eigen::VectorXd variance = solver.eigenvalues();
+  Index dropped = 0;
+  while (variance[dropped] <= kRank * variance[variance.size() - 1]) ++dropped;
+  const Index kept = variance.size() - dropped;
+  sizes_.kept = static_cast<std::size_t>(kept);
+  const Eigen::VectorXd shrink = variance.tail(kept).cwiseSqrt().cwiseInverse();
+  whole_ = (solver.eigenvectors().rightCols(kept) * shrink.asDiagonal()).cast<float>();
+}
+
+Rows Whitening::components(const float* series, std::size_t count) const {
+  const auto n = static_cast<Index>(sizes_.samples), channels = static_cast<Index>(sizes_.channels),
+             k = static_cast<Index>(sizes_.components), levels = static_cast<Index>(sizes_.levels);
+  const Eigen::Map<const Rows> all(series, static_cast<Index>(count), channels * n + levels);
+  const Eigen::ArrayXf size =
+      (all.leftCols(n).rowwise().squaredNorm() / static_cast<float>(n)).cwiseSqrt().array() + kSmallest;
+  Rows out(all.rows(), channels * k + levels + 1);
+  Rows own(all.rows(), n);
+  for (Index c = 0; c < channels; ++c) {
+    const auto at = static_cast<std::size_t>(c);
+    own = ((all.middleCols(c * n, n).array().colwise() / size).matrix()).rowwise() - mean_[at];
+    out.middleCols(c * k, k).noalias() = own * basis_[at];
+  }
+  out.middleCols(channels * k, levels) = all.rightCols(levels);
+  out.rightCols(1) = size.log().matrix();
+  return out;
+}
+
+void Whitening::apply(const float* series, std::size_t count, float* out) const {
+  const Rows all =
+      ((components(series, count).rowwise() - centre_).array().rowwise() / unit_.array()).matrix();
+  Eigen::Map<Rows> row(out, static_cast<Index>(count), static_cast<Index>(length()));
+  const auto kept = static_cast<Index>(sizes_.kept);
+  row.leftCols(kept).noalias() = all * whole_;
+  row.rightCols(row.cols() - kept) = all.rightCols(row.cols() - kept);
+  // what is far outside the training rows shall not run away
+  row = row.unaryExpr([](float v) { return std::asinh(v); });
+}
+
+std::vector<std::vector<float>> Whitening::arrays() const {
+  std::vector<std::vector<float>> all;
+  for (std::size_t c = 0; c < mean_.size(); ++c) {
+    all.push_back(flat(mean_[c].data(), mean_[c].size()));
+    all.push_back(flat(basis_[c].data(), basis_[c].size()));
+  }
+  all.push_back(flat(centre_.data(), centre_.size()));
+  all.push_back(flat(unit_.data(), unit_.size()));
+  all.push_back(flat(whole_.data(), whole_.size()));
+  return all;
+}
+
+Whitening Whitening::restore(const WhiteningSizes& sizes, std::span<const std::vector<float>> arrays) {
+  Whitening w;
+  w.sizes_ = sizes;
+  const auto n = static_cast<Index>(sizes.samples), k = static_cast<Index>(sizes.components);
+  const auto all = static_cast<Index>(sizes.channels * sizes.components + sizes.levels + 1);
+  const auto checked = [&](std::size_t i, Index length) {
+    if (arrays[i].size() != static_cast<std::size_t>(length)) throw Unusable{"an array has another length"};
+    return arrays[i].data();
+  };
+  if (arrays.size() != array_count(sizes)) throw Unusable{"it holds another number of arrays"};
+  for (std::size_t c = 0; c < sizes.channels; ++c) {
+    w.mean_.emplace_back(Eigen::Map<const Eigen::RowVectorXf>(checked(2 * c, n), n));
+    w.basis_.emplace_back(Eigen::Map<const Eigen::MatrixXf>(checked(2 * c + 1, n * k), n, k));
+  }
+  const std::size_t last = 2 * sizes.channels;
+  const auto kept = static_cast<Index>(sizes.kept);
+  w.centre_ = Eigen::Map<const Eigen::RowVectorXf>(checked(last, all), all);
+  w.unit_ = Eigen::Map<const Eigen::RowVectorXf>(checked(last + 1, all), all);
+  w.whole_ = Eigen::Map<const Eigen::MatrixXf>(checked(last + 2, all * kept), all, kept);
+  return w;
+}
+
+}  // namespace swingbank::train::data

@@ -1,0 +1,68 @@
+// A residual network on whitened inputs: one layer into a trunk of 768 numbers, three blocks that each add to
+// it (layer norm, 768, GELU, 768), layer norm, GELU, and a linear output that starts at zero about the mean
+// of the targets. The blocks start as nothing, so that the first steps train a linear map (Goyal et al. 2017,
+// section 5.1; Xiong et al. 2020 on the place of the norm).
+#include <ATen/ATen.h>
+
+#include <array>
+
+#include "train/networks/detail/layers.hpp"
+#include "train/networks/network.hpp"
+
+namespace swingbank::train::networks {
+namespace {
+using at::Tensor;
+constexpr std::int64_t kWidth = 768;
+constexpr std::size_t kBlocks = 3;
+
+struct Norm {
+  Tensor weight = at::ones({kWidth}, at::kFloat).requires_grad_(true),
+         bias = at::zeros({kWidth}, at::kFloat).requires_grad_(true);
+  [[nodiscard]] Tensor operator()(const Tensor& x) const { return at::layer_norm(x, {kWidth}, weight, bias); }
+};
+
+void start_as_zero(const Dense& layer) {
+  at::NoGradGuard no_gradients;
+  layer.weight.zero_();
+}
+
+/// One of the trunk's steps.
+struct Block {
+  Norm norm;
+  Dense first{kWidth, kWidth}, second{kWidth, kWidth};
+};
+
+class Mlp final : public Network {
+ public:
+  explicit Mlp(const NetworkShape& s)
+      : input_(s.channels * s.samples, kWidth), output_(output_layer(kWidth, s.output_bias)) {
+    for (const Block& b : blocks_) start_as_zero(b.second);
+    start_as_zero(output_);
+  }
+
+  Tensor forward(const Tensor& x, bool) override {
+    Tensor h = input_(x.reshape({x.size(0), -1}));
+    for (const Block& b : blocks_) h = h + b.second(at::gelu(b.first(b.norm(h))));
+    return output_(at::gelu(norm_(h)));
+  }
+
+  std::vector<Tensor> parameters() override {
+    std::vector<Tensor> all = {input_.weight, input_.bias};
+    for (const Block& b : blocks_)
+      all.insert(all.end(),
+                 {b.norm.weight, b.norm.bias, b.first.weight, b.first.bias, b.second.weight, b.second.bias});
+    all.insert(all.end(), {norm_.weight, norm_.bias, output_.weight, output_.bias});
+    return all;
+  }
+
+ private:
+  Dense input_;
+  std::array<Block, kBlocks> blocks_;
+  Norm norm_;
+  Dense output_;
+};
+}  // namespace
+
+std::unique_ptr<Network> make_network_mlp(const NetworkShape& shape) { return std::make_unique<Mlp>(shape); }
+
+}  // namespace swingbank::train::networks
