@@ -89,10 +89,11 @@ void describe_machines(const draw::Study& study, store::DatasetHeader& h) {
     if (!boxed(i)) held.push_back(i);
   for (const auto i : held) h.held_names.emplace_back(records[i].name);
   h.frequency = study.grid.network.frequency;
+  const bool draws_bases = study.config.operating_point && study.config.operating_point->draws_bases();
   for (const int index : study.plants) {
     const auto& plant = study.grid.plants[static_cast<std::size_t>(index)];
     h.generators.push_back(study.grid.network.buses[static_cast<std::size_t>(plant.bus)].number);
-    h.machine_base.push_back(plant.mva);
+    if (!draws_bases) h.machine_base.push_back(plant.mva);
     auto& values = h.held.emplace_back();
     for (const auto i : held) values.push_back(plant.machine.p[i]);
   }
@@ -349,6 +350,11 @@ std::string describe(const store::Dataset& d) {
     text += fmt::format(
         "  {:<18}{:>10} draws  {:5.1f} %\n", name, count,
         100.0 * static_cast<double>(count) / static_cast<double>(std::max<std::uint64_t>(draws, 1)));
+  if (const auto& points = d.operating_points; !points.empty()) {
+    const auto count = [&](const char* name) { return points.contains(name) ? points.at(name) : 0; };
+    text += fmt::format("  {} operating points; drawn again: {} without a power flow, {} implausible\n",
+                        count("used"), count("no_power_flow"), count("implausible"));
+  }
   return text + fmt::format("  config {}  dataset {}\n", d.config_hash, d.complete ? d.hash : "unfinished");
 }
 

@@ -188,6 +188,7 @@ Dataset open_dataset(const fs::path& folder, bool allow_incomplete) {
     d.shards.push_back(info_of(folder, l, d, d.rows));
     d.rows += l.rows;
     for (const auto& [name, count] : l.outcomes) d.outcomes[name] += count;
+    for (const auto& [name, count] : l.operating_points) d.operating_points[name] += count;
   }
   d.complete = d.shards.size() == d.shard_count();
   if (!d.complete && !allow_incomplete)

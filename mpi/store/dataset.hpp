@@ -26,7 +26,7 @@ struct DatasetHeader {
   std::vector<std::string> parameter_effects = {};    ///< whose they are; empty: all the machine's
   double frequency = 0.0;                             ///< of the system [Hz]; 0 in older datasets
   std::vector<std::int32_t> generators = {};   ///< bus numbers of those that vary; empty in older datasets
-  std::vector<double> machine_base = {};       ///< theirs [MVA]
+  std::vector<double> machine_base = {};       ///< theirs [MVA]; empty where each row has its own
   std::vector<std::string> held_names = {};    ///< parameters of the machine that are not among the above
   std::vector<std::vector<double>> held = {};  ///< their values, generator by generator
   [[nodiscard]] std::uint64_t shard_count() const { return (draws + draws_per_shard - 1) / draws_per_shard; }
@@ -51,6 +51,7 @@ struct Dataset : DatasetHeader {
   std::vector<ShardInfo> shards;  ///< in order of shard number
   std::uint64_t rows = 0;
   std::map<std::string, std::uint64_t> outcomes;          ///< draws by outcome
+  std::map<std::string, std::uint64_t> operating_points;  ///< as in the journal, over all shards
   bool complete = false;                                  ///< every shard of the header is in the journal
 };
 

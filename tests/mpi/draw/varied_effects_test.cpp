@@ -154,7 +154,7 @@ void expect_rows_are_runs(const DatasetConfig& config) {
   Case c(config);
   const store::ShardData d = c.maker.make(0, config.draws, [](std::uint64_t) {});
   ASSERT_GT(d.rows, 15u);
-  const Sampler sampler(c.study, c.bank);
+  Sampler sampler(c.study, c.bank);
   for (std::size_t row = 0; row < d.rows; row += 7) {
     const Draw draw = sampler.draw(d.sample_id[row]);
     sim::grid::Grid grid = c.study.grid;
