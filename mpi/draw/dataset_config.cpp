@@ -175,6 +175,33 @@ void read_databank(Config& c, DatabankConfig& b) {
       c.optional<double>("databank.candidates_per_point", b.candidates_per_point, {1.0, 1e9, ""});
 }
 
+/// [operating_point], if there is one.
+void read_operating_point(Config& c, std::optional<OperatingPointConfig>& point) {
+  if (!c.has("operating_point")) return;
+  OperatingPointConfig p;
+  const auto interval = [&](const char* key, double& low, double& high, const Range& range) {
+    if (c.has(key)) std::tie(low, high) = c.interval(key, range);
+  };
+  p.per_block = static_cast<std::uint64_t>(c.optional<std::int64_t>("operating_point.per_block", 8, kCount));
+  interval("operating_point.loads", p.loads_low, p.loads_high, {0.01, 10.0, ""});
+  p.load_spread = c.optional<double>("operating_point.load_spread", 0.0, {0.0, 0.99, ""});
+  interval("operating_point.dispatch", p.dispatch_low, p.dispatch_high, {0.01, 10.0, ""});
+  p.voltage = c.optional<double>("operating_point.voltage", 0.0, {0.0, 0.2, "pu"});
+  interval("operating_point.loading", p.loading_low, p.loading_high, {0.001, 2.0, ""});
+  p.oversized_share = c.optional<double>("operating_point.oversized_share", 0.0, {0.0, 1.0, ""});
+  interval("operating_point.oversized", p.oversized_low, p.oversized_high, {1.0, 1000.0, ""});
+  double low = 0.0, high = 0.0;
+  interval("operating_point.lines_out", low, high, {0.0, 100.0, ""});
+  p.lines_out_low = static_cast<int>(low);
+  p.lines_out_high = static_cast<int>(high);
+  if (low != p.lines_out_low || high != p.lines_out_high)
+    c.problem("operating_point.lines_out", "a part of a line", "lines are counted", "give whole numbers");
+  if (!p.draws_bases() && p.oversized_share > 0.0)
+    c.problem("operating_point.oversized_share", "oversized machines without loading",
+              "a machine's base is drawn from its loading", "give loading = [low, high] too");
+  point = p;
+}
+
 }  // namespace
 
 std::size_t RecordConfig::samples() const {
@@ -253,6 +280,18 @@ std::string DatasetConfig::canonical() const {
   line("record.channels", fmt::format("{}", fmt::join(record.channels, ", ")));
   line("record.frequency", std::vector<double>{record.frequency.washout, record.frequency.filter});
   line("kernel.tolerance", tolerance);
+  if (operating_point) {
+    const OperatingPointConfig& p = *operating_point;
+    line("operating_point.per_block", p.per_block);
+    line("operating_point.loads", std::vector<double>{p.loads_low, p.loads_high});
+    line("operating_point.load_spread", p.load_spread);
+    line("operating_point.dispatch", std::vector<double>{p.dispatch_low, p.dispatch_high});
+    line("operating_point.voltage", p.voltage);
+    line("operating_point.loading", std::vector<double>{p.loading_low, p.loading_high});
+    line("operating_point.oversized",
+         std::vector<double>{p.oversized_share, p.oversized_low, p.oversized_high});
+    line("operating_point.lines_out", std::vector<int>{p.lines_out_low, p.lines_out_high});
+  }
   return text;
 }
 
@@ -274,6 +313,7 @@ DatasetConfig read_dataset_config(const fs::path& file, const Overrides& overrid
   read_databank(c, d.databank);
   read_fault(c, d.fault);
   read_record(c, d.record);
+  read_operating_point(c, d.operating_point);
   d.tolerance = c.optional<double>("kernel.tolerance", 1e-6, {1e-12, 1e-2, ""});
   d.lanes = static_cast<int>(c.optional<std::int64_t>("kernel.lanes", 0, {0, 8, ""}));
   if (d.fault.start + d.fault.longest >= d.record.t_end && d.record.t_end > 0)

@@ -50,6 +50,21 @@ struct RecordConfig {
   [[nodiscard]] std::size_t samples() const;
 };
 
+/// Operating points drawn at random; what is not given stays as in the case file. All factors are uniform.
+struct OperatingPointConfig {
+  std::uint64_t per_block = 8;                     ///< draws that share one operating point
+  double loads_low = 1.0, loads_high = 1.0;        ///< factor of all loads and of all dispatch
+  double load_spread = 0.0;                        ///< each load by itself: factor 1 -+ this
+  double dispatch_low = 1.0, dispatch_high = 1.0;  ///< each generator's power by itself; the slack balances
+  double voltage = 0.0;                            ///< each held voltage: plus or minus this [pu]
+  /// Apparent power over machine base; 0: bases stay. So many of the machines have a base so many times
+  /// larger.
+  double loading_low = 0.0, loading_high = 0.0;
+  double oversized_share = 0.0, oversized_low = 1.0, oversized_high = 1.0;
+  int lines_out_low = 0, lines_out_high = 0;  ///< lines out of service
+  [[nodiscard]] bool draws_bases() const { return loading_high > 0.0; }
+};
+
 struct DatasetConfig {
   std::filesystem::path file, raw, dyr;
   bool psse = true;                    ///< convention, else andes
@@ -66,6 +81,7 @@ struct DatasetConfig {
   DatabankConfig databank;
   FaultConfig fault;
   RecordConfig record;
+  std::optional<OperatingPointConfig> operating_point;
   std::uint64_t draws = 0, draws_per_shard = 512, seed = 1;
   double tolerance = 1e-6;  ///< of the kernel
   int lanes = 0;            ///< of the kernel; 0: the widest of this build

@@ -5,7 +5,7 @@
 
 namespace swingbank::mpi::draw {
 
-Draw Sampler::draw(std::uint64_t sample_id) const {
+Draw Sampler::draw(std::uint64_t sample_id) {
   const DatasetConfig& c = study_.config;
   const std::uint64_t point = sample_id / c.fault.per_point, machines = study_.plants.size();
   Draw d;
@@ -25,6 +25,11 @@ Draw Sampler::draw(std::uint64_t sample_id) const {
     boxed.set(bank_.point(d.points[i]));
     boxed.put_into(d.job, plant);
   }
+  if (c.operating_point) {
+    const OperatingPoint& point = operating_.at(sample_id / c.operating_point->per_block);
+    d.job.grid = point.grid;
+    d.redrawn = point.redrawn;
+  }
   Random random(c.seed, Stream::fault, sample_id);
   const int bus = study_.fault_buses[random.below(study_.fault_buses.size())];
   const double off = c.fault.start + random.uniform(c.fault.shortest, c.fault.longest);
@@ -33,8 +38,8 @@ Draw Sampler::draw(std::uint64_t sample_id) const {
 }
 
 std::string Sampler::refusal(const Draw& draw) const {
-  const sim::grid::Grid& grid = study_.grid;
-  for (const auto& [index, plant] : sim::lanes::changed_plants(grid, draw.job)) {
+  const sim::grid::Grid& grid = draw.job.grid ? *draw.job.grid : study_.grid;
+  for (const auto& [index, plant] : sim::lanes::changed_plants(study_.grid, draw.job)) {
     if (const auto why = objection(study_.config, plant); !why.empty()) return why;
     try {
       sim::plant::operating_point(plant, grid.flow.voltage[static_cast<std::size_t>(plant.bus)],

@@ -139,6 +139,9 @@ store::ShardData ShardMaker::compact(Slots& s) const {
     const Draw& draw = s.draws[i];
     d.draw_sample_id.push_back(draw.job.id);
     d.draw_outcome.push_back(s.outcome[i]);
+    if (c.operating_point)
+      for (const std::uint32_t n : {draw.redrawn.no_power_flow, draw.redrawn.implausible})
+        d.draw_redrawn.push_back(static_cast<std::int32_t>(n));
     if (s.outcome[i] != 0) continue;
     const sim::network::BusFault& fault = draw.job.event.faults[0];
     for (std::size_t g = 0; g < s.per_draw; ++g) {
@@ -157,6 +160,7 @@ store::ShardData ShardMaker::compact(Slots& s) const {
       d.fault.insert(d.fault.end(), {static_cast<double>(buses[static_cast<std::size_t>(fault.bus)].number),
                                      fault.t_on, fault.t_off, fault.z.real(), fault.z.imag()});
       d.largest_spread.push_back(s.spread[i]);
+      if (c.operating_point) d.machine_base.push_back(draw.job.grid->plants[plant].mva);
     }
   }
   s.records.resize(d.rows * record);
@@ -194,6 +198,7 @@ store::ShardAttributes shard_attributes(const Study& study, const std::string& h
     a.channel_names.push_back(name);
     a.channel_units.emplace_back(record == nullptr ? "pu" : record->unit);
   }
+  a.operating_points = c.operating_point.has_value();
   const auto others = c.other_effects();
   for (const auto& b : c.box) {
     a.parameter_names.push_back(c.name_of(b));

@@ -76,6 +76,29 @@ draw::Databank shared_databank(const draw::Study& study, MPI_Comm world) {
   return bank;
 }
 
+/// What the machines that vary have outside their boxes.
+void describe_machines(const draw::Study& study, store::DatasetHeader& h) {
+  const auto& records = study.config.effect().parameters;
+  const auto boxed = [&](std::size_t i) {
+    return std::ranges::any_of(study.config.box, [&](const draw::Box& b) {
+      return b.effect == nullptr && b.index == static_cast<int>(i);
+    });
+  };
+  std::vector<std::size_t> held;
+  for (std::size_t i = 0; i < records.size(); ++i)
+    if (!boxed(i)) held.push_back(i);
+  for (const auto i : held) h.held_names.emplace_back(records[i].name);
+  h.frequency = study.grid.network.frequency;
+  const bool draws_bases = study.config.operating_point && study.config.operating_point->draws_bases();
+  for (const int index : study.plants) {
+    const auto& plant = study.grid.plants[static_cast<std::size_t>(index)];
+    h.generators.push_back(study.grid.network.buses[static_cast<std::size_t>(plant.bus)].number);
+    if (!draws_bases) h.machine_base.push_back(plant.mva);
+    auto& values = h.held.emplace_back();
+    for (const auto i : held) values.push_back(plant.machine.p[i]);
+  }
+}
+
 store::DatasetHeader header_of(const draw::Study& study, const store::ShardAttributes& a) {
   const draw::DatasetConfig& c = study.config;
   store::DatasetHeader h;
@@ -97,6 +120,7 @@ store::DatasetHeader header_of(const draw::Study& study, const store::ShardAttri
   h.parameter_low = a.parameter_low;
   h.parameter_high = a.parameter_high;
   h.parameter_effects = a.parameter_effects;
+  describe_machines(study, h);
   return h;
 }
 
@@ -326,6 +350,11 @@ std::string describe(const store::Dataset& d) {
     text += fmt::format(
         "  {:<18}{:>10} draws  {:5.1f} %\n", name, count,
         100.0 * static_cast<double>(count) / static_cast<double>(std::max<std::uint64_t>(draws, 1)));
+  if (const auto& points = d.operating_points; !points.empty()) {
+    const auto count = [&](const char* name) { return points.contains(name) ? points.at(name) : 0; };
+    text += fmt::format("  {} operating points; drawn again: {} without a power flow, {} implausible\n",
+                        count("used"), count("no_power_flow"), count("implausible"));
+  }
   return text + fmt::format("  config {}  dataset {}\n", d.config_hash, d.complete ? d.hash : "unfinished");
 }
 

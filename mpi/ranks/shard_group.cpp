@@ -23,11 +23,12 @@ void share_text(MPI_Comm group, int from, std::string& text) {
 /// What the arrays of all ranks will take on the disk, and room for HDF5's own few kilobytes.
 std::uint64_t size_on_disk(const store::ShardData& part, std::uint64_t rows, std::uint64_t draws) {
   const std::uint64_t fixed =
-      sizeof(std::uint64_t) + sizeof(std::int32_t) + sizeof(double) * (store::kFaultColumns + 1);
+      sizeof(std::uint64_t) + sizeof(std::int32_t) + sizeof(double) * (store::kFaultColumns + 2);
   const std::uint64_t row =
       part.channels * part.samples * sizeof(float) + part.parameter_count * sizeof(double) + fixed;
   constexpr std::uint64_t own = 64 * 1024;
-  return rows * row + draws * (sizeof(std::uint64_t) + 1) + own;
+  const std::uint64_t draw = sizeof(std::uint64_t) + 1 + store::kRedrawnColumns * sizeof(std::int32_t);
+  return rows * row + draws * draw + own;
 }
 
 template <class T>
@@ -107,6 +108,7 @@ ShardReceipt write_shard(const fs::path& file, const store::ShardData& part, MPI
   const auto hashes = gather(group, store::row_hashes(part), size);
   const auto ids = gather(group, part.draw_sample_id, size);
   const auto outcomes = gather(group, part.draw_outcome, size);
+  const auto redrawn = gather(group, part.draw_redrawn, size);
   std::uint64_t mine[2] = {part.rows, part.draw_sample_id.size()}, before[2] = {0, 0};
   MPI_Exscan(mine, before, 2, MPI_UINT64_T, MPI_SUM, group);
   if (rank == 0) before[0] = before[1] = 0;
@@ -137,7 +139,7 @@ ShardReceipt write_shard(const fs::path& file, const store::ShardData& part, MPI
     throw;
   }
   MPI_Bcast(&bytes, 1, MPI_UINT64_T, 0, group);  // the new name may not be seen on other nodes yet (NFS)
-  return {hashes.size(), ids.size(), bytes, store::shard_hash(hashes, ids, outcomes)};
+  return {hashes.size(), ids.size(), bytes, store::shard_hash(hashes, ids, outcomes, redrawn)};
 }
 
 }  // namespace swingbank::mpi::ranks

@@ -40,8 +40,24 @@ nlohmann::ordered_json to_json(const DatasetHeader& h) {
   j["parameter_low"] = h.parameter_low;
   j["parameter_high"] = h.parameter_high;
   if (!h.parameter_effects.empty()) j["parameter_effects"] = h.parameter_effects;
+  if (h.frequency > 0.0) {
+    j["frequency"] = h.frequency;
+    j["generators"] = h.generators;
+    if (!h.machine_base.empty()) j["machine_base"] = h.machine_base;
+    j["held_names"] = h.held_names;
+    j["held"] = h.held;
+  }
   j["config"] = h.config;
   return j;
+}
+
+/// What is said of the generators must be said of each.
+void require_agreement(const DatasetHeader& h) {
+  const std::size_t n = h.generators.size();
+  const bool values =
+      std::ranges::all_of(h.held, [&](const auto& v) { return v.size() == h.held_names.size(); });
+  if (h.held.size() != n || !values || (!h.machine_base.empty() && h.machine_base.size() != n))
+    throw std::runtime_error("held or machine_base is not given for each of its generators");
 }
 
 DatasetHeader from_json(const nlohmann::json& j) {
@@ -65,6 +81,14 @@ DatasetHeader from_json(const nlohmann::json& j) {
   j.at("parameter_low").get_to(h.parameter_low);
   j.at("parameter_high").get_to(h.parameter_high);
   if (j.contains("parameter_effects")) j.at("parameter_effects").get_to(h.parameter_effects);
+  if (j.contains("frequency")) {
+    j.at("frequency").get_to(h.frequency);
+    j.at("generators").get_to(h.generators);
+    if (j.contains("machine_base")) j.at("machine_base").get_to(h.machine_base);
+    j.at("held_names").get_to(h.held_names);
+    j.at("held").get_to(h.held);
+    require_agreement(h);
+  }
   j.at("config").get_to(h.config);
   if (h.draws_per_shard == 0) throw std::runtime_error("draws_per_shard is 0");
   return h;
@@ -127,6 +151,13 @@ std::vector<double> config_numbers(const DatasetHeader& header, const std::strin
   return numbers;
 }
 
+void require_machines(const DatasetHeader& header, const fs::path& folder) {
+  if (header.frequency > 0.0) return;
+  throw InputError({"no frequency and no held parameters", (folder / "dataset.json").string(),
+                    "an older version of the software made the dataset",
+                    "make the dataset again in an empty folder"});
+}
+
 DatasetHeader read_header(const fs::path& folder) {
   const fs::path file = folder / "dataset.json";
   if (!fs::exists(file))
@@ -157,6 +188,7 @@ Dataset open_dataset(const fs::path& folder, bool allow_incomplete) {
     d.shards.push_back(info_of(folder, l, d, d.rows));
     d.rows += l.rows;
     for (const auto& [name, count] : l.outcomes) d.outcomes[name] += count;
+    for (const auto& [name, count] : l.operating_points) d.operating_points[name] += count;
   }
   d.complete = d.shards.size() == d.shard_count();
   if (!d.complete && !allow_incomplete)

@@ -24,6 +24,11 @@ struct DatasetHeader {
   std::vector<std::string> channel_names, channel_units, parameter_names, parameter_units;
   std::vector<double> parameter_low, parameter_high;  ///< the sampling box
   std::vector<std::string> parameter_effects = {};    ///< whose they are; empty: all the machine's
+  double frequency = 0.0;                             ///< of the system [Hz]; 0 in older datasets
+  std::vector<std::int32_t> generators = {};   ///< bus numbers of those that vary; empty in older datasets
+  std::vector<double> machine_base = {};       ///< theirs [MVA]; empty where each row has its own
+  std::vector<std::string> held_names = {};    ///< parameters of the machine that are not among the above
+  std::vector<std::vector<double>> held = {};  ///< their values, generator by generator
   [[nodiscard]] std::uint64_t shard_count() const { return (draws + draws_per_shard - 1) / draws_per_shard; }
 };
 
@@ -45,8 +50,9 @@ struct Dataset : DatasetHeader {
   std::string hash;               ///< XXH3-64 over the shard hashes in order of shard number, 16 hex digits
   std::vector<ShardInfo> shards;  ///< in order of shard number
   std::uint64_t rows = 0;
-  std::map<std::string, std::uint64_t> outcomes;  ///< draws by outcome
-  bool complete = false;                          ///< every shard of the header is in the journal
+  std::map<std::string, std::uint64_t> outcomes;          ///< draws by outcome
+  std::map<std::string, std::uint64_t> operating_points;  ///< as in the journal, over all shards
+  bool complete = false;                                  ///< every shard of the header is in the journal
 };
 
 /// Opens a dataset. Throws InputError naming file and remedy if there is none, if a shard is missing or
@@ -76,6 +82,9 @@ void read_rows(const ShardInfo& shard, std::uint64_t first, std::uint64_t count,
 std::vector<double> config_numbers(const DatasetHeader& header, const std::string& key);
 /// What stands behind "key = " in a dataset's config; empty if it has no such line.
 std::string config_text(const DatasetHeader& header, const std::string& key);
+
+/// Throws InputError if the header says neither frequency nor what its machines hold fixed: older datasets.
+void require_machines(const DatasetHeader& header, const std::filesystem::path& folder);
 
 /// What dataset.json holds. Throws InputError if a text of the header is no UTF-8, which JSON cannot hold.
 std::string header_text(const DatasetHeader& header);

@@ -22,6 +22,7 @@ std::string journal_text(const JournalLine& l) {
   j["hash"] = l.hash;
   j["bytes"] = l.bytes;
   j["outcomes"] = l.outcomes;
+  if (!l.operating_points.empty()) j["operating_points"] = l.operating_points;
   return j.dump() + "\n";
 }
 
@@ -35,6 +36,7 @@ JournalLine parse_journal_line(const std::string& text) {
   j.at("hash").get_to(l.hash);
   j.at("bytes").get_to(l.bytes);
   j.at("outcomes").get_to(l.outcomes);
+  if (j.contains("operating_points")) j.at("operating_points").get_to(l.operating_points);
   if (l.hash.size() != 16) throw std::runtime_error("the hash has not 16 digits");
   return l;
 }

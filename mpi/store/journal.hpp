@@ -14,6 +14,9 @@ struct JournalLine {
   std::uint64_t draws = 0, rows = 0, bytes = 0;
   std::string hash;  ///< shard hash, 16 hex digits
   std::map<std::string, std::uint64_t> outcomes;
+  /// Of blocks that begin in the shard: "used", and "no_power_flow" and "implausible", which were drawn
+  /// again.
+  std::map<std::string, std::uint64_t> operating_points = {};
 };
 
 /// A line as it stands in the file, line feed included, and back. Throws std::exception if the text is no

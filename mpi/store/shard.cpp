@@ -36,6 +36,7 @@ ShardAttributes read_attributes(const h5::File& f, const fs::path& file) {
   a.parameter_low = f.reals_attribute("parameter_low");
   a.parameter_high = f.reals_attribute("parameter_high");
   if (f.has_attribute("parameter_effects")) a.parameter_effects = f.texts_attribute("parameter_effects");
+  a.operating_points = f.has("/machine_base");
   return a;
 }
 
@@ -65,6 +66,7 @@ void read_shape(const h5::File& f, const fs::path& file, const ShardShape* datas
     require_array(f, file, name, {records[0]});
   require_array(f, file, "/fault", {records[0], kFaultColumns});
   if (f.has("/angle_valid")) require_array(f, file, "/angle_valid", {records[0], records[2]});
+  if (f.has("/machine_base")) require_array(f, file, "/machine_base", {records[0]});
   out.channels = records[1];
   out.samples = records[2];
   out.parameter_count = parameters[1];
@@ -76,6 +78,7 @@ void read_block(const h5::File& f, std::uint64_t first, std::uint64_t count, con
   out.records.clear();
   out.parameters.clear();
   out.angle_valid.clear();
+  out.machine_base.clear();
   if (fields.records) f.read("/records", first, count, out.records);
   if (fields.parameters) f.read("/parameters", first, count, out.parameters);
   f.read("/sample_id", first, count, out.sample_id);
@@ -83,6 +86,7 @@ void read_block(const h5::File& f, std::uint64_t first, std::uint64_t count, con
   f.read("/fault", first, count, out.fault);
   f.read("/largest_spread", first, count, out.largest_spread);
   if (fields.angle_valid && f.has("/angle_valid")) f.read("/angle_valid", first, count, out.angle_valid);
+  if (f.has("/machine_base")) f.read("/machine_base", first, count, out.machine_base);
 }
 
 template <class T>
@@ -117,6 +121,10 @@ ShardData read_shard(const fs::path& file, const ShardFields& fields, const Shar
     require_array(f, file, "/draws/outcome", ids);
     f.read("/draws/sample_id", data.draw_sample_id);
     f.read("/draws/outcome", data.draw_outcome);
+    if (data.attributes.operating_points) {
+      require_array(f, file, "/draws/redrawn", {ids[0], kRedrawnColumns});
+      f.read("/draws/redrawn", data.draw_redrawn);
+    }
   }
   return data;
 }
@@ -165,6 +173,7 @@ std::vector<std::uint64_t> row_hashes(const RowBlock& b) {
     feed(h.state, b.fault.data() + i * kFaultColumns, kFaultColumns);
     feed(h.state, &b.largest_spread[i], 1);
     if (!b.angle_valid.empty()) feed(h.state, b.angle_valid.data() + i * b.samples, b.samples);
+    if (!b.machine_base.empty()) feed(h.state, &b.machine_base[i], 1);
     feed(h.state, b.records.data() + i * record, record);
     hashes[i] = XXH3_64bits_digest(h.state);
   }
@@ -173,16 +182,18 @@ std::vector<std::uint64_t> row_hashes(const RowBlock& b) {
 
 std::uint64_t shard_hash(const std::vector<std::uint64_t>& rows,
                          const std::vector<std::uint64_t>& draw_sample_id,
-                         const std::vector<std::uint8_t>& draw_outcome) {
+                         const std::vector<std::uint8_t>& draw_outcome,
+                         const std::vector<std::int32_t>& draw_redrawn) {
   const HashState h;
   feed(h.state, rows.data(), rows.size());
   feed(h.state, draw_sample_id.data(), draw_sample_id.size());
   feed(h.state, draw_outcome.data(), draw_outcome.size());
+  feed(h.state, draw_redrawn.data(), draw_redrawn.size());
   return XXH3_64bits_digest(h.state);
 }
 
 std::uint64_t shard_hash(const ShardData& data) {
-  return shard_hash(row_hashes(data), data.draw_sample_id, data.draw_outcome);
+  return shard_hash(row_hashes(data), data.draw_sample_id, data.draw_outcome, data.draw_redrawn);
 }
 
 std::map<std::string, std::uint64_t> count_outcomes(const std::vector<std::uint8_t>& draw_outcome,

@@ -23,6 +23,8 @@ struct ShardAttributes {
   std::vector<std::string> channel_names, channel_units, parameter_names, parameter_units;
   std::vector<double> parameter_low, parameter_high;  ///< the sampling box
   std::vector<std::string> parameter_effects = {};    ///< whose they are; empty: all the machine's
+  bool operating_points =
+      false;  ///< whether rows have a machine base and draws an operating point of their own
 };
 
 /// Rows of a shard, one per stable generator record; every array is row-major.
@@ -35,15 +37,19 @@ struct RowBlock {
   std::vector<double> fault;              ///< rows x 5: bus number, t_on [s], t_off [s], r [pu], x [pu]
   std::vector<double> largest_spread;     ///< rows: largest pairwise rotor angle [rad]
   std::vector<std::uint8_t> angle_valid;  ///< rows x samples, or empty: 0 where V = 0 and theta is held
+  std::vector<double> machine_base;       ///< rows: of the generator [MVA]; empty without operating points
 };
 
 struct ShardData : RowBlock {
   ShardAttributes attributes;
   std::vector<std::uint64_t> draw_sample_id;  ///< every draw of the shard, stable or not
   std::vector<std::uint8_t> draw_outcome;     ///< 0 ... kRefused
+  /// draws x kRedrawnColumns: how often the draw's operating point was drawn again; empty without them.
+  std::vector<std::int32_t> draw_redrawn;
 };
 
 constexpr std::size_t kFaultColumns = 5;
+constexpr std::size_t kRedrawnColumns = 2;  ///< no power flow, implausible
 /// What to do about a shard that cannot be trusted.
 constexpr const char* kRepairDataset = "run generate with --repair on the dataset: it makes the shard anew";
 /// What a draw came to; the numbers stand in /draws/outcome. The first four are sim::Outcome.
@@ -75,12 +81,14 @@ void read_rows(const std::filesystem::path& file, std::uint64_t first, std::uint
 /// file if the disk is full or the folder cannot be written; nothing is left behind then.
 void write_shard(const std::filesystem::path& file, const ShardData& data);
 
-/// XXH3-64 over sample_id, generator, parameters, fault, largest_spread, angle_valid and record of each row.
+/// XXH3-64 over sample_id, generator, parameters, fault, largest_spread, angle_valid, machine_base (both if
+/// there are any) and record of each row.
 std::vector<std::uint64_t> row_hashes(const RowBlock& block);
-/// XXH3-64 over the row hashes in order, then the draws' sample_id and outcomes.
+/// XXH3-64 over the row hashes in order, then the draws' sample_id, outcomes and redraws.
 std::uint64_t shard_hash(const std::vector<std::uint64_t>& rows,
                          const std::vector<std::uint64_t>& draw_sample_id,
-                         const std::vector<std::uint8_t>& draw_outcome);
+                         const std::vector<std::uint8_t>& draw_outcome,
+                         const std::vector<std::int32_t>& draw_redrawn);
 std::uint64_t shard_hash(const ShardData& data);
 /// Draws by outcome; those that did not occur are left out. Throws InputError naming `file` for a number that
 /// is none.

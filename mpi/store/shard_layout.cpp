@@ -33,12 +33,19 @@ void lay_out_shard(h5::File& f, const ShardData& d, ShardSize n) {
       f.create<std::uint8_t>("/angle_valid", {n.rows, d.samples});
       break;
     }
+  if (a.operating_points) {
+    f.create<double>("/machine_base", {n.rows});
+    f.attribute("unit", std::string("MVA"), "/machine_base");
+  }
   f.create_group("/draws");
   f.create<std::uint64_t>("/draws/sample_id", {n.draws});
   f.create<std::uint8_t>("/draws/outcome", {n.draws});
   std::vector<std::string> meaning;
   for (std::uint8_t i = 0; i <= kRefused; ++i) meaning.emplace_back(draw_outcome_name(i));
   f.attribute("meaning", meaning, "/draws/outcome");
+  if (!a.operating_points) return;
+  f.create<std::int32_t>("/draws/redrawn", {n.draws, kRedrawnColumns});
+  f.attribute("columns", std::vector<std::string>{"no power flow", "implausible"}, "/draws/redrawn");
 }
 
 void fill_shard(h5::File& f, const ShardData& d, std::uint64_t first_row, std::uint64_t first_draw) {
@@ -49,8 +56,11 @@ void fill_shard(h5::File& f, const ShardData& d, std::uint64_t first_row, std::u
   f.write("/fault", first_row, d.rows, d.fault.data());
   f.write("/largest_spread", first_row, d.rows, d.largest_spread.data());
   if (f.has("/angle_valid")) f.write("/angle_valid", first_row, d.rows, d.angle_valid.data());
+  if (f.has("/machine_base")) f.write("/machine_base", first_row, d.rows, d.machine_base.data());
   f.write("/draws/sample_id", first_draw, d.draw_sample_id.size(), d.draw_sample_id.data());
   f.write("/draws/outcome", first_draw, d.draw_outcome.size(), d.draw_outcome.data());
+  if (f.has("/draws/redrawn"))
+    f.write("/draws/redrawn", first_draw, d.draw_outcome.size(), d.draw_redrawn.data());
 }
 
 }  // namespace swingbank::mpi::store

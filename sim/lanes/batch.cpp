@@ -48,7 +48,8 @@ struct Batch::Impl {
 std::map<int, plant::Plant> changed_plants(const grid::Grid& grid, const Job& job) {
   std::map<int, plant::Plant> changed;
   const auto plant = [&](int index) -> plant::Plant& {
-    return changed.try_emplace(index, grid.plants[static_cast<std::size_t>(index)]).first->second;
+    const grid::Grid& at = job.grid ? *job.grid : grid;
+    return changed.try_emplace(index, at.plants[static_cast<std::size_t>(index)]).first->second;
   };
   for (const auto& [index, block, values] : job.parameters) plant::block_at(plant(index), block).p = values;
   return changed;

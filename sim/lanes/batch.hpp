@@ -35,6 +35,9 @@ struct Seed {
 /// One run to make: the event and the plants' parameters. Plants that are not listed keep the grid's own.
 struct Job {
   std::uint64_t id = 0;
+  /// The batch's grid at another operating point (grid/operating_point.hpp); none: as it is. Held while the
+  /// job runs.
+  std::shared_ptr<const grid::Grid> grid = {};
   network::Event event;
   struct BlockValues {
     int plant, block;            ///< index of the plant, and number of the block (sim/plant/parameter_id.hpp)
@@ -45,7 +48,7 @@ struct Job {
   std::vector<Seed> seeds = {};  ///< at most kDirections; only where BatchOptions::sensitivities
 };
 
-/// The plants a job changes, by index.
+/// The plants a job changes, by index; `grid`: of the batch.
 std::map<int, plant::Plant> changed_plants(const grid::Grid& grid, const Job& job);
 
 class Batch {

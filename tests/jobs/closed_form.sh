@@ -26,6 +26,10 @@ r = json.load(open(sys.argv[1]))
 assert r["mse"] < 1e-5, r["mse"]
 assert r["baseline_mse"] > 0.5 and r["epochs"] == 0 and r["input"] is None and r["test_rows"] > 10, r
 PYTHON
+cp -r "$work/data" "$work/older"
+sed -i '/^ "frequency": 60.0,$/d' "$work/older/dataset.json"
+if judge "$work/older"; then fail "a dataset that says no frequency was solved"; fi
+grep -q 'no frequency and no held parameters at' "$work/log" || fail "$(cat "$work/log")"
 if judge "$work/data" --shuffle-labels; then fail "a control run of what is not trained was made"; fi
 grep -q -- '--shuffle-labels' "$work/log" || fail "$(cat "$work/log")"
 "$swingbank" tables "$work/out" --out "$work/tables" >"$work/log" 2>&1 || fail "$(cat "$work/log")"

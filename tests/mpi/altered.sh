@@ -27,7 +27,7 @@ expect 0 "dataset $whole" ranks 3 "${make[@]}" --repair --out "$bad"
 expect 0 "every shard is as it was written" ranks 2 "$generate" --verify "$bad"
 
 # A journal that counts otherwise.
-for edit in 's/"rows":20/"rows":19/' 's/"draws":20/"draws":21/' 's/"stable":20/"stable":19/' 's/"rows":20/"rows":1000000000000000/'; do
+for edit in 's/"rows":/&1/' 's/"draws":20/"draws":21/' 's/"stable":/&1/' 's/"rows":/&1000000000000000/'; do
   rm -rf "$bad"
   cp -r "$work/data" "$bad"
   sed -i "/shard-000002/$edit" "$bad/journal.jsonl"

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <mutex>
 
 #include "base/in_parallel.hpp"
@@ -16,8 +17,7 @@ namespace swingbank::train::direct {
 namespace {
 
 namespace store = mpi::store;
-constexpr std::size_t kRowsRead = 512;   ///< rows read at once
-constexpr double kSystemFrequency = 60;  ///< of a .raw that says nothing else [Hz]
+constexpr std::size_t kRowsRead = 512;  ///< rows read at once
 
 /// What a row of the dataset is made of.
 class Rows {
@@ -39,18 +39,26 @@ class Rows {
         missing(name, problems, where);
     if (channel("theta") < 0 && channel("frequency") < 0) missing("theta or frequency", problems, where);
     problems.raise();
-    const auto filter = store::config_numbers(d, "record.frequency"),
-               frequency = store::config_numbers(d, "frequency_hz");
+    store::require_machines(d, d.path);
+    const auto filter = store::config_numbers(d, "record.frequency");
     if (filter.size() == 2) filter_ = {filter[0], filter[1]};
-    const double hz = frequency.size() == 1 ? frequency[0] : kSystemFrequency;
-    conventions_ = store::config_text(d, "convention") == "andes" ? sim::Conventions::andes(hz)
-                                                                  : sim::Conventions::psse(hz);
-    standard_ = effect_->standard_parameters();
+    conventions_ = store::config_text(d, "convention") == "andes" ? sim::Conventions::andes(d.frequency)
+                                                                  : sim::Conventions::psse(d.frequency);
+    for (const auto& name : d.held_names)
+      if (effect_->parameter_index(name) < 0)
+        problems.add("held parameter " + name, where, d.machine_model + " has no such parameter",
+                     "use the version of the software that made the dataset");
+    problems.raise();
+    for (std::size_t g = 0; g < d.generators.size(); ++g) {
+      auto& known = known_[d.generators[g]] = effect_->standard_parameters();
+      for (std::size_t k = 0; k < d.held_names.size(); ++k)
+        known[static_cast<std::size_t>(effect_->parameter_index(d.held_names[k]))] = d.held[g][k];
+    }
     for (std::size_t k = 0; k < d.parameter_names.size(); ++k) {
       const int index = effect_->parameter_index(d.parameter_names[k]);
       index_.push_back(index);
       if (d.parameter_low[k] == d.parameter_high[k]) {
-        standard_[static_cast<std::size_t>(index)] = d.parameter_low[k];
+        for (auto& [generator, known] : known_) known[static_cast<std::size_t>(index)] = d.parameter_low[k];
       } else {
         free_.push_back(index);
         low_.push_back(d.parameter_low[k]);
@@ -62,8 +70,9 @@ class Rows {
   /// One row's parameters, inside the box.
   void estimate(const store::RowBlock& block, std::size_t row, bool refined, double* out) const {
     const sim::Recording r = recording(block, row);
-    auto found = effect_->closed_form(r, standard_.data());
-    if (found.empty()) found.push_back(standard_);
+    const std::vector<double>& known = known_.at(block.generator[row]);
+    auto found = effect_->closed_form(r, known.data());
+    if (found.empty()) found.push_back(known);
     if (refined) found = {sim::direct::refine_best(*effect_, r, found, free_, low_, high_).p};
     for (std::size_t k = 0; k < index_.size(); ++k) {
       const double low = dataset_.parameter_low[k], high = dataset_.parameter_high[k];
@@ -110,7 +119,8 @@ class Rows {
   const sim::Effect* effect_ = nullptr;
   sim::Conventions conventions_;
   sim::FrequencyFilter filter_;
-  std::vector<double> standard_, low_, high_;
+  std::map<std::int32_t, std::vector<double>> known_;  ///< by generator: held parameters, standard ones else
+  std::vector<double> low_, high_;
   std::vector<int> index_, free_;
 };
 

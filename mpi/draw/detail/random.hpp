@@ -9,7 +9,7 @@
 namespace swingbank::mpi::draw {
 
 /// What a sequence of random numbers is for. The numbers are part of the datasets: never renumber.
-enum class Stream : std::uint32_t { databank = 1, fault = 2 };
+enum class Stream : std::uint32_t { databank = 1, fault = 2, operating_point = 3 };
 
 class Random {
  public:

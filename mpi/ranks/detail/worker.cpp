@@ -34,9 +34,25 @@ store::JournalLine Worker::make(std::uint64_t shard) {
   MPI_Allreduce(mine.data(), all.data(), static_cast<int>(all.size()), MPI_UINT64_T, MPI_SUM, group);
   store::JournalLine line{
       shard, shard_file_name(shard), receipt.draws, receipt.rows, receipt.bytes, hex(receipt.hash), {}};
+  line.operating_points = count_operating_points(part);
   for (std::uint8_t i = 0; i <= store::kRefused; ++i)
     if (all[i] > 0) line.outcomes[std::string(store::draw_outcome_name(i))] = all[i];
   return line;
+}
+
+/// Of blocks whose first draw is in the shard, so that each counts once however shards and ranks cut them.
+std::map<std::string, std::uint64_t> Worker::count_operating_points(const store::ShardData& part) const {
+  const auto& point = study.config.operating_point;
+  if (!point) return {};
+  std::array<std::uint64_t, 1 + store::kRedrawnColumns> mine{}, all{};
+  for (std::size_t i = 0; i < part.draw_sample_id.size(); ++i) {
+    if (part.draw_sample_id[i] % point->per_block != 0) continue;
+    ++mine[0];
+    for (std::size_t k = 0; k < store::kRedrawnColumns; ++k)
+      mine[1 + k] += static_cast<std::uint64_t>(part.draw_redrawn[i * store::kRedrawnColumns + k]);
+  }
+  MPI_Allreduce(mine.data(), all.data(), static_cast<int>(all.size()), MPI_UINT64_T, MPI_SUM, group);
+  return {{"used", all[0]}, {"no_power_flow", all[1]}, {"implausible", all[2]}};
 }
 
 void Worker::run() {

@@ -23,6 +23,9 @@ struct Worker {
   void run();
   /// Makes one shard. Collective over the group; throws InputError on all its ranks alike.
   store::JournalLine make(std::uint64_t shard);
+  /// Of one shard, for the journal. Collective over the group.
+  [[nodiscard]] std::map<std::string, std::uint64_t> count_operating_points(
+      const store::ShardData& part) const;
 };
 
 /// Name of a shard's file below the dataset folder: "shards/shard-000012.h5".

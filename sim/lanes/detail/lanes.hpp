@@ -8,6 +8,7 @@
 #include "sim/lanes/detail/internal_network.hpp"
 #include "sim/lanes/detail/lane_schedule.hpp"
 #include "sim/lanes/detail/lane_traits.hpp"
+#include "sim/lanes/detail/operating_state.hpp"
 #include "sim/lanes/detail/shared_network.hpp"
 #include "sim/lanes/detail/switched_network.hpp"
 #include "sim/plant/equations.hpp"
@@ -108,6 +109,7 @@ class Lanes {
 
   // the lanes' matrices (network.hpp)
   void share();
+  void choose_state(int lane);
   const Terminals& set_matrix(int lane, const network::Topology& topology);
   const Terminals& set_shared(int lane, const network::Topology& topology);
   std::optional<LowRank> few_products(int lane, const network::Topology& topology);
@@ -148,17 +150,17 @@ class Lanes {
 
   const grid::Grid& grid_;
   BatchOptions options_;
-  InternalNetwork network_;
-  SharedNetwork<T> shared_;                  ///< where shares_
-  std::optional<SwitchedNetwork> switched_;  ///< where shares_
-  Terminals terminals_;                      ///< of the segment a lane enters; where shares_
-  std::vector<double> own_r_, own_x_;        ///< impedances of the grid's own machines; where shares_
-  std::vector<SharedRows> recorded_rows_;    ///< per lane, of its own matrix; where shares_
+  std::shared_ptr<OperatingState> own_;                 ///< of the grid itself
+  std::vector<std::shared_ptr<OperatingState>> state_;  ///< per lane
+  SharedNetwork<T> shared_;                             ///< where shares_
+  std::optional<SwitchedNetwork> switched_;             ///< where shares_
+  Terminals terminals_;                                 ///< of the segment a lane enters; where shares_
+  std::vector<double> own_r_, own_x_;      ///< impedances of the grid's own machines; where shares_
+  std::vector<SharedRows> recorded_rows_;  ///< per lane, of its own matrix; where shares_
   std::vector<PlantSlice> plants_;
   std::vector<LoadSlice> loads_;
   std::vector<Watch> watched_;
-  std::vector<int> nonlinear_;                      ///< sources: plants, then loads
-  std::vector<plant::Operating> base_, load_base_;  ///< operating points with the grid's own parameters
+  std::vector<int> nonlinear_;            ///< sources: plants, then loads
   bool limited_ = false, timed_ = false;  ///< whether any state has limits, any effect reads the time
   bool shares_ = false;                   ///< many sources: not a matrix per lane
   std::vector<int> stopped_;              ///< states with limits at which they are held

@@ -11,9 +11,9 @@ namespace swingbank::sim::lanes {
 
 template <class T>
 Lanes<T>::Lanes(const grid::Grid& grid, const BatchOptions& options)
-    : grid_(grid), options_(options), network_(grid) {
+    : grid_(grid), options_(options), own_(std::make_shared<OperatingState>(grid)) {
   n_ = static_cast<int>(grid.plants.size());
-  sources_ = network_.sources();
+  sources_ = own_->network.sources();
   samples_ = static_cast<int>(std::floor(options.t_end * options.rate + 1e-9)) + 1;
   recorded_ = options.plants;
   if (recorded_.empty())
@@ -32,7 +32,7 @@ Lanes<T>::Lanes(const grid::Grid& grid, const BatchOptions& options)
   }
 }
 
-/// Where each source's states, coefficients and scratch lie, and its operating point.
+/// Where each source's states, coefficients and scratch lie.
 template <class T>
 void Lanes<T>::build_slices() {
   int c = 0, m = 0;
@@ -58,8 +58,6 @@ void Lanes<T>::build_slices() {
     states_ += equations.states();
     c += equations.coefficients();
     m += equations.scratch();
-    base_.push_back(plant::operating_point(plant, grid_.flow.voltage[static_cast<std::size_t>(plant.bus)],
-                                           grid_.network.base_mva, grid_.conventions));
     const bool recorded = std::ranges::find(recorded_, static_cast<int>(i)) != recorded_.end();
     add_states(*plant.machine.effect, plants_.back().c, true);
     add_spread(plants_.back().c,
@@ -86,9 +84,6 @@ void Lanes<T>::build_slices() {
     loads_.push_back({plant::LoadEquations<T>(load), states_, c});
     states_ += loads_.back().equations.states();
     c += loads_.back().equations.coefficients();
-    load_base_.push_back(plant::load_operating_point(load, load.block.p,
-                                                     grid_.flow.voltage[static_cast<std::size_t>(load.bus)],
-                                                     grid_.network.base_mva, grid_.conventions));
     add_states(*load.block.effect, loads_.back().c, true);
     add_spread(loads_.back().c, loads_.back().equations.coefficients());
   }
@@ -114,6 +109,7 @@ void Lanes<T>::reserve() {
   for (int i = 0; i < states_; ++i)
     if (needed_[static_cast<std::size_t>(i)]) wanted_.push_back(i);
   lanes_.resize(kLanes);
+  state_.assign(kLanes, own_);
   for (auto* v : {&lane_r_, &lane_x_}) v->assign(kLanes, std::vector<double>(sources));
   grounded_.resize(kLanes);
   connected_.resize(kLanes);
@@ -141,7 +137,7 @@ void Lanes<T>::load_plant(int lane, std::size_t plant, const plant::OperatingOf<
 template <class T>
 void Lanes<T>::load_consumer(int lane, std::size_t load) {
   const LoadSlice& l = loads_[load];
-  const plant::Operating& at = load_base_[load];
+  const plant::Operating& at = state_[static_cast<std::size_t>(lane)]->loads[load];
   for (std::size_t i = 0; i < at.c.size(); ++i)
     Traits::set(per_lane_.c[static_cast<std::size_t>(l.c) + i], lane, at.c[i]);
   for (std::size_t i = 0; i < at.x.size(); ++i)
@@ -152,21 +148,35 @@ void Lanes<T>::load_consumer(int lane, std::size_t load) {
   lane_x_[static_cast<std::size_t>(lane)][source] = z[plant::load_x];
 }
 
+/// The operating point a lane's job asks for: jobs that follow one another mostly share one.
+template <class T>
+void Lanes<T>::choose_state(int lane) {
+  const auto& wanted = lanes_[static_cast<std::size_t>(lane)].job.grid;
+  auto& state = state_[static_cast<std::size_t>(lane)];
+  if (!wanted) {
+    state = own_;
+    return;
+  }
+  const auto same = [&](const auto& other) { return &other->grid == wanted.get(); };
+  const auto found = std::ranges::find_if(state_, same);
+  state = found != state_.end() ? *found : std::make_shared<OperatingState>(wanted);
+}
+
 /// Brings every source of the lane to its operating point, with the job's parameters where it has any.
 template <class T>
 void Lanes<T>::load(int lane) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
-  for (std::size_t i = 0; i < plants_.size(); ++i) load_plant(lane, i, base_[i]);
+  choose_state(lane);
+  const OperatingState& state = *state_[static_cast<std::size_t>(lane)];
+  for (std::size_t i = 0; i < plants_.size(); ++i) load_plant(lane, i, state.plants[i]);
   for (std::size_t i = 0; i < loads_.size(); ++i) load_consumer(lane, i);
   const auto changed = changed_plants(grid_, run.job);
   for (const auto& [index, plant] : changed)
-    load_plant(lane, static_cast<std::size_t>(index),
-               plant::operating_point(plant, grid_.flow.voltage[static_cast<std::size_t>(plant.bus)],
-                                      grid_.network.base_mva, grid_.conventions));
+    load_plant(lane, static_cast<std::size_t>(index), state.bring(plant));
   if constexpr (Traits::directions > 0) load_seeded(lane, changed);
   for (std::size_t i = 0; i < nonlinear_.size(); ++i) {
     const auto source = static_cast<std::size_t>(nonlinear_[i]);
-    const auto& at = source < plants_.size() ? base_[source] : load_base_[source - plants_.size()];
+    const auto& at = source < plants_.size() ? state.plants[source] : state.loads[source - plants_.size()];
     Traits::set(per_lane_.vr[i], lane, at.s.Vr);
     Traits::set(per_lane_.vi[i], lane, at.s.Vi);
   }
@@ -211,12 +221,13 @@ void Lanes<T>::load_seeded(int lane, const std::map<int, plant::Plant>& changed)
   if (seeds.size() > static_cast<std::size_t>(Traits::directions))
     throw InputError({fmt::format("{} seeds", seeds.size()), "job",
                       fmt::format("a lane carries {} sensitivities", Traits::directions), "split the job"});
+  const grid::Grid& grid = state_[static_cast<std::size_t>(lane)]->grid;
   std::set<int> seeded;
   for (const Seed& seed : seeds) seeded.insert(seed.plant);
   for (const int index : seeded) {
     const auto other = changed.find(index);
     const plant::Plant& plant =
-        other == changed.end() ? grid_.plants[static_cast<std::size_t>(index)] : other->second;
+        other == changed.end() ? grid.plants[static_cast<std::size_t>(index)] : other->second;
     std::vector<std::vector<D8>> parameters;
     for (const auto& values : plant::block_parameters(plant))
       parameters.emplace_back(values.begin(), values.end());
@@ -228,8 +239,8 @@ void Lanes<T>::load_seeded(int lane, const std::map<int, plant::Plant>& changed)
     }
     load_plant(lane, static_cast<std::size_t>(index),
                plant::operating_point_of<D8>(plant, parameters,
-                                             grid_.flow.voltage[static_cast<std::size_t>(plant.bus)],
-                                             grid_.network.base_mva, grid_.conventions));
+                                             grid.flow.voltage[static_cast<std::size_t>(plant.bus)],
+                                             grid.network.base_mva, grid.conventions));
   }
 }
 

@@ -13,11 +13,12 @@ void Lanes<T>::share() {
   if (!shares_) return;
   const auto n = static_cast<std::size_t>(n_);
   for (std::size_t i = 0; i < n; ++i) {
-    const double* z = &base_[i].c[static_cast<std::size_t>(grid_.plants[i].machine.effect->coefficients)];
+    const double* z =
+        &own_->plants[i].c[static_cast<std::size_t>(grid_.plants[i].machine.effect->coefficients)];
     own_r_.push_back(z[plant::joint_r]);
     own_x_.push_back(z[plant::joint_x]);
   }
-  shared_.assign(network_.matrix({}, own_r_, own_x_));
+  shared_.assign(own_->network.matrix({}, own_r_, own_x_));
   switched_.emplace(grid_, own_r_, own_x_);
   if (BusFactors factors; factors.factor(switched_->closed())) shared_.assign(factors, switched_->plants());
   recorded_rows_.resize(kLanes);
@@ -30,7 +31,7 @@ template <class T>
 const Terminals& Lanes<T>::set_matrix(int lane, const network::Topology& topology) {
   if (shares_) return set_shared(lane, topology);
   const auto l = static_cast<std::size_t>(lane);
-  const InternalMatrix& matrix = network_.matrix(topology, lane_r_[l], lane_x_[l]);
+  const InternalMatrix& matrix = state_[l]->network.matrix(topology, lane_r_[l], lane_x_[l]);
   for (std::size_t i = 0; i < matrix.g.size(); ++i) {
     Traits::set(per_lane_.g[i], lane, matrix.g[i]);
     Traits::set(per_lane_.b[i], lane, matrix.b[i]);
@@ -47,17 +48,18 @@ const Terminals& Lanes<T>::set_shared(int lane, const network::Topology& topolog
     recorded_rows_[l].assign(shared_.own(), recorded_, *products);
     return terminals_;
   }
-  const InternalMatrix& matrix = network_.matrix(topology, lane_r_[l], lane_x_[l]);
+  const InternalMatrix& matrix = state_[l]->network.matrix(topology, lane_r_[l], lane_x_[l]);
   shared_.set(lane, matrix);
   recorded_rows_[l].assign(matrix, recorded_);
   return matrix;
 }
 
 /// What the lane's topology and machines change, and in terminals_ how the sources are then connected; none
-/// where that takes too many products.
+/// where that takes too many products, as another operating point does: it changes every load.
 template <class T>
 std::optional<LowRank> Lanes<T>::few_products(int lane, const network::Topology& topology) {
   const auto l = static_cast<std::size_t>(lane);
+  if (state_[l] != own_) return {};
   std::vector<ImpedanceChange> changes;
   for (std::size_t i = 0; i < plants_.size(); ++i)
     if (lane_r_[l][i] != own_r_[i] || lane_x_[l][i] != own_x_[i])
@@ -71,7 +73,7 @@ std::optional<LowRank> Lanes<T>::few_products(int lane, const network::Topology&
     for (std::size_t i = 0; i < plants_.size(); ++i)
       terminals_.grounded[i] = std::ranges::count(bolted, grid_.plants[i].bus) > 0;
   } else {
-    const InternalMatrix& matrix = network_.matrix(topology, own_r_, own_x_);
+    const InternalMatrix& matrix = own_->network.matrix(topology, own_r_, own_x_);
     terminals_ = matrix;
     products = difference(matrix, shared_.own(), most);
   }

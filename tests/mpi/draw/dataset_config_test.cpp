@@ -62,7 +62,7 @@ TEST(DatasetConfigFile, ValuesArriveWhereTheyBelong) {
   const Study s = load_study(folder.read());
   const DatasetConfig& c = s.config;
   EXPECT_EQ(c.points(), 60000u);
-  EXPECT_EQ(c.record.samples(), 900u);
+  EXPECT_EQ(c.record.samples(), 1800u);
   EXPECT_EQ(c.box.size(), 14u);  // the thesis's fourteen; Ra stays as in the .dyr
   EXPECT_EQ(std::ranges::count_if(c.box, &Box::sampled), 13);
   EXPECT_EQ(s.fault_buses.size(), 13u);  // any of 14 but bus 3
@@ -102,10 +102,10 @@ TEST(DatasetConfigFile, HashChangesWithEverythingBytesDependOn) {
                                                          {"\"raw\"", "\"scaled\""},
                                                          {"except = [3]", "except = [3, 4]"},
                                                          {"start = 2.0", "start = 2.5"},
-                                                         {"[0.05, 0.2]", "[0.05, 0.21]"},
+                                                         {"[0.05, 4.0]", "[0.05, 4.1]"},
                                                          {"per_point = 12", "per_point = 11"},
                                                          {"t_end = 15.0", "t_end = 14.0"},
-                                                         {"rate = 60.0", "rate = 30.0"},
+                                                         {"rate = 120.0", "rate = 30.0"},
                                                          {"\"P\", \"Q\"", "\"Q\", \"P\""}};
   for (const auto& [from, to] : changes) EXPECT_NE(config_hash(folder.read(from, to), "k"), base) << to;
   EXPECT_NE(config_hash(folder.read(), "another kernel"), base);

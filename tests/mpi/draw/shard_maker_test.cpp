@@ -37,7 +37,7 @@ std::size_t channel_index(const Case& c, const std::string& name) {
 
 TEST(Sampling, GeneratorsTakeTurnsAndFaultsShareAPoint) {
   Case c("ieee39_gencls", 40);
-  const Sampler sampler(c.study, c.bank);
+  Sampler sampler(c.study, c.bank);
   for (std::uint64_t id = 0; id < 40; ++id) {
     const Draw d = sampler.draw(id);
     EXPECT_EQ(d.recorded, (std::vector<std::size_t>{id % 10}));
@@ -46,7 +46,7 @@ TEST(Sampling, GeneratorsTakeTurnsAndFaultsShareAPoint) {
     EXPECT_LE(fault.t_off - fault.t_on, 0.2);
   }
   Case twelve("ieee14_genrou_bus3", 36);
-  const Sampler shared(twelve.study, twelve.bank);
+  Sampler shared(twelve.study, twelve.bank);
   EXPECT_EQ(shared.draw(0).job.parameters, shared.draw(11).job.parameters);
   EXPECT_NE(shared.draw(11).job.parameters, shared.draw(12).job.parameters);
   EXPECT_NE(shared.draw(0).job.event.faults[0].t_off, shared.draw(1).job.event.faults[0].t_off);
@@ -56,7 +56,7 @@ TEST(ShardMaking, RowsAreTheKernelsOwnRecords) {
   Case c("ieee39_gencls", 20);
   const store::ShardData d = c.maker.make(0, 20, no_tick);
   ASSERT_GT(d.rows, 10u);
-  const Sampler sampler(c.study, c.bank);
+  Sampler sampler(c.study, c.bank);
   sim::lanes::BatchOptions options = batch_options(c.study.config);
   options.lanes = 1;
   sim::lanes::Batch alone(c.study.grid,

@@ -105,7 +105,8 @@ TEST(VariedEffects, HashKnowsThemAndOlderConfigsKeepTheirs) {
   // What is said by a standard value and what is written out are the same dataset.
   EXPECT_EQ(config_hash(config({{"TAoverTB=0.1,TB=10,EMIN=-4,EMAX=5", "TB=10"}}), "k"),
             config_hash(config({{"TAoverTB=0.1,TB=10,EMIN=-4,EMAX=5", "TAoverTB=0.1"}}), "k"));
-  // Printed by `generate` before there were effects in configs; datasets made then are still known as theirs.
+  // Printed by `generate` before there were effects, or operating points, in configs; datasets made then are
+  // still known as theirs.
   const auto hash = [](const char* name, std::uint64_t draws) {
     Overrides o;
     o.draws = draws;
@@ -113,7 +114,9 @@ TEST(VariedEffects, HashKnowsThemAndOlderConfigsKeepTheirs) {
   };
   EXPECT_EQ(hash("ieee39_gencls.toml", 6000), "e6f92653aacc7d94");
   EXPECT_EQ(hash("ieee39_genrou.toml", 60), "b1790ef7d9bb654d");
-  EXPECT_EQ(hash("ieee14_genrou_bus3.toml", 60), "a6d0217a52e86549");
+  EXPECT_EQ(hash("ieee14_genrou_bus2.toml", 60), "4763f86c20b62327");
+  EXPECT_EQ(hash("ieee39_genrou_all.toml", 60), "085e3b6b44ddbebc");
+  EXPECT_EQ(hash("ieee39_genrou_sexs.toml", 60), "e51f40b0855bdc91");
 }
 
 TEST(VariedEffects, PointsKeepTheirDistanceInTheNormalisedSpace) {
@@ -151,7 +154,7 @@ void expect_rows_are_runs(const DatasetConfig& config) {
   Case c(config);
   const store::ShardData d = c.maker.make(0, config.draws, [](std::uint64_t) {});
   ASSERT_GT(d.rows, 15u);
-  const Sampler sampler(c.study, c.bank);
+  Sampler sampler(c.study, c.bank);
   for (std::size_t row = 0; row < d.rows; row += 7) {
     const Draw draw = sampler.draw(d.sample_id[row]);
     sim::grid::Grid grid = c.study.grid;

@@ -173,6 +173,32 @@ TEST(DatasetFolder, HeaderThatJsonCannotHoldIsRefused) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path));
 }
 
+TEST(DatasetFolder, HeaderSaysWhatTheMachinesHold) {
+  const Folder folder;
+  DatasetHeader h;
+  h.draws_per_shard = 1;
+  write_header(folder.path, h);  // as an older version wrote it
+  EXPECT_THAT(sentence_of([&] { require_machines(read_header(folder.path), folder.path); }),
+              HasSubstr("an older version of the software made the dataset"));
+  h.frequency = 50.0;
+  h.generators = {30, 31};
+  h.machine_base = {1000.0, 700.0};
+  h.held_names = {"Ra", "Xdp"};
+  h.held = {{0.0, 0.28}, {0.002, 0.3}};
+  write_header(folder.path, h);
+  const DatasetHeader back = read_header(folder.path);
+  require_machines(back, folder.path);
+  EXPECT_EQ(back.frequency, 50.0);
+  EXPECT_EQ(back.generators, h.generators);
+  EXPECT_EQ(back.machine_base, h.machine_base);
+  EXPECT_EQ(back.held_names, h.held_names);
+  EXPECT_EQ(back.held, h.held);
+  h.held.pop_back();
+  write_header(folder.path, h);
+  EXPECT_THAT(sentence_of([&] { read_header(folder.path); }),
+              HasSubstr("held or machine_base is not given for each of its generators"));
+}
+
 TEST(DatasetFolder, NoDatasetIsNamed) {
   const Folder folder;
   EXPECT_THAT(sentence_of([&] { open_dataset(folder.path); }), HasSubstr("holds no dataset.json"));

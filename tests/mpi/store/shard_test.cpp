@@ -45,6 +45,30 @@ TEST(Shard, ComesBackAsWritten) {
   EXPECT_FALSE(std::filesystem::exists(temporary_name(folder.path / "a.h5")));
 }
 
+TEST(Shard, KeepsMachineBasesAndRedraws) {
+  const Folder folder;
+  ShardData d = sample_shard();
+  const std::uint64_t plain = shard_hash(d);
+  d.attributes.operating_points = true;
+  d.machine_base = {100.0, 200.0, 300.0, 400.0, 500.0};
+  d.draw_redrawn = {0, 0, 1, 2, 0, 0, 0, 3, 0, 0};
+  EXPECT_NE(shard_hash(d), plain);
+  write_shard(folder.path / "a.h5", d);
+  const ShardData r = read_shard(folder.path / "a.h5");
+  EXPECT_TRUE(r.attributes.operating_points);
+  EXPECT_EQ(r.machine_base, d.machine_base);
+  EXPECT_EQ(r.draw_redrawn, d.draw_redrawn);
+  EXPECT_EQ(shard_hash(r), shard_hash(d));
+  RowBlock b;
+  read_rows(folder.path / "a.h5", 3, 2, b);
+  EXPECT_EQ(b.machine_base, (std::vector<double>{400.0, 500.0}));
+  d.machine_base.back() += 1.0;
+  const std::uint64_t other = shard_hash(d);
+  EXPECT_NE(other, shard_hash(r));
+  ++d.draw_redrawn[0];
+  EXPECT_NE(shard_hash(d), other);
+}
+
 TEST(Shard, RangeOfRows) {
   const Folder folder;
   write_shard(folder.path / "a.h5", sample_shard());

@@ -1,0 +1,144 @@
+#include "mpi/draw/operating_points.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "mpi/draw/detail/random.hpp"
+#include "sim/grid/operating_point.hpp"
+#include "sim/network/connectivity.hpp"
+
+namespace swingbank::mpi::draw {
+
+namespace {
+
+namespace network = sim::network;
+
+/// So many draws in a row that cannot be used mean that the config asks for what the grid cannot do. Also the
+/// number of keys each block has: part of the datasets, never change it.
+constexpr std::uint64_t kMostDraws = 100;
+/// Voltages at which no grid is run for long [pu]: beyond, a power flow is one of the equations alone.
+constexpr double kLowestVoltage = 0.85, kHighestVoltage = 1.15;
+constexpr int kLineTries = 1000;  ///< picks until a line is found that may be missing
+
+void draw_loads(const OperatingPointConfig& c, double common, Random& random, network::Network& n) {
+  for (auto& load : n.loads) {
+    const double s = common * random.uniform(1.0 - c.load_spread, 1.0 + c.load_spread);
+    load.power *= s;
+    load.current *= s;
+    load.admittance *= s;
+  }
+}
+
+/// Generators at one bus hold one voltage: the first one's counts.
+void draw_generators(const OperatingPointConfig& c, double common, Random& random, network::Network& n) {
+  std::vector<double> held(n.buses.size(), 0.0);
+  for (auto& g : n.generators) {
+    g.p *= common * random.uniform(c.dispatch_low, c.dispatch_high);
+    const double v = g.vset + random.uniform(-c.voltage, c.voltage);
+    if (!g.in_service) continue;
+    double& here = held[static_cast<std::size_t>(g.bus)];
+    if (here == 0.0) here = v;
+    g.vset = here;
+  }
+}
+
+/// Takes lines out of service without cutting the grid apart; false if not so many can be found.
+bool draw_lines(const OperatingPointConfig& c, Random& random, network::Network& n) {
+  const auto parts = [&] { return std::ranges::max(network::islands(n)); };
+  const int whole = parts();
+  auto left = static_cast<std::uint64_t>(c.lines_out_low) +
+              random.below(static_cast<std::uint64_t>(c.lines_out_high - c.lines_out_low + 1));
+  for (int i = 0; left > 0 && i < kLineTries; ++i) {
+    auto& line = n.branches[random.below(n.branches.size())];
+    if (line.transformer || !line.in_service) continue;
+    line.in_service = false;
+    if (parts() == whole)
+      --left;
+    else
+      line.in_service = true;
+  }
+  return left == 0;
+}
+
+/// Machine bases from what the power flow asks of the machines.
+void draw_bases(const OperatingPointConfig& c, Random& random, sim::grid::Grid& grid) {
+  for (std::size_t i = 0; i < grid.plants.size(); ++i) {
+    const double loading = random.uniform(c.loading_low, c.loading_high);
+    const bool oversized = random.uniform() < c.oversized_share;
+    const double times = random.uniform(c.oversized_low, c.oversized_high);
+    if (!c.draws_bases()) continue;
+    const double mva = std::abs(grid.plants[i].generation) * grid.network.base_mva;
+    sim::grid::set_machine_base(grid, i, mva / loading * (oversized ? times : 1.0));
+  }
+}
+
+bool plausible(const sim::grid::Grid& grid, const sim::grid::Grid& own) {
+  for (std::size_t i = 0; i < grid.network.buses.size(); ++i) {
+    const double v = std::abs(grid.flow.voltage[i]);
+    const bool live = grid.network.buses[i].type != network::BusType::isolated;
+    if (live && !(v >= kLowestVoltage && v <= kHighestVoltage)) return false;
+  }
+  for (std::size_t i = 0; i < grid.plants.size(); ++i) {
+    const auto& plant = grid.plants[i];
+    // No generator turns into a motor: the slack balances what is drawn for the others.
+    if (own.plants[i].generation.real() > 0.0 && plant.generation.real() <= 0.0) return false;
+    if (!(plant.mva > 0.0)) return false;
+    try {
+      sim::plant::operating_point(plant, grid.flow.voltage[static_cast<std::size_t>(plant.bus)],
+                                  grid.network.base_mva, grid.conventions);
+    } catch (const InputError&) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// One draw; none, and the reason counted, if it cannot be used.
+std::shared_ptr<const sim::grid::Grid> try_once(const Study& study, std::uint64_t key, Redrawn& redrawn) {
+  const OperatingPointConfig& c = *study.config.operating_point;
+  Random random(study.config.seed, Stream::operating_point, key);
+  network::Network n = study.grid.network;
+  const double common = random.uniform(c.loads_low, c.loads_high);
+  draw_loads(c, common, random, n);
+  draw_generators(c, common, random, n);
+  if (!draw_lines(c, random, n)) {
+    ++redrawn.implausible;
+    return {};
+  }
+  std::shared_ptr<sim::grid::Grid> grid;
+  try {
+    grid = std::make_shared<sim::grid::Grid>(sim::grid::at_operating_point(study.grid, std::move(n)));
+  } catch (const InputError&) {
+    ++redrawn.no_power_flow;
+    return {};
+  }
+  draw_bases(c, random, *grid);
+  if (plausible(*grid, study.grid)) return grid;
+  ++redrawn.implausible;
+  return {};
+}
+
+OperatingPoint draw_point(const Study& study, std::uint64_t block) {
+  OperatingPoint point;
+  for (std::uint64_t i = 0; i < kMostDraws && !point.grid; ++i)
+    point.grid = try_once(study, block * kMostDraws + i, point.redrawn);
+  if (point.grid) return point;
+  throw InputError({fmt::format("no operating point for block {}", block), study.config.file.string(),
+                    fmt::format("of {} draws {} had no power flow and {} were implausible", kMostDraws,
+                                point.redrawn.no_power_flow, point.redrawn.implausible),
+                    "narrow loads, dispatch, voltage or lines_out of [operating_point]"});
+}
+
+}  // namespace
+
+const OperatingPoint& OperatingPoints::at(std::uint64_t block) {
+  if (!latest_ || block_ != block) {
+    latest_ = draw_point(study_, block);
+    block_ = block;
+  }
+  return *latest_;
+}
+
+}  // namespace swingbank::mpi::draw
