@@ -26,7 +26,7 @@ struct TrainingOptions {
   void add_to(jobs::CommandLine& line) {
     line.add("DATASET", dataset, "folder that `swingbank generate` wrote");
     line.add("--training-rows", training_rows,
-             "folder of a second dataset whose rows only train (the experiment's training_dataset)");
+             "folder of the experiment's training_dataset, for a network that trains on its rows too");
     line.add("--experiment", experiment, "file of configs/experiments: table, dataset, presets").required();
     line.add("--preset", preset, "preset of the experiment: quick, nightly or thesis").shows_default();
     line.add("--network", network, "network of the preset (default: its first)");
@@ -42,8 +42,10 @@ struct TrainingOptions {
     line.add_flag("--shuffle-labels", shuffle_labels, "control run: must score about as the mean does");
     line.add_flag_off("--no-network", save_network,
                       "do not write the trained network beside its result (4 bytes a weight)");
-    line.add("--print", print,
-             "print one entry of the experiment and end: table, dataset, draws, networks, folds");
+    line.add(
+        "--print", print,
+        "print one entry of the experiment and end: table, dataset, draws, training_dataset, training_draws, "
+        "training_rows, networks, folds");
   }
 
   /// Throws InputError if an option that a run needs is missing.
@@ -63,7 +65,16 @@ struct TrainingOptions {
     r.shuffle_labels = shuffle_labels;
     r.save_network = save_network;
     r.out = out;
+    check_training_rows(r.experiment.training(preset, r.network).training_rows, r.network);
     return r;
+  }
+  /// A run with other rows than its experiment says would bear the name of the right one.
+  void check_training_rows(bool wanted, const std::string& of) const {
+    if (wanted == !training_rows.empty()) return;
+    throw InputError({wanted ? "no rows that only train" : "rows that only train", "--training-rows",
+                      fmt::format("network {} of preset {} in {} {} them", of, preset, experiment,
+                                  wanted ? "trains on" : "does not train on"),
+                      wanted ? "give the folder of the experiment's training_dataset" : "leave it out"});
   }
   [[nodiscard]] train::data::ShardStream open(const train::run::RunRequest& r) const {
     const auto bytes = static_cast<std::uint64_t>(memory_limit * static_cast<double>(std::uint64_t{1} << 30));

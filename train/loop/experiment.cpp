@@ -37,6 +37,7 @@ class Keys {
   void choice(const char* key, const std::vector<std::string>& choices, std::string& value) {
     value = complete_ ? c_.choice(name(key), choices) : c_.choice(name(key), choices, value);
   }
+  void flag(const char* key, bool& value) { value = c_.optional<bool>(name(key), value); }
   void names(const char* key, std::vector<std::string>& value) {
     if (complete_ || c_.has(name(key))) value = c_.require<std::vector<std::string>>(name(key));
   }
@@ -61,6 +62,7 @@ void read_training(Config& c, const std::string& at, bool complete, TrainingReci
   extra.number("weight_decay", {0.0, 1.0}, t.weight_decay);
   extra.number("clip", {0.0, 1e6}, t.clip);
   extra.number("average", {0.0, 0.99999}, t.average);
+  extra.flag("training_rows", t.training_rows);
 }
 
 void read_input(Config& c, const std::string& at, bool complete, NetworkInput& i) {
@@ -96,6 +98,9 @@ Preset read_preset(Config& c, const std::string& name) {
                 "train/networks has no such file", fmt::format("choose among {}", fmt::join(known, ", ")));
     read_input(c, at + "." + network, false, p.input[network] = input);
     read_training(c, at + "." + network, false, p.training[network] = training);
+    if (p.training[network].training_rows && p.training_draws == 0)
+      c.problem(at + "." + network + ".training_rows", "no rows that only train",
+                "the experiment has no training_dataset, or the preset no training_draws", "give both");
   }
   return p;
 }
@@ -142,6 +147,13 @@ const Value& of_network(const Experiment& e, const Preset& p, const std::map<std
        fmt::format("preset {} of {} trains {}", p.name, e.file.string(), fmt::join(p.networks, ", ")),
        "choose one of these or add it to the preset's networks"});
 }
+
+std::string training_networks(const Preset& p) {
+  std::vector<std::string> names;
+  for (const auto& network : p.networks)
+    if (p.training.at(network).training_rows) names.push_back(network);
+  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, "\n"));
+}
 }  // namespace
 
 const TrainingRecipe& Experiment::training(const std::string& preset_name, const std::string& network) const {
@@ -161,10 +173,13 @@ std::string Experiment::print(const std::string& preset_name, const std::string&
   if (what == "draws") return std::to_string(p.draws);
   if (what == "training_dataset") return training_dataset.empty() ? "none" : training_dataset.string();
   if (what == "training_draws") return std::to_string(p.training_draws);
+  if (what == "training_rows") return training_networks(p);
   if (what == "networks") return fmt::format("{}", fmt::join(p.networks, "\n"));
   if (what == "folds") return folds.empty() ? "none" : fmt::format("{}", fmt::join(folds, "\n"));
-  throw InputError({fmt::format("'{}' cannot be printed", what), "--print", "an experiment has no such entry",
-                    "choose among table, dataset, draws, training_dataset, training_draws, networks, folds"});
+  throw InputError(
+      {fmt::format("'{}' cannot be printed", what), "--print", "an experiment has no such entry",
+       "choose among table, dataset, draws, training_dataset, training_draws, training_rows, networks, "
+       "folds"});
 }
 
 }  // namespace swingbank::train::loop

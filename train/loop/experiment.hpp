@@ -21,9 +21,10 @@ struct TrainingRecipe {
   /// A parameter's squared error, in units of its variance, counts as its variance to this power: 0 counts
   /// all parameters alike, 1 as the tables do (raw units).
   double loss_power = 0.0;
-  double weight_decay = 0.0;  ///< of matrices, per step and learning rate (Loshchilov and Hutter 2019)
-  double clip = 0.0;          ///< longest gradient; 0: any
-  double average = 0.0;       ///< share that the averaged weights keep a step; 0: the last weights count
+  double weight_decay = 0.0;   ///< of matrices, per step and learning rate (Loshchilov and Hutter 2019)
+  double clip = 0.0;           ///< longest gradient; 0: any
+  double average = 0.0;        ///< share that the averaged weights keep a step; 0: the last weights count
+  bool training_rows = false;  ///< the rows of the training dataset train too
 };
 
 /// What a network reads.
@@ -55,8 +56,9 @@ struct Experiment {
   [[nodiscard]] const Preset& preset(const std::string& name) const;
   [[nodiscard]] const TrainingRecipe& training(const std::string& preset, const std::string& network) const;
   [[nodiscard]] const NetworkInput& input(const std::string& preset, const std::string& network) const;
-  /// One word or list for scripts: table, dataset, draws, training_dataset, training_draws, networks, folds
-  /// ("none" for a split), one a line. Throws InputError for another key.
+  /// One word or list for scripts: table, dataset, draws, training_dataset, training_draws, training_rows
+  /// (the networks that train on them), networks, folds ("none" for a split), one a line. Throws InputError
+  /// for another key.
   [[nodiscard]] std::string print(const std::string& preset, const std::string& key) const;
 };
 
