@@ -9,20 +9,23 @@
 
 #include "base/in_parallel.hpp"
 #include "sim/core/frequency.hpp"
+#include "sim/direct/likelihood.hpp"
 #include "sim/direct/refine.hpp"
+#include "sim/direct/smooth.hpp"
 #include "sim/library/library.hpp"
 
 namespace swingbank::train::direct {
 namespace {
 
 namespace store = mpi::store;
-constexpr std::size_t kRowsRead = 512;   ///< rows read at once
-constexpr double kSystemFrequency = 60;  ///< of a .raw that says nothing else [Hz]
+constexpr std::size_t kRowsRead = 512;              ///< rows read at once
+enum class Method { closed_form, refined, floor };  ///< in order of kMethods
 
 /// What a row of the dataset is made of.
 class Rows {
  public:
-  explicit Rows(const store::Dataset& d) : dataset_(d) {
+  Rows(const store::Dataset& d, Method method, const data::NoiseRecipe& noise)
+      : dataset_(d), method_(method), noise_(d, noise), level_{noise.level} {
     Problems problems;
     const std::string where = (d.path / "dataset.json").string();
     effect_ = sim::library::compiled().find(d.machine_model);
@@ -39,10 +42,10 @@ class Rows {
         missing(name, problems, where);
     if (channel("theta") < 0 && channel("frequency") < 0) missing("theta or frequency", problems, where);
     problems.raise();
-    const auto filter = store::config_numbers(d, "record.frequency"),
-               frequency = store::config_numbers(d, "frequency_hz");
-    if (filter.size() == 2) filter_ = {filter[0], filter[1]};
-    const double hz = frequency.size() == 1 ? frequency[0] : kSystemFrequency;
+    filter_ = data::frequency_filter(d);
+    const auto start = store::config_numbers(d, "fault.start");
+    if (start.size() == 1) event_ = start[0];
+    const double hz = data::system_frequency(d);
     conventions_ = store::config_text(d, "convention") == "andes" ? sim::Conventions::andes(hz)
                                                                   : sim::Conventions::psse(hz);
     standard_ = effect_->standard_parameters();
@@ -55,24 +58,57 @@ class Rows {
         free_.push_back(index);
         low_.push_back(d.parameter_low[k]);
         high_.push_back(d.parameter_high[k]);
+        unknown_.push_back(sim::direct::uniform_parameter(index, low_.back(), high_.back()));
       }
     }
+    add_what_the_dataset_hides();
   }
 
-  /// One row's parameters, inside the box.
-  void estimate(const store::RowBlock& block, std::size_t row, bool refined, double* out) const {
-    const sim::Recording r = recording(block, row);
-    auto found = effect_->closed_form(r, standard_.data());
-    if (found.empty()) found.push_back(standard_);
-    if (refined) found = {sim::direct::refine_best(*effect_, r, found, free_, low_, high_).p};
+  /// One row's parameters, inside the box; of a floor see direct.hpp.
+  void estimate(store::RowBlock& block, std::size_t row, std::uint64_t number, double* out) const {
+    if (method_ == Method::floor) return floor(block, row, out);
+    if (!noise_.none()) noise_.add(number, block.records.data() + row * block.channels * block.samples);
+    const std::vector<double> p = found(recording(block, row));
     for (std::size_t k = 0; k < index_.size(); ++k) {
       const double low = dataset_.parameter_low[k], high = dataset_.parameter_high[k];
-      const double value = found.front()[static_cast<std::size_t>(index_[k])];
+      const double value = p[static_cast<std::size_t>(index_[k])];
       out[k] = std::isfinite(value) ? std::clamp(value, low, high) : 0.5 * (low + high);
     }
   }
 
  private:
+  /// Machine data that the dataset neither varies nor holds and that has no neutral value, like the reactance
+  /// of a classical machine, is unknown as well where the whole machine is fitted.
+  void add_what_the_dataset_hides() {
+    for (std::size_t i = 0; i < effect_->parameters.size(); ++i) {
+      const auto& p = effect_->parameters[i];
+      const int index = static_cast<int>(i);
+      if (std::ranges::find(index_, index) != index_.end() || p.is_code() || !std::isnan(p.neutral)) continue;
+      hidden_.push_back(sim::direct::uniform_parameter(index, p.low, p.high));
+      hidden_.back().mean = p.standard;
+    }
+    unknown_.insert(unknown_.end(), hidden_.begin(), hidden_.end());
+  }
+  [[nodiscard]] std::vector<double> found(const sim::Recording& r) const {
+    auto all = effect_->closed_form(noise_.none() ? r : sim::direct::smoothed(r), standard_.data());
+    if (all.empty()) all.push_back(standard_);
+    if (method_ == Method::closed_form) return all.front();
+    if (noise_.none()) return sim::direct::refine_best(*effect_, r, all, free_, low_, high_).p;
+    return sim::direct::most_probable_of(*effect_, r, all, unknown_).p;
+  }
+  void floor(const store::RowBlock& block, std::size_t row, double* out) const {
+    const sim::Recording r = recording(block, row);
+    std::vector<double> truth = standard_;
+    const double* labels = block.parameters.data() + row * index_.size();
+    for (std::size_t k = 0; k < index_.size(); ++k) truth[static_cast<std::size_t>(index_[k])] = labels[k];
+    if (!hidden_.empty()) truth = sim::direct::most_probable(*effect_, r, truth, hidden_).p;
+    const auto variance = sim::direct::error_bound(*effect_, r, truth, unknown_);
+    std::copy_n(labels, index_.size(), out);
+    for (std::size_t k = 0; k < free_.size(); ++k) {
+      const auto at = std::ranges::find(index_, free_[k]) - index_.begin();
+      out[at] += std::sqrt(variance[k]);
+    }
+  }
   [[nodiscard]] int channel(std::string_view name) const {
     const auto at = std::ranges::find(dataset_.channel_names, name);
     return at == dataset_.channel_names.end() ? -1 : static_cast<int>(at - dataset_.channel_names.begin());
@@ -85,6 +121,8 @@ class Rows {
     sim::Recording r;
     r.step = 1 / dataset_.rate;
     r.conventions = conventions_;
+    r.noise = level_;
+    r.event = event_;
     const auto series = [&](std::string_view name, std::vector<double>& out) {
       const int c = channel(name);
       if (c < 0) return;
@@ -110,8 +148,13 @@ class Rows {
   const sim::Effect* effect_ = nullptr;
   sim::Conventions conventions_;
   sim::FrequencyFilter filter_;
+  Method method_;
+  data::RecordNoise noise_;
+  sim::MeasurementNoise level_;
+  double event_ = 0;  ///< [s]
   std::vector<double> standard_, low_, high_;
   std::vector<int> index_, free_;
+  std::vector<sim::direct::FreeParameter> unknown_, hidden_;
 };
 
 }  // namespace
@@ -119,8 +162,13 @@ class Rows {
 bool is_method(std::string_view name) { return std::ranges::find(kMethods, name) != kMethods.end(); }
 
 std::vector<double> estimate(const store::Dataset& d, std::span<const std::uint64_t> rows,
-                             std::string_view method, const std::function<void(std::size_t)>& tell) {
-  const Rows reader(d);
+                             std::string_view method, const data::NoiseRecipe& noise,
+                             const std::function<void(std::size_t)>& tell) {
+  const auto which = static_cast<Method>(std::ranges::find(kMethods, method) - kMethods.begin());
+  if (which == Method::floor && noise.level == 0)
+    throw InputError({"a floor without noise", "--network floor", "records without noise have none",
+                      "give --noise, or choose another method"});
+  const Rows reader(d, which, noise);
   const std::size_t p = d.parameter_names.size();
   std::vector<double> out(rows.size() * p);
   std::size_t done = 0;
@@ -135,7 +183,8 @@ std::vector<double> estimate(const store::Dataset& d, std::span<const std::uint6
       in_parallel(
           last - done,
           [&](std::size_t k) {
-            reader.estimate(block, rows[done + k] - first, method == kMethods[1], &out[(done + k) * p]);
+            const std::uint64_t row = rows[done + k];
+            reader.estimate(block, row - first, row, &out[(done + k) * p]);
           },
           [](int) {});
       done = last;

@@ -13,6 +13,7 @@ namespace swingbank::train::loop {
 namespace {
 
 const std::vector<std::string> kSchedules = {"constant", "cosine"};
+const Range kNoiseLevels = {0.0, 0.1};  // at more, a phasor is no measurement
 
 std::vector<std::string> network_names() {
   std::vector<std::string> names;
@@ -56,6 +57,7 @@ Preset read_preset(Config& c, const std::string& name) {
   p.name = name;
   p.draws = count(c, at + ".draws", 1);
   p.networks = c.require<std::vector<std::string>>(at + ".networks");
+  p.noise = c.require<std::vector<double>>(at + ".noise", kNoiseLevels);
   p.input.channels = c.require<std::vector<std::string>>(at + ".channels");
   p.input.start_s = c.require<double>(at + ".start_s", {0.0, 1e6, "s"});
   p.input.end_s = c.require<double>(at + ".end_s", {0.0, 1e6, "s"});
@@ -121,9 +123,10 @@ std::string Experiment::print(const std::string& preset_name, const std::string&
   if (what == "dataset") return dataset.string();
   if (what == "draws") return std::to_string(p.draws);
   if (what == "networks") return fmt::format("{}", fmt::join(p.networks, "\n"));
+  if (what == "noise") return fmt::format("{}", fmt::join(p.noise, "\n"));
   if (what == "folds") return folds.empty() ? "none" : fmt::format("{}", fmt::join(folds, "\n"));
   throw InputError({fmt::format("'{}' cannot be printed", what), "--print", "an experiment has no such entry",
-                    "choose among table, dataset, draws, networks, folds"});
+                    "choose among table, dataset, draws, networks, noise, folds"});
 }
 
 }  // namespace swingbank::train::loop

@@ -24,6 +24,7 @@ struct Preset {
   std::string name;
   std::uint64_t draws = 0;  ///< events to simulate
   std::vector<std::string> networks;
+  std::vector<double> noise;  ///< levels of measurement noise (sim/core/measurement_noise.hpp); 0: none
   data::InputRecipe input;
   std::size_t pca_components = 0;                  ///< per second and channel; 0: none
   std::map<std::string, TrainingRecipe> training;  ///< by network
@@ -41,8 +42,8 @@ struct Experiment {
   /// Throws InputError that lists what there is.
   [[nodiscard]] const Preset& preset(const std::string& name) const;
   [[nodiscard]] const TrainingRecipe& training(const std::string& preset, const std::string& network) const;
-  /// One word or list for scripts: table, dataset, draws, networks, folds ("none" for a split), one a line.
-  /// Throws InputError for another key.
+  /// One word or list for scripts: table, dataset, draws, networks, noise, folds ("none" for a split), one a
+  /// line. Throws InputError for another key.
   [[nodiscard]] std::string print(const std::string& preset, const std::string& key) const;
 };
 

@@ -1,0 +1,46 @@
+#include "sim/direct/detail/noisy_record.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "sim/direct/integral.hpp"
+
+namespace swingbank::sim::direct {
+namespace {
+double mean(const std::vector<double>& x, std::size_t count) {
+  return std::accumulate(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(count), 0.0) /
+         static_cast<double>(count);
+}
+}  // namespace
+
+NoisyRecord noisy_record(const Recording& record, double longest) {
+  NoisyRecord n;
+  n.conventions = record.conventions;
+  n.noise = record.noise;
+  n.step = record.step;
+  n.outputs = record.Ifd.empty() ? kOutputs - 1 : kOutputs;
+  // An event between two samples is taken to begin in their middle where the record does not say.
+  const double instant =
+      record.event > 0 ? record.event / record.step : static_cast<double>(before_first_leap(record)) - 0.5;
+  const std::size_t size = record.V.size();
+  const auto last = std::min(static_cast<std::size_t>(instant + 1e-6), size - 1);  // still steady
+  n.first_step = (static_cast<double>(last + 1) - instant) * record.step;
+  const std::size_t count = last + 1;
+  n.before = static_cast<double>(count);
+  n.P0 = mean(record.P, count);
+  n.Q0 = mean(record.Q, count);
+  n.V0 = mean(record.V, count);
+  if (!record.Ifd.empty()) n.Ifd0 = mean(record.Ifd, count);
+  const double theta0 = mean(record.theta, count);
+  const std::size_t end = std::min(size, count + static_cast<std::size_t>(longest / record.step));
+  const double leap = leap_limit(record);
+  for (std::size_t k = count; k < end; ++k) {
+    n.in.push_back({record.V[k], record.theta[k] - theta0});
+    n.out.push_back({record.P[k], record.Q[k], record.speed[k], record.Ifd.empty() ? 0.0 : record.Ifd[k]});
+    n.leaps.push_back(k + 1 < end && std::abs(record.V[k + 1] - record.V[k]) > leap);
+  }
+  return n;
+}
+
+}  // namespace swingbank::sim::direct
