@@ -9,24 +9,25 @@ namespace {
 template <class T>
 using States = std::array<T, kMostStates>;
 template <class T>
-using Inputs = std::array<T, kInputs>;
+using Voltage = std::array<T, kInputs>;
 
 /// The machine with V and theta played in; angles in the synchronous frame.
 template <class T>
 class Played {
  public:
   Played(const Effect& machine, const Conventions& conventions, const std::vector<T>& p,
-         const std::array<T, kSteady>& steady)
-      : m_(machine, conventions, p, steady[kV0], steady[kP0] / steady[kV0],
+         const std::array<T, kSteady>& steady, bool noise = false)
+      : noise_(noise),
+        m_(machine, conventions, p, steady[kV0], steady[kP0] / steady[kV0],
            T(0.0) - steady[kQ0] / steady[kV0]) {
     std::ranges::copy(m_.x, start_.begin());
     start_[0] = start_[0] + steady[kTheta0];
-    evaluate(start_, {steady[kV0], steady[kTheta0]});
+    evaluate(start_, Voltage<T>{steady[kV0], steady[kTheta0]});
     Ifd0_ = m_.s.Ifd;
   }
   [[nodiscard]] const States<T>& start() const { return start_; }
   [[nodiscard]] const T& Ifd0() const { return Ifd0_; }  ///< of the steady state
-  void evaluate(const States<T>& x, const Inputs<T>& u) {
+  void evaluate(const States<T>& x, const Voltage<T>& u) {
     std::copy_n(x.begin(), m_.x.size(), m_.x.begin());
     m_.x[0] = x[0] - u[kTheta];
     m_.evaluate(u[kV]);
@@ -42,45 +43,64 @@ class Played {
     std::ranges::copy(m_.dx, dx.begin());
     return dx;
   }
-  /// From u to v in h seconds, straight between; `first`: slope() at the start.
-  void step(States<T>& x, const States<T>& first, const Inputs<T>& u, const Inputs<T>& v, double h) {
-    const Inputs<T> middle = {T(0.5) * (u[kV] + v[kV]), T(0.5) * (u[kTheta] + v[kTheta])};
-    runge_kutta(x, first, h, [&](int stage, const States<T>& y) {
-      evaluate(y, stage == 3 ? v : middle);
-      return slope();
-    });
-  }
-  /// From the steady state to the first sample behind the event, with that sample's voltage throughout.
-  States<T> behind_event(const Inputs<T>& u, double h) {
+  /// From the steady state to the first sample behind the event.
+  States<T> behind_event(const NoisyRecord& r) {
     States<T> x = start_;
-    evaluate(x, u);
-    step(x, slope(), u, u, h);
+    half(x, r.at_event, r.in[0], r.first_step);
     return x;
+  }
+  /// From sample k to the next; `first`: slope() at the sample.
+  void step(const NoisyRecord& r, std::size_t k, States<T>& x, const States<T>& first) {
+    const Interval& i = r.behind[k];
+    if (!i.leaps) return go(x, first, i.middle, r.in[k + 1], r.step);
+    go(x, first, mean(r.in[k], i.before), i.before, r.step / 2);
+    half(x, i.after, r.in[k + 1], r.step / 2);
+  }
+  /// Slope at x under another voltage.
+  States<T> slope_at(const States<T>& x, const Inputs& u) {
+    evaluate(x, voltage(u));
+    return slope();
+  }
+  /// The voltage as T; its noise as two directions of a dual where they are asked for.
+  [[nodiscard]] Voltage<T> voltage(const Inputs& u) const {
+    Voltage<T> v = {T(u[kV]), T(u[kTheta])};
+    if constexpr (!std::is_same_v<T, double>)
+      if (noise_) v[kV].d[kMostStates] = v[kTheta].d[kMostStates + 1] = 1;
+    return v;
   }
 
  private:
+  static Inputs mean(const Inputs& u, const Inputs& v) {
+    return {0.5 * (u[kV] + v[kV]), 0.5 * (u[kTheta] + v[kTheta])};
+  }
+  void go(States<T>& x, const States<T>& first, const Inputs& middle, const Inputs& last, double h) {
+    runge_kutta(x, first, h,
+                [&](int stage, const States<T>& y) { return slope_at(y, stage == 3 ? last : middle); });
+  }
+  void half(States<T>& x, const Inputs& u, const Inputs& v, double h) {
+    go(x, slope_at(x, u), mean(u, v), v, h);
+  }
+
+  bool noise_;
   DrivenMachine<T> m_;
   States<T> start_{};
   T Ifd0_;
 };
 
-template <class T>
-Inputs<T> played(const NoisyRecord& r, std::size_t k) {
-  return {T(r.in[k][kV]), T(r.in[k][kTheta])};
-}
-
 using OutputMatrix = Eigen::Matrix<double, kOutputs, kOutputs>;
 using StateMatrix = Eigen::Matrix<double, kMostStates, kMostStates>;
 using FromInputs = Eigen::Matrix<double, kMostStates, kInputs>;
 
-/// A sample's equations about the filter's state: y = C x + D n + v, x' = F x + G n.
+/// A sample's equations about the filter's state: y = C x + D n + v, x' = F x + G n, with n the noise of the
+/// played-in voltage.
 struct Linear {
   StateMatrix F = StateMatrix::Zero();
   FromInputs G = FromInputs::Zero();
   Eigen::Matrix<double, kOutputs, kMostStates> C;
   Eigen::Matrix<double, kOutputs, kInputs> D;
   Eigen::Matrix<double, kOutputs, 1> y;
-  Gain::State next = Gain::State::Zero(), leap = Gain::State::Zero();
+  Gain::State next = Gain::State::Zero();
+  StateMatrix unsure = StateMatrix::Zero();  ///< covariance of what leaps between the samples leave open
 };
 
 class Linearised {
@@ -90,18 +110,19 @@ class Linearised {
       : record_(record),
         states_(machine.states.size()),
         played_(machine, record.conventions, {p.begin(), p.end()},
-                {steady[kP0], steady[kQ0], steady[kV0], steady[kTheta0]}) {}
+                {steady[kP0], steady[kQ0], steady[kV0], steady[kTheta0]}, true) {}
 
-  /// The state at the first sample, and what that sample's noise does to it.
-  Gain::State start(FromInputs& G) {
-    Gain::State x = Gain::State::Zero();
-    const auto first = played_.behind_event(noisy(0), record_.first_step);
-    for (std::size_t i = 0; i < states_; ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
-      x[row] = first[i].a;
-      G.row(row) << first[i].d[kMostStates], first[i].d[kMostStates + 1];
-    }
-    return x;
+  /// The state at the first sample, and its covariance.
+  Gain::State start(StateMatrix& P) {
+    // The voltage at the event is extrapolated from two samples, so the noise of the step is more than one's.
+    constexpr double kExtrapolated = 1.5 * 1.5 + 0.5 * 0.5;
+    const auto first = played_.behind_event(record_);
+    Linear l;
+    take(first, l);
+    const double input = kExtrapolated * std::pow(record_.noise.phasor(), 2);
+    P = input * l.G * l.G.transpose();
+    open(played_.start(), record_.in[0], record_.at_event, kUnsure * record_.first_step, P);
+    return l.next;
   }
   Linear at(std::size_t k, const Gain::State& state) {
     Linear l;
@@ -110,8 +131,7 @@ class Linearised {
       x[i] = D8(state[static_cast<Eigen::Index>(i)]);
       x[i].d[i] = 1;
     }
-    const auto u = noisy(k);
-    played_.evaluate(x, u);
+    played_.evaluate(x, played_.voltage(record_.in[k]));
     const auto y = played_.outputs();
     for (int o = 0; o < kOutputs; ++o) {
       const auto& value = y[static_cast<std::size_t>(o)];
@@ -121,32 +141,45 @@ class Linearised {
     }
     if (k + 1 >= record_.samples()) return l;
     const auto slope = played_.slope();
-    const auto v = noisy(k + 1);
-    if (record_.leaps[k]) leap(x, slope, v, l);
-    played_.step(x, slope, u, v, record_.step);
+    const auto before = x;
+    played_.step(record_, k, x, slope);
+    take(x, l);
+    if (record_.behind[k].leaps) leap(before, k, l);
+    halve(l);
+    return l;
+  }
+
+ private:
+  /// Share of an extrapolated difference that is not trusted.
+  static constexpr double kUnsure = 0.25;
+
+  void take(const States<D8>& x, Linear& l) const {
     for (std::size_t i = 0; i < states_; ++i) {
       const auto row = static_cast<Eigen::Index>(i);
       l.next[row] = x[i].a;
       for (std::size_t j = 0; j < kMostStates; ++j) l.F(row, static_cast<Eigen::Index>(j)) = x[i].d[j];
       for (int j = 0; j < kInputs; ++j) l.G(row, j) = x[i].d[kMostStates + static_cast<std::size_t>(j)];
     }
-    return l;
   }
-
- private:
-  /// The sample's voltage with its noise as two directions. Both ends of a step have them, for half of what a
-  /// sample's noise does happens on the way to it and half on the way from it.
-  [[nodiscard]] Inputs<D8> noisy(std::size_t k) const {
-    auto u = played<D8>(record_, k);
-    for (std::size_t i = 0; i < kInputs; ++i) u[i].d[kMostStates + i] = 1;
-    return u;
+  /// Half of what a sample's noise does happens on the way to it, half on the way from it. With the state
+  /// counted without the former, the equations keep their form.
+  static void halve(Linear& l) {
+    l.D += 0.5 * l.C * l.G;
+    l.G = (0.5 * (l.F * l.G + l.G)).eval();
   }
-  /// The voltage leaps anywhere between two samples: of a uniform instant, standard deviation of the state.
-  void leap(const States<D8>& x, const States<D8>& before, const Inputs<D8>& v, Linear& l) {
-    played_.evaluate(x, v);
-    const auto after = played_.slope();
-    for (std::size_t i = 0; i < states_; ++i)
-      l.leap[static_cast<Eigen::Index>(i)] = record_.step * (after[i].a - before[i].a) / std::sqrt(12.0);
+  /// Adds the covariance of a step of `h` seconds of which nobody knows whether u or v held.
+  void open(const States<D8>& x, const Inputs& u, const Inputs& v, double h, StateMatrix& covariance) {
+    const auto a = played_.slope_at(x, u), b = played_.slope_at(x, v);
+    Gain::State moved = Gain::State::Zero();
+    for (std::size_t i = 0; i < states_; ++i) moved[static_cast<Eigen::Index>(i)] = h * (a[i].a - b[i].a);
+    covariance += moved * moved.transpose();
+  }
+  /// The voltage leaps at any instant between two samples: one that is uniform has a variance of 1/12.
+  void leap(const States<D8>& x, std::size_t k, Linear& l) {
+    const Interval& i = record_.behind[k];
+    open(x, i.before, i.after, record_.step / std::sqrt(12.0), l.unsure);
+    open(x, i.before, record_.in[k], kUnsure * record_.step / 2, l.unsure);
+    open(x, i.after, record_.in[k + 1], kUnsure * record_.step / 2, l.unsure);
   }
 
   const NoisyRecord& record_;
@@ -169,9 +202,8 @@ Gains gains_about(const Effect& machine, const NoisyRecord& record, const std::v
   gains.at.resize(record.samples());
   Linearised linearised(machine, record, p, steady);
   const double input = record.noise.phasor() * record.noise.phasor();
-  FromInputs G = FromInputs::Zero();
-  Gain::State x = linearised.start(G);
-  StateMatrix P = input * G * G.transpose();
+  StateMatrix P;
+  Gain::State x = linearised.start(P);
   for (std::size_t k = 0; k < record.samples(); ++k) {
     const Linear l = linearised.at(k, x);
     OutputMatrix S = l.C * P * l.C.transpose() + input * l.D * l.D.transpose();
@@ -192,7 +224,7 @@ Gains gains_about(const Effect& machine, const NoisyRecord& record, const std::v
     if (record.outputs < kOutputs) gain.onto_states.col(kIfd).setZero();
     gains.log_determinant -= 2 * gain.whitening.diagonal().array().log().sum();
     gains.squares += (gain.whitening * e).squaredNorm();
-    P = l.F * P * l.F.transpose() + input * l.G * l.G.transpose() + l.leap * l.leap.transpose() -
+    P = l.F * P * l.F.transpose() + input * l.G * l.G.transpose() + l.unsure -
         gain.onto_states * S * gain.onto_states.transpose();
     P = (0.5 * (P + P.transpose())).eval();
     x = l.next + gain.onto_states * e;
@@ -217,10 +249,9 @@ void innovations(const Effect& machine, const NoisyRecord& r, const Gains& gains
   *out++ = T(mean) * (T(0.0) - steady[kTheta0]);
   if (r.outputs == kOutputs) *out++ = T(std::sqrt(r.before) / r.noise.field(r.Ifd0)) * (T(r.Ifd0) - m.Ifd0());
   const std::size_t states = machine.states.size();
-  States<T> x = m.behind_event(played<T>(r, 0), r.first_step);
+  States<T> x = m.behind_event(r);
   for (std::size_t k = 0; k < r.samples(); ++k) {
-    const auto u = played<T>(r, k);
-    m.evaluate(x, u);
+    m.evaluate(x, m.voltage(r.in[k]));
     const auto y = m.outputs();
     std::array<T, kOutputs> e{};
     for (std::size_t o = 0; o < static_cast<std::size_t>(r.outputs); ++o) e[o] = T(r.out[k][o]) - y[o];
@@ -231,7 +262,7 @@ void innovations(const Effect& machine, const NoisyRecord& r, const Gains& gains
       *out++ = white;
     }
     if (k + 1 == r.samples()) break;
-    m.step(x, m.slope(), u, played<T>(r, k + 1), r.step);
+    m.step(r, k, x, m.slope());
     for (std::size_t i = 0; i < states; ++i)
       for (int o = 0; o < r.outputs; ++o)
         x[i] = x[i] + T(gain.onto_states(static_cast<Eigen::Index>(i), o)) * e[static_cast<std::size_t>(o)];

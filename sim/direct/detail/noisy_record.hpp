@@ -13,6 +13,15 @@ enum Output { kP, kQ, kSpeed, kIfd, kOutputs };
 /// What is played in and noisy as well.
 enum Input { kV, kTheta, kInputs };
 
+using Inputs = std::array<double, kInputs>;
+
+/// The voltage between one sample and the next.
+struct Interval {
+  Inputs middle = {};  ///< by a cubic through four neighbours, on whose smooth side there is no leap
+  bool leaps = false;  ///< somewhere between the two, nobody knows where
+  Inputs before = {}, after = {};  ///< where it leaps in the middle: on both sides, by straight lines
+};
+
 struct NoisyRecord {
   Conventions conventions;
   MeasurementNoise noise;
@@ -23,9 +32,10 @@ struct NoisyRecord {
   double P0 = 0, Q0 = 0, V0 = 0, Ifd0 = 0;
   double before = 0;
   /// Of the samples behind the event's beginning.
-  std::vector<std::array<double, kInputs>> in;
+  std::vector<Inputs> in;
   std::vector<std::array<double, kOutputs>> out;
-  std::vector<bool> leaps;  ///< the voltage, between this sample and the next
+  std::vector<Interval> behind;  ///< each sample but the last
+  Inputs at_event = {};          ///< when the event has just begun, by a straight line
 
   [[nodiscard]] std::size_t samples() const { return in.size(); }
 };
