@@ -4,7 +4,7 @@
 #   bash jobs/run_experiment.sh [--experiment FILE] [--preset NAME] [--out FOLDER] [--stage STAGE] [--task N]
 #                               [--seed N] [--ranks N] [--launcher WORDS] [--build FOLDER]
 #     --stage     check, databank, generate, train, tables, or all of them (all, the default); count-tasks prints how
-#                 many tasks the stage train has, one per network and fold
+#                 many tasks the stage train has, one per network, noise level and fold
 #     --task      of the stage train, this one only, from 0
 #     --seed      of the training (default 1)
 #     --ranks     MPI processes that generate (default: one per core)
@@ -47,7 +47,7 @@ if [[ ! -x $swingbank ]]; then
   exit 1
 fi
 
-# What the experiment says of itself: dataset, draws, table, networks, folds
+# What the experiment says of itself: dataset, draws, table, networks, noise, folds
 ask() { "$swingbank" train --experiment "$experiment" --preset "$preset" --print "$1"; }
 
 # A dataset belongs to its config and size; experiments with the same two share the folder.
@@ -78,18 +78,23 @@ generate() {
 }
 
 tasks() {
-  local networks folds network fold
+  local networks levels folds network noise fold
   networks=$(ask networks)
+  levels=$(ask noise)
   folds=$(ask folds)
   for network in $networks; do
-    for fold in $folds; do echo "$network $fold"; done
+    for noise in $levels; do
+      if [[ $network == floor && $noise == 0 ]]; then continue; fi # records without noise have no floor
+      for fold in $folds; do echo "$network $noise $fold"; done
+    done
   done
 }
 
 run_task() {
-  local network=$1 fold=$2 common
-  say "$network, fold $fold"
-  common=("$(dataset_folder)" --experiment "$experiment" --preset "$preset" --seed "$seed" --network "$network" --out "$out/results")
+  local network=$1 noise=$2 fold=$3 common
+  say "$network, noise $noise, fold $fold"
+  common=("$(dataset_folder)" --experiment "$experiment" --preset "$preset" --seed "$seed" --network "$network" --noise "$noise"
+    --out "$out/results")
   if [[ $fold == none ]]; then
     run_saving "$swingbank" train "${common[@]}"
   else
@@ -101,7 +106,7 @@ train() {
   local all lines line
   all=$(tasks)
   # A process that trains all folds reads the dataset once.
-  if [[ -z $task ]]; then all=$(sed '/ none$/!s/ .*/ all/' <<<"$all" | uniq); fi
+  if [[ -z $task ]]; then all=$(sed '/ none$/!s/ [^ ]*$/ all/' <<<"$all" | uniq); fi
   mapfile -t lines <<<"$all"
   if [[ -n $task ]]; then
     if [[ ! $task =~ ^[0-9]+$ ]] || ((task >= ${#lines[@]})); then
@@ -111,7 +116,7 @@ train() {
     lines=("${lines[task]}")
   fi
   for line in "${lines[@]}"; do
-    # shellcheck disable=SC2086 # two words: network and fold
+    # shellcheck disable=SC2086 # three words: network, noise and fold
     run_task $line || return $?
   done
 }

@@ -13,6 +13,7 @@ namespace swingbank::train::loop {
 namespace {
 
 const std::vector<std::string> kSchedules = {"constant", "cosine"};
+const Range kNoiseLevels = {0.0, 0.1};  // at more, a phasor is no measurement
 
 std::vector<std::string> network_names() {
   std::vector<std::string> names;
@@ -83,6 +84,7 @@ Preset read_preset(Config& c, const std::string& name) {
   p.name = name;
   p.draws = static_cast<std::uint64_t>(c.require<std::int64_t>(at + ".draws", {1, 1e12}));
   p.networks = c.require<std::vector<std::string>>(at + ".networks");
+  p.noise = c.require<std::vector<double>>(at + ".noise", kNoiseLevels);
   if (c.has("training_dataset"))
     p.training_draws = static_cast<std::uint64_t>(c.require<std::int64_t>(at + ".training_draws", {0, 1e12}));
   NetworkInput input;
@@ -162,9 +164,11 @@ std::string Experiment::print(const std::string& preset_name, const std::string&
   if (what == "training_dataset") return training_dataset.empty() ? "none" : training_dataset.string();
   if (what == "training_draws") return std::to_string(p.training_draws);
   if (what == "networks") return fmt::format("{}", fmt::join(p.networks, "\n"));
+  if (what == "noise") return fmt::format("{}", fmt::join(p.noise, "\n"));
   if (what == "folds") return folds.empty() ? "none" : fmt::format("{}", fmt::join(folds, "\n"));
-  throw InputError({fmt::format("'{}' cannot be printed", what), "--print", "an experiment has no such entry",
-                    "choose among table, dataset, draws, training_dataset, training_draws, networks, folds"});
+  throw InputError(
+      {fmt::format("'{}' cannot be printed", what), "--print", "an experiment has no such entry",
+       "choose among table, dataset, draws, training_dataset, training_draws, networks, noise, folds"});
 }
 
 }  // namespace swingbank::train::loop

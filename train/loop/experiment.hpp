@@ -37,6 +37,7 @@ struct Preset {
   std::uint64_t draws = 0;           ///< events to simulate
   std::uint64_t training_draws = 0;  ///< events of the training dataset; 0: none
   std::vector<std::string> networks;
+  std::vector<double> noise;  ///< levels of measurement noise (sim/core/measurement_noise.hpp); 0: none
   std::map<std::string, NetworkInput> input;       ///< by network
   std::map<std::string, TrainingRecipe> training;  ///< by network
 };
@@ -55,7 +56,8 @@ struct Experiment {
   [[nodiscard]] const Preset& preset(const std::string& name) const;
   [[nodiscard]] const TrainingRecipe& training(const std::string& preset, const std::string& network) const;
   [[nodiscard]] const NetworkInput& input(const std::string& preset, const std::string& network) const;
-  /// One word or list for scripts: table, dataset, draws, training_dataset, training_draws, networks, folds
+  /// One word or list for scripts: table, dataset, draws, training_dataset, training_draws, networks, noise,
+  /// folds
   /// ("none" for a split), one a line. Throws InputError for another key.
   [[nodiscard]] std::string print(const std::string& preset, const std::string& key) const;
 };
