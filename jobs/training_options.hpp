@@ -21,6 +21,8 @@ struct TrainingOptions {
   int threads = 0;
   unsigned readers = 1;
   double memory_limit = 8.0;  // [GiB]
+  double noise = 0;
+  std::size_t test_rows = 0;
   bool shuffle_labels = false, save_network = true, trust = false;
 
   void add_to(jobs::CommandLine& line) {
@@ -32,6 +34,9 @@ struct TrainingOptions {
     line.add("--network", network, "network of the preset (default: its first)");
     line.add("--out", out, "folder for the result files");
     line.add("--seed", seed, "seed of weights, dropout, order and split").shows_default();
+    line.add("--noise", noise, "level of measurement noise on every record (0.001: 0.1 %)").shows_default();
+    line.add("--test-rows", test_rows,
+             "judge about so many test rows, evenly spread (default: the preset's)");
     line.add("--epochs", epochs, "instead of the preset's");
     line.add("--threads", threads,
              "default: the Slurm allocation, OMP_NUM_THREADS or the cores, shared by the processes");
@@ -42,10 +47,9 @@ struct TrainingOptions {
     line.add_flag("--shuffle-labels", shuffle_labels, "control run: must score about as the mean does");
     line.add_flag_off("--no-network", save_network,
                       "do not write the trained network beside its result (4 bytes a weight)");
-    line.add(
-        "--print", print,
-        "print one entry of the experiment and end: table, dataset, draws, training_dataset, training_draws, "
-        "training_rows, networks, folds");
+    line.add("--print", print,
+             fmt::format("print one entry of the experiment and end: {}",
+                         fmt::join(train::loop::kPrintable, ", ")));
   }
 
   /// Throws InputError if an option that a run needs is missing.
@@ -55,6 +59,9 @@ struct TrainingOptions {
       problems.add("no dataset", "DATASET", "a run needs one",
                    "give the folder that `swingbank generate` wrote");
     if (out.empty()) problems.add("no output folder", "--out", "results need a place", "give a folder");
+    if (!(noise >= 0 && noise <= 0.1))
+      problems.add(fmt::format("a noise level of {}", noise), "--noise", "a level lies between 0 and 0.1",
+                   "give 0.001 for 0.1 %");
     problems.raise();
     train::run::RunRequest r;
     r.experiment = train::loop::read_experiment(experiment);
@@ -64,6 +71,9 @@ struct TrainingOptions {
     if (epochs > 0) r.epochs = epochs;
     r.shuffle_labels = shuffle_labels;
     r.save_network = save_network;
+    r.noise = noise;
+    const std::size_t judged = test_rows > 0 ? test_rows : r.experiment.judging(preset, r.network).test_rows;
+    if (judged > 0) r.test_rows = judged;
     r.out = out;
     check_training_rows(r.experiment.training(preset, r.network).training_rows, r.network);
     return r;
@@ -82,7 +92,7 @@ struct TrainingOptions {
     if (!training_rows.empty()) more = mpi::store::open_dataset(training_rows);
     return {mpi::store::open_dataset(dataset),
             r.experiment.input(preset, r.network).recipe,
-            {bytes, readers, trust},
+            {bytes, readers, trust, {r.noise, r.seed}},
             more};
   }
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace swingbank::sim::direct {
 
@@ -24,25 +25,26 @@ Eigen::VectorXd integral(const Eigen::VectorXd& f, double step) {
   return sum;
 }
 
-namespace {
-/// Step of the voltage from which on it leaps [pu].
-double leap(std::span<const double> V) {
+double leap_limit(const Recording& record) {
   constexpr double kLeast = 0.01, kShare = 0.2;  // [pu]; of the largest step
+  constexpr double kDeviations = 6;              // of the difference of two noisy samples
+  const auto& V = record.V;
   double largest = kLeast;
   for (std::size_t k = 1; k < V.size(); ++k) largest = std::max(largest, std::abs(V[k] - V[k - 1]));
-  return kShare * largest;
+  return std::max(kShare * largest, kDeviations * std::numbers::sqrt2 * record.noise.phasor());
 }
-}  // namespace
 
-std::size_t behind_last_leap(std::span<const double> V) {
-  const double limit = leap(V);
+std::size_t behind_last_leap(const Recording& record) {
+  const auto& V = record.V;
+  const double limit = leap_limit(record);
   for (std::size_t k = V.size(); k-- > 1;)
     if (std::abs(V[k] - V[k - 1]) > limit) return k;
   return 0;
 }
 
-std::size_t before_first_leap(std::span<const double> V) {
-  const double limit = leap(V);
+std::size_t before_first_leap(const Recording& record) {
+  const auto& V = record.V;
+  const double limit = leap_limit(record);
   for (std::size_t k = 1; k < V.size(); ++k)
     if (std::abs(V[k] - V[k - 1]) > limit) return k;
   return V.size();

@@ -1,7 +1,8 @@
 #pragma once
 // Running integrals of sampled signals, and where a record is smooth.
 #include <Eigen/Core>
-#include <span>
+
+#include "sim/core/recording.hpp"
 
 namespace swingbank::sim::direct {
 
@@ -11,11 +12,12 @@ Eigen::VectorXd integral(const Eigen::VectorXd& f, double step);
 
 /// A smooth stretch of fewer samples says too little.
 constexpr std::size_t kShortestStretch = 40;
-/// First sample behind the last leap of the voltage V [pu]: behind the last interval whose step is more than
-/// a fifth of the largest one and of 0.01 pu. 0 if nothing leaps.
-std::size_t behind_last_leap(std::span<const double> V);
-
-/// How many samples lie before the first such leap; all if nothing leaps.
-std::size_t before_first_leap(std::span<const double> V);
+/// A leap of the voltage is a step between two samples of more than this [pu]: a fifth of the record's
+/// largest step and of 0.01 pu, and more than the record's noise makes.
+double leap_limit(const Recording& record);
+/// First sample behind the last leap; 0 if nothing leaps.
+std::size_t behind_last_leap(const Recording& record);
+/// How many samples lie before the first leap; all if nothing leaps.
+std::size_t before_first_leap(const Recording& record);
 
 }  // namespace swingbank::sim::direct

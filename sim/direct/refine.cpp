@@ -1,13 +1,13 @@
 #include "sim/direct/refine.hpp"
 
-#include <ceres/ceres.h>
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "sim/core/noise.hpp"
+#include "sim/direct/detail/driven_machine.hpp"
+#include "sim/direct/detail/search.hpp"
 #include "sim/direct/detail/turning.hpp"
 #include "sim/direct/integral.hpp"
 
@@ -25,7 +25,7 @@ constexpr std::size_t kAngleAndSpeed = 2;  ///< states that are measured: the fi
 class Driven {
  public:
   Driven(const Effect& machine, const Recording& record, double longest)
-      : machine_(machine), record_(record), first_(behind_last_leap(record.V)) {
+      : machine_(machine), record_(record), first_(behind_last_leap(record)) {
     std::vector<double> p = machine.standard_parameters();
     const auto count = std::min(static_cast<std::size_t>(longest / record.step), record.V.size() - first_);
     whole_ = turning(record, 0.0, 0.0, 0, first_ + count);
@@ -37,71 +37,51 @@ class Driven {
   /// Residuals over the stretch. `offset`: of the angle against the steady state's; `flux`: at its start.
   template <class T>
   std::vector<T> residuals(const std::vector<T>& p, const T& offset, const std::vector<T>& flux) const {
-    Machine<T> m(machine_, record_.conventions, p, whole_);
+    Machine<T> m = machine(p);
+    const T angle = m.x[0] + offset;
     std::vector<T> x = flux, out;
     out.reserve(steps_ * compared());
     for (std::size_t k = 0; k < steps_; ++k) {
       const std::size_t at = first_ + 2 * k;
-      compare(m, at, offset, x, out);
-      step(m, {at, at + 1, at + 2}, 2 * record_.step, offset, x);
+      compare(m, at, angle, x, out);
+      step(m, {at, at + 1, at + 2}, 2 * record_.step, angle, x);
     }
     return out;
   }
   /// The fluxes that the steady state has by the stretch's start. The fault's edges fall between samples, so
   /// this is a start for the fit and no more.
   std::vector<double> fluxes_at_start(const std::vector<double>& p) const {
-    Machine<double> m(machine_, record_.conventions, p, whole_);
+    Machine<double> m = machine(p);
+    const double angle = m.x[0];
     std::vector<double> x(m.x.begin() + kAngleAndSpeed, m.x.end());
-    for (std::size_t k = 0; k < first_; ++k) step(m, {k, k, k + 1}, record_.step, 0.0, x);
+    for (std::size_t k = 0; k < first_; ++k) step(m, {k, k, k + 1}, record_.step, angle, x);
     return x;
   }
 
  private:
   template <class T>
-  struct Machine {
-    const Ops<T>& ops;
-    std::vector<T> c, x, scratch, dx;
-    Signals<T> s;  ///< with Efd and Tm of the steady state
-    T r, xm, angle0;
-    Machine(const Effect& effect, const Conventions& conventions, const std::vector<T>& p, const Turning& t)
-        : ops(effect.get<T>()),
-          c(static_cast<std::size_t>(effect.coefficients)),
-          x(effect.states.size()),
-          scratch(static_cast<std::size_t>(effect.scratch)),
-          dx(effect.states.size()) {
-      ops.prepare(p.data(), conventions, c.data());
-      ops.machine.source_impedance(p.data(), r, xm);
-      s.Vr = T(t.V[0]);
-      s.Ir = T(t.current0.real());
-      s.Ii = T(t.current0.imag());
-      ops.machine.steady(p.data(), c.data(), s, x.data());
-      angle0 = x[0];
-    }
-    /// Voltage behind the impedance at a sample, with the fluxes x.
-    void emf(double relative, double speed, const T& offset, const std::vector<T>& flux, T& er, T& ei) {
-      x[0] = angle0 + offset + T(relative);
-      x[1] = T(speed);
-      std::ranges::copy(flux, x.begin() + kAngleAndSpeed);
-      ops.machine.emf(c.data(), x.data(), scratch.data(), er, ei);
-    }
-    /// Current into the voltage V of the sample, then everything that follows from it.
-    void electrical(double V, const T& er, const T& ei) {
-      const T dr = er - T(V), k = T(1.0) / (r * r + xm * xm);
-      s.Vr = T(V);
-      s.Ir = (r * dr + xm * ei) * k;
-      s.Ii = (r * ei - xm * dr) * k;
-      ops.machine.electrical(c.data(), x.data(), scratch.data(), s);
-    }
-  };
-
-  [[nodiscard]] std::size_t compared() const { return whole_.Ifd.size() > 0 ? 3 : 2; }
+  using Machine = DrivenMachine<T>;
   template <class T>
-  void compare(Machine<T>& m, std::size_t at, const T& offset, const std::vector<T>& flux,
+  [[nodiscard]] Machine<T> machine(const std::vector<T>& p) const {
+    return {machine_,       record_.conventions,       p,
+            T(whole_.V[0]), T(whole_.current0.real()), T(whole_.current0.imag())};
+  }
+  [[nodiscard]] std::size_t compared() const { return whole_.Ifd.size() > 0 ? 3 : 2; }
+  /// The machine at a sample, with angle and speed as measured and these fluxes. `angle`: of the rotor at
+  /// the first sample.
+  template <class T>
+  void evaluate(Machine<T>& m, std::size_t at, const T& angle, const std::vector<T>& flux) const {
+    const auto i = static_cast<Index>(at);
+    m.x[0] = angle + T(whole_.relative[i]);
+    m.x[1] = T(whole_.speed[i]);
+    std::ranges::copy(flux, m.x.begin() + kAngleAndSpeed);
+    m.evaluate(T(whole_.V[i]));
+  }
+  template <class T>
+  void compare(Machine<T>& m, std::size_t at, const T& angle, const std::vector<T>& flux,
                std::vector<T>& out) const {
     const auto i = static_cast<Index>(at);
-    T er, ei;
-    m.emf(whole_.relative[i], whole_.speed[i], offset, flux, er, ei);
-    m.electrical(whole_.V[i], er, ei);
+    evaluate(m, at, angle, flux);
     // current in the terminal's frame: `turning` has taken the rotor's movement off
     const std::complex<double> current = whole_.current[i] * std::polar(1.0, whole_.relative[i]);
     out.push_back((m.s.Ir - T(current.real())) * m.xm);
@@ -109,29 +89,18 @@ class Driven {
     if (whole_.Ifd.size() > 0) out.push_back(m.s.Ifd - T(whole_.Ifd[i]));
   }
   template <class T>
-  std::vector<T> slopes(Machine<T>& m, std::size_t at, const T& offset, const std::vector<T>& flux) const {
-    const auto i = static_cast<Index>(at);
-    T er, ei;
-    m.emf(whole_.relative[i], whole_.speed[i], offset, flux, er, ei);
-    m.electrical(whole_.V[i], er, ei);
-    m.ops.machine.derivative(m.c.data(), m.x.data(), m.scratch.data(), m.s, m.dx.data());
+  std::vector<T> slopes(Machine<T>& m, std::size_t at, const T& angle, const std::vector<T>& flux) const {
+    evaluate(m, at, angle, flux);
+    m.derive();
     return {m.dx.begin() + kAngleAndSpeed, m.dx.end()};
   }
-  /// One step of the classical fourth-order method over samples first, middle, last.
+  /// One step over samples first, middle, last.
   template <class T>
-  void step(Machine<T>& m, const std::array<std::size_t, 3>& at, double h, const T& offset,
+  void step(Machine<T>& m, const std::array<std::size_t, 3>& at, double h, const T& angle,
             std::vector<T>& x) const {
-    const auto moved = [&](const std::vector<T>& by, double share) {
-      std::vector<T> y = x;
-      for (std::size_t i = 0; i < y.size(); ++i) y[i] = y[i] + T(share) * by[i];
-      return y;
-    };
-    const auto a = slopes(m, at[0], offset, x);
-    const auto b = slopes(m, at[1], offset, moved(a, h / 2));
-    const auto c = slopes(m, at[1], offset, moved(b, h / 2));
-    const auto d = slopes(m, at[2], offset, moved(c, h));
-    for (std::size_t i = 0; i < x.size(); ++i)
-      x[i] = x[i] + T(h / 6) * (a[i] + T(2.0) * (b[i] + c[i]) + d[i]);
+    runge_kutta(x, slopes(m, at[0], angle, x), h, [&](int stage, const std::vector<T>& y) {
+      return slopes(m, at[stage == 3 ? 2 : 1], angle, y);
+    });
   }
 
   const Effect& machine_;
@@ -194,25 +163,11 @@ class Residuals : public ceres::CostFunction {
   VectorXd scale_;
 };
 
-ceres::Solver::Options options_of(const RefineOptions& options) {
-  constexpr double kSettled = 1e-9;  // relative change of the cost and of the unknowns
-  ceres::Solver::Options o;
-  o.max_num_iterations = options.iterations;
-  o.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-  o.logging_type = ceres::SILENT;
-  o.num_threads = 1;  // records run side by side
-  o.function_tolerance = o.parameter_tolerance = kSettled;
-  o.gradient_tolerance = 0;
-  o.max_num_consecutive_invalid_steps = 12;
-  o.max_num_line_search_step_size_iterations = 0;  // a step that bounds cut short is tried as it is
-  return o;
-}
-
 /// Misfit that a right answer leaves: what the integration leaves of a record in single precision, or the
 /// noise of P before the event.
 double exact(const Recording& record) {
   constexpr double kIntegration = 1e-5, kOfNoise = 3;  // [pu]; standard deviations
-  const std::size_t n = std::max<std::size_t>(2, before_first_leap(record.V));
+  const std::size_t n = std::max<std::size_t>(2, before_first_leap(record));
   double mean = 0, square = 0;
   for (std::size_t k = 0; k < n; ++k) mean += record.P[k] / static_cast<double>(n);
   for (std::size_t k = 0; k < n; ++k) square += std::pow(record.P[k] - mean, 2) / static_cast<double>(n - 1);
@@ -237,6 +192,7 @@ Refined refine_best(const Effect& machine, const Recording& record,
                     std::span<const std::vector<double>> candidates, std::span<const int> free,
                     std::span<const double> low, std::span<const double> high, const RefineOptions& options) {
   constexpr std::uint32_t kFurtherStarts = 8;
+  if (machine.states.size() == kAngleAndSpeed) return {candidates.front(), 0};  // no fluxes to fit
   const double enough = exact(record);
   Refined best{candidates.front(), std::numeric_limits<double>::infinity()};
   const auto take = [&](const std::vector<double>& start) {
@@ -290,7 +246,8 @@ Refined refine(const Effect& machine, const Recording& record, std::vector<doubl
     problem.SetParameterUpperBound(z.data(), static_cast<int>(k), high[b] / scale[k]);
   }
   ceres::Solver::Summary summary;
-  ceres::Solve(options_of(options), &problem, &summary);
+  constexpr double kSettled = 1e-9;
+  ceres::Solve(search_options(options.iterations, kSettled), &problem, &summary);
   return {residuals.parameters(z), std::sqrt(2 * summary.final_cost / static_cast<double>(driven.outputs())),
           static_cast<int>(summary.iterations.size()) - 1, idle};
 }

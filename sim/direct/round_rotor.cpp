@@ -208,7 +208,7 @@ RoundRotor chain(const Turning& t, const DirectAxis& d, const Minimum& angle, co
 }  // namespace
 
 std::vector<RoundRotor> round_rotor(const Recording& record, double Ra, double Xdpp) {
-  const std::size_t first = behind_last_leap(record.V);
+  const std::size_t first = behind_last_leap(record);
   const auto count = static_cast<std::size_t>(kLongest / record.step);
   if (record.Ifd.empty() || first + kShortestStretch > record.V.size()) return {};
   const Turning t = turning(record, Ra, Xdpp, first, count);

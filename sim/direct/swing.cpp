@@ -9,7 +9,7 @@
 namespace swingbank::sim::direct {
 
 Swing swing_of(const Recording& record, double Ra, Divided divided) {
-  const std::size_t first = behind_last_leap(record.V);
+  const std::size_t first = behind_last_leap(record);
   if (first + kShortestStretch > record.V.size()) return {};
   const Turning t = turning(record, Ra, 0.0, first, record.V.size());
   const Conventions& by = record.conventions;

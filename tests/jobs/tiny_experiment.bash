@@ -38,6 +38,7 @@ folds = [30, 31]
 [preset.quick]
 draws = ${TINY_DRAWS:-400}
 networks = ["gru"]
+noise = [0.0]
 channels = ["P", "Q", "speed"]
 start_s = 0.4
 end_s = 1.4

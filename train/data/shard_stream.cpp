@@ -23,7 +23,8 @@ ShardStream::ShardStream(mpi::store::Dataset dataset, const InputRecipe& recipe,
       shards_(dataset_.shards),
       rows_(dataset_.rows),
       selection_(select_input(recipe, dataset_)),
-      options_(options) {
+      options_(options),
+      noise_(dataset_, options.noise) {
   if (dataset_.rows == 0)
     throw InputError({"no rows", dataset_.path.string(), "every draw was rejected, or none was made",
                       "see the outcomes in its journal and the ranges in its config"});
@@ -99,16 +100,27 @@ void ShardStream::keep_labels(const mpi::store::RowBlock& block, const mpi::stor
   labels_.generator.insert(labels_.generator.end(), block.generator.begin(), block.generator.end());
 }
 
+void ShardStream::series_of(const mpi::store::RowBlock& block, std::size_t at,
+                            const mpi::store::ShardInfo& shard, std::uint64_t row, float* out) const {
+  const std::size_t values = block.channels * block.samples;
+  const float* record = block.records.data() + at * values;
+  std::vector<float> noisy;
+  if (!noise_.none()) {
+    noisy.assign(record, record + values);
+    noise_.add(row, noisy.data());
+    record = noisy.data();
+  }
+  selection_.apply(record, block.samples, out);
+  check_finite(out, shard, row);
+}
+
 void ShardStream::keep_series(const mpi::store::RowBlock& block, const mpi::store::ShardInfo& shard) {
-  const std::size_t stride = block.channels * block.samples, values = selection_.values();
+  const std::size_t values = selection_.values();
   if (series_.empty()) series_.reserve(rows_ * values);
   const std::size_t before = series_.size();
   series_.resize(before + block.rows * values);
-  for (std::size_t i = 0; i < block.rows; ++i) {
-    float* series = series_.data() + before + i * values;
-    selection_.apply(block.records.data() + i * stride, block.samples, series);
-    check_finite(series, shard, shard.first_row + i);
-  }
+  for (std::size_t i = 0; i < block.rows; ++i)
+    series_of(block, i, shard, shard.first_row + i, series_.data() + before + i * values);
 }
 
 const mpi::store::ShardInfo& ShardStream::shard_of(std::uint64_t row) const {
@@ -136,12 +148,8 @@ void ShardStream::read_run(std::span<const Wanted> run, float* out) const {
   const std::uint64_t first = run.front().row, count = run.back().row - first + 1;
   mpi::store::RowBlock block;
   mpi::store::read_rows(shard, first - shard.first_row, count, block, kRecordsOnly);
-  const std::size_t stride = block.channels * block.samples, values = selection_.values();
-  for (const auto& w : run) {
-    float* series = out + w.slot * values;
-    selection_.apply(block.records.data() + (w.row - first) * stride, block.samples, series);
-    check_finite(series, shard, w.row);
-  }
+  const std::size_t values = selection_.values();
+  for (const auto& w : run) series_of(block, w.row - first, shard, w.row, out + w.slot * values);
 }
 
 void ShardStream::read(std::span<const std::uint64_t> rows, float* out) const {

@@ -9,6 +9,7 @@
 
 #include "mpi/store/dataset.hpp"
 #include "train/data/downsample.hpp"
+#include "train/data/noise.hpp"
 
 namespace swingbank::train::data {
 
@@ -22,8 +23,9 @@ struct Labels {
 
 struct StreamOptions {
   std::uint64_t memory_limit = std::uint64_t{8} << 30;  ///< [bytes]
-  unsigned readers = 1;  ///< threads that read ahead; the bytes do not depend on it
-  bool trust = false;    ///< do not compare the shards' hashes with the journal
+  unsigned readers = 1;    ///< threads that read ahead; the bytes do not depend on it
+  bool trust = false;      ///< do not compare the shards' hashes with the journal
+  NoiseRecipe noise = {};  ///< the same in every epoch
 };
 
 class ShardStream {
@@ -43,6 +45,7 @@ class ShardStream {
   [[nodiscard]] const Labels& labels() const { return labels_; }
   [[nodiscard]] std::size_t channels() const { return selection_.outputs(); }
   [[nodiscard]] std::size_t samples() const { return selection_.samples; }
+  [[nodiscard]] const NoiseRecipe& noise() const { return options_.noise; }
   [[nodiscard]] bool in_memory() const { return !series_.empty(); }
   /// rows: row numbers of the dataset, in any order; out: rows x channels x samples.
   void read(std::span<const std::uint64_t> rows, float* out) const;
@@ -52,6 +55,9 @@ class ShardStream {
   void load(const mpi::store::ShardInfo& shard, bool fits);
   void keep_labels(const mpi::store::RowBlock& block, const mpi::store::ShardInfo& shard);
   void keep_series(const mpi::store::RowBlock& block, const mpi::store::ShardInfo& shard);
+  /// The series of the block's row `at`, which is the dataset's row `row`, with its noise.
+  void series_of(const mpi::store::RowBlock& block, std::size_t at, const mpi::store::ShardInfo& shard,
+                 std::uint64_t row, float* out) const;
   /// Reads one run of rows of a shard and copies those asked for.
   struct Wanted {
     std::uint64_t row;
@@ -67,6 +73,7 @@ class ShardStream {
   std::size_t rows_ = 0;
   InputSelection selection_;
   StreamOptions options_;
+  RecordNoise noise_;
   Labels labels_;
   std::vector<float> series_;
 };

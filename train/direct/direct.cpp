@@ -6,23 +6,26 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <mutex>
 
 #include "base/in_parallel.hpp"
 #include "sim/core/frequency.hpp"
+#include "sim/direct/likelihood.hpp"
 #include "sim/direct/refine.hpp"
+#include "sim/direct/smooth.hpp"
 #include "sim/library/library.hpp"
 
 namespace swingbank::train::direct {
 namespace {
 
 namespace store = mpi::store;
-constexpr std::size_t kRowsRead = 512;  ///< rows read at once
+constexpr std::size_t kRowsRead = 512;              ///< rows read at once
+enum class Method { closed_form, refined, floor };  ///< in order of kMethods
 
 /// What a row of the dataset is made of.
 class Rows {
  public:
-  explicit Rows(const store::Dataset& d) : dataset_(d) {
+  Rows(const store::Dataset& d, Method method, const data::NoiseRecipe& noise)
+      : dataset_(d), method_(method), noise_(d, noise), level_{noise.level} {
     Problems problems;
     const std::string where = (d.path / "dataset.json").string();
     effect_ = sim::library::compiled().find(d.machine_model);
@@ -40,8 +43,9 @@ class Rows {
     if (channel("theta") < 0 && channel("frequency") < 0) missing("theta or frequency", problems, where);
     problems.raise();
     store::require_machines(d, d.path);
-    const auto filter = store::config_numbers(d, "record.frequency");
-    if (filter.size() == 2) filter_ = {filter[0], filter[1]};
+    filter_ = data::frequency_filter(d);
+    const auto start = store::config_numbers(d, "fault.start");
+    if (start.size() == 1) event_ = start[0];
     conventions_ = store::config_text(d, "convention") == "andes" ? sim::Conventions::andes(d.frequency)
                                                                   : sim::Conventions::psse(d.frequency);
     for (const auto& name : d.held_names)
@@ -63,25 +67,43 @@ class Rows {
         free_.push_back(index);
         low_.push_back(d.parameter_low[k]);
         high_.push_back(d.parameter_high[k]);
+        unknown_.push_back(sim::direct::uniform_parameter(index, low_.back(), high_.back()));
       }
     }
   }
 
-  /// One row's parameters, inside the box.
-  void estimate(const store::RowBlock& block, std::size_t row, bool refined, double* out) const {
-    const sim::Recording r = recording(block, row);
-    const std::vector<double>& known = known_.at(block.generator[row]);
-    auto found = effect_->closed_form(r, known.data());
-    if (found.empty()) found.push_back(known);
-    if (refined) found = {sim::direct::refine_best(*effect_, r, found, free_, low_, high_).p};
+  /// One row's parameters, inside the box; of a floor see direct.hpp.
+  void estimate(store::RowBlock& block, std::size_t row, std::uint64_t number, double* out) const {
+    if (method_ == Method::floor) return floor(block, row, out);
+    if (!noise_.none()) noise_.add(number, block.records.data() + row * block.channels * block.samples);
+    const std::vector<double> p = found(recording(block, row), known_.at(block.generator[row]));
     for (std::size_t k = 0; k < index_.size(); ++k) {
       const double low = dataset_.parameter_low[k], high = dataset_.parameter_high[k];
-      const double value = found.front()[static_cast<std::size_t>(index_[k])];
+      const double value = p[static_cast<std::size_t>(index_[k])];
       out[k] = std::isfinite(value) ? std::clamp(value, low, high) : 0.5 * (low + high);
     }
   }
 
  private:
+  [[nodiscard]] std::vector<double> found(const sim::Recording& r, const std::vector<double>& known) const {
+    auto all = effect_->closed_form(noise_.none() ? r : sim::direct::smoothed(r), known.data());
+    if (all.empty()) all.push_back(known);
+    if (method_ == Method::closed_form) return all.front();
+    if (noise_.none()) return sim::direct::refine_best(*effect_, r, all, free_, low_, high_).p;
+    return sim::direct::most_probable_of(*effect_, r, all, unknown_).p;
+  }
+  void floor(const store::RowBlock& block, std::size_t row, double* out) const {
+    const sim::Recording r = recording(block, row);
+    std::vector<double> truth = known_.at(block.generator[row]);
+    const double* labels = block.parameters.data() + row * index_.size();
+    for (std::size_t k = 0; k < index_.size(); ++k) truth[static_cast<std::size_t>(index_[k])] = labels[k];
+    const auto variance = sim::direct::error_bound(*effect_, r, truth, unknown_);
+    std::copy_n(labels, index_.size(), out);
+    for (std::size_t k = 0; k < free_.size(); ++k) {
+      const auto at = std::ranges::find(index_, free_[k]) - index_.begin();
+      out[at] += std::sqrt(variance[k]);
+    }
+  }
   [[nodiscard]] int channel(std::string_view name) const {
     const auto at = std::ranges::find(dataset_.channel_names, name);
     return at == dataset_.channel_names.end() ? -1 : static_cast<int>(at - dataset_.channel_names.begin());
@@ -94,6 +116,8 @@ class Rows {
     sim::Recording r;
     r.step = 1 / dataset_.rate;
     r.conventions = conventions_;
+    r.noise = level_;
+    r.event = event_;
     const auto series = [&](std::string_view name, std::vector<double>& out) {
       const int c = channel(name);
       if (c < 0) return;
@@ -119,9 +143,14 @@ class Rows {
   const sim::Effect* effect_ = nullptr;
   sim::Conventions conventions_;
   sim::FrequencyFilter filter_;
+  Method method_;
+  data::RecordNoise noise_;
+  sim::MeasurementNoise level_;
+  double event_ = 0;                                   ///< [s]
   std::map<std::int32_t, std::vector<double>> known_;  ///< by generator: held parameters, standard ones else
   std::vector<double> low_, high_;
   std::vector<int> index_, free_;
+  std::vector<sim::direct::FreeParameter> unknown_;
 };
 
 }  // namespace
@@ -129,8 +158,13 @@ class Rows {
 bool is_method(std::string_view name) { return std::ranges::find(kMethods, name) != kMethods.end(); }
 
 std::vector<double> estimate(const store::Dataset& d, std::span<const std::uint64_t> rows,
-                             std::string_view method, const std::function<void(std::size_t)>& tell) {
-  const Rows reader(d);
+                             std::string_view method, const data::NoiseRecipe& noise,
+                             const std::function<void(std::size_t)>& tell) {
+  const auto which = static_cast<Method>(std::ranges::find(kMethods, method) - kMethods.begin());
+  if (which == Method::floor && noise.level == 0)
+    throw InputError({"a floor without noise", "--network floor", "records without noise have none",
+                      "give --noise, or choose another method"});
+  const Rows reader(d, which, noise);
   const std::size_t p = d.parameter_names.size();
   std::vector<double> out(rows.size() * p);
   std::size_t done = 0;
@@ -145,7 +179,8 @@ std::vector<double> estimate(const store::Dataset& d, std::span<const std::uint6
       in_parallel(
           last - done,
           [&](std::size_t k) {
-            reader.estimate(block, rows[done + k] - first, method == kMethods[1], &out[(done + k) * p]);
+            const std::uint64_t row = rows[done + k];
+            reader.estimate(block, row - first, row, &out[(done + k) * p]);
           },
           [](int) {});
       done = last;

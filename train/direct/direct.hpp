@@ -8,18 +8,23 @@
 #include <vector>
 
 #include "mpi/store/dataset.hpp"
+#include "train/data/noise.hpp"
 
 namespace swingbank::train::direct {
 
-/// "closed-form": linear least squares. "refined": Levenberg-Marquardt on the machine's equations from there.
-inline constexpr std::array<std::string_view, 2> kMethods = {"closed-form", "refined"};
+/// "closed-form": linear least squares, of smoothed signals where there is noise. "refined": without noise,
+/// Levenberg-Marquardt on the machine's equations from there; with noise, the most probable parameters.
+/// "floor": no estimate but the truth, off by the root of the Bayesian Cramer-Rao bound, so that its squared
+/// error is the least that any estimate of these noisy records has on average.
+inline constexpr std::array<std::string_view, 3> kMethods = {"closed-form", "refined", "floor"};
 bool is_method(std::string_view name);
 
 /// rows x parameters in raw units, inside the sampling box, for rows of the dataset in ascending order. The
 /// records count whole and at full rate, whatever a network would see of them. `tell`: called with the number
 /// of rows done. Throws InputError if the machine has no closed form, a channel that it needs is not
-/// recorded, or parameters of other effects vary.
+/// recorded, parameters of other effects vary, or a floor is asked for without noise.
 std::vector<double> estimate(const mpi::store::Dataset& dataset, std::span<const std::uint64_t> rows,
-                             std::string_view method, const std::function<void(std::size_t)>& tell = {});
+                             std::string_view method, const data::NoiseRecipe& noise = {},
+                             const std::function<void(std::size_t)>& tell = {});
 
 }  // namespace swingbank::train::direct

@@ -13,6 +13,7 @@ namespace swingbank::train::loop {
 namespace {
 
 const std::vector<std::string> kSchedules = {"constant", "cosine"};
+const Range kNoiseLevels = {0.0, 0.1};  // at more, a phasor is no measurement
 
 std::vector<std::string> network_names() {
   std::vector<std::string> names;
@@ -78,6 +79,11 @@ void read_input(Config& c, const std::string& at, bool complete, NetworkInput& i
   k.whole("pca_components", 0, i.pca_components);
 }
 
+void read_judging(Config& c, const std::string& at, bool complete, Judging& j) {
+  if (complete || c.has(at + ".noise")) j.noise = c.require<std::vector<double>>(at + ".noise", kNoiseLevels);
+  Keys(c, at, false).whole("test_rows", 1, j.test_rows);
+}
+
 /// A table named after a network changes what stands in it for that network only.
 Preset read_preset(Config& c, const std::string& name) {
   const std::string at = "preset." + name;
@@ -91,6 +97,8 @@ Preset read_preset(Config& c, const std::string& name) {
   TrainingRecipe training;
   read_input(c, at, true, input);
   read_training(c, at, true, training);
+  Judging judging;
+  read_judging(c, at, true, judging);
   const auto known = network_names();
   for (const auto& network : p.networks) {
     if (std::find(known.begin(), known.end(), network) == known.end())
@@ -98,6 +106,7 @@ Preset read_preset(Config& c, const std::string& name) {
                 "train/networks has no such file", fmt::format("choose among {}", fmt::join(known, ", ")));
     read_input(c, at + "." + network, false, p.input[network] = input);
     read_training(c, at + "." + network, false, p.training[network] = training);
+    read_judging(c, at + "." + network, false, p.judging[network] = judging);
     if (p.training[network].training_rows && p.training_draws == 0)
       c.problem(at + "." + network + ".training_rows", "no rows that only train",
                 "the experiment has no training_dataset, or the preset no training_draws", "give both");
@@ -148,6 +157,13 @@ const Value& of_network(const Experiment& e, const Preset& p, const std::map<std
        "choose one of these or add it to the preset's networks"});
 }
 
+std::string lines_of(const std::vector<Task>& tasks) {
+  std::string lines;
+  for (const auto& t : tasks)
+    lines += fmt::format("{}{} {} {}", lines.empty() ? "" : "\n", t.network, t.noise, t.fold);
+  return lines;
+}
+
 std::string training_networks(const Preset& p) {
   std::vector<std::string> names;
   for (const auto& network : p.networks)
@@ -166,6 +182,24 @@ const NetworkInput& Experiment::input(const std::string& preset_name, const std:
   return of_network(*this, p, p.input, network);
 }
 
+const Judging& Experiment::judging(const std::string& preset_name, const std::string& network) const {
+  const Preset& p = preset(preset_name);
+  return of_network(*this, p, p.judging, network);
+}
+
+std::vector<Task> Experiment::tasks(const std::string& preset_name) const {
+  std::vector<std::string> left_out;
+  for (const auto fold : folds) left_out.push_back(std::to_string(fold));
+  if (left_out.empty()) left_out = {"none"};
+  std::vector<Task> all;
+  for (const auto& network : preset(preset_name).networks)
+    for (const double noise : judging(preset_name, network).noise) {
+      if (network == "floor" && noise == 0.0) continue;  // records without noise have no floor
+      for (const auto& fold : left_out) all.push_back({network, noise, fold});
+    }
+  return all;
+}
+
 std::string Experiment::print(const std::string& preset_name, const std::string& what) const {
   const Preset& p = preset(preset_name);
   if (what == "table") return table;
@@ -175,11 +209,9 @@ std::string Experiment::print(const std::string& preset_name, const std::string&
   if (what == "training_draws") return std::to_string(p.training_draws);
   if (what == "training_rows") return training_networks(p);
   if (what == "networks") return fmt::format("{}", fmt::join(p.networks, "\n"));
-  if (what == "folds") return folds.empty() ? "none" : fmt::format("{}", fmt::join(folds, "\n"));
-  throw InputError(
-      {fmt::format("'{}' cannot be printed", what), "--print", "an experiment has no such entry",
-       "choose among table, dataset, draws, training_dataset, training_draws, training_rows, networks, "
-       "folds"});
+  if (what == "tasks") return lines_of(tasks(preset_name));
+  throw InputError({fmt::format("'{}' cannot be printed", what), "--print", "an experiment has no such entry",
+                    fmt::format("choose among {}", fmt::join(kPrintable, ", "))});
 }
 
 }  // namespace swingbank::train::loop

@@ -65,6 +65,14 @@ std::string scored(const loop::Score& s, double seconds) {
                      loop::duration(seconds));
 }
 
+/// Keeps about `wanted` rows, evenly spread.
+void thin(std::vector<std::uint64_t>& rows, std::size_t wanted) {
+  const std::size_t every = std::max<std::size_t>(1, rows.size() / wanted);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < rows.size(); i += every) rows[kept++] = rows[i];
+  rows.resize(kept);
+}
+
 struct DirectRun {
   const std::filesystem::path& file;
   const std::string& name;
@@ -80,7 +88,7 @@ RunOutcome run_direct(const data::ShardStream& stream, const RunRequest& r, cons
   loop::TrainingProgress progress(d.name, d.split.test.size(), r.quiet);
   progress.line(fmt::format("{} test rows, nothing to train", d.split.test.size()));
   const auto begin = std::chrono::steady_clock::now();
-  const auto found = direct::estimate(stream.dataset(), d.split.test, r.network,
+  const auto found = direct::estimate(stream.dataset(), d.split.test, r.network, stream.noise(),
                                       [&](std::size_t done) { progress.update(done, "rows estimated"); });
   loop::LoopReport report;
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -93,7 +101,8 @@ RunOutcome run_direct(const data::ShardStream& stream, const RunRequest& r, cons
 }  // namespace
 
 std::string run_name(const RunRequest& r) {
-  return fmt::format("{}-{}-{}-seed{}{}{}", r.experiment.table, r.network, r.preset, r.seed,
+  return fmt::format("{}-{}-{}{}-seed{}{}{}", r.experiment.table, r.network, r.preset,
+                     r.noise > 0 ? fmt::format("-noise{}", r.noise) : "", r.seed,
                      r.generator ? fmt::format("-gen{}", *r.generator) : "",
                      r.shuffle_labels ? "-shuffled" : "");
 }
@@ -135,9 +144,10 @@ RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
   settings.gflops = r.runtime.gflops;
   if (r.epochs) settings.recipe.epochs = *r.epochs;
   const data::Labels& labels = stream.labels();
-  const data::RowSplit split =
+  data::RowSplit split =
       r.generator ? data::leave_one_out(labels, *r.generator, settings.recipe.validation_share, r.seed)
                   : data::split_by_point(labels, r.seed);
+  if (r.test_rows) thin(split.test, *r.test_rows);
   const data::TargetScale scale =
       data::TargetScale::fit(labels.values, labels.parameters, split.train, stream.dataset().parameter_low);
   if (direct::is_method(r.network)) return run_direct(stream, r, {file, name, run_identity, split, scale});

@@ -20,6 +20,8 @@ struct RunRequest {
   std::optional<std::int32_t> generator;  ///< to leave out; none: 60/20/20
   std::uint64_t seed = 1;
   std::optional<std::size_t> epochs;  ///< instead of the preset's
+  double noise = 0;  ///< level of measurement noise; the stream must have been opened with it
+  std::optional<std::size_t> test_rows;  ///< about so many, evenly spread; none: all
   bool shuffle_labels = false;
   bool save_network = true;  ///< beside the result (not of a control run)
   std::filesystem::path out;

@@ -5,32 +5,10 @@
 
 #include "sim/direct/refine.hpp"
 #include "sim/library/library.hpp"
-#include "tests/sim/reference/reference_support.hpp"
+#include "tests/sim/direct/recorded.hpp"
 
 namespace swingbank::sim::direct {
 namespace {
-
-/// What a dataset keeps of one machine: 120 samples/s, single precision.
-std::vector<Recording> recorded(const grid::Grid& grid, int bus, double cleared) {
-  network::Event event;
-  event.faults.push_back({grid.network.bus_index(bus), 2.0, cleared, {}});
-  reference::ReferenceOptions options;
-  options.rate = 120;
-  options.t_end = 15;
-  options.channels = {Channel::V, Channel::theta, Channel::P, Channel::Q, Channel::speed, Channel::Ifd};
-  const auto run = reference::run_reference(grid, event, options);
-  std::vector<Recording> all;
-  for (int plant = 0; plant < static_cast<int>(grid.plants.size()); ++plant) {
-    Recording r;
-    r.step = 1 / options.rate;
-    r.conventions = grid.conventions;
-    std::vector<double>* channels[] = {&r.V, &r.theta, &r.P, &r.Q, &r.speed, &r.Ifd};
-    for (int c = 0; c < 6; ++c)
-      for (int k = 0; k < run.samples; ++k) channels[c]->push_back(static_cast<float>(run.at(plant, c)[k]));
-    all.push_back(std::move(r));
-  }
-  return all;
-}
 
 /// In GENROU's order: T'do, T''do, T'qo, T''qo, H, D, Xd, Xq, X'd, X'q, X''d, Xl, S1.0, S1.2, Ra.
 const std::vector<double> kClosedForm = {0.005, 0.01, 0.15, 0.7, 1e-4, 1e-3, 0.04, 0.06,

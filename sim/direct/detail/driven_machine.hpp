@@ -1,0 +1,65 @@
+#pragma once
+// A machine whose terminal voltage is played in: its equations at one instant, with Efd and mechanical torque
+// as in the steady state before the event.
+#include <array>
+#include <vector>
+
+#include "sim/core/effect.hpp"
+
+namespace swingbank::sim::direct {
+
+/// Of a machine behind a constant impedance. Angles count from the terminal's voltage.
+template <class T>
+struct DrivenMachine {
+  const Ops<T>& ops;
+  std::vector<T> c, x, scratch, dx;  ///< x: set by the caller before evaluate(); at first the steady state
+  Signals<T> s;
+  T r, xm;  ///< impedance between terminal and inner voltage [pu]
+
+  /// In the steady state with terminal voltage V0 and current Ir0 + j Ii0 out of the machine [pu].
+  DrivenMachine(const Effect& effect, const Conventions& conventions, const std::vector<T>& p, const T& V0,
+                const T& Ir0, const T& Ii0)
+      : ops(effect.get<T>()),
+        c(static_cast<std::size_t>(effect.coefficients)),
+        x(effect.states.size()),
+        scratch(static_cast<std::size_t>(effect.scratch)),
+        dx(effect.states.size()) {
+    ops.prepare(p.data(), conventions, c.data());
+    ops.machine.source_impedance(p.data(), r, xm);
+    s.Vr = V0;
+    s.Ir = Ir0;
+    s.Ii = Ii0;
+    ops.machine.steady(p.data(), c.data(), s, x.data());
+  }
+  /// Current into the terminal's voltage V, then everything that follows from it.
+  void evaluate(const T& V) {
+    T er, ei;
+    ops.machine.emf(c.data(), x.data(), scratch.data(), er, ei);
+    const T dr = er - V, k = T(1.0) / (r * r + xm * xm);
+    s.Vr = V;
+    s.Ir = (r * dr + xm * ei) * k;
+    s.Ii = (r * ei - xm * dr) * k;
+    ops.machine.electrical(c.data(), x.data(), scratch.data(), s);
+  }
+  /// Fills dx; behind evaluate().
+  void derive() { ops.machine.derivative(c.data(), x.data(), scratch.data(), s, dx.data()); }
+};
+
+/// One step of the classical fourth-order method from x. `first`: the slope at x; slope(stage, y) gives those
+/// in the middle (stages 1 and 2) and at the end (3).
+template <class Vector, class Slope>
+void runge_kutta(Vector& x, const Vector& first, double h, const Slope& slope) {
+  using T = typename Vector::value_type;
+  const auto moved = [&](const Vector& by, double share) {
+    Vector y = x;
+    for (std::size_t i = 0; i < y.size(); ++i) y[i] = y[i] + T(share) * by[i];
+    return y;
+  };
+  const auto b = slope(1, moved(first, h / 2));
+  const auto c = slope(2, moved(b, h / 2));
+  const auto d = slope(3, moved(c, h));
+  for (std::size_t i = 0; i < x.size(); ++i)
+    x[i] = x[i] + T(h / 6) * (first[i] + T(2.0) * (b[i] + c[i]) + d[i]);
+}
+
+}  // namespace swingbank::sim::direct

@@ -1,0 +1,277 @@
+#include "sim/direct/detail/innovations.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+namespace swingbank::sim::direct {
+namespace {
+
+template <class T>
+using States = std::array<T, kMostStates>;
+template <class T>
+using Voltage = std::array<T, kInputs>;
+
+/// The machine with V and theta played in; angles in the synchronous frame.
+template <class T>
+class Played {
+ public:
+  Played(const Effect& machine, const Conventions& conventions, const std::vector<T>& p,
+         const std::array<T, kSteady>& steady, bool noise = false)
+      : noise_(noise),
+        m_(machine, conventions, p, steady[kV0], steady[kP0] / steady[kV0],
+           T(0.0) - steady[kQ0] / steady[kV0]) {
+    std::ranges::copy(m_.x, start_.begin());
+    start_[0] = start_[0] + steady[kTheta0];
+    evaluate(start_, Voltage<T>{steady[kV0], steady[kTheta0]});
+    Ifd0_ = m_.s.Ifd;
+  }
+  [[nodiscard]] const States<T>& start() const { return start_; }
+  [[nodiscard]] const T& Ifd0() const { return Ifd0_; }  ///< of the steady state
+  void evaluate(const States<T>& x, const Voltage<T>& u) {
+    std::copy_n(x.begin(), m_.x.size(), m_.x.begin());
+    m_.x[0] = x[0] - u[kTheta];
+    m_.evaluate(u[kV]);
+  }
+  /// Behind evaluate().
+  [[nodiscard]] std::array<T, kOutputs> outputs() const {
+    const auto& s = m_.s;
+    return {s.Vr * s.Ir, T(0.0) - s.Vr * s.Ii, s.speed, s.Ifd};
+  }
+  States<T> slope() {
+    m_.derive();
+    States<T> dx{};
+    std::ranges::copy(m_.dx, dx.begin());
+    return dx;
+  }
+  /// From the steady state to the first sample behind the event.
+  States<T> behind_event(const NoisyRecord& r) {
+    States<T> x = start_;
+    half(x, r.at_event, r.in[0], r.first_step);
+    return x;
+  }
+  /// From sample k to the next; `first`: slope() at the sample.
+  void step(const NoisyRecord& r, std::size_t k, States<T>& x, const States<T>& first) {
+    const Interval& i = r.behind[k];
+    if (!i.leaps) return go(x, first, i.middle, r.in[k + 1], r.step);
+    go(x, first, mean(r.in[k], i.before), i.before, r.step / 2);
+    half(x, i.after, r.in[k + 1], r.step / 2);
+  }
+  /// Slope at x under another voltage.
+  States<T> slope_at(const States<T>& x, const Inputs& u) {
+    evaluate(x, voltage(u));
+    return slope();
+  }
+  /// The voltage as T; its noise as two directions of a dual where they are asked for.
+  [[nodiscard]] Voltage<T> voltage(const Inputs& u) const {
+    Voltage<T> v = {T(u[kV]), T(u[kTheta])};
+    if constexpr (!std::is_same_v<T, double>)
+      if (noise_) v[kV].d[kMostStates] = v[kTheta].d[kMostStates + 1] = 1;
+    return v;
+  }
+
+ private:
+  static Inputs mean(const Inputs& u, const Inputs& v) {
+    return {0.5 * (u[kV] + v[kV]), 0.5 * (u[kTheta] + v[kTheta])};
+  }
+  void go(States<T>& x, const States<T>& first, const Inputs& middle, const Inputs& last, double h) {
+    runge_kutta(x, first, h,
+                [&](int stage, const States<T>& y) { return slope_at(y, stage == 3 ? last : middle); });
+  }
+  void half(States<T>& x, const Inputs& u, const Inputs& v, double h) {
+    go(x, slope_at(x, u), mean(u, v), v, h);
+  }
+
+  bool noise_;
+  DrivenMachine<T> m_;
+  States<T> start_{};
+  T Ifd0_;
+};
+
+using OutputMatrix = Eigen::Matrix<double, kOutputs, kOutputs>;
+using StateMatrix = Eigen::Matrix<double, kMostStates, kMostStates>;
+using FromInputs = Eigen::Matrix<double, kMostStates, kInputs>;
+
+/// A sample's equations about the filter's state: y = C x + D n + v, x' = F x + G n, with n the noise of the
+/// played-in voltage.
+struct Linear {
+  StateMatrix F = StateMatrix::Zero();
+  FromInputs G = FromInputs::Zero();
+  Eigen::Matrix<double, kOutputs, kMostStates> C;
+  Eigen::Matrix<double, kOutputs, kInputs> D;
+  Eigen::Matrix<double, kOutputs, 1> y;
+  Gain::State next = Gain::State::Zero();
+  StateMatrix unsure = StateMatrix::Zero();  ///< covariance of what leaps between the samples leave open
+};
+
+class Linearised {
+ public:
+  Linearised(const Effect& machine, const NoisyRecord& record, const std::vector<double>& p,
+             const std::array<double, kSteady>& steady)
+      : record_(record),
+        states_(machine.states.size()),
+        played_(machine, record.conventions, {p.begin(), p.end()},
+                {steady[kP0], steady[kQ0], steady[kV0], steady[kTheta0]}, true) {}
+
+  /// The state at the first sample, and its covariance.
+  Gain::State start(StateMatrix& P) {
+    // The voltage at the event is extrapolated from two samples, so the noise of the step is more than one's.
+    constexpr double kExtrapolated = 1.5 * 1.5 + 0.5 * 0.5;
+    const auto first = played_.behind_event(record_);
+    Linear l;
+    take(first, l);
+    const double input = kExtrapolated * std::pow(record_.noise.phasor(), 2);
+    P = input * l.G * l.G.transpose();
+    open(played_.start(), record_.in[0], record_.at_event, kUnsure * record_.first_step, P);
+    return l.next;
+  }
+  Linear at(std::size_t k, const Gain::State& state) {
+    Linear l;
+    States<D8> x{};
+    for (std::size_t i = 0; i < states_; ++i) {
+      x[i] = D8(state[static_cast<Eigen::Index>(i)]);
+      x[i].d[i] = 1;
+    }
+    played_.evaluate(x, played_.voltage(record_.in[k]));
+    const auto y = played_.outputs();
+    for (int o = 0; o < kOutputs; ++o) {
+      const auto& value = y[static_cast<std::size_t>(o)];
+      l.y[o] = value.a;
+      for (std::size_t i = 0; i < kMostStates; ++i) l.C(o, static_cast<Eigen::Index>(i)) = value.d[i];
+      for (int i = 0; i < kInputs; ++i) l.D(o, i) = value.d[kMostStates + static_cast<std::size_t>(i)];
+    }
+    if (k + 1 >= record_.samples()) return l;
+    const auto slope = played_.slope();
+    const auto before = x;
+    played_.step(record_, k, x, slope);
+    take(x, l);
+    if (record_.behind[k].leaps) leap(before, k, l);
+    halve(l);
+    return l;
+  }
+
+ private:
+  /// Share of an extrapolated difference that is not trusted.
+  static constexpr double kUnsure = 0.25;
+
+  void take(const States<D8>& x, Linear& l) const {
+    for (std::size_t i = 0; i < states_; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      l.next[row] = x[i].a;
+      for (std::size_t j = 0; j < kMostStates; ++j) l.F(row, static_cast<Eigen::Index>(j)) = x[i].d[j];
+      for (int j = 0; j < kInputs; ++j) l.G(row, j) = x[i].d[kMostStates + static_cast<std::size_t>(j)];
+    }
+  }
+  /// Half of what a sample's noise does happens on the way to it, half on the way from it. With the state
+  /// counted without the former, the equations keep their form.
+  static void halve(Linear& l) {
+    l.D += 0.5 * l.C * l.G;
+    l.G = (0.5 * (l.F * l.G + l.G)).eval();
+  }
+  /// Adds the covariance of a step of `h` seconds of which nobody knows whether u or v held.
+  void open(const States<D8>& x, const Inputs& u, const Inputs& v, double h, StateMatrix& covariance) {
+    const auto a = played_.slope_at(x, u), b = played_.slope_at(x, v);
+    Gain::State moved = Gain::State::Zero();
+    for (std::size_t i = 0; i < states_; ++i) moved[static_cast<Eigen::Index>(i)] = h * (a[i].a - b[i].a);
+    covariance += moved * moved.transpose();
+  }
+  /// The voltage leaps at any instant between two samples: one that is uniform has a variance of 1/12.
+  void leap(const States<D8>& x, std::size_t k, Linear& l) {
+    const Interval& i = record_.behind[k];
+    open(x, i.before, i.after, record_.step / std::sqrt(12.0), l.unsure);
+    open(x, i.before, record_.in[k], kUnsure * record_.step / 2, l.unsure);
+    open(x, i.after, record_.in[k + 1], kUnsure * record_.step / 2, l.unsure);
+  }
+
+  const NoisyRecord& record_;
+  std::size_t states_;
+  Played<D8> played_;
+};
+
+/// Variances of the compared outputs' own noise.
+Eigen::Matrix<double, kOutputs, 1> variances(const MeasurementNoise& noise, double Ifd) {
+  Eigen::Matrix<double, kOutputs, 1> v;
+  v << noise.phasor(), noise.phasor(), noise.speed(), noise.field(Ifd);
+  return v.cwiseAbs2();
+}
+
+}  // namespace
+
+Gains gains_about(const Effect& machine, const NoisyRecord& record, const std::vector<double>& p,
+                  const std::array<double, kSteady>& steady) {
+  Gains gains;
+  gains.at.resize(record.samples());
+  Linearised linearised(machine, record, p, steady);
+  const double input = record.noise.phasor() * record.noise.phasor();
+  StateMatrix P;
+  Gain::State x = linearised.start(P);
+  for (std::size_t k = 0; k < record.samples(); ++k) {
+    const Linear l = linearised.at(k, x);
+    OutputMatrix S = l.C * P * l.C.transpose() + input * l.D * l.D.transpose();
+    S.diagonal() += variances(record.noise, l.y[kIfd]);
+    Eigen::Matrix<double, kOutputs, 1> e;
+    for (int o = 0; o < kOutputs; ++o) e[o] = record.out[k][static_cast<std::size_t>(o)] - l.y[o];
+    if (record.outputs < kOutputs) {  // as if measured without any precision
+      S.row(kIfd).setZero();
+      S.col(kIfd).setZero();
+      S(kIfd, kIfd) = 1;
+      e[kIfd] = 0;
+    }
+    const Eigen::LLT<OutputMatrix> factor(S);
+    Gain& gain = gains.at[k];
+    gain.whitening = factor.matrixL().solve(OutputMatrix::Identity());
+    gain.onto_states =
+        factor.solve((l.F * P * l.C.transpose() + input * l.G * l.D.transpose()).transpose()).transpose();
+    if (record.outputs < kOutputs) gain.onto_states.col(kIfd).setZero();
+    gains.log_determinant -= 2 * gain.whitening.diagonal().array().log().sum();
+    gains.squares += (gain.whitening * e).squaredNorm();
+    P = l.F * P * l.F.transpose() + input * l.G * l.G.transpose() + l.unsure -
+        gain.onto_states * S * gain.onto_states.transpose();
+    P = (0.5 * (P + P.transpose())).eval();
+    x = l.next + gain.onto_states * e;
+  }
+  return gains;
+}
+
+std::size_t innovation_count(const NoisyRecord& record) {
+  const auto outputs = static_cast<std::size_t>(record.outputs);
+  return record.samples() * outputs + kSteady + (record.outputs == kOutputs ? 1 : 0);
+}
+
+template <class T>
+void innovations(const Effect& machine, const NoisyRecord& r, const Gains& gains, const std::vector<T>& p,
+                 const std::array<T, kSteady>& steady, T* out) {
+  Played<T> m(machine, r.conventions, p, steady);
+  // Means before the event are as noisy as one sample over the root of their number.
+  const double mean = std::sqrt(r.before) / r.noise.phasor();
+  *out++ = T(mean) * (T(r.P0) - steady[kP0]);
+  *out++ = T(mean) * (T(r.Q0) - steady[kQ0]);
+  *out++ = T(mean) * (T(r.V0) - steady[kV0]);
+  *out++ = T(mean) * (T(0.0) - steady[kTheta0]);
+  if (r.outputs == kOutputs) *out++ = T(std::sqrt(r.before) / r.noise.field(r.Ifd0)) * (T(r.Ifd0) - m.Ifd0());
+  const std::size_t states = machine.states.size();
+  States<T> x = m.behind_event(r);
+  for (std::size_t k = 0; k < r.samples(); ++k) {
+    m.evaluate(x, m.voltage(r.in[k]));
+    const auto y = m.outputs();
+    std::array<T, kOutputs> e{};
+    for (std::size_t o = 0; o < static_cast<std::size_t>(r.outputs); ++o) e[o] = T(r.out[k][o]) - y[o];
+    const Gain& gain = gains.at[k];
+    for (int o = 0; o < r.outputs; ++o) {
+      T white(0.0);
+      for (int i = 0; i <= o; ++i) white = white + T(gain.whitening(o, i)) * e[static_cast<std::size_t>(i)];
+      *out++ = white;
+    }
+    if (k + 1 == r.samples()) break;
+    m.step(r, k, x, m.slope());
+    for (std::size_t i = 0; i < states; ++i)
+      for (int o = 0; o < r.outputs; ++o)
+        x[i] = x[i] + T(gain.onto_states(static_cast<Eigen::Index>(i), o)) * e[static_cast<std::size_t>(o)];
+  }
+}
+
+template void innovations(const Effect&, const NoisyRecord&, const Gains&, const std::vector<double>&,
+                          const std::array<double, kSteady>&, double*);
+template void innovations(const Effect&, const NoisyRecord&, const Gains&, const std::vector<D8>&,
+                          const std::array<D8, kSteady>&, D8*);
+
+}  // namespace swingbank::sim::direct

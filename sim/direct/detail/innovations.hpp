@@ -1,0 +1,42 @@
+#pragma once
+// What a Kalman filter finds new in each sample of a noisy record. The noise of the played-in voltage acts at
+// once, through the stator's algebra, and later, through the rotor that it drives; innovations hold both, and
+// with the right parameters they are white. So their squares are the likelihood.
+#include <Eigen/Core>
+#include <vector>
+
+#include "sim/core/scalar.hpp"
+#include "sim/direct/detail/driven_machine.hpp"
+#include "sim/direct/detail/noisy_record.hpp"
+
+namespace swingbank::sim::direct {
+
+constexpr std::size_t kMostStates = kDirections - kInputs;  ///< so that one dual holds both
+
+/// The operating point before the event, which means over noisy samples do not tell exactly.
+enum Steady { kP0, kQ0, kV0, kTheta0, kSteady };
+
+/// Of one sample.
+struct Gain {
+  using State = Eigen::Matrix<double, kMostStates, 1>;
+  Eigen::Matrix<double, kMostStates, kOutputs> onto_states;  ///< of the step to the next sample
+  Eigen::Matrix<double, kOutputs, kOutputs> whitening;       ///< inverse Cholesky factor of the covariance
+};
+struct Gains {
+  std::vector<Gain> at;
+  double log_determinant = 0;  ///< of all covariances
+  double squares = 0;          ///< of the whitened innovations
+};
+
+/// The gains about these parameters and this operating point.
+Gains gains_about(const Effect& machine, const NoisyRecord& record, const std::vector<double>& p,
+                  const std::array<double, kSteady>& steady);
+
+/// How many numbers innovations() gives: whitened, of every sample, then those of the means before the event.
+std::size_t innovation_count(const NoisyRecord& record);
+/// T: double or D8. out: innovation_count() numbers of unit variance where p is right.
+template <class T>
+void innovations(const Effect& machine, const NoisyRecord& record, const Gains& gains,
+                 const std::vector<T>& p, const std::array<T, kSteady>& steady, T* out);
+
+}  // namespace swingbank::sim::direct

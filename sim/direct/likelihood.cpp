@@ -1,0 +1,210 @@
+#include "sim/direct/likelihood.hpp"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sim/core/noise.hpp"
+#include "sim/direct/detail/innovations.hpp"
+#include "sim/direct/detail/search.hpp"
+
+namespace swingbank::sim::direct {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// The unknowns: free parameters in units of their prior's deviation, then the operating point.
+class Posterior : public ceres::CostFunction {
+ public:
+  Posterior(const Effect& machine, const NoisyRecord& record, const std::vector<double>& p,
+            std::span<const FreeParameter> free)
+      : machine_(machine), record_(record), p_(p), free_(free) {
+    set_num_residuals(static_cast<int>(innovation_count(record) + free.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(unknowns()));
+  }
+  [[nodiscard]] Index unknowns() const { return static_cast<Index>(free_.size()) + kSteady; }
+  [[nodiscard]] VectorXd start() const {
+    VectorXd z(unknowns());
+    for (std::size_t k = 0; k < free_.size(); ++k) {
+      const auto& f = free_[k];
+      z[static_cast<Index>(k)] =
+          std::clamp(p_[static_cast<std::size_t>(f.index)], f.low, f.high) / f.deviation;
+    }
+    z.tail<kSteady>() << record_.P0, record_.Q0, record_.V0, 0;
+    return z;
+  }
+  [[nodiscard]] std::vector<double> parameters(const VectorXd& z) const {
+    std::vector<double> p = p_;
+    for (std::size_t k = 0; k < free_.size(); ++k)
+      p[static_cast<std::size_t>(free_[k].index)] = z[static_cast<Index>(k)] * free_[k].deviation;
+    return p;
+  }
+  /// Weights about z from here on.
+  void weigh(const VectorXd& z) {
+    const auto n = static_cast<Index>(free_.size());
+    gains_ = gains_about(machine_, record_, parameters(z), {z[n], z[n + 1], z[n + 2], z[n + 3]});
+  }
+  [[nodiscard]] double log_determinant() const { return gains_.log_determinant; }
+
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    const double* z = blocks[0];
+    const auto values = of<double>(z, -1);
+    std::ranges::copy(values, residuals);
+    bool finite = std::ranges::all_of(values, [](double r) { return std::isfinite(r); });
+    if (!finite || !jacobians || !jacobians[0]) return finite;
+    for (Index first = 0; first < unknowns(); first += kDirections) {
+      const auto r = of<D8>(z, first);
+      const Index last = std::min<Index>(first + kDirections, unknowns());
+      for (std::size_t i = 0; i < r.size(); ++i)
+        for (Index k = first; k < last; ++k) {
+          const double slope = r[i].d[static_cast<std::size_t>(k - first)];
+          jacobians[0][static_cast<Index>(i) * unknowns() + k] = slope;
+          finite = finite && std::isfinite(slope);
+        }
+    }
+    return finite;
+  }
+
+ private:
+  /// Innovations, then the prior's residuals, with slopes along kDirections unknowns from `first` on.
+  template <class T>
+  [[nodiscard]] std::vector<T> of(const double* z, Index first) const {
+    const auto at = [&](Index k, double scale) {
+      T x(z[k] * scale);
+      if constexpr (!std::is_same_v<T, double>)
+        if (k >= first && k < first + kDirections) x.d[static_cast<std::size_t>(k - first)] = scale;
+      return x;
+    };
+    std::vector<T> p(p_.begin(), p_.end()), out(static_cast<std::size_t>(num_residuals()));
+    const std::size_t own = innovation_count(record_);
+    for (std::size_t k = 0; k < free_.size(); ++k) {
+      const auto& f = free_[k];
+      const T value = at(static_cast<Index>(k), f.deviation);
+      p[static_cast<std::size_t>(f.index)] = value;
+      out[own + k] = (value - T(f.mean)) * T(1 / f.deviation);
+    }
+    const auto n = static_cast<Index>(free_.size());
+    innovations<T>(machine_, record_, gains_, p, {at(n, 1), at(n + 1, 1), at(n + 2, 1), at(n + 3, 1)},
+                   out.data());
+    return out;
+  }
+
+  const Effect& machine_;
+  const NoisyRecord& record_;
+  std::vector<double> p_;
+  std::span<const FreeParameter> free_;
+  Gains gains_;
+};
+
+MostProbable search(const Effect& machine, const NoisyRecord& record, const std::vector<double>& start,
+                    std::span<const FreeParameter> free, const LikelihoodOptions& options) {
+  constexpr double kSettled = 1e-6;  // of the cost, a sum of squares of thousands
+  constexpr double kSame = 0.1;      // of the cost between two rounds of weights
+  Posterior posterior(machine, record, start, free);
+  VectorXd z = posterior.start();
+  MostProbable found{posterior.parameters(z), 0, std::numeric_limits<double>::infinity(), 0};
+  ceres::Problem::Options borrowed;
+  borrowed.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  for (int round = 0; round < options.rounds; ++round) {
+    posterior.weigh(z);
+    ceres::Problem problem(borrowed);
+    problem.AddResidualBlock(&posterior, nullptr, z.data());
+    for (std::size_t k = 0; k < free.size(); ++k) {
+      problem.SetParameterLowerBound(z.data(), static_cast<int>(k), free[k].low / free[k].deviation);
+      problem.SetParameterUpperBound(z.data(), static_cast<int>(k), free[k].high / free[k].deviation);
+    }
+    ceres::Solver::Summary summary;
+    ceres::Solve(search_options(options.iterations, kSettled), &problem, &summary);
+    if (!summary.IsSolutionUsable()) break;
+    found.iterations += static_cast<int>(summary.iterations.size()) - 1;
+    const double cost = 2 * summary.final_cost + posterior.log_determinant(), before = found.cost;
+    found.p = posterior.parameters(z);
+    found.cost = cost;
+    const auto freedom = static_cast<double>(posterior.num_residuals() - posterior.unknowns());
+    found.chi_square = 2 * summary.final_cost / freedom;
+    if (std::abs(before - cost) < kSame) break;
+  }
+  return found;
+}
+
+/// Chi-square that a right answer hardly ever exceeds.
+double enough(const NoisyRecord& record) {
+  constexpr double kDeviations = 4;
+  return 1 + kDeviations * std::sqrt(2 / static_cast<double>(innovation_count(record)));
+}
+
+std::vector<double> drawn(std::vector<double> p, std::uint32_t draw, std::span<const FreeParameter> free) {
+  constexpr std::uint64_t kSeed = 1;
+  for (std::size_t k = 0; k < free.size(); ++k)
+    p[static_cast<std::size_t>(free[k].index)] =
+        free[k].low + uniform_pair(kSeed, draw, k)[0] * (free[k].high - free[k].low);
+  return p;
+}
+
+}  // namespace
+
+FreeParameter uniform_parameter(int index, double low, double high) {
+  return {index, low, high, 0.5 * (low + high), (high - low) / std::sqrt(12.0)};
+}
+
+bool has_likelihood(const Effect& machine) {
+  return machine.states.size() <= kMostStates && !machine.get<double>().machine.current;
+}
+
+MostProbable most_probable(const Effect& machine, const Recording& record, std::vector<double> start,
+                           std::span<const FreeParameter> free, const LikelihoodOptions& options) {
+  return search(machine, noisy_record(record, options.longest), start, free, options);
+}
+
+MostProbable most_probable_of(const Effect& machine, const Recording& record,
+                              std::span<const std::vector<double>> candidates,
+                              std::span<const FreeParameter> free, const LikelihoodOptions& options) {
+  constexpr std::uint32_t kDraws = 6;
+  const NoisyRecord noisy = noisy_record(record, options.longest);
+  const double limit = enough(noisy);
+  MostProbable best{candidates.front(), 0, std::numeric_limits<double>::infinity(), 0};
+  const auto right = [&] { return std::isfinite(best.cost) && best.chi_square < limit; };
+  const auto take = [&](const std::vector<double>& start) {
+    const MostProbable m = search(machine, noisy, start, free, options);
+    if (m.cost < best.cost) best = m;
+  };
+  for (const auto& start : candidates)
+    if (!right()) take(start);
+  std::vector<double> middle = candidates.front();
+  for (const auto& f : free) middle[static_cast<std::size_t>(f.index)] = f.mean;
+  if (!right()) take(middle);
+  for (std::uint32_t k = 0; k < kDraws && !right(); ++k) take(drawn(middle, k, free));
+  return best;
+}
+
+std::vector<double> error_bound(const Effect& machine, const Recording& record,
+                                const std::vector<double>& truth, std::span<const FreeParameter> free,
+                                const LikelihoodOptions& options) {
+  const NoisyRecord noisy = noisy_record(record, options.longest);
+  Posterior posterior(machine, noisy, truth, free);
+  const VectorXd z = posterior.start();
+  posterior.weigh(z);
+  VectorXd values(posterior.num_residuals());
+  RowMatrix slopes(posterior.num_residuals(), posterior.unknowns());
+  const double* blocks[] = {z.data()};
+  double* jacobians[] = {slopes.data()};
+  if (!posterior.Evaluate(blocks, values.data(), jacobians)) return {};
+  const VectorXd size = slopes.colwise().norm();
+  slopes.array().rowwise() /= size.transpose().array();
+  const Eigen::MatrixXd information = slopes.transpose() * slopes;
+  const VectorXd variance =
+      information.ldlt().solve(Eigen::MatrixXd::Identity(size.size(), size.size())).diagonal();
+  std::vector<double> bound;
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    const auto i = static_cast<Index>(k);
+    bound.push_back(variance[i] * std::pow(free[k].deviation / size[i], 2));
+  }
+  return bound;
+}
+
+}  // namespace swingbank::sim::direct

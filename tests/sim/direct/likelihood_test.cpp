@@ -1,0 +1,71 @@
+// Machines of the IEEE 39-bus system in a fault, recorded with noise: the fit is as good as the noise allows.
+#include "sim/direct/likelihood.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sim/core/noise.hpp"
+#include "tests/sim/direct/recorded.hpp"
+
+namespace swingbank::sim::direct {
+namespace {
+
+Recording with_noise(Recording r, double level, std::uint64_t seed) {
+  r.noise = {level};
+  const auto add = [&](std::vector<double>& x, std::uint32_t key, double deviation, bool of_value) {
+    for (std::size_t k = 0; k < x.size(); ++k)
+      x[k] += deviation * (of_value ? x[k] : 1.0) * normal_pair(seed, key, k)[0];
+  };
+  add(r.V, 0, r.noise.phasor(), false);
+  add(r.theta, 1, r.noise.phasor(), false);
+  add(r.P, 2, r.noise.phasor(), false);
+  add(r.Q, 3, r.noise.phasor(), false);
+  add(r.speed, 4, r.noise.speed(), false);
+  add(r.Ifd, 5, level, true);
+  return r;
+}
+
+/// Mean of squared errors over their bounds, and of chi-square, over machines, events and draws of the noise.
+struct Judged {
+  double ratio = 0, chi_square = 0;
+};
+Judged judge(const std::string& system, std::span<const FreeParameter> free, double level) {
+  const auto grid = test::configured_grid(system, Conventions::psse());
+  Judged all;
+  double count = 0;
+  for (Recording clean : recorded(grid, 16, 2.063)) {
+    const auto& machine = grid.plants[static_cast<std::size_t>(count)].machine;
+    clean.event = 2.0;
+    clean.noise = {level};
+    const auto bound = error_bound(*machine.effect, clean, machine.p, free);
+    std::vector<double> start = machine.p;
+    for (const auto& f : free) start[static_cast<std::size_t>(f.index)] = f.mean;
+    const auto found = most_probable_of(*machine.effect, with_noise(clean, level, 7), {&start, 1}, free);
+    for (std::size_t k = 0; k < free.size(); ++k) {
+      const auto i = static_cast<std::size_t>(free[k].index);
+      EXPECT_LT(bound[k], 1.0001 * free[k].deviation * free[k].deviation)
+          << machine.effect->parameters[i].name;
+      all.ratio += std::pow(found.p[i] - machine.p[i], 2) / bound[k] / static_cast<double>(free.size());
+    }
+    all.chi_square += found.chi_square;
+    ++count;
+  }
+  all.ratio /= count;
+  all.chi_square /= count;
+  return all;
+}
+
+// Of ten records with two unknowns each, the mean of a squared normal number scatters by 0.3.
+TEST(Likelihood, ReachesTheBoundOfClassicalMachines) {
+  const std::vector<FreeParameter> free = {uniform_parameter(0, 1, 10), uniform_parameter(1, 0, 8),
+                                           uniform_parameter(3, 0.05, 0.6)};
+  for (const double level : {0.001, 0.005}) {
+    const Judged j = judge("ieee39_dataset_gencls", free, level);
+    EXPECT_NEAR(j.chi_square, 1, 0.03) << level;
+    EXPECT_LT(j.ratio, 1.9) << level;
+  }
+}
+
+}  // namespace
+}  // namespace swingbank::sim::direct
