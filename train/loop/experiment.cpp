@@ -93,9 +93,12 @@ Preset read_preset(Config& c, const std::string& name) {
   read_training(c, at, true, training);
   const auto known = network_names();
   for (const auto& network : p.networks) {
-    if (std::find(known.begin(), known.end(), network) == known.end())
-      c.problem(at + ".networks", fmt::format("no network called '{}'", network),
+    const std::string own = at + "." + network;
+    training.kind = c.optional<std::string>(own + ".kind", network);
+    if (std::find(known.begin(), known.end(), training.kind) == known.end())
+      c.problem(at + ".networks", fmt::format("no network called '{}'", training.kind),
                 "train/networks has no such file", fmt::format("choose among {}", fmt::join(known, ", ")));
+    training.corrects = c.choice(own + ".corrects", {"", "closed-form", "refined"}, "");
     read_input(c, at + "." + network, false, p.input[network] = input);
     read_training(c, at + "." + network, false, p.training[network] = training);
   }

@@ -12,6 +12,8 @@ namespace swingbank::train::loop {
 
 /// How the weights are found.
 struct TrainingRecipe {
+  std::string kind;      ///< file of train/networks; usually the name it has in the experiment
+  std::string corrects;  ///< method of train/direct whose estimates it reads and corrects; empty: none
   std::size_t epochs = 0, batch = 0;
   double learning_rate = 0.0;  ///< of Adam
   std::string
