@@ -51,6 +51,9 @@ RecordNoise::RecordNoise(const mpi::store::DatasetHeader& dataset, const NoiseRe
       problems.add("no noise is known of channel " + name, dataset.name.empty() ? "dataset" : dataset.name,
                    "no instrument at a terminal shows it", "read this dataset without noise");
     channels_.push_back(channel.value_or(Noisy{}));
+    if (channel && channel->kind == Kind::frequency && system_frequency_ <= 0)
+      problems.add("no system frequency", dataset.name.empty() ? "dataset.json" : dataset.name,
+                   "an older version of the software made the dataset", "make it again in an empty folder");
   }
   problems.raise();
 }

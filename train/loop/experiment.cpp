@@ -72,8 +72,8 @@ void read_input(Config& c, const std::string& at, bool complete, NetworkInput& i
   k.whole("slice", 1, i.recipe.slice);
   std::string form = data::kInputForms.at(static_cast<std::size_t>(i.recipe.form));
   k.choice("form", data::kInputForms, form);
-  i.recipe.form =
-      static_cast<data::InputForm>(std::ranges::find(data::kInputForms, form) - data::kInputForms.begin());
+  if (const auto at_form = std::ranges::find(data::kInputForms, form); at_form != data::kInputForms.end())
+    i.recipe.form = static_cast<data::InputForm>(at_form - data::kInputForms.begin());
   k.whole("pca_components", 0, i.pca_components);
 }
 

@@ -12,8 +12,6 @@ namespace swingbank::train::loop {
 
 /// How the weights are found.
 struct TrainingRecipe {
-  std::string kind;      ///< file of train/networks; usually the name it has in the experiment
-  std::string corrects;  ///< method of train/direct whose estimates it reads and corrects; empty: none
   std::size_t epochs = 0, batch = 0;
   double learning_rate = 0.0;  ///< of Adam
   std::string
@@ -26,6 +24,8 @@ struct TrainingRecipe {
   double weight_decay = 0.0;  ///< of matrices, per step and learning rate (Loshchilov and Hutter 2019)
   double clip = 0.0;          ///< longest gradient; 0: any
   double average = 0.0;       ///< share that the averaged weights keep a step; 0: the last weights count
+  std::string kind;           ///< file of train/networks; usually the name it has in the experiment
+  std::string corrects;       ///< method of train/direct whose estimates it reads and corrects; empty: none
 };
 
 /// What a network reads.
