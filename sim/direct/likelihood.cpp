@@ -145,12 +145,6 @@ MostProbable search(const Effect& machine, const NoisyRecord& record, const std:
   return found;
 }
 
-/// Chi-square that a right answer hardly ever exceeds.
-double enough(const NoisyRecord& record) {
-  constexpr double kDeviations = 4;
-  return 1 + kDeviations * std::sqrt(2 / static_cast<double>(innovation_count(record)));
-}
-
 std::vector<double> drawn(std::vector<double> p, std::uint32_t draw, std::span<const FreeParameter> free) {
   constexpr std::uint64_t kSeed = 1;
   for (std::size_t k = 0; k < free.size(); ++k)
@@ -178,20 +172,25 @@ MostProbable most_probable_of(const Effect& machine, const Recording& record,
                               std::span<const std::vector<double>> candidates,
                               std::span<const FreeParameter> free, const LikelihoodOptions& options) {
   constexpr std::uint32_t kDraws = 6;
+  // Chi-square cannot tell a wrong answer: of thousands of samples it scatters by a hundred, and a wrong one
+  // may cost ten more than the right one. So two starts have to agree.
+  constexpr double kSameAnswer = 1;
+  constexpr int kAgree = 2;
   const NoisyRecord noisy = noisy_record(record, options.longest);
-  const double limit = enough(noisy);
   MostProbable best{candidates.front(), 0, std::numeric_limits<double>::infinity(), 0};
-  const auto right = [&] { return std::isfinite(best.cost) && best.chi_square < limit; };
+  int agree = 0;
   const auto take = [&](const std::vector<double>& start) {
     const MostProbable m = search(machine, noisy, start, free, options);
+    if (m.cost < best.cost - kSameAnswer) agree = 0;
+    if (m.cost < best.cost + kSameAnswer) ++agree;
     if (m.cost < best.cost) best = m;
   };
-  for (const auto& start : candidates)
-    if (!right()) take(start);
   std::vector<double> middle = candidates.front();
   for (const auto& f : free) middle[static_cast<std::size_t>(f.index)] = f.mean;
-  if (!right()) take(middle);
-  for (std::uint32_t k = 0; k < kDraws && !right(); ++k) take(drawn(middle, k, free));
+  for (const auto& start : candidates)
+    if (agree < kAgree) take(start);
+  if (agree < kAgree) take(middle);
+  for (std::uint32_t k = 0; k < kDraws && agree < kAgree; ++k) take(drawn(middle, k, free));
   return best;
 }
 
