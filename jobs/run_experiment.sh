@@ -47,11 +47,12 @@ if [[ ! -x $swingbank ]]; then
   exit 1
 fi
 
-# What the experiment says of itself: dataset, draws, table, networks, noise, folds
+# What the experiment says of itself: dataset, draws, table, tasks and the like
 ask() { "$swingbank" train --experiment "$experiment" --preset "$preset" --print "$1"; }
 
 # A dataset belongs to its config and size; experiments with the same two share the folder.
 dataset_folder() { echo "$out/data"; }
+training_folder() { echo "$out/training-data"; } # rows that only train
 
 say() { printf '\n-- %s, %s: %s\n' "$(basename "$experiment" .toml)" "$preset" "$1"; }
 
@@ -62,11 +63,9 @@ databank() {
   "$swingbank" databank "$(ask dataset)" --out "$out/databank.h5"
 }
 
-generate() {
-  local config draws
-  config=$(ask dataset)
-  draws=$(ask draws)
-  say "events for $config ($draws draws) on $ranks processes"
+# generate_events CONFIG DRAWS FOLDER
+generate_events() {
+  say "events for $1 ($2 draws) on $ranks processes"
   local root=()
   # OpenMPI refuses root unless told twice; whoever starts this script as root means it.
   if ((EUID == 0)); then root=(env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1); fi
@@ -74,27 +73,27 @@ generate() {
   # shellcheck disable=SC2206 # the launcher is a list of words
   command+=($launcher -n "$ranks")
   if [[ $launcher == mpirun* && -z ${SLURM_JOB_ID:-} ]]; then command+=(--oversubscribe); fi
-  run_saving "${command[@]}" "$swingbank" generate "$config" --draws "$draws" --out "$(dataset_folder)"
+  run_saving "${command[@]}" "$swingbank" generate "$1" --draws "$2" --out "$3"
 }
 
-tasks() {
-  local networks levels folds network noise fold
-  networks=$(ask networks)
-  levels=$(ask noise)
-  folds=$(ask folds)
-  for network in $networks; do
-    for noise in $levels; do
-      if [[ $network == floor && $noise == 0 ]]; then continue; fi # records without noise have no floor
-      for fold in $folds; do echo "$network $noise $fold"; done
-    done
-  done
+generate() {
+  local config draws
+  config=$(ask dataset)
+  draws=$(ask draws)
+  generate_events "$config" "$draws" "$(dataset_folder)" || return $?
+  if [[ $(ask training_rows) == none ]]; then return; fi
+  config=$(ask training_dataset)
+  draws=$(ask training_draws)
+  generate_events "$config" "$draws" "$(training_folder)"
 }
 
 run_task() {
-  local network=$1 noise=$2 fold=$3 common
+  local network=$1 noise=$2 fold=$3 common with_more
   say "$network, noise $noise, fold $fold"
   common=("$(dataset_folder)" --experiment "$experiment" --preset "$preset" --seed "$seed" --network "$network" --noise "$noise"
     --out "$out/results")
+  with_more=$(ask training_rows)
+  if grep -qxF "$network" <<<"$with_more"; then common+=(--training-rows "$(training_folder)"); fi
   if [[ $fold == none ]]; then
     run_saving "$swingbank" train "${common[@]}"
   else
@@ -104,7 +103,7 @@ run_task() {
 
 train() {
   local all lines line
-  all=$(tasks)
+  all=$(ask tasks)
   # A process that trains all folds reads the dataset once.
   if [[ -z $task ]]; then all=$(sed '/ none$/!s/ [^ ]*$/ all/' <<<"$all" | uniq); fi
   mapfile -t lines <<<"$all"
@@ -128,7 +127,7 @@ tables() {
 
 case $stage in
   check) ask table >/dev/null ;;
-  count-tasks) tasks | wc -l ;;
+  count-tasks) ask tasks | wc -l ;;
   databank | generate | train | tables)
     mkdir -p "$out"
     "$stage"

@@ -28,14 +28,15 @@ struct TrainingOptions {
   void add_to(jobs::CommandLine& line) {
     line.add("DATASET", dataset, "folder that `swingbank generate` wrote");
     line.add("--training-rows", training_rows,
-             "folder of a second dataset whose rows only train (the experiment's training_dataset)");
+             "folder of the experiment's training_dataset, for a network that trains on its rows too");
     line.add("--experiment", experiment, "file of configs/experiments: table, dataset, presets").required();
     line.add("--preset", preset, "preset of the experiment: quick, nightly or thesis").shows_default();
     line.add("--network", network, "network of the preset (default: its first)");
     line.add("--out", out, "folder for the result files");
     line.add("--seed", seed, "seed of weights, dropout, order and split").shows_default();
     line.add("--noise", noise, "level of measurement noise on every record (0.001: 0.1 %)").shows_default();
-    line.add("--test-rows", test_rows, "judge about so many test rows, evenly spread (default: all)");
+    line.add("--test-rows", test_rows,
+             "judge about so many test rows, evenly spread (default: the preset's)");
     line.add("--epochs", epochs, "instead of the preset's");
     line.add("--threads", threads,
              "default: the Slurm allocation, OMP_NUM_THREADS or the cores, shared by the processes");
@@ -47,7 +48,8 @@ struct TrainingOptions {
     line.add_flag_off("--no-network", save_network,
                       "do not write the trained network beside its result (4 bytes a weight)");
     line.add("--print", print,
-             "print one entry of the experiment and end: table, dataset, draws, networks, noise, folds");
+             fmt::format("print one entry of the experiment and end: {}",
+                         fmt::join(train::loop::kPrintable, ", ")));
   }
 
   /// Throws InputError if an option that a run needs is missing.
@@ -70,9 +72,19 @@ struct TrainingOptions {
     r.shuffle_labels = shuffle_labels;
     r.save_network = save_network;
     r.noise = noise;
-    if (test_rows > 0) r.test_rows = test_rows;
+    const std::size_t judged = test_rows > 0 ? test_rows : r.experiment.judging(preset, r.network).test_rows;
+    if (judged > 0) r.test_rows = judged;
     r.out = out;
+    check_training_rows(r.experiment.training(preset, r.network).training_rows, r.network);
     return r;
+  }
+  /// A run with other rows than its experiment says would bear the name of the right one.
+  void check_training_rows(bool wanted, const std::string& of) const {
+    if (wanted == !training_rows.empty()) return;
+    throw InputError({wanted ? "no rows that only train" : "rows that only train", "--training-rows",
+                      fmt::format("network {} of preset {} in {} {} them", of, preset, experiment,
+                                  wanted ? "trains on" : "does not train on"),
+                      wanted ? "give the folder of the experiment's training_dataset" : "leave it out"});
   }
   [[nodiscard]] train::data::ShardStream open(const train::run::RunRequest& r) const {
     const auto bytes = static_cast<std::uint64_t>(memory_limit * static_cast<double>(std::uint64_t{1} << 30));

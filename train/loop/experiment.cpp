@@ -38,6 +38,7 @@ class Keys {
   void choice(const char* key, const std::vector<std::string>& choices, std::string& value) {
     value = complete_ ? c_.choice(name(key), choices) : c_.choice(name(key), choices, value);
   }
+  void flag(const char* key, bool& value) { value = c_.optional<bool>(name(key), value); }
   void names(const char* key, std::vector<std::string>& value) {
     if (complete_ || c_.has(name(key))) value = c_.require<std::vector<std::string>>(name(key));
   }
@@ -62,6 +63,7 @@ void read_training(Config& c, const std::string& at, bool complete, TrainingReci
   extra.number("weight_decay", {0.0, 1.0}, t.weight_decay);
   extra.number("clip", {0.0, 1e6}, t.clip);
   extra.number("average", {0.0, 0.99999}, t.average);
+  extra.flag("training_rows", t.training_rows);
 }
 
 void read_input(Config& c, const std::string& at, bool complete, NetworkInput& i) {
@@ -77,6 +79,11 @@ void read_input(Config& c, const std::string& at, bool complete, NetworkInput& i
   k.whole("pca_components", 0, i.pca_components);
 }
 
+void read_judging(Config& c, const std::string& at, bool complete, Judging& j) {
+  if (complete || c.has(at + ".noise")) j.noise = c.require<std::vector<double>>(at + ".noise", kNoiseLevels);
+  Keys(c, at, false).whole("test_rows", 1, j.test_rows);
+}
+
 /// A table named after a network changes what stands in it for that network only.
 Preset read_preset(Config& c, const std::string& name) {
   const std::string at = "preset." + name;
@@ -84,23 +91,37 @@ Preset read_preset(Config& c, const std::string& name) {
   p.name = name;
   p.draws = static_cast<std::uint64_t>(c.require<std::int64_t>(at + ".draws", {1, 1e12}));
   p.networks = c.require<std::vector<std::string>>(at + ".networks");
-  p.noise = c.require<std::vector<double>>(at + ".noise", kNoiseLevels);
   if (c.has("training_dataset"))
     p.training_draws = static_cast<std::uint64_t>(c.require<std::int64_t>(at + ".training_draws", {0, 1e12}));
   NetworkInput input;
   TrainingRecipe training;
   read_input(c, at, true, input);
   read_training(c, at, true, training);
+  Judging judging;
+  read_judging(c, at, true, judging);
   const auto known = network_names();
   for (const auto& network : p.networks) {
     const std::string own = at + "." + network;
-    training.kind = c.optional<std::string>(own + ".kind", network);
-    if (std::find(known.begin(), known.end(), training.kind) == known.end())
-      c.problem(at + ".networks", fmt::format("no network called '{}'", training.kind),
+    const std::string like = c.optional<std::string>(own + ".like", "");
+    if (!like.empty() && !p.training.contains(like))
+      c.problem(own + ".like", fmt::format("no network called '{}' before '{}'", like, network),
+                "a network is like one that stands before it in the preset's networks", "put that one first");
+    const bool copied = p.training.contains(like);
+    p.input[network] = copied ? p.input[like] : input;
+    p.judging[network] = copied ? p.judging[like] : judging;
+    p.training[network] = copied ? p.training[like] : training;
+    if (!copied) p.training[network].kind = network;
+    const std::string& kind = p.training[network].kind;
+    if (std::find(known.begin(), known.end(), kind) == known.end())
+      c.problem(at + ".networks", fmt::format("no network called '{}'", kind),
                 "train/networks has no such file", fmt::format("choose among {}", fmt::join(known, ", ")));
-    training.corrects = c.choice(own + ".corrects", {"", "closed-form", "refined"}, "");
-    read_input(c, at + "." + network, false, p.input[network] = input);
-    read_training(c, at + "." + network, false, p.training[network] = training);
+    p.training[network].corrects = c.choice(own + ".corrects", {"", "closed-form", "refined"}, "");
+    read_input(c, own, false, p.input[network]);
+    read_training(c, own, false, p.training[network]);
+    read_judging(c, own, false, p.judging[network]);
+    if (p.training[network].training_rows && p.training_draws == 0)
+      c.problem(at + "." + network + ".training_rows", "no rows that only train",
+                "the experiment has no training_dataset, or the preset no training_draws", "give both");
   }
   return p;
 }
@@ -147,6 +168,20 @@ const Value& of_network(const Experiment& e, const Preset& p, const std::map<std
        fmt::format("preset {} of {} trains {}", p.name, e.file.string(), fmt::join(p.networks, ", ")),
        "choose one of these or add it to the preset's networks"});
 }
+
+std::string lines_of(const std::vector<Task>& tasks) {
+  std::string lines;
+  for (const auto& t : tasks)
+    lines += fmt::format("{}{} {} {}", lines.empty() ? "" : "\n", t.network, t.noise, t.fold);
+  return lines;
+}
+
+std::string training_networks(const Preset& p) {
+  std::vector<std::string> names;
+  for (const auto& network : p.networks)
+    if (p.training.at(network).training_rows) names.push_back(network);
+  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, "\n"));
+}
 }  // namespace
 
 const TrainingRecipe& Experiment::training(const std::string& preset_name, const std::string& network) const {
@@ -159,6 +194,24 @@ const NetworkInput& Experiment::input(const std::string& preset_name, const std:
   return of_network(*this, p, p.input, network);
 }
 
+const Judging& Experiment::judging(const std::string& preset_name, const std::string& network) const {
+  const Preset& p = preset(preset_name);
+  return of_network(*this, p, p.judging, network);
+}
+
+std::vector<Task> Experiment::tasks(const std::string& preset_name) const {
+  std::vector<std::string> left_out;
+  for (const auto fold : folds) left_out.push_back(std::to_string(fold));
+  if (left_out.empty()) left_out = {"none"};
+  std::vector<Task> all;
+  for (const auto& network : preset(preset_name).networks)
+    for (const double noise : judging(preset_name, network).noise) {
+      if (network == "floor" && noise == 0.0) continue;  // records without noise have no floor
+      for (const auto& fold : left_out) all.push_back({network, noise, fold});
+    }
+  return all;
+}
+
 std::string Experiment::print(const std::string& preset_name, const std::string& what) const {
   const Preset& p = preset(preset_name);
   if (what == "table") return table;
@@ -166,12 +219,11 @@ std::string Experiment::print(const std::string& preset_name, const std::string&
   if (what == "draws") return std::to_string(p.draws);
   if (what == "training_dataset") return training_dataset.empty() ? "none" : training_dataset.string();
   if (what == "training_draws") return std::to_string(p.training_draws);
+  if (what == "training_rows") return training_networks(p);
   if (what == "networks") return fmt::format("{}", fmt::join(p.networks, "\n"));
-  if (what == "noise") return fmt::format("{}", fmt::join(p.noise, "\n"));
-  if (what == "folds") return folds.empty() ? "none" : fmt::format("{}", fmt::join(folds, "\n"));
-  throw InputError(
-      {fmt::format("'{}' cannot be printed", what), "--print", "an experiment has no such entry",
-       "choose among table, dataset, draws, training_dataset, training_draws, networks, noise, folds"});
+  if (what == "tasks") return lines_of(tasks(preset_name));
+  throw InputError({fmt::format("'{}' cannot be printed", what), "--print", "an experiment has no such entry",
+                    fmt::format("choose among {}", fmt::join(kPrintable, ", "))});
 }
 
 }  // namespace swingbank::train::loop

@@ -1,5 +1,6 @@
 #pragma once
 // An experiment: one table of results, of the thesis or not, as configs/experiments/*.toml states it.
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -21,11 +22,12 @@ struct TrainingRecipe {
   /// A parameter's squared error, in units of its variance, counts as its variance to this power: 0 counts
   /// all parameters alike, 1 as the tables do (raw units).
   double loss_power = 0.0;
-  double weight_decay = 0.0;  ///< of matrices, per step and learning rate (Loshchilov and Hutter 2019)
-  double clip = 0.0;          ///< longest gradient; 0: any
-  double average = 0.0;       ///< share that the averaged weights keep a step; 0: the last weights count
-  std::string kind;           ///< file of train/networks; usually the name it has in the experiment
-  std::string corrects;       ///< method of train/direct whose estimates it reads and corrects; empty: none
+  double weight_decay = 0.0;   ///< of matrices, per step and learning rate (Loshchilov and Hutter 2019)
+  double clip = 0.0;           ///< longest gradient; 0: any
+  double average = 0.0;        ///< share that the averaged weights keep a step; 0: the last weights count
+  bool training_rows = false;  ///< the rows of the training dataset train too
+  std::string kind;      ///< file of train/networks; usually the name it has in the experiment
+  std::string corrects;  ///< method of train/direct whose estimates it reads and corrects; empty: none
 };
 
 /// What a network reads.
@@ -34,15 +36,33 @@ struct NetworkInput {
   std::size_t pca_components = 0;  ///< per second and channel, per channel of the form "physics"; 0: none
 };
 
+/// On what a network is judged, and trained as far as noise goes.
+struct Judging {
+  std::vector<double> noise;  ///< levels of measurement noise (sim/core/measurement_noise.hpp); 0: none
+  std::size_t test_rows = 0;  ///< about so many, evenly spread; 0: all
+};
+
 struct Preset {
   std::string name;
   std::uint64_t draws = 0;           ///< events to simulate
   std::uint64_t training_draws = 0;  ///< events of the training dataset; 0: none
   std::vector<std::string> networks;
-  std::vector<double> noise;  ///< levels of measurement noise (sim/core/measurement_noise.hpp); 0: none
   std::map<std::string, NetworkInput> input;       ///< by network
   std::map<std::string, TrainingRecipe> training;  ///< by network
+  std::map<std::string, Judging> judging;          ///< by network
 };
+
+/// A run of the preset: one result file.
+struct Task {
+  std::string network;
+  double noise = 0.0;
+  std::string fold;  ///< bus number of the generator left out; "none": the experiment splits its rows
+};
+
+/// What Experiment::print knows. "training_rows": the networks that train on them; "tasks": network, noise
+/// level and fold of each run.
+inline constexpr std::array<const char*, 8> kPrintable = {
+    "table", "dataset", "draws", "training_dataset", "training_draws", "training_rows", "networks", "tasks"};
 
 struct Experiment {
   std::filesystem::path file;
@@ -58,9 +78,11 @@ struct Experiment {
   [[nodiscard]] const Preset& preset(const std::string& name) const;
   [[nodiscard]] const TrainingRecipe& training(const std::string& preset, const std::string& network) const;
   [[nodiscard]] const NetworkInput& input(const std::string& preset, const std::string& network) const;
-  /// One word or list for scripts: table, dataset, draws, training_dataset, training_draws, networks, noise,
-  /// folds
-  /// ("none" for a split), one a line. Throws InputError for another key.
+  [[nodiscard]] const Judging& judging(const std::string& preset, const std::string& network) const;
+  /// In the order in which they are to be run.
+  [[nodiscard]] std::vector<Task> tasks(const std::string& preset) const;
+  /// One word or list for scripts, one a line; "none" where there is nothing. Throws InputError for another
+  /// key than kPrintable's.
   [[nodiscard]] std::string print(const std::string& preset, const std::string& key) const;
 };
 
