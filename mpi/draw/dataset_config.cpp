@@ -182,7 +182,7 @@ void read_operating_point(Config& c, std::optional<OperatingPointConfig>& point)
   const auto interval = [&](const char* key, double& low, double& high, const Range& range) {
     if (c.has(key)) std::tie(low, high) = c.interval(key, range);
   };
-  p.per_block = static_cast<std::uint64_t>(c.optional<std::int64_t>("operating_point.per_block", 8, kCount));
+  p.per_block = static_cast<std::uint64_t>(c.optional<std::int64_t>("operating_point.per_block", 2, kCount));
   interval("operating_point.loads", p.loads_low, p.loads_high, {0.01, 10.0, ""});
   p.load_spread = c.optional<double>("operating_point.load_spread", 0.0, {0.0, 0.99, ""});
   interval("operating_point.dispatch", p.dispatch_low, p.dispatch_high, {0.01, 10.0, ""});

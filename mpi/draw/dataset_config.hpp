@@ -52,7 +52,7 @@ struct RecordConfig {
 
 /// Operating points drawn at random; what is not given stays as in the case file. All factors are uniform.
 struct OperatingPointConfig {
-  std::uint64_t per_block = 8;                     ///< draws that share one operating point
+  std::uint64_t per_block = 2;                     ///< draws that share one operating point
   double loads_low = 1.0, loads_high = 1.0;        ///< factor of all loads and of all dispatch
   double load_spread = 0.0;                        ///< each load by itself: factor 1 -+ this
   double dispatch_low = 1.0, dispatch_high = 1.0;  ///< each generator's power by itself; the slack balances

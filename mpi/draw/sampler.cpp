@@ -26,9 +26,9 @@ Draw Sampler::draw(std::uint64_t sample_id) {
     boxed.put_into(d.job, plant);
   }
   if (c.operating_point) {
-    const OperatingPoint& point = operating_.at(sample_id / c.operating_point->per_block);
-    d.job.grid = point.grid;
-    d.redrawn = point.redrawn;
+    const OperatingPoint& operating = operating_.at(sample_id / c.operating_point->per_block);
+    d.job.grid = operating.grid;
+    d.redrawn = operating.redrawn;
   }
   Random random(c.seed, Stream::fault, sample_id);
   const int bus = study_.fault_buses[random.below(study_.fault_buses.size())];

@@ -44,12 +44,11 @@ class Posterior : public ceres::CostFunction {
       p[static_cast<std::size_t>(free_[k].index)] = z[static_cast<Index>(k)] * free_[k].deviation;
     return p;
   }
-  /// Weights about z from here on.
-  void weigh(const VectorXd& z) {
+  /// Weights and slopes about z from here on.
+  void linearise(const VectorXd& z) {
     const auto n = static_cast<Index>(free_.size());
-    gains_ = gains_about(machine_, record_, parameters(z), {z[n], z[n + 1], z[n + 2], z[n + 3]});
+    now_ = filter(machine_, record_, parameters(z), {z[n], z[n + 1], z[n + 2], z[n + 3]});
   }
-  [[nodiscard]] double log_determinant() const { return gains_.log_determinant; }
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     const double* z = blocks[0];
@@ -89,8 +88,13 @@ class Posterior : public ceres::CostFunction {
       out[own + k] = (value - T(f.mean)) * T(1 / f.deviation);
     }
     const auto n = static_cast<Index>(free_.size());
-    innovations<T>(machine_, record_, gains_, p, {at(n, 1), at(n + 1, 1), at(n + 2, 1), at(n + 3, 1)},
+    innovations<T>(machine_, now_.likely, now_.gains, p, {at(n, 1), at(n + 1, 1), at(n + 2, 1), at(n + 3, 1)},
                    out.data());
+    // Without its noise the record shows no innovation about z; what the filter found new is added to that.
+    const auto outputs = static_cast<std::size_t>(record_.outputs);
+    std::size_t i = own - record_.samples() * outputs;
+    for (const auto& white : now_.white)
+      for (std::size_t o = 0; o < outputs; ++o, ++i) out[i] = out[i] + T(white[static_cast<Index>(o)]);
     return out;
   }
 
@@ -98,44 +102,47 @@ class Posterior : public ceres::CostFunction {
   const NoisyRecord& record_;
   std::vector<double> p_;
   std::span<const FreeParameter> free_;
-  Gains gains_;
+  Filtered now_;
 };
+
+/// The search within one linearisation. Returns the cost before it.
+double improve(Posterior& posterior, VectorXd& z, std::span<const FreeParameter> free,
+               const LikelihoodOptions& options, MostProbable& found) {
+  constexpr double kSettled = 1e-6;  // of the cost, a sum of squares of thousands
+  ceres::Problem::Options borrowed;
+  borrowed.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem problem(borrowed);
+  problem.AddResidualBlock(&posterior, nullptr, z.data());
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    problem.SetParameterLowerBound(z.data(), static_cast<int>(k), free[k].low / free[k].deviation);
+    problem.SetParameterUpperBound(z.data(), static_cast<int>(k), free[k].high / free[k].deviation);
+  }
+  ceres::Solver::Summary summary;
+  ceres::Solve(search_options(options.iterations, kSettled), &problem, &summary);
+  if (!summary.IsSolutionUsable()) return std::numeric_limits<double>::infinity();
+  found.iterations += static_cast<int>(summary.iterations.size()) - 1;
+  return 2 * summary.initial_cost;
+}
 
 MostProbable search(const Effect& machine, const NoisyRecord& record, const std::vector<double>& start,
                     std::span<const FreeParameter> free, const LikelihoodOptions& options) {
-  constexpr double kSettled = 1e-6;  // of the cost, a sum of squares of thousands
-  constexpr double kSame = 0.1;      // of the cost between two rounds of weights
+  constexpr double kSame = 0.02;  // of the cost between two linearisations
   Posterior posterior(machine, record, start, free);
   VectorXd z = posterior.start();
   MostProbable found{posterior.parameters(z), 0, std::numeric_limits<double>::infinity(), 0};
-  ceres::Problem::Options borrowed;
-  borrowed.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  const auto freedom = static_cast<double>(posterior.num_residuals() - posterior.unknowns());
   for (int round = 0; round < options.rounds; ++round) {
-    posterior.weigh(z);
-    ceres::Problem problem(borrowed);
-    problem.AddResidualBlock(&posterior, nullptr, z.data());
-    for (std::size_t k = 0; k < free.size(); ++k) {
-      problem.SetParameterLowerBound(z.data(), static_cast<int>(k), free[k].low / free[k].deviation);
-      problem.SetParameterUpperBound(z.data(), static_cast<int>(k), free[k].high / free[k].deviation);
+    posterior.linearise(z);
+    const VectorXd here = z;
+    const double cost = improve(posterior, z, free, options, found), before = found.cost;
+    if (cost < before) {
+      found.p = posterior.parameters(here);
+      found.cost = cost;
+      found.chi_square = cost / freedom;
     }
-    ceres::Solver::Summary summary;
-    ceres::Solve(search_options(options.iterations, kSettled), &problem, &summary);
-    if (!summary.IsSolutionUsable()) break;
-    found.iterations += static_cast<int>(summary.iterations.size()) - 1;
-    const double cost = 2 * summary.final_cost + posterior.log_determinant(), before = found.cost;
-    found.p = posterior.parameters(z);
-    found.cost = cost;
-    const auto freedom = static_cast<double>(posterior.num_residuals() - posterior.unknowns());
-    found.chi_square = 2 * summary.final_cost / freedom;
-    if (std::abs(before - cost) < kSame) break;
+    if (!std::isfinite(cost) || before - cost < kSame) break;
   }
   return found;
-}
-
-/// Chi-square that a right answer hardly ever exceeds.
-double enough(const NoisyRecord& record) {
-  constexpr double kDeviations = 4;
-  return 1 + kDeviations * std::sqrt(2 / static_cast<double>(innovation_count(record)));
 }
 
 std::vector<double> drawn(std::vector<double> p, std::uint32_t draw, std::span<const FreeParameter> free) {
@@ -165,20 +172,25 @@ MostProbable most_probable_of(const Effect& machine, const Recording& record,
                               std::span<const std::vector<double>> candidates,
                               std::span<const FreeParameter> free, const LikelihoodOptions& options) {
   constexpr std::uint32_t kDraws = 6;
+  // Chi-square cannot tell a wrong answer: of thousands of samples it scatters by a hundred, and a wrong one
+  // may cost ten more than the right one. So two starts have to agree.
+  constexpr double kSameAnswer = 1;
+  constexpr int kAgree = 2;
   const NoisyRecord noisy = noisy_record(record, options.longest);
-  const double limit = enough(noisy);
   MostProbable best{candidates.front(), 0, std::numeric_limits<double>::infinity(), 0};
-  const auto right = [&] { return std::isfinite(best.cost) && best.chi_square < limit; };
+  int agree = 0;
   const auto take = [&](const std::vector<double>& start) {
     const MostProbable m = search(machine, noisy, start, free, options);
+    if (m.cost < best.cost - kSameAnswer) agree = 0;
+    if (m.cost < best.cost + kSameAnswer) ++agree;
     if (m.cost < best.cost) best = m;
   };
-  for (const auto& start : candidates)
-    if (!right()) take(start);
   std::vector<double> middle = candidates.front();
   for (const auto& f : free) middle[static_cast<std::size_t>(f.index)] = f.mean;
-  if (!right()) take(middle);
-  for (std::uint32_t k = 0; k < kDraws && !right(); ++k) take(drawn(middle, k, free));
+  for (const auto& start : candidates)
+    if (agree < kAgree) take(start);
+  if (agree < kAgree) take(middle);
+  for (std::uint32_t k = 0; k < kDraws && agree < kAgree; ++k) take(drawn(middle, k, free));
   return best;
 }
 
@@ -188,7 +200,7 @@ std::vector<double> error_bound(const Effect& machine, const Recording& record,
   const NoisyRecord noisy = noisy_record(record, options.longest);
   Posterior posterior(machine, noisy, truth, free);
   const VectorXd z = posterior.start();
-  posterior.weigh(z);
+  posterior.linearise(z);
   VectorXd values(posterior.num_residuals());
   RowMatrix slopes(posterior.num_residuals(), posterior.unknowns());
   const double* blocks[] = {z.data()};

@@ -20,12 +20,12 @@ FreeParameter uniform_parameter(int index, double low, double high);
 struct MostProbable {
   std::vector<double> p;  ///< of every parameter of the effect
   double chi_square = 0;  ///< of the innovations, per degree of freedom: about 1 where the model is right
-  double cost = 0;        ///< twice the negative logarithm of the posterior, less a constant
+  double cost = 0;        ///< sum of squares of innovations and prior
   int iterations = 0;
 };
 struct LikelihoodOptions {
-  int rounds = 4;         ///< of weights from the present iterate
-  int iterations = 12;    ///< of each round
+  int rounds = 20;        ///< of linearisations
+  int iterations = 8;     ///< of each round
   double longest = 13.0;  ///< stretch behind the event [s]
 };
 

@@ -18,6 +18,10 @@ done
 
 sed -i '/^\[record\]/,$ s/^channels = .*/channels = ["P", "Q", "speed", "V", "frequency"]\nfrequency_washout = 0.1\nfrequency_filter = 0.02/' "$work/tiny_data.toml"
 "$swingbank" generate "$work/tiny_data.toml" --progress none --out "$work/data" >"$work/log" 2>&1 || fail "$(cat "$work/log")"
+cp -r "$work/data" "$work/older"
+sed -i '/^ "frequency": 60.0,$/d' "$work/older/dataset.json"
+if judge "$work/older"; then fail "a dataset that says no frequency was solved"; fi
+grep -q 'no frequency and no held parameters at' "$work/log" || fail "$(cat "$work/log")"
 judge "$work/data" || fail "$(cat "$work/log")"
 /usr/bin/python3 - "$work/out/V-closed-form-quick-seed1-gen30.json" <<'PYTHON'
 import json, sys
@@ -26,10 +30,6 @@ r = json.load(open(sys.argv[1]))
 assert r["mse"] < 1e-5, r["mse"]
 assert r["baseline_mse"] > 0.5 and r["epochs"] == 0 and r["input"] is None and r["test_rows"] > 10, r
 PYTHON
-cp -r "$work/data" "$work/older"
-sed -i '/^ "frequency": 60.0,$/d' "$work/older/dataset.json"
-if judge "$work/older"; then fail "a dataset that says no frequency was solved"; fi
-grep -q 'no frequency and no held parameters at' "$work/log" || fail "$(cat "$work/log")"
 if judge "$work/data" --shuffle-labels; then fail "a control run of what is not trained was made"; fi
 grep -q -- '--shuffle-labels' "$work/log" || fail "$(cat "$work/log")"
 "$swingbank" tables "$work/out" --out "$work/tables" >"$work/log" 2>&1 || fail "$(cat "$work/log")"

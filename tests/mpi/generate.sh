@@ -57,15 +57,15 @@ assert a["records"].shape[0] == len(gain)
 PYTHON
 # Operating points drawn: the same for any number of ranks and writers, when killed and resumed, and for other shards.
 points=("$configs/ieee39_genrou_points.toml" --draws 60 --progress none)
-"$generate" "${points[@]}" --draws-per-shard 10 --out "$work/points" >"$work/log" 2>&1 || { cat "$work/log"; fail "operating points"; }
-grep -q '8 operating points; drawn again: ' "$work/log" || { cat "$work/log"; fail "redraws are not told"; }
-ranks 3 "$generate" "${points[@]}" --draws-per-shard 10 --writer-ranks 3 --out "$work/points3" >"$work/log" 2>&1 || { cat "$work/log"; fail "operating points of three ranks"; }
-"$generate" "${points[@]}" --draws-per-shard 10 --out "$work/killed" >"$work/log" 2>&1 &
+"$generate" "${points[@]}" --draws-per-shard 15 --out "$work/points" >"$work/log" 2>&1 || { cat "$work/log"; fail "operating points"; }
+grep -q '30 operating points; drawn again: ' "$work/log" || { cat "$work/log"; fail "redraws are not told"; }
+ranks 3 "$generate" "${points[@]}" --draws-per-shard 15 --writer-ranks 3 --out "$work/points3" >"$work/log" 2>&1 || { cat "$work/log"; fail "operating points of three ranks"; }
+"$generate" "${points[@]}" --draws-per-shard 15 --out "$work/killed" >"$work/log" 2>&1 &
 pid=$!
 wait_for_lines "$work/killed" 1
 kill -9 $pid || true # it may have ended
 wait $pid 2>/dev/null || true
-expect 0 "8 operating points" ranks 3 "$generate" "${points[@]}" --draws-per-shard 10 --out "$work/killed"
+expect 0 "30 operating points" ranks 3 "$generate" "${points[@]}" --draws-per-shard 15 --out "$work/killed"
 for d in points3 killed; do
   [ "$(hash_of "$work/$d")" = "$(hash_of "$work/points")" ] || fail "$d has another hash"
   diff -r "$work/points/shards" "$work/$d/shards" || fail "$d has other bytes"
@@ -79,7 +79,7 @@ def all_of(folder, name):
     return numpy.concatenate([h5py.File(f)[name][:] for f in sorted(glob.glob(f"{sys.argv[1]}/{folder}/shards/*.h5"))])
 for name in ("records", "machine_base", "draws/redrawn"):
     assert (all_of("points", name) == all_of("points_one", name)).all(), name
-base, block, bus = all_of("points", "machine_base"), all_of("points", "sample_id") // 8, all_of("points", "generator")
+base, block, bus = all_of("points", "machine_base"), all_of("points", "sample_id") // 2, all_of("points", "generator")
 for b in set(block):
     for g in set(bus):
         assert len(set(base[(block == b) & (bus == g)])) <= 1, (b, g)

@@ -10,12 +10,6 @@
 
 namespace swingbank::train::data {
 
-double system_frequency(const mpi::store::DatasetHeader& dataset) {
-  constexpr double kUsual = 60;
-  const auto given = mpi::store::config_numbers(dataset, "frequency_hz");
-  return given.size() == 1 ? given[0] : kUsual;
-}
-
 sim::FrequencyFilter frequency_filter(const mpi::store::DatasetHeader& dataset) {
   const auto given = mpi::store::config_numbers(dataset, "record.frequency");
   return given.size() == 2 ? sim::FrequencyFilter{given[0], given[1]} : sim::FrequencyFilter{};
@@ -26,7 +20,7 @@ RecordNoise::RecordNoise(const mpi::store::DatasetHeader& dataset, const NoiseRe
       noise_{recipe.level},
       samples_(dataset.samples),
       rate_(dataset.rate),
-      system_frequency_(system_frequency(dataset)),
+      system_frequency_(dataset.frequency),
       filter_(frequency_filter(dataset)) {
   if (none()) return;
   Problems problems;
@@ -57,6 +51,9 @@ RecordNoise::RecordNoise(const mpi::store::DatasetHeader& dataset, const NoiseRe
       problems.add("no noise is known of channel " + name, dataset.name.empty() ? "dataset" : dataset.name,
                    "no instrument at a terminal shows it", "read this dataset without noise");
     channels_.push_back(channel.value_or(Noisy{}));
+    if (channel && channel->kind == Kind::frequency && system_frequency_ <= 0)
+      problems.add("no system frequency", dataset.name.empty() ? "dataset.json" : dataset.name,
+                   "an older version of the software made the dataset", "make it again in an empty folder");
   }
   problems.raise();
 }

@@ -40,8 +40,6 @@ class RecordNoise {
   sim::FrequencyFilter filter_;
 };
 
-/// The system frequency of a dataset; 60 Hz where its config says nothing else [Hz].
-double system_frequency(const mpi::store::DatasetHeader& dataset);
 /// The constants of its channel "frequency".
 sim::FrequencyFilter frequency_filter(const mpi::store::DatasetHeader& dataset);
 

@@ -44,7 +44,7 @@ ShardStream::ShardStream(mpi::store::Dataset dataset, const InputRecipe& recipe,
   labels_.judged = dataset_.rows;
 }
 
-void ShardStream::append(const mpi::store::Dataset& more) {
+void ShardStream::append(mpi::store::Dataset more) {
   const mpi::store::Dataset& d = dataset_;
   const auto filter = [](const mpi::store::Dataset& of) {
     return mpi::store::config_numbers(of, "record.frequency");
@@ -67,12 +67,12 @@ void ShardStream::append(const mpi::store::Dataset& more) {
        "list of parameters");
   same(more.parameter_low == d.parameter_low && more.parameter_high == d.parameter_high, "sampling box");
   problems.raise();
-  for (mpi::store::ShardInfo shard : more.shards) {
+  for (mpi::store::ShardInfo& shard : more.shards) {
     shard.first_row += rows_;
-    shards_.push_back(std::move(shard));
+    shards_.push_back(shard);
   }
   rows_ += more.rows;
-  more_hash_ = more.hash;
+  more_ = std::move(more);
 }
 
 void ShardStream::load(const mpi::store::ShardInfo& shard, bool fits) {

@@ -39,8 +39,8 @@ class ShardStream {
               const std::optional<mpi::store::Dataset>& more = {});
 
   [[nodiscard]] const mpi::store::Dataset& dataset() const { return dataset_; }
-  /// Hash of the rows that only train; empty without.
-  [[nodiscard]] const std::string& more_hash() const { return more_hash_; }
+  /// The rows that only train, numbered on from the dataset's.
+  [[nodiscard]] const std::optional<mpi::store::Dataset>& more() const { return more_; }
   [[nodiscard]] const InputSelection& selection() const { return selection_; }
   [[nodiscard]] const Labels& labels() const { return labels_; }
   [[nodiscard]] std::size_t channels() const { return selection_.outputs(); }
@@ -51,7 +51,7 @@ class ShardStream {
   void read(std::span<const std::uint64_t> rows, float* out) const;
 
  private:
-  void append(const mpi::store::Dataset& more);
+  void append(mpi::store::Dataset more);
   void load(const mpi::store::ShardInfo& shard, bool fits);
   void keep_labels(const mpi::store::RowBlock& block, const mpi::store::ShardInfo& shard);
   void keep_series(const mpi::store::RowBlock& block, const mpi::store::ShardInfo& shard);
@@ -68,7 +68,7 @@ class ShardStream {
   void check_finite(const float* series, const mpi::store::ShardInfo& shard, std::uint64_t row) const;
 
   mpi::store::Dataset dataset_;
-  std::string more_hash_;
+  std::optional<mpi::store::Dataset> more_;
   std::vector<mpi::store::ShardInfo> shards_;  ///< of both, rows counted on
   std::size_t rows_ = 0;
   InputSelection selection_;

@@ -74,8 +74,8 @@ void read_input(Config& c, const std::string& at, bool complete, NetworkInput& i
   k.whole("slice", 1, i.recipe.slice);
   std::string form = data::kInputForms.at(static_cast<std::size_t>(i.recipe.form));
   k.choice("form", data::kInputForms, form);
-  i.recipe.form =
-      static_cast<data::InputForm>(std::ranges::find(data::kInputForms, form) - data::kInputForms.begin());
+  if (const auto at_form = std::ranges::find(data::kInputForms, form); at_form != data::kInputForms.end())
+    i.recipe.form = static_cast<data::InputForm>(at_form - data::kInputForms.begin());
   k.whole("pca_components", 0, i.pca_components);
 }
 
@@ -101,12 +101,24 @@ Preset read_preset(Config& c, const std::string& name) {
   read_judging(c, at, true, judging);
   const auto known = network_names();
   for (const auto& network : p.networks) {
-    if (std::find(known.begin(), known.end(), network) == known.end())
-      c.problem(at + ".networks", fmt::format("no network called '{}'", network),
+    const std::string own = at + "." + network;
+    const std::string like = c.optional<std::string>(own + ".like", "");
+    if (!like.empty() && !p.training.contains(like))
+      c.problem(own + ".like", fmt::format("no network called '{}' before '{}'", like, network),
+                "a network is like one that stands before it in the preset's networks", "put that one first");
+    const bool copied = p.training.contains(like);
+    p.input[network] = copied ? p.input[like] : input;
+    p.judging[network] = copied ? p.judging[like] : judging;
+    p.training[network] = copied ? p.training[like] : training;
+    if (!copied) p.training[network].kind = network;
+    const std::string& kind = p.training[network].kind;
+    if (std::find(known.begin(), known.end(), kind) == known.end())
+      c.problem(at + ".networks", fmt::format("no network called '{}'", kind),
                 "train/networks has no such file", fmt::format("choose among {}", fmt::join(known, ", ")));
-    read_input(c, at + "." + network, false, p.input[network] = input);
-    read_training(c, at + "." + network, false, p.training[network] = training);
-    read_judging(c, at + "." + network, false, p.judging[network] = judging);
+    p.training[network].corrects = c.choice(own + ".corrects", {"", "closed-form", "refined"}, "");
+    read_input(c, own, false, p.input[network]);
+    read_training(c, own, false, p.training[network]);
+    read_judging(c, own, false, p.judging[network]);
     if (p.training[network].training_rows && p.training_draws == 0)
       c.problem(at + "." + network + ".training_rows", "no rows that only train",
                 "the experiment has no training_dataset, or the preset no training_draws", "give both");

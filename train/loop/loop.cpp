@@ -24,13 +24,21 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
 
-Tensor inputs_of(const data::Batch& batch, const data::Features& features) {
+/// Features of the rows, and behind them the guesses where there are some; then a row is one channel.
+Tensor inputs_of(const data::Batch& batch, const data::Features& features, std::span<const float> guesses,
+                 std::size_t all_rows) {
   const auto rows = static_cast<std::int64_t>(batch.rows.size());
   Tensor x = at::empty(
       {rows, static_cast<std::int64_t>(features.channels()), static_cast<std::int64_t>(features.length())},
       at::kFloat);
   features.apply(batch.series.data(), batch.rows.size(), x.data_ptr<float>());
-  return x;
+  if (guesses.empty()) return x;
+  const auto width = static_cast<std::int64_t>(guesses.size() / all_rows);
+  Tensor g = at::empty({rows, 1, width}, at::kFloat);
+  for (std::int64_t i = 0; i < rows; ++i)
+    std::copy_n(guesses.data() + static_cast<std::int64_t>(batch.rows[static_cast<std::size_t>(i)]) * width,
+                width, g.data_ptr<float>() + i * width);
+  return at::cat({x.reshape({rows, 1, -1}), g}, 2);
 }
 
 /// Where a run stands: what a checkpoint holds beside the arrays.
@@ -103,7 +111,9 @@ class Loop {
     seed_torch(data::key(settings_.seed, data::Purpose::dropout, at_.epoch, at_.batch));
     std::optional<runtime::ProductCount> count;
     if (settings_.gflops > 0.0 && operations_per_row_ == 0.0) count.emplace();
-    const Tensor error = network_.forward(inputs_of(batch, data_.features), true) - targets_of(batch.rows);
+    const Tensor error =
+        network_.forward(inputs_of(batch, data_.features, data_.guesses, data_.stream.labels().rows), true) -
+        targets_of(batch.rows);
     const Tensor loss = (error.square() * loss_weights_).mean();
     const double value = loss.item<double>();
     if (!std::isfinite(value))
@@ -157,7 +167,8 @@ class Loop {
     swap_average();
   }
   void judge_weights(double samples_per_s) {
-    const std::vector<float> out = predict(network_, data_.stream, data_.features, data_.validation);
+    const std::vector<float> out =
+        predict(network_, data_.stream, data_.features, data_.validation, data_.guesses);
     const float* weight = loss_weights_.data_ptr<float>();
     double sum = 0.0;
     for (std::size_t i = 0; i < out.size(); ++i) {
@@ -255,12 +266,14 @@ LoopReport train_network(networks::Network& network, const LoopData& data, const
 }
 
 std::vector<float> predict(networks::Network& network, const data::ShardStream& stream,
-                           const data::Features& features, std::span<const std::uint64_t> rows) {
+                           const data::Features& features, std::span<const std::uint64_t> rows,
+                           std::span<const float> guesses) {
   at::NoGradGuard no_gradients;
   data::BatchReader reader(stream, {rows.begin(), rows.end()}, 512);
   std::vector<float> out;
   for (data::Batch batch; reader.next(batch);) {
-    const Tensor y = network.forward(inputs_of(batch, features), false).contiguous();
+    const Tensor y =
+        network.forward(inputs_of(batch, features, guesses, stream.labels().rows), false).contiguous();
     out.insert(out.end(), y.data_ptr<float>(), y.data_ptr<float>() + y.numel());
   }
   return out;

@@ -22,6 +22,7 @@ struct LoopData {
   const data::Features& features;
   std::span<const std::uint64_t> train, validation;  ///< row numbers, ascending
   std::span<const float> targets;                    ///< all rows of the dataset x outputs, scaled
+  std::span<const float> guesses = {};  ///< all rows x outputs, scaled: read behind each row's features
   std::span<const float> weights = {};  ///< of the outputs' squared errors, mean 1; empty: all alike
 };
 
@@ -48,9 +49,10 @@ struct LoopReport {
 LoopReport train_network(networks::Network& network, const LoopData& data, const LoopSettings& settings,
                          TrainingProgress& progress);
 
-/// Network's outputs for `rows`, rows x outputs, scaled units.
+/// Network's outputs for `rows`, rows x outputs, scaled units. `guesses`: as in LoopData.
 std::vector<float> predict(networks::Network& network, const data::ShardStream& stream,
-                           const data::Features& features, std::span<const std::uint64_t> rows);
+                           const data::Features& features, std::span<const std::uint64_t> rows,
+                           std::span<const float> guesses = {});
 
 /// Rate of Adam at a step (from 0) of all steps.
 double learning_rate(const TrainingRecipe& recipe, std::uint64_t step, std::uint64_t steps);

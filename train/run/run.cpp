@@ -11,6 +11,7 @@
 #include "base/run_lock.hpp"
 #include "train/data/random.hpp"
 #include "train/direct/direct.hpp"
+#include "train/run/detail/guesses.hpp"
 #include "train/run/detail/result.hpp"
 #include "train/run/saved_network.hpp"
 
@@ -39,23 +40,53 @@ loop::Score judge(const std::vector<double>& predicted, const data::ShardStream&
                       d.parameter_high});
 }
 
+/// What a network corrects, of all rows; empty where it corrects nothing.
+struct Guesses {
+  std::vector<float> raw,
+      scaled;  ///< raw units; in standard deviations about the mean of the training targets
+  std::size_t width = 0;
+  [[nodiscard]] bool none() const { return raw.empty(); }
+};
+
+Guesses guesses_for(const data::ShardStream& stream, const RunRequest& r, const data::TargetScale& scale) {
+  Guesses g;
+  const std::string& method = r.experiment.training(r.preset, r.network).corrects;
+  if (method.empty()) return g;
+  g.raw = guesses(stream, method, r.out, r.quiet);
+  g.width = scale.unit.size();
+  for (std::size_t i = 0; i < g.raw.size(); ++i) {
+    const std::size_t p = i % g.width;
+    g.scaled.push_back(static_cast<float>((g.raw[i] - scale.mean[p]) / scale.unit[p]));
+  }
+  return g;
+}
+
 /// Raw units, inside the sampling box: outside of it there is no truth to be near to.
 std::vector<double> raw_outputs(const std::vector<float>& out, const data::TargetScale& scale,
-                                const mpi::store::DatasetHeader& d) {
+                                const mpi::store::DatasetHeader& d, std::span<const std::uint64_t> rows,
+                                const Guesses& guesses) {
   std::vector<double> raw(out.size());
   const std::size_t p = scale.mean.size();
-  for (std::size_t i = 0; i < out.size(); ++i)
-    raw[i] = std::clamp(scale.raw(out[i], i % p), d.parameter_low[i % p], d.parameter_high[i % p]);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const double value = guesses.none() ? scale.raw(out[i], i % p)
+                                        : guesses.raw[rows[i / p] * p + i % p] + out[i] * scale.unit[i % p];
+    raw[i] = std::clamp(value, d.parameter_low[i % p], d.parameter_high[i % p]);
+  }
   return raw;
 }
 
-networks::NetworkShape shape_of(const data::Features& features, const data::TargetScale& scale) {
+networks::NetworkShape shape_of(const data::Features& features, const data::TargetScale& scale,
+                                const Guesses& guesses) {
   networks::NetworkShape shape{static_cast<std::int64_t>(features.channels()),
                                static_cast<std::int64_t>(features.length()),
                                static_cast<std::int64_t>(scale.unit.size()),
                                {}};
   for (std::size_t p = 0; p < scale.unit.size(); ++p)
-    shape.output_bias.push_back(static_cast<float>(scale.scaled(scale.mean[p], p)));
+    shape.output_bias.push_back(guesses.none() ? static_cast<float>(scale.scaled(scale.mean[p], p)) : 0.0f);
+  if (!guesses.none()) {
+    shape.samples = shape.channels * shape.samples + static_cast<std::int64_t>(guesses.width);
+    shape.channels = 1;
+  }
   return shape;
 }
 
@@ -151,12 +182,15 @@ RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
   const data::TargetScale scale =
       data::TargetScale::fit(labels.values, labels.parameters, split.train, stream.dataset().parameter_low);
   if (direct::is_method(r.network)) return run_direct(stream, r, {file, name, run_identity, split, scale});
-  const std::vector<float> targets = scaled_targets(labels, scale, split, r.shuffle_labels, r.seed);
+  std::vector<float> targets = scaled_targets(labels, scale, split, r.shuffle_labels, r.seed);
+  const Guesses known = guesses_for(stream, r, scale);
+  for (std::size_t i = 0; i < known.raw.size(); ++i)
+    targets[i] -= static_cast<float>(scale.scaled(known.raw[i], i % known.width));
   const data::Features features =
       data::Features::fit(stream, split.train, r.experiment.input(r.preset, r.network).pca_components);
 
   loop::seed_torch(data::key(r.seed, data::Purpose::weights));
-  const auto network = networks::make_network(r.network, shape_of(features, scale));
+  const auto network = networks::make_network(settings.recipe.kind, shape_of(features, scale, known));
   loop::TrainingProgress progress(name, settings.recipe.epochs * split.train.size(), r.quiet);
   progress.line(fmt::format(
       "{} training, {} validation, {} test rows; {} x {} inputs, {:.2f} million weights; {}",
@@ -164,18 +198,20 @@ RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
       static_cast<double>(networks::parameter_count(*network)) * 1e-6, r.runtime.sentence()));
   const std::vector<float> weights = scale.weights(settings.recipe.loss_power);
   const loop::LoopReport report = loop::train_network(
-      *network, {stream, features, split.train, split.validation, targets, weights}, settings, progress);
+      *network, {stream, features, split.train, split.validation, targets, known.scaled, weights}, settings,
+      progress);
   if (!report.finished) {
     progress.line(fmt::format("saved to {}; submit the same command again to go on", checkpoint.string()));
     return RunOutcome::stopped;
   }
   const auto judged = [&](std::span<const std::uint64_t> rows) {
-    return judge(raw_outputs(loop::predict(*network, stream, features, rows), scale, stream.dataset()),
-                 stream, scale, rows);
+    const auto out = loop::predict(*network, stream, features, rows, known.scaled);
+    return judge(raw_outputs(out, scale, stream.dataset(), rows, known), stream, scale, rows);
   };
   const loop::Score result = judged(split.test);
   const double seen = judged(split.validation).mse;
-  if (r.save_network && !r.shuffle_labels)
+  // a network that corrects estimates is of no use without whoever makes them
+  if (r.save_network && !r.shuffle_labels && known.none())
     save_network(network_file(file), {stream, r, features, scale, split, run_identity}, *network);
   write_text(file, result_json(stream, r, {split, &features, report, result, seen}).dump(2) + "\n");
   std::filesystem::remove(checkpoint);

@@ -87,6 +87,7 @@ json header_of(const NetworkParts& parts, networks::Network& network) {
   return {{"run", parts.identity},
           {"name", run_name(r)},
           {"network", r.network},
+          {"kind", r.experiment.training(r.preset, r.network).kind},
           {"machine_model", d.machine_model},
           {"dataset", {{"name", dataset_name(d)}, {"hash", d.hash}, {"config_hash", d.config_hash}}},
           {"software", d.software},
@@ -122,6 +123,7 @@ NetworkInfo info_of(const json& h) {
   NetworkInfo i;
   h.at("name").get_to(i.run);
   h.at("network").get_to(i.network);
+  h.at("kind").get_to(i.kind);
   h.at("machine_model").get_to(i.machine_model);
   h.at("dataset").at("name").get_to(i.dataset);
   h.at("dataset").at("hash").get_to(i.dataset_hash);
@@ -204,7 +206,7 @@ SavedNetwork SavedNetwork::load(const fs::path& path) {
     } catch (const json::exception& e) {
       throw Unusable{std::string("its header is of another kind: ") + e.what()};
     }
-    n.network_ = networks::make_network(n.info_.network, shape_of(sizes, n.info_.parameters.size()));
+    n.network_ = networks::make_network(n.info_.kind, shape_of(sizes, n.info_.parameters.size()));
     for (const auto& w : n.network_->parameters()) weights.push_back(w.detach());
     features.resize(data::Features::array_count(sizes));
     if (arrays != features.size() + weights.size()) throw Unusable{"it holds another number of arrays"};

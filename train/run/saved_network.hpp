@@ -26,7 +26,7 @@ struct EstimatedParameter {
 /// What a network reads and says.
 struct NetworkInfo {
   std::string run;  ///< "V-cnn-quick-seed1-gen30"
-  std::string network, machine_model, dataset, dataset_hash, software;
+  std::string network, kind, machine_model, dataset, dataset_hash, software;
   std::optional<std::int32_t> left_out;           ///< generator no row of which was trained on
   std::vector<std::string> channels;              ///< as a dataset names them, in order
   double rate = 0.0;                              ///< samples per second of the records it reads [1/s]

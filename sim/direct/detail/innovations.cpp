@@ -46,7 +46,8 @@ class Played {
   /// From the steady state to the first sample behind the event.
   States<T> behind_event(const NoisyRecord& r) {
     States<T> x = start_;
-    half(x, r.at_event, r.in[0], r.first_step);
+    half(x, r.at_event, r.end_of_first, r.first_step);
+    correct(x, r.at_first);
     return x;
   }
   /// From sample k to the next; `first`: slope() at the sample.
@@ -55,6 +56,7 @@ class Played {
     if (!i.leaps) return go(x, first, i.middle, r.in[k + 1], r.step);
     go(x, first, mean(r.in[k], i.before), i.before, r.step / 2);
     half(x, i.after, r.in[k + 1], r.step / 2);
+    if (const auto leap = r.behind_leap.find(k); leap != r.behind_leap.end()) correct(x, leap->second);
   }
   /// Slope at x under another voltage.
   States<T> slope_at(const States<T>& x, const Inputs& u) {
@@ -70,6 +72,9 @@ class Played {
   }
 
  private:
+  static void correct(States<T>& x, const Correction& by) {
+    for (std::size_t i = 0; i < kMostStates; ++i) x[i] = x[i] + T(by[i]);
+  }
   static Inputs mean(const Inputs& u, const Inputs& v) {
     return {0.5 * (u[kV] + v[kV]), 0.5 * (u[kTheta] + v[kTheta])};
   }
@@ -100,6 +105,7 @@ struct Linear {
   Eigen::Matrix<double, kOutputs, kInputs> D;
   Eigen::Matrix<double, kOutputs, 1> y;
   Gain::State next = Gain::State::Zero();
+  FromInputs half = FromInputs::Zero();      ///< what a sample's noise has done to the state on the way to it
   StateMatrix unsure = StateMatrix::Zero();  ///< covariance of what leaps between the samples leave open
 };
 
@@ -164,6 +170,7 @@ class Linearised {
   /// Half of what a sample's noise does happens on the way to it, half on the way from it. With the state
   /// counted without the former, the equations keep their form.
   static void halve(Linear& l) {
+    l.half = 0.5 * l.G;
     l.D += 0.5 * l.C * l.G;
     l.G = (0.5 * (l.F * l.G + l.G)).eval();
   }
@@ -194,42 +201,105 @@ Eigen::Matrix<double, kOutputs, 1> variances(const MeasurementNoise& noise, doub
   return v.cwiseAbs2();
 }
 
+using OutputVector = Eigen::Matrix<double, kOutputs, 1>;
+
+/// A sample's part of the filter, kept for the way back.
+struct Step {
+  Linear l;
+  OutputVector weighed;  ///< innovation over its covariance
+};
+
+OutputVector innovation(const NoisyRecord& record, std::size_t k, const Linear& l) {
+  OutputVector e;
+  for (int o = 0; o < kOutputs; ++o) e[o] = record.out[k][static_cast<std::size_t>(o)] - l.y[o];
+  if (record.outputs < kOutputs) e[kIfd] = 0;
+  return e;
+}
+
+OutputMatrix covariance(const NoisyRecord& record, const Linear& l, const StateMatrix& P) {
+  const double input = record.noise.phasor() * record.noise.phasor();
+  OutputMatrix S = l.C * P * l.C.transpose() + input * l.D * l.D.transpose();
+  S.diagonal() += variances(record.noise, l.y[kIfd]);
+  if (record.outputs < kOutputs) {  // as if measured without any precision
+    S.row(kIfd).setZero();
+    S.col(kIfd).setZero();
+    S(kIfd, kIfd) = 1;
+  }
+  return S;
+}
+
+Correction correction(const Gain::State& x) {
+  Correction c;
+  std::ranges::copy(x, c.begin());
+  return c;
+}
+
+/// The record without its most probable noise, from the last sample back (disturbance smoother of de Jong).
+NoisyRecord without_noise(const NoisyRecord& record, const std::vector<Step>& steps,
+                          const std::vector<Gain>& gains, const StateMatrix& P0) {
+  NoisyRecord likely = record;
+  const double input = record.noise.phasor() * record.noise.phasor();
+  Gain::State back = Gain::State::Zero();
+  Eigen::Matrix<double, kInputs, 1> noise;
+  for (std::size_t k = steps.size(); k-- > 0;) {
+    const auto& [l, weighed] = steps[k];
+    const auto& K = gains[k].onto_states;
+    if (k < record.behind.size() && record.behind[k].leaps)
+      likely.behind_leap[k] = correction(l.unsure * back);
+    const OutputVector own = weighed - K.transpose() * back;
+    noise = -input * (l.D.transpose() * own + l.G.transpose() * back);
+    for (int c = 0; c < kInputs; ++c) likely.in[k][static_cast<std::size_t>(c)] -= noise[c];
+    back = (l.C.transpose() * own + l.F.transpose() * back).eval();
+  }
+  likely.at_first = correction(P0 * back - steps.front().l.half * noise);
+  fill_intervals(likely);
+  return likely;
+}
+
+/// What the machine shows where the record is played in.
+void show(Played<double> m, NoisyRecord& record) {
+  auto x = m.behind_event(record);
+  for (std::size_t k = 0; k < record.samples(); ++k) {
+    m.evaluate(x, m.voltage(record.in[k]));
+    record.out[k] = m.outputs();
+    if (k + 1 < record.samples()) m.step(record, k, x, m.slope());
+  }
+}
+
 }  // namespace
 
-Gains gains_about(const Effect& machine, const NoisyRecord& record, const std::vector<double>& p,
-                  const std::array<double, kSteady>& steady) {
-  Gains gains;
-  gains.at.resize(record.samples());
+Filtered filter(const Effect& machine, const NoisyRecord& record, const std::vector<double>& p,
+                const std::array<double, kSteady>& steady) {
+  Filtered f;
+  f.gains.resize(record.samples());
+  f.white.resize(record.samples());
+  std::vector<Step> steps(record.samples());
   Linearised linearised(machine, record, p, steady);
   const double input = record.noise.phasor() * record.noise.phasor();
-  StateMatrix P;
-  Gain::State x = linearised.start(P);
+  StateMatrix P0;
+  Gain::State x = linearised.start(P0);
+  StateMatrix P = P0;
   for (std::size_t k = 0; k < record.samples(); ++k) {
-    const Linear l = linearised.at(k, x);
-    OutputMatrix S = l.C * P * l.C.transpose() + input * l.D * l.D.transpose();
-    S.diagonal() += variances(record.noise, l.y[kIfd]);
-    Eigen::Matrix<double, kOutputs, 1> e;
-    for (int o = 0; o < kOutputs; ++o) e[o] = record.out[k][static_cast<std::size_t>(o)] - l.y[o];
-    if (record.outputs < kOutputs) {  // as if measured without any precision
-      S.row(kIfd).setZero();
-      S.col(kIfd).setZero();
-      S(kIfd, kIfd) = 1;
-      e[kIfd] = 0;
-    }
+    auto& [l, weighed] = steps[k];
+    l = linearised.at(k, x);
+    const OutputVector e = innovation(record, k, l);
+    const OutputMatrix S = covariance(record, l, P);
     const Eigen::LLT<OutputMatrix> factor(S);
-    Gain& gain = gains.at[k];
+    Gain& gain = f.gains[k];
     gain.whitening = factor.matrixL().solve(OutputMatrix::Identity());
     gain.onto_states =
         factor.solve((l.F * P * l.C.transpose() + input * l.G * l.D.transpose()).transpose()).transpose();
     if (record.outputs < kOutputs) gain.onto_states.col(kIfd).setZero();
-    gains.log_determinant -= 2 * gain.whitening.diagonal().array().log().sum();
-    gains.squares += (gain.whitening * e).squaredNorm();
+    f.white[k] = gain.whitening * e;
+    weighed = gain.whitening.transpose() * f.white[k];
     P = l.F * P * l.F.transpose() + input * l.G * l.G.transpose() + l.unsure -
         gain.onto_states * S * gain.onto_states.transpose();
     P = (0.5 * (P + P.transpose())).eval();
     x = l.next + gain.onto_states * e;
   }
-  return gains;
+  f.likely = without_noise(record, steps, f.gains, P0);
+  show({machine, record.conventions, p, steady}, f.likely);
+  return f;
 }
 
 std::size_t innovation_count(const NoisyRecord& record) {
@@ -238,8 +308,8 @@ std::size_t innovation_count(const NoisyRecord& record) {
 }
 
 template <class T>
-void innovations(const Effect& machine, const NoisyRecord& r, const Gains& gains, const std::vector<T>& p,
-                 const std::array<T, kSteady>& steady, T* out) {
+void innovations(const Effect& machine, const NoisyRecord& r, const std::vector<Gain>& gains,
+                 const std::vector<T>& p, const std::array<T, kSteady>& steady, T* out) {
   Played<T> m(machine, r.conventions, p, steady);
   // Means before the event are as noisy as one sample over the root of their number.
   const double mean = std::sqrt(r.before) / r.noise.phasor();
@@ -255,7 +325,7 @@ void innovations(const Effect& machine, const NoisyRecord& r, const Gains& gains
     const auto y = m.outputs();
     std::array<T, kOutputs> e{};
     for (std::size_t o = 0; o < static_cast<std::size_t>(r.outputs); ++o) e[o] = T(r.out[k][o]) - y[o];
-    const Gain& gain = gains.at[k];
+    const Gain& gain = gains[k];
     for (int o = 0; o < r.outputs; ++o) {
       T white(0.0);
       for (int i = 0; i <= o; ++i) white = white + T(gain.whitening(o, i)) * e[static_cast<std::size_t>(i)];
@@ -269,9 +339,9 @@ void innovations(const Effect& machine, const NoisyRecord& r, const Gains& gains
   }
 }
 
-template void innovations(const Effect&, const NoisyRecord&, const Gains&, const std::vector<double>&,
-                          const std::array<double, kSteady>&, double*);
-template void innovations(const Effect&, const NoisyRecord&, const Gains&, const std::vector<D8>&,
+template void innovations(const Effect&, const NoisyRecord&, const std::vector<Gain>&,
+                          const std::vector<double>&, const std::array<double, kSteady>&, double*);
+template void innovations(const Effect&, const NoisyRecord&, const std::vector<Gain>&, const std::vector<D8>&,
                           const std::array<D8, kSteady>&, D8*);
 
 }  // namespace swingbank::sim::direct

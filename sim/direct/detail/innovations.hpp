@@ -11,8 +11,6 @@
 
 namespace swingbank::sim::direct {
 
-constexpr std::size_t kMostStates = kDirections - kInputs;  ///< so that one dual holds both
-
 /// The operating point before the event, which means over noisy samples do not tell exactly.
 enum Steady { kP0, kQ0, kV0, kTheta0, kSteady };
 
@@ -22,21 +20,23 @@ struct Gain {
   Eigen::Matrix<double, kMostStates, kOutputs> onto_states;  ///< of the step to the next sample
   Eigen::Matrix<double, kOutputs, kOutputs> whitening;       ///< inverse Cholesky factor of the covariance
 };
-struct Gains {
-  std::vector<Gain> at;
-  double log_determinant = 0;  ///< of all covariances
-  double squares = 0;          ///< of the whitened innovations
+/// What the filter makes of a record with these parameters and this operating point.
+struct Filtered {
+  std::vector<Gain> gains;
+  std::vector<Eigen::Matrix<double, kOutputs, 1>> white;  ///< innovations, whitened
+  /// The record without the noise that it most probably has, and with what the machine then shows. Slopes are
+  /// taken here: those at the noisy voltage hold noise that is in the innovations as well, and a fit would
+  /// make both small together.
+  NoisyRecord likely;
 };
-
-/// The gains about these parameters and this operating point.
-Gains gains_about(const Effect& machine, const NoisyRecord& record, const std::vector<double>& p,
-                  const std::array<double, kSteady>& steady);
+Filtered filter(const Effect& machine, const NoisyRecord& record, const std::vector<double>& p,
+                const std::array<double, kSteady>& steady);
 
 /// How many numbers innovations() gives: whitened, of every sample, then those of the means before the event.
 std::size_t innovation_count(const NoisyRecord& record);
 /// T: double or D8. out: innovation_count() numbers of unit variance where p is right.
 template <class T>
-void innovations(const Effect& machine, const NoisyRecord& record, const Gains& gains,
+void innovations(const Effect& machine, const NoisyRecord& record, const std::vector<Gain>& gains,
                  const std::vector<T>& p, const std::array<T, kSteady>& steady, T* out);
 
 }  // namespace swingbank::sim::direct

@@ -21,10 +21,10 @@ Inputs between(const Inputs& a, const Inputs& b, double share) {
   return {a[kV] + share * (b[kV] - a[kV]), a[kTheta] + share * (b[kTheta] - a[kTheta])};
 }
 
-void fill_intervals(NoisyRecord& n, double leap) {
-  const std::size_t count = n.in.size() - 1;
-  n.behind.resize(count);
-  for (std::size_t k = 0; k < count; ++k) n.behind[k].leaps = std::abs(n.in[k + 1][kV] - n.in[k][kV]) > leap;
+}  // namespace
+
+void fill_intervals(NoisyRecord& n) {
+  const std::size_t count = n.behind.size();
   const auto smooth = [&](std::size_t k) { return k < count && !n.behind[k].leaps; };
   for (std::size_t k = 0; k < count; ++k) {
     Interval& i = n.behind[k];
@@ -39,10 +39,7 @@ void fill_intervals(NoisyRecord& n, double leap) {
         i.middle[c] = (9 * (u[c] + v[c]) - n.in[k - 1][c] - n.in[k + 2][c]) / 16;
     }
   }
-  n.at_event = smooth(0) ? between(n.in[0], n.in[1], -n.first_step / n.step) : n.in[0];
 }
-
-}  // namespace
 
 NoisyRecord noisy_record(const Recording& record, double longest) {
   NoisyRecord n;
@@ -68,7 +65,13 @@ NoisyRecord noisy_record(const Recording& record, double longest) {
     n.in.push_back({record.V[k], record.theta[k] - theta0});
     n.out.push_back({record.P[k], record.Q[k], record.speed[k], record.Ifd.empty() ? 0.0 : record.Ifd[k]});
   }
-  fill_intervals(n, leap_limit(record));
+  const double leap = leap_limit(record);
+  n.behind.resize(n.in.size() - 1);
+  for (std::size_t k = 0; k < n.behind.size(); ++k)
+    n.behind[k].leaps = std::abs(n.in[k + 1][kV] - n.in[k][kV]) > leap;
+  fill_intervals(n);
+  n.end_of_first = n.in[0];
+  n.at_event = n.behind[0].leaps ? n.in[0] : between(n.in[0], n.in[1], -n.first_step / n.step);
   return n;
 }
 

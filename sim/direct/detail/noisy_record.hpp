@@ -2,9 +2,11 @@
 // A record with measurement noise, as the likelihood of a machine reads it: the steady state before the event
 // as means, the samples from there on, and where the voltage leaps between two of them.
 #include <array>
+#include <map>
 #include <vector>
 
 #include "sim/core/recording.hpp"
+#include "sim/core/scalar.hpp"
 
 namespace swingbank::sim::direct {
 
@@ -12,6 +14,8 @@ namespace swingbank::sim::direct {
 enum Output { kP, kQ, kSpeed, kIfd, kOutputs };
 /// What is played in and noisy as well.
 enum Input { kV, kTheta, kInputs };
+/// So that one dual holds the states and the input's noise.
+constexpr std::size_t kMostStates = kDirections - kInputs;
 
 using Inputs = std::array<double, kInputs>;
 
@@ -21,6 +25,9 @@ struct Interval {
   bool leaps = false;  ///< somewhere between the two, nobody knows where
   Inputs before = {}, after = {};  ///< where it leaps in the middle: on both sides, by straight lines
 };
+
+/// Where what is played in leaves a machine's state open: what the samples say of it [the states' units].
+using Correction = std::array<double, kMostStates>;
 
 struct NoisyRecord {
   Conventions conventions;
@@ -34,13 +41,18 @@ struct NoisyRecord {
   /// Of the samples behind the event's beginning.
   std::vector<Inputs> in;
   std::vector<std::array<double, kOutputs>> out;
-  std::vector<Interval> behind;  ///< each sample but the last
-  Inputs at_event = {};          ///< when the event has just begun, by a straight line
+  std::vector<Interval> behind;             ///< each sample but the last
+  Inputs at_event = {}, end_of_first = {};  ///< of the step from the event, whose first is a straight line's
+  /// Added to the state at the first sample, and behind a leap; zero in a record as measured.
+  Correction at_first = {};
+  std::map<std::size_t, Correction> behind_leap;
 
   [[nodiscard]] std::size_t samples() const { return in.size(); }
 };
 
 /// `longest`: of the stretch behind the event [s].
+/// What lies between the samples of `in`, once `leaps` is known of each interval.
+void fill_intervals(NoisyRecord& record);
 NoisyRecord noisy_record(const Recording& record, double longest);
 
 }  // namespace swingbank::sim::direct

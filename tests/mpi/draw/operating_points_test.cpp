@@ -6,10 +6,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/durable.hpp"
 #include "base/problem.hpp"
 #include "mpi/draw/shard_maker.hpp"
 #include "sim/network/admittance.hpp"
 #include "sim/network/connectivity.hpp"
+#include "tests/mpi/store/sample_shard.hpp"
 
 namespace swingbank::mpi::draw {
 namespace {
@@ -226,6 +228,40 @@ TEST(OperatingPointRows, PartsMakeTheWhole) {
   redrawn.insert(redrawn.end(), rest.draw_redrawn.begin(), rest.draw_redrawn.end());
   EXPECT_EQ(redrawn, whole.draw_redrawn);
   EXPECT_EQ(redrawn.size(), 48u);
+}
+
+TEST(OperatingPointConfigFile, HashKnowsEveryKeyAndRefusalsNameThem) {
+  const test::Folder folder;
+  const std::string text = read_text(kConfigs / "ieee39_gencls_points.toml");
+  const auto read = [&](const std::string& from, const std::string& to) {
+    std::string changed = text;
+    changed.replace(changed.find(from), from.size(), to);
+    for (auto at = changed.find("../networks"); at != std::string::npos; at = changed.find("../networks"))
+      changed.replace(at, 11, (kConfigs.parent_path() / "networks").string());
+    write_text(folder.path / "c.toml", changed);
+    return read_dataset_config(folder.path / "c.toml");
+  };
+  const std::string base = read("seed = 1", "seed = 1").canonical();
+  const std::pair<const char*, const char*> changes[] = {
+      {"per_block = 2", "per_block = 3"},         {"loads = [0.5, 1.1]", "loads = [0.5, 1.0]"},
+      {"load_spread = 0.2", "load_spread = 0.1"}, {"dispatch = [0.6, 1.3]", "dispatch = [0.7, 1.3]"},
+      {"voltage = 0.03", "voltage = 0.02"},       {"loading = [0.1, 1.0]", "loading = [0.2, 1.0]"},
+      {"_share = 0.12", "_share = 0.1"},          {"oversized = [2.0, 10.0]", "oversized = [2.0, 9.0]"},
+      {"voltage = 0.03", "lines_out = [0, 2]"}};
+  for (const auto& [from, to] : changes) EXPECT_NE(read(from, to).canonical(), base) << to;
+  const auto refusal = [&](const std::string& from, const std::string& to) {
+    try {
+      read(from, to);
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string("nothing thrown");
+  };
+  EXPECT_THAT(refusal("loads = [0.5, 1.1]", "loads = [1.1, 0.5]"), HasSubstr("low end lies above"));
+  EXPECT_THAT(refusal("per_block = 2", "per_block = 0"), HasSubstr("operating_point.per_block"));
+  EXPECT_THAT(refusal("loading = [0.1, 1.0]", ""), HasSubstr("give loading = [low, high] too"));
+  EXPECT_THAT(refusal("voltage = 0.03", "lines_out = [0, 1.5]"), HasSubstr("give whole numbers"));
+  EXPECT_THAT(refusal("voltage = 0.03", "volts = 0.03"), HasSubstr("unknown key operating_point.volts"));
 }
 
 TEST(OperatingPointRows, WithoutTheTableThereAreNone) {

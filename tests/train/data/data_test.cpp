@@ -227,6 +227,67 @@ TEST(Split, KeepsRowsOfADatabankPointTogether) {
   EXPECT_NE(split.test, split_by_point(stream.labels(), 2).test);
 }
 
+TEST(Split, KeepsRowsOfAnEventTogether) {
+  Labels labels;
+  labels.rows = labels.judged = 200;
+  labels.parameters = 1;
+  for (std::size_t i = 0; i < labels.rows; ++i) {
+    labels.values.push_back(static_cast<double>(i));
+    labels.sample_id.push_back(i / 5);
+    labels.generator.push_back(30);
+  }
+  const RowSplit split = split_by_point(labels, 1);
+  std::set<std::uint64_t> seen;
+  for (const auto* part : {&split.train, &split.validation, &split.test}) {
+    std::set<std::uint64_t> own;
+    for (const auto r : *part) own.insert(labels.sample_id[r]);
+    for (const auto event : own) EXPECT_TRUE(seen.insert(event).second) << event;
+  }
+  EXPECT_EQ(seen.size(), 40u);
+}
+
+TEST(Split, RowsOfASecondDatasetOnlyTrain) {
+  test::Folder folder("more"), other("other");
+  test::Plan plan;
+  plan.seed = 12;
+  plan.rows = 170;
+  const mpi::store::Dataset dataset = test::make_dataset(folder.path),
+                            more = test::make_dataset(other.path, plan);
+  const ShardStream stream(dataset, test::whole_record(), {}, more);
+  const Labels& labels = stream.labels();
+  ASSERT_EQ(labels.rows, 570u);
+  ASSERT_EQ(labels.judged, 400u);
+  const RowSplit split = leave_one_out(labels, 33, 0.1, 1);
+  EXPECT_EQ(split.test.size(), 40u);
+  EXPECT_EQ(split.validation.size(), 36u);
+  EXPECT_EQ(split.train.size(), 324u + 153u);
+  for (const auto r : split.train) EXPECT_NE(labels.generator[r], 33);
+  // A row of the second dataset, wherever the series are kept.
+  const ShardStream own(more, test::whole_record()),
+      disk(dataset, test::whole_record(), {.memory_limit = 0}, more);
+  std::vector<float> a(stream.selection().values()), b = a, c = a;
+  const std::uint64_t there = 451, here = 51;
+  stream.read({&there, 1}, a.data());
+  own.read({&here, 1}, b.data());
+  disk.read({&there, 1}, c.data());
+  EXPECT_EQ(a, b);
+  EXPECT_EQ(a, c);
+}
+
+TEST(ShardStream, RefusesASecondDatasetOfAnotherKind) {
+  test::Folder folder("kind"), other("kind-other");
+  test::Plan plan;
+  plan.rate = 40.0;
+  const mpi::store::Dataset dataset = test::make_dataset(folder.path),
+                            more = test::make_dataset(other.path, plan);
+  try {
+    const ShardStream stream(dataset, test::whole_record(), {}, more);
+    FAIL() << "accepted";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("rate"), std::string::npos) << e.what();
+  }
+}
+
 TEST(Split, LeavesOutEveryRowOfTheGenerator) {
   test::Folder folder("out");
   const mpi::store::Dataset dataset = test::make_dataset(folder.path);

@@ -33,6 +33,8 @@ struct Plan {
   int rows_per_point = 1;                ///< neighbouring rows with the same parameters
   std::optional<std::size_t> spoil_row;  ///< gets a value that is not a number
   int shift_generator = 0;               ///< its records are moved by 100
+  bool electrical = false;               ///< also Q and V, and an event after a quarter of the samples
+  std::uint64_t seed = 11;
 };
 
 /// Channels "P" and "speed": a damped swing whose frequency and decay follow from H and D (uniform 1-10 and
@@ -45,21 +47,24 @@ inline mpi::store::Dataset make_dataset(const std::filesystem::path& folder, con
   header.kernel = "test";
   header.software = "test";
   header.machine_model = "TEST";
-  header.config = "made up";
+  header.config = plan.electrical ? "fault.start = " +
+                                        std::to_string(0.25 * static_cast<double>(plan.samples) / plan.rate)
+                                  : "made up";
   header.seed = 7;
   header.draws = plan.rows;
   header.draws_per_shard = plan.rows_per_shard;
   header.rate = plan.rate;
   header.samples = plan.samples;
   header.channel_names = {"P", "speed"};
-  header.channel_units = {"pu", "pu"};
+  if (plan.electrical) header.channel_names.insert(header.channel_names.end(), {"Q", "V"});
+  header.channel_units.assign(header.channel_names.size(), "pu");
   header.parameter_names = {"H", "D", "X"};
   header.parameter_units = {"s", "pu", "pu"};
   header.parameter_low = {1.0, 1.0, 0.3};
   header.parameter_high = {10.0, 8.0, 0.3};
   mpi::store::write_header(folder, header);
   mpi::store::Journal journal(folder / "journal.jsonl");
-  std::mt19937_64 random(11);
+  std::mt19937_64 random(plan.seed);
   const auto uniform = [&](double low, double high) {
     return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
   };
@@ -67,7 +72,7 @@ inline mpi::store::Dataset make_dataset(const std::filesystem::path& folder, con
   for (std::size_t first = 0, number = 0; first < plan.rows; first += plan.rows_per_shard, ++number) {
     mpi::store::ShardData shard;
     shard.rows = std::min(plan.rows_per_shard, plan.rows - first);
-    shard.channels = 2;
+    shard.channels = header.channel_names.size();
     shard.samples = plan.samples;
     shard.parameter_count = 3;
     for (std::size_t r = 0; r < shard.rows; ++r) {
@@ -84,6 +89,12 @@ inline mpi::store::Dataset make_dataset(const std::filesystem::path& folder, con
           shard.records.push_back(
               static_cast<float>(c == 0 ? shift + level + wave * std::sin(12.0 / std::sqrt(h) * t)
                                         : shift + 0.01 * wave * std::cos(12.0 / std::sqrt(h) * t)));
+        }
+      for (std::size_t c = 2; c < shard.channels; ++c)
+        for (std::size_t k = 0; k < plan.samples; ++k) {
+          const double t = static_cast<double>(k) / plan.rate, wave = 0.1 * swing * std::exp(-0.2 * d * t);
+          shard.records.push_back(
+              static_cast<float>((c == 2 ? 0.2 : 1.0) + wave * std::sin(12.0 / std::sqrt(h) * t + 1.0)));
         }
       if (plan.spoil_row == row) shard.records.back() = std::nanf("");
       shard.parameters.insert(shard.parameters.end(), {h, d, 0.3});

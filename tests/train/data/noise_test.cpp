@@ -13,6 +13,7 @@ constexpr std::size_t kSamples = 4000;
 
 mpi::store::DatasetHeader header(std::vector<std::string> channels) {
   mpi::store::DatasetHeader h;
+  h.frequency = 60;
   h.rate = 120;
   h.samples = kSamples;
   h.channel_names = std::move(channels);

@@ -66,6 +66,7 @@ TEST(Experiment, WithoutATableOfTheThesisBearsTheFilesName) {
                                          "[preset.quick]\n"
                                          "draws = 60\n"
                                          "networks = [\"cnn\"]\n"
+                                         "noise = [0.0]\n"
                                          "channels = [\"P\"]\n"
                                          "start_s = 2.0\n"
                                          "end_s = 6.0\n"
@@ -82,6 +83,19 @@ TEST(Experiment, WithoutATableOfTheThesisBearsTheFilesName) {
   EXPECT_EQ(e.table, "mine");
   EXPECT_EQ(e.print("quick", "table"), "mine");
   std::filesystem::remove_all(folder);
+}
+
+TEST(Experiment, ATableOfANetworkChangesWhatItReadsAndHowItIsTrained) {
+  const auto file = std::filesystem::path(SWINGBANK_SOURCE) / "configs/experiments/ieee39_genrou.toml";
+  const Experiment e = read_experiment(file);
+  EXPECT_EQ(e.input("quick", "cnn").recipe.form, data::InputForm::both);
+  EXPECT_EQ(e.input("quick", "mlp").recipe.form, data::InputForm::physics);
+  EXPECT_EQ(e.input("quick", "mlp").pca_components, 48u);
+  EXPECT_EQ(e.training("quick", "cnn").weight_decay, 0.0);
+  EXPECT_EQ(e.training("quick", "mlp").clip, 1.0);
+  EXPECT_EQ(e.training("quick", "mlp-corrects").kind, "mlp");
+  EXPECT_EQ(e.training("quick", "mlp-corrects").corrects, "closed-form");
+  EXPECT_THROW((void)e.input("quick", "absent"), InputError);
 }
 
 TEST(Experiment, NamesEveryProblemWithItsLine) {

@@ -45,8 +45,9 @@ RunRequest request(const World& world, const std::string& network, std::size_t e
   loop::Preset p;
   p.name = "quick";
   p.networks = {network};
-  p.input = test::whole_record(World::plan(world.dataset.rows, world.dataset.samples));
+  p.input[network] = {test::whole_record(World::plan(world.dataset.rows, world.dataset.samples))};
   p.training[network] = recipe(epochs);
+  p.training[network].kind = network;
   r.experiment.presets["quick"] = p;
   r.preset = "quick";
   r.network = network;

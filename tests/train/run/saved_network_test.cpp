@@ -21,11 +21,12 @@ struct World {
   data::ShardStream stream;
   explicit World(const std::string& name, data::InputForm form = data::InputForm::relative)
       : folder(name),
-        plan(small()),
+        plan(small(form == data::InputForm::physics)),
         dataset(test::make_dataset(folder.path / "data", plan)),
         stream(dataset, input(plan, form)) {}
-  static test::Plan small() {
+  static test::Plan small(bool electrical) {
     test::Plan p;
+    p.electrical = electrical;
     p.rows = 300;
     p.samples = 32;
     p.rate = 16.0;
@@ -34,7 +35,8 @@ struct World {
   static data::InputRecipe input(const test::Plan& plan, data::InputForm form) {
     data::InputRecipe r = test::whole_record(plan);
     r.channels = {"speed", "P"};  // not in the order of the records
-    r.slice = 2;
+    r.slice = form == data::InputForm::physics ? 1 : 2;
+    if (form == data::InputForm::physics) r.channels = {"speed", "V", "Q", "P"};
     r.form = form;
     return r;
   }
@@ -44,9 +46,9 @@ struct World {
     loop::Preset p;
     p.name = "quick";
     p.networks = {network};
-    p.input = input(plan, stream.selection().form);
-    p.pca_components = pca;
+    p.input[network] = {input(plan, stream.selection().form), pca};
     p.training[network] = {2, 32, 1e-3, "cosine", 100, 0.1};
+    p.training[network].kind = network;
     r.experiment.presets["quick"] = p;
     r.preset = "quick";
     r.network = network;
@@ -64,7 +66,9 @@ std::vector<float> record_of(const World& world, std::uint64_t row, std::size_t 
   mpi::store::RowBlock block;
   mpi::store::read_rows(shard, row - shard.first_row, 1, block);
   std::vector<float> out;
-  for (const std::size_t channel : {1, 0})
+  const bool all = world.plan.electrical;
+  for (const std::size_t channel :
+       all ? std::vector<std::size_t>{1, 3, 2, 0} : std::vector<std::size_t>{1, 0})
     out.insert(out.end(), block.records.begin() + static_cast<std::ptrdiff_t>(channel * block.samples),
                block.records.begin() + static_cast<std::ptrdiff_t>(channel * block.samples + samples));
   return out;
@@ -104,6 +108,29 @@ TEST(SavedNetwork, EstimatesWhatTheTrainedNetworkDid) {
       EXPECT_NEAR(square[p], result["per_parameter"][p]["mse"].get<double>(), 1e-4 * square[p] + 1e-9)
           << network;
   }
+}
+
+TEST(SavedNetwork, EstimatesFromPhysicalChannelsWhatTheTrainedNetworkDid) {
+  const World world("saved-physics", data::InputForm::physics);
+  RunRequest r = world.request("mlp", 6);
+  auto& recipe = r.experiment.presets["quick"].training["mlp"];
+  recipe.loss_power = 0.5;
+  recipe.weight_decay = 0.01;
+  recipe.clip = 1.0;
+  recipe.average = 0.9;
+  ASSERT_EQ(run(world.stream, r), RunOutcome::done);
+  const SavedNetwork saved = SavedNetwork::load(r.out);
+  EXPECT_EQ(saved.info().fault_start, 0.5);
+  const json result = result_of(r);
+  EXPECT_LT(result["ratio"].get<double>(), 0.9);
+  const data::RowSplit split = data::leave_one_out(world.stream.labels(), 33, 0.1, 1);
+  double square = 0.0;
+  for (const std::uint64_t row : split.test) {
+    const double error = saved.estimate(record_of(world, row, saved.info().samples)).values[0] -
+                         world.stream.labels().values[row * 3];
+    square += error * error / static_cast<double>(split.test.size());
+  }
+  EXPECT_NEAR(square, result["per_parameter"][0]["mse"].get<double>(), 1e-3 * square);
 }
 
 TEST(SavedNetwork, SpreadIsThatOfTheGeneratorLeftOut) {

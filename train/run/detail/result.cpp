@@ -30,7 +30,7 @@ json identity(const data::ShardStream& stream, const RunRequest& r) {
   const loop::NetworkInput& p = r.experiment.input(r.preset, r.network);
   const loop::TrainingRecipe& t = r.experiment.training(r.preset, r.network);
   return {{"dataset", stream.dataset().hash},
-          {"training_dataset", stream.more_hash()},
+          {"training_dataset", stream.more() ? stream.more()->hash : ""},
           {"network", r.network},
           {"generator", or_null(r.generator)},
           {"seed", r.seed},
@@ -48,6 +48,8 @@ json identity(const data::ShardStream& stream, const RunRequest& r) {
           {"schedule", t.schedule},
           {"patience", t.patience},
           {"validation_share", t.validation_share},
+          {"kind", t.kind},
+          {"corrects", t.corrects},
           {"loss_power", t.loss_power},
           {"weight_decay", t.weight_decay},
           {"clip", t.clip},
