@@ -1,33 +1,43 @@
 #!/usr/bin/env bash
-# Reproduces the tables with the preset `nightly`, keeps a dated report and says what moved since the nights before.
-#   bash jobs/nightly.sh [--out FOLDER] [--date YYYY-MM-DD] [--preset NAME] [--seed N] [--keep-data] [--fuzz SECONDS]
-#                        [--blind CASES] [EXPERIMENT...]
+# Reproduces the tables in the hours that it is given, keeps a dated report and says what moved since the nights before.
+#   bash jobs/nightly.sh [--hours N] [--out FOLDER] [--date YYYY-MM-DD] [--preset NAME] [--seed N] [--seeds K]
+#                        [--keep-data] [--fuzz SECONDS] [--blind CASES] [EXPERIMENT...]
+#     --hours      of the whole night on this machine, default 2: the preset `nightly` is made so large or small that
+#                  the tables take three quarters of them, blind test and fuzz targets get what is left
 #     --out        default out/nightly; one folder per night in it, `latest` points to the last one
-#     --date       default today; a night that was broken off goes on when started again on its date
-#     --preset     default nightly
-#     --seed       of the training; default the day's number, so that every night trains with another seed: the nights
-#                  then show how much a result moves by itself
+#     --date       default today; a night that was broken off goes on when started again on its date, in the sizes that
+#                  it began with
+#     --preset     this preset as it is, however long it takes
+#     --seed       of the training; default ten times the day's number, so that every night trains with others: the
+#                  nights then show how much a result moves by itself
+#     --seeds      trains with that many seeds, from --seed on; default 1
 #     --keep-data  keeps the simulated events (gigabytes; the same config makes the same bytes again)
-#     --fuzz       time of each fuzz target of the readers, after the tables; default 600, 0 leaves them out
-#     --blind      cases of a blind test of the diagnosis with the night's seed, after the fuzz targets; default 25,
+#     --fuzz       time of each fuzz target of the readers; default what is left; 0 leaves them out
+#     --blind      cases of a blind test of the diagnosis with the night's seed; default as many as time is left for;
 #                  0 leaves it out
 #     EXPERIMENT   default every file of configs/experiments
 # Exit codes: 0 done, 1 failed, 2 saved on a signal.
 set -euo pipefail
 
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-out=$source_folder/out/nightly date=$(date +%F) preset=nightly seed='' keep_data=0 fuzz=600 blind=25 experiments=()
+out=$source_folder/out/nightly date=$(date +%F) preset='' seed='' seeds=1 hours=2 keep_data=0 fuzz='' blind='' experiments=()
 tries=3 pause=${SWINGBANK_NIGHTLY_PAUSE:-60} # [s] between tries
+table_share=0.75                             # of the hours
+blind_share=0.6                              # of what the tables leave
+blind_case=60                                # [s] of two cores; docs/blind-test.md
+fuzz_build=300 fuzz_least=10                 # [s]; docs/performance.md
 while (($#)); do
   case $1 in
+    --hours) hours=${2:?--hours needs a number}; shift 2 ;;
     --out) out=$(realpath -m "${2:?--out needs a folder}"); shift 2 ;;
     --date) date=${2:?--date needs a day}; shift 2 ;;
     --preset) preset=${2:?--preset needs a name}; shift 2 ;;
     --seed) seed=${2:?--seed needs a number}; shift 2 ;;
+    --seeds) seeds=${2:?--seeds needs a number}; shift 2 ;;
     --keep-data) keep_data=1; shift ;;
     --fuzz) fuzz=${2:?--fuzz needs seconds}; shift 2 ;;
     --blind) blind=${2:?--blind needs a number of cases}; shift 2 ;;
-    -h | --help) sed -n '2,15p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,21p' "$0"; exit 0 ;;
     -*) echo "unknown option at '$1' (jobs/nightly.sh does not have it): run it with --help" >&2; exit 1 ;;
     *) experiments+=("$(realpath -m "$1")"); shift ;;
   esac
@@ -36,9 +46,18 @@ if [[ ! $date =~ ^[0-9]{4}-[0-9]{2}-[0-9]{2}$ ]] || ! day=$(date -u -d "$date" +
   echo "no date at --date $date (YYYY-MM-DD is wanted): give one like $(date +%F)" >&2
   exit 1
 fi
+if [[ ! $hours =~ ^[0-9]*\.?[0-9]+$ ]] || ! awk "BEGIN {exit !($hours > 0)}"; then
+  echo "no hours at --hours $hours (a number above 0 is wanted): give one like 2 or 0.5" >&2
+  exit 1
+fi
+if [[ ! $seeds =~ ^([1-9]|10)$ ]]; then
+  echo "no number of seeds at --seeds $seeds (the next night's begin ten further on): give 1 to 10" >&2
+  exit 1
+fi
 ((${#experiments[@]})) || experiments=("$source_folder"/configs/experiments/*.toml)
-seed=${seed:-$((day / 86400))}
+seed=${seed:-$((day / 86400 * 10))}
 build=${SWINGBANK_BUILD:-$source_folder/build/release}
+swingbank=$build/bin/swingbank
 night=$out/$date
 
 mkdir -p "$night"
@@ -64,47 +83,138 @@ with_tries() {
   return 1
 }
 
-run_all() {
-  local experiment name status
+# part NAME COMMAND...: its time is printed and kept, that of a part that was broken off too.
+part() {
+  local name=$1 begin=$SECONDS status=0
+  shift
+  "$@" || status=$?
+  printf '%s\t%d\n' "$name" $((SECONDS - begin)) >>"$night/parts.tsv"
+  printf '\n== %s: %d s\n' "$name" $((SECONDS - begin))
+  return "$status"
+}
+used() { awk -F'\t' '{sum += $2} END {printf "%d", sum}' "$night/parts.tsv"; }
+# left SHARE: seconds of the budget that are left, times SHARE
+left() { awk -v used="$(used)" "BEGIN {left = ($hours * 3600 - used) * $1; printf \"%d\", left > 0 ? left : 0}"; }
+
+# keep NAME...: these variables are the night's
+keep() { declare -p "$@" | sed 's/^declare -[-a]* //' >>"$night/sizes.conf"; }
+
+# The night's sizes are settled once; of what a second start asks for only --blind and --fuzz count.
+settle() {
+  if [[ -s $night/sizes.conf ]]; then
+    local asked_blind=$blind asked_fuzz=$fuzz
+    # shellcheck source=/dev/null
+    source "$night/sizes.conf"
+    blind=${asked_blind:-$blind} fuzz=${asked_fuzz:-$fuzz}
+    return
+  fi
+  local name=$preset table_hours i
+  rm -rf "$night/experiments"
+  mkdir -p "$night/experiments"
+  if [[ -z $preset ]]; then
+    name=nightly-${hours}h
+    table_hours=$(awk "BEGIN {print $hours * $table_share}")
+    "$swingbank" night-plan "${experiments[@]}" --preset nightly --hours "$table_hours" --cores "$(nproc)" --seeds "$seeds" \
+      --rates "$source_folder/jobs/rates.toml" --name "$name" --out "$night/experiments" >"$night/plan.md" || return 1
+    for i in "${!experiments[@]}"; do experiments[i]=$night/experiments/$(basename "${experiments[i]}"); done
+    cat "$night/plan.md"
+  fi
+  preset=$name
+  keep hours preset seed seeds experiments
+}
+
+# run_stage STAGE SEED EXPERIMENT
+run_stage() {
+  with_tries bash "$source_folder/jobs/run_experiment.sh" --experiment "$3" --preset "$preset" --seed "$2" \
+    --out "$night/$(basename "$3" .toml)" --stage "$1"
+}
+
+run_tables() {
+  local experiment name k folders=()
   for experiment in "${experiments[@]}"; do
     name=$(basename "$experiment" .toml)
-    status=0
-    with_tries bash "$source_folder/jobs/run_experiment.sh" --experiment "$experiment" --preset "$preset" --seed "$seed" \
-      --out "$night/$name" || status=$?
-    ((status == 0)) || return "$status"
-    ((keep_data)) || rm -rf "$night/$name/data"
+    if [[ ! -e $night/$name/trained ]]; then # its events may be gone
+      part "$name: events" run_stage generate "$seed" "$experiment" || return $?
+      for ((k = 0; k < seeds; ++k)); do
+        part "$name: training, seed $((seed + k))" run_stage train $((seed + k)) "$experiment" || return $?
+      done
+      touch "$night/$name/trained"
+    fi
+    ((keep_data)) || rm -rf "$night/$name/data" "$night/$name/training-data"
+    folders+=("$night/$name/results")
   done
+  part tables "$swingbank" tables "${folders[@]}" --out "$night/tables"
 }
 
 # A part of the blind test (docs/blind-test.md); what is made and judged stays when it is broken off.
 blind_test() {
-  local swingbank=$build/bin/swingbank configs=$source_folder/configs/blind run=$night/blind
-  "$swingbank" blind-test --config "$configs/cases.toml" --out "$run" --make "$blind" --seed "$seed" &&
-    "$swingbank" blind-test --out "$run" --diagnose &&
-    "$swingbank" blind-test --out "$run" --score --targets "$configs/targets.toml"
+  local configs=$source_folder/configs/blind run=$night/blind
+  run_saving "$swingbank" blind-test --config "$configs/cases.toml" --out "$run" --make "$blind" --seed "$seed" &&
+    run_saving "$swingbank" blind-test --out "$run" --diagnose &&
+    run_saving "$swingbank" blind-test --out "$run" --score --targets "$configs/targets.toml"
+}
+fuzz_targets() {
+  local status=0
+  run_saving bash "$source_folder/tests/fuzz/run.bash" "$fuzz" >"$night/fuzz.txt" 2>&1 || status=$?
+  cat "$night/fuzz.txt"
+  return "$status"
+}
+fuzz_seconds() { # of each target, two at a time, from what is left
+  local targets=("$source_folder"/tests/fuzz/*.cpp) budget
+  budget=$(left 1)
+  if [[ ! -d $source_folder/build/fuzz/bin ]]; then budget=$((budget - fuzz_build)); fi
+  budget=$((budget / ((${#targets[@]} + 1) / 2)))
+  echo $((budget < fuzz_least ? 0 : budget))
 }
 
-if [[ -z ${SWINGBANK_BUILD:-} ]]; then bash "$source_folder/jobs/setup.sh" 9>&-; fi
-exec > >(exec tee -a "$night/log.txt" 9>&-) 2>&1
-status=0
-run_all || status=$?
-if ((status != 0)); then
-  echo "nightly run of $date stopped (exit code $status); log: $night/log.txt" >&2
-  exit "$status"
-fi
-"$build/bin/swingbank" nightly-compare "$out" --night "$date" >"$night/report.md.part"
-mv "$night/report.md.part" "$night/report.md"
-ln -sfn "$date" "$out/latest"
-if [[ $fuzz != 0 ]]; then
+# report: what the night has so far; written again after each part
+report() {
   {
-    printf '\n## Fuzz targets\n\n'
-    bash "$source_folder/tests/fuzz/run.bash" "$fuzz" 2>&1 | sed 's/^/- /' || status=1
-  } >>"$night/report.md"
-fi
-if [[ $blind != 0 ]]; then
-  blind_test || status=1
-  { printf '\n## Blind test, seed %s\n\n' "$seed" && sed '1,2d;s/^## /### /' "$night/blind/score.md"; } >>"$night/report.md" || status=1
-fi
+    "$swingbank" nightly-compare "$out" --night "$date" || return 1
+    printf '\n## Time\n\n%s of %s hours asked for, on %d cores, preset %s, seed %d (%d of them).\n\n' \
+      "$(awk -v s="$(used)" 'BEGIN {printf "%.2f", s / 3600}')" "$hours" "$(nproc)" "$preset" "$seed" "$seeds"
+    printf '| part | time [s] |\n|---|---:|\n'
+    awk -F'\t' '!($1 in sum) {order[++n] = $1} {sum[$1] += $2} END {for (i = 1; i <= n; ++i) print "| " order[i] " | " sum[order[i]] " |"}' \
+      "$night/parts.tsv"
+    if [[ -s $night/plan.md ]]; then printf '\n## Plan\n\nBy the rates of jobs/rates.toml:\n\n' && cat "$night/plan.md"; fi
+    printf '\n'
+    cat "$night/tables/tables.md"
+    if [[ -s $night/blind/score.md ]]; then
+      printf '\n## Blind test, seed %s\n\n' "$seed"
+      sed '1,2d;s/^## /### /' "$night/blind/score.md"
+    elif [[ $blind == 0 ]]; then
+      printf '\n## Blind test\n\nNone in this night.\n'
+    fi
+    if [[ -s $night/fuzz.txt ]]; then
+      printf '\n## Fuzz targets\n\n'
+      sed 's/^/- /' "$night/fuzz.txt"
+    elif [[ $fuzz == 0 ]]; then
+      printf '\n## Fuzz targets\n\nNone in this night.\n'
+    fi
+  } >"$night/report.md.part" || return 1
+  mv "$night/report.md.part" "$night/report.md"
+}
+# stopped STATUS: ends the night where a signal or failure leaves nothing to go on with
+stopped() {
+  echo "nightly run of $date stopped (exit code $1) after $(used) s; log: $night/log.txt" >&2
+  exit "$1"
+}
+
+exec > >(exec tee -a "$night/log.txt" 9>&-) 2>&1
+build_all() { bash "$source_folder/jobs/setup.sh" 9>&-; }
+if [[ -z ${SWINGBANK_BUILD:-} ]]; then part build build_all || stopped $?; fi
+settle || stopped $?
+status=0
+run_tables || stopped $?
+report || stopped 1
+ln -sfn "$date" "$out/latest"
+
+if [[ -z $blind ]]; then blind=$(($(left "$blind_share") / blind_case)) && keep blind; fi
+if [[ $blind != 0 ]]; then part "blind test, $blind cases" blind_test || status=$?; fi
+((status != 2)) || stopped 2
+if [[ -z $fuzz ]]; then fuzz=$(fuzz_seconds) && keep fuzz; fi
+if [[ $fuzz != 0 ]]; then part "fuzz targets, $fuzz s each" fuzz_targets || status=1; fi
+report || status=1
 cat "$night/report.md"
-echo "report: $night/report.md"
+echo "report: $night/report.md; $(used) s of $hours h"
 exit "$status"

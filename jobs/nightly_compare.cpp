@@ -1,11 +1,12 @@
 // swingbank nightly-compare FOLDER: what moved since the nights before, beyond its noise.
 //
 // FOLDER holds one folder per night, YYYY-MM-DD/<experiment>/results/*.json (docs/formats.md of train's
-// results). A cell is one (table, network, generator) at one preset and dataset config; its score is s =
-// ln(MSE / baseline). Every night trains with another seed, so the nights before show how much a score moves
-// by itself:
+// results). A cell is one (table, network, noise level, generator) at one preset and dataset config; its
+// score is s = ln(MSE / baseline), the mean over the night's seeds. Every night trains with other seeds, so
+// the nights before show how much a score moves by itself:
 //   residual of a night = s - median of the cell's nights before
-//   noise of a table and network = 1.4826 * median |residual| * sqrt(n / (n - 1)), pooled over its cells,
+//   noise of a table, network and level = 1.4826 * median |residual| * sqrt(n / (n - 1)), pooled over its
+//   cells,
 //                                  because one cell has too few nights; at least 1 %
 //   moved: |s tonight - median| > 3 noise sqrt(1 + 1.57 / n)      (1.57 / n: the variance of a median of n)
 // With fewer than three nights before, the change is printed and no verdict given.
@@ -37,10 +38,15 @@ constexpr double kLeastRelativeNoise =
     0.01;  // a change of less than 3 % is of no interest even if the nights agree exactly
 
 struct Cell {
-  std::string table, network, generator, preset, config;
+  std::string table, network, noise, generator, preset, config;
   auto operator<=>(const Cell&) const = default;
 };
-using Night = std::map<Cell, double>;         // ln(MSE / baseline)
+struct Score {
+  double sum = 0;  // of ln(MSE / baseline)
+  std::size_t seeds = 0;
+  [[nodiscard]] double mean() const { return sum / static_cast<double>(seeds); }
+};
+using Night = std::map<Cell, Score>;
 using Nights = std::map<std::string, Night>;  // by date
 
 struct Change {
@@ -81,8 +87,11 @@ void read_result(const fs::path& file, Night& night, Problems& problems) {
                    "delete the file and run the night again");
       return;
     }
-    night[{json.at("table"), json.at("network"), generator.is_null() ? "-" : generator.dump(),
-           json.at("preset"), json.at("dataset").at("config_hash")}] = std::log(ratio);
+    Score& score = night[{json.at("table"), json.at("network"), fmt::format("{}", json.value("noise", 0.0)),
+                          generator.is_null() ? "-" : generator.dump(), json.at("preset"),
+                          json.at("dataset").at("config_hash")}];
+    score.sum += std::log(ratio);
+    ++score.seeds;
   } catch (const nlohmann::json::exception& error) {
     problems.add("result cannot be read", file.string(), error.what(),
                  "delete the file and run the night again");
@@ -115,24 +124,24 @@ std::vector<Change> changes_of(const std::string& date, const Nights& nights) {
   std::map<Cell, std::vector<double>> before;
   for (const auto& [when, night] : nights) {
     if (when >= date) break;
-    for (const auto& [cell, score] : night) before[cell].push_back(score);
+    for (const auto& [cell, score] : night) before[cell].push_back(score.mean());
   }
-  std::map<std::tuple<std::string, std::string>, std::vector<double>> residuals;
+  std::map<std::tuple<std::string, std::string, std::string>, std::vector<double>> residuals;
   for (const auto& [cell, scores] : before) {
     const double n = static_cast<double>(scores.size());
     if (scores.size() < kNightsNeeded) continue;
     for (const double score : scores) {
-      residuals[{cell.table, cell.network}].push_back(std::abs(score - median(scores)) *
-                                                      std::sqrt(n / (n - 1.0)));
+      residuals[{cell.table, cell.network, cell.noise}].push_back(std::abs(score - median(scores)) *
+                                                                  std::sqrt(n / (n - 1.0)));
     }
   }
   std::vector<Change> changes;
   for (const auto& [cell, score] : nights.at(date)) {
-    Change change{cell, score, 0, 0, 0};
+    Change change{cell, score.mean(), 0, 0, 0};
     if (const auto found = before.find(cell); found != before.end()) {
       change.before = median(found->second);
       change.nights = found->second.size();
-      const auto& pool = residuals[{cell.table, cell.network}];
+      const auto& pool = residuals[{cell.table, cell.network, cell.noise}];
       if (!pool.empty()) change.noise = std::max(kLeastRelativeNoise, 1.4826 * median(pool));
     }
     changes.push_back(change);
@@ -160,13 +169,13 @@ void print_report(const std::string& date, std::vector<Change> changes) {
       "Score: MSE / predict-the-mean (1: learnt nothing). Noise: one standard deviation, from the nights "
       "before.\n\n");
   fmt::print(
-      "| table | network | generator | preset | tonight [-] | median before [-] | change | noise | nights | "
+      "| table | network | noise level | generator | preset | tonight [-] | median before [-] | change | noise | nights | "
       "verdict |\n");
-  fmt::print("|---|---|---|---|---|---|---|---|---|---|\n");
+  fmt::print("|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const auto& c : changes) {
     const bool known = c.nights > 0;
-    fmt::print("| {} | {} | {} | {} | {:.4f} | {} | {} | {} | {} | {} |\n", c.cell.table, c.cell.network,
-               c.cell.generator, c.cell.preset, std::exp(c.tonight),
+    fmt::print("| {} | {} | {} | {} | {} | {:.4f} | {} | {} | {} | {} | {} |\n", c.cell.table, c.cell.network,
+               c.cell.noise, c.cell.generator, c.cell.preset, std::exp(c.tonight),
                known ? fmt::format("{:.4f}", std::exp(c.before)) : "-",
                known ? percent(c.tonight - c.before) : "-",
                c.judged() ? fmt::format("{:.1f} %", 100.0 * c.noise) : "-", c.nights, verdict(c));

@@ -1,0 +1,117 @@
+// swingbank night-plan EXPERIMENT...: what a preset costs by measured rates, and the preset made as large as
+// some hours allow.
+//
+// Events and epochs of every network grow alike, each with the root of the work, so that gradient samples
+// grow with the work. Least sizes hold (a fold needs rows to judge), so a budget of minutes may be exceeded;
+// the plan says so.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/problem.hpp"
+#include "jobs/command_line.hpp"
+#include "jobs/night_work.hpp"
+
+namespace {
+
+using namespace swingbank;
+using namespace swingbank::jobs;
+
+struct Options {
+  std::vector<std::string> experiments;
+  std::string preset = "nightly", rates, out, name;
+  double hours = 0.0;
+  int cores = 1, seeds = 1;
+};
+
+struct Plan {
+  std::vector<train::loop::Experiment> experiments;
+  Rates rates;
+  int seeds = 1;  // of the training
+  [[nodiscard]] std::vector<Part> parts(const train::loop::Experiment& e, const std::string& preset,
+                                        const Scale& to) const {
+    std::vector<Part> all = work_of(e, scaled(e.preset(preset), to), rates);
+    for (auto& part : all)
+      if (!part.simulated) {
+        part.runs *= static_cast<std::size_t>(seeds);
+        part.core_seconds *= seeds;
+      }
+    return all;
+  }
+  [[nodiscard]] double core_seconds(const std::string& preset, double work) const {
+    double sum = 0.0;
+    for (const auto& e : experiments)
+      for (const auto& part : parts(e, preset, {preset, work})) sum += part.core_seconds;
+    return sum;
+  }
+  /// The work at which the preset takes `core_seconds`, or the least that there is.
+  [[nodiscard]] double work_for(const std::string& preset, double wanted) const {
+    double low = 1e-8, high = 1e6;
+    for (int i = 0; i < 100; ++i) {
+      const double middle = std::sqrt(low * high);
+      (core_seconds(preset, middle) < wanted ? low : high) = middle;
+    }
+    return low;
+  }
+};
+
+std::string shown(double seconds) {
+  return seconds < 7200 ? fmt::format("{:.0f} s", seconds) : fmt::format("{:.1f} h", seconds / 3600);
+}
+
+/// Prints a line per part; returns the sum [core-s].
+double print(const Plan& plan, const std::string& preset, const Scale& to) {
+  double sum = 0.0;
+  fmt::print("| table | part | runs | rows of a run | epochs | core time |\n|---|---|---:|---:|---:|---:|\n");
+  for (const auto& e : plan.experiments)
+    for (const auto& part : plan.parts(e, preset, to)) {
+      sum += part.core_seconds;
+      fmt::print("| {} | {} | {} | {:.0f} | {} | {} |\n", e.table, part.what, part.runs, part.rows,
+                 part.epochs > 0 ? std::to_string(part.epochs) : "–", shown(part.core_seconds));
+    }
+  return sum;
+}
+
+void run(const Options& o) {
+  if (!o.out.empty() && (o.hours <= 0 || o.name.empty()))
+    throw InputError({"no size", "--out", "the experiments are written for some hours and under a name",
+                      "give --hours and --name"});
+  Plan plan;
+  plan.rates = read_rates(o.rates);
+  plan.seeds = o.seeds;
+  for (const auto& file : o.experiments) plan.experiments.push_back(train::loop::read_experiment(file));
+  Scale to{o.preset, 1.0};
+  if (o.hours > 0) to.work = plan.work_for(o.preset, o.hours * 3600.0 * o.cores);
+  if (!o.name.empty()) to.name = o.name;
+  const double sum = print(plan, o.preset, to);
+  fmt::print("\nPreset {} with {:.3g} times its work: {:.1f} core-hours, {} on {} cores.\n", o.preset,
+             to.work, sum / 3600.0, shown(sum / o.cores), o.cores);
+  if (o.hours > 0 && sum > 1.1 * o.hours * 3600.0 * o.cores)
+    fmt::print("That is more than the {} asked for: no run can be smaller.\n", shown(o.hours * 3600.0));
+  if (o.out.empty()) return;
+  for (const auto& e : plan.experiments)
+    write_scaled(e, o.preset, to, std::filesystem::path(o.out) / e.file.filename());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CommandLine line(SWINGBANK_SUMMARY, "swingbank night-plan");
+  Options o;
+  line.add("experiments", o.experiments, "files of configs/experiments").required();
+  line.add("--preset", o.preset, "preset of the experiments").shows_default();
+  line.add("--rates", o.rates, "measured rates, jobs/rates.toml").required();
+  line.add("--hours", o.hours, "make the preset as large as that many hours allow (default: as it is)");
+  line.add("--cores", o.cores, "that share the work").shows_default().between(1, 100000);
+  line.add("--seeds", o.seeds, "that every network is trained with").shows_default().between(1, 1000);
+  line.add("--name", o.name, "of the preset that is written");
+  line.add("--out", o.out, "folder for the experiments with that preset");
+  if (!line.parse(argc, argv)) return line.end();
+  try {
+    run(o);
+    return 0;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+}
