@@ -126,7 +126,8 @@ double improve(Posterior& posterior, VectorXd& z, std::span<const FreeParameter>
 
 MostProbable search(const Effect& machine, const NoisyRecord& record, const std::vector<double>& start,
                     std::span<const FreeParameter> free, const LikelihoodOptions& options) {
-  constexpr double kSame = 0.02;  // of the cost between two linearisations
+  constexpr double kSame = 0.02;                   // of the cost between two linearisations
+  constexpr double kLost = 1.15, kCreeps = 0.005;  // chi-square and share of the cost: in a corner of the box
   Posterior posterior(machine, record, start, free);
   VectorXd z = posterior.start();
   MostProbable found{posterior.parameters(z), 0, std::numeric_limits<double>::infinity(), 0};
@@ -140,7 +141,8 @@ MostProbable search(const Effect& machine, const NoisyRecord& record, const std:
       found.cost = cost;
       found.chi_square = cost / freedom;
     }
-    if (!std::isfinite(cost) || before - cost < kSame) break;
+    const bool lost = found.chi_square > kLost && before - cost < kCreeps * cost;
+    if (!std::isfinite(cost) || before - cost < kSame || lost) break;
   }
   return found;
 }
@@ -171,7 +173,7 @@ MostProbable most_probable(const Effect& machine, const Recording& record, std::
 MostProbable most_probable_of(const Effect& machine, const Recording& record,
                               std::span<const std::vector<double>> candidates,
                               std::span<const FreeParameter> free, const LikelihoodOptions& options) {
-  constexpr std::uint32_t kDraws = 6;
+  constexpr std::uint32_t kDraws = 12;
   // Chi-square cannot tell a wrong answer: of thousands of samples it scatters by a hundred, and a wrong one
   // may cost ten more than the right one. So two starts have to agree.
   constexpr double kSameAnswer = 1;

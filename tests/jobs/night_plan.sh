@@ -20,7 +20,7 @@ awk -v h="$(hours)" 'BEGIN {exit !(h > 5.9 && h < 6.1)}' || fail "2 h on 3 cores
 (($(written draws) > 4000 && $(written training_draws) > 1000)) || fail "a longer night has no more events"
 [[ $(written training_dataset) == "$work/tiny_points.toml" ]] || fail "dataset: $(written training_dataset)"
 [[ $(written training_rows) == mlp ]] || fail "the network's own table is gone"
-if grep -q 'preset.quick' "$work/made/tiny.toml"; then fail "the old preset stands beside the new one"; fi
+if grep -qF 'preset.quick' "$work/made/tiny.toml"; then fail "the old preset stands beside the new one"; fi
 
 plan --hours 0.0001 --name night --out "$work/made" >"$work/plan"
 [[ $(written draws) == 120 ]] || fail "least size: $(written draws)"
