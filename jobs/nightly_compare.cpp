@@ -81,8 +81,11 @@ void read_result(const fs::path& file, Night& night, Problems& problems) {
                    "delete the file and run the night again");
       return;
     }
-    night[{json.at("table"), json.at("network"), generator.is_null() ? "-" : generator.dump(),
-           json.at("preset"), json.at("dataset").at("config_hash")}] = std::log(ratio);
+    const double noise = json.value("noise", 0.0);
+    const std::string method =
+        json.at("network").get<std::string>() + (noise > 0 ? fmt::format(", noise {:g} %", 100 * noise) : "");
+    night[{json.at("table"), method, generator.is_null() ? "-" : generator.dump(), json.at("preset"),
+           json.at("dataset").at("config_hash")}] = std::log(ratio);
   } catch (const nlohmann::json::exception& error) {
     problems.add("result cannot be read", file.string(), error.what(),
                  "delete the file and run the night again");

@@ -50,6 +50,7 @@ TEST(Experiment, FilesOfTheRepositoryAreSound) {
       EXPECT_GT(std::stoul(e.print(preset, "draws")), 0u);
       EXPECT_FALSE(e.preset(preset).networks.empty());
     }
+    EXPECT_EQ(e.preset("quick").noise.front(), 0.0);
     EXPECT_EQ(e.print("quick", "folds") == "none", !e.leave_one_out);
     ++files;
   }
@@ -66,6 +67,7 @@ TEST(Experiment, WithoutATableOfTheThesisBearsTheFilesName) {
                                          "[preset.quick]\n"
                                          "draws = 60\n"
                                          "networks = [\"cnn\"]\n"
+                                         "noise = [0.0, 0.005]\n"
                                          "channels = [\"P\"]\n"
                                          "start_s = 2.0\n"
                                          "end_s = 6.0\n"
@@ -81,6 +83,7 @@ TEST(Experiment, WithoutATableOfTheThesisBearsTheFilesName) {
   const Experiment e = read_experiment(folder / "mine.toml");
   EXPECT_EQ(e.table, "mine");
   EXPECT_EQ(e.print("quick", "table"), "mine");
+  EXPECT_EQ(e.print("quick", "noise"), "0\n0.005");
   std::filesystem::remove_all(folder);
 }
 
