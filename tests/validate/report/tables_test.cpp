@@ -176,7 +176,7 @@ TEST_F(TablesTest, ParametersShowMedianAndWorst) {
   write("b", result("V", "cnn", 31, 0.2));
   write("c", result("V", "cnn", 32, 0.6));
   const Table table = parameter_table(group_results(read())[0]);
-  EXPECT_THAT(row(table, "H"), ElementsAre("H", "s", "2.03", "0.2", "0.6", "#32"));
+  EXPECT_THAT(row(table, "H"), ElementsAre("H", "s", "2.02", "0.2", "0.6", "#32"));
   EXPECT_THAT(row(table, "Xdpp"), ElementsAre("Xdpp", "pu", "0", "constant", "constant", "–"));
 }
 TEST_F(TablesTest, FaultsOfResultsAreToldTogether) {
