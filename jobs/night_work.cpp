@@ -58,16 +58,27 @@ struct Rows {
     const double of_own = leave_one_out ? seen * (1.0 - t.validation_share) : kSplitTrain;
     return of_own * own + (t.training_rows ? seen * more : 0.0);
   }
+  [[nodiscard]] double all(const train::loop::TrainingRecipe& t) const {
+    return own + (t.training_rows ? more : 0.0);
+  }
   [[nodiscard]] double test(std::size_t wanted) const {
     const double all = own * (leave_one_out ? 1.0 / folds : kSplitTest);
     return wanted > 0 ? std::min(all, static_cast<double>(wanted)) : all;
   }
 };
 
+const NetworkRate& rate_of(const Rates& rates, const std::string& kind) {
+  if (const auto found = rates.networks.find(kind); found != rates.networks.end()) return found->second;
+  throw InputError({fmt::format("no rate of '{}'", kind), "--rates", "the plan needs what a sample costs",
+                    fmt::format("measure one and add [network.{}]", kind)});
+}
+
 Part network_part(const train::loop::Preset& p, const std::string& network, const Rows& rows, double rate,
-                  const NetworkRate& cost) {
+                  const Rates& rates) {
   const train::loop::TrainingRecipe& t = p.training.at(network);
   const train::loop::Judging& judged = p.judging.at(network);
+  const NetworkRate& cost = rate_of(rates, t.kind);
+  const auto row = [](const NetworkRate& of, double noise) { return noise > 0 ? of.noisy_row : of.row; };
   Part part;
   part.what = network;
   for (const double noise : judged.noise) {
@@ -80,10 +91,12 @@ Part network_part(const train::loop::Preset& p, const std::string& network, cons
       seconds += part.rows * static_cast<double>(t.epochs) * cost.sample * longer;
     } else {
       part.rows = rows.test(judged.test_rows);
-      seconds += part.rows * (noise > 0 ? cost.noisy_row : cost.row);
+      seconds += part.rows * row(cost, noise);
     }
     part.runs += static_cast<std::size_t>(rows.folds);
     part.core_seconds += rows.folds * seconds;
+    if (!t.corrects.empty())  // of all rows, once for all folds
+      part.core_seconds += rows.all(t) * row(rate_of(rates, t.corrects), noise);
   }
   return part;
 }
@@ -141,14 +154,7 @@ std::vector<Part> work_of(const train::loop::Experiment& experiment, const train
     rows.more = more_draws * more.rows_per_event;
     parts.push_back({"events that only train", 1, rows.more, 0, more_draws * more.seconds, true});
   }
-  for (const auto& network : p.networks) {
-    const auto cost = rates.networks.find(network);
-    if (cost == rates.networks.end())
-      throw InputError({fmt::format("no rate of '{}'", network), "--rates",
-                        "the plan needs what a sample costs",
-                        fmt::format("measure one and add [network.{}]", network)});
-    parts.push_back(network_part(p, network, rows, own.rate, cost->second));
-  }
+  for (const auto& network : p.networks) parts.push_back(network_part(p, network, rows, own.rate, rates));
   return parts;
 }
 

@@ -1,5 +1,8 @@
-# tiny_experiment FOLDER: a dataset and an experiment that take a core under a minute, slow enough to be broken off.
+# tiny_experiment FOLDER: a dataset and an experiment that take a core under a minute, slow enough to be broken off. With
+# TINY_TRAINING_DRAWS a network `mlp` too, which also trains on the rows of a second dataset.
 tiny_experiment() {
+  local more='' names='"gru"'
+  if [[ -n ${TINY_TRAINING_DRAWS:-} ]]; then more='"tiny_points.toml"' names='"gru", "mlp"'; fi
   local networks=$SWINGBANK_SOURCE/configs/networks
   cat >"$1/tiny_data.toml" <<TOML
 raw = "$networks/ieee39_dataset_gencls.raw"
@@ -33,11 +36,13 @@ TOML
 table = "V"
 title = "tiny"
 dataset = "tiny_data.toml"
+${more:+training_dataset = $more}
 split = "leave-one-generator-out"
 folds = [30, 31]
 [preset.quick]
 draws = ${TINY_DRAWS:-400}
-networks = ["gru"]
+networks = [$names]
+${TINY_TRAINING_DRAWS:+training_draws = $TINY_TRAINING_DRAWS}
 noise = [0.0]
 channels = ["P", "Q", "speed"]
 start_s = 0.4
@@ -52,4 +57,8 @@ schedule = "constant"
 patience = 1000
 validation_share = 0.2
 TOML
+  if [[ -n ${TINY_TRAINING_DRAWS:-} ]]; then
+    sed 's/^who = .*/who = "all"/;s/^seed = .*/seed = 4/' "$1/tiny_data.toml" >"$1/tiny_points.toml"
+    printf '[preset.quick.mlp]\ntraining_rows = true\n' >>"$1/tiny.toml"
+  fi
 }
