@@ -33,6 +33,10 @@ class Rows {
       problems.add("no closed form for " + d.machine_model, where,
                    "nobody has written one for this machine's equations",
                    "leave closed-form and refined out of the preset's networks");
+    if (effect_ && method != Method::closed_form && noise.level > 0 && !sim::direct::has_likelihood(*effect_))
+      problems.add("no likelihood for " + d.machine_model, where,
+                   "it has too many states, or no constant impedance behind its terminal",
+                   "leave refined and floor out of the preset's networks");
     if (!d.parameter_effects.empty())
       problems.add("parameters of other effects", where, "a closed form knows the machine alone",
                    "leave closed-form and refined out of the preset's networks");

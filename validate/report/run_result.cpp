@@ -77,6 +77,7 @@ RunResult read_result(const fs::path& file, Problems& problems) {
   o.get("network", r.network);
   o.get("preset", r.preset);
   o.get("seed", r.seed);
+  o.get("noise", r.noise);
   if (parsed.contains("generator") && !parsed["generator"].is_null()) o.get("generator", r.generator);
   json dataset = json::object();
   o.get("dataset", dataset);
@@ -106,7 +107,8 @@ RunResult read_result(const fs::path& file, Problems& problems) {
 }
 
 auto identity(const RunResult& r) {
-  return std::tie(r.table, r.network, r.preset, r.dataset_hash, r.rows, r.seed, r.generator, r.shuffled);
+  return std::tie(r.table, r.network, r.preset, r.dataset_hash, r.rows, r.seed, r.noise, r.generator,
+                  r.shuffled);
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ struct RunResult {
   std::filesystem::path file;
   std::string table, network, preset;
   std::int64_t seed = 0;
+  double noise = 0;   ///< level of measurement noise; 0: none
   int generator = 0;  ///< bus of the generator left out; 0: none
   std::string dataset, dataset_hash, config_hash;
   std::int64_t rows = 0, train_rows = 0, test_rows = 0, epochs = 0, best_epoch = 0;

@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "validate/report/detail/thesis_tables.hpp"
+#include "validate/report/noise_table.hpp"
 
 namespace swingbank::validate::report {
 namespace {
@@ -129,6 +130,7 @@ std::string heading(const TableBlock& block) {
   std::string text =
       of_thesis ? fmt::format("Table {}: {}", block.table, kThesisTables[rank].title) : block.table;
   if (!block.network.empty()) text += ", " + upper(block.network);
+  if (block.noise > 0) text += fmt::format(", noise {:g} %", 100 * block.noise);
   if (block.shuffled) text += " — control run with shuffled labels";
   return text;
 }
@@ -173,13 +175,19 @@ std::string remark(const TableBlock& block) {
   return {};
 }
 
+/// As part of a file's name.
+std::string safe(std::string stem) {
+  std::ranges::replace_if(
+      stem, [](unsigned char c) { return !std::isalnum(c) && c != '-' && c != '_' && c != '.'; }, '_');
+  return stem;
+}
+
 std::string file_stem(const TableBlock& b) {
   std::string stem =
       "table-" + b.table + (b.network.empty() ? "" : "-" + b.network) +
-      fmt::format("-{}-rows{}-seed{}{}", b.preset, b.rows, b.seed, b.shuffled ? "-shuffled" : "");
-  std::ranges::replace_if(
-      stem, [](unsigned char c) { return !std::isalnum(c) && c != '-' && c != '_'; }, '_');
-  return stem;
+      fmt::format("-{}-rows{}{}-seed{}{}", b.preset, b.rows,
+                  b.noise > 0 ? fmt::format("-noise{}", b.noise) : "", b.seed, b.shuffled ? "-shuffled" : "");
+  return safe(stem);
 }
 
 double median(std::vector<double> v) {
@@ -194,7 +202,7 @@ std::vector<TableBlock> group_results(std::vector<RunResult> results) {
   const auto key = [](const RunResult& r) {
     return std::make_tuple(table_rank(r.table), r.table, r.shuffled,
                            r.table == "IV" ? std::string() : r.network, r.preset, r.dataset, r.dataset_hash,
-                           r.rows, r.seed);
+                           r.rows, r.noise, r.seed);
   };
   std::ranges::stable_sort(results, [&](const RunResult& a, const RunResult& b) {
     return std::tuple_cat(key(a), std::make_tuple(network_rank(a.network), a.generator)) <
@@ -204,8 +212,15 @@ std::vector<TableBlock> group_results(std::vector<RunResult> results) {
   for (std::size_t i = 0; i < results.size(); ++i) {
     const auto& r = results[i];
     if (i == 0 || key(r) != key(results[i - 1]))
-      blocks.push_back(
-          {r.table, r.table == "IV" ? "" : r.network, r.preset, r.dataset, r.rows, r.seed, r.shuffled, {}});
+      blocks.push_back({r.table,
+                        r.table == "IV" ? "" : r.network,
+                        r.preset,
+                        r.dataset,
+                        r.rows,
+                        r.seed,
+                        r.noise,
+                        r.shuffled,
+                        {}});
     blocks.back().runs.push_back(r);
   }
   return blocks;
@@ -226,26 +241,28 @@ Table score_table(const TableBlock& block) {
 
 Table parameter_table(const TableBlock& block) {
   Table table{
-      "Mean squared error of each parameter relative to its variance over the test rows: 0 is exact, 1 is as "
-      "good as a constant guess.",
-      {"parameter", "unit", "median of runs", "worst", "worst run"},
+      "Mean squared error of each parameter, raw [unit²] and relative to its variance over the test rows: 0 is "
+      "exact, 1 is as good as a constant guess.",
+      {"parameter", "unit", "MSE, mean of runs", "relative, median of runs", "worst", "worst run"},
       {}};
   if (block.runs.empty()) return table;
   for (const auto& p : block.runs.front().parameters) {
     std::vector<double> values;
-    double worst = -1;
+    double worst = -1, mse = 0;
     std::string worst_run = "–";
     for (const auto& run : block.runs)
       for (const auto& q : run.parameters)
-        if (q.name == p.name && q.relative) {
+        if (q.name == p.name) {
+          mse += q.mse / static_cast<double>(block.runs.size());
+          if (!q.relative) continue;
           values.push_back(*q.relative);
           if (*q.relative > worst)
             worst = *q.relative, worst_run = RowKey{run.network, run.generator}.label();
         }
     if (values.empty())
-      table.rows.push_back({p.name, p.unit, "constant", "constant", "–"});
+      table.rows.push_back({p.name, p.unit, figure(mse), "constant", "constant", "–"});
     else
-      table.rows.push_back({p.name, p.unit, Cell(figure(median(values)), shade(median(values))),
+      table.rows.push_back({p.name, p.unit, figure(mse), Cell(figure(median(values)), shade(median(values))),
                             Cell(figure(worst), shade(worst)), worst_run});
   }
   return table;
@@ -265,13 +282,42 @@ Bars ratio_bars(const TableBlock& block) {
   return bars;
 }
 
+namespace {
+/// Whether two blocks are of the same table, preset and dataset.
+bool same_task(const TableBlock& a, const TableBlock& b) {
+  return a.table == b.table && a.preset == b.preset && a.dataset == b.dataset && a.rows == b.rows &&
+         a.shuffled == b.shuffled;
+}
+
+/// Before the first block of a task: its methods against levels of noise.
+void add_noise_table(const std::vector<TableBlock>& blocks, std::size_t first, TablesReport& report,
+                     Page& page) {
+  const TableBlock& block = blocks[first];
+  std::vector<RunResult> runs;
+  for (const auto& other : blocks)
+    if (same_task(block, other)) runs.insert(runs.end(), other.runs.begin(), other.runs.end());
+  if (!has_noise_table(runs)) return;
+  const std::string title = fmt::format("Table {}, {}: methods and noise", block.table, block.preset);
+  const Table table = noise_table(runs);
+  report.markdown += fmt::format("## {}\n\n{}\n", title, markdown(table));
+  page.section(title);
+  page.table(table);
+  std::string stem = fmt::format("table-{}-{}-rows{}-noise", block.table, block.preset, block.rows);
+  report.csv.emplace_back(safe(stem) + ".csv", csv(table));
+}
+}  // namespace
+
 TablesReport make_tables(const std::vector<RunResult>& results, const Provenance& sources) {
   TablesReport report;
   Page page("Calibration by learning: Tables IV, V and VI",
             "Mean squared error over the model's parameters on test events, in raw units, beside the thesis "
             "(Y. Wu, University of Vermont, 2020, chapter 4) and beside predicting the mean.");
   const auto blocks = group_results(results);
-  for (const auto& block : blocks) {
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const TableBlock& block = blocks[i];
+    const bool first = std::none_of(blocks.begin(), blocks.begin() + static_cast<std::ptrdiff_t>(i),
+                                    [&](const TableBlock& b) { return same_task(block, b); });
+    if (!block.shuffled && first) add_noise_table(blocks, i, report, page);
     const Table scores = score_table(block), parameters = parameter_table(block);
     Table plain = scores;
     plain.caption.clear();

@@ -9,10 +9,11 @@
 
 namespace swingbank::validate::report {
 
-/// The runs of one table made with one network, preset, dataset and seed.
+/// The runs of one table made with one network, preset, dataset, noise level and seed.
 struct TableBlock {
   std::string table, network, preset, dataset;
   std::int64_t rows = 0, seed = 0;
+  double noise = 0;
   bool shuffled = false;
   std::vector<RunResult> runs;  ///< in order of the generator
 };
@@ -21,7 +22,8 @@ std::vector<TableBlock> group_results(std::vector<RunResult> results);
 
 /// "Table V, cnn": one row per generator or, for Table IV, one; missing ones are named as such.
 Table score_table(const TableBlock& block);
-/// Error of each parameter relative to its variance over the test rows: median and worst over the runs.
+/// Error of each parameter, raw and relative to its variance over the test rows: over the runs the raw one's
+/// mean, the relative one's median and worst.
 Table parameter_table(const TableBlock& block);
 /// The ratio to predict-the-mean per run.
 Bars ratio_bars(const TableBlock& block);

@@ -186,6 +186,7 @@ std::string experiment_text(const std::string& title, const std::vector<std::str
       "[preset.retrain]\n"
       "draws = {}\n"
       "networks = [\"{}\"]\n"
+      "noise = [0.0]\n"
       "channels = [{}]\n"
       "start_s = {}\n"
       "end_s = {}\n"

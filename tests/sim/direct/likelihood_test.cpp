@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sim/core/noise.hpp"
+#include "sim/library/library.hpp"
 #include "tests/sim/direct/recorded.hpp"
 
 namespace swingbank::sim::direct {
@@ -65,6 +66,25 @@ TEST(Likelihood, ReachesTheBoundOfClassicalMachines) {
     EXPECT_NEAR(j.chi_square, 1, 0.03) << level;
     EXPECT_LT(j.ratio, 1.9) << level;
   }
+}
+
+// Round-rotor machines: thirteen unknowns each, of which the stronger ones pull at one another.
+TEST(Likelihood, ReachesTheBoundOfRoundRotorMachines) {
+  const std::vector<FreeParameter> free = {
+      uniform_parameter(0, 2, 10),     uniform_parameter(1, 0.05, 0.2),   uniform_parameter(2, 0.5, 1.2),
+      uniform_parameter(3, 0.08, 0.2), uniform_parameter(4, 1, 10),       uniform_parameter(5, 0, 3),
+      uniform_parameter(6, 0.8, 2.5),  uniform_parameter(7, 0.8, 2.4),    uniform_parameter(8, 0.32, 0.6),
+      uniform_parameter(9, 0.45, 0.8), uniform_parameter(11, 0.05, 0.24), uniform_parameter(12, 0.01, 0.3),
+      uniform_parameter(13, 0.1, 1)};
+  const Judged j = judge("ieee39_dataset_genrou", free, 0.001);
+  EXPECT_NEAR(j.chi_square, 1, 0.03);
+  EXPECT_LT(j.ratio, 1.6);
+}
+
+TEST(Likelihood, NamesMachinesThatItCannotPlay) {
+  EXPECT_TRUE(has_likelihood(*library::compiled().find("GENROU")));
+  EXPECT_TRUE(has_likelihood(*library::compiled().find("GENCLS")));
+  EXPECT_FALSE(has_likelihood(*library::compiled().find("GENTPJ")));
 }
 
 }  // namespace

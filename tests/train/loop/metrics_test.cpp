@@ -66,7 +66,7 @@ TEST(Experiment, WithoutATableOfTheThesisBearsTheFilesName) {
                                          "[preset.quick]\n"
                                          "draws = 60\n"
                                          "networks = [\"cnn\"]\n"
-                                         "noise = [0.0]\n"
+                                         "noise = [0.0, 0.005]\n"
                                          "channels = [\"P\"]\n"
                                          "start_s = 2.0\n"
                                          "end_s = 6.0\n"
@@ -82,6 +82,7 @@ TEST(Experiment, WithoutATableOfTheThesisBearsTheFilesName) {
   const Experiment e = read_experiment(folder / "mine.toml");
   EXPECT_EQ(e.table, "mine");
   EXPECT_EQ(e.print("quick", "table"), "mine");
+  EXPECT_EQ(e.print("quick", "noise"), "0\n0.005");
   std::filesystem::remove_all(folder);
 }
 

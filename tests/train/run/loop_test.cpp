@@ -162,6 +162,22 @@ TEST(Training, LearnsAndShuffledLabelsTeachNothing) {
   EXPECT_LT(shuffled["ratio"], 1.25);
 }
 
+TEST(Training, NoiseStandsInTheNameTheResultAndTheFeatures) {
+  const World world("noisy");
+  const data::ShardStream noisy(world.dataset, test::whole_record(World::plan(300, 16)),
+                                {.noise = {0.001, 1}});
+  RunRequest r = request(world, "cnn", 1);
+  EXPECT_EQ(run_name(r).find("noise"), std::string::npos);
+  r.noise = 0.001;
+  r.test_rows = 15;
+  EXPECT_NE(run_name(r).find("-noise0.001-"), std::string::npos);
+  ASSERT_EQ(run(noisy, r), RunOutcome::done);
+  const json result = result_of(r);
+  EXPECT_EQ(result["noise"], 0.001);
+  EXPECT_EQ(result["run"]["noise"], 0.001);
+  EXPECT_EQ(result["test_rows"], 15);
+}
+
 TEST(Training, ASecondProcessAtTheSameRunIsRefused) {
   const World world("second");
   RunRequest r = request(world, "cnn", 1);

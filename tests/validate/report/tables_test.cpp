@@ -29,6 +29,7 @@ json result(const std::string& table, const std::string& network, int generator,
           {"network", network},
           {"preset", "quick"},
           {"seed", 1},
+          {"noise", 0.0},
           {"generator", generator > 0 ? json(generator) : json(nullptr)},
           {"dataset", {{"name", "d"}, {"hash", "aa"}, {"config_hash", "bb"}, {"rows", 6000}}},
           {"train_rows", 4000},
@@ -68,6 +69,31 @@ std::vector<std::string> row(const Table& table, const std::string& label) {
     if (r.front().text == label)
       for (const auto& c : r) cells.push_back(c.text);
   return cells;
+}
+
+TEST_F(TablesTest, MethodsStandAgainstLevelsOfNoise) {
+  const auto noisy = [&](const std::string& network, double noise, double ratio, int seed = 1) {
+    json r = result("V", network, 30, ratio);
+    r["noise"] = noise;
+    r["seed"] = seed;
+    write(network + std::to_string(noise) + std::to_string(seed), r);
+  };
+  noisy("floor", 0.001, 0.1);
+  noisy("refined", 0, 0.01);
+  noisy("refined", 0.001, 0.2);
+  noisy("cnn", 0.001, 0.5, 1);
+  noisy("cnn", 0.001, 0.7, 2);
+  const auto report = make_tables(read(), {});
+  EXPECT_THAT(report.markdown,
+              AllOf(HasSubstr("methods and noise"), HasSubstr("| method | no noise | noise 0.1 % |"),
+                    HasSubstr("2 × floor"), HasSubstr("one seed"), HasSubstr("over 2 seeds"),
+                    HasSubstr(", REFINED, noise 0.1 %")));
+  const auto last = report.markdown.find("| floor |");
+  ASSERT_NE(last, std::string::npos);
+  EXPECT_LT(report.markdown.find("| refined |"), last);
+  EXPECT_EQ(group_results(read()).size(), 5u);
+  EXPECT_THAT(report.csv, Contains(testing::Field(&std::pair<std::string, std::string>::first,
+                                                  "table-V-quick-rows6000-noise.csv")));
 }
 
 TEST(ThesisTablesTest, AgreesWithWhatTheThesisSaysOfItself) {
@@ -150,8 +176,8 @@ TEST_F(TablesTest, ParametersShowMedianAndWorst) {
   write("b", result("V", "cnn", 31, 0.2));
   write("c", result("V", "cnn", 32, 0.6));
   const Table table = parameter_table(group_results(read())[0]);
-  EXPECT_THAT(row(table, "H"), ElementsAre("H", "s", "0.2", "0.6", "#32"));
-  EXPECT_THAT(row(table, "Xdpp"), ElementsAre("Xdpp", "pu", "constant", "constant", "–"));
+  EXPECT_THAT(row(table, "H"), ElementsAre("H", "s", "2.02", "0.2", "0.6", "#32"));
+  EXPECT_THAT(row(table, "Xdpp"), ElementsAre("Xdpp", "pu", "0", "constant", "constant", "–"));
 }
 TEST_F(TablesTest, FaultsOfResultsAreToldTogether) {
   auto broken = result("V", "cnn", 30, 0.1);
