@@ -1,0 +1,55 @@
+// What an experiment says of rows that only train, and of the runs of a preset.
+#include "train/loop/experiment.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "base/problem.hpp"
+
+namespace swingbank::train::loop {
+namespace {
+
+/// An experiment with further lines at its top, in its preset and behind it.
+Experiment experiment(const std::string& top, const std::string& in_preset, const std::string& behind) {
+  const std::filesystem::path folder = testing::TempDir();
+  for (const char* name : {"data.toml", "more.toml"}) std::ofstream(folder / name) << "\n";
+  const auto file = folder / "experiment.toml";
+  std::ofstream(file)
+      << "title = \"t\"\ndataset = \"data.toml\"\nsplit = \"leave-one-generator-out\"\nfolds = [30, 31]\n"
+      << top << "\n[preset.quick]\ndraws = 10\nchannels = [\"P\"]\nstart_s = 0\nend_s = 1\n"
+      << "slice = 1\nform = \"absolute\"\npca_components = 0\nepochs = 1\nbatch = 1\n"
+      << "learning_rate = 1e-3\nschedule = \"constant\"\npatience = 1\nvalidation_share = 0.1\n"
+      << "networks = [\"gru\", \"mlp\", \"floor\"]\nnoise = [0.0, 0.001]\n"
+      << in_preset << "\n"
+      << behind;
+  return read_experiment(file);
+}
+
+TEST(Experiment, RowsThatOnlyTrainAreOfTheNetworksThatSaySo) {
+  const Experiment e = experiment("training_dataset = \"more.toml\"", "training_draws = 5",
+                                  "[preset.quick.mlp]\ntraining_rows = true\n");
+  EXPECT_EQ(e.print("quick", "training_rows"), "mlp");
+  EXPECT_EQ(e.print("quick", "training_draws"), "5");
+  EXPECT_FALSE(e.training("quick", "gru").training_rows);
+  EXPECT_EQ(experiment("", "", "").print("quick", "training_rows"), "none");
+}
+
+TEST(Experiment, RowsThatOnlyTrainNeedADatasetAndEvents) {
+  const std::string wanted = "[preset.quick.mlp]\ntraining_rows = true\n";
+  EXPECT_THROW(experiment("", "", wanted), InputError);
+  EXPECT_THROW(experiment("training_dataset = \"more.toml\"", "training_draws = 0", wanted), InputError);
+}
+
+TEST(Experiment, TasksAreNetworkNoiseAndFoldAndAFloorNeedsNoise) {
+  const Experiment e = experiment("", "", "[preset.quick.gru]\nnoise = [0.0]\ntest_rows = 7\n");
+  EXPECT_EQ(
+      e.print("quick", "tasks"),
+      "gru 0 30\ngru 0 31\nmlp 0 30\nmlp 0 31\nmlp 0.001 30\nmlp 0.001 31\nfloor 0.001 30\nfloor 0.001 31");
+  EXPECT_EQ(e.judging("quick", "gru").test_rows, 7u);
+  EXPECT_EQ(e.judging("quick", "mlp").test_rows, 0u);
+}
+
+}  // namespace
+}  // namespace swingbank::train::loop
