@@ -24,7 +24,7 @@ out=$source_folder/out/nightly date=$(date +%F) preset='' seed='' seeds=1 hours=
 tries=3 pause=${SWINGBANK_NIGHTLY_PAUSE:-60} # [s] between tries
 table_share=0.75                             # of the hours
 blind_share=0.6                              # of what the tables leave
-blind_case=60                                # [s] of two cores; docs/blind-test.md
+blind_case=80                                # [s] of two cores; docs/blind-test.md
 fuzz_build=300 fuzz_least=10                 # [s]; docs/performance.md
 while (($#)); do
   case $1 in
