@@ -10,6 +10,7 @@
 #include "sim/core/noise.hpp"
 #include "sim/direct/detail/innovations.hpp"
 #include "sim/direct/detail/search.hpp"
+#include "sim/direct/integral.hpp"
 
 namespace swingbank::sim::direct {
 namespace {
@@ -167,7 +168,9 @@ bool has_likelihood(const Effect& machine) {
 
 MostProbable most_probable(const Effect& machine, const Recording& record, std::vector<double> start,
                            std::span<const FreeParameter> free, const LikelihoodOptions& options) {
-  return search(machine, noisy_record(record, options.longest), start, free, options);
+  const NoisyRecord noisy = noisy_record(record, options.longest);
+  if (noisy.samples() < kShortestStretch) return {start, 0, std::numeric_limits<double>::infinity(), 0};
+  return search(machine, noisy, start, free, options);
 }
 
 MostProbable most_probable_of(const Effect& machine, const Recording& record,
@@ -180,6 +183,7 @@ MostProbable most_probable_of(const Effect& machine, const Recording& record,
   constexpr int kAgree = 2;
   const NoisyRecord noisy = noisy_record(record, options.longest);
   MostProbable best{candidates.front(), 0, std::numeric_limits<double>::infinity(), 0};
+  if (noisy.samples() < kShortestStretch) return best;
   int agree = 0;
   const auto take = [&](const std::vector<double>& start) {
     const MostProbable m = search(machine, noisy, start, free, options);
@@ -200,6 +204,11 @@ std::vector<double> error_bound(const Effect& machine, const Recording& record,
                                 const std::vector<double>& truth, std::span<const FreeParameter> free,
                                 const LikelihoodOptions& options) {
   const NoisyRecord noisy = noisy_record(record, options.longest);
+  if (noisy.samples() < kShortestStretch) {  // the prior alone
+    std::vector<double> variances;
+    for (const auto& f : free) variances.push_back(f.deviation * f.deviation);
+    return variances;
+  }
   Posterior posterior(machine, noisy, truth, free);
   const VectorXd z = posterior.start();
   posterior.linearise(z);

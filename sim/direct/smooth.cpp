@@ -51,7 +51,8 @@ Recording smoothed(Recording record) {
     if (x->empty()) continue;
     Eigen::Map<VectorXd> all(x->data(), static_cast<Index>(x->size()));
     const auto before = static_cast<Index>(edges[0]);
-    if (before > 0) all.head(before).setConstant(all.head(before).mean());
+    // The last of them may be a sample at the very instant of the event, which shows either side.
+    if (before > 1) all.head(before).setConstant(all.head(before - 1).mean());
     for (std::size_t k = 0; k + 1 < edges.size(); ++k)
       if (edges[k + 1] > edges[k])
         smooth(all.segment(static_cast<Index>(edges[k]), static_cast<Index>(edges[k + 1] - edges[k])),
