@@ -6,6 +6,8 @@
 // the plan says so.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "base/problem.hpp"
@@ -76,6 +78,9 @@ void run(const Options& o) {
   if (!o.out.empty() && (o.hours <= 0 || o.name.empty()))
     throw InputError({"no size", "--out", "the experiments are written for some hours and under a name",
                       "give --hours and --name"});
+  if (!std::ranges::all_of(o.name, [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_'; }))
+    throw InputError({fmt::format("no preset can be called '{}'", o.name), "--name",
+                      "it becomes a key of a file", "use letters, digits, - and _"});
   Plan plan;
   plan.rates = read_rates(o.rates);
   plan.seeds = o.seeds;

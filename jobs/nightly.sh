@@ -112,7 +112,7 @@ settle() {
   rm -rf "$night/experiments"
   mkdir -p "$night/experiments"
   if [[ -z $preset ]]; then
-    name=nightly-${hours}h
+    name=nightly-${hours/./_}h # a dot would divide a key
     table_hours=$(awk "BEGIN {print $hours * $table_share}")
     "$swingbank" night-plan "${experiments[@]}" --preset nightly --hours "$table_hours" --cores "$(nproc)" --seeds "$seeds" \
       --rates "$source_folder/jobs/rates.toml" --name "$name" --out "$night/experiments" >"$night/plan.md" || return 1
@@ -200,6 +200,7 @@ stopped() {
   exit "$1"
 }
 
+touch "$night/parts.tsv"
 exec > >(exec tee -a "$night/log.txt" 9>&-) 2>&1
 build_all() { bash "$source_folder/jobs/setup.sh" 9>&-; }
 if [[ -z ${SWINGBANK_BUILD:-} ]]; then part build build_all || stopped $?; fi

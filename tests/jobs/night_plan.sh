@@ -31,5 +31,6 @@ grep -v '^\[network.gru\]' "$SWINGBANK_SOURCE/jobs/rates.toml" | sed 's/^\[netwo
 RATES=$work/rates.toml refuses "no rate" "no rate of 'gru'" plan
 sed -i 's/^epochs = \(.*\)/"epochs" = \1/' "$work/tiny.toml"
 refuses "sizes in another way" 'not understood' plan --hours 1 --name night --out "$work/made"
+refuses "a name with a dot" "night.5" plan --hours 1 --name night.5 --out "$work/made"
 refuses "no name" '--name' plan --hours 1 --out "$work/made"
 echo "ok: plan, seeds, larger, least, refusals"

@@ -40,7 +40,7 @@ short() {
 short 0.01 &
 running=$!
 for ((i = 0; i < 600; ++i)); do
-  grep -q 'short, nightly-0.01h: gru' "$work/short.log" 2>/dev/null && break
+  grep -q 'short, nightly-0_01h: gru' "$work/short.log" 2>/dev/null && break
   sleep 0.1
 done
 kill -TERM "$(pgrep -P "$running" -f jobs/nightly.sh || echo "$running")"
