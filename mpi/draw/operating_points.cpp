@@ -19,7 +19,7 @@ namespace network = sim::network;
 /// number of keys each block has: part of the datasets, never change it.
 constexpr std::uint64_t kMostDraws = 100;
 /// Voltages at which no grid is run for long [pu]: beyond, a power flow is one of the equations alone.
-constexpr double kLowestVoltage = 0.85, kHighestVoltage = 1.15;
+constexpr double kLowestPlausible = 0.85, kHighestVoltage = 1.15;
 constexpr int kLineTries = 1000;  ///< picks until a line is found that may be missing
 
 void draw_loads(const OperatingPointConfig& c, double common, Random& random, network::Network& n) {
@@ -78,7 +78,7 @@ bool plausible(const sim::grid::Grid& grid, const sim::grid::Grid& own) {
   for (std::size_t i = 0; i < grid.network.buses.size(); ++i) {
     const double v = std::abs(grid.flow.voltage[i]);
     const bool live = grid.network.buses[i].type != network::BusType::isolated;
-    if (live && !(v >= kLowestVoltage && v <= kHighestVoltage)) return false;
+    if (live && !(v >= kLowestPlausible && v <= kHighestVoltage)) return false;
   }
   for (std::size_t i = 0; i < grid.plants.size(); ++i) {
     const auto& plant = grid.plants[i];

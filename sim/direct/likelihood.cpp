@@ -10,6 +10,7 @@
 #include "sim/core/noise.hpp"
 #include "sim/direct/detail/innovations.hpp"
 #include "sim/direct/detail/search.hpp"
+#include "sim/direct/integral.hpp"
 
 namespace swingbank::sim::direct {
 namespace {
@@ -108,7 +109,7 @@ class Posterior : public ceres::CostFunction {
 /// The search within one linearisation. Returns the cost before it.
 double improve(Posterior& posterior, VectorXd& z, std::span<const FreeParameter> free,
                const LikelihoodOptions& options, MostProbable& found) {
-  constexpr double kSettled = 1e-6;  // of the cost, a sum of squares of thousands
+  constexpr double kLikelihoodSettled = 1e-6;  // of the cost, a sum of squares of thousands
   ceres::Problem::Options borrowed;
   borrowed.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(borrowed);
@@ -118,7 +119,7 @@ double improve(Posterior& posterior, VectorXd& z, std::span<const FreeParameter>
     problem.SetParameterUpperBound(z.data(), static_cast<int>(k), free[k].high / free[k].deviation);
   }
   ceres::Solver::Summary summary;
-  ceres::Solve(search_options(options.iterations, kSettled), &problem, &summary);
+  ceres::Solve(search_options(options.iterations, kLikelihoodSettled), &problem, &summary);
   if (!summary.IsSolutionUsable()) return std::numeric_limits<double>::infinity();
   found.iterations += static_cast<int>(summary.iterations.size()) - 1;
   return 2 * summary.initial_cost;
@@ -126,7 +127,7 @@ double improve(Posterior& posterior, VectorXd& z, std::span<const FreeParameter>
 
 MostProbable search(const Effect& machine, const NoisyRecord& record, const std::vector<double>& start,
                     std::span<const FreeParameter> free, const LikelihoodOptions& options) {
-  constexpr double kSame = 0.02;                   // of the cost between two linearisations
+  constexpr double kSameAnswer = 0.02;             // of the cost between two linearisations
   constexpr double kLost = 1.15, kCreeps = 0.005;  // chi-square and share of the cost: in a corner of the box
   Posterior posterior(machine, record, start, free);
   VectorXd z = posterior.start();
@@ -142,7 +143,7 @@ MostProbable search(const Effect& machine, const NoisyRecord& record, const std:
       found.chi_square = cost / freedom;
     }
     const bool lost = found.chi_square > kLost && before - cost < kCreeps * cost;
-    if (!std::isfinite(cost) || before - cost < kSame || lost) break;
+    if (!std::isfinite(cost) || before - cost < kSameAnswer || lost) break;
   }
   return found;
 }
@@ -162,24 +163,27 @@ FreeParameter uniform_parameter(int index, double low, double high) {
 }
 
 bool has_likelihood(const Effect& machine) {
-  return machine.states.size() <= kMostStates && !machine.get<double>().machine.current;
+  return machine.states.size() <= kMostFlowing && !machine.get<double>().machine.current;
 }
 
 MostProbable most_probable(const Effect& machine, const Recording& record, std::vector<double> start,
                            std::span<const FreeParameter> free, const LikelihoodOptions& options) {
-  return search(machine, noisy_record(record, options.longest), start, free, options);
+  const NoisyRecord noisy = noisy_record(record, options.longest);
+  if (noisy.samples() < kShortestStretch) return {start, 0, std::numeric_limits<double>::infinity(), 0};
+  return search(machine, noisy, start, free, options);
 }
 
 MostProbable most_probable_of(const Effect& machine, const Recording& record,
                               std::span<const std::vector<double>> candidates,
                               std::span<const FreeParameter> free, const LikelihoodOptions& options) {
-  constexpr std::uint32_t kDraws = 12;
+  constexpr std::uint32_t kStartsDrawn = 12;
   // Chi-square cannot tell a wrong answer: of thousands of samples it scatters by a hundred, and a wrong one
   // may cost ten more than the right one. So two starts have to agree.
   constexpr double kSameAnswer = 1;
   constexpr int kAgree = 2;
   const NoisyRecord noisy = noisy_record(record, options.longest);
   MostProbable best{candidates.front(), 0, std::numeric_limits<double>::infinity(), 0};
+  if (noisy.samples() < kShortestStretch) return best;
   int agree = 0;
   const auto take = [&](const std::vector<double>& start) {
     const MostProbable m = search(machine, noisy, start, free, options);
@@ -192,7 +196,7 @@ MostProbable most_probable_of(const Effect& machine, const Recording& record,
   for (const auto& start : candidates)
     if (agree < kAgree) take(start);
   if (agree < kAgree) take(middle);
-  for (std::uint32_t k = 0; k < kDraws && agree < kAgree; ++k) take(drawn(middle, k, free));
+  for (std::uint32_t k = 0; k < kStartsDrawn && agree < kAgree; ++k) take(drawn(middle, k, free));
   return best;
 }
 
@@ -200,6 +204,11 @@ std::vector<double> error_bound(const Effect& machine, const Recording& record,
                                 const std::vector<double>& truth, std::span<const FreeParameter> free,
                                 const LikelihoodOptions& options) {
   const NoisyRecord noisy = noisy_record(record, options.longest);
+  if (noisy.samples() < kShortestStretch) {  // the prior alone
+    std::vector<double> variances;
+    for (const auto& f : free) variances.push_back(f.deviation * f.deviation);
+    return variances;
+  }
   Posterior posterior(machine, noisy, truth, free);
   const VectorXd z = posterior.start();
   posterior.linearise(z);

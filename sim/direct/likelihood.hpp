@@ -32,7 +32,8 @@ struct LikelihoodOptions {
 /// Whether the machine has no more states than this room's duals hold, and lies behind a constant impedance.
 bool has_likelihood(const Effect& machine);
 
-/// From one start. The record says its noise and should say when the event begins.
+/// From one start. The record says its noise and should say when the event begins. A stretch of less than
+/// kShortestStretch samples behind it says nothing: the start comes back.
 MostProbable most_probable(const Effect& machine, const Recording& record, std::vector<double> start,
                            std::span<const FreeParameter> free, const LikelihoodOptions& options = {});
 /// The best from several: the candidates, the prior's mean, then draws, until chi-square says that one is

@@ -37,8 +37,8 @@ void smooth(Eigen::Ref<VectorXd> x, Index window) {
 }  // namespace
 
 Recording smoothed(Recording record) {
-  constexpr double kWindow = 0.2;  // [s]
-  const auto window = std::max<Index>(3, std::lround(kWindow / record.step));
+  constexpr double kSmoothing = 0.2;  // [s]
+  const auto window = std::max<Index>(3, std::lround(kSmoothing / record.step));
   const double limit = leap_limit(record);
   const std::size_t steady = record.event > 0
                                  ? static_cast<std::size_t>(record.event / record.step + 1e-6) + 1
@@ -51,7 +51,8 @@ Recording smoothed(Recording record) {
     if (x->empty()) continue;
     Eigen::Map<VectorXd> all(x->data(), static_cast<Index>(x->size()));
     const auto before = static_cast<Index>(edges[0]);
-    if (before > 0) all.head(before).setConstant(all.head(before).mean());
+    // The last of them may be a sample at the very instant of the event, which shows either side.
+    if (before > 1) all.head(before).setConstant(all.head(before - 1).mean());
     for (std::size_t k = 0; k + 1 < edges.size(); ++k)
       if (edges[k + 1] > edges[k])
         smooth(all.segment(static_cast<Index>(edges[k]), static_cast<Index>(edges[k + 1] - edges[k])),

@@ -7,7 +7,7 @@ export OMP_NUM_THREADS=1
 TINY_DRAWS=60 tiny_experiment "$work"
 sed -i 's/^networks = .*/networks = ["closed-form", "gru"]/' "$work/tiny.toml"
 judge() {
-  "$swingbank" cross-validate "$1" --experiment "$work/tiny.toml" --network closed-form --fold 30 --out "$work/out" "${@:2}" >"$work/log" 2>&1
+  "$swingbank" cross-validate "$1" --experiment "$work/tiny.toml" --network "${network:-closed-form}" --fold 30 --out "$work/out" "${@:2}" >"$work/log" 2>&1
 }
 
 "$swingbank" generate "$work/tiny_data.toml" --progress none --out "$work/blind" >"$work/log" 2>&1 || fail "$(cat "$work/log")"
@@ -32,5 +32,20 @@ assert r["baseline_mse"] > 0.5 and r["epochs"] == 0 and r["input"] is None and r
 PYTHON
 if judge "$work/data" --shuffle-labels; then fail "a control run of what is not trained was made"; fi
 grep -q -- '--shuffle-labels' "$work/log" || fail "$(cat "$work/log")"
+
+# With noise: refined is no further off than a few times the floor, and the floor is refused without noise.
+sed -i 's/^networks = .*/networks = ["closed-form", "refined", "floor"]/' "$work/tiny.toml"
+for network in floor refined closed-form; do
+  judge "$work/data" --noise 0.001 || fail "$(cat "$work/log")"
+done
+unset network
+/usr/bin/python3 - "$work/out" <<'PYTHON'
+import json, sys
+mse = {m: json.load(open(f"{sys.argv[1]}/V-{m}-quick-noise0.001-seed1-gen30.json"))["mse"] for m in ("floor", "refined", "closed-form")}
+assert 0 < mse["floor"] and mse["refined"] < 3 * mse["floor"], mse
+assert mse["refined"] < mse["closed-form"], mse
+PYTHON
+if network=floor judge "$work/data"; then fail "a floor without noise was made"; fi
+grep -q 'a floor without noise at --network floor' "$work/log" || fail "$(cat "$work/log")"
 "$swingbank" tables "$work/out" --out "$work/tables" >"$work/log" 2>&1 || fail "$(cat "$work/log")"
 grep -q 'not trained' "$work"/tables/*.md || fail "the table does not say that nothing was trained"

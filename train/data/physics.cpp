@@ -8,7 +8,7 @@
 namespace swingbank::train::data {
 namespace {
 
-constexpr float kLowestVoltage = 1e-3f;  ///< at a bolted fault the terminal may have none [pu]
+constexpr float kBoltedVoltage = 1e-3f;  ///< at a bolted fault the terminal may have none [pu]
 
 /// Signals of one row at the record's rate, made and averaged one at a time.
 class Signal {
@@ -72,13 +72,15 @@ Physics::Physics(const std::vector<std::string>& names, const PhysicsWindow& win
       problems.add(std::string("no channel ") + name, "channels", "currents follow from P, Q and V",
                    "record it, or choose another form");
   problems.raise();
-  constexpr double kFine = 1.0, kMiddle = 5.0;          // end of the two finer spans, behind the event [s]
-  constexpr double kMiddleRate = 30, kCoarseRate = 15;  // cells [1/s]
+  constexpr double kFineUntil = 1.0, kMiddleUntil = 5.0;  // end of the two finer spans, behind the event [s]
+  constexpr double kMiddleRate = 30, kCoarseRate = 15;    // cells [1/s]
   const auto sample = [&](double t) { return static_cast<std::size_t>(std::lround(t * window.rate)); };
   const std::size_t end = sample(window.end_s);
   for (std::size_t at = sample(window.start_s); at < end;) {
     const double behind = static_cast<double>(at) / window.rate - window.event_s;
-    const double cells = behind < kFine ? window.rate : behind < kMiddle ? kMiddleRate : kCoarseRate;
+    const double cells = behind < kFineUntil     ? window.rate
+                         : behind < kMiddleUntil ? kMiddleRate
+                                                 : kCoarseRate;
     const auto count = std::max<std::size_t>(1, sample(1.0 / cells));
     if (at + count > end) break;
     cells_.push_back({at, count});
@@ -93,7 +95,7 @@ std::size_t Physics::channels() const {
 void Physics::apply(const float* record, std::size_t stride, float* out) const {
   const auto channel = [&](int c) { return record + static_cast<std::size_t>(c) * stride; };
   const float *P = channel(P_), *Q = channel(Q_), *V = channel(V_);
-  const auto voltage = [&](std::size_t k) { return std::max(V[k], kLowestVoltage); };
+  const auto voltage = [&](std::size_t k) { return std::max(V[k], kBoltedVoltage); };
   const double x = window_.reactance, step = 1.0 / window_.rate;
   float* levels = out + channels() * cells();
   Signal s(std::max(samples(), steady_));

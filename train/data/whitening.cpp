@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Index;
 constexpr std::size_t kRowsToFit = 20000;  ///< thirty times the directions that are fitted
-constexpr float kSmallest = 1e-6f;         ///< size of a row that does not move [pu]
+constexpr float kStillRow = 1e-6f;         ///< size of a row that does not move [pu]
 constexpr double kRank = 1e-9;  ///< share of the largest variance below which a direction is rounding
 
 using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -55,7 +55,7 @@ Whitening Whitening::fit(const ShardStream& stream, std::span<const std::uint64_
 void Whitening::fit_bases(const Rows& series) {
   const auto n = static_cast<Index>(sizes_.samples), k = static_cast<Index>(sizes_.components);
   const Eigen::ArrayXf size =
-      (series.leftCols(n).rowwise().squaredNorm() / static_cast<float>(n)).cwiseSqrt().array() + kSmallest;
+      (series.leftCols(n).rowwise().squaredNorm() / static_cast<float>(n)).cwiseSqrt().array() + kStillRow;
   for (Index c = 0; c < static_cast<Index>(sizes_.channels); ++c) {
     const Rows own = (series.middleCols(c * n, n).array().colwise() / size).matrix();
     const Moments m = moments(own);
@@ -89,7 +89,7 @@ Rows Whitening::components(const float* series, std::size_t count) const {
              k = static_cast<Index>(sizes_.components), levels = static_cast<Index>(sizes_.levels);
   const Eigen::Map<const Rows> all(series, static_cast<Index>(count), channels * n + levels);
   const Eigen::ArrayXf size =
-      (all.leftCols(n).rowwise().squaredNorm() / static_cast<float>(n)).cwiseSqrt().array() + kSmallest;
+      (all.leftCols(n).rowwise().squaredNorm() / static_cast<float>(n)).cwiseSqrt().array() + kStillRow;
   Rows out(all.rows(), channels * k + levels + 1);
   Rows own(all.rows(), n);
   for (Index c = 0; c < channels; ++c) {

@@ -12,13 +12,13 @@
 namespace swingbank::train::networks {
 namespace {
 using at::Tensor;
-constexpr std::int64_t kWidth = 768;
-constexpr std::size_t kBlocks = 3;
+constexpr std::int64_t kTrunk = 768;
+constexpr std::size_t kTrunkBlocks = 3;
 
 struct Norm {
-  Tensor weight = at::ones({kWidth}, at::kFloat).requires_grad_(true),
-         bias = at::zeros({kWidth}, at::kFloat).requires_grad_(true);
-  [[nodiscard]] Tensor operator()(const Tensor& x) const { return at::layer_norm(x, {kWidth}, weight, bias); }
+  Tensor weight = at::ones({kTrunk}, at::kFloat).requires_grad_(true),
+         bias = at::zeros({kTrunk}, at::kFloat).requires_grad_(true);
+  [[nodiscard]] Tensor operator()(const Tensor& x) const { return at::layer_norm(x, {kTrunk}, weight, bias); }
 };
 
 void start_as_zero(const Dense& layer) {
@@ -29,13 +29,13 @@ void start_as_zero(const Dense& layer) {
 /// One of the trunk's steps.
 struct Block {
   Norm norm;
-  Dense first{kWidth, kWidth}, second{kWidth, kWidth};
+  Dense first{kTrunk, kTrunk}, second{kTrunk, kTrunk};
 };
 
 class Mlp final : public Network {
  public:
   explicit Mlp(const NetworkShape& s)
-      : input_(s.channels * s.samples, kWidth), output_(output_layer(kWidth, s.output_bias)) {
+      : input_(s.channels * s.samples, kTrunk), output_(output_layer(kTrunk, s.output_bias)) {
     for (const Block& b : blocks_) start_as_zero(b.second);
     start_as_zero(output_);
   }
@@ -57,7 +57,7 @@ class Mlp final : public Network {
 
  private:
   Dense input_;
-  std::array<Block, kBlocks> blocks_;
+  std::array<Block, kTrunkBlocks> blocks_;
   Norm norm_;
   Dense output_;
 };

@@ -7,7 +7,7 @@ namespace swingbank::sim::direct {
 namespace {
 
 template <class T>
-using States = std::array<T, kMostStates>;
+using States = std::array<T, kMostFlowing>;
 template <class T>
 using Voltage = std::array<T, kInputs>;
 
@@ -67,13 +67,13 @@ class Played {
   [[nodiscard]] Voltage<T> voltage(const Inputs& u) const {
     Voltage<T> v = {T(u[kV]), T(u[kTheta])};
     if constexpr (!std::is_same_v<T, double>)
-      if (noise_) v[kV].d[kMostStates] = v[kTheta].d[kMostStates + 1] = 1;
+      if (noise_) v[kV].d[kMostFlowing] = v[kTheta].d[kMostFlowing + 1] = 1;
     return v;
   }
 
  private:
   static void correct(States<T>& x, const Correction& by) {
-    for (std::size_t i = 0; i < kMostStates; ++i) x[i] = x[i] + T(by[i]);
+    for (std::size_t i = 0; i < kMostFlowing; ++i) x[i] = x[i] + T(by[i]);
   }
   static Inputs mean(const Inputs& u, const Inputs& v) {
     return {0.5 * (u[kV] + v[kV]), 0.5 * (u[kTheta] + v[kTheta])};
@@ -93,15 +93,15 @@ class Played {
 };
 
 using OutputMatrix = Eigen::Matrix<double, kOutputs, kOutputs>;
-using StateMatrix = Eigen::Matrix<double, kMostStates, kMostStates>;
-using FromInputs = Eigen::Matrix<double, kMostStates, kInputs>;
+using StateMatrix = Eigen::Matrix<double, kMostFlowing, kMostFlowing>;
+using FromInputs = Eigen::Matrix<double, kMostFlowing, kInputs>;
 
 /// A sample's equations about the filter's state: y = C x + D n + v, x' = F x + G n, with n the noise of the
 /// played-in voltage.
 struct Linear {
   StateMatrix F = StateMatrix::Zero();
   FromInputs G = FromInputs::Zero();
-  Eigen::Matrix<double, kOutputs, kMostStates> C;
+  Eigen::Matrix<double, kOutputs, kMostFlowing> C;
   Eigen::Matrix<double, kOutputs, kInputs> D;
   Eigen::Matrix<double, kOutputs, 1> y;
   Gain::State next = Gain::State::Zero();
@@ -142,8 +142,8 @@ class Linearised {
     for (int o = 0; o < kOutputs; ++o) {
       const auto& value = y[static_cast<std::size_t>(o)];
       l.y[o] = value.a;
-      for (std::size_t i = 0; i < kMostStates; ++i) l.C(o, static_cast<Eigen::Index>(i)) = value.d[i];
-      for (int i = 0; i < kInputs; ++i) l.D(o, i) = value.d[kMostStates + static_cast<std::size_t>(i)];
+      for (std::size_t i = 0; i < kMostFlowing; ++i) l.C(o, static_cast<Eigen::Index>(i)) = value.d[i];
+      for (int i = 0; i < kInputs; ++i) l.D(o, i) = value.d[kMostFlowing + static_cast<std::size_t>(i)];
     }
     if (k + 1 >= record_.samples()) return l;
     const auto slope = played_.slope();
@@ -163,8 +163,8 @@ class Linearised {
     for (std::size_t i = 0; i < states_; ++i) {
       const auto row = static_cast<Eigen::Index>(i);
       l.next[row] = x[i].a;
-      for (std::size_t j = 0; j < kMostStates; ++j) l.F(row, static_cast<Eigen::Index>(j)) = x[i].d[j];
-      for (int j = 0; j < kInputs; ++j) l.G(row, j) = x[i].d[kMostStates + static_cast<std::size_t>(j)];
+      for (std::size_t j = 0; j < kMostFlowing; ++j) l.F(row, static_cast<Eigen::Index>(j)) = x[i].d[j];
+      for (int j = 0; j < kInputs; ++j) l.G(row, j) = x[i].d[kMostFlowing + static_cast<std::size_t>(j)];
     }
   }
   /// Half of what a sample's noise does happens on the way to it, half on the way from it. With the state

@@ -16,9 +16,9 @@ enum Steady { kP0, kQ0, kV0, kTheta0, kSteady };
 
 /// Of one sample.
 struct Gain {
-  using State = Eigen::Matrix<double, kMostStates, 1>;
-  Eigen::Matrix<double, kMostStates, kOutputs> onto_states;  ///< of the step to the next sample
-  Eigen::Matrix<double, kOutputs, kOutputs> whitening;       ///< inverse Cholesky factor of the covariance
+  using State = Eigen::Matrix<double, kMostFlowing, 1>;
+  Eigen::Matrix<double, kMostFlowing, kOutputs> onto_states;  ///< of the step to the next sample
+  Eigen::Matrix<double, kOutputs, kOutputs> whitening;        ///< inverse Cholesky factor of the covariance
 };
 /// What the filter makes of a record with these parameters and this operating point.
 struct Filtered {

@@ -51,20 +51,23 @@ NoisyRecord noisy_record(const Recording& record, double longest) {
   const double instant =
       record.event > 0 ? record.event / record.step : static_cast<double>(before_first_leap(record)) - 0.5;
   const std::size_t size = record.V.size();
-  const auto last = std::min(static_cast<std::size_t>(instant + 1e-6), size - 1);  // still steady
-  n.first_step = (static_cast<double>(last + 1) - instant) * record.step;
-  const std::size_t count = last + 1;
+  // A sample at the very instant may show either side, so it counts on neither.
+  constexpr double kSameInstant = 1e-6;  // of a sample
+  const auto count = std::min(static_cast<std::size_t>(std::ceil(instant - kSameInstant)), size);
+  const auto first = std::min(static_cast<std::size_t>(instant + kSameInstant) + 1, size);
+  n.first_step = (static_cast<double>(first) - instant) * record.step;
   n.before = static_cast<double>(count);
   n.P0 = mean(record.P, count);
   n.Q0 = mean(record.Q, count);
   n.V0 = mean(record.V, count);
   if (!record.Ifd.empty()) n.Ifd0 = mean(record.Ifd, count);
   const double theta0 = mean(record.theta, count);
-  const std::size_t end = std::min(size, count + static_cast<std::size_t>(longest / record.step));
-  for (std::size_t k = count; k < end; ++k) {
+  const std::size_t end = std::min(size, first + static_cast<std::size_t>(longest / record.step));
+  for (std::size_t k = first; k < end; ++k) {
     n.in.push_back({record.V[k], record.theta[k] - theta0});
     n.out.push_back({record.P[k], record.Q[k], record.speed[k], record.Ifd.empty() ? 0.0 : record.Ifd[k]});
   }
+  if (n.samples() < kShortestStretch) return n;
   const double leap = leap_limit(record);
   n.behind.resize(n.in.size() - 1);
   for (std::size_t k = 0; k < n.behind.size(); ++k)

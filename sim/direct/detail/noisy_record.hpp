@@ -15,7 +15,7 @@ enum Output { kP, kQ, kSpeed, kIfd, kOutputs };
 /// What is played in and noisy as well.
 enum Input { kV, kTheta, kInputs };
 /// So that one dual holds the states and the input's noise.
-constexpr std::size_t kMostStates = kDirections - kInputs;
+constexpr std::size_t kMostFlowing = kDirections - kInputs;
 
 using Inputs = std::array<double, kInputs>;
 
@@ -27,7 +27,7 @@ struct Interval {
 };
 
 /// Where what is played in leaves a machine's state open: what the samples say of it [the states' units].
-using Correction = std::array<double, kMostStates>;
+using Correction = std::array<double, kMostFlowing>;
 
 struct NoisyRecord {
   Conventions conventions;

@@ -42,7 +42,8 @@ Judged judge(const std::string& system, std::span<const FreeParameter> free, dou
     const auto bound = error_bound(*machine.effect, clean, machine.p, free);
     std::vector<double> start = machine.p;
     for (const auto& f : free) start[static_cast<std::size_t>(f.index)] = f.mean;
-    const auto found = most_probable_of(*machine.effect, with_noise(clean, level, 7), {&start, 1}, free);
+    const auto found = most_probable_of(
+        *machine.effect, with_noise(clean, level, static_cast<std::uint64_t>(1 + count)), {&start, 1}, free);
     for (std::size_t k = 0; k < free.size(); ++k) {
       const auto i = static_cast<std::size_t>(free[k].index);
       EXPECT_LT(bound[k], 1.0001 * free[k].deviation * free[k].deviation)
