@@ -52,9 +52,9 @@ NoisyRecord noisy_record(const Recording& record, double longest) {
       record.event > 0 ? record.event / record.step : static_cast<double>(before_first_leap(record)) - 0.5;
   const std::size_t size = record.V.size();
   // A sample at the very instant may show either side, so it counts on neither.
-  constexpr double kSameInstant = 1e-6;  // of a sample
-  const auto count = std::min(static_cast<std::size_t>(std::ceil(instant - kSameInstant)), size);
-  const auto first = std::min(static_cast<std::size_t>(instant + kSameInstant) + 1, size);
+  constexpr double kWithinSample = 1e-6;  // of a sample
+  const auto count = std::min(static_cast<std::size_t>(std::ceil(instant - kWithinSample)), size);
+  const auto first = std::min(static_cast<std::size_t>(instant + kWithinSample) + 1, size);
   n.first_step = (static_cast<double>(first) - instant) * record.step;
   n.before = static_cast<double>(count);
   n.P0 = mean(record.P, count);
