@@ -6,7 +6,8 @@
 #     --sanitize      also the fast tier's unit tests under the address and undefined-behaviour sanitizers (their build
 #                     takes longer than all the rest: Eigen's sparse solvers are slow to compile with checks)
 #     --ci            as on the integration machine: warnings are errors, the scripts and the formatting are checked,
-#                     each fuzz target runs for 30 s, and the tests of the rooms that read files run under both sanitizers
+#                     each fuzz target runs for 10 s (in the nightly run for minutes), and the tests of the rooms that
+#                     read files run under both sanitizers
 # PSS/E's records are looked for in $SWINGBANK_REFERENCE, else in ../shared/reference beside the repository.
 set -euo pipefail
 
@@ -18,7 +19,7 @@ while (($#)); do
     --without-psse) with_psse=0 ;;
     --sanitize) sanitize=1 ;;
     --ci) ci=1 ;;
-    -h | --help) sed -n '2,10p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,11p' "$0"; exit 0 ;;
     *) echo "unknown option at '$1' (tests/run.sh does not have it): run tests/run.sh --help" >&2; exit 1 ;;
   esac
   shift
@@ -92,7 +93,7 @@ if ((ci)); then
 fi
 if ((ci)); then
   say "fuzz targets"
-  bash "$source_folder/tests/fuzz/run.bash" 30 || failed+=(fuzz)
+  bash "$source_folder/tests/fuzz/run.bash" 10 || failed+=(fuzz)
   say "readers' tests under the sanitizers"
   LSAN_OPTIONS=suppressions=$source_folder/tests/leaks.txt:print_suppressions=0 UBSAN_OPTIONS=print_stacktrace=1 \
     run_readers || failed+=(readers)
