@@ -26,8 +26,8 @@ struct TrainingRecipe {
   double clip = 0.0;           ///< longest gradient; 0: any
   double average = 0.0;        ///< share that the averaged weights keep a step; 0: the last weights count
   bool training_rows = false;  ///< the rows of the training dataset train too
-  std::string kind;            ///< file of train/networks; usually the name it has in the experiment
-  std::string corrects;        ///< method of train/direct whose estimates it reads and corrects; empty: none
+  std::string kind = {};       ///< file of train/networks; usually the name it has in the experiment
+  std::string corrects = {};   ///< method of train/direct whose estimates it reads and corrects; empty: none
 };
 
 /// What a network reads.
