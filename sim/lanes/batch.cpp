@@ -23,7 +23,9 @@ constexpr int widest() {
   return 4;
 #endif
 }
+}  // namespace
 
+namespace detail {
 struct Engine {
   virtual ~Engine() = default;
   virtual void run(const std::function<bool(Job&)>& next,
@@ -38,11 +40,11 @@ struct EngineOf final : Engine {
   }
   Lanes<T> lanes;
 };
-}  // namespace
+}  // namespace detail
 
 struct Batch::Impl {
   BatchOptions options;
-  std::unique_ptr<Engine> engine;
+  std::unique_ptr<detail::Engine> engine;
 };
 
 std::map<int, plant::Plant> changed_plants(const grid::Grid& grid, const Job& job) {
@@ -62,18 +64,18 @@ Batch::Batch(const grid::Grid& grid, BatchOptions options) : impl_(std::make_uni
     if (options.lanes != 8)
       throw InputError({fmt::format("{} lanes with sensitivities", options.lanes), "option lanes",
                         "sensitivities are built for 8", "choose 8, or 0"});
-    impl_->engine = std::make_unique<EngineOf<D8P8>>(grid, options);
+    impl_->engine = std::make_unique<detail::EngineOf<D8P8>>(grid, options);
     return;
   }
   switch (options.lanes) {
     case 1:
-      impl_->engine = std::make_unique<EngineOf<double>>(grid, options);
+      impl_->engine = std::make_unique<detail::EngineOf<double>>(grid, options);
       break;
     case 4:
-      impl_->engine = std::make_unique<EngineOf<P4>>(grid, options);
+      impl_->engine = std::make_unique<detail::EngineOf<P4>>(grid, options);
       break;
     case 8:
-      impl_->engine = std::make_unique<EngineOf<P8>>(grid, options);
+      impl_->engine = std::make_unique<detail::EngineOf<P8>>(grid, options);
       break;
     default:
       throw InputError({fmt::format("{} lanes", options.lanes), "option lanes",

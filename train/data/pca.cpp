@@ -11,7 +11,7 @@ namespace swingbank::train::data {
 namespace {
 
 /// First and second moments of the seconds of one channel, in double.
-struct Moments {
+struct SecondMoments {
   Eigen::VectorXd sum;
   Eigen::MatrixXd square;
   double count = 0.0;
@@ -33,10 +33,10 @@ void check_shape(double rate, std::size_t samples, std::size_t components) {
   problems.raise();
 }
 
-std::vector<Moments> moments(const ShardStream& stream, std::span<const std::uint64_t> rows,
-                             std::size_t per_second) {
+std::vector<SecondMoments> second_moments(const ShardStream& stream, std::span<const std::uint64_t> rows,
+                                          std::size_t per_second) {
   const std::size_t channels = stream.channels(), samples = stream.samples();
-  std::vector<Moments> all(channels);
+  std::vector<SecondMoments> all(channels);
   for (auto& m : all) {
     m.sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(per_second));
     m.square = Eigen::MatrixXd::Zero(m.sum.size(), m.sum.size());
@@ -70,7 +70,7 @@ Pca Pca::fit(const ShardStream& stream, std::span<const std::uint64_t> rows, std
   pca.components_ = components;
   pca.per_second_ = static_cast<std::size_t>(std::lround(stream.selection().rate));
   pca.seconds_ = stream.samples() / pca.per_second_;
-  for (const auto& m : moments(stream, rows, pca.per_second_)) {
+  for (const auto& m : second_moments(stream, rows, pca.per_second_)) {
     const Eigen::VectorXd mean = m.sum / m.count;
     const Eigen::MatrixXd covariance = m.square / m.count - mean * mean.transpose();
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);

@@ -15,8 +15,6 @@ namespace {
 
 using nlohmann::json;
 
-json finite(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
 /// By which criterion an effect earns its place here, beside what diagnose asks of one.
 std::string judged_by(const Addition& a) {
   const bool any_unseen = std::ranges::any_of(a.events, [](const auto& e) { return !e.score.seen; });
@@ -53,10 +51,10 @@ json parameter_json(const fit::FittedParameter& p, bool own) {
           {"added", own},
           {"start", p.start},
           {"value", p.value},
-          {"standard_error", finite(p.error)},
-          {"low_95", finite(p.low)},
-          {"high_95", finite(p.high)},
-          {"decided_by_records", finite(p.decided)},
+          {"standard_error", p.error},
+          {"low_95", p.low},
+          {"high_95", p.high},
+          {"decided_by_records", p.decided},
           {"at_bound", p.at_bound}};
 }
 
@@ -99,7 +97,7 @@ json addition_json(const Addition& a) {
             {"adequate", a.adequate},
             {"adequacy", thresholds::ruling_json(a.ruling)},
             {"evidence_needed", thresholds::addition.strong.value},
-            {"evidence", finite(a.evidence)},
+            {"evidence", a.evidence},
             {"misfit_refitted_without", a.without.misfit()},
             {"misfit_with", a.with.misfit()},
             {"seconds", a.seconds},
@@ -107,7 +105,7 @@ json addition_json(const Addition& a) {
             {"parameters", json::array()}};
   for (const auto& e : a.events) {
     json event = calibrate::event_json(e.score);
-    event["misfit_refitted_without"] = finite(e.refitted);
+    event["misfit_refitted_without"] = e.refitted;
     j["events"].push_back(event);
   }
   for (std::size_t i = 0; i < a.parameters.size(); ++i)
@@ -148,8 +146,7 @@ json completion_json(const Completion& c) {
             {"added", json::array()},
             {"removed", json::array()}};
   for (const auto& a : c.added) j["added"].push_back(addition_json(a));
-  for (const auto& r : c.removed)
-    j["removed"].push_back({{"effect", r.effect}, {"evidence", finite(r.evidence)}});
+  for (const auto& r : c.removed) j["removed"].push_back({{"effect", r.effect}, {"evidence", r.evidence}});
   return j;
 }
 

@@ -41,9 +41,10 @@ double chi2_of(const sim::plant::PlantUnderTest& tested, const event::WhitenedEv
   return sum;
 }
 
-class Run {
+class Calibrating {
  public:
-  Run(const plant::PlantModel& model, std::vector<record::Record> records, const CalibrateOptions& options)
+  Calibrating(const plant::PlantModel& model, std::vector<record::Record> records,
+              const CalibrateOptions& options)
       : model_(model),
         options_(options),
         out_(held_out_events(records, options.held_out)),
@@ -391,7 +392,7 @@ class Run {
 
 Calibration calibrate(const plant::PlantModel& model, std::vector<record::Record> records,
                       const CalibrateOptions& options) {
-  return Run(model, std::move(records), options).run();
+  return Calibrating(model, std::move(records), options).run();
 }
 
 }  // namespace swingbank::validate::calibrate

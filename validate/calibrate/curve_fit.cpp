@@ -98,9 +98,10 @@ Eigen::MatrixXd inverse(const Eigen::MatrixXd& curvature) {
   return back;
 }
 
-class Run {
+class CurveFitting {
  public:
-  Run(const plant::PlantModel& model, std::vector<record::Record> records, const CurveFitOptions& options)
+  CurveFitting(const plant::PlantModel& model, std::vector<record::Record> records,
+               const CurveFitOptions& options)
       : options_(options),
         out_(held_out_events(records, options.held_out)),
         free_(chosen_parameters(model.plant, 0.0, options.fixed)),
@@ -238,7 +239,7 @@ class Run {
 
 CurveFit curve_fit(const plant::PlantModel& model, std::vector<record::Record> records,
                    const CurveFitOptions& options) {
-  return Run(model, std::move(records), options).run();
+  return CurveFitting(model, std::move(records), options).run();
 }
 
 }  // namespace swingbank::validate::calibrate

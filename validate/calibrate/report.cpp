@@ -19,8 +19,6 @@ std::size_t width(const std::string& text) {
   return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; }));
 }
 /// JSON has no infinity and no NaN.
-json finite(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
 std::string percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
 
 /// Moved far beyond what its spread believes: the belief pulls it back, and others with it.
@@ -69,11 +67,11 @@ json parameter_json(const Calibration& c, std::size_t i) {
             {"unit", p.fit.unit},
             {"start", p.fit.start},
             {"value", p.fit.value},
-            {"standard_error", finite(p.fit.error)},
-            {"standard_error_white_noise", finite(p.curvature_error)},
-            {"low_95", finite(p.fit.low)},
-            {"high_95", finite(p.fit.high)},
-            {"decided_by_records", finite(p.fit.decided)},
+            {"standard_error", p.fit.error},
+            {"standard_error_white_noise", p.curvature_error},
+            {"low_95", p.fit.low},
+            {"high_95", p.fit.high},
+            {"decided_by_records", p.fit.decided},
             {"voltage_noise_correction", p.shift},
             {"at_bound", p.fit.at_bound},
             {"beyond_belief", strained(p.fit)}};
@@ -190,20 +188,20 @@ std::string terminal_report(const Calibration& c) {
 json event_json(const EventScore& e) {
   json j = {{"record", e.record},
             {"seen", e.seen},
-            {"misfit_before", finite(e.before)},
-            {"misfit_after", finite(e.after)},
+            {"misfit_before", e.before},
+            {"misfit_after", e.after},
             {"misfit_limit", e.limit},
             {"adequate", e.adequate()},
-            {"noise_correlation", finite(e.colour)},
+            {"noise_correlation", e.colour},
             {"channels", json::array()}};
   for (const auto& ch : e.channels)
     j["channels"].push_back({{"name", playin::output_name(ch.channel)},
                              {"unit", ch.unit},
                              {"noise", ch.noise},
-                             {"rms_before", finite(ch.rms_before)},
-                             {"rms_after", finite(ch.rms_after)},
-                             {"misfit_before", finite(ch.misfit_before)},
-                             {"misfit_after", finite(ch.misfit_after)}});
+                             {"rms_before", ch.rms_before},
+                             {"rms_after", ch.rms_after},
+                             {"misfit_before", ch.misfit_before},
+                             {"misfit_after", ch.misfit_after}});
   return j;
 }
 
@@ -230,10 +228,8 @@ json calibration_json(const Calibration& c) {
             {"not_told_apart", json::array()},
             {"events_tried", json::array()}};
   for (const auto& s : c.started)
-    j["started"].push_back({{"name", s.name},
-                            {"misfit_before", finite(s.before)},
-                            {"misfit_after", finite(s.after)},
-                            {"agrees", s.agrees}});
+    j["started"].push_back(
+        {{"name", s.name}, {"misfit_before", s.before}, {"misfit_after", s.after}, {"agrees", s.agrees}});
   for (const auto& e : c.events) j["events"].push_back(event_json(e));
   for (std::size_t i = 0; i < c.parameters.size(); ++i) {
     j["parameters"].push_back(parameter_json(c, i));

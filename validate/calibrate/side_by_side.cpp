@@ -18,8 +18,6 @@ namespace {
 
 using nlohmann::json;
 
-json finite(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
 Way::Value value_of(const fit::FittedParameter& p) { return {p.full_name(), p.unit, p.value, p.low, p.high}; }
 
 Truth truth_of(const sim::plant::Plant& plant) {
@@ -248,17 +246,17 @@ json beside_json(const std::vector<Way>& ways, const Truth& truth) {
       j["parameters"].push_back({{"parameter", v.parameter},
                                  {"unit", v.unit},
                                  {"value", v.value},
-                                 {"low_95", finite(v.low)},
-                                 {"high_95", finite(v.high)},
+                                 {"low_95", v.low},
+                                 {"high_95", v.high},
                                  {"truth", known == truth.end() ? json(nullptr) : json(known->second)}});
     }
     for (const auto& e : way.events) {
       json channels = json::array();
       for (const auto& ch : e.channels)
         channels.push_back(
-            {{"name", playin::output_name(ch.channel)}, {"unit", ch.unit}, {"rms", finite(ch.rms_after)}});
+            {{"name", playin::output_name(ch.channel)}, {"unit", ch.unit}, {"rms", ch.rms_after}});
       j["events"].push_back(
-          {{"record", e.record}, {"seen", e.seen}, {"misfit", finite(e.after)}, {"channels", channels}});
+          {{"record", e.record}, {"seen", e.seen}, {"misfit", e.after}, {"channels", channels}});
     }
     if (!truth.empty()) {
       const Distance d = distance(way, truth);
@@ -301,8 +299,8 @@ json curve_fit_json(const CurveFit& f, const Truth& truth) {
             {"sentence", f.sentence},
             {"rms_before_pu", f.rms_before},
             {"rms_after_pu", f.rms_after},
-            {"misfit_before", finite(f.before)},
-            {"misfit_after", finite(f.after)},
+            {"misfit_before", f.before},
+            {"misfit_after", f.after},
             {"misfit_limit", f.limit},
             {"adequate", f.adequate},
             {"converged", f.converged},
@@ -318,9 +316,9 @@ json curve_fit_json(const CurveFit& f, const Truth& truth) {
                                {"unit", p.unit},
                                {"start", p.start},
                                {"value", p.value},
-                               {"standard_error", finite(p.error)},
-                               {"low_95", finite(p.low)},
-                               {"high_95", finite(p.high)},
+                               {"standard_error", p.error},
+                               {"low_95", p.low},
+                               {"high_95", p.high},
                                {"at_bound", p.at_bound},
                                {"truth", known == truth.end() ? json(nullptr) : json(known->second)}});
   }

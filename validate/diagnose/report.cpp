@@ -19,8 +19,6 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-nlohmann::json number(double v) { return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(nullptr); }
-
 const hypothesis::MissingInput* better_input(const Diagnosis& d) {
   const bool torque = !d.torque.fit.events.empty(), field = !d.field.fit.events.empty();
   if (torque && (!field || d.torque.misfit() <= d.field.misfit())) return &d.torque;
@@ -104,18 +102,17 @@ nlohmann::json parameters_json(const fit::Fit& fit) {
                     {"unit", p.unit},
                     {"start", p.start},
                     {"value", p.value},
-                    {"error", number(p.error)},
-                    {"low_95", number(p.low)},
-                    {"high_95", number(p.high)},
+                    {"error", p.error},
+                    {"low_95", p.low},
+                    {"high_95", p.high},
                     {"at_bound", p.at_bound},
-                    {"told_by_records", number(p.decided)}});
+                    {"told_by_records", p.decided}});
   return rows;
 }
 
 nlohmann::json input_json(const Diagnosis& d, const hypothesis::MissingInput& input) {
   if (input.fit.events.empty()) return nullptr;
-  nlohmann::json j = {{"rms_in_noise", number(std::sqrt(input.misfit()))},
-                      {"events", nlohmann::json::array()}};
+  nlohmann::json j = {{"rms_in_noise", std::sqrt(input.misfit())}, {"events", nlohmann::json::array()}};
   for (std::size_t e = 0; e < input.fit.events.size(); ++e)
     j["events"].push_back(
         {{"record", d.events[e].record.name}, {"t_s", input.of(e).t}, {"value_pu", input.of(e).value}});
@@ -128,10 +125,10 @@ nlohmann::json event_json(const ReportEvent& e, bool with_after) {
                       {"record_xxh64", fmt::format("{:016x}", r.hash)},
                       {"samples", r.samples()},
                       {"rate_per_s", r.rate()},
-                      {"rms_in_noise_before", number(e.before)},
-                      {"rms_in_noise_after", with_after ? number(e.after) : nullptr},
-                      {"unseen_rms_in_noise_before", number(e.unseen_before)},
-                      {"unseen_rms_in_noise_after", number(e.unseen_after)},
+                      {"rms_in_noise_before", e.before},
+                      {"rms_in_noise_after", with_after ? nlohmann::json(e.after) : nullptr},
+                      {"unseen_rms_in_noise_before", e.unseen_before},
+                      {"unseen_rms_in_noise_after", e.unseen_after},
                       {"channels", nlohmann::json::array()}};
   for (const auto& c : e.channels) {
     nlohmann::json k = {{"name", c.name},
@@ -150,21 +147,22 @@ nlohmann::json event_json(const ReportEvent& e, bool with_after) {
 }
 
 nlohmann::json hypothesis_json(const hypothesis::Judgement& h) {
-  nlohmann::json j = {{"name", hypothesis::full_name(h.hypothesis)},
-                      {"what", h.hypothesis.what},
-                      {"side", hypothesis::side_name(h.hypothesis.side)},
-                      {"accepted", h.accepted},
-                      {"why_not", h.why_not},
-                      {"evidence", number(h.gain)},
-                      {"size", number(h.size)},
-                      {"rms_in_noise", h.fit.values > 0 ? number(std::sqrt(h.fit.misfit())) : nullptr},
-                      {"unseen", nlohmann::json::array()}};
+  nlohmann::json j = {
+      {"name", hypothesis::full_name(h.hypothesis)},
+      {"what", h.hypothesis.what},
+      {"side", hypothesis::side_name(h.hypothesis.side)},
+      {"accepted", h.accepted},
+      {"why_not", h.why_not},
+      {"evidence", h.gain},
+      {"size", h.size},
+      {"rms_in_noise", h.fit.values > 0 ? nlohmann::json(std::sqrt(h.fit.misfit())) : nullptr},
+      {"unseen", nlohmann::json::array()}};
   for (const auto& u : h.held_out)
     j["unseen"].push_back({{"record", u.record},
-                           {"rms_in_noise_before", number(std::sqrt(u.before))},
-                           {"rms_in_noise_after", number(std::sqrt(u.after))},
-                           {"cost_per_value_before", number(u.cost_before)},
-                           {"cost_per_value_after", number(u.cost_after)}});
+                           {"rms_in_noise_before", std::sqrt(u.before)},
+                           {"rms_in_noise_after", std::sqrt(u.after)},
+                           {"cost_per_value_before", u.cost_before},
+                           {"cost_per_value_after", u.cost_after}});
   return j;
 }
 
@@ -228,11 +226,10 @@ nlohmann::json diagnosis_json(const plant::PlantModel& model, const Diagnosis& d
         {"file", model.origin},
         {"xxh64", fmt::format("{:016x}", model.hash)},
         {"mva", model.plant.mva}}}};
-  j["before"] = {{"rms_in_noise", number(std::sqrt(d.base.misfit()))},
-                 {"parameters", parameters_json(d.base)}};
+  j["before"] = {{"rms_in_noise", std::sqrt(d.base.misfit())}, {"parameters", parameters_json(d.base)}};
   if (figures.after)
     j["after"] = {{"with", figures.after_name},
-                  {"rms_in_noise", number(std::sqrt(figures.after->misfit()))},
+                  {"rms_in_noise", std::sqrt(figures.after->misfit())},
                   {"parameters", parameters_json(*figures.after)}};
   else
     j["after"] = nullptr;

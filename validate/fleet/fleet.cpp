@@ -259,7 +259,6 @@ FleetOutcome diagnose_plant(const Fleet& fleet, const FleetPlant& plant, const f
 }
 
 namespace {
-json number(double v) { return std::isfinite(v) ? json(v) : json(nullptr); }
 double number_of(const json& j, const char* key) {
   return j.at(key).is_null() ? kNaN : j.at(key).get<double>();
 }
@@ -282,11 +281,11 @@ json row_json(const FleetRow& r) {
           {"effects", r.effects},
           {"equivalent", r.equivalent},
           {"side", r.side},
-          {"evidence", number(r.evidence)},
-          {"rms_in_noise_refitted", number(r.left)},
-          {"unseen_rms_in_noise_before", number(r.unseen_before)},
-          {"unseen_rms_in_noise_after", number(r.unseen_after)},
-          {"probability_by_noise_alone_at_most", number(r.chance)},
+          {"evidence", r.evidence},
+          {"rms_in_noise_refitted", r.left},
+          {"unseen_rms_in_noise_before", r.unseen_before},
+          {"unseen_rms_in_noise_after", r.unseen_after},
+          {"probability_by_noise_alone_at_most", r.chance},
           {"events", r.events},
           {"sentence", r.sentence},
           {"inputs_xxh64", r.inputs}};

@@ -15,10 +15,10 @@
 namespace swingbank::validate::record {
 namespace {
 
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 using Cells = std::vector<std::string_view>;
 
-std::string_view trim(std::string_view s) {
+std::string_view unquoted(std::string_view s) {
   constexpr std::string_view blank = " \t\r\"";
   const auto first = s.find_first_not_of(blank);
   if (first == std::string_view::npos) return {};
@@ -33,7 +33,7 @@ Cells split(std::string_view line, char separator) {
   for (std::size_t at = 0; at <= line.size(); ++at) {
     if (at < line.size() && line[at] == '"') quoted = !quoted;
     if (at < line.size() && (quoted || line[at] != separator)) continue;
-    cells.push_back(trim(line.substr(begin, at - begin)));
+    cells.push_back(unquoted(line.substr(begin, at - begin)));
     begin = at + 1;
   }
   return cells;
@@ -63,7 +63,7 @@ bool is_code(double v) {
 }
 
 struct Number {
-  double value = kNothing;
+  double value = kNoValue;
   int decimals = 0;
   bool ok = false, comma = false, point = false;
 };
@@ -87,7 +87,7 @@ Number parse_number(std::string_view cell, char separator) {
     n.decimals = static_cast<int>(std::min(cell.find_first_of("eE"), cell.size()) - point - 1);
     if (cell.find_first_of("eE") != std::string_view::npos) n.decimals = 0;
   }
-  if (!n.ok) n.value = kNothing;
+  if (!n.ok) n.value = kNoValue;
   return n;
 }
 
@@ -126,7 +126,7 @@ class CsvReader {
       line = text_.substr(0, end);
       text_.remove_prefix(end == std::string_view::npos ? text_.size() : end + 1);
       ++number_;
-      if (const auto content = trim(line); !content.empty() && content.front() != '#') return true;
+      if (const auto content = unquoted(line); !content.empty() && content.front() != '#') return true;
     }
     return false;
   }
@@ -253,7 +253,7 @@ class CsvReader {
                  fmt::format("the header has {} columns", width_), "complete the line or remove it");
     for (std::size_t c = 0; c < raw.columns.size(); ++c) {
       RawColumn& column = raw.columns[c];
-      double v = kNothing;
+      double v = kNoValue;
       if (!ragged)
         v = column.meaning.unit == Unit::stamp ? stamp(column, cells_[chosen_[c]], sample, raw, faults)
                                                : value(column, cells_[chosen_[c]], sample, faults);
@@ -268,7 +268,7 @@ class CsvReader {
       faults.add(column.name, fmt::format("{} = '{}'", column.name, cell), sample,
                  "this is no time stamp like the ones before",
                  "cut the record before it, or export it again");
-      return kNothing;
+      return kNoValue;
     }
     if (!first_) {
       first_ = s;
@@ -296,7 +296,7 @@ class CsvReader {
       if (column.meaning.quantity == Quantity::time) decimals_ = std::max(decimals_, n.decimals);
       return n.value;
     }
-    return kNothing;
+    return kNoValue;
   }
 
   void finish_times(RawRecord& raw) const {

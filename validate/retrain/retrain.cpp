@@ -16,8 +16,6 @@ using nlohmann::json;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr const char* kSides[2] = {"without", "with"};
 
-json finite(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
 const calibrate::NetworkEstimate::Parameter* find(const calibrate::NetworkEstimate& e,
                                                   const std::string& full) {
   const auto at = std::ranges::find_if(e.parameters, [&](const auto& p) { return p.full() == full; });
@@ -208,23 +206,23 @@ json retrained_json(const Retrained& r) {
             {"sentence", r.sentence},
             {"reference", r.truth ? "truth" : "fitted"},
             {"parameter_error", {{"without", r.error[0]}, {"with", r.error[1]}, {"middle", r.middle}}},
-            {"fall", finite(r.fall())},
-            {"rms_unseen_mw_mvar", {{"without", finite(r.rms[0])}, {"with", finite(r.rms[1])}}},
+            {"fall", r.fall()},
+            {"rms_unseen_mw_mvar", {{"without", r.rms[0]}, {"with", r.rms[1]}}},
             {"parameters", json::array()},
             {"events", json::array()}};
   for (const auto& p : r.parameters) {
     json one = {{"parameter", p.name},      {"unit", p.unit},         {"reference", p.reference},
                 {"deviation", p.deviation}, {"of_the_effect", p.own}, {"middle_error", p.middle}};
     for (std::size_t side = p.own ? 1 : 0; side < 2; ++side)
-      one[kSides[side]] = {{"estimate", finite(p.estimate[side])}, {"error", finite(p.error[side])}};
+      one[kSides[side]] = {{"estimate", p.estimate[side]}, {"error", p.error[side]}};
     j["parameters"].push_back(one);
   }
   for (const auto& e : r.events) {
     json one = {{"record", e.record}, {"seen", e.seen}};
     for (std::size_t side = 0; side < 2; ++side)
       one[kSides[side]] = {{"parameter_error", e.parameter_error[side]},
-                           {"rms_mw_mvar", finite(e.rms[side])},
-                           {"misfit", finite(e.misfit[side])}};
+                           {"rms_mw_mvar", e.rms[side]},
+                           {"misfit", e.misfit[side]}};
     j["events"].push_back(one);
   }
   return j;

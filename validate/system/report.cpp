@@ -17,8 +17,6 @@ namespace {
 
 using nlohmann::json;
 
-json number(double v) { return std::isfinite(v) ? json(v) : json(nullptr); }
-
 std::vector<compare::LabelledMap> maps_of(const std::vector<compare::EventComparison>& terminals) {
   std::vector<compare::LabelledMap> maps;
   for (const auto& e : terminals)
@@ -115,10 +113,10 @@ json terminal_json(const SystemCase& s, const SystemComparison& c, std::size_t i
             {"warnings", t.warnings},
             {"instruments", json::array()},
             {"initial",
-             {{"V_pu", number(c.initial[4 * i])},
-              {"angle_rad", number(c.initial[4 * i + 1])},
-              {"P_pu", number(c.initial[4 * i + 2])},
-              {"Q_pu", number(c.initial[4 * i + 3])}}},
+             {{"V_pu", c.initial[4 * i]},
+              {"angle_rad", c.initial[4 * i + 1]},
+              {"P_pu", c.initial[4 * i + 2]},
+              {"Q_pu", c.initial[4 * i + 3]}}},
             {"channels", json::array()}};
   for (const auto& block : t.instruments) j["instruments"].push_back(block.effect->name);
   for (const auto& channel : e.channels) j["channels"].push_back(channel_json(e, channel));

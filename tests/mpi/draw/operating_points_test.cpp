@@ -20,12 +20,12 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 namespace fs = std::filesystem;
 
-const fs::path kConfigs = fs::path(SWINGBANK_SOURCE) / "configs/datasets";
+const fs::path kPointConfigs = fs::path(SWINGBANK_SOURCE) / "configs/datasets";
 
 DatasetConfig config(const std::string& name = "ieee39_genrou_points", std::uint64_t draws = 24) {
   Overrides o;
   o.draws = draws;
-  DatasetConfig c = read_dataset_config(kConfigs / (name + ".toml"), o);
+  DatasetConfig c = read_dataset_config(kPointConfigs / (name + ".toml"), o);
   c.record.t_end = 3.0;  // enough to see the fault, quick
   return c;
 }
@@ -232,12 +232,12 @@ TEST(OperatingPointRows, PartsMakeTheWhole) {
 
 TEST(OperatingPointConfigFile, HashKnowsEveryKeyAndRefusalsNameThem) {
   const test::Folder folder;
-  const std::string text = read_text(kConfigs / "ieee39_gencls_points.toml");
+  const std::string text = read_text(kPointConfigs / "ieee39_gencls_points.toml");
   const auto read = [&](const std::string& from, const std::string& to) {
     std::string changed = text;
     changed.replace(changed.find(from), from.size(), to);
     for (auto at = changed.find("../networks"); at != std::string::npos; at = changed.find("../networks"))
-      changed.replace(at, 11, (kConfigs.parent_path() / "networks").string());
+      changed.replace(at, 11, (kPointConfigs.parent_path() / "networks").string());
     write_text(folder.path / "c.toml", changed);
     return read_dataset_config(folder.path / "c.toml");
   };

@@ -11,7 +11,7 @@ namespace {
 constexpr auto no_tick = [](std::uint64_t) {};
 
 /// A config of the project at a small size, its databank and a maker.
-struct Case {
+struct MadeCase {
   Study study;
   Databank bank;
   ShardMaker maker;
@@ -23,20 +23,20 @@ struct Case {
     c.record.t_end = 3.0;  // enough to see the fault, quick
     return load_study(c);
   }
-  Case(const std::string& name, std::uint64_t draws)
+  MadeCase(const std::string& name, std::uint64_t draws)
       : study(load(name, draws)),
         bank(draw_databank(study.config, study.grid.plants[static_cast<std::size_t>(study.plants[0])],
                            study.config.points())),
         maker(study, bank) {}
 };
 
-std::size_t channel_index(const Case& c, const std::string& name) {
+std::size_t channel_index(const MadeCase& c, const std::string& name) {
   const auto& names = c.study.config.record.channels;
   return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
 }
 
 TEST(Sampling, GeneratorsTakeTurnsAndFaultsShareAPoint) {
-  Case c("ieee39_gencls", 40);
+  MadeCase c("ieee39_gencls", 40);
   Sampler sampler(c.study, c.bank);
   for (std::uint64_t id = 0; id < 40; ++id) {
     const Draw d = sampler.draw(id);
@@ -45,7 +45,7 @@ TEST(Sampling, GeneratorsTakeTurnsAndFaultsShareAPoint) {
     EXPECT_GE(fault.t_off - fault.t_on, 0.05);
     EXPECT_LE(fault.t_off - fault.t_on, 0.2);
   }
-  Case twelve("ieee14_genrou_bus3", 36);
+  MadeCase twelve("ieee14_genrou_bus3", 36);
   Sampler shared(twelve.study, twelve.bank);
   EXPECT_EQ(shared.draw(0).job.parameters, shared.draw(11).job.parameters);
   EXPECT_NE(shared.draw(11).job.parameters, shared.draw(12).job.parameters);
@@ -53,7 +53,7 @@ TEST(Sampling, GeneratorsTakeTurnsAndFaultsShareAPoint) {
 }
 
 TEST(ShardMaking, RowsAreTheKernelsOwnRecords) {
-  Case c("ieee39_gencls", 20);
+  MadeCase c("ieee39_gencls", 20);
   const store::ShardData d = c.maker.make(0, 20, no_tick);
   ASSERT_GT(d.rows, 10u);
   Sampler sampler(c.study, c.bank);
@@ -79,7 +79,7 @@ TEST(ShardMaking, RowsAreTheKernelsOwnRecords) {
 }
 
 TEST(ShardMaking, PartsMakeTheWhole) {
-  Case c("ieee39_genrou", 24);
+  MadeCase c("ieee39_genrou", 24);
   const store::ShardData whole = c.maker.make(0, 24, no_tick), first = c.maker.make(0, 7, no_tick),
                          rest = c.maker.make(7, 17, no_tick);
   auto hashes = store::row_hashes(first), more = store::row_hashes(rest);
@@ -88,14 +88,14 @@ TEST(ShardMaking, PartsMakeTheWhole) {
 }
 
 TEST(ShardMaking, TicksCountEveryRun) {
-  Case c("ieee39_gencls", 30);
+  MadeCase c("ieee39_gencls", 30);
   std::uint64_t ticks = 0;
   c.maker.make(0, 30, [&](std::uint64_t n) { ticks += n; });
   EXPECT_EQ(ticks, 30u);
 }
 
 TEST(ShardMaking, UnstableDrawsLeaveNoRowButAreListed) {
-  Case c("ieee39_genrou", 60);
+  MadeCase c("ieee39_genrou", 60);
   const store::ShardData d = c.maker.make(0, 60, no_tick);
   ASSERT_EQ(d.draw_outcome.size(), 60u);
   const auto stable = static_cast<std::size_t>(std::ranges::count(d.draw_outcome, 0));
@@ -106,7 +106,7 @@ TEST(ShardMaking, UnstableDrawsLeaveNoRowButAreListed) {
 }
 
 TEST(ShardMaking, AllVaryGivesARowPerGenerator) {
-  Case c("ieee39_gencls_all", 6);
+  MadeCase c("ieee39_gencls_all", 6);
   const store::ShardData d = c.maker.make(0, 6, no_tick);
   ASSERT_EQ(d.rows % 10, 0u);
   ASSERT_GE(d.rows, 10u);
@@ -115,7 +115,7 @@ TEST(ShardMaking, AllVaryGivesARowPerGenerator) {
 }
 
 TEST(ShardMaking, AngleIsMarkedInvalidExactlyWhereTheTerminalIsShorted) {
-  Case c("ieee39_gencls_all", 1);
+  MadeCase c("ieee39_gencls_all", 1);
   // A fault at the terminal of bus 30, 0.1 s: samples in (2.0, 2.1] see V = 0, the one at 2.0 is the value
   // before.
   c.study.fault_buses = {c.study.grid.network.bus_index(30)};

@@ -18,9 +18,9 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 namespace fs = std::filesystem;
 
-const fs::path kConfigs = fs::path(SWINGBANK_SOURCE) / "configs/datasets";
+const fs::path kEffectConfigs = fs::path(SWINGBANK_SOURCE) / "configs/datasets";
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
+std::string with_replaced(std::string text, const std::string& from, const std::string& to) {
   const auto at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   return text.replace(at, from.size(), to);
@@ -29,12 +29,12 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 using Changes = std::vector<std::pair<std::string, std::string>>;
 
 /// The example with an exciter, small, with some texts replaced.
-DatasetConfig config(const Changes& changes = {}, std::uint64_t draws = 30) {
+DatasetConfig varied_config(const Changes& changes = {}, std::uint64_t draws = 30) {
   const test::Folder folder;
-  std::string text = read_text(kConfigs / "ieee39_genrou_sexs.toml");
-  for (const auto& [from, to] : changes) text = replaced(text, from, to);
+  std::string text = read_text(kEffectConfigs / "ieee39_genrou_sexs.toml");
+  for (const auto& [from, to] : changes) text = with_replaced(text, from, to);
   for (int i = 0; i < 2; ++i)
-    text = replaced(text, "\"../networks/", "\"" + (kConfigs / "../networks/").string());
+    text = with_replaced(text, "\"../networks/", "\"" + (kEffectConfigs / "../networks/").string());
   write_text(folder.path / "c.toml", text);
   Overrides o;
   o.draws = draws;
@@ -45,18 +45,18 @@ DatasetConfig config(const Changes& changes = {}, std::uint64_t draws = 30) {
 
 std::string refusal(const std::string& from, const std::string& to) {
   try {
-    load_study(config({{from, to}}));
+    load_study(varied_config({{from, to}}));
   } catch (const InputError& e) {
     return e.what();
   }
   return "nothing thrown";
 }
 
-struct Case {
+struct VariedCase {
   Study study;
   Databank bank;
   ShardMaker maker;
-  explicit Case(const DatasetConfig& c)
+  explicit VariedCase(const DatasetConfig& c)
       : study(load_study(c)),
         bank(draw_databank(c, study.grid.plants[static_cast<std::size_t>(study.plants[0])], c.points())),
         maker(study, bank) {}
@@ -64,7 +64,7 @@ struct Case {
 
 TEST(VariedEffects, ConfigNamesThemInOrderOfSlotThenRecord) {
   const DatasetConfig c =
-      config({{"[vary.effects.SEXS]", "[vary.effects.TGOV1]\nT1 = 0.4\n[vary.effects.sexs]"}});
+      varied_config({{"[vary.effects.SEXS]", "[vary.effects.TGOV1]\nT1 = 0.4\n[vary.effects.sexs]"}});
   std::vector<std::string> names;
   for (const auto& b : c.box) names.push_back(c.name_of(b));
   ASSERT_EQ(names.size(), 17u);
@@ -99,18 +99,18 @@ TEST(VariedEffects, RefusalsNameLineAndRemedy) {
 }
 
 TEST(VariedEffects, HashKnowsThemAndOlderConfigsKeepTheirs) {
-  const std::string base = config_hash(config(), "k");
-  EXPECT_NE(config_hash(config({{"K=100,TE=0.1", "K=100,TE=0.11"}}), "k"), base);
-  EXPECT_NE(config_hash(config({{"TE = [0.02, 0.5]", "TE = [0.02, 0.51]"}}), "k"), base);
+  const std::string base = config_hash(varied_config(), "k");
+  EXPECT_NE(config_hash(varied_config({{"K=100,TE=0.1", "K=100,TE=0.11"}}), "k"), base);
+  EXPECT_NE(config_hash(varied_config({{"TE = [0.02, 0.5]", "TE = [0.02, 0.51]"}}), "k"), base);
   // What is said by a standard value and what is written out are the same dataset.
-  EXPECT_EQ(config_hash(config({{"TAoverTB=0.1,TB=10,EMIN=-4,EMAX=5", "TB=10"}}), "k"),
-            config_hash(config({{"TAoverTB=0.1,TB=10,EMIN=-4,EMAX=5", "TAoverTB=0.1"}}), "k"));
+  EXPECT_EQ(config_hash(varied_config({{"TAoverTB=0.1,TB=10,EMIN=-4,EMAX=5", "TB=10"}}), "k"),
+            config_hash(varied_config({{"TAoverTB=0.1,TB=10,EMIN=-4,EMAX=5", "TAoverTB=0.1"}}), "k"));
   // Printed by `generate` before there were effects, or operating points, in configs; datasets made then are
   // still known as theirs.
   const auto hash = [](const char* name, std::uint64_t draws) {
     Overrides o;
     o.draws = draws;
-    return config_hash(read_dataset_config(kConfigs / name, o), "dp54 lanes=8 isa=avx512 tol=1e-06");
+    return config_hash(read_dataset_config(kEffectConfigs / name, o), "dp54 lanes=8 isa=avx512 tol=1e-06");
   };
   EXPECT_EQ(hash("ieee39_gencls.toml", 6000), "e6f92653aacc7d94");
   EXPECT_EQ(hash("ieee39_genrou.toml", 60), "b1790ef7d9bb654d");
@@ -120,7 +120,7 @@ TEST(VariedEffects, HashKnowsThemAndOlderConfigsKeepTheirs) {
 }
 
 TEST(VariedEffects, PointsKeepTheirDistanceInTheNormalisedSpace) {
-  const DatasetConfig c = config({}, 3000);
+  const DatasetConfig c = varied_config({}, 3000);
   const Study s = load_study(c);
   const Databank b = draw_databank(c, s.grid.plants[0], 3000);
   double least = 1e300;
@@ -151,7 +151,7 @@ TEST(VariedEffects, PointsKeepTheirDistanceInTheNormalisedSpace) {
 /// Every seventh row against a run of a grid whose plant itself has the row's parameters: another way to the
 /// same values than a job's parameters, on one lane.
 void expect_rows_are_runs(const DatasetConfig& config) {
-  Case c(config);
+  VariedCase c(config);
   const store::ShardData d = c.maker.make(0, config.draws, [](std::uint64_t) {});
   ASSERT_GT(d.rows, 15u);
   Sampler sampler(c.study, c.bank);
@@ -181,10 +181,10 @@ void expect_rows_are_runs(const DatasetConfig& config) {
   }
 }
 
-TEST(VariedEffects, RowsAreRunsOfAPlantWithTheseParameters) { expect_rows_are_runs(config()); }
+TEST(VariedEffects, RowsAreRunsOfAPlantWithTheseParameters) { expect_rows_are_runs(varied_config()); }
 
 TEST(VariedEffects, AStepUpTransformerVariesToo) {
-  DatasetConfig c = config({{"attach = [", "attach = [\"all:STEPUP\", "}});
+  DatasetConfig c = varied_config({{"attach = [", "attach = [\"all:STEPUP\", "}});
   const sim::Effect* stepup = sim::library::compiled().find("STEPUP");
   c.box.push_back({stepup->parameter_index("X"), 0.02, 0.2, stepup});
   expect_rows_are_runs(c);
@@ -195,10 +195,10 @@ TEST(VariedEffects, LawsAreAttachedAndVariedLikeCompiledEffects) {
   std::vector<store::ShardData> both;
   for (const std::string name : {"SEXS", "SEXSLAW"}) {
     const DatasetConfig c =
-        config({{"attach = [\"all:SEXS", "laws = [\"" + law + "\"]\nattach = [\"all:" + name},
-                {"effects.SEXS]", "effects." + name + "]"}},
-               12);
-    Case one(c);
+        varied_config({{"attach = [\"all:SEXS", "laws = [\"" + law + "\"]\nattach = [\"all:" + name},
+                       {"effects.SEXS]", "effects." + name + "]"}},
+                      12);
+    VariedCase one(c);
     both.push_back(one.maker.make(0, 12, [](std::uint64_t) {}));
   }
   EXPECT_EQ(both[0].parameters, both[1].parameters);
@@ -209,7 +209,7 @@ TEST(VariedEffects, LawsAreAttachedAndVariedLikeCompiledEffects) {
 }
 
 TEST(VariedEffects, ShardsSayWhoseParametersTheyHold) {
-  const Study s = load_study(config());
+  const Study s = load_study(varied_config());
   store::ShardData d = test::sample_shard();
   d.attributes.parameter_effects = {"GENCLS", "SEXS"};
   const test::Folder folder;

@@ -17,7 +17,7 @@ using test::Folder;
 using test::sample_shard;
 using ::testing::HasSubstr;
 
-std::string sentence_of(const std::function<void()>& work) {
+std::string refusal_of(const std::function<void()>& work) {
   try {
     work();
   } catch (const InputError& e) {
@@ -82,7 +82,7 @@ TEST(Shard, RangeOfRows) {
   read_rows(folder.path / "a.h5", 4, 1, b, {}, {.records = false});
   EXPECT_TRUE(b.records.empty());
   EXPECT_EQ(b.parameters, (std::vector<double>{5.0, 2.0}));
-  EXPECT_THAT(sentence_of([&] { read_rows(folder.path / "a.h5", 4, 2, b); }),
+  EXPECT_THAT(refusal_of([&] { read_rows(folder.path / "a.h5", 4, 2, b); }),
               HasSubstr("the array has 5 rows"));
 }
 
@@ -123,7 +123,7 @@ TEST(Shard, TruncatedFileIsNamed) {
   const auto file = folder.path / "a.h5";
   write_shard(file, sample_shard());
   std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
-  EXPECT_THAT(sentence_of([&] { read_shard(file); }), HasSubstr(file.string() + " ("));
+  EXPECT_THAT(refusal_of([&] { read_shard(file); }), HasSubstr(file.string() + " ("));
 }
 
 TEST(Shard, FaultsOfAnotherWidthAreRefused) {
@@ -139,7 +139,7 @@ TEST(Shard, FaultsOfAnotherWidthAreRefused) {
   f.create<double>("/largest_spread", {d.rows});
   f.close();
   RowBlock b;
-  EXPECT_THAT(sentence_of([&] { read_rows(file, 0, 1, b); }),
+  EXPECT_THAT(refusal_of([&] { read_rows(file, 0, 1, b); }),
               HasSubstr("wrong shape of /fault at " + file.string() + " (it is 5 x 1, not 5 x 5)"));
 }
 
@@ -147,7 +147,7 @@ TEST(Shard, AnotherConfigIsRefused) {
   const Folder folder;
   write_shard(folder.path / "a.h5", sample_shard());
   RowBlock b;
-  EXPECT_THAT(sentence_of([&] { read_rows(folder.path / "a.h5", 0, 1, b, "ffffffffffffffff"); }),
+  EXPECT_THAT(refusal_of([&] { read_rows(folder.path / "a.h5", 0, 1, b, "ffffffffffffffff"); }),
               HasSubstr("another config"));
 }
 
@@ -156,13 +156,13 @@ TEST(Shard, ForeignHdf5IsRefused) {
   h5::File f = h5::File::create(folder.path / "a.h5");
   f.create<double>("/x", {3});
   f.close();
-  EXPECT_THAT(sentence_of([&] { read_shard(folder.path / "a.h5"); }), HasSubstr("/@format"));
+  EXPECT_THAT(refusal_of([&] { read_shard(folder.path / "a.h5"); }), HasSubstr("/@format"));
 }
 
 TEST(Shard, FolderThatCannotBeMadeIsNamed) {
   const Folder folder;
   write_text(folder.path / "file", "not a folder");
-  EXPECT_THAT(sentence_of([&] { write_shard(folder.path / "file" / "a.h5", sample_shard()); }),
+  EXPECT_THAT(refusal_of([&] { write_shard(folder.path / "file" / "a.h5", sample_shard()); }),
               HasSubstr("cannot create the folder"));
 }
 

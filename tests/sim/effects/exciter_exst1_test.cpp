@@ -5,13 +5,13 @@ namespace swingbank::sim::test {
 namespace {
 
 using C = std::complex<double>;
-const ControlBench::Changes kValues = {{"TR", 0.02},   {"TC", 1.0},  {"TB", 5.0},    {"KA", 150.0},
-                                       {"TA", 0.05},   {"KF", 0.03}, {"TF", 0.8},    {"VRMAX", 6.0},
-                                       {"VRMIN", 0.0}, {"KC", 0.1},  {"VIMAX", 0.2}, {"VIMIN", -0.1}};
+const ControlBench::Changes kExst1Values = {{"TR", 0.02},   {"TC", 1.0},  {"TB", 5.0},    {"KA", 150.0},
+                                            {"TA", 0.05},   {"KF", 0.03}, {"TF", 0.8},    {"VRMAX", 6.0},
+                                            {"VRMIN", 0.0}, {"KC", 0.1},  {"VIMAX", 0.2}, {"VIMIN", -0.1}};
 
 TEST(ExciterExst1, TransferFunctionIsTheDiagrams) {
   for (const double omega : {0.1, 1.0, 7.0, 40.0}) {
-    ControlBench bench("EXST1", kValues);
+    ControlBench bench("EXST1", kExst1Values);
     EXPECT_LT(bench.largest_derivative(), 1e-12);  // rounding over TA = 0.05 s, times KA
     const C forward = 150.0 * lead_over_lag(1.0, 5.0, omega) * lead_over_lag(0.0, 0.05, omega);
     const C back = C(0.0, omega) * 0.03 * lead_over_lag(0.0, 0.8, omega);
@@ -25,7 +25,7 @@ TEST(ExciterExst1, TransferFunctionIsTheDiagrams) {
 }
 
 TEST(ExciterExst1, CeilingsFollowVoltageAndFieldCurrent) {
-  ControlBench bench("EXST1", kValues);
+  ControlBench bench("EXST1", kExst1Values);
   bench.in.dVref = 0.1;
   bench.in.V = 0.9;
   bench.in.Ifd = 3.0;
@@ -37,7 +37,7 @@ TEST(ExciterExst1, CeilingsFollowVoltageAndFieldCurrent) {
 }
 
 TEST(ExciterExst1, ErrorIsLimitedBeforeTheLeadLag) {
-  ControlBench bench("EXST1", kValues);
+  ControlBench bench("EXST1", kExst1Values);
   bench.in.dVref = 5.0;
   bench.run(100.0);
   EXPECT_NEAR(bench.state("Va"), 150.0 * 0.2, 1e-5);  // exp(-100 / 5) of 30 is 6e-8, feedback is washed out

@@ -4,11 +4,11 @@
 namespace swingbank::sim::test {
 namespace {
 
-const ControlBench::Changes kValues = {{"TAoverTB", 0.4}, {"TB", 5.0},     {"K", 20.0},
-                                       {"TE", 1.0},       {"EMIN", -50.0}, {"EMAX", 50.0}};
+const ControlBench::Changes kSexsValues = {{"TAoverTB", 0.4}, {"TB", 5.0},     {"K", 20.0},
+                                           {"TE", 1.0},       {"EMIN", -50.0}, {"EMAX", 50.0}};
 
 TEST(ExciterSexs, StepOfTheReferenceFollowsTheClosedForm) {
-  ControlBench bench("SEXS", kValues);
+  ControlBench bench("SEXS", kSexsValues);
   const double TA = 2.0, TB = 5.0, TE = 1.0, K = 20.0, step = 0.05;
   EXPECT_LT(bench.largest_derivative(), 1e-14);
   bench.in.dVref = step;
@@ -29,7 +29,7 @@ TEST(ExciterSexs, EveryInputEntersWithItsSign) {
                                     {&Signals<double>::Vs, 1.0},
                                     {&Signals<double>::Vlimiter, 1.0},
                                     {&Signals<double>::Vc, -1.0}}) {
-    ControlBench bench("SEXS", kValues);
+    ControlBench bench("SEXS", kSexsValues);
     const auto h = bench.response(input, &Signals<double>::Efd, 0.7);
     const auto exact = sign * 20.0 * lead_over_lag(2.0, 5.0, 0.7) * lead_over_lag(0.0, 1.0, 0.7);
     EXPECT_LT(std::abs(h - exact), 1e-8);  // difference quotient over 1e-6

@@ -4,12 +4,12 @@
 namespace swingbank::sim::test {
 namespace {
 
-const ControlBench::Changes kValues = {{"R", 0.05},   {"T1", 0.4},     {"T2", 0.1},
-                                       {"T3", 3.0},   {"AT", 0.9},     {"KT", 2.0},
-                                       {"VMAX", 1.1}, {"VMIN", -0.05}, {"Dturb", 0.3}};
+const ControlBench::Changes kGastValues = {{"R", 0.05},   {"T1", 0.4},     {"T2", 0.1},
+                                           {"T3", 3.0},   {"AT", 0.9},     {"KT", 2.0},
+                                           {"VMAX", 1.1}, {"VMIN", -0.05}, {"Dturb", 0.3}};
 
 TEST(GovernorGast, SmallSignalsFollowTheTransferFunction) {
-  ControlBench bench("GAST", kValues);
+  ControlBench bench("GAST", kGastValues);
   EXPECT_LT(bench.largest_derivative(), 1e-14);
   for (const double omega : {0.01, 0.1, 1.0, 10.0}) {
     const auto exact = -20.0 * lead_over_lag(0.0, 0.4, omega) * lead_over_lag(0.0, 0.1, omega) - 0.3;
@@ -19,7 +19,7 @@ TEST(GovernorGast, SmallSignalsFollowTheTransferFunction) {
 }
 
 TEST(GovernorGast, TemperatureHoldsThePowerAtItsLimitAndLetsGo) {
-  ControlBench bench("GAST", kValues);
+  ControlBench bench("GAST", kGastValues);
   bench.in.speed = -0.02;  // droop asks for 1.2 pu
   bench.run(0.3);
   EXPECT_GT(bench.state("fuel"), 0.9);  // the measurement is slow: for a while more than the limit flows
@@ -32,7 +32,7 @@ TEST(GovernorGast, TemperatureHoldsThePowerAtItsLimitAndLetsGo) {
 }
 
 TEST(GovernorGast, FuelValveStopsAtItsEndsWithoutWindUp) {
-  ControlBench bench("GAST", kValues);
+  ControlBench bench("GAST", kGastValues);
   bench.in.speed = 0.1;  // droop asks for -1.2 pu
   bench.run(10.0);
   EXPECT_EQ(bench.state("fuel"), -0.05);
@@ -42,7 +42,7 @@ TEST(GovernorGast, FuelValveStopsAtItsEndsWithoutWindUp) {
 }
 
 TEST(GovernorGast, DeadBandTakesItsWidthFromTheSpeed) {
-  auto values = kValues;
+  auto values = kGastValues;
   values["db"] = 0.0006;
   ControlBench bench("GAST", values);
   bench.in.speed = 0.0005;
@@ -54,7 +54,7 @@ TEST(GovernorGast, DeadBandTakesItsWidthFromTheSpeed) {
 TEST(GovernorGast, StandsAtItsTemperatureLimitWhateverThePowerFlowRounds) {
   auto at = ControlBench::rated();
   at.Tm = 0.9 + 1e-12;
-  ControlBench bench("GAST", kValues, at);
+  ControlBench bench("GAST", kGastValues, at);
   EXPECT_EQ(bench.refused, "");
   EXPECT_LT(bench.largest_derivative(), 1e-14);
 }

@@ -6,14 +6,14 @@ namespace swingbank::sim::test {
 namespace {
 
 using Complex = std::complex<double>;
-const ControlBench::Changes kValues = {{"R", 0.05},    {"Tpelec", 0.5}, {"Kpgov", 8.0}, {"Kigov", 1.5},
-                                       {"Kdgov", 2.0}, {"Tdgov", 0.2},  {"Tact", 0.4},  {"Kturb", 1.5},
-                                       {"Wfnl", 0.2},  {"Tb", 0.6},     {"Tc", 0.1},    {"Dm", 0.2},
-                                       {"Ldref", 1.1}};
+const ControlBench::Changes kGgov1Values = {{"R", 0.05},    {"Tpelec", 0.5}, {"Kpgov", 8.0}, {"Kigov", 1.5},
+                                            {"Kdgov", 2.0}, {"Tdgov", 0.2},  {"Tact", 0.4},  {"Kturb", 1.5},
+                                            {"Wfnl", 0.2},  {"Tb", 0.6},     {"Tc", 0.1},    {"Dm", 0.2},
+                                            {"Ldref", 1.1}};
 Complex pid(Complex s) { return 8.0 + 1.5 / s + s * 2.0 / (1.0 + s * 0.2); }
 
 ControlBench bench_with(ControlBench::Changes changes, Signals<double> at = ControlBench::rated()) {
-  ControlBench::Changes all = kValues;
+  ControlBench::Changes all = kGgov1Values;
   for (const auto& [name, value] : changes) all[name] = value;
   return ControlBench("GGOV1", all, at);
 }

@@ -4,12 +4,12 @@
 namespace swingbank::sim::test {
 namespace {
 
-const ControlBench::Changes kValues = {{"R", 0.05}, {"r", 0.3},    {"Tr", 5.0},    {"Tf", 0.05},
-                                       {"Tg", 0.5}, {"VELM", 0.2}, {"GMAX", 1.0},  {"GMIN", 0.0},
-                                       {"TW", 1.0}, {"At", 1.2},   {"Dturb", 0.4}, {"qNL", 0.08}};
+const ControlBench::Changes kHygovValues = {{"R", 0.05}, {"r", 0.3},    {"Tr", 5.0},    {"Tf", 0.05},
+                                            {"Tg", 0.5}, {"VELM", 0.2}, {"GMAX", 1.0},  {"GMIN", 0.0},
+                                            {"TW", 1.0}, {"At", 1.2},   {"Dturb", 0.4}, {"qNL", 0.08}};
 
 TEST(GovernorHygov, SmallSignalsFollowTheTransferFunction) {
-  ControlBench bench("HYGOV", kValues);
+  ControlBench bench("HYGOV", kHygovValues);
   EXPECT_LT(bench.largest_derivative(), 1e-14);
   const double gate = 0.8 / 1.2 + 0.08, At = 1.2, TW = 1.0, flow_at_work = gate - 0.08;
   for (const double omega : {0.01, 0.1, 1.0, 10.0}) {
@@ -25,7 +25,7 @@ TEST(GovernorHygov, SmallSignalsFollowTheTransferFunction) {
 }
 
 TEST(GovernorHygov, PermanentDroop) {
-  ControlBench bench("HYGOV", kValues);
+  ControlBench bench("HYGOV", kHygovValues);
   bench.in.speed = -0.005;
   bench.run(600.0, 5e-3);
   // The slowest mode has about r Tr / R = 30 s: exp(-20) of 0.1 pu.
@@ -34,7 +34,7 @@ TEST(GovernorHygov, PermanentDroop) {
 }
 
 TEST(GovernorHygov, GateMovesNoFasterThanItsVelocityLimitAndStopsAtItsEnd) {
-  ControlBench bench("HYGOV", kValues);
+  ControlBench bench("HYGOV", kHygovValues);
   const double before = bench.state("desired");
   bench.in.speed = -0.2;
   bench.run(0.5);
@@ -48,7 +48,7 @@ TEST(GovernorHygov, GateMovesNoFasterThanItsVelocityLimitAndStopsAtItsEnd) {
 }
 
 TEST(GovernorHygov, DeadBandTakesItsWidthFromTheSpeed) {
-  auto values = kValues;
+  auto values = kHygovValues;
   values["db"] = 0.0006;
   values["Dturb"] = 0.0;
   ControlBench bench("HYGOV", values);

@@ -4,13 +4,13 @@
 namespace swingbank::sim::test {
 namespace {
 
-const ControlBench::Changes kValues = {{"K", 20.0}, {"T1", 0.2},  {"T2", 0.05},  {"T3", 0.2},
-                                       {"UO", 0.2}, {"UC", -0.3}, {"PMAX", 1.0}, {"PMIN", 0.0},
-                                       {"T4", 0.3}, {"K1", 0.3},  {"T5", 7.0},   {"K3", 0.4},
-                                       {"T6", 0.5}, {"K5", 0.2},  {"T7", 0.4},   {"K7", 0.1}};
+const ControlBench::Changes kIeeeg1Values = {{"K", 20.0}, {"T1", 0.2},  {"T2", 0.05},  {"T3", 0.2},
+                                             {"UO", 0.2}, {"UC", -0.3}, {"PMAX", 1.0}, {"PMIN", 0.0},
+                                             {"T4", 0.3}, {"K1", 0.3},  {"T5", 7.0},   {"K3", 0.4},
+                                             {"T6", 0.5}, {"K5", 0.2},  {"T7", 0.4},   {"K7", 0.1}};
 
 TEST(GovernorIeeeg1, SmallSignalsFollowTheTransferFunction) {
-  ControlBench bench("IEEEG1", kValues);
+  ControlBench bench("IEEEG1", kIeeeg1Values);
   EXPECT_TRUE(bench.problems.empty());
   EXPECT_LT(bench.largest_derivative(), 1e-14);
   for (const double omega : {0.01, 0.1, 1.0, 10.0}) {
@@ -24,7 +24,7 @@ TEST(GovernorIeeeg1, SmallSignalsFollowTheTransferFunction) {
 }
 
 TEST(GovernorIeeeg1, SharesNeedNotAddUpToOne) {
-  auto values = kValues;
+  auto values = kIeeeg1Values;
   values["K1"] = 0.8;  // sum 1.5
   ControlBench bench("IEEEG1", values);
   EXPECT_NEAR(bench.state("valve"), 0.8 / 1.5, 1e-14);
@@ -32,7 +32,7 @@ TEST(GovernorIeeeg1, SharesNeedNotAddUpToOne) {
 }
 
 TEST(GovernorIeeeg1, DroopBeyondTheDeadBand) {
-  auto values = kValues;
+  auto values = kIeeeg1Values;
   values["db"] = 0.0006;
   ControlBench bench("IEEEG1", values);
   bench.in.speed = -0.0006;
@@ -43,7 +43,7 @@ TEST(GovernorIeeeg1, DroopBeyondTheDeadBand) {
 }
 
 TEST(GovernorIeeeg1, ValveKeepsItsSpeedsAndComesOffItsEndAtOnce) {
-  ControlBench bench("IEEEG1", kValues);
+  ControlBench bench("IEEEG1", kIeeeg1Values);
   bench.in.speed = -0.05;
   bench.run(0.5);
   EXPECT_NEAR(bench.state("valve"), 0.8 + 0.2 * 0.5, 1e-12);  // the error, 0.25 pu, is over UO T3 at once

@@ -4,11 +4,11 @@
 namespace swingbank::sim::test {
 namespace {
 
-const ControlBench::Changes kValues = {{"R", 0.05}, {"T1", 0.2}, {"VMAX", 1.2}, {"VMIN", 0.1},
-                                       {"T2", 0.3}, {"T3", 0.8}, {"Dt", 0.0}};
+const ControlBench::Changes kTgov1Values = {{"R", 0.05}, {"T1", 0.2}, {"VMAX", 1.2}, {"VMIN", 0.1},
+                                            {"T2", 0.3}, {"T3", 0.8}, {"Dt", 0.0}};
 
 TEST(GovernorTgov1, StepOfTheReferenceFollowsTheClosedForm) {
-  ControlBench bench("TGOV1", kValues);
+  ControlBench bench("TGOV1", kTgov1Values);
   EXPECT_LT(bench.largest_derivative(), 1e-14);
   bench.in.dPref = 0.1;
   for (double t = 0.25; t < 6.0; t += 0.25) {
@@ -21,7 +21,7 @@ TEST(GovernorTgov1, StepOfTheReferenceFollowsTheClosedForm) {
 }
 
 TEST(GovernorTgov1, DroopAndTurbineDamping) {
-  auto values = kValues;
+  auto values = kTgov1Values;
   values["Dt"] = 0.5;
   ControlBench bench("TGOV1", values);
   bench.in.speed = -0.005;
@@ -30,7 +30,7 @@ TEST(GovernorTgov1, DroopAndTurbineDamping) {
 }
 
 TEST(GovernorTgov1, DeadBandTakesItsWidthFromTheSpeed) {
-  auto values = kValues;
+  auto values = kTgov1Values;
   values["db"] = 0.0006;
   ControlBench bench("TGOV1", values);
   bench.in.speed = 0.0005;
@@ -41,7 +41,7 @@ TEST(GovernorTgov1, DeadBandTakesItsWidthFromTheSpeed) {
 }
 
 TEST(GovernorTgov1, ValveStopsAtItsLimitsAndLeavesThemAtOnce) {
-  auto values = kValues;
+  auto values = kTgov1Values;
   values["T2"] = values["T3"] = 0.0;  // no reheater: the valve is the power
   ControlBench bench("TGOV1", values);
   bench.in.speed = -0.1;

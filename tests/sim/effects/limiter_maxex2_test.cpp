@@ -4,13 +4,13 @@
 namespace swingbank::sim::test {
 namespace {
 
-const ControlBench::Changes kValues = {{"EFDRATED", 2.5}, {"EFD1", 1.1},  {"TIME1", 60.0}, {"EFD2", 1.2},
-                                       {"TIME2", 30.0},   {"EFD3", 1.5},  {"TIME3", 15.0}, {"EFDDES", 1.0},
-                                       {"KMX", 0.01},     {"VLOW", -0.05}};
+const ControlBench::Changes kMaxex2Values = {
+    {"EFDRATED", 2.5}, {"EFD1", 1.1},   {"TIME1", 60.0}, {"EFD2", 1.2}, {"TIME2", 30.0},
+    {"EFD3", 1.5},     {"TIME3", 15.0}, {"EFDDES", 1.0}, {"KMX", 0.01}, {"VLOW", -0.05}};
 
 /// Seconds until the limiter has operated at a constant field current [of rated].
 double time_to_operate(double current) {
-  ControlBench bench("MAXEX2", kValues);
+  ControlBench bench("MAXEX2", kMaxex2Values);
   bench.in.Ifd = 2.5 * current;
   while (bench.state("timer") < 1.0 && bench.in.t < 100.0) bench.run(0.01, 0.01);
   return bench.in.t;
@@ -25,7 +25,7 @@ TEST(LimiterMaxex2, OperatesAfterTheInverseTime) {
 }
 
 TEST(LimiterMaxex2, TimerResetsBelowPickupUnlessOperated) {
-  ControlBench bench("MAXEX2", kValues);
+  ControlBench bench("MAXEX2", kMaxex2Values);
   bench.in.Ifd = 2.5 * 1.3;
   bench.run(20.0, 0.01);
   EXPECT_NEAR(bench.state("timer"), 20.0 / 25.0, 1e-12);
@@ -36,7 +36,7 @@ TEST(LimiterMaxex2, TimerResetsBelowPickupUnlessOperated) {
 }
 
 TEST(LimiterMaxex2, RampsToItsLimitAndReturnsWithoutWindUp) {
-  ControlBench bench("MAXEX2", kValues);
+  ControlBench bench("MAXEX2", kMaxex2Values);
   bench.in.Ifd = 2.5 * 1.2;
   bench.run(31.0, 0.01);
   // 0.01 (2.5 - 3.0) pu/s for 1 s; the start is met within a step
@@ -51,7 +51,7 @@ TEST(LimiterMaxex2, RampsToItsLimitAndReturnsWithoutWindUp) {
 }
 
 TEST(LimiterMaxex2, AddsToOtherLimiters) {
-  ControlBench bench("MAXEX2", kValues);
+  ControlBench bench("MAXEX2", kMaxex2Values);
   bench.in.Vlimiter = -0.2;
   bench.in.Ifd = 4.0;
   bench.run(16.0, 0.01);
@@ -61,7 +61,7 @@ TEST(LimiterMaxex2, AddsToOtherLimiters) {
 TEST(LimiterMaxex2, WhatItCannotDoIsNamed) {
   auto hot = ControlBench::rated();
   hot.Ifd = 3.0;
-  EXPECT_NE(ControlBench("MAXEX2", kValues, hot).refused.find("Ifd = 3.0000 pu"), std::string::npos);
+  EXPECT_NE(ControlBench("MAXEX2", kMaxex2Values, hot).refused.find("Ifd = 3.0000 pu"), std::string::npos);
   EXPECT_EQ(ControlBench("MAXEX2", {{"M", 0.0}, {"EFD2", 1.0}, {"TIME2", 90.0}}).problems.list().size(), 3u);
 }
 

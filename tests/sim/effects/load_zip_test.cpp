@@ -26,7 +26,7 @@ plant::Consumer consumer(std::vector<std::pair<const char*, double>> values) {
 }
 
 /// Power drawn at voltage v of a load that draws 0.8 + j0.3 pu at 0.98 pu.
-Complex drawn(const plant::Consumer& load, Complex v) {
+Complex drawn_by_zip(const plant::Consumer& load, Complex v) {
   const Complex v0 = std::polar(0.98, 0.3);
   const auto o = plant::load_operating_point(load, load.block.p, v0, 100.0, Conventions::psse());
   Signals<double> s;
@@ -39,19 +39,19 @@ Complex drawn(const plant::Consumer& load, Complex v) {
 TEST(LoadZip, DrawsItsPolynomial) {
   const auto load = consumer({{"Pi", 0.3}, {"Pp", 0.5}, {"Qi", 0.2}, {"Qp", 0.1}});
   const double v = 0.9 / 0.98;
-  const Complex s = drawn(load, std::polar(0.9, 0.3));
+  const Complex s = drawn_by_zip(load, std::polar(0.9, 0.3));
   EXPECT_NEAR(s.real(), 0.8 * (0.2 * v * v + 0.3 * v + 0.5), 1e-14);  // rounding
   EXPECT_NEAR(s.imag(), 0.3 * (0.7 * v * v + 0.2 * v + 0.1), 1e-14);
 }
 
 TEST(LoadZip, GivesWayBelowItsThresholdsWithoutAStepAndIsNothingAtZero) {
   const auto load = consumer({{"Pi", 0.3}, {"Pp", 0.5}});
-  const auto p = [&](double v) { return drawn(load, std::polar(v, 0.3)).real(); };
+  const auto p = [&](double v) { return drawn_by_zip(load, std::polar(v, 0.3)).real(); };
   const double half = 0.35, impedance = 0.2 * half * half / (0.98 * 0.98);
   // At 0.35 pu, half of Vp and 0.7 of Vi: the power part to 1/4, the current part from Vi with 0.49.
   EXPECT_NEAR(p(half), 0.8 * (impedance + 0.3 * 0.5 / 0.98 * 0.49 + 0.5 * 0.25), 1e-14);
   for (const double edge : {0.5, 0.7}) EXPECT_NEAR(p(edge + 1e-9), p(edge - 1e-9), 1e-8);  // slope < 3
-  EXPECT_EQ(drawn(load, 0.0), Complex());
+  EXPECT_EQ(drawn_by_zip(load, 0.0), Complex());
 }
 
 TEST(LoadZip, FollowsTheFrequencyOfItsBus) {
@@ -59,7 +59,7 @@ TEST(LoadZip, FollowsTheFrequencyOfItsBus) {
   const double df = 0.001, turn = 2 * 3.14159265358979323846 * 60 * 0.05 * df;
   const auto load = consumer({{"Kpf", 2.0}, {"Kqf", -1.0}});
   const Complex v0 = std::polar(0.98, 0.3), v = v0 * std::polar(1.0, std::atan(turn));
-  const Complex s = drawn(load, v);
+  const Complex s = drawn_by_zip(load, v);
   const double measured = turn / std::sqrt(1 + turn * turn) / (turn / df);
   EXPECT_NEAR(s.real(), 0.8 * (1 + 2 * measured), 1e-12);
   EXPECT_NEAR(s.imag(), 0.3 * (1 - measured), 1e-12);
@@ -68,7 +68,7 @@ TEST(LoadZip, FollowsTheFrequencyOfItsBus) {
 TEST(LoadZip, RefusesAnOperatingPointBelowItsThreshold) {
   const auto load = consumer({{"Pp", 0.5}, {"Vp", 1.0}});
   try {
-    (void)drawn(load, 1.0);
+    (void)drawn_by_zip(load, 1.0);
     FAIL();
   } catch (const InputError& e) {
     EXPECT_THAT(e.what(), HasSubstr("Vp = 1 pu"));

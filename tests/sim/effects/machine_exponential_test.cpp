@@ -12,8 +12,8 @@
 namespace swingbank::sim::effects {
 namespace {
 
-struct Machine {
-  Machine(const char* name, double s10, double s12, double ir, double ii)
+struct ExponentialMachine {
+  ExponentialMachine(const char* name, double s10, double s12, double ir, double ii)
       : effect(*library::compiled().find(name)) {
     p = effect.standard_parameters();
     at("S10") = s10;
@@ -47,7 +47,7 @@ TEST(ExponentialSaturation, PassesThroughBothFactors) {
 TEST(ExponentialSaturation, WithoutItTheMachinesAreTheQuadraticOnes) {
   // Tolerance: rounding; GENSAE finds its angle on another way than GENSAL.
   for (const auto& [exponential, quadratic] : {std::pair{"GENROE", "GENROU"}, {"GENSAE", "GENSAL"}}) {
-    const Machine a(exponential, 0.0, 0.0, 0.8, -0.3), b(quadratic, 0.0, 0.0, 0.8, -0.3);
+    const ExponentialMachine a(exponential, 0.0, 0.0, 0.8, -0.3), b(quadratic, 0.0, 0.0, 0.8, -0.3);
     for (std::size_t i = 0; i < a.x.size(); ++i) EXPECT_NEAR(a.x[i], b.x[i], 1e-14) << exponential << i;
     EXPECT_NEAR(a.s.Efd, b.s.Efd, 1e-14);
     EXPECT_NEAR(a.s.Tm, b.s.Tm, 1e-14);
@@ -58,8 +58,8 @@ TEST(ExponentialSaturation, WithoutItTheMachinesAreTheQuadraticOnes) {
 /// the flux lies in the d axis, psi''d = 1 + X'' Q, and the field needs psi''d (1 + Se) + (Xd - X'') Q.
 TEST(ExponentialSaturation, FieldByHand) {
   for (const char* name : {"GENROE", "GENSAE"}) {
-    EXPECT_NEAR(Machine(name, 0.1, 0.4, 0.0, 0.0).s.Efd, 1.1, 1e-14) << name;
-    Machine m(name, 0.1, 0.4, 0.0, -0.8);  // 1 + 0.25 * 0.8 = 1.2
+    EXPECT_NEAR(ExponentialMachine(name, 0.1, 0.4, 0.0, 0.0).s.Efd, 1.1, 1e-14) << name;
+    ExponentialMachine m(name, 0.1, 0.4, 0.0, -0.8);  // 1 + 0.25 * 0.8 = 1.2
     EXPECT_NEAR(m.s.Efd, 1.2 * 1.4 + (m.at("Xd") - 0.25) * 0.8, 1e-14) << name;
     EXPECT_NEAR(m.x[0], 0.0, 1e-15) << name;
   }
@@ -68,7 +68,7 @@ TEST(ExponentialSaturation, FieldByHand) {
 /// By the phasor diagram the q axis lies along E'' + jk I with k = (Xq - X'')/(1 + ks Se).
 TEST(ExponentialSaturation, AngleFollowsTheSaturatedQuadratureReactance) {
   for (const char* name : {"GENROE", "GENSAE"}) {
-    Machine m(name, 0.1, 0.4, 1.0, 0.0);
+    ExponentialMachine m(name, 0.1, 0.4, 1.0, 0.0);
     const double flux = std::hypot(1.0, 0.25), Se = 0.1 * std::pow(flux, std::log(4.0) / std::log(1.2));
     const double ks = (m.at("Xq") - 0.15) / (m.at("Xd") - 0.15);
     EXPECT_NEAR(m.x[0], std::atan(0.25 + (m.at("Xq") - 0.25) / (1.0 + ks * Se)), 1e-14) << name;

@@ -12,8 +12,8 @@ namespace {
 
 /// V = 1, I = 1 (unity power factor), Xd = 1.2, Xq = 0.75, Ra = 0: the q axis lies along 1 + j 0.75, a 3-4-5
 /// triangle, so cos delta = 0.8, sin delta = 0.6; Id = 0.6, Iq = 0.8, Vq = 0.8.
-struct Machine {
-  explicit Machine(double s10, double s12) {
+struct SalientMachine {
+  explicit SalientMachine(double s10, double s12) {
     p = effect.standard_parameters();
     p[static_cast<std::size_t>(effect.parameter_index("S10"))] = s10;
     p[static_cast<std::size_t>(effect.parameter_index("S12"))] = s12;
@@ -31,7 +31,7 @@ struct Machine {
 
 // Tolerances: rounding of a dozen operations near 1.
 TEST(MachineGensal, PhasorDiagram) {
-  const Machine m(0.0, 0.0);
+  const SalientMachine m(0.0, 0.0);
   EXPECT_EQ(m.refused, "");
   EXPECT_NEAR(m.x[0], std::atan2(3.0, 4.0), 1e-14);
   EXPECT_NEAR(m.x[2], 0.8 + 0.35 * 0.6, 1e-14);      // E'q = Vq + X'd Id
@@ -41,7 +41,7 @@ TEST(MachineGensal, PhasorDiagram) {
 }
 
 TEST(MachineGensal, SaturationAddsToTheFieldOfTheDirectAxisOnly) {
-  const Machine plain(0.0, 0.0), saturated(0.1, 0.4);
+  const SalientMachine plain(0.0, 0.0), saturated(0.1, 0.4);
   EXPECT_EQ(plain.x, saturated.x);
   // B (E - A)^2 = 0.1 at E = 1 and 1.2 * 0.4 at E = 1.2: sqrt is a straight line, at E = 1.01 as well.
   const double root = std::sqrt(0.1) + (std::sqrt(0.48) - std::sqrt(0.1)) * (1.01 - 1.0) / 0.2;

@@ -16,9 +16,9 @@ namespace {
 
 using Changes = std::vector<std::pair<const char*, double>>;
 
-struct Machine {
-  Machine(const char* name, const Changes& changes, Complex v, Complex i,
-          Conventions conventions = Conventions::psse())
+struct TypeJMachine {
+  TypeJMachine(const char* name, const Changes& changes, Complex v, Complex i,
+               Conventions conventions = Conventions::psse())
       : effect(*library::compiled().find(name)) {
     p = effect.standard_parameters();
     for (const auto& [parameter, value] : changes) at(parameter) = value;
@@ -69,17 +69,17 @@ double quadratic(double s10, double s12, double u) {  // sqrt(u Se) is a straigh
 /// flux lies in the d axis: the air gap holds 1 + Xl I, so u = 1 + (Xl + Kis) I, and the field needs
 /// (1 + Se) times the flux behind the saturated reactances: (1 + Se)(1 + Xl I) + (Xd - Xl) I.
 TEST(MachineGentpj, FieldByHand) {
-  EXPECT_NEAR(Machine("GENTPJ", {}, 1.0, 0.0).s.Efd, 1.1, 1e-14);  // tolerances: rounding
-  Machine over("GENTPJ", {{"Kis", 0.1}}, 1.0, {0.0, -0.8});        // 1 + (0.15 + 0.1) 0.8 = 1.2
+  EXPECT_NEAR(TypeJMachine("GENTPJ", {}, 1.0, 0.0).s.Efd, 1.1, 1e-14);  // tolerances: rounding
+  TypeJMachine over("GENTPJ", {{"Kis", 0.1}}, 1.0, {0.0, -0.8});        // 1 + (0.15 + 0.1) 0.8 = 1.2
   EXPECT_NEAR(over.s.Efd, 1.4 * (1.0 + 0.15 * 0.8) + (1.8 - 0.15) * 0.8, 1e-14);
   EXPECT_NEAR(over.x[0], 0.0, 1e-14);
-  Machine flux_alone("GENTPJ", {{"Kis", 0.0}}, 1.0, {0.0, -0.8});
+  TypeJMachine flux_alone("GENTPJ", {{"Kis", 0.0}}, 1.0, {0.0, -0.8});
   EXPECT_NEAR(flux_alone.s.Efd, (1.0 + quadratic(0.1, 0.4, 1.12)) * 1.12 + 1.65 * 0.8, 1e-14);
 }
 
 /// The q axis lies along V + (Ra + jXqs) I with Xqs = Xl + (Xq - Xl)/(1 + Se Xq/Xd).
 TEST(MachineGentpj, AngleFollowsTheSaturatedQuadratureReactance) {
-  Machine m("GENTPJ", {{"Kis", 0.08}, {"Ra", 0.01}}, 1.0, 0.9);
+  TypeJMachine m("GENTPJ", {{"Kis", 0.08}, {"Ra", 0.01}}, 1.0, 0.9);
   const double u = std::hypot(1.0 + 0.01 * 0.9, 0.15 * 0.9) + 0.08 * 0.9, Se = quadratic(0.1, 0.4, u);
   const double xqs = 0.15 + (1.7 - 0.15) / (1.0 + Se * 1.7 / 1.8);
   EXPECT_NEAR(m.x[0], std::atan2(xqs * 0.9, 1.0 + 0.01 * 0.9), 1e-14);
@@ -95,7 +95,7 @@ TEST(MachineGentpj, WithoutSaturationItIsGenrouWithLeakageUpToTheSubtransient) {
     Changes mine = common, theirs = common;
     mine.insert(mine.end(), {{"Xqpp", 0.25}, {"Kis", 0.2}});
     theirs.emplace_back("Xl", 0.25);
-    Machine a("GENTPJ", mine, v, i, conventions), b("GENROU", theirs, v, i, conventions);
+    TypeJMachine a("GENTPJ", mine, v, i, conventions), b("GENROU", theirs, v, i, conventions);
     for (const char* name : {"Tdop", "Tdopp", "Tqop", "Tqopp", "H", "Xd", "Xq", "Xdp"})
       ASSERT_EQ(a.at(name), b.at(name)) << name;
     ASSERT_EQ(a.x.size(), b.x.size());
@@ -117,7 +117,8 @@ TEST(MachineGentpj, CurrentIsConsistentWithItsSaturation) {
   for (const double kis : {0.0, 0.05, 0.15})
     for (const double depth : {1.0, 0.8, 0.3, 0.0})
       for (const double s12 : {0.2, 0.4, 1.2}) {
-        Machine m("GENTPJ", {{"Kis", kis}, {"S12", s12}, {"Ra", 0.003}}, std::polar(1.05, 0.2), {0.9, -0.4});
+        TypeJMachine m("GENTPJ", {{"Kis", kis}, {"S12", s12}, {"Ra", 0.003}}, std::polar(1.05, 0.2),
+                       {0.9, -0.4});
         const Complex v = std::polar(depth * 1.05, 0.15), turn(std::sin(m.x[0]), std::cos(m.x[0]));
         const Complex dq = v * turn;  // d + jq of the frame that the machine uses
         const auto dq_current = [&](double se) {
@@ -230,7 +231,7 @@ TEST(MachineGentpj, SingularValuesAreRefused) {
 }
 
 TEST(MachineGentpj, AMachineWithoutTransientCircuitInTheQuadratureAxis) {
-  Machine m("GENTPJ", {{"Tqop", 0.0}, {"Xq", 1.1}, {"Xqp", 1.1}}, 1.0, {0.8, -0.2});
+  TypeJMachine m("GENTPJ", {{"Tqop", 0.0}, {"Xq", 1.1}, {"Xqp", 1.1}}, 1.0, {0.8, -0.2});
   Problems problems;
   m.effect.check(nullptr, m.p.data(), "test", problems);
   EXPECT_TRUE(problems.empty());

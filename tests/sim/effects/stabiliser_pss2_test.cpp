@@ -7,7 +7,7 @@ namespace {
 
 using C = std::complex<double>;
 using Values = ControlBench::Changes;
-constexpr auto kVs = &Signals<double>::Vs;
+constexpr auto kOutput = &Signals<double>::Vs;
 
 double value(const Values& v, const char* name) { return v.contains(name) ? v.at(name) : 0.0; }
 /// s T/(1 + s T), or 1 for T = 0.
@@ -58,9 +58,10 @@ void expect_diagram(const char* name, Values v, double omega) {
   const C one = first(v, omega) * ramp_tracking(v, omega) * behind(v, omega);
   const C two = second(v, omega) * (value(v, "KS3") * ramp_tracking(v, omega) - 1.0) * behind(v, omega);
   // difference quotients over 1e-6, magnified by the leads' T1 T3 T10/(T2 T4 T11) = 150
-  EXPECT_LT(std::abs(bench.response(&Signals<double>::speed, kVs, omega) - one), 1e-6 * (1 + std::abs(one)))
+  EXPECT_LT(std::abs(bench.response(&Signals<double>::speed, kOutput, omega) - one),
+            1e-6 * (1 + std::abs(one)))
       << name << " at " << omega;
-  EXPECT_LT(std::abs(bench.response(&Signals<double>::P, kVs, omega) - two), 1e-6 * (1 + std::abs(two)))
+  EXPECT_LT(std::abs(bench.response(&Signals<double>::P, kOutput, omega) - two), 1e-6 * (1 + std::abs(two)))
       << name << " at " << omega;
 }
 
@@ -95,7 +96,7 @@ TEST(StabiliserPss2, EveryCodeReadsItsSignal) {
                                       : second(v, 7.0) * (0.9 * ramp_tracking(v, 7.0) - 1.0)) *
                       behind(v, 7.0);
       ControlBench bench("PSS2B", v);
-      EXPECT_LT(std::abs(bench.response(input, kVs, 7.0) - exact), 1e-6 * (1.0 + std::abs(exact)))
+      EXPECT_LT(std::abs(bench.response(input, kOutput, 7.0) - exact), 1e-6 * (1.0 + std::abs(exact)))
           << code << " = " << number;
     }
 }

@@ -10,7 +10,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-RawCase with(const std::string& transformer) {
+RawCase with_transformer(const std::string& transformer) {
   RawCase c;  // buses of 20 kV and 110 kV
   c.buses =
       "101,'LOW', 20.0,3,1,1,1,1.05,0.0\n102,'HIGH',110.0,2,1,1,1,1.02,-0.9\n"
@@ -20,12 +20,12 @@ RawCase with(const std::string& transformer) {
 }
 
 // 200 MVA, R 0.4 %, X 12 %, ratio 1.05 : 0.98, 30 degrees; no-load loss 0.1 MW and 0.5 % exciting current.
-struct Coding {
+struct TransformerCoding {
   const char *name, *text;
 };
-class PsseTransformer : public ::testing::TestWithParam<Coding> {};
+class PsseTransformer : public ::testing::TestWithParam<TransformerCoding> {};
 TEST_P(PsseTransformer, GivesTheSameBranch) {
-  const network::Network n = with(GetParam().text).read();
+  const network::Network n = with_transformer(GetParam().text).read();
   const network::Branch& b = n.branches.back();
   const double t2 = 0.98, r = 0.004 * 100 / 200 * t2 * t2, x = 0.12 * 100 / 200 * t2 * t2;
   const double g = 0.1 / 100, y = 0.005 * 200 / 100;
@@ -44,23 +44,24 @@ TEST_P(PsseTransformer, GivesTheSameBranch) {
 INSTANTIATE_TEST_SUITE_P(
     Codes, PsseTransformer,
     ::testing::Values(
-        Coding{"SystemBase",
-               "101,102,0,'T1',1,1,1,0.001,-0.00994987437106620,2,'A, "
-               "B',1,1,1\n0.002,0.06,200\n1.05,0,30.0\n0.98,0\n"},
-        Coding{"OwnBase",
-               "101,102,0,'T1',1,2,2,1e5,0.005,2,'',1,1,1\n0.004,0.12,200\n1.05,20,30.0\n0.98,110\n"},
-        Coding{"KiloVolt",
-               "101,102,0,'T1',2,2,2,1D5,0.005,2,'',1,1,1\n0.004,0.12,200\n21.0,0,30.0\n107.8,0\n"},
-        Coding{"Nominal",
-               "101,102,0,'T1',3,2,1,0.001,-0.00994987437106620,2,'',1,1,1\n0.004,0.12,200\n1.0,21,30.0\n"
-               "1.078,100\n"},
-        Coding{
+        TransformerCoding{"SystemBase",
+                          "101,102,0,'T1',1,1,1,0.001,-0.00994987437106620,2,'A, "
+                          "B',1,1,1\n0.002,0.06,200\n1.05,0,30.0\n0.98,0\n"},
+        TransformerCoding{
+            "OwnBase", "101,102,0,'T1',1,2,2,1e5,0.005,2,'',1,1,1\n0.004,0.12,200\n1.05,20,30.0\n0.98,110\n"},
+        TransformerCoding{
+            "KiloVolt", "101,102,0,'T1',2,2,2,1D5,0.005,2,'',1,1,1\n0.004,0.12,200\n21.0,0,30.0\n107.8,0\n"},
+        TransformerCoding{
+            "Nominal",
+            "101,102,0,'T1',3,2,1,0.001,-0.00994987437106620,2,'',1,1,1\n0.004,0.12,200\n1.0,21,30.0\n"
+            "1.078,100\n"},
+        TransformerCoding{
             "LoadLoss",
             "101,102,0,'T1',1,3,2,1e5,0.005,2,'',1,1,1\n8e5,0.12006664815842909,200\n1.05,0,30.0\n0.98,0\n"}),
     [](const auto& test) { return test.param.name; });
 
 TEST(PsseTransformerDefaults, CodesTapsAndBasesMayBeOmitted) {
-  const network::Branch b = with("101,102\n,0.06\n,\n1.0\n").read().branches.back();
+  const network::Branch b = with_transformer("101,102\n,0.06\n,\n1.0\n").read().branches.back();
   EXPECT_EQ(b.circuit, "1");
   EXPECT_EQ(b.tap, 1.0);
   EXPECT_EQ(b.x, 0.06);
@@ -72,7 +73,7 @@ TEST(PsseTransformerFaults, AreReportedWithLine) {
       "101,102,0,'1',4,5,6,0,0,2,'',1,1,1\n0,0,200\n-1.0,0,0\n1.0,0\n"
       "101,103,0,'1',1,2,1,0,0,2,'',1,1,1\n0,0.1,0\n1.0,0,0,0,0,0,0,0,0,0,0,0,0,7\n1.0,0\n"
       "102,103,0,'1',1,3,2,9e9,0.01,2,'',1,1,1\n9e9,0.1,100\n1.0,0,0\n1.0,0\n";
-  const RawCase c = with(text);
+  const RawCase c = with_transformer(text);
   const std::string all = sentences_of([&] { c.read(); });
   const int first = line_of(c.text(), "101,102,0,'1',4");
   const auto at = [&](int offset) { return "case.raw:" + std::to_string(first + offset); };
@@ -90,7 +91,7 @@ TEST(PsseTransformerFaults, AreReportedWithLine) {
 }
 
 TEST(PsseTransformerFaults, AnIncompleteRecordDoesNotSwallowTheNextSection) {
-  const RawCase c = with("101,102,0,'1',1,1,1\n0,0.1,100\n");
+  const RawCase c = with_transformer("101,102,0,'1',1,1,1\n0,0.1,100\n");
   const auto problems = problems_of([&] { c.read(); });
   ASSERT_EQ(problems.size(), 1u);
   EXPECT_THAT(problems[0].what, HasSubstr("2 lines"));

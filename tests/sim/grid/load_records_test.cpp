@@ -16,7 +16,7 @@ const std::string kMotor =
     "'CIM5BL' 1 1 0.01 0.07 3.5 0.012 0.15 0.02 0.3 1.0 0.05 1.2 0.4 300 0 0.7 0 12 5 1.5 0.9 /\n";
 const std::string kPowers = "'IEELBL' 1 0.2 0.3 0.5 0.6 0.4 0 1.5 -1 2 1 0 2 1 0 /\n";
 
-Grid load(const formats::RawCase& raw, const std::string& dyr) {
+Grid load_from(const formats::RawCase& raw, const std::string& dyr) {
   const formats::ScratchFile r("case.raw", raw.text()), d("case.dyr", dyr);
   return load_grid(r.path, d.path, Conventions::psse());
 }
@@ -25,36 +25,36 @@ formats::RawCase two_loads() {
   raw.loads = "103,'1',1,1,1,150.0,30.0,0,0,0,0,1,1,0\n103,'2',1,1,1,100.0,10.0,0,0,0,0,1,1,0\n";
   return raw;
 }
-double parameter(const plant::Block& block, const char* name) {
+double parameter_of(const plant::Block& block, const char* name) {
   return block.p.at(static_cast<std::size_t>(block.effect->parameter_index(name)));
 }
 
 TEST(LoadRecords, BelongToTheLoadOfTheirId) {
-  const Grid grid = load(two_loads(), kPlants + "103 " + kMotor);
+  const Grid grid = load_from(two_loads(), kPlants + "103 " + kMotor);
   ASSERT_EQ(grid.loads.size(), 1u);
   const plant::Consumer& motor = grid.loads[0];
   EXPECT_EQ(motor.name, "103/1");
   EXPECT_EQ(motor.block.effect->name, "CIM5");
   EXPECT_EQ(motor.consumption, Complex(1.5, 0.3));
-  EXPECT_EQ(parameter(motor.block, "X2"), 0.3);
-  EXPECT_EQ(parameter(motor.block, "Mbase"), 300.0);
-  EXPECT_EQ(parameter(motor.block, "E"), 1.5);  // CIM5BL calls it D
-  EXPECT_EQ(parameter(motor.block, "D"), 1.0);
-  EXPECT_EQ(parameter(motor.block, "Tnom"), 0.9);
+  EXPECT_EQ(parameter_of(motor.block, "X2"), 0.3);
+  EXPECT_EQ(parameter_of(motor.block, "Mbase"), 300.0);
+  EXPECT_EQ(parameter_of(motor.block, "E"), 1.5);  // CIM5BL calls it D
+  EXPECT_EQ(parameter_of(motor.block, "D"), 1.0);
+  EXPECT_EQ(parameter_of(motor.block, "Tnom"), 0.9);
 }
 
 TEST(LoadRecords, AStarMeansEveryLoadOfTheBus) {
   const Grid grid =
-      load(two_loads(), kPlants + "103 'IEELBL' * 0.2 0.3 0.5 0.6 0.4 0 1.5 -1 2 1 0 2 1 0 /\n");
+      load_from(two_loads(), kPlants + "103 'IEELBL' * 0.2 0.3 0.5 0.6 0.4 0 1.5 -1 2 1 0 2 1 0 /\n");
   ASSERT_EQ(grid.loads.size(), 2u);
   EXPECT_EQ(grid.loads[1].name, "103/2");
-  EXPECT_EQ(parameter(grid.loads[1].block, "a7"), 1.5);
-  EXPECT_EQ(parameter(grid.loads[1].block, "n2"), 1.0);
+  EXPECT_EQ(parameter_of(grid.loads[1].block, "a7"), 1.5);
+  EXPECT_EQ(parameter_of(grid.loads[1].block, "n2"), 1.0);
 }
 
 TEST(LoadRecords, ReadBackToTheLastBit) {
-  Grid grid = load(two_loads(),
-                   kPlants + "103 " + kMotor + "103 'IEELBL' 2 0.2 0.3 0.5 0.6 0.4 0 1.5 -1 2 1 0 2 1 0 /\n");
+  Grid grid = load_from(
+      two_loads(), kPlants + "103 " + kMotor + "103 'IEELBL' 2 0.2 0.3 0.5 0.6 0.4 0 1.5 -1 2 1 0 2 1 0 /\n");
   ASSERT_EQ(grid.loads.size(), 2u);
   for (plant::Consumer& c : grid.loads)
     for (const char* name : {"R1", "X1", "a2", "a7"})
@@ -73,7 +73,7 @@ TEST(LoadRecords, ReadBackToTheLastBit) {
 }
 
 TEST(LoadRecords, WhatADyrCannotHoldIsNotLostInSilence) {
-  Grid grid = load({}, kPlants + "103 " + kMotor);
+  Grid grid = load_from({}, kPlants + "103 " + kMotor);
   const auto set = [&](const char* name, double value) {
     grid.loads[0].block.p[static_cast<std::size_t>(grid.loads[0].block.effect->parameter_index(name))] =
         value;
@@ -86,7 +86,8 @@ TEST(LoadRecords, WhatADyrCannotHoldIsNotLostInSilence) {
 
 TEST(LoadRecords, EveryFaultIsReported) {
   const std::string all = formats::sentences_of([] {
-    load({}, kPlants + "103 " + kMotor + "103 " + kPowers + "999 " + kPowers + "103 'CIM5BL' 1 1 2 3 /\n");
+    load_from({},
+              kPlants + "103 " + kMotor + "103 " + kPowers + "999 " + kPowers + "103 'CIM5BL' 1 1 2 3 /\n");
   });
   EXPECT_THAT(all, HasSubstr("a second model, IEELBL for load '1' at bus 103"));
   EXPECT_THAT(all, HasSubstr("it already has CIM5BL"));
@@ -94,14 +95,15 @@ TEST(LoadRecords, EveryFaultIsReported) {
   EXPECT_THAT(all, HasSubstr("CIM5BL with 3 parameters"));
   EXPECT_THAT(all, HasSubstr("it takes 20: IT Ra Xa"));
   const std::string relay = formats::sentences_of([] {
-    load({}, kPlants + "103 'CIM5BL' 1 1 0.01 0.07 3.5 0.012 0.15 0 0 1 0 1.2 0 300 0 0.7 0.65 12 5 2 0 /\n");
+    load_from(
+        {}, kPlants + "103 'CIM5BL' 1 1 0.01 0.07 3.5 0.012 0.15 0 0 1 0 1.2 0 300 0 0.7 0.65 12 5 2 0 /\n");
   });
   EXPECT_THAT(relay, HasSubstr("VI = 0.65 pu"));
   EXPECT_THAT(relay, HasSubstr("case.dyr:3"));
 }
 
 TEST(LoadRecords, TheirLoadsKeepThemWhereTheOthersAreAsComposed) {
-  Grid grid = load(two_loads(), kPlants + "103 " + kMotor);
+  Grid grid = load_from(two_loads(), kPlants + "103 " + kMotor);
   Problems problems;
   loads_as_composed(grid, problems);
   problems.raise();
@@ -121,17 +123,17 @@ std::string powers(const std::string& ending, const std::string& id, double a1) 
          " 0.3 0.5 0.6 0.4 0 1.5 -1 2 1 0 2 1 0 /\n";
 }
 /// a1 of each load's model; -1 where it has none.
-std::vector<double> firsts(const Grid& grid) {
+std::vector<double> first_states(const Grid& grid) {
   std::vector<double> list(grid.network.loads.size(), -1.0);
   for (const plant::Consumer& c : grid.loads)
-    list[static_cast<std::size_t>(c.load)] = parameter(c.block, "a1");
+    list[static_cast<std::size_t>(c.load)] = parameter_of(c.block, "a1");
   return list;
 }
 
 TEST(LoadRecords, ReachTheLoadsOfAnAreaZoneOwnerOrAll) {
   using Firsts = std::vector<double>;
   const auto of = [](const std::string& records) {
-    return firsts(load(scattered_loads(), kPlants + records));
+    return first_states(load_from(scattered_loads(), kPlants + records));
   };
   EXPECT_EQ(of("3 " + powers("AR", "*", 0.25)), (Firsts{-1, 0.25}));
   EXPECT_EQ(of("2 " + powers("ZN", "*", 0.25)), (Firsts{0.25, 0.25}));
@@ -163,15 +165,16 @@ TEST(LoadRecords, AreasAreTheBusesUnlessTheLoadHasItsOwn) {
 
 TEST(LoadRecords, AMotorWithItsLoadTorqueReadsBack) {
   const Grid grid =
-      load({}, kPlants +
-                   "103 'CIM6BL' 1 1 0.01 0.07 3.5 0.012 0.15 0 0 1 0 1.2 0 300 0 0.7 0 12 5 0.5 "
-                   "0.2 0.1 1.5 0.3 0.9 /\n");
+      load_from({}, kPlants +
+                        "103 'CIM6BL' 1 1 0.01 0.07 3.5 0.012 0.15 0 0 1 0 1.2 0 300 0 0.7 0 12 5 0.5 "
+                        "0.2 0.1 1.5 0.3 0.9 /\n");
   ASSERT_EQ(grid.loads.size(), 1u);
   const plant::Block& motor = grid.loads[0].block;
   EXPECT_EQ(motor.effect->name, "CIM6");
   const double torque[] = {0.5, 0.2, 0.1, 1.5, 0.3, 0.9};
   int i = 0;
-  for (const char* name : {"A", "B", "D", "E", "C0", "Tnom"}) EXPECT_EQ(parameter(motor, name), torque[i++]);
+  for (const char* name : {"A", "B", "D", "E", "C0", "Tnom"})
+    EXPECT_EQ(parameter_of(motor, name), torque[i++]);
   const formats::ScratchFile file("out.dyr");
   write_dyr(grid, file.path);
   const Grid again =
@@ -183,17 +186,17 @@ TEST(LoadRecords, AMotorWithItsLoadTorqueReadsBack) {
 TEST(LoadRecords, AFrequencyDependentLoadIsComposedAsTheRawSays) {
   formats::RawCase raw;
   raw.loads = "103,'1',1,1,1,150.0,0.0,60.0,-20.0,40.0,-10.0,1,1,0\n";
-  Grid grid = load(raw, kPlants + "103 'LDFRBL' * 1.5 -1 0.5 0.25 /\n");
+  Grid grid = load_from(raw, kPlants + "103 'LDFRBL' * 1.5 -1 0.5 0.25 /\n");
   ASSERT_EQ(grid.loads.size(), 1u);
   const plant::Block& block = grid.loads[0].block;
   EXPECT_EQ(block.effect->name, "LDFR");
-  EXPECT_EQ(parameter(block, "s"), 0.25);
+  EXPECT_EQ(parameter_of(block, "s"), 0.25);
   const double v = std::abs(grid.flow.voltage[2]), p = 1.5 + 0.6 * v + 0.4 * v * v;
   const double q = -0.2 * v + 0.1 * v * v;  // YQ counts as susceptance
-  EXPECT_NEAR(parameter(block, "Pp"), 1.5 / p, 1e-15);
-  EXPECT_NEAR(parameter(block, "Pi"), 0.6 * v / p, 1e-15);
-  EXPECT_EQ(parameter(block, "Qp"), 0.0);
-  EXPECT_NEAR(parameter(block, "Qi"), -0.2 * v / q, 1e-14);
+  EXPECT_NEAR(parameter_of(block, "Pp"), 1.5 / p, 1e-15);
+  EXPECT_NEAR(parameter_of(block, "Pi"), 0.6 * v / p, 1e-15);
+  EXPECT_EQ(parameter_of(block, "Qp"), 0.0);
+  EXPECT_NEAR(parameter_of(block, "Qi"), -0.2 * v / q, 1e-14);
   const formats::ScratchFile file("out.dyr");
   write_dyr(grid, file.path);
   const Grid again =
@@ -205,14 +208,14 @@ TEST(LoadRecords, AFrequencyDependentLoadIsComposedAsTheRawSays) {
 }
 
 TEST(LoadRecords, AStarIsEveryLoadWithoutAModel) {
-  Grid grid = load(two_loads(), kPlants + "103 " + kMotor);
+  Grid grid = load_from(two_loads(), kPlants + "103 " + kMotor);
   Problems problems;
   choose_load(grid, "*:ZIP:Pi=1,Qp=0.5", "--load", problems);
   EXPECT_TRUE(problems.empty());
   ASSERT_EQ(grid.loads.size(), 2u);
   EXPECT_EQ(grid.loads[0].block.effect->name, "CIM5");
   EXPECT_EQ(grid.loads[1].block.effect->name, "ZIP");
-  EXPECT_EQ(parameter(grid.loads[1].block, "Pi"), 1.0);
+  EXPECT_EQ(parameter_of(grid.loads[1].block, "Pi"), 1.0);
   choose_load(grid, "*:ZIP", "--load", problems);
   EXPECT_THAT(formats::sentences_of([&] { problems.raise(); }),
               HasSubstr("no load without a model at --load"));
@@ -224,13 +227,13 @@ TEST(LoadRecords, StepUpTransformersStandInTheRaw) {
   raw.generators =
       "101,'1',153.0,73.0,100,-100,1.05,0,100,0,0.3,0,0,1,1\n"
       "102,'1',100.0,-3.0,100,-100,1.02,0,125,0,0.25,0.002,0.12,1,1\n";
-  Grid grid = load(raw, kPlants);
+  Grid grid = load_from(raw, kPlants);
   EXPECT_EQ(grid.plants[0].transformer.effect, nullptr);
   const plant::Block& step_up = grid.plants[1].transformer;
   ASSERT_NE(step_up.effect, nullptr);
-  EXPECT_EQ(parameter(step_up, "R"), 0.002);
-  EXPECT_EQ(parameter(step_up, "X"), 0.12);
-  EXPECT_EQ(parameter(step_up, "ratio"), 1.0);
+  EXPECT_EQ(parameter_of(step_up, "R"), 0.002);
+  EXPECT_EQ(parameter_of(step_up, "X"), 0.12);
+  EXPECT_EQ(parameter_of(step_up, "ratio"), 1.0);
   const formats::ScratchFile r("out.raw"), d("out.dyr");
   formats::write_raw(grid.network, r.path);
   write_dyr(grid, d.path);
@@ -246,15 +249,15 @@ TEST(LoadRecords, UserWrittenModelsThatAreOursAreReadAsThat) {
                     values = " 8.0 0.03 0.4 0.05 6.175 0.05 1.8 1.7 0.3 0.55 0.25 0.26 0.2 0.1 0.4 0.08 /\n";
   for (const std::string& record :
        {"'GENTPJU1' 1" + values, "'GENTPJ1' 1" + values, "'USRMDL' 1 'GENTPJU1' 1 1 0 16 6 1" + values}) {
-    const Grid grid = load({}, infinite + record);
+    const Grid grid = load_from({}, infinite + record);
     const plant::Block& machine = grid.plants[1].machine;
     EXPECT_EQ(machine.effect->name, "GENTPJ");
-    EXPECT_EQ(parameter(machine, "Tdop"), 8.0);
-    EXPECT_EQ(parameter(machine, "Xqpp"), 0.26);
-    EXPECT_EQ(parameter(machine, "Kis"), 0.08);
+    EXPECT_EQ(parameter_of(machine, "Tdop"), 8.0);
+    EXPECT_EQ(parameter_of(machine, "Xqpp"), 0.26);
+    EXPECT_EQ(parameter_of(machine, "Kis"), 0.08);
   }
   EXPECT_THAT(
-      formats::sentences_of([&] { load({}, infinite + "'USRMDL' 1 'GENTPJU1' 1 1 0 15 6 1" + values); }),
+      formats::sentences_of([&] { load_from({}, infinite + "'USRMDL' 1 'GENTPJU1' 1 1 0 15 6 1" + values); }),
       HasSubstr("GENTPJU1 with 22 parameters"));
 }
 

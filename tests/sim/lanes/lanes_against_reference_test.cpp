@@ -9,7 +9,7 @@ namespace swingbank::sim::lanes {
 namespace {
 
 /// Uniform in [low, high), the same on every platform (std::uniform_real_distribution is not).
-class Draws {
+class RandomDraws {
  public:
   double uniform(double low, double high) {
     return low + (high - low) * static_cast<double>(random_() >> 11) * 0x1p-53;
@@ -37,7 +37,7 @@ constexpr std::array<std::pair<double, double>, 15> kRanges = {{{2, 10},
                                                                 {0.01, 5},
                                                                 {0, 0}}};
 
-std::vector<double> physical_genrou(const Effect& effect, Draws& draws) {
+std::vector<double> physical_genrou(const Effect& effect, RandomDraws& draws) {
   for (;;) {
     std::vector<double> p;
     for (const auto& [low, high] : kRanges) p.push_back(draws.uniform(low, high));
@@ -50,9 +50,9 @@ struct Case {
   reference::ReferenceRun reference;
 };
 
-/// Draws events of the dataset's kind until `count` of them are stable in the reference.
+/// RandomDraws events of the dataset's kind until `count` of them are stable in the reference.
 std::vector<Case> stable_cases(const grid::Grid& grid, std::size_t count) {
-  Draws draws;
+  RandomDraws draws;
   std::vector<Case> cases;
   for (std::uint64_t id = 0; cases.size() < count && id < 20 * count; ++id) {
     Job job;

@@ -12,7 +12,7 @@
 namespace swingbank::sim::lanes {
 namespace {
 
-const grid::Grid& ieee39() {
+const grid::Grid& new_england() {
   static const grid::Grid grid =
       grid::load_grid(SWINGBANK_SOURCE "/configs/networks/ieee39_dataset_genrou.raw",
                       SWINGBANK_SOURCE "/configs/networks/ieee39_dataset_genrou.dyr", Conventions::psse());
@@ -21,7 +21,7 @@ const grid::Grid& ieee39() {
 /// With its loads composed as the .raw says: constant power, which is no linear function of the voltage.
 const grid::Grid& with_load_models() {
   static const grid::Grid grid = [] {
-    grid::Grid g = ieee39();
+    grid::Grid g = new_england();
     Problems problems;
     grid::loads_as_composed(g, problems);
     problems.raise();
@@ -102,7 +102,7 @@ TEST(OperatingStates, MixInOneBatch) {
   for (const int lanes : {1, 4, 8}) {
     BatchOptions options;
     options.lanes = lanes;
-    expect_its_own(ieee39(), options, 0.0);  // to the last bit
+    expect_its_own(new_england(), options, 0.0);  // to the last bit
   }
 }
 
@@ -122,8 +122,8 @@ TEST(OperatingStates, MixWithManySources) {
 }
 
 TEST(OperatingStates, StandStillUntilTheFault) {
-  const Mixed mixed(ieee39());
-  for (const auto& [id, t] : run(ieee39(), mixed.jobs, {}))
+  const Mixed mixed(new_england());
+  for (const auto& [id, t] : run(new_england(), mixed.jobs, {}))
     for (int p = 0; p < 10; ++p)
       for (int k = 0; k < 24; ++k)
         ASSERT_NEAR(t.at(p, static_cast<int>(Channel::speed))[k], 0.0, 1e-12) << id;

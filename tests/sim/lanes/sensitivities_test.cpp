@@ -18,7 +18,7 @@ BatchOptions sensitive(double tolerance) {
   options.sensitivities = true;
   return options;
 }
-Trajectory play(const grid::Grid& grid, const BatchOptions& options, const Job& job) {
+Trajectory play_one(const grid::Grid& grid, const BatchOptions& options, const Job& job) {
   Batch batch(grid, options);
   Trajectory result;
   bool given = false;
@@ -63,7 +63,7 @@ TEST(Sensitivities, EqualCentralDifferences) {
   job.seeds = seeds(grid, plant, {"H", "D", "Xd", "Xdp", "Xdpp", "Tdop", "S10", "Ra"});
   BatchOptions options = sensitive(1e-9);
   options.plants = {plant, 0};
-  const Trajectory dual = play(grid, options, job);
+  const Trajectory dual = play_one(grid, options, job);
   ASSERT_EQ(dual.outcome, Outcome::stable);
   options.sensitivities = false;
   options.tolerance = 1e-11;  // so that its own error, divided by the step below, stays beneath 1e-6
@@ -77,7 +77,7 @@ TEST(Sensitivities, EqualCentralDifferences) {
       auto p = grid.plants[plant].machine.p;
       p[static_cast<std::size_t>(seed.parameter.index)] += s == 0 ? h : -h;
       moved.parameters.push_back({plant, plant::kMachineBlock, p});
-      side[s] = play(grid, options, moved);
+      side[s] = play_one(grid, options, moved);
     }
     const bool at_edge = plant::parameter_value(grid.plants[plant], seed.parameter) == 0.0 &&
                          plant::parameter_record(grid.plants[plant], seed.parameter).name == "S10";
@@ -103,9 +103,9 @@ TEST(Sensitivities, ValuesAreThoseOfThePlainKernel) {
   job.event = fault(grid, 4);
   job.seeds = seeds(grid, 2, {"H", "Xd"});
   BatchOptions options = sensitive(1e-9);
-  const Trajectory dual = play(grid, options, job);
+  const Trajectory dual = play_one(grid, options, job);
   options.sensitivities = false;
-  const Trajectory plain = play(grid, options, job);
+  const Trajectory plain = play_one(grid, options, job);
   for (int row = 0; row < plain.rows(); ++row)
     for (int k = 0; k < plain.samples; ++k)  // other steps, each true to 1e-9 per step
       EXPECT_NEAR(dual.row(row)[k], plain.row(row)[k], 1e-6);
@@ -120,7 +120,7 @@ TEST(Sensitivities, EqualThoseOfCvodes) {
   BatchOptions options = sensitive(1e-10);
   options.channels = {Channel::delta, Channel::speed};
   options.plants = {1};
-  const Trajectory dual = play(grid, options, job);
+  const Trajectory dual = play_one(grid, options, job);
   test::ReducedSystem system(grid, job.event, job.seeds);
   test::CvodesSlopes cvodes(system, job.seeds);
   const auto columns = cvodes.columns(1, 2, dual.samples, dual.rate);

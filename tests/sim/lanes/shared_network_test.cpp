@@ -193,7 +193,7 @@ std::vector<Job> jobs() {
   return list;
 }
 
-std::map<std::uint64_t, Trajectory> run(const std::vector<Job>& list, BatchOptions options) {
+std::map<std::uint64_t, Trajectory> run_all(const std::vector<Job>& list, BatchOptions options) {
   static_assert(kMachines >= SharedNetwork<P8>::kMany);
   options.t_end = 1.0;
   Batch batch(grid(), options);
@@ -208,9 +208,9 @@ TEST(LanesOfManySources, AreTheRunsWithAMatrixEach) {
   BatchOptions one, eight;
   one.lanes = 1;  // shares with nobody
   eight.lanes = 8;
-  const auto a = run(jobs(), one), b = run(jobs(), eight);
+  const auto a = run_all(jobs(), one), b = run_all(jobs(), eight);
   eight.plants = {17, 2};
-  const auto two = run(jobs(), eight);
+  const auto two = run_all(jobs(), eight);
   for (const auto& [id, t] : a) {
     ASSERT_EQ(t.outcome, Outcome::stable) << id;
     const auto x = t.packed(), y = b.at(id).packed();
@@ -228,7 +228,7 @@ TEST(LanesOfManySources, AgreeWithTheReference) {
   for (Job& job : list) job.parameters.clear();
   reference::ReferenceOptions options;
   options.t_end = 1.0;
-  for (const auto& [id, t] : run(list, {})) {
+  for (const auto& [id, t] : run_all(list, {})) {
     const auto& job = *std::ranges::find(list, id, &Job::id);
     const auto x = t.packed(), y = reference::run_reference(grid(), job.event, options).packed();
     ASSERT_EQ(x.size(), y.size());
@@ -241,11 +241,11 @@ TEST(LanesOfManySources, ARecordDoesNotDependOnItsLaneOrNeighbours) {
   for (const int lanes : {4, 8}) {
     BatchOptions options;
     options.lanes = lanes;
-    const auto forward = run(list, options);
+    const auto forward = run_all(list, options);
     std::reverse(list.begin(), list.end());
-    const auto backward = run(list, options);
+    const auto backward = run_all(list, options);
     for (const Job& job : list) {
-      const auto alone = run({job}, options);
+      const auto alone = run_all({job}, options);
       EXPECT_EQ(forward.at(job.id).packed(), backward.at(job.id).packed()) << job.id;  // to the last bit
       EXPECT_EQ(forward.at(job.id).packed(), alone.at(job.id).packed()) << job.id;
     }

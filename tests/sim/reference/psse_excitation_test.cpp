@@ -10,7 +10,7 @@ namespace swingbank::sim::reference {
 namespace {
 
 /// The limit asked for: 0.2 % of each channel's swing.
-constexpr double kLimit = 2e-3;
+constexpr double kExcitationLimit = 2e-3;
 
 grid::Grid grid_of(const std::string& name) {
   const auto folder = test::psse_folder(name);
@@ -79,7 +79,7 @@ TEST(PsseRecords, Sexs) {
     return std::vector{s.V, out.real(), out.imag(), back.real(), back.imag(), s.Efd};
   });
   expect_agreement(record, ours, {"V102", "P101-103", "Q101-103", "P103-101", "Q103-101", "Efd"},
-                   std::vector(6, kLimit));
+                   std::vector(6, kExcitationLimit));
 }
 
 // Measured: Efd 0.004 %, V 0.014 %.
@@ -89,7 +89,7 @@ TEST(PsseRecords, Ieeest) {
   const Rows ours = rows_of(grid, [](const Signals<double>& s, const double*, const double*) {
     return std::vector{s.Efd, s.V};
   });
-  expect_agreement(record, ours, {"Efd", "V102"}, {kLimit, kLimit});
+  expect_agreement(record, ours, {"Efd", "V102"}, {kExcitationLimit, kExcitationLimit});
 }
 
 // Measured: angle 0.004 %, Efd 0.012 %.
@@ -99,7 +99,8 @@ TEST(PsseRecords, Tgov1WithEsac1a) {
   const auto see = [](const Signals<double>& s, const double* x, const double*) {
     return std::vector{x[0] * 180.0 / std::numbers::pi, s.Efd};
   };
-  expect_agreement(record, rows_of(grid, see, kInnerSteps), {"angle", "Efd"}, {kLimit, kLimit});
+  expect_agreement(record, rows_of(grid, see, kInnerSteps), {"angle", "Efd"},
+                   {kExcitationLimit, kExcitationLimit});
 }
 
 // GENSAL, EXST1 and HYGOV behind a transformer, line 1-4 circuit 1 opens; bus 1 stands behind its ZSORCE.
@@ -125,7 +126,7 @@ TEST(PsseRecords, Exst1WithGensalAndHygov) {
       },
       kInnerSteps);
   ours.erase(ours.begin() + 201);  // the record has the switching instant once, before the trip
-  expect_agreement(record, ours, {"V1", "V2", "V3", "V4", "speed", "Efd"}, std::vector(6, kLimit));
+  expect_agreement(record, ours, {"V1", "V2", "V3", "V4", "speed", "Efd"}, std::vector(6, kExcitationLimit));
 }
 
 /// The same with the reference integrator: Efd within 0.007 %, V within 0.29 %. The test above takes PSS/E's
@@ -151,7 +152,7 @@ TEST(PsseRecords, SexsByTheReferenceIntegrator) {
       if (std::abs(row[0] - 1.0) > 0.006)
         worst = std::max(worst, std::abs(ours[std::lround(row[0] * 200.0)] - theirs));
     }
-    EXPECT_LT(worst / (high - low), channel == 0 ? 3.5e-3 : kLimit) << "channel " << channel;
+    EXPECT_LT(worst / (high - low), channel == 0 ? 3.5e-3 : kExcitationLimit) << "channel " << channel;
   }
 }
 

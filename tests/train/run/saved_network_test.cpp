@@ -14,12 +14,12 @@ namespace {
 using namespace test;
 using nlohmann::json;
 
-struct World {
+struct SavedWorld {
   test::Folder folder;
   test::Plan plan;
   mpi::store::Dataset dataset;
   data::ShardStream stream;
-  explicit World(const std::string& name, data::InputForm form = data::InputForm::relative)
+  explicit SavedWorld(const std::string& name, data::InputForm form = data::InputForm::relative)
       : folder(name),
         plan(small(form == data::InputForm::physics)),
         dataset(test::make_dataset(folder.path / "data", plan)),
@@ -61,7 +61,7 @@ struct World {
 };
 
 /// Row of the dataset as an estimate wants it: channels speed, P.
-std::vector<float> record_of(const World& world, std::uint64_t row, std::size_t samples) {
+std::vector<float> record_of(const SavedWorld& world, std::uint64_t row, std::size_t samples) {
   const mpi::store::ShardInfo& shard = world.dataset.shards[row / world.plan.rows_per_shard];
   mpi::store::RowBlock block;
   mpi::store::read_rows(shard, row - shard.first_row, 1, block);
@@ -74,7 +74,7 @@ std::vector<float> record_of(const World& world, std::uint64_t row, std::size_t 
   return out;
 }
 
-json result_of(const RunRequest& r) {
+json saved_result_of(const RunRequest& r) {
   std::ifstream in(r.out / (run_name(r) + ".json"));
   return json::parse(in);
 }
@@ -82,7 +82,7 @@ json result_of(const RunRequest& r) {
 TEST(SavedNetwork, EstimatesWhatTheTrainedNetworkDid) {
   for (const auto& [network, pca] :
        {std::pair{"cnn", std::size_t{0}}, {"cnn", std::size_t{5}}, {"gru", std::size_t{0}}}) {
-    const World world(std::string("saved-") + network + std::to_string(pca), data::InputForm::both);
+    const SavedWorld world(std::string("saved-") + network + std::to_string(pca), data::InputForm::both);
     const RunRequest r = world.request(network, pca);
     ASSERT_EQ(run(world.stream, r), RunOutcome::done);
     const SavedNetwork saved = SavedNetwork::load(r.out);
@@ -102,7 +102,7 @@ TEST(SavedNetwork, EstimatesWhatTheTrainedNetworkDid) {
         square[p] += error * error / static_cast<double>(split.test.size());
       }
     }
-    const json result = result_of(r);
+    const json result = saved_result_of(r);
     for (std::size_t p = 0; p < 3; ++p)
       // One row at a time instead of a batch: single-precision sums in another order.
       EXPECT_NEAR(square[p], result["per_parameter"][p]["mse"].get<double>(), 1e-4 * square[p] + 1e-9)
@@ -111,7 +111,7 @@ TEST(SavedNetwork, EstimatesWhatTheTrainedNetworkDid) {
 }
 
 TEST(SavedNetwork, EstimatesFromPhysicalChannelsWhatTheTrainedNetworkDid) {
-  const World world("saved-physics", data::InputForm::physics);
+  const SavedWorld world("saved-physics", data::InputForm::physics);
   RunRequest r = world.request("mlp", 6);
   auto& recipe = r.experiment.presets["quick"].training["mlp"];
   recipe.loss_power = 0.5;
@@ -121,7 +121,7 @@ TEST(SavedNetwork, EstimatesFromPhysicalChannelsWhatTheTrainedNetworkDid) {
   ASSERT_EQ(run(world.stream, r), RunOutcome::done);
   const SavedNetwork saved = SavedNetwork::load(r.out);
   EXPECT_EQ(saved.info().fault_start, 0.5);
-  const json result = result_of(r);
+  const json result = saved_result_of(r);
   EXPECT_LT(result["ratio"].get<double>(), 0.9);
   const data::RowSplit split = data::leave_one_out(world.stream.labels(), 33, 0.1, 1);
   double square = 0.0;
@@ -134,7 +134,7 @@ TEST(SavedNetwork, EstimatesFromPhysicalChannelsWhatTheTrainedNetworkDid) {
 }
 
 TEST(SavedNetwork, SpreadIsThatOfTheGeneratorLeftOut) {
-  const World world("spread");
+  const SavedWorld world("spread");
   const RunRequest r = world.request("cnn");
   ASSERT_EQ(run(world.stream, r), RunOutcome::done);
   const SavedNetwork saved = SavedNetwork::load(r.out / (run_name(r) + ".network"));
@@ -161,7 +161,7 @@ TEST(SavedNetwork, SpreadIsThatOfTheGeneratorLeftOut) {
 }
 
 TEST(SavedNetwork, RefusesWhatIsNone) {
-  const World world("none");
+  const SavedWorld world("none");
   RunRequest r = world.request("cnn");
   const auto refusal = [](const std::filesystem::path& path) {
     try {

@@ -10,28 +10,17 @@
 
 #include "base/in_parallel.hpp"
 #include "sim/library/library.hpp"
+#include "tests/validate/calibrate/example.hpp"
 #include "tests/validate/playin/support.hpp"
 #include "validate/calibrate/report.hpp"
 
 namespace swingbank::validate::calibrate {
 namespace {
 
+using namespace readme;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-sim::plant::Block sexs(double gain_ratio, double gain, double TB, double TE) {
-  return {sim::library::compiled().find("SEXS"), {gain_ratio, TB, gain, TE, -4.0, 5.0}};
-}
-std::vector<record::Record> example_records(const plant::PlantModel& model, int count) {
-  std::vector<record::Record> records;
-  for (int k = 1; k <= count; ++k)
-    records.push_back(record::read_record(
-        test::source(fmt::format("configs/records/record-example/avr_ev{}.csv", k)), model.record_base));
-  return records;
-}
-plant::PlantModel example() {
-  return plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
-}
 const CalibratedParameter& parameter(const Calibration& c, const std::string& name) {
   return *std::ranges::find(c.parameters, name, [](const auto& p) { return p.fit.name; });
 }

@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "sim/library/library.hpp"
+#include "tests/validate/calibrate/example.hpp"
 #include "tests/validate/playin/support.hpp"
 #include "validate/calibrate/side_by_side.hpp"
 #include "validate/plant/plant_file.hpp"
@@ -17,22 +18,10 @@
 namespace swingbank::validate::calibrate {
 namespace {
 
+using namespace readme;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-sim::plant::Block sexs(double gain_ratio, double gain, double TB, double TE) {
-  return {sim::library::compiled().find("SEXS"), {gain_ratio, TB, gain, TE, -4.0, 5.0}};
-}
-plant::PlantModel example() {
-  return plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
-}
-std::vector<record::Record> example_records(const plant::PlantModel& model, int count) {
-  std::vector<record::Record> records;
-  for (int k = 1; k <= count; ++k)
-    records.push_back(record::read_record(
-        test::source(fmt::format("configs/records/record-example/avr_ev{}.csv", k)), model.record_base));
-  return records;
-}
 /// Every free parameter 10 % off, up and down in turn; limits of the exciter as they are.
 plant::PlantModel off(plant::PlantModel model) {
   int sign = 1;

@@ -11,24 +11,19 @@
 #include <nlohmann/json.hpp>
 
 #include "sim/library/library.hpp"
+#include "tests/validate/calibrate/example.hpp"
 #include "tests/validate/playin/support.hpp"
 #include "validate/calibrate/side_by_side.hpp"
 
 namespace swingbank::validate::calibrate {
 namespace {
 
+using namespace readme;
 using nlohmann::json;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-plant::PlantModel example() {
-  return plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
-}
-record::Record event(const plant::PlantModel& model, int k) {
-  return record::read_record(test::source(fmt::format("configs/records/record-example/avr_ev{}.csv", k)),
-                             model.record_base);
-}
 json estimate_json(const std::string& name, double value, double low, double high,
                    const std::string& effect = "GENROU") {
   return {{"name", name}, {"effect", effect}, {"unit", "s"}, {"estimate", value}, {"spread", 0.4},
@@ -108,7 +103,7 @@ TEST(NetworkStart, IsOneOfTheStartsAndStandsBesideTheFit) {
     const auto name = std::string(sim::plant::parameter_record(model.plant, f.id).name);
     if (name != "H" && name != "Tdop") options.fixed.push_back(name);
   }
-  const Calibration c = calibrate(model, {event(model, 1)}, options);
+  const Calibration c = calibrate(model, {example_record(model, 1)}, options);
   ASSERT_EQ(c.started.size(), 2U);
   EXPECT_EQ(c.started[1].name, "network");
   EXPECT_GT(c.started[1].before, c.started[0].before);  // its H is a fifth off, the model's is right
@@ -123,7 +118,7 @@ TEST(NetworkStart, IsOneOfTheStartsAndStandsBesideTheFit) {
 
 TEST(NetworkStart, RefusesEventsHeldOutAndOtherFiles) {
   const plant::PlantModel model = example();
-  const std::vector<record::Record> records = {event(model, 1), event(model, 2)};
+  const std::vector<record::Record> records = {example_record(model, 1), example_record(model, 2)};
   const EstimateFile file(Parameters{estimate_json("H", 7, 1, 10)}, "GENROU",
                           fmt::format("{:016x}", records[1].hash));
   EXPECT_THAT(test::messages([&] {

@@ -19,7 +19,7 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-std::string example() {
+std::string example_text() {
   std::ifstream in(test::source("configs/plants/ieee14_bus2.toml"));
   return {std::istreambuf_iterator<char>(in), {}};
 }
@@ -58,11 +58,11 @@ TEST_F(PlantModelTest, ReadsLawsBesideIt) {
   const std::string law = test::source("configs/laws/torque_voltage_dip.toml");
   const std::string shaft =
       "\n[shaft]\neffect = \"DIPTORQUE\"\nloss = 0.2\nthreshold = 0.1\ndepth = 0.3\nrecovery = 2.0\n";
-  const PlantModel m = load("laws = [\"" + law + "\"]\n" + example() + shaft);
+  const PlantModel m = load("laws = [\"" + law + "\"]\n" + example_text() + shaft);
   ASSERT_EQ(m.plant.controls.size(), 1u);
   EXPECT_EQ(m.plant.controls[0].effect->name, "DIPTORQUE");
   EXPECT_EQ(m.plant.controls[0].p, (std::vector<double>{0.2, 0.1, 0.3, 2.0}));
-  EXPECT_THAT(faults("laws = [\"none.toml\"]\n" + example()),
+  EXPECT_THAT(faults("laws = [\"none.toml\"]\n" + example_text()),
               ElementsAre(AllOf(HasSubstr("no readable law file"), HasSubstr("none.toml"))));
 }
 /// Plants in files of their own folders, each with a law of the same file name and effect.
@@ -76,7 +76,7 @@ TEST_F(PlantModelTest, ThreadsReadPlantsWhoseLawsHaveOneName) {
                    depth + " * K * (V - V0)\"\n[parameters]\nK = { unit = \"pu\", standard = " + depth +
                    ", low = 0.0, high = 9.0, meaning = \"gain\" }\n");
     write_file(own / "plant.toml",
-               "laws = [\"law.toml\"]\n" + example() + "\n[shaft]\neffect = \"MINE\"\nK = 1.0\n");
+               "laws = [\"law.toml\"]\n" + example_text() + "\n[shaft]\neffect = \"MINE\"\nK = 1.0\n");
     return load_plant_model(own / "plant.toml");
   };
   const std::vector<std::string> depths = {"1.5", "2.5"};
@@ -98,26 +98,27 @@ TEST_F(PlantModelTest, ThreadsReadPlantsWhoseLawsHaveOneName) {
   EXPECT_EQ(load_plant_model(test::source("configs/plants/ieee14_bus2.toml")).library.find("MINE"), nullptr);
 }
 TEST_F(PlantModelTest, EveryParameterMustBeThere) {
-  EXPECT_THAT(faults(replaced(example(), "Xqp = 0.6\n", "")), ElementsAre(HasSubstr("machine.Xqp")));
+  EXPECT_THAT(faults(replaced(example_text(), "Xqp = 0.6\n", "")), ElementsAre(HasSubstr("machine.Xqp")));
 }
 TEST_F(PlantModelTest, UnknownParametersListTheKnownOnes) {
-  EXPECT_THAT(faults(replaced(example(), "Ra = 0.0", "Ra = 0.0\nXddp = 0.2")),
+  EXPECT_THAT(faults(replaced(example_text(), "Ra = 0.0", "Ra = 0.0\nXddp = 0.2")),
               ElementsAre(AllOf(HasSubstr("Xddp"), HasSubstr("Xdpp"), HasSubstr("Tqopp"))));
 }
 TEST_F(PlantModelTest, UnknownEffectsListTheKnownOnes) {
-  EXPECT_THAT(faults(replaced(example(), "\"GENROU\"", "\"GENSOL\"")),
+  EXPECT_THAT(faults(replaced(example_text(), "\"GENROU\"", "\"GENSOL\"")),
               Contains(AllOf(HasSubstr("GENSOL"), HasSubstr("GENCLS"), HasSubstr("GENROU"))));
 }
 TEST_F(PlantModelTest, ValuesMustBePossibleAndConsistent) {
-  EXPECT_THAT(faults(replaced(example(), "H = 6.54", "H = 654")),
+  EXPECT_THAT(faults(replaced(example_text(), "H = 6.54", "H = 654")),
               ElementsAre(AllOf(HasSubstr("H = 654"), HasSubstr("20"))));
-  EXPECT_THAT(faults(replaced(example(), "Xdp = 0.4", "Xdp = 0.1")),
+  EXPECT_THAT(faults(replaced(example_text(), "Xdp = 0.4", "Xdp = 0.1")),
               ElementsAre(HasSubstr("GENROU divides by X'd - Xl")));
-  EXPECT_THAT(faults(replaced(example(), "H = 6.54", "H = \"6.54\"")), ElementsAre(HasSubstr("machine.H")));
+  EXPECT_THAT(faults(replaced(example_text(), "H = 6.54", "H = \"6.54\"")),
+              ElementsAre(HasSubstr("machine.H")));
 }
 TEST_F(PlantModelTest, AllFaultsAtOnce) {
   const auto all =
-      faults(replaced(replaced(replaced(example(), "Xqp = 0.6\n", ""), "frequency_hz = 60.0\n", ""),
+      faults(replaced(replaced(replaced(example_text(), "Xqp = 0.6\n", ""), "frequency_hz = 60.0\n", ""),
                       "[record]", "[recordings]"));
   EXPECT_THAT(all, Contains(HasSubstr("Xqp")));
   EXPECT_THAT(all, Contains(HasSubstr("frequency_hz")));

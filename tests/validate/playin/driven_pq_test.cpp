@@ -26,7 +26,7 @@ PowerResponse play_back(const sim::plant::PlantUnderTest& tested, const record::
                          .voltage = &voltage,
                          .start = pre_event_point(r, switchings, 1.0)});
 }
-double worst(const std::vector<double>& a, const std::vector<double>& b) {
+double worst_of(const std::vector<double>& a, const std::vector<double>& b) {
   double w = 0;
   for (std::size_t k = 0; k < a.size(); ++k) w = std::max(w, std::abs(a[k] - b[k]));
   return w;
@@ -42,9 +42,9 @@ Errors errors(const test::Simulated& s, int stride) {
     for (int k = 0; k < s.before.samples; k += stride) r.speed.push_back(s.before.at(plant, 4)[k]);
     const PowerResponse back = play_back({s.grid.plants[static_cast<std::size_t>(plant)], s.grid.conventions},
                                          r, test::instants(s, plant, false));
-    e.V = std::max(e.V, worst(back.V, r.V));
-    e.theta = std::max(e.theta, worst(back.theta, r.theta));
-    e.speed = std::max(e.speed, worst(back.speed, r.speed));
+    e.V = std::max(e.V, worst_of(back.V, r.V));
+    e.theta = std::max(e.theta, worst_of(back.theta, r.theta));
+    e.speed = std::max(e.speed, worst_of(back.speed, r.speed));
   }
   return e;
 }
@@ -86,7 +86,7 @@ TEST(DrivenByPowerTest, SeesAWrongReactance) {
   sim::plant::Plant wrong = s.grid.plants[2];
   wrong.machine.p[static_cast<std::size_t>(wrong.machine.effect->parameter_index("Xdp"))] *= 1.2;
   // 20 % of X'd, times a change of current of some tenths, is more than a hundredth of the voltage.
-  EXPECT_GT(worst(play_back({wrong, s.grid.conventions}, r, test::instants(s, 2, false)).V, r.V), 0.01);
+  EXPECT_GT(worst_of(play_back({wrong, s.grid.conventions}, r, test::instants(s, 2, false)).V, r.V), 0.01);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 constexpr double kPi = std::numbers::pi, kTurn = 2 * kPi;
-const RecordBase kBase{200, 60, 138};
+const RecordBase kComtradeBase{200, 60, 138};
 
 struct Channel {
   std::string id, phase, component, unit;
@@ -105,10 +105,10 @@ struct Writer {
     }
     return all;
   }
-  Record read(const RecordBase& base = kBase, const ReadOptions& options = {}) const {
+  Record read(const RecordBase& base = kComtradeBase, const ReadOptions& options = {}) const {
     return record_of_comtrade(parse_comtrade(cfg(), dat(), "e.cfg", "e.dat"), "e.cfg", base, options);
   }
-  [[nodiscard]] std::vector<std::string> faults(const RecordBase& base = kBase,
+  [[nodiscard]] std::vector<std::string> faults(const RecordBase& base = kComtradeBase,
                                                 const ReadOptions& options = {}) const {
     return test::messages([&] { read(base, options); });
   }
@@ -213,7 +213,7 @@ TEST(RecordComtradeTest, WaveformsBecomePhasors) {
   EXPECT_THAT(r.notes, Contains(HasSubstr("window of one cycle")));
   // The mean over a cycle of what moves at 0.5 Hz: 0.05 (2 pi 0.5/60)^2 / 24 and less; floats add 1e-6.
   EXPECT_LT(largest_error(r, {}), 1e-5);
-  EXPECT_DOUBLE_EQ(waveforms({}).read(kBase, {.phasor_rate = 240}).rate(), 240);
+  EXPECT_DOUBLE_EQ(waveforms({}).read(kComtradeBase, {.phasor_rate = 240}).rate(), 240);
 }
 TEST(RecordComtradeTest, HarmonicsAndImbalanceDropOut) {
   const Machine m{.harmonic = 0.05, .negative = 0.03};
@@ -263,7 +263,7 @@ TEST(RecordComtradeTest, OneCircuitOfSeveral) {
   }
   EXPECT_THAT(w.faults(),
               ElementsAre(AllOf(HasSubstr("several three-phase current"), HasSubstr("G7, line 3"))));
-  EXPECT_LT(largest_error(w.read(kBase, {.terminal = "G7"}), {}), 1e-5);
+  EXPECT_LT(largest_error(w.read(kComtradeBase, {.terminal = "G7"}), {}), 1e-5);
 }
 TEST(RecordComtradeTest, TimesFromStamps) {
   Writer w = phasors(2013, "BINARY");
@@ -359,15 +359,15 @@ TEST_F(ComtradeFileTest, EitherFileOfThePairNamesIt) {
   const Writer w = phasors(1999, "BINARY");
   write("e.cfg", w.cfg());
   write("e.dat", w.dat());
-  const Record r = read_record(folder_ / "e.cfg", kBase);
+  const Record r = read_record(folder_ / "e.cfg", kComtradeBase);
   EXPECT_EQ(r.samples(), 90);
   EXPECT_EQ(r.name, "e.cfg");
-  EXPECT_EQ(read_record(folder_ / "e.dat", kBase).hash, r.hash);
+  EXPECT_EQ(read_record(folder_ / "e.dat", kComtradeBase).hash, r.hash);
   write("F.CFG", w.cfg());
   write("F.DAT", w.dat());
-  EXPECT_EQ(read_record(folder_ / "F.CFG", kBase).hash, r.hash);
+  EXPECT_EQ(read_record(folder_ / "F.CFG", kComtradeBase).hash, r.hash);
   write("alone.cfg", w.cfg());
-  EXPECT_THAT(test::messages([&] { read_record(folder_ / "alone.cfg", kBase); }),
+  EXPECT_THAT(test::messages([&] { read_record(folder_ / "alone.cfg", kComtradeBase); }),
               ElementsAre(HasSubstr("alone.dat")));
 }
 TEST_F(ComtradeFileTest, OneFile) {
@@ -379,10 +379,10 @@ TEST_F(ComtradeFileTest, OneFile) {
     write("e.cff", "--- file type: CFG ---\r\n" + w.cfg() +
                        "--- file type: INF ---\r\n\r\n--- file type: HDR ---\r\n\r\n" +
                        "--- file type: DAT " + heading + " ---\r\n" + dat);
-    EXPECT_EQ(read_record(folder_ / "e.cff", kBase).samples(), 90) << kind;
+    EXPECT_EQ(read_record(folder_ / "e.cff", kComtradeBase).samples(), 90) << kind;
   }
   write("e.cff", "nothing");
-  EXPECT_THAT(test::messages([&] { read_record(folder_ / "e.cff", kBase); }),
+  EXPECT_THAT(test::messages([&] { read_record(folder_ / "e.cff", kComtradeBase); }),
               ElementsAre(HasSubstr("e.cff")));
 }
 

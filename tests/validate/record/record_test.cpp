@@ -32,7 +32,7 @@ std::string text_of(int n, F edit) {
 std::string sound(int n = 40) {
   return text_of(n, [](int, std::string&) {});
 }
-std::vector<std::string> faults(const std::string& text, const RecordBase& base = {}) {
+std::vector<std::string> faults_of(const std::string& text, const RecordBase& base = {}) {
   return test::messages([&] { parse_record(text, "r.csv", base); });
 }
 
@@ -69,14 +69,14 @@ TEST(RecordTest, HashIsOfTheBytes) {
 
 TEST(RecordTest, MissingColumnsAreAllNamed) {
   EXPECT_THAT(
-      faults("t_s,V_pu,f_pu\n0,1,1\n"),
+      faults_of("t_s,V_pu,f_pu\n0,1,1\n"),
       ElementsAre(HasSubstr("theta_rad, theta_deg"), HasSubstr("P_pu, P_MW"), HasSubstr("Q_pu, Q_Mvar")));
 }
 TEST(RecordTest, ColumnsNeedAKnownUnit) {
-  EXPECT_THAT(faults("t_s,V_pu,theta_rad,P,Q_kvar\n"),
+  EXPECT_THAT(faults_of("t_s,V_pu,theta_rad,P,Q_kvar\n"),
               ElementsAre(AllOf(HasSubstr("'P'"), HasSubstr("P_pu, P_MW")), HasSubstr("'Q_kvar'")));
-  EXPECT_THAT(faults("t_s,V_kV,theta_rad,P_pu,Q_pu\n"), ElementsAre(HasSubstr("base_kv")));
-  EXPECT_THAT(faults("t_s,V_pu,theta_rad,P_pu,P_MW,Q_pu\n"),
+  EXPECT_THAT(faults_of("t_s,V_kV,theta_rad,P_pu,Q_pu\n"), ElementsAre(HasSubstr("base_kv")));
+  EXPECT_THAT(faults_of("t_s,V_pu,theta_rad,P_pu,P_MW,Q_pu\n"),
               ElementsAre(HasSubstr("another column gives the same quantity")));
 }
 TEST(RecordTest, EveryFaultOfAFileIsToldWithItsLine) {
@@ -88,7 +88,7 @@ TEST(RecordTest, EveryFaultOfAFileIsToldWithItsLine) {
     if (k == 20) line = "0.36,1.01,0.1,0.5,0.2";  // the time of the line before
     if (k == 30) line = "0.2,1.01,0.1,0.5,0.2";
   });
-  const auto all = faults(text);
+  const auto all = faults_of(text);
   EXPECT_THAT(all, Contains(AllOf(HasSubstr("V_pu = 'nan'"), HasSubstr("r.csv:4"), HasSubstr("missing"))));
   EXPECT_THAT(all, Contains(AllOf(HasSubstr("'x5'"), HasSubstr("r.csv:6"), HasSubstr("no number"))));
   EXPECT_THAT(all, Contains(AllOf(HasSubstr("P_pu = ''"), HasSubstr("r.csv:8"), HasSubstr("missing"))));
@@ -97,20 +97,20 @@ TEST(RecordTest, EveryFaultOfAFileIsToldWithItsLine) {
   EXPECT_THAT(all, Contains(AllOf(HasSubstr("r.csv:31"), HasSubstr("backwards"))));
 }
 TEST(RecordTest, AGapIsAFault) {
-  const auto all = faults(text_of(60, [](int k, std::string& line) {
+  const auto all = faults_of(text_of(60, [](int k, std::string& line) {
     if (k > 30) line = fmt::format("{},1.01,0.1,0.5,0.2", k * 0.02);
   }));
   EXPECT_THAT(all, ElementsAre(AllOf(HasSubstr("a step of 0.04 s"), HasSubstr("r.csv:32"))));
 }
 TEST(RecordTest, TooShortOrEmpty) {
-  EXPECT_THAT(faults(sound(kFewestSamples - 1)), ElementsAre(HasSubstr("29 samples")));
-  EXPECT_TRUE(faults(sound(kFewestSamples)).empty());
-  EXPECT_THAT(faults(""), ElementsAre(HasSubstr("empty record")));
+  EXPECT_THAT(faults_of(sound(kFewestSamples - 1)), ElementsAre(HasSubstr("29 samples")));
+  EXPECT_TRUE(faults_of(sound(kFewestSamples)).empty());
+  EXPECT_THAT(faults_of(""), ElementsAre(HasSubstr("empty record")));
   EXPECT_THAT(test::messages([] { read_record("no/such/file.csv", {}); }),
               ElementsAre(HasSubstr("no/such/file.csv")));
 }
 TEST(RecordTest, ALongListOfFaultsIsCut) {
-  const auto all = faults(text_of(200, [](int k, std::string& line) {
+  const auto all = faults_of(text_of(200, [](int k, std::string& line) {
     if (k > 0 && k % 2 == 0) line += ",1";  // neighbours would be one sentence
   }));
   EXPECT_THAT(all, SizeIs(51));

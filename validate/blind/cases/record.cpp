@@ -10,7 +10,7 @@
 namespace swingbank::validate::blind::cases {
 namespace {
 
-enum FineChannel { kV, kTheta, kP, kQ, kSpeed, kIfd };
+enum FineChannel { kFineV, kFineTheta, kFineP, kFineQ, kFineSpeed, kFineIfd };
 
 /// The reference P-class filter of IEEE Std C37.118.1-2011, annex C: triangular over two cycles of nominal
 /// frequency, w(k) = 1 - 2|k|/(N + 2), here normalised. Ends are held.
@@ -36,10 +36,10 @@ sim::Phasors phasors(const sim::reference::ReferenceRun& fine, double frequency)
   p.rate = fine.rate;
   p.frequency = frequency;
   for (int k = 0; k < fine.samples; ++k) {
-    const Complex v = std::polar(fine.at(0, kV)[k], fine.at(0, kTheta)[k]);
+    const Complex v = std::polar(fine.at(0, kFineV)[k], fine.at(0, kFineTheta)[k]);
     p.V.push_back(v);
-    p.I.push_back(std::conj(Complex(fine.at(0, kP)[k], fine.at(0, kQ)[k]) / v));
-    const double* theta = fine.at(0, kTheta);
+    p.I.push_back(std::conj(Complex(fine.at(0, kFineP)[k], fine.at(0, kFineQ)[k]) / v));
+    const double* theta = fine.at(0, kFineTheta);
     p.df.push_back(k == 0 ? 0.0 : (theta[k] - theta[k - 1]) * fine.rate / (constants::turn * frequency));
   }
   return p;
@@ -81,8 +81,8 @@ record::Record measured(const sim::reference::ReferenceRun& fine, const sim::pla
     r.theta.push_back(angle);
     r.P.push_back(power.real());
     r.Q.push_back(power.imag());
-    r.speed.push_back(fine.at(0, kSpeed)[k]);
-    r.Ifd.push_back(fine.at(0, kIfd)[k]);
+    r.speed.push_back(fine.at(0, kFineSpeed)[k]);
+    r.Ifd.push_back(fine.at(0, kFineIfd)[k]);
   }
   return r;
 }

@@ -57,8 +57,6 @@ std::string unseen_words(const laws::LawFinding& f) {
   return f.judgement.held_out.empty() ? "–" : fmt::format("≤ {:.2f} ×", worst);
 }
 
-nlohmann::json number(double v) { return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(nullptr); }
-
 nlohmann::json finding_json(const laws::LawFinding& f) {
   const hypothesis::Judgement& j = f.judgement;
   nlohmann::json law = {{"name", j.hypothesis.name},
@@ -67,23 +65,20 @@ nlohmann::json finding_json(const laws::LawFinding& f) {
                         {"signal", f.law.signal},
                         {"accepted", j.accepted},
                         {"why_not", j.why_not},
-                        {"evidence", number(j.gain)},
-                        {"rms_in_noise", number(std::sqrt(j.fit.misfit()))},
-                        {"explained_of_input", number(f.law.explained)},
+                        {"evidence", j.gain},
+                        {"rms_in_noise", std::sqrt(j.fit.misfit())},
+                        {"explained_of_input", f.law.explained},
                         {"law_file", f.toml},
                         {"parameters", nlohmann::json::array()},
                         {"unseen", nlohmann::json::array()}};
   for (const auto& p : j.fit.parameters)
     if (p.where.id.block == j.hypothesis.free.front().id.block)
-      law["parameters"].push_back({{"name", p.name},
-                                   {"unit", p.unit},
-                                   {"value", p.value},
-                                   {"low_95", number(p.low)},
-                                   {"high_95", number(p.high)}});
+      law["parameters"].push_back(
+          {{"name", p.name}, {"unit", p.unit}, {"value", p.value}, {"low_95", p.low}, {"high_95", p.high}});
   for (const auto& u : j.held_out)
     law["unseen"].push_back({{"record", u.record},
-                             {"rms_in_noise_before", number(std::sqrt(u.before))},
-                             {"rms_in_noise_after", number(std::sqrt(u.after))}});
+                             {"rms_in_noise_before", std::sqrt(u.before)},
+                             {"rms_in_noise_after", std::sqrt(u.after)}});
   return law;
 }
 
