@@ -14,7 +14,10 @@ compile() {
   python3 - "$build/compile_commands.json" "$source/$1" "$work/try.cpp" <<'PYTHON'
 import json, shlex, subprocess, sys
 commands, source, attempt = sys.argv[1:]
-entry = next(e for e in json.load(open(commands)) if e["file"] == source)
+def compiles(file):  # by itself, or as one of several (CMAKE_UNITY_BUILD)
+    return file == source or "/Unity/" in file and f'"{source}"' in open(file).read()
+entry = next(e for e in json.load(open(commands)) if compiles(e["file"]))
+source = entry["file"]
 words = [w for w in shlex.split(entry["command"])]
 at = next(i for i, w in enumerate(words) if w.startswith("-D") or w.startswith("-I"))
 kept, skip = [words[at - 1]], False
