@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Reproduces the tables in the hours that it is given, keeps a dated report and says what moved since the nights before.
 #   bash jobs/nightly.sh [--hours N] [--out FOLDER] [--date YYYY-MM-DD] [--preset NAME] [--seed N] [--seeds K]
-#                        [--keep-data] [--fuzz SECONDS] [--blind CASES] [EXPERIMENT...]
+#                        [--keep-data] [--tests 0|1] [--fuzz SECONDS] [--blind CASES] [EXPERIMENT...]
 #     --hours      of the whole night on this machine, default 2: the preset `nightly` is made so large or small that
-#                  the tables take three quarters of them, blind test and fuzz targets get what is left
+#                  the tables take two thirds of them; the tests of the night, the blind test and the fuzz targets get
+#                  what is left
 #     --out        default out/nightly; one folder per night in it, `latest` points to the last one
 #     --date       default today; a night that was broken off goes on when started again on its date, in the sizes that
 #                  it began with
@@ -12,6 +13,8 @@
 #                  nights then show how much a result moves by itself
 #     --seeds      trains with that many seeds, from --seed on; default 1
 #     --keep-data  keeps the simulated events (gigabytes; the same config makes the same bytes again)
+#     --tests      1 runs the tests that are too long for every change (tests/run.sh --night), 0 leaves them out; default 1
+#                  where 0.7 of what is left is time enough
 #     --fuzz       time of each fuzz target of the readers; default what is left; 0 leaves them out
 #     --blind      cases of a blind test of the diagnosis with the night's seed; default as many as time is left for;
 #                  0 leaves it out
@@ -20,9 +23,10 @@
 set -euo pipefail
 
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-out=$source_folder/out/nightly date=$(date +%F) preset='' seed='' seeds=1 hours=2 keep_data=0 fuzz='' blind='' experiments=()
+out=$source_folder/out/nightly date=$(date +%F) preset='' seed='' seeds=1 hours=2 keep_data=0 fuzz='' blind='' tests='' experiments=()
 tries=3 pause=${SWINGBANK_NIGHTLY_PAUSE:-60} # [s] between tries
-table_share=0.75                             # of the hours
+table_share=0.67                             # of the hours
+tests_take=1500                              # [s] of two cores, their build in it; docs/performance.md
 blind_share=0.6                              # of what the tables leave
 blind_case=80                                # [s] of two cores; docs/blind-test.md
 fuzz_build=300 fuzz_least=10                 # [s]; docs/performance.md
@@ -35,9 +39,10 @@ while (($#)); do
     --seed) seed=${2:?--seed needs a number}; shift 2 ;;
     --seeds) seeds=${2:?--seeds needs a number}; shift 2 ;;
     --keep-data) keep_data=1; shift ;;
+    --tests) tests=${2:?--tests needs 0 or 1}; shift 2 ;;
     --fuzz) fuzz=${2:?--fuzz needs seconds}; shift 2 ;;
     --blind) blind=${2:?--blind needs a number of cases}; shift 2 ;;
-    -h | --help) sed -n '2,21p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,23p' "$0"; exit 0 ;;
     -*) echo "unknown option at '$1' (jobs/nightly.sh does not have it): run it with --help" >&2; exit 1 ;;
     *) experiments+=("$(realpath -m "$1")"); shift ;;
   esac
@@ -99,13 +104,13 @@ left() { awk -v used="$(used)" "BEGIN {left = ($hours * 3600 - used) * $1; print
 # keep NAME...: these variables are the night's
 keep() { declare -p "$@" | sed 's/^declare -[-a]* //' >>"$night/sizes.conf"; }
 
-# The night's sizes are settled once; of what a second start asks for only --blind and --fuzz count.
+# The night's sizes are settled once; of what a second start asks for only --tests, --blind and --fuzz count.
 settle() {
   if [[ -s $night/sizes.conf ]]; then
-    local asked_blind=$blind asked_fuzz=$fuzz
+    local asked_tests=$tests asked_blind=$blind asked_fuzz=$fuzz
     # shellcheck source=/dev/null
     source "$night/sizes.conf"
-    blind=${asked_blind:-$blind} fuzz=${asked_fuzz:-$fuzz}
+    tests=${asked_tests:-$tests} blind=${asked_blind:-$blind} fuzz=${asked_fuzz:-$fuzz}
     return
   fi
   local name=$preset table_hours i
@@ -153,6 +158,12 @@ blind_test() {
     run_saving "$swingbank" blind-test --out "$run" --diagnose &&
     run_saving "$swingbank" blind-test --out "$run" --score --targets "$configs/targets.toml"
 }
+night_tests() {
+  local status=0
+  run_saving bash "$source_folder/tests/run.sh" --night >"$night/tests.txt" 2>&1 || status=$?
+  tail -n 40 "$night/tests.txt"
+  return "$status"
+}
 fuzz_targets() {
   local status=0
   run_saving bash "$source_folder/tests/fuzz/run.bash" "$fuzz" >"$night/fuzz.txt" 2>&1 || status=$?
@@ -185,6 +196,12 @@ report() {
     elif [[ $blind == 0 ]]; then
       printf '\n## Blind test\n\nNone in this night.\n'
     fi
+    if [[ -s $night/tests.txt ]]; then
+      printf '\n## Tests of the night\n\n'
+      sed -n '/tests passed/,$p' "$night/tests.txt" | sed 's/^/    /'
+    elif [[ $tests == 0 ]]; then
+      printf '\n## Tests of the night\n\nNone in this night.\n'
+    fi
     if [[ -s $night/fuzz.txt ]]; then
       printf '\n## Fuzz targets\n\n'
       sed 's/^/- /' "$night/fuzz.txt"
@@ -210,6 +227,9 @@ run_tables || stopped $?
 report || stopped 1
 ln -sfn "$date" "$out/latest"
 
+if [[ -z $tests ]]; then tests=$(($(left 0.7) >= tests_take)) && keep tests; fi
+if [[ $tests != 0 ]]; then part "tests of the night" night_tests || status=$?; fi
+((status != 2)) || stopped 2
 if [[ -z $blind ]]; then blind=$(($(left "$blind_share") / blind_case)) && keep blind; fi
 if [[ $blind != 0 ]]; then part "blind test, $blind cases" blind_test || status=$?; fi
 ((status != 2)) || stopped 2

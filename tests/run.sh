@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds and runs the tests.
-#   bash tests/run.sh [--fast] [--without-psse] [--sanitize] [--ci]
+#   bash tests/run.sh [--fast | --night] [--without-psse] [--sanitize] [--ci]
 #     --fast          the fast tier only (under 2 minutes once built)
+#     --night         only what takes too long for every change: half an hour (jobs/nightly.sh runs it)
 #     --without-psse  leaves out the comparison with PSS/E's own records, which are not part of this repository
 #     --sanitize      also the fast tier's unit tests under the address and undefined-behaviour sanitizers (their build
 #                     takes longer than all the rest: Eigen's sparse solvers are slow to compile with checks)
@@ -12,14 +13,15 @@
 set -euo pipefail
 
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-fast_only=0 with_psse=1 sanitize=0 ci=0
+fast_only=0 night=0 with_psse=1 sanitize=0 ci=0
 while (($#)); do
   case $1 in
     --fast) fast_only=1 ;;
+    --night) night=1 ;;
     --without-psse) with_psse=0 ;;
     --sanitize) sanitize=1 ;;
     --ci) ci=1 ;;
-    -h | --help) sed -n '2,11p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,12p' "$0"; exit 0 ;;
     *) echo "unknown option at '$1' (tests/run.sh does not have it): run tests/run.sh --help" >&2; exit 1 ;;
   esac
   shift
@@ -49,7 +51,7 @@ run_readers() {
   for test in "$folder"/bin/test_*; do
     echo "$(basename "$test")"
     # the one test left out compares kernels, to a limit that holds for GCC's code
-    "$test" --gtest_brief=1 '--gtest_filter=-*Full.*:LawFile.ANonlinearLawRunsInEveryKernel' || return 1
+    "$test" --gtest_brief=1 '--gtest_filter=-*Full.*:*Night.*:LawFile.ANonlinearLawRunsInEveryKernel' || return 1
   done
 }
 
@@ -102,11 +104,16 @@ if ((sanitize)); then
   say "fast tier under the sanitizers"
   run_sanitized
 fi
-say "fast tier"
-run_tests fast "$build" -L fast -j "$(nproc)"
-if ((!fast_only)); then
-  say "full tier"
-  run_tests full "$build" -L full -j "$(nproc)" # scripts among them run alone
+# tier NAME; scripts of the full tier and of the night run alone
+tier() {
+  say "tier $1"
+  run_tests "$1" "$build" -L "^$1\$" -j "$(nproc)"
+}
+if ((night)); then
+  tier night
+else
+  tier fast
+  ((fast_only)) || tier full
 fi
 if ((${#failed[@]})); then
   cat "$source_folder"/build/fuzz/found/*/summary.txt 2>/dev/null || true

@@ -216,7 +216,7 @@ void compare_with_cvodes(const Effect& e, Worst& worst) {
     }
 }
 
-TEST(AllSensitivitiesFull, EqualThoseOfCvodes) {
+TEST(AllSensitivitiesNight, EqualThoseOfCvodes) {
   Worst worst;
   for (const Effect* e : effects_of_a_plant()) {
     if (e->slot == Slot::machine && e->get<double>().machine.current) continue;  // algebraic
