@@ -7,7 +7,7 @@ export SWINGBANK_BUILD=${SWINGBANK_BIN%/bin} SWINGBANK_NIGHTLY_PAUSE=0 OMP_NUM_T
 
 TINY_DRAWS=120 TINY_TRAINING_DRAWS=40 tiny_experiment "$work"
 out=$work/nights
-night() { bash "$SWINGBANK_SOURCE/jobs/nightly.sh" --out "$out" --preset quick --fuzz 0 --blind "${BLIND:-0}" --date "$@" </dev/null; }
+night() { bash "$SWINGBANK_SOURCE/jobs/nightly.sh" --out "$out" --preset quick --tests 0 --fuzz 0 --blind "${BLIND:-0}" --date "$@" </dev/null; }
 
 night 2026-02-01 "$work/tiny.toml" >"$work/log" 2>&1 || fail "first night: $(tail "$work/log")"
 grep -q '| V | gru | 0 | 30 | quick | .* | new |' "$out/2026-02-01/report.md" || fail "report: $(cat "$out/2026-02-01/report.md")"
@@ -34,7 +34,7 @@ grep -q '^1 cases judged, 0 without a verdict' "$out/2026-02-02/report.md" || fa
 # A night of a few seconds, of two seeds, is broken off in training and goes on in the sizes that it began with.
 sed 's/preset\.quick/preset.nightly/' "$work/tiny.toml" >"$work/short.toml"
 short() {
-  bash "$SWINGBANK_SOURCE/jobs/nightly.sh" --out "$work/short" --hours "$1" --seeds 2 --fuzz 0 --blind 0 --date 2026-02-05 "$work/short.toml" \
+  bash "$SWINGBANK_SOURCE/jobs/nightly.sh" --out "$work/short" --hours "$1" --seeds 2 --tests 0 --fuzz 0 --blind 0 --date 2026-02-05 "$work/short.toml" \
     </dev/null >>"$work/short.log" 2>&1
 }
 short 0.01 &
