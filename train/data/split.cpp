@@ -114,6 +114,18 @@ RowSplit leave_one_out(const Labels& labels, std::int32_t generator, double vali
   return split;
 }
 
+void keep_share(RowSplit& split, const Labels& labels, double part) {
+  const auto more = std::ranges::lower_bound(split.train, labels.judged);
+  const auto own = static_cast<std::size_t>(more - split.train.begin());
+  std::vector<std::uint64_t> kept(split.train.begin(),
+                                  split.train.begin() + static_cast<std::ptrdiff_t>(share(own, part)));
+  kept.insert(kept.end(), more, more + static_cast<std::ptrdiff_t>(share(split.train.size() - own, part)));
+  if (kept.empty())
+    throw InputError({fmt::format("no training rows in a share of {}", part), "--train-share",
+                      fmt::format("the split has {}", split.train.size()), "give a larger share"});
+  split.train = std::move(kept);
+}
+
 std::vector<std::int32_t> generators(const Labels& labels) {
   const std::set<std::int32_t> distinct(labels.generator.begin(), labels.generator.end());
   return {distinct.begin(), distinct.end()};

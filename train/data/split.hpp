@@ -20,6 +20,9 @@ RowSplit split_by_point(const Labels& labels, std::uint64_t seed);
 /// training. Throws InputError if the generator has no rows or no others exist.
 RowSplit leave_one_out(const Labels& labels, std::int32_t generator, double validation_share,
                        std::uint64_t seed);
+/// Of the rows that train the first of the judged dataset and of the one that only trains, as if both had
+/// been made smaller. Throws InputError if nothing would be left.
+void keep_share(RowSplit& split, const Labels& labels, double share);
 /// Bus numbers of the generators that have rows, ascending: one fold each.
 std::vector<std::int32_t> generators(const Labels& labels);
 
