@@ -8,6 +8,7 @@
 
 #include "base/constants.hpp"
 #include "base/in_parallel.hpp"
+#include "validate/calibrate/detail/closed_start.hpp"
 #include "validate/calibrate/detail/identify.hpp"
 #include "validate/calibrate/detail/screen.hpp"
 #include "validate/calibrate/detail/voltage_noise.hpp"
@@ -95,6 +96,33 @@ class Run {
     for (std::size_t e = 0; e < before_.size(); ++e)
       if (!out_[e]) states.push_back(before_[e].state);
     const Screen screen(model_.plant, free_, options_.seed);
+    Starts starts;
+    const auto add = [&](const std::string& name, std::vector<double> values) {
+      const double before = chi2_of({screen.with(values), model_.conventions}, seen_, states);
+      starts.push_back({name, std::move(values), before});
+    };
+    const auto straight =
+        options_.events.measured_states ? closed_start(model_.under_test(), seen_, free_) : std::nullopt;
+    if (straight) add(kClosedForm, *straight);
+    add("model", screen.own());
+    for (const auto& g : options_.given) add(g.name, fit::values_of(g.plant, free_));
+    std::vector<fit::Fit> fits;
+    refine(starts, states, fits);
+    // The check: from the closed form the search has left nothing but noise.
+    if (!straight || !(fits.front().failed.empty() && fits.front().misfit() <= options_.adequate))
+      refine(drawn(screen, states), states, fits);
+    choose(fits);
+  }
+  struct Start {
+    std::string name;
+    std::vector<double> values;
+    double before = 0;  ///< chi2
+  };
+  using Starts = std::vector<Start>;
+  static constexpr const char* kClosedForm = "closed form";
+
+  /// The best of the sets drawn about the model's own values.
+  [[nodiscard]] Starts drawn(const Screen& screen, const std::vector<fit::EventState>& states) const {
     std::vector<std::vector<double>> draws(static_cast<std::size_t>(std::max(0, options_.draws)));
     std::vector<std::pair<double, std::size_t>> order(draws.size());
     in_parallel(
@@ -105,32 +133,30 @@ class Run {
         },
         [&](int done) { tell("parameter sets screened", done, options_.draws); });
     std::ranges::sort(order);
-    std::vector<std::vector<double>> starts = {screen.own()};
-    c_.started = {{.name = "model", .before = chi2_of(model_.under_test(), seen_, states)}};
-    for (const auto& g : options_.given) {
-      starts.push_back(fit::values_of(g.plant, free_));
-      c_.started.push_back(
-          {.name = g.name,
-           .before = chi2_of({screen.with(starts.back()), model_.conventions}, seen_, states)});
-    }
+    Starts starts;
     const auto refined = static_cast<std::size_t>(std::max(0, options_.starts));
-    for (std::size_t k = 0; k < order.size() && k < refined; ++k) {
-      if (!std::isfinite(order[k].first)) continue;
-      starts.push_back(draws[order[k].second]);
-      c_.started.push_back({.name = fmt::format("draw {}", order[k].second + 1), .before = order[k].first});
-    }
-
-    std::vector<fit::Fit> fits(starts.size());
+    for (std::size_t k = 0; k < order.size() && k < refined; ++k)
+      if (std::isfinite(order[k].first))
+        starts.push_back(
+            {fmt::format("draw {}", order[k].second + 1), draws[order[k].second], order[k].first});
+    return starts;
+  }
+  /// Appends a fit for each start.
+  void refine(const Starts& starts, const std::vector<fit::EventState>& states, std::vector<fit::Fit>& fits) {
+    std::vector<fit::Fit> found(starts.size());
     in_parallel(
         starts.size(),
         [&](std::size_t k) {
           fit::FitOptions o;
           o.start = states;
-          o.values = starts[k];
-          fits[k] = fit::fit(model_.under_test(), seen_, free_, o);
+          o.values = starts[k].values;
+          found[k] = fit::fit(model_.under_test(), seen_, free_, o);
         },
         [&](int done) { tell("starts refined", done, static_cast<int>(starts.size())); });
-    choose(fits);
+    for (std::size_t k = 0; k < starts.size(); ++k) {
+      c_.started.push_back({.name = starts[k].name, .before = starts[k].before});
+      fits.push_back(std::move(found[k]));
+    }
   }
   void choose(std::vector<fit::Fit>& fits) {
     const auto best = std::ranges::min_element(fits, fit::better);

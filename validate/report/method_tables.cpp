@@ -12,17 +12,30 @@
 namespace swingbank::validate::report {
 namespace {
 
-/// 0.1 of the baseline is green, 1 is red; logarithmic between.
-double shade(double ratio) { return std::clamp(1 + std::log10(ratio), 0.0, 1.0); }
+/// 0 at `good` or below, 1 at `bad`; logarithmic between.
+double shade(double value, double good, double bad) {
+  return std::clamp(std::log(value / good) / std::log(bad / good), 0.0, 1.0);
+}
+constexpr double kGoodRelative = 0.01;  // of a parameter's variance
 
-Cell figure_cell(const std::optional<Figure>& f, const char* otherwise) {
+/// Green is what the thesis reached, under noise what the floor allows; red is no better than the mean.
+double shade_of(const Task& task, const Of& of, const Figure& f) {
+  if (f.over_floor) return shade(f.mse, f.mse / *f.over_floor, f.baseline);
+  std::optional<double> good = thesis_mean(task, of.method);
+  if (of.generator != kAnyGenerator)
+    if (const auto* cell = thesis_cell(task.table, of.method, of.generator)) good = cell->mse;
+  return shade(f.mse, good.value_or(f.baseline * kGoodRelative), f.baseline);
+}
+
+Cell figure_cell(const Task& task, const Of& of, const char* otherwise) {
+  const auto f = figure_of(task, of);
   if (!f) return otherwise;
   std::string text = shown(f->mse);
   if (f->seeds > 1) text += fmt::format(" ± {:.2g}", f->spread);
   text += fmt::format(" ({:.2g}", f->ratio);
   if (f->over_floor) text += fmt::format("; {:.3g} × floor", *f->over_floor);
   text += f->seeds == 1 ? ") ¹" : f->seeds == 2 ? ") ²" : ")";
-  return {text, shade(f->ratio)};
+  return {text, of.method == "floor" ? -1 : shade_of(task, of, *f)};
 }
 
 /// Methods that have runs at a level, and those of the thesis.
@@ -43,21 +56,51 @@ std::vector<std::string> with_thesis(const Task& task) {
   return names;
 }
 
-double baseline_of(const Task& task, int generator) {
-  double sum = 0, count = 0;
-  for (const auto& r : task.runs)
-    if (generator == kAnyGenerator || r.generator == generator) sum += r.baseline_mse, ++count;
-  return sum / count;  // NaN without runs
-}
-
 std::string range(double low, double high) {
   return low == high ? fmt::format("{:.0f}", low) : fmt::format("{:.0f} – {:.0f}", low, high);
 }
 
+/// The best of the task's networks: of what is trained.
+Cell best_network(const Task& task, double noise) {
+  std::optional<double> least;
+  std::string best;
+  for (const auto& m : methods_at(task, noise)) {
+    const auto f = figure_of(task, {m, noise});
+    if (runs_of(task, {m, noise}).front()->epochs == 0 || (least && f->mse >= *least)) continue;
+    least = f->mse;
+    best = m;
+  }
+  if (best.empty()) return "–";
+  Cell cell = figure_cell(task, {best, noise}, "–");
+  cell.text = method_name(best) + " " + cell.text;
+  return cell;
+}
+
 }  // namespace
 
+Table overview_table(const std::vector<Task>& tasks) {
+  constexpr double kNoise = 0.001;
+  Table table{
+      fmt::format("{} Green: the thesis's MSE or less, under noise the floor; red: no better than the mean.",
+                  kCellMeaning),
+      {"table", "thesis's best", "predict-the-mean", "best network", "closed form", "refined",
+       "best network, " + level_name(kNoise), "refined, " + level_name(kNoise),
+       "floor, " + level_name(kNoise)},
+      {}};
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    const Task& task = tasks[i];
+    const auto thesis = thesis_mean(task, task.table == "IV" ? "gru" : "cnn");
+    table.rows.push_back({fmt::format("{}, {}", task.table, task.preset), thesis ? shown(*thesis) : "–",
+                          shown(baseline_of(task)), best_network(task, 0),
+                          figure_cell(task, {"closed-form", 0}, "–"), figure_cell(task, {"refined", 0}, "–"),
+                          best_network(task, kNoise), figure_cell(task, {"refined", kNoise}, "–"),
+                          figure_cell(task, {"floor", kNoise}, "–")});
+  }
+  return table;
+}
+
 Table method_table(const Task& task) {
-  Table table{kCellMeaning, {"method", "thesis, no noise"}, {}};
+  Table table{"Each method; cells as in the first table.", {"method", "thesis, no noise"}, {}};
   const auto levels = task.levels();
   for (const double level : levels) table.header.push_back(level_name(level));
   for (const auto& method : with_thesis(task)) {
@@ -65,19 +108,18 @@ Table method_table(const Task& task) {
     std::vector<Cell> row = {method_name(method), thesis ? shown(*thesis) : "–"};
     const bool any = std::ranges::any_of(task.runs, [&](const RunResult& r) { return r.network == method; });
     for (const double level : levels)
-      row.push_back(figure_cell(figure_of(task, {method, level}), any ? "–" : "missing"));
+      row.push_back(figure_cell(task, {method, level}, any ? "–" : "missing"));
     table.rows.push_back(std::move(row));
   }
   std::vector<Cell> mean = {"predict-the-mean", "–"};
-  for (std::size_t i = 0; i < levels.size(); ++i)
-    mean.emplace_back(shown(baseline_of(task, kAnyGenerator)) + " (1)");
+  for (std::size_t i = 0; i < levels.size(); ++i) mean.emplace_back(shown(baseline_of(task)) + " (1)");
   table.rows.push_back(std::move(mean));
   return table;
 }
 
 Table generator_table(const Task& task, double noise) {
   const auto methods = methods_at(task, noise);
-  Table table{fmt::format("Each generator left out, {}. Cells as above.", level_name(noise)),
+  Table table{fmt::format("Each generator left out, {}.", level_name(noise)),
               {"generator", "thesis", "predict-the-mean"},
               {}};
   for (const auto& m : methods) table.header.push_back(method_name(m));
@@ -86,14 +128,14 @@ Table generator_table(const Task& task, double noise) {
     const auto* thesis = thesis_cell(task.table, "cnn", g);
     std::vector<Cell> row = {fmt::format("#{}", g), thesis ? fmt::format("{:g}", thesis->mse) : "–",
                              shown(baseline_of(task, g))};
-    for (const auto& m : methods) row.push_back(figure_cell(figure_of(task, {m, noise, g}), "missing"));
+    for (const auto& m : methods) row.push_back(figure_cell(task, {m, noise, g}, "missing"));
     table.rows.push_back(std::move(row));
   }
   const auto thesis = thesis_mean(task, "cnn");
-  std::vector<Cell> mean = {"mean", thesis ? shown(*thesis) : "–", shown(baseline_of(task, kAnyGenerator))};
+  std::vector<Cell> mean = {"mean", thesis ? shown(*thesis) : "–", shown(baseline_of(task))};
   for (const auto& m : methods) {
     const auto f = figure_of(task, {m, noise});
-    Cell cell = figure_cell(f, "missing");
+    Cell cell = figure_cell(task, {m, noise}, "missing");
     if (f && f->generators < generators.size()) cell.text += fmt::format(", of {}", f->generators);
     mean.push_back(std::move(cell));
   }
@@ -104,7 +146,7 @@ Table generator_table(const Task& task, double noise) {
 Table parameter_comparison(const Task& task, double noise) {
   Table table{
       fmt::format("Error of each parameter, {}: raw MSE [unit²] and in brackets relative to the parameter's "
-                  "variance over the test rows: 0 is exact, 1 is as good as a constant guess.",
+                  "variance over the test rows: 0 is exact, 1 no better than a constant guess.",
                   level_name(noise)),
       {"parameter", "unit"},
       {}};
@@ -121,7 +163,7 @@ Table parameter_comparison(const Task& task, double noise) {
         table.rows[i].emplace_back(shown(p->mse) + " (constant)");
       else
         table.rows[i].emplace_back(fmt::format("{} ({:.2g})", shown(p->mse), *p->relative),
-                                   shade(*p->relative));
+                                   shade(*p->relative, kGoodRelative, 1));
     }
   }
   return table;

@@ -12,7 +12,7 @@ namespace swingbank::validate::report {
 namespace {
 
 constexpr double kRow = 26, kHeight = 270;  // of the plots' areas [px]
-constexpr double kTop = 44, kBottom = 46, kRight = 24, kGap = 12, kLegendLine = 20, kLetter = 6.7;
+constexpr double kTop = 52, kBottom = 42, kRight = 24, kGap = 12, kLegendLine = 20, kLetter = 6.7;
 constexpr const char *kInk = "#1b2733", *kSoft = "#5b6b7b", *kGrid = "#e4e9ee", *kFrame = "#c9d3dc";
 
 double letters(const std::string& s) {
@@ -174,7 +174,7 @@ class Panel {
           left_edge_ - left_ + 13, top_ + down_ / 2, kSoft, escape(plot_.y.label));
     return out;
   }
-  /// Labels that would run into the one before stand at the other side of their line.
+  /// A label that would run into the one before stands above it.
   [[nodiscard]] std::string rules() const {
     std::string out;
     double free_from = -1e9;
@@ -184,11 +184,10 @@ class Panel {
       if (!x_.shows(sorted[i].x)) continue;
       const double at = x_.at(sorted[i].x), half = kLetter * letters(sorted[i].label) / 2;
       const double middle = std::clamp(at, left_edge_ + half, left_edge_ + across_ - half + 20);
-      const bool lower = middle - half < free_from;
-      out += stroke(at, top_ - 4, at, top_ + down_, kInk, " stroke-dasharray=\"4 3\"");
-      out += lower ? words(at - 4, top_ + 12, sorted[i].label, {"end", kInk, 11})
-                   : words(middle, top_ - 8, sorted[i].label, {"middle", kInk, 11});
-      if (!lower) free_from = middle + half + 6;
+      const bool above = middle - half < free_from;
+      out += stroke(at, top_ - (above ? 16 : 4), at, top_ + down_, kInk, " stroke-dasharray=\"4 3\"");
+      out += words(middle, top_ - (above ? 20 : 7), sorted[i].label, {"middle", kInk, 11});
+      free_from = middle + half + 6;
     }
     return out;
   }

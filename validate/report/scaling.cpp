@@ -98,6 +98,18 @@ PlotSeries law_of(const ScalingSeries& s, double Size::*of, const PowerLaw& fitt
   return line;
 }
 
+/// The header becomes the first column.
+Table turned(Table table, const std::vector<std::vector<Cell>>& columns) {
+  Table out{std::move(table.caption), {table.header.front()}, {}};
+  for (const auto& column : columns) out.header.push_back(column.front().text);
+  for (std::size_t i = 1; i < table.header.size(); ++i) {
+    std::vector<Cell> row = {table.header[i]};
+    for (const auto& column : columns) row.push_back(column[i]);
+    out.rows.push_back(std::move(row));
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string ScalingSeries::name() const {
@@ -139,9 +151,11 @@ Table scaling_table(const std::vector<ScalingSeries>& series) {
       "The law MSE ∝ size^exponent, fitted to the logarithms, with intervals of 95 %; what lies beyond the largest size "
       "is extrapolated. Core-hours are of one network with the epochs and inputs that it has here, at the largest size's "
       "rate.",
-      {"network", "sizes", "rows", "exponent, rows", "exponent, time", "MSE at the thesis's rows",
-       "core-hours for it", "thesis", "rows for the thesis's MSE", "core-hours for it"},
+      {"", "sizes", "training rows", "exponent of the rows", "exponent of the time",
+       "MSE at the thesis's training rows", "core-hours for that", "the thesis's MSE", "rows until then",
+       "core-hours for that"},
       {}};
+  std::vector<std::vector<Cell>> columns;
   for (const auto& s : series) {
     const Size &least = s.sizes.front(), &most = s.sizes.back();
     std::vector<Cell> row = {s.name(), std::to_string(s.sizes.size()),
@@ -171,9 +185,9 @@ Table scaling_table(const std::vector<ScalingSeries>& series) {
     } else {
       row.insert(row.end(), {"–", "–"});
     }
-    table.rows.push_back(std::move(row));
+    columns.push_back(std::move(row));
   }
-  return table;
+  return turned(std::move(table), columns);
 }
 
 std::string scaling_picture(const std::vector<ScalingSeries>& series) {

@@ -141,6 +141,19 @@ std::vector<ParameterFigure> parameter_figures(const Task& task, const Of& of) {
   return figures;
 }
 
+double baseline_of(const Task& task, int generator) {
+  std::map<int, const RunResult*> widest;  // some methods are judged on a part of the test rows
+  for (const auto& r : task.runs) {
+    if (generator != kAnyGenerator && r.generator != generator) continue;
+    const auto*& best = widest[r.generator];
+    if (!best || r.test_rows > best->test_rows) best = &r;
+  }
+  if (widest.empty()) return std::nan("");
+  std::vector<double> values;
+  for (const auto& [g, run] : widest) values.push_back(run->baseline_mse);
+  return mean(values);
+}
+
 std::optional<double> thesis_mean(const Task& task, const std::string& method) {
   std::vector<double> values;
   const auto take = [&](int generator) {

@@ -29,9 +29,7 @@ std::string method_picture(const Task& task) {
   Plot plot{fmt::format("Table {}: raw MSE of each method", task.table), {"raw MSE", true}, {}, {}};
   plot.width = 560;
   for (const auto& m : methods) plot.y.names.push_back(method_name(m));
-  double baseline = 0;
-  for (const auto& r : task.runs) baseline += r.baseline_mse / static_cast<double>(task.runs.size());
-  plot.rules.push_back({baseline, "predict-the-mean"});
+  plot.rules.push_back({baseline_of(task), "predict-the-mean"});
   if (const auto thesis = thesis_mean(task, "cnn"))
     plot.rules.push_back({*thesis, task.table == "IV" ? "thesis's CNN" : "thesis, mean"});
   if (task.table == "IV")
@@ -74,7 +72,7 @@ std::string parameter_picture(const Task& task) {
       for (const auto& p : parameter_figures(task, {methods[m], level})) {
         if (!p.relative || !(*p.relative > 0)) continue;
         const auto row = std::ranges::find(rows, p.name) - rows.begin();
-        s.points.emplace_back(*p.relative, static_cast<double>(row));
+        s.points.emplace_back(*p.relative, static_cast<double>(row) + aside(m, methods.size()));
         low = std::min(low, *p.relative);
         high = std::max(high, *p.relative);
       }

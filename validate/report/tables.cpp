@@ -398,6 +398,7 @@ TablesReport make_tables(const std::vector<RunResult>& results, const Provenance
   for (const auto& r : results)
     if (table_rank(r.table) == kThesisTables.size() && std::ranges::find(others, r.table) == others.end())
       others.push_back(r.table);
+  if (!tasks.empty()) to.table(overview_table(tasks));
   for (const auto& table : kThesisTables) {
     const std::string number(table.number);
     to.section(fmt::format("Table {}: {}", table.number, table.title));

@@ -5,12 +5,14 @@
 
 namespace swingbank::validate::report {
 
-/// What a cell of the first two tables says; their caption.
+/// What a cell says.
 inline constexpr const char* kCellMeaning =
     "A cell: raw MSE ± its standard deviation over seeds; in brackets its ratio to predict-the-mean and, where "
     "there is one, to the floor (the Bayesian Cramér-Rao bound: the least mean squared error that these noisy "
     "records allow). ¹ one seed, ² two seeds.";
 
+/// One row per task: the thesis, the best network, what needs no training, the floor.
+Table overview_table(const std::vector<Task>& tasks);
 /// One row per method, one column per level of noise, the thesis's figures beside.
 Table method_table(const Task& task);
 /// At one level of noise: one row per generator left out, one column per method.

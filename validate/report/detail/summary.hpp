@@ -47,6 +47,9 @@ struct ParameterFigure {
 };
 std::vector<ParameterFigure> parameter_figures(const Task& task, const Of& of);
 
+/// Of predicting the mean, on all test rows; mean over the generators where any will do. NaN without runs.
+double baseline_of(const Task& task, int generator = kAnyGenerator);
+
 /// The thesis's figure, of a network that it has not its best; mean over the generators of the task.
 std::optional<double> thesis_mean(const Task& task, const std::string& method);
 
