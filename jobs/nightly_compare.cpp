@@ -83,6 +83,7 @@ void read_result(const fs::path& file, Night& night, Problems& problems) {
   try {
     const auto json = nlohmann::json::parse(std::ifstream(file));
     if (json.value("shuffled_labels", false) || json.value("train_share", 1.0) < 1) return;
+    if (json.contains("judged") && !json["judged"].is_null()) return;
     const auto& generator = json.at("generator");
     const double ratio = json.at("mse").get<double>() / json.at("baseline_mse").get<double>();
     if (!(ratio > 0) || !std::isfinite(ratio)) {

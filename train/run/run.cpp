@@ -148,10 +148,11 @@ RunOutcome run_direct(const data::ShardStream& stream, const RunRequest& r, cons
 }  // namespace
 
 std::string run_name(const RunRequest& r) {
-  return fmt::format("{}-{}-{}{}{}-seed{}{}{}", r.experiment.table, r.network, r.preset,
+  return fmt::format("{}-{}-{}{}{}-seed{}{}{}{}", r.experiment.table, r.network, r.preset,
                      r.noise > 0 ? fmt::format("-noise{}", r.noise) : "",
                      r.train_share < 1 ? fmt::format("-share{}", r.train_share) : "", r.seed,
                      r.generator ? fmt::format("-gen{}", *r.generator) : "",
+                     r.judged ? fmt::format("-judged{}", *r.judged) : "",
                      r.shuffle_labels ? "-shuffled" : "");
 }
 
@@ -192,9 +193,9 @@ RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
   settings.gflops = r.runtime.gflops;
   if (r.epochs) settings.recipe.epochs = *r.epochs;
   const data::Labels& labels = stream.labels();
-  data::RowSplit split =
-      r.generator ? data::leave_one_out(labels, *r.generator, settings.recipe.validation_share, r.seed)
-                  : data::split_by_point(labels, r.seed);
+  data::RowSplit split = r.generator ? data::leave_one_out(labels, *r.generator,
+                                                           settings.recipe.validation_share, r.seed, r.judged)
+                                     : data::split_by_point(labels, r.seed);
   if (r.test_rows) thin(split.test, *r.test_rows);
   if (r.train_share < 1) data::keep_share(split, labels, r.train_share);
   const data::TargetScale scale =

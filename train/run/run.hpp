@@ -18,6 +18,7 @@ struct RunRequest {
   loop::Experiment experiment;
   std::string preset, network;
   std::optional<std::int32_t> generator;  ///< to leave out; none: 60/20/20
+  std::optional<std::int32_t> judged;     ///< generator that the run is judged on instead, also left out
   std::uint64_t seed = 1;
   std::optional<std::size_t> epochs;  ///< instead of the preset's
   double noise = 0;  ///< level of measurement noise; the stream must have been opened with it

@@ -91,25 +91,28 @@ class Run {
     return fits;
   }
 
+  /// From the closed form, where it is nearer to the records than the model's own values; from these; and
+  /// from drawn sets, unless the closed form has led to where nothing but noise is left.
   void search() {
     std::vector<fit::EventState> states;
     for (std::size_t e = 0; e < before_.size(); ++e)
       if (!out_[e]) states.push_back(before_[e].state);
     const Screen screen(model_.plant, free_, options_.seed);
-    Starts starts;
-    const auto add = [&](const std::string& name, std::vector<double> values) {
-      const double before = chi2_of({screen.with(values), model_.conventions}, seen_, states);
-      starts.push_back({name, std::move(values), before});
+    const auto start = [&](const std::string& name, const std::vector<double>& values) {
+      return Start{name, values, chi2_of({screen.with(values), model_.conventions}, seen_, states)};
     };
-    const auto straight =
-        options_.events.measured_states ? closed_start(model_.under_test(), seen_, free_) : std::nullopt;
-    if (straight) add(kClosedForm, *straight);
-    add("model", screen.own());
-    for (const auto& g : options_.given) add(g.name, fit::values_of(g.plant, free_));
+    Starts starts = {start("model", screen.own())};
+    bool straight = false;  // the first start is the closed form
+    if (options_.events.measured_states)
+      if (const auto values = closed_start(model_.under_test(), seen_, free_)) {
+        const Start closed = start("closed form", *values);
+        straight = closed.before < starts.front().before;
+        if (straight) starts.insert(starts.begin(), closed);
+      }
+    for (const auto& g : options_.given) starts.push_back(start(g.name, fit::values_of(g.plant, free_)));
     std::vector<fit::Fit> fits;
     refine(starts, states, fits);
-    // The check: from the closed form the search has left nothing but noise.
-    if (!straight || !(fits.front().failed.empty() && fits.front().misfit() <= options_.adequate))
+    if (!straight || !fits.front().failed.empty() || fits.front().misfit() > options_.adequate)
       refine(drawn(screen, states), states, fits);
     choose(fits);
   }
@@ -119,7 +122,6 @@ class Run {
     double before = 0;  ///< chi2
   };
   using Starts = std::vector<Start>;
-  static constexpr const char* kClosedForm = "closed form";
 
   /// The best of the sets drawn about the model's own values.
   [[nodiscard]] Starts drawn(const Screen& screen, const std::vector<fit::EventState>& states) const {

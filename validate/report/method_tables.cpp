@@ -80,21 +80,31 @@ Cell best_network(const Task& task, double noise) {
 
 Table overview_table(const std::vector<Task>& tasks) {
   constexpr double kNoise = 0.001;
+  const std::string noisy = ", " + level_name(kNoise);
   Table table{
       fmt::format("{} Green: the thesis's MSE or less, under noise the floor; red: no better than the mean.",
                   kCellMeaning),
-      {"table", "thesis's best", "predict-the-mean", "best network", "closed form", "refined",
-       "best network, " + level_name(kNoise), "refined, " + level_name(kNoise),
-       "floor, " + level_name(kNoise)},
-      {}};
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    const Task& task = tasks[i];
+      {""},
+      {{"thesis's best"},
+       {"predict-the-mean"},
+       {"best network"},
+       {"closed form"},
+       {"refined"},
+       {"best network" + noisy},
+       {"refined" + noisy},
+       {"floor" + noisy}}};
+  for (const Task& task : tasks) {
+    table.header.push_back(fmt::format("{}, {}", task.table, task.preset));
     const auto thesis = thesis_mean(task, task.table == "IV" ? "gru" : "cnn");
-    table.rows.push_back({fmt::format("{}, {}", task.table, task.preset), thesis ? shown(*thesis) : "–",
-                          shown(baseline_of(task)), best_network(task, 0),
-                          figure_cell(task, {"closed-form", 0}, "–"), figure_cell(task, {"refined", 0}, "–"),
-                          best_network(task, kNoise), figure_cell(task, {"refined", kNoise}, "–"),
-                          figure_cell(task, {"floor", kNoise}, "–")});
+    const std::vector<Cell> column = {thesis ? shown(*thesis) : "–",
+                                      shown(baseline_of(task)),
+                                      best_network(task, 0),
+                                      figure_cell(task, {"closed-form", 0}, "–"),
+                                      figure_cell(task, {"refined", 0}, "–"),
+                                      best_network(task, kNoise),
+                                      figure_cell(task, {"refined", kNoise}, "–"),
+                                      figure_cell(task, {"floor", kNoise}, "–")};
+    for (std::size_t i = 0; i < column.size(); ++i) table.rows[i].push_back(column[i]);
   }
   return table;
 }

@@ -96,6 +96,7 @@ RunResult read_result(const fs::path& file, Problems& problems) {
   o.get("seed", r.seed);
   o.get("noise", r.noise);
   if (parsed.contains("generator") && !parsed["generator"].is_null()) o.get("generator", r.generator);
+  if (parsed.contains("judged") && !parsed["judged"].is_null()) o.get("judged", r.judged);
   json dataset = json::object();
   o.get("dataset", dataset);
   Object d(dataset, file.string() + " dataset", problems);
@@ -129,7 +130,7 @@ RunResult read_result(const fs::path& file, Problems& problems) {
 
 auto identity(const RunResult& r) {
   return std::tie(r.table, r.network, r.preset, r.dataset_hash, r.rows, r.seed, r.noise, r.generator,
-                  r.shuffled, r.share);
+                  r.judged, r.shuffled, r.share);
 }
 
 }  // namespace

@@ -28,6 +28,7 @@ struct RunResult {
   std::int64_t seed = 0;
   double noise = 0;   ///< level of measurement noise; 0: none
   int generator = 0;  ///< bus of the generator left out; 0: none
+  int judged = 0;     ///< bus of the generator judged on in its place, to choose a recipe by; 0: none
   std::string dataset, dataset_hash, config_hash;
   double share = 1;  ///< of the training rows that trained
   std::int64_t rows = 0, train_rows = 0, test_rows = 0, epochs = 0, best_epoch = 0;

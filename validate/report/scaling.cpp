@@ -62,7 +62,7 @@ std::optional<PowerLaw> law(const std::vector<Size>& sizes, double Size::*of) {
 
 std::string with_interval(double value, const std::optional<Interval>& interval) {
   if (!interval) return shown(value) + " (not bounded)";
-  return fmt::format("{} ({} – {})", shown(value), shown(interval->first), shown(interval->second));
+  return fmt::format("{} ({} to {})", shown(value), shown(interval->first), shown(interval->second));
 }
 
 std::optional<double> thesis_of(const ScalingSeries& s) {
@@ -125,7 +125,7 @@ std::optional<PowerLaw> ScalingSeries::by_time() const { return law(sizes, &Size
 std::vector<ScalingSeries> scaling_series(const std::vector<RunResult>& results) {
   std::map<std::tuple<std::string, std::string, double>, RunsOfSize> groups;
   for (const auto& r : results)
-    if (!r.shuffled && r.epochs > 0)
+    if (!r.shuffled && r.judged == 0 && r.epochs > 0)
       groups[{r.table, r.network, r.noise}][{r.preset, r.dataset_hash, r.rows, r.share}].push_back(&r);
   std::vector<ScalingSeries> all;
   for (const auto& [key, by_size] : groups) {

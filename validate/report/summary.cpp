@@ -83,7 +83,7 @@ std::vector<Task> tasks_of(const std::vector<RunResult>& results) {
   std::map<std::tuple<std::ptrdiff_t, std::string, std::string, std::int64_t, std::string, std::string>, Task>
       tasks;
   for (const auto& r : results) {
-    if (r.shuffled || r.share < 1) continue;
+    if (r.shuffled || r.judged > 0 || r.share < 1) continue;
     Task& task = tasks[{rank(r.table), r.table, r.preset, r.rows, r.dataset, r.dataset_hash}];
     if (task.runs.empty()) task = {r.table, r.preset, r.dataset, r.dataset_hash, r.rows, {}};
     task.runs.push_back(r);

@@ -7,6 +7,8 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <map>
+#include <set>
 #include <tuple>
 
 #include "validate/report/detail/method_tables.hpp"
@@ -328,6 +330,42 @@ void add_scaling(const std::vector<RunResult>& results, const std::string& table
   to.table(scaling_table(series));
 }
 
+/// What recipes were chosen by: every run judged on a generator that its table's run trains on, while the one
+/// that the table leaves out took no part.
+void add_choice(const std::vector<RunResult>& results, const std::string& table, Both& to) {
+  struct Sum {
+    double log_ratio = 0;
+    int runs = 0;
+  };
+  std::map<int, std::map<std::string, Sum>> of;  // by generator left out, then by network
+  std::set<std::string> networks;
+  for (const auto& r : results) {
+    if (r.judged == 0 || r.table != table) continue;
+    Sum& sum = of[r.generator][r.network];
+    sum.log_ratio += std::log(r.ratio);
+    ++sum.runs;
+    networks.insert(r.network);
+  }
+  if (of.empty()) return;
+  Table choice{
+      "Choice of a recipe, nested: MSE / predict-the-mean on generators that the table's run trains on, their "
+      "geometric mean; the generator left out took no part. The least of a row is the choice for it.",
+      {"left out", "judged on"},
+      {}};
+  for (const auto& network : networks) choice.header.push_back(method_name(network));
+  for (const auto& [generator, sums] : of) {
+    int runs = 0;
+    for (const auto& [network, sum] : sums) runs = std::max(runs, sum.runs);
+    std::vector<Cell> row = {fmt::format("#{}", generator), fmt::format("{} others", runs)};
+    for (const auto& network : networks)
+      row.emplace_back(sums.contains(network)
+                           ? figure(std::exp(sums.at(network).log_ratio / sums.at(network).runs))
+                           : "–");
+    choice.rows.push_back(std::move(row));
+  }
+  to.table(choice);
+}
+
 /// The control runs of a table, as far as there are any.
 void add_controls(const std::vector<RunResult>& results, const std::string& table, Both& to) {
   Table controls{
@@ -364,6 +402,7 @@ void add_table(const std::vector<RunResult>& results, const std::vector<Task>& t
     if (own.size() > 1) to.subsection(fmt::format("Preset {}, {} rows", own[i]->preset, own[i]->rows));
     add_task(*own[i], safe(i == 0 ? table : fmt::format("{}-{}", table, i + 1)), to);
   }
+  add_choice(results, table, to);
   add_controls(results, table, to);
   add_scaling(results, table, safe(table), to);
   to.text(remark(table));
@@ -373,7 +412,7 @@ std::vector<std::pair<std::string, std::string>> csv_files(const std::vector<Run
                                                            const std::vector<Task>& tasks) {
   std::vector<std::pair<std::string, std::string>> files;
   std::vector<RunResult> whole = results;  // those on a share of the rows belong to the scaling law alone
-  std::erase_if(whole, [](const RunResult& r) { return r.share < 1; });
+  std::erase_if(whole, [](const RunResult& r) { return r.share < 1 || r.judged > 0; });
   for (const auto& block : group_results(std::move(whole))) {
     files.emplace_back(file_stem(block) + ".csv", csv(score_table(block)));
     files.emplace_back(file_stem(block) + "-parameters.csv", csv(parameter_table(block)));

@@ -150,9 +150,9 @@ TEST(Calibrate, AMissingExciterSurvivesTheRefit) {
 }
 
 TEST(Calibrate, AClosedFormThatLeavesNothingButNoiseSavesTheDraws) {
-  Simulation s = simulate_three(false);
-  const plant::PlantModel model = wrong(s.plant);
-  s.records = noisy(s.records, 1e-3, 1e-4, 1);
+  const Simulation s = simulate_three(false);
+  plant::PlantModel model = wrong(s.plant);
+  const auto records = noisy(s.records, 1e-6, 1e-7, 1);
   CalibrateOptions options;
   options.draws = 4;
   options.starts = 1;
@@ -162,18 +162,18 @@ TEST(Calibrate, AClosedFormThatLeavesNothingButNoiseSavesTheDraws) {
     for (const auto& start : c.started) all.push_back(start.name);
     return all;
   };
-  const Calibration straight = calibrate(model, s.records, options);
+  const int Xdpp = model.plant.machine.effect->parameter_index("Xdpp");
+  double& reactance = model.plant.machine.p[static_cast<std::size_t>(Xdpp)];
+  const double off = reactance;
+  reactance = s.plant.machine.p[static_cast<std::size_t>(Xdpp)];
+  const Calibration straight = calibrate(model, records, options);
   EXPECT_THAT(names(straight), ElementsAre("closed form", "model"));
-  EXPECT_TRUE(straight.started[0].agrees);
+  EXPECT_LT(straight.started[0].before, 0.1 * straight.started[1].before);
   EXPECT_NE(straight.adequacy, Adequacy::structure_poor) << straight.sentence;
-  for (auto& r : s.records) r.speed.clear();
-  const Calibration drawn = calibrate(model, s.records, options);
+  reactance = off;  // its X''d is the model's, a tenth off: it leads away, and sets are drawn
+  const Calibration drawn = calibrate(model, records, options);
   EXPECT_THAT(names(drawn), ElementsAre("model", HasSubstr("draw ")));
   EXPECT_EQ(drawn.adequacy, straight.adequacy);
-  for (const auto& p : straight.parameters)
-    EXPECT_NEAR(p.fit.value, parameter(drawn, p.fit.name).fit.value,
-                4 * parameter(drawn, p.fit.name).fit.error)
-        << p.fit.name;
 }
 
 TEST(Calibrate, RefusesWhatCannotBeFitted) {

@@ -92,7 +92,7 @@ TEST_F(TablesTest, MethodsStandAgainstLevelsOfNoise) {
   const auto report = make_tables(read(), {});
   EXPECT_THAT(report.markdown,
               AllOf(HasSubstr("| method | thesis, no noise | no noise | noise 0.1 % |"),
-                    HasSubstr("| CNN | 0.0526 | – | 3.24 ± 0.76 (0.6; 6 × floor) ² |"),
+                    HasSubstr("| CNN | 0.0526 | – | 3.24 ± 0.76 (0.6; 5 × floor) ² |"),
                     HasSubstr("| refined | 0.0526 | 0.054 (0.01) ¹ | 1.08 (0.2; 2 × floor) ¹ |"),
                     HasSubstr("| predict-the-mean | – | 5.4 (1) | 5.4 (1) |")));
   const auto last = report.markdown.find("| floor |");

@@ -11,7 +11,7 @@ inline constexpr const char* kCellMeaning =
     "there is one, to the floor (the Bayesian Cramér-Rao bound: the least mean squared error that these noisy "
     "records allow). ¹ one seed, ² two seeds.";
 
-/// One row per task: the thesis, the best network, what needs no training, the floor.
+/// One column per task: the thesis, the best network, what needs no training, the floor.
 Table overview_table(const std::vector<Task>& tasks);
 /// One row per method, one column per level of noise, the thesis's figures beside.
 Table method_table(const Task& task);

@@ -8,7 +8,7 @@
 
 namespace swingbank::validate::report {
 
-/// Without control runs and without those on a share of the rows.
+/// Without control runs, those that recipes are chosen by, and those on a share of the rows.
 struct Task {
   std::string table, preset, dataset, dataset_hash;
   std::int64_t rows = 0;
