@@ -8,12 +8,13 @@
 namespace {
 using namespace swingbank;
 
-std::vector<std::int32_t> folds_of(const std::string& text, const train::loop::Experiment& experiment) {
+std::vector<std::int32_t> folds_of(const std::string& text, const train::loop::Experiment& experiment,
+                                   const char* option = "--fold") {
   if (text == "all") return experiment.folds;
   for (const std::int32_t fold : experiment.folds)
     if (std::to_string(fold) == text) return {fold};
   throw InputError(
-      {fmt::format("no fold '{}'", text), "--fold",
+      {fmt::format("no fold '{}'", text), option,
        fmt::format("{} leaves out {}", experiment.file.string(), fmt::join(experiment.folds, ", ")),
        "give one of these bus numbers, or all"});
 }
@@ -32,14 +33,29 @@ int train_folds(const train::data::ShardStream& stream, train::run::RunRequest r
     return 1;
   }
 }
+/// The same, judged on others than the generators left out.
+int train_nested(const train::data::ShardStream& stream, train::run::RunRequest request,
+                 const std::vector<std::int32_t>& folds, const std::string& judged, int threads) {
+  for (const std::int32_t fold : folds)
+    for (const std::int32_t other : folds_of(judged, request.experiment, "--judge-on")) {
+      if (other == fold) continue;
+      request.judged = other;
+      if (const int code = train_folds(stream, request, {fold}, threads); code != 0) return code;
+    }
+  return 0;
+}
 }  // namespace
 
 int main(int argc, char** argv) {
   jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank cross-validate");
   TrainingOptions options;
-  std::string fold = "all";
+  std::string fold = "all", judged;
   int processes = 0;
   line.add("--fold", fold, "bus number of the generator to leave out, or all").shows_default();
+  line.add(
+      "--judge-on", judged,
+      "bus number of a generator to judge on in place of the one left out, which then takes no part: to choose "
+      "recipes by; all: each of the others in turn");
   line.add("--processes", processes,
            "processes that share the folds, each with its part of the threads (default: one "
            "per core; 1 where mpirun or srun started several)");
@@ -59,7 +75,10 @@ int main(int argc, char** argv) {
     const int count = std::min(wanted, static_cast<int>(folds.size()));
     const train::data::ShardStream stream = options.open(request);  // read once, shared by the processes
     return train::run::run_processes(count, [&](train::runtime::Place mine) {
-      return train_folds(stream, request, train::run::share_of(folds, mine), std::max(1, threads / count));
+      const auto own = train::run::share_of(folds, mine);
+      const int each = std::max(1, threads / count);
+      return judged.empty() ? train_folds(stream, request, own, each)
+                            : train_nested(stream, request, own, judged, each);
     });
   });
 }

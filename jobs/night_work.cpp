@@ -81,6 +81,7 @@ Part network_part(const train::loop::Preset& p, const std::string& network, cons
   const auto row = [](const NetworkRate& of, double noise) { return noise > 0 ? of.noisy_row : of.row; };
   Part part;
   part.what = network;
+  double of_rows = 0.0;  // what training takes of one run
   for (const double noise : judged.noise) {
     if (network == "floor" && noise == 0.0) continue;
     double seconds = cost.run;
@@ -88,7 +89,8 @@ Part network_part(const train::loop::Preset& p, const std::string& network, cons
       const double longer = cost.length > 0 ? series_length(p.input.at(network), rate) / cost.length : 1.0;
       part.rows = rows.train(t);
       part.epochs = t.epochs;
-      seconds += part.rows * static_cast<double>(t.epochs) * cost.sample * longer;
+      of_rows = part.rows * static_cast<double>(t.epochs) * cost.sample * longer;
+      seconds += of_rows;
     } else {
       part.rows = rows.test(judged.test_rows);
       seconds += part.rows * row(cost, noise);
@@ -98,6 +100,11 @@ Part network_part(const train::loop::Preset& p, const std::string& network, cons
     if (!t.corrects.empty())  // of all rows, once for all folds
       part.core_seconds += rows.all(t) * row(rate_of(rates, t.corrects), noise);
   }
+  if (part.epochs > 0)
+    for (const double share : judged.shares) {
+      ++part.runs;
+      part.core_seconds += cost.run + share * of_rows;
+    }
   return part;
 }
 

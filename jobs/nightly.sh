@@ -189,7 +189,7 @@ report() {
       "$night/parts.tsv"
     if [[ -s $night/plan.md ]]; then printf '\n## Plan\n\nBy the rates of jobs/rates.toml:\n\n' && cat "$night/plan.md"; fi
     printf '\n'
-    cat "$night/tables/tables.md"
+    sed 's/^#/##/;s,](tables/,](tables/tables/,' "$night/tables/tables.md" # pictures lie beside it
     if [[ -s $night/blind/score.md ]]; then
       printf '\n## Blind test, seed %s\n\n' "$seed"
       sed '1,2d;s/^## /### /' "$night/blind/score.md"

@@ -19,6 +19,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -44,6 +45,7 @@ struct Cell {
 struct Score {
   double sum = 0;  // of ln(MSE / baseline)
   std::size_t seeds = 0;
+  std::set<std::string> makers = {};  // software and kernels
   [[nodiscard]] double mean() const { return sum / static_cast<double>(seeds); }
 };
 using Night = std::map<Cell, Score>;
@@ -53,6 +55,7 @@ struct Change {
   Cell cell;
   double tonight = 0, before = 0, noise = 0;
   std::size_t nights = 0;
+  bool other_maker = false;  // than the last night before
   [[nodiscard]] double limit() const {
     return 3.0 * noise * std::sqrt(1.0 + 1.57 / static_cast<double>(nights));
   }
@@ -79,7 +82,8 @@ double median(std::vector<double> values) {
 void read_result(const fs::path& file, Night& night, Problems& problems) {
   try {
     const auto json = nlohmann::json::parse(std::ifstream(file));
-    if (json.value("shuffled_labels", false)) return;
+    if (json.value("shuffled_labels", false) || json.value("train_share", 1.0) < 1) return;
+    if (json.contains("judged") && !json["judged"].is_null()) return;
     const auto& generator = json.at("generator");
     const double ratio = json.at("mse").get<double>() / json.at("baseline_mse").get<double>();
     if (!(ratio > 0) || !std::isfinite(ratio)) {
@@ -92,6 +96,7 @@ void read_result(const fs::path& file, Night& night, Problems& problems) {
                           json.at("dataset").at("config_hash")}];
     score.sum += std::log(ratio);
     ++score.seeds;
+    score.makers.insert(json.at("software").get<std::string>() + ", " + json.at("blas").get<std::string>());
   } catch (const nlohmann::json::exception& error) {
     problems.add("result cannot be read", file.string(), error.what(),
                  "delete the file and run the night again");
@@ -122,9 +127,13 @@ Nights read_nights(const fs::path& folder) {
 /// Changes of one night against all nights before it, in the order of the cells.
 std::vector<Change> changes_of(const std::string& date, const Nights& nights) {
   std::map<Cell, std::vector<double>> before;
+  std::map<Cell, std::set<std::string>> makers;  // of the last night
   for (const auto& [when, night] : nights) {
     if (when >= date) break;
-    for (const auto& [cell, score] : night) before[cell].push_back(score.mean());
+    for (const auto& [cell, score] : night) {
+      before[cell].push_back(score.mean());
+      makers[cell] = score.makers;
+    }
   }
   std::map<std::tuple<std::string, std::string, std::string>, std::vector<double>> residuals;
   for (const auto& [cell, scores] : before) {
@@ -137,10 +146,11 @@ std::vector<Change> changes_of(const std::string& date, const Nights& nights) {
   }
   std::vector<Change> changes;
   for (const auto& [cell, score] : nights.at(date)) {
-    Change change{cell, score.mean(), 0, 0, 0};
+    Change change{cell, score.mean()};
     if (const auto found = before.find(cell); found != before.end()) {
       change.before = median(found->second);
       change.nights = found->second.size();
+      change.other_maker = score.makers != makers.at(cell);
       const auto& pool = residuals[{cell.table, cell.network, cell.noise}];
       if (!pool.empty()) change.noise = std::max(kLeastRelativeNoise, 1.4826 * median(pool));
     }
@@ -153,9 +163,10 @@ std::string percent(double log_ratio) { return fmt::format("{:+.1f} %", 100.0 * 
 
 std::string verdict(const Change& c) {
   if (c.nights == 0) return "new";
-  if (!c.judged()) return fmt::format("no verdict before {} nights", kNightsNeeded);
-  if (!c.moved()) return "within noise";
-  return c.tonight > c.before ? "**worse**" : "**better**";
+  const char* word = c.other_maker ? ", by other software or kernels than the night before" : "";
+  if (!c.judged()) return fmt::format("no verdict before {} nights{}", kNightsNeeded, word);
+  if (!c.moved()) return fmt::format("within noise{}", word);
+  return fmt::format("**{}**{}", c.tonight > c.before ? "worse" : "better", word);
 }
 
 void print_report(const std::string& date, std::vector<Change> changes) {

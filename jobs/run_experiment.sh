@@ -4,7 +4,8 @@
 #   bash jobs/run_experiment.sh [--experiment FILE] [--preset NAME] [--out FOLDER] [--stage STAGE] [--task N]
 #                               [--seed N] [--ranks N] [--launcher WORDS] [--build FOLDER]
 #     --stage     check, databank, generate, train, tables, or all of them (all, the default); count-tasks prints how
-#                 many tasks the stage train has, one per network, noise level and fold
+#                 many tasks the stage train has, one per network, noise level and fold, and one per share
+#                 of the training rows
 #     --task      of the stage train, this one only, from 0
 #     --seed      of the training (default 1)
 #     --ranks     MPI processes that generate (default: one per core)
@@ -31,7 +32,7 @@ while (($#)); do
     --ranks) ranks=${2:?} ;;
     --launcher) launcher=${2:?} ;;
     --build) build=${2:?} ;;
-    -h | --help) sed -n '2,15p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,16p' "$0"; exit 0 ;;
     *) echo "unknown option at '$1' (jobs/run_experiment.sh does not have it): run it with --help" >&2; exit 1 ;;
   esac
   shift 2
@@ -88,10 +89,11 @@ generate() {
 }
 
 run_task() {
-  local network=$1 noise=$2 fold=$3 common with_more
-  say "$network, noise $noise, fold $fold"
+  local network=$1 noise=$2 fold=$3 share=${4:-} common with_more
+  say "$network, noise $noise, fold $fold${share:+, share $share of the training rows}"
   common=("$(dataset_folder)" --experiment "$experiment" --preset "$preset" --seed "$seed" --network "$network" --noise "$noise"
     --out "$out/results")
+  if [[ -n $share ]]; then common+=(--train-share "$share"); fi
   with_more=$(ask training_rows)
   if grep -qxF "$network" <<<"$with_more"; then common+=(--training-rows "$(training_folder)"); fi
   if [[ $fold == none ]]; then
@@ -105,7 +107,7 @@ train() {
   local all lines line
   all=$(ask tasks)
   # A process that trains all folds reads the dataset once.
-  if [[ -z $task ]]; then all=$(sed '/ none$/!s/ [^ ]*$/ all/' <<<"$all" | uniq); fi
+  if [[ -z $task ]]; then all=$(sed -E 's/^([^ ]+ [^ ]+) [0-9]+$/\1 all/' <<<"$all" | uniq); fi
   mapfile -t lines <<<"$all"
   if [[ -n $task ]]; then
     if [[ ! $task =~ ^[0-9]+$ ]] || ((task >= ${#lines[@]})); then
@@ -115,7 +117,7 @@ train() {
     lines=("${lines[task]}")
   fi
   for line in "${lines[@]}"; do
-    # shellcheck disable=SC2086 # three words: network, noise and fold
+    # shellcheck disable=SC2086 # words: network, noise, fold and, where it is not all, the share of the training rows
     run_task $line || return $?
   done
 }

@@ -21,7 +21,7 @@ report::Provenance sources(const std::vector<report::RunResult>& results, int ar
   for (const auto& r : results) {
     datasets.insert(
         fmt::format("{}: {} rows, hash {}, config {}", r.dataset, r.rows, r.dataset_hash, r.config_hash));
-    software.insert(r.software);
+    software.insert(r.maker());
   }
   for (const auto& d : datasets) rows.emplace_back("dataset", d);
   for (const auto& s : software) rows.emplace_back("software of the runs", s);
@@ -35,13 +35,15 @@ int main(int argc, char** argv) {
   std::vector<std::string> folders;
   std::string out;
   line.add("results", folders, "folders with the JSON files of train and cross-validate").required();
-  line.add("--out", out, "folder for tables.md, tables.html and one CSV per table").required();
+  line.add("--out", out, "folder for tables.md with its pictures, tables.html and CSV files").required();
   if (!line.parse(argc, argv)) return line.end();
   try {
     const auto results = report::read_results({folders.begin(), folders.end()});
     const report::TablesReport report = report::make_tables(results, sources(results, argc, argv));
     const std::filesystem::path folder = out;
     for (const auto& [name, content] : report.csv) write_file(folder / name, content);
+    for (const auto& [name, content] : report.pictures)
+      write_file(folder / report::kPictureFolder / name, content);
     write_file(folder / "tables.md", report.markdown);
     write_file(folder / "tables.html", report.html);
     fmt::print("{}summary: {}\n", report.markdown, (folder / "tables.html").string());

@@ -21,9 +21,9 @@ struct TrainingOptions {
   int threads = 0;
   unsigned readers = 1;
   double memory_limit = 8.0;  // [GiB]
-  double noise = 0;
+  double noise = 0, train_share = 1;
   std::size_t test_rows = 0;
-  bool shuffle_labels = false, save_network = true, trust = false;
+  bool shuffle_labels = false, save_network = true, trust = false, any_maker = false;
 
   void add_to(jobs::CommandLine& line) {
     line.add("DATASET", dataset, "folder that `swingbank generate` wrote");
@@ -37,6 +37,7 @@ struct TrainingOptions {
     line.add("--noise", noise, "level of measurement noise on every record (0.001: 0.1 %)").shows_default();
     line.add("--test-rows", test_rows,
              "judge about so many test rows, evenly spread (default: the preset's)");
+    line.add("--train-share", train_share, "train on this share of the training rows").shows_default();
     line.add("--epochs", epochs, "instead of the preset's");
     line.add("--threads", threads,
              "default: the Slurm allocation, OMP_NUM_THREADS or the cores, shared by the processes");
@@ -44,6 +45,8 @@ struct TrainingOptions {
     line.add("--memory-limit", memory_limit, "series up to this size stay in memory [GiB]").shows_default();
     line.add_flag("--trust", trust,
                   "do not compare the shards with the hashes in the dataset's journal (0.1 s for 268 MB)");
+    line.add_flag("--any-maker", any_maker,
+                  "results and checkpoints of other software or processors count as this run's");
     line.add_flag("--shuffle-labels", shuffle_labels, "control run: must score about as the mean does");
     line.add_flag_off("--no-network", save_network,
                       "do not write the trained network beside its result (4 bytes a weight)");
@@ -62,6 +65,9 @@ struct TrainingOptions {
     if (!(noise >= 0 && noise <= 0.1))
       problems.add(fmt::format("a noise level of {}", noise), "--noise", "a level lies between 0 and 0.1",
                    "give 0.001 for 0.1 %");
+    if (!(train_share > 0 && train_share <= 1))
+      problems.add(fmt::format("a share of {}", train_share), "--train-share", "it lies between 0 and 1",
+                   "give 0.5 for half of the training rows");
     problems.raise();
     train::run::RunRequest r;
     r.experiment = train::loop::read_experiment(experiment);
@@ -70,8 +76,10 @@ struct TrainingOptions {
     r.seed = seed;
     if (epochs > 0) r.epochs = epochs;
     r.shuffle_labels = shuffle_labels;
+    r.any_maker = any_maker;
     r.save_network = save_network;
     r.noise = noise;
+    r.train_share = train_share;
     const std::size_t judged = test_rows > 0 ? test_rows : r.experiment.judging(preset, r.network).test_rows;
     if (judged > 0) r.test_rows = judged;
     r.out = out;

@@ -15,6 +15,10 @@ grep -qF '| V | events that only train | 1 | 3000 | – |' "$work/plan" || fail 
 grep -qF '| V | mlp | 2 | 3100 | 100 |' "$work/plan" || fail "1,600 own rows and half of 3,000: $(cat "$work/plan")"
 plan --seeds 3 | grep -qF '| V | mlp | 6 | 3100 | 100 |' || fail "three seeds"
 
+sed 's/^\[preset.quick.mlp\]/&\nshares = [0.25, 0.5]/' "$work/tiny.toml" >"$work/shares.toml"
+"$swingbank" night-plan "$work/shares.toml" --preset quick --rates "$SWINGBANK_SOURCE/jobs/rates.toml" |
+  grep -qF '| V | mlp | 4 | 3100 | 100 |' || fail "two shares of the training rows"
+
 plan --hours 2 --cores 3 --name night --out "$work/made" >"$work/plan"
 awk -v h="$(hours)" 'BEGIN {exit !(h > 5.9 && h < 6.1)}' || fail "2 h on 3 cores: $(tail -n 2 "$work/plan")"
 (($(written draws) > 4000 && $(written training_draws) > 1000)) || fail "a longer night has no more events"

@@ -10,7 +10,7 @@ night() {
     shift
     cat >"$folder/V-cnn-nightly-seed1-gen$generator.json" <<JSON
 {"table": "V", "network": "cnn", "generator": $generator, "preset": "nightly", "mse": $1, "baseline_mse": 1.0,
- "shuffled_labels": false, "dataset": {"config_hash": "00", "hash": "00", "rows": 1}}
+ "shuffled_labels": false, "software": "swingbank", "blas": "${BLAS:-one}", "dataset": {"config_hash": "00", "hash": "00", "rows": 1}}
 JSON
   done
 }
@@ -27,6 +27,12 @@ compare
 grep -q '^# Night 2026-01-04: 1 of 2 judged' "$work/report" || fail "headline: $(cat "$work/report")"
 grep -q '^| V | cnn | 0 | 31 .* +300.0 % .* \*\*worse\*\* |$' "$work/report" || fail "fourfold error not named: $(cat "$work/report")"
 grep -q '^| V | cnn | 0 | 30 .* within noise |$' "$work/report" || fail "2 % called a move: $(cat "$work/report")"
+
+BLAS=other night 2026-01-05 0.204 0.100
+compare
+grep -q '^| V | cnn | 0 | 30 .* within noise, by other software or kernels than the night before |$' "$work/report" ||
+  fail "other kernels without a word: $(cat "$work/report")"
+rm -r "$work/nights/2026-01-05"
 
 echo '{"table": "V"' >"$work/nights/2026-01-04/ieee39_gencls/results/broken.json"
 refuses "broken result" 'broken.json' "$swingbank" nightly-compare "$work/nights"

@@ -56,9 +56,9 @@ std::vector<std::vector<std::uint64_t>> points_of(const Labels& labels,
 }
 
 /// Appends the rows that only train.
-void add_training_rows(const Labels& labels, std::optional<std::int32_t> left_out, RowSplit& split) {
+void add_training_rows(const Labels& labels, const std::set<std::int32_t>& left_out, RowSplit& split) {
   for (std::uint64_t row = labels.judged; row < labels.rows; ++row)
-    if (labels.generator[row] != left_out) split.train.push_back(row);
+    if (!left_out.contains(labels.generator[row])) split.train.push_back(row);
 }
 
 std::vector<std::uint64_t> rows_of(const std::vector<std::vector<std::uint64_t>>& points, std::size_t begin,
@@ -90,18 +90,22 @@ RowSplit split_by_point(const Labels& labels, std::uint64_t seed) {
   RowSplit split{rows_of(points, 0, train), rows_of(points, train, validation),
                  rows_of(points, validation, points.size())};
   require_rows(split, points.size());
-  add_training_rows(labels, std::nullopt, split);
+  add_training_rows(labels, {}, split);
   return split;
 }
 
 RowSplit leave_one_out(const Labels& labels, std::int32_t generator, double validation_share,
-                       std::uint64_t seed) {
+                       std::uint64_t seed, std::optional<std::int32_t> judged) {
   RowSplit split;
   std::vector<std::uint64_t> others;
+  const std::int32_t test = judged.value_or(generator);
   for (std::uint64_t row = 0; row < labels.judged; ++row)
-    (labels.generator[row] == generator ? split.test : others).push_back(row);
+    if (labels.generator[row] == test)
+      split.test.push_back(row);
+    else if (labels.generator[row] != generator)
+      others.push_back(row);
   if (split.test.empty())
-    throw InputError({fmt::format("generator {} has no rows", generator), "--fold",
+    throw InputError({fmt::format("generator {} has no rows", test), judged ? "--judge-on" : "--fold",
                       fmt::format("the dataset has generators {}", fmt::join(generators(labels), ", ")),
                       "choose one of these, or all"});
   auto points = points_of(labels, others);
@@ -110,8 +114,20 @@ RowSplit leave_one_out(const Labels& labels, std::int32_t generator, double vali
   split.validation = rows_of(points, 0, validation);
   split.train = rows_of(points, validation, points.size());
   require_rows(split, points.size());
-  add_training_rows(labels, generator, split);
+  add_training_rows(labels, {generator, test}, split);
   return split;
+}
+
+void keep_share(RowSplit& split, const Labels& labels, double part) {
+  const auto more = std::ranges::lower_bound(split.train, labels.judged);
+  const auto own = static_cast<std::size_t>(more - split.train.begin());
+  std::vector<std::uint64_t> kept(split.train.begin(),
+                                  split.train.begin() + static_cast<std::ptrdiff_t>(share(own, part)));
+  kept.insert(kept.end(), more, more + static_cast<std::ptrdiff_t>(share(split.train.size() - own, part)));
+  if (kept.empty())
+    throw InputError({fmt::format("no training rows in a share of {}", part), "--train-share",
+                      fmt::format("the split has {}", split.train.size()), "give a larger share"});
+  split.train = std::move(kept);
 }
 
 std::vector<std::int32_t> generators(const Labels& labels) {

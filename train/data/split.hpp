@@ -3,6 +3,7 @@
 // same parameter values) or an event always go together, so that no test point was seen under another fault
 // and no test event at another machine. Rows behind Labels::judged only train.
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "train/data/shard_stream.hpp"
@@ -18,8 +19,13 @@ struct RowSplit {
 RowSplit split_by_point(const Labels& labels, std::uint64_t seed);
 /// Test: every row of one generator. The others' points: `validation_share` for validation, the rest for
 /// training. Throws InputError if the generator has no rows or no others exist.
+/// With `judged` its rows are the test instead, and those of `generator` take no part at all: so recipes are
+/// chosen without a look at the generator that the table leaves out.
 RowSplit leave_one_out(const Labels& labels, std::int32_t generator, double validation_share,
-                       std::uint64_t seed);
+                       std::uint64_t seed, std::optional<std::int32_t> judged = {});
+/// Of the rows that train the first of the judged dataset and of the one that only trains, as if both had
+/// been made smaller. Throws InputError if nothing would be left.
+void keep_share(RowSplit& split, const Labels& labels, double share);
 /// Bus numbers of the generators that have rows, ascending: one fold each.
 std::vector<std::int32_t> generators(const Labels& labels);
 

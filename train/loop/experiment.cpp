@@ -14,6 +14,7 @@ namespace {
 
 const std::vector<std::string> kSchedules = {"constant", "cosine"};
 const Range kNoiseLevels = {0.0, 0.1};  // at more, a phasor is no measurement
+constexpr double kLeastShare = 1e-3;    // of the training rows
 
 std::vector<std::string> network_names() {
   std::vector<std::string> names;
@@ -82,6 +83,8 @@ void read_input(Config& c, const std::string& at, bool complete, NetworkInput& i
 void read_judging(Config& c, const std::string& at, bool complete, Judging& j) {
   if (complete || c.has(at + ".noise")) j.noise = c.require<std::vector<double>>(at + ".noise", kNoiseLevels);
   Keys(c, at, false).whole("test_rows", 1, j.test_rows);
+  if (c.has(at + ".shares"))
+    j.shares = c.require<std::vector<double>>(at + ".shares", {kLeastShare, 1.0 - kLeastShare});
 }
 
 /// A table named after a network changes what stands in it for that network only.
@@ -172,7 +175,8 @@ const Value& of_network(const Experiment& e, const Preset& p, const std::map<std
 std::string lines_of(const std::vector<Task>& tasks) {
   std::string lines;
   for (const auto& t : tasks)
-    lines += fmt::format("{}{} {} {}", lines.empty() ? "" : "\n", t.network, t.noise, t.fold);
+    lines += fmt::format("{}{} {} {}{}", lines.empty() ? "" : "\n", t.network, t.noise, t.fold,
+                         t.share < 1 ? fmt::format(" {}", t.share) : "");
   return lines;
 }
 
@@ -204,11 +208,15 @@ std::vector<Task> Experiment::tasks(const std::string& preset_name) const {
   for (const auto fold : folds) left_out.push_back(std::to_string(fold));
   if (left_out.empty()) left_out = {"none"};
   std::vector<Task> all;
-  for (const auto& network : preset(preset_name).networks)
-    for (const double noise : judging(preset_name, network).noise) {
+  for (const auto& network : preset(preset_name).networks) {
+    const Judging& judged = judging(preset_name, network);
+    for (const double noise : judged.noise) {
       if (network == "floor" && noise == 0.0) continue;  // records without noise have no floor
       for (const auto& fold : left_out) all.push_back({network, noise, fold});
     }
+    for (const double share : judged.shares)
+      all.push_back({network, judged.noise.front(), left_out.front(), share});
+  }
   return all;
 }
 

@@ -38,8 +38,9 @@ struct NetworkInput {
 
 /// On what a network is judged, and trained as far as noise goes.
 struct Judging {
-  std::vector<double> noise;  ///< levels of measurement noise (sim/core/measurement_noise.hpp); 0: none
-  std::size_t test_rows = 0;  ///< about so many, evenly spread; 0: all
+  std::vector<double> noise;        ///< levels of measurement noise (sim/core/measurement_noise.hpp); 0: none
+  std::size_t test_rows = 0;        ///< about so many, evenly spread; 0: all
+  std::vector<double> shares = {};  ///< of the training rows: a run more each, of the first level and fold
 };
 
 struct Preset {
@@ -56,11 +57,12 @@ struct Preset {
 struct Task {
   std::string network;
   double noise = 0.0;
-  std::string fold;  ///< bus number of the generator left out; "none": the experiment splits its rows
+  std::string fold;    ///< bus number of the generator left out; "none": the experiment splits its rows
+  double share = 1.0;  ///< of the training rows that train
 };
 
 /// What Experiment::print knows. "training_rows": the networks that train on them; "tasks": network, noise
-/// level and fold of each run.
+/// level and fold of each run, and its share of the training rows where that is not all.
 inline constexpr std::array<const char*, 8> kPrintable = {
     "table", "dataset", "draws", "training_dataset", "training_draws", "training_rows", "networks", "tasks"};
 

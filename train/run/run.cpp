@@ -1,6 +1,7 @@
 #include "train/run/run.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -19,13 +20,28 @@ namespace swingbank::train::run {
 namespace {
 using nlohmann::json;
 
-/// True if the result stands there already; refuses one of another run.
+/// What two identities differ in, in words.
+std::string differing(const json& there, const json& here) {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : here.items())
+    if (!there.is_object() || !there.contains(key) || there[key] != value) keys.push_back(key);
+  return fmt::format("{}", fmt::join(keys, ", "));
+}
+
+/// True if the result stands there already; refuses one of another run. A finished result may be of another
+/// processor, which it says; one of other software may not.
 bool already_done(const std::filesystem::path& file, const json& run) {
   if (!std::filesystem::exists(file)) return false;
-  const json there = json::parse(read_text(file), nullptr, false);
-  if (!there.is_discarded() && there.is_object() && there.value("run", json()) == run) return true;
+  const json parsed = json::parse(read_text(file), nullptr, false);
+  json there = parsed.is_object() ? parsed.value("run", json()) : json();
+  if (there.is_object()) {
+    there["kernels"] = run["kernels"];
+    if (run["software"] == "any") there["software"] = "any";
+  }
+  if (there == run) return true;
   throw InputError({"another run's result is in the way", file.string(),
-                    "its data or settings differ from this run's", "remove it or choose another --out"});
+                    fmt::format("it differs from this run's in: {}", differing(there, run)),
+                    "remove it, choose another --out, or give --any-maker if it is only the software"});
 }
 
 /// `predicted`: `rows` x parameters, raw units.
@@ -132,9 +148,11 @@ RunOutcome run_direct(const data::ShardStream& stream, const RunRequest& r, cons
 }  // namespace
 
 std::string run_name(const RunRequest& r) {
-  return fmt::format("{}-{}-{}{}-seed{}{}{}", r.experiment.table, r.network, r.preset,
-                     r.noise > 0 ? fmt::format("-noise{}", r.noise) : "", r.seed,
+  return fmt::format("{}-{}-{}{}{}-seed{}{}{}{}", r.experiment.table, r.network, r.preset,
+                     r.noise > 0 ? fmt::format("-noise{}", r.noise) : "",
+                     r.train_share < 1 ? fmt::format("-share{}", r.train_share) : "", r.seed,
                      r.generator ? fmt::format("-gen{}", *r.generator) : "",
+                     r.judged ? fmt::format("-judged{}", *r.judged) : "",
                      r.shuffle_labels ? "-shuffled" : "");
 }
 
@@ -175,10 +193,11 @@ RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
   settings.gflops = r.runtime.gflops;
   if (r.epochs) settings.recipe.epochs = *r.epochs;
   const data::Labels& labels = stream.labels();
-  data::RowSplit split =
-      r.generator ? data::leave_one_out(labels, *r.generator, settings.recipe.validation_share, r.seed)
-                  : data::split_by_point(labels, r.seed);
+  data::RowSplit split = r.generator ? data::leave_one_out(labels, *r.generator,
+                                                           settings.recipe.validation_share, r.seed, r.judged)
+                                     : data::split_by_point(labels, r.seed);
   if (r.test_rows) thin(split.test, *r.test_rows);
+  if (r.train_share < 1) data::keep_share(split, labels, r.train_share);
   const data::TargetScale scale =
       data::TargetScale::fit(labels.values, labels.parameters, split.train, stream.dataset().parameter_low);
   if (direct::is_method(r.network)) return run_direct(stream, r, {file, name, run_identity, split, scale});
@@ -211,7 +230,7 @@ RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
   const loop::Score result = judged(split.test);
   const double seen = judged(split.validation).mse;
   // a network that corrects estimates is of no use without whoever makes them
-  if (r.save_network && !r.shuffle_labels && known.none())
+  if (r.save_network && !r.shuffle_labels && r.train_share == 1 && known.none())
     save_network(network_file(file), {stream, r, features, scale, split, run_identity}, *network);
   write_text(file, result_json(stream, r, {split, &features, report, result, seen}).dump(2) + "\n");
   std::filesystem::remove(checkpoint);

@@ -18,11 +18,14 @@ struct RunRequest {
   loop::Experiment experiment;
   std::string preset, network;
   std::optional<std::int32_t> generator;  ///< to leave out; none: 60/20/20
+  std::optional<std::int32_t> judged;     ///< generator that the run is judged on instead, also left out
   std::uint64_t seed = 1;
   std::optional<std::size_t> epochs;  ///< instead of the preset's
   double noise = 0;  ///< level of measurement noise; the stream must have been opened with it
   std::optional<std::size_t> test_rows;  ///< about so many, evenly spread; none: all
+  double train_share = 1.0;              ///< of the training rows
   bool shuffle_labels = false;
+  bool any_maker = false;    ///< what other software or kernels made counts as this run's
   bool save_network = true;  ///< beside the result (not of a control run)
   std::filesystem::path out;
   runtime::Runtime runtime;
@@ -32,8 +35,9 @@ struct RunRequest {
 enum class RunOutcome { done, already_done, stopped };
 
 /// Trains, scores and writes the JSON of train/run/README.md. Goes on from a checkpoint of the same run.
-/// Throws InputError if the output folder holds the result of another run under the same name, or if another
-/// process is at this very run (RunLock).
+/// Throws InputError if the output folder holds the result of another run under the same name, or of other
+/// software, or a checkpoint of other software or kernels, or if another process is at this very run
+/// (RunLock).
 RunOutcome run(const data::ShardStream& stream, const RunRequest& request);
 
 /// Targets of all rows in scaled units. With `shuffled`, the labels of the training and validation rows

@@ -84,7 +84,12 @@ std::string restart(const std::string& asked, const std::string& alone, char** a
   return why;
 }
 
-/// "AVX2": instructions of LibTorch's own loops, which it chooses by features and not by model.
+void warn(const std::string& sentence) {
+  if (!sentence.empty()) fmt::print(stderr, "warning: {}\n", sentence);
+}
+
+}  // namespace
+
 std::string tensor_instructions() {
   const std::string text = at::show_config();
   const std::string key = "CPU capability usage: ";
@@ -92,12 +97,6 @@ std::string tensor_instructions() {
   if (begin == std::string::npos) return "unknown";
   return text.substr(begin + key.size(), text.find('\n', begin) - begin - key.size());
 }
-
-void warn(const std::string& sentence) {
-  if (!sentence.empty()) fmt::print(stderr, "warning: {}\n", sentence);
-}
-
-}  // namespace
 
 Processor Processor::here() {
   __builtin_cpu_init();

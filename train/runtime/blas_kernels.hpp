@@ -33,6 +33,9 @@ BlasChoice choose_blas_kernels(const Processor& processor, const BlasFound& foun
 /// Library, version and kernels in words; why these, where the library did not choose by itself.
 std::string blas_name(const BlasFound& found);
 
+/// "AVX2": instructions of LibTorch's own loops, which it chooses by features and not by model.
+std::string tensor_instructions();
+
 /// To be called before any thread starts. OpenBLAS chooses while the program is loaded; where it chose badly,
 /// this program runs itself again with the right choice in its environment. Then the library is checked and
 /// measured (blas_check.hpp), and one line on stderr says what is used; warnings follow. Throws InputError if

@@ -55,6 +55,7 @@ Runtime set_up_runtime(int threads) {
   runtime.threads = threads > 0 ? threads : default_threads();
   at::set_num_threads(runtime.threads);
   runtime.blas = blas_name(BlasFound::here());
+  runtime.loops = tensor_instructions();
   runtime.gflops = runtime.threads * blas_rate().product;
   return runtime;
 }

@@ -6,7 +6,8 @@ namespace swingbank::train::runtime {
 
 struct Runtime {
   int threads = 1;
-  std::string blas;  ///< library, version and kernels: blas_name() of blas_kernels.hpp
+  std::string blas;        ///< library, version and kernels: blas_name() of blas_kernels.hpp
+  std::string loops = {};  ///< instructions of LibTorch's own loops
   double gflops =
       0.0;  ///< single-precision products of all threads, from that of one [GFLOP/s]; 0: not known
   [[nodiscard]] std::string sentence() const;

@@ -8,6 +8,7 @@
 
 #include "base/constants.hpp"
 #include "base/in_parallel.hpp"
+#include "validate/calibrate/detail/closed_start.hpp"
 #include "validate/calibrate/detail/identify.hpp"
 #include "validate/calibrate/detail/screen.hpp"
 #include "validate/calibrate/detail/voltage_noise.hpp"
@@ -91,11 +92,40 @@ class Calibrating {
     return fits;
   }
 
+  /// From the closed form, where it is nearer to the records than the model's own values; from these; and
+  /// from drawn sets, unless the closed form has led to where nothing but noise is left.
   void search() {
     std::vector<fit::EventState> states;
     for (std::size_t e = 0; e < before_.size(); ++e)
       if (!out_[e]) states.push_back(before_[e].state);
     const Screen screen(model_.plant, free_, options_.seed);
+    const auto start = [&](const std::string& name, const std::vector<double>& values) {
+      return Start{name, values, chi2_of({screen.with(values), model_.conventions}, seen_, states)};
+    };
+    Starts starts = {start("model", screen.own())};
+    bool straight = false;  // the first start is the closed form
+    if (options_.events.measured_states)
+      if (const auto values = closed_start(model_.under_test(), seen_, free_)) {
+        const Start closed = start("closed form", *values);
+        straight = closed.before < starts.front().before;
+        if (straight) starts.insert(starts.begin(), closed);
+      }
+    for (const auto& g : options_.given) starts.push_back(start(g.name, fit::values_of(g.plant, free_)));
+    std::vector<fit::Fit> fits;
+    refine(starts, states, fits);
+    if (!straight || !fits.front().failed.empty() || fits.front().misfit() > options_.adequate)
+      refine(drawn(screen, states), states, fits);
+    choose(fits);
+  }
+  struct Start {
+    std::string name;
+    std::vector<double> values;
+    double before = 0;  ///< chi2
+  };
+  using Starts = std::vector<Start>;
+
+  /// The best of the sets drawn about the model's own values.
+  [[nodiscard]] Starts drawn(const Screen& screen, const std::vector<fit::EventState>& states) const {
     std::vector<std::vector<double>> draws(static_cast<std::size_t>(std::max(0, options_.draws)));
     std::vector<std::pair<double, std::size_t>> order(draws.size());
     in_parallel(
@@ -106,32 +136,30 @@ class Calibrating {
         },
         [&](int done) { tell("parameter sets screened", done, options_.draws); });
     std::ranges::sort(order);
-    std::vector<std::vector<double>> starts = {screen.own()};
-    c_.started = {{.name = "model", .before = chi2_of(model_.under_test(), seen_, states)}};
-    for (const auto& g : options_.given) {
-      starts.push_back(fit::values_of(g.plant, free_));
-      c_.started.push_back(
-          {.name = g.name,
-           .before = chi2_of({screen.with(starts.back()), model_.conventions}, seen_, states)});
-    }
+    Starts starts;
     const auto refined = static_cast<std::size_t>(std::max(0, options_.starts));
-    for (std::size_t k = 0; k < order.size() && k < refined; ++k) {
-      if (!std::isfinite(order[k].first)) continue;
-      starts.push_back(draws[order[k].second]);
-      c_.started.push_back({.name = fmt::format("draw {}", order[k].second + 1), .before = order[k].first});
-    }
-
-    std::vector<fit::Fit> fits(starts.size());
+    for (std::size_t k = 0; k < order.size() && k < refined; ++k)
+      if (std::isfinite(order[k].first))
+        starts.push_back(
+            {fmt::format("draw {}", order[k].second + 1), draws[order[k].second], order[k].first});
+    return starts;
+  }
+  /// Appends a fit for each start.
+  void refine(const Starts& starts, const std::vector<fit::EventState>& states, std::vector<fit::Fit>& fits) {
+    std::vector<fit::Fit> found(starts.size());
     in_parallel(
         starts.size(),
         [&](std::size_t k) {
           fit::FitOptions o;
           o.start = states;
-          o.values = starts[k];
-          fits[k] = fit::fit(model_.under_test(), seen_, free_, o);
+          o.values = starts[k].values;
+          found[k] = fit::fit(model_.under_test(), seen_, free_, o);
         },
         [&](int done) { tell("starts refined", done, static_cast<int>(starts.size())); });
-    choose(fits);
+    for (std::size_t k = 0; k < starts.size(); ++k) {
+      c_.started.push_back({.name = starts[k].name, .before = starts[k].before});
+      fits.push_back(std::move(found[k]));
+    }
   }
   void choose(std::vector<fit::Fit>& fits) {
     const auto best = std::ranges::min_element(fits, fit::better);

@@ -19,7 +19,7 @@ struct GivenStart {
 
 struct CalibrateOptions {
   double spread = thresholds::parameters.spread;  ///< relative uncertainty believed of the parameters
-  int draws = 24;                                 ///< parameter sets tried as starts
+  int draws = 24;  ///< parameter sets tried as starts, unless the machine's closed form is good enough
   int starts = 2;  ///< how many of these are refined beside the model's own values
   std::uint64_t seed = 1;
   std::vector<std::string> held_out;  ///< record names (or their numbers, from 1) left out of the fit
@@ -84,7 +84,7 @@ enum class Adequacy {
 
 /// One start of the search.
 struct StartScore {
-  std::string name;              ///< "model", "network", "draw 3"
+  std::string name;              ///< "closed form", "model", "network", "draw 3"
   double before = 0, after = 0;  ///< chi2 per value over the events seen; infinite where it cannot be run
   bool agrees = false;           ///< came to the best optimum
 };
@@ -101,7 +101,7 @@ struct Calibration {
   std::vector<EventScore> events;
   double before = 0, after = 0, limit = 0;  ///< chi2 per value over the events seen
   int starts = 0, agreeing = 0;             ///< refined starts; how many came to the same optimum
-  std::vector<StartScore> started;          ///< each refined start: the model's own, those given, those drawn
+  std::vector<StartScore> started;          ///< each refined start, in the order tried
   bool converged = false;
   double voltage_noise = 0;             ///< share of the pre-event movement of V that is the instrument's
   fit::Fit fit;                         ///< of the events seen

@@ -216,6 +216,10 @@ void Page::bars(const Bars& b) {
   body_ += fmt::format("<figure><figcaption>{}</figcaption>{}</svg></figure>\n", escape(b.title), svg);
 }
 
+void Page::picture(std::string_view svg, std::string_view caption) {
+  body_ += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", svg, escape(caption));
+}
+
 void Page::provenance(const Provenance& rows) {
   section("Provenance");
   body_ += "<div class=\"wrap\"><table><tbody>\n";

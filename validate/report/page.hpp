@@ -81,6 +81,7 @@ class Page {
   void table(const Table& table);
   void curves(const Curves& curves);
   void bars(const Bars& bars);
+  void picture(std::string_view svg, std::string_view caption);
   void scatters(const std::vector<Scatter>& side_by_side);
   void provenance(const Provenance& rows);
   void data(std::string_view id, std::string_view json);  ///< for programs; not shown

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -62,6 +63,22 @@ void read_parameters(Object& o, const std::string& where, RunResult& r, Problems
   }
 }
 
+/// {"0.001": {"50": 0.48, "90": 0.91, "n": 1200}}: by level of noise, the share of the truths that lay in
+/// intervals of 50 and 90 %.
+void read_calibration(Object& o, RunResult& r) {
+  if (!o.value().contains("calibration") || o.value()["calibration"].is_null()) return;
+  try {
+    for (const auto& [level, shares] : o.value()["calibration"].items()) {
+      auto& all = r.calibration[std::stod(level)];
+      for (const auto& [nominal, observed] : shares.items())
+        if (!nominal.empty() && std::isdigit(static_cast<unsigned char>(nominal.front())))
+          all.push_back({std::stod(nominal) / 100, observed.get<double>(), shares.at("n").get<double>()});
+    }
+  } catch (const std::exception& error) {
+    o.fault("calibration", error.what());
+  }
+}
+
 RunResult read_result(const fs::path& file, Problems& problems) {
   RunResult r;
   r.file = file;
@@ -79,6 +96,7 @@ RunResult read_result(const fs::path& file, Problems& problems) {
   o.get("seed", r.seed);
   o.get("noise", r.noise);
   if (parsed.contains("generator") && !parsed["generator"].is_null()) o.get("generator", r.generator);
+  if (parsed.contains("judged") && !parsed["judged"].is_null()) o.get("judged", r.judged);
   json dataset = json::object();
   o.get("dataset", dataset);
   Object d(dataset, file.string() + " dataset", problems);
@@ -101,14 +119,18 @@ RunResult read_result(const fs::path& file, Problems& problems) {
   else
     o.get("H_ratio", r.H_ratio);
   o.get("shuffled_labels", r.shuffled);
+  o.get("threads", r.threads);
   o.get("software", r.software);
+  o.get("blas", r.blas);
+  if (parsed.contains("train_share")) o.get("train_share", r.share);
+  read_calibration(o, r);
   read_parameters(o, file.string(), r, problems);
   return r;
 }
 
 auto identity(const RunResult& r) {
   return std::tie(r.table, r.network, r.preset, r.dataset_hash, r.rows, r.seed, r.noise, r.generator,
-                  r.shuffled);
+                  r.judged, r.shuffled, r.share);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 // the keys).
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,20 +17,31 @@ struct ParameterScore {
   double mse = 0, variance = 0;
   std::optional<double> relative;  ///< mse / variance; none for a parameter that does not vary
 };
+/// How often the truth lay in intervals that should hold it with a probability of `nominal`.
+struct Coverage {
+  double nominal = 0, observed = 0;  ///< shares of 1
+  double rows = 0;
+};
 struct RunResult {
   std::filesystem::path file;
   std::string table, network, preset;
   std::int64_t seed = 0;
   double noise = 0;   ///< level of measurement noise; 0: none
   int generator = 0;  ///< bus of the generator left out; 0: none
+  int judged = 0;     ///< bus of the generator judged on in its place, to choose a recipe by; 0: none
   std::string dataset, dataset_hash, config_hash;
+  double share = 1;  ///< of the training rows that trained
   std::int64_t rows = 0, train_rows = 0, test_rows = 0, epochs = 0, best_epoch = 0;
   double seconds = 0, seconds_per_epoch = 0;
   double mse = 0, mse_varied_only = 0, baseline_mse = 0, ratio = 0;
   double H_ratio = 0;  ///< NaN where H does not vary
   std::vector<ParameterScore> parameters;
+  std::map<double, std::vector<Coverage>> calibration;  ///< by level of noise; empty: it gives no intervals
   bool shuffled = false;
-  std::string software;
+  int threads = 1;
+  std::string software, blas;
+  /// What made the figures beside data and recipe; results of different makers are compared only with a word.
+  [[nodiscard]] std::string maker() const { return software + ", " + blas; }
 };
 
 /// Reads every *.json of the folders, in order of their names. Throws InputError with every fault of every

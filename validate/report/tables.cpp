@@ -1,16 +1,20 @@
 #include "validate/report/tables.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
-#include <limits>
 #include <map>
+#include <set>
 #include <tuple>
 
+#include "validate/report/detail/method_tables.hpp"
+#include "validate/report/detail/scaling.hpp"
+#include "validate/report/detail/table_pictures.hpp"
 #include "validate/report/detail/thesis_tables.hpp"
-#include "validate/report/noise_table.hpp"
 
 namespace swingbank::validate::report {
 namespace {
@@ -140,41 +144,6 @@ std::string made_with(const TableBlock& block) {
       "over the parameters of the squared error in raw units (s², pu²).",
       block.preset, block.dataset, block.rows, block.runs.front().dataset_hash, block.seed);
 }
-/// The thesis's MSE for the run's row; 0: it gives none.
-double thesis_of(const RunResult& r) {
-  const auto* cell = r.shuffled ? nullptr : thesis_cell(r.table, r.network, r.generator);
-  return cell ? cell->mse : 0.0;
-}
-std::string verdict(const TableBlock& block) {
-  if (block.shuffled)
-    return "Labels were shuffled before training: nothing can be learnt, and the ratio to predict-the-mean "
-           "must be about 1.";
-  const auto judged = std::ranges::count_if(block.runs, [](const RunResult& r) { return thesis_of(r) > 0; });
-  const auto better =
-      std::ranges::count_if(block.runs, [](const RunResult& r) { return r.mse < thesis_of(r); });
-  const auto expected = expected_rows(block).size();
-  return fmt::format("{}One seed.{}",
-                     judged > 0 ? fmt::format("{} of {} runs score below the thesis. ", better, judged) : "",
-                     expected > block.runs.size()
-                         ? fmt::format(" Missing: {} of {} runs.", expected - block.runs.size(), expected)
-                         : "");
-}
-
-/// What the thesis says beside its table.
-std::string remark(const TableBlock& block) {
-  if (block.shuffled) return {};
-  if (block.table == "IV")
-    return fmt::format(
-        "The thesis also ran EPRI's PPPD on ten of these events: MSE {:g}, the CNN on the same events {:g}. "
-        "Compare the former with the column of predict-the-mean.",
-        kThesisPppd, kThesisCnnOnPppdEvents);
-  if (block.table == "VI" && block.network == "gru")
-    return fmt::format(
-        "The thesis gives no table for this network; its GRU stopped at an MSE of {:g} in validation.",
-        kThesisGruTableVI);
-  return {};
-}
-
 /// As part of a file's name.
 std::string safe(std::string stem) {
   std::ranges::replace_if(
@@ -268,82 +237,221 @@ Table parameter_table(const TableBlock& block) {
   return table;
 }
 
-Bars ratio_bars(const TableBlock& block) {
-  Bars bars{"MSE relative to predict-the-mean (lower is better; blue: below the thesis's MSE)",
-            "",
-            1.0,
-            "predict-the-mean",
-            {}};
-  for (const auto& key : expected_rows(block)) {
-    const auto* run = find_run(block, key);
-    bars.bars.push_back({key.label(), run ? run->ratio : std::numeric_limits<double>::quiet_NaN(),
-                         run && run->mse < thesis_of(*run)});
-  }
-  return bars;
-}
-
 namespace {
-/// Whether two blocks are of the same table, preset and dataset.
-bool same_task(const TableBlock& a, const TableBlock& b) {
-  return a.table == b.table && a.preset == b.preset && a.dataset == b.dataset && a.rows == b.rows &&
-         a.shuffled == b.shuffled;
+
+/// The same words, tables and pictures as a page and as Markdown.
+class Both {
+ public:
+  Both(std::string_view title, std::string_view subtitle)
+      : page_(title, subtitle), markdown_(fmt::format("# {}\n\n{}\n\n", title, subtitle)) {}
+  void section(const std::string& title) {
+    page_.section(title);
+    markdown_ += fmt::format("## {}\n\n", title);
+  }
+  void subsection(const std::string& title) {
+    page_.subsection(title);
+    markdown_ += fmt::format("### {}\n\n", title);
+  }
+  void text(const std::string& paragraph) {
+    if (paragraph.empty()) return;
+    page_.text(paragraph);
+    markdown_ += paragraph + "\n\n";
+  }
+  void note(const std::string& paragraph) {
+    page_.note(paragraph);
+    markdown_ += fmt::format("> {}\n\n", paragraph);
+  }
+  void table(const Table& table) {
+    page_.table(table);
+    markdown_ += markdown(table) + "\n";
+  }
+  void picture(const std::string& name, const std::string& svg, const std::string& caption) {
+    if (svg.empty()) return;
+    page_.picture(svg, caption);
+    markdown_ += fmt::format("![{}]({}/{})\n\n", caption, kPictureFolder, name);
+    pictures_.emplace_back(name, svg);
+  }
+  TablesReport end(const Provenance& sources) {
+    page_.provenance(sources);
+    markdown_ += "## Provenance\n\n";
+    for (const auto& [name, value] : sources) markdown_ += fmt::format("- {}: {}\n", name, value);
+    return {markdown_, page_.html(), {}, pictures_};
+  }
+
+ private:
+  Page page_;
+  std::string markdown_;
+  std::vector<std::pair<std::string, std::string>> pictures_;
+};
+
+std::string made_of(const Task& task) {
+  return fmt::format(
+      "Preset {}, dataset {} ({} rows, hash {}). MSE: mean over the parameters of the squared error in raw "
+      "units (s², pu²). {}",
+      task.preset, task.dataset, task.rows, task.dataset_hash, against_thesis(task));
 }
 
-/// Before the first block of a task: its methods against levels of noise.
-void add_noise_table(const std::vector<TableBlock>& blocks, std::size_t first, TablesReport& report,
-                     Page& page) {
-  const TableBlock& block = blocks[first];
-  std::vector<RunResult> runs;
-  for (const auto& other : blocks)
-    if (same_task(block, other)) runs.insert(runs.end(), other.runs.begin(), other.runs.end());
-  if (!has_noise_table(runs)) return;
-  const std::string title = fmt::format("Table {}, {}: methods and noise", block.table, block.preset);
-  const Table table = noise_table(runs);
-  report.markdown += fmt::format("## {}\n\n{}\n", title, markdown(table));
-  page.section(title);
-  page.table(table);
-  std::string stem = fmt::format("table-{}-{}-rows{}-noise", block.table, block.preset, block.rows);
-  report.csv.emplace_back(safe(stem) + ".csv", csv(table));
+/// `stem`: of the names of its pictures.
+void add_task(const Task& task, const std::string& stem, Both& to) {
+  to.text(made_of(task));
+  if (const auto makers = task.makers(); makers.size() > 1)
+    to.note(fmt::format(
+        "These figures were made by different software or processors, so a small difference between "
+        "two of them need not be one of the methods: {}.",
+        fmt::join(makers, "; ")));
+  to.table(method_table(task));
+  to.picture(stem + "-methods.svg", method_picture(task),
+             task.generators().empty()
+                 ? "Mean squared error of each method."
+                 : "Mean squared error of each method: large, the mean; small, each generator "
+                   "left out.");
+  for (const double level : task.levels())
+    if (!task.generators().empty()) to.table(generator_table(task, level));
+  to.picture(stem + "-parameters.svg", parameter_picture(task),
+             "Error of each parameter relative to its variance: what the raw MSE does not show.");
+  for (const double level : task.levels()) to.table(parameter_comparison(task, level));
+  to.picture(
+      stem + "-reliability.svg", reliability_picture(task),
+      "Intervals of the estimates: a point on the dashed line is an interval that holds what it states.");
+  to.table(effort_table(task));
 }
+
+void add_scaling(const std::vector<RunResult>& results, const std::string& table, const std::string& stem,
+                 Both& to) {
+  std::vector<RunResult> own;
+  for (const auto& r : results)
+    if (r.table == table) own.push_back(r);
+  const auto series = scaling_series(own);
+  if (series.empty()) return;
+  to.subsection("Error against training rows and time");
+  to.picture(
+      stem + "-scaling.svg", scaling_picture(series),
+      "Each point is a run, or the mean of several; dashed, the power law through them with its 95 % band.");
+  to.table(scaling_table(series));
+}
+
+/// What recipes were chosen by: every run judged on a generator that its table's run trains on, while the one
+/// that the table leaves out took no part.
+void add_choice(const std::vector<RunResult>& results, const std::string& table, Both& to) {
+  struct Sum {
+    double log_ratio = 0;
+    int runs = 0;
+  };
+  std::map<int, std::map<std::string, Sum>> of;  // by generator left out, then by network
+  std::set<std::string> networks;
+  for (const auto& r : results) {
+    if (r.judged == 0 || r.table != table) continue;
+    Sum& sum = of[r.generator][r.network];
+    sum.log_ratio += std::log(r.ratio);
+    ++sum.runs;
+    networks.insert(r.network);
+  }
+  if (of.empty()) return;
+  Table choice{
+      "Choice of a recipe, nested: MSE / predict-the-mean on generators that the table's run trains on, their "
+      "geometric mean; the generator left out took no part. The least of a row is the choice for it.",
+      {"left out", "judged on"},
+      {}};
+  for (const auto& network : networks) choice.header.push_back(method_name(network));
+  for (const auto& [generator, sums] : of) {
+    int runs = 0;
+    for (const auto& [network, sum] : sums) runs = std::max(runs, sum.runs);
+    std::vector<Cell> row = {fmt::format("#{}", generator), fmt::format("{} others", runs)};
+    for (const auto& network : networks)
+      row.emplace_back(sums.contains(network)
+                           ? figure(std::exp(sums.at(network).log_ratio / sums.at(network).runs))
+                           : "–");
+    choice.rows.push_back(std::move(row));
+  }
+  to.table(choice);
+}
+
+/// The control runs of a table, as far as there are any.
+void add_controls(const std::vector<RunResult>& results, const std::string& table, Both& to) {
+  Table controls{
+      "Control runs: labels shuffled before training, so nothing can be learnt, and the ratio must be about 1.",
+      {"network", "preset", "generator", "MSE / predict-the-mean"},
+      {}};
+  for (const auto& r : results)
+    if (r.shuffled && r.table == table)
+      controls.rows.push_back({method_name(r.network), r.preset,
+                               r.generator > 0 ? fmt::format("#{}", r.generator) : "–", figure(r.ratio)});
+  if (!controls.rows.empty()) to.table(controls);
+}
+
+std::string remark(const std::string& table) {
+  if (table == "IV")
+    return fmt::format(
+        "The thesis also ran EPRI's PPPD on ten of these events: MSE {:g}, the CNN on the same events {:g}. "
+        "Compare the former with the row of predict-the-mean.",
+        kThesisPppd, kThesisCnnOnPppdEvents);
+  if (table == "VI")
+    return fmt::format(
+        "Of its GRU the thesis says here only that it stopped at an MSE of {:g} in validation.",
+        kThesisGruTableVI);
+  return {};
+}
+
+/// Everything of one table: its tasks, then how the error falls with size.
+void add_table(const std::vector<RunResult>& results, const std::vector<Task>& tasks,
+               const std::string& table, Both& to) {
+  std::vector<const Task*> own;
+  for (const auto& task : tasks)
+    if (task.table == table) own.push_back(&task);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (own.size() > 1) to.subsection(fmt::format("Preset {}, {} rows", own[i]->preset, own[i]->rows));
+    add_task(*own[i], safe(i == 0 ? table : fmt::format("{}-{}", table, i + 1)), to);
+  }
+  add_choice(results, table, to);
+  add_controls(results, table, to);
+  add_scaling(results, table, safe(table), to);
+  to.text(remark(table));
+}
+
+std::vector<std::pair<std::string, std::string>> csv_files(const std::vector<RunResult>& results,
+                                                           const std::vector<Task>& tasks) {
+  std::vector<std::pair<std::string, std::string>> files;
+  std::vector<RunResult> whole = results;  // those on a share of the rows belong to the scaling law alone
+  std::erase_if(whole, [](const RunResult& r) { return r.share < 1 || r.judged > 0; });
+  for (const auto& block : group_results(std::move(whole))) {
+    files.emplace_back(file_stem(block) + ".csv", csv(score_table(block)));
+    files.emplace_back(file_stem(block) + "-parameters.csv", csv(parameter_table(block)));
+  }
+  for (const auto& task : tasks)
+    files.emplace_back(
+        safe(fmt::format("table-{}-{}-rows{}-methods", task.table, task.preset, task.rows)) + ".csv",
+        csv(method_table(task)));
+  return files;
+}
+
 }  // namespace
 
 TablesReport make_tables(const std::vector<RunResult>& results, const Provenance& sources) {
-  TablesReport report;
-  Page page("Calibration by learning: Tables IV, V and VI",
-            "Mean squared error over the model's parameters on test events, in raw units, beside the thesis "
-            "(Y. Wu, University of Vermont, 2020, chapter 4) and beside predicting the mean.");
-  const auto blocks = group_results(results);
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const TableBlock& block = blocks[i];
-    const bool first = std::none_of(blocks.begin(), blocks.begin() + static_cast<std::ptrdiff_t>(i),
-                                    [&](const TableBlock& b) { return same_task(block, b); });
-    if (!block.shuffled && first) add_noise_table(blocks, i, report, page);
-    const Table scores = score_table(block), parameters = parameter_table(block);
-    Table plain = scores;
-    plain.caption.clear();
-    report.markdown += fmt::format("## {}\n\n{} {}\n\n{}\n{}\n", heading(block), made_with(block),
-                                   verdict(block), markdown(plain), markdown(parameters));
-    page.section(heading(block));
-    page.text(made_with(block) + " " + verdict(block));
-    page.table(plain);
-    page.bars(ratio_bars(block));
-    page.table(parameters);
-    if (const auto text = remark(block); !text.empty()) {
-      page.text(text);
-      report.markdown += text + "\n\n";
-    }
-    report.csv.emplace_back(file_stem(block) + ".csv", csv(scores));
-    report.csv.emplace_back(file_stem(block) + "-parameters.csv", csv(parameters));
+  Both to(
+      "Calibration by learning: Tables IV, V and VI",
+      "Mean squared error over the model's parameters on test events, in raw units, beside the thesis "
+      "(Y. Wu, University of Vermont, 2020, chapter 4) and beside predicting the mean. Only the raw MSE may be "
+      "compared with the thesis.");
+  const auto tasks = tasks_of(results);
+  std::vector<std::string> others;  // experiments that are none of the thesis's tables
+  for (const auto& r : results)
+    if (table_rank(r.table) == kThesisTables.size() && std::ranges::find(others, r.table) == others.end())
+      others.push_back(r.table);
+  if (!tasks.empty()) to.table(overview_table(tasks));
+  for (const auto& table : kThesisTables) {
+    const std::string number(table.number);
+    to.section(fmt::format("Table {}: {}", table.number, table.title));
+    if (std::ranges::none_of(results, [&](const RunResult& r) { return r.table == number; }))
+      to.text(fmt::format("Table {}: no results in these folders.", table.number));
+    else
+      add_table(results, tasks, number, to);
   }
-  for (const auto& table : kThesisTables)
-    if (std::ranges::none_of(blocks, [&](const TableBlock& b) { return b.table == table.number; })) {
-      const std::string text =
-          fmt::format("Table {} ({}): no results in these folders.", table.number, table.title);
-      page.text(text);
-      report.markdown += text + "\n\n";
-    }
-  page.provenance(sources);
-  report.html = page.html();
+  for (const auto& table : others) {
+    to.section(table);
+    add_table(results, tasks, table, to);
+  }
+  TablesReport report = to.end(sources);
+  report.csv = csv_files(results, tasks);
   return report;
 }
 

@@ -25,12 +25,13 @@ Table score_table(const TableBlock& block);
 /// Error of each parameter, raw and relative to its variance over the test rows: over the runs the raw one's
 /// mean, the relative one's median and worst.
 Table parameter_table(const TableBlock& block);
-/// The ratio to predict-the-mean per run.
-Bars ratio_bars(const TableBlock& block);
+/// Where the Markdown's pictures lie, beside it.
+inline constexpr const char* kPictureFolder = "tables";
 
 struct TablesReport {
-  std::string markdown, html;
+  std::string markdown, html;                            ///< the same, with pictures as files and inside
   std::vector<std::pair<std::string, std::string>> csv;  ///< file name, content: one per table with results
+  std::vector<std::pair<std::string, std::string>> pictures;  ///< SVG, in kPictureFolder
 };
 /// `sources`: for the provenance.
 TablesReport make_tables(const std::vector<RunResult>& results, const Provenance& sources);

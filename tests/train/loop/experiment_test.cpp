@@ -51,5 +51,12 @@ TEST(Experiment, TasksAreNetworkNoiseAndFoldAndAFloorNeedsNoise) {
   EXPECT_EQ(e.judging("quick", "mlp").test_rows, 0u);
 }
 
+TEST(Experiment, SharesAreRunsOfTheFirstLevelAndFold) {
+  const Experiment e = experiment("", "", "[preset.quick.gru]\nshares = [0.25, 0.5]\n");
+  EXPECT_THAT(e.print("quick", "tasks"),
+              testing::HasSubstr("gru 0.001 31\ngru 0 30 0.25\ngru 0 30 0.5\nmlp 0 30"));
+  EXPECT_THROW(experiment("", "", "[preset.quick.gru]\nshares = [1.0]\n"), InputError);
+}
+
 }  // namespace
 }  // namespace swingbank::train::loop

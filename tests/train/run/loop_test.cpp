@@ -178,6 +178,47 @@ TEST(Training, NoiseStandsInTheNameTheResultAndTheFeatures) {
   EXPECT_EQ(result["test_rows"], 15);
 }
 
+TEST(Training, AShareOfTheRowsTrainsAndTheSameOnesAreJudged) {
+  const World world("share", 400);
+  RunRequest r = request(world, "cnn", 1);
+  ASSERT_EQ(run(world.stream, r), RunOutcome::done);
+  const json whole = result_of(r);
+  r.train_share = 0.25;
+  EXPECT_NE(run_name(r).find("-share0.25-"), std::string::npos);
+  ASSERT_EQ(run(world.stream, r), RunOutcome::done);
+  const json part = result_of(r);
+  EXPECT_EQ(whole["train_share"], 1.0);
+  EXPECT_EQ(part["train_share"], 0.25);
+  EXPECT_NEAR(part["train_rows"].get<double>(), whole["train_rows"].get<double>() / 4, 0.5);
+  EXPECT_EQ(part["test_rows"], whole["test_rows"]);
+}
+
+TEST(Training, WhatOtherSoftwareMadeIsToldApart) {
+  const World world("maker");
+  RunRequest r = request(world, "cnn", 1);
+  ASSERT_EQ(run(world.stream, r), RunOutcome::done);
+  json result = result_of(r);
+  EXPECT_EQ(result["software"], result["run"]["software"]);
+  EXPECT_NE(result["software"].get<std::string>().find(", code "), std::string::npos);
+  const auto write = [&](const char* key) {
+    json changed = result;
+    changed["run"][key] = "another";
+    std::ofstream(r.out / (run_name(r) + ".json")) << changed.dump();
+  };
+  write("kernels");
+  EXPECT_EQ(run(world.stream, r), RunOutcome::already_done);  // a finished result may be of another processor
+  write("software");
+  try {
+    (void)run(world.stream, r);
+    FAIL() << "taken as done";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("it differs from this run's in: software"), std::string::npos)
+        << e.what();
+  }
+  r.any_maker = true;
+  EXPECT_EQ(run(world.stream, r), RunOutcome::already_done);
+}
+
 TEST(Training, ASecondProcessAtTheSameRunIsRefused) {
   const World world("second");
   RunRequest r = request(world, "cnn", 1);

@@ -25,23 +25,24 @@ const CalibratedParameter& parameter(const Calibration& c, const std::string& na
   return *std::ranges::find(c.parameters, name, [](const auto& p) { return p.fit.name; });
 }
 
-/// Records of three faults at generator 2 of IEEE 14 with an exciter, without noise, and the plant.
+/// Records of three faults at generator 2 of IEEE 14, without noise, and the plant.
 struct Simulation {
   sim::plant::Plant plant;
   std::vector<record::Record> records;
 };
-Simulation simulate_three() {
+Simulation simulate_three(bool exciter = true) {
   Simulation s;
   sim::grid::Grid grid =
       sim::grid::load_grid(test::source("configs/networks/ieee14_genrou.raw"),
                            test::source("configs/networks/ieee14_genrou.dyr"), sim::Conventions::psse());
   const auto plant = std::ranges::find(grid.plants, "2", &sim::plant::Plant::name);
-  plant->controls.push_back(sexs(0.1, 100, 10, 0.05));
+  if (exciter) plant->controls.push_back(sexs(0.1, 100, 10, 0.05));
   s.plant = *plant;
   sim::reference::ReferenceOptions options;
   options.t_end = 10;
   options.rate = 60;
-  options.channels = {sim::Channel::V, sim::Channel::theta, sim::Channel::P, sim::Channel::Q};
+  options.channels = {sim::Channel::V, sim::Channel::theta, sim::Channel::P,
+                      sim::Channel::Q, sim::Channel::speed, sim::Channel::Ifd};
   const auto index = static_cast<int>(plant - grid.plants.begin());
   const std::pair<int, double> faults[] = {{5, 0.1043}, {4, 0.0871}, {9, 0.1527}};
   for (const auto& [bus, seconds] : faults) {
@@ -53,8 +54,8 @@ Simulation simulate_three() {
     r.base.mva = plant->mva;
     for (int k = 0; k < run.samples; ++k) {
       r.t.push_back(k / run.rate);
-      std::vector<double>* channels[] = {&r.V, &r.theta, &r.P, &r.Q};
-      for (int c = 0; c < 4; ++c) channels[c]->push_back(run.at(index, c)[k]);
+      std::vector<double>* channels[] = {&r.V, &r.theta, &r.P, &r.Q, &r.speed, &r.Ifd};
+      for (int c = 0; c < (exciter ? 4 : 6); ++c) channels[c]->push_back(run.at(index, c)[k]);
     }
     s.records.push_back(r);
   }
@@ -135,6 +136,33 @@ TEST(Calibrate, AMissingExciterSurvivesTheRefit) {
   EXPECT_EQ(c.adequacy, Adequacy::structure_poor);
   EXPECT_THAT(c.sentence, HasSubstr("survives the refit"));
   EXPECT_GT(c.after, 2 * c.limit);
+}
+
+TEST(Calibrate, AClosedFormThatLeavesNothingButNoiseSavesTheDraws) {
+  const Simulation s = simulate_three(false);
+  plant::PlantModel model = wrong(s.plant);
+  const auto records = noisy(s.records, 1e-6, 1e-7, 1);
+  CalibrateOptions options;
+  options.draws = 4;
+  options.starts = 1;
+  options.held_out = {"3"};
+  const auto names = [](const Calibration& c) {
+    std::vector<std::string> all;
+    for (const auto& start : c.started) all.push_back(start.name);
+    return all;
+  };
+  const int Xdpp = model.plant.machine.effect->parameter_index("Xdpp");
+  double& reactance = model.plant.machine.p[static_cast<std::size_t>(Xdpp)];
+  const double off = reactance;
+  reactance = s.plant.machine.p[static_cast<std::size_t>(Xdpp)];
+  const Calibration straight = calibrate(model, records, options);
+  EXPECT_THAT(names(straight), ElementsAre("closed form", "model"));
+  EXPECT_LT(straight.started[0].before, 0.1 * straight.started[1].before);
+  EXPECT_NE(straight.adequacy, Adequacy::structure_poor) << straight.sentence;
+  reactance = off;  // its X''d is the model's, a tenth off: it leads away, and sets are drawn
+  const Calibration drawn = calibrate(model, records, options);
+  EXPECT_THAT(names(drawn), ElementsAre("model", HasSubstr("draw ")));
+  EXPECT_EQ(drawn.adequacy, straight.adequacy);
 }
 
 TEST(Calibrate, RefusesWhatCannotBeFitted) {

@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "tests/validate/playin/support.hpp"
+#include "validate/report/detail/scaling.hpp"
 #include "validate/report/detail/thesis_tables.hpp"
 
 namespace swingbank::validate::report {
@@ -18,6 +21,7 @@ using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 json result(const std::string& table, const std::string& network, int generator, double ratio,
             bool shuffled = false) {
@@ -47,6 +51,8 @@ json result(const std::string& table, const std::string& network, int generator,
           {"H_ratio", ratio / 2},
           {"per_parameter", {h, x}},
           {"shuffled_labels", shuffled},
+          {"threads", 2},
+          {"blas", "kernel"},
           {"software", "test"}};
 }
 
@@ -85,15 +91,16 @@ TEST_F(TablesTest, MethodsStandAgainstLevelsOfNoise) {
   noisy("cnn", 0.001, 0.7, 2);
   const auto report = make_tables(read(), {});
   EXPECT_THAT(report.markdown,
-              AllOf(HasSubstr("methods and noise"), HasSubstr("| method | no noise | noise 0.1 % |"),
-                    HasSubstr("2 × floor"), HasSubstr("one seed"), HasSubstr("over 2 seeds"),
-                    HasSubstr(", REFINED, noise 0.1 %")));
+              AllOf(HasSubstr("| method | thesis, no noise | no noise | noise 0.1 % |"),
+                    HasSubstr("| CNN | 0.0526 | – | 3.24 ± 0.76 (0.6; 5 × floor) ² |"),
+                    HasSubstr("| refined | 0.0526 | 0.054 (0.01) ¹ | 1.08 (0.2; 2 × floor) ¹ |"),
+                    HasSubstr("| predict-the-mean | – | 5.4 (1) | 5.4 (1) |")));
   const auto last = report.markdown.find("| floor |");
   ASSERT_NE(last, std::string::npos);
   EXPECT_LT(report.markdown.find("| refined |"), last);
   EXPECT_EQ(group_results(read()).size(), 5u);
   EXPECT_THAT(report.csv, Contains(testing::Field(&std::pair<std::string, std::string>::first,
-                                                  "table-V-quick-rows6000-noise.csv")));
+                                                  "table-V-quick-rows6000-methods.csv")));
 }
 
 TEST(ThesisTablesTest, AgreesWithWhatTheThesisSaysOfItself) {
@@ -128,7 +135,7 @@ TEST_F(TablesTest, WhatTheThesisHasNotStandsBesideItsBest) {
   const auto cells = row(score_table(blocks[0]), "CLOSED-FORM");
   EXPECT_EQ(cells[2], "0.0079");  // the thesis's GRU
   EXPECT_EQ(cells[8], "not trained");
-  EXPECT_THAT(make_tables(read(), {}).markdown, HasSubstr("1 of 1 runs score below the thesis"));
+  EXPECT_THAT(make_tables(read(), {}).markdown, HasSubstr("below the thesis: closed form yes."));
 }
 TEST_F(TablesTest, MissingRunsAreNamedNotInvented) {
   write("a", result("VI", "cnn", 31, 0.3));
@@ -139,8 +146,8 @@ TEST_F(TablesTest, MissingRunsAreNamedNotInvented) {
   EXPECT_THAT(std::vector<std::string>(cells.begin(), cells.begin() + 4),
               ElementsAre("#39", "missing", "0.19", "–"));
   const TablesReport report = make_tables(read(), {});
-  EXPECT_THAT(report.markdown,
-              AllOf(HasSubstr("Missing: 9 of 10 runs"), HasSubstr("Table IV"), HasSubstr("no results")));
+  EXPECT_THAT(report.markdown, AllOf(HasSubstr("| #39 | 0.19 | – | missing |"), HasSubstr("Table IV"),
+                                     HasSubstr("no results")));
   EXPECT_THAT(report.html, HasSubstr("missing"));
 }
 TEST_F(TablesTest, MeansAreOverTheSameRuns) {
@@ -169,7 +176,9 @@ TEST_F(TablesTest, ControlRunsAndOtherPresetsStandApart) {
   ASSERT_EQ(blocks.size(), 3u);
   EXPECT_TRUE(blocks[2].shuffled);
   EXPECT_EQ(row(score_table(blocks[2]), "#30")[2], "–");  // the thesis shuffled nothing
-  EXPECT_EQ(make_tables(read(), {}).csv.size(), 6u);
+  const TablesReport report = make_tables(read(), {});
+  EXPECT_EQ(report.csv.size(), 8u);  // two of each block, one of each task
+  EXPECT_THAT(report.markdown, AllOf(HasSubstr("Control runs"), HasSubstr("### Preset nightly, 6000 rows")));
 }
 TEST_F(TablesTest, ParametersShowMedianAndWorst) {
   write("a", result("V", "cnn", 30, 0.1));
@@ -178,6 +187,65 @@ TEST_F(TablesTest, ParametersShowMedianAndWorst) {
   const Table table = parameter_table(group_results(read())[0]);
   EXPECT_THAT(row(table, "H"), ElementsAre("H", "s", "2.02", "0.2", "0.6", "#32"));
   EXPECT_THAT(row(table, "Xdpp"), ElementsAre("Xdpp", "pu", "0", "constant", "constant", "–"));
+}
+/// Runs on eighths of the rows whose error falls with their square root, 0.54 with all of them.
+void write_sizes(const std::function<void(const std::string&, const json&)>& write) {
+  for (const double share : {0.125, 0.25, 0.5, 1.0}) {
+    json r = result("V", "cnn", 30, 0.1 / std::sqrt(share));
+    r["train_share"] = share;
+    r["train_rows"] = 4000 * share;
+    r["seconds"] = 50 * share;
+    write(std::to_string(share), r);
+  }
+}
+TEST_F(TablesTest, SharesOfTheRowsAreThePointsOfAPowerLaw) {
+  write_sizes([&](const auto& name, const auto& r) { write(name, r); });
+  const auto series = scaling_series(read());
+  ASSERT_EQ(series.size(), 1u);
+  ASSERT_EQ(series[0].sizes.size(), 4u);
+  EXPECT_EQ(series[0].sizes.front().core_seconds, 12.5);  // two threads
+  EXPECT_THAT(series[0].name(), HasSubstr("CNN, without #30"));
+  const auto law = series[0].by_rows();
+  ASSERT_TRUE(law);
+  EXPECT_NEAR(law->exponent(), -0.5, 1e-9);
+  EXPECT_NEAR(law->reaches(0.054), 400'000, 1);
+  EXPECT_EQ(group_results(read()).size(), 1u);
+  const auto report = make_tables(read(), {});
+  EXPECT_THAT(report.markdown,
+              AllOf(HasSubstr("](tables/V-scaling.svg)"), HasSubstr("|  | CNN, without #30 |"),
+                    HasSubstr("| training rows | 500 – 4000 |"), HasSubstr("0.54 (0.1) ¹")));
+}
+TEST(PowerLawTest, IntervalsAreStudents) {
+  // ln y = 1, 2, 4 at ln x = 0, 1, 2: slope 1.5, scatter sqrt(1/6), Student's quantile 12.706
+  const double e = std::exp(1.0);
+  const PowerLaw law({{1, e}, {e, e * e}, {e * e, std::exp(4.0)}});
+  EXPECT_NEAR(law.exponent(), 1.5, 1e-12);
+  EXPECT_NEAR(law.exponent_interval().second - 1.5, 12.706 * std::sqrt(1.0 / 6 / 2), 1e-9);
+  EXPECT_NEAR(std::log(law.interval(e).second / law.at(e)), 12.706 * std::sqrt(1.0 / 6 / 3), 1e-9);
+  EXPECT_FALSE(law.reaches_interval(1.0));  // a slope of 0 cannot be ruled out
+  const PowerLaw exact({{1, 8}, {10, 4}, {100, 2}, {1000, 1}});
+  ASSERT_TRUE(exact.reaches_interval(0.5));
+  EXPECT_NEAR(exact.reaches_interval(0.5)->second, 10'000, 1e-3);
+}
+TEST_F(TablesTest, PicturesAreFilesOfTheMarkdownAndPartsOfThePage) {
+  json r = result("V", "cnn", 30, 0.1);
+  r["calibration"] = {{"0.001", {{"50", 0.45}, {"90", 0.92}, {"n", 1000}}}};
+  write("a", r);
+  const auto report = make_tables(read(), {});
+  ASSERT_EQ(report.pictures.size(), 3u);
+  for (const auto& [name, svg] : report.pictures) {
+    EXPECT_THAT(report.markdown, HasSubstr("](tables/" + name + ")"));
+    EXPECT_THAT(report.html, HasSubstr(svg));
+  }
+  EXPECT_THAT(report.pictures[2].second, AllOf(HasSubstr("CNN, noise 0.1 %"), HasSubstr("as stated")));
+}
+TEST_F(TablesTest, FiguresOfDifferentMakersAreComparedWithAWord) {
+  write("a", result("V", "cnn", 30, 0.1));
+  auto other = result("V", "cnn", 31, 0.1);
+  EXPECT_THAT(make_tables(read(), {}).markdown, Not(HasSubstr("different software")));
+  other["blas"] = "another kernel";
+  write("b", other);
+  EXPECT_THAT(make_tables(read(), {}).markdown, HasSubstr("different software or processors"));
 }
 TEST_F(TablesTest, FaultsOfResultsAreToldTogether) {
   auto broken = result("V", "cnn", 30, 0.1);

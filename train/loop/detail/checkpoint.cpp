@@ -20,7 +20,11 @@ void write_checkpoint(const std::filesystem::path& file, const json& header,
 bool read_checkpoint(const std::filesystem::path& file, const json& run, json& header,
                      const std::vector<std::span<float>>& arrays) {
   const auto start = [&](const json& found, std::size_t count) {
-    if (found.value("run", json()) != run) throw Unusable{"it belongs to a run with other settings or data"};
+    json its = found.value("run", json());
+    for (const char* maker : {"software", "kernels"})
+      if (its.is_object() && run.is_object() && run.value(maker, "") == "any") its[maker] = "any";
+    if (its != run)
+      throw Unusable{"it belongs to a run with other data or settings, or of other software or kernels"};
     if (count != arrays.size()) throw Unusable{"it holds another number of arrays"};
     header = found;
   };

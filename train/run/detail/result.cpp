@@ -1,7 +1,11 @@
 #include "train/run/detail/result.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
+
+#include "train/run/detail/maker.hpp"
 
 namespace swingbank::train::run {
 namespace {
@@ -20,6 +24,9 @@ json input_json(const data::ShardStream& stream, const RunRequest& request, cons
           {"pca_components", p.pca_components},
           {"pca_error", features.pca() ? json(features.pca()->error()) : json()}};
 }
+std::string kernels(const RunRequest& r) {
+  return fmt::format("{}, LibTorch {}", r.runtime.blas, r.runtime.loops);
+}
 }  // namespace
 
 std::string dataset_name(const mpi::store::Dataset& d) {
@@ -29,13 +36,18 @@ std::string dataset_name(const mpi::store::Dataset& d) {
 json identity(const data::ShardStream& stream, const RunRequest& r) {
   const loop::NetworkInput& p = r.experiment.input(r.preset, r.network);
   const loop::TrainingRecipe& t = r.experiment.training(r.preset, r.network);
-  return {{"dataset", stream.dataset().hash},
+  const bool any = r.any_maker;
+  return {{"software", any ? "any" : software()},
+          {"kernels", any ? "any" : kernels(r)},
+          {"dataset", stream.dataset().hash},
           {"training_dataset", stream.more() ? stream.more()->hash : ""},
           {"network", r.network},
           {"generator", or_null(r.generator)},
+          {"judged", or_null(r.judged)},
           {"seed", r.seed},
           {"noise", r.noise},
           {"judged_rows", r.test_rows ? json(*r.test_rows) : json()},
+          {"train_share", r.train_share},
           {"shuffled_labels", r.shuffle_labels},
           {"channels", p.recipe.channels},
           {"window", {p.recipe.start_s, p.recipe.end_s}},
@@ -74,10 +86,12 @@ json result_json(const data::ShardStream& stream, const RunRequest& r, const Run
           {"seed", r.seed},
           {"noise", r.noise},
           {"generator", or_null(r.generator)},
+          {"judged", or_null(r.judged)},
           {"dataset",
            {{"name", dataset_name(d)}, {"hash", d.hash}, {"config_hash", d.config_hash}, {"rows", d.rows}}},
           {"machine_model", d.machine_model},
           {"parameters", d.parameter_names},
+          {"train_share", r.train_share},
           {"train_rows", parts.split.train.size()},
           {"validation_rows", parts.split.validation.size()},
           {"test_rows", parts.split.test.size()},
@@ -97,7 +111,8 @@ json result_json(const data::ShardStream& stream, const RunRequest& r, const Run
           {"shuffled_labels", r.shuffle_labels},
           {"threads", r.runtime.threads},
           {"blas", r.runtime.blas},
-          {"software", d.software},
+          {"kernels", kernels(r)},
+          {"software", software()},
           {"input", parts.features ? input_json(stream, r, *parts.features) : json()},
           {"batch", t.batch},
           {"learning_rate", t.learning_rate},

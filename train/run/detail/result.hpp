@@ -9,8 +9,8 @@ namespace swingbank::train::run {
 /// The config's name; the folder's, if the dataset was made before headers had a name.
 std::string dataset_name(const mpi::store::Dataset& dataset);
 
-/// What tells this run from every other: data, recipe, seed. A checkpoint or result with another identity is
-/// not its.
+/// What tells this run from every other: data, recipe, seed; software and kernels too, unless any maker will
+/// do. A checkpoint or result with another identity is not its.
 nlohmann::json identity(const data::ShardStream& stream, const RunRequest& request);
 
 struct RunParts {

@@ -1,0 +1,74 @@
+#include "validate/calibrate/detail/closed_start.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/direct/smooth.hpp"
+#include "validate/playin/can_run.hpp"
+
+namespace swingbank::validate::calibrate {
+namespace {
+
+constexpr std::size_t kClassical = 2;  // states of a machine without a field
+
+bool stands_alone(const sim::plant::Plant& plant) {
+  return plant.machine.effect->closed_form && !plant.transformer.effect && plant.controls.empty() &&
+         plant.measurements.empty();
+}
+bool shows_enough(const record::Record& r, const sim::Effect& machine) {
+  return !r.speed.empty() && (machine.states.size() <= kClassical || !r.Ifd.empty());
+}
+
+/// Per unit on the machine's base.
+sim::Recording recording(const event::FitEvent& event, const sim::plant::PlantUnderTest& tested) {
+  const record::Record& r = event.record;
+  sim::Recording out;
+  out.step = r.step();
+  out.conventions = tested.conventions;
+  out.V = r.V;
+  out.theta = r.theta;
+  out.P = r.P;
+  out.Q = r.Q;
+  for (auto* power : {&out.P, &out.Q})
+    for (double& x : *power) x *= r.base.mva / tested.plant.mva;
+  out.speed = r.speed;
+  out.Ifd = r.Ifd;
+  if (!event.switchings.empty()) out.event = event.switchings.front().time - r.t.front() - out.step;
+  return sim::direct::smoothed(std::move(out));
+}
+
+double median(std::vector<double> v) {
+  std::ranges::sort(v);
+  const std::size_t n = v.size();
+  return n % 2 == 1 ? v[n / 2] : (v[n / 2 - 1] + v[n / 2]) / 2;
+}
+
+}  // namespace
+
+std::optional<std::vector<double>> closed_start(const sim::plant::PlantUnderTest& tested,
+                                                const event::WhitenedEvents& events,
+                                                const std::vector<fit::FreeParameter>& free) {
+  if (!stands_alone(tested.plant)) return std::nullopt;
+  const sim::plant::Block& machine = tested.plant.machine;
+  std::vector<std::vector<double>> found;  // of each event
+  for (const auto& event : events) {
+    if (!shows_enough(event.record, *machine.effect)) return std::nullopt;
+    auto all = machine.effect->closed_form(recording(event, tested), machine.p.data());
+    if (!all.empty()) found.push_back(std::move(all.front()));
+  }
+  if (found.empty()) return std::nullopt;
+  sim::plant::Plant plant = tested.plant;
+  for (const auto& f : free) {
+    std::vector<double> values;
+    for (const auto& p : found)
+      if (const double v = p[static_cast<std::size_t>(f.id.index)]; std::isfinite(v)) values.push_back(v);
+    const auto& record = sim::plant::parameter_record(plant, f.id);
+    if (!values.empty())
+      sim::plant::parameter_value(plant, f.id) =
+          std::clamp(median(std::move(values)), record.low, record.high);
+  }
+  if (!playin::can_exist(plant)) return std::nullopt;
+  return fit::values_of(plant, free);
+}
+
+}  // namespace swingbank::validate::calibrate

@@ -1,0 +1,230 @@
+#include "validate/report/detail/method_tables.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "validate/report/detail/thesis_tables.hpp"
+
+namespace swingbank::validate::report {
+namespace {
+
+/// 0 at `good` or below, 1 at `bad`; logarithmic between.
+double shade(double value, double good, double bad) {
+  return std::clamp(std::log(value / good) / std::log(bad / good), 0.0, 1.0);
+}
+constexpr double kGoodRelative = 0.01;  // of a parameter's variance
+
+/// Green is what the thesis reached, under noise what the floor allows; red is no better than the mean.
+double shade_of(const Task& task, const Of& of, const Figure& f) {
+  if (f.over_floor) return shade(f.mse, f.mse / *f.over_floor, f.baseline);
+  std::optional<double> good = thesis_mean(task, of.method);
+  if (of.generator != kAnyGenerator)
+    if (const auto* cell = thesis_cell(task.table, of.method, of.generator)) good = cell->mse;
+  return shade(f.mse, good.value_or(f.baseline * kGoodRelative), f.baseline);
+}
+
+Cell figure_cell(const Task& task, const Of& of, const char* otherwise) {
+  const auto f = figure_of(task, of);
+  if (!f) return otherwise;
+  std::string text = shown(f->mse);
+  if (f->seeds > 1) text += fmt::format(" ± {:.2g}", f->spread);
+  text += fmt::format(" ({:.2g}", f->ratio);
+  if (f->over_floor) text += fmt::format("; {:.3g} × floor", *f->over_floor);
+  text += f->seeds == 1 ? ") ¹" : f->seeds == 2 ? ") ²" : ")";
+  return {text, of.method == "floor" ? -1 : shade_of(task, of, *f)};
+}
+
+/// Methods that have runs at a level, and those of the thesis.
+std::vector<std::string> methods_at(const Task& task, double noise) {
+  std::vector<std::string> names;
+  for (const auto& m : task.methods())
+    if (!runs_of(task, {m, noise}).empty()) names.push_back(m);
+  return names;
+}
+
+std::vector<std::string> with_thesis(const Task& task) {
+  std::vector<std::string> names;
+  for (const auto& cell : kThesisCells)
+    if (cell.table == task.table && std::ranges::find(names, cell.network) == names.end())
+      names.emplace_back(cell.network);
+  for (const auto& m : task.methods())
+    if (std::ranges::find(names, m) == names.end()) names.push_back(m);
+  return names;
+}
+
+std::string range(double low, double high) {
+  return low == high ? fmt::format("{:.0f}", low) : fmt::format("{:.0f} – {:.0f}", low, high);
+}
+
+/// The best of the task's networks: of what is trained.
+Cell best_network(const Task& task, double noise) {
+  std::optional<double> least;
+  std::string best;
+  for (const auto& m : methods_at(task, noise)) {
+    const auto f = figure_of(task, {m, noise});
+    if (runs_of(task, {m, noise}).front()->epochs == 0 || (least && f->mse >= *least)) continue;
+    least = f->mse;
+    best = m;
+  }
+  if (best.empty()) return "–";
+  Cell cell = figure_cell(task, {best, noise}, "–");
+  cell.text = method_name(best) + " " + cell.text;
+  return cell;
+}
+
+}  // namespace
+
+Table overview_table(const std::vector<Task>& tasks) {
+  constexpr double kNoise = 0.001;
+  const std::string noisy = ", " + level_name(kNoise);
+  Table table{
+      fmt::format("{} Green: the thesis's MSE or less, under noise the floor; red: no better than the mean.",
+                  kCellMeaning),
+      {""},
+      {{"thesis's best"},
+       {"predict-the-mean"},
+       {"best network"},
+       {"closed form"},
+       {"refined"},
+       {"best network" + noisy},
+       {"refined" + noisy},
+       {"floor" + noisy}}};
+  for (const Task& task : tasks) {
+    table.header.push_back(fmt::format("{}, {}", task.table, task.preset));
+    const auto thesis = thesis_mean(task, task.table == "IV" ? "gru" : "cnn");
+    const std::vector<Cell> column = {thesis ? shown(*thesis) : "–",
+                                      shown(baseline_of(task)),
+                                      best_network(task, 0),
+                                      figure_cell(task, {"closed-form", 0}, "–"),
+                                      figure_cell(task, {"refined", 0}, "–"),
+                                      best_network(task, kNoise),
+                                      figure_cell(task, {"refined", kNoise}, "–"),
+                                      figure_cell(task, {"floor", kNoise}, "–")};
+    for (std::size_t i = 0; i < column.size(); ++i) table.rows[i].push_back(column[i]);
+  }
+  return table;
+}
+
+Table method_table(const Task& task) {
+  Table table{"Each method; cells as in the first table.", {"method", "thesis, no noise"}, {}};
+  const auto levels = task.levels();
+  for (const double level : levels) table.header.push_back(level_name(level));
+  for (const auto& method : with_thesis(task)) {
+    const auto thesis = method == "floor" ? std::nullopt : thesis_mean(task, method);
+    std::vector<Cell> row = {method_name(method), thesis ? shown(*thesis) : "–"};
+    const bool any = std::ranges::any_of(task.runs, [&](const RunResult& r) { return r.network == method; });
+    for (const double level : levels)
+      row.push_back(figure_cell(task, {method, level}, any ? "–" : "missing"));
+    table.rows.push_back(std::move(row));
+  }
+  std::vector<Cell> mean = {"predict-the-mean", "–"};
+  for (std::size_t i = 0; i < levels.size(); ++i) mean.emplace_back(shown(baseline_of(task)) + " (1)");
+  table.rows.push_back(std::move(mean));
+  return table;
+}
+
+Table generator_table(const Task& task, double noise) {
+  const auto methods = methods_at(task, noise);
+  Table table{fmt::format("Each generator left out, {}.", level_name(noise)),
+              {"generator", "thesis", "predict-the-mean"},
+              {}};
+  for (const auto& m : methods) table.header.push_back(method_name(m));
+  const auto generators = task.generators();
+  for (const int g : generators) {
+    const auto* thesis = thesis_cell(task.table, "cnn", g);
+    std::vector<Cell> row = {fmt::format("#{}", g), thesis ? fmt::format("{:g}", thesis->mse) : "–",
+                             shown(baseline_of(task, g))};
+    for (const auto& m : methods) row.push_back(figure_cell(task, {m, noise, g}, "missing"));
+    table.rows.push_back(std::move(row));
+  }
+  const auto thesis = thesis_mean(task, "cnn");
+  std::vector<Cell> mean = {"mean", thesis ? shown(*thesis) : "–", shown(baseline_of(task))};
+  for (const auto& m : methods) {
+    const auto f = figure_of(task, {m, noise});
+    Cell cell = figure_cell(task, {m, noise}, "missing");
+    if (f && f->generators < generators.size()) cell.text += fmt::format(", of {}", f->generators);
+    mean.push_back(std::move(cell));
+  }
+  table.rows.push_back(std::move(mean));
+  return table;
+}
+
+Table parameter_comparison(const Task& task, double noise) {
+  Table table{
+      fmt::format("Error of each parameter, {}: raw MSE [unit²] and in brackets relative to the parameter's "
+                  "variance over the test rows: 0 is exact, 1 no better than a constant guess.",
+                  level_name(noise)),
+      {"parameter", "unit"},
+      {}};
+  for (const auto& method : methods_at(task, noise)) {
+    const auto figures = parameter_figures(task, {method, noise});
+    table.header.push_back(method_name(method));
+    if (table.rows.empty())
+      for (const auto& p : figures) table.rows.push_back({p.name, p.unit});
+    for (std::size_t i = 0; i < table.rows.size(); ++i) {
+      const auto p = std::ranges::find(figures, table.rows[i].front().text, &ParameterFigure::name);
+      if (p == figures.end())
+        table.rows[i].emplace_back("–");
+      else if (!p->relative)
+        table.rows[i].emplace_back(shown(p->mse) + " (constant)");
+      else
+        table.rows[i].emplace_back(fmt::format("{} ({:.2g})", shown(p->mse), *p->relative),
+                                   shade(*p->relative, kGoodRelative, 1));
+    }
+  }
+  return table;
+}
+
+Table effort_table(const Task& task) {
+  Table table{
+      "What the figures cost: rows and epochs of a run, processor time of all runs as wall clock times threads.",
+      {"method", "noise", "runs", "seeds", "training rows", "test rows", "epochs", "time [core-s]"},
+      {}};
+  for (const auto& method : task.methods())
+    for (const double level : task.levels()) {
+      const auto runs = runs_of(task, {method, level});
+      if (runs.empty()) continue;
+      const auto [train_low, train_high] = std::ranges::minmax(runs, {}, &RunResult::train_rows);
+      const auto [test_low, test_high] = std::ranges::minmax(runs, {}, &RunResult::test_rows);
+      const auto [epochs_low, epochs_high] = std::ranges::minmax(runs, {}, &RunResult::epochs);
+      std::set<std::int64_t> seeds;
+      double seconds = 0;
+      for (const auto* r : runs) seeds.insert(r->seed), seconds += r->seconds * r->threads;
+      const bool trained = epochs_high->epochs > 0;
+      const auto of = [](std::int64_t low, std::int64_t high) {
+        return range(static_cast<double>(low), static_cast<double>(high));
+      };
+      table.rows.push_back({method_name(method), level > 0 ? fmt::format("{:g} %", 100 * level) : "none",
+                            std::to_string(runs.size()), fmt::format("{}", fmt::join(seeds, ", ")),
+                            trained ? of(train_low->train_rows, train_high->train_rows) : "not trained",
+                            of(test_low->test_rows, test_high->test_rows),
+                            trained ? of(epochs_low->epochs, epochs_high->epochs) : "–", shown(seconds)});
+    }
+  return table;
+}
+
+std::string against_thesis(const Task& task) {
+  std::vector<std::string> counts;
+  for (const auto& method : task.methods()) {
+    std::set<int> judged, better;
+    for (const auto* r : runs_of(task, {method, 0.0})) {
+      const auto* cell = thesis_cell(r->table, r->network, r->generator);
+      const auto figure = figure_of(task, {method, 0.0, r->generator});
+      if (!cell || !figure || method == "floor") continue;
+      judged.insert(r->generator);
+      if (figure->mse < cell->mse) better.insert(r->generator);
+    }
+    if (judged.empty()) continue;
+    counts.push_back(
+        *judged.begin() > 0
+            ? fmt::format("{} for {} of {} generators", method_name(method), better.size(), judged.size())
+            : fmt::format("{} {}", method_name(method), better.empty() ? "no" : "yes"));
+  }
+  return counts.empty() ? "" : fmt::format("Without noise, below the thesis: {}.", fmt::join(counts, "; "));
+}
+
+}  // namespace swingbank::validate::report
