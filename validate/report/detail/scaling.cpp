@@ -192,7 +192,7 @@ Table scaling_table(const std::vector<ScalingSeries>& series) {
 
 std::string scaling_picture(const std::vector<ScalingSeries>& series) {
   Plot rows{"Error against training rows", {"training rows of a run", true}, {"raw MSE", true}, {}};
-  Plot time{"Error against time", {"processor time of a run [core-s]", true}, {"raw MSE", true}, {}};
+  Plot time{"Error against time", {"time of a run [core-s: clock × threads]", true}, {"raw MSE", true}, {}};
   rows.width = time.width = 330;
   for (std::size_t i = 0; i < series.size(); ++i) {
     const auto colour = plot_colour(i);
