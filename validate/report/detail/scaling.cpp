@@ -25,7 +25,7 @@ Size size_of(const std::vector<const RunResult*>& runs) {
   const auto n = static_cast<double>(runs.size());
   for (const auto* r : runs) {
     size.rows += static_cast<double>(r->train_rows) / n;
-    size.core_seconds += r->seconds * r->threads / n;
+    size.core_seconds += r->core_seconds / n;
     size.epochs += static_cast<double>(r->epochs) / n;
     size.mse += r->mse / n;
     seeds[r->seed].first += r->mse;
@@ -192,7 +192,7 @@ Table scaling_table(const std::vector<ScalingSeries>& series) {
 
 std::string scaling_picture(const std::vector<ScalingSeries>& series) {
   Plot rows{"Error against training rows", {"training rows of a run", true}, {"raw MSE", true}, {}};
-  Plot time{"Error against time", {"time of a run [core-s: clock × threads]", true}, {"raw MSE", true}, {}};
+  Plot time{"Error against time", {"processor time of a run [core-s]", true}, {"raw MSE", true}, {}};
   rows.width = time.width = 330;
   for (std::size_t i = 0; i < series.size(); ++i) {
     const auto colour = plot_colour(i);
