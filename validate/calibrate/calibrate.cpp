@@ -102,13 +102,12 @@ class Run {
       return Start{name, values, chi2_of({screen.with(values), model_.conventions}, seen_, states)};
     };
     Starts starts = {start("model", screen.own())};
-    bool straight = false;  // the first start is the closed form
     if (options_.events.measured_states)
-      if (const auto values = closed_start(model_.under_test(), seen_, free_)) {
-        const Start closed = start("closed form", *values);
-        straight = closed.before < starts.front().before;
-        if (straight) starts.insert(starts.begin(), closed);
-      }
+      for (const auto& values : closed_starts(model_.under_test(), seen_, free_))
+        if (Start closed = start("closed form", values); closed.before < starts.front().before)
+          starts.insert(starts.begin(), std::move(closed));
+    const bool straight = starts.size() > 1;  // the first is a closed form; only the nearest goes on
+    if (starts.size() > 2) starts.erase(starts.begin() + 1);
     for (const auto& g : options_.given) starts.push_back(start(g.name, fit::values_of(g.plant, free_)));
     std::vector<fit::Fit> fits;
     refine(starts, states, fits);
