@@ -102,12 +102,13 @@ class Run {
       return Start{name, values, chi2_of({screen.with(values), model_.conventions}, seen_, states)};
     };
     Starts starts = {start("model", screen.own())};
+    Starts closed;
     if (options_.events.measured_states)
       for (const auto& values : closed_starts(model_.under_test(), seen_, free_))
-        if (Start closed = start("closed form", values); closed.before < starts.front().before)
-          starts.insert(starts.begin(), std::move(closed));
-    const bool straight = starts.size() > 1;  // the first is a closed form; only the nearest goes on
-    if (starts.size() > 2) starts.erase(starts.begin() + 1);
+        closed.push_back(start("closed form", values));
+    const auto nearest = std::ranges::min_element(closed, {}, &Start::before);
+    const bool straight = nearest != closed.end() && std::isfinite(nearest->before);
+    if (straight) starts.insert(starts.begin(), *nearest);
     for (const auto& g : options_.given) starts.push_back(start(g.name, fit::values_of(g.plant, free_)));
     std::vector<fit::Fit> fits;
     refine(starts, states, fits);
