@@ -32,7 +32,7 @@ while (($#)); do
     --ranks) ranks=${2:?} ;;
     --launcher) launcher=${2:?} ;;
     --build) build=${2:?} ;;
-    -h | --help) sed -n '2,16p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,15p' "$0"; exit 0 ;;
     *) echo "unknown option at '$1' (jobs/run_experiment.sh does not have it): run it with --help" >&2; exit 1 ;;
   esac
   shift 2

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -22,6 +23,8 @@ using at::Tensor;
 using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
+/// Of all threads of this process [core-s].
+double processor_time() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
 
 /// Features of the rows, and behind them the guesses where there are some; then a row is one channel.
@@ -47,7 +50,7 @@ struct Position {
   std::size_t best_epoch = 0, stale = 0;
   double best = std::numeric_limits<double>::infinity();
   double loss_sum = 0.0;  ///< of this epoch so far, times rows
-  double rows = 0.0, seconds = 0.0;
+  double rows = 0.0, seconds = 0.0, processor_seconds = 0.0;
 };
 
 class Loop {
@@ -76,12 +79,12 @@ class Loop {
     bool saved = false;
     while (at_.epoch < settings_.recipe.epochs && at_.stale < settings_.recipe.patience && !saved)
       saved = !epoch();
-    const double spent = seconds();
+    const double spent = seconds(), processor = processor_seconds();
     if (!saved) {
       at::NoGradGuard no_gradients;
       for (std::size_t i = 0; i < weights_.size(); ++i) weights_[i].copy_(best_[i]);
     }
-    return {!saved, at_.epoch, at_.best_epoch, spent, at_.best};
+    return {!saved, at_.epoch, at_.best_epoch, spent, at_.best, processor};
   }
 
  private:
@@ -198,6 +201,9 @@ class Loop {
   }
 
   [[nodiscard]] double seconds() const { return at_.seconds + seconds_since(begin_); }
+  [[nodiscard]] double processor_seconds() const {
+    return at_.processor_seconds + processor_time() - processor_begin_;
+  }
 
   template <class Value>
   std::vector<std::span<Value>> arrays() {
@@ -222,6 +228,7 @@ class Loop {
                          {"loss_sum", at_.loss_sum},
                          {"rows", at_.rows},
                          {"seconds", seconds()},
+                         {"processor_seconds", processor_seconds()},
                          {"adam_steps", adam_.steps()}};
     write_checkpoint(settings_.checkpoint, header, arrays<const float>());
   }
@@ -239,7 +246,8 @@ class Loop {
            header.at("best").is_null() ? at_.best : header.at("best").get<double>(),
            header.at("loss_sum"),
            header.at("rows"),
-           header.at("seconds")};
+           header.at("seconds"),
+           header.at("processor_seconds")};
     adam_.set_steps(header.at("adam_steps"));
     progress_.line(fmt::format("resumed at epoch {}, batch {}", at_.epoch + 1, at_.batch + 1));
   }
@@ -256,6 +264,7 @@ class Loop {
   double operations_per_row_ = 0.0;  // of the products of a training step; 0: not counted
   Position at_;
   Clock::time_point begin_ = Clock::now(), last_save_ = Clock::now();
+  double processor_begin_ = processor_time();
 };
 
 }  // namespace

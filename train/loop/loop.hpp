@@ -42,6 +42,7 @@ struct LoopReport {
   double seconds = 0.0;  ///< wall clock, those before a resume included [s]
   double validation =
       0.0;  ///< mean squared error of the best epoch on the validation rows, scaled units, weighted
+  double processor_seconds = 0.0;  ///< of all threads, those before a resume included [core-s]
 };
 
 /// Trains; the network ends with the weights of its best epoch. Throws InputError if the loss stops being a

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <nlohmann/json.hpp>
 
 #include "base/durable.hpp"
@@ -135,10 +136,12 @@ RunOutcome run_direct(const data::ShardStream& stream, const RunRequest& r, cons
   loop::TrainingProgress progress(d.name, d.split.test.size(), r.quiet);
   progress.line(fmt::format("{} test rows, nothing to train", d.split.test.size()));
   const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t processor = std::clock();
   const auto found = direct::estimate(stream.dataset(), d.split.test, r.network, stream.noise(),
                                       [&](std::size_t done) { progress.update(done, "rows estimated"); });
   loop::LoopReport report;
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  report.processor_seconds = static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC;
   const loop::Score result = judge(found, stream, d.scale, d.split.test);
   write_text(d.file, result_json(stream, r, {d.split, nullptr, report, result}).dump(2) + "\n");
   progress.line(scored(result, report.seconds));

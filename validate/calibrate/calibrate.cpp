@@ -103,13 +103,13 @@ class Calibrating {
       return Start{name, values, chi2_of({screen.with(values), model_.conventions}, seen_, states)};
     };
     Starts starts = {start("model", screen.own())};
-    bool straight = false;  // the first start is the closed form
+    Starts closed;
     if (options_.events.measured_states)
-      if (const auto values = closed_start(model_.under_test(), seen_, free_)) {
-        const Start closed = start("closed form", *values);
-        straight = closed.before < starts.front().before;
-        if (straight) starts.insert(starts.begin(), closed);
-      }
+      for (const auto& values : closed_starts(model_.under_test(), seen_, free_))
+        closed.push_back(start("closed form", values));
+    const auto nearest = std::ranges::min_element(closed, {}, &Start::before);
+    const bool straight = nearest != closed.end() && std::isfinite(nearest->before);
+    if (straight) starts.insert(starts.begin(), *nearest);
     for (const auto& g : options_.given) starts.push_back(start(g.name, fit::values_of(g.plant, free_)));
     std::vector<fit::Fit> fits;
     refine(starts, states, fits);

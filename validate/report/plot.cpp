@@ -11,8 +11,8 @@
 namespace swingbank::validate::report {
 namespace {
 
-constexpr double kRow = 26, kHeight = 270;  // of the plots' areas [px]
-constexpr double kTop = 52, kBottom = 42, kRight = 24, kGap = 12, kLegendLine = 20, kLetter = 6.7;
+constexpr double kRow = 26, kPlotHeight = 270;  // of the plots' areas [px]
+constexpr double kPlotTop = 52, kPlotBottom = 42, kPlotRight = 24, kGap = 12, kLegendLine = 20, kLetter = 6.7;
 constexpr const char *kInk = "#1b2733", *kSoft = "#5b6b7b", *kGrid = "#e4e9ee", *kFrame = "#c9d3dc";
 
 double letters(const std::string& s) {
@@ -126,13 +126,13 @@ class Panel {
     for (const auto& name : plot.y.names) longest = std::max(longest, letters(name));
     left_ = plot.y.silent ? 8 : kLetter * longest + (plot.y.label.empty() ? 18 : 34);
     across_ = plot.width;
-    down_ = plot.y.names.empty() ? kHeight : kRow * static_cast<double>(plot.y.names.size());
+    down_ = plot.y.names.empty() ? kPlotHeight : kRow * static_cast<double>(plot.y.names.size());
   }
-  [[nodiscard]] double width() const { return left_ + across_ + kRight; }
-  [[nodiscard]] double height() const { return kTop + down_ + kBottom; }
+  [[nodiscard]] double width() const { return left_ + across_ + kPlotRight; }
+  [[nodiscard]] double height() const { return kPlotTop + down_ + kPlotBottom; }
   std::string drawn(double x, double y) {
     left_edge_ = x + left_;
-    top_ = y + kTop;
+    top_ = y + kPlotTop;
     x_.lay(left_edge_, left_edge_ + across_);
     y_.lay(top_ + down_, top_);
     std::string out = words(left_edge_, y + 14, plot_.title, {"start", kInk, 13, true}) + grid() + rules();

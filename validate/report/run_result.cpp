@@ -120,6 +120,8 @@ RunResult read_result(const fs::path& file, Problems& problems) {
     o.get("H_ratio", r.H_ratio);
   o.get("shuffled_labels", r.shuffled);
   o.get("threads", r.threads);
+  r.core_seconds = r.seconds * r.threads;  // of a result that does not say: at most
+  if (parsed.contains("processor_seconds")) o.get("processor_seconds", r.core_seconds);
   o.get("software", r.software);
   o.get("blas", r.blas);
   if (parsed.contains("train_share")) o.get("train_share", r.share);

@@ -33,6 +33,7 @@ struct RunResult {
   double share = 1;  ///< of the training rows that trained
   std::int64_t rows = 0, train_rows = 0, test_rows = 0, epochs = 0, best_epoch = 0;
   double seconds = 0, seconds_per_epoch = 0;
+  double core_seconds = 0;  ///< processor time of all threads
   double mse = 0, mse_varied_only = 0, baseline_mse = 0, ratio = 0;
   double H_ratio = 0;  ///< NaN where H does not vary
   std::vector<ParameterScore> parameters;

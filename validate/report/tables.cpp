@@ -257,6 +257,7 @@ class Both {
     page_.text(paragraph);
     markdown_ += paragraph + "\n\n";
   }
+  void colours(const std::string& meaning) { page_.text(meaning); }  // Markdown has none
   void note(const std::string& paragraph) {
     page_.note(paragraph);
     markdown_ += fmt::format("> {}\n\n", paragraph);
@@ -274,7 +275,9 @@ class Both {
   TablesReport end(const Provenance& sources) {
     page_.provenance(sources);
     markdown_ += "## Provenance\n\n";
-    for (const auto& [name, value] : sources) markdown_ += fmt::format("- {}: {}\n", name, value);
+    for (const auto& [name, value] : sources)
+      if (name != "command")
+        markdown_ += fmt::format("- {}: {}\n", name, value);  // it names a machine's folders
     return {markdown_, page_.html(), {}, pictures_};
   }
 
@@ -437,7 +440,10 @@ TablesReport make_tables(const std::vector<RunResult>& results, const Provenance
   for (const auto& r : results)
     if (table_rank(r.table) == kThesisTables.size() && std::ranges::find(others, r.table) == others.end())
       others.push_back(r.table);
-  if (!tasks.empty()) to.table(overview_table(tasks));
+  if (!tasks.empty()) {
+    to.colours("Green: the thesis's MSE or less, under noise the floor. Red: no better than the mean.");
+    to.table(overview_table(tasks));
+  }
   for (const auto& table : kThesisTables) {
     const std::string number(table.number);
     to.section(fmt::format("Table {}: {}", table.number, table.title));

@@ -302,6 +302,31 @@ TEST(Split, LeavesOutEveryRowOfTheGenerator) {
     for (const auto r : *part) EXPECT_NE(labels.generator[r], 33);
   EXPECT_EQ(generators(labels).size(), 10u);
   EXPECT_THROW((void)leave_one_out(labels, 99, 0.1, 1), InputError);
+  const RowSplit nested = leave_one_out(labels, 33, 0.1, 1, 34);  // 33 takes no part, 34 is judged
+  EXPECT_EQ(nested.test.size(), 40u);
+  EXPECT_EQ(nested.train.size() + nested.validation.size(), 320u);
+  for (const auto* part : {&nested.train, &nested.validation, &nested.test})
+    for (const auto r : *part) EXPECT_EQ(labels.generator[r] == 34, part == &nested.test);
+  for (const auto* part : {&nested.train, &nested.validation, &nested.test})
+    for (const auto r : *part) EXPECT_NE(labels.generator[r], 33);
+}
+
+TEST(Split, AShareIsTheFirstRowsOfBothDatasets) {
+  test::Folder folder("share"), other("sharemore");
+  test::Plan plan;
+  plan.seed = 12;
+  plan.rows = 170;
+  const mpi::store::Dataset dataset = test::make_dataset(folder.path),
+                            more = test::make_dataset(other.path, plan);
+  const ShardStream stream(dataset, test::whole_record(), {}, more);
+  const RowSplit whole = leave_one_out(stream.labels(), 33, 0.1, 1);
+  RowSplit half = whole;
+  keep_share(half, stream.labels(), 0.5);
+  EXPECT_EQ(half.train.size(), 162u + 77u);
+  EXPECT_EQ(half.test, whole.test);
+  EXPECT_EQ(half.validation, whole.validation);
+  EXPECT_TRUE(std::includes(whole.train.begin(), whole.train.end(), half.train.begin(), half.train.end()));
+  EXPECT_THROW(keep_share(half, stream.labels(), 1e-6), InputError);
 }
 
 TEST(Features, SeeTheTrainingRowsOnly) {

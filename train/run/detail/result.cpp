@@ -98,6 +98,7 @@ json result_json(const data::ShardStream& stream, const RunRequest& r, const Run
           {"epochs", parts.report.epochs},
           {"best_epoch", parts.report.best_epoch},
           {"seconds", parts.report.seconds},
+          {"processor_seconds", parts.report.processor_seconds},
           {"seconds_per_epoch",
            parts.report.seconds / static_cast<double>(std::max<std::size_t>(parts.report.epochs, 1))},
           {"mse", parts.score.mse},

@@ -81,18 +81,16 @@ Cell best_network(const Task& task, double noise) {
 Table overview_table(const std::vector<Task>& tasks) {
   constexpr double kNoise = 0.001;
   const std::string noisy = ", " + level_name(kNoise);
-  Table table{
-      fmt::format("{} Green: the thesis's MSE or less, under noise the floor; red: no better than the mean.",
-                  kCellMeaning),
-      {""},
-      {{"thesis's best"},
-       {"predict-the-mean"},
-       {"best network"},
-       {"closed form"},
-       {"refined"},
-       {"best network" + noisy},
-       {"refined" + noisy},
-       {"floor" + noisy}}};
+  Table table{kCellMeaning,
+              {""},
+              {{"thesis's best"},
+               {"predict-the-mean"},
+               {"best network"},
+               {"closed form"},
+               {"refined"},
+               {"best network" + noisy},
+               {"refined" + noisy},
+               {"floor" + noisy}}};
   for (const Task& task : tasks) {
     table.header.push_back(fmt::format("{}, {}", task.table, task.preset));
     const auto thesis = thesis_mean(task, task.table == "IV" ? "gru" : "cnn");
@@ -180,10 +178,9 @@ Table parameter_comparison(const Task& task, double noise) {
 }
 
 Table effort_table(const Task& task) {
-  Table table{
-      "What the figures cost: rows and epochs of a run, processor time of all runs as wall clock times threads.",
-      {"method", "noise", "runs", "seeds", "training rows", "test rows", "epochs", "time [core-s]"},
-      {}};
+  Table table{"What the figures cost: rows and epochs of a run, processor time of all runs.",
+              {"method", "noise", "runs", "seeds", "training rows", "test rows", "epochs", "time [core-s]"},
+              {}};
   for (const auto& method : task.methods())
     for (const double level : task.levels()) {
       const auto runs = runs_of(task, {method, level});

@@ -34,7 +34,7 @@ sim::Recording recording(const event::FitEvent& event, const sim::plant::PlantUn
   out.speed = r.speed;
   out.Ifd = r.Ifd;
   if (!event.switchings.empty()) out.event = event.switchings.front().time - r.t.front() - out.step;
-  return sim::direct::smoothed(std::move(out));
+  return out;
 }
 
 double median(std::vector<double> v) {
@@ -43,21 +43,15 @@ double median(std::vector<double> v) {
   return n % 2 == 1 ? v[n / 2] : (v[n / 2 - 1] + v[n / 2]) / 2;
 }
 
-}  // namespace
-
-std::optional<std::vector<double>> closed_start(const sim::plant::PlantUnderTest& tested,
-                                                const event::WhitenedEvents& events,
-                                                const std::vector<fit::FreeParameter>& free) {
-  if (!stands_alone(tested.plant)) return std::nullopt;
-  const sim::plant::Block& machine = tested.plant.machine;
+/// Nothing where the events give nothing that the machine's equations allow.
+std::vector<double> medians(const std::vector<sim::Recording>& records, const sim::plant::Plant& model,
+                            const std::vector<fit::FreeParameter>& free) {
+  sim::plant::Plant plant = model;
   std::vector<std::vector<double>> found;  // of each event
-  for (const auto& event : events) {
-    if (!shows_enough(event.record, *machine.effect)) return std::nullopt;
-    auto all = machine.effect->closed_form(recording(event, tested), machine.p.data());
+  for (const auto& record : records) {
+    auto all = plant.machine.effect->closed_form(record, plant.machine.p.data());
     if (!all.empty()) found.push_back(std::move(all.front()));
   }
-  if (found.empty()) return std::nullopt;
-  sim::plant::Plant plant = tested.plant;
   for (const auto& f : free) {
     std::vector<double> values;
     for (const auto& p : found)
@@ -67,8 +61,26 @@ std::optional<std::vector<double>> closed_start(const sim::plant::PlantUnderTest
       sim::plant::parameter_value(plant, f.id) =
           std::clamp(median(std::move(values)), record.low, record.high);
   }
-  if (!playin::can_exist(plant)) return std::nullopt;
+  if (found.empty() || !playin::can_exist(plant)) return {};
   return fit::values_of(plant, free);
+}
+
+}  // namespace
+
+std::vector<std::vector<double>> closed_starts(const sim::plant::PlantUnderTest& tested,
+                                               const event::WhitenedEvents& events,
+                                               const std::vector<fit::FreeParameter>& free) {
+  if (!stands_alone(tested.plant)) return {};
+  std::vector<sim::Recording> records;
+  for (const auto& event : events) {
+    if (!shows_enough(event.record, *tested.plant.machine.effect)) return {};
+    records.push_back(recording(event, tested));
+  }
+  std::vector<std::vector<double>> starts = {medians(records, tested.plant, free)};
+  for (auto& record : records) record = sim::direct::smoothed(std::move(record));
+  starts.push_back(medians(records, tested.plant, free));
+  std::erase_if(starts, [](const auto& values) { return values.empty(); });
+  return starts;
 }
 
 }  // namespace swingbank::validate::calibrate

@@ -25,7 +25,7 @@ Size size_of(const std::vector<const RunResult*>& runs) {
   const auto n = static_cast<double>(runs.size());
   for (const auto* r : runs) {
     size.rows += static_cast<double>(r->train_rows) / n;
-    size.core_seconds += r->seconds * r->threads / n;
+    size.core_seconds += r->core_seconds / n;
     size.epochs += static_cast<double>(r->epochs) / n;
     size.mse += r->mse / n;
     seeds[r->seed].first += r->mse;
@@ -88,7 +88,8 @@ PlotSeries law_of(const ScalingSeries& s, double Size::*of, const PowerLaw& fitt
   PlotSeries line{"", colour};
   line.mark = PlotSeries::Mark::none;
   line.line = line.dashed = true;
-  const double from = s.sizes.front().*of, to = s.sizes.back().*of;
+  const auto [least, most] = std::ranges::minmax(s.sizes, {}, of);
+  const double from = least.*of, to = most.*of;
   for (int i = 0; i <= 24; ++i) {
     const double x = from * std::pow(to / from, i / 24.0);
     const auto [low, high] = fitted.interval(x);
