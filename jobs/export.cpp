@@ -3,6 +3,7 @@
 
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
+#include "jobs/event_records.hpp"
 #include "validate/plant/plant_dyr.hpp"
 
 namespace {
@@ -18,6 +19,11 @@ struct Arguments {
 
 int run(const Arguments& a) {
   plant::PlantModel model = plant::load_plant_model(a.plant);
+  jobs::tell(model);
+  if (model.submitted)
+    throw InputError({"a model that does not hold", a.plant,
+                      "it comes of a calibration that was not adequate",
+                      "diagnose it, and export what 'swingbank add' makes of it"});
   if (a.bus > 0) model.bus = a.bus;
   if (!a.id.empty()) model.id = a.id;
   Problems problems;

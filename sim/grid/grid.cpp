@@ -82,7 +82,8 @@ class GridMaker {
     const network::Generator& g = grid_.network.generators[static_cast<std::size_t>(plant.generator)];
     plant::Block block = values_of(*effect, record);
     take_from_raw(block, g);
-    place(plant, std::move(block), {g, grid_.network.origin}, where, problems_);
+    const std::string warning = place(plant, std::move(block), {g, grid_.network.origin}, where, problems_);
+    if (!warning.empty()) spdlog::warn("{}", warning);
   }
   /// Kept until all are known: one sentence for each model, not for each record.
   void unknown(const formats::DyrRecord& record, const std::string& where) {

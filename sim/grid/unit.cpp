@@ -189,7 +189,8 @@ class UnitReader {
             fmt::format("{} of line {} read as {}, with its values", given, record.line, effect->dyr_name));
     }
     take_from_raw(block, generator());
-    place(unit_.plant, std::move(block), {generator(), net().origin}, where, problems_);
+    std::string warning = place(unit_.plant, std::move(block), {generator(), net().origin}, where, problems_);
+    if (!warning.empty()) unit_.notes.push_back(std::move(warning));
   }
   /// A name that the unit does not have is a slip if the file has it nowhere.
   void check_options() {
@@ -228,7 +229,7 @@ class UnitReader {
     if (list.size() != 1) return;
     unit_.notes.push_back(
         fmt::format("a transformer joins bus {} to bus {}; the model ends at bus {}: for records from bus {} "
-                    "give --measured-at {}",
+                    "give --measured-at {} (under [grid] of a plant file: measured_at)",
                     unit_.bus, far_end(list[0]), unit_.bus, far_end(list[0]), far_end(list[0])));
   }
   void read_transformer(int measured_at) {

@@ -75,6 +75,23 @@ std::vector<const sim::plant::Block*> blocks_of(const PlantModel& model) {
   return all;
 }
 
+/// Values before a calibration that did not hold, where they differ.
+void append_submitted(std::string& text, const PlantModel& model) {
+  if (!model.submitted) return;
+  text +=
+      "\n[submitted]  # before a calibration that did not hold: calibrate, add and diagnose begin with these\n";
+  PlantModel before = model;
+  before.plant = *model.submitted;
+  const auto old = blocks_of(before), now = blocks_of(model);
+  for (std::size_t b = 0; b < now.size(); ++b) {
+    std::string changed;
+    for (std::size_t i = 0; i < now[b]->p.size(); ++i)
+      if (old[b]->p[i] != now[b]->p[i])
+        changed += fmt::format("{} = {}\n", now[b]->effect->parameters[i].name, number(old[b]->p[i]));
+    if (!changed.empty()) text += fmt::format("[submitted.{}]\n{}", now[b]->effect->name, changed);
+  }
+}
+
 std::string compose(const PlantModel& model, const std::vector<std::string>& provenance,
                     const std::vector<std::string>& laws) {
   std::string text;
@@ -96,6 +113,7 @@ std::string compose(const PlantModel& model, const std::vector<std::string>& pro
   if (model.record_base.kv > 0)
     text += fmt::format("base_kv = {}  # base of voltages in kV\n", number(model.record_base.kv));
   for (const auto* block : blocks_of(model)) append_block(text, model, *block);
+  append_submitted(text, model);
   return text;
 }
 

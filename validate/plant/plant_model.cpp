@@ -176,6 +176,25 @@ void read_around(Config& config, PlantModel& model) {
   std::ranges::stable_sort(plant.controls, {}, [](const auto& b) { return b.effect->slot; });
 }
 
+/// Values before a calibration that did not hold, by effect and parameter.
+void read_submitted(Config& config, PlantModel& model) {
+  if (!config.has("submitted")) return;
+  sim::plant::Plant plant = model.plant;
+  const auto take = [&](sim::plant::Block& block) {
+    for (std::size_t i = 0; block.effect && i < block.p.size(); ++i) {
+      const auto& p = block.effect->parameters[i];
+      const std::string key = fmt::format("submitted.{}.{}", block.effect->name, p.name);
+      if (config.has(key)) block.p[i] = config.require<double>(key, {p.low, p.high, std::string(p.unit)});
+    }
+  };
+  take(plant.machine);
+  take(plant.transformer);
+  for (auto& control : plant.controls) take(control);
+  model.submitted = std::move(plant);
+  model.warnings.push_back(fmt::format("{} comes of a calibration that did not hold: its parameters are bent",
+                                       config.name().string()));
+}
+
 /// Law files of the plant: the library knows their effects from here on.
 std::vector<fs::path> read_laws(Config& config, EffectLibrary& library) {
   std::vector<fs::path> files;
@@ -229,6 +248,7 @@ void read_from_grid(Config& config, PlantModel& model) {
   model.bus = unit.bus;
   model.id = unit.id;
   note_standard(model, unit.standard);
+  model.warnings = unit.notes;
 }
 
 }  // namespace
@@ -264,7 +284,13 @@ PlantModel parse_plant_model(const std::string& text, const fs::path& file) {
   }
   read_around(config, model);
   if (config.sound()) check_orderings(config, model);
+  read_submitted(config, model);
   config.raise();
+  return model;
+}
+
+PlantModel as_submitted(PlantModel model) {
+  if (model.submitted) model.plant = *model.submitted;
   return model;
 }
 
@@ -287,6 +313,9 @@ PlantModel model_of_unit(const sim::grid::Unit& unit, sim::Conventions conventio
   };
   settle(model.plant.machine);
   for (auto& control : model.plant.controls) settle(control);
+  for (const auto& o : sim::plant::violated(model.plant.machine))
+    model.warnings.push_back(sim::plant::violation_text(model.plant.machine, o) +
+                             ": no machine is like that");
   return model;
 }
 

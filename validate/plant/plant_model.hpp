@@ -3,6 +3,7 @@
 // and every parameter, or one generator of a PSS/E grid.
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,8 @@ struct PlantModel {
   std::string id = "1";                          ///< the machine's, there
   /// Parameters ("SEXS.TE") that the file leaves to their standard values (`standard = true`).
   std::vector<std::string> standard = {};
+  /// Of a calibration that did not hold: the plant as it was before, not bent to make up for what is missing.
+  std::optional<sim::plant::Plant> submitted = {};
   /// What looks wrong in the file and does not refuse it, with its line.
   std::vector<std::string> warnings = {};
   [[nodiscard]] sim::plant::PlantUnderTest under_test() const { return {plant, conventions}; }
@@ -40,8 +43,11 @@ struct PlantModel {
 PlantModel load_plant_model(const std::filesystem::path& file);
 /// The same from a text; `file` stands for it in messages, and relative paths in it refer to its folder.
 PlantModel parse_plant_model(const std::string& text, const std::filesystem::path& file);
+/// The model to fit or diagnose: as it was before a calibration that did not hold, else as it is.
+PlantModel as_submitted(PlantModel model);
 /// The model of one unit of a case; `files` names them in messages. The records' base is the system's. What
-/// stands for "no limit" (999) and is beyond what is possible is brought to the bound, with a warning.
+/// stands for "no limit" (999) and is beyond what is possible is brought to the bound. The warnings say that,
+/// and which orderings are violated.
 PlantModel model_of_unit(const sim::grid::Unit& unit, sim::Conventions conventions, std::string files);
 
 }  // namespace swingbank::validate::plant

@@ -1,6 +1,6 @@
 #include "sim/grid/detail/dyr_models.hpp"
 
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -42,23 +42,26 @@ std::string names_of(const Slot* slot) {
   return names;
 }
 
-void taken(const plant::Plant& plant, const Effect& effect, const Effect& other, const std::string& where,
-           Problems& problems) {
-  problems.add("a second " + std::string(slot_name(effect.slot)) + " model, " + std::string(effect.dyr_name) +
-                   ", for generator " + plant.name,
-               where, "it already has " + std::string(other.dyr_name), "keep one of them");
+/// What stands already where the effect belongs, or nullptr.
+const Effect* in_the_way(const plant::Plant& plant, const Effect& effect) {
+  if (effect.slot == Slot::machine) return plant.machine.effect;
+  if (effect.slot == Slot::transformer) return plant.transformer.effect;
+  for (const plant::Block& other : plant.controls)
+    if (other.effect == &effect || (other.effect->slot == effect.slot && !is_shared(effect.slot)))
+      return other.effect;
+  return nullptr;
 }
 
-void compare_reactance(const plant::Plant& plant, const plant::Block& block, const RawGenerator& raw,
-                       const std::string& where) {
-  if (block.effect->raw_reactance >= 0) return;
+std::string compare_reactance(const plant::Plant& plant, const plant::Block& block, const RawGenerator& raw,
+                              const std::string& where) {
+  if (block.effect->raw_reactance >= 0) return {};
   const double zx = raw.generator.zx;
   double r = 0.0, x = 0.0;
   block.effect->get<double>().machine.source_impedance(block.p.data(), r, x);
   constexpr double tolerance = 1e-4;  // [pu]: files round reactances to four or five digits
-  if (zx != 0.0 && std::abs(zx - x) > tolerance)
-    spdlog::warn("{}: generator {} has ZX = {} pu in {} but {} pu in its {}; the latter is used", where,
-                 plant.name, zx, raw.origin, x, block.effect->dyr_name);
+  if (zx == 0.0 || std::abs(zx - x) <= tolerance) return {};
+  return fmt::format("{}: generator {} has ZX = {} pu in {} but {} pu in its {}; the latter is used", where,
+                     plant.name, zx, raw.origin, x, block.effect->dyr_name);
 }
 
 }  // namespace
@@ -116,27 +119,29 @@ void take_from_raw(plant::Block& block, const network::Generator& g) {
   if (effect.raw_reactance >= 0) block.p[static_cast<std::size_t>(effect.raw_reactance)] = g.zx;
 }
 
-void place(plant::Plant& plant, plant::Block block, const RawGenerator& raw, const std::string& where,
-           Problems& problems) {
+std::string place(plant::Plant& plant, plant::Block block, const RawGenerator& raw, const std::string& where,
+                  Problems& problems) {
   const Effect& effect = *block.effect;
   Problems found;
   effect.check(effect.law.get(), block.p.data(), where, found);
   problems.add(found);
-  if (effect.slot == Slot::machine) {
-    if (plant.machine.effect) return taken(plant, effect, *plant.machine.effect, where, problems);
-    if (found.empty()) compare_reactance(plant, block, raw, where);
-    plant.machine = std::move(block);
-    return;
+  if (const Effect* other = in_the_way(plant, effect)) {
+    problems.add("a second " + std::string(slot_name(effect.slot)) + " model, " +
+                     std::string(effect.dyr_name) + ", for generator " + plant.name,
+                 where, "it already has " + std::string(other->dyr_name), "keep one of them");
+    return {};
   }
   if (effect.slot == Slot::transformer) {
-    if (plant.transformer.effect) return taken(plant, effect, *plant.transformer.effect, where, problems);
     plant.transformer = std::move(block);
-    return;
+    return {};
   }
-  for (const plant::Block& other : plant.controls)
-    if (other.effect == &effect || (other.effect->slot == effect.slot && !is_shared(effect.slot)))
-      return taken(plant, effect, *other.effect, where, problems);
-  plant.controls.push_back(std::move(block));
+  if (effect.slot != Slot::machine) {
+    plant.controls.push_back(std::move(block));
+    return {};
+  }
+  std::string warning = found.empty() ? compare_reactance(plant, block, raw, where) : "";
+  plant.machine = std::move(block);
+  return warning;
 }
 void sort_controls(plant::Plant& plant) {
   std::ranges::stable_sort(plant.controls, {}, [](const plant::Block& b) { return b.effect->slot; });

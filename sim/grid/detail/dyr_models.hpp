@@ -39,9 +39,9 @@ plant::Block transformer_of(const network::Generator& g);
 /// Puts ZR and ZX into the parameters that PSS/E keeps in the .raw.
 void take_from_raw(plant::Block& block, const network::Generator& g);
 /// Checks the block and puts it into its slot; a slot that is taken is a problem. A source reactance of the
-/// .dyr that contradicts ZX is used, with a warning.
-void place(plant::Plant& plant, plant::Block block, const RawGenerator& raw, const std::string& where,
-           Problems& problems);
+/// .dyr that contradicts ZX is used; the warning of it is returned, empty if there is none.
+std::string place(plant::Plant& plant, plant::Block block, const RawGenerator& raw, const std::string& where,
+                  Problems& problems);
 void sort_controls(plant::Plant& plant);
 
 }  // namespace swingbank::sim::grid

@@ -18,6 +18,7 @@ using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 std::string example() {
   std::ifstream in(test::source("configs/plants/ieee14_bus2.toml"));
@@ -181,6 +182,38 @@ TEST_F(PlantModelTest, ControlsAreAddedAndDroppedBesideAGrid) {
   ASSERT_EQ(other.plant.controls.size(), 1u);
   EXPECT_EQ(other.plant.controls[0].p.at(2), 150.0);
   EXPECT_EQ(other.plant.mva, 250.0);
+}
+TEST_F(PlantModelTest, DataOnTheSystemsBaseAreRecognised) {
+  const auto on_system = [](std::string text, const char* h, const char* xd) {
+    text = replaced(std::move(text), "H = 6.54", std::string("H = ") + h);
+    return replaced(std::move(text), "Xd = 1.8", std::string("Xd = ") + xd);
+  };
+  EXPECT_THAT(faults(on_system(example(), "500", "0.02")),
+              Contains(AllOf(HasSubstr("H = 500 s and Xd = 0.02 pu"), HasSubstr("on the system's base?"),
+                             HasSubstr("set base_mva to the machine's own, say 10000"))));
+  EXPECT_THAT(faults(replaced(example(), "H = 6.54", "H = 654")),
+              ElementsAre(Not(HasSubstr("system's base"))))
+      << "one slip is no other base";
+  // Within the bounds it is a warning.
+  const PlantModel m = load(on_system(example(), "19", "0.45"));
+  EXPECT_THAT(m.warnings, Contains(AllOf(HasSubstr("H = 19 s"), HasSubstr("toml:20"))));
+  EXPECT_TRUE(load(example()).warnings.empty());
+}
+TEST_F(PlantModelTest, OrderingsThatNoMachineViolatesAreWarnedOfWithTheirLine) {
+  const PlantModel m = load(replaced(example(), "Xd = 1.8", "Xd = 0.35"));
+  EXPECT_THAT(m.warnings,
+              ElementsAre(AllOf(HasSubstr("Xd = 0.35 pu is not above X'd = 0.4 pu"), HasSubstr(".toml:22"))));
+}
+TEST_F(PlantModelTest, ABentModelKnowsWhatWasSubmitted) {
+  const PlantModel before = load(example());
+  PlantModel bent = before;
+  bent.plant.machine.p[4] = 3.5;  // H
+  bent.submitted = before.plant;
+  const PlantModel back = load(plant_text(bent, {}));
+  EXPECT_EQ(back.plant.machine.p[4], 3.5);
+  ASSERT_TRUE(back.submitted.has_value());
+  EXPECT_EQ(difference(as_submitted(back), before), "");
+  EXPECT_THAT(back.warnings, Contains(HasSubstr("did not hold")));
 }
 TEST_F(PlantModelTest, StandardValuesAreTakenWhereTheBlockSaysSo) {
   const std::string block = "\n[exciter]\neffect = \"SEXS\"\nK = 150.0\n";
