@@ -10,6 +10,7 @@
 #include "jobs/retrain_run.hpp"
 #include "sim/laws/law.hpp"
 #include "validate/add/report.hpp"
+#include "validate/plant/plant_dyr.hpp"
 #include "validate/plant/plant_file.hpp"
 #include "validate/thresholds/adequacy.hpp"
 
@@ -36,17 +37,20 @@ void keep_laws(plant::PlantModel& model,
         model.laws.emplace_back(file);
 }
 
-void write(const Arguments& a, const plant::PlantModel& model, const std::vector<std::string>& provenance,
-           nlohmann::json result, const std::string& text) {
+void write(const Arguments& a, const plant::PlantModel& before, plant::PlantModel model,
+           const std::vector<std::string>& provenance, nlohmann::json result, const std::string& text) {
+  model.submitted.reset();
   const std::filesystem::path folder = a.out;
   result["format"] = "swingbank-add-1";
   result["command"] = a.command;
+  result["standard_values"] = before.standard;
   plant::write_plant_file(folder / "model.toml", model, provenance);
+  const std::string records = plant::write_dyr_beside(folder / "model.toml", before, model);
   write_file(folder / "add.json", result.dump(1) + "\n");
   if (a.json)
     fmt::print("{}\n", result.dump(1));
   else
-    fmt::print("{}\nmodel: {}\n", text, (folder / "model.toml").string());
+    fmt::print("{}\nmodel: {}\n{}\n", text, (folder / "model.toml").string(), records);
 }
 
 /// What is wrong with options that belong together, before anything is computed.
@@ -100,7 +104,7 @@ int run(Arguments& a) {
   check_options(a);
   jobs::RetrainPrograms programs;
   if (a.retrain) programs = jobs::retrain_programs();
-  plant::PlantModel model = plant::load_plant_model(a.model);
+  plant::PlantModel model = jobs::load_model_to_fit(a.model);
   std::vector<std::pair<std::string, const sim::Effect*>> laws;
   for (const auto& file : a.laws)
     laws.emplace_back(file, &sim::laws::load_law(std::filesystem::path(file), model.library));
@@ -114,12 +118,12 @@ int run(Arguments& a) {
     for (const auto& one : c.added)
       for (const auto& line : provenance_lines(one, model, a.command)) provenance.push_back(line);
     provenance.push_back(c.sentence);
-    write(a, c.model, provenance, add::completion_json(c), terminal_report(c));
+    write(a, model, c.model, provenance, add::completion_json(c), terminal_report(c));
     return c.adequate ? 0 : thresholds::kNotAdequate;
   }
   add::Addition done = add::add_effect(model, add::find_hypothesis(model, a.effect), records, a.options);
   keep_laws(done.model, laws);
-  write(a, done.model, provenance_lines(done, model, a.command), add::addition_json(done),
+  write(a, model, done.model, provenance_lines(done, model, a.command), add::addition_json(done),
         terminal_report(done));
   if (a.retrain)
     if (const int code = run_retrain(a, programs, model, done, records); code != 0) return code;
@@ -137,7 +141,7 @@ int main(int argc, char** argv) {
            "effect, law or parameter group (SEXS, GENROU:S10,S12); 'swingbank effects' lists them");
   line.add("--model", a.model, "plant file (configs/plants/README.md)").required();
   line.add("--records,--record", a.records, "records of the events (validate/record/README.md)").required();
-  line.add("--out", a.out, "folder for model.toml and add.json").shows_default();
+  line.add("--out", a.out, "folder for model.toml, model.dyr and add.json").shows_default();
   line.add("--law", a.laws, "law file (.toml) whose effect may be added; may be repeated");
   line.add("--hold-out", c.held_out,
            "record (name or number from 1) left out of the fit and used to judge it; may be repeated");

@@ -11,6 +11,7 @@
 #include "validate/calibrate/network.hpp"
 #include "validate/calibrate/report.hpp"
 #include "validate/calibrate/side_by_side.hpp"
+#include "validate/plant/plant_dyr.hpp"
 #include "validate/plant/plant_file.hpp"
 #include "validate/thresholds/adequacy.hpp"
 
@@ -18,6 +19,8 @@ namespace {
 
 using namespace swingbank;
 using namespace swingbank::validate;
+
+constexpr const char *kModel = "model.toml", *kBentModel = "model-not-adequate.toml";
 
 struct Arguments {
   std::string model, out = "calibration", method = "fit", truth, network, start, command;
@@ -36,23 +39,46 @@ calibrate::CurveFit fit_curves(const Arguments& a, const plant::PlantModel& mode
   return calibrate::curve_fit(model, std::move(records), options);
 }
 
-void say(const Arguments& a, const nlohmann::json& result, const std::string& text) {
+/// Writes the model under a name that says whether it holds, and the records of one that does; the model of
+/// an earlier run under the other name goes. Returns what to tell.
+std::string write_model(const Arguments& a, const plant::PlantModel& before, plant::PlantModel model,
+                        bool holds, const std::vector<std::string>& provenance) {
   const std::filesystem::path folder = a.out;
-  write_file(folder / "calibrate.json", result.dump(1) + "\n");
-  if (a.json)
-    fmt::print("{}\n", result.dump(1));
-  else
-    fmt::print("{}\nmodel: {}\n", text, (folder / "model.toml").string());
+  const auto file = folder / (holds ? kModel : kBentModel);
+  model.submitted.reset();
+  if (!holds) model.submitted = before.plant;
+  std::vector<std::string> head = provenance;
+  if (!holds)
+    head.insert(head.begin(),
+                "NOT ADEQUATE: something is missing in this model, and its parameters are bent to make up "
+                "for it. Do not use them.");
+  plant::write_plant_file(file, model, head);
+  std::error_code none;
+  std::filesystem::remove(folder / (holds ? kBentModel : kModel), none);
+  if (!holds) {
+    std::filesystem::remove((folder / kModel).replace_extension(".dyr"), none);
+    return fmt::format(
+        "model: {} (not adequate: its parameters are bent, do not use them)\n"
+        "next: what is missing says swingbank diagnose --model {} --records ...",
+        file.string(), a.model);
+  }
+  return fmt::format("model: {}\n{}", file.string(), plant::write_dyr_beside(file, before, model));
+}
+
+void say(const Arguments& a, const nlohmann::json& result, const std::string& text) {
+  write_file(std::filesystem::path(a.out) / "calibrate.json", result.dump(1) + "\n");
+  fmt::print("{}\n", a.json ? result.dump(1) : text);
 }
 
 int run_baseline(const Arguments& a, const plant::PlantModel& model, std::vector<record::Record> records,
                  const calibrate::Truth& truth) {
   const calibrate::CurveFit f = fit_curves(a, model, std::move(records));
-  plant::write_plant_file(std::filesystem::path(a.out) / "model.toml", f.model,
-                          calibrate::provenance_lines(f, model, a.command));
+  const std::string written =
+      write_model(a, model, f.model, f.adequate, calibrate::provenance_lines(f, model, a.command));
   nlohmann::json result = calibrate::curve_fit_json(f, truth);
   result["command"] = a.command;
-  say(a, result, calibrate::terminal_report(f, truth));
+  result["standard_values"] = model.standard;
+  say(a, result, calibrate::terminal_report(f, truth) + "\n" + written);
   return f.adequate ? 0 : thresholds::kNotAdequate;
 }
 
@@ -82,7 +108,7 @@ std::optional<calibrate::NetworkEstimate> ask_network(const Arguments& a,
 }
 
 int run(Arguments& a) {
-  const plant::PlantModel model = plant::load_plant_model(a.model);
+  const plant::PlantModel model = jobs::load_model_to_fit(a.model);
   const calibrate::Truth truth = a.truth.empty() ? calibrate::Truth{} : calibrate::read_truth(a.truth, model);
   std::vector<record::Record> records = jobs::read_events(a.records, model);
   if (a.method == "curve-fit" && !(a.network.empty() && a.start.empty()))
@@ -102,6 +128,7 @@ int run(Arguments& a) {
   std::string text = calibrate::terminal_report(c);
   nlohmann::json result = calibrate::calibration_json(c);
   result["command"] = a.command;
+  result["standard_values"] = model.standard;
   std::vector<calibrate::Way> ways = {calibrate::way_of_model(c)};
   if (both) {
     const calibrate::CurveFit f = fit_curves(a, model, std::move(again));
@@ -116,16 +143,20 @@ int run(Arguments& a) {
     text += "\n" + calibrate::beside_report(ways, truth);
     result["side_by_side"] = calibrate::beside_json(ways, truth);
   }
-  plant::write_plant_file(folder / "model.toml", c.model, calibrate::provenance_lines(c, a.command));
+  const bool holds = c.adequacy != calibrate::Adequacy::structure_poor;
+  text += "\n" + write_model(a, model, c.model, holds, calibrate::provenance_lines(c, a.command));
   say(a, result, text);
-  return c.adequacy == calibrate::Adequacy::structure_poor ? thresholds::kNotAdequate : 0;
+  return holds ? 0 : thresholds::kNotAdequate;
 }
 
 void add_options(jobs::CommandLine& line, Arguments& a, bool& inner) {
   auto& o = a.options;
   line.add("--model", a.model, "plant file (configs/plants/README.md)").required();
   line.add("--records,--record", a.records, "records of the events (validate/record/README.md)").required();
-  line.add("--out", a.out, "folder for model.toml and calibrate.json").shows_default();
+  line.add(
+          "--out", a.out,
+          "folder for model.toml (model-not-adequate.toml where it does not hold), model.dyr and calibrate.json")
+      .shows_default();
   line.add("--method", a.method,
            "fit; curve-fit: the usual way, least squares of P and Q from the model's own values, as a "
            "baseline; both: side by side")

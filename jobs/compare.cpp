@@ -7,6 +7,7 @@
 
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
+#include "jobs/event_records.hpp"
 #include "validate/check/record_set.hpp"
 #include "validate/compare/report.hpp"
 #include "validate/system/system.hpp"
@@ -114,6 +115,7 @@ int main(int argc, char** argv) {
     if (!system_file.empty()) return run_system(system_file, out, json, joined(argc, argv));
     options.drive = drive == "pq" ? compare::DriveBy::power : compare::DriveBy::voltage;
     const plant::PlantModel model = plant::load_plant_model(model_file);
+    jobs::tell(model);
     auto [records, warnings] = check::read_records(record_files, model);
     std::vector<std::string> names;
     names.reserve(records.size());

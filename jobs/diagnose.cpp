@@ -27,7 +27,7 @@ std::filesystem::path write_law(const diagnose::Diagnosis& d, const std::filesys
 
 int run(const std::string& model_file, const std::vector<std::string>& record_files, const std::string& out,
         bool json, diagnose::DiagnoseOptions options, const std::string& command_line) {
-  const plant::PlantModel model = plant::load_plant_model(model_file);
+  const plant::PlantModel model = jobs::load_model_to_fit(model_file);
   std::vector<record::Record> records = jobs::read_events(record_files, model);
   options.progress = jobs::progress_line();
   const diagnose::Diagnosis d = diagnose::diagnose(model, std::move(records), options);

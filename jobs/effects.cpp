@@ -183,7 +183,24 @@ std::string nearest_names(const library::EffectLibrary& library, const std::stri
   return names;
 }
 
-int run(const std::vector<std::string>& names, const std::vector<std::string>& laws, bool json) {
+/// A block of a plant file with the standard values.
+void print_toml(const Effect& e) {
+  const std::string slot(slot_name(e.slot));
+  fmt::print("{}\n", is_shared(e.slot) ? "[[" + slot + "]]" : "[" + slot + "]");
+  fmt::print("effect = \"{}\"  # {}\n", e.name, e.title);
+  for (const Parameter& p : e.parameters) {
+    std::string value = fmt::format("{}", p.standard);
+    if (value.find_first_of(".e") == std::string::npos) value += ".0";
+    fmt::print("{:<28} # [{}] {}, from {:g} to {:g}\n", fmt::format("{} = {}", p.name, value), p.unit,
+               p.meaning, p.low, p.high);
+  }
+}
+
+struct Shape {
+  bool json = false, toml = false;
+};
+
+int run(const std::vector<std::string>& names, const std::vector<std::string>& laws, const Shape& shape) {
   library::EffectLibrary library;
   for (const auto& file : laws) laws::load_law(file, library);
   Problems problems;
@@ -195,9 +212,12 @@ int run(const std::vector<std::string>& names, const std::vector<std::string>& l
                    "the nearest names are " + nearest_names(library, name),
                    "choose one of these, or see them all with swingbank effects");
   }
+  if (shape.toml && names.empty())
+    problems.add("--toml without an effect", "NAME", "a block is of one effect",
+                 "name it; swingbank effects lists them all");
   problems.raise();
   const auto& shown = names.empty() ? library.all() : chosen;
-  if (json) {
+  if (shape.json) {
     Json all = Json::array();
     for (const Effect* e : shown) all.push_back(as_json(*e));
     fmt::print("{}\n", all.dump(1));
@@ -206,7 +226,7 @@ int run(const std::vector<std::string>& names, const std::vector<std::string>& l
   } else {
     for (const Effect* e : shown) {
       if (e != shown.front()) fmt::print("\n");
-      describe(*e);
+      shape.toml ? print_toml(*e) : describe(*e);
     }
   }
   return 0;
@@ -219,13 +239,16 @@ int main(int argc, char** argv) {
       "equations, parameters, states and source.",
       "swingbank effects");
   std::vector<std::string> names, laws;
-  bool json = false;
+  Shape shape;
   line.add("NAME", names, "effects, e.g. GENROU SEXS");
   line.add("--law", laws, "law file (.toml) whose effect is added; may be repeated").one_value_a_mention();
-  line.add_flag("--json", json, "the same for machines: an array with one object per effect");
+  const jobs::Option json =
+      line.add_flag("--json", shape.json, "the same for machines: an array with one object per effect");
+  line.add_flag("--toml", shape.toml, "the effect's block of a plant file with its standard values, to paste")
+      .excludes(json);
   if (!line.parse(argc, argv)) return line.end();
   try {
-    return run(names, laws, json);
+    return run(names, laws, shape);
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 1;

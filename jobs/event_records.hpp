@@ -28,6 +28,21 @@ inline std::vector<validate::record::Record> read_events(const std::vector<std::
   return std::move(set.records);
 }
 
+/// Says on stderr what looks wrong in a model and what of it is no plant's own.
+inline void tell(const validate::plant::PlantModel& model) {
+  for (const auto& warning : model.warnings) fmt::print(stderr, "note: {}\n", warning);
+  if (!model.standard.empty())
+    fmt::print(stderr, "note: standard values, not this plant's: {}\n", fmt::join(model.standard, ", "));
+}
+
+/// The model that a fit begins with: of a calibration that did not hold, the one before it.
+inline validate::plant::PlantModel load_model_to_fit(const std::string& file) {
+  validate::plant::PlantModel model = validate::plant::load_plant_model(file);
+  tell(model);
+  if (model.submitted) fmt::print(stderr, "note: begun with the values before that calibration\n");
+  return validate::plant::as_submitted(std::move(model));
+}
+
 /// Writes "what: done of total" over itself where stderr is a terminal, elsewhere as a line every ten
 /// seconds.
 inline std::function<void(const std::string&, int, int)> progress_line() {

@@ -2,6 +2,7 @@
 // PSS/E .raw (versions 32 to 35) and .dyr files.
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,20 @@ namespace swingbank::sim::formats {
 network::Network read_raw(const std::filesystem::path& file);
 /// The same from a text; `name` stands for the file in messages.
 network::Network parse_raw(const std::string& text, const std::string& name);
+
+/// A case as far as it can be read, for those who want single units of it.
+struct RawSurvey {
+  network::Network network;
+  std::vector<int> generator_line, branch_line;  ///< of the file, where the record of each begins
+  std::vector<Problem> faults;
+};
+/// Reads what read_raw does, but goes on past faults: they are told, not thrown, and equipment that is not
+/// modelled and voltages that are held elsewhere, which matter to a network and not to its units, are none.
+/// Without a header of a known version it throws InputError. `frequency_hz`: where BASFRQ is missing.
+RawSurvey survey_raw(const std::filesystem::path& file, std::optional<double> frequency_hz = {});
+/// The same from a text; `name` stands for the file in messages.
+RawSurvey parse_raw_survey(const std::string& text, const std::string& name,
+                           std::optional<double> frequency_hz = {});
 
 /// Writes version 32, 33, 34 or 35; reading it back gives the same values to the last bit (`origin` apart).
 /// Lines come first, then transformers. Throws InputError where the file cannot be written or a branch has no
@@ -75,5 +90,14 @@ std::vector<DyrRecord> read_dyr(const std::filesystem::path& file, const DyrOpti
 /// The same from a text; `name` stands for the file in messages.
 std::vector<DyrRecord> parse_dyr(const std::string& text, const std::string& name,
                                  const DyrOptions& options = {});
+
+/// The records of a .dyr as far as they can be read, with what is wrong with the rest.
+struct DyrSurvey {
+  std::vector<DyrRecord> records;
+  std::vector<Problem> faults;  ///< those of DyrRecord::faults are not among them
+};
+/// Throws InputError only where the file cannot be read at all.
+DyrSurvey survey_dyr(const std::filesystem::path& file);
+DyrSurvey parse_dyr_survey(const std::string& text, const std::string& name);
 
 }  // namespace swingbank::sim::formats

@@ -32,6 +32,21 @@ class DyrReader {
   }
 
   std::vector<DyrRecord> read() {
+    split_records();
+    check_names();
+    if (!problems_.empty())
+      for (const DyrRecord& record : out_) problems_.add(record.faults);
+    problems_.raise();
+    if (!ignored_.empty()) spdlog::warn("{}: ignored, as asked: {}", name_, ignored_);
+    return std::move(out_);
+  }
+  DyrSurvey survey() {
+    split_records();
+    return {std::move(out_), problems_.list()};
+  }
+
+ private:
+  void split_records() {
     psse::Record open;
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       if (is_comment(lines_[i])) continue;
@@ -46,15 +61,7 @@ class DyrReader {
       problems_.add("a record has no end", where(open.line),
                     "records end with '/'; the file may be truncated",
                     "end the record with '/' or restore the file");
-    check_names();
-    if (!problems_.empty())
-      for (const DyrRecord& record : out_) problems_.add(record.faults);
-    problems_.raise();
-    if (!ignored_.empty()) spdlog::warn("{}: ignored, as asked: {}", name_, ignored_);
-    return std::move(out_);
   }
-
- private:
   [[nodiscard]] std::string where(int line) const { return name_ + ":" + std::to_string(line); }
 
   void finish(const psse::Record& record) {
@@ -156,6 +163,12 @@ std::vector<DyrRecord> read_dyr(const std::filesystem::path& file, const DyrOpti
 std::vector<DyrRecord> parse_dyr(const std::string& text, const std::string& name,
                                  const DyrOptions& options) {
   return DyrReader(psse::lines_of(text), name, options).read();
+}
+DyrSurvey survey_dyr(const std::filesystem::path& file) {
+  return DyrReader(psse::read_lines(file), file.string(), {}).survey();
+}
+DyrSurvey parse_dyr_survey(const std::string& text, const std::string& name) {
+  return DyrReader(psse::lines_of(text), name, {}).survey();
 }
 
 }  // namespace swingbank::sim::formats

@@ -111,10 +111,10 @@ void RawReader::generator(const Record& record) {
   if (!(g.mva > 0))
     problems_.add("MBASE = " + shortest(g.mva) + " MVA", f.where(),
                   "the machine's per-unit values refer to it", "give a base > 0 MVA");
-  if (g.in_service && !(g.vset > 0))
+  if (g.in_service && !units_only_ && !(g.vset > 0))
     problems_.add("VS = " + shortest(g.vset) + " pu", f.where(), "it is the voltage the generator holds",
                   "give a voltage > 0 pu");
-  if (g.in_service && regulated != 0 && regulated != number)
+  if (g.in_service && !units_only_ && regulated != 0 && regulated != number)
     problems_.add("IREG = " + std::to_string(regulated), f.where(),
                   "regulation of a remote bus is not modelled",
                   "set IREG to 0 and VS to the generator's own solved voltage");
@@ -126,7 +126,6 @@ void RawReader::generator(const Record& record) {
                   "a step-up transformer inside the generator record is modelled at its nominal ratio",
                   "enter it as a transformer between two buses");
   if (g.bus < 0) return;
-  generator_line_[network_.generators.size()] = record.line;
   network_.generators.push_back(std::move(g));
 }
 

@@ -26,6 +26,11 @@ grep -q '^# Command: swingbank add SEXS' "$work/added/model.toml" || fail "the n
 # what was written is a model: it is calibrated again, and holds
 "$swingbank" calibrate --model "$work/added/model.toml" --records "$one" "$two" --power-only --draws 0 --starts 0 --out "$work/again" >"$work/text"
 [[ -s $work/again/model.toml && -s $work/again/calibrate.json ]] || fail "model.toml and calibrate.json expected"
+grep -q 'no .dyr: no bus number' "$work/text" || fail "no word of the records"
+sed 's/^base_mva = 100.0  # machine base/bus = 2\n&/' "$work/added/model.toml" >"$work/numbered.toml"
+"$swingbank" calibrate --model "$work/numbered.toml" --records "$one" --power-only --draws 0 --starts 0 --out "$work/numbered" >/dev/null
+grep -q '^// changed or new: GENROU, SEXS' "$work/numbered/model.dyr" || fail "the records do not say what changed"
+cmp <("$swingbank" export --dyr "$work/numbered/model.toml" | grep -v '^//') <(grep -v '^//' "$work/numbered/model.dyr") || fail "model.dyr is not what export makes"
 grep -q 'SEXS.K' "$work/text" || fail "the table lacks the exciter's gain"
 
 # the usual way beside it, with the truth known: tables and JSON agree on who is nearer
@@ -48,6 +53,12 @@ cmp "$work/printed.json" "$work/curves/calibrate.json" || fail "--json prints so
 status=0
 "$swingbank" calibrate --model "$model" --records "$one" --power-only --draws 0 --starts 0 --out "$work/poor" >"$work/text" || status=$?
 ((status == 3)) || fail "exit code $status, expected 3"
+[[ -s $work/poor/model-not-adequate.toml && ! -e $work/poor/model.toml && ! -e $work/poor/model.dyr ]] ||
+  fail "a model that does not hold lies in $(ls "$work/poor")"
+grep -q '^# NOT ADEQUATE' "$work/poor/model-not-adequate.toml" || fail "the bent model does not say so"
+grep -q "^next: .*swingbank diagnose --model $model" "$work/text" || fail "it does not say what is next"
+"$swingbank" compare --model "$work/poor/model-not-adequate.toml" --records "$one" --out "$work/bent" >/dev/null 2>"$work/notes" || (($? == 3))
+grep -q 'comes of a calibration that did not hold' "$work/notes" || fail "a bent model is taken without a word"
 grep -q 'survives the refit' "$work/text" || fail "it does not say that something is missing: $(head -1 "$work/text")"
 
 out=$work/out

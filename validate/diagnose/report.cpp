@@ -249,6 +249,8 @@ report::Provenance diagnosis_provenance(const plant::PlantModel& model, const Di
   report::Provenance rows = {{"command", command_line},
                              {"software", "swingbank " SWINGBANK_VERSION},
                              {"model", fmt::format("{}, XXH64 {:016x}", model.origin, model.hash)}};
+  if (!model.standard.empty())
+    rows.emplace_back("standard values", fmt::format("{}", fmt::join(model.standard, ", ")));
   for (const auto& e : d.events)
     rows.emplace_back("record", fmt::format("{}, XXH64 {:016x}", e.record.name, e.record.hash));
   return rows;

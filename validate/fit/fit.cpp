@@ -167,6 +167,8 @@ class Search {
       problem_->SetParameterUpperBound(z_.data(), static_cast<int>(i), std::max(0.0, a.z(a.high)));
     }
     problem_->AddResidualBlock(new Belief(spread, &discrepancy_), nullptr, {z_.data()});
+    auto walls = std::make_unique<Walls>(setting_, &discrepancy_);
+    if (!walls->empty()) problem_->AddResidualBlock(walls.release(), nullptr, {z_.data()});
   }
   /// Why the start cannot be evaluated.
   std::string reason() const {
@@ -335,6 +337,10 @@ Fit fit(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& e
   if (options.input != InputKind::none)
     for (std::size_t e = 0; e < events.size(); ++e) setting.knots[e] = options.start[e].input.t;
   for (const auto& f : free) setting.axes.push_back(make_axis(tested.plant, f));
+  sim::plant::Plant start = tested.plant;
+  for (std::size_t i = 0; i < options.values.size(); ++i)
+    parameter_value(start, free[i].id) = options.values[i];
+  setting.can_exist = playin::can_exist(start);
   return Search(setting, options).run();
 }
 

@@ -75,7 +75,7 @@ Loaded load(const Fleet& fleet, const FleetPlant& plant) {
   Loaded l;
   Problems problems;
   try {
-    l.model = plant::load_plant_model(plant.model);
+    l.model = plant::as_submitted(plant::load_plant_model(plant.model));
   } catch (const InputError& error) {
     for (const auto& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
   }

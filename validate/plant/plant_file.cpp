@@ -44,14 +44,25 @@ std::string comment(const std::string& text) {
   return out + "\n";
 }
 
-void append_block(std::string& text, const sim::plant::Block& block) {
+/// Whether the model leaves this parameter to its standard value, and it still has it.
+bool left_standard(const PlantModel& model, const sim::plant::Block& block, std::size_t i) {
+  const auto& p = block.effect->parameters[i];
+  return block.p[i] == p.standard &&
+         std::ranges::count(model.standard, fmt::format("{}.{}", block.effect->name, p.name)) > 0;
+}
+
+void append_block(std::string& text, const PlantModel& model, const sim::plant::Block& block) {
   const sim::Effect& effect = *block.effect;
   const std::string slot(sim::slot_name(effect.slot));
   text += sim::is_shared(effect.slot) ? "\n[[" + slot + "]]" : "\n[" + slot + "]";
   text += "\neffect = " + in_quotes(effect.name) + "  " + comment(std::string(effect.title));
+  bool standard = false;
+  for (std::size_t i = 0; i < block.p.size(); ++i) standard = standard || left_standard(model, block, i);
+  if (standard) text += "standard = true  # what stands behind # alone has its standard value\n";
   for (std::size_t i = 0; i < block.p.size(); ++i) {
     const auto& p = effect.parameters[i];
-    const std::string entry = fmt::format("{} = {}", p.name, number(block.p[i]));
+    const std::string entry =
+        fmt::format("{}{} = {}", left_standard(model, block, i) ? "# " : "", p.name, number(block.p[i]));
     text += fmt::format("{:<28} ", entry) + comment(fmt::format("[{}] {}", p.unit, p.meaning));
   }
 }
@@ -62,6 +73,23 @@ std::vector<const sim::plant::Block*> blocks_of(const PlantModel& model) {
   for (const auto* list : {&model.plant.controls, &model.plant.measurements})
     for (const auto& block : *list) all.push_back(&block);
   return all;
+}
+
+/// Values before a calibration that did not hold, where they differ.
+void append_submitted(std::string& text, const PlantModel& model) {
+  if (!model.submitted) return;
+  text +=
+      "\n[submitted]  # before a calibration that did not hold: calibrate, add and diagnose begin with these\n";
+  PlantModel before = model;
+  before.plant = *model.submitted;
+  const auto old = blocks_of(before), now = blocks_of(model);
+  for (std::size_t b = 0; b < now.size(); ++b) {
+    std::string changed;
+    for (std::size_t i = 0; i < now[b]->p.size(); ++i)
+      if (old[b]->p[i] != now[b]->p[i])
+        changed += fmt::format("{} = {}\n", now[b]->effect->parameters[i].name, number(old[b]->p[i]));
+    if (!changed.empty()) text += fmt::format("[submitted.{}]\n{}", now[b]->effect->name, changed);
+  }
 }
 
 std::string compose(const PlantModel& model, const std::vector<std::string>& provenance,
@@ -78,11 +106,14 @@ std::string compose(const PlantModel& model, const std::vector<std::string>& pro
       "stator voltage\n",
       in_quotes(model.name), number(model.plant.mva), number(model.conventions.frequency),
       power ? "psse" : "andes", power ? "power" : "torque", model.conventions.speed_voltage);
+  if (model.bus > 0)
+    text += fmt::format("bus = {}  # its number in the case\nid = {}\n", model.bus, in_quotes(model.id));
   text += fmt::format("\n[record]\nbase_mva = {}  # base of P_pu and Q_pu in the records [MVA]\n",
                       number(model.record_base.mva));
   if (model.record_base.kv > 0)
     text += fmt::format("base_kv = {}  # base of voltages in kV\n", number(model.record_base.kv));
-  for (const auto* block : blocks_of(model)) append_block(text, *block);
+  for (const auto* block : blocks_of(model)) append_block(text, model, *block);
+  append_submitted(text, model);
   return text;
 }
 
@@ -128,6 +159,7 @@ std::string block_difference(const sim::plant::Block& a, const sim::plant::Block
 
 std::string difference(const PlantModel& a, const PlantModel& b) {
   if (a.name != b.name) return "the name";
+  if (a.bus != b.bus || a.id != b.id) return "bus and id";
   if (!same(a.plant.mva, b.plant.mva)) return "the machine's base";
   if (!same(a.record_base.mva, b.record_base.mva) || !same(a.record_base.kv, b.record_base.kv))
     return "the records' base";

@@ -18,7 +18,7 @@ std::string plant_text(const PlantModel& model, const std::vector<std::string>& 
 void write_plant_file(const std::filesystem::path& file, const PlantModel& model,
                       const std::vector<std::string>& provenance);
 
-/// Why two models differ, empty if they do not: name, {bases, conventions}, effects, every bit of every
+/// Why two models differ, empty if they do not: name, bus, bases, conventions, effects, every bit of every
 /// parameter.
 std::string difference(const PlantModel& a, const PlantModel& b);
 

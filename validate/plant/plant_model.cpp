@@ -8,6 +8,8 @@
 #include "base/config.hpp"
 #include "base/input_file.hpp"
 #include "sim/laws/law.hpp"
+#include "sim/plant/orderings.hpp"
+#include "validate/plant/detail/plausible.hpp"
 
 namespace swingbank::validate::plant {
 namespace {
@@ -15,7 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 using sim::Slot;
 
-constexpr double kSmallest = 1e-9;  ///< bases and frequencies are above zero
+constexpr double kSmallest = 1e-9;     ///< bases and frequencies are above zero
+constexpr double kMostBuses = 999999;  ///< the largest bus number of PSS/E
 
 using sim::library::EffectLibrary;
 
@@ -28,15 +31,23 @@ std::vector<std::string> effects_of(const EffectLibrary& library, Slot slot) {
 }
 
 /// One section: the effect's name and every one of its parameters; checked for consistency if all could be
-/// read. `section` is a slot's name, or "limiter[1]".
+/// read. `section` is a slot's name, or "limiter[1]". What the section leaves to the standard values is noted
+/// in `standard`.
 sim::plant::Block read_block(Config& config, const EffectLibrary& library, Slot slot,
-                             const std::string& section) {
+                             const std::string& section, std::vector<std::string>& standard) {
   sim::plant::Block block{library.find(config.choice(section + ".effect", effects_of(library, slot))), {}};
   if (!block.effect || block.effect->slot != slot) return {};
   const bool sound = config.sound();
-  for (const auto& p : block.effect->parameters)
-    block.p.push_back(
-        config.require<double>(fmt::format("{}.{}", section, p.name), {p.low, p.high, std::string(p.unit)}));
+  const bool may_miss = config.optional<bool>(section + ".standard", false);
+  for (const auto& p : block.effect->parameters) {
+    const std::string key = fmt::format("{}.{}", section, p.name);
+    if (may_miss && !config.has(key)) {
+      block.p.push_back(p.standard);
+      standard.push_back(fmt::format("{}.{}", block.effect->name, p.name));
+    } else {
+      block.p.push_back(config.require<double>(key, {p.low, p.high, std::string(p.unit)}));
+    }
+  }
   if (!sound || !config.sound()) return block;
   Problems problems;
   block.effect->check(block.effect->law.get(), block.p.data(), config.where(section), problems);
@@ -44,16 +55,61 @@ sim::plant::Block read_block(Config& config, const EffectLibrary& library, Slot 
   return block;
 }
 
+/// A number of the file whatever its range, if it is one.
+std::optional<double> number_at(Config& config, const std::string& key) {
+  if (!config.has(key) || config.is_text(key)) return {};
+  return config.optional<double>(key, 0.0);
+}
+
+/// Data on the system's base instead of the machine's: a problem where values are refused for it, else a
+/// warning.
+void check_base(Config& config, PlantModel& model, bool sound) {
+  for (const char* reactance : {"Xd", "Xdp"}) {
+    const auto h = number_at(config, "machine.H");
+    const auto x = number_at(config, std::string("machine.") + reactance);
+    if (!x) continue;
+    const auto foreign = foreign_base(reactance, h.value_or(0.0), *x, model.plant.mva);
+    if (!foreign) return;
+    const std::string why = fmt::format(
+        "on {:g} MVA these would be a machine of about {:g} MVA; are they on the "
+        "system's base?",
+        model.plant.mva, foreign->mva);
+    const std::string remedy = fmt::format(
+        "set base_mva to the machine's own, say {0:g}, and give values on it: H divided, reactances and "
+        "resistances multiplied by {1:.3g}",
+        foreign->mva, foreign->mva / model.plant.mva);
+    if (sound)
+      model.warnings.push_back(Problem{foreign->what, config.where("machine.H"), why, remedy}.sentence());
+    else
+      config.problem("machine.H", foreign->what, why, remedy);
+    return;
+  }
+}
+
+/// Orderings that every machine has, each with its line.
+void check_orderings(const Config& config, PlantModel& model) {
+  const sim::plant::Block& machine = model.plant.machine;
+  if (!machine.effect) return;
+  for (const auto& o : sim::plant::violated(machine)) {
+    const auto& name = machine.effect->parameters[static_cast<std::size_t>(o.greater)].name;
+    model.warnings.push_back(Problem{sim::plant::violation_text(machine, o),
+                                     config.where(fmt::format("machine.{}", name)), "no machine is like that",
+                                     "correct one of them"}
+                                 .sentence());
+  }
+}
+
 /// Every [[section]] of a slot that takes several effects.
-std::vector<sim::plant::Block> read_several(Config& config, const EffectLibrary& library, Slot slot) {
+std::vector<sim::plant::Block> read_several(Config& config, const EffectLibrary& library, Slot slot,
+                                            std::vector<std::string>& standard) {
   const std::string name(sim::slot_name(slot));
   config.ignore(name);  // its keys are compared below
   std::vector<sim::plant::Block> blocks;
   for (int k = 0; config.has(fmt::format("{}[{}]", name, k)); ++k) {
     const std::string section = fmt::format("{}[{}]", name, k);
-    const sim::plant::Block block = read_block(config, library, slot, section);
+    const sim::plant::Block block = read_block(config, library, slot, section, standard);
     if (!block.effect) continue;
-    std::vector<std::string> known = {"effect"};
+    std::vector<std::string> known = {"effect", "standard"};
     for (const auto& p : block.effect->parameters) known.emplace_back(p.name);
     for (const auto& key : config.keys(section))
       if (!std::ranges::count(known, key))
@@ -65,31 +121,78 @@ std::vector<sim::plant::Block> read_several(Config& config, const EffectLibrary&
 }
 
 /// The effects of one slot: one [section], or several [[section]] where they add up.
-void read_slot(Config& config, const EffectLibrary& library, Slot slot,
-               std::vector<sim::plant::Block>& into) {
+void read_slot(Config& config, const EffectLibrary& library, Slot slot, std::vector<sim::plant::Block>& into,
+               std::vector<std::string>& standard) {
   const std::string section(sim::slot_name(slot));
-  if (!config.is_array(section)) return into.push_back(read_block(config, library, slot, section));
+  if (!config.is_array(section)) {
+    sim::plant::Block block = read_block(config, library, slot, section, standard);
+    if (block.effect) into.push_back(std::move(block));
+    return;
+  }
   if (!sim::is_shared(slot)) {
     config.ignore(section);
     return config.problem(section, "several [[" + section + "]]", "a plant has room for one",
                           "write one [" + section + "]");
   }
-  std::ranges::move(read_several(config, library, slot), std::back_inserter(into));
+  std::ranges::move(read_several(config, library, slot, standard), std::back_inserter(into));
 }
 
-void read_blocks(Config& config, const EffectLibrary& library, sim::plant::Plant& plant) {
-  plant.machine = read_block(config, library, Slot::machine, "machine");
+/// A slot that the grid's files fill already.
+bool filled(const sim::plant::Plant& plant, Slot slot) {
+  if (sim::is_shared(slot)) return false;
+  if (slot == Slot::transformer) return plant.transformer.effect != nullptr;
+  return std::ranges::any_of(plant.controls, [&](const auto& b) { return b.effect->slot == slot; });
+}
+std::string_view name_in(const sim::plant::Plant& plant, Slot slot) {
+  if (slot == Slot::transformer) return plant.transformer.effect->name;
+  const auto at = std::ranges::find_if(plant.controls, [&](const auto& b) { return b.effect->slot == slot; });
+  return at->effect->dyr_name;
+}
+
+/// Every section but [machine], into the plant and beside what it has from a grid's files.
+void read_around(Config& config, PlantModel& model) {
+  sim::plant::Plant& plant = model.plant;
   for (const Slot slot : sim::kSlots) {
     const std::string section(sim::slot_name(slot));
     if (slot == Slot::machine || slot == Slot::load || !config.has(section)) continue;
-    if (effects_of(library, slot).empty())
+    if (effects_of(model.library, slot).empty()) {
       config.problem(section, "section [" + section + "]", "this build has no effect of that kind",
                      "remove it; the slot holds its input at the operating point");
-    else if (slot == Slot::transformer)
-      plant.transformer = read_block(config, library, slot, section);
-    else
-      read_slot(config, library, slot, slot == Slot::measurement ? plant.measurements : plant.controls);
+    } else if (filled(plant, slot)) {
+      config.ignore(section);
+      config.problem(
+          section, fmt::format("[{}] beside {} of the grid's files", section, name_in(plant, slot)),
+          "a plant has room for one",
+          slot == Slot::transformer ? "remove it, or take measured_at out of [grid]"
+                                    : fmt::format("remove it, or write ignore_models = [\"{}\"] under [grid]",
+                                                  name_in(plant, slot)));
+    } else if (slot == Slot::transformer) {
+      plant.transformer = read_block(config, model.library, slot, section, model.standard);
+    } else {
+      read_slot(config, model.library, slot, slot == Slot::measurement ? plant.measurements : plant.controls,
+                model.standard);
+    }
   }
+  std::ranges::stable_sort(plant.controls, {}, [](const auto& b) { return b.effect->slot; });
+}
+
+/// Values before a calibration that did not hold, by effect and parameter.
+void read_submitted(Config& config, PlantModel& model) {
+  if (!config.has("submitted")) return;
+  sim::plant::Plant plant = model.plant;
+  const auto take = [&](sim::plant::Block& block) {
+    for (std::size_t i = 0; block.effect && i < block.p.size(); ++i) {
+      const auto& p = block.effect->parameters[i];
+      const std::string key = fmt::format("submitted.{}.{}", block.effect->name, p.name);
+      if (config.has(key)) block.p[i] = config.require<double>(key, {p.low, p.high, std::string(p.unit)});
+    }
+  };
+  take(plant.machine);
+  take(plant.transformer);
+  for (auto& control : plant.controls) take(control);
+  model.submitted = std::move(plant);
+  model.warnings.push_back(fmt::format("{} comes of a calibration that did not hold: its parameters are bent",
+                                       config.name().string()));
 }
 
 /// Law files of the plant: the library knows their effects from here on.
@@ -115,46 +218,37 @@ sim::Conventions read_conventions(Config& config, double hz) {
   return read;
 }
 
-/// The plant of one generator of a grid; its name there is the bus number, with "/id" where the bus has
-/// several.
-sim::plant::Plant find_plant(Config& config, const sim::grid::Grid& grid, std::int64_t bus,
-                             const std::string& id) {
-  const std::string number = std::to_string(bus);
-  std::string all;
-  for (std::size_t k = 0; k < grid.plants.size(); ++k) {
-    const auto& plant = grid.plants[k];
-    all += (all.empty() ? "" : ", ") + plant.name;
-    const bool same = plant.name == number || plant.name.starts_with(number + "/");
-    const bool alone = plant.name == number;
-    if (same && (id.empty() ? alone : plant.name == number + "/" + id)) return plant;
-    if (alone && std::ranges::any_of(grid.network.generators, [&](const sim::network::Generator& g) {
-          return g.bus == plant.bus && g.id == id && g.in_service;
-        }))
-      return plant;
-  }
-  config.problem("grid.bus", "no plant at bus " + number + (id.empty() ? "" : " with id " + id),
-                 "the grid has no such generator in service", "use one of " + all);
-  return {};
+/// Whole blocks that a replacement left to their standard values.
+void note_standard(PlantModel& model, const std::vector<std::string>& effects) {
+  for (const auto& name : effects)
+    for (const auto& p : model.library.find(name)->parameters)
+      model.standard.push_back(fmt::format("{}.{}", name, p.name));
 }
 
 void read_from_grid(Config& config, PlantModel& model) {
-  for (const char* twice : {"plant.base_mva", "machine", "exciter", "governor", "stabiliser", "limiter"})
+  for (const char* twice : {"plant.base_mva", "machine"})
     if (config.has(twice))
       config.problem(twice, std::string(twice) + " beside [grid]", "the grid's files give it already",
                      "remove one of them");
-  const fs::path raw = config.file("grid.raw"), dyr = config.file("grid.dyr");
-  const auto bus = config.require<std::int64_t>("grid.bus", {1.0});
-  const auto id = config.optional<std::string>("grid.id", "");
-  const sim::formats::DyrOptions models = sim::formats::read_dyr_options(config, "grid.");
+  sim::grid::UnitChoice choice{.raw = config.file("grid.raw"), .dyr = config.file("grid.dyr")};
+  choice.bus = static_cast<int>(config.require<std::int64_t>("grid.bus", {1.0, kMostBuses}));
+  choice.id = config.optional<std::string>("grid.id", "");
+  choice.models = sim::formats::read_dyr_options(config, "grid.");
+  if (config.has("grid.measured_at"))
+    choice.measured_at =
+        static_cast<int>(config.require<std::int64_t>("grid.measured_at", {1.0, kMostBuses}));
   if (!config.sound()) return;
-  std::optional<double> hz;  // a .raw has its own, which is compared below
-  if (raw.extension() == ".m") hz = model.conventions.frequency;
-  const sim::grid::Grid grid = sim::grid::load_grid(raw, dyr, model.conventions, models, hz);
-  if (grid.network.frequency != model.conventions.frequency)
+  choice.frequency_hz = model.conventions.frequency;
+  const sim::grid::Unit unit = sim::grid::read_unit(choice);
+  if (unit.frequency != model.conventions.frequency)
     config.problem("plant.frequency_hz",
                    fmt::format("plant.frequency_hz = {:g} Hz", model.conventions.frequency),
-                   fmt::format("the grid's .raw says {:g} Hz", grid.network.frequency), "make them agree");
-  model.plant = find_plant(config, grid, bus, id);
+                   fmt::format("the grid's .raw says {:g} Hz", unit.frequency), "make them agree");
+  model.plant = unit.plant;
+  model.bus = unit.bus;
+  model.id = unit.id;
+  note_standard(model, unit.standard);
+  model.warnings = unit.notes;
 }
 
 }  // namespace
@@ -182,9 +276,46 @@ PlantModel parse_plant_model(const std::string& text, const fs::path& file) {
   } else {
     model.plant.mva = config.require<double>("plant.base_mva", {kSmallest, 1e9, "MVA"});
     model.plant.name = model.name;
-    read_blocks(config, model.library, model.plant);
+    model.bus = static_cast<int>(config.optional<std::int64_t>("plant.bus", 0, {1.0, kMostBuses}));
+    model.id = config.optional<std::string>("plant.id", model.id);
+    const bool sound = config.sound();
+    model.plant.machine = read_block(config, model.library, Slot::machine, "machine", model.standard);
+    check_base(config, model, sound == config.sound());
   }
+  read_around(config, model);
+  if (config.sound()) check_orderings(config, model);
+  read_submitted(config, model);
   config.raise();
+  return model;
+}
+
+PlantModel as_submitted(PlantModel model) {
+  if (model.submitted) model.plant = *model.submitted;
+  return model;
+}
+
+PlantModel model_of_unit(const sim::grid::Unit& unit, sim::Conventions conventions, std::string files) {
+  PlantModel model;
+  model.origin = std::move(files);
+  model.name = fmt::format("{}{}bus {}", unit.bus_name, unit.bus_name.empty() ? "" : ", ", unit.bus);
+  model.plant = unit.plant;
+  model.plant.name = model.name;
+  model.bus = unit.bus;
+  model.id = unit.id;
+  model.conventions = conventions;
+  model.conventions.frequency = unit.frequency;
+  model.record_base.frequency = unit.frequency;
+  model.record_base.mva = unit.system_mva;
+  model.record_base.kv = unit.kv;
+  note_standard(model, unit.standard);
+  const auto settle = [&](sim::plant::Block& block) {
+    for (auto& note : settle_unlimited(block)) model.warnings.push_back(std::move(note));
+  };
+  settle(model.plant.machine);
+  for (auto& control : model.plant.controls) settle(control);
+  for (const auto& o : sim::plant::violated(model.plant.machine))
+    model.warnings.push_back(sim::plant::violation_text(model.plant.machine, o) +
+                             ": no machine is like that");
   return model;
 }
 

@@ -3,10 +3,11 @@
 // and every parameter, or one generator of a PSS/E grid.
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "sim/grid/grid.hpp"
+#include "sim/grid/unit.hpp"
 #include "sim/library/library.hpp"
 #include "sim/plant/under_test.hpp"
 #include "validate/record/record.hpp"
@@ -20,6 +21,14 @@ struct PlantModel {
   sim::Conventions conventions;
   record::RecordBase record_base;                ///< what "pu" means in the records of this plant
   std::vector<std::filesystem::path> laws = {};  ///< law files that its effects come from
+  int bus = 0;                                   ///< number in its case; 0: not given
+  std::string id = "1";                          ///< the machine's, there
+  /// Parameters ("SEXS.TE") that the file leaves to their standard values (`standard = true`).
+  std::vector<std::string> standard = {};
+  /// Of a calibration that did not hold: the plant as it was before, not bent to make up for what is missing.
+  std::optional<sim::plant::Plant> submitted = {};
+  /// What looks wrong in the file and does not refuse it, with its line.
+  std::vector<std::string> warnings = {};
   [[nodiscard]] sim::plant::PlantUnderTest under_test() const { return {plant, conventions}; }
   /// Compiled effects and those of `laws`. The plant's blocks point into it, so a plant taken out of the
   /// model must not outlive the model and its copies.
@@ -27,11 +36,18 @@ struct PlantModel {
 };
 
 /// Reads a plant file (configs/plants/README.md describes it). Every parameter of every effect must be given
-/// by name; nothing is defaulted. Throws InputError with every fault of the file: unknown keys, effects or
+/// by name; what is not is taken from the effect's standard values only where its block says
+/// `standard = true`. Throws InputError with every fault of the file: unknown keys, effects or
 /// parameters (the known ones are listed), missing ones, wrong types, values outside what is physically
 /// possible, inconsistent values.
 PlantModel load_plant_model(const std::filesystem::path& file);
 /// The same from a text; `file` stands for it in messages, and relative paths in it refer to its folder.
 PlantModel parse_plant_model(const std::string& text, const std::filesystem::path& file);
+/// The model to fit or diagnose: as it was before a calibration that did not hold, else as it is.
+PlantModel as_submitted(PlantModel model);
+/// The model of one unit of a case; `files` names them in messages. The records' base is the system's. What
+/// stands for "no limit" (999) and is beyond what is possible is brought to the bound. The warnings say that,
+/// and which orderings are violated.
+PlantModel model_of_unit(const sim::grid::Unit& unit, sim::Conventions conventions, std::string files);
 
 }  // namespace swingbank::validate::plant

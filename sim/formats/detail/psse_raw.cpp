@@ -13,6 +13,13 @@ network::Network read_raw(const std::filesystem::path& file) {
 network::Network parse_raw(const std::string& text, const std::string& name) {
   return psse::RawReader(psse::lines_of(text), name).read();
 }
+RawSurvey survey_raw(const std::filesystem::path& file, std::optional<double> frequency_hz) {
+  return psse::RawReader(psse::read_lines(file), file.string()).survey(frequency_hz);
+}
+RawSurvey parse_raw_survey(const std::string& text, const std::string& name,
+                           std::optional<double> frequency_hz) {
+  return psse::RawReader(psse::lines_of(text), name).survey(frequency_hz);
+}
 
 namespace psse {
 
@@ -41,14 +48,23 @@ const std::array<RawReader::Section, 22> RawReader::kSections = {{
     {"substation", Use::read, &RawReader::substation, 34},
 }};
 
-network::Network RawReader::read() {
+void RawReader::read_sections() {
   network_.origin = file_;
   header();
   for (const Section& s : kSections)
     if (s.since <= version_ && !left_out(s) && !section(s)) break;
+}
+network::Network RawReader::read() {
+  read_sections();
   finish();
   problems_.raise();
   return std::move(network_);
+}
+RawSurvey RawReader::survey(std::optional<double> frequency_hz) {
+  units_only_ = true;
+  frequency_hz_ = frequency_hz;
+  read_sections();
+  return {std::move(network_), std::move(generator_line_), std::move(branch_line_), problems_.list()};
 }
 
 namespace {
@@ -74,7 +90,7 @@ void RawReader::header() {
   base_ = static_cast<double>(
       f.number(1, "SBASE", 100.0L));  // the value the network holds, so that writing inverts reading
   version_ = f.integer(2, "REV");
-  const double frequency = static_cast<double>(f.number(5, "BASFRQ"));
+  const double frequency = static_cast<double>(f.number(5, "BASFRQ", frequency_hz_));
   problems_.raise();  // without these nothing below can be read
   if (version_ < 32 || version_ > 35)
     throw InputError({"version " + std::to_string(version_) + " of the .raw format", f.where(),
@@ -132,7 +148,9 @@ bool RawReader::section(const Section& section) {
       return true;
     }
     if (section.use == Use::read) (this->*section.row)(*record);
-    if (section.use == Use::refuse) {
+    generator_line_.resize(network_.generators.size(), record->line);
+    branch_line_.resize(network_.branches.size(), record->line);
+    if (section.use == Use::refuse && !units_only_) {
       problems_.add("a record in the " + name, file_ + ":" + std::to_string(record->line),
                     "this equipment is not modelled", "remove it or replace it by an equivalent load");
       while (auto rest = next()) {  // one problem per section says it all; its records may span lines

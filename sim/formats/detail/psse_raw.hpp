@@ -34,8 +34,10 @@ class RawReader {
   RawReader(std::vector<std::string> lines, std::string name)
       : file_(std::move(name)), lines_(std::move(lines)) {}
   network::Network read();
+  RawSurvey survey(std::optional<double> frequency_hz);
 
  private:
+  void read_sections();
   enum class Use { read, skip, refuse };
   struct Section {
     const char* name;
@@ -103,7 +105,9 @@ class RawReader {
   Problems problems_;
   std::map<int, int> index_;
   std::map<std::string, int> seen_;  ///< identity -> line
-  std::map<std::size_t, int> generator_line_;
+  std::vector<int> generator_line_, branch_line_;
+  bool units_only_ = false;  ///< what matters to a network alone is no fault
+  std::optional<double> frequency_hz_;
   std::set<int> stars_;  ///< indices of the star points of three-winding transformers
 };
 

@@ -43,6 +43,28 @@ TEST(FitAxis, ParametersAtOneBoundAreEqualWhereverTheyStarted) {
       EXPECT_NEAR(from(start).value(from(start).z(bound)), bound, 1e-11 * bound);
     }
 }
+/// The machine without its exciter: parameters would be bent beyond what any machine is.
+TEST(FitOrderings, BoundEveryFit) {
+  ExciterExample example(0.5);
+  example.model.plant.controls.clear();
+  const Fit f = fit(example.model.under_test(), example.events, free_parameters(example.model.plant, 0.5));
+  ASSERT_EQ(f.failed, "");
+  for (const auto& o : sim::plant::violated(f.plant.machine))
+    ADD_FAILURE() << sim::plant::violation_text(f.plant.machine, o);
+  // A model that violates one is drawn back to it.
+  sim::plant::Plant bent = example.model.plant;
+  const auto at = [&](const char* name) -> double& {
+    return bent.machine.p[static_cast<std::size_t>(bent.machine.effect->parameter_index(name))];
+  };
+  at("Xd") = 0.5;
+  at("Xdp") = 0.6;
+  const Fit back = fit({bent, example.model.conventions}, example.events, free_parameters(bent, 0.5));
+  ASSERT_EQ(back.failed, "");
+  const auto value = [&](const char* name) {
+    return back.plant.machine.p[static_cast<std::size_t>(bent.machine.effect->parameter_index(name))];
+  };
+  EXPECT_GT(value("Xd"), 0.99 * value("Xdp"));
+}
 TEST(FitEvidence, AFailedFitIsTheWorst) {
   Fit f;
   f.failed = "it cannot be run";

@@ -18,6 +18,7 @@ using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 std::string example_text() {
   std::ifstream in(test::source("configs/plants/ieee14_bus2.toml"));
@@ -140,12 +141,94 @@ TEST_F(PlantModelTest, TakesAGeneratorOfAGrid) {
   EXPECT_EQ(m.plant.machine.p, wanted->machine.p);
   EXPECT_EQ(m.plant.mva, wanted->mva);
   EXPECT_THAT(faults(replaced(text, "bus = 31", "bus = 31\nid = \"7\"")),
-              ElementsAre(AllOf(HasSubstr("no plant at bus 31 with id 7"), HasSubstr("30, 31"))));
+              ElementsAre(AllOf(HasSubstr("no generator '7' at bus 31"), HasSubstr("the ids there are 1"))));
   EXPECT_THAT(faults(replaced(text, "frequency_hz = 60.0", "frequency_hz = 50.0")),
               ElementsAre(HasSubstr("the grid's .raw says 60 Hz")));
-  EXPECT_THAT(faults(replaced(text, "bus = 31", "bus = 16")), ElementsAre(HasSubstr("no plant at bus 16")));
+  EXPECT_THAT(faults(replaced(text, "bus = 31", "bus = 16")),
+              ElementsAre(AllOf(HasSubstr("no generator at bus 16"), HasSubstr("30, 31"))));
   EXPECT_THAT(faults(replaced(text, "name = \"31\"", "name = \"31\"\nbase_mva = 10.0")),
               Contains(HasSubstr("beside [grid]")));
+}
+
+TEST_F(PlantModelTest, ControlsAreAddedAndDroppedBesideAGrid) {
+  const std::string folder = test::source("configs/networks").string();
+  const std::string text =
+      "[plant]\nname = \"31\"\nfrequency_hz = 60.0\nconventions = \"psse\"\n[record]\nbase_mva = "
+      "100.0\n[grid]\nraw = \"" +
+      folder + "/ieee39_genrou.raw\"\ndyr = \"" + folder + "/ieee39_genrou.dyr\"\nbus = 31\n";
+  const PlantModel plain = load(text);
+  const std::string sexs = "[exciter]\neffect = \"SEXS\"\nstandard = true\nK = 150.0\n";
+  const PlantModel m = load(text + sexs);
+  ASSERT_EQ(m.plant.controls.size(), plain.plant.controls.size() + 1);
+  EXPECT_EQ(m.plant.machine.p, plain.plant.machine.p);
+  EXPECT_EQ(m.standard.size(), 5u);
+  EXPECT_EQ(m.bus, 31);
+  // What stands there already is named, and how it is dropped.
+  const std::string dyr =
+      "1 'GENROU' 1 8.0 0.03 0.4 0.05 6.175 0.05 1.8 1.7 0.3 0.55 0.25 0.2 0.1 0.8 /\n"
+      "1 'SEXS' 1 0.1 10 100 0.1 -5 5 /\n1 'NONE9' 2 1 2 3 /\n";
+  const std::string raw =
+      "0, 100.0, 33, 0, 1, 60.0\n\n\n1,'A',18.0,3\n0\n0\n0\n1,'1',0,0,9,-9,1.0,0,250\n0\n0\n0\nQ\n";
+  const auto scratch = file_.parent_path() / file_.stem();
+  write_file(scratch / "one.raw", raw);
+  write_file(scratch / "one.dyr", dyr);
+  const std::string own =
+      "[plant]\nname = \"1\"\nfrequency_hz = 60.0\nconventions = \"psse\"\n[record]\nbase_mva = 100.0\n"
+      "[grid]\nraw = \"" +
+      (scratch / "one.raw").string() + "\"\ndyr = \"" + (scratch / "one.dyr").string() + "\"\nbus = 1\n";
+  EXPECT_THAT(faults(own + sexs), ElementsAre(AllOf(HasSubstr("[exciter] beside SEXS"),
+                                                    HasSubstr("ignore_models = [\"SEXS\"]"))));
+  const PlantModel other = load(own + "ignore_models = [\"SEXS\"]\n" + sexs);
+  std::filesystem::remove_all(scratch);
+  ASSERT_EQ(other.plant.controls.size(), 1u);
+  EXPECT_EQ(other.plant.controls[0].p.at(2), 150.0);
+  EXPECT_EQ(other.plant.mva, 250.0);
+}
+TEST_F(PlantModelTest, DataOnTheSystemsBaseAreRecognised) {
+  const auto on_system = [](std::string text, const char* h, const char* xd) {
+    text = replaced(std::move(text), "H = 6.54", std::string("H = ") + h);
+    return replaced(std::move(text), "Xd = 1.8", std::string("Xd = ") + xd);
+  };
+  EXPECT_THAT(faults(on_system(example(), "500", "0.02")),
+              Contains(AllOf(HasSubstr("H = 500 s and Xd = 0.02 pu"), HasSubstr("on the system's base?"),
+                             HasSubstr("set base_mva to the machine's own, say 10000"))));
+  EXPECT_THAT(faults(replaced(example(), "H = 6.54", "H = 654")),
+              ElementsAre(Not(HasSubstr("system's base"))))
+      << "one slip is no other base";
+  // Within the bounds it is a warning.
+  const PlantModel m = load(on_system(example(), "19", "0.45"));
+  EXPECT_THAT(m.warnings, Contains(AllOf(HasSubstr("H = 19 s"), HasSubstr("toml:20"))));
+  EXPECT_TRUE(load(example()).warnings.empty());
+}
+TEST_F(PlantModelTest, OrderingsThatNoMachineViolatesAreWarnedOfWithTheirLine) {
+  const PlantModel m = load(replaced(example(), "Xd = 1.8", "Xd = 0.35"));
+  EXPECT_THAT(m.warnings,
+              ElementsAre(AllOf(HasSubstr("Xd = 0.35 pu is not above X'd = 0.4 pu"), HasSubstr(".toml:22"))));
+}
+TEST_F(PlantModelTest, ABentModelKnowsWhatWasSubmitted) {
+  const PlantModel before = load(example());
+  PlantModel bent = before;
+  bent.plant.machine.p[4] = 3.5;  // H
+  bent.submitted = before.plant;
+  const PlantModel back = load(plant_text(bent, {}));
+  EXPECT_EQ(back.plant.machine.p[4], 3.5);
+  ASSERT_TRUE(back.submitted.has_value());
+  EXPECT_EQ(difference(as_submitted(back), before), "");
+  EXPECT_THAT(back.warnings, Contains(HasSubstr("did not hold")));
+}
+TEST_F(PlantModelTest, StandardValuesAreTakenWhereTheBlockSaysSo) {
+  const std::string block = "\n[exciter]\neffect = \"SEXS\"\nK = 150.0\n";
+  EXPECT_THAT(faults(example() + block), Contains(HasSubstr("exciter.TE")));
+  const PlantModel m = load(example() + block + "standard = true\n");
+  const auto& sexs = m.plant.controls.at(0);
+  const auto standard = sexs.effect->standard_parameters();
+  for (std::size_t i = 0; i < sexs.p.size(); ++i)
+    EXPECT_EQ(sexs.p[i], sexs.effect->parameters[i].name == "K" ? 150.0 : standard[i]);
+  EXPECT_THAT(m.standard, ::testing::UnorderedElementsAre("SEXS.TAoverTB", "SEXS.TB", "SEXS.TE", "SEXS.EMIN",
+                                                          "SEXS.EMAX"));
+  const std::string written = plant_text(m, {});
+  EXPECT_THAT(written, AllOf(HasSubstr("standard = true"), HasSubstr("\n# TE = "), HasSubstr("\nK = 150.0")));
+  EXPECT_EQ(load(written).standard, m.standard);
 }
 
 }  // namespace

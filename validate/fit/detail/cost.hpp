@@ -4,8 +4,10 @@
 #include <ceres/ceres.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "sim/plant/orderings.hpp"
 #include "validate/fit/detail/states.hpp"
 #include "validate/fit/fit.hpp"
 #include "validate/playin/can_run.hpp"
@@ -58,6 +60,7 @@ struct Setting {
   double tolerance;
   InputKind input;
   std::vector<std::vector<double>> knots;  ///< of the input, per event [s]
+  bool can_exist = false;  ///< the plant to start from; the search then stays among such plants
 };
 
 inline sim::plant::Plant moved(const Setting& s, const double* z) {
@@ -149,7 +152,7 @@ class EventCost : public ceres::CostFunction {
   /// where asked. Empty where the plant cannot be run.
   [[nodiscard]] event::RowMatrix values(const double* z, const double* state, bool slopes) const {
     const sim::plant::Plant plant = moved(setting_, z);
-    if (!playin::can_run(plant)) return {};
+    if (!(setting_.can_exist ? playin::can_exist(plant) : playin::can_run(plant))) return {};
     std::vector<playin::Direction> along;
     if (slopes) {
       for (std::size_t i = 0; i < setting_.axes.size(); ++i) {
@@ -254,6 +257,65 @@ class Belief : public ceres::CostFunction {
  private:
   std::vector<double> spread_;
   const double* discrepancy_;
+};
+
+/// Keeps the physical orderings of a machine's parameters (Xd > X'd > ...): a wall that rises from kMargin
+/// before two of them are equal. A start that stands nearer begins at the wall's foot, one that violates an
+/// ordering is drawn back to it.
+class Walls : public ceres::CostFunction {
+ public:
+  Walls(const Setting& setting, const double* discrepancy) : setting_(setting), discrepancy_(discrepancy) {
+    const sim::plant::Block& machine = setting.plant->machine;
+    for (const auto& o : sim::plant::orderings(machine)) {
+      const Wall wall{{o.greater, o.smaller},
+                      {axis_of(o.greater), axis_of(o.smaller)},
+                      std::clamp(gap(machine, o), 0.0, kMargin)};
+      if (wall.axes[0] >= 0 || wall.axes[1] >= 0) walls_.push_back(wall);
+    }
+    set_num_residuals(static_cast<int>(walls_.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(setting.axes.size()));
+  }
+  [[nodiscard]] bool empty() const { return walls_.empty(); }
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    const std::size_t n = setting_.axes.size();
+    const sim::plant::Plant plant = moved(setting_, blocks[0]);
+    const double weight = std::sqrt(*discrepancy_) / kSteepness;
+    for (std::size_t w = 0; w < walls_.size(); ++w) {
+      const Wall& wall = walls_[w];
+      const double beyond = wall.foot - gap(plant.machine, {wall.parameters[0], wall.parameters[1]});
+      residuals[w] = beyond > 0 ? weight * beyond : 0.0;
+      if (!jacobians || !jacobians[0]) continue;
+      double* row = jacobians[0] + w * n;
+      std::fill(row, row + n, 0.0);
+      for (std::size_t side = 0; beyond > 0 && side < 2; ++side) {
+        if (wall.axes[side] < 0) continue;
+        const auto at = static_cast<std::size_t>(wall.axes[side]);
+        const double value = plant.machine.p[static_cast<std::size_t>(wall.parameters[side])];
+        row[at] = (side == 0 ? -1.0 : 1.0) * weight * setting_.axes[at].slope(blocks[0][at]) / value;
+      }
+    }
+    return true;
+  }
+
+ private:
+  static constexpr double kMargin = 0.01;      ///< of ln(greater / smaller)
+  static constexpr double kSteepness = 0.001;  ///< of the same: one unit of misfit
+  struct Wall {
+    std::array<int, 2> parameters, axes;  ///< greater, smaller; an axis is -1 where the parameter stands
+    double foot;
+  };
+  static double gap(const sim::plant::Block& b, const sim::plant::Ordering& o) {
+    return std::log(b.p[static_cast<std::size_t>(o.greater)] / b.p[static_cast<std::size_t>(o.smaller)]);
+  }
+  [[nodiscard]] int axis_of(int parameter) const {
+    for (std::size_t i = 0; i < setting_.axes.size(); ++i)
+      if (setting_.axes[i].where.id == sim::plant::ParameterId{sim::plant::kMachineBlock, parameter})
+        return static_cast<int>(i);
+    return -1;
+  }
+  const Setting& setting_;
+  const double* discrepancy_;
+  std::vector<Wall> walls_;
 };
 
 }  // namespace swingbank::validate::fit::fitting

@@ -1,0 +1,83 @@
+// swingbank plant: one unit of a PSS/E case as a plant file, read from its own records alone.
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "base/write_file.hpp"
+#include "jobs/command_line.hpp"
+#include "validate/plant/plant_file.hpp"
+
+namespace {
+
+using namespace swingbank;
+using namespace swingbank::validate;
+
+struct Arguments {
+  sim::grid::UnitChoice unit;
+  std::filesystem::path out;
+  std::vector<std::string> replace;
+  std::string conventions = "psse";
+  int measured_at = 0;
+};
+
+int run(Arguments& a) {
+  Problems problems;
+  for (const auto& text : a.replace)
+    sim::formats::add_model_map(a.unit.models, text, "--replace " + text, problems);
+  problems.raise();
+  if (a.measured_at > 0) a.unit.measured_at = a.measured_at;
+  const sim::grid::Unit unit = sim::grid::read_unit(a.unit);
+  const std::string files = a.unit.raw.string() + " and " + a.unit.dyr.string();
+  const plant::PlantModel model = plant::model_of_unit(
+      unit, a.conventions == "andes" ? sim::Conventions::andes() : sim::Conventions::psse(), files);
+  std::vector<std::string> head = {fmt::format("Unit '{}' at bus {} of {} and {}", unit.id, unit.bus,
+                                               a.unit.raw.filename().string(),
+                                               a.unit.dyr.filename().string())};
+  for (const auto* notes : {&unit.notes, &model.warnings})
+    for (const auto& note : *notes) {
+      fmt::print(stderr, "note: {}\n", note);
+      head.push_back(note);
+    }
+  if (a.out.empty()) {
+    fmt::print("{}", plant::plant_text(model, head));
+    return 0;
+  }
+  plant::write_plant_file(a.out, model, head);
+  fmt::print("wrote {}\n", a.out.string());
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank plant");
+  Arguments a;
+  line.add("--raw", a.unit.raw, "network, PSS/E .raw version 32 to 35 or MATPOWER .m").required();
+  line.add("--dyr", a.unit.dyr, "dynamic models, PSS/E .dyr").required();
+  line.add("--bus", a.unit.bus, "number of the unit's bus").required().positive();
+  line.add("--id", a.unit.id, "the unit's id, where the bus has several");
+  line.add("--out", a.out, "plant file to write (default: to the terminal)");
+  line.add("--drop", a.unit.models.ignore, "model of the unit to leave out; may be repeated")
+      .one_value_a_mention();
+  line.add("--replace", a.replace,
+           "OLD=NEW: a model of the unit read as another: with its values where both have as many "
+           "parameters, else with the other's standard values; may be repeated")
+      .one_value_a_mention();
+  line.add("--measured-at", a.measured_at,
+           "bus beyond the unit's transformer, where the records were taken: the transformer becomes part "
+           "of the plant")
+      .positive();
+  line.add("--conventions", a.conventions,
+           "psse: governors set power; andes: torque; neither has speed in the stator voltage")
+      .one_of({"psse", "andes"})
+      .shows_default();
+  line.add("--frequency-hz", a.unit.frequency_hz, "nominal frequency [Hz], where the network has none");
+  line.footer("Only the unit's own records are read: what is wrong with others is of no concern.");
+  if (!line.parse(argc, argv)) return line.end();
+  try {
+    return run(a);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,318 @@
+#include "sim/grid/unit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "sim/formats/matpower.hpp"
+#include "sim/grid/detail/dyr_models.hpp"
+#include "sim/library/library.hpp"
+
+namespace swingbank::sim::grid {
+namespace {
+
+std::string capitals(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return text;
+}
+std::string name_of(const formats::DyrRecord& r) { return r.user.empty() ? r.model : r.user; }
+
+class UnitReader {
+ public:
+  explicit UnitReader(const UnitChoice& choice) : choice_(choice) {
+    if (choice.raw.extension() == ".m")
+      survey_.network = formats::read_network(choice.raw, choice.frequency_hz);
+    else
+      survey_ = formats::survey_raw(choice.raw, choice.frequency_hz);
+    survey_.network.origin = choice.raw.string();
+    dynamics_ = formats::survey_dyr(choice.dyr);
+  }
+  Unit read() {
+    find_generator();
+    problems_.raise();
+    describe();
+    read_models();
+    if (choice_.measured_at)
+      read_transformer(*choice_.measured_at);
+    else
+      tell_transformer();
+    problems_.raise();
+    return std::move(unit_);
+  }
+
+ private:
+  [[nodiscard]] const network::Network& net() const { return survey_.network; }
+  [[nodiscard]] const network::Bus& bus_at(int index) const {
+    return net().buses[static_cast<std::size_t>(index)];
+  }
+  [[nodiscard]] const network::Generator& generator() const {
+    return net().generators[static_cast<std::size_t>(generator_)];
+  }
+  [[nodiscard]] std::string line_of(const std::vector<int>& lines, std::size_t i) const {
+    return net().origin + (i < lines.size() ? ":" + std::to_string(lines[i]) : "");
+  }
+  /// What is wrong on these lines of the .raw.
+  void faults_of(int first, int count) {
+    for (const Problem& p : survey_.faults)
+      for (int line = first; line < first + count; ++line)
+        if (p.where == net().origin + ":" + std::to_string(line))
+          problems_.add(p.what, p.where, p.why, p.remedy);
+  }
+
+  void find_generator() {
+    const int bus = net().bus_index(choice_.bus);
+    if (bus < 0)
+      return problems_.add(fmt::format("no bus {}", choice_.bus), net().origin, "the bus section has none",
+                           "correct the bus number");
+    std::vector<std::size_t> units, running;
+    std::string ids;
+    for (std::size_t i = 0; i < net().generators.size(); ++i) {
+      const auto& g = net().generators[i];
+      if (g.bus != bus) continue;
+      ids += (ids.empty() ? "" : ", ") + g.id;
+      if (!choice_.id.empty() && g.id != choice_.id) continue;
+      units.push_back(i);
+      if (g.in_service) running.push_back(i);
+    }
+    if (units.empty())
+      return problems_.add(fmt::format("no generator{} at bus {}",
+                                       choice_.id.empty() ? "" : " '" + choice_.id + "'", choice_.bus),
+                           net().origin,
+                           ids.empty() ? "the nearest buses with generators are " + generator_buses()
+                                       : "the ids there are " + ids,
+                           "correct bus and id");
+    if (units.size() > 1 && running.size() != 1)
+      return problems_.add(fmt::format("{} generators at bus {}", units.size(), choice_.bus), net().origin,
+                           "their ids are " + ids, "say which one with its id");
+    const std::size_t at = units.size() == 1 ? units[0] : running[0];
+    generator_ = static_cast<int>(at);
+    if (at < survey_.generator_line.size()) faults_of(survey_.generator_line[at], 1);
+  }
+  /// Some buses with generators, those with the nearest numbers.
+  [[nodiscard]] std::string generator_buses() const {
+    std::set<std::pair<int, int>> near;
+    for (const auto& g : net().generators) {
+      const int number = bus_at(g.bus).number;
+      near.emplace(std::abs(number - choice_.bus), number);
+    }
+    std::string text;
+    constexpr std::size_t shown = 8;
+    for (const auto& [apart, number] : near) {
+      if (static_cast<std::size_t>(std::ranges::count(text, ',')) + 1 >= shown) return text + ", ...";
+      text += (text.empty() ? "" : ", ") + std::to_string(number);
+    }
+    return text;
+  }
+
+  void describe() {
+    const network::Generator& g = generator();
+    const network::Bus& bus = bus_at(g.bus);
+    unit_.bus = choice_.bus;
+    unit_.id = g.id;
+    unit_.bus_name = bus.name;
+    unit_.kv = bus.kv;
+    unit_.frequency = net().frequency;
+    unit_.system_mva = net().base_mva;
+    unit_.plant.name = std::to_string(choice_.bus);
+    unit_.plant.mva = g.mva;
+    unit_.plant.transformer = transformer_of(g);
+    if (!g.in_service) unit_.notes.push_back("the generator is out of service in " + net().origin);
+  }
+
+  void read_models() {
+    for (const auto& record : dynamics_.records) {
+      if (record.bus != unit_.bus || record.id != unit_.id) continue;
+      const auto [own, reach] = effect_of_dyr(record);
+      if (own && own->slot == Slot::load) continue;  // a load of this id at the same bus
+      found_.insert(name_of(record));
+      if (record.model != name_of(record)) found_.insert(record.model);
+      if (!dropped(record)) read_model(record);
+    }
+    check_options();
+    if (!unit_.plant.machine.effect && problems_.empty())
+      problems_.add(fmt::format("no machine model for generator '{}' at bus {}", unit_.id, unit_.bus),
+                    choice_.dyr.string(), lost_text(),
+                    "add a record with one of " + machine_names() + ", or choose another unit");
+    sort_controls(unit_.plant);
+  }
+  /// Why a record may have been lost.
+  [[nodiscard]] std::string lost_text() const {
+    if (dynamics_.faults.empty()) return "it has no record that makes a machine";
+    return "it has no record that makes a machine; the file has a fault: " + dynamics_.faults[0].sentence();
+  }
+  bool dropped(const formats::DyrRecord& record) {
+    for (const auto& name : choice_.models.ignore)
+      if (capitals(name) == record.model || capitals(name) == record.user) {
+        unit_.notes.push_back(fmt::format("{} of line {} left out, as asked", name_of(record), record.line));
+        return true;
+      }
+    return false;
+  }
+  [[nodiscard]] const std::string* replacement(const formats::DyrRecord& record) const {
+    for (const auto& [from, to] : choice_.models.map)
+      if (capitals(from) == record.model || capitals(from) == record.user) return &to;
+    return nullptr;
+  }
+  void read_model(formats::DyrRecord record) {
+    const std::string where = choice_.dyr.string() + ":" + std::to_string(record.line);
+    const std::string given = name_of(record);
+    const std::string* other = replacement(record);
+    if (other) {
+      record.model = capitals(*other);
+      record.user.clear();
+    }
+    const auto [effect, reach] = effect_of_dyr(record);
+    if (!effect)
+      return problems_.add(
+          fmt::format("unknown model '{}' of unit '{}' at bus {}", name_of(record), unit_.id, unit_.bus),
+          where, "available are " + dyr_names(),
+          fmt::format("leave it out with --drop {0}, or let another stand for it with --replace {0}=OTHER "
+                      "(under [grid] of a plant file: ignore_models, map_models)",
+                      given));
+    plant::Block block;
+    record = plain(record, *effect);
+    if (other && record.values.size() != effect->dyr_columns.size()) {
+      block = {effect, effect->standard_parameters()};
+      unit_.standard.emplace_back(effect->name);
+      unit_.notes.push_back(fmt::format(
+          "{} of line {} replaced by {} with its standard values: {} parameters are not the {} of {}", given,
+          record.line, effect->dyr_name, record.values.size(), effect->dyr_columns.size(), effect->dyr_name));
+    } else {
+      problems_.add(record.faults);
+      if (!record.faults.empty() || !complete(*effect, record, where, problems_)) return;
+      block = values_of(*effect, record);
+      if (other)
+        unit_.notes.push_back(
+            fmt::format("{} of line {} read as {}, with its values", given, record.line, effect->dyr_name));
+    }
+    take_from_raw(block, generator());
+    std::string warning = place(unit_.plant, std::move(block), {generator(), net().origin}, where, problems_);
+    if (!warning.empty()) unit_.notes.push_back(std::move(warning));
+  }
+  /// A name that the unit does not have is a slip if the file has it nowhere.
+  void check_options() {
+    std::set<std::string> all;
+    for (const auto& r : dynamics_.records) all.insert({r.model, name_of(r)});
+    std::vector<std::string> asked = choice_.models.ignore;
+    for (const auto& [from, to] : choice_.models.map) asked.push_back(from);
+    for (const auto& name : asked) {
+      if (found_.contains(capitals(name))) continue;
+      if (all.contains(capitals(name)))
+        unit_.notes.push_back("this unit has no record of " + capitals(name));
+      else
+        problems_.add("no model " + name + " to drop or replace", choice_.dyr.string(),
+                      found_.empty() ? "the unit has no records"
+                                     : fmt::format("the unit has {}", fmt::join(found_, ", ")),
+                      "correct the name or drop the option");
+    }
+  }
+
+  /// Transformers in service between the unit's bus and others.
+  [[nodiscard]] std::vector<std::size_t> transformers() const {
+    std::vector<std::size_t> list;
+    for (std::size_t i = 0; i < net().branches.size(); ++i) {
+      const auto& b = net().branches[i];
+      if (b.transformer && b.in_service && (b.from == generator().bus || b.to == generator().bus))
+        list.push_back(i);
+    }
+    return list;
+  }
+  [[nodiscard]] int far_end(std::size_t branch) const {
+    const auto& b = net().branches[branch];
+    return bus_at(b.from == generator().bus ? b.to : b.from).number;
+  }
+  void tell_transformer() {
+    const auto list = transformers();
+    if (list.size() != 1) return;
+    unit_.notes.push_back(
+        fmt::format("a transformer joins bus {} to bus {}; the model ends at bus {}: for records from bus {} "
+                    "give --measured-at {} (under [grid] of a plant file: measured_at)",
+                    unit_.bus, far_end(list[0]), unit_.bus, far_end(list[0]), far_end(list[0])));
+  }
+  void read_transformer(int measured_at) {
+    if (measured_at == unit_.bus) return;
+    std::vector<std::size_t> between;
+    std::string ends;
+    for (const std::size_t i : transformers()) {
+      if (far_end(i) == measured_at) between.push_back(i);
+      ends += (ends.empty() ? "" : ", ") + std::to_string(far_end(i));
+    }
+    if (between.size() != 1)
+      return problems_.add(
+          fmt::format("{} transformers between bus {} and bus {}", between.size(), unit_.bus, measured_at),
+          net().origin,
+          ends.empty() ? "no transformer stands at the unit's bus"
+                       : "those at the unit's bus lead to " + ends,
+          "give a bus behind one transformer, or take the records at the unit's own bus");
+    const std::size_t at = between[0];
+    if (at < survey_.branch_line.size()) faults_of(survey_.branch_line[at], kTransformerLines);
+    neighbours(measured_at);
+    add_transformer(net().branches[at], line_of(survey_.branch_line, at));
+    unit_.kv = bus_at(net().bus_index(measured_at)).kv;
+  }
+  /// What else stands at the machine's bus flows through the transformer too.
+  void neighbours(int measured_at) {
+    const int bus = generator().bus;
+    for (std::size_t i = 0; i < net().generators.size(); ++i) {
+      const auto& g = net().generators[i];
+      if (g.bus == bus && g.in_service && static_cast<int>(i) != generator_)
+        problems_.add(fmt::format("generator '{}' at bus {} too", g.id, unit_.bus),
+                      line_of(survey_.generator_line, i),
+                      fmt::format("what is measured at bus {} is the current of both", measured_at),
+                      "take the records at the unit's own bus");
+    }
+    for (const auto& l : net().loads)
+      if (l.bus == bus)
+        unit_.notes.push_back(
+            fmt::format("load '{}' at bus {} is part of what is measured at bus {}; the model "
+                        "has none",
+                        l.id, unit_.bus, measured_at));
+    for (const auto& s : net().shunts)
+      if (s.bus == bus)
+        unit_.notes.push_back(
+            fmt::format("shunt '{}' at bus {} is part of what is measured at bus {}; the "
+                        "model has none",
+                        s.id, unit_.bus, measured_at));
+  }
+  /// A branch is an ideal ratio tap:1 at its `from` side, then the impedance. STEPUP has the impedance on the
+  /// machine's side, on the machine's base.
+  void add_transformer(const network::Branch& b, const std::string& where) {
+    const bool machine_first = b.from == generator().bus;
+    const double to_machine = machine_first ? b.tap * b.tap : 1.0;
+    const double scale = to_machine * unit_.plant.mva / net().base_mva;
+    plant::Block& block = unit_.plant.transformer;
+    if (!block.effect) {
+      block = {library::compiled().find("STEPUP"), {}};
+      block.p = block.effect->standard_parameters();
+      at(block, "R") = at(block, "X") = 0.0;
+    }
+    at(block, "R") += b.r * scale;
+    at(block, "X") += b.x * scale;
+    at(block, "ratio") = machine_first ? 1.0 / b.tap : b.tap;
+    if (b.shunt_from != Complex{})
+      unit_.notes.push_back("the transformer's magnetising current is left out (" + where + ")");
+    unit_.notes.push_back("the transformer is that of " + where);
+    block.effect->check(nullptr, block.p.data(), where, problems_);
+  }
+  static double& at(plant::Block& block, const char* name) {
+    return block.p[static_cast<std::size_t>(block.effect->parameter_index(name))];
+  }
+
+  static constexpr int kTransformerLines = 4;
+  const UnitChoice& choice_;
+  formats::RawSurvey survey_;
+  formats::DyrSurvey dynamics_;
+  int generator_ = -1;
+  Unit unit_;
+  std::set<std::string> found_;  ///< models of the unit
+  Problems problems_;
+};
+
+}  // namespace
+
+Unit read_unit(const UnitChoice& choice) { return UnitReader(choice).read(); }
+
+}  // namespace swingbank::sim::grid

@@ -1,0 +1,48 @@
+#pragma once
+// One unit of a case: the records of one generator alone, whatever is wrong with the rest; and such a unit as
+// .dyr records again.
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/formats/psse.hpp"
+#include "sim/plant/plant.hpp"
+
+namespace swingbank::sim::grid {
+
+/// Which unit of which files, and what to do with its records.
+struct UnitChoice {
+  std::filesystem::path raw, dyr;
+  int bus = 0;
+  std::string id = {};                      ///< may be empty where the bus has one unit in service
+  std::optional<double> frequency_hz = {};  ///< where the network's file does not hold it
+  /// Models of the unit to leave out, and to read as others: of as many parameters with their values, else
+  /// with the other's standard values.
+  formats::DyrOptions models = {};
+  std::optional<int> measured_at = {};  ///< a bus beyond the unit's transformer, where its records were taken
+};
+
+/// The unit's plant, without a network: `bus` and `generator` of it are -1.
+struct Unit {
+  plant::Plant plant;
+  int bus = 0;
+  std::string id, bus_name;
+  double frequency = 60.0, system_mva = 100.0;
+  double kv = 0.0;                    ///< nominal voltage where it is measured [kV]; 0: not given
+  std::vector<std::string> standard;  ///< names of effects that have their standard values
+  std::vector<std::string> notes;     ///< what was taken how, and what was not
+};
+
+/// Throws InputError with what is wrong with the records of this unit alone: an unknown bus or unit, unknown
+/// models, wrong column counts, inconsistent values, each with its line.
+Unit read_unit(const UnitChoice& choice);
+
+/// The records of the plant's machine and controls. What a .dyr does not hold (a law, a value without a
+/// column) becomes a problem; what the .raw holds is told in comments; instruments and moved references,
+/// which belong to a record, are left out.
+std::string unit_dyr(const plant::Plant& plant, int bus, const std::string& id, const std::string& where,
+                     Problems& problems);
+
+}  // namespace swingbank::sim::grid

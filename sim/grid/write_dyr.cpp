@@ -1,0 +1,131 @@
+// Plants as records of a .dyr: of a whole grid, or of one unit.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/durable.hpp"
+#include "sim/formats/psse_text.hpp"
+#include "sim/grid/detail/dyr_models.hpp"
+#include "sim/grid/load_choice.hpp"
+#include "sim/grid/unit.hpp"
+
+namespace swingbank::sim::grid {
+namespace {
+
+/// One record of a .dyr; `owner`: "generator 30" or "load 8", `id`: its id in the .raw; `raw`: the block with
+/// what the .raw says of it.
+std::string dyr_record(const plant::Block& block, const std::string& owner, int bus, const std::string& id,
+                       const std::string& file, Problems& problems, const plant::Block* raw = nullptr) {
+  const Effect& effect = *block.effect;
+  const std::string where = file + ", " + owner;
+  if (effect.dyr_name.empty()) {
+    problems.add("model " + std::string(effect.name), where, "it has no form in a .dyr",
+                 "remove it before writing");
+    return {};
+  }
+  const auto standard = effect.standard_parameters();
+  for (int i = 0; i < static_cast<int>(block.p.size()); ++i) {
+    if (i == effect.raw_resistance || i == effect.raw_reactance || std::ranges::count(effect.dyr_columns, i))
+      continue;
+    const auto at = static_cast<std::size_t>(i);
+    const Parameter& parameter = effect.parameters[at];
+    if (raw && raw->p[at] == block.p[at]) continue;
+    const double dropped = raw                             ? raw->p[at]
+                           : std::isnan(parameter.neutral) ? standard[at]
+                                                           : parameter.neutral;
+    if (block.p[at] != dropped)
+      problems.add(std::string(parameter.symbol) + " = " + formats::psse::shortest(block.p[at]) + " " +
+                       std::string(parameter.unit) + " of " + std::string(effect.name),
+                   where, raw ? "PSS/E takes it from the .raw" : "a .dyr has no column for it",
+                   "set it to " + formats::psse::shortest(dropped) + " " + std::string(parameter.unit));
+  }
+  std::string text = std::to_string(bus) + " " + formats::psse::quote(std::string(effect.dyr_name)) + " " +
+                     formats::psse::quote(id);
+  for (const int column : effect.dyr_columns)
+    text += " " + formats::psse::shortest(block.p[static_cast<std::size_t>(column)]);
+  return text + " /\n";
+}
+
+std::string plant_record(const Grid& grid, const plant::Plant& plant, const plant::Block& block,
+                         const std::string& file, Problems& problems) {
+  const Effect& effect = *block.effect;
+  const network::Generator& g = grid.network.generators[static_cast<std::size_t>(plant.generator)];
+  const auto in_raw = [&](int index, double value, const char* field) {
+    if (index >= 0 && block.p[static_cast<std::size_t>(index)] != value)
+      problems.add(std::string(effect.parameters[static_cast<std::size_t>(index)].symbol) + " = " +
+                       formats::psse::shortest(block.p[static_cast<std::size_t>(index)]) + " pu",
+                   file + ", generator " + plant.name,
+                   "the network has " + std::string(field) + " = " + formats::psse::shortest(value) +
+                       " pu, and PSS/E keeps it in the .raw",
+                   "set it in the network too");
+  };
+  in_raw(effect.raw_resistance, g.zr, "ZR");
+  in_raw(effect.raw_reactance, g.zx, "ZX");
+  return dyr_record(block, "generator " + plant.name,
+                    grid.network.buses[static_cast<std::size_t>(plant.bus)].number, g.id, file, problems);
+}
+
+/// A step-up transformer stands in the .raw, or nowhere.
+void write_transformer(const Grid& grid, const plant::Plant& plant, const std::string& file,
+                       Problems& problems) {
+  const network::Generator& g = grid.network.generators[static_cast<std::size_t>(plant.generator)];
+  const plant::Block raw = transformer_of(g);
+  if (plant.transformer.effect == raw.effect && plant.transformer.p == raw.p) return;
+  problems.add("a step-up transformer that is not the network's", file + ", generator " + plant.name,
+               "PSS/E keeps it in the .raw (RT, XT), a .dyr has no form of it",
+               "set the generator's RT and XT in the network, or remove it before writing");
+}
+
+/// Instruments and moved references belong to a record of an event, not to a plant's model.
+bool belongs_to_event(Slot slot) { return slot == Slot::measurement || slot == Slot::setpoint; }
+
+}  // namespace
+
+void write_dyr(const Grid& grid, const std::filesystem::path& file) {
+  Problems problems;
+  std::string text;
+  for (const plant::Plant& plant : grid.plants) {
+    text += plant_record(grid, plant, plant.machine, file.string(), problems);
+    write_transformer(grid, plant, file.string(), problems);
+    for (const plant::Block& control : plant.controls)
+      text += plant_record(grid, plant, control, file.string(), problems);
+  }
+  for (const plant::Consumer& load : grid.loads) {
+    const network::Load& l = grid.network.loads[static_cast<std::size_t>(load.load)];
+    plant::Block raw{load.block.effect, load.block.effect->standard_parameters()};
+    if (is_composed(*raw.effect)) compose(grid, load.load, raw, file.string(), problems);
+    text += dyr_record(load.block, "load " + load.name,
+                       grid.network.buses[static_cast<std::size_t>(load.bus)].number, l.id, file.string(),
+                       problems, is_composed(*raw.effect) ? &raw : nullptr);
+  }
+  problems.raise();
+  write_text(file, text);
+}
+
+std::string unit_dyr(const plant::Plant& plant, int bus, const std::string& id, const std::string& where,
+                     Problems& problems) {
+  using formats::psse::shortest;
+  const auto raw = [&](int index) {
+    return index < 0 ? std::string() : shortest(plant.machine.p[static_cast<std::size_t>(index)]);
+  };
+  const Effect& machine = *plant.machine.effect;
+  std::string text = fmt::format("// The .raw holds of this generator: MBASE = {} MVA", shortest(plant.mva));
+  if (machine.raw_resistance >= 0) text += ", ZR = " + raw(machine.raw_resistance);
+  if (machine.raw_reactance >= 0) text += ", ZX = " + raw(machine.raw_reactance);
+  text += "\n";
+  if (plant.transformer.effect) {
+    text += "// The .raw holds the step-up transformer, on MBASE:";
+    for (std::size_t i = 0; i < plant.transformer.p.size(); ++i)
+      text += fmt::format(" {} = {}", plant.transformer.effect->parameters[i].name,
+                          shortest(plant.transformer.p[i]));
+    text += "\n";
+  }
+  text += dyr_record(plant.machine, "machine", bus, id, where, problems);
+  for (const plant::Block& control : plant.controls)
+    if (!belongs_to_event(control.effect->slot))
+      text += dyr_record(control, std::string(slot_name(control.effect->slot)), bus, id, where, problems);
+  return text;
+}
+
+}  // namespace swingbank::sim::grid

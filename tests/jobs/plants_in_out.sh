@@ -1,0 +1,91 @@
+#!/usr/bin/env bash
+# swingbank inventory, plant and export: a unit out of its case and back as records, and cases of others where they lie
+# beside $SWINGBANK_REFERENCE.
+source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+
+networks=$SWINGBANK_SOURCE/configs/networks
+raw=$networks/ieee39_genrou.raw dyr=$networks/ieee39_genrou.dyr
+
+# Out, back, out again: the same file.
+"$swingbank" plant --raw "$raw" --dyr "$dyr" --bus 32 --out "$work/plant.toml" >"$work/said"
+grep -q "^wrote $work/plant.toml" "$work/said" || fail "plant says: $(cat "$work/said")"
+"$swingbank" export --dyr "$work/plant.toml" --out "$work/plant.dyr" >/dev/null
+"$swingbank" plant --raw "$raw" --dyr "$work/plant.dyr" --bus 32 >"$work/again.toml" 2>/dev/null
+cmp <(grep -v '^#' "$work/plant.toml") <(grep -v '^#' "$work/again.toml") || fail "the plant is another after the way out and in"
+"$swingbank" plant --raw "$raw" --dyr "$dyr" --bus 32 2>/dev/null | cmp - "$work/plant.toml" || fail "--out writes something else than is printed"
+cmp <("$swingbank" export --dyr "$work/plant.toml") "$work/plant.dyr" || fail "export --out writes something else than is printed"
+"$swingbank" export --dyr "$work/plant.toml" --bus 7 --id B | grep -q "^7 'GENROU' 'B' " || fail "export --bus --id"
+
+# Unknown records of others do not matter; its own are named with their line, and dropped or replaced.
+{
+  cat "$dyr"
+  echo "30 'STRANGE' 1 1 2 3 /"
+  echo "32 'ESAC9Z' 1 1 2 3 /"
+} >"$work/more.dyr"
+line=$(wc -l <"$work/more.dyr")
+refuses "its own unknown model" "unknown model 'ESAC9Z' .*more.dyr:$line .*--drop ESAC9Z" \
+  "$swingbank" plant --raw "$raw" --dyr "$work/more.dyr" --bus 32
+grep -q STRANGE "$work/stderr" && fail "another unit's model was named"
+"$swingbank" plant --raw "$raw" --dyr "$work/more.dyr" --bus 32 --drop ESAC9Z >"$work/dropped.toml" 2>"$work/notes"
+grep -q "ESAC9Z of line $line left out" "$work/notes" || fail "it does not say what was dropped: $(cat "$work/notes")"
+"$swingbank" plant --raw "$raw" --dyr "$work/more.dyr" --bus 32 --replace ESAC9Z=SEXS >"$work/replaced.toml" 2>"$work/notes"
+grep -q 'standard = true' "$work/replaced.toml" || fail "a replacement of other parameters has no standard values"
+refuses "no such bus" "no bus 4711" "$swingbank" plant --raw "$raw" --dyr "$dyr" --bus 4711
+refuses "no unit there" "no generator at bus 16" "$swingbank" plant --raw "$raw" --dyr "$dyr" --bus 16
+refuses "no bus number" "no bus number" "$swingbank" export --dyr "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml"
+misused "no bus" "bus" "$swingbank" plant --raw "$raw" --dyr "$dyr"
+
+# One line for each model, not for each record.
+for bus in 31 33 34; do echo "$bus 'STRANGE' 1 1 2 3 /"; done >>"$work/more.dyr"
+refuses "grouped" "unknown model 'STRANGE' of '1' at bus 30 and 3 more" "$swingbank" simulate --raw "$raw" --dyr "$work/more.dyr" --out "$work/x.csv"
+(($(grep -c STRANGE "$work/stderr") == 1)) || fail "not grouped: $(cat "$work/stderr")"
+"$swingbank" inventory --raw "$raw" --dyr "$work/more.dyr" >"$work/inventory"
+grep -q '^10 units: 5 wholly covered (50.0 %), 5 in part' "$work/inventory" || fail "inventory says: $(head -1 "$work/inventory")"
+grep -qE "^STRANGE +4 +4 +[0-9]+  no$" "$work/inventory" || fail "inventory: $(cat "$work/inventory")"
+"$swingbank" inventory --raw "$raw" --dyr "$work/more.dyr" --units | grep -qE '^ +32 1 .*not covered: ESAC9Z' || fail "inventory --units"
+"$swingbank" inventory --raw "$raw" --dyr "$work/more.dyr" --json | python3 -c "
+import json, sys
+j = json.load(sys.stdin)
+assert (j['units'], j['covered']) == (10, 5)
+assert [m['not_covered'] for m in j['models'] if m['name'] == 'STRANGE'] == [4]" || fail "inventory --json"
+
+# A block to paste makes a plant.
+{
+  sed '/^\[machine\]/,$d' "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml"
+  "$swingbank" effects --toml GENROU IEEET1
+} >"$work/pasted.toml"
+"$swingbank" export --dyr "$work/pasted.toml" --bus 2 | grep -q "^2 'IEEET1' '1' " || fail "the pasted blocks make no plant"
+refuses "a block of nothing" "a block is of one effect" "$swingbank" effects --toml
+
+# Cases of others: read where they lie, if they do.
+cases=${SWINGBANK_REFERENCE:-$SWINGBANK_SOURCE/../shared/reference}/../cases
+if [[ ! -d $cases ]]; then
+  echo "skipped: no cases at $cases"
+  exit 0
+fi
+# there_and_back NAME RAW DYR BUS [OPTION...]
+there_and_back() {
+  local name=$1 raw=$cases/$2 dyr=$cases/$3 bus=$4
+  shift 4
+  "$swingbank" plant --raw "$raw" --dyr "$dyr" --bus "$bus" "$@" --out "$work/$name.toml" >/dev/null 2>"$work/notes" ||
+    fail "$name: $(cat "$work/notes")"
+  "$swingbank" export --dyr "$work/$name.toml" --out "$work/$name.dyr" >/dev/null
+  local again=()
+  while (($# > 0)); do # nothing is left to drop or replace
+    case $1 in
+    --drop | --replace) shift 2 ;;
+    *) again+=("$1") && shift ;;
+    esac
+  done
+  "$swingbank" plant --raw "$raw" --dyr "$work/$name.dyr" --bus "$bus" "${again[@]}" 2>/dev/null >"$work/again.toml" ||
+    fail "$name does not come back"
+  cmp <(grep -v '^ *#\|^standard' "$work/$name.toml") <(grep -v '^ *#\|^standard' "$work/again.toml") || fail "$name: another plant after the way out and in"
+  echo "ok: $name"
+}
+there_and_back texas powerfulcases_activsg2000/ACTIVSg2000.raw powerfulcases_activsg2000/ACTIVSg2000.dyr 1048
+there_and_back texas_high powerfulcases_activsg2000/ACTIVSg2000.raw powerfulcases_activsg2000/ACTIVSg2000.dyr 1048 --measured-at 1047
+grep -q 'base_mva = 390.24 ' "$work/texas_high.toml" || fail "the power base is not the file's"
+grep -q '^effect = "STEPUP"' "$work/texas_high.toml" || fail "no transformer"
+there_and_back new_england griddyn_ieee39/IEEE39.raw griddyn_ieee39/IEEE39.dyr 31 --drop ESDC1A
+there_and_back wecc gridpack_wecc240/240busWECC_2018_PSS_fixedshunt.raw gridpack_wecc240/240busWECC_2018_PSS_mod.dyr 1032 --id C --frequency-hz 60
+there_and_back fourteen powerfulcases_ieee14/ieee14.raw powerfulcases_ieee14/ieee14_gensal.dyr 2

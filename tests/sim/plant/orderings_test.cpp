@@ -1,0 +1,55 @@
+#include "sim/plant/orderings.hpp"
+
+#include <gmock/gmock.h>
+
+#include <random>
+
+#include "sim/library/library.hpp"
+
+namespace swingbank::sim::plant {
+namespace {
+
+/// Values about the standard ones, by up to a factor of four either way.
+Block drawn(const Effect& effect, std::mt19937& random) {
+  std::uniform_real_distribution<double> factor(-1.4, 1.4);
+  Block block{&effect, effect.standard_parameters()};
+  for (double& value : block.p) value = std::max(value, 0.01) * std::exp(factor(random));
+  return block;
+}
+
+TEST(Orderings, AreThoseThatEveryMachineCallsUnphysical) {
+  std::mt19937 random(7);
+  int machines = 0, sound = 0;
+  for (const Effect& effect : library::compiled_effects()) {
+    if (effect.slot != Slot::machine) continue;
+    ++machines;
+    EXPECT_TRUE(violated({&effect, effect.standard_parameters()}).empty()) << effect.name;
+    for (int k = 0; k < 20000; ++k) {
+      const Block block = drawn(effect, random);
+      const bool physical = effect.unphysical(block.p.data()).empty();
+      ASSERT_EQ(violated(block).empty(), physical)
+          << effect.name << ": " << effect.unphysical(block.p.data());
+      sound += physical ? 1 : 0;
+    }
+  }
+  EXPECT_GE(machines, 6);
+  EXPECT_GT(sound, 100);  // both answers were seen
+}
+
+TEST(Orderings, NameBothParametersAndLeaveZerosAlone) {
+  const Effect& round = *library::compiled().find("GENROU");
+  Block block{&round, round.standard_parameters()};
+  const auto set = [&](const char* name, double value) {
+    block.p[static_cast<std::size_t>(round.parameter_index(name))] = value;
+  };
+  set("S10", 0.0);
+  set("S12", 0.0);
+  EXPECT_TRUE(violated(block).empty());
+  set("Xd", 0.147);
+  set("Xdp", 1.53);
+  ASSERT_FALSE(violated(block).empty());
+  EXPECT_EQ(violation_text(block, violated(block).front()), "Xd = 0.147 pu is not above X'd = 1.53 pu");
+}
+
+}  // namespace
+}  // namespace swingbank::sim::plant

@@ -1,0 +1,62 @@
+#include "validate/plant/plant_dyr.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/write_file.hpp"
+
+namespace swingbank::validate::plant {
+namespace {
+
+std::vector<const sim::plant::Block*> blocks_of(const PlantModel& model) {
+  std::vector<const sim::plant::Block*> all = {&model.plant.machine};
+  if (model.plant.transformer.effect) all.push_back(&model.plant.transformer);
+  for (const auto& block : model.plant.controls) all.push_back(&block);
+  return all;
+}
+
+}  // namespace
+
+std::string dyr_text(const PlantModel& model, const std::vector<std::string>& head, const std::string& where,
+                     Problems& problems) {
+  if (model.bus <= 0)
+    problems.add("no bus number", where, "each record of a .dyr begins with it",
+                 "write bus and id under [plant], or give --bus and --id");
+  std::string text;
+  for (std::string line : head) {
+    std::ranges::replace_if(
+        line, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+    text += "// " + line + "\n";
+  }
+  return text + sim::grid::unit_dyr(model.plant, model.bus, model.id, where, problems);
+}
+
+std::vector<std::string> changed_blocks(const PlantModel& before, const PlantModel& model) {
+  const auto old = blocks_of(before);
+  std::vector<std::string> names;
+  for (const auto* block : blocks_of(model)) {
+    const auto same = [&](const auto* o) {
+      return o->effect->name == block->effect->name && o->p == block->p;
+    };
+    if (std::ranges::none_of(old, same)) names.emplace_back(block->effect->name);
+  }
+  return names;
+}
+
+std::string write_dyr_beside(const std::filesystem::path& plant_file, const PlantModel& before,
+                             const PlantModel& model) {
+  const auto changed = changed_blocks(before, model);
+  const std::vector<std::string> head = {
+      model.name,
+      changed.empty() ? "nothing is changed" : fmt::format("changed or new: {}", fmt::join(changed, ", "))};
+  Problems problems;
+  const std::string text = dyr_text(model, head, plant_file.filename().string(), problems);
+  if (!problems.empty()) return "no .dyr: " + problems.list()[0].sentence();
+  auto file = plant_file;
+  file.replace_extension(".dyr");
+  write_file(file, text);
+  return "records: " + file.string();
+}
+
+}  // namespace swingbank::validate::plant

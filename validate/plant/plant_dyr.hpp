@@ -1,0 +1,24 @@
+#pragma once
+// A plant model as records of a PSS/E .dyr: what is handed in.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "validate/plant/plant_model.hpp"
+
+namespace swingbank::validate::plant {
+
+/// The records of the model's machine and controls; `head` becomes comments. `where` names the model in
+/// messages. No bus number, a law and a value without a column become problems.
+std::string dyr_text(const PlantModel& model, const std::vector<std::string>& head, const std::string& where,
+                     Problems& problems);
+
+/// The names of the blocks whose values differ from `before`, and of those it does not have.
+std::vector<std::string> changed_blocks(const PlantModel& before, const PlantModel& model);
+
+/// Writes the records beside a plant file, its extension .dyr, with the changed ones named. Returns what was
+/// written or why nothing could be: a line for the person.
+std::string write_dyr_beside(const std::filesystem::path& plant_file, const PlantModel& before,
+                             const PlantModel& model);
+
+}  // namespace swingbank::validate::plant
