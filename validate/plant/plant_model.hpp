@@ -19,6 +19,7 @@ struct PlantModel {
   sim::plant::Plant plant;   ///< its generation is set from each record
   sim::Conventions conventions;
   record::RecordBase record_base;                ///< what "pu" means in the records of this plant
+  record::ReadOptions reading;                   ///< which columns of its records are read, and which stretch
   std::vector<std::filesystem::path> laws = {};  ///< law files that its effects come from
   [[nodiscard]] sim::plant::PlantUnderTest under_test() const { return {plant, conventions}; }
   /// Compiled effects and those of `laws`. The plant's blocks point into it, so a plant taken out of the

@@ -27,8 +27,8 @@ void play_fitted(const plant::PlantModel& model, const CompareOptions& options, 
   e.playback.Efd = take(playin::Output::Efd);
   e.playback.Ifd = take(playin::Output::Ifd);
   e.switchings = event::switchings_at(event, state);
-  e.fitted = !e.switchings.empty();
-  if (jumps == event::Jumps::spread) e.left_out = event.left_out;
+  e.fitted = true;
+  e.left_out = jumps == event::Jumps::spread ? event.left_out : e.record.lost;
 }
 
 void add_doubt(const plant::PlantModel& model, EventComparison& e) {
