@@ -101,15 +101,17 @@ Number parse_number(std::string_view cell, char separator) {
   return n;
 }
 
-/// Do blanks separate the values? So they do where the first line that is all numbers has no other separator.
+/// Do blanks separate the values? So they do where three lines are numbers that nothing else separates.
 bool by_blanks(std::string_view text) {
+  int found = 0;
   for (int n = 0; n < 50 && !text.empty(); ++n) {
     const auto end = text.find('\n');
     const std::string_view line = trim(text.substr(0, end));
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
     if (line.empty() || line.find_first_of(",;\t") != std::string_view::npos) continue;
     const Cells cells = split(line, ' ');
-    if (cells.size() >= 3 && std::ranges::all_of(cells, [](auto c) { return parse_number(c, ' ').ok; }))
+    if (cells.size() >= 3 && std::ranges::all_of(cells, [](auto c) { return parse_number(c, ' ').ok; }) &&
+        ++found == 3)
       return true;
   }
   return false;

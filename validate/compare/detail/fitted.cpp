@@ -36,6 +36,8 @@ void add_doubt(const plant::PlantModel& model, EventComparison& e) {
   event.record = e.record;
   event.start = e.playback.start;
   event.smeared = e.left_out;  // those beside a jump too
+  for (std::size_t k = 0; k < e.record.lost.size(); ++k)
+    if (e.record.lost[k]) event.smeared[k] = 0;  // bridged where nothing jumps, so hardly guessed
   for (const playin::Switching& s : e.switchings)
     if (s.uncertainty > 0) event.switchings.push_back(s);
   for (const playin::Output o : {playin::Output::P, playin::Output::Q, playin::Output::speed,

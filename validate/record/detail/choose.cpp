@@ -22,9 +22,10 @@ bool has(const Present& present, Quantity q) { return present[static_cast<std::s
 /// current; the angle may come from the frequency.
 std::vector<Quantity> missing(const Present& present, const ReadOptions& options) {
   std::vector<Quantity> all;
-  for (const auto q : {time, V})
-    if (!has(present, q)) all.push_back(q);
-  if (options.angle && !has(present, theta) && !has(present, f)) all.push_back(theta);
+  if (!has(present, time)) all.push_back(time);
+  if (options.part) return all;
+  if (!has(present, V)) all.push_back(V);
+  if (options.angle && !has(present, theta)) all.push_back(theta);
   if (!options.power || (has(present, I) && has(present, phi) && has(present, theta))) return all;
   for (const auto q : {P, Q})
     if (!has(present, q)) all.push_back(q);
@@ -109,6 +110,7 @@ Terminals choose_terminals(const std::vector<Heading>& headings, const ReadOptio
                    all.empty() ? "leave '#" + asked + "' off the file's name" : "choose one of them");
     return {asked, asked, false};
   }
+  if (options.part && all.size() == 1) return {*all.begin(), *all.begin(), false};
   if (all.empty() || missing(present_in(headings, {}), options).empty()) return {};
   for (const auto& t : all)
     if (missing(present_in(headings, t), options).empty()) complete.insert(t);
@@ -137,7 +139,6 @@ Terminals choose_terminals(const std::vector<Heading>& headings, const ReadOptio
 
 void check_missing(const Present& present, const ReadOptions& options, const std::string& where,
                    const std::vector<Heading>& headings, Problems& problems) {
-  if (options.part) return;
   for (const auto q : missing(present, options))
     problems.add(
         "no column " + names_of(q), where,
