@@ -123,6 +123,7 @@ int main(int argc, char** argv) {
     for (const auto& r : records) names.push_back(r.name);
     const auto instants = read_switchings(switches, names);
     options.jumps = event::jumps_of(records, options.jump_threshold);
+    options.progress = jobs::progress_line();
     std::vector<compare::EventComparison> events;
     for (auto& record : records) {
       const auto given = instants.find(record.name);

@@ -145,11 +145,11 @@ class Check {
     return true;
   }
 
-  /// How far P or Q goes in the first half second, beyond the noise [pu on the record's base].
-  [[nodiscard]] double moves_at_first() const {
+  /// How far P or Q goes in the first samples, beyond the noise [pu on the record's base].
+  [[nodiscard]] double moves_within(std::size_t samples) const {
     double most = 0;
     for (const auto& [y, noise] : {std::pair{&r_.P, signals_.P.white}, {&r_.Q, signals_.Q.white}}) {
-      const auto n = std::min(y->size(), static_cast<std::size_t>(0.5 * r_.rate()) + 1);
+      const auto n = std::clamp<std::size_t>(samples, 1, y->size());
       const auto [low, high] = std::minmax_element(y->begin(), y->begin() + static_cast<std::ptrdiff_t>(n));
       most = std::max(most, *high - *low - 6 * noise);
     }

@@ -273,6 +273,9 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
   e.record =
       record::stretch(std::move(record), -std::numeric_limits<double>::infinity(), options.play_in.until);
   e.left_out = e.record.lost;
+  const auto step = [&](const char* what, int done) {
+    if (options.progress) options.progress(fmt::format("{}: {}", e.record.name, what), done, 3);
+  };
   const bool no_angle = e.record.angle == record::AngleSource::none;
   if (no_angle) options.drive = DriveBy::power;
   e.detected = options.switchings.empty();
@@ -293,8 +296,10 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
       e.switchings = playin::detect_switchings(e.record, options.jump_threshold);
     else
       for (const double t : options.switchings) e.switchings.push_back({.time = t});
+    step("the voltage is played in", 0);
     if (!no_angle) play(model, DriveBy::voltage, options.play_in, e);
     if (!no_angle && e.detected && options.fit_switchings && (!e.switchings.empty() || !explained(e))) {
+      step("instants and start are fitted", 1);
       try {
         if (EventComparison other = fitted(); explained(other)) e = std::move(other);
       } catch (const InputError& error) {  // a fit may take fewer steps, and the play-in above stands
@@ -302,6 +307,7 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
       }
     }
   }
+  step("what is left is measured", 2);
   if (no_angle) play(model, DriveBy::power, options.play_in, e);
   explain(e, options.fit_switchings, failed);
   if (options.drive == DriveBy::power) {  // with the instants that the voltage told
@@ -311,6 +317,7 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
         "of frequency and speed: both are shown, the verdict is about the voltage and the field. During a "
         "fault the voltage answers many times as strongly to noise of P and Q, so that window is not judged.");
   }
+  step("compared", 3);
   return e;
 }
 
