@@ -122,13 +122,19 @@ class Check {
   bool beginning() {
     constexpr double kFewest = 5, kLeast = 0.1, kShort = 0.5;  // samples; s
     const double before = r_.t[signals_.onset] - r_.t.front(), n = static_cast<double>(signals_.onset + 1);
-    const double moves = moves_at_first() * machine_per_record();
-    const bool none = signals_.slow ? moves > 0.05 : n < kFewest || before < kLeast;
-    if (none) {
+    const bool few = !signals_.slow && (n < kFewest || before < kLeast);
+    // A short stretch before a jump may be one of a fault, and a record without jumps may begin in a swing.
+    const auto looked_at = signals_.slow ? static_cast<std::size_t>(kShort * r_.rate()) + 1 : signals_.onset;
+    const bool doubtful = !few && (signals_.slow || before < kShort);
+    const double moves = doubtful ? moves_within(looked_at) * machine_per_record() : 0;
+    const bool sagged = doubtful && !signals_.slow && std::abs(signals_.V.level - last_voltage()) > 0.08;
+    if (few || sagged || moves > 0.02) {
       refuse("no_pre_event",
-             signals_.slow
-                 ? fmt::format("P or Q moves by {:.2g} pu of the machine in the first half second", moves)
-                 : fmt::format("{:.3g} s before the event", before),
+             few      ? fmt::format("{:.3g} s before the event", before)
+             : sagged ? fmt::format("V = {:.3g} pu before the first jump and {:.3g} pu at the end",
+                                    signals_.V.level, last_voltage())
+                      : fmt::format("P or Q moves by {:.2g} pu of the machine in the first {:.2g} s", moves,
+                                    static_cast<double>(looked_at) * r_.step()),
              "the model starts from the steady state before the event, which the record must show",
              "export it from at least 1 s before the event");
       return false;
@@ -151,9 +157,14 @@ class Check {
     for (const auto& [y, noise] : {std::pair{&r_.P, signals_.P.white}, {&r_.Q, signals_.Q.white}}) {
       const auto n = std::clamp<std::size_t>(samples, 1, y->size());
       const auto [low, high] = std::minmax_element(y->begin(), y->begin() + static_cast<std::ptrdiff_t>(n));
-      most = std::max(most, *high - *low - 6 * noise);
+      most = std::max(most, *high - *low - 4 * noise);  // what noise alone spans in half a second
     }
     return most;
+  }
+  /// Median over the last second.
+  [[nodiscard]] double last_voltage() const {
+    const auto n = std::min(r_.V.size(), static_cast<std::size_t>(r_.rate()) + 1);
+    return median_of({r_.V.end() - static_cast<std::ptrdiff_t>(n), r_.V.end()});
   }
 
   /// Steps that a transducer or an archive has left.
