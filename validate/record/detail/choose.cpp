@@ -176,6 +176,7 @@ std::optional<std::size_t> find_heading(const std::vector<Heading>& headings, st
   if (const auto i =
           find([&](const Heading& h) { return h.meaning && h.meaning->terminal + "." + h.name == text; }))
     return i;
+  if (text.starts_with('-')) return std::nullopt;  // that is the sign
   return find([&](const Heading& h) { return !h.name.empty() && normalised(h.name) == normalised(text); });
 }
 

@@ -153,12 +153,14 @@ class Config {
       fault("the number of sampling rates", "0 to 999 make sense", "export the configuration again");
       return;
     }
+    double low = 1e300, high = 0;
     for (int k = 0; k < std::max(1.0, n) && !ended_; ++k) {
       const Fields f = next();
       if (ended_) return;
       const double rate = number(f, 0, "sampling rate"), last = number(f, 1, "last sample");
-      if (k > 0 && rate != c_.rate)
-        fault(fmt::format("several sampling rates ({:g} and {:g} per second)", c_.rate, rate),
+      low = std::min(low, rate), high = std::max(high, rate);
+      if (k > 0 && k + 1 >= n && low != high)
+        fault(fmt::format("several sampling rates ({:g}, from {:g} to {:g} per second)", n, low, high),
               "a record must be sampled evenly", "export the stretch with one rate");
       if (rate < 0 || last < 1 || last > 1e9)
         fault(fmt::format("rate {:g}, last sample {:g}", rate, last), "neither can be",
