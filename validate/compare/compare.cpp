@@ -108,6 +108,20 @@ void play(const plant::PlantModel& model, DriveBy drive, const playin::PlayInOpt
   measure_channels(model, drive, options, e);
 }
 
+/// P and Q drive, as nothing else can.
+void play_without_angle(const plant::PlantModel& model, const playin::PlayInOptions& options,
+                        EventComparison& e) {
+  try {
+    play(model, DriveBy::power, options, e);
+  } catch (const InputError& error) {
+    const Problem& p = error.problems().front();
+    throw InputError(
+        {p.what, p.where, p.why,
+         "check base and sign of P and Q; the record has neither angle nor frequency, so that only they "
+         "can drive the model: with one of the two the voltage could"});
+  }
+}
+
 /// Whether nothing but noise is left of the event by itself.
 bool explained(const EventComparison& e) {
   std::vector<EventComparison> one = {e};
@@ -308,7 +322,7 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
     }
   }
   step("what is left is measured", 2);
-  if (no_angle) play(model, DriveBy::power, options.play_in, e);
+  if (no_angle) play_without_angle(model, options.play_in, e);
   explain(e, options.fit_switchings, failed);
   if (options.drive == DriveBy::power) {  // with the instants that the voltage told
     if (!no_angle) play(model, DriveBy::power, options.play_in, e);
