@@ -289,8 +289,8 @@ TEST(RecordComtradeTest, FaultsOfTheConfiguration) {
   w.edit = [](auto& lines) {
     lines[8] = "2", lines[9] = "60,40", lines.insert(lines.begin() + 10, "240,90");
   };
-  EXPECT_THAT(w.faults(),
-              ElementsAre(AllOf(HasSubstr("several sampling rates (2, from 60 to 240"), HasSubstr("e.cfg:11"))));
+  EXPECT_THAT(w.faults(), ElementsAre(AllOf(HasSubstr("several sampling rates (2, from 60 to 240"),
+                                            HasSubstr("e.cfg:11"))));
   w.edit = [](auto& lines) { lines[0] = "station,device"; };
   EXPECT_THAT(w.faults(), ElementsAre(HasSubstr("1991")));
   w.edit = [](auto& lines) { lines[1] = "6,5A,0D"; };
