@@ -323,7 +323,7 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
   }
   step("what is left is measured", 2);
   if (no_angle) play_without_angle(model, options.play_in, e);
-  explain(e, options.fit_switchings, failed);
+  explain(e, options.fit_switchings && !no_angle, failed);
   if (options.drive == DriveBy::power) {  // with the instants that the voltage told
     if (!no_angle) play(model, DriveBy::power, options.play_in, e);
     e.notes.push_back(
