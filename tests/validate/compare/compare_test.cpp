@@ -84,7 +84,8 @@ TEST(CompareTest, WithoutAngleAndFrequencyPowerDrives) {
   RightModel right;
   right.record.theta.assign(right.record.t.size(), 0.0);
   right.record.angle = record::AngleSource::none;
-  const CompareOptions known = {.switchings = {right.s.t_on, right.s.t_off}};
+  CompareOptions known;
+  known.switchings = {right.s.t_on, right.s.t_off};
   std::vector<EventComparison> events = {compare_event(right.model, right.record, known)};
   ASSERT_FALSE(events[0].channels.empty());
   EXPECT_EQ(events[0].channels[0].name, "V");
