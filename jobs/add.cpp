@@ -24,6 +24,8 @@ struct Arguments {
   std::vector<std::string> records, laws;
   bool json = false, until_adequate = false, retrain = false;
   std::string truth;
+  jobs::Reading reading;
+  nlohmann::json told;  ///< what was done to read the records
   add::AddOptions options;
   retrain::RetrainOptions training;
 };
@@ -44,6 +46,7 @@ void write(const Arguments& a, const plant::PlantModel& before, plant::PlantMode
   result["format"] = "swingbank-add-1";
   result["command"] = a.command;
   result["standard_values"] = before.standard;
+  result["records"] = a.told;
   plant::write_plant_file(folder / "model.toml", model, provenance);
   const std::string records = plant::write_dyr_beside(folder / "model.toml", before, model);
   write_file(folder / "add.json", result.dump(1) + "\n");
@@ -108,7 +111,10 @@ int run(Arguments& a) {
   std::vector<std::pair<std::string, const sim::Effect*>> laws;
   for (const auto& file : a.laws)
     laws.emplace_back(file, &sim::laws::load_law(std::filesystem::path(file), model.library));
-  std::vector<record::Record> records = jobs::read_events(a.records, model);
+  a.reading.apply(model);
+  const check::RecordSet set = jobs::read_events(a.records, model);
+  const std::vector<record::Record>& records = set.records;
+  a.told = jobs::records_json(set);
   calibrate::held_out_events(records, a.options.calibrate.held_out);
   a.options.calibrate.progress = jobs::progress_line();
   if (a.until_adequate) {
@@ -142,6 +148,7 @@ int main(int argc, char** argv) {
   line.add("--model", a.model, "plant file (configs/plants/README.md)").required();
   line.add("--records,--record", a.records, "records of the events (validate/record/README.md)").required();
   line.add("--out", a.out, "folder for model.toml, model.dyr and add.json").shows_default();
+  a.reading.add_to(line);
   line.add("--law", a.laws, "law file (.toml) whose effect may be added; may be repeated");
   line.add("--hold-out", c.held_out,
            "record (name or number from 1) left out of the fit and used to judge it; may be repeated");

@@ -26,6 +26,7 @@ struct Arguments {
   std::string model, out = "calibration", method = "fit", truth, network, start, command;
   std::vector<std::string> records;
   bool json = false;
+  jobs::Reading reading;
   calibrate::CalibrateOptions options;
 };
 
@@ -71,13 +72,14 @@ void say(const Arguments& a, const nlohmann::json& result, const std::string& te
 }
 
 int run_baseline(const Arguments& a, const plant::PlantModel& model, std::vector<record::Record> records,
-                 const calibrate::Truth& truth) {
+                 const calibrate::Truth& truth, const nlohmann::json& told) {
   const calibrate::CurveFit f = fit_curves(a, model, std::move(records));
   const std::string written =
       write_model(a, model, f.model, f.adequate, calibrate::provenance_lines(f, model, a.command));
   nlohmann::json result = calibrate::curve_fit_json(f, truth);
   result["command"] = a.command;
   result["standard_values"] = model.standard;
+  result["records"] = told;
   say(a, result, calibrate::terminal_report(f, truth) + "\n" + written);
   return f.adequate ? 0 : thresholds::kNotAdequate;
 }
@@ -101,6 +103,7 @@ std::optional<calibrate::NetworkEstimate> ask_network(const Arguments& a,
                                     "--out",     file.string(), "--records"};
   for (std::size_t k = 0; k < records.size(); ++k)
     if (!out[k]) words.push_back(a.records[k]);
+  for (const auto& word : a.reading.words()) words.push_back(word);
   if (jobs::run_own(predict, words) != 0)
     throw InputError({"no estimate of the network", a.network, "swingbank predict says why above",
                       "correct that, or calibrate without --network"});
@@ -108,13 +111,16 @@ std::optional<calibrate::NetworkEstimate> ask_network(const Arguments& a,
 }
 
 int run(Arguments& a) {
-  const plant::PlantModel model = jobs::load_model_to_fit(a.model);
+  plant::PlantModel model = jobs::load_model_to_fit(a.model);
+  a.reading.apply(model);
   const calibrate::Truth truth = a.truth.empty() ? calibrate::Truth{} : calibrate::read_truth(a.truth, model);
-  std::vector<record::Record> records = jobs::read_events(a.records, model);
+  const check::RecordSet set = jobs::read_events(a.records, model);
+  std::vector<record::Record> records = set.records;
+  const nlohmann::json told = jobs::records_json(set);
   if (a.method == "curve-fit" && !(a.network.empty() && a.start.empty()))
     throw InputError({"a network's start", "--method curve-fit",
                       "curve fitting starts from the model's own values", "give --method fit or both"});
-  if (a.method == "curve-fit") return run_baseline(a, model, std::move(records), truth);
+  if (a.method == "curve-fit") return run_baseline(a, model, std::move(records), truth, told);
   const bool both = a.method == "both";
   const auto estimate = ask_network(a, records);
   sim::plant::Plant estimated;
@@ -129,6 +135,7 @@ int run(Arguments& a) {
   nlohmann::json result = calibrate::calibration_json(c);
   result["command"] = a.command;
   result["standard_values"] = model.standard;
+  result["records"] = told;
   std::vector<calibrate::Way> ways = {calibrate::way_of_model(c)};
   if (both) {
     const calibrate::CurveFit f = fit_curves(a, model, std::move(again));
@@ -157,6 +164,7 @@ void add_options(jobs::CommandLine& line, Arguments& a, bool& inner) {
           "--out", a.out,
           "folder for model.toml (model-not-adequate.toml where it does not hold), model.dyr and calibrate.json")
       .shows_default();
+  a.reading.add_to(line);
   line.add("--method", a.method,
            "fit; curve-fit: the usual way, least squares of P and Q from the model's own values, as a "
            "baseline; both: side by side")

@@ -77,6 +77,7 @@ int main(int argc, char** argv) {
   std::string model_file, system_file, out = "compare-report", drive = "voltage";
   std::vector<std::string> record_files, switches;
   bool json = false;
+  jobs::Reading reading;
   compare::CompareOptions options;
   const jobs::Option model_option = line.add("--model", model_file, "plant file (configs/plants/README.md)");
   const jobs::Option records_option =
@@ -106,7 +107,7 @@ int main(int argc, char** argv) {
   line.add("--pre-event", options.play_in.pre_event, "steady stretch of records without switching [s]")
       .shows_default()
       .excludes(system_option);
-  line.add("--until", options.play_in.until, "leave out what comes later [s]").excludes(system_option);
+  reading.add_to(line);
   line.add("--out", out, "folder for report.html, compare.json and the curves as CSV").shows_default();
   line.add_flag("--json", json, "print the result as JSON instead of tables");
   if (!line.parse(argc, argv)) return line.end();
@@ -114,14 +115,16 @@ int main(int argc, char** argv) {
   try {
     if (!system_file.empty()) return run_system(system_file, out, json, joined(argc, argv));
     options.drive = drive == "pq" ? compare::DriveBy::power : compare::DriveBy::voltage;
-    const plant::PlantModel model = plant::load_plant_model(model_file);
+    plant::PlantModel model = plant::load_plant_model(model_file);
     jobs::tell(model);
+    reading.apply(model);
     auto [records, warnings] = check::read_records(record_files, model);
     std::vector<std::string> names;
     names.reserve(records.size());
     for (const auto& r : records) names.push_back(r.name);
     const auto instants = read_switchings(switches, names);
     options.jumps = event::jumps_of(records, options.jump_threshold);
+    options.progress = jobs::progress_line();
     std::vector<compare::EventComparison> events;
     for (auto& record : records) {
       const auto given = instants.find(record.name);

@@ -26,13 +26,22 @@ std::filesystem::path write_law(const diagnose::Diagnosis& d, const std::filesys
 }
 
 int run(const std::string& model_file, const std::vector<std::string>& record_files, const std::string& out,
-        bool json, diagnose::DiagnoseOptions options, const std::string& command_line) {
-  const plant::PlantModel model = jobs::load_model_to_fit(model_file);
-  std::vector<record::Record> records = jobs::read_events(record_files, model);
+        bool json, const jobs::Reading& reading, diagnose::DiagnoseOptions options,
+        const std::string& command_line) {
+  plant::PlantModel model = jobs::load_model_to_fit(model_file);
+  reading.apply(model);
+  const check::RecordSet set = jobs::read_events(record_files, model);
   options.progress = jobs::progress_line();
-  const diagnose::Diagnosis d = diagnose::diagnose(model, std::move(records), options);
-  const report::Provenance provenance = diagnose::diagnosis_provenance(model, d, command_line);
-  const auto result = diagnose::diagnosis_json(model, d, provenance);
+  const diagnose::Diagnosis d = diagnose::diagnose(model, set.records, options);
+  report::Provenance provenance = diagnose::diagnosis_provenance(model, d, command_line);
+  for (std::size_t k = 0; k < set.records.size(); ++k) {
+    const record::Record& r = set.records[k];
+    if (const auto begins = record::beginning(r); !begins.empty())
+      provenance.emplace_back("begins", r.name + ": t = 0 is " + begins);
+    for (const auto& note : set.warnings[k]) provenance.emplace_back("note", r.name + ": " + note);
+  }
+  auto result = diagnose::diagnosis_json(model, d, provenance);
+  result["records"] = jobs::records_json(set);
   const std::filesystem::path folder = out;
   write_file(folder / "diagnosis.json", result.dump(1) + "\n");
   write_file(folder / "report.html", diagnose::diagnosis_html(model, d, provenance));
@@ -53,6 +62,7 @@ struct Command {
   std::string model, out = "diagnosis", plant;
   std::vector<std::string> records;
   bool thresholds = false;
+  jobs::Reading reading;
   diagnose::DiagnoseOptions options;
   jobs::FleetCommand fleet;
 };
@@ -71,6 +81,7 @@ void declare(jobs::CommandLine& line, Command& c) {
       line.add("--records,--record", c.records, "records of the events (validate/record/README.md)");
   model.needs(records);
   records.needs(model);
+  c.reading.add_to(line);
   const jobs::Option fleet =
       line.add("--fleet", c.fleet.fleet,
                "instead of both: a fleet file, many plants with their records "
@@ -121,7 +132,7 @@ int main(int argc, char** argv) {
     if (!c.plant.empty()) return jobs::run_fleet_plant(c.fleet, c.plant);
     if (!c.fleet.fleet.empty()) return jobs::run_fleet(c.fleet, &argc, &argv);
     c.options.threads = std::max(c.fleet.threads, 0);
-    return run(c.model, c.records, c.out, c.fleet.json, c.options,
+    return run(c.model, c.records, c.out, c.fleet.json, c.reading, c.options,
                jobs::command_line("diagnose", argc, argv));
   });
 }

@@ -7,25 +7,80 @@
 #include <chrono>
 #include <exception>
 #include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "jobs/command_line.hpp"
 #include "validate/check/record_set.hpp"
 #include "validate/plant/plant_model.hpp"
 #include "validate/record/record.hpp"
 
 namespace swingbank::jobs {
 
+/// How a command's records are read, beside what the plant file says.
+struct Reading {
+  std::vector<std::string> columns;  ///< "V=BUS1.VPM [kV]"
+  std::optional<double> from, until;
+
+  /// Adds the options to a command line.
+  void add_to(CommandLine& line) {
+    line.add(
+            "--columns", columns,
+            "which columns of the records are read: V=NAME,P=NAME (t, V, theta, f, P, Q, I, phi, speed, Efd, Ifd); "
+            "\"V=NAME [kV]\" where the file names no unit, V=#2 for the second column, P=-NAME turns the sign; "
+            "beside [record.columns] of the plant file")
+        .comma_separated();
+    line.add("--from", from, "leave out what comes before [s]");
+    line.add("--until", until, "leave out what comes later [s]");
+  }
+  /// The same for another command.
+  [[nodiscard]] std::vector<std::string> words() const {
+    std::vector<std::string> all;
+    for (const auto& column : columns) all.insert(all.end(), {"--columns", column});
+    if (from) all.insert(all.end(), {"--from", fmt::format("{}", *from)});
+    if (until) all.insert(all.end(), {"--until", fmt::format("{}", *until)});
+    return all;
+  }
+  /// Puts them into the model.
+  void apply(validate::plant::PlantModel& model) const {
+    Problems problems;
+    for (const auto& word : columns) {
+      const auto equals = word.find('=');
+      if (equals == std::string::npos || equals == 0 || equals + 1 == word.size())
+        problems.add("'" + word + "'", "--columns", "it says no quantity and column",
+                     "write --columns V=NAME,P=NAME");
+      else
+        model.reading.columns[word.substr(0, equals)] = word.substr(equals + 1);
+    }
+    problems.raise();
+    if (from) model.reading.from = *from;
+    if (until) model.reading.until = *until;
+  }
+};
+
 /// Reads and checks every record, so that all faults of all files are told at once; findings that do not
 /// refuse go to stderr.
-inline std::vector<validate::record::Record> read_events(const std::vector<std::string>& files,
-                                                         const validate::plant::PlantModel& model) {
+inline validate::check::RecordSet read_events(const std::vector<std::string>& files,
+                                              const validate::plant::PlantModel& model) {
   Problems problems;
   validate::check::RecordSet set = validate::check::read_records(files, model, problems);
-  for (const auto& warnings : set.warnings)
-    for (const auto& warning : warnings) fmt::print(stderr, "note: {}\n", warning);
+  for (std::size_t k = 0; k < set.records.size(); ++k)
+    for (const auto& warning : set.warnings[k])
+      fmt::print(stderr, "note on {}: {}\n", set.records[k].name, warning);
   problems.raise();
-  return std::move(set.records);
+  return set;
+}
+
+/// What is known of the records beside their values: when they begin, and what was done to read them.
+inline nlohmann::json records_json(const validate::check::RecordSet& set) {
+  nlohmann::json all = nlohmann::json::array();
+  for (std::size_t k = 0; k < set.records.size(); ++k)
+    all.push_back({{"record", set.records[k].name},
+                   {"begins", validate::record::beginning(set.records[k])},
+                   {"notes", set.warnings[k]}});
+  return all;
 }
 
 /// Says on stderr what looks wrong in a model and what of it is no plant's own.

@@ -6,6 +6,7 @@
 
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
+#include "jobs/event_records.hpp"
 #include "jobs/record_for_network.hpp"
 #include "train/runtime/blas_kernels.hpp"
 #include "train/runtime/runtime.hpp"
@@ -20,6 +21,7 @@ struct Options {
   std::string network, model, out;
   std::vector<std::string> records;
   std::optional<double> event;
+  jobs::Reading reading;
   bool json = false;
 };
 
@@ -40,8 +42,10 @@ void require_same_machine(const train::run::NetworkInfo& network, const plant::P
 /// Every record, read and checked, so that all faults of all files are told at once.
 std::vector<Estimated> read_all(const Options& o, const plant::PlantModel& model) {
   std::vector<Estimated> all;
-  for (record::Record& record : check::read_records(o.records, model).records)
+  for (record::Record& record : jobs::read_events(o.records, model).records) {
+    record::require_angle(record);
     all.push_back({std::move(record), {}, {}});
+  }
   return all;
 }
 
@@ -122,7 +126,8 @@ void warn_of_strangers(const train::run::NetworkInfo& n, const std::vector<Estim
 
 int run(const Options& o) {
   const train::run::SavedNetwork network = train::run::SavedNetwork::load(o.network);
-  const plant::PlantModel model = plant::load_plant_model(o.model);
+  plant::PlantModel model = plant::load_plant_model(o.model);
+  o.reading.apply(model);
   require_same_machine(network.info(), model);
   std::vector<Estimated> all = read_all(o, model);
   if (o.event && all.size() > 1)
@@ -147,6 +152,7 @@ int main(int argc, char** argv) {
       .required();
   line.add("--model", o.model, "plant file: machine model and base, bases of the records").required();
   line.add("--records,--record", o.records, "records (CSV, COMTRADE or HDF5), one or several").required();
+  o.reading.add_to(line);
   line.add("--event", o.event, "when the event begins [s] (default: found)");
   line.add("--out", o.out, "write the estimate as JSON to this file");
   line.add_flag("--json", o.json, "print the estimate as JSON instead of a table");

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 #include "base/constants.hpp"
@@ -36,9 +37,11 @@ class Check {
     voltage();
     frequency();
     speed();
-    angle();
+    if (r_.angle == record::AngleSource::measured) angle();
     power();
-    jumps();
+    quantised();
+    if (r_.angle == record::AngleSource::measured)
+      jumps();  // the phasors', so not without an angle of their own
     std::ranges::stable_sort(findings_, {}, [](const Finding& f) { return f.severity; });
     return std::move(findings_);
   }
@@ -107,18 +110,72 @@ class Check {
           "give a record that holds a fault, a switching or a frequency event");
       return;
     }
-    const double before = r_.t[signals_.onset] - r_.t.front();
-    if (signals_.onset < 10 || before < 0.2) {
-      refuse("no_pre_event", fmt::format("{:.3g} s before the event", before),
-             "the model starts from the steady state before the event, which the record must show",
-             "export it from at least 1 s before the event");
-      return;
-    }
+    if (!beginning()) return;
     const double after = r_.t.back() - r_.t[signals_.last];
     if (after < 1)
       refuse("too_short", fmt::format("{:.3g} s after the event", after),
              "a response cannot be judged from less than 1 s", "export at least 5 s after the event");
     steadiness();
+  }
+
+  /// False where the record shows no state that the model could start from.
+  bool beginning() {
+    constexpr double kFewest = 5, kLeast = 0.1, kShort = 0.5;  // samples; s
+    const double before = r_.t[signals_.onset] - r_.t.front(), n = static_cast<double>(signals_.onset + 1);
+    const bool few = !signals_.slow && (n < kFewest || before < kLeast);
+    // A short stretch before a jump may be one of a fault, and a record without jumps may begin in a swing.
+    const auto looked_at = signals_.slow ? static_cast<std::size_t>(kShort * r_.rate()) + 1 : signals_.onset;
+    const bool doubtful = !few && (signals_.slow || before < kShort);
+    const double moves = doubtful ? moves_within(looked_at) * machine_per_record() : 0;
+    const bool sagged = doubtful && !signals_.slow && std::abs(signals_.V.level - last_voltage()) > 0.08;
+    if (few || sagged || moves > 0.02) {
+      refuse("no_pre_event",
+             few      ? fmt::format("{:.3g} s before the event", before)
+             : sagged ? fmt::format("V = {:.3g} pu before the first jump and {:.3g} pu at the end",
+                                    signals_.V.level, last_voltage())
+                      : fmt::format("P or Q moves by {:.2g} pu of the machine in the first {:.2g} s", moves,
+                                    static_cast<double>(looked_at) * r_.step()),
+             "the model starts from the steady state before the event, which the record must show",
+             "export it from at least 1 s before the event");
+      return false;
+    }
+    if (before < kShort)
+      warn("short_pre_event",
+           signals_.slow ? fmt::format("something moves from {:.3g} s on, without a jump", before)
+                         : fmt::format("{:.3g} s before the event, {:.0f} samples", before, n),
+           signals_.slow
+               ? "the model starts at the mean of the first second (--pre-event) and is driven from the "
+                 "first sample on"
+               : "operating point and noise are known from so few only, so the verdict allows for more",
+           "export it from at least 1 s before the event where that is possible");
+    return true;
+  }
+
+  /// How far P or Q goes in the first samples, beyond the noise [pu on the record's base].
+  [[nodiscard]] double moves_within(std::size_t samples) const {
+    double most = 0;
+    for (const auto& [y, noise] : {std::pair{&r_.P, signals_.P.white}, {&r_.Q, signals_.Q.white}}) {
+      const auto n = std::clamp<std::size_t>(samples, 1, y->size());
+      const auto [low, high] = std::minmax_element(y->begin(), y->begin() + static_cast<std::ptrdiff_t>(n));
+      most = std::max(most, *high - *low - 4 * noise);  // what noise alone spans in half a second
+    }
+    return most;
+  }
+  /// Median over the last second.
+  [[nodiscard]] double last_voltage() const {
+    const auto n = std::min(r_.V.size(), static_cast<std::size_t>(r_.rate()) + 1);
+    return median_of({r_.V.end() - static_cast<std::ptrdiff_t>(n), r_.V.end()});
+  }
+
+  /// Steps that a transducer or an archive has left.
+  void quantised() {
+    const double scale = machine_per_record();
+    for (const auto& [name, y, limit] :
+         {std::tuple{"V", &r_.V, 2e-4}, {"P", &r_.P, 0.002 / scale}, {"Q", &r_.Q, 0.002 / scale}})
+      if (const double step = record::quantum(*y); step > limit)
+        warn(std::string("quantised_") + name, fmt::format("{} comes in steps of {:.3g} pu", name, step),
+             "a transducer or an archive has rounded it; noise is taken to be at least what that leaves",
+             "export it with more digits where that is possible");
   }
 
   /// Powers must stand still before the event, or the equilibrium that the model starts in is not the

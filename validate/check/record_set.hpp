@@ -9,8 +9,9 @@
 namespace swingbank::validate::check {
 
 struct RecordSet {
-  std::vector<record::Record> records;             ///< in the order given
-  std::vector<std::vector<std::string>> warnings;  ///< of each record: findings that do not refuse it
+  std::vector<record::Record> records;  ///< in the order given
+  std::vector<std::vector<std::string>>
+      warnings;  ///< of each record: what reading it did, and findings that do not refuse it
 };
 
 /// The findings that warn, as sentences. Throws InputError with those that refuse.

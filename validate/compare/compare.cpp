@@ -77,9 +77,10 @@ void measure_channels(const plant::PlantModel& model, DriveBy drive, const playi
   };
   if (power) {
     add({"V", "pu", 1, event::kLeastNoise, true, true, "fault"}, e.record.V, e.playback.V);
-    add({"frequency", "mHz", 1e3 * base.frequency, event::kLeastSpeedNoise, true, false},
-        frequency_of(e.record.t, e.record.theta, base.frequency),
-        frequency_of(e.record.t, e.playback.theta, base.frequency));
+    if (e.record.angle != record::AngleSource::none)
+      add({"frequency", "mHz", 1e3 * base.frequency, event::kLeastSpeedNoise, true, false},
+          frequency_of(e.record.t, e.record.theta, base.frequency),
+          frequency_of(e.record.t, e.playback.theta, base.frequency));
   }
   const auto add_output = [&](playin::Output o, const std::vector<double>& measured,
                               const std::vector<double>& modelled, bool starts_at_mean, bool judged) {
@@ -107,25 +108,24 @@ void play(const plant::PlantModel& model, DriveBy drive, const playin::PlayInOpt
   measure_channels(model, drive, options, e);
 }
 
+/// P and Q drive, as nothing else can.
+void play_without_angle(const plant::PlantModel& model, const playin::PlayInOptions& options,
+                        EventComparison& e) {
+  try {
+    play(model, DriveBy::power, options, e);
+  } catch (const InputError& error) {
+    const Problem& p = error.problems().front();
+    throw InputError(
+        {p.what, p.where, p.why,
+         "check base and sign of P and Q; the record has neither angle nor frequency, so that only they "
+         "can drive the model: with one of the two the voltage could"});
+  }
+}
+
 /// Whether nothing but noise is left of the event by itself.
 bool explained(const EventComparison& e) {
   std::vector<EventComparison> one = {e};
   return judge(one).adequate;
-}
-
-/// The record without what comes after `last`. Throws InputError if too little is left.
-record::Record until(record::Record r, double last) {
-  const auto kept =
-      static_cast<std::size_t>(std::ranges::upper_bound(r.t, last + 1e-4 * r.step()) - r.t.begin());
-  if (kept == r.t.size()) return r;
-  if (kept < record::kFewestSamples)
-    throw InputError({fmt::format("{} samples", kept), r.name,
-                      fmt::format("--until {:g} s leaves fewer than {}", last, record::kFewestSamples),
-                      "give a later --until"});
-  for (auto* channel :
-       {&r.t, &r.V, &r.theta, &r.P, &r.Q, &r.f, &r.speed, &r.Efd, &r.Ifd, &r.theta_as_written})
-    if (!channel->empty()) channel->resize(kept);
-  return r;
 }
 
 /// One cell of all maps, and what it is called.
@@ -165,7 +165,8 @@ std::string describe_fit(const EventComparison& e, bool tried, const std::string
 }
 
 void explain(EventComparison& e, bool tried, const std::string& failed) {
-  if (const auto smeared = std::ranges::count(e.left_out, 1); smeared > 0)
+  if (const auto smeared = std::ranges::count(e.left_out, 1) - std::ranges::count(e.record.lost, 1);
+      smeared > 0)
     e.notes.push_back(fmt::format(
         "The instrument's filter has smeared the jumps over {} samples: these are neither played in nor "
         "compared, and instants and start were moved to where the rest is met best.",
@@ -176,9 +177,10 @@ void explain(EventComparison& e, bool tried, const std::string& failed) {
                     "{} Give them with --switch where they are known.",
                     1e3 * e.switchings.front().uncertainty, describe_fit(e, tried, failed)));
   if (e.switchings.empty())
-    e.notes.push_back(
-        "The voltage does not jump anywhere: the first seconds are taken for the steady state "
-        "(--pre-event).");
+    e.notes.push_back(fmt::format(
+        "The voltage does not jump anywhere: the first {:.3g} s are taken for the steady state (--pre-event){}.",
+        e.record.t[static_cast<std::size_t>(e.playback.start.samples - 1)] - e.record.t.front(),
+        tried && e.fitted ? ", and the start was moved within its noise to where the rest is met best" : ""));
   if (e.playback.start.drift != 0)
     e.notes.push_back(
         fmt::format("Before the event the angle turns by {:.3g} rad/s (frequency {:+.2f} mHz off nominal): "
@@ -216,8 +218,11 @@ ChannelComparison compare_channel(const ChannelRule& channel, const std::vector<
   const auto seen = bridged(c.residual, event.left_out);
   const std::span<const double> all(seen);
   const auto doubt = event.doubt.find(channel.name);
-  c.map = error_map(t, all, event.windows,
-                    estimate_noise(all.first(static_cast<std::size_t>(quiet)), channel.floor),
+  // Values that come in steps hide noise: what the steps leave is the least.
+  const double step = record::quantum(measured);
+  const double floor =
+      std::hypot(channel.floor, std::sqrt(std::max(0.0, step * step / 12 - c.noise * c.noise)));
+  c.map = error_map(t, all, event.windows, estimate_noise(all.first(static_cast<std::size_t>(quiet)), floor),
                     {.quiet = quiet,
                      .starts_at_mean = channel.starts_at_mean,
                      .skip = channel.skip,
@@ -276,9 +281,17 @@ ChannelUnit channel_unit(playin::Output output, const record::RecordBase& base) 
 }
 
 EventComparison compare_event(const plant::PlantModel& model, record::Record record,
-                              const CompareOptions& options) {
+                              const CompareOptions& asked) {
   EventComparison e;
-  e.record = until(std::move(record), options.play_in.until);
+  CompareOptions options = asked;
+  e.record =
+      record::stretch(std::move(record), -std::numeric_limits<double>::infinity(), options.play_in.until);
+  e.left_out = e.record.lost;
+  const auto step = [&](const char* what, int done) {
+    if (options.progress) options.progress(fmt::format("{}: {}", e.record.name, what), done, 3);
+  };
+  const bool no_angle = e.record.angle == record::AngleSource::none;
+  if (no_angle) options.drive = DriveBy::power;
   e.detected = options.switchings.empty();
   const event::Jumps jumps = options.jumps == event::Jumps::either
                                  ? event::jumps_of({e.record}, options.jump_threshold)
@@ -297,8 +310,10 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
       e.switchings = playin::detect_switchings(e.record, options.jump_threshold);
     else
       for (const double t : options.switchings) e.switchings.push_back({.time = t});
-    play(model, DriveBy::voltage, options.play_in, e);
-    if (e.detected && options.fit_switchings && !e.switchings.empty()) {
+    step("the voltage is played in", 0);
+    if (!no_angle) play(model, DriveBy::voltage, options.play_in, e);
+    if (!no_angle && e.detected && options.fit_switchings && (!e.switchings.empty() || !explained(e))) {
+      step("instants and start are fitted", 1);
       try {
         if (EventComparison other = fitted(); explained(other)) e = std::move(other);
       } catch (const InputError& error) {  // a fit may take fewer steps, and the play-in above stands
@@ -306,14 +321,17 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
       }
     }
   }
-  explain(e, options.fit_switchings, failed);
+  step("what is left is measured", 2);
+  if (no_angle) play_without_angle(model, options.play_in, e);
+  explain(e, options.fit_switchings && !no_angle, failed);
   if (options.drive == DriveBy::power) {  // with the instants that the voltage told
-    play(model, DriveBy::power, options.play_in, e);
+    if (!no_angle) play(model, DriveBy::power, options.play_in, e);
     e.notes.push_back(
         "P and Q drive the model. No network holds its angle, so a small lasting error of P grows into one "
         "of frequency and speed: both are shown, the verdict is about the voltage and the field. During a "
         "fault the voltage answers many times as strongly to noise of P and Q, so that window is not judged.");
   }
+  step("compared", 3);
   return e;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 // Measured against modelled P and Q of one event, per window of time and beside the record's own noise.
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -60,7 +61,9 @@ struct CompareOptions {
   /// middle of the interval stays.
   bool fit_switchings = true;
   event::Jumps jumps = event::Jumps::either;  ///< what the instrument does to jumps; either: the record tells
-  playin::PlayInOptions play_in;              ///< samples after its `until` are left out of the comparison
+  /// Told before each step of a record that is long: what comes, and how many steps are done of how many.
+  std::function<void(const std::string& what, int done, int total)> progress = {};
+  playin::PlayInOptions play_in;  ///< samples after its `until` are left out of the comparison
 };
 
 /// How a channel is shown, and what computing it leaves where a record has no noise.

@@ -38,6 +38,7 @@ void add_event(report::Page& page, const EventComparison& e) {
       "{} samples at {:.6g} per second. Switching: {}. Start: P = {:.2f} MW, Q = {:.2f} Mvar, V = {:.4f} pu.",
       e.record.samples(), e.record.rate(), describe_instants(e), e.playback.start.P * e.record.base.mva,
       e.playback.start.Q * e.record.base.mva, std::abs(e.playback.start.voltage)));
+  if (const auto begins = record::beginning(e.record); !begins.empty()) page.text("t = 0 is " + begins + ".");
   for (const auto& note : e.notes) page.note(note);
   for (const auto& c : e.channels) {
     const auto in_units = [&](std::vector<double> v) {
@@ -79,6 +80,7 @@ nlohmann::json to_json(const WindowError& w) {
 nlohmann::json to_json(const EventComparison& e) {
   nlohmann::json j = {{"record", e.record.name},
                       {"record_xxh64", fmt::format("{:016x}", e.record.hash)},
+                      {"begins", record::beginning(e.record)},
                       {"samples", e.record.samples()},
                       {"rate_per_s", e.record.rate()},
                       {"switchings_found", e.detected},
@@ -139,6 +141,8 @@ std::string terminal_report(const plant::PlantModel& model, const std::vector<Ev
   out += "* exceeds what noise alone allows\n";
   for (const auto& e : events) {
     out += fmt::format("\n{}: switching at {}\n", e.record.name, describe_instants(e));
+    if (const auto begins = record::beginning(e.record); !begins.empty())
+      out += "  t = 0 is " + begins + "\n";
     for (const auto& note : e.notes) out += "  note: " + note + "\n";
   }
   return out + "\n" + adequacy.sentence + "\n" + thresholds::ruling_text(adequacy.ruling) + "\n";
@@ -169,10 +173,12 @@ std::string json_report(const plant::PlantModel& model, const std::vector<EventC
 std::string csv_playback(const EventComparison& e) {
   std::string out = "t_s,V_pu,theta_rad";
   for (const auto& c : e.channels) out += fmt::format(",{0}_measured_pu,{0}_modelled_pu", c.name);
+  if (e.record.epoch) out += ",utc";
   out += "\n";
   for (std::size_t k = 0; k < e.record.t.size(); ++k) {
     out += fmt::format("{:.9g},{:.9g},{:.9g}", e.record.t[k], e.record.V[k], e.record.theta[k]);
     for (const auto& c : e.channels) out += fmt::format(",{:.9g},{:.9g}", c.measured[k], c.modelled[k]);
+    if (e.record.epoch) out += "," + record::utc_text(*e.record.epoch + e.record.t[k]);
     out += "\n";
   }
   return out;
@@ -215,7 +221,8 @@ report::Provenance provenance(const plant::PlantModel& model, const std::vector<
   if (!model.standard.empty())
     rows.emplace_back("standard values", fmt::format("{}", fmt::join(model.standard, ", ")));
   for (const auto& e : events)
-    rows.emplace_back("record", fmt::format("{}, XXH64 {:016x}", e.record.name, e.record.hash));
+    rows.emplace_back("record", fmt::format("{}, XXH64 {:016x}{}", e.record.name, e.record.hash,
+                                            e.record.epoch ? ", begins " + record::beginning(e.record) : ""));
   return rows;
 }
 

@@ -155,6 +155,7 @@ void drop_swings(std::vector<FitEvent>& events) {
 std::vector<char> left_out(const FitEvent& e) {
   std::vector<char> marks = e.smeared;
   marks.resize(e.record.t.size());
+  for (std::size_t k = 0; k < e.record.lost.size(); ++k) marks[k] = marks[k] || e.record.lost[k];
   for (std::size_t k = 0; k < marks.size(); ++k)
     if (std::ranges::any_of(e.switchings, [&](const playin::Switching& s) {
           return s.uncertainty > 0 && std::abs(e.record.t[k] - s.time) < e.record.step();
@@ -194,6 +195,8 @@ NoiseModel noise_through(const sim::plant::PlantUnderTest& tested, const Events&
     Eigen::MatrixXd covariance = scatter / freedom;
     for (Eigen::Index c = 0; c < n; ++c) {
       const bool speed = e.channels[static_cast<std::size_t>(c)] == playin::Output::speed;
+      const double step = record::quantum(e.measured(e.channels[static_cast<std::size_t>(c)]));
+      covariance(c, c) = std::max(covariance(c, c), step * step / 12);
       covariance(c, c) += std::pow(speed ? kLeastSpeedNoise : kLeastNoise, 2);
     }
     noise.push_back({.deviation = covariance.diagonal().cwiseSqrt(),
@@ -250,6 +253,7 @@ std::vector<playin::Switching> find_switchings(const record::Record& record, dou
 WhitenedEvents prepare_events(const plant::PlantModel& model, std::vector<record::Record> records,
                               const FitEventOptions& options) {
   std::vector<FitEvent> events;
+  for (const record::Record& r : records) record::require_angle(r);
   const Jumps jumps =
       options.jumps == Jumps::either ? jumps_of(records, options.jump_threshold) : options.jumps;
   for (record::Record& r : records) events.push_back(prepare(std::move(r), options, jumps));

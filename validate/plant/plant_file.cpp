@@ -112,6 +112,9 @@ std::string compose(const PlantModel& model, const std::vector<std::string>& pro
                       number(model.record_base.mva));
   if (model.record_base.kv > 0)
     text += fmt::format("base_kv = {}  # base of voltages in kV\n", number(model.record_base.kv));
+  if (!model.reading.columns.empty()) text += "\n[record.columns]\n";
+  for (const auto& [word, column] : model.reading.columns)
+    text += fmt::format("{} = {}\n", word, in_quotes(column));
   for (const auto* block : blocks_of(model)) append_block(text, model, *block);
   append_submitted(text, model);
   return text;
@@ -163,6 +166,7 @@ std::string difference(const PlantModel& a, const PlantModel& b) {
   if (!same(a.plant.mva, b.plant.mva)) return "the machine's base";
   if (!same(a.record_base.mva, b.record_base.mva) || !same(a.record_base.kv, b.record_base.kv))
     return "the records' base";
+  if (a.reading.columns != b.reading.columns) return "the records' columns";
   if (!same(a.conventions.frequency, b.conventions.frequency) ||
       a.conventions.speed_voltage != b.conventions.speed_voltage ||
       a.conventions.mechanical_power != b.conventions.mechanical_power)

@@ -271,6 +271,8 @@ PlantModel parse_plant_model(const std::string& text, const fs::path& file) {
   model.record_base.frequency = hz;
   model.record_base.mva = config.require<double>("record.base_mva", {kSmallest, 1e9, "MVA"});
   model.record_base.kv = config.optional<double>("record.base_kv", 0.0, {kSmallest, 1e9, "kV"});
+  for (const auto& word : config.keys("record.columns"))
+    model.reading.columns[word] = config.require<std::string>("record.columns." + word);
   if (config.has("grid")) {
     read_from_grid(config, model);
   } else {

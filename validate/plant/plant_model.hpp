@@ -20,6 +20,7 @@ struct PlantModel {
   sim::plant::Plant plant;   ///< its generation is set from each record
   sim::Conventions conventions;
   record::RecordBase record_base;                ///< what "pu" means in the records of this plant
+  record::ReadOptions reading;                   ///< which columns of its records are read, and which stretch
   std::vector<std::filesystem::path> laws = {};  ///< law files that its effects come from
   int bus = 0;                                   ///< number in its case; 0: not given
   std::string id = "1";                          ///< the machine's, there

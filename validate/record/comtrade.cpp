@@ -48,7 +48,11 @@ class Data {
       lines();
     else
       bytes();
-    if (static_cast<long>(out_.places.size()) != c_.samples)
+    const auto found = static_cast<long>(out_.places.size());
+    if (found > c_.samples && found <= c_.samples + 1 + c_.samples / 100)
+      out_.notes.push_back(fmt::format("The data hold {} samples, the configuration says {}: all were read.",
+                                       found, c_.samples));
+    else if (found != c_.samples)
       problems_.add(fmt::format("{} samples", out_.places.size()), out_.file,
                     fmt::format("the configuration has {}", c_.samples), "export the record again");
     times();

@@ -114,7 +114,7 @@ PhasorTrack phasors(const std::array<const Wave*, 3>& phases, const Comtrade& co
 }
 
 RawColumn column(std::string name, Quantity q, Unit u, std::vector<double> values) {
-  return {std::move(name), {q, u, false, {}}, std::move(values)};
+  return {std::move(name), {q, u, false, {}, false}, std::move(values)};
 }
 
 Record from_waveforms(const Comtrade& comtrade, const std::vector<Wave>& waves, Record about,
@@ -130,8 +130,19 @@ Record from_waveforms(const Comtrade& comtrade, const std::vector<Wave>& waves, 
     problems.add(fmt::format("a record of a {:g} Hz grid", comtrade.nominal), comtrade.file,
                  fmt::format("the model is for {:g} Hz", base.frequency),
                  "set frequency_hz in the plant file, or take that plant's own record");
-  std::vector<double> t = comtrade.t;  // evenly spaced, or the phasors mean nothing
-  settle_times(t, comtrade.resolution, about, faults);
+  // Evenly spaced, or the phasors mean nothing: a gap in waveforms is not bridged.
+  const EvenRows even = settle_rows({.t = comtrade.t,
+                                     .resolution = comtrade.resolution,
+                                     .same = [](std::size_t, std::size_t) { return false; }},
+                                    about, faults);
+  const std::vector<double>& t = even.t;
+  for (std::size_t k = 0; k < even.place.size(); ++k)
+    if (even.place[k] != static_cast<double>(k)) {
+      faults.add("step", "waveforms that are not evenly sampled", std::min(k, comtrade.t.size() - 1),
+                 "samples are missing or repeated there",
+                 "take the stretch before or after it (--until, --from)");
+      break;
+    }
   const double rate = options.phasor_rate > 0 ? options.phasor_rate : base.frequency;
   const double sampled = t.size() > 1 ? 1 / (t[1] - t[0]) : 0;
   if (t.size() > 1 && !(sampled >= 8 * base.frequency))
@@ -161,14 +172,14 @@ Record from_waveforms(const Comtrade& comtrade, const std::vector<Wave>& waves, 
                   "{:g} Hz, stamped in its middle.",
                   sampled, rate, base.frequency));
   raw.about = std::move(about);
-  return build_record(std::move(raw), base, std::move(faults), std::move(problems), comtrade.file);
+  return build_record(std::move(raw), base, options, std::move(faults), std::move(problems), comtrade.file);
 }
 
 Record from_phasors(const Comtrade& comtrade, Record about, const RecordBase& base,
                     const ReadOptions& options) {
   Problems problems;
   std::vector<Heading> headings;
-  for (const auto& c : comtrade.channels) headings.push_back({c.id, column_meaning(c.id, c.unit)});
+  for (const auto& c : comtrade.channels) headings.push_back({c.id, column_meaning(c.id, c.unit), c.unit});
   // Where a quantity comes more than once, the circuits tell the terminals apart.
   std::map<std::pair<Quantity, std::string>, int> seen;
   bool twice = false;
@@ -177,7 +188,7 @@ Record from_phasors(const Comtrade& comtrade, Record about, const RecordBase& ba
   for (std::size_t c = 0; c < headings.size(); ++c)
     if (twice && headings[c].meaning && headings[c].meaning->terminal.empty())
       headings[c].meaning->terminal = comtrade.channels[c].component;
-  headings.push_back({"t_s", ColumnMeaning{Quantity::time, Unit::second, false, {}}});
+  headings.push_back({"t_s", ColumnMeaning{Quantity::time, Unit::second, false, {}, false}});
   const auto chosen = choose_columns(headings, options, base, comtrade.file, about, problems);
   problems.raise();
   SampleFaults faults([&](std::size_t first, std::size_t last) { return comtrade.where(first, last); });
@@ -190,15 +201,15 @@ Record from_phasors(const Comtrade& comtrade, Record about, const RecordBase& ba
     const ComtradeChannel& c = comtrade.channels[i];
     for (std::size_t k = 0; k < c.values.size(); ++k)
       if (!std::isfinite(c.values[k]))
-        faults.add(c.id, c.id, k, "the value is marked missing",
-                   "fill it at the source, or cut the record before it");
+        faults.lose(c.id, c.id, k, "the value is marked missing",
+                    "fill it at the source, or cut the record before it");
     if (c.skew != 0)
       about.notes.push_back(
           fmt::format("Channel {} has a skew of {:.3g} ms, which was left as it is.", c.id, 1e3 * c.skew));
   }
   raw.time_resolution = comtrade.resolution;
   raw.about = std::move(about);
-  return build_record(std::move(raw), base, std::move(faults), std::move(problems), comtrade.file);
+  return build_record(std::move(raw), base, options, std::move(faults), std::move(problems), comtrade.file);
 }
 
 }  // namespace
@@ -217,8 +228,9 @@ Record record_of_comtrade(const Comtrade& comtrade, const std::string& name, con
       waves.push_back(*w);
       (w->voltage ? voltage : current) = true;
     }
-  return voltage && current ? from_waveforms(comtrade, waves, std::move(about), base, options)
-                            : from_phasors(comtrade, std::move(about), base, options);
+  return voltage && current && options.columns.empty()
+             ? from_waveforms(comtrade, waves, std::move(about), base, options)
+             : from_phasors(comtrade, std::move(about), base, options);
 }
 
 }  // namespace swingbank::validate::record

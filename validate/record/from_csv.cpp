@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "validate/record/detail/build.hpp"
+#include "validate/record/detail/playback.hpp"
+#include "validate/record/detail/text.hpp"
 #include "validate/record/detail/times.hpp"
 
 namespace swingbank::validate::record {
@@ -25,9 +27,17 @@ std::string_view unquoted(std::string_view s) {
   return s.substr(first, s.find_last_not_of(blank) - first + 1);
 }
 
-/// Cells of a line; a separator between quotes is text.
+/// Cells of a line; a separator between quotes is text, and blanks separate in any number.
 Cells split(std::string_view line, char separator) {
   Cells cells;
+  if (separator == ' ') {
+    for (std::string_view rest = trim(line); !rest.empty(); rest = trim(rest)) {
+      const auto end = std::min(rest.find_first_of(" \t"), rest.size());
+      cells.push_back(trim(rest.substr(0, end)));
+      rest.remove_prefix(end);
+    }
+    return cells;
+  }
   std::size_t begin = 0;
   bool quoted = false;
   for (std::size_t at = 0; at <= line.size(); ++at) {
@@ -91,6 +101,22 @@ Number parse_number(std::string_view cell, char separator) {
   return n;
 }
 
+/// Do blanks separate the values? So they do where three lines are numbers that nothing else separates.
+bool by_blanks(std::string_view text) {
+  int found = 0;
+  for (int n = 0; n < 50 && !text.empty(); ++n) {
+    const auto end = text.find('\n');
+    const std::string_view line = trim(text.substr(0, end));
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    if (line.empty() || line.find_first_of(",;\t") != std::string_view::npos) continue;
+    const Cells cells = split(line, ' ');
+    if (cells.size() >= 3 && std::ranges::all_of(cells, [](auto c) { return parse_number(c, ' ').ok; }) &&
+        ++found == 3)
+      return true;
+  }
+  return false;
+}
+
 class CsvReader {
  public:
   CsvReader(std::string_view text, std::string name, const RecordBase& base, const ReadOptions& options)
@@ -98,13 +124,20 @@ class CsvReader {
 
   Record read() {
     if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);  // byte order mark of spreadsheet programs
+    blanks_ = by_blanks(text_);
     read_header();
     RawRecord raw;
     raw.about.name = name_;
     const std::string at = header_.size() == 1
                                ? fmt::format("{}:{}", name_, header_lines_.front())
                                : fmt::format("{}:{}-{}", name_, header_lines_.front(), header_lines_.back());
-    chosen_ = choose_columns(headings(), options_, base_, at, raw.about, problems_);
+    headings();
+    for (auto& h : headings_)
+      if (h.meaning && h.meaning->quantity == Quantity::time && !h.meaning->unit) take_seconds(h, raw.about);
+    chosen_ = choose_columns(headings_, options_, base_, at, raw.about, problems_);
+    for (const auto i : chosen_)
+      if (headings_[i].meaning->quantity == Quantity::time && stamped(i))
+        headings_[i].meaning->unit = Unit::stamp;
     problems_.raise();  // without columns no row means anything
     for (const auto i : chosen_) raw.columns.push_back({headings_[i].name, *headings_[i].meaning, {}});
     SampleFaults faults([this](std::size_t first, std::size_t last) {
@@ -113,10 +146,11 @@ class CsvReader {
     });
     while (next_row()) row(raw, faults);
     finish_times(raw);
+    finish_beginning(raw);
     if (commas_ && points_)
       problems_.add("decimal commas and decimal points", name_, "one file uses both",
                     "export it with points");
-    return build_record(std::move(raw), base_, std::move(faults), std::move(problems_), name_);
+    return build_record(std::move(raw), base_, options_, std::move(faults), std::move(problems_), name_);
   }
 
  private:
@@ -144,19 +178,24 @@ class CsvReader {
   void read_header() {
     std::string_view line;
     while (next(line)) {
-      if (header_.empty()) separator_ = separator_of(line);
+      if (header_.empty()) separator_ = blanks_ ? ' ' : separator_of(line);
       const Cells cells = split(line, separator_);
       const bool data = is_data(cells);
+      if (data && header_.empty() && by_number()) {
+        header_.emplace_back(cells.size());  // headings without names: the map counts them
+        header_lines_.push_back(number_);
+      }
       if (data && header_.empty())
         problems_.add("no header line", fmt::format("{}:{}", name_, number_), "values come first",
-                      "give a first line such as t_s,V_pu,theta_rad,P_pu,Q_pu");
+                      "give a first line such as t_s,V_pu,theta_rad,P_pu,Q_pu, or say what the columns are: "
+                      "--columns \"t=#1 [s],V=#2 [pu],…\"");
       problems_.raise();
       if (data || header_.size() == 6) {
         pending_ = cells;
         break;
       }
       if (header_.size() == 1 && header_.front().size() == 1) header_.clear(), header_lines_.clear();
-      if (header_.empty()) separator_ = separator_of(line);
+      if (header_.empty()) separator_ = blanks_ ? ' ' : separator_of(line);
       header_.push_back(split(line, separator_));
       header_lines_.push_back(number_);
     }
@@ -212,7 +251,20 @@ class CsvReader {
     return std::nullopt;
   }
 
-  const std::vector<Heading>& headings() {
+  /// Does the map of columns count them?
+  [[nodiscard]] bool by_number() const {
+    return !options_.columns.empty() && std::ranges::all_of(options_.columns, [](const auto& entry) {
+      return entry.second.starts_with('#') || entry.second.starts_with("-#");
+    });
+  }
+
+  /// "Time" without a unit, and with numbers.
+  static void take_seconds(Heading& h, Record& about) {
+    h.meaning->unit = Unit::second;
+    about.notes.push_back(fmt::format("The column '{}' names no unit: it was taken for seconds.", h.name));
+  }
+
+  void headings() {
     const auto units = unit_line();
     const std::size_t quantities = quantity_line(units);
     const auto stations = station_line(quantities, units);
@@ -223,9 +275,9 @@ class CsvReader {
       if (stations && !header_cell(*stations, i).empty()) station = header_cell(*stations, i);
       if (m && m->quantity == Quantity::time && !m->unit && stamped(i)) m->unit = Unit::stamp;
       if (m && stations && m->terminal.empty() && m->quantity != Quantity::time) m->terminal = station;
-      headings_.push_back({std::string(cell), m});
+      headings_.push_back(
+          {std::string(cell), m, std::string(units ? header_cell(*units, i) : std::string_view{})});
     }
-    return headings_;
   }
 
   [[nodiscard]] bool stamped(std::size_t column) const {
@@ -248,6 +300,12 @@ class CsvReader {
     lines_.push_back(number_);
     if (cells_.size() == width_ + 1 && cells_.back().empty()) cells_.pop_back();  // separator at the end
     const bool ragged = cells_.size() != width_;
+    if (ragged && cells_.size() < width_ && ends()) {
+      raw.about.notes.push_back(
+          fmt::format("The last line ({}:{}) breaks off and was left out.", name_, number_));
+      lines_.pop_back();
+      return;
+    }
     if (ragged)
       faults.add("line", fmt::format("{} values", cells_.size()), sample,
                  fmt::format("the header has {} columns", width_), "complete the line or remove it");
@@ -259,6 +317,11 @@ class CsvReader {
                                                : value(column, cells_[chosen_[c]], sample, faults);
       column.values.push_back(v);
     }
+  }
+
+  /// Is nothing but blank lines left?
+  [[nodiscard]] bool ends() const {
+    return text_.find_first_not_of(" \t\r\n\"\x1a") == std::string_view::npos;
   }
 
   double stamp(const RawColumn& column, std::string_view cell, std::size_t sample, RawRecord& raw,
@@ -284,19 +347,32 @@ class CsvReader {
     commas_ = commas_ || n.comma;
     points_ = points_ || n.point;
     const auto what = [&] { return fmt::format("{} = '{}'", column.name, cell); };
-    if (says_missing(cell))
+    const bool time = column.meaning.quantity == Quantity::time;
+    if (says_missing(cell) && !time)
+      faults.lose(column.name, what(), sample, "the value is missing", mend);
+    else if (says_missing(cell))
       faults.add(column.name, what(), sample, "the value is missing", mend);
     else if (!n.ok)
       faults.add(column.name, what(), sample, "this is no number", mend);
     else if (!std::isfinite(n.value))
       faults.add(column.name, what(), sample, "the value is not finite", mend);
-    else if (column.meaning.quantity != Quantity::time && is_code(n.value))
-      faults.add(column.name, what(), sample, "instruments write this where a value is missing", mend);
+    else if (!time && is_code(n.value))
+      faults.lose(column.name, what(), sample, "instruments write this where a value is missing", mend);
     else {
-      if (column.meaning.quantity == Quantity::time) decimals_ = std::max(decimals_, n.decimals);
+      if (time) decimals_ = std::max(decimals_, n.decimals);
       return n.value;
     }
     return kNoValue;
+  }
+
+  /// UTC of the first stamp, where its zone is known.
+  void finish_beginning(RawRecord& raw) const {
+    if (!first_ || first_->day == 0) return;
+    const auto time =
+        std::ranges::find(raw.columns, Quantity::time, [](const auto& c) { return c.meaning.quantity; });
+    const std::string heading = normalised(time->name);
+    if (first_->zoned || heading.find("utc") != std::string::npos || heading.find("gmt") != std::string::npos)
+      raw.about.epoch = static_cast<double>(first_->day) * 86400 + first_->second;
   }
 
   void finish_times(RawRecord& raw) const {
@@ -317,7 +393,7 @@ class CsvReader {
   std::vector<Heading> headings_;
   std::vector<std::size_t> chosen_;
   Cells pending_, cells_;  ///< the first line of values, and the present one
-  bool started_ = false, commas_ = false, points_ = false;
+  bool started_ = false, commas_ = false, points_ = false, blanks_ = false;
   std::optional<Stamp> first_;
   int decimals_ = 0;
   std::vector<int> lines_;  ///< file line of each sample
@@ -328,7 +404,13 @@ class CsvReader {
 
 Record parse_record(std::string_view text, const std::string& name, const RecordBase& base,
                     const ReadOptions& options) {
-  Record record = CsvReader(text, name, base, options).read();
+  refuse_binary(text, name);
+  std::vector<std::string> notes;
+  const std::string known = as_utf8(text, notes);
+  const bool playback = is_powerworld(known) || is_plb(name);
+  Record record =
+      playback ? playback_record(known, name, base, options) : CsvReader(known, name, base, options).read();
+  record.notes.insert(record.notes.begin(), notes.begin(), notes.end());
   record.hash = XXH64(text.data(), text.size(), 0);
   return record;
 }

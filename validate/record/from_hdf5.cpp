@@ -53,12 +53,13 @@ Record read_hdf5_record(const std::filesystem::path& file, const RecordBase& bas
   raw.about.format = "HDF5";
   raw.about.terminal = plants[plant];
   raw.about.hash = XXH64(bytes.data(), bytes.size(), 0);
-  std::vector<Heading> headings{{"t_s", ColumnMeaning{Quantity::time, Unit::second, false, {}}}};
+  std::vector<Heading> headings{{"t_s", ColumnMeaning{Quantity::time, Unit::second, false, {}, false}}};
   const auto units = h.texts_attribute("channel_units");
   for (std::size_t c = 0; c < channels.size(); ++c)
     headings.push_back({channels[c], column_meaning(channels[c], c < units.size() ? units[c] : "")});
   Problems problems;
-  const auto chosen = choose_columns(headings, {}, base, file.string(), raw.about, problems);
+  const auto chosen = choose_columns(headings, {.columns = options.columns, .part = options.part}, base,
+                                     file.string(), raw.about, problems);
   raw.about.terminal = plants[plant];
   problems.raise();
   for (const auto i : chosen) {
@@ -79,7 +80,7 @@ Record read_hdf5_record(const std::filesystem::path& file, const RecordBase& bas
     for (std::size_t k = 0; k < n; ++k)
       if (!std::isfinite(c.values[k]))
         faults.add(c.name, c.name, k, "the value is not finite", "simulate it again");
-  return build_record(std::move(raw), base, std::move(faults), std::move(problems), file.string());
+  return build_record(std::move(raw), base, options, std::move(faults), std::move(problems), file.string());
 }
 
 }  // namespace swingbank::validate::record

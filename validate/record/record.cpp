@@ -1,11 +1,15 @@
 #include "validate/record/record.hpp"
 
+#include <fmt/format.h>
 #include <xxhash.h>
 
 #include <algorithm>
 #include <cctype>
+#include <chrono>
+#include <cmath>
 
 #include "base/input_file.hpp"
+#include "validate/record/detail/build.hpp"
 #include "validate/record/formats.hpp"
 
 namespace swingbank::validate::record {
@@ -58,13 +62,111 @@ Record read_comtrade(const std::filesystem::path& file, const RecordBase& base, 
   return record;
 }
 
+/// "event.plb+meter.csv": several files of one event, unless that is one file's name.
+std::vector<std::filesystem::path> parts_of(const std::filesystem::path& named) {
+  if (std::filesystem::exists(named)) return {named};
+  std::vector<std::filesystem::path> parts;
+  const std::string text = named.string();
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find('+', at), text.size());
+    if (end > at) parts.emplace_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  return parts;
+}
+
+Record read_parts(const std::vector<std::filesystem::path>& files, const RecordBase& base,
+                  const ReadOptions& options) {
+  ReadOptions part = options;
+  part.part = true;
+  std::vector<Record> records;
+  std::string names, bytes;
+  Problems problems;
+  for (const auto& file : files) {
+    names += (names.empty() ? "" : "+") + file.filename().string();
+    try {
+      records.push_back(read_record(file, base, part));
+      bytes += fmt::format("{:016x}", records.back().hash);
+    } catch (const InputError& error) {
+      for (const auto& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
+    }
+  }
+  problems.raise();
+  Record all = join_records(std::move(records), options, names);
+  all.name = names;
+  all.hash = XXH64(bytes.data(), bytes.size(), 0);
+  return all;
+}
+
 }  // namespace
 
 std::string read_bytes(const std::filesystem::path& file) {
   return read_input(file, "no readable record", "give the path of a record");
 }
 
+Record stretch(Record r, double from, double until) {
+  const double slack = 1e-4 * r.step();
+  const auto first = static_cast<std::size_t>(std::ranges::lower_bound(r.t, from - slack) - r.t.begin());
+  const auto last = static_cast<std::size_t>(std::ranges::upper_bound(r.t, until + slack) - r.t.begin());
+  if (first == 0 && last == r.t.size()) return r;
+  const std::size_t kept = last > first ? last - first : 0;
+  if (kept < kFewestSamples)
+    throw InputError({fmt::format("{} samples", kept), r.name,
+                      fmt::format("the stretch asked for leaves fewer than {}", kFewestSamples),
+                      "give an earlier --from or a later --until"});
+  const auto cut = [&](auto& values) {
+    if (values.empty()) return;
+    values.resize(last);
+    values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first));
+  };
+  for (auto* channel :
+       {&r.t, &r.V, &r.theta, &r.P, &r.Q, &r.f, &r.speed, &r.Efd, &r.Ifd, &r.theta_as_written})
+    cut(*channel);
+  cut(r.lost);
+  return r;
+}
+
+double quantum(const std::vector<double>& values) {
+  std::vector<double> sorted = values;
+  std::ranges::sort(sorted);
+  if (sorted.size() < 3 || !(sorted.back() > sorted.front())) return 0;
+  const double same = 1e-9 * std::max(std::abs(sorted.front()), std::abs(sorted.back()));
+  std::vector<double> steps;
+  for (std::size_t k = 0; k + 1 < sorted.size(); ++k)
+    if (sorted[k + 1] - sorted[k] > same) steps.push_back(sorted[k + 1] - sorted[k]);
+  if (steps.empty() || 3 * (steps.size() + 1) > sorted.size()) return 0;
+  const double least = std::ranges::min(steps);
+  const bool grid = std::ranges::all_of(
+      steps, [&](double s) { return std::abs(s / least - std::round(s / least)) < 0.02; });
+  return grid ? least : 0;
+}
+
+void require_angle(const Record& record) {
+  if (record.angle == AngleSource::none)
+    throw InputError({"no angle and no frequency", record.name,
+                      "the voltage's magnitude alone does not say how the grid pulls the rotor",
+                      "record one of them, or let P and Q drive the model: swingbank compare --drive pq"});
+}
+
+std::string utc_text(double epoch) {
+  const auto micros = static_cast<std::int64_t>(std::llround(epoch * 1e6));
+  const std::chrono::sys_time<std::chrono::microseconds> at{std::chrono::microseconds{micros}};
+  const auto day = std::chrono::floor<std::chrono::days>(at);
+  const std::chrono::year_month_day date{day};
+  const std::chrono::hh_mm_ss clock{at - day};
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:06}Z", static_cast<int>(date.year()),
+                     static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
+                     clock.hours().count(), clock.minutes().count(), clock.seconds().count(),
+                     clock.subseconds().count());
+}
+
+std::string beginning(const Record& record) {
+  if (record.epoch) return utc_text(*record.epoch);
+  return record.start.empty() ? std::string() : record.start + " (as written; its zone is not known)";
+}
+
 Record read_record(const std::filesystem::path& named, const RecordBase& base, const ReadOptions& given) {
+  if (const auto parts = parts_of(named); parts.size() > 1) return read_parts(parts, base, given);
   ReadOptions options = given;
   const std::filesystem::path file = split_terminal(named, options);
   const std::string e = extension(file);

@@ -3,6 +3,9 @@
 // reading.
 #include <cstdint>
 #include <filesystem>
+#include <limits>
+#include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +20,10 @@ struct RecordBase {
   double frequency = 60.0;  ///< base of f_pu and omega_pu [Hz]
   double kv = 0.0;          ///< base of voltages in kV, line to line; 0: the file may not use kV
 };
+
+/// Where a record's angle comes from. An integrated one lacks what a switching turns it at once; a missing
+/// one stands as zeros.
+enum class AngleSource { measured, integrated, none };
 
 /// Samples of one terminal. All vectors have the length of `t`; optional channels are empty if not recorded.
 struct Record {
@@ -33,9 +40,13 @@ struct Record {
 
   std::string format = "CSV";            ///< what kind of file it was
   std::string terminal;                  ///< which of the file's terminals, where it names them
-  std::string start;                     ///< the file's own stamp of the first sample, where it has one
+  std::string start;                     ///< the file's own stamp of t = 0, where it has one
+  std::optional<double> epoch;           ///< UTC of t = 0 [s since 1970-01-01], where the file tells it
   std::vector<std::string> notes;        ///< what reading did that a reader of results must know
   std::vector<double> theta_as_written;  ///< [rad], before unwrapping; empty if made otherwise
+  AngleSource angle = AngleSource::measured;
+  std::vector<std::string> named;  ///< quantities whose column was chosen by ReadOptions::columns
+  std::vector<char> lost;          ///< marks samples that were not recorded and are bridged; empty: none
 
   [[nodiscard]] int samples() const { return static_cast<int>(t.size()); }
   [[nodiscard]] double step() const { return (t.back() - t.front()) / static_cast<double>(t.size() - 1); }
@@ -44,25 +55,57 @@ struct Record {
 
 /// Fewest samples a record may have: a pre-event window and a response cannot be told from less.
 constexpr int kFewestSamples = 30;
+/// Frames that a stream lost are bridged up to this length [s].
+constexpr double kLongestGap = 0.2;
+
+/// Which column of the file gives a quantity: {"V", "BUS1.VPM [kV]"}. Words are those of names_of(); the
+/// column is the heading or "#3" for the third one, with its unit in brackets where the file gives none; a
+/// "-" before it turns the sign.
+using ColumnMap = std::map<std::string, std::string>;
 
 struct ReadOptions {
   std::string terminal{};  ///< which terminal, where the file holds several
+  ColumnMap columns{};     ///< chosen by name; the others are found by themselves
+  double from = -std::numeric_limits<double>::infinity();  ///< samples before it are left out [s]
+  double until = std::numeric_limits<double>::infinity();  ///< samples after it are left out [s]
   double phasor_rate = 0;  ///< phasors per second made of waveforms; 0: one per nominal cycle
   bool power = true;       ///< P and Q are needed (or the current); false: they stay empty where not given
+  bool part = false;       ///< one of several files: what it lacks stands in another
+  bool angle = false;      ///< the angle is needed; false: it may be integrated from f, or be missing
 };
 
 /// Reads a record; the name's ending says what it is: .cfg/.dat or .cff COMTRADE, .h5 a run of
 /// `swingbank simulate`, anything else text in columns (validate/record/README.md lists names, units and
-/// dialects). "FILE#TERMINAL" picks one terminal of several. Columns that are not measurements of the
-/// terminal are left out and listed in `ignored`. Throws InputError with every fault of the file: missing,
-/// repeated or unitless columns, ragged lines, values that are missing or no finite numbers, times that do
-/// not increase or are unevenly spaced, too few samples. Each names its lines or bytes. What a readable
-/// record means is for check_record (validate/check/check.hpp).
+/// dialects). "FILE#TERMINAL" picks one terminal of several, "FILE+FILE" joins the columns of several files
+/// of one event. Columns that are not measurements of the terminal are left out and listed in `ignored`.
+/// Throws InputError with every fault of the file: missing, repeated or unitless columns, ragged lines,
+/// values that are no finite numbers or missing for longer than kLongestGap, times that do not increase or
+/// are unevenly spaced, too few samples. Each names its lines or bytes. What was mended (shorter gaps, stamps
+/// repeated, a clock that leapt) stands in `notes`. What a readable record means is for check_record
+/// (validate/check/check.hpp).
 Record read_record(const std::filesystem::path& file, const RecordBase& base,
                    const ReadOptions& options = {});
 
 /// The same from the text of a CSV file; `name` stands for the file in messages.
 Record parse_record(std::string_view text, const std::string& name, const RecordBase& base,
                     const ReadOptions& options = {});
+
+/// The record from `from` to `until` [s]; the times stay as they are. Throws InputError if too little is
+/// left.
+Record stretch(Record record, double from, double until);
+
+/// The step of values that come in steps: all lie on a grid that has a third of the values at most. 0: no
+/// such grid.
+double quantum(const std::vector<double>& values);
+
+/// Throws InputError if the record has no angle, measured or integrated: its voltage then drives no model.
+void require_angle(const Record& record);
+
+/// "2024-05-01T12:00:00.033333Z" of seconds since 1970-01-01.
+std::string utc_text(double epoch);
+
+/// What is known of the time at t = 0: UTC, or the file's own stamp and that its zone is not known; empty
+/// where neither is.
+std::string beginning(const Record& record);
 
 }  // namespace swingbank::validate::record

@@ -171,7 +171,7 @@ void read_terminal(Config& c, const std::string& name, SystemCase& s) {
   add_instruments(c, at + "instruments", s, t);
   if (t.bus < 0) return;
   attempt(c, at + "record", [&] {
-    t.record = record::read_record(c.name().parent_path() / file, s.base, {.power = !is_bus});
+    t.record = record::read_record(c.name().parent_path() / file, s.base, {.power = !is_bus, .angle = true});
     Problems problems;
     if (is_bus) {
       t.record.P.clear();

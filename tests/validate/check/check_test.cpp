@@ -130,6 +130,49 @@ TEST(RecordCheckTest, ANegativeMagnitudeIsRefusedOnReading) {
   EXPECT_THAT(test::messages([&] { rewritten(example(1), w); }),
               ::testing::ElementsAre(::testing::HasSubstr("are their columns swapped?")));
 }
+bool warned(const std::vector<Finding>& findings, const std::string& kind) {
+  return std::ranges::any_of(
+      findings, [&](const Finding& f) { return f.severity == Severity::warn && f.kind == kind; });
+}
+TEST(RecordCheckTest, AFifthOfASecondBeforeTheEventIsAWarning) {
+  const auto findings = check_record(record::stretch(example(1), 1.79, 1e9), {100, 60});
+  EXPECT_TRUE(warned(findings, "short_pre_event")) << told(findings);
+  EXPECT_NO_THROW(raise_refusals(findings)) << told(findings);
+}
+/// A dip of the frequency over 40 s, P and Q without noise or in steps, moving from the first sample on.
+record::Record dip(double noise, double step) {
+  record::Record r;
+  r.name = "dip";
+  for (int k = 0; k < 1800; ++k) {
+    const double t = k / 30.0, f = -0.002 * std::sin(std::numbers::pi * std::min(t / 40, 1.0));
+    const double p = 0.7 - 5 * f + noise * std::sin(1e3 * t * t);
+    r.t.push_back(t);
+    r.f.push_back(f);
+    r.theta.push_back(k == 0 ? 0 : r.theta.back() + 2 * std::numbers::pi * 60 * f / 30);
+    r.V.push_back(1.02 + 0.2 * f);
+    r.P.push_back(step > 0 ? step * std::round(p / step) : p);
+    r.Q.push_back(0.1 - f);
+  }
+  return r;
+}
+TEST(RecordCheckTest, EventsWithoutSwitchingAreTaken) {
+  for (const double noise : {0.0, 1e-5, 1e-3}) {
+    const auto findings = check_record(dip(noise, 0), {100, 60});
+    EXPECT_NO_THROW(raise_refusals(findings)) << told(findings);
+  }
+  const auto findings = check_record(dip(0, 0.005), {100, 60});
+  EXPECT_NO_THROW(raise_refusals(findings)) << told(findings);
+  EXPECT_TRUE(warned(findings, "quantised_P")) << told(findings);
+}
+TEST(RecordCheckTest, AnIntegratedAngleIsNotHeldAgainstTheRecord) {
+  record::Record r = example(1);
+  r.theta_as_written.clear();
+  r.angle = record::AngleSource::integrated;
+  r.theta.front() = 0;
+  for (std::size_t k = 1; k < r.t.size(); ++k)
+    r.theta[k] = r.theta[k - 1] + 2 * std::numbers::pi * 60 * r.step() * (r.f[k] + r.f[k - 1]) / 2;
+  EXPECT_NO_THROW(raise_refusals(check_record(r, {100, 60})));
+}
 TEST(RecordCheckTest, TheExamplePasses) {
   for (int i = 1; i <= 4; ++i) {
     const record::Record r = example(i);

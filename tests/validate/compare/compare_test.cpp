@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <random>
 
 #include "sim/library/library.hpp"
@@ -66,6 +67,57 @@ TEST(CompareTest, ARightModelIsAdequate) {
   EXPECT_TRUE(a.adequate) << a.sentence;
   EXPECT_EQ(a.exceeding, 0);
   EXPECT_THAT(a.sentence, HasSubstr("Adequate"));
+}
+TEST(CompareTest, FramesThatWereLostAreNotCompared) {
+  RightModel right;
+  for (const std::size_t k : {std::size_t{60}, std::size_t{300}, std::size_t{301}}) {
+    right.record.lost.resize(right.record.t.size(), 0);
+    right.record.lost[k] = 1;
+    right.record.P[k] += 0.5;  // whatever stands there
+  }
+  std::vector<EventComparison> events = {compare_event(right.model, right.record)};
+  const Adequacy a = judge(events);
+  EXPECT_TRUE(a.adequate) << a.sentence;
+  EXPECT_EQ(std::ranges::count(events[0].left_out, 1), 3);
+}
+TEST(CompareTest, WithoutAngleAndFrequencyPowerDrives) {
+  RightModel right;
+  right.record.theta.assign(right.record.t.size(), 0.0);
+  right.record.angle = record::AngleSource::none;
+  CompareOptions known;
+  known.switchings = {right.s.t_on, right.s.t_off};
+  std::vector<EventComparison> events = {compare_event(right.model, right.record, known)};
+  ASSERT_FALSE(events[0].channels.empty());
+  EXPECT_EQ(events[0].channels[0].name, "V");
+  const Adequacy a = judge(events);
+  EXPECT_TRUE(a.adequate) << a.sentence;
+}
+TEST(CompareTest, AnAngleOfTheFrequencyDrivesTheModel) {
+  RightModel right;
+  right.record.f = frequency_of(right.record.t, right.record.theta, 60);
+  std::vector<double> theta(right.record.t.size(), 0.0);
+  for (std::size_t k = 1; k < theta.size(); ++k)
+    theta[k] = theta[k - 1] + 2 * std::numbers::pi * 60 * right.record.step() *
+                                  (right.record.f[k] + right.record.f[k - 1]) / 2;
+  right.record.theta = theta;
+  right.record.angle = record::AngleSource::integrated;
+  const EventComparison e = compare_event(right.model, right.record);
+  const auto& last = e.channels[0].windows.back();
+  EXPECT_LT(last.rms, 0.02) << "what the switchings lack dies away";
+}
+TEST(CompareTest, AFifthOfASecondBeforeTheEventIsEnough) {
+  RightModel right;
+  right.record = record::stretch(right.record, 1.8, 1e9);
+  std::vector<EventComparison> events = {compare_event(right.model, right.record)};
+  const Adequacy a = judge(events);
+  EXPECT_TRUE(a.adequate) << a.sentence;
+}
+TEST(CompareTest, TheBeginningIsToldInUtc) {
+  EventComparison e = example_event();
+  EXPECT_THAT(csv_playback(e).substr(0, 200), ::testing::Not(HasSubstr("utc")));
+  e.record.epoch = 1714607940.5;
+  EXPECT_THAT(csv_playback(e).substr(0, 400), HasSubstr(",utc\n"));
+  EXPECT_THAT(csv_playback(e).substr(0, 400), HasSubstr("2024-05-01T23:59:00.500000Z"));
 }
 /// What the P-class filter of IEEE C37.118.1 (a triangle over two cycles) makes of a record at 480/s, kept at
 /// 60/s; then noise as record_of.
@@ -173,7 +225,7 @@ TEST(CompareTest, UntilLeavesOutTheRest) {
   EXPECT_NEAR(e.record.t.back(), 6.0, 1e-6);
   EXPECT_EQ(e.channels[0].residual.size(), e.record.t.size());
   EXPECT_THAT(test::messages([] { example_event({.switchings = {}, .play_in = {.until = 0.3}}); }),
-              ElementsAre(HasSubstr("--until 0.3 s")));
+              ElementsAre(HasSubstr("a later --until")));
 }
 TEST(CompareTest, AWrongParameterShowsAndDoesNotBendTheInstants) {
   RightModel wrong;

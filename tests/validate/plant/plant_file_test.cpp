@@ -92,6 +92,11 @@ TEST_F(PlantFileTest, KeepsNameBasesAndConventions) {
     }
 }
 
+TEST_F(PlantFileTest, KeepsTheColumnsOfItsRecords) {
+  PlantModel m = example();
+  m.reading.columns = {{"V", "NORTH.BUS1.VPM [kV]"}, {"P", "-LINE \"1\" [MW]"}};
+  EXPECT_EQ(again(m).reading.columns, m.reading.columns);
+}
 TEST_F(PlantFileTest, CopiesLawFilesBesideIt) {
   PlantModel m = example();
   const auto law = test::source("configs/laws/torque_voltage_dip.toml");

@@ -103,11 +103,17 @@ TEST(RecordDialectTest, TimeStamps) {
     EXPECT_THAT(r.start, HasSubstr("12:00:59.200"));
   }
 }
-TEST(RecordDialectTest, AMissingMillisecondStampIsAGap) {
+TEST(RecordDialectTest, AMissingMillisecondStampIsBridged) {
   const auto text = table("Timestamp,V_pu,theta_deg,P_pu,Q_pu\n", [&](int k, double t) {
     return fmt::format("12:00:{:06.3f},1.02,10,0.4,0.1", t + (k > 30 ? 1.0 / 60 : 0));
   });
-  EXPECT_THAT(faults(text), ElementsAre(AllOf(HasSubstr("1 missing"), HasSubstr("r.csv:33"))));
+  const Record r = parse_record(text, "r.csv", kBase);
+  ASSERT_EQ(r.samples(), 61);
+  EXPECT_DOUBLE_EQ(r.rate(), 60);
+  EXPECT_EQ(std::ranges::count(r.lost, 1), 1);
+  EXPECT_EQ(r.lost[31], 1);
+  EXPECT_NEAR(r.V[31], 1.02, 1e-9);
+  EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("1 of 61 frames are missing"), HasSubstr("not compared"))));
 }
 TEST(RecordDialectTest, OneTerminalOfSeveral) {
   const auto text = table("t_s,G1.V_pu,G1.theta_deg,G1.P_pu,G1.Q_pu,G7.V_pu,G7.theta_deg,G7.P_pu,G7.Q_pu\n",
@@ -128,12 +134,12 @@ TEST(RecordDialectTest, UnitsThatDoNotFitAreRefused) {
 }
 TEST(RecordDialectTest, ABurstOfMissingValuesIsOneSentence) {
   const auto text = table("t_s,V_pu,theta_deg,P_pu,Q_pu\n", [](int k, double t) {
-    const bool bad = k >= 20 && k < 32;
+    const bool bad = k >= 20 && k < 33;
     return fmt::format("{:.7f},{},10,{},{}", t, bad ? "NaN" : "1.02", bad ? "" : "0.4",
                        bad ? "-9999" : "0.1");
   });
   EXPECT_THAT(faults(text),
-              ElementsAre(AllOf(HasSubstr("V_pu"), HasSubstr("r.csv:22-33"), HasSubstr("12 samples")),
+              ElementsAre(AllOf(HasSubstr("V_pu"), HasSubstr("r.csv:22-34"), HasSubstr("13 samples")),
                           AllOf(HasSubstr("P_pu"), HasSubstr("missing")),
                           AllOf(HasSubstr("-9999"), HasSubstr("instruments"))));
 }

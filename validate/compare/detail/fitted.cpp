@@ -27,8 +27,8 @@ void play_fitted(const plant::PlantModel& model, const CompareOptions& options, 
   e.playback.Efd = take(playin::Output::Efd);
   e.playback.Ifd = take(playin::Output::Ifd);
   e.switchings = event::switchings_at(event, state);
-  e.fitted = !e.switchings.empty();
-  if (jumps == event::Jumps::spread) e.left_out = event.left_out;
+  e.fitted = true;
+  e.left_out = jumps == event::Jumps::spread ? event.left_out : e.record.lost;
 }
 
 void add_doubt(const plant::PlantModel& model, EventComparison& e) {
@@ -36,6 +36,8 @@ void add_doubt(const plant::PlantModel& model, EventComparison& e) {
   event.record = e.record;
   event.start = e.playback.start;
   event.smeared = e.left_out;  // those beside a jump too
+  for (std::size_t k = 0; k < e.record.lost.size(); ++k)
+    if (e.record.lost[k]) event.smeared[k] = 0;  // bridged where nothing jumps, so hardly guessed
   for (const playin::Switching& s : e.switchings)
     if (s.uncertainty > 0) event.switchings.push_back(s);
   for (const playin::Output o : {playin::Output::P, playin::Output::Q, playin::Output::speed,

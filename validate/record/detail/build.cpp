@@ -3,86 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <set>
+#include <iterator>
+#include <limits>
 #include <utility>
 
 #include "base/constants.hpp"
+#include "validate/record/detail/bridge.hpp"
 #include "validate/record/detail/times.hpp"
 
 namespace swingbank::validate::record {
 namespace {
 
-using Present = std::array<bool, kQuantities>;
-
-/// Quantities that a comparison cannot do without. P and Q, where they are needed, may also come from the
-/// current.
-std::vector<Quantity> missing(const Present& present, bool power) {
-  const auto has = [&](Quantity q) { return present[static_cast<std::size_t>(q)]; };
-  std::vector<Quantity> all;
-  for (const auto q : {Quantity::time, Quantity::V, Quantity::theta})
-    if (!has(q)) all.push_back(q);
-  if (!power || (has(Quantity::I) && has(Quantity::phi))) return all;
-  for (const auto q : {Quantity::P, Quantity::Q})
-    if (!has(q)) all.push_back(q);
-  return all;
-}
-
-Present present_in(const std::vector<Heading>& headings, const std::string& terminal) {
-  Present present{};
-  for (const auto& h : headings)
-    if (h.meaning && (h.meaning->terminal.empty() || h.meaning->terminal == terminal))
-      present[static_cast<std::size_t>(h.meaning->quantity)] = true;
-  return present;
-}
-
-std::string listed(const std::set<std::string>& names) {
-  std::string all;
-  for (const auto& n : names) all += (all.empty() ? "" : ", ") + n;
-  return all;
-}
-
-/// The terminal to read: the one asked for, the nameless one, or the only complete one.
-std::string choose_terminal(const std::vector<Heading>& headings, const ReadOptions& options,
-                            const std::string& where, Problems& problems) {
-  const std::string& asked = options.terminal;
-  std::set<std::string> all, complete;
-  for (const auto& h : headings)
-    if (h.meaning && !h.meaning->terminal.empty()) all.insert(h.meaning->terminal);
-  if (!asked.empty()) {
-    if (!all.contains(asked))
-      problems.add("no terminal '" + asked + "'", where,
-                   all.empty() ? "the file names no terminals" : "the file has " + listed(all),
-                   all.empty() ? "leave '#" + asked + "' off the file's name" : "choose one of them");
-    return asked;
-  }
-  if (all.empty() || missing(present_in(headings, {}), options.power).empty()) return {};
-  for (const auto& t : all)
-    if (missing(present_in(headings, t), options.power).empty()) complete.insert(t);
-  if (complete.size() > 1)
-    problems.add("several terminals", where, "the file has " + listed(complete),
-                 "choose one: FILE#" + *complete.begin());
-  if (!complete.empty()) return *complete.begin();
-  if (all.size() > 1)
-    problems.add("no complete terminal", where,
-                 "of " + listed(all) + " none has voltage, angle" +
-                     (options.power ? ", P and Q (or current and its angle)" : " and time"),
-                 "export all of them for one terminal");
-  return *all.begin();
-}
-
-void check_missing(const Present& present, bool power, const std::string& where, const Record& about,
-                   Problems& problems) {
-  std::string others;
-  for (const auto& name : about.ignored) others += (others.empty() ? "" : ", ") + name;
-  for (const auto q : missing(present, power))
-    problems.add("no column " + names_of(q), where,
-                 std::string(power ? "play-in needs time, voltage, angle, P and Q"
-                                   : "a comparison needs time, voltage and angle") +
-                     (others.empty() ? "" : "; not understood: " + others.substr(0, 200)),
-                 "add the column, named with its unit");
-}
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double>* channel(Record& r, Quantity q) {
   switch (q) {
@@ -123,29 +56,263 @@ void power_from_current(Record& r, const std::vector<double>& current, const std
 
 /// Angles are known up to turns; a continuous one is kept, so that plots and differences make sense.
 void unwrap(std::vector<double>& angle) {
-  for (std::size_t k = 1; k < angle.size(); ++k)
-    angle[k] -= constants::turn * std::round((angle[k] - angle[k - 1]) / constants::turn);
+  double last = kNothing;
+  for (double& a : angle) {
+    if (!std::isfinite(a)) continue;
+    if (std::isfinite(last)) a -= constants::turn * std::round((a - last) / constants::turn);
+    last = a;
+  }
 }
 
-void check_magnitudes(const Record& r, SampleFaults& faults) {
-  for (std::size_t k = 0; k < r.V.size(); ++k)
-    if (r.V[k] < 0)
-      faults.add("V < 0", fmt::format("V = {:.6g} pu", r.V[k]), k, "a magnitude cannot be negative",
-                 "give V as a magnitude and theta as its angle; are their columns swapped?");
+void check_magnitudes(const RawRecord& raw, SampleFaults& faults) {
+  for (const RawColumn& c : raw.columns)
+    for (std::size_t k = 0; c.meaning.quantity == Quantity::V && k < c.values.size(); ++k)
+      if (c.values[k] < 0)
+        faults.add("V < 0", fmt::format("V = {:.6g} pu", c.values[k]), k, "a magnitude cannot be negative",
+                   "give V as a magnitude and theta as its angle; are their columns swapped?");
+}
+
+void convert(RawRecord& raw, const RecordBase& base) {
+  for (RawColumn& column : raw.columns) {
+    for (double& v : column.values) v = to_record_units(column.meaning, v, base);
+    if (column.meaning.quantity == Quantity::time)
+      raw.time_resolution = std::abs(to_record_units({Quantity::time, column.meaning.unit, false, {}, false},
+                                                     raw.time_resolution, base));
+  }
+}
+
+std::vector<double>& times_of(RawRecord& raw) {
+  return std::ranges::find(raw.columns, Quantity::time, [](const RawColumn& c) { return c.meaning.quantity; })
+      ->values;
+}
+
+/// Seconds since an epoch: reports could not show them.
+void begin_at_zero(RawRecord& raw, Record& about) {
+  std::vector<double>& t = times_of(raw);
+  if (t.empty() || !(std::abs(t.front()) > 1e6)) return;
+  const double first = t.front();
+  about.start = fmt::format("{:.6f} s", first);
+  if (first > 5e8 && first < 5e9) {  // 1985 to 2128
+    about.epoch = first;
+    about.notes.push_back("The times are taken for seconds since 1970-01-01 UTC: t = 0 is " +
+                          utc_text(first) + ".");
+  }
+  for (double& v : t) v -= first;
+}
+
+/// Leaves out what a person does not ask for, with its faults.
+void cut_rows(RawRecord& raw, const ReadOptions& options, SampleFaults& faults) {
+  if (std::isinf(options.from) && std::isinf(options.until)) return;
+  const std::vector<double>& t = times_of(raw);
+  std::size_t first = 0, last = t.size();
+  while (first < t.size() && t[first] < options.from) ++first;
+  while (last > first && t[last - 1] > options.until) --last;
+  faults.keep(first, last > 0 ? last - 1 : 0);
+  faults.shift(first);
+  for (RawColumn& c : raw.columns) {
+    c.values.resize(last);
+    c.values.erase(c.values.begin(), c.values.begin() + static_cast<std::ptrdiff_t>(first));
+  }
+}
+
+/// Do two rows hold the same values, apart from the time?
+bool same_rows(const RawRecord& raw, std::size_t a, std::size_t b) {
+  return std::ranges::all_of(raw.columns, [&](const RawColumn& c) {
+    return c.meaning.quantity == Quantity::time || c.values[a] == c.values[b];
+  });
+}
+
+/// Rows on an even grid, without lost ones at either end; gaps that are too long are faults.
+EvenRows settle(RawRecord& raw, Record& r, SampleFaults& faults) {
+  check_magnitudes(raw, faults);
+  const std::vector<double>& t = times_of(raw);
+  EvenRows rows = settle_rows({.t = t,
+                               .resolution = raw.time_resolution,
+                               .uneven = raw.uneven,
+                               .same = [&](std::size_t a, std::size_t b) { return same_rows(raw, a, b); }},
+                              r, faults);
+  const std::vector<char> lost = faults.lost(t.size());
+  if (!lost.empty())
+    for (double& place : rows.place)
+      if (std::isfinite(place) &&
+          (lost[static_cast<std::size_t>(place)] || lost[static_cast<std::size_t>(std::ceil(place))]))
+        place = kNothing;
+  if (!gaps_are_short(rows, r)) faults.tell_missing();
+  return rows;
+}
+
+/// A column's values at the places of the grid; NaN where none was recorded.
+std::vector<double> at_places(const std::vector<double>& values, const std::vector<double>& places) {
+  std::vector<double> all;
+  all.reserve(places.size());
+  for (const double place : places) {
+    if (!std::isfinite(place)) {
+      all.push_back(kNothing);
+      continue;
+    }
+    const auto below = static_cast<std::size_t>(place);
+    const double part = place - static_cast<double>(below);
+    all.push_back(part > 0 ? values[below] + part * (values[below + 1] - values[below]) : values[below]);
+  }
+  return all;
+}
+
+void fill_channels(RawRecord& raw, const EvenRows& rows, Record& r) {
+  std::vector<double> current, angle;
+  for (RawColumn& column : raw.columns) {
+    const Quantity q = column.meaning.quantity;
+    if (q == Quantity::time) continue;
+    std::vector<double> as_written;
+    if (q == Quantity::theta) as_written = column.values;
+    if (q == Quantity::theta || q == Quantity::phi) unwrap(column.values);
+    std::vector<double> values = at_places(column.values, rows.place);
+    if (q == Quantity::theta && values.size() == as_written.size())
+      r.theta_as_written = std::move(as_written);
+    if (auto* to = channel(r, q))
+      *to = std::move(values);
+    else
+      (q == Quantity::I ? current : angle) = std::move(values);
+  }
+  r.t = rows.t;
+  for (std::size_t k = 0; k < rows.place.size(); ++k)
+    if (!std::isfinite(rows.place[k])) {
+      r.lost.resize(rows.place.size(), 0);
+      r.lost[k] = 1;
+    }
+  if (r.P.empty() || r.Q.empty()) {
+    r.P.clear();
+    r.Q.clear();
+    if (!current.empty() && !angle.empty() && !r.theta.empty()) power_from_current(r, current, angle);
+  }
+  if (r.theta_as_written.empty() || !r.lost.empty()) r.theta_as_written.clear();
+}
+
+/// The angle against nominal frequency by the trapezoidal rule.
+void integrate_angle(Record& r) {
+  r.theta.assign(r.t.size(), 0.0);
+  const double scale = constants::turn * r.base.frequency;
+  for (std::size_t k = 1; k < r.t.size(); ++k)
+    r.theta[k] = r.theta[k - 1] + scale * (r.t[k] - r.t[k - 1]) * (r.f[k] + r.f[k - 1]) / 2;
+}
+
+/// Where no angle was recorded it is integrated from the frequency; without that it is nothing.
+void settle_angle(Record& r) {
+  if (!r.theta.empty()) return;
+  if (!r.f.empty()) {
+    integrate_angle(r);
+    r.angle = AngleSource::integrated;
+    r.notes.emplace_back(
+        "The record has no angle: it was integrated from the frequency. At a switching the angle turns at once, "
+        "and a measured frequency shows that late, smoothed or not at all; what P and Q lack or have too much of in "
+        "the first swings after one may come from that.");
+    return;
+  }
+  r.theta.assign(r.t.size(), 0.0);
+  r.angle = AngleSource::none;
+  r.notes.emplace_back(
+      "The record has neither angle nor frequency. The voltage's magnitude alone cannot drive a model, so P and Q "
+      "drive it and V is compared; that the frequency before the event was nominal is assumed.");
+}
+
+/// Channels of `from` at the instants of `all`, by straight lines where they differ.
+void take_over(Record& from, Record& all, const std::string& files, Problems& problems) {
+  const double slack = 1e-3 * all.step();
+  const double first = std::max(all.t.front(), from.t.front()), last = std::min(all.t.back(), from.t.back());
+  if (!(last - first > all.step() * kFewestSamples)) {
+    problems.add("files that do not overlap", files,
+                 fmt::format("one is of {:.6g} to {:.6g} s, another of {:.6g} to {:.6g} s", all.t.front(),
+                             all.t.back(), from.t.front(), from.t.back()),
+                 "give files of one event, with one clock");
+    return;
+  }
+  if (all.t.front() < first - slack || all.t.back() > last + slack) {
+    all = stretch(std::move(all), first - slack, last + slack);
+    all.notes.push_back(
+        fmt::format("Of the files only what they share is used: {:.6g} to {:.6g} s.", first, last));
+  }
+  bool same = true;
+  std::vector<double> places;
+  for (const double t : all.t) {
+    const double place =
+        std::clamp((t - from.t.front()) / from.step(), 0.0, static_cast<double>(from.t.size() - 1));
+    const bool meets = std::abs(place - std::round(place)) < 1e-3;
+    same = same && meets;
+    places.push_back(meets ? std::round(place) : place);
+  }
+  if (!same)
+    all.notes.push_back(
+        fmt::format("{}, sampled {:.6g} times a second, was put at the instants of {} by straight lines.",
+                    from.name, from.rate(), all.name));
+  for (const auto q : {Quantity::V, Quantity::theta, Quantity::f, Quantity::P, Quantity::Q, Quantity::speed,
+                       Quantity::Efd, Quantity::Ifd}) {
+    std::vector<double>& values = *channel(from, q);
+    if (values.empty()) continue;
+    if (!channel(all, q)->empty())
+      problems.add("two columns of " + std::string(word_of(q)), files, "each of the files gives it",
+                   "say which one counts: --columns");
+    *channel(all, q) = at_places(values, places);
+  }
+  for (std::size_t k = 0; k < places.size() && !from.lost.empty(); ++k)
+    if (from.lost[static_cast<std::size_t>(places[k])] ||
+        from.lost[static_cast<std::size_t>(std::ceil(places[k]))]) {
+      all.lost.resize(all.t.size(), 0);
+      all.lost[k] = 1;
+    }
+  if (!all.epoch && from.epoch && from.t.front() == 0) all.epoch = from.epoch;
+  if (all.start.empty()) all.start = from.start;
+  std::ranges::move(from.notes, std::back_inserter(all.notes));
+  std::ranges::move(from.named, std::back_inserter(all.named));
+  std::ranges::move(from.ignored, std::back_inserter(all.ignored));
 }
 
 }  // namespace
 
-void SampleFaults::add(const std::string& subject, std::string what, std::size_t sample, std::string why,
-                       std::string remedy) {
+void SampleFaults::shift(std::size_t first) {
+  const Where where = std::move(where_);
+  where_ = [where, first](std::size_t a, std::size_t b) { return where(a + first, b + first); };
+  for (auto* faults : {&faults_, &missing_})
+    for (Fault& f : *faults) {
+      f.first -= std::min(f.first, first);
+      f.last -= first;
+    }
+}
+
+void SampleFaults::add_to(std::vector<Fault>& faults, Fault fault) {
   // Several columns may run in step: look for this subject's last fault among the recent ones.
-  const std::size_t recent = std::min<std::size_t>(faults_.size(), 2 * kQuantities);
-  for (auto f = faults_.rbegin(); f != faults_.rbegin() + static_cast<std::ptrdiff_t>(recent); ++f)
-    if (f->subject == subject && f->why == why && f->last + 1 == sample) {
-      f->last = sample;
+  const std::size_t recent = std::min<std::size_t>(faults.size(), 2 * kQuantities);
+  for (auto f = faults.rbegin(); f != faults.rbegin() + static_cast<std::ptrdiff_t>(recent); ++f)
+    if (f->subject == fault.subject && f->why == fault.why && f->last + 1 == fault.first) {
+      f->last = fault.first;
       return;
     }
-  faults_.push_back({subject, std::move(what), std::move(why), std::move(remedy), sample, sample});
+  faults.push_back(std::move(fault));
+}
+
+void SampleFaults::add(const std::string& subject, std::string what, std::size_t sample, std::string why,
+                       std::string remedy) {
+  add_to(faults_, {subject, std::move(what), std::move(why), std::move(remedy), sample, sample});
+}
+
+void SampleFaults::lose(const std::string& subject, std::string what, std::size_t sample, std::string why,
+                        std::string remedy) {
+  add_to(missing_, {subject, std::move(what), std::move(why), std::move(remedy), sample, sample});
+}
+
+std::vector<char> SampleFaults::lost(std::size_t samples) const {
+  std::vector<char> marks(missing_.empty() ? 0 : samples, 0);
+  for (const Fault& f : missing_)
+    for (std::size_t k = f.first; k <= f.last && k < marks.size(); ++k) marks[k] = 1;
+  return marks;
+}
+
+void SampleFaults::tell_missing() {
+  std::ranges::move(missing_, std::back_inserter(faults_));
+  missing_.clear();
+}
+
+void SampleFaults::keep(std::size_t first, std::size_t last) {
+  for (auto* faults : {&faults_, &missing_})
+    std::erase_if(*faults, [&](const Fault& f) { return f.last < first || f.first > last; });
 }
 
 void SampleFaults::tell(Problems& problems, const std::string& file) const {
@@ -161,73 +328,48 @@ void SampleFaults::tell(Problems& problems, const std::string& file) const {
                  "mend the ones above first");
 }
 
-std::vector<std::size_t> choose_columns(const std::vector<Heading>& headings, const ReadOptions& options,
-                                        const RecordBase& base, const std::string& where, Record& about,
-                                        Problems& problems) {
-  about.terminal = choose_terminal(headings, options, where, problems);
-  std::vector<std::size_t> chosen;
-  std::set<std::string> others;
-  Present used{};
-  for (std::size_t i = 0; i < headings.size(); ++i) {
-    const auto& [name, meaning] = headings[i];
-    if (!meaning) {
-      if (!name.empty()) about.ignored.push_back(name);
-      continue;
-    }
-    if (!meaning->terminal.empty() && meaning->terminal != about.terminal) {
-      others.insert(meaning->terminal);
-      continue;
-    }
-    const auto q = static_cast<std::size_t>(meaning->quantity);
-    if (!meaning->unit)
-      problems.add(fmt::format("column '{}'", name), where, "its unit is missing or not known",
-                   "name it one of " + names_of(meaning->quantity));
-    else if (needs_kv(*meaning->unit) && !(base.kv > 0))
-      problems.add(fmt::format("column '{}'", name), where, "the model names no base_kv for records",
-                   "add base_kv under [record] in the plant file, or give per-unit values");
-    if (std::exchange(used[q], true))
-      problems.add(fmt::format("column '{}'", name), where, "another column gives the same quantity",
-                   "leave one of " + names_of(meaning->quantity));
-    chosen.push_back(i);
-  }
-  check_missing(used, options.power, where, about, problems);
-  if (!others.empty()) about.notes.push_back("Other terminals in the file: " + listed(others) + ".");
-  return chosen;
-}
-
-Record build_record(RawRecord raw, const RecordBase& base, SampleFaults faults, Problems problems,
-                    const std::string& file) {
+Record build_record(RawRecord raw, const RecordBase& base, const ReadOptions& options, SampleFaults faults,
+                    Problems problems, const std::string& file) {
   Record r = std::move(raw.about);
   r.base = base;
-  std::vector<double> current, angle;
-  for (auto& column : raw.columns) {
-    for (double& v : column.values) v = to_record_units(column.meaning, v, base);
-    if (auto* to = channel(r, column.meaning.quantity))
-      *to = std::move(column.values);
-    else
-      (column.meaning.quantity == Quantity::I ? current : angle) = std::move(column.values);
-    if (column.meaning.quantity == Quantity::time)
-      raw.time_resolution = to_record_units(column.meaning, raw.time_resolution, base);
-  }
-  check_magnitudes(r, faults);
-  settle_times(r.t, raw.time_resolution, r, faults);
+  convert(raw, base);
+  begin_at_zero(raw, r);
+  cut_rows(raw, options, faults);
+  const EvenRows rows = settle(raw, r, faults);
   faults.tell(problems, file);
-  if (r.samples() < kFewestSamples)
-    problems.add(fmt::format("{} samples", r.samples()), file,
+  if (rows.place.size() < kFewestSamples)
+    problems.add(fmt::format("{} samples", rows.place.size()), file,
                  fmt::format("a record needs at least {}", kFewestSamples), "give a longer record");
   problems.raise();
-  if (r.P.empty() || r.Q.empty()) {
-    r.P.clear();
-    r.Q.clear();
-    if (!current.empty() && !angle.empty()) power_from_current(r, current, angle);
-  }
-  if (std::abs(r.t.front()) > 1e6) {  // seconds since an epoch: reports could not show them
-    r.start = fmt::format("{:.6f} s", r.t.front());
-    for (std::size_t k = r.t.size(); k-- > 0;) r.t[k] -= r.t.front();
-  }
-  r.theta_as_written = r.theta;
-  unwrap(r.theta);
+  fill_channels(raw, rows, r);
+  bridge(r);
+  if (!options.part) settle_angle(r);
   return r;
+}
+
+Record join_records(std::vector<Record> parts, const ReadOptions& options, const std::string& files) {
+  Problems problems;
+  const auto with_power = std::ranges::find_if(parts, [](const Record& r) { return !r.P.empty(); });
+  Record all = with_power == parts.end() ? parts.back() : *with_power;
+  const auto first =
+      static_cast<std::size_t>(with_power == parts.end() ? parts.size() - 1 : with_power - parts.begin());
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (i != first) take_over(parts[i], all, files, problems);
+  for (const auto& [word, column] : options.columns)
+    if (std::ranges::find(all.named, word) == all.named.end())
+      problems.add(fmt::format("no column '{}'", column), files,
+                   "the map of columns names it for " + word + ", and none of the files has it",
+                   "name one that is there");
+  const auto needs = [&](const std::vector<double>& channel, const char* what) {
+    if (channel.empty())
+      problems.add(fmt::format("no column of {}", what), files, "none of the files gives it",
+                   "add a file that has it, or say which column it is: --columns");
+  };
+  needs(all.V, "V");
+  if (options.power) needs(all.P, "P"), needs(all.Q, "Q");
+  problems.raise();
+  settle_angle(all);
+  return stretch(std::move(all), options.from, options.until);
 }
 
 }  // namespace swingbank::validate::record

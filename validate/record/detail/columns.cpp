@@ -4,7 +4,9 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <regex>
 
 #include "base/constants.hpp"
 
@@ -26,7 +28,11 @@ constexpr Alias kAliases[] = {
     {"datetime", Q::time},
     {"utc", Q::time},
     {"timeutc", Q::time},
+    {"utctime", Q::time},
+    {"domain", Q::time},
     {"v", Q::V},
+    {"u", Q::V},
+    {"ug", Q::V},
     {"vm", Q::V},
     {"vt", Q::V},
     {"vmag", Q::V},
@@ -74,6 +80,7 @@ constexpr Alias kAliases[] = {
     {"ifd", Q::Ifd},
     {"fieldcurrent", Q::Ifd},
     {"i", Q::I},
+    {"ig", Q::I},
     {"imag", Q::I},
     {"i1", Q::I},
     {"i1mag", Q::I},
@@ -119,6 +126,7 @@ constexpr struct {
     {"mw", Q::P, Unit::megawatt},
     {"mvar", Q::Q, Unit::megavar},
     {"hz", Q::f, Unit::hertz},
+    {"kv", Q::V, Unit::kilovolt},
 };
 
 bool fits(Quantity q, Unit u) {
@@ -159,7 +167,7 @@ std::optional<Unit> find_unit(std::string_view text) {
 
 ColumnMeaning meaning(const Alias& alias, std::optional<Unit> unit) {
   if (unit && !fits(alias.quantity, *unit)) unit.reset();
-  return {alias.quantity, unit, alias.deviation, {}};
+  return {alias.quantity, unit, alias.deviation, {}, false};
 }
 
 /// "V (kV)" or "P [MW]": the part before, and the unit inside.
@@ -190,7 +198,7 @@ std::optional<ColumnMeaning> without_terminal(std::string_view heading, std::str
   const std::string name = normalised(heading);
   if (const Alias* alias = find_alias(name)) return meaning(*alias, find_unit(unit));
   for (const auto& u : kUnitHeadings)
-    if (name == u.name) return ColumnMeaning{u.quantity, u.unit, false, {}};
+    if (name == u.name) return ColumnMeaning{u.quantity, u.unit, false, {}, false};
   // A name we know with something behind it that is no unit: better asked about than left out.
   if (const Alias* alias = find_alias(normalised(heading.substr(0, heading.find('_')))))
     return meaning(*alias, std::nullopt);
@@ -207,7 +215,49 @@ std::string normalised(std::string_view text) {
   return name;
 }
 
+std::optional<ColumnMeaning> quantity_of(std::string_view word) {
+  const Alias* alias = find_alias(normalised(word));
+  return alias ? std::optional(meaning(*alias, std::nullopt)) : std::nullopt;
+}
+
+std::optional<Unit> unit_in(Quantity quantity, std::string_view heading, std::string_view unit) {
+  const auto fitting = [&](std::string_view text) {
+    const auto found = find_unit(text);
+    return found && fits(quantity, *found) ? found : std::nullopt;
+  };
+  if (const auto found = fitting(unit)) return found;
+  for (std::size_t at = heading.find_first_of("_ /-.:[("); at != std::string_view::npos;
+       at = heading.find_first_of("_ /-.:[(", at + 1))
+    if (const auto found = fitting(heading.substr(at + 1))) return found;
+  return fitting(heading);
+}
+
+std::optional<ColumnMeaning> psse_channel(std::string_view heading) {
+  static const std::regex form(
+      R"(^(VOLT|ETRM|VANG|ANGL|POWR|VARS|SPD|FREQ|EFD|XADIFD|XADI)\s*(\d+)\s*(?:\[[^\]]*\])?\s*(\w{0,2})$)");
+  std::cmatch part;
+  if (!std::regex_match(heading.data(), heading.data() + heading.size(), part, form)) return std::nullopt;
+  static const std::map<std::string, ColumnMeaning, std::less<>> words = {
+      {"VOLT", {Q::V, Unit::pu, false, {}, false}},
+      {"ETRM", {Q::V, Unit::pu, false, {}, false}},
+      {"VANG", {Q::theta, Unit::degree, false, {}, false}},
+      {"ANGL", {Q::theta, Unit::degree, false, {}, false}},
+      {"POWR", {Q::P, Unit::pu, false, {}, false}},
+      {"VARS", {Q::Q, Unit::pu, false, {}, false}},
+      {"SPD", {Q::speed, Unit::pu, true, {}, false}},
+      {"FREQ", {Q::f, Unit::pu, true, {}, false}},
+      {"EFD", {Q::Efd, Unit::pu, false, {}, false}},
+      {"XADIFD", {Q::Ifd, Unit::pu, false, {}, false}},
+      {"XADI", {Q::Ifd, Unit::pu, false, {}, false}}};
+  const std::string word = part[1].str(), id = part[3].str();
+  if (word == "ANGL" && !id.empty()) return std::nullopt;  // the rotor's angle, not the bus's
+  ColumnMeaning m = words.at(word);
+  m.terminal = id.empty() ? part[2].str() : part[2].str() + "/" + id;
+  return m;
+}
+
 std::optional<ColumnMeaning> column_meaning(std::string_view heading, std::string_view unit) {
+  if (auto m = psse_channel(heading)) return m;
   if (auto m = without_terminal(heading, unit)) return m;
   for (std::size_t at = heading.find_first_of(".:"); at != std::string_view::npos;
        at = heading.find_first_of(".:", at + 1))
@@ -219,6 +269,12 @@ std::optional<ColumnMeaning> column_meaning(std::string_view heading, std::strin
 }
 
 bool is_unit(std::string_view text) { return find_unit(text).has_value(); }
+
+std::string_view word_of(Quantity q) {
+  constexpr std::string_view words[kQuantities] = {"t",     "V",   "theta", "f", "P",  "Q",
+                                                   "speed", "Efd", "Ifd",   "I", "phi"};
+  return words[static_cast<int>(q)];
+}
 
 std::string names_of(Quantity q) {
   constexpr std::string_view names[kQuantities] = {
@@ -235,7 +291,8 @@ bool needs_kv(Unit unit) {
 }
 
 double to_record_units(const ColumnMeaning& column, double v, const RecordBase& base) {
-  const bool nominal_is_one = column.quantity == Q::f || (column.quantity == Q::speed && !column.deviation);
+  const bool nominal_is_one = (column.quantity == Q::f || column.quantity == Q::speed) && !column.deviation;
+  if (column.negated) v = -v;
   switch (column.unit.value_or(Unit::pu)) {
     case Unit::second:
     case Unit::stamp:
@@ -258,7 +315,7 @@ double to_record_units(const ColumnMeaning& column, double v, const RecordBase& 
     case Unit::degree:
       return v * constants::pi / 180;
     case Unit::hertz:
-      return v / base.frequency - 1;
+      return v / base.frequency - (column.deviation ? 0 : 1);
     case Unit::megawatt:
     case Unit::megavar:
       return v / base.mva;

@@ -33,16 +33,31 @@ enum class Unit {
 struct ColumnMeaning {
   Quantity quantity;
   std::optional<Unit> unit;  ///< none: a known quantity whose unit is missing or not known
-  bool deviation = false;    ///< pu values are deviations from nominal (speed), not 1 at nominal (omega)
+  bool deviation = false;    ///< values are deviations from nominal (speed), not 1 at nominal (omega)
   std::string terminal;      ///< prefix of the name: "G2" of "G2.V_pu"
+  bool negated = false;      ///< the file's values have the other sign
 };
 
 /// What a heading means: "V_pu", "V (kV)", "P [MW]", "G2.theta_rad", or "VOLTAGE_MAG" where another header
 /// line gives `unit`. Case, blanks, '_' and '-' within names do not matter. None: not a quantity we read.
 std::optional<ColumnMeaning> column_meaning(std::string_view heading, std::string_view unit = {});
 
+/// The quantity that a person's word means ("V", "omega"), without unit.
+std::optional<ColumnMeaning> quantity_of(std::string_view word);
+
+/// A unit of the quantity: `unit` where that is one, or the one with which the heading ends ("BUS1_kV",
+/// "GSU_T1.MW", "Pgen [MW]").
+std::optional<Unit> unit_in(Quantity quantity, std::string_view heading, std::string_view unit);
+
+/// A channel of PSS/E as dyntools exports it: "VOLT 32 [NORTH 20.0]" is of terminal "32", "POWR 32 1" of
+/// "32/1".
+std::optional<ColumnMeaning> psse_channel(std::string_view heading);
+
 /// Is the text a unit we know ("kV", "deg.", "p.u.")?
 bool is_unit(std::string_view text);
+
+/// The quantity's name in a map of columns: "V".
+std::string_view word_of(Quantity q);
 
 /// Names a column of the quantity can have, with units: "P_pu, P_MW".
 std::string names_of(Quantity q);

@@ -7,6 +7,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "validate/record/detail/text.hpp"
+
 namespace swingbank::validate::record {
 namespace {
 
@@ -69,7 +71,13 @@ class Config {
     c_.about.station = f[0];
     c_.about.device = f[1];
     const double year = number(f, 2, "revision year");
-    c_.about.revision = year == 1999 || year == 2013 ? static_cast<int>(year) : 0;
+    // Recorders write years in which they were made: there is one form between 1991's and 2013's.
+    const bool between = year > 1991 && year<2013, later = year> 2013 && year < 2100;
+    c_.about.revision = between ? 1999 : later || year == 2013 ? 2013 : 0;
+    if (c_.about.revision != 0 && c_.about.revision != year)
+      c_.about.notes.push_back(
+          fmt::format("The configuration names the revision {:.0f}, which there is not: it was read as {}.",
+                      year, c_.about.revision));
     if (c_.about.revision == 0)
       fault(fmt::format("revision '{}'", f[2]), "1999 and 2013 are read",
             "export it as COMTRADE 1999 or 2013");
@@ -95,12 +103,12 @@ class Config {
       return false;
     }
     c_.status = static_cast<int>(status);
-    for (long k = 0; k < analogue && !ended_; ++k) channel(k);
+    for (long k = 0; k < analogue && !ended_; ++k) channel();
     for (long k = 0; k < status && !ended_; ++k) next();
     return !ended_;
   }
 
-  void channel(long k) {
+  void channel() {
     const Fields f = next();
     if (ended_) return;
     if (f.size() < 13) {
@@ -108,9 +116,15 @@ class Config {
             "export the configuration again");
       return;
     }
-    if (number(f, 0, "channel number") != static_cast<double>(k + 1))
-      fault(fmt::format("channel number '{}'", f[0]), fmt::format("channel {} comes here", k + 1),
-            "export the configuration again");
+    const double numbered = number(f, 0, "channel number");
+    if (numbered <= last_channel_)
+      fault(fmt::format("channel number '{}'", f[0]),
+            fmt::format("channel {:g} came before it", last_channel_), "export the configuration again");
+    if (numbered > last_channel_ + 1)
+      c_.about.notes.push_back(
+          fmt::format("Channel numbers skip from {:g} to {:g} ({}:{}): the values follow the lines.",
+                      last_channel_, numbered, name_, number_));
+    last_channel_ = numbered;
     ComtradeChannel c;
     c.id = f[1];
     c.phase = f[2];
@@ -139,12 +153,14 @@ class Config {
       fault("the number of sampling rates", "0 to 999 make sense", "export the configuration again");
       return;
     }
+    double low = 1e300, high = 0;
     for (int k = 0; k < std::max(1.0, n) && !ended_; ++k) {
       const Fields f = next();
       if (ended_) return;
       const double rate = number(f, 0, "sampling rate"), last = number(f, 1, "last sample");
-      if (k > 0 && rate != c_.rate)
-        fault(fmt::format("several sampling rates ({:g} and {:g} per second)", c_.rate, rate),
+      low = std::min(low, rate), high = std::max(high, rate);
+      if (k > 0 && k + 1 >= n && low != high)
+        fault(fmt::format("several sampling rates ({:g}, from {:g} to {:g} per second)", n, low, high),
               "a record must be sampled evenly", "export the stretch with one rate");
       if (rate < 0 || last < 1 || last > 1e9)
         fault(fmt::format("rate {:g}, last sample {:g}", rate, last), "neither can be",
@@ -184,6 +200,7 @@ class Config {
   Problems& problems_;
   ComtradeConfig c_;
   int number_ = 0;
+  double last_channel_ = 0;
   bool ended_ = false;
 };
 
@@ -215,9 +232,14 @@ std::string_view comtrade_line(std::string_view& text) {
   return line;
 }
 
-ComtradeConfig parse_comtrade_config(std::string_view cfg, const std::string& name, Problems& problems) {
+ComtradeConfig parse_comtrade_config(std::string_view bytes, const std::string& name, Problems& problems) {
+  std::vector<std::string> notes;
+  const std::string text = as_utf8(bytes, notes);
+  std::string_view cfg = text;
   if (cfg.starts_with("\xEF\xBB\xBF")) cfg.remove_prefix(3);
-  return Config(cfg, name, problems).read();
+  ComtradeConfig config = Config(cfg, name, problems).read();
+  config.about.notes.insert(config.about.notes.begin(), notes.begin(), notes.end());
+  return config;
 }
 
 }  // namespace swingbank::validate::record

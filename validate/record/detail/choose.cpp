@@ -1,0 +1,317 @@
+// Which columns of a file are read: by a person's names, by their own, of one terminal or of two that belong
+// together.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <set>
+#include <utility>
+
+#include "validate/record/detail/build.hpp"
+
+namespace swingbank::validate::record {
+namespace {
+
+using Present = std::array<bool, kQuantities>;
+using enum Quantity;
+
+bool has(const Present& present, Quantity q) { return present[static_cast<std::size_t>(q)]; }
+
+/// Quantities that a comparison cannot do without. P and Q, where they are needed, may also come from the
+/// current; the angle may come from the frequency.
+std::vector<Quantity> missing(const Present& present, const ReadOptions& options) {
+  std::vector<Quantity> all;
+  if (!has(present, time)) all.push_back(time);
+  if (options.part) return all;
+  if (!has(present, V)) all.push_back(V);
+  if (options.angle && !has(present, theta)) all.push_back(theta);
+  if (!options.power || (has(present, I) && has(present, phi) && has(present, theta))) return all;
+  for (const auto q : {P, Q})
+    if (!has(present, q)) all.push_back(q);
+  return all;
+}
+
+/// Whether a column of terminal `of` is one of terminal `chosen`: of no terminal, of the same one, or of what
+/// it is part of ("PLANT" of "PLANT.GSU", "32" of "32/1").
+bool belongs(const std::string& of, const std::string& chosen) {
+  if (of.empty() || of == chosen) return true;
+  return chosen.starts_with(of) && (chosen[of.size()] == '.' || chosen[of.size()] == '/');
+}
+
+Present present_in(const std::vector<Heading>& headings, const std::string& terminal) {
+  Present present{};
+  for (const auto& h : headings)
+    if (h.meaning && belongs(h.meaning->terminal, terminal))
+      present[static_cast<std::size_t>(h.meaning->quantity)] = true;
+  return present;
+}
+
+std::string listed(const std::set<std::string>& names) {
+  std::string all;
+  for (const auto& n : names) all += (all.empty() ? "" : ", ") + n;
+  return all;
+}
+
+/// All headings, so that a person sees what a map may name; a long list is cut.
+std::string seen(const std::vector<Heading>& headings) {
+  constexpr std::size_t kShown = 40;
+  std::string all;
+  std::size_t shown = 0, rest = 0;
+  for (const auto& h : headings) {
+    if (h.name.empty()) continue;
+    if (shown++ < kShown)
+      all += (all.empty() ? "'" : ", '") + h.name + (h.unit.empty() ? "'" : "' [" + h.unit + "]");
+    else
+      ++rest;
+  }
+  return all + (rest > 0 ? fmt::format(" and {} more", rest) : "");
+}
+
+/// The terminal of the voltage and that of the power: mostly the same.
+struct Terminals {
+  std::string voltage, power;
+  bool frequency_of_power = false;  ///< where the voltage's has none
+  [[nodiscard]] const std::string& of(Quantity q) const {
+    if (q == f) return frequency_of_power ? power : voltage;
+    return q == V || q == theta || q == time ? voltage : power;
+  }
+};
+
+/// Where no terminal is complete: the only one with a voltage and the only one with P and Q, or with the
+/// current.
+std::optional<Terminals> two_devices(const std::vector<Heading>& headings, const std::set<std::string>& all) {
+  std::set<std::string> voltage, power;
+  const Present nameless = present_in(headings, {});
+  for (const auto& t : all) {
+    const Present p = present_in(headings, t);
+    if (!has(nameless, V) && has(p, V)) voltage.insert(t);
+    const bool known = (has(nameless, P) && has(nameless, Q)) || (has(nameless, I) && has(nameless, phi));
+    if (!known && ((has(p, P) && has(p, Q)) || (has(p, I) && has(p, phi)))) power.insert(t);
+  }
+  if (voltage.size() > 1 || power.size() > 1) return std::nullopt;
+  Terminals both{voltage.empty() ? "" : *voltage.begin(), power.empty() ? "" : *power.begin(), false};
+  both.frequency_of_power = !has(present_in(headings, both.voltage), f);
+  return both;
+}
+
+/// The terminal to read: the one asked for, the nameless one, the only complete one, or two that are complete
+/// together.
+Terminals choose_terminals(const std::vector<Heading>& headings, const ReadOptions& options,
+                           const std::string& where, Record& about, Problems& problems) {
+  const std::string& asked = options.terminal;
+  std::set<std::string> all, complete;
+  for (const auto& h : headings)
+    if (h.meaning && !h.meaning->terminal.empty()) all.insert(h.meaning->terminal);
+  if (!asked.empty()) {
+    if (!all.contains(asked))
+      problems.add("no terminal '" + asked + "'", where,
+                   all.empty() ? "the file names no terminals" : "the file has " + listed(all),
+                   all.empty() ? "leave '#" + asked + "' off the file's name" : "choose one of them");
+    return {asked, asked, false};
+  }
+  if (options.part && all.size() == 1) return {*all.begin(), *all.begin(), false};
+  if (all.empty() || missing(present_in(headings, {}), options).empty()) return {};
+  for (const auto& t : all)
+    if (missing(present_in(headings, t), options).empty()) complete.insert(t);
+  std::erase_if(complete, [&](const std::string& t) {  // the whole, not its parts
+    return std::ranges::any_of(complete, [&](const auto& o) { return o != t && belongs(o, t); });
+  });
+  if (complete.size() > 1)
+    problems.add("several terminals", where, "the file has " + listed(complete),
+                 "choose one: FILE#" + *complete.begin());
+  if (!complete.empty()) return {*complete.begin(), *complete.begin(), false};
+  if (const auto both = two_devices(headings, all)) {
+    if (both->voltage != both->power && !both->voltage.empty() && !both->power.empty() && options.power)
+      about.notes.push_back(fmt::format(
+          "The voltage is that of {}, the power that of {}: no other columns of the file give them.",
+          both->voltage, both->power));
+    return *both;
+  }
+  if (!options.part)
+    problems.add("no complete terminal", where,
+                 "of " + listed(all) + " none has voltage" +
+                     (options.power ? ", P and Q (or current and its angle)" : " and time") +
+                     ", and which belong together is not certain; seen: " + seen(headings),
+                 "name the columns: --columns V=…,P=…,Q=… or [record.columns] in the plant file");
+  return {*all.begin(), *all.begin(), false};
+}
+
+void check_missing(const Present& present, const ReadOptions& options, const std::string& where,
+                   const std::vector<Heading>& headings, Problems& problems) {
+  for (const auto q : missing(present, options))
+    problems.add(
+        "no column " + names_of(q), where,
+        std::string(options.power ? "play-in needs time, voltage, P and Q, and the angle or the frequency"
+                                  : "a comparison needs time, voltage and angle") +
+            "; seen: " + seen(headings),
+        "add the column, named with its unit, or say which one it is: --columns V=…,P=… or "
+        "[record.columns] in the plant file");
+}
+
+std::string_view trimmed(std::string_view s) {
+  while (!s.empty() && s.front() == ' ') s.remove_prefix(1);
+  while (!s.empty() && s.back() == ' ') s.remove_suffix(1);
+  return s;
+}
+
+/// The heading that a person's text names: "#3", the heading itself, with its station, or but for case and
+/// blanks.
+std::optional<std::size_t> find_heading(const std::vector<Heading>& headings, std::string_view text) {
+  if (std::size_t n = 0; text.starts_with('#')) {
+    const auto [end, error] = std::from_chars(text.data() + 1, text.data() + text.size(), n);
+    if (error == std::errc{} && end == text.data() + text.size() && n >= 1 && n <= headings.size())
+      return n - 1;
+  }
+  const auto find = [&](auto same) -> std::optional<std::size_t> {
+    std::optional<std::size_t> found;
+    for (std::size_t i = 0; i < headings.size(); ++i)
+      if (same(headings[i])) {
+        if (found) return std::nullopt;  // two of that name
+        found = i;
+      }
+    return found;
+  };
+  if (const auto i = find([&](const Heading& h) { return trimmed(h.name) == text; })) return i;
+  if (const auto i =
+          find([&](const Heading& h) { return h.meaning && h.meaning->terminal + "." + h.name == text; }))
+    return i;
+  if (text.starts_with('-')) return std::nullopt;  // that is the sign
+  return find([&](const Heading& h) { return !h.name.empty() && normalised(h.name) == normalised(text); });
+}
+
+/// "NAME [kV]" in parts.
+struct Named {
+  std::string_view name, unit;
+  bool negated = false;
+};
+Named without_unit(Named named) {
+  if (!named.name.ends_with(']')) return named;
+  const auto open = named.name.rfind('[');
+  if (open == std::string_view::npos || open == 0) return named;
+  return {trimmed(named.name.substr(0, open)), named.name.substr(open + 1, named.name.size() - open - 2),
+          named.negated};
+}
+
+/// Sets the meaning of the columns that a person has named, and takes it from others of the same quantity.
+class Mapper {
+ public:
+  Mapper(std::vector<Heading>& headings, const ReadOptions& options, const std::string& where, Record& about,
+         Problems& problems)
+      : headings_(headings), options_(options), where_(where), about_(about), problems_(problems) {}
+
+  void apply() {
+    std::vector<std::pair<std::size_t, ColumnMeaning>> all;
+    for (const auto& [word, text] : options_.columns)
+      if (const auto one = resolve(word, text)) all.push_back(*one);
+    for (const auto& [at, m] : all)
+      for (std::size_t i = 0; i < headings_.size(); ++i)
+        if (headings_[i].meaning && headings_[i].meaning->quantity == m.quantity)
+          headings_[i].meaning.reset();
+    for (auto& [at, m] : all) headings_[at].meaning = m;
+  }
+
+ private:
+  std::optional<std::pair<std::size_t, ColumnMeaning>> resolve(const std::string& word,
+                                                               const std::string& text) {
+    auto m = quantity_of(word);
+    if (!m) {
+      problems_.add("'" + word + "'", "the map of columns", "it is no quantity that a record can have",
+                    "use t, V, theta, f, P, Q, I, phi, speed, omega, Efd or Ifd");
+      return std::nullopt;
+    }
+    Named named{trimmed(text), {}, false};
+    auto at = find_heading(headings_, named.name);
+    if (!at) at = find_heading(headings_, (named = without_unit(named)).name);
+    if (!at && named.name.starts_with('-')) {
+      named = without_unit({trimmed(trimmed(text).substr(1)), {}, true});
+      at = find_heading(headings_, named.name);
+    }
+    if (!at) {
+      if (!options_.part)
+        problems_.add(fmt::format("no column '{}'", named.name), where_,
+                      fmt::format("the map of columns names it for {}; seen: {}", word, seen(headings_)),
+                      "name one of them (and its terminal, where two have the same name)");
+      return std::nullopt;
+    }
+    const Heading& h = headings_[*at];
+    const bool same = h.meaning && h.meaning->quantity == m->quantity;
+    m->unit = named.unit.empty() && same && h.meaning->unit ? h.meaning->unit
+                                                            : unit_in(m->quantity, h.name, h.unit);
+    if (!named.unit.empty()) m->unit = unit_in(m->quantity, {}, named.unit);
+    if (same && h.meaning->deviation) m->deviation = true;
+    if (m->quantity == Quantity::time && !m->unit) m->unit = same ? h.meaning->unit : Unit::second;
+    m->negated = named.negated;
+    if (!m->unit)
+      problems_.add(
+          fmt::format("column '{}'", h.name), where_, "its unit is missing or not known",
+          fmt::format("give it: {} = \"{} [unit]\", as in {}", word, h.name, names_of(m->quantity)));
+    about_.named.push_back(word);
+    about_.notes.push_back(fmt::format("{}{} is the column '{}', as the map of columns says.", word,
+                                       named.negated ? ", with the sign turned," : "", h.name));
+    return std::pair(*at, *m);
+  }
+
+  std::vector<Heading>& headings_;
+  const ReadOptions& options_;
+  const std::string& where_;
+  Record& about_;
+  Problems& problems_;
+};
+
+/// Of columns that give the same quantity, those nearest to the terminal: "32/1" before "32".
+bool is_nearest(const std::vector<Heading>& headings, const Heading& one, const Terminals& terminals) {
+  const ColumnMeaning& m = *one.meaning;
+  return std::ranges::none_of(headings, [&](const Heading& h) {
+    return h.meaning && h.meaning->quantity == m.quantity &&
+           belongs(h.meaning->terminal, terminals.of(m.quantity)) &&
+           h.meaning->terminal.size() > m.terminal.size();
+  });
+}
+
+}  // namespace
+
+std::vector<std::size_t> choose_columns(std::vector<Heading>& headings, const ReadOptions& options,
+                                        const RecordBase& base, const std::string& where, Record& about,
+                                        Problems& problems) {
+  Mapper(headings, options, where, about, problems).apply();
+  const Terminals terminals = choose_terminals(headings, options, where, about, problems);
+  about.terminal = terminals.voltage == terminals.power || terminals.power.empty() ? terminals.voltage
+                   : terminals.voltage.empty()                                     ? terminals.power
+                                               : terminals.voltage + " and " + terminals.power;
+  std::vector<std::size_t> chosen;
+  std::set<std::string> others;
+  Present used{};
+  for (std::size_t i = 0; i < headings.size(); ++i) {
+    const auto& [name, meaning, unit] = headings[i];
+    if (!meaning) {
+      if (!name.empty()) about.ignored.push_back(name);
+      continue;
+    }
+    if (!belongs(meaning->terminal, terminals.of(meaning->quantity)) ||
+        !is_nearest(headings, headings[i], terminals)) {
+      others.insert(meaning->terminal);
+      continue;
+    }
+    const auto q = static_cast<std::size_t>(meaning->quantity);
+    const bool told = std::ranges::any_of(
+        about.named, [&](const auto& word) { return quantity_of(word)->quantity == meaning->quantity; });
+    if (!meaning->unit && !told)
+      problems.add(fmt::format("column '{}'", name), where, "its unit is missing or not known",
+                   "name it one of " + names_of(meaning->quantity) + ", or give the unit: --columns \"" +
+                       std::string(word_of(meaning->quantity)) + "=" + name + " [unit]\"");
+    else if (meaning->unit && needs_kv(*meaning->unit) && !(base.kv > 0))
+      problems.add(fmt::format("column '{}'", name), where, "the model names no base_kv for records",
+                   "add base_kv under [record] in the plant file, or give per-unit values");
+    if (std::exchange(used[q], true))
+      problems.add(fmt::format("column '{}'", name), where, "another column gives the same quantity",
+                   "leave one of " + names_of(meaning->quantity) + ", or say which: --columns");
+    chosen.push_back(i);
+  }
+  check_missing(used, options, where, headings, problems);
+  others.erase("");
+  if (!others.empty()) about.notes.push_back("Other terminals in the file: " + listed(others) + ".");
+  return chosen;
+}
+
+}  // namespace swingbank::validate::record

@@ -1,0 +1,130 @@
+#include "validate/record/detail/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdint>
+
+#include "base/problem.hpp"
+
+namespace swingbank::validate::record {
+namespace {
+
+bool ends_with(const std::string& name, std::string_view ending) {
+  if (name.size() < ending.size()) return false;
+  return std::ranges::equal(std::string_view(name).substr(name.size() - ending.size()), ending,
+                            [](unsigned char a, char b) { return std::tolower(a) == b; });
+}
+
+[[noreturn]] void refuse(const std::string& what, const std::string& name, const std::string& why,
+                         const std::string& remedy) {
+  throw InputError({what, name, why, remedy});
+}
+
+/// Length of the UTF-8 sequence at `at`; 0: it is none.
+std::size_t sequence(std::string_view s, std::size_t at) {
+  const auto c = static_cast<unsigned char>(s[at]);
+  const std::size_t n = c < 0x80                ? 1
+                        : c >= 0xC2 && c < 0xE0 ? 2
+                        : c >= 0xE0 && c < 0xF0 ? 3
+                        : c >= 0xF0 && c < 0xF5 ? 4
+                                                : 0;
+  if (n == 0 || at + n > s.size()) return 0;
+  for (std::size_t k = 1; k < n; ++k)
+    if ((static_cast<unsigned char>(s[at + k]) & 0xC0) != 0x80) return 0;
+  return n;
+}
+bool is_utf8(std::string_view s) {
+  for (std::size_t at = 0; at < s.size();) {
+    const std::size_t n = sequence(s, at);
+    if (n == 0) return false;
+    at += n;
+  }
+  return true;
+}
+
+void append(std::string& out, std::uint32_t c) {
+  if (c < 0x80) {
+    out += static_cast<char>(c);
+  } else if (c < 0x800) {
+    out += static_cast<char>(0xC0 | (c >> 6));
+    out += static_cast<char>(0x80 | (c & 0x3F));
+  } else {
+    out += static_cast<char>(0xE0 | (c >> 12));
+    out += static_cast<char>(0x80 | ((c >> 6) & 0x3F));
+    out += static_cast<char>(0x80 | (c & 0x3F));
+  }
+}
+
+/// 0x80 .. 0xBF of Windows-1251; 0xC0 .. 0xFF are the letters from U+0410 on.
+constexpr std::array<std::uint16_t, 64> k1251 = {
+    0x402, 0x403,  0x201A, 0x453, 0x201E, 0x2026, 0x2020, 0x2021, 0x20AC, 0x2030, 0x409,  0x2039, 0x40A,
+    0x40C, 0x40B,  0x40F,  0x452, 0x2018, 0x2019, 0x201C, 0x201D, 0x2022, 0x2013, 0x2014, 0xFFFD, 0x2122,
+    0x459, 0x203A, 0x45A,  0x45C, 0x45B,  0x45F,  0xA0,   0x40E,  0x45E,  0x408,  0xA4,   0x490,  0xA6,
+    0xA7,  0x401,  0xA9,   0x404, 0xAB,   0xAC,   0xAD,   0xAE,   0x407,  0xB0,   0xB1,   0x406,  0x456,
+    0x491, 0xB5,   0xB6,   0xB7,  0x451,  0x2116, 0x454,  0xBB,   0x458,  0x405,  0x455,  0x457};
+/// 0x80 .. 0x9F of Windows-1252; the rest is as in Unicode.
+constexpr std::array<std::uint16_t, 32> k1252 = {
+    0x20AC, 0xFFFD, 0x201A, 0x192,  0x201E, 0x2026, 0x2020, 0x2021, 0x2C6,  0x2030, 0x160,
+    0x2039, 0x152,  0xFFFD, 0x17D,  0xFFFD, 0xFFFD, 0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
+    0x2013, 0x2014, 0x2DC,  0x2122, 0x161,  0x203A, 0x153,  0xFFFD, 0x17E,  0x178};
+
+std::uint32_t from_1251(unsigned char c) {
+  return c < 0x80 ? c : c < 0xC0 ? k1251[c - 0x80U] : 0x410U + (c - 0xC0U);
+}
+std::uint32_t from_1252(unsigned char c) { return c >= 0x80 && c < 0xA0 ? k1252[c - 0x80U] : c; }
+
+/// Words of Cyrillic are rows of bytes above 0xC0; in western text such letters stand alone.
+bool is_cyrillic(std::string_view s) {
+  std::size_t letters = 0, beside = 0;
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    const auto high = [&](std::size_t i) { return i < s.size() && static_cast<unsigned char>(s[i]) >= 0xC0; };
+    if (!high(k)) continue;
+    ++letters;
+    beside += high(k + 1) || (k > 0 && high(k - 1)) ? 1 : 0;
+  }
+  return 2 * beside > letters;
+}
+
+}  // namespace
+
+void refuse_binary(std::string_view bytes, const std::string& name) {
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF"))
+    refuse("a file in UTF-16", name, "\"Unicode text\" of spreadsheet programs and of PowerShell is that",
+           "save it as CSV in UTF-8 (PowerShell: Out-File -Encoding utf8)");
+  if (ends_with(name, ".mat") || bytes.starts_with("MATLAB 5.0"))
+    refuse(
+        "a MATLAB file", name, "it is not read",
+        "export it as CSV: writetable(table(t, V, f, P, Q), 'event.csv'), headings with their units (V_kV)");
+  if (ends_with(name, ".out") || ends_with(name, ".outx"))
+    refuse("an output file of PSS/E", name, "its format is not public",
+           "export it as CSV in PSS/E's Python: dyntools.CHNF('run.out').csvout(outfile='run.csv')");
+  if (bytes.starts_with("PK\x03\x04") || bytes.starts_with("\xD0\xCF\x11\xE0") || ends_with(name, ".xlsx"))
+    refuse("a spreadsheet", name, "only text in columns is read", "save the sheet as CSV (UTF-8)");
+  if (ends_with(name, ".psout"))
+    refuse("an output file of PSCAD", name, "only its CSV is read",
+           "export it as CSV: in PSCAD's graph, Copy Data to File; or with the Python package mhi-psout");
+  if (bytes.starts_with("\x89HDF"))
+    refuse("an HDF5 file", name, "its name does not end in .h5", "rename it, if swingbank simulate wrote it");
+  const std::string_view head = bytes.substr(0, 4096);
+  const auto nothing = std::ranges::count(head, '\0');
+  if (4 * static_cast<std::size_t>(nothing) > head.size() && head.size() > 8)
+    refuse("a file in UTF-16, or no text at all", name, "every second byte is zero",
+           "save it as CSV in UTF-8");
+  if (nothing > 0)
+    refuse("a file that is no text", name, "it holds bytes that no text has",
+           "give CSV, COMTRADE (.cfg or .dat of a pair, .cff) or HDF5 (.h5)");
+}
+
+std::string as_utf8(std::string_view text, std::vector<std::string>& notes) {
+  if (is_utf8(text)) return std::string(text);
+  const bool cyrillic = is_cyrillic(text);
+  std::string out;
+  for (const char c : text) append(out, (cyrillic ? from_1251 : from_1252)(static_cast<unsigned char>(c)));
+  notes.push_back(fmt::format("The text is not UTF-8: it was read as Windows-{}.", cyrillic ? 1251 : 1252));
+  return out;
+}
+
+}  // namespace swingbank::validate::record
