@@ -55,10 +55,13 @@ std::vector<std::vector<std::uint64_t>> points_of(const Labels& labels,
   return points;
 }
 
-/// Appends the rows that only train.
+/// Appends the rows that only train, and those of generators set aside to the rows that calibrate.
 void add_training_rows(const Labels& labels, std::optional<std::int32_t> left_out, RowSplit& split) {
-  for (std::uint64_t row = labels.judged; row < labels.rows; ++row)
-    if (labels.generator[row] != left_out) split.train.push_back(row);
+  for (std::uint64_t row = labels.judged; row < labels.rows; ++row) {
+    if (labels.generator[row] == left_out) continue;
+    const bool aside = std::ranges::find(split.set_aside, labels.generator[row]) != split.set_aside.end();
+    (aside ? split.calibration : split.train).push_back(row);
+  }
 }
 
 std::vector<std::uint64_t> rows_of(const std::vector<std::vector<std::uint64_t>>& points, std::size_t begin,
@@ -95,11 +98,20 @@ RowSplit split_by_point(const Labels& labels, std::uint64_t seed) {
 }
 
 RowSplit leave_one_out(const Labels& labels, std::int32_t generator, double validation_share,
-                       std::uint64_t seed) {
+                       std::uint64_t seed, std::size_t set_aside) {
   RowSplit split;
+  for (const std::int32_t other : generators(labels))
+    if (other != generator) split.set_aside.push_back(other);
+  shuffle(split.set_aside, key(seed, Purpose::set_aside, static_cast<std::uint64_t>(generator)));
+  split.set_aside.resize(std::min(set_aside, split.set_aside.size()));
+  const auto aside = [&](std::int32_t g) {
+    return std::ranges::find(split.set_aside, g) != split.set_aside.end();
+  };
   std::vector<std::uint64_t> others;
-  for (std::uint64_t row = 0; row < labels.judged; ++row)
-    (labels.generator[row] == generator ? split.test : others).push_back(row);
+  for (std::uint64_t row = 0; row < labels.judged; ++row) {
+    const std::int32_t of = labels.generator[row];
+    (of == generator ? split.test : aside(of) ? split.calibration : others).push_back(row);
+  }
   if (split.test.empty())
     throw InputError({fmt::format("generator {} has no rows", generator), "--fold",
                       fmt::format("the dataset has generators {}", fmt::join(generators(labels), ", ")),

@@ -12,14 +12,17 @@ namespace swingbank::train::data {
 /// Row numbers of the dataset, ascending.
 struct RowSplit {
   std::vector<std::uint64_t> train, validation, test;
+  std::vector<std::int32_t> set_aside = {};     ///< bus numbers of generators that calibrate beliefs
+  std::vector<std::uint64_t> calibration = {};  ///< their rows
 };
 
 /// 60 / 20 / 20 of the groups of rows. Throws InputError if a part would be empty.
 RowSplit split_by_point(const Labels& labels, std::uint64_t seed);
 /// Test: every row of one generator. The others' points: `validation_share` for validation, the rest for
-/// training. Throws InputError if the generator has no rows or no others exist.
+/// training, but for so many generators as are `set_aside`. Throws InputError if the generator has no rows or
+/// no others exist.
 RowSplit leave_one_out(const Labels& labels, std::int32_t generator, double validation_share,
-                       std::uint64_t seed);
+                       std::uint64_t seed, std::size_t set_aside = 0);
 /// Bus numbers of the generators that have rows, ascending: one fold each.
 std::vector<std::int32_t> generators(const Labels& labels);
 

@@ -64,6 +64,25 @@ void read_training(Config& c, const std::string& at, bool complete, TrainingReci
   extra.number("clip", {0.0, 1e6}, t.clip);
   extra.number("average", {0.0, 0.99999}, t.average);
   extra.flag("training_rows", t.training_rows);
+  extra.whole("posterior_epochs", 0, t.posterior_epochs);
+  extra.whole("set_aside", 0, t.set_aside);
+}
+
+/// A network trained at many levels is told them, which only the form "physics" can.
+void read_noise_levels(Config& c, const std::string& at, TrainingRecipe& t, NetworkInput& input) {
+  if (const std::string name = at + ".training_noise"; c.has(name)) {
+    const auto range = c.require<std::vector<double>>(name, {1e-6, kNoiseLevels.high});
+    if (range.size() != 2 || range[0] >= range[1])
+      c.problem(name, "no range of levels", "it is a lowest level above 0 and a highest",
+                "give [0.0001, 0.005]");
+    else
+      t.noise_levels = {range[0], range[1], c.require<double>(at + ".training_noise_zero", {0.0, 1.0})};
+  }
+  input.recipe.shows_level = t.noise_levels.has_value();
+  if (t.noise_levels && input.recipe.form != data::InputForm::physics)
+    c.problem(at + ".form", "training at many levels of noise",
+              "the network is told the level, and only the form physics has a place for it",
+              "choose form = \"physics\", or leave training_noise out");
 }
 
 void read_input(Config& c, const std::string& at, bool complete, NetworkInput& i) {
@@ -119,6 +138,7 @@ Preset read_preset(Config& c, const std::string& name) {
     read_input(c, own, false, p.input[network]);
     read_training(c, own, false, p.training[network]);
     read_judging(c, own, false, p.judging[network]);
+    read_noise_levels(c, own, p.training[network], p.input[network]);
     if (p.training[network].training_rows && p.training_draws == 0)
       c.problem(at + "." + network + ".training_rows", "no rows that only train",
                 "the experiment has no training_dataset, or the preset no training_draws", "give both");

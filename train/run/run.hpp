@@ -42,5 +42,7 @@ std::vector<float> scaled_targets(const data::Labels& labels, const data::Target
                                   const data::RowSplit& split, bool shuffled, std::uint64_t seed);
 /// "V-cnn-quick-seed1-gen30"
 std::string run_name(const RunRequest& request);
+/// The same without the noise that it is judged with, where the network serves all levels.
+std::string training_name(const RunRequest& request);
 
 }  // namespace swingbank::train::run
