@@ -6,6 +6,7 @@
 #include <cmath>
 #include <thread>
 
+#include "base/in_parallel.hpp"
 #include "base/problem.hpp"
 #include "train/data/random.hpp"
 
@@ -166,9 +167,10 @@ void ShardStream::read(std::span<const std::uint64_t> rows, float* out, const No
   const std::size_t values = selection_.values();
   if (!records_.empty()) {
     const std::size_t record = dataset_.channel_names.size() * dataset_.samples;
-    for (std::size_t i = 0; i < rows.size(); ++i)
+    const auto one = [&](std::size_t i) {
       series_of(records_.data() + rows[i] * record, shard_of(rows[i]), rows[i], noise, out + i * values);
-    return;
+    };
+    return in_parallel(rows.size(), one, [](int) {});
   }
   if (in_memory()) {
     for (std::size_t i = 0; i < rows.size(); ++i)

@@ -98,6 +98,20 @@ void read_input(Config& c, const std::string& at, bool complete, NetworkInput& i
   k.whole("pca_components", 0, i.pca_components);
 }
 
+/// What is copied from a network that corrects nothing: estimates to correct are made once, of records with
+/// one noise, and nothing is believed of them.
+void train_as_judged(TrainingRecipe& t) {
+  t.noise_levels.reset();
+  t.posterior_epochs = t.set_aside = 0;
+}
+
+void refuse_unknown_beliefs(Config& c, const std::string& at, const TrainingRecipe& t) {
+  if (t.corrects.empty() || (!t.noise_levels && t.posterior_epochs == 0)) return;
+  c.problem(at + ".corrects", "many levels of noise, or a posterior, of a network that corrects",
+            "the estimates that it corrects are made once, of records with one noise",
+            "leave training_noise and posterior_epochs out");
+}
+
 void read_judging(Config& c, const std::string& at, bool complete, Judging& j) {
   if (complete || c.has(at + ".noise")) j.noise = c.require<std::vector<double>>(at + ".noise", kNoiseLevels);
   Keys(c, at, false).whole("test_rows", 1, j.test_rows);
@@ -135,10 +149,12 @@ Preset read_preset(Config& c, const std::string& name) {
       c.problem(at + ".networks", fmt::format("no network called '{}'", kind),
                 "train/networks has no such file", fmt::format("choose among {}", fmt::join(known, ", ")));
     p.training[network].corrects = c.choice(own + ".corrects", {"", "closed-form", "refined"}, "");
+    if (!p.training[network].corrects.empty()) train_as_judged(p.training[network]);
     read_input(c, own, false, p.input[network]);
     read_training(c, own, false, p.training[network]);
     read_judging(c, own, false, p.judging[network]);
     read_noise_levels(c, own, p.training[network], p.input[network]);
+    refuse_unknown_beliefs(c, own, p.training[network]);
     if (p.training[network].training_rows && p.training_draws == 0)
       c.problem(at + "." + network + ".training_rows", "no rows that only train",
                 "the experiment has no training_dataset, or the preset no training_draws", "give both");

@@ -250,6 +250,7 @@ class NetworkRun {
     s.checkpoint = checkpoint_;
     s.run = &identity_;
     s.gflops = request_.runtime.gflops;
+    s.stop = request_.stop;
     return s;
   }
   [[nodiscard]] std::vector<float> targets_of_training() const {

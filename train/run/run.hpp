@@ -2,6 +2,7 @@
 // One run: split, features, training, score, JSON. Used by `swingbank train` and, fold by fold, by
 // `swingbank cross-validate`.
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 
@@ -27,6 +28,7 @@ struct RunRequest {
   std::filesystem::path out;
   runtime::Runtime runtime;
   bool quiet = false;
+  std::function<bool()> stop = {};  ///< asked before each batch; empty: stop_asked()
 };
 
 enum class RunOutcome { done, already_done, stopped };

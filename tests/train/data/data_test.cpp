@@ -274,6 +274,25 @@ TEST(Split, RowsOfASecondDatasetOnlyTrain) {
   EXPECT_EQ(a, c);
 }
 
+TEST(Split, GeneratorsSetAsideCalibrateAndDoNotTrain) {
+  test::Folder folder("aside"), other("aside-other");
+  const mpi::store::Dataset dataset = test::make_dataset(folder.path), more = test::make_dataset(other.path);
+  const ShardStream stream(dataset, test::whole_record(), {}, more);
+  const Labels& labels = stream.labels();
+  const RowSplit split = leave_one_out(labels, 33, 0.1, 1, 2);
+  ASSERT_EQ(split.set_aside.size(), 2u);
+  EXPECT_EQ(split.test.size(), 40u);
+  EXPECT_EQ(split.calibration.size(), 160u);
+  EXPECT_EQ(split.train.size() + split.validation.size(), 560u);
+  const auto aside = [&](std::uint64_t row) {
+    return std::ranges::find(split.set_aside, labels.generator[row]) != split.set_aside.end();
+  };
+  EXPECT_TRUE(std::ranges::all_of(split.calibration, aside));
+  for (const auto* rows : {&split.train, &split.validation, &split.test})
+    EXPECT_TRUE(std::ranges::none_of(*rows, aside));
+  for (const auto row : split.train) EXPECT_NE(labels.generator[row], 33);
+}
+
 TEST(ShardStream, RefusesASecondDatasetOfAnotherKind) {
   test::Folder folder("kind"), other("kind-other");
   test::Plan plan;
