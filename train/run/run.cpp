@@ -297,11 +297,14 @@ RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
   if (already_done(file, run_identity)) return RunOutcome::already_done;
   make_folder(r.out);
   make_folder(locks);
+  const loop::TrainingRecipe& recipe = r.experiment.training(r.preset, r.network);
+  // runs of other levels wait for the network that is theirs too
+  const std::chrono::seconds patience =
+      recipe.noise_levels ? std::chrono::hours(12) : std::chrono::seconds(5);
   RunLock lock(locks / (training_name(r) + ".lock"),
-               {"a second run", file.string(), "wait for it to end, or choose another --out"});
+               {"a second run", file.string(), "wait for it to end, or choose another --out"}, patience);
   if (already_done(file, run_identity)) return RunOutcome::already_done;
 
-  const loop::TrainingRecipe& recipe = r.experiment.training(r.preset, r.network);
   const data::Labels& labels = stream.labels();
   data::RowSplit split = r.generator ? data::leave_one_out(labels, *r.generator, recipe.validation_share,
                                                            r.seed, recipe.set_aside)
