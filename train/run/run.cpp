@@ -240,7 +240,9 @@ class NetworkRun {
   bool train_head() {
     const std::vector<float> targets =
         scaled_targets(stream_.labels(), scale_, split_, request_.shuffle_labels, request_.seed);
-    return train_posterior(*posterior_, *network_, context(), settings(), targets, progress_);
+    loop::TrainingProgress progress(name_ + ", posterior", recipe_.posterior_epochs * split_.train.size(),
+                                    request_.quiet);
+    return train_posterior(*posterior_, *network_, context(), settings(), targets, progress);
   }
   [[nodiscard]] loop::LoopSettings settings() const {
     loop::LoopSettings s;

@@ -151,7 +151,7 @@ bool train_posterior(Posterior& posterior, networks::Network& network, const Pos
   settings.checkpoint.replace_extension(".posterior.checkpoint");
   settings.first_draw = kPosteriorDraws;
   settings.gflops = 0.0;
-  progress.line("the posterior's head; losses are negative log densities per parameter");
+  progress.line("losses are negative log densities per parameter");
   const auto* head = posterior.head.get();
   loop::LoopData data{c.stream, c.features, c.split.train, c.split.validation, targets};
   data.loss = [head](const at::Tensor& numbers, const at::Tensor& of) { return head->loss(numbers, of); };
