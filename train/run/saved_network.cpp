@@ -227,7 +227,7 @@ SavedNetwork SavedNetwork::load(const fs::path& path) {
     for (const auto& w : n.network_->parameters()) weights.push_back(w.detach());
     if (!header.at("posterior").is_null()) {
       n.posterior_->levels = maps_of(header.at("posterior"));
-      n.posterior_->head = n.make_head_of(sizes);
+      n.add_head(sizes);
       for (const auto& w : n.posterior_->head->parameters()) weights.push_back(w.detach());
     }
     features.resize(data::Features::array_count(sizes));
@@ -253,14 +253,15 @@ SavedNetwork SavedNetwork::load(const fs::path& path) {
 
 std::unique_ptr<Posterior> SavedNetwork::release_posterior() { return std::move(posterior_); }
 
-std::unique_ptr<posterior::Head> SavedNetwork::make_head_of(const data::FeatureSizes& sizes) {
+void SavedNetwork::add_head(const data::FeatureSizes& sizes) {
   mpi::store::Dataset box;
   for (const auto& p : info_.parameters) {
     box.parameter_low.push_back(p.low);
     box.parameter_high.push_back(p.high);
   }
   const networks::NetworkShape shape = shape_of(sizes, info_.parameters.size());
-  return make_head(*network_, box, scale_, static_cast<std::size_t>(shape.channels * shape.samples));
+  posterior_->head =
+      make_head(*network_, box, scale_, static_cast<std::size_t>(shape.channels * shape.samples));
 }
 
 data::FeatureSizes SavedNetwork::read_header(const json& h) {

@@ -13,10 +13,6 @@
 #include "train/data/features.hpp"
 #include "train/run/run.hpp"
 
-namespace swingbank::train::posterior {
-class Head;
-}
-
 namespace swingbank::train::run {
 
 /// A parameter that a network estimates.
@@ -95,7 +91,7 @@ class SavedNetwork {
  private:
   SavedNetwork();
   data::FeatureSizes read_header(const nlohmann::json& header);
-  [[nodiscard]] std::unique_ptr<posterior::Head> make_head_of(const data::FeatureSizes& sizes);
+  void add_head(const data::FeatureSizes& sizes);
   void add_intervals(const at::Tensor& x, double noise, Estimate& e) const;
   std::filesystem::path file_;
   NetworkInfo info_;
