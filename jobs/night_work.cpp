@@ -89,8 +89,9 @@ Part network_part(const train::loop::Preset& p, const std::string& network, cons
       const double longer = cost.length > 0 ? series_length(p.input.at(network), rate) / cost.length : 1.0;
       part.rows = rows.train(t);
       part.epochs = t.epochs;
-      of_rows = part.rows * static_cast<double>(t.epochs) * cost.sample * longer;
-      seconds += of_rows;
+      of_rows = part.rows * static_cast<double>(t.epochs + t.posterior_epochs) * cost.sample * longer;
+      const bool trains = !t.noise_levels || noise == judged.noise.front();  // one network serves all levels
+      if (trains) seconds += of_rows;
     } else {
       part.rows = rows.test(judged.test_rows);
       seconds += part.rows * row(cost, noise);

@@ -1,6 +1,7 @@
 // swingbank predict: a trained network's estimate of a plant's parameters from measured records.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -22,6 +23,7 @@ struct Options {
   std::vector<std::string> records;
   std::optional<double> event;
   jobs::Reading reading;
+  double noise = 0.0;
   bool json = false;
 };
 
@@ -57,6 +59,16 @@ std::pair<double, double> over_records(const std::vector<Estimated>& all, std::s
   return {mean, all.size() > 1 ? std::sqrt(square / static_cast<double>(all.size() - 1)) : 0.0};
 }
 
+/// Of each parameter 5 %, 50 % and 95 % of what is believed, null for those that are held; empty where the
+/// network has no posterior.
+ordered_json intervals_json(const train::run::Estimate& e) {
+  ordered_json all = ordered_json::array();
+  if (std::ranges::none_of(e.intervals, [](const auto& i) { return i.has_value(); })) return all;
+  for (const auto& i : e.intervals)
+    all.push_back(i ? ordered_json::array({i->low, i->median, i->high}) : ordered_json());
+  return all;
+}
+
 ordered_json to_json(const train::run::SavedNetwork& network, const plant::PlantModel& model,
                      const std::vector<Estimated>& all) {
   const train::run::NetworkInfo& n = network.info();
@@ -72,13 +84,16 @@ ordered_json to_json(const train::run::SavedNetwork& network, const plant::Plant
                   {"left_out", n.left_out ? ordered_json(*n.left_out) : ordered_json()},
                   {"input_rms_seen", n.input_rms_seen}};
   j["model"] = model.origin;
-  for (const auto& e : all)
+  for (const auto& e : all) {
     j["records"].push_back({{"file", e.record.name},
                             {"hash", fmt::format("{:016x}", e.record.hash)},
                             {"event_s", e.input.event_s},
                             {"held_before_record_s", e.input.held_s},
                             {"input_rms", e.estimate.input_rms},
                             {"estimates", e.estimate.values}});
+    if (const ordered_json intervals = intervals_json(e.estimate); !intervals.empty())
+      j["records"].back()["intervals_90"] = intervals;
+  }
   for (std::size_t i = 0; i < n.parameters.size(); ++i) {
     const auto& p = n.parameters[i];
     const auto [mean, scatter] = over_records(all, i);
@@ -111,6 +126,20 @@ std::string table(const train::run::NetworkInfo& n, const std::vector<Estimated>
          "records\n";
 }
 
+/// Intervals that hold a parameter with 90 %, record by record.
+std::string believed(const train::run::NetworkInfo& n, const std::vector<Estimated>& all) {
+  std::string text;
+  for (const auto& e : all)
+    for (std::size_t i = 0; i < n.parameters.size(); ++i)
+      if (const auto& x = e.estimate.intervals[i])
+        text += fmt::format(
+            "{}{:<16}{:>12.4g}{:>12.4g}{:>12.4g}  {}\n",
+            text.empty() ? fmt::format("\n{:<16}{:>12}{:>12}{:>12}\n", "believed", "5 %", "50 %", "95 %")
+                         : std::string(),
+            n.parameters[i].name, x->low, x->median, x->high, e.record.name);
+  return text;
+}
+
 /// A network answers whatever it is shown; this is how one sees that it was never shown anything like it. A
 /// generator that was left out may well swing somewhat more than those it was judged on.
 void warn_of_strangers(const train::run::NetworkInfo& n, const std::vector<Estimated>& all) {
@@ -135,12 +164,12 @@ int run(const Options& o) {
         {"one instant for several records", "--event", "each has its own", "give one record at a time"});
   for (auto& e : all) {
     e.input = network_input(e.record, model, network.info(), o.event);
-    e.estimate = network.estimate(e.input.values);
+    e.estimate = network.estimate(e.input.values, o.noise);
   }
   warn_of_strangers(network.info(), all);
   const std::string text = to_json(network, model, all).dump(2) + "\n";
   if (!o.out.empty()) write_file(o.out, text);
-  fmt::print("{}", o.json ? text : table(network.info(), all));
+  fmt::print("{}", o.json ? text : table(network.info(), all) + believed(network.info(), all));
   return 0;
 }
 }  // namespace
@@ -154,6 +183,10 @@ int main(int argc, char** argv) {
   line.add("--records,--record", o.records, "records (CSV, COMTRADE or HDF5), one or several").required();
   o.reading.add_to(line);
   line.add("--event", o.event, "when the event begins [s] (default: found)");
+  line.add("--noise", o.noise,
+           "level of the records' noise, as measured before the event (0.001: 0.1 %), for a network that was "
+           "trained at many levels")
+      .shows_default();
   line.add("--out", o.out, "write the estimate as JSON to this file");
   line.add_flag("--json", o.json, "print the estimate as JSON instead of a table");
   if (!line.parse(argc, argv)) return line.end();

@@ -100,7 +100,7 @@ struct TrainingOptions {
     if (!training_rows.empty()) more = mpi::store::open_dataset(training_rows);
     return {mpi::store::open_dataset(dataset),
             r.experiment.input(preset, r.network).recipe,
-            {bytes, readers, trust, {r.noise, r.seed}},
+            {bytes, readers, trust, {r.noise, r.seed, r.experiment.training(preset, r.network).noise_levels}},
             more};
   }
 };

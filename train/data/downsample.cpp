@@ -54,7 +54,9 @@ Physics physics_of(const InputRecipe& recipe, const mpi::store::DatasetHeader& d
   std::vector<std::string> names = d.channel_names;  // those that are not asked for stay unseen
   for (auto& name : names)
     if (std::ranges::find(recipe.channels, name) == recipe.channels.end()) name.clear();
-  return {names, {d.rate, recipe.start_s, recipe.end_s, event.front(), shown_reactance(d)}};
+  PhysicsWindow window{d.rate, recipe.start_s, recipe.end_s, event.front(), shown_reactance(d)};
+  if (recipe.shows_level) window.least_voltage = kNoisyLeastVoltage;
+  return {names, window};
 }
 
 }  // namespace
@@ -89,6 +91,7 @@ InputSelection select_input(const InputRecipe& recipe, const mpi::store::Dataset
   if (s.form == InputForm::physics) {
     s.physics = physics_of(recipe, dataset);
     s.samples = s.physics->cells();
+    s.shows_level = recipe.shows_level;
   }
   return s;
 }

@@ -29,6 +29,7 @@ struct InputRecipe {
   double start_s = 0.0, end_s = 0.0;  ///< window [s]; the end is not included
   std::size_t slice = 1;              ///< keep every slice-th sample: 120/s and 4 make 30/s
   InputForm form = InputForm::absolute;
+  bool shows_level = false;  ///< of the form physics: the noise's level stands behind the steady values
 };
 
 /// The same, resolved against a dataset.
@@ -38,13 +39,14 @@ struct InputSelection {
   InputForm form = InputForm::absolute;
   double rate = 0.0;               ///< after slicing [1/s]
   std::optional<Physics> physics;  ///< of that form; it then makes the series
+  bool shows_level = false;        ///< the last value is level_input() of the noise; its reader puts it there
 
   [[nodiscard]] std::size_t outputs() const {
     return physics ? physics->channels() : channels.size() * (form == InputForm::both ? 2 : 1);
   }
   /// Values behind the series.
   [[nodiscard]] std::size_t levels() const { return physics ? physics->levels() : 0; }
-  [[nodiscard]] std::size_t values() const { return outputs() * samples + levels(); }
+  [[nodiscard]] std::size_t values() const { return outputs() * samples + levels() + (shows_level ? 1 : 0); }
   /// record: channels x record_samples of one row; out: outputs() x samples, then levels().
   void apply(const float* record, std::size_t record_samples, float* out) const;
 };

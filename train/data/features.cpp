@@ -6,7 +6,7 @@
 namespace swingbank::train::data {
 namespace {
 WhiteningSizes whitening_sizes(const FeatureSizes& s) {
-  return {s.channels, s.samples, s.levels, s.pca_components, s.kept};
+  return {s.channels, s.samples, s.levels, s.pca_components, s.kept, s.noisy};
 }
 }  // namespace
 
@@ -64,7 +64,7 @@ Features Features::of(Whitening whitening) {
 FeatureSizes Features::sizes() const {
   if (whitening_) {
     const WhiteningSizes& w = whitening_->sizes();
-    return {w.channels, w.samples, w.components, 0, w.levels, w.kept};
+    return {w.channels, w.samples, w.components, 0, w.levels, w.kept, w.noisy};
   }
   return {channels_, samples_, pca_ ? pca_->components() : 0, pca_ ? pca_->per_second() : 0};
 }

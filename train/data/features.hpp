@@ -14,7 +14,7 @@ namespace swingbank::train::data {
 struct FeatureSizes {
   std::size_t channels = 0, samples = 0;
   std::size_t pca_components = 0, pca_per_second = 0;  ///< 0: no PCA
-  std::size_t levels = 0, kept = 0;                    ///< of a whitening; kept 0: none
+  std::size_t levels = 0, kept = 0, noisy = 0;         ///< of a whitening; kept 0: none
 };
 
 class Features {

@@ -8,8 +8,6 @@
 namespace swingbank::train::data {
 namespace {
 
-constexpr float kBoltedVoltage = 1e-3f;  ///< at a bolted fault the terminal may have none [pu]
-
 /// Signals of one row at the record's rate, made and averaged one at a time.
 class Signal {
  public:
@@ -95,7 +93,8 @@ std::size_t Physics::channels() const {
 void Physics::apply(const float* record, std::size_t stride, float* out) const {
   const auto channel = [&](int c) { return record + static_cast<std::size_t>(c) * stride; };
   const float *P = channel(P_), *Q = channel(Q_), *V = channel(V_);
-  const auto voltage = [&](std::size_t k) { return std::max(V[k], kBoltedVoltage); };
+  const auto least = static_cast<float>(window_.least_voltage);
+  const auto voltage = [&](std::size_t k) { return std::max(V[k], least); };
   const double x = window_.reactance, step = 1.0 / window_.rate;
   float* levels = out + channels() * cells();
   Signal s(std::max(samples(), steady_));

@@ -8,12 +8,16 @@
 
 namespace swingbank::train::data {
 
+inline constexpr double kLeastVoltage = 1e-3;      ///< at a bolted fault the terminal may have none [pu]
+inline constexpr double kNoisyLeastVoltage = 0.1;  ///< below it a current would be noise over noise [pu]
+
 /// Where the machine's event lies in the record and what part of it is shown.
 struct PhysicsWindow {
-  double rate = 0.0;                  ///< of the record [1/s]
-  double start_s = 0.0, end_s = 0.0;  ///< window [s]
-  double event_s = 0.0;               ///< instant before which the record is steady [s]
-  double reactance = 0.0;             ///< X''d or X'd: what E lies behind [pu on the machine's base]
+  double rate = 0.0;                     ///< of the record [1/s]
+  double start_s = 0.0, end_s = 0.0;     ///< window [s]
+  double event_s = 0.0;                  ///< instant before which the record is steady [s]
+  double reactance = 0.0;                ///< X''d or X'd: what E lies behind [pu on the machine's base]
+  double least_voltage = kLeastVoltage;  ///< that P and Q are divided by to get currents [pu]
 };
 
 /// Channels in this order: P/V, Q/V, V, E, angle of E against the terminal, integral of P; with a speed:

@@ -14,7 +14,16 @@ constexpr std::uint64_t mix(std::uint64_t z) {
   return z ^ (z >> 31);
 }
 /// What a stream of random numbers is for, so that no two share a key.
-enum class Purpose : std::uint64_t { weights = 1, dropout, order, split, labels };
+enum class Purpose : std::uint64_t {
+  weights = 1,
+  dropout,
+  order,
+  split,
+  labels,
+  noise,
+  noise_level,
+  set_aside
+};
 constexpr std::uint64_t key(std::uint64_t seed, Purpose purpose, std::uint64_t a = 0, std::uint64_t b = 0) {
   return mix(mix(mix(mix(seed) ^ static_cast<std::uint64_t>(purpose)) ^ a) ^ b);
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <thread>
 
+#include "base/in_parallel.hpp"
 #include "base/problem.hpp"
 #include "train/data/random.hpp"
 
@@ -30,7 +31,9 @@ ShardStream::ShardStream(mpi::store::Dataset dataset, const InputRecipe& recipe,
                       "see the outcomes in its journal and the ranges in its config"});
   labels_.parameters = dataset_.parameter_names.size();
   if (more) append(*more);
-  const bool fits = rows_ <= options_.memory_limit / (selection_.values() * sizeof(float));
+  const std::size_t kept =
+      options_.noise.training ? dataset_.channel_names.size() * dataset_.samples : selection_.values();
+  const bool fits = rows_ <= options_.memory_limit / (kept * sizeof(float));
   Problems problems;
   for (const auto& shard : shards_) {
     try {
@@ -100,27 +103,33 @@ void ShardStream::keep_labels(const mpi::store::RowBlock& block, const mpi::stor
   labels_.generator.insert(labels_.generator.end(), block.generator.begin(), block.generator.end());
 }
 
-void ShardStream::series_of(const mpi::store::RowBlock& block, std::size_t at,
-                            const mpi::store::ShardInfo& shard, std::uint64_t row, float* out) const {
-  const std::size_t values = block.channels * block.samples;
-  const float* record = block.records.data() + at * values;
+void ShardStream::series_of(const float* record, const mpi::store::ShardInfo& shard, std::uint64_t row,
+                            const Noise& noise, float* out) const {
+  const double level = noise_.level(row, noise);
   std::vector<float> noisy;
-  if (!noise_.none()) {
-    noisy.assign(record, record + values);
-    noise_.add(row, noisy.data());
+  if (level > 0) {
+    noisy.assign(record, record + dataset_.channel_names.size() * dataset_.samples);
+    noise_.add(row, noise, noisy.data());
     record = noisy.data();
   }
-  selection_.apply(record, block.samples, out);
+  selection_.apply(record, dataset_.samples, out);
+  if (selection_.shows_level) out[selection_.values() - 1] = level_input(level);
   check_finite(out, shard, row);
 }
 
 void ShardStream::keep_series(const mpi::store::RowBlock& block, const mpi::store::ShardInfo& shard) {
+  if (options_.noise.training) {
+    if (records_.empty()) records_.reserve(rows_ * block.channels * block.samples);
+    records_.insert(records_.end(), block.records.begin(), block.records.end());
+    return;
+  }
   const std::size_t values = selection_.values();
   if (series_.empty()) series_.reserve(rows_ * values);
   const std::size_t before = series_.size();
   series_.resize(before + block.rows * values);
   for (std::size_t i = 0; i < block.rows; ++i)
-    series_of(block, i, shard, shard.first_row + i, series_.data() + before + i * values);
+    series_of(block.records.data() + i * block.channels * block.samples, shard, shard.first_row + i, judged(),
+              series_.data() + before + i * values);
 }
 
 const mpi::store::ShardInfo& ShardStream::shard_of(std::uint64_t row) const {
@@ -143,17 +152,26 @@ void ShardStream::check_finite(const float* series, const mpi::store::ShardInfo&
            "a network cannot be trained on it", "generate this shard again"});
 }
 
-void ShardStream::read_run(std::span<const Wanted> run, float* out) const {
+void ShardStream::read_run(std::span<const Wanted> run, const Noise& noise, float* out) const {
   const mpi::store::ShardInfo& shard = shard_of(run.front().row);
   const std::uint64_t first = run.front().row, count = run.back().row - first + 1;
   mpi::store::RowBlock block;
   mpi::store::read_rows(shard, first - shard.first_row, count, block, kRecordsOnly);
   const std::size_t values = selection_.values();
-  for (const auto& w : run) series_of(block, w.row - first, shard, w.row, out + w.slot * values);
+  for (const auto& w : run)
+    series_of(block.records.data() + (w.row - first) * block.channels * block.samples, shard, w.row, noise,
+              out + w.slot * values);
 }
 
-void ShardStream::read(std::span<const std::uint64_t> rows, float* out) const {
+void ShardStream::read(std::span<const std::uint64_t> rows, float* out, const Noise& noise) const {
   const std::size_t values = selection_.values();
+  if (!records_.empty()) {
+    const std::size_t record = dataset_.channel_names.size() * dataset_.samples;
+    const auto one = [&](std::size_t i) {
+      series_of(records_.data() + rows[i] * record, shard_of(rows[i]), rows[i], noise, out + i * values);
+    };
+    return in_parallel(rows.size(), one, [](int) {});
+  }
   if (in_memory()) {
     for (std::size_t i = 0; i < rows.size(); ++i)
       std::copy_n(series_.data() + rows[i] * values, values, out + i * values);
@@ -175,7 +193,7 @@ void ShardStream::read(std::span<const std::uint64_t> rows, float* out) const {
   std::vector<std::future<void>> workers;
   for (unsigned w = 0; w < readers; ++w)
     workers.push_back(std::async(readers == 1 ? std::launch::deferred : std::launch::async, [&, w] {
-      for (std::size_t i = w; i < runs.size(); i += readers) read_run(runs[i], out);
+      for (std::size_t i = w; i < runs.size(); i += readers) read_run(runs[i], noise, out);
     }));
   for (auto& worker : workers) worker.wait();
   for (auto& worker : workers) worker.get();
@@ -202,9 +220,10 @@ std::vector<std::uint64_t> epoch_order(std::span<const std::uint64_t> rows, std:
 }
 
 BatchReader::BatchReader(const ShardStream& stream, std::vector<std::uint64_t> order, std::size_t batch,
-                         std::size_t first)
+                         std::size_t first, const std::optional<Noise>& noise)
     : stream_(stream),
       order_(std::move(order)),
+      noise_(noise.value_or(stream.judged())),
       batch_(batch),
       position_(std::min(first * batch, order_.size())) {
   chunk_ = std::max<std::size_t>(1, kBlock * kWindow / 4 / batch_) * batch_;
@@ -217,7 +236,7 @@ void BatchReader::start_reading(std::size_t from) {
   if (ahead_begin_ == ahead_end_) return;
   ahead_ = std::async(std::launch::async, [this, begin = ahead_begin_, end = ahead_end_] {
     std::vector<float> series((end - begin) * stream_.selection().values());
-    stream_.read({order_.data() + begin, end - begin}, series.data());
+    stream_.read({order_.data() + begin, end - begin}, series.data(), noise_);
     return series;
   });
 }
@@ -229,7 +248,7 @@ bool BatchReader::next(Batch& out) {
   out.rows = {order_.data() + position_, count};
   out.series.resize(count * values);
   if (stream_.in_memory()) {
-    stream_.read(out.rows, out.series.data());
+    stream_.read(out.rows, out.series.data(), noise_);
   } else {
     if (position_ >= chunk_end_) {
       current_ = ahead_.get();

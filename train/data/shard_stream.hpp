@@ -23,10 +23,12 @@ struct Labels {
 
 struct StreamOptions {
   std::uint64_t memory_limit = std::uint64_t{8} << 30;  ///< [bytes]
-  unsigned readers = 1;    ///< threads that read ahead; the bytes do not depend on it
-  bool trust = false;      ///< do not compare the shards' hashes with the journal
-  NoiseRecipe noise = {};  ///< the same in every epoch
+  unsigned readers = 1;  ///< threads that read ahead; the bytes do not depend on it
+  bool trust = false;    ///< do not compare the shards' hashes with the journal
+  NoiseRecipe noise = {};
 };
+
+inline constexpr std::uint64_t kValidationDraw = std::uint64_t{1} << 32;  ///< no epoch reaches it
 
 class ShardStream {
  public:
@@ -46,24 +48,35 @@ class ShardStream {
   [[nodiscard]] std::size_t channels() const { return selection_.outputs(); }
   [[nodiscard]] std::size_t samples() const { return selection_.samples; }
   [[nodiscard]] const NoiseRecipe& noise() const { return options_.noise; }
+  /// The noise that rows are judged with.
+  [[nodiscard]] Noise judged() const { return {noise().level}; }
+  /// The noise of an epoch of training: that of judging, unless rows draw their levels.
+  [[nodiscard]] Noise training(std::uint64_t epoch) const {
+    return noise().training ? Noise{{}, epoch} : judged();
+  }
+  /// The noise of rows that decide when to stop: the same in every epoch.
+  [[nodiscard]] Noise validation() const { return training(kValidationDraw); }
+  /// Whether the series are there as they are read; records whose noise changes are not.
   [[nodiscard]] bool in_memory() const { return !series_.empty(); }
-  /// rows: row numbers of the dataset, in any order; out: rows x channels x samples.
-  void read(std::span<const std::uint64_t> rows, float* out) const;
+  /// rows: row numbers of the dataset, in any order; out: rows x values of the selection. Another noise than
+  /// that of judging needs a recipe with levels of training.
+  void read(std::span<const std::uint64_t> rows, float* out, const Noise& noise) const;
+  void read(std::span<const std::uint64_t> rows, float* out) const { read(rows, out, judged()); }
 
  private:
   void append(mpi::store::Dataset more);
   void load(const mpi::store::ShardInfo& shard, bool fits);
   void keep_labels(const mpi::store::RowBlock& block, const mpi::store::ShardInfo& shard);
   void keep_series(const mpi::store::RowBlock& block, const mpi::store::ShardInfo& shard);
-  /// The series of the block's row `at`, which is the dataset's row `row`, with its noise.
-  void series_of(const mpi::store::RowBlock& block, std::size_t at, const mpi::store::ShardInfo& shard,
-                 std::uint64_t row, float* out) const;
+  /// The series of a record, which is the dataset's row `row`, with its noise.
+  void series_of(const float* record, const mpi::store::ShardInfo& shard, std::uint64_t row,
+                 const Noise& noise, float* out) const;
   /// Reads one run of rows of a shard and copies those asked for.
   struct Wanted {
     std::uint64_t row;
     std::size_t slot;
   };
-  void read_run(std::span<const Wanted> run, float* out) const;
+  void read_run(std::span<const Wanted> run, const Noise& noise, float* out) const;
   [[nodiscard]] const mpi::store::ShardInfo& shard_of(std::uint64_t row) const;
   void check_finite(const float* series, const mpi::store::ShardInfo& shard, std::uint64_t row) const;
 
@@ -75,7 +88,8 @@ class ShardStream {
   StreamOptions options_;
   RecordNoise noise_;
   Labels labels_;
-  std::vector<float> series_;
+  std::vector<float> series_;   ///< as they are read; or
+  std::vector<float> records_;  ///< as they are stored, where their noise changes; or neither
 };
 
 /// Order in which an epoch visits `rows` (ascending): blocks of 256 neighbours are shuffled, then the rows
@@ -92,9 +106,9 @@ struct Batch {
 /// Batches of one epoch, read ahead by one chunk where the series are not in memory.
 class BatchReader {
  public:
-  /// Starts at batch `first` of the order.
+  /// Starts at batch `first` of the order; reads with the noise of judging unless told another.
   BatchReader(const ShardStream& stream, std::vector<std::uint64_t> order, std::size_t batch,
-              std::size_t first = 0);
+              std::size_t first = 0, const std::optional<Noise>& noise = {});
   /// False at the end.
   bool next(Batch& out);
   [[nodiscard]] std::size_t batches() const { return (order_.size() + batch_ - 1) / batch_; }
@@ -104,6 +118,7 @@ class BatchReader {
 
   const ShardStream& stream_;
   std::vector<std::uint64_t> order_;
+  Noise noise_;
   std::size_t batch_, position_, chunk_, chunk_begin_ = 0, chunk_end_ = 0;
   std::vector<float> current_;
   std::future<std::vector<float>> ahead_;

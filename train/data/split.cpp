@@ -55,10 +55,13 @@ std::vector<std::vector<std::uint64_t>> points_of(const Labels& labels,
   return points;
 }
 
-/// Appends the rows that only train.
+/// Appends the rows that only train, and those of generators set aside to the rows that calibrate.
 void add_training_rows(const Labels& labels, const std::set<std::int32_t>& left_out, RowSplit& split) {
-  for (std::uint64_t row = labels.judged; row < labels.rows; ++row)
-    if (!left_out.contains(labels.generator[row])) split.train.push_back(row);
+  for (std::uint64_t row = labels.judged; row < labels.rows; ++row) {
+    if (left_out.contains(labels.generator[row])) continue;
+    const bool aside = std::ranges::find(split.set_aside, labels.generator[row]) != split.set_aside.end();
+    (aside ? split.calibration : split.train).push_back(row);
+  }
 }
 
 std::vector<std::uint64_t> rows_of(const std::vector<std::vector<std::uint64_t>>& points, std::size_t begin,
@@ -94,23 +97,29 @@ RowSplit split_by_point(const Labels& labels, std::uint64_t seed) {
   return split;
 }
 
-RowSplit leave_one_out(const Labels& labels, std::int32_t generator, double validation_share,
-                       std::uint64_t seed, std::optional<std::int32_t> judged) {
+RowSplit leave_one_out(const Labels& labels, const LeaveOneOut& plan) {
   RowSplit split;
+  const std::int32_t generator = plan.generator, test = plan.judged.value_or(generator);
+  for (const std::int32_t other : generators(labels))
+    if (other != generator && other != test) split.set_aside.push_back(other);
+  shuffle(split.set_aside, key(plan.seed, Purpose::set_aside, static_cast<std::uint64_t>(generator)));
+  split.set_aside.resize(std::min(plan.set_aside, split.set_aside.size()));
+  const std::set<std::int32_t> aside(split.set_aside.begin(), split.set_aside.end());
   std::vector<std::uint64_t> others;
-  const std::int32_t test = judged.value_or(generator);
-  for (std::uint64_t row = 0; row < labels.judged; ++row)
-    if (labels.generator[row] == test)
+  for (std::uint64_t row = 0; row < labels.judged; ++row) {
+    const std::int32_t of = labels.generator[row];
+    if (of == test)
       split.test.push_back(row);
-    else if (labels.generator[row] != generator)
-      others.push_back(row);
+    else if (of != generator)
+      (aside.contains(of) ? split.calibration : others).push_back(row);
+  }
   if (split.test.empty())
-    throw InputError({fmt::format("generator {} has no rows", test), judged ? "--judge-on" : "--fold",
+    throw InputError({fmt::format("generator {} has no rows", test), plan.judged ? "--judge-on" : "--fold",
                       fmt::format("the dataset has generators {}", fmt::join(generators(labels), ", ")),
                       "choose one of these, or all"});
   auto points = points_of(labels, others);
-  shuffle(points, key(seed, Purpose::split, static_cast<std::uint64_t>(generator)));
-  const std::size_t validation = share(points.size(), validation_share);
+  shuffle(points, key(plan.seed, Purpose::split, static_cast<std::uint64_t>(generator)));
+  const std::size_t validation = share(points.size(), plan.validation_share);
   split.validation = rows_of(points, 0, validation);
   split.train = rows_of(points, validation, points.size());
   require_rows(split, points.size());

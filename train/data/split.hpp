@@ -13,16 +13,27 @@ namespace swingbank::train::data {
 /// Row numbers of the dataset, ascending.
 struct RowSplit {
   std::vector<std::uint64_t> train, validation, test;
+  std::vector<std::int32_t> set_aside = {};     ///< bus numbers of generators that calibrate beliefs
+  std::vector<std::uint64_t> calibration = {};  ///< their rows
 };
 
 /// 60 / 20 / 20 of the groups of rows. Throws InputError if a part would be empty.
 RowSplit split_by_point(const Labels& labels, std::uint64_t seed);
 /// Test: every row of one generator. The others' points: `validation_share` for validation, the rest for
-/// training. Throws InputError if the generator has no rows or no others exist.
-/// With `judged` its rows are the test instead, and those of `generator` take no part at all: so recipes are
-/// chosen without a look at the generator that the table leaves out.
-RowSplit leave_one_out(const Labels& labels, std::int32_t generator, double validation_share,
-                       std::uint64_t seed, std::optional<std::int32_t> judged = {});
+/// Who is left out, and who judges.
+struct LeaveOneOut {
+  std::int32_t generator = 0;
+  double validation_share = 0.0;
+  std::uint64_t seed = 0;
+  /// Its rows are the test instead, and those of `generator` take no part at all: so recipes are chosen
+  /// without a look at the generator that the table leaves out.
+  std::optional<std::int32_t> judged = {};
+  std::size_t set_aside = 0;  ///< generators whose rows calibrate
+};
+/// Test: every row of one generator. The others' points: `validation_share` for validation, the rest for
+/// training, but for the generators set aside. Throws InputError if the generator has no rows or no others
+/// exist.
+RowSplit leave_one_out(const Labels& labels, const LeaveOneOut& plan);
 /// Of the rows that train the first of the judged dataset and of the one that only trains, as if both had
 /// been made smaller. Throws InputError if nothing would be left.
 void keep_share(RowSplit& split, const Labels& labels, double share);

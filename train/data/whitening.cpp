@@ -15,6 +15,9 @@ using Eigen::Index;
 constexpr std::size_t kRowsToFit = 20000;  ///< thirty times the directions that are fitted
 constexpr float kStillRow = 1e-6f;         ///< size of a row that does not move [pu]
 constexpr double kRank = 1e-9;  ///< share of the largest variance below which a direction is rounding
+constexpr std::size_t kRowsOfNoise = 5000;
+constexpr double kSmallLevel = 1e-4;   ///< at which noise is measured: what it does is proportional to it
+constexpr float kLongestNoise = 3.0f;  ///< of a row, in medians: at a fault nearby noise is divided by little
 
 using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -41,14 +44,19 @@ Whitening Whitening::fit(const ShardStream& stream, std::span<const std::uint64_
     throw InputError({fmt::format("{} components of {} samples", components, s.samples), "pca_components",
                       "a channel has between 1 and as many as samples", "choose such a number"});
   Whitening w;
-  w.sizes_ = {s.outputs(), s.samples, s.levels(), components, 0};
+  w.sizes_ = {s.outputs(), s.samples, s.levels(), components, 0, s.shows_level ? 1u : 0u};
   const std::size_t every = std::max<std::size_t>(1, rows.size() / kRowsToFit);
   std::vector<std::uint64_t> some;
   for (std::size_t i = 0; i < rows.size(); i += every) some.push_back(rows[i]);
   Rows series(static_cast<Index>(some.size()), static_cast<Index>(s.values()));
-  stream.read(some, series.data());
+  stream.read(some, series.data(), s.shows_level ? Noise{0.0} : stream.judged());
   w.fit_bases(series);
   w.fit_whole(w.components(series.data(), some.size()));
+  if (!s.shows_level) return w;
+  some.resize(std::min(some.size(), kRowsOfNoise));
+  Rows noisy(static_cast<Index>(some.size()), series.cols());
+  stream.read(some, noisy.data(), Noise{kSmallLevel, 1});
+  w.fit_noise(series.topRows(noisy.rows()), noisy);
   return w;
 }
 
@@ -84,10 +92,35 @@ void Whitening::fit_whole(const Rows& components) {
   whole_ = (solver.eigenvectors().rightCols(kept) * shrink.asDiagonal()).cast<float>();
 }
 
+Rows Whitening::whitened(const Rows& components) const {
+  return ((components.rowwise() - centre_).array().rowwise() / unit_.array()).matrix() * whole_;
+}
+
+void Whitening::fit_noise(const Rows& clean, const Rows& noisy) {
+  const auto count = static_cast<std::size_t>(clean.rows());
+  const Rows before = components(clean.data(), count), after = components(noisy.data(), count);
+  Rows noise = whitened(after) - whitened(before);
+  const Eigen::ArrayXf over = before.rightCols(1).array().exp() / static_cast<float>(kSmallLevel);
+  noise.array().colwise() *= over;
+  std::vector<float> length(count);
+  for (Index i = 0; i < noise.rows(); ++i) length[static_cast<std::size_t>(i)] = noise.row(i).norm();
+  std::vector<float> sorted = length;
+  std::ranges::sort(sorted);
+  const float longest = kLongestNoise * sorted[count / 2];
+  for (Index i = 0; i < noise.rows(); ++i)
+    noise.row(i) *= std::min(1.0f, longest / std::max(longest * 1e-6f, length[static_cast<std::size_t>(i)]));
+  const Eigen::MatrixXd wide = noise.cast<double>();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(wide.transpose() * wide /
+                                                              static_cast<double>(count));
+  whole_ = whole_ * solver.eigenvectors().cast<float>();
+  noise_ = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().cast<float>().transpose();
+}
+
 Rows Whitening::components(const float* series, std::size_t count) const {
   const auto n = static_cast<Index>(sizes_.samples), channels = static_cast<Index>(sizes_.channels),
              k = static_cast<Index>(sizes_.components), levels = static_cast<Index>(sizes_.levels);
-  const Eigen::Map<const Rows> all(series, static_cast<Index>(count), channels * n + levels);
+  const auto noisy = static_cast<Index>(sizes_.noisy);
+  const Eigen::Map<const Rows> all(series, static_cast<Index>(count), channels * n + levels + noisy);
   const Eigen::ArrayXf size =
       (all.leftCols(n).rowwise().squaredNorm() / static_cast<float>(n)).cwiseSqrt().array() + kStillRow;
   Rows out(all.rows(), channels * k + levels + 1);
@@ -97,18 +130,28 @@ Rows Whitening::components(const float* series, std::size_t count) const {
     own = ((all.middleCols(c * n, n).array().colwise() / size).matrix()).rowwise() - mean_[at];
     out.middleCols(c * k, k).noalias() = own * basis_[at];
   }
-  out.middleCols(channels * k, levels) = all.rightCols(levels);
+  out.middleCols(channels * k, levels) = all.middleCols(channels * n, levels);
   out.rightCols(1) = size.log().matrix();
   return out;
 }
 
 void Whitening::apply(const float* series, std::size_t count, float* out) const {
-  const Rows all =
-      ((components(series, count).rowwise() - centre_).array().rowwise() / unit_.array()).matrix();
+  const Rows parts = components(series, count);
+  const Rows all = ((parts.rowwise() - centre_).array().rowwise() / unit_.array()).matrix();
   Eigen::Map<Rows> row(out, static_cast<Index>(count), static_cast<Index>(length()));
-  const auto kept = static_cast<Index>(sizes_.kept);
+  const auto kept = static_cast<Index>(sizes_.kept), behind = static_cast<Index>(sizes_.levels + 1);
   row.leftCols(kept).noalias() = all * whole_;
-  row.rightCols(row.cols() - kept) = all.rightCols(row.cols() - kept);
+  row.middleCols(kept, behind) = all.rightCols(behind);
+  if (sizes_.noisy > 0) {
+    const std::size_t values = sizes_.channels * sizes_.samples + sizes_.levels + 1;
+    for (Index i = 0; i < row.rows(); ++i) {
+      const float told = series[static_cast<std::size_t>(i + 1) * values - 1];
+      // what a signal of variance 1 is on average, seen through noise of this deviation (Wiener)
+      const auto level = static_cast<float>(level_of_input(told)) / std::exp(parts(i, parts.cols() - 1));
+      row.row(i).head(kept).array() /= 1.0f + (level * noise_.array()).square();
+      row(i, row.cols() - 1) = told;
+    }
+  }
   // what is far outside the training rows shall not run away
   row = row.unaryExpr([](float v) { return std::asinh(v); });
 }
@@ -122,6 +165,7 @@ std::vector<std::vector<float>> Whitening::arrays() const {
   all.push_back(flat(centre_.data(), centre_.size()));
   all.push_back(flat(unit_.data(), unit_.size()));
   all.push_back(flat(whole_.data(), whole_.size()));
+  if (sizes_.noisy > 0) all.push_back(flat(noise_.data(), noise_.size()));
   return all;
 }
 
@@ -144,6 +188,7 @@ Whitening Whitening::restore(const WhiteningSizes& sizes, std::span<const std::v
   w.centre_ = Eigen::Map<const Eigen::RowVectorXf>(checked(last, all), all);
   w.unit_ = Eigen::Map<const Eigen::RowVectorXf>(checked(last + 1, all), all);
   w.whole_ = Eigen::Map<const Eigen::MatrixXf>(checked(last + 2, all * kept), all, kept);
+  if (sizes.noisy > 0) w.noise_ = Eigen::Map<const Eigen::RowVectorXf>(checked(last + 3, kept), kept);
   return w;
 }
 

@@ -1,7 +1,8 @@
 #pragma once
 // Series to a short row of numbers that are uncorrelated and of one size: each channel over the row's own
-// size, principal components per channel, all of them whitened together, and a soft bound. Fitted on training
-// rows only.
+// size, principal components per channel, all of them whitened together, and a soft bound. Where rows have
+// noise of many levels, the numbers are turned until their noise is uncorrelated too, and each shrinks by
+// what the row's level leaves of it. Fitted on training rows only.
 #include <Eigen/Dense>
 #include <span>
 #include <vector>
@@ -11,9 +12,9 @@
 namespace swingbank::train::data {
 
 /// Lengths: channels, samples of a channel, values behind the series; components kept of a channel and of
-/// all.
+/// all. `noisy`: the noise's level stands behind them (0 or 1).
 struct WhiteningSizes {
-  std::size_t channels = 0, samples = 0, levels = 0, components = 0, kept = 0;
+  std::size_t channels = 0, samples = 0, levels = 0, components = 0, kept = 0, noisy = 0;
 };
 
 class Whitening {
@@ -24,14 +25,15 @@ class Whitening {
                        std::size_t components);
 
   [[nodiscard]] const WhiteningSizes& sizes() const { return sizes_; }
-  /// Numbers a row becomes: the whitened ones, then levels and logarithm of the size as they are.
-  [[nodiscard]] std::size_t length() const { return sizes_.kept + sizes_.levels + 1; }
-  /// series: count rows of channels x samples + levels values; out: count x length().
+  /// Numbers a row becomes: the whitened ones, then levels and logarithm of the size as they are, and the
+  /// noise's level as it is told.
+  [[nodiscard]] std::size_t length() const { return sizes_.kept + sizes_.levels + 1 + sizes_.noisy; }
+  /// series: count rows of channels x samples + levels + noisy values; out: count x length().
   void apply(const float* series, std::size_t count, float* out) const;
   /// What was fitted, for a file, and the opposite. Throws Unusable if that does not fit together.
   [[nodiscard]] std::vector<std::vector<float>> arrays() const;
   static Whitening restore(const WhiteningSizes& sizes, std::span<const std::vector<float>> arrays);
-  static std::size_t array_count(const WhiteningSizes& sizes) { return 2 * sizes.channels + 3; }
+  static std::size_t array_count(const WhiteningSizes& sizes) { return 2 * sizes.channels + 3 + sizes.noisy; }
 
  private:
   using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -39,12 +41,17 @@ class Whitening {
   [[nodiscard]] Rows components(const float* series, std::size_t count) const;
   void fit_bases(const Rows& series);
   void fit_whole(const Rows& components);
+  /// Turns the whitened numbers until their noise is uncorrelated. `clean`, `noisy`: the same rows' series.
+  void fit_noise(const Rows& clean, const Rows& noisy);
+  /// The whitened numbers without their bound.
+  [[nodiscard]] Rows whitened(const Rows& components) const;
 
   WhiteningSizes sizes_;
   std::vector<Eigen::RowVectorXf> mean_;  ///< per channel
   std::vector<Eigen::MatrixXf> basis_;    ///< per channel: samples x components
   Eigen::RowVectorXf centre_, unit_;      ///< of the components
   Eigen::MatrixXf whole_;                 ///< components of all channels and levels x kept
+  Eigen::RowVectorXf noise_;              ///< deviation of the whitened at a level of the row's size
 };
 
 }  // namespace swingbank::train::data

@@ -65,6 +65,25 @@ void read_training(Config& c, const std::string& at, bool complete, TrainingReci
   extra.number("clip", {0.0, 1e6}, t.clip);
   extra.number("average", {0.0, 0.99999}, t.average);
   extra.flag("training_rows", t.training_rows);
+  extra.whole("posterior_epochs", 0, t.posterior_epochs);
+  extra.whole("set_aside", 0, t.set_aside);
+}
+
+/// A network trained at many levels is told them, which only the form "physics" can.
+void read_noise_levels(Config& c, const std::string& at, TrainingRecipe& t, NetworkInput& input) {
+  if (const std::string name = at + ".training_noise"; c.has(name)) {
+    const auto range = c.require<std::vector<double>>(name, {1e-6, kNoiseLevels.high});
+    if (range.size() != 2 || range[0] >= range[1])
+      c.problem(name, "no range of levels", "it is a lowest level above 0 and a highest",
+                "give [0.0001, 0.005]");
+    else
+      t.noise_levels = {range[0], range[1], c.require<double>(at + ".training_noise_zero", {0.0, 1.0})};
+  }
+  input.recipe.shows_level = t.noise_levels.has_value();
+  if (t.noise_levels && input.recipe.form != data::InputForm::physics)
+    c.problem(at + ".form", "training at many levels of noise",
+              "the network is told the level, and only the form physics has a place for it",
+              "choose form = \"physics\", or leave training_noise out");
 }
 
 void read_input(Config& c, const std::string& at, bool complete, NetworkInput& i) {
@@ -78,6 +97,20 @@ void read_input(Config& c, const std::string& at, bool complete, NetworkInput& i
   if (const auto at_form = std::ranges::find(data::kInputForms, form); at_form != data::kInputForms.end())
     i.recipe.form = static_cast<data::InputForm>(at_form - data::kInputForms.begin());
   k.whole("pca_components", 0, i.pca_components);
+}
+
+/// What is copied from a network that corrects nothing: estimates to correct are made once, of records with
+/// one noise, and nothing is believed of them.
+void train_as_judged(TrainingRecipe& t) {
+  t.noise_levels.reset();
+  t.posterior_epochs = t.set_aside = 0;
+}
+
+void refuse_unknown_beliefs(Config& c, const std::string& at, const TrainingRecipe& t) {
+  if (t.corrects.empty() || (!t.noise_levels && t.posterior_epochs == 0)) return;
+  c.problem(at + ".corrects", "many levels of noise, or a posterior, of a network that corrects",
+            "the estimates that it corrects are made once, of records with one noise",
+            "leave training_noise and posterior_epochs out");
 }
 
 void read_judging(Config& c, const std::string& at, bool complete, Judging& j) {
@@ -119,9 +152,12 @@ Preset read_preset(Config& c, const std::string& name) {
       c.problem(at + ".networks", fmt::format("no network called '{}'", kind),
                 "train/networks has no such file", fmt::format("choose among {}", fmt::join(known, ", ")));
     p.training[network].corrects = c.choice(own + ".corrects", {"", "closed-form", "refined"}, "");
+    if (!p.training[network].corrects.empty()) train_as_judged(p.training[network]);
     read_input(c, own, false, p.input[network]);
     read_training(c, own, false, p.training[network]);
     read_judging(c, own, false, p.judging[network]);
+    read_noise_levels(c, own, p.training[network], p.input[network]);
+    refuse_unknown_beliefs(c, own, p.training[network]);
     if (p.training[network].training_rows && p.training_draws == 0)
       c.problem(at + "." + network + ".training_rows", "no rows that only train",
                 "the experiment has no training_dataset, or the preset no training_draws", "give both");

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "train/data/downsample.hpp"
+#include "train/data/noise.hpp"
 
 namespace swingbank::train::loop {
 
@@ -28,6 +30,11 @@ struct TrainingRecipe {
   bool training_rows = false;  ///< the rows of the training dataset train too
   std::string kind = {};       ///< file of train/networks; usually the name it has in the experiment
   std::string corrects = {};   ///< method of train/direct whose estimates it reads and corrects; empty: none
+  /// Every row draws a level in every epoch; the network is told it and serves all levels. None: rows train
+  /// with the noise that they are judged with.
+  std::optional<data::NoiseLevels> noise_levels = {};
+  std::size_t posterior_epochs = 0;  ///< of the head that says what is to be believed; 0: there is none
+  std::size_t set_aside = 0;         ///< generators whose rows calibrate beliefs and do not train
 };
 
 /// What a network reads.

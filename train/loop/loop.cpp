@@ -91,7 +91,8 @@ class Loop {
   /// False if the run was asked to stop; it is saved then.
   bool epoch() {
     data::BatchReader reader(data_.stream, data::epoch_order(data_.train, settings_.seed, at_.epoch),
-                             settings_.recipe.batch, at_.batch);
+                             settings_.recipe.batch, at_.batch,
+                             data_.stream.training(settings_.first_draw + at_.epoch));
     data::Batch batch;
     const auto begin = Clock::now();
     const double before = at_.rows;
@@ -114,10 +115,9 @@ class Loop {
     seed_torch(data::key(settings_.seed, data::Purpose::dropout, at_.epoch, at_.batch));
     std::optional<runtime::ProductCount> count;
     if (settings_.gflops > 0.0 && operations_per_row_ == 0.0) count.emplace();
-    const Tensor error =
-        network_.forward(inputs_of(batch, data_.features, data_.guesses, data_.stream.labels().rows), true) -
-        targets_of(batch.rows);
-    const Tensor loss = (error.square() * loss_weights_).mean();
+    const Tensor loss = loss_of(
+        network_.forward(inputs_of(batch, data_.features, data_.guesses, data_.stream.labels().rows), true),
+        targets_of(batch.rows));
     const double value = loss.item<double>();
     if (!std::isfinite(value))
       throw InputError({"the training loss is not a number",
@@ -135,6 +135,11 @@ class Loop {
     progress_.update(at_.epoch * data_.train.size() + static_cast<std::uint64_t>(at_.rows),
                      fmt::format("epoch {} of {}, loss {:.4f}", at_.epoch + 1, settings_.recipe.epochs,
                                  at_.loss_sum / at_.rows));
+  }
+
+  [[nodiscard]] Tensor loss_of(const Tensor& out, const Tensor& targets) const {
+    if (data_.loss) return data_.loss(out, targets);
+    return ((out - targets).square() * loss_weights_).mean();
   }
 
   /// "560 samples/s": beside it what the products of a step alone would allow, where that is known.
@@ -169,9 +174,22 @@ class Loop {
     judge_weights(samples_per_s);
     swap_average();
   }
-  void judge_weights(double samples_per_s) {
-    const std::vector<float> out =
-        predict(network_, data_.stream, data_.features, data_.validation, data_.guesses);
+  /// The data's own loss on the validation rows.
+  double own_loss() {
+    at::NoGradGuard no_gradients;
+    data::BatchReader reader(data_.stream, {data_.validation.begin(), data_.validation.end()}, 512, 0,
+                             data_.stream.validation());
+    double sum = 0.0;
+    for (data::Batch batch; reader.next(batch);) {
+      const Tensor x = inputs_of(batch, data_.features, data_.guesses, data_.stream.labels().rows);
+      sum += data_.loss(network_.forward(x, false), targets_of(batch.rows)).item<double>() *
+             static_cast<double>(batch.rows.size());
+    }
+    return sum / static_cast<double>(data_.validation.size());
+  }
+  double squared_error() {
+    const std::vector<float> out = predict(network_, data_.stream, data_.features, data_.validation,
+                                           data_.guesses, data_.stream.validation());
     const float* weight = loss_weights_.data_ptr<float>();
     double sum = 0.0;
     for (std::size_t i = 0; i < out.size(); ++i) {
@@ -179,11 +197,15 @@ class Loop {
       const double e = out[i] - data_.targets[data_.validation[i / p] * p + i % p];
       sum += e * e * weight[i % p];
     }
-    const double error = sum / static_cast<double>(out.size());
+    return sum / static_cast<double>(out.size());
+  }
+  void judge_weights(double samples_per_s) {
+    const double error = data_.loss ? own_loss() : squared_error();
     const bool better = error < at_.best;
-    progress_.line(fmt::format("epoch {} of {}: loss {:.4f}, validation {:.4f}{} (scaled units), {}",
-                               at_.epoch + 1, settings_.recipe.epochs, at_.loss_sum / at_.rows, error,
-                               better ? ", best so far" : "", rate(samples_per_s)));
+    progress_.line(fmt::format("epoch {} of {}: loss {:.4f}, validation {:.4f}{}{}, {}", at_.epoch + 1,
+                               settings_.recipe.epochs, at_.loss_sum / at_.rows, error,
+                               better ? ", best so far" : "", data_.loss ? "" : " (scaled units)",
+                               rate(samples_per_s)));
     ++at_.stale;
     if (!better) return;
     at_.best = error;
@@ -276,9 +298,9 @@ LoopReport train_network(networks::Network& network, const LoopData& data, const
 
 std::vector<float> predict(networks::Network& network, const data::ShardStream& stream,
                            const data::Features& features, std::span<const std::uint64_t> rows,
-                           std::span<const float> guesses) {
+                           std::span<const float> guesses, const std::optional<data::Noise>& noise) {
   at::NoGradGuard no_gradients;
-  data::BatchReader reader(stream, {rows.begin(), rows.end()}, 512);
+  data::BatchReader reader(stream, {rows.begin(), rows.end()}, 512, 0, noise);
   std::vector<float> out;
   for (data::Batch batch; reader.next(batch);) {
     const Tensor y =

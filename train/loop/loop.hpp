@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,10 @@
 #include "train/loop/experiment.hpp"
 #include "train/loop/progress.hpp"
 #include "train/networks/network.hpp"
+
+namespace at {
+class Tensor;
+}
 
 namespace swingbank::train::loop {
 
@@ -24,6 +29,8 @@ struct LoopData {
   std::span<const float> targets;                    ///< all rows of the dataset x outputs, scaled
   std::span<const float> guesses = {};  ///< all rows x outputs, scaled: read behind each row's features
   std::span<const float> weights = {};  ///< of the outputs' squared errors, mean 1; empty: all alike
+  /// Of outputs and scaled targets, instead of the mean squared error; a number.
+  std::function<at::Tensor(const at::Tensor&, const at::Tensor&)> loss = {};
 };
 
 struct LoopSettings {
@@ -32,8 +39,9 @@ struct LoopSettings {
   std::filesystem::path checkpoint;     ///< empty: none is written
   const nlohmann::json* run = nullptr;  ///< identity of the run; a checkpoint of another one is refused
   double checkpoint_every_s = 300.0;
-  double gflops = 0.0;         ///< what the processor makes of products [GFLOP/s]; 0: not known
-  std::function<bool()> stop;  ///< asked before each batch; empty: stop_asked()
+  std::uint64_t first_draw = 0;  ///< of the noise of training rows; each epoch has the next one
+  double gflops = 0.0;           ///< what the processor makes of products [GFLOP/s]; 0: not known
+  std::function<bool()> stop;    ///< asked before each batch; empty: stop_asked()
 };
 
 struct LoopReport {
@@ -41,7 +49,7 @@ struct LoopReport {
   std::size_t epochs = 0, best_epoch = 0;
   double seconds = 0.0;  ///< wall clock, those before a resume included [s]
   double validation =
-      0.0;  ///< mean squared error of the best epoch on the validation rows, scaled units, weighted
+      0.0;  ///< loss of the best epoch on the validation rows: squared error in scaled units, weighted
   double processor_seconds = 0.0;  ///< of all threads, those before a resume included [core-s]
 };
 
@@ -50,10 +58,11 @@ struct LoopReport {
 LoopReport train_network(networks::Network& network, const LoopData& data, const LoopSettings& settings,
                          TrainingProgress& progress);
 
-/// Network's outputs for `rows`, rows x outputs, scaled units. `guesses`: as in LoopData.
+/// Network's outputs for `rows`, rows x outputs, scaled units. `guesses`: as in LoopData; `noise`: that of
+/// judging unless given.
 std::vector<float> predict(networks::Network& network, const data::ShardStream& stream,
                            const data::Features& features, std::span<const std::uint64_t> rows,
-                           std::span<const float> guesses = {});
+                           std::span<const float> guesses = {}, const std::optional<data::Noise>& noise = {});
 
 /// Rate of Adam at a step (from 0) of all steps.
 double learning_rate(const TrainingRecipe& recipe, std::uint64_t step, std::uint64_t steps);

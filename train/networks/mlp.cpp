@@ -40,10 +40,11 @@ class Mlp final : public Network {
     start_as_zero(output_);
   }
 
-  Tensor forward(const Tensor& x, bool) override {
-    Tensor h = input_(x.reshape({x.size(0), -1}));
-    for (const Block& b : blocks_) h = h + b.second(at::gelu(b.first(b.norm(h))));
-    return output_(at::gelu(norm_(h)));
+  Tensor forward(const Tensor& x, bool) override { return output_(trunk(x)); }
+
+  Tensor describe(const Tensor& x) override {
+    const Tensor h = trunk(x);
+    return at::cat({h, output_(h)}, 1);
   }
 
   std::vector<Tensor> parameters() override {
@@ -56,6 +57,12 @@ class Mlp final : public Network {
   }
 
  private:
+  [[nodiscard]] Tensor trunk(const Tensor& x) const {
+    Tensor h = input_(x.reshape({x.size(0), -1}));
+    for (const Block& b : blocks_) h = h + b.second(at::gelu(b.first(b.norm(h))));
+    return at::gelu(norm_(h));
+  }
+
   Dense input_;
   std::array<Block, kTrunkBlocks> blocks_;
   Norm norm_;

@@ -25,6 +25,9 @@ class Network {
   virtual ~Network() = default;
   /// x: batch x channels x samples; returns batch x outputs. `training` switches dropout on.
   virtual at::Tensor forward(const at::Tensor& x, bool training) = 0;
+  /// What the network knows of a row, for whoever builds on it: batch x numbers, of which the last are its
+  /// outputs. Undefined: it has nothing more to tell than these.
+  virtual at::Tensor describe(const at::Tensor& x);
   /// Leaves to be trained, in a fixed order.
   virtual std::vector<at::Tensor> parameters() = 0;
 };

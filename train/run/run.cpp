@@ -14,6 +14,7 @@
 #include "train/data/random.hpp"
 #include "train/direct/direct.hpp"
 #include "train/run/detail/guesses.hpp"
+#include "train/run/detail/posterior.hpp"
 #include "train/run/detail/result.hpp"
 #include "train/run/saved_network.hpp"
 
@@ -177,69 +178,169 @@ std::vector<float> scaled_targets(const data::Labels& labels, const data::Target
   return targets;
 }
 
+std::string training_name(const RunRequest& r) {
+  RunRequest plain = r;
+  if (r.experiment.training(r.preset, r.network).noise_levels) plain.noise = 0;
+  return run_name(plain);
+}
+
+namespace {
+
+/// A run of a network, from the split to the result.
+class NetworkRun {
+ public:
+  NetworkRun(const data::ShardStream& stream, const RunRequest& request, const data::RowSplit& split,
+             const data::TargetScale& scale)
+      : stream_(stream),
+        request_(request),
+        recipe_(request.experiment.training(request.preset, request.network)),
+        split_(split),
+        scale_(scale),
+        known_(guesses_for(stream, request, scale)),
+        name_(training_name(request)),
+        identity_(training_identity(stream, request)),
+        checkpoint_(request.out / "checkpoints" / (name_ + ".checkpoint")),
+        progress_(name_, epochs() * split.train.size(), request.quiet) {}
+
+  /// False if it was stopped and is to be submitted again.
+  bool train() {
+    if (recipe_.noise_levels && load()) return true;
+    features_ = data::Features::fit(
+        stream_, split_.train, request_.experiment.input(request_.preset, request_.network).pca_components);
+    loop::seed_torch(data::key(request_.seed, data::Purpose::weights));
+    network_ = networks::make_network(recipe_.kind, shape_of(features_, scale_, known_));
+    tell_sizes();
+    const std::vector<float> targets = targets_of_training(), weights = scale_.weights(recipe_.loss_power);
+    report_ = loop::train_network(
+        *network_, {stream_, features_, split_.train, split_.validation, targets, known_.scaled, weights},
+        settings(), progress_);
+    const bool whole = report_.finished && (recipe_.posterior_epochs == 0 || train_head());
+    if (!whole) {
+      progress_.line(
+          fmt::format("saved to {}; submit the same command again to go on", checkpoint_.string()));
+      return false;
+    }
+    // a network that corrects estimates is of no use without whoever makes them
+    if (request_.save_network && !request_.shuffle_labels && request_.train_share == 1 && known_.none())
+      save_network(file(), {stream_, request_, features_, scale_, split_, identity_, report_, *posterior_},
+                   *network_);
+    return true;
+  }
+
+  void judge_to(const std::filesystem::path& result) {
+    const loop::Score score = judged(split_.test);
+    const double seen = judged(split_.validation).mse;
+    const json believed = posterior_->head ? judge_posterior(*posterior_, context()) : json();
+    write_text(
+        result,
+        result_json(stream_, request_, {split_, &features_, report_, score, seen, believed}).dump(2) + "\n");
+    for (const char* kind : {".checkpoint", ".posterior.checkpoint"})
+      std::filesystem::remove(std::filesystem::path(checkpoint_).replace_extension(kind));
+    progress_.line(fmt::format("{}; MSE {:.4g} on rows of generators that trained; best epoch {} of {}",
+                               scored(score, report_.seconds), seen, report_.best_epoch, report_.epochs));
+  }
+
+ private:
+  [[nodiscard]] std::size_t epochs() const { return request_.epochs.value_or(recipe_.epochs); }
+  [[nodiscard]] std::filesystem::path file() const { return network_file(request_.out / (name_ + ".json")); }
+  /// What an earlier run of another level trained.
+  bool load() {
+    if (!std::filesystem::exists(file())) return false;
+    SavedNetwork saved = SavedNetwork::load(file());
+    if (saved.identity() != identity_) return false;
+    features_ = saved.features();
+    report_ = saved.report();
+    network_ = saved.release();
+    posterior_ = saved.release_posterior();
+    progress_.line(fmt::format("trained already: {}", file().string()));
+    return true;
+  }
+  [[nodiscard]] PosteriorContext context() const {
+    return {stream_, features_, scale_, split_, recipe_, request_.seed};
+  }
+  bool train_head() {
+    const std::vector<float> targets =
+        scaled_targets(stream_.labels(), scale_, split_, request_.shuffle_labels, request_.seed);
+    loop::TrainingProgress progress(name_ + ", posterior", recipe_.posterior_epochs * split_.train.size(),
+                                    request_.quiet);
+    return train_posterior(*posterior_, *network_, context(), settings(), targets, progress);
+  }
+  [[nodiscard]] loop::LoopSettings settings() const {
+    loop::LoopSettings s;
+    s.recipe = recipe_;
+    s.recipe.epochs = epochs();
+    s.seed = request_.seed;
+    s.checkpoint = checkpoint_;
+    s.run = &identity_;
+    s.gflops = request_.runtime.gflops;
+    s.stop = request_.stop;
+    return s;
+  }
+  [[nodiscard]] std::vector<float> targets_of_training() const {
+    std::vector<float> targets =
+        scaled_targets(stream_.labels(), scale_, split_, request_.shuffle_labels, request_.seed);
+    for (std::size_t i = 0; i < known_.raw.size(); ++i)
+      targets[i] -= static_cast<float>(scale_.scaled(known_.raw[i], i % known_.width));
+    return targets;
+  }
+  void tell_sizes() {
+    progress_.line(
+        fmt::format("{} training, {} validation, {} test rows; {} x {} inputs, {:.2f} million weights; {}",
+                    split_.train.size(), split_.validation.size(), split_.test.size(), features_.channels(),
+                    features_.length(), static_cast<double>(networks::parameter_count(*network_)) * 1e-6,
+                    request_.runtime.sentence()));
+  }
+  [[nodiscard]] loop::Score judged(std::span<const std::uint64_t> rows) {
+    const auto out = loop::predict(*network_, stream_, features_, rows, known_.scaled);
+    return judge(raw_outputs(out, scale_, stream_.dataset(), rows, known_), stream_, scale_, rows);
+  }
+
+  const data::ShardStream& stream_;
+  const RunRequest& request_;
+  const loop::TrainingRecipe& recipe_;
+  const data::RowSplit& split_;
+  const data::TargetScale& scale_;
+  const Guesses known_;
+  const std::string name_;
+  const json identity_;
+  const std::filesystem::path checkpoint_;
+  loop::TrainingProgress progress_;
+  data::Features features_;
+  std::unique_ptr<networks::Network> network_;
+  std::unique_ptr<Posterior> posterior_ = std::make_unique<Posterior>();
+  loop::LoopReport report_;
+};
+
+}  // namespace
+
 RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
   const std::string name = run_name(r);
-  const auto file = r.out / (name + ".json"), checkpoint = r.out / "checkpoints" / (name + ".checkpoint");
+  const auto file = r.out / (name + ".json"), locks = r.out / "checkpoints";
   const json run_identity = identity(stream, r);
   if (already_done(file, run_identity)) return RunOutcome::already_done;
   make_folder(r.out);
-  make_folder(checkpoint.parent_path());
-  RunLock lock(checkpoint.parent_path() / (name + ".lock"),
-               {"a second run", file.string(), "wait for it to end, or choose another --out"});
+  make_folder(locks);
+  const loop::TrainingRecipe& recipe = r.experiment.training(r.preset, r.network);
+  // runs of other levels wait for the network that is theirs too
+  const std::chrono::seconds patience =
+      recipe.noise_levels ? std::chrono::hours(12) : std::chrono::seconds(5);
+  RunLock lock(locks / (training_name(r) + ".lock"),
+               {"a second run", file.string(), "wait for it to end, or choose another --out"}, patience);
   if (already_done(file, run_identity)) return RunOutcome::already_done;
 
-  loop::LoopSettings settings;
-  settings.recipe = r.experiment.training(r.preset, r.network);
-  settings.seed = r.seed;
-  settings.checkpoint = checkpoint;
-  settings.run = &run_identity;
-  settings.gflops = r.runtime.gflops;
-  if (r.epochs) settings.recipe.epochs = *r.epochs;
   const data::Labels& labels = stream.labels();
-  data::RowSplit split = r.generator ? data::leave_one_out(labels, *r.generator,
-                                                           settings.recipe.validation_share, r.seed, r.judged)
+  data::RowSplit split = r.generator ? data::leave_one_out(labels, {*r.generator, recipe.validation_share,
+                                                                    r.seed, r.judged, recipe.set_aside})
                                      : data::split_by_point(labels, r.seed);
   if (r.test_rows) thin(split.test, *r.test_rows);
   if (r.train_share < 1) data::keep_share(split, labels, r.train_share);
   const data::TargetScale scale =
       data::TargetScale::fit(labels.values, labels.parameters, split.train, stream.dataset().parameter_low);
   if (direct::is_method(r.network)) return run_direct(stream, r, {file, name, run_identity, split, scale});
-  std::vector<float> targets = scaled_targets(labels, scale, split, r.shuffle_labels, r.seed);
-  const Guesses known = guesses_for(stream, r, scale);
-  for (std::size_t i = 0; i < known.raw.size(); ++i)
-    targets[i] -= static_cast<float>(scale.scaled(known.raw[i], i % known.width));
-  const data::Features features =
-      data::Features::fit(stream, split.train, r.experiment.input(r.preset, r.network).pca_components);
-
-  loop::seed_torch(data::key(r.seed, data::Purpose::weights));
-  const auto network = networks::make_network(settings.recipe.kind, shape_of(features, scale, known));
-  loop::TrainingProgress progress(name, settings.recipe.epochs * split.train.size(), r.quiet);
-  progress.line(fmt::format(
-      "{} training, {} validation, {} test rows; {} x {} inputs, {:.2f} million weights; {}",
-      split.train.size(), split.validation.size(), split.test.size(), features.channels(), features.length(),
-      static_cast<double>(networks::parameter_count(*network)) * 1e-6, r.runtime.sentence()));
-  const std::vector<float> weights = scale.weights(settings.recipe.loss_power);
-  const loop::LoopReport report = loop::train_network(
-      *network, {stream, features, split.train, split.validation, targets, known.scaled, weights}, settings,
-      progress);
-  if (!report.finished) {
-    progress.line(fmt::format("saved to {}; submit the same command again to go on", checkpoint.string()));
-    return RunOutcome::stopped;
-  }
-  const auto judged = [&](std::span<const std::uint64_t> rows) {
-    const auto out = loop::predict(*network, stream, features, rows, known.scaled);
-    return judge(raw_outputs(out, scale, stream.dataset(), rows, known), stream, scale, rows);
-  };
-  const loop::Score result = judged(split.test);
-  const double seen = judged(split.validation).mse;
-  // a network that corrects estimates is of no use without whoever makes them
-  if (r.save_network && !r.shuffle_labels && r.train_share == 1 && known.none())
-    save_network(network_file(file), {stream, r, features, scale, split, run_identity}, *network);
-  write_text(file, result_json(stream, r, {split, &features, report, result, seen}).dump(2) + "\n");
-  std::filesystem::remove(checkpoint);
+  NetworkRun network(stream, r, split, scale);
+  if (!network.train()) return RunOutcome::stopped;
+  network.judge_to(file);
   lock.withdraw(true);
-  progress.line(fmt::format("{}; MSE {:.4g} on rows of generators that trained; best epoch {} of {}",
-                            scored(result, report.seconds), seen, report.best_epoch, report.epochs));
   return RunOutcome::done;
 }
 

@@ -2,6 +2,7 @@
 // One run: split, features, training, score, JSON. Used by `swingbank train` and, fold by fold, by
 // `swingbank cross-validate`.
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 
@@ -30,6 +31,7 @@ struct RunRequest {
   std::filesystem::path out;
   runtime::Runtime runtime;
   bool quiet = false;
+  std::function<bool()> stop = {};  ///< asked before each batch; empty: stop_asked()
 };
 
 enum class RunOutcome { done, already_done, stopped };
@@ -46,5 +48,7 @@ std::vector<float> scaled_targets(const data::Labels& labels, const data::Target
                                   const data::RowSplit& split, bool shuffled, std::uint64_t seed);
 /// "V-cnn-quick-seed1-gen30"
 std::string run_name(const RunRequest& request);
+/// The same without the noise that it is judged with, where the network serves all levels.
+std::string training_name(const RunRequest& request);
 
 }  // namespace swingbank::train::run

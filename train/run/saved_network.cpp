@@ -10,6 +10,7 @@
 #include "base/input_file.hpp"
 #include "base/problem.hpp"
 #include "base/sealed_file.hpp"
+#include "train/run/detail/posterior.hpp"
 #include "train/run/detail/result.hpp"
 
 namespace swingbank::train::run {
@@ -30,7 +31,7 @@ double largest_input(const data::ShardStream& stream, const data::Features& feat
   const std::size_t size = features.channels() * features.length();
   std::vector<float> x;
   double largest = 0.0;
-  data::BatchReader reader(stream, {rows.begin(), rows.end()}, 512);
+  data::BatchReader reader(stream, {rows.begin(), rows.end()}, 512, 0, stream.validation());
   for (data::Batch batch; reader.next(batch);) {
     x.resize(batch.rows.size() * size);
     features.apply(batch.series.data(), batch.rows.size(), x.data());
@@ -46,7 +47,8 @@ json judged_parameters(const NetworkParts& parts, networks::Network& network) {
   const mpi::store::Dataset& d = parts.stream.dataset();
   const data::Labels& labels = parts.stream.labels();
   const std::size_t p = labels.parameters;
-  const std::vector<float> out = loop::predict(network, parts.stream, parts.features, parts.split.test);
+  const std::vector<float> out =
+      loop::predict(network, parts.stream, parts.features, parts.split.test, {}, parts.stream.validation());
   std::vector<double> sum(p), square(p);
   for (std::size_t i = 0; i < out.size(); ++i) {
     const double estimate =
@@ -74,7 +76,11 @@ json judged_parameters(const NetworkParts& parts, networks::Network& network) {
 json physics_json(const data::InputSelection& s) {
   if (!s.physics) return {};
   const data::PhysicsWindow& w = s.physics->window();
-  return {{"start_s", w.start_s}, {"end_s", w.end_s}, {"event_s", w.event_s}, {"reactance", w.reactance}};
+  return {{"start_s", w.start_s},
+          {"end_s", w.end_s},
+          {"event_s", w.event_s},
+          {"reactance", w.reactance},
+          {"least_voltage", w.least_voltage}};
 }
 
 json header_of(const NetworkParts& parts, networks::Network& network) {
@@ -107,8 +113,15 @@ json header_of(const NetworkParts& parts, networks::Network& network) {
             {"pca_components", sizes.pca_components},
             {"pca_per_second", sizes.pca_per_second},
             {"levels", sizes.levels},
-            {"kept", sizes.kept}}},
+            {"kept", sizes.kept},
+            {"noisy", sizes.noisy}}},
+          {"training",
+           {{"epochs", parts.report.epochs},
+            {"best_epoch", parts.report.best_epoch},
+            {"seconds", parts.report.seconds},
+            {"validation_mse", parts.report.validation}}},
           {"physics", physics_json(s)},
+          {"posterior", parts.posterior.head ? maps_json(parts.posterior) : json()},
           {"input_rms_seen", largest_input(parts.stream, parts.features, parts.split.validation)},
           {"parameters", judged_parameters(parts, network)}};
 }
@@ -147,7 +160,7 @@ NetworkInfo info_of(const json& h) {
 /// The weights that the shape's bias starts are read over it.
 networks::NetworkShape shape_of(const data::FeatureSizes& s, std::size_t outputs) {
   if (s.kept > 0)
-    return {1, static_cast<std::int64_t>(s.kept + s.levels + 1), static_cast<std::int64_t>(outputs),
+    return {1, static_cast<std::int64_t>(s.kept + s.levels + 1 + s.noisy), static_cast<std::int64_t>(outputs),
             std::vector<float>(outputs, 0.0f)};
   const std::size_t seconds = s.pca_per_second > 0 ? s.samples / s.pca_per_second : 0;
   const std::size_t length = s.pca_components > 0 ? seconds * s.pca_components : s.samples;
@@ -182,14 +195,18 @@ void save_network(const fs::path& file, const NetworkParts& parts, networks::Net
   const auto features = parts.features.arrays();
   std::vector<std::span<const float>> arrays(features.begin(), features.end());
   std::vector<at::Tensor> weights;
-  for (const auto& w : network.parameters()) {
-    weights.push_back(w.detach().contiguous());
-    arrays.emplace_back(weights.back().data_ptr<float>(), static_cast<std::size_t>(weights.back().numel()));
-  }
+  const auto append = [&](networks::Network& of) {
+    for (const auto& w : of.parameters()) {
+      weights.push_back(w.detach().contiguous());
+      arrays.emplace_back(weights.back().data_ptr<float>(), static_cast<std::size_t>(weights.back().numel()));
+    }
+  };
+  append(network);
+  if (parts.posterior.head) append(*parts.posterior.head);
   write_sealed(kNetwork, file, header, arrays);
 }
 
-SavedNetwork::SavedNetwork() = default;
+SavedNetwork::SavedNetwork() : posterior_(std::make_unique<Posterior>()) {}
 SavedNetwork::SavedNetwork(SavedNetwork&&) noexcept = default;
 SavedNetwork& SavedNetwork::operator=(SavedNetwork&&) noexcept = default;
 SavedNetwork::~SavedNetwork() = default;
@@ -208,6 +225,11 @@ SavedNetwork SavedNetwork::load(const fs::path& path) {
     }
     n.network_ = networks::make_network(n.info_.kind, shape_of(sizes, n.info_.parameters.size()));
     for (const auto& w : n.network_->parameters()) weights.push_back(w.detach());
+    if (!header.at("posterior").is_null()) {
+      n.posterior_->levels = maps_of(header.at("posterior"));
+      n.add_head(sizes);
+      for (const auto& w : n.posterior_->head->parameters()) weights.push_back(w.detach());
+    }
     features.resize(data::Features::array_count(sizes));
     if (arrays != features.size() + weights.size()) throw Unusable{"it holds another number of arrays"};
   };
@@ -229,8 +251,25 @@ SavedNetwork SavedNetwork::load(const fs::path& path) {
   return n;
 }
 
+std::unique_ptr<Posterior> SavedNetwork::release_posterior() { return std::move(posterior_); }
+
+void SavedNetwork::add_head(const data::FeatureSizes& sizes) {
+  mpi::store::Dataset box;
+  for (const auto& p : info_.parameters) {
+    box.parameter_low.push_back(p.low);
+    box.parameter_high.push_back(p.high);
+  }
+  const networks::NetworkShape shape = shape_of(sizes, info_.parameters.size());
+  posterior_->head =
+      make_head(*network_, box, scale_, static_cast<std::size_t>(shape.channels * shape.samples));
+}
+
 data::FeatureSizes SavedNetwork::read_header(const json& h) {
   info_ = info_of(h);
+  identity_ = std::make_unique<json>(h.at("run"));
+  const json& training = h.at("training");
+  report_ = {true, training.at("epochs"), training.at("best_epoch"), training.at("seconds"),
+             training.at("validation_mse")};
   for (const auto& p : h.at("parameters")) {
     scale_.mean.push_back(p.at("mean"));
     scale_.unit.push_back(p.at("scale"));
@@ -245,20 +284,24 @@ data::FeatureSizes SavedNetwork::read_header(const json& h) {
   selection_.rate = info_.rate / static_cast<double>(selection_.step);
   info_.samples = selection_.first + (selection_.samples - 1) * selection_.step + 1;
   if (const json& w = h.at("physics"); !w.is_null()) {
-    selection_.physics.emplace(info_.channels, data::PhysicsWindow{info_.rate, w.at("start_s"), w.at("end_s"),
-                                                                   w.at("event_s"), w.at("reactance")});
+    selection_.physics.emplace(
+        info_.channels, data::PhysicsWindow{info_.rate, w.at("start_s"), w.at("end_s"), w.at("event_s"),
+                                            w.at("reactance"), w.at("least_voltage")});
     info_.samples = selection_.physics->samples();
   }
   const data::FeatureSizes sizes = {f.at("channels"),       f.at("samples"), f.at("pca_components"),
-                                    f.at("pca_per_second"), f.at("levels"),  f.at("kept")};
+                                    f.at("pca_per_second"), f.at("levels"),  f.at("kept"),
+                                    f.at("noisy")};
+  selection_.shows_level = info_.told_noise = sizes.noisy > 0;
   if (sizes.channels != selection_.outputs() || sizes.samples != selection_.samples)
     throw Unusable{"its sizes do not fit together"};
   return sizes;
 }
 
-Estimate SavedNetwork::estimate(std::span<const float> record) const {
+Estimate SavedNetwork::estimate(std::span<const float> record, double noise) const {
   std::vector<float> series(selection_.values());
   selection_.apply(record.data(), info_.samples, series.data());
+  if (selection_.shows_level) series.back() = data::level_input(noise);
   at::NoGradGuard no_gradients;
   at::Tensor x = at::empty(
       {1, static_cast<std::int64_t>(features_.channels()), static_cast<std::int64_t>(features_.length())},
@@ -270,7 +313,24 @@ Estimate SavedNetwork::estimate(std::span<const float> record) const {
   for (std::size_t i = 0; i < info_.parameters.size(); ++i)
     e.values.push_back(
         std::clamp(scale_.raw(y.data_ptr<float>()[i], i), info_.parameters[i].low, info_.parameters[i].high));
+  add_intervals(x, noise, e);
   return e;
+}
+
+void SavedNetwork::add_intervals(const at::Tensor& x, double noise, Estimate& e) const {
+  e.intervals.resize(info_.parameters.size());
+  if (!posterior_->head) return;
+  posterior::Head& head = *posterior_->head;
+  const at::Tensor numbers = head.forward(x, false).contiguous();
+  const auto beliefs = head.beliefs({numbers.data_ptr<float>(), static_cast<std::size_t>(numbers.numel())});
+  const auto maps = maps_at(posterior_->levels, noise);
+  for (std::size_t i = 0; i < head.of().size(); ++i) {
+    const posterior::HeadParameter& p = head.of()[i];
+    const auto at = [&](double below) {
+      return p.low + (p.high - p.low) * posterior::quantile(beliefs.of(0, i), maps[i], below);
+    };
+    e.intervals[p.output] = Interval{at(0.05), at(0.5), at(0.95)};
+  }
 }
 
 }  // namespace swingbank::train::run

@@ -34,13 +34,22 @@ struct NetworkInfo {
   std::optional<double> fault_start;              ///< when its records' faults begin [s]; none: unknown
   std::optional<sim::FrequencyFilter> frequency;  ///< of the channel "frequency"
   double input_rms_seen = 0.0;  ///< largest root mean square of a validation row's normalised input
+  bool told_noise = false;      ///< it was trained at many levels of noise and is told the record's
   std::vector<EstimatedParameter> parameters;
 };
 
-struct Estimate {
-  std::vector<double> values;  ///< per parameter [its unit]
-  double input_rms = 0.0;      ///< of the normalised input: about 1 on rows like those of the training
+/// Central interval that holds a parameter with a probability of 90 %, and its middle [its unit].
+struct Interval {
+  double low = 0.0, median = 0.0, high = 0.0;
 };
+
+struct Estimate {
+  std::vector<double> values;                      ///< per parameter [its unit]
+  std::vector<std::optional<Interval>> intervals;  ///< the same; none: held, or the network has no posterior
+  double input_rms = 0.0;  ///< of the normalised input: about 1 on rows like those of the training
+};
+
+struct Posterior;
 
 struct NetworkParts {
   const data::ShardStream& stream;
@@ -48,7 +57,9 @@ struct NetworkParts {
   const data::Features& features;
   const data::TargetScale& scale;
   const data::RowSplit& split;
-  const nlohmann::json& identity;
+  const nlohmann::json& identity;  ///< of the training
+  const loop::LoopReport& report;
+  const Posterior& posterior;
 };
 
 /// "V-cnn-quick-seed1-gen30.network" beside the result.
@@ -66,18 +77,31 @@ class SavedNetwork {
   ~SavedNetwork();
   [[nodiscard]] const NetworkInfo& info() const { return info_; }
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+  /// What it was trained as, and how that went.
+  [[nodiscard]] const nlohmann::json& identity() const { return *identity_; }
+  [[nodiscard]] const loop::LoopReport& report() const { return report_; }
+  [[nodiscard]] const data::Features& features() const { return features_; }
+  /// The network itself; no estimate can be made any more.
+  [[nodiscard]] std::unique_ptr<networks::Network> release() { return std::move(network_); }
+  [[nodiscard]] std::unique_ptr<Posterior> release_posterior();
   /// record: info().channels x info().samples, at info().rate from t = 0 [as a dataset's record].
-  [[nodiscard]] Estimate estimate(std::span<const float> record) const;
+  /// `noise`: level of the record's noise; of no matter to a network that was not trained at many levels.
+  [[nodiscard]] Estimate estimate(std::span<const float> record, double noise = 0.0) const;
 
  private:
   SavedNetwork();
   data::FeatureSizes read_header(const nlohmann::json& header);
+  void add_head(const data::FeatureSizes& sizes);
+  void add_intervals(const at::Tensor& x, double noise, Estimate& e) const;
   std::filesystem::path file_;
   NetworkInfo info_;
   data::InputSelection selection_;
   data::Features features_;
   data::TargetScale scale_;
   std::unique_ptr<networks::Network> network_;
+  std::unique_ptr<Posterior> posterior_;
+  std::unique_ptr<nlohmann::json> identity_;
+  loop::LoopReport report_;
 };
 
 }  // namespace swingbank::train::run

@@ -63,19 +63,17 @@ void read_parameters(Object& o, const std::string& where, RunResult& r, Problems
   }
 }
 
-/// {"0.001": {"50": 0.48, "90": 0.91, "n": 1200}}: by level of noise, the share of the truths that lay in
-/// intervals of 50 and 90 %.
-void read_calibration(Object& o, RunResult& r) {
-  if (!o.value().contains("calibration") || o.value()["calibration"].is_null()) return;
-  try {
-    for (const auto& [level, shares] : o.value()["calibration"].items()) {
-      auto& all = r.calibration[std::stod(level)];
-      for (const auto& [nominal, observed] : shares.items())
-        if (!nominal.empty() && std::isdigit(static_cast<unsigned char>(nominal.front())))
-          all.push_back({std::stod(nominal) / 100, observed.get<double>(), shares.at("n").get<double>()});
-    }
-  } catch (const std::exception& error) {
-    o.fault("calibration", error.what());
+/// Key `posterior` of train/run/README.md: how often the truth lay in the intervals of the rows judged.
+void read_coverage(Object& o, const std::string& where, RunResult& r, Problems& problems) {
+  if (!o.value().contains("posterior")) return;
+  const json& posterior = o.value()["posterior"];
+  if (!posterior.is_object() || !posterior.contains("test")) return o.fault("posterior", "it has no 'test'");
+  Object test(posterior["test"], where + " posterior", problems);
+  std::int64_t rows = 0;
+  test.get("rows", rows);
+  for (const auto& [key, nominal] : {std::pair{"coverage_50", 0.5}, std::pair{"coverage_90", 0.9}}) {
+    r.coverage.push_back({nominal, 0.0, static_cast<double>(rows)});
+    test.get(key, r.coverage.back().observed);
   }
 }
 
@@ -125,7 +123,7 @@ RunResult read_result(const fs::path& file, Problems& problems) {
   o.get("software", r.software);
   o.get("blas", r.blas);
   if (parsed.contains("train_share")) o.get("train_share", r.share);
-  read_calibration(o, r);
+  read_coverage(o, file.string(), r, problems);
   read_parameters(o, file.string(), r, problems);
   return r;
 }

@@ -3,7 +3,6 @@
 // the keys).
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,7 +36,7 @@ struct RunResult {
   double mse = 0, mse_varied_only = 0, baseline_mse = 0, ratio = 0;
   double H_ratio = 0;  ///< NaN where H does not vary
   std::vector<ParameterScore> parameters;
-  std::map<double, std::vector<Coverage>> calibration;  ///< by level of noise; empty: it gives no intervals
+  std::vector<Coverage> coverage;  ///< empty: it gives no intervals
   bool shuffled = false;
   int threads = 1;
   std::string software, blas;

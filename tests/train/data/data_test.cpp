@@ -257,7 +257,7 @@ TEST(Split, RowsOfASecondDatasetOnlyTrain) {
   const Labels& labels = stream.labels();
   ASSERT_EQ(labels.rows, 570u);
   ASSERT_EQ(labels.judged, 400u);
-  const RowSplit split = leave_one_out(labels, 33, 0.1, 1);
+  const RowSplit split = leave_one_out(labels, {33, 0.1, 1});
   EXPECT_EQ(split.test.size(), 40u);
   EXPECT_EQ(split.validation.size(), 36u);
   EXPECT_EQ(split.train.size(), 324u + 153u);
@@ -272,6 +272,26 @@ TEST(Split, RowsOfASecondDatasetOnlyTrain) {
   disk.read({&there, 1}, c.data());
   EXPECT_EQ(a, b);
   EXPECT_EQ(a, c);
+}
+
+TEST(Split, GeneratorsSetAsideCalibrateAndDoNotTrain) {
+  test::Folder folder("aside"), other("aside-other");
+  const mpi::store::Dataset dataset = test::make_dataset(folder.path), more = test::make_dataset(other.path);
+  const ShardStream stream(dataset, test::whole_record(), {}, more);
+  const Labels& labels = stream.labels();
+  const RowSplit split =
+      leave_one_out(labels, {.generator = 33, .validation_share = 0.1, .seed = 1, .set_aside = 2});
+  ASSERT_EQ(split.set_aside.size(), 2u);
+  EXPECT_EQ(split.test.size(), 40u);
+  EXPECT_EQ(split.calibration.size(), 160u);
+  EXPECT_EQ(split.train.size() + split.validation.size(), 560u);
+  const auto aside = [&](std::uint64_t row) {
+    return std::ranges::find(split.set_aside, labels.generator[row]) != split.set_aside.end();
+  };
+  EXPECT_TRUE(std::ranges::all_of(split.calibration, aside));
+  for (const auto* rows : {&split.train, &split.validation, &split.test})
+    EXPECT_TRUE(std::ranges::none_of(*rows, aside));
+  for (const auto row : split.train) EXPECT_NE(labels.generator[row], 33);
 }
 
 TEST(ShardStream, RefusesASecondDatasetOfAnotherKind) {
@@ -293,7 +313,7 @@ TEST(Split, LeavesOutEveryRowOfTheGenerator) {
   const mpi::store::Dataset dataset = test::make_dataset(folder.path);
   const ShardStream stream(dataset, test::whole_record());
   const Labels& labels = stream.labels();
-  const RowSplit split = leave_one_out(labels, 33, 0.1, 1);
+  const RowSplit split = leave_one_out(labels, {33, 0.1, 1});
   EXPECT_EQ(split.test.size(), 40u);
   EXPECT_EQ(split.validation.size(), 36u);
   EXPECT_EQ(split.train.size(), 324u);
@@ -301,8 +321,8 @@ TEST(Split, LeavesOutEveryRowOfTheGenerator) {
   for (const auto* part : {&split.train, &split.validation})
     for (const auto r : *part) EXPECT_NE(labels.generator[r], 33);
   EXPECT_EQ(generators(labels).size(), 10u);
-  EXPECT_THROW((void)leave_one_out(labels, 99, 0.1, 1), InputError);
-  const RowSplit nested = leave_one_out(labels, 33, 0.1, 1, 34);  // 33 takes no part, 34 is judged
+  EXPECT_THROW((void)leave_one_out(labels, {99, 0.1, 1}), InputError);
+  const RowSplit nested = leave_one_out(labels, {33, 0.1, 1, 34});  // 33 takes no part, 34 is judged
   EXPECT_EQ(nested.test.size(), 40u);
   EXPECT_EQ(nested.train.size() + nested.validation.size(), 320u);
   for (const auto* part : {&nested.train, &nested.validation, &nested.test})
@@ -319,7 +339,7 @@ TEST(Split, AShareIsTheFirstRowsOfBothDatasets) {
   const mpi::store::Dataset dataset = test::make_dataset(folder.path),
                             more = test::make_dataset(other.path, plan);
   const ShardStream stream(dataset, test::whole_record(), {}, more);
-  const RowSplit whole = leave_one_out(stream.labels(), 33, 0.1, 1);
+  const RowSplit whole = leave_one_out(stream.labels(), {33, 0.1, 1});
   RowSplit half = whole;
   keep_share(half, stream.labels(), 0.5);
   EXPECT_EQ(half.train.size(), 162u + 77u);
@@ -336,7 +356,7 @@ TEST(Features, SeeTheTrainingRowsOnly) {
   plan.shift_generator = 33;  // the left-out generator's records are moved far away
   const mpi::store::Dataset moved = test::make_dataset(spoilt.path, plan);
   const ShardStream a(dataset, test::whole_record()), b(moved, test::whole_record());
-  const RowSplit split = leave_one_out(a.labels(), 33, 0.1, 1);
+  const RowSplit split = leave_one_out(a.labels(), {33, 0.1, 1});
   for (const std::size_t components : {0u, 5u}) {
     const Features fa = Features::fit(a, split.train, components),
                    fb = Features::fit(b, split.train, components);

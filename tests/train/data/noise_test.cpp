@@ -90,5 +90,71 @@ TEST(Noise, IsTheSameInMemoryAndFromTheDiskAndInAnyOrder) {
   EXPECT_NE(a, c);
 }
 
+constexpr NoiseLevels kLevels = {1e-4, 5e-3, 0.25};
+
+TEST(Noise, LevelsOfTrainingAreDrawnForRowAndDraw) {
+  const RecordNoise noise(header({"P"}), {0.001, 1, kLevels});
+  constexpr int kRows = 4000;
+  int zero = 0, low = 0, moved = 0;
+  for (std::uint64_t row = 0; row < kRows; ++row) {
+    const double level = noise.level(row, {{}, 3});
+    EXPECT_TRUE(level == 0 || (level >= kLevels.low && level <= kLevels.high)) << level;
+    EXPECT_EQ(level, noise.level(row, {{}, 3}));
+    zero += level == 0;
+    low += level > 0 && level < std::sqrt(kLevels.low * kLevels.high);
+    moved += level != noise.level(row, {{}, 4});
+    EXPECT_EQ(noise.level(row, {0.001, 3}), 0.001);
+  }
+  EXPECT_NEAR(zero / double{kRows}, 0.25, 0.03);
+  EXPECT_NEAR(low / double{kRows}, 0.375, 0.03);  // the middle of the logarithms
+  EXPECT_GT(moved, kRows * 9 / 10);
+}
+
+TEST(Noise, OfTrainingHasItsLevelsSizeAndDiffersFromDrawToDraw) {
+  const RecordNoise noise(header({"P", "speed"}), {0.001, 1, kLevels});
+  int noisy = 0;
+  for (std::uint64_t row = 0; row < 40; ++row) {
+    std::vector<float> record(2 * kSamples), again = record, other = record;
+    noise.add(row, {{}, 5}, record.data());
+    noise.add(row, {{}, 5}, again.data());
+    noise.add(row, {{}, 6}, other.data());
+    EXPECT_EQ(record, again);
+    const double level = noise.level(row, {{}, 5});
+    const std::vector<double> drawn(record.begin(), record.end());
+    EXPECT_NEAR(deviation(channel(drawn, 0)), level, 0.06 * level);
+    EXPECT_NEAR(deviation(channel(drawn, 1)), 0.05 * level, 0.003 * level);
+    if (level == 0 || noise.level(row, {{}, 6}) == 0) continue;
+    ++noisy;
+    EXPECT_NE(record, other);
+    double product = 0;
+    for (std::size_t k = 0; k < kSamples; ++k) product += drawn[k] * drawn[kSamples + k];
+    EXPECT_LT(std::abs(product) / kSamples / (0.05 * level * level),
+              0.08);  // channels have nothing in common
+  }
+  EXPECT_GT(noisy, 10);
+}
+
+TEST(Noise, OfTrainingIsTheSameInMemoryAndFromTheDisk) {
+  const test::Folder folder("noise-training");
+  test::Plan plan;
+  plan.electrical = true;
+  const auto dataset = test::make_dataset(folder.path, plan);
+  InputRecipe recipe{{"P", "Q", "V", "speed"}, 0.0, 2.0, 1, InputForm::physics};
+  recipe.shows_level = true;
+  const ShardStream memory(dataset, recipe, {.noise = {0.001, 4, kLevels}}),
+      disk(dataset, recipe, {.memory_limit = 1, .readers = 2, .noise = {0.001, 4, kLevels}});
+  const std::vector<std::uint64_t> rows = {399, 2, 2, 170};
+  const std::size_t values = memory.selection().values();
+  std::vector<float> a(rows.size() * values), b = a, c = a;
+  memory.read(rows, a.data(), memory.training(7));
+  disk.read(rows, b.data(), disk.training(7));
+  memory.read(rows, c.data());
+  EXPECT_EQ(a, b);
+  EXPECT_NE(a, c);
+  EXPECT_EQ(c[values - 1], level_input(0.001));
+  EXPECT_NEAR(level_of_input(level_input(0.003)), 0.003, 1e-8);
+  EXPECT_NEAR(level_of_input(level_input(0)), 0, 1e-10);
+}
+
 }  // namespace
 }  // namespace swingbank::train::data

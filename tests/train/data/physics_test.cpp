@@ -110,5 +110,55 @@ TEST(Whitening, MakesUncorrelatedNumbersOfOneSizeAndComesBackFromAFile) {
   EXPECT_EQ(out, again);
 }
 
+/// Physical series of a made-up data set whose rows draw their noise.
+struct NoisyWorld {
+  test::Folder folder{"white-noise"};
+  mpi::store::Dataset dataset = made(folder.path);
+  ShardStream stream{dataset, recipe(), {.noise = {0.0, 1, NoiseLevels{1e-4, 5e-3, 0.25}}}};
+  static mpi::store::Dataset made(const std::filesystem::path& path) {
+    test::Plan plan;
+    plan.electrical = true;
+    plan.rows = 2000;
+    plan.rows_per_shard = 500;
+    return test::make_dataset(path, plan);
+  }
+  static InputRecipe recipe() {
+    InputRecipe r{{"P", "Q", "V", "speed"}, 0.0, 2.0, 1, InputForm::physics};
+    r.shows_level = true;
+    return r;
+  }
+  [[nodiscard]] std::vector<float> features(const Features& f, const Noise& noise) const {
+    const auto rows = test::all_rows(dataset.rows);
+    std::vector<float> series(rows.size() * stream.selection().values()), out(rows.size() * f.length());
+    stream.read(rows, series.data(), noise);
+    f.apply(series.data(), rows.size(), out.data());
+    return out;
+  }
+};
+
+TEST(Whitening, ShrinksWhatNoiseBuriesAndTellsTheLevel) {
+  const NoisyWorld w;
+  const Features f = Features::fit(w.stream, test::all_rows(w.dataset.rows), 5);
+  EXPECT_EQ(f.sizes().noisy, 1u);
+  const std::size_t n = f.length(), kept = f.sizes().kept;
+  const auto clean = w.features(f, Noise{0.0}), noisy = w.features(f, Noise{0.005});
+  const auto mean_square = [&](const std::vector<float>& x, std::size_t i) {
+    double sum = 0.0;
+    for (std::size_t r = 0; r < w.dataset.rows; ++r) sum += std::pow(std::sinh(x[r * n + i]), 2.0);
+    return sum / static_cast<double>(w.dataset.rows);
+  };
+  std::size_t shrunk = 0;
+  for (std::size_t i = 0; i < kept; ++i) {
+    EXPECT_NEAR(mean_square(clean, i), 1.0, 0.1) << i;
+    EXPECT_LT(mean_square(noisy, i), 1.3) << i;  // signal and noise together, behind Wiener's factor
+    shrunk += mean_square(noisy, i) < 0.5;
+  }
+  EXPECT_GT(shrunk, 0u);
+  EXPECT_EQ(clean[n - 1], std::asinh(level_input(0.0)));
+  EXPECT_EQ(noisy[n - 1], std::asinh(level_input(0.005)));
+  const Features again = Features::restore(f.sizes(), f.arrays());
+  EXPECT_EQ(w.features(again, Noise{0.005}), noisy);
+}
+
 }  // namespace
 }  // namespace swingbank::train::data

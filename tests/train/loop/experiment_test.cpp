@@ -21,7 +21,8 @@ Experiment experiment(const std::string& top, const std::string& in_preset, cons
       << top << "\n[preset.quick]\ndraws = 10\nchannels = [\"P\"]\nstart_s = 0\nend_s = 1\n"
       << "slice = 1\nform = \"absolute\"\npca_components = 0\nepochs = 1\nbatch = 1\n"
       << "learning_rate = 1e-3\nschedule = \"constant\"\npatience = 1\nvalidation_share = 0.1\n"
-      << "networks = [\"gru\", \"mlp\", \"floor\"]\nnoise = [0.0, 0.001]\n"
+      << (in_preset.starts_with("networks") ? "" : "networks = [\"gru\", \"mlp\", \"floor\"]\n")
+      << "noise = [0.0, 0.001]\n"
       << in_preset << "\n"
       << behind;
   return read_experiment(file);
@@ -56,6 +57,34 @@ TEST(Experiment, SharesAreRunsOfTheFirstLevelAndFold) {
   EXPECT_THAT(e.print("quick", "tasks"),
               testing::HasSubstr("gru 0.001 31\ngru 0 30 0.25\ngru 0 30 0.5\nmlp 0 30"));
   EXPECT_THROW(experiment("", "", "[preset.quick.gru]\nshares = [1.0]\n"), InputError);
+}
+
+const std::string kPhysicsAtManyLevels =
+    "[preset.quick.mlp]\nform = \"physics\"\ntraining_noise = [0.0001, 0.005]\ntraining_noise_zero = 0.25\n";
+
+TEST(Experiment, NetworksTrainedAtManyLevelsAreToldThem) {
+  const Experiment e = experiment("", "", kPhysicsAtManyLevels + "posterior_epochs = 2\nset_aside = 1\n");
+  const TrainingRecipe& t = e.training("quick", "mlp");
+  ASSERT_TRUE(t.noise_levels);
+  EXPECT_EQ(t.noise_levels->high, 0.005);
+  EXPECT_EQ(t.posterior_epochs, 2u);
+  EXPECT_EQ(t.set_aside, 1u);
+  EXPECT_TRUE(e.input("quick", "mlp").recipe.shows_level);
+  EXPECT_FALSE(e.training("quick", "gru").noise_levels);
+  EXPECT_THROW(experiment("", "", "[preset.quick.mlp]\ntraining_noise = [0.1, 0.01]\n"), InputError);
+  EXPECT_THROW(
+      experiment("", "", "[preset.quick.gru]\ntraining_noise = [0.001, 0.01]\ntraining_noise_zero = 0\n"),
+      InputError);
+}
+
+TEST(Experiment, NetworksThatCorrectTrainAtTheLevelTheyAreJudgedAt) {
+  const std::string preset =
+      kPhysicsAtManyLevels + "[preset.quick.corrects]\nlike = \"mlp\"\ncorrects = \"closed-form\"\n";
+  const Experiment e = experiment("", "networks = [\"mlp\", \"corrects\"]", preset);
+  EXPECT_FALSE(e.training("quick", "corrects").noise_levels);
+  EXPECT_FALSE(e.input("quick", "corrects").recipe.shows_level);
+  EXPECT_THROW(experiment("", "networks = [\"mlp\", \"corrects\"]", preset + "posterior_epochs = 1\n"),
+               InputError);
 }
 
 }  // namespace

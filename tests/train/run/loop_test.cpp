@@ -65,7 +65,7 @@ json result_of(const RunRequest& r) {
 
 TEST(Training, ResumedRunEqualsAnUnbrokenOneBitForBit) {
   const World world("resume", 150);
-  const data::RowSplit split = data::leave_one_out(world.stream.labels(), 33, 0.1, 1);
+  const data::RowSplit split = data::leave_one_out(world.stream.labels(), {33, 0.1, 1});
   const data::TargetScale scale = data::TargetScale::fit(world.stream.labels().values, 3, split.train);
   const auto targets = scaled_targets(world.stream.labels(), scale, split, false, 1);
   const data::Features features = data::Features::fit(world.stream, split.train, 0);
@@ -105,7 +105,7 @@ TEST(Training, ResumedRunEqualsAnUnbrokenOneBitForBit) {
 
 TEST(Training, RefusesADamagedOrForeignCheckpoint) {
   const World world("damaged");
-  const data::RowSplit split = data::leave_one_out(world.stream.labels(), 33, 0.1, 1);
+  const data::RowSplit split = data::leave_one_out(world.stream.labels(), {33, 0.1, 1});
   const data::TargetScale scale = data::TargetScale::fit(world.stream.labels().values, 3, split.train);
   const auto targets = scaled_targets(world.stream.labels(), scale, split, false, 1);
   const data::Features features = data::Features::fit(world.stream, split.train, 0);
@@ -257,7 +257,7 @@ TEST(Training, TheLeftOutGeneratorLeavesNoTraceInTheWeights) {
   moved.shift_generator = 33;
   const data::ShardStream other(test::make_dataset(folder.path, moved), test::whole_record(moved));
   const auto outputs = [&](const data::ShardStream& stream, int generator) {
-    const data::RowSplit split = data::leave_one_out(stream.labels(), generator, 0.1, 1);
+    const data::RowSplit split = data::leave_one_out(stream.labels(), {generator, 0.1, 1});
     const data::TargetScale scale = data::TargetScale::fit(stream.labels().values, 3, split.train);
     const auto targets = scaled_targets(stream.labels(), scale, split, false, 1);
     const data::Features features = data::Features::fit(stream, split.train, 0);

@@ -92,7 +92,7 @@ TEST(SavedNetwork, EstimatesWhatTheTrainedNetworkDid) {
     EXPECT_EQ(info.rate, 16.0);
     EXPECT_FALSE(info.fault_start);  // made-up data do not say
     // The result's errors on the test rows are those of the saved network, row by row.
-    const data::RowSplit split = data::leave_one_out(world.stream.labels(), 33, 0.1, 1);
+    const data::RowSplit split = data::leave_one_out(world.stream.labels(), {33, 0.1, 1});
     std::vector<double> square(3, 0.0);
     for (const std::uint64_t row : split.test) {
       const Estimate e = saved.estimate(record_of(world, row, info.samples));
@@ -123,7 +123,7 @@ TEST(SavedNetwork, EstimatesFromPhysicalChannelsWhatTheTrainedNetworkDid) {
   EXPECT_EQ(saved.info().fault_start, 0.5);
   const json result = saved_result_of(r);
   EXPECT_LT(result["ratio"].get<double>(), 0.9);
-  const data::RowSplit split = data::leave_one_out(world.stream.labels(), 33, 0.1, 1);
+  const data::RowSplit split = data::leave_one_out(world.stream.labels(), {33, 0.1, 1});
   double square = 0.0;
   for (const std::uint64_t row : split.test) {
     const double error = saved.estimate(record_of(world, row, saved.info().samples)).values[0] -
@@ -133,12 +133,90 @@ TEST(SavedNetwork, EstimatesFromPhysicalChannelsWhatTheTrainedNetworkDid) {
   EXPECT_NEAR(square, result["per_parameter"][0]["mse"].get<double>(), 1e-3 * square);
 }
 
+/// The world's data, whose rows draw a level of noise when they train.
+struct NoisyRuns {
+  World world;
+  RunRequest request;
+  explicit NoisyRuns(const std::string& name)
+      : world(name, data::InputForm::physics), request(world.request("mlp", 6)) {
+    loop::Preset& p = request.experiment.presets["quick"];
+    p.input["mlp"].recipe.shows_level = true;
+    p.training["mlp"].noise_levels = data::NoiseLevels{1e-4, 5e-3, 0.25};
+    p.training["mlp"].posterior_epochs = 2;
+    p.training["mlp"].set_aside = 2;
+  }
+  [[nodiscard]] data::ShardStream stream(double noise) const {
+    const loop::Preset& p = request.experiment.presets.at("quick");
+    return {
+        world.dataset, p.input.at("mlp").recipe, {.noise = {noise, 1, p.training.at("mlp").noise_levels}}};
+  }
+};
+
+TEST(SavedNetwork, OneNetworkServesAllLevelsOfNoiseAndSaysWhatItBelieves) {
+  NoisyRuns w("saved-levels");
+  ASSERT_EQ(run(w.stream(0.0), w.request), RunOutcome::done);
+  const auto file = w.request.out / "V-mlp-quick-seed1-gen33.network";
+  const auto trained = std::filesystem::last_write_time(file);
+  const json without = result_of(w.request);
+  w.request.noise = 0.005;
+  ASSERT_EQ(run(w.stream(0.005), w.request), RunOutcome::done);
+  EXPECT_EQ(std::filesystem::last_write_time(file), trained);
+  const json with = result_of(w.request);
+  EXPECT_EQ(with["noise"], 0.005);
+  EXPECT_EQ(with["best_epoch"], without["best_epoch"]);
+  EXPECT_NE(with["mse"], without["mse"]);
+  const json& believed = with["posterior"];
+  EXPECT_EQ(believed["set_aside"].size(), 2u);
+  EXPECT_EQ(believed["test"]["rows"], 30);
+  EXPECT_EQ(believed["test"]["per_parameter"].size(), 2u);  // the third is held
+  EXPECT_GT(believed["test"]["coverage_90"].get<double>(), 0.5);
+  EXPECT_LT(believed["test"]["coverage_50"].get<double>(), believed["test"]["coverage_90"].get<double>());
+
+  // what was saved believes what was judged
+  const SavedNetwork saved = SavedNetwork::load(file);
+  EXPECT_TRUE(saved.info().told_noise);
+  const data::ShardStream stream = w.stream(0.0);
+  const data::RowSplit split = data::leave_one_out(
+      stream.labels(), {.generator = 33, .validation_share = 0.1, .seed = 1, .set_aside = 2});
+  double held = 0.0, width = 0.0;
+  for (const std::uint64_t row : split.test) {
+    const Estimate e = saved.estimate(record_of(w.world, row, saved.info().samples), 0.0);
+    ASSERT_TRUE(e.intervals[0]);
+    EXPECT_FALSE(e.intervals[2]);
+    const double H = stream.labels().values[row * 3];
+    held += H > e.intervals[0]->low && H < e.intervals[0]->high ? 1.0 / 30 : 0.0;
+    width += (e.intervals[0]->high - e.intervals[0]->low) / 30;
+  }
+  const json& of_H = without["posterior"]["test"]["per_parameter"][0];
+  EXPECT_NEAR(held, of_H["coverage_90"].get<double>(), 1e-6);
+  EXPECT_NEAR(width, of_H["width_90"].get<double>(), 1e-3 * width);
+}
+
+TEST(SavedNetwork, NoiseOfEveryEpochSurvivesAnInterruption) {
+  NoisyRuns whole("levels-whole"), broken("levels-broken");
+  ASSERT_EQ(run(whole.stream(0.001), whole.request), RunOutcome::done);
+  // ended by a signal in the network's epochs, and again in those of the posterior
+  const data::ShardStream stream = broken.stream(0.001);
+  std::size_t asked = 0;
+  for (const std::size_t stop : {std::size_t{9}, std::size_t{13}}) {
+    broken.request.stop = [&asked, stop] { return asked++ == stop; };
+    asked = 0;
+    ASSERT_EQ(run(stream, broken.request), RunOutcome::stopped) << stop;
+  }
+  broken.request.stop = {};
+  ASSERT_EQ(run(stream, broken.request), RunOutcome::done);
+  const json a = result_of(whole.request), b = result_of(broken.request);
+  EXPECT_EQ(a["mse"], b["mse"]);
+  EXPECT_EQ(a["posterior"], b["posterior"]);
+  EXPECT_EQ(a["validation_mse"], b["validation_mse"]);
+}
+
 TEST(SavedNetwork, SpreadIsThatOfTheGeneratorLeftOut) {
   const SavedWorld world("spread");
   const RunRequest r = world.request("cnn");
   ASSERT_EQ(run(world.stream, r), RunOutcome::done);
   const SavedNetwork saved = SavedNetwork::load(r.out / (run_name(r) + ".network"));
-  const data::RowSplit split = data::leave_one_out(world.stream.labels(), 33, 0.1, 1);
+  const data::RowSplit split = data::leave_one_out(world.stream.labels(), {33, 0.1, 1});
   double sum = 0.0, square = 0.0, largest = 0.0;
   for (const std::uint64_t row : split.validation)
     largest = std::max(largest, saved.estimate(record_of(world, row, saved.info().samples)).input_rms);

@@ -230,7 +230,7 @@ TEST(PowerLawTest, IntervalsAreStudents) {
 }
 TEST_F(TablesTest, PicturesAreFilesOfTheMarkdownAndPartsOfThePage) {
   json r = result("V", "cnn", 30, 0.1);
-  r["calibration"] = {{"0.001", {{"50", 0.45}, {"90", 0.92}, {"n", 1000}}}};
+  r["posterior"] = {{"test", {{"coverage_50", 0.45}, {"coverage_90", 0.92}, {"rows", 1000}}}};
   write("a", r);
   const auto report = make_tables(read(), {});
   ASSERT_EQ(report.pictures.size(), 3u);
@@ -238,7 +238,7 @@ TEST_F(TablesTest, PicturesAreFilesOfTheMarkdownAndPartsOfThePage) {
     EXPECT_THAT(report.markdown, HasSubstr("](tables/" + name + ")"));
     EXPECT_THAT(report.html, HasSubstr(svg));
   }
-  EXPECT_THAT(report.pictures[2].second, AllOf(HasSubstr("CNN, noise 0.1 %"), HasSubstr("as stated")));
+  EXPECT_THAT(report.pictures[2].second, AllOf(HasSubstr("CNN, no noise"), HasSubstr("as stated")));
 }
 TEST_F(TablesTest, FiguresOfDifferentMakersAreComparedWithAWord) {
   write("a", result("V", "cnn", 30, 0.1));

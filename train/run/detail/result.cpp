@@ -37,35 +37,50 @@ json identity(const data::ShardStream& stream, const RunRequest& r) {
   const loop::NetworkInput& p = r.experiment.input(r.preset, r.network);
   const loop::TrainingRecipe& t = r.experiment.training(r.preset, r.network);
   const bool any = r.any_maker;
-  return {{"software", any ? "any" : software()},
-          {"kernels", any ? "any" : kernels(r)},
-          {"dataset", stream.dataset().hash},
-          {"training_dataset", stream.more() ? stream.more()->hash : ""},
-          {"network", r.network},
-          {"generator", or_null(r.generator)},
-          {"judged", or_null(r.judged)},
-          {"seed", r.seed},
-          {"noise", r.noise},
-          {"judged_rows", r.test_rows ? json(*r.test_rows) : json()},
-          {"train_share", r.train_share},
-          {"shuffled_labels", r.shuffle_labels},
-          {"channels", p.recipe.channels},
-          {"window", {p.recipe.start_s, p.recipe.end_s}},
-          {"slice", p.recipe.slice},
-          {"form", data::kInputForms.at(static_cast<std::size_t>(p.recipe.form))},
-          {"pca_components", p.pca_components},
-          {"epochs", r.epochs.value_or(t.epochs)},
-          {"batch", t.batch},
-          {"learning_rate", t.learning_rate},
-          {"schedule", t.schedule},
-          {"patience", t.patience},
-          {"validation_share", t.validation_share},
-          {"kind", t.kind},
-          {"corrects", t.corrects},
-          {"loss_power", t.loss_power},
-          {"weight_decay", t.weight_decay},
-          {"clip", t.clip},
-          {"average", t.average}};
+  json all = {{"software", any ? "any" : software()},
+              {"kernels", any ? "any" : kernels(r)},
+              {"dataset", stream.dataset().hash},
+              {"training_dataset", stream.more() ? stream.more()->hash : ""},
+              {"network", r.network},
+              {"generator", or_null(r.generator)},
+              {"judged", or_null(r.judged)},
+              {"seed", r.seed},
+              {"noise", r.noise},
+              {"judged_rows", r.test_rows ? json(*r.test_rows) : json()},
+              {"train_share", r.train_share},
+              {"shuffled_labels", r.shuffle_labels},
+              {"channels", p.recipe.channels},
+              {"window", {p.recipe.start_s, p.recipe.end_s}},
+              {"slice", p.recipe.slice},
+              {"form", data::kInputForms.at(static_cast<std::size_t>(p.recipe.form))},
+              {"pca_components", p.pca_components},
+              {"epochs", r.epochs.value_or(t.epochs)},
+              {"batch", t.batch},
+              {"learning_rate", t.learning_rate},
+              {"schedule", t.schedule},
+              {"patience", t.patience},
+              {"validation_share", t.validation_share},
+              {"kind", t.kind},
+              {"corrects", t.corrects},
+              {"loss_power", t.loss_power},
+              {"weight_decay", t.weight_decay},
+              {"clip", t.clip},
+              {"average", t.average}};
+  if (t.noise_levels)
+    all["training_noise"] = {t.noise_levels->low, t.noise_levels->high, t.noise_levels->share_at_zero};
+  if (t.posterior_epochs > 0) {
+    all["posterior_epochs"] = t.posterior_epochs;
+    all["set_aside"] = t.set_aside;
+  }
+  return all;
+}
+
+json training_identity(const data::ShardStream& stream, const RunRequest& r) {
+  json all = identity(stream, r);
+  if (!r.experiment.training(r.preset, r.network).noise_levels) return all;
+  all.erase("noise");
+  all.erase("judged_rows");
+  return all;
 }
 
 json result_json(const data::ShardStream& stream, const RunRequest& r, const RunParts& parts) {
@@ -80,45 +95,48 @@ json result_json(const data::ShardStream& stream, const RunRequest& r, const Run
                           {"variance", p.variance},
                           {"box_variance", p.box_variance},
                           {"relative", or_null(p.relative())}});
-  return {{"table", r.experiment.table},
-          {"network", r.network},
-          {"preset", r.preset},
-          {"seed", r.seed},
-          {"noise", r.noise},
-          {"generator", or_null(r.generator)},
-          {"judged", or_null(r.judged)},
-          {"dataset",
-           {{"name", dataset_name(d)}, {"hash", d.hash}, {"config_hash", d.config_hash}, {"rows", d.rows}}},
-          {"machine_model", d.machine_model},
-          {"parameters", d.parameter_names},
-          {"train_share", r.train_share},
-          {"train_rows", parts.split.train.size()},
-          {"validation_rows", parts.split.validation.size()},
-          {"test_rows", parts.split.test.size()},
-          {"epochs", parts.report.epochs},
-          {"best_epoch", parts.report.best_epoch},
-          {"seconds", parts.report.seconds},
-          {"processor_seconds", parts.report.processor_seconds},
-          {"seconds_per_epoch",
-           parts.report.seconds / static_cast<double>(std::max<std::size_t>(parts.report.epochs, 1))},
-          {"mse", parts.score.mse},
-          {"mse_varied_only", parts.score.mse_varied_only},
-          {"seen_mse", or_null(parts.seen_mse)},
-          {"baseline_mse", parts.score.baseline_mse},
-          {"baseline_mse_varied_only", parts.score.baseline_mse_varied_only},
-          {"ratio", parts.score.ratio},
-          {"H_ratio", or_null(parts.score.H_ratio)},
-          {"per_parameter", parameters},
-          {"shuffled_labels", r.shuffle_labels},
-          {"threads", r.runtime.threads},
-          {"blas", r.runtime.blas},
-          {"kernels", kernels(r)},
-          {"software", software()},
-          {"input", parts.features ? input_json(stream, r, *parts.features) : json()},
-          {"batch", t.batch},
-          {"learning_rate", t.learning_rate},
-          {"validation_mse", parts.report.validation},
-          {"run", identity(stream, r)}};
+  json result = {
+      {"table", r.experiment.table},
+      {"network", r.network},
+      {"preset", r.preset},
+      {"seed", r.seed},
+      {"noise", r.noise},
+      {"generator", or_null(r.generator)},
+      {"judged", or_null(r.judged)},
+      {"dataset",
+       {{"name", dataset_name(d)}, {"hash", d.hash}, {"config_hash", d.config_hash}, {"rows", d.rows}}},
+      {"machine_model", d.machine_model},
+      {"parameters", d.parameter_names},
+      {"train_share", r.train_share},
+      {"train_rows", parts.split.train.size()},
+      {"validation_rows", parts.split.validation.size()},
+      {"test_rows", parts.split.test.size()},
+      {"epochs", parts.report.epochs},
+      {"best_epoch", parts.report.best_epoch},
+      {"seconds", parts.report.seconds},
+      {"processor_seconds", parts.report.processor_seconds},
+      {"seconds_per_epoch",
+       parts.report.seconds / static_cast<double>(std::max<std::size_t>(parts.report.epochs, 1))},
+      {"mse", parts.score.mse},
+      {"mse_varied_only", parts.score.mse_varied_only},
+      {"seen_mse", or_null(parts.seen_mse)},
+      {"baseline_mse", parts.score.baseline_mse},
+      {"baseline_mse_varied_only", parts.score.baseline_mse_varied_only},
+      {"ratio", parts.score.ratio},
+      {"H_ratio", or_null(parts.score.H_ratio)},
+      {"per_parameter", parameters},
+      {"shuffled_labels", r.shuffle_labels},
+      {"threads", r.runtime.threads},
+      {"blas", r.runtime.blas},
+      {"kernels", kernels(r)},
+      {"software", software()},
+      {"input", parts.features ? input_json(stream, r, *parts.features) : json()},
+      {"batch", t.batch},
+      {"learning_rate", t.learning_rate},
+      {"validation_mse", parts.report.validation},
+      {"run", identity(stream, r)}};
+  if (!parts.posterior.is_null()) result["posterior"] = parts.posterior;
+  return result;
 }
 
 }  // namespace swingbank::train::run

@@ -88,12 +88,11 @@ std::string reliability_picture(const Task& task) {
   std::map<std::pair<std::string, double>, std::map<double, std::pair<double, double>>>
       counted;  // inside, rows
   for (const auto& r : task.runs)
-    for (const auto& [level, shares] : r.calibration)
-      for (const auto& c : shares) {
-        auto& [inside, rows] = counted[{r.network, level}][c.nominal];
-        inside += c.observed * c.rows;
-        rows += c.rows;
-      }
+    for (const auto& c : r.coverage) {
+      auto& [inside, rows] = counted[{r.network, r.noise}][c.nominal];
+      inside += c.observed * c.rows;
+      rows += c.rows;
+    }
   if (counted.empty()) return {};
   Plot plot{"How often the truth lay in the intervals",
             {"should lie in them", false, {}, false, {0, 1}},

@@ -1,0 +1,61 @@
+#include "train/posterior/recalibration.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "train/posterior/normal.hpp"
+
+namespace swingbank::train::posterior {
+namespace {
+
+constexpr std::size_t kHeld = kHeldAt.size();
+using Held = std::array<double, kHeld>;
+
+const Held& standard() {
+  static const Held scores = [] {
+    Held all{};
+    for (std::size_t i = 0; i < kHeld; ++i) all[i] = normal_quantile(kHeldAt[i]);
+    return all;
+  }();
+  return scores;
+}
+
+/// Straight between the points, and on as between the outer three beyond them.
+double along(const Held& from, const Held& to, double x) {
+  const auto slope = [&](std::size_t a, std::size_t b) { return (to[b] - to[a]) / (from[b] - from[a]); };
+  if (x <= from.front()) return to.front() + (x - from.front()) * slope(0, 2);
+  if (x >= from.back()) return to.back() + (x - from.back()) * slope(kHeld - 3, kHeld - 1);
+  const auto after = static_cast<std::size_t>(std::ranges::upper_bound(from, x) - from.begin());
+  return to[after - 1] + (x - from[after - 1]) * slope(after - 1, after);
+}
+
+}  // namespace
+
+Recalibration::Recalibration() : held_(standard()) {}
+
+Recalibration Recalibration::fit(std::span<const double> scores) {
+  constexpr std::size_t kFewest = 20;
+  constexpr double kClosest = 1e-3;  // of neighbouring points, so that the map has an inverse
+  Recalibration r;
+  if (scores.size() < kFewest) return r;
+  std::vector<double> sorted(scores.begin(), scores.end());
+  std::ranges::sort(sorted);
+  for (std::size_t i = 0; i < kHeld; ++i) {
+    const double at = kHeldAt[i] * static_cast<double>(sorted.size() - 1);
+    const auto left = std::min(static_cast<std::size_t>(at), sorted.size() - 2);
+    r.held_[i] = std::lerp(sorted[left], sorted[left + 1], at - static_cast<double>(left));
+    if (i > 0) r.held_[i] = std::max(r.held_[i], r.held_[i - 1] + kClosest);
+  }
+  return r;
+}
+
+double Recalibration::right(double score) const { return along(held_, standard(), score); }
+double Recalibration::wrong(double right) const { return along(standard(), held_, right); }
+
+Recalibration Recalibration::between(const Recalibration& a, const Recalibration& b, double share) {
+  Recalibration r;
+  for (std::size_t i = 0; i < kHeld; ++i) r.held_[i] = std::lerp(a.held_[i], b.held_[i], share);
+  return r;
+}
+
+}  // namespace swingbank::train::posterior
