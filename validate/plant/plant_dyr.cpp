@@ -9,7 +9,7 @@
 namespace swingbank::validate::plant {
 namespace {
 
-std::vector<const sim::plant::Block*> blocks_of(const PlantModel& model) {
+std::vector<const sim::plant::Block*> dyr_blocks(const PlantModel& model) {
   std::vector<const sim::plant::Block*> all = {&model.plant.machine};
   if (model.plant.transformer.effect) all.push_back(&model.plant.transformer);
   for (const auto& block : model.plant.controls) all.push_back(&block);
@@ -33,9 +33,9 @@ std::string dyr_text(const PlantModel& model, const std::vector<std::string>& he
 }
 
 std::vector<std::string> changed_blocks(const PlantModel& before, const PlantModel& model) {
-  const auto old = blocks_of(before);
+  const auto old = dyr_blocks(before);
   std::vector<std::string> names;
-  for (const auto* block : blocks_of(model)) {
+  for (const auto* block : dyr_blocks(model)) {
     const auto same = [&](const auto* o) {
       return o->effect->name == block->effect->name && o->p == block->p;
     };

@@ -14,8 +14,6 @@
 namespace swingbank::validate::record {
 namespace {
 
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-
 /// An integer or float of the file, little-endian as the standard has it.
 template <class T>
 T little(std::string_view bytes, std::size_t at) {
@@ -74,7 +72,7 @@ class Data {
                     fmt::format("the configuration means {}", wanted), "export the data again");
       const auto field = [&](std::size_t i) { return i < fields.size() ? fields[i] : std::string_view{}; };
       numbered(sample, comtrade_number(field(0)).value_or(-1));
-      stamps_.push_back(comtrade_number(field(1)).value_or(kNothing));
+      stamps_.push_back(comtrade_number(field(1)).value_or(kNoValue));
       for (std::size_t c = 0; c < out_.channels.size(); ++c)
         add(c, text_value(out_.channels[c], field(2 + c), sample));
     }
@@ -86,7 +84,7 @@ class Data {
     if (!v && !text.empty())
       faults_.add(channel.id, fmt::format("{} = '{}'", channel.id, text), sample, "this is no number",
                   "export the data again");
-    return v && !(out_.revision == 1999 && *v == 99999) ? *v : kNothing;
+    return v && !(out_.revision == 1999 && *v == 99999) ? *v : kNoValue;
   }
 
   void bytes() {
@@ -105,7 +103,7 @@ class Data {
       const std::size_t sample = begin(at);
       numbered(sample, little<std::uint32_t>(dat_, at));
       const auto stamp = little<std::uint32_t>(dat_, at + 4);
-      stamps_.push_back(stamp == 0xFFFFFFFFU ? kNothing : stamp);
+      stamps_.push_back(stamp == 0xFFFFFFFFU ? kNoValue : stamp);
       for (std::size_t c = 0; c < out_.channels.size(); ++c) add(c, binary_value(at + 8 + width * c));
     }
   }
@@ -114,14 +112,14 @@ class Data {
   [[nodiscard]] double binary_value(std::size_t at) const {
     if (out_.kind == "BINARY") {
       const auto v = little<std::int16_t>(dat_, at);
-      return v == std::numeric_limits<std::int16_t>::min() ? kNothing : v;
+      return v == std::numeric_limits<std::int16_t>::min() ? kNoValue : v;
     }
     if (out_.kind == "BINARY32") {
       const auto v = little<std::int32_t>(dat_, at);
-      return v == std::numeric_limits<std::int32_t>::min() ? kNothing : v;
+      return v == std::numeric_limits<std::int32_t>::min() ? kNoValue : v;
     }
     const auto v = little<float>(dat_, at);
-    return std::isfinite(v) && std::abs(v) < std::numeric_limits<float>::max() ? v : kNothing;
+    return std::isfinite(v) && std::abs(v) < std::numeric_limits<float>::max() ? v : kNoValue;
   }
 
   std::size_t begin(std::size_t place) {

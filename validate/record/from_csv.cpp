@@ -17,7 +17,6 @@
 namespace swingbank::validate::record {
 namespace {
 
-constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 using Cells = std::vector<std::string_view>;
 
 std::string_view unquoted(std::string_view s) {

@@ -15,7 +15,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const std::string kRound = "8.0 0.03 0.4 0.05 6.175 0.05 1.8 1.7 0.3 0.55 0.25 0.2 0.1 0.8";
+const std::string kRoundRotor = "8.0 0.03 0.4 0.05 6.175 0.05 1.8 1.7 0.3 0.55 0.25 0.2 0.1 0.8";
 
 class UnitTest : public ::testing::Test {
  protected:
@@ -40,7 +40,7 @@ TEST_F(UnitTest, OthersFaultsAreOfNoConcern) {
       "103,'9',x,0,100,-100,1.02,101,50,0,0.4,0,0,1,1\n"
       "999,'1',0,0\n";
   raw.other["two-terminal dc line"] = "'DC',1\n'A'\n'B'\n";
-  write(raw.text(), "101 'WHATEVER' 1 1 2 /\n102 'GENROU' 1 " + kRound +
+  write(raw.text(), "101 'WHATEVER' 1 1 2 /\n102 'GENROU' 1 " + kRoundRotor +
                         " /\nx 'GENCLS' 1 1 0 /\n102 'IEEEX9' 2 1 /\n103 /\n");
   const Unit unit = read_unit(choice(102));
   EXPECT_EQ(unit.plant.machine.effect->name, "GENROU");
@@ -58,10 +58,10 @@ TEST_F(UnitTest, ItsOwnAreNamedWithTheirLine) {
   raw.generators =
       "101,'1',153.0,73.0,100,-100,1.05,0,100,0,0.3,0,0,1,1,100,318,0,1,1\n"
       "102,'1',100.0,-3.0,100,-100,1.02,101,abc,0,0.25,0,0,1,1,100,318,0,1,1\n";
-  write(raw.text(), "102 'GENROU' 1 " + kRound + " /\n102 'SEXS' 1 0.1 10 /\n");
+  write(raw.text(), "102 'GENROU' 1 " + kRoundRotor + " /\n102 'SEXS' 1 0.1 10 /\n");
   EXPECT_THAT(complaints(choice(102)), HasSubstr("MBASE = 'abc'"));
   write(formats::RawCase().text(),
-        "102 'GENROU' 1 " + kRound + " /\n102 'SEXS' 1 0.1 10 /\n102 'X9' 1 4 /\n");
+        "102 'GENROU' 1 " + kRoundRotor + " /\n102 'SEXS' 1 0.1 10 /\n102 'X9' 1 4 /\n");
   const std::string all = complaints(choice(102));
   EXPECT_THAT(all, HasSubstr("SEXS with 2 parameters"));
   EXPECT_THAT(all, HasSubstr("unknown model 'X9'"));
@@ -70,7 +70,7 @@ TEST_F(UnitTest, ItsOwnAreNamedWithTheirLine) {
 }
 
 TEST_F(UnitTest, RecordsAreDroppedAndReplaced) {
-  write(formats::RawCase().text(), "101 'OTHER' 1 1 /\n102 'GENROU' 1 " + kRound +
+  write(formats::RawCase().text(), "101 'OTHER' 1 1 /\n102 'GENROU' 1 " + kRoundRotor +
                                        " /\n102 'X6' 1 0.1 10 100 0.1 -5 5 /\n102 'GOV9' 1 4 /\n");
   UnitChoice c = choice(102);
   c.models.ignore = {"gov9", "OTHER"};
@@ -99,7 +99,7 @@ TEST_F(UnitTest, ATransformerBetweenMachineAndRecordBecomesPartOfThePlant) {
     raw.generators =
         "101,'1',153.0,73.0,100,-100,1.05,0,100,0,0.3,0,0,1,1,100,318,0,1,1\n"
         "102,'1',100.0,-3.0,100,-100,1.02,0,250,0,0.25,0,0,1,1,100,318,0,1,1\n";
-    write(raw.text(), "102 'GENROU' 1 " + kRound + " /\n");
+    write(raw.text(), "102 'GENROU' 1 " + kRoundRotor + " /\n");
     EXPECT_THAT(read_unit(choice(102)).notes, Contains(HasSubstr("--measured-at 103")));
     EXPECT_EQ(read_unit(choice(102)).plant.transformer.effect, nullptr);
     UnitChoice c = choice(102);
@@ -128,7 +128,8 @@ TEST_F(UnitTest, ATransformerBetweenMachineAndRecordBecomesPartOfThePlant) {
 }
 
 TEST_F(UnitTest, IsWrittenAsRecordsThatReadBack) {
-  const std::string dyr = "102 'GENROU' 1 " + kRound + " /\n102 'SEXS' 1 0.1 10 100 0.1 -5 5.000000001 /\n";
+  const std::string dyr =
+      "102 'GENROU' 1 " + kRoundRotor + " /\n102 'SEXS' 1 0.1 10 100 0.1 -5 5.000000001 /\n";
   write(formats::RawCase().text(), dyr);
   const Unit unit = read_unit(choice(102));
   Problems problems;
@@ -145,8 +146,8 @@ TEST_F(UnitTest, IsWrittenAsRecordsThatReadBack) {
 TEST_F(UnitTest, AnInventoryGroupsWhatIsNotCovered) {
   formats::RawCase raw;
   raw.generators += "103,'1',10.0,0,100,-100,1.02,0,50,0,0.4,0,0,1,1\n103,'2',10.0,0,9,-9,1.0,0,50,0,0.4\n";
-  write(raw.text(), "101 'GENROU' 1 " + kRound + " /\n101 'X9' 1 4 /\n102 'GENROU' 1 " + kRound +
-                        " /\n103 'GENROU' 1 " + kRound +
+  write(raw.text(), "101 'GENROU' 1 " + kRoundRotor + " /\n101 'X9' 1 4 /\n102 'GENROU' 1 " + kRoundRotor +
+                        " /\n103 'GENROU' 1 " + kRoundRotor +
                         " /\n103 'X9' 1 4 /\n999 'SEXS' 1 0.1 10 100 0.1 -5 5 /\n"
                         "102 'SEXS' 1 0.1 /\n");
   const Inventory i = take_inventory(raw_.path, dyr_.path);

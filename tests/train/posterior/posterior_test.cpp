@@ -156,7 +156,9 @@ TEST(Head, LearnsASpreadThatGrowsWithTheInputAndACorrelation) {
     const Mixture& m = beliefs.of(r, 0);
     const double width = m.quantile(0.95) - m.quantile(0.05);
     (x.data_ptr<float>()[r] < 0.4f ? narrow : broad) += width;
-    if (x.data_ptr<float>()[r] > 0.79f) EXPECT_NEAR(width, 2 * 1.645 * 0.5 * 0.8, 0.3);
+    if (x.data_ptr<float>()[r] > 0.79f) {
+      EXPECT_NEAR(width, 2 * 1.645 * 0.5 * 0.8, 0.3);
+    }
   }
   EXPECT_LT(narrow, broad);
 }

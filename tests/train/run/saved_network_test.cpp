@@ -135,7 +135,7 @@ TEST(SavedNetwork, EstimatesFromPhysicalChannelsWhatTheTrainedNetworkDid) {
 
 /// The world's data, whose rows draw a level of noise when they train.
 struct NoisyRuns {
-  World world;
+  SavedWorld world;
   RunRequest request;
   explicit NoisyRuns(const std::string& name)
       : world(name, data::InputForm::physics), request(world.request("mlp", 6)) {
@@ -157,11 +157,11 @@ TEST(SavedNetwork, OneNetworkServesAllLevelsOfNoiseAndSaysWhatItBelieves) {
   ASSERT_EQ(run(w.stream(0.0), w.request), RunOutcome::done);
   const auto file = w.request.out / "V-mlp-quick-seed1-gen33.network";
   const auto trained = std::filesystem::last_write_time(file);
-  const json without = result_of(w.request);
+  const json without = saved_result_of(w.request);
   w.request.noise = 0.005;
   ASSERT_EQ(run(w.stream(0.005), w.request), RunOutcome::done);
   EXPECT_EQ(std::filesystem::last_write_time(file), trained);
-  const json with = result_of(w.request);
+  const json with = saved_result_of(w.request);
   EXPECT_EQ(with["noise"], 0.005);
   EXPECT_EQ(with["best_epoch"], without["best_epoch"]);
   EXPECT_NE(with["mse"], without["mse"]);
@@ -205,7 +205,7 @@ TEST(SavedNetwork, NoiseOfEveryEpochSurvivesAnInterruption) {
   }
   broken.request.stop = {};
   ASSERT_EQ(run(stream, broken.request), RunOutcome::done);
-  const json a = result_of(whole.request), b = result_of(broken.request);
+  const json a = saved_result_of(whole.request), b = saved_result_of(broken.request);
   EXPECT_EQ(a["mse"], b["mse"]);
   EXPECT_EQ(a["posterior"], b["posterior"]);
   EXPECT_EQ(a["validation_mse"], b["validation_mse"]);

@@ -189,24 +189,24 @@ TEST_F(PlantModelTest, DataOnTheSystemsBaseAreRecognised) {
     text = replaced(std::move(text), "H = 6.54", std::string("H = ") + h);
     return replaced(std::move(text), "Xd = 1.8", std::string("Xd = ") + xd);
   };
-  EXPECT_THAT(faults(on_system(example(), "500", "0.02")),
+  EXPECT_THAT(faults(on_system(example_text(), "500", "0.02")),
               Contains(AllOf(HasSubstr("H = 500 s and Xd = 0.02 pu"), HasSubstr("on the system's base?"),
                              HasSubstr("set base_mva to the machine's own, say 10000"))));
-  EXPECT_THAT(faults(replaced(example(), "H = 6.54", "H = 654")),
+  EXPECT_THAT(faults(replaced(example_text(), "H = 6.54", "H = 654")),
               ElementsAre(Not(HasSubstr("system's base"))))
       << "one slip is no other base";
   // Within the bounds it is a warning.
-  const PlantModel m = load(on_system(example(), "19", "0.45"));
+  const PlantModel m = load(on_system(example_text(), "19", "0.45"));
   EXPECT_THAT(m.warnings, Contains(AllOf(HasSubstr("H = 19 s"), HasSubstr("toml:20"))));
-  EXPECT_TRUE(load(example()).warnings.empty());
+  EXPECT_TRUE(load(example_text()).warnings.empty());
 }
 TEST_F(PlantModelTest, OrderingsThatNoMachineViolatesAreWarnedOfWithTheirLine) {
-  const PlantModel m = load(replaced(example(), "Xd = 1.8", "Xd = 0.35"));
+  const PlantModel m = load(replaced(example_text(), "Xd = 1.8", "Xd = 0.35"));
   EXPECT_THAT(m.warnings,
               ElementsAre(AllOf(HasSubstr("Xd = 0.35 pu is not above X'd = 0.4 pu"), HasSubstr(".toml:22"))));
 }
 TEST_F(PlantModelTest, ABentModelKnowsWhatWasSubmitted) {
-  const PlantModel before = load(example());
+  const PlantModel before = load(example_text());
   PlantModel bent = before;
   bent.plant.machine.p[4] = 3.5;  // H
   bent.submitted = before.plant;
@@ -218,8 +218,8 @@ TEST_F(PlantModelTest, ABentModelKnowsWhatWasSubmitted) {
 }
 TEST_F(PlantModelTest, StandardValuesAreTakenWhereTheBlockSaysSo) {
   const std::string block = "\n[exciter]\neffect = \"SEXS\"\nK = 150.0\n";
-  EXPECT_THAT(faults(example() + block), Contains(HasSubstr("exciter.TE")));
-  const PlantModel m = load(example() + block + "standard = true\n");
+  EXPECT_THAT(faults(example_text() + block), Contains(HasSubstr("exciter.TE")));
+  const PlantModel m = load(example_text() + block + "standard = true\n");
   const auto& sexs = m.plant.controls.at(0);
   const auto standard = sexs.effect->standard_parameters();
   for (std::size_t i = 0; i < sexs.p.size(); ++i)

@@ -15,8 +15,6 @@
 namespace swingbank::validate::record {
 namespace {
 
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-
 std::vector<double>* channel(Record& r, Quantity q) {
   switch (q) {
     case Quantity::time:
@@ -56,7 +54,7 @@ void power_from_current(Record& r, const std::vector<double>& current, const std
 
 /// Angles are known up to turns; a continuous one is kept, so that plots and differences make sense.
 void unwrap(std::vector<double>& angle) {
-  double last = kNothing;
+  double last = kNoValue;
   for (double& a : angle) {
     if (!std::isfinite(a)) continue;
     if (std::isfinite(last)) a -= constants::turn * std::round((a - last) / constants::turn);
@@ -136,7 +134,7 @@ EvenRows settle(RawRecord& raw, Record& r, SampleFaults& faults) {
     for (double& place : rows.place)
       if (std::isfinite(place) &&
           (lost[static_cast<std::size_t>(place)] || lost[static_cast<std::size_t>(std::ceil(place))]))
-        place = kNothing;
+        place = kNoValue;
   if (!gaps_are_short(rows, r)) faults.tell_missing();
   return rows;
 }
@@ -147,7 +145,7 @@ std::vector<double> at_places(const std::vector<double>& values, const std::vect
   all.reserve(places.size());
   for (const double place : places) {
     if (!std::isfinite(place)) {
-      all.push_back(kNothing);
+      all.push_back(kNoValue);
       continue;
     }
     const auto below = static_cast<std::size_t>(place);

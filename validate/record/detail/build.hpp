@@ -3,12 +3,15 @@
 // written to a Record.
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "validate/record/detail/columns.hpp"
 
 namespace swingbank::validate::record {
+
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 struct Heading {
   std::string name;  ///< as the file writes it

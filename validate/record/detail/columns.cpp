@@ -18,87 +18,86 @@ struct Alias {
   Quantity quantity;
   bool deviation = false;
 };
-using Q = Quantity;
 /// Names of quantities, without units. V1 is the positive sequence; VMP, VAP, IMP, IAP (also with the last
 /// two letters exchanged) are signal types of synchrophasor exchange files.
 constexpr Alias kAliases[] = {
-    {"t", Q::time},
-    {"time", Q::time},
-    {"timestamp", Q::time},
-    {"datetime", Q::time},
-    {"utc", Q::time},
-    {"timeutc", Q::time},
-    {"utctime", Q::time},
-    {"domain", Q::time},
-    {"v", Q::V},
-    {"u", Q::V},
-    {"ug", Q::V},
-    {"vm", Q::V},
-    {"vt", Q::V},
-    {"vmag", Q::V},
-    {"vterm", Q::V},
-    {"v1", Q::V},
-    {"v1mag", Q::V},
-    {"v1magnitude", Q::V},
-    {"vmp", Q::V},
-    {"vpm", Q::V},
-    {"voltage", Q::V},
-    {"voltagemag", Q::V},
-    {"voltagemagnitude", Q::V},
-    {"terminalvoltage", Q::V},
-    {"theta", Q::theta},
-    {"angle", Q::theta},
-    {"vang", Q::theta},
-    {"vangle", Q::theta},
-    {"v1ang", Q::theta},
-    {"v1angle", Q::theta},
-    {"vap", Q::theta},
-    {"vpa", Q::theta},
-    {"voltageang", Q::theta},
-    {"voltageangle", Q::theta},
-    {"phaseangle", Q::theta},
-    {"f", Q::f},
-    {"freq", Q::f},
-    {"frequency", Q::f},
-    {"p", Q::P},
-    {"pe", Q::P},
-    {"pgen", Q::P},
-    {"activepower", Q::P},
-    {"realpower", Q::P},
-    {"power", Q::P},
-    {"q", Q::Q},
-    {"qe", Q::Q},
-    {"qgen", Q::Q},
-    {"reactivepower", Q::Q},
-    {"speed", Q::speed, true},
-    {"speeddeviation", Q::speed, true},
-    {"omega", Q::speed},
-    {"w", Q::speed},
-    {"rotorspeed", Q::speed},
-    {"efd", Q::Efd},
-    {"fieldvoltage", Q::Efd},
-    {"ifd", Q::Ifd},
-    {"fieldcurrent", Q::Ifd},
-    {"i", Q::I},
-    {"ig", Q::I},
-    {"imag", Q::I},
-    {"i1", Q::I},
-    {"i1mag", Q::I},
-    {"i1magnitude", Q::I},
-    {"imp", Q::I},
-    {"ipm", Q::I},
-    {"current", Q::I},
-    {"currentmag", Q::I},
-    {"currentmagnitude", Q::I},
-    {"phi", Q::phi},
-    {"iang", Q::phi},
-    {"iangle", Q::phi},
-    {"i1ang", Q::phi},
-    {"i1angle", Q::phi},
-    {"iap", Q::phi},
-    {"ipa", Q::phi},
-    {"currentang", Q::phi},
-    {"currentangle", Q::phi},
+    {"t", Quantity::time},
+    {"time", Quantity::time},
+    {"timestamp", Quantity::time},
+    {"datetime", Quantity::time},
+    {"utc", Quantity::time},
+    {"timeutc", Quantity::time},
+    {"utctime", Quantity::time},
+    {"domain", Quantity::time},
+    {"v", Quantity::V},
+    {"u", Quantity::V},
+    {"ug", Quantity::V},
+    {"vm", Quantity::V},
+    {"vt", Quantity::V},
+    {"vmag", Quantity::V},
+    {"vterm", Quantity::V},
+    {"v1", Quantity::V},
+    {"v1mag", Quantity::V},
+    {"v1magnitude", Quantity::V},
+    {"vmp", Quantity::V},
+    {"vpm", Quantity::V},
+    {"voltage", Quantity::V},
+    {"voltagemag", Quantity::V},
+    {"voltagemagnitude", Quantity::V},
+    {"terminalvoltage", Quantity::V},
+    {"theta", Quantity::theta},
+    {"angle", Quantity::theta},
+    {"vang", Quantity::theta},
+    {"vangle", Quantity::theta},
+    {"v1ang", Quantity::theta},
+    {"v1angle", Quantity::theta},
+    {"vap", Quantity::theta},
+    {"vpa", Quantity::theta},
+    {"voltageang", Quantity::theta},
+    {"voltageangle", Quantity::theta},
+    {"phaseangle", Quantity::theta},
+    {"f", Quantity::f},
+    {"freq", Quantity::f},
+    {"frequency", Quantity::f},
+    {"p", Quantity::P},
+    {"pe", Quantity::P},
+    {"pgen", Quantity::P},
+    {"activepower", Quantity::P},
+    {"realpower", Quantity::P},
+    {"power", Quantity::P},
+    {"q", Quantity::Q},
+    {"qe", Quantity::Q},
+    {"qgen", Quantity::Q},
+    {"reactivepower", Quantity::Q},
+    {"speed", Quantity::speed, true},
+    {"speeddeviation", Quantity::speed, true},
+    {"omega", Quantity::speed},
+    {"w", Quantity::speed},
+    {"rotorspeed", Quantity::speed},
+    {"efd", Quantity::Efd},
+    {"fieldvoltage", Quantity::Efd},
+    {"ifd", Quantity::Ifd},
+    {"fieldcurrent", Quantity::Ifd},
+    {"i", Quantity::I},
+    {"ig", Quantity::I},
+    {"imag", Quantity::I},
+    {"i1", Quantity::I},
+    {"i1mag", Quantity::I},
+    {"i1magnitude", Quantity::I},
+    {"imp", Quantity::I},
+    {"ipm", Quantity::I},
+    {"current", Quantity::I},
+    {"currentmag", Quantity::I},
+    {"currentmagnitude", Quantity::I},
+    {"phi", Quantity::phi},
+    {"iang", Quantity::phi},
+    {"iangle", Quantity::phi},
+    {"i1ang", Quantity::phi},
+    {"i1angle", Quantity::phi},
+    {"iap", Quantity::phi},
+    {"ipa", Quantity::phi},
+    {"currentang", Quantity::phi},
+    {"currentangle", Quantity::phi},
 };
 
 struct UnitName {
@@ -123,33 +122,33 @@ constexpr struct {
   Quantity quantity;
   Unit unit;
 } kUnitHeadings[] = {
-    {"mw", Q::P, Unit::megawatt},
-    {"mvar", Q::Q, Unit::megavar},
-    {"hz", Q::f, Unit::hertz},
-    {"kv", Q::V, Unit::kilovolt},
+    {"mw", Quantity::P, Unit::megawatt},
+    {"mvar", Quantity::Q, Unit::megavar},
+    {"hz", Quantity::f, Unit::hertz},
+    {"kv", Quantity::V, Unit::kilovolt},
 };
 
 bool fits(Quantity q, Unit u) {
   switch (q) {
-    case Q::time:
+    case Quantity::time:
       return u == Unit::second || u == Unit::millisecond || u == Unit::microsecond;
-    case Q::V:
+    case Quantity::V:
       return u == Unit::pu || u == Unit::kilovolt || u == Unit::volt || u == Unit::kilovolt_ln ||
              u == Unit::volt_ln;
-    case Q::theta:
-    case Q::phi:
+    case Quantity::theta:
+    case Quantity::phi:
       return u == Unit::radian || u == Unit::degree;
-    case Q::f:
+    case Quantity::f:
       return u == Unit::pu || u == Unit::hertz;
-    case Q::P:
+    case Quantity::P:
       return u == Unit::pu || u == Unit::megawatt;
-    case Q::Q:
+    case Quantity::Q:
       return u == Unit::pu || u == Unit::megavar;
-    case Q::I:
+    case Quantity::I:
       return u == Unit::pu || u == Unit::kiloampere || u == Unit::ampere;
-    case Q::speed:
-    case Q::Efd:
-    case Q::Ifd:
+    case Quantity::speed:
+    case Quantity::Efd:
+    case Quantity::Ifd:
       return u == Unit::pu;
   }
   return false;
@@ -238,17 +237,17 @@ std::optional<ColumnMeaning> psse_channel(std::string_view heading) {
   std::cmatch part;
   if (!std::regex_match(heading.data(), heading.data() + heading.size(), part, form)) return std::nullopt;
   static const std::map<std::string, ColumnMeaning, std::less<>> words = {
-      {"VOLT", {Q::V, Unit::pu, false, {}, false}},
-      {"ETRM", {Q::V, Unit::pu, false, {}, false}},
-      {"VANG", {Q::theta, Unit::degree, false, {}, false}},
-      {"ANGL", {Q::theta, Unit::degree, false, {}, false}},
-      {"POWR", {Q::P, Unit::pu, false, {}, false}},
-      {"VARS", {Q::Q, Unit::pu, false, {}, false}},
-      {"SPD", {Q::speed, Unit::pu, true, {}, false}},
-      {"FREQ", {Q::f, Unit::pu, true, {}, false}},
-      {"EFD", {Q::Efd, Unit::pu, false, {}, false}},
-      {"XADIFD", {Q::Ifd, Unit::pu, false, {}, false}},
-      {"XADI", {Q::Ifd, Unit::pu, false, {}, false}}};
+      {"VOLT", {Quantity::V, Unit::pu, false, {}, false}},
+      {"ETRM", {Quantity::V, Unit::pu, false, {}, false}},
+      {"VANG", {Quantity::theta, Unit::degree, false, {}, false}},
+      {"ANGL", {Quantity::theta, Unit::degree, false, {}, false}},
+      {"POWR", {Quantity::P, Unit::pu, false, {}, false}},
+      {"VARS", {Quantity::Q, Unit::pu, false, {}, false}},
+      {"SPD", {Quantity::speed, Unit::pu, true, {}, false}},
+      {"FREQ", {Quantity::f, Unit::pu, true, {}, false}},
+      {"EFD", {Quantity::Efd, Unit::pu, false, {}, false}},
+      {"XADIFD", {Quantity::Ifd, Unit::pu, false, {}, false}},
+      {"XADI", {Quantity::Ifd, Unit::pu, false, {}, false}}};
   const std::string word = part[1].str(), id = part[3].str();
   if (word == "ANGL" && !id.empty()) return std::nullopt;  // the rotor's angle, not the bus's
   ColumnMeaning m = words.at(word);
@@ -291,7 +290,8 @@ bool needs_kv(Unit unit) {
 }
 
 double to_record_units(const ColumnMeaning& column, double v, const RecordBase& base) {
-  const bool nominal_is_one = (column.quantity == Q::f || column.quantity == Q::speed) && !column.deviation;
+  const bool nominal_is_one =
+      (column.quantity == Quantity::f || column.quantity == Quantity::speed) && !column.deviation;
   if (column.negated) v = -v;
   switch (column.unit.value_or(Unit::pu)) {
     case Unit::second:

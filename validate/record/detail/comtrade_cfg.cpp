@@ -18,11 +18,6 @@ std::string_view trim(std::string_view s) {
   if (first == std::string_view::npos) return {};
   return s.substr(first, s.find_last_not_of(blank) - first + 1);
 }
-std::string upper(std::string_view s) {
-  std::string r(s);
-  std::ranges::transform(r, r.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return r;
-}
 
 class Config {
  public:

@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "validate/record/detail/build.hpp"
+#include "validate/record/detail/text.hpp"
+#include "validate/record/detail/times.hpp"
 
 namespace swingbank::validate::record {
 namespace {
@@ -34,18 +36,6 @@ std::optional<double> number(std::string_view word) {
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), v);
   const bool ok = error == std::errc{} && end == word.data() + word.size() && std::isfinite(v);
   return ok ? std::optional(v) : std::nullopt;
-}
-
-std::string upper(std::string_view s) {
-  std::string r(s);
-  std::ranges::transform(r, r.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return r;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
 }
 
 class Playback {

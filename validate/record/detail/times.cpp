@@ -99,12 +99,6 @@ void scan_end(Scanner& s, Stamp& stamp) {
   s.ok = s.ok && s.rest.empty();
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 std::vector<double> steps_of(const std::vector<double>& t) {
   std::vector<double> steps(t.size() - 1);
   for (std::size_t k = 0; k + 1 < t.size(); ++k) steps[k] = t[k + 1] - t[k];
@@ -375,6 +369,12 @@ EvenRows settle_rows(const Rows& rows, Record& about, SampleFaults& faults) {
   }
   tell_steps(rows, faults);
   return even;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
 }
 
 }  // namespace swingbank::validate::record
