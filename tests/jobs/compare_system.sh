@@ -66,12 +66,11 @@ done
 
 compare() { "$swingbank" compare --out "$work/none" "$@"; }
 refuses "no system file" 'nowhere.toml' compare --system "$work/nowhere.toml"
-head -200 "$work/same.csv" >"$work/cut.csv"
-printf '3.3333,1.0' >>"$work/cut.csv"
+sed '201s/,[^,]*$//' "$work/same.csv" >"$work/cut.csv"
 changed_system() { sed "$1" "$work/same.toml" >"$work/wrong.toml"; }
 changed_system 's|same.csv|cut.csv|'
-refuses "a record that is cut off" 'cut.csv:201' compare --system "$work/wrong.toml"
-sed '50s/,[^,]*$/,NaN/' "$work/same.csv" >"$work/nan.csv"
+refuses "a line that is cut off" 'cut.csv:201' compare --system "$work/wrong.toml"
+sed '50,69s/,[^,]*$/,NaN/' "$work/same.csv" >"$work/nan.csv"
 changed_system 's|same.csv|nan.csv|'
 refuses "not a number" 'nan.csv:50' compare --system "$work/wrong.toml"
 changed_system 's|#2"|#3x"|'

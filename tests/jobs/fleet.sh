@@ -4,9 +4,8 @@
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/fleet.bash"
 
-head -100 "$work/records/e1.csv" >"$work/records/cut.csv"
-printf '1.65,1.04,-0.1' >>"$work/records/cut.csv"
-sed '50s/,[^,]*/,NaN/' "$work/records/e2.csv" >"$work/records/nan.csv"
+sed '101s/,[^,]*$//' "$work/records/e1.csv" >"$work/records/cut.csv"
+sed '50,69s/,[^,]*/,NaN/' "$work/records/e2.csv" >"$work/records/nan.csv"
 {
   echo '[options]'
   echo 'power_only = true'

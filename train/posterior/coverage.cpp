@@ -11,7 +11,7 @@
 namespace swingbank::train::posterior {
 namespace {
 
-constexpr std::size_t kSamples = 199;  ///< of a belief: a rank among them has 200 values, ten in each bin
+constexpr std::size_t kRankDraws = 199;  ///< of a belief: a rank among them has 200 values, ten in each bin
 constexpr std::uint32_t kFactorStream = 0, kOwnStream = 1, kReferenceStream = 2;
 
 std::size_t bin_of(double probability) {
@@ -68,7 +68,7 @@ std::size_t tarp_rank(const Beliefs& beliefs, std::span<const Recalibration> rec
     reference[p] = sim::uniform_pair(seed, kReferenceStream, p)[0];
   const double distance = square_distance(truth, reference);
   std::size_t nearer = 0;
-  for (std::size_t s = 0; s < kSamples; ++s) {
+  for (std::size_t s = 0; s < kRankDraws; ++s) {
     draw(beliefs, recalibrations, row, seed, s, sample);
     if (square_distance(sample, reference) < distance) ++nearer;
   }
@@ -137,7 +137,7 @@ Coverage coverage(const Beliefs& beliefs, std::span<const Recalibration> recalib
                       sim::seed_of(seed, r));
       },
       [](int) {});
-  for (const std::size_t r : rank) ++c.tarp.count[r * kRankBins / (kSamples + 1)];
+  for (const std::size_t r : rank) ++c.tarp.count[r * kRankBins / (kRankDraws + 1)];
   return c;
 }
 

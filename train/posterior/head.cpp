@@ -11,11 +11,11 @@ namespace swingbank::train::posterior {
 namespace {
 
 using at::Tensor;
-constexpr std::int64_t kWidth = 256;
+constexpr std::int64_t kUnits = 256;
 constexpr auto K = static_cast<std::int64_t>(kComponents), F = static_cast<std::int64_t>(kFactors);
 constexpr double kNarrowest = -9.0, kWidest = 2.0;  // logarithms of a component's deviation
 constexpr double kCertain = 1e-5;                   // a normal score is not formed of less [probability]
-constexpr double kEdge = 0.005;                     // estimates stand so far inside the box [share of it]
+constexpr double kBoxEdge = 0.005;                  // estimates stand so far inside the box [share of it]
 
 Tensor constant(const std::vector<HeadParameter>& all, double HeadParameter::*what) {
   std::vector<float> values;
@@ -81,11 +81,11 @@ Head::Head(networks::Network& trained, std::int64_t inputs, std::vector<HeadPara
   const std::int64_t in = known.size(1) + inputs;
   const auto out = static_cast<std::int64_t>(parameters_.size()) * (3 * K + F);
   const auto zeros = [](at::IntArrayRef shape) { return at::zeros(shape, at::kFloat).requires_grad_(true); };
-  l.first = drawn(in, kWidth);
-  l.first_bias = zeros({kWidth});
-  l.second = drawn(kWidth, kWidth);
-  l.second_bias = zeros({kWidth});
-  l.last = zeros({kWidth, out});
+  l.first = drawn(in, kUnits);
+  l.first_bias = zeros({kUnits});
+  l.second = drawn(kUnits, kUnits);
+  l.second_bias = zeros({kUnits});
+  l.last = zeros({kUnits, out});
   l.last_bias = at::tensor(first_belief(parameters_.size()), at::kFloat).requires_grad_(true);
   l.low = constant(parameters_, &HeadParameter::low);
   l.width = constant(parameters_, &HeadParameter::high) - l.low;
@@ -114,7 +114,7 @@ Tensor Head::forward(const Tensor& x, bool) {
     const auto all = static_cast<std::int64_t>(trained_.parameters().back().numel());
     const Tensor output =
         known.narrow(1, outputs - all, all).index_select(1, at::tensor(l.outputs, at::kLong));
-    const Tensor place = ((output * l.unit + l.origin - l.low) / l.width).clamp(kEdge, 1.0 - kEdge);
+    const Tensor place = ((output * l.unit + l.origin - l.low) / l.width).clamp(kBoxEdge, 1.0 - kBoxEdge);
     estimate = at::logit(place);
   }
   const Tensor h = at::gelu(at::addmm(l.first_bias, read, l.first));

@@ -120,9 +120,9 @@ class Check {
 
   /// False where the record shows no state that the model could start from.
   bool beginning() {
-    constexpr double kFewest = 5, kLeast = 0.1, kShort = 0.5;  // samples; s
+    constexpr double kFewestBefore = 5, kLeastBefore = 0.1, kShort = 0.5;  // samples; s
     const double before = r_.t[signals_.onset] - r_.t.front(), n = static_cast<double>(signals_.onset + 1);
-    const bool few = !signals_.slow && (n < kFewest || before < kLeast);
+    const bool few = !signals_.slow && (n < kFewestBefore || before < kLeastBefore);
     // A short stretch before a jump may be one of a fault, and a record without jumps may begin in a swing.
     const auto looked_at = signals_.slow ? static_cast<std::size_t>(kShort * r_.rate()) + 1 : signals_.onset;
     const bool doubtful = !few && (signals_.slow || before < kShort);

@@ -173,6 +173,7 @@ void read_terminal(Config& c, const std::string& name, SystemCase& s) {
   attempt(c, at + "record", [&] {
     t.record = record::read_record(c.name().parent_path() / file, s.base, {.power = !is_bus, .angle = true});
     Problems problems;
+    t.warnings = t.record.notes;
     if (is_bus) {
       t.record.P.clear();
       t.record.Q.clear();
@@ -182,7 +183,7 @@ void read_terminal(Config& c, const std::string& name, SystemCase& s) {
           t.record, {s.grid.plants[static_cast<std::size_t>(t.plant)].mva, s.base.frequency});
       // Far from the event a terminal may hardly feel it; that is no fault of the record.
       std::erase_if(findings, [](const check::Finding& f) { return f.kind == "no_event"; });
-      t.warnings = check::warnings_of(findings);
+      for (auto& warning : check::warnings_of(findings)) t.warnings.push_back(std::move(warning));
     }
     problems.raise();
     s.terminals.push_back(std::move(t));

@@ -65,6 +65,7 @@ class Comparer {
     e.record = t.record;
     e.record.name = t.name;
     e.notes = t.warnings;
+    e.left_out = e.record.lost;
     for (const double at : out_.instants)
       e.switchings.push_back({.time = at, .uncertainty = out_.uncertainty});
     e.detected = s_.find_instants;
@@ -92,9 +93,11 @@ class Comparer {
   }
   void leave_out_smeared(compare::EventComparison& e, double smear) const {
     if (!(smear > 0)) return;
-    for (const double t : e.record.t)
-      e.left_out.push_back(
-          std::ranges::any_of(out_.instants, [&](double at) { return std::abs(t - at) <= smear; }));
+    e.left_out.resize(e.record.t.size(), 0);
+    for (std::size_t k = 0; k < e.record.t.size(); ++k)
+      if (std::ranges::any_of(out_.instants,
+                              [&](double at) { return std::abs(e.record.t[k] - at) <= smear; }))
+        e.left_out[k] = 1;
     e.notes.push_back(fmt::format(
         "The instruments' filters smear switchings by up to {:.0f} ms to either side: samples there are not "
         "compared.",

@@ -8,7 +8,7 @@
 namespace swingbank::sim::direct {
 namespace {
 using Complex = std::complex<double>;
-constexpr double kLeastVoltage = 1e-6;  ///< a bolted fault at the terminal leaves none [pu]
+constexpr double kNoVoltage = 1e-6;  ///< a bolted fault at the terminal leaves none [pu]
 
 Eigen::VectorXd column(const std::vector<double>& x, std::size_t first, std::size_t count) {
   return Eigen::Map<const Eigen::VectorXd>(x.data() + first, static_cast<Eigen::Index>(count));
@@ -20,7 +20,7 @@ Turning turning(const Recording& r, double Ra, double X, std::size_t first, std:
   count = std::min(count, r.V.size() - first);
   t.step = r.step;
   const auto current = [&](std::size_t k) {
-    return Complex(r.P[k], -r.Q[k]) / std::max(r.V[k], kLeastVoltage);
+    return Complex(r.P[k], -r.Q[k]) / std::max(r.V[k], kNoVoltage);
   };
   const auto behind = [&](std::size_t k) {
     const double turns = r.conventions.speed_voltage ? 1 + r.speed[k] : 1.0;

@@ -55,12 +55,12 @@ std::string listed(const std::set<std::string>& names) {
 
 /// All headings, so that a person sees what a map may name; a long list is cut.
 std::string seen(const std::vector<Heading>& headings) {
-  constexpr std::size_t kShown = 40;
+  constexpr std::size_t kHeadingsShown = 40;
   std::string all;
   std::size_t shown = 0, rest = 0;
   for (const auto& h : headings) {
     if (h.name.empty()) continue;
-    if (shown++ < kShown)
+    if (shown++ < kHeadingsShown)
       all += (all.empty() ? "'" : ", '") + h.name + (h.unit.empty() ? "'" : "' [" + h.unit + "]");
     else
       ++rest;
