@@ -19,9 +19,7 @@ Turning turning(const Recording& r, double Ra, double X, std::size_t first, std:
   Turning t;
   count = std::min(count, r.V.size() - first);
   t.step = r.step;
-  const auto current = [&](std::size_t k) {
-    return Complex(r.P[k], -r.Q[k]) / std::max(r.V[k], kNoVoltage);
-  };
+  const auto current = [&](std::size_t k) { return Complex(r.P[k], -r.Q[k]) / std::max(r.V[k], kNoVoltage); };
   const auto behind = [&](std::size_t k) {
     const double turns = r.conventions.speed_voltage ? 1 + r.speed[k] : 1.0;
     return (r.V[k] + Complex(Ra, X) * current(k)) / turns;
