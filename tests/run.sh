@@ -2,7 +2,8 @@
 # Installs what is missing, builds and runs the tests.
 #   bash tests/run.sh [--fast | --night] [--without-psse] [--sanitize] [--ci]
 #     --fast          the fast tier only (under 2 minutes once built)
-#     --night         only what takes too long for every change: half an hour (jobs/nightly.sh runs it)
+#     --night         only what takes too long for every change, and whether all rooms agree on each type: half an hour
+#                     (jobs/nightly.sh runs it)
 #     --without-psse  leaves out the comparison with PSS/E's own records, which are not part of this repository
 #     --sanitize      also the fast tier's unit tests under the address and undefined-behaviour sanitizers (their build
 #                     takes longer than all the rest: Eigen's sparse solvers are slow to compile with checks)
@@ -21,7 +22,7 @@ while (($#)); do
     --without-psse) with_psse=0 ;;
     --sanitize) sanitize=1 ;;
     --ci) ci=1 ;;
-    -h | --help) sed -n '2,12p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,13p' "$0"; exit 0 ;;
     *) echo "unknown option at '$1' (tests/run.sh does not have it): run tests/run.sh --help" >&2; exit 1 ;;
   esac
   shift
@@ -76,6 +77,13 @@ run_tests() {
   ctest --test-dir "$folder" --output-on-failure --no-tests=error --timeout 1500 "${exclude[@]}" "$@" || failed+=("$name")
 }
 
+# One name, one type: all rooms linked with their types, without a word (decision 31; four minutes of two cores).
+one_definition() {
+  local log=$source_folder/build/odr.log
+  cmake --preset odr -S "$source_folder" >"$log" && cmake --build "$source_folder/build/odr" --target one_of_all_rooms >>"$log" 2>&1 &&
+    ! grep -m 12 -E 'warning:|error:' "$log" >&2
+}
+
 run_sanitized() {
   bash "$source_folder/jobs/setup.sh" --preset sanitize --tests
   # Not ours: what OpenMPI keeps until the process ends.
@@ -110,6 +118,8 @@ tier() {
   run_tests "$1" "$build" -L "^$1\$" -j "$(nproc)"
 }
 if ((night)); then
+  say "one definition of each name"
+  one_definition || failed+=(one_definition)
   tier night
 else
   tier fast
