@@ -13,7 +13,7 @@ night 2026-02-01 "$work/tiny.toml" >"$work/log" 2>&1 || fail "first night: $(tai
 grep -q '| V | gru | 0 | 30 | quick | .* | new |' "$out/2026-02-01/report.md" || fail "report: $(cat "$out/2026-02-01/report.md")"
 grep -q '| V | mlp | 0 | 31 | quick | .* | new |' "$out/2026-02-01/report.md" || fail "report: $(cat "$out/2026-02-01/report.md")"
 [[ -s $out/2026-02-01/tables/tables.html ]] || fail "no tables"
-grep -q '^## Table V' "$out/2026-02-01/report.md" || fail "no table in the report: $(cat "$out/2026-02-01/report.md")"
+grep -q '^### Table V' "$out/2026-02-01/report.md" || fail "no table in the report: $(cat "$out/2026-02-01/report.md")"
 [[ ! -e $out/2026-02-01/tiny/data && ! -e $out/2026-02-01/tiny/training-data ]] || fail "the events were to be removed"
 
 # Broken off after the events are there, the night goes on and trains with its own seed.
@@ -51,7 +51,7 @@ cp "$work/short/2026-02-05/sizes.conf" "$work/sizes.before"
 short 5 || fail "the night that goes on: $(tail "$work/short.log")"
 cmp "$work/sizes.before" "$work/short/2026-02-05/sizes.conf" || fail "the sizes changed"
 for wanted in '^| short: events | [0-9]' '^| short: training, seed 204890 |' '^| short: training, seed 204891 |' \
-  '^[0-9.]* of 0.01 hours' '^| V | events that only train |' '^## Table V'; do
+  '^[0-9.]* of 0.01 hours' '^| V | events that only train |' '^### Table V'; do
   grep -q "$wanted" "$work/short/2026-02-05/report.md" || fail "no '$wanted' in: $(cat "$work/short/2026-02-05/report.md")"
 done
 
