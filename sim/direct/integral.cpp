@@ -27,7 +27,7 @@ Eigen::VectorXd integral(const Eigen::VectorXd& f, double step) {
 
 double leap_limit(const Recording& record) {
   constexpr double kLeastLeap = 0.01, kShare = 0.2;  // [pu]; of the largest step
-  constexpr double kDeviations = 6;              // of the difference of two noisy samples
+  constexpr double kDeviations = 6;                  // of the difference of two noisy samples
   const auto& V = record.V;
   double largest = kLeastLeap;
   for (std::size_t k = 1; k < V.size(); ++k) largest = std::max(largest, std::abs(V[k] - V[k - 1]));

@@ -30,9 +30,9 @@ std::string_view unquoted(std::string_view s) {
 Cells split(std::string_view line, char separator) {
   Cells cells;
   if (separator == ' ') {
-    for (std::string_view rest = trim(line); !rest.empty(); rest = trim(rest)) {
+    for (std::string_view rest = unquoted(line); !rest.empty(); rest = unquoted(rest)) {
       const auto end = std::min(rest.find_first_of(" \t"), rest.size());
-      cells.push_back(trim(rest.substr(0, end)));
+      cells.push_back(unquoted(rest.substr(0, end)));
       rest.remove_prefix(end);
     }
     return cells;
@@ -105,7 +105,7 @@ bool by_blanks(std::string_view text) {
   int found = 0;
   for (int n = 0; n < 50 && !text.empty(); ++n) {
     const auto end = text.find('\n');
-    const std::string_view line = trim(text.substr(0, end));
+    const std::string_view line = unquoted(text.substr(0, end));
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
     if (line.empty() || line.find_first_of(",;\t") != std::string_view::npos) continue;
     const Cells cells = split(line, ' ');
