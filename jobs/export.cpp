@@ -53,10 +53,5 @@ int main(int argc, char** argv) {
       "What PSS/E keeps in the .raw (MBASE, ZR, ZX, a step-up transformer) is told in comments. Instruments "
       "and moved references belong to a record and are left out.");
   if (!line.parse(argc, argv)) return line.end();
-  try {
-    return run(a);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  }
+  return jobs::guarded("export", [&] { return run(a); });
 }

@@ -24,6 +24,7 @@
 #include <tuple>
 #include <vector>
 
+#include "base/median.hpp"
 #include "base/problem.hpp"
 #include "jobs/command_line.hpp"
 
@@ -70,13 +71,6 @@ bool is_date(const std::string& name) {
       return false;
   }
   return true;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
 void read_result(const fs::path& file, Night& night, Problems& problems) {
@@ -140,19 +134,19 @@ std::vector<Change> changes_of(const std::string& date, const Nights& nights) {
     const double n = static_cast<double>(scores.size());
     if (scores.size() < kNightsNeeded) continue;
     for (const double score : scores) {
-      residuals[{cell.table, cell.network, cell.noise}].push_back(std::abs(score - median(scores)) *
-                                                                  std::sqrt(n / (n - 1.0)));
+      residuals[{cell.table, cell.network, cell.noise}].push_back(
+          std::abs(score - swingbank::median(scores)) * std::sqrt(n / (n - 1.0)));
     }
   }
   std::vector<Change> changes;
   for (const auto& [cell, score] : nights.at(date)) {
     Change change{cell, score.mean()};
     if (const auto found = before.find(cell); found != before.end()) {
-      change.before = median(found->second);
+      change.before = swingbank::median(found->second);
       change.nights = found->second.size();
       change.other_maker = score.makers != makers.at(cell);
       const auto& pool = residuals[{cell.table, cell.network, cell.noise}];
-      if (!pool.empty()) change.noise = std::max(kLeastRelativeNoise, 1.4826 * median(pool));
+      if (!pool.empty()) change.noise = std::max(kLeastRelativeNoise, 1.4826 * swingbank::median(pool));
     }
     changes.push_back(change);
   }

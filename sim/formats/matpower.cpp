@@ -267,4 +267,11 @@ network::Network read_network(const std::filesystem::path& file, std::optional<d
   return network;
 }
 
+RawSurvey survey_network(const std::filesystem::path& file, std::optional<double> frequency_hz) {
+  if (file.extension() != ".m") return survey_raw(file, frequency_hz);
+  RawSurvey survey;
+  survey.network = read_network(file, frequency_hz);
+  return survey;
+}
+
 }  // namespace swingbank::sim::formats

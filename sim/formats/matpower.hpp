@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "sim/formats/psse.hpp"
 #include "sim/network/network.hpp"
 
 namespace swingbank::sim::formats {
@@ -25,5 +26,7 @@ network::Network parse_matpower(const std::string& text, const std::string& name
 /// A .m by read_matpower, anything else by read_raw. `frequency_hz` is needed for a .m; for a .raw, which has
 /// its own, it must be absent or the same.
 network::Network read_network(const std::filesystem::path& file, std::optional<double> frequency_hz = {});
+/// The same with what of a .raw cannot be read; a .m is read whole or not at all.
+RawSurvey survey_network(const std::filesystem::path& file, std::optional<double> frequency_hz = {});
 
 }  // namespace swingbank::sim::formats

@@ -5,17 +5,12 @@
 #include <cctype>
 #include <set>
 
+#include "base/capitals.hpp"
 #include "sim/formats/psse.hpp"
 #include "sim/formats/psse_text.hpp"
 
 namespace swingbank::sim::formats {
 namespace {
-
-std::string capitals(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return text;
-}
 
 /// A line that is a comment as a whole, also between the lines of a record.
 bool is_comment(const std::string& line) {

@@ -57,7 +57,7 @@ class InventoryTaker {
     }
   }
   void count(const formats::DyrRecord& record) {
-    const std::string name = record.user.empty() ? record.model : record.user;
+    const std::string name = name_of(record);
     ModelCount& model = models_[name];
     if (++model.records == 1) {
       model.name = name;
@@ -98,11 +98,7 @@ class InventoryTaker {
 
 Inventory take_inventory(const std::filesystem::path& raw, const std::filesystem::path& dyr,
                          std::optional<double> frequency_hz) {
-  formats::RawSurvey survey;
-  if (raw.extension() == ".m")
-    survey.network = formats::read_network(raw, frequency_hz);
-  else
-    survey = formats::survey_raw(raw, frequency_hz);
+  const formats::RawSurvey survey = formats::survey_network(raw, frequency_hz);
   const formats::DyrSurvey dynamics = formats::survey_dyr(dyr);
   return InventoryTaker(survey, dynamics, dyr.string()).take();
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/capitals.hpp"
 #include "sim/formats/matpower.hpp"
 #include "sim/grid/detail/dyr_models.hpp"
 #include "sim/library/library.hpp"
@@ -13,20 +14,10 @@
 namespace swingbank::sim::grid {
 namespace {
 
-std::string capitals(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return text;
-}
-std::string name_of(const formats::DyrRecord& r) { return r.user.empty() ? r.model : r.user; }
-
 class UnitReader {
  public:
   explicit UnitReader(const UnitChoice& choice) : choice_(choice) {
-    if (choice.raw.extension() == ".m")
-      survey_.network = formats::read_network(choice.raw, choice.frequency_hz);
-    else
-      survey_ = formats::survey_raw(choice.raw, choice.frequency_hz);
+    survey_ = formats::survey_network(choice.raw, choice.frequency_hz);
     survey_.network.origin = choice.raw.string();
     dynamics_ = formats::survey_dyr(choice.dyr);
   }

@@ -92,8 +92,8 @@ class Calibrating {
     return fits;
   }
 
-  /// From the closed form, where it is nearer to the records than the model's own values; from these; and
-  /// from drawn sets, unless the closed form has led to where nothing but noise is left.
+  /// From the closed form, where there is one; from the model's own values; and from drawn sets, unless the
+  /// closed form has led to where nothing but noise is left.
   void search() {
     std::vector<fit::EventState> states;
     for (std::size_t e = 0; e < before_.size(); ++e)

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "base/constants.hpp"
+#include "base/median.hpp"
 #include "validate/check/detail/jumps.hpp"
 #include "validate/playin/instants.hpp"
 
@@ -211,12 +212,7 @@ void find_holds(const record::Record& r, Signals& s) {
 
 }  // namespace
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
+double median_of(std::vector<double> values) { return values.empty() ? 0 : upper_median(std::move(values)); }
 
 Signals record_signals(const record::Record& r) {
   Signals s;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/median.hpp"
 #include "validate/event/detail/unsmear.hpp"
 #include "validate/event/play.hpp"
 #include "validate/playin/instants.hpp"
@@ -9,12 +10,6 @@
 
 namespace swingbank::validate::event {
 namespace {
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 /// How much each step stands out from the steps two and three before and after it [pu].
 std::vector<double> prominence(const std::vector<Complex>& step) {
@@ -224,7 +219,7 @@ std::vector<playin::Switching> find_switchings(const record::Record& record, dou
   smeared.assign(record.t.size(), 0);
   const auto step = playin::voltage_steps(record);
   const auto d = prominence(step);
-  const double limit = std::max(threshold, 10 * median(d));
+  const double limit = std::max(threshold, 10 * upper_median(d));
   std::vector<playin::Switching> found;
   for (std::size_t k = 0; k < d.size(); ++k) {
     if (d[k] <= limit) continue;

@@ -5,18 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/median.hpp"
 #include "validate/playin/instants.hpp"
 
 namespace swingbank::validate::playin {
 namespace {
 
 Complex phasor(const record::Record& r, std::size_t k) { return std::polar(r.V[k], r.theta[k]); }
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 /// Second derivatives of the not-a-knot cubic through n >= 4 knots: the third derivative is continuous at the
 /// second and the last but one. Tridiagonal after the end values are eliminated (de Boor, A Practical Guide
@@ -59,7 +54,7 @@ std::vector<Switching> detect_switchings(const record::Record& record, double th
   std::vector<double> spike(steps, 0.0);
   for (std::size_t k = 1; k + 1 < steps; ++k)
     spike[k] = std::min(std::abs(step[k] - step[k - 1]), std::abs(step[k] - step[k + 1]));
-  const double limit = std::max(threshold, 10 * median(spike));
+  const double limit = std::max(threshold, 10 * upper_median(spike));
   std::vector<Switching> found;
   for (std::size_t k = 1; k + 1 < steps; ++k)
     if (spike[k] > limit) {

@@ -11,6 +11,8 @@
 #include <set>
 #include <tuple>
 
+#include "base/capitals.hpp"
+#include "base/median.hpp"
 #include "validate/report/detail/method_tables.hpp"
 #include "validate/report/detail/scaling.hpp"
 #include "validate/report/detail/table_pictures.hpp"
@@ -21,10 +23,6 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kTableFourNetworks = {"cnn", "lstm", "gru"};
 
-std::string upper(std::string s) {
-  std::ranges::transform(s, s.begin(), [](unsigned char c) { return std::toupper(c); });
-  return s;
-}
 std::string figure(double v) { return std::isfinite(v) ? fmt::format("{:.3g}", v) : "–"; }
 /// 0.1 of the baseline is green, 1 is red; logarithmic between.
 double shade(double ratio) { return std::clamp(1 + std::log10(ratio), 0.0, 1.0); }
@@ -43,7 +41,7 @@ struct RowKey {
   std::string network;
   int generator = 0;
   [[nodiscard]] std::string label() const {
-    return generator > 0 ? fmt::format("#{}", generator) : upper(network);
+    return generator > 0 ? fmt::format("#{}", generator) : capitals(network);
   }
 };
 
@@ -133,7 +131,7 @@ std::string heading(const TableBlock& block) {
   const bool of_thesis = rank < kThesisTables.size();
   std::string text =
       of_thesis ? fmt::format("Table {}: {}", block.table, kThesisTables[rank].title) : block.table;
-  if (!block.network.empty()) text += ", " + upper(block.network);
+  if (!block.network.empty()) text += ", " + capitals(block.network);
   if (block.noise > 0) text += fmt::format(", noise {:g} %", 100 * block.noise);
   if (block.shuffled) text += " — control run with shuffled labels";
   return text;
@@ -157,12 +155,6 @@ std::string file_stem(const TableBlock& b) {
       fmt::format("-{}-rows{}{}-seed{}{}", b.preset, b.rows,
                   b.noise > 0 ? fmt::format("-noise{}", b.noise) : "", b.seed, b.shuffled ? "-shuffled" : "");
   return safe(stem);
-}
-
-double median(std::vector<double> v) {
-  std::ranges::sort(v);
-  const std::size_t n = v.size();
-  return n % 2 == 1 ? v[n / 2] : (v[n / 2 - 1] + v[n / 2]) / 2;
 }
 
 }  // namespace

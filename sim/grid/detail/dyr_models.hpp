@@ -20,6 +20,8 @@ std::string machine_names();
 /// Symbols of the columns: "6: TA/TB TB K".
 std::string columns_text(const Effect& effect);
 
+/// The name it goes by: of a user-written model its own.
+inline std::string name_of(const formats::DyrRecord& r) { return r.user.empty() ? r.model : r.user; }
 /// A user-written model that is one of ours, without IC, IT, NI, NC, NS, NV before its parameters; any other
 /// record as it is.
 formats::DyrRecord plain(formats::DyrRecord record, const Effect& effect);

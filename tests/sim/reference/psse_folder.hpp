@@ -1,6 +1,6 @@
 #pragma once
-// Where PSS/E's own records lie. They belong to others and are not in this repository: they are looked for in
-// $SWINGBANK_REFERENCE, then in ../shared/reference.
+// Where records of others lie, PSS/E's own among them. They are not in this repository: they are looked for
+// in $SWINGBANK_REFERENCE, then in ../shared/reference.
 #include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
@@ -14,7 +14,7 @@ inline std::filesystem::path record_folder(const std::string& name) {
   const auto root =
       given ? std::filesystem::path(given) : std::filesystem::path(SWINGBANK_SOURCE) / "../shared/reference";
   if (!std::filesystem::exists(root / name))
-    throw std::runtime_error("no PSS/E records at " + (root / name).string() +
+    throw std::runtime_error("no records at " + (root / name).string() +
                              " (they are not part of this repository): set SWINGBANK_REFERENCE to the "
                              "folder that holds " +
                              name + ", or run .ci/run --without-psse");

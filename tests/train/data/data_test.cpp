@@ -246,15 +246,27 @@ TEST(Split, KeepsRowsOfAnEventTogether) {
   EXPECT_EQ(seen.size(), 40u);
 }
 
+/// 400 rows that are judged and 170 of another dataset that only train.
+struct TwoDatasets {
+  test::Folder folder, other;
+  mpi::store::Dataset dataset = test::make_dataset(folder.path), more;
+  ShardStream stream;
+  explicit TwoDatasets(const std::string& name)
+      : folder(name),
+        other(name + "-other"),
+        more(test::make_dataset(other.path, plan())),
+        stream(dataset, test::whole_record(), {}, more) {}
+  static test::Plan plan() {
+    test::Plan p;
+    p.seed = 12;
+    p.rows = 170;
+    return p;
+  }
+};
+
 TEST(Split, RowsOfASecondDatasetOnlyTrain) {
-  test::Folder folder("more"), other("other");
-  test::Plan plan;
-  plan.seed = 12;
-  plan.rows = 170;
-  const mpi::store::Dataset dataset = test::make_dataset(folder.path),
-                            more = test::make_dataset(other.path, plan);
-  const ShardStream stream(dataset, test::whole_record(), {}, more);
-  const Labels& labels = stream.labels();
+  const TwoDatasets two("more");
+  const Labels& labels = two.stream.labels();
   ASSERT_EQ(labels.rows, 570u);
   ASSERT_EQ(labels.judged, 400u);
   const RowSplit split = leave_one_out(labels, {33, 0.1, 1});
@@ -263,11 +275,11 @@ TEST(Split, RowsOfASecondDatasetOnlyTrain) {
   EXPECT_EQ(split.train.size(), 324u + 153u);
   for (const auto r : split.train) EXPECT_NE(labels.generator[r], 33);
   // A row of the second dataset, wherever the series are kept.
-  const ShardStream own(more, test::whole_record()),
-      disk(dataset, test::whole_record(), {.memory_limit = 0}, more);
-  std::vector<float> a(stream.selection().values()), b = a, c = a;
+  const ShardStream own(two.more, test::whole_record()),
+      disk(two.dataset, test::whole_record(), {.memory_limit = 0}, two.more);
+  std::vector<float> a(two.stream.selection().values()), b = a, c = a;
   const std::uint64_t there = 451, here = 51;
-  stream.read({&there, 1}, a.data());
+  two.stream.read({&there, 1}, a.data());
   own.read({&here, 1}, b.data());
   disk.read({&there, 1}, c.data());
   EXPECT_EQ(a, b);
@@ -332,13 +344,8 @@ TEST(Split, LeavesOutEveryRowOfTheGenerator) {
 }
 
 TEST(Split, AShareIsTheFirstRowsOfBothDatasets) {
-  test::Folder folder("share"), other("sharemore");
-  test::Plan plan;
-  plan.seed = 12;
-  plan.rows = 170;
-  const mpi::store::Dataset dataset = test::make_dataset(folder.path),
-                            more = test::make_dataset(other.path, plan);
-  const ShardStream stream(dataset, test::whole_record(), {}, more);
+  const TwoDatasets two("share");
+  const ShardStream& stream = two.stream;
   const RowSplit whole = leave_one_out(stream.labels(), {33, 0.1, 1});
   RowSplit half = whole;
   keep_share(half, stream.labels(), 0.5);

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "tests/validate/playin/support.hpp"
+#include "tests/validate/record/example.hpp"
 
 namespace swingbank::validate::record {
 namespace {
@@ -20,8 +21,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const RecordBase kFieldBase{200, 60, 138};
-
 template <class F>
 std::string table(const std::string& header, int rows, F row) {
   std::string all = header;
@@ -30,13 +29,7 @@ std::string table(const std::string& header, int rows, F row) {
   return all;
 }
 std::vector<std::string> field_faults(const std::string& text, const ReadOptions& options = {}) {
-  return test::messages([&] { parse_record(text, "r.csv", kFieldBase, options); });
-}
-void expect_field_values(const Record& r) {
-  ASSERT_GE(r.samples(), 60);
-  EXPECT_NEAR(r.V[5], 1.02, 1e-6);
-  EXPECT_NEAR(r.P[5], 0.4, 1e-6);
-  EXPECT_NEAR(r.Q[5], 0.1, 1e-6);
+  return test::messages([&] { parse_record(text, "r.csv", kTestBase, options); });
 }
 
 // ---- columns by name
@@ -45,19 +38,19 @@ TEST(ColumnMapTest, NamesColumnsWithTheirUnits) {
   const auto text = table("clock,bus.x,line.p,line.q,hz\n", 60,
                           [](int k) { return fmt::format("{:.7f},140.76,-80,-20,60.01", k / 60.0); });
   EXPECT_THAT(field_faults(text), Contains(AllOf(HasSubstr("no column"), HasSubstr("'bus.x', 'line.p'"))));
-  const Record r = parse_record(text, "r.csv", kFieldBase,
+  const Record r = parse_record(text, "r.csv", kTestBase,
                                 {.columns = {{"t", "clock [s]"},
                                              {"V", "bus.x [kV]"},
                                              {"P", "-line.p [MW]"},
                                              {"Q", "-line.q [Mvar]"},
                                              {"f", "hz"}}});
-  expect_field_values(r);
+  expect_values(r);
   EXPECT_THAT(r.notes, Contains(HasSubstr("P, with the sign turned, is the column 'line.p'")));
 }
 TEST(ColumnMapTest, GoesBeforeWhatTheNamesSay) {
   const auto text = table("t_s,V_pu,theta_deg,P_pu,Q_pu,net_P_pu\n", 60,
                           [](int k) { return fmt::format("{:.7f},1.02,10,0.7,0.1,0.4", k / 60.0); });
-  expect_field_values(parse_record(text, "r.csv", kFieldBase, {.columns = {{"P", "net_P_pu"}}}));
+  expect_values(parse_record(text, "r.csv", kTestBase, {.columns = {{"P", "net_P_pu"}}}));
 }
 TEST(ColumnMapTest, WhatItNamesMustBeThere) {
   const auto text = table("t_s,V_pu,theta_deg,P_pu,Q_pu\n", 60,
@@ -70,8 +63,8 @@ TEST(ColumnMapTest, WhatItNamesMustBeThere) {
 TEST(ColumnMapTest, CountsColumnsWithoutHeadings) {
   const auto text = table("", 60, [](int k) { return fmt::format("{:.7f} 140.76 60.0 80 20", k / 60.0); });
   EXPECT_THAT(field_faults(text), Contains(AllOf(HasSubstr("no header line"), HasSubstr("#1"))));
-  expect_field_values(parse_record(
-      text, "r.txt", kFieldBase,
+  expect_values(parse_record(
+      text, "r.txt", kTestBase,
       {.columns = {
            {"t", "#1 [s]"}, {"V", "#2 [kV]"}, {"f", "#3 [Hz]"}, {"P", "#4 [MW]"}, {"Q", "#5 [Mvar]"}}}));
 }
@@ -83,8 +76,8 @@ TEST(TwoDevicesTest, VoltageOfTheBusAndPowerOfTheLine) {
       "Time,NORTHPLANT.500KV_BUS1.VPM,NORTHPLANT.500KV_BUS1.VPA,NORTHPLANT.GSU_T1.MW,NORTHPLANT.GSU_T1.MVAR,"
       "NORTHPLANT.FREQ\nSec,kV,DEG,MW,MVAR,Hz\n",
       60, [](int k) { return fmt::format("{:.7f},140.76,10,80,20,60", k / 60.0); });
-  const Record r = parse_record(text, "r.csv", kFieldBase);
-  expect_field_values(r);
+  const Record r = parse_record(text, "r.csv", kTestBase);
+  expect_values(r);
   EXPECT_EQ(r.f.size(), r.t.size());
   EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("500KV_BUS1"), HasSubstr("GSU_T1"))));
 }
@@ -93,16 +86,16 @@ TEST(TwoDevicesTest, TwoVoltagesAreAskedAbout) {
                           [](int k) { return fmt::format("{:.7f},1.02,1.02,10,10,80,20", k / 60.0); });
   EXPECT_THAT(field_faults(text), Contains(AllOf(HasSubstr("no complete terminal"), HasSubstr("--columns"),
                                                  HasSubstr("'B1.V_pu', 'B2.V_pu'"))));
-  expect_field_values(
-      parse_record(text, "r.csv", kFieldBase, {.columns = {{"V", "B2.V_pu"}, {"theta", "B2.theta_deg"}}}));
+  expect_values(
+      parse_record(text, "r.csv", kTestBase, {.columns = {{"V", "B2.V_pu"}, {"theta", "B2.theta_deg"}}}));
 }
 TEST(PsseTest, ChannelsOfDyntools) {
   const auto text = table(
       "Case of 12 May\nTime(s),VOLT 32 [NORTH     20.000],FREQ 32 [NORTH     20.000],POWR 32 [NORTH 20.000]1,"
       "VARS 32 [NORTH 20.000]1,ANGL 32 [NORTH 20.000]1,POWR 32 TO 33 CKT 1,SPD 32 [NORTH 20.000]1\n",
       60, [](int k) { return fmt::format("{:.7f},1.02,0.0001,0.4,0.1,35,0.39,0.0001", k / 60.0); });
-  const Record r = parse_record(text, "r.csv", kFieldBase);
-  expect_field_values(r);
+  const Record r = parse_record(text, "r.csv", kTestBase);
+  expect_values(r);
   EXPECT_NEAR(r.f[7], 1e-4, 1e-12) << "PSS/E's frequency is a deviation";
   EXPECT_NEAR(r.speed[7], 1e-4, 1e-12);
   EXPECT_EQ(r.terminal, "32/1");
@@ -112,9 +105,9 @@ TEST(PscadTest, DomainIsTheTime) {
   const auto text = table("Domain,Vpu,Pgen,Qgen,fbus\n", 60,
                           [](int k) { return fmt::format("{:.7f},1.02,80,20,60", k / 60.0); });
   const Record r = parse_record(
-      text, "r.csv", kFieldBase,
+      text, "r.csv", kTestBase,
       {.columns = {{"V", "Vpu [pu]"}, {"P", "Pgen [MW]"}, {"Q", "Qgen [Mvar]"}, {"f", "fbus [Hz]"}}});
-  expect_field_values(r);
+  expect_values(r);
   EXPECT_THAT(r.notes, Contains(HasSubstr("taken for seconds")));
 }
 
@@ -144,23 +137,23 @@ TEST_F(PlaybackTest, PlbWithMeasuredPower) {
   for (int k = 1; k <= 20; ++k) plb += fmt::format("{} 135 60.06\n", 1.0 + 0.05 * k + (k % 3) * 0.001);
   const auto file = write("event.plb", plb);
   const auto other = write("meter.csv", meter());
-  const Record r = read_record(file.string() + "+" + other.string(), kFieldBase);
-  expect_field_values(r);
+  const Record r = read_record(file.string() + "+" + other.string(), kTestBase);
+  expect_values(r);
   EXPECT_EQ(r.name, "event.plb+meter.csv");
   EXPECT_NEAR(r.V[60], 1.02, 1e-9);
   EXPECT_LT(r.V[61], 0.98);
   EXPECT_EQ(r.angle, AngleSource::integrated);
   EXPECT_THAT(r.notes, AllOf(Contains(HasSubstr("taken to be in kV")), Contains(HasSubstr("in Hz")),
                              Contains(HasSubstr("straight lines")), Contains(HasSubstr("integrated"))));
-  EXPECT_THAT(test::messages([&] { read_record(file, kFieldBase); }),
+  EXPECT_THAT(test::messages([&] { read_record(file, kTestBase); }),
               ElementsAre(AllOf(HasSubstr("no column of P and Q"), HasSubstr("event.plb+FILE"))));
 }
 TEST_F(PlaybackTest, PowerWorldSignals) {
   std::string aux = "// made by hand\nDATA (PLAYINSIGNAL, [TSName, TSTime, TSSignal, TSSignal:1])\n{\n";
   for (int k = 0; k <= 60; ++k) aux += fmt::format("\"my signal\" {} 1.02 1.0001\n", k / 30.0);
   const auto file = write("signals.aux", aux + "}\n"), other = write("meter.csv", meter());
-  const Record r = read_record(file.string() + "+" + other.string(), kFieldBase);
-  expect_field_values(r);
+  const Record r = read_record(file.string() + "+" + other.string(), kTestBase);
+  expect_values(r);
   EXPECT_NEAR(r.f[5], 1e-4, 1e-9);
 }
 
@@ -171,7 +164,7 @@ TEST(FrequencyTest, GivesTheAngleWhereNoneWasRecorded) {
     const double t = k / 60.0;
     return fmt::format("{:.7f},1.02,{:.9f},0.4,0.1", t, 60 + 0.1 * std::sin(t));
   });
-  const Record r = parse_record(text, "r.csv", kFieldBase);
+  const Record r = parse_record(text, "r.csv", kTestBase);
   EXPECT_EQ(r.angle, AngleSource::integrated);
   EXPECT_NEAR(r.theta[120], 2 * std::numbers::pi * 0.1 * (1 - std::cos(2.0)), 1e-4);
   EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("integrated from the frequency"), HasSubstr("switching"))));
@@ -179,8 +172,8 @@ TEST(FrequencyTest, GivesTheAngleWhereNoneWasRecorded) {
 TEST(FrequencyTest, WithoutItNothingIsKnownOfTheAngle) {
   const auto text =
       table("t_s,V_pu,P_pu,Q_pu\n", 60, [](int k) { return fmt::format("{:.7f},1.02,0.4,0.1", k / 60.0); });
-  const Record r = parse_record(text, "r.csv", kFieldBase);
-  expect_field_values(r);
+  const Record r = parse_record(text, "r.csv", kTestBase);
+  expect_values(r);
   EXPECT_EQ(r.angle, AngleSource::none);
   EXPECT_THAT(r.notes, Contains(HasSubstr("neither angle nor frequency")));
   EXPECT_THAT(field_faults(text, {.angle = true}), ElementsAre(HasSubstr("no column theta_rad")));
@@ -197,7 +190,7 @@ const std::string kHeader = "t_s,V_pu,theta_rad,P_pu,Q_pu\n";
 TEST(LostFramesTest, AreBridgedAndMarked) {
   const auto text =
       table(kHeader, 900, [](int k) { return k >= 400 && k < 406 ? std::string() : row(k, k / 30.0); });
-  const Record r = parse_record(text, "r.csv", kFieldBase);
+  const Record r = parse_record(text, "r.csv", kTestBase);
   ASSERT_EQ(r.samples(), 900);
   EXPECT_NEAR(r.rate(), 30, 1e-6);
   EXPECT_EQ(std::ranges::count(r.lost, 1), 6);
@@ -215,7 +208,7 @@ TEST(LostFramesTest, AlsoWhereRowsHoldNoValues) {
            : k == 600 ? fmt::format("{:.7f},1.02,0.1,-9999,0.1", k / 30.0)
                       : row(k, k / 30.0);
   });
-  const Record r = parse_record(text, "r.csv", kFieldBase);
+  const Record r = parse_record(text, "r.csv", kTestBase);
   EXPECT_EQ(std::ranges::count(r.lost, 1), 3);
   EXPECT_NEAR(r.P[600], 0.4, 1e-9);
   EXPECT_THAT(r.notes, ElementsAre(HasSubstr("in 3 places")));
@@ -225,21 +218,21 @@ TEST(LostFramesTest, LongerGapsAreNamed) {
       table(kHeader, 900, [](int k) { return k >= 400 && k < 407 ? std::string() : row(k, k / 30.0); });
   EXPECT_THAT(field_faults(text), ElementsAre(AllOf(HasSubstr("a gap of 0.2667 s"), HasSubstr("r.csv:402"),
                                                     HasSubstr("7 are missing"))));
-  EXPECT_EQ(parse_record(text, "r.csv", kFieldBase, {.until = 13}).samples(), 391)
+  EXPECT_EQ(parse_record(text, "r.csv", kTestBase, {.until = 13}).samples(), 391)
       << "the stretch before it is sound";
-  EXPECT_NEAR(parse_record(text, "r.csv", kFieldBase, {.from = 14}).t.front(), 14, 1e-9);
+  EXPECT_NEAR(parse_record(text, "r.csv", kTestBase, {.from = 14}).t.front(), 14, 1e-9);
 }
 TEST(LostFramesTest, AJumpWithinTheGapIsSaid) {
   const auto text = table(kHeader, 300, [](int k) {
     return k == 100 ? std::string() : fmt::format("{:.7f},{},0.1,0.4,0.1", k / 30.0, k < 100 ? 1.02 : 0.7);
   });
-  const Record r = parse_record(text, "r.csv", kFieldBase);
+  const Record r = parse_record(text, "r.csv", kTestBase);
   EXPECT_TRUE(r.V[100] == 1.02 || r.V[100] == 0.7);
   EXPECT_THAT(r.notes, Contains(HasSubstr("jumps where frames are missing")));
 }
 TEST(StampTest, TheLastLineMayBreakOff) {
   const auto text = table(kHeader, 90, [](int k) { return row(k, k / 30.0); }) + "3.0000000,1.02";
-  const Record r = parse_record(text, "r.csv", kFieldBase);
+  const Record r = parse_record(text, "r.csv", kTestBase);
   EXPECT_EQ(r.samples(), 90);
   EXPECT_THAT(r.notes, ElementsAre(AllOf(HasSubstr("r.csv:92"), HasSubstr("breaks off"))));
 }
@@ -247,20 +240,20 @@ TEST(StampTest, RowsMayRepeat) {
   const auto text = table(kHeader, 90, [](int k) {
     return k == 40 ? row(k, k / 30.0) + "\n" + row(k, k / 30.0) : row(k, k / 30.0);
   });
-  const Record r = parse_record(text, "r.csv", kFieldBase);
+  const Record r = parse_record(text, "r.csv", kTestBase);
   EXPECT_EQ(r.samples(), 90);
   EXPECT_THAT(r.notes, ElementsAre(AllOf(HasSubstr("1 rows repeat"), HasSubstr("r.csv:43"))));
 }
 TEST(StampTest, AStampMayRepeatThoughTheValuesGoOn) {
   const auto text = table(kHeader, 90, [](int k) { return row(k, (k == 40 ? 39 : k) / 30.0); });
-  const Record r = parse_record(text, "r.csv", kFieldBase);
+  const Record r = parse_record(text, "r.csv", kTestBase);
   EXPECT_EQ(r.samples(), 90);
   EXPECT_TRUE(r.lost.empty());
   EXPECT_THAT(r.notes, ElementsAre(AllOf(HasSubstr("one step later"), HasSubstr("r.csv:42"))));
 }
 TEST(StampTest, TheClockMayBePutBack) {
   const auto text = table(kHeader, 300, [](int k) { return row(k, k / 30.0 - (k >= 150 ? 1.0 : 0.0)); });
-  const Record r = parse_record(text, "r.csv", kFieldBase);
+  const Record r = parse_record(text, "r.csv", kTestBase);
   EXPECT_EQ(r.samples(), 300);
   EXPECT_NEAR(r.rate(), 30, 1e-6);
   EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("r.csv:152"), HasSubstr("put back by 1 s"))));
@@ -277,7 +270,7 @@ TEST(StampTest, TwoDecimals) {
       const std::string line = row(k, static_cast<double>(k) / rate);
       return fmt::format("{:.2f}", static_cast<double>(k) / rate) + line.substr(line.find(','));
     });
-    const Record r = parse_record(text, "r.csv", kFieldBase);
+    const Record r = parse_record(text, "r.csv", kTestBase);
     EXPECT_EQ(r.samples(), 10 * rate);
     EXPECT_DOUBLE_EQ(r.rate(), rate);
     EXPECT_THAT(r.notes, ElementsAre(HasSubstr("rounded to 10 ms")));
@@ -285,7 +278,7 @@ TEST(StampTest, TwoDecimals) {
     std::size_t at = 0;
     for (int k = 0; k < 101; ++k) at = lost.find('\n', at) + 1;
     lost.erase(at, lost.find('\n', at) + 1 - at);
-    const Record s = parse_record(lost, "r.csv", kFieldBase);
+    const Record s = parse_record(lost, "r.csv", kTestBase);
     EXPECT_EQ(s.samples(), 10 * rate);
     EXPECT_DOUBLE_EQ(s.rate(), rate);
     ASSERT_EQ(std::ranges::count(s.lost, 1), 1);
@@ -294,7 +287,7 @@ TEST(StampTest, TwoDecimals) {
 }
 TEST(StampTest, VariableStepsBecomeEven) {
   const auto text = table(kHeader, 400, [](int k) { return row(k, 1e-4 * k * k / 2); });
-  const Record r = parse_record(text, "r.csv", kFieldBase);
+  const Record r = parse_record(text, "r.csv", kTestBase);
   EXPECT_NEAR(r.V[static_cast<std::size_t>(r.samples() / 2)],
               1.02 + 1e-3 * std::sin(r.t[static_cast<std::size_t>(r.samples() / 2)]), 1e-6);
   EXPECT_THAT(r.notes, Contains(HasSubstr("joined by straight lines")));
@@ -305,7 +298,7 @@ TEST(StampTest, UtcIsKept) {
       return fmt::format("2024-05-01 23:59:{:06.3f}{},1.02,0.1,0.4,0.1", k / 30.0, zone);
     });
   };
-  const auto read = [](const std::string& text) { return parse_record(text, "r.csv", kFieldBase); };
+  const auto read = [](const std::string& text) { return parse_record(text, "r.csv", kTestBase); };
   EXPECT_EQ(beginning(read(with("Timestamp", "Z"))), "2024-05-01T23:59:00.000000Z");
   EXPECT_EQ(beginning(read(with("Timestamp", "+02:00"))), "2024-05-01T21:59:00.000000Z");
   EXPECT_EQ(beginning(read(with("Timestamp", "-0530"))), "2024-05-02T05:29:00.000000Z");
@@ -322,7 +315,7 @@ TEST(StampTest, UtcIsKept) {
 
 TEST(FormatTest, WhatIsNotReadIsNamed) {
   const auto of = [](const std::string& bytes, const std::string& name) {
-    return test::messages([&] { parse_record(bytes, name, kFieldBase); });
+    return test::messages([&] { parse_record(bytes, name, kTestBase); });
   };
   EXPECT_THAT(of("\xFF\xFEt\0_\0s\0", "r.csv"), ElementsAre(HasSubstr("UTF-16")));
   EXPECT_THAT(of("PK\x03\x04rest", "r.xlsx"), ElementsAre(HasSubstr("spreadsheet")));
@@ -333,8 +326,8 @@ TEST(FormatTest, WhatIsNotReadIsNamed) {
 TEST(FormatTest, TextOfOtherEncodings) {
   const auto text = table("Zeit,U (kV),P (MW),Q (Mvar),f (Hz),K\xFChlung\n", 60,
                           [](int k) { return fmt::format("{:.7f},140.76,80,20,60,1", k / 60.0); });
-  const Record r = parse_record(text, "r.csv", kFieldBase, {.columns = {{"t", "Zeit [s]"}}});
-  expect_field_values(r);
+  const Record r = parse_record(text, "r.csv", kTestBase, {.columns = {{"t", "Zeit [s]"}}});
+  expect_values(r);
   EXPECT_THAT(r.ignored, ElementsAre("Kühlung"));
   EXPECT_THAT(r.notes, Contains(HasSubstr("Windows-1252")));
 }

@@ -10,7 +10,9 @@
 #include <functional>
 #include <numbers>
 
+#include "tests/sim/reference/psse_folder.hpp"
 #include "tests/validate/playin/support.hpp"
+#include "tests/validate/record/example.hpp"
 #include "validate/check/check.hpp"
 #include "validate/record/formats.hpp"
 
@@ -23,7 +25,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 constexpr double kPi = std::numbers::pi, kTurn = 2 * kPi;
-const RecordBase kComtradeBase{200, 60, 138};
 
 struct Channel {
   std::string id, phase, component, unit;
@@ -105,10 +106,10 @@ struct Writer {
     }
     return all;
   }
-  Record read(const RecordBase& base = kComtradeBase, const ReadOptions& options = {}) const {
+  Record read(const RecordBase& base = kTestBase, const ReadOptions& options = {}) const {
     return record_of_comtrade(parse_comtrade(cfg(), dat(), "e.cfg", "e.dat"), "e.cfg", base, options);
   }
-  [[nodiscard]] std::vector<std::string> faults(const RecordBase& base = kComtradeBase,
+  [[nodiscard]] std::vector<std::string> faults(const RecordBase& base = kTestBase,
                                                 const ReadOptions& options = {}) const {
     return test::messages([&] { read(base, options); });
   }
@@ -213,7 +214,7 @@ TEST(RecordComtradeTest, WaveformsBecomePhasors) {
   EXPECT_THAT(r.notes, Contains(HasSubstr("window of one cycle")));
   // The mean over a cycle of what moves at 0.5 Hz: 0.05 (2 pi 0.5/60)^2 / 24 and less; floats add 1e-6.
   EXPECT_LT(largest_error(r, {}), 1e-5);
-  EXPECT_DOUBLE_EQ(waveforms({}).read(kComtradeBase, {.phasor_rate = 240}).rate(), 240);
+  EXPECT_DOUBLE_EQ(waveforms({}).read(kTestBase, {.phasor_rate = 240}).rate(), 240);
 }
 TEST(RecordComtradeTest, HarmonicsAndImbalanceDropOut) {
   const Machine m{.harmonic = 0.05, .negative = 0.03};
@@ -263,7 +264,7 @@ TEST(RecordComtradeTest, OneCircuitOfSeveral) {
   }
   EXPECT_THAT(w.faults(),
               ElementsAre(AllOf(HasSubstr("several three-phase current"), HasSubstr("G7, line 3"))));
-  EXPECT_LT(largest_error(w.read(kComtradeBase, {.terminal = "G7"}), {}), 1e-5);
+  EXPECT_LT(largest_error(w.read(kTestBase, {.terminal = "G7"}), {}), 1e-5);
 }
 TEST(RecordComtradeTest, TimesFromStamps) {
   Writer w = phasors(2013, "BINARY");
@@ -362,15 +363,15 @@ TEST_F(ComtradeFileTest, EitherFileOfThePairNamesIt) {
   const Writer w = phasors(1999, "BINARY");
   write("e.cfg", w.cfg());
   write("e.dat", w.dat());
-  const Record r = read_record(folder_ / "e.cfg", kComtradeBase);
+  const Record r = read_record(folder_ / "e.cfg", kTestBase);
   EXPECT_EQ(r.samples(), 90);
   EXPECT_EQ(r.name, "e.cfg");
-  EXPECT_EQ(read_record(folder_ / "e.dat", kComtradeBase).hash, r.hash);
+  EXPECT_EQ(read_record(folder_ / "e.dat", kTestBase).hash, r.hash);
   write("F.CFG", w.cfg());
   write("F.DAT", w.dat());
-  EXPECT_EQ(read_record(folder_ / "F.CFG", kComtradeBase).hash, r.hash);
+  EXPECT_EQ(read_record(folder_ / "F.CFG", kTestBase).hash, r.hash);
   write("alone.cfg", w.cfg());
-  EXPECT_THAT(test::messages([&] { read_record(folder_ / "alone.cfg", kComtradeBase); }),
+  EXPECT_THAT(test::messages([&] { read_record(folder_ / "alone.cfg", kTestBase); }),
               ElementsAre(HasSubstr("alone.dat")));
 }
 TEST_F(ComtradeFileTest, OneFile) {
@@ -382,10 +383,10 @@ TEST_F(ComtradeFileTest, OneFile) {
     write("e.cff", "--- file type: CFG ---\r\n" + w.cfg() +
                        "--- file type: INF ---\r\n\r\n--- file type: HDR ---\r\n\r\n" +
                        "--- file type: DAT " + heading + " ---\r\n" + dat);
-    EXPECT_EQ(read_record(folder_ / "e.cff", kComtradeBase).samples(), 90) << kind;
+    EXPECT_EQ(read_record(folder_ / "e.cff", kTestBase).samples(), 90) << kind;
   }
   write("e.cff", "nothing");
-  EXPECT_THAT(test::messages([&] { read_record(folder_ / "e.cff", kComtradeBase); }),
+  EXPECT_THAT(test::messages([&] { read_record(folder_ / "e.cff", kTestBase); }),
               ElementsAre(HasSubstr("e.cff")));
 }
 
@@ -429,12 +430,10 @@ TEST(RecordComtradeTest, AFaultSeenByAFaultRecorderIsASoundRecord) {
   }
 }
 
-/// Files of recorders and relays, where they are there (tests/README.md): revisions that were never
-/// published, channel numbers that skip, Windows-1251.
-TEST(RecordComtradeTest, FilesOfTheField) {
-  const char* const folder = std::getenv("SWINGBANK_REFERENCE");
-  const auto at = std::filesystem::path(folder ? folder : "/nowhere") / "comtrade_files";
-  if (!std::filesystem::exists(at)) GTEST_SKIP();
+/// Files of recorders and relays (tests/README.md): revisions that were never published, channel numbers that
+/// skip, Windows-1251.
+TEST(RecorderFiles, AreRead) {
+  const auto at = sim::test::record_folder("comtrade_files");
   const auto read = [&](const char* cfg, const char* dat) {
     const std::string c = read_bytes(at / cfg), d = read_bytes(at / dat);
     return parse_comtrade(c, d, cfg, dat);

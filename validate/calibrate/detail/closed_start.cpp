@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/median.hpp"
 #include "sim/direct/smooth.hpp"
 #include "validate/playin/can_run.hpp"
 
@@ -35,12 +36,6 @@ sim::Recording recording(const event::FitEvent& event, const sim::plant::PlantUn
   out.Ifd = r.Ifd;
   if (!event.switchings.empty()) out.event = event.switchings.front().time - r.t.front() - out.step;
   return out;
-}
-
-double median(std::vector<double> v) {
-  std::ranges::sort(v);
-  const std::size_t n = v.size();
-  return n % 2 == 1 ? v[n / 2] : (v[n / 2 - 1] + v[n / 2]) / 2;
 }
 
 /// Nothing where the events give nothing that the machine's equations allow.

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/capitals.hpp"
 #include "validate/record/detail/text.hpp"
 
 namespace swingbank::validate::record {
@@ -130,7 +131,7 @@ class Config {
     c.skew = 1e-6 * (f[7].empty() ? 0.0 : number(f, 7, "skew"));
     c.primary = number(f, 10, "primary ratio");
     c.secondary = number(f, 11, "secondary ratio");
-    const std::string side = upper(f[12]);
+    const std::string side = capitals(f[12]);
     c.secondary_values = side == "S";
     if (side != "P" && side != "S")
       fault(fmt::format("side '{}'", f[12]), "it must be P (primary) or S (secondary)",
@@ -177,7 +178,7 @@ class Config {
       ++digits;
     next();  // trigger
     const Fields kind = next();
-    c_.about.kind = kind.empty() ? "" : upper(kind[0]);
+    c_.about.kind = kind.empty() ? "" : capitals(kind[0]);
     const auto& k = c_.about.kind;
     if (k != "ASCII" && k != "BINARY" && (c_.about.revision == 1999 || (k != "BINARY32" && k != "FLOAT32")))
       fault(fmt::format("data type '{}'", k),

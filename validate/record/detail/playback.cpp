@@ -6,6 +6,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/capitals.hpp"
+#include "base/median.hpp"
 #include "validate/record/detail/build.hpp"
 #include "validate/record/detail/text.hpp"
 #include "validate/record/detail/times.hpp"
@@ -82,7 +84,7 @@ class Playback {
     const Words fields = words_of(text_.substr(open + 1, close - open - 1));
     time_ = voltage_ = frequency_ = fields.size();
     for (std::size_t i = 0; i < fields.size(); ++i) {
-      const std::string field = upper(fields[i]);
+      const std::string field = capitals(fields[i]);
       if (field == "TSTIME" || field == "TSTIMEINSECONDS" || field == "DSTIMEINSECONDS") time_ = i;
       if (field == "TSSIGNAL" || field == "TSSIGNAL:0" || field == "SIGNAL") voltage_ = i;
       if (field == "TSSIGNAL:1" || field == "SIGNAL:1") frequency_ = i;
@@ -124,7 +126,7 @@ class Playback {
   }
 
   void add_voltage(RawRecord& raw) {
-    const double v = median(v_);
+    const double v = upper_median(v_);
     std::optional<Unit> unit;
     if (v > 0.3 && v < 1.7)
       unit = Unit::pu;
@@ -145,7 +147,7 @@ class Playback {
   }
 
   void add_frequency(RawRecord& raw) {
-    const double f = median(f_);
+    const double f = upper_median(f_);
     std::optional<Unit> unit;
     if (std::abs(f - 1) < 0.1 || std::abs(f) < 0.05) unit = Unit::pu;
     if (std::abs(f / base_.frequency - 1) < 0.25) unit = Unit::hertz;
@@ -174,10 +176,10 @@ class Playback {
 
 }  // namespace
 
-bool is_plb(const std::string& name) { return upper(name).ends_with(".PLB"); }
+bool is_plb(const std::string& name) { return capitals(name).ends_with(".PLB"); }
 
 bool is_powerworld(std::string_view text) {
-  const std::string head = upper(text.substr(0, 4096));
+  const std::string head = capitals(text.substr(0, 4096));
   const auto data = head.find("DATA");
   return data != std::string::npos && head.find("PLAYINSIGNAL", data) != std::string::npos;
 }

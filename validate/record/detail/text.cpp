@@ -127,10 +127,4 @@ std::string as_utf8(std::string_view text, std::vector<std::string>& notes) {
   return out;
 }
 
-std::string upper(std::string_view s) {
-  std::string r(s);
-  std::ranges::transform(r, r.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return r;
-}
-
 }  // namespace swingbank::validate::record

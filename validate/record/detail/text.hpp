@@ -14,7 +14,4 @@ void refuse_binary(std::string_view bytes, const std::string& name);
 /// Windows-1252; `notes` says which.
 std::string as_utf8(std::string_view text, std::vector<std::string>& notes);
 
-/// ASCII letters as capitals.
-std::string upper(std::string_view s);
-
 }  // namespace swingbank::validate::record

@@ -11,6 +11,8 @@
 #include <limits>
 #include <numeric>
 
+#include "base/median.hpp"
+
 namespace swingbank::validate::record {
 namespace {
 
@@ -110,7 +112,7 @@ constexpr double kCoarsest = 0.75;
 
 bool is_even(const std::vector<double>& t) {
   const std::vector<double> steps = steps_of(t);
-  const double usual = median(steps);
+  const double usual = upper_median(steps);
   return usual > 0 &&
          std::ranges::all_of(steps, [&](double s) { return std::abs(s - usual) <= 0.01 * usual; });
 }
@@ -143,7 +145,7 @@ bool snap(std::vector<double>& t, double resolution, Record& about) {
 void unleap(std::vector<double>& t, const SampleFaults& faults, std::vector<std::string>& notes) {
   constexpr double kSeconds = 1.5, kHalfHour = 1800;
   const std::vector<double> steps = steps_of(t);
-  const double usual = median(steps);
+  const double usual = upper_median(steps);
   if (!(usual > 0) || t.size() < 8) return;
   const auto usual_at = [&](std::size_t k) {
     return k >= steps.size() || (steps[k] > 0 && steps[k] < 1.8 * usual);
@@ -165,7 +167,7 @@ void unleap(std::vector<double>& t, const SampleFaults& faults, std::vector<std:
 
 /// Steps of the grid that the rows may stand on [s].
 std::vector<double> possible_steps(const std::vector<double>& t, double resolution) {
-  const double usual = median(steps_of(t)), length = t.back() - t.front();
+  const double usual = upper_median(steps_of(t)), length = t.back() - t.front();
   if (!(length > 0)) return {};
   std::vector<double> all;
   if (usual > 0 && resolution <= 0.15 * usual) {
@@ -275,7 +277,7 @@ class Grid {
 bool varies(const std::vector<double>& t) {
   const std::vector<double> steps = steps_of(t);
   if (std::ranges::any_of(steps, [](double s) { return s < 0; })) return false;
-  const double usual = median(steps);
+  const double usual = upper_median(steps);
   const auto off = std::ranges::count_if(steps, [&](double s) { return std::abs(s - usual) > 0.1 * usual; });
   return 5 * static_cast<std::size_t>(off) > steps.size();
 }
@@ -317,7 +319,7 @@ void tell_steps(const Rows& rows, SampleFaults& faults) {
   std::vector<double> known;
   std::ranges::copy_if(steps, std::back_inserter(known), [](double s) { return std::isfinite(s); });
   if (known.empty()) return;
-  const double usual = median(known), resolution = rows.resolution;
+  const double usual = upper_median(known), resolution = rows.resolution;
   const bool rounded = resolution > 0 && resolution <= 0.15 * usual;
   const double slack = std::max(0.01 * usual, rounded ? 2.1 * resolution : 0.0);
   for (std::size_t k = 0; k < steps.size(); ++k) {
@@ -369,12 +371,6 @@ EvenRows settle_rows(const Rows& rows, Record& about, SampleFaults& faults) {
   }
   tell_steps(rows, faults);
   return even;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
 }
 
 }  // namespace swingbank::validate::record

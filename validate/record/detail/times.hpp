@@ -41,7 +41,4 @@ struct EvenRows {
 /// become even ones. Everything else is a fault.
 EvenRows settle_rows(const Rows& rows, Record& about, SampleFaults& faults);
 
-/// The upper one of two middle values.
-double median(std::vector<double> values);
-
 }  // namespace swingbank::validate::record

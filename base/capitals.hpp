@@ -1,0 +1,18 @@
+#pragma once
+// Names whose case does not matter.
+#include <algorithm>
+#include <cctype>
+#include <string>
+#include <string_view>
+
+namespace swingbank {
+
+/// ASCII letters as capitals.
+inline std::string capitals(std::string_view text) {
+  std::string all(text);
+  std::ranges::transform(all, all.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return all;
+}
+
+}  // namespace swingbank
