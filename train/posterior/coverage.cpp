@@ -50,7 +50,7 @@ void draw(const Beliefs& beliefs, std::span<const Recalibration> recalibrations,
       sum += F[p * kFactors + k] * common[k];
       variance += F[p * kFactors + k] * F[p * kFactors + k];
     }
-    out[p] = quantile(beliefs.of(row, p), recalibrations[p], normal_cdf(sum / std::sqrt(variance)));
+    out[p] = quantile_of_score(beliefs.of(row, p), recalibrations[p], sum / std::sqrt(variance));
   }
 }
 
@@ -106,10 +106,13 @@ double Coverage::mean(double ParameterCoverage::*of) const {
   return sum / static_cast<double>(parameters.size());
 }
 
-double quantile(const Mixture& belief, const Recalibration& recalibration, double p) {
+double quantile_of_score(const Mixture& belief, const Recalibration& recalibration, double score) {
   constexpr double kFarthest = 6.0;  // scores: beyond it a probability is rounding
-  const double score = std::clamp(recalibration.wrong(normal_quantile(p)), -kFarthest, kFarthest);
-  return place_of_logit(belief.quantile(normal_cdf(score)));
+  return place_of_logit(belief.quantile_of_score(std::clamp(recalibration.wrong(score), -kFarthest, kFarthest)));
+}
+
+double quantile(const Mixture& belief, const Recalibration& recalibration, double p) {
+  return quantile_of_score(belief, recalibration, normal_quantile(p));
 }
 
 std::vector<double> scores(const Beliefs& beliefs, std::span<const double> places) {

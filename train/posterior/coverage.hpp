@@ -44,7 +44,9 @@ Coverage coverage(const Beliefs& beliefs, std::span<const Recalibration> recalib
 
 /// Normal scores of the truths under the beliefs, rows x parameters.
 std::vector<double> scores(const Beliefs& beliefs, std::span<const double> places);
-/// The place in the box below which the belief puts the probability p.
+/// The place in the box that stands for the normal score `score`, and the one below which the belief puts the
+/// probability p.
+double quantile_of_score(const Mixture& belief, const Recalibration& recalibration, double score);
 double quantile(const Mixture& belief, const Recalibration& recalibration, double p);
 
 }  // namespace swingbank::train::posterior

@@ -13,19 +13,31 @@ double Mixture::cdf(double x) const {
   return sum;
 }
 
-double Mixture::quantile(double p) const {
-  const double z = normal_quantile(p);
-  double low = mean[0] + deviation[0] * z, high = low;
+double Mixture::quantile_of_score(double score) const {
+  const double p = normal_cdf(score);
+  double low = mean[0] + deviation[0] * score, high = low;
   for (std::size_t k = 1; k < kComponents; ++k) {
-    low = std::min(low, mean[k] + deviation[k] * z);
-    high = std::max(high, mean[k] + deviation[k] * z);
+    low = std::min(low, mean[k] + deviation[k] * score);
+    high = std::max(high, mean[k] + deviation[k] * score);
   }
-  // the mixture's quantile lies between those of its components
-  for (int i = 0; i < 60 && high - low > 1e-9 * (1.0 + std::abs(low)); ++i) {
-    const double middle = 0.5 * (low + high);
-    (cdf(middle) < p ? low : high) = middle;
+  // The mixture's quantile lies between those of its components. Newton's method, and a bisection where it
+  // would leave them.
+  double x = 0.5 * (low + high);
+  for (int i = 0; i < 60; ++i) {
+    double below = 0.0, density = 0.0;
+    for (std::size_t k = 0; k < kComponents; ++k) {
+      const double z = (x - mean[k]) / deviation[k];
+      below += weight[k] * normal_cdf(z);
+      density += weight[k] / deviation[k] * normal_density(z);
+    }
+    (below < p ? low : high) = x;
+    double next = x - (below - p) / density;
+    if (!(next > low && next < high)) next = 0.5 * (low + high);  // also where the density is nought
+    const double step = std::abs(next - x);
+    x = next;
+    if (step <= 1e-9 * (1.0 + std::abs(x))) break;
   }
-  return 0.5 * (low + high);
+  return x;
 }
 
 double logit_of_place(double place) {

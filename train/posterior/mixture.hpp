@@ -14,8 +14,8 @@ inline constexpr std::size_t kFactors = 4;     ///< of the copula's correlations
 struct Mixture {
   std::array<double, kComponents> weight{}, mean{}, deviation{};
   [[nodiscard]] double cdf(double x) const;
-  /// p in (0, 1).
-  [[nodiscard]] double quantile(double p) const;
+  /// Of the probability that a standard normal number is below `score`; to 1e-9 of itself.
+  [[nodiscard]] double quantile_of_score(double score) const;
 };
 
 /// Of rows x parameters. A row's normal scores correlate like F F^T + 1, scaled to a diagonal of ones.
