@@ -108,7 +108,8 @@ double Coverage::mean(double ParameterCoverage::*of) const {
 
 double quantile_of_score(const Mixture& belief, const Recalibration& recalibration, double score) {
   constexpr double kFarthest = 6.0;  // scores: beyond it a probability is rounding
-  return place_of_logit(belief.quantile_of_score(std::clamp(recalibration.wrong(score), -kFarthest, kFarthest)));
+  return place_of_logit(
+      belief.quantile_of_score(std::clamp(recalibration.wrong(score), -kFarthest, kFarthest)));
 }
 
 double quantile(const Mixture& belief, const Recalibration& recalibration, double p) {
