@@ -39,8 +39,8 @@ std::string this_process() {
 
 }  // namespace
 
-RunLock::RunLock(std::filesystem::path file, LockWords words, std::chrono::milliseconds patience)
-    : file_(std::move(file)), words_(std::move(words)) {
+RunLock::RunLock(std::filesystem::path file, LockWords words, std::chrono::milliseconds patience, Kind kind)
+    : file_(std::move(file)), words_(std::move(words)), kind_(kind) {
   const auto end = std::chrono::steady_clock::now() + patience;
   try {
     for (;;) {
@@ -75,7 +75,7 @@ void RunLock::open() {
 bool RunLock::try_lock() {
   int result;
   do {
-    result = ::flock(fd_, LOCK_EX | LOCK_NB);
+    result = ::flock(fd_, (kind_ == Kind::alone ? LOCK_EX : LOCK_SH) | LOCK_NB);
   } while (result != 0 && errno == EINTR);
   if (result == 0) return true;
   if (errno == EWOULDBLOCK) return false;
@@ -101,7 +101,7 @@ void RunLock::refuse() const {
 
 /// For people only: a full disk, which cannot take it, is no reason to refuse.
 void RunLock::write_owner() const {
-  const std::string owner = this_process() + "\n";
+  const std::string owner = this_process() + (kind_ == Kind::shared ? " or another part" : "") + "\n";
   if (::ftruncate(fd_, 0) == 0 && ::pwrite(fd_, owner.data(), owner.size(), 0) < 0) return;
 }
 

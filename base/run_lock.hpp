@@ -1,6 +1,6 @@
 #pragma once
-// One run at a time in a folder: an exclusive flock on a file of its own, so that nothing a run replaces (the
-// journal, a checkpoint) carries the lock with it.
+// One run at a time in a folder, or several that share it: a flock on a file of its own, so that nothing a
+// run replaces (the journal, a checkpoint) carries the lock with it.
 #include <chrono>
 #include <filesystem>
 #include <string>
@@ -14,12 +14,15 @@ struct LockWords {
 
 class RunLock {
  public:
+  /// Whether others of the same kind may hold the lock at the same time.
+  enum class Kind { alone, shared };
+
   /// Creates `file` if need be (its folder must exist), locks it and writes into it who holds it: process,
   /// host, Slurm job. A run that was just ended may take a moment to go, so a held lock is tried again for
   /// `patience`. Throws InputError naming the holder if the lock stays held, and with the system's reason if
   /// the file system does not lock files: such a folder is neither free nor in use.
   RunLock(std::filesystem::path file, LockWords words,
-          std::chrono::milliseconds patience = std::chrono::seconds(5));
+          std::chrono::milliseconds patience = std::chrono::seconds(5), Kind kind = Kind::alone);
   /// The lock falls when the last process that holds the file ends, however it ends; a child made by fork
   /// holds it too. The file stays, because a file that is removed could be locked by two.
   ~RunLock();
@@ -39,6 +42,7 @@ class RunLock {
 
   std::filesystem::path file_;
   LockWords words_;
+  Kind kind_;
   int fd_ = -1;
   bool created_ = false;
 };

@@ -9,56 +9,22 @@
 #include <cstdio>
 
 #include "base/durable.hpp"
+#include "base/stop_signal.hpp"
 #include "jobs/command_line.hpp"
-#include "mpi/store/hdf5_file.hpp"
+#include "mpi/draw/databank_file.hpp"
 
 namespace {
 using namespace swingbank;
 namespace fs = std::filesystem;
 
-struct Columns {
-  std::vector<std::string> names, units, effects;
-  std::vector<double> low, high;
-};
-
-Columns columns_of(const mpi::draw::DatasetConfig& c) {
-  Columns all;
-  for (const auto& b : c.box) {
-    all.names.push_back(c.name_of(b));
-    all.units.emplace_back(c.record_of(b).unit);
-    all.effects.emplace_back(c.effect_of(b).name);
-    all.low.push_back(b.low);
-    all.high.push_back(b.high);
-  }
-  return all;
-}
-
-void write_csv(const fs::path& file, const mpi::draw::Databank& bank, const Columns& c) {
+void write_csv(const fs::path& file, const mpi::draw::Databank& bank, const mpi::draw::DatasetConfig& c) {
   std::string text;
-  for (std::size_t i = 0; i < c.names.size(); ++i)
-    text += fmt::format("{}{} [{}]", i == 0 ? "" : ",", c.names[i], c.units[i]);
+  for (const auto& b : c.box)
+    text += fmt::format("{}{} [{}]", text.empty() ? "" : ",", c.name_of(b), c.record_of(b).unit);
   text += "\n";
   for (std::size_t i = 0; i < bank.points(); ++i)
     text += fmt::format("{}\n", fmt::join(bank.point(i), bank.point(i) + bank.dimensions, ","));
   write_text(file, text);
-}
-
-void write_hdf5(const fs::path& file, const mpi::draw::Databank& bank, const Columns& c,
-                const mpi::draw::DatasetConfig& config) {
-  reserve(file, bank.values.size() * sizeof(double));
-  mpi::store::h5::File f = mpi::store::h5::File::create(temporary_name(file));
-  f.attribute("format", std::string("swingbank-databank-1"));
-  f.attribute("machine_model", config.model);
-  f.attribute("seed", config.seed);
-  f.attribute("parameter_names", c.names);
-  f.attribute("parameter_units", c.units);
-  f.attribute("parameter_low", c.low);
-  f.attribute("parameter_high", c.high);
-  if (!config.other_effects().empty()) f.attribute("parameter_effects", c.effects);
-  f.create<double>("/parameters", {bank.points(), bank.dimensions});
-  f.write("/parameters", 0, bank.points(), bank.values.data());
-  f.close();
-  publish(file);
 }
 
 void report(const mpi::draw::Databank& bank, double seconds) {
@@ -83,11 +49,17 @@ int run(const std::string& config_file, const mpi::draw::Overrides& overrides, s
                       "a databank is written as .csv or .h5", "end the name with one of these"});
   const auto start = std::chrono::steady_clock::now();
   const auto& base = study.grid.plants[static_cast<std::size_t>(study.plants[0])];
+  catch_stop_signals();
   const mpi::draw::Databank bank =
       mpi::draw::draw_databank(config, base, points > 0 ? points : config.points());
+  if (bank.points() < (points > 0 ? points : config.points())) {
+    fmt::print(stderr, "stopped on a signal after {} points: nothing was written; run the command again\n",
+               bank.points());
+    return kSubmitAgain;
+  }
   report(bank, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  if (extension == ".csv") write_csv(out, bank, columns_of(config));
-  if (extension == ".h5") write_hdf5(out, bank, columns_of(config), config);
+  if (extension == ".csv") write_csv(out, bank, config);
+  if (extension == ".h5") mpi::draw::write_databank(out, bank, config, base);
   if (!out.empty()) fmt::print("written to {}\n", out.string());
   return 0;
 }

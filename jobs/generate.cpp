@@ -5,6 +5,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <charconv>
 #include <cstdio>
 #include <optional>
 #include <string>
@@ -14,16 +15,14 @@
 #include "jobs/command_line.hpp"
 #include "mpi/ranks/session.hpp"
 #include "mpi/ranks/shard_group.hpp"
+#include "mpi/store/summary.hpp"
 
 namespace {
 using namespace swingbank;
 
-/// Words of --progress, in the order of Progress::Mode.
-const std::vector<std::string> kModes = {"auto", "bar", "lines", "none"};
-
 struct Command {
-  std::string config, verify;
-  int mode = 0;  ///< place in kModes
+  std::string config, part;
+  int mode = 0;  ///< place in Progress::words()
   mpi::draw::Overrides overrides;
   mpi::ranks::GenerateOptions options;
 };
@@ -42,16 +41,21 @@ void declare(jobs::CommandLine& line, Command& c) {
   line.add("--lease-timeout", c.options.lease_timeout,
            "the run ends if a shard takes longer [s] (default 600; 0: never)")
       .not_negative();
-  line.add_flag("--dedicated-master", c.options.dedicated_master, "rank 0 only leads; for many ranks");
+  line.add_flag("--dedicated-master", c.options.dedicated_master,
+                "rank 0 only leads (from 32 ranks on always)");
+  const jobs::Option part = line.add(
+      "--part", c.part, "k/n: only the k-th of n parts of the shards, beside runs that make the others");
+  line.add("--databank", c.options.databank,
+           "what swingbank databank wrote for this config (.h5): not drawn again");
   const jobs::Option repair =
       line.add_flag("--repair", c.options.repair, "check every shard there is and make bad ones anew");
+  repair.excludes(part);
   line.add_flag(
           "--trust", c.options.trust,
           "continue without reading the shards there are (0.15 s for 268 MB on one rank): only their lengths "
           "are checked")
       .excludes(repair);
-  line.add_choice("--progress", c.mode, kModes, "auto, bar, lines or none");
-  line.add("--verify", c.verify, "only check this dataset folder: every shard against journal and header");
+  line.add_choice("--progress", c.mode, Progress::words(), "auto, bar, lines or none");
 }
 
 int describe_to(bool first, const std::filesystem::path& folder, const char* more) {
@@ -59,18 +63,33 @@ int describe_to(bool first, const std::filesystem::path& folder, const char* mor
   mpi::ranks::agree(MPI_COMM_WORLD, folder.string(), [&] {
     if (!first) return;
     const mpi::store::Dataset d = mpi::store::open_dataset(folder, true);
-    fmt::print("{}{}", mpi::ranks::describe(d), more);
+    fmt::print("{}{}", mpi::store::describe(d), more);
     complete = d.complete;
   });
   return complete || !first ? 0 : kSubmitAgain;
 }
 
-int make(const Command& c) {
+/// Of "k/n"; empty text: all shards.
+mpi::store::Part part_of(const std::string& text) {
+  mpi::store::Part part;
+  if (text.empty()) return part;
+  const char *at = text.data(), *end = at + text.size();
+  const auto number = std::from_chars(at, end, part.number);
+  const bool slash = number.ec == std::errc{} && number.ptr != end && *number.ptr == '/';
+  const auto of = slash ? std::from_chars(number.ptr + 1, end, part.of) : number;
+  if (!slash || of.ec != std::errc{} || of.ptr != end || part.number < 1 || part.number > part.of)
+    throw InputError(
+        {"'" + text + "'", "--part", "it is no part k/n with 1 <= k <= n", "write for example 3/16"});
+  return part;
+}
+
+int make(Command c) {
   mpi::draw::DatasetConfig config;
   mpi::ranks::agree(MPI_COMM_WORLD, c.config, [&] {
     if (c.config.empty() || c.options.folder.empty())
-      throw InputError({"nothing to do", "command line", "CONFIG and --out are needed, or --verify",
-                        "see swingbank generate --help"});
+      throw InputError(
+          {"nothing to do", "command line", "CONFIG and --out are needed", "see swingbank generate --help"});
+    c.options.part = part_of(c.part);
     config = mpi::draw::read_dataset_config(c.config, c.overrides);
   });
   return mpi::ranks::generate(config, c.options, MPI_COMM_WORLD);
@@ -78,10 +97,6 @@ int make(const Command& c) {
 
 int run(const Command& c, bool first) {
   catch_stop_signals();
-  if (!c.verify.empty()) {
-    if (!mpi::ranks::verify(c.verify, MPI_COMM_WORLD)) return kSubmitAgain;
-    return describe_to(first, c.verify, "every shard is as it was written\n");
-  }
   const int code = make(c);
   const bool stopped = code == kSubmitAgain;
   describe_to(first, c.options.folder,
@@ -114,6 +129,7 @@ int main(int argc, char** argv) {
       "Simulates the dataset that a config describes into a folder of HDF5 shards (docs/formats.md).\n"
       "  swingbank generate configs/datasets/ieee39_gencls.toml --draws 4000 --out data/gencls\n"
       "  mpirun -np 8 swingbank generate ... on more cores: the data are the same to the last byte.\n"
+      "  swingbank generate ... --part 3/16 in a job array without MPI; with all parts made, the same bytes.\n"
       "Run again, it makes what is missing. SIGTERM, SIGUSR1 or Ctrl-C end it softly: exit code 2, "
       "run it again.",
       "swingbank generate");
@@ -122,7 +138,7 @@ int main(int argc, char** argv) {
   return mpi::ranks::run_on_all_ranks(session, [&] {
     const auto ended = parse(line, argc, argv, session);
     if (ended) return *ended;
-    command.options.progress = static_cast<mpi::ranks::Progress::Mode>(command.mode);
+    command.options.progress = static_cast<Progress::Mode>(command.mode);
     return run(command, first);
   });
 }

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <string>
 
-#include "mpi/ranks/progress.hpp"
+#include "base/progress.hpp"
 
 namespace swingbank::jobs {
 
@@ -22,9 +22,9 @@ class ItemProgress {
     const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     const double rate = static_cast<double>(made_) / (spent > 1e-9 ? spent : 1e-9);
     std::string speed;
-    if (made_ > 0) speed = ", " + mpi::ranks::rate_text(rate, unit_);
+    if (made_ > 0) speed = ", " + rate_text(rate, unit_);
     if (made_ > 0 && done_ < total_)
-      speed += ", " + mpi::ranks::duration_text(static_cast<double>(total_ - done_) / rate) + " left";
+      speed += ", " + duration_text(static_cast<double>(total_ - done_) / rate) + " left";
     fmt::print(stderr, "{}/{} {} ({:.0f} %{}): {}\n", done_, total_, unit_,
                100.0 * static_cast<double>(done_) / static_cast<double>(total_), speed, text);
     std::fflush(stderr);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/stop_signal.hpp"
 #include "mpi/draw/detail/neighbours.hpp"
 #include "mpi/draw/detail/plant_blocks.hpp"
 #include "mpi/draw/detail/random.hpp"
@@ -21,6 +22,8 @@ Neighbours make_neighbours(const DatasetConfig& config) {
   }
   return {low, width, std::max(config.databank.distance, 1e-300)};
 }
+
+constexpr std::uint64_t kBetweenLooks = 1024;  ///< draws between two looks for a signal
 
 std::string reasons(const Databank& bank) {
   std::string text = fmt::format("{} too close", bank.too_close);
@@ -40,7 +43,7 @@ Databank draw_databank(const DatasetConfig& config, const sim::plant::Plant& bas
   const auto patience =
       static_cast<std::uint64_t>(config.databank.candidates_per_point * static_cast<double>(points)) + 1000;
   std::uint64_t admissible = 0;
-  while (bank.points() < points) {
+  while (bank.points() < points && !(bank.draws % kBetweenLooks == 0 && stop_asked())) {
     // A policy that hardly any draw can meet must not run for ever either.
     if (admissible > patience || bank.draws > 1000 * patience)
       throw InputError({fmt::format("databank reached {} of {} points", bank.points(), points),

@@ -22,7 +22,8 @@ struct Databank {
 };
 
 /// Draws `points` points. `base`: the plant that tells what is not in the box. Throws InputError telling how
-/// many points were reached if the policy or the distance cannot be met.
+/// many points were reached if the policy or the distance cannot be met. Fewer points come back where a
+/// signal asked for an end (stop_signal.hpp).
 Databank draw_databank(const DatasetConfig& config, const sim::plant::Plant& base, std::uint64_t points);
 
 }  // namespace swingbank::mpi::draw

@@ -9,13 +9,13 @@
 #include <memory>
 #include <new>
 #include <optional>
-#include <set>
+#include <span>
 
-#include "base/durable.hpp"
-#include "base/run_lock.hpp"
 #include "base/stop_signal.hpp"
 #include "mpi/draw/databank.hpp"
+#include "mpi/draw/databank_file.hpp"
 #include "mpi/ranks/detail/master.hpp"
+#include "mpi/ranks/detail/run_folder.hpp"
 #include "mpi/ranks/detail/shard_audit.hpp"
 #include "mpi/ranks/detail/worker.hpp"
 #include "mpi/ranks/shard_group.hpp"
@@ -26,7 +26,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kLockFile = ".lock";
+/// Ranks from which on rank 0 only leads: while it writes a shard of its own it answers nobody.
+constexpr int kLedFrom = 32;
 
 /// Every rank must have read the same config and run the same kernel.
 void require_one_variant(MPI_Comm world, const std::string& hash, const std::string& kernel) {
@@ -56,8 +57,9 @@ void make_room(std::vector<double>& values, std::size_t count, int rank) {
   }
 }
 
-/// Rank 0 draws; all others get the points.
-draw::Databank shared_databank(const draw::Study& study, MPI_Comm world) {
+/// Rank 0 draws or reads; all others get the points. Nothing where a signal asked for an end meanwhile.
+std::optional<draw::Databank> shared_databank(const draw::Study& study, const fs::path& file,
+                                              MPI_Comm world) {
   int rank;
   MPI_Comm_rank(world, &rank);
   draw::Databank bank;
@@ -67,8 +69,14 @@ draw::Databank shared_databank(const draw::Study& study, MPI_Comm world) {
     if (rank != 0) make_room(bank.values, study.config.points() * bank.dimensions, rank);
   });
   agree(world, "databank", [&] {
-    if (rank == 0) bank = draw::draw_databank(study.config, base, study.config.points());
+    if (rank != 0) return;
+    const std::uint64_t points = study.config.points();
+    bank = file.empty() ? draw::draw_databank(study.config, base, points)
+                        : draw::read_databank(file, study.config, base, points);
   });
+  int whole = rank != 0 || bank.points() >= study.config.points() ? 1 : 0;
+  MPI_Bcast(&whole, 1, MPI_INT, 0, world);
+  if (whole == 0) return std::nullopt;
   constexpr std::size_t piece = std::size_t{1} << 26;  // MPI counts in int
   for (std::size_t at = 0; at < bank.values.size(); at += piece)
     MPI_Bcast(bank.values.data() + at, static_cast<int>(std::min(piece, bank.values.size() - at)), MPI_DOUBLE,
@@ -124,80 +132,14 @@ store::DatasetHeader header_of(const draw::Study& study, const store::ShardAttri
   return h;
 }
 
-/// Whether a folder holds nothing but what a run leaves that was killed before its header stood.
-bool is_unclaimed(const fs::path& folder) {
-  const fs::path header = temporary_name(folder / "dataset.json");
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const fs::path name = entry.path().filename();
-    const bool ours = name == kLockFile || name == header.filename() ||
-                      (name == "shards" && entry.is_directory() && fs::is_empty(entry.path()));
-    if (!ours) return false;
-  }
-  return true;
-}
-
-/// A folder is new, or it belongs to this very config. Under the lock.
-void claim_folder(const fs::path& folder, const store::DatasetHeader& header, RunLock& lock) {
-  if (fs::exists(folder / "dataset.json")) {
-    const store::DatasetHeader found = store::read_header(folder);
-    if (found.config_hash != header.config_hash)
-      throw InputError({"a dataset of another config", folder.string(),
-                        fmt::format("its config hash is {} (kernel {}), this run's is {} (kernel {})",
-                                    found.config_hash, found.kernel, header.config_hash, header.kernel),
-                        "give another folder, or the config, size, seed and build it was made with"});
-    return;
-  }
-  if (!is_unclaimed(folder)) {
-    lock.withdraw();
-    throw InputError({"output folder in use", folder.string(), "it holds files but no dataset",
-                      "give a new or empty folder"});
-  }
-  store::write_header(folder, header);
-}
-
-/// The folder for shards, without temporary files of a run that was killed.
-void clear_leftovers(const fs::path& folder) {
-  make_folder(folder / "shards");
-  for (const auto& entry : fs::directory_iterator(folder / "shards"))
-    if (entry.path().extension() == ".part") fs::remove(entry.path());
-}
-
-std::unique_ptr<RunLock> lock_folder(const fs::path& folder) {
-  make_folder(folder);
-  return std::make_unique<RunLock>(
-      folder / kLockFile,
-      LockWords{"dataset in use", folder.string(), "wait for it to end, or choose another folder"});
-}
-
-/// Bad shards are taken out of the journal, or refused.
-void settle(const fs::path& folder, const std::vector<store::BadShard>& bad, bool repair) {
-  Problems problems;
-  for (const auto& [shard, p] : bad) {
-    if (repair) spdlog::warn("to be made anew: {} at {} ({})", p.what, p.where, p.why);
-    if (!repair) problems.add(p.what, p.where, p.why, p.remedy);
-  }
-  problems.raise();
-  if (repair) store::strike_shards(folder, bad);
-}
-
-/// Shards still to make.
-std::deque<std::uint64_t> missing_shards(const GenerateOptions& o, const store::DatasetHeader& header) {
-  std::set<std::uint64_t> there;
-  for (const auto& s : store::open_dataset(o.folder, true).shards) there.insert(s.shard);
-  std::deque<std::uint64_t> missing;
-  for (std::uint64_t s = 0; s < header.shard_count(); ++s)
-    if (!there.contains(s)) missing.push_back(s);
-  return missing;
-}
-
 std::uint64_t draws_in(const std::deque<std::uint64_t>& shards, const draw::DatasetConfig& c) {
   std::uint64_t n = 0;
   for (const auto s : shards) n += std::min(c.draws_per_shard, c.draws - s * c.draws_per_shard);
   return n;
 }
 
-/// What a leader other than rank 0 does to get a shard.
-std::int64_t ask_master(MPI_Comm world, const Report& report, double timeout) {
+/// What a leader other than rank 0 does to get a lease.
+Shards ask_master(MPI_Comm world, const Report& report, double timeout) {
   const std::string text = pack(report);
   MPI_Send(text.data(), static_cast<int>(text.size()), MPI_CHAR, 0, kReportTag, world);
   if (!wait_for(world, 0, kLeaseTag, timeout)) {
@@ -207,9 +149,7 @@ std::int64_t ask_master(MPI_Comm world, const Report& report, double timeout) {
                timeout);
     MPI_Abort(world, 1);
   }
-  std::int64_t lease;
-  MPI_Recv(&lease, 1, MPI_INT64_T, 0, kLeaseTag, world, MPI_STATUS_IGNORE);
-  return lease;
+  return receive_shards(world, 0);
 }
 
 /// Ranks that work, cut into groups of writers; a rank that only leads has none.
@@ -234,7 +174,7 @@ void lead(Worker* worker, Master& master, Progress& progress) {
   if (worker != nullptr) {
     std::uint64_t counted = 0;  // of the shard at hand: this rank's own part of its group's draws
     worker->exchange = [&](const Report& r) {
-      if (r.finished) progress.add(r.finished->draws - std::min(counted, r.finished->draws));
+      for (const auto& line : r.finished) progress.add(line.draws - std::min(counted, line.draws));
       counted = 0;
       return master.exchange(r);
     };
@@ -269,13 +209,17 @@ int generate(const draw::DatasetConfig& config, const GenerateOptions& o, MPI_Co
   const draw::Study& study = *loaded;
   require_one_variant(world, hash, kernel);
 
-  std::unique_ptr<RunLock> lock;  // falls after all else
+  FolderLocks locks;  // fall after all else
   std::vector<store::JournalLine> lines;
+  bool archive = false;
   agree(world, o.folder.string(), [&] {
     if (rank != 0) return;
-    lock = lock_folder(o.folder);
-    claim_folder(o.folder, header, *lock);
-    lines = store::read_journal(o.folder / "journal.jsonl");
+    archive = is_archive(o.folder) && !o.repair;
+    if (archive)
+      require_same_config(o.folder, header);
+    else
+      locks = enter(o, header);
+    lines = journalled(o);
   });
   const ShardAudit audit = audit_shards(world, o.folder, header, lines, o.repair || !o.trust);
   if (audit.stopped) return kSubmitAgain;
@@ -285,17 +229,21 @@ int generate(const draw::DatasetConfig& config, const GenerateOptions& o, MPI_Co
   agree(world, o.folder.string(), [&] {
     if (rank != 0) return;
     settle(o.folder, audit.bad, o.repair);
-    journal.emplace(o.folder / "journal.jsonl");
-    clear_leftovers(o.folder);
     missing = missing_shards(o, header);
+    if (missing.empty()) return;
+    journal.emplace(o.folder / o.part.journal_name());  // says why it cannot, in an archive
     const auto left = draws_in(missing, config);
     spdlog::info("{}: {} of {} draws to make in {} shards, {} ranks, kernel {}, config {}", o.folder.string(),
                  left, config.draws, missing.size(), size, kernel, hash);
   });
+  std::uint64_t to_make = missing.size();
+  MPI_Bcast(&to_make, 1, MPI_UINT64_T, 0, world);
+  if (to_make == 0) return 0;
 
-  const draw::Databank bank = shared_databank(study, world);
-  const Groups groups(world, rank, size, o.writer_ranks, o.dedicated_master && size > 1);
-  draw::ShardMaker maker(study, bank);
+  const std::optional<draw::Databank> bank = shared_databank(study, o.databank, world);
+  if (!bank) return kSubmitAgain;
+  const Groups groups(world, rank, size, o.writer_ranks, o.dedicated_master ? size > 1 : size >= kLedFrom);
+  draw::ShardMaker maker(study, *bank);
   Worker worker{study,
                 maker,
                 attributes,
@@ -308,7 +256,8 @@ int generate(const draw::DatasetConfig& config, const GenerateOptions& o, MPI_Co
   if (rank == 0) {
     Progress progress(o.progress, "draws", config.draws, config.draws - draws_in(missing, config));
     const bool works = groups.mine != MPI_COMM_NULL;
-    Master master(world, *journal, progress, missing, groups.count - (works ? 1 : 0), o.lease_timeout);
+    JournalKeeper keeper([&](std::span<const store::JournalLine> made) { journal->append(made); });
+    Master master(world, keeper, progress, missing, groups.count - (works ? 1 : 0), o.lease_timeout);
     lead(works ? &worker : nullptr, master, progress);
     progress.finish();
     problems = master.problems();
@@ -322,40 +271,6 @@ int generate(const draw::DatasetConfig& config, const GenerateOptions& o, MPI_Co
   int done = complete ? 1 : 0;
   MPI_Bcast(&done, 1, MPI_INT, 0, world);
   return done != 0 ? 0 : kSubmitAgain;
-}
-
-bool verify(const fs::path& folder, MPI_Comm world) {
-  int rank;
-  MPI_Comm_rank(world, &rank);
-  store::DatasetHeader header;
-  std::vector<store::JournalLine> lines;
-  agree(world, folder.string(), [&] {
-    header = store::read_header(folder);
-    if (rank == 0) lines = store::read_journal(folder / "journal.jsonl");
-  });
-  const ShardAudit audit = audit_shards(world, folder, header, lines, true);
-  agree(world, folder.string(), [&] { settle(folder, audit.bad, false); });
-  return !audit.stopped;
-}
-
-std::string describe(const store::Dataset& d) {
-  std::uint64_t bytes = 0, draws = 0;
-  for (const auto& s : d.shards) bytes += s.bytes;
-  for (const auto& [name, count] : d.outcomes) draws += count;
-  std::string text =
-      fmt::format("dataset {}: {} rows of {} x {} samples at {:g}/s, {:.1f} MB in {} of {} shards\n",
-                  d.path.string(), d.rows, d.channel_names.size(), d.samples, d.rate,
-                  static_cast<double>(bytes) / 1e6, d.shards.size(), d.shard_count());
-  for (const auto& [name, count] : d.outcomes)
-    text += fmt::format(
-        "  {:<18}{:>10} draws  {:5.1f} %\n", name, count,
-        100.0 * static_cast<double>(count) / static_cast<double>(std::max<std::uint64_t>(draws, 1)));
-  if (const auto& points = d.operating_points; !points.empty()) {
-    const auto count = [&](const char* name) { return points.contains(name) ? points.at(name) : 0; };
-    text += fmt::format("  {} operating points; drawn again: {} without a power flow, {} implausible\n",
-                        count("used"), count("no_power_flow"), count("implausible"));
-  }
-  return text + fmt::format("  config {}  dataset {}\n", d.config_hash, d.complete ? d.hash : "unfinished");
 }
 
 }  // namespace swingbank::mpi::ranks

@@ -3,13 +3,15 @@
 #include <mpi.h>
 
 #include "mpi/draw/dataset_config.hpp"
-#include "mpi/ranks/progress.hpp"
+#include "base/progress.hpp"
 #include "mpi/store/dataset.hpp"
 
 namespace swingbank::mpi::ranks {
 
 struct GenerateOptions {
   std::filesystem::path folder;
+  store::Part part;                ///< of the shards, made beside runs that make the others
+  std::filesystem::path databank;  ///< what `swingbank databank` wrote; empty: drawn
   int writer_ranks = 1;           ///< ranks that share a shard
   double lease_timeout = 600.0;   ///< a shard may take that long [s]; 0: for ever
   bool dedicated_master = false;  ///< rank 0 only leads
@@ -18,16 +20,8 @@ struct GenerateOptions {
   Progress::Mode progress = Progress::Mode::automatic;
 };
 
-/// Collective over `world`. Makes the dataset, or what is missing of it. Returns 0, or 2 after a soft exit
+/// Collective over `world`. Makes the dataset, or what is missing of it or of a part. Returns 0, or 2 after a soft exit
 /// with shards still to make. Throws InputError on all ranks alike.
 int generate(const draw::DatasetConfig& config, const GenerateOptions& options, MPI_Comm world);
-
-/// Collective over `world`. Reads every shard of a dataset, spread over the ranks, and compares it with
-/// journal and header. Throws InputError with every shard at fault, on all ranks alike. Returns whether it
-/// came to the end before a signal.
-bool verify(const std::filesystem::path& folder, MPI_Comm world);
-
-/// What a finished dataset holds, for people: rows, draws by outcome, hash, size on disk.
-std::string describe(const store::Dataset& dataset);
 
 }  // namespace swingbank::mpi::ranks

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "base/durable.hpp"
+#include "mpi/ranks/detail/message.hpp"
 #include "mpi/store/shard_layout.hpp"
 
 namespace swingbank::mpi::ranks {
@@ -64,7 +65,9 @@ std::vector<Problem> gather_problems(MPI_Comm group, const std::string& where,
                         "run the command again; if it fails again, report it with this message"});
   }
   int mine = problems.empty() ? size : rank, first = size;
-  MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, group);
+  MPI_Request request;  // one rank may work for minutes while the others wait
+  MPI_Iallreduce(&mine, &first, 1, MPI_INT, MPI_MIN, group, &request);
+  wait_for(request);
   if (first == size) return {};
   auto count = static_cast<unsigned long>(problems.size());
   MPI_Bcast(&count, 1, MPI_UNSIGNED_LONG, first, group);

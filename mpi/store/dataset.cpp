@@ -180,7 +180,7 @@ Dataset open_dataset(const fs::path& folder, bool allow_incomplete) {
   Dataset d;
   static_cast<DatasetHeader&>(d) = read_header(folder);
   d.path = folder;
-  auto lines = read_journal(folder / "journal.jsonl");
+  auto lines = read_journals(folder);
   std::ranges::sort(lines, {}, &JournalLine::shard);
   Problems problems;
   for (const auto& l : lines) {
@@ -233,7 +233,7 @@ std::optional<Problem> fault_of(const fs::path& folder, const JournalLine& line,
   if (line.shard >= header.shard_count())
     return Problem{"shard " + std::to_string(line.shard), file.string(),
                    "the dataset has " + std::to_string(header.shard_count()) + " shards",
-                   "restore dataset.json and journal.jsonl of one and the same dataset"};
+                   "restore dataset.json and the journals of one and the same dataset"};
   if (!deep) return std::nullopt;
   try {
     read_checked(info_of(folder, line, header, 0));
@@ -243,23 +243,6 @@ std::optional<Problem> fault_of(const fs::path& folder, const JournalLine& line,
     return p;
   }
   return std::nullopt;
-}
-
-void strike_shards(const fs::path& folder, const std::vector<BadShard>& bad) {
-  if (bad.empty()) return;
-  auto lines = read_journal(folder / "journal.jsonl");
-  std::erase_if(lines, [&](const JournalLine& l) {
-    return std::ranges::find(bad, l.shard, &BadShard::shard) != bad.end();
-  });
-  rewrite_journal(folder / "journal.jsonl", lines);
-}
-
-void verify_dataset(const Dataset& dataset) {
-  Problems problems;
-  for (const auto& line : read_journal(dataset.path / "journal.jsonl"))
-    if (const auto p = fault_of(dataset.path, line, dataset, true))
-      problems.add(p->what, p->where, p->why, p->remedy);
-  problems.raise();
 }
 
 void read_rows(const ShardInfo& shard, std::uint64_t first, std::uint64_t count, RowBlock& out,

@@ -1,5 +1,5 @@
 #pragma once
-// A dataset folder: dataset.json, journal.jsonl, shards/ (docs/formats.md). Readers trust the journal alone.
+// A dataset folder: dataset.json, journals, shards/ (docs/formats.md). Readers trust the journals alone.
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -67,10 +67,6 @@ struct BadShard {
 /// read_checked wants it. Reads the file if `deep`.
 std::optional<Problem> fault_of(const std::filesystem::path& folder, const JournalLine& line,
                                 const DatasetHeader& header, bool deep);
-/// Takes bad shards out of the journal, so that generate makes them anew.
-void strike_shards(const std::filesystem::path& folder, const std::vector<BadShard>& bad);
-/// Reads every shard as read_checked does. Throws InputError with every shard at fault.
-void verify_dataset(const Dataset& dataset);
 /// Reads a whole shard and compares it with header and journal: config, shapes, rows, draws, outcomes, hash.
 /// Throws InputError naming the file; the remedy is --repair.
 ShardData read_checked(const ShardInfo& shard);

@@ -3,9 +3,9 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <utility>
 
 #include "base/durable.hpp"
@@ -48,37 +48,96 @@ std::size_t whole_lines(const std::string& text) {
   return text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
 }
 
-}  // namespace
+struct Placed {
+  JournalLine line;
+  std::filesystem::path file;
+  int number;             ///< from 1
+  bool doubtful = false;  ///< another line says something else of its shard
+};
 
-std::vector<JournalLine> read_journal(const std::filesystem::path& file) {
-  std::vector<JournalLine> lines;
-  if (!std::filesystem::exists(file)) return lines;
+/// Whether a file's name is that of a journal.
+bool is_journal(const std::filesystem::path& file) {
+  const std::string name = file.filename().string();
+  return name.starts_with("journal") && name.ends_with(".jsonl");
+}
+
+std::vector<std::filesystem::path> journals_of(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (is_journal(entry.path())) files.push_back(entry.path());
+  std::ranges::sort(files);
+  return files;
+}
+
+constexpr const char* kMendJournal =
+    "run generate with --repair, which makes such shards again, or restore the file from a copy";
+
+std::string place_of(const Placed& p) { return p.file.string() + ":" + std::to_string(p.number); }
+
+std::vector<Placed> read_lines(const std::filesystem::path& file, Problems& damaged) {
+  std::vector<Placed> lines;
   const std::string text = read_text(file);
-  Problems problems;
-  std::set<std::uint64_t> seen;
   int number = 0;
   for (std::size_t at = 0, end = whole_lines(text); at < end;) {
     const std::size_t stop = text.find('\n', at);
-    const std::string where = file.string() + ":" + std::to_string(++number);
-    const char* remedy = "restore the file from a copy, or delete the line: its shard is then made again";
+    ++number;
     try {
-      lines.push_back(parse_journal_line(text.substr(at, stop - at)));
-      if (!seen.insert(lines.back().shard).second)
-        problems.add("shard " + std::to_string(lines.back().shard) + " twice", where,
-                     "a shard is journalled once", remedy);
+      lines.push_back({parse_journal_line(text.substr(at, stop - at)), file, number});
     } catch (const std::exception& e) {
-      problems.add("damaged journal line", where, e.what(), remedy);
+      damaged.add("damaged journal line", file.string() + ":" + std::to_string(number), e.what(),
+                  kMendJournal);
     }
     at = stop + 1;
   }
-  problems.raise();
   return lines;
 }
 
-void rewrite_journal(const std::filesystem::path& file, const std::vector<JournalLine>& lines) {
-  std::string text;
-  for (const auto& line : lines) text += journal_text(line);
-  write_text(file, text);
+/// One line per shard; where two say different things, neither counts.
+std::vector<Placed> read_placed(const std::filesystem::path& folder, Problems& damaged) {
+  std::vector<Placed> all;
+  std::map<std::uint64_t, std::size_t> seen;  // place in `all`
+  for (const auto& file : journals_of(folder)) {
+    for (Placed& line : read_lines(file, damaged)) {
+      const auto [first, is_new] = seen.try_emplace(line.line.shard, all.size());
+      if (is_new) {
+        all.push_back(std::move(line));
+      } else if (Placed& other = all[first->second]; !(other.line == line.line)) {
+        damaged.add("shard " + std::to_string(line.line.shard) + " twice", place_of(line),
+                    "it is not what " + place_of(other) + " says", kMendJournal);
+        other.doubtful = true;
+      }
+    }
+  }
+  std::erase_if(all, [](const Placed& p) { return p.doubtful; });
+  return all;
+}
+
+}  // namespace
+
+std::string Part::journal_name() const {
+  return all() ? "journal.jsonl"
+               : "journal-" + std::to_string(number) + "-of-" + std::to_string(of) + ".jsonl";
+}
+
+std::vector<JournalLine> read_journals(const std::filesystem::path& folder, Problems* damaged) {
+  Problems found;
+  std::vector<JournalLine> lines;
+  for (Placed& p : read_placed(folder, found)) lines.push_back(std::move(p.line));
+  if (damaged == nullptr)
+    found.raise();
+  else
+    damaged->add(found);
+  return lines;
+}
+
+void strike_lines(const std::filesystem::path& folder, const std::vector<std::uint64_t>& shards) {
+  Problems ignored;
+  std::map<std::filesystem::path, std::string> texts;
+  for (const auto& file : journals_of(folder)) texts[file];
+  for (const Placed& p : read_placed(folder, ignored))
+    if (std::ranges::find(shards, p.line.shard) == shards.end()) texts[p.file] += journal_text(p.line);
+  for (const auto& [file, text] : texts)
+    if (text != read_text(file)) write_text(file, text);
 }
 
 Journal::Journal(std::filesystem::path file) : file_(std::move(file)) {
@@ -95,14 +154,15 @@ Journal::~Journal() {
   if (fd_ >= 0) ::close(fd_);
 }
 
-void Journal::append(const JournalLine& line) {
-  const std::string text = journal_text(line);
+void Journal::append(std::span<const JournalLine> lines) {
+  std::string text;
+  for (const JournalLine& line : lines) text += journal_text(line);
   const off_t before = ::lseek(fd_, 0, SEEK_END);
   const ssize_t n = ::write(fd_, text.data(), text.size());
   if (n == static_cast<ssize_t>(text.size()) && ::fsync(fd_) == 0) return;
   const int error = n < 0 || errno != 0 ? errno : ENOSPC;  // a short write means the disk is full
   if (::ftruncate(fd_, before) != 0)
-    raise_file_error(file_, error, "cannot write the journal, and its last line is cut short");
+    raise_file_error(file_, error, "cannot write the journal, and its last line may be cut short");
   raise_file_error(file_, error, "cannot write the journal");
 }
 

@@ -7,7 +7,7 @@ own_mounts
 tiny_experiment "$work"
 config=$work/tiny_data.toml data=$work/data
 make_data() { "$swingbank" generate "$1" --out "$2" "${@:3}"; }
-whole() { "$swingbank" generate --verify "$1" | grep -q 'every shard is as it was written'; }
+whole() { "$swingbank" verify "$1" | grep -q 'every shard is as it was written'; }
 
 refuses "no such config" "$work/none.toml" make_data "$work/none.toml" "$data"
 refuses "no such config" "$work/none.toml" "$swingbank" databank "$work/none.toml"
@@ -40,14 +40,14 @@ whole "$data" || fail "a refused config changed the dataset"
 
 cp -r "$data" "$work/cut"
 truncate -s 5000 "$work/cut/shards/shard-000003.h5"
-refuses "truncated shard" 'shard-000003.h5' "$swingbank" generate --verify "$work/cut"
+refuses "truncated shard" 'shard-000003.h5' "$swingbank" verify "$work/cut"
 make_data "$config" "$work/cut" --repair >/dev/null 2>&1
 whole "$work/cut" || fail "--repair did not mend the shard"
 make_data "$work/other.toml" "$work/data4" >/dev/null 2>&1
 cp "$work/data4/shards/shard-000002.h5" "$work/cut/shards/"
-refuses "shard of another config" 'shard-000002.h5' "$swingbank" generate --verify "$work/cut"
+refuses "shard of another config" 'shard-000002.h5' "$swingbank" verify "$work/cut"
 rm "$work/cut/shards/shard-000002.h5"
-refuses "shard that is gone" 'shard-000002.h5' "$swingbank" generate --verify "$work/cut"
+refuses "shard that is gone" 'shard-000002.h5' "$swingbank" verify "$work/cut"
 
 # A full disk ends the run; what was finished stays, nothing is half-written, and with room it goes on.
 disk "$work/small" 750k
@@ -75,6 +75,6 @@ done
 kill -KILL "$killed"
 wait "$killed" 2>/dev/null || true
 status=0
-"$swingbank" generate --verify "$work/killed" >"$work/verify" 2>&1 || status=$?
+"$swingbank" verify "$work/killed" >"$work/verify" 2>&1 || status=$?
 ((status == 2)) || fail "an unfinished but sound dataset: exit code $status, $(cat "$work/verify")"
 echo "ok: killed: $(grep -c . "$work/killed/journal.jsonl") shards kept"

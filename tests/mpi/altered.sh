@@ -18,13 +18,13 @@ bad=$work/bad
 alter "$bad" 3
 [ "$(stat -c %s "$bad/shards/shard-000003.h5")" = "$(stat -c %s "$work/data/shards/shard-000003.h5")" ] || fail "another length"
 where="changed shard at $bad/shards/shard-000003.h5"
-expect 1 "$where" "$generate" --verify "$bad"
-expect 1 "$where" ranks 3 "$generate" --verify "$bad"
+expect 1 "$where" "$verify" "$bad"
+expect 1 "$where" "$verify" --processes 3 "$bad"
 expect 1 "$where" "${make[@]}" --out "$bad"
 grep -q -- "--repair" "$work/output" || fail "no remedy"
 expect 0 "dataset $whole" "${make[@]}" --trust --out "$bad"
 expect 0 "dataset $whole" ranks 3 "${make[@]}" --repair --out "$bad"
-expect 0 "every shard is as it was written" ranks 2 "$generate" --verify "$bad"
+expect 0 "every shard is as it was written" "$verify" --processes 2 "$bad"
 
 # A journal that counts otherwise.
 for edit in 's/"rows":/&1/' 's/"draws":20/"draws":21/' 's/"stable":/&1/' 's/"rows":/&1000000000000000/'; do
@@ -32,6 +32,6 @@ for edit in 's/"rows":/&1/' 's/"draws":20/"draws":21/' 's/"stable":/&1/' 's/"row
   cp -r "$work/data" "$bad"
   sed -i "/shard-000002/$edit" "$bad/journal.jsonl"
   cmp -s "$bad/journal.jsonl" "$work/data/journal.jsonl" && fail "nothing edited: $edit"
-  expect 1 "at $bad/shards/shard-000002.h5" "$generate" --verify "$bad"
+  expect 1 "at $bad/shards/shard-000002.h5" "$verify" "$bad"
   expect 0 "dataset $whole" "${make[@]}" --repair --out "$bad"
 done

@@ -41,11 +41,11 @@ expect 0 "$whole" "${make[@]}" --out "$work/limit"
 
 # Damaged shards are found and made anew.
 truncate -s 1000 "$work/data/shards/shard-000001.h5"
-expect 1 "truncated or changed shard" "$generate" --verify "$work/data"
+expect 1 "truncated or changed shard" "$verify" "$work/data"
 expect 1 "--repair" "${make[@]}" --out "$work/data"
 expect 0 "$whole" "${make[@]}" --repair --out "$work/data"
 printf '\x01' | dd of="$work/data/shards/shard-000000.h5" bs=1 seek=100000 conv=notrunc status=none
-expect 1 "changed shard at $work/data/shards/shard-000000.h5" "$generate" --verify "$work/data"
+expect 1 "changed shard at $work/data/shards/shard-000000.h5" "$verify" "$work/data"
 expect 0 "$whole" "${make[@]}" --repair --out "$work/data"
 
 # The databank says how far it came.

@@ -7,11 +7,12 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 configs=$SWINGBANK_SOURCE/configs/datasets
 generate=$SWINGBANK_BIN/swingbank-generate
+verify=$SWINGBANK_BIN/swingbank-verify
 python3=/usr/bin/python3 # Debian's own: python3-h5py is installed for this one
 ranks() { local n=$1; shift; mpirun --oversubscribe -np "$n" "$@"; }
 fail() { echo "FAILED: $*" >&2; exit 1; }
 # The dataset's hash, after every shard has been read and compared.
-hash_of() { "$generate" --verify "$1" | sed -n 's/.*dataset \([0-9a-f]\{16\}\)$/\1/p'; }
+hash_of() { "$verify" "$1" | sed -n 's/.*dataset \([0-9a-f]\{16\}\)$/\1/p'; }
 # expect <exit code> <text in the output> <command...>
 expect() {
   local code=$1 text=$2 got=0

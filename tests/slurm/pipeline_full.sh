@@ -41,7 +41,7 @@ signal_generate() {
 }
 job_of() { awk -v stage="$1" '$1 == stage {print $2}' "$work/jobs"; }
 all_ended() { [[ -z $(squeue -h) ]]; }
-dataset_hash() { "$SWINGBANK_BIN/swingbank" generate --verify "$1" | awk '{for (i = 1; i < NF; i++) if ($i == "dataset") hash = $(i + 1)} END {print hash}'; }
+dataset_hash() { "$SWINGBANK_BIN/swingbank" verify "$1" | awk '{for (i = 1; i < NF; i++) if ($i == "dataset") hash = $(i + 1)} END {print hash}'; }
 scores() { (cd "$1" && grep -H -E '"(mse|baseline_mse|best_epoch)"' ./*-gen30.json); }
 
 # unbroken STAGE [OPTION...]

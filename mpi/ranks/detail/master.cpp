@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 #include "base/stop_signal.hpp"
 
@@ -11,16 +13,24 @@ namespace swingbank::mpi::ranks {
 
 namespace {
 constexpr double kWarnAfter = 120.0;  ///< [s]
-}
+/// [s] of work in a lease: 10,000 groups then ask a thousand times a second.
+constexpr double kLeaseLasts = 10.0;
+/// A lease fills no more than this share of the time after which it is overdue.
+constexpr double kShareOfTimeout = 0.25;
 
-Master::Master(MPI_Comm world, store::Journal& journal, Progress& progress, std::deque<std::uint64_t> missing,
+double lease_lasts(double timeout) {
+  return timeout > 0 ? std::min(kLeaseLasts, kShareOfTimeout * timeout) : kLeaseLasts;
+}
+}  // namespace
+
+Master::Master(MPI_Comm world, JournalKeeper& journal, Progress& progress, std::deque<std::uint64_t> missing,
                int leaders, double timeout)
     : world_(world),
       journal_(journal),
       progress_(progress),
-      missing_(std::move(missing)),
       waiting_leaders_(leaders),
       timeout_(timeout),
+      leases_(std::move(missing), lease_lasts(timeout), leaders + 1),
       watcher_([this] { watch(); }) {}
 
 Master::~Master() {
@@ -36,7 +46,7 @@ Master::~Master() {
 void Master::watch() {
   std::unique_lock guard(mutex_);
   while (!wake_.wait_for(guard, std::chrono::milliseconds(500), [this] { return ending_; })) {
-    for (auto& [leader, lease] : leases_) {
+    for (auto& [leader, lease] : leases_.out()) {
       const double age =
           std::chrono::duration<double>(std::chrono::steady_clock::now() - lease.since).count();
       if (timeout_ > 0 && age > timeout_) {
@@ -44,42 +54,31 @@ void Master::watch() {
                    "\nshard {} is overdue at rank {} (leased {:.0f} s ago, limit {:.0f} s): the run ends; "
                    "finished shards are safe, run the command again to continue, with a larger "
                    "--lease-timeout if shards take that long\n",
-                   lease.shard, leader, age, timeout_);
+                   lease.shards.front(), leader, age, timeout_);
         std::_Exit(1);  // mpirun and srun then end the other ranks
       }
       if (!lease.warned && age > kWarnAfter) {
-        spdlog::warn("shard {} is overdue at rank {}: leased {:.0f} s ago", lease.shard, leader, age);
+        spdlog::warn("shard {} is overdue at rank {}: leased {:.0f} s ago", lease.shards.front(), leader,
+                     age);
         lease.warned = true;
       }
     }
   }
 }
 
-std::int64_t Master::exchange(const Report& report, int rank) {
-  {
-    const std::lock_guard guard(mutex_);
-    leases_.erase(rank);
+Shards Master::exchange(const Report& report, int rank) {
+  std::vector<std::uint64_t> made;
+  for (const auto& line : report.finished) {
+    made.push_back(line.shard);
+    if (rank != 0) progress_.add(line.draws);  // rank 0 counts draw by draw
   }
-  if (!report.problems.empty()) {
-    ++abandoned_;
-    for (const auto& p : report.problems) problems_.add(p.what, p.where, p.why, p.remedy);
-  }
-  if (report.finished) {
-    try {
-      journal_.append(*report.finished);
-      if (rank != 0) progress_.add(report.finished->draws);  // rank 0 counts draw by draw
-    } catch (const InputError& e) {
-      ++abandoned_;
-      for (const auto& p : e.problems()) problems_.add(p.what, p.where, p.why, p.remedy);
-    }
-  }
-  stop_ = stop_ || report.stop || stop_asked();
-  if (stop_ || !problems_.empty() || missing_.empty()) return kNoMore;
-  const std::uint64_t shard = missing_.front();
-  missing_.pop_front();
   const std::lock_guard guard(mutex_);
-  leases_[rank] = {shard, std::chrono::steady_clock::now()};
-  return static_cast<std::int64_t>(shard);
+  leases_.take_back(rank, made, report.seconds);
+  journal_.put(report.finished);
+  for (const auto& p : report.problems) problems_.add(p.what, p.where, p.why, p.remedy);
+  stop_ = stop_ || report.stop || stop_asked() || !journal_.problems().empty();
+  if (stop_ || !problems_.empty()) return {};
+  return leases_.give(rank, rank == 0, Leases::Clock::now());
 }
 
 void Master::poll() {
@@ -91,9 +90,9 @@ void Master::poll() {
     MPI_Get_count(&status, MPI_CHAR, &length);
     std::string text(static_cast<std::size_t>(length), '\0');
     MPI_Recv(text.data(), length, MPI_CHAR, status.MPI_SOURCE, kReportTag, world_, MPI_STATUS_IGNORE);
-    std::int64_t lease = exchange(unpack(text), status.MPI_SOURCE);
-    MPI_Send(&lease, 1, MPI_INT64_T, status.MPI_SOURCE, kLeaseTag, world_);
-    if (lease == kNoMore) --waiting_leaders_;
+    const Shards lease = exchange(unpack(text), status.MPI_SOURCE);
+    send_shards(world_, status.MPI_SOURCE, lease);
+    if (lease.empty()) --waiting_leaders_;
   }
 }
 
@@ -102,6 +101,8 @@ void Master::serve_to_the_end() {
     wait_for(world_, MPI_ANY_SOURCE, kReportTag, 1.0);
     poll();
   }
+  journal_.finish();
+  for (const auto& p : journal_.problems()) problems_.add(p.what, p.where, p.why, p.remedy);
 }
 
 }  // namespace swingbank::mpi::ranks

@@ -9,7 +9,8 @@ namespace swingbank::mpi::ranks {
 std::string pack(const Report& r) {
   nlohmann::json j;
   j["stop"] = r.stop;
-  if (r.finished) j["finished"] = store::journal_text(*r.finished);
+  j["seconds"] = r.seconds;
+  for (const auto& line : r.finished) j["finished"].push_back(store::journal_text(line));
   for (const auto& p : r.problems) j["problems"].push_back({p.what, p.where, p.why, p.remedy});
   return j.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
@@ -18,7 +19,9 @@ Report unpack(const std::string& text) {
   const auto j = nlohmann::json::parse(text);
   Report r;
   r.stop = j.at("stop");
-  if (j.contains("finished")) r.finished = store::parse_journal_line(j["finished"]);
+  r.seconds = j.at("seconds");
+  if (j.contains("finished"))
+    for (const auto& line : j["finished"]) r.finished.push_back(store::parse_journal_line(line));
   if (j.contains("problems"))
     for (const auto& p : j["problems"]) r.problems.push_back({p[0], p[1], p[2], p[3]});
   return r;
@@ -48,6 +51,39 @@ bool wait_for(MPI_Comm world, int from, int tag, double timeout) {
     if (timeout > 0 && MPI_Wtime() - start > timeout) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
+}
+
+void wait_for(MPI_Request request) {
+  constexpr double kAwake = 200e-6;  // [s] what a group agrees upon while it makes a shard takes less
+  const double start = MPI_Wtime();
+  for (int done = 0;;) {
+    MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+    if (done != 0) return;
+    if (MPI_Wtime() - start > kAwake) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+void send_shards(MPI_Comm world, int to, const Shards& shards) {
+  MPI_Send(shards.data(), static_cast<int>(shards.size()), MPI_UINT64_T, to, kLeaseTag, world);
+}
+
+Shards receive_shards(MPI_Comm world, int from) {
+  MPI_Status status;
+  MPI_Probe(from, kLeaseTag, world, &status);
+  int count;
+  MPI_Get_count(&status, MPI_UINT64_T, &count);
+  Shards shards(static_cast<std::size_t>(count));
+  MPI_Recv(shards.data(), count, MPI_UINT64_T, from, kLeaseTag, world, MPI_STATUS_IGNORE);
+  return shards;
+}
+
+void share_shards(MPI_Comm group, Shards& shards) {
+  MPI_Request request;
+  std::uint64_t count = shards.size();
+  MPI_Ibcast(&count, 1, MPI_UINT64_T, 0, group, &request);
+  wait_for(request);
+  shards.resize(count);
+  MPI_Bcast(shards.data(), static_cast<int>(count), MPI_UINT64_T, 0, group);
 }
 
 }  // namespace swingbank::mpi::ranks

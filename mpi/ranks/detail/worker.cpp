@@ -55,21 +55,34 @@ std::map<std::string, std::uint64_t> Worker::count_operating_points(const store:
   return {{"used", all[0]}, {"no_power_flow", all[1]}, {"implausible", all[2]}};
 }
 
+Report Worker::work_off(const Shards& lease) {
+  Report report;
+  const double start = MPI_Wtime();
+  for (const std::uint64_t shard : lease) {
+    try {
+      report.finished.push_back(make(shard));
+    } catch (const AgreedError& e) {  // of the group
+      report.problems = e.problems();
+    }
+    int ends = stop_asked() || !report.problems.empty() ? 1 : 0, any = ends;
+    if (lease.size() > 1) MPI_Allreduce(&ends, &any, 1, MPI_INT, MPI_MAX, group);
+    if (any != 0) break;
+  }
+  report.seconds = MPI_Wtime() - start;
+  return report;
+}
+
 void Worker::run() {
   int rank;
   MPI_Comm_rank(group, &rank);
   Report report;
   for (;;) {
     report.stop = stop_asked();
-    std::int64_t lease = rank == 0 ? exchange(report) : 0;
-    MPI_Bcast(&lease, 1, MPI_INT64_T, 0, group);
-    if (lease == kNoMore) return;
-    report = {};
-    try {
-      report.finished = make(static_cast<std::uint64_t>(lease));
-    } catch (const AgreedError& e) {  // of the group
-      report.problems = e.problems();
-    }
+    Shards lease;
+    if (rank == 0) lease = exchange(report);
+    share_shards(group, lease);
+    if (lease.empty()) return;
+    report = work_off(lease);
   }
 }
 

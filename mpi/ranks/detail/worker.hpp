@@ -14,13 +14,15 @@ struct Worker {
   store::ShardAttributes attributes;
   std::filesystem::path folder;
   MPI_Comm group;  ///< rank 0 of it is the leader
-  /// Leader only: hands in a report, returns the next shard or kNoMore.
-  std::function<std::int64_t(const Report&)> exchange;
+  /// Leader only: hands in a report, returns the next lease.
+  std::function<Shards(const Report&)> exchange;
   /// Called now and then with the number of draws finished since.
   std::function<void(std::uint64_t)> tick;
 
   /// Works until there is no more.
   void run();
+  /// Makes the shards of a lease until all are made, one cannot be made, or a signal asks for an end.
+  Report work_off(const Shards& lease);
   /// Makes one shard. Collective over the group; throws InputError on all its ranks alike.
   store::JournalLine make(std::uint64_t shard);
   /// Of one shard, for the journal. Collective over the group.

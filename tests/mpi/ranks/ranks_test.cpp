@@ -164,14 +164,16 @@ TEST_F(Ranks, CollectiveReadsOfIrregularSelectionsAreRight) {
 
 TEST(Report, SurvivesTheJourney) {
   Report r;
-  r.finished = store::JournalLine{
-      3, "shards/shard-000003.h5", 5, 4, 99, "0123456789abcdef", {{"stable", 4}, {"refused", 1}}};
+  r.finished = {{3, "shards/shard-000003.h5", 5, 4, 99, "0123456789abcdef", {{"stable", 4}, {"refused", 1}}},
+                {7, "shards/shard-000007.h5", 5, 5, 98, "0123456789abcdea", {{"stable", 5}}}};
+  r.seconds = 0.25;
   r.problems = {{"a", "b", "c", "d \"quoted\""}};
   r.stop = true;
   const Report back = unpack(pack(r));
   EXPECT_TRUE(back.stop);
-  ASSERT_TRUE(back.finished);
-  EXPECT_EQ(store::journal_text(*back.finished), store::journal_text(*r.finished));
+  EXPECT_EQ(back.seconds, 0.25);
+  ASSERT_EQ(back.finished.size(), 2u);
+  for (int i : {0, 1}) EXPECT_EQ(store::journal_text(back.finished[i]), store::journal_text(r.finished[i]));
   ASSERT_EQ(back.problems.size(), 1u);
   EXPECT_EQ(back.problems[0].remedy, r.problems[0].remedy);
 }

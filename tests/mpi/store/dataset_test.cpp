@@ -8,6 +8,7 @@
 #include "base/durable.hpp"
 #include "base/problem.hpp"
 #include "mpi/store/journal.hpp"
+#include "mpi/store/shard_check.hpp"
 #include "tests/mpi/store/sample_shard.hpp"
 
 namespace swingbank::mpi::store {
@@ -52,8 +53,9 @@ struct TwoShards : Folder {
     h.draws_per_shard = 5;
     write_header(path, h);
     Journal journal(path / "journal.jsonl");
-    journal.append(line_of(path, 1, sample_shard(5, 5, 1)));  // order of finishing is not order of number
-    journal.append(line_of(path, 0, sample_shard(5, 0, 0)));
+    const JournalLine finished[] = {line_of(path, 1, sample_shard(5, 5, 1)),
+                                    line_of(path, 0, sample_shard(5, 0, 0))};
+    journal.append(finished);  // order of finishing is not order of number
   }
 };
 
@@ -112,10 +114,12 @@ TEST(DatasetFolder, ShardOfAnotherConfigIsFoundByVerify) {
 
 /// The journal's line of shard 0, changed by `edit`.
 void edit_line(const std::filesystem::path& folder, const std::function<void(JournalLine&)>& edit) {
-  auto lines = read_journal(folder / "journal.jsonl");
-  for (auto& l : lines)
+  std::string text;
+  for (auto& l : read_journals(folder)) {
     if (l.shard == 0) edit(l);
-  rewrite_journal(folder / "journal.jsonl", lines);
+    text += journal_text(l);
+  }
+  write_text(folder / "journal.jsonl", text);
 }
 
 TEST(DatasetFolder, JournalThatCountsOtherwiseIsFoundByVerify) {
@@ -208,24 +212,60 @@ TEST(JournalFile, HalfWrittenLastLineIsLeftOutAndCutOff) {
   const TwoShards folder;
   const auto file = folder.path / "journal.jsonl";
   std::ofstream(file, std::ios::app) << "{\"shard\":2,\"fi";
-  EXPECT_EQ(read_journal(file).size(), 2u);
+  EXPECT_EQ(read_journals(folder.path).size(), 2u);
   {
     Journal journal(file);
-    journal.append({2, "shards/c.h5", 5, 5, 1, "0000000000000000", {}});
+    const JournalLine third[] = {{2, "shards/c.h5", 5, 5, 1, "0000000000000000", {}}};
+    journal.append(third);
   }
-  const auto lines = read_journal(file);
+  const auto lines = read_journals(folder.path);
   ASSERT_EQ(lines.size(), 3u);
   EXPECT_EQ(lines[2].shard, 2u);
+}
+
+/// The journal's text with shard 1 once more, with another number of rows.
+std::string contradiction(const std::filesystem::path& file) {
+  JournalLine other = parse_journal_line(read_text(file));  // of shard 1, which ended first
+  other.rows += 1;
+  return journal_text(other);
 }
 
 TEST(JournalFile, OtherDamageIsRefusedWithLineNumbers) {
   const TwoShards folder;
   const auto file = folder.path / "journal.jsonl";
-  const std::string text = read_text(file);
-  write_text(file, "garbage\n" + text + text);
-  const std::string sentence = sentence_of([&] { read_journal(file); });
+  const std::string text = read_text(file), first = text.substr(0, text.find('\n') + 1);
+  write_text(file, first);
+  const std::string other = contradiction(file);
+  write_text(file, "garbage\n" + text + text + other);
+  const std::string sentence = sentence_of([&] { read_journals(folder.path); });
   EXPECT_THAT(sentence, HasSubstr("damaged journal line at " + file.string() + ":1"));
-  EXPECT_THAT(sentence, HasSubstr("shard 1 twice at " + file.string() + ":4"));
+  EXPECT_THAT(sentence, HasSubstr("shard 1 twice at " + file.string() + ":6 (it is not what " +
+                                  file.string() + ":2 says"));
+  EXPECT_THAT(sentence, ::testing::Not(HasSubstr("shard 0")));  // the same line twice is no contradiction
+
+  Problems damaged;
+  EXPECT_EQ(read_journals(folder.path, &damaged).size(), 1u);
+  EXPECT_EQ(damaged.list().size(), 2u);
+  strike_lines(folder.path, {});
+  const auto lines = read_journals(folder.path);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_EQ(lines[0].shard, 0u);
+}
+
+TEST(JournalFile, PartsAreReadAsOne) {
+  const TwoShards folder;
+  const std::string text = read_text(folder.path / "journal.jsonl"),
+                    first = text.substr(0, text.find('\n') + 1);
+  std::filesystem::remove(folder.path / "journal.jsonl");
+  const Part second_part{2, 2}, first_part{1, 2};  // shard 1 and shard 0
+  EXPECT_TRUE(second_part.has(1) && !second_part.has(0) && first_part.has(0));
+  write_text(folder.path / second_part.journal_name(), first);
+  write_text(folder.path / first_part.journal_name(), text.substr(first.size()) + "{\"half");
+  EXPECT_EQ(first_part.journal_name(), "journal-1-of-2.jsonl");
+  EXPECT_TRUE(open_dataset(folder.path).complete);
+  strike_lines(folder.path, {1});
+  EXPECT_EQ(read_text(folder.path / second_part.journal_name()), "");
+  EXPECT_EQ(read_journals(folder.path).size(), 1u);
 }
 
 }  // namespace

@@ -117,9 +117,11 @@ mpi::store::Dataset with_shard_1_changed(const mpi::store::Dataset& dataset,
   mpi::store::ShardData data = mpi::store::read_shard(file);
   change(data);
   mpi::store::write_shard(file, data);
-  auto lines = mpi::store::read_journal(dataset.path / "journal.jsonl");
+  auto lines = mpi::store::read_journals(dataset.path);
   lines[1].bytes = std::filesystem::file_size(file);
-  mpi::store::rewrite_journal(dataset.path / "journal.jsonl", lines);
+  std::string text;
+  for (const auto& line : lines) text += mpi::store::journal_text(line);
+  write_text(dataset.path / "journal.jsonl", text);
   return mpi::store::open_dataset(dataset.path);
 }
 

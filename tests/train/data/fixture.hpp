@@ -121,13 +121,14 @@ inline mpi::store::Dataset make_dataset(const std::filesystem::path& folder, con
     a.parameter_high = header.parameter_high;
     const std::string name = "shards/shard-" + std::to_string(number) + ".h5";
     mpi::store::write_shard(folder / name, shard);
-    journal.append({number,
-                    name,
-                    shard.rows,
-                    shard.rows,
-                    std::filesystem::file_size(folder / name),
-                    hex(mpi::store::shard_hash(shard)),
-                    {{"stable", shard.rows}}});
+    const mpi::store::JournalLine line[] = {{number,
+                                             name,
+                                             shard.rows,
+                                             shard.rows,
+                                             std::filesystem::file_size(folder / name),
+                                             hex(mpi::store::shard_hash(shard)),
+                                             {{"stable", shard.rows}}}};
+    journal.append(line);
   }
   return mpi::store::open_dataset(folder);
 }

@@ -1,4 +1,4 @@
-#include "mpi/ranks/progress.hpp"
+#include "base/progress.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -8,7 +8,12 @@
 #include <cmath>
 #include <cstdio>
 
-namespace swingbank::mpi::ranks {
+namespace swingbank {
+
+const std::vector<std::string>& Progress::words() {
+  static const std::vector<std::string> all = {"auto", "bar", "lines", "none"};
+  return all;
+}
 
 Progress::Progress(Mode mode, std::string unit, std::uint64_t total, std::uint64_t done)
     : mode_(mode != Mode::automatic        ? mode
@@ -68,4 +73,4 @@ std::string duration_text(double seconds) {
   return fmt::format("{} s", s);
 }
 
-}  // namespace swingbank::mpi::ranks
+}  // namespace swingbank

@@ -4,12 +4,15 @@
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <vector>
 
-namespace swingbank::mpi::ranks {
+namespace swingbank {
 
 class Progress {
  public:
   enum class Mode { automatic, bar, lines, none };
+  /// Of --progress, in the order of Mode.
+  static const std::vector<std::string>& words();
   /// `done`: what earlier runs have made. `unit`: "draws".
   Progress(Mode mode, std::string unit, std::uint64_t total, std::uint64_t done);
   ~Progress() { finish(); }
@@ -34,4 +37,4 @@ std::string rate_text(double per_second, const std::string& unit);
 /// "1 h 02 min", "3 min 20 s", "12 s".
 std::string duration_text(double seconds);
 
-}  // namespace swingbank::mpi::ranks
+}  // namespace swingbank

@@ -1,0 +1,60 @@
+// swingbank verify: reads every shard of a dataset and compares it with journal and header, on all cores and
+// without MPI.
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <cstdio>
+#include <string>
+#include <thread>
+
+#include "base/progress.hpp"
+#include "base/stop_signal.hpp"
+#include "jobs/command_line.hpp"
+#include "mpi/store/shard_check.hpp"
+#include "mpi/store/summary.hpp"
+
+namespace {
+using namespace swingbank;
+namespace store = mpi::store;
+
+void require_whole(const std::string& folder, const store::DatasetHeader& header, int processes,
+                   Progress::Mode mode) {
+  const auto lines = store::read_journals(folder);
+  Progress progress(mode, "shards", lines.size(), 0);
+  Problems problems;
+  for (const auto& [shard, p] : store::bad_shards(folder, header, lines, processes, [&] { progress.add(1); }))
+    problems.add(p.what, p.where, p.why, p.remedy);
+  progress.finish();
+  problems.raise();
+}
+
+int run(const std::string& folder, int processes, Progress::Mode mode) {
+  require_whole(folder, store::read_header(folder), processes, mode);
+  const store::Dataset dataset = store::open_dataset(folder, true);
+  fmt::print("{}every shard is as it was written\n", store::describe(dataset));
+  return dataset.complete ? 0 : kSubmitAgain;
+}
+}  // namespace
+
+int main(int argc, char** argv) {
+  spdlog::set_default_logger(spdlog::stderr_color_mt("verify"));
+  spdlog::set_pattern("%H:%M:%S %^%l%$ %v");
+  jobs::CommandLine line(
+      "Reads every shard of a dataset and compares it with journal and header: hash, shapes, rows, outcomes.\n"
+      "  swingbank verify data/gencls\n"
+      "Exit codes: 0 whole and complete, 1 a shard at fault, 2 whole so far and unfinished.",
+      "swingbank verify");
+  std::string folder;
+  int processes = static_cast<int>(std::max(1U, std::thread::hardware_concurrency())), mode = 0;
+  line.add("folder", folder, "the dataset's folder").required();
+  line.add("--processes", processes, "that read at once (default: one per core)").positive();
+  line.add_choice("--progress", mode, Progress::words(), "auto, bar, lines or none");
+  if (!line.parse(argc, argv)) return line.end();
+  try {
+    return run(folder, processes, static_cast<Progress::Mode>(mode));
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return 1;
+  }
+}

@@ -1,0 +1,161 @@
+#include "mpi/ranks/detail/run_folder.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <set>
+
+#include "base/durable.hpp"
+#include "mpi/ranks/detail/worker.hpp"
+
+namespace swingbank::mpi::ranks {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kLockFile = ".lock";    ///< alone, or shared by runs that make a part each
+constexpr const char* kClaimFile = ".claim";  ///< while a folder is looked at and its header made
+
+FolderLocks lock_folder(const fs::path& folder, const store::Part& part) {
+  make_folder(folder);
+  const auto lock = [&](const fs::path& file, const std::string& what, RunLock::Kind kind) {
+    return std::make_unique<RunLock>(
+        file, LockWords{what, folder.string(), "wait for it to end, or choose another folder"},
+        std::chrono::seconds(5), kind);
+  };
+  if (part.all()) return {lock(folder / kLockFile, "dataset in use", RunLock::Kind::alone), nullptr};
+  auto shared = lock(folder / kLockFile, "dataset in use", RunLock::Kind::shared);
+  return {std::move(shared),
+          lock(folder / fmt::format("{}-{}-of-{}", kLockFile, part.number, part.of),
+               fmt::format("part {} of {} in use", part.number, part.of), RunLock::Kind::alone)};
+}
+
+/// Runs that make a part each start at the same time: one after the other looks at the folder.
+class Claim {
+ public:
+  Claim(const fs::path& folder, const store::Part& part) {
+    if (part.all()) return;
+    lock_ = std::make_unique<RunLock>(
+        folder / kClaimFile, LockWords{"dataset being looked at", folder.string(), "run the command again"},
+        std::chrono::minutes(2));
+  }
+  ~Claim() {
+    if (lock_) lock_->withdraw(true);
+  }
+  Claim(const Claim&) = delete;
+  Claim& operator=(const Claim&) = delete;
+
+ private:
+  std::unique_ptr<RunLock> lock_;
+};
+
+/// Whether a folder holds nothing but what a run leaves that was killed before its header stood.
+bool is_unclaimed(const fs::path& folder) {
+  const fs::path header = temporary_name(folder / "dataset.json");
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const fs::path name = entry.path().filename();
+    const bool ours = name.string().starts_with(kLockFile) || name == kClaimFile ||
+                      name == header.filename() ||
+                      (name == "shards" && entry.is_directory() && fs::is_empty(entry.path()));
+    if (!ours) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void require_same_config(const fs::path& folder, const store::DatasetHeader& header) {
+  const store::DatasetHeader found = store::read_header(folder);
+  if (found.config_hash == header.config_hash) return;
+  throw InputError({"a dataset of another config", folder.string(),
+                    fmt::format("its config hash is {} (kernel {}), this run's is {} (kernel {})",
+                                found.config_hash, found.kernel, header.config_hash, header.kernel),
+                    "give another folder, or the config, size, seed and build it was made with"});
+}
+
+bool is_archive(const fs::path& folder) {
+  return fs::exists(folder / "dataset.json") && ::access(folder.c_str(), W_OK) != 0;
+}
+
+namespace {
+
+/// A folder is new, or it belongs to this very config. Under the lock.
+void claim_folder(const fs::path& folder, const store::DatasetHeader& header, FolderLocks& locks) {
+  if (fs::exists(folder / "dataset.json")) return require_same_config(folder, header);
+  if (!is_unclaimed(folder)) {
+    locks.withdraw();
+    throw InputError({"output folder in use", folder.string(), "it holds files but no dataset",
+                      "give a new or empty folder"});
+  }
+  store::write_header(folder, header);
+}
+
+/// The folder for shards, without temporary files of a run that was killed.
+void clear_leftovers(const fs::path& folder, const store::Part& part, std::uint64_t shards) {
+  make_folder(folder / "shards");
+  if (part.all()) {
+    for (const auto& entry : fs::directory_iterator(folder / "shards"))
+      if (entry.path().extension() == ".part") fs::remove(entry.path());
+    return;
+  }
+  for (std::uint64_t shard = part.number - 1; shard < shards; shard += part.of)
+    fs::remove(temporary_name(folder / shard_file_name(shard)));
+}
+
+/// Parts are of one number: 2 of 3 and 2 of 4 would make the same shards.
+void require_same_cut(const fs::path& folder, const store::Part& part) {
+  if (part.all()) return;
+  const std::string ending = fmt::format("-of-{}.jsonl", part.of);
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("journal-") && !name.ends_with(ending))
+      throw InputError({fmt::format("part {} of {}", part.number, part.of), "--part",
+                        "the folder has the journal " + name + ", which cuts the dataset otherwise",
+                        "give parts as they were, or run without --part when no part runs any more"});
+  }
+}
+
+}  // namespace
+
+FolderLocks enter(const GenerateOptions& o, const store::DatasetHeader& header) {
+  FolderLocks locks = lock_folder(o.folder, o.part);
+  const Claim claim(o.folder, o.part);
+  claim_folder(o.folder, header, locks);
+  require_same_cut(o.folder, o.part);
+  store::Journal begun(o.folder / o.part.journal_name());  // before another part looks
+  clear_leftovers(o.folder, o.part, header.shard_count());
+  return locks;
+}
+
+std::vector<store::JournalLine> journalled(const GenerateOptions& o) {
+  Problems damaged;
+  auto lines = store::read_journals(o.folder, o.repair ? &damaged : nullptr);
+  for (const auto& p : damaged.list()) spdlog::warn("left out: {}", p.sentence());
+  std::erase_if(lines, [&](const auto& line) { return !o.part.has(line.shard); });
+  return lines;
+}
+
+void settle(const fs::path& folder, const std::vector<store::BadShard>& bad, bool repair) {
+  Problems problems;
+  for (const auto& [shard, p] : bad) {
+    if (repair) spdlog::warn("to be made anew: {} at {} ({})", p.what, p.where, p.why);
+    if (!repair) problems.add(p.what, p.where, p.why, p.remedy);
+  }
+  problems.raise();
+  std::vector<std::uint64_t> numbers;
+  for (const auto& b : bad) numbers.push_back(b.shard);
+  if (repair) store::strike_lines(folder, numbers);
+}
+
+std::deque<std::uint64_t> missing_shards(const GenerateOptions& o, const store::DatasetHeader& header) {
+  std::set<std::uint64_t> there;
+  for (const auto& s : store::open_dataset(o.folder, true).shards) there.insert(s.shard);
+  std::deque<std::uint64_t> missing;
+  for (std::uint64_t s = 0; s < header.shard_count(); ++s)
+    if (o.part.has(s) && !there.contains(s)) missing.push_back(s);
+  return missing;
+}
+
+}  // namespace swingbank::mpi::ranks

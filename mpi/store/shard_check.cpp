@@ -1,0 +1,146 @@
+#include "mpi/store/shard_check.hpp"
+
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+namespace swingbank::mpi::store {
+
+namespace {
+
+struct Reader {
+  pid_t process = -1;
+  int pipe = -1;
+  std::string text;  ///< of a line that has not ended
+};
+
+/// A line per shard: empty where it is whole.
+std::string line_of(const JournalLine& shard, const std::optional<Problem>& p) {
+  if (!p) return "\n";
+  const nlohmann::json j = {shard.shard, p->what, p->where, p->why, p->remedy};
+  return j.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+void write_all(int fd, const std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const ssize_t n = ::write(fd, text.data() + at, text.size() - at);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) ::_exit(1);
+    at += static_cast<std::size_t>(n);
+  }
+}
+
+[[noreturn]] void read_share(const std::filesystem::path& folder, const DatasetHeader& header,
+                             const std::vector<JournalLine>& lines, std::size_t first, std::size_t step,
+                             int out) {
+  try {
+    for (std::size_t i = first; i < lines.size(); i += step)
+      write_all(out, line_of(lines[i], fault_of(folder, lines[i], header, true)));
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "%s\n", e.what());
+    ::_exit(1);
+  }
+  ::_exit(0);
+}
+
+void take_lines(Reader& r, std::vector<BadShard>& bad, const std::function<void()>& done) {
+  std::size_t at = 0;
+  for (std::size_t end; (end = r.text.find('\n', at)) != std::string::npos; at = end + 1) {
+    if (end > at) {
+      const auto j = nlohmann::json::parse(r.text.substr(at, end - at));
+      bad.push_back({j[0], {j[1], j[2], j[3], j[4]}});
+    }
+    done();
+  }
+  r.text.erase(0, at);
+}
+
+void end_reader(Reader& r) {
+  ::close(r.pipe);
+  r.pipe = -1;
+  int status = 0;
+  while (::waitpid(r.process, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
+  throw InputError({"the reading of shards broke off", "process " + std::to_string(r.process),
+                    WIFSIGNALED(status) ? ::strsignal(WTERMSIG(status)) : "its reason stands above",
+                    "run the command again, with fewer --processes if memory is short"});
+}
+
+Reader start_reader(const std::function<void(int)>& work) {
+  std::array<int, 2> ends{};
+  std::fflush(nullptr);
+  const pid_t parent = ::getpid();
+  const bool piped = ::pipe(ends.data()) == 0;
+  const pid_t child = piped ? ::fork() : -1;
+  if (child < 0)
+    throw InputError({"a process cannot be started", "--processes", std::strerror(errno), "ask for fewer"});
+  if (child == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (::getppid() != parent) ::_exit(1);
+    ::close(ends[0]);
+    work(ends[1]);
+  }
+  ::close(ends[1]);
+  return {child, ends[0], {}};
+}
+
+/// Takes what any of them has to say, until all have ended.
+void listen(std::vector<Reader>& readers, std::vector<BadShard>& bad, const std::function<void()>& done) {
+  for (std::size_t open = readers.size(); open > 0;) {
+    std::vector<pollfd> waits;
+    for (const Reader& r : readers) waits.push_back({r.pipe, POLLIN, 0});
+    if (::poll(waits.data(), waits.size(), -1) < 0) continue;
+    for (std::size_t i = 0; i < readers.size(); ++i) {
+      if (waits[i].revents == 0) continue;
+      std::array<char, 4096> piece{};
+      const ssize_t n = ::read(readers[i].pipe, piece.data(), piece.size());
+      if (n < 0 && errno == EINTR) continue;
+      if (n > 0) readers[i].text.append(piece.data(), static_cast<std::size_t>(n));
+      take_lines(readers[i], bad, done);
+      if (n > 0) continue;
+      end_reader(readers[i]);
+      --open;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<BadShard> bad_shards(const std::filesystem::path& folder, const DatasetHeader& header,
+                                 const std::vector<JournalLine>& lines, int processes,
+                                 const std::function<void()>& done) {
+  std::vector<BadShard> bad;
+  if (processes <= 1) {
+    for (const JournalLine& line : lines) {
+      if (const auto p = fault_of(folder, line, header, true)) bad.push_back({line.shard, *p});
+      done();
+    }
+  } else {
+    std::vector<Reader> readers;
+    const auto step = static_cast<std::size_t>(processes);
+    for (std::size_t k = 0; k < std::min(step, lines.size()); ++k)
+      readers.push_back(start_reader([&](int out) { read_share(folder, header, lines, k, step, out); }));
+    listen(readers, bad, done);
+  }
+  std::ranges::sort(bad, {}, &BadShard::shard);
+  return bad;
+}
+
+void verify_dataset(const Dataset& dataset) {
+  Problems problems;
+  for (const auto& [shard, p] : bad_shards(dataset.path, dataset, read_journals(dataset.path), 1))
+    problems.add(p.what, p.where, p.why, p.remedy);
+  problems.raise();
+}
+
+}  // namespace swingbank::mpi::store
