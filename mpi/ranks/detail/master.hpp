@@ -6,10 +6,10 @@
 #include <mutex>
 #include <thread>
 
+#include "base/progress.hpp"
 #include "mpi/ranks/detail/journal_keeper.hpp"
 #include "mpi/ranks/detail/leases.hpp"
 #include "mpi/ranks/detail/message.hpp"
-#include "base/progress.hpp"
 
 namespace swingbank::mpi::ranks {
 
