@@ -42,8 +42,10 @@ calibrate::CurveFit fit_curves(const Arguments& a, const plant::PlantModel& mode
 
 /// Writes the model under a name that says whether it holds, and the records of one that does; the model of
 /// an earlier run under the other name goes. Returns what to tell.
-std::string write_model(const Arguments& a, const plant::PlantModel& before, plant::PlantModel model,
-                        bool holds, const std::vector<std::string>& provenance) {
+std::string write_model(const Arguments& a, plant::PlantModel before, plant::PlantModel model, bool holds,
+                        const std::vector<std::string>& provenance) {
+  before = event::whole_model(std::move(before));
+  model = event::whole_model(std::move(model));
   const std::filesystem::path folder = a.out;
   const auto file = folder / (holds ? kModel : kBentModel);
   model.submitted.reset();
@@ -139,7 +141,7 @@ int run(Arguments& a) {
   std::vector<calibrate::Way> ways = {calibrate::way_of_model(c)};
   if (both) {
     const calibrate::CurveFit f = fit_curves(a, model, std::move(again));
-    plant::write_plant_file(folder / "curve-fit.toml", f.model,
+    plant::write_plant_file(folder / "curve-fit.toml", event::whole_model(f.model),
                             calibrate::provenance_lines(f, model, a.command));
     result["curve_fit"] = calibrate::curve_fit_json(f, truth);
     ways.push_back(calibrate::way_of(f, c));
@@ -165,6 +167,7 @@ void add_options(jobs::CommandLine& line, Arguments& a, bool& inner) {
           "folder for model.toml (model-not-adequate.toml where it does not hold), model.dyr and calibrate.json")
       .shows_default();
   a.reading.add_to(line);
+  a.reading.add_component(line);
   line.add("--method", a.method,
            "fit; curve-fit: the usual way, least squares of P and Q from the model's own values, as a "
            "baseline; both: side by side")

@@ -108,6 +108,7 @@ int main(int argc, char** argv) {
       .shows_default()
       .excludes(system_option);
   reading.add_to(line);
+  reading.add_component(line);
   line.add("--out", out, "folder for report.html, compare.json and the curves as CSV").shows_default();
   line.add_flag("--json", json, "print the result as JSON instead of tables");
   if (!line.parse(argc, argv)) return line.end();

@@ -14,6 +14,7 @@
 
 #include "jobs/command_line.hpp"
 #include "validate/check/record_set.hpp"
+#include "validate/event/component_model.hpp"
 #include "validate/plant/plant_model.hpp"
 #include "validate/record/record.hpp"
 
@@ -23,17 +24,30 @@ namespace swingbank::jobs {
 struct Reading {
   std::vector<std::string> columns;  ///< "V=BUS1.VPM [kV]"
   std::optional<double> from, until;
+  std::string component = "plant";  ///< what of the plant is tried
 
   /// Adds the options to a command line.
   void add_to(CommandLine& line) {
     line.add(
             "--columns", columns,
-            "which columns of the records are read: V=NAME,P=NAME (t, V, theta, f, P, Q, I, phi, speed, Efd, Ifd); "
+            "which columns of the records are read: V=NAME,P=NAME (t, V, theta, f, P, Q, I, phi, speed, Efd, Ifd; of a component "
+            "also Vs, Vref, Pm, Pref, gate); "
             "\"V=NAME [kV]\" where the file names no unit, V=#2 for the second column, P=-NAME turns the sign; "
             "beside [record.columns] of the plant file")
         .comma_separated();
     line.add("--from", from, "leave out what comes before [s]");
     line.add("--until", until, "leave out what comes later [s]");
+  }
+  /// Adds what of the plant is tried.
+  void add_component(CommandLine& line) {
+    line.add(
+            "--component", component,
+            "what of the plant is tried: plant, or one part that the record drives with what the others did: "
+            "exciter (V, and P, Q, speed, Ifd where its blocks ask for them, Vs and Vref where recorded -> Efd), "
+            "governor (speed or f, and Pref -> Pm, gate), "
+            "machine (V, angle or f, Efd, and Pm -> P, Q, Ifd, speed)")
+        .shows_default()
+        .one_of({"plant", "exciter", "governor", "machine"});
   }
   /// The same for another command.
   [[nodiscard]] std::vector<std::string> words() const {
@@ -57,6 +71,14 @@ struct Reading {
     problems.raise();
     if (from) model.reading.from = *from;
     if (until) model.reading.until = *until;
+    using validate::record::Component;
+    for (const auto c : {Component::exciter, Component::governor, Component::machine})
+      if (component == validate::record::component_name(c)) {
+        const std::size_t told = model.warnings.size();
+        model = validate::event::component_model(std::move(model), c);
+        for (std::size_t k = told; k < model.warnings.size(); ++k)
+          fmt::print(stderr, "note: {}\n", model.warnings[k]);
+      }
   }
 };
 

@@ -39,6 +39,7 @@ std::string notes(const Calibration& c, std::size_t i) {
 
 std::string identify_text(const Calibration& c) {
   std::string text;
+  if (c.candidates.empty()) return text;
   for (const auto& p : c.parameters) {
     if (p.fit.decided >= thresholds::parameters.identified) continue;
     text += fmt::format("  {}: ", p.fit.full_name());

@@ -84,8 +84,10 @@ EventScore score_event(event::WhitenedEvent whitened, const fit::EventFit& befor
   for (std::size_t c = 0; c < event.channels.size(); ++c) {
     ChannelScore channel;
     channel.channel = event.channels[c];
-    const bool power = channel.channel == playin::Output::P || channel.channel == playin::Output::Q;
-    channel.unit = !power ? "pu" : channel.channel == playin::Output::P ? "MW" : "Mvar";
+    const bool reactive = channel.channel == playin::Output::Q;
+    const bool power =
+        reactive || channel.channel == playin::Output::P || channel.channel == playin::Output::Pm;
+    channel.unit = !power ? "pu" : reactive ? "Mvar" : "MW";
     channel.scale = power ? event.record.base.mva : 1.0;
     const double noise = whitened.noise.deviation[static_cast<Eigen::Index>(c)];
     channel.noise = channel.scale * noise;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "validate/playin/component.hpp"
+
 namespace swingbank::validate::check {
 namespace {
 
@@ -16,7 +18,7 @@ void read_into(RecordSet& set, const std::string& file, const plant::PlantModel&
                  "they could not be told apart, and their results would overwrite each other",
                  "rename one of them");
   std::vector<std::string> warnings = record.notes;
-  if (model.plant.machine.effect != nullptr) {
+  if (model.plant.machine.effect != nullptr && !playin::is_recorded(model.plant)) {
     for (const auto& [kind, severity, problem] : check_record(record, plant_facts(model))) {
       if (severity == Severity::refuse)
         add_all({problem}, problems);

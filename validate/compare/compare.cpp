@@ -9,6 +9,8 @@
 #include "base/constants.hpp"
 #include "validate/compare/detail/fitted.hpp"
 #include "validate/compare/error_map_table.hpp"
+#include "validate/playin/component.hpp"
+#include "validate/playin/given.hpp"
 
 namespace swingbank::validate::compare {
 namespace {
@@ -62,6 +64,26 @@ std::vector<double> bridged(std::vector<double> values, const std::vector<char>&
   return values;
 }
 
+const std::vector<double>& played(const playin::Playback& p, playin::Output o) {
+  switch (o) {
+    case playin::Output::P:
+      return p.P;
+    case playin::Output::Q:
+      return p.Q;
+    case playin::Output::speed:
+      return p.speed;
+    case playin::Output::Efd:
+      return p.Efd;
+    case playin::Output::Pm:
+      return p.Pm;
+    case playin::Output::gate:
+      return p.gate;
+    case playin::Output::Ifd:
+      break;
+  }
+  return p.Ifd;
+}
+
 /// Measures every channel, once the event's playback is there.
 void measure_channels(const plant::PlantModel& model, DriveBy drive, const playin::PlayInOptions& options,
                       EventComparison& e) {
@@ -88,6 +110,12 @@ void measure_channels(const plant::PlantModel& model, DriveBy drive, const playi
     add({std::string(playin::output_name(o)), u.name, u.scale, u.floor, starts_at_mean, judged}, measured,
         modelled);
   };
+  if (e.record.component != record::Component::plant) {
+    for (const playin::Output o : playin::compared_outputs(e.record, true))
+      add_output(o, playin::measured_values(e.record, o), played(e.playback, o), o != playin::Output::gate,
+                 true);
+    return;
+  }
   if (!power) {
     add_output(playin::Output::P, e.record.P, e.playback.P, true, true);
     add_output(playin::Output::Q, e.record.Q, e.playback.Q, true, true);
@@ -157,10 +185,15 @@ std::vector<NamedCell> all_cells(const std::vector<EventComparison>& events) {
 
 /// Says how the instants were treated. `failed` is why they could not be moved, and empty where they could.
 std::string describe_fit(const EventComparison& e, bool tried, const std::string& failed) {
-  if (e.fitted) return "within that they were moved to where P and Q are met best.";
+  const std::string what =
+      e.record.component == record::Component::plant ? "P and Q are" : "what is compared is";
+  if (e.fitted) return "within that they were moved to where " + what + " met best.";
   if (!failed.empty())
     return "they could not be moved within that, so the middle of each interval was taken (" + failed + ").";
-  return tried ? "moving them within that does not explain P and Q, so the middle of each interval was taken."
+  return tried ? "moving them within that does not explain " +
+                     std::string(e.record.component == record::Component::plant ? "P and Q"
+                                                                                : "what is compared") +
+                     ", so the middle of each interval was taken."
                : "the middle of each interval was taken.";
 }
 
@@ -270,6 +303,7 @@ std::vector<Window> event_windows(const record::Record& record,
 ChannelUnit channel_unit(playin::Output output, const record::RecordBase& base) {
   switch (output) {
     case playin::Output::P:
+    case playin::Output::Pm:
       return {"MW", base.mva, event::kLeastNoise};
     case playin::Output::Q:
       return {"Mvar", base.mva, event::kLeastNoise};
@@ -290,7 +324,7 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
   const auto step = [&](const char* what, int done) {
     if (options.progress) options.progress(fmt::format("{}: {}", e.record.name, what), done, 3);
   };
-  const bool no_angle = e.record.angle == record::AngleSource::none;
+  const bool no_angle = e.record.angle == record::AngleSource::none && !playin::is_part(e.record);
   if (no_angle) options.drive = DriveBy::power;
   e.detected = options.switchings.empty();
   const event::Jumps jumps = options.jumps == event::Jumps::either

@@ -131,8 +131,7 @@ report::Table error_map(const std::vector<EventComparison>& events) { return map
 
 std::string terminal_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
                             const Adequacy& adequacy) {
-  std::string out =
-      fmt::format("{} ({}): measured against modelled\n\n", model.name, model.plant.machine.effect->name);
+  std::string out = fmt::format("{} ({}): measured against modelled\n\n", model.name, plant::subject(model));
   const auto maps = maps_of(events);
   out += report::padded(error_summary(events));
   out += events.size() > 1 ? "\nIn units of noise, per window and band, worst of all events:\n" +
@@ -189,8 +188,10 @@ std::string html_report(const plant::PlantModel& model, const std::vector<EventC
   report::Page page("Measured against modelled: " + model.name,
                     fmt::format("{} of {:g} MVA; the recorded {} played into the model, and what it "
                                 "answers with is compared.",
-                                model.plant.machine.effect->name, model.plant.mva,
-                                events.front().playback.P.empty() ? "P and Q are" : "terminal voltage is"));
+                                plant::subject(model), model.plant.mva,
+                                model.whole                         ? "signals around it are"
+                                : events.front().playback.P.empty() ? "P and Q are"
+                                                                    : "terminal voltage is"));
   page.verdict(adequacy.sentence, adequacy.adequate ? report::Tone::good : report::Tone::bad);
   const auto maps = maps_of(events);
   page.table(events.size() > 1 ? worst_map_table(maps) : map_table(maps));

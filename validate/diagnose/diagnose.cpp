@@ -49,7 +49,8 @@ class Diagnoser {
       fit_base(from);
       const hypothesis::Stage stage = model_stage();
       result_.ranked = hypothesis::try_hypotheses(
-          stage, hypothesis::all_hypotheses(stage.under_test(), stage.library), options_.progress);
+          stage, hypothesis::all_hypotheses(stage.under_test(), stage.library, stage.component()),
+          options_.progress);
       if (round == kBases || !better_base(from)) break;
       result_.events = prepared;  // the noise was measured through the worse base
     }
@@ -224,8 +225,9 @@ class Diagnoser {
   [[nodiscard]] std::vector<hypothesis::Judgement> beside(const hypothesis::Stage& stage,
                                                           const hypothesis::Judgement& first) const {
     const hypothesis::Stage then = hypothesis::after(stage, first);
-    auto pairs = hypothesis::try_hypotheses(then, hypothesis::all_hypotheses(then.under_test(), then.library),
-                                            options_.progress);
+    auto pairs = hypothesis::try_hypotheses(
+        then, hypothesis::all_hypotheses(then.under_test(), then.library, then.component()),
+        options_.progress);
     // a rival of the best hypothesis may only have started badly
     const int slot = pairs.empty() || pairs.front().gain < thresholds::evidence.second
                          ? -1

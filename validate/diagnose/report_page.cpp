@@ -36,7 +36,7 @@ class DiagnosisPage {
         figures_(report_figures(d)),
         page_("Diagnosis: " + model.name,
               fmt::format("{} of {:g} MVA · {} {} · recorded terminal voltage played into the model",
-                          model.plant.machine.effect->name, model.plant.mva, d.events.size(),
+                          plant::subject(model), model.plant.mva, d.events.size(),
                           d.events.size() == 1 ? "event" : "events")) {}
 
   std::string html() {

@@ -5,6 +5,8 @@
 #include "base/median.hpp"
 #include "validate/event/detail/unsmear.hpp"
 #include "validate/event/play.hpp"
+#include "validate/playin/component.hpp"
+#include "validate/playin/given.hpp"
 #include "validate/playin/instants.hpp"
 #include "validate/playin/play_in.hpp"
 
@@ -119,10 +121,7 @@ FitEvent prepare(record::Record record, const FitEventOptions& options, Jumps ju
   if (const double still = still_until(e.record); !first.empty() && still < first.front().time)
     first.insert(first.begin(), {still, 0.0});
   e.start = playin::pre_event_point(e.record, first, options.pre_event);
-  e.channels = {playin::Output::P, playin::Output::Q};
-  if (options.measured_states)
-    for (const playin::Output o : {playin::Output::speed, playin::Output::Efd, playin::Output::Ifd})
-      if (!e.measured(o).empty()) e.channels.push_back(o);
+  e.channels = playin::compared_outputs(e.record, options.measured_states);
   return e;
 }
 
@@ -248,7 +247,8 @@ std::vector<playin::Switching> find_switchings(const record::Record& record, dou
 WhitenedEvents prepare_events(const plant::PlantModel& model, std::vector<record::Record> records,
                               const FitEventOptions& options) {
   std::vector<FitEvent> events;
-  for (const record::Record& r : records) record::require_angle(r);
+  for (const record::Record& r : records)
+    if (!playin::is_part(r)) record::require_angle(r);
   const Jumps jumps =
       options.jumps == Jumps::either ? jumps_of(records, options.jump_threshold) : options.jumps;
   for (record::Record& r : records) events.push_back(prepare(std::move(r), options, jumps));

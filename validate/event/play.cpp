@@ -1,5 +1,6 @@
 #include "validate/event/play.hpp"
 
+#include "validate/playin/given.hpp"
 #include "validate/playin/instruments.hpp"
 
 namespace swingbank::validate::event {
@@ -12,6 +13,11 @@ std::vector<playin::Switching> switchings_at(const FitEvent& event, const EventS
 
 playin::OperatingPoint start_at(const FitEvent& event, const EventState& state) {
   playin::OperatingPoint start = event.start;
+  if (playin::is_part(event.record)) {
+    start.Efd += state.P;
+    start.Pm += state.P;
+    return start;
+  }
   start.P += state.P;
   start.Q += state.Q;
   return start;
@@ -20,11 +26,14 @@ playin::OperatingPoint start_at(const FitEvent& event, const EventState& state) 
 playin::Response play(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
                       const EventState& state, std::span<const playin::Direction> along, const Playing& how) {
   const playin::VoltageCurve curve(event.played(), switchings_at(event, state));
+  const playin::OperatingPoint start = start_at(event, state);
+  const auto given = playin::given_of(event.record, curve.switchings(), event.start);
   playin::Drive run{.plant = &tested.plant,
                     .conventions = tested.conventions,
                     .record = &event.record,
                     .curve = &curve,
-                    .start = start_at(event, state),
+                    .start = start,
+                    .given = given ? &*given : nullptr,
                     .angle = state.angle,
                     .speed = state.speed,
                     .tolerance = how.tolerance,

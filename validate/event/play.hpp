@@ -14,9 +14,11 @@ enum class InputKind { none, torque, field };
 
 /// What belongs to one event.
 struct EventState {
-  std::vector<double> switchings;             ///< [s]; empty: where they were found
-  double P = 0, Q = 0, angle = 0, speed = 0;  ///< offsets of the operating point and of the first states
-  playin::PiecewiseLinear input = {};         ///< what was added to Tm or Efd [pu]
+  std::vector<double> switchings;  ///< [s]; empty: where they were found
+  /// Offsets of the operating point and of the first states. Of an exciter or a governor P is that of Efd or
+  /// Pm, and the others mean nothing.
+  double P = 0, Q = 0, angle = 0, speed = 0;
+  playin::PiecewiseLinear input = {};  ///< what was added to Tm or Efd [pu]
 };
 
 /// How an event is played.

@@ -3,22 +3,12 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "validate/playin/component.hpp"
+
 namespace swingbank::validate::event {
 
 const std::vector<double>& FitEvent::measured(playin::Output o) const {
-  switch (o) {
-    case playin::Output::P:
-      return record.P;
-    case playin::Output::Q:
-      return record.Q;
-    case playin::Output::speed:
-      return record.speed;
-    case playin::Output::Efd:
-      return record.Efd;
-    case playin::Output::Ifd:
-      break;
-  }
-  return record.Ifd;
+  return playin::measured_values(record, o);
 }
 
 Eigen::VectorXd FitEvent::collected(const std::vector<double>* values, bool less_measured) const {

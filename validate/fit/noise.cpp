@@ -6,6 +6,7 @@
 
 #include "base/constants.hpp"
 #include "sim/core/noise.hpp"
+#include "validate/playin/given.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::fit {
@@ -223,6 +224,7 @@ event::FitEvent minute_of_noise(const event::FitEvent& like, const Eigen::Vector
     r.theta[k] = std::arg(like.start.voltage) + deviation[1] * normal[1];
   }
   for (auto* channel : {&r.P, &r.Q, &r.speed, &r.Efd, &r.Ifd}) channel->assign(samples, 0.0);
+  if (r.component != record::Component::plant) playin::stand_still(r, like.start);
   event.switchings.clear();
   event.smeared.clear();
   event.left_out.clear();

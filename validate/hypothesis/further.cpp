@@ -139,7 +139,7 @@ void bring(const Stage& stage, Hypothesis& h) {
 
 std::vector<Judgement> exchanges(const Stage& stage, const Judgement& pair,
                                  const std::vector<Judgement>& alone) {
-  const auto all = all_hypotheses(stage.under_test(), stage.library);
+  const auto all = all_hypotheses(stage.under_test(), stage.library, stage.component());
   const auto first = std::ranges::find(all, pair.hypothesis.with, &Hypothesis::name),
              second = std::ranges::find(all, pair.hypothesis.name, &Hypothesis::name);
   if (first == all.end() || second == all.end()) return {};  // one effect needs the other to be there
@@ -149,7 +149,7 @@ std::vector<Judgement> exchanges(const Stage& stage, const Judgement& pair,
   copy_values(pair.fit.plant, second->plant, second->free, stays.fit.plant);
   const Stage then = after(stage, stays);
   std::vector<Judgement> rivals;
-  for (Hypothesis& h : all_hypotheses(then.under_test(), then.library)) {
+  for (Hypothesis& h : all_hypotheses(then.under_test(), then.library, then.component())) {
     const auto known = std::ranges::find(alone, h.name, [](const Judgement& j) { return j.hypothesis.name; });
     const bool in_slot = first->slot >= 0 && h.slot == first->slot;
     const bool holds = known != alone.end() && known->accepted && known->hypothesis.with.empty();

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "validate/playin/can_run.hpp"
+#include "validate/playin/component.hpp"
 #include "validate/playin/instruments.hpp"
 
 namespace swingbank::validate::hypothesis {
@@ -126,11 +127,12 @@ Hypothesis added_to(const sim::plant::PlantUnderTest& tested, const sim::Effect&
 }
 
 void add_effects(const sim::plant::PlantUnderTest& tested, const sim::library::EffectLibrary& library,
-                 std::vector<Hypothesis>& all) {
+                 record::Component component, std::vector<Hypothesis>& all) {
   for (const sim::Effect* effect : library.all()) {
     const bool instrument = effect->slot == Slot::measurement;
     const bool fits = effect->slot == Slot::transformer || sim::is_control(effect->slot) || instrument;
     if (!fits || effect->instants || occupied(tested.plant, *effect)) continue;
+    if (!playin::belongs_to(component, effect->slot)) continue;
     if (instrument && !playin::can_be_taken_back(*effect)) continue;
     all.push_back(added_to(tested, *effect));
   }
@@ -218,11 +220,12 @@ std::string_view side_name(Side side) {
 }
 
 std::vector<Hypothesis> all_hypotheses(const sim::plant::PlantUnderTest& tested,
-                                       const sim::library::EffectLibrary& library) {
+                                       const sim::library::EffectLibrary& library,
+                                       record::Component component) {
   std::vector<Hypothesis> all;
-  add_effects(tested, library, all);
+  add_effects(tested, library, component, all);
   add_neutral_groups(tested, all);
-  add_conventions(tested, all);
+  if (playin::belongs_to(component, Slot::machine)) add_conventions(tested, all);
   return all;
 }
 

@@ -30,9 +30,10 @@ struct Hypothesis {
 
 /// Everything of the library that may be added to the plant. The hypotheses refer to its effects. Some of it
 /// may change nothing there (a stabiliser without an exciter), which only trying shows. Effects that act at
-/// given instants belong to one event and are not among them.
+/// given instants belong to one event and are not among them. Of a component only what is part of it.
 std::vector<Hypothesis> all_hypotheses(const sim::plant::PlantUnderTest& tested,
-                                       const sim::library::EffectLibrary& library);
+                                       const sim::library::EffectLibrary& library,
+                                       record::Component component = record::Component::plant);
 /// Every control of the plant that has its slot to itself, replaced by every other effect of that slot.
 std::vector<Hypothesis> all_replacements(const sim::plant::PlantUnderTest& tested,
                                          const sim::library::EffectLibrary& library);

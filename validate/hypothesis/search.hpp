@@ -26,6 +26,10 @@ struct Stage {
   double spread = thresholds::parameters.spread;  ///< believed of the model's parameters
   int threads = 1;
   [[nodiscard]] sim::plant::PlantUnderTest under_test() const { return {plant, conventions}; }
+  /// What of a plant the events are of.
+  [[nodiscard]] record::Component component() const {
+    return events.empty() ? record::Component::plant : events.front().record.component;
+  }
 };
 
 /// Fits the hypotheses and does not judge them. Returns the best first and leaves out those that do not act.

@@ -253,6 +253,12 @@ void read_from_grid(Config& config, PlantModel& model) {
 
 }  // namespace
 
+std::string subject(const PlantModel& model) {
+  if (model.reading.component == record::Component::plant)
+    return std::string(model.plant.machine.effect->name);
+  return std::string(record::component_name(model.reading.component)) + " alone";
+}
+
 PlantModel load_plant_model(const fs::path& file) {
   return parse_plant_model(read_input(file, "no readable plant file", "give the path of a plant .toml"),
                            file);
@@ -271,6 +277,8 @@ PlantModel parse_plant_model(const std::string& text, const fs::path& file) {
   model.record_base.frequency = hz;
   model.record_base.mva = config.require<double>("record.base_mva", {kSmallest, 1e9, "MVA"});
   model.record_base.kv = config.optional<double>("record.base_kv", 0.0, {kSmallest, 1e9, "kV"});
+  model.record_base.efd = config.optional<double>("record.efd_base", 0.0, {kSmallest, 1e9, "V or pu"});
+  model.record_base.ifd = config.optional<double>("record.ifd_base", 0.0, {kSmallest, 1e9, "A or pu"});
   for (const auto& word : config.keys("record.columns"))
     model.reading.columns[word] = config.require<std::string>("record.columns." + word);
   if (config.has("grid")) {

@@ -28,6 +28,8 @@ struct PlantModel {
   std::vector<std::string> standard = {};
   /// Of a calibration that did not hold: the plant as it was before, not bent to make up for what is missing.
   std::optional<sim::plant::Plant> submitted = {};
+  /// Where `plant` is one component of it only: the plant.
+  std::optional<sim::plant::Plant> whole = {};
   /// What looks wrong in the file and does not refuse it, with its line.
   std::vector<std::string> warnings = {};
   [[nodiscard]] sim::plant::PlantUnderTest under_test() const { return {plant, conventions}; }
@@ -35,6 +37,9 @@ struct PlantModel {
   /// model must not outlive the model and its copies.
   sim::library::EffectLibrary library = {};
 };
+
+/// What is tried, in a word: the machine's effect, or "exciter alone".
+std::string subject(const PlantModel& model);
 
 /// Reads a plant file (configs/plants/README.md describes it). Every parameter of every effect must be given
 /// by name; what is not is taken from the effect's standard values only where its block says

@@ -10,6 +10,9 @@
 #include "base/constants.hpp"
 #include "sim/plant/equations.hpp"
 #include "sim/plant/tableau.hpp"
+#include "validate/playin/component.hpp"
+#include "validate/playin/detail/recorded.hpp"
+#include "validate/playin/given.hpp"
 
 namespace swingbank::validate::playin {
 namespace {
@@ -71,8 +74,10 @@ class Driven {
       : run_(run),
         directions_(directions),
         equations_(*run.plant),
-        scratch_(static_cast<std::size_t>(equations_.scratch())) {
+        scratch_(static_cast<std::size_t>(equations_.scratch())),
+        recorded_(is_recorded(*run.plant)) {
     start();
+    find_gate();
     const std::size_t n = x_.size();
     for (auto& k : k_) k.resize(n);
     trial_.resize(n);
@@ -114,7 +119,7 @@ class Driven {
         Seeds<T>::add(vi, d, slope.imag());
       }
       evaluate_at(vr, vi, run_.record->t.front(), x.data(), signals_, trial_.data());
-      const auto out = outputs(to_record);
+      const auto out = outputs(to_record, x);
       for (Eigen::Index i = 0; i < count; ++i)
         for (Eigen::Index j = 0; j < n + kOutputs; ++j)
           by(j, first + i) = Seeds<T>::slope(
@@ -137,13 +142,20 @@ class Driven {
     for (const auto& block : sim::plant::block_parameters(plant)) p.emplace_back(block.begin(), block.end());
     const double to_machine = run_.record->base.mva / plant.mva;
     T P(run_.start.P * to_machine), Q(run_.start.Q * to_machine);
+    T Efd(run_.start.Efd), Pm(run_.start.Pm * to_machine);
     each([&](const Direction& d, std::size_t i) {
       const auto [block, index] = d.parameter;
       if (d.kind == Kind::parameter)
         Seeds<T>::add(p[static_cast<std::size_t>(block)][static_cast<std::size_t>(index)], i, d.scale);
-      if (d.kind == Kind::P) Seeds<T>::add(P, i, d.scale * to_machine);
+      if (d.kind == Kind::P && recorded_) {
+        Seeds<T>::add(Efd, i, d.scale);
+        Seeds<T>::add(Pm, i, d.scale * to_machine);
+      } else if (d.kind == Kind::P) {
+        Seeds<T>::add(P, i, d.scale * to_machine);
+      }
       if (d.kind == Kind::Q) Seeds<T>::add(Q, i, d.scale * to_machine);
     });
+    if (recorded_) p.front() = recorded::standing<T>(Efd, T(run_.start.Ifd), Pm);
     auto at = sim::plant::operating_point_of<T>(plant, p, run_.start.voltage, P, Q, run_.conventions);
     c_ = std::move(at.c);
     x_ = std::move(at.x);
@@ -157,6 +169,17 @@ class Driven {
     });
     has_torque_ = !run_.torque.t.empty();
     has_field_ = !run_.field.t.empty();
+  }
+  /// The governor's state that is its gate or valve.
+  void find_gate() {
+    std::size_t state = run_.plant->machine.effect->states.size();
+    for (const auto& block : run_.plant->controls)
+      for (const auto& s : block.effect->states) {
+        if (block.effect->slot == sim::Slot::governor &&
+            (s.name == "gate" || s.name == "valve" || s.name == "fuel"))
+          gate_ = static_cast<int>(state);
+        ++state;
+      }
   }
   void collect_instants() {
     const auto& switchings = run_.curve->switchings();
@@ -190,12 +213,30 @@ class Driven {
     s.t = T(std::min(t, last_moment_));
     s.Vpr = vr;
     s.Vpi = vi;
+    give(vr, vi, t, s);
     T er, ei, ir, ii;
     equations_.emf(c_.data(), x, scratch_.data(), er, ei);
     equations_.from_grid(c_.data(), x, scratch_.data(), er, ei, s, ir, ii);
     if (!has_torque_ && !has_field_) return equations_.derivative(c_.data(), x, scratch_.data(), s, dx);
     equations_.derivative_with(c_.data(), x, scratch_.data(), added(run_.torque, Kind::torque, t),
                                added(run_.field, Kind::field, t), s, dx);
+  }
+  /// What the record says of everything but the voltage.
+  void give(const T& vr, const T& vi, double t, sim::Signals<T>& s) {
+    if (!recorded_ && !run_.given) return;
+    const Given::At at = run_.given ? (*run_.given)(segment_, t) : Given::standing(run_.start);
+    const double to_machine = run_.record->base.mva / run_.plant->mva;
+    s.Efd = s.Efd + T(at.Efd);
+    s.Tm = s.Tm + T(at.Pm * to_machine);
+    s.dVref = T(at.Vref);
+    s.dPref = T(at.Pref * to_machine);
+    if (!recorded_) return;
+    const T P(at.P * to_machine), Q(at.Q * to_machine), per_square = T(1.0) / (vr * vr + vi * vi);
+    s.Ir = (vr * P + vi * Q) * per_square;
+    s.Ii = (vi * P - vr * Q) * per_square;
+    scratch_[recorded::speed] = T(at.speed);
+    scratch_[recorded::dIfd] = T(at.Ifd);
+    scratch_[recorded::Vs] = T(at.Vs);
   }
   T added(const PiecewiseLinear& input, Kind kind, double t) const {
     T value(input(t));
@@ -308,7 +349,7 @@ class Driven {
     // the frame turns with the pre-event angle
     const double frame = run_.start.drift / (constants::turn * run_.conventions.frequency);
     back.voltage.push_back(voltage(t_));
-    auto out = outputs(to_record);
+    auto out = outputs(to_record, x_);
     out[static_cast<std::size_t>(Output::speed)] = signals_.speed + T(frame);
     for (int o = 0; o < kOutputs; ++o) {
       back.value[o].push_back(sim::value_of(out[static_cast<std::size_t>(o)]));
@@ -317,10 +358,16 @@ class Driven {
     }
   }
   /// By the signals as they stand.
-  std::array<T, kOutputs> outputs(double to_record) const {
+  std::array<T, kOutputs> outputs(double to_record, const std::vector<T>& x) const {
     T P, Q;
     equations_.grid_power(c_.data(), signals_, P, Q);
-    return {P * T(to_record), Q * T(to_record), signals_.speed, signals_.Efd, signals_.Ifd};
+    return {P * T(to_record),
+            Q * T(to_record),
+            signals_.speed,
+            signals_.Efd,
+            signals_.Ifd,
+            signals_.Tm * T(to_record),
+            gate_ < 0 ? T(0.0) : x[static_cast<std::size_t>(gate_)]};
   }
   [[noreturn]] void give_up() const {
     throw InputError({"play-in stops", fmt::format("t = {:.4f} s", t_),
@@ -337,7 +384,8 @@ class Driven {
   std::array<std::vector<T>, 7> k_;
   T Efd_, Tm_;
   sim::Signals<T> signals_;
-  bool has_torque_ = false, has_field_ = false;
+  bool recorded_, has_torque_ = false, has_field_ = false;
+  int gate_ = -1;  ///< state that is compared with a recorded gate
   std::vector<Instant> instants_;
   std::size_t next_ = 0;
   int segment_ = 0, steps_ = 0;
@@ -356,7 +404,7 @@ double PiecewiseLinear::operator()(double at) const {
 }
 
 std::string_view output_name(Output output) {
-  constexpr std::array<std::string_view, kOutputs> names = {"P", "Q", "speed", "Efd", "Ifd"};
+  constexpr std::array<std::string_view, kOutputs> names = {"P", "Q", "speed", "Efd", "Ifd", "Pm", "gate"};
   return names[static_cast<std::size_t>(output)];
 }
 

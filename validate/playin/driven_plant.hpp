@@ -17,7 +17,9 @@ struct OperatingPoint {
   int samples = 0;      ///< of the pre-event window, from the record's first
   Complex voltage;      ///< at t = 0 of the record [pu]
   double P = 0, Q = 0;  ///< [pu on the record's base]
-  double drift = 0;     ///< slope of theta [rad/s]; 0 where it cannot be told from noise
+  /// Of a component: what its record has of them, on the record's base and as deviation from nominal (speed).
+  double Efd = 0, Ifd = 0, Pm = 0, speed = 0, Vs = 0, Vref = 0, Pref = 0;
+  double drift = 0;  ///< slope of theta [rad/s]; 0 where it cannot be told from noise
 };
 
 /// A function of time through (t[k], value[k]), straight between them, zero outside.
@@ -27,12 +29,14 @@ struct PiecewiseLinear {
 };
 
 /// What the plant answers at each sample of the record.
-enum class Output { P, Q, speed, Efd, Ifd };
-constexpr int kOutputs = 5;
+enum class Output { P, Q, speed, Efd, Ifd, Pm, gate };
+constexpr int kOutputs = 7;
 std::string_view output_name(Output output);
 
-/// One run: who is driven, by what, from where. P and Q of the answer are per unit on the record's base, the
-/// other outputs on the machine's.
+class Given;
+
+/// One run: who is driven, by what, from where. P, Q and Pm of the answer are per unit on the record's base,
+/// the other outputs on the machine's.
 struct Drive {
   const sim::plant::Plant* plant = nullptr;
   sim::Conventions conventions = {};
@@ -40,7 +44,8 @@ struct Drive {
   const VoltageCurve* curve = nullptr;
   Complex voltage_factor = 1;  ///< what the curve is multiplied by
   OperatingPoint start = {};
-  double angle = 0, speed = 0;              ///< offset of the first two states from equilibrium [rad], [pu]
+  const Given* given = nullptr;  ///< what else drives a component (given.hpp); none: it stays at the start
+  double angle = 0, speed = 0;   ///< offset of the first two states from equilibrium [rad], [pu]
   PiecewiseLinear torque = {}, field = {};  ///< added to Tm, Efd [pu]
   double tolerance = 1e-10;                 ///< error per step, relative to 1 + |state|
   double until = 1e300;                     ///< samples after it are left out [s]
@@ -53,7 +58,7 @@ struct Direction {
   enum class Kind {
     parameter,  ///< `parameter` of the plant
     switching,  ///< instant `index` of the curve [s]
-    P,          ///< of the operating point [pu on the record's base]
+    P,          ///< of the operating point [pu on the record's base]; of a component Efd and Pm
     Q,          ///< likewise
     angle,      ///< at the start [rad]
     speed,      ///< at the start [pu]

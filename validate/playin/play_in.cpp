@@ -6,11 +6,14 @@
 #include <cmath>
 
 #include "validate/playin/detail/driven_pq.hpp"
+#include "validate/playin/given.hpp"
 #include "validate/playin/instruments.hpp"
 
 namespace swingbank::validate::playin {
 namespace {
 
+/// A limit that is met within a step bends it, and no step is short enough for that [s].
+constexpr double kLeastStep = 1e-7;
 constexpr int kFewestSteady = 5;  ///< samples that make a mean and a spread
 
 /// Slope of theta over the first n samples [rad/s], or 0 if it is below five times its own standard error.
@@ -49,32 +52,54 @@ OperatingPoint pre_event_point(const record::Record& record, const std::vector<S
   for (int k = 0; k < n; ++k) {
     point.voltage +=
         std::polar(record.V[k], record.theta[k] - point.drift * record.t[k]) / static_cast<double>(n);
-    point.P += record.P[k] / n;
-    point.Q += record.Q[k] / n;
   }
+  const auto mean = [n](const std::vector<double>& values) {
+    double sum = 0;
+    for (int k = 0; k < n && !values.empty(); ++k) sum += values[static_cast<std::size_t>(k)] / n;
+    return sum;
+  };
+  point.P = mean(record.P);
+  point.Q = mean(record.Q);
+  if (record.component == record::Component::plant) return point;
+  point.Efd = mean(record.Efd);
+  point.Ifd = mean(record.Ifd);
+  point.Pm = mean(record.Pm.empty() ? record.P : record.Pm);
+  point.speed = mean(record.speed.empty() ? record.f : record.speed);
+  point.Vs = mean(record.Vs);
+  point.Vref = mean(record.Vref);
+  point.Pref = mean(record.Pref);
+  if (is_part(record)) point.drift = 0;
   return point;
+}
+
+void take_outputs(Response& response, Playback& back) {
+  const auto take = [&](Output o) { return std::move(response.value[static_cast<int>(o)]); };
+  back.P = take(Output::P);
+  back.Q = take(Output::Q);
+  back.speed = take(Output::speed);
+  back.Efd = take(Output::Efd);
+  back.Ifd = take(Output::Ifd);
+  back.Pm = take(Output::Pm);
+  back.gate = take(Output::gate);
+  back.steps = response.steps;
 }
 
 Playback play_in(const sim::plant::PlantUnderTest& tested, const record::Record& record,
                  const VoltageCurve& curve, const PlayInOptions& options) {
   Playback back;
   back.start = pre_event_point(record, curve.switchings(), options.pre_event);
+  const auto given = given_of(record, curve.switchings(), back.start);
   Response response = observe({.plant = &tested.plant,
                                .conventions = tested.conventions,
                                .record = &record,
                                .curve = &curve,
                                .start = back.start,
+                               .given = given ? &*given : nullptr,
                                .tolerance = options.tolerance,
                                .until = options.until,
+                               .least_step = kLeastStep,
                                .step_limit = options.step_limit});
-  const auto take = [&](Output o) { return std::move(response.value[static_cast<int>(o)]); };
-  back.P = take(Output::P);
-  back.Q = take(Output::Q);
-  back.speed = take(Output::speed);
-  // The frame turns with the pre-event angle; a record's speed is off nominal by as much.
-  back.Efd = take(Output::Efd);
-  back.Ifd = take(Output::Ifd);
-  back.steps = response.steps;
+  take_outputs(response, back);
   return back;
 }
 

@@ -26,15 +26,18 @@ OperatingPoint pre_event_point(const record::Record& record, const std::vector<S
 /// Ifd on the machine's.
 struct Playback {
   OperatingPoint start;
-  std::vector<double> P, Q, speed, Efd, Ifd;
+  std::vector<double> P, Q, speed, Efd, Ifd, Pm, gate;
   std::vector<double> V, theta;  ///< where P and Q drive (play_in_power); theta unwrapped [rad]
   int steps = 0;                 ///< of the integrator
 };
 
-/// Plays the curve into the plant. The plant starts in equilibrium at the pre-event mean; empty exciter and
-/// governor slots hold Efd and Tm there. Where the pre-event angle turns evenly, the frame turns with it.
-/// Throws InputError if the operating point cannot be held, or the equations cannot be integrated (state and
-/// time are named).
+/// Moves a response's outputs into a playback.
+void take_outputs(Response& response, Playback& back);
+
+/// Plays the curve into the plant; a component's record gives what else drives it. The plant starts in
+/// equilibrium at the pre-event mean; empty exciter and governor slots hold Efd and Tm there. Where the
+/// pre-event angle turns evenly, the frame turns with it. Throws InputError if the operating point cannot be
+/// held, or the equations cannot be integrated (state and time are named).
 Playback play_in(const sim::plant::PlantUnderTest& tested, const record::Record& record,
                  const VoltageCurve& curve, const PlayInOptions& options = {});
 

@@ -58,8 +58,12 @@ Record read_hdf5_record(const std::filesystem::path& file, const RecordBase& bas
   for (std::size_t c = 0; c < channels.size(); ++c)
     headings.push_back({channels[c], column_meaning(channels[c], c < units.size() ? units[c] : "")});
   Problems problems;
-  const auto chosen = choose_columns(headings, {.columns = options.columns, .part = options.part}, base,
-                                     file.string(), raw.about, problems);
+  const auto chosen = choose_columns(headings,
+                                     {.columns = options.columns,
+                                      .part = options.part,
+                                      .component = options.component,
+                                      .needed = options.needed},
+                                     base, file.string(), raw.about, problems);
   raw.about.terminal = plants[plant];
   problems.raise();
   for (const auto i : chosen) {
@@ -69,7 +73,7 @@ Record read_hdf5_record(const std::filesystem::path& file, const RecordBase& bas
       const auto from = values.begin() + static_cast<std::ptrdiff_t>((plant * channels.size() + i - 1) * n);
       column.assign(from, from + static_cast<std::ptrdiff_t>(n));
     }
-    if (m.quantity == Quantity::P || m.quantity == Quantity::Q)
+    if (m.quantity == Quantity::P || m.quantity == Quantity::Q || m.quantity == Quantity::Pm)
       for (double& x : column) x *= mva[plant] / base.mva;
     raw.columns.push_back({headings[i].name, m, std::move(column)});
   }

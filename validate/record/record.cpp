@@ -4,6 +4,7 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <chrono>
 #include <cmath>
@@ -104,6 +105,11 @@ std::string read_bytes(const std::filesystem::path& file) {
   return read_input(file, "no readable record", "give the path of a record");
 }
 
+std::string_view component_name(Component component) {
+  constexpr std::array<std::string_view, 4> names = {"plant", "exciter", "governor", "machine"};
+  return names[static_cast<std::size_t>(component)];
+}
+
 Record stretch(Record r, double from, double until) {
   const double slack = 1e-4 * r.step();
   const auto first = static_cast<std::size_t>(std::ranges::lower_bound(r.t, from - slack) - r.t.begin());
@@ -119,8 +125,8 @@ Record stretch(Record r, double from, double until) {
     values.resize(last);
     values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first));
   };
-  for (auto* channel :
-       {&r.t, &r.V, &r.theta, &r.P, &r.Q, &r.f, &r.speed, &r.Efd, &r.Ifd, &r.theta_as_written})
+  for (auto* channel : {&r.t, &r.V, &r.theta, &r.P, &r.Q, &r.f, &r.speed, &r.Efd, &r.Ifd, &r.Vs, &r.Vref,
+                        &r.Pm, &r.Pref, &r.gate, &r.theta_as_written})
     cut(*channel);
   cut(r.lost);
   return r;

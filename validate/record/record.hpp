@@ -19,11 +19,23 @@ struct RecordBase {
   double mva = 100.0;       ///< base of P_pu and Q_pu [MVA]
   double frequency = 60.0;  ///< base of f_pu and omega_pu [Hz]
   double kv = 0.0;          ///< base of voltages in kV, line to line; 0: the file may not use kV
+  /// What the model's 1 pu (air-gap line) of field voltage and current is in the record's own unit: per unit
+  /// of another base, V or A; 0: the record's pu is the model's, and the file may not use V or A.
+  double efd = 0.0, ifd = 0.0;
 };
 
 /// Where a record's angle comes from. An integrated one lacks what a switching turns it at once; a missing
 /// one stands as zeros.
 enum class AngleSource { measured, integrated, none };
+
+/// What of a plant is tried: all of it, or one part, which the record drives with what the others did.
+enum class Component {
+  plant,     ///< V and its angle drive; P and Q are compared
+  exciter,   ///< V drives, with Vs, Ifd and what else its blocks ask for; Efd is compared
+  governor,  ///< the speed drives, with Pref; Pm or the gate is compared
+  machine,   ///< V, its angle and Efd drive, with Pm; P, Q and Ifd are compared
+};
+std::string_view component_name(Component component);
 
 /// Samples of one terminal. All vectors have the length of `t`; optional channels are empty if not recorded.
 struct Record {
@@ -36,6 +48,9 @@ struct Record {
   std::vector<double> f;             ///< optional: frequency deviation [pu]
   std::vector<double> speed;         ///< optional: rotor speed deviation [pu]
   std::vector<double> Efd, Ifd;      ///< optional [pu]
+  std::vector<double> Vs, Vref;      ///< optional: stabiliser output, reference of the voltage [pu]
+  std::vector<double> Pm, Pref;      ///< optional: mechanical power, its reference [pu on base.mva]
+  std::vector<double> gate;          ///< optional: opening of gate or valve [pu]
   std::vector<std::string> ignored;  ///< columns of the file that were not read
 
   std::string format = "CSV";            ///< what kind of file it was
@@ -45,8 +60,9 @@ struct Record {
   std::vector<std::string> notes;        ///< what reading did that a reader of results must know
   std::vector<double> theta_as_written;  ///< [rad], before unwrapping; empty if made otherwise
   AngleSource angle = AngleSource::measured;
-  std::vector<std::string> named;  ///< quantities whose column was chosen by ReadOptions::columns
-  std::vector<char> lost;          ///< marks samples that were not recorded and are bridged; empty: none
+  std::vector<std::string> named;          ///< quantities whose column was chosen by ReadOptions::columns
+  Component component = Component::plant;  ///< what it is read for
+  std::vector<char> lost;  ///< marks samples that were not recorded and are bridged; empty: none
 
   [[nodiscard]] int samples() const { return static_cast<int>(t.size()); }
   [[nodiscard]] double step() const { return (t.back() - t.front()) / static_cast<double>(t.size() - 1); }
@@ -71,7 +87,10 @@ struct ReadOptions {
   double phasor_rate = 0;  ///< phasors per second made of waveforms; 0: one per nominal cycle
   bool power = true;       ///< P and Q are needed (or the current); false: they stay empty where not given
   bool part = false;       ///< one of several files: what it lacks stands in another
-  bool angle = false;      ///< the angle is needed; false: it may be integrated from f, or be missing
+  Component component = Component::plant;  ///< which part of the plant is tried
+  /// What a component's record must have: one word of each list ({"speed", "f"}).
+  std::vector<std::vector<std::string>> needed = {};
+  bool angle = false;  ///< the angle is needed; false: it may be integrated from f, or be missing
 };
 
 /// Reads a record; the name's ending says what it is: .cfg/.dat or .cff COMTRADE, .h5 a run of

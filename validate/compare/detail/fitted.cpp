@@ -2,6 +2,7 @@
 
 #include "validate/fit/fit.hpp"
 #include "validate/fit/voltage_doubt.hpp"
+#include "validate/playin/component.hpp"
 
 namespace swingbank::validate::compare {
 
@@ -17,15 +18,9 @@ void play_fitted(const plant::PlantModel& model, const CompareOptions& options, 
                       "check the model's parameters and the record's base and units"});
   const fit::EventState& state = f.events.front().state;
   playin::Response r = event::play(model.under_test(), event, state);
-  const auto take = [&](playin::Output o) { return std::move(r.value[static_cast<int>(o)]); };
   e.playback = playin::Playback{};
   e.playback.start = event::start_at(event, state);
-  e.playback.steps = r.steps;
-  e.playback.P = take(playin::Output::P);
-  e.playback.Q = take(playin::Output::Q);
-  e.playback.speed = take(playin::Output::speed);
-  e.playback.Efd = take(playin::Output::Efd);
-  e.playback.Ifd = take(playin::Output::Ifd);
+  playin::take_outputs(r, e.playback);
   e.switchings = event::switchings_at(event, state);
   e.fitted = true;
   e.left_out = jumps == event::Jumps::spread ? event.left_out : e.record.lost;
@@ -40,9 +35,7 @@ void add_doubt(const plant::PlantModel& model, EventComparison& e) {
     if (e.record.lost[k]) event.smeared[k] = 0;  // bridged where nothing jumps, so hardly guessed
   for (const playin::Switching& s : e.switchings)
     if (s.uncertainty > 0) event.switchings.push_back(s);
-  for (const playin::Output o : {playin::Output::P, playin::Output::Q, playin::Output::speed,
-                                 playin::Output::Efd, playin::Output::Ifd})
-    if (!event.measured(o).empty()) event.channels.push_back(o);
+  event.channels = playin::compared_outputs(e.record, true);
   const auto n = static_cast<Eigen::Index>(event.channels.size());
   // what the channels' own noise is stands in the map
   const event::EventNoise unit{.deviation = Eigen::VectorXd::Ones(n),

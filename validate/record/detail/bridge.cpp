@@ -107,7 +107,7 @@ void bridge(Record& r) {
           r.t[gap.first - 1], r.t[gap.last + 1]));
     for (auto* y : {&r.V, &r.theta})
       if (!y->empty()) (jump ? hold : smooth)(*y, gap);
-    for (auto* y : {&r.P, &r.Q, &r.f, &r.speed, &r.Efd, &r.Ifd})
+    for (auto* y : {&r.P, &r.Q, &r.f, &r.speed, &r.Efd, &r.Ifd, &r.Vs, &r.Vref, &r.Pm, &r.Pref, &r.gate})
       if (!y->empty()) straight(*y, gap);
   }
 }

@@ -35,6 +35,16 @@ std::vector<double>* channel(Record& r, Quantity q) {
       return &r.Efd;
     case Quantity::Ifd:
       return &r.Ifd;
+    case Quantity::Vs:
+      return &r.Vs;
+    case Quantity::Vref:
+      return &r.Vref;
+    case Quantity::Pm:
+      return &r.Pm;
+    case Quantity::Pref:
+      return &r.Pref;
+    case Quantity::gate:
+      return &r.gate;
     case Quantity::I:
     case Quantity::phi:
       return nullptr;
@@ -196,6 +206,11 @@ void integrate_angle(Record& r) {
 /// Where no angle was recorded it is integrated from the frequency; without that it is nothing.
 void settle_angle(Record& r) {
   if (!r.theta.empty()) return;
+  if (r.component == Component::exciter || r.component == Component::governor) {
+    r.theta.assign(r.t.size(), 0.0);
+    r.angle = AngleSource::none;
+    return;
+  }
   if (!r.f.empty()) {
     integrate_angle(r);
     r.angle = AngleSource::integrated;
@@ -241,8 +256,9 @@ void take_over(Record& from, Record& all, const std::string& files, Problems& pr
     all.notes.push_back(
         fmt::format("{}, sampled {:.6g} times a second, was put at the instants of {} by straight lines.",
                     from.name, from.rate(), all.name));
-  for (const auto q : {Quantity::V, Quantity::theta, Quantity::f, Quantity::P, Quantity::Q, Quantity::speed,
-                       Quantity::Efd, Quantity::Ifd}) {
+  for (const auto q :
+       {Quantity::V, Quantity::theta, Quantity::f, Quantity::P, Quantity::Q, Quantity::speed, Quantity::Efd,
+        Quantity::Ifd, Quantity::Vs, Quantity::Vref, Quantity::Pm, Quantity::Pref, Quantity::gate}) {
     std::vector<double>& values = *channel(from, q);
     if (values.empty()) continue;
     if (!channel(all, q)->empty())
@@ -340,8 +356,11 @@ Record build_record(RawRecord raw, const RecordBase& base, const ReadOptions& op
                  fmt::format("a record needs at least {}", kFewestSamples), "give a longer record");
   problems.raise();
   fill_channels(raw, rows, r);
+  if (options.component == Component::governor && r.V.empty() && !options.part) r.V.assign(r.t.size(), 1.0);
   bridge(r);
-  if (!options.part) settle_angle(r);
+  r.component = options.component;
+  if (options.part) return r;
+  settle_angle(r);
   return r;
 }
 
@@ -363,10 +382,20 @@ Record join_records(std::vector<Record> parts, const ReadOptions& options, const
       problems.add(fmt::format("no column of {}", what), files, "none of the files gives it",
                    "add a file that has it, or say which column it is: --columns");
   };
-  needs(all.V, "V");
-  if (options.power) needs(all.P, "P"), needs(all.Q, "Q");
+  if (options.component == Component::plant) {
+    needs(all.V, "V");
+    if (options.power) needs(all.P, "P"), needs(all.Q, "Q");
+  }
+  for (const auto& words : options.needed)
+    if (std::ranges::none_of(words, [&](const std::string& word) {
+          const auto m = quantity_of(word);
+          const auto* values = m ? channel(all, m->quantity) : nullptr;
+          return values && !values->empty();
+        }))
+      needs({}, words.front().c_str());
   problems.raise();
   settle_angle(all);
+  if (all.component == Component::governor && all.V.empty()) all.V.assign(all.t.size(), 1.0);
   return stretch(std::move(all), options.from, options.until);
 }
 

@@ -18,12 +18,28 @@ using enum Quantity;
 
 bool has(const Present& present, Quantity q) { return present[static_cast<std::size_t>(q)]; }
 
+/// The lists of quantities that a component cannot do without, of which the file has none.
+std::vector<std::vector<Quantity>> missing_lists(const Present& present, const ReadOptions& options) {
+  std::vector<std::vector<Quantity>> all;
+  for (const auto& words : options.needed) {
+    std::vector<Quantity> any;
+    for (const auto& word : words)
+      if (const auto m = quantity_of(word)) any.push_back(m->quantity);
+    if (std::ranges::none_of(any, [&](Quantity q) { return has(present, q); })) all.push_back(any);
+  }
+  return all;
+}
+
 /// Quantities that a comparison cannot do without. P and Q, where they are needed, may also come from the
 /// current; the angle may come from the frequency.
 std::vector<Quantity> missing(const Present& present, const ReadOptions& options) {
   std::vector<Quantity> all;
   if (!has(present, time)) all.push_back(time);
   if (options.part) return all;
+  if (options.component != Component::plant) {
+    for (const auto& any : missing_lists(present, options)) all.push_back(any.front());
+    return all;
+  }
   if (!has(present, V)) all.push_back(V);
   if (options.angle && !has(present, theta)) all.push_back(theta);
   if (!options.power || (has(present, I) && has(present, phi) && has(present, theta))) return all;
@@ -139,7 +155,21 @@ Terminals choose_terminals(const std::vector<Heading>& headings, const ReadOptio
 
 void check_missing(const Present& present, const ReadOptions& options, const std::string& where,
                    const std::vector<Heading>& headings, Problems& problems) {
-  for (const auto q : missing(present, options))
+  if (options.component != Component::plant && !options.part) {
+    for (const auto& any : missing_lists(present, options)) {
+      std::string names;
+      for (const auto q : any) names += (names.empty() ? "" : " or ") + names_of(q);
+      problems.add("no column " + names, where,
+                   fmt::format("the {} is driven by it or compared with it; seen: {}",
+                               component_name(options.component), seen(headings)),
+                   "add the column, named with its unit, or say which one it is: --columns " +
+                       std::string(word_of(any.front())) + "=… or [record.columns] in the plant file");
+    }
+    if (has(present, time)) return;
+  }
+  for (const auto q : missing(present, options.component == Component::plant || options.part
+                                           ? options
+                                           : ReadOptions{.power = false, .part = true}))
     problems.add(
         "no column " + names_of(q), where,
         std::string(options.power ? "play-in needs time, voltage, P and Q, and the angle or the frequency"
@@ -217,7 +247,8 @@ class Mapper {
     auto m = quantity_of(word);
     if (!m) {
       problems_.add("'" + word + "'", "the map of columns", "it is no quantity that a record can have",
-                    "use t, V, theta, f, P, Q, I, phi, speed, omega, Efd or Ifd");
+                    "use t, V, theta, f, P, Q, I, phi, speed, omega, Efd, Ifd, Vs, Vref, Pm, Pref or "
+                    "gate");
       return std::nullopt;
     }
     Named named{trimmed(text), {}, false};
@@ -274,6 +305,9 @@ bool is_nearest(const std::vector<Heading>& headings, const Heading& one, const 
 std::vector<std::size_t> choose_columns(std::vector<Heading>& headings, const ReadOptions& options,
                                         const RecordBase& base, const std::string& where, Record& about,
                                         Problems& problems) {
+  if (options.component == Component::plant)
+    for (auto& h : headings)
+      if (h.meaning && is_inner(h.meaning->quantity)) h.meaning.reset();
   Mapper(headings, options, where, about, problems).apply();
   const Terminals terminals = choose_terminals(headings, options, where, about, problems);
   about.terminal = terminals.voltage == terminals.power || terminals.power.empty() ? terminals.voltage
@@ -301,9 +335,15 @@ std::vector<std::size_t> choose_columns(std::vector<Heading>& headings, const Re
       problems.add(fmt::format("column '{}'", name), where, "its unit is missing or not known",
                    "name it one of " + names_of(meaning->quantity) + ", or give the unit: --columns \"" +
                        std::string(word_of(meaning->quantity)) + "=" + name + " [unit]\"");
-    else if (meaning->unit && needs_kv(*meaning->unit) && !(base.kv > 0))
+    else if (meaning->unit && needs_kv(meaning->quantity, *meaning->unit) && !(base.kv > 0))
       problems.add(fmt::format("column '{}'", name), where, "the model names no base_kv for records",
                    "add base_kv under [record] in the plant file, or give per-unit values");
+    if (const auto key = meaning->unit ? needs_base(meaning->quantity, *meaning->unit) : "";
+        !key.empty() && !((meaning->quantity == Efd ? base.efd : base.ifd) > 0))
+      problems.add(fmt::format("column '{}'", name), where,
+                   "the plant file does not say what 1 pu (air-gap line) of it is",
+                   fmt::format("add {} = … [{}] under [record] in the plant file, or give per-unit values",
+                               key, meaning->quantity == Efd ? "V" : "A"));
     if (std::exchange(used[q], true))
       problems.add(fmt::format("column '{}'", name), where, "another column gives the same quantity",
                    "leave one of " + names_of(meaning->quantity) + ", or say which: --columns");

@@ -76,6 +76,24 @@ constexpr Alias kAliases[] = {
     {"rotorspeed", Quantity::speed},
     {"efd", Quantity::Efd},
     {"fieldvoltage", Quantity::Efd},
+    {"vs", Quantity::Vs},
+    {"vpss", Quantity::Vs},
+    {"vstab", Quantity::Vs},
+    {"pssoutput", Quantity::Vs},
+    {"vref", Quantity::Vref},
+    {"voltagereference", Quantity::Vref},
+    {"pm", Quantity::Pm},
+    {"pmech", Quantity::Pm},
+    {"tm", Quantity::Pm},
+    {"mechanicalpower", Quantity::Pm},
+    {"pref", Quantity::Pref},
+    {"powerreference", Quantity::Pref},
+    {"loadreference", Quantity::Pref},
+    {"gate", Quantity::gate},
+    {"gateposition", Quantity::gate},
+    {"gateopening", Quantity::gate},
+    {"valve", Quantity::gate},
+    {"valveposition", Quantity::gate},
     {"ifd", Quantity::Ifd},
     {"fieldcurrent", Quantity::Ifd},
     {"i", Quantity::I},
@@ -146,9 +164,17 @@ bool fits(Quantity q, Unit u) {
       return u == Unit::pu || u == Unit::megavar;
     case Quantity::I:
       return u == Unit::pu || u == Unit::kiloampere || u == Unit::ampere;
-    case Quantity::speed:
+    case Quantity::Pm:
+    case Quantity::Pref:
+      return u == Unit::pu || u == Unit::megawatt;
     case Quantity::Efd:
+      return u == Unit::pu || u == Unit::volt || u == Unit::kilovolt;
     case Quantity::Ifd:
+      return u == Unit::pu || u == Unit::ampere || u == Unit::kiloampere;
+    case Quantity::speed:
+    case Quantity::Vs:
+    case Quantity::Vref:
+    case Quantity::gate:
       return u == Unit::pu;
   }
   return false;
@@ -270,29 +296,49 @@ std::optional<ColumnMeaning> column_meaning(std::string_view heading, std::strin
 bool is_unit(std::string_view text) { return find_unit(text).has_value(); }
 
 std::string_view word_of(Quantity q) {
-  constexpr std::string_view words[kQuantities] = {"t",     "V",   "theta", "f", "P",  "Q",
-                                                   "speed", "Efd", "Ifd",   "I", "phi"};
+  constexpr std::string_view words[kQuantities] = {"t",   "V", "theta", "f",  "P",    "Q",  "speed", "Efd",
+                                                   "Ifd", "I", "phi",   "Vs", "Vref", "Pm", "Pref",  "gate"};
   return words[static_cast<int>(q)];
 }
 
 std::string names_of(Quantity q) {
   constexpr std::string_view names[kQuantities] = {
-      "t_s, t_ms",  "V_pu, V_kV, V_kV_ln", "theta_rad, theta_deg", "f_pu, f_hz",
-      "P_pu, P_MW", "Q_pu, Q_Mvar",        "omega_pu, speed_pu",   "Efd_pu",
-      "Ifd_pu",     "I_pu, I_A, I_kA",     "phi_rad, phi_deg",
+      "t_s, t_ms",     "V_pu, V_kV, V_kV_ln", "theta_rad, theta_deg", "f_pu, f_hz",
+      "P_pu, P_MW",    "Q_pu, Q_Mvar",        "omega_pu, speed_pu",   "Efd_pu, Efd_V",
+      "Ifd_pu, Ifd_A", "I_pu, I_A, I_kA",     "phi_rad, phi_deg",     "Vs_pu",
+      "Vref_pu",       "Pm_pu, Pm_MW",        "Pref_pu, Pref_MW",     "gate_pu",
   };
   return std::string(names[static_cast<int>(q)]);
 }
 
-bool needs_kv(Unit unit) {
+bool needs_kv(Quantity quantity, Unit unit) {
+  if (quantity == Quantity::Efd || quantity == Quantity::Ifd) return false;
   return unit == Unit::kilovolt || unit == Unit::volt || unit == Unit::kilovolt_ln || unit == Unit::volt_ln ||
          unit == Unit::kiloampere || unit == Unit::ampere;
 }
+
+std::string_view needs_base(Quantity quantity, Unit unit) {
+  if (unit == Unit::pu) return {};
+  return quantity == Quantity::Efd ? "efd_base" : quantity == Quantity::Ifd ? "ifd_base" : "";
+}
+
+namespace {
+
+/// Field voltage and current: the record's own unit (pu, V, A) to the model's pu.
+double field_units(const ColumnMeaning& column, double v, double base) {
+  const Unit unit = column.unit.value_or(Unit::pu);
+  if (unit == Unit::kilovolt || unit == Unit::kiloampere) v *= 1e3;
+  return base > 0 ? v / base : v;
+}
+
+}  // namespace
 
 double to_record_units(const ColumnMeaning& column, double v, const RecordBase& base) {
   const bool nominal_is_one =
       (column.quantity == Quantity::f || column.quantity == Quantity::speed) && !column.deviation;
   if (column.negated) v = -v;
+  if (column.quantity == Quantity::Efd) return field_units(column, v, base.efd);
+  if (column.quantity == Quantity::Ifd) return field_units(column, v, base.ifd);
   switch (column.unit.value_or(Unit::pu)) {
     case Unit::second:
     case Unit::stamp:

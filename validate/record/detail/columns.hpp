@@ -9,8 +9,10 @@
 
 namespace swingbank::validate::record {
 
-enum class Quantity { time, V, theta, f, P, Q, speed, Efd, Ifd, I, phi };
-constexpr int kQuantities = 11;
+enum class Quantity { time, V, theta, f, P, Q, speed, Efd, Ifd, I, phi, Vs, Vref, Pm, Pref, gate };
+constexpr int kQuantities = 16;
+/// Whether only components are driven by it or compared with it: such columns of other records are left out.
+constexpr bool is_inner(Quantity q) { return q >= Quantity::Vs; }
 enum class Unit {
   second,
   millisecond,
@@ -65,8 +67,10 @@ std::string names_of(Quantity q);
 /// Brings a value to the record's units: s, pu, rad; frequency and speed to deviations [pu].
 double to_record_units(const ColumnMeaning& column, double value, const RecordBase& base);
 
-/// Does the unit need base.kv?
-bool needs_kv(Unit unit);
+/// Does the quantity in that unit need base.kv?
+bool needs_kv(Quantity quantity, Unit unit);
+/// The key of the plant file under [record] that the quantity in that unit needs: "efd_base"; empty: none.
+std::string_view needs_base(Quantity quantity, Unit unit);
 
 /// Lower case, letters and digits only ("°" counts as a letter): how names are compared.
 std::string normalised(std::string_view text);

@@ -1,0 +1,97 @@
+// Components compared: the right model leaves the noise, a wrong parameter and a missing block do not.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/validate/playin/component_case.hpp"
+#include "validate/compare/compare.hpp"
+#include "validate/event/component_model.hpp"
+
+namespace swingbank::validate::compare {
+namespace {
+
+using record::Component;
+using ::testing::HasSubstr;
+
+/// The component of a simulated machine, and its noisy record. Instants lie between the samples.
+struct Tried {
+  test::ComponentCase simulated;
+  plant::PlantModel model;
+  record::Record record;
+  Tried(const std::vector<std::string>& controls, Component component)
+      : simulated(test::simulated_component(controls, {.on = 2.0062, .off = 2.1131, .end = 10, .rate = 60})),
+        record(test::component_record(simulated, component,
+                                      {.V = 1e-4,
+                                       .P = 1e-4,
+                                       .speed = 1e-6,
+                                       .Efd = component == Component::machine ? 0.002 : 0.02,
+                                       .Pm = 1e-4})) {
+    model.name = "tried";
+    model.plant = simulated.plant();
+    model.conventions = simulated.grid.conventions;
+    model.record_base = record.base;
+    model = event::component_model(std::move(model), component);
+  }
+  [[nodiscard]] Adequacy adequacy(std::vector<std::string>* channels = nullptr) const {
+    std::vector<EventComparison> events = {compare_event(model, record)};
+    if (channels)
+      for (const auto& c : events.front().channels) channels->push_back(c.name);
+    return judge(events);
+  }
+};
+
+TEST(CompareComponentTest, ARightExciterIsAdequateAndAWrongGainIsNot) {
+  Tried t({"IEEET1", "STAB1"}, Component::exciter);
+  std::vector<std::string> channels;
+  const Adequacy right = t.adequacy(&channels);
+  EXPECT_THAT(channels, ::testing::ElementsAre("Efd"));
+  EXPECT_TRUE(right.adequate) << right.sentence;
+  auto& exciter = t.model.plant.controls.back();
+  exciter.p[static_cast<std::size_t>(exciter.effect->parameter_index("KA"))] *= 1.5;
+  const Adequacy wrong = t.adequacy();
+  EXPECT_FALSE(wrong.adequate) << wrong.sentence;
+}
+
+TEST(CompareComponentTest, AnExciterWithoutItsStabiliserIsNotAdequate) {
+  Tried t({"IEEET1", "STAB1"}, Component::exciter);
+  std::erase_if(t.model.plant.controls,
+                [](const auto& b) { return b.effect->slot == sim::Slot::stabiliser; });
+  EXPECT_FALSE(t.adequacy().adequate);
+}
+
+TEST(CompareComponentTest, ARightGovernorIsAdequateAndAWrongDroopIsNot) {
+  Tried t({"TGOV1"}, Component::governor);
+  std::vector<std::string> channels;
+  const Adequacy right = t.adequacy(&channels);
+  EXPECT_THAT(channels, ::testing::ElementsAre("Pm"));
+  EXPECT_TRUE(right.adequate) << right.sentence;
+  t.model.plant.controls.front().p[0] *= 1.3;
+  EXPECT_FALSE(t.adequacy().adequate);
+}
+
+TEST(CompareComponentTest, ARightMachineIsAdequateAndAWrongReactanceIsNot) {
+  Tried t({"SEXS", "TGOV1"}, Component::machine);
+  std::vector<std::string> channels;
+  const Adequacy right = t.adequacy(&channels);
+  EXPECT_THAT(channels, ::testing::ElementsAre("P", "Q", "speed", "Ifd"));
+  EXPECT_TRUE(right.adequate) << right.sentence;
+  auto& machine = t.model.plant.machine;
+  machine.p[static_cast<std::size_t>(machine.effect->parameter_index("Xdp"))] *= 1.3;
+  EXPECT_FALSE(t.adequacy().adequate);
+}
+
+TEST(CompareComponentTest, WhatIsLeftOutIsSaidAndComesBack) {
+  plant::PlantModel model;
+  model.plant.machine = test::standard_block("GENROU");
+  for (const auto* name : {"TGOV1", "SEXS"})
+    sim::plant::insert_block(model.plant, test::standard_block(name));
+  const plant::PlantModel part = event::component_model(model, Component::governor);
+  ASSERT_EQ(part.warnings.size(), 1u);
+  EXPECT_THAT(part.warnings.front(), HasSubstr("governor alone: GENROU, SEXS"));
+  EXPECT_EQ(part.plant.controls.size(), 1u);
+  const plant::PlantModel whole = event::whole_model(part);
+  EXPECT_EQ(whole.plant.machine.effect->name, "GENROU");
+  EXPECT_EQ(whole.plant.controls.size(), 2u);
+}
+
+}  // namespace
+}  // namespace swingbank::validate::compare
