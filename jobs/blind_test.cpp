@@ -29,6 +29,7 @@ struct Options {
   std::uint64_t seed = 1;
   double size = 0;
   bool diagnose = false, score = false;
+  double limit = 7200.0;  ///< of one case [s]; 0: none
 };
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
@@ -54,6 +55,8 @@ int share_cases(const mpi::ranks::Ranks& ranks, const Options& o, std::size_t co
     if (static_cast<int>(k % static_cast<std::size_t>(parts)) == part - 1) shared.items.push_back(k);
   jobs::ItemProgress progress(unit, shared.items.size());
   shared.work = work;
+  shared.limit = o.limit;
+  shared.name = blind::cases::case_name;
   shared.done = [&](std::size_t, const std::string& result) {
     const auto fate = static_cast<Fate>(result.front() - '0');
     (fate == Fate::done ? counts.done : fate == Fate::failed ? counts.failed : counts.there) += 1;
@@ -215,6 +218,8 @@ int main(int argc, char** argv) {
            "program to run as PROGRAM CASE_FOLDER VERDICT_FILE on every case without a verdict");
   line.add_flag("--score", o.score, "hold the verdicts against the truth: score.md, score.json");
   line.add("--targets", o.targets, "rates asked for, configs/blind/targets.toml");
+  line.add("--case-timeout", o.limit, "a case that takes longer [s] ends the run (default 7200; 0: never)")
+      .not_negative();
   line.add("--threads", o.threads,
            "of one diagnosis; 0: one per core (default: that, or 1 where several ranks share the machine)")
       .between(0, 4096);

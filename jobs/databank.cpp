@@ -74,6 +74,9 @@ int main(int argc, char** argv) {
   mpi::draw::Overrides overrides;
   std::uint64_t points = 0;
   line.add("config", config, "the dataset's config (TOML)").required();
+  line.add("--draws", overrides.draws,
+           "as many points as this number of simulated events needs, instead of the config's")
+      .positive();
   line.add("--points", points, "number of points, instead of what the config's draws need").positive();
   line.add("--seed", overrides.seed, "seed, instead of the config's").not_negative();
   line.add("--out", out, "file to write: .csv or .h5");

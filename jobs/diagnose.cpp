@@ -87,6 +87,10 @@ void declare(jobs::CommandLine& line, Command& c) {
                "instead of both: a fleet file, many plants with their records "
                "(configs/fleet/README.md); under mpirun each rank takes one plant at a time")
           .excludes(model);
+  line.add(
+          "--plant-timeout", c.fleet.limit,
+          "of a fleet: a plant's diagnosis that takes longer [s] is ended and counts as failed (default 3600; 0: none)")
+      .not_negative();
   line.add("--plant", c.plant, "of the fleet only this plant; its result as JSON, no table").needs(fleet);
   line.add("--out", c.out,
            "folder for report.html, diagnosis.json and, where one is found, the law file; of a fleet "

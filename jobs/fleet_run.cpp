@@ -1,6 +1,7 @@
 #include "jobs/fleet_run.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <spawn.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -32,6 +33,8 @@ namespace {
 namespace fs = std::filesystem;
 using namespace validate;
 
+constexpr double kLongerThanItsProgram = 60.0;  ///< [s] a rank that does not end its plant's program hangs
+
 std::unique_ptr<RunLock> lock_folder(const fs::path& folder) {
   make_folder(folder);
   return std::make_unique<RunLock>(
@@ -43,8 +46,17 @@ std::unique_ptr<RunLock> lock_folder(const fs::path& folder) {
 struct Ended {
   std::string output;
   int status = 0;
+  bool late = false;
 };
-Ended run_program(const std::string& program, const std::vector<std::string>& words) {
+/// Milliseconds until `end`, as poll wants them; -1: there is no end.
+int until(std::optional<std::chrono::steady_clock::time_point> end) {
+  using namespace std::chrono;
+  return end ? static_cast<int>(std::max<long>(0, ceil<milliseconds>(*end - steady_clock::now()).count()))
+             : -1;
+}
+
+/// A program that takes longer than `limit` seconds (0: none) is killed, and `late` is true.
+Ended run_program(const std::string& program, const std::vector<std::string>& words, double limit) {
   std::vector<char*> arguments;
   for (const auto& w : words) arguments.push_back(const_cast<char*>(w.c_str()));
   arguments.push_back(nullptr);
@@ -59,8 +71,21 @@ Ended run_program(const std::string& program, const std::vector<std::string>& wo
   posix_spawn_file_actions_destroy(&actions);
   ::close(ends[1]);
   Ended e;
+  std::optional<std::chrono::steady_clock::time_point> end;
+  if (limit > 0.0)
+    end = std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                                 std::chrono::duration<double>(limit));
   char buffer[4096];
   for (;;) {
+    pollfd wait{ends[0], POLLIN, 0};
+    const int ready = failure == 0 ? ::poll(&wait, 1, until(end)) : 1;
+    if (ready < 0) continue;  // a signal
+    if (ready == 0) {
+      e.late = true;
+      ::kill(child, SIGKILL);  // one that was stopped, too
+      end.reset();
+      continue;
+    }
     const ssize_t n = failure == 0 ? ::read(ends[0], buffer, sizeof buffer) : 0;
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) break;
@@ -79,9 +104,13 @@ std::string plant_result(const jobs::FleetCommand& c, const fleet::FleetPlant& p
         .dump();
   };
   try {
-    const Ended e =
-        run_program("/proc/self/exe", {"swingbank-diagnose", "--fleet", c.fleet, "--plant", plant.name,
-                                       "--out", c.out, "--threads", std::to_string(threads)});
+    const Ended e = run_program("/proc/self/exe",
+                                {"swingbank-diagnose", "--fleet", c.fleet, "--plant", plant.name, "--out",
+                                 c.out, "--threads", std::to_string(threads)},
+                                c.limit);
+    if (e.late)
+      return failed(
+          fmt::format("The diagnosis took longer than {:g} s (--plant-timeout) and was ended.", c.limit));
     if (WIFSIGNALED(e.status))
       return failed(fmt::format("The diagnosis was ended by signal {} ({}).", WTERMSIG(e.status),
                                 strsignal(WTERMSIG(e.status))));
@@ -161,6 +190,8 @@ int run_fleet(const jobs::FleetCommand& c, int* argc, char*** argv) {
     rows[i] = fleet::read_row(j.at("row").dump(), fleet.plants[i].name);
     progress.line(describe(rows[i], j.at("was_there")), j.at("was_there"));
   };
+  shared.name = [&](std::size_t i) { return "plant " + fleet.plants[i].name; };
+  shared.limit = c.limit > 0.0 ? c.limit + kLongerThanItsProgram : 0.0;
   if (!mpi::ranks::share_items(ranks, shared)) {
     if (first)
       fmt::print("stopped on a signal; finished plants are safe: run the same command again to continue\n");

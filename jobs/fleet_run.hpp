@@ -11,6 +11,7 @@ struct FleetCommand {
   int threads = -1;  ///< of one plant's diagnosis; 0: one per core; -1: that where a rank has the machine to
                      ///< itself, else 1
   bool json = false;
+  double limit = 3600.0;  ///< of one plant's diagnosis [s]; 0: none
 };
 
 /// Every plant on the ranks that mpirun or srun started, or on this process alone; then the table. Returns

@@ -57,24 +57,38 @@ training_folder() { echo "$out/training-data"; } # rows that only train
 
 say() { printf '\n-- %s, %s: %s\n' "$(basename "$experiment" .toml)" "$preset" "$1"; }
 
-# A table of its own for people; `generate` draws the same points again by itself.
+# databank_file FOLDER-OF-DATA DRAWS
+databank_file() { echo "$1-databank-$2.h5"; }
+
+# draw_databank CONFIG DRAWS FOLDER: once; `generate` reads it
+draw_databank() {
+  local file
+  file=$(databank_file "$3" "$2")
+  if [[ -s $file ]]; then return; fi
+  say "databank of $1 ($2 draws)"
+  run_saving "$swingbank" databank "$1" --draws "$2" --out "$file"
+}
+
 databank() {
-  if [[ -s $out/databank.h5 ]]; then return; fi
-  say "databank"
-  "$swingbank" databank "$(ask dataset)" --out "$out/databank.h5"
+  draw_databank "$(ask dataset)" "$(ask draws)" "$(dataset_folder)" || return $?
+  if [[ $(ask training_rows) == none ]]; then return; fi
+  draw_databank "$(ask training_dataset)" "$(ask training_draws)" "$(training_folder)"
 }
 
 # generate_events CONFIG DRAWS FOLDER
 generate_events() {
   say "events for $1 ($2 draws) on $ranks processes"
-  local root=()
+  local root=() file
   # OpenMPI refuses root unless told twice; whoever starts this script as root means it.
   if ((EUID == 0)); then root=(env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1); fi
   local command=("${root[@]}")
   # shellcheck disable=SC2206 # the launcher is a list of words
   command+=($launcher -n "$ranks")
   if [[ $launcher == mpirun* && -z ${SLURM_JOB_ID:-} ]]; then command+=(--oversubscribe); fi
-  run_saving "${command[@]}" "$swingbank" generate "$1" --draws "$2" --out "$3"
+  command+=("$swingbank" generate "$1" --draws "$2" --out "$3")
+  file=$(databank_file "$3" "$2")
+  if [[ -s $file ]]; then command+=(--databank "$file"); fi
+  run_saving "${command[@]}"
 }
 
 generate() {

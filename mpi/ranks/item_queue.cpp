@@ -5,8 +5,11 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <cstdio>
+#include <cstdlib>
 #include <deque>
 #include <exception>
+#include <map>
 #include <optional>
 #include <thread>
 
@@ -82,6 +85,12 @@ class OwnHand {
   std::thread thread_;  // last: it uses the others
 };
 
+[[noreturn]] void end_all_ranks(const Ranks& ranks, const std::string& why) {
+  if (ranks.world != MPI_COMM_NULL) ranks::end_all_ranks(why.c_str());
+  fmt::print(stderr, "{}: the run ends; what is finished is safe, run the command again to continue\n", why);
+  std::_Exit(1);  // its thread cannot be ended
+}
+
 /// Rank 0: gives out items, to the others and to its own hand, until all are done.
 class Giver {
  public:
@@ -91,21 +100,34 @@ class Giver {
     int others = ranks_.size() - 1;
     while (others > 0 || !hand_.idle() || (!left_.empty() && !stop_)) {
       stop_ = stop_ || stop_asked();
-      answer(others);
+      if (ranks_.size() > 1) answer(others);
+      end_if_overdue();
       if (auto own = hand_.finished()) finish(own->first, own->second);
       if (hand_.idle())
-        if (const auto item = next(); item != kNone) hand_.give(static_cast<std::size_t>(item));
+        if (const auto item = next(0); item != kNone) hand_.give(static_cast<std::size_t>(item));
       std::this_thread::sleep_for(kPause);
     }
     return done_ == shared_.items.size();
   }
 
  private:
-  std::int64_t next() {
+  std::int64_t next(int rank) {
+    out_.erase(rank);
     if (left_.empty() || stop_) return kNone;
     const std::size_t item = left_.front();
     left_.pop_front();
+    out_[rank] = {item, Clock::now()};
     return static_cast<std::int64_t>(item);
+  }
+  /// A rank that hangs gives no sign: only the time tells.
+  void end_if_overdue() const {
+    if (shared_.limit <= 0.0) return;
+    for (const auto& [rank, given] : out_) {
+      const double age = std::chrono::duration<double>(Clock::now() - given.since).count();
+      if (age > shared_.limit)
+        end_all_ranks(ranks_, fmt::format("{} takes longer than {:g} s at rank {}", shared_.name(given.item),
+                                          shared_.limit, rank));
+    }
   }
   void finish(std::size_t item, const std::string& result) {
     ++done_;
@@ -123,7 +145,7 @@ class Giver {
                MPI_STATUS_IGNORE);
       const Told told = unpacked(text);
       stop_ = stop_ || told.stop;
-      std::int64_t item = next();
+      std::int64_t item = next(status.MPI_SOURCE);
       MPI_Send(&item, 1, MPI_INT64_T, status.MPI_SOURCE, kItemTag, ranks_.world);
       if (item == kNone) --others;
       if (told.item != kNone) finish(static_cast<std::size_t>(told.item), told.result);
@@ -133,6 +155,12 @@ class Giver {
   const Ranks& ranks_;
   const SharedItems& shared_;
   std::deque<std::size_t> left_;
+  using Clock = std::chrono::steady_clock;
+  struct Given {
+    std::size_t item;
+    Clock::time_point since;
+  };
+  std::map<int, Given> out_;  ///< by rank
   OwnHand hand_;
   std::size_t done_ = 0;
   bool stop_ = false;
@@ -149,14 +177,6 @@ void take_until_none(const Ranks& ranks, const SharedItems& shared) {
     if (item == kNone) return;
     text = packed(item, shared.work(static_cast<std::size_t>(item)));
   }
-}
-
-bool alone(const SharedItems& shared) {
-  for (const std::size_t item : shared.items) {
-    if (stop_asked()) return false;
-    shared.done(item, shared.work(item));
-  }
-  return true;
 }
 
 }  // namespace
@@ -193,7 +213,6 @@ void agree(const Ranks& ranks, const std::string& where, const std::function<voi
 }
 
 bool share_items(const Ranks& ranks, const SharedItems& shared) {
-  if (ranks.size() == 1) return alone(shared);
   try {
     bool complete = false;
     if (ranks.rank() == 0)
@@ -201,8 +220,9 @@ bool share_items(const Ranks& ranks, const SharedItems& shared) {
     else
       take_until_none(ranks, shared);
     return ranks.from_first(complete ? 1 : 0) != 0;
-  } catch (const std::exception& error) {  // the others would wait for ever
-    end_all_ranks(error.what());
+  } catch (const std::exception& error) {
+    if (ranks.size() == 1) throw;
+    end_all_ranks(error.what());  // the others would wait for ever
   }
 }
 

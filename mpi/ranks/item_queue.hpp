@@ -32,12 +32,15 @@ struct SharedItems {
   std::function<std::string(std::size_t item)> work;
   /// On rank 0, in the calling thread, as items are finished, in any order.
   std::function<void(std::size_t item, const std::string& result)> done;
+  /// An item that takes longer [s] ends the run, named by `name`; 0: for ever.
+  double limit = 0.0;
+  std::function<std::string(std::size_t item)> name = [](std::size_t item) { return std::to_string(item); };
 };
 
 /// Works until every item is done, or a stop signal (stop_signal.hpp) reached a rank: items at hand are
 /// finished then, no others begun. Collective; rank 0 gives out items and works too. True on all ranks if
-/// every item is done. What `work` or `done` throw ends the run, under MPI on all ranks: let neither throw
-/// for what an item holds.
+/// every item is done. An item over its limit, whose rank may hang, ends the program on all ranks. What
+/// `work` or `done` throw ends the run, under MPI on all ranks: let neither throw for what an item holds.
 bool share_items(const Ranks& ranks, const SharedItems& shared);
 
 }  // namespace swingbank::mpi::ranks

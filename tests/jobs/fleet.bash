@@ -14,11 +14,11 @@ cp "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml" "$work/model.toml"
 # plant NAME RECORDS [LINE]: a section of a fleet file; its model is the one without the exciter, or $model
 plant() { printf '[plant.%s]\nmodel = "%s"\nrecords = [%s]\n%s\n' "$1" "${model:-model.toml}" "$2" "${3:-}"; }
 
-# fleet FILE OUT [RANKS]: prints the table; its exit code; progress goes to OUT.log
+# fleet FILE OUT [RANKS [OPTION...]]: prints the table; its exit code; progress goes to OUT.log
 fleet() {
   local run=()
   if [[ -n ${3:-} ]]; then run=(mpirun --oversubscribe -np "$3"); fi
-  "${run[@]}" "$SWINGBANK_BIN/swingbank" diagnose --fleet "$1" --out "$2" 2>"$2.log"
+  "${run[@]}" "$SWINGBANK_BIN/swingbank" diagnose --fleet "$1" --out "$2" "${@:4}" 2>"$2.log"
 }
 # expect CODE COMMAND...
 expect() {

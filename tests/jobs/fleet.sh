@@ -44,6 +44,11 @@ grep -q 'sound: .* (was there already)' "$work/ranks.log" || fail "computed agai
 grep -q '5 failed' "$work/table" || fail "table: $(cat "$work/table")"
 [[ -z $(find "$work/ranks" -name '*.part' -o -name '*.old') ]] || fail "left behind: $(find "$work/ranks")"
 
+# a plant that takes too long is ended, and the others go on
+expect 1 fleet "$work/fleet.toml" "$work/late" 1 --plant-timeout 0.01
+grep -q 'sound: failed: The diagnosis took longer than 0.01 s' "$work/late.log" || fail "no limit: $(cat "$work/late.log")"
+grep -q '6 failed' "$work/table" || fail "table: $(cat "$work/table")"
+
 # bad input: nothing is computed or written
 diagnose() { "$swingbank" diagnose "$@" --out "$work/none"; }
 {

@@ -108,6 +108,7 @@ class Loop {
     ++at_.epoch;
     at_.batch = 0;
     at_.loss_sum = at_.rows = 0.0;
+    if (seconds_since(last_save_) >= settings_.checkpoint_after_epoch_s) save();
     return true;
   }
 

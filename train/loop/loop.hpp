@@ -36,12 +36,13 @@ struct LoopData {
 struct LoopSettings {
   TrainingRecipe recipe;
   std::uint64_t seed = 1;
-  std::filesystem::path checkpoint;     ///< empty: none is written
-  const nlohmann::json* run = nullptr;  ///< identity of the run; a checkpoint of another one is refused
-  double checkpoint_every_s = 300.0;
-  std::uint64_t first_draw = 0;  ///< of the noise of training rows; each epoch has the next one
-  double gflops = 0.0;           ///< what the processor makes of products [GFLOP/s]; 0: not known
-  std::function<bool()> stop;    ///< asked before each batch; empty: stop_asked()
+  std::filesystem::path checkpoint;       ///< empty: none is written
+  const nlohmann::json* run = nullptr;    ///< identity of the run; a checkpoint of another one is refused
+  double checkpoint_every_s = 30.0;       ///< in an epoch
+  double checkpoint_after_epoch_s = 2.0;  ///< at the end of an epoch, where the last one is that old
+  std::uint64_t first_draw = 0;           ///< of the noise of training rows; each epoch has the next one
+  double gflops = 0.0;                    ///< what the processor makes of products [GFLOP/s]; 0: not known
+  std::function<bool()> stop;             ///< asked before each batch; empty: stop_asked()
 };
 
 struct LoopReport {

@@ -104,6 +104,20 @@ TEST_F(Ranks, EveryItemIsDoneOnceWhoeverIsFree) {
   }
 }
 
+TEST(ItemLimit, AnItemThatTakesTooLongEndsTheRunWithItsName) {
+  SharedItems shared;
+  shared.items = {0, 1};
+  shared.work = [](std::size_t i) {
+    std::this_thread::sleep_for(std::chrono::seconds(i == 1 ? 60 : 0));
+    return std::string();
+  };
+  shared.done = [](std::size_t, const std::string&) {};
+  shared.limit = 0.05;
+  shared.name = [](std::size_t i) { return "plant " + std::to_string(i); };
+  EXPECT_EXIT(share_items({}, shared), ::testing::ExitedWithCode(1),
+              "plant 1 takes longer than 0.05 s at rank 0");
+}
+
 TEST_F(Ranks, FailureOfOneIsToldByAll) {
   try {
     agree(MPI_COMM_WORLD, "here", [&] {

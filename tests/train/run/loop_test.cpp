@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "base/problem.hpp"
 #include "base/run_lock.hpp"
@@ -101,6 +102,41 @@ TEST(Training, ResumedRunEqualsAnUnbrokenOneBitForBit) {
     EXPECT_EQ(broken.best_epoch, whole.best_epoch);
     EXPECT_EQ(broken.validation, whole.validation);
   }
+}
+
+TEST(Training, AKillCostsNoMoreThanTheEpochAtHand) {
+  const World world("killed", 150);
+  const data::RowSplit split = data::leave_one_out(world.stream.labels(), {33, 0.1, 1});
+  const data::TargetScale scale = data::TargetScale::fit(world.stream.labels().values, 3, split.train);
+  const auto targets = scaled_targets(world.stream.labels(), scale, split, false, 1);
+  const data::Features features = data::Features::fit(world.stream, split.train, 0);
+  const loop::LoopData data{world.stream, features, split.train, split.validation, targets};
+  const json run = {{"test", 1}};
+  constexpr int kBatches = 4;  // of an epoch
+  // Batches begun until the end, or until it dies at one of them.
+  const auto batches = [&](int dies_at) {
+    const auto network = networks::make_network("cnn", {2, 16, 3, {2.0f, 2.0f, 1.0f}});
+    int begun = 0;
+    loop::LoopSettings settings;
+    settings.recipe = recipe(3);
+    settings.checkpoint = world.folder.path / "run.checkpoint";
+    settings.checkpoint_after_epoch_s = 0.0;
+    settings.run = &run;
+    settings.stop = [&] {
+      if (begun == dies_at) throw std::runtime_error("killed");
+      ++begun;
+      return false;
+    };
+    loop::TrainingProgress progress("test", 1, true);
+    try {
+      loop::train_network(*network, data, settings, progress);
+    } catch (const std::runtime_error&) {
+      EXPECT_EQ(begun, dies_at);
+    }
+    return begun;
+  };
+  EXPECT_EQ(batches(kBatches + 2), kBatches + 2);
+  EXPECT_EQ(batches(-1), 2 * kBatches);
 }
 
 TEST(Training, RefusesADamagedOrForeignCheckpoint) {
