@@ -8,6 +8,7 @@
 #include "jobs/command_line.hpp"
 #include "jobs/event_records.hpp"
 #include "jobs/retrain_run.hpp"
+#include "jobs/verdict.hpp"
 #include "sim/laws/law.hpp"
 #include "validate/add/report.hpp"
 #include "validate/plant/plant_dyr.hpp"
@@ -25,6 +26,7 @@ struct Arguments {
   bool json = false, until_adequate = false, retrain = false;
   std::string truth;
   jobs::Reading reading;
+  jobs::Judging judging;
   nlohmann::json told;  ///< what was done to read the records
   add::AddOptions options;
   retrain::RetrainOptions training;
@@ -39,21 +41,38 @@ void keep_laws(plant::PlantModel& model,
         model.laws.emplace_back(file);
 }
 
+/// The events of the model as it was and with what was added.
+std::vector<jobs::Played> play_both(const Arguments& a, const plant::PlantModel& before,
+                                    const plant::PlantModel& after,
+                                    const std::vector<record::Record>& records) {
+  const auto& events = a.options.calibrate.events;
+  compare::CompareOptions options;
+  options.jump_threshold = events.jump_threshold;
+  options.play_in.pre_event = events.pre_event;
+  options.progress = a.options.calibrate.progress;
+  const auto shown = events.measured_states ? records : jobs::power_only(records);
+  return {jobs::play_and_judge("submitted", before, shown, options, a.judging),
+          jobs::play_and_judge("completed", after, shown, options, a.judging)};
+}
+
 void write(const Arguments& a, const plant::PlantModel& before, plant::PlantModel model,
-           const std::vector<std::string>& provenance, nlohmann::json result, const std::string& text) {
+           const std::vector<std::string>& provenance, nlohmann::json result, const std::string& text,
+           const std::vector<jobs::Played>& played) {
   model.submitted.reset();
   const std::filesystem::path folder = a.out;
   result["format"] = "swingbank-add-1";
   result["command"] = a.command;
   result["standard_values"] = before.standard;
   result["records"] = a.told;
+  result["fitness"] = jobs::fitness_json(played);
   plant::write_plant_file(folder / "model.toml", model, provenance);
   const std::string records = plant::write_dyr_beside(folder / "model.toml", before, model);
   write_file(folder / "add.json", result.dump(1) + "\n");
   if (a.json)
     fmt::print("{}\n", result.dump(1));
   else
-    fmt::print("{}\nmodel: {}\n{}\n", text, (folder / "model.toml").string(), records);
+    fmt::print("{}{}\nmodel: {}\n{}\n", jobs::fitness_text(played), text, (folder / "model.toml").string(),
+               records);
 }
 
 /// What is wrong with options that belong together, before anything is computed.
@@ -105,6 +124,7 @@ int run_retrain(const Arguments& a, const jobs::RetrainPrograms& programs, const
 
 int run(Arguments& a) {
   check_options(a);
+  a.judging.read();
   jobs::RetrainPrograms programs;
   if (a.retrain) programs = jobs::retrain_programs();
   plant::PlantModel model = jobs::load_model_to_fit(a.model);
@@ -124,16 +144,20 @@ int run(Arguments& a) {
     for (const auto& one : c.added)
       for (const auto& line : provenance_lines(one, model, a.command)) provenance.push_back(line);
     provenance.push_back(c.sentence);
-    write(a, model, c.model, provenance, add::completion_json(c), terminal_report(c));
-    return c.adequate ? 0 : thresholds::kNotAdequate;
+    const auto played = play_both(a, model, c.model, records);
+    write(a, model, c.model, provenance, add::completion_json(c),
+          compare::complete_text(c.adequate, terminal_report(c)), played);
+    return played.back().fitness.exit_code(c.adequate);
   }
   add::Addition done = add::add_effect(model, add::find_hypothesis(model, a.effect), records, a.options);
   keep_laws(done.model, laws);
+  const bool complete = done.adequate && done.earns;
+  const auto played = play_both(a, model, done.model, records);
   write(a, model, done.model, provenance_lines(done, model, a.command), add::addition_json(done),
-        terminal_report(done));
+        compare::complete_text(complete, terminal_report(done)), played);
   if (a.retrain)
     if (const int code = run_retrain(a, programs, model, done, records); code != 0) return code;
-  return done.adequate && done.earns ? 0 : thresholds::kNotAdequate;
+  return played.back().fitness.exit_code(complete);
 }
 
 }  // namespace
@@ -186,10 +210,11 @@ int main(int argc, char** argv) {
   line.add("--pre-event", c.events.pre_event, "steady stretch of records without switching [s]")
       .shows_default();
   line.add_flag_off("--power-only", inner, "leave recorded speed, Efd and Ifd aside: compare P and Q only");
+  a.judging.add_to(line);
   line.add_flag("--json", a.json, "print the result as JSON instead of tables");
   line.footer(
-      "Exit codes: 0 the effect earns its place and nothing but noise is left, 3 it does not or more is "
-      "left, 1 bad input, 2 a training stopped on a signal: run again to go on.");
+      std::string(thresholds::kExitCodes) +
+      " Complete: the effect earns its place, and nothing but noise is left. 2: a training stopped on a signal; run again to go on.");
   if (!line.parse(argc, argv)) return line.end();
   c.events.measured_states = inner;
   a.command = jobs::command_line("add", argc, argv);

@@ -8,6 +8,7 @@
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
 #include "jobs/event_records.hpp"
+#include "jobs/verdict.hpp"
 #include "validate/calibrate/network.hpp"
 #include "validate/calibrate/report.hpp"
 #include "validate/calibrate/side_by_side.hpp"
@@ -27,6 +28,7 @@ struct Arguments {
   std::vector<std::string> records;
   bool json = false;
   jobs::Reading reading;
+  jobs::Judging judging;
   calibrate::CalibrateOptions options;
 };
 
@@ -38,6 +40,19 @@ calibrate::CurveFit fit_curves(const Arguments& a, const plant::PlantModel& mode
   options.events = a.options.events;
   options.adequate = a.options.adequate;
   return calibrate::curve_fit(model, std::move(records), options);
+}
+
+/// The events of the model as it was and as it is now.
+std::vector<jobs::Played> play_both(const Arguments& a, const plant::PlantModel& before,
+                                    const plant::PlantModel& after,
+                                    const std::vector<record::Record>& records) {
+  compare::CompareOptions options;
+  options.jump_threshold = a.options.events.jump_threshold;
+  options.play_in.pre_event = a.options.events.pre_event;
+  options.progress = a.options.progress;
+  const auto shown = a.options.events.measured_states ? records : jobs::power_only(records);
+  return {jobs::play_and_judge("submitted", before, shown, options, a.judging),
+          jobs::play_and_judge("calibrated", after, shown, options, a.judging)};
 }
 
 /// Writes the model under a name that says whether it holds, and the records of one that does; the model of
@@ -73,17 +88,22 @@ void say(const Arguments& a, const nlohmann::json& result, const std::string& te
   fmt::print("{}\n", a.json ? result.dump(1) : text);
 }
 
-int run_baseline(const Arguments& a, const plant::PlantModel& model, std::vector<record::Record> records,
-                 const calibrate::Truth& truth, const nlohmann::json& told) {
-  const calibrate::CurveFit f = fit_curves(a, model, std::move(records));
+int run_baseline(const Arguments& a, const plant::PlantModel& model,
+                 const std::vector<record::Record>& records, const calibrate::Truth& truth,
+                 const nlohmann::json& told) {
+  const calibrate::CurveFit f = fit_curves(a, model, records);
+  const auto played = play_both(a, model, f.model, records);
   const std::string written =
       write_model(a, model, f.model, f.adequate, calibrate::provenance_lines(f, model, a.command));
   nlohmann::json result = calibrate::curve_fit_json(f, truth);
   result["command"] = a.command;
   result["standard_values"] = model.standard;
   result["records"] = told;
-  say(a, result, calibrate::terminal_report(f, truth) + "\n" + written);
-  return f.adequate ? 0 : thresholds::kNotAdequate;
+  result["fitness"] = jobs::fitness_json(played);
+  say(a, result,
+      jobs::fitness_text(played) + compare::complete_text(f.adequate, calibrate::terminal_report(f, truth)) +
+          "\n" + written);
+  return played.back().fitness.exit_code(f.adequate);
 }
 
 /// The network's estimate from the events that are fitted, by `swingbank predict` or as it was given.
@@ -113,16 +133,17 @@ std::optional<calibrate::NetworkEstimate> ask_network(const Arguments& a,
 }
 
 int run(Arguments& a) {
+  a.judging.read();
   plant::PlantModel model = jobs::load_model_to_fit(a.model);
   a.reading.apply(model);
   const calibrate::Truth truth = a.truth.empty() ? calibrate::Truth{} : calibrate::read_truth(a.truth, model);
   const check::RecordSet set = jobs::read_events(a.records, model);
-  std::vector<record::Record> records = set.records;
+  const std::vector<record::Record>& records = set.records;
   const nlohmann::json told = jobs::records_json(set);
   if (a.method == "curve-fit" && !(a.network.empty() && a.start.empty()))
     throw InputError({"a network's start", "--method curve-fit",
                       "curve fitting starts from the model's own values", "give --method fit or both"});
-  if (a.method == "curve-fit") return run_baseline(a, model, std::move(records), truth, told);
+  if (a.method == "curve-fit") return run_baseline(a, model, records, truth, told);
   const bool both = a.method == "both";
   const auto estimate = ask_network(a, records);
   sim::plant::Plant estimated;
@@ -130,17 +151,21 @@ int run(Arguments& a) {
     estimated = calibrate::estimated_plant(*estimate, model, a.options.spread);
     a.options.given.push_back({"network", estimated});
   }
-  std::vector<record::Record> again = both ? records : std::vector<record::Record>{};
-  const calibrate::Calibration c = calibrate::calibrate(model, std::move(records), a.options);
+  const calibrate::Calibration c = calibrate::calibrate(model, records, a.options);
+  const bool holds = c.adequacy != calibrate::Adequacy::structure_poor;
+  const auto played = play_both(a, model, c.model, records);
   const std::filesystem::path folder = a.out;
-  std::string text = calibrate::terminal_report(c);
+  std::string text =
+      jobs::fitness_text(played) + compare::complete_text(holds, calibrate::terminal_report(c));
   nlohmann::json result = calibrate::calibration_json(c);
   result["command"] = a.command;
   result["standard_values"] = model.standard;
   result["records"] = told;
+  result["fitness"] = jobs::fitness_json(played);
+  result["statistically_complete"] = holds;
   std::vector<calibrate::Way> ways = {calibrate::way_of_model(c)};
   if (both) {
-    const calibrate::CurveFit f = fit_curves(a, model, std::move(again));
+    const calibrate::CurveFit f = fit_curves(a, model, records);
     plant::write_plant_file(folder / "curve-fit.toml", event::whole_model(f.model),
                             calibrate::provenance_lines(f, model, a.command));
     result["curve_fit"] = calibrate::curve_fit_json(f, truth);
@@ -152,10 +177,9 @@ int run(Arguments& a) {
     text += "\n" + calibrate::beside_report(ways, truth);
     result["side_by_side"] = calibrate::beside_json(ways, truth);
   }
-  const bool holds = c.adequacy != calibrate::Adequacy::structure_poor;
   text += "\n" + write_model(a, model, c.model, holds, calibrate::provenance_lines(c, a.command));
   say(a, result, text);
-  return holds ? 0 : thresholds::kNotAdequate;
+  return played.back().fitness.exit_code(holds);
 }
 
 void add_options(jobs::CommandLine& line, Arguments& a, bool& inner) {
@@ -196,10 +220,11 @@ void add_options(jobs::CommandLine& line, Arguments& a, bool& inner) {
   line.add("--pre-event", o.events.pre_event, "steady stretch of records without switching [s]")
       .shows_default();
   line.add_flag_off("--power-only", inner, "leave recorded speed, Efd and Ifd aside: compare P and Q only");
+  a.judging.add_to(line);
   line.add_flag("--json", a.json, "print the result as JSON instead of tables");
   line.footer(
-      "Exit codes: 0 the structure holds, 3 something is missing in it "
-      "(curve-fit: more than noise is left), 1 bad input.");
+      std::string(thresholds::kExitCodes) +
+      " Complete is a structure that holds after calibration (curve-fit: that leaves nothing but noise).");
 }
 
 }  // namespace

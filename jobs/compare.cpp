@@ -8,6 +8,7 @@
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
 #include "jobs/event_records.hpp"
+#include "jobs/verdict.hpp"
 #include "validate/check/record_set.hpp"
 #include "validate/compare/report.hpp"
 #include "validate/system/system.hpp"
@@ -78,6 +79,7 @@ int main(int argc, char** argv) {
   std::vector<std::string> record_files, switches;
   bool json = false;
   jobs::Reading reading;
+  jobs::Judging judging;
   compare::CompareOptions options;
   const jobs::Option model_option = line.add("--model", model_file, "plant file (configs/plants/README.md)");
   const jobs::Option records_option =
@@ -109,12 +111,15 @@ int main(int argc, char** argv) {
       .excludes(system_option);
   reading.add_to(line);
   reading.add_component(line);
+  judging.add_to(line).excludes(system_option);
   line.add("--out", out, "folder for report.html, compare.json and the curves as CSV").shows_default();
   line.add_flag("--json", json, "print the result as JSON instead of tables");
+  line.footer(thresholds::kExitCodes);
   if (!line.parse(argc, argv)) return line.end();
   if (model_file.empty() && system_file.empty()) return line.lacks("--model with --record, or --system,");
   try {
     if (!system_file.empty()) return run_system(system_file, out, json, joined(argc, argv));
+    judging.read();
     options.drive = drive == "pq" ? compare::DriveBy::power : compare::DriveBy::voltage;
     plant::PlantModel model = plant::load_plant_model(model_file);
     jobs::tell(model);
@@ -136,19 +141,20 @@ int main(int argc, char** argv) {
       notes.insert(notes.begin(), warned.begin(), warned.end());
     }
     const compare::Adequacy adequacy = compare::judge(events);
+    const compare::Fitness fitness = compare::judge_fitness(events, model.plant.mva, judging.by);
     const report::Provenance rows = compare::provenance(model, events, joined(argc, argv));
     const std::filesystem::path folder = out;
     for (const auto& e : events)
       write_file(folder / ("playback-" + std::filesystem::path(e.record.name).stem().string() + ".csv"),
                  compare::csv_playback(e));
-    write_file(folder / "compare.json", compare::json_report(model, events, adequacy, rows));
-    write_file(folder / "report.html", compare::html_report(model, events, adequacy, rows));
+    write_file(folder / "compare.json", compare::json_report(model, events, adequacy, fitness, rows));
+    write_file(folder / "report.html", compare::html_report(model, events, adequacy, fitness, rows));
     if (json)
-      fmt::print("{}", compare::json_report(model, events, adequacy, rows));
+      fmt::print("{}", compare::json_report(model, events, adequacy, fitness, rows));
     else
-      fmt::print("{}\nreport: {}\n", compare::terminal_report(model, events, adequacy),
+      fmt::print("{}\nreport: {}\n", compare::terminal_report(model, events, adequacy, fitness),
                  (folder / "report.html").string());
-    return adequacy.adequate ? 0 : thresholds::kNotAdequate;
+    return fitness.exit_code(adequacy.adequate);
   } catch (const InputError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 1;

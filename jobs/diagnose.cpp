@@ -7,6 +7,7 @@
 #include "jobs/command_line.hpp"
 #include "jobs/event_records.hpp"
 #include "jobs/fleet_run.hpp"
+#include "jobs/verdict.hpp"
 #include "validate/diagnose/report.hpp"
 #include "validate/diagnose/text.hpp"
 #include "validate/thresholds/list.hpp"
@@ -25,14 +26,43 @@ std::filesystem::path write_law(const diagnose::Diagnosis& d, const std::filesys
   return file;
 }
 
+/// The events of the model as it is, with its parameters refitted and, where an effect or a law was accepted,
+/// with that.
+std::vector<jobs::Played> play_all(const plant::PlantModel& model, const diagnose::Diagnosis& d,
+                                   const std::vector<record::Record>& records, const jobs::Judging& judging,
+                                   compare::CompareOptions options) {
+  const auto play = [&](const std::string& name, const sim::plant::Plant& plant,
+                        const sim::Conventions& conventions) {
+    plant::PlantModel other = model;
+    other.plant = plant;
+    other.conventions = conventions;
+    return jobs::play_and_judge(name, other, records, options, judging);
+  };
+  std::vector<jobs::Played> played = {play("submitted", model.plant, model.conventions)};
+  const hypothesis::Judgement* best =
+      d.ranked.empty() || !d.ranked.front().accepted ? nullptr : &d.ranked.front();
+  if (!best && d.laws.found()) best = &d.laws.found()->judgement;
+  if (best && d.verdict != diagnose::Verdict::adequate)
+    played.push_back(play("with " + hypothesis::full_name(best->hypothesis), best->fit.plant,
+                          best->hypothesis.conventions));
+  played.push_back(play("refitted", d.base.plant, model.conventions));
+  return played;
+}
+
 int run(const std::string& model_file, const std::vector<std::string>& record_files, const std::string& out,
-        bool json, const jobs::Reading& reading, diagnose::DiagnoseOptions options,
+        bool json, const jobs::Reading& reading, jobs::Judging& judging, diagnose::DiagnoseOptions options,
         const std::string& command_line) {
+  judging.read();
   plant::PlantModel model = jobs::load_model_to_fit(model_file);
   reading.apply(model);
   const check::RecordSet set = jobs::read_events(record_files, model);
   options.progress = jobs::progress_line();
   const diagnose::Diagnosis d = diagnose::diagnose(model, set.records, options);
+  const bool adequate = d.verdict == diagnose::Verdict::adequate;
+  compare::CompareOptions playing;
+  playing.progress = options.progress;
+  const auto played = play_all(
+      model, d, options.measured_states ? set.records : jobs::power_only(set.records), judging, playing);
   report::Provenance provenance = diagnose::diagnosis_provenance(model, d, command_line);
   for (std::size_t k = 0; k < set.records.size(); ++k) {
     const record::Record& r = set.records[k];
@@ -42,6 +72,8 @@ int run(const std::string& model_file, const std::vector<std::string>& record_fi
   }
   auto result = diagnose::diagnosis_json(model, d, provenance);
   result["records"] = jobs::records_json(set);
+  result["fitness"] = jobs::fitness_json(played);
+  result["statistically_complete"] = adequate;
   const std::filesystem::path folder = out;
   write_file(folder / "diagnosis.json", result.dump(1) + "\n");
   write_file(folder / "report.html", diagnose::diagnosis_html(model, d, provenance));
@@ -49,12 +81,14 @@ int run(const std::string& model_file, const std::vector<std::string>& record_fi
   if (json) {
     fmt::print("{}\n", result.dump(1));
   } else {
-    fmt::print("{}\nreport: {}\n", diagnose::diagnosis_text(d), (folder / "report.html").string());
+    fmt::print("{}{}\nreport: {}\n", jobs::fitness_text(played),
+               compare::complete_text(adequate, diagnose::diagnosis_text(d)),
+               (folder / "report.html").string());
     if (!law_file.empty())
       fmt::print("law: {0} (swingbank add {1} --law {0} adds it)\n", law_file.string(),
                  law_file.stem().string());
   }
-  return d.verdict == diagnose::Verdict::adequate ? 0 : thresholds::kNotAdequate;
+  return played.back().fitness.exit_code(adequate);
 }
 
 /// What a person may ask for.
@@ -63,6 +97,7 @@ struct Command {
   std::vector<std::string> records;
   bool thresholds = false;
   jobs::Reading reading;
+  jobs::Judging judging;
   diagnose::DiagnoseOptions options;
   jobs::FleetCommand fleet;
 };
@@ -109,6 +144,7 @@ void declare(jobs::CommandLine& line, Command& c) {
           "--power-only", c.options.measured_states,
           "leave recorded speed, Efd and Ifd aside: compare P and Q only; of a fleet it stands in its file")
       .excludes(fleet);
+  c.judging.add_to(line).excludes(fleet);
   line.add_flag("--json", c.fleet.json, "print the result as JSON instead of text");
   line.add_flag(
           "--thresholds", c.thresholds,
@@ -116,9 +152,8 @@ void declare(jobs::CommandLine& line, Command& c) {
       .excludes(model)
       .excludes(fleet);
   line.footer(
-      "Exit codes: 0 adequate, 3 something is missing or unexplained, 1 bad "
-      "input. Of a fleet: 0 all plants are adequate, 3 some plant is not, 1 "
-      "some plant failed, 2 stopped by a signal (run it again to continue).");
+      std::string(thresholds::kExitCodes) +
+      " Complete is a structure that lacks nothing; fit for purpose, the model with its parameters refitted. Of a fleet: 0 all plants are complete, 3 some plant is not, 1 some plant failed, 2 stopped by a signal (run it again to continue).");
 }
 
 }  // namespace
@@ -136,7 +171,7 @@ int main(int argc, char** argv) {
     if (!c.plant.empty()) return jobs::run_fleet_plant(c.fleet, c.plant);
     if (!c.fleet.fleet.empty()) return jobs::run_fleet(c.fleet, &argc, &argv);
     c.options.threads = std::max(c.fleet.threads, 0);
-    return run(c.model, c.records, c.out, c.fleet.json, c.reading, c.options,
+    return run(c.model, c.records, c.out, c.fleet.json, c.reading, c.judging, c.options,
                jobs::command_line("diagnose", argc, argv));
   });
 }

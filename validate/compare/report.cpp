@@ -130,7 +130,7 @@ report::Table error_summary(const std::vector<EventComparison>& events) {
 report::Table error_map(const std::vector<EventComparison>& events) { return map_table(maps_of(events)); }
 
 std::string terminal_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
-                            const Adequacy& adequacy) {
+                            const Adequacy& adequacy, const Fitness& fitness) {
   std::string out = fmt::format("{} ({}): measured against modelled\n\n", model.name, plant::subject(model));
   const auto maps = maps_of(events);
   out += report::padded(error_summary(events));
@@ -144,13 +144,18 @@ std::string terminal_report(const plant::PlantModel& model, const std::vector<Ev
       out += "  t = 0 is " + begins + "\n";
     for (const auto& note : e.notes) out += "  note: " + note + "\n";
   }
-  return out + "\n" + adequacy.sentence + "\n" + thresholds::ruling_text(adequacy.ruling) + "\n";
+  if (fitness.not_judged.empty())
+    out += "\n" + worst_fitness_table(fitness).caption + "\n" + report::padded(worst_fitness_table(fitness));
+  return out + "\n" + fitness.sentence + "\n" + complete_text(adequacy.adequate, adequacy.sentence) + "\n" +
+         thresholds::ruling_text(adequacy.ruling) + "\n";
 }
 
 std::string json_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
-                        const Adequacy& adequacy, const report::Provenance& rows) {
+                        const Adequacy& adequacy, const Fitness& fitness, const report::Provenance& rows) {
   nlohmann::json j = {{"format", "swingbank-compare-2"},
                       {"adequate", adequacy.adequate},
+                      {"statistically_complete", adequacy.adequate},
+                      {"fitness", fitness_json(fitness)},
                       {"verdict", adequacy.sentence},
                       {"adequacy", thresholds::ruling_json(adequacy.ruling)},
                       {"cells", adequacy.cells},
@@ -184,7 +189,7 @@ std::string csv_playback(const EventComparison& e) {
 }
 
 std::string html_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
-                        const Adequacy& adequacy, const report::Provenance& rows) {
+                        const Adequacy& adequacy, const Fitness& fitness, const report::Provenance& rows) {
   report::Page page("Measured against modelled: " + model.name,
                     fmt::format("{} of {:g} MVA; the recorded {} played into the model, and what it "
                                 "answers with is compared.",
@@ -192,7 +197,10 @@ std::string html_report(const plant::PlantModel& model, const std::vector<EventC
                                 model.whole                         ? "signals around it are"
                                 : events.front().playback.P.empty() ? "P and Q are"
                                                                     : "terminal voltage is"));
-  page.verdict(adequacy.sentence, adequacy.adequate ? report::Tone::good : report::Tone::bad);
+  page.verdict(fitness.sentence, fitness.fit ? report::Tone::good : report::Tone::bad);
+  page.verdict(complete_text(adequacy.adequate, adequacy.sentence),
+               adequacy.adequate ? report::Tone::good : report::Tone::bad);
+  if (fitness.not_judged.empty()) page.table(worst_fitness_table(fitness));
   const auto maps = maps_of(events);
   page.table(events.size() > 1 ? worst_map_table(maps) : map_table(maps));
   page.table(error_summary(events));

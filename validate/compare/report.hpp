@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "validate/compare/compare.hpp"
+#include "validate/compare/fitness.hpp"
 #include "validate/report/page.hpp"
 
 namespace swingbank::validate::compare {
@@ -15,15 +16,17 @@ report::Table error_summary(const std::vector<EventComparison>& events);
 
 /// Both tables, the notes and the verdict, for a terminal.
 std::string terminal_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
-                            const Adequacy& adequacy);
+                            const Adequacy& adequacy, const Fitness& fitness);
 /// Everything but the samples; values in pu, bases and units beside them.
 std::string json_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
-                        const Adequacy& adequacy, const report::Provenance& provenance);
+                        const Adequacy& adequacy, const Fitness& fitness,
+                        const report::Provenance& provenance);
 /// The samples of one event: t, V, theta, and every channel measured and modelled.
 std::string csv_playback(const EventComparison& event);
 /// The self-contained page: verdict, tables, overlays, residuals, provenance.
 std::string html_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
-                        const Adequacy& adequacy, const report::Provenance& provenance);
+                        const Adequacy& adequacy, const Fitness& fitness,
+                        const report::Provenance& provenance);
 
 /// Hashes of model and records, version and command line.
 report::Provenance provenance(const plant::PlantModel& model, const std::vector<EventComparison>& events,

@@ -28,6 +28,8 @@ std::vector<Threshold> all_thresholds() {
   add(laws, all);
   add(addition, all);
   add(parameters, all);
+  add(dtr_test, all);
+  add(dtr_simulation, all);
   return all;
 }
 

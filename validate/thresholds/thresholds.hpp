@@ -211,4 +211,77 @@ struct Parameters {
 };
 inline constexpr Parameters parameters;
 
+/// Fit for purpose: engineering limits of what a model may be off, window by window, with the errors of IEC
+/// 61400-27-2 (which sets no limits itself). These are the limits of RTE's connection code, for a reference
+/// that was measured and for one that was simulated; `--accept` takes others (acceptance.hpp).
+struct DtrTest {
+  Threshold pre_fault_mxe{
+      "dtr_test.pre_fault_mxe", 8, "% of MVA",
+      "maximum of |modelled - measured| of P and of Q, before the first switching (RTE, DTR fiche I16, reference measured)"};
+  Threshold pre_fault_me{
+      "dtr_test.pre_fault_me", 4, "% of MVA",
+      "|mean of modelled - measured| of P and of Q, before the first switching (RTE, DTR fiche I16, reference measured)"};
+  Threshold pre_fault_mae{
+      "dtr_test.pre_fault_mae", 7, "% of MVA",
+      "mean of |modelled - measured| of P and of Q, before the first switching (RTE, DTR fiche I16, reference measured)"};
+  Threshold fault_mxe{
+      "dtr_test.fault_mxe", 10, "% of MVA",
+      "maximum of |modelled - measured| of P and of Q, between the first and the last switching (RTE, DTR fiche I16, reference measured)"};
+  Threshold fault_me{
+      "dtr_test.fault_me", 5, "% of MVA",
+      "|mean of modelled - measured| of P and of Q, between the first and the last switching (RTE, DTR fiche I16, reference measured)"};
+  Threshold fault_mae{
+      "dtr_test.fault_mae", 8, "% of MVA",
+      "mean of |modelled - measured| of P and of Q, between the first and the last switching (RTE, DTR fiche I16, reference measured)"};
+  Threshold post_fault_mxe{
+      "dtr_test.post_fault_mxe", 8, "% of MVA",
+      "maximum of |modelled - measured| of P and of Q, after the last switching (RTE, DTR fiche I16, reference measured)"};
+  Threshold post_fault_me{
+      "dtr_test.post_fault_me", 4, "% of MVA",
+      "|mean of modelled - measured| of P and of Q, after the last switching (RTE, DTR fiche I16, reference measured)"};
+  Threshold post_fault_mae{
+      "dtr_test.post_fault_mae", 7, "% of MVA",
+      "mean of |modelled - measured| of P and of Q, after the last switching (RTE, DTR fiche I16, reference measured)"};
+  Threshold after_fault{"dtr_test.after_fault", 0.02, "s",
+                        "not compared after the first switching (RTE, DTR fiche I16, reference measured)"};
+  Threshold after_clearing{"dtr_test.after_clearing", 0.06, "s",
+                           "not compared after the last switching (RTE, DTR fiche I16, reference measured)"};
+};
+inline constexpr DtrTest dtr_test;
+/// The same where the reference is a simulation.
+struct DtrSimulation {
+  Threshold pre_fault_mxe{
+      "dtr_simulation.pre_fault_mxe", 5, "% of MVA",
+      "maximum of |modelled - measured| of P and of Q, before the first switching (RTE, DTR fiche I16, reference simulated)"};
+  Threshold pre_fault_me{
+      "dtr_simulation.pre_fault_me", 2, "% of MVA",
+      "|mean of modelled - measured| of P and of Q, before the first switching (RTE, DTR fiche I16, reference simulated)"};
+  Threshold pre_fault_mae{
+      "dtr_simulation.pre_fault_mae", 3, "% of MVA",
+      "mean of |modelled - measured| of P and of Q, before the first switching (RTE, DTR fiche I16, reference simulated)"};
+  Threshold fault_mxe{
+      "dtr_simulation.fault_mxe", 8, "% of MVA",
+      "maximum of |modelled - measured| of P and of Q, between the first and the last switching (RTE, DTR fiche I16, reference simulated)"};
+  Threshold fault_me{
+      "dtr_simulation.fault_me", 5, "% of MVA",
+      "|mean of modelled - measured| of P and of Q, between the first and the last switching (RTE, DTR fiche I16, reference simulated)"};
+  Threshold fault_mae{
+      "dtr_simulation.fault_mae", 7, "% of MVA",
+      "mean of |modelled - measured| of P and of Q, between the first and the last switching (RTE, DTR fiche I16, reference simulated)"};
+  Threshold post_fault_mxe{
+      "dtr_simulation.post_fault_mxe", 5, "% of MVA",
+      "maximum of |modelled - measured| of P and of Q, after the last switching (RTE, DTR fiche I16, reference simulated)"};
+  Threshold post_fault_me{
+      "dtr_simulation.post_fault_me", 2, "% of MVA",
+      "|mean of modelled - measured| of P and of Q, after the last switching (RTE, DTR fiche I16, reference simulated)"};
+  Threshold post_fault_mae{
+      "dtr_simulation.post_fault_mae", 3, "% of MVA",
+      "mean of |modelled - measured| of P and of Q, after the last switching (RTE, DTR fiche I16, reference simulated)"};
+  Threshold after_fault{"dtr_simulation.after_fault", 0.02, "s",
+                        "not compared after the first switching (RTE, DTR fiche I16, reference simulated)"};
+  Threshold after_clearing{"dtr_simulation.after_clearing", 0.06, "s",
+                           "not compared after the last switching (RTE, DTR fiche I16, reference simulated)"};
+};
+inline constexpr DtrSimulation dtr_simulation;
+
 }  // namespace swingbank::validate::thresholds

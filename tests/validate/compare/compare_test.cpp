@@ -27,6 +27,9 @@ EventComparison example_event(const CompareOptions& options = {}) {
       record::read_record(test::source("configs/records/record-example/avr_ev1.csv"), model.record_base),
       options);
 }
+Fitness fitness_of(const std::vector<EventComparison>& events) {
+  return judge_fitness(events, 100, thresholds::read_acceptance(""));
+}
 std::vector<std::string> names(const std::vector<Window>& windows) {
   std::vector<std::string> all;
   for (const auto& w : windows) all.push_back(w.name);
@@ -273,7 +276,8 @@ TEST(CompareTest, ResidualIsModelledMinusMeasured) {
 TEST(CompareReportTest, JsonHoldsTheNumbers) {
   std::vector<EventComparison> events = {example_event()};
   const Adequacy adequacy = judge(events);
-  const auto j = nlohmann::json::parse(json_report(example_model(), events, adequacy, {{"command", "x"}}));
+  const auto j = nlohmann::json::parse(
+      json_report(example_model(), events, adequacy, fitness_of(events), {{"command", "x"}}));
   EXPECT_EQ(j["events"][0]["channels"][1]["name"], "Q");
   EXPECT_DOUBLE_EQ(j["events"][0]["channels"][1]["whole"]["rms_pu"], events[0].channels[1].whole.rms);
   EXPECT_EQ(j["events"][0]["channels"][1]["windows"].size(), 5u);
@@ -288,7 +292,7 @@ TEST(CompareReportTest, JsonHoldsTheNumbers) {
 TEST(CompareReportTest, PageAsksForNothing) {
   std::vector<EventComparison> events = {example_event()};
   const Adequacy adequacy = judge(events);
-  const std::string html = html_report(example_model(), events, adequacy,
+  const std::string html = html_report(example_model(), events, adequacy, fitness_of(events),
                                        provenance(example_model(), events, "swingbank compare <x>"));
   const std::string library(report::dygraphs_script());
   const auto at = html.find(library);
@@ -303,7 +307,7 @@ TEST(CompareReportTest, PageAsksForNothing) {
 TEST(CompareReportTest, TerminalReportCarriesUnits) {
   std::vector<EventComparison> events = {example_event()};
   const Adequacy adequacy = judge(events);
-  const std::string text = terminal_report(example_model(), events, adequacy);
+  const std::string text = terminal_report(example_model(), events, adequacy, fitness_of(events));
   for (const char* word : {" MW", " Mvar", " mHz", "noise", "Not adequate", "avr_ev1.csv"})
     EXPECT_THAT(text, HasSubstr(word));
 }

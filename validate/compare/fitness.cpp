@@ -1,0 +1,197 @@
+#include "validate/compare/fitness.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+namespace swingbank::validate::compare {
+namespace {
+
+using thresholds::Errors;
+using thresholds::Phase;
+
+/// Where the windows of an event end, and what of them the limits leave out [s].
+class Phases {
+ public:
+  Phases(const EventComparison& e, const thresholds::Acceptance& by) : e_(e) {
+    const double slack = 1e-4 * e.record.step();
+    const bool switched = !e.switchings.empty();
+    begins_ = slack + (switched ? e.switchings.front().time : e.windows.front().to);
+    over_ = slack + (switched ? e.switchings.back().time : e.windows.front().to);
+    if (switched) after_clearing_ = over_ + by.after_clearing;
+    if (over_ > begins_) after_fault_ = begins_ + by.after_fault;
+  }
+  /// Nothing where the sample is not judged.
+  [[nodiscard]] std::optional<Phase> of(std::size_t sample) const {
+    const double t = e_.record.t[sample];
+    if (!e_.left_out.empty() && e_.left_out[sample]) return std::nullopt;
+    if (t <= begins_) return Phase::pre_fault;
+    if (t <= over_) return t <= after_fault_ ? std::nullopt : std::optional(Phase::fault);
+    return t <= after_clearing_ ? std::nullopt : std::optional(Phase::post_fault);
+  }
+
+ private:
+  const EventComparison& e_;
+  double begins_ = 0, over_ = 0, after_fault_ = -1e300, after_clearing_ = -1e300;
+};
+
+/// What is left in one window [% of MVA], `percent` of them in 1 pu.
+JudgedErrors errors_of(const EventComparison& e, const ChannelComparison& c, Phase phase,
+                       const Phases& phases, double percent) {
+  JudgedErrors row{e.record.name, c.name, phase, 0, {}, {}};
+  for (std::size_t k = 0; k < c.residual.size(); ++k) {
+    if (phases.of(k) != phase) continue;
+    const double error = percent * c.residual[k], size = std::abs(error);
+    ++row.samples;
+    row.errors.me += error;
+    row.errors.mae += size;
+    if (!(size <= row.errors.mxe)) row.errors.mxe = size;  // what is no number stays so in the sums
+  }
+  if (row.samples > 0) row.errors.me /= row.samples, row.errors.mae /= row.samples;
+  if (!std::isfinite(row.errors.mae)) row.errors.mxe = row.errors.mae;
+  return row;
+}
+
+std::string verdict(const Fitness& f, int exceed, const JudgedErrors& row) {
+  const thresholds::Nearest at = thresholds::nearest(row.errors, row.limits);
+  const auto all = 3 * f.rows.size();
+  return fmt::format(
+      "Fit for purpose: {} the limits {}. {}: {} of {} in the {} window of {}, {:.3g} % of {:g} MVA where {:g} % "
+      "is allowed.",
+      f.fit ? fmt::format("yes. All {} errors of P and Q keep", all)
+            : fmt::format("no. {} of {} errors of P and Q exceed", exceed, all),
+      f.by.name, f.fit ? "Nearest" : "Furthest off", at.name, row.channel, thresholds::phase_name(row.phase),
+      row.event, at.error, f.mva, at.limit);
+}
+
+const std::vector<std::string> kHeader = {"event", "channel", "window", "MXE",  "limit",
+                                          "ME",    "limit",   "MAE",    "limit"};
+
+std::string caption(const Fitness& f) {
+  return fmt::format(
+      "Errors (modelled − measured) in % of {:g} MVA beside their limits, as IEC 61400-27-2 counts them: MXE the "
+      "largest, ME the mean, MAE the mean of their sizes. Limits {}: {}. Not compared: {:g} ms after the first "
+      "switching, {:g} ms after the last. A star marks what exceeds its limit.",
+      f.mva, f.by.name, f.by.source, 1e3 * f.by.after_fault, 1e3 * f.by.after_clearing);
+}
+
+/// Each error from the row that is given for it.
+std::vector<report::Cell> cells_of(const std::string& event, const JudgedErrors& of,
+                                   const std::array<const JudgedErrors*, 3>& from) {
+  std::vector<report::Cell> cells = {event, of.channel, std::string(thresholds::phase_name(of.phase))};
+  const auto add = [&](double error, double limit, const char* sign) {
+    const bool within = std::abs(error) <= limit;
+    cells.emplace_back(
+        std::isfinite(error) ? fmt::format("{:.2f} %{}", error, within ? "" : " *") : "no number *",
+        within ? 0.0 : 1.0);
+    cells.emplace_back(fmt::format("{}{:g} %", sign, limit));
+  };
+  add(from[0]->errors.mxe, of.limits.mxe, "");
+  add(from[1]->errors.me, of.limits.me, "± ");
+  add(from[2]->errors.mae, of.limits.mae, "");
+  return cells;
+}
+
+nlohmann::json number(double v) { return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(nullptr); }
+nlohmann::json errors_json(const Errors& e) {
+  return {{"mxe", number(e.mxe)}, {"me", number(e.me)}, {"mae", number(e.mae)}};
+}
+
+}  // namespace
+
+Fitness not_judged(const thresholds::Acceptance& by, double mva, const std::string& why) {
+  Fitness f;
+  f.by = by;
+  f.mva = mva;
+  f.not_judged = why;
+  f.sentence = fmt::format("Fit for purpose: not judged by the limits {} ({}).", by.name, why);
+  return f;
+}
+
+Fitness judge_fitness(const std::vector<EventComparison>& events, double mva,
+                      const thresholds::Acceptance& by) {
+  Fitness f = not_judged(by, mva, "neither P nor Q is compared");
+  int exceed = 0;
+  const JudgedErrors* worst = nullptr;
+  for (const auto& e : events) {
+    const Phases phases(e, by);
+    for (const auto& c : e.channels) {
+      if (!c.judged || (c.name != "P" && c.name != "Q")) continue;
+      for (const Phase phase : thresholds::kPhases) {
+        JudgedErrors row = errors_of(e, c, phase, phases, 100 * e.record.base.mva / mva);
+        if (row.samples == 0) continue;
+        row.limits = by.of(c.name == "P" ? 0 : 1, phase);
+        exceed += thresholds::exceeding(row.errors, row.limits);
+        f.rows.push_back(std::move(row));
+      }
+    }
+  }
+  if (f.rows.empty()) return f;
+  for (const auto& row : f.rows)
+    if (!worst || thresholds::nearest(row.errors, row.limits).ratio >
+                      thresholds::nearest(worst->errors, worst->limits).ratio)
+      worst = &row;
+  f.not_judged.clear();
+  f.fit = exceed == 0;
+  f.sentence = verdict(f, exceed, *worst);
+  return f;
+}
+
+std::string complete_text(bool complete, const std::string& sentence) {
+  return fmt::format("Statistically complete: {}. {}", complete ? "yes" : "no", sentence);
+}
+
+report::Table fitness_table(const Fitness& f) {
+  report::Table table{caption(f), kHeader, {}};
+  for (const auto& row : f.rows) table.rows.push_back(cells_of(row.event, row, {&row, &row, &row}));
+  return table;
+}
+
+report::Table worst_fitness_table(const Fitness& f) {
+  report::Table table{caption(f) + " Each error is the worst of all events.", kHeader, {}};
+  table.header.erase(table.header.begin());
+  for (const char* channel : {"P", "Q"})
+    for (const Phase phase : thresholds::kPhases) {
+      std::array<const JudgedErrors*, 3> worst{};
+      const auto keep = [](const JudgedErrors*& kept, const JudgedErrors& row, double Errors::*which) {
+        if (!kept || !(std::abs(row.errors.*which) <= std::abs(kept->errors.*which))) kept = &row;
+      };
+      for (const auto& row : f.rows) {
+        if (row.channel != channel || row.phase != phase) continue;
+        keep(worst[0], row, &Errors::mxe);
+        keep(worst[1], row, &Errors::me);
+        keep(worst[2], row, &Errors::mae);
+      }
+      if (!worst[0]) continue;
+      table.rows.push_back(cells_of("", *worst[0], worst));
+      table.rows.back().erase(table.rows.back().begin());
+    }
+  return table;
+}
+
+nlohmann::json fitness_json(const Fitness& f) {
+  nlohmann::json j = {
+      {"fit_for_purpose", f.not_judged.empty() ? nlohmann::json(f.fit) : nullptr},
+      {"sentence", f.sentence},
+      {"limits", f.by.name},
+      {"source", f.by.source},
+      {"mva", f.mva},
+      {"left_out_s", {{"after_fault", f.by.after_fault}, {"after_clearing", f.by.after_clearing}}},
+      {"errors_percent_of_mva", nlohmann::json::array()}};
+  for (const auto& row : f.rows) {
+    nlohmann::json one = errors_json(row.errors);
+    one["record"] = row.event;
+    one["channel"] = row.channel;
+    one["window"] = thresholds::phase_name(row.phase);
+    one["samples"] = row.samples;
+    one["limits"] = errors_json(row.limits);
+    j["errors_percent_of_mva"].push_back(std::move(one));
+  }
+  return j;
+}
+
+}  // namespace swingbank::validate::compare
