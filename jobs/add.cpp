@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "base/json_text.hpp"
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
 #include "jobs/event_records.hpp"
@@ -42,36 +43,78 @@ void keep_laws(plant::PlantModel& model,
 }
 
 /// The events of the model as it was and with what was added.
-std::vector<jobs::Played> play_both(const Arguments& a, const plant::PlantModel& before,
-                                    const plant::PlantModel& after,
-                                    const std::vector<record::Record>& records) {
+std::vector<compare::Played> play_both(const Arguments& a, const plant::PlantModel& before,
+                                       const plant::PlantModel& after,
+                                       const std::vector<record::Record>& records) {
   const auto& events = a.options.calibrate.events;
   compare::CompareOptions options;
   options.jump_threshold = events.jump_threshold;
   options.play_in.pre_event = events.pre_event;
   options.progress = a.options.calibrate.progress;
-  const auto shown = events.measured_states ? records : jobs::power_only(records);
-  return {jobs::play_and_judge("submitted", before, shown, options, a.judging),
-          jobs::play_and_judge("completed", after, shown, options, a.judging)};
+  const auto shown = events.measured_states ? records : compare::power_only(records);
+  return {compare::play_and_judge("submitted", before, shown, options, a.judging.by),
+          compare::play_and_judge("completed", after, shown, options, a.judging.by)};
+}
+
+/// What a page says of one addition.
+void say_on(compare::CommandPage& page, const add::Addition& added) {
+  const auto rows = jobs::page_parameters(added.parameters, added.model.plant);
+  page.parameters.assign(rows.begin(), rows.end());
+  for (int i = 0; i < added.own; ++i) page.parameters[static_cast<std::size_t>(i)].note = "added";
+  page.unseen.clear();
+  for (const auto& e : added.events)
+    if (!e.score.seen) page.unseen.push_back(e.score.record);
+  page.tried.push_back(fmt::format("{}: evidence {:.1f}, where {:g} is asked for; it {} its place.",
+                                   added.hypothesis.what, added.evidence, thresholds::addition.strong.value,
+                                   added.earns ? "earns" : "does not earn"));
+}
+compare::CommandPage page_of(const add::Addition& added) {
+  compare::CommandPage page;
+  page.complete = added.adequate && added.earns;
+  page.sentence = added.sentence;
+  say_on(page, added);
+  return page;
+}
+compare::CommandPage page_of(const add::Completion& c) {
+  compare::CommandPage page;
+  page.complete = c.adequate;
+  page.sentence = c.sentence;
+  for (const auto& one : c.added) say_on(page, one);
+  for (const auto& r : c.removed)
+    page.tried.push_back(fmt::format("{} taken out again: evidence {:.1f}.", r.effect, r.evidence));
+  return page;
 }
 
 void write(const Arguments& a, const plant::PlantModel& before, plant::PlantModel model,
            const std::vector<std::string>& provenance, nlohmann::json result, const std::string& text,
-           const std::vector<jobs::Played>& played) {
+           const std::vector<compare::Played>& played, compare::CommandPage page) {
   model.submitted.reset();
   const std::filesystem::path folder = a.out;
+  page.title = "An effect added: " + before.name;
+  page.subtitle = fmt::format("{} of {:g} MVA; the model as it was and with what was added.",
+                              plant::subject(before), before.plant.mva);
+  page.played = played;
+  page.provenance = {{"command", a.command},
+                     {"software", fmt::format("swingbank {}", jobs::version())},
+                     {"model", fmt::format("{}, XXH64 {:016x}", before.origin, before.hash)}};
+  for (const auto& e : played.front().events)
+    if (const auto begins = record::beginning(e.record); !begins.empty())
+      page.provenance.emplace_back("begins", e.record.name + ": t = 0 is " + begins);
+  jobs::sign(page.provenance, a.judging, a.model, a.records);
   result["format"] = "swingbank-add-1";
   result["command"] = a.command;
   result["standard_values"] = before.standard;
   result["records"] = a.told;
-  result["fitness"] = jobs::fitness_json(played);
+  result["fitness"] = compare::fitness_json(played);
   plant::write_plant_file(folder / "model.toml", model, provenance);
   const std::string records = plant::write_dyr_beside(folder / "model.toml", before, model);
-  write_file(folder / "add.json", result.dump(1) + "\n");
+  page.figures = json_text(result);
+  write_file(folder / "report.html", compare::command_html(page));
+  write_file(folder / "add.json", json_text(result, 1) + "\n");
   if (a.json)
-    fmt::print("{}\n", result.dump(1));
+    fmt::print("{}\n", json_text(result, 1));
   else
-    fmt::print("{}{}\nmodel: {}\n{}\n", jobs::fitness_text(played), text, (folder / "model.toml").string(),
+    fmt::print("{}{}\nmodel: {}\n{}\n", compare::fitness_text(played), text, (folder / "model.toml").string(),
                records);
 }
 
@@ -117,7 +160,7 @@ int run_retrain(const Arguments& a, const jobs::RetrainPrograms& programs, const
   }
   nlohmann::json result = retrain::retrained_json(*networks);
   result["command"] = a.command;
-  write_file(folder / "retrain.json", result.dump(1) + "\n");
+  write_file(folder / "retrain.json", json_text(result, 1) + "\n");
   if (!a.json) fmt::print("\n{}\n", terminal_report(*networks));
   return 0;
 }
@@ -146,7 +189,7 @@ int run(Arguments& a) {
     provenance.push_back(c.sentence);
     const auto played = play_both(a, model, c.model, records);
     write(a, model, c.model, provenance, add::completion_json(c),
-          compare::complete_text(c.adequate, terminal_report(c)), played);
+          compare::complete_text(c.adequate, terminal_report(c)), played, page_of(c));
     return played.back().fitness.exit_code(c.adequate);
   }
   add::Addition done = add::add_effect(model, add::find_hypothesis(model, a.effect), records, a.options);
@@ -154,7 +197,7 @@ int run(Arguments& a) {
   const bool complete = done.adequate && done.earns;
   const auto played = play_both(a, model, done.model, records);
   write(a, model, done.model, provenance_lines(done, model, a.command), add::addition_json(done),
-        compare::complete_text(complete, terminal_report(done)), played);
+        compare::complete_text(complete, terminal_report(done)), played, page_of(done));
   if (a.retrain)
     if (const int code = run_retrain(a, programs, model, done, records); code != 0) return code;
   return played.back().fitness.exit_code(complete);
@@ -171,7 +214,7 @@ int main(int argc, char** argv) {
            "effect, law or parameter group (SEXS, GENROU:S10,S12); 'swingbank effects' lists them");
   line.add("--model", a.model, "plant file (configs/plants/README.md)").required();
   line.add("--records,--record", a.records, "records of the events (validate/record/README.md)").required();
-  line.add("--out", a.out, "folder for model.toml, model.dyr and add.json").shows_default();
+  line.add("--out", a.out, "folder for model.toml, model.dyr, report.html and add.json").shows_default();
   a.reading.add_to(line);
   line.add("--law", a.laws, "law file (.toml) whose effect may be added; may be repeated");
   line.add("--hold-out", c.held_out,

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "base/json_text.hpp"
 #include "base/own_command.hpp"
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
@@ -43,16 +44,16 @@ calibrate::CurveFit fit_curves(const Arguments& a, const plant::PlantModel& mode
 }
 
 /// The events of the model as it was and as it is now.
-std::vector<jobs::Played> play_both(const Arguments& a, const plant::PlantModel& before,
-                                    const plant::PlantModel& after,
-                                    const std::vector<record::Record>& records) {
+std::vector<compare::Played> play_both(const Arguments& a, const plant::PlantModel& before,
+                                       const plant::PlantModel& after,
+                                       const std::vector<record::Record>& records) {
   compare::CompareOptions options;
   options.jump_threshold = a.options.events.jump_threshold;
   options.play_in.pre_event = a.options.events.pre_event;
   options.progress = a.options.progress;
-  const auto shown = a.options.events.measured_states ? records : jobs::power_only(records);
-  return {jobs::play_and_judge("submitted", before, shown, options, a.judging),
-          jobs::play_and_judge("calibrated", after, shown, options, a.judging)};
+  const auto shown = a.options.events.measured_states ? records : compare::power_only(records);
+  return {compare::play_and_judge("submitted", before, shown, options, a.judging.by),
+          compare::play_and_judge("calibrated", after, shown, options, a.judging.by)};
 }
 
 /// Writes the model under a name that says whether it holds, and the records of one that does; the model of
@@ -83,9 +84,28 @@ std::string write_model(const Arguments& a, plant::PlantModel before, plant::Pla
   return fmt::format("model: {}\n{}", file.string(), plant::write_dyr_beside(file, before, model));
 }
 
+/// The page, whose figures are the result's.
+void write_page(const Arguments& a, const plant::PlantModel& model, compare::CommandPage page,
+                const nlohmann::json& result) {
+  page.title = "Calibration: " + model.name;
+  page.subtitle = fmt::format("{} of {:g} MVA; its parameters fitted to the records.", plant::subject(model),
+                              model.plant.mva);
+  page.tried.insert(page.tried.begin(),
+                    "None about the structure: “swingbank diagnose” names what a model lacks.");
+  page.provenance = {{"command", a.command},
+                     {"software", fmt::format("swingbank {}", jobs::version())},
+                     {"model", fmt::format("{}, XXH64 {:016x}", model.origin, model.hash)}};
+  for (const auto& e : page.played.front().events)
+    if (const auto begins = record::beginning(e.record); !begins.empty())
+      page.provenance.emplace_back("begins", e.record.name + ": t = 0 is " + begins);
+  jobs::sign(page.provenance, a.judging, a.model, a.records);
+  page.figures = json_text(result);
+  write_file(std::filesystem::path(a.out) / "report.html", compare::command_html(page));
+}
+
 void say(const Arguments& a, const nlohmann::json& result, const std::string& text) {
-  write_file(std::filesystem::path(a.out) / "calibrate.json", result.dump(1) + "\n");
-  fmt::print("{}\n", a.json ? result.dump(1) : text);
+  write_file(std::filesystem::path(a.out) / "calibrate.json", json_text(result, 1) + "\n");
+  fmt::print("{}\n", a.json ? json_text(result, 1) : text);
 }
 
 int run_baseline(const Arguments& a, const plant::PlantModel& model,
@@ -99,10 +119,18 @@ int run_baseline(const Arguments& a, const plant::PlantModel& model,
   result["command"] = a.command;
   result["standard_values"] = model.standard;
   result["records"] = told;
-  result["fitness"] = jobs::fitness_json(played);
+  result["fitness"] = compare::fitness_json(played);
+  compare::CommandPage page;
+  page.complete = f.adequate;
+  page.sentence = f.sentence;
+  page.played = played;
+  page.parameters = jobs::page_parameters(f.parameters, f.model.plant);
+  for (const auto& e : f.events)
+    if (!e.seen) page.unseen.push_back(e.record);
+  write_page(a, model, std::move(page), result);
   say(a, result,
-      jobs::fitness_text(played) + compare::complete_text(f.adequate, calibrate::terminal_report(f, truth)) +
-          "\n" + written);
+      compare::fitness_text(played) +
+          compare::complete_text(f.adequate, calibrate::terminal_report(f, truth)) + "\n" + written);
   return played.back().fitness.exit_code(f.adequate);
 }
 
@@ -156,12 +184,12 @@ int run(Arguments& a) {
   const auto played = play_both(a, model, c.model, records);
   const std::filesystem::path folder = a.out;
   std::string text =
-      jobs::fitness_text(played) + compare::complete_text(holds, calibrate::terminal_report(c));
+      compare::fitness_text(played) + compare::complete_text(holds, calibrate::terminal_report(c));
   nlohmann::json result = calibrate::calibration_json(c);
   result["command"] = a.command;
   result["standard_values"] = model.standard;
   result["records"] = told;
-  result["fitness"] = jobs::fitness_json(played);
+  result["fitness"] = compare::fitness_json(played);
   result["statistically_complete"] = holds;
   std::vector<calibrate::Way> ways = {calibrate::way_of_model(c)};
   if (both) {
@@ -177,6 +205,17 @@ int run(Arguments& a) {
     text += "\n" + calibrate::beside_report(ways, truth);
     result["side_by_side"] = calibrate::beside_json(ways, truth);
   }
+  compare::CommandPage page;
+  page.complete = holds;
+  page.sentence = c.sentence;
+  page.played = played;
+  std::vector<fit::FittedParameter> fitted;
+  for (const auto& p : c.parameters) fitted.push_back(p.fit);
+  page.parameters = jobs::page_parameters(fitted, c.model.plant);
+  for (const auto& e : c.events)
+    if (!e.seen) page.unseen.push_back(e.record);
+  for (const auto& blur : c.blurs) page.tried.push_back(calibrate::describe(c, blur));
+  write_page(a, model, std::move(page), result);
   text += "\n" + write_model(a, model, c.model, holds, calibrate::provenance_lines(c, a.command));
   say(a, result, text);
   return played.back().fitness.exit_code(holds);
@@ -188,7 +227,7 @@ void add_options(jobs::CommandLine& line, Arguments& a, bool& inner) {
   line.add("--records,--record", a.records, "records of the events (validate/record/README.md)").required();
   line.add(
           "--out", a.out,
-          "folder for model.toml (model-not-adequate.toml where it does not hold), model.dyr and calibrate.json")
+          "folder for model.toml (model-not-adequate.toml where it does not hold), model.dyr, report.html and calibrate.json")
       .shows_default();
   a.reading.add_to(line);
   a.reading.add_component(line);

@@ -142,7 +142,8 @@ int main(int argc, char** argv) {
     }
     const compare::Adequacy adequacy = compare::judge(events);
     const compare::Fitness fitness = compare::judge_fitness(events, model.plant.mva, judging.by);
-    const report::Provenance rows = compare::provenance(model, events, joined(argc, argv));
+    report::Provenance rows = compare::provenance(model, events, joined(argc, argv));
+    jobs::sign(rows, judging, model_file, record_files);
     const std::filesystem::path folder = out;
     for (const auto& e : events)
       write_file(folder / ("playback-" + std::filesystem::path(e.record.name).stem().string() + ".csv"),

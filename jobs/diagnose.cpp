@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.hpp"
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
 #include "jobs/event_records.hpp"
@@ -26,29 +27,6 @@ std::filesystem::path write_law(const diagnose::Diagnosis& d, const std::filesys
   return file;
 }
 
-/// The events of the model as it is, with its parameters refitted and, where an effect or a law was accepted,
-/// with that.
-std::vector<jobs::Played> play_all(const plant::PlantModel& model, const diagnose::Diagnosis& d,
-                                   const std::vector<record::Record>& records, const jobs::Judging& judging,
-                                   compare::CompareOptions options) {
-  const auto play = [&](const std::string& name, const sim::plant::Plant& plant,
-                        const sim::Conventions& conventions) {
-    plant::PlantModel other = model;
-    other.plant = plant;
-    other.conventions = conventions;
-    return jobs::play_and_judge(name, other, records, options, judging);
-  };
-  std::vector<jobs::Played> played = {play("submitted", model.plant, model.conventions)};
-  const hypothesis::Judgement* best =
-      d.ranked.empty() || !d.ranked.front().accepted ? nullptr : &d.ranked.front();
-  if (!best && d.laws.found()) best = &d.laws.found()->judgement;
-  if (best && d.verdict != diagnose::Verdict::adequate)
-    played.push_back(play("with " + hypothesis::full_name(best->hypothesis), best->fit.plant,
-                          best->hypothesis.conventions));
-  played.push_back(play("refitted", d.base.plant, model.conventions));
-  return played;
-}
-
 int run(const std::string& model_file, const std::vector<std::string>& record_files, const std::string& out,
         bool json, const jobs::Reading& reading, jobs::Judging& judging, diagnose::DiagnoseOptions options,
         const std::string& command_line) {
@@ -61,8 +39,7 @@ int run(const std::string& model_file, const std::vector<std::string>& record_fi
   const bool adequate = d.verdict == diagnose::Verdict::adequate;
   compare::CompareOptions playing;
   playing.progress = options.progress;
-  const auto played = play_all(
-      model, d, options.measured_states ? set.records : jobs::power_only(set.records), judging, playing);
+  const auto played = diagnose::play_models(model, d, judging.by, playing);
   report::Provenance provenance = diagnose::diagnosis_provenance(model, d, command_line);
   for (std::size_t k = 0; k < set.records.size(); ++k) {
     const record::Record& r = set.records[k];
@@ -70,18 +47,19 @@ int run(const std::string& model_file, const std::vector<std::string>& record_fi
       provenance.emplace_back("begins", r.name + ": t = 0 is " + begins);
     for (const auto& note : set.warnings[k]) provenance.emplace_back("note", r.name + ": " + note);
   }
+  jobs::sign(provenance, judging, model_file, record_files);
   auto result = diagnose::diagnosis_json(model, d, provenance);
   result["records"] = jobs::records_json(set);
-  result["fitness"] = jobs::fitness_json(played);
+  result["fitness"] = compare::fitness_json(played);
   result["statistically_complete"] = adequate;
   const std::filesystem::path folder = out;
-  write_file(folder / "diagnosis.json", result.dump(1) + "\n");
-  write_file(folder / "report.html", diagnose::diagnosis_html(model, d, provenance));
+  write_file(folder / "diagnosis.json", json_text(result, 1) + "\n");
+  write_file(folder / "report.html", diagnose::diagnosis_html(model, d, provenance, played));
   const auto law_file = write_law(d, folder);
   if (json) {
-    fmt::print("{}\n", result.dump(1));
+    fmt::print("{}\n", json_text(result, 1));
   } else {
-    fmt::print("{}{}\nreport: {}\n", jobs::fitness_text(played),
+    fmt::print("{}{}\nreport: {}\n", compare::fitness_text(played),
                compare::complete_text(adequate, diagnose::diagnosis_text(d)),
                (folder / "report.html").string());
     if (!law_file.empty())
@@ -104,7 +82,7 @@ struct Command {
 
 int print_thresholds(bool json) {
   if (json)
-    fmt::print("{}\n", thresholds::thresholds_json().dump(1));
+    fmt::print("{}\n", json_text(thresholds::thresholds_json(), 1));
   else
     fmt::print("{}", diagnose::thresholds_text());
   return 0;

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.hpp"
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
 #include "jobs/event_records.hpp"
@@ -167,7 +168,7 @@ int run(const Options& o) {
     e.estimate = network.estimate(e.input.values, o.noise);
   }
   warn_of_strangers(network.info(), all);
-  const std::string text = to_json(network, model, all).dump(2) + "\n";
+  const std::string text = json_text(to_json(network, model, all), 2) + "\n";
   if (!o.out.empty()) write_file(o.out, text);
   fmt::print("{}", o.json ? text : table(network.info(), all) + believed(network.info(), all));
   return 0;

@@ -1,24 +1,32 @@
 #pragma once
-// What the commands that judge a model share: the limits by which it is fit for its purpose, its events
-// played as it was submitted and as the command leaves it, and the exit code that tells both verdicts.
+// What the commands that judge a model share: the limits by which it is fit for its purpose, who signs, and
+// where the figures of a page come from.
+#include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <cmath>
+#include <ctime>
+#include <filesystem>
+#include <limits>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "base/sha256.hpp"
 #include "jobs/command_line.hpp"
-#include "validate/compare/fitness.hpp"
-#include "validate/plant/plant_model.hpp"
+#include "jobs/software.hpp"
+#include "sim/plant/parameter_id.hpp"
+#include "validate/compare/page_parts.hpp"
 
 namespace swingbank::jobs {
 
-/// By which limits a model is judged fit for its purpose.
+/// By which limits a model is judged fit for purpose, and who signs the page.
 struct Judging {
-  std::string accept;
+  std::string accept, signed_by;
   validate::thresholds::Acceptance by;
 
   Option add_to(CommandLine& line) {
+    line.add("--by", signed_by, "who signs: printed on the page with date and inputs");
     return line.add(
         "--accept", accept,
         fmt::format("limits by which the model is fit for purpose: a file (configs/accept/README.md), or "
@@ -30,52 +38,49 @@ struct Judging {
   void read() { by = validate::thresholds::read_acceptance(accept); }
 };
 
-/// The records without what only measured states can be compared with (--power-only).
-inline std::vector<validate::record::Record> power_only(std::vector<validate::record::Record> records) {
-  for (auto& r : records) r.speed = r.Efd = r.Ifd = {};
-  return records;
-}
-
-/// A model that a command was given or makes, and its events.
-struct Played {
-  std::string name;  ///< "submitted", "calibrated"
-  std::vector<validate::compare::EventComparison> events;
-  validate::compare::Fitness fitness;
-};
-
-/// Plays the records into the model and judges it. A model that cannot follow them is not judged, and says
-/// why.
-inline Played play_and_judge(std::string name, const validate::plant::PlantModel& model,
-                             const std::vector<validate::record::Record>& records,
-                             validate::compare::CompareOptions options, const Judging& judging) {
-  namespace compare = validate::compare;
-  Played played{std::move(name), {}, {}};
-  const double mva = model.plant.mva;
-  try {
-    options.jumps = validate::event::jumps_of(records, options.jump_threshold);
-    for (const auto& record : records)
-      played.events.push_back(compare::compare_event(model, record, options));
-    compare::judge(played.events);  // the bounds of the maps
-    played.fitness = compare::judge_fitness(played.events, mva, judging.by);
-  } catch (const InputError& error) {
-    played.events.clear();
-    played.fitness = compare::not_judged(judging.by, mva, error.problems().front().sentence());
+/// The files that a word of --records stands for: "A+B", "FILE#TERMINAL", and a .cfg's .dat.
+inline std::vector<std::filesystem::path> files_of(const std::string& word) {
+  namespace fs = std::filesystem;
+  std::vector<fs::path> files;
+  for (std::size_t begin = 0; begin <= word.size();) {
+    const std::size_t plus = std::min(word.find('+', begin), word.size());
+    fs::path file = word.substr(begin, plus - begin);
+    if (!fs::exists(file)) file = file.string().substr(0, file.string().find('#'));
+    files.push_back(file);
+    for (const char* data : {".dat", ".DAT"})
+      if (file.extension() == ".cfg" || file.extension() == ".CFG")
+        if (const fs::path other = fs::path(file).replace_extension(data); fs::exists(other))
+          files.push_back(other);
+    begin = plus + 1;
   }
-  return played;
+  return files;
 }
 
-/// "Fit for purpose ..." of each, a line each; the last is the one that counts and comes first.
-inline std::string fitness_text(const std::vector<Played>& played) {
-  std::string text;
-  for (auto p = played.rbegin(); p != played.rend(); ++p)
-    text += fmt::format("{}: {}\n", p->name, p->fitness.sentence);
-  return text;
+/// Who, when and with what: added to the provenance of a page.
+inline void sign(validate::report::Provenance& rows, const Judging& judging, const std::string& model,
+                 const std::vector<std::string>& records) {
+  if (!judging.signed_by.empty()) rows.insert(rows.begin(), {"signed by", judging.signed_by});
+  rows.emplace_back("made", fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr))));
+  rows.emplace_back("commit", commit());
+  rows.emplace_back("limits", judging.by.name + ": " + judging.by.source);
+  std::vector<std::filesystem::path> files = {model};
+  for (const auto& word : records)
+    for (const auto& file : files_of(word)) files.push_back(file);
+  if (std::filesystem::exists(judging.accept)) files.emplace_back(judging.accept);
+  for (const auto& file : files)
+    if (const std::string hash = sha256_of_file(file); !hash.empty())
+      rows.emplace_back("SHA-256", hash + "  " + file.string());
 }
 
-inline nlohmann::json fitness_json(const std::vector<Played>& played) {
-  nlohmann::json all = nlohmann::json::object();
-  for (const Played& p : played) all[p.name] = validate::compare::fitness_json(p.fitness);
-  return all;
+/// Fitted parameters by their symbols.
+template <class Fitted>
+std::vector<validate::compare::PageParameter> page_parameters(const std::vector<Fitted>& fitted,
+                                                              const sim::plant::Plant& plant) {
+  std::vector<validate::compare::PageParameter> rows;
+  for (const auto& p : fitted)
+    rows.push_back({p.block, std::string(sim::plant::parameter_record(plant, p.where.id).symbol), p.unit,
+                    p.start, p.value, p.low, p.high, p.decided, p.at_bound ? "at its bound" : ""});
+  return rows;
 }
 
 }  // namespace swingbank::jobs

@@ -20,6 +20,9 @@ assert (seen["record"], seen["seen"], unseen["seen"]) == ("avr_ev1.csv", True, F
 assert unseen["misfit_before"] > 100 * unseen["misfit_after"]
 assert [c["unit"] for c in unseen["channels"]] == ["MW", "Mvar"]
 PYTHON
+for words in 'An effect added' 'evidence' 'avr_ev2.csv (not fitted to)' 'completed'; do
+  grep -qF -- "$words" "$work/added/report.html" || fail "'$words' is not on the page"
+done
 grep -q '^effect = "SEXS"' "$work/added/model.toml" || fail "the new model has no SEXS"
 grep -q '^# Command: swingbank add SEXS' "$work/added/model.toml" || fail "the new model does not say where it comes from"
 

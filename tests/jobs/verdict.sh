@@ -42,6 +42,21 @@ for command in compare calibrate add diagnose; do
     fail "$command --help does not tell the exit codes"
 done
 
+# every command writes a page; a name that is no UTF-8, or a tag, costs nothing
+sed 's|^name = .*|name = "</script><b>"|' "$bent" >"$work/tag.toml"
+cp "$one" "$work/"$'ev\xff<i>.csv'
+gives 3 '^Fit for purpose: no' "$swingbank" compare --model "$work/tag.toml" --records "$work/"$'ev\xff<i>.csv' --by 'A. Engineer'
+hash=$(sha256sum "$work/tag.toml" | cut -d' ' -f1)
+for words in 'A. Engineer' "$hash" 'Five words' "X''d" 'V, played in' 'Error map'; do
+  grep -qF -- "$words" "$work/out/report.html" || fail "'$words' is not on the page of compare"
+done
+! grep -qF '</script><b>' "$work/out/report.html" || fail "a name breaks the page"
+python3 -c 'import json, sys; json.load(open(sys.argv[1]))' "$work/out/compare.json"
+calibrate --out "$work/out" >/dev/null 2>&1
+for words in 'Five words' '95 % interval' 'calibrated' 'submitted' 'Error map' 'SHA-256'; do
+  grep -qF -- "$words" "$work/out/report.html" || fail "'$words' is not on the page of calibrate"
+done
+
 rm -r "$work/out"
 { limits wrong && printf '[P.fault]\nmxe = -1\nmax = 3\n[left_out]\nafter_fault = 9\n'; } >"$work/wrong.toml"
 refuses "wrong limits" 'wrong.toml:5' compare --model "$bent" --accept "$work/wrong.toml" --out "$work/out"

@@ -4,9 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.hpp"
+#include "sim/plant/parameter_id.hpp"
 #include "validate/compare/error_map_table.hpp"
+#include "validate/compare/page_parts.hpp"
 #include "validate/thresholds/list.hpp"
 
 namespace swingbank::validate::compare {
@@ -27,44 +31,18 @@ std::string describe_instants(const EventComparison& e) {
   return text + (!e.detected ? " (given)" : e.fitted ? " (found and fitted)" : " (found)");
 }
 
-std::vector<std::pair<double, double>> fault_bands(const EventComparison& e) {
-  if (e.switchings.empty()) return {};
-  return {{e.switchings.front().time, e.switchings.back().time}};
-}
-
-void add_event(report::Page& page, const EventComparison& e) {
-  page.section(e.record.name);
-  page.text(fmt::format(
-      "{} samples at {:.6g} per second. Switching: {}. Start: P = {:.2f} MW, Q = {:.2f} Mvar, V = {:.4f} pu.",
-      e.record.samples(), e.record.rate(), describe_instants(e), e.playback.start.P * e.record.base.mva,
-      e.playback.start.Q * e.record.base.mva, std::abs(e.playback.start.voltage)));
-  if (const auto begins = record::beginning(e.record); !begins.empty()) page.text("t = 0 is " + begins + ".");
-  for (const auto& note : e.notes) page.note(note);
-  for (const auto& c : e.channels) {
-    const auto in_units = [&](std::vector<double> v) {
-      for (auto& x : v) x *= c.scale;
-      return v;
-    };
-    report::Curves overlay{c.name + ", measured and modelled",
-                           "t [s]",
-                           c.name + " [" + c.unit + "]",
-                           e.record.name,
-                           e.record.t,
-                           {},
-                           fault_bands(e)};
-    overlay.series.push_back({c.name + " measured", "#8a97a5", true, in_units(c.measured)});
-    overlay.series.push_back({c.name + " modelled", "#c0392b", false, in_units(c.modelled)});
-    page.curves(overlay);
-    report::Curves residual{c.name + " residual (modelled − measured)",
-                            "t [s]",
-                            "[" + c.unit + "]",
-                            e.record.name,
-                            e.record.t,
-                            {},
-                            fault_bands(e)};
-    residual.series.push_back({c.name + " residual", "#0b5cad", false, in_units(c.residual)});
-    page.curves(residual);
-  }
+/// Every parameter of a plant, as it is.
+std::vector<PageParameter> parameters_of(const sim::plant::Plant& plant) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  std::vector<PageParameter> rows;
+  for (int block = 0; block < sim::plant::block_count(plant); ++block)
+    for (const auto id : sim::plant::parameters_of(plant, block)) {
+      const sim::Parameter& p = sim::plant::parameter_record(plant, id);
+      const double value = sim::plant::parameter_value(plant, id);
+      rows.push_back({std::string(sim::plant::block_effect(plant, block).name), std::string(p.symbol),
+                      std::string(p.unit), value, value, none, none, none});
+    }
+  return rows;
 }
 
 nlohmann::json to_json(const WindowError& w) {
@@ -171,7 +149,7 @@ std::string json_report(const plant::PlantModel& model, const std::vector<EventC
   j["events"] = nlohmann::json::array();
   for (const auto& e : events) j["events"].push_back(to_json(e));
   for (const auto& [name, value] : rows) j["provenance"][name] = value;
-  return j.dump(2) + "\n";
+  return json_text(j, 2) + "\n";
 }
 
 std::string csv_playback(const EventComparison& e) {
@@ -190,29 +168,24 @@ std::string csv_playback(const EventComparison& e) {
 
 std::string html_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
                         const Adequacy& adequacy, const Fitness& fitness, const report::Provenance& rows) {
-  report::Page page("Measured against modelled: " + model.name,
-                    fmt::format("{} of {:g} MVA; the recorded {} played into the model, and what it "
-                                "answers with is compared.",
-                                plant::subject(model), model.plant.mva,
-                                model.whole                         ? "signals around it are"
-                                : events.front().playback.P.empty() ? "P and Q are"
-                                                                    : "terminal voltage is"));
-  page.verdict(fitness.sentence, fitness.fit ? report::Tone::good : report::Tone::bad);
-  page.verdict(complete_text(adequacy.adequate, adequacy.sentence),
-               adequacy.adequate ? report::Tone::good : report::Tone::bad);
-  if (fitness.not_judged.empty()) page.table(worst_fitness_table(fitness));
-  const auto maps = maps_of(events);
-  page.table(events.size() > 1 ? worst_map_table(maps) : map_table(maps));
-  page.table(error_summary(events));
-  page.text(
-      "Drag across a chart to zoom in on a stretch of time (all charts of an event follow); double-click to "
-      "see the whole record. The shaded band is the fault.");
-  for (const auto& e : events) {
-    add_event(page, e);
-    if (events.size() > 1) page.table(map_table(maps_of({e})));
-  }
-  page.provenance(rows);
-  return page.html();
+  CommandPage page;
+  page.title = "Measured against modelled: " + model.name;
+  page.subtitle = fmt::format(
+      "{} of {:g} MVA; the recorded {} played into the model, and what it answers with is compared.",
+      plant::subject(model), model.plant.mva,
+      model.whole                         ? "signals around it are"
+      : events.front().playback.P.empty() ? "P and Q are"
+                                          : "terminal voltage is");
+  page.complete = adequacy.adequate;
+  page.sentence = adequacy.sentence;
+  page.played = {{"submitted", events, fitness}};
+  page.parameters = parameters_of(model.plant);
+  page.tried = {
+      "None: compare changes nothing. “swingbank diagnose” names what the model lacks, “swingbank calibrate” "
+      "fits its parameters."};
+  page.provenance = rows;
+  page.figures = json_report(model, events, adequacy, fitness, rows);
+  return command_html(page);
 }
 
 report::Provenance provenance(const plant::PlantModel& model, const std::vector<EventComparison>& events,

@@ -244,6 +244,31 @@ nlohmann::json diagnosis_json(const plant::PlantModel& model, const Diagnosis& d
   return j;
 }
 
+std::vector<compare::Played> play_models(const plant::PlantModel& model, const Diagnosis& d,
+                                         const thresholds::Acceptance& by,
+                                         const compare::CompareOptions& options) {
+  std::vector<record::Record> records;
+  for (const auto& e : d.events) records.push_back(e.record);
+  if (std::ranges::all_of(d.events, [](const event::FitEvent& e) { return e.channels.size() <= 2; }))
+    records = compare::power_only(std::move(records));
+  const auto play = [&](const std::string& name, const sim::plant::Plant& plant,
+                        const sim::Conventions& conventions) {
+    plant::PlantModel other = model;
+    other.plant = plant;
+    other.conventions = conventions;
+    return compare::play_and_judge(name, other, records, options, by);
+  };
+  std::vector<compare::Played> played = {play("submitted", model.plant, model.conventions)};
+  const hypothesis::Judgement* best =
+      d.ranked.empty() || !d.ranked.front().accepted ? nullptr : &d.ranked.front();
+  if (!best && d.laws.found()) best = &d.laws.found()->judgement;
+  if (best && d.verdict != Verdict::adequate)
+    played.push_back(play("with " + hypothesis::full_name(best->hypothesis), best->fit.plant,
+                          best->hypothesis.conventions));
+  played.push_back(play("refitted", d.base.plant, model.conventions));
+  return played;
+}
+
 report::Provenance diagnosis_provenance(const plant::PlantModel& model, const Diagnosis& d,
                                         const std::string& command_line) {
   report::Provenance rows = {{"command", command_line},

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "validate/compare/compare.hpp"
+#include "validate/compare/played.hpp"
 #include "validate/diagnose/diagnose.hpp"
 #include "validate/report/page.hpp"
 
@@ -43,7 +43,14 @@ nlohmann::json diagnosis_json(const plant::PlantModel& model, const Diagnosis& d
 /// One self-contained page. The JSON is part of it (element "figures"), so that a program can read what a
 /// person reads.
 std::string diagnosis_html(const plant::PlantModel& model, const Diagnosis& diagnosis,
-                           const report::Provenance& provenance);
+                           const report::Provenance& provenance,
+                           const std::vector<compare::Played>& played = {});
+
+/// The events of the model as it is, with what it lacks where an effect or a law was accepted, and with its
+/// parameters refitted: the last counts.
+std::vector<compare::Played> play_models(const plant::PlantModel& model, const Diagnosis& diagnosis,
+                                         const thresholds::Acceptance& by,
+                                         const compare::CompareOptions& options = {});
 
 /// Hashes of model and records, version and command line.
 report::Provenance diagnosis_provenance(const plant::PlantModel& model, const Diagnosis& diagnosis,

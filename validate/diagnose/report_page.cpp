@@ -6,7 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "base/constants.hpp"
+#include "base/json_text.hpp"
+#include "sim/plant/parameter_id.hpp"
 #include "validate/compare/error_map_table.hpp"
+#include "validate/compare/page_parts.hpp"
 #include "validate/diagnose/detail/false_positives.hpp"
 #include "validate/diagnose/detail/report_laws.hpp"
 #include "validate/diagnose/report.hpp"
@@ -14,9 +17,6 @@
 namespace swingbank::validate::diagnose {
 namespace {
 
-constexpr const char* kMeasured = "#8a97a5";
-constexpr const char* kBefore = "#c0392b";
-constexpr const char* kAfter = "#0b5cad";
 constexpr std::size_t kBars = 12;  // hypotheses drawn; the table holds all
 
 std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
@@ -29,10 +29,12 @@ std::vector<std::pair<double, double>> fault_bands(const event::FitEvent& e) {
 
 class DiagnosisPage {
  public:
-  DiagnosisPage(const plant::PlantModel& model, const Diagnosis& d, const report::Provenance& rows)
+  DiagnosisPage(const plant::PlantModel& model, const Diagnosis& d, const report::Provenance& rows,
+                const std::vector<compare::Played>& played)
       : model_(model),
         d_(d),
         rows_(rows),
+        played_(played),
         figures_(report_figures(d)),
         page_("Diagnosis: " + model.name,
               fmt::format("{} of {:g} MVA · {} {} · recorded terminal voltage played into the model",
@@ -40,24 +42,24 @@ class DiagnosisPage {
                           d.events.size() == 1 ? "event" : "events")) {}
 
   std::string html() {
-    page_.verdict(d_.sentence, d_.verdict == Verdict::adequate      ? report::Tone::good
-                               : d_.verdict == Verdict::unexplained ? report::Tone::bad
-                                                                    : report::Tone::found);
+    compare::verdict_part(page_, played_, d_.verdict == Verdict::adequate, d_.sentence,
+                          d_.verdict == Verdict::adequate      ? report::Tone::good
+                          : d_.verdict == Verdict::unexplained ? report::Tone::bad
+                                                               : report::Tone::found);
     page_.text(false_positive_note());
+    compare::panels_part(page_, played_);
+    parameters();
     at_a_glance();
     error_maps();
     sides();
     hypotheses();
     laws_on_page(d_, page_);
-    parameters();
-    page_.section("Events");
-    page_.text(
-        "Drag across a chart to zoom in on a stretch of time (all charts of an event follow); double-click "
-        "to see the whole record. Shaded upright: the fault. Shaded level: the 99 % band of the noise.");
+    page_.section("Each event");
     for (std::size_t e = 0; e < figures_.events.size(); ++e) event(e);
     method();
+    compare::glossary_part(page_);
     page_.provenance(rows_);
-    page_.data("figures", diagnosis_json(model_, d_, rows_).dump());
+    page_.data("figures", json_text(diagnosis_json(model_, d_, rows_)));
     return page_.html();
   }
 
@@ -65,10 +67,11 @@ class DiagnosisPage {
   [[nodiscard]] bool with_after() const { return figures_.after != nullptr; }
 
   void at_a_glance() {
+    page_.section("Error of each event");
     report::Table table{
         "Error of each event: RMS of the residual over all channels, "
         "in units of noise. 1 × means that nothing but noise is left.",
-        {"event", "model as it is, refitted"},
+        {"event", "refitted"},
         {}};
     if (with_after()) table.header.push_back("with " + figures_.after_name);
     const bool unseen = std::ranges::any_of(
@@ -94,7 +97,7 @@ class DiagnosisPage {
     report::Table table{
         "Share of samples within the stated tolerance, the 99 % band of each channel's noise; noise alone "
         "gives 99 %.",
-        {"event", "channel", "tolerance", "model as it is, refitted"},
+        {"event", "channel", "tolerance", "refitted"},
         {}};
     if (with_after()) table.header.push_back("with " + figures_.after_name);
     for (const auto& e : figures_.events)
@@ -119,7 +122,7 @@ class DiagnosisPage {
   void error_maps() {
     page_.section("Where the model is wrong");
     report::Table before = compare::worst_map_table(maps(&ReportChannel::map_before));
-    before.caption = "The model as it is, its parameters refitted. " + before.caption;
+    before.caption = "The model with its parameters refitted. " + before.caption;
     page_.table(before);
     if (!with_after()) return;
     report::Table after = compare::worst_map_table(maps(&ReportChannel::map_after));
@@ -188,7 +191,7 @@ class DiagnosisPage {
     report::Table table{
         "95 % intervals. The last column says how much of the interval "
         "the records decide; the rest is what was believed before.",
-        {"parameter", "unit", "model file", "refitted as it is"},
+        {"parameter", "unit", "submitted", "refitted"},
         {}};
     if (with_after()) table.header.push_back("with " + figures_.after_name);
     table.header.insert(table.header.end(), {"95 % interval", "told by the records"});
@@ -197,7 +200,9 @@ class DiagnosisPage {
         return b.block == p.block && b.name == p.name;
       });
       const bool known = base != d_.base.parameters.end();
-      std::vector<report::Cell> row = {p.block + " " + p.name, p.unit, known ? value_text(base->start) : "–",
+      const auto symbol = sim::plant::parameter_record(last.plant, p.where.id).symbol;
+      std::vector<report::Cell> row = {p.block + " " + std::string(symbol), p.unit,
+                                       known ? value_text(base->start) : "–",
                                        known ? value_text(base->value) : "–"};
       if (with_after()) row.emplace_back(value_text(p.value));
       row.emplace_back(std::isfinite(p.error)
@@ -222,7 +227,6 @@ class DiagnosisPage {
         "{:.4f} pu.",
         r.samples(), r.rate(), instants.empty() ? "none" : instants, e.event->start.P * r.base.mva,
         e.event->start.Q * r.base.mva, std::abs(e.event->start.voltage)));
-    for (const auto& c : e.channels) channel(e, c);
     input(index, d_.torque, "Inferred missing torque", "added to Tm [pu]");
     input(index, d_.field, "Inferred missing field voltage", "added to Efd [pu]");
     if (figures_.events.size() < 2) return;
@@ -234,37 +238,6 @@ class DiagnosisPage {
     table.caption =
         fmt::format("Error map of {}{}.", r.name, with_after() ? ", with " + figures_.after_name : "");
     page_.table(table);
-  }
-  void channel(const ReportEvent& e, const ReportChannel& c) {
-    const record::Record& r = e.event->record;
-    const auto in_units = [&](std::vector<double> v) {
-      for (auto& x : v) x *= c.scale;
-      return v;
-    };
-    const auto residual = [&](const std::vector<double>& model) {
-      std::vector<double> v(model.size());
-      for (std::size_t k = 0; k < v.size(); ++k) v[k] = (model[k] - c.measured[k]) * c.scale;
-      return v;
-    };
-    report::Curves overlay{c.name, "t [s]", c.name + " [" + c.unit + "]", r.name,
-                           r.t,    {},      fault_bands(*e.event)};
-    overlay.series.push_back({"measured", kMeasured, true, in_units(c.measured)});
-    overlay.series.push_back({"model as it is", kBefore, false, in_units(c.before)});
-    report::Curves rest{c.name + " residual (modelled − measured)",
-                        "t [s]",
-                        "[" + c.unit + "]",
-                        r.name,
-                        r.t,
-                        {},
-                        fault_bands(*e.event)};
-    rest.tolerance = constants::normal99 * c.noise * c.scale;
-    rest.series.push_back({"model as it is", kBefore, false, residual(c.before)});
-    if (with_after()) {
-      overlay.series.push_back({"with " + figures_.after_name, kAfter, false, in_units(c.after)});
-      rest.series.push_back({"with " + figures_.after_name, kAfter, false, residual(c.after)});
-    }
-    page_.curves(overlay);
-    page_.curves(rest);
   }
   void input(std::size_t index, const hypothesis::MissingInput& m, const std::string& title,
              const std::string& label) {
@@ -286,7 +259,7 @@ class DiagnosisPage {
         "standards set no numerical tolerance; stated here is the 99 % band of the noise, estimated before "
         "each event.");
     page_.text(
-        "“As it is” means the present structure with its parameters fitted to all events: what "
+        "“Refitted” means the present structure with its parameters fitted to all events: what "
         "is wrong then is not a matter of parameters. A cell of the error map is the part of "
         "the residual in a window of time and a band of frequency, over what noise alone leaves "
         "there; the bound is kept by noise alone in all cells together with 99.9 % probability.");
@@ -296,6 +269,7 @@ class DiagnosisPage {
   const plant::PlantModel& model_;
   const Diagnosis& d_;
   const report::Provenance& rows_;
+  const std::vector<compare::Played>& played_;
   ReportFigures figures_;
   report::Page page_;
 };
@@ -303,8 +277,8 @@ class DiagnosisPage {
 }  // namespace
 
 std::string diagnosis_html(const plant::PlantModel& model, const Diagnosis& diagnosis,
-                           const report::Provenance& provenance) {
-  return DiagnosisPage(model, diagnosis, provenance).html();
+                           const report::Provenance& provenance, const std::vector<compare::Played>& played) {
+  return DiagnosisPage(model, diagnosis, provenance, played).html();
 }
 
 }  // namespace swingbank::validate::diagnose

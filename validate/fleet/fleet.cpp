@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/config.hpp"
+#include "base/json_text.hpp"
 #include "base/write_file.hpp"
 #include "validate/check/record_set.hpp"
 #include "validate/diagnose/report.hpp"
@@ -112,7 +113,7 @@ std::string inputs_of(const Loaded& l, const FleetPlant& plant) {
     j.push_back(XXH64(bytes.data(), bytes.size(), 0));
   }
   for (const auto& r : l.records) j.push_back({r.name, r.terminal, r.hash});
-  const std::string text = j.dump();
+  const std::string text = json_text(j);
   return fmt::format("{:016x}", XXH64(text.data(), text.size(), 0));
 }
 
@@ -168,7 +169,7 @@ void check_ours(const fs::path& folder) {
                     "move it away, or give another --out"});
 }
 
-std::string plant_json(const FleetRow& row) { return row_json(row).dump(1) + "\n"; }
+std::string plant_json(const FleetRow& row) { return json_text(row_json(row), 1) + "\n"; }
 
 std::string command_of(const FleetPlant& plant, const std::vector<std::string>& files) {
   std::string text = fmt::format("swingbank diagnose --model {} --records", plant.model.string());
@@ -245,8 +246,10 @@ FleetOutcome diagnose_plant(const Fleet& fleet, const FleetPlant& plant, const f
     o.row.inputs = inputs;
     const report::Provenance rows = diagnose::diagnosis_provenance(l.model, d, command_of(plant, l.files));
     fs::remove_all(temporary);
-    write_file(temporary / "diagnosis.json", diagnose::diagnosis_json(l.model, d, rows).dump(1) + "\n");
-    write_file(temporary / "report.html", diagnose::diagnosis_html(l.model, d, rows));
+    write_file(temporary / "diagnosis.json", json_text(diagnose::diagnosis_json(l.model, d, rows), 1) + "\n");
+    write_file(temporary / "report.html",
+               diagnose::diagnosis_html(l.model, d, rows,
+                                        diagnose::play_models(l.model, d, thresholds::read_acceptance(""))));
     std::string notes;
     for (const auto& note : l.notes) notes += note + "\n";
     if (!notes.empty()) write_file(temporary / "notes.txt", notes);

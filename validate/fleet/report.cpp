@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.hpp"
 #include "validate/compare/error_map_table.hpp"
 #include "validate/thresholds/adequacy.hpp"
 
@@ -112,7 +113,7 @@ std::string fleet_json(const Fleet& fleet, const std::vector<FleetRow>& rows) {
                       {"failed", count(rows, {"failed"})},
                       {"plants", nlohmann::json::array()}};
   for (const auto& r : rows) j["plants"].push_back(row_json(r));
-  return j.dump(1) + "\n";
+  return json_text(j, 1) + "\n";
 }
 
 std::string fleet_csv(const std::vector<FleetRow>& rows) {

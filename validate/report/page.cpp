@@ -7,6 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.hpp"
+
 namespace swingbank::validate::report {
 namespace {
 
@@ -31,15 +33,19 @@ th,td{padding:.32rem .7rem;border-bottom:1px solid var(--line);text-align:right;
 th{background:var(--tint);font-weight:600;vertical-align:bottom;white-space:normal;overflow-wrap:break-word;max-width:9.5rem}
 th:first-child,td:first-child{text-align:left;position:sticky;left:0}
 td:first-child{background:var(--paper)}
-td.words{text-align:left}
+th.words{text-align:left}
+td.words{text-align:left;white-space:normal;min-width:9ch;max-width:44ch;overflow-wrap:break-word}
 .wrap td{white-space:normal;overflow-wrap:anywhere;text-align:left}
+.wrap td:first-child{white-space:nowrap;vertical-align:top}
+.panels{display:grid;grid-template-columns:repeat(2,minmax(0,1fr));gap:0 18px}.panels figure{margin:.4rem 0;min-width:0}.panels .chart{height:210px}
 .chart{width:100%;height:250px}
 .legend{font-size:.85rem;color:var(--soft);min-height:1.4em}
 .hint{color:var(--soft);font-size:.85rem}
 svg{max-width:100%;height:auto;font:12px system-ui,"DejaVu Sans",sans-serif}
 .dygraph-axis-label{color:var(--soft);font-size:12px}.dygraph-label{font-size:12px;color:var(--soft)}
-@media(max-width:600px){main{padding:14px 12px 40px}h1{font-size:1.35rem}th,td{padding:.28rem .45rem}.chart{height:210px}}
-@media print{main{max-width:none;padding:0}figure,table,tr{break-inside:avoid}h2{break-after:avoid}.hint{display:none}.scroll{overflow:visible}th,td{padding:.2rem .4rem}body{font-size:11pt}.cell,th,.note,.verdict{-webkit-print-color-adjust:exact;print-color-adjust:exact}}
+@media(max-width:600px){.panels{grid-template-columns:minmax(0,1fr)}main{padding:14px 12px 40px}h1{font-size:1.35rem}th,td{padding:.28rem .45rem}.chart{height:210px}}
+@media print{main{max-width:none;padding:0}figure,table,tr{break-inside:avoid}h2{break-after:avoid}.hint{display:none}.scroll{overflow:visible}table{font-size:8pt;min-width:0;max-width:100%}th,td{padding:.15rem .25rem;white-space:normal;position:static}th.words{text-align:left}
+td.words{min-width:0}body{font-size:10pt}.panels{grid-template-columns:repeat(2,minmax(0,1fr))}.panels figcaption,.panels .legend{font-size:8pt}.cell,th,.note,.verdict{-webkit-print-color-adjust:exact;print-color-adjust:exact}}
 )css";
 
 constexpr std::string_view kScript = R"js(
@@ -63,14 +69,14 @@ function chart(d){
 charts.forEach(chart);
 // Shrunk, not redrawn: a canvas drawn while printing makes a document of 100 MB.
 const boxes=[...document.querySelectorAll(".chart")];
-addEventListener("beforeprint",()=>boxes.forEach(b=>{b.style.zoom=Math.min(1,680/b.clientWidth)}));
+addEventListener("beforeprint",()=>boxes.forEach(b=>{b.style.zoom=Math.min(1,(b.closest(".panels")?330:680)/b.clientWidth)}));
 addEventListener("afterprint",()=>boxes.forEach(b=>{b.style.zoom=""}));
 )js";
 
-/// JSON for a <script>: no closing tag can stand in it.
+/// JSON for a <script>: no tag and no comment can begin in it.
 std::string script_safe(std::string text) {
-  for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3)
-    text.insert(at + 1, "\\");
+  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos; at += 6)
+    text.replace(at, 1, "\\u003c");
   return text;
 }
 
@@ -135,7 +141,13 @@ void Page::data(std::string_view id, std::string_view json) {
 void Page::table(const Table& table) {
   if (!table.caption.empty()) body_ += fmt::format("<p class=\"caption\">{}</p>\n", escape(table.caption));
   body_ += "<div class=\"scroll\"><table><thead><tr>";
-  for (const auto& h : table.header) body_ += fmt::format("<th>{}</th>", escape(h));
+  for (std::size_t i = 0; i < table.header.size(); ++i)
+    body_ +=
+        fmt::format("<th{}>{}</th>",
+                    !table.rows.empty() && i < table.rows.front().size() && is_words(table.rows.front()[i])
+                        ? " class=\"words\""
+                        : "",
+                    escape(table.header[i]));
   body_ += "</tr></thead><tbody>\n";
   for (const auto& row : table.rows) {
     body_ += "<tr>";
@@ -171,9 +183,15 @@ void Page::curves(const Curves& c) {
     for (const auto& s : c.series) rows += "," + number(s.y[k]);
     rows += "]";
   }
-  std::string head = script_safe(meta.dump());
+  std::string head = script_safe(json_text(meta));
   head.back() = ',';
   charts_ += head + "\"rows\":[" + rows + "]},\n";
+}
+
+void Page::begin_panels() { body_ += "<div class=\"panels\">\n"; }
+void Page::end_panels() { body_ += "</div>\n"; }
+void Page::hint(std::string_view paragraph) {
+  body_ += fmt::format("<p class=\"hint\">{}</p>\n", escape(paragraph));
 }
 
 void Page::bars(const Bars& b) {

@@ -80,6 +80,9 @@ class Page {
   void verdict(std::string_view sentence, Tone tone);  ///< the first thing to read
   void table(const Table& table);
   void curves(const Curves& curves);
+  void begin_panels();  ///< curves from here to end_panels() stand two in a row, where there is room
+  void end_panels();
+  void hint(std::string_view paragraph);  ///< for the screen; not printed
   void bars(const Bars& bars);
   void picture(std::string_view svg, std::string_view caption);
   void scatters(const std::vector<Scatter>& side_by_side);

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/constants.hpp"
+#include "base/json_text.hpp"
 #include "validate/compare/error_map_table.hpp"
 #include "validate/system/system.hpp"
 #include "validate/thresholds/list.hpp"
@@ -225,7 +226,7 @@ std::string system_json(const SystemCase& s, const SystemComparison& c, const re
                             {"alone_where", r.alone_where}});
   for (std::size_t i = 0; i < c.terminals.size(); ++i) j["terminals"].push_back(terminal_json(s, c, i));
   for (const auto& [name, value] : rows) j["provenance"].push_back({{"what", name}, {"value", value}});
-  return j.dump(1) + "\n";
+  return json_text(j, 1) + "\n";
 }
 
 std::string system_html(const SystemCase& s, const SystemComparison& c, const report::Provenance& rows) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "sim/library/library.hpp"
 #include "tests/validate/playin/support.hpp"
 #include "tests/validate/report/browser.hpp"
 #include "validate/compare/error_map_table.hpp"
@@ -66,7 +67,9 @@ const Example& example() {
 }
 nlohmann::json figures() { return diagnosis_json(example().model, example().d, example().rows); }
 const std::string& page() {
-  static const std::string html = diagnosis_html(example().model, example().d, example().rows);
+  static const std::string html =
+      diagnosis_html(example().model, example().d, example().rows,
+                     play_models(example().model, example().d, thresholds::read_acceptance("")));
   return html;
 }
 
@@ -83,6 +86,12 @@ std::vector<std::vector<std::string>> table_after(const std::string& html, const
       rows.back().push_back(std::regex_replace(std::regex_replace((*c)[1].str(), gt, ">"), lt, "<"));
   }
   return rows;
+}
+/// As engineers write it.
+std::string symbol(const std::string& block, const std::string& name) {
+  for (const auto& p : sim::library::compiled().find(block)->parameters)
+    if (p.name == name) return std::string(p.symbol);
+  return "";
 }
 std::string cell_text(const nlohmann::json& cell) {
   if (cell["rms_in_noise"].is_null()) return "–";
@@ -127,7 +136,7 @@ TEST(DiagnosisReportTest, TablesEqualTheJson) {
   ASSERT_EQ(parameters.size(), told.size());
   for (std::size_t i = 0; i < told.size(); ++i) {
     EXPECT_EQ(parameters[i][0],
-              told[i]["block"].get<std::string>() + " " + told[i]["name"].get<std::string>());
+              told[i]["block"].get<std::string>() + " " + symbol(told[i]["block"], told[i]["name"]));
     char text[32];
     std::snprintf(text, sizeof text, "%.4g", told[i]["value"].get<double>());
     EXPECT_EQ(parameters[i][4], text);

@@ -30,6 +30,21 @@ TEST(PageTest, TextOfUsersIsEscaped) {
     ++closing;
   EXPECT_EQ(closing, 2u);  // the library and ours: no label has closed one early
 }
+TEST(PageTest, NoTagBeginsInJson) {
+  Page page("a", "b");
+  page.data("figures", R"({"name":"<!--<script>"})");
+  page.curves({"c", "t", "y", "<!--", {0, 1}, {{"bad \xff byte", "red", false, {1, 2}}}, {}});
+  const std::string html = page.html();
+  EXPECT_THAT(html, HasSubstr(R"({"name":"\u003c!--\u003cscript>"})"));
+  EXPECT_THAT(html, HasSubstr("bad \xef\xbf\xbd byte"));  // what is no UTF-8 is replaced, nothing thrown
+}
+TEST(PageTest, PanelsStandInAGrid) {
+  Page page("a", "b");
+  page.begin_panels();
+  page.curves({"c", "t", "y", "g", {0, 1}, {{"s", "red", false, {1, 2}}}, {}});
+  page.end_panels();
+  EXPECT_LT(page.html().find("class=\"panels\""), page.html().find("<figure>"));
+}
 TEST(PageTest, ScriptsOnlyWhereThereAreCurves) {
   Page page("a", "b");
   EXPECT_EQ(page.html().find("<script"), std::string::npos);

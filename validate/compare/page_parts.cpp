@@ -1,0 +1,290 @@
+#include "validate/compare/page_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "validate/compare/error_map_table.hpp"
+
+namespace swingbank::validate::compare {
+namespace {
+
+constexpr const char* kInk = "#5b6b7b";
+/// Of the models in the order in which they are given: the submitted one is red.
+constexpr std::array kModelColours = {"#c0392b", "#0b5cad", "#b8860b"};
+
+std::string number_text(double v) { return std::isfinite(v) ? fmt::format("{:.4g}", v) : "–"; }
+
+const ChannelComparison* find_channel(const EventComparison& e, const std::string& name) {
+  const auto c = std::ranges::find(e.channels, name, &ChannelComparison::name);
+  return c == e.channels.end() ? nullptr : &*c;
+}
+
+/// The event of the models that can follow it; the first says what was measured.
+struct ShownEvent {
+  std::vector<std::pair<const Played*, const EventComparison*>> of;
+  [[nodiscard]] const EventComparison& first() const { return *of.front().second; }
+};
+ShownEvent shown_event(const std::vector<Played>& played, std::size_t event) {
+  ShownEvent shown;
+  for (const Played& p : played)
+    if (event < p.events.size()) shown.of.emplace_back(&p, &p.events[event]);
+  return shown;
+}
+const char* colour_of(const std::vector<Played>& played, const Played* one) {
+  return kModelColours[static_cast<std::size_t>(one - played.data()) % kModelColours.size()];
+}
+
+std::vector<double> times(std::vector<double> values, double scale, double shift = 0) {
+  for (auto& v : values) v = v * scale + shift;
+  return values;
+}
+
+/// An empty chart of an event.
+report::Curves chart_of(const EventComparison& e, const std::string& title, const std::string& unit) {
+  report::Curves c{title, "t [s]", "[" + unit + "]", e.record.name, e.record.t, {}, {}};
+  if (!e.switchings.empty()) c.bands = {{e.switchings.front().time, e.switchings.back().time}};
+  return c;
+}
+
+/// What each model answers in one channel, beside what was measured.
+void channel_panel(report::Page& page, const std::vector<Played>& played, const ShownEvent& shown,
+                   const std::string& name, double shift = 0) {
+  const ChannelComparison* measured = find_channel(shown.first(), name);
+  if (!measured) return;
+  report::Curves c = chart_of(shown.first(), name, measured->unit);
+  c.series.push_back({"measured", kInk, true, times(measured->measured, measured->scale, shift)});
+  for (const auto& [model, event] : shown.of)
+    if (const ChannelComparison* m = find_channel(*event, name))
+      c.series.push_back({model->name, colour_of(played, model), false, times(m->modelled, m->scale, shift)});
+  page.curves(c);
+}
+
+/// What was recorded and drives the model.
+void driving_panel(report::Page& page, const EventComparison& e, const std::string& name,
+                   const std::string& unit, std::vector<double> values) {
+  if (values.size() != e.record.t.size()) return;  // not recorded
+  report::Curves c = chart_of(e, name + ", played in", unit);
+  c.series.push_back({"measured", kInk, true, std::move(values)});
+  page.curves(c);
+}
+
+void voltage_panels(report::Page& page, const std::vector<Played>& played, const ShownEvent& shown) {
+  const EventComparison& e = shown.first();
+  if (find_channel(e, "V"))
+    channel_panel(page, played, shown, "V");
+  else
+    driving_panel(page, e, "V", "pu", e.record.V);
+  const double nominal = e.record.base.frequency;
+  if (!e.record.f.empty())
+    driving_panel(page, e, "f", "Hz", times(e.record.f, nominal, nominal));
+  else if (e.record.angle != record::AngleSource::none && e.record.theta.size() == e.record.t.size())
+    driving_panel(page, e, "f from the angle", "Hz",
+                  times(frequency_of(e.record.t, e.record.theta, nominal), nominal, nominal));
+  else
+    page.note("f: neither frequency nor angle was recorded.");
+}
+
+void power_panels(report::Page& page, const std::vector<Played>& played, const ShownEvent& shown) {
+  const record::Record& r = shown.first().record;
+  for (const char* name : {"P", "Q"}) {
+    const auto& recorded = name[0] == 'P' ? r.P : r.Q;
+    if (find_channel(shown.first(), name))
+      channel_panel(page, played, shown, name);
+    else if (!recorded.empty())
+      driving_panel(page, shown.first(), name, name[0] == 'P' ? "MW" : "Mvar", times(recorded, r.base.mva));
+  }
+}
+
+/// What is left of P and Q.
+void residual_panels(report::Page& page, const std::vector<Played>& played, const ShownEvent& shown) {
+  for (const char* name : {"P", "Q"}) {
+    const ChannelComparison* first = find_channel(shown.first(), name);
+    if (!first) continue;
+    report::Curves c = chart_of(shown.first(), fmt::format("{}, modelled − measured", name), first->unit);
+    for (const auto& [model, event] : shown.of)
+      if (const ChannelComparison* m = find_channel(*event, name))
+        c.series.push_back({model->name, colour_of(played, model), false, times(m->residual, m->scale)});
+    page.curves(c);
+  }
+}
+
+std::string instants_of(const EventComparison& e) {
+  std::string text;
+  for (const auto& s : e.switchings) text += fmt::format("{}{:.4f} s", text.empty() ? "" : ", ", s.time);
+  return text.empty() ? "none"
+                      : text + (!e.detected ? " (given)"
+                                : e.fitted  ? " (found and fitted)"
+                                            : " (found)");
+}
+
+void event_panels(report::Page& page, const std::vector<Played>& played, std::size_t event) {
+  const ShownEvent shown = shown_event(played, event);
+  if (shown.of.empty()) return;
+  const EventComparison& e = *shown.of.back().second;  // what is said of it is said of the model that counts
+  page.subsection(e.record.name);
+  const auto begins = record::beginning(e.record);
+  page.text(fmt::format(
+      "{}{} samples at {:.6g} per second. Switching: {}. Start: P = {:.2f} MW, Q = {:.2f} Mvar, V = {:.4f} pu.",
+      begins.empty() ? "" : "t = 0 is " + begins + ". ", e.record.samples(), e.record.rate(), instants_of(e),
+      e.playback.start.P * e.record.base.mva, e.playback.start.Q * e.record.base.mva,
+      std::abs(e.playback.start.voltage)));
+  for (const auto& note : e.notes) page.note(note);
+  page.begin_panels();
+  voltage_panels(page, played, shown);
+  power_panels(page, played, shown);
+  for (const auto& c : e.channels)
+    if (c.name != "V" && c.name != "frequency" && c.name != "P" && c.name != "Q")
+      channel_panel(page, played, shown, c.name);
+  residual_panels(page, played, shown);
+  page.end_panels();
+}
+
+std::vector<LabelledMap> labelled_maps(const std::vector<EventComparison>& events) {
+  std::vector<LabelledMap> maps;
+  for (const auto& e : events)
+    for (const auto& c : e.channels)
+      maps.push_back({e.record.name, c.name, c.unit, c.scale, &e.windows, &c.map});
+  return maps;
+}
+
+}  // namespace
+
+void verdict_part(report::Page& page, const std::vector<Played>& played, bool complete,
+                  const std::string& sentence, report::Tone tone) {
+  using report::Tone;
+  if (!played.empty()) {
+    const Fitness& counts = played.back().fitness;
+    const std::string who = played.size() > 1 ? fmt::format(" ({})", played.back().name) : "";
+    page.verdict(counts.sentence + who, !counts.not_judged.empty() ? Tone::found
+                                        : counts.fit               ? Tone::good
+                                                                   : Tone::bad);
+  }
+  page.verdict(complete_text(complete, sentence), tone);
+  for (std::size_t k = 0; k + 1 < played.size(); ++k)
+    page.text(fmt::format("The model {}: {}", played[k].name == "submitted" ? "as submitted" : played[k].name,
+                          played[k].fitness.sentence));
+  if (!played.empty() && played.back().fitness.not_judged.empty())
+    page.table(worst_fitness_table(played.back().fitness));
+}
+
+void panels_part(report::Page& page, const std::vector<Played>& played) {
+  std::size_t events = 0;
+  for (const Played& p : played) events = std::max(events, p.events.size());
+  if (events == 0) return;
+  page.section("Events");
+  page.hint(
+      "Drag across a chart to zoom in on a stretch of time (all charts of an event follow); double-click to "
+      "see the whole record. The shaded band is the fault.");
+  for (std::size_t e = 0; e < events; ++e) event_panels(page, played, e);
+}
+
+void parameters_part(report::Page& page, const std::vector<PageParameter>& parameters) {
+  if (parameters.empty()) return;
+  page.section("Parameters");
+  const bool fitted = std::ranges::any_of(parameters, [](const auto& p) { return std::isfinite(p.low); });
+  report::Table table{fitted ? "Before and after, with 95 % intervals. The last columns say how much of the "
+                               "interval the records decide, and what else is to be known."
+                             : "The values that the model has; none was changed.",
+                      {"parameter", "unit", fitted ? "before" : "value"},
+                      {}};
+  if (fitted)
+    table.header.insert(table.header.end(), {"after", "95 % interval", "decided by the records", "note"});
+  for (const PageParameter& p : parameters) {
+    std::vector<report::Cell> row = {p.block + " " + p.symbol, p.unit, number_text(p.before)};
+    if (fitted) {
+      row.emplace_back(number_text(p.after));
+      row.emplace_back(std::isfinite(p.low) ? fmt::format("{} … {}", number_text(p.low), number_text(p.high))
+                                            : "–");
+      row.emplace_back(std::isfinite(p.decided) ? fmt::format("{:.0f} %", 100 * p.decided) : "–");
+      row.emplace_back(p.note);
+    }
+    table.rows.push_back(std::move(row));
+  }
+  page.table(table);
+}
+
+void errors_part(report::Page& page, const std::vector<Played>& played,
+                 const std::vector<std::string>& unseen) {
+  if (std::ranges::all_of(played, [](const Played& p) { return p.events.empty(); })) return;
+  page.section("Error of each event");
+  report::Table table{
+      "Modelled − measured over the whole record: RMS in physical units, and in units of noise "
+      "(1 × means that nothing but noise is left).",
+      {"event", "channel", "noise σ"},
+      {}};
+  for (const Played& p : played) {
+    table.header.push_back(p.name);
+    table.header.push_back(p.name + ", in noise");
+  }
+  std::size_t events = 0;
+  for (const Played& p : played) events = std::max(events, p.events.size());
+  for (std::size_t e = 0; e < events; ++e) {
+    const ShownEvent shown = shown_event(played, e);
+    for (const ChannelComparison& c : shown.first().channels) {
+      const bool fitted_to = std::ranges::find(unseen, shown.first().record.name) == unseen.end();
+      std::vector<report::Cell> row = {
+          shown.first().record.name + (fitted_to ? "" : " (not fitted to)"), c.name,
+          c.noise > 0 ? fmt::format("{:.3g} {}", c.noise * c.scale, c.unit) : std::string("none")};
+      for (const Played& p : played) {
+        const ChannelComparison* m = e < p.events.size() ? find_channel(p.events[e], c.name) : nullptr;
+        row.emplace_back(m ? fmt::format("{:.3g} {}", m->whole.rms * m->scale, m->unit) : "–");
+        row.emplace_back(m ? times_noise(m->map.whole.in_noise) + (m->map.whole.exceeds() ? " *" : "") : "–");
+      }
+      table.rows.push_back(std::move(row));
+    }
+  }
+  page.table(table);
+}
+
+void maps_part(report::Page& page, const std::vector<Played>& played) {
+  page.section("Error map");
+  for (const Played& p : played) {
+    if (p.events.empty()) continue;
+    const auto maps = labelled_maps(p.events);
+    report::Table table = p.events.size() > 1 ? worst_map_table(maps) : map_table(maps);
+    table.caption =
+        fmt::format("The model {}. {}", p.name, &p == played.data() ? table.caption : "Same units.");
+    page.table(table);
+  }
+}
+
+void glossary_part(report::Page& page) {
+  page.section("Five words");
+  page.table(
+      {"",
+       {"word", "what it means here"},
+       {{"noise",
+         "What the record holds where nothing happens: the spread of the residual before the event, with its "
+         "colour. Errors “in noise” are divided by it."},
+        {"cell",
+         "One window of time and one band of frequency of one channel in the error map, with a bound of its "
+         "own that noise alone keeps."},
+        {"evidence",
+         "Twice the logarithm of how much likelier an effect makes the records than the model without "
+         "it, its parameters paid for."},
+        {"belief",
+         "How far a parameter was thought to be off before the records were seen (--spread); it decides "
+         "what the records do not."},
+        {"decided",
+         "The share of a parameter's interval that comes from the records, not from the belief."}}});
+}
+
+std::string command_html(const CommandPage& p) {
+  report::Page page(p.title, p.subtitle);
+  verdict_part(page, p.played, p.complete, p.sentence, p.complete ? report::Tone::good : report::Tone::bad);
+  panels_part(page, p.played);
+  parameters_part(page, p.parameters);
+  errors_part(page, p.played, p.unseen);
+  maps_part(page, p.played);
+  page.section("Hypotheses");
+  for (const auto& sentence : p.tried) page.text(sentence);
+  glossary_part(page);
+  page.provenance(p.provenance);
+  if (!p.figures.empty()) page.data("figures", p.figures);
+  return page.html();
+}
+
+}  // namespace swingbank::validate::compare

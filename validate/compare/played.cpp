@@ -1,0 +1,46 @@
+#include "validate/compare/played.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+namespace swingbank::validate::compare {
+
+Played play_and_judge(std::string name, const plant::PlantModel& model,
+                      const std::vector<record::Record>& records, CompareOptions options,
+                      const thresholds::Acceptance& by) {
+  Played played{std::move(name), {}, {}};
+  const double mva = model.plant.mva;
+  try {
+    options.jumps = event::jumps_of(records, options.jump_threshold);
+    for (const auto& record : records) played.events.push_back(compare_event(model, record, options));
+    judge(played.events);  // the bounds of the maps
+    played.fitness = judge_fitness(played.events, mva, by);
+  } catch (const InputError& error) {
+    played.events.clear();
+    played.fitness = not_judged(by, mva, error.problems().front().sentence());
+  }
+  return played;
+}
+
+std::vector<record::Record> power_only(std::vector<record::Record> records) {
+  for (auto& r : records)
+    if (r.component == record::Component::plant) r.speed = r.Efd = r.Ifd = {};
+  return records;
+}
+
+std::string fitness_text(const std::vector<Played>& played) {
+  std::string text;
+  for (auto p = played.rbegin(); p != played.rend(); ++p)
+    text += fmt::format("{}: {}\n", p->name, p->fitness.sentence);
+  return text;
+}
+
+nlohmann::json fitness_json(const std::vector<Played>& played) {
+  nlohmann::json all = nlohmann::json::object();
+  for (const Played& p : played) all[p.name] = fitness_json(p.fitness);
+  return all;
+}
+
+}  // namespace swingbank::validate::compare
