@@ -33,6 +33,8 @@ fs::path example_of(const fs::path& file, const fs::path& examples) {
 std::string reason(const fs::path& file) {
   std::error_code error;
   if (fs::is_directory(file, error)) return "it is a folder";
+  if (fs::exists(file, error) && !fs::is_regular_file(file, error))
+    return "it is a pipe or a device, which may have no end; write what it gives into a file";
   if (fs::exists(file, error)) {
     errno = 0;
     const bool opens = std::ifstream(file, std::ios::binary).is_open();
@@ -70,6 +72,8 @@ Problem unreadable(const fs::path& file, const std::string& what, const std::str
 }
 
 std::string read_input(const fs::path& file, const std::string& what, const std::string& remedy) {
+  if (std::error_code error; fs::exists(file, error) && !fs::is_regular_file(file, error))
+    throw InputError(unreadable(file, what, remedy));
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;
   std::error_code ignored;

@@ -3,14 +3,21 @@
 // collected and thrown together, so that a person mends them in one go.
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace swingbank {
 
+/// Text of a user's file or name as it may be shown: control characters and bytes that are no UTF-8 are
+/// escaped, so that a terminal does what it did before, and a text of more than 1,000 bytes is cut.
+std::string shown(std::string_view text);
+
 /// One sentence to the user: "<what> at <where> (<why>): <remedy>".
 struct Problem {
   std::string what, where, why, remedy;
-  [[nodiscard]] std::string sentence() const { return what + " at " + where + " (" + why + "): " + remedy; }
+  [[nodiscard]] std::string sentence() const {
+    return shown(what) + " at " + shown(where) + " (" + shown(why) + "): " + shown(remedy);
+  }
 };
 
 /// Thrown with every problem of one input; what() holds one sentence per line.

@@ -22,7 +22,8 @@ namespace {
 
 std::vector<int> numbers(const std::vector<std::int64_t>& v) { return {v.begin(), v.end()}; }
 const Range kBusNumber{1, 999997, ""};
-const Range kCount{1, 1e12, ""};
+const Range kCount{1, 1e10, ""};  // 1e10 rows are 400 TB
+const Range kShardDraws{1, 1e6, ""}, kSeed{0, 9e18, ""};
 
 std::string parameter_list(const sim::Effect& e) {
   std::string all;
@@ -111,12 +112,25 @@ void read_effects(Config& c, DatasetConfig& d) {
   for (const auto& p : problems.list()) c.problem("attach", p.what, p.where + ": " + p.why, p.remedy);
 }
 
+/// Values that stand in a list more than once, each once.
+template <class T>
+std::vector<T> repeated(std::vector<T> list) {
+  std::vector<T> found;
+  std::ranges::sort(list);
+  for (std::size_t i = 1; i < list.size(); ++i)
+    if (list[i] == list[i - 1] && (found.empty() || found.back() != list[i])) found.push_back(list[i]);
+  return found;
+}
+
 void read_vary(Config& c, DatasetConfig& d) {
   d.vary = c.choice("vary.who", {"one", "all"}) == "all" ? Vary::all : Vary::one;
   d.generators = numbers(c.require<std::vector<std::int64_t>>("vary.generators", kBusNumber));
   if (c.has("vary.generators") && d.generators.empty())
     c.problem("vary.generators", "no generator", "a dataset varies at least one",
               "list bus numbers of generators");
+  for (const int number : repeated(d.generators))
+    c.problem("vary.generators", fmt::format("generator {} twice", number), "each varies once",
+              "name it once");
   d.model = c.require<std::string>("vary.model");
   const sim::Effect* effect = d.library.find(d.model);
   if (effect == nullptr || effect->slot != sim::Slot::machine) {
@@ -158,6 +172,11 @@ void read_record(Config& c, RecordConfig& r) {
     if (std::ranges::find(known, name) == known.end())
       c.problem("record.channels", "channel '" + name + "'", "there is no such channel",
                 fmt::format("use some of: {}", fmt::join(known, ", ")));
+  if (c.has("record.channels") && r.channels.empty())
+    c.problem("record.channels", "no channel", "a record holds at least one",
+              fmt::format("use some of: {}", fmt::join(known, ", ")));
+  for (const auto& name : repeated(r.channels))
+    c.problem("record.channels", "channel '" + name + "' twice", "a record holds each once", "name it once");
   if (std::ranges::find(r.channels, "frequency") == r.channels.end()) return;
   r.frequency.washout = c.require<double>("record.frequency_washout", {1e-3, 100.0, "s"});
   r.frequency.filter = c.require<double>("record.frequency_filter", {1e-3, 100.0, "s"});
@@ -295,6 +314,23 @@ std::string DatasetConfig::canonical() const {
   return text;
 }
 
+namespace {
+/// The command line may not say what the config may not.
+void require_in_range(const Overrides& o) {
+  Problems problems;
+  const auto check = [&](const std::optional<std::uint64_t>& value, const char* option, double high) {
+    if (value && static_cast<double>(*value) > high)
+      problems.add(std::to_string(*value), option, fmt::format("it must be at most {:.0f}", high),
+                   "give a smaller number");
+  };
+  check(o.draws, "--draws", kCount.high);
+  check(o.faults_per_point, "--faults-per-point", kCount.high);
+  check(o.draws_per_shard, "--draws-per-shard", kShardDraws.high);
+  check(o.seed, "--seed", kSeed.high);
+  problems.raise();
+}
+}  // namespace
+
 DatasetConfig read_dataset_config(const fs::path& file, const Overrides& overrides) {
   Config c(file);
   DatasetConfig d;
@@ -306,8 +342,8 @@ DatasetConfig read_dataset_config(const fs::path& file, const Overrides& overrid
   d.psse = c.choice("convention", {"psse", "andes"}) != "andes";
   d.draws = static_cast<std::uint64_t>(c.require<std::int64_t>("draws", kCount));
   d.draws_per_shard =
-      static_cast<std::uint64_t>(c.optional<std::int64_t>("draws_per_shard", 512, {1, 1e6, ""}));
-  d.seed = static_cast<std::uint64_t>(c.optional<std::int64_t>("seed", 1, {0, 9e18, ""}));
+      static_cast<std::uint64_t>(c.optional<std::int64_t>("draws_per_shard", 512, kShardDraws));
+  d.seed = static_cast<std::uint64_t>(c.optional<std::int64_t>("seed", 1, kSeed));
   read_effects(c, d);
   read_vary(c, d);
   read_databank(c, d.databank);
@@ -321,6 +357,7 @@ DatasetConfig read_dataset_config(const fs::path& file, const Overrides& overrid
               fmt::format("the record ends at {} s", d.record.t_end),
               "let the fault end before the record does");
   c.raise();
+  require_in_range(overrides);
   d.draws = overrides.draws.value_or(d.draws);
   d.seed = overrides.seed.value_or(d.seed);
   d.draws_per_shard = overrides.draws_per_shard.value_or(d.draws_per_shard);

@@ -1,7 +1,7 @@
 #include "sim/formats/psse_text.hpp"
 
 #include <algorithm>
-#include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -107,15 +107,16 @@ int Fields::integer(std::size_t i, const char* name, std::optional<int> fallback
     if (!fallback) missing(name);
     return fallback.value_or(0);
   }
-  char* end = nullptr;
-  errno = 0;
-  const long value = std::strtol(f->text.c_str(), &end, 10);
-  if (f->text.empty() || *end != '\0' || errno != 0 || value > 999999999 || value < -999999999) {
+  const char *begin = f->text.data(), *end = begin + f->text.size();
+  if (begin != end && *begin == '+') ++begin;
+  int value = 0;
+  const auto [stop, error] = std::from_chars(begin, end, value);
+  if (error != std::errc{} || stop != end || value > 999999999 || value < -999999999) {
     problems_.add(std::string(name) + " = '" + f->text + "'", where(), "it is not a whole number",
                   "give a whole number for " + std::string(name));
     return fallback.value_or(0);
   }
-  return static_cast<int>(value);
+  return value;
 }
 
 long double Fields::number(std::size_t i, const char* name, std::optional<long double> fallback) {

@@ -1,6 +1,7 @@
 #include "base/input_file.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -75,6 +76,12 @@ TEST_F(InputFile, ReadsBytesAndRefusesTheRest) {
   EXPECT_EQ(read_input("some.bin", "nothing", "nothing"), bytes);
   std::ofstream("empty").flush();
   for (const char* file : {"empty", "gone", "."}) EXPECT_THROW((void)read_input(file, "w", "r"), InputError);
+}
+
+TEST_F(InputFile, WhatMayHaveNoEndIsNotRead) {
+  ASSERT_EQ(::mkfifo("pipe", 0600), 0);
+  EXPECT_THAT(sentence("pipe"), HasSubstr("(it is a pipe or a device"));
+  for (const char* file : {"pipe", "/dev/zero"}) EXPECT_THROW((void)read_input(file, "w", "r"), InputError);
 }
 
 TEST_F(InputFile, BuildFolderHasTheSourcesExamples) {

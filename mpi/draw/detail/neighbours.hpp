@@ -15,6 +15,7 @@ class Neighbours {
   /// x: a value per axis. True if a point lies closer than the distance.
   [[nodiscard]] bool near(const double* x) const;
   void add(const double* x);
+  void clear() { cells_.clear(); }
 
  private:
   [[nodiscard]] std::uint64_t cell(const double* x, std::size_t axis) const;

@@ -82,8 +82,24 @@ TEST(DatasetConfigFile, RefusalsNameLineAndRemedy) {
   EXPECT_THAT(folder.refusal("t_end = 15.0", "t_end = 2.1"), HasSubstr("the record ends at 2.1 s"));
   EXPECT_THAT(folder.refusal("generators = [3]", "generators = [4]"),
               HasSubstr("has 0 generators in service"));
+  EXPECT_THAT(folder.refusal("generators = [3]", "generators = [3, 3]"), HasSubstr("generator 3 twice"));
+  EXPECT_THAT(folder.refusal("\"Efd\"", "\"P\""), HasSubstr("channel 'P' twice"));
   EXPECT_THAT(folder.refusal("except = [3]", "except = [33]"), HasSubstr("bus 33 of fault.except"));
   EXPECT_THAT(folder.refusal("seed = 1", "sede = 1"), HasSubstr("unknown key sede at"));
+}
+
+TEST(DatasetConfigFile, TheCommandLineKeepsTheSameLimits) {
+  const Changed folder;
+  Overrides o;
+  o.draws = o.seed = ~std::uint64_t{0};
+  o.draws_per_shard = 2'000'000;
+  try {
+    folder.read("", "", o);
+    FAIL() << "nothing thrown";
+  } catch (const InputError& e) {
+    EXPECT_EQ(e.problems().size(), 3u);
+    EXPECT_THAT(e.what(), HasSubstr("18446744073709551615 at --draws (it must be at most 10000000000)"));
+  }
 }
 
 TEST(DatasetConfigFile, HashChangesWithEverythingBytesDependOn) {
