@@ -43,7 +43,9 @@ constexpr double kRoughA[4][6] = {{}, {1.0 / 2}, {0.0, 3.0 / 4}, {2.0 / 9, 1.0 /
 constexpr double kRoughC[4] = {0.0, 1.0 / 2, 3.0 / 4, 1.0};
 constexpr double kRoughError[4] = {2.0 / 9 - 7.0 / 24, 1.0 / 3 - 1.0 / 4, 4.0 / 9 - 1.0 / 3, -1.0 / 8};
 constexpr Pair kRoughSteps{4, -1.0 / 3, kRoughA, kRoughC, kRoughError};
-constexpr double kRoughFrom = 1e-5;  ///< tolerance
+constexpr double kRoughFrom = 1e-5;     ///< tolerance
+constexpr double kShortestStep = 1e-9;  ///< [s]
+constexpr double kCornerError = 1e-6;   ///< of a state, in a step across a corner of the equations
 
 template <class T>
 struct Seeds;  // what a scalar makes of directions
@@ -279,7 +281,7 @@ class Driven {
       const bool reaches = h_ >= left * (1 - 1e-12);
       const double h = reaches ? left : h_;
       double error = attempt(h);
-      if (h <= run_.least_step && error > 1 && std::isfinite(error)) error = 1;
+      if (error > 1 && std::isfinite(error) && (h <= run_.least_step || crosses_corner(h, error))) error = 1;
       if (error <= 1) {
         t_ = reaches ? to : t_ + h;
         std::swap(x_, trial_);
@@ -287,7 +289,7 @@ class Driven {
         T moved(0.0);
         equations_.clamp_states(c_.data(), x_.data(), moved);
         fresh_ = sim::value_of(moved) > 0;
-      } else if (h < 1e-9) {
+      } else if (h < kShortestStep) {
         give_up();
       }
       const double factor =
@@ -297,6 +299,11 @@ class Driven {
       if (++steps_ > run_.step_limit) give_up();
     }
     t_ = std::max(t_, to);
+  }
+  /// Is the step so short, and what it misses so little, that nothing but a corner of the equations stands in
+  /// the way (a state that runs into its limit)?
+  [[nodiscard]] bool crosses_corner(double h, double error) const {
+    return h < kShortestStep && error * run_.tolerance < kCornerError;
   }
   static double grown(double error, double exponent) {
     return sim::plant::dp54::rough_power(static_cast<float>(error), static_cast<float>(exponent));

@@ -55,6 +55,20 @@ TEST(PlayInTest, ReproducesEverySimulatedGentpjBehindATransformer) {
             1e-7);
 }
 
+/// Puts an exciter of high gain at every machine. Its field voltage moves at hundreds of pu/s when the fault
+/// comes, and stands at a near ceiling milliseconds later: a corner that no step of error control can pass.
+void put_fast_exciters(sim::grid::Grid& grid) {
+  for (auto& plant : grid.plants)
+    plant.controls.push_back({sim::library::compiled().find("SEXS"), {0.3, 10.0, 300.0, 0.02, -1.0, 3.5}});
+}
+
+TEST(PlayInTest, AFieldVoltageRunsIntoItsCeiling) {
+  EXPECT_LT(playback_error(test::simulate("ieee39_genrou", sim::Conventions::psse(), 16, 2.0, 2.1, 480, {},
+                                          put_fast_exciters),
+                           1, true),
+            1e-6);
+}
+
 TEST(PlayInTest, ErrorFallsWithTheRate) {
   std::printf("samples/s   one-sided values known   extrapolated   [pu, worst of P and Q, 10 machines]\n");
   // Fourth order of the spline: 120/s is 4^4 = 256 times worse than 480/s; the bounds leave a factor of about
