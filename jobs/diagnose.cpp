@@ -95,6 +95,7 @@ void declare(jobs::CommandLine& line, Command& c) {
   model.needs(records);
   records.needs(model);
   c.reading.add_to(line);
+  c.reading.add_component(line);
   const jobs::Option fleet =
       line.add("--fleet", c.fleet.fleet,
                "instead of both: a fleet file, many plants with their records "
