@@ -223,7 +223,8 @@ int run(Arguments& a) {
 
 void add_options(jobs::CommandLine& line, Arguments& a, bool& inner) {
   auto& o = a.options;
-  line.add("--model", a.model, "plant file (configs/plants/README.md)").required();
+  line.add("--model", a.model, "plant file, with [[event]] for staged tests (configs/plants/README.md)")
+      .required();
   line.add("--records,--record", a.records, "records of the events (validate/record/README.md)").required();
   line.add(
           "--out", a.out,

@@ -81,7 +81,8 @@ int main(int argc, char** argv) {
   jobs::Reading reading;
   jobs::Judging judging;
   compare::CompareOptions options;
-  const jobs::Option model_option = line.add("--model", model_file, "plant file (configs/plants/README.md)");
+  const jobs::Option model_option = line.add(
+      "--model", model_file, "plant file, with [[event]] for staged tests (configs/plants/README.md)");
   const jobs::Option records_option =
       line.add("--records,--record", record_files, "records (CSV, COMTRADE or HDF5), one or several");
   model_option.needs(records_option);

@@ -89,7 +89,8 @@ int print_thresholds(bool json) {
 }
 
 void declare(jobs::CommandLine& line, Command& c) {
-  const jobs::Option model = line.add("--model", c.model, "plant file (configs/plants/README.md)");
+  const jobs::Option model =
+      line.add("--model", c.model, "plant file, with [[event]] for staged tests (configs/plants/README.md)");
   const jobs::Option records =
       line.add("--records,--record", c.records, "records of the events (validate/record/README.md)");
   model.needs(records);

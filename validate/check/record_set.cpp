@@ -12,13 +12,13 @@ void add_all(const std::vector<Problem>& found, Problems& problems) {
 }
 
 void read_into(RecordSet& set, const std::string& file, const plant::PlantModel& model, Problems& problems) {
-  record::Record record = record::read_record(file, model.record_base, model.reading);
+  record::Record record = record::read_staged(file, model.record_base, model.reading);
   if (std::ranges::find(set.records, record.name, &record::Record::name) != set.records.end())
     problems.add("two records named " + record.name, file,
                  "they could not be told apart, and their results would overwrite each other",
                  "rename one of them");
   std::vector<std::string> warnings = record.notes;
-  if (model.plant.machine.effect != nullptr && !playin::is_recorded(model.plant)) {
+  if (model.plant.machine.effect != nullptr && !playin::is_recorded(model.plant) && !record.breaker()) {
     for (const auto& [kind, severity, problem] : check_record(record, plant_facts(model))) {
       if (severity == Severity::refuse)
         add_all({problem}, problems);

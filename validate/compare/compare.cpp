@@ -78,6 +78,8 @@ const std::vector<double>& played(const playin::Playback& p, playin::Output o) {
       return p.Pm;
     case playin::Output::gate:
       return p.gate;
+    case playin::Output::V:
+      return p.V;
     case playin::Output::Ifd:
       break;
   }
@@ -89,7 +91,7 @@ void measure_channels(const plant::PlantModel& model, DriveBy drive, const playi
                       EventComparison& e) {
   const bool power = drive == DriveBy::power;
   e.doubt.clear();
-  if (!power) add_doubt(model, e);
+  if (!power && !e.record.breaker()) add_doubt(model, e);
   e.windows = event_windows(e.record, e.switchings, options.pre_event, e.left_out);
   e.channels.clear();
   const record::RecordBase& base = e.record.base;
@@ -110,7 +112,7 @@ void measure_channels(const plant::PlantModel& model, DriveBy drive, const playi
     add({std::string(playin::output_name(o)), u.name, u.scale, u.floor, starts_at_mean, judged}, measured,
         modelled);
   };
-  if (e.record.component != record::Component::plant) {
+  if (e.record.component != record::Component::plant || e.record.breaker()) {
     for (const playin::Output o : playin::compared_outputs(e.record, true))
       add_output(o, playin::measured_values(e.record, o), played(e.playback, o), o != playin::Output::gate,
                  true);
@@ -279,8 +281,11 @@ std::vector<Window> event_windows(const record::Record& record,
   const auto out = [&](std::size_t k) { return !left_out.empty() && left_out[k]; };
   const double first = record.t.front(), end = record.t.back(), slack = 1e-4 * record.step();
   const bool switched = !switchings.empty();
-  const double begins = slack + (switched ? switchings.front().time : std::min(first + pre_event, end));
-  const double over = slack + (switched ? switchings.back().time : std::min(first + pre_event, end));
+  const double staged = std::min(record.first_staged(), end);
+  const bool moved = record.first_staged() < end;
+  const double still = moved ? staged : std::min(first + pre_event, end);
+  const double begins = slack + (switched ? std::min(switchings.front().time, staged) : still);
+  const double over = slack + (switched ? switchings.back().time : still);
   const Window all[] = {{"pre-event", first, begins},
                         {"fault", begins, over},
                         {"0–1 s after", over, over + 1},
@@ -324,7 +329,8 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
   const auto step = [&](const char* what, int done) {
     if (options.progress) options.progress(fmt::format("{}: {}", e.record.name, what), done, 3);
   };
-  const bool no_angle = e.record.angle == record::AngleSource::none && !playin::is_part(e.record);
+  const bool no_angle =
+      e.record.angle == record::AngleSource::none && !playin::is_part(e.record) && !e.record.breaker();
   if (no_angle) options.drive = DriveBy::power;
   e.detected = options.switchings.empty();
   const event::Jumps jumps = options.jumps == event::Jumps::either
@@ -337,13 +343,15 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
     measure_channels(model, DriveBy::voltage, options.play_in, other);
     return other;
   };
-  if (e.detected && jumps == event::Jumps::spread && options.drive == DriveBy::voltage) {
+  if (e.detected && !e.record.breaker() && jumps == event::Jumps::spread &&
+      options.drive == DriveBy::voltage) {
     e = fitted();
   } else {
     if (e.detected)
       e.switchings = playin::detect_switchings(e.record, options.jump_threshold);
     else
       for (const double t : options.switchings) e.switchings.push_back({.time = t});
+    if (e.detected && e.record.breaker()) e.switchings = playin::breaker_instants(e.record, e.switchings);
     step("the voltage is played in", 0);
     if (!no_angle) play(model, DriveBy::voltage, options.play_in, e);
     if (!no_angle && e.detected && options.fit_switchings && (!e.switchings.empty() || !explained(e))) {

@@ -112,13 +112,18 @@ FitEvent prepare(record::Record record, const FitEventOptions& options, Jumps ju
   // The threshold is half of what matters to the eye. A filter shares a jump out over two intervals, and a
   // jump that is not found is played in as a ramp.
   e.switchings = find_switchings(e.record, options.jump_threshold / 2, jumps, e.smeared);
+  if (e.record.breaker()) {
+    e.switchings = playin::breaker_instants(e.record, e.switchings);
+    e.smeared.assign(e.smeared.size(), 0);
+  }
   if (std::ranges::count(e.smeared, 1) > 0)
     e.clean = without(e.record, e.smeared);
   else
     e.smeared.clear();
   auto first = e.switchings;
   if (!e.smeared.empty() && !first.empty()) first.front().time -= first.front().uncertainty;
-  if (const double still = still_until(e.record); !first.empty() && still < first.front().time)
+  if (const double still = still_until(e.record);
+      !first.empty() && !e.record.breaker() && still < first.front().time)
     first.insert(first.begin(), {still, 0.0});
   e.start = playin::pre_event_point(e.record, first, options.pre_event);
   e.channels = playin::compared_outputs(e.record, options.measured_states);
@@ -248,7 +253,7 @@ WhitenedEvents prepare_events(const plant::PlantModel& model, std::vector<record
                               const FitEventOptions& options) {
   std::vector<FitEvent> events;
   for (const record::Record& r : records)
-    if (!playin::is_part(r)) record::require_angle(r);
+    if (!playin::is_part(r) && !r.breaker()) record::require_angle(r);
   const Jumps jumps =
       options.jumps == Jumps::either ? jumps_of(records, options.jump_threshold) : options.jumps;
   for (record::Record& r : records) events.push_back(prepare(std::move(r), options, jumps));

@@ -18,6 +18,7 @@ playin::OperatingPoint start_at(const FitEvent& event, const EventState& state) 
     start.Pm += state.P;
     return start;
   }
+  if (event.record.open_circuit()) return start;  // nothing flows
   start.P += state.P;
   start.Q += state.Q;
   return start;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "base/constants.hpp"
@@ -225,6 +226,7 @@ event::FitEvent minute_of_noise(const event::FitEvent& like, const Eigen::Vector
   }
   for (auto* channel : {&r.P, &r.Q, &r.speed, &r.Efd, &r.Ifd}) channel->assign(samples, 0.0);
   if (r.component != record::Component::plant) playin::stand_still(r, like.start);
+  for (record::StagedEvent& e : r.staged) e.time = std::numeric_limits<double>::infinity();
   event.switchings.clear();
   event.smeared.clear();
   event.left_out.clear();

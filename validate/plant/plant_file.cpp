@@ -112,9 +112,14 @@ std::string compose(const PlantModel& model, const std::vector<std::string>& pro
                       number(model.record_base.mva));
   if (model.record_base.kv > 0)
     text += fmt::format("base_kv = {}  # base of voltages in kV\n", number(model.record_base.kv));
+  if (model.record_base.efd > 0)
+    text += fmt::format("efd_base = {}  # 1 pu of Efd in the records' unit\n", number(model.record_base.efd));
+  if (model.record_base.ifd > 0)
+    text += fmt::format("ifd_base = {}  # 1 pu of Ifd in the records' unit\n", number(model.record_base.ifd));
   if (!model.reading.columns.empty()) text += "\n[record.columns]\n";
   for (const auto& [word, column] : model.reading.columns)
     text += fmt::format("{} = {}\n", word, in_quotes(column));
+  text += staged_text(model.reading.staged, [](double v) { return number(v); });
   for (const auto* block : blocks_of(model)) append_block(text, model, *block);
   append_submitted(text, model);
   return text;
@@ -166,7 +171,10 @@ std::string difference(const PlantModel& a, const PlantModel& b) {
   if (!same(a.plant.mva, b.plant.mva)) return "the machine's base";
   if (!same(a.record_base.mva, b.record_base.mva) || !same(a.record_base.kv, b.record_base.kv))
     return "the records' base";
+  if (!same(a.record_base.efd, b.record_base.efd) || !same(a.record_base.ifd, b.record_base.ifd))
+    return "the base of Efd and Ifd";
   if (a.reading.columns != b.reading.columns) return "the records' columns";
+  if (a.reading.staged != b.reading.staged) return "the staged events";
   if (!same(a.conventions.frequency, b.conventions.frequency) ||
       a.conventions.speed_voltage != b.conventions.speed_voltage ||
       a.conventions.mechanical_power != b.conventions.mechanical_power)

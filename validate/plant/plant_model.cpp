@@ -10,6 +10,7 @@
 #include "sim/laws/law.hpp"
 #include "sim/plant/orderings.hpp"
 #include "validate/plant/detail/plausible.hpp"
+#include "validate/plant/detail/staged.hpp"
 
 namespace swingbank::validate::plant {
 namespace {
@@ -279,6 +280,7 @@ PlantModel parse_plant_model(const std::string& text, const fs::path& file) {
   model.record_base.kv = config.optional<double>("record.base_kv", 0.0, {kSmallest, 1e9, "kV"});
   model.record_base.efd = config.optional<double>("record.efd_base", 0.0, {kSmallest, 1e9, "V or pu"});
   model.record_base.ifd = config.optional<double>("record.ifd_base", 0.0, {kSmallest, 1e9, "A or pu"});
+  model.reading.staged = read_staged_events(config);
   for (const auto& word : config.keys("record.columns"))
     model.reading.columns[word] = config.require<std::string>("record.columns." + word);
   if (config.has("grid")) {

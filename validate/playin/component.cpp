@@ -214,6 +214,8 @@ const std::vector<double>& measured_values(const record::Record& record, Output 
       return record.Pm;
     case Output::gate:
       return record.gate;
+    case Output::V:
+      return record.V;
     case Output::Ifd:
       break;
   }
@@ -222,6 +224,13 @@ const std::vector<double>& measured_values(const record::Record& record, Output 
 
 std::vector<Output> compared_outputs(const record::Record& record, bool measured_states) {
   std::vector<Output> all;
+  if (record.breaker()) {
+    all = {Output::V};
+    if (measured_states) all.insert(all.end(), {Output::speed, Output::Ifd});
+    if (measured_states && record.component == Component::plant) all.push_back(Output::Efd);
+    std::erase_if(all, [&](Output o) { return measured_values(record, o).empty(); });
+    return all;
+  }
   switch (record.component) {
     case Component::plant:
       all = {Output::P, Output::Q};

@@ -77,7 +77,9 @@ class Driven {
         directions_(directions),
         equations_(*run.plant),
         scratch_(static_cast<std::size_t>(equations_.scratch())),
-        recorded_(is_recorded(*run.plant)) {
+        recorded_(is_recorded(*run.plant)),
+        breaker_(run.record->breaker()),
+        isolated_(run.record->open_circuit()) {
     start();
     find_gate();
     const std::size_t n = x_.size();
@@ -128,6 +130,7 @@ class Driven {
               j < n ? trial_[static_cast<std::size_t>(j)] : out[static_cast<std::size_t>(j - n)],
               static_cast<std::size_t>(i));
     }
+    if (breaker_) by.rightCols(2).setZero();  // the recorded voltage drives nothing
     return {by.topLeftCorner(n, n), by.topRightCorner(n, 2), by.bottomLeftCorner(kOutputs, n),
             by.bottomRightCorner(kOutputs, 2)};
   }
@@ -149,6 +152,7 @@ class Driven {
       const auto [block, index] = d.parameter;
       if (d.kind == Kind::parameter)
         Seeds<T>::add(p[static_cast<std::size_t>(block)][static_cast<std::size_t>(index)], i, d.scale);
+      if (isolated_ && (d.kind == Kind::P || d.kind == Kind::Q)) return;
       if (d.kind == Kind::P && recorded_) {
         Seeds<T>::add(Efd, i, d.scale);
         Seeds<T>::add(Pm, i, d.scale * to_machine);
@@ -187,13 +191,21 @@ class Driven {
     const auto& switchings = run_.curve->switchings();
     for (std::size_t k = 0; k < switchings.size(); ++k)
       instants_.push_back({switchings[k].time, static_cast<int>(k)});
-    for (const double t : sim::plant::instants_of(*run_.plant))
+    const auto add = [&](double t) {
       if (t > run_.record->t.front() && t < run_.record->t.back()) instants_.push_back({t, -1});
+    };
+    for (const double t : sim::plant::instants_of(*run_.plant)) add(t);
+    for (const record::StagedEvent& e : run_.record->staged) {
+      if (e.opens_breaker()) continue;
+      add(e.time);
+      add(e.until);
+    }
     std::ranges::stable_sort(instants_, {}, &Instant::time);
     look_ahead();
   }
   /// As seen from a frame that turns with the pre-event angle.
   Complex voltage(double t) const {
+    if (breaker_) return run_.start.voltage;
     const Complex v = run_.voltage_factor * (*run_.curve)(segment_, t);
     return run_.start.drift == 0 ? v : v * std::polar(1.0, -run_.start.drift * t);
   }
@@ -215,13 +227,44 @@ class Driven {
     s.t = T(std::min(t, last_moment_));
     s.Vpr = vr;
     s.Vpi = vi;
+    stage(s);
     give(vr, vi, t, s);
     T er, ei, ir, ii;
     equations_.emf(c_.data(), x, scratch_.data(), er, ei);
-    equations_.from_grid(c_.data(), x, scratch_.data(), er, ei, s, ir, ii);
+    if (isolated_)
+      without_current(x, er, ei, s);
+    else
+      equations_.from_grid(c_.data(), x, scratch_.data(), er, ei, s, ir, ii);
     if (!has_torque_ && !has_field_) return equations_.derivative(c_.data(), x, scratch_.data(), s, dx);
     equations_.derivative_with(c_.data(), x, scratch_.data(), added(run_.torque, Kind::torque, t),
                                added(run_.field, Kind::field, t), s, dx);
+  }
+  /// What was done to the plant.
+  void stage(sim::Signals<T>& s) const {
+    using Staged = record::StagedEvent::Kind;
+    for (const record::StagedEvent& e : run_.record->staged) {
+      const double t = sim::value_of(s.t);
+      if (e.opens_breaker() || t < e.time || t >= e.until) continue;
+      if (e.kind == Staged::vref_step) s.dVref = s.dVref + T(e.size);
+      if (e.kind == Staged::efd_step) s.Efd = s.Efd + T(e.size);
+      if (e.kind == Staged::pref_step)
+        s.dPref = s.dPref + T(e.size * run_.record->base.mva / run_.plant->mva);
+    }
+  }
+  /// The terminal voltage at which no current flows.
+  void without_current(const T* x, const T& er, const T& ei, sim::Signals<T>& s) {
+    s.Ir = s.Ii = T(0.0);
+    equations_.voltages(c_.data(), er, ei, s);
+    if (!equations_.nonlinear()) return;
+    const T* z = equations_.machine_impedance(c_.data());
+    constexpr int kSteps = 60;
+    for (int step = 0; step < kSteps; ++step) {
+      equations_.current(c_.data(), x, scratch_.data(), s);
+      s.Vr = s.Vr + z[0] * s.Ir - z[1] * s.Ii;
+      s.Vi = s.Vi + z[0] * s.Ii + z[1] * s.Ir;
+      if (std::hypot(sim::value_of(s.Ir), sim::value_of(s.Ii)) < 1e-13 && step > 2) break;
+    }
+    s.Ir = s.Ii = T(0.0);
   }
   /// What the record says of everything but the voltage.
   void give(const T& vr, const T& vi, double t, sim::Signals<T>& s) {
@@ -230,8 +273,8 @@ class Driven {
     const double to_machine = run_.record->base.mva / run_.plant->mva;
     s.Efd = s.Efd + T(at.Efd);
     s.Tm = s.Tm + T(at.Pm * to_machine);
-    s.dVref = T(at.Vref);
-    s.dPref = T(at.Pref * to_machine);
+    s.dVref = s.dVref + T(at.Vref);
+    s.dPref = s.dPref + T(at.Pref * to_machine);
     if (!recorded_) return;
     const T P(at.P * to_machine), Q(at.Q * to_machine), per_square = T(1.0) / (vr * vr + vi * vi);
     s.Ir = (vr * P + vi * Q) * per_square;
@@ -259,6 +302,7 @@ class Driven {
     fresh_ = true;
     if (at.switching < 0) return;
     ++segment_;
+    isolated_ = isolated_ || breaker_;
     const T* after = derivative_at(at.time, 1);
     each([&](const Direction& d, std::size_t i) {
       if (d.kind != Kind::switching || d.index != at.switching) return;
@@ -374,7 +418,8 @@ class Driven {
             signals_.Efd,
             signals_.Ifd,
             signals_.Tm * T(to_record),
-            gate_ < 0 ? T(0.0) : x[static_cast<std::size_t>(gate_)]};
+            gate_ < 0 ? T(0.0) : x[static_cast<std::size_t>(gate_)],
+            equations_.grid_magnitude(signals_, signals_.Vpr, signals_.Vpi)};
   }
   [[noreturn]] void give_up() const {
     throw InputError({"play-in stops", fmt::format("t = {:.4f} s", t_),
@@ -391,7 +436,10 @@ class Driven {
   std::array<std::vector<T>, 7> k_;
   T Efd_, Tm_;
   sim::Signals<T> signals_;
-  bool recorded_, has_torque_ = false, has_field_ = false;
+  bool recorded_;
+  const record::StagedEvent* breaker_;
+  bool isolated_;  ///< from the grid, now
+  bool has_torque_ = false, has_field_ = false;
   int gate_ = -1;  ///< state that is compared with a recorded gate
   std::vector<Instant> instants_;
   std::size_t next_ = 0;
@@ -411,7 +459,8 @@ double PiecewiseLinear::operator()(double at) const {
 }
 
 std::string_view output_name(Output output) {
-  constexpr std::array<std::string_view, kOutputs> names = {"P", "Q", "speed", "Efd", "Ifd", "Pm", "gate"};
+  constexpr std::array<std::string_view, kOutputs> names = {"P",   "Q",  "speed", "Efd",
+                                                            "Ifd", "Pm", "gate",  "V"};
   return names[static_cast<std::size_t>(output)];
 }
 

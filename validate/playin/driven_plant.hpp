@@ -29,13 +29,15 @@ struct PiecewiseLinear {
 };
 
 /// What the plant answers at each sample of the record.
-enum class Output { P, Q, speed, Efd, Ifd, Pm, gate };
-constexpr int kOutputs = 7;
+enum class Output { P, Q, speed, Efd, Ifd, Pm, gate, V };
+constexpr int kOutputs = 8;
 std::string_view output_name(Output output);
 
 class Given;
 
-/// One run: who is driven, by what, from where. P, Q and Pm of the answer are per unit on the record's base,
+/// One run: who is driven, by what, from where. Where the record's breaker opens, the voltage stands still
+/// until the first switching; from then on, in an open circuit from the start, no current flows and V is the
+/// plant's own. P, Q and Pm of the answer are per unit on the record's base,
 /// the other outputs on the machine's.
 struct Drive {
   const sim::plant::Plant* plant = nullptr;

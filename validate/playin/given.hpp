@@ -36,6 +36,10 @@ class Given {
 inline bool is_part(const record::Record& r) {
   return r.component == record::Component::exciter || r.component == record::Component::governor;
 }
+/// The instants of a record whose breaker opens: the jump that was found within kNearBreaker of the time that
+/// is given, or where P falls by half, else that time.
+std::vector<Switching> breaker_instants(const record::Record& record, const std::vector<Switching>& found);
+constexpr double kNearBreaker = 0.2;  ///< [s]
 /// Makes every channel that drives a component or is compared stand where it was at the start.
 void stand_still(record::Record& record, const OperatingPoint& start);
 /// What drives the record's component; nothing where the whole plant is tried.

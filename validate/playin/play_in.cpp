@@ -38,7 +38,9 @@ double angle_drift(const record::Record& r, int n) {
 
 OperatingPoint pre_event_point(const record::Record& record, const std::vector<Switching>& switchings,
                                double pre_event) {
-  const double until = switchings.empty() ? record.t.front() + pre_event : switchings.front().time;
+  double until = switchings.empty() ? record.t.front() + pre_event : switchings.front().time;
+  if (const double staged = record.first_staged(); std::isfinite(staged))
+    until = switchings.empty() ? staged : std::min(until, staged);
   OperatingPoint point;
   while (point.samples < record.samples() &&
          record.t[static_cast<std::size_t>(point.samples)] <= until + 1e-4 * record.step())
@@ -81,6 +83,7 @@ void take_outputs(Response& response, Playback& back) {
   back.Ifd = take(Output::Ifd);
   back.Pm = take(Output::Pm);
   back.gate = take(Output::gate);
+  back.V = take(Output::V);
   back.steps = response.steps;
 }
 

@@ -27,8 +27,9 @@ OperatingPoint pre_event_point(const record::Record& record, const std::vector<S
 struct Playback {
   OperatingPoint start;
   std::vector<double> P, Q, speed, Efd, Ifd, Pm, gate;
-  std::vector<double> V, theta;  ///< where P and Q drive (play_in_power); theta unwrapped [rad]
-  int steps = 0;                 ///< of the integrator
+  std::vector<double> V;  ///< at the machine's terminal, or the plant's where P and Q drive (play_in_power)
+  std::vector<double> theta;  ///< where P and Q drive; unwrapped [rad]
+  int steps = 0;              ///< of the integrator
 };
 
 /// Moves a response's outputs into a playback.

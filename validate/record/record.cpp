@@ -8,6 +8,8 @@
 #include <cctype>
 #include <chrono>
 #include <cmath>
+#include <iterator>
+#include <limits>
 
 #include "base/input_file.hpp"
 #include "validate/record/detail/build.hpp"
@@ -108,6 +110,54 @@ std::string read_bytes(const std::filesystem::path& file) {
 std::string_view component_name(Component component) {
   constexpr std::array<std::string_view, 4> names = {"plant", "exciter", "governor", "machine"};
   return names[static_cast<std::size_t>(component)];
+}
+
+std::string_view staged_name(StagedEvent::Kind kind) {
+  constexpr std::array<std::string_view, kStagedKinds> names = {"vref_step", "pref_step", "efd_step",
+                                                                "open_circuit", "load_rejection"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+const StagedEvent* Record::breaker() const {
+  if (component == Component::exciter || component == Component::governor) return nullptr;
+  const auto at = std::ranges::find_if(staged, &StagedEvent::opens_breaker);
+  return at == staged.end() ? nullptr : &*at;
+}
+
+double Record::first_staged() const {
+  double first = std::numeric_limits<double>::infinity();
+  for (const StagedEvent& e : staged)
+    if (e.kind != StagedEvent::Kind::open_circuit) first = std::min(first, e.time);
+  return first;
+}
+
+Record read_staged(const std::filesystem::path& file, const RecordBase& base, ReadOptions options) {
+  const std::string named = file.string(), path = named.substr(0, named.rfind('#'));
+  const std::string name = std::filesystem::path(path).filename().string();
+  std::vector<StagedEvent> staged;
+  std::ranges::copy_if(options.staged, std::back_inserter(staged), [&](const StagedEvent& e) {
+    return e.record.empty() || e.record == name || e.record == file.filename().string();
+  });
+  const bool open = std::ranges::any_of(
+      staged, [](const StagedEvent& e) { return e.kind == StagedEvent::Kind::open_circuit; });
+  if (open) {
+    options.power = false;
+    std::erase_if(options.needed, [](const auto& any) {
+      return any.front() == "P" || any.front() == "Q" || any.front() == "theta";
+    });
+  }
+  Record r = read_record(file, base, options);
+  r.staged = std::move(staged);
+  if (!r.breaker()) return r;
+  for (auto* power : {&r.P, &r.Q})
+    if (power->empty()) power->assign(r.t.size(), 0.0);
+  if (r.speed.empty() && !r.f.empty()) {
+    r.speed = r.f;
+    r.notes.emplace_back("The frequency is taken for the speed: no grid is beside the machine.");
+  }
+  if (r.angle != AngleSource::measured)
+    std::erase_if(r.notes, [](const std::string& note) { return note.starts_with("The record has n"); });
+  return r;
 }
 
 Record stretch(Record r, double from, double until) {

@@ -37,6 +37,23 @@ enum class Component {
 };
 std::string_view component_name(Component component);
 
+/// What a test does to the plant, beside what the record shows.
+struct StagedEvent {
+  enum class Kind {
+    vref_step,       ///< the exciter's reference moves by `size` [pu]
+    pref_step,       ///< the governor's reference moves by `size` [pu on base.mva of the record]
+    efd_step,        ///< the field voltage of an exciter by hand moves by `size` [pu]
+    open_circuit,    ///< the breaker is open all the time
+    load_rejection,  ///< the breaker opens at `time`
+  };
+  Kind kind = Kind::vref_step;
+  double time = 0, until = std::numeric_limits<double>::infinity();  ///< a step comes and goes [s]
+  double size = 0;
+  std::string record = {};  ///< file name of the record it belongs to; empty: all
+  [[nodiscard]] bool opens_breaker() const { return kind >= Kind::open_circuit; }
+  friend bool operator==(const StagedEvent&, const StagedEvent&) = default;
+};
+
 /// Samples of one terminal. All vectors have the length of `t`; optional channels are empty if not recorded.
 struct Record {
   std::string name;        ///< file name without folder
@@ -62,8 +79,17 @@ struct Record {
   AngleSource angle = AngleSource::measured;
   std::vector<std::string> named;          ///< quantities whose column was chosen by ReadOptions::columns
   Component component = Component::plant;  ///< what it is read for
+  std::vector<StagedEvent> staged;         ///< what was done to the plant while it ran
   std::vector<char> lost;  ///< marks samples that were not recorded and are bridged; empty: none
 
+  /// The event that takes the plant off the grid; nullptr: none does, or a part of it is tried that does not
+  /// see the grid.
+  [[nodiscard]] const StagedEvent* breaker() const;
+  [[nodiscard]] bool open_circuit() const {
+    return breaker() && breaker()->kind == StagedEvent::Kind::open_circuit;
+  }
+  /// When the first of them comes [s]; infinity: none.
+  [[nodiscard]] double first_staged() const;
   [[nodiscard]] int samples() const { return static_cast<int>(t.size()); }
   [[nodiscard]] double step() const { return (t.back() - t.front()) / static_cast<double>(t.size() - 1); }
   [[nodiscard]] double rate() const { return 1.0 / step(); }
@@ -90,6 +116,7 @@ struct ReadOptions {
   Component component = Component::plant;  ///< which part of the plant is tried
   /// What a component's record must have: one word of each list ({"speed", "f"}).
   std::vector<std::vector<std::string>> needed = {};
+  std::vector<StagedEvent> staged = {};  ///< what was done to the plant, of all its records
   bool angle = false;  ///< the angle is needed; false: it may be integrated from f, or be missing
 };
 
@@ -104,6 +131,14 @@ struct ReadOptions {
 /// (validate/check/check.hpp).
 Record read_record(const std::filesystem::path& file, const RecordBase& base,
                    const ReadOptions& options = {});
+
+/// The same with the staged events that belong to the file. Of a plant whose breaker is open all the time P
+/// and Q are not needed.
+Record read_staged(const std::filesystem::path& file, const RecordBase& base, ReadOptions options);
+
+/// The word of a plant file: "vref_step".
+std::string_view staged_name(StagedEvent::Kind kind);
+constexpr int kStagedKinds = 5;
 
 /// The same from the text of a CSV file; `name` stands for the file in messages.
 Record parse_record(std::string_view text, const std::string& name, const RecordBase& base,

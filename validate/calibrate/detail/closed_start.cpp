@@ -17,7 +17,7 @@ bool stands_alone(const sim::plant::Plant& plant) {
          plant.measurements.empty();
 }
 bool shows_enough(const record::Record& r, const sim::Effect& machine) {
-  return !r.speed.empty() && (machine.states.size() <= kClassical || !r.Ifd.empty());
+  return r.staged.empty() && !r.speed.empty() && (machine.states.size() <= kClassical || !r.Ifd.empty());
 }
 
 /// Per unit on the machine's base.

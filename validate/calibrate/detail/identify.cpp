@@ -128,8 +128,8 @@ std::vector<TriedEvent> try_events(const sim::plant::PlantUnderTest& tested,
                                    const std::vector<fit::FreeParameter>& free) {
   std::vector<TriedEvent> tried;
   const event::FitEvent& like = events.front();
-  // what else drives a component would have to be made up
-  if (like.record.component != record::Component::plant) return tried;
+  // what else drives a component, or is done to the plant, would have to be made up
+  if (like.record.component != record::Component::plant || !like.record.staged.empty()) return tried;
   const auto learnt = [&](const event::FitEvent& event, event::EventNoise noise,
                           const fit::EventState& state) {
     noise.memory = fit::memory_of(tested, {event, noise}, variance);

@@ -1,0 +1,79 @@
+#include "validate/plant/detail/staged.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace swingbank::validate::plant {
+namespace {
+
+using Kind = record::StagedEvent::Kind;
+
+constexpr double kLatest = 1e5;      ///< [s]
+constexpr double kLargestStep = 10;  ///< of a reference or of Efd [pu]
+
+std::vector<std::string> kind_names() {
+  std::vector<std::string> names;
+  for (int k = 0; k < record::kStagedKinds; ++k)
+    names.emplace_back(record::staged_name(static_cast<Kind>(k)));
+  return names;
+}
+
+record::StagedEvent read_one(Config& config, const std::string& section) {
+  record::StagedEvent e;
+  const auto names = kind_names();
+  const std::string kind = config.choice(section + ".kind", names);
+  const auto at = std::ranges::find(names, kind);
+  if (at == names.end()) return e;
+  e.kind = static_cast<Kind>(at - names.begin());
+  e.record = config.optional<std::string>(section + ".record", "");
+  std::vector<std::string> known = {"kind", "record"};
+  if (e.kind != Kind::open_circuit) {
+    e.time = config.require<double>(section + ".time", {-kLatest, kLatest, "s"});
+    known.emplace_back("time");
+  }
+  if (!e.opens_breaker()) {
+    e.size = config.require<double>(section + ".size", {-kLargestStep, kLargestStep, "pu"});
+    known.insert(known.end(), {"size", "until"});
+    if (config.has(section + ".until"))
+      e.until = config.require<double>(section + ".until", {-kLatest, kLatest, "s"});
+    if (config.sound() && !(e.until > e.time))
+      config.problem(section + ".until", fmt::format("until = {:g} s with time = {:g} s", e.until, e.time),
+                     "a step ends after it came", "give until > time, or leave it out where the step stays");
+  }
+  for (const auto& key : config.keys(section))
+    if (!std::ranges::count(known, key))
+      config.problem(section + "." + key, "unknown key " + key, fmt::format("nothing reads it of a {}", kind),
+                     fmt::format("remove it or use one of: {}", fmt::join(known, ", ")));
+  return e;
+}
+
+}  // namespace
+
+std::vector<record::StagedEvent> read_staged_events(Config& config) {
+  std::vector<record::StagedEvent> events;
+  if (!config.has("event")) return events;
+  config.ignore("event");  // its keys are compared above
+  if (!config.is_array("event")) {
+    config.problem("event", "one [event]", "a plant may have several", "write [[event]]");
+    return events;
+  }
+  for (int k = 0; config.has(fmt::format("event[{}]", k)); ++k)
+    events.push_back(read_one(config, fmt::format("event[{}]", k)));
+  return events;
+}
+
+std::string staged_text(const std::vector<record::StagedEvent>& events, std::string (*number)(double)) {
+  std::string text;
+  for (const auto& e : events) {
+    text += fmt::format("\n[[event]]\nkind = \"{}\"\n", record::staged_name(e.kind));
+    if (!e.record.empty()) text += fmt::format("record = \"{}\"\n", e.record);
+    if (e.kind != Kind::open_circuit) text += fmt::format("time = {}  # [s]\n", number(e.time));
+    if (!e.opens_breaker()) text += fmt::format("size = {}  # [pu]\n", number(e.size));
+    if (std::isfinite(e.until)) text += fmt::format("until = {}  # [s]\n", number(e.until));
+  }
+  return text;
+}
+
+}  // namespace swingbank::validate::plant
