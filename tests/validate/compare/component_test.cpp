@@ -1,6 +1,10 @@
 // Components compared: the right model leaves the noise, a wrong parameter and a missing block do not.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
 
 #include "tests/validate/playin/component_case.hpp"
 #include "validate/compare/compare.hpp"
@@ -77,6 +81,47 @@ TEST(CompareComponentTest, ARightMachineIsAdequateAndAWrongReactanceIsNot) {
   auto& machine = t.model.plant.machine;
   machine.p[static_cast<std::size_t>(machine.effect->parameter_index("Xdp"))] *= 1.3;
   EXPECT_FALSE(t.adequacy().adequate);
+}
+
+/// What a recorder of an excitation system writes at 208/s: no angle, quantities in their own units, Efd with
+/// the ripple of six thyristors (300 Hz, seen at 92 Hz) and noise.
+std::string excitation_recorder(const test::ComponentCase& c) {
+  std::string text = "Time [s],Ug [kV],Ig [kA],P [MW],Q [Mvar],Ifd [A],Efd [V]\n";
+  const record::Record r = test::component_record(c, Component::exciter, {.V = 1e-4, .P = 1e-3, .Efd = 0.03});
+  for (std::size_t k = 0; k < r.t.size(); ++k) {
+    const double ripple = 0.1 * std::sin(2 * std::numbers::pi * 300 * r.t[k] + 0.3);
+    text += fmt::format("{:.6f},{:.5f},{:.5f},{:.4f},{:.4f},{:.3f},{:.4f}\n", r.t[k], 13.8 * r.V[k],
+                        std::hypot(r.P[k], r.Q[k]) / r.V[k] * 100 / 13.8 / std::numbers::sqrt3, 100 * r.P[k],
+                        100 * r.Q[k], 850 * r.Ifd[k], 92 * (r.Efd[k] + ripple));
+  }
+  return text;
+}
+
+TEST(CompareComponentTest, RecorderOfAnExcitationSystemWithoutAngleAt208) {
+  const auto simulated = test::simulated_component(std::vector<std::string>{"ESAC1A"},
+                                                   {.on = 2.0062, .off = 2.1131, .end = 10, .rate = 208});
+  plant::PlantModel model;
+  model.plant = simulated.plant();
+  model.conventions = simulated.grid.conventions;
+  model.record_base = {.mva = 100, .kv = 13.8, .efd = 92};
+  model = event::component_model(std::move(model), Component::exciter);
+  const std::string text = excitation_recorder(simulated);
+  EXPECT_THAT(test::messages([&] { record::parse_record(text, "x.csv", model.record_base, model.reading); }),
+              ::testing::ElementsAre(HasSubstr("ifd_base")));  // ESAC1A is fed by it
+  model.record_base.ifd = 850;
+  const record::Record r = record::parse_record(text, "x.csv", model.record_base, model.reading);
+  EXPECT_NEAR(r.rate(), 208, 1e-3);
+  std::vector<EventComparison> right = {compare_event(model, r)};
+  const Adequacy adequate = judge(right);
+  EXPECT_TRUE(adequate.adequate) << adequate.sentence;
+  auto& exciter = model.plant.controls.back();
+  exciter.p[static_cast<std::size_t>(exciter.effect->parameter_index("KF"))] *= 1.5;
+  std::vector<EventComparison> wrong = {compare_event(model, r)};
+  EXPECT_FALSE(judge(wrong).adequate);
+  // the whole plant would lack its angle: P and Q must drive
+  const record::Record whole = record::parse_record(text, "x.csv", model.record_base, {});
+  EXPECT_EQ(whole.angle, record::AngleSource::none);
+  EXPECT_THAT(whole.notes, ::testing::Contains(HasSubstr("neither angle nor frequency")));
 }
 
 TEST(CompareComponentTest, WhatIsLeftOutIsSaidAndComesBack) {

@@ -70,6 +70,13 @@ TEST(ComponentRecordTest, FieldQuantitiesHaveBasesOfTheirOwn) {
       1e-12);
 }
 
+TEST(ComponentRecordTest, WhatIsNotAskedForNeedsNoBase) {
+  const ReadOptions options{.component = Component::exciter, .needed = {{"V"}, {"Efd"}}};
+  const Record r = parse_record(table("V_pu,Efd_pu,Ifd_A", "1,2,900"), "x.csv", {}, options);
+  EXPECT_TRUE(r.Ifd.empty());
+  EXPECT_THAT(r.notes, ElementsAre(AllOf(HasSubstr("'Ifd_A' was left out"), HasSubstr("ifd_base"))));
+}
+
 TEST(ComponentRecordTest, GovernorNeedsNoVoltage) {
   const ReadOptions options{.component = Component::governor, .needed = {{"speed", "f"}, {"Pm", "gate"}}};
   const Record r = parse_record(table("f_hz,Pm_MW,Pref_MW", "59.94,50,40"), "x.csv", {}, options);

@@ -302,6 +302,17 @@ bool is_nearest(const std::vector<Heading>& headings, const Heading& one, const 
 
 }  // namespace
 
+/// Whether what is tried does not do without the quantity.
+static bool is_asked_for(Quantity q, const ReadOptions& options) {
+  if (options.component == Component::plant) return true;
+  return std::ranges::any_of(options.needed, [&](const auto& words) {
+    return std::ranges::any_of(words, [&](const auto& word) {
+      const auto m = quantity_of(word);
+      return m && m->quantity == q;
+    });
+  });
+}
+
 std::vector<std::size_t> choose_columns(std::vector<Heading>& headings, const ReadOptions& options,
                                         const RecordBase& base, const std::string& where, Record& about,
                                         Problems& problems) {
@@ -338,12 +349,20 @@ std::vector<std::size_t> choose_columns(std::vector<Heading>& headings, const Re
     else if (meaning->unit && needs_kv(meaning->quantity, *meaning->unit) && !(base.kv > 0))
       problems.add(fmt::format("column '{}'", name), where, "the model names no base_kv for records",
                    "add base_kv under [record] in the plant file, or give per-unit values");
-    if (const auto key = meaning->unit ? needs_base(meaning->quantity, *meaning->unit) : "";
-        !key.empty() && !((meaning->quantity == Efd ? base.efd : base.ifd) > 0))
+    const auto key = meaning->unit ? needs_base(meaning->quantity, *meaning->unit) : "";
+    if (!key.empty() && !((meaning->quantity == Efd ? base.efd : base.ifd) > 0)) {
+      if (!is_asked_for(meaning->quantity, options)) {
+        about.notes.push_back(
+            fmt::format("Column '{}' was left out: the plant file has no {} under [record], and "
+                        "the {} does not ask for it.",
+                        name, key, component_name(options.component)));
+        continue;
+      }
       problems.add(fmt::format("column '{}'", name), where,
                    "the plant file does not say what 1 pu (air-gap line) of it is",
                    fmt::format("add {} = … [{}] under [record] in the plant file, or give per-unit values",
                                key, meaning->quantity == Efd ? "V" : "A"));
+    }
     if (std::exchange(used[q], true))
       problems.add(fmt::format("column '{}'", name), where, "another column gives the same quantity",
                    "leave one of " + names_of(meaning->quantity) + ", or say which: --columns");
