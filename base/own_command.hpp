@@ -33,10 +33,10 @@ inline std::filesystem::path own_command(const std::string& command, const std::
   return program;
 }
 
-/// Runs it to its end; what it prints is left out unless `shown`, its messages (stderr) are not. The exit
-/// code; 128 + signal if a signal ended it. Throws InputError where it cannot be started.
+/// Runs it to its end; what it prints is left out unless `shown`, its messages (stderr) only if `silent`. The
+/// exit code; 128 + signal if a signal ended it. Throws InputError where it cannot be started.
 inline int run_own(const std::filesystem::path& program, const std::vector<std::string>& arguments,
-                   bool shown = false) {
+                   bool shown = false, bool silent = false) {
   std::vector<std::string> words = {program.string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
@@ -45,6 +45,7 @@ inline int run_own(const std::filesystem::path& program, const std::vector<std::
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   if (!shown) posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  if (silent) posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
   pid_t child = 0;
   const int failed = ::posix_spawnp(&child, argv[0], &actions, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);

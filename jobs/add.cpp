@@ -116,6 +116,7 @@ void write(const Arguments& a, const plant::PlantModel& before, plant::PlantMode
   else
     fmt::print("{}{}\nmodel: {}\n{}\n", compare::fitness_text(played), text, (folder / "model.toml").string(),
                records);
+  a.judging.print(folder / "report.html");
 }
 
 /// What is wrong with options that belong together, before anything is computed.
@@ -179,7 +180,8 @@ int run(Arguments& a) {
   const std::vector<record::Record>& records = set.records;
   a.told = jobs::records_json(set);
   calibrate::held_out_events(records, a.options.calibrate.held_out);
-  a.options.calibrate.progress = jobs::progress_line();
+  a.options.calibrate.progress =
+      a.until_adequate ? jobs::progress_line() : jobs::progress_line(jobs::kAddCourse);
   if (a.until_adequate) {
     add::Completion c = add::add_until_adequate(model, records, a.options);
     keep_laws(c.model, laws);

@@ -131,6 +131,7 @@ int run_baseline(const Arguments& a, const plant::PlantModel& model,
   say(a, result,
       compare::fitness_text(played) +
           compare::complete_text(f.adequate, calibrate::terminal_report(f, truth)) + "\n" + written);
+  a.judging.print(std::filesystem::path(a.out) / "report.html");
   return played.back().fitness.exit_code(f.adequate);
 }
 
@@ -218,6 +219,7 @@ int run(Arguments& a) {
   write_page(a, model, std::move(page), result);
   text += "\n" + write_model(a, model, c.model, holds, calibrate::provenance_lines(c, a.command));
   say(a, result, text);
+  a.judging.print(folder / "report.html");
   return played.back().fitness.exit_code(holds);
 }
 
@@ -275,7 +277,7 @@ int main(int argc, char** argv) {
   bool inner = true;
   add_options(line, a, inner);
   if (!line.parse(argc, argv)) return line.end();
-  a.options.progress = jobs::progress_line();
+  a.options.progress = jobs::progress_line(jobs::kCalibrateCourse);
   a.options.events.measured_states = inner;
   a.command = jobs::command_line("calibrate", argc, argv);
   return jobs::guarded("calibrate", [&] { return run(a); });

@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <utility>
 
+#include "jobs/software.hpp"
+
 namespace swingbank::jobs {
 namespace {
 
@@ -68,7 +70,10 @@ const Option& Option::excludes(Option other) const {
 }
 
 CommandLine::CommandLine(const std::string& summary, const std::string& name)
-    : parser_(new Parser{CLI::App(summary, name)}) {}
+    : parser_(new Parser{CLI::App(summary, name)}) {
+  parser_->app.set_version_flag("--version", name + " " + version() + ", commit " + commit(),
+                                "print version and commit, and end");
+}
 CommandLine::~CommandLine() = default;
 
 Option CommandLine::add(const std::string& names, std::string& value, const std::string& meaning) {

@@ -156,6 +156,7 @@ int main(int argc, char** argv) {
     else
       fmt::print("{}\nreport: {}\n", compare::terminal_report(model, events, adequacy, fitness),
                  (folder / "report.html").string());
+    judging.print(folder / "report.html");
     return fitness.exit_code(adequacy.adequate);
   } catch (const InputError& error) {
     fmt::print(stderr, "{}\n", error.what());

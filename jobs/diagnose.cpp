@@ -34,7 +34,7 @@ int run(const std::string& model_file, const std::vector<std::string>& record_fi
   plant::PlantModel model = jobs::load_model_to_fit(model_file);
   reading.apply(model);
   const check::RecordSet set = jobs::read_events(record_files, model);
-  options.progress = jobs::progress_line();
+  options.progress = jobs::progress_line(jobs::kDiagnoseCourse);
   const diagnose::Diagnosis d = diagnose::diagnose(model, set.records, options);
   const bool adequate = d.verdict == diagnose::Verdict::adequate;
   compare::CompareOptions playing;
@@ -66,6 +66,7 @@ int run(const std::string& model_file, const std::vector<std::string>& record_fi
       fmt::print("law: {0} (swingbank add {1} --law {0} adds it)\n", law_file.string(),
                  law_file.stem().string());
   }
+  judging.print(folder / "report.html");
   return played.back().fitness.exit_code(adequate);
 }
 

@@ -13,12 +13,16 @@
 #include <vector>
 
 #include "jobs/command_line.hpp"
+#include "jobs/course.hpp"
 #include "validate/check/record_set.hpp"
 #include "validate/event/component_model.hpp"
 #include "validate/plant/plant_model.hpp"
 #include "validate/record/record.hpp"
 
 namespace swingbank::jobs {
+
+/// --quiet: no word of progress and no notes on stderr; errors are told.
+inline bool quiet = false;
 
 /// How a command's records are read, beside what the plant file says.
 struct Reading {
@@ -90,7 +94,7 @@ inline validate::check::RecordSet read_events(const std::vector<std::string>& fi
   validate::check::RecordSet set = validate::check::read_records(files, model, problems);
   for (std::size_t k = 0; k < set.records.size(); ++k)
     for (const auto& warning : set.warnings[k])
-      fmt::print(stderr, "note on {}: {}\n", set.records[k].name, warning);
+      if (!quiet) fmt::print(stderr, "note on {}: {}\n", set.records[k].name, warning);
   problems.raise();
   return set;
 }
@@ -107,6 +111,7 @@ inline nlohmann::json records_json(const validate::check::RecordSet& set) {
 
 /// Says on stderr what looks wrong in a model and what of it is no plant's own.
 inline void tell(const validate::plant::PlantModel& model) {
+  if (quiet) return;
   for (const auto& warning : model.warnings) fmt::print(stderr, "note: {}\n", warning);
   if (!model.standard.empty())
     fmt::print(stderr, "note: standard values, not this plant's: {}\n", fmt::join(model.standard, ", "));
@@ -116,25 +121,27 @@ inline void tell(const validate::plant::PlantModel& model) {
 inline validate::plant::PlantModel load_model_to_fit(const std::string& file) {
   validate::plant::PlantModel model = validate::plant::load_plant_model(file);
   tell(model);
-  if (model.submitted) fmt::print(stderr, "note: begun with the values before that calibration\n");
+  if (model.submitted && !quiet) fmt::print(stderr, "note: begun with the values before that calibration\n");
   return validate::plant::as_submitted(std::move(model));
 }
 
-/// Writes "what: done of total" over itself where stderr is a terminal, elsewhere as a line every ten
-/// seconds.
-inline std::function<void(const std::string&, int, int)> progress_line() {
-  if (::isatty(STDERR_FILENO) != 0)
-    return [](const std::string& what, int done, int total) {
-      fmt::print(stderr, "\r\033[K{}: {} of {}{}", what, done, total, done == total ? "\r\033[K" : "");
-      std::fflush(stderr);
-    };
+/// Writes where the course stands over itself where stderr is a terminal, elsewhere as a line every ten
+/// seconds; nothing with --quiet.
+inline std::function<void(const std::string&, int, int)> progress_line(const Course& course = {}) {
+  if (quiet) return {};
   using Clock = std::chrono::steady_clock;
-  return [start = Clock::now(), said = Clock::now()](const std::string& what, int done, int total) mutable {
+  const bool terminal = ::isatty(STDERR_FILENO) != 0;
+  return [terminal, at = CourseProgress(course), start = Clock::now(), said = Clock::now()](
+             const std::string& what, int done, int total) mutable {
     const auto now = Clock::now();
-    if (now - said < std::chrono::seconds(10)) return;
-    said = now;
-    fmt::print(stderr, "after {:.0f} s: {}: {} of {}\n", std::chrono::duration<double>(now - start).count(),
-               what, done, total);
+    const double seconds = std::chrono::duration<double>(now - start).count();
+    const std::string line = at.line(what, done, total, seconds);
+    if (terminal) {
+      fmt::print(stderr, "\r\033[K{}{}", line, done == total ? "\r\033[K" : "");
+    } else if (now - said >= std::chrono::seconds(10)) {
+      said = now;
+      fmt::print(stderr, "after {}: {}\n", duration_text(seconds), line);
+    }
     std::fflush(stderr);
   };
 }

@@ -14,18 +14,22 @@
 
 #include "base/sha256.hpp"
 #include "jobs/command_line.hpp"
+#include "jobs/event_records.hpp"
+#include "jobs/print_pdf.hpp"
 #include "jobs/software.hpp"
 #include "sim/plant/parameter_id.hpp"
 #include "validate/compare/page_parts.hpp"
 
 namespace swingbank::jobs {
 
-/// By which limits a model is judged fit for purpose, and who signs the page.
+/// By which limits a model is judged fit for purpose, who signs the page, and whether it is printed.
 struct Judging {
-  std::string accept, signed_by;
+  std::string accept, signed_by, pdf;
   validate::thresholds::Acceptance by;
 
   Option add_to(CommandLine& line) {
+    line.add("--pdf", pdf, "the page as PDF too, in this file, printed by Chromium");
+    line.add_flag("--quiet", quiet, "no word of progress and no notes; errors and the result are told");
     line.add("--by", signed_by, "who signs: printed on the page with date and inputs");
     return line.add(
         "--accept", accept,
@@ -35,7 +39,20 @@ struct Judging {
                     validate::thresholds::acceptance_presets().front()));
   }
   /// Before the work. Throws InputError.
-  void read() { by = validate::thresholds::read_acceptance(accept); }
+  void read() {
+    Problems problems;
+    try {
+      by = validate::thresholds::read_acceptance(accept);
+    } catch (const InputError& error) {
+      for (const auto& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
+    }
+    if (!pdf.empty()) browser_for(pdf, problems);
+    problems.raise();
+  }
+  /// Once the page is there.
+  void print(const std::filesystem::path& page) const {
+    if (!pdf.empty()) print_pdf(page, pdf);
+  }
 };
 
 /// The files that a word of --records stands for: "A+B", "FILE#TERMINAL", and a .cfg's .dat.

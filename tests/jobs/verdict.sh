@@ -42,19 +42,9 @@ for command in compare calibrate add diagnose; do
     fail "$command --help does not tell the exit codes"
 done
 
-# every command writes a page; a name that is no UTF-8, or a tag, costs nothing
-sed 's|^name = .*|name = "</script><b>"|' "$bent" >"$work/tag.toml"
-cp "$one" "$work/"$'ev\xff<i>.csv'
-gives 3 '^Fit for purpose: no' "$swingbank" compare --model "$work/tag.toml" --records "$work/"$'ev\xff<i>.csv' --by 'A. Engineer'
-hash=$(sha256sum "$work/tag.toml" | cut -d' ' -f1)
-for words in 'A. Engineer' "$hash" 'Five words' "X''d" 'V, played in' 'Error map'; do
-  grep -qF -- "$words" "$work/out/report.html" || fail "'$words' is not on the page of compare"
-done
-! grep -qF '</script><b>' "$work/out/report.html" || fail "a name breaks the page"
-python3 -c 'import json, sys; json.load(open(sys.argv[1]))' "$work/out/compare.json"
-calibrate --out "$work/out" >/dev/null 2>&1
-for words in 'Five words' '95 % interval' 'calibrated' 'submitted' 'Error map' 'SHA-256'; do
-  grep -qF -- "$words" "$work/out/report.html" || fail "'$words' is not on the page of calibrate"
+for command in compare calibrate add diagnose effects export; do
+  "$swingbank" "$command" --version | grep -qE "^swingbank $command [0-9.]+, commit [0-9a-z]" || fail "$command --version"
+  "$swingbank" "$command" --help | grep -qE "^Usage: swingbank $command( |$)" || fail "$command: another usage line"
 done
 
 rm -r "$work/out"
@@ -62,4 +52,8 @@ rm -r "$work/out"
 refuses "wrong limits" 'wrong.toml:5' compare --model "$bent" --accept "$work/wrong.toml" --out "$work/out"
 for line in 6 8; do grep -q "wrong.toml:$line" "$work/stderr" || fail "line $line is not told: $(cat "$work/stderr")"; done
 refuses "no such limits" 'dtr-test, dtr-simulation' calibrate --accept nonesuch --out "$work/out"
+mkdir "$work/bin"
+refuses "a PDF without a browser" 'no Chromium at --pdf' env PATH="$work/bin" "$swingbank" compare --model "$bent" --records "$one" \
+  --pdf "$work/none/page.pdf" --accept nonesuch --out "$work/out"
+for words in 'there is no .*none' 'dtr-simulation'; do grep -q "$words" "$work/stderr" || fail "'$words' is not told at once"; done
 [[ ! -e $work/out ]] || fail "files left behind"

@@ -1,0 +1,88 @@
+#pragma once
+// What commands that take minutes say of their work: in the person's words, with the share done and the time
+// left. The shares are those that the stages took of the example's time; another plant's differ, so the time
+// left is told as "about".
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/progress.hpp"
+
+namespace swingbank::jobs {
+
+/// One stage of a course.
+struct CourseStage {
+  std::string_view inner;  ///< what the work calls it; the first stage whose word it holds is meant
+  std::string_view words;  ///< as a person reads it
+  double from, to;         ///< share of the whole time at its begin and end
+};
+using Course = std::vector<CourseStage>;
+
+/// Measured on two cores with three events of configs/records/record-example (152 s).
+inline const Course kDiagnoseCourse = {
+    {" beside", "second effects are tried", 0.93, 0.98},
+    {"base", "the model's parameters are refitted", 0, 0.01},
+    {"hypotheses", "effects are screened", 0.01, 0.07},
+    {"first steps ", "effects are tried in brief", 0.07, 0.29},
+    {"fit ", "promising effects are fitted", 0.29, 0.64},
+    {"noise measured again", "the noise is measured again", 0.64, 0.73},
+    {"missing input", "the missing input is inferred", 0.73, 0.74},
+    {"further starts", "rivals get further starts", 0.74, 0.85},
+    {"unseen events", "effects are judged on events they were not fitted to", 0.85, 0.93},
+    {"law", "laws are looked for", 0.85, 0.98},
+    {"played in", "the models' events are played", 0.98, 1},
+    {"instants and start", "the models' events are played", 0.98, 1},
+};
+/// With two events of the same (5 s each).
+inline const Course kCalibrateCourse = {
+    {"events with the model as it is", "the model as it is", 0, 0.15},
+    {"parameter sets screened", "parameter sets are screened", 0.15, 0.2},
+    {"starts refined", "parameters are fitted", 0.2, 0.62},
+    {"noise of the voltage", "the voltage's noise is taken back", 0.62, 0.8},
+    {"events with the fitted model", "the fitted model", 0.8, 0.82},
+    {"sensitivities", "what the records decide", 0.82, 0.95},
+    {"played in", "the models' events are played", 0.95, 1},
+    {"instants and start", "the models' events are played", 0.95, 1},
+};
+inline const Course kAddCourse = {
+    {"events with the model as it is", "the model as it is", 0, 0.04},
+    {"screened", "values of the effect are screened", 0.04, 0.25},
+    {"refined", "the effect is fitted", 0.25, 0.55},
+    {"noise measured again", "the noise is measured again", 0.55, 0.57},
+    {"events without", "the model without the effect", 0.57, 0.8},
+    {"events with", "the model with the effect", 0.8, 0.85},
+    {"sensitivities", "what the records decide", 0.85, 0.95},
+    {"played in", "the models' events are played", 0.95, 1},
+    {"instants and start", "the models' events are played", 0.95, 1},
+};
+
+/// Where the work stands; never goes back.
+class CourseProgress {
+ public:
+  explicit CourseProgress(Course course) : course_(std::move(course)) {}
+  /// "37 % done, about 1 min 20 s left: effects are tried in brief (SEXS: 16 of 26)". A course that does not
+  /// know the stage tells it as it is called.
+  std::string line(const std::string& what, int done, int total, double seconds) {
+    const auto stage = std::ranges::find_if(
+        course_, [&](const CourseStage& s) { return what.find(s.inner) != std::string::npos; });
+    const double part = total > 0 ? static_cast<double>(done) / total : 0;
+    if (stage == course_.end()) return fmt::format("{}: {} of {}", what, done, total);
+    share_ = std::max(share_, stage->from + (stage->to - stage->from) * part);
+    std::string text = fmt::format("{:.0f} % done", 100 * share_);
+    if (share_ >= 0.02 && share_ < 1)
+      text += fmt::format(", about {} left", duration_text(seconds * (1 - share_) / share_));
+    std::string item = what.starts_with(stage->inner) ? what.substr(stage->inner.size()) : what;
+    item.erase(0, item.find_first_not_of(' '));
+    return text +
+           fmt::format(": {} ({}{} of {})", stage->words, item.empty() ? "" : item + ", ", done, total);
+  }
+
+ private:
+  Course course_;
+  double share_ = 0;
+};
+
+}  // namespace swingbank::jobs

@@ -1,0 +1,82 @@
+#pragma once
+// --pdf: a page printed by headless Chromium, where the machine has it.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <system_error>
+
+#include "base/own_command.hpp"
+#include "base/problem.hpp"
+
+namespace swingbank::jobs {
+
+/// Path of Chromium or of a browser of its kind; empty where PATH has none.
+inline std::filesystem::path browser() {
+  const char* path = std::getenv("PATH");
+  for (const char* name : {"chromium", "chromium-browser", "google-chrome", "google-chrome-stable"}) {
+    std::istringstream folders(path == nullptr ? "" : path);
+    for (std::string folder; std::getline(folders, folder, ':');)
+      if (const auto program = std::filesystem::path(folder) / name; ::access(program.c_str(), X_OK) == 0)
+        return program;
+  }
+  return {};
+}
+
+/// Notes a problem where a PDF cannot be made, before there is work to lose.
+inline void browser_for(const std::string& pdf, Problems& problems) {
+  if (browser().empty())
+    problems.add("no Chromium", "--pdf", "a page is printed by it, and PATH has none",
+                 "install the package chromium, or leave --pdf out and print report.html from any browser");
+  const auto folder = std::filesystem::absolute(pdf).parent_path();
+  if (!std::filesystem::is_directory(folder))
+    problems.add("no folder for " + pdf, "--pdf", "there is no " + folder.string(), "make it");
+  else if (std::filesystem::is_directory(pdf))
+    problems.add("a folder", "--pdf", pdf + " is one", "give a file's name");
+}
+
+/// "file:///..." with everything but plain characters as %XX.
+inline std::string file_url(const std::filesystem::path& file) {
+  std::string url = "file://";
+  for (const char c : std::filesystem::absolute(file).string())
+    url += std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+                   std::string_view("/-._~").find(c) != std::string_view::npos
+               ? std::string(1, c)
+               : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  return url;
+}
+
+/// Prints the page. The PDF appears whole or not at all. Throws InputError where the browser fails.
+inline void print_pdf(const std::filesystem::path& page, const std::filesystem::path& pdf) {
+  namespace fs = std::filesystem;
+  const Scratch scratch;
+  const fs::path made = scratch.folder() / "page.pdf";
+  std::vector<std::string> words = {"--headless",
+                                    "--disable-gpu",
+                                    "--disable-dev-shm-usage",
+                                    "--no-first-run",
+                                    "--no-pdf-header-footer",
+                                    "--user-data-dir=" + (scratch.folder() / "profile").string(),
+                                    "--virtual-time-budget=10000",
+                                    "--print-to-pdf=" + made.string(),
+                                    file_url(page)};
+  if (::geteuid() == 0) words.insert(words.begin(), "--no-sandbox");
+  const int code = run_own(browser(), words, false, true);
+  std::error_code failed;
+  if (code == 0 && fs::exists(made)) {
+    const fs::path beside = pdf.string() + ".part";
+    fs::copy_file(made, beside, fs::copy_options::overwrite_existing, failed);
+    if (!failed) fs::rename(beside, pdf, failed);
+    if (!failed) return;
+    fs::remove(beside);
+  }
+  throw InputError({"the page was not printed", pdf.string(),
+                    failed ? failed.message() : fmt::format("Chromium ended with exit code {}", code),
+                    "print " + page.string() + " from a browser; all other files are written"});
+}
+
+}  // namespace swingbank::jobs
