@@ -120,7 +120,8 @@ Option CommandLine::add_flag(const std::string& names, bool& on, const std::stri
   return Option(parser_->app.add_flag(names, on, meaning));
 }
 Option CommandLine::add_flag_off(const std::string& name, bool& on, const std::string& meaning) {
-  return Option(parser_->app.add_flag("!" + name, on, meaning));
+  return Option(parser_->app.add_flag_callback(
+      name, [&on] { on = false; }, meaning));
 }
 void CommandLine::footer(const std::string& text) { parser_->app.footer(text); }
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -183,6 +184,15 @@ std::string nearest_names(const library::EffectLibrary& library, const std::stri
   return names;
 }
 
+/// Models of inverters, wind and storage, none of which is there yet, by the beginnings of their names.
+bool is_inverter(std::string name) {
+  std::ranges::transform(name, name.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  constexpr std::string_view kBeginnings[] = {"REGC", "REEC", "REPC", "WT1",  "WT2", "WT3",  "WT4",
+                                              "WTDT", "WTAR", "WTPT", "WTTQ", "PVG", "PVEU", "DERA"};
+  return std::ranges::any_of(kBeginnings, [&](std::string_view b) { return name.starts_with(b); });
+}
+
 /// A block of a plant file with the standard values.
 void print_toml(const Effect& e) {
   const std::string slot(slot_name(e.slot));
@@ -207,7 +217,11 @@ int run(const std::vector<std::string>& names, const std::vector<std::string>& l
   std::vector<const Effect*> chosen;
   for (const auto& name : names) {
     chosen.push_back(library.find(name));
-    if (!chosen.back())
+    if (!chosen.back() && is_inverter(name))
+      problems.add("no effect '" + name + "'", "NAME",
+                   "models of inverters, wind and storage are not there yet",
+                   "see what there is with swingbank effects");
+    else if (!chosen.back())
       problems.add("no effect '" + name + "'", "NAME",
                    "the nearest names are " + nearest_names(library, name),
                    "choose one of these, or see them all with swingbank effects");

@@ -61,5 +61,7 @@ PYTHON
 refuses "a name mistyped" "no effect 'GENRUO' at NAME \(the nearest names are GENROU" "$swingbank" effects GENRUO
 "$swingbank" effects GENRUO SEXX 2>"$work/both.txt" && fail "unknown names were accepted"
 (($(wc -l <"$work/both.txt") == 2)) || fail "not every unknown name was told: $(cat "$work/both.txt")"
+refuses "an inverter" "no effect 'REGCA1' at NAME \(models of inverters, wind and storage are not there yet\)" "$swingbank" effects REGCA1
+"$swingbank" compare --help | grep -F "{false}" && fail "a flag shows how it is stored"
 refuses "no law file" "no readable law file" "$swingbank" effects --law "$work/none.toml"
 misused "unknown option" nonsense "$swingbank" effects --nonsense

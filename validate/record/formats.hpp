@@ -20,6 +20,11 @@ Record record_of_comtrade(const Comtrade& comtrade, const std::string& name, con
 Record read_hdf5_record(const std::filesystem::path& file, const RecordBase& base,
                         const ReadOptions& options);
 
+/// A MATLAB file (v4, v5, v7.3): vectors, matrices with a list of names, and structs of them become columns,
+/// which are then read as those of text; lines in messages count samples from 2 on. Throws InputError, also
+/// where the file is cut short.
+Record read_mat_record(const std::filesystem::path& file, const RecordBase& base, const ReadOptions& options);
+
 /// Bytes of a file; throws InputError if it cannot be read.
 std::string read_bytes(const std::filesystem::path& file);
 

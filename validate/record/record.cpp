@@ -229,6 +229,7 @@ Record read_record(const std::filesystem::path& named, const RecordBase& base, c
   const bool comtrade = e == ".cfg" || e == ".dat" || e == ".cff";
   Record record = comtrade                     ? read_comtrade(file, base, options)
                   : e == ".h5" || e == ".hdf5" ? read_hdf5_record(file, base, options)
+                  : e == ".mat"                ? read_mat_record(file, base, options)
                                                : parse_record(read_bytes(file), file.string(), base, options);
   record.name = named.filename().string();  // with the terminal, if one was named: two of a file differ
   return record;

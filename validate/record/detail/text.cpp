@@ -94,10 +94,8 @@ void refuse_binary(std::string_view bytes, const std::string& name) {
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF"))
     refuse("a file in UTF-16", name, "\"Unicode text\" of spreadsheet programs and of PowerShell is that",
            "save it as CSV in UTF-8 (PowerShell: Out-File -Encoding utf8)");
-  if (ends_with(name, ".mat") || bytes.starts_with("MATLAB 5.0"))
-    refuse(
-        "a MATLAB file", name, "it is not read",
-        "export it as CSV: writetable(table(t, V, f, P, Q), 'event.csv'), headings with their units (V_kV)");
+  if (bytes.starts_with("MATLAB 5.0") || bytes.starts_with("MATLAB 7.3"))
+    refuse("a MATLAB file", name, "its name does not end in .mat", "rename it");
   if (ends_with(name, ".out") || ends_with(name, ".outx"))
     refuse("an output file of PSS/E", name, "its format is not public",
            "export it as CSV in PSS/E's Python: dyntools.CHNF('run.out').csvout(outfile='run.csv')");

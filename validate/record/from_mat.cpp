@@ -1,0 +1,319 @@
+// MATLAB files (v4, v5 and v7.3, by libmatio) as records: vectors, tables of columns and structs of both.
+#include <fmt/format.h>
+#include <matio.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "validate/record/detail/columns.hpp"
+#include "validate/record/formats.hpp"
+
+namespace swingbank::validate::record {
+namespace {
+
+constexpr const char* kExport =
+    "save vectors: save('event.mat', 't_s', 'V_kV', 'f_Hz', 'P_MW', 'Q_Mvar'), or say which is what: "
+    "--columns \"t=NAME [s],V=NAME [kV],…\"";
+constexpr int kDeepest = 4;  ///< structs within structs
+
+struct MatColumn {
+  std::string name;
+  std::vector<double> values;
+};
+
+std::uint64_t number_at(std::string_view bytes, std::size_t at, std::size_t width, bool swapped = false) {
+  std::uint64_t value = 0;
+  for (std::size_t k = 0; k < width; ++k)
+    value = value << 8U | static_cast<unsigned char>(bytes[at + (swapped ? k : width - 1 - k)]);
+  return value;
+}
+/// v7.3 is HDF5 behind 512 bytes; its superblock says where the file ends.
+bool hdf5_is_cut_off(std::string_view bytes) {
+  constexpr std::size_t kBegin = 512;
+  if (bytes.size() < kBegin + 64 || !bytes.substr(kBegin).starts_with("\x89HDF")) return true;
+  const auto version = bytes[kBegin + 8];
+  const std::size_t addresses = version == 0 ? 24 : version == 1 ? 28 : 12;  // base, another one, the end
+  return bytes.size() < number_at(bytes, kBegin + addresses + 16, 8);
+}
+/// A v5 file is a row of elements that each say their length; what was cut off ends within one.
+bool is_cut_off(std::string_view bytes) {
+  if (bytes.starts_with("MATLAB 7.3")) return hdf5_is_cut_off(bytes);
+  if (!bytes.starts_with("MATLAB 5")) return false;
+  if (bytes.size() < 128) return true;
+  std::size_t at = 128;
+  while (at + 8 <= bytes.size()) at += 8 + number_at(bytes, at + 4, 4, bytes[126] == 'M');
+  return at != bytes.size();
+}
+
+template <class T>
+std::vector<double> copied(const matvar_t& v, std::size_t n) {
+  const T* from = static_cast<const T*>(v.data);
+  return {from, from + n};
+}
+std::size_t elements(const matvar_t& v) {
+  std::size_t n = v.rank > 0 ? 1 : 0;
+  for (int k = 0; k < v.rank; ++k) n *= v.dims[k];
+  return n;
+}
+/// Real numbers of any width; none: the variable holds something else.
+std::optional<std::vector<double>> numbers(const matvar_t& v) {
+  const std::size_t n = elements(v);
+  if (v.data == nullptr || v.isComplex != 0 || v.rank != 2 || v.class_type == MAT_C_CHAR ||
+      v.data_size <= 0 || n * static_cast<std::size_t>(v.data_size) > v.nbytes)
+    return std::nullopt;
+  switch (v.class_type) {
+    case MAT_C_DOUBLE:
+    case MAT_C_SINGLE:
+    case MAT_C_INT8:
+    case MAT_C_UINT8:
+    case MAT_C_INT16:
+    case MAT_C_UINT16:
+    case MAT_C_INT32:
+    case MAT_C_UINT32:
+    case MAT_C_INT64:
+    case MAT_C_UINT64:
+      break;
+    default:
+      return std::nullopt;
+  }
+  switch (v.data_type) {
+    case MAT_T_DOUBLE:
+      return copied<double>(v, n);
+    case MAT_T_SINGLE:
+      return copied<float>(v, n);
+    case MAT_T_INT8:
+      return copied<std::int8_t>(v, n);
+    case MAT_T_UINT8:
+      return copied<std::uint8_t>(v, n);
+    case MAT_T_INT16:
+      return copied<std::int16_t>(v, n);
+    case MAT_T_UINT16:
+      return copied<std::uint16_t>(v, n);
+    case MAT_T_INT32:
+      return copied<std::int32_t>(v, n);
+    case MAT_T_UINT32:
+      return copied<std::uint32_t>(v, n);
+    case MAT_T_INT64:
+      return copied<std::int64_t>(v, n);
+    case MAT_T_UINT64:
+      return copied<std::uint64_t>(v, n);
+    default:
+      return std::nullopt;
+  }
+}
+
+/// Text of one row; what is no ASCII becomes '?'.
+std::string text_of(const matvar_t& v, std::size_t row = 0) {
+  std::string text;
+  if (v.class_type != MAT_C_CHAR || v.rank != 2 || v.data == nullptr || row >= v.dims[0]) return text;
+  const std::size_t width = v.data_type == MAT_T_UINT16 || v.data_type == MAT_T_UTF16 ? 2 : 1;
+  for (std::size_t c = 0; c < v.dims[1]; ++c) {
+    const std::size_t at = (c * v.dims[0] + row) * width;
+    if (at + width > v.nbytes) break;
+    const auto* bytes = static_cast<const unsigned char*>(v.data) + at;
+    const unsigned code = width == 2 ? bytes[0] | bytes[1] << 8U : bytes[0];
+    text += code >= 0x20 && code < 0x7F ? static_cast<char>(code) : '?';
+  }
+  text.erase(text.find_last_not_of(' ') + 1);
+  return text;
+}
+/// The words of a cell array of texts, or the rows of a matrix of letters; empty: it is neither.
+std::vector<std::string> words(const matvar_t& v) {
+  std::vector<std::string> all;
+  if (v.class_type == MAT_C_CHAR && v.rank == 2)
+    for (std::size_t r = 0; r < v.dims[0]; ++r) all.push_back(text_of(v, r));
+  if (v.class_type == MAT_C_CELL && v.data != nullptr)
+    for (std::size_t k = 0; k < elements(v) && k < v.nbytes / sizeof(matvar_t*); ++k) {
+      const matvar_t* cell = static_cast<matvar_t**>(v.data)[k];
+      if (cell == nullptr || cell->class_type != MAT_C_CHAR) return {};
+      all.push_back(text_of(*cell));
+    }
+  return all;
+}
+
+bool is_word(std::string_view name, std::string_view word) { return normalised(name) == word; }
+bool is_time(const std::string& name) {
+  const auto meaning = column_meaning(name);
+  return meaning && meaning->quantity == Quantity::time;
+}
+
+class MatReader {
+ public:
+  explicit MatReader(std::string name) : name_(std::move(name)) {}
+
+  void variable(matvar_t& v) { take(v, v.name == nullptr ? "?" : v.name, "", 0); }
+
+  /// The columns as text, as the reader of text takes them.
+  std::string text(const ReadOptions& options) {
+    name_tables();
+    const std::size_t rows = time_rows(options);
+    std::erase_if(columns_, [&](const MatColumn& c) { return c.values.size() != rows; });
+    std::string out;
+    for (std::size_t c = 0; c < columns_.size(); ++c) out += (c > 0 ? "\t" : "") + columns_[c].name;
+    for (std::size_t r = 0; r < rows; ++r) {
+      out += '\n';
+      for (std::size_t c = 0; c < columns_.size(); ++c)
+        fmt::format_to(std::back_inserter(out), "{}{}", c > 0 ? "\t" : "", columns_[c].values[r]);
+    }
+    return out + '\n';
+  }
+
+ private:
+  struct Table {
+    std::string name, place;
+    std::size_t rows, columns;
+    std::vector<double> values;
+  };
+  struct Words {
+    std::string place;
+    std::vector<std::string> list;
+  };
+
+  void take(matvar_t& v, const std::string& name, const std::string& place, int depth) {
+    if (v.class_type == MAT_C_STRUCT) return structure(v, name, depth);
+    const std::string full = place.empty() || is_time(name) ? name : place + "." + name;
+    std::string size;
+    for (int k = 0; k < v.rank; ++k) size += (k > 0 ? "x" : "") + std::to_string(v.dims[k]);
+    seen_.push_back(fmt::format("{} ({}{})", full, size, v.isComplex != 0 ? ", complex" : ""));
+    if (auto list = words(v); !list.empty()) return words_.push_back({place, std::move(list)});
+    auto values = numbers(v);
+    if (!values || values->size() < 2) return;
+    if (v.dims[0] == 1 || v.dims[1] == 1) return add(full, std::move(*values));
+    tables_.push_back({full, place, v.dims[0], v.dims[1], std::move(*values)});
+  }
+
+  /// One struct: its fields, or a signal with its own times ("Time" and "Data", as a timeseries is saved by
+  /// people; "time" and "signals", as Simulink logs).
+  void structure(matvar_t& v, const std::string& name, int depth) {
+    if (elements(v) == 0 || v.data == nullptr || depth >= kDeepest)
+      return seen_.push_back(name + " (struct)");
+    const unsigned fields = Mat_VarGetNumberOfFields(&v);
+    const char* const* names = Mat_VarGetStructFieldnames(&v);
+    const std::size_t parts = elements(v);
+    for (std::size_t part = 0; part < parts; ++part) {
+      std::string label;
+      for (unsigned f = 0; f < fields; ++f)
+        if (matvar_t* field = Mat_VarGetStructFieldByIndex(&v, f, part);
+            field != nullptr && (is_word(names[f], "label") || is_word(names[f], "signalname")))
+          label = text_of(*field);
+      for (unsigned f = 0; f < fields; ++f) {
+        matvar_t* field = Mat_VarGetStructFieldByIndex(&v, f, part);
+        if (field == nullptr) continue;
+        const bool data = is_word(names[f], "data") || is_word(names[f], "values");
+        if (data)
+          take(*field, label.empty() ? name : label, "", depth + 1);
+        else if (parts == 1 || field->class_type != MAT_C_CHAR)
+          take(*field, names[f], name, depth + 1);
+      }
+    }
+  }
+
+  /// Signals with times of their own must share them.
+  void add(const std::string& name, std::vector<double> values) {
+    if (is_time(name))
+      for (const MatColumn& c : columns_)
+        if (is_time(c.name)) {
+          if (c.values != values) other_times_.push_back(name);
+          return;
+        }
+    columns_.push_back({tidy(name), std::move(values)});
+  }
+  static std::string tidy(std::string name) {
+    std::ranges::replace_if(
+        name, [](char c) { return c == '\t' || c == '"' || c == '\n' || c == '\r'; }, ' ');
+    return name;
+  }
+
+  /// Columns of a matrix are named by a list that has a name for each.
+  void name_tables() {
+    for (const Table& table : tables_) {
+      const Words* names = nullptr;
+      for (const Words& w : words_)
+        if (w.list.size() == table.columns || w.list.size() == table.rows)
+          if (names == nullptr || w.place == table.place) names = &w;
+      const bool lying = names != nullptr && names->list.size() == table.rows && table.rows < table.columns;
+      const std::size_t signals = lying ? table.rows : table.columns,
+                        length = lying ? table.columns : table.rows;
+      for (std::size_t s = 0; s < signals; ++s) {
+        std::vector<double> values(length);
+        for (std::size_t k = 0; k < length; ++k)
+          values[k] = table.values[lying ? k * table.rows + s : s * table.rows + k];
+        add(names != nullptr && names->list.size() == signals ? names->list[s]
+                                                              : fmt::format("{}(:,{})", table.name, s + 1),
+            std::move(values));
+      }
+    }
+  }
+
+  /// How many samples there are: as many as times.
+  [[nodiscard]] std::size_t time_rows(const ReadOptions& options) const {
+    if (!other_times_.empty())
+      refuse("signals with different times", "one record has one time vector",
+             "bring them to one time in MATLAB: resample or synchronize");
+    const auto asked = options.columns.find("t");
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      const MatColumn& c = columns_[k];
+      if (asked == options.columns.end()
+              ? is_time(c.name)
+              : asked->second == c.name || asked->second.starts_with(c.name + " [") ||
+                    asked->second.starts_with(fmt::format("#{} ", k + 1)))
+        return c.values.size();
+    }
+    refuse("no time vector", "none of the variables is called t, time or timestamp", kExport);
+  }
+  [[noreturn]] void refuse(const std::string& what, const std::string& why, const std::string& remedy) const {
+    std::string all;
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+      if (k == 40) {
+        all += fmt::format(" and {} more", seen_.size() - k);
+        break;
+      }
+      all += (k > 0 ? ", " : "") + seen_[k];
+    }
+    throw InputError(
+        {what, name_, fmt::format("{}; the file holds {}", why, all.empty() ? "nothing" : all), remedy});
+  }
+
+  std::string name_;
+  std::vector<MatColumn> columns_;
+  std::vector<Table> tables_;
+  std::vector<Words> words_;
+  std::vector<std::string> seen_, other_times_;
+};
+
+}  // namespace
+
+Record read_mat_record(const std::filesystem::path& file, const RecordBase& base,
+                       const ReadOptions& options) {
+  const std::string name = file.string(), bytes = read_bytes(file);
+  const auto broken = [&](const char* why) {
+    return InputError({"no readable MATLAB file", name, why, "copy or save it again"});
+  };
+  static std::mutex one_at_a_time;  // v7.3 is read by the serial HDF5, which knows no threads
+  const std::lock_guard guard(one_at_a_time);
+  if (is_cut_off(bytes)) throw broken("its last variable breaks off");
+  const std::unique_ptr<mat_t, int (*)(mat_t*)> mat(Mat_Open(name.c_str(), MAT_ACC_RDONLY), Mat_Close);
+  if (!mat) throw broken("it is cut short, or something else that is called .mat");
+  MatReader reader(name);
+  while (true) {
+    const std::unique_ptr<matvar_t, void (*)(matvar_t*)> v(Mat_VarReadNext(mat.get()), Mat_VarFree);
+    if (!v) break;
+    reader.variable(*v);
+  }
+  Record record = parse_record(reader.text(options), fmt::format("columns of {}", file.filename().string()),
+                               base, options);
+  record.hash = XXH64(bytes.data(), bytes.size(), 0);
+  record.format = Mat_GetVersion(mat.get()) == MAT_FT_MAT73 ? "MATLAB 7.3" : "MATLAB";
+  return record;
+}
+
+}  // namespace swingbank::validate::record
