@@ -2,12 +2,15 @@
 
 #include <fcntl.h>
 #include <unistd.h>
+#include <xxhash.h>
 
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <memory>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 #include "base/problem.hpp"
 
@@ -91,6 +94,12 @@ void reserve(const fs::path& file, std::uint64_t bytes) {
   raise_file_error(file, error, "cannot reserve " + std::to_string(bytes) + " bytes for the file");
 }
 
+void flush_temporary(const fs::path& file) {
+  const Descriptor d(temporary_name(file), O_RDONLY | O_NOFOLLOW);
+  if (d.get() < 0 || ::fsync(d.get()) != 0)
+    raise_file_error(file, errno, "cannot flush the file to the disk");
+}
+
 void publish(const fs::path& file) {
   const fs::path temporary = temporary_name(file);
   const auto fail = [&](const std::string& what) {
@@ -149,6 +158,22 @@ std::string read_text(const fs::path& file) {
   text << in.rdbuf();
   if (in.bad()) raise_file_error(file, EIO, "cannot read the file");
   return text.str();
+}
+
+std::string hash_of_file(const fs::path& file) {
+  const Descriptor d(file, O_RDONLY);
+  if (d.get() < 0) raise_file_error(file, errno, "cannot read the file");
+  const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),
+                                                                              XXH3_freeState);
+  XXH3_64bits_reset(state.get());
+  std::vector<char> piece(std::size_t{1} << 20);
+  for (;;) {
+    const ssize_t n = ::read(d.get(), piece.data(), piece.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) raise_file_error(file, errno, "cannot read the file");
+    if (n == 0) return hex(XXH3_64bits_digest(state.get()));
+    XXH3_64bits_update(state.get(), piece.data(), static_cast<std::size_t>(n));
+  }
 }
 
 std::string hex(std::uint64_t value) {

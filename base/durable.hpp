@@ -21,6 +21,8 @@ void reserve(const std::filesystem::path& file, std::uint64_t bytes);
 /// Flushes the temporary file to the disk and gives it its final name. Throws InputError; removes the
 /// temporary then.
 void publish(const std::filesystem::path& file);
+/// Flushes what this machine has written of the temporary file. Throws InputError.
+void flush_temporary(const std::filesystem::path& file);
 void flush_folder(const std::filesystem::path& folder);
 /// A file that is written piece by piece. Where it is not published, nothing of it stays.
 class NewFile {
@@ -46,6 +48,8 @@ void write_text(const std::filesystem::path& file, std::string_view text);
 std::string read_text(const std::filesystem::path& file);
 /// Throws InputError: "<what> at <file> (<the system's reason>): <remedy>".
 [[noreturn]] void raise_file_error(const std::filesystem::path& file, int error, const std::string& what);
+/// XXH3-64 over the bytes of a file, 16 hex digits. Throws InputError.
+std::string hash_of_file(const std::filesystem::path& file);
 /// 16 lower-case hex digits.
 std::string hex(std::uint64_t value);
 

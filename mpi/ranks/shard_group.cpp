@@ -118,6 +118,7 @@ ShardReceipt write_shard(const fs::path& file, const store::ShardData& part, MPI
 
   const fs::path temporary = temporary_name(file);
   std::uint64_t bytes = 0;
+  std::string file_hash;  // on rank 0, which journals it
   try {
     // MPI-IO tells little about why it fails, so the system is asked first.
     agree(group, file.string(), [&] {
@@ -129,10 +130,12 @@ ShardReceipt write_shard(const fs::path& file, const store::ShardData& part, MPI
     agree(group, file.string(), [&] { store::lay_out_shard(f, part, {hashes.size(), ids.size()}); });
     agree(group, file.string(), [&] { store::fill_shard(f, part, before[0], before[1]); });
     agree(group, file.string(), [&] { f.close(); });
+    if (size > 1) agree(group, file.string(), [&] { flush_temporary(file); });  // each node what it wrote
     agree(group, file.string(), [&] {
       if (rank != 0) return;
       publish(file);
       bytes = fs::file_size(file);
+      file_hash = hash_of_file(file);
     });
   } catch (...) {
     if (rank == 0) {
@@ -142,7 +145,7 @@ ShardReceipt write_shard(const fs::path& file, const store::ShardData& part, MPI
     throw;
   }
   MPI_Bcast(&bytes, 1, MPI_UINT64_T, 0, group);  // the new name may not be seen on other nodes yet (NFS)
-  return {hashes.size(), ids.size(), bytes, store::shard_hash(hashes, ids, outcomes, redrawn)};
+  return {hashes.size(), ids.size(), bytes, store::shard_hash(hashes, ids, outcomes, redrawn), file_hash};
 }
 
 }  // namespace swingbank::mpi::ranks

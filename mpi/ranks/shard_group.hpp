@@ -11,6 +11,7 @@ namespace swingbank::mpi::ranks {
 
 struct ShardReceipt {
   std::uint64_t rows = 0, draws = 0, bytes = 0, hash = 0;
+  std::string file_hash;  ///< of the file's bytes, on rank 0 of the group only
 };
 
 /// An error that every rank of a group throws alike. Any other exception is one rank's own, and the others do

@@ -8,6 +8,7 @@
 
 #include "base/durable.hpp"
 #include "base/problem.hpp"
+#include "base/sealed_text.hpp"
 
 namespace swingbank::mpi::store {
 
@@ -15,7 +16,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kDatasetFormat = "swingbank-dataset-1";
+constexpr const char* kDatasetFormat = "swingbank-dataset-2";
+constexpr const char* kRestoreHeader =
+    "restore the file from a copy, or make the dataset again in an empty folder";
 constexpr const char* kRemake =
     "run generate with the dataset's config on this folder again: it makes what is missing";
 
@@ -100,7 +103,8 @@ ShardInfo info_of(const fs::path& folder, const JournalLine& l, const DatasetHea
           l.rows,          first_row,
           l.bytes,         l.hash,
           h.config_hash,   {l.rows, h.channel_names.size(), h.samples, h.parameter_names.size()},
-          l.draws,         l.outcomes};
+          l.draws,         l.outcomes,
+          l.file_hash};
 }
 
 std::string text_of(const std::map<std::string, std::uint64_t>& outcomes) {
@@ -120,7 +124,7 @@ std::string combine(const std::vector<ShardInfo>& shards) {
 
 std::string header_text(const DatasetHeader& header) {
   try {
-    return to_json(header).dump(1) + "\n";
+    return sealed_text(to_json(header).dump(1));
   } catch (const nlohmann::json::type_error& e) {
     throw InputError({"a name that is no UTF-8", "the config '" + header.name + "' or a file it names",
                       e.what(), "give the file a name in UTF-8"});
@@ -164,10 +168,14 @@ DatasetHeader read_header(const fs::path& folder) {
     throw InputError(
         {"no dataset", folder.string(), "it holds no dataset.json", "give the folder that generate wrote"});
   try {
-    return from_json(nlohmann::json::parse(read_text(file)));
+    const std::string text = read_text(file);
+    DatasetHeader header = from_json(nlohmann::json::parse(text));
+    if (!is_sealed(text))
+      throw InputError(
+          {"damaged dataset header", file.string(), "its sum is not that of its text", kRestoreHeader});
+    return header;
   } catch (const nlohmann::json::exception& e) {
-    throw InputError({"damaged dataset header", file.string(), e.what(),
-                      "restore the file from a copy, or make the dataset again in an empty folder"});
+    throw InputError({"damaged dataset header", file.string(), e.what(), kRestoreHeader});
   } catch (const InputError&) {
     throw;
   } catch (const std::runtime_error& e) {
@@ -202,10 +210,13 @@ Dataset open_dataset(const fs::path& folder, bool allow_incomplete) {
 }
 
 ShardData read_checked(const ShardInfo& s) {
-  ShardData data = read_shard(s.path, {}, &s.shape);
   const auto fail = [&](const std::string& what, const std::string& why) {
     throw InputError({what, s.path.string(), why, kRepairDataset});
   };
+  // First, because HDF5 1.10 may crash on a file that is damaged.
+  if (const std::string bytes = hash_of_file(s.path); bytes != s.file_hash)
+    fail("changed shard", "the hash of its bytes is " + bytes + ", the journal says " + s.file_hash);
+  ShardData data = read_shard(s.path, {}, &s.shape);
   if (data.attributes.config_hash != s.config_hash)
     fail("a shard of another config",
          "its config hash is " + data.attributes.config_hash + ", the dataset's " + s.config_hash);

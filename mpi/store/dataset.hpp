@@ -43,6 +43,7 @@ struct ShardInfo {
   ShardShape shape;  ///< by header and journal
   std::uint64_t draws = 0;
   std::map<std::string, std::uint64_t> outcomes;  ///< draws by outcome
+  std::string file_hash;                          ///< of the file's bytes
 };
 
 struct Dataset : DatasetHeader {

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <utility>
 
 #include "base/durable.hpp"
 #include "base/problem.hpp"
+#include "base/sealed_text.hpp"
 
 namespace swingbank::mpi::store {
 
@@ -21,12 +23,14 @@ std::string journal_text(const JournalLine& l) {
   j["rows"] = l.rows;
   j["hash"] = l.hash;
   j["bytes"] = l.bytes;
+  j["file_hash"] = l.file_hash;
   j["outcomes"] = l.outcomes;
   if (!l.operating_points.empty()) j["operating_points"] = l.operating_points;
-  return j.dump() + "\n";
+  return sealed_text(j.dump());
 }
 
 JournalLine parse_journal_line(const std::string& text) {
+  if (!is_sealed(text)) throw std::runtime_error("its sum is not that of its text");
   const auto j = nlohmann::json::parse(text);
   JournalLine l;
   j.at("shard").get_to(l.shard);
@@ -35,9 +39,9 @@ JournalLine parse_journal_line(const std::string& text) {
   j.at("rows").get_to(l.rows);
   j.at("hash").get_to(l.hash);
   j.at("bytes").get_to(l.bytes);
+  j.at("file_hash").get_to(l.file_hash);
   j.at("outcomes").get_to(l.outcomes);
   if (j.contains("operating_points")) j.at("operating_points").get_to(l.operating_points);
-  if (l.hash.size() != 16) throw std::runtime_error("the hash has not 16 digits");
   return l;
 }
 

@@ -16,7 +16,8 @@ struct JournalLine {
   std::uint64_t shard = 0;
   std::string file;  ///< relative to the dataset folder
   std::uint64_t draws = 0, rows = 0, bytes = 0;
-  std::string hash;  ///< shard hash, 16 hex digits
+  std::string hash;       ///< shard hash, 16 hex digits
+  std::string file_hash;  ///< of the file's bytes (durable.hpp)
   std::map<std::string, std::uint64_t> outcomes;
   /// Of blocks that begin in the shard: "used", and "no_power_flow" and "implausible", which were drawn
   /// again.

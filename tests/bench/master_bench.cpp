@@ -28,6 +28,7 @@ store::JournalLine line_of(std::uint64_t shard) {
           990,
           43'000'000,
           "0123456789abcdef",
+          "0123456789abcdef",
           {{"stable", 980}, {"unstable", 10}, {"refused", 10}}};
 }
 

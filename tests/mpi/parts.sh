@@ -54,9 +54,10 @@ expect 1 "too few points at $work/few.h5 (it has 10" "${make[@]}" --databank "$w
 expect 1 "changed databank at $work/bank.h5" "${make[@]}" --databank "$work/bank.h5" --out "$work/z"
 
 # Damaged and doubled journal lines: refused, and mended by --repair.
-{ echo garbage; head -1 "$work/whole/journal.jsonl"; sed -n '2s/"rows":/&1/p' "$work/whole/journal.jsonl"; } >>"$work/whole/journal.jsonl"
+{ echo garbage; head -1 "$work/whole/journal.jsonl"; sed -n '2s/"rows":/&1/p' "$work/whole/journal.jsonl"; } >"$work/more"
+cat "$work/more" >>"$work/whole/journal.jsonl"
 expect 1 "damaged journal line at $work/whole/journal.jsonl:21" "${make[@]}" --out "$work/whole"
-grep -q " twice at $work/whole/journal.jsonl:23" "$work/output" || { cat "$work/output"; fail "no word of the contradiction"; }
+grep -q "damaged journal line at $work/whole/journal.jsonl:23" "$work/output" || { cat "$work/output"; fail "no word of the changed line"; }
 grep -q ":22" "$work/output" && fail "the same line twice is no damage"
 expect 0 "dataset $whole" "${make[@]}" --repair --out "$work/whole"
 [ "$(lines "$work/whole")" = 20 ] || fail "$(lines "$work/whole") lines after a repair"

@@ -65,7 +65,7 @@ TEST(Leases, WhatWasNotMadeIsGivenAgainInItsOrder) {
 }
 
 std::vector<store::JournalLine> line(std::uint64_t shard) {
-  return {{shard, "shards/a.h5", 1, 1, 1, "0000000000000000", {}}};
+  return {{shard, "shards/a.h5", 1, 1, 1, "0000000000000000", "0000000000000000", {}}};
 }
 
 TEST(JournalKeeper, FlushesOnceForAllThatWait) {

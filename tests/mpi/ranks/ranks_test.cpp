@@ -178,8 +178,16 @@ TEST_F(Ranks, CollectiveReadsOfIrregularSelectionsAreRight) {
 
 TEST(Report, SurvivesTheJourney) {
   Report r;
-  r.finished = {{3, "shards/shard-000003.h5", 5, 4, 99, "0123456789abcdef", {{"stable", 4}, {"refused", 1}}},
-                {7, "shards/shard-000007.h5", 5, 5, 98, "0123456789abcdea", {{"stable", 5}}}};
+  r.finished = {
+      {3,
+       "shards/shard-000003.h5",
+       5,
+       4,
+       99,
+       "0123456789abcdef",
+       "0123456789abcdef",
+       {{"stable", 4}, {"refused", 1}}},
+      {7, "shards/shard-000007.h5", 5, 5, 98, "0123456789abcdea", "0123456789abcdea", {{"stable", 5}}}};
   r.seconds = 0.25;
   r.problems = {{"a", "b", "c", "d \"quoted\""}};
   r.stop = true;

@@ -36,6 +36,7 @@ JournalLine line_of(const std::filesystem::path& folder, std::uint64_t shard, co
           d.rows,
           std::filesystem::file_size(folder / file),
           hex(shard_hash(d)),
+          hash_of_file(folder / file),
           {{"stable", d.rows}}};
 }
 
@@ -89,29 +90,6 @@ TEST(DatasetFolder, TruncatedShardIsNamed) {
               HasSubstr("truncated or changed shard at " + file.string()));
 }
 
-TEST(DatasetFolder, ChangedRowIsFoundByVerify) {
-  const TwoShards folder;
-  const auto file = folder.path / "shards/shard-000000.h5";
-  ShardData d = read_shard(file);
-  d.records[4] += 1.0F;
-  write_shard(file, d);  // same length
-  const Dataset set = open_dataset(folder.path);
-  EXPECT_THAT(sentence_of([&] { verify_dataset(set); }), HasSubstr("changed shard at " + file.string()));
-}
-
-TEST(DatasetFolder, ShardOfAnotherConfigIsFoundByVerify) {
-  const TwoShards folder;
-  const auto file = folder.path / "shards/shard-000000.h5";
-  ShardData d = read_shard(file);
-  d.attributes.config_hash = "ffffffffffffffff";
-  write_shard(file, d);
-  const Dataset set = open_dataset(folder.path);
-  EXPECT_THAT(sentence_of([&] { verify_dataset(set); }), HasSubstr("a shard of another config"));
-  RowBlock b;
-  EXPECT_THAT(sentence_of([&] { read_rows(set.shards[0], 0, 1, b); }),
-              HasSubstr("a shard of another config"));
-}
-
 /// The journal's line of shard 0, changed by `edit`.
 void edit_line(const std::filesystem::path& folder, const std::function<void(JournalLine&)>& edit) {
   std::string text;
@@ -120,6 +98,42 @@ void edit_line(const std::filesystem::path& folder, const std::function<void(Jou
     text += journal_text(l);
   }
   write_text(folder / "journal.jsonl", text);
+}
+
+/// The journal as if shard 0 had been written as it is now, but for its hash.
+void journal_as_it_is(const std::filesystem::path& folder) {
+  edit_line(folder, [&](JournalLine& l) {
+    l.bytes = std::filesystem::file_size(folder / l.file);
+    l.file_hash = hash_of_file(folder / l.file);
+  });
+}
+
+TEST(DatasetFolder, ChangedRowIsFoundByVerify) {
+  const TwoShards folder;
+  const auto file = folder.path / "shards/shard-000000.h5";
+  ShardData d = read_shard(file);
+  d.records[4] += 1.0F;
+  write_shard(file, d);  // same length
+  const Dataset set = open_dataset(folder.path);
+  EXPECT_THAT(sentence_of([&] { verify_dataset(set); }),
+              HasSubstr("changed shard at " + file.string() + " (the hash of its bytes"));
+  journal_as_it_is(folder.path);
+  EXPECT_THAT(sentence_of([&] { verify_dataset(open_dataset(folder.path)); }),
+              HasSubstr("changed shard at " + file.string() + " (its hash"));
+}
+
+TEST(DatasetFolder, ShardOfAnotherConfigIsFoundByVerify) {
+  const TwoShards folder;
+  const auto file = folder.path / "shards/shard-000000.h5";
+  ShardData d = read_shard(file);
+  d.attributes.config_hash = "ffffffffffffffff";
+  write_shard(file, d);
+  journal_as_it_is(folder.path);
+  const Dataset set = open_dataset(folder.path);
+  EXPECT_THAT(sentence_of([&] { verify_dataset(set); }), HasSubstr("a shard of another config"));
+  RowBlock b;
+  EXPECT_THAT(sentence_of([&] { read_rows(set.shards[0], 0, 1, b); }),
+              HasSubstr("a shard of another config"));
 }
 
 TEST(DatasetFolder, JournalThatCountsOtherwiseIsFoundByVerify) {
@@ -159,7 +173,7 @@ TEST(DatasetFolder, ShapesThatAreNotTheHeadersAreRefused) {
     ShardData d = sample_shard(5, 0, 0);
     edit(d);
     write_shard(file, d);
-    edit_line(folder.path, [&](JournalLine& l) { l.bytes = std::filesystem::file_size(file); });
+    journal_as_it_is(folder.path);
     const Dataset set = open_dataset(folder.path);
     RowBlock b;
     EXPECT_THAT(sentence_of([&] { read_rows(set.shards[0], 0, 5, b); }), HasSubstr(what));
@@ -208,6 +222,29 @@ TEST(DatasetFolder, NoDatasetIsNamed) {
   EXPECT_THAT(sentence_of([&] { open_dataset(folder.path); }), HasSubstr("holds no dataset.json"));
 }
 
+/// Flips one bit of every `step`-th byte of every file of a dataset, one after the other; each must be found.
+void flip_every(std::size_t step) {
+  const TwoShards folder;
+  for (const char* name :
+       {"dataset.json", "journal.jsonl", "shards/shard-000000.h5", "shards/shard-000001.h5"}) {
+    const std::string whole = read_text(folder.path / name);
+    for (std::size_t i = 0; i < whole.size(); i += step) {
+      if (whole[i] == '\n' && i + 1 == whole.size())
+        continue;  // a last line without its line feed is left out
+      std::string changed = whole;
+      changed[i] = static_cast<char>(changed[i] ^ (1 << i % 8));
+      std::ofstream(folder.path / name, std::ios::binary) << changed;
+      EXPECT_NE(sentence_of([&] { verify_dataset(open_dataset(folder.path)); }), "nothing thrown")
+          << "byte " << i << " of " << name;
+    }
+    write_text(folder.path / name, whole);
+  }
+  EXPECT_NO_THROW(verify_dataset(open_dataset(folder.path)));
+}
+
+TEST(DatasetFolder, FlippedBytesAreFound) { flip_every(37); }
+TEST(DatasetFolderFull, EveryFlippedByteIsFound) { flip_every(1); }
+
 TEST(JournalFile, HalfWrittenLastLineIsLeftOutAndCutOff) {
   const TwoShards folder;
   const auto file = folder.path / "journal.jsonl";
@@ -215,7 +252,7 @@ TEST(JournalFile, HalfWrittenLastLineIsLeftOutAndCutOff) {
   EXPECT_EQ(read_journals(folder.path).size(), 2u);
   {
     Journal journal(file);
-    const JournalLine third[] = {{2, "shards/c.h5", 5, 5, 1, "0000000000000000", {}}};
+    const JournalLine third[] = {{2, "shards/c.h5", 5, 5, 1, "0000000000000000", "0000000000000000", {}}};
     journal.append(third);
   }
   const auto lines = read_journals(folder.path);

@@ -119,6 +119,7 @@ mpi::store::Dataset with_shard_1_changed(const mpi::store::Dataset& dataset,
   mpi::store::write_shard(file, data);
   auto lines = mpi::store::read_journals(dataset.path);
   lines[1].bytes = std::filesystem::file_size(file);
+  lines[1].file_hash = hash_of_file(file);
   std::string text;
   for (const auto& line : lines) text += mpi::store::journal_text(line);
   write_text(dataset.path / "journal.jsonl", text);

@@ -127,6 +127,7 @@ inline mpi::store::Dataset make_dataset(const std::filesystem::path& folder, con
                                              shard.rows,
                                              std::filesystem::file_size(folder / name),
                                              hex(mpi::store::shard_hash(shard)),
+                                             hash_of_file(folder / name),
                                              {{"stable", shard.rows}}}};
     journal.append(line);
   }
