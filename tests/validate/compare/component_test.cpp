@@ -122,6 +122,7 @@ TEST(CompareComponentTest, RecorderOfAnExcitationSystemWithoutAngleAt208) {
   const record::Record whole = record::parse_record(text, "x.csv", model.record_base, {});
   EXPECT_EQ(whole.angle, record::AngleSource::none);
   EXPECT_THAT(whole.notes, ::testing::Contains(HasSubstr("neither angle nor frequency")));
+  EXPECT_THAT(whole.notes, ::testing::Contains(HasSubstr("--component exciter")));
 }
 
 TEST(CompareComponentTest, WhatIsLeftOutIsSaidAndComesBack) {

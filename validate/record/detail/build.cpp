@@ -225,6 +225,9 @@ void settle_angle(Record& r) {
   r.notes.emplace_back(
       "The record has neither angle nor frequency. The voltage's magnitude alone cannot drive a model, so P and Q "
       "drive it and V is compared; that the frequency before the event was nominal is assumed.");
+  if (!r.Efd.empty())
+    r.notes.emplace_back(
+        "An exciter alone needs no angle, and Efd is recorded: --component exciter tries it.");
 }
 
 /// Channels of `from` at the instants of `all`, by straight lines where they differ.

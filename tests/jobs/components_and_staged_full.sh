@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# The examples of docs/components.md and docs/staged-tests.md, word for word: what compare and calibrate say of them. And
+# what is said of a component's record without its columns.
+source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+export PATH=$SWINGBANK_BIN:$PATH TMPDIR=$work
+
+# example FILE: runs the page's bash lines; what they say stands in `said`
+example() {
+  sed -n '/^```bash$/,/^```$/p' "$SWINGBANK_SOURCE/docs/$1" | grep -v '```' >"$work/example.sh"
+  (cd "$work" && bash example.sh >said 2>said.errors)
+}
+# says PATTERN TIMES: so many lines of what was said match
+says() {
+  [[ $(grep -cE "$1" "$work/said") == "$2" ]] ||
+    fail "not $2 × '$1': $(tail -n 40 "$work/said") $(cat "$work/said.errors")"
+}
+
+example components.md || fail "components.md: $(cat "$work/said.errors")"
+says '^Statistically complete: no\. Not adequate' 1
+says '^Statistically complete: yes\. The parameters were poor.*KF 0\.05 -> 0\.03 pu' 1
+says '^Statistically complete: yes\. Adequate' 1
+
+example staged-tests.md || fail "staged-tests.md: $(cat "$work/said.errors")"
+says '^Statistically complete: no\. Not adequate' 1
+says '^Statistically complete: yes\. The parameters were poor' 1
+says '^Statistically complete: yes\. Adequate' 1
+
+cd "$work"
+swingbank plant --raw "$SWINGBANK_SOURCE/configs/networks/ieee14_genrou.raw" --dyr "$SWINGBANK_SOURCE/configs/networks/ieee14_genrou.dyr" \
+  --bus 2 --out unit.toml >/dev/null
+{
+  echo
+  swingbank effects IEEET1 --toml
+  echo
+  swingbank effects STAB1 --toml
+} >>unit.toml
+{
+  echo t_s,P_MW
+  for k in $(seq 0 60); do echo "0.0$k,1"; done
+} >few.csv
+refuses "a record without V" "no column V_pu" swingbank compare --model unit.toml --record few.csv --component exciter
+refuses "a record without Efd" "no column Efd_pu" swingbank compare --model unit.toml --record few.csv --component exciter
+refuses "a record without speed" "omega_pu, speed_pu or f_pu" swingbank compare --model unit.toml --record few.csv --component exciter
+printf '\n[[event]]\nkind = "step"\ntime = 1\n' >>unit.toml
+refuses "an unknown event" "load_rejection" swingbank compare --model unit.toml --record few.csv
