@@ -257,8 +257,8 @@ class Driven {
     equations_.voltages(c_.data(), er, ei, s);
     if (!equations_.nonlinear()) return;
     const T* z = equations_.machine_impedance(c_.data());
-    constexpr int kSteps = 60;
-    for (int step = 0; step < kSteps; ++step) {
+    constexpr int kMostRounds = 60;
+    for (int step = 0; step < kMostRounds; ++step) {
       equations_.current(c_.data(), x, scratch_.data(), s);
       s.Vr = s.Vr + z[0] * s.Ir - z[1] * s.Ii;
       s.Vi = s.Vi + z[0] * s.Ii + z[1] * s.Ir;
