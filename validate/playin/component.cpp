@@ -19,7 +19,6 @@ struct RecordedMachine {
   static constexpr std::string_view name = "RECORDED", title = "a machine that does what was recorded",
                                     source = "the record", description = "";
   static constexpr Slot slot = Slot::machine;
-  static constexpr std::array<sim::Parameter, 0> parameters{};
   static constexpr sim::State states[] = {{"delta", "rad", "stands still"}, {"speed", "pu", "stands still"}};
   static constexpr int coefficients = recorded::kCoefficients, scratch = recorded::kMoves;
 
