@@ -2,7 +2,7 @@
 # Installs what is missing, builds and runs the tests.
 #   bash tests/run.sh [--fast | --night] [--without-psse] [--sanitize] [--ci]
 #     --fast          the fast tier only (under 2 minutes once built)
-#     --night         only what takes too long for every change, and whether all rooms agree on each type: half an hour
+#     --night         only what takes too long for every change, and whether all rooms agree on each type: more than an hour
 #                     (jobs/nightly.sh runs it)
 #     --without-psse  leaves out the tests that read records of others, PSS/E's own among them, which are not part of this repository
 #     --sanitize      also the fast tier's unit tests under the address and undefined-behaviour sanitizers (their build

@@ -1,0 +1,155 @@
+// How often the 95 % intervals of calibrate hold the truth where the voltage is as noisy as instruments of a
+// class make it (docs/uncertainty.md): filtered phasors with noise on magnitude and angle of V and I.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <ostream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "base/constants.hpp"
+#include "base/in_parallel.hpp"
+#include "tests/validate/playin/instrument_example.hpp"
+#include "validate/calibrate/calibrate.hpp"
+
+namespace swingbank::validate::calibrate {
+namespace {
+
+constexpr double kFineRate = 480;
+constexpr int kCopies = 34;  // of 18 parameters each: 612 intervals
+
+/// What the records of a cell are made with.
+struct Cell {
+  double magnitude;  ///< noise of |V| and |I| [% of themselves]
+  double angle;      ///< noise of either angle [degrees]
+  int rate;          ///< records per second
+};
+
+/// How GoogleTest names a cell.
+void PrintTo(const Cell& cell, std::ostream* out) {
+  *out << fmt::format("{} % {} degrees {}/s", cell.magnitude, cell.angle, cell.rate);
+}
+
+/// Three faults at generator 2 of IEEE 14, sampled finely, as they are behind a filter of class P.
+struct Filtered {
+  plant::PlantModel truth;
+  std::vector<record::Record> fine;
+  Filtered() {
+    const auto with_exciter = [](sim::grid::Grid& grid) {
+      std::ranges::find(grid.plants, "2", &sim::plant::Plant::name)
+          ->controls.push_back({sim::library::compiled().find("SEXS"), {0.1, 10.0, 100.0, 0.05, -4.0, 5.0}});
+    };
+    const std::vector<sim::plant::Block> filter = {test::instrument("PMUFILTER")};
+    for (const auto& [bus, seconds] : {std::pair{5, 0.1043}, {4, 0.0871}, {9, 0.1527}}) {
+      const auto run = test::simulate("ieee14_genrou", sim::Conventions::psse(), bus, 2.0071,
+                                      2.0071 + seconds, kFineRate, {}, with_exciter);
+      const auto plant = std::ranges::find(run.grid.plants, "2", &sim::plant::Plant::name);
+      truth.plant = *plant;
+      record::Record plain = test::record_of(run, static_cast<int>(plant - run.grid.plants.begin()), 1);
+      plain.name = fmt::format("fault{}.csv", bus);
+      fine.push_back(test::seen_through(filter, plain, 1));
+    }
+    truth.name = "behind a filter";
+    truth.conventions = sim::Conventions::psse();
+    truth.record_base.mva = truth.plant.mva;
+    truth.plant.measurements = filter;
+  }
+  /// What the instruments of a cell make of the events.
+  [[nodiscard]] std::vector<record::Record> recorded(const Cell& cell, unsigned seed) const {
+    std::mt19937_64 generator(seed);
+    std::normal_distribution<double> normal;
+    const double relative = cell.magnitude / 100, turned = cell.angle * constants::turn / 360;
+    const auto noisy = [&](Complex phasor) {
+      const double size = 1 + relative * normal(generator);
+      return phasor * std::polar(size, turned * normal(generator));
+    };
+    std::vector<record::Record> all;
+    for (const record::Record& r : fine) {
+      record::Record seen;
+      seen.name = r.name;
+      seen.base = r.base;
+      for (std::size_t k = 0; k < r.t.size(); k += static_cast<std::size_t>(kFineRate / cell.rate)) {
+        const Complex exact = std::polar(r.V[k], r.theta[k]);
+        const Complex current = noisy(std::conj(Complex(r.P[k], r.Q[k]) / exact));
+        const Complex V = noisy(exact), S = V * std::conj(current);
+        seen.t.push_back(r.t[k]);
+        seen.V.push_back(std::abs(V));
+        seen.theta.push_back(r.theta[k] + std::arg(V / exact));
+        seen.P.push_back(S.real());
+        seen.Q.push_back(S.imag());
+      }
+      all.push_back(std::move(seen));
+    }
+    return all;
+  }
+};
+
+/// Every free parameter 10 % off, up and down in turn; limits of the exciter as they are.
+plant::PlantModel off_by_a_tenth(const plant::PlantModel& truth) {
+  plant::PlantModel model = truth;
+  int sign = 1;
+  for (const auto& f : fit::free_parameters(truth.plant, 0.2)) {
+    const auto name = sim::plant::parameter_record(truth.plant, f.id).name;
+    if (name == "EMIN" || name == "EMAX") continue;
+    sim::plant::parameter_value(model.plant, f.id) *= 1 + 0.1 * (sign = -sign);
+  }
+  return model;
+}
+
+class CoverageNight : public ::testing::TestWithParam<Cell> {};
+
+TEST_P(CoverageNight, TheIntervalsHoldTheTruth) {
+  static const Filtered events;
+  const plant::PlantModel model = off_by_a_tenth(events.truth);
+  CalibrateOptions options;
+  options.draws = options.starts = 0;
+  options.fixed = {"SEXS.EMIN", "SEXS.EMAX"};
+  std::vector<Calibration> all(kCopies);
+  in_parallel(
+      all.size(),
+      [&](std::size_t k) {
+        all[k] = calibrate(model, events.recorded(GetParam(), 100 + static_cast<unsigned>(k)), options);
+      },
+      [](int) {});
+  int tries = 0, covered = 0, adequate = 0;
+  std::map<std::string, int> by_parameter;
+  for (const Calibration& c : all) {
+    adequate += c.adequacy != Adequacy::structure_poor;
+    for (const CalibratedParameter& p : c.parameters) {
+      const double value = sim::plant::parameter_value(events.truth.plant, p.fit.where.id);
+      const bool inside = p.fit.low <= value && value <= p.fit.high;
+      ++tries;
+      covered += inside;
+      by_parameter[std::string(p.fit.name)] += inside;
+    }
+  }
+  const Cell& cell = GetParam();
+  std::string text;
+  for (const auto& [name, count] : by_parameter) text += fmt::format(" {} {}", name, count);
+  fmt::print("| {} | {} | {} | {} of {} | {:.1f} % | {} of {} |{}\n", cell.magnitude, cell.angle, cell.rate,
+             covered, tries, 100.0 * covered / tries, adequate, kCopies, text);
+  for (const Calibration& c : all)
+    if (c.adequacy == Adequacy::structure_poor)
+      for (const auto& e : c.events)
+        fmt::print("  {}: {:.3f} per value, limit {:.3f}\n", e.record, e.after, e.limit);
+  EXPECT_GE(tries, 500);
+  EXPECT_GE(static_cast<double>(covered) / tries, 0.90);
+  EXPECT_GE(adequate, kCopies - 8);  // one start, no draws: some fits end beside the optimum
+}
+
+INSTANTIATE_TEST_SUITE_P(Calibrate, CoverageNight,
+                         ::testing::Values(Cell{0.02, 0.02, 30}, Cell{0.02, 0.1, 30}, Cell{0.1, 0.02, 30},
+                                           Cell{0.1, 0.1, 30}, Cell{0.1, 0.1, 60}),
+                         [](const auto& which) {
+                           const Cell& c = which.param;
+                           return fmt::format("V{}Angle{}At{}",
+                                              static_cast<int>(std::lround(1000 * c.magnitude)),
+                                              static_cast<int>(std::lround(1000 * c.angle)), c.rate);
+                         });
+
+}  // namespace
+}  // namespace swingbank::validate::calibrate
