@@ -8,7 +8,7 @@ namespace swingbank {
 
 namespace {
 
-constexpr std::size_t kLongest = 1000;  ///< bytes of a text that is shown whole
+constexpr std::size_t kLongestShown = 1000;  ///< bytes of a text that is shown whole
 
 unsigned at(std::string_view text, std::size_t i) { return static_cast<unsigned char>(text[i]); }
 
@@ -37,7 +37,7 @@ bool is_control(std::string_view character) {
 std::string shown(std::string_view text) {
   std::string out;
   std::size_t i = 0;
-  while (i < std::min(text.size(), kLongest)) {
+  while (i < std::min(text.size(), kLongestShown)) {
     const std::size_t n = character(text, i);
     const std::string_view one = text.substr(i, std::max<std::size_t>(n, 1));
     if (n > 0 && (one == "\n" || !is_control(one)))

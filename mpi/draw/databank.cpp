@@ -71,7 +71,7 @@ class Forecast {
   /// told.
   [[nodiscard]] std::optional<double> draws(double reached, double admissible) const {
     const double too_close = admissible - reached;
-    if (too_close < kEnough) return {};
+    if (too_close < kEnoughTooClose) return {};
     // admissible = n0 (exp(reached / n0) - 1)
     double low = 0.01 * reached, high = 1e3 * reached;
     for (int i = 0; i < 60; ++i) {
@@ -85,7 +85,7 @@ class Forecast {
   [[nodiscard]] bool hopeless(double needed) const { return needed > patience_; }
 
  private:
-  static constexpr double kEnough = 100.0, kTrust = 1.25;
+  static constexpr double kEnoughTooClose = 100.0, kTrust = 1.25;
   double points_, patience_;
 };
 

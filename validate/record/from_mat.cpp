@@ -23,7 +23,7 @@ namespace {
 constexpr const char* kExport =
     "save vectors: save('event.mat', 't_s', 'V_kV', 'f_Hz', 'P_MW', 'Q_Mvar'), or say which is what: "
     "--columns \"t=NAME [s],V=NAME [kV],…\"";
-constexpr int kDeepest = 4;  ///< structs within structs
+constexpr int kDeepestStruct = 4;  ///< structs within structs
 
 struct MatColumn {
   std::string name;
@@ -194,7 +194,7 @@ class MatReader {
   /// One struct: its fields, or a signal with its own times ("Time" and "Data", as a timeseries is saved by
   /// people; "time" and "signals", as Simulink logs).
   void structure(matvar_t& v, const std::string& name, int depth) {
-    if (elements(v) == 0 || v.data == nullptr || depth >= kDeepest)
+    if (elements(v) == 0 || v.data == nullptr || depth >= kDeepestStruct)
       return seen_.push_back(name + " (struct)");
     const unsigned fields = Mat_VarGetNumberOfFields(&v);
     const char* const* names = Mat_VarGetStructFieldnames(&v);

@@ -225,6 +225,7 @@ TEST(DatasetFolder, NoDatasetIsNamed) {
 /// Flips one bit of every `step`-th byte of every file of a dataset, one after the other; each must be found.
 void flip_every(std::size_t step) {
   const TwoShards folder;
+  int flipped = 0;
   for (const char* name :
        {"dataset.json", "journal.jsonl", "shards/shard-000000.h5", "shards/shard-000001.h5"}) {
     const std::string whole = read_text(folder.path / name);
@@ -236,10 +237,12 @@ void flip_every(std::size_t step) {
       std::ofstream(folder.path / name, std::ios::binary) << changed;
       EXPECT_NE(sentence_of([&] { verify_dataset(open_dataset(folder.path)); }), "nothing thrown")
           << "byte " << i << " of " << name;
+      ++flipped;
     }
     write_text(folder.path / name, whole);
   }
   EXPECT_NO_THROW(verify_dataset(open_dataset(folder.path)));
+  ::testing::Test::RecordProperty("flipped", flipped);
 }
 
 TEST(DatasetFolder, FlippedBytesAreFound) { flip_every(37); }
