@@ -32,8 +32,8 @@ store::JournalLine Worker::make(std::uint64_t shard) {
   std::array<std::uint64_t, store::kRefused + 1> mine{}, all{};
   for (const auto outcome : part.draw_outcome) ++mine[outcome];
   MPI_Allreduce(mine.data(), all.data(), static_cast<int>(all.size()), MPI_UINT64_T, MPI_SUM, group);
-  store::JournalLine line{
-      shard, shard_file_name(shard), receipt.draws, receipt.rows, receipt.bytes, hex(receipt.hash), receipt.file_hash, {}};
+  store::JournalLine line{shard,         shard_file_name(shard), receipt.draws,     receipt.rows,
+                          receipt.bytes, hex(receipt.hash),      receipt.file_hash, {}};
   line.operating_points = count_operating_points(part);
   for (std::uint8_t i = 0; i <= store::kRefused; ++i)
     if (all[i] > 0) line.outcomes[std::string(store::draw_outcome_name(i))] = all[i];
