@@ -3,18 +3,23 @@
 #   bash slurm/submit.sh EXPERIMENT PRESET [--out FOLDER] [--site FILE]
 #     EXPERIMENT  a file of configs/experiments       PRESET  quick, nightly or thesis
 #     --out       results (default out/<experiment>-<preset>); on a file system that every node sees
-#     --site      partition, ranks, times (default slurm/site.conf)
-# Prints one line per job: "<stage> <job id>". Submitting again goes on with what is there.
+#     --site      partition, ranks, memory, times (default slurm/site.conf); a copy of it as it is now serves all jobs
+#     --dry-run   checks everything and prints the sbatch commands
+#     --status    what Slurm says of the jobs of this experiment
+#     --cancel    cancels those that wait or run; what is finished stays
+# Prints one line per job: "<stage> <job id>", kept in <out>/log/jobs. Submitting again goes on with what is there; while
+# jobs of an earlier submission wait or run, it is refused.
 set -euo pipefail
 
 SWINGBANK_SOURCE=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 SWINGBANK_SITE=$SWINGBANK_SOURCE/slurm/site.conf
-SWINGBANK_OUT='' positional=()
+SWINGBANK_OUT='' positional=() action=submit
 while (($#)); do
   case $1 in
     --out) SWINGBANK_OUT=$(realpath -m "${2:?--out needs a folder}"); shift 2 ;;
     --site) SWINGBANK_SITE=$(realpath -m "${2:?--site needs a file}"); shift 2 ;;
-    -h | --help) sed -n '2,7p' "$0"; exit 0 ;;
+    --dry-run | --status | --cancel) action=${1#--}; shift ;;
+    -h | --help) sed -n '2,11p' "$0"; exit 0 ;;
     -*) echo "unknown option at '$1' (slurm/submit.sh does not have it): run slurm/submit.sh --help" >&2; exit 1 ;;
     *) positional+=("$1"); shift ;;
   esac
@@ -32,11 +37,61 @@ SWINGBANK_OUT=${SWINGBANK_OUT:-$SWINGBANK_SOURCE/out/$(basename "$SWINGBANK_EXPE
 export SWINGBANK_SOURCE SWINGBANK_SITE SWINGBANK_OUT SWINGBANK_EXPERIMENT SWINGBANK_PRESET
 # shellcheck source=slurm/site.conf
 source "$SWINGBANK_SITE"
-lacks() { echo "no $1 at $SWINGBANK_SITE (a site file sets everything): start from a copy of slurm/site.conf" >&2; exit 1; }
-for name in generate_nodes generate_ranks generate_time fold_cpus fold_time folds_at_once tables_time warn_before; do
-  [[ -n ${!name:-} ]] || lacks "$name"
-done
-mkdir -p "$SWINGBANK_OUT/log"
+log=$SWINGBANK_OUT/log
+faults=0
+fault() { echo "$1 at $SWINGBANK_SITE ($2): $3" >&2; faults=1; }
+# whole NAME LEAST: a whole number of the site file
+whole() {
+  local value=${!1:-}
+  if [[ -z $value ]]; then
+    fault "no $1" "a site file sets everything" "start from a copy of slurm/site.conf"
+  elif [[ ! $value =~ ^[0-9]+$ ]] || ((10#$value < $2)); then
+    fault "$1='$value'" "it is no whole number from $2 on" "write one"
+  fi
+}
+check_site() {
+  local name
+  for name in generate_nodes generate_ranks generate_time fold_cpus fold_time folds_at_once tables_time warn_before; do
+    whole "$name" 1
+  done
+  whole max_restarts 0
+  for name in databank_mem generate_mem_per_rank fold_mem tables_mem; do
+    [[ ${!name:-} =~ ^[0-9]+[KMGT]?$ ]] || fault "$name='${!name:-}'" "it is no size as Slurm writes it" "write for example 4G"
+  done
+  [[ -n ${launcher:-} ]] || fault "no launcher" "nothing starts the ranks" "write mpirun or srun --mpi=pmix"
+  ((faults)) && exit 1
+  for name in generate_time fold_time tables_time; do
+    ((60 * ${!name} > warn_before)) ||
+      fault "$name=${!name} min" "the warning comes $warn_before s before its end" "give more time, or a shorter warn_before"
+  done
+  ((!faults)) || exit 1
+}
+
+# Ids of the earlier submission, with commas; nothing where there was none.
+earlier_jobs() { if [[ -s $log/jobs ]]; then cut -d' ' -f2 "$log/jobs" | paste -sd,; fi; }
+# Those of them that wait or run.
+unfinished_jobs() {
+  local ids
+  ids=$(earlier_jobs)
+  [[ -z $ids ]] || squeue --noheader --format=%i --jobs="$ids" 2>/dev/null || true
+}
+
+case $action in
+  status)
+    ids=$(earlier_jobs)
+    if [[ -z $ids ]]; then echo "nothing was submitted for $SWINGBANK_OUT"; exit 0; fi
+    cat "$log/jobs"
+    sacct --jobs="$ids" --format=JobID,JobName,State,Elapsed,ExitCode 2>/dev/null || squeue --jobs="$ids"
+    exit 0
+    ;;
+  cancel)
+    mapfile -t running < <(unfinished_jobs)
+    ((${#running[@]})) && scancel "${running[@]}"
+    echo "cancelled: ${running[*]:-none waits or runs}"
+    exit 0
+    ;;
+esac
+check_site
 
 runner=$SWINGBANK_SOURCE/jobs/run_experiment.sh
 bash "$runner" --stage check # bad settings are told now, not by a job in the night
@@ -47,25 +102,50 @@ common=(--parsable --export=ALL --chdir="$SWINGBANK_OUT" --kill-on-invalid-dep=y
 [[ -z $account ]] || common+=(--account="$account")
 warning=(--signal="B:USR1@$warn_before")
 
-# submit STAGE JOB-BEFORE OPTION...
+if [[ -n $(unfinished_jobs) ]]; then
+  echo "jobs of an earlier submission at $log/jobs (they wait or run: $(unfinished_jobs | paste -sd' ')): wait for them, or" \
+    "run slurm/submit.sh with the same words and --cancel" >&2
+  exit 1
+fi
+if [[ $action == submit ]]; then
+  mkdir -p "$log"
+  cp "$SWINGBANK_SITE" "$log/site.conf" # an edit of the original changes no job that waits
+  SWINGBANK_SITE=$log/site.conf
+  : >"$log/jobs"
+fi
+
+# submit STAGE DEPENDENCY OPTION...: the job's id in $id
 submit() {
-  local stage=$1 before=$2 id
+  local stage=$1 before=$2
   shift 2
   local options=("${common[@]}" "$@")
-  [[ -z $before ]] || options+=(--dependency="afterok:$before")
-  id=$(sbatch "${options[@]}" "$SWINGBANK_SOURCE/slurm/$stage.sbatch")
+  [[ -z $before ]] || options+=(--dependency="$before")
+  if [[ $action == dry-run ]]; then
+    id="<$stage>"
+    printf 'sbatch'
+    printf ' %q' "${options[@]}" "$SWINGBANK_SOURCE/slurm/$stage.sbatch"
+    echo
+    return
+  fi
+  if ! id=$(sbatch "${options[@]}" "$SWINGBANK_SOURCE/slurm/$stage.sbatch"); then
+    mapfile -t queued < <(cut -d' ' -f2 "$log/jobs")
+    ((${#queued[@]} == 0)) || scancel "${queued[@]}"
+    echo "job refused at stage $stage (sbatch says why above): mend the site file and submit again;" \
+      "${#queued[@]} jobs before it were cancelled" >&2
+    exit 1
+  fi
   id=${id%%;*} # "id;cluster" on federations
-  echo "$stage $id" >&2
-  echo "$id"
+  echo "$stage $id" | tee -a "$log/jobs"
 }
 
-log=$SWINGBANK_OUT/log
 # shellcheck disable=SC2154 # these come from the site file, and were looked for above
 {
-  databank=$(submit databank '' --output="$log/databank.log" --time="$tables_time" "${warning[@]}")
-  generate=$(submit generate "$databank" --output="$log/generate.log" --time="$generate_time" "${warning[@]}" \
-    --nodes="$generate_nodes" --ntasks="$generate_ranks")
-  fold=$(submit fold "$generate" --output="$log/fold-%a.log" --time="$fold_time" "${warning[@]}" \
-    --cpus-per-task="$fold_cpus" --array="0-$((tasks - 1))%$folds_at_once")
-  submit tables "$fold" --output="$log/tables.log" --time="$tables_time" >/dev/null
-} 2>&1
+  submit databank '' --output="$log/databank.log" --time="$tables_time" --mem="$databank_mem" "${warning[@]}"
+  submit generate "afterok:$id" --output="$log/generate.log" --time="$generate_time" "${warning[@]}" \
+    --nodes="$generate_nodes" --ntasks="$generate_ranks" --mem-per-cpu="$generate_mem_per_rank"
+  generated=afterok:$id
+  submit fold "$generated" --output="$log/fold-%a.log" --time="$fold_time" "${warning[@]}" \
+    --cpus-per-task="$fold_cpus" --mem="$fold_mem" --array="0-$((tasks - 1))%$folds_at_once"
+  # A fold that failed does not take the tables of the others with it.
+  submit tables "$generated,afterany:$id" --output="$log/tables.log" --time="$tables_time" --mem="$tables_mem"
+}

@@ -73,8 +73,10 @@ SlurmdPidFile=$cluster_root/run/%n.pid
 SlurmctldLogFile=$cluster_root/log/slurmctld.log
 SlurmdLogFile=$cluster_root/log/%n.log
 CONF
+    local megabytes
+    megabytes=$(awk '/^MemTotal:/ {print int($2 / 1024)}' /proc/meminfo)
     for ((n = 1; n <= cluster_nodes; n++)); do
-      echo "NodeName=node$n NodeHostname=node$n NodeAddr=127.0.0.1 Port=$((first_port + n)) CPUs=$cluster_cpus State=UNKNOWN"
+      echo "NodeName=node$n NodeHostname=node$n NodeAddr=127.0.0.1 Port=$((first_port + n)) CPUs=$cluster_cpus RealMemory=$((megabytes * 9 / 10)) State=UNKNOWN"
     done
     echo "PartitionName=main Nodes=ALL Default=YES State=UP MaxTime=60 DefaultTime=10"
   } >"$cluster_root/etc/slurm.conf"

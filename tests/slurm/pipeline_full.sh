@@ -30,7 +30,7 @@ tiny_experiment "$work"
 
 site() { # site FILE KEY=VALUE...
   cp "$SWINGBANK_SOURCE/slurm/site.conf" "$1"
-  printf '%s\n' generate_nodes=2 generate_ranks=4 fold_cpus=1 generate_time=1 fold_time=1 tables_time=2 warn_before=58 "${@:2}" >>"$1"
+  printf '%s\n' generate_nodes=2 generate_ranks=4 fold_cpus=1 generate_time=1 fold_time=1 tables_time=2 warn_before=58 fold_mem=4G "${@:2}" >>"$1"
 }
 job_state() { scontrol -o show job "$1" | grep -o 'JobState=[A-Z_]*' | sort -u | cut -d= -f2 | paste -sd,; }
 # signal_generate OUT JOB: as Slurm does before the time limit
