@@ -85,3 +85,10 @@ cluster_retry 90 all_ended || fail "jobs still there after 90 s: $(squeue)"
 [[ $(job_state "$(job_of tables)") == CANCELLED ]] || fail "a job behind a failed one: $(job_state "$(job_of tables)")"
 grep -qE 'given up at .* \(.*\): ' "$work/once/log/generate.log" || fail "no sentence about the retry limit"
 echo "retry limit kept, dependants cancelled (after $SECONDS s)"
+
+# A job array without a launcher: each task makes a part.
+array="$SWINGBANK_BIN/swingbank generate $work/tiny_data.toml --draws $TINY_DRAWS --part \$SLURM_ARRAY_TASK_ID/3 --out $work/array --progress none"
+sbatch --parsable --array=1-3 --time=2 --output="$work/array-%a.log" --wrap "$array" >/dev/null
+cluster_retry 120 all_ended || fail "array tasks still there after 120 s: $(squeue)"
+[[ $(dataset_hash "$work/array") == "$(dataset_hash "$work/unbroken/data")" ]] || fail "the array's dataset differs: $(cat "$work"/array-*.log)"
+echo "a job array makes the same dataset (after $SECONDS s)"
