@@ -18,10 +18,10 @@ done
 
 sed -i '/^\[record\]/,$ s/^channels = .*/channels = ["P", "Q", "speed", "V", "frequency"]\nfrequency_washout = 0.1\nfrequency_filter = 0.02/' "$work/tiny_data.toml"
 "$swingbank" generate "$work/tiny_data.toml" --progress none --out "$work/data" >"$work/log" 2>&1 || fail "$(cat "$work/log")"
-cp -r "$work/data" "$work/older"
-sed -i '/^ "frequency": 60.0,$/d' "$work/older/dataset.json"
-if judge "$work/older"; then fail "a dataset that says no frequency was solved"; fi
-grep -q 'no frequency and no held parameters at' "$work/log" || fail "$(cat "$work/log")"
+cp -r "$work/data" "$work/edited"
+sed -i '/^ "frequency": 60.0,$/d' "$work/edited/dataset.json"
+if judge "$work/edited"; then fail "a header that was edited was believed"; fi
+grep -q 'damaged dataset header at' "$work/log" || fail "$(cat "$work/log")"
 judge "$work/data" || fail "$(cat "$work/log")"
 /usr/bin/python3 - "$work/out/V-closed-form-quick-seed1-gen30.json" <<'PYTHON'
 import json, sys
