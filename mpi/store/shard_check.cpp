@@ -13,6 +13,8 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.hpp"
+
 namespace swingbank::mpi::store {
 
 namespace {
@@ -25,9 +27,7 @@ struct Reader {
 
 /// A line per shard: empty where it is whole.
 std::string line_of(const JournalLine& shard, const std::optional<Problem>& p) {
-  if (!p) return "\n";
-  const nlohmann::json j = {shard.shard, p->what, p->where, p->why, p->remedy};
-  return j.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return p ? bad_shard_text({shard.shard, *p}) : "\n";
 }
 
 void write_all(int fd, const std::string& text) {
@@ -55,10 +55,7 @@ void write_all(int fd, const std::string& text) {
 void take_lines(Reader& r, std::vector<BadShard>& bad, const std::function<void()>& done) {
   std::size_t at = 0;
   for (std::size_t end; (end = r.text.find('\n', at)) != std::string::npos; at = end + 1) {
-    if (end > at) {
-      const auto j = nlohmann::json::parse(r.text.substr(at, end - at));
-      bad.push_back({j[0], {j[1], j[2], j[3], j[4]}});
-    }
+    if (end > at) bad.push_back(parse_bad_shard(r.text.substr(at, end - at)));
     done();
   }
   r.text.erase(0, at);
@@ -115,6 +112,16 @@ void listen(std::vector<Reader>& readers, std::vector<BadShard>& bad, const std:
 }
 
 }  // namespace
+
+std::string bad_shard_text(const BadShard& bad) {
+  const auto& [what, where, why, remedy] = bad.problem;
+  return json_text({bad.shard, what, where, why, remedy}) + "\n";
+}
+
+BadShard parse_bad_shard(const std::string& text) {
+  const auto j = nlohmann::json::parse(text);
+  return {j[0], {j[1], j[2], j[3], j[4]}};
+}
 
 std::vector<BadShard> bad_shards(const std::filesystem::path& folder, const DatasetHeader& header,
                                  const std::vector<JournalLine>& lines, int processes,

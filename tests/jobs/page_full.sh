@@ -1,24 +1,9 @@
 #!/usr/bin/env bash
 # The page of a verdict: what stands on it, names that would break it, and printed as PDF; what is said meanwhile.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+# shellcheck disable=SC2154 # what verdict.bash sets
+source "$(dirname "${BASH_SOURCE[0]}")/verdict.bash"
 
-bent=$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml
-one=$SWINGBANK_SOURCE/configs/records/record-example/avr_ev1.csv
-export OMP_NUM_THREADS=2
-# the same plant with the exciter that it lacks, its values near enough for a grid code and not for the noise
-sexs() { cat "$bent"; printf '[exciter]\neffect = "SEXS"\nTAoverTB = 0.1\nTB = 10\nK = %s\nTE = 0.05\nEMIN = -4\nEMAX = 5\n' "$1"; }
-sexs 100 >"$work/right.toml"
-
-# gives CODE SENTENCE COMMAND...: that exit code, and a line with that sentence
-gives() {
-  local expected=$1 said=$2 code=0
-  shift 2
-  "$@" --out "$work/out" >"$work/text" 2>"$work/notes" || code=$?
-  ((code == expected)) || fail "exit code $code, expected $expected: $* said: $(tail -n 3 "$work/text" "$work/notes")"
-  grep -q -- "$said" "$work/text" || fail "'$said' is not in: $(cat "$work/text")"
-}
-calibrate() { "$swingbank" calibrate --model "$work/right.toml" --records "$one" --power-only --draws 0 --starts 0 "$@"; }
-compare() { "$swingbank" compare --records "$one" "$@"; }
 # every command writes a page; a name that is no UTF-8, or a tag, costs nothing
 sed 's|^name = .*|name = "</script><b>"|' "$bent" >"$work/tag.toml"
 cp "$one" "$work/"$'ev\xff<i>.csv'

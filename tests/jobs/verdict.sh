@@ -1,28 +1,13 @@
 #!/usr/bin/env bash
 # The two verdicts on a model, fit for purpose and statistically complete: each exit code, and limits that are wrong.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+# shellcheck disable=SC2154 # what verdict.bash sets
+source "$(dirname "${BASH_SOURCE[0]}")/verdict.bash"
 
-bent=$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml
-one=$SWINGBANK_SOURCE/configs/records/record-example/avr_ev1.csv
-export OMP_NUM_THREADS=2
-# the same plant with the exciter that it lacks, its values near enough for a grid code and not for the noise
-sexs() { cat "$bent"; printf '[exciter]\neffect = "SEXS"\nTAoverTB = 0.1\nTB = 10\nK = %s\nTE = 0.05\nEMIN = -4\nEMAX = 5\n' "$1"; }
-sexs 100 >"$work/right.toml"
 sexs 85 >"$work/near.toml"
 limits() { printf 'name = "%s"\nsource = "this test"\npreset = "dtr-test"\n' "$1"; }
 { limits tight && printf '[P.pre_fault]\nmxe = 0.01\n'; } >"$work/tight.toml"
 { limits wide && printf '[Q.post_fault]\nmxe = 50\nme = 40\nmae = 40\n'; } >"$work/wide.toml"
-
-# gives CODE SENTENCE COMMAND...: that exit code, and a line with that sentence
-gives() {
-  local expected=$1 said=$2 code=0
-  shift 2
-  "$@" --out "$work/out" >"$work/text" 2>"$work/notes" || code=$?
-  ((code == expected)) || fail "exit code $code, expected $expected: $* said: $(tail -n 3 "$work/text" "$work/notes")"
-  grep -q -- "$said" "$work/text" || fail "'$said' is not in: $(cat "$work/text")"
-}
-calibrate() { "$swingbank" calibrate --model "$work/right.toml" --records "$one" --power-only --draws 0 --starts 0 "$@"; }
-compare() { "$swingbank" compare --records "$one" "$@"; }
 gives 0 '^calibrated: Fit for purpose: yes. All 18 errors .* limits dtr-test' calibrate
 grep -q '^Statistically complete: yes' "$work/text" || fail "the other verdict is missing: $(cat "$work/text")"
 gives 5 '^calibrated: Fit for purpose: no. .* exceed the limits tight. .* MXE of P in the pre-fault window' calibrate --accept "$work/tight.toml"

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # A dataset made in parts, without a launcher, at the same time, with one part killed and made again, is the dataset.
 source "$(dirname "$0")/common.bash"
-make=("$generate" "$configs/ieee14_genrou_bus3.toml" --draws 400 --draws-per-shard 20 --progress none)
+make=("$generate" "$configs/ieee14_genrou_bus3.toml" --draws 1200 --draws-per-shard 20 --progress none)
 "${make[@]}" --out "$work/whole" >/dev/null 2>&1
 whole=$(hash_of "$work/whole")
-"$SWINGBANK_BIN/swingbank-databank" "$configs/ieee14_genrou_bus3.toml" --points 400 --out "$work/bank.h5" >/dev/null
+"$SWINGBANK_BIN/swingbank-databank" "$configs/ieee14_genrou_bus3.toml" --points 1200 --out "$work/bank.h5" >/dev/null
 
 parts=()
 for k in 1 2 3; do
@@ -15,7 +15,7 @@ for _ in $(seq 3000); do
   if [ -s "$work/parts/journal-2-of-3.jsonl" ]; then break; fi
   sleep 0.01
 done
-kill -9 "${parts[1]}"
+kill -9 "${parts[1]}" || fail "part 2 ended before it was killed"
 for k in 0 2; do wait "${parts[k]}" || { cat "$work/part$((k + 1))"; fail "part $((k + 1))"; }; done
 wait "${parts[1]}" 2>/dev/null || true
 code=0
@@ -56,11 +56,11 @@ expect 1 "changed databank at $work/bank.h5" "${make[@]}" --databank "$work/bank
 # Damaged and doubled journal lines: refused, and mended by --repair.
 { echo garbage; head -1 "$work/whole/journal.jsonl"; sed -n '2s/"rows":/&1/p' "$work/whole/journal.jsonl"; } >"$work/more"
 cat "$work/more" >>"$work/whole/journal.jsonl"
-expect 1 "damaged journal line at $work/whole/journal.jsonl:21" "${make[@]}" --out "$work/whole"
-grep -q "damaged journal line at $work/whole/journal.jsonl:23" "$work/output" || { cat "$work/output"; fail "no word of the changed line"; }
-grep -q ":22" "$work/output" && fail "the same line twice is no damage"
+expect 1 "damaged journal line at $work/whole/journal.jsonl:61" "${make[@]}" --out "$work/whole"
+grep -q "damaged journal line at $work/whole/journal.jsonl:63" "$work/output" || { cat "$work/output"; fail "no word of the changed line"; }
+grep -q ":62" "$work/output" && fail "the same line twice is no damage"
 expect 0 "dataset $whole" "${make[@]}" --repair --out "$work/whole"
-[ "$(lines "$work/whole")" = 20 ] || fail "$(lines "$work/whole") lines after a repair"
+[ "$(lines "$work/whole")" = 60 ] || fail "$(lines "$work/whole") lines after a repair"
 diff -r "$work/whole/shards" "$work/parts/shards" || fail "other bytes after a repair"
 
 # A finished dataset that cannot be written to is complete, an unfinished one says what it lacks.

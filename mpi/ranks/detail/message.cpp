@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "base/json_text.hpp"
+
 namespace swingbank::mpi::ranks {
 
 std::string pack(const Report& r) {
@@ -12,7 +14,7 @@ std::string pack(const Report& r) {
   j["seconds"] = r.seconds;
   for (const auto& line : r.finished) j["finished"].push_back(store::journal_text(line));
   for (const auto& p : r.problems) j["problems"].push_back({p.what, p.where, p.why, p.remedy});
-  return j.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return json_text(j);
 }
 
 Report unpack(const std::string& text) {

@@ -6,6 +6,7 @@
 #include "base/stop_signal.hpp"
 #include "mpi/ranks/detail/message.hpp"
 #include "mpi/ranks/shard_group.hpp"
+#include "mpi/store/shard_check.hpp"
 
 namespace swingbank::mpi::ranks {
 
@@ -36,24 +37,15 @@ std::vector<store::BadShard> look_at(const std::string& share, const std::filesy
   return bad;
 }
 
-/// Bad shards as one message: each shard's number stands before what is wrong with it.
 std::string packed(const std::vector<store::BadShard>& bad) {
-  Report report;
-  for (const auto& b : bad) {
-    Problem p = b.problem;
-    p.what = std::to_string(b.shard) + " " + p.what;
-    report.problems.push_back(std::move(p));
-  }
-  return pack(report);
+  std::string text;
+  for (const auto& b : bad) text += store::bad_shard_text(b);
+  return text;
 }
 
 void unpack_into(std::vector<store::BadShard>& bad, const std::string& text) {
-  for (Problem& p : unpack(text).problems) {
-    std::size_t digits = 0;
-    const std::uint64_t shard = std::stoull(p.what, &digits);
-    p.what.erase(0, digits + 1);
-    bad.push_back({shard, std::move(p)});
-  }
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) bad.push_back(store::parse_bad_shard(line));
 }
 
 }  // namespace

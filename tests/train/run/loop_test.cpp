@@ -64,13 +64,26 @@ json result_of(const RunRequest& r) {
   return json::parse(in);
 }
 
+/// A world's rows without generator 33, as train_network takes them.
+struct Prepared {
+  explicit Prepared(const World& world)
+      : split(data::leave_one_out(world.stream.labels(), {33, 0.1, 1})),
+        targets(scaled_targets(world.stream.labels(),
+                               data::TargetScale::fit(world.stream.labels().values, 3, split.train), split,
+                               false, 1)),
+        features(data::Features::fit(world.stream, split.train, 0)),
+        data{world.stream, features, split.train, split.validation, targets} {}
+  Prepared(const Prepared&) = delete;
+  Prepared& operator=(const Prepared&) = delete;
+  data::RowSplit split;
+  std::vector<float> targets;
+  data::Features features;
+  loop::LoopData data;  // last: it refers to the others
+};
+
 TEST(Training, ResumedRunEqualsAnUnbrokenOneBitForBit) {
   const World world("resume", 150);
-  const data::RowSplit split = data::leave_one_out(world.stream.labels(), {33, 0.1, 1});
-  const data::TargetScale scale = data::TargetScale::fit(world.stream.labels().values, 3, split.train);
-  const auto targets = scaled_targets(world.stream.labels(), scale, split, false, 1);
-  const data::Features features = data::Features::fit(world.stream, split.train, 0);
-  const loop::LoopData data{world.stream, features, split.train, split.validation, targets};
+  const Prepared p(world);
   const networks::NetworkShape shape{2, 16, 3, {2.0f, 2.0f, 1.0f}};
   const json run = {{"test", 1}};
   for (const std::string name : {"cnn", "gru"}) {
@@ -87,9 +100,9 @@ TEST(Training, ResumedRunEqualsAnUnbrokenOneBitForBit) {
         settings.run = &run;
         if (part < stops.size()) settings.stop = [&] { return batches++ == stops[part]; };
         loop::TrainingProgress progress("test", 1, true);
-        report = loop::train_network(*network, data, settings, progress);
+        report = loop::train_network(*network, p.data, settings, progress);
         EXPECT_EQ(report.finished, part == stops.size());
-        out = loop::predict(*network, world.stream, features, split.test);
+        out = loop::predict(*network, world.stream, p.features, p.split.test);
       }
       return out;
     };
@@ -106,11 +119,7 @@ TEST(Training, ResumedRunEqualsAnUnbrokenOneBitForBit) {
 
 TEST(Training, AKillCostsNoMoreThanTheEpochAtHand) {
   const World world("killed", 150);
-  const data::RowSplit split = data::leave_one_out(world.stream.labels(), {33, 0.1, 1});
-  const data::TargetScale scale = data::TargetScale::fit(world.stream.labels().values, 3, split.train);
-  const auto targets = scaled_targets(world.stream.labels(), scale, split, false, 1);
-  const data::Features features = data::Features::fit(world.stream, split.train, 0);
-  const loop::LoopData data{world.stream, features, split.train, split.validation, targets};
+  const Prepared p(world);
   const json run = {{"test", 1}};
   constexpr int kBatches = 4;  // of an epoch
   // Batches begun until the end, or until it dies at one of them.
@@ -129,7 +138,7 @@ TEST(Training, AKillCostsNoMoreThanTheEpochAtHand) {
     };
     loop::TrainingProgress progress("test", 1, true);
     try {
-      loop::train_network(*network, data, settings, progress);
+      loop::train_network(*network, p.data, settings, progress);
     } catch (const std::runtime_error&) {
       EXPECT_EQ(begun, dies_at);
     }
@@ -141,11 +150,7 @@ TEST(Training, AKillCostsNoMoreThanTheEpochAtHand) {
 
 TEST(Training, RefusesADamagedOrForeignCheckpoint) {
   const World world("damaged");
-  const data::RowSplit split = data::leave_one_out(world.stream.labels(), {33, 0.1, 1});
-  const data::TargetScale scale = data::TargetScale::fit(world.stream.labels().values, 3, split.train);
-  const auto targets = scaled_targets(world.stream.labels(), scale, split, false, 1);
-  const data::Features features = data::Features::fit(world.stream, split.train, 0);
-  const loop::LoopData data{world.stream, features, split.train, split.validation, targets};
+  const Prepared p(world);
   const auto file = world.folder.path / "run.checkpoint";
   const json run = {{"test", 1}}, other = {{"test", 2}};
   const auto train = [&](const json& identity, int stop_after) {
@@ -158,7 +163,7 @@ TEST(Training, RefusesADamagedOrForeignCheckpoint) {
     int batches = 0;
     settings.stop = [&] { return batches++ == stop_after; };
     loop::TrainingProgress progress("test", 1, true);
-    return loop::train_network(*network, data, settings, progress).finished;
+    return loop::train_network(*network, p.data, settings, progress).finished;
   };
   ASSERT_FALSE(train(run, 2));
   EXPECT_THROW((void)train(other, 2), InputError);

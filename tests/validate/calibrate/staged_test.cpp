@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/validate/calibrate/one_wrong_parameter.hpp"
 #include "tests/validate/playin/staged_case.hpp"
 #include "validate/calibrate/calibrate.hpp"
 
@@ -10,34 +11,12 @@ namespace {
 
 using Staged = record::StagedEvent::Kind;
 
-/// One wrong parameter, everything else fixed: its fit.
-CalibratedParameter recovered(const sim::plant::PlantUnderTest& c, record::Record r,
-                              const std::string& parameter, double factor, double& truth) {
+void expect_recovered(const sim::plant::PlantUnderTest& c, const record::Record& r,
+                      const std::string& parameter) {
   plant::PlantModel model;
   model.plant = c.plant;
   model.conventions = c.conventions;
-  model.record_base = r.base;
-  Problems problems;
-  std::vector<sim::plant::ParameterId> all;
-  for (const auto& f : fit::free_parameters(model.plant, 0.3)) all.push_back(f.id);
-  const auto wanted = sim::plant::find_parameters(model.plant, all, {parameter}, "test", "", problems);
-  truth = sim::plant::parameter_value(model.plant, wanted.front());
-  sim::plant::parameter_value(model.plant, wanted.front()) *= factor;
-  CalibrateOptions options;
-  options.draws = options.starts = 0;
-  for (const auto& id : all)
-    if (id != wanted.front()) options.fixed.push_back(sim::plant::parameter_name(model.plant, id).text());
-  const Calibration found = calibrate(model, {std::move(r)}, options);
-  EXPECT_EQ(found.adequacy, Adequacy::parameters_poor) << parameter << ": " << found.sentence;
-  return found.parameters.front();
-}
-
-void expect_recovered(const sim::plant::PlantUnderTest& c, const record::Record& r,
-                      const std::string& parameter) {
-  double truth = 0;
-  const CalibratedParameter p = recovered(c, r, parameter, 1.3, truth);
-  EXPECT_NEAR(p.fit.value, truth, 4 * p.fit.error) << parameter;
-  EXPECT_LT(p.fit.error, 0.1 * truth) << parameter;
+  test::expect_found(std::move(model), {r}, parameter, 1.3);
 }
 
 TEST(CalibrateStagedTest, OpenCircuitStepGivesTheTransientTimeConstant) {
