@@ -7,6 +7,7 @@
 #include "base/input_file.hpp"
 #include "base/write_file.hpp"
 #include "sim/laws/law.hpp"
+#include "validate/plant/detail/staged.hpp"
 
 namespace swingbank::validate::plant {
 namespace {
