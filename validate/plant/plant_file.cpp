@@ -8,7 +8,6 @@
 #include "base/write_file.hpp"
 #include "sim/laws/law.hpp"
 #include "validate/plant/detail/staged.hpp"
-#include "validate/plant/detail/staged.hpp"
 
 namespace swingbank::validate::plant {
 namespace {
