@@ -1,12 +1,14 @@
-# Shared by the batch scripts. modules, launcher and max_restarts come from the site file.
+# Shared by the batch scripts. modules, launcher, max_restarts and max_retries come from the site file.
 # shellcheck disable=SC2154
 
 # shellcheck source=jobs/run_saving.bash
 source "$SWINGBANK_SOURCE/jobs/run_saving.bash"
 
-# Exit code 2 puts the job back into the queue, until max_restarts is reached.
+# Exit code 2 puts the job back into the queue, or, where the site does not allow that, submits it anew; so does what a
+# node may be to blame for, on other nodes. Until max_restarts or max_retries is reached.
 finish_or_requeue() {
-  local status=$1 restarts=${SLURM_RESTART_COUNT:-0}
+  local status=$1 restarts=$((${SLURM_RESTART_COUNT:-0} + ${SWINGBANK_SEGMENT:-0}))
+  ((status > 2)) && retry_elsewhere "$status"
   ((status == 2)) || exit "$status"
   if [[ $stop_signal == TERM ]]; then # cancelled by a person, or preempted: then Slurm itself requeues
     echo "saved; stopped from outside"
@@ -20,9 +22,77 @@ finish_or_requeue() {
   echo "saved before the time limit; going back into the queue (restart $((restarts + 1)) of at most $max_restarts)"
   local id=$SLURM_JOB_ID
   if [[ -n ${SLURM_ARRAY_JOB_ID:-} ]]; then id=${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID; fi
-  scontrol requeue "$id"
+  if ! scontrol requeue "$id"; then
+    echo "requeueing is not allowed here"
+    SWINGBANK_SEGMENT=$((${SWINGBANK_SEGMENT:-0} + 1)) follow_up
+    exit 0
+  fi
   sleep 60 # the requeue ends this script; leaving first would let the job count as finished
   exit 1
+}
+
+# A program that was killed, or crashed: its input is not to blame (that is exit code 1).
+retry_elsewhere() {
+  local retries=${SWINGBANK_RETRY:-0} nodes
+  if ((retries >= max_retries)); then
+    echo "job given up at $SLURM_JOB_NAME (exit code $1 on $SLURM_JOB_NODELIST after $retries retries, limit" \
+      "$max_retries): see the lines above; if they name no reason, raise max_retries in the site file" >&2
+    exit "$1"
+  fi
+  nodes=$(failed_nodes | paste -sd,)
+  export SWINGBANK_EXCLUDED=${SWINGBANK_EXCLUDED:-}${SWINGBANK_EXCLUDED:+${nodes:+,}}$nodes
+  echo "exit code $1 on $SLURM_JOB_NODELIST; trying again, without ${SWINGBANK_EXCLUDED:-any node excluded}" \
+    "(retry $((retries + 1)) of at most $max_retries)"
+  SWINGBANK_RETRY=$((retries + 1)) follow_up
+  exit 0
+}
+
+# Those of the job's nodes that no longer start a program; of a job on one node, that one.
+failed_nodes() {
+  local nodes node
+  mapfile -t nodes < <(scontrol show hostnames "$SLURM_JOB_NODELIST")
+  if ((${#nodes[@]} == 1)); then
+    echo "${nodes[0]}"
+    return
+  fi
+  for node in "${nodes[@]}"; do
+    timeout 30 srun --overlap --nodes=1 --ntasks=1 --nodelist="$node" true </dev/null >/dev/null 2>&1 || echo "$node"
+  done
+}
+
+# Submits this job anew, as it was submitted, and lets the jobs behind it wait for the new one.
+follow_up() {
+  local log=$SWINGBANK_OUT/log stage=${SLURM_JOB_NAME#swingbank-} options id
+  export SWINGBANK_SEGMENT SWINGBANK_RETRY
+  mapfile -d '' options <"$log/$stage.options"
+  if [[ -n ${SLURM_ARRAY_TASK_ID:-} ]]; then options+=(--array="$SLURM_ARRAY_TASK_ID"); fi
+  {
+    flock 8
+    if [[ -z ${SWINGBANK_EXCLUDED:-} ]] ||
+      ! id=$(sbatch "${options[@]}" --exclude="$SWINGBANK_EXCLUDED" "$SWINGBANK_SOURCE/slurm/$stage.sbatch"); then
+      id=$(sbatch "${options[@]}" "$SWINGBANK_SOURCE/slurm/$stage.sbatch") # there may be no other node
+    fi
+    id=${id%%;*}
+    echo "$stage $id" >>"$log/jobs"
+    wait_for_the_new_one "$stage"
+  } 8>"$log/.jobs.lock"
+  echo "it goes on as job $id"
+}
+
+# The last job of a stage, and all of them: what the jobs behind wait for.
+newest() { awk -v stage="$1" '$1 == stage {id = $2} END {print id}' "$SWINGBANK_OUT/log/jobs"; }
+all_of() { awk -v stage="$1" '$1 == stage {printf ":%s", $2}' "$SWINGBANK_OUT/log/jobs"; }
+wait_for_the_new_one() {
+  local generated
+  generated=afterok:$(newest generate)
+  case $1 in
+    databank) scontrol update JobId="$(newest generate)" Dependency="afterok:$(newest databank)" ;;
+    generate)
+      scontrol update JobId="$(newest fold)" Dependency="$generated"
+      scontrol update JobId="$(newest tables)" Dependency="$generated,afterany$(all_of fold)"
+      ;;
+    fold) scontrol update JobId="$(newest tables)" Dependency="$generated,afterany$(all_of fold)" ;;
+  esac
 }
 
 job_start() {

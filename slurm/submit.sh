@@ -55,6 +55,7 @@ check_site() {
     whole "$name" 1
   done
   whole max_restarts 0
+  whole max_retries 0
   for name in databank_mem generate_mem_per_rank fold_mem tables_mem; do
     [[ ${!name:-} =~ ^[0-9]+[KMGT]?$ ]] || fault "$name='${!name:-}'" "it is no size as Slurm writes it" "write for example 4G"
   done
@@ -65,6 +66,18 @@ check_site() {
       fault "$name=${!name} min" "the warning comes $warn_before s before its end" "give more time, or a shorter warn_before"
   done
   ((!faults)) || exit 1
+}
+
+# Scripts and programs as they are now, so that a new build or an edit changes no job that waits: links where the disk is
+# the same one (a build puts new files in place of old ones), else copies.
+keep_software() {
+  local kept=$log/software build=${SWINGBANK_BUILD:-$SWINGBANK_SOURCE/build/release}
+  rm -rf "$kept"
+  mkdir -p "$kept/build/bin"
+  cp -r "$SWINGBANK_SOURCE/jobs" "$SWINGBANK_SOURCE/slurm" "$kept"
+  cp -l "$build"/bin/swingbank* "$kept/build/bin" 2>/dev/null || cp "$build"/bin/swingbank* "$kept/build/bin"
+  SWINGBANK_SOURCE=$kept SWINGBANK_BUILD=$kept/build
+  export SWINGBANK_BUILD
 }
 
 # Ids of the earlier submission, with commas; nothing where there was none.
@@ -111,6 +124,7 @@ if [[ $action == submit ]]; then
   mkdir -p "$log"
   cp "$SWINGBANK_SITE" "$log/site.conf" # an edit of the original changes no job that waits
   SWINGBANK_SITE=$log/site.conf
+  keep_software
   : >"$log/jobs"
 fi
 
@@ -119,6 +133,7 @@ submit() {
   local stage=$1 before=$2
   shift 2
   local options=("${common[@]}" "$@")
+  if [[ $action == submit ]]; then printf '%s\0' "${options[@]}" >"$log/$stage.options"; fi # for job.bash
   [[ -z $before ]] || options+=(--dependency="$before")
   if [[ $action == dry-run ]]; then
     id="<$stage>"

@@ -38,6 +38,10 @@ submit >"$work/said"
 diff "$work/said" "$work/out/log/jobs" || fail "the jobs are not kept"
 [[ $(tr '\n' ' ' <"$work/said") == "databank 101 generate 102 fold 103 tables 104 " ]] || fail "it says: $(cat "$work/said")"
 cmp "$site" "$work/out/log/site.conf" || fail "the site file as it was is not kept"
+kept=$work/out/log/software
+(($(grep -c " $kept/slurm/[a-z]*.sbatch$" "$STUB/sbatch") == 4)) || fail "the jobs do not run what was kept: $(cat "$STUB/sbatch")"
+cmp "$SWINGBANK_BIN/swingbank-train" "$kept/build/bin/swingbank-train" || fail "the programs as they were are not kept"
+[[ -s $kept/jobs/run_experiment.sh && -s $kept/slurm/job.bash && -s $work/out/log/fold.options ]] || fail "the scripts are not kept"
 printf '103_1\n104\n' >"$STUB/queue"
 refuses "submitted twice" "they wait or run: 103_1 104" submit
 (($(wc -l <"$STUB/sbatch") == 4)) || fail "a second submission reached Slurm"
