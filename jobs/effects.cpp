@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "jobs/command_line.hpp"
+#include "jobs/effect_coverage.hpp"
 #include "sim/laws/law.hpp"
 #include "sim/library/library.hpp"
 
@@ -252,17 +253,22 @@ int main(int argc, char** argv) {
       "Lists the effects the simulator knows, by the place they take; with a NAME, its block diagram, "
       "equations, parameters, states and source.",
       "swingbank effects");
-  std::vector<std::string> names, laws;
+  std::vector<std::string> names, laws, dyr_files;
   Shape shape;
-  line.add("NAME", names, "effects, e.g. GENROU SEXS");
-  line.add("--law", laws, "law file (.toml) whose effect is added; may be repeated").one_value_a_mention();
+  const jobs::Option effects = line.add("NAME", names, "effects, e.g. GENROU SEXS");
+  const jobs::Option law = line.add("--law", laws, "law file (.toml) whose effect is added; may be repeated")
+                               .one_value_a_mention();
+  line.add("--coverage", dyr_files,
+           "PSS/E .dyr files: how many of their records the effects cover, model by model")
+      .excludes(effects)
+      .excludes(law);
   const jobs::Option json =
       line.add_flag("--json", shape.json, "the same for machines: an array with one object per effect");
   line.add_flag("--toml", shape.toml, "the effect's block of a plant file with its standard values, to paste")
       .excludes(json);
   if (!line.parse(argc, argv)) return line.end();
   try {
-    return run(names, laws, shape);
+    return dyr_files.empty() ? run(names, laws, shape) : jobs::print_coverage(dyr_files, shape.json);
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 1;

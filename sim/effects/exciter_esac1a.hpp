@@ -57,7 +57,7 @@ struct Model : shared::AlternatorRectifier<Model> {
     c[vrmin] = p[VRMIN];
   }
   template <class T>
-  static T field_input(const T* c, const T& output) {
+  static T field_input(const T* c, const T& output, const T&) {
     return clamp(output, c[vrmin], c[vrmax]);
   }
   template <class T>

@@ -33,7 +33,7 @@ struct Model : shared::AlternatorRectifier<Model> {
                                      {"rate", "pu", "state of the rate feedback", kErrorWeight}};
 
   template <class T>
-  static T field_input(const T*, const T& output) {
+  static T field_input(const T*, const T& output, const T&) {
     return output;
   }
 };

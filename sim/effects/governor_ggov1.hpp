@@ -121,7 +121,7 @@ struct Model {
                                         Tfload,  Kpload, Kiload, Ldref,  Dm,     Ropen,  Rclose, Kimw,  Aset,
                                         Ka,      Ta,     Trate,  db,     Tsa,    Tsb,    Rup,    Rdown};
   static constexpr double kAbove = 0.002;   ///< [pu of stroke]
-  static constexpr double kFollow = 0.02;   ///< [s]
+  static constexpr double kFollow = 0.002;  ///< [s]
   static constexpr double kFullLoad = 1.0;  ///< the load limiter's output ends here [pu of stroke]
   enum C {
     droop,

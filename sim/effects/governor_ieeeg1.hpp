@@ -105,7 +105,11 @@ struct Model {
       {"crossover", "pu", "flow through the crossover, x6", 1.0, -1, -1, {iT6}},
       {"last", "pu", "flow through the last stage, x7", 1.0, -1, -1, {iT7}}};
 
-  static void check(const double* p, const std::string& where, Problems& problems);
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    check_as(name, p, where, problems);
+  }
+  /// The same of another model with these parameters first.
+  static void check_as(std::string_view model, const double* p, const std::string& where, Problems& problems);
   static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
@@ -128,17 +132,27 @@ struct Model {
     c[share7] = p[K7];
     c[band] = p[db];
   }
+  /// Moves the valve by what is asked for less `position`, the valve as the governor sees it.
   template <class T>
-  static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
+  static void move_valve(const T* c, const T* x, const T& position, const Signals<T>& s, T* dx) {
     const T speed = lead_lag(c[lead], c[iT1], x[governor], dead_band(s.speed, c[band]), dx[governor]);
-    const T steam = clamp(x[valve], c[low], c[high]);
-    const T error = c[Pref] + s.dPref - c[gain] * speed - steam;
+    const T error = c[Pref] + s.dPref - c[gain] * speed - position;
     dx[valve] = clamp(error * c[iT3], c[closing], c[opening]);
+  }
+  /// The torque of the stages behind the valve.
+  template <class T>
+  static T stages(const T* c, const T* x, const T& steam, T* dx) {
     const T x4 = lag(c[iT4], x[bowl], steam, dx[bowl]);
     const T x5 = lag(c[iT5], x[reheat], x4, dx[reheat]);
     const T x6 = lag(c[iT6], x[crossover], x5, dx[crossover]);
     const T x7 = lag(c[iT7], x[last], x6, dx[last]);
-    s.Tm = c[share4] * x4 + c[share5] * x5 + c[share6] * x6 + c[share7] * x7;
+    return c[share4] * x4 + c[share5] * x5 + c[share6] * x6 + c[share7] * x7;
+  }
+  template <class T>
+  static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
+    const T steam = clamp(x[valve], c[low], c[high]);
+    move_valve(c, x, steam, s, dx);
+    s.Tm = stages(c, x, steam, dx);
   }
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
@@ -149,12 +163,13 @@ struct Model {
   }
 };
 
-inline void Model::check(const double* p, const std::string& where, Problems& problems) {
+inline void Model::check_as(std::string_view model, const double* p, const std::string& where,
+                            Problems& problems) {
   const auto text = [&](int i) {
     return fmt::format("{} = {:g}{}{}", parameters[i].symbol, p[i], parameters[i].is_code() ? "" : " ",
                        parameters[i].is_code() ? "" : parameters[i].unit);
   };
-  if (!(p[T3] > 0)) problems.add(text(T3), where, "IEEEG1 divides by it", "give T3 > 0");
+  if (!(p[T3] > 0)) problems.add(text(T3), where, std::string(model) + " divides by it", "give T3 > 0");
   for (const int t : {T1, T2, T4, T5, T6, T7})
     if (!(p[t] >= 0)) problems.add(text(t), where, "a time constant", "give a value >= 0");
   if (!(p[UO] > 0 && p[UC] < 0))

@@ -6,6 +6,7 @@
 
 #include "sim/core/bus_frequency.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/low_voltage.hpp"
 #include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::load_ldfr {
@@ -13,14 +14,16 @@ namespace swingbank::sim::effects::load_ldfr {
 struct Model {
   static constexpr std::string_view name = "LDFR",
                                     title = "constant power, current, impedance; powers of the frequency",
-                                    source = "PSS/E LDFRBL; thresholds: PSS/E, PQBRAK", dyr_name = "LDFRBL";
+                                    source = "PSS/E LDFRBL; low voltage: PSS/E, PQBRAK; OpenIPSL, Loads.PSSE",
+                                    dyr_name = "LDFRBL";
   static constexpr Slot slot = Slot::load;
   static constexpr std::string_view description = R"(
   v = V/V0, f = 1 + df, with P0, Q0, V0 those of the power flow
   P = P0 ((1 - Pi - Pp) v^2 + Pi v f^r + Pp f^m)
   Q = Q0 ((1 - Qi - Qp) v^2 + Qi v f^s + Qp f^n)
   Of a .dyr: the parts are those of which the .raw composes the load.
-  Below Vp the power part, below Vi the current part goes on as the impedance it has there.
+  Below Vp the power part is P0 Pp times 2 x^2 (x = V/Vp up to 1/2), 1 - 2 (1 - x)^2 (up to 1), below Vi the
+  current part I0 Pi times min(1, a b u^(b-1) exp(-a u^b)), u = V/(2 Vi), a = 1.502, b = 1.769; so that of Q.
   df: frequency deviation of the bus from its voltage and the same behind a lag x = V/(1 + s Tf),
       df = Im(V conj x) / (|V| |x|) / (2 pi f0 Tf)
 )";
@@ -38,9 +41,9 @@ struct Model {
       {"Pp", "Pp", "-", 0.5, 0.0, 1.0, 0.0, "part of P at constant power", kAsEffect, shared::kShare},
       {"Qi", "Qi", "-", 0.0, 0.0, 1.0, 0.0, "part of Q at constant current", kAsEffect, shared::kShare},
       {"Qp", "Qp", "-", 0.5, 0.0, 1.0, 0.0, "part of Q at constant power", kAsEffect, shared::kShare},
-      {"Vp", "Vp", "pu", 0.7, 0.05, 1.0, kNoNeutral, "voltage below which the power part is an impedance",
+      {"Vp", "Vp", "pu", 0.7, 0.05, 1.0, kNoNeutral, "voltage below which the power part falls",
        shared::kPowerThreshold, shared::kThreshold},
-      {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNeutral, "voltage below which the current part is an impedance",
+      {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNeutral, "voltage below which the current part falls",
        shared::kCurrentThreshold, shared::kThreshold},
       {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNeutral, "lag behind which the frequency is measured",
        shared::kThreeCycles, shared::kFrequencyLag}};
@@ -86,8 +89,7 @@ struct Model {
     using std::sqrt;
     constexpr double tiny = 1e-24;  // [pu^2] a dual needs a slope at V = 0
     const T squared = signal.Vr * signal.Vr + signal.Vi * signal.Vi + T(tiny), v = sqrt(squared);
-    const T high = select(v > c[vp], v, c[vp]), low = select(v > c[vi], v, c[vi]);
-    const T power = T(1.0) / (high * high), amps = T(1.0) / low;
+    const T power = shared::power_per_square(v, c[vp]), amps = shared::current_per_voltage(v, c[vi]);
     const T df = bus_frequency(signal.Vr, signal.Vi, squared, x[xr], x[xi], c[slope]);
     const T least(1e-3);  // a frequency, not what an exponent may be taken of while a step is tried
     const T f = log(select(df > least - T(1.0), T(1.0) + df, least));
@@ -109,9 +111,9 @@ struct Model {
       return (value_of(p[one]) != 0.0 || value_of(p[other]) != 0.0) && value_of(v) < value_of(p[threshold]);
     };
     if (needs(Pp, Qp, Vp))
-      return fmt::format("Vp = {:g} pu: the power part is an impedance there already", value_of(p[Vp]));
+      return fmt::format("Vp = {:g} pu: the power part falls there already", value_of(p[Vp]));
     if (needs(Pi, Qi, Vi))
-      return fmt::format("Vi = {:g} pu: the current part is an impedance there already", value_of(p[Vi]));
+      return fmt::format("Vi = {:g} pu: the current part falls there already", value_of(p[Vi]));
     const T P0 = T(0.0) - signal.Vr * signal.Ir - signal.Vi * signal.Ii,
             Q0 = signal.Vr * signal.Ii - signal.Vi * signal.Ir, one(1.0);
     c[g0] = P0 * (one - p[Pi] - p[Pp]) / squared;

@@ -6,6 +6,7 @@
 
 #include "sim/core/bus_frequency.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/low_voltage.hpp"
 #include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::load_zip {
@@ -16,13 +17,14 @@ struct Model {
       title = "constant impedance, current and power; frequency dependence",
       source =
           "IEEE Task Force, Load representation for dynamic performance analysis, IEEE Trans. Power "
-          "Syst. 8 (1993) 472; Kundur (1994), 7.1.1; thresholds: PSS/E, PQBRAK";
+          "Syst. 8 (1993) 472; Kundur (1994), 7.1.1; low voltage: PSS/E, PQBRAK; OpenIPSL, Loads.PSSE";
   static constexpr Slot slot = Slot::load;
   static constexpr std::string_view description = R"(
   v = V/V0, with P0, Q0, V0 those of the power flow
   P = P0 ((1 - Pi - Pp) v^2 + Pi v + Pp) (1 + Kpf df)
   Q = Q0 ((1 - Qi - Qp) v^2 + Qi v + Qp) (1 + Kqf df)
-  Below Vp the power part, below Vi the current part goes on as the impedance it has there.
+  Below Vp the power part is P0 Pp times 2 x^2 (x = V/Vp up to 1/2), 1 - 2 (1 - x)^2 (up to 1), below Vi the
+  current part I0 Pi times min(1, a b u^(b-1) exp(-a u^b)), u = V/(2 Vi), a = 1.502, b = 1.769; so that of Q.
   df: frequency deviation of the bus from its voltage and the same behind a lag x = V/(1 + s Tf),
       df = Im(V conj x) / (|V| |x|) / (2 pi f0 Tf)
 )";
@@ -34,9 +36,9 @@ struct Model {
       {"Pp", "Pp", "-", 0.0, 0.0, 1.0, 0.0, "part of P at constant power"},
       {"Qi", "Qi", "-", 0.0, 0.0, 1.0, 0.0, "part of Q at constant current"},
       {"Qp", "Qp", "-", 0.0, 0.0, 1.0, 0.0, "part of Q at constant power"},
-      {"Vp", "Vp", "pu", 0.7, 0.05, 1.0, kNoNeutral, "voltage below which the power part is an impedance",
+      {"Vp", "Vp", "pu", 0.7, 0.05, 1.0, kNoNeutral, "voltage below which the power part falls",
        shared::kPowerThreshold, shared::kThreshold},
-      {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNeutral, "voltage below which the current part is an impedance",
+      {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNeutral, "voltage below which the current part falls",
        shared::kCurrentThreshold, shared::kThreshold},
       {"Kpf", "Kpf", "pu/pu", 0.0, -10.0, 10.0, 0.0, "change of P per change of frequency", kAsEffect,
        literature::own("ten per cent of load for each of frequency")},
@@ -82,8 +84,7 @@ struct Model {
     constexpr double tiny = 1e-24;  // [pu^2] a dual needs a slope at V = 0
     const T squared = s.Vr * s.Vr + s.Vi * s.Vi + T(tiny);
     const T v = sqrt(squared);
-    const T high = select(v > c[vp], v, c[vp]), low = select(v > c[vi], v, c[vi]);
-    const T power = T(1.0) / (high * high), amps = T(1.0) / low;
+    const T power = shared::power_per_square(v, c[vp]), amps = shared::current_per_voltage(v, c[vi]);
     const T df = bus_frequency(s.Vr, s.Vi, squared, x[xr], x[xi], c[slope]);
     const T g = c[P0] * (c[pz] + c[pi] * amps + c[pp] * power) * (T(1.0) + c[kp] * df);
     const T b = c[Q0] * (c[qz] + c[qi] * amps + c[qp] * power) * (T(1.0) + c[kq] * df);
@@ -103,9 +104,9 @@ struct Model {
       return (value_of(p[one]) != 0.0 || value_of(p[other]) != 0.0) && value_of(v) < value_of(p[threshold]);
     };
     if (needs(Pp, Qp, Vp))
-      return fmt::format("Vp = {:g} pu: the power part is an impedance there already", value_of(p[Vp]));
+      return fmt::format("Vp = {:g} pu: the power part falls there already", value_of(p[Vp]));
     if (needs(Pi, Qi, Vi))
-      return fmt::format("Vi = {:g} pu: the current part is an impedance there already", value_of(p[Vi]));
+      return fmt::format("Vi = {:g} pu: the current part falls there already", value_of(p[Vi]));
     c[P0] = T(0.0) - s.Vr * s.Ir - s.Vi * s.Ii;
     c[Q0] = s.Vr * s.Ii - s.Vi * s.Ir;
     c[pz] = (T(1.0) - p[Pi] - p[Pp]) / squared;

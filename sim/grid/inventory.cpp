@@ -12,19 +12,6 @@ namespace {
 
 using Key = std::pair<int, std::string>;  ///< bus number and id
 
-/// What is wrong with a record of a known model; empty if nothing is.
-std::string fault_of(const Effect& effect, formats::DyrRecord record, const network::Generator* g,
-                     const std::string& where) {
-  record = plain(std::move(record), effect);
-  Problems problems = record.faults;
-  if (problems.empty() && complete(effect, record, where, problems)) {
-    plant::Block block = values_of(effect, record);
-    if (g) take_from_raw(block, *g);
-    effect.check(effect.law.get(), block.p.data(), where, problems);
-  }
-  return problems.empty() ? "" : problems.list()[0].sentence();
-}
-
 class InventoryTaker {
  public:
   InventoryTaker(const formats::RawSurvey& raw, const formats::DyrSurvey& dyr, std::string dyr_name)

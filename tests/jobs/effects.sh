@@ -63,5 +63,20 @@ refuses "a name mistyped" "no effect 'GENRUO' at NAME \(the nearest names are GE
 (($(wc -l <"$work/both.txt") == 2)) || fail "not every unknown name was told: $(cat "$work/both.txt")"
 refuses "an inverter" "no effect 'REGCA1' at NAME \(models of inverters, wind and storage are not there yet\)" "$swingbank" effects REGCA1
 "$swingbank" compare --help | grep -F "{false}" && fail "a flag shows how it is stored"
+
+printf "%s\n" "1 'SEXS' 1 0.1 10 100 0.1 0 5 /" "1 'EXDC1' 1 0 40 0.1 0 0 1 -1 0.1 0.5 0.05 0.7 0 2.8 0.08 3.7 0.33 /" \
+  "1 'NOSUCH' 1 1 2 /" "2 'SEXS' 1 0.1 /" >"$work/some.dyr"
+"$swingbank" effects --coverage "$work/some.dyr" >"$work/coverage.txt"
+grep -qF "4 records of 3 models in 1 file: 2 covered (50.0 %)" "$work/coverage.txt" || fail "the count: $(cat "$work/coverage.txt")"
+grep -qE "^EXDC1 +1 +1 +1 +exciter IEEEX1$" "$work/coverage.txt" || fail "EXDC1: $(cat "$work/coverage.txt")"
+"$swingbank" effects --coverage "$work/some.dyr" --json >"$work/coverage.json"
+python3 - "$work/coverage.json" <<'PYTHON'
+import json, sys
+c = json.load(open(sys.argv[1]))
+assert (c["files"], c["records"], c["covered"], c["percent"]) == (1, 4, 2, 50), c
+sexs = next(m for m in c["models"] if m["name"] == "SEXS")
+assert sexs["refused"] == 1 and "SEXS with 1 parameter" in sexs["fault"], sexs
+PYTHON
+refuses "no .dyr file" "none.dyr" "$swingbank" effects --coverage "$work/none.dyr"
 refuses "no law file" "no readable law file" "$swingbank" effects --law "$work/none.toml"
 misused "unknown option" nonsense "$swingbank" effects --nonsense

@@ -9,6 +9,7 @@
 #include <map>
 #include <random>
 
+#include "sim/library/variants.hpp"
 #include "validate/playin/can_run.hpp"
 #include "validate/playin/component.hpp"
 #include "validate/playin/instruments.hpp"
@@ -131,7 +132,8 @@ void add_effects(const sim::plant::PlantUnderTest& tested, const sim::library::E
   for (const sim::Effect* effect : library.all()) {
     const bool instrument = effect->slot == Slot::measurement;
     const bool fits = effect->slot == Slot::transformer || sim::is_control(effect->slot) || instrument;
-    if (!fits || effect->instants || occupied(tested.plant, *effect)) continue;
+    const bool tried = !sim::library::variant_of(*effect);  // else the effect that it is a variant of is
+    if (!fits || !tried || effect->instants || occupied(tested.plant, *effect)) continue;
     if (!playin::belongs_to(component, effect->slot)) continue;
     if (instrument && !playin::can_be_taken_back(*effect)) continue;
     all.push_back(added_to(tested, *effect));
@@ -239,6 +241,7 @@ std::vector<Hypothesis> all_replacements(const sim::plant::PlantUnderTest& teste
     room.controls.erase(room.controls.begin() + static_cast<std::ptrdiff_t>(c));
     for (const sim::Effect* effect : library.all()) {
       if (effect->slot != there.slot || effect == &there || effect->instants) continue;
+      if (sim::library::variant_of(*effect)) continue;
       Hypothesis h = added_to({room, tested.conventions}, *effect);
       h.name += fmt::format(" in place of {}", there.name);
       h.what += fmt::format(" in place of {}", there.name);

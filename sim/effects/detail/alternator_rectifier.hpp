@@ -1,7 +1,7 @@
 #pragma once
-// The brushless exciter of EXAC1 and ESAC1A: regulator, alternator, rectifier. A Model names the regulator's
-// limits, may add coefficients after `alternator`, and says what of the regulator's output reaches the
-// alternator's field: field_input(c, output).
+// The brushless exciter of EXAC1, EXAC2 and ESAC1A: regulator, alternator, rectifier. A Model names the
+// regulator's limits, may add coefficients after `alternator`, and says what of the regulator's output
+// reaches the alternator's field: field_input(c, output, Vfe).
 #include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
@@ -103,7 +103,7 @@ struct AlternatorRectifier {
     const T error = c[Vref] + s.dVref - measured + s.Vs + s.Vlimiter - stabilised;
     const T u = lead_lag(c[lead], c[iTB], x[leadlag], error, dx[leadlag]);
     const T output = clamp(lag(c[iTA], x[regulator], c[gain] * u, dx[regulator]), c[lower], c[upper]);
-    dx[Ve] = (Model::field_input(c, output) - Vfe) * c[iTE];
+    dx[Ve] = (Model::field_input(c, output, Vfe) - Vfe) * c[iTE];
     s.Efd = rectified(ve, c[commutation] * s.Ifd);
   }
   template <class T>

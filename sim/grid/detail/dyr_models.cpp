@@ -21,9 +21,19 @@ const Effect* effect_named(std::string_view model) {
     if (!e.dyr_name.empty() && std::ranges::equal(e.dyr_name, model, same)) return &e;
   return nullptr;
 }
+/// Other names of a model whose equations and columns are the same.
+struct OtherName {
+  std::string_view name, known_as;
+};
+constexpr OtherName kOtherNames[] = {
+    {"GENTPJ1", "GENTPJU1"},  // its name since PSS/E 34
+    {"EXDC1", "IEEEX1"},      // GridPACK's and PSLF's name of the type DC1 of 1981
+};
+
 /// The same, with the names that stand for it too: IEELAR is IEELBL for an area.
 std::pair<const Effect*, Reach> effect_of_model(std::string model) {
-  if (model == "GENTPJ1") model = "GENTPJU1";  // its name since PSS/E 34
+  for (const OtherName& other : kOtherNames)
+    if (model == other.name) model = other.known_as;
   if (const Effect* own = effect_named(model)) return {own, Reach::load};
   for (std::size_t i = 1; i < kEndings.size(); ++i) {
     if (!model.ends_with(kEndings[i])) continue;
@@ -103,6 +113,18 @@ plant::Block values_of(const Effect& effect, const formats::DyrRecord& record) {
   for (std::size_t i = 0; i < record.values.size(); ++i)
     block.p[static_cast<std::size_t>(effect.dyr_columns[i])] = record.values[i];
   return block;
+}
+
+std::string fault_of(const Effect& effect, formats::DyrRecord record, const network::Generator* g,
+                     const std::string& where) {
+  record = plain(std::move(record), effect);
+  Problems problems = record.faults;
+  if (problems.empty() && complete(effect, record, where, problems)) {
+    plant::Block block = values_of(effect, record);
+    if (g) take_from_raw(block, *g);
+    effect.check(effect.law.get(), block.p.data(), where, problems);
+  }
+  return problems.empty() ? "" : problems.list()[0].sentence();
 }
 
 plant::Block transformer_of(const network::Generator& g) {

@@ -31,6 +31,10 @@ bool complete(const Effect& effect, const formats::DyrRecord& record, const std:
 /// The record's values, standard ones where it has no column.
 plant::Block values_of(const Effect& effect, const formats::DyrRecord& record);
 
+/// What is wrong with a record of a known model; empty if nothing is. `g`: its generator, if there is one.
+std::string fault_of(const Effect& effect, formats::DyrRecord record, const network::Generator* g,
+                     const std::string& where);
+
 /// What the .raw says of a unit: its generator, and the file's name for messages.
 struct RawGenerator {
   const network::Generator& generator;

@@ -44,14 +44,38 @@ TEST(LoadZip, DrawsItsPolynomial) {
   EXPECT_NEAR(s.imag(), 0.3 * (0.7 * v * v + 0.2 * v + 0.1), 1e-14);
 }
 
-TEST(LoadZip, GivesWayBelowItsThresholdsWithoutAStepAndIsNothingAtZero) {
+/// What OpenIPSL writes of PSS/E's constant current below 0.5 pu.
+double current_left(double v) {
+  return 1.502 * 1.769 * std::pow(v, 0.769) * std::exp(-1.502 * std::pow(v, 1.769));
+}
+
+TEST(LoadZip, GivesWayBelowItsThresholdsAsPsseDoesAndIsNothingAtZero) {
   const auto load = consumer({{"Pi", 0.3}, {"Pp", 0.5}});
   const auto p = [&](double v) { return drawn_by_zip(load, std::polar(v, 0.3)).real(); };
-  const double half = 0.35, impedance = 0.2 * half * half / (0.98 * 0.98);
-  // At 0.35 pu, half of Vp and 0.7 of Vi: the power part to 1/4, the current part from Vi with 0.49.
-  EXPECT_NEAR(p(half), 0.8 * (impedance + 0.3 * 0.5 / 0.98 * 0.49 + 0.5 * 0.25), 1e-14);
-  for (const double edge : {0.5, 0.7}) EXPECT_NEAR(p(edge + 1e-9), p(edge - 1e-9), 1e-8);  // slope < 3
+  const auto impedance = [](double v) { return 0.2 * v * v / (0.98 * 0.98); };
+  // At 0.35 pu, half of Vp, the constant power has fallen to a half; at 0.2 pu to 2 (2/7)^2.
+  EXPECT_NEAR(p(0.35), 0.8 * (impedance(0.35) + 0.3 * 0.35 / 0.98 * current_left(0.35) + 0.5 * 0.5), 1e-14);
+  EXPECT_NEAR(current_left(0.2), 0.71, 0.005);  // an impedance would leave 0.40
+  EXPECT_NEAR(p(0.2), 0.8 * (impedance(0.2) + 0.3 * 0.2 / 0.98 * current_left(0.2) + 0.5 * 8.0 / 49.0),
+              1e-14);
+  // Between a half and the whole of Vp: 1 - 2 (1 - x)^2; the current is whole still.
+  EXPECT_NEAR(p(0.6), 0.8 * (impedance(0.6) + 0.3 * 0.6 / 0.98 + 0.5 * (1 - 2.0 / 49.0)), 1e-14);
+  for (const double edge : {0.35, 0.5, 0.7}) EXPECT_NEAR(p(edge + 1e-9), p(edge - 1e-9), 1e-8);  // slope < 3
   EXPECT_EQ(drawn_by_zip(load, 0.0), Complex());
+}
+
+TEST(LoadZip, BothFallToNothingWithTheVoltage) {
+  for (const char* part : {"Pi", "Pp"}) {
+    const auto load = consumer({{part, 1.0}});
+    double before = 1.0;
+    for (double v = 0.69; v > 1e-6; v *= 0.7) {
+      const double current = std::abs(drawn_by_zip(load, std::polar(v, 0.3)).real()) / v;
+      // Constant power: (1 - 2 (1 - x)^2)/x is greatest at x = sqrt(1/2), 4 - 2 sqrt(2).
+      EXPECT_LT(current, part[1] == 'i' ? 0.8 / 0.98 + 1e-12 : 0.8 / 0.7 * 1.1716) << v;
+      before = current;
+    }
+    EXPECT_LT(before, 1e-3) << part;
+  }
 }
 
 TEST(LoadZip, FollowsTheFrequencyOfItsBus) {

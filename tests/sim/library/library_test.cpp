@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "sim/laws/law.hpp"
+#include "sim/library/variants.hpp"
 
 namespace swingbank::sim::library {
 namespace {
@@ -30,6 +31,19 @@ K = {{ unit = "pu", standard = {0}, low = 0.0, high = 1000.0, neutral = 0.0, mea
                      factor);
 }
 double standard(const EffectLibrary& library) { return library.find("MINE")->standard_parameters().at(0); }
+
+TEST(EffectLibrary, AVariantNamesAnEffectOfItsSlotThatIsNone) {
+  int variants = 0;
+  for (const Effect& effect : compiled_effects())
+    if (const Effect* other = variant_of(effect)) {
+      ++variants;
+      EXPECT_EQ(other->slot, effect.slot) << effect.name;
+      EXPECT_EQ(variant_of(*other), nullptr) << effect.name;
+    }
+  EXPECT_GE(variants, 10);
+  EXPECT_EQ(variant_of(*compiled().find("SCRX")), compiled().find("SEXS"));
+  EXPECT_EQ(variant_of(*compiled().find("SEXS")), nullptr);
+}
 
 TEST(EffectLibrary, HoldsTheCompiledEffects) {
   const EffectLibrary library;

@@ -1,0 +1,84 @@
+#pragma once
+// The DC1 exciter of IEEEX1 and ESDC1A: a rotating exciter behind a lead-lag and a regulator with fixed
+// limits. A Model says whether its field voltage ends at zero.
+#include "sim/effects/detail/rotating_dc.hpp"
+#include "sim/effects/detail/sources.hpp"
+
+namespace swingbank::sim::effects::shared {
+
+template <class Model>
+struct DcTypeOne : RotatingDc<Model> {
+  using Dc = RotatingDc<Model>;
+  enum P { TR, KA, TA, TB, TC, VRMAX, VRMIN, KE, TE, KF, TF, SWITCH, E1, SE1, E2, SE2 };
+  static constexpr Source standards_from = literature::openipsl("IEEEX1, defaults");
+  static constexpr Source bounds_from = kBeyondCases;
+  static constexpr Parameter parameters[] = {
+      Dc::kTR,
+      {"KA", "KA", "pu", 40.0, 1.0, 1000.0, kNoNeutral, "regulator gain"},
+      {"TA", "TA", "s", 0.04, 0.0, 10.0, kNoNeutral, "regulator time constant (0: none)"},
+      {"TB", "TB", "s", 2.0, 0.0, 50.0, kNoNeutral, "lag (0: bypass)",
+       literature::own("half the gain in transients; the case files have none")},
+      {"TC", "TC", "s", 1.0, 0.0, 50.0, kNoNeutral, "lead",
+       literature::own("half the gain in transients; the case files have none")},
+      {"VRMAX", "VRMAX", "pu", 7.3, 0.0, 100.0, kNoNeutral, "upper limit of Vr (0: by saturation at E2)"},
+      {"VRMIN", "VRMIN", "pu", -7.3, -100.0, 0.0, kNoNeutral, "lower limit of Vr"},
+      Dc::kKE,
+      Dc::kTE,
+      {"KF", "KF", "pu", 0.03, 0.0, 1.0, 0.0, "rate feedback"},
+      Dc::kTF,
+      Dc::kSwitch,
+      Dc::kE1,
+      Dc::kSE1,
+      Dc::kE2,
+      Dc::kSE2};
+  static constexpr int dyr_columns[] = {TR, KA, TA, TB,     TC, VRMAX, VRMIN, KE,
+                                        TE, KF, TF, SWITCH, E1, SE1,   E2,    SE2};
+  enum C {
+    iTR,
+    gain,
+    iTA,
+    lead,
+    iTB,
+    vrmax,
+    vrmin,
+    self,
+    iTE,
+    feedback,
+    iTF,
+    satA,
+    satB,
+    none,
+    Vref,
+    coefficients
+  };
+  enum X { Vm, leadlag, Vr, Efd, rate };
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    Dc::check_with({TR, TA, TB}, p, where, problems);
+  }
+  template <class T>
+  static void prepare(const T* p, const Conventions& conventions, T* c) {
+    Dc::prepare(p, conventions, c);
+    c[lead] = p[TC];
+    c[iTB] = inverse(p[TB]);
+    c[none] = T(0.0);
+  }
+  template <class T>
+  static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
+    const T error = Dc::voltage_error(c, x, s, dx);
+    const T u = lead_lag(c[lead], c[iTB], x[leadlag], error, dx[leadlag]);
+    const T vr = clamp(lag(c[iTA], x[Vr], c[gain] * u, dx[Vr]), c[vrmin], c[vrmax]);
+    Dc::excite(c, x, vr, s, dx);
+    if constexpr (Model::ends_at_zero) s.Efd = positive_part(s.Efd);
+  }
+  template <class T>
+  static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
+    const std::string why = Dc::steady_exciter(p, c, s, x);
+    if (!why.empty()) return why;
+    x[leadlag] = x[Vr] / p[KA];
+    c[Vref] = x[leadlag] + s.Vc - s.Vs - s.Vlimiter;
+    return {};
+  }
+};
+
+}  // namespace swingbank::sim::effects::shared

@@ -1,0 +1,60 @@
+#pragma once
+// ESDC2A: EXDC2 with a field voltage that ends at zero.
+#include "sim/effects/exciter_exdc2.hpp"
+
+namespace swingbank::sim::effects::exciter_esdc2a {
+
+struct Model {
+  using B = exciter_exdc2::Model;
+  static constexpr std::string_view name = "ESDC2A",
+                                    title = "rotating DC exciter with terminal-fed regulator, type DC2A",
+                                    source =
+                                        "IEEE Std 421.5-2005, 5.2, type DC2A; PSS/E ESDC2A; the end at "
+                                        "zero: OpenIPSL, ESDC2A",
+                                    dyr_name = "ESDC2A";
+  static constexpr Slot slot = Slot::exciter;
+  static constexpr std::string_view variant_of = "EXDC2";
+  static constexpr std::string_view description = R"(
+  As EXDC2, with Efd >= 0, non-windup:
+  Vc --> [ 1/(1 + s TR) ] --> Vm
+  Vref + dVref - Vm + Vs + Vlimiter - Vf --> [ (1 + s TC)/(1 + s TB) ] --> [ KA/(1 + s TA) ] --> Vr
+         Vr: [V VRMIN, V VRMAX]; its lag follows a limit within 2 ms, so it does not wind up
+  TE dEfd/dt = Vr - KE Efd - Efd Se(Efd), Efd >= 0         Vf = s KF/(1 + s TF) Efd
+  Efd Se(Efd) = B (Efd - A)^2 above A through (E1, SE1), (E2, SE2)
+  VRMAX = 0: VRMAX = (SE2 + KE) E2 (KE left out unless positive), VRMIN = -VRMAX
+  KE = 0: KE = VRMAX/(10 Efd) - Se(Efd) at the operating point, which puts Vr at a tenth of VRMAX
+)";
+  static constexpr std::span<const Parameter> parameters{B::parameters};
+  static constexpr std::span<const int> dyr_columns{B::dyr_columns};
+  static constexpr Source standards_from = B::standards_from, bounds_from = B::bounds_from;
+  enum C { none = B::coefficients, coefficients };
+  static constexpr auto kStates = [] {
+    std::array<State, std::size(B::states)> all{};
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = B::states[i];
+    all[B::Efd].low = none;
+    return all;
+  }();
+  static constexpr std::span<const State> states = kStates;
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    B::check(p, where, problems);
+  }
+  static std::string_view unphysical(const double*) { return ""; }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions& conventions, T* c) {
+    B::prepare(p, conventions, c);
+    c[none] = T(0.0);
+  }
+  template <class T>
+  static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
+    B::evaluate(c, x, s, dx);
+    s.Efd = positive_part(s.Efd);
+  }
+  template <class T>
+  static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
+    return B::steady(p, c, s, x);
+  }
+};
+
+}  // namespace swingbank::sim::effects::exciter_esdc2a

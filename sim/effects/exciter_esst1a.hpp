@@ -1,0 +1,192 @@
+#pragma once
+// ESST1A: static excitation fed from the machine's terminal, with two lead-lags and a field-current limiter.
+#include <fmt/format.h>
+
+#include "sim/core/blocks.hpp"
+#include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
+
+namespace swingbank::sim::effects::exciter_esst1a {
+
+struct Model {
+  static constexpr std::string_view name = "ESST1A", title = "static excitation system, type ST1A",
+                                    source = "IEEE Std 421.5-2005, 7.1, type ST1A; PSS/E ESST1A",
+                                    dyr_name = "ESST1A";
+  static constexpr Slot slot = Slot::exciter;
+  static constexpr std::string_view variant_of = "EXST1";
+  static constexpr std::string_view description = R"(
+  Vc --> [ 1/(1 + s TR) ] --> Vm
+  Vref + dVref - Vm + Vs (VOS = 1) + Vlimiter - Vf --> [VIMIN, VIMAX] --> [ (1 + s TC)/(1 + s TB) ]
+         --> [ (1 + s TC1)/(1 + s TB1) ] --> [ KA/(1 + s TA) ] --> Va, [VAMIN, VAMAX] non-windup
+  u = Va + Vs (VOS = 2) - max(KLR (Ifd - ILR), 0)
+  u --> [V VRMIN, V VRMAX - KC Ifd] --> Efd         Vf = s KF/(1 + s TF) u
+  An under-excitation limiter adds to the error (UEL = 1); gates of other limiters (UEL = 2, 3) are not there.
+)";
+  enum P {
+    UEL,
+    VOS,
+    TR,
+    VIMAX,
+    VIMIN,
+    TC,
+    TB,
+    TC1,
+    TB1,
+    KA,
+    TA,
+    VAMAX,
+    VAMIN,
+    VRMAX,
+    VRMIN,
+    KC,
+    KF,
+    TF,
+    KLR,
+    ILR
+  };
+  static constexpr Source kNone = literature::own("off; 999 stands for none in the case files");
+  static constexpr Source standards_from = literature::own("as EXST1's");
+  static constexpr Source bounds_from = shared::kBeyondCases;
+  static constexpr Parameter parameters[] = {
+      {"UEL", "UEL", "code", 1.0, 1.0, 3.0, kNoNeutral, "where an under-excitation limiter enters", kAsEffect,
+       shared::kCode},
+      {"VOS", "VOS", "code", 1.0, 1.0, 2.0, kNoNeutral,
+       "where the stabiliser enters: 1 at the error, 2 behind the regulator", kAsEffect, shared::kCode},
+      {"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)"},
+      {"VIMAX", "VIMAX", "pu", 5.0, 0.0, 1000.0, kNoNeutral, "upper limit of the voltage error"},
+      {"VIMIN", "VIMIN", "pu", -5.0, -1000.0, 0.0, kNoNeutral, "lower limit of the voltage error"},
+      {"TC", "TC", "s", 1.0, 0.0, 30.0, kNoNeutral, "first lead"},
+      {"TB", "TB", "s", 10.0, 0.0, 100.0, kNoNeutral, "first lag (0: bypass)"},
+      {"TC1", "TC1", "s", 0.08, 0.0, 30.0, kNoNeutral, "second lead", literature::openipsl("test of ESST1A")},
+      {"TB1", "TB1", "s", 0.083, 0.0, 100.0, kNoNeutral, "second lag (0: bypass)",
+       literature::openipsl("test of ESST1A")},
+      {"KA", "KA", "pu", 200.0, 1.0, 2000.0, kNoNeutral, "gain"},
+      {"TA", "TA", "s", 0.02, 0.0, 2.0, kNoNeutral, "regulator time constant (0: none)"},
+      {"VAMAX", "VAMAX", "pu", 99.0, 0.0, 1000.0, kNoNeutral, "upper limit of the regulator", kNone},
+      {"VAMIN", "VAMIN", "pu", -99.0, -1000.0, 0.0, kNoNeutral, "lower limit of the regulator", kNone},
+      {"VRMAX", "VRMAX", "pu", 6.0, 0.5, 100.0, kNoNeutral, "upper ceiling at rated voltage"},
+      {"VRMIN", "VRMIN", "pu", -5.0, -100.0, 0.5, kNoNeutral, "lower ceiling at rated voltage"},
+      {"KC", "KC", "pu", 0.05, 0.0, 1.0, 0.0, "upper ceiling's drop by field current"},
+      {"KF", "KF", "pu", 0.0, 0.0, 1.0, 0.0, "rate feedback"},
+      {"TF", "TF", "s", 1.0, 0.0, 20.0, kNoNeutral, "rate feedback's time constant"},
+      {"KLR", "KLR", "pu", 0.0, 0.0, 100.0, 0.0, "gain of the field-current limiter", kNone},
+      {"ILR", "ILR", "pu", 4.4, 0.0, 100.0, kNoNeutral, "field current that it begins at",
+       literature::openipsl("ESST1A, defaults")}};
+  static constexpr int dyr_columns[] = {UEL, VOS,   TR,    VIMAX, VIMIN, TC, TB, TC1, TB1, KA,
+                                        TA,  VAMAX, VAMIN, VRMAX, VRMIN, KC, KF, TF,  KLR, ILR};
+  enum C {
+    iTR,
+    vimax,
+    vimin,
+    lead,
+    iTB,
+    lead1,
+    iTB1,
+    gain,
+    iTA,
+    vamax,
+    vamin,
+    vrmax,
+    vrmin,
+    drop,
+    feedback,
+    iTF,
+    klr,
+    ilr,
+    behind,  ///< 1: the stabiliser enters behind the regulator
+    Vref,
+    coefficients
+  };
+  enum X { Vm, leadlag, leadlag1, Va, rate };
+  static constexpr State states[] = {
+      {"Vm", "pu", "measured voltage", 1.0, -1, -1, {iTR}},
+      {.name = "leadlag",
+       .unit = "pu",
+       .meaning = "state of the first lead-lag",
+       .moved_by = {iTB},
+       .bends = true},
+      {.name = "leadlag1",
+       .unit = "pu",
+       .meaning = "state of the second lead-lag",
+       .moved_by = {iTB1},
+       .bends = true},
+      {.name = "Va", .unit = "pu", .meaning = "regulator output", .low = vamin, .high = vamax, .bends = true},
+      {"rate", "pu", "state of the rate feedback", 1.0, -1, -1, {iTF}}};
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
+      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
+    };
+    const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
+    bad(p[UEL] != 1 && p[UEL] != 2 && p[UEL] != 3, says(UEL), "it is a code", "give 1, 2 or 3");
+    bad(p[VOS] != 1 && p[VOS] != 2, says(VOS), "it is a code", "give 1 or 2");
+    bad(!(p[KA] > 0), says(KA), "no gain, no exciter", "give KA > 0");
+    for (int i : {TR, TB, TB1, TA, TF})
+      bad(!(p[i] >= 0), says(i) + " s", "a time constant", "give a value >= 0");
+    bad(p[KF] != 0 && !(p[TF] > 0), says(KF) + " with " + says(TF) + " s",
+        "a derivative needs a time constant", "give TF > 0, or KF = 0");
+    bad(p[KF] != 0 && !(p[TA] > 0), says(KF) + " with " + says(TA) + " s",
+        "the rate feedback would act on itself", "give TA > 0, or KF = 0");
+    bad(!(p[KLR] >= 0), says(KLR), "it would raise the field current", "give KLR >= 0");
+    for (const auto& [most, least] : {std::pair{VIMAX, VIMIN}, {VAMAX, VAMIN}, {VRMAX, VRMIN}})
+      bad(!(p[most] > p[least]), says(most) + " pu with " + says(least) + " pu", "there must be room to move",
+          fmt::format("give {} > {}", parameters[most].symbol, parameters[least].symbol));
+  }
+  static std::string_view unphysical(const double*) { return ""; }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions&, T* c) {
+    c[iTR] = inverse(p[TR]);
+    c[vimax] = p[VIMAX];
+    c[vimin] = p[VIMIN];
+    c[lead] = p[TC];
+    c[iTB] = inverse(p[TB]);
+    c[lead1] = p[TC1];
+    c[iTB1] = inverse(p[TB1]);
+    c[gain] = p[KA];
+    c[iTA] = inverse(p[TA]);
+    c[vamax] = p[VAMAX];
+    c[vamin] = p[VAMIN];
+    c[vrmax] = p[VRMAX];
+    c[vrmin] = p[VRMIN];
+    c[drop] = p[KC];
+    c[iTF] = inverse(p[TF]);
+    c[feedback] = p[KF] * c[iTF];
+    c[klr] = p[KLR];
+    c[ilr] = p[ILR];
+    c[behind] = p[VOS] - T(1.0);
+  }
+  /// What is added to the regulator's output.
+  template <class T>
+  static T beside(const T* c, const Signals<T>& s) {
+    return c[behind] * s.Vs - positive_part(c[klr] * (s.Ifd - c[ilr]));
+  }
+  template <class T>
+  static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
+    const T measured = lag(c[iTR], x[Vm], s.Vc, dx[Vm]);
+    const T other = beside(c, s);
+    // Without a lag the regulator's output is not known yet; the rate feedback is off then.
+    const T fed = c[feedback] * washout(c[iTF], x[rate], x[Va] + other, dx[rate]);
+    const T error = c[Vref] + s.dVref - measured + (T(1.0) - c[behind]) * s.Vs + s.Vlimiter - fed;
+    const T limited = clamp(error, c[vimin], c[vimax]);
+    const T u = lead_lag(c[lead], c[iTB], x[leadlag], limited, dx[leadlag]);
+    const T u1 = lead_lag(c[lead1], c[iTB1], x[leadlag1], u, dx[leadlag1]);
+    const T va = clamp(lag(c[iTA], x[Va], c[gain] * u1, dx[Va]), c[vamin], c[vamax]);
+    s.Efd = clamp(va + other, s.V * c[vrmin], s.V * c[vrmax] - c[drop] * s.Ifd);
+  }
+  template <class T>
+  static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
+    x[Vm] = s.Vc;
+    x[Va] = s.Efd - beside(c, s);
+    x[rate] = s.Efd;
+    x[leadlag] = x[leadlag1] = x[Va] / p[KA];
+    const double needed = value_of(x[leadlag]);
+    if (needed > value_of(p[VIMAX]) || needed < value_of(p[VIMIN]))
+      return fmt::format("an error of {:.4f} pu is needed and VIMIN, VIMAX are {:g}, {:g} pu", needed,
+                         value_of(p[VIMIN]), value_of(p[VIMAX]));
+    c[Vref] = x[leadlag] + s.Vc - (T(1.0) - c[behind]) * s.Vs - s.Vlimiter;
+    return {};
+  }
+};
+
+}  // namespace swingbank::sim::effects::exciter_esst1a

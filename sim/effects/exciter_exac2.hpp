@@ -1,0 +1,133 @@
+#pragma once
+// EXAC2: brushless exciter with a fast inner loop and a limiter of the alternator's field.
+#include <algorithm>
+
+#include "sim/effects/detail/alternator_rectifier.hpp"
+
+namespace swingbank::sim::effects::exciter_exac2 {
+
+struct Model : shared::AlternatorRectifier<Model> {
+  static constexpr std::string_view
+      name = "EXAC2",
+      title = "high-response alternator-rectifier excitation system, type AC2 of 1981",
+      source = "IEEE Committee Report, Excitation system models (1981), AC2; PSS/E EXAC2", dyr_name = "EXAC2";
+  static constexpr std::string_view variant_of = "EXAC1";
+  static constexpr std::string_view description = R"(
+  Vc --> [ 1/(1 + s TR) ] --> Vm
+  Vref + dVref - Vm + Vs + Vlimiter - Vf --> [ (1 + s TC)/(1 + s TB) ] --> [ KA/(1 + s TA) ] --> Va
+         Va: [VAMIN, VAMAX], non-windup          Vr = KB min(Va - KH Vfe, KL (VLR - Vfe)) within [VRMIN, VRMAX]
+  TE dVe/dt = Vr - Vfe, Ve >= 0                  Vfe = KE Ve + Ve Se(Ve) + KD Ifd
+  Vf = s KF/(1 + s TF) Vfe
+  Efd = Ve FEX(IN), IN = KC Ifd/Ve               FEX = 1 - IN/sqrt(3)         IN <= sqrt(3)/4
+                                                       sqrt(3/4 - IN^2)       IN <= 3/4
+                                                       sqrt(3) (1 - IN)       IN <= 1, 0 beyond
+  Ve Se(Ve) = B (Ve - A)^2 above A through (E1, SE1), (E2, SE2)
+)";
+  enum { VRMAX = parameter_count, VRMIN, KB, KL, KH, VLR, all_parameters };
+  static constexpr Source kDefault = literature::openipsl("EXAC2, defaults");
+  static constexpr auto parameters = [] {
+    constexpr auto common = parameters_with(
+        {"VAMAX", "VAMAX", "pu", 14.5, 0.0, 1000.0, kNoNeutral, "upper limit of the regulator"},
+        {"VAMIN", "VAMIN", "pu", -14.5, -1000.0, 0.0, kNoNeutral, "lower limit of the regulator"});
+    std::array<Parameter, all_parameters> all{};
+    std::copy(common.begin(), common.end(), all.begin());
+    all[VRMAX] = {"VRMAX",
+                  "VRMAX",
+                  "pu",
+                  95.0,
+                  0.0,
+                  1000.0,
+                  kNoNeutral,
+                  "upper limit of the alternator's field voltage",
+                  literature::cim("ExcIEEEAC2A, VRMAX near 105")};
+    all[VRMIN] = {"VRMIN",
+                  "VRMIN",
+                  "pu",
+                  -95.0,
+                  -1000.0,
+                  0.0,
+                  kNoNeutral,
+                  "lower limit of the alternator's field voltage",
+                  literature::cim("ExcIEEEAC2A, VRMIN = -95")};
+    all[KB] = {"KB", "KB", "pu", 1.0, 0.01, 1000.0, kNoNeutral, "gain of the second stage", kDefault};
+    all[KL] = {"KL",
+               "KL",
+               "pu",
+               1.0,
+               0.0,
+               1000.0,
+               kNoNeutral,
+               "gain of the field limiter",
+               literature::andes("EXAC2, commit 12dec4e")};
+    all[KH] = {"KH",    "KH", "pu", 0.0, 0.0, 100.0, 0.0, "feedback of the alternator's field current",
+               kDefault};
+    all[VLR] = {"VLR",
+                "VLR",
+                "pu",
+                20.0,
+                0.0,
+                1000.0,
+                kNoNeutral,
+                "field current that the limiter ends at",
+                literature::own("beyond what the standard alternator needs to force")};
+    return all;
+  }();
+  static constexpr int dyr_columns[] = {TR, TB, TC, KA, TA, UPPER, LOWER, KB, VRMAX, VRMIN, TE, KL,
+                                        KH, KF, TF, KC, KD, KE,    VLR,   E1, SE1,   E2,    SE2};
+  enum { vrmax = alternator, vrmin, kb, kl, kh, vlr, coefficients };
+  static constexpr State states[] = {
+      {"Vm", "pu", "measured voltage", kErrorWeight, -1, -1, {iTR}},
+      {"leadlag", "pu", "state of the lead-lag", kErrorWeight, -1, -1, {iTB}},
+      {"Va", "pu", "regulator output", 1.0, lower, upper},
+      {.name = "Ve", .unit = "pu", .meaning = "voltage behind the rectifier", .low = none, .bends = true},
+      {"rate", "pu", "state of the rate feedback", kErrorWeight}};
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    AlternatorRectifier::check(p, where, problems);
+    const auto says = [&](int i) {
+      return fmt::format("{} = {:g}", parameters[static_cast<std::size_t>(i)].symbol, p[i]);
+    };
+    if (!(p[VRMAX] > p[VRMIN]))
+      problems.add(says(VRMAX) + " pu with " + says(VRMIN) + " pu", where,
+                   "the alternator's field must have room to move", "give VRMAX > VRMIN");
+    if (!(p[KB] > 0)) problems.add(says(KB), where, "no gain, no exciter", "give KB > 0");
+    if (!(p[KL] > 0))
+      problems.add(says(KL), where, "the limiter's gate would stand at zero for ever",
+                   "give KL > 0, and a large VLR for no limiter");
+    if (!(p[KH] >= 0)) problems.add(says(KH), where, "the inner loop would be unstable", "give KH >= 0");
+  }
+  template <class T>
+  static void prepare(const T* p, const Conventions& conventions, T* c) {
+    AlternatorRectifier::prepare(p, conventions, c);
+    c[vrmax] = p[VRMAX];
+    c[vrmin] = p[VRMIN];
+    c[kb] = p[KB];
+    c[kl] = p[KL];
+    c[kh] = p[KH];
+    c[vlr] = p[VLR];
+  }
+  template <class T>
+  static T field_input(const T* c, const T& output, const T& Vfe) {
+    const T wanted = output - c[kh] * Vfe, most = c[kl] * (c[vlr] - Vfe);
+    return clamp(c[kb] * select(wanted < most, wanted, most), c[vrmin], c[vrmax]);
+  }
+  template <class T>
+  static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
+    const std::string why = AlternatorRectifier::steady(p, c, s, x);
+    if (!why.empty()) return why;
+    const T Vfe = x[rate], inner = Vfe / p[KB];
+    const double needed = value_of(Vfe), most = value_of(p[KL] * (p[VLR] - Vfe));
+    if (needed > value_of(p[VRMAX]) || needed < value_of(p[VRMIN]))
+      return fmt::format("Vr = {:.4f} pu is needed and VRMIN, VRMAX are {:g}, {:g} pu", needed,
+                         value_of(p[VRMIN]), value_of(p[VRMAX]));
+    if (value_of(inner) > most)
+      return fmt::format("{:.4f} pu is needed before KB and the limiter allows KL (VLR - Vfe) = {:.4f} pu",
+                         value_of(inner), most);
+    x[regulator] = inner + p[KH] * Vfe;
+    x[leadlag] = x[regulator] / p[KA];
+    c[Vref] = x[leadlag] + s.Vc - s.Vs - s.Vlimiter;
+    return {};
+  }
+};
+
+}  // namespace swingbank::sim::effects::exciter_exac2

@@ -1,0 +1,99 @@
+#pragma once
+// TGOV3: IEEEG1's governor with a reheater whose pressure has an upper limit.
+#include "sim/effects/governor_ieeeg1.hpp"
+
+namespace swingbank::sim::effects::governor_tgov3 {
+
+struct Model {
+  using B = governor_ieeeg1::Model;
+  static constexpr std::string_view name = "TGOV3",
+                                    title = "steam turbine with a limited reheater and governor",
+                                    source =
+                                        "IEEE PES-TR1 (2013), 2.3; PSS/E TGOV3; the reheater: Modelica "
+                                        "ePHASOR components (OPAL-RT), TGOV3",
+                                    dyr_name = "TGOV3";
+  static constexpr Slot slot = Slot::governor;
+  static constexpr std::string_view variant_of = "IEEEG1";
+  static constexpr std::string_view description = R"(
+                                                       UO       PMAX
+  w --> [ K (1 + s T2)/(1 + s T1) ] --(-)--> (+) --> [ 1/T3 ]--> [ 1/s ] --valve--> [ 1/(1 + s T4) ] --x4-->
+                        Pref + dPref --(+)   -valve    UC       PMIN
+  T5 dx5/dt = x4 - x5, x5 <= PRMAX non-windup      (reheater; the intercept valve stands open)
+  x5 --> [ 1/(1 + s T6) ] --x6                     Pm = K1 x4 + K2 x5 + K3 x6
+  TA, TB and TC time a fast closing of the intercept valve that a person starts: kept for files, without effect.
+)";
+  enum P { K, T1, T2, T3, UO, UC, PMAX, PMIN, T4, K1, T5, K2, T6, K3, TA, TB, TC, PRMAX, parameter_count };
+  static constexpr Source standards_from = B::standards_from, bounds_from = B::bounds_from;
+  /// IEEEG1's parameter in the place of each of the first.
+  static constexpr int kAs[] = {B::K,    B::T1, B::T2, B::T3, B::UO, B::UC, B::PMAX,
+                                B::PMIN, B::T4, B::K1, B::T5, B::K3, B::T6, B::K5};
+  static constexpr Source kTimes = literature::own("a fast closing within a second");
+  static constexpr auto parameters = [] {
+    std::array<Parameter, parameter_count> all{};
+    for (std::size_t i = 0; i < std::size(kAs); ++i) all[i] = B::parameters[kAs[i]];
+    all[K2].name = all[K2].symbol = "K2";
+    all[K3].name = all[K3].symbol = "K3";
+    all[T5].low = all[T6].low = 0.01;
+    constexpr std::string_view names[] = {"TA", "TB", "TC"};
+    for (int i = TA; i <= TC; ++i)
+      all[static_cast<std::size_t>(i)] = {
+          names[i - TA], names[i - TA], "s",        i == TB ? 0.2 : 0.0,
+          0.0,           100.0,         kNoNeutral, "time of a fast closing; without effect",
+          kTimes};
+    all[PRMAX] = {"PRMAX",
+                  "PRMAX",
+                  "pu",
+                  1.2,
+                  0.1,
+                  10.0,
+                  kNoNeutral,
+                  "upper limit of the reheater's pressure",
+                  literature::own("a fifth above rated")};
+    return all;
+  }();
+  static constexpr auto dyr_columns = [] {
+    std::array<int, parameter_count> list{};
+    for (int i = 0; i < parameter_count; ++i) list[static_cast<std::size_t>(i)] = i;
+    return list;
+  }();
+  enum C { most = B::coefficients, coefficients };
+  static constexpr auto states = [] {
+    std::array<State, std::size(B::states)> all{};
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = B::states[i];
+    all[B::reheat].high = most;
+    return all;
+  }();
+
+  template <class T>
+  static std::array<T, B::db + 1> as_ieeeg1(const T* p) {
+    std::array<T, B::db + 1> q;
+    q.fill(T(0.0));
+    for (std::size_t i = 0; i < std::size(kAs); ++i) q[static_cast<std::size_t>(kAs[i])] = p[i];
+    return q;
+  }
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    B::check_as(name, as_ieeeg1(p).data(), where, problems);
+    for (const int i : {T5, T6, PRMAX})
+      if (!(p[i] > 0))
+        problems.add(fmt::format("{} = {:g} {}", parameters[static_cast<std::size_t>(i)].symbol, p[i],
+                                 parameters[static_cast<std::size_t>(i)].unit),
+                     where, "TGOV3 has a reheater", "give a value > 0");
+  }
+  static std::string_view unphysical(const double*) { return ""; }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions& conventions, T* c) {
+    B::prepare(as_ieeeg1(p).data(), conventions, c);
+    c[most] = p[PRMAX];
+  }
+  template <class T>
+  static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
+    B::evaluate(c, x, s, dx);
+  }
+  template <class T>
+  static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
+    return B::steady(as_ieeeg1(p).data(), c, s, x);
+  }
+};
+
+}  // namespace swingbank::sim::effects::governor_tgov3

@@ -1,0 +1,82 @@
+#pragma once
+// STAB2A: the power-sensitive stabiliser of ASEA.
+#include <fmt/format.h>
+
+#include "sim/core/blocks.hpp"
+#include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
+
+namespace swingbank::sim::effects::stabiliser_stab2a {
+
+struct Model {
+  static constexpr std::string_view name = "STAB2A", title = "power-sensitive stabiliser (ASEA)",
+                                    source = "PSS/E STAB2A; OpenIPSL, STAB2A", dyr_name = "STAB2A";
+  static constexpr Slot slot = Slot::stabiliser;
+  static constexpr std::string_view description = R"(
+  P --> -[ K2 s T2/(1 + s T2) ]^3 --> [ K3/(1 + s T3) + K4 ] --> [ K5/(1 + s T5) ]^2 --> [-HLIM, HLIM] --> Vs
+  P: electrical power on the machine's base
+)";
+  enum P { K2, T2, K3, T3, K4, K5, T5, HLIM };
+  static constexpr Source standards_from = literature::own(
+      "washouts of 4 s and an integral above a tenth of a second; no published sample was found");
+  static constexpr Source bounds_from = shared::kNoCases;
+  static constexpr Parameter parameters[] = {
+      {"K2", "K2", "pu", 1.0, 0.0, 100.0, kNoNeutral, "gain of each washout"},
+      {"T2", "T2", "s", 4.0, 0.01, 100.0, kNoNeutral, "time constant of each washout"},
+      {"K3", "K3", "pu", 0.7, 0.0, 100.0, 0.0, "gain of the lagged way"},
+      {"T3", "T3", "s", 2.0, 0.01, 100.0, kNoNeutral, "its time constant"},
+      {"K4", "K4", "pu", 0.1, -100.0, 100.0, 0.0, "gain of the direct way"},
+      {"K5", "K5", "pu", 1.0, 0.0, 100.0, 0.0, "gain of each output lag"},
+      {"T5", "T5", "s", 0.01, 0.0, 10.0, kNoNeutral, "time constant of each output lag (0: none)"},
+      {"HLIM", "HLIM", "pu", 0.05, 0.0, 10.0, kNoNeutral, "limit of Vs on either side"}};
+  static constexpr int dyr_columns[] = {K2, T2, K3, T3, K4, K5, T5, HLIM};
+  enum C { k2, iT2, k3, iT3, k4, k5, iT5, limit, coefficients };
+  enum X { wash1, wash2, wash3, slow, out1, out2 };
+  static constexpr State states[] = {{"wash1", "pu", "state of the first washout"},
+                                     {"wash2", "pu", "state of the second washout"},
+                                     {"wash3", "pu", "state of the third washout"},
+                                     {"slow", "pu", "lagged way"},
+                                     {"out1", "pu", "first output lag", 1.0, -1, -1, {iT5}},
+                                     {"out2", "pu", "second output lag", 1.0, -1, -1, {iT5}}};
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    const auto says = [&](int i) {
+      return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
+    };
+    for (const int i : {T2, T3})
+      if (!(p[i] > 0)) problems.add(says(i), where, "STAB2A divides by it", "give a value > 0");
+    if (!(p[T5] >= 0)) problems.add(says(T5), where, "a time constant", "give T5 >= 0");
+    if (!(p[HLIM] >= 0)) problems.add(says(HLIM), where, "the limits cross", "give HLIM >= 0");
+  }
+  static std::string_view unphysical(const double*) { return ""; }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions&, T* c) {
+    c[k2] = p[K2];
+    c[iT2] = T(1.0) / p[T2];
+    c[k3] = p[K3];
+    c[iT3] = T(1.0) / p[T3];
+    c[k4] = p[K4];
+    c[k5] = p[K5];
+    c[iT5] = inverse(p[T5]);
+    c[limit] = p[HLIM];
+  }
+  template <class T>
+  static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
+    T u = T(0.0) - s.P;
+    for (int i = wash1; i <= wash3; ++i) u = c[k2] * washout(c[iT2], x[i], u, dx[i]);
+    u = c[k4] * u + lag(c[iT3], x[slow], c[k3] * u, dx[slow]);
+    for (int i = out1; i <= out2; ++i) u = lag(c[iT5], x[i], c[k5] * u, dx[i]);
+    s.Vs = clamp(u, T(0.0) - c[limit], c[limit]);
+  }
+  template <class T>
+  static std::string steady(const T*, T* c, Signals<T>& s, T* x) {
+    for (int i = wash2; i <= out2; ++i) x[i] = T(0.0);
+    x[wash1] = T(0.0) - s.P;
+    T dx[std::size(states)];
+    evaluate(c, x, s, dx);
+    return {};
+  }
+};
+
+}  // namespace swingbank::sim::effects::stabiliser_stab2a
