@@ -1,4 +1,4 @@
-// swingbank export: a plant file as the .dyr records that are handed in.
+// swingbank export: a plant file as the .dyr or .dyd records that are handed in.
 #include <fmt/format.h>
 
 #include "base/write_file.hpp"
@@ -12,22 +12,31 @@ using namespace swingbank;
 using namespace swingbank::validate;
 
 struct Arguments {
-  std::string plant, id;
+  std::string plant, dyd, id, bus_name;
   std::filesystem::path out;
   int bus = 0;
+  double kv = 0;
 };
 
 int run(const Arguments& a) {
-  plant::PlantModel model = plant::load_plant_model(a.plant);
+  const bool dyd = !a.dyd.empty();
+  const std::string& file = dyd ? a.dyd : a.plant;
+  if (file.empty())
+    throw InputError(
+        {"no plant file", "--dyr", "something must be written", "give --dyr FILE or --dyd FILE"});
+  plant::PlantModel model = plant::load_plant_model(file);
   jobs::tell(model);
   if (model.submitted)
-    throw InputError({"a model that does not hold", a.plant,
-                      "it comes of a calibration that was not adequate",
+    throw InputError({"a model that does not hold", file, "it comes of a calibration that was not adequate",
                       "diagnose it, and export what 'swingbank add' makes of it"});
   if (a.bus > 0) model.bus = a.bus;
   if (!a.id.empty()) model.id = a.id;
   Problems problems;
-  const std::string text = plant::dyr_text(model, {model.name}, a.plant, problems);
+  const double kv = a.kv > 0 ? a.kv : model.record_base.kv;
+  if (dyd && !(kv > 0))
+    problems.add("no nominal voltage", file, "PSLF wants that of the unit's bus", "give --kv");
+  const std::string text = dyd ? plant::dyd_text(model, {model.name}, {a.bus_name, kv}, file, problems)
+                               : plant::dyr_text(model, {model.name}, file, problems);
   problems.raise();
   if (a.out.empty()) {
     fmt::print("{}", text);
@@ -43,11 +52,14 @@ int run(const Arguments& a) {
 int main(int argc, char** argv) {
   jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank export");
   Arguments a;
-  line.add("--dyr", a.plant,
-           "plant file (configs/plants/README.md), to be written as records of a PSS/E .dyr")
-      .required();
+  const auto dyr = line.add(
+      "--dyr", a.plant, "plant file (configs/plants/README.md), to be written as records of a PSS/E .dyr");
+  line.add("--dyd", a.dyd, "plant file, to be written as lines of a PSLF .dyd").excludes(dyr);
   line.add("--bus", a.bus, "bus number of the records (default: the plant file's)").positive();
   line.add("--id", a.id, "the machine's id there (default: the plant file's, else 1)");
+  line.add("--bus-name", a.bus_name, "name of that bus, of a .dyd");
+  line.add("--kv", a.kv, "its nominal voltage [kV], of a .dyd (default: the plant file's base_kv)")
+      .positive();
   line.add("--out", a.out, "file to write (default: to the terminal)");
   line.footer(
       "What PSS/E keeps in the .raw (MBASE, ZR, ZX, a step-up transformer) is told in comments. Instruments "

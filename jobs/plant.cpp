@@ -1,4 +1,4 @@
-// swingbank plant: one unit of a PSS/E case as a plant file, read from its own records alone.
+// swingbank plant: one unit of a PSS/E or PSLF case as a plant file, read from its own records alone.
 #include <fmt/format.h>
 
 #include <optional>
@@ -14,7 +14,7 @@ using namespace swingbank::validate;
 
 struct Arguments {
   sim::grid::UnitChoice unit;
-  std::filesystem::path out;
+  std::filesystem::path out, dyd;
   std::vector<std::string> replace;
   std::string conventions = "psse";
   int measured_at = 0;
@@ -24,6 +24,13 @@ int run(Arguments& a) {
   Problems problems;
   for (const auto& text : a.replace)
     sim::formats::add_model_map(a.unit.models, text, "--replace " + text, problems);
+  if (!a.dyd.empty()) {
+    a.unit.dyr = a.dyd;
+    a.unit.dyd = true;
+  }
+  if (a.unit.dyr.empty())
+    problems.add("no dynamic models", "--dyr", "a plant is made of the records of its unit",
+                 "give the case's .dyr, or --dyd with its .dyd");
   problems.raise();
   if (a.measured_at > 0) a.unit.measured_at = a.measured_at;
   const sim::grid::Unit unit = sim::grid::read_unit(a.unit);
@@ -53,7 +60,8 @@ int main(int argc, char** argv) {
   jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank plant");
   Arguments a;
   line.add("--raw", a.unit.raw, "network, PSS/E .raw version 32 to 35 or MATPOWER .m").required();
-  line.add("--dyr", a.unit.dyr, "dynamic models, PSS/E .dyr").required();
+  const auto dyr = line.add("--dyr", a.unit.dyr, "dynamic models, PSS/E .dyr");
+  line.add("--dyd", a.dyd, "or PSLF .dyd; configs/networks/README.md lists its models").excludes(dyr);
   line.add("--bus", a.unit.bus, "number of the unit's bus").required().positive();
   line.add("--id", a.unit.id, "the unit's id, where the bus has several");
   line.add("--out", a.out, "plant file to write (default: to the terminal)");

@@ -19,7 +19,12 @@ class UnitReader {
   explicit UnitReader(const UnitChoice& choice) : choice_(choice) {
     survey_ = formats::survey_network(choice.raw, choice.frequency_hz);
     survey_.network.origin = choice.raw.string();
-    dynamics_ = formats::survey_dyr(choice.dyr);
+    if (choice.dyd) {
+      dyd_ = formats::survey_dyd(choice.dyr);
+      dynamics_ = dyd_.dyr;
+    } else {
+      dynamics_ = formats::survey_dyr(choice.dyr);
+    }
   }
   Unit read() {
     find_generator();
@@ -159,7 +164,7 @@ class UnitReader {
     if (!effect)
       return problems_.add(
           fmt::format("unknown model '{}' of unit '{}' at bus {}", name_of(record), unit_.id, unit_.bus),
-          where, "available are " + dyr_names(),
+          where, "available are " + (choice_.dyd ? formats::dyd_models_text() : dyr_names()),
           fmt::format("leave it out with --drop {0}, or let another stand for it with --replace {0}=OTHER "
                       "(under [grid] of a plant file: ignore_models, map_models)",
                       given));
@@ -179,9 +184,29 @@ class UnitReader {
         unit_.notes.push_back(
             fmt::format("{} of line {} read as {}, with its values", given, record.line, effect->dyr_name));
     }
-    take_from_raw(block, generator());
-    std::string warning = place(unit_.plant, std::move(block), {generator(), net().origin}, where, problems_);
+    const network::Generator g = generator_with(record.line);
+    take_from_raw(block, g);
+    std::string warning = place(unit_.plant, std::move(block), {g, net().origin}, where, problems_);
     if (!warning.empty()) unit_.notes.push_back(std::move(warning));
+  }
+  /// The generator, with what a .dyd says of it in a machine's record in place of the .raw.
+  network::Generator generator_with(int line) {
+    network::Generator g = generator();
+    if (const auto note = dyd_.notes.find(line); note != dyd_.notes.end())
+      unit_.notes.push_back(note->second);
+    const auto at = dyd_.machines.find(line);
+    if (at == dyd_.machines.end()) return g;
+    g.zr = at->second.resistance;
+    g.zx = at->second.reactance.value_or(0);  // 0: nothing to compare with
+    if (at->second.mva == unit_.plant.mva) return g;
+    unit_.notes.push_back(
+        fmt::format("the .dyd has the machine on {:g} MVA, {} on {:g} MVA: the former is used",
+                    at->second.mva, net().origin, unit_.plant.mva));
+    if (plant::Block& transformer = unit_.plant.transformer; transformer.effect)
+      for (const char* name : {"R", "X"})
+        UnitReader::at(transformer, name) *= at->second.mva / unit_.plant.mva;
+    unit_.plant.mva = at->second.mva;
+    return g;
   }
   /// A name that the unit does not have is a slip if the file has it nowhere.
   void check_options() {
@@ -296,6 +321,7 @@ class UnitReader {
   const UnitChoice& choice_;
   formats::RawSurvey survey_;
   formats::DyrSurvey dynamics_;
+  formats::DydSurvey dyd_;  ///< empty where the records are a .dyr's
   int generator_ = -1;
   Unit unit_;
   std::set<std::string> found_;  ///< models of the unit

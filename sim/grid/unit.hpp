@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/formats/dyd.hpp"
 #include "sim/formats/psse.hpp"
 #include "sim/plant/plant.hpp"
 
@@ -22,6 +23,7 @@ struct UnitChoice {
   /// with the other's standard values.
   formats::DyrOptions models = {};
   std::optional<int> measured_at = {};  ///< a bus beyond the unit's transformer, where its records were taken
+  bool dyd = false;                     ///< `dyr` is a .dyd of PSLF (formats::survey_dyd)
 };
 
 /// The unit's plant, without a network: `bus` and `generator` of it are -1.
@@ -44,5 +46,10 @@ Unit read_unit(const UnitChoice& choice);
 /// which belong to a record, are left out.
 std::string unit_dyr(const plant::Plant& plant, int bus, const std::string& id, const std::string& where,
                      Problems& problems);
+
+/// The same as lines of a PSLF .dyd, values on the machine's base; a model without counterpart becomes a
+/// problem too (formats::dyd_models_text names those that have one).
+std::string unit_dyd(const plant::Plant& plant, int bus, const std::string& id,
+                     const formats::DydPlace& place, const std::string& where, Problems& problems);
 
 }  // namespace swingbank::sim::grid

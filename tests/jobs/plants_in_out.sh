@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# swingbank inventory, plant and export: a unit out of its case and back as records, and cases of others where they lie
-# beside $SWINGBANK_REFERENCE.
+# swingbank inventory, plant and export: a unit out of its case and back as records of PSS/E and of PSLF, and cases of
+# others where they lie beside $SWINGBANK_REFERENCE.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 networks=$SWINGBANK_SOURCE/configs/networks
@@ -15,6 +15,25 @@ cmp <(grep -v '^#' "$work/plant.toml") <(grep -v '^#' "$work/again.toml") || fai
 "$swingbank" plant --raw "$raw" --dyr "$dyr" --bus 32 2>/dev/null | cmp - "$work/plant.toml" || fail "--out writes something else than is printed"
 cmp <("$swingbank" export --dyr "$work/plant.toml") "$work/plant.dyr" || fail "export --out writes something else than is printed"
 "$swingbank" export --dyr "$work/plant.toml" --bus 7 --id B | grep -q "^7 'GENROU' 'B' " || fail "export --bus --id"
+
+# Out as PSLF's and back: the same plant, with controls; the .dyd's Ra and mva count.
+{
+  cat "$work/plant.toml"
+  "$swingbank" effects --toml SEXS TGOV1
+} >"$work/controlled.toml"
+"$swingbank" export --dyd "$work/controlled.toml" --bus-name NORTH --kv 20 >"$work/plant.dyd"
+grep -qE '^genrou +32 "NORTH +" 20 "1 " : #9 mva=[0-9.]+ "tpdo" ' "$work/plant.dyd" || fail "export --dyd: $(cat "$work/plant.dyd")"
+"$swingbank" plant --raw "$raw" --dyd "$work/plant.dyd" --bus 32 >"$work/again.toml" 2>"$work/notes" || fail "plant --dyd: $(cat "$work/notes")"
+values() { sed 's/ *#.*//; /^$/d; /^origin/d; /^base_kv/d; /^name/d' "$1" | sort; } # blocks in whatever order
+cmp <(values "$work/controlled.toml") <(values "$work/again.toml") || fail "the plant is another after the way through PSLF"
+sed 's/"ra" [^ ]*/"ra" 0.004/; s/mva=[^ ]*/mva=450/' "$work/plant.dyd" >"$work/other.dyd"
+"$swingbank" plant --raw "$raw" --dyd "$work/other.dyd" --bus 32 2>"$work/notes" | grep -qE '^Ra = 0.004 ' || fail "the .dyd's Ra does not count"
+grep -q '450 MVA' "$work/notes" || fail "it does not say that the base is the .dyd's: $(cat "$work/notes")"
+sed 's/"xcomp" [^ ]*/"xcomp" -0.05/' "$work/plant.dyd" >"$work/other.dyd"
+refuses "a compensated machine" "xcomp = -0.05 of genrou .*other.dyd" "$swingbank" plant --raw "$raw" --dyd "$work/other.dyd" --bus 32
+refuses "neither" "no dynamic models" "$swingbank" plant --raw "$raw" --bus 32
+sed '/^base_kv/d' "$work/controlled.toml" >"$work/no_kv.toml"
+refuses "no kV" "no nominal voltage" "$swingbank" export --dyd "$work/no_kv.toml"
 
 # Unknown records of others do not matter; its own are named with their line, and dropped or replaced.
 {

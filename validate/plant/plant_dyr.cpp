@@ -16,20 +16,34 @@ std::vector<const sim::plant::Block*> dyr_blocks(const PlantModel& model) {
   return all;
 }
 
-}  // namespace
-
-std::string dyr_text(const PlantModel& model, const std::vector<std::string>& head, const std::string& where,
-                     Problems& problems) {
+void check_bus(const PlantModel& model, const std::string& where, Problems& problems) {
   if (model.bus <= 0)
-    problems.add("no bus number", where, "each record of a .dyr begins with it",
+    problems.add("no bus number", where, "each record begins with it",
                  "write bus and id under [plant], or give --bus and --id");
+}
+
+std::string comments(const std::vector<std::string>& head, const std::string& mark) {
   std::string text;
   for (std::string line : head) {
     std::ranges::replace_if(
         line, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
-    text += "// " + line + "\n";
+    text += mark + line + "\n";
   }
-  return text + sim::grid::unit_dyr(model.plant, model.bus, model.id, where, problems);
+  return text;
+}
+
+}  // namespace
+
+std::string dyr_text(const PlantModel& model, const std::vector<std::string>& head, const std::string& where,
+                     Problems& problems) {
+  check_bus(model, where, problems);
+  return comments(head, "// ") + sim::grid::unit_dyr(model.plant, model.bus, model.id, where, problems);
+}
+
+std::string dyd_text(const PlantModel& model, const std::vector<std::string>& head,
+                     const sim::formats::DydPlace& place, const std::string& where, Problems& problems) {
+  check_bus(model, where, problems);
+  return comments(head, "# ") + sim::grid::unit_dyd(model.plant, model.bus, model.id, place, where, problems);
 }
 
 std::vector<std::string> changed_blocks(const PlantModel& before, const PlantModel& model) {

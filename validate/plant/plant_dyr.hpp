@@ -1,5 +1,5 @@
 #pragma once
-// A plant model as records of a PSS/E .dyr: what is handed in.
+// A plant model as records of a PSS/E .dyr or a PSLF .dyd: what is handed in.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -12,6 +12,11 @@ namespace swingbank::validate::plant {
 /// messages. No bus number, a law and a value without a column become problems.
 std::string dyr_text(const PlantModel& model, const std::vector<std::string>& head, const std::string& where,
                      Problems& problems);
+
+/// The same as lines of a PSLF .dyd, with what PSLF asks for beside: the bus's name and its nominal voltage
+/// [kV].
+std::string dyd_text(const PlantModel& model, const std::vector<std::string>& head,
+                     const sim::formats::DydPlace& place, const std::string& where, Problems& problems);
 
 /// The names of the blocks whose values differ from `before`, and of those it does not have.
 std::vector<std::string> changed_blocks(const PlantModel& before, const PlantModel& model);
