@@ -172,8 +172,8 @@ std::string own_values(const Addition& a) {
   std::string text;
   for (int i = 0; i < a.own; ++i) {
     const auto& p = a.parameters[static_cast<std::size_t>(i)];
-    text += fmt::format("{}{} = {:.4g} {} ({:.4g} to {:.4g})", text.empty() ? "" : ", ", p.name, p.value,
-                        p.unit, p.low, p.high);
+    text += fmt::format("{}{} = {:.4g}{} ({:.4g} to {:.4g})", text.empty() ? "" : ", ", p.name, p.value,
+                        p.unit == "-" ? std::string() : " " + std::string(p.unit), p.low, p.high);
   }
   return text;
 }
@@ -194,6 +194,7 @@ std::string sentence_of(const Addition& a) {
       "{} {}: on {} chi2 per value goes from {:.3g} ({:.3g} after refitting without it) to {:.3g}.",
       a.hypothesis.what, a.earns ? "added" : "does not earn its place", where, before / n, without / n,
       after / n);
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
   if (a.own > 0) text += " " + own_values(a) + ".";
   text += a.adequate ? " Nothing but noise is left." : " More than noise is left: something else is missing.";
   return text;

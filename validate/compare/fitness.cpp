@@ -85,9 +85,10 @@ std::vector<report::Cell> cells_of(const std::string& event, const JudgedErrors&
   std::vector<report::Cell> cells = {event, of.channel, std::string(thresholds::phase_name(of.phase))};
   const auto add = [&](double error, double limit, const char* sign) {
     const bool within = std::abs(error) <= limit;
-    cells.emplace_back(
-        std::isfinite(error) ? fmt::format("{:.2f} %{}", error, within ? "" : " *") : "no number *",
-        within ? 0.0 : 1.0);
+    cells.emplace_back(std::isfinite(error) ? fmt::format("{:.2f} %{}", std::abs(error) < 0.005 ? 0.0 : error,
+                                                          within ? "" : " *")
+                                            : "no number *",
+                       within ? 0.0 : 1.0);
     cells.emplace_back(fmt::format("{}{:g} %", sign, limit));
   };
   add(from[0]->errors.mxe, of.limits.mxe, "");

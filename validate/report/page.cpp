@@ -87,9 +87,13 @@ std::string shade_style(double shade) {
                      90 - 10 * s);
 }
 
-/// Words read from the left, numbers from the right.
+/// Words read from the left, numbers from the right. The units "-" and "1/s" are words, a missing number
+/// ("–") is a number.
 bool is_words(const Cell& cell) {
-  return cell.shade < 0 && !cell.text.empty() && std::isalpha(static_cast<unsigned char>(cell.text.front()));
+  if (cell.shade >= 0 || cell.text.empty()) return false;
+  const auto after = cell.text.find_first_not_of("0123456789.");
+  return cell.text == "-" || std::isalpha(static_cast<unsigned char>(cell.text.front())) != 0 ||
+         (after > 0 && after != std::string::npos && cell.text[after] == '/');
 }
 
 /// Six significant digits: more than a screen shows, a third of the size.

@@ -52,6 +52,23 @@ TEST(PageTest, ScriptsOnlyWhereThereAreCurves) {
   EXPECT_NE(page.html().find("[1,null]"), std::string::npos);  // a value that is not finite leaves a gap
   EXPECT_GT(dygraphs_script().size(), 100'000u);
 }
+TEST(PageTest, UnitsAreWords) {
+  Page page("a", "b");
+  page.table({"", {"unit", "value"}, {{"-", "0.1"}, {"1/s", "\u2013"}, {"pu", "12"}}});
+  const std::string html = page.html();
+  for (const char* word : {">-<", ">1/s<", ">pu<"}) {
+    const auto at = html.find(word);
+    ASSERT_NE(at, std::string::npos);
+    EXPECT_NE(html.substr(html.rfind('<', at), at - html.rfind('<', at)).find("words"), std::string::npos)
+        << word;
+  }
+  for (const char* value : {">0.1<", ">\u2013<", ">12<"}) {
+    const auto at = html.find(value);
+    ASSERT_NE(at, std::string::npos);
+    EXPECT_EQ(html.substr(html.rfind('<', at), at - html.rfind('<', at)).find("words"), std::string::npos)
+        << value;
+  }
+}
 TEST(PageTest, MarkdownAndCsvQuote) {
   const Table table{"", {"a", "b"}, {{"x|y", "1,5"}, {"\"q\"", "2"}}};
   EXPECT_EQ(markdown(table), "| a | b |\n| --- | ---: |\n| x\\|y | 1,5 |\n| \"q\" | 2 |\n");
