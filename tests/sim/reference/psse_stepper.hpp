@@ -27,7 +27,8 @@ class PsseStepper {
         f_(y_),
         f_before_(y_),
         fine_f_before_(y_) {
-    if (parts_.size() != 2) throw std::runtime_error("one switching instant is expected");
+    if (parts_.size() < 2 || (parts_.size() > 2 && parts_[2].start <= end))
+      throw std::runtime_error("one switching instant is expected");
     for (const auto& unit : plants_.units())
       std::copy(unit.operating.x.begin(), unit.operating.x.end(), y_.begin() + unit.first);
     for (std::size_t b = 0; b < grid.flow.voltage.size(); ++b) {
@@ -154,8 +155,9 @@ class PsseStepper {
 };
 
 /// Calls see(time, signals, states) of plant `plant` every h seconds until `end` [s], twice at the switching
-/// instant, which is event's only one and a multiple of h. A fourth argument of `see`, if it takes one, is
-/// the real and imaginary voltage of every bus [pu]. `exciter_steps`: how many the exciters take within h.
+/// instant, the only one until then (of the event or of a plant's effects) and a multiple of h. A fourth
+/// argument of `see`, if it takes one, is the real and imaginary voltage of every bus [pu]. `exciter_steps`:
+/// how many the exciters take within h.
 template <class See>
 void step_as_psse(const grid::Grid& grid, const network::Event& event, std::size_t plant, double h,
                   double end, const See& see, int exciter_steps = 1) {
@@ -170,9 +172,10 @@ void step_as_psse(const grid::Grid& grid, const network::Event& event, std::size
   const auto steps = std::lround(end / h);
   for (long k = 0; k <= steps; ++k) {
     const double t = static_cast<double>(k) * h;
-    stepper.derive(t);
+    const bool switches = k == stepper.switching();
+    stepper.derive(switches ? t * (1.0 - 1e-12) : t);  // a set-point has its new value from t on
     show(t);
-    if (k == stepper.switching()) {
+    if (switches) {
       stepper.switch_over(t);
       show(t);
     }
