@@ -39,15 +39,20 @@ bool Neighbours::near_in(std::uint64_t key, const double* x) const {
   return false;
 }
 
-bool Neighbours::near_along(std::size_t axis, std::uint64_t key, const double* x) const {
+bool Neighbours::near_along(std::size_t axis, std::uint64_t key, const double* x, double gap) const {
   if (axis == gridded_) return near_in(key, x);
+  constexpr double reach = 1.0 + 1e-9;  // cells farther off than the distance hold no neighbour
   const std::uint64_t c = cell(x, axis);
-  for (const std::uint64_t at : {c, c - 1, c + 1})
-    if (near_along(axis + 1, (key << kBits) | at, x)) return true;
-  return false;
+  const std::size_t a = order_[axis];
+  const double below = (x[a] - low_[a]) / distance_ - static_cast<double>(c - 1), above = 1.0 - below;
+  if (near_along(axis + 1, (key << kBits) | c, x, gap)) return true;
+  if (const double far = gap + below * below; far < reach)
+    if (near_along(axis + 1, (key << kBits) | (c - 1), x, far)) return true;
+  const double far = gap + above * std::max(above, 0.0);
+  return far < reach && near_along(axis + 1, (key << kBits) | (c + 1), x, far);
 }
 
-bool Neighbours::near(const double* x) const { return near_along(0, 0, x); }
+bool Neighbours::near(const double* x) const { return near_along(0, 0, x, 0.0); }
 
 void Neighbours::add(const double* x) {
   std::uint64_t key = 0;

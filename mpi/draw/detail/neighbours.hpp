@@ -20,7 +20,8 @@ class Neighbours {
  private:
   [[nodiscard]] std::uint64_t cell(const double* x, std::size_t axis) const;
   [[nodiscard]] bool near_in(std::uint64_t key, const double* x) const;
-  [[nodiscard]] bool near_along(std::size_t axis, std::uint64_t key, const double* x) const;
+  /// `gap`: square of the way to the cell so far, in distances.
+  [[nodiscard]] bool near_along(std::size_t axis, std::uint64_t key, const double* x, double gap) const;
 
   std::vector<double> low_;
   double distance_;

@@ -13,11 +13,11 @@ int times_in(const sim::plant::Plant& plant, const sim::Effect& effect) {
 
 namespace {
 std::string objection_to(const sim::plant::Block& block, Policy policy) {
-  Problems problems;
-  block.effect->check(block.effect->law.get(), block.p.data(), "draw", problems);
-  if (policy == Policy::physical)
+  if (policy == Policy::physical)  // first, because most draws end here, and `check` writes sentences
     if (const auto why = block.effect->unphysical(block.p.data()); !why.empty())
       return "not " + std::string(why);
+  Problems problems;
+  block.effect->check(block.effect->law.get(), block.p.data(), "draw", problems);
   return problems.empty() ? "" : "singular: " + problems.list().front().why;
 }
 }  // namespace
