@@ -18,6 +18,28 @@ bool MpiSession::launched() {
   return false;
 }
 
+namespace {
+
+/// Ranks that a launcher of another MPI has started do not find one another: each takes itself for the only
+/// one, and all would do the same work. So it is with a container whose MPI does not fit the host's launcher.
+void require_one_world(int size) {
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}) {
+    const char* text = std::getenv(name);
+    const long started = text == nullptr ? 1 : std::strtol(text, nullptr, 10);
+    if (size > 1 || started <= 1) continue;
+    std::fprintf(
+        stderr,
+        "ranks that do not find one another at the launcher (it says by %s that it started %ld, MPI knows of "
+        "one): start them with the mpirun of the MPI that this program was built with; in a container the "
+        "host's launcher and the container's MPI must both be OpenMPI 4\n",
+        name, started);
+    MPI_Finalize();
+    std::_Exit(EXIT_FAILURE);
+  }
+}
+
+}  // namespace
+
 MpiSession::MpiSession(int* argc, char*** argv) {
   ::setenv("OMPI_MCA_fbtl_posix_read_datasieving", "0", 1);
   if (!launched()) {
@@ -36,6 +58,7 @@ MpiSession::MpiSession(int* argc, char*** argv) {
   MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
   MPI_Comm_size(MPI_COMM_WORLD, &size_);
+  require_one_world(size_);
 }
 
 MpiSession::~MpiSession() {

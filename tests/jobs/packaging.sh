@@ -1,0 +1,66 @@
+#!/usr/bin/env bash
+# packaging/: the Apptainer definition and the Spack package, as far as that goes without Apptainer and Spack; ranks of
+# another MPI's launcher are refused.
+# shellcheck disable=SC2154 # what lib.bash sets
+source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+folder=$SWINGBANK_SOURCE/packaging
+
+for section in post environment test runscript; do
+  { echo '#!/bin/sh'; awk -v wanted="%$section" '/^%/ {on = ($1 == wanted); next} on' "$folder/swingbank.def"; } >"$work/$section.sh"
+  (($(wc -l <"$work/$section.sh") > 1)) || fail "no %$section"
+  sh -n "$work/$section.sh" || fail "%$section is no script"
+  if command -v shellcheck >/dev/null; then shellcheck -s sh -S warning "$work/$section.sh" || fail "%$section"; fi
+done
+grep -q '^From: debian:12$' "$folder/swingbank.def" || fail "not Debian 12"
+preset=$(grep -o 'SWINGBANK_PRESET:-[a-z]*' "$work/post.sh" | head -1 | cut -d- -f2)
+grep -q "\"name\": \"$preset\"" "$SWINGBANK_SOURCE/CMakePresets.json" || fail "no preset $preset"
+grep -q -- --preset "$SWINGBANK_SOURCE/jobs/setup.sh" || fail "jobs/setup.sh has no --preset"
+grep -q '^libopenmpi-dev$' "$SWINGBANK_SOURCE/packages.txt" || fail "another MPI than the rule for hybrid containers says"
+[[ $("$swingbank" effects) == *GENROU* ]] || fail "%test would fail"
+echo "ok: Apptainer definition"
+
+/usr/bin/python3 - "$SWINGBANK_SOURCE" <<'PYTHON' || fail "Spack package"
+import re, sys, types
+root = sys.argv[1]
+said = {"depends_on": [], "variant": [], "version": []}
+class Spec:
+    variants = {"arch": types.SimpleNamespace(value="native"), "dygraphs": types.SimpleNamespace(value="/charts")}
+class CMakePackage:
+    spec = Spec()
+    def define(self, name, value): return (name, value)
+    def define_from_variant(self, name, variant): return (name, variant)
+stub = types.ModuleType("spack.package")
+stub.CMakePackage = CMakePackage
+stub.join_path = lambda *parts: "/".join(parts)
+for name in ("license", "requires", "generator"): setattr(stub, name, lambda *a, **k: None)
+for name in said: setattr(stub, name, lambda *a, _n=name, **k: said[_n].append(a[0]))
+stub.__all__ = [n for n in vars(stub) if not n.startswith("__")]
+sys.modules["spack"] = types.ModuleType("spack")
+sys.modules["spack.package"] = stub
+space = {}
+exec(compile(open(f"{root}/packaging/spack/swingbank/package.py").read(), "package.py", "exec"), space)
+names = {re.split(r"[@ +~]", d)[0] for d in said["depends_on"]}
+text = open(f"{root}/cmake/dependencies.cmake").read() + open(f"{root}/train/CMakeLists.txt").read()
+asked = set(re.findall(r"find_package\((\w+)", text)) | set(re.findall(r"IMPORTED_TARGET (\S+?)\)", text))
+spack = {"Eigen3": "eigen", "SUNDIALS": "sundials", "spdlog": "spdlog", "fmt": "fmt", "tomlplusplus": "tomlplusplus",
+         "CLI11": "cli11", "nlohmann_json": "nlohmann-json", "Ceres": "ceres-solver", "PkgConfig": "pkgconfig", "matio": "matio",
+         "libxxhash": "xxhash", "libcrypto": "openssl", "MPI": "mpi", "HDF5": "hdf5", "Torch": "py-torch", "OpenMP": "cxx"}
+unknown = {a for a in asked if a not in spack}
+assert not unknown, f"CMake asks for {unknown}: say by which Spack package it is met"
+missing = {a for a in asked if spack[a] not in names}
+assert not missing, f"package.py lacks what CMake asks for: {missing}"
+assert len(asked) > 12, asked
+cmake = "".join(open(f"{root}/{f}").read() for f in ("CMakeLists.txt", "validate/CMakeLists.txt"))
+options = [name for name, _ in space["Swingbank"]().cmake_args()]
+for option in options:
+    assert option in cmake, f"CMake has no {option}"
+assert {"arch", "train", "dygraphs"} == set(said["variant"]) and said["version"], said
+PYTHON
+echo "ok: Spack package"
+
+for variable in PMI_SIZE OMPI_COMM_WORLD_SIZE; do
+  refuses "ranks of another launcher ($variable)" "ranks that do not find one another at the launcher .*$variable that it started 4" \
+    env $variable=4 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "$SWINGBANK_BIN/swingbank-generate" \
+    "$SWINGBANK_SOURCE/configs/datasets/ieee39_gencls.toml" --draws 10 --out "$work/data"
+  [[ ! -e $work/data ]] || fail "it has made something"
+done
