@@ -9,6 +9,7 @@
 #include "base/problem.hpp"
 #include "base/stop_signal.hpp"
 #include "jobs/command_line.hpp"
+#include "mpi/draw/simulated_shards.hpp"
 #include "train/run/run.hpp"
 #include "train/runtime/blas_kernels.hpp"
 
@@ -23,10 +24,19 @@ struct TrainingOptions {
   double memory_limit = 8.0;  // [GiB]
   double noise = 0, train_share = 1;
   std::size_t test_rows = 0;
+  std::string simulate;
+  mpi::draw::Overrides simulated;
   bool shuffle_labels = false, save_network = true, trust = false, any_maker = false;
 
   void add_to(jobs::CommandLine& line) {
     line.add("DATASET", dataset, "folder that `swingbank generate` wrote");
+    line.add(
+        "--simulate", simulate,
+        "a dataset's config instead of DATASET: its rows are simulated, reduced and forgotten, on no disk; "
+        "the results are those of the dataset");
+    line.add("--draws", simulated.draws, "with --simulate: events, instead of the config's").positive();
+    line.add("--draw-seed", simulated.seed, "with --simulate: seed of the draws, instead of the config's")
+        .not_negative();
     line.add("--training-rows", training_rows,
              "folder of the experiment's training_dataset, for a network that trains on its rows too");
     line.add("--experiment", experiment, "file of configs/experiments: table, dataset, presets").required();
@@ -58,9 +68,15 @@ struct TrainingOptions {
   /// Throws InputError if an option that a run needs is missing.
   [[nodiscard]] train::run::RunRequest request() const {
     Problems problems;
-    if (dataset.empty())
+    if (dataset.empty() && simulate.empty())
       problems.add("no dataset", "DATASET", "a run needs one",
-                   "give the folder that `swingbank generate` wrote");
+                   "give the folder that `swingbank generate` wrote, or --simulate with a dataset's config");
+    if (!simulate.empty() && !(dataset.empty() && training_rows.empty()))
+      problems.add("two datasets", "--simulate", "rows come from a disk or from memory",
+                   "give one of the two");
+    if (simulate.empty() && (simulated.draws || simulated.seed))
+      problems.add("no config to simulate", "--draws, --draw-seed", "they change a config's",
+                   "give --simulate, or leave them out");
     if (out.empty()) problems.add("no output folder", "--out", "results need a place", "give a folder");
     if (!(noise >= 0 && noise <= 0.1))
       problems.add(fmt::format("a noise level of {}", noise), "--noise", "a level lies between 0 and 0.1",
@@ -96,12 +112,17 @@ struct TrainingOptions {
   }
   [[nodiscard]] train::data::ShardStream open(const train::run::RunRequest& r) const {
     const auto bytes = static_cast<std::uint64_t>(memory_limit * static_cast<double>(std::uint64_t{1} << 30));
+    const train::data::StreamOptions stream{
+        bytes, readers, trust, {r.noise, r.seed, r.experiment.training(preset, r.network).noise_levels}};
+    const train::data::InputRecipe& recipe = r.experiment.input(preset, r.network).recipe;
+    if (!simulate.empty()) {
+      const int makers = threads > 0 ? threads : train::runtime::default_threads();
+      mpi::draw::SimulatedShards shards(mpi::draw::read_dataset_config(simulate, simulated), makers);
+      return {shards.header(), [&] { return shards.next(); }, recipe, stream};
+    }
     std::optional<mpi::store::Dataset> more;
     if (!training_rows.empty()) more = mpi::store::open_dataset(training_rows);
-    return {mpi::store::open_dataset(dataset),
-            r.experiment.input(preset, r.network).recipe,
-            {bytes, readers, trust, {r.noise, r.seed, r.experiment.training(preset, r.network).noise_levels}},
-            more};
+    return {mpi::store::open_dataset(dataset), recipe, stream, more};
   }
 };
 

@@ -32,6 +32,8 @@ std::string hash_of(const std::vector<double>& values) {
 
 }  // namespace
 
+std::string values_hash(const Databank& bank) { return hash_of(bank.values); }
+
 void write_databank(const std::filesystem::path& file, const Databank& bank, const DatasetConfig& config,
                     const sim::plant::Plant& base) {
   std::vector<std::string> names, units, effects;

@@ -6,6 +6,9 @@
 
 namespace swingbank::mpi::draw {
 
+/// XXH3-64 over the values, 16 hex digits.
+std::string values_hash(const Databank& bank);
+
 /// `base`: as for draw_databank. Throws InputError.
 void write_databank(const std::filesystem::path& file, const Databank& bank, const DatasetConfig& config,
                     const sim::plant::Plant& base);

@@ -23,7 +23,9 @@ namespace {
 std::vector<int> numbers(const std::vector<std::int64_t>& v) { return {v.begin(), v.end()}; }
 const Range kBusNumber{1, 999997, ""};
 const Range kCount{1, 1e10, ""};  // 1e10 rows are 400 TB
-const Range kShardDraws{1, 1e6, ""}, kSeed{0, 9e18, ""};
+const Range kShardDraws{1, 1e6, ""}, kSeed{0, 9e18, ""}, kRate{1.0, 1e5, "1/s"};
+const Range kShardSize{0.001, 1e5, "MB"};
+constexpr double kUsualShard = 64.0;  ///< [MB]: a second's work of a core, and what disks write well
 
 std::string parameter_list(const sim::Effect& e) {
   std::string all;
@@ -163,7 +165,8 @@ void read_fault(Config& c, FaultConfig& f) {
 
 void read_record(Config& c, RecordConfig& r) {
   r.t_end = c.require<double>("record.t_end", {0.01, 1e4, "s"});
-  r.rate = c.require<double>("record.rate", {1.0, 1e5, "1/s"});
+  r.rate = c.require<double>("record.rate", kRate);
+  r.int16 = c.choice("record.storage", {"float32", "int16"}, "float32") == "int16";
   r.channels = c.require<std::vector<std::string>>("record.channels");
   std::vector<std::string> known;
   for (const auto& k : sim::kChannels) known.emplace_back(k.name);
@@ -249,6 +252,17 @@ std::vector<const sim::Effect*> DatasetConfig::other_effects() const {
   return all;
 }
 
+std::uint64_t DatasetConfig::bytes_per_draw() const {
+  const std::size_t values = record.samples() * record.channels.size();
+  const auto has = [&](const char* name) {
+    return std::ranges::find(record.channels, name) != record.channels.end();
+  };
+  std::size_t row = record.int16 ? 2 * values + 8 * record.channels.size() : 4 * values;
+  if (has("theta") || has("frequency")) row += record.samples();  // angle_valid
+  row += 8 * (box.size() + 9);                                    // parameters, ids, fault, spread, base
+  return row * (vary == Vary::all ? generators.size() : 1) + 17;
+}
+
 std::uint64_t DatasetConfig::points() const {
   const std::uint64_t groups = (draws + fault.per_point - 1) / fault.per_point;
   return vary == Vary::all ? groups * generators.size() : groups;
@@ -296,6 +310,7 @@ std::string DatasetConfig::canonical() const {
   line("fault.per_point", fault.per_point);
   line("record.t_end", record.t_end);
   line("record.rate", record.rate);
+  if (record.int16) line("record.storage", "int16");
   line("record.channels", fmt::format("{}", fmt::join(record.channels, ", ")));
   line("record.frequency", std::vector<double>{record.frequency.washout, record.frequency.filter});
   line("kernel.tolerance", tolerance);
@@ -327,8 +342,58 @@ void require_in_range(const Overrides& o) {
   check(o.faults_per_point, "--faults-per-point", kCount.high);
   check(o.draws_per_shard, "--draws-per-shard", kShardDraws.high);
   check(o.seed, "--seed", kSeed.high);
+  const auto within = [&](const std::optional<double>& value, const char* option, const Range& range) {
+    if (value && !(*value >= range.low && *value <= range.high))
+      problems.add(fmt::format("{:g}", *value), option,
+                   fmt::format("it must lie between {:g} and {:g} {}", range.low, range.high, range.unit),
+                   "give such a number");
+  };
+  within(o.shard_megabytes, "--shard-megabytes", kShardSize);
+  within(o.rate, "--rate", kRate);
+  if (o.shard_megabytes && o.draws_per_shard)
+    problems.add("two sizes of a shard", "--shard-megabytes", "--draws-per-shard says another", "give one");
   problems.raise();
 }
+}  // namespace
+
+namespace {
+
+/// Either is given, or neither: then a shard has kUsualShard.
+std::optional<double> read_shard_size(Config& c, DatasetConfig& d) {
+  if (c.has("draws_per_shard")) {
+    d.draws_per_shard = static_cast<std::uint64_t>(c.require<std::int64_t>("draws_per_shard", kShardDraws));
+    if (!c.has("shard_megabytes")) return std::nullopt;
+    c.problem("shard_megabytes", "two sizes of a shard", "draws_per_shard says another", "leave one out");
+  }
+  return c.optional<double>("shard_megabytes", kUsualShard, kShardSize);
+}
+
+/// Only what was asked for, in the config's order.
+void keep_channels(RecordConfig& r, const std::vector<std::string>& asked, const fs::path& file) {
+  if (asked.empty()) return;
+  Problems problems;
+  for (const auto& name : asked)
+    if (std::ranges::find(r.channels, name) == r.channels.end())
+      problems.add("channel '" + name + "'", "--channels", file.string() + " does not record it",
+                   fmt::format("use some of: {}", fmt::join(r.channels, ", ")));
+  problems.raise();
+  std::erase_if(r.channels, [&](const auto& n) { return std::ranges::find(asked, n) == asked.end(); });
+}
+
+void override_with(DatasetConfig& d, const Overrides& o, std::optional<double> megabytes) {
+  d.draws = o.draws.value_or(d.draws);
+  d.seed = o.seed.value_or(d.seed);
+  d.fault.per_point = o.faults_per_point.value_or(d.fault.per_point);
+  d.record.rate = o.rate.value_or(d.record.rate);
+  d.record.int16 = d.record.int16 || o.int16;
+  keep_channels(d.record, o.channels, d.file);
+  d.draws_per_shard = o.draws_per_shard.value_or(d.draws_per_shard);
+  if (o.shard_megabytes) megabytes = o.shard_megabytes;
+  if (o.draws_per_shard || !megabytes) return;
+  const double draws = *megabytes * 1e6 / static_cast<double>(d.bytes_per_draw());
+  d.draws_per_shard = static_cast<std::uint64_t>(std::clamp(draws, kShardDraws.low, kShardDraws.high));
+}
+
 }  // namespace
 
 DatasetConfig read_dataset_config(const fs::path& file, const Overrides& overrides) {
@@ -341,8 +406,7 @@ DatasetConfig read_dataset_config(const fs::path& file, const Overrides& overrid
   if (c.has("frequency_hz")) d.frequency_hz = c.require<double>("frequency_hz", {1.0, 1000.0, "Hz"});
   d.psse = c.choice("convention", {"psse", "andes"}) != "andes";
   d.draws = static_cast<std::uint64_t>(c.require<std::int64_t>("draws", kCount));
-  d.draws_per_shard =
-      static_cast<std::uint64_t>(c.optional<std::int64_t>("draws_per_shard", 512, kShardDraws));
+  const auto megabytes = read_shard_size(c, d);
   d.seed = static_cast<std::uint64_t>(c.optional<std::int64_t>("seed", 1, kSeed));
   read_effects(c, d);
   read_vary(c, d);
@@ -358,10 +422,8 @@ DatasetConfig read_dataset_config(const fs::path& file, const Overrides& overrid
               "let the fault end before the record does");
   c.raise();
   require_in_range(overrides);
-  d.draws = overrides.draws.value_or(d.draws);
-  d.seed = overrides.seed.value_or(d.seed);
-  d.draws_per_shard = overrides.draws_per_shard.value_or(d.draws_per_shard);
-  d.fault.per_point = overrides.faults_per_point.value_or(d.fault.per_point);
+  d.overrides = overrides;
+  override_with(d, overrides, megabytes);
   return d;
 }
 

@@ -46,6 +46,7 @@ struct RecordConfig {
   double rate = 60.0;                 ///< [1/s]
   std::vector<std::string> channels;  ///< of sim/core/channel.hpp, or "frequency"
   sim::FrequencyFilter frequency;
+  bool int16 = false;  ///< stored as mpi/store/quantise.hpp says, else as float32
   /// At k/rate, k = 0 ... t_end rate - 1: whole seconds hold whole numbers of samples.
   [[nodiscard]] std::size_t samples() const;
 };
@@ -65,8 +66,17 @@ struct OperatingPointConfig {
   [[nodiscard]] bool draws_bases() const { return loading_high > 0.0; }
 };
 
+/// What the command line replaces.
+struct Overrides {
+  std::optional<std::uint64_t> draws = {}, seed = {}, draws_per_shard = {}, faults_per_point = {};
+  std::optional<double> shard_megabytes = {}, rate = {};  ///< [MB], [1/s]
+  std::vector<std::string> channels = {};                 ///< only these of the config's; empty: all
+  bool int16 = false;                                     ///< records as int16, whatever the config says
+};
+
 struct DatasetConfig {
   std::filesystem::path file, raw, dyr;
+  Overrides overrides;                 ///< as they were given; all below holds them already
   bool psse = true;                    ///< convention, else andes
   sim::formats::DyrOptions models;     ///< .dyr models left out or read as others
   std::optional<double> frequency_hz;  ///< what a MATPOWER case needs
@@ -82,7 +92,7 @@ struct DatasetConfig {
   FaultConfig fault;
   RecordConfig record;
   std::optional<OperatingPointConfig> operating_point;
-  std::uint64_t draws = 0, draws_per_shard = 512, seed = 1;
+  std::uint64_t draws = 0, draws_per_shard = 0, seed = 1;
   double tolerance = 1e-6;  ///< of the kernel
   int lanes = 0;            ///< of the kernel; 0: the widest of this build
 
@@ -93,15 +103,12 @@ struct DatasetConfig {
   [[nodiscard]] std::string name_of(const Box& box) const;
   /// The effects besides the machine that have parameters in the box, each once.
   [[nodiscard]] std::vector<const sim::Effect*> other_effects() const;
+  /// What a stable draw takes in a shard [bytes].
+  [[nodiscard]] std::uint64_t bytes_per_draw() const;
   /// Points of the databank the draws need.
   [[nodiscard]] std::uint64_t points() const;
   /// Every value that bytes depend on, one `key = value` per line.
   [[nodiscard]] std::string canonical() const;
-};
-
-/// What the command line replaces.
-struct Overrides {
-  std::optional<std::uint64_t> draws, seed, draws_per_shard, faults_per_point;
 };
 
 /// Throws InputError with every problem of the file.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "mpi/store/quantise.hpp"
+
 namespace swingbank::mpi::draw {
 
 namespace {
@@ -77,7 +79,9 @@ store::ShardData ShardMaker::make(std::uint64_t first, std::uint64_t count,
       by_generator[c.vary == Vary::all ? 0 : s.draws.back().recorded[0]].push_back(id);
   }
   for (auto& [generator, ids] : by_generator) run(s, std::move(ids), batch_for(generator), tick);
-  return compact(s);
+  store::ShardData made = compact(s);
+  if (c.record.int16) store::quantise(made);
+  return made;
 }
 
 void ShardMaker::run(Slots& s, std::vector<std::uint64_t> ids, sim::lanes::Batch& batch,
@@ -199,6 +203,7 @@ store::ShardAttributes shard_attributes(const Study& study, const std::string& h
     a.channel_units.emplace_back(record == nullptr ? "pu" : record->unit);
   }
   a.operating_points = c.operating_point.has_value();
+  a.int16 = c.record.int16;
   const auto others = c.other_effects();
   for (const auto& b : c.box) {
     a.parameter_names.push_back(c.name_of(b));

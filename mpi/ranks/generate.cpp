@@ -12,13 +12,17 @@
 #include <span>
 
 #include "base/stop_signal.hpp"
+#include "mpi/draw/card.hpp"
 #include "mpi/draw/databank.hpp"
 #include "mpi/draw/databank_file.hpp"
+#include "mpi/draw/dataset_header.hpp"
 #include "mpi/ranks/detail/master.hpp"
+#include "mpi/ranks/detail/provenance.hpp"
 #include "mpi/ranks/detail/run_folder.hpp"
 #include "mpi/ranks/detail/shard_audit.hpp"
 #include "mpi/ranks/detail/worker.hpp"
 #include "mpi/ranks/shard_group.hpp"
+#include "mpi/store/attempts.hpp"
 
 namespace swingbank::mpi::ranks {
 
@@ -82,54 +86,6 @@ std::optional<draw::Databank> shared_databank(const draw::Study& study, const fs
     MPI_Bcast(bank.values.data() + at, static_cast<int>(std::min(piece, bank.values.size() - at)), MPI_DOUBLE,
               0, world);
   return bank;
-}
-
-/// What the machines that vary have outside their boxes.
-void describe_machines(const draw::Study& study, store::DatasetHeader& h) {
-  const auto& records = study.config.effect().parameters;
-  const auto boxed = [&](std::size_t i) {
-    return std::ranges::any_of(study.config.box, [&](const draw::Box& b) {
-      return b.effect == nullptr && b.index == static_cast<int>(i);
-    });
-  };
-  std::vector<std::size_t> held;
-  for (std::size_t i = 0; i < records.size(); ++i)
-    if (!boxed(i)) held.push_back(i);
-  for (const auto i : held) h.held_names.emplace_back(records[i].name);
-  h.frequency = study.grid.network.frequency;
-  const bool draws_bases = study.config.operating_point && study.config.operating_point->draws_bases();
-  for (const int index : study.plants) {
-    const auto& plant = study.grid.plants[static_cast<std::size_t>(index)];
-    h.generators.push_back(study.grid.network.buses[static_cast<std::size_t>(plant.bus)].number);
-    if (!draws_bases) h.machine_base.push_back(plant.mva);
-    auto& values = h.held.emplace_back();
-    for (const auto i : held) values.push_back(plant.machine.p[i]);
-  }
-}
-
-store::DatasetHeader header_of(const draw::Study& study, const store::ShardAttributes& a) {
-  const draw::DatasetConfig& c = study.config;
-  store::DatasetHeader h;
-  h.name = c.file.stem().string();
-  h.config_hash = a.config_hash;
-  h.kernel = a.kernel;
-  h.software = a.software;
-  h.machine_model = a.machine_model;
-  h.config = c.canonical();
-  h.seed = c.seed;
-  h.draws = c.draws;
-  h.draws_per_shard = c.draws_per_shard;
-  h.rate = c.record.rate;
-  h.samples = c.record.samples();
-  h.channel_names = a.channel_names;
-  h.channel_units = a.channel_units;
-  h.parameter_names = a.parameter_names;
-  h.parameter_units = a.parameter_units;
-  h.parameter_low = a.parameter_low;
-  h.parameter_high = a.parameter_high;
-  h.parameter_effects = a.parameter_effects;
-  describe_machines(study, h);
-  return h;
 }
 
 std::uint64_t draws_in(const std::deque<std::uint64_t>& shards, const draw::DatasetConfig& c) {
@@ -203,7 +159,7 @@ int generate(const draw::DatasetConfig& config, const GenerateOptions& o, MPI_Co
     kernel = draw::kernel_variant(*loaded);
     hash = draw::config_hash(config, kernel);
     attributes = draw::shard_attributes(*loaded, hash, kernel);
-    header = header_of(*loaded, attributes);
+    header = draw::dataset_header(*loaded, attributes);
     store::header_text(header);  // before the folder is touched
   });
   const draw::Study& study = *loaded;
@@ -219,19 +175,24 @@ int generate(const draw::DatasetConfig& config, const GenerateOptions& o, MPI_Co
       require_same_config(o.folder, header);
     else
       locks = enter(o, header);
+    if (!archive && !fs::exists(o.folder / "card.json"))
+      draw::write_card(o.folder, draw::card_of(config, kernel, made_by(o.software)));
     lines = journalled(o);
   });
   const ShardAudit audit = audit_shards(world, o.folder, header, lines, o.repair || !o.trust);
   if (audit.stopped) return kSubmitAgain;
 
   std::optional<store::Journal> journal;
+  std::optional<store::AttemptLog> attempt;  // of rank 0; what ends it unsaid is a failure
   std::deque<std::uint64_t> missing;
   agree(world, o.folder.string(), [&] {
     if (rank != 0) return;
     settle(o.folder, audit.bad, o.repair);
     missing = missing_shards(o, header);
+    if (missing.empty() && !archive) finish(o);
     if (missing.empty()) return;
     journal.emplace(o.folder / o.part.journal_name());  // says why it cannot, in an archive
+    attempt.emplace(o.folder, attempt_of(o, size, lines.size(), audit.bad.size()));
     const auto left = draws_in(missing, config);
     spdlog::info("{}: {} of {} draws to make in {} shards, {} ranks, kernel {}, config {}", o.folder.string(),
                  left, config.draws, missing.size(), size, kernel, hash);
@@ -241,7 +202,11 @@ int generate(const draw::DatasetConfig& config, const GenerateOptions& o, MPI_Co
   if (to_make == 0) return 0;
 
   const std::optional<draw::Databank> bank = shared_databank(study, o.databank, world);
-  if (!bank) return kSubmitAgain;
+  if (!bank) {
+    if (attempt) attempt->end("stopped");
+    return kSubmitAgain;
+  }
+  if (attempt) attempt->tell("databank", draw::values_hash(*bank));
   const Groups groups(world, rank, size, o.writer_ranks, o.dedicated_master ? size > 1 : size >= kLedFrom);
   draw::ShardMaker maker(study, *bank);
   Worker worker{study,
@@ -267,7 +232,11 @@ int generate(const draw::DatasetConfig& config, const GenerateOptions& o, MPI_Co
   } else {
     worker.run();
   }
-  agree(world, o.folder.string(), [&] { problems.raise(); });
+  agree(world, o.folder.string(), [&] {
+    problems.raise();
+    if (rank == 0 && complete) finish(o);
+    if (rank == 0) attempt->end(complete ? "made" : "stopped");
+  });
   int done = complete ? 1 : 0;
   MPI_Bcast(&done, 1, MPI_INT, 0, world);
   return done != 0 ? 0 : kSubmitAgain;

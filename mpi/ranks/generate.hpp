@@ -16,6 +16,7 @@ struct GenerateOptions {
   double lease_timeout = 600.0;    ///< a shard may take that long [s]; 0: for ever
   bool dedicated_master = false;   ///< rank 0 only leads
   bool repair = false;             ///< make shards anew that are journalled and bad
+  std::string software = {};       ///< of the card: version and commit
   bool trust = false;              ///< of journalled shards, look at the length only
   Progress::Mode progress = Progress::Mode::automatic;
 };

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <charconv>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
 
 #include "base/durable.hpp"
 #include "base/problem.hpp"
 #include "base/sealed_text.hpp"
+#include "mpi/store/manifest.hpp"
 
 namespace swingbank::mpi::store {
 
@@ -17,6 +20,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kDatasetFormat = "swingbank-dataset-2";
+constexpr const char* kInt16Dataset = "swingbank-dataset-3";  ///< older readers would take codes for values
 constexpr const char* kRestoreHeader =
     "restore the file from a copy, or make the dataset again in an empty folder";
 constexpr const char* kRemake =
@@ -24,7 +28,7 @@ constexpr const char* kRemake =
 
 nlohmann::ordered_json to_json(const DatasetHeader& h) {
   nlohmann::ordered_json j;
-  j["format"] = kDatasetFormat;
+  j["format"] = h.int16 ? kInt16Dataset : kDatasetFormat;
   if (!h.name.empty()) j["name"] = h.name;
   j["config_hash"] = h.config_hash;
   j["kernel"] = h.kernel;
@@ -36,6 +40,7 @@ nlohmann::ordered_json to_json(const DatasetHeader& h) {
   j["shards"] = h.shard_count();
   j["rate"] = h.rate;
   j["samples"] = h.samples;
+  if (h.int16) j["record_storage"] = "int16";
   j["channel_names"] = h.channel_names;
   j["channel_units"] = h.channel_units;
   j["parameter_names"] = h.parameter_names;
@@ -64,9 +69,12 @@ void require_agreement(const DatasetHeader& h) {
 }
 
 DatasetHeader from_json(const nlohmann::json& j) {
-  if (j.at("format") != kDatasetFormat)
-    throw std::runtime_error("format is not \"" + std::string(kDatasetFormat) + "\"");
+  const std::string format = j.at("format");
+  if (format != kDatasetFormat && format != kInt16Dataset)
+    throw std::runtime_error("format is \"" + format + "\", neither \"" + kDatasetFormat + "\" nor \"" +
+                             kInt16Dataset + "\"");
   DatasetHeader h;
+  h.int16 = format == kInt16Dataset;
   h.name = j.value("name", "");
   j.at("config_hash").get_to(h.config_hash);
   j.at("kernel").get_to(h.kernel);
@@ -114,13 +122,66 @@ std::string text_of(const std::map<std::string, std::uint64_t>& outcomes) {
   return text.empty() ? "none" : text;
 }
 
-std::string combine(const std::vector<ShardInfo>& shards) {
+/// Whether the file is as long as was journalled. Nothing: it is.
+std::optional<Problem> fault_of_length(const fs::path& file, std::uint64_t bytes) {
+  std::error_code error;
+  const auto size = fs::file_size(file, error);
+  if (error) return Problem{"missing shard", file.string(), error.message(), kRepairDataset};
+  if (size == bytes) return std::nullopt;
+  return Problem{"truncated or changed shard", file.string(),
+                 "it has " + std::to_string(size) + " bytes, the journal says " + std::to_string(bytes),
+                 kRepairDataset};
+}
+
+Problem beyond(const fs::path& folder, const JournalLine& line, const DatasetHeader& header) {
+  return {"shard " + std::to_string(line.shard), (folder / line.file).string(),
+          "the dataset has " + std::to_string(header.shard_count()) + " shards",
+          "restore dataset.json and the journals of one and the same dataset"};
+}
+
+void require_length(const ShardInfo& s) {
+  if (const auto p = fault_of_length(s.path, s.bytes)) throw InputError(*p);
+}
+
+/// Which files stand in the folders of shards: a list of each folder, no look at each file.
+class Listing {
+ public:
+  explicit Listing(fs::path folder) : folder_(std::move(folder)) {}
+  bool has(const fs::path& file) {
+    const auto [names, is_new] = names_.try_emplace(file.parent_path().string());
+    std::error_code none;
+    if (is_new)
+      for (const auto& entry : fs::directory_iterator(folder_ / file.parent_path(), none))
+        names->second.insert(entry.path().filename().string());
+    return names->second.contains(file.filename().string());
+  }
+
+ private:
+  fs::path folder_;
+  std::map<std::string, std::set<std::string>> names_;
+};
+
+}  // namespace
+
+std::string dataset_hash(const std::vector<ShardInfo>& shards) {
   std::string all;
   for (const auto& s : shards) all += s.hash;
   return hex(XXH3_64bits(all.data(), all.size()));
 }
 
-}  // namespace
+ShardInfo info_of(const DatasetHeader& h, const ShardData& d, std::uint64_t first_row) {
+  ShardInfo info;
+  info.path = "shard " + std::to_string(d.attributes.shard) + " of " + h.name;
+  info.shard = d.attributes.shard;
+  info.rows = d.rows;
+  info.first_row = first_row;
+  info.hash = hex(shard_hash(d));
+  info.config_hash = h.config_hash;
+  info.shape = {d.rows, d.channels, d.samples, d.parameter_count};
+  info.draws = d.draw_sample_id.size();
+  info.outcomes = count_outcomes(d.draw_outcome, info.path);
+  return info;
+}
 
 std::string header_text(const DatasetHeader& header) {
   try {
@@ -188,11 +249,18 @@ Dataset open_dataset(const fs::path& folder, bool allow_incomplete) {
   Dataset d;
   static_cast<DatasetHeader&>(d) = read_header(folder);
   d.path = folder;
-  auto lines = read_journals(folder);
+  const auto manifest = read_manifest(folder);
+  auto lines = manifest ? *manifest : read_journals(folder);
   std::ranges::sort(lines, {}, &JournalLine::shard);
   Problems problems;
+  Listing listing(folder);
   for (const auto& l : lines) {
-    if (const auto p = fault_of(folder, l, d, false)) problems.add(p->what, p->where, p->why, p->remedy);
+    if (l.shard >= d.shard_count()) {
+      const Problem p = beyond(folder, l, d);
+      problems.add(p.what, p.where, p.why, p.remedy);
+    }
+    if (!manifest && !listing.has(l.file))
+      problems.add("missing shard", (folder / l.file).string(), "No such file or directory", kRepairDataset);
     d.shards.push_back(info_of(folder, l, d, d.rows));
     d.rows += l.rows;
     for (const auto& [name, count] : l.outcomes) d.outcomes[name] += count;
@@ -205,7 +273,7 @@ Dataset open_dataset(const fs::path& folder, bool allow_incomplete) {
         std::to_string(d.shards.size()) + " of " + std::to_string(d.shard_count()) + " shards are there",
         kRemake);
   problems.raise();
-  d.hash = combine(d.shards);
+  d.hash = dataset_hash(d.shards);
   return d;
 }
 
@@ -213,6 +281,7 @@ ShardData read_checked(const ShardInfo& s) {
   const auto fail = [&](const std::string& what, const std::string& why) {
     throw InputError({what, s.path.string(), why, kRepairDataset});
   };
+  require_length(s);
   // First, because HDF5 1.10 may crash on a file that is damaged.
   if (const std::string bytes = hash_of_file(s.path); bytes != s.file_hash)
     fail("changed shard", "the hash of its bytes is " + bytes + ", the journal says " + s.file_hash);
@@ -232,19 +301,8 @@ ShardData read_checked(const ShardInfo& s) {
 
 std::optional<Problem> fault_of(const fs::path& folder, const JournalLine& line, const DatasetHeader& header,
                                 bool deep) {
-  const fs::path file = folder / line.file;
-  std::error_code error;
-  const auto size = fs::file_size(file, error);
-  if (error) return Problem{"missing shard", file.string(), error.message(), kRepairDataset};
-  if (size != line.bytes)
-    return Problem{
-        "truncated or changed shard", file.string(),
-        "it has " + std::to_string(size) + " bytes, the journal says " + std::to_string(line.bytes),
-        kRepairDataset};
-  if (line.shard >= header.shard_count())
-    return Problem{"shard " + std::to_string(line.shard), file.string(),
-                   "the dataset has " + std::to_string(header.shard_count()) + " shards",
-                   "restore dataset.json and the journals of one and the same dataset"};
+  if (auto p = fault_of_length(folder / line.file, line.bytes)) return p;
+  if (line.shard >= header.shard_count()) return beyond(folder, line, header);
   if (!deep) return std::nullopt;
   try {
     read_checked(info_of(folder, line, header, 0));
@@ -258,6 +316,7 @@ std::optional<Problem> fault_of(const fs::path& folder, const JournalLine& line,
 
 void read_rows(const ShardInfo& shard, std::uint64_t first, std::uint64_t count, RowBlock& out,
                const ShardFields& fields) {
+  require_length(shard);
   read_rows(shard.path, first, count, out, shard.config_hash, fields, &shard.shape);
 }
 

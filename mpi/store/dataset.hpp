@@ -29,6 +29,7 @@ struct DatasetHeader {
   std::vector<double> machine_base = {};       ///< theirs [MVA]; empty where each row has its own
   std::vector<std::string> held_names = {};    ///< parameters of the machine that are not among the above
   std::vector<std::vector<double>> held = {};  ///< their values, generator by generator
+  bool int16 = false;                          ///< records are stored as quantise.hpp says
   [[nodiscard]] std::uint64_t shard_count() const { return (draws + draws_per_shard - 1) / draws_per_shard; }
 };
 
@@ -56,8 +57,15 @@ struct Dataset : DatasetHeader {
   bool complete = false;                                  ///< every shard of the header is in the journal
 };
 
-/// Opens a dataset. Throws InputError naming file and remedy if there is none, if a shard is missing or
-/// truncated, or, unless `allow_incomplete`, if shards are still to be made.
+/// XXH3-64 over the shard hashes in order of shard number, 16 hex digits.
+std::string dataset_hash(const std::vector<ShardInfo>& shards);
+/// What there is to say of a shard that stands in memory, and not on the disk: no path, bytes or file hash.
+ShardInfo info_of(const DatasetHeader& header, const ShardData& data, std::uint64_t first_row);
+
+/// Opens a dataset. Throws InputError naming file and remedy if there is none, or, unless `allow_incomplete`,
+/// if shards are still to be made. By the manifest where there is one, which names what there is without a
+/// look at each file; else by the journals and the names in the folders. Whoever reads a shard looks at its
+/// length and bytes.
 Dataset open_dataset(const std::filesystem::path& folder, bool allow_incomplete = false);
 /// A journalled shard that cannot be trusted, and why.
 struct BadShard {
@@ -71,7 +79,7 @@ std::optional<Problem> fault_of(const std::filesystem::path& folder, const Journ
 /// Reads a whole shard and compares it with header and journal: config, shapes, rows, draws, outcomes, hash.
 /// Throws InputError naming the file; the remedy is --repair.
 ShardData read_checked(const ShardInfo& shard);
-/// Rows first ... first+count-1 of one shard. Checks config and shapes, not the hash.
+/// Rows first ... first+count-1 of one shard. Checks length, config and shapes, not the hash.
 void read_rows(const ShardInfo& shard, std::uint64_t first, std::uint64_t count, RowBlock& out,
                const ShardFields& fields = {});
 

@@ -125,6 +125,29 @@ void File::create(const std::string& object, hid_t file_type, const Shape& shape
   if (!set) fail("cannot create the array", object);
 }
 
+void File::create_virtual(const std::string& object, const File& example, const std::vector<Part>& parts) {
+  Shape shape = example.shape(object);
+  shape[0] = 0;
+  for (const Part& p : parts) shape[0] += p.count;
+  const Handle space = space_of(shape), properties = untimed(H5P_DATASET_CREATE);
+  Shape start(shape.size(), 0), piece = shape;
+  for (const Part& p : parts) {
+    piece[0] = p.count;
+    const Handle source = space_of(piece);
+    if (H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, piece.data(), nullptr) < 0 ||
+        H5Pset_virtual(properties.get(), space.get(), p.file.c_str(), p.object.c_str(), source.get()) < 0)
+      fail("cannot describe the virtual array", object);
+    start[0] += p.count;
+  }
+  const Handle like(H5Dopen2(example.file_.get(), object.c_str(), H5P_DEFAULT), H5Dclose);
+  const Handle type(like ? H5Dget_type(like.get()) : -1, H5Tclose);
+  H5Sselect_all(space.get());
+  const Handle set(H5Dcreate2(file_.get(), object.c_str(), type.get(), space.get(), H5P_DEFAULT,
+                              properties.get(), H5P_DEFAULT),
+                   H5Dclose);
+  if (!set) fail("cannot create the virtual array", object);
+}
+
 void File::transfer(const std::string& object, hsize_t first, hsize_t count, hid_t type, void* in,
                     const void* out) const {
   if (count == 0) return;

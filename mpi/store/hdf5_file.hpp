@@ -69,6 +69,11 @@ struct Type<std::int32_t> {
   static hid_t file() { return H5T_STD_I32LE; }
 };
 template <>
+struct Type<std::int16_t> {
+  static hid_t memory() { return H5T_NATIVE_INT16; }
+  static hid_t file() { return H5T_STD_I16LE; }
+};
+template <>
 struct Type<std::uint8_t> {
   static hid_t memory() { return H5T_NATIVE_UINT8; }
   static hid_t file() { return H5T_STD_U8LE; }
@@ -92,6 +97,15 @@ class File {
   void create(const std::string& object, const Shape& shape) {
     create(object, Type<T>::file(), shape);
   }
+
+  /// What another file brings to a virtual array: its `count` rows.
+  struct Part {
+    std::string file, object;  ///< the file's name as seen from this file's folder
+    hsize_t count;
+  };
+  /// An array of the rows of other files, one file's after the other's; type and shape of a row are those of
+  /// the same object of `example`.
+  void create_virtual(const std::string& object, const File& example, const std::vector<Part>& parts);
 
   /// Rows first ... first+count-1 of the leading dimension; `values` is resized.
   template <class T>

@@ -12,6 +12,7 @@
 #include "base/durable.hpp"
 #include "base/problem.hpp"
 #include "base/sealed_text.hpp"
+#include "mpi/store/manifest.hpp"
 
 namespace swingbank::mpi::store {
 
@@ -65,14 +66,6 @@ bool is_journal(const std::filesystem::path& file) {
   return name.starts_with("journal") && name.ends_with(".jsonl");
 }
 
-std::vector<std::filesystem::path> journals_of(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (is_journal(entry.path())) files.push_back(entry.path());
-  std::ranges::sort(files);
-  return files;
-}
-
 constexpr const char* kMendJournal =
     "run generate with --repair, which makes such shards again, or restore the file from a copy";
 
@@ -118,6 +111,14 @@ std::vector<Placed> read_placed(const std::filesystem::path& folder, Problems& d
 
 }  // namespace
 
+std::vector<std::filesystem::path> journals_of(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (is_journal(entry.path())) files.push_back(entry.path());
+  std::ranges::sort(files);
+  return files;
+}
+
 std::string Part::journal_name() const {
   return all() ? "journal.jsonl"
                : "journal-" + std::to_string(number) + "-of-" + std::to_string(of) + ".jsonl";
@@ -140,6 +141,8 @@ void strike_lines(const std::filesystem::path& folder, const std::vector<std::ui
   for (const auto& file : journals_of(folder)) texts[file];
   for (const Placed& p : read_placed(folder, ignored))
     if (std::ranges::find(shards, p.line.shard) == shards.end()) texts[p.file] += journal_text(p.line);
+  std::error_code none;
+  std::filesystem::remove(folder / kManifestFile, none);
   for (const auto& [file, text] : texts)
     if (text != read_text(file)) write_text(file, text);
 }

@@ -39,13 +39,17 @@ struct Part {
   [[nodiscard]] std::string journal_name() const;
 };
 
+/// The journals of a dataset folder, in order of name.
+std::vector<std::filesystem::path> journals_of(const std::filesystem::path& folder);
+
 /// All journals of a dataset folder. A last line without its line feed (the process died in the middle of it)
 /// is left out, and a line that stands there twice counts once. Anything else that is no line, and a shard of
 /// which two lines say different things, throws InputError with files and line numbers; where `damaged` is
 /// given, such lines are left out and told there. No journal: no lines.
 std::vector<JournalLine> read_journals(const std::filesystem::path& folder, Problems* damaged = nullptr);
 
-/// Writes the journals anew without these shards and without damaged lines: each whole or not at all.
+/// Writes the journals anew without these shards and without damaged lines: each whole or not at all. The
+/// manifest goes first.
 void strike_lines(const std::filesystem::path& folder, const std::vector<std::uint64_t>& shards);
 
 /// Appends lines; all are on the disk when `append` returns, with one flush. Cuts off a half-written last

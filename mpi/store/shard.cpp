@@ -4,6 +4,7 @@
 
 #include "base/durable.hpp"
 #include "base/problem.hpp"
+#include "mpi/store/quantise.hpp"
 #include "mpi/store/shard_layout.hpp"
 #include "sim/core/trajectory.hpp"
 
@@ -18,10 +19,12 @@ void bad_shard(const fs::path& file, const std::string& what, const std::string&
 }
 
 ShardAttributes read_attributes(const h5::File& f, const fs::path& file) {
-  if (f.text_attribute("format") != kShardFormat)
+  const std::string format = f.text_attribute("format");
+  if (format != kShardFormat && format != kInt16Format)
     bad_shard(file, "not a shard of this version",
-              "format is \"" + f.text_attribute("format") + "\", not \"" + kShardFormat + "\"");
+              "format is \"" + format + "\", not \"" + kShardFormat + "\" or \"" + kInt16Format + "\"");
   ShardAttributes a;
+  a.int16 = format == kInt16Format;
   a.config_hash = f.text_attribute("config_hash");
   a.kernel = f.text_attribute("kernel");
   a.software = f.text_attribute("software");
@@ -67,6 +70,8 @@ void read_shape(const h5::File& f, const fs::path& file, const ShardShape* datas
   require_array(f, file, "/fault", {records[0], kFaultColumns});
   if (f.has("/angle_valid")) require_array(f, file, "/angle_valid", {records[0], records[2]});
   if (f.has("/machine_base")) require_array(f, file, "/machine_base", {records[0]});
+  if (f.has("/record_scale"))
+    require_array(f, file, "/record_scale", {records[0], records[1], kScaleColumns});
   out.channels = records[1];
   out.samples = records[2];
   out.parameter_count = parameters[1];
@@ -76,10 +81,18 @@ void read_block(const h5::File& f, std::uint64_t first, std::uint64_t count, con
                 RowBlock& out) {
   out.rows = count;
   out.records.clear();
+  out.codes.clear();
+  out.code_scale.clear();
   out.parameters.clear();
   out.angle_valid.clear();
   out.machine_base.clear();
-  if (fields.records) f.read("/records", first, count, out.records);
+  if (fields.records && f.has("/record_scale")) {
+    f.read("/records", first, count, out.codes);
+    f.read("/record_scale", first, count, out.code_scale);
+    decode(out);
+  } else if (fields.records) {
+    f.read("/records", first, count, out.records);
+  }
   if (fields.parameters) f.read("/parameters", first, count, out.parameters);
   f.read("/sample_id", first, count, out.sample_id);
   f.read("/generator", first, count, out.generator);

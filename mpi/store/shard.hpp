@@ -24,7 +24,8 @@ struct ShardAttributes {
   std::vector<double> parameter_low, parameter_high;  ///< the sampling box
   std::vector<std::string> parameter_effects = {};    ///< whose they are; empty: all the machine's
   bool operating_points =
-      false;  ///< whether rows have a machine base and draws an operating point of their own
+      false;           ///< whether rows have a machine base and draws an operating point of their own
+  bool int16 = false;  ///< whether records are stored as quantise.hpp says, else as float32
 };
 
 /// Rows of a shard, one per stable generator record; every array is row-major.
@@ -38,6 +39,8 @@ struct RowBlock {
   std::vector<double> largest_spread;     ///< rows: largest pairwise rotor angle [rad]
   std::vector<std::uint8_t> angle_valid;  ///< rows x samples, or empty: 0 where V = 0 and theta is held
   std::vector<double> machine_base;       ///< rows: of the generator [MVA]; empty without operating points
+  std::vector<std::int16_t> codes;        ///< rows x channels x samples; empty where records are float32
+  std::vector<float> code_scale;          ///< rows x channels x kScaleColumns: offset, step
 };
 
 struct ShardData : RowBlock {
@@ -49,6 +52,7 @@ struct ShardData : RowBlock {
 };
 
 constexpr std::size_t kFaultColumns = 5;
+constexpr std::size_t kScaleColumns = 2;    ///< offset, step
 constexpr std::size_t kRedrawnColumns = 2;  ///< no power flow, implausible
 /// What to do about a shard that cannot be trusted.
 constexpr const char* kRepairDataset = "run generate with --repair on the dataset: it makes the shard anew";

@@ -4,7 +4,7 @@ namespace swingbank::mpi::store {
 
 void lay_out_shard(h5::File& f, const ShardData& d, ShardSize n) {
   const ShardAttributes& a = d.attributes;
-  f.attribute("format", std::string(kShardFormat));
+  f.attribute("format", std::string(a.int16 ? kInt16Format : kShardFormat));
   f.attribute("config_hash", a.config_hash);
   f.attribute("kernel", a.kernel);
   f.attribute("software", a.software);
@@ -19,7 +19,13 @@ void lay_out_shard(h5::File& f, const ShardData& d, ShardSize n) {
   f.attribute("parameter_low", a.parameter_low);
   f.attribute("parameter_high", a.parameter_high);
   if (!a.parameter_effects.empty()) f.attribute("parameter_effects", a.parameter_effects);
-  f.create<float>("/records", {n.rows, a.channel_names.size(), d.samples});
+  if (a.int16) {
+    f.create<std::int16_t>("/records", {n.rows, a.channel_names.size(), d.samples});
+    f.create<float>("/record_scale", {n.rows, a.channel_names.size(), kScaleColumns});
+    f.attribute("columns", std::vector<std::string>{"offset", "step"}, "/record_scale");
+  } else {
+    f.create<float>("/records", {n.rows, a.channel_names.size(), d.samples});
+  }
   f.create<double>("/parameters", {n.rows, a.parameter_names.size()});
   f.create<std::uint64_t>("/sample_id", {n.rows});
   f.create<std::int32_t>("/generator", {n.rows});
@@ -49,7 +55,12 @@ void lay_out_shard(h5::File& f, const ShardData& d, ShardSize n) {
 }
 
 void fill_shard(h5::File& f, const ShardData& d, std::uint64_t first_row, std::uint64_t first_draw) {
-  f.write("/records", first_row, d.rows, d.records.data());
+  if (d.attributes.int16) {
+    f.write("/records", first_row, d.rows, d.codes.data());
+    f.write("/record_scale", first_row, d.rows, d.code_scale.data());
+  } else {
+    f.write("/records", first_row, d.rows, d.records.data());
+  }
   f.write("/parameters", first_row, d.rows, d.parameters.data());
   f.write("/sample_id", first_row, d.rows, d.sample_id.data());
   f.write("/generator", first_row, d.rows, d.generator.data());

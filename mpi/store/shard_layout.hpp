@@ -6,6 +6,7 @@
 namespace swingbank::mpi::store {
 
 constexpr const char* kShardFormat = "swingbank-shard-1";
+constexpr const char* kInt16Format = "swingbank-shard-2";  ///< the same with records as int16
 
 struct ShardSize {
   std::uint64_t rows, draws;  ///< of the whole file, over all writers

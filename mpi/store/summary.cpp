@@ -4,7 +4,32 @@
 
 #include <algorithm>
 
+#include "mpi/store/attempts.hpp"
+
 namespace swingbank::mpi::store {
+
+std::string describe_attempts(const std::filesystem::path& folder) {
+  const auto attempts = read_attempts(folder);
+  std::string text;
+  std::size_t killed = 0, failed = 0;
+  unsigned long repaired = 0;
+  for (const Attempt& a : attempts) {
+    killed += a.ended.empty() ? 1 : 0;
+    failed += a.outcome == "failed" ? 1 : 0;
+    const auto told = [&](const char* name) {
+      return a.told.contains(name) ? a.told.at(name) : std::string();
+    };
+    if (!told("shards_repaired").empty()) repaired += std::stoul(told("shards_repaired"));
+    text +=
+        fmt::format("  {}  {} ranks on {}{}, {} shards found: {}\n", a.started, told("ranks"), told("host"),
+                    told("part").empty() ? "" : ", part " + told("part"), told("shards_found"),
+                    a.ended.empty() ? "killed, or still at work" : a.outcome + " at " + a.ended);
+  }
+  if (attempts.empty()) return {};
+  return fmt::format("{} attempts; survived: {} killed, {} failed, {} shards made anew\n", attempts.size(),
+                     killed, failed, repaired) +
+         text;
+}
 
 std::string describe(const Dataset& d) {
   std::uint64_t bytes = 0, draws = 0;

@@ -12,6 +12,13 @@
 
 namespace swingbank::train::data {
 namespace {
+mpi::store::Dataset without_shards(const mpi::store::DatasetHeader& header) {
+  mpi::store::Dataset d;
+  static_cast<mpi::store::DatasetHeader&>(d) = header;
+  d.path = header.name;
+  d.complete = true;
+  return d;
+}
 constexpr std::size_t kBlock = 256, kWindow = 64;  // rows per block, blocks per window
 constexpr std::uint64_t kLongestRun = 1024, kLargestGap = 64;
 constexpr mpi::store::ShardFields kRecordsOnly{
@@ -26,14 +33,10 @@ ShardStream::ShardStream(mpi::store::Dataset dataset, const InputRecipe& recipe,
       selection_(select_input(recipe, dataset_)),
       options_(options),
       noise_(dataset_, options.noise) {
-  if (dataset_.rows == 0)
-    throw InputError({"no rows", dataset_.path.string(), "every draw was rejected, or none was made",
-                      "see the outcomes in its journal and the ranges in its config"});
+  require_rows();
   labels_.parameters = dataset_.parameter_names.size();
   if (more) append(*more);
-  const std::size_t kept =
-      options_.noise.training ? dataset_.channel_names.size() * dataset_.samples : selection_.values();
-  const bool fits = rows_ <= options_.memory_limit / (kept * sizeof(float));
+  const bool fits = rows_ <= options_.memory_limit / (kept() * sizeof(float));
   Problems problems;
   for (const auto& shard : shards_) {
     try {
@@ -45,6 +48,49 @@ ShardStream::ShardStream(mpi::store::Dataset dataset, const InputRecipe& recipe,
   problems.raise();
   labels_.rows = rows_;
   labels_.judged = dataset_.rows;
+}
+
+ShardStream::ShardStream(const mpi::store::DatasetHeader& header,
+                         const std::function<mpi::store::ShardData()>& next, const InputRecipe& recipe,
+                         const StreamOptions& options)
+    : dataset_(without_shards(header)),
+      from_memory_(true),
+      selection_(select_input(recipe, dataset_)),
+      options_(options),
+      noise_(dataset_, options.noise) {
+  labels_.parameters = dataset_.parameter_names.size();
+  for (std::uint64_t k = 0; k < header.shard_count(); ++k) take(next());
+  require_rows();
+  dataset_.hash = mpi::store::dataset_hash(dataset_.shards);
+  shards_ = dataset_.shards;
+  labels_.rows = rows_;
+  labels_.judged = rows_;
+}
+
+void ShardStream::take(const mpi::store::ShardData& shard) {
+  const mpi::store::ShardInfo info = mpi::store::info_of(dataset_, shard, rows_);
+  rows_ += shard.rows;
+  dataset_.rows = rows_;
+  if (rows_ > options_.memory_limit / (kept() * sizeof(float)))
+    throw InputError({fmt::format("no room for the rows of {}", dataset_.name),
+                      fmt::format("shard {}", info.shard),
+                      fmt::format("{} rows of {} values are more than {:.1f} GB", rows_, kept(),
+                                  static_cast<double>(options_.memory_limit) * 1e-9),
+                      "raise --memory-limit, ask for fewer draws, or generate the dataset on a disk"});
+  keep_labels(shard, info);
+  keep_series(shard, info);
+  for (const auto& [name, count] : info.outcomes) dataset_.outcomes[name] += count;
+  dataset_.shards.push_back(info);
+}
+
+void ShardStream::require_rows() const {
+  if (dataset_.rows == 0)
+    throw InputError({"no rows", dataset_.path.string(), "every draw was rejected, or none was made",
+                      "see the outcomes in its journal and the ranges in its config"});
+}
+
+std::size_t ShardStream::kept() const {
+  return options_.noise.training ? dataset_.channel_names.size() * dataset_.samples : selection_.values();
 }
 
 void ShardStream::append(mpi::store::Dataset more) {
@@ -119,12 +165,12 @@ void ShardStream::series_of(const float* record, const mpi::store::ShardInfo& sh
 
 void ShardStream::keep_series(const mpi::store::RowBlock& block, const mpi::store::ShardInfo& shard) {
   if (options_.noise.training) {
-    if (records_.empty()) records_.reserve(rows_ * block.channels * block.samples);
+    if (records_.empty() && !from_memory_) records_.reserve(rows_ * block.channels * block.samples);
     records_.insert(records_.end(), block.records.begin(), block.records.end());
     return;
   }
   const std::size_t values = selection_.values();
-  if (series_.empty()) series_.reserve(rows_ * values);
+  if (series_.empty() && !from_memory_) series_.reserve(rows_ * values);
   const std::size_t before = series_.size();
   series_.resize(before + block.rows * values);
   for (std::size_t i = 0; i < block.rows; ++i)

@@ -2,6 +2,7 @@
 // Rows of a dataset for training. Labels of all rows are always in memory; the series are kept there too when
 // they fit, and are read block by block ahead of use otherwise. What comes out is the same either way.
 #include <cstdint>
+#include <functional>
 #include <future>
 #include <optional>
 #include <span>
@@ -40,7 +41,15 @@ class ShardStream {
   ShardStream(mpi::store::Dataset dataset, const InputRecipe& recipe, const StreamOptions& options = {},
               const std::optional<mpi::store::Dataset>& more = {});
 
+  /// Rows that are on no disk: takes the shards of the dataset that `header` describes from `next`, one after
+  /// the other, keeps labels and series, and forgets the shard. The stream is that of the same dataset read
+  /// from the disk. Throws InputError where the series do not fit into the memory limit.
+  ShardStream(const mpi::store::DatasetHeader& header, const std::function<mpi::store::ShardData()>& next,
+              const InputRecipe& recipe, const StreamOptions& options = {});
+
   [[nodiscard]] const mpi::store::Dataset& dataset() const { return dataset_; }
+  /// Whether there are no records to go back to.
+  [[nodiscard]] bool from_memory() const { return from_memory_; }
   /// The rows that only train, numbered on from the dataset's.
   [[nodiscard]] const std::optional<mpi::store::Dataset>& more() const { return more_; }
   [[nodiscard]] const InputSelection& selection() const { return selection_; }
@@ -66,6 +75,10 @@ class ShardStream {
  private:
   void append(mpi::store::Dataset more);
   void load(const mpi::store::ShardInfo& shard, bool fits);
+  void take(const mpi::store::ShardData& shard);
+  void require_rows() const;
+  /// Values kept of a row in memory.
+  [[nodiscard]] std::size_t kept() const;
   void keep_labels(const mpi::store::RowBlock& block, const mpi::store::ShardInfo& shard);
   void keep_series(const mpi::store::RowBlock& block, const mpi::store::ShardInfo& shard);
   /// The series of a record, which is the dataset's row `row`, with its noise.
@@ -84,6 +97,7 @@ class ShardStream {
   std::optional<mpi::store::Dataset> more_;
   std::vector<mpi::store::ShardInfo> shards_;  ///< of both, rows counted on
   std::size_t rows_ = 0;
+  bool from_memory_ = false;
   InputSelection selection_;
   StreamOptions options_;
   RecordNoise noise_;

@@ -122,6 +122,16 @@ void thin(std::vector<std::uint64_t>& rows, std::size_t wanted) {
   rows.resize(kept);
 }
 
+/// Methods that look at whole records need them on a disk.
+void require_records(const data::ShardStream& stream, const RunRequest& r) {
+  const bool reads =
+      direct::is_method(r.network) || !r.experiment.training(r.preset, r.network).corrects.empty();
+  if (reads && stream.from_memory())
+    throw InputError({"network " + r.network, "--simulate",
+                      "it reads whole records, which training from memory forgets",
+                      "generate the dataset on a disk, or choose a network that reads series alone"});
+}
+
 struct DirectRun {
   const std::filesystem::path& file;
   const std::string& name;
@@ -336,6 +346,7 @@ RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
   if (r.train_share < 1) data::keep_share(split, labels, r.train_share);
   const data::TargetScale scale =
       data::TargetScale::fit(labels.values, labels.parameters, split.train, stream.dataset().parameter_low);
+  require_records(stream, r);
   if (direct::is_method(r.network)) return run_direct(stream, r, {file, name, run_identity, split, scale});
   NetworkRun network(stream, r, split, scale);
   if (!network.train()) return RunOutcome::stopped;

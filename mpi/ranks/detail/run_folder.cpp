@@ -7,7 +7,8 @@
 #include <set>
 
 #include "base/durable.hpp"
-#include "mpi/ranks/detail/worker.hpp"
+#include "mpi/store/index.hpp"
+#include "mpi/store/shard_name.hpp"
 
 namespace swingbank::mpi::ranks {
 
@@ -96,12 +97,14 @@ void claim_folder(const fs::path& folder, const store::DatasetHeader& header, Fo
 void clear_leftovers(const fs::path& folder, const store::Part& part, std::uint64_t shards) {
   make_folder(folder / "shards");
   if (part.all()) {
-    for (const auto& entry : fs::directory_iterator(folder / "shards"))
-      if (entry.path().extension() == ".part") fs::remove(entry.path());
+    std::vector<fs::path> leftovers;
+    for (const auto& entry : fs::recursive_directory_iterator(folder / "shards"))
+      if (entry.path().extension() == ".part") leftovers.push_back(entry.path());
+    for (const auto& file : leftovers) fs::remove(file);
     return;
   }
   for (std::uint64_t shard = part.number - 1; shard < shards; shard += part.of)
-    fs::remove(temporary_name(folder / shard_file_name(shard)));
+    fs::remove(temporary_name(folder / store::shard_file_name(shard, shards)));
 }
 
 /// Parts are of one number: 2 of 3 and 2 of 4 would make the same shards.
@@ -147,6 +150,11 @@ void settle(const fs::path& folder, const std::vector<store::BadShard>& bad, boo
   std::vector<std::uint64_t> numbers;
   for (const auto& b : bad) numbers.push_back(b.shard);
   if (repair) store::strike_lines(folder, numbers);
+}
+
+void finish(const GenerateOptions& o) {
+  const Claim claim(o.folder, o.part);  // two parts may end at once
+  store::index_dataset(o.folder);
 }
 
 std::deque<std::uint64_t> missing_shards(const GenerateOptions& o, const store::DatasetHeader& header) {

@@ -32,6 +32,8 @@ void require_same_config(const std::filesystem::path& folder, const store::Datas
 std::vector<store::JournalLine> journalled(const GenerateOptions& options);
 /// Bad shards are taken out of the journal, or refused.
 void settle(const std::filesystem::path& folder, const std::vector<store::BadShard>& bad, bool repair);
+/// Writes what is made of a whole dataset (index.hpp), if it is whole.
+void finish(const GenerateOptions& options);
 /// Shards still to make.
 std::deque<std::uint64_t> missing_shards(const GenerateOptions& options, const store::DatasetHeader& header);
 

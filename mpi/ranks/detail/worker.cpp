@@ -8,10 +8,18 @@
 #include "base/durable.hpp"
 #include "base/stop_signal.hpp"
 #include "mpi/ranks/shard_group.hpp"
+#include "mpi/store/shard_name.hpp"
 
 namespace swingbank::mpi::ranks {
 
-std::string shard_file_name(std::uint64_t shard) { return fmt::format("shards/shard-{:06}.h5", shard); }
+namespace {
+/// Of the first shard in it: the folder's name is to be on the disk before the journal tells of the shard.
+void make_durable_folder(const std::filesystem::path& folder) {
+  if (std::filesystem::exists(folder)) return;
+  make_folder(folder);
+  flush_folder(folder.parent_path());
+}
+}  // namespace
 
 store::JournalLine Worker::make(std::uint64_t shard) {
   int rank, size;
@@ -27,13 +35,18 @@ store::JournalLine Worker::make(std::uint64_t shard) {
     part.attributes = attributes;
     part.attributes.shard = shard;
   });
-  const ShardReceipt receipt = write_shard(folder / shard_file_name(shard), part, group);
+  const std::string name =
+      store::shard_file_name(shard, (c.draws + c.draws_per_shard - 1) / c.draws_per_shard);
+  agree(group, name, [&] {
+    if (rank == 0) make_durable_folder((folder / name).parent_path());
+  });
+  const ShardReceipt receipt = write_shard(folder / name, part, group);
 
   std::array<std::uint64_t, store::kRefused + 1> mine{}, all{};
   for (const auto outcome : part.draw_outcome) ++mine[outcome];
   MPI_Allreduce(mine.data(), all.data(), static_cast<int>(all.size()), MPI_UINT64_T, MPI_SUM, group);
-  store::JournalLine line{shard,         shard_file_name(shard), receipt.draws,     receipt.rows,
-                          receipt.bytes, hex(receipt.hash),      receipt.file_hash, {}};
+  store::JournalLine line{
+      shard, name, receipt.draws, receipt.rows, receipt.bytes, hex(receipt.hash), receipt.file_hash, {}};
   line.operating_points = count_operating_points(part);
   for (std::uint8_t i = 0; i <= store::kRefused; ++i)
     if (all[i] > 0) line.outcomes[std::string(store::draw_outcome_name(i))] = all[i];

@@ -30,7 +30,4 @@ struct Worker {
       const store::ShardData& part) const;
 };
 
-/// Name of a shard's file below the dataset folder: "shards/shard-000012.h5".
-std::string shard_file_name(std::uint64_t shard);
-
 }  // namespace swingbank::mpi::ranks

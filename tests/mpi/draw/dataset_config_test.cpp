@@ -102,27 +102,67 @@ TEST(DatasetConfigFile, TheCommandLineKeepsTheSameLimits) {
   }
 }
 
+TEST(DatasetConfigFile, ShardsAreSizedInBytes) {
+  const Changed folder;
+  const DatasetConfig given = folder.read();
+  EXPECT_EQ(given.draws_per_shard, 1000U);
+  const auto bytes = given.bytes_per_draw();
+  const auto values = given.record.samples() * given.record.channels.size();
+  EXPECT_GE(bytes, 4 * values);
+  EXPECT_LE(bytes, 4 * values + given.record.samples() + 1000);
+  const DatasetConfig usual = folder.read("draws_per_shard = 1000\n", "\n");
+  EXPECT_NEAR(static_cast<double>(usual.draws_per_shard * bytes), 64e6, static_cast<double>(bytes));
+  const DatasetConfig small = folder.read("draws_per_shard = 1000", "shard_megabytes = 3.0");
+  EXPECT_NEAR(static_cast<double>(small.draws_per_shard * bytes), 3e6, static_cast<double>(bytes));
+  Overrides o;
+  o.shard_megabytes = 6.0;
+  EXPECT_NEAR(static_cast<double>(folder.read("", "", o).draws_per_shard * bytes), 6e6,
+              static_cast<double>(bytes));
+  o.int16 = true;
+  const DatasetConfig half = folder.read("", "", o);
+  EXPECT_LT(half.bytes_per_draw(), 0.6 * static_cast<double>(bytes));
+  EXPECT_GT(half.draws_per_shard,
+            1.7 * static_cast<double>(folder.read("", "", {.shard_megabytes = 6.0}).draws_per_shard));
+  EXPECT_THROW(folder.read("draws_per_shard = 1000", "draws_per_shard = 1000\nshard_megabytes = 3.0"),
+               InputError);
+  EXPECT_THROW(folder.read("", "", {.draws_per_shard = 5, .shard_megabytes = 6.0}), InputError);
+}
+
+TEST(DatasetConfigFile, OnlyAskedChannelsAndRates) {
+  const Changed folder;
+  const DatasetConfig whole = folder.read();
+  const std::string last = whole.record.channels.back(), first = whole.record.channels.front();
+  const DatasetConfig some = folder.read("", "", {.rate = 30.0, .channels = {last, first}});
+  EXPECT_EQ(some.record.channels, (std::vector<std::string>{first, last}));
+  EXPECT_EQ(some.record.samples(), 450U);
+  EXPECT_NE(config_hash(some, "k"), config_hash(whole, "k"));
+  EXPECT_THROW(folder.read("", "", {.channels = {"Tm", "nonsense"}}), InputError);
+  EXPECT_THROW(folder.read("", "", {.rate = 0.0}), InputError);
+}
+
 TEST(DatasetConfigFile, HashChangesWithEverythingBytesDependOn) {
   const Changed folder;
   const std::string base = config_hash(folder.read(), "k");
   EXPECT_EQ(base.size(), 16u);
   EXPECT_EQ(config_hash(folder.read("seed = 1", "seed = 1 # a remark"), "k"), base);
-  const std::pair<const char*, const char*> changes[] = {{"seed = 1", "seed = 2"},
-                                                         {"draws = 720000", "draws = 720001"},
-                                                         {"draws_per_shard = 1000", "draws_per_shard = 999"},
-                                                         {"convention = \"psse\"", "convention = \"andes\""},
-                                                         {"H = [1.0, 10.0]", "H = [1.0, 9.0]"},
-                                                         {"Xdpp = 0.3", "Xdpp = 0.29"},
-                                                         {"\"physical\"", "\"literal\""},
-                                                         {"distance = 0.7", "distance = 0.6"},
-                                                         {"\"raw\"", "\"scaled\""},
-                                                         {"except = [3]", "except = [3, 4]"},
-                                                         {"start = 2.0", "start = 2.5"},
-                                                         {"[0.05, 4.0]", "[0.05, 4.1]"},
-                                                         {"per_point = 12", "per_point = 11"},
-                                                         {"t_end = 15.0", "t_end = 14.0"},
-                                                         {"rate = 120.0", "rate = 30.0"},
-                                                         {"\"P\", \"Q\"", "\"Q\", \"P\""}};
+  const std::pair<const char*, const char*> changes[] = {
+      {"seed = 1", "seed = 2"},
+      {"draws = 720000", "draws = 720001"},
+      {"draws_per_shard = 1000", "draws_per_shard = 999"},
+      {"convention = \"psse\"", "convention = \"andes\""},
+      {"H = [1.0, 10.0]", "H = [1.0, 9.0]"},
+      {"Xdpp = 0.3", "Xdpp = 0.29"},
+      {"\"physical\"", "\"literal\""},
+      {"distance = 0.7", "distance = 0.6"},
+      {"\"raw\"", "\"scaled\""},
+      {"except = [3]", "except = [3, 4]"},
+      {"start = 2.0", "start = 2.5"},
+      {"[0.05, 4.0]", "[0.05, 4.1]"},
+      {"per_point = 12", "per_point = 11"},
+      {"t_end = 15.0", "t_end = 14.0"},
+      {"rate = 120.0", "rate = 30.0"},
+      {"rate = 120.0", "rate = 120.0\nstorage = \"int16\""},
+      {"\"P\", \"Q\"", "\"Q\", \"P\""}};
   for (const auto& [from, to] : changes) EXPECT_NE(config_hash(folder.read(from, to), "k"), base) << to;
   EXPECT_NE(config_hash(folder.read(), "another kernel"), base);
   Overrides o;

@@ -86,7 +86,11 @@ TEST(DatasetFolder, TruncatedShardIsNamed) {
   const TwoShards folder;
   const auto file = folder.path / "shards/shard-000001.h5";
   std::filesystem::resize_file(file, 100);
-  EXPECT_THAT(sentence_of([&] { open_dataset(folder.path); }),
+  const Dataset d = open_dataset(folder.path);
+  RowBlock rows;
+  EXPECT_THAT(sentence_of([&] { read_rows(d.shards[1], 0, 1, rows); }),
+              HasSubstr("truncated or changed shard at " + file.string()));
+  EXPECT_THAT(sentence_of([&] { read_checked(d.shards[1]); }),
               HasSubstr("truncated or changed shard at " + file.string()));
 }
 

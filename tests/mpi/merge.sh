@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# Parts made in folders of their own, as on machines without a common disk, are merged into the dataset; a merge that is
+# killed goes on.
+source "$(dirname "$0")/common.bash"
+merge=$SWINGBANK_BIN/swingbank-merge
+make=("$generate" "$configs/ieee14_genrou_bus3.toml" --draws 600 --draws-per-shard 20 --progress none)
+"${make[@]}" --out "$work/whole" >/dev/null 2>&1
+whole=$(hash_of "$work/whole")
+for k in 1 2 3; do "${make[@]}" --part $k/3 --out "$work/part$k" >/dev/null 2>&1 || true; done
+code=0
+"$merge" "$work/part1" "$work/part2" --out "$work/out" --progress none >"$work/log" 2>&1 || code=$?
+[ $code = 2 ] || { cat "$work/log"; fail "exit code $code while a part is missing"; }
+"$merge" "$work"/part? --out "$work/killed" --progress none >"$work/log" 2>&1 &
+pid=$!
+wait_for_lines "$work/killed" 3
+kill -9 $pid 2>/dev/null || true # it may have ended
+wait $pid 2>/dev/null || true
+for out in out killed; do
+  expect 0 "dataset $whole" "$merge" "$work/part1" "$work/part2" "$work/part3" --out "$work/$out" --progress none
+  diff -r "$work/whole/shards" "$work/$out/shards" || fail "other bytes in $out"
+  [ "$(hash_of "$work/$out")" = "$whole" ] || fail "another hash in $out"
+done
+expect 0 "dataset $whole" "${make[@]}" --out "$work/out" # nothing is left to do
+"${make[@]}" --seed 2 --part 1/3 --out "$work/other" >/dev/null 2>&1 || true
+expect 1 "a dataset of another config at $work/other" "$merge" "$work/part1" "$work/other" --out "$work/new" --progress none
+[ ! -e "$work/new" ] || fail "a refused merge left a folder"
