@@ -86,12 +86,58 @@ const std::vector<double>& played(const playin::Playback& p, playin::Output o) {
   return p.Ifd;
 }
 
+/// Whether what was recorded has no noise of its own: P and Q before the event are the model's to within what
+/// interpolation leaves.
+bool is_noiseless(const plant::PlantModel& model, const EventComparison& e) {
+  if (e.playback.start.samples < 3) return false;
+  const double floor = event::kLeastNoise * model.plant.mva / e.record.base.mva;
+  const auto least = [&](const std::vector<double>& measured, const std::vector<double>& modelled) {
+    if (measured.size() != modelled.size()) return false;
+    std::vector<double> residual(measured.size());
+    std::ranges::transform(modelled, measured, residual.begin(), std::minus<>());
+    return spread(residual, e.playback.start.samples) < floor;
+  };
+  return least(e.record.P, e.playback.P) && least(e.record.Q, e.playback.Q);
+}
+
+/// Where nothing else is left, what the voltage does between its samples decides. Played in with every second
+/// sample the model answers differently; an error that goes with the square of the step is a third of that.
+void add_interpolation(const plant::PlantModel& model, const playin::PlayInOptions& options,
+                       EventComparison& e) {
+  if (e.record.component != record::Component::plant || !is_noiseless(model, e)) return;
+  record::Record thin;
+  thin.name = e.record.name;
+  thin.base = e.record.base;
+  for (std::size_t k = 0; k < e.record.t.size(); k += 2) {
+    thin.t.push_back(e.record.t[k]);
+    thin.V.push_back(e.record.V[k]);
+    thin.theta.push_back(e.record.theta[k]);
+  }
+  playin::Playback coarse;
+  try {
+    coarse = playin::play_in(model.under_test(), e.record, playin::VoltageCurve(thin, e.switchings), options);
+  } catch (const InputError&) {
+    return;  // too few samples between two switchings
+  }
+  for (const playin::Output o : {playin::Output::P, playin::Output::Q, playin::Output::speed,
+                                 playin::Output::Efd, playin::Output::Ifd}) {
+    const auto &fine = played(e.playback, o), &other = played(coarse, o);
+    if (fine.empty() || fine.size() != other.size()) continue;
+    std::vector<double> third(fine.size());
+    std::ranges::transform(other, fine, third.begin(), [](double a, double b) { return (a - b) / 3; });
+    e.doubt[std::string(playin::output_name(o))].push_back(std::move(third));
+  }
+}
+
 /// Measures every channel, once the event's playback is there.
 void measure_channels(const plant::PlantModel& model, DriveBy drive, const playin::PlayInOptions& options,
                       EventComparison& e) {
   const bool power = drive == DriveBy::power;
   e.doubt.clear();
-  if (!power && !e.record.breaker()) add_doubt(model, e);
+  if (!power && !e.record.breaker()) {
+    add_doubt(model, e);
+    add_interpolation(model, options, e);
+  }
   e.windows = event_windows(e.record, e.switchings, options.pre_event, e.left_out);
   e.channels.clear();
   const record::RecordBase& base = e.record.base;
@@ -106,11 +152,14 @@ void measure_channels(const plant::PlantModel& model, DriveBy drive, const playi
           frequency_of(e.record.t, e.record.theta, base.frequency),
           frequency_of(e.record.t, e.playback.theta, base.frequency));
   }
+  const double per_machine = model.plant.mva / base.mva;  // floors are those of a machine on its own base
   const auto add_output = [&](playin::Output o, const std::vector<double>& measured,
                               const std::vector<double>& modelled, bool starts_at_mean, bool judged) {
     const ChannelUnit u = channel_unit(o, base);
-    add({std::string(playin::output_name(o)), u.name, u.scale, u.floor, starts_at_mean, judged}, measured,
-        modelled);
+    const bool power_of = o == playin::Output::P || o == playin::Output::Q || o == playin::Output::Pm;
+    add({std::string(playin::output_name(o)), u.name, u.scale, u.floor * (power_of ? per_machine : 1.0),
+         starts_at_mean, judged},
+        measured, modelled);
   };
   if (e.record.component != record::Component::plant || e.record.breaker()) {
     for (const playin::Output o : playin::compared_outputs(e.record, true))
@@ -286,11 +335,12 @@ std::vector<Window> event_windows(const record::Record& record,
   const double still = moved ? staged : std::min(first + pre_event, end);
   const double begins = slack + (switched ? std::min(switchings.front().time, staged) : still);
   const double over = slack + (switched ? switchings.back().time : still);
-  const Window all[] = {{"pre-event", first, begins},
+  const bool known = switched || moved;  // else nothing tells when the event begins
+  const Window all[] = {{known ? "pre-event" : "at first", first, begins},
                         {"fault", begins, over},
-                        {"0–1 s after", over, over + 1},
-                        {"1–5 s after", over + 1, over + 5},
-                        {"> 5 s after", over + 5, end + slack}};
+                        {known ? "0–1 s after" : "next second", over, over + 1},
+                        {known ? "1–5 s after" : "next 4 s", over + 1, over + 5},
+                        {known ? "> 5 s after" : "later", over + 5, end + slack}};
   std::vector<Window> windows;
   for (const auto& w : all) {
     const auto inside = [&](double t) { return t <= w.to && (t > w.from || (&w == all && t == w.from)); };

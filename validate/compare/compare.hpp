@@ -91,9 +91,9 @@ ChannelComparison compare_channel(const ChannelRule& rule, const std::vector<dou
 std::vector<double> frequency_of(const std::vector<double>& t, const std::vector<double>& theta,
                                  double nominal);
 
-/// pre-event, fault, 0-1 s, 1-5 s and > 5 s after the last switching; those that hold no sample are left out.
-/// The time between the first and the last switching is the "fault"; a single switching has none. No window
-/// begins or ends with samples that are left out.
+/// pre-event, fault, 0-1 s, 1-5 s and > 5 s after the last switching; at first, next second, next 4 s and
+/// later where nothing switches; none without a sample. Between the first and the last switching is the
+/// "fault"; a single switching has none. No window begins or ends with samples that are left out.
 std::vector<Window> event_windows(const record::Record& record,
                                   const std::vector<playin::Switching>& switchings, double pre_event,
                                   const std::vector<char>& left_out = {});

@@ -78,7 +78,8 @@ report::Table worst_map_table(const std::vector<LabelledMap>& maps) {
   for (const auto& m : maps)
     if (std::ranges::find(channels, m.channel) == channels.end()) channels.push_back(m.channel);
   for (const auto& channel : channels)
-    for (const char* window : {"pre-event", "fault", "0–1 s after", "1–5 s after", "> 5 s after"}) {
+    for (const char* window : {"pre-event", "fault", "0–1 s after", "1–5 s after", "> 5 s after", "at first",
+                               "next second", "next 4 s", "later"}) {
       ErrorMap::Row worst;
       worst.bands.resize(error_bands().size());
       const LabelledMap* of = nullptr;

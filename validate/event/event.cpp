@@ -196,7 +196,10 @@ NoiseModel noise_through(const sim::plant::PlantUnderTest& tested, const Events&
       const bool speed = e.channels[static_cast<std::size_t>(c)] == playin::Output::speed;
       const double step = record::quantum(e.measured(e.channels[static_cast<std::size_t>(c)]));
       covariance(c, c) = std::max(covariance(c, c), step * step / 12);
-      covariance(c, c) += std::pow(speed ? kLeastSpeedNoise : kLeastNoise, 2);
+      const playin::Output o = e.channels[static_cast<std::size_t>(c)];
+      const double per_machine =  // P and Q are on the record's base, the floor on the machine's
+          o == playin::Output::P || o == playin::Output::Q ? tested.plant.mva / e.record.base.mva : 1.0;
+      covariance(c, c) += std::pow(speed ? kLeastSpeedNoise : kLeastNoise * per_machine, 2);
     }
     noise.push_back({.deviation = covariance.diagonal().cwiseSqrt(),
                      .whitening = covariance.llt().matrixL().solve(Eigen::MatrixXd::Identity(n, n))});

@@ -71,6 +71,28 @@ TEST(CompareTest, ARightModelIsAdequate) {
   EXPECT_EQ(a.exceeding, 0);
   EXPECT_THAT(a.sentence, HasSubstr("Adequate"));
 }
+/// A record as a simulator writes it, on the system's base, where the machine is large.
+struct WithoutNoise : RightModel {
+  WithoutNoise() {
+    record = test::record_of(s, 3, 8, 0);
+    const double scale = record.base.mva / 100;
+    record.base.mva = model.record_base.mva = 100;
+    for (auto* power : {&record.P, &record.Q})
+      for (double& value : *power) value *= scale;
+  }
+};
+TEST(CompareTest, ARightModelIsAdequateWithoutNoiseAndAWrongOneNot) {
+  WithoutNoise exact;
+  std::vector<EventComparison> events = {compare_event(exact.model, exact.record)};
+  EXPECT_TRUE(events[0].fitted);
+  EXPECT_NEAR(events[0].switchings[0].time, exact.s.t_on, 1e-3);
+  const Adequacy a = judge(events);
+  EXPECT_TRUE(a.adequate) << a.sentence;
+  auto& machine = exact.model.plant.machine;
+  machine.p[static_cast<std::size_t>(machine.effect->parameter_index("H"))] *= 1.03;
+  std::vector<EventComparison> wrong = {compare_event(exact.model, exact.record)};
+  EXPECT_FALSE(judge(wrong).adequate);
+}
 TEST(CompareTest, FramesThatWereLostAreNotCompared) {
   RightModel right;
   for (const std::size_t k : {std::size_t{60}, std::size_t{300}, std::size_t{301}}) {
@@ -262,7 +284,10 @@ TEST(CompareTest, WindowsFollowTheSwitchings) {
   EXPECT_EQ(sum, e.record.samples());
   EXPECT_THAT(names(event_windows(e.record, {{.time = 2.0}}, 1.0)),
               ElementsAre("pre-event", "0–1 s after", "1–5 s after", "> 5 s after"));
-  EXPECT_THAT(names(event_windows(e.record, {}, 14.5)), ElementsAre("pre-event", "0–1 s after"));
+  // Where nothing switches, nothing is "after" anything.
+  EXPECT_THAT(names(event_windows(e.record, {}, 14.5)), ElementsAre("at first", "next second"));
+  EXPECT_THAT(names(event_windows(e.record, {}, 1)),
+              ElementsAre("at first", "next second", "next 4 s", "later"));
 }
 TEST(CompareTest, ResidualIsModelledMinusMeasured) {
   const EventComparison e = example_event();
