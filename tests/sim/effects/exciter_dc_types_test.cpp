@@ -6,14 +6,14 @@ namespace swingbank::sim::test {
 namespace {
 
 using C = std::complex<double>;
-const ControlBench::Changes kLinear = {{"TR", 0.03}, {"KA", 60.0}, {"TA", 0.08}, {"TB", 3.0},
-                                       {"TC", 0.7},  {"KE", 0.9},  {"TE", 0.7},  {"KF", 0.05},
-                                       {"TF", 0.9},  {"SE1", 0.0}, {"SE2", 0.0}};
+const ControlBench::Changes kLinearDc = {{"TR", 0.03}, {"KA", 60.0}, {"TA", 0.08}, {"TB", 3.0},
+                                         {"TC", 0.7},  {"KE", 0.9},  {"TE", 0.7},  {"KF", 0.05},
+                                         {"TF", 0.9},  {"SE1", 0.0}, {"SE2", 0.0}};
 
 TEST(ExciterDcTypes, LeadLagStandsBeforeTheRegulator) {
   for (const char* name : {"IEEEX1", "ESDC1A", "ESDC2A"})
     for (const double omega : {0.1, 1.0, 7.0, 40.0}) {
-      ControlBench bench(name, kLinear);
+      ControlBench bench(name, kLinearDc);
       ASSERT_TRUE(bench.problems.empty()) << name;
       EXPECT_LT(bench.largest_derivative(), 1e-11) << name;  // rounding over TA, times KA
       const C s(0.0, omega);

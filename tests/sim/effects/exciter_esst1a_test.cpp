@@ -6,7 +6,7 @@ namespace swingbank::sim::test {
 namespace {
 
 using C = std::complex<double>;
-const ControlBench::Changes kValues = {{"TR", 0.02},   {"TC", 1.0},    {"TB", 5.0},     {"TC1", 0.3},
+const ControlBench::Changes kEsst1a = {{"TR", 0.02},   {"TC", 1.0},    {"TB", 5.0},     {"TC1", 0.3},
                                        {"TB1", 0.1},   {"KA", 150.0},  {"TA", 0.05},    {"KF", 0.03},
                                        {"TF", 0.8},    {"VRMAX", 6.0}, {"VRMIN", -4.0}, {"KC", 0.1},
                                        {"VIMAX", 0.2}, {"VIMIN", -0.1}};
@@ -19,7 +19,7 @@ C closed_loop(double omega) {
 
 TEST(ExciterEsst1a, TransferFunctionIsTheDiagrams) {
   for (const double omega : {0.1, 1.0, 7.0, 40.0}) {
-    ControlBench bench("ESST1A", kValues);
+    ControlBench bench("ESST1A", kEsst1a);
     EXPECT_LT(bench.largest_derivative(), 1e-11);  // rounding over TA = 0.05 s, times KA
     // difference quotients over 1e-6, with KA/TA = 3000 in them
     EXPECT_LT(
@@ -32,7 +32,7 @@ TEST(ExciterEsst1a, TransferFunctionIsTheDiagrams) {
 }
 
 TEST(ExciterEsst1a, AStabiliserBehindTheRegulatorIsSeenByTheRateFeedbackAlone) {
-  auto values = kValues;
+  auto values = kEsst1a;
   values["VOS"] = 2.0;
   for (const double omega : {0.1, 1.0, 7.0, 40.0}) {
     ControlBench bench("ESST1A", values);
@@ -43,7 +43,7 @@ TEST(ExciterEsst1a, AStabiliserBehindTheRegulatorIsSeenByTheRateFeedbackAlone) {
 }
 
 TEST(ExciterEsst1a, OnlyTheUpperCeilingFallsWithTheFieldCurrent) {
-  ControlBench bench("ESST1A", kValues);
+  ControlBench bench("ESST1A", kEsst1a);
   bench.in.dVref = 0.1;
   bench.in.V = 0.9;
   bench.in.Ifd = 3.0;
@@ -55,7 +55,7 @@ TEST(ExciterEsst1a, OnlyTheUpperCeilingFallsWithTheFieldCurrent) {
 }
 
 TEST(ExciterEsst1a, TheRegulatorDoesNotWindUp) {
-  auto values = kValues;
+  auto values = kEsst1a;
   values["VAMAX"] = 4.0;
   values["KF"] = values["TB"] = values["TB1"] = 0.0;
   ControlBench bench("ESST1A", values);
@@ -68,7 +68,7 @@ TEST(ExciterEsst1a, TheRegulatorDoesNotWindUp) {
 }
 
 TEST(ExciterEsst1a, TheFieldLimiterTakesWhatIsAboveItsReference) {
-  auto values = kValues;
+  auto values = kEsst1a;
   values["KLR"] = 2.0;
   values["ILR"] = 1.5;  // the machine stands at 2 pu
   ControlBench bench("ESST1A", values);

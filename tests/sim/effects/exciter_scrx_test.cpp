@@ -4,12 +4,12 @@
 namespace swingbank::sim::test {
 namespace {
 
-const ControlBench::Changes kValues = {{"TAoverTB", 0.2}, {"TB", 2.0},    {"K", 80.0},
-                                       {"TE", 0.05},      {"EMIN", -3.0}, {"EMAX", 4.0}};
+const ControlBench::Changes kScrx = {{"TAoverTB", 0.2}, {"TB", 2.0},    {"K", 80.0},
+                                     {"TE", 0.05},      {"EMIN", -3.0}, {"EMAX", 4.0}};
 
 TEST(ExciterScrx, TransferFunctionIsTheDiagrams) {
   for (const double omega : {0.1, 1.0, 7.0, 40.0}) {
-    ControlBench bench("SCRX", kValues);
+    ControlBench bench("SCRX", kScrx);
     ASSERT_TRUE(bench.problems.empty());
     const auto exact = 80.0 * lead_over_lag(0.4, 2.0, omega) * lead_over_lag(0.0, 0.05, omega);
     EXPECT_LT(std::abs(bench.response(&Signals<double>::Vs, &Signals<double>::Efd, omega) - exact), 1e-6);
@@ -18,7 +18,7 @@ TEST(ExciterScrx, TransferFunctionIsTheDiagrams) {
 
 TEST(ExciterScrx, OnlyTheBusFedOneFollowsTheVoltage) {
   for (const double solid : {0.0, 1.0}) {
-    auto values = kValues;
+    auto values = kScrx;
     values["CSWITCH"] = solid;
     auto at = ControlBench::rated();
     at.V = at.Vc = 0.8;
@@ -33,7 +33,7 @@ TEST(ExciterScrx, OnlyTheBusFedOneFollowsTheVoltage) {
 
 TEST(ExciterScrx, NegativeFieldCurrentFlowsThroughTheCrowbarOrTheBridge) {
   for (const double ratio : {0.0, 7.0}) {
-    auto values = kValues;
+    auto values = kScrx;
     values["rcrfd"] = ratio;
     ControlBench bench("SCRX", values);
     bench.in.Ifd = -0.5;

@@ -5,7 +5,7 @@ namespace swingbank::sim::test {
 namespace {
 
 using C = std::complex<double>;
-const ControlBench::Changes kValues = {{"T1", 0.3}, {"T2", 0.2}, {"T3", 0.5},  {"K", 8.0},
+const ControlBench::Changes kDiesel = {{"T1", 0.3}, {"T2", 0.2}, {"T3", 0.5},  {"K", 8.0},
                                        {"T4", 0.6}, {"T5", 0.1}, {"T6", 0.05}, {"TD", 0.04}};
 C engine(double omega, double delay) {
   const C s(0.0, omega);
@@ -15,7 +15,7 @@ C engine(double omega, double delay) {
 
 TEST(GovernorDiesel, IsochronousOneIntegratesTheSpeed) {
   for (const double omega : {0.3, 1.0, 7.0, 30.0}) {
-    ControlBench bench("DEGOV", kValues);
+    ControlBench bench("DEGOV", kDiesel);
     ASSERT_TRUE(bench.problems.empty());
     EXPECT_LT(bench.largest_derivative(), 1e-12);
     // power follows the throttle times (1 + w): 0.8 of the speed
@@ -27,7 +27,7 @@ TEST(GovernorDiesel, IsochronousOneIntegratesTheSpeed) {
 }
 
 TEST(GovernorDiesel, WithoutDelayAndControlBoxItIsTheActuator) {
-  auto values = kValues;
+  auto values = kDiesel;
   values["TD"] = values["T1"] = values["T2"] = values["T3"] = 0.0;
   for (const double omega : {0.3, 7.0}) {
     ControlBench bench("DEGOV", values);

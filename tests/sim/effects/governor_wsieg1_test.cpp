@@ -4,8 +4,8 @@
 namespace swingbank::sim::test {
 namespace {
 
-const ControlBench::Changes kCurve = {{"GV1", 0.0},  {"PGV1", 0.0}, {"GV2", 0.5},
-                                      {"PGV2", 0.7}, {"GV3", 1.0},  {"PGV3", 1.0}};
+const ControlBench::Changes kGateCurve = {{"GV1", 0.0},  {"PGV1", 0.0}, {"GV2", 0.5},
+                                          {"PGV2", 0.7}, {"GV3", 1.0},  {"PGV3", 1.0}};
 
 TEST(GovernorWsieg1, WithoutItsOwnPartsItIsIeeeg1) {
   ControlBench one("IEEEG1", {{"db", 0.0003}}), other("WSIEG1", {{"db1", 0.0003}});
@@ -19,7 +19,7 @@ TEST(GovernorWsieg1, WithoutItsOwnPartsItIsIeeeg1) {
 }
 
 TEST(GovernorWsieg1, TheValveStandsWhereItsCurveGivesThePower) {
-  ControlBench bench("WSIEG1", kCurve);  // 0.8 pu: a third of the way from 0.5 to 1
+  ControlBench bench("WSIEG1", kGateCurve);  // 0.8 pu: a third of the way from 0.5 to 1
   EXPECT_NEAR(bench.state("valve"), 0.5 + 0.5 / 3.0, 1e-14);
   EXPECT_NEAR(bench.out().Tm, 0.8, 1e-14);
   EXPECT_LT(bench.largest_derivative(), 1e-13);
@@ -29,10 +29,10 @@ TEST(GovernorWsieg1, TheValveStandsWhereItsCurveGivesThePower) {
 }
 
 TEST(GovernorWsieg1, PointsMustAscend) {
-  auto values = kCurve;
+  auto values = kGateCurve;
   values["PGV3"] = 0.6;
   EXPECT_FALSE(ControlBench("WSIEG1", values).problems.empty());
-  values = kCurve;
+  values = kGateCurve;
   values["GV5"] = 0.9;
   EXPECT_FALSE(ControlBench("WSIEG1", values).problems.empty());
 }

@@ -5,12 +5,12 @@ namespace swingbank::sim::test {
 namespace {
 
 using C = std::complex<double>;
-const ControlBench::Changes kValues = {{"K2", 1.1}, {"T2", 3.0}, {"K3", 0.8},  {"T3", 1.5},
+const ControlBench::Changes kStab2a = {{"K2", 1.1}, {"T2", 3.0}, {"K3", 0.8},  {"T3", 1.5},
                                        {"K4", 0.2}, {"K5", 1.2}, {"T5", 0.05}, {"HLIM", 0.05}};
 
 TEST(StabiliserStab2a, TransferFunctionIsTheDiagrams) {
   for (const double omega : {0.1, 1.0, 7.0, 40.0}) {
-    ControlBench bench("STAB2A", kValues);
+    ControlBench bench("STAB2A", kStab2a);
     ASSERT_TRUE(bench.problems.empty());
     EXPECT_EQ(bench.out().Vs, 0.0);
     EXPECT_LT(bench.largest_derivative(), 1e-14);
@@ -22,7 +22,7 @@ TEST(StabiliserStab2a, TransferFunctionIsTheDiagrams) {
 }
 
 TEST(StabiliserStab2a, OutputIsLimitedOnBothSides) {
-  ControlBench bench("STAB2A", kValues);
+  ControlBench bench("STAB2A", kStab2a);
   bench.in.P += 1.0;
   bench.run(0.5);
   EXPECT_EQ(bench.out().Vs, -0.05);

@@ -10,7 +10,7 @@
 #include "tests/sim/reference/psse_folder.hpp"
 #include "tests/sim/reference/reference_support.hpp"
 
-namespace swingbank::sim::reference {
+namespace swingbank::sim::reference::openipsl_records {
 namespace {
 
 constexpr double kFaultOn = 2.0, kFaultOff = 2.15, kEnd = 10.0, kRate = 50.0;  // [s], [1/s]
@@ -159,4 +159,4 @@ TEST(OpenipslRecords, Ggov1) {
 }
 
 }  // namespace
-}  // namespace swingbank::sim::reference
+}  // namespace swingbank::sim::reference::openipsl_records

@@ -9,7 +9,7 @@
 #include "tests/sim/reference/psse_stepper.hpp"
 #include "tests/sim/reference/reference_support.hpp"
 
-namespace swingbank::sim::reference {
+namespace swingbank::sim::reference::psse_controls {
 namespace {
 
 constexpr double kSwitching = 1.0, kStep = 0.005, kEnd = 20.0;  // [s]
@@ -226,4 +226,4 @@ TEST(PsseRecords, LoadsAtConstantCurrentAndPower) {
 }
 
 }  // namespace
-}  // namespace swingbank::sim::reference
+}  // namespace swingbank::sim::reference::psse_controls

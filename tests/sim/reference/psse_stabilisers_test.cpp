@@ -11,7 +11,7 @@
 #include "tests/sim/reference/psse_stepper.hpp"
 #include "tests/sim/reference/reference_support.hpp"
 
-namespace swingbank::sim::reference {
+namespace swingbank::sim::reference::psse_stabilisers {
 namespace {
 
 constexpr double kStep = 0.005, kChange = 1.0, kEnd = 20.0;  // [s]
@@ -104,4 +104,4 @@ TEST(PsseRecords, Pss2bAtItsInputsLimits) {
 }
 
 }  // namespace
-}  // namespace swingbank::sim::reference
+}  // namespace swingbank::sim::reference::psse_stabilisers
