@@ -67,7 +67,7 @@ void declare(jobs::CommandLine& line, Command& c) {
   line.add_flag(
           "--trust", c.options.trust,
           "continue without reading the shards there are (0.15 s for 268 MB on one rank): only their lengths "
-          "are checked")
+          "are checked, and of a finished dataset its manifest alone")
       .excludes(repair);
   line.add_choice("--progress", c.mode, Progress::words(), "auto, bar, lines or none");
 }

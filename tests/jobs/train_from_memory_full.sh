@@ -43,6 +43,18 @@ cmp <(told float32-memory) <(told again) || fail "another time, other results"
 train seed --simulate "$work/float32/tiny_data.toml" --draw-seed 8
 cmp -s <(told float32-memory) <(told seed) && fail "the seed changes nothing"
 
+# Folds on two processes that share the rows, with noise.
+for from in disk memory; do
+  rows=("$work/float32/data")
+  [[ $from == disk ]] || rows=(--simulate "$work/float32/tiny_data.toml")
+  "$swingbank" cross-validate "${rows[@]}" --experiment "$work/tiny.toml" --processes 2 --noise 0.001 --out "$work/folds-$from" \
+    >"$work/log" 2>&1 || fail "folds from $from: $(cat "$work/log")"
+done
+for fold in 30 31; do
+  name=V-gru-quick-noise0.001-seed1-gen$fold.json
+  diff <(grep -v seconds "$work/folds-disk/$name") <(grep -v seconds "$work/folds-memory/$name") || fail "another fold from memory"
+done
+
 sed 's/^networks = .*/networks = ["closed-form"]/' "$work/split.toml" >"$work/direct.toml"
 refuses "a method that reads records" "network closed-form at --simulate" "$swingbank" train --experiment "$work/direct.toml" \
   --simulate "$work/tiny_data.toml" --out "$work/direct"

@@ -21,6 +21,13 @@ for out in out killed; do
   [ "$(hash_of "$work/$out")" = "$whole" ] || fail "another hash in $out"
 done
 expect 0 "dataset $whole" "${make[@]}" --out "$work/out" # nothing is left to do
+# A finished dataset is known by its manifest: trusting, no shard is looked at.
+cp -r "$work/whole" "$work/trusted"
+rm "$work/trusted/shards/shard-000003.h5"
+expect 0 "dataset $whole" "${make[@]}" --trust --out "$work/trusted"
+expect 1 "missing shard at $work/trusted/shards/shard-000003.h5" "${make[@]}" --out "$work/trusted"
+expect 0 "dataset $whole" "${make[@]}" --repair --out "$work/trusted"
+diff -r "$work/whole/shards" "$work/trusted/shards" || fail "other bytes after a repair"
 "${make[@]}" --seed 2 --part 1/3 --out "$work/other" >/dev/null 2>&1 || true
 expect 1 "a dataset of another config at $work/other" "$merge" "$work/part1" "$work/other" --out "$work/new" --progress none
 [ ! -e "$work/new" ] || fail "a refused merge left a folder"
