@@ -13,6 +13,7 @@
 #include "validate/calibrate/network.hpp"
 #include "validate/calibrate/report.hpp"
 #include "validate/calibrate/side_by_side.hpp"
+#include "validate/calibrate/wrong_parameters.hpp"
 #include "validate/plant/plant_dyr.hpp"
 #include "validate/plant/plant_file.hpp"
 #include "validate/thresholds/adequacy.hpp"
@@ -27,7 +28,7 @@ constexpr const char *kModel = "model.toml", *kBentModel = "model-not-adequate.t
 struct Arguments {
   std::string model, out = "calibration", method = "fit", truth, network, start, command;
   std::vector<std::string> records;
-  bool json = false;
+  bool json = false, fewest = false;
   jobs::Reading reading;
   jobs::Judging judging;
   calibrate::CalibrateOptions options;
@@ -161,6 +162,30 @@ std::optional<calibrate::NetworkEstimate> ask_network(const Arguments& a,
   return calibrate::read_estimate(file);
 }
 
+/// Names the parameters that must change, and writes the model with these changed.
+int run_fewest(const Arguments& a, const plant::PlantModel& model, const std::vector<record::Record>& records,
+               const nlohmann::json& told) {
+  const calibrate::WrongParameters w = calibrate::wrong_parameters(model, records, a.options);
+  const auto played = play_both(a, model, w.model, records);
+  const std::string written =
+      write_model(a, model, w.model, w.holds(), {"command: " + a.command, w.sentence});
+  nlohmann::json result = calibrate::wrong_json(w);
+  result["command"] = a.command;
+  result["records"] = told;
+  result["fitness"] = compare::fitness_json(played);
+  compare::CommandPage page;
+  page.complete = w.holds();
+  page.sentence = w.sentence;
+  page.played = played;
+  page.parameters = jobs::page_parameters(w.found.fit.parameters, w.model.plant);
+  write_page(a, model, std::move(page), result);
+  say(a, result,
+      compare::fitness_text(played) + compare::complete_text(w.holds(), calibrate::wrong_text(w)) + "\n" +
+          written);
+  a.judging.print(std::filesystem::path(a.out) / "report.html");
+  return played.back().fitness.exit_code(w.holds());
+}
+
 int run(Arguments& a) {
   a.judging.read();
   plant::PlantModel model = jobs::load_model_to_fit(a.model);
@@ -172,7 +197,11 @@ int run(Arguments& a) {
   if (a.method == "curve-fit" && !(a.network.empty() && a.start.empty()))
     throw InputError({"a network's start", "--method curve-fit",
                       "curve fitting starts from the model's own values", "give --method fit or both"});
+  if (a.fewest && (a.method != "fit" || !(a.network.empty() && a.start.empty())))
+    throw InputError({"a method or a start of its own", "--fewest", "it is a way of its own",
+                      "leave --method, --network and --start out"});
   if (a.method == "curve-fit") return run_baseline(a, model, records, truth, told);
+  if (a.fewest) return run_fewest(a, model, records, told);
   const bool both = a.method == "both";
   const auto estimate = ask_network(a, records);
   sim::plant::Plant estimated;
@@ -245,6 +274,10 @@ void add_options(jobs::CommandLine& line, Arguments& a, bool& inner) {
                "starts, and is shown beside the fit");
   line.add("--start", a.start, "the same from what 'swingbank predict --out FILE' wrote").excludes(network);
   line.add("--truth", a.truth, "plant file (or blind-test's truth) to compare the parameters with");
+  line.add_flag(
+      "--fewest", a.fewest,
+      "which parameters are wrong: the fewest that must change for the model to explain the records, "
+      "while every other one stays as it is; the model with these is written");
   line.add("--hold-out", o.held_out,
            "record (name or number from 1) left out of the fit and used to judge it; may be repeated");
   line.add("--spread", o.spread, "relative uncertainty believed of the model's parameters")

@@ -1,0 +1,63 @@
+// The fewest parameters that must change: those that were made wrong, and no others.
+#include "validate/fit/fewest.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "sim/library/library.hpp"
+#include "tests/validate/playin/support.hpp"
+
+namespace swingbank::validate::fit {
+namespace {
+
+/// The example's plant with its exciter, whose true values are known, and its records.
+struct Known {
+  plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  event::WhitenedEvents events;
+  Known(const std::vector<std::pair<std::string, double>>& wrong, int records) {
+    model.plant.controls.push_back({sim::library::compiled().find("SEXS"), {0.1, 10, 100, 0.05, -4.0, 5.0}});
+    std::vector<record::Record> all;
+    for (int k = 1; k <= records; ++k)
+      all.push_back(record::read_record(
+          test::source(fmt::format("configs/records/record-example/avr_ev{}.csv", k)), model.record_base));
+    for (const auto& [name, factor] : wrong)
+      for (const auto& f : free())
+        if (sim::plant::parameter_name(model.plant, f.id).text() == name)
+          sim::plant::parameter_value(model.plant, f.id) *= factor;
+    events = event::prepare_events(model, all, {.measured_states = false});
+  }
+  [[nodiscard]] std::vector<FreeParameter> free() const { return free_parameters(model.plant, 0.2); }
+  /// Names of what is found, in order of the alphabet; what is tied stands behind in brackets.
+  [[nodiscard]] std::vector<std::string> named() const {
+    const Fewest found = fewest(model.under_test(), events, free());
+    std::vector<std::string> names;
+    for (const auto& w : found.wrong) {
+      names.push_back(w.fit.full_name());
+      EXPECT_GT(w.evidence, 10) << names.back();
+      EXPECT_GT(w.fit.error, 0) << names.back();
+    }
+    EXPECT_LT(found.fit.misfit(), 1.12);
+    std::ranges::sort(names);
+    return names;
+  }
+};
+
+TEST(Fewest, NamesTheParameterThatIsWrong) {
+  EXPECT_EQ(Known({{"GENROU.H", 1.3}}, 2).named(), std::vector<std::string>{"GENROU.H"});
+}
+TEST(Fewest, NamesNothingWhereNothingIsWrong) { EXPECT_TRUE(Known({}, 2).named().empty()); }
+
+TEST(FewestFull, NamesThreeThatAreWrongByThirtyPercent) {
+  for (const auto& wrong : std::vector<std::vector<std::pair<std::string, double>>>{
+           {{"GENROU.H", 1.3}, {"GENROU.Xdp", 0.8}, {"SEXS.K", 0.7}},
+           {{"GENROU.Tdop", 1.3}, {"GENROU.Xq", 0.7}, {"SEXS.TB", 1.3}},
+           {{"GENROU.H", 0.7}, {"GENROU.Xd", 1.3}, {"SEXS.TE", 1.3}}}) {
+    std::vector<std::string> names;
+    for (const auto& w : wrong) names.push_back(w.first);
+    std::ranges::sort(names);
+    EXPECT_EQ(Known(wrong, 4).named(), names);
+  }
+}
+
+}  // namespace
+}  // namespace swingbank::validate::fit

@@ -1,0 +1,88 @@
+#include "validate/calibrate/wrong_parameters.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace swingbank::validate::calibrate {
+
+WrongParameters wrong_parameters(const plant::PlantModel& model, std::vector<record::Record> records,
+                                 const CalibrateOptions& options) {
+  const auto out = held_out_events(records, options.held_out);
+  std::vector<record::Record> seen;
+  for (std::size_t k = 0; k < records.size(); ++k)
+    if (!out[k]) seen.push_back(std::move(records[k]));
+  const auto free = chosen_parameters(model.plant, options.spread, options.fixed);
+  const auto events = event::prepare_events(model, std::move(seen), options.events);
+  fit::FewestOptions o;
+  o.progress = options.progress;
+  WrongParameters w;
+  w.found = fit::fewest(model.under_test(), events, free, o);
+  w.model = model;
+  w.model.plant = w.found.fit.plant;
+  w.adequate = options.adequate;
+  w.sentence = wrong_sentence(w.found, w.adequate);
+  return w;
+}
+
+std::string wrong_sentence(const fit::Fewest& found, double adequate) {
+  const std::string left = fmt::format(
+      "chi2 per value {:.3f} as the model is, {:.3f} with every parameter free", found.before, found.best);
+  if (found.wrong.empty())
+    return fmt::format("No parameter has to change: none explains more of the records than noise would ({}).",
+                       left);
+  std::string names;
+  for (const auto& w : found.wrong) {
+    std::string tied;
+    for (const auto& t : w.tied) tied += (tied.empty() ? "" : ", ") + t;
+    names += fmt::format("{}{} {:.4g} -> {:.4g} {}{}", names.empty() ? "" : "; ", w.fit.full_name(),
+                         w.fit.start, w.fit.value, w.fit.unit,
+                         tied.empty() ? "" : " (or " + tied + ": the records cannot tell)");
+  }
+  const bool one = found.wrong.size() == 1;
+  return fmt::format(
+      "{} {} must change: {}. {} {:.3f} with {} ({}).",
+      one ? "One parameter" : fmt::format("{} parameters", found.wrong.size()),
+      found.fit.misfit() <= adequate ? "and no more" : "at least, though more than noise is left,", names,
+      "Chi2 per value is", found.fit.misfit(), one ? "it" : "them", left);
+}
+
+std::string wrong_text(const WrongParameters& w) {
+  std::string text = w.sentence + "\n";
+  if (w.found.wrong.empty()) return text;
+  text += fmt::format("\n{:<16} {:>12} {:>12} {:>26} {:>6} {:>12} {:>10}  {}\n", "parameter", "model",
+                      "fitted", "95 % interval", "unit", "evidence", "of error", "or in its place");
+  for (const auto& p : w.found.wrong) {
+    std::string tied;
+    for (const auto& t : p.tied) tied += (tied.empty() ? "" : ", ") + t;
+    text +=
+        fmt::format("{:<16} {:>12.5g} {:>12.5g} {:>26} {:>6} {:>12.1f} {:>8.1f} %  {}\n", p.fit.full_name(),
+                    p.fit.start, p.fit.value, fmt::format("{:.4g} to {:.4g}", p.fit.low, p.fit.high),
+                    p.fit.unit, p.evidence, 100 * p.share, tied);
+  }
+  text +=
+      "\nEvidence [chi2]: by how much the cost rises if this one keeps its value and the others are refitted. Of error: "
+      "that rise as a share of what the model leaves beyond them all; shares need not add up to 100 %.\n";
+  return text;
+}
+
+nlohmann::json wrong_json(const WrongParameters& w) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const auto& p : w.found.wrong)
+    all.push_back({{"name", p.fit.full_name()},
+                   {"unit", p.fit.unit},
+                   {"model", p.fit.start},
+                   {"fitted", p.fit.value},
+                   {"low", p.fit.low},
+                   {"high", p.fit.high},
+                   {"evidence_chi2", p.evidence},
+                   {"share_of_error", p.share},
+                   {"or", p.tied}});
+  return {{"sentence", w.sentence},
+          {"wrong", all},
+          {"chi2_per_value",
+           {{"model", w.found.before}, {"these_changed", w.found.fit.misfit()}, {"all_free", w.found.best}}},
+          {"statistically_complete", w.holds()}};
+}
+
+}  // namespace swingbank::validate::calibrate

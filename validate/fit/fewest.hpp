@@ -1,0 +1,42 @@
+#pragma once
+// Which parameters are wrong: the fewest that must change for the model to explain the records, while every
+// other one stays as it is believed.
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "validate/fit/fit.hpp"
+
+namespace swingbank::validate::fit {
+
+/// A parameter that the records say is wrong.
+struct WrongParameter {
+  FittedParameter fit;  ///< start: as believed; value and interval with the others of the set free
+  double evidence =
+      0;  ///< by how much the cost rises if it keeps its believed value, the rest of the set refitted
+  double share = 0;  ///< of what the model leaves beyond the best fit, that returns with it
+  /// Names of parameters that would do in its place: the records cannot tell them apart.
+  std::vector<std::string> tied = {};
+};
+
+struct Fewest {
+  std::vector<WrongParameter> wrong;  ///< the largest share first
+  Fit fit;                            ///< with these free and all others as believed
+  double before = 0;                  ///< chi2 per value of the model as it is, events' own states fitted
+  double best = 0;                    ///< chi2 per value with every parameter free
+  event::WhitenedEvents events;       ///< with the noise that the fits are measured in
+};
+
+struct FewestOptions {
+  std::size_t most = 8;  ///< so many at most
+  double each = 10;      ///< what a parameter must earn [chi2]
+  std::function<void(const std::string& what, int done, int total)> progress = {};
+};
+
+/// Sets of parameters are compared on the curvature of the cost where all are free, and the best of each size
+/// are refitted. `free` may move; what is believed of those that do stands in their spread. Throws InputError
+/// where the model cannot be fitted.
+Fewest fewest(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+              const std::vector<FreeParameter>& free, const FewestOptions& options = {});
+
+}  // namespace swingbank::validate::fit
