@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "sim/library/library.hpp"
 #include "tests/validate/playin/support.hpp"
 
@@ -27,7 +29,7 @@ struct Known {
     events = event::prepare_events(model, all, {.measured_states = false});
   }
   [[nodiscard]] std::vector<FreeParameter> free() const { return free_parameters(model.plant, 0.2); }
-  /// Names of what is found, in order of the alphabet; what is tied stands behind in brackets.
+  /// Names of what is found, in order of the alphabet.
   [[nodiscard]] std::vector<std::string> named() const {
     const Fewest found = fewest(model.under_test(), events, free());
     std::vector<std::string> names;
@@ -47,7 +49,7 @@ TEST(Fewest, NamesTheParameterThatIsWrong) {
 }
 TEST(Fewest, NamesNothingWhereNothingIsWrong) { EXPECT_TRUE(Known({}, 2).named().empty()); }
 
-TEST(FewestFull, NamesThreeThatAreWrongByThirtyPercent) {
+TEST(FewestFull, NamesThreeThatAreWrong) {
   for (const auto& wrong : std::vector<std::vector<std::pair<std::string, double>>>{
            {{"GENROU.H", 1.3}, {"GENROU.Xdp", 0.8}, {"SEXS.K", 0.7}},
            {{"GENROU.Tdop", 1.3}, {"GENROU.Xq", 0.7}, {"SEXS.TB", 1.3}},
@@ -55,7 +57,7 @@ TEST(FewestFull, NamesThreeThatAreWrongByThirtyPercent) {
     std::vector<std::string> names;
     for (const auto& w : wrong) names.push_back(w.first);
     std::ranges::sort(names);
-    EXPECT_EQ(Known(wrong, 4).named(), names);
+    EXPECT_EQ(Known(wrong, 2).named(), names);
   }
 }
 
