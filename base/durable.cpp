@@ -6,9 +6,8 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
+#include <functional>
 #include <memory>
-#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -41,9 +40,18 @@ std::string remedy_for(int error) {
   }
 }
 
+/// Again where a signal or a file system's server interrupted it.
+template <class Call>
+auto until_done(const Call& call) {
+  auto result = call();
+  while (result < 0 && errno == EINTR) result = call();
+  return result;
+}
+
 class Descriptor {
  public:
-  Descriptor(const fs::path& file, int flags) : Descriptor(::open(file.c_str(), flags | O_CLOEXEC)) {}
+  Descriptor(const fs::path& file, int flags)
+      : Descriptor(until_done([&] { return ::open(file.c_str(), flags | O_CLOEXEC); })) {}
   explicit Descriptor(int fd) : fd_(fd) {}
   ~Descriptor() {
     if (fd_ >= 0) ::close(fd_);
@@ -60,7 +68,25 @@ class Descriptor {
 /// is refused.
 int open_new(const fs::path& temporary) {
   if (::unlink(temporary.c_str()) != 0 && errno != ENOENT) return -1;
-  return ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644);
+  return until_done(
+      [&] { return ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644); });
+}
+
+int flush(int fd) {
+  return until_done([&] { return ::fsync(fd); });
+}
+
+/// Hands on the bytes of a file, a mebibyte at a time. An error in the midst is not its end.
+void read_pieces(const fs::path& file, const std::function<void(std::string_view)>& take) {
+  const Descriptor d(file, O_RDONLY);
+  if (d.get() < 0) raise_file_error(file, errno, "cannot read the file");
+  std::vector<char> piece(std::size_t{1} << 20);
+  for (;;) {
+    const ssize_t n = until_done([&] { return ::read(d.get(), piece.data(), piece.size()); });
+    if (n < 0) raise_file_error(file, errno, "cannot read the file");
+    if (n == 0) return;
+    take({piece.data(), static_cast<std::size_t>(n)});
+  }
 }
 
 }  // namespace
@@ -81,14 +107,15 @@ void make_folder(const fs::path& folder) {
 
 void flush_folder(const fs::path& folder) {
   const Descriptor d(folder.empty() ? "." : folder, O_RDONLY | O_DIRECTORY);
-  if (d.get() < 0 || ::fsync(d.get()) != 0) raise_file_error(folder, errno, "cannot flush the folder");
+  if (d.get() < 0 || flush(d.get()) != 0) raise_file_error(folder, errno, "cannot flush the folder");
 }
 
 void reserve(const fs::path& file, std::uint64_t bytes) {
   const fs::path temporary = temporary_name(file);
   const Descriptor d(open_new(temporary));
   if (d.get() < 0) raise_file_error(file, errno, "cannot write the file");
-  const int error = bytes == 0 ? 0 : ::posix_fallocate(d.get(), 0, static_cast<off_t>(bytes));
+  int error = EINTR;
+  while (error == EINTR) error = bytes == 0 ? 0 : ::posix_fallocate(d.get(), 0, static_cast<off_t>(bytes));
   if (error == 0 || error == EOPNOTSUPP || error == EINVAL) return;
   ::unlink(temporary.c_str());
   raise_file_error(file, error, "cannot reserve " + std::to_string(bytes) + " bytes for the file");
@@ -96,8 +123,7 @@ void reserve(const fs::path& file, std::uint64_t bytes) {
 
 void flush_temporary(const fs::path& file) {
   const Descriptor d(temporary_name(file), O_RDONLY | O_NOFOLLOW);
-  if (d.get() < 0 || ::fsync(d.get()) != 0)
-    raise_file_error(file, errno, "cannot flush the file to the disk");
+  if (d.get() < 0 || flush(d.get()) != 0) raise_file_error(file, errno, "cannot flush the file to the disk");
 }
 
 void publish(const fs::path& file) {
@@ -109,7 +135,7 @@ void publish(const fs::path& file) {
   };
   {
     const Descriptor d(temporary, O_RDONLY | O_NOFOLLOW);
-    if (d.get() < 0 || ::fsync(d.get()) != 0) fail("cannot flush the file to the disk");
+    if (d.get() < 0 || flush(d.get()) != 0) fail("cannot flush the file to the disk");
   }
   if (::rename(temporary.c_str(), file.c_str()) != 0) fail("cannot give the file its final name");
   flush_folder(file.parent_path());
@@ -130,8 +156,7 @@ void NewFile::fail() const { raise_file_error(file_, errno, failure_); }
 
 void NewFile::write(const void* data, std::size_t bytes) {
   for (const char* from = static_cast<const char*>(data); bytes > 0;) {
-    const ssize_t n = ::write(fd_, from, bytes);
-    if (n < 0 && errno == EINTR) continue;
+    const ssize_t n = until_done([&] { return ::write(fd_, from, bytes); });
     if (n <= 0) fail();
     from += n;
     bytes -= static_cast<std::size_t>(n);
@@ -140,8 +165,9 @@ void NewFile::write(const void* data, std::size_t bytes) {
 
 void NewFile::publish() {
   const fs::path temporary = temporary_name(file_);
-  if (::fsync(fd_) != 0 || ::rename(temporary.c_str(), file_.c_str()) != 0) fail();
-  if (::close(std::exchange(fd_, -1)) != 0) fail();
+  if (flush(fd_) != 0 || ::rename(temporary.c_str(), file_.c_str()) != 0) fail();
+  if (::close(std::exchange(fd_, -1)) != 0 && errno != EINTR)
+    fail();  // interrupted, it is closed all the same
   flush_folder(file_.parent_path());
 }
 
@@ -152,28 +178,18 @@ void write_text(const fs::path& file, std::string_view text) {
 }
 
 std::string read_text(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) raise_file_error(file, errno, "cannot read the file");
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (in.bad()) raise_file_error(file, EIO, "cannot read the file");
-  return text.str();
+  std::string text;
+  read_pieces(file, [&](std::string_view piece) { text += piece; });
+  return text;
 }
 
 std::string hash_of_file(const fs::path& file) {
-  const Descriptor d(file, O_RDONLY);
-  if (d.get() < 0) raise_file_error(file, errno, "cannot read the file");
   const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),
                                                                               XXH3_freeState);
   XXH3_64bits_reset(state.get());
-  std::vector<char> piece(std::size_t{1} << 20);
-  for (;;) {
-    const ssize_t n = ::read(d.get(), piece.data(), piece.size());
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) raise_file_error(file, errno, "cannot read the file");
-    if (n == 0) return hex(XXH3_64bits_digest(state.get()));
-    XXH3_64bits_update(state.get(), piece.data(), static_cast<std::size_t>(n));
-  }
+  read_pieces(file,
+              [&](std::string_view piece) { XXH3_64bits_update(state.get(), piece.data(), piece.size()); });
+  return hex(XXH3_64bits_digest(state.get()));
 }
 
 std::string hex(std::uint64_t value) {

@@ -3,8 +3,9 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 #include <system_error>
+
+#include "base/durable.hpp"
 
 namespace swingbank {
 
@@ -74,12 +75,14 @@ Problem unreadable(const fs::path& file, const std::string& what, const std::str
 std::string read_input(const fs::path& file, const std::string& what, const std::string& remedy) {
   if (std::error_code error; fs::exists(file, error) && !fs::is_regular_file(file, error))
     throw InputError(unreadable(file, what, remedy));
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  std::error_code ignored;
-  if (!in || fs::is_directory(file, ignored) || !(text << in.rdbuf()))
-    throw InputError(unreadable(file, what, remedy));
-  return std::move(text).str();
+  try {
+    std::string text = read_text(file);
+    if (!text.empty()) return text;
+  } catch (const InputError& error) {
+    if (std::error_code ignored; fs::is_regular_file(file, ignored))
+      throw InputError({what, file.string(), error.problems().front().why, remedy});
+  }
+  throw InputError(unreadable(file, what, remedy));
 }
 
 }  // namespace swingbank

@@ -66,9 +66,11 @@ RunLock::~RunLock() {
 
 void RunLock::open() {
   constexpr int kFlags = O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW;
-  fd_ = ::open(file_.c_str(), kFlags | O_EXCL, 0644);
-  created_ = fd_ >= 0;
-  if (fd_ < 0 && errno == EEXIST) fd_ = ::open(file_.c_str(), kFlags, 0644);
+  do {
+    fd_ = ::open(file_.c_str(), kFlags | O_EXCL, 0644);
+    created_ = fd_ >= 0;
+    if (fd_ < 0 && errno == EEXIST) fd_ = ::open(file_.c_str(), kFlags, 0644);
+  } while (fd_ < 0 && errno == EINTR);
   if (fd_ < 0) raise_file_error(file_, errno, "cannot open the lock file");
 }
 

@@ -1,9 +1,13 @@
 #include "base/sealed_file.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 #include <xxhash.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -21,41 +25,100 @@ struct Hash {
   [[nodiscard]] std::uint64_t value() const { return XXH3_64bits_digest(state.get()); }
 };
 
-/// The file from its magic bytes to its checksum; throws Unusable where it is damaged.
-void read_all(std::ifstream& in, std::uint64_t length, const SealedKind& kind,
-              const std::function<void(const json&, std::size_t)>& start, const PlaceArray& place) {
+/// A file as it is read. An error of the disk is told as such, and is no damage of the file.
+class Input {
+ public:
+  explicit Input(const std::filesystem::path& file) : file_(file), buffer_(std::size_t{1} << 16) {
+    do fd_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    while (fd_ < 0 && errno == EINTR);
+    if (fd_ < 0 && errno != ENOENT) raise_file_error(file_, errno, "cannot read the file");
+  }
+  ~Input() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  Input(const Input&) = delete;
+  Input& operator=(const Input&) = delete;
+  [[nodiscard]] bool is_there() const { return fd_ >= 0; }
+  [[nodiscard]] std::uint64_t length() const {
+    struct stat status {};
+    if (::fstat(fd_, &status) != 0) raise_file_error(file_, errno, "cannot read the file");
+    return static_cast<std::uint64_t>(status.st_size);
+  }
+  void rewind() {
+    if (::lseek(fd_, 0, SEEK_SET) != 0) raise_file_error(file_, errno, "cannot read the file");
+    at_ = filled_ = 0;
+  }
+  void get(void* data, std::size_t bytes) {
+    for (char* to = static_cast<char*>(data); bytes > 0;) {
+      if (at_ == filled_) fill();
+      const std::size_t n = std::min(bytes, filled_ - at_);
+      std::memcpy(to, buffer_.data() + at_, n);
+      to += n, at_ += n, bytes -= n;
+    }
+  }
+
+ private:
+  void fill() {
+    ssize_t n;
+    do n = ::read(fd_, buffer_.data(), buffer_.size());
+    while (n < 0 && errno == EINTR);
+    if (n < 0) raise_file_error(file_, errno, "cannot read the file");
+    if (n == 0) throw Unusable{"it ends too early"};
+    at_ = 0, filled_ = static_cast<std::size_t>(n);
+  }
+  const std::filesystem::path& file_;
+  std::vector<char> buffer_;
+  std::size_t at_ = 0, filled_ = 0;
+  int fd_ = -1;
+};
+
+/// Before anybody takes the content, so that nobody meets what was not written.
+void require_seal(Input& in, std::uint64_t length, const SealedKind& kind) {
+  std::string magic(std::strlen(kind.magic), '\0');
+  if (length < magic.size()) throw Unusable{"it ends too early"};
+  in.get(magic.data(), magic.size());
+  if (magic != kind.magic) throw Unusable{"it is no " + std::string(kind.what)};
+  in.rewind();
   Hash hash;
-  const auto get = [&](void* data, std::size_t bytes) {
-    if (!in.read(static_cast<char*>(data), static_cast<std::streamsize>(bytes)))
-      throw Unusable{"it ends too early"};
-    hash.add(data, bytes);
-  };
+  std::uint64_t seal = 0;
+  if (length < magic.size() + sizeof seal) throw Unusable{"it ends too early"};
+  std::vector<char> piece(std::size_t{1} << 16);
+  for (std::uint64_t left = length - sizeof seal; left > 0;) {
+    const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(left, piece.size()));
+    in.get(piece.data(), n);
+    hash.add(piece.data(), n);
+    left -= n;
+  }
+  in.get(&seal, sizeof seal);
+  if (seal != hash.value()) throw Unusable{"its checksum is wrong"};
+  in.rewind();
+}
+
+/// The file from its magic bytes to its last array; throws Unusable where it is not what a writer makes.
+void read_all(Input& in, std::uint64_t length, const SealedKind& kind,
+              const std::function<void(const json&, std::size_t)>& start, const PlaceArray& place) {
   const auto get_size = [&] {
     std::uint64_t n = 0;
-    get(&n, sizeof n);
+    in.get(&n, sizeof n);
     return n;
   };
   std::string magic(std::strlen(kind.magic), '\0');
-  get(magic.data(), magic.size());
-  if (magic != kind.magic) throw Unusable{"it is no " + std::string(kind.what)};
+  in.get(magic.data(), magic.size());
   const std::uint64_t header_length = get_size();
   if (header_length > length) throw Unusable{"its header is damaged"};
   std::string text(header_length, '\0');
-  get(text.data(), text.size());
+  in.get(text.data(), text.size());
   const json header = json::parse(text, nullptr, false);
   if (!header.is_object()) throw Unusable{"its header is damaged"};
   const std::uint64_t arrays = get_size();
+  if (arrays > length / sizeof(std::uint64_t)) throw Unusable{"it ends too early"};
   start(header, arrays);
   for (std::size_t i = 0; i < arrays; ++i) {
     const std::uint64_t size = get_size();
     if (size > length / sizeof(float)) throw Unusable{"it ends too early"};
     const std::span<float> to = place(i, size);
-    get(to.data(), to.size_bytes());
+    in.get(to.data(), to.size_bytes());
   }
-  const std::uint64_t expected = hash.value();
-  std::uint64_t seal = 0;
-  in.read(reinterpret_cast<char*>(&seal), sizeof seal);
-  if (!in || seal != expected) throw Unusable{"its checksum is wrong"};
 }
 }  // namespace
 
@@ -84,12 +147,11 @@ void write_sealed(const SealedKind& kind, const std::filesystem::path& file, con
 
 bool read_sealed(const SealedKind& kind, const std::filesystem::path& file,
                  const std::function<void(const json&, std::size_t)>& start, const PlaceArray& place) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return false;
-  std::error_code unknown;
-  const std::uint64_t length = std::filesystem::file_size(file, unknown);
+  Input in(file);
+  if (!in.is_there()) return false;
   try {
-    if (unknown) throw Unusable{unknown.message()};
+    const std::uint64_t length = in.length();
+    require_seal(in, length, kind);
     read_all(in, length, kind, start, place);
   } catch (const Unusable& e) {
     throw InputError({std::string(kind.what) + " cannot be used", file.string(), e.why, kind.remedy});

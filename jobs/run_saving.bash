@@ -17,14 +17,43 @@ for stop_signal in USR1 TERM INT; do
 done
 stop_signal=''
 
+launcher_patience=${SWINGBANK_LAUNCHER_PATIENCE:-30} # [s]
+
+# has_only_dead LAUNCHER: it has processes, and all of them have ended without its taking notice
+has_only_dead() {
+  local process state some=1 all
+  read -ra all < <(cat "/proc/$1"/task/*/children 2>/dev/null) || true
+  for process in ${all[@]+"${all[@]}"}; do
+    state=$(sed -n 's/^State:[[:space:]]*\(.\).*/\1/p' "/proc/$process/status" 2>/dev/null) || true
+    if [[ ${state:-Z} != [ZX] ]]; then return 1; fi
+    some=0
+  done
+  return "$some"
+}
+
+# watch_launcher LAUNCHER: OpenMPI 4.1's may hang where a rank dies while it starts. Nobody else would end it.
+watch_launcher() {
+  local seconds=0
+  while sleep 1 && kill -0 "$1" 2>/dev/null; do
+    if has_only_dead "$1"; then seconds=$((seconds + 1)); else seconds=0; fi
+    if ((seconds >= launcher_patience)); then
+      echo "launcher killed at process $1 (all its processes ended $seconds s ago, and it did not): what is finished is" \
+        "safe, the same command goes on" >&2
+      kill -KILL "$1" 2>/dev/null || true
+    fi
+  done
+}
+
 # run_saving PROGRAM...: runs it, hands stop signals on as SIGUSR1, returns its exit code.
 # A launcher that a signal meets while it starts dies of it (mpirun: 244); finished shards and checkpoints are on the
 # disk at any time, so that counts as saved too.
 run_saving() {
-  local status before stopped=0
+  local status before stopped=0 watcher
   if ((stop_wanted)); then return 2; fi
   "$@" &
   child=$!
+  watch_launcher "$child" &
+  watcher=$!
   while :; do
     before=$stop_wanted status=0
     stop_wanted=0
@@ -36,6 +65,8 @@ run_saving() {
     stopped=1 # the wait was interrupted, and the program may still be saving
   done
   child=''
+  kill "$watcher" 2>/dev/null || true
+  wait "$watcher" 2>/dev/null || true
   if ((stopped && status > 2)); then status=2; fi
   return "$status"
 }

@@ -14,6 +14,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// [s] until a rank that has failed ends all, where the others do not come to know of it.
+constexpr double kOthersMayTake = 20.0;
+
 void share_text(MPI_Comm group, int from, std::string& text) {
   auto length = static_cast<unsigned long>(text.size());
   MPI_Bcast(&length, 1, MPI_UNSIGNED_LONG, from, group);
@@ -67,7 +70,10 @@ std::vector<Problem> gather_problems(MPI_Comm group, const std::string& where,
   int mine = problems.empty() ? size : rank, first = size;
   MPI_Request request;  // one rank may work for minutes while the others wait
   MPI_Iallreduce(&mine, &first, 1, MPI_INT, MPI_MIN, group, &request);
-  wait_for(request);
+  // What failed here may have been a part of something collective (HDF5 writes so), out of which the others
+  // do not come without this rank.
+  if (!wait_for(request, problems.empty() ? 0.0 : kOthersMayTake))
+    end_all_ranks(problems.front().sentence().c_str());
   if (first == size) return {};
   auto count = static_cast<unsigned long>(problems.size());
   MPI_Bcast(&count, 1, MPI_UNSIGNED_LONG, first, group);

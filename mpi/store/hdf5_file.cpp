@@ -1,6 +1,10 @@
 #include "mpi/store/hdf5_file.hpp"
 
 #include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <string_view>
+#include <utility>
 
 #include "base/durable.hpp"
 #include "base/input_file.hpp"
@@ -22,6 +26,19 @@ std::string reason() {
       &text);
   H5Eclear2(H5E_DEFAULT);
   return text;
+}
+
+/// The system's error in a message of HDF5's own driver ("errno = 28"), or behind one of MPI-IO; 0: none.
+int system_error(const std::string& why) {
+  constexpr std::string_view kErrno = "errno = ";
+  if (const auto at = why.find(kErrno); at != std::string::npos)
+    return std::atoi(why.c_str() + at + kErrno.size());
+  constexpr std::pair<std::string_view, int> kOfMpi[] = {
+      {"MPI_ERR_NO_SPACE", ENOSPC}, {"MPI_ERR_NO_SUCH_FILE", ENOENT}, {"MPI_ERR_QUOTA", EDQUOT},
+      {"MPI_ERR_ACCESS", EACCES},   {"MPI_ERR_READ_ONLY", EROFS},     {"MPI_ERR_IO", EIO}};
+  for (const auto& [name, error] : kOfMpi)
+    if (why.find(name) != std::string::npos) return error;
+  return 0;
 }
 
 void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
@@ -53,10 +70,12 @@ std::recursive_mutex& lock() {
 }
 
 void File::fail(const std::string& what, const std::string& object) const {
-  const std::string why = reason();
+  const int last = errno;
+  std::string why = reason();
   const std::string where = name_.string() + (object.empty() ? "" : ":" + object);
-  if (why.find("errno = 28") != std::string::npos) raise_file_error(where, ENOSPC, what);
-  if (why.find("errno = 13") != std::string::npos) raise_file_error(where, EACCES, what);
+  if (const int error = system_error(why)) raise_file_error(where, error, what);
+  // MPI-IO does not say why a write failed; what the system said last is told beside.
+  if (last != 0 && why == "file write failed") why += std::string("; the system: ") + std::strerror(last);
   throw InputError(
       {what, where, why, "if the file is damaged, delete it and run the command that made it again"});
 }
@@ -84,6 +103,7 @@ File File::create(const std::filesystem::path& file, hid_t access) {
 }
 
 void File::close() {
+  errno = 0;
   if (!file_.reset()) fail("cannot complete the HDF5 file", "");
 }
 
@@ -100,6 +120,23 @@ Shape File::shape(const std::string& object) const {
   Shape s(static_cast<std::size_t>(rank));
   H5Sget_simple_extent_dims(space.get(), s.data(), nullptr);
   return s;
+}
+
+void File::too_large(const std::string& object, std::uint64_t values, std::size_t bytes) const {
+  throw InputError({"an array too large to read", name_.string() + ":" + object,
+                    std::to_string(values) + " values of " + std::to_string(bytes) +
+                        " bytes are more than its file or this machine's memory can hold",
+                    "if the file is damaged, delete it and run the command that made it again"});
+}
+
+std::size_t File::values_in(const std::string& object, hsize_t count, std::size_t bytes) const {
+  constexpr std::uint64_t kDensest = 1032;  // zlib's best: a byte for so many; others are not near
+  const Shape extent = shape(object);
+  std::uint64_t values = count, most = kDensest * std::filesystem::file_size(name_) / bytes;
+  for (std::size_t i = 1; i < extent.size(); ++i)
+    if (__builtin_mul_overflow(values, extent[i], &values)) too_large(object, ~std::uint64_t{0}, bytes);
+  if (values > most) too_large(object, values, bytes);
+  return values;
 }
 
 hsize_t File::row_size(const Shape& shape) {
@@ -165,6 +202,7 @@ void File::transfer(const std::string& object, hsize_t first, hsize_t count, hid
   extent[0] = count;
   H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr);
   const Handle memory = space_of(extent);
+  errno = 0;
   const herr_t result = in != nullptr
                             ? H5Dread(set.get(), type, memory.get(), space.get(), H5P_DEFAULT, in)
                             : H5Dwrite(set.get(), type, memory.get(), space.get(), H5P_DEFAULT, out);
@@ -211,7 +249,8 @@ std::pair<Handle, hsize_t> File::find(const std::string& name) const {
   if (!a) fail("cannot read the attribute", "/@" + name);
   const Handle space(H5Aget_space(a.get()), H5Sclose);
   const hssize_t n = H5Sget_simple_extent_npoints(space.get());
-  if (n < 0) fail("cannot read the attribute", "/@" + name);
+  constexpr hssize_t kMost = 1 << 20;  // names and numbers of parameters and plants
+  if (n < 0 || n > kMost) fail("cannot read the attribute", "/@" + name);
   return {std::move(a), static_cast<hsize_t>(n)};
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <mutex>
+#include <new>
 #include <string>
 #include <utility>
 #include <vector>
@@ -110,8 +111,12 @@ class File {
   /// Rows first ... first+count-1 of the leading dimension; `values` is resized.
   template <class T>
   void read(const std::string& object, hsize_t first, hsize_t count, std::vector<T>& values) const {
-    const Shape s = shape(object);
-    values.resize(static_cast<std::size_t>(count * row_size(s)));
+    const std::size_t n = values_in(object, count, sizeof(T));
+    try {
+      values.resize(n);
+    } catch (const std::bad_alloc&) {
+      too_large(object, n, sizeof(T));
+    }
     transfer(object, first, count, Type<T>::memory(), values.data(), nullptr);
   }
   template <class T>
@@ -142,6 +147,9 @@ class File {
   static hsize_t row_size(const Shape& shape);
 
  private:
+  /// Values in `count` rows. Throws InputError where the file cannot hold so many.
+  [[nodiscard]] std::size_t values_in(const std::string& object, hsize_t count, std::size_t bytes) const;
+  [[noreturn]] void too_large(const std::string& object, std::uint64_t values, std::size_t bytes) const;
   void transfer(const std::string& object, hsize_t first, hsize_t count, hid_t type, void* in,
                 const void* out) const;
   void put(const std::string& object, const std::string& name, hid_t file_type, hid_t memory_type,

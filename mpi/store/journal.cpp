@@ -148,7 +148,9 @@ void strike_lines(const std::filesystem::path& folder, const std::vector<std::ui
 }
 
 Journal::Journal(std::filesystem::path file) : file_(std::move(file)) {
-  fd_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  do {
+    fd_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  } while (fd_ < 0 && errno == EINTR);
   if (fd_ < 0) raise_file_error(file_, errno, "cannot open the journal");
   const std::string text = read_text(file_);
   if (const auto whole = whole_lines(text);
@@ -161,13 +163,25 @@ Journal::~Journal() {
   if (fd_ >= 0) ::close(fd_);
 }
 
+/// Writes and flushes; the system's error number, or 0.
+int Journal::add(std::string_view text) const {
+  while (!text.empty()) {
+    const ssize_t n = ::write(fd_, text.data(), text.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return n < 0 ? errno : ENOSPC;
+    text.remove_prefix(static_cast<std::size_t>(n));
+  }
+  while (::fsync(fd_) != 0)
+    if (errno != EINTR) return errno;
+  return 0;
+}
+
 void Journal::append(std::span<const JournalLine> lines) {
   std::string text;
   for (const JournalLine& line : lines) text += journal_text(line);
   const off_t before = ::lseek(fd_, 0, SEEK_END);
-  const ssize_t n = ::write(fd_, text.data(), text.size());
-  if (n == static_cast<ssize_t>(text.size()) && ::fsync(fd_) == 0) return;
-  const int error = n < 0 || errno != 0 ? errno : ENOSPC;  // a short write means the disk is full
+  const int error = add(text);
+  if (error == 0) return;
   if (::ftruncate(fd_, before) != 0)
     raise_file_error(file_, error, "cannot write the journal, and its last line may be cut short");
   raise_file_error(file_, error, "cannot write the journal");

@@ -63,6 +63,7 @@ class Journal {
   void append(std::span<const JournalLine> lines);
 
  private:
+  [[nodiscard]] int add(std::string_view text) const;
   std::filesystem::path file_;
   int fd_ = -1;
 };

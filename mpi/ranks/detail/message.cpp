@@ -55,12 +55,13 @@ bool wait_for(MPI_Comm world, int from, int tag, double timeout) {
   }
 }
 
-void wait_for(MPI_Request request) {
+bool wait_for(MPI_Request request, double timeout) {
   constexpr double kAwake = 200e-6;  // [s] what a group agrees upon while it makes a shard takes less
   const double start = MPI_Wtime();
   for (int done = 0;;) {
     MPI_Test(&request, &done, MPI_STATUS_IGNORE);
-    if (done != 0) return;
+    if (done != 0) return true;
+    if (timeout > 0 && MPI_Wtime() - start > timeout) return false;
     if (MPI_Wtime() - start > kAwake) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 }

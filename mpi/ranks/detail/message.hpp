@@ -31,7 +31,8 @@ std::string receive_text(MPI_Comm world, int from, int tag);
 /// Waits for a message without using the core. Gives up after `timeout` seconds (0: never); false then.
 bool wait_for(MPI_Comm world, int from, int tag, double timeout);
 /// Until the operation is complete: at full load for the first 200 microseconds, then asleep between looks.
-void wait_for(MPI_Request request);
+/// Gives up after `timeout` seconds (0: never); false then.
+bool wait_for(MPI_Request request, double timeout = 0);
 
 /// Shards of a lease, none where there is no more.
 using Shards = std::vector<std::uint64_t>;

@@ -2,7 +2,7 @@
 // What the lanes kernel needs to know of a scalar: how many scenarios it carries, how to reach one, how to
 // mask.
 #include <cstdint>
-#ifdef __AVX__
+#ifdef __AVX512F__
 #include <immintrin.h>
 #endif
 
@@ -44,14 +44,11 @@ struct LaneTraits<Pack<N>> {
     return p;
   }
   static void store(const Pack<N>& v, double* to) { __builtin_memcpy(to, &v, sizeof v); }
-  /// Past the caches, to an address on a pack boundary: records are far larger than the caches and not read
-  /// soon.
+  /// Past the caches where a pack is a whole line of them: records are far larger than the caches and not read
+  /// soon. Half a line would go to memory by itself, before its other half comes after all other rows.
   static void stream(const Pack<N>& v, double* to) {
 #ifdef __AVX512F__
     if constexpr (N == 8) return _mm512_stream_pd(to, (__m512d)v.v);
-#endif
-#ifdef __AVX__
-    if constexpr (N == 4) return _mm256_stream_pd(to, (__m256d)v.v);
 #endif
     store(v, to);
   }

@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# A launcher that hangs beside its dead processes is ended from outside; one whose processes live is left alone.
+# shellcheck disable=SC2154,SC2034 # what lib.bash sets; what run_saving.bash reads
+source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+source "$SWINGBANK_SOURCE/jobs/run_saving.bash"
+launcher_patience=2
+# Starts a process that lives so many seconds, does not notice its end, and itself ends after some more.
+launcher=(/usr/bin/python3 -c 'import os, sys, time
+if os.fork() == 0:
+    time.sleep(float(sys.argv[1]))
+    os._exit(0)
+time.sleep(float(sys.argv[2]))')
+code=0
+run_saving "${launcher[@]}" 0 60 2>"$work/log" || code=$?
+((code == 137)) || fail "exit code $code of a launcher that hung: $(cat "$work/log")"
+grep -q 'launcher killed at process' "$work/log" || fail "no word of it: $(cat "$work/log")"
+run_saving "${launcher[@]}" 6 4 2>"$work/log" || fail "a launcher was ended whose process lived: $(cat "$work/log")"
+[[ ! -s $work/log ]] || fail "said of a sound launcher: $(cat "$work/log")"
+run_saving true || fail "a program without processes of its own"
+echo "ok: a hanging launcher is ended"

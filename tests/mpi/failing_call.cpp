@@ -1,0 +1,170 @@
+// To be preloaded: one call of one process fails with an error that is given. Calls are counted from 1 in
+// each process, file calls (below one folder) and allocations by operator new apart.
+//   FAILING_ERROR   memory (std::bad_alloc), or the number of an error of errno.h for a file call; absent:
+//   only count FAILING_AT      the call that fails FAILING_RANK    of the rank that is meant (OpenMPI's
+//   OMPI_COMM_WORLD_RANK; without a launcher all are 0) FAILING_UNDER   absolute path of the folder
+//   FAILING_LOG     gets a line "failed CALL PATH" once it has happened, and "count FILES ALLOCATIONS" at
+//   exit
+#include <dirent.h>
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <sys/syscall.h>
+#include <sys/uio.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <utility>
+
+namespace {
+
+std::atomic<long> file_calls{0}, allocations{0};
+
+struct Order {
+  const char* under = std::getenv("FAILING_UNDER");
+  const char* log = std::getenv("FAILING_LOG");
+  int error = 0;  ///< 0: none; -1: memory
+  long at = 0;
+  bool meant = false;
+  Order() {
+    const char *rank = std::getenv("OMPI_COMM_WORLD_RANK"), *wanted = std::getenv("FAILING_RANK");
+    meant = log != nullptr &&
+            std::atoi(rank != nullptr ? rank : "0") == std::atoi(wanted != nullptr ? wanted : "0");
+    if (const char* n = std::getenv("FAILING_AT")) at = std::atol(n);
+    if (const char* e = std::getenv("FAILING_ERROR"))
+      error = std::strcmp(e, "memory") == 0 ? -1 : std::atoi(e);
+  }
+};
+const Order& order() {
+  static const Order o;
+  return o;
+}
+
+/// By system calls: what is interposed must not be used here.
+void note(const char* line, int length) {
+  const int fd =
+      static_cast<int>(syscall(SYS_openat, AT_FDCWD, order().log, O_WRONLY | O_CREAT | O_APPEND, 0644));
+  if (fd < 0) return;
+  syscall(SYS_write, fd, line, length);
+  syscall(SYS_close, fd);
+}
+
+struct Count {
+  ~Count() {
+    char line[80];
+    if (order().meant)
+      note(line, std::snprintf(line, sizeof line, "count %ld %ld\n", file_calls.load(), allocations.load()));
+  }
+} count;
+
+/// Whether this call on `path` is the one that fails; errno is set then.
+bool fails(const char* call, const char* path) {
+  const Order& o = order();
+  if (!o.meant || o.under == nullptr || path == nullptr) return false;
+  const std::size_t n = std::strlen(o.under);
+  if (std::strncmp(path, o.under, n) != 0) return false;
+  if (++file_calls != o.at || o.error <= 0) return false;
+  char line[700];
+  note(line, std::snprintf(line, sizeof line, "failed %s %.500s\n", call, path));
+  errno = o.error;
+  return true;
+}
+bool fails(const char* call, int fd) {
+  if (!order().meant) return false;
+  char link[40], path[600];
+  std::snprintf(link, sizeof link, "/proc/self/fd/%d", fd);
+  const ssize_t n = readlink(link, path, sizeof path - 1);
+  if (n <= 0) return false;
+  path[n] = '\0';
+  return fails(call, path);
+}
+
+template <class Function>
+Function next(const char* name) {
+  return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
+}
+
+void* allocate(std::size_t bytes, std::size_t alignment) {
+  if (const Order& o = order(); o.meant && ++allocations == o.at && o.error == -1) {
+    note("failed new memory\n", 18);
+    throw std::bad_alloc();
+  }
+  if (bytes == 0) bytes = 1;
+  void* p = alignment == 0 ? std::malloc(bytes)
+                           : std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+  if (p == nullptr) throw std::bad_alloc();
+  return p;
+}
+
+}  // namespace
+
+void* operator new(std::size_t bytes) { return allocate(bytes, 0); }
+void* operator new[](std::size_t bytes) { return allocate(bytes, 0); }
+void* operator new(std::size_t bytes, std::align_val_t a) {
+  return allocate(bytes, static_cast<std::size_t>(a));
+}
+void* operator new[](std::size_t bytes, std::align_val_t a) {
+  return allocate(bytes, static_cast<std::size_t>(a));
+}
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete[](void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
+void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::align_val_t) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+
+// NOLINTBEGIN: the system's own names
+#pragma GCC diagnostic ignored "-Wshadow"  // flock is a structure too
+#define INTERPOSE(type, name, arguments, values, key, failed) \
+  extern "C" type name arguments {                            \
+    static const auto real = next<type(*) arguments>(#name);  \
+    return fails(#name, key) ? (failed) : real values;        \
+  }
+#define INTERPOSE_OPEN(name)                                                       \
+  extern "C" int name(const char* path, int flags, ...) {                          \
+    static const auto real = next<int (*)(const char*, int, ...)>(#name);          \
+    va_list more;                                                                  \
+    va_start(more, flags);                                                         \
+    const int mode = (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(more, int) : 0; \
+    va_end(more);                                                                  \
+    return fails(#name, path) ? -1 : real(path, flags, mode);                      \
+  }
+INTERPOSE_OPEN(open)
+INTERPOSE_OPEN(open64)
+INTERPOSE(FILE*, fopen, (const char* path, const char* mode), (path, mode), path, nullptr)
+INTERPOSE(FILE*, fopen64, (const char* path, const char* mode), (path, mode), path, nullptr)
+INTERPOSE(DIR*, opendir, (const char* path), (path), path, nullptr)
+INTERPOSE(ssize_t, read, (int fd, void* to, size_t n), (fd, to, n), fd, -1)
+INTERPOSE(ssize_t, pread, (int fd, void* to, size_t n, off_t at), (fd, to, n, at), fd, -1)
+INTERPOSE(ssize_t, pread64, (int fd, void* to, size_t n, off64_t at), (fd, to, n, at), fd, -1)
+INTERPOSE(ssize_t, preadv, (int fd, const iovec* v, int n, off_t at), (fd, v, n, at), fd, -1)
+INTERPOSE(ssize_t, write, (int fd, const void* from, size_t n), (fd, from, n), fd, -1)
+INTERPOSE(ssize_t, writev, (int fd, const iovec* v, int n), (fd, v, n), fd, -1)
+INTERPOSE(ssize_t, pwrite, (int fd, const void* from, size_t n, off_t at), (fd, from, n, at), fd, -1)
+INTERPOSE(ssize_t, pwrite64, (int fd, const void* from, size_t n, off64_t at), (fd, from, n, at), fd, -1)
+INTERPOSE(ssize_t, pwritev, (int fd, const iovec* v, int n, off_t at), (fd, v, n, at), fd, -1)
+INTERPOSE(int, fsync, (int fd), (fd), fd, -1)
+INTERPOSE(int, ftruncate, (int fd, off_t n), (fd, n), fd, -1)
+INTERPOSE(int, ftruncate64, (int fd, off64_t n), (fd, n), fd, -1)
+INTERPOSE(int, posix_fallocate, (int fd, off_t at, off_t n), (fd, at, n), fd, errno)
+INTERPOSE(int, flock, (int fd, int what), (fd, what), fd, -1)
+INTERPOSE(int, rename, (const char* from, const char* to), (from, to), from, -1)
+INTERPOSE(int, unlink, (const char* path), (path), path, -1)
+INTERPOSE(int, mkdir, (const char* path, mode_t mode), (path, mode), path, -1)
+// The descriptor is closed all the same, as Linux does.
+extern "C" int close(int fd) {
+  static const auto real = next<int (*)(int)>("close");
+  const bool failed = fails("close", fd);
+  const int error = errno, result = real(fd);
+  if (!failed) return result;
+  errno = error;
+  return -1;
+}
+// NOLINTEND

@@ -1,0 +1,61 @@
+#!/usr/bin/env bash
+# One call fails on one rank of generate, at any place from the first to the last: input and output, space, names,
+# interruptions, memory. SWINGBANK_INJECTIONS=500 bash tests/mpi/failing_calls_night.sh      (200 by default)
+# shellcheck disable=SC2154 # failing_calls.bash sets it
+source "$(dirname "$0")/common.bash"
+source "$(dirname "$0")/failing_calls.bash"
+injections=${SWINGBANK_INJECTIONS:-200}
+errors=(5 28 2 4 memory)
+make=("$generate" "$configs/ieee14_genrou_bus3.toml" --draws 100 --draws-per-shard 20 --progress none --lease-timeout 20 --out "$work/run")
+two=(mpirun --oversubscribe -np 2 "${make[@]}")
+"${make[@]}" >/dev/null 2>&1
+whole=$(hash_of "$work/run")
+[ -n "$whole" ] || fail "no hash"
+cp -r "$work/run" "$work/whole"
+# half of a run that was killed: its journal has two of five shards
+head -2 "$work/whole/journal.jsonl" >"$work/two_lines"
+
+# begin KIND: the folder as this kind of run finds it; sets `command`
+begin() {
+  rm -rf "$work/run"
+  case $1 in
+    half)
+      cp -r "$work/whole" "$work/run"
+      cp "$work/two_lines" "$work/run/journal.jsonl"
+      ;;
+  esac
+  case $1 in
+    alone) command=("${make[@]}") ;;
+    group) command=("${two[@]}" --writer-ranks 2) ;;
+    *) command=("${two[@]}") ;;
+  esac
+}
+declare -A calls allocated
+for kind in alone two group half; do
+  for rank in 0 1; do
+    if [ $kind$rank = alone1 ]; then continue; fi
+    begin $kind
+    read -r calls[$kind$rank] allocated[$kind$rank] < <(counts $rank "$work/run" "${command[@]}")
+    echo "$kind, rank $rank: ${calls[$kind$rank]} calls on files, ${allocated[$kind$rank]} allocations"
+  done
+done
+places=(alone0 two0 two1 group0 group1 half0 half1)
+for ((i = ${SWINGBANK_FROM:-0}; i < injections; ++i)); do
+  place=${places[i % ${#places[@]}]} error=${errors[i / ${#places[@]} % ${#errors[@]}]}
+  kind=${place%?} rank=${place: -1}
+  begin "$kind"
+  of=${calls[$place]}
+  if [ "$error" = memory ]; then of=${allocated[$place]}; fi
+  # golden ratio: every stretch of the run gets its share, however many injections there are
+  at=$((1 + of * (i * 618033 % 1000000) / 1000000))
+  one_failure "$error" $at "$rank" "$work/run" "${command[@]}"
+  if [ "$ended" = whole ]; then
+    [ "$(hash_of "$work/run")" = "$whole" ] || wrong "other data after error $error in call $at of $place"
+  elif [ "$ended" = told ]; then
+    cp "$work/log" "$work/before"
+    "${make[@]}" >"$work/log" 2>&1 || wrong "the next run after error $error in call $at of $place: $(cat "$work/before")"
+    grep -q "dataset $whole" "$work/log" || wrong "another hash after error $error in call $at of $place"
+    diff -r "$work/whole/shards" "$work/run/shards" >"$work/log" || wrong "leftovers after error $error in call $at of $place"
+  fi
+done
+tell_failures
