@@ -52,8 +52,9 @@ std::string reason(const fs::path& file) {
 
 fs::path example_configs() {
   std::error_code error;
-  const fs::path own = fs::read_symlink("/proc/self/exe", error).parent_path();
+  fs::path own = fs::read_symlink("/proc/self/exe", error).parent_path();
   if (error) return {};
+  if (own.filename().string().starts_with("x86-64-v")) own = own.parent_path();  // of one instruction set
   // The second is the build folder's, whatever an installation is laid out like.
   for (const char* way : {SWINGBANK_CONFIGS_FROM_BIN, "../share/swingbank/configs"}) {
     const fs::path folder = fs::canonical(own / way, error);

@@ -7,6 +7,14 @@ install(CODE "execute_process(COMMAND bash \"${PROJECT_SOURCE_DIR}/cmake/from_he
 install(DIRECTORY ${made}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR})
 install(FILES ${made}/completion.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME swingbank)
 install(TARGETS swingbank ${programs} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+# The same programs for wider instruction sets, where jobs/setup.sh --any-processor has built them: swingbank takes what
+# the processor that it runs on has.
+install(CODE "foreach(level x86-64-v3 x86-64-v4)
+  file(GLOB wide \"$<TARGET_FILE_DIR:swingbank>/\${level}/swingbank-*\")
+  if(wide)
+    file(INSTALL \${wide} DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}/\${level}\" USE_SOURCE_PERMISSIONS)
+  endif()
+endforeach()")
 install(DIRECTORY configs DESTINATION ${CMAKE_INSTALL_DATADIR}/swingbank)
 
 # README.md's links lead to the same paths beside it.

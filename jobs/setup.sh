@@ -1,21 +1,24 @@
 #!/usr/bin/env bash
 # Installs missing Debian packages, configures and builds.
-#   bash jobs/setup.sh [--preset NAME] [--tests] [--target NAME]... [--packages-only]
+#   bash jobs/setup.sh [--preset NAME | --any-processor] [--tests] [--target NAME]... [--packages-only]
 #     --preset         one of CMakePresets.json (default release); the build folder is build/<preset>
+#     --any-processor  build/portable, which runs on any x86-64 processor of the last fifteen years, with the same
+#                      programs for AVX2 and AVX-512 beside: swingbank takes what the processor has (three builds)
 #     --tests          also the packages that packages.txt marks "tests:", and the tests themselves
 #     --target         build this only
 #     --packages-only  install, do not build
 set -euo pipefail
 
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-preset=release tests=0 build=1 targets=()
+preset=release levels=() tests=0 build=1 targets=()
 while (($#)); do
   case $1 in
     --preset) preset=${2:?--preset needs a name}; shift 2 ;;
+    --any-processor) preset=portable levels=(x86-64-v3 x86-64-v4); shift ;;
     --tests) tests=1; shift ;;
     --target) targets+=("${2:?--target needs a name}"); shift 2 ;;
     --packages-only) build=0; shift ;;
-    -h | --help) sed -n '2,7p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,9p' "$0"; exit 0 ;;
     *) echo "unknown option at '$1' (jobs/setup.sh does not have it): run jobs/setup.sh --help" >&2; exit 1 ;;
   esac
 done
@@ -87,5 +90,20 @@ build_all() {
   cmake --build "build/$preset" -j "$jobs" ${targets[@]+--target "${targets[@]}"}
 }
 
+# build_level NAME: the programs for one instruction set, in a folder beside the common ones
+build_level() {
+  local folder=build/portable-$1 log=build/portable-$1-configure.log
+  if ! cmake --preset portable -B "$folder" -DSWINGBANK_ARCH="$1" -DSWINGBANK_TESTS=OFF -DSWINGBANK_BENCH=OFF >"$log" 2>&1; then
+    tail -n 30 "$log" >&2
+    echo "configuration failed at instruction set $1 (log $source_folder/$log): see the lines above" >&2
+    return 1
+  fi
+  cmake --build "$folder" -j "$(compile_jobs)" ${targets[@]+--target "${targets[@]}"}
+  ln -sfn "../../portable-$1/bin" "build/portable/bin/$1"
+}
+
 install_packages
-if ((build)); then build_all; fi
+if ((build)); then
+  build_all
+  for level in ${levels[@]+"${levels[@]}"}; do build_level "$level"; done
+fi

@@ -105,8 +105,46 @@ int refuse(std::string_view wanted, const fs::path& folder, const std::vector<Co
   return 1;
 }
 
+/// Levels of instruction sets that a build may bring beside the common one, widest first.
+struct Level {
+  std::string_view name;
+  bool supported;
+};
+std::vector<Level> levels() {
+  const bool v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+                  __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
+  const bool v4 = v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+                  __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+                  __builtin_cpu_supports("avx512vl");
+  return {{"x86-64-v4", v4}, {"x86-64-v3", v3}};
+}
+
+/// The program in the folder of the widest level that this processor has, else the common one.
+/// SWINGBANK_LEVEL asks for another: a name of levels(), or "common". Empty if it asks for what this
+/// processor or build has not.
+fs::path program_for_this_processor(const fs::path& folder, const std::string& name) {
+  const fs::path file = std::string(kPrefix) + name;
+  const char* asked = std::getenv("SWINGBANK_LEVEL");
+  if (asked != nullptr && std::string_view(asked) == "common") return folder / file;
+  for (const Level& level : levels()) {
+    if (!level.supported || (asked != nullptr && asked != level.name)) continue;
+    fs::path program = folder / level.name / file;
+    if (access(program.c_str(), X_OK) == 0) return program;
+  }
+  return asked == nullptr ? folder / file : fs::path();
+}
+
 int run(const fs::path& folder, const std::string& name, char** arguments) {
-  std::string program = (folder / (std::string(kPrefix) + name)).string();
+  std::string program = program_for_this_processor(folder, name).string();
+  if (program.empty()) {
+    if (speaks())
+      fmt::print(
+          stderr,
+          "instruction set {} at SWINGBANK_LEVEL (this processor or this build does not have it): take "
+          "x86-64-v4, x86-64-v3 or common, or unset it\n",
+          std::getenv("SWINGBANK_LEVEL"));
+    return 1;
+  }
   std::vector<char*> argv{program.data()};
   for (; *arguments != nullptr; ++arguments) argv.push_back(*arguments);
   argv.push_back(nullptr);

@@ -17,3 +17,19 @@ refuses "nothing near" 'swingbank --help' "$swingbank" xyzzyxyzzy
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 mpirun --oversubscribe -n 3 "$swingbank" --version >"$work/three" 2>&1
 [[ $(grep -c '^swingbank' "$work/three") == 1 ]] || fail "three ranks, more than one answer: $(cat "$work/three")"
+
+# The program for the widest instruction set that the processor has, unless another is asked for.
+mkdir -p "$work/bin/x86-64-v3" "$work/bin/x86-64-v4"
+cp "$SWINGBANK_BIN/swingbank" "$work/bin"
+for folder in . x86-64-v3 x86-64-v4; do
+  printf '#!/bin/sh\necho "this is %s, $*"\n' "$folder" >"$work/bin/$folder/swingbank-probe"
+  chmod +x "$work/bin/$folder/swingbank-probe"
+done
+widest=. flags=$(grep -m 1 '^flags' /proc/cpuinfo)
+if [[ $flags == *' avx2 '* && $flags == *' fma '* ]]; then widest=x86-64-v3; fi
+if [[ $flags == *' avx512f '* && $flags == *' avx512vl '* && $flags == *' avx512dq '* ]]; then widest=x86-64-v4; fi
+[[ $("$work/bin/swingbank" probe one) == "this is $widest, one" ]] || fail "not $widest: $("$work/bin/swingbank" probe one)"
+[[ $(SWINGBANK_LEVEL=common "$work/bin/swingbank" probe) == "this is ., " ]] || fail "not the common one"
+rm "$work/bin/$widest/swingbank-probe" && [[ $widest != . ]] &&
+  refuses "no such level" 'SWINGBANK_LEVEL' env SWINGBANK_LEVEL="$widest" "$work/bin/swingbank" probe
+refuses "unknown level" 'SWINGBANK_LEVEL' env SWINGBANK_LEVEL=x86-64-v9 "$work/bin/swingbank" probe

@@ -40,7 +40,7 @@ for kind in alone two group half; do
   done
 done
 places=(alone0 two0 two1 group0 group1 half0 half1)
-for ((i = ${SWINGBANK_FROM:-0}; i < injections; ++i)); do
+for ((i = ${SWINGBANK_FROM:-0}; i < injections; i += ${SWINGBANK_STRIDE:-1})); do
   place=${places[i % ${#places[@]}]} error=${errors[i / ${#places[@]} % ${#errors[@]}]}
   kind=${place%?} rank=${place: -1}
   begin "$kind"

@@ -63,6 +63,14 @@ for ((i = 0; i < 12; ++i)); do # killed at any moment of its start
 done
 expect 0 "dataset $whole" "${make[@]}" --out "$work/killed"
 
+# Leftovers are what generate itself writes, also where a link leads elsewhere.
+mv "$work/early/shards" "$work/elsewhere"
+ln -s ../elsewhere "$work/early/shards"
+touch "$work/elsewhere/thesis.part" "$work/elsewhere/.shard-000000.h5.part"
+expect 0 "dataset $whole" "${make[@]}" --out "$work/early"
+[ -e "$work/elsewhere/thesis.part" ] || fail "a file of somebody else was removed"
+[ ! -e "$work/elsewhere/.shard-000000.h5.part" ] || fail "a leftover stayed"
+
 # Refused: nothing of it stays that a good one stumbles over.
 sed "s|\.\./networks|$SWINGBANK_SOURCE/configs/networks|" "$configs/ieee14_genrou_bus3.toml" >"$work/"$'b\xff.toml'
 expect 1 "a name that is no UTF-8" "$generate" "$work/"$'b\xff.toml' --progress none --out "$work/refused"

@@ -98,8 +98,11 @@ void clear_leftovers(const fs::path& folder, const store::Part& part, std::uint6
   make_folder(folder / "shards");
   if (part.all()) {
     std::vector<fs::path> leftovers;
-    for (const auto& entry : fs::recursive_directory_iterator(folder / "shards"))
-      if (entry.path().extension() == ".part") leftovers.push_back(entry.path());
+    for (const auto& entry : fs::recursive_directory_iterator(folder / "shards")) {
+      // The folder may be a link to another: only what is ours.
+      const std::string name = entry.path().filename().string();
+      if (name.starts_with(".shard-") && name.ends_with(".h5.part")) leftovers.push_back(entry.path());
+    }
     for (const auto& file : leftovers) fs::remove(file);
     return;
   }
