@@ -1,10 +1,6 @@
 #pragma once
 // Other commands of this build, run as programs of their own: so that calibrate and add need not link the
 // libraries that train and generate do.
-#include <fcntl.h>
-#include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -14,9 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "base/child.hpp"
 #include "base/problem.hpp"
-
-extern char** environ;
 
 namespace swingbank::jobs {
 
@@ -39,23 +34,8 @@ inline int run_own(const std::filesystem::path& program, const std::vector<std::
                    bool shown = false, bool silent = false) {
   std::vector<std::string> words = {program.string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  for (auto& w : words) argv.push_back(w.data());
-  argv.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  if (!shown) posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  if (silent) posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  pid_t child = 0;
-  const int failed = ::posix_spawnp(&child, argv[0], &actions, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0)
-    throw InputError({"a program that does not start", program.string(), std::string(::strerror(failed)),
-                      "check that it can be run"});
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  using Output = ProgramRun::Output;
+  return run_program(program, words, {shown ? Output::shown : Output::dropped, silent, 0.0}).code();
 }
 
 /// A folder for files that are gone when it goes out of scope.

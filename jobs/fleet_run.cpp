@@ -1,13 +1,8 @@
 #include "jobs/fleet_run.hpp"
 
-#include <fcntl.h>
-#include <poll.h>
-#include <spawn.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstring>
@@ -15,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/child.hpp"
 #include "base/durable.hpp"
 #include "base/run_lock.hpp"
 #include "base/stop_signal.hpp"
@@ -24,8 +20,6 @@
 #include "mpi/ranks/item_queue.hpp"
 #include "mpi/ranks/session.hpp"
 #include "validate/fleet/report.hpp"
-
-extern char** environ;
 
 namespace swingbank::jobs {
 namespace {
@@ -42,61 +36,6 @@ std::unique_ptr<RunLock> lock_folder(const fs::path& folder) {
       std::chrono::milliseconds(0));
 }
 
-/// Output and status of a program that was started with these arguments.
-struct Ended {
-  std::string output;
-  int status = 0;
-  bool late = false;
-};
-/// Milliseconds until `end`, as poll wants them; -1: there is no end.
-int until(std::optional<std::chrono::steady_clock::time_point> end) {
-  using namespace std::chrono;
-  return end ? static_cast<int>(std::max<long>(0, ceil<milliseconds>(*end - steady_clock::now()).count()))
-             : -1;
-}
-
-/// A program that takes longer than `limit` seconds (0: none) is killed, and `late` is true.
-Ended run_program(const std::string& program, const std::vector<std::string>& words, double limit) {
-  std::vector<char*> arguments;
-  for (const auto& w : words) arguments.push_back(const_cast<char*>(w.c_str()));
-  arguments.push_back(nullptr);
-  int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0)
-    throw std::runtime_error(std::string("no pipe: ") + std::strerror(errno));
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-  pid_t child = 0;
-  const int failure = ::posix_spawn(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  ::close(ends[1]);
-  Ended e;
-  std::optional<std::chrono::steady_clock::time_point> end;
-  if (limit > 0.0)
-    end = std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                                                 std::chrono::duration<double>(limit));
-  char buffer[4096];
-  for (;;) {
-    pollfd wait{ends[0], POLLIN, 0};
-    const int ready = failure == 0 ? ::poll(&wait, 1, until(end)) : 1;
-    if (ready < 0) continue;  // a signal
-    if (ready == 0) {
-      e.late = true;
-      ::kill(child, SIGKILL);  // one that was stopped, too
-      end.reset();
-      continue;
-    }
-    const ssize_t n = failure == 0 ? ::read(ends[0], buffer, sizeof buffer) : 0;
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) break;
-    e.output.append(buffer, static_cast<std::size_t>(n));
-  }
-  ::close(ends[0]);
-  if (failure != 0) throw std::runtime_error("cannot start " + program + ": " + std::strerror(failure));
-  while (::waitpid(child, &e.status, 0) < 0 && errno == EINTR) continue;
-  return e;
-}
-
 /// What run_fleet_plant printed; a failed row if it ended otherwise.
 std::string plant_result(const jobs::FleetCommand& c, const fleet::FleetPlant& plant, int threads) {
   const auto failed = [&](const std::string& why) {
@@ -104,10 +43,10 @@ std::string plant_result(const jobs::FleetCommand& c, const fleet::FleetPlant& p
         .dump();
   };
   try {
-    const Ended e = run_program("/proc/self/exe",
-                                {"swingbank-diagnose", "--fleet", c.fleet, "--plant", plant.name, "--out",
-                                 c.out, "--threads", std::to_string(threads)},
-                                c.limit);
+    const ProgramEnd e = run_program("/proc/self/exe",
+                                     {"swingbank-diagnose", "--fleet", c.fleet, "--plant", plant.name,
+                                      "--out", c.out, "--threads", std::to_string(threads)},
+                                     {.output = ProgramRun::Output::taken, .limit = c.limit});
     if (e.late)
       return failed(
           fmt::format("The diagnosis took longer than {:g} s (--plant-timeout) and was ended.", c.limit));

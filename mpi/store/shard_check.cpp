@@ -1,7 +1,6 @@
 #include "mpi/store/shard_check.hpp"
 
 #include <poll.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,6 +12,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "base/child.hpp"
 #include "base/json_text.hpp"
 
 namespace swingbank::mpi::store {
@@ -39,17 +39,16 @@ void write_all(int fd, const std::string& text) {
   }
 }
 
-[[noreturn]] void read_share(const std::filesystem::path& folder, const DatasetHeader& header,
-                             const std::vector<JournalLine>& lines, std::size_t first, std::size_t step,
-                             int out) {
+int read_share(const std::filesystem::path& folder, const DatasetHeader& header,
+               const std::vector<JournalLine>& lines, std::size_t first, std::size_t step, int out) {
   try {
     for (std::size_t i = first; i < lines.size(); i += step)
       write_all(out, line_of(lines[i], fault_of(folder, lines[i], header, true)));
   } catch (const std::exception& e) {
     std::fprintf(stderr, "%s\n", e.what());
-    ::_exit(1);
+    return 1;
   }
-  ::_exit(0);
+  return 0;
 }
 
 void take_lines(Reader& r, std::vector<BadShard>& bad, const std::function<void()>& done) {
@@ -64,29 +63,23 @@ void take_lines(Reader& r, std::vector<BadShard>& bad, const std::function<void(
 void end_reader(Reader& r) {
   ::close(r.pipe);
   r.pipe = -1;
-  int status = 0;
-  while (::waitpid(r.process, &status, 0) < 0 && errno == EINTR) {
-  }
+  const int status = wait_for_child(r.process);
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
   throw InputError({"the reading of shards broke off", "process " + std::to_string(r.process),
                     WIFSIGNALED(status) ? ::strsignal(WTERMSIG(status)) : "its reason stands above",
                     "run the command again, with fewer --processes if memory is short"});
 }
 
-Reader start_reader(const std::function<void(int)>& work) {
+Reader start_reader(const std::function<int(int)>& work) {
   std::array<int, 2> ends{};
-  std::fflush(nullptr);
-  const pid_t parent = ::getpid();
   const bool piped = ::pipe(ends.data()) == 0;
-  const pid_t child = piped ? ::fork() : -1;
+  const auto read = [&] {
+    ::close(ends[0]);
+    return work(ends[1]);
+  };
+  const pid_t child = piped ? start_child(read, SIGKILL) : -1;
   if (child < 0)
     throw InputError({"a process cannot be started", "--processes", std::strerror(errno), "ask for fewer"});
-  if (child == 0) {
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != parent) ::_exit(1);
-    ::close(ends[0]);
-    work(ends[1]);
-  }
   ::close(ends[1]);
   return {child, ends[0], {}};
 }
@@ -136,7 +129,8 @@ std::vector<BadShard> bad_shards(const std::filesystem::path& folder, const Data
     std::vector<Reader> readers;
     const auto step = static_cast<std::size_t>(processes);
     for (std::size_t k = 0; k < std::min(step, lines.size()); ++k)
-      readers.push_back(start_reader([&](int out) { read_share(folder, header, lines, k, step, out); }));
+      readers.push_back(
+          start_reader([&](int out) { return read_share(folder, header, lines, k, step, out); }));
     listen(readers, bad, done);
   }
   std::ranges::sort(bad, {}, &BadShard::shard);

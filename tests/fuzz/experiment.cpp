@@ -23,7 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzz::accepted([&, &of = name] {
       const auto tasks = experiment.tasks(of);
       fuzz::require(!tasks.empty(), "a preset has tasks");
-      for (const char* key : train::loop::kPrintable) experiment.print(of, key);
+      for (const char* key : train::loop::kPrintable) (void)experiment.print(of, key);
     });
   return 0;
 }

@@ -25,7 +25,7 @@ with_preload() {
 }
 
 declare -A reasons=([5]='Input/output error' [28]='No space left on device' [2]='No such file or directory'
-  [4]='Interrupted system call' [memory]='bad_alloc|[Mm]emory')
+  [4]='Interrupted system call' [122]='Disk quota exceeded' [memory]='bad_alloc|[Mm]emory')
 declare -A struck=() survived=() told=()
 not_reached=0
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# One call fails on one rank of generate, at any place from the first to the last: input and output, space, names,
+# One call fails on one rank of generate, at any place from the first to the last: input and output, space, quota, names,
 # interruptions, memory. SWINGBANK_INJECTIONS=500 bash tests/mpi/failing_calls_night.sh      (200 by default)
 # shellcheck disable=SC2154 # failing_calls.bash sets it
 source "$(dirname "$0")/common.bash"
 source "$(dirname "$0")/failing_calls.bash"
 injections=${SWINGBANK_INJECTIONS:-200}
-errors=(5 28 2 4 memory)
+errors=(5 28 2 4 122 memory)
 make=("$generate" "$configs/ieee14_genrou_bus3.toml" --draws 100 --draws-per-shard 20 --progress none --lease-timeout 20 --out "$work/run")
 two=(mpirun --oversubscribe -np 2 "${make[@]}")
 "${make[@]}" >/dev/null 2>&1

@@ -1,7 +1,6 @@
 #include "train/run/processes.hpp"
 
 #include <fmt/format.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,6 +10,7 @@
 #include <cstring>
 #include <vector>
 
+#include "base/child.hpp"
 #include "base/problem.hpp"
 #include "base/stop_signal.hpp"
 
@@ -45,16 +45,10 @@ int wait_for(pid_t child, const std::vector<pid_t>& running) {
 
 int run_processes(int count, const std::function<int(runtime::Place)>& work) {
   if (count <= 1) return work({});
-  const pid_t parent = getpid();
   std::vector<pid_t> children;
   for (int i = 0; i < count; ++i) {
-    std::fflush(nullptr);
-    const pid_t child = fork();
-    if (child == 0) {
-      prctl(PR_SET_PDEATHSIG, SIGTERM);  // nobody waits for it then: it saves a checkpoint and ends
-      if (getppid() != parent) _exit(1);
-      _exit(work({i, count}));
-    }
+    // Nobody waits for it when this process has died: it saves a checkpoint and ends.
+    const pid_t child = start_child([&] { return work({i, count}); }, SIGTERM);
     if (child < 0) {
       const int error = errno;
       end_all(children, SIGTERM);
