@@ -19,27 +19,32 @@ stop_signal=''
 
 launcher_patience=${SWINGBANK_LAUNCHER_PATIENCE:-30} # [s]
 
-# has_only_dead LAUNCHER: it has processes, and all of them have ended without its taking notice
-has_only_dead() {
-  local process state some=1 all
+# is_lost LAUNCHER: all its processes have ended without its taking notice, or one was stopped, for which others wait.
+# Sets `lost`, which to kill ends the whole: the launcher, or the stopped process.
+is_lost() {
+  lost=$1
+  local process state dead=0 all
   read -ra all < <(cat "/proc/$1"/task/*/children 2>/dev/null) || true
   for process in ${all[@]+"${all[@]}"}; do
     state=$(sed -n 's/^State:[[:space:]]*\(.\).*/\1/p' "/proc/$process/status" 2>/dev/null) || true
-    if [[ ${state:-Z} != [ZX] ]]; then return 1; fi
-    some=0
+    case ${state:-Z} in
+      T) lost=$process && return 0 ;;
+      Z | X) dead=$((dead + 1)) ;;
+    esac
   done
-  return "$some"
+  ((dead > 0 && dead == ${#all[@]}))
 }
 
 # watch_launcher LAUNCHER: OpenMPI 4.1's may hang where a rank dies while it starts. Nobody else would end it.
 watch_launcher() {
-  local seconds=0
+  local seconds=0 lost
   while sleep 1 && kill -0 "$1" 2>/dev/null; do
-    if has_only_dead "$1"; then seconds=$((seconds + 1)); else seconds=0; fi
+    if is_lost "$1"; then seconds=$((seconds + 1)); else seconds=0; fi
     if ((seconds >= launcher_patience)); then
-      echo "launcher killed at process $1 (all its processes ended $seconds s ago, and it did not): what is finished is" \
-        "safe, the same command goes on" >&2
-      kill -KILL "$1" 2>/dev/null || true
+      echo "a process killed at $lost (for $seconds s it was stopped while others wait for it, or it is a launcher that" \
+        "outlived its processes): what is finished is safe, the same command goes on" >&2
+      kill -KILL "$lost" 2>/dev/null || true
+      seconds=0
     fi
   done
 }

@@ -13,8 +13,16 @@ time.sleep(float(sys.argv[2]))')
 code=0
 run_saving "${launcher[@]}" 0 60 2>"$work/log" || code=$?
 ((code == 137)) || fail "exit code $code of a launcher that hung: $(cat "$work/log")"
-grep -q 'launcher killed at process' "$work/log" || fail "no word of it: $(cat "$work/log")"
+grep -q 'a process killed at' "$work/log" || fail "no word of it: $(cat "$work/log")"
 run_saving "${launcher[@]}" 6 4 2>"$work/log" || fail "a launcher was ended whose process lived: $(cat "$work/log")"
 [[ ! -s $work/log ]] || fail "said of a sound launcher: $(cat "$work/log")"
+"${launcher[@]}" 60 60 & # a process that is stopped
+stopped=$!
+sleep 0.3
+kill -STOP "$(pgrep -P "$stopped")"
+is_lost "$stopped" || fail "a stopped process was not noticed"
+[[ $lost == "$(pgrep -P "$stopped")" ]] || fail "not the stopped process is to be killed, but $lost"
+kill -KILL "$(pgrep -P "$stopped")" "$stopped"
+wait "$stopped" 2>/dev/null || true
 run_saving true || fail "a program without processes of its own"
 echo "ok: a hanging launcher is ended"
