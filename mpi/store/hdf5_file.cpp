@@ -74,8 +74,10 @@ void File::fail(const std::string& what, const std::string& object) const {
   std::string why = reason();
   const std::string where = name_.string() + (object.empty() ? "" : ":" + object);
   if (const int error = system_error(why)) raise_file_error(where, error, what);
-  // MPI-IO does not say why a write failed; what the system said last is told beside.
-  if (last != 0 && why == "file write failed") why += std::string("; the system: ") + std::strerror(last);
+  // MPI-IO does not always say why; what the system said last is told beside.
+  const bool vague =
+      why == "file write failed" || why == "file read failed" || why.find("MPI_ERR_OTHER") != why.npos;
+  if (last != 0 && vague) why += std::string("; the system: ") + std::strerror(last);
   throw InputError(
       {what, where, why, "if the file is damaged, delete it and run the command that made it again"});
 }
@@ -96,6 +98,7 @@ File File::create(const std::filesystem::path& file, hid_t access) {
   File f;
   f.name_ = file;
   const Handle properties = untimed(H5P_FILE_CREATE);
+  errno = 0;
   f.file_ = Handle(
       H5Fcreate(file.c_str(), H5F_ACC_TRUNC, properties.get(), access < 0 ? H5P_DEFAULT : access), H5Fclose);
   if (!f.file_) f.fail("cannot create the HDF5 file", "");

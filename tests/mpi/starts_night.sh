@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Starts at the same time in one folder, of two seeds and of --repair, on the disk and in memory: one writer, and every
 # other start is told the true reason.
-#   SWINGBANK_ROUNDS=25 bash tests/mpi/starts_night.sh      (5 rounds of eight starts on each disk by default)
+#   SWINGBANK_ROUNDS=25 SWINGBANK_DISKS="/mnt/a /mnt/b" bash tests/mpi/starts_night.sh      (5 rounds of eight starts on each
+# disk by default; other file systems as they are mounted)
 source "$(dirname "$0")/common.bash"
 rounds=${SWINGBANK_ROUNDS:-5}
 make=("$generate" "$configs/ieee14_genrou_bus3.toml" --draws 100 --draws-per-shard 20 --progress none)
@@ -30,7 +31,7 @@ one_round() {
   done
   "$verify" "$1" >"$work/log" 2>&1 || { cat "$work/log"; fail "the data of eight starts"; }
 }
-for disk in "$work" /dev/shm; do
+for disk in "$work" /dev/shm ${SWINGBANK_DISKS:-}; do
   made=0 refused=0 folder=$(mktemp -d -p "$disk")
   for ((round = 0; round < rounds; ++round)); do one_round "$folder/data"; done
   rm -rf "$folder"
