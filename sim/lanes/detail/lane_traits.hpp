@@ -44,8 +44,8 @@ struct LaneTraits<Pack<N>> {
     return p;
   }
   static void store(const Pack<N>& v, double* to) { __builtin_memcpy(to, &v, sizeof v); }
-  /// Past the caches where a pack is a whole line of them: records are far larger than the caches and not read
-  /// soon. Half a line would go to memory by itself, before its other half comes after all other rows.
+  /// Past the caches where a pack is a whole line of them: records are far larger than the caches and not
+  /// read soon. Half a line would go to memory by itself, before its other half comes after all other rows.
   static void stream(const Pack<N>& v, double* to) {
 #ifdef __AVX512F__
     if constexpr (N == 8) return _mm512_stream_pd(to, (__m512d)v.v);
