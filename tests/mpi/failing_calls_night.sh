@@ -20,7 +20,8 @@ begin() {
   rm -rf "$work/run"
   case $1 in
     half)
-      cp -r "$work/whole" "$work/run"
+      mkdir "$work/run"
+      cp -r "$work/whole/dataset.json" "$work/whole/shards" "$work/run"
       cp "$work/two_lines" "$work/run/journal.jsonl"
       ;;
   esac
