@@ -18,7 +18,10 @@ namespace {
 /// Keys that grow with the root of the work, and what no run goes below. Events: ten generators, a dozen rows
 /// each; fewer would leave a fold nothing to judge.
 const std::map<std::string, std::uint64_t> kLeast = {
-    {"draws", 120}, {"training_draws", 120}, {"epochs", 1}, {"patience", 1}, {"test_rows", 2}};
+    {"draws", 120}, {"training_draws", 120}, {"epochs", 1}, {"patience", 1}, {"test_rows", 10}};
+constexpr double kOnlyJudged =
+    0.25;  ///< share of what a run takes whatever its size, where it fits and trains nothing
+constexpr double kNoiseDrawn = 1.5;  ///< a training sample whose noise is drawn anew, over one that is kept
 constexpr double kSplitTrain = 0.6, kSplitTest = 0.2;
 
 std::uint64_t times(std::uint64_t value, double work, std::uint64_t least) {
@@ -46,14 +49,16 @@ Events events_of(const std::filesystem::path& file, const Rates& rates) {
 
 double series_length(const train::loop::NetworkInput& input, double rate) {
   const double seconds = input.recipe.end_s - input.recipe.start_s;
+  if (input.recipe.seconds_as_steps) return std::ceil(seconds);
   if (input.pca_components > 0) return static_cast<double>(input.pca_components) * std::ceil(seconds);
   return seconds * rate / static_cast<double>(input.recipe.slice);
 }
 
 struct Rows {
   double own = 0, more = 0, folds = 1;
-  bool leave_one_out = false;
+  bool leave_one_out = false, across = false;
   [[nodiscard]] double train(const train::loop::TrainingRecipe& t) const {
+    if (across) return (1.0 - t.validation_share) * more;
     const double seen = leave_one_out ? 1.0 - 1.0 / folds : 1.0;
     const double of_own = leave_one_out ? seen * (1.0 - t.validation_share) : kSplitTrain;
     return of_own * own + (t.training_rows ? seen * more : 0.0);
@@ -62,7 +67,7 @@ struct Rows {
     return own + (t.training_rows ? more : 0.0);
   }
   [[nodiscard]] double test(std::size_t wanted) const {
-    const double all = own * (leave_one_out ? 1.0 / folds : kSplitTest);
+    const double all = own * (leave_one_out ? 1.0 / folds : across ? 1.0 : kSplitTest);
     return wanted > 0 ? std::min(all, static_cast<double>(wanted)) : all;
   }
 };
@@ -84,14 +89,14 @@ Part network_part(const train::loop::Preset& p, const std::string& network, cons
   double of_rows = 0.0;  // what training takes of one run
   for (const double noise : judged.noise) {
     if (network == "floor" && noise == 0.0) continue;
-    double seconds = cost.run;
+    const bool trains = !t.noise_levels || noise == judged.noise.front();  // one network serves all levels
+    double seconds = cost.run * (trains ? 1.0 : kOnlyJudged);
     if (cost.sample > 0) {
       const double longer = cost.length > 0 ? series_length(p.input.at(network), rate) / cost.length : 1.0;
       part.rows = rows.train(t);
       part.epochs = t.epochs;
       of_rows = part.rows * static_cast<double>(t.epochs + t.posterior_epochs) * cost.sample * longer;
-      const bool trains = !t.noise_levels || noise == judged.noise.front();  // one network serves all levels
-      if (trains) seconds += of_rows;
+      if (trains) seconds += of_rows * (t.noise_levels ? kNoiseDrawn : 1.0);
     } else {
       part.rows = rows.test(judged.test_rows);
       seconds += part.rows * row(cost, noise);
@@ -153,6 +158,7 @@ std::vector<Part> work_of(const train::loop::Experiment& experiment, const train
   Rows rows;
   rows.own = draws * own.rows_per_event;
   rows.leave_one_out = experiment.leave_one_out;
+  rows.across = experiment.across;
   rows.folds = experiment.leave_one_out ? static_cast<double>(experiment.folds.size()) : 1.0;
   std::vector<Part> parts = {{"events", 1, rows.own, 0, draws * own.seconds, true}};
   const bool more_wanted =

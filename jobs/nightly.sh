@@ -11,7 +11,7 @@
 #     --preset     this preset as it is, however long it takes
 #     --seed       of the training; default ten times the day's number, so that every night trains with others: the
 #                  nights then show how much a result moves by itself
-#     --seeds      trains with that many seeds, from --seed on; default 1
+#     --seeds      trains with that many seeds, from --seed on; default 3 where the night has 4 hours or more, else 1
 #     --keep-data  keeps the simulated events (gigabytes; the same config makes the same bytes again)
 #     --tests      1 runs the tests that are too long for every change (tests/run.sh --night), 0 leaves them out; default 1
 #                  where 0.7 of what is left is time enough
@@ -23,8 +23,9 @@
 set -euo pipefail
 
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-out=$source_folder/out/nightly date=$(date +%F) preset='' seed='' seeds=1 hours=2 keep_data=0 fuzz='' blind='' tests='' experiments=()
+out=$source_folder/out/nightly date=$(date +%F) preset='' seed='' seeds='' hours=2 keep_data=0 fuzz='' blind='' tests='' experiments=()
 tries=3 pause=${SWINGBANK_NIGHTLY_PAUSE:-60} # [s] between tries
+hours_of_seeds=4                             # from which on a cell has a spread
 table_share=0.67                             # of the hours
 tests_take=1500                              # [s] of two cores, their build in it; docs/performance.md
 blind_share=0.6                              # of what the tables leave
@@ -55,6 +56,7 @@ if [[ ! $hours =~ ^[0-9]*\.?[0-9]+$ ]] || ! awk "BEGIN {exit !($hours > 0)}"; th
   echo "no hours at --hours $hours (a number above 0 is wanted): give one like 2 or 0.5" >&2
   exit 1
 fi
+seeds=${seeds:-$(awk "BEGIN {print $hours >= $hours_of_seeds ? 3 : 1}")}
 if [[ ! $seeds =~ ^([1-9]|10)$ ]]; then
   echo "no number of seeds at --seeds $seeds (the next night's begin ten further on): give 1 to 10" >&2
   exit 1

@@ -70,6 +70,24 @@ ordered_json intervals_json(const train::run::Estimate& e) {
   return all;
 }
 
+/// A network answers whatever it is shown; this is how one sees that it was never shown anything like it. A
+/// generator that was left out may well swing somewhat more than those it was judged on.
+bool unlike_training(const train::run::NetworkInfo& n, const Estimated& e) {
+  constexpr double kStrange = 1.5;
+  return e.estimate.input_rms > kStrange * n.input_rms_seen;
+}
+/// Stands before any estimate.
+std::string strangers(const train::run::NetworkInfo& n, const std::vector<Estimated>& all) {
+  std::string text;
+  for (const auto& e : all)
+    if (unlike_training(n, e))
+      text += fmt::format(
+          "warning: {} is unlike what the network was trained on: its normalised input is {:.2g} rms, the largest seen "
+          "was {:.2g}; do not trust this estimate\n",
+          e.record.name, e.estimate.input_rms, n.input_rms_seen);
+  return text;
+}
+
 ordered_json to_json(const train::run::SavedNetwork& network, const plant::PlantModel& model,
                      const std::vector<Estimated>& all) {
   const train::run::NetworkInfo& n = network.info();
@@ -91,6 +109,7 @@ ordered_json to_json(const train::run::SavedNetwork& network, const plant::Plant
                             {"event_s", e.input.event_s},
                             {"held_before_record_s", e.input.held_s},
                             {"input_rms", e.estimate.input_rms},
+                            {"unlike_training", unlike_training(n, e)},
                             {"estimates", e.estimate.values}});
     if (const ordered_json intervals = intervals_json(e.estimate); !intervals.empty())
       j["records"].back()["intervals_90"] = intervals;
@@ -141,19 +160,6 @@ std::string believed(const train::run::NetworkInfo& n, const std::vector<Estimat
   return text;
 }
 
-/// A network answers whatever it is shown; this is how one sees that it was never shown anything like it. A
-/// generator that was left out may well swing somewhat more than those it was judged on.
-void warn_of_strangers(const train::run::NetworkInfo& n, const std::vector<Estimated>& all) {
-  constexpr double kStrange = 1.5;
-  for (const auto& e : all)
-    if (e.estimate.input_rms > kStrange * n.input_rms_seen)
-      fmt::print(
-          stderr,
-          "warning: {} is unlike what the network was trained on: its normalised input is {:.2g} rms, the "
-          "largest seen was {:.2g}; do not trust this estimate\n",
-          e.record.name, e.estimate.input_rms, n.input_rms_seen);
-}
-
 int run(const Options& o) {
   const train::run::SavedNetwork network = train::run::SavedNetwork::load(o.network);
   plant::PlantModel model = plant::load_plant_model(o.model);
@@ -167,10 +173,11 @@ int run(const Options& o) {
     e.input = network_input(e.record, model, network.info(), o.event);
     e.estimate = network.estimate(e.input.values, o.noise);
   }
-  warn_of_strangers(network.info(), all);
+  const std::string unlike = strangers(network.info(), all);
+  if (o.json || !o.out.empty()) fmt::print(stderr, "{}", unlike);
   const std::string text = json_text(to_json(network, model, all), 2) + "\n";
   if (!o.out.empty()) write_file(o.out, text);
-  fmt::print("{}", o.json ? text : table(network.info(), all) + believed(network.info(), all));
+  fmt::print("{}", o.json ? text : unlike + table(network.info(), all) + believed(network.info(), all));
   return 0;
 }
 }  // namespace

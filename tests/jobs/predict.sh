@@ -96,7 +96,10 @@ refuses "channel that was not measured" 'channel speed at no-speed.csv' predict 
 refuses "record ends too early" 'give a longer record' predict --records "$work/row-000.csv" --event 3.0
 refuses "nothing before the event" 'give a record that begins earlier' predict --records "$work/row-000.csv" --event 0.01
 predict --records "$work/wild.csv" >"$work/log" 2>&1 || fail "a wild record: $(cat "$work/log")"
-grep -q "warning: wild.csv is unlike what the network was trained on" "$work/log" || fail "no warning of a wild record"
+awk '/^warning: wild.csv is unlike what the network was trained on/ {told = 1} /^parameter / {exit !told}' "$work/log" || fail "a wild record is not told before its estimate: $(cat "$work/log")"
+predict --records "$work/wild.csv" "$work/row-000.csv" --json 2>/dev/null >"$work/printed.json" || fail "a wild record as JSON"
+/usr/bin/python3 -c 'import json, sys; assert [r["unlike_training"] for r in json.load(open(sys.argv[1]))["records"]] == [True, False]' "$work/printed.json" ||
+  fail "JSON does not say which record is unlike: $(cat "$work/printed.json")"
 refuses "no network" 'none.network' "$swingbank" predict --network "$work/none.network" --model "$work/plant.toml" --records "$work/row-000.csv"
 head -c 3000 "$network" >"$work/cut.network"
 refuses "truncated network" 'cut.network .it ends too early' "$swingbank" predict --network "$work/cut.network" --model "$work/plant.toml" --records "$work/row-000.csv"

@@ -87,11 +87,13 @@ InputSelection select_input(const InputRecipe& recipe, const mpi::store::Dataset
   s.step = recipe.slice;
   s.samples = (end - s.first + s.step - 1) / s.step;
   s.form = recipe.form;
+  s.seconds_as_steps = recipe.seconds_as_steps;
   s.rate = dataset.rate / static_cast<double>(s.step);
   if (s.form == InputForm::physics) {
     s.physics = physics_of(recipe, dataset);
     s.samples = s.physics->cells();
     s.shows_level = recipe.shows_level;
+    s.regressions = recipe.regressions;
   }
   return s;
 }

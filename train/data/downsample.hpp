@@ -29,7 +29,10 @@ struct InputRecipe {
   double start_s = 0.0, end_s = 0.0;  ///< window [s]; the end is not included
   std::size_t slice = 1;              ///< keep every slice-th sample: 120/s and 4 make 30/s
   InputForm form = InputForm::absolute;
-  bool shows_level = false;  ///< of the form physics: the noise's level stands behind the steady values
+  bool seconds_as_steps = false;  ///< with principal components: a second's are one step of a series
+  bool shows_level = false;       ///< of the form physics: the noise's level stands behind the steady values
+  bool regressions =
+      false;  ///< of the form physics: how its signals follow from one another (regressions.hpp)
 };
 
 /// The same, resolved against a dataset.
@@ -39,7 +42,9 @@ struct InputSelection {
   InputForm form = InputForm::absolute;
   double rate = 0.0;               ///< after slicing [1/s]
   std::optional<Physics> physics;  ///< of that form; it then makes the series
+  bool seconds_as_steps = false;   ///< features order components so
   bool shows_level = false;        ///< the last value is level_input() of the noise; its reader puts it there
+  bool regressions = false;        ///< of that form: features hold them too
 
   [[nodiscard]] std::size_t outputs() const {
     return physics ? physics->channels() : channels.size() * (form == InputForm::both ? 2 : 1);

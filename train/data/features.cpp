@@ -6,7 +6,7 @@
 namespace swingbank::train::data {
 namespace {
 WhiteningSizes whitening_sizes(const FeatureSizes& s) {
-  return {s.channels, s.samples, s.levels, s.pca_components, s.kept, s.noisy};
+  return {s.channels, s.samples, s.levels, s.pca_components, s.kept, s.noisy, s.regressed};
 }
 }  // namespace
 
@@ -20,6 +20,7 @@ Features Features::fit(const ShardStream& stream, std::span<const std::uint64_t>
     f.pca_ = Pca::fit(stream, rows, pca_components);
     f.length_ = f.pca_->length();
     f.groups_per_channel_ = pca_components;
+    f.seconds_as_steps_ = stream.selection().seconds_as_steps;
   }
   const std::size_t groups = f.channels_ * f.groups_per_channel_;
   f.scale_ = {std::vector<float>(groups, 0.0f), std::vector<float>(groups, 1.0f)};
@@ -29,7 +30,9 @@ Features Features::fit(const ShardStream& stream, std::span<const std::uint64_t>
   for (std::size_t begin = 0; begin < rows.size(); begin += kRows) {
     const std::size_t count = std::min(kRows, rows.size() - begin);
     stream.read(rows.subspan(begin, count), series.data());
-    f.apply(series.data(), count, values.data());  // with the neutral scale: PCA only
+    const std::size_t from = f.channels_ * f.samples_, to = f.channels_ * f.length_;
+    for (std::size_t r = 0; r < count; ++r)  // with the neutral scale: PCA only
+      f.scaled(series.data() + r * from, values.data() + r * to);
     for (std::size_t i = 0; i < count * f.channels_ * f.length_; ++i)
       moments.add(f.group(i / f.length_ % f.channels_, i % f.length_), values[i]);
   }
@@ -64,9 +67,10 @@ Features Features::of(Whitening whitening) {
 FeatureSizes Features::sizes() const {
   if (whitening_) {
     const WhiteningSizes& w = whitening_->sizes();
-    return {w.channels, w.samples, w.components, 0, w.levels, w.kept, w.noisy};
+    return {w.channels, w.samples, w.components, 0, w.levels, w.kept, w.noisy, 0, w.regressed};
   }
-  return {channels_, samples_, pca_ ? pca_->components() : 0, pca_ ? pca_->per_second() : 0};
+  return {channels_, samples_, pca_ ? pca_->components() : 0, pca_ ? pca_->per_second() : 0, 0,
+          0,         0,        seconds_as_steps_ ? 1u : 0u};
 }
 
 std::size_t Features::array_count(const FeatureSizes& s) {
@@ -92,6 +96,7 @@ Features Features::restore(const FeatureSizes& s, std::span<const std::vector<fl
     f.pca_ = Pca::restore(s.pca_components, s.pca_per_second, s.samples, arrays.subspan(2));
     f.length_ = f.pca_->length();
     f.groups_per_channel_ = s.pca_components;
+    f.seconds_as_steps_ = s.seconds_as_steps > 0;
   }
   f.scale_ = {arrays[0], arrays[1]};
   for (const auto* a : {&f.scale_.mean, &f.scale_.deviation})
@@ -101,20 +106,29 @@ Features Features::restore(const FeatureSizes& s, std::span<const std::vector<fl
 
 void Features::apply(const float* series, std::size_t count, float* out) const {
   if (whitening_) return whitening_->apply(series, count, out);
+  std::vector<float> by_channel(seconds_as_steps_ ? channels_ * length_ : 0);
+  const std::size_t seconds = length(), components = groups_per_channel_;
   for (std::size_t r = 0; r < count; ++r) {
-    const float* in = series + r * channels_ * samples_;
     float* row = out + r * channels_ * length_;
-    if (pca_)
-      pca_->apply(in, row);
-    else
-      std::copy_n(in, channels_ * length_, row);
-    for (std::size_t c = 0; c < channels_; ++c)
-      for (std::size_t i = 0; i < length_; ++i) {
-        const std::size_t g = group(c, i);
-        float& value = row[c * length_ + i];
-        value = (value - scale_.mean[g]) / scale_.deviation[g];
-      }
+    scaled(series + r * channels_ * samples_, seconds_as_steps_ ? by_channel.data() : row);
+    for (std::size_t i = 0; i < by_channel.size(); ++i) {
+      const std::size_t channel = i / length_, second = i % length_ / components, component = i % components;
+      row[(channel * components + component) * seconds + second] = by_channel[i];
+    }
   }
+}
+
+void Features::scaled(const float* series, float* row) const {
+  if (pca_)
+    pca_->apply(series, row);
+  else
+    std::copy_n(series, channels_ * length_, row);
+  for (std::size_t c = 0; c < channels_; ++c)
+    for (std::size_t i = 0; i < length_; ++i) {
+      const std::size_t g = group(c, i);
+      float& value = row[c * length_ + i];
+      value = (value - scale_.mean[g]) / scale_.deviation[g];
+    }
 }
 
 }  // namespace swingbank::train::data

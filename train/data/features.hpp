@@ -15,6 +15,8 @@ struct FeatureSizes {
   std::size_t channels = 0, samples = 0;
   std::size_t pca_components = 0, pca_per_second = 0;  ///< 0: no PCA
   std::size_t levels = 0, kept = 0, noisy = 0;         ///< of a whitening; kept 0: none
+  std::size_t seconds_as_steps = 0;                    ///< 1: a second's components are one step
+  std::size_t regressed = 0;                           ///< of a whitening: its regressions
 };
 
 class Features {
@@ -25,9 +27,13 @@ class Features {
   static Features fit(const ShardStream& stream, std::span<const std::uint64_t> rows,
                       std::size_t pca_components);
 
-  /// A whitened row is one channel.
-  [[nodiscard]] std::size_t channels() const { return channels_; }
-  [[nodiscard]] std::size_t length() const { return length_; }
+  /// A whitened row is one channel. Where seconds are steps, each component of a channel is one.
+  [[nodiscard]] std::size_t channels() const {
+    return seconds_as_steps_ ? channels_ * groups_per_channel_ : channels_;
+  }
+  [[nodiscard]] std::size_t length() const {
+    return seconds_as_steps_ ? length_ / groups_per_channel_ : length_;
+  }
   [[nodiscard]] const std::optional<Pca>& pca() const { return pca_; }
   [[nodiscard]] const Scale& scale() const { return scale_; }
   /// What was fitted, for a file: sizes, then arrays in the order of `restore`.
@@ -42,11 +48,14 @@ class Features {
 
  private:
   static Features of(Whitening whitening);
+  /// Of one row, a channel behind the other.
+  void scaled(const float* series, float* row) const;
   [[nodiscard]] std::size_t group(std::size_t channel, std::size_t i) const {
     return channel * groups_per_channel_ + i % groups_per_channel_;
   }
 
   std::size_t channels_ = 0, samples_ = 0, length_ = 0, groups_per_channel_ = 1;
+  bool seconds_as_steps_ = false;
   std::optional<Pca> pca_;
   std::optional<Whitening> whitening_;
   Scale scale_;

@@ -86,6 +86,12 @@ Physics::Physics(const std::vector<std::string>& names, const PhysicsWindow& win
   }
 }
 
+std::vector<float> Physics::cell_samples() const {
+  std::vector<float> all;
+  for (const Cell& cell : cells_) all.push_back(static_cast<float>(cell.count));
+  return all;
+}
+
 std::size_t Physics::channels() const {
   return 6u + (speed_ >= 0 ? 2u : 0u) + (field_ >= 0 ? 2u : 0u) + (speed_ >= 0 && frequency_ >= 0 ? 2u : 0u);
 }

@@ -37,6 +37,8 @@ class Physics {
   [[nodiscard]] std::size_t levels() const { return field_ >= 0 ? 6 : 5; }
   /// Samples of a record that are looked at, from its first.
   [[nodiscard]] std::size_t samples() const { return cells_.back().first + cells_.back().count; }
+  /// Samples that each cell is the mean of.
+  [[nodiscard]] std::vector<float> cell_samples() const;
   /// record: one row, its channels `stride` apart; out: channels() x cells(), then levels().
   void apply(const float* record, std::size_t stride, float* out) const;
 

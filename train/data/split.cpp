@@ -127,6 +127,19 @@ RowSplit leave_one_out(const Labels& labels, const LeaveOneOut& plan) {
   return split;
 }
 
+RowSplit split_across(const Labels& labels, double validation_share, std::uint64_t seed) {
+  std::vector<std::uint64_t> others(labels.rows - labels.judged);
+  std::iota(others.begin(), others.end(), labels.judged);
+  auto points = points_of(labels, others);
+  shuffle(points, key(seed, Purpose::split));
+  const std::size_t validation = share(points.size(), validation_share);
+  RowSplit split{rows_of(points, validation, points.size()), rows_of(points, 0, validation), {}};
+  split.test.resize(labels.judged);
+  std::iota(split.test.begin(), split.test.end(), std::uint64_t{0});
+  require_rows(split, points.size());
+  return split;
+}
+
 void keep_share(RowSplit& split, const Labels& labels, double part) {
   const auto more = std::ranges::lower_bound(split.train, labels.judged);
   const auto own = static_cast<std::size_t>(more - split.train.begin());

@@ -19,7 +19,6 @@ struct RowSplit {
 
 /// 60 / 20 / 20 of the groups of rows. Throws InputError if a part would be empty.
 RowSplit split_by_point(const Labels& labels, std::uint64_t seed);
-/// Test: every row of one generator. The others' points: `validation_share` for validation, the rest for
 /// Who is left out, and who judges.
 struct LeaveOneOut {
   std::int32_t generator = 0;
@@ -34,6 +33,9 @@ struct LeaveOneOut {
 /// training, but for the generators set aside. Throws InputError if the generator has no rows or no others
 /// exist.
 RowSplit leave_one_out(const Labels& labels, const LeaveOneOut& plan);
+/// Test: the dataset whole. Of the rows behind it, a share of the points decides when to stop and the others
+/// train. Throws InputError if one of the three has no rows.
+RowSplit split_across(const Labels& labels, double validation_share, std::uint64_t seed);
 /// Of the rows that train the first of the judged dataset and of the one that only trains, as if both had
 /// been made smaller. Throws InputError if nothing would be left.
 void keep_share(RowSplit& split, const Labels& labels, double share);

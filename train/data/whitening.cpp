@@ -7,16 +7,20 @@
 
 #include "base/problem.hpp"
 #include "base/sealed_file.hpp"
+#include "train/data/regressions.hpp"
 
 namespace swingbank::train::data {
 namespace {
 
 using Eigen::Index;
-constexpr std::size_t kRowsToFit = 20000;  ///< thirty times the directions that are fitted
-constexpr float kStillRow = 1e-6f;         ///< size of a row that does not move [pu]
+constexpr std::size_t kRowsToFit = 8000;  ///< fifteen times the directions that are fitted
+constexpr std::size_t kRowsOfWidths = 5000;
+constexpr float kMiddleInDeviations = 2.56f;  ///< what lies between a normal distribution's tenth parts
+constexpr float kStillRow = 1e-6f;            ///< size of a row that does not move [pu]
 constexpr double kRank = 1e-9;  ///< share of the largest variance below which a direction is rounding
 constexpr std::size_t kRowsOfNoise = 5000;
-constexpr double kSmallLevel = 1e-4;   ///< at which noise is measured: what it does is proportional to it
+constexpr double kSmallLevel = 1e-4;  ///< at which noise is measured: what it does is proportional to it
+constexpr float kWidestCoefficient = 4.0f;  ///< in widths: beyond, one says no more than that it is far off
 constexpr float kLongestNoise = 3.0f;  ///< of a row, in medians: at a fault nearby noise is divided by little
 
 using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -44,7 +48,13 @@ Whitening Whitening::fit(const ShardStream& stream, std::span<const std::uint64_
     throw InputError({fmt::format("{} components of {} samples", components, s.samples), "pca_components",
                       "a channel has between 1 and as many as samples", "choose such a number"});
   Whitening w;
-  w.sizes_ = {s.outputs(), s.samples, s.levels(), components, 0, s.shows_level ? 1u : 0u};
+  w.sizes_ = {s.outputs(),
+              s.samples,
+              s.levels(),
+              components,
+              0,
+              s.shows_level ? 1u : 0u,
+              s.regressions ? regression_count(s.outputs()) : 0};
   const std::size_t every = std::max<std::size_t>(1, rows.size() / kRowsToFit);
   std::vector<std::uint64_t> some;
   for (std::size_t i = 0; i < rows.size(); i += every) some.push_back(rows[i]);
@@ -52,6 +62,7 @@ Whitening Whitening::fit(const ShardStream& stream, std::span<const std::uint64_
   stream.read(some, series.data(), s.shows_level ? Noise{0.0} : stream.judged());
   w.fit_bases(series);
   w.fit_whole(w.components(series.data(), some.size()));
+  if (s.regressions) w.fit_regressions(series, s.physics->cell_samples());
   if (!s.shows_level) return w;
   some.resize(std::min(some.size(), kRowsOfNoise));
   Rows noisy(static_cast<Index>(some.size()), series.cols());
@@ -94,6 +105,28 @@ void Whitening::fit_whole(const Rows& components) {
 
 Rows Whitening::whitened(const Rows& components) const {
   return ((components.rowwise() - centre_).array().rowwise() / unit_.array()).matrix() * whole_;
+}
+
+void Whitening::fit_regressions(const Rows& series, std::vector<float> weights) {
+  weights_ = std::move(weights);
+  const std::size_t count = sizes_.regressed,
+                    rows = std::min(kRowsOfWidths, static_cast<std::size_t>(series.rows()));
+  std::vector<float> all(rows * count), own(rows);
+  for (std::size_t i = 0; i < rows; ++i)
+    regress(series.row(static_cast<Index>(i)).data(), sizes_.channels, weights_, all.data() + i * count);
+  for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t i = 0; i < rows; ++i) own[i] = all[i * count + k];
+    std::ranges::sort(own);
+    const float low = own[rows / 10], high = own[rows - 1 - rows / 10];
+    median_.push_back(own[rows / 2]);
+    width_.push_back(high > low ? (high - low) / kMiddleInDeviations : 1.0f);
+  }
+}
+
+void Whitening::apply_regressions(const float* series, float* out) const {
+  regress(series, sizes_.channels, weights_, out);
+  for (std::size_t k = 0; k < sizes_.regressed; ++k)
+    out[k] = std::clamp((out[k] - median_[k]) / width_[k], -kWidestCoefficient, kWidestCoefficient);
 }
 
 void Whitening::fit_noise(const Rows& clean, const Rows& noisy) {
@@ -149,11 +182,17 @@ void Whitening::apply(const float* series, std::size_t count, float* out) const 
       // what a signal of variance 1 is on average, seen through noise of this deviation (Wiener)
       const auto level = static_cast<float>(level_of_input(told)) / std::exp(parts(i, parts.cols() - 1));
       row.row(i).head(kept).array() /= 1.0f + (level * noise_.array()).square();
-      row(i, row.cols() - 1) = told;
+      row(i, kept + behind) = told;
     }
   }
+  const auto bounded = static_cast<Index>(length() - sizes_.regressed);
   // what is far outside the training rows shall not run away
-  row = row.unaryExpr([](float v) { return std::asinh(v); });
+  row.leftCols(bounded) = row.leftCols(bounded).unaryExpr([](float v) { return std::asinh(v); });
+  if (sizes_.regressed == 0) return;
+  const auto values =
+      static_cast<std::size_t>(sizes_.channels * sizes_.samples + sizes_.levels + sizes_.noisy);
+  for (Index i = 0; i < row.rows(); ++i)
+    apply_regressions(series + static_cast<std::size_t>(i) * values, row.row(i).data() + bounded);
 }
 
 std::vector<std::vector<float>> Whitening::arrays() const {
@@ -166,6 +205,7 @@ std::vector<std::vector<float>> Whitening::arrays() const {
   all.push_back(flat(unit_.data(), unit_.size()));
   all.push_back(flat(whole_.data(), whole_.size()));
   if (sizes_.noisy > 0) all.push_back(flat(noise_.data(), noise_.size()));
+  if (sizes_.regressed > 0) all.insert(all.end(), {weights_, median_, width_});
   return all;
 }
 
@@ -189,6 +229,14 @@ Whitening Whitening::restore(const WhiteningSizes& sizes, std::span<const std::v
   w.unit_ = Eigen::Map<const Eigen::RowVectorXf>(checked(last + 1, all), all);
   w.whole_ = Eigen::Map<const Eigen::MatrixXf>(checked(last + 2, all * kept), all, kept);
   if (sizes.noisy > 0) w.noise_ = Eigen::Map<const Eigen::RowVectorXf>(checked(last + 3, kept), kept);
+  if (sizes.regressed == 0) return w;
+  const auto copied = [&](std::size_t i, std::size_t length) {
+    const float* first = checked(last + 3 + sizes.noisy + i, static_cast<Index>(length));
+    return std::vector<float>(first, first + length);
+  };
+  w.weights_ = copied(0, sizes.samples);
+  w.median_ = copied(1, sizes.regressed);
+  w.width_ = copied(2, sizes.regressed);
   return w;
 }
 

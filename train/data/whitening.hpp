@@ -12,9 +12,9 @@
 namespace swingbank::train::data {
 
 /// Lengths: channels, samples of a channel, values behind the series; components kept of a channel and of
-/// all. `noisy`: the noise's level stands behind them (0 or 1).
+/// all. `noisy`: the noise's level stands behind them (0 or 1). `regressed`: coefficients of regressions.
 struct WhiteningSizes {
-  std::size_t channels = 0, samples = 0, levels = 0, components = 0, kept = 0, noisy = 0;
+  std::size_t channels = 0, samples = 0, levels = 0, components = 0, kept = 0, noisy = 0, regressed = 0;
 };
 
 class Whitening {
@@ -25,15 +25,19 @@ class Whitening {
                        std::size_t components);
 
   [[nodiscard]] const WhiteningSizes& sizes() const { return sizes_; }
-  /// Numbers a row becomes: the whitened ones, then levels and logarithm of the size as they are, and the
-  /// noise's level as it is told.
-  [[nodiscard]] std::size_t length() const { return sizes_.kept + sizes_.levels + 1 + sizes_.noisy; }
+  /// Numbers a row becomes: the whitened ones, then levels and logarithm of the size as they are, the noise's
+  /// level as it is told, and the regressions' coefficients about their medians, bounded.
+  [[nodiscard]] std::size_t length() const {
+    return sizes_.kept + sizes_.levels + 1 + sizes_.noisy + sizes_.regressed;
+  }
   /// series: count rows of channels x samples + levels + noisy values; out: count x length().
   void apply(const float* series, std::size_t count, float* out) const;
   /// What was fitted, for a file, and the opposite. Throws Unusable if that does not fit together.
   [[nodiscard]] std::vector<std::vector<float>> arrays() const;
   static Whitening restore(const WhiteningSizes& sizes, std::span<const std::vector<float>> arrays);
-  static std::size_t array_count(const WhiteningSizes& sizes) { return 2 * sizes.channels + 3 + sizes.noisy; }
+  static std::size_t array_count(const WhiteningSizes& sizes) {
+    return 2 * sizes.channels + 3 + sizes.noisy + (sizes.regressed > 0 ? 3 : 0);
+  }
 
  private:
   using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -43,15 +47,19 @@ class Whitening {
   void fit_whole(const Rows& components);
   /// Turns the whitened numbers until their noise is uncorrelated. `clean`, `noisy`: the same rows' series.
   void fit_noise(const Rows& clean, const Rows& noisy);
+  /// Middle and width of each coefficient over the rows.
+  void fit_regressions(const Rows& series, std::vector<float> weights);
+  void apply_regressions(const float* series, float* out) const;
   /// The whitened numbers without their bound.
   [[nodiscard]] Rows whitened(const Rows& components) const;
 
   WhiteningSizes sizes_;
-  std::vector<Eigen::RowVectorXf> mean_;  ///< per channel
-  std::vector<Eigen::MatrixXf> basis_;    ///< per channel: samples x components
-  Eigen::RowVectorXf centre_, unit_;      ///< of the components
-  Eigen::MatrixXf whole_;                 ///< components of all channels and levels x kept
-  Eigen::RowVectorXf noise_;              ///< deviation of the whitened at a level of the row's size
+  std::vector<Eigen::RowVectorXf> mean_;         ///< per channel
+  std::vector<Eigen::MatrixXf> basis_;           ///< per channel: samples x components
+  Eigen::RowVectorXf centre_, unit_;             ///< of the components
+  Eigen::MatrixXf whole_;                        ///< components of all channels and levels x kept
+  Eigen::RowVectorXf noise_;                     ///< deviation of the whitened at a level of the row's size
+  std::vector<float> weights_, median_, width_;  ///< of the samples; of the regressions' coefficients
 };
 
 }  // namespace swingbank::train::data

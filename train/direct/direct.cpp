@@ -18,8 +18,10 @@ namespace swingbank::train::direct {
 namespace {
 
 namespace store = mpi::store;
-constexpr std::size_t kRowsRead = 512;              ///< rows read at once
-enum class Method { closed_form, refined, floor };  ///< in order of kMethods
+constexpr double kWeightsOfCurveFit = 1e-4;  ///< level whose deviations weigh channels without noise
+constexpr double kNoPrior = 1e3;             ///< widths of the box
+constexpr std::size_t kRowsRead = 512;       ///< rows read at once
+enum class Method { closed_form, refined, curve_fit, floor };  ///< in order of kMethods
 
 /// What a row of the dataset is made of.
 class Rows {
@@ -33,10 +35,11 @@ class Rows {
       problems.add("no closed form for " + d.machine_model, where,
                    "nobody has written one for this machine's equations",
                    "leave closed-form and refined out of the preset's networks");
-    if (effect_ && method != Method::closed_form && noise.level > 0 && !sim::direct::has_likelihood(*effect_))
+    const bool likely = method == Method::curve_fit || (method != Method::closed_form && noise.level > 0);
+    if (effect_ && likely && !sim::direct::has_likelihood(*effect_))
       problems.add("no likelihood for " + d.machine_model, where,
                    "it has too many states, or no constant impedance behind its terminal",
-                   "leave refined and floor out of the preset's networks");
+                   "leave refined, curve-fit and floor out of the preset's networks");
     if (!d.parameter_effects.empty())
       problems.add("parameters of other effects", where, "a closed form knows the machine alone",
                    "leave closed-form and refined out of the preset's networks");
@@ -90,11 +93,19 @@ class Rows {
 
  private:
   [[nodiscard]] std::vector<double> found(const sim::Recording& r, const std::vector<double>& known) const {
+    if (method_ == Method::curve_fit) return fitted(r, known);
     auto all = effect_->closed_form(noise_.none() ? r : sim::direct::smoothed(r), known.data());
     if (all.empty()) all.push_back(known);
     if (method_ == Method::closed_form) return all.front();
     if (noise_.none()) return sim::direct::refine_best(*effect_, r, all, free_, low_, high_).p;
     return sim::direct::most_probable_of(*effect_, r, all, unknown_).p;
+  }
+  /// From the standard parameters and nowhere else, as whoever has only those must.
+  [[nodiscard]] std::vector<double> fitted(sim::Recording r, const std::vector<double>& known) const {
+    if (noise_.none()) r.noise = sim::MeasurementNoise{kWeightsOfCurveFit};
+    std::vector<sim::direct::FreeParameter> all = unknown_;
+    for (auto& f : all) f.deviation = kNoPrior * (f.high - f.low);
+    return sim::direct::most_probable(*effect_, r, known, all).p;
   }
   void floor(const store::RowBlock& block, std::size_t row, double* out) const {
     const sim::Recording r = recording(block, row);

@@ -14,9 +14,12 @@ namespace swingbank::train::direct {
 
 /// "closed-form": linear least squares, of smoothed signals where there is noise. "refined": without noise,
 /// Levenberg-Marquardt on the machine's equations from there; with noise, the most probable parameters.
+/// "curve-fit": least squares of P, Q, speed and field current with the voltage played in, from the effect's
+/// standard parameters alone, kept in the box but not drawn to anything: what a program for deriving
+/// parameters does that has no other start (the thesis compares with EPRI's PPPD).
 /// "floor": no estimate but the truth, off by the root of the Bayesian Cramer-Rao bound, so that its squared
 /// error is the least that any estimate of these noisy records has on average.
-inline constexpr std::array<std::string_view, 3> kMethods = {"closed-form", "refined", "floor"};
+inline constexpr std::array<std::string_view, 4> kMethods = {"closed-form", "refined", "curve-fit", "floor"};
 bool is_method(std::string_view name);
 
 /// rows x parameters in raw units, inside the sampling box, for rows of the dataset in ascending order. The

@@ -97,6 +97,16 @@ void read_input(Config& c, const std::string& at, bool complete, NetworkInput& i
   if (const auto at_form = std::ranges::find(data::kInputForms, form); at_form != data::kInputForms.end())
     i.recipe.form = static_cast<data::InputForm>(at_form - data::kInputForms.begin());
   k.whole("pca_components", 0, i.pca_components);
+  Keys extra(c, at, false);
+  extra.flag("seconds_as_steps", i.recipe.seconds_as_steps);
+  if (i.recipe.seconds_as_steps && i.pca_components == 0)
+    c.problem(at + ".seconds_as_steps", "seconds as steps of samples",
+              "a step is a second's principal components", "give pca_components, or leave it out");
+  extra.flag("regressions", i.recipe.regressions);
+  if (i.recipe.regressions && i.recipe.form != data::InputForm::physics)
+    c.problem(at + ".regressions", "regressions of another form",
+              "they are taken of the signals of the form physics",
+              "choose form = \"physics\", or leave regressions out");
 }
 
 /// What is copied from a network that corrects nothing: estimates to correct are made once, of records with
@@ -175,12 +185,21 @@ Experiment read_experiment(const std::filesystem::path& file) {
   e.title = c.require<std::string>("title");
   e.dataset = c.file("dataset");
   if (c.has("training_dataset")) e.training_dataset = c.file("training_dataset");
-  e.leave_one_out =
-      c.choice("split", {"leave-one-generator-out", "by-databank-point"}) == "leave-one-generator-out";
+  const std::string split =
+      c.choice("split", {"leave-one-generator-out", "by-databank-point", "across-datasets"});
+  e.leave_one_out = split == "leave-one-generator-out";
+  e.across = split == "across-datasets";
   if (e.leave_one_out)
     for (const auto g : c.require<std::vector<std::int64_t>>("folds", {1, 1e9}))
       e.folds.push_back(static_cast<std::int32_t>(g));
-  for (const auto& name : c.keys("preset")) e.presets[name] = read_preset(c, name);
+  for (const auto& name : c.keys("preset")) {
+    e.presets[name] = read_preset(c, name);
+    for (const auto& [network, training] : e.presets[name].training)
+      if (e.across && !training.training_rows)
+        c.problem("preset." + name + ".training_rows", fmt::format("no rows that train {}", network),
+                  "with this split the rows of training_dataset alone train, and their mean is the baseline",
+                  "add training_rows = true to the preset");
+  }
   if (e.presets.empty())
     c.problem("preset", "no preset", "an experiment needs at least one", "add [preset.quick]");
   c.raise();

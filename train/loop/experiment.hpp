@@ -79,8 +79,9 @@ struct Experiment {
   std::string title;
   std::filesystem::path dataset;           ///< its config
   std::filesystem::path training_dataset;  ///< config of rows that only train; empty: none
-  bool leave_one_out = false;              ///< otherwise 60/20/20 by databank point
-  std::vector<std::int32_t> folds;         ///< generators (bus numbers) to leave out, empty for a split
+  bool leave_one_out = false;              ///< otherwise 60/20/20 by databank point, or
+  bool across = false;              ///< the dataset is judged whole and the training dataset alone trains
+  std::vector<std::int32_t> folds;  ///< generators (bus numbers) to leave out, empty for a split
   std::map<std::string, Preset> presets;
 
   /// Throws InputError that lists what there is.

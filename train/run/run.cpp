@@ -16,6 +16,7 @@
 #include "train/run/detail/guesses.hpp"
 #include "train/run/detail/posterior.hpp"
 #include "train/run/detail/result.hpp"
+#include "train/run/detail/several.hpp"
 #include "train/run/saved_network.hpp"
 
 namespace swingbank::train::run {
@@ -154,7 +155,9 @@ RunOutcome run_direct(const data::ShardStream& stream, const RunRequest& r, cons
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   report.processor_seconds = static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC;
   const loop::Score result = judge(found, stream, d.scale, d.split.test);
-  write_text(d.file, result_json(stream, r, {d.split, nullptr, report, result}).dump(2) + "\n");
+  const json several = r.network == "floor" ? json() : several_json(stream.labels(), d.split.test, found);
+  write_text(d.file,
+             result_json(stream, r, {d.split, nullptr, report, result, {}, {}, several}).dump(2) + "\n");
   progress.line(scored(result, report.seconds));
   return RunOutcome::done;
 }
@@ -238,12 +241,15 @@ class NetworkRun {
   }
 
   void judge_to(const std::filesystem::path& result) {
-    const loop::Score score = judged(split_.test);
-    const double seen = judged(split_.validation).mse;
+    const std::vector<double> found = estimates(split_.test);
+    const loop::Score score = judge(found, stream_, scale_, split_.test);
+    const double seen = judge(estimates(split_.validation), stream_, scale_, split_.validation).mse;
     const json believed = posterior_->head ? judge_posterior(*posterior_, context()) : json();
-    write_text(
-        result,
-        result_json(stream_, request_, {split_, &features_, report_, score, seen, believed}).dump(2) + "\n");
+    const json several =
+        several_json(stream_.labels(), split_.test, found,
+                     posterior_->head ? product_of_beliefs(*posterior_, context()) : FromSeveral());
+    const RunParts parts = {split_, &features_, report_, score, seen, believed, several};
+    write_text(result, result_json(stream_, request_, parts).dump(2) + "\n");
     for (const char* kind : {".checkpoint", ".posterior.checkpoint"})
       std::filesystem::remove(std::filesystem::path(checkpoint_).replace_extension(kind));
     progress_.line(fmt::format("{}; MSE {:.4g} on rows of generators that trained; best epoch {} of {}",
@@ -300,9 +306,9 @@ class NetworkRun {
                     features_.length(), static_cast<double>(networks::parameter_count(*network_)) * 1e-6,
                     request_.runtime.sentence()));
   }
-  [[nodiscard]] loop::Score judged(std::span<const std::uint64_t> rows) {
+  [[nodiscard]] std::vector<double> estimates(std::span<const std::uint64_t> rows) {
     const auto out = loop::predict(*network_, stream_, features_, rows, known_.scaled);
-    return judge(raw_outputs(out, scale_, stream_.dataset(), rows, known_), stream_, scale_, rows);
+    return raw_outputs(out, scale_, stream_.dataset(), rows, known_);
   }
 
   const data::ShardStream& stream_;
@@ -341,7 +347,8 @@ RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
   const data::Labels& labels = stream.labels();
   data::RowSplit split = r.generator ? data::leave_one_out(labels, {*r.generator, recipe.validation_share,
                                                                     r.seed, r.judged, recipe.set_aside})
-                                     : data::split_by_point(labels, r.seed);
+                         : r.experiment.across ? data::split_across(labels, recipe.validation_share, r.seed)
+                                               : data::split_by_point(labels, r.seed);
   if (r.test_rows) thin(split.test, *r.test_rows);
   if (r.train_share < 1) data::keep_share(split, labels, r.train_share);
   const data::TargetScale scale =

@@ -114,7 +114,9 @@ json header_of(const NetworkParts& parts, networks::Network& network) {
             {"pca_per_second", sizes.pca_per_second},
             {"levels", sizes.levels},
             {"kept", sizes.kept},
-            {"noisy", sizes.noisy}}},
+            {"noisy", sizes.noisy},
+            {"seconds_as_steps", sizes.seconds_as_steps},
+            {"regressed", sizes.regressed}}},
           {"training",
            {{"epochs", parts.report.epochs},
             {"best_epoch", parts.report.best_epoch},
@@ -160,11 +162,12 @@ NetworkInfo info_of(const json& h) {
 /// The weights that the shape's bias starts are read over it.
 networks::NetworkShape shape_of(const data::FeatureSizes& s, std::size_t outputs) {
   if (s.kept > 0)
-    return {1, static_cast<std::int64_t>(s.kept + s.levels + 1 + s.noisy), static_cast<std::int64_t>(outputs),
-            std::vector<float>(outputs, 0.0f)};
+    return {1, static_cast<std::int64_t>(s.kept + s.levels + 1 + s.noisy + s.regressed),
+            static_cast<std::int64_t>(outputs), std::vector<float>(outputs, 0.0f)};
   const std::size_t seconds = s.pca_per_second > 0 ? s.samples / s.pca_per_second : 0;
   const std::size_t length = s.pca_components > 0 ? seconds * s.pca_components : s.samples;
-  return {static_cast<std::int64_t>(s.channels), static_cast<std::int64_t>(length),
+  const std::size_t steps = s.seconds_as_steps > 0 ? seconds : length;
+  return {static_cast<std::int64_t>(s.channels * length / steps), static_cast<std::int64_t>(steps),
           static_cast<std::int64_t>(outputs), std::vector<float>(outputs, 0.0f)};
 }
 
@@ -289,10 +292,11 @@ data::FeatureSizes SavedNetwork::read_header(const json& h) {
                                             w.at("reactance"), w.at("least_voltage")});
     info_.samples = selection_.physics->samples();
   }
-  const data::FeatureSizes sizes = {f.at("channels"),       f.at("samples"), f.at("pca_components"),
-                                    f.at("pca_per_second"), f.at("levels"),  f.at("kept"),
-                                    f.at("noisy")};
+  const data::FeatureSizes sizes = {f.at("channels"),       f.at("samples"),          f.at("pca_components"),
+                                    f.at("pca_per_second"), f.at("levels"),           f.at("kept"),
+                                    f.at("noisy"),          f.at("seconds_as_steps"), f.at("regressed")};
   selection_.shows_level = info_.told_noise = sizes.noisy > 0;
+  selection_.regressions = sizes.regressed > 0;
   if (sizes.channels != selection_.outputs() || sizes.samples != selection_.samples)
     throw Unusable{"its sizes do not fit together"};
   return sizes;

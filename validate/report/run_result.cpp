@@ -77,6 +77,23 @@ void read_coverage(Object& o, const std::string& where, RunResult& r, Problems& 
   }
 }
 
+/// Key `several` of train/run/README.md.
+void read_several(Object& o, const std::string& where, RunResult& r, Problems& problems) {
+  if (!o.value().contains("several")) return;
+  if (!o.value()["several"].is_array()) return o.fault("several", "it is no list");
+  for (const auto& item : o.value()["several"]) {
+    Object one(item, where + " several", problems);
+    SeveralRecords s;
+    one.get("at_most", s.at_most);
+    one.get("plants", s.plants);
+    one.get("records", s.records);
+    one.get("mse_of_mean", s.mse_of_mean);
+    if (item.contains("mse_of_product") && item["mse_of_product"].is_number())
+      s.mse_of_product = item["mse_of_product"].get<double>();
+    r.several.push_back(s);
+  }
+}
+
 RunResult read_result(const fs::path& file, Problems& problems) {
   RunResult r;
   r.file = file;
@@ -116,6 +133,8 @@ RunResult read_result(const fs::path& file, Problems& problems) {
     r.H_ratio = std::numeric_limits<double>::quiet_NaN();  // H does not vary in that dataset
   else
     o.get("H_ratio", r.H_ratio);
+  r.seen = std::numeric_limits<double>::quiet_NaN();
+  if (parsed.contains("seen_mse") && !parsed["seen_mse"].is_null()) o.get("seen_mse", r.seen);
   o.get("shuffled_labels", r.shuffled);
   o.get("threads", r.threads);
   r.core_seconds = r.seconds * r.threads;  // of a result that does not say: at most
@@ -124,6 +143,7 @@ RunResult read_result(const fs::path& file, Problems& problems) {
   o.get("blas", r.blas);
   if (parsed.contains("train_share")) o.get("train_share", r.share);
   read_coverage(o, file.string(), r, problems);
+  read_several(o, file.string(), r, problems);
   read_parameters(o, file.string(), r, problems);
   return r;
 }

@@ -21,6 +21,13 @@ struct Coverage {
   double nominal = 0, observed = 0;  ///< shares of 1
   double rows = 0;
 };
+/// Plants of the test estimated from several records each.
+struct SeveralRecords {
+  std::int64_t at_most = 0, plants = 0;  ///< records used of a plant at most; plants with three or more
+  double records = 0;                    ///< used of a plant on average
+  double mse_of_mean = 0;                ///< of the mean of the records' estimates, raw units
+  std::optional<double> mse_of_product;  ///< of the product of their beliefs; none: it gives none
+};
 struct RunResult {
   std::filesystem::path file;
   std::string table, network, preset;
@@ -34,9 +41,11 @@ struct RunResult {
   double seconds = 0, seconds_per_epoch = 0;
   double core_seconds = 0;  ///< processor time of all threads
   double mse = 0, mse_varied_only = 0, baseline_mse = 0, ratio = 0;
+  double seen = 0;     ///< MSE on rows of generators, or points, that trained; NaN: nothing was trained
   double H_ratio = 0;  ///< NaN where H does not vary
   std::vector<ParameterScore> parameters;
-  std::vector<Coverage> coverage;  ///< empty: it gives no intervals
+  std::vector<Coverage> coverage;       ///< empty: it gives no intervals
+  std::vector<SeveralRecords> several;  ///< empty: no plant has three test records
   bool shuffled = false;
   int threads = 1;
   std::string software, blas;

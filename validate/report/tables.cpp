@@ -301,13 +301,17 @@ void add_task(const Task& task, const std::string& stem, Both& to) {
                  : "Mean squared error of each method: large, the mean; small, each generator "
                    "left out.");
   for (const double level : task.levels())
-    if (!task.generators().empty()) to.table(generator_table(task, level));
+    if (!task.generators().empty()) {
+      to.table(generator_table(task, level));
+      if (const Table unseen = unseen_table(task, level); !unseen.rows.empty()) to.table(unseen);
+    }
   to.picture(stem + "-parameters.svg", parameter_picture(task),
              "Error of each parameter relative to its variance: what the raw MSE does not show.");
   for (const double level : task.levels()) to.table(parameter_comparison(task, level));
   to.picture(
       stem + "-reliability.svg", reliability_picture(task),
       "Intervals of the estimates: a point on the dashed line is an interval that holds what it states.");
+  if (const Table several = several_table(task); !several.rows.empty()) to.table(several);
   to.table(effort_table(task));
 }
 

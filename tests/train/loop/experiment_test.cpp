@@ -87,5 +87,38 @@ TEST(Experiment, NetworksThatCorrectTrainAtTheLevelTheyAreJudgedAt) {
                InputError);
 }
 
+TEST(Experiment, RegressionsAndSecondsAsStepsNeedTheirForms) {
+  const Experiment e = experiment("", "",
+                                  "[preset.quick.mlp]\nform = \"physics\"\nregressions = true\n"
+                                  "[preset.quick.gru]\npca_components = 3\nseconds_as_steps = true\n");
+  EXPECT_TRUE(e.input("quick", "mlp").recipe.regressions);
+  EXPECT_FALSE(e.input("quick", "gru").recipe.regressions);
+  EXPECT_TRUE(e.input("quick", "gru").recipe.seconds_as_steps);
+  EXPECT_THROW(experiment("", "", "[preset.quick.mlp]\nregressions = true\n"), InputError);
+  EXPECT_THROW(experiment("", "", "[preset.quick.gru]\nseconds_as_steps = true\n"), InputError);
+}
+
+TEST(Experiment, AcrossDatasetsEveryNetworkTrainsOnTheRowsThatOnlyTrain) {
+  const std::filesystem::path folder = testing::TempDir();
+  const auto across = [&](const std::string& rows) {
+    (void)experiment("", "", "");  // its datasets
+    std::ifstream in(folder / "experiment.toml");
+    std::string text(std::istreambuf_iterator<char>(in), {});
+    const std::string split = "split = \"leave-one-generator-out\"\nfolds = [30, 31]\n";
+    text.replace(text.find(split), split.size(),
+                 "training_dataset = \"more.toml\"\nsplit = \"across-datasets\"\n");
+    text.replace(text.find("draws = 10\n"), 11, "draws = 10\ntraining_draws = 5\n" + rows);
+    std::ofstream(folder / "across.toml") << text;
+    return read_experiment(folder / "across.toml");
+  };
+  const Experiment e = across("training_rows = true\n");
+  EXPECT_TRUE(e.across);
+  EXPECT_FALSE(e.leave_one_out);
+  EXPECT_EQ(e.print("quick", "training_rows"), "gru\nmlp\nfloor");
+  EXPECT_EQ(e.print("quick", "tasks"),
+            "gru 0 none\ngru 0.001 none\nmlp 0 none\nmlp 0.001 none\nfloor 0.001 none");
+  EXPECT_THROW(across(""), InputError);
+}
+
 }  // namespace
 }  // namespace swingbank::train::loop

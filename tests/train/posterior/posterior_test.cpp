@@ -10,6 +10,7 @@
 #include "train/posterior/coverage.hpp"
 #include "train/posterior/head.hpp"
 #include "train/posterior/normal.hpp"
+#include "train/posterior/together.hpp"
 
 namespace swingbank::train::posterior {
 namespace {
@@ -32,6 +33,23 @@ TEST(Mixture, QuantileIsTheInverse) {
   EXPECT_NEAR(m.cdf(-0.5), 0.3, 1e-3);
   for (const double p : {1e-9, 0.01, 0.3, 0.5, 0.99, 1 - 1e-9})
     EXPECT_NEAR(m.cdf(m.quantile_of_score(normal_quantile(p))), p, 1e-8 * p + 1e-15);
+}
+
+TEST(Together, IsTheMeanOfOneAndTheProductOfSeveral) {
+  // two normal beliefs of the logit: their product lies between them, nearer to the surer one
+  Mixture vague, sure;
+  vague.weight = sure.weight = {1.0, 0.0, 0.0, 0.0};
+  vague.deviation = {0.4, 1.0, 1.0, 1.0};
+  sure.deviation = {0.1, 1.0, 1.0, 1.0};
+  vague.mean = {0.5, 0.0, 0.0, 0.0};
+  sure.mean = {-0.2, 0.0, 0.0, 0.0};
+  const Beliefs beliefs{3, 1, {vague, sure, sure}, std::vector<double>(3 * kFactors, 0.0)};
+  const auto of = [&](std::vector<std::size_t> rows) { return together(beliefs, rows).front(); };
+  EXPECT_NEAR(of({0}), place_of_logit(0.5), 0.01);  // the logistic is nearly straight there
+  EXPECT_NEAR(of({1}), place_of_logit(-0.2), 0.002);
+  const double both = (0.5 / 0.16 - 0.2 / 0.01) / (1 / 0.16 + 1 / 0.01);
+  EXPECT_NEAR(of({0, 1}), place_of_logit(both), 0.002);
+  EXPECT_LT(of({0, 1, 2}), of({0, 1}));
 }
 
 /// Beliefs about truths that are drawn from them, with their scores' deviation `too_sure` times what is

@@ -138,6 +138,46 @@ TEST_F(TablesTest, WhatTheThesisHasNotStandsBesideItsBest) {
   EXPECT_EQ(cells[8], "not trained");
   EXPECT_THAT(make_tables(read(), {}).markdown, HasSubstr("below the thesis: closed form yes."));
 }
+TEST_F(TablesTest, UnseenGeneratorsStandAgainstThoseThatTrained) {
+  for (const auto& [generator, mse, seen] : {std::tuple{30, 0.3, 0.2}, {39, 1.2, 0.3}}) {
+    auto run = result("V", "mlp", generator, 0.1);
+    run["mse"] = mse;
+    run["seen_mse"] = seen;
+    write(std::to_string(generator), run);
+  }
+  auto direct = result("V", "closed-form", 30, 0.1);
+  direct["seen_mse"] = nullptr;
+  write("direct", direct);
+  const std::string page = make_tables(read(), {}).markdown;
+  EXPECT_THAT(page, HasSubstr("Unseen over seen, no noise"));
+  EXPECT_THAT(page, HasSubstr("| generator | MLP |\n"));
+  EXPECT_THAT(page, HasSubstr("| #30 | 1.5 |\n"));
+  EXPECT_THAT(page, HasSubstr("| #39 | 4 |\n"));
+  EXPECT_THAT(page, HasSubstr("| all together | 3 |\n"));
+}
+TEST_F(TablesTest, SeveralRecordsOfAPlantStandInATableOfTheirOwn) {
+  auto run = result("IV", "mlp", 0, 0.1);
+  run["several"] = json::array(
+      {{{"at_most", 1}, {"records", 1}, {"plants", 40}, {"mse_of_mean", 0.08}, {"mse_of_product", 0.07}},
+       {{"at_most", 12},
+        {"records", 6.5},
+        {"plants", 40},
+        {"mse_of_mean", 0.05},
+        {"mse_of_product", nullptr}}});
+  write("a", run);
+  const std::string page = make_tables(read(), {}).markdown;
+  EXPECT_THAT(page, HasSubstr("| MLP | none | 40 | 1 | 0.08 | 0.07 |"));
+  EXPECT_THAT(page, HasSubstr("| MLP | none | 40 | 6.5 | 0.05 | – |"));
+  run["several"] = {{"records", 1}};
+  write("a", run);
+  EXPECT_THROW(read(), InputError);
+}
+TEST_F(TablesTest, ACurveFitStandsBesideTheThesissProgramForThat) {
+  auto fit = result("IV", "curve-fit", 0, 0.4);
+  fit["epochs"] = 0;
+  write("a", fit);
+  EXPECT_THAT(make_tables(read(), {}).markdown, HasSubstr("| curve fit | 2.6 | 2.16"));
+}
 TEST_F(TablesTest, MissingRunsAreNamedNotInvented) {
   write("a", result("VI", "cnn", 31, 0.3));
   const auto blocks = group_results(read());

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "train/data/random.hpp"
+#include "train/posterior/together.hpp"
 
 namespace swingbank::train::run {
 namespace {
@@ -172,6 +173,24 @@ json judge_posterior(const Posterior& posterior, const PosteriorContext& c) {
   const auto others = some_of(other_rows(c), kOtherRows);
   if (!others.empty()) all["other_operating_points"] = judged_on(posterior, c, others, maps);
   return all;
+}
+
+std::function<std::vector<double>(std::span<const std::size_t>)> product_of_beliefs(
+    const Posterior& posterior, const PosteriorContext& c) {
+  const auto beliefs =
+      std::make_shared<posterior::Beliefs>(beliefs_of(*posterior.head, c, c.split.test, c.stream.judged()));
+  const mpi::store::Dataset& d = c.stream.dataset();
+  return [beliefs, &d, head = posterior.head.get()](std::span<const std::size_t> rows) {
+    std::vector<double> all;
+    for (std::size_t p = 0; p < d.parameter_low.size(); ++p)
+      all.push_back(0.5 * (d.parameter_low[p] + d.parameter_high[p]));
+    const std::vector<double> places = posterior::together(*beliefs, rows);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const posterior::HeadParameter& of = head->of()[i];
+      all[of.output] = of.low + (of.high - of.low) * places[i];
+    }
+    return all;
+  };
 }
 
 json maps_json(const Posterior& posterior) {

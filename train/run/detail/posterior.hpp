@@ -2,6 +2,7 @@
 // What a run's network believes: the head behind it, set right level by level on rows that did not train, and
 // judged on the rows that the run is judged on.
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -47,6 +48,11 @@ bool train_posterior(Posterior& posterior, networks::Network& network, const Pos
 /// For the result file: coverage, ranks and widths on the test rows, and on the rows of the same generator
 /// that never train.
 nlohmann::json judge_posterior(const Posterior& posterior, const PosteriorContext& context);
+
+/// The estimate of a plant from several test rows by the product of their beliefs, raw units; held parameters
+/// at the middle of their box.
+std::function<std::vector<double>(std::span<const std::size_t>)> product_of_beliefs(
+    const Posterior& posterior, const PosteriorContext& context);
 
 /// For the network file, and back. Throws what nlohmann::json throws.
 nlohmann::json maps_json(const Posterior& posterior);

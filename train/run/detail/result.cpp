@@ -66,6 +66,8 @@ json identity(const data::ShardStream& stream, const RunRequest& r) {
               {"weight_decay", t.weight_decay},
               {"clip", t.clip},
               {"average", t.average}};
+  if (p.recipe.seconds_as_steps) all["seconds_as_steps"] = true;
+  if (p.recipe.regressions) all["regressions"] = true;
   if (t.noise_levels)
     all["training_noise"] = {t.noise_levels->low, t.noise_levels->high, t.noise_levels->share_at_zero};
   if (t.posterior_epochs > 0) {
@@ -136,6 +138,7 @@ json result_json(const data::ShardStream& stream, const RunRequest& r, const Run
       {"validation_mse", parts.report.validation},
       {"run", identity(stream, r)}};
   if (!parts.posterior.is_null()) result["posterior"] = parts.posterior;
+  if (!parts.several.is_null()) result["several"] = parts.several;
   return result;
 }
 

@@ -24,6 +24,7 @@ struct RunParts {
   const loop::Score& score;
   std::optional<double> seen_mse = {};  ///< of the validation rows, raw units
   nlohmann::json posterior = {};        ///< null where there is none
+  nlohmann::json several = {};          ///< the same
 };
 nlohmann::json result_json(const data::ShardStream& stream, const RunRequest& request, const RunParts& parts);
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "validate/report/detail/thesis_tables.hpp"
@@ -151,6 +152,35 @@ Table generator_table(const Task& task, double noise) {
   return table;
 }
 
+Table unseen_table(const Task& task, double noise) {
+  constexpr double kAim = 1.5;
+  Table table{
+      fmt::format("Unseen over seen, {}: MSE on the generator left out over that on validation rows of "
+                  "generators that trained. At most {:g} is the aim.",
+                  level_name(noise), kAim),
+      {"generator"},
+      {}};
+  std::vector<std::string> trained;
+  for (const auto& m : methods_at(task, noise))
+    if (std::ranges::any_of(runs_of(task, {m, noise}), [](const auto* r) { return std::isfinite(r->seen); }))
+      trained.push_back(m);
+  for (const auto& m : trained) table.header.push_back(method_name(m));
+  if (trained.empty()) return table;
+  const auto row_of = [&](const std::string& label, int generator) {
+    std::vector<Cell> row = {label};
+    for (const auto& m : trained) {
+      double unseen = 0, seen = 0;
+      for (const auto* r : runs_of(task, {m, noise, generator})) unseen += r->mse, seen += r->seen;
+      const double ratio = seen > 0 ? unseen / seen : std::nan("");
+      row.emplace_back(shown(ratio), std::isfinite(ratio) ? shade(ratio, kAim, 10 * kAim) : -1);
+    }
+    table.rows.push_back(std::move(row));
+  };
+  for (const int g : task.generators()) row_of(fmt::format("#{}", g), g);
+  row_of(task.generators().empty() ? "all" : "all together", kAnyGenerator);
+  return table;
+}
+
 Table parameter_comparison(const Task& task, double noise) {
   Table table{
       fmt::format("Error of each parameter, {}: raw MSE [unit²] and in brackets relative to the parameter's "
@@ -174,6 +204,34 @@ Table parameter_comparison(const Task& task, double noise) {
                                    shade(*p->relative, kGoodRelative, 1));
     }
   }
+  return table;
+}
+
+Table several_table(const Task& task) {
+  Table table{
+      "Several records of one plant: raw MSE of the plants with three test records or more, from the first of "
+      "them, from three, from up to twelve; by the mean of the records' estimates and, where the method states "
+      "beliefs, by their product.",
+      {"method", "noise", "plants", "records", "mean", "product"},
+      {}};
+  for (const auto& method : task.methods())
+    for (const double level : task.levels()) {
+      std::map<std::int64_t, std::vector<SeveralRecords>> by_most;  // over seeds
+      for (const auto* r : runs_of(task, {method, level}))
+        for (const auto& s : r->several) by_most[s.at_most].push_back(s);
+      for (const auto& [most, all] : by_most) {
+        const auto n = static_cast<double>(all.size());
+        double records = 0, mean = 0, product = 0;
+        for (const auto& s : all) {
+          records += s.records / n;
+          mean += s.mse_of_mean / n;
+          product += s.mse_of_product.value_or(std::nan("")) / n;
+        }
+        table.rows.push_back({method_name(method), level > 0 ? fmt::format("{:g} %", 100 * level) : "none",
+                              std::to_string(all.front().plants), fmt::format("{:.3g}", records), shown(mean),
+                              shown(product)});
+      }
+    }
   return table;
 }
 

@@ -17,8 +17,13 @@ Table overview_table(const std::vector<Task>& tasks);
 Table method_table(const Task& task);
 /// At one level of noise: one row per generator left out, one column per method.
 Table generator_table(const Task& task, double noise);
+/// The same rows and columns: the MSE on rows that did not train over that on validation rows of generators
+/// that did, mean over seeds. No rows where nothing was trained.
+Table unseen_table(const Task& task, double noise);
 /// At one level of noise: one row per parameter; raw and relative error of each method.
 Table parameter_comparison(const Task& task, double noise);
+/// Plants estimated from several of their records. No rows where no plant has three.
+Table several_table(const Task& task);
 /// Sizes, epochs, processor time.
 Table effort_table(const Task& task);
 /// "Below the thesis, without noise: closed form in 10 of 10 runs, ..."

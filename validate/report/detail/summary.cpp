@@ -15,11 +15,11 @@
 namespace swingbank::validate::report {
 namespace {
 
-constexpr std::string_view kFloor = "floor";
+constexpr std::string_view kFloor = "floor", kCurveFit = "curve-fit";
 
 std::size_t rank_of(const std::string& method) {
   static constexpr std::array<std::string_view, 4> kFirst = {"cnn", "lstm", "gru", "mlp"};
-  static constexpr std::array<std::string_view, 3> kLast = {"closed-form", "refined", kFloor};
+  static constexpr std::array<std::string_view, 4> kLast = {"closed-form", "refined", kCurveFit, kFloor};
   if (const auto at = std::ranges::find(kFirst, method); at != kFirst.end())
     return static_cast<std::size_t>(at - kFirst.begin());
   if (const auto at = std::ranges::find(kLast, method); at != kLast.end())
@@ -155,6 +155,7 @@ double baseline_of(const Task& task, int generator) {
 }
 
 std::optional<double> thesis_mean(const Task& task, const std::string& method) {
+  if (method == kCurveFit) return task.table == "IV" ? std::optional(kThesisPppd) : std::nullopt;
   std::vector<double> values;
   const auto take = [&](int generator) {
     if (const auto* cell = thesis_cell(task.table, method, generator)) values.push_back(cell->mse);
