@@ -18,9 +18,9 @@ struct Model {
   GENTPJ with Kis = 0: u, the flux that saturation depends on, is that of the air gap alone.
 )";
   /// Parameters are GENTPJ's without Kis.
-  static constexpr int kCount = B::Ra;
+  static constexpr int kWithoutKis = B::Ra;
   static constexpr auto kParameters = [] {
-    std::array<Parameter, kCount> all{};
+    std::array<Parameter, kWithoutKis> all{};
     for (int i = 0; i < B::Kis; ++i) all[static_cast<std::size_t>(i)] = B::parameters[i];
     all[B::Kis] = B::parameters[B::Ra];
     return all;
@@ -33,8 +33,8 @@ struct Model {
   static constexpr int coefficients = B::coefficients, scratch = B::scratch;
 
   template <class T>
-  static std::array<T, kCount + 1> as_gentpj(const T* p) {
-    std::array<T, kCount + 1> q;
+  static std::array<T, kWithoutKis + 1> as_gentpj(const T* p) {
+    std::array<T, kWithoutKis + 1> q;
     for (int i = 0; i < B::Kis; ++i) q[static_cast<std::size_t>(i)] = p[i];
     q[B::Kis] = T(0.0);
     q[B::Ra] = p[B::Kis];

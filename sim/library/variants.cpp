@@ -4,15 +4,13 @@
 
 #include "sim/library/library.hpp"
 
-namespace swingbank::sim::effects {
-/// Every compiled effect's name and the name it is a variant of, or "". Generated.
-std::span<const std::pair<std::string_view, std::string_view>> variants();
-}  // namespace swingbank::sim::effects
-
 namespace swingbank::sim::library {
 
+/// Every compiled effect's name and the name it is a variant of, or "". Generated.
+std::span<const std::pair<std::string_view, std::string_view>> variants();
+
 const Effect* variant_of(const Effect& effect) {
-  for (const auto& [name, other] : effects::variants())
+  for (const auto& [name, other] : variants())
     if (name == effect.name) return other.empty() ? nullptr : compiled().find(other);
   return nullptr;
 }
