@@ -1,0 +1,86 @@
+#!/usr/bin/env bash
+# Kills spread evenly over databank, train and cross-validate, from the first millisecond to the end: of the process, of
+# one child, of all at once, of one that was stopped before. One more run ends each with the same result and network.
+#   SWINGBANK_KILLS=200 bash tests/jobs/chaos_night.sh      (40 by default)
+# shellcheck disable=SC2154,SC2034 # what lib.bash sets; what tiny_experiment reads
+source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
+kills=${SWINGBANK_KILLS:-40}
+export OMP_NUM_THREADS=1
+TINY_DRAWS=120 TINY_EPOCHS=3
+tiny_experiment "$work"
+"$swingbank" generate "$work/tiny_data.toml" --out "$work/data" --progress none >/dev/null 2>&1
+
+# command KIND OUT: sets `run`
+command() {
+  case $1 in
+    databank) run=("$swingbank" databank "$SWINGBANK_SOURCE/configs/datasets/ieee39_genrou.toml" --points 20000 --out "$2/databank.h5") ;;
+    train) run=("$swingbank" cross-validate "$work/data" --experiment "$work/tiny.toml" --preset quick --network gru --fold 30 --out "$2") ;;
+    *) run=("$swingbank" cross-validate "$work/data" --experiment "$work/tiny.toml" --preset quick --processes 2 --out "$2") ;;
+  esac
+}
+# What must be the same: all but the time it took.
+essence() {
+  (cd "$1" && find . -type f ! -name '*.lock' ! -name .lock | sort | while IFS= read -r file; do
+    case $file in
+      *.json) printf '%s ' "$file"; grep -vE '"(processor_seconds|seconds|seconds_per_epoch)"' "$file" | sha256sum ;;
+      *.network) printf '%s ' "$file"; /usr/bin/python3 "$work/network.py" "$file" ;;
+      *) sha256sum "$file" ;;
+    esac
+  done)
+}
+# A network's header says how long the training took; what follows is its weights and, last, the sum of it all.
+cat >"$work/network.py" <<'PYTHON'
+import hashlib, json, struct, sys
+data = open(sys.argv[1], "rb").read()
+at = data.index(b"\n") + 1
+end = at + 8 + struct.unpack("<Q", data[at : at + 8])[0]
+header = json.loads(data[at + 8 : end])
+del header["training"]["seconds"]
+print(hashlib.sha256(json.dumps(header).encode() + data[end:-8]).hexdigest())
+PYTHON
+declare -A lasts tried
+for kind in databank train folds; do
+  mkdir "$work/$kind"
+  command $kind "$work/$kind"
+  begin=$(date +%s%N)
+  "${run[@]}" >"$work/log" 2>&1 || fail "$kind: $(cat "$work/log")"
+  lasts[$kind]=$((($(date +%s%N) - begin) / 1000000)) # [ms]
+  essence "$work/$kind" >"$work/$kind.whole"
+  echo "$kind takes ${lasts[$kind]} ms"
+done
+for ((i = 0; i < kills; ++i)); do
+  kinds=(databank train folds) ways=(process child group stopped)
+  kind=${kinds[i % 3]} way=${ways[i / 3 % 4]} out=$work/run
+  rm -rf "$out"
+  mkdir "$out"
+  command "$kind" "$out"
+  at=$((lasts[$kind] * i / kills))
+  setsid "${run[@]}" >"$work/log" 2>&1 &
+  pid=$!
+  sleep "$((at / 1000)).$(printf %03d $((at % 1000)))"
+  child=$(pgrep -P $pid | head -1) || true
+  case $way in
+    child) kill -9 "${child:-$pid}" 2>/dev/null || true ;;
+    group) kill -9 -- -$pid 2>/dev/null || true ;;
+    stopped)
+      kill -STOP "${child:-$pid}" 2>/dev/null || true
+      sleep 0.1
+      kill -9 -- -$pid 2>/dev/null || true
+      ;;
+    *) kill -9 $pid 2>/dev/null || true ;;
+  esac
+  for ((wait = 0; wait < 600; ++wait)); do # children save and end, however busy the machine is
+    pgrep -g $pid >/dev/null || break
+    sleep 0.1
+  done
+  if pgrep -g $pid >/dev/null; then
+    kill -9 -- -$pid
+    fail "kill $i ($way of $kind at $at ms): processes lived on for a minute"
+  fi
+  wait $pid 2>/dev/null || true
+  "${run[@]}" >"$work/log" 2>&1 || fail "kill $i ($way of $kind at $at ms): the next run: $(cat "$work/log")"
+  essence "$out" | diff "$work/$kind.whole" - >"$work/log" || fail "kill $i ($way of $kind at $at ms): another result: $(cat "$work/log")"
+  tried[$kind]=$((${tried[$kind]:-0} + 1))
+done
+for kind in "${!tried[@]}"; do echo "$kind: ${tried[$kind]} of ${tried[$kind]} kills end in the same result"; done
