@@ -2,9 +2,9 @@
 // ESST4B: static excitation from a potential or compound source, two PI regulators.
 #include <fmt/format.h>
 
-#include "base/constants.hpp"
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/compound_source.hpp"
 #include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::exciter_esst4b {
@@ -67,13 +67,8 @@ struct Model {
     vmmax,
     vmmin,
     kg,
-    voltage_r,
-    voltage_i,
-    current_r,
-    current_i,
-    vbmax,
-    commutation,
-    Vref,
+    source_first,
+    Vref = source_first + shared::CompoundSource::size,
     coefficients
   };
   /// Efd is VB, about 10 pu, times what the states say, without another lag.
@@ -129,28 +124,11 @@ struct Model {
                                    {kim, KIM},
                                    {vmmax, VMMAX},
                                    {vmmin, VMMIN},
-                                   {kg, KG},
-                                   {vbmax, VBMAX},
-                                   {commutation, KC}})
+                                   {kg, KG}})
       c[to] = p[from];
     c[iTR] = inverse(p[TR]);
     c[iTA] = inverse(p[TA]);
-    T sine, cosine;
-    sincos(p[THETAP] * T(constants::degree), sine, cosine);
-    c[voltage_r] = p[KP] * cosine;
-    c[voltage_i] = p[KP] * sine;
-    c[current_r] = T(0.0) - c[voltage_i] * p[XL];  // of j (KI + KP' XL)
-    c[current_i] = p[KI] + c[voltage_r] * p[XL];
-  }
-  /// Voltage the source delivers behind its rectifier.
-  template <class T>
-  static T source_voltage(const T* c, const Signals<T>& s) {
-    using std::sqrt;
-    const T re = c[voltage_r] * s.Vr - c[voltage_i] * s.Vi + c[current_r] * s.Ir - c[current_i] * s.Ii;
-    const T im = c[voltage_r] * s.Vi + c[voltage_i] * s.Vr + c[current_r] * s.Ii + c[current_i] * s.Ir;
-    const T square_2 = re * re + im * im, tiny(1e-12);
-    const T VE = sqrt(select(square_2 > tiny, square_2, tiny));
-    return clamp(rectified(VE, c[commutation] * s.Ifd), T(0.0), c[vbmax]);
+    shared::CompoundSource::prepare<T>({p[KP], p[KI], p[XL], p[THETAP], p[KC], p[VBMAX]}, c + source_first);
   }
   /// Slope of a PI's integral: none while its output, `out` before the limits, stands beyond one and `slope`
   /// would lead further. It fades out over a narrow band: cut off at once, it has no solution where the
@@ -170,7 +148,7 @@ struct Model {
     const T outer = c[kpr] * e + x[xr];
     dx[xr] = non_windup(c[kir] * e, outer, c[vrmin], c[vrmax]);
     const T va = lag(c[iTA], x[Va], clamp(outer, c[vrmin], c[vrmax]), dx[Va]);
-    const T VB = source_voltage(c, s);
+    const T VB = shared::CompoundSource::voltage(c + source_first, s);
     // The loop Vmr = KPM (Va - KG VB Vmr) + xm, solved; its limits are those of the solution.
     const T inner = (c[kpm] * va + x[xm]) / (one + c[kpm] * c[kg] * VB);
     s.Efd = VB * clamp(inner, c[vmmin], c[vmmax]);
@@ -178,10 +156,8 @@ struct Model {
   }
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
-    const T zero(0.0), one(1.0), VB = source_voltage(c, s);
-    if (!(value_of(VB) > 0.0))
-      return fmt::format("the source delivers VB = {:.4f} pu at V = {:.4f} pu, Ifd = {:.4f} pu", value_of(VB),
-                         value_of(s.V), value_of(s.Ifd));
+    const T zero(0.0), one(1.0), VB = shared::CompoundSource::voltage(c + source_first, s);
+    if (auto why = shared::CompoundSource::refuses(VB, s); !why.empty()) return why;
     const T inner = s.Efd / VB;
     const auto inner_integrates = p[KIM] > zero, outer_integrates = p[KIR] > zero;
     x[xm] = select(inner_integrates, inner, zero);
