@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -145,8 +146,8 @@ class Data {
   void times() {
     const std::size_t n = out_.places.size();
     out_.t.resize(n);
-    if (c_.rate > 0) {
-      for (std::size_t k = 0; k < n; ++k) out_.t[k] = static_cast<double>(k) / c_.rate;
+    if (!c_.rates.empty()) {
+      rated_times(n);
       compare_stamps();
       return;
     }
@@ -157,6 +158,27 @@ class Data {
         faults_.add("stamp", "no time stamp", k, "the configuration names no sampling rate",
                     "export the record with a rate or with stamps");
     }
+  }
+
+  /// A sample comes after the one before it by the step of its own stretch.
+  void rated_times(std::size_t n) {
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < c_.rates.size(); ++i) {
+      const auto& [rate, last] = c_.rates[i];
+      const std::size_t end = i + 1 == c_.rates.size() ? n : std::min(n, static_cast<std::size_t>(last));
+      if (end <= first) continue;
+      const double before = first == 0 ? -1.0 / rate : out_.t[first - 1];
+      for (std::size_t k = first; k < end; ++k)
+        out_.t[k] = before + static_cast<double>(k - first + 1) / rate;
+      if (!out_.stretches.empty() && out_.stretches.back().rate == rate)
+        out_.stretches.back().end = end;
+      else
+        out_.stretches.push_back({rate, first, end});
+      first = end;
+    }
+    // One rate: no rounding of sums.
+    if (out_.stretches.size() == 1)
+      for (std::size_t k = 0; k < n; ++k) out_.t[k] = static_cast<double>(k) / out_.stretches[0].rate;
   }
 
   /// The rate counts (8.3), but a reader should know where the stamps say something else.
@@ -208,6 +230,93 @@ std::string Comtrade::where(std::size_t first, std::size_t last) const {
     return fmt::format("{}, bytes {}-{}", file, places[first], places[last] + sample_bytes - 1);
   return first == last ? fmt::format("{}:{}", file, places[first])
                        : fmt::format("{}:{}-{}", file, places[first], places[last]);
+}
+
+namespace {
+/// Rates that a recorder draws along with the grid's frequency: waveforms are put onto an even grid by
+/// cubics.
+bool put_onto_mean_rate(Comtrade& c) {
+  constexpr double kDrawn = 0.02;  // of the rate: no grid runs further off
+  const auto [low, high] = std::ranges::minmax(c.stretches, {}, &ComtradeStretch::rate);
+  const std::size_t n = c.t.size();
+  if (high.rate > low.rate * (1 + kDrawn) || n < 4) return false;
+  const double rate = static_cast<double>(n - 1) / (c.t.back() - c.t.front());
+  std::vector<std::vector<double>> even(c.channels.size(), std::vector<double>(n));
+  std::vector<double> t(n);
+  std::size_t at = 0;  // the sample before
+  for (std::size_t k = 0; k < n; ++k) {
+    t[k] = c.t.front() + static_cast<double>(k) / rate;
+    while (at + 2 < n && c.t[at + 1] <= t[k]) ++at;
+    const std::size_t first = std::clamp<std::size_t>(at, 1, n - 3) - 1;
+    std::array<double, 4> weight{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      weight[i] = 1;
+      for (std::size_t j = 0; j < 4; ++j)
+        if (j != i) weight[i] *= (t[k] - c.t[first + j]) / (c.t[first + i] - c.t[first + j]);
+    }
+    for (std::size_t channel = 0; channel < even.size(); ++channel)
+      for (std::size_t i = 0; i < 4; ++i)
+        even[channel][k] += weight[i] * c.channels[channel].values[first + i];
+  }
+  for (std::size_t channel = 0; channel < even.size(); ++channel)
+    c.channels[channel].values = std::move(even[channel]);
+  c.notes.push_back(fmt::format(
+      "The record has {} sampling rates from {:.6g} to {:.6g} per second: its waveforms were put onto an "
+      "even {:.7g} per second.",
+      c.stretches.size(), low.rate, high.rate, rate));
+  c.t = std::move(t);
+  c.stretches = {{rate, 0, n}};
+  return true;
+}
+}  // namespace
+
+void make_even(Comtrade& c, double fewest, Problems& problems) {
+  const auto& all = c.stretches;
+  if (all.size() < 2 || (fewest > 0 && put_onto_mean_rate(c))) return;
+  // The run of stretches that are fast enough and lasts longest.
+  std::size_t from = 0, to = 0;
+  double longest = -1;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    std::size_t j = i;
+    while (j < all.size() && all[j].rate >= fewest) ++j;
+    const double lasts = j > i ? c.t[all[j - 1].end - 1] - c.t[all[i].first] : -1;
+    if (lasts > longest) longest = lasts, from = i, to = j;
+  }
+  if (to == from) return;  // too slow as a whole, which the reader of waveforms tells
+  double low = all[from].rate;
+  for (std::size_t i = from; i < to; ++i) low = std::min(low, all[i].rate);
+  std::string rates;
+  std::size_t anchor = all[from].first;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    rates += fmt::format("{}{:g}", i == 0 ? "" : ", ", all[i].rate);
+    const double ratio = all[i].rate / low;
+    if (i >= from && i < to && all[i].rate == low) anchor = all[i].first;
+    if (i >= from && i < to && std::abs(ratio - std::round(ratio)) > 1e-6 * ratio)
+      problems.add(fmt::format("sampling rates of {:g} and {:g} per second", all[i].rate, low), c.file,
+                   "the faster is no multiple of the slower, so no samples lie evenly",
+                   "export the stretch with one rate, or one at a common rate");
+  }
+  std::vector<std::size_t> kept;
+  for (std::size_t k = all[from].first; k < all[to - 1].end; ++k) {
+    const double steps = (c.t[k] - c.t[anchor]) * low;
+    if (std::abs(steps - std::round(steps)) < 1e-3) kept.push_back(k);
+  }
+  std::string note = fmt::format("The record has the sampling rates {} per second; ", rates);
+  if (to - from < all.size())
+    note += fmt::format("the stretch from {:.4g} to {:.4g} s was taken, the rest is too slow for waveforms",
+                        c.t[kept.front()], c.t[kept.back()]);
+  if (kept.size() < all[to - 1].end - all[from].first)
+    note +=
+        fmt::format("{}of what is faster every n-th sample was taken, so that all come at {:g} per second",
+                    to - from < all.size() ? "; " : "", low);
+  c.notes.push_back(note + ".");
+  const auto pick = [&](auto& values) {
+    for (std::size_t i = 0; i < kept.size(); ++i) values[i] = values[kept[i]];
+    values.resize(kept.size());
+  };
+  pick(c.t), pick(c.places);
+  for (ComtradeChannel& channel : c.channels) pick(channel.values);
+  c.stretches = {{low, 0, kept.size()}};
 }
 
 Comtrade parse_comtrade(std::string_view cfg, std::string_view dat, const std::string& cfg_name,

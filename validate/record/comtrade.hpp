@@ -19,14 +19,21 @@ struct ComtradeChannel {
   std::vector<double> values;         ///< on the primary side [unit]; NaN where the file marks none
 };
 
+/// Samples that follow one another at one rate.
+struct ComtradeStretch {
+  double rate = 0;                 ///< [1/s]
+  std::size_t first = 0, end = 0;  ///< samples from `first` to before `end`
+};
+
 struct Comtrade {
   std::string station, device;
-  int revision = 0;       ///< 1999 or 2013
-  double nominal = 0;     ///< of the grid [Hz]
-  std::string start;      ///< date and time of the first sample, as written
-  std::string kind;       ///< "ASCII", "BINARY", "BINARY32" or "FLOAT32"
-  std::vector<double> t;  ///< [s]; 0 at the first sample
-  double resolution = 0;  ///< what stamps are rounded to [s]; 0 where a rate gives the times
+  int revision = 0;                        ///< 1999 or 2013
+  double nominal = 0;                      ///< of the grid [Hz]
+  std::string start;                       ///< date and time of the first sample, as written
+  std::string kind;                        ///< "ASCII", "BINARY", "BINARY32" or "FLOAT32"
+  std::vector<double> t;                   ///< [s]; 0 at the first sample
+  std::vector<ComtradeStretch> stretches;  ///< in order; empty where stamps tell the times
+  double resolution = 0;                   ///< what stamps are rounded to [s]; 0 where a rate gives the times
   std::vector<ComtradeChannel> channels;
   std::vector<std::string> notes;
 
@@ -38,10 +45,15 @@ struct Comtrade {
 };
 
 /// Reads configuration and data; the names stand for the files in messages. Throws InputError with every
-/// fault of both: other revisions, several sampling rates, counts that contradict each other, broken numbers,
+/// fault of both: other revisions, counts that contradict each other, broken numbers,
 /// data that end early or are numbered with gaps. Lines and bytes are named.
 Comtrade parse_comtrade(std::string_view cfg, std::string_view dat, const std::string& cfg_name,
                         const std::string& dat_name);
+
+/// Makes the record one of a single rate. Stretches slower than `fewest` [1/s] are left out, beside the
+/// longest run of others; of those that are left the faster ones keep every n-th sample only. What was done
+/// is noted; rates that are no multiples of the slowest become a problem.
+void make_even(Comtrade& comtrade, double fewest, Problems& problems);
 
 /// The same from one .cff file (2013), which holds both.
 Comtrade parse_cff(std::string_view cff, const std::string& name);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "base/constants.hpp"
 #include "validate/record/detail/build.hpp"
 #include "validate/record/detail/phasor.hpp"
 #include "validate/record/detail/times.hpp"
@@ -15,6 +16,8 @@
 
 namespace swingbank::validate::record {
 namespace {
+
+constexpr double kFewestPerCycle = 8;  ///< samples of a waveform
 
 /// 0, 1, 2 for phases a, b, c in their usual spellings; 3 for a voltage between two phases.
 std::optional<std::size_t> phase_of(std::string_view text) {
@@ -110,7 +113,12 @@ PhasorTrack phasors(const std::array<const Wave*, 3>& phases, const Comtrade& co
       w.samples[p].push_back(c.values[k] * phases[p]->scale);
     }
   }
-  return positive_sequence(w, nominal, rate);
+  PhasorTrack track = positive_sequence(w, nominal, rate);
+  // Times and angles count from the record's first sample, which may be none of those that are used.
+  const double begin = comtrade.t.front();
+  for (double& t : track.t) t += begin;
+  for (auto& x : track.x) x *= std::polar(1.0, -constants::turn * nominal * begin);
+  return track;
 }
 
 RawColumn column(std::string name, Quantity q, Unit u, std::vector<double> values) {
@@ -145,9 +153,10 @@ Record from_waveforms(const Comtrade& comtrade, const std::vector<Wave>& waves, 
     }
   const double rate = options.phasor_rate > 0 ? options.phasor_rate : base.frequency;
   const double sampled = t.size() > 1 ? 1 / (t[1] - t[0]) : 0;
-  if (t.size() > 1 && !(sampled >= 8 * base.frequency))
+  if (t.size() > 1 && !(sampled >= kFewestPerCycle * base.frequency))
     problems.add(fmt::format("waveforms at {:.4g} samples per second", sampled), comtrade.file,
-                 "a cycle needs at least 8 samples", "export the record at a higher rate");
+                 fmt::format("a cycle needs at least {:g} samples", kFewestPerCycle),
+                 "export the record at a higher rate");
   faults.tell(problems, comtrade.file);
   problems.raise();
   const PhasorTrack voltage = phasors(v, comtrade, base.frequency, rate, faults);
@@ -214,23 +223,26 @@ Record from_phasors(const Comtrade& comtrade, Record about, const RecordBase& ba
 
 }  // namespace
 
-Record record_of_comtrade(const Comtrade& comtrade, const std::string& name, const RecordBase& base,
+Record record_of_comtrade(const Comtrade& given, const std::string& name, const RecordBase& base,
                           const ReadOptions& options) {
+  Comtrade comtrade = given;
   Record about;
   about.name = name;
   about.format = fmt::format("COMTRADE {} {}", comtrade.revision, comtrade.kind);
   about.start = comtrade.start;
-  about.notes = comtrade.notes;
-  std::vector<Wave> waves;
   bool voltage = false, current = false;
   for (const auto& c : comtrade.channels)
-    if (const auto w = wave_of(c)) {
-      waves.push_back(*w);
-      (w->voltage ? voltage : current) = true;
-    }
-  return voltage && current && options.columns.empty()
-             ? from_waveforms(comtrade, waves, std::move(about), base, options)
-             : from_phasors(comtrade, std::move(about), base, options);
+    if (const auto w = wave_of(c)) (w->voltage ? voltage : current) = true;
+  const bool waveforms = voltage && current && options.columns.empty();
+  Problems problems;
+  make_even(comtrade, waveforms ? kFewestPerCycle * base.frequency : 0, problems);
+  problems.raise();
+  about.notes = comtrade.notes;
+  if (!waveforms) return from_phasors(comtrade, std::move(about), base, options);
+  std::vector<Wave> waves;
+  for (const auto& c : comtrade.channels)
+    if (const auto w = wave_of(c)) waves.push_back(*w);
+  return from_waveforms(comtrade, waves, std::move(about), base, options);
 }
 
 }  // namespace swingbank::validate::record

@@ -44,7 +44,20 @@ struct Writer {
   double multiplier = 1;
   std::vector<Channel> channels;
   std::function<void(std::vector<std::string>& cfg)> edit = [](auto&) {};
-  int missing = -1;  ///< sample whose first channel is marked missing
+  int missing = -1;                                ///< sample whose first channel is marked missing
+  std::vector<std::pair<double, int>> rates = {};  ///< several: each with its last sample
+
+  /// When sample k is taken [s].
+  [[nodiscard]] double time(int k) const {
+    if (rates.empty()) return k / rate;
+    double t = -1 / rates[0].first;
+    int first = 0;
+    for (const auto& [r, last] : rates) {
+      t += std::max(0, std::min(k + 1, last) - first) / r;
+      first = last;
+    }
+    return t;
+  }
 
   [[nodiscard]] std::string cfg() const {
     std::vector<std::string> lines{
@@ -57,8 +70,9 @@ struct Writer {
                                   c.component, c.unit, c.a, c.b, c.skew_us, c.primary, c.secondary, c.side));
     for (int d = 0; d < status; ++d) lines.push_back(fmt::format("{},trip,,,0", d + 1));
     lines.push_back(fmt::format("{}", nominal));
-    lines.push_back(stamps_only ? "0" : "1");
-    lines.push_back(fmt::format("{},{}", stamps_only ? 0 : rate, samples));
+    lines.push_back(stamps_only ? "0" : fmt::format("{}", std::max<std::size_t>(1, rates.size())));
+    for (const auto& [r, last] : rates) lines.push_back(fmt::format("{},{}", r, last));
+    if (rates.empty()) lines.push_back(fmt::format("{},{}", stamps_only ? 0 : rate, samples));
     const char* const fraction = nanoseconds ? "250000000" : "250000";
     lines.push_back(fmt::format("01/05/2024,12:00:00.{}", fraction));
     lines.push_back(fmt::format("01/05/2024,12:00:01.{}", fraction));
@@ -79,7 +93,7 @@ struct Writer {
       all.append(bytes, sizeof value);
     };
     for (int k = 0; k < samples; ++k) {
-      const double t = k / rate;
+      const double t = time(k);
       const auto stamp = static_cast<std::uint32_t>(std::lround(t * (nanoseconds ? 1e9 : 1e6) / multiplier));
       if (kind == "ASCII")
         all += fmt::format("{},{}", k + 1, stamp);
@@ -285,13 +299,47 @@ TEST(RecordComtradeTest, StampsAndRateThatDisagreeAreNoted) {
   EXPECT_THAT(w.read().notes, Contains(HasSubstr("the rate was taken")));
 }
 
+/// A recorder that triggers fast and goes on slowly: what comes evenly is kept, at its times.
+TEST(RecordComtradeTest, SeveralRates) {
+  Writer w = phasors();
+  w.samples = 60 + 240 + 30;
+  w.rates = {{30, 60}, {120, 300}, {30, 330}};
+  const Record r = w.read();
+  EXPECT_DOUBLE_EQ(r.rate(), 30);
+  ASSERT_EQ(r.samples(), 60 + 60 + 30);
+  for (std::size_t k = 0; k < r.t.size(); ++k) {
+    EXPECT_NEAR(r.t[k], static_cast<double>(k) / 30, 1e-9);
+    EXPECT_NEAR(r.V[k], 1.02 + slow(r.t[k]), 0.0051 / 138);
+  }
+  EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("30, 120, 30 per second"), HasSubstr("every n-th sample"))));
+  w.rates = {{30, 60}, {100, 330}};
+  EXPECT_THAT(w.faults(), ElementsAre(HasSubstr("100 and 30 per second")));
+}
+TEST(RecordComtradeTest, WaveformsOfSeveralRates) {
+  Writer w = waveforms({}, 4800, 4800 + 2400);
+  w.rates = {{4800, 4800}, {2400, 7200}};
+  const Record two = w.read();
+  EXPECT_EQ(two.samples(), 120);
+  EXPECT_LT(largest_error(two, {}), 2e-5);
+  // Rates that follow the grid's frequency.
+  w.rates = {{4800, 2000}, {4812, 4000}, {4790, 7200}};
+  const Record drawn = w.read();
+  EXPECT_LT(largest_error(drawn, {}), 1e-3);  // a cycle is no whole number of samples
+  // Rms values of the minute after, at 60/s, are no waveforms.
+  w.samples = 4800 + 60;
+  w.rates = {{4800, 4800}, {60, 4860}};
+  const Record fast = w.read();
+  EXPECT_EQ(fast.samples(), 60);
+  EXPECT_LT(largest_error(fast, {}), 1e-5);
+  EXPECT_THAT(fast.notes, Contains(HasSubstr("too slow for waveforms")));
+}
+
 TEST(RecordComtradeTest, FaultsOfTheConfiguration) {
   Writer w = phasors();
   w.edit = [](auto& lines) {
-    lines[8] = "2", lines[9] = "60,40", lines.insert(lines.begin() + 10, "240,90");
+    lines[8] = "2", lines[9] = "60,40", lines.insert(lines.begin() + 10, "240,30");
   };
-  EXPECT_THAT(w.faults(), ElementsAre(AllOf(HasSubstr("several sampling rates (2, from 60 to 240"),
-                                            HasSubstr("e.cfg:11"))));
+  EXPECT_THAT(w.faults(), Contains(AllOf(HasSubstr("lasts to sample 40"), HasSubstr("e.cfg:11"))));
   w.edit = [](auto& lines) { lines[0] = "station,device"; };
   EXPECT_THAT(w.faults(), ElementsAre(HasSubstr("1991")));
   w.edit = [](auto& lines) { lines[1] = "6,5A,0D"; };
@@ -438,8 +486,14 @@ TEST(RecorderFiles, AreRead) {
     const std::string c = read_bytes(at / cfg), d = read_bytes(at / dat);
     return parse_comtrade(c, d, cfg, dat);
   };
-  EXPECT_THAT(test::messages([&] { read("1.cfg", "1.dat"); }),
-              ElementsAre(HasSubstr("several sampling rates")));
+  Comtrade first = read("1.cfg", "1.dat");  // its rates follow the grid's frequency
+  ASSERT_GT(first.stretches.size(), 20);
+  Problems problems;
+  make_even(first, 400, problems);
+  EXPECT_TRUE(problems.empty());
+  ASSERT_EQ(first.stretches.size(), 1);
+  EXPECT_NEAR(first.stretches[0].rate, 2401, 3);
+  EXPECT_THAT(first.notes, Contains(HasSubstr("put onto an even")));
   const Comtrade second = read("2.cfg", "2.dat"), fourth = read("4.CFG", "4.DAT");
   EXPECT_EQ(second.channels.size(), 55);
   EXPECT_THAT(second.notes,

@@ -149,19 +149,17 @@ class Config {
       fault("the number of sampling rates", "0 to 999 make sense", "export the configuration again");
       return;
     }
-    double low = 1e300, high = 0;
     for (int k = 0; k < std::max(1.0, n) && !ended_; ++k) {
       const Fields f = next();
       if (ended_) return;
       const double rate = number(f, 0, "sampling rate"), last = number(f, 1, "last sample");
-      low = std::min(low, rate), high = std::max(high, rate);
-      if (k > 0 && k + 1 >= n && low != high)
-        fault(fmt::format("several sampling rates ({:g}, from {:g} to {:g} per second)", n, low, high),
-              "a record must be sampled evenly", "export the stretch with one rate");
-      if (rate < 0 || last < 1 || last > 1e9)
-        fault(fmt::format("rate {:g}, last sample {:g}", rate, last), "neither can be",
+      const bool backwards = last <= static_cast<double>(c_.samples);
+      if (rate < 0 || (n > 1 && rate == 0) || last < 1 || last > 1e9 || backwards)
+        fault(fmt::format("rate {:g}, last sample {:g}", rate, last),
+              backwards && c_.samples > 0 ? fmt::format("the rate before it lasts to sample {}", c_.samples)
+                                          : "neither can be",
               "export the configuration again");
-      c_.rate = n == 0 ? 0 : rate;
+      if (n > 0 && rate > 0) c_.rates.emplace_back(rate, static_cast<long>(std::clamp(last, 0.0, 1e9)));
       c_.samples = static_cast<long>(std::clamp(last, 0.0, 1e9));
     }
   }

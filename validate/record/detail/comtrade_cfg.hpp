@@ -2,15 +2,18 @@
 // The configuration of a COMTRADE record, and the way from it to the samples.
 #include <optional>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "validate/record/comtrade.hpp"
 
 namespace swingbank::validate::record {
 
 struct ComtradeConfig {
-  Comtrade about;    ///< all but samples
-  int status = 0;    ///< number of status channels
-  double rate = 0;   ///< [1/s]; 0: the stamps tell the times
+  Comtrade about;  ///< all but samples
+  int status = 0;  ///< number of status channels
+  /// Rates [1/s] with the number of the last sample of each; empty: the stamps tell the times.
+  std::vector<std::pair<double, long>> rates = {};
   long samples = 0;  ///< number of the last sample
   double stamp = 0;  ///< unit of the stamps [s], with the time multiplier
 };
