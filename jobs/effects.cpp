@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 
 std::string_view slot_meaning(Slot slot) {
   constexpr std::array<std::string_view, kSlots.size()> meanings = {
-      "the synchronous machine",
+      "the source: a synchronous machine or a converter",
       "between the machine's terminal and the grid",
       "makes Vc, the voltage the exciter regulates",
       "moves the references of exciter and governor",
@@ -29,6 +29,12 @@ std::string_view slot_meaning(Slot slot) {
       "makes Vs, the stabiliser's signal",
       "adds to the voltage error",
       "makes the field voltage",
+      "makes the references of a converter's P and Q",
+      "makes the reference of a wind turbine's power from its speed",
+      "turns a wind turbine's blades",
+      "makes the wind's power at the shaft",
+      "turns: the turbine's and the generator's shaft",
+      "makes a converter's current commands",
       "a consumer at a bus",
       "between the grid and the record"};
   return meanings[static_cast<std::size_t>(slot)];
@@ -90,7 +96,7 @@ class Footnotes {
 };
 
 void describe(const Effect& e) {
-  fmt::print("{}: {}\nslot: {} ({})\nsource: {}\n", e.name, e.title, slot_name(e.slot), slot_meaning(e.slot),
+  fmt::print("{}: {}\nslot: {} ({})\nsource: {}\n", e.name, e.title, kind_name(e), slot_meaning(e.slot),
              e.source);
   if (e.description.find_first_not_of(" \n") != std::string_view::npos) {
     const auto begin = e.description.find_first_not_of('\n');
@@ -185,7 +191,7 @@ std::string nearest_names(const library::EffectLibrary& library, const std::stri
   return names;
 }
 
-/// Models of inverters, wind and storage, none of which is there yet, by the beginnings of their names.
+/// Models of inverters, wind and storage by the beginnings of their names.
 bool is_inverter(std::string name) {
   std::ranges::transform(name, name.begin(),
                          [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
@@ -196,7 +202,7 @@ bool is_inverter(std::string name) {
 
 /// A block of a plant file with the standard values.
 void print_toml(const Effect& e) {
-  const std::string slot(slot_name(e.slot));
+  const std::string slot(kind_name(e));
   fmt::print("{}\n", is_shared(e.slot) ? "[[" + slot + "]]" : "[" + slot + "]");
   fmt::print("effect = \"{}\"  # {}\n", e.name, e.title);
   for (const Parameter& p : e.parameters) {
@@ -220,7 +226,7 @@ int run(const std::vector<std::string>& names, const std::vector<std::string>& l
     chosen.push_back(library.find(name));
     if (!chosen.back() && is_inverter(name))
       problems.add("no effect '" + name + "'", "NAME",
-                   "models of inverters, wind and storage are not there yet",
+                   "of the models of inverters, wind and storage it is not there yet",
                    "see what there is with swingbank effects");
     else if (!chosen.back())
       problems.add("no effect '" + name + "'", "NAME",

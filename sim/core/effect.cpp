@@ -4,9 +4,23 @@ namespace swingbank::sim {
 
 std::string_view slot_name(Slot slot) {
   constexpr std::array<std::string_view, kSlots.size()> names = {
-      "machine",    "transformer", "compensator", "setpoint", "governor",   "shaft",
-      "stabiliser", "limiter",     "exciter",     "load",     "measurement"};
+      "machine",        "transformer",   "compensator",  "setpoint",    "governor",
+      "shaft",          "stabiliser",    "limiter",      "exciter",     "plant_control",
+      "torque_control", "pitch_control", "aerodynamics", "drive_train", "electrical_control",
+      "load",           "measurement"};
   return names[static_cast<std::size_t>(slot)];
+}
+
+std::string_view kind_name(const Effect& effect) {
+  return effect.converter ? "converter" : slot_name(effect.slot);
+}
+
+std::string misfit(const Effect& source, const Effect& control) {
+  if (!is_control(control.slot) || control.slot == Slot::setpoint) return {};
+  if (is_of_converter(control.slot) == source.converter) return {};
+  return std::string(slot_name(control.slot)) + " is part of a " +
+         (source.converter ? "synchronous machine" : "converter") + ", and " + std::string(source.name) +
+         " is a " + (source.converter ? "converter" : "synchronous machine");
 }
 
 int Effect::parameter_index(std::string_view parameter) const {

@@ -9,6 +9,9 @@
 //   prepare<T>()                  parameters -> coefficients, so that no division stays in the loop
 //   the equations of its kind     MachineOps, ControlOps, TransformerOps or LoadOps below
 //   steady<T>()                   back-initialisation from the operating point
+//   converter                     of a source, optional: true where it is a controlled current
+//   publish<T>()                  of a control, optional: signals that are states, before the evaluation
+//   remark()                      optional: what its values ask for and the equations leave out
 //   instants()                    optional: when its equations jump in time
 //   closed_form()                 of a machine, optional: its parameters from a record, without a search
 //   measure(), memory()           of a measurement: what it makes of the phasors, and how far it reaches
@@ -34,23 +37,36 @@ namespace swingbank::sim {
 /// Where an effect sits in a plant; from `compensator` to `shaft` also the order in which the controls are
 /// evaluated.
 enum class Slot {
-  machine,      ///< the synchronous machine itself
-  transformer,  ///< between the machine's terminal and the grid
-  compensator,  ///< makes Vc, the voltage the exciter regulates
-  setpoint,     ///< moves dVref, dPref
-  governor,     ///< makes Tm
-  shaft,        ///< changes Tm after the governor: what acts on the shaft whatever the governor does
-  stabiliser,   ///< makes Vs; after the governor, for accelerating power needs Tm
-  limiter,      ///< adds to Vlimiter
-  exciter,      ///< makes Efd
-  load,         ///< a consumer at a bus
-  measurement,  ///< between the grid and the record
+  machine,             ///< the source itself: a synchronous machine, or a converter (Effect::converter)
+  transformer,         ///< between the machine's terminal and the grid
+  compensator,         ///< makes Vc, the voltage the exciter regulates
+  setpoint,            ///< moves dVref, dPref
+  governor,            ///< makes Tm
+  shaft,               ///< changes Tm after the governor: what acts on the shaft whatever the governor does
+  stabiliser,          ///< makes Vs; after the governor, for accelerating power needs Tm
+  limiter,             ///< adds to Vlimiter
+  exciter,             ///< makes Efd
+  plant_control,       ///< of a converter, as those that follow: makes Pext, Qext
+  torque_control,      ///< makes Pext and wref from the turbine's speed
+  pitch_control,       ///< makes pitch
+  aerodynamics,        ///< makes Paero
+  drive_train,         ///< makes wt, wg
+  electrical_control,  ///< makes the current commands, which are Tm and Efd
+  load,                ///< a consumer at a bus
+  measurement,         ///< between the grid and the record
 };
-inline constexpr std::array kSlots = {Slot::machine,  Slot::transformer, Slot::compensator, Slot::setpoint,
-                                      Slot::governor, Slot::shaft,       Slot::stabiliser,  Slot::limiter,
-                                      Slot::exciter,  Slot::load,        Slot::measurement};
+inline constexpr std::array kSlots = {Slot::machine,       Slot::transformer,    Slot::compensator,
+                                      Slot::setpoint,      Slot::governor,       Slot::shaft,
+                                      Slot::stabiliser,    Slot::limiter,        Slot::exciter,
+                                      Slot::plant_control, Slot::torque_control, Slot::pitch_control,
+                                      Slot::aerodynamics,  Slot::drive_train,    Slot::electrical_control,
+                                      Slot::load,          Slot::measurement};
 std::string_view slot_name(Slot slot);
-constexpr bool is_control(Slot slot) { return slot >= Slot::compensator && slot <= Slot::exciter; }
+constexpr bool is_control(Slot slot) { return slot >= Slot::compensator && slot <= Slot::electrical_control; }
+/// Whether a control in this slot is one of a converter; a set-point is moved of either kind of source.
+constexpr bool is_of_converter(Slot slot) {
+  return slot >= Slot::plant_control && slot <= Slot::electrical_control;
+}
 /// Whether several effects may stand in the slot of one plant: those that add up.
 constexpr bool is_shared(Slot slot) {
   return slot == Slot::setpoint || slot == Slot::limiter || slot == Slot::shaft || slot == Slot::measurement;
@@ -107,6 +123,8 @@ struct Conventions {
 };
 
 /// Everything the blocks of one plant exchange; per unit on the machine's own base, network frame for r, i.
+/// Of a converter Tm is the command of active current and Efd that of reactive current, positive while it
+/// delivers Q [pu]: so what holds, adds to, infers and records Tm and Efd does the same for the commands.
 template <class T>
 struct Signals {
   T Vr{}, Vi{}, V{};     ///< voltage at the machine's terminal and its magnitude [pu]
@@ -121,6 +139,15 @@ struct Signals {
   T dVref{}, dPref{};    ///< moves of the exciter's and the governor's reference [pu]
   T t{};                 ///< time [s]; at an instant named by instants() that of the running side
   T Vpr{}, Vpi{}, Vp{};  ///< voltage at the grid's side of the step-up transformer [pu]
+  // of a converter's controls alone
+  T Pext{}, Qext{};    ///< references of P and of Q (or of V, as the control's flags say), less their values
+                       ///< at the operating point [pu]
+  T Pneed{}, Qneed{};  ///< what these references must be at the operating point; made by steady() [pu]
+  T wt{}, wg{},
+      wref{};  ///< speed of turbine and generator of a wind turbine, and what it should be, less 1 [pu]
+  T pitch{}, Paero{};  ///< of the blades, less its value at the operating point (in steady(): that value)
+                       ///< [degrees]; power of the wind at the shaft [pu]
+  T Pord{};            ///< power that the electrical control orders [pu]
 };
 
 /// Equations of a machine (state 0 is the rotor angle, state 1 the speed deviation): voltage `e` behind the
@@ -147,6 +174,8 @@ struct ControlOps {
   /// Given all signals at the operating point: fills states and references (kept in c). Returns why it
   /// cannot, empty if it can.
   std::string (*steady)(const void* law, const T* p, T* c, Signals<T>& s, T* x) = nullptr;
+  /// Optional: writes signals that are states before any control is evaluated, for those that stand earlier.
+  void (*publish)(const T* c, const T* x, Signals<T>& s) = nullptr;
 };
 
 /// A step-up transformer: ideal ratio (grid side / machine side) and impedance on the machine's base.
@@ -199,8 +228,11 @@ struct Effect {
   std::span<const int> dyr_columns;   ///< parameter index of each .dyr column
   int raw_resistance, raw_reactance;  ///< parameters that PSS/E keeps in the .raw (ZR, ZX), or -1
   int coefficients, scratch;
+  bool converter = false;  ///< of a source: a controlled current, no synchronous machine
   void (*check)(const void* law, const double* p, const std::string& where, Problems& problems);
   std::string_view (*unphysical)(const double* p);  ///< empty, or the ordering that is violated
+  /// What these values ask for and the equations leave out, as a sentence for a warning; nullptr: nothing.
+  std::string (*remark)(const double* p) = nullptr;
   /// When the equations jump in time [s]; nullptr: never.
   std::vector<double> (*instants)(const void* law, const double* p);
   /// What the instrument makes of the true phasors; `seed` drives what is random. Only measurements.
@@ -222,6 +254,12 @@ struct Effect {
   [[nodiscard]] std::vector<double> standard_parameters() const;
 };
 
+/// What an effect is called by its place: its slot's name, "converter" for a source that is one.
+std::string_view kind_name(const Effect& effect);
+/// Why a control has no place beside a source ("a governor is part of a synchronous machine, ..."), empty if
+/// it has.
+std::string misfit(const Effect& source, const Effect& control);
+
 // ---- used by the generated registry only -------------------------------------------------------------
 template <class M, class T>
 Ops<T> make_ops() {
@@ -242,6 +280,7 @@ Ops<T> make_ops() {
                  +[](const void*, const T* p, T* c, Signals<T>& s, T* x) {
                    return M::template steady<T>(p, c, s, x);
                  }};
+    if constexpr (requires { &M::template publish<T>; }) o.control.publish = &M::template publish<T>;
   }
   return o;
 }
@@ -289,10 +328,12 @@ Effect make_effect() {
   if constexpr (requires { M::raw_reactance; }) e.raw_reactance = M::raw_reactance;
   if constexpr (requires { M::coefficients; }) e.coefficients = M::coefficients;
   if constexpr (requires { M::scratch; }) e.scratch = M::scratch;
+  if constexpr (requires { M::converter; }) e.converter = M::converter;
   e.check = +[](const void*, const double* p, const std::string& where, Problems& problems) {
     M::check(p, where, problems);
   };
   e.unphysical = &M::unphysical;
+  if constexpr (requires { &M::remark; }) e.remark = &M::remark;
   if constexpr (requires { &M::instants; })
     e.instants = +[](const void*, const double* p) { return M::instants(p); };
   if constexpr (requires { &M::measure; }) e.measure = &M::measure;

@@ -82,6 +82,8 @@ class GridMaker {
     const network::Generator& g = grid_.network.generators[static_cast<std::size_t>(plant.generator)];
     plant::Block block = values_of(*effect, record);
     take_from_raw(block, g);
+    if (const std::string left_out = remark_on(block, where, plant.name); !left_out.empty())
+      spdlog::warn("{}", left_out);
     const std::string warning = place(plant, std::move(block), {g, grid_.network.origin}, where, problems_);
     if (!warning.empty()) spdlog::warn("{}", warning);
   }
@@ -154,6 +156,7 @@ class GridMaker {
                     dyr_, "it is in service in " + grid_.network.origin,
                     "add a record with one of " + machine_names() + ", or take the generator out of service");
     }
+    check_fit(plant, dyr_, problems_);
     sort_controls(plant);
   }
   void solve() {

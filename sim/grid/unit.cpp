@@ -132,6 +132,7 @@ class UnitReader {
       problems_.add(fmt::format("no machine model for generator '{}' at bus {}", unit_.id, unit_.bus),
                     choice_.dyr.string(), lost_text(),
                     "add a record with one of " + machine_names() + ", or choose another unit");
+    check_fit(unit_.plant, choice_.dyr.string(), problems_);
     sort_controls(unit_.plant);
   }
   /// Why a record may have been lost.
@@ -186,6 +187,8 @@ class UnitReader {
     }
     const network::Generator g = generator_with(record.line);
     take_from_raw(block, g);
+    if (std::string left_out = remark_on(block, where, unit_.plant.name); !left_out.empty())
+      unit_.notes.push_back(std::move(left_out));
     std::string warning = place(unit_.plant, std::move(block), {g, net().origin}, where, problems_);
     if (!warning.empty()) unit_.notes.push_back(std::move(warning));
   }

@@ -47,6 +47,10 @@ std::optional<Problem> place(Plant& plant, Block block, const std::string& where
     return Problem{std::string(effect.name) + " for plant " + plant.name, where,
                    "it is a " + std::string(slot_name(effect.slot)) + ", not something to add to a plant",
                    effect.slot == Slot::load ? "use --load BUS:EFFECT" : "give it in the .dyr"};
+  if (plant.machine.effect)
+    if (const std::string why = misfit(*plant.machine.effect, effect); !why.empty())
+      return Problem{std::string(effect.name) + " for plant " + plant.name, where, why,
+                     "leave it out, or attach it to another plant"};
   auto& list = effect.slot == Slot::measurement ? plant.measurements : plant.controls;
   for (const Block& other : list)
     if (other.effect == &effect || (other.effect->slot == effect.slot && !is_shared(effect.slot)))

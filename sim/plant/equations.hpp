@@ -33,6 +33,7 @@ class PlantEquations {
     coefficients_ = joint_ + kJoint;
     for (const Block& block : plant.controls) {
       controls_.push_back({block.effect->get<T>().control, block.effect->law.get(), states_, coefficients_});
+      publishes_ = publishes_ || controls_.back().ops.publish != nullptr;
       limits(*block.effect, coefficients_);
       states_ += static_cast<int>(block.effect->states.size());
       coefficients_ += block.effect->coefficients;
@@ -151,6 +152,9 @@ class PlantEquations {
   void signals(const T* c, const T* x, T* m, Signals<T>& s, T* dx) const {
     terminal(s);
     machine_.electrical(c, x, m, s);
+    if (publishes_)
+      for (const Control& k : controls_)
+        if (k.ops.publish) k.ops.publish(c + k.coefficient, x + k.state, s);
     for (const Control& k : controls_) k.ops.evaluate(k.law, c + k.coefficient, x + k.state, s, dx + k.state);
   }
   /// Takes states back to the limits they have crossed within a step; adds to `moved` how far.
@@ -260,7 +264,7 @@ class PlantEquations {
   MachineOps<T> machine_;
   std::vector<Control> controls_;
   std::vector<Limit> limits_;
-  bool has_transformer_ = false;
+  bool has_transformer_ = false, publishes_ = false;
   int joint_ = 0, states_ = 0, coefficients_ = 0, scratch_ = 0;
 };
 

@@ -49,10 +49,10 @@ class Initialiser {
     o_.Tm = o_.s.Tm;
     emf();
     ops(machine).machine.electrical(coefficients(machine), states(machine), scratch_.data(), o_.s);
-    for (std::size_t i = 1; i < places_.size(); ++i) {
-      const auto& p = places_[i];
-      held(ops(p).control.steady(p.effect->law.get(), p.p, coefficients(p), o_.s, states(p)), p);
-    }
+    if (machine.effect->converter)
+      converter_controls();
+    else
+      for (std::size_t i = 1; i < places_.size(); ++i) held(steady(places_[i]), places_[i]);
     problems_.raise();
     within_limits();
     standing();
@@ -79,6 +79,29 @@ class Initialiser {
     const T square_ratio = j[joint_ratio] * j[joint_ratio];
     j[joint_r] = square_ratio * (j[joint_rm] + r);
     j[joint_x] = square_ratio * (j[joint_xm] + x);
+  }
+  std::string steady(const Place<T>& p) {
+    return ops(p).control.steady(p.effect->law.get(), p.p, coefficients(p), o_.s, states(p));
+  }
+  /// From the current backwards: the electrical control says what the plant's control must ask for. The speed
+  /// that a torque control asks for reaches the drive train, which stands before it in that order, in the
+  /// second round.
+  void converter_controls() {
+    o_.s.Pneed = o_.s.P;
+    o_.s.Qneed = o_.s.Q;
+    const Signals<T> first = o_.s;
+    for (const bool last : {false, true}) {
+      const T wt = o_.s.wt, wg = o_.s.wg, wref = o_.s.wref, pitch = o_.s.pitch;
+      o_.s = first;
+      o_.s.wt = wt;
+      o_.s.wg = wg;
+      o_.s.wref = wref;
+      o_.s.pitch = pitch;
+      for (std::size_t i = places_.size(); --i > 0;) {
+        const std::string why = steady(places_[i]);
+        if (last) held(why, places_[i]);
+      }
+    }
   }
   void terminal(Complex v, const T& P, const T& Q) {
     Signals<T>& s = o_.s;

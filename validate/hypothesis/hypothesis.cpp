@@ -28,12 +28,18 @@ Side side_of(Slot slot) {
   switch (slot) {
     case Slot::governor:
     case Slot::shaft:
+    case Slot::torque_control:
+    case Slot::pitch_control:
+    case Slot::aerodynamics:
+    case Slot::drive_train:
       return Side::mechanical;
     case Slot::exciter:
     case Slot::stabiliser:
     case Slot::limiter:
     case Slot::compensator:
     case Slot::setpoint:
+    case Slot::plant_control:
+    case Slot::electrical_control:
       return Side::excitation;
     case Slot::measurement:
       return Side::measurement;
@@ -135,6 +141,7 @@ void add_effects(const sim::plant::PlantUnderTest& tested, const sim::library::E
     const bool tried = !sim::library::variant_of(*effect);  // else the effect that it is a variant of is
     if (!fits || !tried || effect->instants || occupied(tested.plant, *effect)) continue;
     if (!playin::belongs_to(component, effect->slot)) continue;
+    if (!sim::misfit(*tested.plant.machine.effect, *effect).empty()) continue;
     if (instrument && !playin::can_be_taken_back(*effect)) continue;
     all.push_back(added_to(tested, *effect));
   }
@@ -201,6 +208,29 @@ void add_neutral_groups(const sim::plant::PlantUnderTest& tested, std::vector<Hy
   }
 }
 
+/// Each switch of a converter's controls in its other position.
+void add_switches(const sim::plant::PlantUnderTest& tested, std::vector<Hypothesis>& all) {
+  if (!tested.plant.machine.effect->converter) return;
+  for (int b = 0; b < sim::plant::first_measurement(tested.plant); ++b) {
+    const sim::plant::Block& block = sim::plant::block_at(tested.plant, b);
+    for (std::size_t i = 0; i < block.p.size(); ++i) {
+      const auto& p = block.effect->parameters[i];
+      if (!p.is_code() || p.low != 0.0 || p.high != 1.0 || (block.p[i] != 0.0 && block.p[i] != 1.0)) continue;
+      Hypothesis h;
+      const double other = 1.0 - block.p[i];
+      h.name = fmt::format("{}:{}={:g}", block.effect->name, p.name, other);
+      h.what = fmt::format("{} of {} is {:g}, not {:g} ({})", p.name, block.effect->name, other, block.p[i],
+                           p.meaning);
+      h.side = side_of(block.effect->slot);
+      h.plant = tested.plant;
+      h.conventions = tested.conventions;
+      sim::plant::parameter_value(h.plant, {b, static_cast<int>(i)}) = other;
+      h.starts = {{}};
+      if (playin::can_run(sim::plant::block_at(h.plant, b))) all.push_back(std::move(h));
+    }
+  }
+}
+
 void add_conventions(const sim::plant::PlantUnderTest& tested, std::vector<Hypothesis>& all) {
   Hypothesis h;
   h.name = "speed-voltage";
@@ -227,7 +257,9 @@ std::vector<Hypothesis> all_hypotheses(const sim::plant::PlantUnderTest& tested,
   std::vector<Hypothesis> all;
   add_effects(tested, library, component, all);
   add_neutral_groups(tested, all);
-  if (playin::belongs_to(component, Slot::machine)) add_conventions(tested, all);
+  if (playin::belongs_to(component, Slot::machine) && !tested.plant.machine.effect->converter)
+    add_conventions(tested, all);
+  if (component == record::Component::plant) add_switches(tested, all);
   return all;
 }
 

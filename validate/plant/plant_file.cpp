@@ -54,7 +54,7 @@ bool left_standard(const PlantModel& model, const sim::plant::Block& block, std:
 
 void append_block(std::string& text, const PlantModel& model, const sim::plant::Block& block) {
   const sim::Effect& effect = *block.effect;
-  const std::string slot(sim::slot_name(effect.slot));
+  const std::string slot(sim::kind_name(effect));
   text += sim::is_shared(effect.slot) ? "\n[[" + slot + "]]" : "\n[" + slot + "]";
   text += "\neffect = " + in_quotes(effect.name) + "  " + comment(std::string(effect.title));
   bool standard = false;

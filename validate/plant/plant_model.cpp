@@ -21,13 +21,16 @@ using sim::Slot;
 constexpr double kSmallest = 1e-9;     ///< bases and frequencies are above zero
 constexpr double kMostBuses = 999999;  ///< the largest bus number of PSS/E
 
+constexpr std::string_view kConverter = "converter";  ///< section of a source that is one
+
 using sim::library::EffectLibrary;
 
-/// Names of the effects of one slot, as a config may write them.
-std::vector<std::string> effects_of(const EffectLibrary& library, Slot slot) {
+/// Names of the effects of one slot, as a config may write them; `section` says which kind of source.
+std::vector<std::string> effects_of(const EffectLibrary& library, Slot slot, std::string_view section = {}) {
   std::vector<std::string> names;
   for (const auto* e : library.all())
-    if (e->slot == slot) names.emplace_back(e->name);
+    if (e->slot == slot && (slot != Slot::machine || e->converter == (section == kConverter)))
+      names.emplace_back(e->name);
   return names;
 }
 
@@ -36,7 +39,7 @@ std::vector<std::string> effects_of(const EffectLibrary& library, Slot slot) {
 /// in `standard`.
 sim::plant::Block read_block(Config& config, const EffectLibrary& library, Slot slot,
                              const std::string& section, std::vector<std::string>& standard) {
-  sim::plant::Block block{library.find(config.choice(section + ".effect", effects_of(library, slot))), {}};
+  sim::plant::Block block{library.find(config.choice(section + ".effect", effects_of(library, slot, section))), {}};
   if (!block.effect || block.effect->slot != slot) return {};
   const bool sound = config.sound();
   const bool may_miss = config.optional<bool>(section + ".standard", false);
@@ -150,7 +153,7 @@ std::string_view name_in(const sim::plant::Plant& plant, Slot slot) {
   return at->effect->dyr_name;
 }
 
-/// Every section but [machine], into the plant and beside what it has from a grid's files.
+/// Every section but [machine] or [converter], into the plant and beside what it has from a grid's files.
 void read_around(Config& config, PlantModel& model) {
   sim::plant::Plant& plant = model.plant;
   for (const Slot slot : sim::kSlots) {
@@ -175,6 +178,11 @@ void read_around(Config& config, PlantModel& model) {
     }
   }
   std::ranges::stable_sort(plant.controls, {}, [](const auto& b) { return b.effect->slot; });
+  if (!plant.machine.effect) return;
+  for (const auto& control : plant.controls)
+    if (const std::string why = sim::misfit(*plant.machine.effect, *control.effect); !why.empty())
+      config.problem(std::string(sim::slot_name(control.effect->slot)), std::string(control.effect->name), why,
+                     "remove the section");
 }
 
 /// Values before a calibration that did not hold, by effect and parameter.
@@ -227,7 +235,7 @@ void note_standard(PlantModel& model, const std::vector<std::string>& effects) {
 }
 
 void read_from_grid(Config& config, PlantModel& model) {
-  for (const char* twice : {"plant.base_mva", "machine"})
+  for (const char* twice : {"plant.base_mva", "machine", "converter"})
     if (config.has(twice))
       config.problem(twice, std::string(twice) + " beside [grid]", "the grid's files give it already",
                      "remove one of them");
@@ -291,7 +299,8 @@ PlantModel parse_plant_model(const std::string& text, const fs::path& file) {
     model.bus = static_cast<int>(config.optional<std::int64_t>("plant.bus", 0, {1.0, kMostBuses}));
     model.id = config.optional<std::string>("plant.id", model.id);
     const bool sound = config.sound();
-    model.plant.machine = read_block(config, model.library, Slot::machine, "machine", model.standard);
+    const std::string source = config.has("converter") && !config.has("machine") ? "converter" : "machine";
+    model.plant.machine = read_block(config, model.library, Slot::machine, source, model.standard);
     check_base(config, model, sound == config.sound());
   }
   read_around(config, model);

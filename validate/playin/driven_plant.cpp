@@ -167,14 +167,15 @@ class Driven {
     x_ = std::move(at.x);
     Efd_ = at.Efd;
     Tm_ = at.Tm;
+    has_torque_ = !run_.torque.t.empty();
+    has_field_ = !run_.field.t.empty();
+    if (plant.machine.effect->converter) return;  // it has no rotor that might stand elsewhere
     x_[0] = x_[0] + T(run_.angle);
     x_[1] = x_[1] + T(run_.speed);
     each([&](const Direction& d, std::size_t i) {
       if (d.kind == Kind::angle) Seeds<T>::add(x_[0], i, d.scale);
       if (d.kind == Kind::speed) Seeds<T>::add(x_[1], i, d.scale);
     });
-    has_torque_ = !run_.torque.t.empty();
-    has_field_ = !run_.field.t.empty();
   }
   /// The governor's state that is its gate or valve.
   void find_gate() {

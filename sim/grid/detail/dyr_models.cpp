@@ -27,6 +27,8 @@ struct OtherName {
 };
 constexpr OtherName kOtherNames[] = {
     {"GENTPJ1", "GENTPJU1"},  // its name since PSS/E 34
+    {"REECCU1", "REECC1"},    // as a user-written model
+    {"REPCTA1", "REPCA1"},    // of a wind plant of type 3
     {"EXDC1", "IEEEX1"},      // GridPACK's and PSLF's name of the type DC1 of 1981
 };
 
@@ -64,7 +66,7 @@ const Effect* in_the_way(const plant::Plant& plant, const Effect& effect) {
 
 std::string compare_reactance(const plant::Plant& plant, const plant::Block& block, const RawGenerator& raw,
                               const std::string& where) {
-  if (block.effect->raw_reactance >= 0) return {};
+  if (block.effect->raw_reactance >= 0 || block.effect->converter) return {};
   const double zx = raw.generator.zx;
   double r = 0.0, x = 0.0;
   block.effect->get<double>().machine.source_impedance(block.p.data(), r, x);
@@ -167,6 +169,18 @@ std::string place(plant::Plant& plant, plant::Block block, const RawGenerator& r
 }
 void sort_controls(plant::Plant& plant) {
   std::ranges::stable_sort(plant.controls, {}, [](const plant::Block& b) { return b.effect->slot; });
+}
+std::string remark_on(const plant::Block& block, const std::string& where, const std::string& plant) {
+  const std::string left_out = block.effect->remark ? block.effect->remark(block.p.data()) : std::string();
+  return left_out.empty() ? left_out
+                          : fmt::format("{}: {} of generator {}: {}", where, block.effect->name, plant, left_out);
+}
+void check_fit(const plant::Plant& plant, const std::string& where, Problems& problems) {
+  if (!plant.machine.effect) return;
+  for (const plant::Block& block : plant.controls)
+    if (const std::string why = misfit(*plant.machine.effect, *block.effect); !why.empty())
+      problems.add(fmt::format("{} for generator {}", block.effect->name, plant.name), where, why,
+                   "remove the record, or correct the source's");
 }
 
 }  // namespace swingbank::sim::grid

@@ -49,5 +49,9 @@ void take_from_raw(plant::Block& block, const network::Generator& g);
 std::string place(plant::Plant& plant, plant::Block block, const RawGenerator& raw, const std::string& where,
                   Problems& problems);
 void sort_controls(plant::Plant& plant);
+/// What a block's values ask for and its equations leave out, as a warning; empty if nothing.
+std::string remark_on(const plant::Block& block, const std::string& where, const std::string& plant);
+/// Controls that have no place beside the plant's source become problems.
+void check_fit(const plant::Plant& plant, const std::string& where, Problems& problems);
 
 }  // namespace swingbank::sim::grid

@@ -1,6 +1,6 @@
 #pragma once
 // Lanes: sources whose current is no linear function of the voltage - loads with a model of their own,
-// machines with saliency. Each is written as E = V + z I(V) behind its constant impedance z, so that the
+// machines with saliency, converters. Each is written as E = V + z I(V) behind its constant impedance z, so that the
 // network stays I = (G + jB) E; the voltages V at these sources are found by Newton's method, every lane
 // until it has converged and no further, so that no lane's bits depend on another's. V is the machine's own
 // terminal: behind a step-up transformer of ratio n the network has n E, and the machine n I.
@@ -50,6 +50,11 @@ void Lanes<T>::source_emf(const Constants& k, const T* x, int source, const T& v
   const T* z = own_impedance(k, source);
   er = vr + z[0] * s.Ir - z[1] * s.Ii;
   ei = vi + z[0] * s.Ii + z[1] * s.Ir;
+  if (source < n_ && !plants_[static_cast<std::size_t>(source)].rotor) {
+    const T& on = k.on[static_cast<std::size_t>(source)];  // a tripped converter has no voltage of its own
+    er = er * on;
+    ei = ei * on;
+  }
   if (const T* n = ratio(k, source)) {
     er = er * *n;
     ei = ei * *n;

@@ -41,7 +41,8 @@ class Lanes {
   struct PlantSlice {
     plant::PlantEquations<T> equations;
     int x, c, m;     ///< offsets of states, coefficients and scratch
-    int watch = -1;  ///< of watched_, -1: none
+    int watch = -1;      ///< of watched_, -1: none
+    bool rotor = true;   ///< whether its first state is a rotor's angle; else it is a converter
   };
 
   /// An exciter behind a stabiliser: whether Vs comes to its limits or leaves them is seen from stages in
@@ -106,6 +107,7 @@ class Lanes {
   void spread_constants(int lane);
   void outputs(std::size_t row_plant, const T* x, LaneRun& run, int count);
   void hold(LaneRun& run, int until) const;
+  T unwrapped(T angle, double last, int count) const;
 
   // the lanes' matrices (network.hpp)
   void share();

@@ -54,6 +54,7 @@ void Lanes<T>::build_slices() {
   for (std::size_t i = 0; i < grid_.plants.size(); ++i) {
     const plant::Plant& plant = grid_.plants[i];
     plants_.push_back({plant::PlantEquations<T>(plant), states_, c, m});
+    plants_.back().rotor = !plant.machine.effect->converter;
     const auto& equations = plants_.back().equations;
     states_ += equations.states();
     c += equations.coefficients();

@@ -124,7 +124,8 @@ void Lanes<T>::spread_constants(int lane) {
   for (const auto& [source, target] : {std::pair{&from.efd, &to.efd},
                                        {&from.tm, &to.tm},
                                        {&from.dvref, &to.dvref},
-                                       {&from.dpref, &to.dpref}})
+                                       {&from.dpref, &to.dpref},
+                                       {&from.on, &to.on}})
     copy(*source, *target, 0, n);
   copy(from.vr, to.vr, 0, to.vr.size());
   copy(from.vi, to.vi, 0, to.vi.size());
@@ -218,7 +219,7 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
     T v(0.0);
     switch (channels_[j]) {
       case Channel::delta:
-        v = x[p.x];
+        v = p.rotor ? x[p.x] : T(0.0);
         break;
       case Channel::speed:
         v = s.speed;
@@ -249,6 +250,11 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
         using std::atan2;
         const T two_pi(constants::turn);
         const T angle = atan2(vi, vr);
+        if (!p.rotor) {
+          v = unwrapped(angle, run.theta[k], count);
+          run.theta[k] = Traits::get(v, count - 1);
+          break;
+        }
         v = angle + two_pi * round_nearest((x[p.x] - angle) / two_pi);  // the turn in which the rotor is
         run.theta[k] = Traits::get(v, count - 1);
         break;
@@ -265,6 +271,18 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
       for (int d = 0; d < Traits::directions; ++d)
         put(v.d[static_cast<std::size_t>(d)], run.record.slope(d, plant, channel));
   }
+}
+
+/// An angle plus the turns that bring each of the first `count` samples closest to the one before; `last`:
+/// before the first.
+template <class T>
+T Lanes<T>::unwrapped(T angle, double last, int count) const {
+  for (int l = 0; l < count; ++l) {
+    const double now = Traits::get(angle, l);
+    last = now + constants::turn * std::nearbyint((last - now) / constants::turn);
+    Traits::set(angle, l, last);
+  }
+  return angle;
 }
 
 /// Repeats the last sample until `until` samples are recorded.

@@ -113,6 +113,7 @@ template <class T>
 T Lanes<T>::spread(const T* x) const {
   T low(std::numeric_limits<double>::max()), high = -low;
   for (std::size_t i = 0; i < plants_.size(); ++i) {
+    if (!plants_[i].rotor) continue;
     const T& delta = x[plants_[i].x];
     if (tripped_ != 0) {
       const auto on = per_lane_.on[i] > T(0.5);

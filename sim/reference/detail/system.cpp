@@ -19,12 +19,14 @@ int delta_state(const Effect& machine) {
   return -1;
 }
 
-/// Buses that no machine and no fault can hold to a voltage: their equations have no solution.
+/// Buses that no machine and no fault can hold to a voltage: their equations have no solution. A converter
+/// follows a voltage and makes none.
 std::vector<int> cut_off(const grid::Grid& grid, const network::Topology& topology) {
   const std::vector<int> island = network::islands(grid.network, topology.open);
   std::vector<bool> held(island.size() + 1, false);
   for (const plant::Plant& plant : grid.plants)
-    if (!std::ranges::binary_search(topology.tripped, plant.generator)) held[island[plant.bus] + 1] = true;
+    if (!plant.machine.effect->converter && !std::ranges::binary_search(topology.tripped, plant.generator))
+      held[island[plant.bus] + 1] = true;
   for (const auto& [bus, z] : topology.faults) held[island[bus] + 1] = true;
   held[0] = true;  // isolated buses (-1) are out of the grid
   std::vector<int> lost;

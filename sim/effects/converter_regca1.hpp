@@ -1,0 +1,237 @@
+#pragma once
+// REGCA1: the converter of a wind or photovoltaic plant or a battery, as a current that follows its commands.
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "sim/core/bus_frequency.hpp"
+#include "sim/core/effect.hpp"
+#include "sim/effects/detail/renewable.hpp"
+#include "sim/effects/detail/sources.hpp"
+
+namespace swingbank::sim::effects::converter_regca1 {
+
+struct Model {
+  static constexpr std::string_view name = "REGCA1", title = "converter as a controlled current, type A",
+                                    source =
+                                        "WECC (2014), Wind plant dynamic modeling guidelines, REGC_A; "
+                                        "PSS/E REGCA1",
+                                    dyr_name = "REGCA1";
+  static constexpr Slot slot = Slot::machine;
+  static constexpr bool converter = true;
+  static constexpr std::string_view description = R"(
+  Ipcmd --> [ 1/(1 + s Tg), rise <= rrpwr ] <= LVPL --Ip--> x G(V) --> active current
+      LVPL: 0 below Zerox, Lvpl1 above Brkpt, straight between, of V/(1 + s Tfltr)        (Lvplsw = 1)
+      G(V): 0 below Lvpnt0, 1 above Lvpnt1, straight between
+  Iqcmd --> [ 1/(1 + s Tg), rise <= Iqrmax if Q0 > 0, fall >= Iqrmin if Q0 < 0 ] --Iq-->
+      Iq - Khv max(V - Volim, 0) >= Iolim --> reactive current, positive while it delivers Q
+
+  I = (active - j reactive) V/|V|, below |V| = 0.01 pu in proportion to |V|
+  speed: frequency of the terminal voltage, measured with the lag Tfreq
+  Accel belongs to the iteration of the network in PSS/E and has no part here.
+)";
+  enum P {
+    Lvplsw,
+    Tg,
+    Rrpwr,
+    Brkpt,
+    Zerox,
+    Lvpl1,
+    Volim,
+    Lvpnt1,
+    Lvpnt0,
+    Iolim,
+    Tfltr,
+    Khv,
+    Iqrmax,
+    Iqrmin,
+    Accel,
+    Tfreq
+  };
+  static constexpr Source standards_from = literature::psid("RENA/ThreeBus_REN_A_DEFAULT_FLAG.dyr");
+  static constexpr Source bounds_from = renewable::kWecc;
+  static constexpr Parameter parameters[] = {
+      {"Lvplsw", "Lvplsw", "code", 0.0, 0.0, 1.0, kNoNeutral, "1: low-voltage limit of the active current",
+       kAsEffect, renewable::kFlag},
+      {"Tg", "Tg", "s", 0.02, 1e-3, 0.5, kNoNeutral, "time constant of the converter"},
+      {"Rrpwr", "rrpwr", "pu/s", 10.0, 0.01, 999.0, kNoNeutral, "fastest rise of the active current"},
+      {"Brkpt", "Brkpt", "pu", 0.9, 0.0, 1.5, kNoNeutral, "voltage above which LVPL is Lvpl1"},
+      {"Zerox", "Zerox", "pu", 0.4, 0.0, 1.0, kNoNeutral, "voltage below which LVPL is 0"},
+      {"Lvpl1", "Lvpl1", "pu", 1.22, 0.0, 5.0, kNoNeutral, "limit of the active current at Brkpt"},
+      {"Volim", "Volim", "pu", 1.2, 0.8, 2.0, kNoNeutral, "voltage above which Q is drawn"},
+      {"Lvpnt1", "Lvpnt1", "pu", 0.8, 0.0, 1.5, kNoNeutral, "voltage above which G is 1",
+       literature::psse("REGCA1")},
+      {"Lvpnt0", "Lvpnt0", "pu", 0.4, -1.0, 1.0, kNoNeutral, "voltage below which G is 0",
+       literature::psse("REGCA1")},
+      {"Iolim", "Iolim", "pu", -1.3, -99.0, 0.0, kNoNeutral, "lowest reactive current"},
+      {"Tfltr", "Tfltr", "s", 0.2, 0.0, 1.0, kNoNeutral, "measurement of the voltage for LVPL (0: none)"},
+      {"Khv", "Khv", "pu/pu", 0.0, 0.0, 100.0, 0.0, "reactive current per voltage above Volim"},
+      {"Iqrmax", "Iqrmax", "pu/s", 100.0, 0.0, 9999.0, kNoNeutral, "fastest rise of the reactive current"},
+      {"Iqrmin", "Iqrmin", "pu/s", -100.0, -9999.0, 0.0, kNoNeutral, "fastest fall of the reactive current"},
+      {"Accel", "Accel", "code", 0.0, 0.0, 2.0, kNoNeutral, "of the network's iteration in PSS/E: not used"},
+      {"Tfreq", "Tfreq", "s", 0.02, 1e-3, 1.0, kNoNeutral, "measurement of the terminal's frequency",
+       literature::own("about a cycle")}};
+  static constexpr int dyr_columns[] = {Lvplsw, Tg,    Rrpwr, Brkpt, Zerox,  Lvpl1,  Volim, Lvpnt1,
+                                        Lvpnt0, Iolim, Tfltr, Khv,   Iqrmax, Iqrmin, Accel};
+  static constexpr double kFollow = 2e-3;  ///< in which Ip follows an LVPL that falls below it [s]
+  /// Of the source as the network sees it: any is exact (decision 37), a large one makes the iteration short.
+  static constexpr double kReactance = 10.0;
+  enum C {
+    iTg,
+    rise,
+    rest,   ///< kNoLimit where LVPL is switched off, else 0
+    most,   ///< Lvpl1
+    slope,  ///< of LVPL
+    zerox,
+    volim,
+    gain_from,  ///< Lvpnt0
+    gain_slope,
+    iolim,
+    iTfltr,
+    khv,
+    q_rise,
+    q_fall,
+    iTfreq,
+    per_angle,
+    start,  ///< power at the operating point
+    coefficients
+  };
+  enum X { Ip, Iq, Vmeas, Vrlag, Vilag };
+  static constexpr State states[] = {{"Ip", "pu", "active current before G"},
+                                     {"Iq", "pu", "reactive current before Volim's"},
+                                     {"Vmeas", "pu", "voltage measured for LVPL"},
+                                     {"Vrlag", "pu", "lagged voltage, real part", 0.1},
+                                     {"Vilag", "pu", "lagged voltage, imaginary part", 0.1}};
+  enum M { voltage, limit, scratch };
+
+  static void check(const double* p, const std::string& where, Problems& problems);
+  static std::string_view unphysical(const double*) { return ""; }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions& conventions, T* c) {
+    c[iTg] = T(1.0) / p[Tg];
+    c[rise] = p[Rrpwr];
+    c[rest] = value_of(p[Lvplsw]) > 0.5 ? T(0.0) : T(renewable::kNoLimit);
+    c[most] = p[Lvpl1];
+    c[slope] = p[Lvpl1] / (p[Brkpt] - p[Zerox]);
+    c[zerox] = p[Zerox];
+    c[volim] = p[Volim];
+    c[gain_from] = p[Lvpnt0];
+    c[gain_slope] = T(1.0) / (p[Lvpnt1] - p[Lvpnt0]);
+    c[iolim] = p[Iolim];
+    c[iTfltr] = inverse(p[Tfltr]);
+    c[khv] = p[Khv];
+    c[q_rise] = p[Iqrmax];
+    c[q_fall] = p[Iqrmin];
+    c[iTfreq] = T(1.0) / p[Tfreq];
+    c[per_angle] = frequency_slope(c[iTfreq], conventions.frequency);
+  }
+  template <class T>
+  static void source_impedance(const T*, T& r, T& x) {
+    r = T(0.0);
+    x = T(kReactance);
+  }
+  /// A converter has no voltage of its own; where it is off its terminal shows none.
+  template <class T>
+  static void emf(const T*, const T*, T*, T& er, T& ei) {
+    er = ei = T(0.0);
+  }
+  template <class T>
+  static T magnitude(const T& Vr, const T& Vi) {
+    using std::sqrt;
+    return sqrt(Vr * Vr + Vi * Vi + T(1e-24));  // a dual needs a slope at V = 0
+  }
+  template <class T>
+  static T gain(const T* c, const T& V) {
+    return clamp((V - c[gain_from]) * c[gain_slope], T(0.0), T(1.0));
+  }
+  template <class T>
+  static T low_voltage_limit(const T* c, const T* x, const T& V) {
+    const T measured = select(c[iTfltr] > T(0.0), x[Vmeas], V);
+    return clamp((measured - c[zerox]) * c[slope], T(0.0), c[most]) + c[rest];
+  }
+  template <class T>
+  static void current(const T* c, const T* x, T*, Signals<T>& s) {
+    const T V = magnitude(s.Vr, s.Vi);
+    const T active = renewable::smaller(x[Ip], low_voltage_limit(c, x, V)) * gain(c, V);
+    const T reactive = renewable::larger(x[Iq] - c[khv] * positive_part(V - c[volim]), c[iolim]);
+    const T per = T(1.0) / renewable::at_least_small(V);
+    s.Ir = (active * s.Vr + reactive * s.Vi) * per;
+    s.Ii = (active * s.Vi - reactive * s.Vr) * per;
+  }
+  template <class T>
+  static void electrical(const T* c, const T* x, T* m, Signals<T>& s) {
+    m[voltage] = magnitude(s.Vr, s.Vi);
+    m[limit] = low_voltage_limit(c, x, m[voltage]);
+    s.speed = bus_frequency(s.Vr, s.Vi, m[voltage] * m[voltage], x[Vrlag], x[Vilag], c[per_angle]);
+    s.Te = s.Vr * s.Ir + s.Vi * s.Ii;
+    s.Ifd = T(0.0);
+    s.Pext = s.dPref;
+    s.Qext = s.dVref;
+    s.wt = s.wg = s.wref = s.pitch = T(0.0);
+    s.Pord = s.Te;
+    s.Paero = c[start];
+  }
+  template <class T>
+  static void derivative(const T* c, const T* x, const T* m, const Signals<T>& s, T* dx) {
+    // Up with power, down with the power a battery draws.
+    const T wanted = (s.Tm - x[Ip]) * c[iTg], none(renewable::kNoLimit);
+    const auto draws = x[Ip] < T(0.0);
+    const T moves =
+        clamp(wanted, select(draws, T(0.0) - c[rise], T(0.0) - none), select(draws, none, c[rise]));
+    dx[Ip] = renewable::smaller(moves, (m[limit] - x[Ip]) * T(1.0 / kFollow));
+    dx[Iq] = clamp((s.Efd - x[Iq]) * c[iTg], c[q_fall], c[q_rise]);
+    dx[Vmeas] = (m[voltage] - x[Vmeas]) * c[iTfltr];
+    dx[Vrlag] = (s.Vr - x[Vrlag]) * c[iTfreq];
+    dx[Vilag] = (s.Vi - x[Vilag]) * c[iTfreq];
+  }
+  template <class T>
+  static std::string steady(const T*, T* c, Signals<T>& s, T* x) {
+    const T V = magnitude(s.Vr, s.Vi), P = s.Vr * s.Ir + s.Vi * s.Ii, Q = s.Vi * s.Ir - s.Vr * s.Ii;
+    const T share = gain(c, V), drawn = c[khv] * positive_part(V - c[volim]);
+    if (!(value_of(share) > 0.0))
+      return fmt::format("at V = {:.4f} pu it delivers no active current: Lvpnt0 = {:.4f} pu", value_of(V),
+                         value_of(c[gain_from]));
+    x[Vmeas] = V;
+    x[Ip] = P / V / share;
+    x[Iq] = Q / V + drawn;
+    x[Vrlag] = s.Vr;
+    x[Vilag] = s.Vi;
+    const T ceiling = low_voltage_limit(c, x, V);
+    if (value_of(x[Ip]) > value_of(ceiling))
+      return fmt::format("it would need an active current of {:.4f} pu, and LVPL ends at {:.4f} pu",
+                         value_of(x[Ip]), value_of(ceiling));
+    if (value_of(x[Iq] - drawn) < value_of(c[iolim]))
+      return fmt::format("it would need a reactive current of {:.4f} pu, below Iolim = {:.4f} pu",
+                         value_of(x[Iq] - drawn), value_of(c[iolim]));
+    if (!(value_of(Q) > 0.0)) c[q_rise] = T(renewable::kNoLimit);
+    if (!(value_of(Q) < 0.0)) c[q_fall] = T(-renewable::kNoLimit);
+    c[start] = P;
+    s.Tm = x[Ip];
+    s.Efd = x[Iq];
+    s.V = V;
+    return {};
+  }
+};
+
+inline void Model::check(const double* p, const std::string& where, Problems& problems) {
+  const auto value = [&](int i) {
+    return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i],
+                       parameters[i].is_code() ? "" : parameters[i].unit);
+  };
+  const auto bad = [&](bool wrong, const std::string& what, const char* why, const char* remedy) {
+    if (wrong) problems.add(what, where, why, remedy);
+  };
+  bad(p[Lvplsw] != 0 && p[Lvplsw] != 1, value(Lvplsw), "it is a switch", "give 0 or 1");
+  for (const int i : {Tg, Tfreq, Rrpwr})
+    bad(!(p[i] > 0), value(i), "the equations divide by it or stand still without it", "give a value > 0");
+  bad(!(p[Tfltr] >= 0), value(Tfltr), "it is a time", "give 0 for none, or more");
+  bad(!(p[Brkpt] > p[Zerox]), value(Brkpt) + " with " + value(Zerox), "LVPL must rise with the voltage",
+      "give Brkpt > Zerox");
+  bad(!(p[Lvpnt1] > p[Lvpnt0]), value(Lvpnt1) + " with " + value(Lvpnt0), "G must rise with the voltage",
+      "give Lvpnt1 > Lvpnt0");
+  bad(!(p[Iqrmax] >= 0), value(Iqrmax), "it is the fastest rise", "give a value >= 0");
+  bad(!(p[Iqrmin] <= 0), value(Iqrmin), "it is the fastest fall", "give a value <= 0");
+}
+
+}  // namespace swingbank::sim::effects::converter_regca1

@@ -1,0 +1,234 @@
+#pragma once
+// What the electrical controls REECA1, REECB1, REECC1 and REECD1 have in common: reactive current by one of
+// four ways, active current by the ordered power, and the limit of both.
+#include <fmt/format.h>
+
+#include <initializer_list>
+#include <utility>
+
+#include "sim/core/effect.hpp"
+#include "sim/effects/detail/renewable.hpp"
+
+namespace swingbank::sim::effects::renewable {
+
+struct ElectricalControl {
+  /// Parameters by what they are, whatever order an effect has them in.
+  template <class T>
+  struct Values {
+    bool pf = false, vflag = false, qflag = false, active_first = false;
+    T vdip{}, vup{}, trv{}, dbd1{}, dbd2{}, kqv{}, iqh1{}, iql1{}, vref0{}, tp{}, qmax{}, qmin{}, vmax{},
+        vmin{}, kqp{}, kqi{}, kvp{}, kvi{}, tiq{}, dpmax{}, dpmin{}, pmax{}, pmin{}, imax{}, tpord{};
+  };
+  enum C {
+    by_factor,  ///< flags: 1 or 0
+    by_q,
+    by_v,
+    active_first,
+    vdip,
+    vup,
+    iTrv,
+    dbd1,
+    dbd2,
+    kqv,
+    iqh1,
+    iql1,
+    vref,
+    iTp,
+    qmax,
+    qmin,
+    vmax,
+    vmin,
+    kqp,
+    kqi,
+    kvp,
+    kvi,
+    iTiq,
+    dpmax,
+    dpmin,
+    pmax,
+    pmin,
+    imax,
+    iTpord,
+    tangent,  ///< of the power factor's angle
+    need,     ///< Qin at the operating point, the bias included where Qext is a voltage
+    pneed,    ///< Pext at the operating point
+    coefficients
+  };
+  enum X { Vf, Pf, Vq, Vi, Iqlag, Pord, count };
+  static constexpr std::array<State, count> states = {
+      State{"Vf", "pu", "measured voltage"},
+      State{"Pf", "pu", "measured power"},
+      State{.name = "Vq", .unit = "pu", .meaning = "integral of the regulator of Q", .bends = true},
+      State{.name = "Vi", .unit = "pu", .meaning = "integral of the regulator of V", .bends = true},
+      State{"Iqlag", "pu", "lagged reactive current"},
+      State{"Pord", "pu", "ordered power", 1.0, pmin, pmax}};
+
+  template <class T>
+  static void prepare(const Values<T>& v, T* c) {
+    const auto flag = [](bool on) { return T(on ? 1.0 : 0.0); };
+    c[by_factor] = flag(v.pf);
+    c[by_q] = flag(v.vflag);
+    c[by_v] = flag(v.qflag);
+    c[active_first] = flag(v.active_first);
+    for (const auto& [to, from] : {std::pair<int, const T*>{vdip, &v.vdip},
+                                   {vup, &v.vup},
+                                   {dbd1, &v.dbd1},
+                                   {dbd2, &v.dbd2},
+                                   {kqv, &v.kqv},
+                                   {iqh1, &v.iqh1},
+                                   {iql1, &v.iql1},
+                                   {vref, &v.vref0},
+                                   {qmax, &v.qmax},
+                                   {qmin, &v.qmin},
+                                   {vmax, &v.vmax},
+                                   {vmin, &v.vmin},
+                                   {kqp, &v.kqp},
+                                   {kvp, &v.kvp},
+                                   {dpmax, &v.dpmax},
+                                   {dpmin, &v.dpmin},
+                                   {pmax, &v.pmax},
+                                   {pmin, &v.pmin},
+                                   {imax, &v.imax}})
+      c[to] = *from;
+    c[kqi] = v.qflag && v.vflag ? v.kqi : T(0.0);
+    c[kvi] = v.qflag ? v.kvi : T(0.0);
+    c[iTrv] = inverse(v.trv);
+    c[iTp] = inverse(v.tp);
+    c[iTiq] = v.qflag ? T(0.0) : inverse(v.tiq);
+    c[iTpord] = inverse(v.tpord);
+  }
+  /// The measured voltage.
+  template <class T>
+  static T measure(const T* c, const T* x, const Signals<T>& s, T* dx) {
+    return lag(c[iTrv], x[Vf], s.V, dx[Vf]);
+  }
+  template <class T>
+  static T ride_through(const T* c, const T& measured) {
+    return clamp(c[kqv] * dead_zone(c[vref] - measured, c[dbd1], c[dbd2]), c[iql1], c[iqh1]);
+  }
+  /// Vref0 = 0 stands for the voltage at the operating point.
+  template <class T>
+  static void reference(T* c, const Signals<T>& s) {
+    if (value_of(c[vref]) == 0.0) c[vref] = s.V;
+  }
+  /// The reactive current before what rides through, within +-most.
+  template <class T>
+  static T reactive(const T* c, const T* x, const T& measured, const T& runs, const T& most, Signals<T>& s,
+                    T* dx) {
+    const T zero(0.0), half(0.5);
+    const T power = lag(c[iTp], x[Pf], s.P, dx[Pf]);
+    const T Qin = select(c[by_factor] > half, c[tangent] * power, c[need] + s.Qext);
+    const T error = clamp(Qin, c[qmin], c[qmax]) - s.Q;
+    const T regulated = regulator(c[kqp], c[kqi], error, c[vmin], c[vmax], runs, x[Vq], dx[Vq]);
+    const T Vcmd = clamp(select(c[by_q] > half, regulated, Qin), c[vmin], c[vmax]);
+    const T of_voltage = regulator(c[kvp], c[kvi], Vcmd - measured, zero - most, most, runs, x[Vi], dx[Vi]);
+    const T of_power = lag(c[iTiq], x[Iqlag], Qin / at_least_small(measured), dx[Iqlag]);
+    dx[Iqlag] = dx[Iqlag] * runs;
+    return select(c[by_v] > half, of_voltage, of_power);
+  }
+  /// The ordered power; `wanted`: Pext and what turns it into a power.
+  template <class T>
+  static T ordered(const T* c, const T* x, const T& wanted, const T& runs, T* dx) {
+    dx[Pord] = runs * clamp((wanted - x[Pord]) * c[iTpord], c[dpmin], c[dpmax]);
+    return clamp(select(c[iTpord] > T(0.0), x[Pord], wanted), c[pmin], c[pmax]);
+  }
+  /// Both commands, into s.Tm (active) and s.Efd (reactive). `most_p`, `least_p`, `most_q`: what each may be
+  /// beside Imax. `held` makes the largest active current of what Imax leaves.
+  template <class T, class Held>
+  static void commands(const T* c, const T* x, const T& measured, const T& runs, const T& injected,
+                       const T& wanted, const T& most_p, const T& least_p, const T& most_q, const Held& held,
+                       Signals<T>& s, T* dx) {
+    const T zero(0.0), half(0.5);
+    const auto p_first = c[active_first] > half;
+    const T asked = ordered(c, x, wanted, runs, dx) / at_least_small(measured);
+    const T first = clamp(asked, least_p, most_p);
+    const T most = select(p_first, smaller(most_q, other_current(c[imax], first)), most_q);
+    const T Iq = reactive(c, x, measured, runs, most, s, dx);
+    s.Efd = clamp(Iq + injected, zero - most, most);
+    const T beside = select(p_first, c[imax], other_current(c[imax], s.Efd));
+    s.Tm = clamp(asked, larger(least_p, zero - beside), held(smaller(most_p, beside)));
+  }
+  /// From the commands backwards. `injected`: what rides through at rest; `bias`: added to a Qext that is a
+  /// voltage; `turning`: what Pext is multiplied by.
+  template <class T>
+  static std::string steady(T* c, const T& injected, const T& bias, const T& turning, const T& most_p,
+                            const T& least_p, const T& most_q, Signals<T>& s, T* x) {
+    const double p = value_of(s.Tm), q = value_of(s.Efd), total = value_of(c[imax]);
+    if (p > value_of(most_p) || p < value_of(least_p) || std::abs(q) > value_of(most_q) ||
+        p * p + q * q > total * total)
+      return fmt::format(
+          "it would need currents of {:.4f} (active) and {:.4f} pu (reactive), beyond Imax = "
+          "{:.4f} pu",
+          p, q, total);
+    const T Iq = s.Efd - injected, V = at_least_small(s.V);
+    x[Vf] = s.V;
+    x[Pf] = s.P;
+    x[Pord] = s.Tm * V;
+    c[pneed] = x[Pord] / turning;
+    x[Iqlag] = Iq;
+    x[Vi] = Iq;
+    x[Vq] = s.V;
+    const bool voltage = value_of(c[by_v]) == 1.0, power = value_of(c[by_q]) == 1.0;
+    c[need] = voltage ? (power ? s.Q : s.V) : Iq * V;
+    s.Qneed = voltage && !power ? s.V - bias : c[need];
+    s.Pneed = c[pneed];
+    if (value_of(c[by_factor]) == 1.0) {
+      if (value_of(s.P) == 0.0 && value_of(c[need]) != 0.0)
+        return "there is no power to have a factor: P = 0 pu";
+      c[tangent] = value_of(s.P) == 0.0 ? T(0.0) : c[need] / s.P;
+    }
+    const auto outside = [](const char* what, const T& value, const T& least, const T& most) {
+      return value_of(value) < value_of(least) || value_of(value) > value_of(most)
+                 ? fmt::format("{} = {:.4f} pu is needed and its limits are {:g} and {:g} pu", what,
+                               value_of(value), value_of(least), value_of(most))
+                 : std::string();
+    };
+    if (!voltage) return {};
+    if (auto why = power ? outside("Qin", c[need], c[qmin], c[qmax]) : ""; !why.empty()) return why;
+    return outside("Vcmd", s.V, c[vmin], c[vmax]);
+  }
+
+  // What check() of each asks for.
+  template <std::size_t N>
+  static std::string value(const Parameter (&all)[N], const double* p, int i) {
+    const Parameter& r = all[static_cast<std::size_t>(i)];
+    return fmt::format("{} = {:g}{}{}", r.symbol, p[i], r.is_code() ? "" : " ", r.is_code() ? "" : r.unit);
+  }
+  template <std::size_t N>
+  static void check_flags(const Parameter (&all)[N], const double* p, std::initializer_list<int> flags,
+                          const std::string& where, Problems& problems) {
+    for (const int i : flags)
+      if (p[i] != 0 && p[i] != 1) problems.add(value(all, p, i), where, "it is a switch", "give 0 or 1");
+  }
+  template <std::size_t N>
+  static void check_times(const Parameter (&all)[N], const double* p, std::initializer_list<int> times,
+                          const std::string& where, Problems& problems) {
+    for (const int i : times)
+      if (!(p[i] >= 0)) problems.add(value(all, p, i), where, "it is a time", "give 0 for none, or more");
+  }
+  template <std::size_t N>
+  static void check_ranges(const Parameter (&all)[N], const double* p,
+                           std::initializer_list<std::pair<int, int>> ranges, const std::string& where,
+                           Problems& problems) {
+    for (const auto& [high, low] : ranges)
+      if (!(p[high] >= p[low]))
+        problems.add(value(all, p, high) + " with " + value(all, p, low), where, "the limits have no room",
+                     "give the upper one at least the lower one's value");
+  }
+  template <std::size_t N>
+  static void check_signs(const Parameter (&all)[N], const double* p, std::initializer_list<int> not_below,
+                          std::initializer_list<int> not_above, const std::string& where,
+                          Problems& problems) {
+    for (const int i : not_below)
+      if (!(p[i] >= 0)) problems.add(value(all, p, i), where, "it is not negative", "give 0 or more");
+    for (const int i : not_above)
+      if (!(p[i] <= 0)) problems.add(value(all, p, i), where, "it is not positive", "give 0 or less");
+  }
+  static std::string remote(double bus) {
+    return bus == 0 ? std::string()
+                    : fmt::format("it is to measure at bus {:g}; here it measures at the unit's own terminal",
+                                  bus);
+  }
+};
+
+}  // namespace swingbank::sim::effects::renewable

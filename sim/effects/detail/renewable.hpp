@@ -1,0 +1,99 @@
+#pragma once
+// What the controls of converters have in common: the dead-band with two edges, the regulator whose integral
+// stops at the limits of its output, the voltage dip, the lower bound of a voltage that divides.
+#include "sim/core/blocks.hpp"
+#include "sim/core/literature.hpp"
+
+namespace swingbank::sim::effects::renewable {
+
+inline constexpr double kSmallVoltage = 0.01;  ///< no division by less (WECC's models) [pu]
+inline constexpr double kLimitBand = 2e-3;     ///< beyond a limit, where a regulator's integral comes to rest
+inline constexpr double kDipBand = 2e-3;       ///< below Vdip and above Vup, where a dip is full [pu]
+inline constexpr double kNoLimit = 1e6;        ///< [pu]
+
+inline constexpr Source kWecc = literature::own(
+    "the sign the equations need; at the far end beyond what WECC's guides and the case files give, or 99 and "
+    "999 (none)");
+inline constexpr Source kFlag = literature::derived("the codes there are");
+inline constexpr Source kBus = literature::psse("bus numbers, up to 999997; 0: the unit's own terminal");
+
+/// Nothing between the edges, beyond them the distance; an edge on the wrong side of 0 is 0.
+template <class T>
+T dead_zone(const T& u, const T& below, const T& above) {
+  return positive_part(u - positive_part(above)) - positive_part(T(0.0) - positive_part(T(0.0) - below) - u);
+}
+
+/// Share in which the slope of a regulator's integral counts: all of it while its output `out`, before the
+/// limits, lies between them; none beyond kLimitBand outside, where it would lead further.
+template <class T>
+T held_slope(const T& slope, const T& out, const T& least, const T& most) {
+  const T zero(0.0), one(1.0), per_band(1.0 / kLimitBand);
+  const T rise = one - clamp((out - most) * per_band, zero, one);
+  const T fall = one - clamp((least - out) * per_band, zero, one);
+  return positive_part(slope) * rise - positive_part(zero - slope) * fall;
+}
+
+/// Kp + Ki/s with its output limited; `runs`: 1, or 0 while it is frozen.
+template <class T>
+T regulator(const T& kp, const T& ki, const T& u, const T& least, const T& most, const T& runs, const T& x,
+            T& dx) {
+  const T out = kp * u + x;
+  dx = runs * held_slope(ki * u, out, least, most);
+  return clamp(out, least, most);
+}
+
+/// 1 in a voltage dip (below Vdip or above Vup), else 0; in between over kDipBand, so that a control that
+/// ends its own dip finds a rest.
+template <class T>
+T voltage_dip(const T& V, const T& vdip, const T& vup) {
+  const T zero(0.0), one(1.0), per_band(1.0 / kDipBand);
+  return clamp((vdip - V) * per_band, zero, one) + clamp((V - vup) * per_band, zero, one);
+}
+
+template <class T>
+T at_least_small(const T& V) {
+  return select(V > T(kSmallVoltage), V, T(kSmallVoltage));
+}
+template <class T>
+T smaller(const T& a, const T& b) {
+  return select(a < b, a, b);
+}
+template <class T>
+T larger(const T& a, const T& b) {
+  return select(a < b, b, a);
+}
+
+/// What is left for one current beside the other within Imax; a dual needs a slope where nothing is left.
+template <class T>
+T other_current(const T& most, const T& used) {
+  using std::sqrt;
+  const T square = most * most - used * used, tiny(1e-12);
+  return sqrt(select(square > tiny, square, tiny));
+}
+
+/// Coefficients of a limit by voltage: four voltages, the first current, three slopes, the largest current.
+inline constexpr int kByVoltage = 9;
+/// Of the points V, I, V, I, ... as far as the voltages rise; the current of the last one goes on. Points
+/// that do not rise at all are no limit beside `most`.
+template <class T>
+void prepare_by_voltage(const T* points, const T& most, T* c) {
+  const bool any = value_of(points[2]) > value_of(points[0]);
+  bool rises = any;
+  c[4] = any ? points[1] : most;
+  for (int k = 0; k < 4; ++k) c[k] = points[2 * k];
+  for (int k = 0; k < 3; ++k) {
+    const T width = points[2 * k + 2] - points[2 * k];
+    rises = rises && value_of(width) > 0.0;
+    c[5 + k] = rises ? (points[2 * k + 3] - points[2 * k + 1]) / width : T(0.0);
+    if (!rises) c[k + 1] = c[k];
+  }
+  c[8] = most;
+}
+template <class T>
+T by_voltage(const T* c, const T& V) {
+  T current = c[4];
+  for (int k = 0; k < 3; ++k) current = current + c[5 + k] * (clamp(V, c[k], c[k + 1]) - c[k]);
+  return smaller(current, c[8]);
+}
+
+}  // namespace swingbank::sim::effects::renewable

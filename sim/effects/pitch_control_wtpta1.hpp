@@ -1,0 +1,91 @@
+#pragma once
+// WTPTA1: control of the angle of a wind turbine's blades.
+#include <fmt/format.h>
+
+#include "base/constants.hpp"
+#include "sim/core/effect.hpp"
+#include "sim/effects/detail/electrical_control.hpp"
+
+namespace swingbank::sim::effects::pitch_control_wtpta1 {
+
+struct Model {
+  using Core = renewable::ElectricalControl;
+  static constexpr std::string_view name = "WTPTA1", title = "pitch control of a wind turbine, type A",
+                                    source =
+                                        "WECC (2014), Wind plant dynamic modeling guidelines, WTGPT_A; "
+                                        "PSS/E WTPTA1",
+                                    dyr_name = "WTPTA1";
+  static constexpr Slot slot = Slot::pitch_control;
+  static constexpr std::string_view description = R"(
+  wt - wref + Kcc (Pord - Pext) --> [ Kpw + Kiw/s, TetaMin to TetaMax ] --+
+  Pord - Pext --------------------> [ Kpc + Kic/s, TetaMin to TetaMax ] --+--> [ 1/(1 + s Tpi), rate RTetaMin to
+      RTetaMax, TetaMin to TetaMax ] --> pitch
+  Both integrals move within the limits; the second one begins at 0 or the limit that is nearest to it.
+)";
+  enum P { Kiw, Kpw, Kic, Kpc, Kcc, Tpi, TetaMax, TetaMin, RTetaMax, RTetaMin };
+  static constexpr Source standards_from = literature::andes("WTPTA1");
+  static constexpr Source bounds_from = renewable::kWecc;
+  static constexpr Parameter parameters[] = {
+      {"Kiw", "Kiw", "deg/s/pu", 0.1, 0.0, 999.0, 0.0, "of the speed, integral gain"},
+      {"Kpw", "Kpw", "deg/pu", 0.0, 0.0, 999.0, 0.0, "of the speed, proportional gain"},
+      {"Kic", "Kic", "deg/s/pu", 0.1, 0.0, 999.0, 0.0, "of the power, integral gain"},
+      {"Kpc", "Kpc", "deg/pu", 0.0, 0.0, 999.0, 0.0, "of the power, proportional gain"},
+      {"Kcc", "Kcc", "pu/pu", 0.0, 0.0, 100.0, 0.0, "power that counts as speed"},
+      {"Tpi", "Tpi", "s", 0.3, 0.0, 5.0, kNoNeutral, "response of the blades (0: none)"},
+      {"TetaMax", "TetaMax", "deg", 30.0, 0.0, 99.0, kNoNeutral, "largest angle"},
+      {"TetaMin", "TetaMin", "deg", 0.0, 0.0, 30.0, kNoNeutral, "smallest angle"},
+      {"RTetaMax", "RTetaMax", "deg/s", 5.0, 0.0, 99.0, kNoNeutral, "fastest rise"},
+      {"RTetaMin", "RTetaMin", "deg/s", -5.0, -99.0, 0.0, kNoNeutral, "fastest fall"}};
+  static constexpr int dyr_columns[] = {Kiw, Kpw, Kic, Kpc, Kcc, Tpi, TetaMax, TetaMin, RTetaMax, RTetaMin};
+  enum C { kiw, kpw, kic, kpc, kcc, iTpi, most, least, rise, fall, pord0, start, coefficients };
+  enum X { by_speed, by_power, angle };
+  static constexpr State states[] = {
+      {.name = "by_speed", .unit = "deg", .meaning = "integral of the speed", .bends = true},
+      {.name = "by_power", .unit = "deg", .meaning = "integral of the power", .bends = true},
+      {"angle", "deg", "angle of the blades", 1.0, least, most}};
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    Core::check_times(parameters, p, {Tpi}, where, problems);
+    Core::check_ranges(parameters, p, {{TetaMax, TetaMin}}, where, problems);
+    Core::check_signs(parameters, p, {Kiw, Kpw, Kic, Kpc, Kcc, RTetaMax}, {RTetaMin}, where, problems);
+  }
+  static std::string_view unphysical(const double*) { return ""; }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions&, T* c) {
+    for (const auto& [to, from] : {std::pair<int, int>{kiw, Kiw},
+                                   {kpw, Kpw},
+                                   {kic, Kic},
+                                   {kpc, Kpc},
+                                   {kcc, Kcc},
+                                   {most, TetaMax},
+                                   {least, TetaMin},
+                                   {rise, RTetaMax},
+                                   {fall, RTetaMin}})
+      c[to] = p[from];
+    c[iTpi] = inverse(p[Tpi]);
+  }
+  template <class T>
+  static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
+    const T one(1.0), excess = s.Pord - c[pord0] - s.Pext, fast = s.wt - s.wref + c[kcc] * excess;
+    const T both =
+        renewable::regulator(c[kpw], c[kiw], fast, c[least], c[most], one, x[by_speed], dx[by_speed]) +
+        renewable::regulator(c[kpc], c[kic], excess, c[least], c[most], one, x[by_power], dx[by_power]);
+    dx[angle] = clamp((both - x[angle]) * c[iTpi], c[fall], c[rise]);
+    s.pitch = clamp(select(c[iTpi] > T(0.0), x[angle], both), c[least], c[most]) - c[start];
+  }
+  template <class T>
+  static std::string steady(const T*, T* c, Signals<T>& s, T* x) {
+    c[start] = x[angle] = s.pitch;
+    x[by_power] = clamp(T(0.0), c[least], c[most]);
+    x[by_speed] = s.pitch - x[by_power];
+    c[pord0] = s.Pord;
+    const double turned = value_of(x[by_speed]);
+    if (turned < value_of(c[least]) || turned > value_of(c[most]))
+      return fmt::format("the blades would begin at {:.4g} degrees, beyond {:g} to {:g}", value_of(s.pitch),
+                         value_of(c[least]), value_of(c[most]));
+    return {};
+  }
+};
+
+}  // namespace swingbank::sim::effects::pitch_control_wtpta1

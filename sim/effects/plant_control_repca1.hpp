@@ -1,0 +1,256 @@
+#pragma once
+// REPCA1: control of a whole wind, photovoltaic or storage plant.
+#include <fmt/format.h>
+
+#include "sim/core/effect.hpp"
+#include "sim/effects/detail/electrical_control.hpp"
+
+namespace swingbank::sim::effects::plant_control_repca1 {
+
+struct Model {
+  static constexpr std::string_view name = "REPCA1", title = "control of a renewable energy plant, type A",
+                                    source =
+                                        "WECC (2014), Wind plant dynamic modeling guidelines, REPC_A; "
+                                        "PSS/E REPCA1",
+                                    dyr_name = "REPCA1";
+  static constexpr Slot slot = Slot::plant_control;
+  static constexpr std::string_view description = R"(
+  measured = |V - (Rc + j Xc) I| (RefFlag 1, VCFlag 1), V + Kc Q (RefFlag 1, VCFlag 0), Q (RefFlag 0)
+  ref - measured/(1 + s Tfltr) --> [ dbd1, dbd2 ] --> within emin, emax -->
+      [ Kp + Ki/s, Qmin to Qmax, frozen while V < Vfrz ] --> [ (1 + s Tft)/(1 + s Tfv) ] --> Qext
+  - speed --> [ fdbd1, fdbd2 ] --> x Ddn where it is negative, x Dup where it is positive --droop
+  Pref - P/(1 + s Tp) + droop --> within femin, femax --> [ Kpg + Kig/s, Pmin to Pmax ] --> [ 1/(1 + s Tg) ] --> Pext
+      (FrqFlag 1; with 0 Pext stays where it is)
+  V, I, P and Q are those of the unit's own terminal, on its base; moves of the reference of V (or Q) and P add to
+  ref and Pref.
+)";
+  enum P {
+    RemoteBus,
+    FromBus,
+    ToBus,
+    Circuit,
+    VCFlag,
+    RefFlag,
+    FrqFlag,
+    Tfltr,
+    Kp,
+    Ki,
+    Tft,
+    Tfv,
+    Vfrz,
+    Rc,
+    Xc,
+    Kc,
+    emax,
+    emin,
+    dbd1,
+    dbd2,
+    Qmax,
+    Qmin,
+    Kpg,
+    Kig,
+    Tp,
+    fdbd1,
+    fdbd2,
+    femax,
+    femin,
+    Pmax,
+    Pmin,
+    Tg,
+    Ddn,
+    Dup
+  };
+  static constexpr Source standards_from = literature::psid("FourBus_multigen.dyr");
+  static constexpr Source bounds_from = renewable::kWecc;
+  static constexpr Parameter parameters[] = {
+      {"RemoteBus", "remote bus", "code", 0.0, 0.0, 999997.0, 0.0, "regulated bus (0: the terminal)",
+       kAsEffect, renewable::kBus},
+      {"FromBus", "from bus", "code", 0.0, 0.0, 999997.0, 0.0,
+       "of the branch whose P and Q count (0: the unit)", kAsEffect, renewable::kBus},
+      {"ToBus", "to bus", "code", 0.0, 0.0, 999997.0, 0.0, "of the same branch", kAsEffect, renewable::kBus},
+      {"Circuit", "circuit", "code", 0.0, 0.0, 99.0, 0.0, "of the same branch", kAsEffect, renewable::kBus},
+      {"VCFlag", "VCFlag", "code", 0.0, 0.0, 1.0, kNoNeutral, "1: line drop, 0: reactive droop", kAsEffect,
+       renewable::kFlag},
+      {"RefFlag", "RefFlag", "code", 0.0, 0.0, 1.0, kNoNeutral, "1: regulates V, 0: Q", kAsEffect,
+       renewable::kFlag},
+      {"FrqFlag", "FrqFlag", "code", 1.0, 0.0, 1.0, kNoNeutral, "1: regulates P, 0: leaves it", kAsEffect,
+       renewable::kFlag},
+      {"Tfltr", "Tfltr", "s", 0.02, 0.0, 10.0, kNoNeutral, "measurement of V or Q (0: none)"},
+      {"Kp", "Kp", "pu/pu", 18.0, 0.0, 200.0, 0.0, "proportional gain"},
+      {"Ki", "Ki", "1/s", 5.0, 0.0, 200.0, 0.0, "integral gain"},
+      {"Tft", "Tft", "s", 0.0, 0.0, 10.0, 0.0, "lead of Qext"},
+      {"Tfv", "Tfv", "s", 0.05, 0.0, 30.0, kNoNeutral, "lag of Qext (0: none)"},
+      {"Vfrz", "Vfrz", "pu", 0.0, -99.0, 1.2, kNoNeutral, "voltage below which the integral is frozen"},
+      {"Rc", "Rc", "pu", 0.0, -1.0, 1.0, 0.0, "line drop, resistance"},
+      {"Xc", "Xc", "pu", 0.0, -1.0, 1.0, 0.0, "line drop, reactance"},
+      {"Kc", "Kc", "pu/pu", 0.02, 0.0, 1.0, 0.0, "reactive droop"},
+      {"emax", "emax", "pu", 0.1, 0.0, 999.0, kNoNeutral, "highest error"},
+      {"emin", "emin", "pu", -0.1, -999.0, 0.0, kNoNeutral, "lowest error"},
+      {"dbd1", "dbd1", "pu", 0.0, -1.0, 0.0, 0.0, "lower edge of the dead-band", literature::psse("REPCA1")},
+      {"dbd2", "dbd2", "pu", 0.0, 0.0, 1.0, 0.0, "upper edge of the dead-band", literature::psse("REPCA1")},
+      {"Qmax", "Qmax", "pu", 0.43, -1.0, 999.0, kNoNeutral, "highest Qext"},
+      {"Qmin", "Qmin", "pu", -0.43, -999.0, 1.0, kNoNeutral, "lowest Qext"},
+      {"Kpg", "Kpg", "pu/pu", 1.0, 0.0, 100.0, 0.0, "regulator of P, proportional gain"},
+      {"Kig", "Kig", "1/s", 0.05, 0.0, 100.0, 0.0, "regulator of P, integral gain"},
+      {"Tp", "Tp", "s", 0.25, 0.0, 10.0, kNoNeutral, "measurement of P (0: none)"},
+      {"fdbd1", "fdbd1", "pu", -0.0006, -1.0, 0.0, 0.0, "lower edge of the frequency's dead-band",
+       literature::own("0.036 Hz of 60, NERC's guideline on primary frequency control")},
+      {"fdbd2", "fdbd2", "pu", 0.0006, 0.0, 1.0, 0.0, "upper edge of the frequency's dead-band",
+       literature::own("0.036 Hz of 60, NERC's guideline on primary frequency control")},
+      {"femax", "femax", "pu", 99.0, 0.0, 999.0, kNoNeutral, "highest error of P"},
+      {"femin", "femin", "pu", -99.0, -999.0, 0.0, kNoNeutral, "lowest error of P"},
+      {"Pmax", "Pmax", "pu", 1.0, 0.0, 999.0, kNoNeutral, "highest Pext"},
+      {"Pmin", "Pmin", "pu", 0.0, -999.0, 1.0, kNoNeutral, "lowest Pext"},
+      {"Tg", "Tg", "s", 0.1, 0.0, 30.0, kNoNeutral, "lag of Pext (0: none)"},
+      {"Ddn", "Ddn", "pu/pu", 0.0, 0.0, 200.0, 0.0, "power per frequency above the reference"},
+      {"Dup", "Dup", "pu/pu", 0.0, 0.0, 200.0, 0.0, "power per frequency below the reference"}};
+  static constexpr int dyr_columns[] = {
+      RemoteBus, FromBus, ToBus, Circuit, VCFlag, RefFlag, FrqFlag, Tfltr, Kp,   Ki,   Tft, Tfv,
+      Vfrz,      Rc,      Xc,    Kc,      emax,   emin,    dbd1,    dbd2,  Qmax, Qmin, Kpg, Kig,
+      Tp,        fdbd1,   fdbd2, femax,   femin,  Pmax,    Pmin,    Tg,    Ddn,  Dup};
+  enum C {
+    by_voltage,  ///< flags: 1 or 0
+    line_drop,
+    by_power,
+    iTfltr,
+    kp,
+    ki,
+    tft,
+    iTfv,
+    vfrz,
+    rc,
+    xc,
+    kc,
+    most,
+    least,
+    below,
+    above,
+    qmax,
+    qmin,
+    kpg,
+    kig,
+    iTp,
+    f_below,
+    f_above,
+    p_most,
+    p_least,
+    pmax,
+    pmin,
+    iTg,
+    ddn,
+    dup,
+    ref,
+    pref,
+    q0,
+    p0,
+    coefficients
+  };
+  enum X { measured, integral, lead, power, p_integral, p_lag };
+  static constexpr State states[] = {
+      {"measured", "pu", "measured voltage or reactive power"},
+      {.name = "integral", .unit = "pu", .meaning = "integral of V or Q", .bends = true},
+      {"lead", "pu", "lag of Qext"},
+      {"power", "pu", "measured active power"},
+      {.name = "p_integral", .unit = "pu", .meaning = "integral of P", .bends = true},
+      {"p_lag", "pu", "lag of Pext"}};
+  using Core = renewable::ElectricalControl;
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    Core::check_flags(parameters, p, {VCFlag, RefFlag, FrqFlag}, where, problems);
+    Core::check_times(parameters, p, {Tfltr, Tft, Tfv, Tp, Tg}, where, problems);
+    Core::check_ranges(parameters, p, {{emax, emin}, {Qmax, Qmin}, {femax, femin}, {Pmax, Pmin}}, where,
+                       problems);
+    Core::check_signs(parameters, p, {dbd2, fdbd2, Kp, Ki, Kpg, Kig, Ddn, Dup}, {dbd1, fdbd1}, where,
+                      problems);
+  }
+  static std::string_view unphysical(const double*) { return ""; }
+  static std::string remark(const double* p) {
+    std::string text = Core::remote(p[RemoteBus]);
+    if (p[FromBus] != 0 || p[ToBus] != 0)
+      text +=
+          fmt::format("{}it is to count P and Q of branch {:g} - {:g}; here those of the unit itself count",
+                      text.empty() ? "" : "; ", p[FromBus], p[ToBus]);
+    return text;
+  }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions&, T* c) {
+    for (const auto& [to, from] : {std::pair<int, int>{by_voltage, RefFlag},
+                                   {line_drop, VCFlag},
+                                   {by_power, FrqFlag},
+                                   {kp, Kp},
+                                   {ki, Ki},
+                                   {tft, Tft},
+                                   {vfrz, Vfrz},
+                                   {rc, Rc},
+                                   {xc, Xc},
+                                   {kc, Kc},
+                                   {most, emax},
+                                   {least, emin},
+                                   {below, dbd1},
+                                   {above, dbd2},
+                                   {qmax, Qmax},
+                                   {qmin, Qmin},
+                                   {kpg, Kpg},
+                                   {f_below, fdbd1},
+                                   {f_above, fdbd2},
+                                   {p_most, femax},
+                                   {p_least, femin},
+                                   {pmax, Pmax},
+                                   {pmin, Pmin},
+                                   {ddn, Ddn},
+                                   {dup, Dup}})
+      c[to] = p[from];
+    c[kig] = value_of(p[FrqFlag]) > 0.5 ? p[Kig] : T(0.0);
+    c[iTfltr] = inverse(p[Tfltr]);
+    c[iTfv] = inverse(p[Tfv]);
+    c[iTp] = inverse(p[Tp]);
+    c[iTg] = inverse(p[Tg]);
+  }
+  template <class T>
+  static T regulated(const T* c, const Signals<T>& s) {
+    using std::sqrt;
+    const T half(0.5);
+    const T re = s.Vr - c[rc] * s.Ir + c[xc] * s.Ii, im = s.Vi - c[rc] * s.Ii - c[xc] * s.Ir;
+    const T dropped = sqrt(re * re + im * im + T(1e-24));
+    const T voltage = select(c[line_drop] > half, dropped, s.V + c[kc] * s.Q);
+    return select(c[by_voltage] > half, voltage, s.Q);
+  }
+  template <class T>
+  static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
+    const T zero(0.0), one(1.0);
+    const T at = lag(c[iTfltr], x[measured], regulated(c, s), dx[measured]);
+    const T error = clamp(renewable::dead_zone(c[ref] + s.dVref - at, c[below], c[above]), c[least], c[most]);
+    const T runs = one - clamp((c[vfrz] - s.V) * T(1.0 / renewable::kDipBand), zero, one);
+    const T q = renewable::regulator(c[kp], c[ki], error, c[qmin], c[qmax], runs, x[integral], dx[integral]);
+    s.Qext = lead_lag(c[tft], c[iTfv], x[lead], q, dx[lead]) - c[q0];
+
+    const T deviation = renewable::dead_zone(zero - s.speed, c[f_below], c[f_above]);
+    const T droop = c[dup] * positive_part(deviation) - c[ddn] * positive_part(zero - deviation);
+    const T p = lag(c[iTp], x[power], s.P, dx[power]);
+    const T p_error = clamp(c[pref] + s.dPref - p + droop, c[p_least], c[p_most]);
+    const T asked =
+        renewable::regulator(c[kpg], c[kig], p_error, c[pmin], c[pmax], one, x[p_integral], dx[p_integral]);
+    const T followed = lag(c[iTg], x[p_lag], asked, dx[p_lag]);
+    s.Pext = select(c[by_power] > T(0.5), followed - c[p0], s.Pext);
+  }
+  template <class T>
+  static std::string steady(const T*, T* c, Signals<T>& s, T* x) {
+    x[measured] = c[ref] = regulated(c, s);
+    x[integral] = x[lead] = c[q0] = s.Qneed;
+    x[power] = c[pref] = s.P;
+    x[p_integral] = x[p_lag] = c[p0] = s.Pneed;
+    const auto outside = [](const char* what, const T& value, const T& low, const T& high) {
+      return value_of(value) < value_of(low) || value_of(value) > value_of(high)
+                 ? fmt::format("{} = {:.4f} pu is needed and its limits are {:g} and {:g} pu", what,
+                               value_of(value), value_of(low), value_of(high))
+                 : std::string();
+    };
+    if (auto why = outside("Qext", c[q0], c[qmin], c[qmax]); !why.empty()) return why;
+    if (value_of(c[by_power]) > 0.5) return outside("Pext", c[p0], c[pmin], c[pmax]);
+    x[p_integral] = x[p_lag] = clamp(c[p0], c[pmin], c[pmax]);
+    return {};
+  }
+};
+
+}  // namespace swingbank::sim::effects::plant_control_repca1
