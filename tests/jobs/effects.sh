@@ -61,7 +61,8 @@ PYTHON
 refuses "a name mistyped" "no effect 'GENRUO' at NAME \(the nearest names are GENROU" "$swingbank" effects GENRUO
 "$swingbank" effects GENRUO SEXX 2>"$work/both.txt" && fail "unknown names were accepted"
 (($(wc -l <"$work/both.txt") == 2)) || fail "not every unknown name was told: $(cat "$work/both.txt")"
-refuses "an inverter" "no effect 'REGCA1' at NAME \(models of inverters, wind and storage are not there yet\)" "$swingbank" effects REGCA1
+"$swingbank" effects REGCA1 | grep -q '^slot: converter' || fail "REGCA1 is no converter"
+refuses "a wind turbine" "no effect 'WT3G1' at NAME \(of the models of inverters, wind and storage it is not there yet\)" "$swingbank" effects WT3G1
 "$swingbank" compare --help | grep -F "{false}" && fail "a flag shows how it is stored"
 
 printf "%s\n" "1 'SEXS' 1 0.1 10 100 0.1 0 5 /" "1 'EXDC1' 1 0 40 0.1 0 0 1 -1 0.1 0.5 0.05 0.7 0 2.8 0.08 3.7 0.33 /" \

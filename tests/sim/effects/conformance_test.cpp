@@ -59,6 +59,7 @@ std::vector<double> draw(const Effect& e, std::mt19937_64& random) {
     auto p = e.standard_parameters();
     for (std::size_t i = 0; i < p.size(); ++i) {
       const auto& r = e.parameters[i];
+      if (r.is_code()) continue;
       p[i] = p[i] == 0.0 ? r.low + 0.01 * u(random) * (r.high - r.low) : p[i] * u(random);
     }
     if (e.unphysical(p.data()).empty()) return p;

@@ -19,14 +19,24 @@ const Complex kVoltage = std::polar(1.02, 0.1), kPower(0.6, 0.15);
 plant::Block standard(const Effect& effect) { return {&effect, effect.standard_parameters()}; }
 plant::Block standard(const char* name) { return standard(*library::compiled().find(name)); }
 
+plant::Plant converter_host(plant::Plant plant, const Effect& effect) {
+  plant.machine = standard("REGCA1");
+  plant.controls.push_back(standard(effect));
+  if (effect.slot != Slot::electrical_control) plant.controls.push_back(standard("REECB1"));
+  if (effect.slot == Slot::torque_control) plant.controls.push_back(standard("WTDTA1"));  // what turns
+  std::ranges::stable_sort(plant.controls, {}, [](const plant::Block& b) { return b.effect->slot; });
+  return plant;
+}
+
 /// A plant with the effect in its slot, and where its signal would lead nowhere, with what reads it.
 plant::Plant host(const Effect& effect) {
   plant::Plant plant;
   plant.name = std::string(effect.name);
   plant.bus = 0;
   plant.generation = kPower;
-  plant.machine = standard("GENROU");
   const Slot slot = effect.slot;
+  if (is_of_converter(slot)) return converter_host(std::move(plant), effect);
+  plant.machine = standard("GENROU");
   if (slot == Slot::transformer) plant.transformer = standard(effect);
   if (is_control(slot)) plant.controls.push_back(standard(effect));
   if (slot != Slot::exciter) plant.controls.push_back(standard("SEXS"));
@@ -222,7 +232,8 @@ TEST(PlantConformance, DualsEqualCentralDifferences) {
 TEST(PlantConformance, VanishesAtNeutral) {
   std::mt19937_64 random(14);
   for (const Effect* e : guests()) {
-    if (e->slot == Slot::exciter || e->slot == Slot::governor) continue;  // they are never nothing
+    if (e->slot == Slot::exciter || e->slot == Slot::governor || e->slot == Slot::electrical_control)
+      continue;  // they are never nothing
     plant::Plant with = host(*e);
     plant::Block& own = own_block(with, *e);
     bool any = false;

@@ -18,6 +18,19 @@ plant::Block standard(const Effect& effect) { return {&effect, effect.standard_p
 grid::Grid host(const Effect& effect) {
   grid::Grid grid = test::two_machine_grid(Conventions::psse());
   plant::Plant& plant = grid.plants[kPlant];
+  if (effect.converter || is_of_converter(effect.slot)) {
+    plant.machine = standard(*library::compiled().find("REGCA1"));
+    if (effect.converter)
+      plant.machine = standard(effect);
+    else
+      plant.controls.push_back(standard(effect));
+    if (effect.slot == Slot::torque_control)
+      plant.controls.push_back(standard(*library::compiled().find("WTDTA1")));
+    if (effect.slot != Slot::electrical_control)
+      plant.controls.push_back(standard(*library::compiled().find("REECB1")));
+    std::ranges::stable_sort(plant.controls, {}, [](const plant::Block& b) { return b.effect->slot; });
+    return grid;
+  }
   if (effect.slot == Slot::machine) plant.machine = standard(effect);
   if (effect.slot == Slot::transformer) plant.transformer = standard(effect);
   if (is_control(effect.slot)) plant.controls.push_back(standard(effect));

@@ -29,7 +29,7 @@ class Draws {
 inline std::vector<const Effect*> effects_in(Slot slot) {
   std::vector<const Effect*> list;
   for (const Effect* e : library::compiled().all())
-    if (e->slot == slot) list.push_back(e);
+    if (e->slot == slot && !e->converter) list.push_back(e);
   return list;
 }
 

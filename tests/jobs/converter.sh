@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# A plant that is a converter, from its .dyr through simulate and plant to compare, calibrate and diagnose's hypotheses.
+source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+
+networks=$SWINGBANK_SOURCE/configs/networks
+raw=$networks/ieee39_genrou.raw
+{
+  grep -v '^32 ' "$networks/ieee39_genrou.dyr"
+  echo "32 'REGCA1' 1 1 0.02 10 0.9 0.4 1.22 1.2 0.8 0.4 -1.3 0.02 0 100 -100 0.7 /"
+  echo "32 'REECB1' 1 0 0 1 1 0 -99 99 0.02 -0.02 0.02 2 1.1 -1.1 0 0.05 0.6 -0.6 1.1 0.9 0.1 1 2 20 0.02 99 -99 1 0 1.3 0.02 /"
+  echo "32 'REPCA1' 1 0 0 0 '0 ' 0 1 1 0.02 2 1 0 0.05 0.7 0 0 0 0.1 -0.1 0 0 0.6 -0.6 1 0.05 0.25 -0.0006 0.0006 99 -99 1 0 0.1 20 0 /"
+} >"$work/case.dyr"
+
+simulate() { "$swingbank" simulate --raw "$raw" --dyr "$work/case.dyr" --plants 32 --channels P,Q,V,theta "$@"; }
+simulate --t-end 2 --out "$work/still.csv" >/dev/null
+simulate --t-end 6 --rate 60 --fault 12:1:1.1 --out "$work/run.csv" >/dev/null
+/usr/bin/python3 - "$work" <<'PYTHON'
+import csv, sys
+def table(name):
+    with open(f"{sys.argv[1]}/{name}.csv") as file:
+        rows = list(csv.reader(file))
+    return {n: [float(v) for v in c] for n, c in zip(rows[0], zip(*rows[1:]))}
+still, run = table("still"), table("run")
+for name in ("32.P_pu", "32.Q_pu", "32.V_pu"):
+    assert max(still[name]) - min(still[name]) < 1e-9, name
+    assert max(run[name]) - min(run[name]) > 0.02, name
+PYTHON
+
+"$swingbank" plant --raw "$raw" --dyr "$work/case.dyr" --bus 32 --out "$work/plant.toml" >/dev/null
+for section in converter electrical_control plant_control; do
+  grep -q "^\[$section\]" "$work/plant.toml" || fail "the plant file has no [$section]"
+done
+"$swingbank" export --dyr "$work/plant.toml" | grep -q "^32 'REGCA1' '1' 1 0.02 10 " || fail "export writes another REGCA1"
+"$swingbank" compare --model "$work/plant.toml" --record "$work/run.csv" --out "$work/compared" >"$work/said" ||
+  fail "its own run is not explained: $(cat "$work/said")"
+sed 's/^Kvi = .*/Kvi = 5.0/; s/^Kqv = .*/Kqv = 0.5/' "$work/plant.toml" >"$work/wrong.toml"
+"$swingbank" compare --model "$work/wrong.toml" --record "$work/run.csv" --out "$work/wrong" >"$work/said" &&
+  fail "another gain was not noticed"
+
+# A control beside the wrong kind of source.
+{
+  cat "$work/case.dyr"
+  echo "32 'SEXS' 1 0.1 10 50 0.1 -4 5 /"
+} >"$work/mixed.dyr"
+refuses "an exciter of a converter" "SEXS for generator 32 .*exciter is part of a synchronous machine" \
+  "$swingbank" simulate --raw "$raw" --dyr "$work/mixed.dyr" --out "$work/x.csv"
+refuses "a plant control of a machine" "REPCA1 for plant 30 .*plant_control is part of a converter" \
+  "$swingbank" simulate --raw "$raw" --dyr "$work/case.dyr" --attach 30:REPCA1 --out "$work/x.csv"

@@ -1,0 +1,108 @@
+// Converters in the lanes against the reference integrator, through faults at and near their terminal.
+#include <map>
+
+#include "sim/lanes/batch.hpp"
+#include "sim/library/library.hpp"
+#include "tests/sim/lanes/random_grids.hpp"
+
+namespace swingbank::sim::lanes {
+namespace {
+
+constexpr double kLimit = 2e-4;  ///< of max(1 pu, the channel's swing); measured up to 1.1e-4
+constexpr std::size_t kPlant = 1;
+constexpr int kMiddle = 1, kTerminal = 2;  ///< buses
+
+using Values = std::map<std::string, double>;
+struct Outfit {
+  std::string name;
+  std::vector<std::pair<std::string, Values>> blocks;  ///< the source first
+};
+
+plant::Block block_of(const std::string& name, const Values& changes) {
+  const Effect& effect = *library::compiled().find(name);
+  plant::Block block{&effect, effect.standard_parameters()};
+  for (const auto& [parameter, value] : changes)
+    block.p.at(static_cast<std::size_t>(effect.parameter_index(parameter))) = value;
+  return block;
+}
+grid::Grid grid_with(const Outfit& outfit) {
+  grid::Grid grid = test::two_machine_grid(Conventions::psse());
+  plant::Plant& plant = grid.plants[kPlant];
+  plant.machine = block_of(outfit.blocks[0].first, outfit.blocks[0].second);
+  for (std::size_t i = 1; i < outfit.blocks.size(); ++i)
+    plant.controls.push_back(block_of(outfit.blocks[i].first, outfit.blocks[i].second));
+  std::ranges::stable_sort(plant.controls, {}, [](const plant::Block& b) { return b.effect->slot; });
+  return grid;
+}
+
+std::vector<network::Event> events(const grid::Grid& grid) {
+  std::vector<network::Event> all(6);
+  all[0].faults = {{kMiddle, 1.0, 1.1, {0.0, 0.001}}};  // bolted, the converter would have no angle
+  all[1].faults = {{kMiddle, 1.0, 1.3, {0.0, 0.05}}};
+  all[2].faults = {{kTerminal, 1.0, 1.15, {}}};
+  all[3].faults = {{kTerminal, 1.0, 1.15, {0.01, 0.1}}};
+  all[4].trips = {{2, 1.0, 1.5}};
+  all[5].generator_trips = {{grid.plants[kPlant].generator, 1.0}};
+  return all;
+}
+
+class Converters : public testing::TestWithParam<Outfit> {};
+
+TEST_P(Converters, LanesFollowTheReference) {
+  const grid::Grid grid = grid_with(GetParam());
+  const auto all = events(grid);
+  reference::ReferenceOptions exact;
+  exact.t_end = 4.0;
+  exact.rate = 60.0;
+  BatchOptions options;
+  options.t_end = exact.t_end;
+  options.rate = exact.rate;
+  std::map<std::uint64_t, Trajectory> runs;
+  Batch batch(grid, options);
+  std::uint64_t next = 0;
+  batch.run([&](Job& job) { return next < all.size() && (job.event = all[next], job.id = next++, true); },
+            [&](const Job& job, const Trajectory& run) { runs[job.id] = run; });
+  for (std::size_t e = 0; e < all.size(); ++e) {
+    const reference::ReferenceRun expected = reference::run_reference(grid, all[e], exact);
+    EXPECT_EQ(expected.outcome, Outcome::stable) << "event " << e << " in the reference";
+    ASSERT_EQ(runs.at(e).outcome, Outcome::stable) << "event " << e << " in the lanes";
+    const auto d = test::difference(grid, all[e], runs.at(e), expected);
+    RecordProperty("worst_" + std::to_string(e), testing::PrintToString(d.value) + " " + d.where);
+    EXPECT_LT(d.value, kLimit) << "event " << e << ": " << d.where;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(
+    All, Converters,
+    testing::Values(Outfit{"Alone", {{"REGCA1", {{"Lvplsw", 1.0}, {"Tfltr", 0.02}}}}},
+                    Outfit{"Reecb1", {{"REGCA1", {}}, {"REECB1", {{"Kqv", 2.0}}}}},
+                    Outfit{"Regulated",
+                           {{"REGCA1", {}},
+                            {"REECB1", {{"QFLAG", 1.0}, {"Kqi", 0.1}, {"Vdip", 0.85}}},
+                            {"REPCA1", {{"RefFlag", 1.0}, {"Kp", 2.0}, {"Vfrz", 0.7}, {"Ddn", 20.0}}}}},
+                    Outfit{"RidesThrough",
+                           {{"REGCA1", {}},
+                            {"REECA1",
+                             {{"Vdip", 0.85}, {"Vup", 1.2}, {"Kqv", 2.0}, {"Thld", -0.1}, {"Thld2", 0.2}}},
+                            {"REPCA1", {}}}},
+                    Outfit{"HoldsAfterwards",
+                           {{"REGCA1", {}},
+                            {"REECA1",
+                             {{"Vdip", 0.85},
+                              {"Vup", 1.2},
+                              {"Kqv", 2.0},
+                              {"Thld", 0.207},
+                              {"Iqfrz", 0.1},
+                              {"PQFLAG", 1.0}}}}},
+                    Outfit{"Battery", {{"REGCA1", {}}, {"REECC1", {{"Kqv", 2.0}}}}},
+                    Outfit{"WindTurbine",
+                           {{"REGCA1", {}},
+                            {"REECA1", {{"Vdip", 0.85}, {"Kqv", 2.0}}},
+                            {"REPCA1", {}},
+                            {"WTTQA1", {}},
+                            {"WTPTA1", {}},
+                            {"WTARA1", {}},
+                            {"WTDTA1", {}}}}),
+    [](const auto& outfit) { return outfit.param.name; });
+
+}  // namespace
+}  // namespace swingbank::sim::lanes
