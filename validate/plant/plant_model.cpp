@@ -39,7 +39,8 @@ std::vector<std::string> effects_of(const EffectLibrary& library, Slot slot, std
 /// in `standard`.
 sim::plant::Block read_block(Config& config, const EffectLibrary& library, Slot slot,
                              const std::string& section, std::vector<std::string>& standard) {
-  sim::plant::Block block{library.find(config.choice(section + ".effect", effects_of(library, slot, section))), {}};
+  sim::plant::Block block{
+      library.find(config.choice(section + ".effect", effects_of(library, slot, section))), {}};
   if (!block.effect || block.effect->slot != slot) return {};
   const bool sound = config.sound();
   const bool may_miss = config.optional<bool>(section + ".standard", false);
@@ -181,8 +182,8 @@ void read_around(Config& config, PlantModel& model) {
   if (!plant.machine.effect) return;
   for (const auto& control : plant.controls)
     if (const std::string why = sim::misfit(*plant.machine.effect, *control.effect); !why.empty())
-      config.problem(std::string(sim::slot_name(control.effect->slot)), std::string(control.effect->name), why,
-                     "remove the section");
+      config.problem(std::string(sim::slot_name(control.effect->slot)), std::string(control.effect->name),
+                     why, "remove the section");
 }
 
 /// Values before a calibration that did not hold, by effect and parameter.

@@ -172,8 +172,9 @@ void sort_controls(plant::Plant& plant) {
 }
 std::string remark_on(const plant::Block& block, const std::string& where, const std::string& plant) {
   const std::string left_out = block.effect->remark ? block.effect->remark(block.p.data()) : std::string();
-  return left_out.empty() ? left_out
-                          : fmt::format("{}: {} of generator {}: {}", where, block.effect->name, plant, left_out);
+  return left_out.empty()
+             ? left_out
+             : fmt::format("{}: {} of generator {}: {}", where, block.effect->name, plant, left_out);
 }
 void check_fit(const plant::Plant& plant, const std::string& where, Problems& problems) {
   if (!plant.machine.effect) return;

@@ -1,9 +1,9 @@
 #pragma once
 // Lanes: sources whose current is no linear function of the voltage - loads with a model of their own,
-// machines with saliency, converters. Each is written as E = V + z I(V) behind its constant impedance z, so that the
-// network stays I = (G + jB) E; the voltages V at these sources are found by Newton's method, every lane
-// until it has converged and no further, so that no lane's bits depend on another's. V is the machine's own
-// terminal: behind a step-up transformer of ratio n the network has n E, and the machine n I.
+// machines with saliency, converters. Each is written as E = V + z I(V) behind its constant impedance z, so
+// that the network stays I = (G + jB) E; the voltages V at these sources are found by Newton's method, every
+// lane until it has converged and no further, so that no lane's bits depend on another's. V is the machine's
+// own terminal: behind a step-up transformer of ratio n the network has n E, and the machine n I.
 #include "sim/lanes/detail/lanes.hpp"
 
 namespace swingbank::sim::lanes {

@@ -40,9 +40,9 @@ class Lanes {
   static constexpr std::size_t kFlats = 1 + Traits::directions;  ///< flats in one T
   struct PlantSlice {
     plant::PlantEquations<T> equations;
-    int x, c, m;     ///< offsets of states, coefficients and scratch
-    int watch = -1;      ///< of watched_, -1: none
-    bool rotor = true;   ///< whether its first state is a rotor's angle; else it is a converter
+    int x, c, m;        ///< offsets of states, coefficients and scratch
+    int watch = -1;     ///< of watched_, -1: none
+    bool rotor = true;  ///< whether its first state is a rotor's angle; else it is a converter
   };
 
   /// An exciter behind a stabiliser: whether Vs comes to its limits or leaves them is seen from stages in
