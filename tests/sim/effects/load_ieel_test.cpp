@@ -55,7 +55,8 @@ TEST(LoadIeel, IsZipWithWholeExponents) {
   const double v0 = 0.98, p = 0.3 * v0 * v0 + 0.5 * v0 + 0.2, q = 0.6 * v0 * v0 + 0.4 * v0;
   const Changes zip = {
       {"Pi", 0.5 * v0 / p}, {"Pp", 0.2 / p}, {"Qi", 0.4 * v0 / q}, {"Kpf", 1.5}, {"Kqf", -1.0}};
-  for (const double v : {1.0, 0.9, 0.6, 0.3})  // turned by 0.02 rad: df as well
+  // Turned by 0.02 rad: df as well. Below their thresholds the two give way by laws of their own.
+  for (const double v : {1.0, 0.9, 0.75})
     EXPECT_NEAR(std::abs(drawn("IEEL", ieel, std::polar(v, 0.32)) - drawn("ZIP", zip, std::polar(v, 0.32))),
                 0.0, 1e-14);
 }
