@@ -152,8 +152,8 @@ struct Model {
       Vq3,       Iq3,    Vq4,   Iq4,   Vp1,   Ip1,    Vp2,  Ip2,  Vp3,   Ip3,  Vp4,  Ip4};
   using Core = renewable::ElectricalControl;
   static constexpr double kFollow =
-      2e-3;                             ///< in which timers are set and the limit to be kept is followed [s]
-  static constexpr double kEnd = 1e-3;  ///< over which what is kept after a dip fades [s]
+      2e-3;  ///< in which timers are set and the limit to be kept is followed [s]
+  static constexpr double kFading = 1e-3;  ///< over which what is kept after a dip fades [s]
   enum C {
     of_q = Core::coefficients,
     of_p = of_q + renewable::kByVoltage,
@@ -250,7 +250,7 @@ struct Model {
   static T timer(const T& dip, const T& whole, const T& x, T& dx) {
     const T zero(0.0), one(1.0);
     dx = dip * (whole - x) * T(1.0 / kFollow) - (one - dip);  // to the state's lower limit
-    return (one - dip) * clamp(x * T(1.0 / kEnd), zero, one);
+    return (one - dip) * clamp(x * T(1.0 / kFading), zero, one);
   }
   template <class T>
   static T turning(const T* c, const Signals<T>& s) {
