@@ -112,6 +112,7 @@ int main(int argc, char** argv) {
       .excludes(system_option);
   reading.add_to(line);
   reading.add_component(line);
+  reading.add_point(line).excludes(system_option);
   judging.add_to(line).excludes(system_option);
   line.add("--out", out, "folder for report.html, compare.json and the curves as CSV").shows_default();
   line.add_flag("--json", json, "print the result as JSON instead of tables");
@@ -125,7 +126,10 @@ int main(int argc, char** argv) {
     plant::PlantModel model = plant::load_plant_model(model_file);
     jobs::tell(model);
     reading.apply(model);
-    auto [records, warnings] = check::read_records(record_files, model);
+    Problems problems;
+    auto [records, warnings] =
+        check::read_records(record_files, model, problems, reading.preparing(model_file));
+    problems.raise();
     std::vector<std::string> names;
     names.reserve(records.size());
     for (const auto& r : records) names.push_back(r.name);

@@ -16,6 +16,7 @@
 #include "jobs/course.hpp"
 #include "validate/check/record_set.hpp"
 #include "validate/event/component_model.hpp"
+#include "validate/event/point.hpp"
 #include "validate/plant/plant_model.hpp"
 #include "validate/record/record.hpp"
 
@@ -29,6 +30,7 @@ struct Reading {
   std::vector<std::string> columns;  ///< "V=BUS1.VPM [kV]"
   std::optional<double> from, until;
   std::string component = "plant";  ///< what of the plant is tried
+  std::string point;                ///< file of the point that several units share; empty: the plant's own
 
   /// Adds the options to a command line.
   void add_to(CommandLine& line) {
@@ -41,6 +43,20 @@ struct Reading {
         .comma_separated();
     line.add("--from", from, "leave out what comes before [s]");
     line.add("--until", until, "leave out what comes later [s]");
+  }
+  /// Adds the point that several units share.
+  Option add_point(CommandLine& line) {
+    return line.add(
+        "--point", point,
+        "file of the measured point where several units or a collector stand behind it: the others, whose models "
+        "are believed, are taken off the record (configs/plants/README.md)");
+  }
+  /// What is done to each record before it is checked.
+  [[nodiscard]] validate::check::Preparing preparing(const std::string& model_file) const {
+    if (point.empty()) return {};
+    return [at = validate::event::load_point(point, model_file)](validate::record::Record r) {
+      return validate::event::of_tried_unit(at, std::move(r));
+    };
   }
   /// Adds what of the plant is tried.
   void add_component(CommandLine& line) {
@@ -59,6 +75,7 @@ struct Reading {
     for (const auto& column : columns) all.insert(all.end(), {"--columns", column});
     if (from) all.insert(all.end(), {"--from", fmt::format("{}", *from)});
     if (until) all.insert(all.end(), {"--until", fmt::format("{}", *until)});
+    if (!point.empty()) all.insert(all.end(), {"--point", point});
     return all;
   }
   /// Puts them into the model.
@@ -89,9 +106,10 @@ struct Reading {
 /// Reads and checks every record, so that all faults of all files are told at once; findings that do not
 /// refuse go to stderr.
 inline validate::check::RecordSet read_events(const std::vector<std::string>& files,
-                                              const validate::plant::PlantModel& model) {
+                                              const validate::plant::PlantModel& model,
+                                              const validate::check::Preparing& prepare = {}) {
   Problems problems;
-  validate::check::RecordSet set = validate::check::read_records(files, model, problems);
+  validate::check::RecordSet set = validate::check::read_records(files, model, problems, prepare);
   for (std::size_t k = 0; k < set.records.size(); ++k)
     for (const auto& warning : set.warnings[k])
       if (!quiet) fmt::print(stderr, "note on {}: {}\n", set.records[k].name, warning);

@@ -45,7 +45,7 @@ void require_same_machine(const train::run::NetworkInfo& network, const plant::P
 /// Every record, read and checked, so that all faults of all files are told at once.
 std::vector<Estimated> read_all(const Options& o, const plant::PlantModel& model) {
   std::vector<Estimated> all;
-  for (record::Record& record : jobs::read_events(o.records, model).records) {
+  for (record::Record& record : jobs::read_events(o.records, model, o.reading.preparing(o.model)).records) {
     record::require_angle(record);
     all.push_back({std::move(record), {}, {}});
   }
@@ -190,6 +190,7 @@ int main(int argc, char** argv) {
   line.add("--model", o.model, "plant file: machine model and base, bases of the records").required();
   line.add("--records,--record", o.records, "records (CSV, COMTRADE or HDF5), one or several").required();
   o.reading.add_to(line);
+  o.reading.add_point(line);
   line.add("--event", o.event, "when the event begins [s] (default: found)");
   line.add("--noise", o.noise,
            "level of the records' noise, as measured before the event (0.001: 0.1 %), for a network that was "

@@ -11,8 +11,10 @@ void add_all(const std::vector<Problem>& found, Problems& problems) {
   for (const Problem& p : found) problems.add(p.what, p.where, p.why, p.remedy);
 }
 
-void read_into(RecordSet& set, const std::string& file, const plant::PlantModel& model, Problems& problems) {
+void read_into(RecordSet& set, const std::string& file, const plant::PlantModel& model, Problems& problems,
+               const Preparing& prepare) {
   record::Record record = record::read_staged(file, model.record_base, model.reading);
+  if (prepare && model.plant.machine.effect != nullptr) record = prepare(std::move(record));
   if (std::ranges::find(set.records, record.name, &record::Record::name) != set.records.end())
     problems.add("two records named " + record.name, file,
                  "they could not be told apart, and their results would overwrite each other",
@@ -47,11 +49,11 @@ RecordSet read_records(const std::vector<std::string>& files, const plant::Plant
 }
 
 RecordSet read_records(const std::vector<std::string>& files, const plant::PlantModel& model,
-                       Problems& problems) {
+                       Problems& problems, const Preparing& prepare) {
   RecordSet set;
   for (const std::string& file : files) {
     try {
-      read_into(set, file, model, problems);
+      read_into(set, file, model, problems, prepare);
     } catch (const InputError& error) {
       add_all(error.problems(), problems);
     }

@@ -1,0 +1,261 @@
+#include "validate/event/point.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/config.hpp"
+#include "validate/event/event.hpp"
+#include "validate/event/play.hpp"
+
+namespace swingbank::validate::event {
+namespace {
+
+Collector read_collector(Config& c) {
+  Collector z;
+  if (!c.has("collector")) return z;
+  const Range any{-10.0, 10.0, "pu"};
+  z.R = c.require<double>("collector.r_pu", {0.0, 10.0, "pu"});
+  z.X = c.require<double>("collector.x_pu", any);
+  z.B = c.optional<double>("collector.b_pu", 0.0, any);
+  z.ratio = c.optional<double>("collector.ratio", 1.0, {0.5, 2.0, ""});
+  z.mva = c.require<double>("collector.base_mva", {1e-3, 1e6, "MVA"});
+  return z;
+}
+
+OtherUnit read_unit(Config& c, const std::string& at, const std::filesystem::path& file, Problems& problems) {
+  OtherUnit unit;
+  const bool share = c.has(at + ".share");
+  if (share) {
+    unit.share = c.require<double>(at + ".share", {1e-6, 1.0, ""});
+  } else {
+    unit.P = c.require<double>(at + ".P_MW", {-1e5, 1e5, "MW"});
+    unit.Q = c.require<double>(at + ".Q_Mvar", {-1e5, 1e5, "Mvar"});
+  }
+  try {
+    unit.model = plant::load_plant_model(file);
+  } catch (const InputError& error) {
+    for (const Problem& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
+  }
+  return unit;
+}
+
+/// Mean before the event.
+Complex mean_power(const record::Record& r, int samples) {
+  Complex sum = 0;
+  for (int k = 0; k < samples; ++k)
+    sum += Complex(r.P[static_cast<std::size_t>(k)], r.Q[static_cast<std::size_t>(k)]);
+  return sum / static_cast<double>(samples);
+}
+
+}  // namespace
+
+MeasuredPoint load_point(const std::filesystem::path& file, const std::filesystem::path& tried) {
+  Config c(file);
+  MeasuredPoint point{.file = file.string(), .collector = read_collector(c), .tried = {}, .others = {}};
+  Problems problems;
+  bool found = false;
+  double shares = 0;
+  if (c.has("unit")) c.ignore("unit");  // its keys are compared below
+  for (int k = 0; c.has(fmt::format("unit[{}]", k)); ++k) {
+    const std::string at = fmt::format("unit[{}]", k);
+    for (const std::string& key : c.keys(at))
+      if (key != "model" && key != "share" && key != "P_MW" && key != "Q_Mvar")
+        c.problem(at + "." + key, "unknown key " + key, "a unit has model, and share or P_MW and Q_Mvar",
+                  "remove it");
+    const std::filesystem::path model = c.file(at + ".model");
+    std::error_code error;
+    if (model.empty() || !std::filesystem::exists(model, error)) continue;  // told by the config
+    if (std::filesystem::equivalent(model, tried, error)) {
+      found = true;
+      point.tried = plant::load_plant_model(model);
+      for (const char* key : {".share", ".P_MW", ".Q_Mvar"}) c.ignore(at + key);
+      continue;
+    }
+    point.others.push_back(read_unit(c, at, model, problems));
+    shares += point.others.back().share;
+  }
+  if (!found)
+    c.problem("unit", "the plant file " + tried.string() + " is none of the units",
+              "its part of the record is what the others leave",
+              "list it as a [[unit]] with model = its path");
+  if (shares >= 1 - 1e-9)
+    c.problem("unit", fmt::format("shares of {:g} beside the unit that is tried", shares),
+              "they leave nothing for it", "give every unit its share of the whole");
+  for (const Problem& p : problems.list()) c.problem("unit", p.what + " at " + p.where, p.why, p.remedy);
+  c.raise();
+  return point;
+}
+
+record::Record behind_collector(record::Record r, const Collector& z) {
+  if (z.R == 0 && z.X == 0 && z.B == 0 && z.ratio == 1) return r;
+  const double scale = r.base.mva / z.mva;
+  const Complex Z(z.R * scale, z.X * scale), half(0, z.B / scale / 2);
+  for (std::size_t k = 0; k < r.t.size(); ++k) {
+    const Complex outer = std::polar(r.V[k], r.theta[k]);
+    const Complex through = std::conj(Complex(r.P[k], r.Q[k]) / outer) + half * outer;
+    const Complex inner = outer + Z * through, V = inner * z.ratio;
+    const Complex S = V * std::conj((through + half * inner) / z.ratio);
+    r.V[k] = std::abs(V);
+    r.theta[k] += std::arg(V / outer);
+    r.P[k] = S.real();
+    r.Q[k] = S.imag();
+  }
+  r.notes.push_back(fmt::format(
+      "V, angle, P and Q were moved behind the collector of {:g} + j{:g} pu on {:g} MVA.", z.R, z.X, z.mva));
+  return r;
+}
+
+namespace {
+
+/// A unit behind the point with what the record shows there, made ready for its model.
+struct Standing {
+  sim::plant::PlantUnderTest tested;
+  Complex start;  ///< P and Q before the event [pu on the record's base]
+  WhitenedEvents events;
+  [[nodiscard]] playin::Response answer(const EventState& state, const Playing& how) const {
+    return play(tested, events[0], state, {}, how);
+  }
+};
+
+FitEventOptions of_power() {
+  FitEventOptions options;
+  options.measured_states = false;
+  return options;
+}
+
+/// With its dispatch held still: what it does then is the model's answer alone.
+Standing standing(const plant::PlantModel& model, record::Record seen, Complex start) {
+  seen.P.assign(seen.t.size(), start.real());
+  seen.Q.assign(seen.t.size(), start.imag());
+  return {model.under_test(), start, prepare_events(model, {std::move(seen)}, of_power())};
+}
+
+/// Of the whole before the event, which may be more than the unit could give.
+Complex share_of(const OtherUnit& unit, record::Record seen) {
+  for (auto* channel : {&seen.P, &seen.Q})
+    for (double& x : *channel) x *= unit.share;
+  return mean_power(seen, prepare_events(unit.model, {seen}, of_power())[0].start.samples);
+}
+
+/// What all units together leave of the measured P and Q until shortly after the switchings.
+Eigen::VectorXd left_over(const std::vector<Standing>& units, const record::Record& whole,
+                          const EventState& state) {
+  constexpr double kAfter = 0.5;  // [s]; later the instants matter less than the models
+  const FitEvent& event = units[0].events[0];
+  const Playing how{.tolerance = 1e-7, .hasty = false, .until = event.switchings.back().time + kAfter};
+  std::vector<playin::Response> answers;
+  for (const Standing& unit : units) answers.push_back(unit.answer(state, how));
+  Eigen::VectorXd left = Eigen::VectorXd::Zero(2 * static_cast<Eigen::Index>(whole.t.size()));
+  for (std::size_t k = 0; k < whole.t.size() && whole.t[k] <= how.until; ++k) {
+    if (!event.compared(k)) continue;
+    double P = whole.P[k], Q = whole.Q[k];
+    for (const playin::Response& r : answers)
+      P -= r.of(playin::Output::P)[k], Q -= r.of(playin::Output::Q)[k];
+    left.segment<2>(2 * static_cast<Eigen::Index>(k)) = Eigen::Vector2d(P, Q);
+  }
+  return left;
+}
+
+/// The step of least squares along `slopes` that keeps `at` within -1 to 1: what would leave stops there, and
+/// the rest is solved anew.
+Eigen::VectorXd bounded_step(const Eigen::MatrixXd& slopes, Eigen::VectorXd left, const Eigen::VectorXd& at) {
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(at.size());
+  std::vector<Eigen::Index> free(static_cast<std::size_t>(at.size()));
+  std::iota(free.begin(), free.end(), 0);
+  while (!free.empty()) {
+    const Eigen::VectorXd solved = slopes(Eigen::all, free).colPivHouseholderQr().solve(-left);
+    std::vector<Eigen::Index> inside;
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      const Eigen::Index k = free[i];
+      const double end = at[k] + solved[static_cast<Eigen::Index>(i)];
+      step[k] = std::clamp(end, -1.0, 1.0) - at[k];
+      if (std::abs(end) <= 1)
+        inside.push_back(k);
+      else
+        left += slopes.col(k) * step[k];
+    }
+    if (inside.size() == free.size()) break;
+    free = inside;
+  }
+  return step;
+}
+
+/// The instants within their sample intervals at which all units together meet the record best
+/// (Gauss-Newton): half an interval at 60 per second would cost the units several per cent of their power
+/// during a fault.
+EventState fitted_instants(const std::vector<Standing>& units, const record::Record& whole) {
+  constexpr int kRounds = 8;
+  constexpr double kAside = 0.02, kEnough = 1e-4;  // of the half interval
+  const auto& switchings = units[0].events[0].switchings;
+  const auto n = static_cast<Eigen::Index>(switchings.size());
+  const auto state_at = [&](const Eigen::VectorXd& at) {
+    EventState state;
+    for (std::size_t k = 0; k < switchings.size(); ++k)
+      state.switchings.push_back(switchings[k].time +
+                                 switchings[k].uncertainty * at[static_cast<Eigen::Index>(k)]);
+    return state;
+  };
+  const auto left_at = [&](const Eigen::VectorXd& at) { return left_over(units, whole, state_at(at)); };
+  Eigen::VectorXd at = Eigen::VectorXd::Zero(n), left = left_at(at);
+  for (int round = 0; round < kRounds; ++round) {
+    Eigen::MatrixXd slopes(left.size(), n);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const double aside = at[k] > 0 ? -kAside : kAside;
+      Eigen::VectorXd beside = at;
+      beside[k] += aside;
+      slopes.col(k) = (left_at(beside) - left) / aside;
+    }
+    Eigen::VectorXd step = bounded_step(slopes, left, at);
+    Eigen::VectorXd next = left_at(at + step);
+    for (int half = 0; half < 5 && next.squaredNorm() > left.squaredNorm(); ++half)
+      next = left_at(at + (step *= 0.5));
+    if (next.squaredNorm() > left.squaredNorm()) break;
+    at += step, left = next;
+    if (step.cwiseAbs().maxCoeff() < kEnough) break;
+  }
+  return state_at(at);
+}
+
+}  // namespace
+
+record::Record of_tried_unit(const MeasuredPoint& point, record::Record record) {
+  record::require_angle(record);
+  if (record.P.size() != record.t.size() || record.Q.size() != record.t.size())
+    throw InputError({"no P and Q", record.name, "what flows at the point is shared among its units",
+                      "record both there"});
+  record = behind_collector(std::move(record), point.collector);
+  if (point.others.empty()) return record;
+  record::Record seen = record;
+  for (auto* channel :
+       {&seen.speed, &seen.Efd, &seen.Ifd, &seen.Vs, &seen.Vref, &seen.Pm, &seen.Pref, &seen.gate})
+    channel->clear();  // the tried unit's own
+  std::vector<Standing> units;
+  Complex others = 0;
+  for (const OtherUnit& unit : point.others) {
+    const Complex start = unit.share > 0 ? share_of(unit, seen) : Complex(unit.P, unit.Q) / record.base.mva;
+    units.push_back(standing(unit.model, seen, start));
+    others += start;
+  }
+  const Complex whole = mean_power(seen, units[0].events[0].start.samples);
+  units.push_back(standing(point.tried, seen, whole - others));
+  EventState state;
+  if (!units[0].events[0].switchings.empty()) state = fitted_instants(units, record);
+  for (std::size_t u = 0; u < point.others.size(); ++u) {
+    const playin::Response r = units[u].answer(state, {.tolerance = 1e-8, .hasty = false});
+    for (std::size_t k = 0; k < record.t.size(); ++k) {
+      record.P[k] -= r.of(playin::Output::P)[k];
+      record.Q[k] -= r.of(playin::Output::Q)[k];
+    }
+    const Complex start = units[u].start * record.base.mva;
+    record.notes.push_back(
+        fmt::format("What {} does by its model was taken off; it began at {:.4g} MW and {:.4g} Mvar.",
+                    point.others[u].model.name, start.real(), start.imag()));
+  }
+  return record;
+}
+
+}  // namespace swingbank::validate::event
