@@ -85,7 +85,7 @@ class OwnHand {
   std::thread thread_;  // last: it uses the others
 };
 
-[[noreturn]] void end_all_ranks(const Ranks& ranks, const std::string& why) {
+[[noreturn]] void give_up(const Ranks& ranks, const std::string& why) {
   if (ranks.world != MPI_COMM_NULL) ranks::end_all_ranks(why.c_str());
   fmt::print(stderr, "{}: the run ends; what is finished is safe, run the command again to continue\n", why);
   std::_Exit(1);  // its thread cannot be ended
@@ -125,8 +125,8 @@ class Giver {
     for (const auto& [rank, given] : out_) {
       const double age = std::chrono::duration<double>(Clock::now() - given.since).count();
       if (age > shared_.limit)
-        end_all_ranks(ranks_, fmt::format("{} takes longer than {:g} s at rank {}", shared_.name(given.item),
-                                          shared_.limit, rank));
+        give_up(ranks_, fmt::format("{} takes longer than {:g} s at rank {}", shared_.name(given.item),
+                                    shared_.limit, rank));
     }
   }
   void finish(std::size_t item, const std::string& result) {
