@@ -42,7 +42,7 @@ struct Trajectory {
   std::vector<double, CacheAligned<double>> slopes;  ///< like values, once per direction: see slope()
   Outcome outcome = Outcome::stable;
   double stopped_at = 0.0;      ///< [s]: t_end, or when synchronism was lost
-  double largest_spread = 0.0;  ///< largest pairwise rotor angle difference seen [rad]
+  double largest_spread = 0.0;  ///< how far two rotor angles moved apart since the start [rad]
 
   [[nodiscard]] int rows() const { return static_cast<int>(plants.size() * channels.size()); }
   /// Makes room for every row; with `whole_lines` each row starts on a cache line.

@@ -16,11 +16,13 @@ namespace swingbank::sim::lanes {
 
 struct BatchOptions {
   double t_end = 15.0, rate = 120.0;
-  double tolerance = 1e-6;         ///< error per step, weighted maximum norm over the states
-  std::vector<int> plants;         ///< recorded; empty: all
-  std::vector<Channel> channels;   ///< recorded; empty: all of kChannels
-  int lanes = 0;                   ///< 1, 4 or 8; 0: the widest this build was made for
-  double lose_at = constants::pi;  ///< pairwise rotor angle difference that ends a run [rad]
+  double tolerance = 1e-6;        ///< error per step, weighted maximum norm over the states
+  std::vector<int> plants;        ///< recorded; empty: all
+  std::vector<Channel> channels;  ///< recorded; empty: all of kChannels
+  int lanes = 0;                  ///< 1, 4 or 8; 0: the widest this build was made for
+  /// A run ends where a rotor angle has moved by so much against another's of the same island since the start
+  double lose_at = constants::pi;  ///< [rad]
+  bool absolute = false;           ///< judge the angles themselves, over the whole grid
   bool sensitivities = false;      ///< carry derivatives along Job::seeds; always 8 lanes
 };
 

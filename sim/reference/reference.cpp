@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <stdexcept>
 
@@ -154,9 +155,7 @@ class Recorder {
       run_.bus_v[i * run_.samples + k] = std::hypot(v[2 * b], v[2 * b + 1]);
       run_.bus_theta[i * run_.samples + k] = angle_[b];
     }
-    const double spread = angle_spread(system, y);
-    run_.largest_spread = std::max(run_.largest_spread, spread);
-    if (spread >= options_.lose_at) return finish(k, Outcome::lost_synchronism);
+    if (lost(k, system, y)) return finish(k, Outcome::lost_synchronism);
     if (!std::all_of(y, y + system.size(), [](double value) { return std::isfinite(value); }))
       return finish(k, Outcome::not_finite);
     return true;
@@ -225,15 +224,41 @@ class Recorder {
       }
     }
   }
-  [[nodiscard]] double angle_spread(const ReferenceSystem& system, const double* y) const {
+  /// The units of an island that lie furthest apart in a quantity.
+  struct Ends {
     double low = 1e300, high = -1e300;
+    std::size_t lowest = 0, highest = 0;
+    void take(double value, std::size_t unit) {
+      if (value < low) low = value, lowest = unit;
+      if (value > high) high = value, highest = unit;
+    }
+  };
+  bool beyond(const std::map<int, Ends>& islands, double limit, const char* criterion, double& worst) {
+    bool over = false;
+    for (const auto& [number, ends] : islands) {
+      const double apart = ends.high - ends.low;
+      worst = std::max(worst, apart);
+      if (over || apart < limit) continue;
+      over = true;
+      run_.lost_by = std::string(criterion) + ": " + plants_.units()[ends.highest].plant->name + " against " +
+                     plants_.units()[ends.lowest].plant->name;
+    }
+    return over;
+  }
+  bool lost(int k, const ReferenceSystem& system, const double* y) {
+    std::map<int, Ends> angles, speeds;
     for (std::size_t u = 0; u < plants_.units().size(); ++u) {
       const auto& unit = plants_.units()[u];
       if (unit.delta < 0 || system.tripped(u)) continue;
-      low = std::min(low, y[unit.first + unit.delta]);
-      high = std::max(high, y[unit.first + unit.delta]);
+      const int island = system.island(unit.bus);
+      angles[island].take(y[unit.first + unit.delta] - unit.operating.x[static_cast<std::size_t>(unit.delta)],
+                          u);
+      Complex current;
+      speeds[island].take(system.signals(u, k / options_.rate, y, current).speed, u);
     }
-    return std::max(0.0, high - low);
+    double slip = 0.0;
+    return beyond(angles, options_.lose_at, "angle", run_.largest_spread) ||
+           beyond(speeds, options_.lose_at_slip, "slip", slip);
   }
 
   const ReferencePlants& plants_;

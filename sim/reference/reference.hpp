@@ -15,7 +15,10 @@ struct ReferenceOptions {
   std::vector<Channel> channels;     ///< empty: all of kChannels
   std::vector<int> buses;            ///< whose voltage is recorded as well, by index in the network
   bool after_switching = false;      ///< at a switching instant give the value just after it
-  double lose_at = constants::pi;    ///< pairwise rotor angle difference that ends a run [rad]
+  /// Two criteria end a run, both judged within each island of the grid as it then is: a rotor angle has
+  /// moved by so much against another's since the start [rad],
+  double lose_at = constants::pi;
+  double lose_at_slip = 0.1;  ///< or a rotor is this much faster or slower than another [pu]
 };
 
 /// After a loss of synchronism (or any other end before t_end) the remaining samples repeat the last value.
@@ -23,8 +26,9 @@ struct ReferenceRun : Trajectory {
   std::vector<int> buses;     ///< by index in the network
   std::vector<double> bus_v;  ///< [bus][sample], magnitude [pu]
   std::vector<double>
-      bus_theta;   ///< [bus][sample], angle, continuous from sample to sample; held while V = 0 [rad]
-  long steps = 0;  ///< integrator steps
+      bus_theta;        ///< [bus][sample], angle, continuous from sample to sample; held while V = 0 [rad]
+  long steps = 0;       ///< integrator steps
+  std::string lost_by;  ///< which criterion ended the run, and the two plants: "angle: 30 against 39"
 };
 
 /// Throws InputError where the event cannot be played on this network (unknown bus, a part of the grid cut

@@ -60,6 +60,7 @@ struct LaneRun {
   int pending = 0;                                    ///< samples whose states wait to be evaluated
   std::vector<double, CacheAligned<double>> waiting;  ///< their states, [samples of a pack][state][sample]
   std::vector<double> theta;  ///< last terminal angle per recorded plant, held while V = 0 [rad]
+  std::vector<int> islands;   ///< per plant, where the segment has several; else empty
   LaneClock clock;
   Trajectory record;
 };

@@ -3,6 +3,7 @@
 // promises.
 #include <cmath>
 #include <limits>
+#include <map>
 #include <string>
 
 #include "sim/lanes/detail/internal_network.hpp"
@@ -148,6 +149,7 @@ class Lanes {
   void commit(unsigned accepted);
   void clamp_states();
   T spread(const T* x) const;
+  double spread_of_islands(int lane) const;
   void settle(unsigned accepted, const Next& next, const Done& done);
 
   const grid::Grid& grid_;
@@ -186,6 +188,7 @@ class Lanes {
   std::vector<T> algebra_;      ///< scratch of newton_step
   T time_{}, start_{};          ///< of the evaluation, of the step, per lane [s]
   std::vector<T> y_, trial_;    ///< states
+  std::vector<T> rest_;         ///< rotor angle of each plant at its operating point [rad]
   std::vector<T> k_[plant::dp54::kStages];
   std::vector<T> kept_, unused_;
   std::vector<LaneRun> lanes_;
@@ -195,6 +198,7 @@ class Lanes {
   std::vector<std::vector<double>> connected_;        ///< per lane and source: part that is connected
   unsigned active_ = 0, fresh_ = 0;  ///< lanes that run; lanes whose first stage must be evaluated anew
   unsigned tripped_ = 0;             ///< lanes in which a plant is tripped
+  int islands_ = 1;                  ///< of the grid with nothing tripped
 };
 
 }  // namespace swingbank::sim::lanes

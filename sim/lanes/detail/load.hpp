@@ -6,6 +6,7 @@
 #include <set>
 
 #include "sim/lanes/detail/lanes.hpp"
+#include "sim/network/connectivity.hpp"
 
 namespace swingbank::sim::lanes {
 
@@ -106,6 +107,8 @@ void Lanes<T>::reserve() {
   algebra_.assign(free + 2 * free + free * free, T(0.0));
   for (auto* v : {&er_, &ei_}) v->assign(sources, T(0.0));
   for (auto* v : {&y_, &trial_, &kept_, &unused_}) v->assign(states, T(0.0));
+  rest_.assign(n, T(0.0));
+  islands_ = std::ranges::max(network::islands(grid_.network)) + 1;
   for (auto& k : k_) k.assign(states, T(0.0));
   for (int i = 0; i < states_; ++i)
     if (needed_[static_cast<std::size_t>(i)]) wanted_.push_back(i);
@@ -128,6 +131,7 @@ void Lanes<T>::load_plant(int lane, std::size_t plant, const plant::OperatingOf<
   };
   for (std::size_t i = 0; i < at.c.size(); ++i) put(per_lane_.c[static_cast<std::size_t>(p.c) + i], at.c[i]);
   for (std::size_t i = 0; i < at.x.size(); ++i) put(y_[static_cast<std::size_t>(p.x) + i], at.x[i]);
+  if (plants_[plant].rotor) Traits::set(rest_[plant], lane, options_.absolute ? 0.0 : value_of(at.x[0]));
   put(per_lane_.efd[plant], at.Efd);
   put(per_lane_.tm[plant], at.Tm);
   const Value* z = at.c.data() + grid_.plants[plant].machine.effect->coefficients + plant::joint_r;
@@ -255,6 +259,14 @@ void Lanes<T>::enter_segment(int lane) {
   grounded_[l] = terminals.grounded;
   connected_[l] = terminals.connected;
   tripped_ &= ~(1U << lane);
+  run.islands.clear();
+  if (!options_.absolute && (islands_ > 1 || !segment.topology.open.empty())) {
+    const std::vector<int> of_bus = network::islands(grid_.network, segment.topology.open);
+    for (const plant::Plant& plant : grid_.plants)
+      run.islands.push_back(of_bus[static_cast<std::size_t>(plant.bus)]);
+    if (std::ranges::all_of(run.islands, [&](int i) { return i == run.islands.front(); }))
+      run.islands.clear();
+  }
   for (std::size_t i = 0; i < plants_.size(); ++i) {
     Traits::set(per_lane_.on[i], lane, terminals.tripped[i] ? 0.0 : 1.0);
     if (terminals.tripped[i]) tripped_ |= 1U << lane;

@@ -109,12 +109,13 @@ typename Lanes<T>::Flat Lanes<T>::kink_error(std::size_t state) const {
   return worst * Flat(kKinkShare * std::max(weight_[state], kKinkWeight / options_.tolerance));
 }
 
+/// How far apart the rotor angles have moved since the start, over all plants.
 template <class T>
 T Lanes<T>::spread(const T* x) const {
   T low(std::numeric_limits<double>::max()), high = -low;
   for (std::size_t i = 0; i < plants_.size(); ++i) {
     if (!plants_[i].rotor) continue;
-    const T& delta = x[plants_[i].x];
+    const T delta = x[plants_[i].x] - rest_[i];
     if (tripped_ != 0) {
       const auto on = per_lane_.on[i] > T(0.5);
       low = minimum(low, select(on, delta, low));
@@ -125,6 +126,27 @@ T Lanes<T>::spread(const T* x) const {
     }
   }
   return maximum(high - low, T(0.0));
+}
+
+/// The same within the islands of a lane whose grid is in several, of the island where it is largest.
+template <class T>
+double Lanes<T>::spread_of_islands(int lane) const {
+  const auto l = static_cast<std::size_t>(lane);
+  const std::vector<int>& island = lanes_[l].islands;
+  std::map<int, std::pair<double, double>> range;
+  alignas(64) double moved[kLanes], on[kLanes];
+  for (std::size_t i = 0; i < plants_.size(); ++i) {
+    if (!plants_[i].rotor) continue;
+    LaneTraits<Flat>::store(Traits::value(y_[static_cast<std::size_t>(plants_[i].x)] - rest_[i]), moved);
+    LaneTraits<Flat>::store(Traits::value(per_lane_.on[i]), on);
+    if (on[l] < 0.5) continue;
+    auto& [low, high] = range.emplace(island[i], std::pair{moved[l], moved[l]}).first->second;
+    low = std::min(low, moved[l]);
+    high = std::max(high, moved[l]);
+  }
+  double worst = 0.0;
+  for (const auto& [number, ends] : range) worst = std::max(worst, ends.second - ends.first);
+  return worst;
 }
 
 template <class T>
@@ -171,6 +193,7 @@ void Lanes<T>::settle(unsigned accepted, const Next& next, const Done& done) {
       refill(l, next, done);
       continue;
     }
+    if (!run.islands.empty()) angle[l] = spread_of_islands(l);
     if (angle[l] > run.record.largest_spread) run.record.largest_spread = angle[l];
     const bool lost = angle[l] > options_.lose_at;
     if (lost || run.clock.t >= options_.t_end) {

@@ -104,6 +104,7 @@ ReferenceSystem::ReferenceSystem(const grid::Grid& grid, const ReferencePlants& 
       buses_(static_cast<int>(grid.network.buses.size())),
       last_moment_(end - plant::kBeforeSwitching),
       bolted_(buses_, false),
+      island_(network::islands(grid.network, segment.topology.open)),
       connected_(plants.units().size(), 1.0),
       setpoint_(plants.units().size()) {
   for (std::size_t u = 0; u < plants.units().size(); ++u) {

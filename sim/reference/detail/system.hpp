@@ -54,6 +54,8 @@ class ReferenceSystem {
                   double end);
   [[nodiscard]] int size() const { return plants_.states() + 2 * buses_; }
   [[nodiscard]] bool bolted(int bus) const { return bolted_[static_cast<std::size_t>(bus)]; }
+  /// Number of the island that a bus lies in.
+  [[nodiscard]] int island(int bus) const { return island_[static_cast<std::size_t>(bus)]; }
   [[nodiscard]] bool tripped(std::size_t unit) const { return connected_[unit] == 0.0; }
   /// Part of a unit that is connected, 0 to 1.
   [[nodiscard]] double connected(std::size_t unit) const { return connected_[unit]; }
@@ -93,6 +95,7 @@ class ReferenceSystem {
   int buses_;
   double last_moment_;  ///< largest time effects may see [s]
   std::vector<bool> bolted_;
+  std::vector<int> island_;                          ///< per bus
   std::vector<double> connected_;                    ///< per unit: part that is connected
   std::vector<network::Setpoint> setpoint_;          ///< per unit
   Eigen::SparseMatrix<Complex, Eigen::RowMajor> y_;  ///< network; rows of bolted buses are empty

@@ -232,6 +232,8 @@ TEST(Reference, ALossOfSynchronismEndsTheRun) {
   const grid::Grid grid = configured_grid("ieee39_genrou", Conventions::psse());
   const ReferenceRun run = run_reference(grid, fault(grid, 16, 1.0, 2.0), {});
   ASSERT_EQ(run.outcome, Outcome::lost_synchronism);
+  EXPECT_EQ(run.lost_by.substr(0, 7), "angle: ") << run.lost_by;
+  EXPECT_NE(run.lost_by.find(" against "), std::string::npos) << run.lost_by;
   EXPECT_GT(run.stopped_at, 1.0);
   EXPECT_LT(run.stopped_at, 15.0);
   EXPECT_GE(run.largest_spread, 3.14159265358979);
