@@ -22,6 +22,7 @@ using sim::grid::UnitCount;
 struct Arguments {
   std::filesystem::path raw, dyr;
   std::optional<double> frequency_hz;
+  int raw_version = 0;
   bool units = false, json = false;
 };
 
@@ -130,9 +131,10 @@ void print_json(const Inventory& inventory) {
 int main(int argc, char** argv) {
   jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank inventory");
   Arguments a;
-  line.add("--raw", a.raw, "network, PSS/E .raw version 32 to 35 or MATPOWER .m").required();
+  line.add("--raw", a.raw, "network, PSS/E .raw, .rawx or MATPOWER .m").required();
   line.add("--dyr", a.dyr, "dynamic models, PSS/E .dyr").required();
   line.add("--frequency-hz", a.frequency_hz, "nominal frequency [Hz], where the network has none");
+  line.add("--raw-version", a.raw_version, "version of a .raw that does not say it, 23 or 29 to 35");
   line.add_flag("--units", a.units, "list every unit with its models");
   line.add_flag("--json", a.json, "print everything as JSON");
   line.footer(
@@ -140,7 +142,7 @@ int main(int argc, char** argv) {
       "takes one out of the case.");
   if (!line.parse(argc, argv)) return line.end();
   try {
-    const Inventory inventory = sim::grid::take_inventory(a.raw, a.dyr, a.frequency_hz);
+    const Inventory inventory = sim::grid::take_inventory(a.raw, a.dyr, {a.frequency_hz, a.raw_version});
     a.json ? print_json(inventory) : print_text(inventory, a.units);
     return 0;
   } catch (const std::exception& error) {

@@ -59,7 +59,7 @@ int run(Arguments& a) {
 int main(int argc, char** argv) {
   jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank plant");
   Arguments a;
-  line.add("--raw", a.unit.raw, "network, PSS/E .raw version 32 to 35 or MATPOWER .m").required();
+  line.add("--raw", a.unit.raw, "network, PSS/E .raw, .rawx or MATPOWER .m").required();
   const auto dyr = line.add("--dyr", a.unit.dyr, "dynamic models, PSS/E .dyr");
   line.add("--dyd", a.dyd, "or PSLF .dyd; configs/networks/README.md lists its models").excludes(dyr);
   line.add("--bus", a.unit.bus, "number of the unit's bus").required().positive();
@@ -80,6 +80,7 @@ int main(int argc, char** argv) {
       .one_of({"psse", "andes"})
       .shows_default();
   line.add("--frequency-hz", a.unit.frequency_hz, "nominal frequency [Hz], where the network has none");
+  line.add("--raw-version", a.unit.raw_version, "version of a .raw that does not say it, 23 or 29 to 35");
   line.footer("Only the unit's own records are read: what is wrong with others is of no concern.");
   if (!line.parse(argc, argv)) return line.end();
   try {

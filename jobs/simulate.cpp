@@ -15,6 +15,7 @@
 #include "sim/formats/event_text.hpp"
 #include "sim/grid/attach.hpp"
 #include "sim/grid/event_choice.hpp"
+#include "sim/grid/limits.hpp"
 #include "sim/grid/load_choice.hpp"
 #include "sim/lanes/batch.hpp"
 #include "sim/laws/law.hpp"
@@ -36,7 +37,10 @@ struct Options {
   double t_end = 15.0, rate = 120.0;
   std::optional<double> tolerance, frequency_hz;
   std::vector<std::string> ignore_models, map_models;
-  bool after_switching = false;
+  bool after_switching = false, net_generators = false, widen_limits = false;
+  int raw_version = 0;
+  std::string start = "solved", q_limits = "enforce";
+  std::filesystem::path changes;
 };
 
 /// The option that a part of an event stands in.
@@ -181,6 +185,10 @@ void describe_run(mpi::store::h5::File& h, const Options& o, const grid::Grid& g
   h.attribute("dynamics", o.dyr);
   h.attribute("ignored_models", joined(o.ignore_models));
   h.attribute("mapped_models", joined(o.map_models));
+  std::vector<std::string> changes;
+  for (const network::Remark& remark : grid.network.remarks)
+    changes.push_back(grid::remark_line(remark, remark.places.size()));
+  h.attribute("changes_to_the_case", changes);
   h.attribute("convention", o.convention);
   h.attribute("integrator", o.integrator);
   h.attribute("tolerance", tolerance(o));
@@ -256,6 +264,26 @@ void write_hdf5(const std::filesystem::path& file, const Options& o, const grid:
   publish(file);
 }
 
+grid::CaseOptions case_options(const Options& o, const formats::DyrOptions& models) {
+  grid::CaseOptions all;
+  all.dyr = models;
+  all.raw = {o.frequency_hz, o.raw_version};
+  all.net_generators = o.net_generators;
+  all.start_from_file = o.start == "file";
+  all.flow.reactive_limits = o.q_limits == "enforce";
+  return all;
+}
+
+/// Everything that was done to the case, a line for every place.
+void write_changes(const std::filesystem::path& file, const network::Network& network) {
+  std::string text;
+  for (const network::Remark& remark : network.remarks) {
+    text += remark.what + fmt::format(" ({})\n", remark.places.size());
+    for (const std::string& place : remark.places) text += "  " + place + "\n";
+  }
+  write_text(file, text);
+}
+
 int simulate(const Options& o) {
   Problems problems;
   check_options(o, problems);
@@ -266,11 +294,12 @@ int simulate(const Options& o) {
   for (const auto& file : o.laws) laws::load_law(file, library);
   grid::Grid grid =
       grid::load_grid(o.raw, o.dyr, o.convention == "andes" ? Conventions::andes() : Conventions::psse(),
-                      models, o.frequency_hz);
+                      case_options(o, models));
   grid.library = library;
   for (const auto& text : o.attached) grid::attach(grid, text, "--attach " + text, problems);
   if (o.load_model == "raw") grid::loads_as_composed(grid, problems);
   for (const auto& text : o.loads) grid::choose_load(grid, text, "--load " + text, problems);
+  grid::settle_limits(grid, o.widen_limits);  // events may ask for the operating point
   const network::Event event = grid::read_event(o.event, grid, o.t_end, event_option, problems);
   const auto plants = parse_plants(o, grid, problems);
   const auto channels = parse_channels(o, problems);
@@ -279,6 +308,7 @@ int simulate(const Options& o) {
   for (int b : o.buses)
     buses.push_back(formats::read_bus(std::to_string(b), grid.network, "--buses", problems));
   problems.raise();
+  if (!o.changes.empty()) write_changes(o.changes, grid.network);
 
   const auto begin = std::chrono::steady_clock::now();
   const auto played = [&](int finer, const std::vector<Channel>& wanted) {
@@ -294,8 +324,9 @@ int simulate(const Options& o) {
     fmt::print("wrote {}\n", file.string());
   }
   fmt::print("loads: {}\n", grid::describe_loads(grid));
-  fmt::print("{} at {:g} s, largest rotor angle spread {:.3f} deg, {}{:.3f} s wall time\n",
-             outcome_name(run.outcome), run.stopped_at, run.largest_spread * constants::degrees_in_radian,
+  fmt::print("{} at {:g} s{}, rotor angles moved apart by at most {:.3f} deg, {}{:.3f} s wall time\n",
+             outcome_name(run.outcome), run.stopped_at, run.lost_by.empty() ? "" : " (" + run.lost_by + ")",
+             run.largest_spread * constants::degrees_in_radian,
              run.steps > 0 ? fmt::format("{} steps, ", run.steps) : "", wall);
   return 0;
 }
@@ -305,9 +336,22 @@ int simulate(const Options& o) {
 int main(int argc, char** argv) {
   jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank simulate");
   Options o;
-  line.add("--raw", o.raw, "network, PSS/E .raw version 32 to 35 or MATPOWER .m").required();
+  line.add("--raw", o.raw, "network, PSS/E .raw, .rawx or MATPOWER .m").required();
   line.add("--dyr", o.dyr, "dynamic models, PSS/E .dyr").required();
-  line.add("--frequency-hz", o.frequency_hz, "nominal frequency [Hz], which a .m does not hold");
+  line.add("--frequency-hz", o.frequency_hz, "nominal frequency [Hz], where the network has none");
+  line.add("--raw-version", o.raw_version, "version of a .raw that does not say it, 23 or 29 to 35");
+  line.add_flag("--net-generators", o.net_generators,
+                "generators in service without a machine model become negative loads, as PSS/E's GNET does");
+  line.add("--start", o.start,
+           "solved: from the solution of the power flow; file: from the file's voltages as they stand")
+      .one_of({"solved", "file"})
+      .shows_default();
+  line.add("--q-limits", o.q_limits, "reactive limits of generators in the power flow")
+      .one_of({"enforce", "ignore"})
+      .shows_default();
+  line.add_flag("--widen-limits", o.widen_limits,
+                "where the operating point lies beyond a control's limit, move the limit there and name it");
+  line.add("--changes", o.changes, "text file for all that was done to the case, a line for every place");
   line.add("--ignore-model", o.ignore_models, "name of a .dyr model to leave out; may be repeated");
   line.add("--map-model", o.map_models,
            "FROM=TO: read a .dyr model as another with as many parameters; may be repeated");

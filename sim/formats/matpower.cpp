@@ -43,10 +43,10 @@ class CaseReader {
           problems_.add("a dc line in service", where(row), "dc lines are not modelled",
                         "replace it by equivalent loads");
     network::settle_isolated(network_);
-    network::check_held_voltages(
-        network_, [&](std::size_t i) { return generator_where_[i]; }, problems_);
     network::check_finite(network_, file_, problems_);
     problems_.raise();
+    network::settle_generators(network_, [&](std::size_t i) { return generator_where_[i]; });
+    network::settle_islands(network_);
     return std::move(network_);
   }
 
@@ -252,25 +252,25 @@ network::Network read_matpower(const std::filesystem::path& file, double frequen
   return parse_matpower(text, file.string(), frequency_hz);
 }
 
-network::Network read_network(const std::filesystem::path& file, std::optional<double> frequency_hz) {
+network::Network read_network(const std::filesystem::path& file, const RawOptions& options) {
   if (file.extension() == ".m") {
-    if (!frequency_hz)
+    if (!options.frequency_hz)
       throw InputError({"no frequency", file.string(), "a MATPOWER case has none of its own",
                         "give --frequency-hz (in a config: frequency_hz), 50 or 60 Hz"});
-    return read_matpower(file, *frequency_hz);
+    return read_matpower(file, *options.frequency_hz);
   }
-  network::Network network = read_raw(file);
-  if (frequency_hz && *frequency_hz != network.frequency)
-    throw InputError({"a frequency of " + text_of(*frequency_hz) + " Hz", file.string(),
+  network::Network network = read_raw(file, options);
+  if (options.frequency_hz && *options.frequency_hz != network.frequency)
+    throw InputError({"a frequency of " + text_of(*options.frequency_hz) + " Hz", file.string(),
                       "the file says BASFRQ = " + psse::shortest(network.frequency) + " Hz",
                       "drop the option or correct the file"});
   return network;
 }
 
-RawSurvey survey_network(const std::filesystem::path& file, std::optional<double> frequency_hz) {
-  if (file.extension() != ".m") return survey_raw(file, frequency_hz);
+RawSurvey survey_network(const std::filesystem::path& file, const RawOptions& options) {
+  if (file.extension() != ".m") return survey_raw(file, options);
   RawSurvey survey;
-  survey.network = read_network(file, frequency_hz);
+  survey.network = read_network(file, options);
   return survey;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// PSS/E .raw (versions 32 to 35) and .dyr files.
+// PSS/E .raw (versions 23, 29 to 35), .rawx and .dyr files.
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -12,30 +12,45 @@
 
 namespace swingbank::sim::formats {
 
-/// Reads a .raw file. Throws InputError with every fault of the file, each with its line number.
+/// What a .raw leaves open.
+struct RawOptions {
+  std::optional<double> frequency_hz = {};  ///< where BASFRQ is missing
+  int version = 0;                          ///< where REV is missing; 0: not given
+  RawOptions() = default;
+  RawOptions(std::optional<double> hz, int rev = 0) : frequency_hz(hz), version(rev) {}
+  RawOptions(double hz) : frequency_hz(hz) {}
+};
+
+/// Reads a .raw file of version 23, 29 to 35, or a .rawx. Throws InputError with every fault of the file,
+/// each with its line number; what is done beyond reading it stands in Network::remarks.
 ///
 /// Read: header, bus, load, fixed shunt, generator, branch, system switching device (a closed one is a line
 /// of its X), transformer with two windings, with three (a star point becomes a bus of its own, numbered
-/// above every bus of the file, and each winding a transformer to it); CW 1-3, CZ 1-3, CM 1-2; switched shunt
-/// (BINIT as a fixed shunt, its steps and control are not modelled). Passed over, because they change nothing
-/// in the equations: lines that begin with '@!', system-wide data, names of areas, zones and owners,
-/// inter-area transfer, impedance correction tables that no transformer uses, multi-section line groupings,
-/// ratings, names of branches, vector groups, voltage limits, tap and load-flow controls (taps stay where
-/// they are), substations whose buses are in one piece. Refused, naming section and line: dc lines, FACTS and
-/// GNE devices, induction machines, transformers with a correction table, generators with remote regulation
-/// or a step-up transformer (RT, XT) off its nominal ratio (GTAP), distributed generation inside a load,
-/// buses that a substation's open switches split. Reactive limits are kept but not enforced. Out-of-service
-/// loads and shunts are left out; what stands at an isolated bus (type 4) is out of service, as in PSS/E.
+/// above every bus of the file, and each winding a transformer to it); CW 1-3, CZ 1-3, CM 1-2, impedance
+/// correction tables at the present tap or angle; switched shunt (BINIT as a fixed shunt, with a remark where
+/// it is controlled); remote regulation (IREG, RMPCT). With a remark: branches without impedance get one of
+/// kNoImpedance, dc lines, FACTS and GNE devices and induction machines become the power that the file's
+/// voltages say they draw, and what settle_generators and settle_islands say. Passed over, because they
+/// change nothing in the equations: lines that begin with '@!', system-wide data, names of areas, zones and
+/// owners, inter-area transfer, multi-section line groupings, ratings, names of branches, vector groups,
+/// voltage limits, tap and load-flow controls (taps stay where they are), substations whose buses are in one
+/// piece. Distributed generation inside a load is taken off its P and Q, with a remark. Refused, naming
+/// section and line: a step-up transformer (RT, XT) off its nominal ratio (GTAP), buses that a substation's
+/// open switches split. Out-of-service loads and shunts are left out; what stands at an isolated bus (type 4)
+/// is out of service, as in PSS/E.
 ///
 /// Defaults of PSS/E for fields left empty: bus BASKV 0, IDE 1, VM 1, VA 0; load and shunt ID '1', STATUS 1,
 /// powers 0, AREA, ZONE and OWNER 1 (a load's: its bus's); generator ID '1', PG 0, QG 0, QT 9999, QB -9999,
-/// VS 1, IREG 0, MBASE = SBASE, ZR 0, ZX 1, RT 0, XT 0, GTAP 1, STAT 1; branch CKT '1', R 0, B 0, line shunts
-/// 0, ST 1; transformer K 0, CKT '1', CW 1, CZ 1, CM 1, MAG1 0, MAG2 0, STAT 1, R 0, SBASE = SBASE of the
-/// system, WINDV 1 (CW 2: BASKV), NOMV 0 (= BASKV), ANG 0, TAB 0, VMSTAR 1, ANSTAR 0; SBASE 100. Everything
-/// else (bus numbers, X of branches, switches and transformers, REV, BASFRQ) must be given.
-network::Network read_raw(const std::filesystem::path& file);
-/// The same from a text; `name` stands for the file in messages.
-network::Network parse_raw(const std::string& text, const std::string& name);
+/// VS 1, IREG 0, RMPCT 100, MBASE = SBASE, ZR 0, ZX 1, RT 0, XT 0, GTAP 1, STAT 1; branch CKT '1', R 0, B 0,
+/// line shunts 0, ST 1; transformer K 0, CKT '1', CW 1, CZ 1, CM 1, MAG1 0, MAG2 0, STAT 1, R 0, SBASE =
+/// SBASE of the system, WINDV 1 (CW 2: BASKV), NOMV 0 (= BASKV), ANG 0, TAB 0, VMSTAR 1, ANSTAR 0; SBASE 100.
+/// Everything else (bus numbers, X of branches, switches and transformers, REV, BASFRQ) must be given.
+network::Network read_raw(const std::filesystem::path& file, const RawOptions& options = {});
+/// The same from a text; `name` stands for the file in messages, and says by its ending whether it is a
+/// .rawx.
+network::Network parse_raw(const std::string& text, const std::string& name, const RawOptions& options = {});
+/// Reactance of a branch that has no impedance in the file [pu].
+constexpr double kNoImpedance = 1e-6;
 
 /// A case as far as it can be read, for those who want single units of it.
 struct RawSurvey {
@@ -43,13 +58,11 @@ struct RawSurvey {
   std::vector<int> generator_line, branch_line;  ///< of the file, where the record of each begins
   std::vector<Problem> faults;
 };
-/// Reads what read_raw does, but goes on past faults: they are told, not thrown, and equipment that is not
-/// modelled and voltages that are held elsewhere, which matter to a network and not to its units, are none.
-/// Without a header of a known version it throws InputError. `frequency_hz`: where BASFRQ is missing.
-RawSurvey survey_raw(const std::filesystem::path& file, std::optional<double> frequency_hz = {});
+/// Reads what read_raw does, but goes on past faults: they are told, not thrown, and what matters to a
+/// network and not to its units is not settled. Without a header of a known version it throws InputError.
+RawSurvey survey_raw(const std::filesystem::path& file, const RawOptions& options = {});
 /// The same from a text; `name` stands for the file in messages.
-RawSurvey parse_raw_survey(const std::string& text, const std::string& name,
-                           std::optional<double> frequency_hz = {});
+RawSurvey parse_raw_survey(const std::string& text, const std::string& name, const RawOptions& options = {});
 
 /// Writes version 32, 33, 34 or 35; reading it back gives the same values to the last bit (`origin` apart).
 /// Lines come first, then transformers. Throws InputError where the file cannot be written or a branch has no
@@ -64,9 +77,10 @@ struct DyrRecord {
   int bus;                ///< bus number
   std::string model, id;  ///< model in capitals
   std::vector<double> values;
-  int line;            ///< where it starts
-  std::string user{};  ///< name of a user-written model (model USRMDL and its like), otherwise empty
-  Problems faults{};   ///< parameters that are no numbers: of account only if the model is used
+  int line;                  ///< where it starts
+  std::string user{};        ///< name of a user-written model (model USRMDL and its like), otherwise empty
+  Problems faults{};         ///< parameters that are no numbers: of account only if the model is used
+  std::vector<int> empty{};  ///< parameters left empty, counted from 1, which are zero
 };
 /// What to do with models of a .dyr that are not available here. Names in any case; a user-written model may
 /// be given by its own name or as USRMDL.
@@ -83,9 +97,9 @@ void add_model_map(DyrOptions& options, const std::string& text, const std::stri
 DyrOptions read_dyr_options(Config& config, const std::string& prefix);
 
 /// Reads a .dyr file: records end with '/', may span lines; what follows the '/' and lines that begin with
-/// '//' are comments. Parameters that are no numbers are noted in the record, everything else wrong with the
-/// file is thrown together as an InputError, with line numbers. An ignored or mapped name that the file does
-/// not hold is a fault too.
+/// '//' or '@!' are comments. Parameters that are no numbers are noted in the record, everything else wrong
+/// with the file is thrown together as an InputError, with line numbers. An ignored or mapped name that the
+/// file does not hold is a fault too.
 std::vector<DyrRecord> read_dyr(const std::filesystem::path& file, const DyrOptions& options = {});
 /// The same from a text; `name` stands for the file in messages.
 std::vector<DyrRecord> parse_dyr(const std::string& text, const std::string& name,

@@ -12,16 +12,19 @@
 namespace swingbank::sim::formats {
 namespace {
 
-/// A line that is a comment as a whole, also between the lines of a record.
+/// A line that is a comment as a whole, also between the lines of a record: '//' or '@!' first.
 bool is_comment(const std::string& line) {
   const auto first = line.find_first_not_of(" \t");
-  return first != std::string::npos && line.compare(first, 2, "//") == 0;
+  return first != std::string::npos &&
+         (line.compare(first, 2, "//") == 0 || line.compare(first, 2, "@!") == 0);
 }
 
 class DyrReader {
  public:
   DyrReader(std::vector<std::string> lines, std::string name, const DyrOptions& options)
       : lines_(std::move(lines)), name_(std::move(name)) {
+    constexpr std::string_view mark = "\xEF\xBB\xBF";  // some editors begin a file with it
+    if (!lines_.empty() && lines_[0].starts_with(mark)) lines_[0].erase(0, mark.size());
     for (const auto& model : options.ignore) ignore_.insert(capitals(model));
     for (const auto& [from, to] : options.map) map_.emplace(capitals(from), capitals(to));
   }
@@ -77,9 +80,11 @@ class DyrReader {
         fields.integer(0, "bus number"), mapped(model, user_name), fields.text(2, ""), {}, record.line};
     dyr.user = dyr.model == model ? user_name : "";
     psse::Fields numbers(record, name_, dyr.faults);
-    for (std::size_t i = named_fourth ? 4 : 3; i < fields.size(); ++i)
+    for (std::size_t i = named_fourth ? 4 : 3; i < fields.size(); ++i) {
+      if (record.fields[i].text.empty()) dyr.empty.push_back(static_cast<int>(dyr.values.size()) + 1);
       dyr.values.push_back(static_cast<double>(
-          numbers.number(i, (dyr.model + " parameter " + std::to_string(i - 2)).c_str())));
+          numbers.number(i, (dyr.model + " parameter " + std::to_string(i - 2)).c_str(), 0.0L)));
+    }
     out_.push_back(std::move(dyr));
   }
 

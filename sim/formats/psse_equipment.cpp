@@ -1,5 +1,6 @@
 // The records of a .raw that take one line each: buses, loads, shunts, generators, branches, switches.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "sim/formats/detail/psse_raw.hpp"
@@ -13,11 +14,12 @@ void RawReader::bus(const Record& record) {
   b.name = f.text(1, "");
   b.kv = static_cast<double>(f.number(2, "BASKV", 0.0L));
   const int type = f.integer(3, "IDE", 1);
-  b.area = f.integer(4, "AREA", 1);
-  b.zone = f.integer(5, "ZONE", 1);
-  b.owner = f.integer(6, "OWNER", 1);
-  b.vm = static_cast<double>(f.number(7, "VM", 1.0L));
-  b.va = static_cast<double>(f.number(8, "VA", 0.0L) / kDegrees);
+  const Columns& c = columns_;
+  b.area = f.integer(c.bus_area, "AREA", 1);
+  b.zone = f.integer(c.bus_area + 1, "ZONE", 1);
+  b.owner = f.integer(c.bus_owner, "OWNER", 1);
+  b.vm = static_cast<double>(f.number(c.bus_voltage, "VM", 1.0L));
+  b.va = static_cast<double>(f.number(c.bus_voltage + 1, "VA", 0.0L) / kDegrees);
   if (b.number <= 0)
     problems_.add("bus number " + std::to_string(b.number), f.where(), "numbers are positive",
                   "give a positive number");
@@ -31,6 +33,37 @@ void RawReader::bus(const Record& record) {
   once("bus " + std::to_string(b.number), f);
   index_.emplace(b.number, static_cast<int>(network_.buses.size()));
   network_.buses.push_back(std::move(b));
+  if (version_ < 31 && version_ != 23) bus_shunt(f, 4);
+}
+
+/// Up to version 30 a bus has its shunt in its own record.
+void RawReader::bus_shunt(Fields& f, std::size_t first) {
+  const Complex y{pu(f.number(first, "GL", 0.0L)), pu(f.number(first + 1, "BL", 0.0L))};
+  if (y != Complex{}) network_.shunts.push_back({static_cast<int>(network_.buses.size()) - 1, "1", y});
+}
+
+/// Version 23 has load and shunt in the bus record: I, IDE, PL, QL, GL, BL, AREA, VM, VA, NAME, BASKV, ZONE.
+void RawReader::bus_23(const Record& record) {
+  constexpr std::array<std::size_t, 8> order{0, 9, 10, 1, 6, 11, 7, 8};  // as bus() has them, shunt left out
+  Record turned{record.line, record.ended, {}, record.place};
+  for (const std::size_t i : order) {
+    if (turned.fields.size() == 6) turned.fields.emplace_back();  // OWNER
+    turned.fields.push_back(i < record.fields.size() ? record.fields[i] : Field{});
+  }
+  const Columns of_23 = columns_;
+  columns_ = columns(31);
+  bus(turned);
+  columns_ = of_23;
+  Fields f(record, file_, problems_);
+  bus_shunt(f, 4);
+  network::Load l{};
+  const network::Bus& b = network_.buses.back();
+  l.bus = static_cast<int>(network_.buses.size()) - 1;
+  l.id = "1";
+  l.area = b.area;
+  l.zone = b.zone;
+  l.power = {pu(f.number(2, "PL", 0.0L)), pu(f.number(3, "QL", 0.0L))};
+  if (l.power != Complex{}) network_.loads.push_back(std::move(l));
 }
 
 void RawReader::load(const Record& record) {
@@ -48,11 +81,13 @@ void RawReader::load(const Record& record) {
   l.current = {mw(7, "IP"), mw(8, "IQ")};
   l.admittance = {mw(9, "YP"),
                   pu(0.0L - f.number(10, "YQ", 0.0L))};  // PSS/E counts YQ as susceptance, not as consumption
-  if (version_ >= 34 && f.integer(16, "DGENM", 0) != 0 && on &&
-      (f.number(14, "DGENP", 0.0L) != 0 || f.number(15, "DGENQ", 0.0L) != 0))
-    problems_.add("DGENM = " + f.text(16, ""), f.where(),
-                  "distributed generation inside a load is not modelled",
-                  "subtract DGENP and DGENQ from PL and QL and set DGENM to 0");
+  if (version_ >= 34 && f.integer(16, "DGENM", 0) != 0 && on) {
+    const Complex inside{pu(f.number(14, "DGENP", 0.0L)), pu(f.number(15, "DGENQ", 0.0L))};
+    if (inside != Complex{})
+      network_.remark("distributed generation inside a load is taken off its P and Q",
+                      "load '" + l.id + "' at bus " + f.text(0, "") + " (" + f.where() + ")");
+    l.power -= inside;
+  }
   once("load '" + l.id + "' at bus " + f.text(0, ""), f);
   if (on && l.bus >= 0) network_.loads.push_back(std::move(l));
 }
@@ -78,6 +113,8 @@ void RawReader::switched_shunt(const Record& record) {
   s.admittance = {0.0, pu(f.number(columns_.switched_binit, "BINIT", 0.0L))};
   once("switched shunt" + (columns_.switched_id ? " '" + id + "'" : "") + " at bus " + std::to_string(number),
        f);
+  if (on && s.bus >= 0 && f.integer(1 + columns_.switched_id, "MODSW", 1) != 0)
+    network_.remark("controlled switched shunts stay at BINIT", "bus " + std::to_string(number));
   if (!on || s.bus < 0 || s.admittance.imag() == 0.0) return;
   s.id = id == "1" ? "SW" : "SW" + id;
   while (std::ranges::any_of(network_.shunts,
@@ -114,10 +151,6 @@ void RawReader::generator(const Record& record) {
   if (g.in_service && !units_only_ && !(g.vset > 0))
     problems_.add("VS = " + shortest(g.vset) + " pu", f.where(), "it is the voltage the generator holds",
                   "give a voltage > 0 pu");
-  if (g.in_service && !units_only_ && regulated != 0 && regulated != number)
-    problems_.add("IREG = " + std::to_string(regulated), f.where(),
-                  "regulation of a remote bus is not modelled",
-                  "set IREG to 0 and VS to the generator's own solved voltage");
   if (g.in_service && step_up && !(g.rt >= 0 && g.xt >= 0))
     problems_.add("RT = " + shortest(g.rt) + " pu, XT = " + shortest(g.xt) + " pu", f.where(),
                   "a step-up transformer has losses and leakage", "give RT >= 0 and XT >= 0");
@@ -125,7 +158,10 @@ void RawReader::generator(const Record& record) {
     problems_.add("GTAP = " + shortest(tap), f.where(),
                   "a step-up transformer inside the generator record is modelled at its nominal ratio",
                   "enter it as a transformer between two buses");
+  g.share = static_cast<double>(f.number(columns_.gen_status + 1, "RMPCT", 100.0L));
   if (g.bus < 0) return;
+  regulated_.push_back(regulated == number ? 0 : regulated);
+  if (!record.place.empty()) places_.push_back(record.place);
   network_.generators.push_back(std::move(g));
 }
 
@@ -151,10 +187,22 @@ void RawReader::branch(const Record& record) {
   if (b.from == b.to && b.from >= 0)
     problems_.add("a branch from bus " + std::to_string(from) + " to itself", f.where(), "it joins nothing",
                   "correct the bus numbers");
-  if (b.r == 0.0 && b.x == 0.0)
-    problems_.add("R = X = 0", f.where(), "a branch without impedance has no admittance",
-                  "merge the two buses or give an impedance");
+  if (version_ == 23) {  // transformers stand among the branches: RATIO (0: none), ANGLE
+    const double ratio = value(9, "RATIO", 0.0L);
+    b.shift = static_cast<double>(f.number(10, "ANGLE", 0.0L) / kDegrees);
+    b.transformer = ratio != 0.0 || b.shift != 0.0;
+    b.tap = ratio == 0.0 ? 1.0 : ratio;
+  }
+  some_impedance(b.r, b.x, from, to, f);
   if (b.from >= 0 && b.to >= 0) network_.branches.push_back(std::move(b));
+}
+
+/// What has no impedance gets next to none.
+void RawReader::some_impedance(double r, double& x, int from, int to, const Fields& f) {
+  if (r != 0.0 || x != 0.0) return;
+  x = kNoImpedance;
+  network_.remark("branches without impedance get X = " + shortest(kNoImpedance) + " pu",
+                  std::to_string(from) + "-" + std::to_string(to) + " (" + f.where() + ")");
 }
 
 // A closed switch is a line of its reactance; NSTAT, the ratings and the kind of switch change nothing.
@@ -171,9 +219,7 @@ void RawReader::switching_device(const Record& record) {
   if (b.from == b.to && b.from >= 0)
     problems_.add("a switch from bus " + std::to_string(from) + " to itself", f.where(), "it joins nothing",
                   "correct the bus numbers");
-  if (b.x == 0.0)
-    problems_.add("X = 0", f.where(), "a switch without reactance has no admittance",
-                  "merge the two buses or give a reactance");
+  some_impedance(b.r, b.x, from, to, f);
   if (b.from >= 0 && b.to >= 0) network_.branches.push_back(std::move(b));
 }
 

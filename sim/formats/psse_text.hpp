@@ -20,6 +20,7 @@ struct Record {
   int line = 0;        ///< in the file, from 1
   bool ended = false;  ///< a '/' closed it
   std::vector<Field> fields;
+  std::string place = {};  ///< where it stands, if not on a line of its own
 };
 
 /// Lines of a text file without their line ends. Throws InputError if it cannot be read.
@@ -44,7 +45,9 @@ class Fields {
   long double number(std::size_t i, const char* name, std::optional<long double> fallback = {});
   std::string text(std::size_t i, const std::string& fallback) const;
   [[nodiscard]] int line() const { return record_.line; }
-  [[nodiscard]] std::string where() const { return file_ + ":" + std::to_string(record_.line); }
+  [[nodiscard]] std::string where() const {
+    return record_.place.empty() ? file_ + ":" + std::to_string(record_.line) : record_.place;
+  }
   [[nodiscard]] std::size_t size() const { return record_.fields.size(); }
 
  private:

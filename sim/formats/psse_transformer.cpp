@@ -2,6 +2,7 @@
 // windings are t1:1, the impedance, 1:t2; moved to one side: tap = t1/t2 with impedance z t2^2. Three
 // windings meet in a star point of their own: per winding t:1 and its share of the three impedances measured
 // between pairs. Source: PSS/E Program Operation Manual, "Transformer Data".
+#include <algorithm>
 #include <cmath>
 
 #include "sim/formats/detail/psse_raw.hpp"
@@ -85,6 +86,12 @@ void RawReader::transformer(const Record& first) {
     }
     rows.push_back(std::move(*record));
   }
+  transformer_lines(rows);
+}
+
+void RawReader::transformer_lines(std::span<const Record> rows) {
+  Fields f(rows[0], file_, problems_);
+  const int k = f.integer(2, "K", 0);
   std::array<int, 3> ends{find_bus(f.integer(0, "from bus"), f), find_bus(f.integer(1, "to bus"), f), -1};
   if (k != 0) ends[2] = find_bus(k, f);
   if (ends[0] < 0 || ends[1] < 0) return;
@@ -100,13 +107,12 @@ RawReader::Codes RawReader::codes(Fields& head) {
   return c;
 }
 
-void RawReader::no_table(Fields& winding, std::size_t number) {
+void RawReader::note_table(Fields& winding, std::size_t number, std::size_t branch) {
   const std::string name = "TAB" + std::to_string(number);
   const int table = winding.integer(columns_.winding_table, name.c_str(), 0);
   if (table != 0)
-    problems_.add(name + " = " + std::to_string(table), winding.where(),
-                  "impedance correction tables are not modelled",
-                  "enter the impedance at the present tap and set " + name + " to 0");
+    corrections_.push_back({branch, table, name, static_cast<double>(winding.number(0, "WINDV", 1.0L)),
+                            static_cast<double>(winding.number(2, "ANG", 0.0L)), winding.where()});
 }
 
 Complex RawReader::magnetising(Fields& head, Fields& winding, const Codes& codes, long double mva,
@@ -139,16 +145,14 @@ void RawReader::two_windings(std::span<const Record> rows, int from, int to) {
   b.in_service = status(head.integer(11, "STAT", 1), "STAT", head);
   long double mva = base_;
   const Impedance z = series(code.cz, base_, impedance, 0, "1-2", problems_, mva);
-  if (z == Impedance{})
-    problems_.add("R1-2 = X1-2 = 0", impedance.where(), "a transformer without impedance has no admittance",
-                  "merge the two buses or give an impedance");
   const long double t1 = turns(code.cw, at(from).kv, w1, "WINDV1", problems_),
                     t2 = turns(code.cw, at(to).kv, w2, "WINDV2", problems_);
   b.r = static_cast<double>(z.real() * t2 * t2);
   b.x = static_cast<double>(z.imag() * t2 * t2);
   b.tap = static_cast<double>(t1 / t2);
   b.shift = static_cast<double>(w1.number(2, "ANG1", 0.0L) / kDegrees);
-  no_table(w1, 1);
+  some_impedance(b.r, b.x, at(from).number, at(to).number, impedance);
+  note_table(w1, 1, network_.branches.size());
   b.shunt_from = magnetising(head, w1, code, mva, at(from));
   once_branch(at(from).number, at(to).number, b.circuit, head);
   if (from == to)
@@ -209,17 +213,84 @@ void RawReader::three_windings(std::span<const Record> rows, const std::array<in
     b.circuit = circuit;
     b.in_service = status != 0 && status != out[i];
     // Less than the rounding of the three values it is the difference of is zero.
-    if (std::abs(z[i]) <= 1e-12L * (std::abs(z12) + std::abs(z23) + std::abs(z31)))
-      problems_.add("winding " + std::to_string(i + 1) + " has no impedance of its own", impedances.where(),
-                    "the three impedances leave nothing for it between its bus and the star point",
-                    "change one of them by a small amount, like 1e-4 pu");
-    b.r = static_cast<double>(z[i].real());
-    b.x = static_cast<double>(z[i].imag());
+    const bool none = std::abs(z[i]) <= 1e-12L * (std::abs(z12) + std::abs(z23) + std::abs(z31));
+    b.r = none ? 0.0 : static_cast<double>(z[i].real());
+    b.x = none ? 0.0 : static_cast<double>(z[i].imag());
+    some_impedance(b.r, b.x, at(ends[i]).number, at(star).number, impedances);
     b.tap = static_cast<double>(turns(code.cw, at(ends[i]).kv, w, names[i], problems_));
     b.shift = static_cast<double>(w.number(2, "ANG", 0.0L) / kDegrees);
-    no_table(w, i + 1);
+    note_table(w, i + 1, network_.branches.size());
     if (i == 0) b.shunt_from = magnetising(head, w, code, mva, at(ends[0]));
     network_.branches.push_back(std::move(b));
+  }
+}
+
+/// One table: pairs of T and factor (from version 34 with an imaginary part), ended by a zero or the record;
+/// from version 34 it goes on over lines until a point is all zero.
+void RawReader::correction_table(const Record& first) {
+  const std::size_t width = version_ >= 34 ? 3 : 2;
+  Fields head(first, file_, problems_);
+  std::vector<std::pair<double, Complex>>& points = tables_[head.integer(0, "table number")];
+  Record record = first;
+  for (std::size_t from = 1;; from = 0) {
+    Fields f(record, file_, problems_);
+    bool over = version_ < 34;
+    for (std::size_t i = from; i + 1 < f.size(); i += width) {
+      const double t = static_cast<double>(f.number(i, "T", 0.0L)),
+                   re = static_cast<double>(f.number(i + 1, "F", 0.0L)),
+                   im = width == 3 ? static_cast<double>(f.number(i + 2, "Im(F)", 0.0L)) : 0.0;
+      over = t == 0.0 && re == 0.0 && im == 0.0;
+      if (over) break;
+      points.emplace_back(t, Complex(re, im));
+    }
+    // A line that is not full, or whose last point is zero, ends the table.
+    if (over || f.size() < from + 6 * width) break;
+    auto more = next();
+    if (!more || more->fields.empty()) break;
+    const bool fresh = more->fields.size() % width == 1;  // a table number stands before the points
+    if (fresh || (ends_section(*more) && more->fields.size() == 1) || ends_file(*more)) {
+      put_back(*more);
+      break;
+    }
+    record = std::move(*more);
+  }
+  if (!std::ranges::is_sorted(points, {}, [](const auto& p) { return p.first; }))
+    problems_.add("the points of correction table " + std::to_string(head.integer(0, "table number", 0)),
+                  head.where(), "their T must ascend", "put them in order");
+}
+
+/// Impedances at the present tap or angle. Points between 0.5 and 1.5 are ratios, others angles in degrees;
+/// between them the factor is a straight line, beyond them the nearest holds.
+void RawReader::correct_impedances() {
+  for (const Correction& c : corrections_) {
+    const auto found = tables_.find(c.table);
+    if (found == tables_.end() || found->second.empty()) {
+      if (!units_only_)
+        problems_.add(c.name + " = " + std::to_string(c.table), c.where, "there is no such correction table",
+                      "add the table or set TAB to 0");
+      continue;
+    }
+    const auto& points = found->second;
+    const bool ratios = points.front().first >= 0.5 && points.back().first <= 1.5;
+    const double t = ratios ? c.ratio : c.angle;
+    const auto above = std::ranges::find_if(points, [&](const auto& p) { return p.first >= t; });
+    Complex factor = above == points.end() ? points.back().second : above->second;
+    if (above != points.begin() && above != points.end()) {
+      const auto& [t0, f0] = above[-1];
+      factor = f0 + (above->second - f0) * ((t - t0) / (above->first - t0));
+    }
+    network::Branch& b = network_.branches[c.branch];
+    const Complex z = Complex(b.r, b.x) * factor;
+    if (z == Complex{}) {
+      problems_.add("correction table " + std::to_string(c.table), c.where,
+                    "its factor is zero at the present tap", "correct the table");
+      continue;
+    }
+    b.r = z.real();
+    b.x = z.imag();
+    network_.remark("impedances are corrected for the present tap or angle, which stays",
+                    std::to_string(at(b.from).number) + "-" + std::to_string(at(b.to).number) + " by " +
+                        shortest(factor.real()) + " (" + c.where + ")");
   }
 }
 

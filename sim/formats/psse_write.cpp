@@ -122,10 +122,11 @@ class RawWriter {
   }
   void generators() {
     for (const network::Generator& g : n_.generators) {
-      Row r{number(g.bus), quote(g.id), mw(g.p), mw(g.q), mw(g.q_max), mw(g.q_min), shortest(g.vset), "0"};
+      Row r{number(g.bus), quote(g.id), mw(g.p),          mw(g.q),
+            mw(g.q_max),   mw(g.q_min), shortest(g.vset), g.regulated < 0 ? "0" : number(g.regulated)};
       if (version_ >= 35) add(r, {"0"});
       add(r, {shortest(g.mva), shortest(g.zr), shortest(g.zx), shortest(g.rt), shortest(g.xt), "1",
-              yes(g.in_service), "100", "9999", "-9999"});
+              yes(g.in_service), shortest(g.share), "9999", "-9999"});
       if (version_ >= 35) add(r, {"0"});
       add(r, {"1", "1"});
       row(r);

@@ -1,5 +1,6 @@
 #include "sim/grid/grid.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -16,9 +17,12 @@ namespace {
 
 class GridMaker {
  public:
-  GridMaker(network::Network network, const std::string& dyr, Conventions conventions) : dyr_(dyr) {
+  GridMaker(network::Network network, const std::string& dyr, Conventions conventions,
+            const CaseOptions& options)
+      : dyr_(dyr), options_(options) {
     grid_.network = std::move(network);
     grid_.conventions = conventions;
+    grid_.flow_options = options.flow;
     grid_.conventions.frequency = grid_.network.frequency;
     plants();
   }
@@ -26,8 +30,11 @@ class GridMaker {
     for (const formats::DyrRecord& record : dynamics) add(record);
     tell_unknown();
     for (plant::Plant& plant : grid_.plants) finish(plant);
+    tell_unmodelled();
     problems_.raise();
     solve();
+    net_generators();
+    devices();
     for (LoadModel& model : load_models_) {
       if (is_composed(*model.block.effect)) compose(grid_, model.load, model.block, model.where, problems_);
       set_load(grid_, model.load, std::move(model.block), model.where, problems_);
@@ -63,29 +70,40 @@ class GridMaker {
   void add(const formats::DyrRecord& given) {
     const std::string where = dyr_ + ":" + std::to_string(given.line);
     const auto [effect, reach] = effect_of_dyr(given);
+    const std::pair<int, std::string> key{given.bus, given.id};
+    const bool of_load = effect && effect->slot == Slot::load;
+    if (known_.contains(key) && !plant_of_.contains(key) && !of_load) return;  // it is out of service
     if (!effect) return unknown(given, where);
     const formats::DyrRecord record = plain(given, *effect);
     problems_.add(record.faults);
     if (!record.faults.empty()) return;
-    if (effect->slot == Slot::load) return add_load(*effect, reach, record, where);
-    const std::pair<int, std::string> key{record.bus, record.id};
+    if (effect->slot == Slot::load) {
+      tell_empty(given, where);
+      return add_load(*effect, reach, record, where);
+    }
     const auto found = plant_of_.find(key);
     if (found == plant_of_.end()) {
-      if (known_.contains(key)) return;  // the generator exists but is out of service
-      problems_.add(record.model + " for generator '" + record.id + "' at bus " + std::to_string(record.bus),
-                    where, grid_.network.origin + " has no such generator",
-                    "correct bus number and id, or remove the record");
+      grid_.network.remark(
+          "records for generators that the network has not are left out",
+          record.model + " of '" + record.id + "' at bus " + std::to_string(record.bus) + " (" + where + ")");
       return;
     }
+    tell_empty(given, where);
     plant::Plant& plant = grid_.plants[found->second];
     if (!complete(*effect, record, where, problems_)) return;
     const network::Generator& g = grid_.network.generators[static_cast<std::size_t>(plant.generator)];
     plant::Block block = values_of(*effect, record);
     take_from_raw(block, g);
     if (const std::string left_out = remark_on(block, where, plant.name); !left_out.empty())
-      spdlog::warn("{}", left_out);
+      grid_.network.remark("values ask for what the equations leave out", left_out);
     const std::string warning = place(plant, std::move(block), {g, grid_.network.origin}, where, problems_);
-    if (!warning.empty()) spdlog::warn("{}", warning);
+    if (!warning.empty())
+      grid_.network.remark("the reactance of the .dyr counts where ZX of the network is another", warning);
+  }
+  void tell_empty(const formats::DyrRecord& record, const std::string& where) {
+    for (const int i : record.empty)
+      grid_.network.remark("empty parameters of the .dyr are taken as zero",
+                           record.model + " parameter " + std::to_string(i) + " (" + where + ")");
   }
   /// Kept until all are known: one sentence for each model, not for each record.
   void unknown(const formats::DyrRecord& record, const std::string& where) {
@@ -132,6 +150,7 @@ class GridMaker {
       const int own[] = {load.bus, load.owner, load.zone, load.area, 0};
       const auto r = static_cast<std::size_t>(reach);
       if (own[r] != number[r] || (record.id != "*" && load.id != record.id)) continue;
+      if (load.kind != network::LoadKind::load) continue;
       if (record.id == "*" && load.power == Complex{} && load.current == Complex{} &&
           load.admittance == Complex{})
         continue;  // there is nothing to model
@@ -147,22 +166,95 @@ class GridMaker {
         problems_.add("a second model, " + what, where,
                       "it already has " + std::string(other->block.effect->dyr_name), "keep one of them");
     }
-    if (!any) spdlog::warn("{}: {} left out: no such load is in service", where, what);
+    if (!any)
+      grid_.network.remark("models of loads that are not in service are left out", what + " (" + where + ")");
   }
   void finish(plant::Plant& plant) {
-    if (!plant.machine.effect) {
-      const network::Generator& g = grid_.network.generators[static_cast<std::size_t>(plant.generator)];
-      problems_.add("no machine model for generator '" + g.id + "' at bus " + std::to_string(bus_number(g)),
-                    dyr_, "it is in service in " + grid_.network.origin,
-                    "add a record with one of " + machine_names() + ", or take the generator out of service");
-    }
+    if (!plant.machine.effect) unmodelled_.push_back(plant.generator);
     check_fit(plant, dyr_, problems_);
     sort_controls(plant);
   }
+  [[nodiscard]] std::string unit_text(int generator) const {
+    const network::Generator& g = grid_.network.generators[static_cast<std::size_t>(generator)];
+    return "'" + g.id + "' at bus " + std::to_string(bus_number(g));
+  }
+  /// Generators without a machine model: all in one sentence.
+  void tell_unmodelled() {
+    if (unmodelled_.empty() || options_.net_generators) return;
+    constexpr std::size_t most = 20;
+    std::string list;
+    for (std::size_t i = 0; i < unmodelled_.size() && i < most; ++i)
+      list += (i ? ", " : "") + unit_text(unmodelled_[i]);
+    if (unmodelled_.size() > most) list += " and " + std::to_string(unmodelled_.size() - most) + " more";
+    const bool one = unmodelled_.size() == 1;
+    problems_.add(
+        one ? "no machine model for generator " + list
+            : "no machine model for " + std::to_string(unmodelled_.size()) + " generators: " + list,
+        dyr_, (one ? "it is" : "they are") + (" in service in " + grid_.network.origin),
+        "add records with one of " + machine_names() +
+            ", take them out of service, or go on with --net-generators, which makes them negative loads");
+  }
   void solve() {
-    grid_.flow = network::solve_power_flow(grid_.network);
+    if (options_.start_from_file)
+      grid_.flow = network::flow_of_file(grid_.network);
+    else
+      grid_.flow = network::solve_power_flow(grid_.network, options_.flow);
+    compare_with_file();
+    for (const int bus : grid_.flow.at_limit)
+      grid_.network.remark("generators at a reactive limit do not hold their voltage", bus_text(bus));
     for (plant::Plant& plant : grid_.plants)
       plant.generation = grid_.flow.generation[static_cast<std::size_t>(plant.generator)];
+  }
+  [[nodiscard]] std::string bus_text(int bus) const {
+    return "bus " + std::to_string(grid_.network.buses[static_cast<std::size_t>(bus)].number);
+  }
+  /// Where the solution is not that of the file.
+  void compare_with_file() {
+    constexpr double apart = 1e-3;  // [pu]
+    std::vector<std::pair<double, std::size_t>> far;
+    for (std::size_t i = 0; i < grid_.network.buses.size(); ++i) {
+      const network::Bus& b = grid_.network.buses[i];
+      const double by = std::abs(grid_.flow.voltage[i]) - b.vm;
+      if (b.type != network::BusType::isolated && std::abs(by) > apart) far.emplace_back(by, i);
+    }
+    std::ranges::sort(far, std::greater{}, [](const auto& f) { return std::abs(f.first); });
+    for (const auto& [by, i] : far)
+      grid_.network.remark(
+          "the solution differs from the file's voltages by more than 1e-3 pu (--start file keeps the file's), "
+          "largest first",
+          bus_text(static_cast<int>(i)) + fmt::format(" {:.4f} pu, file {:.4f} pu",
+                                                      std::abs(grid_.flow.voltage[i]),
+                                                      grid_.network.buses[i].vm));
+  }
+  /// What the generators without a machine model deliver becomes negative consumption, as PSS/E's GNET does.
+  void net_generators() {
+    for (const int k : unmodelled_) {
+      network::Generator& g = grid_.network.generators[static_cast<std::size_t>(k)];
+      const network::Bus& bus = grid_.network.buses[static_cast<std::size_t>(g.bus)];
+      Complex& s = grid_.flow.generation[static_cast<std::size_t>(k)];
+      network::Load load{
+          g.bus, "-" + g.id, -s, {}, {}, bus.area, bus.zone, bus.owner, network::LoadKind::generator};
+      grid_.network.remark(
+          "generators without a machine model are negative loads, as asked",
+          unit_text(k) + fmt::format(" {:.2f} MW, {:.2f} Mvar", s.real() * grid_.network.base_mva,
+                                     s.imag() * grid_.network.base_mva));
+      grid_.network.loads.push_back(std::move(load));
+      g.in_service = false;
+      s = {};
+    }
+    std::erase_if(grid_.plants, [](const plant::Plant& p) { return !p.machine.effect; });
+  }
+  /// Equipment without a model of its own draws constant P and Q.
+  void devices() {
+    const Effect* zip = library::compiled().find("ZIP");
+    for (std::size_t i = 0; i < grid_.network.loads.size(); ++i) {
+      const network::Load& l = grid_.network.loads[i];
+      if (l.kind != network::LoadKind::device || l.power == Complex{}) continue;
+      plant::Block block{zip, zip->standard_parameters()};
+      for (const char* part : {"Pp", "Qp"})
+        block.p[static_cast<std::size_t>(zip->parameter_index(part))] = 1.0;
+      set_load(grid_, static_cast<int>(i), std::move(block), bus_text(l.bus), problems_);
+    }
   }
 
   struct LoadModel {
@@ -177,6 +269,8 @@ class GridMaker {
     std::size_t parameters = 0;
   };
   std::string dyr_;
+  CaseOptions options_;
+  std::vector<int> unmodelled_;  ///< generators in service without a machine model
   Grid grid_;
   Problems problems_;
   std::vector<LoadModel> load_models_;
@@ -195,12 +289,21 @@ std::vector<int> Grid::modelled_loads() const {
 }
 
 Grid make_grid(network::Network network, const std::vector<formats::DyrRecord>& dynamics,
-               const std::string& dyr_name, Conventions conventions) {
-  return GridMaker(std::move(network), dyr_name, conventions).make(dynamics);
+               const std::string& dyr_name, Conventions conventions, const CaseOptions& options) {
+  return GridMaker(std::move(network), dyr_name, conventions, options).make(dynamics);
+}
+
+std::string remark_line(const network::Remark& remark, std::size_t places) {
+  std::string text = remark.what;
+  if (remark.places.size() > 1) text += fmt::format(" ({} times)", remark.places.size());
+  for (std::size_t i = 0; i < remark.places.size() && i < places; ++i)
+    text += (i ? "; " : ": ") + remark.places[i];
+  if (remark.places.size() > places) text += fmt::format("; and {} more", remark.places.size() - places);
+  return text;
 }
 
 Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dyr, Conventions conventions,
-               const formats::DyrOptions& options, std::optional<double> frequency_hz) {
+               const CaseOptions& options) {
   Problems problems;
   network::Network network;
   std::vector<formats::DyrRecord> dynamics;
@@ -211,10 +314,22 @@ Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dy
       for (const Problem& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
     }
   };
-  collect([&] { network = formats::read_network(raw, frequency_hz); });
-  collect([&] { dynamics = formats::read_dyr(dyr, options); });
+  collect([&] { network = formats::read_network(raw, options.raw); });
+  collect([&] { dynamics = formats::read_dyr(dyr, options.dyr); });
   problems.raise();
-  return make_grid(std::move(network), dynamics, dyr.string(), conventions);
+  Grid grid = make_grid(std::move(network), dynamics, dyr.string(), conventions, options);
+  constexpr std::size_t places = 4;  // a screen holds them; `simulate --changes` writes all
+  for (const network::Remark& remark : grid.network.remarks)
+    spdlog::warn("{}: {}", raw.filename().string(), remark_line(remark, places));
+  return grid;
+}
+
+Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dyr, Conventions conventions,
+               const formats::DyrOptions& options, std::optional<double> frequency_hz) {
+  CaseOptions all;
+  all.dyr = options;
+  all.raw.frequency_hz = frequency_hz;
+  return load_grid(raw, dyr, conventions, all);
 }
 
 }  // namespace swingbank::sim::grid

@@ -84,8 +84,8 @@ class InventoryTaker {
 }  // namespace
 
 Inventory take_inventory(const std::filesystem::path& raw, const std::filesystem::path& dyr,
-                         std::optional<double> frequency_hz) {
-  const formats::RawSurvey survey = formats::survey_network(raw, frequency_hz);
+                         const formats::RawOptions& options) {
+  const formats::RawSurvey survey = formats::survey_network(raw, options);
   const formats::DyrSurvey dynamics = formats::survey_dyr(dyr);
   return InventoryTaker(survey, dynamics, dyr.string()).take();
 }

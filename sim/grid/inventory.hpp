@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/formats/psse.hpp"
+
 namespace swingbank::sim::grid {
 
 /// One model of the .dyr, over all its records.
@@ -37,6 +39,6 @@ struct Inventory {
 
 /// Throws InputError where one of the files cannot be read at all.
 Inventory take_inventory(const std::filesystem::path& raw, const std::filesystem::path& dyr,
-                         std::optional<double> frequency_hz = {});
+                         const formats::RawOptions& options = {});
 
 }  // namespace swingbank::sim::grid

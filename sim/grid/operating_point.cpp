@@ -7,7 +7,7 @@ namespace swingbank::sim::grid {
 Grid at_operating_point(const Grid& grid, network::Network network) {
   Grid at = grid;
   at.network = std::move(network);
-  at.flow = network::solve_power_flow(at.network);
+  at.flow = network::solve_power_flow(at.network, at.flow_options);
   for (plant::Plant& plant : at.plants)
     plant.generation = at.flow.generation[static_cast<std::size_t>(plant.generator)];
   Problems problems;

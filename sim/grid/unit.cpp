@@ -17,7 +17,7 @@ namespace {
 class UnitReader {
  public:
   explicit UnitReader(const UnitChoice& choice) : choice_(choice) {
-    survey_ = formats::survey_network(choice.raw, choice.frequency_hz);
+    survey_ = formats::survey_network(choice.raw, {choice.frequency_hz, choice.raw_version});
     survey_.network.origin = choice.raw.string();
     if (choice.dyd) {
       dyd_ = formats::survey_dyd(choice.dyr);
@@ -181,6 +181,8 @@ class UnitReader {
       problems_.add(record.faults);
       if (!record.faults.empty() || !complete(*effect, record, where, problems_)) return;
       block = values_of(*effect, record);
+      for (const int i : record.empty)
+        unit_.notes.push_back(fmt::format("{}: empty parameter {} of {} is taken as zero", where, i, given));
       if (other)
         unit_.notes.push_back(
             fmt::format("{} of line {} read as {}, with its values", given, record.line, effect->dyr_name));

@@ -19,6 +19,7 @@ struct UnitChoice {
   int bus = 0;
   std::string id = {};                      ///< may be empty where the bus has one unit in service
   std::optional<double> frequency_hz = {};  ///< where the network's file does not hold it
+  int raw_version = 0;                      ///< of a .raw that does not say it; 0: not given
   /// Models of the unit to leave out, and to read as others: of as many parameters with their values, else
   /// with the other's standard values.
   formats::DyrOptions models = {};

@@ -4,6 +4,10 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <numeric>
+
+#include "sim/network/connectivity.hpp"
+#include "sim/network/powerflow.hpp"
 
 namespace swingbank::sim::network {
 namespace {
@@ -27,23 +31,173 @@ void settle_isolated(Network& n) {
     if (isolated(g.bus)) g.in_service = false;
 }
 
-void check_held_voltages(const Network& n, const std::function<std::string(std::size_t)>& where,
-                         Problems& problems) {
-  std::map<int, double> held;
+namespace {
+
+std::string unit_text(const Network& n, const Generator& g) {
+  return "'" + g.id + "' at bus " + std::to_string(at(n, g.bus).number);
+}
+
+/// Buses that branches of next to no impedance join count as one: every one of them gets the sum of all.
+std::vector<Complex> pooled(const Network& n, const std::vector<Complex>& left, std::vector<int>& pool) {
+  constexpr double next_to_none = 1e-4;  // [pu] the voltages of a file have five digits
+  pool.resize(left.size());
+  std::iota(pool.begin(), pool.end(), 0);
+  const auto root = [&](int i) {
+    while (pool[static_cast<std::size_t>(i)] != i) i = pool[static_cast<std::size_t>(i)];
+    return i;
+  };
+  for (const Branch& b : n.branches)
+    if (b.in_service && std::abs(Complex(b.r, b.x)) <= next_to_none)
+      pool[static_cast<std::size_t>(root(b.from))] = root(b.to);
+  std::vector<Complex> sum(left.size());
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    pool[i] = root(static_cast<int>(i));
+    sum[static_cast<std::size_t>(pool[i])] += left[i];
+  }
+  std::vector<Complex> all(left.size());
+  for (std::size_t i = 0; i < left.size(); ++i) all[i] = sum[static_cast<std::size_t>(pool[i])];
+  return all;
+}
+
+/// Generators of load buses: as the file's own voltages say.
+void settle_load_buses(Network& n, const std::function<std::string(std::size_t)>& where) {
+  const auto stands = [&](const Generator& g) { return g.in_service && at(n, g.bus).type == BusType::load; };
+  if (std::ranges::none_of(n.generators, stands)) return;
+  std::vector<int> pool;
+  const std::vector<Complex> left = pooled(n, imbalance_of_file(n), pool);
+  std::map<int, Complex> given;
+  for (const Generator& g : n.generators)
+    if (stands(g)) given[g.bus] += Complex(g.p, g.q);
   for (std::size_t i = 0; i < n.generators.size(); ++i) {
-    const Generator& g = n.generators[i];
-    if (!g.in_service) continue;
-    const Bus& b = at(n, g.bus);
-    if (b.type == BusType::load)
-      problems.add("a generator in service at bus " + std::to_string(b.number) + " of type 1", where(i),
-                   "a load bus holds no voltage, so the generator would be ignored",
-                   "make the bus type 2 or take the generator out of service");
-    const auto [other, first] = held.emplace(g.bus, g.vset);
-    if (!first && other->second != g.vset)
-      problems.add(
-          "VS = " + pu(g.vset) + " pu", where(i),
-          "another generator at bus " + std::to_string(b.number) + " holds " + pu(other->second) + " pu",
-          "give both the same voltage");
+    Generator& g = n.generators[i];
+    if (!stands(g)) continue;
+    const Complex with = left[static_cast<std::size_t>(g.bus)], without = with + given[g.bus];
+    const bool shown = std::abs(with) < std::abs(without);
+    n.remark(shown ? "generators at a bus of type 1 deliver their P and Q, as the file's voltages show"
+                   : "generators at a bus of type 1 are out of service, as in PSS/E",
+             unit_text(n, g) + " (" + where(i) + ")");
+    if (!shown) g.in_service = false;
+  }
+}
+
+}  // namespace
+
+void settle_generators(Network& n, const std::function<std::string(std::size_t)>& where) {
+  settle_load_buses(n, where);
+  std::map<int, const Generator*> first;
+  for (std::size_t i = 0; i < n.generators.size(); ++i) {
+    Generator& g = n.generators[i];
+    if (!g.in_service || at(n, g.bus).type == BusType::load) continue;
+    const std::string place = unit_text(n, g) + " (" + where(i) + ")";
+    if (g.regulated == g.bus) g.regulated = -1;
+    if (g.regulated >= 0 && at(n, g.regulated).type == BusType::isolated) {
+      n.remark("generators that hold a bus out of service hold their own at the file's voltage", place);
+      g.regulated = -1;
+      g.vset = at(n, g.bus).vm;
+    }
+    if (g.q_min > g.q_max) {
+      n.remark("reactive limits with QB above QT are taken as none", place);
+      g.q_min = -99.99;
+      g.q_max = 99.99;
+    }
+    const Generator& other = *first.emplace(g.bus, &g).first->second;
+    if (other.vset == g.vset && other.regulated == g.regulated) continue;
+    n.remark("generators of one bus that hold different voltages hold that of the first",
+             place + ": " + pu(g.vset) + " pu becomes " + pu(other.vset) + " pu");
+    g.vset = other.vset;
+    g.regulated = other.regulated;
+  }
+}
+
+void settle_islands(Network& n) {
+  std::vector<double> supply(n.buses.size());
+  for (const Generator& g : n.generators)
+    if (g.in_service) supply[static_cast<std::size_t>(g.bus)] += g.mva;
+  for (std::size_t i = 0; i < n.buses.size(); ++i)
+    if (n.buses[i].type == BusType::slack && supply[i] == 0.0) {
+      n.remark("slack buses without a generator in service are load buses",
+               "bus " + std::to_string(n.buses[i].number));
+      n.buses[i].type = BusType::load;
+    }
+  const std::vector<int> island = islands(n);
+  std::map<int, std::vector<int>> members;
+  for (std::size_t i = 0; i < island.size(); ++i)
+    if (island[i] >= 0) members[island[i]].push_back(static_cast<int>(i));
+  for (const auto& [number, buses] : members) {
+    if (std::ranges::any_of(buses, [&](int b) { return at(n, b).type == BusType::slack; })) continue;
+    const auto size = [&](int b) {
+      return at(n, b).type == BusType::generator ? supply[static_cast<std::size_t>(b)] : 0.0;
+    };
+    const int largest = *std::ranges::max_element(buses, {}, size);
+    if (size(largest) > 0.0) {
+      n.buses[static_cast<std::size_t>(largest)].type = BusType::slack;
+      n.remark("islands without a slack bus get that of their largest generator",
+               "bus " + std::to_string(at(n, largest).number) + " of " + bus_list(n, buses));
+      continue;
+    }
+    for (const int b : buses) n.buses[static_cast<std::size_t>(b)].type = BusType::isolated;
+    n.remark("islands without a generator are out of service", bus_list(n, buses));
+  }
+  settle_isolated(n);
+}
+
+namespace {
+
+/// The largest imbalance [pu] at a bus of load type where no device stands, and the bus.
+std::pair<double, int> worst_elsewhere(const Network& n, const std::vector<Complex>& left,
+                                       const std::vector<int>& pool, const std::map<int, int>& devices) {
+  std::pair<double, int> worst{0.0, -1};
+  for (std::size_t i = 0; i < left.size(); ++i)
+    if (n.buses[i].type == BusType::load && !devices.contains(pool[i]) && std::abs(left[i]) > worst.first)
+      worst = {std::abs(left[i]), static_cast<int>(i)};
+  return worst;
+}
+
+std::string power_text(Complex s, double base) {
+  char text[80];
+  std::snprintf(text, sizeof text, "P = %.2f MW, Q = %.2f Mvar", s.real() * base, s.imag() * base);
+  return text;
+}
+
+}  // namespace
+
+void stand_in(Network& n, const std::vector<Device>& devices, Problems& problems) {
+  std::map<int, std::string> at_bus;
+  std::string where;
+  for (const Device& d : devices)
+    for (const int bus : d.buses) {
+      if (bus < 0 || at(n, bus).type == BusType::isolated) continue;
+      std::string& names = at_bus[bus];
+      names += (names.empty() ? "" : ", ") + d.name;
+      if (where.empty()) where = d.where;
+    }
+  if (at_bus.empty() || !problems.empty()) return;
+  std::vector<int> pool;
+  const std::vector<Complex> left = pooled(n, imbalance_of_file(n), pool);
+  std::map<int, int> sharing;  // pools and how many buses of devices are in each
+  for (const auto& [b, names] : at_bus) ++sharing[pool[static_cast<std::size_t>(b)]];
+  constexpr double most = 0.05;  // [pu] a solved case rounded to five digits leaves a tenth of it
+  const auto [worst, bus] = worst_elsewhere(n, left, pool, sharing);
+  const bool finite = std::ranges::all_of(
+      left, [](const Complex& c) { return std::isfinite(c.real()) && std::isfinite(c.imag()); });
+  if (!finite || worst > most) {
+    problems.add(at_bus.begin()->second + " without a model here", where,
+                 "the file's voltages would say what it draws, but they are no solution: they leave " +
+                     pu(worst * n.base_mva) + " MVA" +
+                     (bus < 0 ? std::string() : " at bus " + std::to_string(at(n, bus).number)),
+                 "solve the case before it is saved, or enter equivalent loads");
+    return;
+  }
+  for (const auto& [bus_of, names] : at_bus) {
+    const int b = bus_of;  // clang 14 captures no structured binding
+    const auto i = static_cast<std::size_t>(b);
+    const Complex draws = -left[i] / static_cast<double>(sharing[pool[i]]);
+    std::string id = "~";
+    while (std::ranges::any_of(n.loads, [&](const Load& l) { return l.bus == b && l.id == id; })) id += "~";
+    const Bus& of = at(n, b);
+    n.loads.push_back({b, id, draws, {}, {}, of.area, of.zone, of.owner, LoadKind::device});
+    n.remark("equipment without a model here draws what the file's voltages say, as a constant P and Q",
+             names + " at bus " + std::to_string(of.number) + ": " + power_text(draws, n.base_mva));
   }
 }
 

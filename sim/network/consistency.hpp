@@ -11,10 +11,24 @@ namespace swingbank::sim::network {
 /// Takes out of service what stands at an isolated bus (type 4): loads and shunts are removed, branches and
 /// generators marked.
 void settle_isolated(Network& network);
-/// Notes every generator in service at a load bus (type 1) and every bus whose generators hold different
-/// voltages. `where(i)`: place of generator i in the file.
-void check_held_voltages(const Network& network, const std::function<std::string(std::size_t)>& where,
-                         Problems& problems);
+/// Settles what generators in service contradict each other about, with a remark for each. At a load bus
+/// (type 1) a generator delivers its P and Q if the file's voltages show that power, else it is out of
+/// service, as in PSS/E. Generators of one bus that hold different voltages or buses hold those of the first.
+/// One that holds a bus out of service holds its own, at the file's voltage. Reactive limits that are crossed
+/// are none. `where(i)`: place of generator i in the file.
+void settle_generators(Network& network, const std::function<std::string(std::size_t)>& where);
+/// Gives every island a slack bus, that of its largest generator by MVA, and takes islands without a
+/// generator out of service (type 4), with remarks.
+void settle_islands(Network& network);
+
+/// Equipment without a model here: its kind and name, and the buses it stands at.
+struct Device {
+  std::string name, where;
+  std::vector<int> buses;  ///< indices
+};
+/// Puts loads in the place of devices: what the file's voltages say that they draw, with a remark. Where
+/// those voltages are no solution elsewhere it is a problem.
+void stand_in(Network& network, const std::vector<Device>& devices, Problems& problems);
 /// Notes everything with a number that is not finite: quotients of extreme values. `file`: for messages.
 void check_finite(const Network& network, const std::string& file, Problems& problems);
 

@@ -6,6 +6,14 @@
 
 namespace swingbank::sim::network {
 
+void Network::remark(const std::string& what, const std::string& place) {
+  const auto same = std::ranges::find(remarks, what, &Remark::what);
+  if (same == remarks.end())
+    remarks.push_back({what, {place}});
+  else
+    same->places.push_back(place);
+}
+
 int Network::bus_index(int number) const {
   for (std::size_t i = 0; i < buses.size(); ++i)
     if (buses[i].number == number) return static_cast<int>(i);

@@ -17,6 +17,12 @@ struct Bus {
   double vm, va;  ///< voltage in the file: start of the power flow [pu, rad]
   int area = 1, zone = 1, owner = 1;
 };
+/// What a load of the network stands for.
+enum class LoadKind {
+  load,
+  generator,  ///< a generator without a machine model, as negative consumption
+  device      ///< equipment that has no model here (dc line, FACTS device), as what it draws in the file
+};
 /// Consumption P + jQ [pu]: constant power, constant current and constant admittance parts, each at 1 pu
 /// voltage: S = power + current V + admittance V^2.
 struct Load {
@@ -24,6 +30,7 @@ struct Load {
   std::string id;
   Complex power, current, admittance;
   int area = 1, zone = 1, owner = 1;  ///< load models of a .dyr may name these instead of a bus
+  LoadKind kind = LoadKind::load;
 };
 struct Shunt {
   int bus;
@@ -44,12 +51,20 @@ struct Generator {
   int bus;
   std::string id;
   double p, q;    ///< dispatch [pu on base_mva]
-  double vset;    ///< [pu]
+  double vset;    ///< voltage it holds, at `regulated` if that is a bus [pu]
   double mva;     ///< machine base
   double zr, zx;  ///< ZSORCE [pu on mva]
   bool in_service = true;
-  double q_min = -99.99, q_max = 99.99;  ///< reactive limits [pu on base_mva]; kept, not enforced
+  double q_min = -99.99, q_max = 99.99;  ///< reactive limits [pu on base_mva]
   double rt = 0.0, xt = 0.0;             ///< step-up transformer between machine and bus [pu on mva]; 0: none
+  int regulated = -1;                    ///< index of the bus whose voltage it holds; -1: its own
+  double share = 100.0;                  ///< of the reactive power of all that hold this bus [%]
+};
+/// Something done to a case beyond reading it: what, and every place it was done at.
+struct Remark {
+  std::string what;
+  std::vector<std::string> places;
+  friend bool operator==(const Remark&, const Remark&) = default;
 };
 
 struct Network {
@@ -60,7 +75,10 @@ struct Network {
   std::vector<Shunt> shunts;
   std::vector<Branch> branches;
   std::vector<Generator> generators;
+  std::vector<Remark> remarks;  ///< what was done to the case
 
+  /// Notes that `what` was done at `place`.
+  void remark(const std::string& what, const std::string& place);
   /// Index of the bus with this number, or -1.
   [[nodiscard]] int bus_index(int number) const;
   /// Index of the branch between two bus numbers (either direction) with this circuit id, or -1.

@@ -2,102 +2,123 @@
 
 #include <Eigen/Sparse>
 #include <Eigen/SparseLU>
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numeric>
+#include <utility>
 
 #include "base/problem.hpp"
 #include "sim/network/admittance.hpp"
 #include "sim/network/connectivity.hpp"
+#include "sim/network/detail/regulation.hpp"
 
 namespace swingbank::sim::network {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// What stands at each bus: dispatch, held voltage, loads by their dependence on voltage.
-struct Injections {
-  std::vector<Complex> generation, power, current, admittance;
-  std::vector<double> held;  ///< voltage a generator holds [pu], 0 where none does
+/// Loads of each bus by their dependence on voltage.
+struct Demand {
+  std::vector<Complex> power, current, admittance;
 };
 
-Injections collect(const Network& n) {
+Demand demand_of(const Network& n) {
   const std::size_t count = n.buses.size();
-  Injections in{std::vector<Complex>(count), std::vector<Complex>(count), std::vector<Complex>(count),
-                std::vector<Complex>(count), std::vector<double>(count)};
-  for (const Generator& g : n.generators) {
-    if (!g.in_service) continue;
-    in.generation[at(g.bus)] += Complex(g.p, 0.0);
-    in.held[at(g.bus)] = g.vset;
-  }
+  Demand d{std::vector<Complex>(count), std::vector<Complex>(count), std::vector<Complex>(count)};
   for (const Load& l : n.loads) {
-    in.power[at(l.bus)] += l.power;
-    in.current[at(l.bus)] += l.current;
-    in.admittance[at(l.bus)] += l.admittance;
+    d.power[at(l.bus)] += l.power;
+    d.current[at(l.bus)] += l.current;
+    d.admittance[at(l.bus)] += l.admittance;
   }
-  return in;
+  return d;
 }
 
-/// Index of the one slack bus; throws for none or several and for buses that no path joins to it.
-int check_slack(const Network& n, const Injections& in) {
+/// Throws for a slack bus without generator, and for buses that no path joins to a slack bus.
+void check_slack(const Network& n, const std::vector<double>& supply) {
   Problems problems;
-  std::vector<int> slacks;
+  std::vector<int> slacks, idle;
   for (std::size_t i = 0; i < n.buses.size(); ++i)
-    if (n.buses[i].type == BusType::slack) slacks.push_back(static_cast<int>(i));
+    if (n.buses[i].type == BusType::slack) {
+      slacks.push_back(static_cast<int>(i));
+      if (supply[i] == 0.0) idle.push_back(static_cast<int>(i));
+    }
   if (slacks.empty())
     problems.add("no slack bus", n.origin, "one bus must set the angle and balance the power",
                  "make one generator bus type 3");
-  if (slacks.size() > 1)
-    problems.add("several slack buses: " + bus_list(n, slacks), n.origin, "one bus balances the power",
-                 "leave one of them type 3 and make the others type 2");
-  for (const int s : slacks)
-    if (in.held[at(s)] == 0.0)
-      problems.add("slack " + bus_list(n, {s}) + " has no generator in service", n.origin,
-                   "nothing there can balance the power",
-                   "put a generator in service or choose another slack bus");
+  if (!idle.empty())
+    problems.add(
+        "slack " + bus_list(n, idle) + (idle.size() == 1 ? " has" : " have") + " no generator in service",
+        n.origin, "nothing there can balance the power",
+        "put a generator in service or choose another slack bus");
   problems.raise();
 
   const auto island = islands(n);
+  std::vector<char> held(n.buses.size() + 1, 0);
+  for (const int s : slacks) held[at(island[at(s)])] = 1;
   std::vector<int> lost;
   for (std::size_t i = 0; i < island.size(); ++i)
-    if (island[i] >= 0 && island[i] != island[at(slacks[0])]) lost.push_back(static_cast<int>(i));
+    if (island[i] >= 0 && !held[at(island[i])]) lost.push_back(static_cast<int>(i));
   if (!lost.empty())
     throw InputError({bus_list(n, lost) + (lost.size() == 1 ? " is" : " are") + " islanded", n.origin,
                       "no branch in service leads to the slack bus",
                       "close a branch, or make isolated buses type 4"});
-  return slacks[0];
 }
 
 class Newton {
  public:
-  Newton(const Network& n, int slack, const Injections& in)
-      : n_(n), in_(in), slack_(slack), y_(bus_admittance(n)) {
-    const int count = static_cast<int>(n.buses.size());
+  Newton(const Network& n, const Demand& demand) : n_(n), in_(demand), y_(bus_admittance(n)) {}
+
+  /// Takes on the roles of the buses; the voltages stay.
+  void arrange(const Roles& roles) {
+    roles_ = &roles;
+    const int count = static_cast<int>(n_.buses.size());
     angle_.assign(at(count), -1);
     magnitude_.assign(at(count), -1);
+    reactive_.assign(at(count), {});
+    unknowns_ = 0;
     for (int i = 0; i < count; ++i) {
-      if (!live(i) || i == slack) continue;
+      const Role& role = roles[at(i)];
+      if (role.kind == Role::out || role.kind == Role::slack) continue;
       angle_[at(i)] = unknowns_++;
-      if (in.held[at(i)] == 0.0) magnitude_[at(i)] = unknowns_++;
+      if (role.kind != Role::holds) magnitude_[at(i)] = unknowns_++;
     }
+    // Which equations see the reactive power of a bus, with which factor.
+    for (int i = 0; i < count; ++i) {
+      const Role& role = roles[at(i)];
+      if (role.kind == Role::load) reactive_[at(i)].push_back({magnitude_[at(i)], 1.0});
+      if (role.kind != Role::follows) continue;
+      reactive_[at(i)].push_back({magnitude_[at(i)], roles[at(role.leader)].share});
+      reactive_[at(role.leader)].push_back({magnitude_[at(i)], -role.share});
+    }
+    if (v_.size() == 0) return;
+    for (int i = 0; i < count; ++i)
+      if (roles[at(i)].kind == Role::holds) v_[i] = std::polar(roles[at(i)].held, std::arg(v_[i]));
   }
 
   /// Iterates from the present voltages; true if every mismatch is within tolerance (or rounding, see
   /// `floor`).
   bool iterate(double tolerance, int limit, int& iterations) {
-    for (iterations = 0; iterations <= limit; ++iterations) {
+    for (int k = 0; k <= limit; ++k, ++iterations) {
       if (!evaluate()) return false;
       if (converged(tolerance)) return true;
-      if (iterations == limit || !step()) return false;
+      if (k == limit || !step()) return false;
     }
     return false;
   }
   void start(bool flat) {
     v_.resize(static_cast<Eigen::Index>(n_.buses.size()));
+    double reference = 0.0;
+    for (std::size_t i = n_.buses.size(); i-- > 0;)
+      if ((*roles_)[i].kind == Role::slack) reference = n_.buses[i].va;
     for (std::size_t i = 0; i < n_.buses.size(); ++i) {
       const Bus& b = n_.buses[i];
-      const double vm = in_.held[i] > 0.0 ? in_.held[i] : (flat ? 1.0 : b.vm);
-      const double va = flat ? n_.buses[at(slack_)].va : b.va;
-      v_[static_cast<Eigen::Index>(i)] = live(static_cast<int>(i)) ? std::polar(vm, va) : Complex{};
+      const Role& role = (*roles_)[i];
+      const bool fixed = role.kind == Role::holds || role.kind == Role::slack;
+      const double vm = fixed ? role.held : (flat ? 1.0 : b.vm);
+      const double va = flat && role.kind != Role::slack ? reference : b.va;
+      v_[static_cast<Eigen::Index>(i)] = role.kind == Role::out ? Complex{} : std::polar(vm, va);
     }
   }
   [[nodiscard]] const Eigen::VectorXcd& voltage() const { return v_; }
@@ -107,7 +128,11 @@ class Newton {
   [[nodiscard]] int worst_bus() const { return worst_bus_; }
 
  private:
-  [[nodiscard]] bool live(int i) const { return n_.buses[at(i)].type != BusType::isolated; }
+  struct Row {
+    int row;
+    double factor;
+  };
+  [[nodiscard]] const Role& role(int i) const { return (*roles_)[at(i)]; }
   [[nodiscard]] Complex load(int i) const {
     const double vm = std::abs(v_[i]);
     return in_.power[at(i)] + vm * (in_.current[at(i)] + vm * in_.admittance[at(i)]);
@@ -116,14 +141,19 @@ class Newton {
   bool evaluate() {
     i_ = y_ * v_;
     f_ = Eigen::VectorXd::Zero(unknowns_);
+    for (int i = 0; i < v_.size(); ++i) {
+      if (role(i).kind == Role::out) continue;
+      const Complex d = delivered(i) - role(i).generation;
+      if (angle_[at(i)] >= 0) f_[angle_[at(i)]] += d.real();
+      for (const Row& r : reactive_[at(i)]) f_[r.row] += r.factor * d.imag();
+      if (role(i).kind == Role::leads) f_[magnitude_[at(i)]] += std::abs(v_[role(i).target]) - role(i).held;
+    }
     double worst = 0.0;
     int bus = -1;
     for (int i = 0; i < v_.size(); ++i) {
       if (angle_[at(i)] < 0) continue;
-      const Complex d = delivered(i) - in_.generation[at(i)];
-      f_[angle_[at(i)]] = d.real();
-      if (magnitude_[at(i)] >= 0) f_[magnitude_[at(i)]] = d.imag();
-      const double size = std::max(std::abs(d.real()), magnitude_[at(i)] >= 0 ? std::abs(d.imag()) : 0.0);
+      const double size = std::max(std::abs(f_[angle_[at(i)]]),
+                                   magnitude_[at(i)] >= 0 ? std::abs(f_[magnitude_[at(i)]]) : 0.0);
       if (!std::isfinite(size)) return false;
       if (bus < 0 || size > worst) {
         worst = size;
@@ -141,9 +171,12 @@ class Newton {
       for (Eigen::SparseMatrix<Complex>::InnerIterator e(y_, j); e; ++e)
         meeting[e.row()] += std::abs(v_[e.row()]) * std::abs(e.value()) * std::abs(v_[j]);
     constexpr double rounding = 16.0 * std::numeric_limits<double>::epsilon();
-    for (int i = 0; i < v_.size(); ++i)
+    for (int i = 0; i < v_.size(); ++i) {
+      double meets = meeting[i];
+      if (role(i).kind == Role::follows) meets += meeting[role(i).leader];
       for (const int k : {angle_[at(i)], magnitude_[at(i)]})
-        if (k >= 0 && std::abs(f_[k]) > std::max(tolerance, rounding * meeting[i])) return false;
+        if (k >= 0 && std::abs(f_[k]) > std::max(tolerance, rounding * meets)) return false;
+    }
     return true;
   }
   /// One Newton step with dS/d(angle) and dS/d|V|.
@@ -152,11 +185,11 @@ class Newton {
     const auto add = [&](int i, int column, Complex d) {
       if (column < 0) return;
       if (angle_[at(i)] >= 0) entries.emplace_back(angle_[at(i)], column, d.real());
-      if (magnitude_[at(i)] >= 0) entries.emplace_back(magnitude_[at(i)], column, d.imag());
+      for (const Row& r : reactive_[at(i)]) entries.emplace_back(r.row, column, r.factor * d.imag());
     };
     const Complex j1(0.0, 1.0);
     for (int j = 0; j < y_.outerSize(); ++j) {
-      if (!live(j)) continue;
+      if (role(j).kind == Role::out) continue;
       for (Eigen::SparseMatrix<Complex>::InnerIterator e(y_, j); e; ++e) {
         const int i = static_cast<int>(e.row());
         const Complex flow = v_[i] * std::conj(e.value() * v_[j]);
@@ -167,6 +200,8 @@ class Newton {
       const Complex own = v_[j] * std::conj(i_[j]);
       add(j, angle_[at(j)], j1 * own);
       add(j, magnitude_[at(j)], own / vm + in_.current[at(j)] + 2.0 * vm * in_.admittance[at(j)]);
+      if (role(j).kind == Role::leads)
+        entries.emplace_back(magnitude_[at(j)], magnitude_[at(role(j).target)], 1.0);
     }
     Eigen::SparseMatrix<double> jacobian(unknowns_, unknowns_);
     jacobian.setFromTriplets(entries.begin(), entries.end());
@@ -177,17 +212,18 @@ class Newton {
     for (int i = 0; i < v_.size(); ++i) {
       if (angle_[at(i)] < 0) continue;
       const double vm = std::abs(v_[i]) - (magnitude_[at(i)] >= 0 ? dx[magnitude_[at(i)]] : 0.0);
-      v_[i] = (in_.held[at(i)] > 0.0 ? in_.held[at(i)] : vm) *
+      v_[i] = (role(i).kind == Role::holds ? role(i).held : vm) *
               std::polar(1.0, std::arg(v_[i]) - dx[angle_[at(i)]]);
     }
     return true;
   }
 
   const Network& n_;
-  const Injections& in_;
-  int slack_;
+  const Demand& in_;
+  const Roles* roles_ = nullptr;
   Eigen::SparseMatrix<Complex> y_;
-  std::vector<int> angle_, magnitude_;  ///< position of each bus's unknowns, or -1
+  std::vector<int> angle_, magnitude_;      ///< position of each bus's unknowns, or -1
+  std::vector<std::vector<Row>> reactive_;  ///< per bus
   int unknowns_ = 0;
   Eigen::VectorXcd v_, i_;
   Eigen::VectorXd f_;
@@ -195,41 +231,147 @@ class Newton {
   int worst_bus_ = -1;
 };
 
-}  // namespace
-
-PowerFlow solve_power_flow(const Network& network, double tolerance, int limit) {
-  const Injections in = collect(network);
-  const int slack = check_slack(network, in);
-  Newton newton(network, slack, in);
-  PowerFlow flow;
+/// Newton's method with the present roles: from where it stands, else from the file, else flat.
+void solve(Newton& newton, const Network& network, const PowerFlowOptions& options, bool limited,
+           int& iterations) {
+  if (limited && newton.iterate(options.tolerance, options.limit, iterations)) return;
   newton.start(false);
-  if (!newton.iterate(tolerance, limit, flow.iterations)) {
-    newton.start(true);  // a poor start in the file is no reason to give up
-    if (!newton.iterate(tolerance, limit, flow.iterations)) {
-      const double size = newton.mismatch();
-      throw InputError({"the power flow diverges, worst at " + bus_list(network, {newton.worst_bus()}) +
-                            " with a mismatch of " + std::to_string(size) + " pu (" +
-                            std::to_string(size * network.base_mva) + " MVA)",
-                        network.origin,
-                        std::to_string(limit) +
-                            " iterations from the file's voltages and from a flat start did not balance it",
-                        "check loads, dispatch and impedances near that bus"});
+  if (newton.iterate(options.tolerance, options.limit, iterations)) return;
+  newton.start(true);  // a poor start in the file is no reason to give up
+  if (newton.iterate(options.tolerance, options.limit, iterations)) return;
+  const double size = newton.mismatch();
+  throw InputError({"the power flow diverges, worst at " + bus_list(network, {newton.worst_bus()}) +
+                        " with a mismatch of " + std::to_string(size) + " pu (" +
+                        std::to_string(size * network.base_mva) + " MVA)" +
+                        (limited ? ", with generators at their reactive limits" : ""),
+                    network.origin,
+                    std::to_string(options.limit) +
+                        " iterations from the file's voltages and from a flat start did not balance it",
+                    std::string("check loads, dispatch and impedances near that bus") +
+                        (limited ? ", leave the limits out (--q-limits ignore)" : "") +
+                        ", or start from the file's voltages as they stand (--start file)"});
+}
+
+/// Power of a bus among its generators: by MVA, but each within its own reactive limits where the bus is.
+void share_out(const Network& n, int bus, Complex power, const PowerFlowOptions& options,
+               std::vector<Complex>& generation) {
+  std::vector<std::size_t> units;
+  double mva = 0.0;
+  for (std::size_t k = 0; k < n.generators.size(); ++k)
+    if (n.generators[k].bus == bus && n.generators[k].in_service) {
+      units.push_back(k);
+      mva += n.generators[k].mva;
     }
+  const bool slack = n.buses[at(bus)].type == BusType::slack;
+  for (const std::size_t k : units) {
+    const Generator& g = n.generators[k];
+    generation[k] = power * (g.mva / mva);
+    if (!slack) generation[k] = {g.p, generation[k].imag()};
   }
+  if (slack || !options.reactive_limits || units.size() < 2) return;
+  const auto within = [&](std::size_t k) {
+    const Generator& g = n.generators[k];
+    return g.q_min <= g.q_max ? std::clamp(generation[k].imag(), g.q_min, g.q_max) : generation[k].imag();
+  };
+  std::vector<std::size_t> open = units;
+  while (true) {  // what one cannot take goes to those with room; at most as many rounds as units
+    double rest = power.imag(), room = 0.0;
+    std::vector<std::size_t> free;
+    for (const std::size_t k : units) {
+      const bool was_open = std::ranges::count(open, k) > 0;
+      const double q = within(k);
+      if (!was_open || q != generation[k].imag()) {
+        generation[k] = {generation[k].real(), q};
+        rest -= q;
+      } else {
+        free.push_back(k);
+        room += n.generators[k].mva;
+      }
+    }
+    if (free.size() == open.size() || free.empty()) {
+      if (free.empty())  // beyond the sum of the limits: a type-1 bus, or limits that are crossed
+        for (const std::size_t k : units) generation[k] += Complex(0.0, rest * n.generators[k].mva / mva);
+      return;
+    }
+    for (const std::size_t k : free)
+      generation[k] = {generation[k].real(), rest * n.generators[k].mva / room};
+    open = free;
+  }
+}
+
+PowerFlow result_of(const Newton& newton, const Network& network, const PowerFlowOptions& options) {
+  PowerFlow flow;
   flow.mismatch = newton.mismatch();
   flow.voltage.assign(newton.voltage().begin(), newton.voltage().end());
+  flow.generation.assign(network.generators.size(), {});
+  std::vector<char> done(network.buses.size(), 0);
+  for (const Generator& g : network.generators)
+    if (g.in_service && !std::exchange(done[at(g.bus)], 1))
+      share_out(network, g.bus, newton.delivered(g.bus), options, flow.generation);
+  return flow;
+}
 
+}  // namespace
+
+PowerFlow solve_power_flow(const Network& network, const PowerFlowOptions& options) {
+  const Demand demand = demand_of(network);
+  Regulation regulation(network);
+  check_slack(network, regulation.supply());
+  Newton newton(network, demand);
+  int iterations = 0;
+  newton.arrange(regulation.roles());
+  solve(newton, network, options, false, iterations);
+  if (options.reactive_limits)
+    while (regulation.limit([&](int bus) { return newton.delivered(bus).imag(); },
+                            [&](int bus) { return std::abs(newton.voltage()[bus]); })) {
+      newton.arrange(regulation.roles());
+      solve(newton, network, options, true, iterations);
+    }
+  PowerFlow flow = result_of(newton, network, options);
+  flow.iterations = iterations;
+  flow.at_limit = regulation.at_limit();
+  return flow;
+}
+
+std::vector<Complex> imbalance_of_file(const Network& network) {
+  Eigen::VectorXcd v(static_cast<Eigen::Index>(network.buses.size()));
+  for (std::size_t i = 0; i < network.buses.size(); ++i) {
+    const Bus& b = network.buses[i];
+    v[static_cast<Eigen::Index>(i)] = b.type == BusType::isolated ? Complex{} : std::polar(b.vm, b.va);
+  }
+  const Eigen::VectorXcd s = v.cwiseProduct((bus_admittance(network) * v).conjugate());
+  std::vector<Complex> left(s.begin(), s.end());
+  for (const Load& l : network.loads) {
+    const double vm = std::abs(v[l.bus]);
+    left[at(l.bus)] += l.power + vm * (l.current + vm * l.admittance);
+  }
+  for (const Generator& g : network.generators)
+    if (g.in_service) left[at(g.bus)] -= Complex(g.p, g.q);
+  return left;
+}
+
+PowerFlow flow_of_file(Network& network) {
+  const std::vector<Complex> left = imbalance_of_file(network);
+  PowerFlow flow;
+  for (const Bus& b : network.buses)
+    flow.voltage.push_back(b.type == BusType::isolated ? Complex{} : std::polar(b.vm, b.va));
   std::vector<double> mva(network.buses.size());
   for (const Generator& g : network.generators)
     if (g.in_service) mva[at(g.bus)] += g.mva;
-  for (const Generator& g : network.generators) {
-    Complex s{};
-    if (g.in_service) {
-      s = newton.delivered(g.bus) * (g.mva / mva[at(g.bus)]);
-      if (g.bus != slack) s = {g.p, s.imag()};
-    }
-    flow.generation.push_back(s);
+  for (const Generator& g : network.generators)
+    flow.generation.push_back(g.in_service ? Complex(g.p, g.q) + left[at(g.bus)] * (g.mva / mva[at(g.bus)])
+                                           : Complex{});
+  std::vector<std::pair<double, std::size_t>> sizes;
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    if (network.buses[i].type == BusType::isolated || mva[i] > 0.0 || left[i] == Complex{}) continue;
+    const Complex admittance = -left[i] / std::norm(flow.voltage[i]);
+    network.loads.push_back({static_cast<int>(i), "~", {}, {}, admittance, 1, 1, 1, LoadKind::device});
+    sizes.emplace_back(std::abs(left[i]) * network.base_mva, i);
   }
+  std::ranges::sort(sizes, std::greater{});
+  for (const auto& [size, i] : sizes)
+    network.remark("what the file's voltages leave unbalanced is drawn as constant admittance, largest first",
+                   "bus " + std::to_string(network.buses[i].number) + " " + std::to_string(size) + " MVA");
   return flow;
 }
 

@@ -12,11 +12,30 @@ struct PowerFlow {
       generation;  ///< per generator [pu on base_mva]; Q (and slack P) shared by MVA at a bus
   int iterations = 0;
   double mismatch = 0.0;  ///< largest power mismatch [pu]
+  /// Buses whose generators stand at a reactive limit, so that they do not hold their voltage.
+  std::vector<int> at_limit = {};
 };
-/// A bus of type 2 without a generator in service is a load bus; reactive limits are not enforced. If
-/// Newton's method fails from the file's voltages it is tried once more from a flat start. Mismatches below
-/// the rounding of the powers that meet at a bus count as zero. Solves to `tolerance` [pu]. Throws InputError
-/// on divergence (naming the bus with the largest mismatch), an islanded bus, a missing or second slack bus.
-PowerFlow solve_power_flow(const Network& network, double tolerance = 1e-12, int limit = 30);
+struct PowerFlowOptions {
+  double tolerance = 1e-12;  ///< [pu]
+  int limit = 30;            ///< Newton iterations
+  bool reactive_limits = true;
+};
+/// A generator holds the voltage of its bus, or of `regulated`; several that hold one bus from others share
+/// their reactive power by `share`. Where that would need more than q_min to q_max the bus delivers the
+/// limit, and it returns to holding once the voltage lets it; a slack bus has no limits, and neither has one
+/// whose q_min is above q_max. In every island at least one slack bus sets the angle and balances the power.
+/// A bus of type 2 without a generator in service is a load bus, and at a bus of type 1 generators deliver
+/// their P and Q. If Newton's method fails from the file's voltages it is tried once more from a flat start.
+/// Mismatches below the rounding of the powers that meet at a bus count as zero. Throws InputError on
+/// divergence (naming the bus with the largest mismatch), and for an island without a slack bus.
+PowerFlow solve_power_flow(const Network& network, const PowerFlowOptions& options = {});
+
+/// The file's own voltages as the solution: generators deliver what balances their buses, at every other bus
+/// a constant admittance is added to the network that does, with a remark.
+PowerFlow flow_of_file(Network& network);
+
+/// Per bus, what the file's voltages leave over: power into branches and shunts, plus loads, less the P and Q
+/// of the generators in service [pu].
+std::vector<Complex> imbalance_of_file(const Network& network);
 
 }  // namespace swingbank::sim::network

@@ -3,56 +3,91 @@
 #include <algorithm>
 #include <cctype>
 
+#include "sim/network/admittance.hpp"
 #include "sim/network/consistency.hpp"
 
 namespace swingbank::sim::formats {
 
-network::Network read_raw(const std::filesystem::path& file) {
-  return psse::RawReader(psse::read_lines(file), file.string()).read();
+namespace {
+bool is_rawx(const std::string& name) { return name.ends_with(".rawx") || name.ends_with(".RAWX"); }
+}  // namespace
+
+network::Network read_raw(const std::filesystem::path& file, const RawOptions& options) {
+  return psse::RawReader(psse::read_lines(file), file.string(), options).read();
 }
-network::Network parse_raw(const std::string& text, const std::string& name) {
-  return psse::RawReader(psse::lines_of(text), name).read();
+network::Network parse_raw(const std::string& text, const std::string& name, const RawOptions& options) {
+  return psse::RawReader(psse::lines_of(text), name, options).read();
 }
-RawSurvey survey_raw(const std::filesystem::path& file, std::optional<double> frequency_hz) {
-  return psse::RawReader(psse::read_lines(file), file.string()).survey(frequency_hz);
+RawSurvey survey_raw(const std::filesystem::path& file, const RawOptions& options) {
+  return psse::RawReader(psse::read_lines(file), file.string(), options).survey();
 }
-RawSurvey parse_raw_survey(const std::string& text, const std::string& name,
-                           std::optional<double> frequency_hz) {
-  return psse::RawReader(psse::lines_of(text), name).survey(frequency_hz);
+RawSurvey parse_raw_survey(const std::string& text, const std::string& name, const RawOptions& options) {
+  return psse::RawReader(psse::lines_of(text), name, options).survey();
 }
 
 namespace psse {
 
-const std::array<RawReader::Section, 22> RawReader::kSections = {{
-    {"system-wide", Use::read, &RawReader::system_wide, 34},
-    {"bus", Use::read, &RawReader::bus},
-    {"load", Use::read, &RawReader::load},
-    {"fixed shunt", Use::read, &RawReader::fixed_shunt},
-    {"generator", Use::read, &RawReader::generator},
-    {"branch", Use::read, &RawReader::branch},
-    {"system switching device", Use::read, &RawReader::switching_device, 34},
-    {"transformer", Use::read, &RawReader::transformer},
-    {"area", Use::skip},
-    {"two-terminal dc line", Use::refuse},
-    {"voltage source converter dc line", Use::refuse},
-    {"impedance correction", Use::skip},
-    {"multi-terminal dc line", Use::refuse},
-    {"multi-section line", Use::skip},
-    {"zone", Use::skip},
-    {"inter-area transfer", Use::skip},
-    {"owner", Use::skip},
-    {"FACTS device", Use::refuse},
-    {"switched shunt", Use::read, &RawReader::switched_shunt},
-    {"GNE device", Use::refuse},
-    {"induction machine", Use::refuse, nullptr, 33},
-    {"substation", Use::read, &RawReader::substation, 34},
-}};
+std::vector<RawReader::Section> RawReader::sections() const {
+  const Section load{"load", &RawReader::load}, generator{"generator", &RawReader::generator},
+      branch{"branch", &RawReader::branch}, area{"area"},
+      dc{"two-terminal dc line", &RawReader::two_terminal_dc},
+      vsc{"voltage source converter dc line", &RawReader::vsc_dc},
+      table{"impedance correction", &RawReader::correction_table},
+      mtdc{"multi-terminal dc line", &RawReader::multi_terminal_dc}, multi{"multi-section line"},
+      zone{"zone"}, transfer{"inter-area transfer"}, owner{"owner"}, facts{"FACTS device", &RawReader::facts},
+      switched{"switched shunt", &RawReader::switched_shunt},
+      transformer{"transformer", &RawReader::transformer};
+  if (version_ == 23)
+    return {{"bus", &RawReader::bus_23},
+            generator,
+            branch,
+            {"transformer adjustment"},
+            area,
+            dc,
+            switched,
+            table,
+            mtdc,
+            multi,
+            zone,
+            transfer,
+            owner,
+            facts};
+  std::vector<Section> list;
+  const auto add = [&](std::initializer_list<Section> more) { list.insert(list.end(), more); };
+  if (version_ >= 34) add({{"system-wide", &RawReader::system_wide}});
+  add({{"bus", &RawReader::bus}, load});
+  if (version_ >= 31) add({{"fixed shunt", &RawReader::fixed_shunt}});
+  add({generator, branch});
+  if (version_ >= 34) add({{"system switching device", &RawReader::switching_device}});
+  add({transformer, area, dc, vsc});
+  if (version_ < 31) add({switched});
+  add({table, mtdc, multi, zone, transfer, owner, facts});
+  if (version_ >= 31) add({switched});
+  if (version_ >= 32) add({{"GNE device", &RawReader::gne}});
+  if (version_ >= 33) add({{"induction machine", &RawReader::induction_machine}});
+  if (version_ >= 34) add({{"substation", &RawReader::substation}});
+  return list;
+}
 
 void RawReader::read_sections() {
   network_.origin = file_;
+  constexpr std::string_view mark = "\xEF\xBB\xBF";
+  if (!lines_.empty() && lines_[0].starts_with(mark)) {
+    lines_[0].erase(0, mark.size());
+    network_.remark("a byte-order mark before the first line is passed over", file_ + ":1");
+  }
+  if (is_rawx(file_)) return read_json();
   header();
-  for (const Section& s : kSections)
-    if (s.since <= version_ && !left_out(s) && !section(s)) break;
+  const std::vector<Section> all = sections();
+  for (const Section& s : all) {
+    if (left_out(s)) continue;
+    if (!section(s, &s == &all.back())) break;
+    while (!s.row && again(s)) {
+      network_.remark("a section that its title begins a second time is read as the same once more",
+                      std::string(s.name) + " section after " + file_ + ":" + std::to_string(at_));
+      if (!section(s, false)) break;
+    }
+  }
 }
 network::Network RawReader::read() {
   read_sections();
@@ -60,9 +95,8 @@ network::Network RawReader::read() {
   problems_.raise();
   return std::move(network_);
 }
-RawSurvey RawReader::survey(std::optional<double> frequency_hz) {
+RawSurvey RawReader::survey() {
   units_only_ = true;
-  frequency_hz_ = frequency_hz;
   read_sections();
   return {std::move(network_), std::move(generator_line_), std::move(branch_line_), problems_.list()};
 }
@@ -71,6 +105,11 @@ namespace {
 bool is_comment(const std::string& line) {
   const auto first = line.find_first_not_of(" \t");
   return first != std::string::npos && line.compare(first, 2, "@!") == 0;
+}
+std::string capitals_of(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return text;
 }
 std::string without_return(std::string line) {
   while (!line.empty() && line.back() == '\r') line.pop_back();
@@ -89,13 +128,33 @@ void RawReader::header() {
   const int change = f.integer(0, "IC", 0);
   base_ = static_cast<double>(
       f.number(1, "SBASE", 100.0L));  // the value the network holds, so that writing inverts reading
-  version_ = f.integer(2, "REV");
-  const double frequency = static_cast<double>(f.number(5, "BASFRQ", frequency_hz_));
+  std::string comment;
+  if (const auto slash = lines_[at_].find('/'); slash != std::string::npos)
+    comment = "; the line says \"" + without_return(lines_[at_].substr(slash + 1)) + "\"";
+  if (f.text(2, "").empty() && options_.version == 0)
+    problems_.add("REV is missing", f.where(), "fields and sections lie where the version has them" + comment,
+                  "say it with --raw-version, 23 or 29 to 35");
+  else
+    version_ = f.integer(2, "REV", options_.version);
+  if (f.text(5, "").empty() && !options_.frequency_hz)
+    problems_.add("BASFRQ is missing", f.where(), "the rotors turn at this frequency",
+                  "say it with --frequency-hz, 50 or 60 Hz");
+  const double frequency = static_cast<double>(f.number(5, "BASFRQ", options_.frequency_hz.value_or(1.0)));
   problems_.raise();  // without these nothing below can be read
-  if (version_ < 32 || version_ > 35)
+  if (version_ != 23 && (version_ < 29 || version_ > 35))
     throw InputError({"version " + std::to_string(version_) + " of the .raw format", f.where(),
-                      "versions 32 to 35 are read", "save the case as one of these versions"});
+                      "versions 23 and 29 to 35 are read", "save the case as one of these versions"});
+  if (f.text(2, "").empty())
+    network_.remark("REV is taken from --raw-version: " + std::to_string(version_), f.where());
+  if (f.text(5, "").empty())
+    network_.remark("BASFRQ is taken from --frequency-hz: " + shortest(frequency) + " Hz", f.where());
   columns_ = columns(version_);
+  check_header(f, change, frequency);
+  network_.title = without_return(lines_[at_ + 1]) + "\n" + without_return(lines_[at_ + 2]);
+  at_ += 3;
+}
+
+void RawReader::check_header(const Fields& f, int change, double frequency) {
   if (change != 0)
     problems_.add("IC = " + std::to_string(change), f.where(), "the file adds to a case that is not here",
                   "save the whole case (IC = 0)");
@@ -107,8 +166,6 @@ void RawReader::header() {
                   "give 50 or 60 Hz");
   network_.base_mva = static_cast<double>(base_);
   network_.frequency = frequency;
-  network_.title = without_return(lines_[at_ + 1]) + "\n" + without_return(lines_[at_ + 2]);
-  at_ += 3;
 }
 
 std::optional<Record> RawReader::next() {
@@ -125,16 +182,21 @@ std::optional<Record> RawReader::next() {
 }
 
 bool RawReader::left_out(const Section& section) const {
-  if (section.row != &RawReader::switching_device) return false;
-  std::string text = separator_;
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return text.find("BEGIN TRANSFORMER") != std::string::npos;
+  return section.row == &RawReader::switching_device &&
+         capitals_of(separator_).find("BEGIN TRANSFORMER") != std::string::npos;
+}
+bool RawReader::again(const Section& section) const {
+  return capitals_of(separator_).find("BEGIN " + capitals_of(section.name)) != std::string::npos;
 }
 
-bool RawReader::section(const Section& section) {
+bool RawReader::section(const Section& section, bool last) {
   const std::string name = std::string(section.name) + " section";
   const int start = static_cast<int>(at_) + 1;
+  const auto blank = [](const std::string& l) { return without_return(l).empty(); };
+  if (last && std::all_of(lines_.begin() + static_cast<std::ptrdiff_t>(at_), lines_.end(), blank)) {
+    network_.remark("the file ends before its last section, which is taken as empty", name);
+    return false;
+  }
   while (auto record = next()) {
     const Field& first = record->fields[0];
     if (ends_section(*record)) {
@@ -147,17 +209,9 @@ bool RawReader::section(const Section& section) {
       put_back(*record);
       return true;
     }
-    if (section.use == Use::read) (this->*section.row)(*record);
+    if (section.row) (this->*section.row)(*record);
     generator_line_.resize(network_.generators.size(), record->line);
     branch_line_.resize(network_.branches.size(), record->line);
-    if (section.use == Use::refuse && !units_only_) {
-      problems_.add("a record in the " + name, file_ + ":" + std::to_string(record->line),
-                    "this equipment is not modelled", "remove it or replace it by an equivalent load");
-      while (auto rest = next()) {  // one problem per section says it all; its records may span lines
-        if (ends_file(*rest)) return false;
-        if (ends_section(*rest) && rest->fields.size() == 1) return true;
-      }
-    }
   }
   problems_.add("the file ends in the " + name, file_ + ":" + std::to_string(lines_.size()),
                 "the section begins at line " + std::to_string(start) +
@@ -199,16 +253,48 @@ bool RawReader::status(int value, const char* name, const Fields& fields) {
 }
 
 void RawReader::finish() {
+  correct_impedances();
   network::settle_isolated(network_);
   for (const int star : stars_)  // a star point whose windings are all out hangs on nothing
     if (std::ranges::none_of(network_.branches,
                              [&](const network::Branch& b) { return b.to == star && b.in_service; }))
       network_.buses[static_cast<std::size_t>(star)].type = network::BusType::isolated;
-  network::check_held_voltages(
-      network_, [&](std::size_t i) { return file_ + ":" + std::to_string(generator_line_[i]); }, problems_);
   if (network_.buses.empty() && problems_.empty())
     problems_.add("no buses", file_, "the bus section is empty", "give a case with buses");
   network::check_finite(network_, file_, problems_);
+  for (std::size_t i = 0; i < network_.generators.size(); ++i)
+    if (network::Generator& g = network_.generators[i]; regulated_[i] != 0 && g.in_service) {
+      const auto found = index_.find(std::abs(regulated_[i]));
+      if (found == index_.end())
+        problems_.add("IREG = " + std::to_string(regulated_[i]), generator_place(i),
+                      "the bus section has no such bus", "correct IREG, or set it to 0");
+      else if (found->second != g.bus)
+        g.regulated = found->second;
+    }
+  if (!problems_.empty()) return;
+  if (!devices_.empty()) settle_stars();
+  network::stand_in(network_, devices_, problems_);
+  network::settle_generators(network_, [&](std::size_t i) { return generator_place(i); });
+  network::settle_islands(network_);
+}
+
+/// A star point's voltage from those of its windings: files often leave it at its default.
+void RawReader::settle_stars() {
+  const auto y = network::bus_admittance(network_);
+  for (const int star : stars_) {
+    network::Bus& bus = network_.buses[static_cast<std::size_t>(star)];
+    if (bus.type == network::BusType::isolated) continue;
+    Complex others{}, own{};
+    for (decltype(y)::InnerIterator e(y, star); e; ++e) {
+      const network::Bus& other = at(static_cast<int>(e.row()));
+      // The row of a star is wanted, its column is at hand; phase shifts turn the one into the other.
+      const Complex value = y.coeff(star, static_cast<int>(e.row()));
+      (e.row() == star ? own : others) += e.row() == star ? value : value * std::polar(other.vm, other.va);
+    }
+    if (own == Complex{}) continue;
+    bus.vm = std::abs(others / own);
+    bus.va = std::arg(-others / own);
+  }
 }
 
 }  // namespace psse

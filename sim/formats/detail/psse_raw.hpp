@@ -3,55 +3,67 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <set>
 #include <span>
 
 #include "sim/formats/psse.hpp"
 #include "sim/formats/psse_text.hpp"
+#include "sim/network/consistency.hpp"
 
 namespace swingbank::sim::formats::psse {
 
 /// Where the fields whose place depends on the version stand (counted from 0). Version 34 puts twelve ratings
 /// and a name into branches and transformer windings and appends the regulated node; version 35 moves the
-/// node beside the regulated bus and gives switched shunts an id. Source: PSS/E data format manuals, "Power
-/// Flow Data".
+/// node beside the regulated bus and gives switched shunts an id; before 32 switched shunts have no status.
+/// Source: PSS/E data format manuals, "Power Flow Data".
 struct Columns {
-  std::size_t gen_base, gen_status;          ///< MBASE (ZR, ZX, RT, XT, GTAP follow), STAT
+  std::size_t gen_base, gen_status;          ///< MBASE (ZR, ZX, RT, XT, GTAP follow), STAT (RMPCT follows)
   std::size_t branch_shunts, branch_status;  ///< GI (BI, GJ, BJ follow), ST
   std::size_t winding_table;                 ///< TAB1
   std::size_t switched_id;                   ///< 1 if an ID stands before MODSW, else 0
   std::size_t switched_status, switched_binit;
+  std::size_t bus_area, bus_voltage, bus_owner;  ///< AREA (ZONE follows), VM (VA follows)
 };
+constexpr std::size_t kNoColumn = 999;  ///< beyond every record: the default holds
 constexpr Columns columns(int version) {
-  if (version >= 35) return {9, 15, 19, 23, 23, 1, 4, 11};
-  if (version == 34) return {8, 14, 19, 23, 22, 0, 3, 9};
-  return {8, 14, 9, 13, 13, 0, 3, 9};
+  if (version >= 35) return {9, 15, 19, 23, 23, 1, 4, 11, 4, 7, 6};
+  if (version == 34) return {8, 14, 19, 23, 22, 0, 3, 9, 4, 7, 6};
+  if (version >= 32) return {8, 14, 9, 13, 13, 0, 3, 9, 4, 7, 6};
+  if (version == 31) return {8, 14, 9, 13, 13, 0, kNoColumn, 7, 4, 7, 6};
+  if (version >= 29) return {8, 14, 9, 13, 13, 0, kNoColumn, 7, 6, 8, 10};
+  return {8, 14, 11, 15, 13, 0, kNoColumn, 5, 6, 7, kNoColumn};
 }
 
 class RawReader {
  public:
   /// `name` stands for the file in messages.
-  RawReader(std::vector<std::string> lines, std::string name)
-      : file_(std::move(name)), lines_(std::move(lines)) {}
+  RawReader(std::vector<std::string> lines, std::string name, const RawOptions& options)
+      : file_(std::move(name)), lines_(std::move(lines)), options_(options) {}
   network::Network read();
-  RawSurvey survey(std::optional<double> frequency_hz);
+  RawSurvey survey();
 
  private:
   void read_sections();
-  enum class Use { read, skip, refuse };
   struct Section {
     const char* name;
-    Use use;
-    void (RawReader::*row)(const Record&) = nullptr;
-    int since = 32;  ///< first version that has it
+    void (RawReader::*row)(const Record&) = nullptr;  ///< none: passed over
   };
-  static const std::array<Section, 22> kSections;
+  /// The sections of a version in their order.
+  [[nodiscard]] std::vector<Section> sections() const;
+  void read_json();
+  void json_transformers(const nlohmann::json& network);
+  void json_devices(const nlohmann::json& network);
 
   void header();
-  /// False if the file is over ('Q' or no more lines); the latter is a fault unless all sections were seen.
-  bool section(const Section& section);
+  void check_header(const Fields& header, int change, double frequency);
+  /// False if the file is over ('Q' or no more lines); the latter is a fault unless only the last section is
+  /// missing.
+  bool section(const Section& section, bool last);
   /// Some programs write version 34 without this section: the line that ends the branches says so.
   [[nodiscard]] bool left_out(const Section& section) const;
+  /// Whether the line that ended a section says that the same begins again.
+  [[nodiscard]] bool again(const Section& section) const;
   /// The next record that holds a field; lines that begin with '@!' are comments.
   std::optional<Record> next();
   /// Steps back by the record that next() returned last.
@@ -59,15 +71,36 @@ class RawReader {
 
   void system_wide(const Record& record);
   void bus(const Record& record);
+  void bus_23(const Record& record);
+  void bus_shunt(Fields& f, std::size_t first);
+  void some_impedance(double r, double& x, int from, int to, const Fields& f);
   void load(const Record& record);
   void fixed_shunt(const Record& record);
   void generator(const Record& record);
   void branch(const Record& record);
   void switching_device(const Record& record);
   void transformer(const Record& first);
+  void transformer_lines(std::span<const Record> rows);
   void switched_shunt(const Record& record);
+  void correction_table(const Record& first);
+  void two_terminal_dc(const Record& first);
+  void vsc_dc(const Record& first);
+  void multi_terminal_dc(const Record& first);
+  void facts(const Record& record);
+  void gne(const Record& first);
+  void induction_machine(const Record& record);
   void substation(const Record& first);
   void finish();
+  [[nodiscard]] std::string generator_place(std::size_t i) const {
+    return i < places_.size() ? places_[i] : file_ + ":" + std::to_string(generator_line_[i]);
+  }
+  void correct_impedances();
+  void settle_stars();
+
+  /// The `count` records after `first`, which belong to it; fewer where the section ends.
+  std::vector<Record> following(const Record& first, std::size_t count, const char* what);
+  void device(const std::string& kind, const std::string& name, const Record& record,
+              const std::vector<int>& numbers);
 
   /// Index of the bus with this number; -1 and a problem if the file has none.
   int find_bus(int number, const Fields& fields);
@@ -86,7 +119,8 @@ class RawReader {
   void two_windings(std::span<const Record> rows, int from, int to);
   void three_windings(std::span<const Record> rows, const std::array<int, 3>& ends);
   int star_point(Fields& head, Fields& impedances, const std::array<int, 3>& ends, bool in_service);
-  void no_table(Fields& winding, std::size_t number);
+  /// The correction table that a winding names, kept until the tables are read.
+  void note_table(Fields& winding, std::size_t number, std::size_t branch);
   Complex magnetising(Fields& head, Fields& winding, const Codes& codes, long double mva,
                       const network::Bus& bus);
 
@@ -106,8 +140,20 @@ class RawReader {
   std::map<int, int> index_;
   std::map<std::string, int> seen_;  ///< identity -> line
   std::vector<int> generator_line_, branch_line_;
-  bool units_only_ = false;  ///< what matters to a network alone is no fault
-  std::optional<double> frequency_hz_;
+  std::vector<std::string> places_;  ///< of the generators, where they are not lines
+  bool units_only_ = false;          ///< what matters to a network alone is no fault
+  RawOptions options_;
+  std::vector<network::Device> devices_;
+  std::vector<int> regulated_;  ///< per generator: number of the bus it holds, 0: its own
+  struct Correction {
+    std::size_t branch;
+    int table;
+    std::string name;     ///< TAB1 to TAB3
+    double ratio, angle;  ///< WINDV as in the file, ANG [deg]
+    std::string where;
+  };
+  std::vector<Correction> corrections_;
+  std::map<int, std::vector<std::pair<double, Complex>>> tables_;  ///< T and factor, ascending
   std::set<int> stars_;  ///< indices of the star points of three-winding transformers
 };
 

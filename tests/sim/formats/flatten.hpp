@@ -48,8 +48,9 @@ inline Flat flatten(const network::Network& n) {
     f.all(b.r, b.x, b.b, b.tap, b.shift, b.shunt_from, b.shunt_to);
   }
   for (const network::Generator& g : n.generators) {
-    f.words += "|" + std::to_string(g.bus) + g.id + (g.in_service ? "on" : "off");
-    f.all(g.p, g.q, g.vset, g.mva, g.zr, g.zx, g.q_min, g.q_max, g.rt, g.xt);
+    f.words += "|" + std::to_string(g.bus) + g.id + (g.in_service ? "on" : "off") + ">" +
+               std::to_string(g.regulated);
+    f.all(g.p, g.q, g.vset, g.mva, g.zr, g.zx, g.q_min, g.q_max, g.rt, g.xt, g.share);
   }
   return f;
 }

@@ -131,7 +131,6 @@ TEST(Matpower, EveryFaultIsReportedAtOnceWithItsLine) {
   expect(15, "bus 9 is not in mpc.bus");
   expect(16, "mBase = 0 MVA");
   expect(16, "Vg = 0 pu");
-  expect(17, "of type 1");
   expect(20, "to itself");
   expect(21, "r = x = 0");
   expect(22, "ratio = -1");
@@ -199,7 +198,9 @@ TEST_P(MatpowerRecords, SolveToTheirPrintedVoltages) {
       << ": set SWINGBANK_REFERENCE to the folder that holds networks/, or run .ci/run --without-psse";
   const network::Network n = read_matpower(file, 60.0);
   ASSERT_EQ(n.buses.size(), buses);
-  const network::PowerFlow flow = network::solve_power_flow(n);
+  network::PowerFlowOptions options;
+  options.reactive_limits = false;  // they were printed from a solution without: a unit of case39 is beyond
+  const network::PowerFlow flow = network::solve_power_flow(n, options);
   for (std::size_t i = 0; i < buses; ++i) {
     EXPECT_NEAR(std::abs(flow.voltage[i]), n.buses[i].vm, magnitude) << n.buses[i].number;
     EXPECT_NEAR(std::remainder(std::arg(flow.voltage[i]) - n.buses[i].va, 2 * std::numbers::pi) * 180.0 /

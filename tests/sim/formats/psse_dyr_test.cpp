@@ -35,7 +35,7 @@ TEST(PsseDyr, RecordsSpanLinesAndEndAtASlash) {
 TEST(PsseDyr, EveryFaultIsReportedAtOnceWithItsLine) {
   const auto problems = problems_of([] {
     read(
-        "101 'GENCLS' 1 3.5 nan /\nx 'GENCLS' 1 1 0 /\n103 /\n104 'GENCLS' 1 1,,2 /\n105 'GENCLS 1 1 /\n106 "
+        "101 'GENCLS' 1 3.5 nan /\nx 'GENCLS' 1 1 0 /\n103 /\n104 'GENCLS' 1 1,x,2 /\n105 'GENCLS 1 1 /\n106 "
         "'GENCLS' 1 3.0\n 0.0\n");
   });
   std::string all;
@@ -46,11 +46,19 @@ TEST(PsseDyr, EveryFaultIsReportedAtOnceWithItsLine) {
   EXPECT_THAT(all, HasSubstr("case.dyr:2"));
   EXPECT_THAT(all, HasSubstr("incomplete record"));
   EXPECT_THAT(all, HasSubstr("case.dyr:3"));
-  EXPECT_THAT(all, HasSubstr("GENCLS parameter 2 is missing"));
+  EXPECT_THAT(all, HasSubstr("GENCLS parameter 2 = 'x'"));
   EXPECT_THAT(all, HasSubstr("case.dyr:4"));
   EXPECT_THAT(all, HasSubstr("a quote is not closed"));
   EXPECT_THAT(all, HasSubstr("case.dyr:5"));
   EXPECT_THAT(all, HasSubstr("a record has no end"));
+}
+
+TEST(PsseDyr, EmptyParametersAreZeroAndCounted) {
+  const auto r = read("101 'GENCLS' 1,,2.0,,3.0 /\n");
+  ASSERT_EQ(r.size(), 1u);
+  EXPECT_TRUE(r[0].faults.empty());
+  EXPECT_THAT(r[0].values, ElementsAre(0.0, 2.0, 0.0, 3.0));
+  EXPECT_THAT(r[0].empty, ElementsAre(1, 3));
 }
 
 TEST(PsseDyr, CommentLinesMayStandWithinRecords) {

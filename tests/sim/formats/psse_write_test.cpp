@@ -47,10 +47,13 @@ network::Network random_network(double base, unsigned seed) {
   for (int i = 0; i < 40; ++i) {
     n.loads.push_back({i, "L", {any(), any()}, {any(), any()}, {any(), any()}, i % 4, 9 - i % 9, 1 + i % 2});
     n.shunts.push_back({i, "S", {any(), any()}});
-    n.generators.push_back({i, "G1", any(), any(), positive(), positive(), any(), any(), i % 3 != 0, any(),
-                            any(), positive(), positive()});
+    // In service are the slack's generator, and branches that leave no bus alone: else reading mends the
+    // case.
+    const auto [q_min, q_max] = std::minmax({any(), any()});
+    n.generators.push_back({i, "G1", any(), any(), positive(), positive(), any(), any(), i % 3 != 1, q_min,
+                            q_max, positive(), positive(), i % 6 == 2 ? (i + 3) % 40 : -1, positive()});
     n.branches.push_back(
-        {i, (i + 1) % 40, "C", any(), any(), any(), 1.0, 0.0, {any(), any()}, {any(), any()}, i % 2 == 0});
+        {i, (i + 1) % 40, "C", any(), any(), any(), 1.0, 0.0, {any(), any()}, {any(), any()}, i % 4 != 1});
   }
   for (int i = 0; i < 40; ++i)
     n.branches.push_back({i,
@@ -63,7 +66,7 @@ network::Network random_network(double base, unsigned seed) {
                           value(random),
                           {any(), any()},
                           {},
-                          i % 2 == 1,
+                          i % 3 != 0,
                           true});
   return n;
 }

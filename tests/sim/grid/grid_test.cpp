@@ -80,10 +80,8 @@ TEST(Grid, EveryFaultIsReportedAtOnceWithTheDyrLine) {
   EXPECT_THAT(all, HasSubstr("case.dyr:2"));
   EXPECT_THAT(all, HasSubstr("a second machine model, GENCLS, for generator 102/1"));
   EXPECT_THAT(all, HasSubstr("case.dyr:4"));
-  EXPECT_THAT(all, HasSubstr("GENCLS for generator '1' at bus 103"));
-  EXPECT_THAT(all, HasSubstr("GENCLS for generator 'X' at bus 102"));
-  EXPECT_THAT(all, HasSubstr("no machine model for generator '1' at bus 101"));
-  EXPECT_THAT(all, HasSubstr("no machine model for generator 'B' at bus 102"));
+  EXPECT_THAT(all, HasSubstr("no machine model for 2 generators: '1' at bus 101, 'B' at bus 102"));
+  EXPECT_THAT(all, HasSubstr("--net-generators"));
 }
 
 TEST(Grid, FaultsOfRawAndDyrAreReportedTogether) {
@@ -116,7 +114,7 @@ std::string logged(const std::function<void()>& action) {
 }
 
 TEST(Grid, ASourceReactanceThatContradictsTheDyrIsMentioned) {
-  EXPECT_EQ(logged([] { load({}, plain_dyr()); }), "");  // ZX 0.25 = X''d
+  EXPECT_THAT(logged([] { load({}, plain_dyr()); }), Not(HasSubstr("ZX")));  // ZX 0.25 = X''d
   formats::RawCase other, absent;
   other.generators =
       "101,'1',153.0,73.0,100,-100,1.05,0,100,0,0.3\n102,'1',100.0,-3.0,100,-100,1.02,0,100,0,0.2\n";
@@ -126,7 +124,7 @@ TEST(Grid, ASourceReactanceThatContradictsTheDyrIsMentioned) {
   EXPECT_THAT(text, HasSubstr("case.dyr:2"));
   EXPECT_THAT(text, HasSubstr("ZX = 0.2 pu"));
   EXPECT_THAT(text, HasSubstr("0.25 pu in its GENROU"));
-  EXPECT_EQ(logged([&] { load(absent, plain_dyr()); }), "");
+  EXPECT_THAT(logged([&] { load(absent, plain_dyr()); }), Not(HasSubstr("ZX")));
 }
 
 TEST(Grid, DyrReadsBackToTheLastBit) {

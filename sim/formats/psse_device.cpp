@@ -1,0 +1,100 @@
+// Equipment of a .raw that has no model here: dc lines, FACTS and GNE devices, induction machines. Only where
+// they stand is read; what they draw is taken from the file's solved voltages.
+#include <algorithm>
+
+#include "sim/formats/detail/psse_raw.hpp"
+
+namespace swingbank::sim::formats::psse {
+
+std::vector<Record> RawReader::following(const Record& first, std::size_t count, const char* what) {
+  std::vector<Record> rows;
+  while (rows.size() < count) {
+    auto record = next();
+    if (!record) break;  // the section reports the truncation
+    if (record->fields.size() == 1 && (ends_section(*record) || ends_file(*record))) {
+      put_back(*record);
+      problems_.add(std::string(what) + " with " + std::to_string(rows.size() + 1) + " lines",
+                    Fields(first, file_, problems_).where(),
+                    "it takes " + std::to_string(count + 1) + " lines", "complete the record");
+      break;
+    }
+    rows.push_back(std::move(*record));
+  }
+  return rows;
+}
+
+void RawReader::device(const std::string& kind, const std::string& name, const Record& record,
+                       const std::vector<int>& numbers) {
+  if (units_only_) return;
+  const Fields f(record, file_, problems_);
+  network::Device d{kind + " '" + name + "'", f.where(), {}};
+  for (const int number : numbers)
+    if (number != 0) d.buses.push_back(find_bus(std::abs(number), f));
+  devices_.push_back(std::move(d));
+}
+
+void RawReader::two_terminal_dc(const Record& first) {
+  Fields f(first, file_, problems_);
+  const auto rows = following(first, 2, "a two-terminal dc line");
+  if (rows.size() < 2 || f.integer(1, "MDC", 0) == 0) return;  // blocked
+  Fields rectifier(rows[0], file_, problems_), inverter(rows[1], file_, problems_);
+  device("dc line", f.text(0, ""), first, {rectifier.integer(0, "IPR"), inverter.integer(0, "IPI")});
+}
+
+void RawReader::vsc_dc(const Record& first) {
+  Fields f(first, file_, problems_);
+  const auto rows = following(first, 2, "a voltage source converter dc line");
+  if (rows.size() < 2 || f.integer(1, "MDC", 1) == 0) return;
+  std::vector<int> buses;
+  for (const Record& row : rows) {
+    Fields converter(row, file_, problems_);
+    if (converter.integer(1, "TYPE", 0) != 0) buses.push_back(converter.integer(0, "IBUS"));
+  }
+  device("VSC dc line", f.text(0, ""), first, buses);
+}
+
+void RawReader::multi_terminal_dc(const Record& first) {
+  Fields f(first, file_, problems_);
+  constexpr int most = 1000;  // of converters, dc buses and lines
+  const auto count = [&](std::size_t i, const char* name) {
+    return static_cast<std::size_t>(std::clamp(f.integer(i, name, 0), 0, most));
+  };
+  const std::size_t converters = count(1, "NCONV");
+  const auto rows =
+      following(first, converters + count(2, "NDCBS") + count(3, "NDCLN"), "a multi-terminal dc line");
+  if (rows.size() < converters || f.integer(4, "MDC", 0) == 0) return;
+  std::vector<int> buses;
+  for (std::size_t i = 0; i < converters; ++i)
+    buses.push_back(Fields(rows[i], file_, problems_).integer(0, "IB"));
+  device("multi-terminal dc line", f.text(0, ""), first, buses);
+}
+
+void RawReader::facts(const Record& record) {
+  Fields f(record, file_, problems_);
+  if (f.integer(3, "MODE", 1) == 0) return;
+  device("FACTS device", f.text(0, ""), record, {f.integer(1, "I"), f.integer(2, "J", 0)});
+}
+
+void RawReader::gne(const Record& first) {
+  Fields f(first, file_, problems_);
+  constexpr int most = 100;
+  const auto terminals = static_cast<std::size_t>(std::clamp(f.integer(2, "NTERM", 1), 1, 2));
+  std::size_t lines = 1;  // its status; then ten values to a line
+  for (std::size_t i = 0; i < 3; ++i)
+    lines += static_cast<std::size_t>(
+                 std::clamp(f.integer(3 + terminals + i, "NREAL, NINTG, NCHAR", 0), 0, most) + 9) /
+             10;
+  const auto rows = following(first, lines, "a GNE device");
+  if (rows.size() < lines || Fields(rows[0], file_, problems_).integer(0, "STATUS", 1) == 0) return;
+  std::vector<int> buses;
+  for (std::size_t i = 0; i < terminals; ++i) buses.push_back(f.integer(3 + i, "BUS"));
+  device("GNE device", f.text(0, ""), first, buses);
+}
+
+void RawReader::induction_machine(const Record& record) {
+  Fields f(record, file_, problems_);
+  if (f.integer(2, "STATUS", 1) == 0) return;
+  device("induction machine", f.text(1, "1"), record, {f.integer(0, "bus number")});
+}
+
+}  // namespace swingbank::sim::formats::psse

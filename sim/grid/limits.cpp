@@ -1,0 +1,117 @@
+#include "sim/grid/limits.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+#include <optional>
+
+namespace swingbank::sim::grid {
+namespace {
+
+Complex voltage_of(const Grid& grid, const plant::Plant& plant) {
+  return grid.flow.voltage[static_cast<std::size_t>(plant.bus)];
+}
+/// What keeps a plant from its operating point; empty: nothing.
+std::vector<Problem> hindrances(const Grid& grid, const plant::Plant& plant) {
+  try {
+    (void)plant::operating_point(plant, voltage_of(grid, plant), grid.network.base_mva, grid.conventions);
+  } catch (const InputError& error) {
+    return error.problems();
+  }
+  return {};
+}
+
+/// Which way a limit opens: +1 upwards, -1 downwards, 0: the parameter is none. An effect says in the
+/// parameter's meaning what it is.
+int opening(const Parameter& p) {
+  const std::string meaning(p.meaning);
+  const auto says = [&](const char* word) { return meaning.find(word) != std::string::npos; };
+  if (p.is_code() || says("rate") || says("speed at which") || says("voltage of point") ||
+      p.unit.ends_with("/s") || p.unit == "s")
+    return 0;
+  const bool limit = says("limit") || says("maximum") || says("minimum") || says("largest") ||
+                     says("smallest") || says("most") || says("least") || says("highest") || says("lowest");
+  if (!limit) return 0;
+  if (says("upper") || says("maximum") || says("largest") || says("most") || says("highest") ||
+      p.name.ends_with("MAX") || p.name.ends_with("max"))
+    return 1;
+  if (says("lower") || says("minimum") || says("smallest") || says("least") || says("lowest") ||
+      p.name.ends_with("MIN") || p.name.ends_with("min"))
+    return -1;
+  return 1;
+}
+
+struct Limit {
+  std::size_t block, parameter;  ///< of the plant's controls
+  int way;
+  double given;
+};
+
+class Widener {
+ public:
+  Widener(Grid& grid, plant::Plant& plant) : grid_(grid), plant_(plant) {
+    for (std::size_t b = 0; b < plant.controls.size(); ++b)
+      for (std::size_t i = 0; i < plant.controls[b].effect->parameters.size(); ++i)
+        if (const int way = opening(plant.controls[b].effect->parameters[i]); way != 0)
+          limits_.push_back({b, i, way, plant.controls[b].p[i]});
+  }
+  /// What is in the way besides the limits; the plant is then as it was.
+  std::vector<Problem> widen() {
+    for (const Limit& l : limits_) value(l) = l.given + l.way * kAllOpen;
+    std::vector<Problem> left = hindrances(grid_, plant_);
+    for (const Limit& l : limits_)
+      if (left.empty())
+        narrow(l);
+      else
+        value(l) = l.given;
+    return left;
+  }
+
+ private:
+  static constexpr double kAllOpen = 100.0;  ///< [pu] beyond what any operating point needs
+  double& value(const Limit& l) { return plant_.controls[l.block].p[l.parameter]; }
+  bool stands() { return hindrances(grid_, plant_).empty(); }
+  /// Back to the given value, or as near to it as the operating point stands.
+  void narrow(const Limit& l) {
+    double near = 0.0, far = kAllOpen;
+    value(l) = l.given;
+    if (stands()) return;
+    constexpr double fine = 1e-9;  // [pu]
+    while (far - near > fine) {
+      const double middle = 0.5 * (near + far);
+      value(l) = l.given + l.way * middle;
+      (stands() ? far : near) = middle;
+    }
+    value(l) = l.given + l.way * far;
+    const plant::Block& block = plant_.controls[l.block];
+    const Parameter& p = block.effect->parameters[l.parameter];
+    grid_.network.remark("limits are moved to the operating point, as asked",
+                         fmt::format("{} of {} at generator {}: {:g} becomes {:.6g} {}", p.name,
+                                     block.effect->name, plant_.name, l.given, value(l), p.unit));
+  }
+  Grid& grid_;
+  plant::Plant& plant_;
+  std::vector<Limit> limits_;
+};
+
+}  // namespace
+
+void settle_limits(Grid& grid, bool widen) {
+  Problems problems;
+  const std::size_t before = grid.network.remarks.size();
+  for (plant::Plant& plant : grid.plants) {
+    std::vector<Problem> found = hindrances(grid, plant);
+    if (!found.empty() && widen) found = Widener(grid, plant).widen();
+    for (Problem& p : found) {
+      if (!widen) p.remedy += ", or let --widen-limits move the limit";
+      problems.add(p.what, p.where, p.why, p.remedy);
+    }
+  }
+  problems.raise();
+  constexpr std::size_t places = 12;
+  for (std::size_t i = before; i < grid.network.remarks.size(); ++i)
+    spdlog::warn("{}: {}", grid.network.origin, remark_line(grid.network.remarks[i], places));
+}
+
+}  // namespace swingbank::sim::grid

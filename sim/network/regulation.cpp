@@ -1,0 +1,107 @@
+// Which bus holds which voltage, and what becomes of it at a reactive limit.
+#include "sim/network/detail/regulation.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace swingbank::sim::network {
+namespace {
+std::size_t place(int i) { return static_cast<std::size_t>(i); }
+}  // namespace
+
+Regulation::Regulation(const Network& network)
+    : n_(network), base_(network.buses.size()), supply_(network.buses.size()) {
+  for (std::size_t i = 0; i < n_.buses.size(); ++i) {
+    if (n_.buses[i].type == BusType::isolated) base_[i].kind = Role::out;
+    if (n_.buses[i].type == BusType::slack) base_[i].kind = Role::slack;
+  }
+  std::map<int, std::size_t> source_of;
+  for (const Generator& g : n_.generators) {
+    if (!g.in_service) continue;
+    supply_[place(g.bus)] += g.mva;
+    base_[place(g.bus)].generation += Complex(g.p, 0.0);
+    if (n_.buses[place(g.bus)].type == BusType::load) {
+      base_[place(g.bus)].generation += Complex(0.0, g.q);
+      continue;
+    }
+    const bool remote =
+        g.regulated >= 0 && g.regulated != g.bus && base_[place(g.regulated)].kind != Role::out;
+    if (base_[place(g.bus)].kind == Role::slack)
+      base_[place(g.bus)].held = remote ? n_.buses[place(g.bus)].vm : g.vset;
+    const auto [found, fresh] = source_of.emplace(g.bus, sources_.size());
+    if (fresh) sources_.push_back({g.bus, remote ? g.regulated : g.bus, g.vset});
+    Source& source = sources_[found->second];
+    source.held = g.vset;
+    source.share += g.share;
+    source.q_min += g.q_min;
+    source.q_max += g.q_max;
+  }
+  for (Source& source : sources_) {
+    source.bounded = source.q_min <= source.q_max && base_[place(source.bus)].kind != Role::slack;
+    if (!(source.share > 0.0)) source.share = supply_[place(source.bus)];
+  }
+  assign();
+}
+
+void Regulation::assign() {
+  roles_ = base_;
+  std::map<int, std::vector<const Source*>> held_by;
+  for (const Source& s : sources_) {
+    Role& role = roles_[place(s.bus)];
+    if (role.kind == Role::slack) continue;
+    role.share = s.share;
+    role.held = s.held;
+    if (s.side != 0)
+      role.generation += Complex(0.0, s.side > 0 ? s.q_max : s.q_min);
+    else if (s.target == s.bus)
+      role.kind = Role::holds;
+    else
+      held_by[s.target].push_back(&s);
+  }
+  for (const auto& [target, sources] : held_by) {
+    const Role::Kind kind = roles_[place(target)].kind;
+    const bool itself = kind == Role::slack || kind == Role::holds;
+    if (kind == Role::slack && !(roles_[place(target)].share > 0.0)) roles_[place(target)].share = 1.0;
+    const int leader = itself ? target : sources.front()->bus;
+    for (const Source* s : sources) {
+      Role& role = roles_[place(s->bus)];
+      role.target = target;
+      role.leader = leader;
+      role.kind = s->bus == leader ? Role::leads : Role::follows;
+    }
+  }
+  double most = 0.0;  // shares of order 1 keep the equations' scale
+  for (const Role& role : roles_) most = std::max(most, role.share);
+  for (Role& role : roles_) role.share /= most;
+}
+
+bool Regulation::limit(const std::function<double(int)>& reactive,
+                       const std::function<double(int)>& voltage) {
+  constexpr double beyond = 1e-9;  // [pu] rounding is no reason to move
+  constexpr int most = 3;          // a bus that comes back again and again stays at its limit
+  bool moved = false;
+  for (Source& s : sources_) {
+    if (!s.bounded) continue;
+    if (s.side == 0) {
+      const double q = reactive(s.bus);
+      s.side = q > s.q_max + beyond ? 1 : q < s.q_min - beyond ? -1 : 0;
+      moved = moved || s.side != 0;
+    } else if (s.returns < most && s.q_max > s.q_min && s.side * (voltage(s.target) - s.held) > beyond) {
+      s.side = 0;
+      ++s.returns;
+      moved = true;
+    }
+  }
+  if (moved) assign();
+  return moved;
+}
+
+std::vector<int> Regulation::at_limit() const {
+  std::vector<int> list;
+  for (const Source& s : sources_)
+    if (s.side != 0) list.push_back(s.bus);
+  std::ranges::sort(list);
+  return list;
+}
+
+}  // namespace swingbank::sim::network

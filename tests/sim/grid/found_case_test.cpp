@@ -1,0 +1,101 @@
+// Cases that are not whole: what is done to them, by which option, and that it is said.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "sim/grid/grid.hpp"
+#include "sim/grid/limits.hpp"
+#include "tests/sim/formats/raw_case.hpp"
+
+namespace swingbank::sim::grid {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+const std::string kBoth = "101 'GENCLS' 1 3 0 /\n102 'GENCLS' 1 3 0 /\n";
+
+std::vector<std::string> places(const Grid& grid, const std::string& part) {
+  for (const network::Remark& r : grid.network.remarks)
+    if (r.what.find(part) != std::string::npos) return r.places;
+  return {};
+}
+Grid make(const formats::RawCase& raw, const std::string& dyr, const CaseOptions& options = {}) {
+  return make_grid(formats::parse_raw(raw.text(), "case.raw"), formats::parse_dyr(dyr, "case.dyr"),
+                   "case.dyr", Conventions::psse(), options);
+}
+
+TEST(FoundCase, GeneratorsWithoutAMachineBecomeNegativeLoadsOnRequest) {
+  CaseOptions options;
+  options.net_generators = true;
+  const Grid whole = make({}, kBoth), grid = make({}, "101 'GENCLS' 1 3 0 /\n", options);
+  ASSERT_EQ(grid.plants.size(), 1u);
+  EXPECT_EQ(grid.plants[0].name, "101");
+  ASSERT_EQ(grid.network.loads.size(), 2u);
+  const network::Load& netted = grid.network.loads[1];
+  EXPECT_EQ(netted.kind, network::LoadKind::generator);
+  EXPECT_EQ(netted.power, -whole.flow.generation[1]);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(grid.flow.voltage[i], whole.flow.voltage[i]);
+  EXPECT_FALSE(grid.network.generators[1].in_service);
+  EXPECT_THAT(places(grid, "negative loads"), ElementsAre(HasSubstr("'1' at bus 102 100.00 MW")));
+}
+
+TEST(FoundCase, RecordsWithoutAGeneratorAreLeftOutWithARemark) {
+  formats::RawCase raw;
+  raw.generators += "102,'2',10,0,100,-100,1.02,0,100,0,0.3,0,0,1,0\n";
+  // That of the generator out of service may even be unknown; the other two are named.
+  const Grid grid =
+      make(raw, kBoth + "102 'STRANGE' 2 1 2 /\n103 'GENCLS' 1 3 0 /\n102 'SEXS' X 0.1 10 100 0.1 0 3 /\n");
+  EXPECT_THAT(places(grid, "has not are left out"),
+              ElementsAre(HasSubstr("GENCLS of '1' at bus 103 (case.dyr:4)"), HasSubstr("case.dyr:5")));
+}
+
+TEST(FoundCase, EmptyFieldsOfADyrAreZeroAndCommentsAreNone) {
+  const Grid grid = make({}, "@! bus, model\n101 'GENCLS' 1 3 0 /\n102, 'GENCLS', 1, 3,, /\n");
+  EXPECT_THAT(places(grid, "empty parameters"), ElementsAre("GENCLS parameter 2 (case.dyr:3)"));
+}
+
+TEST(FoundCase, ASolutionThatIsNotTheFilesIsNamed) {
+  formats::RawCase raw;
+  const Grid solved = make(raw, kBoth);
+  EXPECT_THAT(places(solved, "differs from the file's voltages"), ElementsAre(HasSubstr("bus 103 ")));
+  CaseOptions options;
+  options.start_from_file = true;
+  const Grid file = make(raw, kBoth, options);
+  EXPECT_EQ(file.flow.voltage[2], std::polar(0.99, -8.7 * std::acos(-1.0) / 180.0));
+  EXPECT_THAT(places(file, "leave unbalanced"), ElementsAre(HasSubstr("bus 103 ")));
+  EXPECT_TRUE(places(file, "differs").empty());
+}
+
+TEST(FoundCase, BusesAtTheirLimitAreNamed) {
+  formats::RawCase raw;
+  raw.generators.replace(raw.generators.find("100,-100,1.02"), 3, "5.0");
+  const Grid grid = make(raw, kBoth);
+  EXPECT_THAT(places(grid, "at a reactive limit"), ElementsAre("bus 102"));
+  CaseOptions options;
+  options.flow.reactive_limits = false;
+  EXPECT_TRUE(places(make(raw, kBoth, options), "at a reactive limit").empty());
+}
+
+TEST(FoundCase, OperatingPointsBeyondLimitsAreToldTogetherOrTheLimitsMoved) {
+  // Valves of 0.5 pu where the machines deliver 1.5 and 1.0 pu.
+  const std::string dyr =
+      kBoth + "101 'TGOV1' 1 0.05 0.5 0.5 0 2 7 0 /\n102 'TGOV1' 1 0.05 0.5 0.5 0 2 7 0 /\n";
+  Grid grid = make({}, dyr);
+  const auto problems = formats::problems_of([&] { settle_limits(grid, false); });
+  EXPECT_GE(problems.size(), 2u);
+  std::string all;
+  for (const Problem& p : problems) all += p.sentence() + "\n";
+  for (const char* part : {"generator 101", "generator 102", "--widen-limits"})
+    EXPECT_THAT(all, HasSubstr(part));
+  settle_limits(grid, true);
+  EXPECT_THAT(places(grid, "limits are moved"),
+              ElementsAre(HasSubstr("VMAX of TGOV1 at generator 101: 0.5 becomes"),
+                          HasSubstr("VMAX of TGOV1 at generator 102: 0.5 becomes 1")));
+  const plant::Block& governor = grid.plants[1].controls[0];
+  EXPECT_NEAR(governor.p[static_cast<std::size_t>(governor.effect->parameter_index("VMAX"))], 1.0, 1e-7);
+  EXPECT_EQ(governor.p[static_cast<std::size_t>(governor.effect->parameter_index("VMIN"))], 0.0);
+}
+
+}  // namespace
+}  // namespace swingbank::sim::grid
