@@ -64,6 +64,18 @@ void read_box(Config& c, const std::string& table, const sim::Effect& effect, co
   box.insert(box.end(), found.begin(), found.end());
 }
 
+/// A converter has no rotor, whose angle the records hold.
+bool is_machine(const sim::Effect& effect) {
+  return effect.slot == sim::Slot::machine && !effect.converter;
+}
+
+std::string machines(const sim::library::EffectLibrary& library) {
+  std::string names;
+  for (const sim::Effect* e : library.all())
+    if (is_machine(*e)) names += (names.empty() ? "" : ", ") + std::string(e->name);
+  return names;
+}
+
 /// [vary.effects.NAME]: parameters of what stands around the machine.
 void read_effect_boxes(Config& c, const sim::library::EffectLibrary& library, std::vector<Box>& box) {
   std::vector<std::pair<const sim::Effect*, std::string>> tables;
@@ -135,10 +147,10 @@ void read_vary(Config& c, DatasetConfig& d) {
               "name it once");
   d.model = c.require<std::string>("vary.model");
   const sim::Effect* effect = d.library.find(d.model);
-  if (effect == nullptr || effect->slot != sim::Slot::machine) {
+  if (effect == nullptr || !is_machine(*effect)) {
     if (!d.model.empty())
       c.problem("vary.model", "model " + d.model, "it is no machine model of this program",
-                "use one of: " + d.library.names(sim::Slot::machine));
+                "use one of: " + machines(d.library));
     c.ignore("vary.box");  // cannot be judged without the model
     return;
   }

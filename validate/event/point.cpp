@@ -188,8 +188,8 @@ Eigen::VectorXd bounded_step(const Eigen::MatrixXd& slopes, Eigen::VectorXd left
 /// (Gauss-Newton): half an interval at 60 per second would cost the units several per cent of their power
 /// during a fault.
 EventState fitted_instants(const std::vector<Standing>& units, const record::Record& whole) {
-  constexpr int kRounds = 8;
-  constexpr double kAside = 0.02, kEnough = 1e-4;  // of the half interval
+  constexpr int kPointRounds = 8;
+  constexpr double kAside = 0.02, kPointSettled = 1e-4;  // of the half interval
   const auto& switchings = units[0].events[0].switchings;
   const auto n = static_cast<Eigen::Index>(switchings.size());
   const auto state_at = [&](const Eigen::VectorXd& at) {
@@ -201,7 +201,7 @@ EventState fitted_instants(const std::vector<Standing>& units, const record::Rec
   };
   const auto left_at = [&](const Eigen::VectorXd& at) { return left_over(units, whole, state_at(at)); };
   Eigen::VectorXd at = Eigen::VectorXd::Zero(n), left = left_at(at);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kPointRounds; ++round) {
     Eigen::MatrixXd slopes(left.size(), n);
     for (Eigen::Index k = 0; k < n; ++k) {
       const double aside = at[k] > 0 ? -kAside : kAside;
@@ -215,7 +215,7 @@ EventState fitted_instants(const std::vector<Standing>& units, const record::Rec
       next = left_at(at + (step *= 0.5));
     if (next.squaredNorm() > left.squaredNorm()) break;
     at += step, left = next;
-    if (step.cwiseAbs().maxCoeff() < kEnough) break;
+    if (step.cwiseAbs().maxCoeff() < kPointSettled) break;
   }
   return state_at(at);
 }
