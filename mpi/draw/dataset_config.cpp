@@ -65,9 +65,7 @@ void read_box(Config& c, const std::string& table, const sim::Effect& effect, co
 }
 
 /// A converter has no rotor, whose angle the records hold.
-bool is_machine(const sim::Effect& effect) {
-  return effect.slot == sim::Slot::machine && !effect.converter;
-}
+bool is_machine(const sim::Effect& effect) { return effect.slot == sim::Slot::machine && !effect.converter; }
 
 std::string machines(const sim::library::EffectLibrary& library) {
   std::string names;
