@@ -46,7 +46,7 @@ run_target() {
   local found=$build/found/$1 corpus=$build/corpus/$1
   rm -rf "$found"
   mkdir -p "$found" "$corpus"
-  if "$build/bin/fuzz_$1" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=8192 -print_final_stats=1 \
+  if "$build/bin/fuzz_$1" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=1048576 -print_final_stats=1 \
     -artifact_prefix="$found/" "$corpus" "$source_folder/tests/fuzz/corpus/$1" >"$found/log.txt" 2>&1; then
     echo "fuzz $1: $(sed -n 's/^stat::number_of_executed_units: *//p' "$found/log.txt") inputs in $seconds s, nothing found"
   else
