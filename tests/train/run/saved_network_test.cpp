@@ -272,6 +272,35 @@ TEST(SavedNetwork, RefusesWhatIsNone) {
   EXPECT_TRUE(has(refusal(file), "network file cannot be used"));
 }
 
+/// Flips one bit of every byte up to the end of the header, and of one in a thousand behind it, each in its
+/// place.
+TEST(SavedNetworkFull, FlippedBytesAreFound) {
+  const SavedWorld world("flipped");
+  RunRequest r = world.request("gru");
+  r.save_network = true;
+  ASSERT_EQ(run(world.stream, r), RunOutcome::done);
+  const auto file = r.out / (run_name(r) + ".network");
+  EXPECT_NO_THROW((void)SavedNetwork::load(file));
+  std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
+  const auto length = static_cast<std::streamoff>(std::filesystem::file_size(file));
+  constexpr std::streamoff kHeader = 4000;
+  int flipped = 0;
+  for (std::streamoff i = 0; i < length; i += i < kHeader ? 1 : 1009, ++flipped) {
+    bytes.seekg(i);
+    const auto was = static_cast<unsigned char>(bytes.get());
+    const auto put = [&](unsigned c) {
+      bytes.seekp(i);
+      bytes.put(static_cast<char>(c));
+      bytes.flush();
+    };
+    put(was ^ (1U << i % 8));
+    EXPECT_THROW((void)SavedNetwork::load(file), InputError) << "byte " << i << " of " << length;
+    put(was);
+  }
+  EXPECT_NO_THROW((void)SavedNetwork::load(file));
+  RecordProperty("flipped", flipped);
+}
+
 TEST(TargetScale, ABoxBelowZeroIsLiftedToZero) {
   const std::vector<double> values = {-4, 1, -2, 2, -3, 3};
   const std::vector<std::uint64_t> rows = {0, 1, 2};
