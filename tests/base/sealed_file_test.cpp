@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr SealedKind kKind{"sealed test file", "swingbank-test-1\n", "make it again"};
+constexpr SealedKind kTestKind{"sealed test file", "swingbank-test-1\n", "make it again"};
 
 /// Reads the file and returns what is wrong with it, or the arrays as text.
 std::string outcome(const std::filesystem::path& file) {
@@ -30,7 +30,7 @@ std::string outcome(const std::filesystem::path& file) {
       arrays[i].resize(n);
       return arrays[i];
     };
-    if (!read_sealed(kKind, file, start, place)) return "no file";
+    if (!read_sealed(kTestKind, file, start, place)) return "no file";
   } catch (const InputError& error) {
     EXPECT_FALSE(taken) << "the content was handed on before it was known to be whole";
     return error.what();
@@ -47,7 +47,7 @@ TEST(SealedFile, EveryFlippedOrMissingByteIsFound) {
   const auto file = folder / "f.sealed";
   EXPECT_EQ(outcome(file), "no file");
   const std::vector<float> one = {1, 2, 3}, two = {4};
-  write_sealed(kKind, file, {{"epoch", 3}}, {one, two});
+  write_sealed(kTestKind, file, {{"epoch", 3}}, {one, two});
   EXPECT_EQ(outcome(file), "1 2 3 4 ");
   const std::string whole = read_text(file);
   for (std::size_t i = 0; i < whole.size(); ++i) {

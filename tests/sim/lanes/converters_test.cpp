@@ -8,8 +8,8 @@
 namespace swingbank::sim::lanes {
 namespace {
 
-constexpr double kLimit = 2e-4;  ///< of max(1 pu, the channel's swing); measured up to 1.1e-4
-constexpr std::size_t kPlant = 1;
+constexpr double kConverterLimit = 2e-4;  ///< of max(1 pu, the channel's swing); measured up to 1.1e-4
+constexpr std::size_t kConverter = 1;
 constexpr int kMiddle = 1, kTerminal = 2;  ///< buses
 
 using Values = std::map<std::string, double>;
@@ -27,7 +27,7 @@ plant::Block block_of(const std::string& name, const Values& changes) {
 }
 grid::Grid grid_with(const Outfit& outfit) {
   grid::Grid grid = test::two_machine_grid(Conventions::psse());
-  plant::Plant& plant = grid.plants[kPlant];
+  plant::Plant& plant = grid.plants[kConverter];
   plant.machine = block_of(outfit.blocks[0].first, outfit.blocks[0].second);
   for (std::size_t i = 1; i < outfit.blocks.size(); ++i)
     plant.controls.push_back(block_of(outfit.blocks[i].first, outfit.blocks[i].second));
@@ -42,7 +42,7 @@ std::vector<network::Event> events(const grid::Grid& grid) {
   all[2].faults = {{kTerminal, 1.0, 1.15, {}}};
   all[3].faults = {{kTerminal, 1.0, 1.15, {0.01, 0.1}}};
   all[4].trips = {{2, 1.0, 1.5}};
-  all[5].generator_trips = {{grid.plants[kPlant].generator, 1.0}};
+  all[5].generator_trips = {{grid.plants[kConverter].generator, 1.0}};
   return all;
 }
 
@@ -68,7 +68,7 @@ TEST_P(Converters, LanesFollowTheReference) {
     ASSERT_EQ(runs.at(e).outcome, Outcome::stable) << "event " << e << " in the lanes";
     const auto d = test::difference(grid, all[e], runs.at(e), expected);
     RecordProperty("worst_" + std::to_string(e), testing::PrintToString(d.value) + " " + d.where);
-    EXPECT_LT(d.value, kLimit) << "event " << e << ": " << d.where;
+    EXPECT_LT(d.value, kConverterLimit) << "event " << e << ": " << d.where;
   }
 }
 INSTANTIATE_TEST_SUITE_P(

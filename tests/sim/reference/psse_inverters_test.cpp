@@ -14,17 +14,17 @@
 namespace swingbank::sim::reference {
 namespace {
 
-constexpr double kStep = 0.005;         ///< of the records [s]
-constexpr double kSwitching = 1.0;      ///< [s]
-constexpr double kVoltageLimit = 1e-4;  ///< [pu]
-constexpr double kAngleLimit = 0.01;    ///< [degrees]
-constexpr double kSwingLimit = 2e-3;    ///< of other channels, of their swing
+constexpr double kRecordStep = 0.005;          ///< of the records [s]
+constexpr double kSwitching = 1.0;             ///< [s]
+constexpr double kVoltageLimit = 1e-4;         ///< [pu]
+constexpr double kConverterAngleLimit = 0.01;  ///< [degrees]
+constexpr double kSwingLimit = 2e-3;           ///< of other channels, of their swing
 
-double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
+double in_degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
 std::filesystem::path rena() { return test::record_folder("psse_powersimulationsdynamics") / "RENA"; }
 
-grid::Grid grid_of(const std::string& dyr) {
+grid::Grid converter_grid_of(const std::string& dyr) {
   return grid::load_grid(rena() / "ThreeBusRenewable.raw", rena() / dyr, Conventions::psse());
 }
 network::Event trip(const grid::Grid& grid, int from, int to) {
@@ -40,7 +40,7 @@ std::size_t plant_at(const grid::Grid& grid, const std::string& name) {
 ReferenceRun exact(const grid::Grid& grid, const network::Event& event, double until) {
   ReferenceOptions options;
   options.t_end = until;
-  options.rate = 1.0 / kStep;
+  options.rate = 1.0 / kRecordStep;
   options.channels = {Channel::P, Channel::Q, Channel::V, Channel::theta};
   options.plants = {static_cast<int>(plant_at(grid, "103"))};
   options.after_switching = true;
@@ -77,16 +77,16 @@ struct Columns {
 // Measured with exact integration: V 7.1e-6 pu, P 1.0e-4 and Q 1.4e-5 pu (3.3 and 1.7 % of swings of 0.003
 // and 0.0009 pu).
 TEST_P(PsseRecordsConverter, PowerAndVoltage) {
-  const grid::Grid grid = grid_of(GetParam().dyr);
+  const grid::Grid grid = converter_grid_of(GetParam().dyr);
   const auto record = test::read_table(rena() / GetParam().csv, false);
   const network::Event event = trip(grid, 101, 103);
   const ReferenceRun run = exact(grid, event, 5.0);
-  const auto switching = std::lround(kSwitching / kStep);
+  const auto switching = std::lround(kSwitching / kRecordStep);
   const double jump[] = {run.at(0, 0)[switching] - run.at(0, 0)[switching - 1],
                          run.at(0, 1)[switching] - run.at(0, 1)[switching - 1]};
   Columns at_once, stepped;
   for (const auto& row : record.rows) {
-    const long k = std::lround(row[0] / kStep);
+    const long k = std::lround(row[0] / kRecordStep);
     if (k == switching || k >= run.samples) continue;
     double ours[] = {run.at(0, 0)[k], run.at(0, 1)[k], run.at(0, 2)[k]};
     for (int c = 0; c < 2 && k > switching; ++c) ours[c] -= half_way(jump[c], k - switching);
@@ -94,10 +94,10 @@ TEST_P(PsseRecordsConverter, PowerAndVoltage) {
   }
   std::size_t next = 0;
   long after = -1;  // solutions since the switching; the first of two rows there is before it
-  test::step_as_psse(grid, event, plant_at(grid, "103"), kStep, 5.0,
+  test::step_as_psse(grid, event, plant_at(grid, "103"), kRecordStep, 5.0,
                      [&](double t, const Signals<double>& s, const double*) {
                        if (next >= record.rows.size()) return;
-                       if (after >= 0 || std::lround(t / kStep) == switching) ++after;
+                       if (after >= 0 || std::lround(t / kRecordStep) == switching) ++after;
                        double ours[] = {s.P, s.Q, s.V};
                        for (int c = 0; c < 2 && after > 0; ++c) ours[c] -= half_way(jump[c], after - 1);
                        stepped.see(record.rows[next++], ours);
@@ -130,8 +130,8 @@ class PsseRecordsRegulated : public testing::TestWithParam<RegulatedRecord> {};
 struct Largest {
   double angle = 0.0, voltage = 0.0;
   void see(const std::vector<double>& row, double theta, double V) {
-    if (!first_) first_ = degrees(theta) - row[1];
-    angle = std::max(angle, std::abs(degrees(theta) - row[1] - *first_));
+    if (!first_) first_ = in_degrees(theta) - row[1];
+    angle = std::max(angle, std::abs(in_degrees(theta) - row[1] - *first_));
     voltage = std::max(voltage, std::abs(V - row[2]));
   }
 
@@ -143,32 +143,32 @@ struct Largest {
 // Measured with exact integration: angle 0.0056 and 0.0043 degrees, V 2.9e-4 and 3.1e-4 pu; stepped as PSS/E
 // steps: V 2.3e-6 pu, with the record's last digit 1e-8.
 TEST_P(PsseRecordsRegulated, AngleAndVoltage) {
-  const grid::Grid grid = grid_of(GetParam().dyr);
+  const grid::Grid grid = converter_grid_of(GetParam().dyr);
   const auto record = test::read_table(rena() / GetParam().csv, true);
   const network::Event event = trip(grid, 101, 103);
   const ReferenceRun run = exact(grid, event, GetParam().until);
-  const auto switching = std::lround(kSwitching / kStep);
+  const auto switching = std::lround(kSwitching / kRecordStep);
   Largest at_once, stepped;
   for (const auto& row : record.rows) {
-    const long k = std::lround(row[0] / kStep);
+    const long k = std::lround(row[0] / kRecordStep);
     if (k == switching || k >= run.samples) continue;
     at_once.see(row, run.at(0, 3)[k], run.at(0, 2)[k]);
   }
   RecordProperty("exact_degrees", testing::PrintToString(at_once.angle));
   RecordProperty("exact_V_pu", testing::PrintToString(at_once.voltage));
-  EXPECT_LT(at_once.angle, kAngleLimit);
+  EXPECT_LT(at_once.angle, kConverterAngleLimit);
   EXPECT_LT(at_once.voltage, 4e-4);
   std::size_t next = 0;
-  test::step_as_psse(grid, event, plant_at(grid, "103"), kStep, GetParam().until,
+  test::step_as_psse(grid, event, plant_at(grid, "103"), kRecordStep, GetParam().until,
                      [&](double, const Signals<double>& s, const double*) {
                        const auto& row = record.rows.at(next++);
                        // at the switching the record's angle is still that before it
-                       if (std::lround(row[0] / kStep) != switching)
+                       if (std::lround(row[0] / kRecordStep) != switching)
                          stepped.see(row, std::atan2(s.Vi, s.Vr), s.V);
                      });
   RecordProperty("stepped_degrees", testing::PrintToString(stepped.angle));
   RecordProperty("stepped_V_pu", testing::PrintToString(stepped.voltage));
-  EXPECT_LT(stepped.angle, kAngleLimit);
+  EXPECT_LT(stepped.angle, kConverterAngleLimit);
   EXPECT_LT(stepped.voltage, kVoltageLimit / 5);
 }
 INSTANTIATE_TEST_SUITE_P(All, PsseRecordsRegulated,
@@ -215,14 +215,14 @@ TEST_P(PsseRecordsManyUnits, WithExactIntegration) {
   const network::Event event = GetParam().event(grid);
   ReferenceOptions options;
   options.t_end = GetParam().until;
-  options.rate = 1.0 / kStep;
+  options.rate = 1.0 / kRecordStep;
   options.channels = {Channel::delta, Channel::P, Channel::Q, Channel::speed, Channel::Ifd};
   options.buses = {0, 1, 2, 3};
   options.after_switching = true;
   options.lose_at = 1e9;
   const ReferenceRun run = run_reference(grid, event, options);
   ASSERT_EQ(grid.plants.size(), kUnits);
-  const auto switching = std::lround(kSwitching / kStep);
+  const auto switching = std::lround(kSwitching / kRecordStep);
   double worst_angle = 0.0, worst_voltage = 0.0;
   double worst[3] = {};  // P, Q, field current over their swing
   for (std::size_t u = 0; u < kUnits; ++u) {
@@ -235,7 +235,7 @@ TEST_P(PsseRecordsManyUnits, WithExactIntegration) {
     for (int c = 0; c < 3; ++c) {
       double low = 1e9, high = -1e9, largest = 0.0;
       for (const auto& row : record.rows) {
-        const long k = std::lround(row[0] / kStep);
+        const long k = std::lround(row[0] / kRecordStep);
         // P and Q of a converter settle by halves: from the eighth solution on less than 0.4 % is left.
         if (k >= run.samples || (k >= switching && k < switching + (converter ? 8 : 1))) continue;
         const double theirs = row[1 + u * kOfUnit + column[c]],
@@ -249,15 +249,15 @@ TEST_P(PsseRecordsManyUnits, WithExactIntegration) {
       if (high - low > 1e-3) worst[c] = std::max(worst[c], largest / (high - low));
     }
     for (const auto& row : record.rows) {
-      const long k = std::lround(row[0] / kStep);
+      const long k = std::lround(row[0] / kRecordStep);
       if (converter || k >= run.samples || k == switching) continue;
       const double apart = row[1 + u * kOfUnit] - row[1];  // against unit 1
-      worst_angle = std::max(worst_angle,
-                             std::abs(degrees(run.at(static_cast<int>(u), 0)[k] - run.at(0, 0)[k]) - apart));
+      worst_angle = std::max(
+          worst_angle, std::abs(in_degrees(run.at(static_cast<int>(u), 0)[k] - run.at(0, 0)[k]) - apart));
     }
   }
   for (const auto& row : record.rows) {
-    const long k = std::lround(row[0] / kStep);
+    const long k = std::lround(row[0] / kRecordStep);
     if (k >= run.samples || k == switching) continue;
     for (std::size_t b = 0; b < kBuses; ++b)
       worst_voltage = std::max(
