@@ -34,8 +34,8 @@ int system_error(const std::string& why) {
   if (const auto at = why.find(kErrno); at != std::string::npos)
     return std::atoi(why.c_str() + at + kErrno.size());
   constexpr std::pair<std::string_view, int> kOfMpi[] = {
-      {"MPI_ERR_NO_SPACE", ENOSPC}, {"MPI_ERR_NO_SUCH_FILE", ENOENT}, {"MPI_ERR_QUOTA", EDQUOT},
-      {"MPI_ERR_ACCESS", EACCES},   {"MPI_ERR_READ_ONLY", EROFS},     {"MPI_ERR_IO", EIO}};
+      {"ERR_NO_SPACE", ENOSPC}, {"ERR_NO_SUCH_FILE", ENOENT}, {"ERR_QUOTA", EDQUOT},
+      {"ERR_ACCESS", EACCES},   {"ERR_READ_ONLY", EROFS},     {"ERR_IO", EIO}};
   for (const auto& [name, error] : kOfMpi)
     if (why.find(name) != std::string::npos) return error;
   return 0;
@@ -76,7 +76,7 @@ void File::fail(const std::string& what, const std::string& object) const {
   if (const int error = system_error(why)) raise_file_error(where, error, what);
   // MPI-IO does not always say why; what the system said last is told beside.
   const bool vague =
-      why == "file write failed" || why == "file read failed" || why.find("MPI_ERR_OTHER") != why.npos;
+      why == "file write failed" || why == "file read failed" || why.find("ERR_OTHER") != why.npos;
   if (last != 0 && vague) why += std::string("; the system: ") + std::strerror(last);
   throw InputError(
       {what, where, why, "if the file is damaged, delete it and run the command that made it again"});

@@ -102,7 +102,7 @@ predict --records "$work/wild.csv" "$work/row-000.csv" --json 2>/dev/null >"$wor
   fail "JSON does not say which record is unlike: $(cat "$work/printed.json")"
 refuses "no network" 'none.network' "$swingbank" predict --network "$work/none.network" --model "$work/plant.toml" --records "$work/row-000.csv"
 head -c 3000 "$network" >"$work/cut.network"
-refuses "truncated network" 'cut.network .it ends too early' "$swingbank" predict --network "$work/cut.network" --model "$work/plant.toml" --records "$work/row-000.csv"
+refuses "truncated network" 'cut.network .its checksum is wrong' "$swingbank" predict --network "$work/cut.network" --model "$work/plant.toml" --records "$work/row-000.csv"
 refuses "another machine model" 'the network was trained on GENCLS' "$swingbank" predict --network "$network" --model "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml" --records "$work/row-000.csv"
 misused "unknown option" 'nonsense' predict --records "$work/row-000.csv" --nonsense 3
 

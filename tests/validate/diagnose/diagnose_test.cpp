@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "sim/library/library.hpp"
+#include "sim/library/variants.hpp"
 #include "tests/validate/playin/support.hpp"
 #include "validate/playin/instruments.hpp"
 
@@ -25,8 +26,8 @@ TEST(Hypotheses, EveryEffectThatFitsAndEveryNeutralGroupJoins) {
   for (const auto& h : hypothesis::all_hypotheses(model.under_test(), model.library)) names.push_back(h.name);
   for (const sim::Effect& e : sim::library::compiled_effects()) {
     const bool instrument = e.slot == sim::Slot::measurement && playin::can_be_taken_back(e);
-    const bool joins =
-        (e.slot == sim::Slot::transformer || sim::is_control(e.slot) || instrument) && e.instants == nullptr;
+    const bool joins = (e.slot == sim::Slot::transformer || sim::is_control(e.slot) || instrument) &&
+                       e.instants == nullptr && sim::library::variant_of(e) == nullptr;
     const bool suits = sim::misfit(*model.plant.machine.effect, e).empty();
     EXPECT_EQ(std::ranges::count(names, e.name), joins && suits ? 1 : 0) << e.name;
   }

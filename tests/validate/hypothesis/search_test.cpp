@@ -60,8 +60,9 @@ class Exchange : public ::testing::Test {
 TEST_F(Exchange, RivalsOfTheSlotStandBesideTheSecondAsItWasFitted) {
   const Judgement pair = beside(alone("TGOV1", 0.06), "STEPUP", 0.07);
   const auto rivals = exchanges(stage_, pair, {});
-  EXPECT_THAT(names(rivals), testing::UnorderedElementsAre("STEPUP + GAST", "STEPUP + GGOV1",
-                                                           "STEPUP + HYGOV", "STEPUP + IEEEG1"));
+  EXPECT_THAT(names(rivals),
+              testing::UnorderedElementsAre("STEPUP + DEGOV1", "STEPUP + GAST", "STEPUP + GGOV1",
+                                            "STEPUP + HYGOV", "STEPUP + IEEEG1"));
   for (const Judgement& j : rivals) {
     EXPECT_FALSE(j.fit.failed.empty());
     // believed to be what it was before any fit, and starting where the pair's fit ended
