@@ -152,7 +152,8 @@ void RawReader::json_transformers(const nlohmann::json& net) {
   }
   Table corrections(net, "impcor", file_, problems_);
   for (std::size_t i = 0; i < corrections.size(); ++i) {  // a row is one point
-    Fields f(corrections.record(i, {"itable", "tap", "refact", "imfact"}), file_, problems_);
+    const Record point = corrections.record(i, {"itable", "tap", "refact", "imfact"});
+    Fields f(point, file_, problems_);
     tables_[f.integer(0, "itable")].emplace_back(static_cast<double>(f.number(1, "tap", 0.0L)),
                                                  Complex(static_cast<double>(f.number(2, "refact", 0.0L)),
                                                          static_cast<double>(f.number(3, "imfact", 0.0L))));

@@ -277,12 +277,14 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
 /// before the first.
 template <class T>
 T Lanes<T>::unwrapped(T angle, double last, int count) const {
+  T turns(0.0);  // beside the angle, which keeps its slopes
   for (int l = 0; l < count; ++l) {
     const double now = Traits::get(angle, l);
-    last = now + constants::turn * std::nearbyint((last - now) / constants::turn);
-    Traits::set(angle, l, last);
+    const double whole = constants::turn * std::nearbyint((last - now) / constants::turn);
+    Traits::set(turns, l, whole);
+    last = now + whole;
   }
-  return angle;
+  return angle + turns;
 }
 
 /// Repeats the last sample until `until` samples are recorded.
