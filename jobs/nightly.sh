@@ -56,7 +56,7 @@ if [[ ! $hours =~ ^[0-9]*\.?[0-9]+$ ]] || ! awk "BEGIN {exit !($hours > 0)}"; th
   echo "no hours at --hours $hours (a number above 0 is wanted): give one like 2 or 0.5" >&2
   exit 1
 fi
-seeds=${seeds:-$(awk "BEGIN {print $hours >= $hours_of_seeds ? 3 : 1}")}
+seeds=${seeds:-$(awk "BEGIN {print ($hours >= $hours_of_seeds ? 3 : 1)}")}
 if [[ ! $seeds =~ ^([1-9]|10)$ ]]; then
   echo "no number of seeds at --seeds $seeds (the next night's begin ten further on): give 1 to 10" >&2
   exit 1

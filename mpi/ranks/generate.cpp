@@ -175,9 +175,10 @@ int generate(const draw::DatasetConfig& config, const GenerateOptions& o, MPI_Co
     if (archive)
       require_same_config(o.folder, header);
     else
-      locks = enter(o, header);
-    if (!archive && !fs::exists(o.folder / "card.json"))
-      draw::write_card(o.folder, draw::card_of(config, kernel, made_by(o.software)));
+      locks = enter(o, header, [&] {
+        if (!fs::exists(o.folder / "card.json"))
+          draw::write_card(o.folder, draw::card_of(config, kernel, made_by(o.software)));
+      });
     lines = journalled(o);
     // The manifest of a finished dataset names what there is without a look at each file.
     if (o.trust && store::read_manifest(o.folder)) lines.clear();

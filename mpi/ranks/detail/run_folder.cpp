@@ -125,11 +125,13 @@ void require_same_cut(const fs::path& folder, const store::Part& part) {
 
 }  // namespace
 
-FolderLocks enter(const GenerateOptions& o, const store::DatasetHeader& header) {
+FolderLocks enter(const GenerateOptions& o, const store::DatasetHeader& header,
+                  const std::function<void()>& furnish) {
   FolderLocks locks = lock_folder(o.folder, o.part);
   const Claim claim(o.folder, o.part);
   claim_folder(o.folder, header, locks);
   require_same_cut(o.folder, o.part);
+  furnish();
   store::Journal begun(o.folder / o.part.journal_name());  // before another part looks
   clear_leftovers(o.folder, o.part, header.shard_count());
   return locks;

@@ -2,6 +2,7 @@
 // The folder of a dataset before a run makes shards: whose it is, what an earlier run left, what is missing.
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -20,9 +21,10 @@ struct FolderLocks {
   }
 };
 
-/// Locks the folder, makes it this run's, with its header, and removes what a killed run left. Throws
-/// InputError where it is in use or another's.
-FolderLocks enter(const GenerateOptions& options, const store::DatasetHeader& header);
+/// Locks the folder, makes it this run's, with its header and what `furnish` adds while no other part looks,
+/// and removes what a killed run left. Throws InputError where it is in use or another's.
+FolderLocks enter(const GenerateOptions& options, const store::DatasetHeader& header,
+                  const std::function<void()>& furnish);
 
 /// Whether the folder holds a dataset and cannot be written to. What is complete need not be.
 bool is_archive(const std::filesystem::path& folder);

@@ -15,7 +15,10 @@ namespace swingbank::sim::test {
 /// Uniform draws, the same on every platform (std::uniform_real_distribution is not).
 class Draws {
  public:
-  explicit Draws(std::uint64_t seed) : random_(seed) {}
+  explicit Draws(std::uint64_t seed, std::set<std::string_view> without = {})
+      : without_(std::move(without)), random_(seed) {}
+  /// Whether an effect takes part: where it does not, the draws are those from before it was there.
+  [[nodiscard]] bool knows(const Effect& e) const { return !without_.contains(e.name); }
   double uniform(double low, double high) {
     return low + (high - low) * static_cast<double>(random_() >> 11) * 0x1p-53;
   }
@@ -23,13 +26,14 @@ class Draws {
   bool chance(double p) { return uniform(0, 1) < p; }
 
  private:
+  std::set<std::string_view> without_;
   std::mt19937_64 random_;
 };
 
-inline std::vector<const Effect*> effects_in(Slot slot) {
+inline std::vector<const Effect*> effects_in(Slot slot, const Draws& draws) {
   std::vector<const Effect*> list;
   for (const Effect* e : library::compiled().all())
-    if (e->slot == slot && !e->converter) list.push_back(e);
+    if (e->slot == slot && !e->converter && draws.knows(*e)) list.push_back(e);
   return list;
 }
 
@@ -44,7 +48,7 @@ inline double draw_value(const Parameter& record, double standard, Draws& draws)
 
 /// One of a slot's effects with values that it takes and a physical device has.
 inline plant::Block draw_block(Slot slot, Draws& draws) {
-  const auto list = effects_in(slot);
+  const auto list = effects_in(slot, draws);
   if (list.empty()) return {};
   const Effect& e = *list[draws.index(list.size())];
   constexpr int attempts = 3000;  // values are drawn one by one, orderings among them by luck
