@@ -57,7 +57,7 @@ run_saving() {
   if ((stop_wanted)); then return 2; fi
   "$@" &
   child=$!
-  watch_launcher "$child" &
+  watch_launcher "$child" 9>&- & # 9 is the lock of a script: the watcher's sleep would hold it for a second more
   watcher=$!
   while :; do
     before=$stop_wanted status=0
