@@ -66,7 +66,7 @@ for command in "${commands[@]}"; do
     fail "exit code $status of: $(cat "$command"): $(tail "$command.log")"
 done
 grep -q 'slot: limiter' "$work/command2.sh.log" || fail "the listing of FLUXLIM: $(cat "$work/command2.sh.log")"
-swingbank effects | grep -q '^  FLUXLIM ' || fail "FLUXLIM is not in the list"
+swingbank effects | holds -q '^  FLUXLIM ' || fail "FLUXLIM is not in the list"
 
 /usr/bin/python3 - <<'PYTHON'
 import csv, glob, json, pathlib

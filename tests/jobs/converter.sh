@@ -30,7 +30,7 @@ PYTHON
 for section in converter electrical_control plant_control; do
   grep -q "^\[$section\]" "$work/plant.toml" || fail "the plant file has no [$section]"
 done
-"$swingbank" export --dyr "$work/plant.toml" | grep -q "^32 'REGCA1' '1' 1 0.02 10 " || fail "export writes another REGCA1"
+"$swingbank" export --dyr "$work/plant.toml" | holds -q "^32 'REGCA1' '1' 1 0.02 10 " || fail "export writes another REGCA1"
 # The run's own values are per unit of the machine's base. A converter answers within 20 ms: 240 samples a second, and the
 # instants as they are.
 sed -i '/^\[record\]/,/^base_mva/s/^base_mva = .*/base_mva = 843.7/' "$work/plant.toml"

@@ -2,7 +2,7 @@
 # swingbank <command> finds its commands, names the nearest to a slip, and speaks once under mpirun.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
-"$swingbank" --version | grep -qE '^swingbank [0-9]+\.[0-9]+\.[0-9]+$' || fail "--version"
+"$swingbank" --version | holds -qE '^swingbank [0-9]+\.[0-9]+\.[0-9]+$' || fail "--version"
 "$swingbank" --help >"$work/help"
 for program in "$SWINGBANK_BIN"/swingbank-*; do
   command=$(basename "$program")

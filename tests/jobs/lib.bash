@@ -17,6 +17,9 @@ fail() {
   exit 1
 }
 
+# | holds -q PATTERN: grep that reads to the end, since a program whose pipe is closed early fails by SIGPIPE
+holds() { grep "$@" <<<"$(cat)"; }
+
 # Gives the test its own view of the mounts, so that it can have a full and a read-only disk; they vanish with it.
 own_mounts() {
   if [[ -n ${SWINGBANK_OWN_MOUNTS:-} ]]; then return; fi

@@ -14,7 +14,7 @@ grep -q "^wrote $work/plant.toml" "$work/said" || fail "plant says: $(cat "$work
 cmp <(grep -v '^#' "$work/plant.toml") <(grep -v '^#' "$work/again.toml") || fail "the plant is another after the way out and in"
 "$swingbank" plant --raw "$raw" --dyr "$dyr" --bus 32 2>/dev/null | cmp - "$work/plant.toml" || fail "--out writes something else than is printed"
 cmp <("$swingbank" export --dyr "$work/plant.toml") "$work/plant.dyr" || fail "export --out writes something else than is printed"
-"$swingbank" export --dyr "$work/plant.toml" --bus 7 --id B | grep -q "^7 'GENROU' 'B' " || fail "export --bus --id"
+"$swingbank" export --dyr "$work/plant.toml" --bus 7 --id B | holds -q "^7 'GENROU' 'B' " || fail "export --bus --id"
 
 # Out as PSLF's and back: the same plant, with controls; the .dyd's Ra and mva count.
 {
@@ -27,7 +27,7 @@ grep -qE '^genrou +32 "NORTH +" 20 "1 " : #9 mva=[0-9.]+ "tpdo" ' "$work/plant.d
 values() { sed 's/ *#.*//; /^$/d; /^origin/d; /^base_kv/d; /^name/d' "$1" | sort; } # blocks in whatever order
 cmp <(values "$work/controlled.toml") <(values "$work/again.toml") || fail "the plant is another after the way through PSLF"
 sed 's/"ra" [^ ]*/"ra" 0.004/; s/mva=[^ ]*/mva=450/' "$work/plant.dyd" >"$work/other.dyd"
-"$swingbank" plant --raw "$raw" --dyd "$work/other.dyd" --bus 32 2>"$work/notes" | grep -qE '^Ra = 0.004 ' || fail "the .dyd's Ra does not count"
+"$swingbank" plant --raw "$raw" --dyd "$work/other.dyd" --bus 32 2>"$work/notes" | holds -qE '^Ra = 0.004 ' || fail "the .dyd's Ra does not count"
 grep -q '450 MVA' "$work/notes" || fail "it does not say that the base is the .dyd's: $(cat "$work/notes")"
 sed 's/"xcomp" [^ ]*/"xcomp" -0.05/' "$work/plant.dyd" >"$work/other.dyd"
 refuses "a compensated machine" "xcomp = -0.05 of genrou .*other.dyd" "$swingbank" plant --raw "$raw" --dyd "$work/other.dyd" --bus 32
@@ -61,7 +61,7 @@ refuses "grouped" "unknown model 'STRANGE' of '1' at bus 30 and 3 more" "$swingb
 "$swingbank" inventory --raw "$raw" --dyr "$work/more.dyr" >"$work/inventory"
 grep -q '^10 units: 5 wholly covered (50.0 %), 5 in part' "$work/inventory" || fail "inventory says: $(head -1 "$work/inventory")"
 grep -qE "^STRANGE +4 +4 +[0-9]+  no$" "$work/inventory" || fail "inventory: $(cat "$work/inventory")"
-"$swingbank" inventory --raw "$raw" --dyr "$work/more.dyr" --units | grep -qE '^ +32 1 .*not covered: ESAC9Z' || fail "inventory --units"
+"$swingbank" inventory --raw "$raw" --dyr "$work/more.dyr" --units | holds -qE '^ +32 1 .*not covered: ESAC9Z' || fail "inventory --units"
 "$swingbank" inventory --raw "$raw" --dyr "$work/more.dyr" --json | python3 -c "
 import json, sys
 j = json.load(sys.stdin)
@@ -73,7 +73,7 @@ assert [m['not_covered'] for m in j['models'] if m['name'] == 'STRANGE'] == [4]"
   sed '/^\[machine\]/,$d' "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml"
   "$swingbank" effects --toml GENROU IEEET1
 } >"$work/pasted.toml"
-"$swingbank" export --dyr "$work/pasted.toml" --bus 2 | grep -q "^2 'IEEET1' '1' " || fail "the pasted blocks make no plant"
+"$swingbank" export --dyr "$work/pasted.toml" --bus 2 | holds -q "^2 'IEEET1' '1' " || fail "the pasted blocks make no plant"
 refuses "a block of nothing" "a block is of one effect" "$swingbank" effects --toml
 
 # Cases of others: read where they lie, if they do.

@@ -23,13 +23,13 @@ assert [(e["channel"], e["window"]) for e in rows] == [(c, w) for c in "PQ" for 
 assert all(abs(e["me"]) <= e["mae"] <= e["mxe"] <= e["limits"]["mxe"] for e in rows), rows
 PYTHON
 for command in compare calibrate add diagnose; do
-  "$swingbank" "$command" --help | tr -s ' \n' ' ' | grep -q '3 neither, 4 fit for purpose, but not statistically complete, 5' ||
+  "$swingbank" "$command" --help | tr -s ' \n' ' ' | holds -q '3 neither, 4 fit for purpose, but not statistically complete, 5' ||
     fail "$command --help does not tell the exit codes"
 done
 
 for command in compare calibrate add diagnose effects export; do
-  "$swingbank" "$command" --version | grep -qE "^swingbank $command [0-9.]+, commit [0-9a-z]" || fail "$command --version"
-  "$swingbank" "$command" --help | grep -qE "^Usage: swingbank $command( |$)" || fail "$command: another usage line"
+  "$swingbank" "$command" --version | holds -qE "^swingbank $command [0-9.]+, commit [0-9a-z]" || fail "$command --version"
+  "$swingbank" "$command" --help | holds -qE "^Usage: swingbank $command( |$)" || fail "$command: another usage line"
 done
 
 rm -r "$work/out"
