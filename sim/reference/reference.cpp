@@ -1,70 +1,19 @@
 #include "sim/reference/reference.hpp"
 
-#include <ida/ida.h>
-#include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.h>
-#include <sunlinsol/sunlinsol_klu.h>
-#include <sunmatrix/sunmatrix_sparse.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
-#include <stdexcept>
 
 #include "base/constants.hpp"
-#include "sim/reference/detail/system.hpp"
+#include "sim/reference/detail/segment_solver.hpp"
 
 namespace swingbank::sim::reference {
 namespace {
 
 constexpr double kSameInstant = 1e-9;  ///< a sample this close to a switching instant belongs to it [s]
-
-void require(int flag, const char* call) {
-  if (flag < 0)
-    throw std::runtime_error(std::string(call) + " failed with SUNDIALS code " + std::to_string(flag));
-}
-
-/// What IDA hands back to the functions below.
-struct SegmentProblem {
-  const ReferenceSystem& system;
-  const ReferenceOptions& options;
-  std::vector<double> weight;  ///< per unknown, of its error
-};
-
-int residual(realtype t, N_Vector y, N_Vector yp, N_Vector f, void* user) {
-  const auto& system = static_cast<const SegmentProblem*>(user)->system;
-  system.residual(t, N_VGetArrayPointer(y), N_VGetArrayPointer(yp), N_VGetArrayPointer(f));
-  const double* value = N_VGetArrayPointer(f);
-  // 1 asks IDA for a smaller step instead of going on with a value that is none.
-  return std::all_of(value, value + system.size(), [](double v) { return std::isfinite(v); }) ? 0 : 1;
-}
-
-int jacobian(realtype t, realtype a, N_Vector y, N_Vector, N_Vector, SUNMatrix j, void* user, N_Vector,
-             N_Vector, N_Vector) {
-  const auto& system = static_cast<const SegmentProblem*>(user)->system;
-  const auto& pattern = system.pattern();
-  std::copy(pattern.outerIndexPtr(), pattern.outerIndexPtr() + pattern.cols() + 1,
-            SUNSparseMatrix_IndexPointers(j));
-  std::copy(pattern.innerIndexPtr(), pattern.innerIndexPtr() + pattern.nonZeros(),
-            SUNSparseMatrix_IndexValues(j));
-  system.jacobian(t, a, N_VGetArrayPointer(y), SUNSparseMatrix_Data(j));
-  return 0;
-}
-
-/// IDA weighs errors by their root mean square over all unknowns. Times sqrt(n) the tolerance holds for each
-/// single one, however large the grid; an unknown that others see through a gain counts by its weight.
-int error_weights(N_Vector y, N_Vector weights, void* user) {
-  const auto& problem = *static_cast<const SegmentProblem*>(user);
-  const double* value = N_VGetArrayPointer(y);
-  double* to = N_VGetArrayPointer(weights);
-  const double all = std::sqrt(static_cast<double>(problem.weight.size()));
-  for (std::size_t i = 0; i < problem.weight.size(); ++i)
-    to[i] = all * problem.weight[i] / (problem.options.rtol * std::abs(value[i]) + problem.options.atol);
-  return 0;
-}
-
-void quiet(int, const char*, const char*, char*, void*) {}  // failures come back as return values
 
 struct FreeContext {
   void operator()(SUNContext c) const { SUNContext_Free(&c); }
@@ -72,62 +21,20 @@ struct FreeContext {
 struct FreeVector {
   void operator()(N_Vector v) const { N_VDestroy(v); }
 };
-struct FreeMatrix {
-  void operator()(SUNMatrix m) const { SUNMatDestroy(m); }
-};
-struct FreeSolver {
-  void operator()(SUNLinearSolver s) const { SUNLinSolFree(s); }
-};
-struct FreeIda {
-  void operator()(void* m) const { IDAFree(&m); }
-};
 template <class Handle, class Free>
 using Owner = std::unique_ptr<std::remove_pointer_t<Handle>, Free>;
-
-/// IDA on one segment: from consistent values at `start` up to exactly `end`.
-class SegmentSolver {
- public:
-  SegmentSolver(SUNContext context, const ReferenceSystem& system, N_Vector y, N_Vector yp, double start,
-                double end, const ReferenceOptions& options)
-      : y_(y), yp_(yp), problem_{system, options, system.error_weights()} {
-    matrix_.reset(
-        SUNSparseMatrix(system.size(), system.size(), system.pattern().nonZeros(), CSC_MAT, context));
-    solver_.reset(SUNLinSol_KLU(y, matrix_.get(), context));
-    ida_.reset(IDACreate(context));
-    require(IDASetErrHandlerFn(ida_.get(), quiet, nullptr), "IDASetErrHandlerFn");
-    require(IDAInit(ida_.get(), residual, start, y, yp), "IDAInit");
-    require(IDASetUserData(ida_.get(), &problem_), "IDASetUserData");
-    require(IDAWFtolerances(ida_.get(), error_weights), "IDAWFtolerances");
-    require(IDASetLinearSolver(ida_.get(), solver_.get(), matrix_.get()), "IDASetLinearSolver");
-    require(IDASetJacFn(ida_.get(), jacobian), "IDASetJacFn");
-    require(IDASetMaxNumSteps(ida_.get(), 1'000'000), "IDASetMaxNumSteps");
-    require(IDASetStopTime(ida_.get(), end), "IDASetStopTime");
-  }
-  /// Advances y and y' to time t; false when IDA cannot.
-  bool advance(double t) {
-    realtype reached = 0;
-    return IDASolve(ida_.get(), t, &reached, y_, yp_, IDA_NORMAL) >= 0;
-  }
-  [[nodiscard]] long steps() const {
-    long n = 0;
-    IDAGetNumSteps(ida_.get(), &n);
-    return n;
-  }
-
- private:
-  N_Vector y_, yp_;
-  SegmentProblem problem_;
-  Owner<SUNMatrix, FreeMatrix> matrix_;
-  Owner<SUNLinearSolver, FreeSolver> solver_;
-  std::unique_ptr<void, FreeIda> ida_;
-};
 
 /// Writes samples into the trajectory and watches the rotor angles.
 class Recorder {
  public:
   Recorder(const grid::Grid& grid, const ReferencePlants& plants, const ReferenceOptions& options,
            ReferenceRun& run)
-      : plants_(plants), options_(options), run_(run), angle_(grid.network.buses.size()) {
+      : plants_(plants),
+        options_(options),
+        run_(run),
+        angle_(grid.network.buses.size()),
+        signals_(plants.units().size()),
+        current_(plants.units().size()) {
     run.rate = options.rate;
     run.samples = static_cast<int>(std::floor(options.t_end * options.rate + 1e-9)) + 1;
     run.plants = options.plants;
@@ -149,13 +56,15 @@ class Recorder {
     for (std::size_t b = 0; b < angle_.size(); ++b)
       if (!system.bolted(static_cast<int>(b)))
         angle_[b] = nearest(std::atan2(v[2 * b + 1], v[2 * b]), angle_[b]);
+    for (std::size_t u = 0; u < plants_.units().size(); ++u)
+      if (plants_.units()[u].plant) signals_[u] = system.signals(u, k / options_.rate, y, current_[u]);
     for (std::size_t i = 0; i < run_.plants.size(); ++i) record_plant(i, k, system, y);
     for (std::size_t i = 0; i < run_.buses.size(); ++i) {
       const auto b = static_cast<std::size_t>(run_.buses[i]);
       run_.bus_v[i * run_.samples + k] = std::hypot(v[2 * b], v[2 * b + 1]);
       run_.bus_theta[i * run_.samples + k] = angle_[b];
     }
-    if (lost(k, system, y)) return finish(k, Outcome::lost_synchronism);
+    if (lost(system, y)) return finish(k, Outcome::lost_synchronism);
     if (!std::all_of(y, y + system.size(), [](double value) { return std::isfinite(value); }))
       return finish(k, Outcome::not_finite);
     return true;
@@ -184,12 +93,11 @@ class Recorder {
   void record_plant(std::size_t i, int k, const ReferenceSystem& system, const double* y) {
     const auto u = static_cast<std::size_t>(run_.plants[i]);
     const auto& unit = plants_.units()[u];
-    Complex current;
-    const Signals<double> s = system.signals(u, k / options_.rate, y, current);
+    const Signals<double>& s = signals_[u];
     const Complex v = system.tripped(u) ? Complex(s.Vpr, s.Vpi)
                                         : Complex(y[plants_.states() + 2 * unit.bus],
                                                   y[plants_.states() + 2 * unit.bus + 1]);
-    const Complex power = system.tripped(u) ? Complex() : system.connected(u) * v * std::conj(current);
+    const Complex power = system.tripped(u) ? Complex() : system.connected(u) * v * std::conj(current_[u]);
     for (std::size_t c = 0; c < run_.channels.size(); ++c) {
       double& value = run_.at(static_cast<int>(i), static_cast<int>(c))[k];
       switch (run_.channels[c]) {
@@ -245,7 +153,7 @@ class Recorder {
     }
     return over;
   }
-  bool lost(int k, const ReferenceSystem& system, const double* y) {
+  bool lost(const ReferenceSystem& system, const double* y) {
     std::map<int, Ends> angles, speeds;
     for (std::size_t u = 0; u < plants_.units().size(); ++u) {
       const auto& unit = plants_.units()[u];
@@ -253,8 +161,7 @@ class Recorder {
       const int island = system.island(unit.bus);
       angles[island].take(y[unit.first + unit.delta] - unit.operating.x[static_cast<std::size_t>(unit.delta)],
                           u);
-      Complex current;
-      speeds[island].take(system.signals(u, k / options_.rate, y, current).speed, u);
+      speeds[island].take(signals_[u].speed, u);
     }
     double slip = 0.0;
     return beyond(angles, options_.lose_at, "angle", run_.largest_spread) ||
@@ -264,7 +171,9 @@ class Recorder {
   const ReferencePlants& plants_;
   const ReferenceOptions& options_;
   ReferenceRun& run_;
-  std::vector<double> angle_;  ///< per bus, last value while V = 0 [rad]
+  std::vector<double> angle_;             ///< per bus, last value while V = 0 [rad]
+  std::vector<Signals<double>> signals_;  ///< per unit, of the sample
+  std::vector<Complex> current_;          ///< likewise, into the grid
 };
 
 void operating_values(const grid::Grid& grid, const ReferencePlants& plants, double* y) {
@@ -289,9 +198,10 @@ ReferenceRun run_reference(const grid::Grid& grid, const network::Event& event,
   require(SUNContext_Create(nullptr, &raw), "SUNContext_Create");
   const Owner<SUNContext, FreeContext> context(raw);
   const auto length = plants.states() + 2 * static_cast<sunindextype>(grid.network.buses.size());
-  const Owner<N_Vector, FreeVector> y(N_VNew_Serial(length, raw)), yp(N_VNew_Serial(length, raw));
+  const Owner<N_Vector, FreeVector> y(new_vector(length, raw)), yp(new_vector(length, raw));
   double* values = N_VGetArrayPointer(y.get());
   operating_values(grid, plants, values);
+  SeenEntries seen;
 
   int k = 0;
   // The left limit at t = 0 is the operating point itself, even if the event starts there.
@@ -311,7 +221,7 @@ ReferenceRun run_reference(const grid::Grid& grid, const network::Event& event,
     if (k < run.samples && time() < start + kSameInstant && !recorder.record(k++, system, values)) return run;
     if (end - start < kSameInstant) continue;
 
-    SegmentSolver solver(raw, system, y.get(), yp.get(), start, end, options);
+    SegmentSolver solver(raw, system, y.get(), yp.get(), start, end, options, seen);
     // A sample at the end of the segment is this segment's left limit, or the next one's first value.
     const double until = last || !options.after_switching ? end + kSameInstant : end - kSameInstant;
     while (k < run.samples && time() < until) {

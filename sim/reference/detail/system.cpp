@@ -5,6 +5,7 @@
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "sim/network/admittance.hpp"
@@ -61,6 +62,10 @@ const auto& load_equations(const ReferencePlants::Unit& unit) {
 
 ReferencePlants::ReferencePlants(const grid::Grid& grid) {
   units_.reserve(grid.plants.size() + grid.loads.size());
+  std::map<std::vector<const Effect*>, int> kinds;
+  const auto kind_of = [&](const std::vector<const Effect*>& effects) {
+    return kinds.try_emplace(effects, static_cast<int>(kinds.size())).first->second;
+  };
   const auto place = [&](Unit unit) {
     unit.coefficients.assign(unit.operating.c.begin(), unit.operating.c.end());
     unit.first = states_;
@@ -75,6 +80,9 @@ ReferencePlants::ReferencePlants(const grid::Grid& grid) {
     unit.equations.emplace(plant);
     unit.sensitivities.emplace(plant);
     unit.bus = plant.bus;
+    std::vector<const Effect*> effects = {plant.machine.effect, plant.transformer.effect};
+    for (const plant::Block& block : plant.controls) effects.push_back(block.effect);
+    unit.kind = kind_of(effects);
     unit.states = unit.equations->states();
     unit.delta = delta_state(*plant.machine.effect);
     unit.scale = plant.mva / grid.network.base_mva;
@@ -90,6 +98,7 @@ ReferencePlants::ReferencePlants(const grid::Grid& grid) {
     unit.consumption.emplace(load);
     unit.consumption_sensitivities.emplace(load);
     unit.bus = load.bus;
+    unit.kind = kind_of({load.block.effect});
     unit.states = unit.consumption->states();
     unit.delta = -1;
     unit.scale = load.mva / grid.network.base_mva;
@@ -197,7 +206,9 @@ Signals<T> ReferenceSystem::evaluate(std::size_t u, double t, const T* x, const 
   s.dVref = T(setpoint_[u].dVref);
   s.dPref = T(setpoint_[u].dPref);
   const auto& equations = plant_equations<T>(unit);
-  std::vector<T> m(equations.scratch());
+  std::vector<T>& m = scratch<T>().m;
+  if (static_cast<int>(m.size()) < equations.scratch())
+    m.resize(static_cast<std::size_t>(equations.scratch()));
   T er, ei;
   equations.emf(c, x, m.data(), er, ei);
   if (tripped(u)) {  // stands still, open-circuited
@@ -213,7 +224,8 @@ Signals<T> ReferenceSystem::evaluate(std::size_t u, double t, const T* x, const 
 Signals<double> ReferenceSystem::signals(std::size_t u, double t, const double* y, Complex& current,
                                          double* dx) const {
   const Unit& unit = plants_.units()[u];
-  std::vector<double> unused(unit.states);
+  std::vector<double>& unused = scratch<double>().dx;
+  if (!dx) unused.resize(static_cast<std::size_t>(unit.states));
   const double* v = y + bus_row(unit.bus);
   double ir, ii;
   const auto s = evaluate<double>(u, t, y + unit.first, v[0], v[1], dx ? dx : unused.data(), ir, ii);
@@ -313,7 +325,9 @@ void ReferenceSystem::unit_jacobian(std::size_t u, double t, double a, const dou
   const Unit& unit = plants_.units()[u];
   const int n = unit.states, members = n + 2, row = bus_row(unit.bus);
   const double scale = unit.scale * connected_[u];
-  std::vector<D8> x(members), dx(n);
+  std::vector<D8>&x = scratch<D8>().x, &dx = scratch<D8>().dx;
+  x.resize(static_cast<std::size_t>(members));
+  dx.resize(static_cast<std::size_t>(n));
   for (int from = 0; from < members; from += kDirections) {
     for (int i = 0; i < members; ++i) x[i] = D8(i < n ? y[unit.first + i] : y[row + i - n]);
     const int to = std::min(from + kDirections, members);

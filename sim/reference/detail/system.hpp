@@ -29,6 +29,7 @@ class ReferencePlants {
     std::optional<plant::LoadEquations<double>> consumption;
     std::optional<plant::LoadEquations<D8>> consumption_sensitivities;
     int bus;
+    int kind;           ///< the same for units made of the same effects
     int first, states;  ///< index of its first state, and how many
     int delta;          ///< index of its rotor angle among its own states, -1 if it has none
     double scale;       ///< own base / network base
@@ -53,6 +54,7 @@ class ReferenceSystem {
   ReferenceSystem(const grid::Grid& grid, const ReferencePlants& plants, const network::Segment& segment,
                   double end);
   [[nodiscard]] int size() const { return plants_.states() + 2 * buses_; }
+  [[nodiscard]] const std::vector<Unit>& units() const { return plants_.units(); }
   [[nodiscard]] bool bolted(int bus) const { return bolted_[static_cast<std::size_t>(bus)]; }
   /// Number of the island that a bus lies in.
   [[nodiscard]] int island(int bus) const { return island_[static_cast<std::size_t>(bus)]; }
@@ -80,11 +82,26 @@ class ReferenceSystem {
   /// Jacobian in compressed columns; the pattern is that of `pattern()`, values are written in its order.
   [[nodiscard]] const Eigen::SparseMatrix<double>& pattern() const { return constant_; }
   void jacobian(double t, double a, const double* y, double* values) const;
+  /// Of a unit's block, column by column (states, Vr, Vi): where each entry stands in the pattern, -1:
+  /// nowhere.
+  [[nodiscard]] const std::vector<int>& places(std::size_t unit) const { return places_[unit]; }
 
  private:
   void build_network(const grid::Grid& grid, const network::Topology& topology);
   void build_pattern();
   void unit_jacobian(std::size_t unit, double t, double a, const double* y, double* values) const;
+  /// Room for one evaluation: m of a plant's equations, a unit's unknowns and derivatives.
+  template <class T>
+  struct Scratch {
+    std::vector<T> m, x, dx;
+  };
+  template <class T>
+  Scratch<T>& scratch() const {
+    if constexpr (std::is_same_v<T, double>)
+      return scratch_;
+    else
+      return dual_scratch_;
+  }
   template <class T>
   Signals<T> evaluate(std::size_t unit, double t, const T* x, const T& vr, const T& vi, T* dx, T& ir,
                       T& ii) const;
@@ -101,6 +118,8 @@ class ReferenceSystem {
   Eigen::SparseMatrix<Complex, Eigen::RowMajor> y_;  ///< network; rows of bolted buses are empty
   Eigen::SparseMatrix<double> constant_;             ///< dF/dy of the network, with room for the units
   std::vector<std::vector<int>> places_;  ///< [unit]: place of each (column, row) of its block, -1: none
+  mutable Scratch<double> scratch_;       ///< a system serves one thread
+  mutable Scratch<D8> dual_scratch_;
 };
 
 }  // namespace swingbank::sim::reference

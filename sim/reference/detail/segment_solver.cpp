@@ -1,0 +1,170 @@
+#include "sim/reference/detail/segment_solver.hpp"
+
+#include <ida/ida.h>
+#include <sunlinsol/sunlinsol_klu.h>
+#include <sunmatrix/sunmatrix_sparse.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace swingbank::sim::reference {
+
+void require(int flag, const char* call) {
+  if (flag < 0)
+    throw std::runtime_error(std::string(call) + " failed with SUNDIALS code " + std::to_string(flag));
+}
+
+namespace {
+
+constexpr int kMinimumDegree = 0;  ///< of KLU's orders of elimination; less fill than its default here
+/// Part by which the leading coefficient may change before the matrix is factored anew. IDA's own 0.25 is for
+/// matrices that are dear; here a factorisation costs as much as two residuals, and Newton's method leaves
+/// less behind.
+constexpr double kFactorAnew = 0.1;
+/// Steps after which the units' slopes are taken anew, as in CVODE; before that only where a step
+/// has failed: a limit may have been crossed.
+constexpr long kSlopesLast = 20;
+
+/// What IDA hands back to the functions below.
+struct Problem {
+  const ReferenceSystem& system;
+  const ReferenceOptions& options;
+  std::vector<double> weight;  ///< per unknown, of its error
+  Nonzeros nonzeros;
+  std::vector<double> values;  ///< of the Jacobian, with room for every unit
+  std::vector<int> own;        ///< places of the states' diagonal in the room
+  SUNLinearSolver solver = nullptr;
+  void* ida = nullptr;
+  double a = 0.0;                           ///< with which `values` are
+  long steps = -kSlopesLast, failures = 0;  ///< when the slopes were taken
+
+  /// Whether the units' slopes are taken anew where IDA asks for a matrix with leading coefficient `now`. IDA
+  /// asks without a change of it where Newton's method has not converged.
+  bool old(double now) {
+    constexpr double kSame = (1.0 - kFactorAnew) / (1.0 + kFactorAnew);
+    long count = 0, failed = 0, rejected = 0;
+    IDAGetNumSteps(ida, &count);
+    IDAGetNumNonlinSolvConvFails(ida, &failed);
+    IDAGetNumErrTestFails(ida, &rejected);
+    failed += rejected;
+    const bool stalls = now > kSame * a && now * kSame < a;
+    if (count - steps < kSlopesLast && failed == failures && !stalls) return false;
+    steps = count;
+    failures = failed;
+    return true;
+  }
+};
+
+int residual(realtype t, N_Vector y, N_Vector yp, N_Vector f, void* user) {
+  const auto& system = static_cast<const Problem*>(user)->system;
+  system.residual(t, N_VGetArrayPointer(y), N_VGetArrayPointer(yp), N_VGetArrayPointer(f));
+  const double* value = N_VGetArrayPointer(f);
+  // 1 asks IDA for a smaller step instead of going on with a value that is none.
+  return std::all_of(value, value + system.size(), [](double v) { return std::isfinite(v); }) ? 0 : 1;
+}
+
+int jacobian(realtype t, realtype a, N_Vector y, N_Vector, N_Vector, SUNMatrix j, void* user, N_Vector,
+             N_Vector, N_Vector) {
+  auto& p = *static_cast<Problem*>(user);
+  if (p.old(a))
+    p.system.jacobian(t, a, N_VGetArrayPointer(y), p.values.data());
+  else
+    for (const int place : p.own) p.values[static_cast<std::size_t>(place)] += a - p.a;
+  p.a = a;
+  if (p.nonzeros.take(p.values)) {  // then the order of elimination is found anew
+    if (SUNLinSol_KLUReInit(p.solver, j, p.nonzeros.count(), SUNKLU_REINIT_FULL) < 0) return -1;
+    SUNMatZero(j);
+  }
+  p.nonzeros.pattern(SUNSparseMatrix_IndexPointers(j), SUNSparseMatrix_IndexValues(j));
+  p.nonzeros.gather(p.values, SUNSparseMatrix_Data(j));
+  return 0;
+}
+
+/// Of the largest weighted error (detail/vector.hpp): the tolerance holds for each single unknown; one that
+/// others see through a gain counts by its weight.
+int error_weights(N_Vector y, N_Vector weights, void* user) {
+  const auto& p = *static_cast<const Problem*>(user);
+  const double* value = N_VGetArrayPointer(y);
+  double* to = N_VGetArrayPointer(weights);
+  for (std::size_t i = 0; i < p.weight.size(); ++i)
+    to[i] = p.weight[i] / (p.options.rtol * std::abs(value[i]) + p.options.atol);
+  return 0;
+}
+
+void quiet(int, const char*, const char*, char*, void*) {}  // failures come back as return values
+
+struct FreeMatrix {
+  void operator()(SUNMatrix m) const { SUNMatDestroy(m); }
+};
+struct FreeSolver {
+  void operator()(SUNLinearSolver s) const { SUNLinSolFree(s); }
+};
+struct FreeIda {
+  void operator()(void* m) const { IDAFree(&m); }
+};
+template <class Handle, class Free>
+using Owner = std::unique_ptr<std::remove_pointer_t<Handle>, Free>;
+
+std::vector<int> own_places(const ReferenceSystem& system) {
+  std::vector<int> own;
+  for (std::size_t u = 0; u < system.units().size(); ++u) {
+    const auto n = static_cast<std::size_t>(system.units()[u].states);
+    for (std::size_t i = 0; i < n; ++i) own.push_back(system.places(u)[i * (n + 2) + i]);
+  }
+  return own;
+}
+
+}  // namespace
+
+struct SegmentSolver::Parts {
+  N_Vector y, yp;
+  Problem problem;
+  Owner<SUNMatrix, FreeMatrix> matrix;
+  Owner<SUNLinearSolver, FreeSolver> solver;
+  std::unique_ptr<void, FreeIda> ida;
+};
+
+SegmentSolver::SegmentSolver(SUNContext context, const ReferenceSystem& system, N_Vector y, N_Vector yp,
+                             double start, double end, const ReferenceOptions& options, SeenEntries& seen)
+    : parts_(new Parts{
+          y,
+          yp,
+          {system, options, system.error_weights(), Nonzeros(system, seen),
+           std::vector<double>(static_cast<std::size_t>(system.pattern().nonZeros())), own_places(system)},
+          {},
+          {},
+          {}}) {
+  auto& [to_y, to_yp, problem, matrix, solver, ida] = *parts_;
+  matrix.reset(SUNSparseMatrix(system.size(), system.size(), system.size(), CSC_MAT, context));
+  solver.reset(SUNLinSol_KLU(y, matrix.get(), context));
+  problem.solver = solver.get();
+  require(SUNLinSol_KLUSetOrdering(solver.get(), kMinimumDegree), "SUNLinSol_KLUSetOrdering");
+  ida.reset(IDACreate(context));
+  problem.ida = ida.get();
+  require(IDASetErrHandlerFn(ida.get(), quiet, nullptr), "IDASetErrHandlerFn");
+  require(IDAInit(ida.get(), residual, start, y, yp), "IDAInit");
+  require(IDASetUserData(ida.get(), &problem), "IDASetUserData");
+  require(IDAWFtolerances(ida.get(), error_weights), "IDAWFtolerances");
+  require(IDASetLinearSolver(ida.get(), solver.get(), matrix.get()), "IDASetLinearSolver");
+  require(IDASetJacFn(ida.get(), jacobian), "IDASetJacFn");
+  require(IDASetDeltaCjLSetup(ida.get(), kFactorAnew), "IDASetDeltaCjLSetup");
+  require(IDASetMaxNumSteps(ida.get(), 1'000'000), "IDASetMaxNumSteps");
+  require(IDASetStopTime(ida.get(), end), "IDASetStopTime");
+}
+
+SegmentSolver::~SegmentSolver() = default;
+
+bool SegmentSolver::advance(double t) {
+  realtype reached = 0;
+  return IDASolve(parts_->ida.get(), t, &reached, parts_->y, parts_->yp, IDA_NORMAL) >= 0;
+}
+
+long SegmentSolver::steps() const {
+  long n = 0;
+  IDAGetNumSteps(parts_->ida.get(), &n);
+  return n;
+}
+
+}  // namespace swingbank::sim::reference

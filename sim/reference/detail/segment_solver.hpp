@@ -1,0 +1,32 @@
+#pragma once
+// IDA of SUNDIALS with KLU on one segment, from consistent values at its start up to exactly its end.
+#include <memory>
+#include <vector>
+
+#include "sim/reference/detail/nonzeros.hpp"
+#include "sim/reference/detail/vector.hpp"
+#include "sim/reference/reference.hpp"
+
+namespace swingbank::sim::reference {
+
+/// Throws std::runtime_error if a call of SUNDIALS failed.
+void require(int flag, const char* call);
+
+class SegmentSolver {
+ public:
+  /// y, yp: consistent at `start` [s]; `seen`: of the run.
+  SegmentSolver(SUNContext context, const ReferenceSystem& system, N_Vector y, N_Vector yp, double start,
+                double end, const ReferenceOptions& options, SeenEntries& seen);
+  ~SegmentSolver();
+  SegmentSolver(const SegmentSolver&) = delete;
+  SegmentSolver& operator=(const SegmentSolver&) = delete;
+  /// Advances y and y' to time t; false when IDA cannot.
+  bool advance(double t);
+  [[nodiscard]] long steps() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace swingbank::sim::reference
