@@ -134,7 +134,7 @@ int main(int argc, char** argv) {
   line.add("--raw", a.raw, "network, PSS/E .raw, .rawx or MATPOWER .m").required();
   line.add("--dyr", a.dyr, "dynamic models, PSS/E .dyr").required();
   line.add("--frequency-hz", a.frequency_hz, "nominal frequency [Hz], where the network has none");
-  line.add("--raw-version", a.raw_version, "version of a .raw that does not say it, 23 or 29 to 35");
+  line.add("--raw-version", a.raw_version, "version of a .raw that does not say it, 23 to 35");
   line.add_flag("--units", a.units, "list every unit with its models");
   line.add_flag("--json", a.json, "print everything as JSON");
   line.footer(

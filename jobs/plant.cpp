@@ -80,7 +80,7 @@ int main(int argc, char** argv) {
       .one_of({"psse", "andes"})
       .shows_default();
   line.add("--frequency-hz", a.unit.frequency_hz, "nominal frequency [Hz], where the network has none");
-  line.add("--raw-version", a.unit.raw_version, "version of a .raw that does not say it, 23 or 29 to 35");
+  line.add("--raw-version", a.unit.raw_version, "version of a .raw that does not say it, 23 to 35");
   line.footer("Only the unit's own records are read: what is wrong with others is of no concern.");
   if (!line.parse(argc, argv)) return line.end();
   try {

@@ -37,7 +37,8 @@ struct Options {
   double t_end = 15.0, rate = 120.0;
   std::optional<double> tolerance, frequency_hz;
   std::vector<std::string> ignore_models, map_models;
-  bool after_switching = false, net_generators = false, widen_limits = false;
+  bool after_switching = false, net_generators = false, widen_limits = false, drop_refused = false;
+  std::string complete_records = "no", devices = "checked";
   int raw_version = 0;
   std::string start = "solved", q_limits = "enforce";
   std::filesystem::path changes;
@@ -268,6 +269,13 @@ grid::CaseOptions case_options(const Options& o, const formats::DyrOptions& mode
   grid::CaseOptions all;
   all.dyr = models;
   all.raw = {o.frequency_hz, o.raw_version};
+  all.raw.devices = o.devices == "none"   ? network::StandIn::none
+                    : o.devices == "file" ? network::StandIn::file
+                                          : network::StandIn::checked;
+  all.complete_records = o.complete_records == "zero"       ? grid::Lacking::zero
+                         : o.complete_records == "standard" ? grid::Lacking::standard
+                                                            : grid::Lacking::refused;
+  all.drop_refused = o.drop_refused;
   all.net_generators = o.net_generators;
   all.start_from_file = o.start == "file";
   all.flow.reactive_limits = o.q_limits == "enforce";
@@ -339,7 +347,7 @@ int main(int argc, char** argv) {
   line.add("--raw", o.raw, "network, PSS/E .raw, .rawx or MATPOWER .m").required();
   line.add("--dyr", o.dyr, "dynamic models, PSS/E .dyr").required();
   line.add("--frequency-hz", o.frequency_hz, "nominal frequency [Hz], where the network has none");
-  line.add("--raw-version", o.raw_version, "version of a .raw that does not say it, 23 or 29 to 35");
+  line.add("--raw-version", o.raw_version, "version of a .raw that does not say it, 23 to 35");
   line.add_flag("--net-generators", o.net_generators,
                 "generators in service without a machine model become negative loads, as PSS/E's GNET does");
   line.add("--start", o.start,
@@ -351,6 +359,18 @@ int main(int argc, char** argv) {
       .shows_default();
   line.add_flag("--widen-limits", o.widen_limits,
                 "where the operating point lies beyond a control's limit, move the limit there and name it");
+  line.add("--complete-records", o.complete_records,
+           "records of the .dyr that are shorter than their model get these values at their end, longer "
+           "ones lose what is beyond it; each is named")
+      .one_of({"no", "zero", "standard"})
+      .shows_default();
+  line.add_flag("--drop-refused", o.drop_refused,
+                "records of the .dyr whose values their model cannot take are left out, each is named");
+  line.add("--devices", o.devices,
+           "dc lines, FACTS and GNE devices and induction machines draw what the file's voltages say, if "
+           "these are a solution (checked) or whatever they are (file), or nothing (none)")
+      .one_of({"checked", "file", "none"})
+      .shows_default();
   line.add("--changes", o.changes, "text file for all that was done to the case, a line for every place");
   line.add("--ignore-model", o.ignore_models, "name of a .dyr model to leave out; may be repeated");
   line.add("--map-model", o.map_models,

@@ -1,5 +1,5 @@
 #pragma once
-// PSS/E .raw (versions 23, 29 to 35), .rawx and .dyr files.
+// PSS/E .raw (versions 23 to 35), .rawx and .dyr files.
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -8,12 +8,15 @@
 
 #include "base/config.hpp"
 #include "base/problem.hpp"
+#include "sim/network/consistency.hpp"
 #include "sim/network/network.hpp"
 
 namespace swingbank::sim::formats {
 
 /// What a .raw leaves open.
 struct RawOptions {
+  /// Equipment without a model here; network::stand_in.
+  network::StandIn devices = network::StandIn::checked;
   std::optional<double> frequency_hz = {};  ///< where BASFRQ is missing
   int version = 0;                          ///< where REV is missing; 0: not given
   RawOptions() = default;
@@ -21,7 +24,7 @@ struct RawOptions {
   RawOptions(double hz) : frequency_hz(hz) {}
 };
 
-/// Reads a .raw file of version 23, 29 to 35, or a .rawx. Throws InputError with every fault of the file,
+/// Reads a .raw file of version 23 to 35, or a .rawx. Throws InputError with every fault of the file,
 /// each with its line number; what is done beyond reading it stands in Network::remarks.
 ///
 /// Read: header, bus, load, fixed shunt, generator, branch, system switching device (a closed one is a line
@@ -35,9 +38,8 @@ struct RawOptions {
 /// owners, inter-area transfer, multi-section line groupings, ratings, names of branches, vector groups,
 /// voltage limits, tap and load-flow controls (taps stay where they are), substations whose buses are in one
 /// piece. Distributed generation inside a load is taken off its P and Q, with a remark. Refused, naming
-/// section and line: a step-up transformer (RT, XT) off its nominal ratio (GTAP), buses that a substation's
-/// open switches split. Out-of-service loads and shunts are left out; what stands at an isolated bus (type 4)
-/// is out of service, as in PSS/E.
+/// section and line: buses that a substation's open switches split. Out-of-service loads and shunts are left
+/// out; what stands at an isolated bus (type 4) is out of service, as in PSS/E.
 ///
 /// Defaults of PSS/E for fields left empty: bus BASKV 0, IDE 1, VM 1, VA 0; load and shunt ID '1', STATUS 1,
 /// powers 0, AREA, ZONE and OWNER 1 (a load's: its bus's); generator ID '1', PG 0, QG 0, QT 9999, QB -9999,
@@ -81,6 +83,9 @@ struct DyrRecord {
   std::string user{};        ///< name of a user-written model (model USRMDL and its like), otherwise empty
   Problems faults{};         ///< parameters that are no numbers: of account only if the model is used
   std::vector<int> empty{};  ///< parameters left empty, counted from 1, which are zero
+  /// Name of the equipment it is for, where a text stands in the bus number's place (`bus` is 0).
+  std::string equipment{};
+  bool unended = false;  ///< no '/' ended it: the next record began
 };
 /// What to do with models of a .dyr that are not available here. Names in any case; a user-written model may
 /// be given by its own name or as USRMDL.
@@ -97,7 +102,8 @@ void add_model_map(DyrOptions& options, const std::string& text, const std::stri
 DyrOptions read_dyr_options(Config& config, const std::string& prefix);
 
 /// Reads a .dyr file: records end with '/', may span lines; what follows the '/' and lines that begin with
-/// '//' or '@!' are comments. Parameters that are no numbers are noted in the record, everything else wrong
+/// '//' or '@!' are comments. A line that begins like a record (bus number, 'MODEL') ends the one before,
+/// which is then `unended`. Parameters that are no numbers are noted in the record, everything else wrong
 /// with the file is thrown together as an InputError, with line numbers. An ignored or mapped name that the
 /// file does not hold is a fault too.
 std::vector<DyrRecord> read_dyr(const std::filesystem::path& file, const DyrOptions& options = {});

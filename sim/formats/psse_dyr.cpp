@@ -49,10 +49,14 @@ class DyrReader {
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       if (is_comment(lines_[i])) continue;
       auto piece = psse::split(lines_[i], static_cast<int>(i) + 1, name_, problems_);
+      if (!open.fields.empty() && begins_record(piece)) {
+        finish(open, true);
+        open.fields.clear();
+      }
       if (open.fields.empty()) open.line = piece.line;
       open.fields.insert(open.fields.end(), piece.fields.begin(), piece.fields.end());
       if (!piece.ended || open.fields.empty()) continue;
-      finish(open);
+      finish(open, false);
       open.fields.clear();
     }
     if (!open.fields.empty())
@@ -60,9 +64,18 @@ class DyrReader {
                     "records end with '/'; the file may be truncated",
                     "end the record with '/' or restore the file");
   }
+  /// A whole number and a model's name: no model has a name among its parameters that could be taken for it.
+  static bool begins_record(const psse::Record& line) {
+    constexpr std::size_t shortest_name = 4;
+    if (line.fields.size() < 3 || line.fields[0].quoted || !line.fields[1].quoted) return false;
+    const std::string &bus = line.fields[0].text, &model = line.fields[1].text;
+    const auto is = [](int (*kind)(int)) { return [kind](unsigned char c) { return kind(c) != 0; }; };
+    return !bus.empty() && std::ranges::all_of(bus, is(std::isdigit)) && model.size() >= shortest_name &&
+           std::isalpha(static_cast<unsigned char>(model[0])) && std::ranges::all_of(model, is(std::isalnum));
+  }
   [[nodiscard]] std::string where(int line) const { return name_ + ":" + std::to_string(line); }
 
-  void finish(const psse::Record& record) {
+  void finish(const psse::Record& record, bool unended) {
     psse::Fields fields(record, name_, problems_);
     const std::string model = capitals(fields.text(1, ""));
     const bool user = model.starts_with("USR");
@@ -70,6 +83,14 @@ class DyrReader {
     const bool named_fourth = user && fields.size() > 3 && record.fields[3].quoted;
     const std::string user_name = user ? capitals(fields.text(named_fourth ? 3 : 2, "")) : "";
     if (leave_out(model, user_name, record.line)) return;
+    const bool by_name = record.fields[0].quoted && !psse::parse_number(record.fields[0].text);
+    if (by_name && fields.size() > 1) {  // of equipment that has no bus: dc lines, FACTS devices
+      DyrRecord dyr{0, mapped(model, ""), "", {}, record.line};
+      dyr.equipment = record.fields[0].text;
+      dyr.values.resize(fields.size() - 2);
+      out_.push_back(std::move(dyr));
+      return;
+    }
     if (fields.size() < 3) {
       problems_.add("incomplete record", fields.where(),
                     "a record is: bus number, 'MODEL', id, parameters, /",
@@ -79,6 +100,7 @@ class DyrReader {
     DyrRecord dyr{
         fields.integer(0, "bus number"), mapped(model, user_name), fields.text(2, ""), {}, record.line};
     dyr.user = dyr.model == model ? user_name : "";
+    dyr.unended = unended;
     psse::Fields numbers(record, name_, dyr.faults);
     for (std::size_t i = named_fourth ? 4 : 3; i < fields.size(); ++i) {
       if (record.fields[i].text.empty()) dyr.empty.push_back(static_cast<int>(dyr.values.size()) + 1);

@@ -26,9 +26,11 @@ void RawReader::bus(const Record& record) {
   if (type < 1 || type > 4)
     problems_.add("IDE = " + std::to_string(type), f.where(), "bus types are 1 to 4",
                   "give 1 (load), 2 (generator), 3 (slack) or 4 (isolated)");
-  if (type != 4 && !(b.vm > 0))
-    problems_.add("VM = " + shortest(b.vm) + " pu", f.where(), "the power flow starts from it",
-                  "give a voltage > 0 pu");
+  if (type != 4 && !(b.vm > 0)) {
+    network_.remark("voltages of a bus that are not above 0 are taken as 1 pu",
+                    "bus " + std::to_string(b.number) + " (" + f.where() + ")");
+    b.vm = 1.0;
+  }
   b.type = static_cast<network::BusType>(type);
   once("bus " + std::to_string(b.number), f);
   index_.emplace(b.number, static_cast<int>(network_.buses.size()));
@@ -145,24 +147,39 @@ void RawReader::generator(const Record& record) {
   const double tap = static_cast<double>(f.number(base + 5, "GTAP", 1.0L));
   g.in_service = status(f.integer(columns_.gen_status, "STAT", 1), "STAT", f);
   once("generator '" + g.id + "' at bus " + std::to_string(number), f);
-  if (!(g.mva > 0))
+  const std::string place = "'" + g.id + "' at bus " + std::to_string(number) + " (" + f.where() + ")";
+  if (units_only_ && !(g.mva > 0)) {
     problems_.add("MBASE = " + shortest(g.mva) + " MVA", f.where(),
                   "the machine's per-unit values refer to it", "give a base > 0 MVA");
-  if (g.in_service && !units_only_ && !(g.vset > 0))
-    problems_.add("VS = " + shortest(g.vset) + " pu", f.where(), "it is the voltage the generator holds",
-                  "give a voltage > 0 pu");
+  } else if (!(g.mva > 0)) {
+    if (g.in_service)
+      network_.remark("machine bases that are not above 0 are taken as SBASE",
+                      place + ": MBASE = " + shortest(g.mva) + " MVA");
+    g.mva = static_cast<double>(base_);
+  }
   if (g.in_service && step_up && !(g.rt >= 0 && g.xt >= 0))
     problems_.add("RT = " + shortest(g.rt) + " pu, XT = " + shortest(g.xt) + " pu", f.where(),
                   "a step-up transformer has losses and leakage", "give RT >= 0 and XT >= 0");
-  if (g.in_service && step_up && tap != 1.0)
+  if (units_only_ && g.in_service && step_up && tap != 1.0)
     problems_.add("GTAP = " + shortest(tap), f.where(),
                   "a step-up transformer inside the generator record is modelled at its nominal ratio",
                   "enter it as a transformer between two buses");
+  else if (g.in_service && step_up && tap != 1.0)
+    network_.remark("step-up transformers inside a generator's record are at their nominal ratio",
+                    place + ": GTAP = " + shortest(tap));
   g.share = static_cast<double>(f.number(columns_.gen_status + 1, "RMPCT", 100.0L));
   if (g.bus < 0) return;
+  if (g.in_service && !units_only_ && !(g.vset > 0))
+    hold_own(g, "generators that hold a voltage that is not above 0 hold that of the file", f.where());
   regulated_.push_back(regulated == number ? 0 : regulated);
   if (!record.place.empty()) places_.push_back(record.place);
   network_.generators.push_back(std::move(g));
+}
+
+void RawReader::hold_own(network::Generator& g, const char* what, const std::string& where) {
+  g.regulated = -1;
+  g.vset = at(g.bus).vm;
+  network_.remark(what, "'" + g.id + "' at bus " + std::to_string(at(g.bus).number) + " (" + where + ")");
 }
 
 void RawReader::branch(const Record& record) {
@@ -187,7 +204,7 @@ void RawReader::branch(const Record& record) {
   if (b.from == b.to && b.from >= 0)
     problems_.add("a branch from bus " + std::to_string(from) + " to itself", f.where(), "it joins nothing",
                   "correct the bus numbers");
-  if (version_ == 23) {  // transformers stand among the branches: RATIO (0: none), ANGLE
+  if (version_ < 28) {  // transformers stand among the branches: RATIO (0: none), ANGLE
     const double ratio = value(9, "RATIO", 0.0L);
     b.shift = static_cast<double>(f.number(10, "ANGLE", 0.0L) / kDegrees);
     b.transformer = ratio != 0.0 || b.shift != 0.0;

@@ -26,10 +26,13 @@ bool quoted_field(const std::string& line, std::size_t& i, Field& field) {
   const char mark = line[i++];
   field.quoted = true;
   for (; i < line.size(); ++i) {
+    const char after = i + 1 < line.size() ? line[i + 1] : ' ';
     if (line[i] != mark) {
       field.text += line[i];
-    } else if (i + 1 < line.size() && line[i + 1] == mark) {
+    } else if (after == mark) {
       field.text += line[i++];  // a doubled quote stands for itself
+    } else if (!blank(after) && after != ',' && after != '/' && line.find(mark, i + 1) != std::string::npos) {
+      field.text += line[i];  // an apostrophe inside a name, as PSS/E writes it
     } else {
       ++i;
       return true;
@@ -110,8 +113,15 @@ int Fields::integer(std::size_t i, const char* name, std::optional<int> fallback
   const char *begin = f->text.data(), *end = begin + f->text.size();
   if (begin != end && *begin == '+') ++begin;
   int value = 0;
-  const auto [stop, error] = std::from_chars(begin, end, value);
-  if (error != std::errc{} || stop != end || value > 999999999 || value < -999999999) {
+  auto [stop, error] = std::from_chars(begin, end, value);
+  const int most = 999999999;
+  if (error == std::errc{} && stop != end)  // programs that know one kind of number write 1.0 for 1
+    if (const auto number = parse_number(f->text);
+        number && *number == std::trunc(*number) && std::abs(*number) <= most) {
+      value = static_cast<int>(*number);
+      stop = end;
+    }
+  if (error != std::errc{} || stop != end || value > most || value < -most) {
     problems_.add(std::string(name) + " = '" + f->text + "'", where(), "it is not a whole number",
                   "give a whole number for " + std::string(name));
     return fallback.value_or(0);

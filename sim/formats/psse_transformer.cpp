@@ -92,8 +92,10 @@ void RawReader::transformer(const Record& first) {
 void RawReader::transformer_lines(std::span<const Record> rows) {
   Fields f(rows[0], file_, problems_);
   const int k = f.integer(2, "K", 0);
-  std::array<int, 3> ends{find_bus(f.integer(0, "from bus"), f), find_bus(f.integer(1, "to bus"), f), -1};
-  if (k != 0) ends[2] = find_bus(k, f);
+  // A minus sign before a bus only marks the metered end.
+  std::array<int, 3> ends{find_bus(std::abs(f.integer(0, "from bus")), f),
+                          find_bus(std::abs(f.integer(1, "to bus")), f), -1};
+  if (k != 0) ends[2] = find_bus(std::abs(k), f);
   if (ends[0] < 0 || ends[1] < 0) return;
   if (k == 0) return two_windings(rows, ends[0], ends[1]);
   if (ends[2] >= 0) three_windings(rows, ends);

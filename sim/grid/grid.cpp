@@ -74,13 +74,50 @@ class GridMaker {
     const bool of_load = effect && effect->slot == Slot::load;
     if (known_.contains(key) && !plant_of_.contains(key) && !of_load) return;  // it is out of service
     if (!effect) return unknown(given, where);
-    const formats::DyrRecord record = plain(given, *effect);
-    problems_.add(record.faults);
-    if (!record.faults.empty()) return;
-    if (effect->slot == Slot::load) {
-      tell_empty(given, where);
-      return add_load(*effect, reach, record, where);
+    if (given.unended)
+      grid_.network.remark(
+          "records without an end, '/', end where the next one begins",
+          given.model + " of '" + given.id + "' at bus " + std::to_string(given.bus) + " (" + where + ")");
+    Problems refused;
+    take(*effect, reach, plain(given, *effect), where, refused);
+    for (const Problem& p : refused.list()) {
+      if (options_.drop_refused)
+        grid_.network.remark("records that their model cannot take are left out, as asked",
+                             p.what + " (" + p.where + ")");
+      else
+        problems_.add(p.what, p.where, p.why, p.remedy + ", or leave the record out with --drop-refused");
     }
+  }
+  void take(const Effect& effect, Reach reach, formats::DyrRecord record, const std::string& where,
+            Problems& problems) {
+    problems.add(record.faults);
+    if (!record.faults.empty()) return;
+    if (effect.slot == Slot::load)
+      add_load(effect, reach, std::move(record), where, problems);
+    else
+      add_control(effect, std::move(record), where, problems);
+  }
+  /// Whether the record is as long as its model takes it, or is made so where that is asked for.
+  bool fits(const Effect& effect, formats::DyrRecord& record, const std::string& where, Problems& problems) {
+    tell_empty(record, where);
+    const std::size_t has = record.values.size(), takes = effect.dyr_columns.size();
+    if (has == takes || options_.complete_records == Lacking::refused)
+      return complete(effect, record, where, problems, ", or let --complete-records do it");
+    record.values.resize(takes);
+    const std::vector<double> standard = effect.standard_parameters();
+    if (options_.complete_records == Lacking::standard)
+      for (std::size_t i = has; i < takes; ++i)
+        record.values[i] = standard[static_cast<std::size_t>(effect.dyr_columns[i])];
+    grid_.network.remark(has > takes
+                             ? "values that records have beyond those of their model are left out, as asked"
+                             : "values that records lack at their end are zero or standard, as asked",
+                         fmt::format("{} of '{}' at bus {} has {} of {} values ({})", record.model, record.id,
+                                     record.bus, has, takes, where));
+    return true;
+  }
+  void add_control(const Effect& effect, formats::DyrRecord record, const std::string& where,
+                   Problems& problems) {
+    const std::pair<int, std::string> key{record.bus, record.id};
     const auto found = plant_of_.find(key);
     if (found == plant_of_.end()) {
       grid_.network.remark(
@@ -88,15 +125,16 @@ class GridMaker {
           record.model + " of '" + record.id + "' at bus " + std::to_string(record.bus) + " (" + where + ")");
       return;
     }
-    tell_empty(given, where);
+    if (!fits(effect, record, where, problems)) return;
     plant::Plant& plant = grid_.plants[found->second];
-    if (!complete(*effect, record, where, problems_)) return;
     const network::Generator& g = grid_.network.generators[static_cast<std::size_t>(plant.generator)];
-    plant::Block block = values_of(*effect, record);
+    plant::Block block = values_of(effect, record);
     take_from_raw(block, g);
     if (const std::string left_out = remark_on(block, where, plant.name); !left_out.empty())
-      grid_.network.remark("values ask for what the equations leave out", left_out);
-    const std::string warning = place(plant, std::move(block), {g, grid_.network.origin}, where, problems_);
+      grid_.network.remark("values that the equations take in their own way, or not at all", left_out);
+    const plant::Plant before = plant;
+    const std::string warning = place(plant, std::move(block), {g, grid_.network.origin}, where, problems);
+    if (!problems.empty()) plant = before;
     if (!warning.empty())
       grid_.network.remark("the reactance of the .dyr counts where ZX of the network is another", warning);
   }
@@ -110,7 +148,8 @@ class GridMaker {
     Unknown& one = unknown_[{record.user.empty() ? record.model : record.user, !record.user.empty()}];
     if (++one.records > 1) return;
     one.where = where;
-    one.first = "'" + record.id + "' at bus " + std::to_string(record.bus);
+    one.first = record.equipment.empty() ? "'" + record.id + "' at bus " + std::to_string(record.bus)
+                                         : "equipment '" + record.equipment + "'";
     one.parameters = record.values.size();
   }
   void tell_unknown() {
@@ -126,23 +165,24 @@ class GridMaker {
     }
   }
   /// A model for one load, or with the id * for every load, of a bus, owner, zone, area or of all.
-  void add_load(const Effect& effect, Reach reach, const formats::DyrRecord& record,
-                const std::string& where) {
+  void add_load(const Effect& effect, Reach reach, formats::DyrRecord record, const std::string& where,
+                Problems& problems) {
     constexpr std::array of = {"at bus", "of owner", "in zone", "in area", "anywhere"};
     const std::string what = record.model + " for load '" + record.id + "' " +
                              of[static_cast<std::size_t>(reach)] +
                              (reach == Reach::all ? "" : " " + std::to_string(record.bus));
     const int bus = grid_.network.bus_index(record.bus);
     if (reach == Reach::load && bus < 0) {
-      problems_.add(what, where, grid_.network.origin + " has no such bus",
-                    "correct the bus number, or remove the record");
+      problems.add(what, where, grid_.network.origin + " has no such bus",
+                   "correct the bus number, or remove the record");
       return;
     }
-    if (!complete(effect, record, where, problems_)) return;
+    if (!fits(effect, record, where, problems)) return;
     Problems found;
     const plant::Block block = values_of(effect, record);
     effect.check(effect.law.get(), block.p.data(), where, found);
-    problems_.add(found);
+    problems.add(found);
+    if (!found.empty()) return;
     bool any = false;
     for (std::size_t i = 0; i < grid_.network.loads.size(); ++i) {
       const network::Load& load = grid_.network.loads[i];
@@ -163,8 +203,8 @@ class GridMaker {
       else if (reach < other->reach)
         *other = model;
       else if (reach == other->reach)
-        problems_.add("a second model, " + what, where,
-                      "it already has " + std::string(other->block.effect->dyr_name), "keep one of them");
+        problems.add("a second model, " + what, where,
+                     "it already has " + std::string(other->block.effect->dyr_name), "keep one of them");
     }
     if (!any)
       grid_.network.remark("models of loads that are not in service are left out", what + " (" + where + ")");

@@ -26,6 +26,8 @@ struct Grid {
   [[nodiscard]] std::vector<int> modelled_loads() const;
 };
 
+/// What the values are that a record of a .dyr lacks at its end.
+enum class Lacking { refused, zero, standard };
 /// What is done to a case that is not whole. Everything done stands in Network::remarks.
 struct CaseOptions {
   formats::DyrOptions dyr;
@@ -33,6 +35,9 @@ struct CaseOptions {
   bool net_generators = false;   ///< generators without a machine model become negative loads (PSS/E: GNET)
   bool start_from_file = false;  ///< the file's voltages are the operating point, whatever they leave over
   network::PowerFlowOptions flow;
+  /// Records shorter or longer than their model: missing values at the end are these, surplus ones left out.
+  Lacking complete_records = Lacking::refused;
+  bool drop_refused = false;  ///< records that their model cannot take are left out
 };
 
 /// Joins a network with its dynamic models. Throws InputError naming every generator in service without a

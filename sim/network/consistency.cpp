@@ -161,7 +161,7 @@ std::string power_text(Complex s, double base) {
 
 }  // namespace
 
-void stand_in(Network& n, const std::vector<Device>& devices, Problems& problems) {
+void stand_in(Network& n, const std::vector<Device>& devices, StandIn how, Problems& problems) {
   std::map<int, std::string> at_bus;
   std::string where;
   for (const Device& d : devices)
@@ -172,6 +172,12 @@ void stand_in(Network& n, const std::vector<Device>& devices, Problems& problems
       if (where.empty()) where = d.where;
     }
   if (at_bus.empty() || !problems.empty()) return;
+  if (how == StandIn::none) {
+    for (const auto& [b, names] : at_bus)
+      n.remark("equipment without a model here is left out, as asked",
+               names + " at bus " + std::to_string(at(n, b).number));
+    return;
+  }
   std::vector<int> pool;
   const std::vector<Complex> left = pooled(n, imbalance_of_file(n), pool);
   std::map<int, int> sharing;  // pools and how many buses of devices are in each
@@ -180,12 +186,13 @@ void stand_in(Network& n, const std::vector<Device>& devices, Problems& problems
   const auto [worst, bus] = worst_elsewhere(n, left, pool, sharing);
   const bool finite = std::ranges::all_of(
       left, [](const Complex& c) { return std::isfinite(c.real()) && std::isfinite(c.imag()); });
-  if (!finite || worst > most) {
+  if (!finite || (worst > most && how == StandIn::checked)) {
     problems.add(at_bus.begin()->second + " without a model here", where,
                  "the file's voltages would say what it draws, but they are no solution: they leave " +
                      pu(worst * n.base_mva) + " MVA" +
                      (bus < 0 ? std::string() : " at bus " + std::to_string(at(n, bus).number)),
-                 "solve the case before it is saved, or enter equivalent loads");
+                 "solve the case before it is saved, or go on with --devices file, which takes them all the "
+                 "same, or with --devices none, which leaves the equipment out");
     return;
   }
   for (const auto& [bus_of, names] : at_bus) {

@@ -26,9 +26,14 @@ struct Device {
   std::string name, where;
   std::vector<int> buses;  ///< indices
 };
-/// Puts loads in the place of devices: what the file's voltages say that they draw, with a remark. Where
-/// those voltages are no solution elsewhere it is a problem.
-void stand_in(Network& network, const std::vector<Device>& devices, Problems& problems);
+/// What stands in the place of equipment without a model.
+enum class StandIn {
+  checked,  ///< what the file's voltages say it draws; a problem where they are no solution elsewhere
+  file,     ///< the same, whatever they leave elsewhere
+  none      ///< nothing
+};
+/// Puts loads in the place of devices, with a remark.
+void stand_in(Network& network, const std::vector<Device>& devices, StandIn how, Problems& problems);
 /// Notes everything with a number that is not finite: quotients of extreme values. `file`: for messages.
 void check_finite(const Network& network, const std::string& file, Problems& problems);
 

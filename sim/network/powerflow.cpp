@@ -99,25 +99,25 @@ class Newton {
 
   /// Iterates from the present voltages; true if every mismatch is within tolerance (or rounding, see
   /// `floor`).
-  bool iterate(double tolerance, int limit, int& iterations) {
+  bool iterate(double tolerance, int limit, int& iterations, double longest_step = kAnyStep) {
     for (int k = 0; k <= limit; ++k, ++iterations) {
       if (!evaluate()) return false;
-      if (converged(tolerance)) return true;
-      if (k == limit || !step()) return false;
+      if (converged(tolerance)) return !collapsed();
+      if (k == limit || !step(longest_step)) return false;
     }
     return false;
   }
+  static constexpr double kAnyStep = 1e9;  ///< [rad, pu]
+  /// From the file's voltages, or flat: 1 pu, at the angles that the phase shifts alone would make.
   void start(bool flat) {
     v_.resize(static_cast<Eigen::Index>(n_.buses.size()));
-    double reference = 0.0;
-    for (std::size_t i = n_.buses.size(); i-- > 0;)
-      if ((*roles_)[i].kind == Role::slack) reference = n_.buses[i].va;
+    const std::vector<double> shifted = flat ? angles_of_shifts() : std::vector<double>{};
     for (std::size_t i = 0; i < n_.buses.size(); ++i) {
       const Bus& b = n_.buses[i];
       const Role& role = (*roles_)[i];
       const bool fixed = role.kind == Role::holds || role.kind == Role::slack;
       const double vm = fixed ? role.held : (flat ? 1.0 : b.vm);
-      const double va = flat && role.kind != Role::slack ? reference : b.va;
+      const double va = flat && role.kind != Role::slack ? shifted[i] : b.va;
       v_[static_cast<Eigen::Index>(i)] = role.kind == Role::out ? Complex{} : std::polar(vm, va);
     }
   }
@@ -132,6 +132,38 @@ class Newton {
     int row;
     double factor;
   };
+  /// A balance at a fraction of the voltage is no operating point: a bus without load has one at V = 0.
+  [[nodiscard]] bool collapsed() const {
+    constexpr double least = 0.2;  // [pu]
+    for (Eigen::Index i = 0; i < v_.size(); ++i)
+      if (role(static_cast<int>(i)).kind != Role::out && std::abs(v_[i]) < least) return true;
+    return false;
+  }
+  /// Angle of every bus without any flow: that of its slack bus and the phase shifts on the way [rad].
+  [[nodiscard]] std::vector<double> angles_of_shifts() const {
+    std::vector<std::vector<std::pair<int, double>>> next(n_.buses.size());
+    for (const Branch& b : n_.branches)
+      if (b.in_service) {
+        next[at(b.from)].emplace_back(b.to, -b.shift);
+        next[at(b.to)].emplace_back(b.from, b.shift);
+      }
+    std::vector<double> angle(n_.buses.size());
+    std::vector<char> known(n_.buses.size(), 0);
+    std::vector<int> way;
+    for (std::size_t i = 0; i < n_.buses.size(); ++i)
+      if ((*roles_)[i].kind == Role::slack) {
+        angle[i] = n_.buses[i].va;
+        known[i] = 1;
+        way.push_back(static_cast<int>(i));
+      }
+    for (std::size_t k = 0; k < way.size(); ++k)
+      for (const auto& [to, turn] : next[at(way[k])])
+        if (!std::exchange(known[at(to)], 1)) {
+          angle[at(to)] = angle[at(way[k])] + turn;
+          way.push_back(to);
+        }
+    return angle;
+  }
   [[nodiscard]] const Role& role(int i) const { return (*roles_)[at(i)]; }
   [[nodiscard]] Complex load(int i) const {
     const double vm = std::abs(v_[i]);
@@ -180,7 +212,7 @@ class Newton {
     return true;
   }
   /// One Newton step with dS/d(angle) and dS/d|V|.
-  bool step() {
+  bool step(double longest) {
     std::vector<Eigen::Triplet<double>> entries;
     const auto add = [&](int i, int column, Complex d) {
       if (column < 0) return;
@@ -209,11 +241,13 @@ class Newton {
     if (lu.info() != Eigen::Success) return false;
     const Eigen::VectorXd dx = lu.solve(f_);
     if (!dx.allFinite()) return false;
+    const double most = dx.size() > 0 ? dx.cwiseAbs().maxCoeff() : 0.0;
+    const double share = most > longest ? longest / most : 1.0;
     for (int i = 0; i < v_.size(); ++i) {
       if (angle_[at(i)] < 0) continue;
-      const double vm = std::abs(v_[i]) - (magnitude_[at(i)] >= 0 ? dx[magnitude_[at(i)]] : 0.0);
+      const double vm = std::abs(v_[i]) - (magnitude_[at(i)] >= 0 ? share * dx[magnitude_[at(i)]] : 0.0);
       v_[i] = (role(i).kind == Role::holds ? role(i).held : vm) *
-              std::polar(1.0, std::arg(v_[i]) - dx[angle_[at(i)]]);
+              std::polar(1.0, std::arg(v_[i]) - share * dx[angle_[at(i)]]);
     }
     return true;
   }
@@ -239,7 +273,18 @@ void solve(Newton& newton, const Network& network, const PowerFlowOptions& optio
   if (newton.iterate(options.tolerance, options.limit, iterations)) return;
   newton.start(true);  // a poor start in the file is no reason to give up
   if (newton.iterate(options.tolerance, options.limit, iterations)) return;
+  constexpr double short_step = 0.1;  // [rad, pu]
+  constexpr int more = 5;             // times as many of them
+  for (const bool flat : {false, true}) {
+    newton.start(flat);
+    if (newton.iterate(options.tolerance, more * options.limit, iterations, short_step)) return;
+  }
   const double size = newton.mismatch();
+  if (size <= options.tolerance)
+    throw InputError(
+        {"the power flow balances only with voltages near 0", network.origin,
+         "that is no operating point: the grid cannot carry its loads",
+         "check loads and impedances, or start from the file's voltages as they stand (--start file)"});
   throw InputError({"the power flow diverges, worst at " + bus_list(network, {newton.worst_bus()}) +
                         " with a mismatch of " + std::to_string(size) + " pu (" +
                         std::to_string(size * network.base_mva) + " MVA)" +

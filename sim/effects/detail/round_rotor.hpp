@@ -48,6 +48,9 @@ struct RoundRotor {
   static constexpr int dyr_columns[] = {Tdop, Tdopp, Tqop, Tqopp, H, D, Xd, Xq, Xdp, Xqp, Xdpp, Xl, S10, S12};
   static constexpr int raw_resistance = Ra, raw_reactance = -1;
 
+  /// [s] within which E'd follows where T'qo = 0: there is no such circuit.
+  static constexpr double kAtOnce = 0.01;
+
   enum C {
     gd1,
     gd2,
@@ -76,6 +79,12 @@ struct RoundRotor {
   enum M { sn, cs, pd, pq, Id, Iq, Se, td, scratch };
 
   static void check(const double* p, const std::string& where, Problems& problems);
+  static std::string remark(const double* p) {
+    std::string text;
+    if (p[Tqop] == 0.0) text = "T'qo = 0: no transient circuit in the q axis; E'd follows within 10 ms";
+    if (p[Xqp] < p[Xl]) text += (text.empty() ? "" : "; ") + std::string("X'q below Xl is no machine's");
+    return text;
+  }
   static std::string_view unphysical(const double* p) {
     if (!(p[Xd] > p[Xdp] && p[Xdp] > p[Xdpp] && p[Xdpp] > p[Xl])) return "Xd > X'd > X''d > Xl";
     if (!(p[Xq] > p[Xqp] && p[Xqp] > p[Xdpp])) return "Xq > X'q > X''q";
@@ -101,7 +110,7 @@ struct RoundRotor {
     Saturation::prepare(p[S10], p[S12], c[sat_a], c[sat_b]);
     c[iTdop] = T(1.0) / p[Tdop];
     c[iTdopp] = T(1.0) / p[Tdopp];
-    c[iTqop] = T(1.0) / p[Tqop];
+    c[iTqop] = T(1.0) / select(p[Tqop] > T(0.0), p[Tqop], T(kAtOnce));
     c[iTqopp] = T(1.0) / p[Tqopp];
     c[i2H] = T(0.5) / p[H];
     c[kD] = p[D];
@@ -182,13 +191,15 @@ void RoundRotor<Model, Saturation>::check(const double* p, const std::string& wh
   const auto text = [](double v) { return std::to_string(v); };
   bad(!(p[H] > 0), "H = " + text(p[H]) + " s", "the swing equation divides by H",
       "give H > 0 (an infinite bus is GENCLS with H = 0)");
-  for (int t : {Tdop, Tdopp, Tqop, Tqopp})
+  bad(!(p[Tqop] >= 0), "T'qo = " + text(p[Tqop]) + " s", "a time constant",
+      "give a value > 0, or 0 where there is no such circuit");
+  for (int t : {Tdop, Tdopp, Tqopp})
     bad(!(p[t] > 0), std::string(parameters[t].symbol) + " = " + text(p[t]) + " s",
         machine + " integrates this circuit", "give a time constant > 0");
   bad(!(p[Xdp] > p[Xl]), "X'd = " + text(p[Xdp]) + " pu with Xl = " + text(p[Xl]) + " pu",
       machine + " divides by X'd - Xl", "give X'd > Xl");
-  bad(!(p[Xqp] > p[Xl]), "X'q = " + text(p[Xqp]) + " pu with Xl = " + text(p[Xl]) + " pu",
-      machine + " divides by X'q - Xl", "give X'q > Xl");
+  bad(!(p[Xqp] != p[Xl]), "X'q = " + text(p[Xqp]) + " pu with Xl = " + text(p[Xl]) + " pu",
+      machine + " divides by X'q - Xl", "give X'q > Xl");  // below Xl it runs, as in PSS/E, with a remark
   bad(!(p[Xd] > p[Xl]), "Xd = " + text(p[Xd]) + " pu with Xl = " + text(p[Xl]) + " pu",
       machine + " divides by Xd - Xl", "give Xd > Xl");
   bad(!(p[Xdpp] > 0), "X''d = " + text(p[Xdpp]) + " pu", "the machine needs a reactance behind its terminal",

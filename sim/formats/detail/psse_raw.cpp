@@ -37,29 +37,35 @@ std::vector<RawReader::Section> RawReader::sections() const {
       zone{"zone"}, transfer{"inter-area transfer"}, owner{"owner"}, facts{"FACTS device", &RawReader::facts},
       switched{"switched shunt", &RawReader::switched_shunt},
       transformer{"transformer", &RawReader::transformer};
-  if (version_ == 23)
-    return {{"bus", &RawReader::bus_23},
-            generator,
-            branch,
-            {"transformer adjustment"},
-            area,
-            dc,
-            switched,
-            table,
-            mtdc,
-            multi,
-            zone,
-            transfer,
-            owner,
-            facts};
   std::vector<Section> list;
   const auto add = [&](std::initializer_list<Section> more) { list.insert(list.end(), more); };
+  if (version_ < 28) {
+    if (version_ == 23)
+      add({{"bus", &RawReader::bus_23}});
+    else
+      add({{"bus", &RawReader::bus}, load});
+    add({generator,
+         branch,
+         {"transformer adjustment"},
+         area,
+         dc,
+         switched,
+         table,
+         mtdc,
+         multi,
+         zone,
+         transfer});
+    if (version_ != 24) add({owner});
+    if (version_ != 24 && version_ != 25) add({facts});
+    return list;
+  }
   if (version_ >= 34) add({{"system-wide", &RawReader::system_wide}});
   add({{"bus", &RawReader::bus}, load});
   if (version_ >= 31) add({{"fixed shunt", &RawReader::fixed_shunt}});
   add({generator, branch});
   if (version_ >= 34) add({{"system switching device", &RawReader::switching_device}});
-  add({transformer, area, dc, vsc});
+  add({transformer, area, dc});
+  if (version_ >= 29) add({vsc});
   if (version_ < 31) add({switched});
   add({table, mtdc, multi, zone, transfer, owner, facts});
   if (version_ >= 31) add({switched});
@@ -78,10 +84,11 @@ void RawReader::read_sections() {
   }
   if (is_rawx(file_)) return read_json();
   header();
-  const std::vector<Section> all = sections();
-  for (const Section& s : all) {
+  bool area_behind = false;  // what comes after it may be missing as a whole
+  for (const Section& s : sections()) {
     if (left_out(s)) continue;
-    if (!section(s, &s == &all.back())) break;
+    area_behind = area_behind || std::string_view(s.name) == "area";
+    if (!section(s, area_behind)) break;
     while (!s.row && again(s)) {
       network_.remark("a section that its title begins a second time is read as the same once more",
                       std::string(s.name) + " section after " + file_ + ":" + std::to_string(at_));
@@ -133,7 +140,7 @@ void RawReader::header() {
     comment = "; the line says \"" + without_return(lines_[at_].substr(slash + 1)) + "\"";
   if (f.text(2, "").empty() && options_.version == 0)
     problems_.add("REV is missing", f.where(), "fields and sections lie where the version has them" + comment,
-                  "say it with --raw-version, 23 or 29 to 35");
+                  "say it with --raw-version, 23 to 35");
   else
     version_ = f.integer(2, "REV", options_.version);
   if (f.text(5, "").empty() && !options_.frequency_hz)
@@ -141,9 +148,9 @@ void RawReader::header() {
                   "say it with --frequency-hz, 50 or 60 Hz");
   const double frequency = static_cast<double>(f.number(5, "BASFRQ", options_.frequency_hz.value_or(1.0)));
   problems_.raise();  // without these nothing below can be read
-  if (version_ != 23 && (version_ < 29 || version_ > 35))
+  if (version_ < 23 || version_ > 35)
     throw InputError({"version " + std::to_string(version_) + " of the .raw format", f.where(),
-                      "versions 23 and 29 to 35 are read", "save the case as one of these versions"});
+                      "versions 23 to 35 are read", "save the case as one of these versions"});
   if (f.text(2, "").empty())
     network_.remark("REV is taken from --raw-version: " + std::to_string(version_), f.where());
   if (f.text(5, "").empty())
@@ -189,12 +196,12 @@ bool RawReader::again(const Section& section) const {
   return capitals_of(separator_).find("BEGIN " + capitals_of(section.name)) != std::string::npos;
 }
 
-bool RawReader::section(const Section& section, bool last) {
+bool RawReader::section(const Section& section, bool may_be_missing) {
   const std::string name = std::string(section.name) + " section";
   const int start = static_cast<int>(at_) + 1;
   const auto blank = [](const std::string& l) { return without_return(l).empty(); };
-  if (last && std::all_of(lines_.begin() + static_cast<std::ptrdiff_t>(at_), lines_.end(), blank)) {
-    network_.remark("the file ends before its last section, which is taken as empty", name);
+  if (may_be_missing && std::all_of(lines_.begin() + static_cast<std::ptrdiff_t>(at_), lines_.end(), blank)) {
+    network_.remark("the file ends before its last sections, which are taken as empty", "from the " + name);
     return false;
   }
   while (auto record = next()) {
@@ -266,14 +273,14 @@ void RawReader::finish() {
     if (network::Generator& g = network_.generators[i]; regulated_[i] != 0 && g.in_service) {
       const auto found = index_.find(std::abs(regulated_[i]));
       if (found == index_.end())
-        problems_.add("IREG = " + std::to_string(regulated_[i]), generator_place(i),
-                      "the bus section has no such bus", "correct IREG, or set it to 0");
+        hold_own(g, "generators that hold a bus that is not there hold their own at the file's voltage",
+                 generator_place(i));
       else if (found->second != g.bus)
         g.regulated = found->second;
     }
   if (!problems_.empty()) return;
   if (!devices_.empty()) settle_stars();
-  network::stand_in(network_, devices_, problems_);
+  network::stand_in(network_, devices_, options_.devices, problems_);
   network::settle_generators(network_, [&](std::size_t i) { return generator_place(i); });
   network::settle_islands(network_);
 }

@@ -15,8 +15,9 @@ namespace swingbank::sim::formats::psse {
 
 /// Where the fields whose place depends on the version stand (counted from 0). Version 34 puts twelve ratings
 /// and a name into branches and transformer windings and appends the regulated node; version 35 moves the
-/// node beside the regulated bus and gives switched shunts an id; before 32 switched shunts have no status.
-/// Source: PSS/E data format manuals, "Power Flow Data".
+/// node beside the regulated bus and gives switched shunts an id; before 32 switched shunts have no status,
+/// before 30 no RMPCT, before 28 no RMIDNT, and transformers stand among the branches. Source: PSS/E data
+/// format manuals, "Power Flow Data"; for 24 to 28 MATPOWER, psse_parse.m.
 struct Columns {
   std::size_t gen_base, gen_status;          ///< MBASE (ZR, ZX, RT, XT, GTAP follow), STAT (RMPCT follows)
   std::size_t branch_shunts, branch_status;  ///< GI (BI, GJ, BJ follow), ST
@@ -31,7 +32,8 @@ constexpr Columns columns(int version) {
   if (version == 34) return {8, 14, 19, 23, 22, 0, 3, 9, 4, 7, 6};
   if (version >= 32) return {8, 14, 9, 13, 13, 0, 3, 9, 4, 7, 6};
   if (version == 31) return {8, 14, 9, 13, 13, 0, kNoColumn, 7, 4, 7, 6};
-  if (version >= 29) return {8, 14, 9, 13, 13, 0, kNoColumn, 7, 6, 8, 10};
+  if (version >= 28) return {8, 14, 9, 13, 13, 0, kNoColumn, version == 30 ? 7u : 6u, 6, 8, 10};
+  if (version >= 24) return {8, 14, 11, 15, 13, 0, kNoColumn, 5, 6, 8, 10};
   return {8, 14, 11, 15, 13, 0, kNoColumn, 5, 6, 7, kNoColumn};
 }
 
@@ -57,9 +59,9 @@ class RawReader {
 
   void header();
   void check_header(const Fields& header, int change, double frequency);
-  /// False if the file is over ('Q' or no more lines); the latter is a fault unless only the last section is
-  /// missing.
-  bool section(const Section& section, bool last);
+  /// False if the file is over ('Q' or no more lines); the latter is a fault unless only sections are missing
+  /// that may be.
+  bool section(const Section& section, bool may_be_missing);
   /// Some programs write version 34 without this section: the line that ends the branches says so.
   [[nodiscard]] bool left_out(const Section& section) const;
   /// Whether the line that ended a section says that the same begins again.
@@ -77,6 +79,8 @@ class RawReader {
   void load(const Record& record);
   void fixed_shunt(const Record& record);
   void generator(const Record& record);
+  /// The generator holds its own bus at the voltage in the file, with a remark.
+  void hold_own(network::Generator& g, const char* what, const std::string& where);
   void branch(const Record& record);
   void switching_device(const Record& record);
   void transformer(const Record& first);

@@ -79,6 +79,7 @@ std::string compare_reactance(const plant::Plant& plant, const plant::Block& blo
 }  // namespace
 
 std::pair<const Effect*, Reach> effect_of_dyr(const formats::DyrRecord& record) {
+  if (!record.equipment.empty()) return {nullptr, Reach::load};
   return effect_of_model(record.user.empty() ? record.model : record.user);
 }
 
@@ -104,10 +105,10 @@ formats::DyrRecord plain(formats::DyrRecord record, const Effect& effect) {
   return record;
 }
 bool complete(const Effect& effect, const formats::DyrRecord& record, const std::string& where,
-              Problems& problems) {
+              Problems& problems, const std::string& or_else) {
   if (record.values.size() == effect.dyr_columns.size()) return true;
   problems.add(record.model + " with " + std::to_string(record.values.size()) + " parameters", where,
-               "it takes " + columns_text(effect), "give every parameter, in this order");
+               "it takes " + columns_text(effect), "give every parameter, in this order" + or_else);
   return false;
 }
 plant::Block values_of(const Effect& effect, const formats::DyrRecord& record) {

@@ -25,9 +25,9 @@ inline std::string name_of(const formats::DyrRecord& r) { return r.user.empty() 
 /// A user-written model that is one of ours, without IC, IT, NI, NC, NS, NV before its parameters; any other
 /// record as it is.
 formats::DyrRecord plain(formats::DyrRecord record, const Effect& effect);
-/// Whether the record has as many parameters as the effect; a problem if not.
+/// Whether the record has as many parameters as the effect; a problem if not, whose remedy `or_else` goes on.
 bool complete(const Effect& effect, const formats::DyrRecord& record, const std::string& where,
-              Problems& problems);
+              Problems& problems, const std::string& or_else = "");
 /// The record's values, standard ones where it has no column.
 plant::Block values_of(const Effect& effect, const formats::DyrRecord& record);
 

@@ -107,5 +107,24 @@ TEST(PsseDyr, AMissingFileIsNamed) {
   EXPECT_THAT(sentences_of([] { read_dyr("/nowhere/case.dyr"); }), HasSubstr("/nowhere/case.dyr"));
 }
 
+TEST(PsseDyr, ARecordThatTheNextRunsIntoEndsThere) {
+  const auto r =
+      parse_dyr("5 'REGCA1' 'S ' 1\n 0.02 10.0\n5 'REECA1' 'S '\n 0 0.5 /\n6 'GENCLS' 1 3.0 0 /\n", "x.dyr");
+  ASSERT_EQ(r.size(), 3u);
+  EXPECT_TRUE(r[0].unended);
+  EXPECT_THAT(r[0].values, ElementsAre(1.0, 0.02, 10.0));
+  EXPECT_EQ(r[1].model, "REECA1");
+  EXPECT_EQ(r[1].line, 3);
+  EXPECT_FALSE(r[1].unended);
+}
+
+TEST(PsseDyr, RecordsOfEquipmentBearItsName) {
+  const auto r = parse_dyr("'DC LINE 1' 'CDC6T' 1 2 'x' /\n\"V1 \" \"VSCP\" /\n", "x.dyr");
+  ASSERT_EQ(r.size(), 2u);
+  EXPECT_EQ(r[0].equipment, "DC LINE 1");
+  EXPECT_EQ(r[0].model, "CDC6T");
+  EXPECT_EQ(r[1].equipment, "V1");
+}
+
 }  // namespace
 }  // namespace swingbank::sim::formats

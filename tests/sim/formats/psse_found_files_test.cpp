@@ -22,7 +22,7 @@ std::vector<std::string> places(const network::Network& n, const std::string& pa
 
 /// The three-bus grid of RawCase in the layout of a version before 31.
 std::string old(int version) {
-  const bool old23 = version == 23;
+  const bool old23 = version == 23, tap_in_branch = version < 28;
   std::string t = old23 ? "0, 100.0\n" : "0, 100.0, " + std::to_string(version) + ",0,0,60.0\n";
   t += "first title\nsecond title\n";
   if (old23)
@@ -33,18 +33,23 @@ std::string old(int version) {
          "103,'SOUTH',138.0,1,1.0,20.0,1,1,0.99,-8.7,1\n0\n103,'1',1,1,1,250.0,30.0,0,0,0,0,1\n0\n";
   t += "101,'1',153.0,73.0,100,-100,1.05,0,100,0,0.3,0,0,1,1,100,318,0\n"
        "102,'1',100.0,-3.0,100,-100,1.02,0,100,0,0.25,0,0,1,1,100,318,0\n0\n";
-  const std::string tap = old23 ? ",0.98,5.0" : "";
-  t += "101,103,'1',0.01,0.12,0.0,250,250,250" + std::string(old23 ? ",0,0" : "") + ",0,0,0,0,1\n";
-  if (old23)
+  const std::string tap = tap_in_branch ? ",0.98,5.0" : "";
+  t += "101,103,'1',0.01,0.12,0.0,250,250,250" + std::string(tap_in_branch ? ",0,0" : "") + ",0,0,0,0,1\n";
+  if (tap_in_branch)
     t += "102,103,'1',0.01,0.12,0.0,250,250,250" + tap + ",0,0,0,0,1\n0\n0\n";
   else
     t +=
         "0\n102,103,0,'1',1,1,1,0,0,2,'',1,1,1.0\n0.01,0.12,100\n0.98,0,5.0,250,250,250,0,0,1.1,0.9\n1.0,0\n0\n";
   for (const char* section :
        {"area", "dc", "vsc", "switched", "table", "mtdc", "multi", "zone", "transfer", "owner", "facts"}) {
-    if (old23 && std::string(section) == "vsc") continue;
-    if (std::string(section) == "switched")
-      t += old23 ? "103,1,1.1,0.9,0,5.0,1,5.0\n" : "103,1,1.1,0.9,0,100,'',5.0,1,5.0\n";
+    const std::string name = section;
+    if ((version < 29 && name == "vsc") || (version == 24 && name == "owner") ||
+        ((version == 24 || version == 25) && name == "facts"))
+      continue;
+    if (name == "switched")
+      t += tap_in_branch   ? "103,1,1.1,0.9,0,5.0,1,5.0\n"
+           : version == 30 ? "103,1,1.1,0.9,0,100,'',5.0,1,5.0\n"
+                           : "103,1,1.1,0.9,0,'',5.0,1,5.0\n";
     t += "0 / END\n";
   }
   return t;
@@ -65,7 +70,7 @@ TEST_P(OldVersion, IsReadAsTheSameGrid) {
   const auto va = network::solve_power_flow(a), vb = network::solve_power_flow(b);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(std::abs(va.voltage[i] - vb.voltage[i]), 0.0, 1e-12) << i;
 }
-INSTANTIATE_TEST_SUITE_P(Versions, OldVersion, ::testing::Values(23, 29, 30));
+INSTANTIATE_TEST_SUITE_P(Versions, OldVersion, ::testing::Values(23, 24, 25, 26, 27, 28, 29, 30));
 
 TEST(FoundFiles, WhatTheHeaderLacksIsAskedForByOption) {
   RawCase c;
@@ -188,7 +193,60 @@ TEST(FoundFiles, RemoteRegulationIsRead) {
   EXPECT_EQ(n.generators[1].share, 60.0);
   EXPECT_NEAR(std::abs(network::solve_power_flow(n).voltage[2]), 1.0, 1e-12);
   c.generators.replace(c.generators.find("103,100"), 3, "199");
-  EXPECT_THAT(sentences_of([&] { c.read(); }), HasSubstr("IREG = 199"));
+  const network::Network own = c.read();
+  EXPECT_EQ(own.generators[1].regulated, -1);
+  EXPECT_EQ(own.generators[1].vset, 1.02);  // the file's voltage
+  EXPECT_THAT(places(own, "a bus that is not there"), ::testing::SizeIs(1));
+}
+
+TEST(FoundFiles, ValuesThatCannotStandAreReplacedAndSaid) {
+  RawCase c;
+  c.buses.replace(c.buses.find("0.99,-8.7"), 4, "0.00");
+  c.generators =
+      "101,'1',153.0,73.0,100,-100,1.05,0,0,0,0.3,0,0,1,1,100\n"
+      "102,'1',100.0,-3.0,300,-300,0.0,0,100,0,0.25,0,0.1,1.05,1,60\n";
+  const network::Network n = c.read();
+  EXPECT_EQ(n.buses[2].vm, 1.0);
+  EXPECT_EQ(n.generators[0].mva, 100.0);
+  EXPECT_EQ(n.generators[1].vset, 1.02);
+  for (const char* what : {"taken as 1 pu", "taken as SBASE", "hold that of the file", "nominal ratio"})
+    EXPECT_THAT(places(n, what), ::testing::SizeIs(1)) << what;
+}
+
+TEST(FoundFiles, WholeNumbersMayHaveAPointAndNamesAnApostrophe) {
+  RawCase c;
+  c.buses.replace(0, 12, "101.0,'O'BRIEN / 1',");
+  c.buses.erase(c.buses.find(" / 1',") + 6, 1);
+  const network::Network n = c.read();
+  EXPECT_EQ(n.buses[0].number, 101);
+  EXPECT_EQ(n.buses[0].name, "O'BRIEN / 1");
+  c.buses.replace(0, 5, "101.5");
+  EXPECT_THAT(sentences_of([&] { c.read(); }), HasSubstr("'101.5'"));
+}
+
+TEST(FoundFiles, DevicesAreLeftOutOrTakenFromVoltagesThatAreNoSolutionIfAsked) {
+  RawCase c;
+  c.other["FACTS device"] = "'F',102,0,1,0,0,1.0\n";
+  c.loads += "103,'2',1,1,1,90.0,0\n";
+  EXPECT_THAT(sentences_of([&] { c.read(); }), HasSubstr("--devices file"));
+  RawOptions options;
+  options.devices = network::StandIn::file;
+  EXPECT_EQ(parse_raw(c.text(), "case.raw", options).loads.back().kind, network::LoadKind::device);
+  options.devices = network::StandIn::none;
+  const network::Network n = parse_raw(c.text(), "case.raw", options);
+  EXPECT_EQ(n.loads.size(), 2u);
+  EXPECT_THAT(places(n, "left out, as asked"), ::testing::SizeIs(1));
+}
+
+TEST(FoundFiles, APhaseShiftToABusAtRestEndsInNoCollapse) {
+  RawCase c;
+  c.buses += "104,'T',13.8,1\n";
+  c.transformers =
+      "101,103,104,'1',1,1,1,0.001,-0.01,2,'T',1\n0.005,0.1,100,0.005,0.1,100,0.005,0.1,100,1.0,0\n"
+      "1.02\n1.02\n1.0,13.8,30\n";
+  const network::PowerFlow flow = network::solve_power_flow(c.read());
+  EXPECT_GT(std::abs(flow.voltage[3]), 0.9);
+  EXPECT_NEAR(std::arg(flow.voltage[3]) - std::arg(flow.voltage[4]), std::numbers::pi / 6, 1e-9);
 }
 
 const char* const kRawx = R"({"network": {

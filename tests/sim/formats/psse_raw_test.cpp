@@ -77,7 +77,7 @@ TEST(PsseRaw, Versions32And33GiveTheSameNetwork) {
 }
 
 TEST(PsseRaw, OtherVersionsAreRefusedByName) {
-  for (const int version : {22, 24, 28, 36}) {
+  for (const int version : {1, 22, 36}) {
     RawCase c;
     c.version = version;
     const auto text = sentences_of([&] { c.read(); });
@@ -235,14 +235,11 @@ TEST(PsseRaw, EveryFaultIsReportedAtOnceWithItsLine) {
   expect("103,'TWICE'", "bus 103 appears twice");
   expect("105,'NAN'", "VM = 'nan'");
   expect("106,'TYPE'", "IDE = 7");
-  expect("107,'V'", "VM = 0 pu");
   expect("-103,'8'", "bus -103 is not in the bus section");
   expect("999,'1'", "bus 999 is not in the bus section");
   expect("103,'1',1,1,1,1.0,1.0", "load '1' at bus 103 appears twice");
   expect("103,'3',5", "STATUS = 5");
   expect("103,'4'", "PL = '1.0x'");
-  expect("102,'3'", "MBASE = -5 MVA");
-  expect("102,'6'", "GTAP = 1.05");
   expect("102,'7'", "XT = -0.1 pu");
   expect("101,102,'7'", "X is missing");
   expect("102,103,'1',0.0,0.1", "appears twice");
@@ -257,16 +254,19 @@ TEST(PsseRaw, CutAnywhereTheFileIsReportedAsTruncated) {
   ASSERT_GT(lines.size(), 60u);
   ASSERT_EQ(lines.back(), "Q");
   std::string text;
-  // Without its last line only 'Q' is missing, without the one before it only the last, empty section: that
-  // is whole, the latter with a remark.
-  for (std::size_t k = 0; k + 3 < lines.size(); ++k) {
+  // Programs leave out sections at the end. Where nothing but sections after the transformers is missing the
+  // file is whole, with a remark.
+  std::size_t k = 0;
+  for (; lines[k] != "0 / end of transformer data"; ++k) {
     text += lines[k] + "\n";
     const ScratchFile file("cut.raw", text);
     EXPECT_THAT(sentences_of([&] { read_raw(file.path); }), HasSubstr("truncated")) << "after line " << k + 1;
   }
-  text += lines[lines.size() - 3] + "\n";
-  EXPECT_THAT(parse_raw(text, "cut.raw").remarks.back().what,
-              HasSubstr("the file ends before its last section"));
+  for (; k + 2 < lines.size(); ++k) {
+    text += lines[k] + "\n";
+    EXPECT_THAT(parse_raw(text, "cut.raw").remarks.back().what,
+                HasSubstr("the file ends before its last sections"));
+  }
 }
 
 TEST(PsseRaw, FilesThatCannotBeReadAreNamed) {

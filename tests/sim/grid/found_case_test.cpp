@@ -97,5 +97,57 @@ TEST(FoundCase, OperatingPointsBeyondLimitsAreToldTogetherOrTheLimitsMoved) {
   EXPECT_EQ(governor.p[static_cast<std::size_t>(governor.effect->parameter_index("VMIN"))], 0.0);
 }
 
+TEST(FoundCase, CeilingsOfExcitersAreMovedToo) {
+  for (const char* exciter :
+       {"'SEXS' 1 0.1 10 100 0.1 0 0.3", "'EXST1' 1 0.02 1 -1 1 10 200 0.02 0.3 0 0 0 1",
+        "'SCRX' 1 0.1 10 100 0.1 0 0.3 0 0"}) {
+    Grid grid =
+        make({}, kBoth.substr(kBoth.find('\n') + 1) +
+                     "101 'GENROU' 1 8.0 0.03 0.4 0.05 6.5 0 1.8 1.7 0.3 0.55 0.25 0.2 0.05 0.3 /\n101 " +
+                     std::string(exciter) + " /\n");
+    settle_limits(grid, true);
+    EXPECT_THAT(places(grid, "limits are moved"), ElementsAre(HasSubstr("0.3 becomes"))) << exciter;
+  }
+}
+
+TEST(FoundCase, RecordsOfAnotherLengthAreCompletedOrCutAsAsked) {
+  const std::string dyr = "101 'GENCLS' 1 3 /\n102 'GENCLS' 1 3 0 7 /\n";
+  EXPECT_THAT(formats::sentences_of([&] { make({}, dyr); }), HasSubstr("--complete-records"));
+  CaseOptions options;
+  options.complete_records = Lacking::zero;
+  const Grid grid = make({}, dyr, options);
+  EXPECT_EQ(grid.plants[0].machine.p[1], 0.0);
+  EXPECT_THAT(places(grid, "lack at their end"), ElementsAre(HasSubstr("has 1 of 2 values")));
+  EXPECT_THAT(places(grid, "beyond those of their model"), ElementsAre(HasSubstr("has 3 of 2 values")));
+  options.complete_records = Lacking::standard;
+  const Grid standard = make({}, dyr, options);
+  const plant::Block& machine = standard.plants[0].machine;
+  EXPECT_EQ(machine.p[1], machine.effect->standard_parameters()[1]);
+}
+
+TEST(FoundCase, RecordsThatTheirModelCannotTakeAreDroppedAsAsked) {
+  const std::string dyr =
+      kBoth + "101 'TGOV1' 1 0 0.5 0.5 0 2 7 0 /\n102 'GENCLS' 1 4 0 /\n102 'TGOV1' 1 x 0.5 2 0 2 7 0 /\n";
+  EXPECT_THAT(formats::sentences_of([&] { make({}, dyr); }), HasSubstr("--drop-refused"));
+  CaseOptions options;
+  options.drop_refused = true;
+  const Grid grid = make({}, dyr, options);
+  EXPECT_THAT(places(grid, "cannot take"), ::testing::SizeIs(3));
+  for (const plant::Plant& p : grid.plants) EXPECT_TRUE(p.controls.empty());
+  EXPECT_EQ(grid.plants[1].machine.p[0], 3.0);
+}
+
+TEST(FoundCase, AGenrouWithoutTheQAxisTransientCircuitIsTakenAndSaid) {
+  const Grid grid = make({}, "101 'GENROU' 1 8.0 0.03 0 0.05 6.5 0 1.8 1.7 0.3 1.7 0.25 0.2 0.05 0.3 /\n" +
+                                 kBoth.substr(kBoth.find('\n') + 1));
+  EXPECT_THAT(places(grid, "in their own way"), ElementsAre(HasSubstr("T'qo = 0")));
+  EXPECT_NO_THROW(plant::operating_point(grid.plants[0], grid.flow.voltage[0], 100.0, grid.conventions));
+}
+
+TEST(FoundCase, ARecordOfEquipmentIsNamedByIt) {
+  EXPECT_THAT(formats::sentences_of([&] { make({}, kBoth + "'DC 1' 'CDC6T' 1 2 /\n"); }),
+              ::testing::AllOf(HasSubstr("equipment 'DC 1'"), HasSubstr("--ignore-model CDC6T")));
+}
+
 }  // namespace
 }  // namespace swingbank::sim::grid
