@@ -180,7 +180,6 @@ sim::lanes::BatchOptions batch_options(const DatasetConfig& config) {
   o.rate = config.record.rate;
   o.tolerance = config.tolerance;
   o.lanes = config.lanes;
-  o.absolute = true;  // a row's spread stays what it was in every dataset made so far
   return o;
 }
 

@@ -36,7 +36,7 @@ struct RowBlock {
   std::vector<std::uint64_t> sample_id;   ///< rows
   std::vector<std::int32_t> generator;    ///< rows: bus number of the generator
   std::vector<double> fault;              ///< rows x 5: bus number, t_on [s], t_off [s], r [pu], x [pu]
-  std::vector<double> largest_spread;     ///< rows: largest pairwise rotor angle [rad]
+  std::vector<double> largest_spread;     ///< rows: how far apart two rotor angles have moved, at most [rad]
   std::vector<std::uint8_t> angle_valid;  ///< rows x samples, or empty: 0 where V = 0 and theta is held
   std::vector<double> machine_base;       ///< rows: of the generator [MVA]; empty without operating points
   std::vector<std::int16_t> codes;        ///< rows x channels x samples; empty where records are float32

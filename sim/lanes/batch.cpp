@@ -90,7 +90,7 @@ void Batch::run(const std::function<bool(Job&)>& next,
 }
 
 std::string Batch::variant() const {
-  return fmt::format("dp54 lanes={} isa={} tol={:g}", impl_->options.lanes, instruction_set(),
+  return fmt::format("dp54 lanes={} isa={} tol={:g} angles=moved", impl_->options.lanes, instruction_set(),
                      impl_->options.tolerance);
 }
 

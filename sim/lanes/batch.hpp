@@ -22,7 +22,6 @@ struct BatchOptions {
   int lanes = 0;                  ///< 1, 4 or 8; 0: the widest this build was made for
   /// A run ends where a rotor angle has moved by so much against another's of the same island since the start
   double lose_at = constants::pi;  ///< [rad]
-  bool absolute = false;           ///< judge the angles themselves, over the whole grid
   bool sensitivities = false;      ///< carry derivatives along Job::seeds; always 8 lanes
 };
 
@@ -61,7 +60,7 @@ class Batch {
   /// trajectory is only valid during the call. An InputError of a job (operating point refused) is thrown.
   void run(const std::function<bool(Job&)>& next,
            const std::function<void(const Job&, const Trajectory&)>& done);
-  /// "dp54 lanes=8 isa=avx512 tol=1e-06": part of a dataset's config hash.
+  /// "dp54 lanes=8 isa=avx512 tol=1e-06 angles=moved": part of a dataset's config hash.
   [[nodiscard]] std::string variant() const;
 
  private:

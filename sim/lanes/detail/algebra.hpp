@@ -61,37 +61,81 @@ void Lanes<T>::source_emf(const Constants& k, const T* x, int source, const T& v
   }
 }
 
-/// Solves a x = b in place, no pivoting: the matrix is the identity plus what the nonlinear parts feed back.
+/// Triangular factors in place, no pivoting: the matrix is the identity plus what the nonlinear parts feed
+/// back.
 template <class T>
-void solve_dense(T* a, T* b, std::size_t n) {
+void factor_dense(T* a, std::size_t n) {
   for (std::size_t p = 0; p < n; ++p) {
     const T inverse = T(1.0) / a[p * n + p];
+    a[p * n + p] = inverse;
     for (std::size_t i = p + 1; i < n; ++i) {
       const T factor = a[i * n + p] * inverse;
+      a[i * n + p] = factor;
       for (std::size_t j = p + 1; j < n; ++j) a[i * n + j] = a[i * n + j] - factor * a[p * n + j];
-      b[i] = b[i] - factor * b[p];
     }
-  }
-  for (std::size_t p = n; p-- > 0;) {
-    for (std::size_t j = p + 1; j < n; ++j) b[p] = b[p] - a[p * n + j] * b[j];
-    b[p] = b[p] / a[p * n + p];
   }
 }
 
-/// One Newton step of V - (E(V) - z (G + jB) E(V)) = 0, left in algebra_[0 .. 2K). dE/dV by differences:
-/// their error only slows the convergence. Returns the largest component.
+/// Solves a x = b in place with the factors of a.
 template <class T>
-typename Lanes<T>::Flat Lanes<T>::newton_step(Constants& k, const T* x) {
+void solve_factored(const T* a, T* b, std::size_t n) {
+  for (std::size_t i = 1; i < n; ++i) {
+    T sum = b[i];
+    for (std::size_t j = 0; j < i; ++j) sum = sum - a[i * n + j] * b[j];
+    b[i] = sum;
+  }
+  for (std::size_t i = n; i-- > 0;) {
+    T sum = b[i];
+    for (std::size_t j = i + 1; j < n; ++j) sum = sum - a[i * n + j] * b[j];
+    b[i] = sum * a[i * n + i];
+  }
+}
+
+/// What V - (E(V) - z (G + jB) E(V)) = 0 leaves, into algebra_[0 .. 2K). steady: currents of the linear
+/// sources.
+template <class T>
+void Lanes<T>::algebra_rest(Constants& k, const T* x, const T* steady) {
+  const std::size_t count = nonlinear_.size();
+  T* f = algebra_.data();
+  for (std::size_t j = 0; j < count; ++j) {
+    const auto at = static_cast<std::size_t>(nonlinear_[j]);
+    source_emf(k, x, nonlinear_[j], k.vr[j], k.vi[j], er_[at], ei_[at]);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto at = static_cast<std::size_t>(nonlinear_[i]);
+    const T *g = &k.g[at * static_cast<std::size_t>(sources_)],
+            *b = &k.b[at * static_cast<std::size_t>(sources_)];
+    T ir = steady[2 * i], ii = steady[2 * i + 1];
+    for (const int source : nonlinear_) {
+      const auto from = static_cast<std::size_t>(source);
+      ir = ir + g[from] * er_[from] - b[from] * ei_[from];
+      ii = ii + g[from] * ei_[from] + b[from] * er_[from];
+    }
+    const T* z = own_impedance(k, nonlinear_[i]);
+    T zr = z[0], zi = z[1], er = er_[at], ei = ei_[at];
+    if (const T* n = ratio(k, nonlinear_[i])) {
+      const T share = T(1.0) / *n;
+      er = er * share;
+      ei = ei * share;
+      zr = zr * *n;
+      zi = zi * *n;
+    }
+    f[2 * i] = k.vr[i] - (er - zr * ir + zi * ii);
+    f[2 * i + 1] = k.vi[i] - (ei - zr * ii - zi * ir);
+  }
+}
+
+/// The slopes of that after V, after algebra_rest, into a. dE/dV by differences: their error only slows the
+/// convergence.
+template <class T>
+void Lanes<T>::algebra_slopes(const Constants& k, const T* x, T* a) {
   constexpr double nudge = 1e-6;  // [pu]
   const std::size_t count = nonlinear_.size(), size = 2 * count;
-  T* f = algebra_.data();
-  T* slope = f + size;  // dE/dV, four values per source
-  T* a = slope + 4 * count;
+  T* slope = algebra_.data() + size;  // dE/dV, four values per source
   for (std::size_t j = 0; j < count; ++j) {
     const int source = nonlinear_[j];
     const auto at = static_cast<std::size_t>(source);
     T er, ei;
-    source_emf(k, x, source, k.vr[j], k.vi[j], er_[at], ei_[at]);
     source_emf(k, x, source, k.vr[j] + T(nudge), k.vi[j], er, ei);
     slope[4 * j] = (er - er_[at]) * T(1.0 / nudge);
     slope[4 * j + 1] = (ei - ei_[at]) * T(1.0 / nudge);
@@ -99,21 +143,15 @@ typename Lanes<T>::Flat Lanes<T>::newton_step(Constants& k, const T* x) {
     slope[4 * j + 2] = (er - er_[at]) * T(1.0 / nudge);
     slope[4 * j + 3] = (ei - ei_[at]) * T(1.0 / nudge);
   }
-  Signals<T>& s = signals_;
   for (std::size_t i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(nonlinear_[i]);
     const T* z = own_impedance(k, nonlinear_[i]);
-    T zr = z[0], zi = z[1], er = er_[at], ei = ei_[at], share(1.0);
+    T zr = z[0], zi = z[1], share(1.0);
     if (const T* n = ratio(k, nonlinear_[i])) {
       share = T(1.0) / *n;
-      er = er * share;
-      ei = ei * share;
       zr = zr * *n;
       zi = zi * *n;
     }
-    current(k, at, s);
-    f[2 * i] = k.vr[i] - (er - zr * s.Ir + zi * s.Ii);
-    f[2 * i + 1] = k.vi[i] - (ei - zr * s.Ii - zi * s.Ir);
     for (std::size_t j = 0; j < count; ++j) {
       const auto from = static_cast<std::size_t>(nonlinear_[j]);
       const T& g = k.g[at * static_cast<std::size_t>(sources_) + from];
@@ -128,36 +166,96 @@ typename Lanes<T>::Flat Lanes<T>::newton_step(Constants& k, const T* x) {
       }
     }
   }
-  solve_dense(a, f, size);
+}
+
+/// One step of Newton's method, left in algebra_[0 .. 2K), with the factors that a lane has, or with new ones
+/// in the lanes of `anew`. Returns the largest component.
+template <class T>
+typename Lanes<T>::Flat Lanes<T>::newton_step(Constants& k, const T* x, const T* steady, unsigned anew) {
+  const std::size_t size = 2 * nonlinear_.size();
+  T* f = algebra_.data();
+  algebra_rest(k, x, steady);
+  if (anew != 0) {
+    constexpr unsigned all = (1U << kLanes) - 1U;
+    T* a = anew == all ? k.factors.data() : f + 3 * size + size;
+    algebra_slopes(k, x, a);
+    factor_dense(a, size);
+    if (anew != all) {
+      const auto mask = Traits::mask(anew);
+      for (std::size_t i = 0; i < size * size; ++i) k.factors[i] = select(mask, a[i], k.factors[i]);
+    }
+    k.factored |= anew;
+  }
+  solve_factored(k.factors.data(), f, size);
   Flat largest(0.0);
   for (std::size_t i = 0; i < size; ++i) largest = maximum(absolute(Traits::value(f[i])), largest);
   return largest;
 }
 
+/// How the search of one lane goes.
+struct LaneSearch {
+  double last = 0.0;  ///< size of the step before; 0: none
+  int calm = 0;       ///< short steps with new factors
+
+  /// After a step: whether the voltages are found. `anew`: its factors were of where it began; slow: they
+  /// should be made anew.
+  bool found(double step, bool anew, int more, bool& slow) {
+    constexpr double near = 1e-7;     // [pu]: a step this short with new factors leaves 1e-13 behind
+    constexpr double left = 1e-13;    // [pu]
+    constexpr double slowest = 0.02;  // of steps with old factors: what is left over what there was
+    const bool known = last > 0.0;
+    const double rate = known ? step / last : 1.0;
+    last = step;
+    slow = false;
+    if (anew) return step < near && calm++ >= more;
+    if (step * std::min(rate, 1.0) < left) return true;
+    slow = known && !(rate < slowest) && step > near;
+    return false;
+  }
+};
+
+/// Factors are kept from search to search while they serve: making them is the third power of the sources, a
+/// step the second. What a lane has follows from its own past alone.
 template <class T>
 void Lanes<T>::solve_algebra(Constants& k, const T* x) {
-  constexpr int limit = 40;
+  constexpr int limit = 40, patience = 8;
   constexpr double longest = 0.3;  // [pu]: a load of constant power may throw the first steps far
-  constexpr double near = 1e-7;    // [pu]: a step this short leaves 1e-13 behind
-  // Newton's last step still carries the slopes' error of the differences: duals take two more.
+  // Newton's last step still carries the slopes' error of the differences: duals take two more, and new
+  // factors always.
   constexpr int more = Traits::directions > 0 ? 2 : 0;
-  auto seeking = Traits::mask((1U << kLanes) - 1U);
-  unsigned open = (1U << kLanes) - 1U;
-  std::array<int, kLanes> calm{};
+  constexpr unsigned all = (1U << kLanes) - 1U;
+  const std::size_t count = nonlinear_.size();
+  T* steady = steady_.data();
+  for (const int source : nonlinear_)
+    er_[static_cast<std::size_t>(source)] = ei_[static_cast<std::size_t>(source)] = T(0.0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t row = static_cast<std::size_t>(nonlinear_[i]) * static_cast<std::size_t>(sources_);
+    row_times(&k.g[row], &k.b[row], er_.data(), ei_.data(), sources_, steady[2 * i], steady[2 * i + 1]);
+  }
+  auto seeking = Traits::mask(all);
+  unsigned open = all;
+  std::array<LaneSearch, kLanes> search{};
   for (int step = 0; step < limit && open != 0; ++step) {
-    const Flat largest = newton_step(k, x);
+    const unsigned anew = open & (Traits::directions > 0 || step >= patience ? all : ~k.factored);
+    const Flat largest = newton_step(k, x, steady, anew);
     const T scale = Traits::constant(Flat(longest) / maximum(Flat(longest), largest));
-    for (std::size_t i = 0; i < nonlinear_.size(); ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
       k.vr[i] = select(seeking, k.vr[i] - scale * algebra_[2 * i], k.vr[i]);
       k.vi[i] = select(seeking, k.vi[i] - scale * algebra_[2 * i + 1], k.vi[i]);
     }
     alignas(64) double size[kLanes];
     LaneTraits<Flat>::store(largest, size);
-    for (int l = 0; l < kLanes; ++l)
-      if (size[l] < near && calm[static_cast<std::size_t>(l)]++ >= more) open &= ~(1U << l);
+    for (int l = 0; l < kLanes; ++l) {
+      const unsigned bit = 1U << l;
+      if ((open & bit) == 0) continue;
+      bool slow = false;
+      if (search[static_cast<std::size_t>(l)].found(size[l], (anew & bit) != 0, more, slow)) open &= ~bit;
+      if (slow) k.factored &= ~bit;
+    }
     seeking = Traits::mask(open);
   }
-  for (std::size_t i = 0; i < nonlinear_.size(); ++i) {
+  k.factored &= ~open;
+  for (std::size_t i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(nonlinear_[i]);
     source_emf(k, x, nonlinear_[i], k.vr[i], k.vi[i], er_[at], ei_[at]);
     if (open == 0) continue;

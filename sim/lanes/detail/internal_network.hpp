@@ -21,6 +21,23 @@ struct Terminals {
 /// source's own base [pu]. Row-major.
 struct InternalMatrix : Terminals {
   std::vector<double> g, b;
+  [[nodiscard]] Eigen::VectorXcd row(int k) const {
+    const auto n = static_cast<Eigen::Index>(grounded.size());
+    Eigen::VectorXcd v(n);
+    for (Eigen::Index j = 0; j < n; ++j) v[j] = entry(k * n + j);
+    return v;
+  }
+  [[nodiscard]] Eigen::VectorXcd column(int k) const {
+    const auto n = static_cast<Eigen::Index>(grounded.size());
+    Eigen::VectorXcd v(n);
+    for (Eigen::Index i = 0; i < n; ++i) v[i] = entry(i * n + k);
+    return v;
+  }
+
+ private:
+  [[nodiscard]] Complex entry(Eigen::Index at) const {
+    return {g[static_cast<std::size_t>(at)], b[static_cast<std::size_t>(at)]};
+  }
 };
 
 class InternalNetwork {

@@ -79,8 +79,10 @@ class Lanes {
   /// one event's values in every lane, its lanes being consecutive samples.
   struct Constants {
     std::vector<T> c, g, b, efd, tm, dvref, dpref, on;  ///< on: 1, or 0 where the plant is tripped
-    std::vector<T> vr, vi;  ///< voltages at nonlinear sources' own terminals: where the search begins
-    T last_moment;          ///< largest time effects may see [s]
+    std::vector<T> vr, vi;   ///< voltages at nonlinear sources' own terminals: where the search begins
+    T last_moment;           ///< largest time effects may see [s]
+    std::vector<T> factors;  ///< of the slopes of what the search solves, lane by lane of another past
+    unsigned factored = 0;   ///< lanes that have some
   };
 
   // one evaluation (equations.hpp)
@@ -96,7 +98,9 @@ class Lanes {
   const T* source_impedance(const Constants& k, int source) const;
   const T* own_impedance(const Constants& k, int source) const;
   const T* ratio(const Constants& k, int source) const;
-  Flat newton_step(Constants& k, const T* x);
+  void algebra_rest(Constants& k, const T* x, const T* steady);
+  void algebra_slopes(const Constants& k, const T* x, T* a);
+  Flat newton_step(Constants& k, const T* x, const T* steady, unsigned anew);
 
   // recording (record.hpp)
   void record_step(const T& h, unsigned accepted, const double* start, const double* tried);
@@ -108,6 +112,8 @@ class Lanes {
   void spread_constants(int lane);
   void outputs(std::size_t row_plant, const T* x, LaneRun& run, int count);
   void hold(LaneRun& run, int until) const;
+  /// Whether a lane's samples need the currents of all plants.
+  [[nodiscard]] bool records_whole(int lane) const { return whole_record_ && !shared_.whole(lane); }
   T unwrapped(T angle, double last, int count) const;
 
   // the lanes' matrices (network.hpp)
@@ -115,6 +121,7 @@ class Lanes {
   void choose_state(int lane);
   const Terminals& set_matrix(int lane, const network::Topology& topology);
   const Terminals& set_shared(int lane, const network::Topology& topology);
+  const InternalMatrix& own_matrix();
   std::optional<LowRank> few_products(int lane, const network::Topology& topology);
   void matrix_slopes(int lane, const InternalMatrix& matrix);
 
@@ -158,7 +165,10 @@ class Lanes {
   std::vector<std::shared_ptr<OperatingState>> state_;  ///< per lane
   SharedNetwork<T> shared_;                             ///< where shares_
   std::optional<SwitchedNetwork> switched_;             ///< where shares_
-  Terminals terminals_;                                 ///< of the segment a lane enters; where shares_
+  std::optional<InternalMatrix> own_matrix_;            ///< where it was asked for
+  bool whole_record_ =
+      false;  ///< where shares_: so many are recorded that all currents are less work than their rows
+  Terminals terminals_;                    ///< of the segment a lane enters; where shares_
   std::vector<double> own_r_, own_x_;      ///< impedances of the grid's own machines; where shares_
   std::vector<SharedRows> recorded_rows_;  ///< per lane, of its own matrix; where shares_
   std::vector<PlantSlice> plants_;
@@ -186,6 +196,7 @@ class Lanes {
   std::vector<T> ir_, ii_;      ///< likewise, where shares_
   Signals<T> signals_;          ///< likewise: zeroing one per plant would cost 25 packs
   std::vector<T> algebra_;      ///< scratch of newton_step
+  std::vector<T> steady_;       ///< currents of the linear sources at the nonlinear ones
   T time_{}, start_{};          ///< of the evaluation, of the step, per lane [s]
   std::vector<T> y_, trial_;    ///< states
   std::vector<T> rest_;         ///< rotor angle of each plant at its operating point [rad]

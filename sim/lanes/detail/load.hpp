@@ -102,9 +102,11 @@ void Lanes<T>::reserve() {
     for (auto* v : {&k->efd, &k->tm, &k->dvref, &k->dpref}) v->assign(n, T(0.0));
     k->on.assign(n, T(1.0));
     for (auto* v : {&k->vr, &k->vi}) v->assign(nonlinear_.size(), T(0.0));
+    k->factors.assign(free * free, T(0.0));
     k->last_moment = T(0.0);
   }
-  algebra_.assign(free + 2 * free + free * free, T(0.0));
+  algebra_.assign(free + 3 * free + free * free, T(0.0));
+  steady_.assign(free, T(0.0));
   for (auto* v : {&er_, &ei_}) v->assign(sources, T(0.0));
   for (auto* v : {&y_, &trial_, &kept_, &unused_}) v->assign(states, T(0.0));
   rest_.assign(n, T(0.0));
@@ -131,7 +133,7 @@ void Lanes<T>::load_plant(int lane, std::size_t plant, const plant::OperatingOf<
   };
   for (std::size_t i = 0; i < at.c.size(); ++i) put(per_lane_.c[static_cast<std::size_t>(p.c) + i], at.c[i]);
   for (std::size_t i = 0; i < at.x.size(); ++i) put(y_[static_cast<std::size_t>(p.x) + i], at.x[i]);
-  if (plants_[plant].rotor) Traits::set(rest_[plant], lane, options_.absolute ? 0.0 : value_of(at.x[0]));
+  if (plants_[plant].rotor) Traits::set(rest_[plant], lane, value_of(at.x[0]));
   put(per_lane_.efd[plant], at.Efd);
   put(per_lane_.tm[plant], at.Tm);
   const Value* z = at.c.data() + grid_.plants[plant].machine.effect->coefficients + plant::joint_r;
@@ -258,9 +260,10 @@ void Lanes<T>::enter_segment(int lane) {
   const Terminals& terminals = set_matrix(lane, segment.topology);
   grounded_[l] = terminals.grounded;
   connected_[l] = terminals.connected;
+  per_lane_.factored &= ~(1U << lane);
   tripped_ &= ~(1U << lane);
   run.islands.clear();
-  if (!options_.absolute && (islands_ > 1 || !segment.topology.open.empty())) {
+  if (islands_ > 1 || !segment.topology.open.empty()) {
     const std::vector<int> of_bus = network::islands(grid_.network, segment.topology.open);
     for (const plant::Plant& plant : grid_.plants)
       run.islands.push_back(of_bus[static_cast<std::size_t>(plant.bus)]);

@@ -69,25 +69,34 @@ std::optional<LowRank> difference(const InternalMatrix& matrix, const InternalMa
 
 void add_impedances(LowRank& products, const InternalMatrix& matrix,
                     const std::vector<ImpedanceChange>& changes) {
-  const auto n = static_cast<Eigen::Index>(matrix.grounded.size());
+  add_impedances(products, {[&](int k) { return matrix.row(k); }, [&](int k) { return matrix.column(k); }},
+                 changes);
+}
+
+void add_impedances(LowRank& products, const ByRowsAndColumns& matrix,
+                    const std::vector<ImpedanceChange>& changes) {
+  if (changes.empty()) return;
   const auto count = static_cast<Eigen::Index>(changes.size());
-  const auto m = [&](Eigen::Index row, Eigen::Index column) {
-    const auto at = static_cast<std::size_t>(row * n + column);
-    Complex sum(matrix.g[at], matrix.b[at]);
-    for (Eigen::Index k = 0; k < products.rank; ++k) {
-      const auto u = static_cast<std::size_t>(k * n + row), w = static_cast<std::size_t>(k * n + column);
-      sum += Complex(products.ur[u], products.ui[u]) * Complex(products.wr[w], products.wi[w]);
-    }
-    return sum;
+  const Eigen::Index n = matrix.row(changes[0].source).size();
+  const auto factor = [n](const std::vector<double>& r, const std::vector<double>& i, Eigen::Index k,
+                          Eigen::Index at) {
+    const auto p = static_cast<std::size_t>(k * n + at);
+    return Complex(r[p], i[p]);
   };
   Eigen::MatrixXcd columns(n, count), rows(count, n), a = Eigen::MatrixXcd::Identity(count, count);
   Eigen::VectorXcd dz(count);
   for (Eigen::Index k = 0; k < count; ++k) {
     const auto& [source, by] = changes[static_cast<std::size_t>(k)];
     dz[k] = by;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      columns(i, k) = m(i, source);
-      rows(k, i) = m(source, i);
+    columns.col(k) = matrix.column(source);
+    rows.row(k) = matrix.row(source).transpose();
+    for (Eigen::Index p = 0; p < products.rank; ++p) {
+      const Complex u = factor(products.ur, products.ui, p, source),
+                    w = factor(products.wr, products.wi, p, source);
+      for (Eigen::Index i = 0; i < n; ++i) {
+        columns(i, k) += factor(products.ur, products.ui, p, i) * w;
+        rows(k, i) += u * factor(products.wr, products.wi, p, i);
+      }
     }
     for (Eigen::Index j = 0; j < count; ++j)
       a(k, j) += by * rows(k, changes[static_cast<std::size_t>(j)].source);

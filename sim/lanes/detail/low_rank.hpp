@@ -1,5 +1,6 @@
 #pragma once
 // What one switching or one machine's impedance changes in the reduced network: few outer products.
+#include <functional>
 #include <optional>
 
 #include "sim/lanes/detail/internal_network.hpp"
@@ -26,9 +27,15 @@ struct ImpedanceChange {
   int source;
   Complex dz;  ///< [pu on its own base]
 };
+/// A matrix by its rows and columns, as they are asked for.
+struct ByRowsAndColumns {
+  std::function<Eigen::VectorXcd(int)> row, column;
+};
 /// Adds to the products of M = matrix + products what other impedances of some sources C change:
 /// -M[:,C] (1 + dZ M[C,C])^-1 dZ M[C,:]. That saves the solution of the whole network for every set of
 /// machines.
+void add_impedances(LowRank& products, const ByRowsAndColumns& matrix,
+                    const std::vector<ImpedanceChange>& changes);
 void add_impedances(LowRank& products, const InternalMatrix& matrix,
                     const std::vector<ImpedanceChange>& changes);
 

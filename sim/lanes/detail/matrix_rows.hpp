@@ -31,14 +31,21 @@ class SharedRows {
 
   /// Rows of matrix + more.
   void assign(const InternalMatrix& matrix, const std::vector<int>& rows, const LowRank& more = {}) {
-    columns_ = matrix.grounded.size();
+    assign(
+        matrix.grounded.size(), rows, [&](int row) { return matrix.row(row); }, more);
+  }
+  /// The same of a matrix that gives its rows one by one: row(k), complex.
+  template <class RowOf>
+  void assign(std::size_t columns, const std::vector<int>& rows, const RowOf& row, const LowRank& more) {
+    columns_ = columns;
     values_.assign(padded(rows.size()) * columns_ * 2, 0.0);
     for (std::size_t k = 0; k < rows.size(); ++k) {
-      const std::size_t from = static_cast<std::size_t>(rows[k]) * columns_;
+      const auto from = row(rows[k]);
       double* to = values_.data() + 2 * (k / kTogether * kTogether * columns_ + k % kTogether);
       for (std::size_t j = 0; j < columns_; ++j, to += 2 * kTogether) {
-        to[0] = matrix.g[from + j];
-        to[1] = matrix.b[from + j];
+        const Complex m = from[static_cast<Eigen::Index>(j)];
+        to[0] = m.real();
+        to[1] = m.imag();
         for (std::size_t u = static_cast<std::size_t>(rows[k]), w = j; u < more.ur.size();
              u += columns_, w += columns_) {
           to[0] += more.ur[u] * more.wr[w] - more.ui[u] * more.wi[w];

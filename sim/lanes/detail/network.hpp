@@ -18,12 +18,25 @@ void Lanes<T>::share() {
     own_r_.push_back(z[plant::joint_r]);
     own_x_.push_back(z[plant::joint_x]);
   }
-  shared_.assign(own_->network.matrix({}, own_r_, own_x_));
   switched_.emplace(grid_, own_r_, own_x_);
-  if (BusFactors factors; factors.factor(switched_->closed())) shared_.assign(factors, switched_->plants());
+  BusFactors factors;
+  const bool factored = switched_->sound() && factors.factor(switched_->closed());
+  if (factored && SharedNetwork<T>::pays(factors, n, n))
+    shared_.assign(factors, switched_->plants());
+  else
+    shared_.assign(own_matrix());
+  whole_record_ = shared_.factored() && SharedNetwork<T>::pays(factors, recorded_.size(), n);
   recorded_rows_.resize(kLanes);
   const std::size_t rows = SharedRows::padded(std::max(n, recorded_.size()));
   for (auto* v : {&ir_, &ii_}) v->assign(rows, T(0.0));
+}
+
+/// The matrix of the grid without any switching. Its size is quadratic and its making cubic in the sources:
+/// only where there are no factors, or where a generator is lost.
+template <class T>
+const InternalMatrix& Lanes<T>::own_matrix() {
+  if (!own_matrix_) own_matrix_ = own_->network.matrix({}, own_r_, own_x_);
+  return *own_matrix_;
 }
 
 /// Puts a lane's matrix into place.
@@ -45,7 +58,11 @@ const Terminals& Lanes<T>::set_shared(int lane, const network::Topology& topolog
   const auto l = static_cast<std::size_t>(lane);
   if (const auto products = few_products(lane, topology)) {
     shared_.set(lane, *products);
-    recorded_rows_[l].assign(shared_.own(), recorded_, *products);
+    if (!whole_record_ && shared_.factored())
+      recorded_rows_[l].assign(
+          plants_.size(), recorded_, [this](int k) { return switched_->row(k); }, *products);
+    else if (!whole_record_)
+      recorded_rows_[l].assign(own_matrix(), recorded_, *products);
     return terminals_;
   }
   const InternalMatrix& matrix = state_[l]->network.matrix(topology, lane_r_[l], lane_x_[l]);
@@ -68,16 +85,25 @@ std::optional<LowRank> Lanes<T>::few_products(int lane, const network::Topology&
   if (most < 0) return {};
   auto products = switched_->change(topology, most);
   if (products) {
-    terminals_ = shared_.own();
+    terminals_ = {std::vector<char>(plants_.size(), 0), std::vector<char>(plants_.size(), 0),
+                  std::vector<double>(plants_.size(), 1.0)};
     const auto bolted = network::bolted_buses(topology);
     for (std::size_t i = 0; i < plants_.size(); ++i)
       terminals_.grounded[i] = std::ranges::count(bolted, grid_.plants[i].bus) > 0;
   } else {
+    const InternalMatrix& own = own_matrix();
     const InternalMatrix& matrix = own_->network.matrix(topology, own_r_, own_x_);
     terminals_ = matrix;
-    products = difference(matrix, shared_.own(), most);
+    products = difference(matrix, own, most);
   }
-  if (products) add_impedances(*products, shared_.own(), changes);
+  if (!products || changes.empty()) return products;
+  if (shared_.factored())
+    add_impedances(
+        *products,
+        {[this](int k) { return switched_->row(k); }, [this](int k) { return switched_->column(k); }},
+        changes);
+  else
+    add_impedances(*products, own_matrix(), changes);
   return products;
 }
 

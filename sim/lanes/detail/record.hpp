@@ -130,6 +130,7 @@ void Lanes<T>::spread_constants(int lane) {
   copy(from.vr, to.vr, 0, to.vr.size());
   copy(from.vi, to.vi, 0, to.vi.size());
   to.last_moment = T(Traits::get(from.last_moment, lane));
+  to.factored = 0;
   if (shares_) return;  // rows of the lane's own matrix are kept in recorded_rows_
   const auto row = [&](int source) {
     const auto length = static_cast<std::size_t>(sources_);
@@ -175,7 +176,9 @@ void Lanes<T>::evaluate_pending(int lane, int count) {
       signals_.t = minimum(Traits::constant(LaneTraits<Flat>::load(at)), per_sample_.last_moment);
     }
     emfs(per_sample_, x);
-    if (shares_)
+    if (records_whole(lane))
+      shared_.solve_of(lane, er_.data(), ei_.data(), ir_.data(), ii_.data());
+    else if (shares_)
       recorded_rows_[static_cast<std::size_t>(lane)].times(er_.data(), ei_.data(), ir_.data(), ii_.data());
     for (std::size_t k = 0; k < recorded_.size(); ++k) outputs(k, x, run, now);
     run.recorded += now;
@@ -202,7 +205,7 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
   const PlantSlice& p = plants_[i];
   Signals<T>& s = signals_;
   if (shares_)
-    shared_current(k, per_sample_, i, s);
+    shared_current(records_whole(static_cast<int>(lane)) ? i : k, per_sample_, i, s);
   else
     current(per_sample_, i, s);
   const T* c = &per_sample_.c[static_cast<std::size_t>(p.c)];

@@ -23,15 +23,23 @@ class SharedNetwork {
   static constexpr int most_products(std::size_t sources) { return static_cast<int>(sources / 2); }
 
   void assign(const InternalMatrix& own);
-  /// Factors of the network that `own` is of, if they are less work.
+  /// Factors of the network in its place.
   void assign(const BusFactors& factors, const std::vector<Feed>& plants);
+  /// Whether factors are less work than `rows` rows of the matrix.
+  static bool pays(const BusFactors& factors, std::size_t rows, std::size_t sources) {
+    return 2 * (factors.entries() + 2 * factors.buses()) <= rows * sources;
+  }
   [[nodiscard]] bool factored() const { return factors_.buses() > 0; }
-  [[nodiscard]] const InternalMatrix& own() const { return own_; }
+  [[nodiscard]] const BusFactors& factors() const { return factors_; }
   /// Puts a lane's matrix into place: own() + products, or one by itself.
   void set(int lane, const LowRank& products);
   void set(int lane, const InternalMatrix& matrix);
   /// All currents; ir, ii with room for SharedRows::padded of them.
   void solve(const T* er, const T* ei, T* ir, T* ii);
+  /// The same where all lanes of er, ei are of one event, in whose lane are its products.
+  void solve_of(int lane, const T* er, const T* ei, T* ir, T* ii);
+  /// Whether a lane has a matrix by itself.
+  [[nodiscard]] bool whole(int lane) const { return ((whole_ >> lane) & 1U) != 0; }
 
  private:
   using Traits = LaneTraits<T>;
@@ -44,7 +52,7 @@ class SharedNetwork {
   void correct(const T* er, const T* ei, T* ir, T* ii);
   void replace(const T* er, const T* ei, T* ir, T* ii) const;
 
-  InternalMatrix own_;
+  std::size_t sources_ = 0;
   SharedRows rows_;
   BusFactors factors_;        ///< in place of rows_ where there are any
   std::vector<Feed> plants_;  ///< buses as `factors_` places them
@@ -59,15 +67,15 @@ class SharedNetwork {
 
 template <class T>
 void SharedNetwork<T>::assign(const InternalMatrix& own) {
-  own_ = own;
-  std::vector<int> all(own.grounded.size());
+  sources_ = own.grounded.size();
+  std::vector<int> all(sources_);
   std::iota(all.begin(), all.end(), 0);
   rows_.assign(own, all);
 }
 
 template <class T>
 void SharedNetwork<T>::assign(const BusFactors& factors, const std::vector<Feed>& plants) {
-  if (2 * (factors.entries() + 2 * factors.buses()) > plants.size() * plants.size()) return;
+  sources_ = plants.size();
   factors_ = factors;
   plants_ = plants;
   for (Feed& plant : plants_) plant.bus = factors.place(plant.bus);
@@ -77,7 +85,7 @@ void SharedNetwork<T>::assign(const BusFactors& factors, const std::vector<Feed>
 template <class T>
 void SharedNetwork<T>::set(int lane, const LowRank& products) {
   whole_ &= ~(1U << lane);
-  const std::size_t n = own_.grounded.size();
+  const std::size_t n = sources_;
   rank_[static_cast<std::size_t>(lane)] = products.rank;
   most_ = *std::ranges::max_element(rank_);
   while (static_cast<int>(products_.size()) < most_) {
@@ -115,6 +123,25 @@ inline void SharedNetwork<T>::solve(const T* er, const T* ei, T* ir, T* ii) {
   if (whole_ != 0) replace(er, ei, ir, ii);
 }
 
+template <class T>
+inline void SharedNetwork<T>::solve_of(int lane, const T* er, const T* ei, T* ir, T* ii) {
+  solve_own(er, ei, ir, ii);
+  for (int k = 0; k < rank_[static_cast<std::size_t>(lane)]; ++k) {
+    const Product& p = products_[static_cast<std::size_t>(k)];
+    T sr(0.0), si(0.0);
+    for (std::size_t j = 0; j < sources_; ++j) {
+      const T wr(Traits::get(p.wr[j], lane)), wi(Traits::get(p.wi[j], lane));
+      sr = sr + (wr * er[j] - wi * ei[j]);
+      si = si + (wr * ei[j] + wi * er[j]);
+    }
+    for (std::size_t i = 0; i < sources_; ++i) {
+      const T ur(Traits::get(p.ur[i], lane)), ui(Traits::get(p.ui[i], lane));
+      ir[i] = ir[i] + (ur * sr - ui * si);
+      ii[i] = ii[i] + (ur * si + ui * sr);
+    }
+  }
+}
+
 /// Without what the lanes change.
 template <class T>
 inline void SharedNetwork<T>::solve_own(const T* er, const T* ei, T* ir, T* ii) {
@@ -143,7 +170,7 @@ inline void SharedNetwork<T>::solve_own(const T* er, const T* ei, T* ir, T* ii) 
 /// none.
 template <class T>
 inline void SharedNetwork<T>::correct(const T* er, const T* ei, T* ir, T* ii) {
-  const std::size_t n = own_.grounded.size();
+  const std::size_t n = sources_;
   const auto most = static_cast<std::size_t>(most_);
   for (std::size_t k = 0; k < most; ++k) {
     const Product& p = products_[k];
@@ -166,7 +193,7 @@ inline void SharedNetwork<T>::correct(const T* er, const T* ei, T* ir, T* ii) {
 /// The currents of lanes with a matrix of their own.
 template <class T>
 inline void SharedNetwork<T>::replace(const T* er, const T* ei, T* ir, T* ii) const {
-  const std::size_t n = own_.grounded.size();
+  const std::size_t n = sources_;
   const auto whole = Traits::mask(whole_);
   for (std::size_t i = 0; i < n; ++i) {
     T r, x;

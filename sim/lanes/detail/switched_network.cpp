@@ -34,6 +34,26 @@ Eigen::MatrixXcd SwitchedNetwork::unit_currents(const std::vector<int>& buses) c
   return at;
 }
 
+Eigen::VectorXcd SwitchedNetwork::row(int plant) const {
+  const auto k = static_cast<std::size_t>(plant);
+  const Eigen::VectorXcd voltage = transposed_.solve(Eigen::VectorXcd(unit_currents({plants_[k].bus})));
+  Eigen::VectorXcd out(static_cast<Eigen::Index>(plants_.size()));
+  for (std::size_t j = 0; j < plants_.size(); ++j)
+    out[static_cast<Eigen::Index>(j)] =
+        plants_[k].own * ((j == k ? 1.0 : 0.0) - voltage[plants_[j].bus] * plants_[j].source);
+  return out;
+}
+
+Eigen::VectorXcd SwitchedNetwork::column(int plant) const {
+  const auto j = static_cast<std::size_t>(plant);
+  const Eigen::VectorXcd voltage = factors_.solve(Eigen::VectorXcd(unit_currents({plants_[j].bus})));
+  Eigen::VectorXcd out(static_cast<Eigen::Index>(plants_.size()));
+  for (std::size_t k = 0; k < plants_.size(); ++k)
+    out[static_cast<Eigen::Index>(k)] =
+        plants_[k].own * ((j == k ? 1.0 : 0.0) - voltage[plants_[k].bus] * plants_[j].source);
+  return out;
+}
+
 std::optional<SwitchedNetwork::Touched> SwitchedNetwork::touch(const network::Topology& topology,
                                                                int most) const {
   const Sparse added = network::dynamic_admittance(grid_.network, grid_.flow, topology) - own_;

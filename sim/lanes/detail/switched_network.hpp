@@ -22,6 +22,11 @@ class SwitchedNetwork {
   /// buses are touched, or what is left hangs together too loosely for it: InternalNetwork has the matrix.
   [[nodiscard]] std::optional<LowRank> change(const network::Topology& topology, int most) const;
 
+  /// Whether the network could be factored: then row and column give those of the reduced matrix without
+  /// switching.
+  [[nodiscard]] bool sound() const { return sound_; }
+  [[nodiscard]] Eigen::VectorXcd row(int plant) const;
+  [[nodiscard]] Eigen::VectorXcd column(int plant) const;
   [[nodiscard]] const std::vector<Feed>& plants() const { return plants_; }
   /// Bus admittances without any switching, with the machines' own.
   [[nodiscard]] const Sparse& closed() const { return closed_; }

@@ -149,7 +149,7 @@ TEST_P(SharedNetworkForms, EveryLaneHasTheCurrentsOfItsOwnMatrix) {
   if (GetParam()) network.assign(factors, switched.plants());
   EXPECT_EQ(network.factored(), GetParam());
   const auto set = [&](int lane, const InternalMatrix& m) {
-    if (const auto few = difference(m, network.own(), kMost))
+    if (const auto few = difference(m, matrix({}), kMost))
       network.set(lane, *few);
     else
       network.set(lane, m);
@@ -168,6 +168,33 @@ TEST_P(SharedNetworkForms, EveryLaneHasTheCurrentsOfItsOwnMatrix) {
       EXPECT_NEAR(ir[i][l], sum.real(), 1e-12) << "lane " << l;
       EXPECT_NEAR(ii[i][l], sum.imag(), 1e-12) << "lane " << l;
     }
+  }
+  for (int of = 0; of < 8; ++of) {  // all lanes samples of one event
+    if (network.whole(of)) continue;
+    network.solve_of(of, er.data(), ei.data(), ir.data(), ii.data());
+    const InternalMatrix& m = lanes[static_cast<std::size_t>(of)];
+    for (int l = 0; l < 8; ++l)
+      for (int i = 0; i < kMachines; ++i) {
+        Complex sum;
+        const Eigen::VectorXcd row = m.row(i);
+        for (int j = 0; j < kMachines; ++j)
+          sum += row[j] * Complex(er[static_cast<std::size_t>(j)][l], ei[static_cast<std::size_t>(j)][l]);
+        EXPECT_NEAR(ir[static_cast<std::size_t>(i)][l], sum.real(), 1e-12) << "event of lane " << of;
+        EXPECT_NEAR(ii[static_cast<std::size_t>(i)][l], sum.imag(), 1e-12) << "event of lane " << of;
+      }
+  }
+}
+
+TEST(SwitchedNetwork, GivesRowsAndColumnsOfTheReducedMatrix) {
+  grid::Grid shifted = grid();  // no symmetric matrix
+  shifted.network.branches[2].shift = 0.3;
+  const std::vector<double> r(kMachines, 0.002), x(kMachines, 0.25);
+  const SwitchedNetwork switched(shifted, r, x);
+  ASSERT_TRUE(switched.sound());
+  const InternalMatrix own = InternalNetwork(shifted).matrix({}, r, x);
+  for (const int k : {0, 1, 17}) {
+    EXPECT_LE((switched.row(k) - own.row(k)).cwiseAbs().maxCoeff(), 1e-12);
+    EXPECT_LE((switched.column(k) - own.column(k)).cwiseAbs().maxCoeff(), 1e-12);
   }
 }
 
