@@ -9,6 +9,7 @@
 #include "base/problem.hpp"
 #include "base/stop_signal.hpp"
 #include "jobs/command_line.hpp"
+#include "jobs/kept_experiment.hpp"
 #include "mpi/draw/simulated_shards.hpp"
 #include "train/run/run.hpp"
 #include "train/runtime/blas_kernels.hpp"
@@ -16,7 +17,7 @@
 namespace swingbank {
 
 struct TrainingOptions {
-  std::string dataset, training_rows, experiment, preset = "quick", network, out, print;
+  std::string dataset, training_rows, experiment, preset = "quick", network, out, print, keep;
   std::uint64_t seed = 1;
   std::size_t epochs = 0;
   int threads = 0;
@@ -63,6 +64,9 @@ struct TrainingOptions {
     line.add("--print", print,
              fmt::format("print one entry of the experiment and end: {}",
                          fmt::join(train::loop::kPrintable, ", ")));
+    line.add("--keep", keep,
+             "copy the experiment, its datasets' configs and all that these name into this folder, print the "
+             "copy's place and end");
   }
 
   /// Throws InputError if an option that a run needs is missing.
@@ -140,6 +144,11 @@ int training_main(int argc, char** argv, jobs::CommandLine& line, TrainingOption
     if (!options.print.empty()) {
       fmt::print("{}\n",
                  train::loop::read_experiment(options.experiment).print(options.preset, options.print));
+      return 0;
+    }
+    if (!options.keep.empty()) {
+      train::loop::read_experiment(options.experiment);
+      fmt::print("{}\n", jobs::keep_experiment(options.experiment, options.keep).string());
       return 0;
     }
     train::runtime::use_best_blas_kernels(argv);

@@ -80,6 +80,12 @@ keep_software() {
   export SWINGBANK_BUILD
 }
 
+# The experiment and every file that it names as they are now, for the same reason.
+keep_configs() {
+  rm -rf "$log/configs"
+  SWINGBANK_EXPERIMENT=$("$SWINGBANK_BUILD/bin/swingbank" train --experiment "$SWINGBANK_EXPERIMENT" --keep "$log/configs")
+}
+
 # Ids of the earlier submission, with commas; nothing where there was none.
 earlier_jobs() { if [[ -s $log/jobs ]]; then cut -d' ' -f2 "$log/jobs" | paste -sd,; fi; }
 # Those of them that wait or run.
@@ -125,6 +131,7 @@ if [[ $action == submit ]]; then
   cp "$SWINGBANK_SITE" "$log/site.conf" # an edit of the original changes no job that waits
   SWINGBANK_SITE=$log/site.conf
   keep_software
+  keep_configs
   : >"$log/jobs"
 fi
 

@@ -17,19 +17,6 @@ namespace {
 
 constexpr const char* kCardFormat = "swingbank-card-1";
 
-/// Replaces a name as it stands between quotes. False if it stands nowhere so.
-bool replace_name(std::string& text, const std::string& from, const std::string& to) {
-  bool found = false;
-  for (const char quote : {'"', '\''}) {
-    const std::string old = quote + from + quote, fresh = quote + to + quote;
-    for (std::size_t at = 0; (at = text.find(old, at)) != std::string::npos; at += fresh.size()) {
-      text.replace(at, old.size(), fresh);
-      found = true;
-    }
-  }
-  return found;
-}
-
 /// The files that a config names, as it names them, with the places that were read.
 std::vector<std::pair<std::string, fs::path>> named_files(const DatasetConfig& config) {
   Config c(config.file);
@@ -110,6 +97,18 @@ Overrides overrides_of(const nlohmann::json& j) {
 }
 
 }  // namespace
+
+bool replace_name(std::string& text, const std::string& from, const std::string& to) {
+  bool found = false;
+  for (const char quote : {'"', '\''}) {
+    const std::string old = quote + from + quote, fresh = quote + to + quote;
+    for (std::size_t at = 0; (at = text.find(old, at)) != std::string::npos; at += fresh.size()) {
+      text.replace(at, old.size(), fresh);
+      found = true;
+    }
+  }
+  return found;
+}
 
 Card card_of(const DatasetConfig& config, const std::string& kernel,
              const std::map<std::string, std::string>& made_by) {

@@ -21,6 +21,8 @@ struct Card {
   std::map<std::string, std::string> made_by;  ///< software, compiler, MPI, HDF5, host, processor: by name
 };
 
+/// Replaces a name of a file wherever it stands between quotes. False if it stands nowhere so.
+bool replace_name(std::string& text, const std::string& from, const std::string& to);
 /// Throws InputError if a file cannot be read, or if the config names one in a way that this cannot replace.
 Card card_of(const DatasetConfig& config, const std::string& kernel,
              const std::map<std::string, std::string>& made_by);

@@ -41,6 +41,17 @@ cmp "$site" "$work/out/log/site.conf" || fail "the site file as it was is not ke
 kept=$work/out/log/software
 (($(grep -c " $kept/slurm/[a-z]*.sbatch$" "$STUB/sbatch") == 4)) || fail "the jobs do not run what was kept: $(cat "$STUB/sbatch")"
 cmp "$SWINGBANK_BIN/swingbank-train" "$kept/build/bin/swingbank-train" || fail "the programs as they were are not kept"
+copy=$work/out/log/configs
+sed 's/^dataset = .*/dataset = ""/' "$work/tiny.toml" >"$work/expected"
+sed 's/^dataset = .*/dataset = ""/' "$copy/tiny.toml" | cmp "$work/expected" || fail "the experiment as it was is not kept"
+echo 'draws = 0' >>"$work/tiny_data.toml"
+SWINGBANK_EXPERIMENT=$copy/tiny.toml bash "$kept/jobs/run_experiment.sh" --stage check || fail "the copy cannot be read"
+again=$("$swingbank" train --experiment "$copy/tiny.toml" --keep "$work/again") || fail "the copy does not stand alone"
+sed -i '$d' "$work/tiny_data.toml"
+diff -r "$copy" "$(dirname "$again")" || fail "a copy of the copy differs"
+for kind in raw dyr; do
+  cmp "$copy"/dataset/*/"ieee39_dataset_gencls.$kind" "$SWINGBANK_SOURCE/configs/networks/ieee39_dataset_gencls.$kind" || fail "no $kind"
+done
 [[ -s $kept/jobs/run_experiment.sh && -s $kept/slurm/job.bash && -s $work/out/log/fold.options ]] || fail "the scripts are not kept"
 printf '103_1\n104\n' >"$STUB/queue"
 refuses "submitted twice" "they wait or run: 103_1 104" submit

@@ -1,0 +1,39 @@
+#pragma once
+// An experiment as it is now: its file and every file that it names, copied into a folder, so that an edit of
+// the originals changes no job that waits.
+#include <filesystem>
+#include <string>
+
+#include "base/config.hpp"
+#include "base/durable.hpp"
+#include "base/problem.hpp"
+#include "mpi/draw/card.hpp"
+
+namespace swingbank::jobs {
+
+/// Returns the copy's place. A dataset drawn from the copy is the one of the original: its hash is of values
+/// and contents, not of names. Throws InputError with what is wrong in a config of a dataset, and if a file
+/// cannot be read or written.
+inline std::filesystem::path keep_experiment(const std::filesystem::path& file,
+                                             const std::filesystem::path& folder) {
+  std::string text = read_text(file);
+  Config c(file);
+  std::string first;  // both may be one file
+  for (const char* key : {"dataset", "training_dataset"}) {
+    if (!c.has(key)) continue;
+    const auto written = c.require<std::string>(key);
+    if (written == first) continue;
+    first = written;
+    const mpi::draw::DatasetConfig config = mpi::draw::read_dataset_config(c.file(key));
+    const auto kept = mpi::draw::unpack(mpi::draw::card_of(config, {}, {}), folder / key);
+    if (!mpi::draw::replace_name(text, written, (std::filesystem::path(key) / kept.filename()).string()))
+      throw InputError({"a name that cannot be replaced", file.string(),
+                        "'" + written + "' stands there with escapes",
+                        "write the name between quotes as it is"});
+  }
+  make_folder(folder);
+  write_text(folder / file.filename(), text);
+  return folder / file.filename();
+}
+
+}  // namespace swingbank::jobs
