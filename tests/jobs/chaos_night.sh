@@ -5,6 +5,7 @@
 # shellcheck disable=SC2154,SC2034 # what lib.bash sets; what tiny_experiment reads
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
+source "$(dirname "${BASH_SOURCE[0]}")/same_training.bash"
 kills=${SWINGBANK_KILLS:-40}
 export OMP_NUM_THREADS=1
 TINY_DRAWS=120 TINY_EPOCHS=3
@@ -19,26 +20,6 @@ command() {
     *) run=("$swingbank" cross-validate "$work/data" --experiment "$work/tiny.toml" --preset quick --processes 2 --out "$2") ;;
   esac
 }
-# What must be the same: all but the time it took.
-essence() {
-  (cd "$1" && find . -type f ! -name '*.lock' ! -name .lock | sort | while IFS= read -r file; do
-    case $file in
-      *.json) printf '%s ' "$file"; grep -vE '"(processor_seconds|seconds|seconds_per_epoch)"' "$file" | sha256sum ;;
-      *.network) printf '%s ' "$file"; /usr/bin/python3 "$work/network.py" "$file" ;;
-      *) sha256sum "$file" ;;
-    esac
-  done)
-}
-# A network's header says how long the training took; what follows is its weights and, last, the sum of it all.
-cat >"$work/network.py" <<'PYTHON'
-import hashlib, json, struct, sys
-data = open(sys.argv[1], "rb").read()
-at = data.index(b"\n") + 1
-end = at + 8 + struct.unpack("<Q", data[at : at + 8])[0]
-header = json.loads(data[at + 8 : end])
-del header["training"]["seconds"]
-print(hashlib.sha256(json.dumps(header).encode() + data[end:-8]).hexdigest())
-PYTHON
 declare -A lasts tried
 for kind in databank train folds; do
   mkdir "$work/$kind"

@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# One call fails in a training, at any place from the first to the last: of its checkpoint, network and result files, of the
+# dataset that it reads, of its memory. SWINGBANK_INJECTIONS=300 bash tests/jobs/failing_trainings_night.sh  (90 by default)
+# It ends in time, whole with the same result or with the reason that was injected, and one more run ends in the same result.
+# shellcheck disable=SC2154,SC2034 # what lib.bash and failing_calls.bash set; what tiny_experiment reads
+source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
+source "$(dirname "${BASH_SOURCE[0]}")/same_training.bash"
+source "$(dirname "${BASH_SOURCE[0]}")/../mpi/failing_calls.bash"
+injections=${SWINGBANK_INJECTIONS:-90}
+export OMP_NUM_THREADS=1
+TINY_DRAWS=60
+tiny_experiment "$work"
+sed -e '/^folds/d' -e 's/^split = .*/split = "by-databank-point"/' -e 's/^table = .*/table = "IV"/' "$work/tiny.toml" >"$work/split.toml"
+"$swingbank" generate "$work/tiny_data.toml" --out "$work/data" --progress none >/dev/null 2>&1
+
+# command KIND: sets `run`; the programs themselves, so that no call is counted twice
+command() {
+  case $1 in
+    train) run=("$SWINGBANK_BIN/swingbank-train" "$work/data" --experiment "$work/split.toml") ;;
+    fold) run=("$SWINGBANK_BIN/swingbank-cross-validate" "$work/data" --experiment "$work/tiny.toml" --fold 30) ;;
+    folds) run=("$SWINGBANK_BIN/swingbank-cross-validate" "$work/data" --experiment "$work/tiny.toml" --processes 2) ;;
+  esac
+  run+=(--out "$work/out")
+}
+# Allocations before main, and of LibTorch's beginning: there nobody can say a word.
+read -r _ early < <(counts 0 "$work/none" "$SWINGBANK_BIN/swingbank-train" --experiment "$work/split.toml" --print table)
+declare -A calls
+for kind in train fold folds; do
+  command $kind
+  for under in out data; do
+    rm -rf "$work/out"
+    read -r calls[$kind$under] calls[${kind}memory] < <(counts 0 "$work/$under" "${run[@]}")
+  done
+  essence "$work/out" >"$work/$kind.whole"
+  if [ $kind = folds ]; then calls[foldsout]=${calls[foldout]}; fi # its children leave without a count
+  echo "$kind: ${calls[${kind}out]} calls on its own files, ${calls[${kind}data]} on the dataset's, ${calls[${kind}memory]} allocations"
+done
+kinds=(train fold folds) unders=(out out data) errors=(5 28 2 4 122)
+for ((i = ${SWINGBANK_FROM:-0}; i < injections; i += ${SWINGBANK_STRIDE:-1})); do
+  kind=${kinds[i % 3]} under=${unders[i / 3 % 3]} error=${errors[i / 9 % 5]}
+  first=0 of=${calls[$kind$under]}
+  if ((i / 3 % 6 == 4)); then error=memory first=$early of=$((calls[${kind}memory] - early)); fi
+  at=$((first + 1 + of * (i * 618033 % 1000000) / 1000000))
+  command "$kind"
+  rm -rf "$work/out"
+  one_failure "$error" $at 0 "$work/$under" "${run[@]}"
+  case $ended in
+    whole) essence "$work/out" | diff "$work/$kind.whole" - >"$work/log" || wrong "another result after error $error in call $at of $kind" ;;
+    told)
+      cp "$work/log" "$work/before"
+      "${run[@]}" >"$work/log" 2>&1 || wrong "the next run after error $error in call $at of $kind: $(cat "$work/before")"
+      essence "$work/out" | diff "$work/$kind.whole" - >"$work/log" || wrong "another result of the next run after error $error in call $at of $kind"
+      ;;
+  esac
+done
+tell_failures

@@ -1,0 +1,23 @@
+# To be sourced after lib.bash: what must be the same of two trainings, whatever happened to them.
+# shellcheck disable=SC2154 # what lib.bash sets
+
+# A network's header says how long the training took; what follows is its weights and, last, the sum of it all.
+cat >"$work/network.py" <<'PYTHON'
+import hashlib, json, struct, sys
+data = open(sys.argv[1], "rb").read()
+at = data.index(b"\n") + 1
+end = at + 8 + struct.unpack("<Q", data[at : at + 8])[0]
+header = json.loads(data[at + 8 : end])
+del header["training"]["seconds"]
+print(hashlib.sha256(json.dumps(header).encode() + data[end:-8]).hexdigest())
+PYTHON
+# essence FOLDER: a line per file, of all but the time it took
+essence() {
+  (cd "$1" && find . -type f ! -name '*.lock' ! -name .lock | sort | while IFS= read -r file; do
+    case $file in
+      *.json) printf '%s ' "$file"; grep -vE '"(processor_seconds|seconds|seconds_per_epoch)"' "$file" | sha256sum ;;
+      *.network) printf '%s ' "$file"; /usr/bin/python3 "$work/network.py" "$file" ;;
+      *) sha256sum "$file" ;;
+    esac
+  done)
+}
