@@ -131,12 +131,30 @@ std::vector<T> repeated(std::vector<T> list) {
   return found;
 }
 
+CaseConfig read_mend(Config& c) {
+  CaseConfig mend;
+  mend.raw_version = static_cast<int>(c.optional<std::int64_t>("raw_version", 0, {0.0, 35.0, ""}));
+  mend.net_generators = c.optional<bool>("net_generators", false);
+  mend.widen_limits = c.optional<bool>("widen_limits", false);
+  mend.start_from_file = c.choice("start", {"solved", "file"}, "solved") == "file";
+  mend.reactive_limits = c.choice("q_limits", {"enforce", "ignore"}, "enforce") == "enforce";
+  mend.drop_refused = c.optional<bool>("drop_refused", false);
+  mend.complete_records = c.choice("complete_records", {"no", "zero", "standard"}, "no");
+  mend.devices = c.choice("devices", {"checked", "file", "none"}, "checked");
+  return mend;
+}
+
 void read_vary(Config& c, DatasetConfig& d) {
   d.vary = c.choice("vary.who", {"one", "all"}) == "all" ? Vary::all : Vary::one;
   d.generators = numbers(c.require<std::vector<std::int64_t>>("vary.generators", kBusNumber));
   if (c.has("vary.generators") && d.generators.empty())
     c.problem("vary.generators", "no generator", "a dataset varies at least one",
               "list bus numbers of generators");
+  d.ids = c.optional<std::vector<std::string>>("vary.ids", {});
+  if (!d.ids.empty() && d.ids.size() != d.generators.size())
+    c.problem("vary.ids", fmt::format("{} ids for {} generators", d.ids.size(), d.generators.size()),
+              "each names the unit at the bus of the same place in vary.generators",
+              "give one for each, \"\" where the bus has one unit");
   for (const int number : repeated(d.generators))
     c.problem("vary.generators", fmt::format("generator {} twice", number), "each varies once",
               "name it once");
@@ -295,6 +313,14 @@ std::string DatasetConfig::canonical() const {
   if (!models.ignore.empty()) line("ignore_models", models.ignore);
   for (const auto& [from, to] : models.map) line("map_models", from + "=" + to);
   if (frequency_hz) line("frequency_hz", *frequency_hz);
+  if (mend.raw_version != 0) line("raw_version", mend.raw_version);
+  if (mend.net_generators) line("net_generators", true);
+  if (mend.widen_limits) line("widen_limits", true);
+  if (mend.start_from_file) line("start", "file");
+  if (!mend.reactive_limits) line("q_limits", "ignore");
+  if (mend.drop_refused) line("drop_refused", true);
+  if (mend.complete_records != "no") line("complete_records", mend.complete_records);
+  if (mend.devices != "checked") line("devices", mend.devices);
   for (const auto& a : attachments) line("attach", written(a));
   line("convention", psse ? "psse" : "andes");
   line("draws", draws);
@@ -302,6 +328,7 @@ std::string DatasetConfig::canonical() const {
   line("seed", seed);
   line("vary.who", vary == Vary::all ? "all" : "one");
   line("vary.generators", generators);
+  if (!ids.empty()) line("vary.ids", ids);
   line("vary.model", model);
   for (const auto& b : box)
     line((b.effect == nullptr ? "vary.box." : "vary.effects.") + name_of(b),
@@ -411,6 +438,7 @@ DatasetConfig read_dataset_config(const fs::path& file, const Overrides& overrid
   d.dyr = c.file("dyr");
   d.models = sim::formats::read_dyr_options(c, "");
   if (c.has("frequency_hz")) d.frequency_hz = c.require<double>("frequency_hz", {1.0, 1000.0, "Hz"});
+  d.mend = read_mend(c);
   d.psse = c.choice("convention", {"psse", "andes"}) != "andes";
   d.draws = static_cast<std::uint64_t>(c.require<std::int64_t>("draws", kCount));
   const auto megabytes = read_shard_size(c, d);

@@ -66,6 +66,14 @@ struct OperatingPointConfig {
   [[nodiscard]] bool draws_bases() const { return loading_high > 0.0; }
 };
 
+/// What is done to a case that is not whole, as the options of the same names of `simulate` say.
+struct CaseConfig {
+  int raw_version = 0;
+  bool net_generators = false, widen_limits = false;
+  bool start_from_file = false, reactive_limits = true, drop_refused = false;
+  std::string complete_records = "no", devices = "checked";
+};
+
 /// What the command line replaces.
 struct Overrides {
   std::optional<std::uint64_t> draws = {}, seed = {}, draws_per_shard = {}, faults_per_point = {};
@@ -80,9 +88,11 @@ struct DatasetConfig {
   bool psse = true;                    ///< convention, else andes
   sim::formats::DyrOptions models;     ///< .dyr models left out or read as others
   std::optional<double> frequency_hz;  ///< what a MATPOWER case needs
+  CaseConfig mend;                     ///< of raw and dyr
   Vary vary = Vary::one;
-  std::vector<int> generators;  ///< bus numbers of the machines that vary
-  std::string model;            ///< their machine model
+  std::vector<int> generators;   ///< bus numbers of the machines that vary
+  std::vector<std::string> ids;  ///< of the units at these buses; "": the only one there. Empty: all so
+  std::string model;             ///< their machine model
   /// The machine's in record order, then those of other effects in order of slot, name and record.
   std::vector<Box> box;
   std::vector<std::filesystem::path> laws;          ///< law files; read with the config

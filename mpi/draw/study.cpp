@@ -9,30 +9,60 @@
 #include "mpi/draw/dataset_config.hpp"
 #include "mpi/draw/detail/plant_blocks.hpp"
 #include "sim/grid/attach.hpp"
+#include "sim/grid/limits.hpp"
 
 namespace swingbank::mpi::draw {
 
 namespace fs = std::filesystem;
 
+namespace {
+sim::grid::CaseOptions case_options(const DatasetConfig& config) {
+  using sim::grid::Lacking;
+  using sim::network::StandIn;
+  const CaseConfig& mend = config.mend;
+  sim::grid::CaseOptions options;
+  options.dyr = config.models;
+  options.raw = {config.frequency_hz, mend.raw_version};
+  options.raw.devices = mend.devices == "none"   ? StandIn::none
+                        : mend.devices == "file" ? StandIn::file
+                                                 : StandIn::checked;
+  options.net_generators = mend.net_generators;
+  options.complete_records = mend.complete_records == "zero"       ? Lacking::zero
+                             : mend.complete_records == "standard" ? Lacking::standard
+                                                                   : Lacking::refused;
+  options.drop_refused = mend.drop_refused;
+  options.start_from_file = mend.start_from_file;
+  options.flow.reactive_limits = mend.reactive_limits;
+  return options;
+}
+}  // namespace
+
 Study load_study(const DatasetConfig& config) {
   Study s{config, {}, {}, {}};
   s.grid = sim::grid::load_grid(config.raw, config.dyr,
                                 config.psse ? sim::Conventions::psse() : sim::Conventions::andes(),
-                                config.models, config.frequency_hz);
+                                case_options(config));
   const auto& network = s.grid.network;
   s.grid.conventions.frequency = network.frequency;
   s.grid.library = config.library;
   Problems problems;
   for (const auto& a : config.attachments) sim::grid::attach(s.grid, a, config.file.string(), problems);
-  for (int number : config.generators) {
-    const int bus = network.bus_index(number);
-    const auto here = [&](const sim::plant::Plant& p) { return bus >= 0 && p.bus == bus; };
+  if (config.mend.widen_limits) sim::grid::settle_limits(s.grid, true);
+  for (std::size_t g = 0; g < config.generators.size(); ++g) {
+    const int number = config.generators[g], bus = network.bus_index(number);
+    const std::string id = g < config.ids.size() ? config.ids[g] : "";
+    const auto here = [&](const sim::plant::Plant& p) {
+      return bus >= 0 && p.bus == bus &&
+             (id.empty() || network.generators[static_cast<std::size_t>(p.generator)].id == id);
+    };
     const auto count = std::ranges::count_if(s.grid.plants, here);
     const auto plant = std::ranges::find_if(s.grid.plants, here);
     if (count != 1)
       problems.add(fmt::format("generator {} of vary.generators", number), config.file.string(),
-                   fmt::format("{} has {} generators in service at this bus", config.raw.string(), count),
-                   "name buses with one generator");
+                   fmt::format("{} has {} generators {}in service at this bus", config.raw.string(), count,
+                               id.empty() ? "" : "'" + id + "' "),
+                   id.empty() ? "name buses with one generator, or the unit in vary.ids"
+                              : "correct '" + id + "' in vary.ids");
     else if (plant->machine.effect != &config.effect())
       problems.add(fmt::format("generator {} of vary.generators", number), config.file.string(),
                    fmt::format("its machine in {} is {}, not {}", config.dyr.string(),

@@ -57,6 +57,28 @@ TEST(DatasetConfigFile, EveryConfigOfTheProjectLoads) {
   EXPECT_GE(count, 3);
 }
 
+/// What is done to a case is part of the hash only where it is asked for, and reaches the grid.
+TEST(DatasetConfigFile, ACaseThatIsNotWholeIsMendedAsAsked) {
+  const Changed files;
+  const std::string head = "convention = ";
+  EXPECT_EQ(files.read().canonical().find("net_generators"), std::string::npos);
+  const DatasetConfig d = files.read(
+      head, "net_generators = true\nwiden_limits = true\nstart = \"file\"\nq_limits = \"ignore\"\n" + head);
+  for (const char* line :
+       {"net_generators = true\n", "widen_limits = true\n", "start = file\n", "q_limits = ignore\n"})
+    EXPECT_THAT(d.canonical(), HasSubstr(line));
+  EXPECT_THAT(files.refusal("generators = [3]", "generators = [3]\nids = [\"2\"]"),
+              HasSubstr("correct '2' in vary.ids"));
+  EXPECT_THAT(files.refusal("generators = [3]", "generators = [3]\nids = [\"1\", \"\"]"),
+              HasSubstr("2 ids for 1"));
+  const std::string dyr = (files.path / "networks/ieee14_dataset_genrou.dyr").string();
+  const std::string all = read_text(dyr);
+  write_text(dyr, all.substr(0, all.rfind('\n', all.size() - 2) + 1));  // the last machine has no model
+  EXPECT_THAT(files.refusal(head, head), HasSubstr("no machine model"));
+  const Study netted = load_study(files.read(head, "net_generators = true\n" + head));
+  EXPECT_EQ(netted.grid.plants.size(), 4U);
+}
+
 TEST(DatasetConfigFile, ValuesArriveWhereTheyBelong) {
   const Changed folder;
   const Study s = load_study(folder.read());
