@@ -35,6 +35,8 @@ int run(const std::string& model_file, const std::vector<std::string>& record_fi
   reading.apply(model);
   const check::RecordSet set = jobs::read_events(record_files, model, reading.preparing(model_file));
   options.progress = jobs::progress_line(jobs::kDiagnoseCourse);
+  if (!jobs::quiet)
+    options.told = [](const std::string& sentence) { fmt::print(stderr, "\n{}\n", sentence); };
   const diagnose::Diagnosis d = diagnose::diagnose(model, set.records, options);
   const bool adequate = d.verdict == diagnose::Verdict::adequate;
   compare::CompareOptions playing;

@@ -10,6 +10,7 @@
 #include "base/in_parallel.hpp"
 #include "validate/fit/noise.hpp"
 #include "validate/fit/slopes.hpp"
+#include "validate/hypothesis/grow.hpp"
 #include "validate/hypothesis/judge.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
@@ -223,14 +224,15 @@ hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std
                         " in place of ...\" with the name of what stands there, or " + remedy});
 }
 
-Addition add_effect(const plant::PlantModel& model, const hypothesis::Hypothesis& hypothesis,
+Addition add_effect(const plant::PlantModel& model, const hypothesis::Hypothesis& asked,
                     std::vector<record::Record> records, const AddOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   Bench bench(model, std::move(records), options.calibrate);
   auto before = bench.each(model.under_test(), "events with the model as it is");
   const auto states = bench.states_of(before);
   Addition a;
-  a.hypothesis = hypothesis;
+  a.hypothesis = asked;
+  hypothesis::Hypothesis& hypothesis = a.hypothesis;
   a.model = model;
   a.without = fit_without(model, bench, states, options.calibrate.spread);
   if (!a.without.failed.empty())
@@ -242,6 +244,7 @@ Addition add_effect(const plant::PlantModel& model, const hypothesis::Hypothesis
     a.without = go_on(model.under_test(), bench, fit::free_parameters(model.plant, spread), a.without);
     a.with = go_on(hypothesis.under_test(), bench, hypothesis::free_of(hypothesis, spread), a.with);
   }
+  hypothesis::grow(bench.seen(), options.calibrate.spread, hypothesis, a.with);
   a.own = static_cast<int>(hypothesis.free.size());
   a.parameters = a.with.parameters;
   // The effect's parameters stand last in a fit.

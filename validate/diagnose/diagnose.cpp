@@ -12,6 +12,7 @@
 #include "base/in_parallel.hpp"
 #include "validate/diagnose/detail/verdict.hpp"
 #include "validate/fit/noise.hpp"
+#include "validate/hypothesis/grow.hpp"
 #include "validate/hypothesis/search.hpp"
 
 namespace swingbank::validate::diagnose {
@@ -47,19 +48,23 @@ class Diagnoser {
     fit::FitOptions from;
     for (int round = 0;; ++round) {
       fit_base(from);
+      tell(first_sentence(result_, options_.adequate));
+      infer_inputs();
+      tell(side_sentence(result_));
       const hypothesis::Stage stage = model_stage();
       result_.ranked = hypothesis::try_hypotheses(
           stage, hypothesis::all_hypotheses(stage.under_test(), stage.library, stage.component()),
           options_.progress);
+      tell(leading_sentence(result_));
       if (round == kBases || !better_base(from)) break;
       result_.events = prepared;  // the noise was measured through the worse base
     }
     try_replacements();
-    measure_noise_again();
+    const bool again = measure_noise_again();
     passed_.emplace(sim::plant::PlantUnderTest{result_.base.plant, model_.conventions}, result_.events,
                     fit::voltage_noise(result_.base, result_.events).variance);
     held_out_base_ = hypothesis::hold_out(trial(), model_.under_test(), {}, result_.base);
-    infer_inputs();
+    if (again) infer_inputs(true);
     search();
     settle({model_, trial(), result_.base, held_out_base_, result_.torque, result_.field, threads_},
            options_.progress, result_);
@@ -111,11 +116,11 @@ class Diagnoser {
   }
   /// A base that fits badly hides the noise. The noise is then measured through the leading extension, and
   /// all fits go on with it. A hypothesis that does not come along is dropped, because its cost is in units
-  /// of the former noise.
-  void measure_noise_again() {
-    if (result_.ranked.empty() || result_.base.misfit() < thresholds::noise.measurable) return;
+  /// of the former noise. Returns whether anything was measured.
+  bool measure_noise_again() {
+    if (result_.ranked.empty() || result_.base.misfit() < thresholds::noise.measurable) return false;
     const hypothesis::Judgement& best = result_.ranked.front();
-    if (!best.fitted || best.fit.misfit() >= thresholds::noise.measurable) return;
+    if (!best.fitted || best.fit.misfit() >= thresholds::noise.measurable) return false;
     result_.events = result_.events.with(
         fit::measure_noise_through(best.fit, best.hypothesis.conventions, result_.events));
     const auto go_on = [&](const sim::plant::PlantUnderTest& tested,
@@ -134,15 +139,19 @@ class Diagnoser {
     });
     std::erase_if(result_.ranked, [](const hypothesis::Judgement& j) { return !j.fit.failed.empty(); });
     std::ranges::stable_sort(result_.ranked, std::greater<>(), &hypothesis::Judgement::gain);
+    return true;
   }
-  void infer_inputs() {
+  /// Infers both inputs; `again`: from where they were, because only the noise was measured again.
+  void infer_inputs(bool again = false) {
+    const auto free = fit::free_parameters(model_.plant, options_.spread);
     fit::FitOptions from;  // parameters that are bent far out of shape are no start
-    if (result_.base.misfit() < thresholds::noise.measurable)
-      from = fit::continued({}, result_.base, fit::free_parameters(model_.plant, options_.spread));
+    if (result_.base.misfit() < thresholds::noise.measurable) from = fit::continued({}, result_.base, free);
     const auto infer = [&](std::size_t i) {
       hypothesis::MissingInput& m = i == 0 ? result_.torque : result_.field;
+      const bool known = again && m.fit.failed.empty();
       m = hypothesis::infer_input(i == 0 ? fit::InputKind::torque : fit::InputKind::field,
-                                  model_.under_test(), result_.events, options_.spread, from);
+                                  model_.under_test(), result_.events, options_.spread,
+                                  known ? fit::continued({}, m.fit, free) : from);
     };
     in_parallel(
         2, infer, [&](int done) { report("missing input", done, 2); }, threads_);
@@ -319,7 +328,8 @@ class Diagnoser {
     });
   }
 
-  /// Rivals of the best in its slot are fitted from further starts, if they come near it at all.
+  /// Rivals of the best in its slot are fitted from further starts, and with what their standard values leave
+  /// off, if they come near it at all.
   void give_rivals_a_chance(std::vector<hypothesis::Judgement>& tried) const {
     const int slot = tried.front().hypothesis.slot;
     if (slot < 0) return;
@@ -333,6 +343,7 @@ class Diagnoser {
         std::ranges::max_element(tried.begin(), rivals, {}, &hypothesis::Judgement::gain)->fit;
     each({tried.begin(), rivals}, "further starts", [&](hypothesis::Judgement& j) {
       hypothesis::try_further(stage, leader, j);
+      hypothesis::grow(result_.events, options_.spread, j.hypothesis, j.fit);
       j.gain = fit::gain(result_.base, j.fit, fit::criterion);
     });
     std::ranges::stable_sort(tried, std::greater<>(), &hypothesis::Judgement::gain);
@@ -354,6 +365,9 @@ class Diagnoser {
             passed_ ? &*passed_ : nullptr};
   }
 
+  void tell(const std::string& sentence) const {
+    if (options_.told) options_.told(sentence);
+  }
   void report(const std::string& what, int done, int total) const {
     if (options_.progress) options_.progress(what, done, total);
   }

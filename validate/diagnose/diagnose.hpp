@@ -48,6 +48,9 @@ struct DiagnoseOptions {
   int firsts = 2;   ///< where no hypothesis holds alone, a second one is tried beside so many, in turn
   /// Called with what is done, done and total; may be empty.
   std::function<void(const std::string& what, int done, int total)> progress;
+  /// Called with a sentence as soon as something is known that the verdict will rest on: what is left and on
+  /// which side, then who leads. May be empty.
+  std::function<void(const std::string& sentence)> told = {};
 };
 
 /// Throws InputError as its parts do; needs at least two events to judge.

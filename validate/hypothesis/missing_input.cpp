@@ -48,8 +48,11 @@ MissingInput infer_input(fit::InputKind kind, const sim::plant::PlantUnderTest& 
       options.start.push_back(state);
     }
   for (std::size_t e = 0; e < events.size(); ++e) {
-    options.start[e].input.t = knots_of(events[e]);
-    options.start[e].input.value.assign(options.start[e].input.t.size(), 0.0);
+    auto& input = options.start[e].input;
+    const auto knots = knots_of(events[e]);
+    if (input.t == knots) continue;  // it goes on from there
+    input.t = knots;
+    input.value.assign(knots.size(), 0.0);
   }
   found.fit = fit::fit(tested, events, fit::free_parameters(tested.plant, spread), options);
   return found;

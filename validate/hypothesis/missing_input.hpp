@@ -19,7 +19,8 @@ struct MissingInput {
   }
 };
 
-/// Infers the input while the plant's parameters are free within `spread`.
+/// Infers the input while the plant's parameters are free within `spread`. It goes on from the inputs of
+/// `start` where these have the same knots.
 MissingInput infer_input(fit::InputKind kind, const sim::plant::PlantUnderTest& tested,
                          const event::WhitenedEvents& events, double spread, const fit::FitOptions& start);
 

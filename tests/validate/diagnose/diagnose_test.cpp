@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <random>
+
 #include "sim/library/library.hpp"
 #include "sim/library/variants.hpp"
 #include "tests/validate/playin/support.hpp"
@@ -89,6 +91,47 @@ TEST(DiagnoseFull, TheMissingExciterIsNamed) {
       EXPECT_NEAR(p.value, 6.54, 3 * p.error);
     }
   }
+}
+
+/// The example's voltages, and what the plant would answer to them with EXST1 of these values, with noise.
+std::vector<record::Record> records_with_exst1(
+    const plant::PlantModel& model, const std::vector<std::pair<std::string_view, double>>& values) {
+  constexpr double kNoise = 0.002;  // of P and Q [pu]
+  sim::plant::Plant truth = model.plant;
+  const sim::Effect* exst1 = sim::library::compiled().find("EXST1");
+  sim::plant::Block exciter{exst1, exst1->standard_parameters()};
+  for (const auto& [name, value] : values) {
+    const auto at = std::ranges::find(exst1->parameters, name, &sim::Parameter::name);
+    exciter.p[static_cast<std::size_t>(at - exst1->parameters.begin())] = value;
+  }
+  sim::plant::insert_block(truth, exciter);
+  auto records = example_records(model);
+  const event::WhitenedEvents events = event::prepare_events(model, records, {.measured_states = false});
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> noise(0, kNoise);
+  for (std::size_t e = 0; e < events.size(); ++e) {
+    const playin::Response r = event::play({truth, model.conventions}, events[e], {});
+    records[e].P = r.of(playin::Output::P);
+    records[e].Q = r.of(playin::Output::Q);
+    for (auto* channel : {&records[e].P, &records[e].Q})
+      for (double& value : *channel) value += noise(random);
+  }
+  return records;
+}
+TEST(DiagnoseNight, AnExciterWithARateFeedbackIsNotLost) {
+  const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  DiagnoseOptions options;
+  options.measured_states = false;
+  const Diagnosis d = diagnose(
+      model, records_with_exst1(model, {{"KA", 60}, {"KC", 0.3}, {"KF", 0.04}, {"TF", 0.15}, {"TB", 4}}),
+      options);
+  const auto found = std::ranges::find(d.ranked, "EXST1", [](const auto& j) { return j.hypothesis.name; });
+  ASSERT_NE(found, d.ranked.end());
+  EXPECT_TRUE(found->accepted) << found->why_not;
+  EXPECT_LT(found->fit.misfit(), 1.05);
+  const bool first = std::ranges::count(d.effects, "EXST1") > 0;
+  const bool in_set = std::ranges::count(d.equivalent, "EXST1") > 0;
+  EXPECT_TRUE(first || in_set) << d.sentence;
 }
 
 }  // namespace

@@ -76,6 +76,46 @@ void name_best(Diagnosis& d) {
 
 }  // namespace
 
+std::string first_sentence(const Diagnosis& d, double adequate) {
+  const double slow = slow_remainder(d.base, d.events);
+  if (d.base.misfit() <= adequate && slow <= thresholds::adequacy.slow)
+    return fmt::format(
+        "So far: with its parameters refitted the model leaves nothing but noise (chi2 per value {:.3f}).",
+        d.base.misfit());
+  return fmt::format(
+      "So far: something is missing; with its parameters refitted the model leaves chi2 of {:.2f} per value, "
+      "slow means {:.1f} standard deviations.",
+      d.base.misfit(), slow);
+}
+
+std::string side_sentence(const Diagnosis& d) {
+  const double t = d.torque.misfit(), f = d.field.misfit();
+  const bool explains =
+      std::max(d.torque.explains(d.base), d.field.explains(d.base)) > thresholds::adequacy.free_input;
+  const bool both = std::max(t, f) <= thresholds::laws.as_much * std::min(t, f);
+  return fmt::format(
+      "So far: {} (chi2 per value {:.2f} with a torque free in time, {:.2f} with a field voltage free in "
+      "time).",
+      !explains ? "neither a torque nor a field voltage explains what is left"
+      : both    ? "a torque and a field voltage explain what is left about as well"
+      : t < f   ? "it looks like the mechanical side"
+                : "it looks like the excitation side",
+      t, f);
+}
+
+std::string leading_sentence(const Diagnosis& d) {
+  std::string names;
+  std::size_t named = 0;
+  for (const auto& j : d.ranked)
+    if (j.fitted && j.gain > thresholds::evidence.accepted && named < 3) {
+      names += fmt::format("{}{} (evidence {:.0f})", names.empty() ? "" : ", ",
+                           hypothesis::full_name(j.hypothesis), j.gain);
+      ++named;
+    }
+  return names.empty() ? "So far: no effect of the list explains anything."
+                       : "So far, not yet judged on unseen events: " + names + ".";
+}
+
 std::string_view verdict_name(Verdict verdict) {
   constexpr std::array<std::string_view, 4> names = {"adequate", "missing", "confusable", "unexplained"};
   return names[static_cast<std::size_t>(verdict)];

@@ -8,4 +8,11 @@ namespace swingbank::validate::diagnose {
 /// judged. Searches for laws where neither the model nor a known effect explains the records.
 void settle(const laws::Unexplained& judged, const laws::LawProgress& progress, Diagnosis& d);
 
+/// What is left of the refitted model, before anything else is known.
+std::string first_sentence(const Diagnosis& d, double adequate);
+/// On which side something is missing, by the inputs that are free in time.
+std::string side_sentence(const Diagnosis& d);
+/// Who leads once hypotheses were fitted.
+std::string leading_sentence(const Diagnosis& d);
+
 }  // namespace swingbank::validate::diagnose
