@@ -5,6 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/compound_source.hpp"
+#include "sim/effects/detail/limited_integral.hpp"
 #include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::exciter_esst4b {
@@ -91,8 +92,6 @@ struct Model {
                                       .weight = kSourceWeight,
                                       .bends = true}};
 
-  static constexpr double kBand = 2e-3;  ///< beyond a limit, where a PI's integral comes to rest [pu]
-
   static void check(const double* p, const std::string& where, Problems& problems) {
     const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
       if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
@@ -130,29 +129,19 @@ struct Model {
     c[iTA] = inverse(p[TA]);
     shared::CompoundSource::prepare<T>({p[KP], p[KI], p[XL], p[THETAP], p[KC], p[VBMAX]}, c + source_first);
   }
-  /// Slope of a PI's integral: none while its output, `out` before the limits, stands beyond one and `slope`
-  /// would lead further. It fades out over a narrow band: cut off at once, it has no solution where the
-  /// proportional part falls while the integral rises (the output would slide along the limit).
-  template <class T>
-  static T non_windup(const T& slope, const T& out, const T& least, const T& most) {
-    const T zero(0.0), one(1.0), per_band(1.0 / kBand);
-    const T rise = one - clamp((out - most) * per_band, zero, one);
-    const T fall = one - clamp((least - out) * per_band, zero, one);
-    return positive_part(slope) * rise - positive_part(zero - slope) * fall;
-  }
   template <class T>
   static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
     const T one(1.0);
     const T measured = lag(c[iTR], x[Vm], s.Vc, dx[Vm]);
     const T e = c[Vref] + s.dVref - measured + s.Vs + s.Vlimiter;
     const T outer = c[kpr] * e + x[xr];
-    dx[xr] = non_windup(c[kir] * e, outer, c[vrmin], c[vrmax]);
+    dx[xr] = shared::non_windup(c[kir] * e, outer, c[vrmin], c[vrmax]);
     const T va = lag(c[iTA], x[Va], clamp(outer, c[vrmin], c[vrmax]), dx[Va]);
     const T VB = shared::CompoundSource::voltage(c + source_first, s);
     // The loop Vmr = KPM (Va - KG VB Vmr) + xm, solved; its limits are those of the solution.
     const T inner = (c[kpm] * va + x[xm]) / (one + c[kpm] * c[kg] * VB);
     s.Efd = VB * clamp(inner, c[vmmin], c[vmmax]);
-    dx[xm] = non_windup(c[kim] * (va - c[kg] * s.Efd), inner, c[vmmin], c[vmmax]);
+    dx[xm] = shared::non_windup(c[kim] * (va - c[kg] * s.Efd), inner, c[vmmin], c[vmmax]);
   }
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {

@@ -66,6 +66,19 @@ TEST(Dyd, WhatTheCounterpartHasNotMustBeSwitchedOff) {
               AllOf(HasSubstr("tc = 0.5"), HasSubstr("efdmax = 4")));
 }
 
+TEST(Dyd, RexsIsRefusedWithWhatIsNotModelled) {
+  const std::string values =
+      "0.02 350 0 1 0.02 0 0 0 0 47 -20 0.05 1 0 0 1 1 0 0 47 -20 0 1 1.2 0.05 2 3 0.1 4 0.3 0 0 1.2 0 1 ";
+  const std::string begin = "rexs 1 \"GEN1\" 22.00 \"1 \" : #9 ";
+  const DydSurvey off = parse_dyd_survey(begin + values + "0 2 0 0\n", "r.dyd");
+  EXPECT_EQ(faults(off), "");  // NVPHZ and VCMAX without their gains
+  EXPECT_EQ(off.dyr.records.at(0).model, "REXSYS");
+  EXPECT_EQ(off.dyr.records.at(0).values.at(30), 1);
+  EXPECT_THAT(
+      faults(parse_dyd_survey(begin + values + "0.1 2 0.5 0\n", "r.dyd")),
+      AllOf(HasSubstr("xc = 0.1 of rexs at r.dyd:1"), HasSubstr("vcmax = 2"), HasSubstr("kefd = 0.5")));
+}
+
 TEST(Dyd, FaultsNameTheirLine) {
   const std::string all = faults(parse_dyd_survey(
       "genrou 1 \"GEN1\" 22.00 \"1 \" : #9 6.5 x\nhygov 1 \"G\" 22 \"1\" : #9 .05 .5 7\ngenrou GEN1 : 1\n",
@@ -94,6 +107,8 @@ TEST(Dyd, OutAndBack) {
       "7 'ESST4B' 1 0.02 3.15 3.15 1 -0.87 0.01 1 0.1 1.1 -0.8 0.2 6.5 0.3 8 0.08 0.04 5 /\n"
       "8 'EXST1' 1 0.01 0.2 -0.2 1 10 200 0.02 5 -4 0.05 0.1 1 /\n"
       "9 'SEXS' 1 0.1 10 100 0.05 -4 5 /\n"
+      "7 'REXSYS' 1 0.028 350 2 0.4 0.02 1 2 3 4 101.6 -98 0.0487 2 0.5 0.6 1 1.5 0.7 0.02 99 -97 0.1 1 0.55 0.06 "
+      "0.3 3.06 0.1 4.08 0.3 1 /\n"
       "7 'TGOV1' 1 0.05 0.4 1 0 3 10 0.1 /\n"
       "8 'IEEEG1' 1 0 0 20.8 0.2 0.1 0.2 0.4 -0.4 1 0 0.2 0.25 0 2 0.75 0 0.3 0 0 0.1 0 0 /\n"
       "9 'GGOV1' 1 1 0 0.043 5 0.025 -0.025 4.2 0.6 0.1 1 1 0.15 0.2 1.5 0.18 0.9 0.8 0.1 4 1 3.3 1 0.2 99 -99 "

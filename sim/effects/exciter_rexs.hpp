@@ -1,0 +1,335 @@
+#pragma once
+// REXS: rotating exciter with a voltage regulator and a regulator of its field current, general purpose.
+#include <fmt/format.h>
+
+#include "sim/core/blocks.hpp"
+#include "sim/core/effect.hpp"
+#include "sim/effects/detail/limited_integral.hpp"
+#include "sim/effects/detail/sources.hpp"
+
+namespace swingbank::sim::effects::exciter_rexs {
+
+struct Model {
+  static constexpr std::string_view
+      name = "REXS",
+      title = "rotating excitation system, general purpose",
+      source =
+          "IEC 61970-302, ExcREXS (parameters, what is fed back); OpenIPSL REXSYS "
+          "(github.com/marcelofcastro/OpenIPSL, c482ff5) and InterPSS RexsysExciter "
+          "(github.com/InterPSS-Project/ipss-plugin, 0cc993b): blocks, columns; PowerWorld's help, REXS: PSLF's names; "
+          "PSS/E REXSYS",
+      dyr_name = "REXSYS";
+  static constexpr Slot slot = Slot::exciter;
+  static constexpr std::string_view variant_of = "ESAC1A";
+  static constexpr std::string_view description = R"(
+  Vc --> [ 1/(1 + s TR) ] --> Vm
+  e = Vref + dVref - Vm + Vs + Vlimiter - Vf within [-VIMAX, VIMAX]
+  e --> [ KVP + KVI/s ] --> [ (1 + s TC1)/(1 + s TB1) ] --> [ (1 + s TC2)/(1 + s TB2) ] --> [ 1/(1 + s TA) ] --> Vr
+  Vr - KH Vfe --> [ KIP + KII/s ] --> [ 1/(1 + s TP) ] --> Vfield
+         Vr: F [VRMIN, VRMAX], Vfield: F [VFMIN, VFMAX], F = 1 + FLIMF (V - 1); both lags follow a limit
+         within 2 ms, and KII stops integrating while its regulator stands at one (InterPSS; OpenIPSL and
+         OPAL-RT let it wind up). KVI has no limit but that of its input.
+  TE dVe/dt = Vfield - Vfe, Ve >= 0                Vfe = KE Ve + Ve Se(Ve) + KD Ifd
+  Vf = s KF/(1 + s TF) (1 + s TF1)/(1 + s TF2) of Vr (FBF = 0), Vfe (1) or Efd (2)
+  Efd = Ve FEX(IN), IN = KC Ifd/Ve                 FEX = 1 - IN/sqrt(3)         IN <= sqrt(3)/4
+                                                         sqrt(3/4 - IN^2)       IN <= 3/4
+                                                         sqrt(3) (1 - IN)       IN <= 1, 0 beyond
+  Ve Se(Ve) = B (Ve - A)^2 above A through (E1, SE1), (E2, SE2)
+  FLIMF = 0: fixed limits, 1: in proportion to V.
+  Left out, for their equations are not public: PSLF's limiter of V/Hz (NVPHZ, KVPHZ), its compounding (XC,
+  VCMAX), KEFD, LIMFLG, and CIM's KS.
+)";
+  enum P {
+    TR,
+    KVP,
+    KVI,
+    VIMAX,
+    TA,
+    TB1,
+    TC1,
+    TB2,
+    TC2,
+    VRMAX,
+    VRMIN,
+    KF,
+    TF,
+    TF1,
+    TF2,
+    FBF,
+    KIP,
+    KII,
+    TP,
+    VFMAX,
+    VFMIN,
+    KH,
+    KE,
+    TE,
+    KC,
+    KD,
+    E1,
+    SE1,
+    E2,
+    SE2,
+    FLIMF
+  };
+  static constexpr Source standards_from = literature::cim("ExcREXS");
+  static constexpr Source bounds_from = shared::kNoCases;
+  static constexpr Parameter parameters[] = {
+      {"TR", "TR", "s", 0.02, 0.0, 0.5, 0.0, "voltage transducer (0: none)",
+       literature::own("as ESAC6A's; CIM has none")},
+      {"KVP", "KVP", "pu", 2800.0, 0.0, 20000.0, kNoNeutral, "voltage regulator, proportional"},
+      {"KVI", "KVI", "1/s", 0.0, 0.0, 20000.0, kNoNeutral, "voltage regulator, integral"},
+      {"VIMAX", "VIMAX", "pu", 0.1, 0.001, 1000.0, kNoNeutral, "limit of the voltage regulator's input"},
+      {"TA", "TA", "s", 0.01, 0.0, 10.0, kNoNeutral, "regulator time constant (0: none)"},
+      {"TB1", "TB1", "s", 0.0, 0.0, 50.0, kNoNeutral, "first lag (0: bypass)"},
+      {"TC1", "TC1", "s", 0.0, 0.0, 50.0, kNoNeutral, "first lead"},
+      {"TB2", "TB2", "s", 0.0, 0.0, 50.0, kNoNeutral, "second lag (0: bypass)"},
+      {"TC2", "TC2", "s", 0.0, 0.0, 50.0, kNoNeutral, "second lead"},
+      {"VRMAX", "VRMAX", "pu", 47.0, 0.0, 1000.0, kNoNeutral, "upper limit of the regulator"},
+      {"VRMIN", "VRMIN", "pu", -20.0, -1000.0, 0.0, kNoNeutral, "lower limit of the regulator"},
+      {"KF", "KF", "pu", 0.05, 0.0, 1.0, 0.0, "rate feedback"},
+      {"TF", "TF", "s", 1.0, 0.0, 20.0, kNoNeutral, "rate feedback's time constant"},
+      {"TF1", "TF1", "s", 0.0, 0.0, 20.0, kNoNeutral, "rate feedback's lead"},
+      {"TF2", "TF2", "s", 0.0, 0.0, 20.0, kNoNeutral, "rate feedback's lag (0: bypass)"},
+      {"FBF", "FBF", "code", 1.0, 0.0, 2.0, kNoNeutral,
+       "what is fed back: 0 regulator's output, 1 alternator's field current, 2 field voltage", kAsEffect,
+       shared::kCode},
+      {"KIP", "KIP", "pu", 1.0, 0.0, 1000.0, kNoNeutral, "field current regulator, proportional"},
+      {"KII", "KII", "1/s", 0.0, 0.0, 1000.0, kNoNeutral, "field current regulator, integral"},
+      {"TP", "TP", "s", 0.0, 0.0, 10.0, kNoNeutral, "bridge's time constant (0: none)"},
+      {"VFMAX", "VFMAX", "pu", 47.0, 0.0, 1000.0, kNoNeutral, "upper limit of the alternator's field"},
+      {"VFMIN", "VFMIN", "pu", -20.0, -1000.0, 0.0, kNoNeutral, "lower limit of the alternator's field"},
+      {"KH", "KH", "pu", 0.0, 0.0, 100.0, 0.0, "feedback of the alternator's field current"},
+      {"KE", "KE", "pu", 1.0, 0.0, 5.0, kNoNeutral, "alternator's own field"},
+      {"TE", "TE", "s", 1.2, 0.01, 5.0, kNoNeutral, "alternator's time constant"},
+      {"KC", "KC", "pu", 0.05, 0.0, 1.0, 0.0, "rectifier's commutating reactance"},
+      {"KD", "KD", "pu", 2.0, 0.0, 5.0, 0.0, "alternator's armature reaction"},
+      {"E1", "E1", "pu", 3.0, 0.0, 50.0, kNoNeutral, "first point of saturation"},
+      {"SE1", "SE(E1)", "-", 0.0001, 0.0, 2.0, 0.0, "saturation there"},
+      {"E2", "E2", "pu", 4.0, 0.0, 50.0, kNoNeutral, "second point of saturation"},
+      {"SE2", "SE(E2)", "-", 0.001, 0.0, 2.0, 0.0, "saturation there"},
+      {"FLIMF", "FLIMF", "-", 0.0, 0.0, 1.0, 0.0, "how far the limits follow V", kAsEffect, shared::kShare}};
+  static constexpr int dyr_columns[] = {TR, KVP, KVI, VIMAX, TA,  TB1, TC1, TB2, TC2,   VRMAX, VRMIN,
+                                        KF, TF,  TF1, TF2,   FBF, KIP, KII, TP,  VFMAX, VFMIN, KH,
+                                        KE, TE,  KC,  KD,    E1,  SE1, E2,  SE2, FLIMF};
+  enum C {
+    iTR,
+    kvp,
+    kvi,
+    vimax,
+    iTA,
+    iTB1,
+    lead1,
+    iTB2,
+    lead2,
+    vrmax,
+    vrmin,
+    feedback,
+    iTF,
+    lead_feedback,
+    iTF2,
+    of_regulator,
+    of_current,
+    of_voltage,
+    kip,
+    kii,
+    iTP,
+    vfmax,
+    vfmin,
+    kh,
+    self,
+    iTE,
+    commutation,
+    demagnetising,
+    satA,
+    satB,
+    follow,
+    none,
+    Vref,
+    coefficients
+  };
+  /// What enters the regulator counts in Efd by its gain of hundreds, within its lags.
+  static constexpr double kErrorWeight = 10.0;
+  static constexpr double kReturn = 500.0;  ///< how a lag comes back to a limit it has passed [1/s]
+  enum X { Vm, xv, first, second, Vr, rate, rate_lag, xi, Vfield, Ve };
+  static constexpr State states[] = {
+      {"Vm", "pu", "measured voltage", kErrorWeight, -1, -1, {iTR}},
+      {.name = "xv",
+       .unit = "pu",
+       .meaning = "integral of the voltage regulator",
+       .moved_by = {kvi},
+       .bends = true},
+      {.name = "first",
+       .unit = "pu",
+       .meaning = "state of the first lead-lag",
+       .moved_by = {iTB1},
+       .bends = true},
+      {.name = "second", .unit = "pu", .meaning = "state of the second lead-lag", .moved_by = {iTB2}},
+      {.name = "Vr", .unit = "pu", .meaning = "regulator output", .moved_by = {iTA}, .bends = true},
+      {"rate", "pu", "state of the rate feedback", kErrorWeight, -1, -1, {iTF}},
+      {"rate_lag", "pu", "state of the rate feedback's lead-lag", kErrorWeight, -1, -1, {iTF2}},
+      {.name = "xi",
+       .unit = "pu",
+       .meaning = "integral of the field current regulator",
+       .moved_by = {kii},
+       .bends = true},
+      {.name = "Vfield",
+       .unit = "pu",
+       .meaning = "alternator's field voltage",
+       .moved_by = {iTP},
+       .bends = true},
+      {.name = "Ve", .unit = "pu", .meaning = "voltage behind the rectifier", .low = none, .bends = true}};
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
+      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
+    };
+    const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
+    bad(!(p[TE] > 0), says(TE) + " s", "REXS divides by it", "give TE > 0");
+    for (int i : {TR, TA, TB1, TC1, TB2, TC2, TF, TF1, TF2, TP})
+      bad(!(p[i] >= 0), says(i) + " s", "a time constant", "give a value >= 0");
+    for (int i : {KVP, KVI, KIP, KII, KH, KF})
+      bad(!(p[i] >= 0), says(i), "the loop would be unstable", "give a value >= 0");
+    for (const auto& [proportional, integral] : {std::pair{KVP, KVI}, {KIP, KII}})
+      bad(p[proportional] == 0.0 && p[integral] == 0.0,
+          fmt::format("{} with {}", says(proportional), says(integral)), "no gain, no regulator",
+          "give one of them");
+    bad(!(p[VIMAX] > 0), says(VIMAX) + " pu", "the regulator would see no error", "give VIMAX > 0");
+    bad(p[KF] > 0 && !(p[TF] > 0), fmt::format("{} with {} s", says(KF), says(TF)),
+        "no derivative without a lag", "give TF > 0, or KF = 0 for no feedback");
+    bad(p[KF] > 0 && p[FBF] == 0.0 && p[TA] == 0.0,
+        fmt::format("{} s with {} and {}", says(TA), says(FBF), says(KF)),
+        "the regulator's output would feed itself without a lag", "give TA > 0");
+    bad(p[FBF] != 0.0 && p[FBF] != 1.0 && p[FBF] != 2.0, says(FBF), "0, 1 and 2 are the signals there are",
+        "give one of them");
+    for (int i : {KC, SE1, SE2})
+      bad(!(p[i] >= 0), says(i), "it can only take from the exciter's voltage", "give a value >= 0");
+    bad(p[E1] == p[E2] && p[SE1] != p[SE2], says(E1) + " = E2", "one voltage cannot have two saturations",
+        "give two points");
+    bad(!(p[FLIMF] >= 0 && p[FLIMF] <= 1), says(FLIMF), "0 is for fixed limits, 1 for limits as V",
+        "give a value from 0 to 1");
+    for (const auto& [most, least] : {std::pair{VRMAX, VRMIN}, {VFMAX, VFMIN}})
+      bad(!(p[most] > p[least]), says(most) + " pu with " + says(least) + " pu", "there must be room to move",
+          fmt::format("give {} > {}", parameters[most].symbol, parameters[least].symbol));
+  }
+  static std::string_view unphysical(const double*) { return ""; }
+  /// Of a REXSYS of PSS/E: OpenIPSL has its limits in multiples of the field that 1 pu needs, PowerWorld and
+  /// InterPSS in pu.
+  static std::string remark(const double* p) {
+    const double field = p[KE] + p[KD];
+    return std::abs(field - 1.0) < 0.01
+               ? ""
+               : fmt::format(
+                     "REXSYS: its limits are taken in pu; by OpenIPSL, PSS/E multiplies them by KE + KD "
+                     "+ SE, here {:g} and more",
+                     field);
+  }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions&, T* c) {
+    for (const auto& [to, from] : {std::pair<int, int>{kvp, KVP},
+                                   {kvi, KVI},
+                                   {vimax, VIMAX},
+                                   {lead1, TC1},
+                                   {lead2, TC2},
+                                   {vrmax, VRMAX},
+                                   {vrmin, VRMIN},
+                                   {kip, KIP},
+                                   {kii, KII},
+                                   {vfmax, VFMAX},
+                                   {vfmin, VFMIN},
+                                   {kh, KH},
+                                   {self, KE},
+                                   {commutation, KC},
+                                   {demagnetising, KD},
+                                   {follow, FLIMF},
+                                   {lead_feedback, TF1}})
+      c[to] = p[from];
+    for (const auto& [to, from] : {std::pair<int, int>{iTR, TR},
+                                   {iTA, TA},
+                                   {iTB1, TB1},
+                                   {iTB2, TB2},
+                                   {iTF, TF},
+                                   {iTF2, TF2},
+                                   {iTP, TP}})
+      c[to] = inverse(p[from]);
+    const T zero(0.0), one(1.0);
+    c[iTE] = one / p[TE];
+    c[feedback] = p[KF] * c[iTF];
+    c[of_regulator] = select(p[FBF] < T(0.5), one, zero);
+    c[of_voltage] = select(p[FBF] > T(1.5), one, zero);
+    c[of_current] = one - c[of_regulator] - c[of_voltage];
+    const auto saturation = Quadratic<T>::through(p[E1], p[SE1], p[E2], p[SE2]);
+    c[satA] = saturation.A;
+    c[satB] = saturation.B;
+    c[none] = zero;
+  }
+  /// The field that keeps the alternator at `ve`.
+  template <class T>
+  static T field(const T* c, const T& ve, const T& Ifd) {
+    return c[self] * ve + Quadratic<T>{c[satA], c[satB]}(ve) + c[demagnetising] * Ifd;
+  }
+  /// A lag between limits that move: its state is drawn back to one that it has passed.
+  template <class T>
+  static T limited_lag(const T& inverse_T, const T& x, const T& u, const T& least, const T& most, T& dx) {
+    const T within = clamp(lag(inverse_T, x, u, dx), least, most);
+    dx = select(inverse_T > T(0.0), dx - T(kReturn) * (x - within), T(0.0));
+    return within;
+  }
+  template <class T>
+  static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
+    const T one(1.0), factor = one + c[follow] * (s.V - one);
+    const T rmin = factor * c[vrmin], rmax = factor * c[vrmax], fmin = factor * c[vfmin],
+            fmax = factor * c[vfmax];
+    const T ve = positive_part(x[Ve]), Vfe = field(c, ve, s.Ifd);
+    s.Efd = rectified(ve, c[commutation] * s.Ifd);
+    // With FBF = 0 there is a lag TA, so its state is the output.
+    const T fed = c[of_regulator] * clamp(x[Vr], rmin, rmax) + c[of_current] * Vfe + c[of_voltage] * s.Efd;
+    const T slope = c[feedback] * washout(c[iTF], x[rate], fed, dx[rate]);
+    const T Vf = lead_lag(c[lead_feedback], c[iTF2], x[rate_lag], slope, dx[rate_lag]);
+    const T measured = lag(c[iTR], x[Vm], s.Vc, dx[Vm]);
+    const T e = clamp(c[Vref] + s.dVref - measured + s.Vs + s.Vlimiter - Vf, T(0.0) - c[vimax], c[vimax]);
+    dx[xv] = c[kvi] * e;
+    const T u1 = lead_lag(c[lead1], c[iTB1], x[first], c[kvp] * e + x[xv], dx[first]);
+    const T u2 = lead_lag(c[lead2], c[iTB2], x[second], u1, dx[second]);
+    const T vr = limited_lag(c[iTA], x[Vr], u2, rmin, rmax, dx[Vr]);
+    const T inner = vr - c[kh] * Vfe, wanted = c[kip] * inner + x[xi];
+    dx[xi] = shared::non_windup(c[kii] * inner, wanted, fmin, fmax);
+    dx[Ve] = (limited_lag(c[iTP], x[Vfield], wanted, fmin, fmax, dx[Vfield]) - Vfe) * c[iTE];
+  }
+  template <class T>
+  static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
+    if (!(value_of(s.Efd) > 0.0))
+      return fmt::format("Efd = {:.4f} pu is needed and a rectifier delivers none below zero",
+                         value_of(s.Efd));
+    const T zero(0.0), one(1.0), factor = one + c[follow] * (s.V - one);
+    x[Vm] = s.Vc;
+    x[Ve] = rectifier_source(s.Efd, p[KC] * s.Ifd);
+    const T Vfe = field(c, x[Ve], s.Ifd);
+    x[Vfield] = Vfe;
+    const auto inner_integrates = p[KII] > zero, outer_integrates = p[KVI] > zero;
+    x[xi] = select(inner_integrates, Vfe, zero);
+    x[Vr] = p[KH] * Vfe + select(inner_integrates, zero, Vfe / select(inner_integrates, one, p[KIP]));
+    const auto outside = [&](const char* what, const T& needed, const T& least, const T& most) {
+      const double is = value_of(needed), low = value_of(factor * least), high = value_of(factor * most);
+      return is < low || is > high
+                 ? fmt::format("{} = {:.4f} pu is needed and its limits are {:.4f}, {:.4f} pu", what, is, low,
+                               high)
+                 : std::string();
+    };
+    if (auto why = outside("Vfield", Vfe, p[VFMIN], p[VFMAX]); !why.empty()) return why;
+    if (auto why = outside("Vr", x[Vr], p[VRMIN], p[VRMAX]); !why.empty()) return why;
+    x[first] = x[second] = x[Vr];
+    x[xv] = select(outer_integrates, x[Vr], zero);
+    const T e = select(outer_integrates, zero, x[Vr] / select(outer_integrates, one, p[KVP]));
+    if (value_of(e) > value_of(p[VIMAX]) || value_of(e) < -value_of(p[VIMAX]))
+      return fmt::format("an error of {:.4f} pu is needed and VIMAX is {:g} pu", value_of(e),
+                         value_of(p[VIMAX]));
+    x[rate] = c[of_regulator] * x[Vr] + c[of_current] * Vfe + c[of_voltage] * s.Efd;
+    x[rate_lag] = zero;
+    c[Vref] = e + s.Vc - s.Vs - s.Vlimiter;
+    return {};
+  }
+};
+
+}  // namespace swingbank::sim::effects::exciter_rexs
