@@ -215,6 +215,12 @@ class Check {
     else if (within(v, 70, 130))
       refuse("voltage_unit", what, "that may be a voltage in percent, or in kV, taken as pu",
              "name the column V_kV and give base_kv, or divide by 100");
+    else if (v > 1.3 && r_.base.kv > 0)
+      refuse("voltage_unit", fmt::format("{}, with base_kv = {:g} kV", what, r_.base.kv),
+             "base_kv is not the nominal voltage of that bus, or a voltage in kV was taken as pu",
+             fmt::format("set base_kv under [record] in the plant file to the nominal voltage in kV, line to "
+                         "line (near {:.3g} if the column is in kV), or name the column V_kV",
+                         v * r_.base.kv));
     else if (v > 1.3)
       refuse("voltage_unit", what, "that may be a voltage in kV taken as pu",
              "name the column V_kV and give base_kv under [record] in the plant file");
@@ -278,11 +284,34 @@ class Check {
       refuse("speed_unit", what, "a machine runs near nominal speed", "give the speed in pu");
   }
 
+  /// Whether an angle beyond a turn is radians that were never wrapped, as a simulation writes them: it turns
+  /// as the frequency says or, where that says nothing, jumps as at a machine's terminals.
+  [[nodiscard]] bool radians_beyond_a_turn() const {
+    if (const double ratio = signals_.angle_per_frequency; ratio > 0) return within(ratio, 0.5, 2);
+    const int delay = power_delay(r_, jumps_);
+    const JumpFit radians = fit_jumps(r_, jumps_, delay);
+    const record::Record other = reinterpreted([](const Reading& x) {
+      return Reading{x.V, x.theta * constants::degree, x.P, x.Q};
+    });
+    // Where the angle hardly jumps it fits in either unit, and that says nothing.
+    return fits(radians) && 3 * radians.misfit < fit_jumps(other, jumps_, delay).misfit;
+  }
+  /// Jumps of sound records leave below 0.03 beside their noise (tests/validate/check/sound_test.cpp).
+  [[nodiscard]] bool fits(const JumpFit& fit) const {
+    const double noise = noise_share(fit);
+    return fit.reactance > 0 && noise < 0.1 && fit.misfit < 0.03 + 3 * noise;
+  }
+
   void angle() {
     const char* const name_deg = "name the column theta_deg";
-    if (signals_.wraps_of_360 || std::abs(signals_.first_angle) > 2.1 * constants::pi)
+    if (signals_.wraps_of_360)
       refuse("angle_unit", fmt::format("an angle of {:.4g} rad", signals_.first_angle),
-             "angles in radians stay within a turn: these are degrees taken as radians", name_deg);
+             "it jumps by 360 where it is wrapped: these are degrees taken as radians", name_deg);
+    else if (std::abs(signals_.first_angle) > 2.1 * constants::pi && !radians_beyond_a_turn())
+      refuse("angle_unit", fmt::format("an angle of {:.4g} rad", signals_.first_angle),
+             "that is beyond a turn, and neither the frequency nor the jumps say that it is radians which "
+             "were never wrapped",
+             "name the column theta_deg if it is degrees; else take whole turns off, or add the frequency");
     // A frequency or speed in a wrong unit says nothing about the angle.
     const double ratio = found("frequency_unit") || found("speed_unit") ? 0 : signals_.angle_per_frequency;
     if (within(ratio, 18, 180))
@@ -369,7 +398,7 @@ class Check {
     else if (best)
       refuse(best->kind, "voltage and current that do not jump together as at a machine's terminals",
              best->why, best->remedy);
-    else if (as_is.reactance > 0 && as_is.misfit < 0.03 + 3 * noise_share(as_is) && noise_share(as_is) < 0.1)
+    else if (fits(as_is))
       reactance(as_is.reactance * plant_.mva / r_.base.mva);
   }
 

@@ -87,9 +87,15 @@ std::vector<Mistake> mistakes() {
       {"wrapped_degrees_as_radians",
        "angle_unit",
        {.edit = [](Row x) { x[2] = std::remainder(x[2] / kDegree + 178, 360); }, .with_frequency = false}},
+      {"degrees_beyond_a_turn_as_radians",
+       "angle_unit",
+       {.edit = [](Row x) { x[2] = x[2] / kDegree + 720; }, .with_frequency = false}},
       {"radians_as_degrees", "angle_unit", {.theta = "theta_deg"}},
       {"kV_as_pu", "voltage_unit", {.edit = [](Row x) { x[1] *= 22; }}},
       {"kV_as_pu_with_base", "voltage_unit", {.edit = [](Row x) { x[1] *= 138; }, .base = {100, 60, 138}}},
+      {"base_kv_of_1",
+       "voltage_unit",
+       {.V = "V_kV", .edit = [](Row x) { x[1] *= 345; }, .base = {100, 60, 1}}},
       {"percent_as_pu", "voltage_unit", {.edit = [](Row x) { x[1] *= 100; }}},
       {"line_to_neutral",
        "voltage_unit",
@@ -172,6 +178,18 @@ TEST(RecordCheckTest, AnIntegratedAngleIsNotHeldAgainstTheRecord) {
   for (std::size_t k = 1; k < r.t.size(); ++k)
     r.theta[k] = r.theta[k - 1] + 2 * std::numbers::pi * 60 * r.step() * (r.f[k] + r.f[k - 1]) / 2;
   EXPECT_NO_THROW(raise_refusals(check_record(r, {100, 60})));
+}
+TEST(RecordCheckTest, RadiansThatWereNeverWrappedAreTaken) {
+  for (int i = 1; i <= 4; ++i)
+    for (const bool with_frequency : {true, false}) {
+      const Written w{.edit = [](auto& x) { x[2] += 5 * 2 * std::numbers::pi; },
+                      .with_frequency = with_frequency};
+      const auto findings = check_record(rewritten(example(i), w), {100, 60});
+      if (i == 2 && !with_frequency)  // its angle hardly jumps: that would fit degrees too
+        EXPECT_TRUE(refused(findings, "angle_unit"));
+      else
+        EXPECT_EQ(told(findings), "") << "event " << i;
+    }
 }
 TEST(RecordCheckTest, TheExamplePasses) {
   for (int i = 1; i <= 4; ++i) {
