@@ -297,7 +297,22 @@ void solve(Newton& newton, const Network& network, const PowerFlowOptions& optio
                         ", or start from the file's voltages as they stand (--start file)"});
 }
 
-/// Power of a bus among its generators: by MVA, but each within its own reactive limits where the bus is.
+/// Power of a bus among its generators, without limits: as in the file where the solution is the file's, for
+/// PSS/E shares by what a plant's units had before (its records of eight units at a bus: Q as P), else by
+/// MVA.
+void share_freely(const Network& n, const std::vector<std::size_t>& units, double mva, Complex power,
+                  std::vector<Complex>& generation) {
+  Complex rest = power;
+  for (const std::size_t k : units) rest -= Complex(n.generators[k].p, n.generators[k].q);
+  constexpr double near = 0.01;  // of the units' MVA
+  const bool of_file = units.size() > 1 && std::abs(rest) * n.base_mva <= near * mva;
+  for (const std::size_t k : units) {
+    const Generator& g = n.generators[k];
+    generation[k] = of_file ? Complex(g.p, g.q) + rest * (g.mva / mva) : power * (g.mva / mva);
+  }
+}
+
+/// The same, but each within its own reactive limits where the bus is.
 void share_out(const Network& n, int bus, Complex power, const PowerFlowOptions& options,
                std::vector<Complex>& generation) {
   std::vector<std::size_t> units;
@@ -308,11 +323,9 @@ void share_out(const Network& n, int bus, Complex power, const PowerFlowOptions&
       mva += n.generators[k].mva;
     }
   const bool slack = n.buses[at(bus)].type == BusType::slack;
-  for (const std::size_t k : units) {
-    const Generator& g = n.generators[k];
-    generation[k] = power * (g.mva / mva);
-    if (!slack) generation[k] = {g.p, generation[k].imag()};
-  }
+  share_freely(n, units, mva, power, generation);
+  if (!slack)
+    for (const std::size_t k : units) generation[k] = {n.generators[k].p, generation[k].imag()};
   if (slack || !options.reactive_limits || units.size() < 2) return;
   const auto within = [&](std::size_t k) {
     const Generator& g = n.generators[k];
@@ -325,9 +338,9 @@ void share_out(const Network& n, int bus, Complex power, const PowerFlowOptions&
     for (const std::size_t k : units) {
       const bool was_open = std::ranges::count(open, k) > 0;
       const double q = within(k);
+      rest -= q;
       if (!was_open || q != generation[k].imag()) {
         generation[k] = {generation[k].real(), q};
-        rest -= q;
       } else {
         free.push_back(k);
         room += n.generators[k].mva;
@@ -338,8 +351,7 @@ void share_out(const Network& n, int bus, Complex power, const PowerFlowOptions&
         for (const std::size_t k : units) generation[k] += Complex(0.0, rest * n.generators[k].mva / mva);
       return;
     }
-    for (const std::size_t k : free)
-      generation[k] = {generation[k].real(), rest * n.generators[k].mva / room};
+    for (const std::size_t k : free) generation[k] += Complex(0.0, rest * n.generators[k].mva / room);
     open = free;
   }
 }

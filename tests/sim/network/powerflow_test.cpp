@@ -132,6 +132,27 @@ TEST(PowerFlow, MachinesAtOneBusShareByRating) {
   EXPECT_NEAR(two.generation[g - 1].real(), 0.75 * one.generation[1].real(), 1e-11);
 }
 
+TEST(PowerFlow, MachinesAtOneBusShareAsInTheFileWhereTheSolutionIsTheFiles) {
+  Network n = committed("ieee39_genrou");
+  const double q = solve_power_flow(n).generation[0].imag();
+  Generator second = n.generators[0], idle = second;
+  second.id = "2";
+  idle.id = "3";
+  second.p = idle.p = idle.q = idle.q_min = 0.0;  // one that delivers nothing stands at its limit
+  second.mva = 3 * n.generators[0].mva;
+  n.generators[0].q = 0.6 * q;
+  second.q = 0.4 * q + 1e-4;
+  n.generators.push_back(second);
+  n.generators.push_back(idle);
+  const PowerFlow flow = solve_power_flow(n);
+  const std::size_t g = n.generators.size();
+  EXPECT_NEAR(flow.generation[0].imag(), 0.6 * q, 5e-5);
+  EXPECT_NEAR(flow.generation[g - 2].imag(), 0.4 * q, 5e-5);
+  EXPECT_NEAR(flow.generation[g - 1].imag(), 0.0, 5e-5);
+  EXPECT_NEAR(flow.generation[0].imag() + flow.generation[g - 2].imag() + flow.generation[g - 1].imag(), q,
+              1e-11);
+}
+
 TEST(PowerFlow, DivergenceNamesTheWorstBusWithUnits) {
   Network n = committed("ieee14_genrou");
   n.loads[2].power *= 40.0;  // bus 4: 19 pu through a few lines
