@@ -142,7 +142,9 @@ struct Model {
         "give a whole number from 1 to 6");
     bad(!(p[Tf] > 0) || !std::isfinite(p[Tf]), fmt::format("Tf = {:g} s", p[Tf]),
         "frequency and slope are measured behind a lag", "give Tf > 0");
-    bad(p[IB] != 0.0, fmt::format("IB = {:g}", p[IB]), "IEEEST reads its own machine only", "give IB = 0");
+    // Speed and powers are the machine's own, whatever bus stands there.
+    bad(p[IB] != 0.0 && p[ICS] != 1.0 && p[ICS] != 3.0 && p[ICS] != 4.0, fmt::format("IB = {:g}", p[IB]),
+        "IEEEST reads its own machine only", "give IB = 0");
     for (int i : {A1, A2, A3, A4})
       bad(!(p[i] >= 0), fmt::format("{} = {:g}", parameters[i].symbol, p[i]), "the filter would be unstable",
           "give a coefficient >= 0");

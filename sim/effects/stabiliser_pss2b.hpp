@@ -170,8 +170,8 @@ struct Model {
                       "frequency (2) and voltage slope (6) are not modelled",
                       who),
           fmt::format("give {} = 1, 3, 4 or 5", parameters[i].symbol));
-    for (int i : {REM1, REM2})
-      bad(p[i] != 0.0, says(i), fmt::format("{} reads its own machine only", who),
+    for (int i : {REM1, REM2})  // the input code stands before it; only voltage is another's elsewhere
+      bad(p[i] != 0.0 && p[i - 1] == 5.0, says(i), fmt::format("{} reads its own machine only", who),
           fmt::format("give {} = 0", parameters[i].symbol));
     for (int i : {M, N})
       bad(!(p[i] >= 0.0) || p[i] != static_cast<int>(p[i]), says(i), "it counts lags and stages",

@@ -136,7 +136,8 @@ TEST(StabiliserPss2, LimitsOfInputsAndOutputHoldAndRelease) {
 }
 
 TEST(StabiliserPss2, WhatItCannotDoIsNamed) {
-  EXPECT_EQ(ControlBench("PSS2A", {{"IC1", 2.0}, {"REMBUS2", 7.0}, {"M", 5.0}, {"N", 2.0}, {"Tw1", 0.0}})
+  EXPECT_EQ(ControlBench("PSS2A",
+                         {{"IC1", 2.0}, {"IC2", 5.0}, {"REMBUS2", 7.0}, {"M", 5.0}, {"N", 2.0}, {"Tw1", 0.0}})
                 .problems.list()
                 .size(),
             4u);
@@ -146,6 +147,36 @@ TEST(StabiliserPss2, WhatItCannotDoIsNamed) {
             3u);
   // 0.8 pu of power
   EXPECT_NE(ControlBench("PSS2B", {{"VS2MAX", 0.7}}).refused.find("0.8000 pu"), std::string::npos);
+}
+
+TEST(StabiliserPss2, Pss2cHasAFourthLeadLagBehindTheSame) {
+  for (const double omega : {0.3, 5.0}) {
+    Values v = third(common({{"VSTMAX", 1e3}, {"VSTMIN", -1e3}}));
+    ControlBench before("PSS2B", v);
+    v["T12"] = 0.2;
+    v["T13"] = 0.06;
+    ControlBench bench("PSS2C", v);
+    EXPECT_TRUE(bench.problems.empty());
+    EXPECT_EQ(bench.largest_derivative(), 0.0);
+    const C one = before.response(&Signals<double>::speed, kOutput, omega) * lead_over_lag(0.2, 0.06, omega);
+    EXPECT_LT(std::abs(bench.response(&Signals<double>::speed, kOutput, omega) - one),
+              1e-5 * (1 + std::abs(one)));
+  }
+}
+
+TEST(StabiliserPss2, Pss2cIsSwitchedByThePower) {
+  ControlBench bench("PSS2C", {{"IC2", 5.0}, {"PSSON", 0.5}, {"PSSOFF", 0.3}});
+  bench.in.speed = 0.01;
+  bench.run(0.1);
+  const double whole = bench.out().Vs;
+  EXPECT_GT(whole, 0.01);
+  bench.in.speed = 0.0;
+  for (const auto& [P, part] : {std::pair{0.4, 1.0}, {0.2, 0.0}, {0.4, 0.0}, {0.6, 1.0}, {0.4, 1.0}}) {
+    bench.in.P = P;
+    bench.run(0.1);
+    EXPECT_NEAR(bench.x.back(), part, 1e-6) << P;
+  }
+  EXPECT_FALSE(ControlBench("PSS2C", {{"PSSOFF", 0.1}}).problems.empty());
 }
 
 }  // namespace

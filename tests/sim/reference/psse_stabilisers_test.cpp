@@ -1,5 +1,5 @@
 // Stabilisers against PSS/E's own records (psse_folder.hpp): a machine at an infinite bus whose exciter's
-// reference is set to another value at 1 s. The parameters of PSS2A and PSS2B are those of the tests that the
+// reference is set to another value at 1 s. The parameters of PSS2A to PSS2C are those of the tests that the
 // records belong to.
 #include <fmt/format.h>
 #include <unistd.h>
@@ -35,9 +35,8 @@ struct Case {
   double gain;       ///< of the exciter
   double reference;  ///< what its reference is set to
 };
-/// `see` gives the record's columns; each must agree to kShare of its swing.
-template <class See>
-void expect_agreement(const Case& c, const See& see) {
+/// The unit at its infinite bus, with the step of its reference.
+grid::Grid grid_of(const Case& c) {
   const auto dyr =
       std::filesystem::temp_directory_path() / ("swingbank-stabiliser-" + std::to_string(getpid()) + ".dyr");
   std::ofstream(dyr) << c.dynamics;
@@ -52,6 +51,12 @@ void expect_agreement(const Case& c, const See& see) {
                    fmt::format("{:.12g}", c.reference - 1.0 - field / c.gain) + ",start=1",
                "--with", problems);
   problems.raise();
+  return grid;
+}
+/// `see` gives the record's columns; each must agree to kShare of its swing.
+template <class See>
+void expect_agreement(const Case& c, const See& see) {
+  const grid::Grid grid = grid_of(c);
   std::vector<std::vector<double>> ours, theirs;
   test::step_as_psse(grid, {}, 0, kStep, kEnd,
                      [&](double t, const Signals<double>& s, const double* x, const double* v) {
@@ -79,14 +84,16 @@ double magnitude(const grid::Grid& grid, const double* v, int bus) {
   const auto i = static_cast<std::size_t>(grid.network.bus_index(bus));
   return std::hypot(v[2 * i], v[2 * i + 1]);
 }
+Case dual_input(const std::string& name, const std::string& limits) {
+  return {folder_of("PSS2A") / "OMIB.raw", folder_of(name) / "results_PSSe.csv",
+          std::string(kMachine) + kExciter + "1 '" + name + "' 1" + kDualInput + limits + " /\n" + kInfinite,
+          120.0, 1.04691};
+}
 void expect_dual_input(const std::string& name, const std::string& limits) {
-  expect_agreement(
-      {folder_of("PSS2A") / "OMIB.raw", folder_of(name) / "results_PSSe.csv",
-       std::string(kMachine) + kExciter + "1 '" + name + "' 1" + kDualInput + limits + " /\n" + kInfinite,
-       120.0, 1.04691},
-      [](const grid::Grid& grid, const Signals<double>& s, const double*, const double* v) {
-        return std::vector{s.P, magnitude(grid, v, 1), 1.0 + s.speed};
-      });
+  expect_agreement(dual_input(name, limits),
+                   [](const grid::Grid& grid, const Signals<double>& s, const double*, const double* v) {
+                     return std::vector{s.P, magnitude(grid, v, 1), 1.0 + s.speed};
+                   });
 }
 
 TEST(PsseRecords, Stab1) {
@@ -101,6 +108,27 @@ TEST(PsseRecords, Stab1) {
 TEST(PsseRecords, Pss2a) { expect_dual_input("PSS2A", "0.1 -0.1"); }
 TEST(PsseRecords, Pss2bAtItsInputsLimits) {
   expect_dual_input("PSS2B", "1 1 0.00035 -0.00055 0.915 0.895 0.1 -0.1");
+}
+// Exact integration, for PSS/E's steps of 5 ms are as long as the switching here takes.
+TEST(PsseRecords, Pss2cSwitchedByThePower) {
+  const Case c = dual_input("PSS2C", "1 1 0.00035 -0.00055 0.915 0.895 0.1 -0.1 1 1 0.895 0.885 1 1");
+  ReferenceOptions options;
+  options.t_end = kEnd;
+  options.rate = 1.0 / kStep;
+  options.channels = {Channel::P, Channel::V, Channel::speed};
+  const ReferenceRun run = run_reference(grid_of(c), {}, options);
+  for (int k = 0; k < 3; ++k) {
+    double low = 1e9, high = -1e9, worst = 0.0;
+    for (const auto& row : test::read_table(c.record, false).rows) {
+      const long i = std::lround(row[0] / kStep);
+      if (i >= run.samples || std::abs(row[0] - kChange) < 0.5 * kStep) continue;
+      const double theirs = row[static_cast<std::size_t>(k) + 1] - (k == 2 ? 1.0 : 0.0);
+      low = std::min(low, theirs);
+      high = std::max(high, theirs);
+      worst = std::max(worst, std::abs(run.at(0, k)[i] - theirs));
+    }
+    EXPECT_LT(worst / (high - low), kShare) << "column " << k;
+  }
 }
 
 }  // namespace
