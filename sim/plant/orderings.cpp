@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 namespace swingbank::sim::plant {
@@ -42,9 +43,14 @@ std::vector<Ordering> orderings(const Block& block) {
 
 std::vector<Ordering> violated(const Block& block) {
   std::vector<Ordering> list;
-  for (const auto& o : orderings(block))
-    if (!(block.p[static_cast<std::size_t>(o.greater)] > block.p[static_cast<std::size_t>(o.smaller)]))
+  for (const auto& o : orderings(block)) {
+    const auto same = [&](const Ordering& other) {  // X''d stands for X''q too
+      return other.greater == o.greater && other.smaller == o.smaller;
+    };
+    if (!(block.p[static_cast<std::size_t>(o.greater)] > block.p[static_cast<std::size_t>(o.smaller)]) &&
+        std::ranges::none_of(list, same))
       list.push_back(o);
+  }
   return list;
 }
 

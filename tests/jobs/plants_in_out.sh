@@ -16,6 +16,12 @@ cmp <(grep -v '^#' "$work/plant.toml") <(grep -v '^#' "$work/again.toml") || fai
 cmp <("$swingbank" export --dyr "$work/plant.toml") "$work/plant.dyr" || fail "export --out writes something else than is printed"
 "$swingbank" export --dyr "$work/plant.toml" --bus 7 --id B | holds -q "^7 'GENROU' 'B' " || fail "export --bus --id"
 
+# A case without nominal voltages (1 kV at every bus) gives no base of volts, and says so.
+sed "s/', 345, /', 1, /" "$raw" >"$work/per_unit.raw"
+"$swingbank" plant --raw "$work/per_unit.raw" --dyr "$dyr" --bus 32 >"$work/per_unit.toml" 2>"$work/notes"
+grep -q '^base_kv' "$work/per_unit.toml" && fail "1 kV is taken for a nominal voltage"
+grep -q 'no nominal voltage (BASKV = 1 kV): for records in kV write base_kv' "$work/notes" || fail "not said: $(cat "$work/notes")"
+
 # Out as PSLF's and back: the same plant, with controls; the .dyd's Ra and mva count.
 {
   cat "$work/plant.toml"

@@ -328,7 +328,15 @@ PlantModel model_of_unit(const sim::grid::Unit& unit, sim::Conventions conventio
   model.conventions.frequency = unit.frequency;
   model.record_base.frequency = unit.frequency;
   model.record_base.mva = unit.system_mva;
-  model.record_base.kv = unit.kv;
+  // Cases in per unit give every bus 1 kV, or none; a plant's voltage is never so low.
+  constexpr double kNoVoltage = 1.0;
+  if (unit.kv > kNoVoltage)
+    model.record_base.kv = unit.kv;
+  else
+    model.warnings.push_back(
+        fmt::format("the case gives bus {} no nominal voltage (BASKV = {:g} kV): for records in kV write "
+                    "base_kv, line to line, under [record]",
+                    unit.bus, unit.kv));
   note_standard(model, unit.standard);
   const auto settle = [&](sim::plant::Block& block) {
     for (auto& note : settle_unlimited(block)) model.warnings.push_back(std::move(note));

@@ -49,6 +49,11 @@ TEST(Orderings, NameBothParametersAndLeaveZerosAlone) {
   set("Xdp", 1.53);
   ASSERT_FALSE(violated(block).empty());
   EXPECT_EQ(violation_text(block, violated(block).front()), "Xd = 0.147 pu is not above X'd = 1.53 pu");
+  set("Xdp", 0.3);
+  set("Xd", 1.8);
+  set("Xdpp", 0.2);
+  set("Xl", 0.224);  // X''d stands for X''q too: said once
+  EXPECT_EQ(violated(block).size(), 1u);
 }
 
 }  // namespace
