@@ -64,9 +64,11 @@ cluster_start "$work/cluster"
 echo "the pipeline, each attempt cut short; $TINY_EPOCHS epochs (after $SECONDS s)"
 site "$work/site.conf"
 bash "$SWINGBANK_SOURCE/slurm/submit.sh" "$work/tiny.toml" quick --site "$work/site.conf" --out "$work/broken" | tee "$work/jobs"
+rm "$work/tiny.toml" "$work/tiny_data.toml" # the jobs read what was kept
 tables=$(job_of tables)
 signal_generate "$work/broken" "$(job_of generate)"
 cluster_retry 600 all_ended || fail "jobs still there after 600 s: $(squeue)"
+tiny_experiment "$work"
 [[ $(job_state "$tables") == COMPLETED ]] || fail "tables: $(job_state "$tables")"
 for log in generate fold-0; do
   grep -q 'going back into the queue' "$work/broken/log/$log.log" || fail "$log was never cut short: the test shows nothing"
