@@ -470,10 +470,10 @@ LinearPlant linearise(const Drive& run) { return Driven<D8>(run, {}).linear(); }
 Response drive(const Drive& run, std::span<const Direction> directions) {
   if (directions.empty()) return Driven<double>(run, {}).run();
   Response all;
-  constexpr std::size_t kAtOnce = sim::kDirections;
-  for (std::size_t first = 0; first < directions.size(); first += kAtOnce) {
+  constexpr std::size_t kSeedsAtOnce = sim::kDirections;
+  for (std::size_t first = 0; first < directions.size(); first += kSeedsAtOnce) {
     Response some =
-        Driven<D8>(run, directions.subspan(first, std::min(kAtOnce, directions.size() - first))).run();
+        Driven<D8>(run, directions.subspan(first, std::min(kSeedsAtOnce, directions.size() - first))).run();
     if (first == 0) {
       all = std::move(some);
       continue;

@@ -36,16 +36,16 @@ void fill(realtype a, N_Vector z) { std::fill_n(data(z), length(z), a); }
 int linear_combination(int terms, realtype* factors, N_Vector* vectors, N_Vector z) {
   double* pz = data(z);
   const sunindextype n = length(z);
-  constexpr int kTogether = 4;
+  constexpr int kTerms = 4;
   // The result may be the first vector, and is no other.
   if (terms == 1) {
     scale(factors[0], vectors[0], z);
     return 0;
   }
-  for (int first = 0; first < terms; first += kTogether) {
-    double f[kTogether] = {};
-    const double* p[kTogether];
-    for (int k = 0; k < kTogether; ++k) {
+  for (int first = 0; first < terms; first += kTerms) {
+    double f[kTerms] = {};
+    const double* p[kTerms];
+    for (int k = 0; k < kTerms; ++k) {
       const bool has = first + k < terms;
       f[k] = has ? factors[first + k] : 0.0;
       p[k] = data(vectors[has ? first + k : first]);
