@@ -12,6 +12,7 @@
 #include "base/problem.hpp"
 #include "base/sealed_text.hpp"
 #include "mpi/store/manifest.hpp"
+#include "mpi/store/shard_apart.hpp"
 
 namespace swingbank::mpi::store {
 
@@ -312,6 +313,16 @@ std::optional<Problem> fault_of(const fs::path& folder, const JournalLine& line,
     return p;
   }
   return std::nullopt;
+}
+
+ShardData read_shard_apart(const ShardInfo& shard, const ShardFields& fields) {
+  require_length(shard);
+  ShardData data = read_shard_apart(shard.path, fields, &shard.shape);
+  if (const std::string& found = data.attributes.config_hash; found != shard.config_hash)
+    throw InputError({"a shard of another config", shard.path.string(),
+                      "its config hash is " + found + ", the dataset's " + shard.config_hash,
+                      kRepairDataset});
+  return data;
 }
 
 void read_rows(const ShardInfo& shard, std::uint64_t first, std::uint64_t count, RowBlock& out,

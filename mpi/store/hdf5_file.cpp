@@ -9,10 +9,14 @@
 #include "base/durable.hpp"
 #include "base/input_file.hpp"
 #include "base/problem.hpp"
+#include "base/read_apart.hpp"
+#include "mpi/store/hdf5_apart.hpp"
 
 namespace swingbank::mpi::store::h5 {
 
 namespace {
+
+constexpr const char* kRemedy = "if the file is damaged, delete it and run the command that made it again";
 
 /// The innermost message on HDF5's error stack: the cause. Clears the stack.
 std::string reason() {
@@ -93,6 +97,15 @@ File File::open(const std::filesystem::path& file) {
   return f;
 }
 
+File File::open_apart(const std::filesystem::path& file, const std::vector<std::string>& names) {
+  File f;
+  f.name_ = file;
+  if (!std::filesystem::exists(file))
+    throw InputError(unreadable(file, "cannot open the HDF5 file", "check the path"));
+  f.contents_ = std::make_shared<const Contents>(Contents::parse(read_apart("hdf5", file, names), file));
+  return f;
+}
+
 File File::create(const std::filesystem::path& file, hid_t access) {
   silence();
   File f;
@@ -110,11 +123,59 @@ void File::close() {
   if (!file_.reset()) fail("cannot complete the HDF5 file", "");
 }
 
+template <class T>
+const T& File::found(const std::string& name, const char* what) const {
+  const auto* value = contents_->find(name);
+  const T* it = value == nullptr ? nullptr : std::get_if<T>(value);
+  if (it == nullptr) throw InputError({what, name_.string() + ":" + name, "the file has none", kRemedy});
+  return *it;
+}
+
+std::size_t File::values_apart(const std::string& object, hsize_t first, hsize_t count,
+                               const char* kind) const {
+  const auto& a = found<Contents::Array>(object, "cannot open the array");
+  const auto refuse = [&](const char* what, const std::string& why) {
+    throw InputError({what, name_.string() + ":" + object, why, kRemedy});
+  };
+  if (a.kind != kind) refuse("an array of another type", "it holds " + a.kind + ", not " + kind);
+  if (count == 0) return 0;
+  if (a.shape.empty() || count > a.shape[0] || first > a.shape[0] - count)
+    refuse("rows that are not there",
+           "the array has " + std::to_string(a.shape.empty() ? 0 : a.shape[0]) + " of them");
+  return count * row_size(Shape(a.shape.begin(), a.shape.end()));
+}
+
+void File::copy_apart(const std::string& object, hsize_t first, hsize_t count, void* to) const {
+  const auto& a = found<Contents::Array>(object, "cannot open the array");
+  if (count == 0 || a.bytes.empty()) return;
+  const std::size_t row = a.bytes.size() / a.shape[0];
+  std::memcpy(to, a.bytes.data() + first * row, count * row);
+}
+
 bool File::has(const std::string& object) const {
+  if (contents_) return contents_->find(object) != nullptr;
   return H5Lexists(file_.get(), object.c_str(), H5P_DEFAULT) > 0;
 }
 
+std::string File::kind(const std::string& object) const {
+  const Handle set(H5Dopen2(file_.get(), object.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!set) fail("cannot open the array", object);
+  const Handle type(H5Dget_type(set.get()), H5Tclose);
+  const auto kind_class = H5Tget_class(type.get());
+  const std::string bytes = std::to_string(H5Tget_size(type.get()));
+  std::string kind;
+  if (kind_class == H5T_FLOAT) kind = "f" + bytes;
+  if (kind_class == H5T_INTEGER) kind = (H5Tget_sign(type.get()) == H5T_SGN_NONE ? "u" : "i") + bytes;
+  for (const char* known : {"f4", "f8", "u8", "i4", "i2", "u1"})
+    if (kind == known) return kind;
+  return {};
+}
+
 Shape File::shape(const std::string& object) const {
+  if (contents_) {
+    const auto& a = found<Contents::Array>(object, "cannot open the array");
+    return {a.shape.begin(), a.shape.end()};
+  }
   const Handle set(H5Dopen2(file_.get(), object.c_str(), H5P_DEFAULT), H5Dclose);
   if (!set) fail("cannot open the array", object);
   const Handle space(H5Dget_space(set.get()), H5Sclose);
@@ -129,7 +190,7 @@ void File::too_large(const std::string& object, std::uint64_t values, std::size_
   throw InputError({"an array too large to read", name_.string() + ":" + object,
                     std::to_string(values) + " values of " + std::to_string(bytes) +
                         " bytes are more than its file or this machine's memory can hold",
-                    "if the file is damaged, delete it and run the command that made it again"});
+                    kRemedy});
 }
 
 std::size_t File::values_in(const std::string& object, hsize_t count, std::size_t bytes) const {
@@ -258,6 +319,7 @@ std::pair<Handle, hsize_t> File::find(const std::string& name) const {
 }
 
 std::vector<std::string> File::texts_attribute(const std::string& name) const {
+  if (contents_) return found<std::vector<std::string>>("@" + name, "cannot read the attribute");
   const auto [a, n] = find(name);
   const Handle type = string_type(), space(H5Aget_space(a.get()), H5Sclose);
   std::vector<char*> texts(n, nullptr);
@@ -269,6 +331,7 @@ std::vector<std::string> File::texts_attribute(const std::string& name) const {
 }
 
 bool File::has_attribute(const std::string& name) const {
+  if (contents_) return contents_->find("@" + name) != nullptr;
   return H5Aexists_by_name(file_.get(), "/", name.c_str(), H5P_DEFAULT) > 0;
 }
 std::string File::text_attribute(const std::string& name) const {
@@ -278,6 +341,7 @@ std::string File::text_attribute(const std::string& name) const {
 }
 
 std::uint64_t File::integer_attribute(const std::string& name) const {
+  if (contents_) return found<std::uint64_t>("@" + name, "cannot read the attribute");
   const auto [a, n] = find(name);
   std::uint64_t value = 0;
   if (n != 1 || H5Aread(a.get(), Type<std::uint64_t>::memory(), &value) < 0)
@@ -286,6 +350,7 @@ std::uint64_t File::integer_attribute(const std::string& name) const {
 }
 
 std::vector<double> File::reals_attribute(const std::string& name) const {
+  if (contents_) return found<std::vector<double>>("@" + name, "cannot read the attribute");
   const auto [a, n] = find(name);
   std::vector<double> values(n);
   if (n > 0 && H5Aread(a.get(), Type<double>::memory(), values.data()) < 0)

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <mutex>
 #include <new>
 #include <string>
@@ -51,40 +52,53 @@ template <class T>
 struct Type;  // native type in memory, fixed little-endian type in the file
 template <>
 struct Type<float> {
+  static constexpr const char* kKind = "f4";
   static hid_t memory() { return H5T_NATIVE_FLOAT; }
   static hid_t file() { return H5T_IEEE_F32LE; }
 };
 template <>
 struct Type<double> {
+  static constexpr const char* kKind = "f8";
   static hid_t memory() { return H5T_NATIVE_DOUBLE; }
   static hid_t file() { return H5T_IEEE_F64LE; }
 };
 template <>
 struct Type<std::uint64_t> {
+  static constexpr const char* kKind = "u8";
   static hid_t memory() { return H5T_NATIVE_UINT64; }
   static hid_t file() { return H5T_STD_U64LE; }
 };
 template <>
 struct Type<std::int32_t> {
+  static constexpr const char* kKind = "i4";
   static hid_t memory() { return H5T_NATIVE_INT32; }
   static hid_t file() { return H5T_STD_I32LE; }
 };
 template <>
 struct Type<std::int16_t> {
+  static constexpr const char* kKind = "i2";
   static hid_t memory() { return H5T_NATIVE_INT16; }
   static hid_t file() { return H5T_STD_I16LE; }
 };
 template <>
 struct Type<std::uint8_t> {
+  static constexpr const char* kKind = "u1";
   static hid_t memory() { return H5T_NATIVE_UINT8; }
   static hid_t file() { return H5T_STD_U8LE; }
 };
 
 using Shape = std::vector<hsize_t>;
 
+class Contents;
+
 class File {
  public:
+  /// Of a file whose sum was compared: HDF5 1.10 may crash on a damaged one.
   static File open(const std::filesystem::path& file);
+  /// Of a file that others made, or that nobody has compared: a process of its own reads the arrays
+  /// ("/records") and attributes ("@format") of these names, where they are there; nothing else is seen of
+  /// the file.
+  static File open_apart(const std::filesystem::path& file, const std::vector<std::string>& names);
   /// `access`: a file-access property list (MPI-IO), or -1 for the default driver.
   static File create(const std::filesystem::path& file, hid_t access = -1);
   /// Closes; throws if buffered data could not be written.
@@ -92,6 +106,8 @@ class File {
 
   [[nodiscard]] bool has(const std::string& object) const;
   [[nodiscard]] Shape shape(const std::string& object) const;
+  /// Type<T>::kKind of the type it is stored in; empty: none of those.
+  [[nodiscard]] std::string kind(const std::string& object) const;
   void create_group(const std::string& name);
   void create(const std::string& object, hid_t file_type, const Shape& shape);
   template <class T>
@@ -111,6 +127,10 @@ class File {
   /// Rows first ... first+count-1 of the leading dimension; `values` is resized.
   template <class T>
   void read(const std::string& object, hsize_t first, hsize_t count, std::vector<T>& values) const {
+    if (contents_) {
+      values.resize(values_apart(object, first, count, Type<T>::kKind));
+      return copy_apart(object, first, count, values.data());
+    }
     const std::size_t n = values_in(object, count, sizeof(T));
     try {
       values.resize(n);
@@ -152,12 +172,19 @@ class File {
   [[noreturn]] void too_large(const std::string& object, std::uint64_t values, std::size_t bytes) const;
   void transfer(const std::string& object, hsize_t first, hsize_t count, hid_t type, void* in,
                 const void* out) const;
+  /// Of what was read apart: values in these rows, if they are there and of this kind; throws InputError.
+  [[nodiscard]] std::size_t values_apart(const std::string& object, hsize_t first, hsize_t count,
+                                         const char* kind) const;
+  void copy_apart(const std::string& object, hsize_t first, hsize_t count, void* to) const;
+  template <class T>
+  [[nodiscard]] const T& found(const std::string& name, const char* what) const;
   void put(const std::string& object, const std::string& name, hid_t file_type, hid_t memory_type,
            const Shape& shape, const void* data);
   [[nodiscard]] std::pair<Handle, hsize_t> find(const std::string& name) const;
 
   std::filesystem::path name_;
   Handle file_;
+  std::shared_ptr<const Contents> contents_;  ///< where it was read apart
 };
 
 }  // namespace swingbank::mpi::store::h5

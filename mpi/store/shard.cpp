@@ -5,6 +5,7 @@
 #include "base/durable.hpp"
 #include "base/problem.hpp"
 #include "mpi/store/quantise.hpp"
+#include "mpi/store/shard_apart.hpp"
 #include "mpi/store/shard_layout.hpp"
 #include "sim/core/trajectory.hpp"
 
@@ -121,9 +122,10 @@ std::string_view draw_outcome_name(std::uint8_t outcome) {
   return outcome == kRefused ? "refused" : sim::outcome_name(static_cast<sim::Outcome>(outcome));
 }
 
-ShardData read_shard(const fs::path& file, const ShardFields& fields, const ShardShape* shape) {
-  const std::lock_guard guard(h5::lock());
-  const h5::File f = h5::File::open(file);
+namespace {
+
+ShardData shard_of(const h5::File& f, const fs::path& file, const ShardFields& fields,
+                   const ShardShape* shape) {
   ShardData data;
   data.attributes = read_attributes(f, file);
   read_shape(f, file, shape, data);
@@ -140,6 +142,29 @@ ShardData read_shard(const fs::path& file, const ShardFields& fields, const Shar
     }
   }
   return data;
+}
+
+}  // namespace
+
+ShardData read_shard(const fs::path& file, const ShardFields& fields, const ShardShape* shape) {
+  const std::lock_guard guard(h5::lock());
+  return shard_of(h5::File::open(file), file, fields, shape);
+}
+
+ShardData read_shard_apart(const fs::path& file, const ShardFields& fields, const ShardShape* shape) {
+  std::vector<std::string> names{"text@format",        "text@config_hash",     "text@kernel",
+                                 "text@software",      "integer@seed",         "integer@shard",
+                                 "real@rate",          "text@machine_model",   "text@channel_names",
+                                 "text@channel_units", "text@parameter_names", "text@parameter_units",
+                                 "real@parameter_low", "real@parameter_high",  "text@parameter_effects"};
+  // Shapes come with the arrays; each is read in the type that a shard has it in.
+  for (const char* array : {"/records", "f4/record_scale", "f8/parameters", "u8/sample_id", "i4/generator",
+                            "f8/fault", "f8/largest_spread", "u1/angle_valid", "f8/machine_base"})
+    names.emplace_back(array);
+  if (fields.draws)
+    for (const char* array : {"u8/draws/sample_id", "u1/draws/outcome", "i4/draws/redrawn"})
+      names.emplace_back(array);
+  return shard_of(h5::File::open_apart(file, names), file, fields, shape);
 }
 
 void read_rows(const fs::path& file, std::uint64_t first, std::uint64_t count, RowBlock& out,

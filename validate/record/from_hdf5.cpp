@@ -31,9 +31,11 @@ std::size_t choose_plant(const std::vector<std::string>& plants, const std::stri
 Record read_hdf5_record(const std::filesystem::path& file, const RecordBase& base,
                         const ReadOptions& options) {
   const std::string bytes = read_bytes(file);
-  const std::lock_guard guard(mpi::store::h5::lock());
-  const mpi::store::h5::File h = mpi::store::h5::File::open(file);
-  if (!h.has("/time") || !h.has("/records") || h.text_attribute("format") != "swingbank-run-1")
+  const mpi::store::h5::File h = mpi::store::h5::File::open_apart(
+      file, {"f8/time", "f8/records", "text@format", "text@plant_names", "text@channel_names",
+             "text@channel_units", "real@plant_base_mva"});
+  if (!h.has("/time") || !h.has("/records") || !h.has_attribute("format") ||
+      h.text_attribute("format") != "swingbank-run-1")
     throw InputError({"no run", file.string(), "HDF5 records are runs written by swingbank simulate",
                       "give such a file, CSV or COMTRADE"});
   const auto plants = h.texts_attribute("plant_names"), channels = h.texts_attribute("channel_names");

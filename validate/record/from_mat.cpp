@@ -8,14 +8,15 @@
 #include <cstdint>
 #include <iterator>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/read_apart.hpp"
 #include "validate/record/detail/columns.hpp"
 #include "validate/record/formats.hpp"
+#include "validate/record/mat_text.hpp"
 
 namespace swingbank::validate::record {
 namespace {
@@ -153,9 +154,9 @@ class MatReader {
   void variable(matvar_t& v) { take(v, v.name == nullptr ? "?" : v.name, "", 0); }
 
   /// The columns as text, as the reader of text takes them.
-  std::string text(const ReadOptions& options) {
+  std::string text(const std::string& time) {
     name_tables();
-    const std::size_t rows = time_rows(options);
+    const std::size_t rows = time_rows(time);
     std::erase_if(columns_, [&](const MatColumn& c) { return c.values.size() != rows; });
     std::string out;
     for (std::size_t c = 0; c < columns_.size(); ++c) out += (c > 0 ? "\t" : "") + columns_[c].name;
@@ -255,17 +256,15 @@ class MatReader {
   }
 
   /// How many samples there are: as many as times.
-  [[nodiscard]] std::size_t time_rows(const ReadOptions& options) const {
+  [[nodiscard]] std::size_t time_rows(const std::string& asked) const {
     if (!other_times_.empty())
       refuse("signals with different times", "one record has one time vector",
              "bring them to one time in MATLAB: resample or synchronize");
-    const auto asked = options.columns.find("t");
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       const MatColumn& c = columns_[k];
-      if (asked == options.columns.end()
-              ? is_time(c.name)
-              : asked->second == c.name || asked->second.starts_with(c.name + " [") ||
-                    asked->second.starts_with(fmt::format("#{} ", k + 1)))
+      if (asked.empty() ? is_time(c.name)
+                        : asked == c.name || asked.starts_with(c.name + " [") ||
+                              asked.starts_with(fmt::format("#{} ", k + 1)))
         return c.values.size();
     }
     refuse("no time vector", "none of the variables is called t, time or timestamp", kExport);
@@ -292,14 +291,11 @@ class MatReader {
 
 }  // namespace
 
-Record read_mat_record(const std::filesystem::path& file, const RecordBase& base,
-                       const ReadOptions& options) {
+std::string mat_text(const std::filesystem::path& file, const std::string& time) {
   const std::string name = file.string(), bytes = read_bytes(file);
   const auto broken = [&](const char* why) {
     return InputError({"no readable MATLAB file", name, why, "copy or save it again"});
   };
-  static std::mutex one_at_a_time;  // v7.3 is read by the serial HDF5, which knows no threads
-  const std::lock_guard guard(one_at_a_time);
   if (is_cut_off(bytes)) throw broken("its last variable breaks off");
   const std::unique_ptr<mat_t, int (*)(mat_t*)> mat(Mat_Open(name.c_str(), MAT_ACC_RDONLY), Mat_Close);
   if (!mat) throw broken("it is cut short, or something else that is called .mat");
@@ -309,10 +305,22 @@ Record read_mat_record(const std::filesystem::path& file, const RecordBase& base
     if (!v) break;
     reader.variable(*v);
   }
-  Record record = parse_record(reader.text(options), fmt::format("columns of {}", file.filename().string()),
-                               base, options);
+  const bool hdf5 = Mat_GetVersion(mat.get()) == MAT_FT_MAT73;
+  return std::string(hdf5 ? "MATLAB 7.3" : "MATLAB") + '\n' + reader.text(time);
+}
+
+Record read_mat_record(const std::filesystem::path& file, const RecordBase& base,
+                       const ReadOptions& options) {
+  const std::string bytes = read_bytes(file);
+  std::vector<std::string> time;
+  if (const auto asked = options.columns.find("t"); asked != options.columns.end())
+    time.push_back(asked->second);
+  const std::string text = read_apart("mat", file, time);
+  const auto line = text.find('\n');
+  Record record = parse_record(line == std::string::npos ? "" : text.substr(line + 1),
+                               fmt::format("columns of {}", file.filename().string()), base, options);
   record.hash = XXH64(bytes.data(), bytes.size(), 0);
-  record.format = Mat_GetVersion(mat.get()) == MAT_FT_MAT73 ? "MATLAB 7.3" : "MATLAB";
+  record.format = text.substr(0, line);
   return record;
 }
 

@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <fstream>
 #include <thread>
 
 #include "base/durable.hpp"
 #include "base/problem.hpp"
 #include "mpi/store/hdf5_file.hpp"
+#include "mpi/store/shard_apart.hpp"
 #include "tests/mpi/store/sample_shard.hpp"
 
 namespace swingbank::mpi::store {
@@ -151,6 +153,44 @@ TEST(Shard, AnotherConfigIsRefused) {
               HasSubstr("another config"));
 }
 
+TEST(Shard, ReadApartIsTheSame) {
+  const Folder folder;
+  const std::filesystem::path file = folder.path / "s.h5";
+  for (const bool points : {false, true}) {
+    ShardData shard = test::sample_shard();
+    if (points) {
+      shard.attributes.operating_points = true;
+      shard.machine_base.assign(shard.rows, 250.0);
+      shard.draw_redrawn.assign(shard.draw_sample_id.size() * kRedrawnColumns, 1);
+    }
+    write_shard(file, shard);
+    const ShardData here = read_shard(file), apart = read_shard_apart(file);
+    EXPECT_EQ(shard_hash(apart), shard_hash(here));
+    EXPECT_EQ(apart.attributes.channel_units, here.attributes.channel_units);
+    EXPECT_EQ(apart.attributes.rate, here.attributes.rate);
+    EXPECT_EQ(apart.attributes.seed, here.attributes.seed);
+    EXPECT_EQ(apart.machine_base, here.machine_base);
+  }
+}
+TEST(Shard, DamagedIsToldApart) {
+  const Folder folder;
+  const std::filesystem::path file = folder.path / "s.h5";
+  write_shard(file, test::sample_shard());
+  const std::string whole = read_text(file);
+  int told = 0;
+  for (std::size_t k = 0; k < 40; ++k) {  // over all of it: most bytes are descriptions
+    std::string bytes = whole;
+    bytes[k * whole.size() / 40] ^= '\x7f';
+    std::ofstream(file, std::ios::binary) << bytes;
+    try {
+      (void)read_shard_apart(file);
+    } catch (const InputError& e) {
+      ++told;
+      EXPECT_NE(std::string(e.what()).find("s.h5"), std::string::npos) << e.what();
+    }
+  }
+  EXPECT_GE(told, 1);
+}
 TEST(Shard, ForeignHdf5IsRefused) {
   const Folder folder;
   h5::File f = h5::File::create(folder.path / "a.h5");

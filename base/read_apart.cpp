@@ -1,0 +1,102 @@
+#include "base/read_apart.hpp"
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <nlohmann/json.hpp>
+
+#include "base/child.hpp"
+#include "base/json_text.hpp"
+#include "base/own_command.hpp"
+#include "base/problem.hpp"
+
+namespace swingbank {
+namespace {
+
+constexpr double kPatience = 300.0;          ///< [s] for what waits: a disk, a process that was stopped
+constexpr rlim_t kProcessorTime = 30;        ///< [s] a damaged file can keep its reader busy for ever
+constexpr std::uintmax_t kSlow = 5'000'000;  ///< [bytes/s] that any reader manages
+constexpr int kRefused = 3;                  ///< exit code: the answer is a list of problems
+constexpr const char* kWhat = "a file that cannot be read";
+constexpr const char* kRemedy = "get the file again from where it came from, or make it again";
+
+/// The problems that the program told; none: what it printed is no such list.
+std::vector<Problem> problems_in(const std::string& text) {
+  const auto list = nlohmann::json::parse(text, nullptr, false);
+  std::vector<Problem> problems;
+  if (!list.is_array()) return problems;
+  for (const auto& p : list) {
+    if (!p.is_array() || p.size() != 4) return {};
+    for (const auto& part : p)
+      if (!part.is_string()) return {};
+    problems.push_back({p[0], p[1], p[2], p[3]});
+  }
+  return problems;
+}
+
+std::string way_to_end(const ProgramEnd& ended, double patience) {
+  if (ended.late) return "its reader had no end after " + std::to_string(static_cast<int>(patience)) + " s";
+  if (WIFSIGNALED(ended.status))
+    return std::string("its reader was ended by a signal: ") + ::strsignal(WTERMSIG(ended.status));
+  return "its reader ended with code " + std::to_string(ended.code());
+}
+
+bool print(const std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const ssize_t n = ::write(STDOUT_FILENO, text.data() + at, text.size() - at);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
+    at += static_cast<std::size_t>(n);
+  }
+  return true;
+}
+
+}  // namespace
+
+std::string read_apart(const std::string& kind, const std::filesystem::path& file,
+                       const std::vector<std::string>& words) {
+  const auto program = jobs::own_command("read-hdf5", "build or install swingbank whole");
+  std::vector<std::string> all{program.string(), kind, file.string()};
+  all.insert(all.end(), words.begin(), words.end());
+  std::error_code none;
+  const double size = static_cast<double>(std::filesystem::file_size(file, none));
+  const double patience = kPatience + (none ? 0.0 : size / static_cast<double>(kSlow));
+  ProgramEnd ended = run_program(program, all, {ProgramRun::Output::taken, true, patience});
+  if (!ended.late && WIFEXITED(ended.status)) {
+    if (WEXITSTATUS(ended.status) == 0) return std::move(ended.output);
+    if (WEXITSTATUS(ended.status) == kRefused)
+      if (auto problems = problems_in(ended.output); !problems.empty()) throw InputError(std::move(problems));
+  }
+  throw InputError({kWhat, file.string(), way_to_end(ended, patience) + "; the file is damaged", kRemedy});
+}
+
+int answer_apart(const std::filesystem::path& file, const std::function<std::string()>& work) {
+  const char* asked = std::getenv("SWINGBANK_READER_SECONDS");
+  std::error_code none;
+  const auto size = std::filesystem::file_size(file, none);
+  const rlim_t seconds =
+      (asked != nullptr && std::atol(asked) > 0 ? static_cast<rlim_t>(std::atol(asked)) : kProcessorTime) +
+      (none ? 0 : static_cast<rlim_t>(size / kSlow));
+  const rlimit limit{seconds, seconds}, no_core{0, 0};
+  ::setrlimit(RLIMIT_CPU, &limit);
+  ::setrlimit(RLIMIT_CORE, &no_core);  // a crash is an answer
+  nlohmann::json problems = nlohmann::json::array();
+  try {
+    return print(work()) ? 0 : 1;
+  } catch (const InputError& e) {
+    for (const Problem& p : e.problems()) problems.push_back({p.what, p.where, p.why, p.remedy});
+  } catch (const std::bad_alloc&) {
+    problems.push_back({kWhat, "its reader", "memory is short", "run it where there is more memory"});
+  }
+  return print(json_text(problems)) ? kRefused : 1;
+}
+
+}  // namespace swingbank
