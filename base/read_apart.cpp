@@ -24,7 +24,7 @@ namespace {
 constexpr double kPatience = 300.0;          ///< [s] for what waits: a disk, a process that was stopped
 constexpr rlim_t kProcessorTime = 30;        ///< [s] a damaged file can keep its reader busy for ever
 constexpr std::uintmax_t kSlow = 5'000'000;  ///< [bytes/s] that any reader manages
-constexpr int kRefused = 3;                  ///< exit code: the answer is a list of problems
+constexpr int kProblemsTold = 3;             ///< exit code: the answer is a list of problems
 constexpr const char* kWhat = "a file that cannot be read";
 constexpr const char* kRemedy = "get the file again from where it came from, or make it again";
 
@@ -72,7 +72,7 @@ std::string read_apart(const std::string& kind, const std::filesystem::path& fil
   ProgramEnd ended = run_program(program, all, {ProgramRun::Output::taken, true, patience});
   if (!ended.late && WIFEXITED(ended.status)) {
     if (WEXITSTATUS(ended.status) == 0) return std::move(ended.output);
-    if (WEXITSTATUS(ended.status) == kRefused)
+    if (WEXITSTATUS(ended.status) == kProblemsTold)
       if (auto problems = problems_in(ended.output); !problems.empty()) throw InputError(std::move(problems));
   }
   throw InputError({kWhat, file.string(), way_to_end(ended, patience) + "; the file is damaged", kRemedy});
@@ -96,7 +96,7 @@ int answer_apart(const std::filesystem::path& file, const std::function<std::str
   } catch (const std::bad_alloc&) {
     problems.push_back({kWhat, "its reader", "memory is short", "run it where there is more memory"});
   }
-  return print(json_text(problems)) ? kRefused : 1;
+  return print(json_text(problems)) ? kProblemsTold : 1;
 }
 
 }  // namespace swingbank
