@@ -1,5 +1,5 @@
-// swingbank-read-hdf5: what base/read_apart starts to read files that the libraries may crash on. No command
-// for people: it answers in bytes.
+// swingbank-read-hdf5: what base/read_apart starts to read files that the libraries may crash on. It answers
+// in bytes.
 //   swingbank-read-hdf5 hdf5 FILE NAME...      arrays and attributes (mpi/store/hdf5_apart.hpp)
 //   swingbank-read-hdf5 mat FILE [TIME]        a MATLAB file as text in columns
 //   (validate/record/mat_text.hpp)
@@ -8,21 +8,33 @@
 #include <vector>
 
 #include "base/read_apart.hpp"
+#include "jobs/command_line.hpp"
 #include "mpi/store/hdf5_apart.hpp"
 #include "validate/record/mat_text.hpp"
 
 int main(int argc, char** argv) {
   using namespace swingbank;
-  const std::vector<std::string> words(argv + 1, argv + argc);
-  if (words.size() < 2 || (words[0] != "hdf5" && words[0] != "mat")) {
-    std::fprintf(stderr,
-                 "wrong words at swingbank-read-hdf5 (other programs of swingbank start it): start those\n");
+  std::string kind, file;
+  std::vector<std::string> names;
+  if (argc < 3) {  // with a file the words are taken as they stand: names of files may begin with a dash
+    jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank read-hdf5");
+    line.add("KIND", kind, "what the file is").required().one_of({"hdf5", "mat"});
+    line.add("FILE", file, "what is read; the answer is bytes, or a list of problems with exit code 3")
+        .required();
+    line.add("NAMES", names, "of hdf5: arrays (/records) and attributes (@format); of mat: the time column");
+    (void)line.parse(argc, argv);  // there is no file
+    return line.end();
+  }
+  kind = argv[1];
+  file = argv[2];
+  names.assign(argv + 3, argv + argc);
+  if (kind != "hdf5" && kind != "mat") {
+    std::fprintf(stderr, "'%s' at KIND (swingbank read-hdf5 knows hdf5 and mat): choose one, or see --help\n",
+                 kind.c_str());
     return 1;
   }
-  const std::string& file = words[1];
-  const std::vector<std::string> rest(words.begin() + 2, words.end());
   return answer_apart(file, [&] {
-    return words[0] == "hdf5" ? mpi::store::h5::read_asked(file, rest)
-                              : validate::record::mat_text(file, rest.empty() ? "" : rest[0]);
+    return kind == "hdf5" ? mpi::store::h5::read_asked(file, names)
+                          : validate::record::mat_text(file, names.empty() ? "" : names[0]);
   });
 }
