@@ -10,6 +10,7 @@
 #include "base/in_parallel.hpp"
 #include "validate/calibrate/detail/closed_start.hpp"
 #include "validate/calibrate/detail/identify.hpp"
+#include "validate/calibrate/detail/newton.hpp"
 #include "validate/calibrate/detail/screen.hpp"
 #include "validate/calibrate/detail/voltage_noise.hpp"
 #include "validate/fit/noise.hpp"
@@ -62,9 +63,9 @@ class Calibrating {
     before_ = each_alone(model_.plant, "events with the model as it is");
     search();
     shift_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(free_.size()));
-    if (c_.fit.misfit() <= thresholds::noise.taken_back) {
+    if (c_.fit.misfit() <= thresholds::noise.measurable) {
       whiten_voltage_noise();
-      undo_voltage_noise();
+      if (c_.fit.misfit() <= thresholds::noise.taken_back) undo_voltage_noise();
     }
     after_ = each_alone(c_.fit.plant, "events with the fitted model");
     c_.model.plant = c_.fit.plant;
@@ -187,9 +188,13 @@ class Calibrating {
     fit::Fit whole;
     whole.plant = c_.fit.plant;
     whole.events = each_alone(whole.plant, "noise of the voltage");
-    noise_ = fit::voltage_noise(whole, c_.prepared);
+    event::WhitenedEvents measured = c_.prepared;
+    measured = measured.with(event::measure_noise({whole.plant, model_.conventions}, measured));
+    measured = measured.with(fit::sharpen_noise(whole, measured));
+    noise_ = fit::voltage_noise(whole, measured);
+    whitened_through_ = whole.plant;
     const event::WhitenedEvents remembered =
-        c_.prepared.with(fit::remember_noise(whole, model_.conventions, c_.prepared));
+        measured.with(fit::remember_noise(whole, model_.conventions, measured));
     bool any_memory = false;
     for (std::size_t e = 0; e < remembered.size(); ++e)
       any_memory = any_memory || remembered.noise(e).memory != nullptr;
@@ -205,39 +210,61 @@ class Calibrating {
           {"the fitted model cannot be run again", model_.origin, c_.fit.failed, "fix parameters"});
     before_ = each_alone(model_.plant, "events with the model as it is");
   }
-  /// Takes one Newton step back from where noise of the played-in voltage has pulled the fit.
-  void undo_voltage_noise() {
-    const auto n = static_cast<Eigen::Index>(free_.size());
+  /// Slopes of the events that are seen.
+  std::vector<fit::EventSlopes> slopes_seen(const sim::plant::Plant& plant) const {
     std::vector<fit::EventSlopes> slopes(seen_.size());
     in_parallel(
         slopes.size(),
         [&](std::size_t e) {
-          slopes[e] = fit::event_slopes({c_.fit.plant, model_.conventions}, seen_.whitened(e),
-                                        c_.fit.events[e].state, free_);
+          slopes[e] = fit::event_slopes({plant, model_.conventions}, seen_.whitened(e), states_[e], free_);
         },
         [&](int done) { tell("noise of the voltage", done, static_cast<int>(slopes.size())); });
-    pull_ = voltage_pull({c_.fit.plant, model_.conventions}, seen_, noise_.variance, free_);
-    c_.voltage_noise = noise_.share;
-    Eigen::MatrixXd data = Eigen::MatrixXd::Zero(n, n);
-    for (const auto& s : slopes) data += fit::information(s);
-    const Eigen::VectorXd step = with_belief(real(data)).ldlt().solve(pull_.score);
-    sim::plant::Plant plant = c_.fit.plant;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const auto& f = free_[static_cast<std::size_t>(i)];
-      const auto& record = sim::plant::parameter_record(plant, f.id);
-      double& value = sim::plant::parameter_value(plant, f.id);
-      const double move = fit::axis_unit(c_.fit.plant, f) * step[i], old = value;
-      value = std::clamp(old > 0 ? old * std::exp(move / old) : old + move, std::min(old, record.low),
-                         std::max(old, record.high));
-      shift_[i] = value - old;
-    }
-    if (!playin::can_exist(plant)) {
-      shift_.setZero();
-      return;
-    }
-    c_.fit.plant = plant;
-    for (Eigen::Index i = 0; i < n; ++i) c_.fit.parameters[static_cast<std::size_t>(i)].value += shift_[i];
+    return slopes;
   }
+  /// Goes by Newton steps from where noise of the played-in voltage has pulled the fit to where the scores
+  /// are what that noise makes them.
+  void undo_voltage_noise() {
+    const std::vector<double> fitted = fit::values_of(c_.fit.plant, free_);
+    states_.clear();
+    for (const auto& e : c_.fit.events) states_.push_back(e.state);
+    c_.voltage_noise = noise_.share;
+    Secants secants(static_cast<Eigen::Index>(free_.size()));
+    double nearest = std::numeric_limits<double>::infinity();
+    sim::plant::Plant plant = c_.fit.plant;
+    for (int round = 0; round < kRounds && nearest > kClose; ++round) {
+      pull_ = voltage_pull({plant, model_.conventions}, {whitened_through_, model_.conventions}, seen_,
+                           noise_, free_);
+      Eigen::VectorXd missing = pull_.score;
+      if (options_.spread > 0) missing -= off_belief(model_.plant, plant, free_);
+      Eigen::MatrixXd data = Eigen::MatrixXd::Zero(missing.size(), missing.size());
+      for (const auto& s : slopes_seen(plant)) {
+        data += fit::information(s);
+        missing -= s.score;
+      }
+      const Eigen::MatrixXd known = with_belief(real(data));
+      const Eigen::VectorXd plain = known.ldlt().solve(missing);
+      const double off = std::sqrt(plain.dot(missing));
+      if (off < nearest) c_.fit.plant = plant;
+      nearest = std::min(nearest, off);
+      Eigen::VectorXd step = secants.step(plain);
+      step *= std::min(1.0, kLongest / step.cwiseAbs().maxCoeff());
+      while (step.norm() > kShortest && !playin::can_exist(stepped(plant, free_, step))) step *= 0.5;
+      if (step.norm() <= kShortest) break;
+      plant = stepped(plant, free_, step);
+      secants.taken(step);
+      for (std::size_t e = 0; e < seen_.size(); ++e)
+        states_[e] = alone(model_, plant, seen_.alone(e)).events.front().state;
+    }
+    const std::vector<double> now = fit::values_of(c_.fit.plant, free_);
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      shift_[static_cast<Eigen::Index>(i)] = now[i] - fitted[i];
+      c_.fit.parameters[i].value += now[i] - fitted[i];
+    }
+  }
+  static constexpr int kRounds = 12;
+  static constexpr double kLongest = 0.5;    ///< of a step, in a parameter's belief
+  static constexpr double kShortest = 1e-4;  ///< likewise
+  static constexpr double kClose = 0.1;      ///< so near, the search ends [standard errors]
   /// Information less what noise pretends; no direction of it is below zero.
   Eigen::MatrixXd real(const Eigen::MatrixXd& data) const {
     if (pull_.information.size() == 0) return data;
@@ -264,11 +291,18 @@ class Calibrating {
     const Eigen::MatrixXd belief = options_.spread > 0 ? Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n))
                                                        : Eigen::MatrixXd(Eigen::MatrixXd::Zero(n, n));
     Eigen::MatrixXd data = Eigen::MatrixXd::Zero(n, n), scores = data;
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(n);
+    if (pull_.score.size() > 0) {
+      double samples = 0;
+      for (const auto& e : seen_) samples += e.record.samples();
+      mean = pull_.score / samples;
+      scores += pull_.doubt;
+    }
     for (std::size_t e = 0; e < slopes.size(); ++e) {
       if (out_[e]) continue;
       data += fit::information(slopes[e]);
-      scores += fit::score_covariance(slopes[e],
-                                      static_cast<int>(std::lround(kColour / c_.prepared[e].record.step())));
+      scores += fit::score_covariance(
+          slopes[e], static_cast<int>(std::lround(kColour / c_.prepared[e].record.step())), mean);
     }
     data = real(data);
     const Eigen::MatrixXd inverse = (data + belief).ldlt().solve(Eigen::MatrixXd::Identity(n, n));
@@ -314,8 +348,7 @@ class Calibrating {
     for (std::size_t e = 0; e < out_.size(); ++e)
       if (!out_[e]) states.push_back(c_.states[e]);
     const auto n = known.rows();
-    for (const auto& tried :
-         try_events({c_.fit.plant, model_.conventions}, seen_, states, noise_.variance, free_)) {
+    for (const auto& tried : try_events({c_.fit.plant, model_.conventions}, seen_, states, noise_, free_)) {
       const Eigen::MatrixXd with = (known + tried.information).ldlt().solve(Eigen::MatrixXd::Identity(n, n));
       Candidate candidate{tried.what, {}};
       for (Eigen::Index i = 0; i < n; ++i) {
@@ -412,6 +445,8 @@ class Calibrating {
   std::vector<double> allowance_;
   fit::VoltageNoise noise_;
   VoltagePull pull_;
+  sim::plant::Plant whitened_through_;   ///< the plant whose memory the noise has
+  std::vector<fit::EventState> states_;  ///< of the events seen, while the noise is taken back
   Eigen::VectorXd shift_;
   Calibration c_;
 };

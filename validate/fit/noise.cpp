@@ -85,47 +85,128 @@ std::vector<double> detrended(const std::vector<double>& x, int count) {
   return rest;
 }
 
-/// Variances of the white noise that would have the density that V (relative) and theta [rad] show in the
-/// band before the events.
-Eigen::Vector2d moving_in_band(const event::WhitenedEvents& events) {
+/// What moves in the band in one stretch of a record: sums over its lines, of V (relative) and of theta.
+struct Band {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   int lines = 0;
-  for (const event::FitEvent& e : events) {
-    const int n = e.start.samples;
-    auto V = detrended(e.record.V, n), theta = detrended(e.record.theta, n);
-    const double turn = constants::turn * e.record.step(), line = 1 / (n * e.record.step());
-    for (int m = static_cast<int>(std::ceil(kLow / line)); m * line <= kHigh && 2 * m < n; ++m, ++lines) {
-      Complex by_v = 0, by_theta = 0;
-      for (int k = 0; k < n; ++k) {
-        const Complex wave = std::polar(1.0, turn * m * line * k);
-        by_v += wave * V[static_cast<std::size_t>(k)] / std::abs(e.start.voltage);
-        by_theta += wave * theta[static_cast<std::size_t>(k)];
-      }
-      sum += Eigen::Vector2d(std::norm(by_v), std::norm(by_theta)) / n;
-    }
+  void add(const Band& other) {
+    sum += other.sum;
+    lines += other.lines;
   }
-  return lines > 0 ? Eigen::Vector2d(sum / lines) : Eigen::Vector2d(Eigen::Vector2d::Zero());
+  /// Variances of white noise of the same density.
+  [[nodiscard]] Eigen::Vector2d level() const {
+    return lines > 0 ? Eigen::Vector2d(sum / lines) : Eigen::Vector2d(Eigen::Vector2d::Zero());
+  }
+};
+
+/// Neighbouring lines behind a Hann window, of stretches that overlap by half, tell as much as so many times
+/// fewer lines would that know nothing of each other (Welch, IEEE Trans. Audio Electroacoust. 15, 1967, 70).
+constexpr double kLinesPerFreedom = 2.06;
+
+Band in_band(const event::FitEvent& e, std::size_t first) {
+  const int n = e.start.samples;
+  const auto piece = [&](const std::vector<double>& x) {
+    return detrended(
+        {x.begin() + static_cast<std::ptrdiff_t>(first), x.begin() + static_cast<std::ptrdiff_t>(first) + n},
+        n);
+  };
+  const auto V = piece(e.record.V), theta = piece(e.record.theta);
+  const double line = 1 / (n * e.record.step());
+  Band band;
+  for (int m = static_cast<int>(std::ceil(kLow / line)); m * line <= kHigh && 2 * m < n; ++m, ++band.lines) {
+    Complex by_v = 0, by_theta = 0;
+    double power = 0;
+    for (int k = 0; k < n; ++k) {
+      const double height = std::pow(std::sin(0.5 * constants::turn * (k + 0.5) / n), 2);
+      const Complex wave = std::polar(height, constants::turn * m * k / n);
+      by_v += wave * V[static_cast<std::size_t>(k)] / std::abs(e.start.voltage);
+      by_theta += wave * theta[static_cast<std::size_t>(k)];
+      power += height * height;
+    }
+    band.sum += Eigen::Vector2d(std::norm(by_v), std::norm(by_theta)) / power;
+  }
+  return band;
 }
 
-/// How much of the answer's own movement before the events is found in the residual: 1 if the voltage moves
-/// only by noise of its instrument, 0 if the plant answers all of the movement. Returns the larger value
-/// where that cannot be told.
-double instrument_share(const Fit& fit, const event::WhitenedEvents& events) {
-  double cross = 0, own = 0;
+/// Whether a switching or a lost sample lies in the stretch or close to it.
+bool disturbed(const event::FitEvent& e, std::size_t first) {
+  const std::size_t last = first + static_cast<std::size_t>(e.start.samples) - 1;
+  for (std::size_t k = first; k <= last; ++k)
+    if (!e.compared(k)) return true;
+  return std::ranges::any_of(e.switchings, [&](const playin::Switching& s) {
+    return e.record.t[first] - kBeside < s.time && s.time < e.record.t[last] + kBeside;
+  });
+}
+
+/// Variances of the white noise that would have the density that V (relative) and theta [rad] show in the
+/// band before the events, and in every later stretch that moves no more than that; and how many squares of
+/// normal variables, twice over, they rest on.
+struct Moving {
+  Eigen::Vector2d variance, freedom;
+};
+Moving moving_in_band(const event::WhitenedEvents& events) {
+  constexpr double kBeyond = 3.0;  // standard deviations
+  Band before;
+  std::vector<Band> later;
+  for (const event::FitEvent& e : events) {
+    const auto n = static_cast<std::size_t>(e.start.samples);
+    before.add(in_band(e, 0));
+    for (std::size_t first = (n + 1) / 2; first + n <= e.record.t.size(); first += (n + 1) / 2)
+      if (!disturbed(e, first)) later.push_back(in_band(e, first));
+  }
+  Moving all{before.level(), {}};
+  for (const Eigen::Index c : {0, 1}) {
+    Band calm = before;
+    for (const Band& b : later) {
+      const double off = std::sqrt(kLinesPerFreedom * (1.0 / b.lines + 1.0 / before.lines));
+      if (b.level()[c] <= before.level()[c] * (1 + kBeyond * off)) calm.add(b);
+    }
+    all.variance[c] = calm.level()[c];
+    all.freedom[c] = calm.lines / kLinesPerFreedom;
+  }
+  return all;
+}
+
+/// How much of the answer's own movement before the events is found in the residual, and how much of the
+/// voltage's movement is found in the measured P and Q as if the current stood still; by least squares.
+struct Shares {
+  double instrument = 1, carried = 0;
+};
+Shares shares_of(const Fit& fit, const event::WhitenedEvents& events) {
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d right = Eigen::Vector2d::Zero();
+  double left = 0;
+  int values = 0;
   for (std::size_t i = 0; i < events.size(); ++i) {
     const event::FitEvent& e = events[i];
     const int n = e.start.samples;
+    const auto V = detrended(e.record.V, n), theta = detrended(e.record.theta, n);
+    const Eigen::MatrixXd into = VoltageNoise{.carried = 1}.into(e);
     for (std::size_t c = 0; c < e.channels.size(); ++c) {
-      const double noise = events.noise(i).deviation[static_cast<Eigen::Index>(c)];
+      const auto row = static_cast<Eigen::Index>(c);
+      const double noise = events.noise(i).deviation[row];
       const auto answer = detrended(fit.events[i].model[c], n),
                  measured = detrended(e.measured(e.channels[c]), n);
       for (std::size_t k = 0; k < answer.size(); ++k) {
-        cross += answer[k] * (answer[k] - measured[k]) / (noise * noise);
-        own += answer[k] * answer[k] / (noise * noise);
+        const Eigen::Vector2d x =
+            Eigen::Vector2d(answer[k],
+                            -into(row, 0) * V[k] / std::abs(e.start.voltage) - into(row, 1) * theta[k]) /
+            noise;
+        const double residual = (answer[k] - measured[k]) / noise;
+        normal += x * x.transpose();
+        right += residual * x;
+        left += residual * residual;
+        ++values;
       }
     }
   }
-  return own > 0 ? std::clamp((cross + std::sqrt(own)) / own, 0.0, 1.0) : 1.0;
+  if (!(normal.determinant() > 1e-9 * normal(0, 0) * normal(1, 1))) return {};
+  const Eigen::Matrix2d inverse = normal.inverse();
+  const Eigen::Vector2d found = inverse * right;
+  const double scatter = std::max(0.0, left - found.dot(right)) / std::max(1, values - 2);
+  // the larger value where that cannot be told
+  const double share = std::clamp(found[0] + std::sqrt(scatter * inverse(0, 0)), 0.0, 1.0);
+  return {share, share > 0 ? std::clamp(found[1] / share, 0.0, 1.0) : 0.0};
 }
 
 /// Whether the slow part of any channel's noise has a variance worth speaking of by the record's end.
@@ -156,8 +237,20 @@ event::NoiseModel sharpen_noise(const Fit& fit, const event::WhitenedEvents& eve
   return event::NoiseModel(std::move(sharper));
 }
 
+Eigen::MatrixXd VoltageNoise::into(const event::FitEvent& event) const {
+  const auto count = static_cast<Eigen::Index>(event.channels.size());
+  Eigen::MatrixXd by = Eigen::MatrixXd::Zero(count, 2);
+  const double P = carried * event.start.P, Q = carried * event.start.Q;
+  for (Eigen::Index c = 0; c < count; ++c) {
+    const playin::Output o = event.channels[static_cast<std::size_t>(c)];
+    if (o == playin::Output::P) by.row(c) << P, -Q;
+    if (o == playin::Output::Q) by.row(c) << Q, P;
+  }
+  return by;
+}
+
 event::SlowNoise slow_noise(const playin::LinearPlant& plant, event::WhitenedEvent whitened,
-                            const Eigen::Vector2d& variance) {
+                            const VoltageNoise& voltage) {
   const event::FitEvent& e = whitened.event;
   const event::EventNoise& noise = whitened.noise;
   const Eigen::Index n = plant.A.rows(), m = n + 2, count = static_cast<Eigen::Index>(e.channels.size());
@@ -175,15 +268,15 @@ event::SlowNoise slow_noise(const playin::LinearPlant& plant, event::WhitenedEve
   whole = whole.exp().eval();
   const Eigen::MatrixXd F = whole.topLeftCorner(n, n), G = whole.block(0, n, n, 2),
                         H = whole.topRightCorner(n, 2);
-  const Eigen::MatrixXd in = F * H + G - H, through = D + C * H;
-  const Eigen::MatrixXd V = variance.asDiagonal();
+  const Eigen::MatrixXd in = F * H + G - H, through = D + C * H - voltage.into(e);
+  const Eigen::MatrixXd V = voltage.variance.asDiagonal();
 
   event::SlowNoise s;
   s.A = Eigen::MatrixXd::Identity(m, m);
   s.A.topLeftCorner(n, n) = F;
   s.A.topRightCorner(n, 2) = G;
   s.C.resize(count, m);
-  s.C << C, D;
+  s.C << C, D - voltage.into(e);
   s.P = s.Q = Eigen::MatrixXd::Zero(m, m);
   s.P.bottomRightCorner(2, 2) = V / e.start.samples;
   s.Q.topLeftCorner(n, n) = in * V * in.transpose();
@@ -211,19 +304,15 @@ event::SlowNoise slow_noise(const playin::LinearPlant& plant, event::WhitenedEve
   return s;
 }
 
-event::FitEvent minute_of_noise(const event::FitEvent& like, const Eigen::Vector2d& deviation) {
-  constexpr double kMinute = 60.0;
+event::FitEvent at_rest(const event::FitEvent& like, double seconds) {
   event::FitEvent event = like;
   record::Record& r = event.record;
   const double step = r.step(), first = r.t.front();
-  const auto samples = static_cast<std::size_t>(kMinute / step);
-  for (auto* channel : {&r.t, &r.V, &r.theta}) channel->resize(samples);
-  for (std::size_t k = 0; k < samples; ++k) {
-    const auto normal = sim::normal_pair(1, 0, k);
-    r.t[k] = first + static_cast<double>(k) * step;
-    r.V[k] = std::abs(like.start.voltage) * (1 + deviation[0] * normal[0]);
-    r.theta[k] = std::arg(like.start.voltage) + deviation[1] * normal[1];
-  }
+  const auto samples = static_cast<std::size_t>(seconds / step);
+  r.t.resize(samples);
+  for (std::size_t k = 0; k < samples; ++k) r.t[k] = first + static_cast<double>(k) * step;
+  r.V.assign(samples, std::abs(like.start.voltage));
+  r.theta.assign(samples, std::arg(like.start.voltage));
   for (auto* channel : {&r.P, &r.Q, &r.speed, &r.Efd, &r.Ifd}) channel->assign(samples, 0.0);
   if (r.component != record::Component::plant) playin::stand_still(r, like.start);
   for (record::StagedEvent& e : r.staged) e.time = std::numeric_limits<double>::infinity();
@@ -234,9 +323,21 @@ event::FitEvent minute_of_noise(const event::FitEvent& like, const Eigen::Vector
   return event;
 }
 
+event::FitEvent minute_of_noise(const event::FitEvent& like, const Eigen::Vector2d& deviation) {
+  constexpr double kMinute = 60.0;
+  event::FitEvent event = at_rest(like, kMinute);
+  record::Record& r = event.record;
+  for (std::size_t k = 0; k < r.t.size(); ++k) {
+    const auto normal = sim::normal_pair(1, 0, k);
+    r.V[k] *= 1 + deviation[0] * normal[0];
+    r.theta[k] += deviation[1] * normal[1];
+  }
+  return event;
+}
+
 std::shared_ptr<const event::Innovations> memory_of(const sim::plant::PlantUnderTest& tested,
                                                     event::WhitenedEvent whitened,
-                                                    const Eigen::Vector2d& variance) {
+                                                    const VoltageNoise& voltage) {
   const event::FitEvent& e = whitened.event;
   const playin::VoltageCurve curve(e.played(), e.switchings);
   const playin::Drive at{.plant = &tested.plant,
@@ -244,23 +345,27 @@ std::shared_ptr<const event::Innovations> memory_of(const sim::plant::PlantUnder
                          .record = &e.record,
                          .curve = &curve,
                          .start = e.start};
-  const event::SlowNoise noise = slow_noise(playin::linearise(at), whitened, variance);
+  const event::SlowNoise noise = slow_noise(playin::linearise(at), whitened, voltage);
   if (!matters(noise, whitened)) return nullptr;
   return std::make_shared<event::Innovations>(noise, e.record.samples(), e.left_out);
 }
 
 VoltageNoise voltage_noise(const Fit& fit, const event::WhitenedEvents& events) {
-  const double share = instrument_share(fit, events);
-  return {share, share * moving_in_band(events)};
+  const Shares shares = shares_of(fit, events);
+  const Moving moving = moving_in_band(events);
+  return {.variance = shares.instrument * moving.variance,
+          .carried = shares.carried,
+          .share = shares.instrument,
+          .doubt = moving.freedom.cwiseMax(1.0).cwiseSqrt().cwiseInverse()};
 }
 
 event::NoiseModel remember_noise(const Fit& fit, const sim::Conventions& conventions,
                                  const event::WhitenedEvents& events) {
-  const Eigen::Vector2d variance = voltage_noise(fit, events).variance;
+  const VoltageNoise voltage = voltage_noise(fit, events);
   std::vector<event::EventNoise> noise;
   for (std::size_t e = 0; e < events.size(); ++e) {
     noise.push_back(events.noise(e));
-    noise.back().memory = memory_of({fit.plant, conventions}, events.whitened(e), variance);
+    noise.back().memory = memory_of({fit.plant, conventions}, events.whitened(e), voltage);
   }
   return event::NoiseModel(std::move(noise));
 }

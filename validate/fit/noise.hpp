@@ -11,28 +11,38 @@ namespace swingbank::validate::fit {
 /// the residual before the events is not white.
 event::NoiseModel sharpen_noise(const Fit& fit, const event::WhitenedEvents& events);
 
-/// Noise of the played-in voltage, of these variances [V/V, rad], as the plant answers it. The states are the
-/// plant's, less what the latest sample did to them, and the mean error of V and theta over the pre-event
-/// window, from which everything is counted. `event` gives the whitening, the channels and the start.
-event::SlowNoise slow_noise(const playin::LinearPlant& plant, event::WhitenedEvent event,
-                            const Eigen::Vector2d& variance);
-
-/// The memory of an event's noise by slow_noise() about its start; none where slow noise hardly matters.
-std::shared_ptr<const event::Innovations> memory_of(const sim::plant::PlantUnderTest& tested,
-                                                    event::WhitenedEvent event,
-                                                    const Eigen::Vector2d& variance);
-
-/// Noise of the played-in voltage, measured by what moves before the events.
+/// White noise of the played-in voltage.
 struct VoltageNoise {
+  Eigen::Vector2d variance = Eigen::Vector2d::Zero();  ///< of V (relative) and theta [rad^2]
+  /// Share of this noise that the measured P and Q carry too: 1 where an instrument makes them of the phasors
+  /// that it records, 0 where each channel has noise of its own.
+  double carried = 0;
   /// Share of the pre-event movement of V and theta that is the instrument's. It is 1 if the measured P and Q
   /// do not answer the movement, and 0 if they do as the model says, because the plant has then really seen
   /// it.
   double share = 0;
-  /// Variance of white noise that is as dense as the instrument's share of what moves at 3 to 10 Hz [V/V,
-  /// rad]. Below this band the grid itself moves, and above it instruments filter.
-  Eigen::Vector2d variance = Eigen::Vector2d::Zero();
+  Eigen::Vector2d doubt = Eigen::Vector2d::Zero();  ///< standard deviation of each variance, relative
+  /// What P and Q of this operating point move by with V (relative) and theta [rad] where the current stands
+  /// still, times `carried`: [channel][V, theta], in the channels' units.
+  [[nodiscard]] Eigen::MatrixXd into(const event::FitEvent& event) const;
 };
+
+/// Noise of the played-in voltage as the plant answers it. The states are the plant's, less what the latest
+/// sample did to them, and the mean error of V and theta over the pre-event window, from which everything is
+/// counted. `event` gives the whitening, the channels and the start.
+event::SlowNoise slow_noise(const playin::LinearPlant& plant, event::WhitenedEvent event,
+                            const VoltageNoise& voltage);
+
+/// The memory of an event's noise by slow_noise() about its start; none where slow noise hardly matters.
+std::shared_ptr<const event::Innovations> memory_of(const sim::plant::PlantUnderTest& tested,
+                                                    event::WhitenedEvent event, const VoltageNoise& voltage);
+
+/// Measures it by what moves: at 3 to 10 Hz, because below this band the grid itself moves, and above it
+/// instruments filter; before the events, and wherever the record moves no more than there.
 VoltageNoise voltage_noise(const Fit& fit, const event::WhitenedEvents& events);
+
+/// So many seconds at the operating point of `like` [s]. Answers are compared with zero.
+event::FitEvent at_rest(const event::FitEvent& like, double seconds);
 
 /// A minute at the operating point of `like`, with V and theta moved by that many standard deviations of
 /// noise. Answers are compared with zero.

@@ -12,7 +12,7 @@ PassedNoise::PassedNoise(const sim::plant::PlantUnderTest& tested, const event::
     : quiet_(minute_of_noise(events.front(), Eigen::Vector2d::Zero())),
       noisy_(minute_of_noise(events.front(), variance.cwiseSqrt())),
       noise_(events.noise(0)) {
-  noise_.memory = memory_of(tested, {quiet_, noise_}, variance);
+  noise_.memory = memory_of(tested, {quiet_, noise_}, {.variance = variance});
   double values = 0;
   for (const event::FitEvent& e : events) values += e.values();
   times_ = values / noisy_.values();

@@ -24,6 +24,17 @@ std::vector<playin::Direction> state_directions(const event::FitEvent& event) {
   return along;
 }
 
+/// The state on these directions, in their units; a belief of one unit stands on each.
+Eigen::VectorXd on_directions(const event::FitEvent& event, const EventState& state) {
+  std::vector<double> all;
+  for (std::size_t k = 0; k < event.switchings.size(); ++k)
+    if (const playin::Switching& s = event.switchings[k]; s.uncertainty > 0)
+      all.push_back(k < state.switchings.size() ? (state.switchings[k] - s.time) / s.uncertainty : 0.0);
+  const double values[kStates] = {state.P, state.Q, state.angle, state.speed};
+  for (std::size_t k = 0; k < std::size(kStateKind); ++k) all.push_back(values[k] / kStateSpread[k]);
+  return Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
+}
+
 /// [compared sample * channels + channel], whitened.
 Eigen::VectorXd whitened(const event::WhitenedEvent& e, const std::vector<double>* values,
                          bool less_measured) {
@@ -64,17 +75,20 @@ EventSlopes event_slopes(const sim::plant::PlantUnderTest& tested, event::Whiten
   // the states, with their beliefs of one unit each, absorb what the projection takes out
   const Eigen::MatrixXd inner = own.transpose() * own + Eigen::MatrixXd::Identity(states, states);
   const auto solved = inner.ldlt();
-  back.slopes -= own * solved.solve(own.transpose() * back.slopes).eval();
+  const Eigen::MatrixXd absorbed = solved.solve(own.transpose() * back.slopes);
+  back.slopes -= own * absorbed;
+  back.score = back.slopes.transpose() * back.residual - absorbed.transpose() * on_directions(event, state);
   return back;
 }
 
 Eigen::MatrixXd information(const EventSlopes& e) { return e.slopes.transpose() * e.slopes; }
 
-Eigen::MatrixXd score_covariance(const EventSlopes& e, int lags) {
+Eigen::MatrixXd score_covariance(const EventSlopes& e, int lags, const Eigen::VectorXd& mean) {
   const Eigen::Index n = e.channels, samples = e.residual.size() / n;
   Eigen::MatrixXd scores(samples, e.slopes.cols());
   for (Eigen::Index k = 0; k < samples; ++k)
-    scores.row(k) = e.residual.segment(k * n, n).transpose() * e.slopes.middleRows(k * n, n);
+    scores.row(k) =
+        e.residual.segment(k * n, n).transpose() * e.slopes.middleRows(k * n, n) - mean.transpose();
   Eigen::MatrixXd sum = scores.transpose() * scores;
   for (int lag = 1; lag <= lags && lag < samples; ++lag) {
     const double weight = 1.0 - lag / (lags + 1.0);

@@ -16,6 +16,8 @@ double axis_unit(const sim::plant::Plant& plant, const FreeParameter& parameter)
 struct EventSlopes {
   Eigen::MatrixXd slopes;    ///< [sample * channels + channel][parameter], whitened, per axis_unit
   Eigen::VectorXd residual;  ///< likewise, model - measured
+  /// Half the slope of the event's least cost along the parameters, its state following with its beliefs.
+  Eigen::VectorXd score;
   int channels = 0;
 };
 
@@ -28,7 +30,8 @@ EventSlopes event_slopes(const sim::plant::PlantUnderTest& tested, event::Whiten
 Eigen::MatrixXd information(const EventSlopes& e);
 
 /// Covariance of the scores J'r, with samples up to `lags` apart taken together (Newey and West, Econometrica
-/// 55, 1987). It holds where the residual is coloured or larger than believed.
-Eigen::MatrixXd score_covariance(const EventSlopes& e, int lags);
+/// 55, 1987). It holds where the residual is coloured or larger than believed. `mean`: expected of each
+/// sample.
+Eigen::MatrixXd score_covariance(const EventSlopes& e, int lags, const Eigen::VectorXd& mean);
 
 }  // namespace swingbank::validate::fit

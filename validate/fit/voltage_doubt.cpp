@@ -51,7 +51,7 @@ VoltageDoubt voltage_doubt(const sim::plant::PlantUnderTest& tested, event::Whit
                                                                .record = &e.record,
                                                                .curve = &curve,
                                                                .start = e.start}),
-                                            whitened, variance);
+                                            whitened, {.variance = variance});
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(noise.A.rows());
   VoltageDoubt doubt;
   for (const Eigen::Index j : {0, 1}) {

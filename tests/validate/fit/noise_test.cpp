@@ -97,5 +97,60 @@ TEST(SharpenNoise, ColouredNoiseIsLeftAlone) {
   EXPECT_EQ(sharp.of(0).deviation[0], c.events.noise(0).deviation[0]);
 }
 
+/// Events in which V and theta have white noise that the model answers; the measured P and Q hold the share
+/// `carried` of it as phasors would, noise of their own, and the answer to what of the movement is `real`.
+Case moving(double carried, bool real) {
+  constexpr double kVoltage = 1e-3, kOwn = 4e-4, kP = 0.5, kQ = 0.2;
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  Case c;
+  std::vector<event::FitEvent> events;
+  std::vector<event::EventNoise> noise;
+  for (int i = 0; i < 3; ++i) {
+    event::FitEvent e;
+    EventFit f;
+    f.model.resize(2);
+    for (int k = 0; k < kSamples; ++k) {
+      const double v = kVoltage * normal(random), theta = 2 * kVoltage * normal(random);
+      const double answer[2] = {0.3 * v - 3 * theta, -4 * v + 0.2 * theta};
+      const double by_phasors[2] = {kP * v - kQ * theta, kQ * v + kP * theta};
+      e.record.t.push_back(k / 30.0);
+      e.record.V.push_back(1 + v + (k > kSamples / 2 ? 0.05 * std::sin(0.2 * k) : 0.0));  // 1 Hz, later
+      e.record.theta.push_back(theta);
+      for (std::size_t ch = 0; ch < 2; ++ch) {
+        const double measured = (real ? answer[ch] : carried * by_phasors[ch]) + kOwn * normal(random);
+        (ch == 0 ? e.record.P : e.record.Q).push_back((ch == 0 ? kP : kQ) + measured);
+        f.model[ch].push_back((ch == 0 ? kP : kQ) + answer[ch]);
+      }
+    }
+    e.start = {.samples = 30, .voltage = 1.0, .P = kP, .Q = kQ};
+    e.channels = {playin::Output::P, playin::Output::Q};
+    noise.push_back({.deviation = Eigen::Vector2d(6e-3, 4e-3), .whitening = Eigen::Matrix2d::Identity()});
+    events.push_back(std::move(e));
+    c.fit.events.push_back(std::move(f));
+  }
+  c.events = {std::move(events), event::NoiseModel(std::move(noise))};
+  return c;
+}
+
+TEST(VoltageNoise, IsSeenInPAndQThatWereMadeOfThePhasors) {
+  for (const double carried : {0.0, 1.0}) {
+    const Case c = moving(carried, false);
+    const VoltageNoise found = voltage_noise(c.fit, c.events);
+    EXPECT_NEAR(found.carried, carried, 0.15);
+    EXPECT_NEAR(found.share, 1.0, 0.05);
+  }
+}
+TEST(VoltageNoise, IsMeasuredOnTheWholeRecordAndNotByItsSwings) {
+  const VoltageNoise found = voltage_noise(moving(1, false).fit, moving(1, false).events);
+  EXPECT_LT(found.doubt.maxCoeff(), 0.1);  // the stretches before the events alone tell it to 0.3
+  EXPECT_NEAR(found.variance[0], 1e-6, 3e-6 * found.doubt[0]);
+  EXPECT_NEAR(found.variance[1], 4e-6, 12e-6 * found.doubt[1]);
+}
+TEST(VoltageNoise, WhatThePlantAnswersIsNoNoise) {
+  const Case c = moving(0, true);
+  EXPECT_LT(voltage_noise(c.fit, c.events).share, 0.05);
+}
+
 }  // namespace
 }  // namespace swingbank::validate::fit

@@ -63,8 +63,8 @@ event::EventNoise noise_of(const sim::plant::PlantUnderTest& tested, const event
   const Eigen::Matrix2d white = at_once + power * power * Eigen::Matrix2d::Identity();
   event::EventNoise noise{.deviation = white.diagonal().cwiseSqrt(),
                           .whitening = white.llt().matrixL().solve(Eigen::Matrix2d::Identity())};
-  noise.memory = std::make_shared<event::Innovations>(fit::slow_noise(linear, {e, noise}, variance),
-                                                      e.record.samples(), e.left_out);
+  noise.memory = std::make_shared<event::Innovations>(
+      fit::slow_noise(linear, {e, noise}, {.variance = variance}), e.record.samples(), e.left_out);
   return noise;
 }
 

@@ -124,7 +124,7 @@ std::vector<Blur> find_blurs(const Eigen::MatrixXd& information, const Eigen::Ve
 std::vector<TriedEvent> try_events(const sim::plant::PlantUnderTest& tested,
                                    const event::WhitenedEvents& events,
                                    const std::vector<fit::EventState>& states,
-                                   const Eigen::Vector2d& variance,
+                                   const fit::VoltageNoise& voltage,
                                    const std::vector<fit::FreeParameter>& free) {
   std::vector<TriedEvent> tried;
   const event::FitEvent& like = events.front();
@@ -132,7 +132,7 @@ std::vector<TriedEvent> try_events(const sim::plant::PlantUnderTest& tested,
   if (like.record.component != record::Component::plant || !like.record.staged.empty()) return tried;
   const auto learnt = [&](const event::FitEvent& event, event::EventNoise noise,
                           const fit::EventState& state) {
-    noise.memory = fit::memory_of(tested, {event, noise}, variance);
+    noise.memory = fit::memory_of(tested, {event, noise}, voltage);
     return fit::information(fit::event_slopes(tested, {event, noise}, state, free));
   };
   const auto attempt = [&](const std::string& what, const event::FitEvent& event,

@@ -1,6 +1,7 @@
 #pragma once
 // What the records cannot tell, and which event could.
 #include "validate/calibrate/calibrate.hpp"
+#include "validate/fit/noise.hpp"
 #include "validate/fit/slopes.hpp"
 
 namespace swingbank::validate::calibrate {
@@ -11,7 +12,7 @@ std::vector<Blur> find_blurs(const Eigen::MatrixXd& information, const Eigen::Ve
 
 /// Information of events that were not recorded, made by driving the plant with plain voltages: a frequency
 /// event, a deep fault, a lasting step of the voltage. Where speed, Efd and Ifd were not recorded, the same
-/// events with them follow. `variance` is that of the played-in voltage's noise [V/V, rad].
+/// events with them follow. `voltage` is the played-in voltage's noise.
 struct TriedEvent {
   std::string what;
   Eigen::MatrixXd information;
@@ -19,7 +20,7 @@ struct TriedEvent {
 std::vector<TriedEvent> try_events(const sim::plant::PlantUnderTest& tested,
                                    const event::WhitenedEvents& events,
                                    const std::vector<fit::EventState>& states,
-                                   const Eigen::Vector2d& variance,
+                                   const fit::VoltageNoise& voltage,
                                    const std::vector<fit::FreeParameter>& free);
 
 }  // namespace swingbank::validate::calibrate

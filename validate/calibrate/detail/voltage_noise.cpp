@@ -2,24 +2,70 @@
 
 #include <cmath>
 
-#include "validate/fit/noise.hpp"
+#include "validate/event/play.hpp"
 
 namespace swingbank::validate::calibrate {
+namespace {
 
-VoltagePull voltage_pull(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
-                         const Eigen::Vector2d& variance, const std::vector<fit::FreeParameter>& free) {
+constexpr double kKick = 1e-3;             ///< one sample of V (relative) or theta [rad] is off by so much
+constexpr double kSettle = 3, kFade = 12;  ///< before and after that sample [s]
+
+/// The plant's whitened answer, less what an instrument would have measured, and its slopes.
+struct Answer {
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd slopes;
+};
+Answer answer(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent e,
+              const std::vector<playin::Direction>& along) {
+  const playin::Response r = event::play(tested, e.event, {}, along, {.tolerance = 1e-8, .hasty = false});
+  const auto n = static_cast<Eigen::Index>(along.size());
+  event::RowMatrix all(e.event.values(), n + 1);
+  for (Eigen::Index d = 0; d < n; ++d)
+    all.col(d) = e.event.collected(r.slopes[static_cast<std::size_t>(d)].value, false);
+  all.col(n) = e.event.collected(r.value, true);
+  e.noise.whiten(all);
+  return {all.col(n), all.leftCols(n)};
+}
+
+}  // namespace
+
+VoltagePull voltage_pull(const sim::plant::PlantUnderTest& tested,
+                         const sim::plant::PlantUnderTest& whitening, const event::WhitenedEvents& events,
+                         const fit::VoltageNoise& voltage, const std::vector<fit::FreeParameter>& free) {
   double samples = 0;
   for (const auto& e : events) samples += e.record.samples();
-  const event::FitEvent quiet = fit::minute_of_noise(events.front(), Eigen::Vector2d::Zero()),
-                        noisy = fit::minute_of_noise(events.front(), variance.cwiseSqrt());
+  std::vector<playin::Direction> along;
+  for (const auto& f : free)
+    along.push_back({.kind = playin::Direction::Kind::parameter,
+                     .parameter = f.id,
+                     .scale = fit::axis_unit(tested.plant, f)});
+  const event::FitEvent quiet = fit::at_rest(events.front(), kSettle + kFade);
+  const auto at = static_cast<std::size_t>(kSettle / quiet.record.step());
   event::EventNoise noise = events.noise(0);
-  noise.memory = fit::memory_of(tested, {quiet, noise}, variance);
-  const fit::EventSlopes still = fit::event_slopes(tested, {quiet, noise}, {}, free);
-  const fit::EventSlopes moved = fit::event_slopes(tested, {noisy, noise}, {}, free);
-  const Eigen::MatrixXd passed = moved.slopes - still.slopes;
-  const double times = samples / quiet.record.samples();
-  return {times * passed.transpose() * (moved.residual - still.residual),
-          times * passed.transpose() * passed};
+  noise.memory = fit::memory_of(whitening, {quiet, noise}, voltage);
+  const Answer still = answer(tested, {quiet, noise}, along);
+  const Eigen::MatrixXd carried = voltage.into(quiet);
+  const auto n = static_cast<Eigen::Index>(free.size());
+  VoltagePull pull{Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n)};
+  for (const Eigen::Index of : {0, 1}) {
+    event::FitEvent kicked = quiet;
+    record::Record& r = kicked.record;
+    (of == 0 ? r.V[at] : r.theta[at]) += of == 0 ? kKick * r.V[at] : kKick;
+    for (std::size_t c = 0; c < kicked.channels.size(); ++c) {
+      const double more = kKick * carried(static_cast<Eigen::Index>(c), of);
+      if (kicked.channels[c] == playin::Output::P) r.P[at] += more;
+      if (kicked.channels[c] == playin::Output::Q) r.Q[at] += more;
+    }
+    const Answer moved = answer(tested, {kicked, noise}, along);
+    const Eigen::MatrixXd slopes = (moved.slopes - still.slopes) / kKick;
+    const Eigen::VectorXd residual = (moved.residual - still.residual) / kKick;
+    const double times = samples * voltage.variance[of];
+    const Eigen::VectorXd score = times * slopes.transpose() * residual;
+    pull.score += score;
+    pull.information += times * slopes.transpose() * slopes;
+    pull.doubt += voltage.doubt[of] * voltage.doubt[of] * score * score.transpose();
+  }
+  return pull;
 }
 
 }  // namespace swingbank::validate::calibrate

@@ -1,0 +1,45 @@
+#include "validate/calibrate/detail/newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace swingbank::validate::calibrate {
+
+Eigen::VectorXd off_belief(const sim::plant::Plant& believed, const sim::plant::Plant& plant,
+                           const std::vector<fit::FreeParameter>& free) {
+  Eigen::VectorXd off(static_cast<Eigen::Index>(free.size()));
+  for (Eigen::Index i = 0; i < off.size(); ++i) {
+    const auto& f = free[static_cast<std::size_t>(i)];
+    const double start = sim::plant::parameter_value(believed, f.id),
+                 value = sim::plant::parameter_value(plant, f.id);
+    off[i] = start > 0 ? std::log(value / start) / f.spread : (value - start) / fit::axis_unit(believed, f);
+  }
+  return off;
+}
+
+sim::plant::Plant stepped(const sim::plant::Plant& plant, const std::vector<fit::FreeParameter>& free,
+                          const Eigen::VectorXd& step) {
+  sim::plant::Plant moved = plant;
+  for (Eigen::Index i = 0; i < step.size(); ++i) {
+    const auto& f = free[static_cast<std::size_t>(i)];
+    const auto& record = sim::plant::parameter_record(plant, f.id);
+    double& value = sim::plant::parameter_value(moved, f.id);
+    const double move = fit::axis_unit(plant, f) * step[i], old = value;
+    value = std::clamp(old > 0 ? old * std::exp(move / old) : old + move, std::min(old, record.low),
+                       std::max(old, record.high));
+  }
+  return moved;
+}
+
+Eigen::VectorXd Secants::step(const Eigen::VectorXd& plain) {
+  constexpr double kTold = 1e-3;  // share of a step below which it tells nothing
+  if (taken_.size() > 0) {
+    const Eigen::VectorXd done = inverse_ * (plain_ - plain);
+    if (const double along = taken_.dot(done); std::abs(along) > kTold * taken_.squaredNorm())
+      inverse_ += ((taken_ - done) * (taken_.transpose() * inverse_) / along).eval();
+  }
+  plain_ = plain;
+  return inverse_ * plain;
+}
+
+}  // namespace swingbank::validate::calibrate
