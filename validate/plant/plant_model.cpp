@@ -329,8 +329,8 @@ PlantModel model_of_unit(const sim::grid::Unit& unit, sim::Conventions conventio
   model.record_base.frequency = unit.frequency;
   model.record_base.mva = unit.system_mva;
   // Cases in per unit give every bus 1 kV, or none; a plant's voltage is never so low.
-  constexpr double kNoVoltage = 1.0;
-  if (unit.kv > kNoVoltage)
+  constexpr double kPerUnitCase = 1.0;
+  if (unit.kv > kPerUnitCase)
     model.record_base.kv = unit.kv;
   else
     model.warnings.push_back(

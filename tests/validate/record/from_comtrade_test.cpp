@@ -10,7 +10,6 @@
 #include <functional>
 #include <numbers>
 
-#include "tests/sim/reference/psse_folder.hpp"
 #include "tests/validate/playin/support.hpp"
 #include "tests/validate/record/example.hpp"
 #include "validate/check/check.hpp"
@@ -476,31 +475,6 @@ TEST(RecordComtradeTest, AFaultSeenByAFaultRecorderIsASoundRecord) {
     EXPECT_NEAR(r.V[k], std::abs(at(r.t[k], false)), 3e-4) << r.t[k];
     EXPECT_NEAR(r.P[k], std::real(at(r.t[k], false) * std::conj(at(r.t[k], true))), 1e-3) << r.t[k];
   }
-}
-
-/// Files of recorders and relays (tests/README.md): revisions that were never published, channel numbers that
-/// skip, Windows-1251.
-TEST(RecorderFiles, AreRead) {
-  const auto at = sim::test::record_folder("comtrade_files");
-  const auto read = [&](const char* cfg, const char* dat) {
-    const std::string c = read_bytes(at / cfg), d = read_bytes(at / dat);
-    return parse_comtrade(c, d, cfg, dat);
-  };
-  Comtrade first = read("1.cfg", "1.dat");  // its rates follow the grid's frequency
-  ASSERT_GT(first.stretches.size(), 20);
-  Problems problems;
-  make_even(first, 400, problems);
-  EXPECT_TRUE(problems.empty());
-  ASSERT_EQ(first.stretches.size(), 1);
-  EXPECT_NEAR(first.stretches[0].rate, 2401, 3);
-  EXPECT_THAT(first.notes, Contains(HasSubstr("put onto an even")));
-  const Comtrade second = read("2.cfg", "2.dat"), fourth = read("4.CFG", "4.DAT");
-  EXPECT_EQ(second.channels.size(), 55);
-  EXPECT_THAT(second.notes,
-              AllOf(Contains(HasSubstr("Windows-1251")), Contains(HasSubstr("skip from 11 to 13"))));
-  EXPECT_EQ(second.channels[0].component, "1СШ-110_ТН_110кВ");
-  EXPECT_EQ(fourth.channels.size(), 6);
-  EXPECT_THAT(fourth.notes, Contains(HasSubstr("revision 1997")));
 }
 
 }  // namespace
