@@ -231,7 +231,7 @@ class Calibrating {
     Secants secants(static_cast<Eigen::Index>(free_.size()));
     double nearest = std::numeric_limits<double>::infinity();
     sim::plant::Plant plant = c_.fit.plant;
-    for (int round = 0; round < kRounds && nearest > kClose; ++round) {
+    for (int round = 0; round < kPullRounds && nearest > kClose; ++round) {
       pull_ = voltage_pull({plant, model_.conventions}, {whitened_through_, model_.conventions}, seen_,
                            noise_, free_);
       Eigen::VectorXd missing = pull_.score;
@@ -247,7 +247,7 @@ class Calibrating {
       if (off < nearest) c_.fit.plant = plant;
       nearest = std::min(nearest, off);
       Eigen::VectorXd step = secants.step(plain);
-      step *= std::min(1.0, kLongest / step.cwiseAbs().maxCoeff());
+      step *= std::min(1.0, kLongestPull / step.cwiseAbs().maxCoeff());
       while (step.norm() > kShortest && !playin::can_exist(stepped(plant, free_, step))) step *= 0.5;
       if (step.norm() <= kShortest) break;
       plant = stepped(plant, free_, step);
@@ -261,10 +261,10 @@ class Calibrating {
       c_.fit.parameters[i].value += now[i] - fitted[i];
     }
   }
-  static constexpr int kRounds = 12;
-  static constexpr double kLongest = 0.5;    ///< of a step, in a parameter's belief
-  static constexpr double kShortest = 1e-4;  ///< likewise
-  static constexpr double kClose = 0.1;      ///< so near, the search ends [standard errors]
+  static constexpr int kPullRounds = 12;
+  static constexpr double kLongestPull = 0.5;  ///< of a step, in a parameter's belief
+  static constexpr double kShortest = 1e-4;    ///< likewise
+  static constexpr double kClose = 0.1;        ///< so near, the search ends [standard errors]
   /// Information less what noise pretends; no direction of it is below zero.
   Eigen::MatrixXd real(const Eigen::MatrixXd& data) const {
     if (pull_.information.size() == 0) return data;
