@@ -1,5 +1,6 @@
 #include "mpi/ranks/detail/journal_keeper.hpp"
 
+#include <algorithm>
 #include <iterator>
 #include <utility>
 
