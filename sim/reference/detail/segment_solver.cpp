@@ -16,7 +16,8 @@ void require(int flag, const char* call) {
     throw std::runtime_error(std::string(call) + " failed with SUNDIALS code " + std::to_string(flag));
 }
 
-namespace {
+/// Named, because SegmentSolver::Parts holds its types and files of a room may be compiled as one.
+namespace segments {
 
 constexpr int kMinimumDegree = 0;  ///< of KLU's orders of elimination; less fill than its default here
 /// Part by which the leading coefficient may change before the matrix is factored anew. IDA's own 0.25 is for
@@ -116,7 +117,9 @@ std::vector<int> own_places(const ReferenceSystem& system) {
   return own;
 }
 
-}  // namespace
+}  // namespace segments
+
+using namespace segments;
 
 struct SegmentSolver::Parts {
   N_Vector y, yp;
