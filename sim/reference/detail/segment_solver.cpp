@@ -119,40 +119,38 @@ std::vector<int> own_places(const ReferenceSystem& system) {
 
 }  // namespace segments
 
-using namespace segments;
-
 struct SegmentSolver::Parts {
   N_Vector y, yp;
-  Problem problem;
-  Owner<SUNMatrix, FreeMatrix> matrix;
-  Owner<SUNLinearSolver, FreeSolver> solver;
-  std::unique_ptr<void, FreeIda> ida;
+  segments::Problem problem;
+  segments::Owner<SUNMatrix, segments::FreeMatrix> matrix;
+  segments::Owner<SUNLinearSolver, segments::FreeSolver> solver;
+  std::unique_ptr<void, segments::FreeIda> ida;
 };
 
 SegmentSolver::SegmentSolver(SUNContext context, const ReferenceSystem& system, N_Vector y, N_Vector yp,
                              double start, double end, const ReferenceOptions& options, SeenEntries& seen)
-    : parts_(new Parts{
-          y,
-          yp,
-          {system, options, system.error_weights(), Nonzeros(system, seen),
-           std::vector<double>(static_cast<std::size_t>(system.pattern().nonZeros())), own_places(system)},
-          {},
-          {},
-          {}}) {
+    : parts_(new Parts{y,
+                       yp,
+                       {system, options, system.error_weights(), Nonzeros(system, seen),
+                        std::vector<double>(static_cast<std::size_t>(system.pattern().nonZeros())),
+                        segments::own_places(system)},
+                       {},
+                       {},
+                       {}}) {
   auto& [to_y, to_yp, problem, matrix, solver, ida] = *parts_;
   matrix.reset(SUNSparseMatrix(system.size(), system.size(), system.size(), CSC_MAT, context));
   solver.reset(SUNLinSol_KLU(y, matrix.get(), context));
   problem.solver = solver.get();
-  require(SUNLinSol_KLUSetOrdering(solver.get(), kMinimumDegree), "SUNLinSol_KLUSetOrdering");
+  require(SUNLinSol_KLUSetOrdering(solver.get(), segments::kMinimumDegree), "SUNLinSol_KLUSetOrdering");
   ida.reset(IDACreate(context));
   problem.ida = ida.get();
-  require(IDASetErrHandlerFn(ida.get(), quiet, nullptr), "IDASetErrHandlerFn");
-  require(IDAInit(ida.get(), residual, start, y, yp), "IDAInit");
+  require(IDASetErrHandlerFn(ida.get(), segments::quiet, nullptr), "IDASetErrHandlerFn");
+  require(IDAInit(ida.get(), segments::residual, start, y, yp), "IDAInit");
   require(IDASetUserData(ida.get(), &problem), "IDASetUserData");
-  require(IDAWFtolerances(ida.get(), error_weights), "IDAWFtolerances");
+  require(IDAWFtolerances(ida.get(), segments::error_weights), "IDAWFtolerances");
   require(IDASetLinearSolver(ida.get(), solver.get(), matrix.get()), "IDASetLinearSolver");
-  require(IDASetJacFn(ida.get(), jacobian), "IDASetJacFn");
-  require(IDASetDeltaCjLSetup(ida.get(), kFactorAnew), "IDASetDeltaCjLSetup");
+  require(IDASetJacFn(ida.get(), segments::jacobian), "IDASetJacFn");
+  require(IDASetDeltaCjLSetup(ida.get(), segments::kFactorAnew), "IDASetDeltaCjLSetup");
   require(IDASetMaxNumSteps(ida.get(), 1'000'000), "IDASetMaxNumSteps");
   require(IDASetStopTime(ida.get(), end), "IDASetStopTime");
 }
