@@ -80,6 +80,14 @@ void settle_load_buses(Network& n, const std::function<std::string(std::size_t)>
   }
 }
 
+/// A generator whose bus to hold is out of service holds its own.
+void hold_own(Network& n, Generator& g, const std::string& place) {
+  if (g.regulated < 0 || at(n, g.regulated).type != BusType::isolated) return;
+  n.remark("generators that hold a bus out of service hold their own at the file's voltage", place);
+  g.regulated = -1;
+  g.vset = at(n, g.bus).vm;
+}
+
 }  // namespace
 
 void settle_generators(Network& n, const std::function<std::string(std::size_t)>& where) {
@@ -90,11 +98,7 @@ void settle_generators(Network& n, const std::function<std::string(std::size_t)>
     if (!g.in_service || at(n, g.bus).type == BusType::load) continue;
     const std::string place = unit_text(n, g) + " (" + where(i) + ")";
     if (g.regulated == g.bus) g.regulated = -1;
-    if (g.regulated >= 0 && at(n, g.regulated).type == BusType::isolated) {
-      n.remark("generators that hold a bus out of service hold their own at the file's voltage", place);
-      g.regulated = -1;
-      g.vset = at(n, g.bus).vm;
-    }
+    hold_own(n, g, place);
     if (g.q_min > g.q_max) {
       n.remark("reactive limits with QB above QT are taken as none", place);
       g.q_min = -99.99;
@@ -139,6 +143,8 @@ void settle_islands(Network& n) {
     n.remark("islands without a generator are out of service", bus_list(n, buses));
   }
   settle_isolated(n);
+  for (Generator& g : n.generators)
+    if (g.in_service) hold_own(n, g, unit_text(n, g));
 }
 
 namespace {

@@ -197,6 +197,11 @@ TEST(FoundFiles, RemoteRegulationIsRead) {
   EXPECT_EQ(own.generators[1].regulated, -1);
   EXPECT_EQ(own.generators[1].vset, 1.02);  // the file's voltage
   EXPECT_THAT(places(own, "a bus that is not there"), ::testing::SizeIs(1));
+  c.generators.replace(c.generators.find("199"), 3, "105");
+  c.buses += "105,'B',138.0,1,1,1,1,1.0,0\n";  // it lies alone, so it is out of service
+  const network::Network alone = c.read();
+  EXPECT_EQ(alone.generators[1].regulated, -1);
+  EXPECT_THAT(places(alone, "a bus out of service"), ::testing::SizeIs(1));
 }
 
 TEST(FoundFiles, ValuesThatCannotStandAreReplacedAndSaid) {

@@ -222,6 +222,11 @@ TEST(LostFramesTest, LongerGapsAreNamed) {
       << "the stretch before it is sound";
   EXPECT_NEAR(parse_record(text, "r.csv", kTestBase, {.from = 14}).t.front(), 14, 1e-9);
 }
+TEST(LostFramesTest, ATimeFarOffIsNamed) {
+  const auto text =
+      table(kHeader, 90, [](int k) { return row(k, k / 30.0); }) + row(90, 1.6e6) + row(91, 1.6e6);
+  EXPECT_THAT(field_faults(text), Contains(HasSubstr("r.csv:92")));
+}
 TEST(LostFramesTest, AJumpWithinTheGapIsSaid) {
   const auto text = table(kHeader, 300, [](int k) {
     return k == 100 ? std::string() : fmt::format("{:.7f},{},0.1,0.4,0.1", k / 30.0, k < 100 ? 1.02 : 0.7);

@@ -107,6 +107,10 @@ std::vector<double> steps_of(const std::vector<double>& t) {
   return steps;
 }
 
+/// Of a record after missing ones are counted: more than an hour at 480 samples/s. What would be longer holds
+/// a time that is none.
+constexpr std::size_t kMostSamples = 2'000'000;
+
 /// Times rounded more coarsely than this share of a step do not tell a lost frame.
 constexpr double kCoarsest = 0.75;
 
@@ -229,8 +233,10 @@ class Grid {
       }
       const double steps = std::max(std::round(dt / h_), coarse() && dt > -rows_.resolution ? 1.0 : 0.0);
       const double slack = coarse() ? 1.05 * rows_.resolution + 0.02 * h_ : 0.1 * h_ + 2.1 * rows_.resolution;
-      if (steps < 1 || steps > 1e7 || std::abs(dt - steps * h_) > slack) return false;
+      if (steps < 1 || steps > static_cast<double>(kMostSamples) || std::abs(dt - steps * h_) > slack)
+        return false;
       index_.push_back(index_.back() + static_cast<std::size_t>(steps));
+      if (index_.back() >= kMostSamples) return false;
       row_.push_back(k);
       moved_.push_back(moved);
       before = moved ? before + h_ : t_[k];
@@ -296,6 +302,7 @@ std::optional<EvenRows> resampled(const Rows& rows, Record& about) {
   const double least = std::max(apart / length, steps_up ? 120.0 : 0.0);
   const auto* rate = std::ranges::find_if(kRates, [&](double r) { return r >= least; });
   const double h = 1 / (rate == kRates.end() ? kRates.back() : *rate);
+  if (length / h >= static_cast<double>(kMostSamples)) return std::nullopt;
   EvenRows even;
   std::size_t k = 0;
   for (std::size_t i = 0; t.front() + static_cast<double>(i) * h <= t.back() + 1e-9; ++i) {
