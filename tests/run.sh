@@ -2,7 +2,8 @@
 # Installs what is missing, builds and runs the tests.
 #   bash tests/run.sh [--fast | --night] [--without-psse] [--sanitize] [--ci]
 #     --fast          the fast tier only (under 2 minutes once built)
-#     --night         only what takes too long for every change, and whether all rooms agree on each type: more than an hour
+#     --night         only what takes too long for every change, whether all rooms agree on each type, and whether threads
+#                     of the master, the queue and the shard stream disturb one another: more than an hour
 #                     (jobs/nightly.sh runs it)
 #     --without-psse  leaves out the tests that read records of others, PSS/E's own among them, which are not part of this repository
 #     --sanitize      also the fast tier's unit tests under the address and undefined-behaviour sanitizers (their build
@@ -23,7 +24,7 @@ while (($#)); do
     --without-psse) with_psse=0 ;;
     --sanitize) sanitize=1 ;;
     --ci) ci=1 ;;
-    -h | --help) sed -n '2,13p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,14p' "$0"; exit 0 ;;
     *) echo "unknown option at '$1' (tests/run.sh does not have it): run tests/run.sh --help" >&2; exit 1 ;;
   esac
   shift
@@ -86,6 +87,13 @@ one_definition() {
     ! grep -m 12 -E 'warning:|error:' "$log" >&2
 }
 
+# What starts threads, under the thread sanitizer.
+threads() {
+  local log=$source_folder/build/tsan.log
+  cmake --preset tsan -S "$source_folder" >"$log" && cmake --build "$source_folder/build/tsan" --target test_threads >>"$log" 2>&1 &&
+    TSAN_OPTIONS=halt_on_error=1 "$source_folder/build/tsan/bin/test_threads" --gtest_brief=1
+}
+
 run_sanitized() {
   bash "$source_folder/jobs/setup.sh" --preset sanitize --tests
   # Not ours: what OpenMPI keeps until the process ends.
@@ -122,6 +130,8 @@ tier() {
 if ((night)); then
   say "one definition of each name"
   one_definition || failed+=(one_definition)
+  say "threads"
+  threads || failed+=(threads)
   tier night
 else
   tier fast

@@ -1,0 +1,44 @@
+// The queue of items with one process, whose own hand is a thread: what it made reaches the caller whole.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <map>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "mpi/ranks/item_queue.hpp"
+
+namespace swingbank::mpi::ranks {
+namespace {
+
+TEST(ItemQueue, ResultsReachTheCallerWhole) {
+  SharedItems shared;
+  shared.items.resize(50);
+  std::iota(shared.items.begin(), shared.items.end(), 0);
+  std::map<std::size_t, std::string> results;  // of the caller alone: no lock
+  shared.work = [](std::size_t item) { return std::string(2000, static_cast<char>('a' + item % 26)); };
+  shared.done = [&](std::size_t item, const std::string& result) { results[item] = result; };
+  EXPECT_TRUE(share_items(Ranks{}, shared));
+  ASSERT_EQ(results.size(), 50U);
+  for (const auto& [item, result] : results)
+    EXPECT_EQ(result, std::string(2000, static_cast<char>('a' + item % 26)));
+}
+
+TEST(ItemQueue, WhatTheWorkThrowsEndsIt) {
+  SharedItems shared;
+  shared.items = {0, 1, 2};
+  int done = 0;
+  shared.work = [](std::size_t item) -> std::string {
+    if (item == 1) throw std::runtime_error("broken");
+    return "made";
+  };
+  shared.done = [&](std::size_t, const std::string&) { ++done; };
+  EXPECT_THROW(share_items(Ranks{}, shared), std::runtime_error);
+  EXPECT_EQ(done, 1);
+}
+
+}  // namespace
+}  // namespace swingbank::mpi::ranks
