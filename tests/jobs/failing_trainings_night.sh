@@ -6,6 +6,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/same_training.bash"
+source "$(dirname "${BASH_SOURCE[0]}")/../mpi/campaign.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/../mpi/failing_calls.bash"
 injections=${SWINGBANK_INJECTIONS:-90}
 export OMP_NUM_THREADS=1
@@ -37,21 +38,20 @@ for kind in train fold folds; do
   echo "$kind: ${calls[${kind}out]} calls on its own files, ${calls[${kind}data]} on the dataset's, ${calls[${kind}memory]} allocations"
 done
 kinds=(train fold folds) unders=(out out data) errors=(5 28 2 4 122)
-for ((i = ${SWINGBANK_FROM:-0}; i < injections; i += ${SWINGBANK_STRIDE:-1})); do
+begin_item() { rm -rf "$work/out"; }
+check_item() {
+  if [ "$ended" = told ]; then
+    cp "$work/log" "$work/before"
+    "${run[@]}" >"$work/log" 2>&1 || wrong "the next run after $what: $(cat "$work/before")"
+  fi
+  essence "$work/out" | diff "$work/$kind.whole" - >"$work/log" || wrong "another result after $what"
+}
+for ((i = from; i < injections; i += stride)); do
+  if is_done $i; then continue; fi
   kind=${kinds[i % 3]} under=${unders[i / 3 % 3]} error=${errors[i / 9 % 5]}
   first=0 of=${calls[$kind$under]}
   if ((i / 3 % 6 == 4)); then error=memory first=$early of=$((calls[${kind}memory] - early)); fi
-  at=$((first + 1 + of * (i * 618033 % 1000000) / 1000000))
-  command "$kind"
-  rm -rf "$work/out"
-  one_failure "$error" $at 0 "$work/$under" "${run[@]}"
-  case $ended in
-    whole) essence "$work/out" | diff "$work/$kind.whole" - >"$work/log" || wrong "another result after error $error in call $at of $kind" ;;
-    told)
-      cp "$work/log" "$work/before"
-      "${run[@]}" >"$work/log" 2>&1 || wrong "the next run after error $error in call $at of $kind: $(cat "$work/before")"
-      essence "$work/out" | diff "$work/$kind.whole" - >"$work/log" || wrong "another result of the next run after error $error in call $at of $kind"
-      ;;
-  esac
+  command "$kind" # sets `run`
+  strike $i "$error" 0 "$work/$under" "$of" "$first" "${run[@]}"
 done
-tell_failures
+tell_failures "$injections"

@@ -1,22 +1,29 @@
 #!/usr/bin/env bash
 # Kills spread evenly over a run, from its first millisecond to its end: of one process, of mpirun, of one rank, of a rank
 # that was stopped before, of one part of three. One more run ends each with the same hash and the same bytes.
-#   SWINGBANK_KILLS=500 bash tests/mpi/chaos_night.sh      (60 by default; docs/faults.md has the figures of 500)
+#   SWINGBANK_KILLS=500 bash tests/mpi/chaos_night.sh      (60 by default; campaign.bash; docs/faults.md has figures)
 source "$(dirname "$0")/common.bash"
+source "$(dirname "$0")/campaign.bash"
 kills=${SWINGBANK_KILLS:-60}
 make=("$generate" "$configs/ieee14_genrou_bus3.toml" --draws 600 --draws-per-shard 20 --progress none)
-start=$(date +%s%N)
-"${make[@]}" --out "$work/whole" >/dev/null 2>&1
-lasts=$((($(date +%s%N) - start) / 1000000)) # [ms] one process
+# lasts OUT [LAUNCHER...]: of a whole run [ms]
+lasts() {
+  local start out=$1
+  start=$(date +%s%N)
+  shift
+  "$@" "${make[@]}" --out "$out" >/dev/null 2>&1
+  echo $((($(date +%s%N) - start) / 1000000))
+}
+alone=$(lasts "$work/whole") launched=$(lasts "$work/two" mpirun --oversubscribe -np 2)
 whole=$(hash_of "$work/whole")
 [ -n "$whole" ] || fail "no hash"
-declare -A tried early
-RANDOM=11
-for ((i = 0; i < kills; ++i)); do
+for ((i = from; i < kills; i += stride)); do
+  if is_done $i; then continue; fi
   kinds=(process mpirun rank stopped part)
-  kind=${kinds[i % 5]} out=$work/run
+  kind=${kinds[i % 5]} out=$work/run began=later ended=by-itself went_wrong=''
   rm -rf "$out"
-  at=$((i * (lasts + 300) / kills)) # [ms]; a start under mpirun takes longer
+  case $kind in process | part) long=$alone ;; *) long=$launched ;; esac
+  at=$((i * (long + 100) / kills)) # [ms]
   case $kind in
     process) setsid "${make[@]}" --out "$out" >/dev/null 2>&1 & ;;
     part) setsid "${make[@]}" --part $((i % 3 + 1))/3 --out "$out" >/dev/null 2>&1 & ;;
@@ -41,15 +48,18 @@ for ((i = 0; i < kills; ++i)); do
     [ "$kind" = stopped ] && pkill -9 -g $pid || true
     sleep 0.1
   done
-  pkill -9 -g $pid 2>/dev/null && early[hung]=$((${early[hung]:-0} + 1))
+  pkill -9 -g $pid 2>/dev/null && ended=hung
   wait $pid 2>/dev/null || true
-  tried[$kind]=$((${tried[$kind]:-0} + 1))
-  [ -e "$out/dataset.json" ] || early[$kind]=$((${early[$kind]:-0} + 1))
-  "${make[@]}" --out "$out" >"$work/log" 2>&1 || { cat "$work/log"; fail "kill $i of $kind at $at ms: the next run"; }
-  grep -q "dataset $whole" "$work/log" || { cat "$work/log"; fail "kill $i of $kind at $at ms: another hash"; }
-  diff -r "$work/whole/shards" "$out/shards" >"$work/log" || { cat "$work/log"; fail "kill $i of $kind at $at ms: other bytes or leftovers"; }
+  [ -e "$out/dataset.json" ] || began=early
+  what="kill $i of $kind at $at ms"
+  "${make[@]}" --out "$out" >"$work/log" 2>&1 || wrong "$what: the next run"
+  grep -q "dataset $whole" "$work/log" || wrong "$what: another hash"
+  diff -r "$work/whole/shards" "$out/shards" >"$work/log" || wrong "$what: other bytes or leftovers"
+  outcome=same
+  if [ -n "$went_wrong" ]; then outcome=wrong; fi
+  keep $i $outcome $kind $began $ended "$at" "$went_wrong"
 done
-for kind in "${!tried[@]}"; do
-  echo "$kind: ${tried[$kind]} of ${tried[$kind]} kills end in the same bytes, ${early[$kind]:-0} of them before the header stood"
-done
-echo "launchers that hung until they were ended: ${early[hung]:-0}"
+awk '{++n[$3]; same[$3] += $2 == "same"; early[$3] += $4 == "early"; hung += $5 == "hung"}
+  END {for (k in n) printf "%s: %d of %d kills end in the same bytes, %d of them before the header stood\n", k, same[k], n[k], early[k]
+    printf "launchers that hung until they were ended: %d\n", hung}' "$results"
+tell_campaign "$kills"

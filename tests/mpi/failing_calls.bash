@@ -1,4 +1,4 @@
-# To be sourced after common.bash: runs in which one call fails (failing_call.cpp is preloaded). Each must end in time:
+# To be sourced after common.bash and campaign.bash: runs in which one call fails (failing_call.cpp is preloaded). Each must end in time:
 # whole with the same data, or with exit code 1 and the reason that was injected; the next run mends it.
 # shellcheck disable=SC2154,SC2034,SC2016 # what common.bash sets; what those who source this read
 preload=$SWINGBANK_BIN/failing_call.so
@@ -26,11 +26,8 @@ with_preload() {
 
 declare -A reasons=([5]='Input/output error' [28]='No space left on device' [2]='No such file or directory'
   [4]='Interrupted system call' [122]='Disk quota exceeded' [memory]='bad_alloc|[Mm]emory')
-declare -A struck=() survived=() told=()
-not_reached=0
 
-# one_failure ERROR AT RANK FOLDER COMMAND...: sets `ended` to whole, told or missed; fails where it hangs or says
-# something else.
+# one_failure ERROR AT RANK FOLDER COMMAND...: sets `ended` to whole, told, missed or wrong, and `what` happened.
 one_failure() {
   local error=$1 at=$2 rank=$3 folder=$4 code=0
   shift 4
@@ -38,39 +35,61 @@ one_failure() {
   FAILING_ERROR=$error FAILING_AT=$at FAILING_RANK=$rank FAILING_UNDER=$folder FAILING_LOG=$work/failing \
     timeout -k 5 "$limit" bash -c 'source "$0"; with_preload "$@"' "$SWINGBANK_SOURCE/tests/mpi/failing_calls.bash" "$@" \
     >"$work/log" 2>&1 || code=$?
-  local what
   what=$( (sed -n 's/^failed //p' "$work/failing" 2>/dev/null || true) | head -1) # no file: it was ended before its first line
   if [ -z "$what" ]; then
-    if ((code == 124 || code == 137)); then wrong "no end after $limit s, and call $at was not reached: $*"; fi
-    not_reached=$((not_reached + 1)) ended=missed
+    ended=missed
+    if ((code == 124 || code == 137)); then
+      ended=wrong
+      wrong "no end after $limit s, and call $at was not reached: $*"
+    fi
     return
   fi
   what="error $error in call $at of rank $rank ($what): $*"
-  struck[$error]=$((${struck[$error]:-0} + 1))
   case $code in
-    0) survived[$error]=$((${survived[$error]:-0} + 1)) ended=whole ;;
-    124 | 137) wrong "no end after $limit s: $what" ;;
+    0) ended=whole ;;
+    124 | 137)
+      ended=wrong
+      wrong "no end after $limit s: $what"
+      ;;
     *)
-      told[$error]=$((${told[$error]:-0} + 1)) ended=told
-      grep -qE "${reasons[$error]}" "$work/log" || wrong "exit code $code with another reason: $what"
+      ended=told
+      if ! grep -qE "${reasons[$error]}" "$work/log"; then
+        ended=wrong
+        wrong "exit code $code with another reason: $what"
+      fi
       ;;
   esac
 }
 
-# wrong WORDS: ends the campaign, or with SWINGBANK_GO_ON only counts
-wrongs=0
-wrong() {
-  wrongs=$((wrongs + 1)) ended=wrong
-  echo "WRONG: $*" >&2
-  sed 's/^/  | /' "$work/log" | tail -12 >&2
-  [ -n "${SWINGBANK_GO_ON:-}" ] || exit 1
+# strike ITEM ERROR RANK FOLDER CALLS BEFORE COMMAND...: one_failure in the call that is this item's share of those after
+# BEFORE. A run makes a few calls more or less each time: where it ended before its call, an earlier one is taken.
+# `begin_item` makes the folder ready; `check_item` compares what is there afterwards.
+strike() {
+  local item=$1 error=$2 rank=$3 folder=$4 of=$5 before=$6 at tries
+  shift 6
+  # golden ratio: every stretch of the run gets its share, however many items there are
+  at=$((1 + of * (item * 618033 % 1000000) / 1000000))
+  went_wrong=''
+  for ((tries = 0; tries < 20; ++tries)); do
+    begin_item
+    one_failure "$error" $((before + at)) "$rank" "$folder" "$@"
+    [ "$ended" = missed ] || break
+    at=$((at - at / 10 - 1))
+    if ((at < 1)); then at=1; fi
+  done
+  case $ended in whole | told) check_item ;; esac
+  local outcome=$ended
+  if [ -n "$went_wrong" ]; then outcome=wrong; fi
+  keep "$item" "$outcome" "$error" "$what"
 }
 
+# tell_failures N: figures of each error
 tell_failures() {
   local error
-  for error in "${!struck[@]}"; do
-    echo "$error (${reasons[$error]}): ${struck[$error]} injected, ${told[$error]:-0} ended with that reason, ${survived[$error]:-0} made the data all the same"
+  for error in "${!reasons[@]}"; do
+    awk -v error="$error" -v reason="${reasons[$error]}" '
+      $3 == error {++n[$2]} END {printf "%s (%s): %d ended with that reason, %d were whole all the same, %d were not reached\n",
+        error, reason, n["told"], n["whole"], n["missed"]}' "$results"
   done
-  echo "injections that the run did not reach: $not_reached; wrong: $wrongs"
-  [ "$wrongs" = 0 ]
+  tell_campaign "$1"
 }

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # One call fails on one rank of generate, at any place from the first to the last: input and output, space, quota, names,
-# interruptions, memory. SWINGBANK_INJECTIONS=500 bash tests/mpi/failing_calls_night.sh      (200 by default)
+# interruptions, memory. SWINGBANK_INJECTIONS=500 bash tests/mpi/failing_calls_night.sh      (200 by default; campaign.bash)
 # shellcheck disable=SC2154 # failing_calls.bash sets it
 source "$(dirname "$0")/common.bash"
+source "$(dirname "$0")/campaign.bash"
 source "$(dirname "$0")/failing_calls.bash"
 injections=${SWINGBANK_INJECTIONS:-200}
 errors=(5 28 2 4 122 memory)
@@ -41,22 +42,24 @@ for kind in alone two group half; do
   done
 done
 places=(alone0 two0 two1 group0 group1 half0 half1)
-for ((i = ${SWINGBANK_FROM:-0}; i < injections; i += ${SWINGBANK_STRIDE:-1})); do
+begin_item() { begin "$kind"; }
+check_item() {
+  if [ "$ended" = told ]; then
+    cp "$work/log" "$work/before"
+    "${make[@]}" >"$work/log" 2>&1 || wrong "the next run after $what: $(cat "$work/before")"
+    grep -q "dataset $whole" "$work/log" || wrong "another hash after $what"
+  else
+    [ "$(hash_of "$work/run")" = "$whole" ] || wrong "other data after $what"
+  fi
+  diff -r "$work/whole/shards" "$work/run/shards" >"$work/log" || wrong "other bytes or leftovers after $what"
+}
+for ((i = from; i < injections; i += stride)); do
+  if is_done $i; then continue; fi
   place=${places[i % ${#places[@]}]} error=${errors[i / ${#places[@]} % ${#errors[@]}]}
   kind=${place%?} rank=${place: -1}
-  begin "$kind"
+  begin "$kind" # sets `command`
   of=${calls[$place]}
   if [ "$error" = memory ]; then of=${allocated[$place]}; fi
-  # golden ratio: every stretch of the run gets its share, however many injections there are
-  at=$((1 + of * (i * 618033 % 1000000) / 1000000))
-  one_failure "$error" $at "$rank" "$work/run" "${command[@]}"
-  if [ "$ended" = whole ]; then
-    [ "$(hash_of "$work/run")" = "$whole" ] || wrong "other data after error $error in call $at of $place"
-  elif [ "$ended" = told ]; then
-    cp "$work/log" "$work/before"
-    "${make[@]}" >"$work/log" 2>&1 || wrong "the next run after error $error in call $at of $place: $(cat "$work/before")"
-    grep -q "dataset $whole" "$work/log" || wrong "another hash after error $error in call $at of $place"
-    diff -r "$work/whole/shards" "$work/run/shards" >"$work/log" || wrong "leftovers after error $error in call $at of $place"
-  fi
+  strike $i "$error" "$rank" "$work/run" "$of" 0 "${command[@]}"
 done
-tell_failures
+tell_failures "$injections"

@@ -1,0 +1,19 @@
+# To be sourced after lib.bash and fleet.bash: a fleet that is soon diagnosed, two plants that lack nothing.
+# shellcheck disable=SC2154,SC2034 # what lib.bash sets; `fleet_file` is for those who source this
+fleet_file=$work/fleet.toml
+{
+  echo '[options]'
+  echo 'power_only = true'
+  model=whole.toml plant a '"records/e[12].csv"'
+  model=whole.toml plant b '"records/e[34].csv"'
+} >"$fleet_file"
+# whole_fleet COMMAND...: runs it; whether both plants are done
+whole_fleet() { "$@" >"$work/log" 2>&1 && grep -q '^2 plants: 2 adequate' "$work/log"; }
+# same_fleet OUT: as $work/whole, with nothing left behind
+same_fleet() {
+  local file
+  for file in fleet.json fleet.csv fleet.html a/plant.json b/plant.json; do
+    cmp "$work/whole/$file" "$1/$file" || return 1
+  done
+  diff <(cd "$work/whole" && find . -not -name .lock | sort) <(cd "$1" && find . -not -name .lock | sort)
+}
