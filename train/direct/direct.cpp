@@ -18,9 +18,9 @@ namespace swingbank::train::direct {
 namespace {
 
 namespace store = mpi::store;
-constexpr double kWeightsOfCurveFit = 1e-4;  ///< level whose deviations weigh channels without noise
-constexpr double kNoPrior = 1e3;             ///< widths of the box
-constexpr std::size_t kRowsRead = 512;       ///< rows read at once
+constexpr double kWeights = 1e-4;       ///< level whose deviations weigh channels without noise
+constexpr double kNoPrior = 1e3;        ///< widths of the box
+constexpr std::size_t kRowsRead = 512;  ///< rows read at once
 enum class Method { closed_form, refined, curve_fit, floor };  ///< in order of kMethods
 
 /// What a row of the dataset is made of.
@@ -35,7 +35,7 @@ class Rows {
       problems.add("no closed form for " + d.machine_model, where,
                    "nobody has written one for this machine's equations",
                    "leave closed-form and refined out of the preset's networks");
-    const bool likely = method == Method::curve_fit || (method != Method::closed_form && noise.level > 0);
+    const bool likely = method != Method::closed_form;
     if (effect_ && likely && !sim::direct::has_likelihood(*effect_))
       problems.add("no likelihood for " + d.machine_model, where,
                    "it has too many states, or no constant impedance behind its terminal",
@@ -43,10 +43,9 @@ class Rows {
     if (!d.parameter_effects.empty())
       problems.add("parameters of other effects", where, "a closed form knows the machine alone",
                    "leave closed-form and refined out of the preset's networks");
-    const bool needs_field = effect_ && effect_->states.size() > 2;
+    fluxes_ = effect_ && effect_->states.size() > 2;
     for (const char* name : {"V", "P", "Q", "speed", "Ifd"})
-      if (channel(name) < 0 && (needs_field || name != std::string_view("Ifd")))
-        missing(name, problems, where);
+      if (channel(name) < 0 && (fluxes_ || name != std::string_view("Ifd"))) missing(name, problems, where);
     if (channel("theta") < 0 && channel("frequency") < 0) missing("theta or frequency", problems, where);
     problems.raise();
     store::require_machines(d, d.path);
@@ -97,15 +96,25 @@ class Rows {
     auto all = effect_->closed_form(noise_.none() ? r : sim::direct::smoothed(r), known.data());
     if (all.empty()) all.push_back(known);
     if (method_ == Method::closed_form) return all.front();
-    if (noise_.none()) return sim::direct::refine_best(*effect_, r, all, free_, low_, high_).p;
-    return sim::direct::most_probable_of(*effect_, r, all, unknown_).p;
+    if (!noise_.none()) return sim::direct::most_probable_of(*effect_, r, all, unknown_).p;
+    all.insert(all.begin(), sim::direct::refine_best(*effect_, r, all, free_, low_, high_).p);
+    if (!fluxes_) return all.front();  // the integrated swing equation is exact already
+    return sim::direct::most_probable_of(*effect_, weighted(r), all, anywhere()).p;
   }
   /// From the standard parameters and nowhere else, as whoever has only those must.
-  [[nodiscard]] std::vector<double> fitted(sim::Recording r, const std::vector<double>& known) const {
-    if (noise_.none()) r.noise = sim::MeasurementNoise{kWeightsOfCurveFit};
-    std::vector<sim::direct::FreeParameter> all = unknown_;
+  [[nodiscard]] std::vector<double> fitted(const sim::Recording& r, const std::vector<double>& known) const {
+    return sim::direct::most_probable(*effect_, noise_.none() ? weighted(r) : r, known, anywhere()).p;
+  }
+  /// A record without noise, whose channels count as if it had some.
+  static sim::Recording weighted(sim::Recording r) {
+    r.noise = sim::MeasurementNoise{kWeights};
+    return r;
+  }
+  /// Bound by the box alone.
+  [[nodiscard]] std::vector<sim::direct::FreeParameter> anywhere() const {
+    auto all = unknown_;
     for (auto& f : all) f.deviation = kNoPrior * (f.high - f.low);
-    return sim::direct::most_probable(*effect_, r, known, all).p;
+    return all;
   }
   void floor(const store::RowBlock& block, std::size_t row, double* out) const {
     const sim::Recording r = recording(block, row);
@@ -156,6 +165,7 @@ class Rows {
   }
   const store::Dataset& dataset_;
   const sim::Effect* effect_ = nullptr;
+  bool fluxes_ = false;  ///< has states beyond angle and speed
   sim::Conventions conventions_;
   sim::FrequencyFilter filter_;
   Method method_;

@@ -12,8 +12,9 @@
 
 namespace swingbank::train::direct {
 
-/// "closed-form": linear least squares, of smoothed signals where there is noise. "refined": without noise,
-/// Levenberg-Marquardt on the machine's equations from there; with noise, the most probable parameters.
+/// "closed-form": linear least squares, of smoothed signals where there is noise. "refined": from there the
+/// most probable parameters; without noise, Levenberg-Marquardt on the fluxes alone is a start as well, and
+/// channels count as if they had a noise of 0.01 %.
 /// "curve-fit": least squares of P, Q, speed and field current with the voltage played in, from the effect's
 /// standard parameters alone, kept in the box but not drawn to anything: what a program for deriving
 /// parameters does that has no other start (the thesis compares with EPRI's PPPD).

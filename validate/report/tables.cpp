@@ -438,7 +438,7 @@ TablesReport make_tables(const std::vector<RunResult>& results, const Provenance
       others.push_back(r.table);
   if (!tasks.empty()) {
     to.colours("Green: the thesis's MSE or less, under noise the floor. Red: no better than the mean.");
-    to.table(overview_table(tasks));
+    for (const auto& table : overview_tables(tasks)) to.table(table);
   }
   for (const auto& table : kThesisTables) {
     const std::string number(table.number);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <span>
 
 #include "validate/report/detail/thesis_tables.hpp"
 
@@ -77,12 +78,14 @@ Cell best_network(const Task& task, double noise) {
   return cell;
 }
 
-}  // namespace
+bool of_thesis(const Task& task) {
+  return std::ranges::find(kThesisTables, task.table, &ThesisTable::number) != kThesisTables.end();
+}
 
-Table overview_table(const std::vector<Task>& tasks) {
+Table overview_of(std::span<const Task> tasks, std::string title) {
   constexpr double kNoise = 0.001;
   const std::string noisy = ", " + level_name(kNoise);
-  Table table{kCellMeaning,
+  Table table{std::move(title),
               {""},
               {{"thesis's best"},
                {"predict-the-mean"},
@@ -105,7 +108,28 @@ Table overview_table(const std::vector<Task>& tasks) {
                                       figure_cell(task, {"floor", kNoise}, "–")};
     for (std::size_t i = 0; i < column.size(); ++i) table.rows[i].push_back(column[i]);
   }
+  std::erase_if(table.rows, [](const std::vector<Cell>& row) {
+    return std::all_of(row.begin() + 1, row.end(), [](const Cell& c) { return c.text == "–"; });
+  });
   return table;
+}
+
+}  // namespace
+
+std::vector<Table> overview_tables(const std::vector<Task>& tasks) {
+  constexpr std::size_t kWide = 3;  // columns that a page is wide enough for
+  const auto others = std::ranges::find_if_not(tasks, of_thesis);
+  std::vector<Table> tables;
+  std::string title = kCellMeaning;
+  const auto add = [&](std::span<const Task> part) {
+    for (; !part.empty(); part = part.subspan(std::min(part.size(), kWide))) {
+      tables.push_back(overview_of(part.first(std::min(part.size(), kWide)), title));
+      title = "Cells as in the first table.";
+    }
+  };
+  add({tasks.begin(), others});
+  add({others, tasks.end()});
+  return tables;
 }
 
 Table method_table(const Task& task) {

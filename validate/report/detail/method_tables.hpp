@@ -11,8 +11,8 @@ inline constexpr const char* kCellMeaning =
     "there is one, to the floor (the Bayesian Cramér-Rao bound: the least mean squared error that these noisy "
     "records allow). ¹ one seed, ² two seeds.";
 
-/// One column per task: the thesis, the best network, what needs no training, the floor.
-Table overview_table(const std::vector<Task>& tasks);
+/// Three columns at most, one per task, the thesis's tables first: the thesis, the best network, what needs no training, the floor.
+std::vector<Table> overview_tables(const std::vector<Task>& tasks);
 /// One row per method, one column per level of noise, the thesis's figures beside.
 Table method_table(const Task& task);
 /// At one level of noise: one row per generator left out, one column per method.
