@@ -7,11 +7,13 @@
 #include <cerrno>
 #include <cstring>
 #include <functional>
+#include <future>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "base/problem.hpp"
+#include "base/publish_hashed.hpp"
 
 namespace swingbank {
 
@@ -126,19 +128,39 @@ void flush_temporary(const fs::path& file) {
   if (d.get() < 0 || flush(d.get()) != 0) raise_file_error(file, errno, "cannot flush the file to the disk");
 }
 
-void publish(const fs::path& file) {
+namespace {
+
+/// Calls `meanwhile` with the temporary name while a thread of its own waits for the disk.
+void publish_and(const fs::path& file, const std::function<void(const fs::path&)>& meanwhile) {
   const fs::path temporary = temporary_name(file);
-  const auto fail = [&](const std::string& what) {
-    const int error = errno;
-    ::unlink(temporary.c_str());
-    raise_file_error(file, error, what);
-  };
-  {
+  try {
     const Descriptor d(temporary, O_RDONLY | O_NOFOLLOW);
-    if (d.get() < 0 || flush(d.get()) != 0) fail("cannot flush the file to the disk");
+    const auto flushed = [&d] { return flush(d.get()) != 0 ? errno : 0; };
+    int error = d.get() < 0 ? errno : 0;
+    if (error == 0 && !meanwhile) error = flushed();
+    if (error == 0 && meanwhile) {
+      auto waiting = std::async(std::launch::async, flushed);
+      meanwhile(temporary);
+      error = waiting.get();
+    }
+    if (error != 0) raise_file_error(file, error, "cannot flush the file to the disk");
+    if (::rename(temporary.c_str(), file.c_str()) != 0)
+      raise_file_error(file, errno, "cannot give the file its final name");
+  } catch (...) {
+    ::unlink(temporary.c_str());
+    throw;
   }
-  if (::rename(temporary.c_str(), file.c_str()) != 0) fail("cannot give the file its final name");
   flush_folder(file.parent_path());
+}
+
+}  // namespace
+
+void publish(const fs::path& file) { publish_and(file, {}); }
+
+std::string publish_hashed(const fs::path& file) {
+  std::string hash;
+  publish_and(file, [&](const fs::path& temporary) { hash = hash_of_file(temporary); });
+  return hash;
 }
 
 NewFile::NewFile(fs::path file, std::string failure)

@@ -2,9 +2,11 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <future>
 #include <numeric>
 
 #include "base/durable.hpp"
+#include "base/publish_hashed.hpp"
 #include "mpi/ranks/detail/message.hpp"
 #include "mpi/store/shard_layout.hpp"
 
@@ -46,7 +48,9 @@ std::vector<T> gather(MPI_Comm group, const std::vector<T>& mine, int size) {
   return all;
 }
 
-store::h5::Handle access_list(MPI_Comm group) {
+/// One rank alone needs no MPI-IO; the bytes are the same.
+store::h5::Handle access_list(MPI_Comm group, int size) {
+  if (size == 1) return {};
   store::h5::Handle list(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fapl_mpio(list.get(), group, MPI_INFO_NULL);
   return list;
@@ -114,34 +118,39 @@ ShardReceipt write_shard(const fs::path& file, const store::ShardData& part, MPI
   int rank, size;
   MPI_Comm_rank(group, &rank);
   MPI_Comm_size(group, &size);
-  const auto hashes = gather(group, store::row_hashes(part), size);
   const auto ids = gather(group, part.draw_sample_id, size);
   const auto outcomes = gather(group, part.draw_outcome, size);
   const auto redrawn = gather(group, part.draw_redrawn, size);
   std::uint64_t mine[2] = {part.rows, part.draw_sample_id.size()}, before[2] = {0, 0};
   MPI_Exscan(mine, before, 2, MPI_UINT64_T, MPI_SUM, group);
   if (rank == 0) before[0] = before[1] = 0;
+  std::uint64_t rows = part.rows;
+  MPI_Allreduce(MPI_IN_PLACE, &rows, 1, MPI_UINT64_T, MPI_SUM, group);
 
   const fs::path temporary = temporary_name(file);
   std::uint64_t bytes = 0;
   std::string file_hash;  // on rank 0, which journals it
+  std::vector<std::uint64_t> own_hashes;
   try {
     // MPI-IO tells little about why it fails, so the system is asked first.
     agree(group, file.string(), [&] {
-      if (rank == 0) reserve(file, size_on_disk(part, hashes.size(), ids.size()));
+      if (rank == 0) reserve(file, size_on_disk(part, rows, ids.size()));
     });
     store::h5::File f;
-    const store::h5::Handle access = access_list(group);
+    const store::h5::Handle access = access_list(group, size);
     agree(group, file.string(), [&] { f = store::h5::File::create(temporary, access.get()); });
-    agree(group, file.string(), [&] { store::lay_out_shard(f, part, {hashes.size(), ids.size()}); });
+    agree(group, file.string(), [&] { store::lay_out_shard(f, part, {rows, ids.size()}); });
     agree(group, file.string(), [&] { store::fill_shard(f, part, before[0], before[1]); });
     agree(group, file.string(), [&] { f.close(); });
     if (size > 1) agree(group, file.string(), [&] { flush_temporary(file); });  // each node what it wrote
     agree(group, file.string(), [&] {
-      if (rank != 0) return;
-      publish(file);
-      bytes = fs::file_size(file);
-      file_hash = hash_of_file(file);
+      // While the disk works, the processor hashes.
+      auto hashing = std::async(std::launch::async, [&part] { return store::row_hashes(part); });
+      if (rank == 0) {
+        file_hash = publish_hashed(file);
+        bytes = fs::file_size(file);
+      }
+      own_hashes = hashing.get();
     });
   } catch (...) {
     if (rank == 0) {
@@ -151,7 +160,8 @@ ShardReceipt write_shard(const fs::path& file, const store::ShardData& part, MPI
     throw;
   }
   MPI_Bcast(&bytes, 1, MPI_UINT64_T, 0, group);  // the new name may not be seen on other nodes yet (NFS)
-  return {hashes.size(), ids.size(), bytes, store::shard_hash(hashes, ids, outcomes, redrawn), file_hash};
+  const auto hashes = gather(group, own_hashes, size);
+  return {rows, ids.size(), bytes, store::shard_hash(hashes, ids, outcomes, redrawn), file_hash};
 }
 
 }  // namespace swingbank::mpi::ranks

@@ -5,9 +5,11 @@
 #include <sys/resource.h>
 
 #include <csignal>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "base/problem.hpp"
+#include "base/publish_hashed.hpp"
 #include "base/sealed_file.hpp"
 #include "base/write_file.hpp"
 #include "tests/mpi/store/sample_shard.hpp"
@@ -48,6 +50,11 @@ const Writer kWriters[] = {
      [](const fs::path& f) {
        reserve(f, 20000);
        publish(f);
+     }},
+    {"hashed",
+     [](const fs::path& f) {
+       reserve(f, 20000);
+       publish_hashed(f);
      }},
 };
 
@@ -135,6 +142,18 @@ TEST_F(DurableFile, AFileIsGoneUnlessPublished) {
     EXPECT_EQ(entries(), 1);
   }
   EXPECT_EQ(entries(), 0);
+}
+
+TEST_F(DurableFile, TheHashTakenWhileTheDiskIsFlushedIsThatOfTheFile) {
+  reserve(file, 3 << 20);
+  {
+    std::ofstream out(temporary_name(file), std::ios::binary);
+    for (int i = 0; i < 300'000; ++i) out << i;
+  }
+  const std::string hash = publish_hashed(file);
+  EXPECT_EQ(hash, hash_of_file(file));
+  EXPECT_EQ(entries(), 1);
+  EXPECT_THAT(refusal([&] { publish_hashed(folder.path / "none"); }), HasSubstr("No such file"));
 }
 
 TEST_F(DurableFile, FoldersAreMadeWhereTheyCanBe) {
