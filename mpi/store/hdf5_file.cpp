@@ -73,15 +73,33 @@ std::recursive_mutex& lock() {
   return mutex;
 }
 
-void File::fail(const std::string& what, const std::string& object) const {
-  const int last = errno;
-  std::string why = reason();
-  const std::string where = name_.string() + (object.empty() ? "" : ":" + object);
-  if (const int error = system_error(why)) raise_file_error(where, error, what);
-  // MPI-IO does not always say why; what the system said last is told beside.
+namespace {
+/// The system's last words, where HDF5's own are vague: MPI-IO does not always say why.
+std::string with_system(std::string why, int last) {
   const bool vague =
       why == "file write failed" || why == "file read failed" || why.find("ERR_OTHER") != why.npos;
   if (last != 0 && vague) why += std::string("; the system: ") + std::strerror(last);
+  return why;
+}
+std::string first_failed_close;  // empty: none, or told; under lock()
+}  // namespace
+
+void note_failed_close() {
+  const int last = errno;
+  const std::string why = with_system(reason(), last);
+  if (!close_failed.exchange(true)) first_failed_close = why;
+}
+
+std::string untold_failed_close() { return std::exchange(first_failed_close, {}); }
+
+void File::fail(const std::string& what, const std::string& object) const {
+  const int last = errno;
+  fail_for(with_system(reason(), last), what, object);
+}
+
+void File::fail_for(const std::string& why, const std::string& what, const std::string& object) const {
+  const std::string where = name_.string() + (object.empty() ? "" : ":" + object);
+  if (const int error = system_error(why)) raise_file_error(where, error, what);
   throw InputError(
       {what, where, why, "if the file is damaged, delete it and run the command that made it again"});
 }
@@ -120,7 +138,11 @@ File File::create(const std::filesystem::path& file, hid_t access) {
 
 void File::close() {
   errno = 0;
-  if (!file_.reset()) fail("cannot complete the HDF5 file", "");
+  if (file_.reset() && !close_failed) return;
+  // What was in the way is not told twice; a file that is begun after that is refused all the same.
+  const std::string why = untold_failed_close();
+  fail_for(why.empty() ? "something else could not be closed before" : why, "cannot complete the HDF5 file",
+           "");
 }
 
 template <class T>

@@ -21,6 +21,10 @@ std::recursive_mutex& lock();
 /// Something could not be closed (full disk). HDF5 1.10 then crashes in H5close, which MPI's end and
 /// exit() call too.
 inline std::atomic<bool> close_failed = false;
+/// Keeps the reason of the first such failure, which HDF5 forgets with its next call.
+void note_failed_close();
+/// That reason, if nobody has been told of it yet: of an array, say, that was closed where nothing may throw.
+std::string untold_failed_close();
 
 class Handle {
  public:
@@ -37,7 +41,7 @@ class Handle {
   /// Closes now; false if HDF5 could not.
   bool reset() {
     if (id_ < 0 || close_(std::exchange(id_, -1)) >= 0) return true;
-    close_failed = true;
+    note_failed_close();
     return false;
   }
   [[nodiscard]] hid_t get() const { return id_; }
@@ -101,7 +105,7 @@ class File {
   static File open_apart(const std::filesystem::path& file, const std::vector<std::string>& names);
   /// `access`: a file-access property list (MPI-IO), or -1 for the default driver.
   static File create(const std::filesystem::path& file, hid_t access = -1);
-  /// Closes; throws if buffered data could not be written.
+  /// Closes; throws if buffered data could not be written, now or when an array of any file was closed.
   void close();
 
   [[nodiscard]] bool has(const std::string& object) const;
@@ -164,6 +168,8 @@ class File {
 
   /// Throws InputError "<what> at <file>:<object> (<HDF5's reason>): <remedy>".
   [[noreturn]] void fail(const std::string& what, const std::string& object) const;
+  [[noreturn]] void fail_for(const std::string& why, const std::string& what,
+                             const std::string& object) const;
   static hsize_t row_size(const Shape& shape);
 
  private:
