@@ -2,14 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <limits>
 #include <numeric>
 
 namespace swingbank::mpi::draw {
 
 namespace {
-constexpr std::size_t kAxes = 4;     ///< gridded at most: 3^4 cells are visited
-constexpr double kWorthwhile = 3.0;  ///< an axis shorter than this many distances does not separate
-constexpr unsigned kBits = 16;       ///< of a cell number per axis
+constexpr std::size_t kAxes = 4;          ///< gridded at most: 3^4 cells are visited
+constexpr double kWorthwhile = 3.0;       ///< an axis shorter than this many distances does not separate
+constexpr unsigned kBits = 16;            ///< of a cell number per axis
+constexpr std::size_t kPointsAtOnce = 8;  ///< points of a block
+constexpr std::size_t kTell = 4;          ///< axes after which most blocks are known to be far
+using Eight = double __attribute__((vector_size(kPointsAtOnce * sizeof(double))));
+
+bool any_below(const Eight& sums, double limit) {
+  for (std::size_t k = 0; k < kPointsAtOnce; ++k)
+    if (sums[k] < limit) return true;
+  return false;
+}
 }  // namespace
 
 Neighbours::Neighbours(std::vector<double> low, std::vector<double> width, double distance)
@@ -20,10 +31,15 @@ Neighbours::Neighbours(std::vector<double> low, std::vector<double> width, doubl
     ++gridded_;
 }
 
+std::vector<double> Neighbours::ordered(const double* x) const {
+  std::vector<double> y(order_.size());
+  for (std::size_t i = 0; i < y.size(); ++i) y[i] = x[order_[i]];
+  return y;
+}
+
 /// Cell numbers start at 1, so that the neighbour below the first has a number too.
 std::uint64_t Neighbours::cell(const double* x, std::size_t axis) const {
-  const std::size_t a = order_[axis];
-  return 1 + static_cast<std::uint64_t>(std::min((x[a] - low_[a]) / distance_, 60000.0));
+  return 1 + static_cast<std::uint64_t>(std::min((x[axis] - low_[order_[axis]]) / distance_, 60000.0));
 }
 
 bool Neighbours::near_in(std::uint64_t key, const double* x) const {
@@ -31,10 +47,17 @@ bool Neighbours::near_in(std::uint64_t key, const double* x) const {
   if (found == cells_.end()) return false;
   const double limit = distance_ * distance_;
   const std::size_t n = order_.size();
-  for (const double *p = found->second.data(), *end = p + found->second.size(); p != end; p += n) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < n && sum < limit; ++i) sum += (p[i] - x[order_[i]]) * (p[i] - x[order_[i]]);
-    if (sum < limit) return true;
+  const std::vector<double>& blocks = found->second.blocks;
+  for (const double *p = blocks.data(), *end = p + blocks.size(); p != end; p += n * kPointsAtOnce) {
+    Eight sums{};
+    for (std::size_t i = 0; i < n; ++i) {
+      Eight d;
+      std::memcpy(&d, p + i * kPointsAtOnce, sizeof d);
+      d -= x[i];
+      sums += d * d;
+      if (i + 1 == kTell && !any_below(sums, limit)) break;
+    }
+    if (any_below(sums, limit)) return true;
   }
   return false;
 }
@@ -43,8 +66,8 @@ bool Neighbours::near_along(std::size_t axis, std::uint64_t key, const double* x
   if (axis == gridded_) return near_in(key, x);
   constexpr double reach = 1.0 + 1e-9;  // cells farther off than the distance hold no neighbour
   const std::uint64_t c = cell(x, axis);
-  const std::size_t a = order_[axis];
-  const double below = (x[a] - low_[a]) / distance_ - static_cast<double>(c - 1), above = 1.0 - below;
+  const double below = (x[axis] - low_[order_[axis]]) / distance_ - static_cast<double>(c - 1),
+               above = 1.0 - below;
   if (near_along(axis + 1, (key << kBits) | c, x, gap)) return true;
   if (const double far = gap + below * below; far < reach)
     if (near_along(axis + 1, (key << kBits) | (c - 1), x, far)) return true;
@@ -52,13 +75,18 @@ bool Neighbours::near_along(std::size_t axis, std::uint64_t key, const double* x
   return far < reach && near_along(axis + 1, (key << kBits) | (c + 1), x, far);
 }
 
-bool Neighbours::near(const double* x) const { return near_along(0, 0, x, 0.0); }
+bool Neighbours::near(const double* x) const { return near_along(0, 0, ordered(x).data(), 0.0); }
 
 void Neighbours::add(const double* x) {
+  const std::vector<double> y = ordered(x);
   std::uint64_t key = 0;
-  for (std::size_t axis = 0; axis < gridded_; ++axis) key = (key << kBits) | cell(x, axis);
-  auto& points = cells_[key];
-  for (const std::size_t a : order_) points.push_back(x[a]);
+  for (std::size_t axis = 0; axis < gridded_; ++axis) key = (key << kBits) | cell(y.data(), axis);
+  Cell& c = cells_[key];
+  const std::size_t slot = c.points++ % kPointsAtOnce, n = y.size();
+  if (slot == 0)
+    c.blocks.resize(c.blocks.size() + n * kPointsAtOnce, std::numeric_limits<double>::infinity());
+  double* block = c.blocks.data() + c.blocks.size() - n * kPointsAtOnce;
+  for (std::size_t i = 0; i < n; ++i) block[i * kPointsAtOnce + slot] = y[i];
 }
 
 }  // namespace swingbank::mpi::draw
