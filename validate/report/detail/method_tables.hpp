@@ -11,7 +11,8 @@ inline constexpr const char* kCellMeaning =
     "there is one, to the floor (the Bayesian Cramér-Rao bound: the least mean squared error that these noisy "
     "records allow). ¹ one seed, ² two seeds.";
 
-/// Three columns at most, one per task, the thesis's tables first: the thesis, the best network, what needs no training, the floor.
+/// Three columns at most, one per task, the thesis's tables first: the thesis, the best network, what needs
+/// no training, the floor.
 std::vector<Table> overview_tables(const std::vector<Task>& tasks);
 /// One row per method, one column per level of noise, the thesis's figures beside.
 Table method_table(const Task& task);
