@@ -14,6 +14,7 @@
 
 #include "base/problem.hpp"
 #include "base/publish_hashed.hpp"
+#include "base/until_done.hpp"
 
 namespace swingbank {
 
@@ -40,14 +41,6 @@ std::string remedy_for(int error) {
     default:
       return "check the disk, then run the command again";
   }
-}
-
-/// Again where a signal or a file system's server interrupted it.
-template <class Call>
-auto until_done(const Call& call) {
-  auto result = call();
-  while (result < 0 && errno == EINTR) result = call();
-  return result;
 }
 
 class Descriptor {

@@ -12,6 +12,7 @@
 #include "base/durable.hpp"
 #include "base/json_text.hpp"
 #include "base/sealed_text.hpp"
+#include "base/until_done.hpp"
 
 namespace swingbank::mpi::store {
 
@@ -23,24 +24,17 @@ constexpr const char* kAttemptsFile = "attempts.jsonl";
 
 std::string utc_now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
 
-/// Once more where a signal interrupted it.
-template <class Call>
-auto again(const Call& call) {
-  auto result = call();
-  while (result < 0 && errno == EINTR) result = call();
-  return result;
-}
-
 /// One write, so that lines of several runs do not mix; begun with a line feed, so that a torn line before it
 /// spoils nothing.
 void append_attempt(const fs::path& file, const nlohmann::ordered_json& line) {
   const std::string text = "\n" + sealed_text(json_text(line));
-  const int fd = again([&] { return ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644); });
+  const int fd =
+      until_done([&] { return ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644); });
   if (fd < 0) raise_file_error(file, errno, "cannot open the list of attempts");
-  const ssize_t written = again([&] { return ::write(fd, text.data(), text.size()); });
+  const ssize_t written = until_done([&] { return ::write(fd, text.data(), text.size()); });
   int error = written < 0 ? errno : 0;
   if (error == 0 && written < static_cast<ssize_t>(text.size())) error = ENOSPC;
-  if (error == 0 && again([&] { return ::fsync(fd); }) != 0) error = errno;
+  if (error == 0 && until_done([&] { return ::fsync(fd); }) != 0) error = errno;
   ::close(fd);
   if (error != 0) raise_file_error(file, error, "cannot write the list of attempts");
 }

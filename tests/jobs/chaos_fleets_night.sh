@@ -4,6 +4,7 @@
 #   SWINGBANK_KILLS=100 bash tests/jobs/chaos_fleets_night.sh      (16 by default; tests/mpi/campaign.bash)
 # shellcheck disable=SC2154 # what lib.bash and two_plants.bash set
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+source "$(dirname "${BASH_SOURCE[0]}")/kill.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/fleet.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/two_plants.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/../mpi/campaign.bash"
@@ -31,20 +32,7 @@ for ((i = from; i < kills; i += stride)); do
   rm -rf "$out"
   command $ranks "$out"
   at=$((lasts[$ranks] * i / kills))
-  setsid "${run[@]}" >"$work/log" 2>&1 &
-  pid=$!
-  sleep "$((at / 1000)).$(printf %03d $((at % 1000)))"
-  child=$(pgrep -P $pid | head -1) || true
-  case $way in
-    child) kill -9 "${child:-$pid}" 2>/dev/null || true ;;
-    group) kill -9 -- -$pid 2>/dev/null || true ;;
-    stopped)
-      kill -STOP "${child:-$pid}" 2>/dev/null || true
-      sleep 0.1
-      kill -9 -- -$pid 2>/dev/null || true
-      ;;
-    *) kill -9 $pid 2>/dev/null || true ;;
-  esac
+  begin_and_kill "$way" "$at" "${run[@]}"
   what="kill $i ($way of $ranks ranks at $at ms)"
   # Without a launcher a fleet outlives its child: that plant fails, the others are done.
   for ((wait = 0; wait < 600; ++wait)); do

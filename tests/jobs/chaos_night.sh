@@ -4,6 +4,7 @@
 #   SWINGBANK_KILLS=200 bash tests/jobs/chaos_night.sh      (40 by default)
 # shellcheck disable=SC2154,SC2034 # what lib.bash sets; what tiny_experiment reads
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+source "$(dirname "${BASH_SOURCE[0]}")/kill.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/same_training.bash"
 kills=${SWINGBANK_KILLS:-40}
@@ -37,20 +38,7 @@ for ((i = 0; i < kills; ++i)); do
   mkdir "$out"
   command "$kind" "$out"
   at=$((lasts[$kind] * i / kills))
-  setsid "${run[@]}" >"$work/log" 2>&1 &
-  pid=$!
-  sleep "$((at / 1000)).$(printf %03d $((at % 1000)))"
-  child=$(pgrep -P $pid | head -1) || true
-  case $way in
-    child) kill -9 "${child:-$pid}" 2>/dev/null || true ;;
-    group) kill -9 -- -$pid 2>/dev/null || true ;;
-    stopped)
-      kill -STOP "${child:-$pid}" 2>/dev/null || true
-      sleep 0.1
-      kill -9 -- -$pid 2>/dev/null || true
-      ;;
-    *) kill -9 $pid 2>/dev/null || true ;;
-  esac
+  begin_and_kill "$way" "$at" "${run[@]}"
   for ((wait = 0; wait < 600; ++wait)); do # children save and end, however busy the machine is
     pgrep -g $pid >/dev/null || break
     sleep 0.1

@@ -22,7 +22,7 @@ wrong() {
   [ -n "${SWINGBANK_GO_ON:-}" ] || exit 1
 }
 
-# tell_campaign N: whether all N items are done and none went wrong
+# tell_campaign N: tells how many of N items are done (others may be with shells beside this one); fails if one went wrong
 tell_campaign() {
   local made wrongs
   made=$(wc -l <"$results")

@@ -44,11 +44,11 @@ for ((i = from; i < kills; i += stride)); do
   # Ranks of a killed mpirun end by themselves, a stopped one does not. OpenMPI's launcher may hang when a rank dies
   # in MPI_Init (known of 4.1): after ten seconds it is ended, as jobs/run_saving.bash does.
   for ((wait = 0; wait < 100; ++wait)); do
-    pgrep -g $pid >/dev/null || break
-    [ "$kind" = stopped ] && pkill -9 -g $pid || true
+    pgrep -f -- "--out $out" >/dev/null || break # ranks have process groups of their own
+    [ "$kind" = stopped ] && pkill -9 -f -- "--out $out" || true
     sleep 0.1
   done
-  pkill -9 -g $pid 2>/dev/null && ended=hung
+  pkill -9 -f -- "--out $out" 2>/dev/null && ended=hung
   wait $pid 2>/dev/null || true
   [ -e "$out/dataset.json" ] || began=early
   what="kill $i of $kind at $at ms"
@@ -61,5 +61,5 @@ for ((i = from; i < kills; i += stride)); do
 done
 awk '{++n[$3]; same[$3] += $2 == "same"; early[$3] += $4 == "early"; hung += $5 == "hung"}
   END {for (k in n) printf "%s: %d of %d kills end in the same bytes, %d of them before the header stood\n", k, same[k], n[k], early[k]
-    printf "launchers that hung until they were ended: %d\n", hung}' "$results"
+    printf "runs of which something hung until it was ended: %d\n", hung}' "$results"
 tell_campaign "$kills"

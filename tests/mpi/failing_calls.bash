@@ -1,5 +1,5 @@
-# To be sourced after common.bash and campaign.bash: runs in which one call fails (failing_call.cpp is preloaded). Each must end in time:
-# whole with the same data, or with exit code 1 and the reason that was injected; the next run mends it.
+# To be sourced after common.bash and campaign.bash: runs in which one call fails (failing_call.cpp is preloaded). Each must
+# end in time: whole with the same data, or with exit code 1 and the reason that was injected; the next run mends it.
 # shellcheck disable=SC2154,SC2034,SC2016 # what common.bash sets; what those who source this read
 preload=$SWINGBANK_BIN/failing_call.so
 limit=60 # [s] of a run that takes about one; the machine may be busy
