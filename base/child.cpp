@@ -17,6 +17,7 @@
 #include <optional>
 
 #include "base/problem.hpp"
+#include "base/until_done.hpp"
 
 extern char** environ;
 
@@ -50,8 +51,7 @@ void take_output(int pipe, pid_t child, double limit, ProgramEnd& ended) {
       end.reset();
       continue;
     }
-    const ssize_t n = ::read(pipe, piece.data(), piece.size());
-    if (n < 0 && errno == EINTR) continue;
+    const ssize_t n = until_done([&] { return ::read(pipe, piece.data(), piece.size()); });
     if (n <= 0) return;
     ended.output.append(piece.data(), static_cast<std::size_t>(n));
   }
@@ -75,7 +75,7 @@ pid_t start_child(const std::function<int()>& work, int at_our_end) {
 
 int wait_for_child(pid_t child) {
   int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+  until_done([&] { return ::waitpid(child, &status, 0); });
   return status;
 }
 

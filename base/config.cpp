@@ -108,6 +108,16 @@ void unknown(const toml::table& table, const std::string& prefix, const std::set
   }
 }
 
+/// toml++ reads a number through a stream, which takes failing memory for a malformed number: only an error
+/// that comes again is one of the text.
+toml::table parse(const std::string& text, const std::string& name) {
+  try {
+    return toml::parse(text, name);
+  } catch (const toml::parse_error&) {
+    return toml::parse(text, name);
+  }
+}
+
 }  // namespace
 
 Config::Config(const fs::path& file)
@@ -115,7 +125,7 @@ Config::Config(const fs::path& file)
 
 Config::Config(const std::string& text, const fs::path& name) : name_(name), tree_(std::make_shared<Tree>()) {
   try {
-    tree_->root = toml::parse(text, name.string());
+    tree_->root = parse(text, name.string());
   } catch (const toml::parse_error& e) {
     throw InputError(
         {"not TOML", place(name, e.source().begin), std::string(e.description()), "mend the line"});

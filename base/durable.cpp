@@ -170,12 +170,7 @@ NewFile::~NewFile() {
 void NewFile::fail() const { raise_file_error(file_, errno, failure_); }
 
 void NewFile::write(const void* data, std::size_t bytes) {
-  for (const char* from = static_cast<const char*>(data); bytes > 0;) {
-    const ssize_t n = until_done([&] { return ::write(fd_, from, bytes); });
-    if (n <= 0) fail();
-    from += n;
-    bytes -= static_cast<std::size_t>(n);
-  }
+  if (!write_all(fd_, {static_cast<const char*>(data), bytes})) fail();
 }
 
 void NewFile::publish() {

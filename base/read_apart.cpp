@@ -4,7 +4,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -17,6 +16,7 @@
 #include "base/json_text.hpp"
 #include "base/own_command.hpp"
 #include "base/problem.hpp"
+#include "base/until_done.hpp"
 
 namespace swingbank {
 namespace {
@@ -47,16 +47,6 @@ std::string way_to_end(const ProgramEnd& ended, double patience) {
   if (WIFSIGNALED(ended.status))
     return std::string("its reader was ended by a signal: ") + ::strsignal(WTERMSIG(ended.status));
   return "its reader ended with code " + std::to_string(ended.code());
-}
-
-bool print(const std::string& text) {
-  for (std::size_t at = 0; at < text.size();) {
-    const ssize_t n = ::write(STDOUT_FILENO, text.data() + at, text.size() - at);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return false;
-    at += static_cast<std::size_t>(n);
-  }
-  return true;
 }
 
 }  // namespace
@@ -90,13 +80,13 @@ int answer_apart(const std::filesystem::path& file, const std::function<std::str
   ::setrlimit(RLIMIT_CORE, &no_core);  // a crash is an answer
   nlohmann::json problems = nlohmann::json::array();
   try {
-    return print(work()) ? 0 : 1;
+    return write_all(STDOUT_FILENO, work()) ? 0 : 1;
   } catch (const InputError& e) {
     for (const Problem& p : e.problems()) problems.push_back({p.what, p.where, p.why, p.remedy});
   } catch (const std::bad_alloc&) {
     problems.push_back({kWhat, "its reader", "memory is short", "run it where there is more memory"});
   }
-  return print(json_text(problems)) ? kProblemsTold : 1;
+  return write_all(STDOUT_FILENO, json_text(problems)) ? kProblemsTold : 1;
 }
 
 }  // namespace swingbank

@@ -15,6 +15,7 @@
 
 #include "base/durable.hpp"
 #include "base/problem.hpp"
+#include "base/until_done.hpp"
 
 namespace swingbank {
 
@@ -66,20 +67,17 @@ RunLock::~RunLock() {
 
 void RunLock::open() {
   constexpr int kFlags = O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW;
-  do {
-    fd_ = ::open(file_.c_str(), kFlags | O_EXCL, 0644);
-    created_ = fd_ >= 0;
-    if (fd_ < 0 && errno == EEXIST) fd_ = ::open(file_.c_str(), kFlags, 0644);
-  } while (fd_ < 0 && errno == EINTR);
+  fd_ = until_done([&] {
+    const int created = ::open(file_.c_str(), kFlags | O_EXCL, 0644);
+    created_ = created >= 0;
+    return created < 0 && errno == EEXIST ? ::open(file_.c_str(), kFlags, 0644) : created;
+  });
   if (fd_ < 0) raise_file_error(file_, errno, "cannot open the lock file");
 }
 
 bool RunLock::try_lock() {
-  int result;
-  do {
-    result = ::flock(fd_, (kind_ == Kind::alone ? LOCK_EX : LOCK_SH) | LOCK_NB);
-  } while (result != 0 && errno == EINTR);
-  if (result == 0) return true;
+  const int how = (kind_ == Kind::alone ? LOCK_EX : LOCK_SH) | LOCK_NB;
+  if (until_done([&] { return ::flock(fd_, how); }) == 0) return true;
   if (errno == EWOULDBLOCK) return false;
   const std::string why = std::strerror(errno);
   withdraw();

@@ -13,6 +13,7 @@
 
 #include "base/durable.hpp"
 #include "base/problem.hpp"
+#include "base/until_done.hpp"
 
 namespace swingbank {
 namespace {
@@ -29,8 +30,7 @@ struct Hash {
 class Input {
  public:
   explicit Input(const std::filesystem::path& file) : file_(file), buffer_(std::size_t{1} << 16) {
-    do fd_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-    while (fd_ < 0 && errno == EINTR);
+    fd_ = until_done([&] { return ::open(file.c_str(), O_RDONLY | O_CLOEXEC); });
     if (fd_ < 0 && errno != ENOENT) raise_file_error(file_, errno, "cannot read the file");
   }
   ~Input() {
@@ -59,9 +59,7 @@ class Input {
 
  private:
   void fill() {
-    ssize_t n;
-    do n = ::read(fd_, buffer_.data(), buffer_.size());
-    while (n < 0 && errno == EINTR);
+    const ssize_t n = until_done([&] { return ::read(fd_, buffer_.data(), buffer_.size()); });
     if (n < 0) raise_file_error(file_, errno, "cannot read the file");
     if (n == 0) throw Unusable{"it ends too early"};
     at_ = 0, filled_ = static_cast<std::size_t>(n);

@@ -1,6 +1,9 @@
 #pragma once
-// A call of the system made again where a signal or a file system's server interrupted it.
+// Calls of the system made again where a signal or a file system's server interrupted them.
+#include <unistd.h>
+
 #include <cerrno>
+#include <string_view>
 
 namespace swingbank {
 
@@ -10,6 +13,17 @@ auto until_done(const Call& call) {
   auto result = call();
   while (result < 0 && errno == EINTR) result = call();
   return result;
+}
+
+/// Writes all of `bytes`, or sets errno and returns false.
+inline bool write_all(int fd, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t n = until_done([&] { return ::write(fd, bytes.data(), bytes.size()); });
+    if (n == 0) errno = ENOSPC;
+    if (n <= 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(n));
+  }
+  return true;
 }
 
 }  // namespace swingbank

@@ -4,10 +4,12 @@
 #include <cstdlib>
 #include <future>
 #include <numeric>
+#include <optional>
 
 #include "base/durable.hpp"
 #include "base/publish_hashed.hpp"
 #include "mpi/ranks/detail/message.hpp"
+#include "mpi/ranks/detail/step_watch.hpp"
 #include "mpi/store/shard_layout.hpp"
 
 namespace swingbank::mpi::ranks {
@@ -16,8 +18,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// [s] until a rank that has failed ends all, where the others do not come to know of it.
-constexpr double kOthersMayTake = 20.0;
+/// [s] until a rank that has failed says why, where the others are not there to hear of it: a limit of
+/// somebody else, of a lease say, may end the run meanwhile.
+constexpr double kToldAfter = 1.0;
+/// [s] from then until it ends all.
+constexpr double kOthersMayTake = 19.0;
 
 void share_text(MPI_Comm group, int from, std::string& text) {
   auto length = static_cast<unsigned long>(text.size());
@@ -56,6 +61,13 @@ store::h5::Handle access_list(MPI_Comm group, int size) {
   return list;
 }
 
+/// What OpenMPI's MPI-IO leaves behind where it is kept from removing the file by which it finds out about
+/// locks (sharedfp/lockedfile names it so).
+void remove_lock_test(const fs::path& opened, int rank) {
+  std::error_code ignored;
+  fs::remove(opened.string() + ".locktest." + std::to_string(rank), ignored);
+}
+
 /// Problems of the first rank that has any; the same on all.
 std::vector<Problem> gather_problems(MPI_Comm group, const std::string& where,
                                      const std::function<void()>& work) {
@@ -76,8 +88,12 @@ std::vector<Problem> gather_problems(MPI_Comm group, const std::string& where,
   MPI_Iallreduce(&mine, &first, 1, MPI_INT, MPI_MIN, group, &request);
   // What failed here may have been a part of something collective (HDF5 writes so), out of which the others
   // do not come without this rank.
-  if (!wait_for(request, problems.empty() ? 0.0 : kOthersMayTake))
-    end_all_ranks(problems.front().sentence().c_str());
+  if (!wait_for(request, problems.empty() ? 0.0 : kToldAfter)) {
+    const std::string why = problems.front().sentence();
+    std::fprintf(stderr, "failure at rank %d of a group of %d (%s): the others are waited for\n", rank, size,
+                 why.c_str());
+    if (!wait_for(request, kOthersMayTake)) end_all_ranks(why.c_str());
+  }
   if (first == size) return {};
   auto count = static_cast<unsigned long>(problems.size());
   MPI_Bcast(&count, 1, MPI_UNSIGNED_LONG, first, group);
@@ -131,17 +147,25 @@ ShardReceipt write_shard(const fs::path& file, const store::ShardData& part, MPI
   std::uint64_t bytes = 0;
   std::string file_hash;  // on rank 0, which journals it
   std::vector<std::uint64_t> own_hashes;
+  const auto together = [&](const char* step, const std::function<void()>& work) {
+    agree(group, file.string(), [&] {
+      std::optional<StepWatch> watch;
+      if (size > 1) watch.emplace(step, file.string());
+      work();
+    });
+  };
+  store::h5::File f;
   try {
     // MPI-IO tells little about why it fails, so the system is asked first.
     agree(group, file.string(), [&] {
       if (rank == 0) reserve(file, size_on_disk(part, rows, ids.size()));
     });
-    store::h5::File f;
     const store::h5::Handle access = access_list(group, size);
-    agree(group, file.string(), [&] { f = store::h5::File::create(temporary, access.get()); });
-    agree(group, file.string(), [&] { store::lay_out_shard(f, part, {rows, ids.size()}); });
-    agree(group, file.string(), [&] { store::fill_shard(f, part, before[0], before[1]); });
-    agree(group, file.string(), [&] { f.close(); });
+    together("create", [&] { f = store::h5::File::create(temporary, access.get()); });
+    together("lay out", [&] { store::lay_out_shard(f, part, {rows, ids.size()}); });
+    together("fill", [&] { store::fill_shard(f, part, before[0], before[1]); });
+    together("close", [&] { f.close(); });
+    if (size > 1) remove_lock_test(temporary, rank);
     if (size > 1) agree(group, file.string(), [&] { flush_temporary(file); });  // each node what it wrote
     agree(group, file.string(), [&] {
       // While the disk works, the processor hashes.
@@ -153,6 +177,8 @@ ShardReceipt write_shard(const fs::path& file, const store::ShardData& part, MPI
       own_hashes = hashing.get();
     });
   } catch (...) {
+    if (size > 1) f.abandon();
+    remove_lock_test(temporary, rank);
     if (rank == 0) {
       std::error_code ignored;
       fs::remove(temporary, ignored);

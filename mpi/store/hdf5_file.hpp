@@ -18,8 +18,8 @@ namespace swingbank::mpi::store::h5 {
 /// HDF5 is not thread-safe: whoever uses it holds this lock.
 std::recursive_mutex& lock();
 
-/// Something could not be closed (full disk). HDF5 1.10 then crashes in H5close, which MPI's end and
-/// exit() call too.
+/// Something could not be closed (full disk), or was left open. HDF5 1.10 then crashes or hangs in H5close,
+/// which MPI's end and exit() call too.
 inline std::atomic<bool> close_failed = false;
 /// Keeps the reason of the first such failure, which HDF5 forgets with its next call.
 void note_failed_close();
@@ -43,6 +43,10 @@ class Handle {
     if (id_ < 0 || close_(std::exchange(id_, -1)) >= 0) return true;
     note_failed_close();
     return false;
+  }
+  /// Leaves it open until the process ends without H5close.
+  void abandon() {
+    if (std::exchange(id_, -1) >= 0) close_failed = true;
   }
   [[nodiscard]] hid_t get() const { return id_; }
   explicit operator bool() const { return id_ >= 0; }
@@ -107,6 +111,9 @@ class File {
   static File create(const std::filesystem::path& file, hid_t access = -1);
   /// Closes; throws if buffered data could not be written, now or when an array of any file was closed.
   void close();
+  /// Once a rank of several has failed: HDF5 closes a file by all of them together, and waits for ever where
+  /// they do not hold the same.
+  void abandon() { file_.abandon(); }
 
   [[nodiscard]] bool has(const std::string& object) const;
   [[nodiscard]] Shape shape(const std::string& object) const;

@@ -12,6 +12,7 @@
 #include "base/durable.hpp"
 #include "base/problem.hpp"
 #include "base/sealed_text.hpp"
+#include "base/until_done.hpp"
 #include "mpi/store/manifest.hpp"
 
 namespace swingbank::mpi::store {
@@ -148,9 +149,7 @@ void strike_lines(const std::filesystem::path& folder, const std::vector<std::ui
 }
 
 Journal::Journal(std::filesystem::path file) : file_(std::move(file)) {
-  do {
-    fd_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-  } while (fd_ < 0 && errno == EINTR);
+  fd_ = until_done([&] { return ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644); });
   if (fd_ < 0) raise_file_error(file_, errno, "cannot open the journal");
   const std::string text = read_text(file_);
   if (const auto whole = whole_lines(text);
@@ -165,15 +164,8 @@ Journal::~Journal() {
 
 /// Writes and flushes; the system's error number, or 0.
 int Journal::add(std::string_view text) const {
-  while (!text.empty()) {
-    const ssize_t n = ::write(fd_, text.data(), text.size());
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return n < 0 ? errno : ENOSPC;
-    text.remove_prefix(static_cast<std::size_t>(n));
-  }
-  while (::fsync(fd_) != 0)
-    if (errno != EINTR) return errno;
-  return 0;
+  const bool safe = write_all(fd_, text) && until_done([&] { return ::fsync(fd_); }) == 0;
+  return safe ? 0 : errno;
 }
 
 void Journal::append(std::span<const JournalLine> lines) {

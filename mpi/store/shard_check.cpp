@@ -14,6 +14,7 @@
 
 #include "base/child.hpp"
 #include "base/json_text.hpp"
+#include "base/until_done.hpp"
 
 namespace swingbank::mpi::store {
 
@@ -30,20 +31,11 @@ std::string line_of(const JournalLine& shard, const std::optional<Problem>& p) {
   return p ? bad_shard_text({shard.shard, *p}) : "\n";
 }
 
-void write_all(int fd, const std::string& text) {
-  for (std::size_t at = 0; at < text.size();) {
-    const ssize_t n = ::write(fd, text.data() + at, text.size() - at);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) ::_exit(1);
-    at += static_cast<std::size_t>(n);
-  }
-}
-
 int read_share(const std::filesystem::path& folder, const DatasetHeader& header,
                const std::vector<JournalLine>& lines, std::size_t first, std::size_t step, int out) {
   try {
     for (std::size_t i = first; i < lines.size(); i += step)
-      write_all(out, line_of(lines[i], fault_of(folder, lines[i], header, true)));
+      if (!write_all(out, line_of(lines[i], fault_of(folder, lines[i], header, true)))) ::_exit(1);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "%s\n", e.what());
     return 1;
@@ -93,8 +85,7 @@ void listen(std::vector<Reader>& readers, std::vector<BadShard>& bad, const std:
     for (std::size_t i = 0; i < readers.size(); ++i) {
       if (waits[i].revents == 0) continue;
       std::array<char, 4096> piece{};
-      const ssize_t n = ::read(readers[i].pipe, piece.data(), piece.size());
-      if (n < 0 && errno == EINTR) continue;
+      const ssize_t n = until_done([&] { return ::read(readers[i].pipe, piece.data(), piece.size()); });
       if (n > 0) readers[i].text.append(piece.data(), static_cast<std::size_t>(n));
       take_lines(readers[i], bad, done);
       if (n > 0) continue;

@@ -53,7 +53,7 @@ check_item() {
   fi
   diff -r "$work/whole/shards" "$work/run/shards" >"$work/log" || wrong "other bytes or leftovers after $what"
 }
-for ((i = from; i < injections; i += stride)); do
+for i in $(seq "$from" "$stride" $((injections - 1))) ${SWINGBANK_ALSO:-}; do
   if is_done $i; then continue; fi
   place=${places[i % ${#places[@]}]} error=${errors[i / ${#places[@]} % ${#errors[@]}]}
   kind=${place%?} rank=${place: -1}

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <exception>
 #include <utility>
 
 #include "base/stop_signal.hpp"
+#include "mpi/ranks/shard_group.hpp"
 
 namespace swingbank::mpi::ranks {
 
@@ -81,7 +83,7 @@ Shards Master::exchange(const Report& report, int rank) {
   return leases_.give(rank, rank == 0, Leases::Clock::now());
 }
 
-void Master::poll() {
+void Master::poll() try {
   for (int there = 1; there != 0;) {
     MPI_Status status;
     MPI_Iprobe(MPI_ANY_SOURCE, kReportTag, world_, &there, &status);
@@ -94,6 +96,8 @@ void Master::poll() {
     send_shards(world_, status.MPI_SOURCE, lease);
     if (lease.empty()) --waiting_leaders_;
   }
+} catch (const std::exception& e) {
+  end_all_ranks(e.what());  // whoever asked would wait for ever
 }
 
 void Master::serve_to_the_end() {
