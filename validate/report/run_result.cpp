@@ -106,6 +106,7 @@ RunResult read_result(const fs::path& file, Problems& problems) {
   }
   Object o(parsed, file.string(), problems);
   o.get("table", r.table);
+  if (parsed.contains("title")) o.get("title", r.title);
   o.get("network", r.network);
   o.get("preset", r.preset);
   o.get("seed", r.seed);

@@ -31,6 +31,7 @@ struct SeveralRecords {
 struct RunResult {
   std::filesystem::path file;
   std::string table, network, preset;
+  std::string title;  ///< of the experiment; empty in results that do not say
   std::int64_t seed = 0;
   double noise = 0;   ///< level of measurement noise; 0: none
   int generator = 0;  ///< bus of the generator left out; 0: none

@@ -432,10 +432,9 @@ TablesReport make_tables(const std::vector<RunResult>& results, const Provenance
       "(Y. Wu, University of Vermont, 2020, chapter 4) and beside predicting the mean. Only the raw MSE may be "
       "compared with the thesis.");
   const auto tasks = tasks_of(results);
-  std::vector<std::string> others;  // experiments that are none of the thesis's tables
+  std::map<std::string, std::string> others;  // title of each experiment that is none of the thesis's tables
   for (const auto& r : results)
-    if (table_rank(r.table) == kThesisTables.size() && std::ranges::find(others, r.table) == others.end())
-      others.push_back(r.table);
+    if (table_rank(r.table) == kThesisTables.size()) others.emplace(r.table, r.title);
   if (!tasks.empty()) {
     to.colours("Green: the thesis's MSE or less, under noise the floor. Red: no better than the mean.");
     for (const auto& table : overview_tables(tasks)) to.table(table);
@@ -448,8 +447,8 @@ TablesReport make_tables(const std::vector<RunResult>& results, const Provenance
     else
       add_table(results, tasks, number, to);
   }
-  for (const auto& table : others) {
-    to.section(table);
+  for (const auto& [table, title] : others) {
+    to.section(title.empty() ? table : fmt::format("{}: {}", table, title));
     add_table(results, tasks, table, to);
   }
   TablesReport report = to.end(sources);

@@ -155,6 +155,15 @@ TEST_F(TablesTest, UnseenGeneratorsStandAgainstThoseThatTrained) {
   EXPECT_THAT(page, HasSubstr("| #39 | 4 |\n"));
   EXPECT_THAT(page, HasSubstr("| all together | 3 |\n"));
 }
+TEST_F(TablesTest, AnExperimentOfOnesOwnStandsUnderItsTitle) {
+  json r = result("ieee14_from_39", "mlp", 0, 0.4);
+  r["title"] = "trained on IEEE 39, judged on IEEE 14";
+  write("a", r);
+  write("b", result("mine", "mlp", 0, 0.4));  // of a release that did not say
+  EXPECT_THAT(
+      make_tables(read(), {}).markdown,
+      AllOf(HasSubstr("## ieee14_from_39: trained on IEEE 39, judged on IEEE 14\n"), HasSubstr("## mine\n")));
+}
 TEST_F(TablesTest, SeveralRecordsOfAPlantStandInATableOfTheirOwn) {
   auto run = result("IV", "mlp", 0, 0.1);
   run["several"] = json::array(

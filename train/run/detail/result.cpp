@@ -99,6 +99,7 @@ json result_json(const data::ShardStream& stream, const RunRequest& r, const Run
                           {"relative", or_null(p.relative())}});
   json result = {
       {"table", r.experiment.table},
+      {"title", r.experiment.title},
       {"network", r.network},
       {"preset", r.preset},
       {"seed", r.seed},
