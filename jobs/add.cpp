@@ -176,7 +176,7 @@ int run(Arguments& a) {
   for (const auto& file : a.laws)
     laws.emplace_back(file, &sim::laws::load_law(std::filesystem::path(file), model.library));
   a.reading.apply(model);
-  const check::RecordSet set = jobs::read_events(a.records, model, a.reading.preparing(a.model));
+  const check::RecordSet set = jobs::read_events(a.records, model, a.reading.preparing(a.model, a.records));
   const std::vector<record::Record>& records = set.records;
   a.told = jobs::records_json(set);
   calibrate::held_out_events(records, a.options.calibrate.held_out);
@@ -219,6 +219,7 @@ int main(int argc, char** argv) {
   line.add("--out", a.out, "folder for model.toml, model.dyr, report.html and add.json").shows_default();
   a.reading.add_to(line);
   a.reading.add_point(line);
+  a.reading.add_switch(line);
   line.add("--law", a.laws, "law file (.toml) whose effect may be added; may be repeated");
   line.add("--hold-out", c.held_out,
            "record (name or number from 1) left out of the fit and used to judge it; may be repeated");

@@ -191,7 +191,7 @@ int run(Arguments& a) {
   plant::PlantModel model = jobs::load_model_to_fit(a.model);
   a.reading.apply(model);
   const calibrate::Truth truth = a.truth.empty() ? calibrate::Truth{} : calibrate::read_truth(a.truth, model);
-  const check::RecordSet set = jobs::read_events(a.records, model, a.reading.preparing(a.model));
+  const check::RecordSet set = jobs::read_events(a.records, model, a.reading.preparing(a.model, a.records));
   const std::vector<record::Record>& records = set.records;
   const nlohmann::json told = jobs::records_json(set);
   if (a.method == "curve-fit" && !(a.network.empty() && a.start.empty()))
@@ -264,6 +264,7 @@ void add_options(jobs::CommandLine& line, Arguments& a, bool& inner) {
   a.reading.add_to(line);
   a.reading.add_component(line);
   a.reading.add_point(line);
+  a.reading.add_switch(line);
   line.add("--method", a.method,
            "fit; curve-fit: the usual way, least squares of P and Q from the model's own values, as a "
            "baseline; both: side by side")

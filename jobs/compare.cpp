@@ -1,10 +1,6 @@
 // swingbank compare: plays records into a plant model and sets measured beside modelled P and Q.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
-#include <map>
-
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
 #include "jobs/event_records.hpp"
@@ -18,34 +14,6 @@ namespace {
 
 using namespace swingbank;
 using namespace swingbank::validate;
-
-/// "2.0" holds for the only record, "event.csv=2.0" for the record of that file name.
-std::map<std::string, std::vector<double>> read_switchings(const std::vector<std::string>& words,
-                                                           const std::vector<std::string>& records) {
-  std::map<std::string, std::vector<double>> instants;
-  Problems problems;
-  for (const auto& word : words) {
-    const auto equals = word.rfind('=');
-    const std::string number = equals == std::string::npos ? word : word.substr(equals + 1);
-    std::string record = equals == std::string::npos ? "" : word.substr(0, equals);
-    if (equals == std::string::npos && records.size() == 1) record = records.front();
-    double t = 0;
-    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), t);
-    if (error != std::errc{} || end != number.data() + number.size())
-      problems.add("'" + word + "'", "--switch", "it is no time in seconds",
-                   "give --switch 2.0 or --switch FILE=2.0");
-    else if (record.empty())
-      problems.add("'" + word + "'", "--switch", "several records are given",
-                   "say which one: --switch FILE=" + number);
-    else if (std::ranges::find(records, record) == records.end())
-      problems.add("record '" + record + "'", "--switch", "no --record has that file name",
-                   "use the name without its folder");
-    else
-      instants[record].push_back(t);
-  }
-  problems.raise();
-  return instants;
-}
 
 std::string joined(int argc, char** argv) {
   std::string line = "swingbank compare";
@@ -76,7 +44,7 @@ int run_system(const std::string& file, const std::string& out, bool json, const
 int main(int argc, char** argv) {
   jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank compare");
   std::string model_file, system_file, out = "compare-report", drive = "voltage";
-  std::vector<std::string> record_files, switches;
+  std::vector<std::string> record_files;
   bool json = false;
   jobs::Reading reading;
   jobs::Judging judging;
@@ -97,9 +65,7 @@ int main(int argc, char** argv) {
       .one_of({"voltage", "pq"})
       .shows_default()
       .excludes(system_option);
-  line.add("--switch", switches,
-           "switching instant [s], or FILE=instant; default: found by the voltage's jumps and fitted")
-      .excludes(system_option);
+  reading.add_switch(line).excludes(system_option);
   line.add_flag_off("--no-fit", options.fit_switchings,
                     "leave found instants in the middle of their sample interval")
       .excludes(system_option);
@@ -128,18 +94,12 @@ int main(int argc, char** argv) {
     reading.apply(model);
     Problems problems;
     auto [records, warnings] =
-        check::read_records(record_files, model, problems, reading.preparing(model_file));
+        check::read_records(record_files, model, problems, reading.preparing(model_file, record_files));
     problems.raise();
-    std::vector<std::string> names;
-    names.reserve(records.size());
-    for (const auto& r : records) names.push_back(r.name);
-    const auto instants = read_switchings(switches, names);
     options.jumps = event::jumps_of(records, options.jump_threshold);
     options.progress = jobs::progress_line();
     std::vector<compare::EventComparison> events;
     for (auto& record : records) {
-      const auto given = instants.find(record.name);
-      options.switchings = given == instants.end() ? std::vector<double>{} : given->second;
       events.push_back(compare::compare_event(model, std::move(record), options));
       auto& notes = events.back().notes;
       const auto& warned = warnings[events.size() - 1];

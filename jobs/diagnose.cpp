@@ -33,7 +33,8 @@ int run(const std::string& model_file, const std::vector<std::string>& record_fi
   judging.read();
   plant::PlantModel model = jobs::load_model_to_fit(model_file);
   reading.apply(model);
-  const check::RecordSet set = jobs::read_events(record_files, model, reading.preparing(model_file));
+  const check::RecordSet set =
+      jobs::read_events(record_files, model, reading.preparing(model_file, record_files));
   options.progress = jobs::progress_line(jobs::kDiagnoseCourse);
   if (!jobs::quiet)
     options.told = [](const std::string& sentence) { fmt::print(stderr, "\n{}\n", sentence); };
@@ -100,13 +101,14 @@ void declare(jobs::CommandLine& line, Command& c) {
   records.needs(model);
   c.reading.add_to(line);
   c.reading.add_component(line);
-  const jobs::Option point = c.reading.add_point(line);
+  const jobs::Option point = c.reading.add_point(line), switches = c.reading.add_switch(line);
   const jobs::Option fleet =
       line.add("--fleet", c.fleet.fleet,
                "instead of both: a fleet file, many plants with their records "
                "(configs/fleet/README.md); under mpirun each rank takes one plant at a time")
           .excludes(model)
-          .excludes(point);
+          .excludes(point)
+          .excludes(switches);
   line.add(
           "--plant-timeout", c.fleet.limit,
           "of a fleet: a plant's diagnosis that takes longer [s] is ended and counts as failed (default 3600; 0: none)")

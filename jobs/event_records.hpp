@@ -7,6 +7,7 @@
 #include <chrono>
 #include <exception>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@
 
 #include "jobs/command_line.hpp"
 #include "jobs/course.hpp"
+#include "jobs/told_instants.hpp"
 #include "validate/check/record_set.hpp"
 #include "validate/event/component_model.hpp"
 #include "validate/event/point.hpp"
@@ -29,8 +31,9 @@ inline bool quiet = false;
 struct Reading {
   std::vector<std::string> columns;  ///< "V=BUS1.VPM [kV]"
   std::optional<double> from, until;
-  std::string component = "plant";  ///< what of the plant is tried
-  std::string point;                ///< file of the point that several units share; empty: the plant's own
+  std::string component = "plant";    ///< what of the plant is tried
+  std::string point;                  ///< file of the point that several units share; empty: the plant's own
+  std::vector<std::string> switches;  ///< "event4.csv=2.08"
 
   /// Adds the options to a command line.
   void add_to(CommandLine& line) {
@@ -51,11 +54,23 @@ struct Reading {
         "file of the measured point where several units or a collector stand behind it: the others, whose models "
         "are believed, are taken off the record (configs/plants/README.md)");
   }
-  /// What is done to each record before it is checked.
-  [[nodiscard]] validate::check::Preparing preparing(const std::string& model_file) const {
-    if (point.empty()) return {};
-    return [at = validate::event::load_point(point, model_file)](validate::record::Record r) {
-      return validate::event::of_tried_unit(at, std::move(r));
+  /// Adds the instants of switchings that are known.
+  Option add_switch(CommandLine& line) {
+    return line
+        .add("--switch", switches,
+             "instant [s] at which something is switched in the record, or FILE=instant; may be repeated; "
+             "default: found by the voltage's jumps and fitted")
+        .one_value_a_mention();
+  }
+  /// What is done to each of the records before it is checked. Throws InputError.
+  [[nodiscard]] validate::check::Preparing preparing(const std::string& model_file,
+                                                     const std::vector<std::string>& records) const {
+    const auto told = told_instants(switches, records);
+    std::optional<validate::event::MeasuredPoint> at;
+    if (!point.empty()) at = validate::event::load_point(point, model_file);
+    return [told, at](validate::record::Record r) {
+      if (const auto of = told.find(r.name); of != told.end()) r.switched = of->second;
+      return at ? validate::event::of_tried_unit(*at, std::move(r)) : r;
     };
   }
   /// Adds what of the plant is tried.

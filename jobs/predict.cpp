@@ -45,7 +45,8 @@ void require_same_machine(const train::run::NetworkInfo& network, const plant::P
 /// Every record, read and checked, so that all faults of all files are told at once.
 std::vector<Estimated> read_all(const Options& o, const plant::PlantModel& model) {
   std::vector<Estimated> all;
-  for (record::Record& record : jobs::read_events(o.records, model, o.reading.preparing(o.model)).records) {
+  for (record::Record& record :
+       jobs::read_events(o.records, model, o.reading.preparing(o.model, o.records)).records) {
     record::require_angle(record);
     all.push_back({std::move(record), {}, {}});
   }

@@ -36,6 +36,11 @@ grep -q '^// changed or new: GENROU, SEXS' "$work/numbered/model.dyr" || fail "t
 cmp <("$swingbank" export --dyr "$work/numbered/model.toml" | grep -v '^//') <(grep -v '^//' "$work/numbered/model.dyr") || fail "model.dyr is not what export makes"
 grep -q 'SEXS.K' "$work/text" || fail "the table lacks the exciter's gain"
 
+# instants that a person knows are taken as they are
+"$swingbank" calibrate --model "$work/added/model.toml" --records "$one" "$two" --switch avr_ev1.csv=2 --switch avr_ev1.csv=2.1 --power-only \
+  --draws 0 --starts 0 --out "$work/told" >/dev/null
+holds -q '2.1000 s (given)' <"$work/told/report.html" || fail "the page does not say that the instants were given"
+
 # the usual way beside it, with the truth known: tables and JSON agree on who is nearer
 "$swingbank" calibrate --model "$work/added/model.toml" --records "$one" "$two" --hold-out avr_ev2 --power-only --draws 0 --starts 0 \
   --method both --truth "$work/added/model.toml" --out "$work/both" >"$work/text"
@@ -73,6 +78,8 @@ refuses "no such records" "none1.csv" calibrate --records "$work/none1.csv" "$wo
 grep -q none2.csv "$work/stderr" || fail "only the first missing record is named"
 refuses "one event, held out" "every event is held out" calibrate --records "$one" --hold-out 1
 refuses "unknown event held out" "avr_ev2.csv" calibrate --records "$one" "$two" --hold-out avr_ev9
+refuses "instants of no record" "no --record has that file name" calibrate --records "$one" --switch avr_ev9.csv=2
+refuses "an instant of two records" "several records are given" calibrate --records "$one" "$two" --switch 2
 refuses "unknown parameter fixed" "GENROU.Xdp" calibrate --records "$one" --fix GENROU.Xyz
 refuses "the same record twice" "two records named" calibrate --records "$one" "$one"
 refuses "truth of no known form" "blind-test" calibrate --records "$one" --truth "$work/added/add.json"

@@ -35,6 +35,7 @@ refused() {
   [[ ! -e $out/d ]] || fail "something was written with $*"
 }
 refused 'records of two events or more' --model "$model" --records "$one"
+refused 'no --record has that file name' --model "$model" --records "$one" "$two" --switch avr_ev9.csv=2
 refused 'nowhere.csv' --model "$model" --records "$one" "$work/nowhere.csv"
 refused 'nowhere.toml' --model "$work/nowhere.toml" --records "$one" "$two"
 refused 'two records named' --model "$model" --records "$one" "$one"

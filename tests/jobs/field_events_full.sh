@@ -60,8 +60,8 @@ right() {
 
 simulated dip 60 30 --trip-generator 38:5:0.4
 seen dip dip60 && right dip60
-# Without noise a jump of 0.002 pu matters, and must be found for what it is.
-seen dip dip_exact v=0 p=0 && right dip_exact --jump-threshold 0.001
+# Without noise a jump of 0.002 pu matters, and is found for what it is.
+seen dip dip_exact v=0 p=0 && right dip_exact
 seen dip dip_rounded step_v=1e-4 step_p=1 && right dip_rounded
 simulated rise 40 30 --load-step 20:-500:-100:5
 seen rise rise40 && right rise40

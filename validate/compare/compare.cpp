@@ -253,8 +253,8 @@ void explain(EventComparison& e, bool tried, const std::string& failed) {
       smeared > 0)
     e.notes.push_back(fmt::format(
         "The instrument's filter has smeared the jumps over {} samples: these are neither played in nor "
-        "compared, and instants and start were moved to where the rest is met best.",
-        smeared));
+        "compared, and {} moved to where the rest is met best.",
+        smeared, e.detected ? "instants and start were" : "the start was"));
   else if (e.detected && !e.switchings.empty())
     e.notes.push_back(
         fmt::format("The switching instants were found in the record, which tells each to ± {:.1f} ms only; "
@@ -382,7 +382,7 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
   const bool no_angle =
       e.record.angle == record::AngleSource::none && !playin::is_part(e.record) && !e.record.breaker();
   if (no_angle) options.drive = DriveBy::power;
-  e.detected = options.switchings.empty();
+  e.detected = e.record.switched.empty();
   const event::Jumps jumps = options.jumps == event::Jumps::either
                                  ? event::jumps_of({e.record}, options.jump_threshold)
                                  : options.jumps;
@@ -393,14 +393,13 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
     measure_channels(model, DriveBy::voltage, options.play_in, other);
     return other;
   };
-  if (e.detected && !e.record.breaker() && jumps == event::Jumps::spread &&
-      options.drive == DriveBy::voltage) {
+  if (!e.record.breaker() && jumps == event::Jumps::spread && options.drive == DriveBy::voltage) {
     e = fitted();
   } else {
     if (e.detected)
       e.switchings = playin::detect_switchings(e.record, options.jump_threshold);
     else
-      for (const double t : options.switchings) e.switchings.push_back({.time = t});
+      for (const double t : e.record.switched) e.switchings.push_back({.time = t});
     if (e.detected && e.record.breaker()) e.switchings = playin::breaker_instants(e.record, e.switchings);
     step("the voltage is played in", 0);
     if (!no_angle) play(model, DriveBy::voltage, options.play_in, e);

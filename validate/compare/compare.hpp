@@ -54,7 +54,6 @@ struct EventComparison {
 
 struct CompareOptions {
   DriveBy drive = DriveBy::voltage;
-  std::vector<double> switchings;  ///< instants [s]; empty: found by their jumps
   double jump_threshold = playin::kJumpThreshold;
   /// Moves found instants within their sample interval to where P and Q are met best, and keeps that if
   /// nothing but noise is left then, because a model that lacks something would bend them. Otherwise the

@@ -1,6 +1,7 @@
 #include "validate/event/event.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/median.hpp"
 #include "validate/event/detail/unsmear.hpp"
@@ -68,16 +69,68 @@ std::vector<Smear> told_apart(const std::vector<Complex>& step, Smear both, doub
   return {trimmed(step, {both.first, end}, limit), trimmed(step, {back, both.last}, limit)};
 }
 
-/// Whether the record's first jump is too large and too sudden to have passed a filter. A filter would share
-/// the jump out over two intervals, or begin in the interval before. Later jumps may be those of a swing.
+/// The largest step that a decay behind a jump makes, by the jump's own.
+constexpr double kOfPeak = 0.5;
+
+double least_jump(const std::vector<double>& d, double threshold) {
+  return std::max(threshold, 10 * upper_median(d));
+}
+std::size_t largest_of(const std::vector<Complex>& step, Smear jump) {
+  const auto at = step.begin();
+  const auto from = static_cast<std::ptrdiff_t>(jump.first), to = static_cast<std::ptrdiff_t>(jump.last);
+  return static_cast<std::size_t>(
+      std::max_element(at + from, at + to + 1,
+                       [](Complex a, Complex b) { return std::abs(a) < std::abs(b); }) -
+      at);
+}
+/// Whether a subtransient decays behind the sharp jump in interval m. An instrument's window is even and
+/// falls off to both sides. If its middle lies in m, it reaches m - 1 at least as far as m + 2, and so leaves
+/// there as much of the jump. A machine answers only after the jump.
+bool decays_after(const std::vector<Complex>& step, std::size_t m, double limit) {
+  constexpr double kOfNext = 0.15, kOfLimit = 0.25;  // what the rotor's swing may move meanwhile
+  constexpr double kLess = 0.9;                      // else the next jump begins
+  const Complex next = step[m + 1];
+  if (std::abs(next) <= limit || std::abs(next) > kOfPeak * std::abs(step[m])) return false;
+  if (std::real(next * std::conj(step[m])) < 0) return false;
+  const double goes_on = std::real(step[m + 2] * std::conj(next)) / std::abs(next);
+  return goes_on < kLess * std::abs(next) &&
+         goes_on - std::abs(step[m - 1]) > std::max(kOfNext * std::abs(next), kOfLimit * limit);
+}
+/// Whether a filter's middle lies in the middle of interval m: its shares in the neighbours are then equal,
+/// and none stands out from the other.
+bool is_even(const std::vector<Complex>& step, std::size_t m, double limit) {
+  const Complex before = step[m - 1], after = step[m + 1];
+  return std::abs(before - after) < limit && std::abs(before - step[m - 2]) > limit &&
+         std::abs(after - step[m + 2]) > limit && std::real(before * std::conj(step[m])) > 0;
+}
+/// Where all jumps are sharp, whether one interval has the jump and the others what the machine adds.
+bool has_peak(const std::vector<Complex>& step, Smear jump, std::size_t m) {
+  for (std::size_t k = jump.first; k <= jump.last; ++k)
+    if (k != m && std::abs(step[k]) > kOfPeak * std::abs(step[m])) return false;
+  return true;
+}
+
+/// Whether the record's first jump cannot have passed a filter: a decay follows it, or it is large and too
+/// sudden. A filter would share it out over two intervals, or begin in the interval before. Later jumps may
+/// be those of a swing.
 bool is_sharp(const record::Record& r, const std::vector<playin::Switching>& found, double threshold) {
   constexpr double kClear = 10, kBegins = 0.03;
   if (found.empty()) return false;
   const auto k = static_cast<std::size_t>(
       std::ranges::find_if(r.t, [&](double t) { return t > found.front().time; }) - r.t.begin());
   const auto step = playin::voltage_steps(r);
+  if (decays_after(step, k - 1, least_jump(prominence(step), threshold))) return true;
   return std::abs(step[k - 1]) > kClear * threshold &&
          std::abs(step[k - 2]) < kBegins * std::abs(step[k - 1]);
+}
+/// Whether the voltage moves before the interval of the first switching that a person told.
+bool moves_before(const record::Record& r, double threshold) {
+  constexpr double kBegins = 0.03;
+  const double last = r.switched.front() + 1e-4 * r.step();  // a sample there holds the value before
+  const auto k = static_cast<std::size_t>(std::ranges::upper_bound(r.t, last) - r.t.begin());
+  if (k < 2 || k >= r.t.size()) return false;
+  const auto step = playin::voltage_steps(r);
+  return std::abs(step[k - 2]) > std::max(threshold / 2, kBegins * std::abs(step[k - 1]));
 }
 /// Time, V and theta of the samples that are not smeared.
 record::Record without(const record::Record& record, const std::vector<char>& smeared) {
@@ -106,13 +159,33 @@ double still_until(const record::Record& r) {
   return k < r.V.size() ? r.t[k - 1] : r.t.back();
 }
 
+/// Instants that a person told. Of the samples that a filter has smeared, those about them are marked.
+void take_told(FitEvent& e, Jumps jumps) {
+  const auto found = std::exchange(e.switchings, {});
+  for (const double t : e.record.switched) e.switchings.push_back({.time = t});
+  for (std::size_t k = 0; k < e.smeared.size(); ++k)
+    e.smeared[k] = jumps == Jumps::spread && e.smeared[k] &&
+                   std::ranges::any_of(found, [&](const playin::Switching& jump) {
+                     return std::abs(e.record.t[k] - jump.time) < jump.uncertainty &&
+                            std::ranges::any_of(e.record.switched, [&](double told) {
+                              return std::abs(told - jump.time) < jump.uncertainty;
+                            });
+                   });
+}
+double before_first_smeared(const FitEvent& e) {
+  const auto k = static_cast<std::size_t>(std::ranges::find(e.smeared, 1) - e.smeared.begin());
+  return e.record.t[k] - e.record.step() / 2;
+}
+
 FitEvent prepare(record::Record record, const FitEventOptions& options, Jumps jumps) {
   FitEvent e;
   e.record = std::move(record);
   // The threshold is half of what matters to the eye. A filter shares a jump out over two intervals, and a
   // jump that is not found is played in as a ramp.
   e.switchings = find_switchings(e.record, options.jump_threshold / 2, jumps, e.smeared);
-  if (e.record.breaker()) {
+  if (!e.record.switched.empty())
+    take_told(e, jumps);
+  else if (e.record.breaker()) {
     e.switchings = playin::breaker_instants(e.record, e.switchings);
     e.smeared.assign(e.smeared.size(), 0);
   }
@@ -122,8 +195,10 @@ FitEvent prepare(record::Record record, const FitEventOptions& options, Jumps ju
     e.smeared.clear();
   auto first = e.switchings;
   if (!e.smeared.empty() && !first.empty()) first.front().time -= first.front().uncertainty;
+  if (!e.smeared.empty() && !e.record.switched.empty())
+    first.front().time = std::min(first.front().time, before_first_smeared(e));
   if (const double still = still_until(e.record);
-      !first.empty() && !e.record.breaker() && still < first.front().time)
+      !first.empty() && e.record.switched.empty() && !e.record.breaker() && still < first.front().time)
     first.insert(first.begin(), {still, 0.0});
   e.start = playin::pre_event_point(e.record, first, options.pre_event);
   e.channels = playin::compared_outputs(e.record, options.measured_states);
@@ -212,6 +287,11 @@ NoiseModel noise_through(const sim::plant::PlantUnderTest& tested, const Events&
 Jumps jumps_of(const std::vector<record::Record>& records, double threshold) {
   bool any_spread = false, any_sharp = false;
   for (const record::Record& r : records) {
+    if (!r.switched.empty()) {
+      if (moves_before(r, threshold)) return Jumps::spread;
+      any_sharp = true;
+      continue;
+    }
     std::vector<char> smeared;
     const auto found = find_switchings(r, threshold, Jumps::either, smeared);
     if (!found.empty() && found.front().uncertainty > r.step()) return Jumps::spread;
@@ -226,7 +306,7 @@ std::vector<playin::Switching> find_switchings(const record::Record& record, dou
   smeared.assign(record.t.size(), 0);
   const auto step = playin::voltage_steps(record);
   const auto d = prominence(step);
-  const double limit = std::max(threshold, 10 * upper_median(d));
+  const double limit = least_jump(d, threshold);
   std::vector<playin::Switching> found;
   for (std::size_t k = 0; k < d.size(); ++k) {
     if (d[k] <= limit) continue;
@@ -239,7 +319,13 @@ std::vector<playin::Switching> find_switchings(const record::Record& record, dou
     }
     if (is_swing(step, d, k, std::min(last, d.size() - 4))) continue;
     // samples first + 1 .. last lie inside the jump
-    for (const Smear& jump : told_apart(step, {k, last}, limit)) {
+    for (Smear jump : told_apart(step, {k, last}, limit)) {
+      if (jump.first == jump.last && is_even(step, jump.first, limit))
+        jump = {jump.first - 1, jump.first + 1};
+      if (jumps != Jumps::spread && jump.last > jump.first)
+        if (const std::size_t m = largest_of(step, jump);
+            jumps == Jumps::sharp ? has_peak(step, jump, m) : decays_after(step, m, limit))
+          jump = {m, m};
       const bool wide = jump.last > jump.first, spread = wide || jumps == Jumps::spread;
       if (wide && jumps == Jumps::sharp) continue;
       const double from = record.t[jump.first], to = record.t[jump.last + 1];
@@ -249,6 +335,7 @@ std::vector<playin::Switching> find_switchings(const record::Record& record, dou
     }
     k = last;
   }
+  if (found.empty() && jumps != Jumps::spread) return playin::lone_jumps(record, 2 * threshold);
   return found;
 }
 

@@ -21,7 +21,7 @@ constexpr double kJumpThreshold = 0.02;
 
 /// Finds the sample intervals in which the voltage jumps: its step differs from both neighbouring steps by
 /// more than `threshold` [pu] and more than ten times the usual difference (noise). Each is placed in the
-/// middle of its interval, with half the interval as uncertainty.
+/// middle of its interval, with half the interval as uncertainty. Where there is none: lone_jumps().
 std::vector<Switching> detect_switchings(const record::Record& record, double threshold = kJumpThreshold);
 
 /// Cubic spline (not-a-knot) through the voltage phasors of each segment, extrapolated to its ends. Phasors,

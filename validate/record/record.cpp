@@ -79,14 +79,13 @@ std::vector<std::filesystem::path> parts_of(const std::filesystem::path& named) 
 }
 
 Record read_parts(const std::vector<std::filesystem::path>& files, const RecordBase& base,
-                  const ReadOptions& options) {
+                  const ReadOptions& options, const std::string& names) {
   ReadOptions part = options;
   part.part = true;
   std::vector<Record> records;
-  std::string names, bytes;
+  std::string bytes;
   Problems problems;
   for (const auto& file : files) {
-    names += (names.empty() ? "" : "+") + file.filename().string();
     try {
       records.push_back(read_record(file, base, part));
       bytes += fmt::format("{:016x}", records.back().hash);
@@ -221,8 +220,15 @@ std::string beginning(const Record& record) {
   return record.start.empty() ? std::string() : record.start + " (as written; its zone is not known)";
 }
 
+std::string record_name(const std::filesystem::path& named) {
+  std::string names;
+  for (const auto& part : parts_of(named)) names += (names.empty() ? "" : "+") + part.filename().string();
+  return names;
+}
+
 Record read_record(const std::filesystem::path& named, const RecordBase& base, const ReadOptions& given) {
-  if (const auto parts = parts_of(named); parts.size() > 1) return read_parts(parts, base, given);
+  if (const auto parts = parts_of(named); parts.size() > 1)
+    return read_parts(parts, base, given, record_name(named));
   ReadOptions options = given;
   const std::filesystem::path file = split_terminal(named, options);
   const std::string e = extension(file);
@@ -231,7 +237,7 @@ Record read_record(const std::filesystem::path& named, const RecordBase& base, c
                   : e == ".h5" || e == ".hdf5" ? read_hdf5_record(file, base, options)
                   : e == ".mat"                ? read_mat_record(file, base, options)
                                                : parse_record(read_bytes(file), file.string(), base, options);
-  record.name = named.filename().string();  // with the terminal, if one was named: two of a file differ
+  record.name = record_name(named);  // with the terminal, if one was named: two of a file differ
   return record;
 }
 

@@ -80,7 +80,8 @@ struct Record {
   std::vector<std::string> named;          ///< quantities whose column was chosen by ReadOptions::columns
   Component component = Component::plant;  ///< what it is read for
   std::vector<StagedEvent> staged;         ///< what was done to the plant while it ran
-  std::vector<char> lost;  ///< marks samples that were not recorded and are bridged; empty: none
+  std::vector<double> switched;  ///< instants of switchings that a person knows [s]; empty: the jumps tell
+  std::vector<char> lost;        ///< marks samples that were not recorded and are bridged; empty: none
 
   /// The event that takes the plant off the grid; nullptr: none does, or a part of it is tried that does not
   /// see the grid.
@@ -131,6 +132,9 @@ struct ReadOptions {
 /// (validate/check/check.hpp).
 Record read_record(const std::filesystem::path& file, const RecordBase& base,
                    const ReadOptions& options = {});
+
+/// What the record of such a name is called: without folders, "a.csv#NORTH", "a.csv+b.csv".
+std::string record_name(const std::filesystem::path& named);
 
 /// The same with the staged events that belong to the file. Of a plant whose breaker is open all the time P
 /// and Q are not needed.

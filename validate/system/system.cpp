@@ -207,12 +207,10 @@ void play_alone(const SystemCase& s, SystemComparison& c, TerminalRank& rank) {
                        [](const sim::plant::Block& b) { return playin::can_be_taken_back(*b.effect); });
   model.conventions = s.grid.conventions;
   model.record_base = s.base;
-  compare::CompareOptions options;
-  // else by its own jumps; smeared samples are played in where instants are given
-  const bool smeared = event::jumps_of({t.record}, playin::kJumpThreshold) == event::Jumps::spread;
-  if (!smeared && clock_doubt(t.record, c.instants).empty()) options.switchings = c.instants;
+  record::Record record = t.record;
+  if (clock_doubt(record, c.instants).empty()) record.switched = c.instants;  // else by its own jumps
   try {
-    std::vector<compare::EventComparison> one = {compare::compare_event(model, t.record, options)};
+    std::vector<compare::EventComparison> one = {compare::compare_event(model, std::move(record))};
     one.front().record.name = t.name;
     rank.alone = compare::judge(one);
     std::tie(rank.alone_worst, rank.alone_where) = worst_cell(one.front());

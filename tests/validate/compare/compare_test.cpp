@@ -20,12 +20,12 @@ using ::testing::HasSubstr;
 plant::PlantModel example_model() {
   return plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
 }
-EventComparison example_event(const CompareOptions& options = {}) {
+EventComparison example_event(std::vector<double> switched = {}, const CompareOptions& options = {}) {
   const plant::PlantModel model = example_model();
-  return compare_event(
-      model,
-      record::read_record(test::source("configs/records/record-example/avr_ev1.csv"), model.record_base),
-      options);
+  record::Record record =
+      record::read_record(test::source("configs/records/record-example/avr_ev1.csv"), model.record_base);
+  record.switched = std::move(switched);
+  return compare_event(model, std::move(record), options);
 }
 Fitness fitness_of(const std::vector<EventComparison>& events) {
   return judge_fitness(events, 100, thresholds::read_acceptance(""));
@@ -109,9 +109,8 @@ TEST(CompareTest, WithoutAngleAndFrequencyPowerDrives) {
   RightModel right;
   right.record.theta.assign(right.record.t.size(), 0.0);
   right.record.angle = record::AngleSource::none;
-  CompareOptions known;
-  known.switchings = {right.s.t_on, right.s.t_off};
-  std::vector<EventComparison> events = {compare_event(right.model, right.record, known)};
+  right.record.switched = {right.s.t_on, right.s.t_off};
+  std::vector<EventComparison> events = {compare_event(right.model, right.record)};
   ASSERT_FALSE(events[0].channels.empty());
   EXPECT_EQ(events[0].channels[0].name, "V");
   const Adequacy a = judge(events);
@@ -211,7 +210,7 @@ TEST(CompareTest, WhereTheFitCannotRunThePlayInStands) {
   EXPECT_THAT(e.notes.front(), HasSubstr("play-in stops"));
 }
 TEST(CompareTest, AnInadequateModelIsCalledSo) {
-  std::vector<EventComparison> events = {example_event({.switchings = {2.0, 2.1}, .play_in = {}})};
+  std::vector<EventComparison> events = {example_event({2.0, 2.1})};
   const Adequacy a = judge(events);
   EXPECT_FALSE(a.adequate);
   EXPECT_THAT(a.sentence, HasSubstr("Not adequate"));
@@ -220,7 +219,7 @@ TEST(CompareTest, AnInadequateModelIsCalledSo) {
   EXPECT_FALSE(events[0].channels[0].map.rows[0].all.exceeds());
 }
 TEST(CompareTest, ComparesWhatIsRecorded) {
-  const EventComparison e = example_event({.switchings = {2.0, 2.1}, .play_in = {}});
+  const EventComparison e = example_event({2.0, 2.1});
   std::vector<std::string> channels;
   for (const auto& c : e.channels) channels.push_back(c.name);
   EXPECT_THAT(channels, ElementsAre("P", "Q", "speed", "Efd", "Ifd"));
@@ -246,10 +245,10 @@ TEST(CompareTest, PowerDrivesTheModelToo) {
   EXPECT_FALSE(judge(off).adequate);
 }
 TEST(CompareTest, UntilLeavesOutTheRest) {
-  const EventComparison e = example_event({.switchings = {2.0, 2.1}, .play_in = {.until = 6.0}});
+  const EventComparison e = example_event({2.0, 2.1}, {.play_in = {.until = 6.0}});
   EXPECT_NEAR(e.record.t.back(), 6.0, 1e-6);
   EXPECT_EQ(e.channels[0].residual.size(), e.record.t.size());
-  EXPECT_THAT(test::messages([] { example_event({.switchings = {}, .play_in = {.until = 0.3}}); }),
+  EXPECT_THAT(test::messages([] { example_event({}, {.play_in = {.until = 0.3}}); }),
               ElementsAre(HasSubstr("a later --until")));
 }
 TEST(CompareTest, AWrongParameterShowsAndDoesNotBendTheInstants) {
@@ -262,7 +261,7 @@ TEST(CompareTest, AWrongParameterShowsAndDoesNotBendTheInstants) {
 }
 TEST(CompareTest, AMissingExciterShowsInQ) {
   // The record's plant has an exciter, the model has none: Q is off by tens of Mvar for seconds, P far less.
-  const EventComparison e = example_event({.switchings = {2.0, 2.1}, .play_in = {}});
+  const EventComparison e = example_event({2.0, 2.1});
   const auto& p = e.channels[0];
   const auto& q = e.channels[1];
   EXPECT_NEAR(p.noise, 0.002, 0.0005);  // as made: 0.2 % of 100 MVA

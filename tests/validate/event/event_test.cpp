@@ -13,15 +13,15 @@
 namespace swingbank::validate::event {
 namespace {
 
-/// Ten seconds at 60/s of V(t) and theta(t), with noise of 1e-4 pu.
+/// Ten seconds of V(t) and theta(t), with noise of 1e-4 pu.
 record::Record record_of(
     const std::function<double(double)>& V,
-    const std::function<double(double)>& theta = [](double) { return 0.1; }) {
+    const std::function<double(double)>& theta = [](double) { return 0.1; }, double rate = 60) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal(0, 1e-4);
   record::Record r;
-  for (int k = 0; k < 600; ++k) {
-    r.t.push_back(k / 60.0);
+  for (int k = 0; k < 10 * rate; ++k) {
+    r.t.push_back(k / rate);
     r.V.push_back(V(r.t.back()) + normal(random));
     r.theta.push_back(theta(r.t.back()) + normal(random));
   }
@@ -87,8 +87,92 @@ TEST(FindSwitchings, OneInstrumentSmearsAllOrNone) {
   EXPECT_EQ(jumps_of({quiet, near_loss()}, playin::kJumpThreshold), Jumps::sharp);
   EXPECT_EQ(jumps_of({quiet, filtered(near_loss())}, playin::kJumpThreshold), Jumps::spread);
 }
+/// A fault of `cycles` at 60 Hz in a record of 30/s, with a subtransient of `tau` behind both jumps and a
+/// rotor that swings; `on` is the instant within its sample interval, from 0 to 1.
+record::Record subtransient(double on, double cycles, double tau) {
+  const double from = 3 + on / 30, to = from + cycles / 60, fell = 0.12;
+  const auto since = [](double t, double begin, double time) { return std::exp(-(t - begin) / time); };
+  const auto V = [=](double t) {
+    if (t <= from) return 1.0;
+    if (t <= to) return 0.4 + fell * since(t, from, tau);
+    return 0.95 - fell * since(t, to, tau) - 0.1 * since(t, to, 1.0);
+  };
+  const auto theta = [=](double t) {
+    if (t <= from) return 0.3;
+    return t <= to ? 0.1 + 3 * std::pow(t - from, 2) : 0.3 + 0.03 * std::cos(6 * (t - to));
+  };
+  return record_of(V, theta, 30);
+}
+TEST(FindSwitchings, ADecayBehindASharpJumpIsNoFilters) {
+  for (const double tau : {0.02, 0.025, 0.03})
+    for (const double on : {0.1, 0.3, 0.5, 0.7, 0.9}) {
+      const record::Record r = subtransient(on, 6, tau);
+      EXPECT_EQ(jumps_of({r}, playin::kJumpThreshold), Jumps::sharp) << on << " " << tau;
+      std::vector<char> smeared;
+      const auto found = find_switchings(r, playin::kJumpThreshold / 2, Jumps::sharp, smeared);
+      ASSERT_EQ(found.size(), 2U) << on << " " << tau;
+      EXPECT_NEAR(found[0].time, 3 + on / 30, 0.51 / 30);
+      EXPECT_NEAR(found[1].time, 3.1 + on / 30, 0.51 / 30);
+    }
+}
+/// The same jumps without a decay behind a triangular window of two cycles, at 30/s and 60/s: what a filter
+/// leaves on one side only is not taken for a decay.
+TEST(FindSwitchings, AFilterIsStillOne) {
+  for (const double rate : {30.0, 60.0})
+    for (const double on : {0.1, 0.3, 0.5, 0.7, 0.9}) {
+      const auto at = [=](double t) { return t <= 3 + on / rate || t > 3.15 + on / rate ? 1.0 : 0.5; };
+      const auto V = [=](double t) {
+        double sum = 0;
+        for (int i = -50; i <= 50; ++i) sum += (1 - std::abs(i) / 50.0) * at(t + i / 50.0 / 30);
+        return sum / 50;
+      };
+      EXPECT_EQ(jumps_of({record_of(
+                             V, [](double) { return 0.1; }, rate)},
+                         playin::kJumpThreshold),
+                Jumps::spread)
+          << on << " at " << rate;
+    }
+}
 TEST(FindSwitchings, NoiseIsNone) {
   EXPECT_TRUE(switchings_of(record_of([](double) { return 1.0; })).empty());
+}
+TEST(PrepareEvents, TheEndOfAFaultWithADecayIsFound) {
+  record::Record r = subtransient(0.5, 6, 0.025);
+  r.P.assign(r.t.size(), 0.4);
+  r.Q.assign(r.t.size(), 0.1);
+  const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  const FitEvent e = prepare_events(model, {r}).front();
+  ASSERT_EQ(e.switchings.size(), 2U);
+  EXPECT_TRUE(e.smeared.empty());
+  EXPECT_NEAR(e.switchings[1].time, 3.1 + 0.5 / 30, 0.51 / 30);
+}
+/// Two samples of fault at 30/s tell no decay from a filter: the person does.
+TEST(PrepareEvents, ToldInstantsAreTaken) {
+  record::Record r = subtransient(0.5, 4, 0.025);
+  r.P.assign(r.t.size(), 0.4);
+  r.Q.assign(r.t.size(), 0.1);
+  r.switched = {3 + 0.5 / 30, 3 + 2.5 / 30};
+  const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  const FitEvent e = prepare_events(model, {r}).front();
+  ASSERT_EQ(e.switchings.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_DOUBLE_EQ(e.switchings[k].time, r.switched[k]);
+    EXPECT_EQ(e.switchings[k].uncertainty, 0) << "it would be fitted";
+  }
+  EXPECT_TRUE(e.smeared.empty());
+  EXPECT_EQ(e.start.samples, 91);
+}
+TEST(PrepareEvents, AboutToldInstantsAFilterSmearsAsAboutFoundOnes) {
+  record::Record r = filtered(near_loss());
+  r.P.assign(r.t.size(), 0.4);
+  r.Q.assign(r.t.size(), 0.1);
+  const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  const FitEvent found = prepare_events(model, {r}).front();
+  r.switched = {3.0, 3.1};
+  const FitEvent told = prepare_events(model, {r}).front();
+  EXPECT_EQ(told.smeared, found.smeared);
+  EXPECT_EQ(told.start.samples, found.start.samples);
+  EXPECT_EQ(told.switchings[1].time, 3.1);
 }
 /// The filter smears every jump over as many samples, the swing is wider.
 TEST(PrepareEvents, BehindAFilterAWiderSwingIsNone) {

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
+
 #include "tests/validate/playin/support.hpp"
 
 namespace swingbank::validate::playin {
@@ -82,6 +85,27 @@ TEST(DetectTest, FindsAFaultOfOneSampleAndNothingInAQuietRecord) {
   EXPECT_TRUE(detect_switchings(r).empty());
   r.V[30] = 0.2;
   EXPECT_EQ(detect_switchings(r).size(), 2u);
+}
+/// A generator lost far away: the voltage sinks over seconds, the angle turns, and at once it jumps by 0.002
+/// pu.
+record::Record far_loss(double noise) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal(0, 1);
+  record::Record r;
+  for (int k = 0; k < 600; ++k) {
+    const double t = k / 30.0, since = std::max(0.0, t - 5.01);
+    r.t.push_back(t);
+    r.V.push_back(1 - (since > 0 ? 0.002 : 0) - 0.01 * (1 - std::exp(-since / 3)) * std::cos(4 * since) +
+                  noise * normal(random));
+    r.theta.push_back(-0.3 * since * since / (1 + since) + noise * normal(random));
+  }
+  return r;
+}
+TEST(DetectTest, FindsASmallJumpThatStandsAlone) {
+  const auto found = detect_switchings(far_loss(0));
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NEAR(found[0].time, 5.01, 0.5 / 30 + 1e-6);
+  EXPECT_TRUE(detect_switchings(far_loss(2e-4)).empty()) << "noise hides it";
 }
 
 }  // namespace

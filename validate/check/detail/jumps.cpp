@@ -37,10 +37,15 @@ std::vector<Jump> smeared(const record::Record& r) {
 std::vector<Jump> find_jumps(const record::Record& r) {
   if (r.samples() < 12) return {};
   std::vector<Jump> jumps;
-  for (const auto& s : playin::detect_switchings(r)) {
-    const auto k = static_cast<std::size_t>(std::ranges::upper_bound(r.t, s.time) - r.t.begin());
+  const auto add = [&](double t) {
+    const auto k = static_cast<std::size_t>(std::ranges::upper_bound(r.t, t) - r.t.begin());
     if (k >= 1 && k < r.t.size()) jumps.push_back({k - 1, k});
+  };
+  if (!r.switched.empty()) {
+    std::ranges::for_each(r.switched, add);
+    return jumps;
   }
+  for (const auto& s : playin::detect_switchings(r)) add(s.time);
   for (const auto& wide : smeared(r)) {
     const auto close = [&](const Jump& j) { return j.before + 4 > wide.before && wide.after + 4 > j.after; };
     if (std::ranges::none_of(jumps, close)) jumps.push_back(wide);

@@ -259,7 +259,9 @@ Attempt best_attempt(const std::vector<FitEvent>& events) {
       if (Attempt a = attempt(events, shape, cycles); a.left < best.left) best = std::move(a);
   return best;
 }
+/// Those that a person told stay.
 void place(FitEvent& e, const Found& f, double unsure) {
+  if (!e.record.switched.empty()) return;
   e.switchings[f.from] = {.time = f.segment.a, .uncertainty = unsure};
   e.switchings[f.from + 1] = {.time = f.segment.b, .uncertainty = unsure};
 }
