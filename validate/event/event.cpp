@@ -320,7 +320,7 @@ std::vector<playin::Switching> find_switchings(const record::Record& record, dou
     if (is_swing(step, d, k, std::min(last, d.size() - 4))) continue;
     // samples first + 1 .. last lie inside the jump
     for (Smear jump : told_apart(step, {k, last}, limit)) {
-      if (jump.first == jump.last && is_even(step, jump.first, limit))
+      if (jumps == Jumps::either && jump.first == jump.last && is_even(step, jump.first, limit))
         jump = {jump.first - 1, jump.first + 1};
       if (jumps != Jumps::spread && jump.last > jump.first)
         if (const std::size_t m = largest_of(step, jump);

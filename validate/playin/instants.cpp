@@ -5,6 +5,19 @@
 #include <complex>
 
 namespace swingbank::validate::playin {
+namespace {
+
+/// How far each step lies from the straight lines through the two steps before and the two after it, the
+/// nearer of them [pu]: a jump stands out from both, the step beside it from one, a rotor's swing from none.
+std::vector<double> standing_out(const std::vector<Complex>& step) {
+  std::vector<double> out(step.size(), 0.0);
+  for (std::size_t k = 2; k + 2 < step.size(); ++k)
+    out[k] = std::min(std::abs(step[k] - 2.0 * step[k - 1] + step[k - 2]),
+                      std::abs(step[k] - 2.0 * step[k + 1] + step[k + 2]));
+  return out;
+}
+
+}  // namespace
 
 std::vector<Complex> voltage_steps(const record::Record& record) {
   const auto phasor = [&](std::size_t k) { return std::polar(record.V[k], record.theta[k]); };
@@ -13,31 +26,23 @@ std::vector<Complex> voltage_steps(const record::Record& record) {
   return step;
 }
 
-std::vector<double> spikes(const record::Record& record) {
-  const std::vector<Complex> step = voltage_steps(record);
-  std::vector<double> spike(step.size(), 0.0);
-  for (std::size_t k = 1; k + 1 < step.size(); ++k)
-    spike[k] = std::min(std::abs(step[k] - step[k - 1]), std::abs(step[k] - step[k + 1]));
-  return spike;
-}
-
 Switching within_step(const record::Record& record, std::size_t k) {
   const double half = (record.t[k + 1] - record.t[k]) / 2;
   return {.time = record.t[k] + half, .uncertainty = half};
 }
 
 std::vector<Switching> lone_jumps(const record::Record& record, double threshold) {
-  constexpr double kOfThreshold = 0.05, kOfNext = 5;
+  constexpr double kOfThreshold = 0.05, kOfAround = 5;
   constexpr std::size_t kAround = 10;
-  const auto spike = spikes(record);
+  const auto out = standing_out(voltage_steps(record));
   const auto is_lone = [&](std::size_t k) {
-    if (spike[k] <= kOfThreshold * threshold) return false;
+    if (out[k] <= kOfThreshold * threshold) return false;
     for (std::size_t j = k - kAround; j <= k + kAround; ++j)
-      if (j != k && spike[k] <= kOfNext * spike[j]) return false;
+      if (j != k && out[k] <= kOfAround * out[j]) return false;
     return true;
   };
   std::vector<Switching> found;
-  for (std::size_t k = kAround; k + kAround < spike.size(); ++k)
+  for (std::size_t k = kAround; k + kAround < out.size(); ++k)
     if (is_lone(k)) found.push_back(within_step(record, k));
   return found;
 }

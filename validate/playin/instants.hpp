@@ -14,12 +14,10 @@ namespace swingbank::validate::playin {
 /// Change of the voltage phasor over each sample interval [pu].
 std::vector<Complex> voltage_steps(const record::Record& record);
 
-/// How much each step differs from both of its neighbours [pu]: a jump does, a step beside one does not.
-std::vector<double> spikes(const record::Record& record);
 /// A switching between samples k and k + 1.
 Switching within_step(const record::Record& record, std::size_t k);
 /// Jumps that are small, a twentieth of `threshold` at least, and stand alone: ten samples to either side
-/// nothing has a fifth of it, neither noise nor a swing. A generator lost far away makes such a jump.
+/// nothing bends by a fifth of it, neither noise nor a swing. A generator lost far away makes such a jump.
 std::vector<Switching> lone_jumps(const record::Record& record, double threshold);
 
 /// When a signal counts as having left its level.

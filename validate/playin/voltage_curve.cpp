@@ -48,10 +48,15 @@ std::vector<Complex> not_a_knot(const std::vector<double>& t, const std::vector<
 }  // namespace
 
 std::vector<Switching> detect_switchings(const record::Record& record, double threshold) {
-  const auto spike = spikes(record);
+  const std::vector<Complex> step = voltage_steps(record);
+  const std::size_t steps = step.size();
+  // A jump differs from both neighbours; a step beside a jump differs from one of them only.
+  std::vector<double> spike(steps, 0.0);
+  for (std::size_t k = 1; k + 1 < steps; ++k)
+    spike[k] = std::min(std::abs(step[k] - step[k - 1]), std::abs(step[k] - step[k + 1]));
   const double limit = std::max(threshold, 10 * upper_median(spike));
   std::vector<Switching> found;
-  for (std::size_t k = 1; k + 1 < spike.size(); ++k)
+  for (std::size_t k = 1; k + 1 < steps; ++k)
     if (spike[k] > limit) found.push_back(within_step(record, k));
   return found.empty() ? lone_jumps(record, threshold) : found;
 }
