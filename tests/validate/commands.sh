@@ -36,7 +36,7 @@ refuses 'say which one' "$compare" --model "$model" "${one[@]}" "${two[@]}" --sw
 refuses 'no --record has that file name' "$compare" --model "$model" "${one[@]}" --switch other.csv=2.0
 refuses 'no time in seconds' "$compare" --model "$model" "${one[@]}" --switch 2,0
 refuses 'no sample between' "$compare" --model "$model" "${one[@]}" --switch 99
-refuses 'samples before the event' "$compare" --model "$model" "${one[@]}" --switch 0.01
+refuses '0 s before the event' "$compare" --model "$model" "${one[@]}" --switch 0.01
 refuses 'overwrite each other' "$compare" --model "$model" "${one[@]}" "${one[@]}"
 refuses '--model' "$compare" "${one[@]}"
 mkdir "$work/empty"
