@@ -40,7 +40,7 @@ enum class Slot {
   machine,             ///< the source itself: a synchronous machine, or a converter (Effect::converter)
   transformer,         ///< between the machine's terminal and the grid
   compensator,         ///< makes Vc, the voltage the exciter regulates
-  setpoint,            ///< moves dVref, dPref
+  setpoint,            ///< moves dVref, dPref, dGref
   governor,            ///< makes Tm
   shaft,               ///< changes Tm after the governor: what acts on the shaft whatever the governor does
   stabiliser,          ///< makes Vs; after the governor, for accelerating power needs Tm
@@ -127,17 +127,19 @@ struct Conventions {
 /// delivers Q [pu]: so what holds, adds to, infers and records Tm and Efd does the same for the commands.
 template <class T>
 struct Signals {
-  T Vr{}, Vi{}, V{};     ///< voltage at the machine's terminal and its magnitude [pu]
-  T Ir{}, Ii{};          ///< current out of the machine [pu]
-  T P{}, Q{};            ///< power out of the machine [pu]
-  T speed{};             ///< speed deviation [pu]
-  T Te{}, Tm{};          ///< electrical and mechanical torque (or power, see Conventions) [pu]
-  T Ifd{}, Efd{};        ///< field current and voltage, 1 pu on the air-gap line [pu]
-  T Vc{};                ///< voltage the exciter regulates: V unless a compensator changes it [pu]
-  T Vs{};                ///< stabiliser output [pu]
-  T Vlimiter{};          ///< limiters' sum into the voltage error [pu]
-  T dVref{}, dPref{};    ///< moves of the exciter's and the governor's reference [pu]
-  T t{};                 ///< time [s]; at an instant named by instants() that of the running side
+  T Vr{}, Vi{}, V{};   ///< voltage at the machine's terminal and its magnitude [pu]
+  T Ir{}, Ii{};        ///< current out of the machine [pu]
+  T P{}, Q{};          ///< power out of the machine [pu]
+  T speed{};           ///< speed deviation [pu]
+  T Te{}, Tm{};        ///< electrical and mechanical torque (or power, see Conventions) [pu]
+  T Ifd{}, Efd{};      ///< field current and voltage, 1 pu on the air-gap line [pu]
+  T Vc{};              ///< voltage the exciter regulates: V unless a compensator changes it [pu]
+  T Vs{};              ///< stabiliser output [pu]
+  T Vlimiter{};        ///< limiters' sum into the voltage error [pu]
+  T dVref{}, dPref{};  ///< moves of the exciter's and the governor's reference [pu]
+  T dGref{};           ///< move of the governor's reference in its own unit: speed where a droop follows it,
+                       ///< else power [pu]
+  T t{};               ///< time [s]; at an instant named by instants() that of the running side
   T Vpr{}, Vpi{}, Vp{};  ///< voltage at the grid's side of the step-up transformer [pu]
   // of a converter's controls alone
   T Pext{}, Qext{};    ///< references of P and of Q (or of V, as the control's flags say), less their values

@@ -22,7 +22,7 @@ struct Model : shared::Diesel<Model> {
 
   template <class T>
   static T asked(const T*, const T*, const Signals<T>& s, T*) {
-    return s.dPref - s.speed;
+    return s.dPref + s.dGref - s.speed;
   }
   template <class T>
   static std::string steady(const T*, T*, Signals<T>& s, T* x) {

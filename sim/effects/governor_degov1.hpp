@@ -66,7 +66,7 @@ struct Model : shared::Diesel<Model> {
   static T asked(const T* c, const T* x, const Signals<T>& s, T* dx) {
     const T measured = lag(c[iTE], x[power], s.P, dx[power]);
     const T fed = c[of_power] * measured + (T(1.0) - c[of_power]) * clamp(x[throttle], c[low], c[high]);
-    return c[Pref] + c[droop] * (s.dPref - fed) - s.speed;
+    return c[Pref] + s.dGref + c[droop] * (s.dPref - fed) - s.speed;
   }
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {

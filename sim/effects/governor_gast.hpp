@@ -86,7 +86,7 @@ struct Model {
     const T valve = clamp(x[fuel], c[low], c[high]);
     const T gas = lag(c[iT2], x[flow], valve, dx[flow]);
     const T heat = lag(c[iT3], x[exhaust], gas, dx[exhaust]);
-    const T demand = c[Pref] + s.dPref - dead_band(s.speed, c[band]) * c[iR];
+    const T demand = c[Pref] + s.dPref + s.dGref - dead_band(s.speed, c[band]) * c[iR];
     const T limit = c[ambient] + c[gain] * (c[ambient] - heat);
     dx[fuel] = (select(demand < limit, demand, limit) - valve) * c[iT1];
     s.Tm = gas - c[damping] * s.speed;

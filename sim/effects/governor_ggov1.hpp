@@ -260,7 +260,7 @@ struct Model {
   static T requested(const T* c, const T* x, const T& position, const T& texm, const Signals<T>& s, T* dx) {
     const T measured = lag(c[iTpelec], x[power], s.P * c[base], dx[power]);
     dx[mw] = c[kimw] * (c[Pmwset] - measured);
-    const T asked = c[Pref] + c[droop] * s.dPref + clamp(x[mw], c[mw_low], c[mw_high]) - s.speed -
+    const T asked = c[Pref] + s.dGref + c[droop] * s.dPref + clamp(x[mw], c[mw_low], c[mw_high]) - s.speed -
                     c[droop_power] * measured - c[droop_valve] * position;
     const T hotter = c[limit] - texm;
     dx[load] = clamp(c[kiload] * hotter, c[rdown], c[rup]);

@@ -87,7 +87,7 @@ struct Model {
   template <class T>
   static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
     const T wanted = clamp(x[desired], c[low], c[high]);
-    const T error = c[nref] - dead_band(s.speed, c[band]) + c[droop] * (s.dPref - wanted);
+    const T error = c[nref] + s.dGref - dead_band(s.speed, c[band]) + c[droop] * (s.dPref - wanted);
     dx[filter] = (error - x[filter]) * c[iTf];
     dx[desired] = clamp((x[filter] * c[iTr] + dx[filter]) * c[ir], T(0.0) - c[rate], c[rate]);
     dx[gate] = (wanted - x[gate]) * c[iTg];

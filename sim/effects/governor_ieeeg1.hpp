@@ -136,7 +136,7 @@ struct Model {
   template <class T>
   static void move_valve(const T* c, const T* x, const T& position, const Signals<T>& s, T* dx) {
     const T speed = lead_lag(c[lead], c[iT1], x[governor], dead_band(s.speed, c[band]), dx[governor]);
-    const T error = c[Pref] + s.dPref - c[gain] * speed - position;
+    const T error = c[Pref] + s.dPref + s.dGref - c[gain] * speed - position;
     dx[valve] = clamp(error * c[iT3], c[closing], c[opening]);
   }
   /// The torque of the stages behind the valve.

@@ -94,7 +94,8 @@ struct Model {
   static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
     const T one(1.0);
     const T lagged = lag(c[iT1], x[controller], c[gain] * dead_band(s.speed, c[band]), dx[controller]);
-    const T asked = c[Pref] + s.dPref - lead_lag(c[lead], c[iT3], x[governor], lagged, dx[governor]);
+    const T asked =
+        c[Pref] + s.dPref + s.dGref - lead_lag(c[lead], c[iT3], x[governor], lagged, dx[governor]);
     const T x4 = lag(c[iT4], x[inlet], clamp(asked, c[low], c[high]), dx[inlet]);
     const T x5 = lag(c[iT5], x[reheat], c[share5] * x4, dx[reheat]);
     const T x6 = lag(c[iT6], x[crossover], c[share6] * x5, dx[crossover]);

@@ -174,7 +174,7 @@ struct Model {
   template <class T>
   static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
     const T open = clamp(x[gate], c[low], c[high]);
-    const T offset = c[droop] * (c[ref] + s.dPref - fed_back(c, open, s));
+    const T offset = c[droop] * (c[ref] + s.dPref + s.dGref - fed_back(c, open, s));
     const T e = lag(c[iTreg], x[drooped], offset, dx[drooped]) - s.speed;
     dx[integral] = c[ki] * e;
     dx[first] = (c[kp] * e + x[integral] - x[first]) * c[iTA];

@@ -70,7 +70,7 @@ struct Model {
   }
   template <class T>
   static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
-    const T demand = c[Pref] + s.dPref - dead_band(s.speed, c[band]) * c[iR];
+    const T demand = c[Pref] + s.dPref + (s.dGref - dead_band(s.speed, c[band])) * c[iR];
     const T opening = clamp(lag(c[iT1], x[valve], demand, dx[valve]), c[low], c[high]);
     s.Tm = lead_lag(c[lead], c[iT3], x[reheat], opening, dx[reheat]) - c[damping] * s.speed;
   }

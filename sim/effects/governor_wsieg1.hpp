@@ -116,7 +116,6 @@ struct Model {
                  .bends = true};
     return all;
   }();
-  static constexpr double kFollowRate = 50.0;  ///< [1/s]: fast beside the valve
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     const auto text = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
@@ -139,7 +138,7 @@ struct Model {
   static void prepare(const T* p, const Conventions& conventions, T* c) {
     B::prepare(p, conventions, c);
     c[play] = p[DB2];
-    c[follow] = select(p[DB2] > T(0.0), T(kFollowRate), T(0.0));
+    c[follow] = select(p[DB2] > T(0.0), T(shared::kFollowRate), T(0.0));
     Curve::prepare(p, kGates, kPowers, c + curve);
   }
   template <class T>

@@ -55,7 +55,7 @@ struct Model {
     most,
     least,
     curve,
-    base = curve + renewable::kByVoltage,  ///< converter's base over the turbine's rating
+    base = curve + renewable::kByVoltage<>,  ///< converter's base over the turbine's rating
     pext0,
     pref,
     coefficients

@@ -77,8 +77,11 @@ void write_transformer(const Grid& grid, const plant::Plant& plant, const std::s
                "set the generator's RT and XT in the network, or remove it before writing");
 }
 
-/// Instruments and moved references belong to a record of an event, not to a plant's model.
-bool belongs_to_event(Slot slot) { return slot == Slot::measurement || slot == Slot::setpoint; }
+/// Instruments and moved references belong to a record of an event, not to a plant's model; a load
+/// controller, which stands among the latter, has a form of its own.
+bool belongs_to_event(const Effect& effect) {
+  return effect.slot == Slot::measurement || (effect.slot == Slot::setpoint && effect.dyr_name.empty());
+}
 
 }  // namespace
 
@@ -123,7 +126,7 @@ std::string unit_dyr(const plant::Plant& plant, int bus, const std::string& id, 
   }
   text += dyr_record(plant.machine, "machine", bus, id, where, problems);
   for (const plant::Block& control : plant.controls)
-    if (!belongs_to_event(control.effect->slot))
+    if (!belongs_to_event(*control.effect))
       text += dyr_record(control, std::string(slot_name(control.effect->slot)), bus, id, where, problems);
   return text;
 }

@@ -258,7 +258,7 @@ class PlantEquations {
     s.V = sqrt(s.Vr * s.Vr + s.Vi * s.Vi + T(1e-24));  // a dual needs a slope at V = 0
     s.Vc = s.V;
     s.Vs = T(0.0);
-    s.Vlimiter = T(0.0);
+    s.Vlimiter = s.dGref = T(0.0);
   }
 
   MachineOps<T> machine_;

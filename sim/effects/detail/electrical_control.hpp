@@ -111,17 +111,18 @@ struct ElectricalControl {
   static void reference(T* c, const Signals<T>& s) {
     if (value_of(c[vref]) == 0.0) c[vref] = s.V;
   }
-  /// The reactive current before what rides through, within +-most.
+  /// The reactive current before what rides through, within +-most. `regulated`: the voltage that the
+  /// regulator of V holds.
   template <class T>
-  static T reactive(const T* c, const T* x, const T& measured, const T& runs, const T& most, Signals<T>& s,
-                    T* dx) {
+  static T reactive(const T* c, const T* x, const T& measured, const T& regulated, const T& runs,
+                    const T& most, Signals<T>& s, T* dx) {
     const T zero(0.0), half(0.5);
     const T power = lag(c[iTp], x[Pf], s.P, dx[Pf]);
     const T Qin = select(c[by_factor] > half, c[tangent] * power, c[need] + s.Qext);
     const T error = clamp(Qin, c[qmin], c[qmax]) - s.Q;
-    const T regulated = regulator(c[kqp], c[kqi], error, c[vmin], c[vmax], runs, x[Vq], dx[Vq]);
-    const T Vcmd = clamp(select(c[by_q] > half, regulated, Qin), c[vmin], c[vmax]);
-    const T of_voltage = regulator(c[kvp], c[kvi], Vcmd - measured, zero - most, most, runs, x[Vi], dx[Vi]);
+    const T asked = regulator(c[kqp], c[kqi], error, c[vmin], c[vmax], runs, x[Vq], dx[Vq]);
+    const T Vcmd = clamp(select(c[by_q] > half, asked, Qin), c[vmin], c[vmax]);
+    const T of_voltage = regulator(c[kvp], c[kvi], Vcmd - regulated, zero - most, most, runs, x[Vi], dx[Vi]);
     const T of_power = lag(c[iTiq], x[Iqlag], Qin / at_least_small(measured), dx[Iqlag]);
     dx[Iqlag] = dx[Iqlag] * runs;
     return select(c[by_v] > half, of_voltage, of_power);
@@ -132,30 +133,36 @@ struct ElectricalControl {
     dx[Pord] = runs * clamp((wanted - x[Pord]) * c[iTpord], c[dpmin], c[dpmax]);
     return clamp(select(c[iTpord] > T(0.0), x[Pord], wanted), c[pmin], c[pmax]);
   }
-  /// Both commands, into s.Tm (active) and s.Efd (reactive). `most_p`, `least_p`, `most_q`: what each may be
-  /// beside Imax. `held` makes the largest active current of what Imax leaves.
-  template <class T, class Held>
-  static void commands(const T* c, const T* x, const T& measured, const T& runs, const T& injected,
-                       const T& wanted, const T& most_p, const T& least_p, const T& most_q, const Held& held,
-                       Signals<T>& s, T* dx) {
+  /// What each current may be beside Imax.
+  template <class T>
+  struct Limits {
+    T most_p, least_p, most_q;
+  };
+  /// Both commands, into s.Tm (active) and s.Efd (reactive). `total` adds to the reactive current what rides
+  /// through, `active` makes the active current of the one ordered, `held` the largest one of what Imax
+  /// leaves.
+  template <class T, class Total, class Active, class Held>
+  static void commands(const T* c, const T* x, const T& measured, const T& regulated, const T& runs,
+                       const T& wanted, const Limits<T>& limits, const Total& total, const Active& active,
+                       const Held& held, Signals<T>& s, T* dx) {
     const T zero(0.0), half(0.5);
     const auto p_first = c[active_first] > half;
-    const T asked = ordered(c, x, wanted, runs, dx) / at_least_small(measured);
-    const T first = clamp(asked, least_p, most_p);
-    const T most = select(p_first, smaller(most_q, other_current(c[imax], first)), most_q);
-    const T Iq = reactive(c, x, measured, runs, most, s, dx);
-    s.Efd = clamp(Iq + injected, zero - most, most);
+    const T asked = active(ordered(c, x, wanted, runs, dx) / at_least_small(measured));
+    const T first = clamp(asked, limits.least_p, limits.most_p);
+    const T most = select(p_first, smaller(limits.most_q, other_current(c[imax], first)), limits.most_q);
+    const T Iq = reactive(c, x, measured, regulated, runs, most, s, dx);
+    s.Efd = clamp(total(Iq), zero - most, most);
     const T beside = select(p_first, c[imax], other_current(c[imax], s.Efd));
-    s.Tm = clamp(asked, larger(least_p, zero - beside), held(smaller(most_p, beside)));
+    s.Tm = clamp(asked, larger(limits.least_p, zero - beside), held(smaller(limits.most_p, beside)));
   }
-  /// From the commands backwards. `injected`: what rides through at rest; `bias`: added to a Qext that is a
-  /// voltage; `turning`: what Pext is multiplied by.
+  /// From the commands backwards. `regulated`: as in reactive(); `injected`: what rides through at rest;
+  /// `bias`: added to a Qext that is a voltage; `turning`: what Pext is multiplied by.
   template <class T>
-  static std::string steady(T* c, const T& injected, const T& bias, const T& turning, const T& most_p,
-                            const T& least_p, const T& most_q, Signals<T>& s, T* x) {
+  static std::string steady(T* c, const T& regulated, const T& injected, const T& bias, const T& turning,
+                            const Limits<T>& limits, Signals<T>& s, T* x) {
     const double p = value_of(s.Tm), q = value_of(s.Efd), total = value_of(c[imax]);
-    if (p > value_of(most_p) || p < value_of(least_p) || std::abs(q) > value_of(most_q) ||
-        p * p + q * q > total * total)
+    if (p > value_of(limits.most_p) || p < value_of(limits.least_p) ||
+        std::abs(q) > value_of(limits.most_q) || p * p + q * q > total * total)
       return fmt::format(
           "it would need currents of {:.4f} (active) and {:.4f} pu (reactive), beyond Imax = "
           "{:.4f} pu",
@@ -167,10 +174,10 @@ struct ElectricalControl {
     c[pneed] = x[Pord] / turning;
     x[Iqlag] = Iq;
     x[Vi] = Iq;
-    x[Vq] = s.V;
+    x[Vq] = regulated;
     const bool voltage = value_of(c[by_v]) == 1.0, power = value_of(c[by_q]) == 1.0;
-    c[need] = voltage ? (power ? s.Q : s.V) : Iq * V;
-    s.Qneed = voltage && !power ? s.V - bias : c[need];
+    c[need] = voltage ? (power ? s.Q : regulated) : Iq * V;
+    s.Qneed = voltage && !power ? regulated - bias : c[need];
     s.Pneed = c[pneed];
     if (value_of(c[by_factor]) == 1.0) {
       if (value_of(s.P) == 0.0 && value_of(c[need]) != 0.0)
@@ -185,29 +192,25 @@ struct ElectricalControl {
     };
     if (!voltage) return {};
     if (auto why = power ? outside("Qin", c[need], c[qmin], c[qmax]) : ""; !why.empty()) return why;
-    return outside("Vcmd", s.V, c[vmin], c[vmax]);
+    return outside("Vcmd", regulated, c[vmin], c[vmax]);
   }
 
   // What check() of each asks for.
-  template <std::size_t N>
-  static std::string value(const Parameter (&all)[N], const double* p, int i) {
+  static std::string value(std::span<const Parameter> all, const double* p, int i) {
     const Parameter& r = all[static_cast<std::size_t>(i)];
     return fmt::format("{} = {:g}{}{}", r.symbol, p[i], r.is_code() ? "" : " ", r.is_code() ? "" : r.unit);
   }
-  template <std::size_t N>
-  static void check_flags(const Parameter (&all)[N], const double* p, std::initializer_list<int> flags,
+  static void check_flags(std::span<const Parameter> all, const double* p, std::initializer_list<int> flags,
                           const std::string& where, Problems& problems) {
     for (const int i : flags)
       if (p[i] != 0 && p[i] != 1) problems.add(value(all, p, i), where, "it is a switch", "give 0 or 1");
   }
-  template <std::size_t N>
-  static void check_times(const Parameter (&all)[N], const double* p, std::initializer_list<int> times,
+  static void check_times(std::span<const Parameter> all, const double* p, std::initializer_list<int> times,
                           const std::string& where, Problems& problems) {
     for (const int i : times)
       if (!(p[i] >= 0)) problems.add(value(all, p, i), where, "it is a time", "give 0 for none, or more");
   }
-  template <std::size_t N>
-  static void check_ranges(const Parameter (&all)[N], const double* p,
+  static void check_ranges(std::span<const Parameter> all, const double* p,
                            std::initializer_list<std::pair<int, int>> ranges, const std::string& where,
                            Problems& problems) {
     for (const auto& [high, low] : ranges)
@@ -215,10 +218,9 @@ struct ElectricalControl {
         problems.add(value(all, p, high) + " with " + value(all, p, low), where, "the limits have no room",
                      "give the upper one at least the lower one's value");
   }
-  template <std::size_t N>
-  static void check_signs(const Parameter (&all)[N], const double* p, std::initializer_list<int> not_below,
-                          std::initializer_list<int> not_above, const std::string& where,
-                          Problems& problems) {
+  static void check_signs(std::span<const Parameter> all, const double* p,
+                          std::initializer_list<int> not_below, std::initializer_list<int> not_above,
+                          const std::string& where, Problems& problems) {
     for (const int i : not_below)
       if (!(p[i] >= 0)) problems.add(value(all, p, i), where, "it is not negative", "give 0 or more");
     for (const int i : not_above)

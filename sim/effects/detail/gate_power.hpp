@@ -8,6 +8,9 @@
 
 namespace swingbank::sim::effects::shared {
 
+/// How fast a gate or valve behind a backlash follows beyond it [1/s]: fast beside its servo.
+inline constexpr double kFollowRate = 50.0;
+
 /// Through `count` points: a Model keeps `size` coefficients from `first` on.
 template <int count>
 struct GatePower {

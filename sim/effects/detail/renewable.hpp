@@ -50,6 +50,16 @@ T voltage_dip(const T& V, const T& vdip, const T& vup) {
   return clamp((vdip - V) * per_band, zero, one) + clamp((V - vup) * per_band, zero, one);
 }
 
+inline constexpr double kFollow = 2e-3;  ///< in which timers are set and what is to be kept is followed [s]
+inline constexpr double kFading = 1e-3;  ///< over which what is kept after a dip fades [s]
+/// A timer's state, set to `whole` in a dip, runs down to 0 after it; returns 1 while it runs after the dip.
+template <class T>
+T timer(const T& dip, const T& whole, const T& x, T& dx) {
+  const T zero(0.0), one(1.0);
+  dx = dip * (whole - x) * T(1.0 / kFollow) - (one - dip);  // to the state's lower limit
+  return (one - dip) * clamp(x * T(1.0 / kFading), zero, one);
+}
+
 template <class T>
 T at_least_small(const T& V) {
   return select(V > T(kSmallVoltage), V, T(kSmallVoltage));
@@ -63,6 +73,9 @@ T larger(const T& a, const T& b) {
   return select(a < b, b, a);
 }
 
+/// Where an electrical control keeps nothing over: what it is given.
+inline constexpr auto as_it_is = [](const auto& given) { return given; };
+
 /// What is left for one current beside the other within Imax; a dual needs a slope where nothing is left.
 template <class T>
 T other_current(const T& most, const T& used) {
@@ -71,29 +84,31 @@ T other_current(const T& most, const T& used) {
   return sqrt(select(square > tiny, square, tiny));
 }
 
-/// Coefficients of a limit by voltage: four voltages, the first current, three slopes, the largest current.
-inline constexpr int kByVoltage = 9;
-/// Of the points V, I, V, I, ... as far as the voltages rise; the current of the last one goes on. Points
+/// Coefficients of a limit by voltage of N points: N voltages, the first current, N - 1 slopes, the largest
+/// current.
+template <int N = 4>
+inline constexpr int kByVoltage = 2 * N + 1;
+/// Of the N points V, I, V, I, ... as far as the voltages rise; the current of the last one goes on. Points
 /// that do not rise at all are no limit beside `most`.
-template <class T>
+template <int N = 4, class T>
 void prepare_by_voltage(const T* points, const T& most, T* c) {
   const bool any = value_of(points[2]) > value_of(points[0]);
   bool rises = any;
-  c[4] = any ? points[1] : most;
-  for (int k = 0; k < 4; ++k) c[k] = points[2 * k];
-  for (int k = 0; k < 3; ++k) {
+  c[N] = any ? points[1] : most;
+  for (int k = 0; k < N; ++k) c[k] = points[2 * k];
+  for (int k = 0; k < N - 1; ++k) {
     const T width = points[2 * k + 2] - points[2 * k];
     rises = rises && value_of(width) > 0.0;
-    c[5 + k] = rises ? (points[2 * k + 3] - points[2 * k + 1]) / width : T(0.0);
+    c[N + 1 + k] = rises ? (points[2 * k + 3] - points[2 * k + 1]) / width : T(0.0);
     if (!rises) c[k + 1] = c[k];
   }
-  c[8] = most;
+  c[2 * N] = most;
 }
-template <class T>
+template <int N = 4, class T>
 T by_voltage(const T* c, const T& V) {
-  T current = c[4];
-  for (int k = 0; k < 3; ++k) current = current + c[5 + k] * (clamp(V, c[k], c[k + 1]) - c[k]);
-  return smaller(current, c[8]);
+  T current = c[N];
+  for (int k = 0; k < N - 1; ++k) current = current + c[N + 1 + k] * (clamp(V, c[k], c[k + 1]) - c[k]);
+  return smaller(current, c[2 * N]);
 }
 
 }  // namespace swingbank::sim::effects::renewable

@@ -21,21 +21,33 @@ const Effect* effect_named(std::string_view model) {
     if (!e.dyr_name.empty() && std::ranges::equal(e.dyr_name, model, same)) return &e;
   return nullptr;
 }
-/// Other names of a model whose equations and columns are the same.
+/// Other names of a model whose equations are the same, and where its columns stand in theirs; none: in the
+/// same order.
 struct OtherName {
   std::string_view name, known_as;
+  std::span<const int> order = {};
 };
+constexpr int kPslfsSt5b[] = {0, 6, 7, 8, 9, 1, 4, 5, 2, 3, 14, 15, 16, 17, 10, 11, 12, 13};
 constexpr OtherName kOtherNames[] = {
     {"GENTPJ1", "GENTPJU1"},  // its name since PSS/E 34
     {"REECCU1", "REECC1"},    // as a user-written model
-    {"REPCTA1", "REPCA1"},    // of a wind plant of type 3
-    {"EXDC1", "IEEEX1"},      // GridPACK's and PSLF's name of the type DC1 of 1981
+    {"REECD", "REECD1"},
+    {"REECDU1", "REECD1"},           // as a user-written model
+    {"REPCTA1", "REPCA1"},           // of a wind plant of type 3
+    {"HYG3U1", "HYG3"},              // as a user-written model
+    {"IEE2ST", "ST2CUT"},            // its IEEE form: the same blocks (OpenIPSL, c80a6c4)
+    {"ESST5B", "ST5B", kPslfsSt5b},  // PSLF's (InterPSS, St5bExciterTest)
+    {"EXDC1", "IEEEX1"},             // GridPACK's and PSLF's name of the type DC1 of 1981
 };
+
+const OtherName* other_name(std::string_view model) {
+  const auto at = std::ranges::find(kOtherNames, model, &OtherName::name);
+  return at == std::end(kOtherNames) ? nullptr : at;
+}
 
 /// The same, with the names that stand for it too: IEELAR is IEELBL for an area.
 std::pair<const Effect*, Reach> effect_of_model(std::string model) {
-  for (const OtherName& other : kOtherNames)
-    if (model == other.name) model = other.known_as;
+  if (const OtherName* other = other_name(model)) model = other->known_as;
   if (const Effect* own = effect_named(model)) return {own, Reach::load};
   for (std::size_t i = 1; i < kEndings.size(); ++i) {
     if (!model.ends_with(kEndings[i])) continue;
@@ -96,12 +108,20 @@ std::string columns_text(const Effect& effect) {
 }
 
 formats::DyrRecord plain(formats::DyrRecord record, const Effect& effect) {
-  if (record.user.empty()) return record;
-  constexpr std::size_t before = 6, count = 3;
+  constexpr std::size_t before = 6, icons = 2, cons = 3;
   const std::size_t columns = effect.dyr_columns.size();
-  if (record.values.size() == columns + before && record.values[count] == static_cast<double>(columns))
-    record.values.erase(record.values.begin(), record.values.begin() + before);
-  record.model = record.user;
+  if (!record.user.empty()) {
+    if (record.values.size() == columns + before &&
+        record.values[icons] + record.values[cons] == static_cast<double>(columns))
+      record.values.erase(record.values.begin(), record.values.begin() + before);
+    record.model = record.user;
+  }
+  const OtherName* other = other_name(record.model);
+  if (other && other->order.size() == record.values.size()) {
+    const std::vector<double> theirs = record.values;
+    for (std::size_t i = 0; i < theirs.size(); ++i)
+      record.values[i] = theirs[static_cast<std::size_t>(other->order[i])];
+  }
   return record;
 }
 bool complete(const Effect& effect, const formats::DyrRecord& record, const std::string& where,

@@ -9,10 +9,10 @@ namespace {
 
 using C = std::complex<double>;
 using Values = ControlBench::Changes;
-constexpr auto kEfd = &Signals<double>::Efd;
+constexpr auto kEsst4bEfd = &Signals<double>::Efd;
 
 /// KP, KI, KC, XL and THETAP all at work.
-Values with(Values more) {
+Values esst4b_with(Values more) {
   Values v = {{"TR", 0.02}, {"KPR", 3.0},     {"KIR", 4.0},  {"TA", 0.05}, {"KPM", 0.6},
               {"KIM", 2.0}, {"KG", 0.15},     {"KP", 6.0},   {"KI", 0.4},  {"KC", 0.1},
               {"XL", 0.08}, {"THETAP", 20.0}, {"VRMAX", 9.0}};
@@ -32,7 +32,7 @@ TEST(ExciterEsst4b, TransferFunctionIsTheDiagrams) {
                            {{"KPM", 0.0}, {"KIM", 14.9}, {"KG", 1.0}},
                            {{"KIM", 0.0}, {"KG", 0.0}, {"KPM", 1.0}},
                            {{"KIR", 0.0}, {"TA", 0.0}, {"TR", 0.0}}}) {
-    const Values v = with(more);
+    const Values v = esst4b_with(more);
     for (const double omega : {0.1, 1.0, 7.0, 40.0}) {
       ControlBench bench("ESST4B", v);
       ASSERT_TRUE(bench.problems.empty());
@@ -45,9 +45,9 @@ TEST(ExciterEsst4b, TransferFunctionIsTheDiagrams) {
       const C exact = (v.at("KPR") + v.at("KIR") / s) * lead_over_lag(0.0, v.at("TA"), omega) * VB * inner /
                       (1.0 + v.at("KG") * VB * inner);
       // difference quotients over 1e-6, times gains of up to 15 60
-      EXPECT_LT(std::abs(bench.response(&Signals<double>::Vs, kEfd, omega) - exact),
+      EXPECT_LT(std::abs(bench.response(&Signals<double>::Vs, kEsst4bEfd, omega) - exact),
                 1e-7 * (1.0 + std::abs(exact)));
-      EXPECT_LT(std::abs(bench.response(&Signals<double>::Vc, kEfd, omega) +
+      EXPECT_LT(std::abs(bench.response(&Signals<double>::Vc, kEsst4bEfd, omega) +
                          exact * lead_over_lag(0.0, v.at("TR"), omega)),
                 1e-7 * (1.0 + std::abs(exact)));
     }
@@ -55,7 +55,7 @@ TEST(ExciterEsst4b, TransferFunctionIsTheDiagrams) {
 }
 
 TEST(ExciterEsst4b, CeilingIsVmmaxTimesTheSource) {
-  ControlBench bench("ESST4B", with({{"VMMAX", 0.8}, {"VMMIN", -0.5}}));
+  ControlBench bench("ESST4B", esst4b_with({{"VMMAX", 0.8}, {"VMMIN", -0.5}}));
   bench.in.dVref = 0.5;
   bench.run(20.0);
   EXPECT_NEAR(bench.out().Efd, 0.8 * source(bench.in), 1e-14);
@@ -70,7 +70,7 @@ TEST(ExciterEsst4b, CeilingIsVmmaxTimesTheSource) {
 }
 
 TEST(ExciterEsst4b, SourceIsLimitedByVbmax) {
-  ControlBench bench("ESST4B", with({{"VMMAX", 0.8}, {"VBMAX", 4.0}}));
+  ControlBench bench("ESST4B", esst4b_with({{"VMMAX", 0.8}, {"VBMAX", 4.0}}));
   EXPECT_GT(source(bench.in), 4.0);
   bench.in.dVref = 0.5;
   bench.run(20.0);
@@ -78,7 +78,7 @@ TEST(ExciterEsst4b, SourceIsLimitedByVbmax) {
 }
 
 TEST(ExciterEsst4b, RegulatorsStopIntegratingAtTheirLimitsAndReleaseAtOnce) {
-  ControlBench bench("ESST4B", with({{"VRMAX", 1.5}, {"VMMAX", 0.6}, {"KG", 0.0}}));
+  ControlBench bench("ESST4B", esst4b_with({{"VRMAX", 1.5}, {"VMMAX", 0.6}, {"KG", 0.0}}));
   bench.in.dVref = 0.1;
   bench.run(30.0);
   // both stand with output, not integral, at the limit; at most the band of 0.002 pu beyond it

@@ -14,7 +14,7 @@ using Values = ControlBench::Changes;
 constexpr auto kEfd = &Signals<double>::Efd;
 
 /// Everything at work but saturation and the rectifier.
-Values with(const Values& more) {
+Values rexs_with(const Values& more) {
   Values v = {{"TR", 0.02}, {"KVP", 30.0}, {"KVI", 12.0}, {"VIMAX", 1.0}, {"TA", 0.03}, {"TB1", 4.0},
               {"TC1", 1.0}, {"TB2", 0.4},  {"TC2", 0.1},  {"KF", 0.04},   {"TF", 1.3},  {"TF1", 0.2},
               {"TF2", 0.1}, {"FBF", 1.0},  {"KIP", 1.5},  {"KII", 2.0},   {"TP", 0.05}, {"KH", 0.3},
@@ -31,7 +31,7 @@ TEST(ExciterRexs, TransferFunctionIsTheDiagrams) {
         {{"KII", 0.0}, {"KVI", 0.0}, {"TP", 0.0}, {"TR", 0.0}},
         {{"KIP", 0.0}, {"KVP", 0.0}, {"TB1", 0.0}, {"TB2", 0.0}, {"TF2", 0.0}, {"TA", 0.0}},
         {{"KF", 0.0}, {"KH", 0.0}}}) {
-    const Values v = with(more);
+    const Values v = rexs_with(more);
     const auto at = [&](const char* name) { return v.at(name); };
     for (const double omega : {0.1, 1.0, 7.0, 40.0}) {
       ControlBench bench("REXS", v);
@@ -122,17 +122,17 @@ class Drawn {
 };
 
 TEST(ExciterRexs, StepsFollowTheEquationsThroughTheirLimits) {
-  ControlBench bench("REXS", with({{"KII", 0.0},
-                                   {"KC", 0.1},
-                                   {"E1", 3.0},
-                                   {"SE1", 0.1},
-                                   {"E2", 4.0},
-                                   {"SE2", 0.4},
-                                   {"VIMAX", 0.15},
-                                   {"VRMAX", 4.5},
-                                   {"VRMIN", -2.0},
-                                   {"VFMAX", 5.0},
-                                   {"VFMIN", -3.0}}));
+  ControlBench bench("REXS", rexs_with({{"KII", 0.0},
+                                        {"KC", 0.1},
+                                        {"E1", 3.0},
+                                        {"SE1", 0.1},
+                                        {"E2", 4.0},
+                                        {"SE2", 0.4},
+                                        {"VIMAX", 0.15},
+                                        {"VRMAX", 4.5},
+                                        {"VRMIN", -2.0},
+                                        {"VFMAX", 5.0},
+                                        {"VFMIN", -3.0}}));
   ASSERT_TRUE(bench.problems.empty());
   ASSERT_EQ(bench.refused, "");
   Drawn drawn;
@@ -160,8 +160,8 @@ TEST(ExciterRexs, StepsFollowTheEquationsThroughTheirLimits) {
 
 TEST(ExciterRexs, LimitsFollowTheVoltageAsFlimfSays) {
   for (const double follow : {0.0, 0.5, 1.0}) {
-    ControlBench bench("REXS",
-                       with({{"VRMAX", 5.0}, {"KH", 0.0}, {"KII", 0.0}, {"KIP", 1.0}, {"FLIMF", follow}}));
+    ControlBench bench(
+        "REXS", rexs_with({{"VRMAX", 5.0}, {"KH", 0.0}, {"KII", 0.0}, {"KIP", 1.0}, {"FLIMF", follow}}));
     ASSERT_EQ(bench.refused, "");
     bench.in.dVref = 1.0;
     bench.in.V = 0.6;
@@ -172,7 +172,7 @@ TEST(ExciterRexs, LimitsFollowTheVoltageAsFlimfSays) {
 }
 
 TEST(ExciterRexs, TheFieldsRegulatorStopsIntegratingAtItsLimit) {
-  ControlBench bench("REXS", with({{"VFMAX", 4.0}, {"KH", 0.0}, {"KVI", 0.0}, {"TB1", 0.0}}));
+  ControlBench bench("REXS", rexs_with({{"VFMAX", 4.0}, {"KH", 0.0}, {"KVI", 0.0}, {"TB1", 0.0}}));
   bench.in.dVref = 1.0;
   bench.run(20.0, 2e-3);
   EXPECT_NEAR(bench.out().Efd, (4.0 - 0.4 * 2.0) / 0.9, 1e-6);

@@ -47,6 +47,17 @@ TEST(Coverage, AnotherNameOfAnEffectIsCovered) {
   EXPECT_EQ(of(take_coverage({file.path}), "EXDC1").effect, "IEEEX1");
 }
 
+TEST(Coverage, AWrappedModelIsCoveredWithCodesBeforeItsConstants) {
+  const formats::ScratchFile file{"wrapped.dyr"};
+  const std::string hyg3 =
+      "1 0 .0527 2 0 1.5 4.5 0 .05 11 .15 .1 -.1 .918 0 0 .292 .374 .473 .603 .528 .681 .686 .82 .799 .893 "
+      ".856 .929 1 .153 .23 1.181 .5 11.6 .036 0 -.036 /\n";
+  std::ofstream(file.path) << "1 'HYG3U1' 1 " << hyg3 << "2 'USRMDL' 1 'HYG3U1' 5 0 1 36 9 20 " << hyg3;
+  const Coverage coverage = take_coverage({file.path});
+  EXPECT_EQ(of(coverage, "HYG3U1").effect, "HYG3");
+  EXPECT_EQ(coverage.covered, 2) << of(coverage, "HYG3U1").fault;
+}
+
 TEST(Coverage, AFileThatIsNotThereIsRefused) { EXPECT_ANY_THROW(take_coverage({"/nowhere/none.dyr"})); }
 
 }  // namespace

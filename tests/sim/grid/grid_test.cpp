@@ -76,7 +76,7 @@ TEST(Grid, EveryFaultIsReportedAtOnceWithTheDyrLine) {
   EXPECT_THAT(all, HasSubstr("it takes 2: H D"));
   EXPECT_THAT(all, HasSubstr("case.dyr:1"));
   EXPECT_THAT(all, HasSubstr("unknown model 'GENFOO' of '1' at bus 101"));
-  EXPECT_THAT(all, HasSubstr("GENCLS, GENROE, GENROU"));
+  EXPECT_THAT(all, HasSubstr("GENCLS, GENQEC, GENROE, GENROU"));
   EXPECT_THAT(all, HasSubstr("case.dyr:2"));
   EXPECT_THAT(all, HasSubstr("a second machine model, GENCLS, for generator 102/1"));
   EXPECT_THAT(all, HasSubstr("case.dyr:4"));

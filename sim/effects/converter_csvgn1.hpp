@@ -1,0 +1,169 @@
+#pragma once
+// CSVGN1: static var compensator, a capacitor beside a reactor that a thyristor controls.
+#include <fmt/format.h>
+
+#include "sim/core/blocks.hpp"
+#include "sim/core/bus_frequency.hpp"
+#include "sim/core/effect.hpp"
+#include "sim/effects/detail/limited_lead_lag.hpp"
+#include "sim/effects/detail/sources.hpp"
+
+namespace swingbank::sim::effects::converter_csvgn1 {
+
+struct Model {
+  using LeadLag = shared::LimitedLeadLag;
+  static constexpr std::string_view name = "CSVGN1", title = "static var compensator",
+                                    source =
+                                        "PowerWorld, block diagrams, CSVGN1; OpenIPSL, Banks.PSSE.CSVGN1 "
+                                        "(github.com/marcelofcastro/OpenIPSL, 8309d8a): signs, columns; "
+                                        "PSS/E CSVGN1",
+                                    dyr_name = "CSVGN1";
+  static constexpr Slot slot = Slot::machine;
+  static constexpr bool converter = true;
+  static constexpr std::string_view description = R"(
+  V - Vref - dVref --> [ (1 + s T1)/(1 + s T3) ] --> [ K (1 + s T2)/(1 + s T4), VMIN to VMAX ] --> [ 1/(1 + s T5) ] --> B
+         B: [RMIN/MBASE, 1] non-windup, the reactor's susceptance on MBASE
+  Q = (CBASE/MBASE - B) |V|^2         P/|V|^2: a conductance, that of the operating point
+  speed: frequency of the terminal voltage, measured with the lag Tfreq
+  It takes no commands: beside it stands no control of a converter.
+)";
+  enum P { K, T1, T2, T3, T4, T5, RMIN, VMAX, VMIN, CBASE, Tfreq };
+  static constexpr Source standards_from = literature::psid("CSVGN1, in its test 49");
+  static constexpr Source bounds_from = shared::kNoCases;
+  static constexpr Source kWider = literature::own("wider than the reactor's range, which then is the limit");
+  static constexpr Parameter parameters[] = {
+      {"K", "K", "pu/pu", 20.0, 0.01, 1000.0, kNoNeutral, "gain, susceptance by voltage"},
+      {"T1", "T1", "s", 0.0, 0.0, 10.0, 0.0, "first lead"},
+      {"T2", "T2", "s", 1.0, 0.0, 10.0, kNoNeutral, "second lead"},
+      {"T3", "T3", "s", 0.154833, 0.0, 50.0, kNoNeutral, "first lag (0: bypass)"},
+      {"T4", "T4", "s", 1.0, 0.0, 50.0, kNoNeutral, "second lag (0: bypass)"},
+      {"T5", "T5", "s", 0.005167, 0.001, 10.0, kNoNeutral, "thyristors"},
+      {"RMIN", "RMIN", "Mvar", 0.0, -10000.0, 10000.0, kNoNeutral,
+       "least that the reactor draws at rated voltage"},
+      {"VMAX", "VMAX", "pu", 2.0, -10.0, 99.0, kNoNeutral, "upper limit of the regulator", kWider},
+      {"VMIN", "VMIN", "pu", -1.0, -99.0, 10.0, kNoNeutral, "lower limit of the regulator", kWider},
+      {"CBASE", "CBASE", "Mvar", 60.0, 0.0, 10000.0, kNoNeutral,
+       "what the capacitor delivers at rated voltage"},
+      {"Tfreq", "Tfreq", "s", 0.02, 1e-3, 1.0, kNoNeutral, "measurement of the terminal's frequency",
+       literature::own("about a cycle")}};
+  static constexpr int dyr_columns[] = {K, T1, T2, T3, T4, T5, RMIN, VMAX, VMIN, CBASE};
+  /// Of the source as the network sees it: any is exact (decision 37), a large one makes the iteration short.
+  static constexpr double kReactance = 10.0;
+  enum C {
+    gain,
+    lead,
+    iT3,
+    second,
+    most = second + LeadLag::size,  ///< VMAX/K
+    least,
+    iT5,
+    low,
+    high,
+    capacitor,
+    conductance,
+    iTfreq,
+    per_angle,
+    Vref,
+    coefficients
+  };
+  enum X { first, lagged, B, Vrlag, Vilag };
+  static constexpr State states[] = {{"first", "pu", "state of the first lead-lag", 5.0},
+                                     {.name = "lagged",
+                                      .unit = "pu",
+                                      .meaning = "state of the second lead-lag",
+                                      .weight = 5.0,
+                                      .bends = true},
+                                     {.name = "B",
+                                      .unit = "pu",
+                                      .meaning = "susceptance of the reactor",
+                                      .low = low,
+                                      .high = high,
+                                      .bends = true},
+                                     {"Vrlag", "pu", "lagged voltage, real part", 0.1},
+                                     {"Vilag", "pu", "lagged voltage, imaginary part", 0.1}};
+  enum M { voltage, scratch };
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    const auto says = [&](int i) {
+      return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
+    };
+    for (const int i : {K, T5, Tfreq})
+      if (!(p[i] > 0)) problems.add(says(i), where, "CSVGN1 divides by it", "give a value > 0");
+    for (const int i : {T1, T2, T3, T4, CBASE})
+      if (!(p[i] >= 0)) problems.add(says(i), where, "a time or a rating", "give a value >= 0");
+    if (!(p[VMAX] > p[VMIN]))
+      problems.add(says(VMAX) + " with " + says(VMIN), where, "the regulator must have room to move",
+                   "give VMAX > VMIN");
+  }
+  static std::string_view unphysical(const double*) { return ""; }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions& conventions, T* c) {
+    const T imva(1.0 / conventions.mva);
+    c[gain] = p[K];
+    c[lead] = p[T1];
+    c[iT3] = inverse(p[T3]);
+    LeadLag::prepare(p[T2], p[T4], c + second);
+    c[most] = p[VMAX] / p[K];
+    c[least] = p[VMIN] / p[K];
+    c[iT5] = T(1.0) / p[T5];
+    c[low] = p[RMIN] * imva;
+    c[high] = T(1.0);
+    c[capacitor] = p[CBASE] * imva;
+    c[iTfreq] = T(1.0) / p[Tfreq];
+    c[per_angle] = frequency_slope(c[iTfreq], conventions.frequency);
+  }
+  template <class T>
+  static void source_impedance(const T*, T& r, T& x) {
+    r = T(0.0);
+    x = T(kReactance);
+  }
+  template <class T>
+  static void emf(const T*, const T*, T*, T& er, T& ei) {
+    er = ei = T(0.0);
+  }
+  template <class T>
+  static void current(const T* c, const T* x, T*, Signals<T>& s) {
+    const T delivers = c[capacitor] - x[B];
+    s.Ir = c[conductance] * s.Vr + delivers * s.Vi;
+    s.Ii = c[conductance] * s.Vi - delivers * s.Vr;
+  }
+  template <class T>
+  static void electrical(const T* c, const T* x, T* m, Signals<T>& s) {
+    using std::sqrt;
+    const T square_2 = s.Vr * s.Vr + s.Vi * s.Vi + T(1e-24);  // a dual needs a slope at V = 0
+    m[voltage] = sqrt(square_2);
+    s.speed = bus_frequency(s.Vr, s.Vi, square_2, x[Vrlag], x[Vilag], c[per_angle]);
+    s.Te = s.Vr * s.Ir + s.Vi * s.Ii;
+    s.Ifd = T(0.0);
+    s.Pext = s.Qext = s.wt = s.wg = s.wref = s.pitch = s.Paero = T(0.0);
+    s.Pord = s.Te;
+  }
+  template <class T>
+  static void derivative(const T* c, const T* x, const T* m, const Signals<T>& s, T* dx) {
+    const T u = lead_lag(c[lead], c[iT3], x[first], m[voltage] - c[Vref] - s.dVref, dx[first]);
+    const T asked = LeadLag::evaluate(c + second, x[lagged], u, c[least], c[most], dx[lagged]);
+    dx[B] = (c[gain] * asked - x[B]) * c[iT5];
+    dx[Vrlag] = (s.Vr - x[Vrlag]) * c[iTfreq];
+    dx[Vilag] = (s.Vi - x[Vilag]) * c[iTfreq];
+  }
+  template <class T>
+  static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
+    using std::sqrt;
+    const T square_2 = s.Vr * s.Vr + s.Vi * s.Vi;
+    c[conductance] = (s.Vr * s.Ir + s.Vi * s.Ii) / square_2;
+    x[B] = c[capacitor] - (s.Vi * s.Ir - s.Vr * s.Ii) / square_2;
+    x[first] = x[lagged] = x[B] / p[K];
+    if (value_of(x[lagged]) > value_of(c[most]) || value_of(x[lagged]) < value_of(c[least]))
+      return fmt::format("it would need the regulator at {:.4f} pu, and VMIN, VMAX are {:g}, {:g} pu",
+                         value_of(x[B]), value_of(p[VMIN]), value_of(p[VMAX]));
+    x[Vrlag] = s.Vr;
+    x[Vilag] = s.Vi;
+    s.V = sqrt(square_2);
+    c[Vref] = s.V - x[first];
+    s.Tm = s.Efd = T(0.0);
+    return {};
+  }
+};
+
+}  // namespace swingbank::sim::effects::converter_csvgn1

@@ -1,0 +1,138 @@
+#pragma once
+// The parameters that the electrical controls REECA1, REECB1, REECC1 and REECD1 have in common, each with its
+// record and what check() asks of it.
+#include <string_view>
+
+#include "sim/core/effect.hpp"
+#include "sim/effects/detail/electrical_control.hpp"
+
+namespace swingbank::sim::effects::renewable {
+
+namespace record {
+
+inline constexpr Parameter
+    RemoteBus = {"RemoteBus", "remote bus",   "code", 0.0,
+                 0.0,         999997.0,       0.0,    "regulated bus (0: the terminal)",
+                 kAsEffect,   renewable::kBus},
+    PFFLAG = {"PFFLAG",   "PFFLAG",
+              "code",     0.0,
+              0.0,        1.0,
+              kNoNeutral, "1: holds the power factor, 0: follows Qext",
+              kAsEffect,  renewable::kFlag},
+    VFLAG = {"VFLAG",    "VFLAG",
+             "code",     1.0,
+             0.0,        1.0,
+             kNoNeutral, "1: a regulator of Q makes Vcmd, 0: Qext does",
+             kAsEffect,  renewable::kFlag},
+    QFLAG = {"QFLAG",    "QFLAG",
+             "code",     0.0,
+             0.0,        1.0,
+             kNoNeutral, "1: a regulator of V makes Iq, 0: Q over V does",
+             kAsEffect,  renewable::kFlag},
+    PFLAG = {"PFLAG",    "PFLAG",
+             "code",     0.0,
+             0.0,        1.0,
+             kNoNeutral, "1: Pext times the generator's speed",
+             kAsEffect,  renewable::kFlag},
+    PQFLAG = {"PQFLAG",   "PQFLAG",
+              "code",     0.0,
+              0.0,        1.0,
+              kNoNeutral, "at Imax 0: P yields, 1: Q yields",
+              kAsEffect,  renewable::kFlag},
+    Vdip = {"Vdip", "Vdip", "pu", -99.0, -99.0, 1.2, kNoNeutral, "voltage below which there is a dip"},
+    Vup = {"Vup", "Vup", "pu", 99.0, 0.8, 99.0, kNoNeutral, "voltage above which there is a dip"},
+    Trv = {"Trv", "Trv", "s", 0.02, 0.0, 1.0, kNoNeutral, "measurement of the voltage (0: none)"},
+    dbd1 = {"dbd1", "dbd1", "pu", 0.0, -1.0, 0.0, 0.0, "lower edge of the dead-band of Iqv"},
+    dbd2 = {"dbd2", "dbd2", "pu", 0.0, 0.0, 1.0, 0.0, "upper edge of the dead-band of Iqv"},
+    Kqv = {"Kqv", "Kqv", "pu/pu", 0.0, 0.0, 100.0, 0.0, "reactive current per voltage error: ride-through"},
+    Iqh1 = {"Iqh1", "Iqh1", "pu", 1.1, 0.0, 99.0, kNoNeutral, "highest Iqv"},
+    Iql1 = {"Iql1", "Iql1", "pu", -1.1, -99.0, 0.0, kNoNeutral, "lowest Iqv"},
+    Vref0 = {"Vref0", "Vref0", "pu",       0.0,
+             0.0,     1.5,     kNoNeutral, "reference of Iqv (0: the voltage at the start)"},
+    Tp = {"Tp", "Tp", "s", 0.05, 0.0, 10.0, kNoNeutral, "measurement of the power (0: none)"},
+    Qmax = {"Qmax", "Qmax", "pu", 0.44, -1.0, 99.0, kNoNeutral, "highest Qin"},
+    Qmin = {"Qmin", "Qmin", "pu", -0.44, -99.0, 1.0, kNoNeutral, "lowest Qin"},
+    Vmax = {"Vmax", "Vmax", "pu", 1.05, 0.5, 99.0, kNoNeutral, "highest Vcmd"},
+    Vmin = {"Vmin", "Vmin", "pu", 0.9, -99.0, 1.2, kNoNeutral, "lowest Vcmd"},
+    Kqp = {"Kqp", "Kqp", "pu/pu", 0.0, 0.0, 100.0, 0.0, "regulator of Q, proportional gain"},
+    Kqi = {"Kqi", "Kqi", "1/s", 0.01, 0.0, 500.0, 0.0, "regulator of Q, integral gain"},
+    Kvp = {"Kvp", "Kvp", "pu/pu", 10.0, 0.0, 200.0, 0.0, "regulator of V, proportional gain"},
+    Kvi = {"Kvi", "Kvi", "1/s", 60.0, 0.0, 1000.0, 0.0, "regulator of V, integral gain"},
+    Tiq = {"Tiq", "Tiq", "s", 0.02, 0.0, 1.0, kNoNeutral, "lag of Iq (0: none)"},
+    dPmax = {"dPmax", "dPmax", "pu/s", 99.0, 0.0, 999.0, kNoNeutral, "fastest rise of Pord"},
+    dPmin = {"dPmin", "dPmin", "pu/s", -99.0, -999.0, 0.0, kNoNeutral, "fastest fall of Pord"},
+    Pmax = {"Pmax", "Pmax", "pu", 1.0, 0.0, 99.0, kNoNeutral, "highest Pord"},
+    Pmin = {"Pmin", "Pmin", "pu", 0.0, -99.0, 1.0, kNoNeutral, "lowest Pord"},
+    Imax = {"Imax", "Imax", "pu", 1.11, 0.1, 99.0, kNoNeutral, "largest current"},
+    Tpord = {"Tpord", "Tpord", "s", 0.02, 0.0, 10.0, kNoNeutral, "lag of Pord (0: none)"},
+    Iqfrz = {"Iqfrz", "Iqfrz", "pu", 0.0, -2.0, 2.0, 0.0, "Iqv for Thld after a dip"},
+    Thld = {"Thld", "Thld", "s", 0.0,
+            -10.0,  10.0,   0.0, "how long after a dip Iqfrz (> 0) or Iqv (< 0) goes on"},
+    Thld2 = {"Thld2", "Thld2", "s", 0.0, 0.0, 10.0, 0.0, "how long after a dip the limit of Ipcmd stays"};
+
+}  // namespace record
+
+/// The record under the name that a model's guide writes.
+constexpr Parameter renamed(Parameter record, std::string_view name) {
+  record.name = record.symbol = name;
+  return record;
+}
+
+/// What Model's parameters are to the control that all of them share.
+template <class Model, class T>
+ElectricalControl::Values<T> electrical_values(const T* p) {
+  using M = Model;
+  ElectricalControl::Values<T> v;
+  v.pf = value_of(p[M::PFFLAG]) > 0.5;
+  v.vflag = value_of(p[M::VFLAG]) > 0.5;
+  v.qflag = value_of(p[M::QFLAG]) > 0.5;
+  v.active_first = value_of(p[M::PQFLAG]) > 0.5;
+  v.vdip = p[M::Vdip];
+  v.vup = p[M::Vup];
+  v.trv = p[M::Trv];
+  v.dbd1 = p[M::dbd1];
+  v.dbd2 = p[M::dbd2];
+  v.kqv = p[M::Kqv];
+  v.iqh1 = p[M::Iqh1];
+  v.iql1 = p[M::Iql1];
+  v.vref0 = p[M::Vref0];
+  v.tp = p[M::Tp];
+  v.qmax = p[M::Qmax];
+  v.qmin = p[M::Qmin];
+  v.vmax = p[M::Vmax];
+  v.vmin = p[M::Vmin];
+  v.kqp = p[M::Kqp];
+  v.kqi = p[M::Kqi];
+  v.kvp = p[M::Kvp];
+  v.kvi = p[M::Kvi];
+  v.tiq = p[M::Tiq];
+  v.dpmax = p[M::dPmax];
+  v.dpmin = p[M::dPmin];
+  v.pmax = p[M::Pmax];
+  v.pmin = p[M::Pmin];
+  v.imax = p[M::Imax];
+  v.tpord = p[M::Tpord];
+  return v;
+}
+
+/// What check() of each of them asks for.
+template <class Model>
+void check_electrical(std::span<const Parameter> all, const double* p, const std::string& where,
+                      Problems& problems) {
+  using M = Model;
+  using Core = ElectricalControl;
+  Core::check_flags(all, p, {M::PFFLAG, M::VFLAG, M::QFLAG, M::PQFLAG}, where, problems);
+  Core::check_times(all, p, {M::Trv, M::Tp, M::Tiq, M::Tpord}, where, problems);
+  Core::check_ranges(all, p,
+                     {{M::Vup, M::Vdip},
+                      {M::Iqh1, M::Iql1},
+                      {M::Qmax, M::Qmin},
+                      {M::Vmax, M::Vmin},
+                      {M::dPmax, M::dPmin},
+                      {M::Pmax, M::Pmin}},
+                     where, problems);
+  Core::check_signs(all, p, {M::dbd2, M::Kqv, M::Kqp, M::Kqi, M::Kvp, M::Kvi, M::Imax}, {M::dbd1}, where,
+                    problems);
+}
+
+}  // namespace swingbank::sim::effects::renewable

@@ -1,0 +1,267 @@
+#pragma once
+// EXPIC1: PI regulator before a bridge that voltage and current of the terminal feed, and an exciter if there
+// is one.
+#include <fmt/format.h>
+
+#include "sim/core/blocks.hpp"
+#include "sim/core/effect.hpp"
+#include "sim/effects/detail/compound_source.hpp"
+#include "sim/effects/detail/limited_integral.hpp"
+#include "sim/effects/detail/sources.hpp"
+
+namespace swingbank::sim::effects::exciter_expic1 {
+
+struct Model {
+  using Feed = shared::CompoundSource;
+  static constexpr std::string_view
+      name = "EXPIC1",
+      title = "excitation system with a PI regulator",
+      source =
+          "CIM ExcPIC; OPAL-RT's Modelica library (karlbenoit-at-opal/modelica-ephasor-components), EXPIC1: "
+          "blocks, columns, what is fed back; PSS/E EXPIC1",
+      dyr_name = "EXPIC1";
+  static constexpr Slot slot = Slot::exciter;
+  static constexpr std::string_view variant_of = "EXST1";
+  static constexpr std::string_view description = R"(
+  Vc --> [ 1/(1 + s TR) ] --> Vm
+  Vref + dVref - Vm + Vs + Vlimiter - Vf --> [ KA (1 + s TA1)/s, VR2 to VR1 ]
+         --> [ (1 + s TA3)/((1 + s TA2)(1 + s TA4)) ] --> Vr, [VRMIN, VRMAX]
+         VR2, VR1: the integral stops while its regulator stands at a limit
+  E0 = Vr VB within [EFDMIN, EFDMAX]          VB = VE FEX(KC Ifd/VE), VE = |KP V + j KI I|; KP = KI = 0: VB = 1
+  TE dEfd/dt = E0 - KE Efd - Efd Se(Efd)      TE = 0: Efd = E0
+  Vf = s KF/((1 + s TF1)(1 + s TF2)) Vr
+  Efd Se(Efd) = B (Efd - A)^2 above A through (E1, SE1), (E2, SE2)
+)";
+  enum P {
+    TR,
+    KA,
+    TA1,
+    VR1,
+    VR2,
+    TA2,
+    TA3,
+    TA4,
+    VRMAX,
+    VRMIN,
+    KF,
+    TF1,
+    TF2,
+    EFDMAX,
+    EFDMIN,
+    KE,
+    TE,
+    E1,
+    SE1,
+    E2,
+    SE2,
+    KP,
+    KI,
+    KC
+  };
+  static constexpr Source standards_from = literature::cim("ExcPIC");
+  static constexpr Source bounds_from = shared::kNoCases;
+  static constexpr Source kUsed = literature::own("an exciter of its kind, where TE > 0 uses it; CIM has 0");
+  static constexpr Parameter parameters[] = {
+      {"TR", "TR", "s", 0.0, 0.0, 0.5, 0.0, "voltage transducer (0: none)",
+       literature::own("none; CIM has no such parameter")},
+      {"KA", "KA", "1/s", 3.15, 0.01, 2000.0, kNoNeutral, "regulator, integral"},
+      {"TA1", "TA1", "s", 1.0, 0.0, 100.0, kNoNeutral, "regulator's lead: KA TA1 is its proportional gain"},
+      {"VR1", "VR1", "pu", 1.0, 0.0, 1000.0, kNoNeutral, "upper limit of the PI"},
+      {"VR2", "VR2", "pu", -0.87, -1000.0, 0.0, kNoNeutral, "lower limit of the PI"},
+      {"TA2", "TA2", "s", 0.01, 0.0, 20.0, kNoNeutral, "first lag (0: none)"},
+      {"TA3", "TA3", "s", 0.0, 0.0, 20.0, kNoNeutral, "lead"},
+      {"TA4", "TA4", "s", 0.0, 0.0, 20.0, kNoNeutral, "second lag (0: none)"},
+      {"VRMAX", "VRMAX", "pu", 1.0, 0.0, 1000.0, kNoNeutral, "upper limit of the regulator"},
+      {"VRMIN", "VRMIN", "pu", -0.87, -1000.0, 0.0, kNoNeutral, "lower limit of the regulator"},
+      {"KF", "KF", "pu", 0.0, 0.0, 10.0, 0.0, "rate feedback"},
+      {"TF1", "TF1", "s", 1.0, 0.0, 20.0, kNoNeutral, "first time constant of the rate feedback", kUsed},
+      {"TF2", "TF2", "s", 0.0, 0.0, 20.0, kNoNeutral, "second time constant of the rate feedback (0: none)"},
+      {"EFDMAX", "EFDMAX", "pu", 8.0, 0.0, 1000.0, kNoNeutral, "upper limit of the bridge"},
+      {"EFDMIN", "EFDMIN", "pu", -0.87, -1000.0, 0.0, kNoNeutral, "lower limit of the bridge"},
+      {"KE", "KE", "pu", 1.0, 0.0, 5.0, kNoNeutral, "exciter's own field", kUsed},
+      {"TE", "TE", "s", 0.0, 0.0, 5.0, kNoNeutral, "exciter's time constant (0: no exciter)"},
+      {"E1", "E1", "pu", 0.0, 0.0, 50.0, kNoNeutral, "first point of saturation"},
+      {"SE1", "SE(E1)", "-", 0.0, 0.0, 2.0, 0.0, "saturation there"},
+      {"E2", "E2", "pu", 0.0, 0.0, 50.0, kNoNeutral, "second point of saturation"},
+      {"SE2", "SE(E2)", "-", 0.0, 0.0, 2.0, 0.0, "saturation there"},
+      {"KP", "KP", "pu", 6.5, 0.0, 100.0, kNoNeutral, "source, from voltage"},
+      {"KI", "KI", "pu", 0.0, 0.0, 100.0, 0.0, "source, from current"},
+      {"KC", "KC", "pu", 0.08, 0.0, 10.0, 0.0, "rectifier's commutating reactance"}};
+  static constexpr int dyr_columns[] = {TR,  KA,     TA1,    VR1, VR2, TA2, TA3, TA4, VRMAX, VRMIN, KF, TF1,
+                                        TF2, EFDMAX, EFDMIN, KE,  TE,  E1,  SE1, E2,  SE2,   KP,    KI, KC};
+  enum C {
+    iTR,
+    proportional,
+    integral_gain,
+    vr1,
+    vr2,
+    lead1,
+    iTA2,
+    lead2,
+    iTA4,
+    vrmax,
+    vrmin,
+    feedback,
+    iTF1,
+    iTF2,
+    efdmax,
+    efdmin,
+    self,
+    iTE,
+    satA,
+    satB,
+    fed,  ///< 0 where KP = KI = 0
+    source_first,
+    Vref = source_first + Feed::size,
+    coefficients
+  };
+  static constexpr double kErrorWeight = 10.0;
+  enum X { Vm, integral, lag1, lag2, rate, rate_lag, Efd };
+  static constexpr State states[] = {
+      {"Vm", "pu", "measured voltage", kErrorWeight, -1, -1, {iTR}},
+      {.name = "integral",
+       .unit = "pu",
+       .meaning = "integral of the regulator",
+       .weight = 5.0,
+       .bends = true},
+      {.name = "lag1",
+       .unit = "pu",
+       .meaning = "state of the first lag",
+       .weight = 5.0,
+       .moved_by = {iTA2},
+       .bends = true},
+      {.name = "lag2",
+       .unit = "pu",
+       .meaning = "state of the second lag",
+       .weight = 5.0,
+       .moved_by = {iTA4},
+       .bends = true},
+      {.name = "rate",
+       .unit = "pu",
+       .meaning = "state of the rate feedback",
+       .moved_by = {iTF1},
+       .bends = true},
+      {"rate_lag", "pu", "rate feedback, lagged", kErrorWeight, -1, -1, {iTF2}},
+      {.name = "Efd", .unit = "pu", .meaning = "field voltage", .moved_by = {iTE}, .bends = true}};
+
+  static void check(const double* p, const std::string& where, Problems& problems);
+  static std::string_view unphysical(const double*) { return ""; }
+  static std::string remark(const double* p) {
+    return p[KF] == 0.0
+               ? ""
+               : "its rate feedback is that of the regulator's output, as OPAL-RT draws it; others take the "
+                 "field voltage's";
+  }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions&, T* c) {
+    const T zero(0.0), one(1.0), far(1e9);
+    c[iTR] = inverse(p[TR]);
+    c[proportional] = p[KA] * p[TA1];
+    c[integral_gain] = p[KA];
+    // A lead needs a lag: TA4's, or where there is none TA2's.
+    c[lead1] = select(p[TA4] > zero, zero, p[TA3]);
+    c[lead2] = p[TA3];
+    // Where only the second of the two is given it is the first.
+    const auto first = p[TF1] > zero;
+    c[iTF1] = inverse(select(first, p[TF1], p[TF2]));
+    c[iTF2] = inverse(select(first, p[TF2], zero));
+    c[feedback] = p[KF] * c[iTF1];
+    for (const auto& [to, from] : {std::pair<int, int>{vr1, VR1},
+                                   {vr2, VR2},
+                                   {vrmax, VRMAX},
+                                   {vrmin, VRMIN},
+                                   {efdmax, EFDMAX},
+                                   {efdmin, EFDMIN},
+                                   {self, KE}})
+      c[to] = p[from];
+    for (const auto& [to, from] : {std::pair<int, int>{iTA2, TA2}, {iTA4, TA4}, {iTE, TE}})
+      c[to] = inverse(p[from]);
+    const auto saturation = Quadratic<T>::through(p[E1], p[SE1], p[E2], p[SE2]);
+    c[satA] = saturation.A;
+    c[satB] = saturation.B;
+    c[fed] = select(p[KP] + p[KI] > zero, one, zero);
+    Feed::prepare<T>({p[KP], p[KI], zero, zero, p[KC], far}, c + source_first);
+  }
+  /// What the bridge is fed with.
+  template <class T>
+  static T supply(const T* c, const Signals<T>& s) {
+    return select(c[fed] > T(0.5), Feed::voltage(c + source_first, s), T(1.0));
+  }
+  /// The input that holds the exciter at `Efd`.
+  template <class T>
+  static T held_by(const T* c, const T& field) {
+    return select(c[iTE] > T(0.0), c[self] * field + Quadratic<T>{c[satA], c[satB]}(field), field);
+  }
+  template <class T>
+  static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
+    const T measured = lag(c[iTR], x[Vm], s.Vc, dx[Vm]);
+    // Where Vr feeds back at once, check() has seen to it that Vr does not depend on the error at once.
+    T unused;
+    const auto regulated = [&](const T& va, T& d1, T& d2) {
+      const T u = lead_lag(c[lead1], c[iTA2], x[lag1], va, d1);
+      return clamp(lead_lag(c[lead2], c[iTA4], x[lag2], u, d2), c[vrmin], c[vrmax]);
+    };
+    const T before = regulated(x[integral], unused, unused);
+    const T slope = c[feedback] * washout(c[iTF1], x[rate], before, unused);
+    const T Vf = lag(c[iTF2], x[rate_lag], slope, unused);
+    const T error = c[Vref] + s.dVref - measured + s.Vs + s.Vlimiter - Vf;
+    const T wanted = c[proportional] * error + x[integral];
+    dx[integral] = shared::non_windup(c[integral_gain] * error, wanted, c[vr2], c[vr1]);
+    const T vr = regulated(clamp(wanted, c[vr2], c[vr1]), dx[lag1], dx[lag2]);
+    dx[rate] = (vr - x[rate]) * c[iTF1];
+    dx[rate_lag] = (c[feedback] * (vr - x[rate]) - x[rate_lag]) * c[iTF2];
+    const T E0 = clamp(vr * supply(c, s), c[efdmin], c[efdmax]);
+    dx[Efd] = (E0 - held_by(c, x[Efd])) * c[iTE];
+    s.Efd = select(c[iTE] > T(0.0), x[Efd], E0);
+  }
+  template <class T>
+  static std::string steady(const T*, T* c, Signals<T>& s, T* x) {
+    const T VB = supply(c, s), E0 = held_by(c, s.Efd);
+    if (auto why = Feed::refuses(VB, s); !why.empty()) return why;
+    const T vr = E0 / VB;
+    const auto outside = [](const char* what, const T& is, const T& low, const T& high) {
+      return value_of(is) < value_of(low) || value_of(is) > value_of(high)
+                 ? fmt::format("{} = {:.4f} pu is needed and its limits are {:g}, {:g} pu", what,
+                               value_of(is), value_of(low), value_of(high))
+                 : std::string();
+    };
+    if (auto why = outside("E0", E0, c[efdmin], c[efdmax]); !why.empty()) return why;
+    if (auto why = outside("Vr", vr, c[vrmin], c[vrmax]); !why.empty()) return why;
+    if (auto why = outside("the PI's output", vr, c[vr2], c[vr1]); !why.empty()) return why;
+    x[Vm] = s.Vc;
+    x[integral] = x[lag1] = x[lag2] = x[rate] = vr;
+    x[rate_lag] = T(0.0);
+    x[Efd] = s.Efd;
+    c[Vref] = s.Vc - s.Vs - s.Vlimiter;
+    return {};
+  }
+};
+
+inline void Model::check(const double* p, const std::string& where, Problems& problems) {
+  const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
+    if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
+  };
+  const auto says = [&](int i) {
+    return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
+  };
+  bad(!(p[KA] > 0), says(KA), "no gain, no exciter", "give KA > 0");
+  for (const int i : {TR, TA1, TA2, TA3, TA4, TF1, TF2, TE})
+    bad(!(p[i] >= 0), says(i), "a time constant", "give a value >= 0");
+  for (const int i : {KF, KP, KI, KC, SE1, SE2})
+    bad(!(p[i] >= 0), says(i), "not negative", "give a value >= 0");
+  bad(p[E1] == p[E2] && p[SE1] != p[SE2], says(E1) + " with the same E2",
+      "one voltage cannot have two saturations", "give two points");
+  bad(p[KF] > 0 && p[TF1] == 0 && p[TF2] == 0, says(KF) + " with " + says(TF1) + " and " + says(TF2),
+      "no derivative without a lag", "give TF1 > 0, or KF = 0 for no feedback");
+  const bool at_once = p[TA4] > 0 ? p[TA2] == 0 && p[TA3] > 0 : p[TA2] == 0 || p[TA3] > 0;
+  bad(p[KF] > 0 && at_once && (p[TF1] == 0) != (p[TF2] == 0),
+      says(KF) + " with " + says(TF1) + " and " + says(TF2),
+      "the regulator's output would feed itself without a lag",
+      "give TF1 and TF2 > 0, or lags TA2, TA4 without a lead");
+  for (const auto& [high, low] : {std::pair{VR1, VR2}, {VRMAX, VRMIN}, {EFDMAX, EFDMIN}})
+    bad(!(p[high] > p[low]), says(high) + " with " + says(low), "there must be room to move",
+        fmt::format("give {} > {}", parameters[high].symbol, parameters[low].symbol));
+}
+
+}  // namespace swingbank::sim::effects::exciter_expic1

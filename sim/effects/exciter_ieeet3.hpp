@@ -1,0 +1,149 @@
+#pragma once
+// IEEET3: exciter that voltage and current of the terminal feed beside its regulator.
+#include <fmt/format.h>
+
+#include "sim/core/blocks.hpp"
+#include "sim/core/effect.hpp"
+#include "sim/effects/detail/compound_source.hpp"
+#include "sim/effects/detail/sources.hpp"
+
+namespace swingbank::sim::effects::exciter_ieeet3 {
+
+/// A field current of which the source leaves less than this share of VE^2 takes the exciter's voltage away,
+/// that far over which it fades: at once, it would have no solution.
+constexpr double kLastShare = 0.01;
+
+struct Model {
+  using Feed = shared::CompoundSource;
+  static constexpr std::string_view
+      name = "IEEET3",
+      title = "compound-fed excitation system, type 3 of 1968",
+      source =
+          "IEEE Committee Report, Computer representation of excitation systems (1968), type 3; OpenIPSL "
+          "(github.com/marcelofcastro/OpenIPSL, c482ff5), IEEET3: blocks, columns; PSS/E IEEET3",
+      dyr_name = "IEEET3";
+  static constexpr Slot slot = Slot::exciter;
+  static constexpr std::string_view variant_of = "IEEET1";
+  static constexpr std::string_view description = R"(
+  Vc --> [ 1/(1 + s TR) ] --> Vm
+  Vref + dVref - Vm + Vs + Vlimiter - Vf --> [ KA/(1 + s TA) ] --> Vr, [VRMIN, VRMAX] non-windup
+  VB = Vr + sqrt(VE^2 - (0.78 Ifd)^2) within [0, VBMAX]     VE = |KP V + j KI I|; 0.78 Ifd >= VE: VB = 0, which
+       it reaches while the last hundredth of VE^2 goes
+  TE dEfd/dt = VB - KE Efd                                  Vf = s KF/(1 + s TF) Efd
+)";
+  enum P { TR, KA, TA, VRMAX, VRMIN, TE, KF, TF, KP, KI, VBMAX, KE };
+  static constexpr Source standards_from =
+      literature::openipsl("IEEET3, defaults (fork of marcelofcastro, c482ff5)");
+  static constexpr Source bounds_from = shared::kNoCases;
+  static constexpr Parameter parameters[] = {
+      {"TR", "TR", "s", 0.0, 0.0, 0.5, 0.0, "voltage transducer (0: none)"},
+      {"KA", "KA", "pu", 120.0, 1.0, 2000.0, kNoNeutral, "regulator gain"},
+      {"TA", "TA", "s", 0.15, 0.0, 10.0, kNoNeutral, "regulator time constant (0: none)"},
+      {"VRMAX", "VRMAX", "pu", 1.2, 0.0, 100.0, kNoNeutral, "upper limit of Vr"},
+      {"VRMIN", "VRMIN", "pu", -1.2, -100.0, 0.0, kNoNeutral, "lower limit of Vr"},
+      {"TE", "TE", "s", 0.5, 0.01, 10.0, kNoNeutral, "exciter time constant"},
+      {"KF", "KF", "pu", 0.02, 0.0, 1.0, 0.0, "rate feedback"},
+      {"TF", "TF", "s", 0.53, 0.01, 20.0, kNoNeutral, "rate feedback's time constant"},
+      {"KP", "KP", "pu", 1.19, 0.0, 100.0, kNoNeutral, "source, from voltage"},
+      {"KI", "KI", "pu", 1.86, 0.0, 100.0, 0.0, "source, from current"},
+      {"VBMAX", "VBMAX", "pu", 2.82, 0.1, 100.0, kNoNeutral, "upper limit of what feeds the field"},
+      {"KE", "KE", "pu", 1.0, 0.0, 5.0, kNoNeutral, "exciter's own field"}};
+  static constexpr int dyr_columns[] = {TR, KA, TA, VRMAX, VRMIN, TE, KF, TF, KP, KI, VBMAX, KE};
+  enum C {
+    iTR,
+    gain,
+    iTA,
+    vrmax,
+    vrmin,
+    iTE,
+    feedback,
+    iTF,
+    vbmax,
+    self,
+    source_first,
+    Vref = source_first + Feed::size,
+    coefficients
+  };
+  enum X { Vm, Vr, Efd, rate };
+  static constexpr State states[] = {{"Vm", "pu", "measured voltage", 5.0, -1, -1, {iTR}},
+                                     {.name = "Vr",
+                                      .unit = "pu",
+                                      .meaning = "regulator output",
+                                      .low = vrmin,
+                                      .high = vrmax,
+                                      .moved_by = {iTA}},
+                                     {.name = "Efd", .unit = "pu", .meaning = "field voltage", .bends = true},
+                                     {"rate", "pu", "state of the rate feedback", 5.0}};
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
+      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
+    };
+    const auto says = [&](int i) {
+      return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
+    };
+    for (const int i : {TE, TF}) bad(!(p[i] > 0), says(i), "IEEET3 divides by it", "give a value > 0");
+    for (const int i : {KA, VBMAX})
+      bad(!(p[i] > 0), says(i), "there would be no exciter", "give a value > 0");
+    for (const int i : {TR, TA, KF, KI, KE}) bad(!(p[i] >= 0), says(i), "not negative", "give a value >= 0");
+    bad(!(p[KP] > 0), says(KP), "the terminal's voltage feeds the exciter", "give KP > 0");
+    bad(!(p[VRMAX] > p[VRMIN]), says(VRMAX) + " with " + says(VRMIN), "Vr must have room to move",
+        "give VRMAX > VRMIN");
+  }
+  static std::string_view unphysical(const double*) { return ""; }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions&, T* c) {
+    const T zero(0.0), far(1e9);
+    c[iTR] = inverse(p[TR]);
+    c[gain] = p[KA];
+    c[iTA] = inverse(p[TA]);
+    c[vrmax] = p[VRMAX];
+    c[vrmin] = p[VRMIN];
+    c[iTE] = T(1.0) / p[TE];
+    c[iTF] = T(1.0) / p[TF];
+    c[feedback] = p[KF] * c[iTF];
+    c[vbmax] = p[VBMAX];
+    c[self] = p[KE];
+    Feed::prepare<T>({p[KP], p[KI], zero, zero, zero, far}, c + source_first);
+  }
+  /// What the source adds to Vr, and the share of VBMAX that it leaves.
+  template <class T>
+  static T supply(const T* c, const Signals<T>& s, T& share) {
+    using std::sqrt;
+    const T taken = T(0.78) * s.Ifd, ve = Feed::voltage(c + source_first, s);
+    const T all = ve * ve, rest = all - taken * taken, tiny(1e-12);
+    share = clamp(rest / (T(kLastShare) * select(all > tiny, all, tiny)), T(0.0), T(1.0));
+    return sqrt(select(rest > tiny, rest, tiny));
+  }
+  template <class T>
+  static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
+    const T measured = lag(c[iTR], x[Vm], s.Vc, dx[Vm]);
+    const T stabilised = c[feedback] * washout(c[iTF], x[rate], x[Efd], dx[rate]);
+    const T error = c[Vref] + s.dVref - measured + s.Vs + s.Vlimiter - stabilised;
+    const T vr = clamp(lag(c[iTA], x[Vr], c[gain] * error, dx[Vr]), c[vrmin], c[vrmax]);
+    T share;
+    const T added = supply(c, s, share);
+    dx[Efd] = (share * clamp(vr + added, T(0.0), c[vbmax]) - c[self] * x[Efd]) * c[iTE];
+    s.Efd = x[Efd];
+  }
+  template <class T>
+  static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
+    T share;
+    const T added = supply(c, s, share);
+    const T VB = p[KE] * s.Efd;
+    if (value_of(share) < 1.0)
+      return fmt::format("0.78 Ifd = {:.4f} pu leaves nothing of VE = {:.4f} pu", 0.78 * value_of(s.Ifd),
+                         value_of(Feed::voltage(c + source_first, s)));
+    if (value_of(VB) < 0.0 || value_of(VB) > value_of(p[VBMAX]))
+      return fmt::format("VB = {:.4f} pu is needed and its limits are 0, {:g} pu", value_of(VB),
+                         value_of(p[VBMAX]));
+    x[Vm] = s.Vc;
+    x[Efd] = x[rate] = s.Efd;
+    x[Vr] = VB - added;
+    c[Vref] = x[Vr] / p[KA] + s.Vc - s.Vs - s.Vlimiter;
+    return {};
+  }
+};
+
+}  // namespace swingbank::sim::effects::exciter_ieeet3

@@ -1,0 +1,326 @@
+#pragma once
+// HYG3: hydro turbine with an inelastic water column and a governor with a PID or a double derivative
+// regulator.
+#include <fmt/format.h>
+
+#include <array>
+
+#include "sim/core/blocks.hpp"
+#include "sim/core/effect.hpp"
+#include "sim/effects/detail/gate_power.hpp"
+#include "sim/effects/detail/hydro_pid.hpp"
+#include "sim/effects/detail/sources.hpp"
+
+namespace swingbank::sim::effects::governor_hyg3 {
+
+/// Below this flow at nominal head the gate leaks: head = (flow/pgv)^2 has no value at a shut gate [pu].
+constexpr double kShut = 0.01;
+
+struct Model {
+  using Curve = shared::GatePower<8>;
+  using Pid = shared::HydroPid;
+  static constexpr std::string_view
+      name = "HYG3",
+      title = "hydro turbine and PID or double derivative governor, WECC's",
+      source =
+          "CIM GovHydro3; InterPSS PsseHyg3Governor (github.com/InterPSS-Project/ipss-plugin, 8fa57f2): "
+          "blocks, limits, columns, ends of the curve; PowerWorld's help, HYG3; PSS/E HYG3U1",
+      dyr_name = "HYG3";
+  static constexpr Slot slot = Slot::governor;
+  static constexpr std::string_view variant_of = "HYGOV";
+  static constexpr std::string_view description = R"(
+  u = ref + (Rgate + Relec) dPref - Relec P/(1 + s Tt)          b(w): 0 from dbL to dbH, beyond it the distance
+  flag 1:  u - b(w) - Rgate CV --> [ 1/(1 + s Td) ] --> [ K2 + Ki/s + s K1/(1 + s Tf) ] --> CV
+  flag 0:  b(w) --> [ 1/(1 + s Td) ] --> [ s K1/(1 + s Tf) + s^2 K2/(1 + s Tf)^2 ] --y
+           u - Rgate CV - y --> [ Ki/s ] --> CV
+  CV, and what Ki integrates: Pmin to Pmax
+  CV - GV --> [ Kg/(1 + s Tp), VELclose to VELopen ] --> [ 1/s, Pmin to Pmax ] --> gate --> [ play ] --> GV
+  play: GV follows the gate when that is db2 away (0: at once); within 20 ms, so that it can be integrated
+  PGV: straight lines through (0, 0), (GV1, PGV1) to (GV6, PGV6), (1, 1); the ends where they go on rising; no
+       points: PGV = GV
+  TW dq/dt = H0 - h            h = (q/PGV)^2, PGV not below 0.01
+  Pm = At h (q - qNL) - Dturb w GV
+  Power and gate are per unit of TRATE (0: the machine's base).
+)";
+  enum P {
+    FLAG,
+    RGATE,
+    RELEC,
+    TT,
+    TD,
+    K2,
+    KI,
+    K1,
+    TF,
+    KG,
+    TP,
+    VELOPEN,
+    VELCLOSE,
+    PMAX,
+    PMIN,
+    DB2,
+    GV1,
+    PGV1,
+    GV2,
+    PGV2,
+    GV3,
+    PGV3,
+    GV4,
+    PGV4,
+    GV5,
+    PGV5,
+    GV6,
+    PGV6,
+    H0,
+    QNL,
+    TW,
+    AT,
+    DTURB,
+    TRATE,
+    DBH,
+    EPS,
+    DBL
+  };
+  static constexpr int kGates[] = {GV1, GV2, GV3, GV4, GV5, GV6},
+                       kPowers[] = {PGV1, PGV2, PGV3, PGV4, PGV5, PGV6};
+  static constexpr Source standards_from = literature::cim("GovHydro3");
+  static constexpr Source bounds_from = shared::kNoCases;
+  static constexpr Source kFar = literature::own("99 stands for a point beyond reach");
+  static constexpr Source kCurve = literature::own("nearly straight; CIM has none");
+  static constexpr Source kBandHz = literature::own("1.2 Hz: wider than any band a governor is given");
+  static constexpr Source kOfPid =
+      literature::own("a proportional gain of the PID; CIM has a double derivative's");
+  static constexpr Parameter parameters[] = {
+      {"FLAG", "flag", "code", 1.0, 0.0, 1.0, kNoNeutral, "1: PID, 0: double derivative", kAsEffect,
+       shared::kCode},
+      {"RGATE", "Rgate", "pu", 0.0, 0.0, 1.0, kNoNeutral, "permanent droop by the governor's output"},
+      {"RELEC", "Relec", "pu", 0.05, 0.0, 1.0, kNoNeutral, "permanent droop by the electrical power"},
+      {"TT", "Tt", "s", 0.2, 0.0, 20.0, 0.0, "lag of the power fed back (0: none)"},
+      {"TD", "Td", "s", 0.05, 0.0, 10.0, 0.0, "input filter (0: none)"},
+      {"K2", "K2", "pu", 2.5, 0.0, 100.0, kNoNeutral,
+       "proportional gain (flag 1), double derivative (flag 0) [s2]", kOfPid},
+      {"KI", "Ki", "1/s", 0.5, 0.0, 100.0, kNoNeutral, "integral gain"},
+      {"K1", "K1", "s", 0.01, 0.0, 100.0, 0.0, "derivative gain"},
+      {"TF", "Tf", "s", 0.1, 0.0, 10.0, kNoNeutral, "washout of the derivatives"},
+      {"KG", "Kg", "1/s", 2.0, 0.01, 500.0, kNoNeutral, "gate servo gain"},
+      {"TP", "Tp", "s", 0.05, 0.0, 10.0, 0.0, "gate servo lag (0: none)"},
+      {"VELOPEN", "VELopen", "pu/s", 0.2, 0.0001, 100.0, kNoNeutral, "fastest opening"},
+      {"VELCLOSE", "VELclose", "pu/s", -0.2, -100.0, -0.0001, kNoNeutral, "fastest closing, negative"},
+      {"PMAX", "Pmax", "pu", 1.0, 0.0, 5.0, kNoNeutral, "upper limit of the gate"},
+      {"PMIN", "Pmin", "pu", 0.0, -1.0, 1.0, kNoNeutral, "lower limit of the gate"},
+      {"db2", "db2", "MW", 0.0, 0.0, 100.0, 0.0, "half width of the gate's backlash", kAsEffect,
+       literature::own("a tenth of a large unit's stroke")},
+      {"GV1", "GV1", "pu", 0.0, 0.0, 99.0, kNoNeutral, "first opening (all 0: no curve)", kCurve, kFar},
+      {"PGV1", "PGV1", "pu", 0.0, 0.0, 99.0, kNoNeutral, "power there", kCurve, kFar},
+      {"GV2", "GV2", "pu", 0.2, 0.0, 99.0, kNoNeutral, "second opening", kCurve, kFar},
+      {"PGV2", "PGV2", "pu", 0.19, 0.0, 99.0, kNoNeutral, "power there", kCurve, kFar},
+      {"GV3", "GV3", "pu", 0.4, 0.0, 99.0, kNoNeutral, "third opening", kCurve, kFar},
+      {"PGV3", "PGV3", "pu", 0.41, 0.0, 99.0, kNoNeutral, "power there", kCurve, kFar},
+      {"GV4", "GV4", "pu", 0.6, 0.0, 99.0, kNoNeutral, "fourth opening", kCurve, kFar},
+      {"PGV4", "PGV4", "pu", 0.63, 0.0, 99.0, kNoNeutral, "power there", kCurve, kFar},
+      {"GV5", "GV5", "pu", 0.8, 0.0, 99.0, kNoNeutral, "fifth opening", kCurve, kFar},
+      {"PGV5", "PGV5", "pu", 0.83, 0.0, 99.0, kNoNeutral, "power there", kCurve, kFar},
+      {"GV6", "GV6", "pu", 1.0, 0.0, 99.0, kNoNeutral, "sixth opening", kCurve, kFar},
+      {"PGV6", "PGV6", "pu", 1.0, 0.0, 99.0, kNoNeutral, "power there", kCurve, kFar},
+      {"H0", "H0", "pu", 1.0, 0.01, 10.0, kNoNeutral, "nominal head"},
+      {"QNL", "qNL", "pu", 0.08, 0.0, 0.5, kNoNeutral, "flow at no load"},
+      {"TW", "TW", "s", 1.0, 0.0, 30.0, kNoNeutral, "water starting time (0: the flow follows the gate)"},
+      {"AT", "At", "pu", 1.2, 0.3, 5.0, kNoNeutral, "turbine gain"},
+      {"DTURB", "Dturb", "pu", 0.2, 0.0, 5.0, 0.0, "turbine damping, power per speed at full gate"},
+      {"TRATE", "TRATE", "MW", 0.0, 0.0, 10000.0, 0.0, "turbine rating (0: the machine's base)",
+       shared::kNothing},
+      {"DBH", "dbH", "Hz", 0.0, 0.0, 1.2, 0.0, "upper edge of the speed's dead-band", kAsEffect, kBandHz},
+      {"EPS", "eps", "Hz", 0.0, 0.0, 1.2, 0.0, "hysteresis at the band's edges: 0 only", kAsEffect, kBandHz},
+      {"DBL", "dbL", "Hz", 0.0, -1.2, 0.0, 0.0, "lower edge of the speed's dead-band", kAsEffect, kBandHz}};
+  static constexpr auto dyr_columns = [] {
+    std::array<int, DBL + 1> list{};
+    for (int i = 0; i <= DBL; ++i) list[static_cast<std::size_t>(i)] = i;
+    return list;
+  }();
+  enum C {
+    pid = Pid::coefficients,  ///< flag
+    by_gate,
+    by_power,
+    iTT,
+    upper,
+    lower,
+    servo,
+    iTP,
+    opening,
+    closing,
+    high,
+    low,
+    play,
+    follow,
+    head0,
+    root,  ///< sqrt(H0)
+    idle,
+    iTW,
+    gain,
+    damping,
+    base,  ///< machine's base over turbine's
+    ref,
+    curve,
+    coefficients = curve + Curve::size
+  };
+  enum X { second = Pid::count, measured, velocity, gate, position, flow };
+  static constexpr auto states = [] {
+    std::array<State, flow + 1> all{};
+    std::copy(Pid::states.begin(), Pid::states.end(), all.begin());
+    all[Pid::integral] = {.name = "integral",
+                          .unit = "pu",
+                          .meaning = "integral of the error",
+                          .low = low,
+                          .high = high,
+                          .moved_by = {Pid::ki},
+                          .bends = true};
+    all[second] = {"second", "pu/s", "derivative, lagged", 1.0, -1, -1, {Pid::iTF}};
+    all[measured] = {"measured", "pu", "power fed back", 1.0, -1, -1, {iTT}};
+    all[velocity] = {"velocity", "pu/s", "gate's velocity", 1.0, closing, opening, {iTP}};
+    all[gate] = {
+        .name = "gate", .unit = "pu", .meaning = "gate opening", .low = low, .high = high, .bends = true};
+    all[position] = {.name = "position",
+                     .unit = "pu",
+                     .meaning = "gate behind its backlash",
+                     .moved_by = {follow},
+                     .bends = true};
+    all[flow] = {"flow", "pu", "water flow", 1.0, -1, -1, {iTW}};
+    return all;
+  }();
+
+  static void check(const double* p, const std::string& where, Problems& problems);
+  static std::string_view unphysical(const double*) { return ""; }
+
+  /// The curve's points with its ends, openings and then powers; all 0 behind the last.
+  template <class T>
+  static std::array<T, 16> points(const T* p) {
+    std::array<T, 16> q;
+    q.fill(T(0.0));
+    std::size_t n = 0;
+    const auto add = [&](const T& opening, const T& power) {
+      q[n] = opening;
+      q[8 + n++] = power;
+    };
+    const bool any = value_of(p[GV2]) > value_of(p[GV1]);
+    if (any && value_of(p[GV1]) > 0.0 && value_of(p[PGV1]) > 0.0) add(T(0.0), T(0.0));
+    int last = GV1;
+    for (int i = GV1; any && i <= GV6; i += 2) {
+      if (i > GV1 && !(value_of(p[i]) > value_of(p[last]))) break;
+      add(p[i], p[i + 1]);
+      last = i;
+    }
+    if (any && value_of(p[last]) < 1.0 && value_of(p[last + 1]) < 1.0) add(T(1.0), T(1.0));
+    return q;
+  }
+  template <class T>
+  static void prepare(const T* p, const Conventions& conventions, T* c) {
+    using std::sqrt;
+    const T zero(0.0);
+    Pid::prepare(p[TD], p[K2], p[KI], p[K1], p[TF], c);
+    for (const auto& [to, from] : {std::pair<int, int>{pid, FLAG},
+                                   {by_gate, RGATE},
+                                   {by_power, RELEC},
+                                   {servo, KG},
+                                   {opening, VELOPEN},
+                                   {closing, VELCLOSE},
+                                   {high, PMAX},
+                                   {low, PMIN},
+                                   {head0, H0},
+                                   {idle, QNL},
+                                   {gain, AT},
+                                   {damping, DTURB}})
+      c[to] = p[from];
+    for (const auto& [to, from] : {std::pair<int, int>{iTT, TT}, {iTP, TP}, {iTW, TW}})
+      c[to] = inverse(p[from]);
+    c[upper] = positive_part(p[DBH]) / T(conventions.frequency);
+    c[lower] = (zero - positive_part(zero - p[DBL])) / T(conventions.frequency);
+    c[root] = sqrt(p[H0]);
+    const T rating = shared::turbine_rating(p[TRATE], conventions);
+    c[base] = T(conventions.mva) / rating;
+    c[play] = p[DB2] / rating;
+    c[follow] = select(p[DB2] > zero, T(shared::kFollowRate), zero);
+    constexpr int openings[] = {0, 1, 2, 3, 4, 5, 6, 7}, powers[] = {8, 9, 10, 11, 12, 13, 14, 15};
+    const auto q = points(p);
+    Curve::prepare(q.data(), openings, powers, c + curve);
+  }
+  /// The governor's output before its limits, by the double derivative.
+  template <class T>
+  static T double_derivative(const T* c, const T* x, const T& u, const T& speed, T* dx) {
+    const T felt = lag(c[Pid::iTD], x[Pid::filtered], speed, dx[Pid::filtered]);
+    dx[Pid::lagged] = (felt - x[Pid::lagged]) * c[Pid::iTF];
+    const T slope = dx[Pid::lagged];  // of what is felt, lagged by Tf
+    dx[second] = (slope - x[second]) * c[Pid::iTF];
+    const T y = c[Pid::kd] * (felt - x[Pid::lagged]) + c[Pid::kp] * dx[second];
+    dx[Pid::integral] = c[Pid::ki] * (u - c[by_gate] * x[Pid::integral] - y);
+    return x[Pid::integral];
+  }
+  template <class T>
+  static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
+    const T zero(0.0);
+    const T speed = positive_part(s.speed - c[upper]) - positive_part(c[lower] - s.speed);
+    const T power = lag(c[iTT], x[measured], c[base] * s.P, dx[measured]);
+    const T u = c[ref] + s.dGref + (c[by_gate] + c[by_power]) * s.dPref - c[by_power] * power;
+    const T twice = double_derivative(c, x, u, speed, dx);
+    T slopes[Pid::count];
+    const T once = Pid::evaluate(c, x, u - speed, c[by_gate], slopes);
+    const auto is_pid = c[pid] > T(0.5);
+    for (int i = 0; i < Pid::count; ++i) dx[i] = select(is_pid, slopes[i], dx[i]);
+    dx[second] = select(is_pid, zero, dx[second]);
+    const T cv = clamp(select(is_pid, once, twice), c[low], c[high]);
+    const T open = clamp(x[gate], c[low], c[high]);
+    dx[position] = c[follow] * dead_band(open - x[position], c[play]);
+    const T gv = select(c[follow] > zero, x[position], open);
+    dx[gate] = clamp(lag(c[iTP], x[velocity], c[servo] * (cv - gv), dx[velocity]), c[closing], c[opening]);
+    const T wanted = Curve::value(c + curve, gv);
+    const T pgv = select(wanted > T(kShut), wanted, T(kShut));
+    const T q = select(c[iTW] > zero, x[flow], pgv * c[root]);
+    const T head = square(q / pgv);
+    dx[flow] = (c[head0] - head) * c[iTW];
+    s.Tm = (c[gain] * head * (q - c[idle]) - c[damping] * s.speed * gv) / c[base];
+  }
+  template <class T>
+  static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
+    x[flow] = c[base] * s.Tm / (p[AT] * p[H0]) + p[QNL];
+    const T pgv = x[flow] / c[root];
+    if (value_of(pgv) < kShut)
+      return fmt::format(
+          "it would need a flow of {:.4g} pu, and a gate that passes less than {:g} pu is shut",
+          value_of(x[flow]), kShut);
+    x[gate] = x[position] = Curve::opening(c + curve, pgv);
+    x[velocity] = x[second] = T(0.0);
+    x[measured] = c[base] * s.P;
+    const T error = Pid::steady(c, x[gate], x);
+    c[ref] = error + c[by_gate] * x[gate] + c[by_power] * x[measured];
+    return {};
+  }
+};
+
+inline void Model::check(const double* p, const std::string& where, Problems& problems) {
+  const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
+    if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
+  };
+  const auto says = [&](int i) {
+    return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
+  };
+  bad(p[FLAG] != 0 && p[FLAG] != 1, says(FLAG), "it is a code", "give 1 for PID or 0 for double derivative");
+  bad(p[EPS] != 0 && (p[DBH] != 0 || p[DBL] != 0), says(EPS) + " with " + says(DBH) + ", " + says(DBL),
+      "a dead-band with a step and hysteresis at its edge is not modelled", "give eps = 0");
+  bad(!(p[DBL] <= 0 && p[DBH] >= 0), says(DBH) + " with " + says(DBL), "the band lies about rated speed",
+      "give dbH >= 0 and dbL <= 0");
+  for (const int i : {RGATE, RELEC, TT, TD, K2, KI, K1, TP, DB2, QNL, TW, DTURB, TRATE})
+    bad(!(p[i] >= 0), says(i), "a gain, a time or a width", "give a value >= 0");
+  for (const int i : {KG, H0, AT})
+    bad(!(p[i] > 0), says(i), "HYG3 divides by it or stands still", "give a value > 0");
+  Pid::check(says(K2), p[FLAG] == 0 ? 0.0 : p[K2], says(KI), p[KI], says(K1),
+             p[FLAG] == 0 ? p[K1] + p[K2] : p[K1], says(TF), p[TF], where, problems);
+  bad(!(p[VELOPEN] > 0 && p[VELCLOSE] < 0), says(VELOPEN) + " with " + says(VELCLOSE),
+      "the gate must be able to open and to close", "give VELopen > 0 and VELclose < 0");
+  bad(!(p[PMAX] > p[PMIN]), says(PMAX) + " with " + says(PMIN), "the gate must have room to move",
+      "give Pmax > Pmin");
+  if (p[GV1] < 0)
+    bad(true, says(GV1), "it stands for a curve built into PSLF", "give the curve's points");
+  else
+    shared::GatePower<6>::check(p, kGates, kPowers, says, where, problems);
+}
+
+}  // namespace swingbank::sim::effects::governor_hyg3

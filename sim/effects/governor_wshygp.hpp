@@ -1,0 +1,218 @@
+#pragma once
+// WSHYGP: hydro turbine, linear in its water column, and a PID governor with a curve of the gate and a
+// backlash.
+#include <fmt/format.h>
+
+#include "sim/core/blocks.hpp"
+#include "sim/core/effect.hpp"
+#include "sim/effects/detail/gate_power.hpp"
+#include "sim/effects/detail/hydro_pid.hpp"
+#include "sim/effects/detail/sources.hpp"
+
+namespace swingbank::sim::effects::governor_wshygp {
+
+struct Model {
+  using Curve = shared::GatePower<5>;
+  using Pid = shared::HydroPid;
+  static constexpr std::string_view
+      name = "WSHYGP",
+      title = "hydro turbine and PID governor, WECC's",
+      source =
+          "CIM GovHydroPID; GridPACK wshygp (github.com/GridOPTICS/GridPACK): blocks, columns; OPAL-RT's "
+          "Modelica library (karlbenoit-at-opal/modelica-ephasor-components), WSHYGP: backlash, limits, "
+          "what the droop acts on; PSS/E WSHYGP",
+      dyr_name = "WSHYGP";
+  static constexpr Slot slot = Slot::governor;
+  static constexpr std::string_view variant_of = "HYGOV";
+  static constexpr std::string_view description = R"(
+  ref + R dPref - b(w) - R back --> [ 1/(1 + s TD) ] --> [ KP + KI/s + s KD/(1 + s TF) ] --> CV
+         back: CV (TT = 0), P/(1 + s TT) (TT > 0)         b(w): 0 within +-db1, beyond it the distance to the edge
+  CV - GV --> [ KG/(1 + s TP), VELclose to VELopen ] --> [ 1/s, PMIN to PMAX ] --> gate --> [ play ] --> GV
+  GV --> [ NGV ] --> [ (1 + s Aturb Tturb)/(1 + s Bturb Tturb) ] --> Pm
+  play: GV follows the gate when that is db2 away (0: at once); within 20 ms, so that it can be integrated
+  NGV: straight lines through (GV1, PGV1) to (GV5, PGV5), which end where they no longer ascend; none: GV itself
+  Power and gate are per unit of TRATE (0: the machine's base). VELclose counts by its magnitude: files write either sign.
+)";
+  enum P {
+    DB1,
+    ERR,
+    TD,
+    KI,
+    TF,
+    KD,
+    KP,
+    R,
+    TT,
+    KG,
+    TP,
+    VELOPEN,
+    VELCLOSE,
+    PMAX,
+    PMIN,
+    DB2,
+    GV1,
+    PGV1,
+    GV2,
+    PGV2,
+    GV3,
+    PGV3,
+    GV4,
+    PGV4,
+    GV5,
+    PGV5,
+    ATURB,
+    BTURB,
+    TTURB,
+    TRATE
+  };
+  static constexpr int kGates[] = {GV1, GV2, GV3, GV4, GV5}, kPowers[] = {PGV1, PGV2, PGV3, PGV4, PGV5};
+  static constexpr Source standards_from = literature::cim("GovHydroPID");
+  static constexpr Source bounds_from = shared::kNoCases;
+  static constexpr Source kStroke = literature::own("a tenth of the stroke");
+  static constexpr Source kFar = literature::own("99 stands for a point beyond reach");
+  static constexpr Parameter parameters[] = {
+      {"db1", "db1", "pu", 0.0, 0.0, 0.02, 0.0, "half width of the intentional dead-band of the speed",
+       shared::kNothing, shared::kDeadBand},
+      {"err", "err", "pu", 0.0, 0.0, 0.02, 0.0, "step at the dead-band's edge: 0 or db1, for none",
+       shared::kNothing, shared::kDeadBand},
+      {"TD", "TD", "s", 0.0, 0.0, 10.0, 0.0, "input filter (0: none)"},
+      {"KI", "KI", "1/s", 0.36, 0.0, 100.0, kNoNeutral, "integral gain"},
+      {"TF", "TF", "s", 0.1, 0.0, 10.0, kNoNeutral, "washout of the derivative"},
+      {"KD", "KD", "s", 1.11, 0.0, 100.0, 0.0, "derivative gain"},
+      {"KP", "KP", "pu", 0.1, 0.0, 100.0, kNoNeutral, "proportional gain"},
+      {"R", "R", "pu", 0.05, 0.0, 1.0, kNoNeutral, "permanent droop"},
+      {"TT", "TT", "s", 0.02, 0.0, 20.0, kNoNeutral, "lag of the power fed back (0: CV is fed back)"},
+      {"KG", "KG", "1/s", 2.5, 0.01, 500.0, kNoNeutral, "gate servo gain"},
+      {"TP", "TP", "s", 0.35, 0.0, 10.0, 0.0, "gate servo lag (0: none)"},
+      {"VELOPEN", "VELopen", "pu/s", 0.09, 0.0001, 100.0, kNoNeutral, "fastest opening"},
+      {"VELCLOSE", "VELclose", "pu/s", 0.14, -100.0, 100.0, kNoNeutral,
+       "fastest closing; its magnitude counts"},
+      {"PMAX", "PMAX", "pu", 1.0, 0.0, 5.0, kNoNeutral, "upper limit of the gate"},
+      {"PMIN", "PMIN", "pu", 0.0, -1.0, 1.0, kNoNeutral, "lower limit of the gate"},
+      {"db2", "db2", "pu", 0.0, 0.0, 0.1, 0.0, "half width of the gate's backlash", shared::kNothing,
+       kStroke},
+      {"GV1", "GV1", "pu", 0.0, 0.0, 99.0, kNoNeutral, "first opening (all 0: no curve)", kAsEffect, kFar},
+      {"PGV1", "PGV1", "pu", 0.0, 0.0, 99.0, kNoNeutral, "power there", kAsEffect, kFar},
+      {"GV2", "GV2", "pu", 0.0, 0.0, 99.0, kNoNeutral, "second opening", kAsEffect, kFar},
+      {"PGV2", "PGV2", "pu", 0.0, 0.0, 99.0, kNoNeutral, "power there", kAsEffect, kFar},
+      {"GV3", "GV3", "pu", 0.0, 0.0, 99.0, kNoNeutral, "third opening", kAsEffect, kFar},
+      {"PGV3", "PGV3", "pu", 0.0, 0.0, 99.0, kNoNeutral, "power there", kAsEffect, kFar},
+      {"GV4", "GV4", "pu", 0.0, 0.0, 99.0, kNoNeutral, "fourth opening", kAsEffect, kFar},
+      {"PGV4", "PGV4", "pu", 0.0, 0.0, 99.0, kNoNeutral, "power there", kAsEffect, kFar},
+      {"GV5", "GV5", "pu", 0.0, 0.0, 99.0, kNoNeutral, "fifth opening", kAsEffect, kFar},
+      {"PGV5", "PGV5", "pu", 0.0, 0.0, 99.0, kNoNeutral, "power there", kAsEffect, kFar},
+      {"ATURB", "Aturb", "-", -1.0, -10.0, 10.0, kNoNeutral, "turbine's lead over Tturb"},
+      {"BTURB", "Bturb", "-", 0.5, 0.0, 10.0, kNoNeutral, "turbine's lag over Tturb"},
+      {"TTURB", "Tturb", "s", 0.8, 0.0, 30.0, 0.0, "turbine time constant (0: none)"},
+      {"TRATE", "TRATE", "MW", 0.0, 0.0, 10000.0, 0.0, "turbine rating (0: the machine's base)"}};
+  static constexpr int dyr_columns[] = {DB1, ERR,     TD,       KI,   TF,   KD,   KP,    R,     TT,    KG,
+                                        TP,  VELOPEN, VELCLOSE, PMAX, PMIN, DB2,  GV1,   PGV1,  GV2,   PGV2,
+                                        GV3, PGV3,    GV4,      PGV4, GV5,  PGV5, ATURB, BTURB, TTURB, TRATE};
+  enum C {
+    droop = Pid::coefficients,
+    by_power,
+    iTT,
+    band,
+    servo,
+    iTP,
+    opening,
+    closing,
+    high,
+    low,
+    play,
+    follow,
+    water_lead,
+    water_lag,
+    base,  ///< machine's base over turbine's
+    ref,
+    curve,
+    coefficients = curve + Curve::size
+  };
+  enum X { measured = Pid::count, velocity, gate, position, water };
+  static constexpr auto states = [] {
+    std::array<State, water + 1> all{};
+    std::copy(Pid::states.begin(), Pid::states.end(), all.begin());
+    all[measured] = {"measured", "pu", "power fed back", 1.0, -1, -1, {iTT}};
+    all[velocity] = {"velocity", "pu/s", "gate's velocity", 1.0, closing, opening, {iTP}};
+    all[gate] = {
+        .name = "gate", .unit = "pu", .meaning = "gate opening", .low = low, .high = high, .bends = true};
+    all[position] = {.name = "position",
+                     .unit = "pu",
+                     .meaning = "gate behind its backlash",
+                     .moved_by = {follow},
+                     .bends = true};
+    all[water] = {"water", "pu", "state of the water column", 1.0, -1, -1, {water_lag}};
+    return all;
+  }();
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
+      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
+    };
+    const auto says = [&](int i) {
+      return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
+    };
+    bad(p[ERR] != 0.0 && p[ERR] != p[DB1], says(ERR) + " with " + says(DB1),
+        "a dead-band with a step and hysteresis at its edge is not modelled", "give err = 0 or err = db1");
+    for (const int i : {DB1, TD, KI, KD, KP, R, TT, TP, DB2, BTURB, TTURB, TRATE})
+      bad(!(p[i] >= 0), says(i), "a gain, a time or a width", "give a value >= 0");
+    bad(!(p[KG] > 0), says(KG), "no servo without a gain", "give KG > 0");
+    Pid::check(says(KP), p[KP], says(KI), p[KI], says(KD), p[KD], says(TF), p[TF], where, problems);
+    bad(!(p[VELOPEN] > 0) || p[VELCLOSE] == 0.0, says(VELOPEN) + " with " + says(VELCLOSE),
+        "the gate must be able to open and to close", "give VELopen > 0 and VELclose other than 0");
+    bad(!(p[PMAX] > p[PMIN]), says(PMAX) + " with " + says(PMIN), "the gate must have room to move",
+        "give PMAX > PMIN");
+    bad(p[TTURB] > 0 && p[BTURB] == 0.0 && p[ATURB] != 0.0, says(BTURB) + " with " + says(ATURB),
+        "the water column would lead without a lag", "give Bturb > 0, or Tturb = 0 for no water column");
+    Curve::check(p, kGates, kPowers, says, where, problems);
+  }
+  static std::string_view unphysical(const double*) { return ""; }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions& conventions, T* c) {
+    const T zero(0.0), one(1.0);
+    Pid::prepare(p[TD], p[KP], p[KI], p[KD], p[TF], c);
+    c[droop] = p[R];
+    c[by_power] = select(p[TT] > zero, one, zero);
+    c[iTT] = inverse(p[TT]);
+    c[band] = p[DB1];
+    c[servo] = p[KG];
+    c[iTP] = inverse(p[TP]);
+    c[opening] = p[VELOPEN];
+    c[closing] = select(p[VELCLOSE] > zero, zero - p[VELCLOSE], p[VELCLOSE]);
+    c[high] = p[PMAX];
+    c[low] = p[PMIN];
+    c[play] = p[DB2];
+    c[follow] = select(p[DB2] > zero, T(shared::kFollowRate), zero);
+    c[water_lead] = p[ATURB] * p[TTURB];
+    c[water_lag] = inverse(p[BTURB] * p[TTURB]);
+    c[base] = T(conventions.mva) / shared::turbine_rating(p[TRATE], conventions);
+    Curve::prepare(p, kGates, kPowers, c + curve);
+  }
+  template <class T>
+  static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
+    const T one(1.0), zero(0.0);
+    const T power = lag(c[iTT], x[measured], c[base] * s.P, dx[measured]);
+    const T asked =
+        c[ref] + s.dGref + c[droop] * (s.dPref - c[by_power] * power) - dead_band(s.speed, c[band]);
+    const T cv = Pid::evaluate(c, x, asked, c[droop] * (one - c[by_power]), dx);
+    const T open = clamp(x[gate], c[low], c[high]);
+    dx[position] = c[follow] * dead_band(open - x[position], c[play]);
+    const T gv = select(c[follow] > zero, x[position], open);
+    dx[gate] = clamp(lag(c[iTP], x[velocity], c[servo] * (cv - gv), dx[velocity]), c[closing], c[opening]);
+    const T turbine = lead_lag(c[water_lead], c[water_lag], x[water], Curve::value(c + curve, gv), dx[water]);
+    s.Tm = turbine / c[base];
+  }
+  template <class T>
+  static std::string steady(const T*, T* c, Signals<T>& s, T* x) {
+    x[water] = c[base] * s.Tm;
+    x[measured] = c[base] * s.P;
+    x[velocity] = T(0.0);
+    x[gate] = x[position] = Curve::opening(c + curve, x[water]);
+    const T error = Pid::steady(c, x[gate], x);
+    c[ref] = error + c[droop] * (x[gate] + c[by_power] * (x[measured] - x[gate]));
+    return {};
+  }
+};
+
+}  // namespace swingbank::sim::effects::governor_wshygp

@@ -1,0 +1,97 @@
+#pragma once
+// LCFB1: slow controller that keeps a turbine's power by its governor's reference.
+#include <fmt/format.h>
+
+#include "sim/core/blocks.hpp"
+#include "sim/core/effect.hpp"
+#include "sim/effects/detail/limited_integral.hpp"
+#include "sim/effects/detail/sources.hpp"
+
+namespace swingbank::sim::effects::setpoint_lcfb1 {
+
+struct Model {
+  static constexpr std::string_view
+      name = "LCFB1",
+      title = "turbine load controller, WECC's",
+      source =
+          "CIM TurbLCFB1; InterPSS Lcfb1PrefController (github.com/InterPSS-Project/ipss-plugin, 2572ba7): "
+          "blocks, columns; PSS/E LCFB1",
+      dyr_name = "LCFB1";
+  static constexpr Slot slot = Slot::setpoint;
+  /// Like those moves it is slower than a record's event: no search for what a plant lacks tries either.
+  static constexpr std::string_view variant_of = "AGCMOVES";
+  static constexpr std::string_view description = R"(
+  e = PBF (Pset - P/(1 + s Tpelec)) - FBF Fb w          Pset: the power at the operating point
+  e --> [ dead-band +-db ] --> [-Emax, Emax] --> [ Kp + Ki/s ] --> dGref, [-Irmax, Irmax], the integral too
+  dGref moves the governor's reference in the governor's own unit: speed where a droop follows it, else power.
+)";
+  enum P { FBF, PBF, FB, TPELEC, DB, EMAX, KP, KI, IRMAX };
+  static constexpr Source standards_from =
+      literature::own("a few minutes' return of the power, within half of a droop of 5 %; CIM has 0");
+  static constexpr Source bounds_from = shared::kNoCases;
+  static constexpr Parameter parameters[] = {
+      {"FBF", "FBF", "code", 0.0, 0.0, 1.0, kNoNeutral, "1: the frequency adds to the error",
+       literature::cim("TurbLCFB1"), shared::kCode},
+      {"PBF", "PBF", "code", 1.0, 0.0, 1.0, kNoNeutral, "1: the power adds to the error", kAsEffect,
+       shared::kCode},
+      {"FB", "Fb", "pu/pu", 0.0, 0.0, 1000.0, 0.0, "frequency bias, power by speed",
+       literature::cim("TurbLCFB1")},
+      {"TPELEC", "Tpelec", "s", 1.0, 0.0, 100.0, 0.0, "lag of the measured power (0: none)"},
+      {"DB", "db", "pu", 0.0, 0.0, 1.0, 0.0, "half width of the error's dead-band",
+       literature::cim("TurbLCFB1")},
+      {"EMAX", "Emax", "pu", 0.02, 0.0, 10.0, kNoNeutral, "largest error", literature::cim("TurbLCFB1")},
+      {"KP", "Kp", "pu", 0.0, 0.0, 100.0, 0.0, "proportional gain", literature::cim("TurbLCFB1")},
+      {"KI", "Ki", "1/s", 0.005, 0.0, 100.0, 0.0, "integral gain"},
+      {"IRMAX", "Irmax", "pu", 0.025, 0.0, 10.0, kNoNeutral, "largest move of the reference"}};
+  static constexpr int dyr_columns[] = {FBF, PBF, FB, TPELEC, DB, EMAX, KP, KI, IRMAX};
+  enum C { by_speed, by_power, iTpelec, band, largest, kp, ki, most, least, Pset, coefficients };
+  enum X { measured, integral };
+  static constexpr State states[] = {{"measured", "pu", "measured power", 1.0, -1, -1, {iTpelec}},
+                                     {.name = "integral",
+                                      .unit = "pu",
+                                      .meaning = "integral of the error",
+                                      .low = least,
+                                      .high = most,
+                                      .moved_by = {ki},
+                                      .bends = true}};
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    const auto says = [&](int i) {
+      return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
+    };
+    for (const int i : {FBF, PBF})
+      if (p[i] != 0 && p[i] != 1) problems.add(says(i), where, "it is a switch", "give 0 or 1");
+    for (const int i : {FB, TPELEC, DB, EMAX, KP, KI, IRMAX})
+      if (!(p[i] >= 0)) problems.add(says(i), where, "a gain, a time or a width", "give a value >= 0");
+  }
+  static std::string_view unphysical(const double*) { return ""; }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions&, T* c) {
+    c[by_speed] = p[FBF] * p[FB];
+    c[by_power] = p[PBF];
+    c[iTpelec] = inverse(p[TPELEC]);
+    c[band] = p[DB];
+    c[largest] = p[EMAX];
+    c[kp] = p[KP];
+    c[ki] = p[KI];
+    c[most] = p[IRMAX];
+    c[least] = T(0.0) - p[IRMAX];
+  }
+  template <class T>
+  static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
+    const T power = lag(c[iTpelec], x[measured], s.P, dx[measured]);
+    const T error = c[by_power] * (c[Pset] - power) - c[by_speed] * s.speed;
+    const T felt = clamp(dead_band(error, c[band]), T(0.0) - c[largest], c[largest]);
+    dx[integral] = c[ki] * felt;
+    s.dGref = s.dGref + clamp(c[kp] * felt + clamp(x[integral], c[least], c[most]), c[least], c[most]);
+  }
+  template <class T>
+  static std::string steady(const T*, T* c, Signals<T>& s, T* x) {
+    x[measured] = c[Pset] = s.P;
+    x[integral] = T(0.0);
+    return {};
+  }
+};
+
+}  // namespace swingbank::sim::effects::setpoint_lcfb1
