@@ -275,7 +275,7 @@ grid::CaseOptions case_options(const Options& o, const formats::DyrOptions& mode
   all.complete_records = o.complete_records == "zero"       ? grid::Lacking::zero
                          : o.complete_records == "standard" ? grid::Lacking::standard
                                                             : grid::Lacking::refused;
-  all.drop_refused = o.drop_refused;
+  all.drop_refused = all.raw.drop_repeated = o.drop_refused;
   all.net_generators = o.net_generators;
   all.start_from_file = o.start == "file";
   all.flow.reactive_limits = o.q_limits == "enforce";
@@ -365,7 +365,8 @@ int main(int argc, char** argv) {
       .one_of({"no", "zero", "standard"})
       .shows_default();
   line.add_flag("--drop-refused", o.drop_refused,
-                "records of the .dyr whose values their model cannot take are left out, each is named");
+                "records of the .dyr whose values their model cannot take are left out, and equipment of the "
+                ".raw that appears a second time; each is named");
   line.add("--devices", o.devices,
            "dc lines, FACTS and GNE devices and induction machines draw what the file's voltages say, if "
            "these are a solution (checked) or whatever they are (file), or nothing (none)")

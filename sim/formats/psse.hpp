@@ -19,6 +19,7 @@ struct RawOptions {
   network::StandIn devices = network::StandIn::checked;
   std::optional<double> frequency_hz = {};  ///< where BASFRQ is missing
   int version = 0;                          ///< where REV is missing; 0: not given
+  bool drop_repeated = false;               ///< equipment that appears a second time is left out
   RawOptions() = default;
   RawOptions(std::optional<double> hz, int rev = 0) : frequency_hz(hz), version(rev) {}
   RawOptions(double hz) : frequency_hz(hz) {}
@@ -85,7 +86,7 @@ struct DyrRecord {
   std::vector<int> empty{};  ///< parameters left empty, counted from 1, which are zero
   /// Name of the equipment it is for, where a text stands in the bus number's place (`bus` is 0).
   std::string equipment{};
-  bool unended = false;  ///< no '/' ended it: the next record began
+  bool unended = false;  ///< no '/' ended it: the next record began, or the file ended
 };
 /// What to do with models of a .dyr that are not available here. Names in any case; a user-written model may
 /// be given by its own name or as USRMDL.
@@ -102,10 +103,10 @@ void add_model_map(DyrOptions& options, const std::string& text, const std::stri
 DyrOptions read_dyr_options(Config& config, const std::string& prefix);
 
 /// Reads a .dyr file: records end with '/', may span lines; what follows the '/' and lines that begin with
-/// '//' or '@!' are comments. A line that begins like a record (bus number, 'MODEL') ends the one before,
-/// which is then `unended`. Parameters that are no numbers are noted in the record, everything else wrong
-/// with the file is thrown together as an InputError, with line numbers. An ignored or mapped name that the
-/// file does not hold is a fault too.
+/// '//' or '@!' are comments. A line that begins like a record (bus number, 'MODEL') ends the one before, as
+/// the file's end does; that record is then `unended`. Parameters that are no numbers are noted in the
+/// record, everything else wrong with the file is thrown together as an InputError, with line numbers. An
+/// ignored or mapped name that the file does not hold is a fault too.
 std::vector<DyrRecord> read_dyr(const std::filesystem::path& file, const DyrOptions& options = {});
 /// The same from a text; `name` stands for the file in messages.
 std::vector<DyrRecord> parse_dyr(const std::string& text, const std::string& name,

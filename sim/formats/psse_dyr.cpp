@@ -59,10 +59,7 @@ class DyrReader {
       finish(open, false);
       open.fields.clear();
     }
-    if (!open.fields.empty())
-      problems_.add("a record has no end", where(open.line),
-                    "records end with '/'; the file may be truncated",
-                    "end the record with '/' or restore the file");
+    if (!open.fields.empty()) finish(open, true);
   }
   /// A whole number and a model's name: no model has a name among its parameters that could be taken for it.
   static bool begins_record(const psse::Record& line) {

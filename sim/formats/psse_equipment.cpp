@@ -14,6 +14,7 @@ void RawReader::bus(const Record& record) {
   b.name = f.text(1, "");
   b.kv = static_cast<double>(f.number(2, "BASKV", 0.0L));
   const int type = f.integer(3, "IDE", 1);
+  if (!once("bus " + std::to_string(b.number), f)) return;
   const Columns& c = columns_;
   b.area = f.integer(c.bus_area, "AREA", 1);
   b.zone = f.integer(c.bus_area + 1, "ZONE", 1);
@@ -32,7 +33,6 @@ void RawReader::bus(const Record& record) {
     b.vm = 1.0;
   }
   b.type = static_cast<network::BusType>(type);
-  once("bus " + std::to_string(b.number), f);
   index_.emplace(b.number, static_cast<int>(network_.buses.size()));
   network_.buses.push_back(std::move(b));
   if (version_ < 31 && version_ != 23) bus_shunt(f, 4);
@@ -54,8 +54,10 @@ void RawReader::bus_23(const Record& record) {
   }
   const Columns of_23 = columns_;
   columns_ = columns(31);
+  const std::size_t before = network_.buses.size();
   bus(turned);
   columns_ = of_23;
+  if (network_.buses.size() == before) return;
   Fields f(record, file_, problems_);
   bus_shunt(f, 4);
   network::Load l{};
@@ -73,6 +75,7 @@ void RawReader::load(const Record& record) {
   network::Load l{};
   l.bus = find_bus(f.integer(0, "bus number"), f);
   l.id = f.text(1, "1");
+  if (!once("load '" + l.id + "' at bus " + f.text(0, ""), f)) return;
   const bool on = status(f.integer(2, "STATUS", 1), "STATUS", f);
   const network::Bus of = l.bus < 0 ? network::Bus{} : network_.buses[static_cast<std::size_t>(l.bus)];
   l.area = f.integer(3, "AREA", of.area);
@@ -90,7 +93,6 @@ void RawReader::load(const Record& record) {
                       "load '" + l.id + "' at bus " + f.text(0, "") + " (" + f.where() + ")");
     l.power -= inside;
   }
-  once("load '" + l.id + "' at bus " + f.text(0, ""), f);
   if (on && l.bus >= 0) network_.loads.push_back(std::move(l));
 }
 
@@ -101,7 +103,7 @@ void RawReader::fixed_shunt(const Record& record) {
   s.id = f.text(1, "1");
   const bool on = status(f.integer(2, "STATUS", 1), "STATUS", f);
   s.admittance = {pu(f.number(3, "GL", 0.0L)), pu(f.number(4, "BL", 0.0L))};
-  once("fixed shunt '" + s.id + "' at bus " + f.text(0, ""), f);
+  if (!once("fixed shunt '" + s.id + "' at bus " + f.text(0, ""), f)) return;
   if (on && s.bus >= 0) network_.shunts.push_back(std::move(s));
 }
 
@@ -113,8 +115,10 @@ void RawReader::switched_shunt(const Record& record) {
   s.bus = find_bus(number, f);
   const bool on = status(f.integer(columns_.switched_status, "STAT", 1), "STAT", f);
   s.admittance = {0.0, pu(f.number(columns_.switched_binit, "BINIT", 0.0L))};
-  once("switched shunt" + (columns_.switched_id ? " '" + id + "'" : "") + " at bus " + std::to_string(number),
-       f);
+  if (!once("switched shunt" + (columns_.switched_id ? " '" + id + "'" : "") + " at bus " +
+                std::to_string(number),
+            f))
+    return;
   if (on && s.bus >= 0 && f.integer(1 + columns_.switched_id, "MODSW", 1) != 0)
     network_.remark("controlled switched shunts stay at BINIT", "bus " + std::to_string(number));
   if (!on || s.bus < 0 || s.admittance.imag() == 0.0) return;
@@ -146,7 +150,7 @@ void RawReader::generator(const Record& record) {
   const bool step_up = g.rt != 0.0 || g.xt != 0.0;
   const double tap = static_cast<double>(f.number(base + 5, "GTAP", 1.0L));
   g.in_service = status(f.integer(columns_.gen_status, "STAT", 1), "STAT", f);
-  once("generator '" + g.id + "' at bus " + std::to_string(number), f);
+  if (!once("generator '" + g.id + "' at bus " + std::to_string(number), f)) return;
   const std::string place = "'" + g.id + "' at bus " + std::to_string(number) + " (" + f.where() + ")";
   if (units_only_ && !(g.mva > 0)) {
     problems_.add("MBASE = " + shortest(g.mva) + " MVA", f.where(),
@@ -200,7 +204,7 @@ void RawReader::branch(const Record& record) {
   b.shunt_from = {value(gi, "GI", 0.0L), value(gi + 1, "BI", 0.0L)};
   b.shunt_to = {value(gi + 2, "GJ", 0.0L), value(gi + 3, "BJ", 0.0L)};
   b.in_service = status(f.integer(columns_.branch_status, "ST", 1), "ST", f);
-  once_branch(from, to, b.circuit, f);
+  if (!once_branch(from, to, b.circuit, f)) return;
   if (b.from == b.to && b.from >= 0)
     problems_.add("a branch from bus " + std::to_string(from) + " to itself", f.where(), "it joins nothing",
                   "correct the bus numbers");
@@ -232,7 +236,7 @@ void RawReader::switching_device(const Record& record) {
   b.circuit = f.text(2, "1");
   b.x = static_cast<double>(f.number(3, "X"));
   b.in_service = status(f.integer(16, "STAT", 1), "STAT", f);
-  once_branch(from, to, b.circuit, f);
+  if (!once_branch(from, to, b.circuit, f)) return;
   if (b.from == b.to && b.from >= 0)
     problems_.add("a switch from bus " + std::to_string(from) + " to itself", f.where(), "it joins nothing",
                   "correct the bus numbers");

@@ -144,6 +144,7 @@ void RawReader::two_windings(std::span<const Record> rows, int from, int to) {
   b.from = from;
   b.to = to;
   b.circuit = head.text(3, "1");
+  if (!once_branch(at(from).number, at(to).number, b.circuit, head)) return;
   b.in_service = status(head.integer(11, "STAT", 1), "STAT", head);
   long double mva = base_;
   const Impedance z = series(code.cz, base_, impedance, 0, "1-2", problems_, mva);
@@ -156,7 +157,6 @@ void RawReader::two_windings(std::span<const Record> rows, int from, int to) {
   some_impedance(b.r, b.x, at(from).number, at(to).number, impedance);
   note_table(w1, 1, network_.branches.size());
   b.shunt_from = magnetising(head, w1, code, mva, at(from));
-  once_branch(at(from).number, at(to).number, b.circuit, head);
   if (from == to)
     problems_.add("a transformer from bus " + std::to_string(at(from).number) + " to itself", head.where(),
                   "it joins nothing", "correct the bus numbers");
@@ -201,7 +201,7 @@ void RawReader::three_windings(std::span<const Record> rows, const std::array<in
   const std::array<const char*, 3> names{"WINDV1", "WINDV2", "WINDV3"};
   std::string identity = "transformer " + std::to_string(at(ends[0]).number);
   for (std::size_t i = 1; i < 3; ++i) identity += "-" + std::to_string(at(ends[i]).number);
-  once(identity + " circuit '" + circuit + "'", head);
+  if (!once(identity + " circuit '" + circuit + "'", head)) return;
   if (ends[0] == ends[1] || ends[1] == ends[2] || ends[2] == ends[0])
     problems_.add("two windings at one bus", head.where(), "they would be short-circuited",
                   "correct the bus numbers");

@@ -76,7 +76,7 @@ class GridMaker {
     if (!effect) return unknown(given, where);
     if (given.unended)
       grid_.network.remark(
-          "records without an end, '/', end where the next one begins",
+          "records without an end, '/', end where the next one begins or the file does",
           given.model + " of '" + given.id + "' at bus " + std::to_string(given.bus) + " (" + where + ")");
     Problems refused;
     take(*effect, reach, plain(given, *effect), where, refused);

@@ -37,7 +37,7 @@ struct CaseOptions {
   network::PowerFlowOptions flow;
   /// Records shorter or longer than their model: missing values at the end are these, surplus ones left out.
   Lacking complete_records = Lacking::refused;
-  bool drop_refused = false;  ///< records that their model cannot take are left out
+  bool drop_refused = false;  ///< records of the .dyr that their model cannot take are left out
 };
 
 /// Joins a network with its dynamic models. Throws InputError naming every generator in service without a

@@ -170,6 +170,9 @@ class UnitReader {
                       "(under [grid] of a plant file: ignore_models, map_models)",
                       given));
     plant::Block block;
+    if (record.unended)
+      unit_.notes.push_back(fmt::format(
+          "{}: {} has no end, '/': it ends where the next record begins or the file does", where, given));
     record = plain(record, *effect);
     if (other && record.values.size() != effect->dyr_columns.size()) {
       block = {effect, effect->standard_parameters()};

@@ -238,18 +238,23 @@ int RawReader::find_bus(int number, const Fields& fields) {
   return -1;
 }
 
-void RawReader::once(const std::string& identity, const Fields& fields) {
+bool RawReader::once(const std::string& identity, const Fields& fields) {
   const auto [found, fresh] = seen_.emplace(identity, fields.line());
-  if (!fresh)
-    problems_.add(identity + " appears twice", fields.where(),
-                  "it is already on line " + std::to_string(found->second),
-                  "remove one or give it another id");
+  if (fresh) return true;
+  const std::string first = "already on line " + std::to_string(found->second);
+  if (options_.drop_repeated)
+    network_.remark("equipment that appears a second time is left out, as asked",
+                    identity + " (" + fields.where() + ", " + first + ")");
+  else
+    problems_.add(identity + " appears twice", fields.where(), "it is " + first,
+                  "remove one, give it another id, or leave the later one out with --drop-refused");
+  return !options_.drop_repeated;
 }
 
-void RawReader::once_branch(int from, int to, const std::string& circuit, const Fields& fields) {
-  once("branch " + std::to_string(std::min(from, to)) + "-" + std::to_string(std::max(from, to)) +
-           " circuit '" + circuit + "'",
-       fields);
+bool RawReader::once_branch(int from, int to, const std::string& circuit, const Fields& fields) {
+  return once("branch " + std::to_string(std::min(from, to)) + "-" + std::to_string(std::max(from, to)) +
+                  " circuit '" + circuit + "'",
+              fields);
 }
 
 bool RawReader::status(int value, const char* name, const Fields& fields) {

@@ -108,10 +108,11 @@ class RawReader {
 
   /// Index of the bus with this number; -1 and a problem if the file has none.
   int find_bus(int number, const Fields& fields);
-  /// Notes a repeated identity ("load '1' at bus 5").
-  void once(const std::string& identity, const Fields& fields);
+  /// Whether this identity ("load '1' at bus 5") is the first of its name. One that is not is a problem, or
+  /// its record is to be left out, if that is asked for.
+  bool once(const std::string& identity, const Fields& fields);
   /// The same for a branch, in either direction.
-  void once_branch(int from, int to, const std::string& circuit, const Fields& fields);
+  bool once_branch(int from, int to, const std::string& circuit, const Fields& fields);
   bool status(int value, const char* name, const Fields& fields);
   double pu(long double mw) const { return static_cast<double>(mw / base_); }
   [[nodiscard]] const network::Bus& at(int bus) const {

@@ -50,7 +50,6 @@ TEST(PsseDyr, EveryFaultIsReportedAtOnceWithItsLine) {
   EXPECT_THAT(all, HasSubstr("case.dyr:4"));
   EXPECT_THAT(all, HasSubstr("a quote is not closed"));
   EXPECT_THAT(all, HasSubstr("case.dyr:5"));
-  EXPECT_THAT(all, HasSubstr("a record has no end"));
 }
 
 TEST(PsseDyr, EmptyParametersAreZeroAndCounted) {
@@ -116,6 +115,16 @@ TEST(PsseDyr, ARecordThatTheNextRunsIntoEndsThere) {
   EXPECT_EQ(r[1].model, "REECA1");
   EXPECT_EQ(r[1].line, 3);
   EXPECT_FALSE(r[1].unended);
+}
+
+TEST(PsseDyr, TheLastRecordEndsWithItsFile) {
+  const auto r = parse_dyr("6 'GENCLS' 1 3.0 0 /\n7 'GENCLS' 1 4.0\n 0.5\n", "x.dyr");
+  ASSERT_EQ(r.size(), 2u);
+  EXPECT_FALSE(r[0].unended);
+  EXPECT_TRUE(r[1].unended);
+  EXPECT_THAT(r[1].values, ElementsAre(4.0, 0.5));
+  EXPECT_THAT(sentences_of([] { parse_dyr("6 'GENCLS' 1 3.0 0 /\n7 'GENCLS'\n", "x.dyr"); }),
+              HasSubstr("x.dyr:2"));
 }
 
 TEST(PsseDyr, RecordsOfEquipmentBearItsName) {

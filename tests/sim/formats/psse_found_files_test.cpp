@@ -243,6 +243,36 @@ TEST(FoundFiles, DevicesAreLeftOutOrTakenFromVoltagesThatAreNoSolutionIfAsked) {
   EXPECT_THAT(places(n, "left out, as asked"), ::testing::SizeIs(1));
 }
 
+TEST(FoundFiles, WhatAppearsASecondTimeIsLeftOutIfAsked) {
+  RawCase c;
+  c.buses += "103,'SOUTH',138.0,1,1,1,1,0.5,-8.7\n";
+  c.loads += "103,'1',1,1,1,10.0,3.0\n";
+  c.shunts = "103,'1',1,0.0,10.0\n103,'1',1,0.0,20.0\n";
+  c.generators += "102,'1',1.0,0,1,-1,1.03,0,100,0,0.9\n";
+  c.branches += "103,101,'1',0.05,0.5,0.0\n";
+  c.transformers = "101,102,0,'T',1,1,1\n0,0.1,100\n1.0\n1.0\n102,101,0,'T',1,1,1\n0,0.7,100\n1.0\n1.0\n";
+  for (const char* three : {"0.1", "0.9"})
+    c.transformers +=
+        std::string("101,102,103,'1',1,1,1\n0,") + three + ",100,0,0.1,100,0,0.1,100,1.0,0\n1.0\n1.0\n1.0\n";
+  c.other["switched shunt"] = "103,1,0,1,1.5,0.5,0,100,' ',30.0\n103,1,0,1,1.5,0.5,0,100,' ',60.0\n";
+  EXPECT_THAT(sentences_of([&] { c.read(); }), HasSubstr("leave the later one out with --drop-refused"));
+  RawOptions options;
+  options.drop_repeated = true;
+  const network::Network n = parse_raw(c.text(), "case.raw", options);
+  EXPECT_THAT(places(n, "second time is left out"), ::testing::SizeIs(8));
+  EXPECT_EQ(n.buses.size(), 4u);  // with the star point
+  EXPECT_EQ(n.buses[2].vm, 0.99);
+  ASSERT_EQ(n.loads.size(), 1u);
+  EXPECT_EQ(n.loads[0].power.real(), 2.5);
+  ASSERT_EQ(n.shunts.size(), 2u);
+  EXPECT_NEAR(n.shunts[0].admittance.imag() + n.shunts[1].admittance.imag(), 0.4, 1e-12);
+  ASSERT_EQ(n.generators.size(), 2u);
+  EXPECT_EQ(n.generators[1].zx, 0.25);
+  ASSERT_EQ(n.branches.size(), 6u);
+  EXPECT_EQ(n.branches[0].x, 0.12);
+  EXPECT_EQ(n.branches[2].x, 0.1);
+}
+
 TEST(FoundFiles, APhaseShiftToABusAtRestEndsInNoCollapse) {
   RawCase c;
   c.buses += "104,'T',13.8,1\n";
