@@ -18,12 +18,13 @@ struct CourseStage {
   std::string_view inner;  ///< what the work calls it; the first stage whose word it holds is meant
   std::string_view words;  ///< as a person reads it
   double from, to;         ///< share of the whole time at its begin and end
+  bool beyond = false;     ///< comes only where the rest did not do, and may take longer than it
 };
 using Course = std::vector<CourseStage>;
 
 /// Measured on two shared cores with the four events of configs/records/record-example (420 s).
 inline const Course kDiagnoseCourse = {
-    {" beside", "second effects are tried", 0.95, 0.98},
+    {" beside", "second effects are tried", 0.95, 0.98, true},
     {"base", "the model's parameters are refitted", 0, 0.003},
     {"missing input", "the missing input is inferred", 0.003, 0.02},
     {"hypotheses", "effects are screened", 0.02, 0.13},
@@ -35,6 +36,7 @@ inline const Course kDiagnoseCourse = {
     {"law", "laws are looked for", 0.88, 0.98},
     {"played in", "the models' events are played", 0.98, 1},
     {"instants and start", "the models' events are played", 0.98, 1},
+    {"in place of", "pairs of other effects are tried", 0.95, 0.98, true},
 };
 /// With two events of the same (5 s each).
 inline const Course kCalibrateCourse = {
@@ -71,8 +73,10 @@ class CourseProgress {
     const double part = total > 0 ? static_cast<double>(done) / total : 0;
     if (stage == course_.end()) return fmt::format("{}: {} of {}", what, done, total);
     share_ = std::max(share_, stage->from + (stage->to - stage->from) * part);
-    std::string text = fmt::format("{:.0f} % done", 100 * share_);
-    if (share_ >= 0.02 && share_ < 1)
+    beyond_ = beyond_ || stage->beyond;
+    std::string text =
+        beyond_ ? std::string("beyond the usual course") : fmt::format("{:.0f} % done", 100 * share_);
+    if (!beyond_ && share_ >= 0.02 && share_ < 1)
       text += fmt::format(", about {} left", duration_text(seconds * (1 - share_) / share_));
     std::string item = what.starts_with(stage->inner) ? what.substr(stage->inner.size()) : what;
     item.erase(0, item.find_first_not_of(' '));
@@ -83,6 +87,7 @@ class CourseProgress {
  private:
   Course course_;
   double share_ = 0;
+  bool beyond_ = false;
 };
 
 }  // namespace swingbank::jobs

@@ -19,6 +19,27 @@ for words in 'Five words' '95 % interval' 'calibrated' 'submitted' 'Error map' '
   grep -qF -- "$words" "$work/out/report.html" || fail "'$words' is not on the page of calibrate"
 done
 
+# at a phone's width of 390 px the fitness table, the page's first, is seen whole; on A4 every table is
+if command -v chromium >/dev/null; then
+  # too_wide WIDTH MEDIA: the tables that WIDTH px do not hold, by their place on the page
+  too_wide() {
+    python3 - "$work/out/report.html" "$work/measured.html" "$1" "$2" <<'PYTHON'
+import re, sys
+page, width, media = open(sys.argv[1]).read(), sys.argv[3], sys.argv[4]
+page = page.replace(media, "@media all", 1).replace("</main>", """</main><script>addEventListener('load', () => {
+  document.body.style.width = '%spx';
+  const room = document.querySelector('main').clientWidth - 2 * parseFloat(getComputedStyle(document.querySelector('main')).paddingLeft);
+  document.body.innerText = 'over:' + [...document.querySelectorAll('table')].map((t, i) => t.scrollWidth > room + 1 ? i : '').join(' ') + ';';
+})</script>""" % width, 1)
+open(sys.argv[2], "w").write(page)
+PYTHON
+    chromium --headless --no-sandbox --disable-gpu --window-size=1000,800 --dump-dom "file://$work/measured.html" 2>/dev/null |
+      grep -o 'over:[0-9 ]*;'
+  }
+  [[ $(too_wide 390 '@media(max-width:600px)') =~ ^over:[^0]*\;$ ]] || fail "the fitness table is wider than a phone: $(too_wide 390 '@media(max-width:600px)')"
+  [[ $(too_wide 718 '@media print') =~ ^over:\ *\;$ ]] || fail "wider than A4: $(too_wide 718 '@media print')"
+fi
+
 # the page as PDF, printed; --quiet says nothing but the result; progress on a terminal is in a person's words
 if command -v chromium >/dev/null; then
   gives 3 '^Fit for purpose: no' compare --model "$bent" --pdf "$work/page #1.pdf" --quiet

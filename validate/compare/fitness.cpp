@@ -68,12 +68,11 @@ std::string verdict(const Fitness& f, int exceed, const JudgedErrors& row) {
       row.event, at.error, f.mva, at.limit);
 }
 
-const std::vector<std::string> kHeader = {"event", "channel", "window", "MXE",  "limit",
-                                          "ME",    "limit",   "MAE",    "limit"};
+const std::vector<std::string> kHeader = {"event", "channel", "window", "MXE", "ME", "MAE"};
 
 std::string caption(const Fitness& f) {
   return fmt::format(
-      "Errors (modelled − measured) in % of {:g} MVA beside their limits, as IEC 61400-27-2 counts them: MXE the "
+      "Errors (modelled − measured) in % of {:g} MVA, each of its limit, as IEC 61400-27-2 counts them: MXE the "
       "largest, ME the mean, MAE the mean of their sizes. Limits {}: {}. Not compared: {:g} ms after the first "
       "switching, {:g} ms after the last. A star marks what exceeds its limit.",
       f.mva, f.by.name, f.by.source, 1e3 * f.by.after_fault, 1e3 * f.by.after_clearing);
@@ -85,14 +84,14 @@ std::vector<report::Cell> cells_of(const std::string& event, const JudgedErrors&
   std::vector<report::Cell> cells = {event, of.channel, std::string(thresholds::phase_name(of.phase))};
   const auto add = [&](double error, double limit, const char* sign) {
     const bool within = std::abs(error) <= limit;
-    cells.emplace_back(std::isfinite(error) ? fmt::format("{:.2f} %{}", std::abs(error) < 0.005 ? 0.0 : error,
-                                                          within ? "" : " *")
-                                            : "no number *",
+    cells.emplace_back(std::isfinite(error)
+                           ? fmt::format("{:.2f} of {}{:g} %{}", std::abs(error) < 0.005 ? 0.0 : error, sign,
+                                         limit, within ? "" : " *")
+                           : "no number *",
                        within ? 0.0 : 1.0);
-    cells.emplace_back(fmt::format("{}{:g} %", sign, limit));
   };
   add(from[0]->errors.mxe, of.limits.mxe, "");
-  add(from[1]->errors.me, of.limits.me, "± ");
+  add(from[1]->errors.me, of.limits.me, "±");
   add(from[2]->errors.mae, of.limits.mae, "");
   return cells;
 }
