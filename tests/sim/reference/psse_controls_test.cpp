@@ -2,9 +2,12 @@
 // s, our equations integrated as PSS/E integrates its own (psse_stepper.hpp).
 #include <unistd.h>
 
+#include <complex>
 #include <numbers>
+#include <tuple>
 
 #include "sim/grid/load_choice.hpp"
+#include "tests/sim/effects/control_bench.hpp"
 #include "tests/sim/reference/psse_folder.hpp"
 #include "tests/sim/reference/psse_stepper.hpp"
 #include "tests/sim/reference/reference_support.hpp"
@@ -176,8 +179,9 @@ TEST(PsseRecords, GastWithEsac1a) {
 }
 
 // PowerWorld's curves, not PSS/E's, so with exact integration. An undamped swing that the governor makes
-// grow: ours grows faster, by 9.4 % of it at 5 s, for a reason not found (power in place of torque at the
-// outlet: 5.1 %). With the delay 2.2 %: its polynomials are exact only to s TD = 3j and meet 6.5j.
+// grow: ours grows faster, by 9.4 % of it at 5 s (with the delay 2.2 %: its polynomials are exact only to
+// s TD = 3j and meet 6.5j). 5.1 % are a droop that the curves hold (DegovsCurvesHoldADroop), the rest is
+// PSS/E's classical machine, (Pm - D w - Pe)/(1 + w).
 TEST(PsseRecords, DegovWithAndWithoutDelay) {
   constexpr double kRate = 240.0, kDegovEnd = 5.0;
   for (const std::string delay : {"nodelay", "delay"}) {
@@ -200,6 +204,90 @@ TEST(PsseRecords, DegovWithAndWithoutDelay) {
     }
     std::cout << "DEGOV " << delay << " " << worst / (high - low) << " at " << at << " s\n";
     EXPECT_LT(worst / (high - low), delay == "delay" ? 0.025 : 0.1) << delay << " at " << at << " s";
+  }
+}
+
+/// Speed of the machine 102 of DEGOV's case, a sample every 1/240 s: a classical machine as PowerWorld
+/// integrates it, 2H dw/dt = (Pm - D w)/(1 + w) - Te with Pm = (1 + w) exp(-s delay) throttle, the network
+/// solved by hand, our DEGOV1 with this droop.
+std::vector<double> speed_of_diesel(const grid::Grid& grid, double droop, double delay) {
+  using C = std::complex<double>;
+  constexpr int kSteps = 10, kSamples = 1201;
+  constexpr double h = 1.0 / (240.0 * kSteps), H = 8.0, D = 0.03;
+  const auto voltage = [&](int bus) {
+    return grid.flow.voltage[static_cast<std::size_t>(grid.network.bus_index(bus))];
+  };
+  const C line(grid.network.branches[0].r, grid.network.branches[0].x), jX(0.0, 0.25),
+      V1 = voltage(101), V2 = voltage(102), V3 = voltage(103),
+      consumes = std::conj(grid.network.loads[0].power) / std::norm(V3);
+  const C before = (V2 - V1) / line + (V2 - V3) / line, E = V2 + jX * before;
+  const double P = (V2 * std::conj(before)).real();
+  const auto electrical = [&](double delta, bool open) {
+    const C e = std::polar(std::abs(E), delta);
+    if (!open) return P;
+    const C v3 = (V1 / line + e / (line + jX)) / (1.0 / line + 1.0 / (line + jX) + consumes);
+    return (e * std::conj((e - v3) / (line + jX))).real();
+  };
+  Signals<double> at = test::ControlBench::rated();
+  at.P = at.Te = at.Tm = P;
+  test::ControlBench governor("DEGOV1",
+                              {{"M", 0},
+                               {"T1", 0},
+                               {"T2", 0},
+                               {"T3", 0},
+                               {"K", 18},
+                               {"T4", 12},
+                               {"T5", 5},
+                               {"T6", 0.2},
+                               {"TD", 0},
+                               {"TMAX", 2},
+                               {"TMIN", -0.1},
+                               {"DROOP", droop}},
+                              at);
+  EXPECT_EQ(governor.refused, "");
+  std::vector<double> speeds, throttle;
+  const auto late = static_cast<std::ptrdiff_t>(std::lround(delay / h));
+  double delta = std::arg(E), w = 0.0;
+  for (int k = 0; k < kSamples * kSteps; ++k) {
+    if (k % kSteps == 0) speeds.push_back(w);
+    throttle.push_back(governor.state("throttle"));
+    const auto from = static_cast<std::ptrdiff_t>(throttle.size()) - 1 - late;
+    const double torque = from < 0 ? P : throttle[static_cast<std::size_t>(from)];
+    const bool open = k >= std::lround(kSwitching / h);
+    // Leapfrog: the speed stands half a step, 0.2 ms, off the angle, 0.06 % of the swing.
+    w += h / (2.0 * H) * (torque - D * w - electrical(delta, open));
+    delta += h * 2.0 * std::numbers::pi * 60.0 * w;
+    governor.in.speed = w;
+    governor.run(h, h);
+  }
+  return speeds;
+}
+
+// Inferred, not documented: with a droop of 0.0565 pu of the throttle, fitted to the first curve, the
+// differences fall from 5.1 and 3.3 % of the swing to 0.04 % in both (the delay is this test's, exact). DEGOV
+// has no such parameter; which model or setting of PowerWorld made the curves is not known.
+TEST(PsseRecords, DegovsCurvesHoldADroop) {
+  for (const auto& [name, delay, without] :
+       {std::tuple{"nodelay", 0.0, 0.04}, std::tuple{"delay", 1.0, 0.03}}) {
+    const auto folder = folder_of("DEGOV");
+    const grid::Grid grid = grid::load_grid(folder / "ThreeBusMulti.raw",
+                                            folder / "ThreeBus_DEGOV_nodelay.dyr", Conventions::psse());
+    const auto theirs =
+        test::read_table(folder / ("degov_" + std::string(name) + "_speed_final.csv"), false).rows;
+    const auto share = [&](double droop) {
+      const std::vector<double> ours = speed_of_diesel(grid, droop, delay);
+      double low = 1e9, high = -1e9, worst = 0.0;
+      for (const auto& row : theirs) {
+        worst = std::max(
+            worst, std::abs(1.0 + ours[static_cast<std::size_t>(std::lround(row[0] * 240.0))] - row[1]));
+        low = std::min(low, row[1]);
+        high = std::max(high, row[1]);
+      }
+      std::cout << "DEGOV1 " << name << " DROOP " << droop << ": " << worst / (high - low) << "\n";
+      return worst / (high - low);
+    };
+    EXPECT_LT(share(0.0565), 1e-3) << name;
+    EXPECT_GT(share(0.0), without) << name;
   }
 }
 
