@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/json_text.hpp"
+#include "base/stop_signal.hpp"
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
 #include "jobs/event_records.hpp"
@@ -38,6 +39,8 @@ int run(const std::string& model_file, const std::vector<std::string>& record_fi
   options.progress = jobs::progress_line(jobs::kDiagnoseCourse);
   if (!jobs::quiet)
     options.told = [](const std::string& sentence) { fmt::print(stderr, "\n{}\n", sentence); };
+  catch_stop_signals();
+  options.stop = stop_asked;
   const diagnose::Diagnosis d = diagnose::diagnose(model, set.records, options);
   const bool adequate = d.verdict == diagnose::Verdict::adequate;
   compare::CompareOptions playing;
@@ -70,6 +73,7 @@ int run(const std::string& model_file, const std::vector<std::string>& record_fi
                  law_file.stem().string());
   }
   judging.print(folder / "report.html");
+  if (d.verdict == diagnose::Verdict::interrupted) return kSubmitAgain;
   return played.back().fitness.exit_code(adequate);
 }
 
@@ -140,7 +144,7 @@ void declare(jobs::CommandLine& line, Command& c) {
       .excludes(fleet);
   line.footer(
       std::string(thresholds::kExitCodes) +
-      " Complete is a structure that lacks nothing; fit for purpose, the model with its parameters refitted. Of a fleet: 0 all plants are complete, 3 some plant is not, 1 some plant failed, 2 stopped by a signal (run it again to continue).");
+      " Complete is a structure that lacks nothing; fit for purpose, the model with its parameters refitted. 2: interrupted (Ctrl-C, SIGTERM); report and JSON hold what was fitted until then, and nothing is judged; a second Ctrl-C ends at once. Of a fleet: 0 all plants are complete, 3 some plant is not, 1 some plant failed, 2 stopped by a signal (run it again to continue).");
 }
 
 }  // namespace

@@ -23,6 +23,22 @@ r = json.load(open(sys.argv[1]))
 assert r["verdict"] in ("missing", "confusable") and r["effects"][0] == "SEXS", r["sentence"]
 PYTHON
 
+# a signal once the first sentence is told: what was fitted until then is reported, with a code of its own
+"$swingbank" diagnose --model "$model" --records "$one" "$two" --power-only --threads 1 --out "$work/ended" \
+  >"$work/ended.txt" 2>"$work/told" &
+diagnosing=$!
+for ((k = 0; k < 600; ++k)); do
+  grep -q 'So far' "$work/told" && break
+  sleep 0.1
+done
+kill -TERM "$diagnosing"
+status=0
+wait "$diagnosing" || status=$?
+((status == 2)) || fail "exit code $status after a signal, expected 2"
+grep -q 'Interrupted: what was fitted until then' "$work/ended.txt" || fail "the end is not told"
+grep -q '"verdict": "interrupted"' "$work/ended/diagnosis.json" || fail "the JSON does not say that it was interrupted"
+[[ -s $work/ended/report.html ]] || fail "no page after a signal"
+
 out=$work/out
 mkdir "$out"
 # refused WORDS ARGUMENT...: exit code 1, the words on stderr, nothing written

@@ -24,6 +24,9 @@ constexpr int kAtLeast = 3;
 constexpr std::size_t kWaysOut = 2;
 constexpr int kBases = 2;
 
+/// So few parameters may be wrong, if they are to be named.
+constexpr std::size_t kFew = 5;
+
 /// Steps of the fits that go on with the noise measured again.
 constexpr int kOnwards = 4;
 
@@ -44,11 +47,22 @@ class Diagnoser {
 
   Diagnosis run() {
     const auto begin = std::chrono::steady_clock::now();
+    if (!(fit_all() && judge_all())) interrupt(result_);
+    result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] bool stopped() const { return options_.stop && options_.stop(); }
+  /// The model alone, the missing inputs, every hypothesis. False: a person has ended it.
+  bool fit_all() {
     const event::WhitenedEvents prepared = result_.events;
     fit::FitOptions from;
     for (int round = 0;; ++round) {
       fit_base(from);
       tell(first_sentence(result_, options_.adequate));
+      if (stopped()) return false;
+      few_wrong();
       infer_inputs();
       tell(side_sentence(result_));
       const hypothesis::Stage stage = model_stage();
@@ -56,23 +70,27 @@ class Diagnoser {
           stage, hypothesis::all_hypotheses(stage.under_test(), stage.library, stage.component()),
           options_.progress);
       tell(leading_sentence(result_));
+      if (stopped()) return false;
       if (round == kBases || !better_base(from)) break;
       result_.events = prepared;  // the noise was measured through the worse base
     }
     try_replacements();
+    return !stopped();
+  }
+  /// The verdict. False: a person has ended it.
+  bool judge_all() {
     const bool again = measure_noise_again();
     passed_.emplace(sim::plant::PlantUnderTest{result_.base.plant, model_.conventions}, result_.events,
                     fit::voltage_noise(result_.base, result_.events).variance);
     held_out_base_ = hypothesis::hold_out(trial(), model_.under_test(), {}, result_.base);
     if (again) infer_inputs(true);
+    if (stopped()) return false;
     search();
+    if (stopped()) return false;
     settle({model_, trial(), result_.base, held_out_base_, result_.torque, result_.field, threads_},
            options_.progress, result_);
-    result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    return std::move(result_);
+    return true;
   }
-
- private:
   void fit_base(fit::FitOptions o) {
     report("base", 0, 1);
     const auto free = fit::free_parameters(model_.plant, options_.spread);
@@ -85,6 +103,26 @@ class Diagnoser {
     }
     require_fitted_base();
     report("base", 1, 1);
+  }
+  /// Where the refitted model leaves only noise, a few wrong parameters may be all that it takes.
+  void few_wrong() {
+    result_.wrong.reset();
+    if (result_.base.misfit() > options_.adequate) return;
+    const auto free = fit::free_parameters(model_.plant, options_.spread);
+    fit::FewestOptions o;
+    o.most = kFew;
+    o.progress = options_.progress;
+    fit::Fewest found = fit::fewest(model_.under_test(), result_.events, free, o);
+    if (found.wrong.empty() || found.fit.misfit() > options_.adequate) return;
+    std::vector<fit::FreeParameter> some;
+    for (const auto& w : found.wrong) some.push_back(w.fit.where);
+    const fit::Fit f =
+        fit::fit(model_.under_test(), result_.events, some, fit::continued({}, found.fit, some));
+    if (!f.failed.empty() || f.misfit() > options_.adequate) return;
+    result_.wrong_evidence =
+        fit::gain(result_.base, f, fit::criterion) - o.each * static_cast<double>(some.size());
+    result_.wrong = std::move(found);
+    tell(wrong_sentence(result_));
   }
   void require_fitted_base() const {
     if (!result_.base.failed.empty())
@@ -164,8 +202,9 @@ class Diagnoser {
     judge_leading(result_.ranked);
     if (result_.ranked.empty()) return;
     const hypothesis::Judgement best = result_.ranked.front();
-    if (!best.accepted && result_.base.misfit() <= options_.adequate) return;
+    if (stopped() || (!best.accepted && result_.base.misfit() <= options_.adequate)) return;
     auto pairs = best.accepted ? judged_beside(stage, best) : try_pairs(stage);
+    if (stopped()) return;
     try_alone(pairs);
     const auto unneeded = [&](const hypothesis::Judgement& j) { return !j.accepted || !needed(j); };
     std::erase_if(pairs, unneeded);
@@ -186,7 +225,8 @@ class Diagnoser {
             .library = model_.library,
             .fit = result_.base,
             .spread = options_.spread,
-            .threads = threads_};
+            .threads = threads_,
+            .stop = options_.stop};
   }
   /// Tries pairs beside the best single hypotheses, one of each slot. The next single one is tried only if no
   /// pair beside the one before holds.
@@ -227,7 +267,7 @@ class Diagnoser {
     std::erase_if(rivals, [&](const hypothesis::Judgement& j) {
       return j.gain < pair.gain - thresholds::evidence.within_reach;
     });
-    each(rivals, "unseen events", [&](hypothesis::Judgement& j) { judge_all(j); });
+    each(rivals, "unseen events", [&](hypothesis::Judgement& j) { judge_one(j); });
     return rivals;
   }
   /// Fits every hypothesis beside one that is taken as given; the evidence is that of both.
@@ -270,7 +310,7 @@ class Diagnoser {
       if (!(fit::gain(before, single.fit) > 1)) continue;
       single.accepted = false;
       single.why_not.clear();
-      judge_all(single);
+      judge_one(single);
     }
     best_first(result_.ranked);
   }
@@ -311,10 +351,10 @@ class Diagnoser {
   }
   void judge_some(std::vector<hypothesis::Judgement>& tried, int from, int to) const {
     each(std::span(tried).subspan(static_cast<std::size_t>(from), static_cast<std::size_t>(to - from)),
-         "unseen events", [&](hypothesis::Judgement& j) { judge_all(j); });
+         "unseen events", [&](hypothesis::Judgement& j) { judge_one(j); });
   }
   /// Judges on unseen events, and beside the inputs that are free in time.
-  void judge_all(hypothesis::Judgement& j) const {
+  void judge_one(hypothesis::Judgement& j) const {
     hypothesis::judge(trial(), result_.base, held_out_base_, j);
     for (const auto& [m, what] : {std::pair(&result_.torque, "torque"), {&result_.field, "field voltage"}})
       if (j.accepted && m->explains(result_.base) > fit::gain(result_.base, j.fit, fit::data_cost)) {
@@ -352,7 +392,10 @@ class Diagnoser {
   template <class F>
   void each(std::span<hypothesis::Judgement> tried, const std::string& what, F act) const {
     in_parallel(
-        tried.size(), [&](std::size_t k) { act(tried[k]); },
+        tried.size(),
+        [&](std::size_t k) {
+          if (!stopped()) act(tried[k]);
+        },
         [&](int done, std::size_t k) {
           report(what + " " + hypothesis::full_name(tried[k].hypothesis), done,
                  static_cast<int>(tried.size()));

@@ -2,12 +2,15 @@
 // Which physical effect does the model lack? The missing input is inferred first (which side?), then every
 // hypothesis is fitted by itself and judged on events it was not fitted to.
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "validate/fit/fit.hpp"
+#include "validate/fit/fewest.hpp"
+#include "validate/hypothesis/decide.hpp"
 #include "validate/hypothesis/judge.hpp"
 #include "validate/hypothesis/missing_input.hpp"
+#include "validate/hypothesis/posterior.hpp"
 #include "validate/laws/search.hpp"
 #include "validate/thresholds/adequacy.hpp"
 
@@ -16,8 +19,9 @@ namespace swingbank::validate::diagnose {
 enum class Verdict {
   adequate,     ///< nothing but noise is left
   missing,      ///< one effect is missing, and it is named
-  confusable,   ///< one of several, which these records cannot tell apart
+  confusable,   ///< one of several, which make up 95 % of the probability together
   unexplained,  ///< none of the known effects explains it
+  interrupted,  ///< a person has ended it: nothing is judged
 };
 std::string_view verdict_name(Verdict verdict);
 
@@ -27,10 +31,15 @@ struct Diagnosis {
   thresholds::Ruling ruling;            ///< what decided whether the model is adequate
   std::string sentence;                 ///< the verdict as a grid engineer reads it
   std::vector<std::string> effects;     ///< names of one effect, or of several that act together
-  std::vector<std::string> equivalent;  ///< names that explain the records as well
-  /// What would tell the best one from the first of `equivalent`; empty without one.
-  std::string would_decide;
-  fit::Fit base;  ///< the present structure, refitted
+  std::vector<std::string> equivalent;  ///< names beside it in the set that makes up 95 %
+  /// Every explanation that has not failed; the most probable first.
+  std::vector<hypothesis::Explanation> probabilities;
+  hypothesis::Decision would_decide;  ///< what would tell them apart
+  fit::Fit base;                      ///< the present structure, refitted
+  /// The fewest parameters that must change, if these alone leave nothing but noise: what is wrong then is
+  /// they.
+  std::optional<fit::Fewest> wrong;
+  double wrong_evidence = 0;  ///< of only these being wrong, over every parameter refitted [chi2]
   hypothesis::MissingInput torque, field;
   laws::LawSearch laws;  ///< laws that were searched, where no known effect explains the records
   std::vector<hypothesis::Judgement> ranked;  ///< best first
@@ -51,6 +60,9 @@ struct DiagnoseOptions {
   /// Called with a sentence as soon as something is known that the verdict will rest on: what is left and on
   /// which side, then who leads. May be empty.
   std::function<void(const std::string& sentence)> told = {};
+  /// Whether a person has asked for an end. What was fitted until then is kept, once the model alone is. May
+  /// be empty.
+  std::function<bool()> stop = {};
 };
 
 /// Throws InputError as its parts do; needs at least two events to judge.

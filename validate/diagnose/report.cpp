@@ -11,6 +11,7 @@
 #include "validate/compare/error_map_table.hpp"
 #include "validate/diagnose/detail/false_positives.hpp"
 #include "validate/diagnose/detail/report_laws.hpp"
+#include "validate/diagnose/detail/verdict.hpp"
 #include "validate/fit/voltage_doubt.hpp"
 #include "validate/thresholds/list.hpp"
 
@@ -146,6 +147,20 @@ nlohmann::json event_json(const ReportEvent& e, bool with_after) {
   return j;
 }
 
+nlohmann::json probabilities_json(const Diagnosis& d) {
+  auto rows = nlohmann::json::array();
+  const std::size_t set = hypothesis::credible(d.probabilities);
+  for (const auto& e : d.probabilities)
+    rows.push_back({{"name", e.name}, {"probability", e.probability}, {"in_set", rows.size() < set}});
+  return rows;
+}
+
+nlohmann::json decision_json(const hypothesis::Decision& d) {
+  auto next = nlohmann::json::array();
+  for (const auto& n : d.next) next.push_back({{"record", n.what}, {"expected_set", n.expected}});
+  return {{"set", d.now}, {"next", next}};
+}
+
 nlohmann::json hypothesis_json(const hypothesis::Judgement& h) {
   nlohmann::json j = {
       {"name", hypothesis::full_name(h.hypothesis)},
@@ -219,7 +234,8 @@ nlohmann::json diagnosis_json(const plant::PlantModel& model, const Diagnosis& d
       {"side", hypothesis::side_name(d.side)},
       {"effects", d.effects},
       {"equivalent", d.equivalent},
-      {"would_decide", d.would_decide},
+      {"probabilities", probabilities_json(d)},
+      {"would_decide", decision_json(d.would_decide)},
       {"seconds", d.seconds},
       {"model",
        {{"name", model.name},
@@ -233,6 +249,8 @@ nlohmann::json diagnosis_json(const plant::PlantModel& model, const Diagnosis& d
                   {"parameters", parameters_json(*figures.after)}};
   else
     j["after"] = nullptr;
+  const auto wrong = wrong_parameters(d);
+  j["wrong_parameters"] = wrong ? calibrate::wrong_json(*wrong) : nlohmann::json();
   j["missing_torque"] = input_json(d, d.torque);
   j["missing_field_voltage"] = input_json(d, d.field);
   j["laws"] = laws_json(d);

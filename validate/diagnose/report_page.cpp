@@ -12,12 +12,14 @@
 #include "validate/compare/page_parts.hpp"
 #include "validate/diagnose/detail/false_positives.hpp"
 #include "validate/diagnose/detail/report_laws.hpp"
+#include "validate/diagnose/detail/verdict.hpp"
 #include "validate/diagnose/report.hpp"
 
 namespace swingbank::validate::diagnose {
 namespace {
 
-constexpr std::size_t kBars = 12;  // hypotheses drawn; the table holds all
+constexpr std::size_t kBars = 12;          // hypotheses drawn; the table holds all
+constexpr std::size_t kLeastProbable = 4;  // explanations drawn, if the set is smaller
 
 std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
 std::string value_text(double v) { return std::isfinite(v) ? fmt::format("{:.4g}", v) : "–"; }
@@ -47,7 +49,9 @@ class DiagnosisPage {
                           : d_.verdict == Verdict::unexplained ? report::Tone::bad
                                                                : report::Tone::found);
     page_.text(false_positive_note());
+    probabilities();
     compare::panels_part(page_, played_);
+    few_wrong();
     parameters();
     at_a_glance();
     error_maps();
@@ -65,6 +69,30 @@ class DiagnosisPage {
 
  private:
   [[nodiscard]] bool with_after() const { return figures_.after != nullptr; }
+
+  void probabilities() {
+    if (d_.probabilities.empty()) return;
+    const std::size_t set = hypothesis::credible(d_.probabilities);
+    report::Bars bars{"Probability [%]", "%", 0, "", {}};
+    for (std::size_t i = 0; i < d_.probabilities.size() && (i < set || i < kLeastProbable); ++i)
+      bars.bars.push_back({d_.probabilities[i].name, 100 * d_.probabilities[i].probability, i < set,
+                           hypothesis::probability_text(d_.probabilities[i].probability)});
+    page_.bars(bars);
+    page_.text(
+        "How probable each explanation is, given the effects that were tried and that none of them may be right. "
+        "The coloured ones make up 95 % together. How often such figures are right stands in docs/blind-test.md.");
+    if (d_.would_decide.next.empty()) return;
+    report::Table table{
+        fmt::format(
+            "What to record next: how many of the {:.0f} effects would be left on average (the rivals played "
+            "into such a record).",
+            d_.would_decide.now),
+        {"record", "effects left"},
+        {}};
+    for (const auto& n : d_.would_decide.next)
+      table.rows.push_back({n.what, fmt::format("{:.1f}", n.expected)});
+    page_.table(table);
+  }
 
   void at_a_glance() {
     page_.section("Error of each event");
@@ -181,6 +209,28 @@ class DiagnosisPage {
                             h.fit.values > 0 ? compare::times_noise(std::sqrt(h.fit.misfit())) : "–",
                             h.held_out.empty() ? "–" : "≤ " + compare::times_noise(worst),
                             h.accepted ? "accepted" : h.why_not});
+    }
+    page_.table(table);
+  }
+
+  /// Where a few wrong parameters are all that it takes.
+  void few_wrong() {
+    if (!d_.wrong) return;
+    page_.section("Which parameters are wrong");
+    page_.text(calibrate::wrong_sentence(*d_.wrong, thresholds::adequacy.misfit));
+    report::Table table{
+        "Every other parameter keeps its value. Evidence: by how much the cost rises if this one keeps its value too "
+        "and the others are refitted; of the error: that rise as a share of what the model leaves beyond them all.",
+        {"parameter", "unit", "submitted", "fitted", "95 % interval", "evidence", "of the error",
+         "or in its place"},
+        {}};
+    for (const auto& w : d_.wrong->wrong) {
+      std::string tied;
+      for (const auto& t : w.tied) tied += (tied.empty() ? "" : ", ") + t;
+      table.rows.push_back({w.fit.full_name(), w.fit.unit, value_text(w.fit.start), value_text(w.fit.value),
+                            fmt::format("{} … {}", value_text(w.fit.low), value_text(w.fit.high)),
+                            fmt::format("{:.0f}", w.evidence), fmt::format("{:.0f} %", 100 * w.share),
+                            tied.empty() ? "–" : tied});
     }
     page_.table(table);
   }

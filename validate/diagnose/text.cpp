@@ -4,6 +4,7 @@
 
 #include "validate/diagnose/detail/false_positives.hpp"
 #include "validate/diagnose/detail/report_laws.hpp"
+#include "validate/diagnose/detail/verdict.hpp"
 #include "validate/report/page.hpp"
 #include "validate/thresholds/list.hpp"
 
@@ -11,13 +12,28 @@ namespace swingbank::validate::diagnose {
 namespace {
 
 constexpr std::size_t kHypothesesShown = 12;
+constexpr double kShownFrom = 0.01;  ///< probability of what is shown, if the set is smaller
 
 void add_inputs(const Diagnosis& d, std::string& text) {
+  if (d.torque.fit.events.empty() || d.field.fit.events.empty()) return;  // interrupted before
   text += fmt::format(
       "\n"
       "What is left [chi2 per value; 1: noise]: {:.2f} with the parameters refitted, "
       "{:.2f} with a torque free in time, {:.2f} with a field voltage free in time.\n",
       d.base.misfit(), d.torque.misfit(), d.field.misfit());
+}
+void add_probabilities(const Diagnosis& d, std::string& text) {
+  if (d.probabilities.empty()) return;
+  text += "\nProbability, given these effects and that none of them may be right:\n";
+  const std::size_t set = hypothesis::credible(d.probabilities);
+  for (std::size_t i = 0; i < d.probabilities.size(); ++i)
+    if (i < set || d.probabilities[i].probability >= kShownFrom)
+      text += fmt::format("  {:>6}  {}{}\n", hypothesis::probability_text(d.probabilities[i].probability),
+                          d.probabilities[i].name, i < set ? "" : "  (outside the 95 %)");
+  if (d.would_decide.next.empty()) return;
+  text +=
+      fmt::format("\nEffects left of the {:.0f} on average, if this is recorded next:\n", d.would_decide.now);
+  for (const auto& n : d.would_decide.next) text += fmt::format("  {:>6.1f}  {}\n", n.expected, n.what);
 }
 void add_hypotheses(const Diagnosis& d, std::string& text) {
   text += fmt::format("\n{:<18} {:<12} {:>12} {:>10} {:>22}  {}\n", "hypothesis", "side", "evidence", "left",
@@ -54,6 +70,8 @@ void add_parameters(const Diagnosis& d, std::string& text) {
 std::string diagnosis_text(const Diagnosis& d) {
   std::string text =
       d.sentence + "\n" + thresholds::ruling_text(d.ruling) + "\n" + false_positive_note() + "\n";
+  add_probabilities(d, text);
+  if (const auto wrong = wrong_parameters(d)) text += "\n" + calibrate::wrong_text(*wrong);
   add_inputs(d, text);
   add_hypotheses(d, text);
   text += laws_text(d);

@@ -122,6 +122,8 @@ FleetRow row_of(const diagnose::Diagnosis& d) {
   row.verdict = diagnose::verdict_name(d.verdict);
   row.effects = d.effects;
   row.equivalent = d.equivalent;
+  for (std::size_t k = 0; k < hypothesis::credible(d.probabilities); ++k)
+    row.probabilities[d.probabilities[k].name] = d.probabilities[k].probability;
   row.side = hypothesis::side_name(d.side);
   row.left = std::sqrt(d.base.misfit());
   row.events = static_cast<int>(d.events.size());
@@ -283,6 +285,7 @@ json row_json(const FleetRow& r) {
           {"verdict", r.verdict},
           {"effects", r.effects},
           {"equivalent", r.equivalent},
+          {"probabilities", r.probabilities},
           {"side", r.side},
           {"evidence", r.evidence},
           {"rms_in_noise_refitted", r.left},
@@ -302,6 +305,7 @@ FleetRow read_row(const std::string& text, const std::string& where) {
             j.at("verdict"),
             j.at("effects"),
             j.at("equivalent"),
+            j.at("probabilities"),
             j.at("side"),
             number_of(j, "evidence"),
             number_of(j, "rms_in_noise_refitted"),

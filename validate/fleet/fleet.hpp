@@ -1,6 +1,7 @@
 #pragma once
 // A fleet: many plants, each diagnosed from its own records. What one plant's diagnosis leaves behind, and
 // when it need not be made again. Who computes which plant is for the caller (jobs/fleet_run.hpp).
+#include <map>
 #include <nlohmann/json_fwd.hpp>
 
 #include "validate/diagnose/diagnose.hpp"
@@ -27,9 +28,10 @@ Fleet load_fleet(const std::filesystem::path& file);
 /// One row of the fleet's table.
 struct FleetRow {
   std::string plant;
-  std::string verdict;                  ///< verdict_name(), or "failed"
-  std::vector<std::string> effects;     ///< as Diagnosis::effects
-  std::vector<std::string> equivalent;  ///< as Diagnosis::equivalent
+  std::string verdict;                          ///< verdict_name(), or "failed"
+  std::vector<std::string> effects;             ///< as Diagnosis::effects
+  std::vector<std::string> equivalent;          ///< as Diagnosis::equivalent
+  std::map<std::string, double> probabilities;  ///< of what is in the set
   std::string side;
   double evidence = 0;                         ///< of the first effect; NaN: none was named
   double left = 0;                             ///< error after refitting the model as it is [noise]

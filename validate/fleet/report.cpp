@@ -20,10 +20,14 @@ std::string joined(const std::vector<std::string>& words, const char* between) {
 }
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-/// "SEXS", "TGOV1 + SEXS", "SEXS or ESST1A".
+/// "SEXS 97 %", "TGOV1 + SEXS 88 %", "SEXS 62 % or ESST1A 34 %".
 std::string effect_text(const FleetRow& r) {
-  std::string text = joined(r.effects, " + ");
-  for (const auto& other : r.equivalent) text += (text.empty() ? "" : " or ") + other;
+  const auto with_probability = [&](const std::string& name) {
+    const auto p = r.probabilities.find(name);
+    return p == r.probabilities.end() ? name : name + " " + hypothesis::probability_text(p->second);
+  };
+  std::string text = r.effects.empty() ? "" : with_probability(joined(r.effects, " + "));
+  for (const auto& other : r.equivalent) text += (text.empty() ? "" : " or ") + with_probability(other);
   return text.empty() ? "–" : text;
 }
 std::string chance_text(double chance) {

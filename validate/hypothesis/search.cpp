@@ -33,7 +33,9 @@ class Searcher {
     std::vector<Judgement> tried(candidates.size());
     if (starts_.near()) {
       std::vector<std::vector<fit::Fit>> begun(candidates.size());
-      each(candidates, "first steps ", [&](std::size_t i) { near_first(candidates[i], begun[i]); });
+      each(candidates, "first steps ", [&](std::size_t i) {
+        if (!stage_.stopped()) near_first(candidates[i], begun[i]);
+      });
       auto onward = promising(candidates, begun, thresholds::search.fair);
       // a fit that is worse than nothing has not arrived yet, and another start is left
       for (std::size_t i = 0; i < candidates.size(); ++i)
@@ -43,19 +45,22 @@ class Searcher {
         if (c.nested.empty())
           tried[i] = hopeless(c);
         else
-          tried[i] = onward[i] ? near_onward(c, std::move(begun[i])) : judgement(c, std::move(begun[i]));
+          tried[i] = onward[i] && !stage_.stopped() ? near_onward(c, std::move(begun[i]))
+                                                    : judgement(c, std::move(begun[i]));
       });
     } else {
       std::vector<std::vector<fit::Fit>> begun(candidates.size());
-      each(candidates, "first steps ",
-           [&](std::size_t i) { first_steps(candidates[i], kFirstStarts, begun[i]); });
+      each(candidates, "first steps ", [&](std::size_t i) {
+        if (!stage_.stopped()) first_steps(candidates[i], kFirstStarts, begun[i]);
+      });
       const auto fair = promising(candidates, begun, thresholds::search.fair_at_first);
       each(candidates, "first steps ", [&](std::size_t i) {
-        if (fair[i]) first_steps(candidates[i], kTries, begun[i]);
+        if (fair[i] && !stage_.stopped()) first_steps(candidates[i], kTries, begun[i]);
       });
       const auto onward = promising(candidates, begun, thresholds::search.fair);
       each(candidates, "fit ", [&](std::size_t i) {
-        tried[i] = onward[i] ? more_steps(candidates[i], begun[i]) : judgement(candidates[i], begun[i]);
+        tried[i] = onward[i] && !stage_.stopped() ? more_steps(candidates[i], begun[i])
+                                                  : judgement(candidates[i], begun[i]);
       });
     }
     std::erase_if(tried, [](const Judgement& j) { return j.fit.events.empty(); });
@@ -77,7 +82,10 @@ class Searcher {
   std::vector<Candidate> screened(std::vector<Hypothesis> all) const {
     std::vector<Candidate> candidates(all.size());
     in_parallel(
-        all.size(), [&](std::size_t i) { candidates[i] = starts_.of(std::move(all[i])); },
+        all.size(),
+        [&](std::size_t i) {
+          if (!stage_.stopped()) candidates[i] = starts_.of(std::move(all[i]));
+        },
         [&](int done) { report("hypotheses", done, all.size()); }, stage_.threads);
     std::erase_if(candidates, [](const Candidate& c) { return c.starts.empty(); });
     return candidates;

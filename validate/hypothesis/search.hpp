@@ -25,6 +25,9 @@ struct Stage {
   std::string with = {};  ///< name of what was added; empty: the model as it was given
   double spread = thresholds::parameters.spread;  ///< believed of the model's parameters
   int threads = 1;
+  /// Whether a person has asked for an end: what was begun is kept as it is then. May be empty.
+  std::function<bool()> stop = {};
+  [[nodiscard]] bool stopped() const { return stop && stop(); }
   [[nodiscard]] sim::plant::PlantUnderTest under_test() const { return {plant, conventions}; }
   /// What of a plant the events are of.
   [[nodiscard]] record::Component component() const {

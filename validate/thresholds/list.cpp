@@ -21,6 +21,7 @@ void add(const Stage& stage, std::vector<Threshold>& all) {
 std::vector<Threshold> all_thresholds() {
   std::vector<Threshold> all;
   add(evidence, all);
+  add(posterior, all);
   add(held_out, all);
   add(adequacy, all);
   add(noise, all);

@@ -31,10 +31,6 @@ struct Evidence {
       "evidence.within_reach", 200, "chi2",
       "a long fit may add this much to a short one; what lies further behind the best is neither "
       "fitted on for that reason nor judged (decision 19)"};
-  Threshold apart{
-      "evidence.apart", 25, "chi2",
-      "rivals within this evidence, or this chi2, of the best one cannot be told from it; in development "
-      "cases 1 to 10 lay between the first three (log of the blind test, scorings)"};
   Threshold near{"evidence.near", 0.2, "share of the best one's evidence",
                  "from here a rival of the leader's slot gets further starts (decision 19)"};
   Threshold escape{
@@ -45,6 +41,19 @@ struct Evidence {
       "a finished fit takes the place of a short one, which has no errors, unless it is worse by more"};
 };
 inline constexpr Evidence evidence;
+
+/// From evidences to probabilities (decision 41).
+struct Posterior {
+  Threshold scale{
+      "posterior.scale", 6, "chi2",
+      "an evidence counts as twice a log probability times this: fits end short of their optima, and noise is not "
+      "all modelled; the most likely value over blind cases of spent seeds (decision 41)"};
+  Threshold set{"posterior.set", 0.95, "probability",
+                "the most probable explanations that make up this much are the set (decision 41)"};
+  Threshold told{"posterior.told", 0.5, "probability",
+                 "which of the set comes first is told above this (decision 41)"};
+};
+inline constexpr Posterior posterior;
 
 /// What an unseen event says of an effect (decision 18).
 struct HeldOut {

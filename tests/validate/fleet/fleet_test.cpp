@@ -64,6 +64,7 @@ FleetRow named() {
   FleetRow r = row("b", "confusable");
   r.effects = {"SEXS"};
   r.equivalent = {"ESST1A"};
+  r.probabilities = {{"SEXS", 0.62}, {"ESST1A", 0.341}};
   r.side = "excitation";
   r.evidence = 412.25;
   r.unseen_before = 26.4;
@@ -162,7 +163,7 @@ TEST(FleetTables, SayWhatWasFoundAndExitCodesFollow) {
   EXPECT_EQ(fleet_code(found), 3);
   EXPECT_EQ(fleet_code(broken), 1);
   const std::string text = fleet_text(broken);
-  for (const char* words : {"SEXS or ESST1A", "26 × → 1.0 ×", "≤ 3e-05", "c failed: no file",
+  for (const char* words : {"SEXS 62 % or ESST1A 34 %", "26 × → 1.0 ×", "≤ 3e-05", "c failed: no file",
                             "3 plants: 1 adequate, 1 with an effect named, 0 unexplained, 1 failed."})
     EXPECT_THAT(text, HasSubstr(words));
   EXPECT_THAT(fleet_csv(broken), HasSubstr("plant,verdict,effects,equivalent,side,evidence,rms_refitted"));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "validate/fit/noise.hpp"
 #include "validate/plant/plant_model.hpp"
 #include "validate/record/record.hpp"
 
@@ -19,6 +20,35 @@ std::vector<fs::path> event_files(const fs::path& folder) {
   return files;
 }
 
+/// Every evidence, so that what is made of them can be tried again without the records.
+nlohmann::json basis_of(const diagnose::Diagnosis& d) {
+  const auto input = [&](const hypothesis::MissingInput& m) {
+    return nlohmann::json{{"explains", m.explains(d.base)},
+                          {"chi2", fit::gain(d.base, m.fit, fit::data_cost)},
+                          {"misfit", m.misfit()}};
+  };
+  nlohmann::json j = {{"values", d.base.values},
+                      {"misfit", d.base.misfit()},
+                      {"slow", fit::slow_remainder(d.base, d.events)},
+                      {"torque", input(d.torque)},
+                      {"field", input(d.field)},
+                      {"hypotheses", nlohmann::json::array()}};
+  for (const hypothesis::Judgement& h : d.ranked) {
+    if (!h.fitted || !h.fit.failed.empty()) continue;
+    nlohmann::json one = {{"name", hypothesis::full_name(h.hypothesis)},
+                          {"slot", h.hypothesis.slot},
+                          {"evidence", h.gain},
+                          {"chi2", fit::gain(d.base, h.fit, fit::data_cost)},
+                          {"misfit", h.fit.misfit()},
+                          {"free", h.hypothesis.free.size()},
+                          {"accepted", h.accepted},
+                          {"why_not", h.why_not}};
+    for (const auto& u : h.held_out) one["unseen"].push_back({u.cost_before, u.cost_after, u.values});
+    j["hypotheses"].push_back(std::move(one));
+  }
+  return j;
+}
+
 BlindVerdict verdict_of(const diagnose::Diagnosis& d) {
   BlindVerdict v;
   v.verdict = diagnose::verdict_name(d.verdict);
@@ -26,6 +56,8 @@ BlindVerdict verdict_of(const diagnose::Diagnosis& d) {
   v.effects = d.effects;
   v.set = d.equivalent;
   v.why = d.sentence;
+  for (const auto& e : d.probabilities) v.probabilities.emplace_back(e.name, e.probability);
+  v.basis = basis_of(d);
   if (v.effects.empty() && d.verdict == diagnose::Verdict::confusable && !v.set.empty())
     v.effects = {v.set.front()};
   return v;

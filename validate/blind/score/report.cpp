@@ -96,9 +96,9 @@ std::string score_markdown(const BlindScore& score) {
       "\n"
       "First effect named, or the verdict where none was.\n"
       "\n"
-      "{}",
+      "{}{}",
       score.cases.size(), score.unjudged.size(), score.median_seconds, score.longest_seconds, rates(score),
-      sizes(score), matrix(score));
+      sizes(score), matrix(score), reliability_markdown(score.reliability));
 }
 
 json score_json(const BlindScore& score) {
@@ -110,6 +110,7 @@ json score_json(const BlindScore& score) {
               {"targets", score.targets},
               {"confusion", score.confusion},
               {"size_edges_limits", kSizeEdges}};
+  all["probabilities"] = reliability_json(score.reliability);
   for (const auto& [name, rate] : score.rates) all["rates"][name] = rate_json(rate);
   for (const auto& [with, list] : score.by_size)
     for (const Rate& rate : list) all["by_size"][with].push_back(rate_json(rate));

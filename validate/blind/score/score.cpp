@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "base/config.hpp"
+#include "validate/hypothesis/posterior.hpp"
 
 namespace swingbank::validate::blind::score {
 namespace {
@@ -13,6 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+constexpr const char *kPowerOnly = "P, Q only", *kWithChannels = "with speed, Ifd";
 constexpr double kFrom = 2.0;  ///< rates are asked for from that many detection limits up
 
 bool same(const std::string& a, const std::string& b) {
@@ -71,7 +73,7 @@ std::string said(const BlindVerdict& v) {
 }
 
 void count_single(const ScoredCase& c, BlindScore& score) {
-  const std::string with = c.channels ? "with speed, Ifd" : "P, Q only";
+  const std::string with = c.channels ? kWithChannels : kPowerOnly;
   std::size_t cls = 0;
   for (std::size_t k = 0; k < std::size(kSizeEdges); ++k)
     if (c.size >= kSizeEdges[k]) cls = k;
@@ -138,6 +140,33 @@ bool ScoredCase::all_in_set() const {
 }
 bool ScoredCase::side_right() const { return among(sides, verdict.side); }
 
+Forecast ScoredCase::forecast() const {
+  Forecast f;
+  f.group = channels ? kWithChannels : kPowerOnly;
+  f.listed = listed && kinds.size() == 1;
+  const auto is_truth = [&](const std::string& name) {
+    if (kinds.empty()) return false;
+    if (!listed) return name == hypothesis::kNoneOfThese;
+    const auto said = together(name);
+    return said.size() == answers.size() &&
+           std::ranges::all_of(answers, [&](const auto& a) { return share(a, said); });
+  };
+  std::vector<std::pair<double, char>> said;
+  double nothing = 0;  // wrong parameters are no hidden effect
+  for (const auto& [name, probability] : verdict.probabilities)
+    if (name.starts_with(hypothesis::kNothingMissing))
+      nothing += probability;
+    else
+      said.emplace_back(probability, is_truth(name) ? 1 : 0);
+  if (!verdict.probabilities.empty()) said.emplace_back(nothing, kinds.empty() ? 1 : 0);
+  std::ranges::stable_sort(said, std::greater<>(), &std::pair<double, char>::first);
+  for (const auto& [probability, right] : said) {
+    f.probabilities.push_back(probability);
+    f.right.push_back(right);
+  }
+  return f;
+}
+
 BlindScore score_blind(const fs::path& run, const fs::path& targets) {
   BlindScore score;
   score.targets = read_targets(targets);
@@ -167,6 +196,9 @@ BlindScore score_blind(const fs::path& run, const fs::path& targets) {
     }
   }
   problems.raise();
+  std::vector<Forecast> forecasts;
+  for (const ScoredCase& c : score.cases) forecasts.push_back(c.forecast());
+  score.reliability = reliability(forecasts);
   std::ranges::sort(seconds);
   if (!seconds.empty()) {
     score.median_seconds = seconds[seconds.size() / 2];

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/rate.hpp"
+#include "validate/blind/score/reliability.hpp"
 #include "validate/blind/score/verdict.hpp"
 
 namespace swingbank::validate::blind::score {
@@ -26,6 +27,9 @@ struct ScoredCase {
   [[nodiscard]] bool all_named() const;        ///< every hidden effect is named
   [[nodiscard]] bool all_in_set() const;       ///< or one entry of the stated set ("A + B") names every one
   [[nodiscard]] bool side_right() const;
+  /// The verdict's probabilities against the truth: right is the explanation that names all that is hidden,
+  /// and nothing else.
+  [[nodiscard]] Forecast forecast() const;
 };
 
 struct BlindScore {
@@ -35,6 +39,7 @@ struct BlindScore {
   std::map<std::string, double> targets;
   std::map<std::string, std::map<std::string, int>> confusion;  ///< [kind][what was said first]
   std::map<std::string, std::vector<Rate>> by_size;             ///< "PQ", "all": right first, per size class
+  Reliability reliability;
   double median_seconds = 0, longest_seconds = 0;
 };
 /// Lower edges of the size classes [detection limits].

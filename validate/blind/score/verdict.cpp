@@ -52,6 +52,25 @@ std::vector<std::string> names(const json& j, const char* key, const fs::path& f
   return list;
 }
 
+/// [["SEXS", 0.97], ...]; nothing where a judge gives none.
+std::vector<std::pair<std::string, double>> probabilities(const json& j, const fs::path& file,
+                                                          Problems& problems) {
+  const auto at = j.find("probabilities");
+  if (at == j.end()) return {};
+  try {
+    auto list = at->get<std::vector<std::pair<std::string, double>>>();
+    const bool sound =
+        std::ranges::all_of(list, [](const auto& e) { return e.second >= 0 && e.second <= 1; });
+    if (sound && std::ranges::is_sorted(list, std::greater<>(), &std::pair<std::string, double>::second))
+      return list;
+  } catch (const json::exception&) {  // told below
+  }
+  problems.add("no list of probabilities", file.string() + ", key probabilities",
+               "it holds pairs of a name and a number from 0 to 1, the most probable first",
+               "write it like [[\"SEXS\", 0.9], [\"none of these\", 0.1]], or leave it out");
+  return {};
+}
+
 /// Runs program with two arguments; its exit code, -1 if it could not be started.
 int run(const std::string& program, const fs::path& folder, const fs::path& file) {
   const pid_t child = fork();
@@ -86,15 +105,18 @@ BlindVerdict read_verdict(const fs::path& file) {
     problems.add("no wall time", file.string() + ", key seconds", "it must be a number of seconds, 0 or more",
                  "write how long it took");
   if (const auto why = j.find("why"); why != j.end() && why->is_string()) v.why = why->get<std::string>();
+  v.probabilities = probabilities(j, file, problems);
+  if (const auto basis = j.find("basis"); basis != j.end()) v.basis = *basis;
   problems.raise();
   return v;
 }
 
 std::string verdict_json(const BlindVerdict& v) {
-  return json{{"verdict", v.verdict}, {"effects", v.effects}, {"set", v.set},
-              {"side", v.side},       {"seconds", v.seconds}, {"why", v.why}}
-             .dump(1) +
-         "\n";
+  json j = {{"verdict", v.verdict}, {"effects", v.effects}, {"set", v.set},
+            {"side", v.side},       {"seconds", v.seconds}, {"why", v.why}};
+  if (!v.probabilities.empty()) j["probabilities"] = v.probabilities;
+  if (!v.basis.is_null()) j["basis"] = v.basis;
+  return j.dump(1) + "\n";
 }
 
 BlindJudge program_judge(const std::string& program, const fs::path& work) {

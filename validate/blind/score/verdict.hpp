@@ -2,6 +2,7 @@
 // What a diagnosis said of a blind case, and the seam through which one is asked.
 #include <filesystem>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -14,13 +15,17 @@ struct BlindVerdict {
   std::string side = "none";         ///< mechanical, excitation, machine, measurement or none
   double seconds = 0;                ///< wall time it took [s]
   std::string why = {};              ///< optional: the sentence behind it
+  /// optional: of each explanation, the most probable first ("SEXS", "A + B", hypothesis::kNothingMissing,
+  /// hypothesis::kNoneOfThese)
+  std::vector<std::pair<std::string, double>> probabilities = {};
+  nlohmann::json basis = {};  ///< optional, kept as it is: what the verdict rests on
 };
 
 /// Gets a case folder (model.toml, event1.csv ...), which holds nothing of the truth.
 using BlindJudge = std::function<BlindVerdict(const std::filesystem::path& folder)>;
 
-/// Reads a verdict's JSON: the keys verdict, effects, set, side, seconds and, if there, why.
-/// Throws InputError with every fault.
+/// Reads a verdict's JSON: the keys verdict, effects, set, side, seconds and, if there, why, probabilities
+/// and basis. Throws InputError with every fault.
 BlindVerdict read_verdict(const std::filesystem::path& file);
 std::string verdict_json(const BlindVerdict& verdict);
 

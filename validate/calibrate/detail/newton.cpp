@@ -32,10 +32,10 @@ sim::plant::Plant stepped(const sim::plant::Plant& plant, const std::vector<fit:
 }
 
 Eigen::VectorXd Secants::step(const Eigen::VectorXd& plain) {
-  constexpr double kTold = 1e-3;  // share of a step below which it tells nothing
+  constexpr double kSecantTells = 1e-3;  // share of a step below which it tells nothing
   if (taken_.size() > 0) {
     const Eigen::VectorXd done = inverse_ * (plain_ - plain);
-    if (const double along = taken_.dot(done); std::abs(along) > kTold * taken_.squaredNorm())
+    if (const double along = taken_.dot(done); std::abs(along) > kSecantTells * taken_.squaredNorm())
       inverse_ += ((taken_ - done) * (taken_.transpose() * inverse_) / along).eval();
   }
   plain_ = plain;

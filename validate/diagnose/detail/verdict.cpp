@@ -6,19 +6,35 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <span>
 
 #include "validate/fit/noise.hpp"
-#include "validate/hypothesis/distinguish.hpp"
+#include "validate/hypothesis/decide.hpp"
 
 namespace swingbank::validate::diagnose {
 namespace {
 
-/// Whether the records cannot tell `j` from `best`. They cannot if their evidences are close. Nor can they if
-/// both leave about the same chi2, because the evidence then only prefers the simpler one.
-bool as_good(const hypothesis::Judgement& j, const hypothesis::Judgement& best) {
-  return best.gain - j.gain < thresholds::evidence.apart ||
-         (j.hypothesis.with == best.hypothesis.with &&
-          fit::gain(j.fit, best.fit, fit::data_cost) < thresholds::evidence.apart);
+/// What an explanation with so many effects has to earn before it is as probable as one without.
+double price(const hypothesis::Hypothesis& h) {
+  return thresholds::evidence.accepted + (h.with.empty() ? 0.0 : thresholds::evidence.second.value);
+}
+/// "nothing missing, but wrong: GENROU.H, SEXS.K"
+std::string wrong_name(const Diagnosis& d) {
+  std::string names;
+  for (const auto& w : d.wrong->wrong) names += (names.empty() ? "" : ", ") + w.fit.full_name();
+  return fmt::format("{}, but wrong: {}", hypothesis::kNothingMissing, names);
+}
+/// The model as it is, or with a few parameters wrong, and every effect that unseen events have not refused,
+/// with what is in no list.
+void weigh(Diagnosis& d) {
+  std::vector<hypothesis::Explanation> all = {{hypothesis::kNothingMissing}};
+  if (d.wrong) all.push_back({wrong_name(d), d.wrong_evidence});
+  for (std::size_t k = 0; k < d.ranked.size(); ++k)
+    if (const hypothesis::Judgement& j = d.ranked[k];
+        j.accepted || (j.fitted && j.fit.failed.empty() && j.gain < thresholds::evidence.accepted.value))
+      all.push_back({hypothesis::full_name(j.hypothesis), j.gain - price(j.hypothesis), static_cast<int>(k)});
+  d.probabilities =
+      hypothesis::posterior(std::move(all), std::max(d.torque.explains(d.base), d.field.explains(d.base)));
 }
 
 std::string capitalised(std::string text) {
@@ -47,31 +63,54 @@ std::string fall_of_error(const fit::Fit& base, const hypothesis::Judgement& bes
                      std::sqrt(before), std::sqrt(after));
 }
 
-void name_best(Diagnosis& d) {
-  const hypothesis::Judgement& best = d.ranked.front();
+double probability_of_nothing_missing(const Diagnosis& d) {
+  double sum = 0;
+  for (const auto& e : d.probabilities)
+    if (e.name.starts_with(hypothesis::kNothingMissing)) sum += e.probability;
+  return sum;
+}
+
+/// "SEXS (62 %), EXST1 (21 %)"
+std::string with_probabilities(std::span<const hypothesis::Explanation> some) {
+  std::string text;
+  for (const auto& e : some)
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", e.name,
+                        hypothesis::probability_text(e.probability));
+  return text;
+}
+
+void name_best(const laws::Unexplained& judged, Diagnosis& d) {
+  const auto set = std::span(d.probabilities).first(hypothesis::credible(d.probabilities));
+  const auto first = std::ranges::find_if(set, [](const auto& e) { return e.place >= 0; });
+  const hypothesis::Judgement& best = d.ranked[static_cast<std::size_t>(first->place)];
   d.ruling = thresholds::judged_by_evidence(hypothesis::full_name(best.hypothesis), best.gain);
   d.side = best.hypothesis.side;
   if (!best.hypothesis.with.empty()) d.effects.push_back(best.hypothesis.with);
   d.effects.push_back(best.hypothesis.name);
-  const hypothesis::Judgement* rival = nullptr;
-  for (const auto& j : d.ranked) {
-    if (!j.accepted || &j == &best || !as_good(j, best)) continue;
-    d.equivalent.push_back(hypothesis::full_name(j.hypothesis));
-    if (!rival) rival = &j;
+  std::vector<hypothesis::Explanation> others;
+  for (const auto& e : set) {
+    if (&e == &*first) continue;
+    others.push_back(e);
+    if (e.place >= 0) d.equivalent.push_back(e.name);
   }
   d.verdict = d.equivalent.empty() ? Verdict::missing : Verdict::confusable;
-  std::string rivals;
-  for (const auto& name : d.equivalent) rivals += (rivals.empty() ? "" : ", ") + name;
-  d.sentence = fmt::format("{} {}{}: {}.",
-                           capitalised(best.hypothesis.with.empty()
-                                           ? best.hypothesis.what
-                                           : best.hypothesis.with + ", and besides " + best.hypothesis.what),
-                           best.hypothesis.replaces ? "explains the records" : "is missing",
-                           rivals.empty() ? "" : " (or " + rivals + ": these records cannot tell)",
-                           fall_of_error(d.base, best));
-  if (!rival) return;
-  d.would_decide = hypothesis::what_would_decide(best, *rival, d.events);
-  d.sentence += " " + d.would_decide;
+  const std::string does = best.hypothesis.replaces ? "explains the records" : "is missing";
+  if (first->probability > thresholds::posterior.told)
+    d.sentence =
+        fmt::format("{} {} ({}){}",
+                    capitalised(best.hypothesis.with.empty()
+                                    ? best.hypothesis.what
+                                    : best.hypothesis.with + ", and besides " + best.hypothesis.what),
+                    does, hypothesis::probability_text(first->probability),
+                    others.empty() ? "" : ", or " + with_probabilities(others));
+  else
+    d.sentence =
+        fmt::format("One of these {}, and the records cannot tell which: {}", does, with_probabilities(set));
+  d.sentence += fmt::format(": {}.", fall_of_error(d.base, best));
+  d.would_decide = hypothesis::what_would_decide(d.ranked, d.probabilities, judged.trial.events,
+                                                 judged.trial.spread, judged.threads);
+  if (const std::string words = hypothesis::decide_sentence(d.would_decide); !words.empty())
+    d.sentence += " " + words;
 }
 
 }  // namespace
@@ -86,6 +125,18 @@ std::string first_sentence(const Diagnosis& d, double adequate) {
       "So far: something is missing; with its parameters refitted the model leaves chi2 of {:.2f} per value, "
       "slow means {:.1f} standard deviations.",
       d.base.misfit(), slow);
+}
+
+std::string wrong_sentence(const Diagnosis& d) {
+  return "So far: " + calibrate::wrong_sentence(*d.wrong, thresholds::adequacy.misfit);
+}
+
+std::optional<calibrate::WrongParameters> wrong_parameters(const Diagnosis& d) {
+  if (!d.wrong) return std::nullopt;
+  return calibrate::WrongParameters{*d.wrong,
+                                    {},
+                                    thresholds::adequacy.misfit,
+                                    calibrate::wrong_sentence(*d.wrong, thresholds::adequacy.misfit)};
 }
 
 std::string side_sentence(const Diagnosis& d) {
@@ -117,22 +168,43 @@ std::string leading_sentence(const Diagnosis& d) {
 }
 
 std::string_view verdict_name(Verdict verdict) {
-  constexpr std::array<std::string_view, 4> names = {"adequate", "missing", "confusable", "unexplained"};
+  constexpr std::array<std::string_view, 5> names = {"adequate", "missing", "confusable", "unexplained",
+                                                     "interrupted"};
   return names[static_cast<std::size_t>(verdict)];
+}
+
+void interrupt(Diagnosis& d) {
+  d.verdict = Verdict::interrupted;
+  d.ruling = thresholds::judged_by_remainder({d.base.misfit(), slow_remainder(d.base, d.events), 0, 0},
+                                             thresholds::adequacy.misfit);
+  for (hypothesis::Judgement& j : d.ranked) {
+    j.accepted = false;
+    if (j.why_not.empty()) j.why_not = "not judged: interrupted";
+  }
+  std::string leading;
+  for (const auto& j : d.ranked)
+    if (j.fitted && j.fit.failed.empty() && j.gain > thresholds::evidence.accepted && leading.empty())
+      leading = fmt::format("{} led with an evidence of {:.0f}, but was not judged on unseen events",
+                            hypothesis::full_name(j.hypothesis), j.gain);
+  d.sentence = fmt::format(
+      "Interrupted: what was fitted until then. The model with its parameters refitted leaves chi2 of {:.2f} per "
+      "value; {}.",
+      d.base.misfit(), leading.empty() ? "no effect had explained anything yet" : leading);
 }
 
 void settle(const laws::Unexplained& judged, const laws::LawProgress& progress, Diagnosis& d) {
   const auto& r = d.ranked;
-  if (!r.empty() && r.front().accepted) return name_best(d);
+  weigh(d);
+  if (!r.empty() && r.front().accepted) return name_best(judged, d);
   d.ruling = thresholds::judged_by_remainder({d.base.misfit(), slow_remainder(d.base, d.events),
                                               d.torque.explains(d.base), d.field.explains(d.base)},
                                              judged.trial.adequate);
   if (d.ruling.adequate) {
     d.verdict = Verdict::adequate;
     d.sentence = fmt::format(
-        "The model is adequate: after refitting its parameters nothing but noise is left (chi2 per value "
+        "The model is adequate ({}): after refitting its parameters nothing but noise is left (chi2 per value "
         "{:.3f}), and no effect in the list improves it.",
-        d.base.misfit());
+        hypothesis::probability_text(probability_of_nothing_missing(d)), d.base.misfit());
     return;
   }
   d.verdict = Verdict::unexplained;

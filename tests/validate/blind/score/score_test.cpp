@@ -106,6 +106,37 @@ TEST_F(BlindScoring, APairIsInTheSetWhereOneEntryNamesBoth) {
   EXPECT_EQ(s.rates.at("two effects: both named or in the set").hits, 1);
 }
 
+TEST_F(BlindScoring, ProbabilitiesAreHeldAgainstTheTruth) {
+  const Hidden sexs{"SEXS", "excitation", "SEXS", 5}, droop{"TGOV1", "mechanical", "TGOV1", 3};
+  const auto says = [](std::vector<std::pair<std::string, double>> probabilities) {
+    BlindVerdict v{"confusable", {"EXST1"}, {"SEXS"}, "excitation", 1};
+    v.probabilities = std::move(probabilities);
+    return v;
+  };
+  add({sexs}, says({{"EXST1", 0.5}, {"sexs", 0.4}, {"SEXS + TGOV1", 0.05}, {"none of these", 0.05}}));
+  add({}, says({{"nothing missing", 0.6}, {"nothing missing, but wrong: GENROU.H", 0.3}, {"SEXS", 0.1}}));
+  add({{"saw", "mechanical", "saw", 5, false}}, says({{"SEXS", 0.8}, {"none of these", 0.2}}));
+  add({sexs, droop}, says({{"TGOV1 + SEXS", 0.9}, {"SEXS", 0.1}}));
+  const BlindScore s = score();
+  const auto right = [&](std::size_t k) { return s.cases[k].forecast().right; };
+  EXPECT_THAT(right(0), testing::ElementsAre(0, 1, 0, 0, 0)) << "a pair is more than what is hidden";
+  EXPECT_THAT(right(1), testing::ElementsAre(1, 0));
+  EXPECT_THAT(right(2), testing::ElementsAre(0, 1, 0));
+  EXPECT_THAT(right(3), testing::ElementsAre(1, 0, 0));
+  EXPECT_EQ(s.reliability.cases, 4);
+  EXPECT_EQ(s.reliability.sets.at(0).second.holds.hits, 1);
+  EXPECT_EQ(score_json(s)["probabilities"]["sets"]["P, Q only"]["mean_size"], 3.0);
+  EXPECT_THAT(score_markdown(s), testing::HasSubstr("## Are the probabilities true?"));
+}
+TEST_F(BlindScoring, ProbabilitiesOutOfOrderAreRefused) {
+  BlindVerdict v{"missing", {"SEXS"}, {}, "excitation", 1};
+  v.probabilities = {{"none of these", 0.1}, {"SEXS", 0.9}};
+  add({{"SEXS", "excitation", "SEXS", 5}}, v);
+  const auto all = test::messages([&] { (void)score(); });
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_THAT(all[0], testing::HasSubstr("the most probable first"));
+}
+
 TEST_F(BlindScoring, RefusedOrUnexplainedIsNotRight) {
   add({{"SEXS", "excitation", "SEXS", 5}}, {"unexplained", {"SEXS"}, {"SEXS"}, "excitation", 1}, true);
   const BlindScore s = score();

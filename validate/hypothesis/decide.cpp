@@ -1,0 +1,261 @@
+#include "validate/hypothesis/decide.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "base/constants.hpp"
+#include "base/in_parallel.hpp"
+#include "validate/fit/slopes.hpp"
+
+namespace swingbank::validate::hypothesis {
+namespace {
+
+using playin::Output;
+
+/// An instrument of a plant resolves this much [pu]: a tenth of a per cent of rated Efd and Ifd, and of the
+/// speed what shaft pickups do.
+constexpr double kFieldNoise = 1e-3, kSpeedNoise = 2e-5;
+/// So many of the set are told apart.
+constexpr std::size_t kRivals = 6;
+constexpr double kFrequencyDip = 0.2;        ///< of the frequency after a load step far away [Hz]
+constexpr double kFrequencyDipWithin = 1.0;  ///< [s]
+constexpr double kReferenceStep = 0.02;      ///< of Vref [pu]
+constexpr double kSceneBegins = 1.0;         ///< both, after the record's begin [s]
+/// Of the noise of a further record: nodes and weights of a standard normal variable (Gauss and Hermite).
+constexpr std::array<std::pair<double, double>, 3> kNodes = {
+    {{0.0, 2.0 / 3}, {std::numbers::sqrt3, 1.0 / 6}, {-std::numbers::sqrt3, 1.0 / 6}}};
+constexpr std::array<std::pair<Output, const char*>, 3> kFurther = {
+    {{Output::Ifd, "field current"}, {Output::Efd, "field voltage"}, {Output::speed, "speed"}}};
+
+/// What is played, and what a person calls it.
+struct Scene {
+  event::FitEvent event;
+  int recorded = -1;  ///< which of the events it repeats; -1: none
+  std::string name;
+};
+/// What one rival answers in a scene, in units of noise, and slopes along its parameters.
+struct Answer {
+  std::array<Eigen::VectorXd, playin::kOutputs> value;
+  std::array<Eigen::MatrixXd, playin::kOutputs> slopes;
+};
+
+/// Nothing happens in the network; the frequency goes down by `dip` [Hz].
+event::FitEvent quiet(const event::FitEvent& like, double dip) {
+  event::FitEvent e = like;
+  e.switchings.clear();
+  e.smeared.clear();
+  e.left_out.clear();
+  e.clean = {};
+  record::Record& r = e.record;
+  double angle = std::arg(e.start.voltage);
+  for (std::size_t k = 0; k < r.t.size(); ++k) {
+    r.V[k] = std::abs(e.start.voltage);
+    r.theta[k] = angle;
+    const double since = std::max(0.0, r.t[k] - r.t.front() - kSceneBegins);
+    angle -= constants::turn * dip * std::min(1.0, since / kFrequencyDipWithin) * r.step();
+  }
+  return e;
+}
+
+class Separations {
+ public:
+  Separations(std::vector<const Judgement*> rivals, const event::WhitenedEvents& events, double spread)
+      : rivals_(std::move(rivals)), events_(events), known_(rivals_.size()) {
+    for (std::size_t e = 0; e < events.size(); ++e)
+      scenes_.push_back({events[e], static_cast<int>(e), "in one more event like " + events[e].record.name});
+    scenes_.push_back({quiet(events.front(), kFrequencyDip), -1,
+                       fmt::format("after a load step far away (frequency down by {} Hz)", kFrequencyDip)});
+    event::FitEvent step = quiet(events.front(), 0);
+    step.record.staged = {{.kind = record::StagedEvent::Kind::vref_step,
+                           .time = step.record.t.front() + kSceneBegins,
+                           .size = kReferenceStep}};
+    scenes_.push_back({step, -1, fmt::format("after a step of Vref by {} pu", kReferenceStep)});
+    for (const Judgement* j : rivals_) free_.push_back(free_of(j->hypothesis, spread));
+    measure_noise();
+  }
+
+  void play(int threads) {
+    answers_.resize(scenes_.size() * rivals_.size());
+    in_parallel(
+        answers_.size(),
+        [&](std::size_t k) { answers_[k] = play_one(k / rivals_.size(), k % rivals_.size()); }, [](int) {},
+        threads);
+    for (std::size_t j = 0; j < rivals_.size(); ++j) {
+      const auto n = static_cast<Eigen::Index>(free_[j].size());
+      known_[j] = Eigen::MatrixXd::Identity(n, n);
+      for (std::size_t s = 0; s < events_.size(); ++s)
+        if (const auto& a = answer(s, j))
+          for (const Output o : channels()) known_[j] += a->slopes[at(o)].transpose() * a->slopes[at(o)];
+    }
+  }
+
+  [[nodiscard]] const std::vector<Scene>& scenes() const { return scenes_; }
+  [[nodiscard]] const std::vector<Output>& channels() const { return events_.front().channels; }
+  /// What rival j leaves of what i answers there, once it is refitted; nothing where one cannot be played.
+  [[nodiscard]] std::optional<double> between(std::size_t scene, const std::vector<Output>& outputs,
+                                              std::size_t i, std::size_t j) const {
+    const auto &truth = answer(scene, i), &other = answer(scene, j);
+    if (!truth || !other) return std::nullopt;
+    double squares = 0;
+    Eigen::MatrixXd information = known_[j];
+    Eigen::VectorXd score = Eigen::VectorXd::Zero(information.rows());
+    for (const Output o : outputs) {
+      const Eigen::VectorXd r = other->value[at(o)] - truth->value[at(o)];
+      const Eigen::MatrixXd& slopes = other->slopes[at(o)];
+      squares += r.squaredNorm();
+      score += slopes.transpose() * r;
+      information += slopes.transpose() * slopes;
+    }
+    return std::max(0.0, squares - score.dot(information.ldlt().solve(score)));
+  }
+
+ private:
+  static std::size_t at(Output o) { return static_cast<std::size_t>(o); }
+  [[nodiscard]] const std::optional<Answer>& answer(std::size_t scene, std::size_t rival) const {
+    return answers_[scene * rivals_.size() + rival];
+  }
+  /// Of recorded channels it is what the first rival leaves.
+  void measure_noise() {
+    noise_.fill(kFieldNoise);
+    noise_[at(Output::speed)] = kSpeedNoise;
+    for (std::size_t c = 0; c < channels().size(); ++c) {
+      double squares = 0;
+      std::size_t count = 0;
+      for (std::size_t e = 0; e < events_.size(); ++e) {
+        const auto& measured = events_[e].measured(channels()[c]);
+        const auto& model = rivals_.front()->fit.events[e].model[c];
+        for (std::size_t k = 0; k < measured.size(); ++k)
+          if (events_[e].compared(k)) squares += std::pow(model[k] - measured[k], 2), ++count;
+      }
+      noise_[at(channels()[c])] = std::sqrt(squares / static_cast<double>(count));
+    }
+  }
+  [[nodiscard]] std::optional<Answer> play_one(std::size_t scene, std::size_t rival) const {
+    const Judgement& j = *rivals_[rival];
+    const Scene& s = scenes_[scene];
+    std::vector<playin::Direction> along;
+    for (const auto& f : free_[rival])
+      along.push_back({.kind = playin::Direction::Kind::parameter,
+                       .parameter = f.id,
+                       .scale = fit::axis_unit(j.fit.plant, f)});
+    try {
+      const playin::Response r = event::play(
+          {j.fit.plant, j.hypothesis.conventions}, s.event,
+          s.recorded < 0 ? event::EventState{} : j.fit.events[static_cast<std::size_t>(s.recorded)].state,
+          along);
+      Answer a;
+      for (std::size_t o = 0; o < playin::kOutputs; ++o) {
+        const auto column = [&](const std::vector<double>& v) -> Eigen::VectorXd {
+          Eigen::VectorXd c(static_cast<Eigen::Index>(v.size()));
+          for (std::size_t k = 0; k < v.size(); ++k)
+            c[static_cast<Eigen::Index>(k)] = s.event.compared(k) ? v[k] / noise_[o] : 0.0;
+          return c;
+        };
+        a.value[o] = column(r.value[o]);
+        a.slopes[o].resize(a.value[o].size(), static_cast<Eigen::Index>(along.size()));
+        for (std::size_t d = 0; d < along.size(); ++d)
+          a.slopes[o].col(static_cast<Eigen::Index>(d)) = column(r.slopes[d].value[o]);
+      }
+      return a;
+    } catch (const InputError&) {
+      return std::nullopt;  // this rival cannot be played there
+    }
+  }
+
+  std::vector<const Judgement*> rivals_;
+  const event::WhitenedEvents& events_;
+  std::vector<Scene> scenes_;
+  std::vector<std::vector<fit::FreeParameter>> free_;
+  std::vector<std::optional<Answer>> answers_;  ///< [scene * rivals + rival]
+  std::vector<Eigen::MatrixXd> known_;          ///< of each rival's parameters, from the records
+  std::array<double, playin::kOutputs> noise_;
+};
+
+double effects_in_set(const std::vector<Explanation>& all) {
+  const auto end = all.begin() + static_cast<std::ptrdiff_t>(credible(all));
+  return static_cast<double>(std::count_if(all.begin(), end, [](const auto& e) { return e.place >= 0; }));
+}
+
+/// How many of the set are left on average once this is recorded; nothing where a rival cannot be played.
+std::optional<double> expected_size(const Separations& between, std::size_t scene,
+                                    const std::vector<Output>& outputs, const std::vector<Explanation>& set) {
+  double sum = 0, weight = 0;
+  for (std::size_t i = 0; i < set.size(); ++i)
+    for (const auto& [node, share] : kNodes) {
+      std::vector<Explanation> then = set;
+      for (std::size_t j = 0; j < set.size(); ++j) {
+        const auto apart = i == j ? 0.0 : between.between(scene, outputs, i, j);
+        if (!apart) return std::nullopt;
+        then[j].evidence -= *apart + 2 * node * std::sqrt(*apart);
+      }
+      sum += set[i].probability * share * effects_in_set(posterior(std::move(then), -1e300));
+      weight += set[i].probability * share;
+    }
+  return sum / weight;
+}
+
+}  // namespace
+
+Decision what_would_decide(const std::vector<Judgement>& ranked, const std::vector<Explanation>& all,
+                           const event::WhitenedEvents& events, double spread, int threads) {
+  Decision d;
+  d.now = effects_in_set(all);
+  std::vector<Explanation> set;
+  std::vector<const Judgement*> rivals;
+  for (std::size_t k = 0; k < credible(all) && set.size() < kRivals; ++k)
+    if (all[k].place >= 0) {
+      set.push_back(all[k]);
+      rivals.push_back(&ranked[static_cast<std::size_t>(all[k].place)]);
+    }
+  const bool whole = std::ranges::all_of(events, [](const event::FitEvent& e) {
+    return e.record.component == record::Component::plant && e.record.staged.empty();
+  });
+  if (set.size() < 2 || !whole) return d;
+  Separations between(rivals, events, spread);
+  between.play(threads);
+  const auto consider = [&](std::size_t scene, const std::vector<Output>& outputs,
+                            const std::string& channel) {
+    const auto size = expected_size(between, scene, outputs, set);
+    if (!size) return;
+    const Scene& s = between.scenes()[scene];
+    // of events like those recorded the most telling one stands for all
+    const auto like = std::ranges::find_if(d.next, [&](const NextRecord& n) {
+      return s.recorded >= 0 && n.what.starts_with(channel + " in one more");
+    });
+    if (like == d.next.end())
+      d.next.push_back({channel + " " + s.name, *size});
+    else if (*size < like->expected)
+      *like = {channel + " " + s.name, *size};
+  };
+  for (std::size_t s = 0; s < between.scenes().size(); ++s) {
+    consider(s, between.channels(), "the same channels");
+    for (const auto& [output, name] : kFurther) {
+      auto outputs = between.channels();
+      if (std::ranges::count(outputs, output)) continue;
+      outputs.push_back(output);
+      consider(s, outputs, name);
+    }
+  }
+  std::ranges::stable_sort(d.next, {}, &NextRecord::expected);
+  return d;
+}
+
+std::string decide_sentence(const Decision& decision) {
+  if (decision.next.empty()) return "";
+  const NextRecord& best = decision.next.front();
+  std::string what = best.what;
+  what.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(what.front())));
+  if (best.expected > decision.now - 0.5)
+    return fmt::format("Nothing that was tried would decide: {} leaves a set of {:.1f} of {:.0f}.", best.what,
+                       best.expected, decision.now);
+  return fmt::format("{} would decide: set of {:.0f} -> {:.1f}.", what, decision.now, best.expected);
+}
+
+}  // namespace swingbank::validate::hypothesis

@@ -1,0 +1,39 @@
+#include "validate/hypothesis/posterior.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "validate/thresholds/thresholds.hpp"
+
+namespace swingbank::validate::hypothesis {
+
+std::vector<Explanation> posterior(std::vector<Explanation> all, double none) {
+  for (const Explanation& e : all)
+    if (e.place >= 0) none = std::max(none, e.evidence - thresholds::evidence.accepted);
+  all.push_back({kNoneOfThese, none});
+  const double most = std::ranges::max(all, {}, &Explanation::evidence).evidence;
+  const double scale = 2 * thresholds::posterior.scale;
+  double sum = 0;
+  for (Explanation& e : all) sum += e.probability = std::exp((e.evidence - most) / scale);
+  for (Explanation& e : all) e.probability /= sum;
+  std::ranges::stable_sort(all, std::greater<>(), &Explanation::probability);
+  return all;
+}
+
+std::size_t credible(const std::vector<Explanation>& all) {
+  double sum = 0;
+  std::size_t n = 0;
+  while (n < all.size() && sum < thresholds::posterior.set) sum += all[n++].probability;
+  return n;
+}
+
+std::string probability_text(double probability) {
+  const double percent = 100 * probability;
+  if (percent < 1) return "< 1 %";
+  if (percent > 99) return "> 99 %";
+  return fmt::format("{:.0f} %", percent);
+}
+
+}  // namespace swingbank::validate::hypothesis
