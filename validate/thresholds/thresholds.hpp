@@ -46,8 +46,8 @@ inline constexpr Evidence evidence;
 struct Posterior {
   Threshold scale{
       "posterior.scale", 6, "chi2",
-      "an evidence counts as twice a log probability times this: fits end short of their optima, and noise is not "
-      "all modelled; the most likely value over blind cases of spent seeds (decision 41)"};
+      "an evidence counts as twice a log probability times this: fits end short of their optima, and noise is "
+      "not all modelled; the likelihood of 21 blind cases of spent seeds is flat from 4 to 6 (decision 41)"};
   Threshold set{"posterior.set", 0.95, "probability",
                 "the most probable explanations that make up this much are the set (decision 41)"};
   Threshold told{"posterior.told", 0.5, "probability",
