@@ -31,7 +31,7 @@ constexpr double kSceneBegins = 1.0;         ///< both, after the record's begin
 /// Of the noise of a further record: nodes and weights of a standard normal variable (Gauss and Hermite).
 constexpr std::array<std::pair<double, double>, 3> kNodes = {
     {{0.0, 2.0 / 3}, {std::numbers::sqrt3, 1.0 / 6}, {-std::numbers::sqrt3, 1.0 / 6}}};
-constexpr std::array<std::pair<Output, const char*>, 3> kFurther = {
+constexpr std::array<std::pair<Output, const char*>, 3> kMoreChannels = {
     {{Output::Ifd, "field current"}, {Output::Efd, "field voltage"}, {Output::speed, "speed"}}};
 
 /// What is played, and what a person calls it.
@@ -236,7 +236,7 @@ Decision what_would_decide(const std::vector<Judgement>& ranked, const std::vect
   };
   for (std::size_t s = 0; s < between.scenes().size(); ++s) {
     consider(s, between.channels(), "the same channels");
-    for (const auto& [output, name] : kFurther) {
+    for (const auto& [output, name] : kMoreChannels) {
       auto outputs = between.channels();
       if (std::ranges::count(outputs, output)) continue;
       outputs.push_back(output);
