@@ -81,6 +81,7 @@ std::string describe(const Range& r) {
 }
 
 std::string written(const toml::node& n) {
+  if (const auto* number = n.as_floating_point()) return fmt::format("{:#}", number->get());  // 0.006, 2.0
   std::ostringstream text;
   n.visit([&](const auto& value) { text << value; });
   return text.str();

@@ -63,6 +63,15 @@ TEST(StrictConfig, NotANumberIsRefused) {
   EXPECT_THAT(sentence_of(c), HasSubstr("c.toml:2:5 (it must be a finite number)"));
 }
 
+TEST(StrictConfig, NumbersAreToldAsShortAsTheyWereWritten) {
+  Config c("a = 0.006\nb = 500.0\nc = 7\n", "c.toml");
+  for (const char* key : {"a", "b", "c"}) c.require<double>(key, {1.0, 5.0, "s"});
+  const std::string s = sentence_of(c);
+  EXPECT_THAT(s, HasSubstr("a = 0.006 at"));
+  EXPECT_THAT(s, HasSubstr("b = 500.0 at"));
+  EXPECT_THAT(s, HasSubstr("c = 7 at"));
+}
+
 TEST(StrictConfig, SyntaxErrorHasItsLine) {
   try {
     Config c("a = 1\nb = \n", "c.toml");
