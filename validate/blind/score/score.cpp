@@ -144,20 +144,20 @@ Forecast ScoredCase::forecast() const {
   Forecast f;
   f.group = channels ? kWithChannels : kPowerOnly;
   f.listed = listed && kinds.size() == 1;
-  const auto is_truth = [&](const std::string& name) {
+  const auto is_truth = [&](const std::string& explanation) {
     if (kinds.empty()) return false;
-    if (!listed) return name == hypothesis::kNoneOfThese;
-    const auto said = together(name);
+    if (!listed) return explanation == hypothesis::kNoneOfThese;
+    const auto said = together(explanation);
     return said.size() == answers.size() &&
            std::ranges::all_of(answers, [&](const auto& a) { return share(a, said); });
   };
   std::vector<std::pair<double, char>> said;
   double nothing = 0;  // wrong parameters are no hidden effect
-  for (const auto& [name, probability] : verdict.probabilities)
-    if (name.starts_with(hypothesis::kNothingMissing))
+  for (const auto& [explanation, probability] : verdict.probabilities)
+    if (explanation.starts_with(hypothesis::kNothingMissing))
       nothing += probability;
     else
-      said.emplace_back(probability, is_truth(name) ? 1 : 0);
+      said.emplace_back(probability, is_truth(explanation) ? 1 : 0);
   if (!verdict.probabilities.empty()) said.emplace_back(nothing, kinds.empty() ? 1 : 0);
   std::ranges::stable_sort(said, std::greater<>(), &std::pair<double, char>::first);
   for (const auto& [probability, right] : said) {
