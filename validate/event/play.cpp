@@ -1,5 +1,6 @@
 #include "validate/event/play.hpp"
 
+#include "validate/playin/allowance.hpp"
 #include "validate/playin/given.hpp"
 #include "validate/playin/instruments.hpp"
 
@@ -43,6 +44,8 @@ playin::Response play(const sim::plant::PlantUnderTest& tested, const FitEvent& 
     run.least_step = event.record.step() / 40;
     run.step_limit = 15 * event.record.samples();
   }
+  if (how.lenient)
+    run.allowance = playin::allowances(playin::linearise(run), event.channels, event.record.step());
   if (how.input == InputKind::torque) run.torque = state.input;
   if (how.input == InputKind::field) run.field = state.input;
   return playin::observe(run, along);

@@ -28,6 +28,8 @@ struct Playing {
   /// met and left within one sample is no reason for shorter ones; after 15 steps a sample it gives up.
   /// False: neither.
   bool hasty = true;
+  /// A step may miss a state by what the compared channels do not show of it (playin::allowances).
+  bool lenient = false;
   InputKind input = InputKind::none;  ///< where the state's input acts
   double until = 1e300;               ///< samples after it are left out [s]
 };

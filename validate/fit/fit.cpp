@@ -102,7 +102,7 @@ class Search {
         iterations > 0 && iterations <= kFewSteps ? iterations + kRefusedSteps : iterations;
     o.function_tolerance = options_.enough;
     o.linear_solver_type =
-        setting_.input == InputKind::none ? ceres::DENSE_NORMAL_CHOLESKY : ceres::SPARSE_NORMAL_CHOLESKY;
+        setting_.input == InputKind::none ? ceres::DENSE_NORMAL_CHOLESKY : ceres::DENSE_SCHUR;
     o.logging_type = ceres::SILENT;
     o.num_threads = 1;  // hypotheses run side by side
     o.initial_trust_region_radius = 1e2;
@@ -333,6 +333,7 @@ FitOptions continued(FitOptions o, const Fit& f, const std::vector<FreeParameter
 Fit fit(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
         const std::vector<FreeParameter>& free, const FitOptions& options) {
   Setting setting{&tested.plant, &tested.conventions, &events, {}, options.tolerance, options.input, {}};
+  setting.lenient = options.lenient;
   setting.knots.resize(events.size());
   if (options.input != InputKind::none)
     for (std::size_t e = 0; e < events.size(); ++e) setting.knots[e] = options.start[e].input.t;

@@ -96,7 +96,10 @@ constexpr double kFitTolerance = event::Playing{}.tolerance;  ///< of the integr
 
 struct FitOptions {
   int iterations = 30;
-  double tolerance = kFitTolerance;    ///< of the integration
+  double tolerance = kFitTolerance;  ///< of the integration
+  /// While it searches, steps may miss what the channels do not show (event::Playing); the fit it ends with
+  /// is measured without.
+  bool lenient = false;
   double enough = 1e-5;                ///< relative change of the cost at which the fit stops
   std::vector<EventState> start = {};  ///< of the events; empty: as prepared
   std::vector<double> values = {};     ///< of the free parameters, to start from; empty: the plant's

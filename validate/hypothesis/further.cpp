@@ -62,8 +62,12 @@ double left_by(const sim::plant::PlantUnderTest& tested, const event::WhitenedEv
 
 void try_further(const Stage& stage, const fit::Fit& leader, Judgement& j) {
   constexpr std::size_t kFurther = 2;
-  constexpr int kOwnSteps = 8, kAllSteps = 10;
+  constexpr int kOwnSteps = 8, kBriefSteps = 4, kAllSteps = 6;
   const Hypothesis& h = j.hypothesis;
+  // where nothing but noise is left, another start has nothing to find
+  if (j.fit.failed.empty() && j.fit.misfit() < thresholds::adequacy.misfit &&
+      fit::gain(j.fit, leader) < thresholds::evidence.apart)
+    return;
   // parameters that both share start at the leader's values
   Hypothesis led = h;
   for (const auto& p : leader.parameters) {
@@ -86,17 +90,27 @@ void try_further(const Stage& stage, const fit::Fit& leader, Judgement& j) {
   for (std::size_t k = 0; k < std::min(kFurther, order.size()); ++k) {
     fit::FitOptions o;
     o.errors = false;
+    o.lenient = true;
     o.start = states;
     o.iterations = kOwnSteps;
     o.values = *order[k].second;
     const fit::Fit own = fit::fit({led.plant, h.conventions}, stage.events, h.free, o);
     if (!own.failed.empty()) continue;
     o = fit::continued(o, own, free);
-    o.errors = true;
+    o.iterations = kBriefSteps;
+    const fit::Fit brief = fit::fit(h.under_test(), stage.events, free, o);
+    const double behind = fit::gain(brief, j.fit);
+    if (!brief.failed.empty() || (behind > thresholds::evidence.within_reach &&
+                                  behind > thresholds::search.coming * fit::gain(own, j.fit)))
+      continue;
+    o = fit::continued(o, brief, free);
     o.iterations = kAllSteps;
-    if (fit::Fit f = fit::fit(h.under_test(), stage.events, free, o);
-        f.failed.empty() && fit::better(f, j.fit))
-      j.fit = std::move(f);
+    const fit::Fit f = fit::fit(h.under_test(), stage.events, free, o);
+    if (!f.failed.empty() || !fit::better(f, j.fit)) continue;
+    o = fit::continued({}, f, free);
+    o.iterations = 0;  // its errors alone
+    if (fit::Fit known = fit::fit(h.under_test(), stage.events, free, o); known.failed.empty())
+      j.fit = std::move(known);
   }
 }
 

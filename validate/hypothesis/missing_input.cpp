@@ -41,6 +41,7 @@ MissingInput infer_input(fit::InputKind kind, const sim::plant::PlantUnderTest& 
   options.bend = kind == fit::InputKind::torque ? 0.01 : 0.1;  // a second difference between knots [pu]
   options.iterations = 8;
   options.enough = 1e-3;
+  options.lenient = true;
   if (options.start.empty())
     for (const event::FitEvent& e : events) {
       fit::EventState state;

@@ -99,6 +99,7 @@ class Searcher {
   void first_steps(const Candidate& c, std::size_t tries, std::vector<fit::Fit>& fits) const {
     fit::FitOptions o;
     o.errors = false;
+    o.lenient = true;
     o.iterations = kFirstSteps;
     for (std::size_t k = fits.size(); k < std::min(c.starts.size(), tries); ++k)
       fits.push_back(attempt(c, c.starts[k], o));
@@ -132,6 +133,7 @@ class Searcher {
     const auto free = free_of(c.hypothesis, stage_.spread);
     fit::FitOptions o;
     o.errors = false;
+    o.lenient = true;
     o.iterations = kMoreSteps;
     std::vector<fit::Fit> fits;
     std::size_t best = 0;
@@ -164,6 +166,7 @@ class Searcher {
   fit::Fit from_stage(const Candidate& c, const std::vector<double>& values, int steps) const {
     fit::FitOptions o;
     o.errors = false;
+    o.lenient = true;
     o.iterations = steps;
     o.values = values;
     for (const auto& e : stage_.fit.events) o.start.push_back(e.state);
@@ -194,6 +197,7 @@ class Searcher {
   fit::Fit in_rounds(const Candidate& c, fit::Fit best) const {
     fit::FitOptions o;
     o.errors = false;
+    o.lenient = true;
     o.iterations = kOnwardSteps;
     const auto free = free_of(c.hypothesis, stage_.spread);
     for (int round = 0; round < kRounds; ++round) {

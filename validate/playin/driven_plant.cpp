@@ -85,6 +85,8 @@ class Driven {
     const std::size_t n = x_.size();
     for (auto& k : k_) k.resize(n);
     trial_.resize(n);
+    allowed_.assign(n, run_.tolerance);
+    for (std::size_t i = 0; i < run_.allowance.size(); ++i) allowed_[i] *= run_.allowance[i];
     collect_instants();
   }
 
@@ -92,6 +94,9 @@ class Driven {
     Response back;
     back.slopes.resize(directions_.size());
     const record::Record& r = *run_.record;
+    for (auto& values : back.value) values.reserve(r.t.size());
+    for (auto& slope : back.slopes)
+      for (auto& values : slope.value) values.reserve(r.t.size());
     const double slack = 1e-4 * r.step();  // as in VoltageCurve: a sample at a switching belongs before it
     t_ = r.t.front();
     for (const double sample : r.t) {
@@ -388,7 +393,7 @@ class Driven {
     double worst = 0;
     for (std::size_t i = 0; i < x_.size(); ++i) {
       const T e = weighted<pair.stages - 1>(pair.error, i);
-      const double ratio = h * Seeds<T>::size(e) / (run_.tolerance * (1 + std::abs(sim::value_of(x_[i]))));
+      const double ratio = h * Seeds<T>::size(e) / (allowed_[i] * (1 + std::abs(sim::value_of(x_[i]))));
       if (!std::isfinite(ratio)) return ratio;
       worst = std::max(worst, ratio);
     }
@@ -435,6 +440,7 @@ class Driven {
   sim::plant::PlantEquations<T> equations_;
   std::vector<T> c_, x_, trial_, scratch_;
   std::array<std::vector<T>, 7> k_;
+  std::vector<double> allowed_;  ///< error of each state per step, relative to 1 + |state|
   T Efd_, Tm_;
   sim::Signals<T> signals_;
   bool recorded_;

@@ -50,6 +50,7 @@ struct Drive {
   double angle = 0, speed = 0;   ///< offset of the first two states from equilibrium [rad], [pu]
   PiecewiseLinear torque = {}, field = {};  ///< added to Tm, Efd [pu]
   double tolerance = 1e-10;                 ///< error per step, relative to 1 + |state|
+  std::vector<double> allowance = {};       ///< factor on the tolerance, for each state; empty: 1
   double until = 1e300;                     ///< samples after it are left out [s]
   double least_step = 0.0;                  ///< steps this short are taken whatever their error; 0: never [s]
   int step_limit = 2'000'000;               ///< steps before it gives up

@@ -44,6 +44,23 @@ TEST(Starts, ALimiterStartsWhereItActs) {
   for (std::size_t k = 0; k < 10; ++k) EXPECT_GT(moved(stage, c.hypothesis, c.hypothesis.starts[k]), 10) << k;
 }
 
+TEST(Starts, WhatOnlyAnExciterHearsNeedsOne) {
+  fit::ExciterExample example(0.2);
+  const auto starts = [&](const char* name) {
+    const fit::Fit nothing = fit::fit(example.model.under_test(), example.events, {}, {.iterations = 0});
+    const Stage stage{.events = example.events,
+                      .plant = example.model.plant,
+                      .conventions = example.model.conventions,
+                      .library = example.model.library,
+                      .fit = nothing};
+    const auto all = all_hypotheses(stage.under_test(), stage.library);
+    return StartFinder(stage).of(*std::ranges::find(all, name, &Hypothesis::name)).starts.size();
+  };
+  EXPECT_GT(starts("IEEEVC"), 0U);
+  example.model.plant.controls.clear();
+  for (const char* name : {"IEEEVC", "PSS2B", "MAXEX2"}) EXPECT_EQ(starts(name), 0U) << name;
+}
+
 TEST(Starts, WhatTheFitHasBentStartsAsTheModelHasIt) {
   const fit::ExciterExample example(0.2);
   fit::Fit bent = example.fitted({"H", "K", "TE"}, {.iterations = 0});

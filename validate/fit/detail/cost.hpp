@@ -60,6 +60,7 @@ struct Setting {
   double tolerance;
   InputKind input;
   std::vector<std::vector<double>> knots;  ///< of the input, per event [s]
+  bool lenient = false;                    ///< of the search; see FitOptions
   bool can_exist = false;  ///< the plant to start from; the search then stays among such plants
 };
 
@@ -162,7 +163,7 @@ class EventCost : public ceres::CostFunction {
       add_state_directions(along);
     }
     try {
-      const playin::Response r = answer(plant, at(state), along);
+      const playin::Response r = answer(plant, at(state), along, setting_.lenient);
       const auto n = static_cast<Eigen::Index>(along.size());
       event::RowMatrix e(event_.values(), n + 1);
       for (Eigen::Index d = 0; d < n; ++d)
@@ -185,9 +186,10 @@ class EventCost : public ceres::CostFunction {
   }
   /// What the plant answers to the event.
   [[nodiscard]] playin::Response answer(const sim::plant::Plant& plant, const EventState& state,
-                                        std::span<const playin::Direction> along = {}) const {
+                                        std::span<const playin::Direction> along = {},
+                                        bool lenient = false) const {
     return event::play({plant, *setting_.conventions}, event_, state, along,
-                       {.tolerance = setting_.tolerance, .input = setting_.input});
+                       {.tolerance = setting_.tolerance, .lenient = lenient, .input = setting_.input});
   }
 
  private:

@@ -23,6 +23,18 @@ constexpr std::size_t kProvoking = 80;
 constexpr std::array<double, 4> kBeyond = {0.02, 0.05, 0.1, 0.2};
 constexpr int kHalvings = 6;
 
+/// What the hypothesis's own block makes may be heard by an exciter alone, and there may be none. Its states
+/// would still make other steps, which look like an answer.
+bool unheard(const Hypothesis& h) {
+  if (!h.drawn || h.free.empty()) return false;
+  const sim::Slot slot = sim::plant::block_effect(h.plant, h.free.front().id.block).slot;
+  const bool for_exciter =
+      slot == sim::Slot::compensator || slot == sim::Slot::stabiliser || slot == sim::Slot::limiter;
+  return for_exciter && std::ranges::none_of(h.plant.controls, [](const sim::plant::Block& b) {
+           return b.effect->slot == sim::Slot::exciter;
+         });
+}
+
 }  // namespace
 
 StartFinder::StartFinder(const Stage& stage) : stage_(stage) {
@@ -32,6 +44,7 @@ StartFinder::StartFinder(const Stage& stage) : stage_(stage) {
 
 Candidate StartFinder::of(Hypothesis h) const {
   Candidate c;
+  if (unheard(h)) return c;
   bring(stage_, h);
   const bool provoked = provoke(h);
   if (score_)

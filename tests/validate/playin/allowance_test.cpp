@@ -1,0 +1,52 @@
+// By how much more than the tolerance a step may miss a state: what the channels show of it.
+#include "validate/playin/allowance.hpp"
+
+#include <gtest/gtest.h>
+
+namespace swingbank::validate::playin {
+namespace {
+
+constexpr double kInterval = 1.0 / 60;
+
+/// A slow state that P shows as it is; a lag of 0.02 s that drives it over 6 s; one that drives it over 0.2
+/// s; a state that nothing shows; and one that drives it hardly at all.
+LinearPlant plant() {
+  LinearPlant p;
+  p.A = Eigen::MatrixXd::Zero(5, 5);
+  p.A(0, 0) = -1 / 6.0;
+  p.A(0, 1) = 1 / 6.0;
+  p.A(1, 1) = -1 / 0.02;
+  p.A(0, 2) = 1 / 0.2;
+  p.A(2, 2) = -1 / 0.02;
+  p.A(3, 3) = -1 / 0.02;
+  p.A(0, 4) = 1e-3;
+  p.A(4, 4) = -1 / 0.02;
+  p.C = Eigen::MatrixXd::Zero(kOutputs, 5);
+  p.C(static_cast<int>(Output::P), 0) = 1;
+  p.C(static_cast<int>(Output::Efd), 1) = 2;
+  return p;
+}
+
+TEST(Allowances, AreWhatTheComparedChannelsShow) {
+  const auto all = allowances(plant(), std::vector{Output::P}, kInterval);
+  ASSERT_EQ(all.size(), 5U);
+  EXPECT_EQ(all[0], 1.0);
+  // of the lag's 1, 0.02 s / 6 s arrives at the slow state; 0.02 s / 0.2 s of the next
+  EXPECT_EQ(all[1], kMostAllowance);
+  EXPECT_NEAR(all[2], 0.2 / 0.02, 1.5);
+  EXPECT_EQ(all[3], 1.0) << "what is not seen about the start may act behind a limit";
+  EXPECT_EQ(all[4], kMostAllowance);
+}
+TEST(Allowances, AreLeastWhereTheStateItselfIsCompared) {
+  const auto all = allowances(plant(), std::vector{Output::P, Output::Efd}, kInterval);
+  EXPECT_EQ(all[1], 1.0);
+  EXPECT_NEAR(all[2], 0.2 / 0.02, 1.5);
+}
+TEST(Allowances, AreNoneWhereNothingIsKnown) {
+  LinearPlant unknown = plant();
+  unknown.A(0, 0) = std::nan("");
+  EXPECT_EQ(allowances(unknown, std::vector{Output::P}, kInterval), std::vector(5, 1.0));
+}
+
+}  // namespace
+}  // namespace swingbank::validate::playin
