@@ -183,12 +183,21 @@ class Search {
     return "its parameters contradict each other";
   }
 
+  /// What lenient steps get past may stop others.
+  playin::Response answer_at_end(std::size_t e, const sim::plant::Plant& plant, const EventState& at) const {
+    if (!setting_.lenient) return costs_[e]->answer(plant, at);
+    try {
+      return costs_[e]->answer(plant, at);
+    } catch (const InputError&) {
+      return costs_[e]->answer(plant, at, {}, true);
+    }
+  }
   void collect_events(Fit& fit) const {
     for (std::size_t e = 0; e < states_.size(); ++e) {
       const event::FitEvent& event = (*setting_.events)[e];
       EventFit f;
       f.state = costs_[e]->at(states_[e].data());
-      const playin::Response r = costs_[e]->answer(fit.plant, f.state);
+      const playin::Response r = answer_at_end(e, fit.plant, f.state);
       compare(*setting_.events, e, r, f);
       fit.chi2 += f.chi2;
       fit.values += f.values;

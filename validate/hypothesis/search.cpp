@@ -225,7 +225,9 @@ class Searcher {
     const auto free = free_of(c.hypothesis, stage_.spread);
     fit::FitOptions o = fit::continued({}, f, free);
     o.iterations = 0;
-    fit::Fit known = fit::fit({c.starts.front(), c.hypothesis.conventions}, stage_.events, free, o);
+    fit::Fit known = attempt(c, c.starts.front(), o);
+    o.lenient = true;  // the search got past what stops other steps
+    if (!known.failed.empty()) known = attempt(c, c.starts.front(), o);
     if (!known.failed.empty()) return f;
     known.iterations = f.iterations;
     known.converged = f.converged;

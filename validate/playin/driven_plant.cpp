@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 #include "base/constants.hpp"
 #include "sim/plant/equations.hpp"
 #include "sim/plant/tableau.hpp"
 #include "validate/playin/component.hpp"
+#include "validate/playin/detail/pairs.hpp"
 #include "validate/playin/detail/recorded.hpp"
 #include "validate/playin/given.hpp"
 
@@ -28,21 +30,6 @@ double hat(const std::vector<double>& knots, std::size_t k, double t) {
   return std::max(0.0, (knots[k + 1] - t) / (knots[k + 1] - knots[k]));
 }
 
-/// An embedded Runge-Kutta pair whose last stage is the first of the next step.
-struct Pair {
-  int stages;
-  double exponent;  ///< of the error in step control
-  const double (*a)[6];
-  const double *c, *error;
-};
-constexpr Pair kFineSteps{sim::plant::dp54::kStages, -1.0 / 5, sim::plant::dp54::a, sim::plant::dp54::c,
-                          sim::plant::dp54::error};
-/// Bogacki and Shampine 3(2), Appl. Math. Lett. 2 (1989) 321: half the work where a step must end at every
-/// sample anyway and the voltage is noisy.
-constexpr double kRoughA[4][6] = {{}, {1.0 / 2}, {0.0, 3.0 / 4}, {2.0 / 9, 1.0 / 3, 4.0 / 9}};
-constexpr double kRoughC[4] = {0.0, 1.0 / 2, 3.0 / 4, 1.0};
-constexpr double kRoughError[4] = {2.0 / 9 - 7.0 / 24, 1.0 / 3 - 1.0 / 4, 4.0 / 9 - 1.0 / 3, -1.0 / 8};
-constexpr Pair kRoughSteps{4, -1.0 / 3, kRoughA, kRoughC, kRoughError};
 constexpr double kRoughFrom = 1e-5;     ///< tolerance
 constexpr double kShortestStep = 1e-9;  ///< [s]
 constexpr double kCornerError = 1e-6;   ///< of a state, in a step across a corner of the equations
@@ -53,14 +40,12 @@ template <>
 struct Seeds<double> {
   static void add(double&, std::size_t, double) {}
   static double slope(double, std::size_t) { return 0.0; }
-  static double times(double factor, double x) { return factor * x; }
   static double size(double x) { return std::abs(x); }
 };
 template <>
 struct Seeds<D8> {
   static void add(D8& x, std::size_t direction, double by) { x.d[direction] += by; }
   static double slope(const D8& x, std::size_t direction) { return x.d[direction]; }
-  static D8 times(double factor, const D8& x) { return sim::chain(x, factor * x.a, factor); }
   /// Slopes count a hundredth: a fit forgives them more than a value.
   static double size(const D8& x) {
     double worst = std::abs(x.a);
@@ -85,6 +70,7 @@ class Driven {
     const std::size_t n = x_.size();
     for (auto& k : k_) k.resize(n);
     trial_.resize(n);
+    missed_.resize(n);
     allowed_.assign(n, run_.tolerance);
     for (std::size_t i = 0; i < run_.allowance.size(); ++i) allowed_[i] *= run_.allowance[i];
     collect_instants();
@@ -374,30 +360,48 @@ class Driven {
     (stage<pair, Before + 1>(h), ...);
     return scaled_error<pair>(h);
   }
-  /// weights[0] k_[0] to weights[last] k_[last] of one state.
-  template <int last>
-  T weighted(const double* weights, std::size_t state) const {
-    T sum = Seeds<T>::times(weights[0], k_[0][state]);
-    for (std::size_t j = 1; j <= last; ++j)
-      if (weights[j] != 0.0) sum = sum + Seeds<T>::times(weights[j], k_[j][state]);
-    return sum;
+  /// Sum of the first stages' derivatives with the weights of a row (-1: those of the error), of a number: a
+  /// state, or one of its slopes.
+  template <const Pair& pair, int row, int last>
+  double weighted(std::size_t number) const {
+    constexpr double weight = row < 0 ? pair.error[last] : pair.a[row < 0 ? 0 : row][row < 0 ? 0 : last];
+    if constexpr (last == 0) {
+      return weight * numbers(k_[0])[number];
+    } else {
+      const double before = weighted<pair, row, last - 1>(number);
+      if constexpr (weight == 0.0) return before;
+      return before + weight * numbers(k_[last])[number];
+    }
   }
   template <const Pair& pair, int at>
   void stage(double h) {
-    for (std::size_t i = 0; i < x_.size(); ++i)
-      trial_[i] = x_[i] + Seeds<T>::times(h, weighted<at - 1>(pair.a[at], i));
+    const double* x = numbers(x_);
+    double* trial = numbers(trial_);
+#pragma GCC ivdep
+    for (std::size_t i = 0; i < x_.size() * kNumbers; ++i)
+      trial[i] = x[i] + h * weighted<pair, at, at - 1>(i);
     evaluate(t_ + pair.c[at] * h, trial_.data(), signals_, k_[at].data());
   }
   template <const Pair& pair>
-  double scaled_error(double h) const {
+  double scaled_error(double h) {
+    double* missed = numbers(missed_);
+#pragma GCC ivdep
+    for (std::size_t i = 0; i < x_.size() * kNumbers; ++i) missed[i] = weighted<pair, -1, pair.stages - 1>(i);
     double worst = 0;
     for (std::size_t i = 0; i < x_.size(); ++i) {
-      const T e = weighted<pair.stages - 1>(pair.error, i);
-      const double ratio = h * Seeds<T>::size(e) / (allowed_[i] * (1 + std::abs(sim::value_of(x_[i]))));
+      const double ratio =
+          h * Seeds<T>::size(missed_[i]) / (allowed_[i] * (1 + std::abs(sim::value_of(x_[i]))));
       if (!std::isfinite(ratio)) return ratio;
       worst = std::max(worst, ratio);
     }
     return worst;
+  }
+  /// The states one after the other, each a value and its slopes: sums of steps are the same for all of them.
+  static constexpr std::size_t kNumbers = sizeof(T) / sizeof(double);
+  static_assert(kNumbers * sizeof(double) == sizeof(T) && std::is_trivially_copyable_v<T>);
+  static double* numbers(std::vector<T>& states) { return reinterpret_cast<double*>(states.data()); }
+  static const double* numbers(const std::vector<T>& states) {
+    return reinterpret_cast<const double*>(states.data());
   }
 
   void record(Response& back) {
@@ -438,7 +442,7 @@ class Driven {
   bool fresh_ = true;  ///< k_[0] must be evaluated anew
   std::span<const Direction> directions_;
   sim::plant::PlantEquations<T> equations_;
-  std::vector<T> c_, x_, trial_, scratch_;
+  std::vector<T> c_, x_, trial_, missed_, scratch_;
   std::array<std::vector<T>, 7> k_;
   std::vector<double> allowed_;  ///< error of each state per step, relative to 1 + |state|
   T Efd_, Tm_;

@@ -1,0 +1,23 @@
+#pragma once
+// The pairs of Runge-Kutta formulas by which a plant is driven.
+#include "sim/plant/tableau.hpp"
+
+namespace swingbank::validate::playin {
+
+/// An embedded Runge-Kutta pair whose last stage is the first of the next step.
+struct Pair {
+  int stages;
+  double exponent;  ///< of the error in step control
+  const double (*a)[6];
+  const double *c, *error;
+};
+inline constexpr Pair kFineSteps{sim::plant::dp54::kStages, -1.0 / 5, sim::plant::dp54::a,
+                                 sim::plant::dp54::c, sim::plant::dp54::error};
+/// Bogacki and Shampine 3(2), Appl. Math. Lett. 2 (1989) 321: half the work where a step must end at every
+/// sample anyway and the voltage is noisy.
+inline constexpr double kRoughA[4][6] = {{}, {1.0 / 2}, {0.0, 3.0 / 4}, {2.0 / 9, 1.0 / 3, 4.0 / 9}};
+inline constexpr double kRoughC[4] = {0.0, 1.0 / 2, 3.0 / 4, 1.0};
+inline constexpr double kRoughError[4] = {2.0 / 9 - 7.0 / 24, 1.0 / 3 - 1.0 / 4, 4.0 / 9 - 1.0 / 3, -1.0 / 8};
+inline constexpr Pair kRoughSteps{4, -1.0 / 3, kRoughA, kRoughC, kRoughError};
+
+}  // namespace swingbank::validate::playin
