@@ -66,7 +66,7 @@ void try_further(const Stage& stage, const fit::Fit& leader, Judgement& j) {
   const Hypothesis& h = j.hypothesis;
   // where nothing but noise is left, another start has nothing to find
   if (j.fit.failed.empty() && j.fit.misfit() < thresholds::adequacy.misfit &&
-      fit::gain(j.fit, leader) < thresholds::evidence.apart)
+      fit::gain(j.fit, leader) < thresholds::evidence.accepted)
     return;
   // parameters that both share start at the leader's values
   Hypothesis led = h;
