@@ -377,16 +377,17 @@ class Driven {
   void stage(double h) {
     const double* x = numbers(x_);
     double* trial = numbers(trial_);
+    const std::size_t count = x_.size() * kNumbers;
 #pragma GCC ivdep
-    for (std::size_t i = 0; i < x_.size() * kNumbers; ++i)
-      trial[i] = x[i] + h * weighted<pair, at, at - 1>(i);
+    for (std::size_t i = 0; i < count; ++i) trial[i] = x[i] + h * weighted<pair, at, at - 1>(i);
     evaluate(t_ + pair.c[at] * h, trial_.data(), signals_, k_[at].data());
   }
   template <const Pair& pair>
   double scaled_error(double h) {
     double* missed = numbers(missed_);
+    const std::size_t count = x_.size() * kNumbers;
 #pragma GCC ivdep
-    for (std::size_t i = 0; i < x_.size() * kNumbers; ++i) missed[i] = weighted<pair, -1, pair.stages - 1>(i);
+    for (std::size_t i = 0; i < count; ++i) missed[i] = weighted<pair, -1, pair.stages - 1>(i);
     double worst = 0;
     for (std::size_t i = 0; i < x_.size(); ++i) {
       const double ratio =
