@@ -162,20 +162,17 @@ class Diagnoser {
     result_.events = result_.events.with(
         fit::measure_noise_through(best.fit, best.hypothesis.conventions, result_.events));
     const auto go_on = [&](const sim::plant::PlantUnderTest& tested,
-                           const std::vector<fit::FreeParameter>& free, const fit::Fit& f, int steps) {
+                           const std::vector<fit::FreeParameter>& free, const fit::Fit& f) {
       fit::FitOptions o = fit::continued({}, f, free);
-      o.iterations = steps;
+      o.iterations = kOnwards;
       return fit::fit(tested, result_.events, free, o);
     };
-    result_.base = go_on(model_.under_test(), fit::free_parameters(model_.plant, options_.spread),
-                         result_.base, kOnwards);
+    result_.base =
+        go_on(model_.under_test(), fit::free_parameters(model_.plant, options_.spread), result_.base);
     require_fitted_base();
-    const double near =
-        thresholds::evidence.near * best.gain;  // no rival that is further behind is fitted again
     each(result_.ranked, "noise measured again", [&](hypothesis::Judgement& j) {
       if (!j.fitted) return;
-      j.fit = go_on(j.hypothesis.under_test(), hypothesis::free_of(j.hypothesis, options_.spread), j.fit,
-                    j.gain > near ? kOnwards : 0);
+      j.fit = go_on(j.hypothesis.under_test(), hypothesis::free_of(j.hypothesis, options_.spread), j.fit);
       j.gain = fit::gain(result_.base, j.fit, fit::criterion);
     });
     std::erase_if(result_.ranked, [](const hypothesis::Judgement& j) { return !j.fit.failed.empty(); });
