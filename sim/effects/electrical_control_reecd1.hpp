@@ -199,14 +199,14 @@ struct Model {
     std::copy(Core::states.begin(), Core::states.end(), all.begin());
     all[Vcomp] = {"Vcomp", "pu", "measured voltage that is held"};
     constexpr auto left = [](std::string_view name, std::string_view meaning) {
-      return State{.name = name, .unit = "s", .meaning = meaning, .weight = 0.1, .low = none, .bends = true};
+      return State{.name = name, .unit = "s", .meaning = meaning, .low = none, .bends = true};
     };
     all[after] = left("after", "time left of Thld");
     all[after_p] = left("after_p", "time left of Thld2");
     all[blocked] = left("blocked", "time left of Tblk");
-    all[kept_q] = {"kept_q", "pu", "Iqcmd in the last dip", 0.1};
-    all[kept_p] = {"kept_p", "pu", "Ipcmd in the last dip", 0.1};
-    all[kept_most] = {"kept_most", "pu", "limit of Ipcmd in the last dip", 0.1};
+    all[kept_q] = {"kept_q", "pu", "Iqcmd in the last dip"};
+    all[kept_p] = {"kept_p", "pu", "Ipcmd in the last dip"};
+    all[kept_most] = {"kept_most", "pu", "limit of Ipcmd in the last dip"};
     return all;
   }();
 

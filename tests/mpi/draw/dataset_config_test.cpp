@@ -97,7 +97,7 @@ TEST(DatasetConfigFile, RefusalsNameLineAndRemedy) {
   EXPECT_THAT(folder.refusal("H = [1.0, 10.0]", "H = [1.0, 99.0]"), HasSubstr("it must be 0.1 to 20 s"));
   EXPECT_THAT(folder.refusal("H = [1.0, 10.0]", "J = [1.0, 10.0]"), HasSubstr("unknown parameter J"));
   EXPECT_THAT(folder.refusal("model = \"GENROU\"", "model = \"GENSOL\""),
-              HasSubstr("use one of: GENCLS, GENROE"));
+              HasSubstr("use one of: GENCLS, GENQEC, GENROE"));
   EXPECT_THAT(folder.refusal("model = \"GENROU\"\n\n[vary.box]", "model = \"GENCLS\"\n\n[vary.box]"),
               HasSubstr("unknown parameter Tdop"));
   EXPECT_THAT(folder.refusal("\"Efd\"", "\"Efg\""), HasSubstr("channel 'Efg'"));
