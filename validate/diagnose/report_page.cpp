@@ -80,7 +80,7 @@ class DiagnosisPage {
     page_.bars(bars);
     page_.text(
         "How probable each explanation is, given the effects that were tried and that none of them may be right. "
-        "The coloured ones make up 95 % together. How often such figures are right stands in docs/blind-test.md.");
+        "The blue ones make up 95 % together. How often such figures are right stands in docs/blind-test.md.");
     if (d_.would_decide.next.empty()) return;
     report::Table table{
         fmt::format(
