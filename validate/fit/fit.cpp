@@ -351,7 +351,11 @@ Fit fit(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& e
   for (std::size_t i = 0; i < options.values.size(); ++i)
     parameter_value(start, free[i].id) = options.values[i];
   setting.can_exist = playin::can_exist(start);
-  return Search(setting, options).run();
+  Fit found = Search(setting, options).run();
+  if (found.failed.empty() || setting.lenient) return found;
+  setting.lenient = true;
+  Fit lenient = Search(setting, options).run();
+  return lenient.failed.empty() ? lenient : found;
 }
 
 }  // namespace swingbank::validate::fit

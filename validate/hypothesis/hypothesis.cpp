@@ -10,6 +10,7 @@
 #include <random>
 
 #include "sim/library/variants.hpp"
+#include "validate/fit/sign.hpp"
 #include "validate/playin/can_run.hpp"
 #include "validate/playin/component.hpp"
 #include "validate/playin/instruments.hpp"
@@ -86,8 +87,9 @@ std::vector<std::vector<double>> draws(const sim::plant::Plant& plant,
       const double width = p.low > 0 && p.high / p.low >= 1000 ? 2.0 : 0.8;
       const double whole = common.try_emplace(p.unit, normal(random)).first->second;
       const bool bounded = p.unit == "s" && within > 0;
-      const double factor = (bounded ? shorter : std::exp(width * std::sqrt(0.5) * whole)) *
-                            std::exp(width * std::sqrt(0.5) * normal(random));
+      const double shared = std::sqrt(0.5) * width * whole, own = std::sqrt(0.5) * width * normal(random);
+      const double factor =
+          fit::may_change_sign(p) ? 1 + shared + own : (bounded ? shorter : std::exp(shared)) * std::exp(own);
       values.push_back(std::clamp(sim::plant::parameter_value(plant, f.id) * factor, p.low, p.high));
       sim::plant::parameter_value(drawn, f.id) = values.back();
     }

@@ -226,8 +226,6 @@ class Searcher {
     fit::FitOptions o = fit::continued({}, f, free);
     o.iterations = 0;
     fit::Fit known = attempt(c, c.starts.front(), o);
-    o.lenient = true;  // the search got past what stops other steps
-    if (!known.failed.empty()) known = attempt(c, c.starts.front(), o);
     if (!known.failed.empty()) return f;
     known.iterations = f.iterations;
     known.converged = f.converged;

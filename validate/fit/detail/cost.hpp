@@ -10,6 +10,7 @@
 #include "sim/plant/orderings.hpp"
 #include "validate/fit/detail/states.hpp"
 #include "validate/fit/fit.hpp"
+#include "validate/fit/sign.hpp"
 #include "validate/playin/can_run.hpp"
 
 namespace swingbank::validate::fit::fitting {
@@ -41,7 +42,7 @@ struct Axis {
 inline Axis make_axis(const sim::plant::Plant& plant, const FreeParameter& f) {
   const sim::Parameter& record = parameter_record(plant, f.id);
   const double start = parameter_value(plant, f.id);
-  Axis a{f, start, record.low, record.high, start > 0, 1.0};
+  Axis a{f, start, record.low, record.high, start > 0 && !may_change_sign(record), 1.0};
   if (a.logarithmic) {
     a.low = std::max(a.low, 1e-3 * start);
     a.high = std::min(a.high, 1e3 * start);

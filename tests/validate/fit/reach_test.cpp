@@ -1,0 +1,84 @@
+// Where a fit must be able to get: across zero, and past a regulator that
+// chatters.
+#include <gtest/gtest.h>
+
+#include "tests/validate/fit/exciter_example.hpp"
+#include "validate/fit/sign.hpp"
+
+namespace swingbank::validate::fit {
+namespace {
+
+const sim::Effect& effect(std::string_view name) { return *sim::library::compiled().find(name); }
+
+double& parameter(sim::plant::Block& block, std::string_view name) {
+  return block.p[static_cast<std::size_t>(block.effect->parameter_index(name))];
+}
+
+/// The example's first event as `truth` would have answered it, without noise.
+event::WhitenedEvents answered(const ExciterExample& example, const sim::plant::Plant& truth) {
+  event::FitEvent e = example.events.front();
+  const playin::Response r = answer(e, {}, {truth, example.model.conventions});
+  e.record.P = r.of(playin::Output::P);
+  e.record.Q = r.of(playin::Output::Q);
+  return {{e}, example.events.noise_model()};
+}
+
+TEST(Sign, IsOpenWhereTheRangeSaysSo) {
+  const auto open = [](std::string_view of, std::string_view name) {
+    const sim::Effect& e = effect(of);
+    return may_change_sign(e.parameters[static_cast<std::size_t>(e.parameter_index(name))]);
+  };
+  EXPECT_TRUE(open("IEEET1", "KE"));
+  EXPECT_TRUE(open("IEEEVC", "XC"));
+  EXPECT_FALSE(open("IEEET1", "VRMIN"));  // never above zero
+  EXPECT_FALSE(open("IEEET1", "KA"));     // never below
+  EXPECT_FALSE(open("STAB1", "KT"));      // a gain, within decades
+}
+/// DC exciters that feed themselves have a KE just below zero in most public cases; the standard value is 1.
+TEST(Sign, ASelfExcitedExciterIsFoundFromTheStandardOne) {
+  ExciterExample example(0.2);
+  example.model.plant.controls.back() = {&effect("IEEET1"), effect("IEEET1").standard_parameters()};
+  sim::plant::Plant truth = example.model.plant;
+  parameter(truth.controls.back(), "KE") = -0.1;
+  const event::WhitenedEvents events = answered(example, truth);
+  std::vector<FreeParameter> free = free_parameters(example.model.plant, 0.2);
+  for (auto& f : free)
+    if (f.id.block > sim::plant::kMachineBlock) f.spread = 1;
+  const Fit f = fit(example.model.under_test(), events, free);
+  ASSERT_EQ(f.failed, "");
+  const auto KE = std::ranges::find(f.parameters, "KE", &FittedParameter::name);
+  ASSERT_NE(KE, f.parameters.end());
+  EXPECT_NEAR(KE->value, -0.1, 3 * KE->error);
+  EXPECT_LT(KE->error, 0.3);
+  EXPECT_LT(f.misfit(), 0.05);
+}
+/// A regulator of gain 2000 behind a lead of eleven times answers each sample's noise with its limits.
+TEST(FitSteps, APlantThatSmallStepsDoNotPassIsFittedWithLenientOnes) {
+  ExciterExample example(0.2);
+  sim::plant::Block exciter{&effect("EXAC1"), effect("EXAC1").standard_parameters()};
+  for (const auto& [name, value] : {std::pair("TR", 6.5606997582993224e-4),
+                                    {"TB", 0.011302250967048622},
+                                    {"TC", 0.13017661277444859},
+                                    {"KA", 2000.0},
+                                    {"TA", 0.0097099611650151019},
+                                    {"VRMAX", 15.852054882605444},
+                                    {"VRMIN", -19.180020864820108},
+                                    {"TE", 1.7242239036822866},
+                                    {"KF", 0.0678283120356582},
+                                    {"TF", 0.20681630246645},
+                                    {"KC", 0.041670081431732342},
+                                    {"KD", 0.40739507310809131},
+                                    {"KE", 1.7850947516017186},
+                                    {"E1", 20.0},
+                                    {"SE1", 0.019977007898319243},
+                                    {"E2", 6.0829461026514764},
+                                    {"SE2", 0.0087104884393198745}})
+    parameter(exciter, name) = value;
+  example.model.plant.controls.back() = exciter;
+  EXPECT_THROW((void)answer(example.events.front(), {}, example.model.under_test()), InputError);
+  const Fit f = fit(example.model.under_test(), example.events, {}, {.iterations = 0});
+  EXPECT_EQ(f.failed, "");
+}
+
+}  // namespace
+}  // namespace swingbank::validate::fit
