@@ -3,14 +3,14 @@
 #include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
-#include "sim/core/bus_frequency.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/controlled_current.hpp"
 #include "sim/effects/detail/limited_lead_lag.hpp"
 #include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::converter_csvgn1 {
 
-struct Model {
+struct Model : shared::ControlledCurrent<Model> {
   using LeadLag = shared::LimitedLeadLag;
   static constexpr std::string_view name = "CSVGN1", title = "static var compensator",
                                     source =
@@ -18,8 +18,6 @@ struct Model {
                                         "(github.com/marcelofcastro/OpenIPSL, 8309d8a): signs, columns; "
                                         "PSS/E CSVGN1",
                                     dyr_name = "CSVGN1";
-  static constexpr Slot slot = Slot::machine;
-  static constexpr bool converter = true;
   static constexpr std::string_view description = R"(
   V - Vref - dVref --> [ (1 + s T1)/(1 + s T3) ] --> [ K (1 + s T2)/(1 + s T4), VMIN to VMAX ] --> [ 1/(1 + s T5) ] --> B
          B: [RMIN/MBASE, 1] non-windup, the reactor's susceptance on MBASE
@@ -44,11 +42,8 @@ struct Model {
       {"VMIN", "VMIN", "pu", -1.0, -99.0, 10.0, kNoNeutral, "lower limit of the regulator", kWider},
       {"CBASE", "CBASE", "Mvar", 60.0, 0.0, 10000.0, kNoNeutral,
        "what the capacitor delivers at rated voltage"},
-      {"Tfreq", "Tfreq", "s", 0.02, 1e-3, 1.0, kNoNeutral, "measurement of the terminal's frequency",
-       literature::own("about a cycle")}};
+      kTfreq};
   static constexpr int dyr_columns[] = {K, T1, T2, T3, T4, T5, RMIN, VMAX, VMIN, CBASE};
-  /// Of the source as the network sees it: any is exact (decision 37), a large one makes the iteration short.
-  static constexpr double kReactance = 10.0;
   enum C {
     gain,
     lead,
@@ -79,8 +74,8 @@ struct Model {
                                       .low = low,
                                       .high = high,
                                       .bends = true},
-                                     {"Vrlag", "pu", "lagged voltage, real part", 0.1},
-                                     {"Vilag", "pu", "lagged voltage, imaginary part", 0.1}};
+                                     kVrlag,
+                                     kVilag};
   enum M { voltage, scratch };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
@@ -95,7 +90,6 @@ struct Model {
       problems.add(says(VMAX) + " with " + says(VMIN), where, "the regulator must have room to move",
                    "give VMAX > VMIN");
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions& conventions, T* c) {
@@ -110,17 +104,7 @@ struct Model {
     c[low] = p[RMIN] * imva;
     c[high] = T(1.0);
     c[capacitor] = p[CBASE] * imva;
-    c[iTfreq] = T(1.0) / p[Tfreq];
-    c[per_angle] = frequency_slope(c[iTfreq], conventions.frequency);
-  }
-  template <class T>
-  static void source_impedance(const T*, T& r, T& x) {
-    r = T(0.0);
-    x = T(kReactance);
-  }
-  template <class T>
-  static void emf(const T*, const T*, T*, T& er, T& ei) {
-    er = ei = T(0.0);
+    prepare_frequency(p[Tfreq], conventions, c);
   }
   template <class T>
   static void current(const T* c, const T* x, T*, Signals<T>& s) {
@@ -131,21 +115,16 @@ struct Model {
   template <class T>
   static void electrical(const T* c, const T* x, T* m, Signals<T>& s) {
     using std::sqrt;
-    const T square_2 = s.Vr * s.Vr + s.Vi * s.Vi + T(1e-24);  // a dual needs a slope at V = 0
-    m[voltage] = sqrt(square_2);
-    s.speed = bus_frequency(s.Vr, s.Vi, square_2, x[Vrlag], x[Vilag], c[per_angle]);
-    s.Te = s.Vr * s.Ir + s.Vi * s.Ii;
-    s.Ifd = T(0.0);
-    s.Pext = s.Qext = s.wt = s.wg = s.wref = s.pitch = s.Paero = T(0.0);
-    s.Pord = s.Te;
+    const T squared = square_of_voltage(s);
+    m[voltage] = sqrt(squared);
+    terminal(c, x, squared, s);
   }
   template <class T>
   static void derivative(const T* c, const T* x, const T* m, const Signals<T>& s, T* dx) {
     const T u = lead_lag(c[lead], c[iT3], x[first], m[voltage] - c[Vref] - s.dVref, dx[first]);
     const T asked = LeadLag::evaluate(c + second, x[lagged], u, c[least], c[most], dx[lagged]);
     dx[B] = (c[gain] * asked - x[B]) * c[iT5];
-    dx[Vrlag] = (s.Vr - x[Vrlag]) * c[iTfreq];
-    dx[Vilag] = (s.Vi - x[Vilag]) * c[iTfreq];
+    follow_voltage(c, x, s, dx);
   }
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
@@ -157,8 +136,7 @@ struct Model {
     if (value_of(x[lagged]) > value_of(c[most]) || value_of(x[lagged]) < value_of(c[least]))
       return fmt::format("it would need the regulator at {:.4f} pu, and VMIN, VMAX are {:g}, {:g} pu",
                          value_of(x[B]), value_of(p[VMIN]), value_of(p[VMAX]));
-    x[Vrlag] = s.Vr;
-    x[Vilag] = s.Vi;
+    steady_voltage(s, x);
     s.V = sqrt(square_2);
     c[Vref] = s.V - x[first];
     s.Tm = s.Efd = T(0.0);

@@ -4,21 +4,19 @@
 
 #include <vector>
 
-#include "sim/core/bus_frequency.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/controlled_current.hpp"
 #include "sim/effects/detail/renewable.hpp"
 #include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::converter_regca1 {
 
-struct Model {
+struct Model : shared::ControlledCurrent<Model> {
   static constexpr std::string_view name = "REGCA1", title = "converter as a controlled current, type A",
                                     source =
                                         "WECC (2014), Wind plant dynamic modeling guidelines, REGC_A; "
                                         "PSS/E REGCA1",
                                     dyr_name = "REGCA1";
-  static constexpr Slot slot = Slot::machine;
-  static constexpr bool converter = true;
   static constexpr std::string_view description = R"(
   Ipcmd --> [ 1/(1 + s Tg), rise <= rrpwr ] <= LVPL --Ip--> x G(V) --> active current
       LVPL: 0 below Zerox, Lvpl1 above Brkpt, straight between, of V/(1 + s Tfltr)        (Lvplsw = 1)
@@ -69,13 +67,10 @@ struct Model {
       {"Iqrmax", "Iqrmax", "pu/s", 100.0, 0.0, 9999.0, kNoNeutral, "fastest rise of the reactive current"},
       {"Iqrmin", "Iqrmin", "pu/s", -100.0, -9999.0, 0.0, kNoNeutral, "fastest fall of the reactive current"},
       {"Accel", "Accel", "code", 0.0, 0.0, 2.0, kNoNeutral, "of the network's iteration in PSS/E: not used"},
-      {"Tfreq", "Tfreq", "s", 0.02, 1e-3, 1.0, kNoNeutral, "measurement of the terminal's frequency",
-       literature::own("about a cycle")}};
+      kTfreq};
   static constexpr int dyr_columns[] = {Lvplsw, Tg,    Rrpwr, Brkpt, Zerox,  Lvpl1,  Volim, Lvpnt1,
                                         Lvpnt0, Iolim, Tfltr, Khv,   Iqrmax, Iqrmin, Accel};
   static constexpr double kFollow = 2e-3;  ///< in which Ip follows an LVPL that falls below it [s]
-  /// Of the source as the network sees it: any is exact (decision 37), a large one makes the iteration short.
-  static constexpr double kReactance = 10.0;
   enum C {
     iTg,
     rise,
@@ -100,12 +95,11 @@ struct Model {
   static constexpr State states[] = {{"Ip", "pu", "active current before G"},
                                      {"Iq", "pu", "reactive current before Volim's"},
                                      {"Vmeas", "pu", "voltage measured for LVPL"},
-                                     {"Vrlag", "pu", "lagged voltage, real part", 0.1},
-                                     {"Vilag", "pu", "lagged voltage, imaginary part", 0.1}};
+                                     kVrlag,
+                                     kVilag};
   enum M { voltage, limit, scratch };
 
   static void check(const double* p, const std::string& where, Problems& problems);
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions& conventions, T* c) {
@@ -123,23 +117,7 @@ struct Model {
     c[khv] = p[Khv];
     c[q_rise] = p[Iqrmax];
     c[q_fall] = p[Iqrmin];
-    c[iTfreq] = T(1.0) / p[Tfreq];
-    c[per_angle] = frequency_slope(c[iTfreq], conventions.frequency);
-  }
-  template <class T>
-  static void source_impedance(const T*, T& r, T& x) {
-    r = T(0.0);
-    x = T(kReactance);
-  }
-  /// A converter has no voltage of its own; where it is off its terminal shows none.
-  template <class T>
-  static void emf(const T*, const T*, T*, T& er, T& ei) {
-    er = ei = T(0.0);
-  }
-  template <class T>
-  static T magnitude(const T& Vr, const T& Vi) {
-    using std::sqrt;
-    return sqrt(Vr * Vr + Vi * Vi + T(1e-24));  // a dual needs a slope at V = 0
+    prepare_frequency(p[Tfreq], conventions, c);
   }
   template <class T>
   static T gain(const T* c, const T& V) {
@@ -152,7 +130,7 @@ struct Model {
   }
   template <class T>
   static void current(const T* c, const T* x, T*, Signals<T>& s) {
-    const T V = magnitude(s.Vr, s.Vi);
+    const T V = magnitude(s);
     const T active = renewable::smaller(x[Ip], low_voltage_limit(c, x, V)) * gain(c, V);
     const T reactive = renewable::larger(x[Iq] - c[khv] * positive_part(V - c[volim]), c[iolim]);
     const T per = T(1.0) / renewable::at_least_small(V);
@@ -161,15 +139,11 @@ struct Model {
   }
   template <class T>
   static void electrical(const T* c, const T* x, T* m, Signals<T>& s) {
-    m[voltage] = magnitude(s.Vr, s.Vi);
+    m[voltage] = magnitude(s);
     m[limit] = low_voltage_limit(c, x, m[voltage]);
-    s.speed = bus_frequency(s.Vr, s.Vi, m[voltage] * m[voltage], x[Vrlag], x[Vilag], c[per_angle]);
-    s.Te = s.Vr * s.Ir + s.Vi * s.Ii;
-    s.Ifd = T(0.0);
+    terminal(c, x, m[voltage] * m[voltage], s);
     s.Pext = s.dPref;
     s.Qext = s.dVref;
-    s.wt = s.wg = s.wref = s.pitch = T(0.0);
-    s.Pord = s.Te;
     s.Paero = c[start];
   }
   template <class T>
@@ -182,12 +156,11 @@ struct Model {
     dx[Ip] = renewable::smaller(moves, (m[limit] - x[Ip]) * T(1.0 / kFollow));
     dx[Iq] = clamp((s.Efd - x[Iq]) * c[iTg], c[q_fall], c[q_rise]);
     dx[Vmeas] = (m[voltage] - x[Vmeas]) * c[iTfltr];
-    dx[Vrlag] = (s.Vr - x[Vrlag]) * c[iTfreq];
-    dx[Vilag] = (s.Vi - x[Vilag]) * c[iTfreq];
+    follow_voltage(c, x, s, dx);
   }
   template <class T>
   static std::string steady(const T*, T* c, Signals<T>& s, T* x) {
-    const T V = magnitude(s.Vr, s.Vi), P = s.Vr * s.Ir + s.Vi * s.Ii, Q = s.Vi * s.Ir - s.Vr * s.Ii;
+    const T V = magnitude(s), P = s.Vr * s.Ir + s.Vi * s.Ii, Q = s.Vi * s.Ir - s.Vr * s.Ii;
     const T share = gain(c, V), drawn = c[khv] * positive_part(V - c[volim]);
     if (!(value_of(share) > 0.0))
       return fmt::format("at V = {:.4f} pu it delivers no active current: Lvpnt0 = {:.4f} pu", value_of(V),
@@ -195,8 +168,7 @@ struct Model {
     x[Vmeas] = V;
     x[Ip] = P / V / share;
     x[Iq] = Q / V + drawn;
-    x[Vrlag] = s.Vr;
-    x[Vilag] = s.Vi;
+    steady_voltage(s, x);
     const T ceiling = low_voltage_limit(c, x, V);
     if (value_of(x[Ip]) > value_of(ceiling))
       return fmt::format("it would need an active current of {:.4f} pu, and LVPL ends at {:.4f} pu",

@@ -87,7 +87,7 @@ struct Model {
   };
   static constexpr Source standards_from = literature::psid("FourBus_multigen.dyr");
   static constexpr Source bounds_from = renewable::kWecc;
-  static constexpr Parameter parameters[] = {
+  static constexpr std::array kBefore = {
       renewable::record::RemoteBus,
       renewable::record::PFFLAG,
       renewable::record::VFLAG,
@@ -107,38 +107,23 @@ struct Model {
       renewable::record::Thld,
       renewable::record::Thld2,
       renewable::record::Tp,
-      renewable::renamed(renewable::record::Qmax, "QMax"),
-      renewable::renamed(renewable::record::Qmin, "QMin"),
-      renewable::renamed(renewable::record::Vmax, "VMAX"),
-      renewable::renamed(renewable::record::Vmin, "VMIN"),
+      shared::renamed(renewable::record::Qmax, "QMax"),
+      shared::renamed(renewable::record::Qmin, "QMin"),
+      shared::renamed(renewable::record::Vmax, "VMAX"),
+      shared::renamed(renewable::record::Vmin, "VMIN"),
       renewable::record::Kqp,
       renewable::record::Kqi,
       renewable::record::Kvp,
       renewable::record::Kvi,
-      {"Vbias", "Vbias", "pu", 0.0, -2.0, 2.0, kNoNeutral, "added to a Qext that is a voltage"},
+      Parameter{"Vbias", "Vbias", "pu", 0.0, -2.0, 2.0, kNoNeutral, "added to a Qext that is a voltage"},
       renewable::record::Tiq,
       renewable::record::dPmax,
       renewable::record::dPmin,
-      renewable::renamed(renewable::record::Pmax, "PMAX"),
-      renewable::renamed(renewable::record::Pmin, "PMIN"),
+      shared::renamed(renewable::record::Pmax, "PMAX"),
+      shared::renamed(renewable::record::Pmin, "PMIN"),
       renewable::record::Imax,
-      renewable::record::Tpord,
-      {"Vq1", "Vq1", "pu", -1.0, -1.0, 99.0, kNoNeutral, "voltage of point 1 of the limit of Iq"},
-      {"Iq1", "Iq1", "pu", 1.45, 0.0, 99.0, kNoNeutral, "reactive current there"},
-      {"Vq2", "Vq2", "pu", 2.0, -1.0, 99.0, kNoNeutral, "voltage of point 2 of the limit of Iq"},
-      {"Iq2", "Iq2", "pu", 1.45, 0.0, 99.0, kNoNeutral, "reactive current there"},
-      {"Vq3", "Vq3", "pu", 0.0, -1.0, 99.0, kNoNeutral, "voltage of point 3 of the limit of Iq"},
-      {"Iq3", "Iq3", "pu", 0.0, 0.0, 99.0, kNoNeutral, "reactive current there"},
-      {"Vq4", "Vq4", "pu", 0.0, -1.0, 99.0, kNoNeutral, "voltage of point 4 of the limit of Iq"},
-      {"Iq4", "Iq4", "pu", 0.0, 0.0, 99.0, kNoNeutral, "reactive current there"},
-      {"Vp1", "Vp1", "pu", -1.0, -1.0, 99.0, kNoNeutral, "voltage of point 1 of the limit of Ip"},
-      {"Ip1", "Ip1", "pu", 1.11, 0.0, 99.0, kNoNeutral, "active current there"},
-      {"Vp2", "Vp2", "pu", 2.0, -1.0, 99.0, kNoNeutral, "voltage of point 2 of the limit of Ip"},
-      {"Ip2", "Ip2", "pu", 1.11, 0.0, 99.0, kNoNeutral, "active current there"},
-      {"Vp3", "Vp3", "pu", 0.0, -1.0, 99.0, kNoNeutral, "voltage of point 3 of the limit of Ip"},
-      {"Ip3", "Ip3", "pu", 0.0, 0.0, 99.0, kNoNeutral, "active current there"},
-      {"Vp4", "Vp4", "pu", 0.0, -1.0, 99.0, kNoNeutral, "voltage of point 4 of the limit of Ip"},
-      {"Ip4", "Ip4", "pu", 0.0, 0.0, 99.0, kNoNeutral, "active current there"}};
+      renewable::record::Tpord};
+  static constexpr auto parameters = renewable::joined(kBefore, renewable::limit_points<4>(1.45, 1.11));
   static constexpr int dyr_columns[] = {
       RemoteBus, PFFLAG, VFLAG, QFLAG, PFLAG, PQFLAG, Vdip, Vup,  Trv,   dbd1, dbd2, Kqv, Iqh1,
       Iql1,      Vref0,  Iqfrz, Thld,  Thld2, Tp,     Qmax, Qmin, Vmax,  Vmin, Kqp,  Kqi, Kvp,

@@ -90,18 +90,14 @@ struct Model {
   static constexpr Source standards_from = literature::psid("FourBus_multigen.dyr");
   static constexpr Source bounds_from = renewable::kWecc;
   static constexpr Source kOff = literature::own("off, as in REECA1");
-  static constexpr std::string_view kPointNames[] = {
-      "Vq1", "Iq1", "Vq2", "Iq2", "Vq3",  "Iq3",  "Vq4", "Iq4", "Vq5", "Iq5", "Vq6",  "Iq6", "Vq7", "Iq7",
-      "Vq8", "Iq8", "Vq9", "Iq9", "Vq10", "Iq10", "Vp1", "Ip1", "Vp2", "Ip2", "Vp3",  "Ip3", "Vp4", "Ip4",
-      "Vp5", "Ip5", "Vp6", "Ip6", "Vp7",  "Ip7",  "Vp8", "Ip8", "Vp9", "Ip9", "Vp10", "Ip10"};
-  static constexpr Parameter kBefore[] = {
+  static constexpr std::array kBefore = {
       renewable::record::PFFLAG,
       renewable::record::VFLAG,
       renewable::record::QFLAG,
       renewable::record::PFLAG,
       renewable::record::PQFLAG,
-      {"VCMPFLAG", "VCMPFLAG", "code", 1.0, 0.0, 1.0, kNoNeutral,
-       "1: the voltage behind Rc + jXc is held, 0: V + Kc Q", kOff, renewable::kFlag},
+      Parameter{"VCMPFLAG", "VCMPFLAG", "code", 1.0, 0.0, 1.0, kNoNeutral,
+                "1: the voltage behind Rc + jXc is held, 0: V + Kc Q", kOff, renewable::kFlag},
       renewable::record::Vdip,
       renewable::record::Vup,
       renewable::record::Trv,
@@ -111,10 +107,10 @@ struct Model {
       renewable::record::Iqh1,
       renewable::record::Iql1,
       renewable::record::Vref0,
-      {"Iqfrz", "Iqfrz", "pu", 0.0, -2.0, 2.0, 0.0, "Iqcmd for |Thld| after a dip, where Thld < 0"},
-      {"Thld", "Thld", "s", 0.0, -10.0, 10.0, 0.0,
-       "how long after a dip Iqcmd stays (> 0) or is Iqfrz (< 0)"},
-      {"Thld2", "Thld2", "s", 0.0, 0.0, 10.0, 0.0, "how long after a dip Ipcmd and its limit stay"},
+      Parameter{"Iqfrz", "Iqfrz", "pu", 0.0, -2.0, 2.0, 0.0, "Iqcmd for |Thld| after a dip, where Thld < 0"},
+      Parameter{"Thld", "Thld", "s", 0.0, -10.0, 10.0, 0.0,
+                "how long after a dip Iqcmd stays (> 0) or is Iqfrz (< 0)"},
+      Parameter{"Thld2", "Thld2", "s", 0.0, 0.0, 10.0, 0.0, "how long after a dip Ipcmd and its limit stay"},
       renewable::record::Tp,
       renewable::record::Qmax,
       renewable::record::Qmin,
@@ -124,7 +120,7 @@ struct Model {
       renewable::record::Kqi,
       renewable::record::Kvp,
       renewable::record::Kvi,
-      {"Vref1", "Vref1", "pu", 0.0, -2.0, 2.0, kNoNeutral, "added to a Qext that is a voltage"},
+      Parameter{"Vref1", "Vref1", "pu", 0.0, -2.0, 2.0, kNoNeutral, "added to a Qext that is a voltage"},
       renewable::record::Tiq,
       renewable::record::dPmax,
       renewable::record::dPmin,
@@ -132,39 +128,22 @@ struct Model {
       renewable::record::Pmin,
       renewable::record::Imax,
       renewable::record::Tpord};
-  static constexpr Parameter kBehind[] = {
-      {"Rc", "Rc", "pu", 0.0, -1.0, 1.0, 0.0, "compensating resistance", kOff},
-      {"Xc", "Xc", "pu", 0.0, -1.0, 1.0, 0.0, "compensating reactance", kOff},
-      {"Tr1", "Tr1", "s", 0.02, 0.0, 10.0, kNoNeutral, "measurement of the voltage that is held (0: none)",
-       literature::own("as Trv")},
-      {"Kc", "Kc", "pu", 0.0, 0.0, 1.0, 0.0, "reactive droop", kOff},
-      {"Ke", "Ke", "pu", 0.0, 0.0, 1.0, 0.0,
-       "lower limit of Ipcmd over its upper one, negative (a battery: 1)", kOff,
-       literature::derived("a part of the whole")},
-      {"Vblkl", "Vblkl", "pu", 0.0, -99.0, 1.0, kNoNeutral, "voltage below which the converter is blocked",
-       kOff},
-      {"Vblkh", "Vblkh", "pu", 99.0, 0.8, 99.0, kNoNeutral, "voltage above which it is blocked", kOff},
-      {"Tblk", "Tblk", "s", 0.0, 0.0, 10.0, 0.0, "how long after that it stays blocked", kOff}};
-  static constexpr auto parameters = [] {
-    std::array<Parameter, parameter_count> all{};
-    std::copy(std::begin(kBefore), std::end(kBefore), all.begin());
-    for (int i = Vq1; i < Rc; ++i) {
-      const bool voltage = (i - Vq1) % 2 == 0,
-                 used = (i - Vq1) % (2 * kTablePoints)<4, second = (i - Vq1) % (2 * kTablePoints)> 1;
-      all[static_cast<std::size_t>(i)] = {kPointNames[i - Vq1],
-                                          kPointNames[i - Vq1],
-                                          "pu",
-                                          !used     ? 0.0
-                                          : voltage ? (second ? 2.0 : -1.0)
-                                                    : 1.11,
-                                          voltage ? -1.0 : 0.0,
-                                          99.0,
-                                          kNoNeutral,
-                                          voltage ? "voltage of a point of the limits" : "current there"};
-    }
-    std::copy(std::begin(kBehind), std::end(kBehind), all.begin() + Rc);
-    return all;
-  }();
+  static constexpr std::array kBehind = {
+      Parameter{"Rc", "Rc", "pu", 0.0, -1.0, 1.0, 0.0, "compensating resistance", kOff},
+      Parameter{"Xc", "Xc", "pu", 0.0, -1.0, 1.0, 0.0, "compensating reactance", kOff},
+      Parameter{"Tr1", "Tr1", "s", 0.02, 0.0, 10.0, kNoNeutral,
+                "measurement of the voltage that is held (0: none)", literature::own("as Trv")},
+      Parameter{"Kc", "Kc", "pu", 0.0, 0.0, 1.0, 0.0, "reactive droop", kOff},
+      Parameter{"Ke", "Ke", "pu", 0.0, 0.0, 1.0, 0.0,
+                "lower limit of Ipcmd over its upper one, negative (a battery: 1)", kOff,
+                literature::derived("a part of the whole")},
+      Parameter{"Vblkl", "Vblkl", "pu", 0.0, -99.0, 1.0, kNoNeutral,
+                "voltage below which the converter is blocked", kOff},
+      Parameter{"Vblkh", "Vblkh", "pu", 99.0, 0.8, 99.0, kNoNeutral, "voltage above which it is blocked",
+                kOff},
+      Parameter{"Tblk", "Tblk", "s", 0.0, 0.0, 10.0, 0.0, "how long after that it stays blocked", kOff}};
+  static constexpr auto parameters =
+      renewable::joined(kBefore, renewable::limit_points<kTablePoints>(1.11, 1.11), kBehind);
   static constexpr auto dyr_columns = [] {
     std::array<int, parameter_count> list{};
     for (int i = 0; i < parameter_count; ++i) list[static_cast<std::size_t>(i)] = i;

@@ -4,19 +4,19 @@
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/alternator.hpp"
 #include "sim/effects/detail/limited_lead_lag.hpp"
 #include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::exciter_esac6a {
 
-struct Model {
+struct Model : shared::Alternator<Model> {
   static constexpr std::string_view name = "ESAC6A",
                                     title = "alternator-rectifier excitation system, type AC6A",
                                     source =
                                         "IEEE Std 421.5-2005, 6.6, type AC6A, annexes D (rectifier) and E "
                                         "(non-windup lead-lag); PSS/E ESAC6A",
                                     dyr_name = "ESAC6A";
-  static constexpr Slot slot = Slot::exciter;
   static constexpr std::string_view variant_of = "ESAC1A";
   static constexpr std::string_view description = R"(
   Vc --> [ 1/(1 + s TR) ] --> Vm
@@ -109,8 +109,6 @@ struct Model {
     Vref,
     coefficients
   };
-  /// What enters the regulator counts in Efd by its gain of some hundreds, within its lags.
-  static constexpr double kErrorWeight = 10.0;
   enum X { Vm, first, second, limiter, Ve };
   static constexpr State states[] = {
       {"Vm", "pu", "measured voltage", kErrorWeight, -1, -1, {iTR}},
@@ -132,18 +130,15 @@ struct Model {
       if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
     };
     const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
-    bad(!(p[TE] > 0), says(TE) + " s", "ESAC6A divides by it", "give TE > 0");
+    check_alternator(p, where, problems);
     bad(!(p[KA] > 0), says(KA), "no gain, no exciter", "give KA > 0");
     for (int i : {TR, TA, TB, TH}) bad(!(p[i] >= 0), says(i) + " s", "a time constant", "give a value >= 0");
-    for (int i : {KC, SE1, SE2, KH, VHMAX})
+    for (int i : {KH, VHMAX})
       bad(!(p[i] >= 0), says(i), "it can only take from the exciter's voltage", "give a value >= 0");
-    bad(p[E1] == p[E2] && p[SE1] != p[SE2], says(E1) + " = E2", "one voltage cannot have two saturations",
-        "give two points");
     for (const auto& [most, least] : {std::pair{VAMAX, VAMIN}, {VRMAX, VRMIN}})
       bad(!(p[most] > p[least]), says(most) + " pu with " + says(least) + " pu", "there must be room to move",
           fmt::format("give {} > {}", parameters[most].symbol, parameters[least].symbol));
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {
@@ -156,24 +151,12 @@ struct Model {
     c[vamin] = p[VAMIN];
     c[vrmax] = p[VRMAX];
     c[vrmin] = p[VRMIN];
-    c[iTE] = T(1.0) / p[TE];
+    prepare_alternator(p, c);
     c[vfelim] = p[VFELIM];
     c[kh] = p[KH];
     c[vhmax] = p[VHMAX];
     c[iTH] = inverse(p[TH]);
     c[tj] = p[TJ];
-    c[commutation] = p[KC];
-    c[demagnetising] = p[KD];
-    c[self] = p[KE];
-    const auto saturation = Quadratic<T>::through(p[E1], p[SE1], p[E2], p[SE2]);
-    c[satA] = saturation.A;
-    c[satB] = saturation.B;
-    c[none] = T(0.0);
-  }
-  /// The field current that keeps the alternator at `ve`.
-  template <class T>
-  static T field(const T* c, const T& ve, const T& Ifd) {
-    return c[self] * ve + Quadratic<T>{c[satA], c[satB]}(ve) + c[demagnetising] * Ifd;
   }
   /// What the field limiter takes away before its lead-lag.
   template <class T>
@@ -194,12 +177,8 @@ struct Model {
   }
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
-    if (!(value_of(s.Efd) > 0.0))
-      return fmt::format("Efd = {:.4f} pu is needed and a rectifier delivers none below zero",
-                         value_of(s.Efd));
-    x[Vm] = s.Vc;
-    x[Ve] = rectifier_source(s.Efd, p[KC] * s.Ifd);
-    const T Vfe = field(c, x[Ve], s.Ifd);
+    T Vfe;
+    if (std::string why = steady_alternator(p, c, s, x, Vfe); !why.empty()) return why;
     x[limiter] = taken(c, Vfe);
     x[first] = x[second] = Vfe + x[limiter];
     const auto outside = [](const char* what, double is, double least, double most) {

@@ -27,11 +27,11 @@ struct Model {
   static constexpr std::span<const Parameter> parameters{B::parameters};
   static constexpr std::span<const int> dyr_columns{B::dyr_columns};
   static constexpr Source standards_from = B::standards_from, bounds_from = B::bounds_from;
-  enum C { none = B::coefficients, coefficients };
+  static constexpr int coefficients = B::coefficients;
   static constexpr auto kStates = [] {
     std::array<State, std::size(B::states)> all{};
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = B::states[i];
-    all[B::Efd].low = none;
+    all[B::Efd].low = B::none;
     return all;
   }();
   static constexpr std::span<const State> states = kStates;
@@ -44,7 +44,6 @@ struct Model {
   template <class T>
   static void prepare(const T* p, const Conventions& conventions, T* c) {
     B::prepare(p, conventions, c);
-    c[none] = T(0.0);
   }
   template <class T>
   static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {

@@ -4,12 +4,14 @@
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/alternator.hpp"
 #include "sim/effects/detail/limited_integral.hpp"
+#include "sim/effects/detail/limited_lag.hpp"
 #include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::exciter_rexs {
 
-struct Model {
+struct Model : shared::Alternator<Model> {
   static constexpr std::string_view
       name = "REXS",
       title = "rotating excitation system, general purpose",
@@ -19,7 +21,6 @@ struct Model {
           "(github.com/InterPSS-Project/ipss-plugin, 0cc993b): blocks, columns; PowerWorld's help, REXS: PSLF's names; "
           "PSS/E REXSYS",
       dyr_name = "REXSYS";
-  static constexpr Slot slot = Slot::exciter;
   static constexpr std::string_view variant_of = "ESAC1A";
   static constexpr std::string_view description = R"(
   Vc --> [ 1/(1 + s TR) ] --> Vm
@@ -148,9 +149,6 @@ struct Model {
     Vref,
     coefficients
   };
-  /// What enters the regulator counts in Efd by its gain of hundreds, within its lags.
-  static constexpr double kErrorWeight = 10.0;
-  static constexpr double kReturn = 500.0;  ///< how a lag comes back to a limit it has passed [1/s]
   enum X { Vm, xv, first, second, Vr, rate, rate_lag, xi, Vfield, Ve };
   static constexpr State states[] = {
       {"Vm", "pu", "measured voltage", kErrorWeight, -1, -1, {iTR}},
@@ -185,7 +183,7 @@ struct Model {
       if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
     };
     const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
-    bad(!(p[TE] > 0), says(TE) + " s", "REXS divides by it", "give TE > 0");
+    check_alternator(p, where, problems);
     for (int i : {TR, TA, TB1, TC1, TB2, TC2, TF, TF1, TF2, TP})
       bad(!(p[i] >= 0), says(i) + " s", "a time constant", "give a value >= 0");
     for (int i : {KVP, KVI, KIP, KII, KH, KF})
@@ -202,17 +200,12 @@ struct Model {
         "the regulator's output would feed itself without a lag", "give TA > 0");
     bad(p[FBF] != 0.0 && p[FBF] != 1.0 && p[FBF] != 2.0, says(FBF), "0, 1 and 2 are the signals there are",
         "give one of them");
-    for (int i : {KC, SE1, SE2})
-      bad(!(p[i] >= 0), says(i), "it can only take from the exciter's voltage", "give a value >= 0");
-    bad(p[E1] == p[E2] && p[SE1] != p[SE2], says(E1) + " = E2", "one voltage cannot have two saturations",
-        "give two points");
     bad(!(p[FLIMF] >= 0 && p[FLIMF] <= 1), says(FLIMF), "0 is for fixed limits, 1 for limits as V",
         "give a value from 0 to 1");
     for (const auto& [most, least] : {std::pair{VRMAX, VRMIN}, {VFMAX, VFMIN}})
       bad(!(p[most] > p[least]), says(most) + " pu with " + says(least) + " pu", "there must be room to move",
           fmt::format("give {} > {}", parameters[most].symbol, parameters[least].symbol));
   }
-  static std::string_view unphysical(const double*) { return ""; }
   /// Of a REXSYS of PSS/E: OpenIPSL has its limits in multiples of the field that 1 pu needs, PowerWorld and
   /// InterPSS in pu.
   static std::string remark(const double* p) {
@@ -239,9 +232,6 @@ struct Model {
                                    {vfmax, VFMAX},
                                    {vfmin, VFMIN},
                                    {kh, KH},
-                                   {self, KE},
-                                   {commutation, KC},
-                                   {demagnetising, KD},
                                    {follow, FLIMF},
                                    {lead_feedback, TF1}})
       c[to] = p[from];
@@ -254,27 +244,11 @@ struct Model {
                                    {iTP, TP}})
       c[to] = inverse(p[from]);
     const T zero(0.0), one(1.0);
-    c[iTE] = one / p[TE];
+    prepare_alternator(p, c);
     c[feedback] = p[KF] * c[iTF];
     c[of_regulator] = select(p[FBF] < T(0.5), one, zero);
     c[of_voltage] = select(p[FBF] > T(1.5), one, zero);
     c[of_current] = one - c[of_regulator] - c[of_voltage];
-    const auto saturation = Quadratic<T>::through(p[E1], p[SE1], p[E2], p[SE2]);
-    c[satA] = saturation.A;
-    c[satB] = saturation.B;
-    c[none] = zero;
-  }
-  /// The field that keeps the alternator at `ve`.
-  template <class T>
-  static T field(const T* c, const T& ve, const T& Ifd) {
-    return c[self] * ve + Quadratic<T>{c[satA], c[satB]}(ve) + c[demagnetising] * Ifd;
-  }
-  /// A lag between limits that move: its state is drawn back to one that it has passed.
-  template <class T>
-  static T limited_lag(const T& inverse_T, const T& x, const T& u, const T& least, const T& most, T& dx) {
-    const T within = clamp(lag(inverse_T, x, u, dx), least, most);
-    dx = select(inverse_T > T(0.0), dx - T(kReturn) * (x - within), T(0.0));
-    return within;
   }
   template <class T>
   static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
@@ -292,20 +266,16 @@ struct Model {
     dx[xv] = c[kvi] * e;
     const T u1 = lead_lag(c[lead1], c[iTB1], x[first], c[kvp] * e + x[xv], dx[first]);
     const T u2 = lead_lag(c[lead2], c[iTB2], x[second], u1, dx[second]);
-    const T vr = limited_lag(c[iTA], x[Vr], u2, rmin, rmax, dx[Vr]);
+    const T vr = shared::limited_lag(c[iTA], x[Vr], u2, rmin, rmax, dx[Vr]);
     const T inner = vr - c[kh] * Vfe, wanted = c[kip] * inner + x[xi];
     dx[xi] = shared::non_windup(c[kii] * inner, wanted, fmin, fmax);
-    dx[Ve] = (limited_lag(c[iTP], x[Vfield], wanted, fmin, fmax, dx[Vfield]) - Vfe) * c[iTE];
+    dx[Ve] = (shared::limited_lag(c[iTP], x[Vfield], wanted, fmin, fmax, dx[Vfield]) - Vfe) * c[iTE];
   }
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
-    if (!(value_of(s.Efd) > 0.0))
-      return fmt::format("Efd = {:.4f} pu is needed and a rectifier delivers none below zero",
-                         value_of(s.Efd));
+    T Vfe;
+    if (std::string why = steady_alternator(p, c, s, x, Vfe); !why.empty()) return why;
     const T zero(0.0), one(1.0), factor = one + c[follow] * (s.V - one);
-    x[Vm] = s.Vc;
-    x[Ve] = rectifier_source(s.Efd, p[KC] * s.Ifd);
-    const T Vfe = field(c, x[Ve], s.Ifd);
     x[Vfield] = Vfe;
     const auto inner_integrates = p[KII] > zero, outer_integrates = p[KVI] > zero;
     x[xi] = select(inner_integrates, Vfe, zero);

@@ -4,6 +4,7 @@
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/limited_lag.hpp"
 #include "sim/effects/detail/limited_lead_lag.hpp"
 #include "sim/effects/detail/sources.hpp"
 
@@ -78,7 +79,6 @@ struct Model {
        .weight = 10.0,
        .bends = true},
       {.name = "Efd", .unit = "pu", .meaning = "field voltage", .bends = true}};
-  static constexpr double kReturn = 500.0;  ///< how Efd's state comes back to a limit it has passed [1/s]
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
@@ -114,9 +114,7 @@ struct Model {
     const T u1 = LeadLag::evaluate(c + first, x[leadlag1], error, c[least], c[most], dx[leadlag1]);
     const T u2 = LeadLag::evaluate(c + second, x[leadlag2], u1, c[least], c[most], dx[leadlag2]);
     const T fired = clamp(c[gain] * u2, c[vrmin], c[vrmax]) - c[drop] * s.Ifd;
-    const T out = lag(c[iT1], x[Efd], fired, dx[Efd]);
-    s.Efd = clamp(out, s.V * c[vrmin], s.V * c[vrmax]);
-    dx[Efd] = select(c[iT1] > T(0.0), dx[Efd] - T(kReturn) * (x[Efd] - s.Efd), T(0.0));
+    s.Efd = shared::limited_lag(c[iT1], x[Efd], fired, s.V * c[vrmin], s.V * c[vrmax], dx[Efd]);
   }
   template <class T>
   static std::string steady(const T*, T* c, Signals<T>& s, T* x) {

@@ -9,6 +9,7 @@
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/gate_power.hpp"
 #include "sim/effects/detail/hydro_pid.hpp"
+#include "sim/effects/detail/record.hpp"
 #include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::governor_hyg3 {
@@ -19,6 +20,7 @@ constexpr double kShut = 0.01;
 struct Model {
   using Curve = shared::GatePower<8>;
   using Pid = shared::HydroPid;
+  using Servo = shared::GateServo<Model>;
   static constexpr std::string_view
       name = "HYG3",
       title = "hydro turbine and PID or double derivative governor, WECC's",
@@ -85,7 +87,6 @@ struct Model {
                        kPowers[] = {PGV1, PGV2, PGV3, PGV4, PGV5, PGV6};
   static constexpr Source standards_from = literature::cim("GovHydro3");
   static constexpr Source bounds_from = shared::kNoCases;
-  static constexpr Source kFar = literature::own("99 stands for a point beyond reach");
   static constexpr Source kCurve = literature::own("nearly straight; CIM has none");
   static constexpr Source kBandHz = literature::own("1.2 Hz: wider than any band a governor is given");
   static constexpr Source kOfPid =
@@ -110,18 +111,18 @@ struct Model {
       {"PMIN", "Pmin", "pu", 0.0, -1.0, 1.0, kNoNeutral, "lower limit of the gate"},
       {"db2", "db2", "MW", 0.0, 0.0, 100.0, 0.0, "half width of the gate's backlash", kAsEffect,
        literature::own("a tenth of a large unit's stroke")},
-      {"GV1", "GV1", "pu", 0.0, 0.0, 99.0, kNoNeutral, "first opening (all 0: no curve)", kCurve, kFar},
-      {"PGV1", "PGV1", "pu", 0.0, 0.0, 99.0, kNoNeutral, "power there", kCurve, kFar},
-      {"GV2", "GV2", "pu", 0.2, 0.0, 99.0, kNoNeutral, "second opening", kCurve, kFar},
-      {"PGV2", "PGV2", "pu", 0.19, 0.0, 99.0, kNoNeutral, "power there", kCurve, kFar},
-      {"GV3", "GV3", "pu", 0.4, 0.0, 99.0, kNoNeutral, "third opening", kCurve, kFar},
-      {"PGV3", "PGV3", "pu", 0.41, 0.0, 99.0, kNoNeutral, "power there", kCurve, kFar},
-      {"GV4", "GV4", "pu", 0.6, 0.0, 99.0, kNoNeutral, "fourth opening", kCurve, kFar},
-      {"PGV4", "PGV4", "pu", 0.63, 0.0, 99.0, kNoNeutral, "power there", kCurve, kFar},
-      {"GV5", "GV5", "pu", 0.8, 0.0, 99.0, kNoNeutral, "fifth opening", kCurve, kFar},
-      {"PGV5", "PGV5", "pu", 0.83, 0.0, 99.0, kNoNeutral, "power there", kCurve, kFar},
-      {"GV6", "GV6", "pu", 1.0, 0.0, 99.0, kNoNeutral, "sixth opening", kCurve, kFar},
-      {"PGV6", "PGV6", "pu", 1.0, 0.0, 99.0, kNoNeutral, "power there", kCurve, kFar},
+      shared::with(shared::kCurvePoints[0], 0.0, kCurve),
+      shared::with(shared::kCurvePoints[1], 0.0, kCurve),
+      shared::with(shared::kCurvePoints[2], 0.2, kCurve),
+      shared::with(shared::kCurvePoints[3], 0.19, kCurve),
+      shared::with(shared::kCurvePoints[4], 0.4, kCurve),
+      shared::with(shared::kCurvePoints[5], 0.41, kCurve),
+      shared::with(shared::kCurvePoints[6], 0.6, kCurve),
+      shared::with(shared::kCurvePoints[7], 0.63, kCurve),
+      shared::with(shared::kCurvePoints[8], 0.8, kCurve),
+      shared::with(shared::kCurvePoints[9], 0.83, kCurve),
+      shared::with(shared::kCurvePoints[10], 1.0, kCurve),
+      shared::with(shared::kCurvePoints[11], 1.0, kCurve),
       {"H0", "H0", "pu", 1.0, 0.01, 10.0, kNoNeutral, "nominal head"},
       {"QNL", "qNL", "pu", 0.08, 0.0, 0.5, kNoNeutral, "flow at no load"},
       {"TW", "TW", "s", 1.0, 0.0, 30.0, kNoNeutral, "water starting time (0: the flow follows the gate)"},
@@ -176,14 +177,9 @@ struct Model {
                           .bends = true};
     all[second] = {"second", "pu/s", "derivative, lagged", 1.0, -1, -1, {Pid::iTF}};
     all[measured] = {"measured", "pu", "power fed back", 1.0, -1, -1, {iTT}};
-    all[velocity] = {"velocity", "pu/s", "gate's velocity", 1.0, closing, opening, {iTP}};
-    all[gate] = {
-        .name = "gate", .unit = "pu", .meaning = "gate opening", .low = low, .high = high, .bends = true};
-    all[position] = {.name = "position",
-                     .unit = "pu",
-                     .meaning = "gate behind its backlash",
-                     .moved_by = {follow},
-                     .bends = true};
+    all[velocity] = Servo::velocity_state(iTP, closing, opening);
+    all[gate] = Servo::gate_state(low, high);
+    all[position] = Servo::position_state(follow);
     all[flow] = {"flow", "pu", "water flow", 1.0, -1, -1, {iTW}};
     return all;
   }();
@@ -267,10 +263,7 @@ struct Model {
     for (int i = 0; i < Pid::count; ++i) dx[i] = select(is_pid, slopes[i], dx[i]);
     dx[second] = select(is_pid, zero, dx[second]);
     const T cv = clamp(select(is_pid, once, twice), c[low], c[high]);
-    const T open = clamp(x[gate], c[low], c[high]);
-    dx[position] = c[follow] * dead_band(open - x[position], c[play]);
-    const T gv = select(c[follow] > zero, x[position], open);
-    dx[gate] = clamp(lag(c[iTP], x[velocity], c[servo] * (cv - gv), dx[velocity]), c[closing], c[opening]);
+    const T gv = Servo::evaluate(c, x, cv, dx);
     const T wanted = Curve::value(c + curve, gv);
     const T pgv = select(wanted > T(kShut), wanted, T(kShut));
     const T q = select(c[iTW] > zero, x[flow], pgv * c[root]);

@@ -14,6 +14,7 @@ namespace swingbank::sim::effects::governor_wshygp {
 struct Model {
   using Curve = shared::GatePower<5>;
   using Pid = shared::HydroPid;
+  using Servo = shared::GateServo<Model>;
   static constexpr std::string_view
       name = "WSHYGP",
       title = "hydro turbine and PID governor, WECC's",
@@ -69,7 +70,6 @@ struct Model {
   static constexpr Source standards_from = literature::cim("GovHydroPID");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Source kStroke = literature::own("a tenth of the stroke");
-  static constexpr Source kFar = literature::own("99 stands for a point beyond reach");
   static constexpr Parameter parameters[] = {
       {"db1", "db1", "pu", 0.0, 0.0, 0.02, 0.0, "half width of the intentional dead-band of the speed",
        shared::kNothing, shared::kDeadBand},
@@ -91,16 +91,16 @@ struct Model {
       {"PMIN", "PMIN", "pu", 0.0, -1.0, 1.0, kNoNeutral, "lower limit of the gate"},
       {"db2", "db2", "pu", 0.0, 0.0, 0.1, 0.0, "half width of the gate's backlash", shared::kNothing,
        kStroke},
-      {"GV1", "GV1", "pu", 0.0, 0.0, 99.0, kNoNeutral, "first opening (all 0: no curve)", kAsEffect, kFar},
-      {"PGV1", "PGV1", "pu", 0.0, 0.0, 99.0, kNoNeutral, "power there", kAsEffect, kFar},
-      {"GV2", "GV2", "pu", 0.0, 0.0, 99.0, kNoNeutral, "second opening", kAsEffect, kFar},
-      {"PGV2", "PGV2", "pu", 0.0, 0.0, 99.0, kNoNeutral, "power there", kAsEffect, kFar},
-      {"GV3", "GV3", "pu", 0.0, 0.0, 99.0, kNoNeutral, "third opening", kAsEffect, kFar},
-      {"PGV3", "PGV3", "pu", 0.0, 0.0, 99.0, kNoNeutral, "power there", kAsEffect, kFar},
-      {"GV4", "GV4", "pu", 0.0, 0.0, 99.0, kNoNeutral, "fourth opening", kAsEffect, kFar},
-      {"PGV4", "PGV4", "pu", 0.0, 0.0, 99.0, kNoNeutral, "power there", kAsEffect, kFar},
-      {"GV5", "GV5", "pu", 0.0, 0.0, 99.0, kNoNeutral, "fifth opening", kAsEffect, kFar},
-      {"PGV5", "PGV5", "pu", 0.0, 0.0, 99.0, kNoNeutral, "power there", kAsEffect, kFar},
+      shared::kCurvePoints[0],
+      shared::kCurvePoints[1],
+      shared::kCurvePoints[2],
+      shared::kCurvePoints[3],
+      shared::kCurvePoints[4],
+      shared::kCurvePoints[5],
+      shared::kCurvePoints[6],
+      shared::kCurvePoints[7],
+      shared::kCurvePoints[8],
+      shared::kCurvePoints[9],
       {"ATURB", "Aturb", "-", -1.0, -10.0, 10.0, kNoNeutral, "turbine's lead over Tturb"},
       {"BTURB", "Bturb", "-", 0.5, 0.0, 10.0, kNoNeutral, "turbine's lag over Tturb"},
       {"TTURB", "Tturb", "s", 0.8, 0.0, 30.0, 0.0, "turbine time constant (0: none)"},
@@ -133,14 +133,9 @@ struct Model {
     std::array<State, water + 1> all{};
     std::copy(Pid::states.begin(), Pid::states.end(), all.begin());
     all[measured] = {"measured", "pu", "power fed back", 1.0, -1, -1, {iTT}};
-    all[velocity] = {"velocity", "pu/s", "gate's velocity", 1.0, closing, opening, {iTP}};
-    all[gate] = {
-        .name = "gate", .unit = "pu", .meaning = "gate opening", .low = low, .high = high, .bends = true};
-    all[position] = {.name = "position",
-                     .unit = "pu",
-                     .meaning = "gate behind its backlash",
-                     .moved_by = {follow},
-                     .bends = true};
+    all[velocity] = Servo::velocity_state(iTP, closing, opening);
+    all[gate] = Servo::gate_state(low, high);
+    all[position] = Servo::position_state(follow);
     all[water] = {"water", "pu", "state of the water column", 1.0, -1, -1, {water_lag}};
     return all;
   }();
@@ -191,15 +186,12 @@ struct Model {
   }
   template <class T>
   static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
-    const T one(1.0), zero(0.0);
+    const T one(1.0);
     const T power = lag(c[iTT], x[measured], c[base] * s.P, dx[measured]);
     const T asked =
         c[ref] + s.dGref + c[droop] * (s.dPref - c[by_power] * power) - dead_band(s.speed, c[band]);
     const T cv = Pid::evaluate(c, x, asked, c[droop] * (one - c[by_power]), dx);
-    const T open = clamp(x[gate], c[low], c[high]);
-    dx[position] = c[follow] * dead_band(open - x[position], c[play]);
-    const T gv = select(c[follow] > zero, x[position], open);
-    dx[gate] = clamp(lag(c[iTP], x[velocity], c[servo] * (cv - gv), dx[velocity]), c[closing], c[opening]);
+    const T gv = Servo::evaluate(c, x, cv, dx);
     const T turbine = lead_lag(c[water_lead], c[water_lag], x[water], Curve::value(c + curve, gv), dx[water]);
     s.Tm = turbine / c[base];
   }

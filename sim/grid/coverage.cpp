@@ -17,7 +17,6 @@ constexpr Missing kMissing[] = {
     {"CMLD", "composite load, not modelled"},
     {"CMPLD", "composite load, not modelled"},
     {"VSCHVDC", "STEPS's own, no PSS/E model"},
-    {"DERA", "aggregated distributed generation, not modelled"},
 };
 std::string why_missing(std::string_view name) {
   for (const Missing& m : kMissing)

@@ -27,8 +27,8 @@ std::vector<Problem> hindrances(const Grid& grid, const plant::Plant& plant) {
 int opening(const Parameter& p) {
   const std::string meaning(p.meaning);
   const auto says = [&](const char* word) { return meaning.find(word) != std::string::npos; };
-  if (p.is_code() || (says("rate") && !says("rated")) || says("speed at which") || says("voltage of point") ||
-      says("drop") || p.unit.ends_with("/s") || p.unit == "s")
+  if (p.is_code() || (says("rate") && !says("rated")) || says("speed at which") ||
+      says("voltage of a point") || says("drop") || p.unit.ends_with("/s") || p.unit == "s")
     return 0;
   const bool limit = says("limit") || says("ceiling") || says("maximum") || says("minimum") ||
                      says("largest") || says("smallest") || says("most") || says("least") ||

@@ -6,13 +6,14 @@
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/alternator.hpp"
 #include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::shared {
 
 template <class Model>
-struct AlternatorRectifier {
-  static constexpr Slot slot = Slot::exciter;
+struct AlternatorRectifier : Alternator<Model> {
+  using Behind = Alternator<Model>;
   enum P { TR, TB, TC, KA, TA, UPPER, LOWER, TE, KF, TF, KC, KD, KE, E1, SE1, E2, SE2, parameter_count };
   static constexpr Source kRange = literature::sienna("ESAC1A");
   static constexpr Source standards_from = literature::cim("ExcIEEEAC1A");
@@ -63,11 +64,8 @@ struct AlternatorRectifier {
     alternator
   };
   enum X { Vm, leadlag, regulator, Ve, rate };
-  /// What enters the regulator counts in Efd by its gain of some hundreds, within its lags.
-  static constexpr double kErrorWeight = 10.0;
 
   static void check(const double* p, const std::string& where, Problems& problems);
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {
@@ -78,27 +76,15 @@ struct AlternatorRectifier {
     c[iTA] = inverse(p[TA]);
     c[upper] = p[UPPER];
     c[lower] = p[LOWER];
-    c[iTE] = T(1.0) / p[TE];
+    Behind::prepare_alternator(p, c);
     c[iTF] = T(1.0) / p[TF];
     c[feedback] = p[KF] * c[iTF];
-    c[commutation] = p[KC];
-    c[demagnetising] = p[KD];
-    c[self] = p[KE];
-    const auto saturation = Quadratic<T>::through(p[E1], p[SE1], p[E2], p[SE2]);
-    c[satA] = saturation.A;
-    c[satB] = saturation.B;
-    c[none] = T(0.0);
-  }
-  /// The field voltage that keeps the alternator at `ve`.
-  template <class T>
-  static T field(const T* c, const T& ve, const T& Ifd) {
-    return c[self] * ve + Quadratic<T>{c[satA], c[satB]}(ve) + c[demagnetising] * Ifd;
   }
   template <class T>
   static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
     const T measured = lag(c[iTR], x[Vm], s.Vc, dx[Vm]);
     const T ve = positive_part(x[Ve]);
-    const T Vfe = field(c, ve, s.Ifd);
+    const T Vfe = Behind::field(c, ve, s.Ifd);
     const T stabilised = c[feedback] * washout(c[iTF], x[rate], Vfe, dx[rate]);
     const T error = c[Vref] + s.dVref - measured + s.Vs + s.Vlimiter - stabilised;
     const T u = lead_lag(c[lead], c[iTB], x[leadlag], error, dx[leadlag]);
@@ -108,12 +94,9 @@ struct AlternatorRectifier {
   }
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
-    if (!(value_of(s.Efd) > 0.0))
-      return fmt::format("Efd = {:.4f} pu is needed and a rectifier delivers none below zero",
-                         value_of(s.Efd));
-    x[Vm] = s.Vc;
-    x[Ve] = rectifier_source(s.Efd, p[KC] * s.Ifd);
-    x[regulator] = x[rate] = field(c, x[Ve], s.Ifd);
+    T Vfe;
+    if (std::string why = Behind::steady_alternator(p, c, s, x, Vfe); !why.empty()) return why;
+    x[regulator] = x[rate] = Vfe;
     x[leadlag] = x[regulator] / p[KA];
     c[Vref] = x[leadlag] + s.Vc - s.Vs - s.Vlimiter;
     return {};
@@ -126,17 +109,12 @@ void AlternatorRectifier<Model>::check(const double* p, const std::string& where
   const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
     if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
   };
-  for (int i : {TE, TF})
-    bad(!(p[i] > 0), fmt::format("{} = {:g} s", symbol(i), p[i]),
-        fmt::format("{} divides by it", Model::name), "give a value > 0");
+  Behind::check_alternator(p, where, problems);
+  bad(!(p[TF] > 0), fmt::format("TF = {:g} s", p[TF]), fmt::format("{} divides by it", Model::name),
+      "give a value > 0");
   bad(!(p[KA] > 0), fmt::format("KA = {:g}", p[KA]), "no gain, no exciter", "give KA > 0");
   for (int i : {TR, TB, TA})
     bad(!(p[i] >= 0), fmt::format("{} = {:g} s", symbol(i), p[i]), "a time constant", "give a value >= 0");
-  for (int i : {KC, SE1, SE2})
-    bad(!(p[i] >= 0), fmt::format("{} = {:g}", symbol(i), p[i]),
-        "it can only take from the exciter's voltage", "give a value >= 0");
-  bad(p[E1] == p[E2] && p[SE1] != p[SE2], fmt::format("E1 = E2 = {:g} pu", p[E1]),
-      "one voltage cannot have two saturations", "give two points");
   bad(!(p[UPPER] > p[LOWER]),
       fmt::format("{} = {:g} pu with {} = {:g} pu", symbol(UPPER), p[UPPER], symbol(LOWER), p[LOWER]),
       "the regulator must have room to move", fmt::format("give {} > {}", symbol(UPPER), symbol(LOWER)));

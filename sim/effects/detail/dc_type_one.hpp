@@ -1,36 +1,17 @@
 #pragma once
-// The DC1 exciter of IEEEX1 and ESDC1A: a rotating exciter behind a lead-lag and a regulator with fixed
-// limits. A Model says whether its field voltage ends at zero.
+// The rotating exciter behind a lead-lag and a regulator: DC1 (IEEEX1, ESDC1A), whose limits are fixed, and
+// what EXDC2 shares with it. A Model says whether its field voltage ends at zero.
 #include "sim/effects/detail/rotating_dc.hpp"
 #include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::shared {
 
+/// A Model gives the regulator, regulator(c, x, u, V, dx), and what keeps Vr from its value at rest,
+/// hindrance(c, Vr, V), empty for nothing.
 template <class Model>
-struct DcTypeOne : RotatingDc<Model> {
+struct DcBehindLeadLag : RotatingDc<Model> {
   using Dc = RotatingDc<Model>;
   enum P { TR, KA, TA, TB, TC, VRMAX, VRMIN, KE, TE, KF, TF, SWITCH, E1, SE1, E2, SE2 };
-  static constexpr Source standards_from = literature::openipsl("IEEEX1, defaults");
-  static constexpr Source bounds_from = kBeyondCases;
-  static constexpr Parameter parameters[] = {
-      Dc::kTR,
-      {"KA", "KA", "pu", 40.0, 1.0, 1000.0, kNoNeutral, "regulator gain"},
-      {"TA", "TA", "s", 0.04, 0.0, 10.0, kNoNeutral, "regulator time constant (0: none)"},
-      {"TB", "TB", "s", 2.0, 0.0, 50.0, kNoNeutral, "lag (0: bypass)",
-       literature::own("half the gain in transients; the case files have none")},
-      {"TC", "TC", "s", 1.0, 0.0, 50.0, kNoNeutral, "lead",
-       literature::own("half the gain in transients; the case files have none")},
-      {"VRMAX", "VRMAX", "pu", 7.3, 0.0, 100.0, kNoNeutral, "upper limit of Vr (0: by saturation at E2)"},
-      {"VRMIN", "VRMIN", "pu", -7.3, -100.0, 0.0, kNoNeutral, "lower limit of Vr"},
-      Dc::kKE,
-      Dc::kTE,
-      {"KF", "KF", "pu", 0.03, 0.0, 1.0, 0.0, "rate feedback"},
-      Dc::kTF,
-      Dc::kSwitch,
-      Dc::kE1,
-      Dc::kSE1,
-      Dc::kE2,
-      Dc::kSE2};
   static constexpr int dyr_columns[] = {TR, KA, TA, TB,     TC, VRMAX, VRMIN, KE,
                                         TE, KF, TF, SWITCH, E1, SE1,   E2,    SE2};
   enum C {
@@ -67,17 +48,53 @@ struct DcTypeOne : RotatingDc<Model> {
   static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
     const T error = Dc::voltage_error(c, x, s, dx);
     const T u = lead_lag(c[lead], c[iTB], x[leadlag], error, dx[leadlag]);
-    const T vr = clamp(lag(c[iTA], x[Vr], c[gain] * u, dx[Vr]), c[vrmin], c[vrmax]);
-    Dc::excite(c, x, vr, s, dx);
+    Dc::excite(c, x, Model::regulator(c, x, u, s.V, dx), s, dx);
     if constexpr (Model::ends_at_zero) s.Efd = positive_part(s.Efd);
   }
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
     const std::string why = Dc::steady_exciter(p, c, s, x);
     if (!why.empty()) return why;
+    if (std::string held = Model::hindrance(c, x[Vr], s.V); !held.empty()) return held;
     x[leadlag] = x[Vr] / p[KA];
     c[Vref] = x[leadlag] + s.Vc - s.Vs - s.Vlimiter;
     return {};
+  }
+};
+
+template <class Model>
+struct DcTypeOne : DcBehindLeadLag<Model> {
+  using Dc = RotatingDc<Model>;
+  using B = DcBehindLeadLag<Model>;
+  static constexpr Source standards_from = literature::openipsl("IEEEX1, defaults");
+  static constexpr Source bounds_from = kBeyondCases;
+  static constexpr Parameter parameters[] = {
+      Dc::kTR,
+      {"KA", "KA", "pu", 40.0, 1.0, 1000.0, kNoNeutral, "regulator gain"},
+      {"TA", "TA", "s", 0.04, 0.0, 10.0, kNoNeutral, "regulator time constant (0: none)"},
+      {"TB", "TB", "s", 2.0, 0.0, 50.0, kNoNeutral, "lag (0: bypass)",
+       literature::own("half the gain in transients; the case files have none")},
+      {"TC", "TC", "s", 1.0, 0.0, 50.0, kNoNeutral, "lead",
+       literature::own("half the gain in transients; the case files have none")},
+      Dc::kVRMAX,
+      Dc::kVRMIN,
+      Dc::kKE,
+      Dc::kTE,
+      {"KF", "KF", "pu", 0.03, 0.0, 1.0, 0.0, "rate feedback"},
+      Dc::kTF,
+      Dc::kSwitch,
+      Dc::kE1,
+      Dc::kSE1,
+      Dc::kE2,
+      Dc::kSE2};
+
+  template <class T>
+  static T regulator(const T* c, const T* x, const T& u, const T&, T* dx) {
+    return clamp(lag(c[B::iTA], x[B::Vr], c[B::gain] * u, dx[B::Vr]), c[B::vrmin], c[B::vrmax]);
+  }
+  template <class T>
+  static std::string hindrance(const T*, const T&, const T&) {
+    return {};  // the limits are the state's own
   }
 };
 

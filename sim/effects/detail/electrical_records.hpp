@@ -1,10 +1,12 @@
 #pragma once
 // The parameters that the electrical controls REECA1, REECB1, REECC1 and REECD1 have in common, each with its
 // record and what check() asks of it.
+#include <array>
 #include <string_view>
 
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/electrical_control.hpp"
+#include "sim/effects/detail/record.hpp"
 
 namespace swingbank::sim::effects::renewable {
 
@@ -72,10 +74,45 @@ inline constexpr Parameter
 
 }  // namespace record
 
-/// The record under the name that a model's guide writes.
-constexpr Parameter renamed(Parameter record, std::string_view name) {
-  record.name = record.symbol = name;
-  return record;
+inline constexpr int kMostPoints = 10;
+inline constexpr std::string_view kReactivePoints[] = {"Vq1", "Iq1", "Vq2", "Iq2", "Vq3",  "Iq3", "Vq4",
+                                                       "Iq4", "Vq5", "Iq5", "Vq6", "Iq6",  "Vq7", "Iq7",
+                                                       "Vq8", "Iq8", "Vq9", "Iq9", "Vq10", "Iq10"},
+                                  kActivePoints[] = {"Vp1", "Ip1", "Vp2", "Ip2", "Vp3",  "Ip3", "Vp4",
+                                                     "Ip4", "Vp5", "Ip5", "Vp6", "Ip6",  "Vp7", "Ip7",
+                                                     "Vp8", "Ip8", "Vp9", "Ip9", "Vp10", "Ip10"};
+/// Voltages and currents of N points of the limit of Iq, then of that of Ip; the standard ones hold the
+/// limits at `most_q` and `most_p` [pu].
+template <int N>
+constexpr std::array<Parameter, 4 * N> limit_points(double most_q, double most_p) {
+  static_assert(N <= kMostPoints);
+  std::array<Parameter, 4 * N> all{};
+  for (int i = 0; i < 4 * N; ++i) {
+    const bool active = i >= 2 * N, voltage = i % 2 == 0;
+    const int k = i % (2 * N);
+    const auto name = (active ? kActivePoints : kReactivePoints)[k];
+    const double current = active ? most_p : most_q;
+    Parameter& record = all[static_cast<std::size_t>(i)];
+    record = {name, name, "pu", 0.0, voltage ? -1.0 : 0.0, 99.0, kNoNeutral, ""};
+    if (k < 4) record.standard = !voltage ? current : k == 0 ? -1.0 : 2.0;
+    if (voltage)
+      record.meaning =
+          active ? "voltage of a point of the limit of Ip" : "voltage of a point of the limit of Iq";
+    else
+      record.meaning = active ? "active current there" : "reactive current there";
+  }
+  return all;
+}
+/// Records one behind the other.
+template <std::size_t... N>
+constexpr auto joined(const std::array<Parameter, N>&... parts) {
+  std::array<Parameter, (N + ...)> all{};
+  std::size_t at = 0;
+  const auto add = [&](const auto& part) {
+    for (const Parameter& one : part) all[at++] = one;
+  };
+  (add(parts), ...);
+  return all;
 }
 
 /// What Model's parameters are to the control that all of them share.

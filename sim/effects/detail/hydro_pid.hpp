@@ -1,6 +1,7 @@
 #pragma once
-// The PID regulator of the hydro governors WSHYGP and HYG3, behind a filter of its input, which may be fed
-// back through a droop without a lag.
+// What the hydro governors WSHYGP and HYG3 have in common: the PID regulator behind a filter of its input,
+// which may be fed back through a droop without a lag, the gate's servo and its backlash, the points of its
+// curve.
 #include <array>
 #include <string>
 
@@ -15,6 +16,54 @@ template <class T>
 T turbine_rating(const T& given, const Conventions& conventions) {
   return select(given > T(kLeastRating), given, T(conventions.mva));
 }
+
+/// Openings and powers of the points of a gate's curve; a model has the first ones of them.
+inline constexpr Source kFarPoint = literature::own("99 stands for a point beyond reach");
+constexpr Parameter curve_point(std::string_view name, std::string_view meaning) {
+  return {name, name, "pu", 0.0, 0.0, 99.0, kNoNeutral, meaning, kAsEffect, kFarPoint};
+}
+inline constexpr std::array kCurvePoints = {curve_point("GV1", "first opening (all 0: no curve)"),
+                                            curve_point("PGV1", "power there"),
+                                            curve_point("GV2", "second opening"),
+                                            curve_point("PGV2", "power there"),
+                                            curve_point("GV3", "third opening"),
+                                            curve_point("PGV3", "power there"),
+                                            curve_point("GV4", "fourth opening"),
+                                            curve_point("PGV4", "power there"),
+                                            curve_point("GV5", "fifth opening"),
+                                            curve_point("PGV5", "power there"),
+                                            curve_point("GV6", "sixth opening"),
+                                            curve_point("PGV6", "power there")};
+
+/// From the governor's output to the gate behind its backlash. A Model has the coefficients servo, iTP,
+/// opening, closing, high, low, play and follow, and the states velocity, gate and position.
+template <class Model>
+struct GateServo {
+  using M = Model;
+  static constexpr State velocity_state(int iTP, int closing, int opening) {
+    return {"velocity", "pu/s", "gate's velocity", 1.0, closing, opening, {iTP}};
+  }
+  static constexpr State gate_state(int low, int high) {
+    return {.name = "gate", .unit = "pu", .meaning = "gate opening", .low = low, .high = high, .bends = true};
+  }
+  static constexpr State position_state(int follow) {
+    return {.name = "position",
+            .unit = "pu",
+            .meaning = "gate behind its backlash",
+            .moved_by = {follow},
+            .bends = true};
+  }
+  /// The gate as the water feels it.
+  template <class T>
+  static T evaluate(const T* c, const T* x, const T& cv, T* dx) {
+    const T open = clamp(x[M::gate], c[M::low], c[M::high]);
+    dx[M::position] = c[M::follow] * dead_band(open - x[M::position], c[M::play]);
+    const T gv = select(c[M::follow] > T(0.0), x[M::position], open);
+    dx[M::gate] = clamp(lag(c[M::iTP], x[M::velocity], c[M::servo] * (cv - gv), dx[M::velocity]),
+                        c[M::closing], c[M::opening]);
+    return gv;
+  }
+};
 
 /// u/(1 + s TD) --> KP + KI/s + s KD/(1 + s TF). States and coefficients are the first of its Model.
 struct HydroPid {

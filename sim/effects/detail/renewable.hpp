@@ -3,11 +3,11 @@
 // stops at the limits of its output, the voltage dip, the lower bound of a voltage that divides.
 #include "sim/core/blocks.hpp"
 #include "sim/core/literature.hpp"
+#include "sim/effects/detail/limited_integral.hpp"
 
 namespace swingbank::sim::effects::renewable {
 
 inline constexpr double kSmallVoltage = 0.01;  ///< no division by less (WECC's models) [pu]
-inline constexpr double kLimitBand = 2e-3;     ///< beyond a limit, where a regulator's integral comes to rest
 inline constexpr double kDipBand = 2e-3;       ///< below Vdip and above Vup, where a dip is full [pu]
 inline constexpr double kNoLimit = 1e6;        ///< [pu]
 
@@ -23,22 +23,12 @@ T dead_zone(const T& u, const T& below, const T& above) {
   return positive_part(u - positive_part(above)) - positive_part(T(0.0) - positive_part(T(0.0) - below) - u);
 }
 
-/// Share in which the slope of a regulator's integral counts: all of it while its output `out`, before the
-/// limits, lies between them; none beyond kLimitBand outside, where it would lead further.
-template <class T>
-T held_slope(const T& slope, const T& out, const T& least, const T& most) {
-  const T zero(0.0), one(1.0), per_band(1.0 / kLimitBand);
-  const T rise = one - clamp((out - most) * per_band, zero, one);
-  const T fall = one - clamp((least - out) * per_band, zero, one);
-  return positive_part(slope) * rise - positive_part(zero - slope) * fall;
-}
-
 /// Kp + Ki/s with its output limited; `runs`: 1, or 0 while it is frozen.
 template <class T>
 T regulator(const T& kp, const T& ki, const T& u, const T& least, const T& most, const T& runs, const T& x,
             T& dx) {
   const T out = kp * u + x;
-  dx = runs * held_slope(ki * u, out, least, most);
+  dx = runs * shared::non_windup(ki * u, out, least, most);
   return clamp(out, least, most);
 }
 

@@ -1,7 +1,7 @@
 #pragma once
-// The rotating direct-current exciter of IEEET1 and EXDC2: saturation, rate feedback, and what PSS/E finds
-// for VRMAX = 0 and KE = 0. A Model has the parameters, coefficients and states named here, in its own order,
-// and the regulator.
+// The rotating direct-current exciter of IEEET1, IEEET2, EXDC2 and DC1: saturation, rate feedback, and what
+// PSS/E finds for VRMAX = 0 and KE = 0. A Model has the parameters, coefficients and states named here, in
+// its own order, and the regulator.
 #include <fmt/format.h>
 
 #include <initializer_list>
@@ -15,6 +15,7 @@ namespace swingbank::sim::effects::shared {
 template <class Model>
 struct RotatingDc {
   static constexpr Slot slot = Slot::exciter;
+  static constexpr Source kOfDc2 = literature::andes("EXDC2, commit 29076bd");
   static constexpr Source kDefault = literature::andes("IEEET1, commit 066781b");
   static constexpr Source kMild = literature::own("a saturation that is hardly felt at rated excitation");
   static constexpr Source kRange = literature::sienna("IEEET1");
@@ -23,10 +24,15 @@ struct RotatingDc {
       literature::own("not negative; seven records of dynamicsWECC.dyr (GridDyn) lie beyond, at 3.05");
   static constexpr Parameter
       kTR = {"TR", "TR", "s", 0.02, 0.0, 0.5, 0.0, "voltage transducer (0: none)", kDefault, kRange},
+      kVRMAX = {"VRMAX", "VRMAX", "pu",       7.3,
+                0.0,     100.0,   kNoNeutral, "upper limit of Vr (0: by saturation at E2)"},
+      kVRMIN = {"VRMIN", "VRMIN", "pu", -7.3, -100.0, 0.0, kNoNeutral, "lower limit of Vr"},
       kKE = {"KE",     "KE",  "pu",       1.0,
              -1.0,     2.0,   kNoNeutral, "exciter's own field (0: by the operating point)",
              kDefault, kTwice},
       kTE = {"TE", "TE", "s", 0.8, 0.01, 5.0, kNoNeutral, "exciter time constant", kDefault},
+      kKA = {"KA", "KA", "pu", 40.0, 1.0, 1000.0, kNoNeutral, "regulator gain", kOfDc2},
+      kKF = {"KF", "KF", "pu", 0.03, 0.0, 1.0, 0.0, "rate feedback", kOfDc2},
       kTF = {"TF", "TF", "s", 1.0, 0.02, 20.0, kNoNeutral, "rate feedback's time constant", kDefault},
       kSwitch = {"Switch", "Switch", "code",     0.0,
                  0.0,      1.0,      kNoNeutral, "kept by PSS/E for files; without effect",

@@ -16,6 +16,7 @@ using Values = std::map<std::string, double>;
 struct Outfit {
   std::string name;
   std::vector<std::pair<std::string, Values>> blocks;  ///< the source first
+  double nearest = 0.001;                              ///< reactance of the nearest fault [pu]
 };
 
 plant::Block block_of(const std::string& name, const Values& changes) {
@@ -35,9 +36,9 @@ grid::Grid grid_with(const Outfit& outfit) {
   return grid;
 }
 
-std::vector<network::Event> events(const grid::Grid& grid) {
+std::vector<network::Event> events(const grid::Grid& grid, double nearest) {
   std::vector<network::Event> all(6);
-  all[0].faults = {{kMiddle, 1.0, 1.1, {0.0, 0.001}}};  // bolted, the converter would have no angle
+  all[0].faults = {{kMiddle, 1.0, 1.1, {0.0, nearest}}};  // bolted, the converter would have no angle
   all[1].faults = {{kMiddle, 1.0, 1.3, {0.0, 0.05}}};
   all[2].faults = {{kTerminal, 1.0, 1.15, {}}};
   all[3].faults = {{kTerminal, 1.0, 1.15, {0.01, 0.1}}};
@@ -50,7 +51,7 @@ class Converters : public testing::TestWithParam<Outfit> {};
 
 TEST_P(Converters, LanesFollowTheReference) {
   const grid::Grid grid = grid_with(GetParam());
-  const auto all = events(grid);
+  const auto all = events(grid, GetParam().nearest);
   reference::ReferenceOptions exact;
   exact.t_end = 4.0;
   exact.rate = 60.0;
@@ -73,55 +74,56 @@ TEST_P(Converters, LanesFollowTheReference) {
 }
 INSTANTIATE_TEST_SUITE_P(
     All, Converters,
-    testing::Values(Outfit{"Alone", {{"REGCA1", {{"Lvplsw", 1.0}, {"Tfltr", 0.02}}}}},
-                    Outfit{"Reecb1", {{"REGCA1", {}}, {"REECB1", {{"Kqv", 2.0}}}}},
-                    Outfit{"Regulated",
-                           {{"REGCA1", {}},
-                            {"REECB1", {{"QFLAG", 1.0}, {"Kqi", 0.1}, {"Vdip", 0.85}}},
-                            {"REPCA1", {{"RefFlag", 1.0}, {"Kp", 2.0}, {"Vfrz", 0.7}, {"Ddn", 20.0}}}}},
-                    Outfit{"RidesThrough",
-                           {{"REGCA1", {}},
-                            {"REECA1",
-                             {{"Vdip", 0.85}, {"Vup", 1.2}, {"Kqv", 2.0}, {"Thld", -0.1}, {"Thld2", 0.2}}},
-                            {"REPCA1", {}}}},
-                    Outfit{"HoldsAfterwards",
-                           {{"REGCA1", {}},
-                            {"REECA1",
-                             {{"Vdip", 0.85},
-                              {"Vup", 1.2},
-                              {"Kqv", 2.0},
-                              {"Thld", 0.207},
-                              {"Iqfrz", 0.1},
-                              {"PQFLAG", 1.0}}}}},
-                    Outfit{"BehindAnImpedance",
-                           {{"REGCA1", {}},
-                            {"REECD1",
-                             {{"QFLAG", 1.0},
-                              {"VFLAG", 0.0},
-                              {"Kvp", 1.0},
-                              {"Kvi", 20.0},
-                              {"Xc", 0.05},
-                              {"Kqv", 2.0},
-                              {"Vdip", 0.85}}}}},
-                    Outfit{"KeepsAndBlocks",
-                           {{"REGCA1", {}},
-                            {"REECD1",
-                             {{"Vdip", 0.85},
-                              {"Kqv", 2.0},
-                              {"Thld", 0.207},
-                              {"Thld2", 0.157},
-                              {"Vblkl", 0.3},
-                              {"Tblk", 0.053}}}}},
-                    Outfit{"Compensator", {{"CSVGN1", {{"CBASE", 50.0}}}}},
-                    Outfit{"Battery", {{"REGCA1", {}}, {"REECC1", {{"Kqv", 2.0}}}}},
-                    Outfit{"WindTurbine",
-                           {{"REGCA1", {}},
-                            {"REECA1", {{"Vdip", 0.85}, {"Kqv", 2.0}}},
-                            {"REPCA1", {}},
-                            {"WTTQA1", {}},
-                            {"WTPTA1", {}},
-                            {"WTARA1", {}},
-                            {"WTDTA1", {}}}}),
+    testing::Values(
+        Outfit{"Alone", {{"REGCA1", {{"Lvplsw", 1.0}, {"Tfltr", 0.02}}}}},
+        Outfit{"Reecb1", {{"REGCA1", {}}, {"REECB1", {{"Kqv", 2.0}}}}},
+        Outfit{"Regulated",
+               {{"REGCA1", {}},
+                {"REECB1", {{"QFLAG", 1.0}, {"Kqi", 0.1}, {"Vdip", 0.85}}},
+                {"REPCA1", {{"RefFlag", 1.0}, {"Kp", 2.0}, {"Vfrz", 0.7}, {"Ddn", 20.0}}}}},
+        Outfit{"RidesThrough",
+               {{"REGCA1", {}},
+                {"REECA1", {{"Vdip", 0.85}, {"Vup", 1.2}, {"Kqv", 2.0}, {"Thld", -0.1}, {"Thld2", 0.2}}},
+                {"REPCA1", {}}}},
+        Outfit{"HoldsAfterwards",
+               {{"REGCA1", {}},
+                {"REECA1",
+                 {{"Vdip", 0.85},
+                  {"Vup", 1.2},
+                  {"Kqv", 2.0},
+                  {"Thld", 0.207},
+                  {"Iqfrz", 0.1},
+                  {"PQFLAG", 1.0}}}}},
+        Outfit{"BehindAnImpedance",
+               {{"REGCA1", {}},
+                {"REECD1",
+                 {{"QFLAG", 1.0},
+                  {"VFLAG", 0.0},
+                  {"Kvp", 1.0},
+                  {"Kvi", 20.0},
+                  {"Xc", 0.05},
+                  {"Kqv", 2.0},
+                  {"Vdip", 0.85}}}}},
+        Outfit{"KeepsAndBlocks",
+               {{"REGCA1", {}},
+                {"REECD1",
+                 {{"Vdip", 0.85},
+                  {"Kqv", 2.0},
+                  {"Thld", 0.207},
+                  {"Thld2", 0.157},
+                  {"Vblkl", 0.3},
+                  {"Tblk", 0.053}}}}},
+        Outfit{"Compensator", {{"CSVGN1", {{"CBASE", 50.0}}}}},
+        Outfit{"Distributed", {{"DERA1", {{"vtripFlag", 1.0}, {"tvl0", 0.053}, {"tvl1", 0.107}}}}, 0.02},
+        Outfit{"Battery", {{"REGCA1", {}}, {"REECC1", {{"Kqv", 2.0}}}}},
+        Outfit{"WindTurbine",
+               {{"REGCA1", {}},
+                {"REECA1", {{"Vdip", 0.85}, {"Kqv", 2.0}}},
+                {"REPCA1", {}},
+                {"WTTQA1", {}},
+                {"WTPTA1", {}},
+                {"WTARA1", {}},
+                {"WTDTA1", {}}}}),
     [](const auto& outfit) { return outfit.param.name; });
 
 }  // namespace

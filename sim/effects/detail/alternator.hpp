@@ -1,0 +1,65 @@
+#pragma once
+// The alternator of the brushless exciters EXAC1, EXAC2, ESAC1A, ESAC6A and REXS, and the rectifier behind
+// it. A Model has the parameters and coefficients named here, in its own order, and the states Vm and Ve.
+#include <fmt/format.h>
+
+#include "sim/core/blocks.hpp"
+#include "sim/core/effect.hpp"
+
+namespace swingbank::sim::effects::shared {
+
+template <class Model>
+struct Alternator {
+  static constexpr Slot slot = Slot::exciter;
+  /// What enters the regulator counts in Efd by its gain of hundreds, within its lags.
+  static constexpr double kErrorWeight = 10.0;
+
+  static std::string_view unphysical(const double*) { return ""; }
+
+ protected:
+  template <class T>
+  static void prepare_alternator(const T* p, T* c) {
+    using M = Model;
+    c[M::iTE] = T(1.0) / p[M::TE];
+    c[M::commutation] = p[M::KC];
+    c[M::demagnetising] = p[M::KD];
+    c[M::self] = p[M::KE];
+    const auto saturation = Quadratic<T>::through(p[M::E1], p[M::SE1], p[M::E2], p[M::SE2]);
+    c[M::satA] = saturation.A;
+    c[M::satB] = saturation.B;
+    c[M::none] = T(0.0);
+  }
+  /// The field that keeps the alternator at `ve`.
+  template <class T>
+  static T field(const T* c, const T& ve, const T& Ifd) {
+    using M = Model;
+    return c[M::self] * ve + Quadratic<T>{c[M::satA], c[M::satB]}(ve) + c[M::demagnetising] * Ifd;
+  }
+  /// Fills Vm and Ve, and the field they need; returns why there is none.
+  template <class T>
+  static std::string steady_alternator(const T* p, const T* c, const Signals<T>& s, T* x, T& Vfe) {
+    if (!(value_of(s.Efd) > 0.0))
+      return fmt::format("Efd = {:.4f} pu is needed and a rectifier delivers none below zero",
+                         value_of(s.Efd));
+    x[Model::Vm] = s.Vc;
+    x[Model::Ve] = rectifier_source(s.Efd, p[Model::KC] * s.Ifd);
+    Vfe = field(c, x[Model::Ve], s.Ifd);
+    return {};
+  }
+  static void check_alternator(const double* p, const std::string& where, Problems& problems) {
+    using M = Model;
+    const auto says = [&](int i) {
+      return fmt::format("{} = {:g}", M::parameters[static_cast<std::size_t>(i)].symbol, p[i]);
+    };
+    if (!(p[M::TE] > 0))
+      problems.add(says(M::TE) + " s", where, fmt::format("{} divides by it", M::name), "give TE > 0");
+    for (const int i : {M::KC, M::SE1, M::SE2})
+      if (!(p[i] >= 0))
+        problems.add(says(i), where, "it can only take from the exciter's voltage", "give a value >= 0");
+    if (p[M::E1] == p[M::E2] && p[M::SE1] != p[M::SE2])
+      problems.add(says(M::E1) + " = E2", where, "one voltage cannot have two saturations",
+                   "give two points");
+  }
+};
+
+}  // namespace swingbank::sim::effects::shared

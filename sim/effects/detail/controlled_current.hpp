@@ -1,0 +1,77 @@
+#pragma once
+// What the sources of a controlled current REGCA1, CSVGN1 and DERA1 have in common: the reactance that the
+// network sees, no voltage of their own, the frequency of their terminal. A Model has the coefficients iTfreq
+// and per_angle and the states Vrlag and Vilag.
+#include <cmath>
+
+#include "sim/core/bus_frequency.hpp"
+#include "sim/core/effect.hpp"
+
+namespace swingbank::sim::effects::shared {
+
+template <class Model>
+struct ControlledCurrent {
+  static constexpr Slot slot = Slot::machine;
+  static constexpr bool converter = true;
+  static constexpr Parameter kTfreq = {"Tfreq",
+                                       "Tfreq",
+                                       "s",
+                                       0.02,
+                                       1e-3,
+                                       1.0,
+                                       kNoNeutral,
+                                       "measurement of the terminal's frequency",
+                                       literature::own("about a cycle")};
+  static constexpr State kVrlag = {"Vrlag", "pu", "lagged voltage, real part", 0.1},
+                         kVilag = {"Vilag", "pu", "lagged voltage, imaginary part", 0.1};
+  /// Of the source as the network sees it: any is exact (decision 37), a large one makes the iteration short.
+  static constexpr double kReactance = 10.0;
+
+  static std::string_view unphysical(const double*) { return ""; }
+  template <class T>
+  static void source_impedance(const T*, T& r, T& x) {
+    r = T(0.0);
+    x = T(kReactance);
+  }
+  /// There is no voltage of its own; where it is off its terminal shows none.
+  template <class T>
+  static void emf(const T*, const T*, T*, T& er, T& ei) {
+    er = ei = T(0.0);
+  }
+
+ protected:
+  template <class T>
+  static T square_of_voltage(const Signals<T>& s) {
+    return s.Vr * s.Vr + s.Vi * s.Vi + T(1e-24);  // a dual needs a slope at V = 0
+  }
+  template <class T>
+  static T magnitude(const Signals<T>& s) {
+    using std::sqrt;
+    return sqrt(square_of_voltage(s));
+  }
+  template <class T>
+  static void prepare_frequency(const T& time_constant, const Conventions& conventions, T* c) {
+    c[Model::iTfreq] = T(1.0) / time_constant;
+    c[Model::per_angle] = frequency_slope(c[Model::iTfreq], conventions.frequency);
+  }
+  /// The signals that a source of current gives, as far as no turbine stands behind it. `squared`: |V|^2.
+  template <class T>
+  static void terminal(const T* c, const T* x, const T& squared, Signals<T>& s) {
+    s.speed = bus_frequency(s.Vr, s.Vi, squared, x[Model::Vrlag], x[Model::Vilag], c[Model::per_angle]);
+    s.Te = s.Vr * s.Ir + s.Vi * s.Ii;
+    s.Ifd = s.Pext = s.Qext = s.wt = s.wg = s.wref = s.pitch = s.Paero = T(0.0);
+    s.Pord = s.Te;
+  }
+  template <class T>
+  static void follow_voltage(const T* c, const T* x, const Signals<T>& s, T* dx) {
+    dx[Model::Vrlag] = (s.Vr - x[Model::Vrlag]) * c[Model::iTfreq];
+    dx[Model::Vilag] = (s.Vi - x[Model::Vilag]) * c[Model::iTfreq];
+  }
+  template <class T>
+  static void steady_voltage(const Signals<T>& s, T* x) {
+    x[Model::Vrlag] = s.Vr;
+    x[Model::Vilag] = s.Vi;
+  }
+};
+
+}  // namespace swingbank::sim::effects::shared

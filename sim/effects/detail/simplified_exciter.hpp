@@ -1,0 +1,68 @@
+#pragma once
+// The exciter of SEXS and SCRX: a lead-lag and one lag between fixed limits. A Model may add parameters and
+// coefficients behind the own ones; its second state is that of the lag.
+#include <fmt/format.h>
+
+#include "sim/core/blocks.hpp"
+#include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
+
+namespace swingbank::sim::effects::shared {
+
+template <class Model>
+struct SimplifiedExciter {
+  static constexpr Slot slot = Slot::exciter;
+  enum P { TAoverTB, TB, K, TE, EMIN, EMAX, own_parameters };
+  enum C { TA, iTB, gain, iTE, low, high, Vref, own_coefficients };
+  enum X { leadlag, output };
+  static constexpr Source bounds_from = kBeyondCases;
+  static constexpr Parameter kTAoverTB = {"TAoverTB", "TA/TB", "-", 0.1,
+                                          0.0,        10.0,    1.0, "lead over lag time constant"},
+                             kTB = {"TB", "TB",  "s",        10.0,
+                                    0.0,  100.0, kNoNeutral, "lag time constant (0: none)"},
+                             kK = {"K", "K", "pu", 100.0, 0.5, 2000.0, kNoNeutral, "gain"},
+                             kTE = {"TE", "TE", "s",        0.1,
+                                    0.0,  5.0,  kNoNeutral, "exciter time constant (0: none)"};
+  // An error of the lead-lag stays for TB and reaches Efd some 100 times larger; one of Efd is gone after TE.
+  static constexpr State kLeadLag = {"leadlag", "pu", "state of the lead-lag", 20.0, -1, -1, {iTB}};
+  static constexpr double kLagWeight = 0.1;
+
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    if (!(p[K] > 0)) problems.add(fmt::format("K = {:g}", p[K]), where, "no gain, no exciter", "give K > 0");
+    for (int i : {TB, TE})
+      if (!(p[i] >= 0))
+        problems.add(fmt::format("{} = {:g} s", Model::parameters[i].symbol, p[i]), where, "a time constant",
+                     "give a value >= 0");
+    if (!(p[EMAX] > p[EMIN]))
+      problems.add(fmt::format("EMAX = {:g} pu with EMIN = {:g} pu", p[EMAX], p[EMIN]), where,
+                   fmt::format("{} must have room to move", Model::states[output].name), "give EMAX > EMIN");
+  }
+  static std::string_view unphysical(const double*) { return ""; }
+
+  template <class T>
+  static void prepare(const T* p, const Conventions&, T* c) {
+    c[TA] = p[TAoverTB] * p[TB];
+    c[iTB] = inverse(p[TB]);
+    c[gain] = p[K];
+    c[iTE] = inverse(p[TE]);
+    c[low] = p[EMIN];
+    c[high] = p[EMAX];
+  }
+
+ protected:
+  template <class T>
+  static T driven(const T* c, const T* x, const Signals<T>& s, T* dx) {
+    const T error = c[Vref] + s.dVref - s.Vc + s.Vs + s.Vlimiter;
+    const T y = lead_lag(c[TA], c[iTB], x[leadlag], error, dx[leadlag]);
+    return clamp(lag(c[iTE], x[output], c[gain] * y, dx[output]), c[low], c[high]);
+  }
+  /// States and reference that give `out`.
+  template <class T>
+  static void rest(const T* p, T* c, const Signals<T>& s, const T& out, T* x) {
+    x[output] = out;
+    x[leadlag] = out / p[K];
+    c[Vref] = x[leadlag] + s.Vc - s.Vs - s.Vlimiter;
+  }
+};
+
+}  // namespace swingbank::sim::effects::shared
