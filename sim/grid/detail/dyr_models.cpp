@@ -33,6 +33,7 @@ constexpr OtherName kOtherNames[] = {
     {"REECCU1", "REECC1"},    // as a user-written model
     {"REECD", "REECD1"},
     {"REECDU1", "REECD1"},           // as a user-written model
+    {"REGCBU1", "REGCB1"},           // likewise
     {"REPCTA1", "REPCA1"},           // of a wind plant of type 3
     {"HYG3U1", "HYG3"},              // as a user-written model
     {"IEE2ST", "ST2CUT"},            // its IEEE form: the same blocks (OpenIPSL, c80a6c4)

@@ -1,0 +1,98 @@
+// REGCB1 by hand: the current commanded at rest, the reactance at a voltage that jumps, limits, rates, what
+// is refused.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+
+#include "sim/core/effect.hpp"
+#include "sim/library/library.hpp"
+
+namespace swingbank::sim {
+namespace {
+
+struct Behind {
+  explicit Behind(const std::vector<std::pair<const char*, double>>& changes,
+                  std::complex<double> power = {0.6, 0.2}) {
+    p = effect.standard_parameters();
+    for (const auto& [name, value] : changes)
+      p.at(static_cast<std::size_t>(effect.parameter_index(name))) = value;
+    c.resize(static_cast<std::size_t>(effect.coefficients));
+    x.resize(effect.states.size());
+    m.resize(static_cast<std::size_t>(effect.scratch));
+    effect.check(nullptr, p.data(), "test", problems);
+    s.Vr = 1.0, s.Vi = 0.0, s.Ir = power.real(), s.Ii = -power.imag();
+    ops.prepare(p.data(), Conventions::psse(), c.data());
+    refused = ops.machine.steady(p.data(), c.data(), s, x.data());
+  }
+  /// Current along the voltage and, lagging, across it.
+  std::complex<double> current(std::complex<double> v) {
+    s.Vr = v.real(), s.Vi = v.imag();
+    ops.machine.current(c.data(), x.data(), m.data(), s);
+    return std::conj(std::complex<double>(s.Ir, s.Ii) * std::conj(v) / std::abs(v));
+  }
+  std::vector<double> slopes(std::complex<double> v) {
+    std::vector<double> dx(x.size());
+    current(v);
+    ops.machine.electrical(c.data(), x.data(), m.data(), s);
+    ops.machine.derivative(c.data(), x.data(), m.data(), s, dx.data());
+    return dx;
+  }
+  const Effect& effect = *library::compiled().find("REGCB1");
+  const Ops<double>& ops = effect.get<double>();
+  std::vector<double> p, c, x, m;
+  Signals<double> s;
+  Problems problems;
+  std::string refused;
+};
+
+void expect_near(std::complex<double> is, std::complex<double> should, double within) {
+  EXPECT_NEAR(std::abs(is - should), 0.0, within) << is << " for " << should;
+}
+
+TEST(ConverterRegcb1, RestsWhereItIsCommanded) {
+  for (const double rate_flag : {0.0, 1.0}) {
+    Behind b({{"rateFlag", rate_flag}, {"Re", 0.02}});
+    ASSERT_TRUE(b.problems.empty());
+    ASSERT_EQ(b.refused, "");
+    for (const double d : b.slopes(1.0)) EXPECT_NEAR(d, 0.0, 1e-12);
+    expect_near(b.current(std::polar(1.0, 0.7)), {0.6, 0.2}, 1e-14);  // it turns with its voltage
+  }
+}
+
+TEST(ConverterRegcb1, AVoltageThatFallsDrivesCurrentThroughTheReactance) {
+  Behind b({});
+  // 0.05 pu less at 1 pu of inner voltage: 0.05/0.25 pu more reactive current, at once
+  expect_near(b.current(0.95), {0.6, 0.2 + 0.2}, 1e-13);
+  EXPECT_NEAR(b.slopes(0.95)[3], (0.95 + 0.25 * 0.2 - b.x[3]) / 0.01, 1e-10);
+  Behind resistive({{"Re", 0.25}, {"Xe", 1e-9}});
+  expect_near(resistive.current(0.95), {0.6 + 0.2, 0.2}, 1e-7);
+  Behind at_once({{"Te", 0.0}});
+  expect_near(at_once.current(0.95), {0.6, 0.2}, 1e-13);
+}
+
+TEST(ConverterRegcb1, TheLeadingCurrentTakesItsPart) {
+  Behind q_leads({{"Imax", 1.0}}), p_leads({{"Imax", 1.0}, {"pqFlag", 1.0}});
+  expect_near(q_leads.current(0.85), {0.6, 0.8}, 1e-13);  // 0.15/0.25 pu more: just Imax
+  expect_near(q_leads.current(0.825), {std::sqrt(1 - 0.81), 0.9}, 1e-13);
+  expect_near(p_leads.current(0.7), {0.6, 0.8}, 1e-13);
+  // Where it takes all, 0.025 Imax are left.
+  expect_near(q_leads.current(0.5), {0.025, 1.0}, 1e-13);
+}
+
+TEST(ConverterRegcb1, RatesAndRefusals) {
+  Behind b({{"rrpwr", 0.5}, {"Iqrmax", 3.0}});
+  b.s.Tm = 0.9, b.s.Efd = 0.9;
+  auto dx = b.slopes(1.0);
+  EXPECT_NEAR(dx[0], 0.5, 1e-14);
+  EXPECT_NEAR(dx[1], 3.0, 1e-14);
+  b.s.Tm = 0.1, b.s.Efd = 0.1;  // downwards there is no limit: Q0 > 0
+  dx = b.slopes(1.0);
+  EXPECT_NEAR(dx[0], (0.1 - 0.6) / 0.02, 1e-11);
+  EXPECT_NEAR(dx[1], (0.1 - 0.2) / 0.02, 1e-11);
+  EXPECT_NE(Behind({{"Imax", 0.5}}).refused.find("Imax"), std::string::npos);
+  EXPECT_EQ(Behind({{"Xe", 0.0}, {"Tg", 0.0}, {"pqFlag", 2.0}, {"Te", -1.0}}).problems.list().size(), 4u);
+}
+
+}  // namespace
+}  // namespace swingbank::sim
