@@ -40,7 +40,7 @@ struct Options {
   bool after_switching = false, net_generators = false, widen_limits = false, drop_refused = false;
   std::string complete_records = "no", devices = "checked";
   int raw_version = 0;
-  std::string start = "solved", q_limits = "enforce";
+  std::string start = "solved", q_limits = "enforce", switched_shunts = "fixed";
   std::filesystem::path changes;
 };
 
@@ -279,6 +279,7 @@ grid::CaseOptions case_options(const Options& o, const formats::DyrOptions& mode
   all.net_generators = o.net_generators;
   all.start_from_file = o.start == "file";
   all.flow.reactive_limits = o.q_limits == "enforce";
+  all.flow.step_shunts = o.switched_shunts == "step";
   return all;
 }
 
@@ -356,6 +357,11 @@ int main(int argc, char** argv) {
       .shows_default();
   line.add("--q-limits", o.q_limits, "reactive limits of generators in the power flow")
       .one_of({"enforce", "ignore"})
+      .shows_default();
+  line.add(
+          "--switched-shunts", o.switched_shunts,
+          "fixed: switched shunts stay at BINIT; step: those in discrete steps hold their voltage in the power flow")
+      .one_of({"fixed", "step"})
       .shows_default();
   line.add_flag("--widen-limits", o.widen_limits,
                 "where the operating point lies beyond a control's limit, move the limit there and name it");

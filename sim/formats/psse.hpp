@@ -31,16 +31,17 @@ struct RawOptions {
 /// Read: header, bus, load, fixed shunt, generator, branch, system switching device (a closed one is a line
 /// of its X), transformer with two windings, with three (a star point becomes a bus of its own, numbered
 /// above every bus of the file, and each winding a transformer to it); CW 1-3, CZ 1-3, CM 1-2, impedance
-/// correction tables at the present tap or angle; switched shunt (BINIT as a fixed shunt, with a remark where
-/// it is controlled); remote regulation (IREG, RMPCT). With a remark: branches without impedance get one of
-/// kNoImpedance, dc lines, FACTS and GNE devices and induction machines become the power that the file's
-/// voltages say they draw, and what settle_generators and settle_islands say. Passed over, because they
-/// change nothing in the equations: lines that begin with '@!', system-wide data, names of areas, zones and
-/// owners, inter-area transfer, multi-section line groupings, ratings, names of branches, vector groups,
-/// voltage limits, tap and load-flow controls (taps stay where they are), substations whose buses are in one
-/// piece. Distributed generation inside a load is taken off its P and Q, with a remark. Refused, naming
-/// section and line: buses that a substation's open switches split. Out-of-service loads and shunts are left
-/// out; what stands at an isolated bus (type 4) is out of service, as in PSS/E.
+/// correction tables at the present tap or angle; switched shunt (BINIT as a fixed shunt, with its steps and
+/// band where MODSW is 1, with a remark where it is controlled in another way); remote regulation (IREG,
+/// RMPCT). With a remark: branches without impedance get one of kNoImpedance, dc lines, FACTS and GNE devices
+/// and induction machines become the power that the file's voltages say they draw, and what settle_generators
+/// and settle_islands say. Passed over, because they change nothing in the equations: lines that begin with
+/// '@!', system-wide data, names of areas, zones and owners, inter-area transfer, multi-section line
+/// groupings, ratings, names of branches, vector groups, voltage limits, tap and load-flow controls (taps
+/// stay where they are), substations whose buses are in one piece. Distributed generation inside a load is
+/// taken off its P and Q, with a remark. Refused, naming section and line: buses that a substation's open
+/// switches split. Out-of-service loads and shunts are left out; what stands at an isolated bus (type 4) is
+/// out of service, as in PSS/E.
 ///
 /// Defaults of PSS/E for fields left empty: bus BASKV 0, IDE 1, VM 1, VA 0; load and shunt ID '1', STATUS 1,
 /// powers 0, AREA, ZONE and OWNER 1 (a load's: its bus's); generator ID '1', PG 0, QG 0, QT 9999, QB -9999,

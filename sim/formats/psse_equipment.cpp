@@ -119,14 +119,49 @@ void RawReader::switched_shunt(const Record& record) {
                 std::to_string(number),
             f))
     return;
-  if (on && s.bus >= 0 && f.integer(1 + columns_.switched_id, "MODSW", 1) != 0)
-    network_.remark("controlled switched shunts stay at BINIT", "bus " + std::to_string(number));
-  if (!on || s.bus < 0 || s.admittance.imag() == 0.0) return;
+  if (!on || s.bus < 0) return;
   s.id = id == "1" ? "SW" : "SW" + id;
   while (std::ranges::any_of(network_.shunts,
                              [&](const network::Shunt& o) { return o.bus == s.bus && o.id == s.id; }))
     s.id += "+";  // a fixed shunt bears this id: both must be writable as fixed shunts
-  network_.shunts.push_back(std::move(s));
+  switching(f, s);
+  if (s.admittance.imag() != 0.0) network_.shunts.push_back(std::move(s));
+}
+
+/// Mode, band and steps: MODSW 1 steps through its blocks in their order, reactors and capacitors apart.
+void RawReader::switching(Fields& f, const network::Shunt& shunt) {
+  const int mode = f.integer(1 + columns_.switched_id, "MODSW", 1);
+  const std::string place = "bus " + std::to_string(at(shunt.bus).number);
+  if (mode == 0) return;
+  if (mode != 1) {
+    network_.remark("controlled switched shunts that do not step stay at BINIT", place);
+    return;
+  }
+  const std::size_t band = columns_.switched_status == kNoColumn ? 2 : columns_.switched_status + 1;
+  network::SwitchedShunt s{shunt.bus, shunt.id, shunt.admittance.imag(), shunt.bus, 0.0, 0.0, {0.0}};
+  s.most = static_cast<double>(f.number(band, "VSWHI", 1.0L));
+  s.least = static_cast<double>(f.number(band + 1, "VSWLO", 1.0L));
+  if (const int remote = f.integer(band + 2, "SWREG", 0); remote != 0) s.regulated = find_bus(remote, f);
+  if (s.least > s.most)
+    problems_.add(place + ": VSWLO above VSWHI", f.where(), "no voltage lies in that band", "swap them");
+  // Version 35 has a status before each block.
+  const std::size_t stride = columns_.switched_id ? 3 : 2, blocks = 8;
+  double inductive = 0.0, capacitive = 0.0;
+  for (std::size_t k = 0; k < blocks; ++k) {
+    const std::size_t first = columns_.switched_binit + 1 + stride * k;
+    const bool on = stride == 2 || f.integer(first, "S", 1) != 0;
+    const int steps = f.integer(first + stride - 2, "N", 0);
+    const double each = pu(f.number(first + stride - 1, "B", 0.0L));
+    constexpr int most = 1000;  // of a block; more is no bank
+    if (steps < 0 || steps > most)
+      problems_.add(place + ": a block of " + std::to_string(steps) + " steps", f.where(),
+                    "a bank has 0 to 1000", "correct N");
+    for (int i = 0; on && i < std::min(steps, most) && each != 0.0; ++i)
+      s.steps.push_back((each > 0.0 ? capacitive : inductive) += each);
+  }
+  std::ranges::sort(s.steps);
+  if (s.steps.size() == 1 || s.regulated < 0) return;  // there is nothing to switch
+  network_.switched.push_back(std::move(s));
 }
 
 void RawReader::generator(const Record& record) {

@@ -25,8 +25,10 @@ const Names kLine{"ibus", "jbus", "ckt", "rpu", "xpu", "bpu", kSkip, kSkip, kSki
                   kSkip,  kSkip,  kSkip, kSkip, kSkip, kSkip, kSkip, "gi",  "bi",  "gj",  "bj",  "stat"};
 const Names kSwitch{"ibus", "jbus", "ckt", "xpu", kSkip, kSkip, kSkip, kSkip, kSkip,
                     kSkip,  kSkip,  kSkip, kSkip, kSkip, kSkip, kSkip, "stat"};
-const Names kSwitched{"ibus", "shntid", "modsw", "adjm", "stat", kSkip,
-                      kSkip,  kSkip,    kSkip,   kSkip,  kSkip,  "binit"};
+const Names kSwitched{"ibus", "shntid", "modsw", "adjm", "stat", "vswhi", "vswlo", "swreg", kSkip,
+                      kSkip,  kSkip,    "binit", "s1",   "n1",   "b1",    "s2",    "n2",    "b2",
+                      "s3",   "n3",     "b3",    "s4",   "n4",   "b4",    "s5",    "n5",    "b5",
+                      "s6",   "n6",     "b6",    "s7",   "n7",   "b7",    "s8",    "n8",    "b8"};
 const std::vector<Names> kTransformer{
     {"ibus", "jbus", "kbus", "ckt", "cw", "cz", "cm", "mag1", "mag2", kSkip, kSkip, "stat"},
     {"r1_2", "x1_2", "sbase1_2", "r2_3", "x2_3", "sbase2_3", "r3_1", "x3_1", "sbase3_1", "vmstar", "anstar"}};

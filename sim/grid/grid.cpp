@@ -239,11 +239,37 @@ class GridMaker {
       grid_.flow = network::flow_of_file(grid_.network);
     else
       grid_.flow = network::solve_power_flow(grid_.network, options_.flow);
+    switched_shunts();
     compare_with_file();
     for (const int bus : grid_.flow.at_limit)
       grid_.network.remark("generators at a reactive limit do not hold their voltage", bus_text(bus));
     for (plant::Plant& plant : grid_.plants)
       plant.generation = grid_.flow.generation[static_cast<std::size_t>(plant.generator)];
+  }
+  /// Puts the steps that the power flow took into the network.
+  void switched_shunts() {
+    network::Network& n = grid_.network;
+    if (!options_.flow.step_shunts || options_.start_from_file) {
+      for (const network::SwitchedShunt& s : n.switched)
+        n.remark("switched shunts stay at BINIT (--switched-shunts step lets them step)", bus_text(s.bus));
+      return;
+    }
+    for (const network::SteppedShunt& stepped : grid_.flow.stepped) {
+      network::SwitchedShunt& s = n.switched[stepped.which];
+      const auto mvar = [&](double b) { return fmt::format("{:.2f} Mvar", b * n.base_mva); };
+      if (stepped.susceptance != s.present)
+        n.remark("switched shunts were stepped, as asked",
+                 bus_text(s.bus) + " " + mvar(s.present) + " to " + mvar(stepped.susceptance));
+      if (!stepped.in_band)
+        n.remark(
+            "switched shunts have no step that brings their voltage into its band",
+            bus_text(s.bus) +
+                fmt::format(" holds {} within {:g} to {:g} pu, {:.4f} pu", bus_text(s.regulated), s.least,
+                            s.most, std::abs(grid_.flow.voltage[static_cast<std::size_t>(s.regulated)])));
+      std::erase_if(n.shunts, [&](const network::Shunt& o) { return o.bus == s.bus && o.id == s.id; });
+      s.present = stepped.susceptance;
+      if (s.present != 0.0) n.shunts.push_back({s.bus, s.id, {0.0, s.present}});
+    }
   }
   [[nodiscard]] std::string bus_text(int bus) const {
     return "bus " + std::to_string(grid_.network.buses[static_cast<std::size_t>(bus)].number);

@@ -25,6 +25,7 @@ void settle_isolated(Network& n) {
   const auto isolated = [&](int bus) { return at(n, bus).type == BusType::isolated; };
   std::erase_if(n.loads, [&](const Load& l) { return isolated(l.bus); });
   std::erase_if(n.shunts, [&](const Shunt& s) { return isolated(s.bus); });
+  std::erase_if(n.switched, [&](const SwitchedShunt& s) { return isolated(s.bus) || isolated(s.regulated); });
   for (Branch& b : n.branches)
     if (isolated(b.from) || isolated(b.to)) b.in_service = false;
   for (Generator& g : n.generators)

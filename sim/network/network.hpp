@@ -37,6 +37,15 @@ struct Shunt {
   std::string id;
   Complex admittance;
 };
+/// A shunt that is switched in steps to hold a voltage within a band.
+struct SwitchedShunt {
+  int bus;
+  std::string id;             ///< of the shunt in Network::shunts; there is none where `present` is 0
+  double present;             ///< its susceptance [pu]
+  int regulated;              ///< index of the bus whose voltage it holds
+  double least, most;         ///< the band of that voltage [pu]
+  std::vector<double> steps;  ///< susceptances it can take, ascending [pu]
+};
 /// Line or two-winding transformer: pi section with an ideal tap (ratio, phase shift) on the `from` side.
 struct Branch {
   int from, to;
@@ -73,6 +82,7 @@ struct Network {
   std::vector<Bus> buses;
   std::vector<Load> loads;
   std::vector<Shunt> shunts;
+  std::vector<SwitchedShunt> switched;
   std::vector<Branch> branches;
   std::vector<Generator> generators;
   std::vector<Remark> remarks;  ///< what was done to the case

@@ -13,6 +13,7 @@
 #include "sim/network/admittance.hpp"
 #include "sim/network/connectivity.hpp"
 #include "sim/network/detail/regulation.hpp"
+#include "sim/network/detail/shunt_steps.hpp"
 
 namespace swingbank::sim::network {
 namespace {
@@ -121,6 +122,7 @@ class Newton {
       v_[static_cast<Eigen::Index>(i)] = role.kind == Role::out ? Complex{} : std::polar(vm, va);
     }
   }
+  void add_susceptance(int bus, double more) { y_.coeffRef(bus, bus) += Complex(0.0, more); }
   [[nodiscard]] const Eigen::VectorXcd& voltage() const { return v_; }
   /// Power the generators of a bus must deliver [pu].
   [[nodiscard]] Complex delivered(int i) const { return v_[i] * std::conj(i_[i]) + load(i); }
@@ -378,15 +380,25 @@ PowerFlow solve_power_flow(const Network& network, const PowerFlowOptions& optio
   int iterations = 0;
   newton.arrange(regulation.roles());
   solve(newton, network, options, false, iterations);
-  if (options.reactive_limits)
-    while (regulation.limit([&](int bus) { return newton.delivered(bus).imag(); },
-                            [&](int bus) { return std::abs(newton.voltage()[bus]); })) {
+  const auto magnitude = [&](int bus) { return std::abs(newton.voltage()[bus]); };
+  const auto within_limits = [&] {
+    while (options.reactive_limits &&
+           regulation.limit([&](int bus) { return newton.delivered(bus).imag(); }, magnitude)) {
       newton.arrange(regulation.roles());
       solve(newton, network, options, true, iterations);
     }
+  };
+  within_limits();
+  ShuntSteps steps(network);
+  while (options.step_shunts &&
+         steps.step(magnitude, [&](int bus, double more) { newton.add_susceptance(bus, more); })) {
+    solve(newton, network, options, true, iterations);
+    within_limits();
+  }
   PowerFlow flow = result_of(newton, network, options);
   flow.iterations = iterations;
   flow.at_limit = regulation.at_limit();
+  if (options.step_shunts) flow.stepped = steps.result(magnitude);
   return flow;
 }
 

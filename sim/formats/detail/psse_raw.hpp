@@ -86,6 +86,7 @@ class RawReader {
   void transformer(const Record& first);
   void transformer_lines(std::span<const Record> rows);
   void switched_shunt(const Record& record);
+  void switching(Fields& f, const network::Shunt& shunt);
   void correction_table(const Record& first);
   void two_terminal_dc(const Record& first);
   void vsc_dc(const Record& first);

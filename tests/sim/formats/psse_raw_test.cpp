@@ -136,6 +136,38 @@ TEST(PsseRaw, SwitchedShuntsCountWithTheirInitialSusceptance) {
   ASSERT_EQ(n.shunts.size(), 1u);  // one is out of service, one has nothing switched in
   EXPECT_EQ(n.shunts[0].bus, 2);
   EXPECT_EQ(n.shunts[0].admittance, Complex(0.0, -0.25));
+  ASSERT_EQ(n.switched.size(), 2u);
+  EXPECT_EQ(n.switched[0].present, -0.25);
+  EXPECT_EQ(n.switched[0].id, n.shunts[0].id);
+  EXPECT_EQ(n.switched[1].present, 0.0);
+}
+
+TEST(PsseRaw, StepsOfSwitchedShuntsAreReactorsAndCapacitorsInTheirOrder) {
+  RawCase c;
+  c.other["switched shunt"] =
+      "103,1,0,1,1.03,0.97,101,100,'',20.0,1,-30,2,10,0,99,3,5\n"
+      "102,2,0,1,1.1,0.9,0,100,'',40.0,5,8\n";
+  const network::Network n = c.read();
+  ASSERT_EQ(n.switched.size(), 1u);
+  const network::SwitchedShunt& s = n.switched[0];
+  EXPECT_EQ(s.bus, 2);
+  EXPECT_EQ(s.regulated, 0);
+  EXPECT_EQ(s.least, 0.97);
+  EXPECT_EQ(s.most, 1.03);
+  EXPECT_EQ(s.steps, (std::vector<double>{-0.3, 0.0, 0.1, 0.2, 0.25, 0.3, 0.35}));
+  ASSERT_EQ(n.remarks.size(), 1u);  // of the one that does not step
+  EXPECT_NE(n.remarks[0].what.find("do not step"), std::string::npos);
+}
+
+TEST(PsseRaw, RefusesABandWithoutVoltagesAndABlockOfNegativeSteps) {
+  RawCase c;
+  c.other["switched shunt"] = "103,1,0,1,0.97,1.03,0,100,'',20.0,-1,10\n";
+  try {
+    (void)c.read();
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.problems().size(), 2u);
+  }
 }
 
 struct Device {
