@@ -9,10 +9,10 @@ namespace {
 constexpr double kSameStep = 1e-9;  ///< [pu] steps are sums that were rounded
 
 /// -1: too much susceptance, +1: too little, 0: within the band.
-int wanted(const SwitchedShunt& s, double v) { return v > s.most ? -1 : v < s.least ? 1 : 0; }
+int way_to_band(const SwitchedShunt& s, double v) { return v > s.most ? -1 : v < s.least ? 1 : 0; }
 
 /// The next step in a direction; the present one where there is none.
-double next(const SwitchedShunt& s, double now, int direction) {
+double next_step(const SwitchedShunt& s, double now, int direction) {
   if (direction > 0) {
     const auto found = std::ranges::upper_bound(s.steps, now + kSameStep);
     return found == s.steps.end() ? now : *found;
@@ -33,10 +33,10 @@ bool ShuntSteps::step(const std::function<double(int)>& voltage,
   for (std::size_t i = 0; i < banks_.size(); ++i) {
     const SwitchedShunt& s = n_.switched[i];
     Bank& bank = banks_[i];
-    const int way = wanted(s, voltage(s.regulated));
+    const int way = way_to_band(s, voltage(s.regulated));
     if (way == 0) continue;
     if (bank.last == -way) continue;  // its band is narrower than a step
-    const double to = next(s, bank.now, way);
+    const double to = next_step(s, bank.now, way);
     if (to == bank.now) continue;
     change(s.bus, to - bank.now);
     bank.now = to;
@@ -49,7 +49,7 @@ bool ShuntSteps::step(const std::function<double(int)>& voltage,
 std::vector<SteppedShunt> ShuntSteps::result(const std::function<double(int)>& voltage) const {
   std::vector<SteppedShunt> list;
   for (std::size_t i = 0; i < banks_.size(); ++i) {
-    const bool in_band = wanted(n_.switched[i], voltage(n_.switched[i].regulated)) == 0;
+    const bool in_band = way_to_band(n_.switched[i], voltage(n_.switched[i].regulated)) == 0;
     if (!in_band || banks_[i].now != n_.switched[i].present) list.push_back({i, banks_[i].now, in_band});
   }
   return list;

@@ -13,11 +13,11 @@
 namespace swingbank::sim {
 namespace {
 
-using Changes = std::vector<std::pair<const char*, double>>;
+using DeraChanges = std::vector<std::pair<const char*, double>>;
 constexpr double kActive = 0.6, kReactive = 0.15;  ///< at the start [pu]
 
 struct Distributed {
-  explicit Distributed(const Changes& changes = {}, std::complex<double> power = {kActive, kReactive}) {
+  explicit Distributed(const DeraChanges& changes = {}, std::complex<double> power = {kActive, kReactive}) {
     p = effect.standard_parameters();
     p.at(static_cast<std::size_t>(effect.parameter_index("vtripFlag"))) = 1.0;
     for (const auto& [name, value] : changes)
@@ -95,7 +95,7 @@ TEST(ConverterDera1, StandsAndRidesThroughASag) {
 }
 
 TEST(ConverterDera1, APartIsOffBetweenItsVoltagesAndAShareStaysOff) {
-  const Changes sags = {{"Kqv", 0.0}, {"freqFlag", 0.0}, {"Imax", 2.0}};
+  const DeraChanges sags = {{"Kqv", 0.0}, {"freqFlag", 0.0}, {"Imax", 2.0}};
   Distributed brief(sags);
   brief.run(0.2, 0.465);  // below Vl1 for 0.14 s, as the voltmeter sees it
   EXPECT_NEAR(brief.state("M"), 0.5, 5e-3);
@@ -138,26 +138,26 @@ TEST(ConverterDera1, BelowVl0ForTvl0NothingComesBack) {
 }
 
 /// The voltage of a grid that runs `deviation` pu beside rated frequency.
-std::complex<double> turning(double deviation, double t) {
+std::complex<double> turning_voltage(double deviation, double t) {
   return std::polar(1.0, 2 * std::numbers::pi * 60.0 * deviation * t);
 }
 
 TEST(ConverterDera1, PowerFollowsHighFrequencyAtItsRate) {
   Distributed der;
-  const auto v = [](double t) { return turning(0.005, t); };
+  const auto v = [](double t) { return turning_voltage(0.005, t); };
   der.run(0.1, v);
   EXPECT_NEAR(der.state("Pset"), kActive - 0.5 * 0.1, 0.01);  // dPmin, after the frequency's lag
   der.run(3.0, [&](double t) { return v(t + 0.1); });
   EXPECT_NEAR(der.power().real(), kActive - 20.0 * (0.005 - 0.0006), 1e-4);
   // Dup = 0: low frequency asks for nothing.
   Distributed low;
-  low.run(2.0, [](double t) { return turning(-0.005, t); });
+  low.run(2.0, [](double t) { return turning_voltage(-0.005, t); });
   EXPECT_NEAR(low.power().real(), kActive, 1e-6);
 }
 
 TEST(ConverterDera1, FrequencyTripsUnlessTheVoltageIsLow) {
-  const Changes trips = {{"ftripFlag", 1.0}, {"freqFlag", 0.0}, {"Kqv", 0.0}};
-  const auto under = [](double t) { return turning(55.0 / 60.0 - 1.0, t); };
+  const DeraChanges trips = {{"ftripFlag", 1.0}, {"freqFlag", 0.0}, {"Kqv", 0.0}};
+  const auto under = [](double t) { return turning_voltage(55.0 / 60.0 - 1.0, t); };
   Distributed brief(trips), lasting(trips), low(trips);
   brief.run(0.15, under);
   brief.run(0.5, [&](double) { return under(0.15); });

@@ -17,9 +17,9 @@ namespace {
 constexpr double kStepOfRecord = 0.005;  ///< [s]
 constexpr double kTrip = 2.0;            ///< [s]
 constexpr double kSettled = 2.15;        ///< from then on PSS/E's steps make no difference [s]
-constexpr double kEnd = 4.0;             ///< [s]
+constexpr double kEndOfRecord = 4.0;     ///< [s]
 
-std::filesystem::path folder() { return test::record_folder("psse_powersimulationsdynamics") / "DERA"; }
+std::filesystem::path dera_folder() { return test::record_folder("psse_powersimulationsdynamics") / "DERA"; }
 
 /// The record's folder lacks DERA1's parameters: they stand in the project's test 42, and fl to tfh nowhere,
 /// so that frequency trips nothing here. `freq_flag`: PSS/E's two records are the same to the last digit.
@@ -29,7 +29,7 @@ grid::Grid distributed_grid(int freq_flag) {
                      << "102 'DERA1' 1 1 " << freq_flag << " 0 1 1 0 0.02 0.02 -99 99 5.0 0.0 0.02 0.02 20 0"
                      << " -0.0006 0.0006 99 -99 1.1 0.0 0.5 -0.5 0.02 0.1 10.0 1.2 0.44 0.49 1.2 1.15"
                      << " 0.16 0.16 0.16 0.16 0.7 0 999 99 99 0.02 99 0.02 0.8 1.0 -1.0 /\n";
-  grid::Grid grid = grid::load_grid(folder() / "ThreeBusMulti.raw", dyr, Conventions::psse());
+  grid::Grid grid = grid::load_grid(dera_folder() / "ThreeBusMulti.raw", dyr, Conventions::psse());
   std::filesystem::remove(dyr);
   Problems problems;
   grid::choose_load(grid, "103:ZIP:Pp=0,Pi=1,Qp=0,Qi=0", "test", problems);
@@ -54,11 +54,11 @@ class PsseRecordsDistributed : public testing::TestWithParam<int> {};
 TEST_P(PsseRecordsDistributed, VoltageAndAngle) {
   const grid::Grid grid = distributed_grid(GetParam());
   const auto record =
-      test::read_table(folder() / ("dera_freqflag" + std::to_string(GetParam()) + ".csv"), false);
+      test::read_table(dera_folder() / ("dera_freqflag" + std::to_string(GetParam()) + ".csv"), false);
   network::Event event;
   event.trips.push_back({grid.network.branch_index(101, 102, "1"), kTrip, {}});
   ReferenceOptions options;
-  options.t_end = kEnd;
+  options.t_end = kEndOfRecord;
   options.rate = 1.0 / kStepOfRecord;
   options.channels = {Channel::V, Channel::theta};
   options.after_switching = true;
@@ -74,7 +74,7 @@ TEST_P(PsseRecordsDistributed, VoltageAndAngle) {
     if (row[0] < kTrip || row[0] > kSettled) settled.see(row, run.at(1, 0)[k], run.at(1, 1)[k]);
   }
   std::size_t next = 0;
-  test::step_as_psse(grid, event, 1, kStepOfRecord, kEnd,
+  test::step_as_psse(grid, event, 1, kStepOfRecord, kEndOfRecord,
                      [&](double, const Signals<double>& s, const double*) {
                        if (next < record.rows.size())
                          stepped.see(record.rows[next++], s.V, std::atan2(s.Vi, s.Vr));
