@@ -40,7 +40,7 @@ class Check {
     if (r_.angle == record::AngleSource::measured) angle();
     power();
     quantised();
-    if (r_.angle == record::AngleSource::measured)
+    if (plant_.synchronous && r_.angle == record::AngleSource::measured)
       jumps();  // the phasors', so not without an angle of their own
     std::ranges::stable_sort(findings_, {}, [](const Finding& f) { return f.severity; });
     return std::move(findings_);
@@ -468,7 +468,7 @@ class Check {
 }  // namespace
 
 PlantFacts plant_facts(const plant::PlantModel& model) {
-  return {model.plant.mva, model.record_base.frequency};
+  return {model.plant.mva, model.record_base.frequency, !model.plant.machine.effect->converter};
 }
 
 std::vector<Finding> check_record(const record::Record& record, const PlantFacts& plant) {

@@ -22,6 +22,8 @@ struct Finding {
 struct PlantFacts {
   double mva = 0;           ///< the machine's base [MVA]
   double frequency = 60.0;  ///< nominal [Hz]
+  bool synchronous =
+      true;  ///< a machine, whose current jumps as its reactance says; a converter's follows its control
 };
 PlantFacts plant_facts(const plant::PlantModel& model);
 

@@ -131,6 +131,13 @@ TEST_P(RecordMistakeTest, IsRecognised) {
 INSTANTIATE_TEST_SUITE_P(All, RecordMistakeTest, ::testing::ValuesIn(mistakes()),
                          [](const auto& each) { return std::string(each.param.name); });
 
+TEST(RecordCheckTest, OnlyAMachinesCurrentMustJumpAsItsReactanceSays) {
+  Written turned;
+  turned.edit = [](std::vector<double>& x) { x[4] = -x[4]; };
+  const record::Record r = rewritten(example(1), turned);
+  EXPECT_THROW(raise_refusals(check_record(r, {100, 60})), InputError);
+  EXPECT_NO_THROW(raise_refusals(check_record(r, {100, 60, false})));
+}
 TEST(RecordCheckTest, ANegativeMagnitudeIsRefusedOnReading) {
   const Written w{.edit = [](auto& x) { std::swap(x[1], x[2]); }};
   EXPECT_THAT(test::messages([&] { rewritten(example(1), w); }),
