@@ -34,7 +34,7 @@ std::vector<Ordering> orderings(const Block& block) {
       if (at < 0) continue;
       if (before >= 0 && block.p[static_cast<std::size_t>(before)] > 0 &&
           block.p[static_cast<std::size_t>(at)] > 0)
-        list.push_back({before, at});
+        list.push_back({before, at, name == kChains.front().back()});
       before = at;
     }
   }

@@ -10,6 +10,9 @@ namespace swingbank::sim::plant {
 /// Parameters of a block's effect, by number.
 struct Ordering {
   int greater = 0, smaller = 0;
+  /// Whether a model may be believed against it: how a subtransient reactance is split at the leakage is not
+  /// seen from outside, the equations hold either way, and public cases have machines with X''d below Xl.
+  bool may_be_meant = false;
 };
 
 /// The orderings that a block's values are held to; where one of a pair is zero, it stands for "none" and

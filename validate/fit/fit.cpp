@@ -9,6 +9,7 @@
 
 #include "base/constants.hpp"
 #include "validate/fit/detail/cost.hpp"
+#include "validate/fit/detail/input_evidence.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::fit {
@@ -226,6 +227,7 @@ class Search {
       covariance = known.solve(Eigen::MatrixXd::Identity(n, n));
       fit.occam = known.vectorD().array().log().sum();
       for (const Axis& a : setting_.axes) fit.occam += a.spread() > 0 ? 2 * std::log(a.spread()) : 0.0;
+      if (setting_.input != InputKind::none) fit.occam = input_occam(fit);
     }
     for (Eigen::Index i = 0; i < n; ++i) {
       const Axis& a = setting_.axes[static_cast<std::size_t>(i)];
@@ -246,6 +248,35 @@ class Search {
       p.decided = a.spread() > 0 ? std::clamp(1 - error * error / (a.spread() * a.spread()), 0.0, 1.0) : 1.0;
       fit.parameters.push_back(p);
     }
+  }
+  /// What makes chi2 and belief the evidence of a fit with an input.
+  [[nodiscard]] double input_occam(const Fit& fit) const {
+    using Row = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    const auto n = static_cast<Eigen::Index>(z_.size());
+    Eigen::VectorXd precision(n);
+    double believed = 0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double spread = setting_.axes[static_cast<std::size_t>(i)].spread();
+      precision[i] = spread > 0 ? 1 / (spread * spread) : 0.0;
+      believed += spread > 0 ? 2 * std::log(spread) : 0.0;
+    }
+    InputEvidence evidence(precision, Eigen::Map<const Eigen::VectorXd>(z_.data(), n));
+    for (std::size_t e = 0; e < costs_.size(); ++e) {
+      const auto rows = static_cast<Eigen::Index>(costs_[e]->num_residuals()),
+                 size = static_cast<Eigen::Index>(states_[e].size()),
+                 knots = static_cast<Eigen::Index>(setting_.knots[e].size());
+      Row by_z(rows, n), by_state(rows, size);
+      Eigen::VectorXd residuals(rows), states = Eigen::VectorXd::Zero(size - knots);
+      const double* blocks[] = {z_.data(), states_[e].data()};
+      double* jacobians[] = {by_z.data(), by_state.data()};
+      if (!costs_[e]->Evaluate(blocks, residuals.data(), jacobians)) return std::nan("");
+      for (Eigen::Index k = 0; k < kStates; ++k)
+        states[size - knots - kStates + k] =
+            1 / (kStateBelief[static_cast<std::size_t>(k)] * kStateBelief[static_cast<std::size_t>(k)]);
+      evidence.add(by_z, by_state, residuals, states,
+                   Eigen::Map<const Eigen::VectorXd>(states_[e].data(), size).tail(knots));
+    }
+    return evidence.cost(options_.bend) + believed - fit.chi2 - fit.belief;
   }
   void add_curvature(std::size_t e, Eigen::MatrixXd& curvature) const {
     using Row = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

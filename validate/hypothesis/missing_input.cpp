@@ -33,6 +33,10 @@ double MissingInput::explains(const fit::Fit& without) const {
   return fit::gain(without, fit, fit::data_cost) - thresholds::adequacy.knot * static_cast<double>(knots);
 }
 
+double MissingInput::evidence(const fit::Fit& without) const {
+  return fit::gain(without, fit, fit::criterion);
+}
+
 MissingInput infer_input(fit::InputKind kind, const sim::plant::PlantUnderTest& tested,
                          const event::WhitenedEvents& events, double spread, const fit::FitOptions& start) {
   MissingInput found{kind, {}};

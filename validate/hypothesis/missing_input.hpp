@@ -14,6 +14,9 @@ struct MissingInput {
   /// What the input explains of the chi2 that `without` leaves, less twice the number of its knots (Akaike
   /// 1974).
   [[nodiscard]] double explains(const fit::Fit& without) const;
+  /// Evidence of the input over `without` by Laplace's approximation, as effects have it (fit::criterion):
+  /// its knots pay for what the records know of them beyond what is believed of bends.
+  [[nodiscard]] double evidence(const fit::Fit& without) const;
   [[nodiscard]] const playin::PiecewiseLinear& of(std::size_t event) const {
     return fit.events[event].state.input;
   }

@@ -17,8 +17,8 @@ struct Explanation {
 };
 
 /// Fills the probabilities in and puts the most probable first. `none` is the evidence of an input that is
-/// free in time, less its knots' price: what is in no list may do as much. It may also look like the best
-/// effect of the list, whose price it pays once more (thresholds::evidence.accepted).
+/// free in time, less the price of an effect: what is in no list may do as much. It may also look like the
+/// best effect of the list, whose price it pays once more (thresholds::evidence.accepted).
 std::vector<Explanation> posterior(std::vector<Explanation> all, double none);
 
 /// So many of the leading ones make up thresholds::posterior.set.

@@ -1,7 +1,8 @@
-// Where a fit must be able to get: across zero, and past a regulator that
+// Where a fit must be able to get: across zero, below the leakage, and past a regulator that
 // chatters.
 #include <gtest/gtest.h>
 
+#include "sim/plant/orderings.hpp"
 #include "tests/validate/fit/exciter_example.hpp"
 #include "validate/fit/sign.hpp"
 
@@ -51,6 +52,19 @@ TEST(Sign, ASelfExcitedExciterIsFoundFromTheStandardOne) {
   EXPECT_NEAR(KE->value, -0.1, 3 * KE->error);
   EXPECT_LT(KE->error, 0.3);
   EXPECT_LT(f.misfit(), 0.05);
+}
+/// Public cases have machines with X''d below Xl. A record of such a machine keeps it.
+TEST(FitOrderings, ASubtransientReactanceBelowTheLeakageIsLeftToTheRecords) {
+  ExciterExample example(0.2);
+  sim::plant::Block& machine = example.model.plant.machine;
+  parameter(machine, "Xdpp") = 0.7 * parameter(machine, "Xl");
+  ASSERT_FALSE(sim::plant::violated(machine).empty());
+  const event::WhitenedEvents events = answered(example, example.model.plant);
+  const Fit f = fit(example.model.under_test(), events, free_parameters(example.model.plant, example.spread));
+  ASSERT_EQ(f.failed, "");
+  EXPECT_LT(f.misfit(), 1e-3);
+  sim::plant::Block found = f.plant.machine;
+  EXPECT_LT(parameter(found, "Xdpp"), 0.8 * parameter(found, "Xl"));
 }
 /// A regulator of gain 2000 behind a lead of eleven times answers each sample's noise with its limits.
 TEST(FitSteps, APlantThatSmallStepsDoNotPassIsFittedWithLenientOnes) {

@@ -33,8 +33,8 @@ void weigh(Diagnosis& d) {
     if (const hypothesis::Judgement& j = d.ranked[k];
         j.accepted || (j.fitted && j.fit.failed.empty() && j.gain < thresholds::evidence.accepted.value))
       all.push_back({hypothesis::full_name(j.hypothesis), j.gain - price(j.hypothesis), static_cast<int>(k)});
-  d.probabilities =
-      hypothesis::posterior(std::move(all), std::max(d.torque.explains(d.base), d.field.explains(d.base)));
+  const double free = std::max(d.torque.evidence(d.base), d.field.evidence(d.base));
+  d.probabilities = hypothesis::posterior(std::move(all), free - thresholds::evidence.accepted);
 }
 
 std::string capitalised(std::string text) {
@@ -79,8 +79,26 @@ std::string with_probabilities(std::span<const hypothesis::Explanation> some) {
   return text;
 }
 
+/// What makes up the set.
+std::span<const hypothesis::Explanation> credible_set(const Diagnosis& d) {
+  return std::span(d.probabilities).first(hypothesis::credible(d.probabilities));
+}
+
+bool names_an_effect(const Diagnosis& d) {
+  return std::ranges::any_of(credible_set(d), [](const auto& e) { return e.place >= 0; });
+}
+
+/// Takes back what was accepted, because an input that is free in time is beyond doubt more probable.
+void refuse_all(Diagnosis& d) {
+  for (hypothesis::Judgement& j : d.ranked) {
+    if (!j.accepted) continue;
+    j.accepted = false;
+    j.why_not = "a torque or a field voltage free in time is far more probable";
+  }
+}
+
 void name_best(const laws::Unexplained& judged, Diagnosis& d) {
-  const auto set = std::span(d.probabilities).first(hypothesis::credible(d.probabilities));
+  const auto set = credible_set(d);
   const auto first = std::ranges::find_if(set, [](const auto& e) { return e.place >= 0; });
   const hypothesis::Judgement& best = d.ranked[static_cast<std::size_t>(first->place)];
   d.ruling = thresholds::judged_by_evidence(hypothesis::full_name(best.hypothesis), best.gain);
@@ -195,7 +213,8 @@ void interrupt(Diagnosis& d) {
 void settle(const laws::Unexplained& judged, const laws::LawProgress& progress, Diagnosis& d) {
   const auto& r = d.ranked;
   weigh(d);
-  if (!r.empty() && r.front().accepted) return name_best(judged, d);
+  if (!r.empty() && r.front().accepted && names_an_effect(d)) return name_best(judged, d);
+  refuse_all(d);
   d.ruling = thresholds::judged_by_remainder({d.base.misfit(), slow_remainder(d.base, d.events),
                                               d.torque.explains(d.base), d.field.explains(d.base)},
                                              judged.trial.adequate);

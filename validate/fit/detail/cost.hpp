@@ -263,13 +263,14 @@ class Belief : public ceres::CostFunction {
 };
 
 /// Keeps the physical orderings of a machine's parameters (Xd > X'd > ...): a wall that rises from kMargin
-/// before two of them are equal. A start that stands nearer begins at the wall's foot, one that violates an
-/// ordering is drawn back to it.
+/// before two of them are equal. A model that stands nearer begins at the wall's foot, one that violates an
+/// ordering is drawn back to it, unless it may be meant.
 class Walls : public ceres::CostFunction {
  public:
   Walls(const Setting& setting, const double* discrepancy) : setting_(setting), discrepancy_(discrepancy) {
     const sim::plant::Block& machine = setting.plant->machine;
     for (const auto& o : sim::plant::orderings(machine)) {
+      if (o.may_be_meant && gap(machine, o) < 0) continue;
       const Wall wall{{o.greater, o.smaller},
                       {axis_of(o.greater), axis_of(o.smaller)},
                       std::clamp(gap(machine, o), 0.0, kMargin)};
