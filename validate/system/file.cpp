@@ -179,9 +179,9 @@ void read_terminal(Config& c, const std::string& name, SystemCase& s) {
       t.record.Q.clear();
       check_bus_record(t.record, problems);
     } else {
-      const sim::plant::Plant& plant = s.grid.plants[static_cast<std::size_t>(t.plant)];
-      auto findings =
-          check::check_record(t.record, {plant.mva, s.base.frequency, !plant.machine.effect->converter});
+      const sim::plant::Plant& recorded = s.grid.plants[static_cast<std::size_t>(t.plant)];
+      auto findings = check::check_record(
+          t.record, {recorded.mva, s.base.frequency, !recorded.machine.effect->converter});
       // Far from the event a terminal may hardly feel it; that is no fault of the record.
       std::erase_if(findings, [](const check::Finding& f) { return f.kind == "no_event"; });
       for (auto& warning : check::warnings_of(findings)) t.warnings.push_back(std::move(warning));
