@@ -165,6 +165,7 @@ class Diagnoser {
                            const std::vector<fit::FreeParameter>& free, const fit::Fit& f) {
       fit::FitOptions o = fit::continued({}, f, free);
       o.iterations = kOnwards;
+      o.lenient = true;
       return fit::fit(tested, result_.events, free, o);
     };
     result_.base =

@@ -1,5 +1,7 @@
 #include "validate/event/play.hpp"
 
+#include <algorithm>
+
 #include "validate/playin/allowance.hpp"
 #include "validate/playin/given.hpp"
 #include "validate/playin/instruments.hpp"
@@ -46,6 +48,11 @@ playin::Response play(const sim::plant::PlantUnderTest& tested, const FitEvent& 
   }
   if (how.lenient)
     run.allowance = playin::allowances(playin::linearise(run), event.channels, event.record.step());
+  if (how.linear_slopes) {
+    run.linear_slopes = event.channels;
+    for (const playin::Output o : {playin::Output::P, playin::Output::Q})  // instruments need both
+      if (std::ranges::count(event.channels, o) == 0) run.linear_slopes.push_back(o);
+  }
   if (how.input == InputKind::torque) run.torque = state.input;
   if (how.input == InputKind::field) run.field = state.input;
   return playin::observe(run, along);

@@ -30,6 +30,7 @@ struct Playing {
   bool hasty = true;
   /// A step may miss a state by what the compared channels do not show of it (playin::allowances).
   bool lenient = false;
+  bool linear_slopes = false;         ///< slopes as playin::Drive has them: for a search
   InputKind input = InputKind::none;  ///< where the state's input acts
   double until = 1e300;               ///< samples after it are left out [s]
 };

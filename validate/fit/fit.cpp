@@ -286,7 +286,10 @@ class Search {
     Eigen::VectorXd residual(rows);
     const double* blocks[] = {z_.data(), states_[e].data()};
     double* jacobians[] = {by_z.data(), by_state.data()};
-    if (!costs_[e]->Evaluate(blocks, residual.data(), jacobians)) return;
+    // along a hundred knots the exact ones would cost more than the search
+    const auto slopes =
+        setting_.input == InputKind::none ? EventCost::Slopes::exact : EventCost::Slopes::linear;
+    if (!costs_[e]->evaluate(blocks, residual.data(), jacobians, slopes)) return;
     Eigen::MatrixXd s = by_state.transpose() * by_state;
     const auto switchings = static_cast<Eigen::Index>((*setting_.events)[e].switchings.size());
     for (Eigen::Index k = 0; k < kStates; ++k)

@@ -97,8 +97,9 @@ constexpr double kFitTolerance = event::Playing{}.tolerance;  ///< of the integr
 struct FitOptions {
   int iterations = 30;
   double tolerance = kFitTolerance;  ///< of the integration
-  /// While it searches, steps may miss what the channels do not show (event::Playing); the fit it ends with
-  /// is measured without. Where other steps do not get past the start, these are taken in any case.
+  /// While it searches, steps may miss what the channels do not show, and slopes are linear about each step
+  /// (event::Playing); the fit it ends with is measured without, errors too. Where other steps do not get
+  /// past the start, these are taken in any case.
   bool lenient = false;
   double enough = 1e-5;                ///< relative change of the cost at which the fit stops
   std::vector<EventState> start = {};  ///< of the events; empty: as prepared

@@ -26,7 +26,8 @@ Slopes slopes_of(const Setting& setting, std::size_t event, const std::vector<do
                  const std::vector<double>& state) {
   const auto parameters = static_cast<Eigen::Index>(z.size()),
              states = static_cast<Eigen::Index>(state.size());
-  const event::RowMatrix e = EventCost(setting, event).values(z.data(), state.data(), true);
+  const event::RowMatrix e =
+      EventCost(setting, event).values(z.data(), state.data(), EventCost::Slopes::exact);
   if (e.size() == 0)
     throw InputError({"the fitted model cannot be run", (*setting.events)[event].record.name,
                       "it could while it was fitted", "report this"});

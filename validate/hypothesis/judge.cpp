@@ -24,6 +24,7 @@ std::vector<HeldOut> hold_out(const Trial& trial, const sim::plant::PlantUnderTe
     fit::FitOptions o;
     o.iterations = 6;
     o.errors = false;
+    o.lenient = true;
     for (std::size_t e = 0; e < trial.events.size(); ++e)
       if (e != left) o.start.push_back(whole.events[e].state);
     out[left].record = trial.events[left].record.name;

@@ -54,6 +54,9 @@ struct Drive {
   double until = 1e300;                     ///< samples after it are left out [s]
   double least_step = 0.0;                  ///< steps this short are taken whatever their error; 0: never [s]
   int step_limit = 2'000'000;               ///< steps before it gives up
+  /// Slopes of these outputs alone, and of the plant as it is linear about each end of a step: a per cent or
+  /// two off, for a fraction of the cost. None: the answer's own, of every output.
+  std::vector<Output> linear_slopes = {};
 };
 
 /// What a slope is taken along; `scale` is one unit of the direction, and slopes are per such unit.
@@ -75,7 +78,8 @@ struct Direction {
   friend bool operator==(const Direction&, const Direction&) = default;
 };
 
-/// Answer [output][sample], and slopes [direction][output][sample].
+/// Answer [output][sample], and slopes [direction][output][sample]; none of an output that no slopes were
+/// asked of.
 struct Response {
   std::vector<double> value[kOutputs];
   struct Slope {

@@ -129,9 +129,13 @@ class EventCost : public ceres::CostFunction {
   }
   [[nodiscard]] std::size_t state_size() const { return event_.switchings.size() + kStates + knots_.size(); }
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    return evaluate(blocks, residuals, jacobians, setting_.lenient ? Slopes::linear : Slopes::exact);
+  }
+  enum class Slopes { none, linear, exact };  ///< see playin::Drive
+  bool evaluate(double const* const* blocks, double* residuals, double** jacobians, Slopes slopes) const {
     const bool has_axes = !setting_.axes.empty();
     const event::RowMatrix e =
-        values(has_axes ? blocks[0] : nullptr, blocks[has_axes ? 1 : 0], jacobians != nullptr);
+        values(has_axes ? blocks[0] : nullptr, blocks[has_axes ? 1 : 0], jacobians ? slopes : Slopes::none);
     if (e.size() == 0) return false;
     const Eigen::Index rows = num_residuals();
     Eigen::Map<Eigen::VectorXd> residual(residuals, rows);
@@ -152,11 +156,11 @@ class EventCost : public ceres::CostFunction {
   }
   /// Whitened residuals of all values in the last column, and before it the slopes by z and by the state
   /// where asked. Empty where the plant cannot be run.
-  [[nodiscard]] event::RowMatrix values(const double* z, const double* state, bool slopes) const {
+  [[nodiscard]] event::RowMatrix values(const double* z, const double* state, Slopes slopes) const {
     const sim::plant::Plant plant = moved(setting_, z);
     if (!(setting_.can_exist ? playin::can_exist(plant) : playin::can_run(plant))) return {};
     std::vector<playin::Direction> along;
-    if (slopes) {
+    if (slopes != Slopes::none) {
       for (std::size_t i = 0; i < setting_.axes.size(); ++i) {
         const Axis& a = setting_.axes[i];
         along.push_back({.kind = Kind::parameter, .parameter = a.where.id, .scale = a.slope(z[i])});
@@ -164,7 +168,7 @@ class EventCost : public ceres::CostFunction {
       add_state_directions(along);
     }
     try {
-      const playin::Response r = answer(plant, at(state), along, setting_.lenient);
+      const playin::Response r = answer(plant, at(state), along, setting_.lenient, slopes == Slopes::linear);
       const auto n = static_cast<Eigen::Index>(along.size());
       event::RowMatrix e(event_.values(), n + 1);
       for (Eigen::Index d = 0; d < n; ++d)
@@ -187,10 +191,13 @@ class EventCost : public ceres::CostFunction {
   }
   /// What the plant answers to the event.
   [[nodiscard]] playin::Response answer(const sim::plant::Plant& plant, const EventState& state,
-                                        std::span<const playin::Direction> along = {},
-                                        bool lenient = false) const {
+                                        std::span<const playin::Direction> along = {}, bool lenient = false,
+                                        bool linear_slopes = false) const {
     return event::play({plant, *setting_.conventions}, event_, state, along,
-                       {.tolerance = setting_.tolerance, .lenient = lenient, .input = setting_.input});
+                       {.tolerance = setting_.tolerance,
+                        .lenient = lenient,
+                        .linear_slopes = linear_slopes,
+                        .input = setting_.input});
   }
 
  private:

@@ -1,0 +1,133 @@
+// Slopes from the plant as it is linear about the ends of each step, against the answer's own.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sim/library/library.hpp"
+#include "validate/plant/plant_model.hpp"
+#include "validate/playin/driven_plant.hpp"
+#include "validate/playin/play_in.hpp"
+
+namespace swingbank::validate::playin {
+namespace {
+
+using Kind = Direction::Kind;
+
+const std::vector<Output> kShown = {Output::P, Output::Q, Output::speed, Output::Ifd};
+
+class LinearSlopesTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const std::filesystem::path configs = std::filesystem::path(SWINGBANK_SOURCE) / "configs";
+    model_ = plant::load_plant_model(configs / "plants" / "ieee14_bus2.toml");
+    record_ = record::read_record(configs / "records" / "record-example" / "avr_ev1.csv", model_.record_base);
+    switchings_ = detect_switchings(record_);
+    knots_ = {switchings_.front().time, 2.5, 4.0, record_.t.back()};
+  }
+  void add(const char* name) {
+    const auto* effect = sim::library::compiled().find(name);
+    model_.plant.controls.push_back({effect, effect->standard_parameters()});
+  }
+  double& parameter(const char* block, const char* name) {
+    for (int b = 0; b < sim::plant::block_count(model_.plant); ++b)
+      if (const sim::Effect& effect = sim::plant::block_effect(model_.plant, b); effect.name == block)
+        return sim::plant::parameter_value(model_.plant, {b, effect.parameter_index(name)});
+    throw std::logic_error(block);
+  }
+  Response answer(const std::vector<Direction>& along, bool linear) const {
+    const VoltageCurve curve(record_, switchings_);
+    const Drive run{.plant = &model_.plant,
+                    .conventions = model_.conventions,
+                    .record = &record_,
+                    .curve = &curve,
+                    .start = pre_event_point(record_, switchings_, 1.0),
+                    .torque = {knots_, {0.0, 0.01, 0.0, 0.0}},
+                    .field = {knots_, {0.0, 0.0, 0.02, 0.0}},
+                    .tolerance = linear ? 1e-5 : 1e-9,
+                    .linear_slopes = linear ? kShown : std::vector<Output>()};
+    return drive(run, along);
+  }
+  /// Every parameter that a change of one part in a hundred thousand moves, and everything of an event.
+  [[nodiscard]] std::vector<Direction> all() const {
+    std::vector<Direction> along;
+    const auto blocks = sim::plant::block_parameters(model_.plant);
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+      for (std::size_t p = 0; p < blocks[b].size(); ++p)
+        if (blocks[b][p] != 0.0)
+          along.push_back({.kind = Kind::parameter,
+                           .parameter = {static_cast<int>(b), static_cast<int>(p)},
+                           .scale = blocks[b][p]});
+    for (int k = 0; k < static_cast<int>(switchings_.size()); ++k)
+      along.push_back({.kind = Kind::switching, .index = k, .scale = 1e-3});
+    for (const Kind kind : {Kind::P, Kind::Q, Kind::angle, Kind::speed})
+      along.push_back({.kind = kind, .scale = 1e-3});
+    for (int k = 0; k < static_cast<int>(knots_.size()); ++k) {
+      along.push_back({.kind = Kind::torque, .index = k});
+      along.push_back({.kind = Kind::field, .index = k});
+    }
+    return along;
+  }
+  /// The largest difference of any slope of P, Q, speed and Ifd, each by its root mean square, as a share of
+  /// the slope's own.
+  [[nodiscard]] double worst(const std::vector<Direction>& along) const {
+    const Response exact = answer(along, false), linear = answer(along, true);
+    double most = 0;
+    for (std::size_t d = 0; d < along.size(); ++d)
+      for (const Output output : kShown) {
+        const auto o = static_cast<std::size_t>(output);
+        double own = 0, off = 0;
+        for (std::size_t k = 0; k < exact.value[o].size(); ++k) {
+          own += std::pow(exact.slopes[d].value[o][k], 2);
+          off += std::pow(exact.slopes[d].value[o][k] - linear.slopes[d].value[o][k], 2);
+        }
+        if (own > 1e-12) most = std::max(most, std::sqrt(off / own));
+      }
+    return most;
+  }
+  plant::PlantModel model_;
+  record::Record record_;
+  std::vector<Switching> switchings_;
+  std::vector<double> knots_;
+};
+
+TEST_F(LinearSlopesTest, OfTheOutputsThatAreAskedFor) {
+  const Response r = answer({{.kind = Kind::P}}, true);
+  EXPECT_EQ(r.slopes.front().value[static_cast<int>(Output::Q)].size(), record_.t.size());
+  EXPECT_TRUE(r.slopes.front().value[static_cast<int>(Output::V)].empty());
+}
+TEST_F(LinearSlopesTest, OfAMachineAlone) { EXPECT_LT(worst(all()), 0.01); }
+TEST_F(LinearSlopesTest, WithControls) {
+  for (const char* name : {"TGOV1", "SEXS"}) add(name);
+  EXPECT_LT(worst(all()), 0.06) << "the ceiling is met somewhere within a step";
+}
+TEST_F(LinearSlopesTest, WithFastFeedbackAndNoise) {
+  add("EXST1");
+  EXPECT_LT(worst(all()), 0.02);
+  parameter("EXST1", "KF") = 0.05;
+  parameter("EXST1", "TF") = 0.1;
+  EXPECT_LT(worst(all()), 0.06);
+}
+TEST_F(LinearSlopesTest, WhereTimesAreFarBelowASample) {
+  for (const char* name : {"TGOV1", "SEXS"}) add(name);
+  parameter("SEXS", "TE") = 2e-4;
+  EXPECT_LT(worst(all()), 0.03);
+}
+/// A field voltage that stands at its ceiling moves with the ceiling, and what would drive it beyond does
+/// nothing.
+TEST_F(LinearSlopesTest, AtALimit) {
+  add("SEXS");
+  parameter("SEXS", "EMAX") = 2.2;
+  const Response r = answer({}, false);
+  const auto& Efd = r.of(Output::Efd);
+  EXPECT_GT(std::ranges::count_if(Efd, [](double e) { return e > 2.2 - 1e-6; }), 20);
+  EXPECT_LT(worst(all()), 0.05);
+}
+TEST_F(LinearSlopesTest, WithASaturatedStatorBehindATransformer) {
+  const auto* gentpj = sim::library::compiled().find("GENTPJ");
+  model_.plant.machine = {gentpj, gentpj->standard_parameters()};
+  model_.plant.transformer = {sim::library::compiled().find("STEPUP"), {0.004, 0.12, 1.04}};
+  EXPECT_LT(worst(all()), 0.02);
+}
+
+}  // namespace
+}  // namespace swingbank::validate::playin
