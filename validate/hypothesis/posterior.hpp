@@ -16,8 +16,8 @@ struct Explanation {
   double probability = 0;  ///< set by posterior()
 };
 
-/// Fills the probabilities in and puts the most probable first. `none` is the evidence of an input that is
-/// free in time, less the price of an effect: what is in no list may do as much. It may also look like the
+/// Fills the probabilities in and puts the most probable first. `none` is the worth of an input that is
+/// free in time, by the dearer of two prices: what is in no list may do as much. It may also look like the
 /// best effect of the list, whose price it pays once more (thresholds::evidence.accepted).
 std::vector<Explanation> posterior(std::vector<Explanation> all, double none);
 

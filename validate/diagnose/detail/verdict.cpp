@@ -33,8 +33,10 @@ void weigh(Diagnosis& d) {
     if (const hypothesis::Judgement& j = d.ranked[k];
         j.accepted || (j.fitted && j.fit.failed.empty() && j.gain < thresholds::evidence.accepted.value))
       all.push_back({hypothesis::full_name(j.hypothesis), j.gain - price(j.hypothesis), static_cast<int>(k)});
-  const double free = std::max(d.torque.evidence(d.base), d.field.evidence(d.base));
-  d.probabilities = hypothesis::posterior(std::move(all), free - thresholds::evidence.accepted);
+  const auto worth = [&](const hypothesis::MissingInput& m) {
+    return std::min(m.explains(d.base), m.evidence(d.base) - thresholds::evidence.accepted);
+  };
+  d.probabilities = hypothesis::posterior(std::move(all), std::max(worth(d.torque), worth(d.field)));
 }
 
 std::string capitalised(std::string text) {
