@@ -368,10 +368,7 @@ std::string Model::steady(const T*, T* c, Signals<T>& s, T* x) {
   if (value_of(c[Vref0]) == 0.0) c[Vref0] = V;
   const double active = value_of(p), reactive = value_of(q), total = value_of(c[Imax]);
   if (active * active + reactive * reactive > total * total)
-    return fmt::format(
-        "it would need currents of {:.4f} (active) and {:.4f} pu (reactive), beyond Imax = "
-        "{:.4f} pu",
-        active, reactive, total);
+    return renewable::beyond_imax(active, reactive, total);
   if (active < 0 && value_of(c[genFlag]) == 1.0)
     return "it would draw power, and genFlag = 1 has generators only";
   if (value_of(c[vtripFlag]) == 1.0 && (value_of(V) < value_of(c[Vl1]) || value_of(V) > value_of(c[Vh1])))

@@ -1,8 +1,6 @@
 #pragma once
 // REGCB1: the converter of a wind or photovoltaic plant or a battery, as a voltage behind its impedance that
 // drives the current commanded.
-#include <fmt/format.h>
-
 #include <utility>
 
 #include "sim/core/effect.hpp"
@@ -155,9 +153,7 @@ struct Model : shared::ControlledCurrent<Model> {
             q = Q / V;
     const double active = value_of(p), reactive = value_of(q), total = value_of(c[most]);
     if (active * active + reactive * reactive > total * total)
-      return fmt::format(
-          "it would need currents of {:.4f} (active) and {:.4f} pu (reactive), beyond Imax = {:.4f} pu",
-          active, reactive, total);
+      return renewable::beyond_imax(active, reactive, total);
     x[Vf] = V;
     x[Ip] = select(c[of_power] > T(0.5), P, p);
     x[Iq] = q;

@@ -251,7 +251,10 @@ class GridMaker {
     network::Network& n = grid_.network;
     if (!options_.flow.step_shunts || options_.start_from_file) {
       for (const network::SwitchedShunt& s : n.switched)
-        n.remark("switched shunts stay at BINIT (--switched-shunts step lets them step)", bus_text(s.bus));
+        n.remark(options_.start_from_file
+                     ? "switched shunts stay at BINIT, which the file's own voltages are the solution of"
+                     : "switched shunts stay at BINIT (--switched-shunts step lets them step)",
+                 bus_text(s.bus));
       return;
     }
     for (const network::SteppedShunt& stepped : grid_.flow.stepped) {

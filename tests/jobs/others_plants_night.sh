@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Plants of public PSS/E cases, with the values that their makers gave them: one control at a time is taken out of the
 # model, three simulated faults with noise are the records, and a diagnosis names what was taken, or the effect that it
-# is a variant of, among what makes up 95 %. SWINGBANK_PLANTS=REGEX runs some of them; no more than one may be missed.
+# is a variant of, among what makes up 95 %. SWINGBANK_PLANTS=REGEX runs some of them; no more than one may be
+# missed: bus 31 of griddyn_ieee39 stands at its exciter's limit.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 cases=${SWINGBANK_REFERENCE:-$SWINGBANK_SOURCE/../shared/reference}/../cases
@@ -10,7 +11,7 @@ if [[ ! -d $cases ]]; then
   exit 0
 fi
 
-# as_records FAULT... : $work/event<k>.csv of unit $id at $bus, as a PMU would write it: noise of 0.02 % on V, of
+# as_records FAULT... : $work/event<k>.csv of the unit $plant, as a PMU would write it: noise of 0.02 % on V, of
 # 0.1 % of the unit's MVA on P and Q, of 0.01 degrees on the angle
 as_records() {
   local k=0 fault

@@ -78,9 +78,10 @@ class DiagnosisPage {
       bars.bars.push_back({d_.probabilities[i].name, 100 * d_.probabilities[i].probability, i < set,
                            hypothesis::probability_text(d_.probabilities[i].probability)});
     page_.bars(bars);
-    page_.text(
+    page_.text(fmt::format(
         "How probable each explanation is, given the effects that were tried and that none of them may be right. "
-        "The blue ones make up 95 % together. How often such figures are right stands in docs/blind-test.md.");
+        "The blue ones make up {:.0f} % together. How often such figures are right stands in docs/blind-test.md.",
+        100 * thresholds::posterior.set));
     if (d_.would_decide.next.empty()) return;
     report::Table table{
         fmt::format(

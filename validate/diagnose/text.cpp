@@ -7,6 +7,7 @@
 #include "validate/diagnose/detail/verdict.hpp"
 #include "validate/report/page.hpp"
 #include "validate/thresholds/list.hpp"
+#include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::diagnose {
 namespace {
@@ -28,8 +29,10 @@ void add_probabilities(const Diagnosis& d, std::string& text) {
   const std::size_t set = hypothesis::credible(d.probabilities);
   for (std::size_t i = 0; i < d.probabilities.size(); ++i)
     if (i < set || d.probabilities[i].probability >= kShownFrom)
-      text += fmt::format("  {:>6}  {}{}\n", hypothesis::probability_text(d.probabilities[i].probability),
-                          d.probabilities[i].name, i < set ? "" : "  (outside the 95 %)");
+      text += fmt::format(
+          "  {:>6}  {}{}\n", hypothesis::probability_text(d.probabilities[i].probability),
+          d.probabilities[i].name,
+          i < set ? "" : fmt::format("  (outside the {:.0f} %)", 100 * thresholds::posterior.set));
   if (d.would_decide.next.empty()) return;
   text +=
       fmt::format("\nEffects left of the {:.0f} on average, if this is recorded next:\n", d.would_decide.now);

@@ -213,8 +213,12 @@ class Search {
     const auto n = static_cast<Eigen::Index>(z_.size());
     if (n == 0) return;
     Eigen::MatrixXd with_belief = Eigen::MatrixXd::Zero(n, n);
-    if (options_.errors)
-      for (std::size_t e = 0; e < costs_.size(); ++e) add_curvature(e, with_belief);
+    std::vector<AtEnd> at_end;
+    for (std::size_t e = 0; options_.errors && e < costs_.size(); ++e)
+      if (auto at = slopes_at_end(e)) {
+        add_curvature(e, *at, with_belief);
+        at_end.push_back(std::move(*at));
+      }
     for (Eigen::Index i = 0; i < n; ++i) {
       const double spread = setting_.axes[static_cast<std::size_t>(i)].spread();
       if (spread > 0) with_belief(i, i) += 1 / (spread * spread);
@@ -227,7 +231,7 @@ class Search {
       covariance = known.solve(Eigen::MatrixXd::Identity(n, n));
       fit.occam = known.vectorD().array().log().sum();
       for (const Axis& a : setting_.axes) fit.occam += a.spread() > 0 ? 2 * std::log(a.spread()) : 0.0;
-      if (setting_.input != InputKind::none) fit.occam = input_occam(fit);
+      if (setting_.input != InputKind::none) fit.occam = input_occam(at_end, fit);
     }
     for (Eigen::Index i = 0; i < n; ++i) {
       const Axis& a = setting_.axes[static_cast<std::size_t>(i)];
@@ -249,9 +253,35 @@ class Search {
       fit.parameters.push_back(p);
     }
   }
+  /// An event where the fit ended: slopes of its residuals by z and by its state, and how precisely the
+  /// numbers of the state before the knots are believed.
+  struct AtEnd {
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> by_z, by_state;
+    Eigen::VectorXd residuals, precision, input;
+  };
+  [[nodiscard]] std::optional<AtEnd> slopes_at_end(std::size_t e) const {
+    const auto rows = static_cast<Eigen::Index>(costs_[e]->num_residuals()),
+               size = static_cast<Eigen::Index>(states_[e].size()),
+               knots = static_cast<Eigen::Index>(setting_.knots[e].size());
+    AtEnd at;
+    at.by_z.resize(rows, static_cast<Eigen::Index>(z_.size()));
+    at.by_state.resize(rows, size);
+    at.residuals.resize(rows);
+    const double* blocks[] = {z_.data(), states_[e].data()};
+    double* jacobians[] = {at.by_z.data(), at.by_state.data()};
+    // along a hundred knots the exact ones would cost more than the search
+    const auto slopes =
+        setting_.input == InputKind::none ? EventCost::Slopes::exact : EventCost::Slopes::linear;
+    if (!costs_[e]->evaluate(blocks, at.residuals.data(), jacobians, slopes)) return std::nullopt;
+    at.precision = Eigen::VectorXd::Zero(size - knots);
+    for (Eigen::Index k = 0; k < kStates; ++k)
+      at.precision[size - knots - kStates + k] = 1 / (kStateBelief[k] * kStateBelief[k]);
+    at.input = Eigen::Map<const Eigen::VectorXd>(states_[e].data(), size).tail(knots);
+    return at;
+  }
   /// What makes chi2 and belief the evidence of a fit with an input.
-  [[nodiscard]] double input_occam(const Fit& fit) const {
-    using Row = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  [[nodiscard]] double input_occam(const std::vector<AtEnd>& events, const Fit& fit) const {
+    if (events.size() < costs_.size()) return std::nan("");
     const auto n = static_cast<Eigen::Index>(z_.size());
     Eigen::VectorXd precision(n);
     double believed = 0;
@@ -261,42 +291,15 @@ class Search {
       believed += spread > 0 ? 2 * std::log(spread) : 0.0;
     }
     InputEvidence evidence(precision, Eigen::Map<const Eigen::VectorXd>(z_.data(), n));
-    for (std::size_t e = 0; e < costs_.size(); ++e) {
-      const auto rows = static_cast<Eigen::Index>(costs_[e]->num_residuals()),
-                 size = static_cast<Eigen::Index>(states_[e].size()),
-                 knots = static_cast<Eigen::Index>(setting_.knots[e].size());
-      Row by_z(rows, n), by_state(rows, size);
-      Eigen::VectorXd residuals(rows), states = Eigen::VectorXd::Zero(size - knots);
-      const double* blocks[] = {z_.data(), states_[e].data()};
-      double* jacobians[] = {by_z.data(), by_state.data()};
-      if (!costs_[e]->Evaluate(blocks, residuals.data(), jacobians)) return std::nan("");
-      for (Eigen::Index k = 0; k < kStates; ++k)
-        states[size - knots - kStates + k] =
-            1 / (kStateBelief[static_cast<std::size_t>(k)] * kStateBelief[static_cast<std::size_t>(k)]);
-      evidence.add(by_z, by_state, residuals, states,
-                   Eigen::Map<const Eigen::VectorXd>(states_[e].data(), size).tail(knots));
-    }
+    for (const AtEnd& at : events) evidence.add(at.by_z, at.by_state, at.residuals, at.precision, at.input);
     return evidence.cost(options_.bend) + believed - fit.chi2 - fit.belief;
   }
-  void add_curvature(std::size_t e, Eigen::MatrixXd& curvature) const {
-    using Row = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    const auto rows = static_cast<Eigen::Index>(costs_[e]->num_residuals());
-    Row by_z(rows, static_cast<Eigen::Index>(z_.size())),
-        by_state(rows, static_cast<Eigen::Index>(states_[e].size()));
-    Eigen::VectorXd residual(rows);
-    const double* blocks[] = {z_.data(), states_[e].data()};
-    double* jacobians[] = {by_z.data(), by_state.data()};
-    // along a hundred knots the exact ones would cost more than the search
-    const auto slopes =
-        setting_.input == InputKind::none ? EventCost::Slopes::exact : EventCost::Slopes::linear;
-    if (!costs_[e]->evaluate(blocks, residual.data(), jacobians, slopes)) return;
-    Eigen::MatrixXd s = by_state.transpose() * by_state;
-    const auto switchings = static_cast<Eigen::Index>((*setting_.events)[e].switchings.size());
-    for (Eigen::Index k = 0; k < kStates; ++k)
-      s(switchings + k, switchings + k) += 1 / (kStateBelief[k] * kStateBelief[k]);
+  void add_curvature(std::size_t e, const AtEnd& at, Eigen::MatrixXd& curvature) const {
+    Eigen::MatrixXd s = at.by_state.transpose() * at.by_state;
+    s.diagonal().head(at.precision.size()) += at.precision;
     add_bends(e, s);
-    const Eigen::MatrixXd cross = by_state.transpose() * by_z;
-    curvature += by_z.transpose() * by_z - cross.transpose() * s.ldlt().solve(cross);
+    const Eigen::MatrixXd cross = at.by_state.transpose() * at.by_z;
+    curvature += at.by_z.transpose() * at.by_z - cross.transpose() * s.ldlt().solve(cross);
   }
 
   void add_bends(std::size_t e, Eigen::MatrixXd& s) const {

@@ -4,12 +4,20 @@
 #include <fmt/format.h>
 
 #include <initializer_list>
+#include <string>
 #include <utility>
 
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/renewable.hpp"
 
 namespace swingbank::sim::effects::renewable {
+
+/// Why a converter cannot stand at its operating point: currents [pu] beyond its largest one.
+inline std::string beyond_imax(double active, double reactive, double most) {
+  return fmt::format(
+      "it would need currents of {:.4f} (active) and {:.4f} pu (reactive), beyond Imax = {:.4f} pu", active,
+      reactive, most);
+}
 
 struct ElectricalControl {
   /// Parameters by what they are, whatever order an effect has them in.
@@ -163,10 +171,7 @@ struct ElectricalControl {
     const double p = value_of(s.Tm), q = value_of(s.Efd), total = value_of(c[imax]);
     if (p > value_of(limits.most_p) || p < value_of(limits.least_p) ||
         std::abs(q) > value_of(limits.most_q) || p * p + q * q > total * total)
-      return fmt::format(
-          "it would need currents of {:.4f} (active) and {:.4f} pu (reactive), beyond Imax = "
-          "{:.4f} pu",
-          p, q, total);
+      return beyond_imax(p, q, total);
     const T Iq = s.Efd - injected, V = at_least_small(s.V);
     x[Vf] = s.V;
     x[Pf] = s.P;

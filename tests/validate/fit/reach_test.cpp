@@ -1,5 +1,4 @@
-// Where a fit must be able to get: across zero, below the leakage, and past a regulator that
-// chatters.
+// Where a fit must be able to get: across zero, below the leakage, past a regulator that chatters.
 #include <gtest/gtest.h>
 
 #include "sim/plant/orderings.hpp"
@@ -66,7 +65,8 @@ TEST(FitOrderings, ASubtransientReactanceBelowTheLeakageIsLeftToTheRecords) {
   sim::plant::Block found = f.plant.machine;
   EXPECT_LT(parameter(found, "Xdpp"), 0.8 * parameter(found, "Xl"));
 }
-/// A regulator of gain 2000 behind a lead of eleven times answers each sample's noise with its limits.
+/// A regulator of gain 2000 behind a lead of eleven times answers each sample's noise with its limits: these
+/// values are where a search ended in a public case, before it was dropped for them.
 TEST(FitSteps, APlantThatSmallStepsDoNotPassIsFittedWithLenientOnes) {
   ExciterExample example(0.2);
   sim::plant::Block exciter{&effect("EXAC1"), effect("EXAC1").standard_parameters()};

@@ -90,12 +90,12 @@ bool names_an_effect(const Diagnosis& d) {
   return std::ranges::any_of(credible_set(d), [](const auto& e) { return e.place >= 0; });
 }
 
-/// Takes back what was accepted, because an input that is free in time is beyond doubt more probable.
+/// Takes back what was accepted where other explanations make up the set.
 void refuse_all(Diagnosis& d) {
   for (hypothesis::Judgement& j : d.ranked) {
     if (!j.accepted) continue;
     j.accepted = false;
-    j.why_not = "a torque or a field voltage free in time is far more probable";
+    j.why_not = fmt::format("far less probable than: {}", d.probabilities.front().name);
   }
 }
 
