@@ -207,6 +207,18 @@ bool explained(const EventComparison& e) {
   return judge(one).adequate;
 }
 
+/// Whether less is left of the judged channels in `other` than in `than`, on the whole: the mean of the squared
+/// errors' ratios.
+bool is_closer(const EventComparison& other, const EventComparison& than) {
+  double ratios = 0, judged = 0;
+  for (std::size_t c = 0; c < than.channels.size(); ++c) {
+    if (!than.channels[c].judged) continue;
+    ratios += std::pow(other.channels[c].whole.rms / than.channels[c].whole.rms, 2);
+    ++judged;
+  }
+  return ratios < judged;
+}
+
 /// One cell of all maps, and what it is called.
 struct NamedCell {
   const EventComparison* event;
@@ -241,10 +253,7 @@ std::string describe_fit(const EventComparison& e, bool tried, const std::string
   if (e.fitted) return "within that they were moved to where " + what + " met best.";
   if (!failed.empty())
     return "they could not be moved within that, so the middle of each interval was taken (" + failed + ").";
-  return tried ? "moving them within that does not explain " +
-                     std::string(e.record.component == record::Component::plant ? "P and Q"
-                                                                                : "what is compared") +
-                     ", so the middle of each interval was taken."
+  return tried ? "nowhere within that " + what + " met better than with the middle of each interval."
                : "the middle of each interval was taken.";
 }
 
@@ -406,7 +415,7 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
     if (!no_angle && e.detected && options.fit_switchings && (!e.switchings.empty() || !explained(e))) {
       step("instants and start are fitted", 1);
       try {
-        if (EventComparison other = fitted(); explained(other)) e = std::move(other);
+        if (EventComparison other = fitted(); is_closer(other, e)) e = std::move(other);
       } catch (const InputError& error) {  // a fit may take fewer steps, and the play-in above stands
         failed = error.problems().front().sentence();
       }

@@ -251,13 +251,17 @@ TEST(CompareTest, UntilLeavesOutTheRest) {
   EXPECT_THAT(test::messages([] { example_event({}, {.play_in = {.until = 0.3}}); }),
               ElementsAre(HasSubstr("a later --until")));
 }
-TEST(CompareTest, AWrongParameterShowsAndDoesNotBendTheInstants) {
+TEST(CompareTest, AWrongParameterShowsWhereverTheInstantsLie) {
   RightModel wrong;
   wrong.model.plant.machine
       .p[static_cast<std::size_t>(wrong.model.plant.machine.effect->parameter_index("H"))] *= 1.3;
   const EventComparison e = compare_event(wrong.model, wrong.record);
-  EXPECT_FALSE(e.fitted);
+  CompareOptions unmoved;
+  unmoved.fit_switchings = false;
+  const EventComparison middle = compare_event(wrong.model, wrong.record, unmoved);
+  EXPECT_TRUE(e.fitted);
   EXPECT_GT(e.channels[0].whole.in_noise, 3);
+  EXPECT_LT(e.channels[0].whole.in_noise, middle.channels[0].whole.in_noise);
 }
 TEST(CompareTest, AMissingExciterShowsInQ) {
   // The record's plant has an exciter, the model has none: Q is off by tens of Mvar for seconds, P far less.
