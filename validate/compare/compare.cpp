@@ -207,8 +207,8 @@ bool explained(const EventComparison& e) {
   return judge(one).adequate;
 }
 
-/// Whether less is left of the judged channels in `other` than in `than`, on the whole: the mean of the squared
-/// errors' ratios.
+/// Whether less is left of the judged channels in `other` than in `than`, on the whole: the mean of the
+/// squared errors' ratios.
 bool is_closer(const EventComparison& other, const EventComparison& than) {
   double ratios = 0, judged = 0;
   for (std::size_t c = 0; c < than.channels.size(); ++c) {

@@ -55,9 +55,10 @@ struct EventComparison {
 struct CompareOptions {
   DriveBy drive = DriveBy::voltage;
   double jump_threshold = playin::kJumpThreshold;
-  /// Moves found instants within their sample interval to where P and Q are met best: a model is not blamed for
-  /// what the record does not tell. At 30/s half an interval is 17 ms, which throws a rotor too far by more than
-  /// a wrong parameter does. Where that meets them no better, the middle of the interval stays.
+  /// Moves found instants within their sample interval to where P and Q are met best, because a model is not
+  /// to blame for what the record does not tell. At 30/s half an interval is 17 ms, and in a fault so much
+  /// alone left eight times the noise of a right model. Where nothing is met better, the middle of the
+  /// interval stays.
   bool fit_switchings = true;
   event::Jumps jumps = event::Jumps::either;  ///< what the instrument does to jumps; either: the record tells
   /// Told before each step of a record that is long: what comes, and how many steps are done of how many.
