@@ -143,6 +143,8 @@ ShardReceipt write_shard(const fs::path& file, const store::ShardData& part, MPI
   std::uint64_t rows = part.rows;
   MPI_Allreduce(MPI_IN_PLACE, &rows, 1, MPI_UINT64_T, MPI_SUM, group);
 
+  int in_world;  // by which the user knows it
+  MPI_Comm_rank(MPI_COMM_WORLD, &in_world);
   const fs::path temporary = temporary_name(file);
   std::uint64_t bytes = 0;
   std::string file_hash;  // on rank 0, which journals it
@@ -150,7 +152,7 @@ ShardReceipt write_shard(const fs::path& file, const store::ShardData& part, MPI
   const auto together = [&](const char* step, const std::function<void()>& work) {
     agree(group, file.string(), [&] {
       std::optional<StepWatch> watch;
-      if (size > 1) watch.emplace(step, file.string());
+      if (size > 1) watch.emplace(in_world, step, file.string());
       work();
     });
   };
