@@ -312,7 +312,7 @@ int main(int argc, char** argv) {
   bool inner = true;
   add_options(line, a, inner);
   if (!line.parse(argc, argv)) return line.end();
-  a.options.progress = jobs::progress_line(jobs::kCalibrateCourse);
+  a.options.progress = jobs::progress_line(a.fewest ? jobs::kFewestCourse : jobs::kCalibrateCourse);
   a.options.events.measured_states = inner;
   a.command = jobs::command_line("calibrate", argc, argv);
   return jobs::guarded("calibrate", [&] { return run(a); });

@@ -11,6 +11,16 @@ namespace {
 /// CLI11 calls an enumeration's value ENUM in the help.
 enum class Place : int {};
 
+/// CLI11's own bounds would print the largest number there is.
+CLI::Validator number_that(bool (*holds)(double), const std::string& name, const std::string& wanted) {
+  return {[holds, wanted](std::string& text) {
+            double value = 0;
+            if (CLI::detail::lexical_cast(text, value) && holds(value)) return std::string();
+            return "“" + text + "” is not a number " + wanted;
+          },
+          name};
+}
+
 int exit_code(const CLI::App& app, const CLI::ParseError& why) { return app.exit(why) == 0 ? 0 : 1; }
 
 }  // namespace
@@ -41,11 +51,13 @@ const Option& Option::between(double low, double high) const {
   return *this;
 }
 const Option& Option::positive() const {
-  option_->check(CLI::PositiveNumber);
+  option_->check(number_that(
+      +[](double value) { return value > 0; }, "POSITIVE", "above 0"));
   return *this;
 }
 const Option& Option::not_negative() const {
-  option_->check(CLI::NonNegativeNumber);
+  option_->check(number_that(
+      +[](double value) { return value >= 0; }, "NONNEGATIVE", "of 0 or more"));
   return *this;
 }
 const Option& Option::existing_file() const {

@@ -57,6 +57,14 @@ inline const Course kCalibrateCourse = {
     {"played in", "the models' events are played", 0.95, 1},
     {"instants and start", "the models' events are played", 0.95, 1},
 };
+/// Of calibrate --fewest, with twelve events of a unit with four controls behind its transformer (480 s).
+inline const Course kFewestCourse = {
+    {"every parameter", "all parameters are fitted", 0, 0.12},
+    {"without", "what each wrong parameter takes away", 0.75, 0.98},
+    {"sets of parameters", "sets of wrong parameters are tried", 0.12, 0.75},
+    {"played in", "the models' events are played", 0.98, 1},
+    {"instants and start", "the models' events are played", 0.98, 1},
+};
 inline const Course kAddCourse = {
     {"events with the model as it is", "the model as it is", 0, 0.04},
     {"screened", "values of the effect are screened", 0.04, 0.25},

@@ -8,6 +8,7 @@
 #include <exception>
 #include <functional>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -163,16 +164,20 @@ inline validate::plant::PlantModel load_model_to_fit(const std::string& file) {
 inline std::function<void(const std::string&, int, int)> progress_line(const Course& course = {}) {
   if (quiet) return {};
   using Clock = std::chrono::steady_clock;
+  struct State {  // copies of the function share it
+    CourseProgress at;
+    Clock::time_point start = Clock::now(), said = start;
+  };
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
-  return [terminal, at = CourseProgress(course), start = Clock::now(), said = Clock::now()](
-             const std::string& what, int done, int total) mutable {
+  return [terminal, state = std::make_shared<State>(CourseProgress(course))](const std::string& what,
+                                                                             int done, int total) {
     const auto now = Clock::now();
-    const double seconds = std::chrono::duration<double>(now - start).count();
-    const std::string line = at.line(what, done, total, seconds);
+    const double seconds = std::chrono::duration<double>(now - state->start).count();
+    const std::string line = state->at.line(what, done, total, seconds);
     if (terminal) {
       fmt::print(stderr, "\r\033[K{}{}", line, done == total ? "\r\033[K" : "");
-    } else if (now - said >= std::chrono::seconds(10)) {
-      said = now;
+    } else if (now - state->said >= std::chrono::seconds(10)) {
+      state->said = now;
       fmt::print(stderr, "after {}: {}\n", duration_text(seconds), line);
     }
     std::fflush(stderr);

@@ -141,8 +141,9 @@ tables() {
   "$swingbank" tables "$out/results" --out "$out/tables"
 }
 
+ask table >/dev/null # whatever is wrong with the experiment is said before anything is made
 case $stage in
-  check) ask table >/dev/null ;;
+  check) ;;
   count-tasks) ask tasks | wc -l ;;
   databank | generate | train | tables)
     mkdir -p "$out"

@@ -13,6 +13,7 @@ refuses "no such config" "$work/none.toml" make_data "$work/none.toml" "$data"
 refuses "no such config" "$work/none.toml" "$swingbank" databank "$work/none.toml"
 misused "unknown option" 'nonsense' make_data "$config" "$data" --nonsense 3
 misused "no number of draws" 'draws' make_data "$config" "$data" --draws many
+misused "too few draws" '“-1” is not a number above 0' make_data "$config" "$data" --draws=-1
 
 # edit NAME SED-SCRIPT: a config with one fault
 edit() { sed "$2" "$config" >"$work/$1.toml"; }

@@ -43,7 +43,7 @@ class Selection {
       if (taken - most < options_.each) break;  // every other parameter together earns no more
       beam = grown(beam);
       auto [fit, best] = best_of(beam, kRefitted);
-      report("sets of parameters", static_cast<int>(size));
+      report("sets of parameters", size, options_.most);
       // a set of this size may look poor where the next one holds two that work together
       if (const double gain = taken - penalised(fit);
           gain > options_.each * static_cast<double>(size - set.size())) {
@@ -64,7 +64,7 @@ class Selection {
 
  private:
   void fit_all() {
-    report("every parameter", 0);
+    report("every parameter", 0, 1);
     all_ = fit(tested_, events_, free_);
     require(all_);
     events_ = events_.with(measure_noise_through(all_, tested_.conventions, events_));
@@ -160,6 +160,7 @@ class Selection {
       w.share = excess_of_model > 0 ? std::clamp(w.evidence / excess_of_model, 0.0, 1.0) : 0.0;
       w.tied = tied(set, set[i], chosen, of_size);
       back.wrong.push_back(std::move(w));
+      report("sets of parameters without one", i + 1, set.size());
     }
     std::ranges::stable_sort(back.wrong, std::greater<>(), &WrongParameter::evidence);
   }
@@ -181,8 +182,8 @@ class Selection {
     }
     return names;
   }
-  void report(const std::string& what, int done) const {
-    if (options_.progress) options_.progress(what, done, static_cast<int>(options_.most));
+  void report(const std::string& what, std::size_t done, std::size_t total) const {
+    if (options_.progress) options_.progress(what, static_cast<int>(done), static_cast<int>(total));
   }
 
   const sim::plant::PlantUnderTest tested_;
