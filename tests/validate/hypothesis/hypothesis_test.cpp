@@ -61,6 +61,28 @@ TEST(Hypotheses, AReplacementStandsAloneInItsSlot) {
     EXPECT_TRUE(playin::can_run(h.plant)) << h.name;
   }
 }
+/// Of whatever block of a converter has one: a source that is its own control among them.
+TEST(Hypotheses, EverySwitchIsTriedInItsOtherPosition) {
+  const auto names = [](const char* source, const std::vector<const char*>& controls) {
+    sim::plant::Plant plant;
+    const auto standard = [](const char* name) {
+      const sim::Effect* effect = sim::library::compiled().find(name);
+      return sim::plant::Block{effect, effect->standard_parameters()};
+    };
+    plant.machine = standard(source);
+    for (const char* control : controls) plant.controls.push_back(standard(control));
+    std::set<std::string> all;
+    for (const Hypothesis& h : all_hypotheses({plant, sim::Conventions::psse()}, sim::library::compiled()))
+      if (h.name.find('=') != std::string::npos) all.insert(h.name);
+    return all;
+  };
+  EXPECT_EQ(names("DERA1", {}),
+            (std::set<std::string>{"DERA1:pfFlag=0", "DERA1:freqFlag=0", "DERA1:pqFlag=1", "DERA1:genFlag=0",
+                                   "DERA1:vtripFlag=1", "DERA1:ftripFlag=1"}));
+  EXPECT_EQ(names("REGCB1", {"REECA1"}),
+            (std::set<std::string>{"REGCB1:rateFlag=1", "REGCB1:pqFlag=1", "REECA1:PFFLAG=1",
+                                   "REECA1:VFLAG=0", "REECA1:QFLAG=1", "REECA1:PFLAG=1", "REECA1:PQFLAG=1"}));
+}
 TEST(Triangle, HasTheProductsOfTheColumns) {
   event::RowMatrix e = event::RowMatrix::Random(50, 6);
   e.col(3) = 2 * e.col(0) - e.col(1);  // what the others make leaves nothing of its own
