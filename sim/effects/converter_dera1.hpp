@@ -41,7 +41,7 @@ struct Model : shared::ControlledCurrent<Model> {
   Mf (ftripFlag 1): 0 for good once f was below fl for tfl or above fh for tfh while V > Vpr
 
   I = (Ip - j Iq) V/|V|, below |V| = 0.01 pu in proportion to |V|
-  Beside a bolted fault there is no voltage along which the grid takes the whole of Ip: such a run ends there.
+  Beside a bolted fault there is no voltage along which the grid takes the whole of Ip: |V| falls below 0.01 pu.
   Vref0 = 0: the voltage at the operating point.
   It takes no commands: beside it stands no control of a converter. What is added to Tm and Efd is added to the
   commands.

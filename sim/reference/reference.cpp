@@ -15,6 +15,8 @@ namespace {
 
 constexpr double kSameInstant = 1e-9;  ///< a sample this close to a switching instant belongs to it [s]
 
+constexpr double kNoVoltage = 1e-9;  ///< beside a bolted fault, where rounding gives some: no angle [pu]
+
 struct FreeContext {
   void operator()(SUNContext c) const { SUNContext_Free(&c); }
 };
@@ -54,7 +56,7 @@ class Recorder {
   bool record(int k, const ReferenceSystem& system, const double* y) {
     const double* v = y + plants_.states();
     for (std::size_t b = 0; b < angle_.size(); ++b)
-      if (!system.bolted(static_cast<int>(b)))
+      if (!system.bolted(static_cast<int>(b)) && std::hypot(v[2 * b], v[2 * b + 1]) > kNoVoltage)
         angle_[b] = nearest(std::atan2(v[2 * b + 1], v[2 * b]), angle_[b]);
     for (std::size_t u = 0; u < plants_.units().size(); ++u)
       if (plants_.units()[u].plant) signals_[u] = system.signals(u, k / options_.rate, y, current_[u]);
@@ -185,6 +187,31 @@ void operating_values(const grid::Grid& grid, const ReferencePlants& plants, dou
   }
 }
 
+/// Where IDA stops at t: crosses the instant at which the voltages jump because those that the converters
+/// followed have ended; true with y at the new time t, false where they do not jump.
+bool jumps(const ReferenceSystem& system, double& t, double* y, const double* yp) {
+  constexpr double others = 1e-3;   // [pu]
+  constexpr double longest = 1e-4;  // [s]: the states move on by their slopes meanwhile
+  const auto is_converter = [](const ReferenceSystem::Unit& u) {
+    return u.plant && u.plant->machine.effect->converter;
+  };
+  if (std::ranges::none_of(system.units(), is_converter)) return false;
+  const std::vector<double> before(y, y + system.size());
+  const auto states = static_cast<std::size_t>(system.states());
+  for (double past = 1e-8; past < 1.1 * longest; past *= 10.0) {
+    for (std::size_t i = 0; i < before.size(); ++i) y[i] = before[i] + (i < states ? past * yp[i] : 0.0);
+    (void)system.clamp_states(y);
+    double most = 0.0;
+    const bool found = system.search_voltages(t + past, y);
+    for (std::size_t i = states; i < before.size(); ++i) most = std::max(most, std::abs(y[i] - before[i]));
+    if (!found || most < others) continue;
+    t += past;
+    return true;
+  }
+  std::copy(before.begin(), before.end(), y);
+  return false;
+}
+
 }  // namespace
 
 ReferenceRun run_reference(const grid::Grid& grid, const network::Event& event,
@@ -221,22 +248,34 @@ ReferenceRun run_reference(const grid::Grid& grid, const network::Event& event,
     if (k < run.samples && time() < start + kSameInstant && !recorder.record(k++, system, values)) return run;
     if (end - start < kSameInstant) continue;
 
-    SegmentSolver solver(raw, system, y.get(), yp.get(), start, end, options, seen);
+    const auto solver_from = [&](double from) {
+      return std::make_unique<SegmentSolver>(raw, system, y.get(), yp.get(), from, end, options, seen);
+    };
+    auto solver = solver_from(start);
+    const auto advance = [&](double to) {
+      if (solver->advance(to)) return true;
+      double at = solver->reached();
+      if (!jumps(system, at, values, N_VGetArrayPointer(yp.get())) || at >= end) return false;
+      system.derivatives(at, values, N_VGetArrayPointer(yp.get()));
+      run.steps += solver->steps();
+      solver = solver_from(at);
+      return at >= to || solver->advance(to);
+    };
     // A sample at the end of the segment is this segment's left limit, or the next one's first value.
     const double until = last || !options.after_switching ? end + kSameInstant : end - kSameInstant;
     while (k < run.samples && time() < until) {
-      if (!solver.advance(std::min(time(), end))) {
-        run.steps += solver.steps();
+      if (!advance(std::min(time(), end))) {
+        run.steps += solver->steps();
         recorder.finish(std::max(k - 1, 0), Outcome::step_too_small);
         return run;
       }
       if (!recorder.record(k++, system, values)) {
-        run.steps += solver.steps();
+        run.steps += solver->steps();
         return run;
       }
     }
-    const bool reached = solver.advance(end);
-    run.steps += solver.steps();
+    const bool reached = advance(end);
+    run.steps += solver->steps();
     if (!reached) {
       recorder.finish(std::max(k - 1, 0), Outcome::step_too_small);
       return run;

@@ -26,6 +26,8 @@ struct ControlledCurrent {
                          kVilag = {"Vilag", "pu", "lagged voltage, imaginary part", 0.1};
   /// Of the source as the network sees it: any is exact (decision 37), a large one makes the iteration short.
   static constexpr double kReactance = 10.0;
+  static constexpr double kNoFrequency =
+      1e-3;  ///< voltage below which the measured frequency fades to f0 [pu]
 
   static std::string_view unphysical(const double*) { return ""; }
   template <class T>
@@ -57,7 +59,9 @@ struct ControlledCurrent {
   /// The signals that a source of current gives, as far as no turbine stands behind it. `squared`: |V|^2.
   template <class T>
   static void terminal(const T* c, const T* x, const T& squared, Signals<T>& s) {
-    s.speed = bus_frequency(s.Vr, s.Vi, squared, x[Model::Vrlag], x[Model::Vilag], c[Model::per_angle]);
+    const T least(kNoFrequency * kNoFrequency);  // beside a bolted fault rounding alone would give some
+    s.speed = bus_frequency(s.Vr, s.Vi, select(squared > least, squared, least), x[Model::Vrlag],
+                            x[Model::Vilag], c[Model::per_angle]);
     s.Te = s.Vr * s.Ir + s.Vi * s.Ii;
     s.Ifd = s.Pext = s.Qext = s.wt = s.wg = s.wref = s.pitch = s.Paero = T(0.0);
     s.Pord = s.Te;

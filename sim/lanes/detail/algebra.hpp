@@ -214,10 +214,11 @@ struct LaneSearch {
   }
 };
 
-/// Factors are kept from search to search while they serve: making them is the third power of the sources, a
-/// step the second. What a lane has follows from its own past alone.
+/// Newton's method in the lanes of `open`, from the voltages that stand in k; returns those in which none
+/// were found. Factors are kept from search to search while they serve: making them is the third power of the
+/// sources, a step the second. What a lane has follows from its own past alone.
 template <class T>
-void Lanes<T>::solve_algebra(Constants& k, const T* x) {
+unsigned Lanes<T>::search_voltages(Constants& k, const T* x, unsigned open) {
   constexpr int limit = 40, patience = 8;
   constexpr double longest = 0.3;  // [pu]: a load of constant power may throw the first steps far
   // Newton's last step still carries the slopes' error of the differences: duals take two more, and new
@@ -225,19 +226,11 @@ void Lanes<T>::solve_algebra(Constants& k, const T* x) {
   constexpr int more = Traits::directions > 0 ? 2 : 0;
   constexpr unsigned all = (1U << kLanes) - 1U;
   const std::size_t count = nonlinear_.size();
-  T* steady = steady_.data();
-  for (const int source : nonlinear_)
-    er_[static_cast<std::size_t>(source)] = ei_[static_cast<std::size_t>(source)] = T(0.0);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t row = static_cast<std::size_t>(nonlinear_[i]) * static_cast<std::size_t>(sources_);
-    row_times(&k.g[row], &k.b[row], er_.data(), ei_.data(), sources_, steady[2 * i], steady[2 * i + 1]);
-  }
-  auto seeking = Traits::mask(all);
-  unsigned open = all;
+  auto seeking = Traits::mask(open);
   std::array<LaneSearch, kLanes> search{};
   for (int step = 0; step < limit && open != 0; ++step) {
     const unsigned anew = open & (Traits::directions > 0 || step >= patience ? all : ~k.factored);
-    const Flat largest = newton_step(k, x, steady, anew);
+    const Flat largest = newton_step(k, x, steady_.data(), anew);
     const T scale = Traits::constant(Flat(longest) / maximum(Flat(longest), largest));
     for (std::size_t i = 0; i < count; ++i) {
       k.vr[i] = select(seeking, k.vr[i] - scale * algebra_[2 * i], k.vr[i]);
@@ -255,17 +248,46 @@ void Lanes<T>::solve_algebra(Constants& k, const T* x) {
     seeking = Traits::mask(open);
   }
   k.factored &= ~open;
+  return open;
+}
+
+/// The next search of some lanes begins at one voltage [pu] everywhere.
+template <class T>
+void Lanes<T>::begin_search(Constants& k, unsigned lanes, double voltage) const {
+  const auto these = Traits::mask(lanes);
+  for (std::size_t i = 0; i < nonlinear_.size(); ++i) {
+    k.vr[i] = select(these, T(voltage), k.vr[i]);
+    k.vi[i] = select(these, T(0.0), k.vi[i]);
+  }
+  k.factored &= ~lanes;
+}
+
+/// The voltages at the nonlinear sources: those near the ones found before or, where there are none, those
+/// found from zero (a current that is given beside a fault has no others; decision 37).
+template <class T>
+void Lanes<T>::solve_algebra(Constants& k, const T* x) {
+  constexpr unsigned all = (1U << kLanes) - 1U;
+  const std::size_t count = nonlinear_.size();
+  T* steady = steady_.data();
+  for (const int source : nonlinear_)
+    er_[static_cast<std::size_t>(source)] = ei_[static_cast<std::size_t>(source)] = T(0.0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t row = static_cast<std::size_t>(nonlinear_[i]) * static_cast<std::size_t>(sources_);
+    row_times(&k.g[row], &k.b[row], er_.data(), ei_.data(), sources_, steady[2 * i], steady[2 * i + 1]);
+  }
+  unsigned open = search_voltages(k, x, all);
+  if (open != 0) {
+    k.fallen |= open;
+    begin_search(k, open, 0.0);
+    open = search_voltages(k, x, open);
+  }
   for (std::size_t i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(nonlinear_[i]);
     source_emf(k, x, nonlinear_[i], k.vr[i], k.vi[i], er_[at], ei_[at]);
-    if (open == 0) continue;
-    // No voltage was found: the step must not pass. The next search begins at the last sound voltage.
-    const T none(std::numeric_limits<double>::quiet_NaN());
-    er_[at] = select(seeking, none, er_[at]);
-    const auto lost = seeking;
-    k.vr[i] = select(lost, T(1.0), k.vr[i]);
-    k.vi[i] = select(lost, T(0.0), k.vi[i]);
+    // No voltage was found: the step must not pass.
+    if (open != 0) er_[at] = select(Traits::mask(open), T(std::numeric_limits<double>::quiet_NaN()), er_[at]);
   }
+  if (open != 0) begin_search(k, open, 1.0);
 }
 
 }  // namespace swingbank::sim::lanes

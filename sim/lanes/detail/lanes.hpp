@@ -83,6 +83,7 @@ class Lanes {
     T last_moment;           ///< largest time effects may see [s]
     std::vector<T> factors;  ///< of the slopes of what the search solves, lane by lane of another past
     unsigned factored = 0;   ///< lanes that have some
+    unsigned fallen = 0;     ///< lanes whose voltages were sought from zero in this step
   };
 
   // one evaluation (equations.hpp)
@@ -94,6 +95,8 @@ class Lanes {
 
   // sources whose current is no linear function of the voltage (algebra.hpp)
   void solve_algebra(Constants& k, const T* x);
+  unsigned search_voltages(Constants& k, const T* x, unsigned open);
+  void begin_search(Constants& k, unsigned lanes, double voltage) const;
   void source_emf(const Constants& k, const T* x, int source, const T& vr, const T& vi, T& er, T& ei);
   const T* source_impedance(const Constants& k, int source) const;
   const T* own_impedance(const Constants& k, int source) const;
@@ -114,7 +117,7 @@ class Lanes {
   void hold(LaneRun& run, int until) const;
   /// Whether a lane's samples need the currents of all plants.
   [[nodiscard]] bool records_whole(int lane) const { return whole_record_ && !shared_.whole(lane); }
-  T unwrapped(T angle, double last, int count) const;
+  T unwrapped(T angle, const T& squared, double last, int count) const;
 
   // the lanes' matrices (network.hpp)
   void share();

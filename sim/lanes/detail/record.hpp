@@ -254,7 +254,8 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
         const T two_pi(constants::turn);
         const T angle = atan2(vi, vr);
         if (!p.rotor) {
-          v = unwrapped(angle, run.theta[k], count);
+          const bool tripped = connected_[lane][i] == 0.0;
+          v = unwrapped(angle, tripped ? T(1.0) : vr * vr + vi * vi, run.theta[k], count);
           run.theta[k] = Traits::get(v, count - 1);
           break;
         }
@@ -277,11 +278,13 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
 }
 
 /// An angle plus the turns that bring each of the first `count` samples closest to the one before; `last`:
-/// before the first.
+/// before the first. `squared`: |V|^2; where there is none the angle keeps the last one.
 template <class T>
-T Lanes<T>::unwrapped(T angle, double last, int count) const {
-  T turns(0.0);  // beside the angle, which keeps its slopes
+T Lanes<T>::unwrapped(T angle, const T& squared, double last, int count) const {
+  constexpr double kNoVoltage = 1e-9;  // beside a bolted fault, where rounding gives some: no angle [pu]
+  T turns(0.0);                        // beside the angle, which keeps its slopes
   for (int l = 0; l < count; ++l) {
+    if (Traits::get(squared, l) < kNoVoltage * kNoVoltage) Traits::set(angle, l, last);
     const double now = Traits::get(angle, l);
     const double whole = constants::turn * std::nearbyint((last - now) / constants::turn);
     Traits::set(turns, l, whole);

@@ -184,6 +184,9 @@ template <class T>
 void Lanes<T>::settle(unsigned accepted, const Next& next, const Done& done) {
   alignas(64) double angle[kLanes];
   LaneTraits<Flat>::store(Traits::value(spread(y_.data())), angle);
+  // A shorter step may find the voltages that a longer one did not.
+  if (const unsigned again = per_lane_.fallen & ~accepted; again != 0) begin_search(per_lane_, again, 1.0);
+  per_lane_.fallen = 0;
   for (int l = 0; l < kLanes; ++l) {
     auto& run = lanes_[static_cast<std::size_t>(l)];
     if (!((active_ >> l) & 1U)) continue;

@@ -136,7 +136,8 @@ SegmentSolver::SegmentSolver(SUNContext context, const ReferenceSystem& system, 
                         segments::own_places(system)},
                        {},
                        {},
-                       {}}) {
+                       {}}),
+      reached_(start) {
   auto& [to_y, to_yp, problem, matrix, solver, ida] = *parts_;
   matrix.reset(SUNSparseMatrix(system.size(), system.size(), system.size(), CSC_MAT, context));
   solver.reset(SUNLinSol_KLU(y, matrix.get(), context));
@@ -158,8 +159,7 @@ SegmentSolver::SegmentSolver(SUNContext context, const ReferenceSystem& system, 
 SegmentSolver::~SegmentSolver() = default;
 
 bool SegmentSolver::advance(double t) {
-  realtype reached = 0;
-  return IDASolve(parts_->ida.get(), t, &reached, parts_->y, parts_->yp, IDA_NORMAL) >= 0;
+  return IDASolve(parts_->ida.get(), t, &reached_, parts_->y, parts_->yp, IDA_NORMAL) >= 0;
 }
 
 long SegmentSolver::steps() const {

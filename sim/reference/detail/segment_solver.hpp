@@ -20,13 +20,15 @@ class SegmentSolver {
   ~SegmentSolver();
   SegmentSolver(const SegmentSolver&) = delete;
   SegmentSolver& operator=(const SegmentSolver&) = delete;
-  /// Advances y and y' to time t; false when IDA cannot.
+  /// Advances y and y' to time t; false when IDA cannot, and they are those of `reached`.
   bool advance(double t);
+  [[nodiscard]] double reached() const { return reached_; }  ///< [s]
   [[nodiscard]] long steps() const;
 
  private:
   struct Parts;
   std::unique_ptr<Parts> parts_;
+  double reached_;
 };
 
 }  // namespace swingbank::sim::reference

@@ -233,30 +233,45 @@ Signals<double> ReferenceSystem::signals(std::size_t u, double t, const double* 
   return s;
 }
 
-void ReferenceSystem::solve_voltages(double t, double* y) const {
+bool ReferenceSystem::newton(double t, double* y) const {
   constexpr int limit = 50;
   constexpr double tolerance = 1e-12;  // [pu of voltage]: rounding of a matrix of faults and lines is below
-  for (int b = 0; b < buses_; ++b)
-    if (bolted_[b]) y[bus_row(b)] = y[bus_row(b) + 1] = 0.0;
   std::vector<double> yp(size(), 0.0), f(size());
   Eigen::SparseMatrix<double> j = constant_;
   for (int iteration = 0; iteration < limit; ++iteration) {
+    for (int b = 0; b < buses_; ++b)
+      if (bolted_[b]) y[bus_row(b)] = y[bus_row(b) + 1] = 0.0;
     residual(t, y, yp.data(), f.data());
     jacobian(t, 0.0, y, j.valuePtr());
     const Eigen::SparseMatrix<double> jv = j.bottomRightCorner(2 * buses_, 2 * buses_);
     Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(jv);
-    if (lu.info() != Eigen::Success) break;
+    if (lu.info() != Eigen::Success) return false;
     const Eigen::Map<const Eigen::VectorXd> rest(f.data() + plants_.states(), 2 * buses_);
     Eigen::VectorXd step = lu.solve(rest);
     step += lu.solve(rest - jv * step).eval();  // a fault impedance of 1e-6 pu stretches the scale
     double largest = step.cwiseAbs().maxCoeff();
-    if (!std::isfinite(largest)) break;
+    if (!std::isfinite(largest)) return false;
     if (largest > 1.0) step *= 1.0 / largest;  // a load of constant power may throw the first steps far
     for (int i = 0; i < 2 * buses_; ++i) y[plants_.states() + i] -= step[i];
-    for (int b = 0; b < buses_; ++b)
-      if (bolted_[b]) y[bus_row(b)] = y[bus_row(b) + 1] = 0.0;
-    if (largest < tolerance) return;
+    if (largest < tolerance) break;
+    if (iteration + 1 == limit) return false;
   }
+  for (int b = 0; b < buses_; ++b)
+    if (bolted_[b]) y[bus_row(b)] = y[bus_row(b) + 1] = 0.0;
+  return true;
+}
+
+bool ReferenceSystem::search_voltages(double t, double* y) const {
+  if (newton(t, y)) return true;
+  for (const double from : {0.0, 1.0}) {
+    for (int b = 0; b < buses_; ++b) y[bus_row(b)] = from, y[bus_row(b) + 1] = 0.0;
+    if (newton(t, y)) return true;
+  }
+  return false;
+}
+
+void ReferenceSystem::solve_voltages(double t, double* y) const {
+  if (search_voltages(t, y)) return;
   throw InputError({"no voltages satisfy the network", fmt::format("t = {:g} s", t),
                     "the loads and sources have no common solution after this switching",
                     "use load models that give way at low voltage, or another event"});

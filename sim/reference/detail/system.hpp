@@ -54,6 +54,7 @@ class ReferenceSystem {
   ReferenceSystem(const grid::Grid& grid, const ReferencePlants& plants, const network::Segment& segment,
                   double end);
   [[nodiscard]] int size() const { return plants_.states() + 2 * buses_; }
+  [[nodiscard]] int states() const { return plants_.states(); }  ///< they stand before the voltages
   [[nodiscard]] const std::vector<Unit>& units() const { return plants_.units(); }
   [[nodiscard]] bool bolted(int bus) const { return bolted_[static_cast<std::size_t>(bus)]; }
   /// Number of the island that a bus lies in.
@@ -63,7 +64,10 @@ class ReferenceSystem {
   [[nodiscard]] double connected(std::size_t unit) const { return connected_[unit]; }
 
   /// Bus voltages that satisfy the algebraic equations for the states in y: written into y, which holds the
-  /// ones to start from (Newton). Throws InputError if there are none.
+  /// ones to start from (Newton). Where there are none near these, those found from zero: a current that is
+  /// given beside a fault has no others (decision 37). False if there are none.
+  bool search_voltages(double t, double* y) const;
+  /// The same; throws InputError if there are none.
   void solve_voltages(double t, double* y) const;
   /// y' of the states; zero for the voltages.
   void derivatives(double t, const double* y, double* yp) const;
@@ -87,6 +91,7 @@ class ReferenceSystem {
   [[nodiscard]] const std::vector<int>& places(std::size_t unit) const { return places_[unit]; }
 
  private:
+  bool newton(double t, double* y) const;
   void build_network(const grid::Grid& grid, const network::Topology& topology);
   void build_pattern();
   void unit_jacobian(std::size_t unit, double t, double a, const double* y, double* values) const;
