@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kSameInstant = 1e-9;  ///< a sample this close to a switching instant belongs to it [s]
 
-constexpr double kNoVoltage = 1e-9;  ///< beside a bolted fault, where rounding gives some: no angle [pu]
+constexpr double kNoAngle = 1e-9;  ///< beside a bolted fault, where rounding gives some: no angle [pu]
 
 struct FreeContext {
   void operator()(SUNContext c) const { SUNContext_Free(&c); }
@@ -56,7 +56,7 @@ class Recorder {
   bool record(int k, const ReferenceSystem& system, const double* y) {
     const double* v = y + plants_.states();
     for (std::size_t b = 0; b < angle_.size(); ++b)
-      if (!system.bolted(static_cast<int>(b)) && std::hypot(v[2 * b], v[2 * b + 1]) > kNoVoltage)
+      if (!system.bolted(static_cast<int>(b)) && std::hypot(v[2 * b], v[2 * b + 1]) > kNoAngle)
         angle_[b] = nearest(std::atan2(v[2 * b + 1], v[2 * b]), angle_[b]);
     for (std::size_t u = 0; u < plants_.units().size(); ++u)
       if (plants_.units()[u].plant) signals_[u] = system.signals(u, k / options_.rate, y, current_[u]);

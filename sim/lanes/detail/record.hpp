@@ -112,6 +112,7 @@ template <class T>
 void Lanes<T>::spread_constants(int lane) {
   const auto copy = [lane](const std::vector<T>& from, std::vector<T>& to, std::size_t first,
                            std::size_t count) {
+    if (count == 0) return;  // an empty vector has no address to count from
     const double* __restrict source = reinterpret_cast<const double*>(from.data()) + lane;
     Flat* __restrict target = reinterpret_cast<Flat*>(to.data());
     for (std::size_t i = first * kFlats; i < (first + count) * kFlats; ++i)
@@ -281,10 +282,10 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
 /// before the first. `squared`: |V|^2; where there is none the angle keeps the last one.
 template <class T>
 T Lanes<T>::unwrapped(T angle, const T& squared, double last, int count) const {
-  constexpr double kNoVoltage = 1e-9;  // beside a bolted fault, where rounding gives some: no angle [pu]
-  T turns(0.0);                        // beside the angle, which keeps its slopes
+  constexpr double kNoAngle = 1e-9;  // beside a bolted fault, where rounding gives some: no angle [pu]
+  T turns(0.0);                      // beside the angle, which keeps its slopes
   for (int l = 0; l < count; ++l) {
-    if (Traits::get(squared, l) < kNoVoltage * kNoVoltage) Traits::set(angle, l, last);
+    if (Traits::get(squared, l) < kNoAngle * kNoAngle) Traits::set(angle, l, last);
     const double now = Traits::get(angle, l);
     const double whole = constants::turn * std::nearbyint((last - now) / constants::turn);
     Traits::set(turns, l, whole);
