@@ -66,18 +66,18 @@ std::optional<double> number_at(Config& config, const std::string& key) {
   return config.optional<double>(key, 0.0);
 }
 
-/// Data on the system's base instead of the machine's: a problem where values are refused for it, else a
+/// Data on another base than the machine's: a problem where values are refused for it, else a
 /// warning.
 void check_base(Config& config, PlantModel& model, bool sound) {
   for (const char* reactance : {"Xd", "Xdp"}) {
     const auto h = number_at(config, "machine.H");
     const auto x = number_at(config, std::string("machine.") + reactance);
     if (!x) continue;
-    const auto foreign = foreign_base(reactance, h.value_or(0.0), *x, model.plant.mva);
+    const auto foreign = foreign_base(reactance, h.value_or(0.0), *x, model.plant.mva, sound);
     if (!foreign) return;
     const std::string why = fmt::format(
-        "on {:g} MVA these would be a machine of about {:g} MVA; are they on the "
-        "system's base?",
+        "on {:g} MVA these would be a machine of about {:g} MVA; are they on another base, the system's or one "
+        "that the file has wrong?",
         model.plant.mva, foreign->mva);
     const std::string remedy = fmt::format(
         "set base_mva to the machine's own, say {0:g}, and give values on it: H divided, reactances and "

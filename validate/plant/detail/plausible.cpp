@@ -14,7 +14,8 @@ struct Typical {
   double h, x, least, most;
 };
 constexpr Typical kSynchronous = {4.0, 1.6, 0.6, 40.0}, kTransient = {4.0, 0.3, 0.12, 8.0};
-constexpr double kFar = 3.0;  ///< a factor between bases that no spread of machines explains
+/// A factor between bases that no spread of machines explains, and that few machines do.
+constexpr double kFar = 3.0, kFarForOne = 2.0;
 
 /// 99, 999, 9999.0, ...: what people write for "none".
 bool stands_for_none(double value) {
@@ -26,11 +27,13 @@ bool stands_for_none(double value) {
 
 }  // namespace
 
-std::optional<ForeignBase> foreign_base(const std::string& reactance, double h, double x, double base_mva) {
+std::optional<ForeignBase> foreign_base(const std::string& reactance, double h, double x, double base_mva,
+                                        bool sound) {
   const Typical& typical = reactance == "Xd" ? kSynchronous : kTransient;
   if (!(h > 0 && x > 0) || h * x < typical.least || h * x > typical.most) return {};
   const double ratio = std::sqrt(h / x * typical.x / typical.h);
-  if (ratio < kFar && ratio > 1 / kFar) return {};
+  const double far = sound ? kFar : kFarForOne;
+  if (ratio < far && ratio > 1 / far) return {};
   const double mva = ratio * base_mva, unit = std::pow(10.0, std::floor(std::log10(mva)) - 1);
   return ForeignBase{fmt::format("H = {:g} s and {} = {:g} pu", h, reactance, x),
                      std::round(mva / unit) * unit, ratio};
