@@ -31,7 +31,7 @@ class Check {
   std::vector<Finding> run() {
     if (!complete()) return std::move(findings_);
     signals_ = record_signals(r_);
-    jumps_ = find_jumps(r_);
+    jumps_ = clear_jumps(r_);
     dropouts();
     event();
     voltage();
@@ -380,7 +380,7 @@ class Check {
     double least = 1;
     for (const auto& m : mistakes()) {
       const record::Record alternative = reinterpreted(m.reinterpret);
-      const std::vector<Jump> there = find_jumps(alternative);
+      const std::vector<Jump> there = clear_jumps(alternative);
       const JumpFit fit = fit_jumps(alternative, there, delay), same = fit_jumps(r_, there, delay);
       const double noise = noise_share(fit);
       if (!(fit.reactance > 0 && noise < 0.1 && fit.misfit < 0.01 + 2 * noise)) continue;

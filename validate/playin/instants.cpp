@@ -33,16 +33,16 @@ Switching within_step(const record::Record& record, std::size_t k) {
 
 std::vector<Switching> lone_jumps(const record::Record& record, double threshold) {
   constexpr double kOfThreshold = 0.05, kOfAround = 5;
-  constexpr std::size_t kAround = 10;
+  constexpr std::size_t kAround = 10, kLeastBefore = 4;  // the record may begin just before the event
   const auto out = standing_out(voltage_steps(record));
   const auto is_lone = [&](std::size_t k) {
     if (out[k] <= kOfThreshold * threshold) return false;
-    for (std::size_t j = k - kAround; j <= k + kAround; ++j)
+    for (std::size_t j = k > kAround ? k - kAround : 0; j <= k + kAround; ++j)
       if (j != k && out[k] <= kOfAround * out[j]) return false;
     return true;
   };
   std::vector<Switching> found;
-  for (std::size_t k = kAround; k + kAround < out.size(); ++k)
+  for (std::size_t k = kLeastBefore; k + kAround < out.size(); ++k)
     if (is_lone(k)) found.push_back(within_step(record, k));
   return found;
 }

@@ -16,8 +16,9 @@ std::vector<Complex> voltage_steps(const record::Record& record);
 
 /// A switching between samples k and k + 1.
 Switching within_step(const record::Record& record, std::size_t k);
-/// Jumps that are small, a twentieth of `threshold` at least, and stand alone: ten samples to either side
-/// nothing bends by a fifth of it, neither noise nor a swing. A generator lost far away makes such a jump.
+/// Jumps that are small, a twentieth of `threshold` at least, and stand alone: ten samples to either side, or
+/// to the record's begin, nothing bends by a fifth of it, neither noise nor a swing. A generator lost far
+/// away makes such a jump.
 std::vector<Switching> lone_jumps(const record::Record& record, double threshold);
 
 /// When a signal counts as having left its level.

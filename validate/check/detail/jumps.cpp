@@ -32,13 +32,12 @@ std::vector<Jump> smeared(const record::Record& r) {
   return jumps;
 }
 
-/// What the voltage phasor changes by over the sample interval about t, less the mean of the changes beside
-/// it [pu]: what a jump is divided by.
-double jump_at(const record::Record& r, double t) {
-  const auto k = static_cast<std::size_t>(std::ranges::upper_bound(r.t, t) - r.t.begin());
-  if (k < 2 || k + 1 >= r.t.size()) return 0;
+/// What the voltage phasor changes by over sample interval k, less the mean of the changes beside it [pu]:
+/// what a jump is divided by.
+double jump_in(const record::Record& r, std::size_t k) {
+  if (k < 1 || k + 2 >= r.t.size()) return 0;
   const auto step = [&](std::size_t i) {
-    return std::polar(r.V[i], r.theta[i]) - std::polar(r.V[i - 1], r.theta[i - 1]);
+    return std::polar(r.V[i + 1], r.theta[i + 1]) - std::polar(r.V[i], r.theta[i]);
   };
   return std::abs(step(k) - 0.5 * (step(k - 1) + step(k + 1)));
 }
@@ -56,14 +55,20 @@ std::vector<Jump> find_jumps(const record::Record& r) {
     std::ranges::for_each(r.switched, add);
     return jumps;
   }
-  // Between fall and rise of a short fault behind a long filter nothing jumps.
-  for (const auto& s : playin::detect_switchings(r))
-    if (jump_at(r, s.time) > playin::kJumpThreshold) add(s.time);
+  for (const auto& s : playin::detect_switchings(r)) add(s.time);
   for (const auto& wide : smeared(r)) {
     const auto close = [&](const Jump& j) { return j.before + 4 > wide.before && wide.after + 4 > j.after; };
     if (std::ranges::none_of(jumps, close)) jumps.push_back(wide);
   }
   std::ranges::sort(jumps, {}, &Jump::before);
+  return jumps;
+}
+
+std::vector<Jump> clear_jumps(const record::Record& r) {
+  std::vector<Jump> jumps = find_jumps(r);
+  std::erase_if(jumps, [&](const Jump& j) {
+    return r.switched.empty() && j.after == j.before + 1 && jump_in(r, j.before) < playin::kJumpThreshold;
+  });
   return jumps;
 }
 

@@ -14,8 +14,11 @@ namespace swingbank::validate::check {
 struct Jump {
   std::size_t before, after;  ///< samples
 };
-/// Jumps of the voltage phasor, large enough to divide by.
+/// Jumps of the voltage phasor, as small as can be told from noise and swings.
 std::vector<Jump> find_jumps(const record::Record& record);
+/// Those large enough to divide by: not what a small event makes, nor where a filter longer than a fault
+/// turns from fall to rise.
+std::vector<Jump> clear_jumps(const record::Record& record);
 
 /// What the jumps say, from dV = -jX dI by least squares.
 struct JumpFit {
