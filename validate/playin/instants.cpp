@@ -33,7 +33,7 @@ Switching within_step(const record::Record& record, std::size_t k) {
 
 std::vector<Switching> lone_jumps(const record::Record& record, double threshold) {
   constexpr double kOfThreshold = 0.05, kOfAround = 5;
-  constexpr std::size_t kAround = 10, kLeastBefore = 4;  // the record may begin just before the event
+  constexpr std::size_t kAround = 10, kSamplesBefore = 4;  // the record may begin just before the event
   const auto out = standing_out(voltage_steps(record));
   const auto is_lone = [&](std::size_t k) {
     if (out[k] <= kOfThreshold * threshold) return false;
@@ -42,7 +42,7 @@ std::vector<Switching> lone_jumps(const record::Record& record, double threshold
     return true;
   };
   std::vector<Switching> found;
-  for (std::size_t k = kLeastBefore; k + kAround < out.size(); ++k)
+  for (std::size_t k = kSamplesBefore; k + kAround < out.size(); ++k)
     if (is_lone(k)) found.push_back(within_step(record, k));
   return found;
 }
