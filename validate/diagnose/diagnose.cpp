@@ -24,9 +24,6 @@ constexpr int kAtLeast = 3;
 constexpr std::size_t kWaysOut = 2;
 constexpr int kBases = 2;
 
-/// So few parameters may be wrong, if they are to be named.
-constexpr std::size_t kFew = 5;
-
 /// Steps of the fits that go on with the noise measured again.
 constexpr int kOnwards = 4;
 
@@ -110,7 +107,6 @@ class Diagnoser {
     if (result_.base.misfit() > options_.adequate) return;
     const auto free = fit::free_parameters(model_.plant, options_.spread);
     fit::FewestOptions o;
-    o.most = kFew;
     o.progress = options_.progress;
     fit::Fewest found = fit::fewest(model_.under_test(), result_.events, free, o);
     if (found.wrong.empty() || found.fit.misfit() > options_.adequate) return;
