@@ -2,9 +2,9 @@
 # Installs what is missing, builds and runs the tests.
 #   bash tests/run.sh [--fast | --night] [--without-psse] [--sanitize] [--ci]
 #     --fast          the fast tier only (under 2 minutes once built)
-#     --night         only what takes too long for every change, whether all rooms agree on each type, and whether threads
-#                     disturb one another: more than an hour
-#                     (jobs/nightly.sh runs it)
+#     --night         only what takes too long for every change, whether all rooms agree on each type, whether threads
+#                     disturb one another, and the lanes under the sanitizers, one instruction set a night: more than an
+#                     hour (jobs/nightly.sh runs it)
 #     --without-psse  leaves out the tests that read records of others, PSS/E's own among them, which are not part of this repository
 #     --sanitize      also the fast tier's unit tests under the address and undefined-behaviour sanitizers (their build
 #                     takes longer than all the rest: Eigen's sparse solvers are slow to compile with checks)
@@ -133,6 +133,11 @@ if ((night)); then
   one_definition || failed+=(one_definition)
   say "threads"
   threads || failed+=(threads)
+  # One instruction set a night: where ccache has nothing, its build takes some ten minutes of two cores.
+  levels=(x86-64-v2 x86-64-v3 x86-64-v4)
+  level=${levels[10#$(date +%j) % ${#levels[@]}]}
+  say "lanes under the sanitizers, $level"
+  bash "$source_folder/tests/sim/sanitized.bash" "$level" || failed+=(sanitized)
   tier night
 else
   tier fast
