@@ -54,7 +54,7 @@ class Diagnoser {
   /// The model alone, the missing inputs, every hypothesis. False: a person has ended it.
   bool fit_all() {
     const event::WhitenedEvents prepared = result_.events;
-    fit::FitOptions from;
+    fit::FitOptions from{.lenient = true};
     for (int round = 0;; ++round) {
       fit_base(from);
       tell(first_sentence(result_, options_.adequate));
@@ -95,7 +95,7 @@ class Diagnoser {
     if (result_.base.failed.empty()) {
       result_.events =
           result_.events.with(fit::measure_noise_through(result_.base, model_.conventions, result_.events));
-      o = fit::continued({}, result_.base, free);
+      o = fit::continued({.lenient = true}, result_.base, free);
       result_.base = fit::fit(model_.under_test(), result_.events, free, o);
     }
     require_fitted_base();
@@ -135,7 +135,7 @@ class Diagnoser {
     base.fit = result_.base;
     for (std::size_t k = 0; k < std::min<std::size_t>(kWaysOut, result_.ranked.size()); ++k)
       if (result_.ranked[k].fitted) hypothesis::try_from(model_stage(), result_.ranked[k].fit, base);
-    from = fit::continued({}, base.fit, fit::free_parameters(model_.plant, options_.spread));
+    from = fit::continued({.lenient = true}, base.fit, fit::free_parameters(model_.plant, options_.spread));
     return fit::gain(result_.base, base.fit) > thresholds::evidence.escape * result_.ranked.front().gain;
   }
   /// Where no addition leaves only noise, an effect that is there may be of another kind.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "base/problem.hpp"
 #include "validate/playin/allowance.hpp"
+#include "validate/playin/driven_together.hpp"
 #include "validate/playin/given.hpp"
 #include "validate/playin/instruments.hpp"
 
@@ -27,17 +29,17 @@ playin::OperatingPoint start_at(const FitEvent& event, const EventState& state) 
   return start;
 }
 
-playin::Response play(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
-                      const EventState& state, std::span<const playin::Direction> along, const Playing& how) {
-  const playin::VoltageCurve curve(event.played(), switchings_at(event, state));
-  const playin::OperatingPoint start = start_at(event, state);
-  const auto given = playin::given_of(event.record, curve.switchings(), event.start);
+namespace {
+
+/// The run of an event; `curve` and `given` stay where they are.
+playin::Drive run_of(const sim::plant::PlantUnderTest& tested, const FitEvent& event, const EventState& state,
+                     const Playing& how, const playin::VoltageCurve& curve, const playin::Given* given) {
   playin::Drive run{.plant = &tested.plant,
                     .conventions = tested.conventions,
                     .record = &event.record,
                     .curve = &curve,
-                    .start = start,
-                    .given = given ? &*given : nullptr,
+                    .start = start_at(event, state),
+                    .given = given,
                     .angle = state.angle,
                     .speed = state.speed,
                     .tolerance = how.tolerance,
@@ -46,16 +48,55 @@ playin::Response play(const sim::plant::PlantUnderTest& tested, const FitEvent& 
     run.least_step = event.record.step() / 40;
     run.step_limit = 15 * event.record.samples();
   }
-  if (how.lenient)
+  if (how.lenient && how.allowance && !how.allowance->empty()) {
+    run.allowance = *how.allowance;
+  } else if (how.lenient) {
     run.allowance = playin::allowances(playin::linearise(run), event.channels, event.record.step());
+    if (how.allowance) *how.allowance = run.allowance;
+  }
   if (how.linear_slopes) {
+    run.past = how.past;
     run.linear_slopes = event.channels;
     for (const playin::Output o : {playin::Output::P, playin::Output::Q})  // instruments need both
       if (std::ranges::count(event.channels, o) == 0) run.linear_slopes.push_back(o);
   }
   if (how.input == InputKind::torque) run.torque = state.input;
   if (how.input == InputKind::field) run.field = state.input;
-  return playin::observe(run, along);
+  return run;
+}
+
+}  // namespace
+
+playin::Response play(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
+                      const EventState& state, std::span<const playin::Direction> along, const Playing& how) {
+  const playin::VoltageCurve curve = event.curve(switchings_at(event, state));
+  const auto given = playin::given_of(event.record, curve.switchings(), event.start);
+  return playin::observe(run_of(tested, event, state, how, curve, given ? &*given : nullptr), along);
+}
+
+std::vector<std::optional<playin::Response>> play_together(std::span<const sim::plant::Plant> plants,
+                                                           const sim::Conventions& conventions,
+                                                           const FitEvent& event, const EventState& state,
+                                                           const Playing& how) {
+  const playin::VoltageCurve curve = event.curve(switchings_at(event, state));
+  const auto given = playin::given_of(event.record, curve.switchings(), event.start);
+  std::vector<std::optional<playin::Response>> all(plants.size());
+  std::vector<playin::Drive> runs;
+  std::vector<std::size_t> which;
+  for (std::size_t k = 0; k < plants.size(); ++k) try {
+      const playin::Drive run =
+          run_of({plants[k], conventions}, event, state, how, curve, given ? &*given : nullptr);
+      if (!plants[k].measurements.empty()) {
+        all[k] = playin::observe(run);
+        continue;
+      }
+      runs.push_back(run);
+      which.push_back(k);
+    } catch (const InputError&) {  // it cannot stand at the start
+    }
+  auto answers = playin::drive_together(runs);
+  for (std::size_t k = 0; k < runs.size(); ++k) all[which[k]] = std::move(answers[k]);
+  return all;
 }
 
 }  // namespace swingbank::validate::event

@@ -1,6 +1,8 @@
 #pragma once
 // The one way in which an event is played into a plant: from the event's own state, and through the plant's
 // own instruments, which show what was recorded.
+#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -30,9 +32,13 @@ struct Playing {
   bool hasty = true;
   /// A step may miss a state by what the compared channels do not show of it (playin::allowances).
   bool lenient = false;
-  bool linear_slopes = false;         ///< slopes as playin::Drive has them: for a search
-  InputKind input = InputKind::none;  ///< where the state's input acts
-  double until = 1e300;               ///< samples after it are left out [s]
+  /// How much, kept for further plays of the same plant with other values. Empty: found, and left here. Null:
+  /// found each time.
+  std::vector<double>* allowance = nullptr;
+  bool linear_slopes = false;                           ///< slopes as playin::Drive has them: for a search
+  std::shared_ptr<const playin::Past>* past = nullptr;  ///< as playin::Drive has it
+  InputKind input = InputKind::none;                    ///< where the state's input acts
+  double until = 1e300;                                 ///< samples after it are left out [s]
 };
 
 /// The event's switchings at the instants that `state` has.
@@ -44,5 +50,11 @@ playin::OperatingPoint start_at(const FitEvent& event, const EventState& state);
 playin::Response play(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
                       const EventState& state, std::span<const playin::Direction> along = {},
                       const Playing& how = {});
+/// The same of several plants that differ in values only, eight at a time (playin::drive_together); nothing
+/// where play() would throw.
+std::vector<std::optional<playin::Response>> play_together(std::span<const sim::plant::Plant> plants,
+                                                           const sim::Conventions& conventions,
+                                                           const FitEvent& event, const EventState& state,
+                                                           const Playing& how = {});
 
 }  // namespace swingbank::validate::event

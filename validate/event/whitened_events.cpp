@@ -11,6 +11,26 @@ const std::vector<double>& FitEvent::measured(playin::Output o) const {
   return playin::measured_values(record, o);
 }
 
+namespace {
+
+/// None where the voltage cannot be known; playing the event says why.
+KeptCurve kept_curve(const FitEvent& e) {
+  const record::Record& r = e.played();
+  if (r.t.empty() || r.V.size() != r.t.size() || r.theta.size() != r.t.size()) return {};
+  try {
+    return KeptCurve(std::make_unique<const playin::VoltageCurve>(r, e.switchings));
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+playin::VoltageCurve FitEvent::curve(std::vector<playin::Switching> at) const {
+  return kept.get() ? kept.get()->moved(played(), std::move(at))
+                    : playin::VoltageCurve(played(), std::move(at));
+}
+
 Eigen::VectorXd FitEvent::collected(const std::vector<double>* values, bool less_measured) const {
   Eigen::VectorXd all(this->values());
   Eigen::Index row = 0;
@@ -23,7 +43,10 @@ Eigen::VectorXd FitEvent::collected(const std::vector<double>* values, bool less
 }
 
 WhitenedEvents::WhitenedEvents(std::vector<FitEvent> events, NoiseModel noise) {
-  for (FitEvent& e : events) events_.push_back(std::make_shared<const FitEvent>(std::move(e)));
+  for (FitEvent& e : events) {
+    e.kept = kept_curve(e);
+    events_.push_back(std::make_shared<const FitEvent>(std::move(e)));
+  }
   *this = with(std::move(noise));
 }
 

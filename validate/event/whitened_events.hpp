@@ -6,12 +6,32 @@
 #include <cstddef>
 #include <iterator>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "validate/event/noise_model.hpp"
 #include "validate/playin/driven_plant.hpp"
 
 namespace swingbank::validate::event {
+
+/// The curve of an event that no longer changes. A copy of the event, which may be changed, has none.
+class KeptCurve {
+ public:
+  KeptCurve() = default;
+  explicit KeptCurve(std::unique_ptr<const playin::VoltageCurve> curve) : curve_(std::move(curve)) {}
+  KeptCurve(const KeptCurve&) {}
+  KeptCurve(KeptCurve&&) = default;
+  KeptCurve& operator=(const KeptCurve& other) {
+    if (this != &other) curve_.reset();
+    return *this;
+  }
+  KeptCurve& operator=(KeptCurve&&) = default;
+  ~KeptCurve() = default;
+  [[nodiscard]] const playin::VoltageCurve* get() const { return curve_.get(); }
+
+ private:
+  std::unique_ptr<const playin::VoltageCurve> curve_;
+};
 
 /// One event, prepared for fitting.
 struct FitEvent {
@@ -28,6 +48,9 @@ struct FitEvent {
   /// where none is smeared.
   record::Record clean = {};
   std::vector<playin::Output> channels;  ///< measured ones: P, Q, then speed, Efd, Ifd where recorded
+  KeptCurve kept = {};                   ///< of played() with `switchings`, in WhitenedEvents
+  /// The voltage that is played in, with the switchings at these instants.
+  [[nodiscard]] playin::VoltageCurve curve(std::vector<playin::Switching> at) const;
   /// One of Response's answers or slopes ([output][sample]), with the measured values taken off where asked:
   /// [compared sample * channels + channel].
   [[nodiscard]] Eigen::VectorXd collected(const std::vector<double>* values, bool less_measured) const;

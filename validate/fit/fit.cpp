@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "base/constants.hpp"
-#include "validate/fit/detail/cost.hpp"
+#include "validate/fit/detail/event_cost.hpp"
 #include "validate/fit/detail/input_evidence.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
@@ -98,6 +98,7 @@ class Search {
     static_cast<void>(quiet);
     ceres::Solver::Options o;
     Steps steps(iterations);
+    for (EventCost* c : costs_) c->look_at(std::max(1, iterations));
     o.callbacks.push_back(&steps);
     o.max_num_iterations =
         iterations > 0 && iterations <= kFewSteps ? iterations + kRefusedSteps : iterations;
@@ -114,6 +115,7 @@ class Search {
     ceres::Solver::Summary summary;
     ceres::Solve(o, problem_.get(), &summary);
     done += std::max(1, steps.taken());
+    for (EventCost* c : costs_) c->look_at(1);
     return summary.termination_type == ceres::CONVERGENCE;
   }
 
@@ -176,7 +178,7 @@ class Search {
     const sim::plant::Plant plant = moved(setting_, z_.data());
     try {
       for (std::size_t e = 0; e < states_.size(); ++e) {
-        static_cast<void>(costs_[e]->answer(plant, costs_[e]->at(states_[e].data())));
+        static_cast<void>(costs_[e]->answer(plant, costs_[e]->at(states_[e].data()), setting_.lenient));
       }
     } catch (const InputError& error) {
       return error.problems().front().sentence();
@@ -186,11 +188,11 @@ class Search {
 
   /// What lenient steps get past may stop others.
   playin::Response answer_at_end(std::size_t e, const sim::plant::Plant& plant, const EventState& at) const {
-    if (!setting_.lenient) return costs_[e]->answer(plant, at);
+    if (!setting_.lenient || options_.brief) return costs_[e]->answer(plant, at, setting_.lenient);
     try {
-      return costs_[e]->answer(plant, at);
+      return costs_[e]->answer(plant, at, false);
     } catch (const InputError&) {
-      return costs_[e]->answer(plant, at, {}, true);
+      return costs_[e]->answer(plant, at, true);
     }
   }
   void collect_events(Fit& fit) const {
@@ -269,10 +271,8 @@ class Search {
     at.residuals.resize(rows);
     const double* blocks[] = {z_.data(), states_[e].data()};
     double* jacobians[] = {at.by_z.data(), at.by_state.data()};
-    // along a hundred knots the exact ones would cost more than the search
-    const auto slopes =
-        setting_.input == InputKind::none ? EventCost::Slopes::exact : EventCost::Slopes::linear;
-    if (!costs_[e]->evaluate(blocks, at.residuals.data(), jacobians, slopes)) return std::nullopt;
+    costs_[e]->renew();
+    if (!costs_[e]->Evaluate(blocks, at.residuals.data(), jacobians)) return std::nullopt;
     at.precision = Eigen::VectorXd::Zero(size - knots);
     for (Eigen::Index k = 0; k < kStates; ++k)
       at.precision[size - knots - kStates + k] = 1 / (kStateBelief[k] * kStateBelief[k]);
@@ -380,6 +380,7 @@ Fit fit(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& e
         const std::vector<FreeParameter>& free, const FitOptions& options) {
   Setting setting{&tested.plant, &tested.conventions, &events, {}, options.tolerance, options.input, {}};
   setting.lenient = options.lenient;
+  setting.goes_on = !options.errors || options.input != InputKind::none;
   setting.knots.resize(events.size());
   if (options.input != InputKind::none)
     for (std::size_t e = 0; e < events.size(); ++e) setting.knots[e] = options.start[e].input.t;

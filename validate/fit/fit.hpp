@@ -97,10 +97,13 @@ constexpr double kFitTolerance = event::Playing{}.tolerance;  ///< of the integr
 struct FitOptions {
   int iterations = 30;
   double tolerance = kFitTolerance;  ///< of the integration
-  /// While it searches, steps may miss what the channels do not show, and slopes are linear about each step
-  /// (event::Playing); the fit it ends with is measured without, errors too. Where other steps do not get
-  /// past the start, these are taken in any case.
+  /// Steps may miss what the channels do not show, and slopes are linear about each step (event::Playing),
+  /// corrected by what steps of the search showed them to be off by. What the fit ends with is measured
+  /// without; its errors are not. Where other steps do not get past the start, these are taken in any case.
   bool lenient = false;
+  /// It is compared with other brief fits only: a lenient one ends with what its own steps made of the
+  /// answer.
+  bool brief = false;
   double enough = 1e-5;                ///< relative change of the cost at which the fit stops
   std::vector<EventState> start = {};  ///< of the events; empty: as prepared
   std::vector<double> values = {};     ///< of the free parameters, to start from; empty: the plant's

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "validate/fit/detail/cost.hpp"
+#include "validate/fit/detail/event_cost.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::fit {
@@ -26,8 +26,7 @@ Slopes slopes_of(const Setting& setting, std::size_t event, const std::vector<do
                  const std::vector<double>& state) {
   const auto parameters = static_cast<Eigen::Index>(z.size()),
              states = static_cast<Eigen::Index>(state.size());
-  const event::RowMatrix e =
-      EventCost(setting, event).values(z.data(), state.data(), EventCost::Slopes::exact);
+  const event::RowMatrix e = EventCost(setting, event).slopes(z.data(), state.data());
   if (e.size() == 0)
     throw InputError({"the fitted model cannot be run", (*setting.events)[event].record.name,
                       "it could while it was fitted", "report this"});
@@ -116,9 +115,55 @@ ScoreTest::Change ScoreTest::less_shared(Eigen::VectorXd answer) const {
 std::optional<ScoreTest::Change> ScoreTest::change_to(const sim::plant::PlantUnderTest& tested) const {
   const auto all = run(tested, {});
   if (!all) return std::nullopt;
-  Change change = less_shared(all->col(0) - residual_);
+  return changed(all->col(0) - residual_);
+}
+
+ScoreTest::Change ScoreTest::changed(Eigen::VectorXd answer) const {
+  Change change = less_shared(std::move(answer));
   if (change.square < thresholds::search.other_steps) change.square = 0;
   return change;
+}
+
+std::vector<std::optional<ScoreTest::Change>> ScoreTest::changes_to(
+    std::span<const sim::plant::Plant> plants, const sim::Conventions& conventions) const {
+  std::vector<Eigen::VectorXd> answers(plants.size(), -residual_);
+  std::vector<char> runs;
+  for (const auto& plant : plants) runs.push_back(playin::can_run(plant));
+  Eigen::Index row = 0;
+  for (std::size_t e = 0; e < events_.size(); ++e) {
+    const event::FitEvent& event = events_[e];
+    const auto all = event::play_together(plants, conventions, event, fit_.events[e].state);
+    for (std::size_t k = 0; k < plants.size(); ++k) {
+      runs[k] = runs[k] && all[k];
+      if (!runs[k]) continue;
+      event::RowMatrix one = event.collected(all[k]->value, true);
+      events_.noise(e).whiten(one);
+      answers[k].segment(row, one.rows()) += one;
+    }
+    row += event.values();
+  }
+  std::vector<std::optional<Change>> changes(plants.size());
+  for (std::size_t k = 0; k < plants.size(); ++k)
+    if (runs[k] && answers[k].allFinite()) changes[k] = changed(std::move(answers[k]));
+  return changes;
+}
+
+bool ScoreTest::apart(const sim::plant::PlantUnderTest& a, const sim::plant::PlantUnderTest& b) const {
+  if (!playin::can_run(a.plant) || !playin::can_run(b.plant)) return false;
+  double square = 0;
+  try {
+    for (std::size_t e = 0; e < events_.size() && !(square > thresholds::search.other_steps); ++e) {
+      const event::FitEvent& event = events_[e];
+      const auto& state = fit_.events[e].state;
+      event::RowMatrix moved = event.collected(event::play(b, event, state).value, false) -
+                               event.collected(event::play(a, event, state).value, false);
+      events_.noise(e).whiten(moved);
+      square += moved.squaredNorm();
+    }
+  } catch (const InputError&) {
+    return false;
+  }
+  return square > thresholds::search.other_steps;
 }
 
 std::vector<ScoreTest::Change> ScoreTest::slopes(const sim::plant::PlantUnderTest& tested,

@@ -4,6 +4,7 @@
 // parameters and the events' instants and starts could make is taken out.
 #include <Eigen/Dense>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "validate/fit/fit.hpp"
@@ -32,6 +33,12 @@ class ScoreTest {
   };
   /// The change from the structure's answer to that of another plant; none if that plant cannot be run.
   [[nodiscard]] std::optional<Change> change_to(const sim::plant::PlantUnderTest& tested) const;
+  /// The same of several plants that differ in values only (event::play_together).
+  [[nodiscard]] std::vector<std::optional<Change>> changes_to(std::span<const sim::plant::Plant> plants,
+                                                              const sim::Conventions& conventions) const;
+  /// Whether the answers of two plants differ by more than other steps make them (thresholds). False where
+  /// one cannot be run.
+  [[nodiscard]] bool apart(const sim::plant::PlantUnderTest& a, const sim::plant::PlantUnderTest& b) const;
   /// Slopes of another plant's answer, which should be near the structure's. Empty if it cannot be run.
   [[nodiscard]] std::vector<Change> slopes(const sim::plant::PlantUnderTest& tested,
                                            const std::vector<playin::Direction>& along) const;
@@ -44,6 +51,7 @@ class ScoreTest {
   [[nodiscard]] std::optional<Eigen::MatrixXd> run(const sim::plant::PlantUnderTest& tested,
                                                    const std::vector<playin::Direction>& along) const;
   [[nodiscard]] Change less_shared(Eigen::VectorXd answer) const;
+  [[nodiscard]] Change changed(Eigen::VectorXd answer) const;
 
   const event::WhitenedEvents& events_;
   const Fit& fit_;

@@ -60,6 +60,21 @@ double left_by(const sim::plant::PlantUnderTest& tested, const event::WhitenedEv
   return chi2;
 }
 
+std::vector<double> left_by_each(std::span<const sim::plant::Plant> plants,
+                                 const sim::Conventions& conventions, const event::WhitenedEvents& events,
+                                 const std::vector<fit::EventState>& states) {
+  std::vector<double> left(plants.size(), 0.0);
+  for (std::size_t e = 0; e < events.size(); ++e) {
+    const auto answers = event::play_together(plants, conventions, events[e], states[e], {.lenient = true});
+    for (std::size_t k = 0; k < plants.size(); ++k) {
+      fit::EventFit f;
+      if (answers[k]) fit::compare(events, e, *answers[k], f);
+      left[k] += answers[k] ? f.chi2 : std::numeric_limits<double>::infinity();
+    }
+  }
+  return left;
+}
+
 void try_further(const Stage& stage, const fit::Fit& leader, Judgement& j) {
   constexpr std::size_t kFurther = 2;
   constexpr int kOwnSteps = 8, kBriefSteps = 4, kAllSteps = 6;
@@ -81,16 +96,15 @@ void try_further(const Stage& stage, const fit::Fit& leader, Judgement& j) {
   starts.push_back(fit::values_of(j.fit.plant, h.free));
   starts.push_back(by_name(h, starts.back(), leader.plant));
   std::vector<std::pair<double, const std::vector<double>*>> order;
-  for (const auto& start : starts)
-    if (const double left = left_by({started(led, start), h.conventions}, stage.events, states);
-        std::isfinite(left))
-      order.emplace_back(left, &start);
+  std::vector<sim::plant::Plant> plants;
+  for (const auto& start : starts) plants.push_back(started(led, start));
+  const auto left = left_by_each(plants, h.conventions, stage.events, states);
+  for (std::size_t k = 0; k < starts.size(); ++k)
+    if (std::isfinite(left[k])) order.emplace_back(left[k], &starts[k]);
   std::ranges::sort(order);
   const auto free = free_of(h, stage.spread);
   for (std::size_t k = 0; k < std::min(kFurther, order.size()); ++k) {
-    fit::FitOptions o;
-    o.errors = false;
-    o.lenient = true;
+    fit::FitOptions o{.lenient = true, .errors = false};
     o.start = states;
     o.iterations = kOwnSteps;
     o.values = *order[k].second;
@@ -107,8 +121,7 @@ void try_further(const Stage& stage, const fit::Fit& leader, Judgement& j) {
     o.iterations = kAllSteps;
     const fit::Fit f = fit::fit(h.under_test(), stage.events, free, o);
     if (!f.failed.empty() || !fit::better(f, j.fit)) continue;
-    o = fit::continued({}, f, free);
-    o.iterations = 0;  // its errors alone
+    o = fit::continued({.iterations = 0, .lenient = true}, f, free);  // its errors alone
     if (fit::Fit known = fit::fit(h.under_test(), stage.events, free, o); known.failed.empty())
       j.fit = std::move(known);
   }
@@ -116,7 +129,8 @@ void try_further(const Stage& stage, const fit::Fit& leader, Judgement& j) {
 
 void try_exchange(const Stage& stage, const Judgement& pair, Judgement& j) {
   const auto free = free_of(j.hypothesis, stage.spread);
-  if (fit::Fit f = fit::fit(j.hypothesis.under_test(), stage.events, free, fit::continued({}, j.fit, free));
+  if (fit::Fit f = fit::fit(j.hypothesis.under_test(), stage.events, free,
+                            fit::continued({.lenient = true}, j.fit, free));
       f.failed.empty())
     j.fit = std::move(f);
   if (fit::gain(j.fit, pair.fit) > thresholds::search.exchange_behind) try_further(stage, pair.fit, j);
@@ -125,7 +139,7 @@ void try_exchange(const Stage& stage, const Judgement& pair, Judgement& j) {
 void try_from(const Stage& stage, const fit::Fit& other, Judgement& j) {
   const Hypothesis& h = j.hypothesis;
   const auto free = free_of(h, stage.spread);
-  fit::FitOptions o;
+  fit::FitOptions o{.lenient = true};
   for (const fit::FreeParameter& f : free) {
     const auto id = sim::plant::same_parameter(other.plant, h.plant, f.id);
     o.values.push_back(id ? sim::plant::parameter_value(other.plant, *id)

@@ -57,12 +57,11 @@ std::vector<sim::plant::ParameterId> companions(const fit::ScoreTest& score, con
                                                 const sim::plant::Plant& without,
                                                 const sim::plant::Plant& with) {
   const auto acts = [&](sim::plant::Plant plant, sim::plant::ParameterId id) {
-    const auto before = score.change_to({plant, h.conventions});
+    const sim::plant::Plant before = plant;
     const auto& p = sim::plant::parameter_record(plant, id);
     double& value = sim::plant::parameter_value(plant, id);
     value = std::clamp(kCompanionMoves * value, p.low, p.high);
-    const auto after = score.change_to({plant, h.conventions});
-    return before && after && (after->answer - before->answer).squaredNorm() > thresholds::search.other_steps;
+    return score.apart({before, h.conventions}, {plant, h.conventions});
   };
   std::vector<sim::plant::ParameterId> found;
   for (const fit::FreeParameter& f : h.free)
@@ -83,6 +82,7 @@ void try_part(const fit::ScoreTest& score, const Hypothesis& h, const fit::Fit& 
     return moved;
   };
   const auto beside = companions(score, h, f.plant, moved_by(kShares[1]));
+  std::vector<sim::plant::Plant> trials;
   for (const double share : kShares)
     for (const double multiple : kMultiplesBeside) {
       sim::plant::Plant moved = moved_by(share);
@@ -93,14 +93,17 @@ void try_part(const fit::ScoreTest& score, const Hypothesis& h, const fit::Fit& 
         double& value = sim::plant::parameter_value(moved, other);
         value = std::clamp(multiple * value, record.low, record.high);
       }
-      if (const auto change = score.change_to({moved, h.conventions});
-          change && change->gain() > (best ? best->promise : thresholds::addition.strong.value)) {
-        sim::plant::parameter_value(moved, id) =
-            now + std::clamp(change->share(), kLeastOfTrial, 1.0) * (tried - now);
-        best = Part{id, change->gain(), std::move(moved)};
-      }
+      trials.push_back(std::move(moved));
       if (beside.empty()) break;
     }
+  const auto changes = score.changes_to(trials, h.conventions);
+  for (std::size_t k = 0; k < trials.size(); ++k) {
+    const auto& change = changes[k];
+    if (!change || !(change->gain() > (best ? best->promise : thresholds::addition.strong.value))) continue;
+    double& value = sim::plant::parameter_value(trials[k], id);
+    value = now + std::clamp(change->share(), kLeastOfTrial, 1.0) * (value - now);
+    best = Part{id, change->gain(), std::move(trials[k])};
+  }
 }
 
 std::optional<Part> most_promising(const event::WhitenedEvents& events, const Hypothesis& h,
@@ -134,7 +137,7 @@ void grow(const event::WhitenedEvents& events, double spread, Hypothesis& h, fit
     if (!part) return;
     Hypothesis grown = with_part(h, *part);
     const auto free = free_of(grown, spread);
-    fit::FitOptions o = fit::continued({.iterations = kGrowSteps}, fit, free);
+    fit::FitOptions o = fit::continued({.iterations = kGrowSteps, .lenient = true}, fit, free);
     o.values = fit::values_of(part->from, free);
     fit::Fit with = fit::fit(grown.under_test(), events, free, o);
     if (!with.failed.empty() || !(fit::gain(fit, with, fit::criterion) > thresholds::addition.strong)) return;

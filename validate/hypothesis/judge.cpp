@@ -7,6 +7,13 @@
 #include <limits>
 
 namespace swingbank::validate::hypothesis {
+namespace {
+
+/// Of the fit that a verdict rests on.
+constexpr int kMostSteps = 60;
+
+}  // namespace
+
 std::vector<fit::FreeParameter> free_of(const Hypothesis& h, double spread) {
   std::vector<fit::FreeParameter> free;
   for (const auto& f : fit::free_parameters(h.plant, spread))
@@ -59,7 +66,7 @@ void judge(const Trial& trial, const fit::Fit& base, const std::vector<HeldOut>&
            Judgement& j) {
   if (!j.fitted) return;
   const auto free = free_of(j.hypothesis, trial.spread);
-  fit::FitOptions o;
+  fit::FitOptions o{.iterations = kMostSteps, .lenient = true};
   o.values = fit::values_of(j.fit.plant, free);
   for (const auto& e : j.fit.events) o.start.push_back(e.state);
   if (fit::Fit f = fit::fit(j.hypothesis.under_test(), trial.events, free, o);

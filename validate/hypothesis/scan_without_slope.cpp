@@ -32,19 +32,21 @@ class BlindScan {
     } catch (const InputError&) {  // a run with slopes takes other steps, and this one cannot be run
       return;
     }
+    if (std::ranges::all_of(seen, [](char s) { return s; })) return;
+    left_ = left_by({from_.plant, h.conventions}, stage.events, states_);
     for (std::size_t i = 0; i < h.free.size(); ++i) (seen[i] ? seen_ : blind_).push_back(h.free[i]);
     std::erase_if(blind_, [this](const fit::FreeParameter& f) { return idle(f); });
   }
   /// The best of the values tried. Parameters of the hypothesis that have slopes are fitted for a few steps;
   /// everything else is as `from` has it.
   [[nodiscard]] std::vector<fit::Fit> best() const {
-    std::vector<std::pair<double, sim::plant::Plant>> starts;
+    std::vector<sim::plant::Plant> plants;
     for (const auto& group : groups())
-      for (const double multiple : kMultiples) {
-        sim::plant::Plant plant = multiplied(group, multiple);
-        if (const double left = left_by({plant, h_.conventions}, stage_.events, states_); std::isfinite(left))
-          starts.emplace_back(left, std::move(plant));
-      }
+      for (const double multiple : kMultiples) plants.push_back(multiplied(group, multiple));
+    const auto left = left_by_each(plants, h_.conventions, stage_.events, states_);
+    std::vector<std::pair<double, sim::plant::Plant>> starts;
+    for (std::size_t k = 0; k < plants.size(); ++k)
+      if (std::isfinite(left[k])) starts.emplace_back(left[k], std::move(plants[k]));
     std::ranges::sort(starts, {}, &std::pair<double, sim::plant::Plant>::first);
     std::vector<fit::Fit> tried;
     for (const auto& start : std::span(starts).first(std::min(kScanFitted, starts.size())))
@@ -85,7 +87,7 @@ class BlindScan {
   [[nodiscard]] bool idle(const fit::FreeParameter& f) const {
     return std::ranges::all_of(std::array{kScanLess, kScanMore}, [&](double by) {
       const double left = left_by({multiplied({f}, by), h_.conventions}, stage_.events, states_);
-      return std::abs(left - from_.chi2) < thresholds::search.without_slope;
+      return std::abs(left - left_) < thresholds::search.without_slope;
     });
   }
   /// Each parameter by itself, and all parameters of one unit together, so that the points of a curve do not
@@ -102,8 +104,7 @@ class BlindScan {
     return all;
   }
   [[nodiscard]] fit::Fit beside(const sim::plant::Plant& plant) const {
-    fit::FitOptions o;
-    o.errors = false;
+    fit::FitOptions o{.lenient = true, .brief = true, .errors = false};
     o.iterations = kScanOwnSteps;
     o.start = states_;
     return fit::fit({plant, h_.conventions}, stage_.events, seen_, o);
@@ -113,6 +114,7 @@ class BlindScan {
   const Hypothesis& h_;
   const fit::Fit& from_;
   std::vector<fit::EventState> states_;
+  double left_ = 0;  ///< chi2 where nothing is changed
   std::vector<fit::FreeParameter> seen_, blind_;
 };
 
@@ -124,9 +126,8 @@ fit::Fit past_blind(const Stage& stage, const Hypothesis& h, const sim::plant::P
   for (int round = 0; round < kScanRounds && from.failed.empty(); ++round) {
     fit::Fit best = from;
     for (const fit::Fit& start : BlindScan(stage, h, from).best()) {
-      fit::FitOptions o = fit::continued({}, start, free);
-      o.errors = false;
-      o.iterations = kScanAllSteps;
+      const fit::FitOptions o = fit::continued(
+          {.iterations = kScanAllSteps, .lenient = true, .brief = true, .errors = false}, start, free);
       if (fit::Fit f = fit::fit({believed, h.conventions}, stage.events, free, o); fit::better(f, best))
         best = std::move(f);
     }

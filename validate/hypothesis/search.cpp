@@ -23,6 +23,8 @@ constexpr int kRounds = 5;
 /// All hypotheses try so many starts.
 constexpr std::size_t kFirstStarts = 2;
 
+const fit::FitOptions kBriefly = {.lenient = true, .brief = true, .errors = false};
+
 class Searcher {
  public:
   Searcher(const Stage& stage, const SearchProgress& report)
@@ -97,9 +99,7 @@ class Searcher {
   /// Fits the first `tries` starts, the standard values and then the draws, leaving out those that `fits`
   /// holds already.
   void first_steps(const Candidate& c, std::size_t tries, std::vector<fit::Fit>& fits) const {
-    fit::FitOptions o;
-    o.errors = false;
-    o.lenient = true;
+    fit::FitOptions o = kBriefly;
     o.iterations = kFirstSteps;
     for (std::size_t k = fits.size(); k < std::min(c.starts.size(), tries); ++k)
       fits.push_back(attempt(c, c.starts[k], o));
@@ -131,9 +131,7 @@ class Searcher {
   /// first steps led.
   Judgement more_steps(const Candidate& c, const std::vector<fit::Fit>& begun) const {
     const auto free = free_of(c.hypothesis, stage_.spread);
-    fit::FitOptions o;
-    o.errors = false;
-    o.lenient = true;
+    fit::FitOptions o = kBriefly;
     o.iterations = kMoreSteps;
     std::vector<fit::Fit> fits;
     std::size_t best = 0;
@@ -164,9 +162,7 @@ class Searcher {
   }
   /// Fits from the values and states at which a stage that nearly fits has ended.
   fit::Fit from_stage(const Candidate& c, const std::vector<double>& values, int steps) const {
-    fit::FitOptions o;
-    o.errors = false;
-    o.lenient = true;
+    fit::FitOptions o = kBriefly;
     o.iterations = steps;
     o.values = values;
     for (const auto& e : stage_.fit.events) o.start.push_back(e.state);
@@ -195,9 +191,7 @@ class Searcher {
   }
   /// Fits on in rounds, as long as that is worth it.
   fit::Fit in_rounds(const Candidate& c, fit::Fit best) const {
-    fit::FitOptions o;
-    o.errors = false;
-    o.lenient = true;
+    fit::FitOptions o = kBriefly;
     o.iterations = kOnwardSteps;
     const auto free = free_of(c.hypothesis, stage_.spread);
     for (int round = 0; round < kRounds; ++round) {
@@ -223,8 +217,7 @@ class Searcher {
   /// The same fit with errors, which its evidence needs.
   fit::Fit with_errors(const Candidate& c, fit::Fit f) const {
     const auto free = free_of(c.hypothesis, stage_.spread);
-    fit::FitOptions o = fit::continued({}, f, free);
-    o.iterations = 0;
+    fit::FitOptions o = fit::continued({.iterations = 0, .lenient = true}, f, free);
     fit::Fit known = attempt(c, c.starts.front(), o);
     if (!known.failed.empty()) return f;
     known.iterations = f.iterations;

@@ -2,6 +2,7 @@
 // Every hypothesis tried by itself on one structure: started from draws, fitted for a short while, in order
 // of its evidence. Judging the leading ones on unseen events comes after (judge).
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,7 +41,12 @@ struct Stage {
 std::vector<Judgement> try_hypotheses(const Stage& stage, std::vector<Hypothesis> all,
                                       const SearchProgress& report = {});
 
-/// chi2 of a plant with each event at its entry of `states`; infinite where the plant cannot be run.
+/// chi2 of each plant with each event at its entry of `states`; infinite where a plant cannot be run. The
+/// plants differ in values only. Steps are lenient (event::Playing).
+std::vector<double> left_by_each(std::span<const sim::plant::Plant> plants,
+                                 const sim::Conventions& conventions, const event::WhitenedEvents& events,
+                                 const std::vector<fit::EventState>& states);
+/// The same of one plant, with steps as of a fit's end.
 double left_by(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
                const std::vector<fit::EventState>& states);
 

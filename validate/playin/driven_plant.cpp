@@ -304,14 +304,27 @@ std::string_view output_name(Output output) {
   return names[static_cast<std::size_t>(output)];
 }
 
+/// A run and where it went.
+class Past {
+ public:
+  explicit Past(const Drive& run) : answer(Driven<double>(run, {}).run(&trace)) {}
+  Trace trace;
+  Response answer;
+};
+
 LinearPlant linearise(const Drive& run) { return Driven<D8>(run, {}).linear(); }
 
 Response drive(const Drive& run, std::span<const Direction> directions) {
-  if (directions.empty()) return Driven<double>(run, {}).run();
-  if (!run.linear_slopes.empty() && can_be_linear(run)) {
-    Trace trace;
-    Response answer = Driven<double>(run, {}).run(&trace);
-    if (add_linear_slopes(run, directions, trace, answer)) return answer;
+  const bool linear = !run.linear_slopes.empty() && can_be_linear(run);
+  if (directions.empty()) {
+    if (!run.past || !linear) return Driven<double>(run, {}).run();
+    *run.past = std::make_shared<const Past>(run);
+    return (*run.past)->answer;
+  }
+  if (linear) {
+    const auto past = run.past && *run.past ? *run.past : std::make_shared<const Past>(run);
+    Response answer = past->answer;
+    if (add_linear_slopes(run, directions, past->trace, answer)) return answer;
   }
   Response all;
   constexpr std::size_t kSeedsAtOnce = sim::kDirections;

@@ -3,6 +3,7 @@
 // same equations run on doubles (what does the plant answer?) and on duals (and how does the answer move with
 // parameters, switching instants, the start, and torque or field voltage that no model explains?).
 #include <Eigen/Dense>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -34,6 +35,7 @@ constexpr int kOutputs = 8;
 std::string_view output_name(Output output);
 
 class Given;
+class Past;
 
 /// One run: who is driven, by what, from where. Where the record's breaker opens, the voltage stands still
 /// until the first switching; from then on, in an open circuit from the start, no current flows and V is the
@@ -57,6 +59,9 @@ struct Drive {
   /// Slopes of these outputs alone, and of the plant as it is linear about each end of a step: a per cent or
   /// two off, for a fraction of the cost. None: the answer's own, of every output.
   std::vector<Output> linear_slopes = {};
+  /// A run without directions leaves here where it went, and the same run with linear slopes goes on from
+  /// there. Whoever changes the run empties it. Null: nothing is kept.
+  std::shared_ptr<const Past>* past = nullptr;
 };
 
 /// What a slope is taken along; `scale` is one unit of the direction, and slopes are per such unit.

@@ -153,6 +153,7 @@ Response::Slope along(const Drive& run, const Direction& d) {
   sim::plant::Plant plant = *run.plant;
   Drive moved = run;
   moved.plant = &plant;
+  moved.past = nullptr;
   double& varied = sim::plant::parameter_value(plant, d.parameter);
   const double value = varied;
   varied = value + move;

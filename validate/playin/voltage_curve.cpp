@@ -11,6 +11,8 @@
 namespace swingbank::validate::playin {
 namespace {
 
+constexpr double kStampRounding = 1e-4;  ///< of a sample interval: what printing times with 6 decimals leaves
+
 Complex phasor(const record::Record& r, std::size_t k) { return std::polar(r.V[k], r.theta[k]); }
 
 /// Second derivatives of the not-a-knot cubic through n >= 4 knots: the third derivative is continuous at the
@@ -64,32 +66,53 @@ std::vector<Switching> detect_switchings(const record::Record& record, double th
 VoltageCurve::VoltageCurve(const record::Record& record, std::vector<Switching> switchings)
     : switchings_(std::move(switchings)) {
   std::ranges::sort(switchings_, {}, &Switching::time);
-  const double slack = 1e-4 * record.step();  // what printing times with 6 decimals leaves
+  const double slack = kStampRounding * record.step();
+  last_ = record.t.back();
+  std::vector<Segment> segments;
   Problems problems;
   std::size_t k = 0;
   for (std::size_t s = 0; s <= switchings_.size(); ++s) {
     const bool is_last = s == switchings_.size();
     Segment segment;
-    segment.end = is_last ? record.t.back() : switchings_[s].time;
+    const double end = is_last ? record.t.back() : switchings_[s].time;
     const auto add = [&](double t, Complex v) {
       segment.t.push_back(t);
       segment.v.push_back(v);
     };
     if (s > 0 && switchings_[s - 1].has_after) add(switchings_[s - 1].time, switchings_[s - 1].after);
-    for (; k < record.t.size() && (is_last || record.t[k] <= segment.end + slack); ++k)
-      if (is_last || !switchings_[s].has_before || record.t[k] < segment.end - slack)
+    for (; k < record.t.size() && (is_last || record.t[k] <= end + slack); ++k)
+      if (is_last || !switchings_[s].has_before || record.t[k] < end - slack)
         add(record.t[k], phasor(record, k));
-    if (!is_last && switchings_[s].has_before) add(segment.end, switchings_[s].before);
+    if (!is_last && switchings_[s].has_before) add(end, switchings_[s].before);
     if (segment.t.empty())
       problems.add(fmt::format("no sample between t = {:g} s and t = {:g} s",
-                               s > 0 ? switchings_[s - 1].time : record.t.front(), segment.end),
+                               s > 0 ? switchings_[s - 1].time : record.t.front(), end),
                    record.name, "the voltage there cannot be known",
                    "give switching instants inside the record, with a sample between them");
     else
       fit(segment);
-    segments_.push_back(std::move(segment));
+    segments.push_back(std::move(segment));
   }
   problems.raise();
+  segments_ = std::make_shared<const std::vector<Segment>>(std::move(segments));
+}
+
+VoltageCurve VoltageCurve::moved(const record::Record& record, std::vector<Switching> switchings) const {
+  const double slack = kStampRounding * record.step();
+  std::ranges::sort(switchings, {}, &Switching::time);
+  bool same = switchings.size() == switchings_.size();
+  for (std::size_t s = 0; same && s < switchings.size(); ++s) {
+    const Switching &from = switchings_[s], &to = switchings[s];
+    const auto before = [&](double instant) {
+      return std::ranges::upper_bound(record.t, instant + slack) - record.t.begin();
+    };
+    same = !from.has_before && !from.has_after && !to.has_before && !to.has_after &&
+           before(from.time) == before(to.time);
+  }
+  if (!same) return {record, std::move(switchings)};
+  VoltageCurve curve = *this;
+  curve.switchings_ = std::move(switchings);
+  return curve;
 }
 
 void VoltageCurve::fit(Segment& segment) {
@@ -117,7 +140,7 @@ std::size_t VoltageCurve::interval(const Segment& s, double t) {
 }
 
 Complex VoltageCurve::operator()(int index, double t) const {
-  const Segment& s = segments_[static_cast<std::size_t>(index)];
+  const Segment& s = (*segments_)[static_cast<std::size_t>(index)];
   if (s.t.size() == 1) return s.v[0];
   const std::size_t i = interval(s, t);
   const double h = s.t[i + 1] - s.t[i], b = (t - s.t[i]) / h, a = 1 - b;

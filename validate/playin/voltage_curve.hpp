@@ -1,5 +1,6 @@
 #pragma once
 // The recorded terminal voltage as a function of time: smooth between switching instants, never across one.
+#include <memory>
 #include <vector>
 
 #include "base/complex.hpp"
@@ -32,16 +33,22 @@ class VoltageCurve {
   /// Throws InputError if switchings lie outside the record or leave a segment without any point.
   VoltageCurve(const record::Record& record, std::vector<Switching> switchings);
 
-  [[nodiscard]] int segments() const { return static_cast<int>(segments_.size()); }
+  /// The curve of the same record with its instants moved. It shares the splines where every sample stays on
+  /// its side of them and no one-sided voltage is known. Throws as the constructor.
+  [[nodiscard]] VoltageCurve moved(const record::Record& record, std::vector<Switching> switchings) const;
+
+  [[nodiscard]] int segments() const { return static_cast<int>(segments_->size()); }
   /// Last instant of a segment [s]; the first instant of the next.
-  [[nodiscard]] double end(int segment) const { return segments_[static_cast<std::size_t>(segment)].end; }
+  [[nodiscard]] double end(int segment) const {
+    const auto s = static_cast<std::size_t>(segment);
+    return s < switchings_.size() ? switchings_[s].time : last_;
+  }
   /// Voltage phasor [pu] of the given segment at t [s].
   [[nodiscard]] Complex operator()(int segment, double t) const;
   [[nodiscard]] const std::vector<Switching>& switchings() const { return switchings_; }
 
  private:
   struct Segment {
-    double end = 0;
     std::vector<double> t;
     std::vector<Complex> v, slope2;  ///< knots and second derivatives there
     double rate = 0;                 ///< inner knots per second, all but evenly spaced; 0: too few
@@ -49,7 +56,8 @@ class VoltageCurve {
   static void fit(Segment& segment);
   static std::size_t interval(const Segment& segment, double t);
   std::vector<Switching> switchings_;
-  std::vector<Segment> segments_;
+  double last_ = 0;  ///< of the record [s]
+  std::shared_ptr<const std::vector<Segment>> segments_;
 };
 
 }  // namespace swingbank::validate::playin

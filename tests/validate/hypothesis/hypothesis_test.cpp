@@ -8,7 +8,7 @@
 #include "sim/library/library.hpp"
 #include "sim/library/variants.hpp"
 #include "tests/validate/fit/exciter_example.hpp"
-#include "validate/fit/detail/cost.hpp"
+#include "validate/fit/detail/event_cost.hpp"
 #include "validate/playin/can_run.hpp"
 
 namespace swingbank::validate::hypothesis {

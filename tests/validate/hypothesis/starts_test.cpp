@@ -94,5 +94,46 @@ TEST(Starts, WhatTheFitHasBentStartsAsTheModelHasIt) {
   EXPECT_DOUBLE_EQ(share(values, "H"), 1.3) << "of another block";
 }
 
+/// An ESAC1A whose gain is a two-hundredth of the standard one, in noise in which the model alone nearly
+/// fits: no draw of the hypothesis came near, and what it was fitted to was worse than nothing.
+TEST(Starts, AGainFarFromTheStandardOneIsFound) {
+  fit::ExciterExample example(0.2);
+  example.model.plant.controls.clear();
+  auto all = all_hypotheses(example.model.under_test(), example.model.library);
+  Hypothesis& h = *std::ranges::find(all, "ESAC1A", &Hypothesis::name);
+  sim::plant::Plant truth = h.plant;
+  sim::plant::Block& exciter = truth.controls.back();
+  exciter.p[static_cast<std::size_t>(exciter.effect->parameter_index("KA"))] = 2;
+  event::FitEvent e = example.events.front();
+  const playin::Response r = fit::answer(e, {}, {truth, example.model.conventions});
+  e.record.P = r.of(playin::Output::P);
+  e.record.Q = r.of(playin::Output::Q);
+  event::EventNoise noise = example.events.noise(0);
+  const auto alone = [&] {
+    return fit::fit(example.model.under_test(), {{e}, event::NoiseModel({noise})},
+                    fit::free_parameters(example.model.plant, example.spread));
+  };
+  const double louder = std::sqrt(alone().misfit() / 1.2);
+  noise.deviation *= louder;
+  noise.whitening /= louder;
+  const event::WhitenedEvents events({e}, event::NoiseModel({noise}));
+  const fit::Fit nearly =
+      fit::fit(example.model.under_test(), events, fit::free_parameters(example.model.plant, example.spread));
+  ASSERT_LT(nearly.misfit(), thresholds::search.nearly_fits);
+  const Stage stage{.events = events,
+                    .plant = example.model.plant,
+                    .conventions = example.model.conventions,
+                    .library = example.model.library,
+                    .fit = nearly,
+                    .spread = example.spread};
+  const auto free = free_of(h, stage.spread);
+  const fit::Fit best =
+      fit::fit(h.under_test(), events, free, {.lenient = true, .values = fit::values_of(truth, free)});
+  ASSERT_GT(fit::gain(nearly, best, fit::criterion), thresholds::evidence.accepted) << "it was meant to show";
+  const auto tried = try_hypotheses(stage, {h});
+  ASSERT_EQ(tried.size(), 1U);
+  EXPECT_LT(fit::gain(tried.front().fit, best), 20);
+}
+
 }  // namespace
 }  // namespace swingbank::validate::hypothesis

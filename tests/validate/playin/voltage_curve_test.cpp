@@ -56,6 +56,21 @@ TEST(VoltageCurveTest, OneSidedValuesAreHit) {
   EXPECT_NEAR(std::abs(curve(0, 1.02) - s.before), 0, 1e-14);
   EXPECT_NEAR(std::abs(curve(1, 1.02) - s.after), 0, 1e-14);
 }
+TEST(VoltageCurveTest, MovedInstantsGiveTheCurveThatTheyWouldHaveByThemselves) {
+  const record::Record r = stepped();
+  const VoltageCurve first(r, {{.time = 1.01}, {.time = 1.51}});
+  for (const double on : {1.02, 0.98}) {  // between the same samples, and beyond one
+    const std::vector<Switching> to = {{.time = on}, {.time = 1.54}};
+    const VoltageCurve moved = first.moved(r, to), own(r, to);
+    ASSERT_EQ(moved.segments(), 3);
+    for (int s = 0; s < 3; ++s) {
+      EXPECT_EQ(moved.end(s), own.end(s));
+      for (const double t : {0.99, 1.3, 1.53}) EXPECT_EQ(moved(s, t), own(s, t)) << s;
+    }
+  }
+  const Switching known{.time = 1.02, .has_after = true, .after = {0.4, -0.2}};
+  EXPECT_NEAR(std::abs(first.moved(r, {known, {.time = 1.51}})(1, 1.02) - known.after), 0, 1e-14);
+}
 TEST(VoltageCurveTest, RefusesSegmentsWithoutSamples) {
   EXPECT_THAT(test::messages([] {
                 VoltageCurve(stepped(), {{.time = 1.01}, {.time = 1.02}});

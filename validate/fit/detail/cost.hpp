@@ -1,6 +1,6 @@
 #pragma once
-// What a fit minimises: residuals of each event, beliefs, and the bends of an added input, as Ceres takes
-// them. For fit.cpp and rao_score.cpp only.
+// What a fit minimises beside the residuals of its events: beliefs, orderings, and the bends of an added
+// input, as Ceres takes them; and the axes that it moves along.
 #include <ceres/ceres.h>
 
 #include <algorithm>
@@ -11,7 +11,6 @@
 #include "validate/fit/detail/states.hpp"
 #include "validate/fit/fit.hpp"
 #include "validate/fit/sign.hpp"
-#include "validate/playin/can_run.hpp"
 
 namespace swingbank::validate::fit::fitting {
 
@@ -62,6 +61,7 @@ struct Setting {
   InputKind input;
   std::vector<std::vector<double>> knots;  ///< of the input, per event [s]
   bool lenient = false;                    ///< of the search; see FitOptions
+  bool goes_on = false;                    ///< with slopes that foretold a step well, if lenient
   bool can_exist = false;  ///< the plant to start from; the search then stays among such plants
 };
 
@@ -92,128 +92,6 @@ inline EventState event_state(const event::FitEvent& event, const double* s) {
   at.speed = kStateScale[3] * s[3];
   return at;
 }
-
-/// R, upper triangular, has the same products of columns as e: R'R = e'e. A column that the others make
-/// leaves a zero row.
-inline event::RowMatrix triangle_of(const event::RowMatrix& e) {
-  constexpr double kNormRounding = 1e-14;  // of a squared norm
-  event::RowMatrix r = e.transpose() * e;
-  const Eigen::Index n = r.cols();
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const double whole = e.col(i).squaredNorm(), left = r(i, i);
-    if (left <= kNormRounding * whole) {
-      r.row(i).setZero();
-    } else {
-      r.row(i).tail(n - i) /= std::sqrt(left);
-      for (Eigen::Index k = i + 1; k < n; ++k) r.row(k).tail(n - k) -= r(i, k) * r.row(i).tail(n - k);
-    }
-    r.row(i).head(i).setZero();
-  }
-  return r;
-}
-
-/// What one event costs. The parameter blocks are z of the plant (absent if none is free) and the state of
-/// the event. Ceres asks for nothing but products of residuals and slopes, so it gets the triangle that has
-/// these products, with one row for each column instead of one for each value.
-class EventCost : public ceres::CostFunction {
- public:
-  EventCost(const Setting& setting, std::size_t event)
-      : setting_(setting),
-        event_((*setting.events)[event]),
-        noise_(setting.events->noise(event)),
-        knots_(setting.knots[event]) {
-    set_num_residuals(static_cast<int>(setting.axes.size() + state_size()) + 1);
-    if (!setting.axes.empty())
-      mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(setting.axes.size()));
-    mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(state_size()));
-  }
-  [[nodiscard]] std::size_t state_size() const { return event_.switchings.size() + kStates + knots_.size(); }
-  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
-    return evaluate(blocks, residuals, jacobians, setting_.lenient ? Slopes::linear : Slopes::exact);
-  }
-  enum class Slopes { none, linear, exact };  ///< see playin::Drive
-  bool evaluate(double const* const* blocks, double* residuals, double** jacobians, Slopes slopes) const {
-    const bool has_axes = !setting_.axes.empty();
-    const event::RowMatrix e =
-        values(has_axes ? blocks[0] : nullptr, blocks[has_axes ? 1 : 0], jacobians ? slopes : Slopes::none);
-    if (e.size() == 0) return false;
-    const Eigen::Index rows = num_residuals();
-    Eigen::Map<Eigen::VectorXd> residual(residuals, rows);
-    if (!jacobians) {
-      residual.setZero();
-      residual[rows - 1] = e.norm();
-      return true;
-    }
-    const event::RowMatrix r = triangle_of(e);
-    residual = r.col(rows - 1);
-    Eigen::Index at = 0;
-    for (const std::int32_t size : parameter_block_sizes()) {
-      if (double* block = *jacobians++)
-        Eigen::Map<event::RowMatrix>(block, rows, size) = r.middleCols(at, size);
-      at += size;
-    }
-    return true;
-  }
-  /// Whitened residuals of all values in the last column, and before it the slopes by z and by the state
-  /// where asked. Empty where the plant cannot be run.
-  [[nodiscard]] event::RowMatrix values(const double* z, const double* state, Slopes slopes) const {
-    const sim::plant::Plant plant = moved(setting_, z);
-    if (!(setting_.can_exist ? playin::can_exist(plant) : playin::can_run(plant))) return {};
-    std::vector<playin::Direction> along;
-    if (slopes != Slopes::none) {
-      for (std::size_t i = 0; i < setting_.axes.size(); ++i) {
-        const Axis& a = setting_.axes[i];
-        along.push_back({.kind = Kind::parameter, .parameter = a.where.id, .scale = a.slope(z[i])});
-      }
-      add_state_directions(along);
-    }
-    try {
-      const playin::Response r = answer(plant, at(state), along, setting_.lenient, slopes == Slopes::linear);
-      const auto n = static_cast<Eigen::Index>(along.size());
-      event::RowMatrix e(event_.values(), n + 1);
-      for (Eigen::Index d = 0; d < n; ++d)
-        e.col(d) = event_.collected(r.slopes[static_cast<std::size_t>(d)].value, false);
-      e.col(n) = event_.collected(r.value, true);
-      noise_.whiten(e);
-      return e;
-    } catch (const InputError&) {
-      return {};
-    }
-  }
-  /// The event's state from the search's numbers, with the input where one is fitted.
-  [[nodiscard]] EventState at(const double* state) const {
-    EventState whole = event_state(event_, state);
-    if (setting_.input == InputKind::none) return whole;
-    const double* s = state + event_.switchings.size() + kStates;
-    whole.input.t = knots_;
-    whole.input.value.assign(s, s + knots_.size());
-    return whole;
-  }
-  /// What the plant answers to the event.
-  [[nodiscard]] playin::Response answer(const sim::plant::Plant& plant, const EventState& state,
-                                        std::span<const playin::Direction> along = {}, bool lenient = false,
-                                        bool linear_slopes = false) const {
-    return event::play({plant, *setting_.conventions}, event_, state, along,
-                       {.tolerance = setting_.tolerance,
-                        .lenient = lenient,
-                        .linear_slopes = linear_slopes,
-                        .input = setting_.input});
-  }
-
- private:
-  void add_state_directions(std::vector<playin::Direction>& along) const {
-    for (std::size_t k = 0; k < event_.switchings.size(); ++k)
-      along.push_back({.kind = Kind::switching, .index = static_cast<int>(k), .scale = kSwitchScale});
-    for (int k = 0; k < kStates; ++k) along.push_back({.kind = kStateKind[k], .scale = kStateScale[k]});
-    const Kind kind = setting_.input == InputKind::torque ? Kind::torque : Kind::field;
-    for (std::size_t k = 0; k < knots_.size(); ++k)
-      along.push_back({.kind = kind, .index = static_cast<int>(k)});
-  }
-  const Setting& setting_;
-  const event::FitEvent& event_;
-  const event::EventNoise& noise_;
-  const std::vector<double>& knots_;
-};
 
 /// Bends of an input that begins at `first` of the event's state, in units of `bend`; the first knot and the
 /// first slope count as bends from zero, so that nothing is inferred before it is needed.

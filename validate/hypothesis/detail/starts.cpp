@@ -18,6 +18,8 @@ constexpr std::size_t kProvoked = 30;
 constexpr double kSmall = 0.01, kLeastShare = 1e-3;
 /// Draws that act are looked for among so many.
 constexpr std::size_t kProvoking = 80;
+/// So many more draws of an effect that acts in full or not at all: its gains may lie decades from standard.
+constexpr std::size_t kFar = 80;
 /// On the way from a draw that cannot be run to one that does nothing, kHalvings halvings find the first
 /// point that runs. A start lies beyond this point by one of these shares of the rest of the way.
 constexpr std::array<double, 4> kBeyond = {0.02, 0.05, 0.1, 0.2};
@@ -125,21 +127,22 @@ std::optional<std::vector<double>> StartFinder::between(const Hypothesis& h,
   return std::nullopt;
 }
 void StartFinder::screen(const Hypothesis& h, Candidate& c) const {
-  struct Start {
-    double misfit;
-    sim::plant::Plant plant;
-  };
-  std::vector<Start> starts;
+  std::vector<sim::plant::Plant> plants;
+  for (const auto& values : std::span(h.starts).first(std::min(kScreened, h.starts.size())))
+    plants.push_back(started(h, values));
+  const auto misfit =
+      left_by_each(plants, h.conventions, stage_.events, std::vector<fit::EventState>(stage_.events.size()));
+  std::vector<std::size_t> order;
   bool acts = false;
-  for (const auto& values : std::span(h.starts).first(std::min(kScreened, h.starts.size()))) {
-    Start s{0, started(h, values)};
-    if (answer(s.plant, h, s.misfit, acts)) starts.push_back(std::move(s));
+  for (std::size_t k = 0; k < plants.size(); ++k) {
+    if (!std::isfinite(misfit[k])) continue;
+    order.push_back(k);
+    acts = acts || this->acts(h, plants[k]);
   }
-  if (!starts.empty()) std::ranges::sort(starts.begin() + 1, starts.end(), {}, &Start::misfit);
-  if (acts && !starts.empty()) {
-    nest(h, c);
-    for (auto& s : starts) c.starts.push_back(std::move(s.plant));
-  }
+  if (!acts) return;
+  std::ranges::sort(order.begin() + 1, order.end(), {}, [&](std::size_t k) { return misfit[k]; });
+  nest(h, c);
+  for (const std::size_t k : order) c.starts.push_back(std::move(plants[k]));
 }
 std::vector<double> StartFinder::beside_fit(const Hypothesis& h, const std::vector<double>& start) const {
   sim::plant::Plant plant = started(h, start);
@@ -156,13 +159,16 @@ sim::plant::Plant StartFinder::with_values(const Hypothesis& h, const std::vecto
 }
 void StartFinder::nest(const Hypothesis& h, Candidate& c) const {
   const auto free = free_of(h, stage_.spread);
+  std::vector<std::vector<double>> starts;
+  std::vector<sim::plant::Plant> plants;
   for (const auto& start : std::span(h.starts).first(std::min(kScreened, h.starts.size()))) {
-    auto values = beside_fit(h, start);
-    double misfit = 0;
-    bool acts = true;
-    if (answer(with_values(h, free, values), h, misfit, acts))
-      c.nested.emplace_back(misfit, std::move(values));
+    starts.push_back(beside_fit(h, start));
+    plants.push_back(with_values(h, free, starts.back()));
   }
+  const auto misfit =
+      left_by_each(plants, h.conventions, stage_.events, std::vector<fit::EventState>(stage_.events.size()));
+  for (std::size_t k = 0; k < starts.size(); ++k)
+    if (std::isfinite(misfit[k])) c.nested.emplace_back(misfit[k], std::move(starts[k]));
   if (!c.nested.empty()) std::ranges::sort(c.nested.begin() + 1, c.nested.end());
 }
 std::vector<std::size_t> StartFinder::amplitudes(const Hypothesis& h,
@@ -256,6 +262,7 @@ void StartFinder::score(const Hypothesis& h, std::size_t looks, Candidate& c) co
       }
     if (!which.empty()) starts.emplace_back(-gain, at(values, share));
   }
+  if (which.empty() && h.drawn) add_far(h, starts);
   c.promise = score_->joint_gain(changes);
   if (starts.empty() || std::ranges::none_of(changes, [](const auto& x) { return x.square > 0; })) return;
   c.starts = {believed(h)};
@@ -271,20 +278,33 @@ void StartFinder::score(const Hypothesis& h, std::size_t looks, Candidate& c) co
     if (c.nested.empty() || (c.nested.size() < kTries && start.first < reach))
       c.nested.push_back(std::move(start));
 }
-bool StartFinder::answer(const sim::plant::Plant& plant, const Hypothesis& h, double& misfit,
-                         bool& acts) const {
-  misfit = 0;
+void StartFinder::add_far(const Hypothesis& h,
+                          std::vector<std::pair<double, std::vector<double>>>& starts) const {
+  const auto free = free_of(h, stage_.spread);
+  const std::size_t own = h.free.size() - stage_.own.size();
+  std::vector<std::vector<double>> values;
+  std::vector<sim::plant::Plant> plants;
+  for (auto& draw : further_draws(h, own, kFar, 0)) {
+    draw.insert(draw.end(), h.starts.front().begin() + static_cast<std::ptrdiff_t>(own),
+                h.starts.front().end());
+    values.push_back(beside_fit(h, draw));
+    plants.push_back(with_values(h, free, values.back()));
+  }
+  const auto changes = score_->changes_to(plants, h.conventions);
+  for (std::size_t k = 0; k < plants.size(); ++k)
+    if (changes[k]) starts.emplace_back(changes[k]->rise(), std::move(values[k]));
+}
+bool StartFinder::acts(const Hypothesis& h, const sim::plant::Plant& plant) const {
   try {
     for (std::size_t i = 0; i < stage_.events.size(); ++i) {
       const event::WhitenedEvent e = stage_.events.whitened(i);
-      const playin::Response r = event::play({plant, h.conventions}, e.event, {});
-      if (!acts) acts = differ(r, event::play(stage_.under_test(), e.event, {}), e);
-      misfit += misfit_of(r, e);
+      if (differ(event::play({plant, h.conventions}, e.event, {}),
+                 event::play(stage_.under_test(), e.event, {}), e))
+        return true;
     }
-  } catch (const InputError&) {
-    return false;
+  } catch (const InputError&) {  // smaller steps than those of a search do not pass it
   }
-  return std::isfinite(misfit);
+  return false;
 }
 bool StartFinder::differ(const playin::Response& x, const playin::Response& y,
                          const event::WhitenedEvent& of) {
@@ -296,16 +316,4 @@ bool StartFinder::differ(const playin::Response& x, const playin::Response& y,
         return true;
   return false;
 }
-double StartFinder::misfit_of(const playin::Response& r, const event::WhitenedEvent& of) {
-  const event::FitEvent& e = of.event;
-  double sum = 0;
-  for (std::size_t c = 0; c < e.channels.size(); ++c)
-    for (std::size_t k = 0; k < r.of(e.channels[c]).size(); ++k)
-      if (e.compared(k))
-        sum += std::pow((r.of(e.channels[c])[k] - e.measured(e.channels[c])[k]) /
-                            of.noise.deviation[static_cast<Eigen::Index>(c)],
-                        2);
-  return sum;
-}
-
 }  // namespace swingbank::validate::hypothesis

@@ -66,6 +66,8 @@ class StartFinder {
   /// amplitude acts in full or not at all; its starts are ordered by how little they raise chi2. An effect
   /// with nothing to gain gets no starts. Slopes are taken of the first `looks` starts.
   void score(const Hypothesis& h, std::size_t looks, Candidate& c) const;
+  /// More draws of an effect without an amplitude, each with what it raises chi2 by.
+  void add_far(const Hypothesis& h, std::vector<std::pair<double, std::vector<double>>>& starts) const;
   /// A limiter that stands above its pickup at the start cannot be run, and one far below it does nothing.
   /// Finds a start that acts by going `beyond` the first point between the two that runs; none if this start
   /// does not act.
@@ -73,14 +75,11 @@ class StartFinder {
                                                            const std::vector<double>& failing,
                                                            const std::vector<double>& idle,
                                                            double beyond) const;
-  /// Takes the misfit of a start with everything else as in the model, and notes whether it acts at all.
-  /// Returns false where it cannot be run.
-  [[nodiscard]] bool answer(const sim::plant::Plant& plant, const Hypothesis& h, double& misfit,
-                            bool& acts) const;
+  /// Whether an answer differs from the structure's.
+  [[nodiscard]] bool acts(const Hypothesis& h, const sim::plant::Plant& plant) const;
   /// Whether two answers differ by a hundredth of the noise somewhere.
   [[nodiscard]] static bool differ(const playin::Response& x, const playin::Response& y,
                                    const event::WhitenedEvent& of);
-  [[nodiscard]] static double misfit_of(const playin::Response& r, const event::WhitenedEvent& of);
 
   const Stage& stage_;
   std::optional<fit::ScoreTest> score_;

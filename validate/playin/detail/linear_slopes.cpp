@@ -70,6 +70,8 @@ class LinearSlopes {
         begin_[d] = input->t[static_cast<std::size_t>(std::max(0, directions[d].index - 1))];
     x_.resize(n_);
     dx_.resize(n_);
+    factors_.resize(n_);
+    more_factors_.resize(n_);
     sign_.resize(n_);
     outward_.resize(n_);
   }
@@ -282,25 +284,55 @@ class LinearSlopes {
   void step(double h) {
     const std::size_t wide = packs(), square = (n_ + kLanes - 1) / kLanes;
     const Linear& end = meets_a_limit() ? before_ : now_;
-    const Rows &A0 = before_.A, &A = end.A, &B0 = before_.B, &B = end.B;
     for (std::size_t i = 0; i < n_; ++i) {
       left_.clear(i);
       left_.at(i, i) = 1.0;
-      add(left_.row(i), -h / 2, A.row(i), square);
-      add(left_.row(i), -h / 6, A0.row(i), square);
-      P8* right = right_.row(i);
-      std::copy_n(S_.row(i), wide, right);
-      add(right, h / 2, B0.row(i), wide);
-      add(right, h / 2, B.row(i), wide);
+      add(left_.row(i), -h / 2, end.A.row(i), square);
+      add(left_.row(i), -h / 6, before_.A.row(i), square);
       for (std::size_t j = 0; j < n_; ++j) {
-        const double a = h * h / 6 * A.at(i, j);
-        add(left_.row(i), a, A.row(j), square);
-        add(right, -a, B.row(j), wide);
-        add(right, h / 3 * A0.at(i, j), S_.row(j), wide);
+        factors_[j] = h * h / 6 * end.A.at(i, j);
+        more_factors_[j] = h / 3 * before_.A.at(i, j);
       }
+      in_chunks(square, [&]<std::size_t count>(std::size_t first) {
+        P8 sum[count];
+        std::copy_n(left_.row(i) + first, count, sum);
+        add_rows<count>(sum, factors_.data(), end.A, 0, n_, first);
+        std::copy_n(sum, count, left_.row(i) + first);
+      });
+      for (double& factor : factors_) factor = -factor;
+      in_chunks(wide, [&]<std::size_t count>(std::size_t first) {
+        P8 sum[count];
+        const P8 half(h / 2);
+        for (std::size_t p = 0; p < count; ++p)
+          sum[p] = S_.row(i)[first + p] + half * (before_.B.row(i)[first + p] + end.B.row(i)[first + p]);
+        add_rows<count>(sum, factors_.data(), end.B, 0, n_, first);
+        add_rows<count>(sum, more_factors_.data(), S_, 0, n_, first);
+        std::copy_n(sum, count, right_.row(i) + first);
+      });
     }
-    solve(wide, square);
+    factorise(square);
+    solve(wide);
     std::swap(S_, right_);
+  }
+  /// Calls act<packs>(first) for runs of packs so short that their sums stay in registers.
+  template <class Act>
+  static void in_chunks(std::size_t packs, Act act) {
+    std::size_t first = 0;
+    for (; first + 4 <= packs; first += 4) act.template operator()<4>(first);
+    if (packs - first == 3) act.template operator()<3>(first);
+    if (packs - first == 2) act.template operator()<2>(first);
+    if (packs - first == 1) act.template operator()<1>(first);
+  }
+  /// sum += factors * rows from `begin` to `end`, of the packs from `first` on.
+  template <std::size_t count>
+  static void add_rows(P8* sum, const double* factors, const Rows& rows, std::size_t begin, std::size_t end,
+                       std::size_t first) {
+    for (std::size_t j = begin; j < end; ++j) {
+      if (factors[j] == 0.0) continue;
+      const P8 factor(factors[j]);
+      const P8* row = rows.row(j) + first;
+      for (std::size_t p = 0; p < count; ++p) sum[p] = sum[p] + factor * row[p];
+    }
   }
   /// A state that is held at the end alone moved until then.
   [[nodiscard]] bool meets_a_limit() const {
@@ -308,28 +340,43 @@ class LinearSlopes {
       if (now_.held[i] && !before_.held[i]) return true;
     return false;
   }
-  /// right <- left^-1 right, by elimination with pivots.
-  void solve(std::size_t wide, std::size_t square) {
+  /// left <- its triangles, with pivots: right's rows go with them.
+  void factorise(std::size_t square) {
     for (std::size_t k = 0; k < n_; ++k) {
       std::size_t pivot = k;
       for (std::size_t i = k + 1; i < n_; ++i)
         if (std::abs(left_.at(i, k)) > std::abs(left_.at(pivot, k))) pivot = i;
       if (pivot != k) {
         std::swap_ranges(left_.row(k), left_.row(k) + square, left_.row(pivot));
-        std::swap_ranges(right_.row(k), right_.row(k) + wide, right_.row(pivot));
+        std::swap_ranges(right_.row(k), right_.row(k) + packs(), right_.row(pivot));
       }
       const double per = 1 / left_.at(k, k);
       for (std::size_t i = k + 1; i < n_; ++i) {
-        const double factor = -left_.at(i, k) * per;
-        add(left_.row(i), factor, left_.row(k), square);
-        add(right_.row(i), factor, right_.row(k), wide);
+        const double factor = left_.at(i, k) *= per;
+        for (std::size_t j = k + 1; factor != 0.0 && j < n_; ++j) left_.at(i, j) -= factor * left_.at(k, j);
       }
     }
-    for (std::size_t k = n_; k-- > 0;) {
-      P8* row = right_.row(k);
-      for (std::size_t j = k + 1; j < n_; ++j) add(row, -left_.at(k, j), right_.row(j), wide);
-      const P8 per(1 / left_.at(k, k));
-      for (std::size_t p = 0; p < wide; ++p) row[p] = row[p] * per;
+  }
+  /// right <- left^-1 right, by its triangles.
+  void solve(std::size_t wide) {
+    for (std::size_t i = 1; i < n_; ++i) {
+      for (std::size_t j = 0; j < i; ++j) factors_[j] = -left_.at(i, j);
+      in_chunks(wide, [&]<std::size_t count>(std::size_t first) {
+        P8 sum[count];
+        std::copy_n(right_.row(i) + first, count, sum);
+        add_rows<count>(sum, factors_.data(), right_, 0, i, first);
+        std::copy_n(sum, count, right_.row(i) + first);
+      });
+    }
+    for (std::size_t i = n_; i-- > 0;) {
+      for (std::size_t j = i + 1; j < n_; ++j) factors_[j] = -left_.at(i, j);
+      const P8 per(1 / left_.at(i, i));
+      in_chunks(wide, [&]<std::size_t count>(std::size_t first) {
+        P8 sum[count];
+        std::copy_n(right_.row(i) + first, count, sum);
+        add_rows<count>(sum, factors_.data(), right_, i + 1, n_, first);
+        for (std::size_t p = 0; p < count; ++p) right_.row(i)[first + p] = sum[p] * per;
+      });
     }
   }
   /// To the other side of an instant, which the directions of its switching move.
@@ -347,7 +394,10 @@ class LinearSlopes {
     for (std::size_t o = 0; o < shown_; ++o) {
       const auto output = static_cast<std::size_t>(run_.linear_slopes[o]);
       std::copy_n(now_.D.row(o), wide, y.data());
-      for (std::size_t i = 0; i < n_; ++i) add(y.data(), now_.C.at(o, i), S_.row(i), wide);
+      for (std::size_t i = 0; i < n_; ++i) factors_[i] = now_.C.at(o, i);
+      in_chunks(wide, [&]<std::size_t count>(std::size_t first) {
+        add_rows<count>(y.data() + first, factors_.data(), S_, 0, n_, first);
+      });
       for (std::size_t d = 0; d < m_; ++d)
         answer_.slopes[d].value[output].push_back(d < active_ ? y[d / kLanes][int(d % kLanes)] : 0.0);
     }
@@ -369,6 +419,7 @@ class LinearSlopes {
   std::size_t shown_;  ///< outputs whose slopes are asked for
   Linear before_, now_;
   Rows left_, right_;
+  std::vector<double> factors_, more_factors_;
   std::vector<P8> x_, dx_, row_;
   std::vector<double> sign_, outward_, heights_;
   std::vector<double> slopes_;  ///< of derivatives, outputs, limits, by moves

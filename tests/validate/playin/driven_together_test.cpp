@@ -1,0 +1,81 @@
+// Plants driven in the lanes of a pack, against each by itself.
+#include "validate/playin/driven_together.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sim/library/library.hpp"
+#include "validate/plant/plant_model.hpp"
+#include "validate/playin/play_in.hpp"
+
+namespace swingbank::validate::playin {
+namespace {
+
+class DrivenTogether : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const std::filesystem::path configs = std::filesystem::path(SWINGBANK_SOURCE) / "configs";
+    model_ = plant::load_plant_model(configs / "plants" / "ieee14_bus2.toml");
+    const auto* effect = sim::library::compiled().find("SEXS");
+    model_.plant.controls.push_back({effect, effect->standard_parameters()});
+    record_ = record::read_record(configs / "records" / "record-example" / "avr_ev1.csv", model_.record_base);
+    switchings_ = detect_switchings(record_);
+    curve_.emplace(record_, switchings_);
+  }
+  /// The plant with its exciter's gain multiplied by powers of 1.3.
+  [[nodiscard]] std::vector<sim::plant::Plant> plants(int count) const {
+    std::vector<sim::plant::Plant> all(static_cast<std::size_t>(count), model_.plant);
+    const int K = model_.plant.controls.front().effect->parameter_index("K");
+    for (int k = 0; k < count; ++k)
+      all[static_cast<std::size_t>(k)].controls.front().p[static_cast<std::size_t>(K)] *= std::pow(1.3, k);
+    return all;
+  }
+  [[nodiscard]] Drive run(const sim::plant::Plant& plant) const {
+    return {.plant = &plant,
+            .conventions = model_.conventions,
+            .record = &record_,
+            .curve = &*curve_,
+            .start = pre_event_point(record_, switchings_, 1.0),
+            .tolerance = 1e-5,
+            .least_step = record_.step() / 40};
+  }
+  plant::PlantModel model_;
+  record::Record record_;
+  std::vector<Switching> switchings_;
+  std::optional<VoltageCurve> curve_;
+};
+
+TEST_F(DrivenTogether, AnswersAsEachByItself) {
+  const auto all = plants(11);  // more than a pack has lanes
+  std::vector<Drive> runs;
+  for (const auto& plant : all) runs.push_back(run(plant));
+  const auto answers = drive_together(runs);
+  ASSERT_EQ(answers.size(), all.size());
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    ASSERT_TRUE(answers[k].has_value()) << k;
+    const Response own = drive(runs[k]);
+    for (const Output o : {Output::P, Output::Q, Output::speed, Output::Efd, Output::V}) {
+      ASSERT_EQ(answers[k]->of(o).size(), own.of(o).size());
+      for (std::size_t s = 0; s < own.of(o).size(); ++s)
+        EXPECT_NEAR(answers[k]->of(o)[s], own.of(o)[s], 5e-4) << output_name(o) << " of run " << k;
+    }
+    if (k > 0) {
+      EXPECT_GT(std::abs(answers[k]->of(Output::Q)[300] - answers[0]->of(Output::Q)[300]), 2e-3) << k;
+    }
+  }
+}
+TEST_F(DrivenTogether, OneThatCannotStandLeavesTheOthers) {
+  auto all = plants(4);
+  const int EMAX = model_.plant.controls.front().effect->parameter_index("EMAX");
+  for (const std::size_t k : {std::size_t{0}, std::size_t{2}})
+    all[k].controls.front().p[static_cast<std::size_t>(EMAX)] = 0.5;  // below what the start needs
+  std::vector<Drive> runs;
+  for (const auto& plant : all) runs.push_back(run(plant));
+  const auto answers = drive_together(runs);
+  for (std::size_t k = 0; k < all.size(); ++k) EXPECT_EQ(answers[k].has_value(), k % 2 == 1) << k;
+  EXPECT_TRUE(drive_together({}).empty());
+}
+
+}  // namespace
+}  // namespace swingbank::validate::playin

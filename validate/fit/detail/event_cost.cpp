@@ -1,0 +1,197 @@
+// What one event costs at a point of the fit, with slopes, as Ceres takes it.
+#include "validate/fit/detail/event_cost.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "validate/playin/can_run.hpp"
+
+namespace swingbank::validate::fit::fitting {
+namespace {
+
+/// What a step finds slopes to be off by is theirs up to this share of how far the residuals moved; more of
+/// it is the answer's own bend.
+constexpr double kOffAtMost = 0.2;
+/// Slopes that foretold a step up to this share of how far the residuals moved are not taken anew, kGoOn
+/// times in a row at most.
+constexpr double kForetold = 0.2;
+constexpr int kGoOn = 6;
+
+bool same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return a.size() == b.size() && a == b; }
+
+}  // namespace
+
+event::RowMatrix triangle_of(const event::RowMatrix& e) {
+  constexpr double kNormRounding = 1e-14;  // of a squared norm
+  event::RowMatrix r = e.transpose() * e;
+  const Eigen::Index n = r.cols();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double whole = e.col(i).squaredNorm(), left = r(i, i);
+    if (left <= kNormRounding * whole) {
+      r.row(i).setZero();
+    } else {
+      r.row(i).tail(n - i) /= std::sqrt(left);
+      for (Eigen::Index k = i + 1; k < n; ++k) r.row(k).tail(n - k) -= r(i, k) * r.row(i).tail(n - k);
+    }
+    r.row(i).head(i).setZero();
+  }
+  return r;
+}
+
+EventCost::EventCost(const Setting& setting, std::size_t event)
+    : setting_(setting),
+      event_((*setting.events)[event]),
+      noise_(setting.events->noise(event)),
+      knots_(setting.knots[event]) {
+  set_num_residuals(static_cast<int>(setting.axes.size() + state_size()) + 1);
+  if (!setting.axes.empty())
+    mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(setting.axes.size()));
+  mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(state_size()));
+}
+
+bool EventCost::Evaluate(double const* const* blocks, double* residuals, double** jacobians) const {
+  const bool has_axes = !setting_.axes.empty();
+  const double *z = has_axes ? blocks[0] : nullptr, *state = blocks[has_axes ? 1 : 0];
+  const Eigen::Index rows = num_residuals();
+  Eigen::VectorXd here(rows - 1);
+  for (Eigen::Index i = 0, n = here.size() - static_cast<Eigen::Index>(state_size()); i < here.size(); ++i)
+    here[i] = i < n ? z[i] : state[i - n];
+  const bool looks = jacobians && points_ > 0, known = same(here, last_.at);
+  if (!known) last_ = {here, {}, nullptr};
+  if (looks ? !(known && foretold()) : !known) {
+    event::RowMatrix e = values(z, state, looks);
+    if (e.size() == 0) {
+      last_ = {};
+      return false;
+    }
+    last_.residual = e.rightCols(1);
+    if (looks) take(std::move(e));
+  }
+  Eigen::Map<Eigen::VectorXd> residual(residuals, rows);
+  residual.setZero();
+  residual[rows - 1] = last_.residual.norm();
+  if (!jacobians) return true;
+  event::RowMatrix r = event::RowMatrix::Zero(rows, rows);
+  if (looks) {
+    --points_;
+    r = triangle_of(looked_.e);
+    residual = r.col(rows - 1);
+  }
+  Eigen::Index column = 0;
+  for (const std::int32_t size : parameter_block_sizes()) {
+    if (double* block = *jacobians++)
+      Eigen::Map<event::RowMatrix>(block, rows, size) = r.middleCols(column, size);
+    column += size;
+  }
+  return true;
+}
+
+Eigen::MatrixXd EventCost::by_column(const Eigen::VectorXd& missed, const Eigen::VectorXd& step) const {
+  const Eigen::VectorXd share =
+      looked_.e.leftCols(step.size()).colwise().squaredNorm().transpose().cwiseProduct(step);
+  const double whole = share.dot(step);
+  return whole > 0 ? Eigen::MatrixXd(missed * (share / whole).transpose())
+                   : Eigen::MatrixXd::Zero(missed.size(), step.size());
+}
+
+bool EventCost::foretold() const {
+  if (!setting_.lenient || looked_.at.size() == 0) return false;
+  if (renew_) return false;
+  if (same(looked_.at, last_.at)) return true;
+  const Eigen::Index n = last_.at.size();
+  const Eigen::VectorXd step = last_.at - looked_.at, moved = last_.residual - looked_.e.col(n),
+                        missed = moved - looked_.e.leftCols(n) * step;
+  if (!setting_.goes_on || looked_.gone_on >= kGoOn || !(missed.norm() <= kForetold * moved.norm()))
+    return false;
+  looked_.e.leftCols(n) += by_column(missed, step);
+  looked_.e.col(n) = last_.residual;
+  looked_.at = last_.at;
+  ++looked_.gone_on;
+  return true;
+}
+
+void EventCost::take(event::RowMatrix e) const {
+  const Eigen::Index n = last_.at.size();
+  if (setting_.lenient && looked_.at.size() > 0) {
+    if (looked_.off.size() > 0) e.leftCols(n) += looked_.off;
+    const Eigen::VectorXd step = last_.at - looked_.at, moved = e.col(n) - looked_.e.col(n),
+                          missed = moved - 0.5 * ((e.leftCols(n) + looked_.e.leftCols(n)) * step);
+    if (missed.norm() < kOffAtMost * moved.norm()) {
+      const Eigen::MatrixXd more = by_column(missed, step);
+      e.leftCols(n) += more;
+      if (looked_.off.size() > 0)
+        looked_.off += more;
+      else
+        looked_.off = more;
+    }
+  }
+  looked_.e = std::move(e);
+  looked_.at = last_.at;
+  looked_.gone_on = 0;
+  renew_ = false;
+}
+
+event::RowMatrix EventCost::slopes(const double* z, const double* state) const {
+  last_ = {};
+  return values(z, state, true);
+}
+
+event::RowMatrix EventCost::values(const double* z, const double* state, bool slopes) const {
+  const sim::plant::Plant plant = moved(setting_, z);
+  if (!(setting_.can_exist ? playin::can_exist(plant) : playin::can_run(plant))) return {};
+  std::vector<playin::Direction> along;
+  if (slopes) {
+    for (std::size_t i = 0; i < setting_.axes.size(); ++i) {
+      const Axis& a = setting_.axes[i];
+      along.push_back({.kind = Kind::parameter, .parameter = a.where.id, .scale = a.slope(z[i])});
+    }
+    add_state_directions(along);
+  }
+  try {
+    const playin::Response r = event::play({plant, *setting_.conventions}, event_, at(state), along,
+                                           {.tolerance = setting_.tolerance,
+                                            .lenient = setting_.lenient,
+                                            .allowance = &allowance_,
+                                            .linear_slopes = setting_.lenient,
+                                            .past = &last_.past,
+                                            .input = setting_.input});
+    const auto n = static_cast<Eigen::Index>(along.size());
+    event::RowMatrix e(event_.values(), n + 1);
+    for (Eigen::Index d = 0; d < n; ++d)
+      e.col(d) = event_.collected(r.slopes[static_cast<std::size_t>(d)].value, false);
+    e.col(n) = event_.collected(r.value, true);
+    noise_.whiten(e);
+    return e;
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
+EventState EventCost::at(const double* state) const {
+  EventState whole = event_state(event_, state);
+  if (setting_.input == InputKind::none) return whole;
+  const double* s = state + event_.switchings.size() + kStates;
+  whole.input.t = knots_;
+  whole.input.value.assign(s, s + knots_.size());
+  return whole;
+}
+
+playin::Response EventCost::answer(const sim::plant::Plant& plant, const EventState& state,
+                                   bool lenient) const {
+  return event::play({plant, *setting_.conventions}, event_, state, {},
+                     {.tolerance = setting_.tolerance,
+                      .lenient = lenient,
+                      .allowance = &allowance_,
+                      .input = setting_.input});
+}
+
+void EventCost::add_state_directions(std::vector<playin::Direction>& along) const {
+  for (std::size_t k = 0; k < event_.switchings.size(); ++k)
+    along.push_back({.kind = Kind::switching, .index = static_cast<int>(k), .scale = kSwitchScale});
+  for (int k = 0; k < kStates; ++k) along.push_back({.kind = kStateKind[k], .scale = kStateScale[k]});
+  const Kind kind = setting_.input == InputKind::torque ? Kind::torque : Kind::field;
+  for (std::size_t k = 0; k < knots_.size(); ++k)
+    along.push_back({.kind = kind, .index = static_cast<int>(k)});
+}
+
+}  // namespace swingbank::validate::fit::fitting
