@@ -16,7 +16,7 @@ using sim::P8;
 
 constexpr auto kTogether = std::size_t(P8::lanes);
 constexpr double kLeastOfAll = 1e-9;  ///< a shorter step than this is given up [s]
-constexpr int kMoreSteps = 3;         ///< as many steps as for a plant by itself are too few for eight
+constexpr int kStepsOfAll = 3;        ///< as many steps as for a plant by itself are too few for eight
 
 P8 size_of(P8 a) { return sim::positive_part(a) + sim::positive_part(-a); }
 
@@ -106,7 +106,7 @@ class Together {
         equations_.of_plant().clamp_states(equations_.c.data(), x_.data(), moved);
         fresh_ = sim::any_positive(moved);
       }
-      if (error > 1 ? h < kLeastOfAll : ++steps_ > kMoreSteps * runs_.front().step_limit) give_up_worst();
+      if (error > 1 ? h < kLeastOfAll : ++steps_ > kStepsOfAll * runs_.front().step_limit) give_up_worst();
       const double factor =
           std::clamp(0.9 * sim::plant::dp54::rough_power(static_cast<float>(error + 1e-12),
                                                          static_cast<float>(kRoughSteps.exponent)),

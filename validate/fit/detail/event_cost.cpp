@@ -14,7 +14,7 @@ namespace {
 constexpr double kOffAtMost = 0.2;
 /// Slopes that foretold a step up to this share of how far the residuals moved are not taken anew, kGoOn
 /// times in a row at most.
-constexpr double kForetold = 0.2;
+constexpr double kAsForetold = 0.2;
 constexpr int kGoOn = 6;
 
 bool same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return a.size() == b.size() && a == b; }
@@ -101,7 +101,7 @@ bool EventCost::foretold() const {
   const Eigen::Index n = last_.at.size();
   const Eigen::VectorXd step = last_.at - looked_.at, moved = last_.residual - looked_.e.col(n),
                         missed = moved - looked_.e.leftCols(n) * step;
-  if (!setting_.goes_on || looked_.gone_on >= kGoOn || !(missed.norm() <= kForetold * moved.norm()))
+  if (!setting_.goes_on || looked_.gone_on >= kGoOn || !(missed.norm() <= kAsForetold * moved.norm()))
     return false;
   looked_.e.leftCols(n) += by_column(missed, step);
   looked_.e.col(n) = last_.residual;

@@ -19,7 +19,7 @@ constexpr double kSmall = 0.01, kLeastShare = 1e-3;
 /// Draws that act are looked for among so many.
 constexpr std::size_t kProvoking = 80;
 /// So many more draws of an effect that acts in full or not at all: its gains may lie decades from standard.
-constexpr std::size_t kFar = 80;
+constexpr std::size_t kFurtherDraws = 80;
 /// On the way from a draw that cannot be run to one that does nothing, kHalvings halvings find the first
 /// point that runs. A start lies beyond this point by one of these shares of the rest of the way.
 constexpr std::array<double, 4> kBeyond = {0.02, 0.05, 0.1, 0.2};
@@ -284,7 +284,7 @@ void StartFinder::add_far(const Hypothesis& h,
   const std::size_t own = h.free.size() - stage_.own.size();
   std::vector<std::vector<double>> values;
   std::vector<sim::plant::Plant> plants;
-  for (auto& draw : further_draws(h, own, kFar, 0)) {
+  for (auto& draw : further_draws(h, own, kFurtherDraws, 0)) {
     draw.insert(draw.end(), h.starts.front().begin() + static_cast<std::ptrdiff_t>(own),
                 h.starts.front().end());
     values.push_back(beside_fit(h, draw));
