@@ -60,6 +60,7 @@ class Diagnoser {
       tell(first_sentence(result_, options_.adequate));
       if (stopped()) return false;
       few_wrong();
+      if (stopped()) return false;
       infer_inputs();
       tell(side_sentence(result_));
       const hypothesis::Stage stage = model_stage();
@@ -108,6 +109,7 @@ class Diagnoser {
     const auto free = fit::free_parameters(model_.plant, options_.spread);
     fit::FewestOptions o;
     o.progress = options_.progress;
+    o.stop = options_.stop;
     fit::Fewest found = fit::fewest(model_.under_test(), result_.events, free, o);
     if (found.wrong.empty() || found.fit.misfit() > options_.adequate) return;
     std::vector<fit::FreeParameter> some;

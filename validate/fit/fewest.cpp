@@ -40,6 +40,7 @@ class Selection {
     double taken = nothing;
     std::vector<Ranked> beam = {{0, {}}}, of_size;
     for (std::size_t size = 1; size <= std::min(options_.most, free_.size()); ++size) {
+      if (options_.stop && options_.stop()) return back;
       if (taken - most < options_.each) break;  // every other parameter together earns no more
       beam = grown(beam);
       auto [fit, best] = best_of(beam, kRefitted);

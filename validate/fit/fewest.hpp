@@ -31,6 +31,8 @@ struct FewestOptions {
   std::size_t most = 8;  ///< so many at most
   double each = 10;      ///< what a parameter must earn [chi2]
   std::function<void(const std::string& what, int done, int total)> progress = {};
+  /// Asked between sets; true: nothing is named.
+  std::function<bool()> stop = {};
 };
 
 /// Sets of parameters are compared on the curvature of the cost where all are free, and the best of each size
