@@ -18,11 +18,15 @@ namespace {
 double price(const hypothesis::Hypothesis& h) {
   return thresholds::evidence.accepted + (h.with.empty() ? 0.0 : thresholds::evidence.second.value);
 }
-/// "nothing missing, but wrong: GENROU.H, SEXS.K"
-std::string wrong_name(const Diagnosis& d) {
+/// "GENROU.H, SEXS.K"
+std::string wrong_names(const Diagnosis& d) {
   std::string names;
   for (const auto& w : d.wrong->wrong) names += (names.empty() ? "" : ", ") + w.fit.full_name();
-  return fmt::format("{}, but wrong: {}", hypothesis::kNothingMissing, names);
+  return names;
+}
+/// "nothing missing, but wrong: GENROU.H, SEXS.K"
+std::string wrong_name(const Diagnosis& d) {
+  return fmt::format("{}, but wrong: {}", hypothesis::kNothingMissing, wrong_names(d));
 }
 /// The model as it is, or with a few parameters wrong, and every effect that unseen events have not refused,
 /// with what is in no list.
@@ -70,6 +74,21 @@ double probability_of_nothing_missing(const Diagnosis& d) {
   for (const auto& e : d.probabilities)
     if (e.name.starts_with(hypothesis::kNothingMissing)) sum += e.probability;
   return sum;
+}
+
+/// That nothing is missing, and what is wrong where that is few parameters.
+std::string adequate_sentence(const Diagnosis& d) {
+  const std::string probable = hypothesis::probability_text(probability_of_nothing_missing(d));
+  if (d.wrong)
+    return fmt::format(
+        "Nothing is missing ({}), but {} of the model's values {} wrong: {}. With {} changed nothing but noise is left "
+        "(chi2 per value {:.3f}), and no effect in the list improves it.",
+        probable, d.wrong->wrong.size(), d.wrong->wrong.size() == 1 ? "is" : "are", wrong_names(d),
+        d.wrong->wrong.size() == 1 ? "it" : "them", d.wrong->fit.misfit());
+  return fmt::format(
+      "The model is adequate ({}): after refitting its parameters nothing but noise is left (chi2 per value {:.3f}), and "
+      "no effect in the list improves it.",
+      probable, d.base.misfit());
 }
 
 /// "SEXS (62 %), EXST1 (21 %)"
@@ -222,10 +241,7 @@ void settle(const laws::Unexplained& judged, const laws::LawProgress& progress, 
                                              judged.trial.adequate);
   if (d.ruling.adequate) {
     d.verdict = Verdict::adequate;
-    d.sentence = fmt::format(
-        "The model is adequate ({}): after refitting its parameters nothing but noise is left (chi2 per value "
-        "{:.3f}), and no effect in the list improves it.",
-        hypothesis::probability_text(probability_of_nothing_missing(d)), d.base.misfit());
+    d.sentence = adequate_sentence(d);
     return;
   }
   d.verdict = Verdict::unexplained;
