@@ -123,7 +123,7 @@ if ((sanitize)); then
   say "fast tier under the sanitizers"
   run_sanitized
 fi
-# tier NAME; scripts of the full tier run one at a time, those of the night alone
+# tier NAME; scripts of the full tier run one of each folder at a time, those of the night alone
 tier() {
   say "tier $1"
   run_tests "$1" "$build" -L "^$1\$" -j "$(nproc)"
