@@ -214,8 +214,8 @@ TEST(AllSensitivitiesFull, EqualCentralDifferencesBehindATransformer) {
   }
 }
 
-/// The same against CVODES, whose plants have no algebraic equations (no converters, whose first states are no
-/// rotor's either), in the rotor's states.
+/// The same against CVODES, whose plants have no algebraic equations (no converters, whose first states are
+/// no rotor's either), in the rotor's states.
 void compare_with_cvodes(const Effect& e, Worst& worst) {
   constexpr std::size_t most = 4;  // CVODES evaluates the whole grid twice per seed
   constexpr double floor = 1e-3;
