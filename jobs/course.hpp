@@ -25,9 +25,16 @@ struct CourseStage {
   }
 };
 using Course = std::vector<CourseStage>;
+/// The course with what every command ends with: its models' events are played for the page.
+inline Course then_played(Course course) {
+  const double from = std::ranges::max(course, {}, &CourseStage::to).to;
+  for (const std::string_view inner : {"played in", "instants and start"})
+    course.push_back({inner, "the models' events are played", from, 1});
+  return course;
+}
 
 /// Measured on two shared cores with the four events of configs/records/record-example (420 s).
-inline const Course kDiagnoseCourse = {
+inline const Course kDiagnoseCourse = then_played({
     {"hypotheses", "second effects are screened", 0.95, 0.98, true, " beside"},
     {"first steps ", "second effects are tried in brief", 0.95, 0.98, true, " beside"},
     {"fit ", "promising second effects are fitted", 0.95, 0.98, true, " beside"},
@@ -43,29 +50,17 @@ inline const Course kDiagnoseCourse = {
     {"further starts", "rivals get further starts", 0.71, 0.88},
     {"unseen events", "effects are judged on events they were not fitted to", 0.88, 0.95},
     {"law", "laws are looked for", 0.88, 0.98},
-    {"played in", "the models' events are played", 0.98, 1},
-    {"instants and start", "the models' events are played", 0.98, 1},
-};
+});
 /// With two events of the same (5 s each).
-inline const Course kCalibrateCourse = {
+inline const Course kCalibrateCourse = then_played({
     {"events with the model as it is", "the model as it is", 0, 0.15},
     {"parameter sets screened", "parameter sets are screened", 0.15, 0.2},
     {"starts refined", "parameters are fitted", 0.2, 0.62},
     {"noise of the voltage", "the voltage's noise is taken back", 0.62, 0.8},
     {"events with the fitted model", "the fitted model", 0.8, 0.82},
     {"sensitivities", "what the records decide", 0.82, 0.95},
-    {"played in", "the models' events are played", 0.95, 1},
-    {"instants and start", "the models' events are played", 0.95, 1},
-};
-/// Of calibrate --fewest, with twelve events of a unit with four controls behind its transformer (480 s).
-inline const Course kFewestCourse = {
-    {"every parameter", "all parameters are fitted", 0, 0.12},
-    {"without", "what each wrong parameter takes away", 0.75, 0.98},
-    {"sets of parameters", "sets of wrong parameters are tried", 0.12, 0.75},
-    {"played in", "the models' events are played", 0.98, 1},
-    {"instants and start", "the models' events are played", 0.98, 1},
-};
-inline const Course kAddCourse = {
+});
+inline const Course kAddCourse = then_played({
     {"events with the model as it is", "the model as it is", 0, 0.04},
     {"screened", "values of the effect are screened", 0.04, 0.25},
     {"refined", "the effect is fitted", 0.25, 0.55},
@@ -73,9 +68,14 @@ inline const Course kAddCourse = {
     {"events without", "the model without the effect", 0.57, 0.8},
     {"events with", "the model with the effect", 0.8, 0.85},
     {"sensitivities", "what the records decide", 0.85, 0.95},
-    {"played in", "the models' events are played", 0.95, 1},
-    {"instants and start", "the models' events are played", 0.95, 1},
-};
+});
+
+/// Of calibrate --fewest, with twelve events of a unit with four controls behind its transformer (480 s).
+inline const Course kFewestCourse = then_played({
+    {"every parameter", "all parameters are fitted", 0, 0.12},
+    {"without", "what each wrong parameter takes away", 0.75, 0.98},
+    {"sets of parameters", "sets of wrong parameters are tried", 0.12, 0.75},
+});
 
 /// Where the work stands; never goes back.
 class CourseProgress {

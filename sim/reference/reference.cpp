@@ -190,21 +190,21 @@ void operating_values(const grid::Grid& grid, const ReferencePlants& plants, dou
 /// Where IDA stops at t: crosses the instant at which the voltages jump because those that the converters
 /// followed have ended; true with y at the new time t, false where they do not jump.
 bool jumps(const ReferenceSystem& system, double& t, double* y, const double* yp) {
-  constexpr double others = 1e-3;   // [pu]
-  constexpr double longest = 1e-4;  // [s]: the states move on by their slopes meanwhile
+  constexpr double kOtherVoltage = 1e-3;     // [pu]
+  constexpr double kLongestCrossing = 1e-4;  // [s]: the states move on by their slopes meanwhile
   const auto is_converter = [](const ReferenceSystem::Unit& u) {
     return u.plant && u.plant->machine.effect->converter;
   };
   if (std::ranges::none_of(system.units(), is_converter)) return false;
   const std::vector<double> before(y, y + system.size());
   const auto states = static_cast<std::size_t>(system.states());
-  for (double past = 1e-8; past < 1.1 * longest; past *= 10.0) {
+  for (double past = 1e-8; past < 1.1 * kLongestCrossing; past *= 10.0) {
     for (std::size_t i = 0; i < before.size(); ++i) y[i] = before[i] + (i < states ? past * yp[i] : 0.0);
     (void)system.clamp_states(y);
     double most = 0.0;
     const bool found = system.search_voltages(t + past, y);
     for (std::size_t i = states; i < before.size(); ++i) most = std::max(most, std::abs(y[i] - before[i]));
-    if (!found || most < others) continue;
+    if (!found || most < kOtherVoltage) continue;
     t += past;
     return true;
   }

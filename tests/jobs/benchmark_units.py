@@ -5,8 +5,8 @@ transformer would record them at 30/s: four faults, three losses of generation, 
     benchmark_units.py SWINGBANK RAW DYR FOLDER {sharp,class-m}
 
 Writes FOLDER/event1.csv to event12.csv (V in kV, angle in degrees, P in MW, Q in Mvar). Noise: 0.01 % on V, 0.005
-degrees, 0.05 % of the unit's 800 MVA on P and Q. class-m: behind the filter of class M for 30/s (0.28 s, 5.02 Hz; IEEE
-C37.118.1-2011, annex C, table C.1), which runs over voltage and current.
+degrees, 0.05 % of the unit's 800 MVA on P and Q. class-m: behind PMUFILTER of class M for 30/s, which is 0.28 s long; at
+the terminal, for it and the transformer are linear in voltage and current.
 """
 import cmath
 import math
@@ -16,7 +16,7 @@ import sys
 
 FINE, RATE = 960, 30  # samples/s of the simulation and of the record
 MVA, KV, RATIO, REACTANCE = 8.0, 345.0, 1.07, 0.02j  # machine [100 MVA], grid side, transformer 10-32 [pu on 100 MVA]
-HALF = 134  # of the filter, in samples at FINE
+EDGE = 134  # half of the filter, in samples at FINE: so many are left out at either end
 EVENTS = [
     ("--fault 14:2:2.08", 12), ("--fault 4:2:2.1", 12), ("--fault 21:2:2.07", 12), ("--fault 26:2:2.1:0:0.05", 12),
     ("--trip-generator 38:2", 30), ("--trip-generator 35:2:0.5", 30), ("--trip-generator 30:2", 30),
@@ -25,22 +25,17 @@ EVENTS = [
 ]
 
 
-def weight(n):
-    x = 2 * math.pi * 2 * 5.02 * n / FINE
-    return (math.sin(x) / x if n else 1) * (0.54 + 0.46 * math.cos(math.pi * n / HALF))
-
-
-def simulated(program, raw, dyr, event, seconds, folder):
+def simulated(program, raw, dyr, event, seconds, folder, measure):
     """Times [s], voltage [pu] and current [pu on 100 MVA] on the grid side."""
     out = f"{folder}/run.csv"
     subprocess.run([program, "simulate", "--raw", raw, "--dyr", dyr, "--widen-limits", *event.split(), "--rate", str(FINE),
-                    "--t-end", str(seconds), "--plants", "32", "--channels", "P,Q", "--buses", "32", "--loads", "raw",
+                    "--t-end", str(seconds), "--plants", "32", "--channels", "V,theta,P,Q", "--loads", "raw", *measure,
                     "--out", out], check=True, capture_output=True)
     t, voltage, current = [], [], []
     with open(out) as file:
         next(file)
         for line in file:
-            time, p, q, v, theta = (float(x) for x in line.split(","))
+            time, v, theta, p, q = (float(x) for x in line.split(","))
             terminal = cmath.rect(v, theta)
             i = (complex(p, q) * MVA / terminal).conjugate()
             t.append(time)
@@ -49,21 +44,16 @@ def simulated(program, raw, dyr, event, seconds, folder):
     return t, voltage, current
 
 
-def filtered(x, at):
-    total = sum(weight(n) for n in range(-HALF, HALF + 1))
-    return sum(weight(n) * x[at + n] for n in range(-HALF, HALF + 1)) / total
-
-
 def main():
     program, raw, dyr, folder, instrument = sys.argv[1:]
+    measure = ["--measure", "PMUFILTER:class=1,reports=30"] if instrument == "class-m" else []
     for k, (event, seconds) in enumerate(EVENTS, 1):
-        t, voltage, current = simulated(program, raw, dyr, event, seconds, folder)
+        t, voltage, current = simulated(program, raw, dyr, event, seconds, folder, measure)
         noise = random.Random(k)
-        at = range(0, len(t), FINE // RATE) if instrument == "sharp" else range(HALF, len(t) - HALF, FINE // RATE)
         with open(f"{folder}/event{k}.csv", "w") as file:
             file.write("t_s,V_kV,angle_deg,P_MW,Q_Mvar\n")
-            for j in at:
-                v, i = (voltage[j], current[j]) if instrument == "sharp" else (filtered(voltage, j), filtered(current, j))
+            for j in range(EDGE if measure else 0, len(t) - (EDGE if measure else 0), FINE // RATE):
+                v, i = voltage[j], current[j]
                 power = 100 * v * i.conjugate()
                 file.write(f"{t[j]:.4f},{abs(v) * KV * (1 + 1e-4 * noise.gauss(0, 1)):.4f},"
                            f"{math.degrees(cmath.phase(v)) + 0.005 * noise.gauss(0, 1):.5f},"

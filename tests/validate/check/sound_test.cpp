@@ -3,9 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
-#include <numeric>
 
-#include "tests/validate/playin/support.hpp"
+#include "tests/validate/playin/instrument_example.hpp"
 #include "validate/check/check.hpp"
 
 namespace swingbank::validate::check {
@@ -37,21 +36,18 @@ test::Simulated frequency_event(const std::string& name, std::size_t lost) {
   return s;
 }
 
-/// What an instrument's window over voltage and current makes of a record at 480/s, kept at every `stride`-th
-/// sample. Its weights begin half their number before the sample.
-record::Record through(const std::vector<double>& weights, const record::Record& fine, std::size_t stride) {
-  const std::size_t half = weights.size() / 2;
-  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+/// What a one-cycle window over voltage and current makes of a record at 480/s (8 samples a cycle), kept at
+/// every `stride`-th sample.
+record::Record one_cycle(const record::Record& fine, std::size_t stride) {
   record::Record r;
   r.name = fine.name;
   r.base = fine.base;
-  for (std::size_t k = half; k + half < fine.t.size(); k += stride) {
+  for (std::size_t k = 4; k + 4 < fine.t.size(); k += stride) {
     Complex v = 0, i = 0;
-    for (std::size_t j = 0; j < weights.size(); ++j) {
-      const std::size_t n = k - half + j;
-      const Complex u = std::polar(fine.V[n], fine.theta[n]);
-      v += u * weights[j] / sum;
-      i += std::conj(Complex(fine.P[n], fine.Q[n]) / u) * weights[j] / sum;
+    for (std::size_t j = k - 4; j < k + 4; ++j) {
+      const Complex u = std::polar(fine.V[j], fine.theta[j]);
+      v += u / 8.0;
+      i += std::conj(Complex(fine.P[j], fine.Q[j]) / u) / 8.0;
     }
     r.t.push_back(fine.t[k]);
     r.V.push_back(std::abs(v));
@@ -60,22 +56,6 @@ record::Record through(const std::vector<double>& weights, const record::Record&
     r.Q.push_back(std::imag(v * std::conj(i)));
   }
   return r;
-}
-/// One cycle, 8 samples.
-record::Record one_cycle(const record::Record& fine, std::size_t stride) {
-  return through(std::vector<double>(8, 1.0), fine, stride);
-}
-/// The filter of class M (IEEE C37.118.1-2011, annex C, table C.1): 0.28 s and 5.02 Hz at 30 samples/s, 0.17
-/// s and 8.19 Hz at 60.
-record::Record class_m(const record::Record& fine, int rate) {
-  const int half = rate == 30 ? 67 : 41;
-  const double corner = rate == 30 ? 5.02 : 8.19;
-  std::vector<double> weights;
-  for (int n = -half; n <= half; ++n) {
-    const double x = 2 * std::numbers::pi * 2 * corner * n / 480;
-    weights.push_back((n == 0 ? 1 : std::sin(x) / x) * (0.54 + 0.46 * std::cos(std::numbers::pi * n / half)));
-  }
-  return through(weights, fine, static_cast<std::size_t>(480 / rate));
 }
 
 void expect_sound(const record::Record& r, double mva, const std::string& which) {
@@ -122,7 +102,8 @@ TEST(RecordSoundTest, FaultsBehindAFilterLongerThanTheFault) {
         test::simulate("ieee39_genrou", sim::Conventions::psse(), bus, 2.0041, cleared, 480, {0.0, 0.05});
     for (int p = 0; p < static_cast<int>(s.grid.plants.size()); ++p)
       for (const int rate : {30, 60})
-        expect_sound(class_m(test::record_of(s, p, 1, 0.001), rate),
+        expect_sound(test::seen_through({test::instrument(fmt::format("PMUFILTER:class=1,reports={}", rate))},
+                                        test::record_of(s, p, 1, 0.001), 480 / rate),
                      s.grid.plants[static_cast<std::size_t>(p)].mva,
                      fmt::format("bus {} cleared at {} s, plant {}, {}/s", bus, cleared, p, rate));
   }

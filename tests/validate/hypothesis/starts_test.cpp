@@ -95,7 +95,7 @@ TEST(Starts, WhatTheFitHasBentStartsAsTheModelHasIt) {
 }
 
 /// An ESAC1A whose gain is a two-hundredth of the standard one, in noise in which the model alone nearly
-/// fits: no draw of the hypothesis came near, and what it was fitted to was worse than nothing.
+/// fits: without further draws it ends 11.6 of evidence behind its optimum, which is worth 2,188.
 TEST(Starts, AGainFarFromTheStandardOneIsFound) {
   fit::ExciterExample example(0.2);
   example.model.plant.controls.clear();
@@ -132,7 +132,7 @@ TEST(Starts, AGainFarFromTheStandardOneIsFound) {
   ASSERT_GT(fit::gain(nearly, best, fit::criterion), thresholds::evidence.accepted) << "it was meant to show";
   const auto tried = try_hypotheses(stage, {h});
   ASSERT_EQ(tried.size(), 1U);
-  EXPECT_LT(fit::gain(tried.front().fit, best), 20);
+  EXPECT_LT(fit::gain(tried.front().fit, best), 5);
 }
 
 }  // namespace

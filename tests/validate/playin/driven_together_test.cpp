@@ -46,6 +46,7 @@ class DrivenTogether : public ::testing::Test {
   std::optional<VoltageCurve> curve_;
 };
 
+/// At a tolerance of 1e-5 per step the two ways were 1.9e-4 apart at most.
 TEST_F(DrivenTogether, AnswersAsEachByItself) {
   const auto all = plants(11);  // more than a pack has lanes
   std::vector<Drive> runs;
@@ -58,7 +59,7 @@ TEST_F(DrivenTogether, AnswersAsEachByItself) {
     for (const Output o : {Output::P, Output::Q, Output::speed, Output::Efd, Output::V}) {
       ASSERT_EQ(answers[k]->of(o).size(), own.of(o).size());
       for (std::size_t s = 0; s < own.of(o).size(); ++s)
-        EXPECT_NEAR(answers[k]->of(o)[s], own.of(o)[s], 5e-4) << output_name(o) << " of run " << k;
+        EXPECT_NEAR(answers[k]->of(o)[s], own.of(o)[s], 3e-4) << output_name(o) << " of run " << k;
     }
     if (k > 0) {
       EXPECT_GT(std::abs(answers[k]->of(Output::Q)[300] - answers[0]->of(Output::Q)[300]), 2e-3) << k;
