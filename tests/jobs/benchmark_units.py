@@ -16,7 +16,7 @@ import sys
 
 FINE, RATE = 960, 30  # samples/s of the simulation and of the record
 MVA, KV, RATIO, REACTANCE = 8.0, 345.0, 1.07, 0.02j  # machine [100 MVA], grid side, transformer 10-32 [pu on 100 MVA]
-EDGE = 134  # half of the filter, in samples at FINE: so many are left out at either end
+EDGE = 160  # five reports, in samples at FINE, left out at either end: half of the filter is 134 long
 EVENTS = [
     ("--fault 14:2:2.08", 12), ("--fault 4:2:2.1", 12), ("--fault 21:2:2.07", 12), ("--fault 26:2:2.1:0:0.05", 12),
     ("--trip-generator 38:2", 30), ("--trip-generator 35:2:0.5", 30), ("--trip-generator 30:2", 30),
@@ -35,7 +35,7 @@ def simulated(program, raw, dyr, event, seconds, folder, measure):
     with open(out) as file:
         next(file)
         for line in file:
-            time, v, theta, p, q = (float(x) for x in line.split(","))
+            time, v, theta, p, q = (float(x) for x in line.split(",")[:5])  # an instrument adds f
             terminal = cmath.rect(v, theta)
             i = (complex(p, q) * MVA / terminal).conjugate()
             t.append(time)
