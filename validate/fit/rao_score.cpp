@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "validate/fit/detail/event_cost.hpp"
+#include "validate/playin/can_run.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::fit {
