@@ -1,10 +1,11 @@
 // To be preloaded: one call of one process fails with an error that is given. Calls are counted from 1 in
 // each process, file calls (below one folder) and allocations by operator new apart.
-//   FAILING_ERROR   memory (std::bad_alloc), or the number of an error of errno.h for a file call; absent:
-//   only count FAILING_AT      the call that fails FAILING_RANK    of the rank that is meant (OpenMPI's
-//   OMPI_COMM_WORLD_RANK; without a launcher all are 0) FAILING_UNDER   absolute path of the folder
-//   FAILING_LOG     gets a line "failed CALL PATH" once it has happened, and "count FILES ALLOCATIONS" at
-//   exit
+// - FAILING_ERROR: memory (std::bad_alloc), or errno's number for a file call; absent: only count
+// - FAILING_AT: the call that fails
+// - FAILING_CALL: only file calls of this name count; absent: all
+// - FAILING_RANK: the rank that is meant (OpenMPI's OMPI_COMM_WORLD_RANK; without a launcher all are 0)
+// - FAILING_UNDER: absolute path of the folder
+// - FAILING_LOG: gets a line "failed CALL PATH" once it has happened, and "count FILES ALLOCATIONS" at exit
 #include <dirent.h>
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -28,6 +29,7 @@ std::atomic<long> file_calls{0}, allocations{0};
 struct Order {
   const char* under = std::getenv("FAILING_UNDER");
   const char* log = std::getenv("FAILING_LOG");
+  const char* call = std::getenv("FAILING_CALL");
   int error = 0;  ///< 0: none; -1: memory
   long at = 0;
   bool meant = false;
@@ -66,6 +68,7 @@ struct Count {
 bool fails(const char* call, const char* path) {
   const Order& o = order();
   if (!o.meant || o.under == nullptr || path == nullptr) return false;
+  if (o.call != nullptr && std::strcmp(o.call, call) != 0) return false;
   const std::size_t n = std::strlen(o.under);
   if (std::strncmp(path, o.under, n) != 0) return false;
   if (++file_calls != o.at || o.error <= 0) return false;

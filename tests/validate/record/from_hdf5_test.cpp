@@ -82,6 +82,23 @@ TEST_F(RecordHdf5Test, FilesThatAreNoRuns) {
   EXPECT_THAT(faults("-missing.h5"), ElementsAre(HasSubstr("run.h5-missing.h5")));
 }
 
+// 44 TB that are neither in the file nor in any memory.
+TEST_F(RecordHdf5Test, MoreSamplesThanTheFileHoldsAreTold) {
+  write("swingbank-run-1");
+  std::string bytes = read_bytes(file_);
+  const auto text = [](std::uint64_t samples) {
+    const std::uint64_t shape[] = {2, 5, samples};
+    return std::string(reinterpret_cast<const char*>(shape), sizeof shape);
+  };
+  const std::size_t at = bytes.find(text(50));
+  ASSERT_NE(at, bytes.npos);
+  bytes.replace(at, text(50).size(), text(std::uint64_t{1} << 39));
+  std::ofstream(file_, std::ios::binary) << bytes;
+  EXPECT_THAT(faults("#GENROU 7"),
+              ElementsAre(AllOf(HasSubstr("an array too large to read at"), HasSubstr("run.h5:/records"),
+                                HasSubstr("5497558138880"))));
+}
+
 // HDF5 crashes on some of these, and on some it does not end.
 TEST_F(RecordHdf5Test, DamagedBytesAreTold) {
   write("swingbank-run-1");

@@ -1,0 +1,50 @@
+#!/usr/bin/env bash
+# While one rank draws the databank the others sleep, and all hear a signal; in a group that writes a shard together every
+# rank flushes what it wrote.
+# shellcheck disable=SC2154 # what common.bash sets
+source "$(dirname "$0")/common.bash"
+config=$configs/ieee39_genrou.toml
+# 500,000 points at their distance take minutes, and are within what the law of their draws allows.
+options=("$config" --draws 50000000 --faults-per-point 100 --progress none)
+ticks() { awk '{print $14 + $15}' "/proc/$1/stat"; } # of processor time, a hundredth of a second each
+# ends_softly PID: a signal ends the drawing, long before its points are there
+ends_softly() {
+  local code=0 start=$SECONDS
+  kill -USR1 "$1"
+  wait "$1" || code=$?
+  [ $code = 2 ] || { cat "$work/drawing" >&2; fail "exit code $code after a signal while the databank was drawn"; }
+  ((SECONDS - start < 20)) || fail "a signal was heard after $((SECONDS - start)) s"
+  grep -q 'stopped on a signal' "$work/drawing" || fail "no word of the signal: $(cat "$work/drawing")"
+}
+
+"$SWINGBANK_BIN/swingbank-databank" "$config" --points 500000 --out "$work/bank.csv" >"$work/drawing" 2>&1 &
+sleep 2
+ends_softly $!
+[ ! -e "$work/bank.csv" ] || fail "half a databank was written"
+
+mpirun --oversubscribe -np 3 "$generate" "${options[@]}" --out "$work/data" >"$work/drawing" 2>&1 &
+launcher=$!
+busiest=0
+for _ in $(seq 600); do # until the one that draws has worked for two seconds
+  sleep 0.1
+  total=0 busiest=0
+  for pid in $(pgrep -P $launcher); do
+    one=$(ticks "$pid") || continue
+    total=$((total + one))
+    if ((one > busiest)); then busiest=$one; fi
+  done
+  if ((busiest >= 300)); then break; fi
+done
+((busiest >= 300)) || fail "no rank has drawn: $(cat "$work/drawing")"
+((total - busiest < busiest / 3)) || fail "two ranks that wait took $((total - busiest)) hundredths of a second beside $busiest of the one that draws"
+ends_softly $launcher
+
+# The disk refuses to flush on one rank of the group: that rank has asked it to.
+small=("$configs/ieee14_genrou_bus3.toml" --draws 60 --draws-per-shard 20 --writer-ranks 3 --progress none)
+for rank in 0 1 2; do
+  expect 1 "Input/output error" env FAILING_CALL=fsync FAILING_ERROR=5 FAILING_AT=1 FAILING_RANK=$rank \
+    FAILING_UNDER="$work/flushed/shards" FAILING_LOG="$work/failing" timeout -k 5 60 \
+    mpirun --oversubscribe -np 3 -x LD_PRELOAD="$SWINGBANK_BIN/failing_call.so" "$generate" "${small[@]}" --out "$work/flushed"
+  grep -q "^failed fsync $work/flushed/shards/.*\.h5" "$work/failing" || fail "rank $rank flushed no shard: $(cat "$work/failing")"
+  rm -r "$work/flushed" "$work/failing"
+done
