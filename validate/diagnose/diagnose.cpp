@@ -110,15 +110,12 @@ class Diagnoser {
     fit::FewestOptions o;
     o.progress = options_.progress;
     o.stop = options_.stop;
+    o.all = &result_.base;
+    o.least = -hypothesis::out_of_reach();
     fit::Fewest found = fit::fewest(model_.under_test(), result_.events, free, o);
     if (found.wrong.empty() || found.fit.misfit() > options_.adequate) return;
-    std::vector<fit::FreeParameter> some;
-    for (const auto& w : found.wrong) some.push_back(w.fit.where);
-    const fit::Fit f =
-        fit::fit(model_.under_test(), result_.events, some, fit::continued({}, found.fit, some));
-    if (!f.failed.empty() || f.misfit() > options_.adequate) return;
     result_.wrong_evidence =
-        fit::gain(result_.base, f, fit::criterion) - o.each * static_cast<double>(some.size());
+        fit::gain(result_.base, found.fit, fit::criterion) - o.each * static_cast<double>(found.wrong.size());
     result_.wrong = std::move(found);
     tell(wrong_sentence(result_));
   }
@@ -160,18 +157,23 @@ class Diagnoser {
     result_.events = result_.events.with(
         fit::measure_noise_through(best.fit, best.hypothesis.conventions, result_.events));
     const auto go_on = [&](const sim::plant::PlantUnderTest& tested,
-                           const std::vector<fit::FreeParameter>& free, const fit::Fit& f) {
-      fit::FitOptions o = fit::continued({}, f, free);
-      o.iterations = kOnwards;
-      o.lenient = true;
+                           const std::vector<fit::FreeParameter>& free, const fit::Fit& f,
+                           const fit::FitOptions& how) {
+      const fit::FitOptions o = fit::continued(how, f, free);
       return fit::fit(tested, result_.events, free, o);
     };
+    fit::FitOptions how{.iterations = kOnwards, .lenient = true};
     result_.base =
-        go_on(model_.under_test(), fit::free_parameters(model_.plant, options_.spread), result_.base);
+        go_on(model_.under_test(), fit::free_parameters(model_.plant, options_.spread), result_.base, how);
     require_fitted_base();
+    const hypothesis::FittedOn leading{best.gain, best.hypothesis.slot};
     each(result_.ranked, "noise measured again", [&](hypothesis::Judgement& j) {
       if (!j.fitted) return;
-      j.fit = go_on(j.hypothesis.under_test(), hypothesis::free_of(j.hypothesis, options_.spread), j.fit);
+      fit::FitOptions its = how;
+      if (!leading(j.gain, j.hypothesis.slot))
+        its.iterations = 0;  // it was given up: what it leaves is counted anew
+      j.fit =
+          go_on(j.hypothesis.under_test(), hypothesis::free_of(j.hypothesis, options_.spread), j.fit, its);
       j.gain = fit::gain(result_.base, j.fit, fit::criterion);
     });
     std::erase_if(result_.ranked, [](const hypothesis::Judgement& j) { return !j.fit.failed.empty(); });

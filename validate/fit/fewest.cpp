@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <set>
 
 #include "validate/fit/noise.hpp"
@@ -16,6 +17,8 @@ using Set = std::vector<std::size_t>;  ///< of parameters, in order
 constexpr std::size_t kBeam = 60;     ///< sets of each size that are kept
 constexpr std::size_t kRefitted = 3;  ///< sets of each size that are refitted
 constexpr std::size_t kTied = 6;      ///< sets of the size that is taken that are refitted to find ties
+
+const FitOptions kSearch = {.lenient = true};
 
 struct Ranked {
   double cost;
@@ -33,43 +36,51 @@ class Selection {
     learn_curvature();
     Fewest back;
     Fit chosen = refit({});
+    back.fit = chosen;
+    back.events = events_;
     back.before = chosen.misfit();
     back.best = all_.misfit();
+    grow();
+    if (hopeless()) return back;
     Set set;
     const double nothing = penalised(chosen), most = penalised(all_);
     double taken = nothing;
-    std::vector<Ranked> beam = {{0, {}}}, of_size;
-    for (std::size_t size = 1; size <= std::min(options_.most, free_.size()); ++size) {
-      if (options_.stop && options_.stop()) return back;
+    for (std::size_t size = 1; size < beams_.size(); ++size) {
+      if (stopped()) return back;
       if (taken - most < options_.each) break;  // every other parameter together earns no more
-      beam = grown(beam);
-      auto [fit, best] = best_of(beam, kRefitted);
-      report("sets of parameters", size, options_.most);
+      const auto& [fit, best] = best_of(size);
+      report("sets of parameters", size, beams_.size() - 1);
       // a set of this size may look poor where the next one holds two that work together
       if (const double gain = taken - penalised(fit);
           gain > options_.each * static_cast<double>(size - set.size())) {
         taken = penalised(fit);
-        chosen = std::move(fit);
-        set = std::move(best);
-        of_size = beam;
+        chosen = fit;
+        set = best;
       } else if (size >= set.size() + 2) {
         break;
       }
     }
+    if (set.empty()) return back;
     chosen = refit(set, true);
-    describe(set, chosen, of_size, nothing - most, back);
+    if (gain(all_, chosen, criterion) - options_.each * static_cast<double>(set.size()) < options_.least)
+      return back;
+    describe(set, chosen, nothing - most, back);
     back.fit = std::move(chosen);
-    back.events = events_;
     return back;
   }
 
  private:
+  [[nodiscard]] bool stopped() const { return options_.stop && options_.stop(); }
   void fit_all() {
+    if (options_.all) {
+      all_ = *options_.all;
+      return;
+    }
     report("every parameter", 0, 1);
-    all_ = fit(tested_, events_, free_);
+    all_ = fit(tested_, events_, free_, kSearch);
     require(all_);
     events_ = events_.with(measure_noise_through(all_, tested_.conventions, events_));
-    all_ = fit(tested_, events_, free_, continued({}, all_, free_));
+    all_ = fit(tested_, events_, free_, continued(kSearch, all_, free_));
     require(all_);
   }
   static void require(const Fit& f) {
@@ -77,10 +88,11 @@ class Selection {
       throw InputError(
           {"the model cannot be fitted", "the model", f.failed, "correct the model or leave the record out"});
   }
-  /// Curvature where all are free, and where that is, in units of what is believed of the parameters.
+  /// Curvature of the cost where all are free, and where that is, in units of what is believed of the
+  /// parameters.
   void learn_curvature() {
     const auto n = static_cast<Eigen::Index>(free_.size());
-    curvature_ = Eigen::MatrixXd::Zero(n, n);
+    curvature_ = Eigen::MatrixXd::Identity(n, n);  // that of the beliefs
     for (std::size_t e = 0; e < events_.size(); ++e)
       curvature_ += information(
           event_slopes({all_.plant, tested_.conventions}, events_.whitened(e), all_.events[e].state, free_));
@@ -91,12 +103,17 @@ class Selection {
                            : (p.value - p.start) / axis_unit(tested_.plant, p.where);
     }
   }
-  /// By how much the cost exceeds that with all free, if only these move: on the curvature.
-  [[nodiscard]] double excess(const Set& set) const {
+  /// What the curvature foretells if only these move: by how much the cost exceeds that with all free, where
+  /// they end, and the log determinant of what is known of them (Fit::occam).
+  struct Foretold {
+    double excess = 0, occam = 0;
+    Eigen::VectorXd at = {};
+  };
+  [[nodiscard]] Foretold foretold(const Set& set) const {
     const auto k = static_cast<Eigen::Index>(set.size());
     const Eigen::VectorXd toward = curvature_ * at_;
-    double cost = at_.dot(toward);
-    if (k == 0) return cost;
+    Foretold f{.excess = at_.dot(toward)};
+    if (k == 0) return f;
     Eigen::MatrixXd own(k, k);
     Eigen::VectorXd along(k);
     for (Eigen::Index i = 0; i < k; ++i) {
@@ -104,9 +121,19 @@ class Selection {
       along[i] = toward[a];
       for (Eigen::Index j = 0; j < k; ++j)
         own(i, j) = curvature_(a, static_cast<Eigen::Index>(set[static_cast<std::size_t>(j)]));
-      own(i, i) += 1;
     }
-    return cost - along.dot(own.ldlt().solve(along));
+    const auto known = own.ldlt();
+    f.at = known.solve(along);
+    f.excess -= along.dot(f.at);
+    f.occam = known.vectorD().array().log().sum();
+    return f;
+  }
+  /// The sets of every size that cost least, on the curvature.
+  void grow() {
+    beams_ = {{{0, {}}}};
+    for (std::size_t size = 1; size <= std::min(options_.most, free_.size()); ++size)
+      beams_.push_back(grown(beams_.back()));
+    refitted_.resize(beams_.size());
   }
   /// The best sets with one more parameter.
   [[nodiscard]] std::vector<Ranked> grown(const std::vector<Ranked>& beam) const {
@@ -118,40 +145,72 @@ class Selection {
         Set set = r.set;
         set.insert(std::ranges::upper_bound(set, i), i);
         if (!known.insert(set).second) continue;
-        const double cost = excess(set);
+        const double cost = foretold(set).excess;
         next.push_back({cost, std::move(set)});
       }
     std::ranges::sort(next, {}, &Ranked::cost);
     next.resize(std::min(next.size(), kBeam));
     return next;
   }
+  /// Evidence over every parameter free, less what each of these has to earn.
+  [[nodiscard]] double worth(double cost, double occam, std::size_t size) const {
+    return criterion(all_) - cost - occam - options_.each * static_cast<double>(size);
+  }
+  /// Whether even the set that the curvature thinks most of has too little evidence once it is refitted.
+  [[nodiscard]] bool hopeless() {
+    if (options_.least == -std::numeric_limits<double>::infinity()) return false;
+    double most = -std::numeric_limits<double>::infinity();
+    std::size_t size = 0;
+    Foretold best;
+    for (std::size_t k = 1; k < beams_.size(); ++k)
+      for (std::size_t i = 0; i < std::min(kRefitted, beams_[k].size()); ++i) {
+        Foretold f = foretold(beams_[k][i].set);
+        if (const double its = worth(penalised(all_) + f.excess, f.occam, k); its > most)
+          most = its, size = k, best = std::move(f);
+      }
+    return size == 0 || worth(penalised(best_of(size).first), best.occam, size) < options_.least;
+  }
   [[nodiscard]] std::vector<FreeParameter> members(const Set& set) const {
     std::vector<FreeParameter> some;
     for (const std::size_t i : set) some.push_back(free_[i]);
     return some;
   }
-  /// Fits these alone, from the better of the believed values and those with all free.
+  /// Fits these alone from where the curvature foretells their optimum. A fit that ends where the curvature
+  /// has it has missed nothing; any other one gets a second start, at the believed values.
   [[nodiscard]] Fit refit(const Set& set, bool errors = false) const {
-    FitOptions o;
+    FitOptions o = kSearch;
     o.errors = errors;
     const auto some = members(set);
-    Fit from_belief = fit(tested_, events_, some, o);
     if (set.empty()) {
-      require(from_belief);
-      return from_belief;
+      Fit f = fit(tested_, events_, some, o);
+      require(f);
+      return f;
     }
-    Fit from_all = fit(tested_, events_, some, continued(o, all_, some));
-    return better(from_all, from_belief) ? from_all : from_belief;
+    const Foretold there = foretold(set);
+    FitOptions from = continued(o, all_, some);
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      const double believed = parameter_value(tested_.plant, some[i].id),
+                   z = there.at[static_cast<Eigen::Index>(i)];
+      from.values[i] = believed > 0 ? believed * std::exp(z * some[i].spread)
+                                    : believed + z * axis_unit(tested_.plant, some[i]);
+    }
+    Fit ended = fit(tested_, events_, some, from);
+    if (penalised(ended) < penalised(all_) + there.excess + options_.each) return ended;
+    Fit other = fit(tested_, events_, some, o);
+    return better(other, ended) ? other : ended;
   }
-  [[nodiscard]] std::pair<Fit, Set> best_of(const std::vector<Ranked>& beam, std::size_t count) const {
-    std::pair<Fit, Set> best;
-    best.first.failed = "not fitted";
-    for (std::size_t k = 0; k < std::min(count, beam.size()); ++k)
-      if (Fit f = refit(beam[k].set); better(f, best.first)) best = {std::move(f), beam[k].set};
-    return best;
+  /// The best of this size, of those that the curvature likes best.
+  const std::pair<Fit, Set>& best_of(std::size_t size) {
+    auto& best = refitted_[size];
+    if (best) return *best;
+    best.emplace();
+    best->first.failed = "not fitted";
+    for (std::size_t k = 0; k < std::min(kRefitted, beams_[size].size()); ++k)
+      if (Fit f = refit(beams_[size][k].set); better(f, best->first))
+        *best = {std::move(f), beams_[size][k].set};
+    return *best;
   }
-  void describe(const Set& set, const Fit& chosen, const std::vector<Ranked>& of_size, double excess_of_model,
-                Fewest& back) const {
+  void describe(const Set& set, const Fit& chosen, double excess_of_model, Fewest& back) const {
     for (std::size_t i = 0; i < set.size(); ++i) {
       Set less = set;
       less.erase(less.begin() + static_cast<std::ptrdiff_t>(i));
@@ -159,18 +218,17 @@ class Selection {
       w.fit = chosen.parameters[i];
       w.evidence = gain(refit(less), chosen);
       w.share = excess_of_model > 0 ? std::clamp(w.evidence / excess_of_model, 0.0, 1.0) : 0.0;
-      w.tied = tied(set, set[i], chosen, of_size);
+      w.tied = tied(set, set[i], chosen);
       back.wrong.push_back(std::move(w));
       report("sets of parameters without one", i + 1, set.size());
     }
     std::ranges::stable_sort(back.wrong, std::greater<>(), &WrongParameter::evidence);
   }
   /// What would do in place of one of the set.
-  [[nodiscard]] std::vector<std::string> tied(const Set& set, std::size_t which, const Fit& chosen,
-                                              const std::vector<Ranked>& of_size) const {
+  [[nodiscard]] std::vector<std::string> tied(const Set& set, std::size_t which, const Fit& chosen) const {
     std::vector<std::string> names;
     std::size_t tried = 0;
-    for (const Ranked& r : of_size) {
+    for (const Ranked& r : beams_[set.size()]) {
       if (r.set == set || tried == kTied) continue;
       Set other;
       std::ranges::set_difference(r.set, set, std::back_inserter(other));
@@ -194,6 +252,8 @@ class Selection {
   Fit all_;
   Eigen::MatrixXd curvature_;
   Eigen::VectorXd at_;
+  std::vector<std::vector<Ranked>> beams_;  ///< [size of the sets]
+  std::vector<std::optional<std::pair<Fit, Set>>> refitted_;
 };
 
 }  // namespace

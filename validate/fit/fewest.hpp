@@ -2,6 +2,7 @@
 // Which parameters are wrong: the fewest that must change for the model to explain the records, while every
 // other one stays as it is believed.
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -33,11 +34,17 @@ struct FewestOptions {
   std::function<void(const std::string& what, int done, int total)> progress = {};
   /// Asked between sets; true: nothing is named.
   std::function<bool()> stop = {};
+  /// Every parameter fitted to these events, in their noise, with errors. Null: that is done here, and the
+  /// noise is measured through it.
+  const Fit* all = nullptr;
+  /// Evidence over every parameter free (criterion), less `each` for each one named, below which nothing is
+  /// named.
+  double least = -std::numeric_limits<double>::infinity();
 };
 
 /// Sets of parameters are compared on the curvature of the cost where all are free, and the best of each size
-/// are refitted. `free` may move; what is believed of those that do stands in their spread. Throws InputError
-/// where the model cannot be fitted.
+/// are refitted from where it foretells their optimum. `free` may move; what is believed of those that do
+/// stands in their spread. Throws InputError where the model cannot be fitted.
 Fewest fewest(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
               const std::vector<FreeParameter>& free, const FewestOptions& options = {});
 

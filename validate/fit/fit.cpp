@@ -21,18 +21,35 @@ using namespace fitting;
 /// are tried where at most kFewSteps are allowed.
 constexpr int kFewSteps = 4, kRefusedSteps = 3;
 
-/// Counts the steps taken, and stops the search when they are enough.
+/// Counts the steps taken, and stops the search when they are enough or the goal is out of reach.
 class Steps : public ceres::IterationCallback {
  public:
-  explicit Steps(int enough) : enough_(enough) {}
+  Steps(int enough, const Goal& goal) : enough_(enough), goal_(goal) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    if (summary.iteration > 0 && summary.step_is_successful) ++taken_;
-    return taken_ < enough_ ? ceres::SOLVER_CONTINUE : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+    if (summary.iteration == 0) {
+      costs_ = {2 * summary.cost};
+    } else if (summary.step_is_successful) {
+      ++taken_;
+      costs_.push_back(2 * summary.cost);
+    }
+    out_of_reach_ = out_of_reach_ || misses();
+    return taken_ < enough_ && !out_of_reach_ ? ceres::SOLVER_CONTINUE : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
   }
   [[nodiscard]] int taken() const { return taken_; }
+  [[nodiscard]] bool out_of_reach() const { return out_of_reach_; }
 
  private:
+  [[nodiscard]] bool misses() const {
+    if (taken_ < 2 || costs_.back() <= goal_.cost) return false;
+    const auto last = costs_.rbegin();
+    const double share = std::min(last[0] / last[1], last[1] / last[2]);
+    return last[0] * std::pow(share, goal_.steps - taken_) > goal_.cost;
+  }
+
   int enough_, taken_ = 0;
+  Goal goal_;
+  std::vector<double> costs_;  ///< at the start and after each step
+  bool out_of_reach_ = false;
 };
 
 class Search {
@@ -65,6 +82,7 @@ class Search {
       const int most = before > thresholds::noise.believed ? std::min(left, kRound) : left;
       fit.converged = solve(most, fit.iterations);
       left = options_.iterations - fit.iterations;
+      if (out_of_reach_) break;
       if (before <= thresholds::noise.believed || misfit() > 0.95 * before) break;
     }
     fit.plant = moved(setting_, z_.data());
@@ -97,7 +115,9 @@ class Search {
     static const bool quiet = (FLAGS_minloglevel = google::GLOG_FATAL, true);
     static_cast<void>(quiet);
     ceres::Solver::Options o;
-    Steps steps(iterations);
+    Goal goal = options_.goal;
+    goal.steps -= done;
+    Steps steps(iterations, goal);
     for (EventCost* c : costs_) c->look_at(std::max(1, iterations));
     o.callbacks.push_back(&steps);
     o.max_num_iterations =
@@ -115,6 +135,7 @@ class Search {
     ceres::Solver::Summary summary;
     ceres::Solve(o, problem_.get(), &summary);
     done += std::max(1, steps.taken());
+    out_of_reach_ = steps.out_of_reach();
     for (EventCost* c : costs_) c->look_at(1);
     return summary.termination_type == ceres::CONVERGENCE;
   }
@@ -318,6 +339,7 @@ class Search {
   const Setting& setting_;
   const FitOptions& options_;
   double discrepancy_ = 1.0;
+  bool out_of_reach_ = false;  ///< of the goal
   std::vector<double> z_;
   std::vector<std::vector<double>> states_;
   std::vector<EventCost*> costs_;
@@ -379,7 +401,7 @@ FitOptions continued(FitOptions o, const Fit& f, const std::vector<FreeParameter
 Fit fit(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
         const std::vector<FreeParameter>& free, const FitOptions& options) {
   Setting setting{&tested.plant, &tested.conventions, &events, {}, options.tolerance, options.input, {}};
-  setting.lenient = options.lenient;
+  setting.lenient = setting.linear_slopes = options.lenient;
   setting.goes_on = !options.errors || options.input != InputKind::none;
   setting.knots.resize(events.size());
   if (options.input != InputKind::none)
@@ -391,7 +413,7 @@ Fit fit(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& e
   setting.can_exist = playin::can_exist(start);
   Fit found = Search(setting, options).run();
   if (found.failed.empty() || setting.lenient) return found;
-  setting.lenient = true;
+  setting.lenient = setting.linear_slopes = true;
   Fit lenient = Search(setting, options).run();
   return lenient.failed.empty() ? lenient : found;
 }

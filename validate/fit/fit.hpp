@@ -2,6 +2,7 @@
 // Least squares over several events at once: the plant's free parameters, common to all, and what belongs to
 // one event only (when exactly it was switched, where exactly the plant stood). Levenberg-Marquardt (Ceres)
 // on the sensitivities of the driven plant.
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -94,6 +95,13 @@ void require_noise_of(const event::WhitenedEvents& events, const Fit& fit);
 
 constexpr double kFitTolerance = event::Playing{}.tolerance;  ///< of the integration
 
+/// What a fit has to get to: to cost `cost` (penalised) at most, in as many steps as are left to it and to
+/// the fits that go on from it.
+struct Goal {
+  double cost = std::numeric_limits<double>::infinity();
+  int steps = 0;
+};
+
 struct FitOptions {
   int iterations = 30;
   double tolerance = kFitTolerance;  ///< of the integration
@@ -110,6 +118,9 @@ struct FitOptions {
   InputKind input = InputKind::none;   ///< fitted too, on the knots of `start`'s inputs
   bool errors = true;                  ///< of the parameters too: one more look at all slopes
   double bend = 0.01;                  ///< second difference that the input is believed to have [pu]
+  /// It ends early where it is out of reach: where the goal would be missed even if every step that is left
+  /// took off as large a share of the cost as the better one of the last two.
+  Goal goal = {};
 };
 
 /// Options to go on where `f` ended; beliefs stay about the plant that is fitted.

@@ -37,10 +37,11 @@ Slopes slopes_of(const Setting& setting, std::size_t event, const std::vector<do
 }  // namespace
 
 ScoreTest::ScoreTest(const event::WhitenedEvents& events, const sim::plant::PlantUnderTest& tested,
-                     const Fit& fit)
-    : events_(events), fit_(fit) {
+                     const Fit& fit, bool lenient)
+    : events_(events), fit_(fit), lenient_(lenient) {
   require_noise_of(events, fit);
   Setting setting{&tested.plant, &tested.conventions, &events, {}, kFitTolerance, InputKind::none, {}};
+  setting.lenient = setting.linear_slopes = lenient;
   setting.knots.resize(events.size());
   std::vector<double> at, belief;  // where the fit ended, and what was believed there
   for (const auto& p : fit.parameters) {
@@ -85,7 +86,9 @@ std::optional<Eigen::MatrixXd> ScoreTest::run(const sim::plant::PlantUnderTest& 
   try {
     for (std::size_t e = 0; e < events_.size(); ++e) {
       const event::FitEvent& event = events_[e];
-      const playin::Response r = event::play(tested, event, fit_.events[e].state, along);
+      const playin::Response r =
+          event::play(tested, event, fit_.events[e].state, along,
+                      {.lenient = lenient_, .linear_slopes = lenient_ && !along.empty()});
       event::RowMatrix some(event.values(), all.cols());
       some.col(0) = event.collected(r.value, true);
       for (std::size_t d = 0; d < along.size(); ++d)
@@ -133,7 +136,8 @@ std::vector<std::optional<ScoreTest::Change>> ScoreTest::changes_to(
   Eigen::Index row = 0;
   for (std::size_t e = 0; e < events_.size(); ++e) {
     const event::FitEvent& event = events_[e];
-    const auto all = event::play_together(plants, conventions, event, fit_.events[e].state);
+    const auto all =
+        event::play_together(plants, conventions, event, fit_.events[e].state, {.lenient = lenient_});
     for (std::size_t k = 0; k < plants.size(); ++k) {
       runs[k] = runs[k] && all[k];
       if (!runs[k]) continue;

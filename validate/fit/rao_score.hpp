@@ -14,8 +14,10 @@ namespace swingbank::validate::fit {
 class ScoreTest {
  public:
   /// `fit` is that of `plant`, at its minimum and made with the noise of `events`. The constructor takes one
-  /// look at all slopes.
-  ScoreTest(const event::WhitenedEvents& events, const sim::plant::PlantUnderTest& tested, const Fit& fit);
+  /// look at all slopes. `lenient`: every run has a lenient search's steps and slopes (event::Playing), which
+  /// is enough to tell what is worth a fit.
+  ScoreTest(const event::WhitenedEvents& events, const sim::plant::PlantUnderTest& tested, const Fit& fit,
+            bool lenient = false);
 
   /// A change of the whitened answer, one event after the other, and the part of it that the structure could
   /// make itself.
@@ -55,6 +57,7 @@ class ScoreTest {
 
   const event::WhitenedEvents& events_;
   const Fit& fit_;
+  bool lenient_;
   Eigen::VectorXd residual_;            ///< whitened
   Eigen::MatrixXd slopes_;              ///< [value][parameter, then each event's own]
   Eigen::LDLT<Eigen::MatrixXd> known_;  ///< slopes' and beliefs' curvature

@@ -8,6 +8,9 @@
 namespace swingbank::validate::hypothesis {
 namespace {
 
+/// Runs of one answer that took other steps leave the same up to this share.
+constexpr double kSameRun = 1e-5;
+
 /// Copies the values of the `free` parameters of `like` from one plant to another, where both have them.
 void copy_values(const sim::plant::Plant& from, const sim::plant::Plant& like,
                  const std::vector<fit::FreeParameter>& free, sim::plant::Plant& to) {
@@ -44,6 +47,8 @@ std::vector<double> by_name(const Hypothesis& h, std::vector<double> values,
 }
 
 }  // namespace
+
+bool alike(double left, double other) { return std::abs(left - other) < kSameRun * std::min(left, other); }
 
 double left_by(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
                const std::vector<fit::EventState>& states) {
@@ -102,6 +107,8 @@ void try_further(const Stage& stage, const fit::Fit& leader, Judgement& j) {
   for (std::size_t k = 0; k < starts.size(); ++k)
     if (std::isfinite(left[k])) order.emplace_back(left[k], &starts[k]);
   std::ranges::sort(order);
+  const auto same = std::ranges::unique(order, alike, &std::pair<double, const std::vector<double>*>::first);
+  order.erase(same.begin(), same.end());
   const auto free = free_of(h, stage.spread);
   for (std::size_t k = 0; k < std::min(kFurther, order.size()); ++k) {
     fit::FitOptions o{.lenient = true, .errors = false};

@@ -29,6 +29,10 @@ std::size_t credible(const std::vector<Explanation>& all) {
   return n;
 }
 
+double out_of_reach() {
+  return -2 * thresholds::posterior.scale * std::log(thresholds::posterior.negligible.value);
+}
+
 std::string probability_text(double probability) {
   const double percent = 100 * probability;
   if (percent < 1) return "< 1 %";

@@ -24,6 +24,10 @@ std::vector<Explanation> posterior(std::vector<Explanation> all, double none);
 /// So many of the leading ones make up thresholds::posterior.set.
 std::size_t credible(const std::vector<Explanation>& all);
 
+/// By how much evidence an explanation stands behind another one beside which it is negligible
+/// (thresholds::posterior.negligible) [chi2].
+double out_of_reach();
+
 /// "97 %"; never 0 or 100 %: "< 1 %", "> 99 %".
 std::string probability_text(double probability);
 

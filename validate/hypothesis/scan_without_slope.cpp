@@ -48,6 +48,8 @@ class BlindScan {
     for (std::size_t k = 0; k < plants.size(); ++k)
       if (std::isfinite(left[k])) starts.emplace_back(left[k], std::move(plants[k]));
     std::ranges::sort(starts, {}, &std::pair<double, sim::plant::Plant>::first);
+    const auto same = std::ranges::unique(starts, alike, &std::pair<double, sim::plant::Plant>::first);
+    starts.erase(same.begin(), same.end());
     std::vector<fit::Fit> tried;
     for (const auto& start : std::span(starts).first(std::min(kScanFitted, starts.size())))
       if (fit::Fit f = beside(start.second); f.failed.empty()) tried.push_back(std::move(f));

@@ -8,6 +8,7 @@
 
 #include "base/in_parallel.hpp"
 #include "validate/hypothesis/detail/starts.hpp"
+#include "validate/hypothesis/posterior.hpp"
 
 namespace swingbank::validate::hypothesis {
 namespace {
@@ -20,6 +21,8 @@ constexpr int kNearSteps = 3, kOnwardSteps = 9;
 constexpr int kUnbentSteps = 8;
 /// A fit goes on in so many rounds at most.
 constexpr int kRounds = 5;
+/// Steps that later stages may give it: the noise measured again, further starts.
+constexpr int kLaterSteps = 22;
 /// All hypotheses try so many starts.
 constexpr std::size_t kFirstStarts = 2;
 
@@ -42,23 +45,26 @@ class Searcher {
       // a fit that is worse than nothing has not arrived yet, and another start is left
       for (std::size_t i = 0; i < candidates.size(); ++i)
         if (!candidates[i].unbent.empty() && gain_of(begun[i]) < 0) onward[i] = 1;
+      const double reach = in_reach(begun);
       each(candidates, "fit ", [&](std::size_t i) {
         const Candidate& c = candidates[i];
         if (c.nested.empty())
           tried[i] = hopeless(c);
         else
-          tried[i] = onward[i] && !stage_.stopped() ? near_onward(c, std::move(begun[i]))
+          tried[i] = onward[i] && !stage_.stopped() ? near_onward(c, std::move(begun[i]), reach)
                                                     : judgement(c, std::move(begun[i]));
       });
     } else {
       std::vector<std::vector<fit::Fit>> begun(candidates.size());
-      each(candidates, "first steps ", [&](std::size_t i) {
-        if (!stage_.stopped()) first_steps(candidates[i], kFirstStarts, begun[i]);
-      });
-      const auto fair = promising(candidates, begun, thresholds::search.fair_at_first);
-      each(candidates, "first steps ", [&](std::size_t i) {
-        if (fair[i] && !stage_.stopped()) first_steps(candidates[i], kTries, begun[i]);
-      });
+      const auto start = [&](std::size_t tries, const std::vector<char>& which) {
+        const double reach = in_reach(begun);
+        each(candidates, "first steps ", [&](std::size_t i) {
+          if (which[i] && !stage_.stopped()) first_steps(candidates[i], tries, reach, begun[i]);
+        });
+      };
+      start(1, std::vector<char>(candidates.size(), 1));
+      start(kFirstStarts, std::vector<char>(candidates.size(), 1));
+      start(kTries, promising(candidates, begun, thresholds::search.fair_at_first));
       const auto onward = promising(candidates, begun, thresholds::search.fair);
       each(candidates, "fit ", [&](std::size_t i) {
         tried[i] = onward[i] && !stage_.stopped() ? more_steps(candidates[i], begun[i])
@@ -98,11 +104,19 @@ class Searcher {
   }
   /// Fits the first `tries` starts, the standard values and then the draws, leaving out those that `fits`
   /// holds already.
-  void first_steps(const Candidate& c, std::size_t tries, std::vector<fit::Fit>& fits) const {
+  void first_steps(const Candidate& c, std::size_t tries, double reach, std::vector<fit::Fit>& fits) const {
     fit::FitOptions o = kBriefly;
     o.iterations = kFirstSteps;
+    o.goal = {reach, kFirstSteps + kMoreSteps + kLaterSteps};
     for (std::size_t k = fits.size(); k < std::min(c.starts.size(), tries); ++k)
       fits.push_back(attempt(c, c.starts[k], o));
+  }
+  /// The cost from which a fit is out of reach of the best one so far.
+  static double in_reach(const std::vector<std::vector<fit::Fit>>& begun) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& fits : begun)
+      for (const fit::Fit& f : fits) least = std::min(least, fit::penalised(f));
+    return least + out_of_reach();
   }
   /// What the best of the fits gains over the stage; minus infinity if there is none.
   double gain_of(const std::vector<fit::Fit>& fits) const {
@@ -119,10 +133,9 @@ class Searcher {
     const auto best = std::ranges::max_element(gains);
     std::vector<char> onward;
     for (std::size_t i = 0; i < gains.size(); ++i) {
-      const int slot = candidates[static_cast<std::size_t>(best - gains.begin())].hypothesis.slot;
-      onward.push_back(*best <= 0 || gains[i] >= share * *best ||
-                       gains[i] > *best - thresholds::evidence.within_reach ||
-                       (slot >= 0 && candidates[i].hypothesis.slot == slot));
+      const auto leader = static_cast<std::size_t>(best - gains.begin());
+      onward.push_back(FittedOn{*best, candidates[leader].hypothesis.slot, share}(
+          gains[i], candidates[i].hypothesis.slot));
     }
     return onward;
   }
@@ -173,13 +186,13 @@ class Searcher {
       if (fit::Fit f = from_stage(c, c.nested[k].second, kNearSteps); f.failed.empty())
         fits.push_back(std::move(f));
   }
-  Judgement near_onward(const Candidate& c, std::vector<fit::Fit> fits) const {
+  Judgement near_onward(const Candidate& c, std::vector<fit::Fit> fits, double reach) const {
     if (fits.empty()) return judgement(c, fits);
-    fit::Fit best = in_rounds(c, *std::ranges::min_element(fits, fit::better));
+    fit::Fit best = in_rounds(c, *std::ranges::min_element(fits, fit::better), reach);
     if (!c.unbent.empty())
       if (fit::Fit f = from_stage(c, c.unbent, kUnbentSteps);
           fit::gain(best, f) > -thresholds::evidence.within_reach)
-        fits.push_back(in_rounds(c, std::move(f)));
+        fits.push_back(in_rounds(c, std::move(f), reach));
     fits.push_back(std::move(best));
     return judgement(c, scanned(c, std::move(fits)));
   }
@@ -190,11 +203,12 @@ class Searcher {
                        std::move(*std::ranges::min_element(fits, fit::better)))};
   }
   /// Fits on in rounds, as long as that is worth it.
-  fit::Fit in_rounds(const Candidate& c, fit::Fit best) const {
+  fit::Fit in_rounds(const Candidate& c, fit::Fit best, double reach) const {
     fit::FitOptions o = kBriefly;
     o.iterations = kOnwardSteps;
     const auto free = free_of(c.hypothesis, stage_.spread);
     for (int round = 0; round < kRounds; ++round) {
+      o.goal = {reach, (kRounds - round) * kOnwardSteps + kLaterSteps};
       const fit::Fit from = std::exchange(best, attempt(c, c.starts.front(), fit::continued(o, best, free)));
       const double left = fit::gain(best, stage_.fit);
       const bool gets_there = left < thresholds::search.coming * fit::gain(from, stage_.fit);

@@ -56,6 +56,20 @@ double left_by(const sim::plant::PlantUnderTest& tested, const event::WhitenedEv
 fit::Fit past_blind(const Stage& stage, const Hypothesis& h, const sim::plant::Plant& believed,
                     fit::Fit from);
 
+/// Whether two starts that leave this chi2 are one: what differs between them acts nowhere.
+bool alike(double left, double other);
+/// Whether a hypothesis of this gain and slot is fitted on beside the best one: it has a fair share of its
+/// gain, is within reach of it, or is a rival of its slot.
+struct FittedOn {
+  double best;
+  int slot;
+  double share = thresholds::search.fair;
+  bool operator()(double gain, int its_slot) const {
+    return best <= 0 || gain >= share * best || gain > best - thresholds::evidence.within_reach ||
+           (slot >= 0 && its_slot == slot);
+  }
+};
+
 /// Fits `j`, as try_hypotheses left it, from further starts, with the machine as the leading hypothesis of
 /// its slot found it. A rival must not lose by a poor start.
 void try_further(const Stage& stage, const fit::Fit& leader, Judgement& j);

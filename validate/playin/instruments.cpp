@@ -58,14 +58,15 @@ void thin(std::vector<T>& values, std::size_t stride) {
   values.resize(kept);
 }
 
-/// One run, and its slopes along directions that are not parameters of the instruments.
+/// One run, and its slopes along directions.
 class Observed {
  public:
+  /// `directions` are no parameters of the instruments.
   Observed(const Drive& run, std::span<const Direction> directions)
       : run_(run), chain_(run.plant->measurements), inner_(run), directions_(directions) {
     const record::Record& r = *run.record;
     const double rate = 1 / r.step(), frequency = run.conventions.frequency;
-    const Standing gain = standing(chain_, rate, frequency);
+    const Standing gain = gain_ = standing(chain_, rate, frequency);
     back_ = 1.0 / (gain.V * std::conj(gain.I));
     inner_.voltage_factor = run.voltage_factor / gain.V;
     inner_.start.voltage = run.start.voltage / gain.V;
@@ -77,11 +78,11 @@ class Observed {
   Response run() {
     Response r = drive(inner_, directions_);
     turn_starts(r);
-    const double rate = static_cast<double>(stride_) / run_.record->step();
-    const double frequency = run_.conventions.frequency;
+    const double rate = fine_rate(), frequency = run_.conventions.frequency;
     auto& P = r.value[static_cast<int>(Output::P)];
     auto& Q = r.value[static_cast<int>(Output::Q)];
-    const Power seen = measured(chain_, phasors(r.voltage, P, Q, rate, frequency), stride_);
+    shown_ = phasors(r.voltage, P, Q, rate, frequency);
+    const Power seen = measured(chain_, shown_, stride_);
     for (auto& slope : r.slopes) {
       auto& dP = slope.value[static_cast<int>(Output::P)];
       auto& dQ = slope.value[static_cast<int>(Output::Q)];
@@ -107,8 +108,48 @@ class Observed {
     Q = seen.Q;
     return r;
   }
+  /// Slope along a parameter of an instrument, after run(). Where it leaves standing phasors as they are, the
+  /// plant starts and runs as before, and only what is shown of it moves.
+  [[nodiscard]] Response::Slope along(const Direction& d) const {
+    const auto& record = sim::plant::parameter_record(*run_.plant, d.parameter);
+    const double move = kMove * (record.high - record.low);
+    sim::plant::Plant above = *run_.plant, below = above;
+    sim::plant::parameter_value(above, d.parameter) += move;
+    sim::plant::parameter_value(below, d.parameter) -= move;
+    if (!(stands_as_before(above) && stands_as_before(below))) return along_both(d, above, below, move);
+    const Power more = measured(above.measurements, shown_, stride_),
+                less = measured(below.measurements, shown_, stride_);
+    Response::Slope slope;
+    for (auto& values : slope.value) values.assign(more.P.size(), 0.0);
+    for (std::size_t k = 0; k < more.P.size(); ++k) {
+      slope.value[static_cast<int>(Output::P)][k] = d.scale * (more.P[k] - less.P[k]) / (2 * move);
+      slope.value[static_cast<int>(Output::Q)][k] = d.scale * (more.Q[k] - less.Q[k]) / (2 * move);
+    }
+    return slope;
+  }
 
  private:
+  [[nodiscard]] double fine_rate() const { return static_cast<double>(stride_) / run_.record->step(); }
+  [[nodiscard]] bool stands_as_before(const sim::plant::Plant& moved) const {
+    const Standing gain = standing(moved.measurements, 1 / run_.record->step(), run_.conventions.frequency);
+    return gain.V == gain_.V && gain.I == gain_.I &&
+           (sim::plant::memory(moved.measurements) > 0) == (stride_ > 1);
+  }
+  [[nodiscard]] Response::Slope along_both(const Direction& d, const sim::plant::Plant& above,
+                                           const sim::plant::Plant& below, double move) const {
+    const auto of = [&](const sim::plant::Plant& plant) {
+      Drive moved = run_;
+      moved.plant = &plant;
+      moved.past = nullptr;
+      return Observed(moved, {}).run();
+    };
+    const Response more = of(above), less = of(below);
+    Response::Slope slope;
+    for (int o = 0; o < kOutputs; ++o)
+      for (std::size_t k = 0; k < more.value[o].size(); ++k)
+        slope.value[o].push_back(d.scale * (more.value[o][k] - less.value[o][k]) / (2 * move));
+    return slope;
+  }
   void refine(const record::Record& r) {
     stride_ = kFine;
     fine_.name = r.name;
@@ -142,30 +183,11 @@ class Observed {
   Drive inner_;
   std::span<const Direction> directions_;
   record::Record fine_;
-  Complex back_ = 1;  ///< power in the plant per power measured, of standing phasors
+  Standing gain_;
+  sim::Phasors shown_;  ///< what the chain was shown of the plant
+  Complex back_ = 1;    ///< power in the plant per power measured, of standing phasors
   std::size_t stride_ = 1;
 };
-
-/// Slope along a parameter of an instrument.
-Response::Slope along(const Drive& run, const Direction& d) {
-  const auto& record = sim::plant::parameter_record(*run.plant, d.parameter);
-  const double move = kMove * (record.high - record.low);
-  sim::plant::Plant plant = *run.plant;
-  Drive moved = run;
-  moved.plant = &plant;
-  moved.past = nullptr;
-  double& varied = sim::plant::parameter_value(plant, d.parameter);
-  const double value = varied;
-  varied = value + move;
-  const Response above = Observed(moved, {}).run();
-  varied = value - move;
-  const Response below = Observed(moved, {}).run();
-  Response::Slope slope;
-  for (int o = 0; o < kOutputs; ++o)
-    for (std::size_t k = 0; k < above.value[o].size(); ++k)
-      slope.value[o].push_back(d.scale * (above.value[o][k] - below.value[o][k]) / (2 * move));
-  return slope;
-}
 
 }  // namespace
 
@@ -178,28 +200,52 @@ Response observe(const Drive& run, std::span<const Direction> directions) {
   std::vector<Direction> others;
   std::ranges::copy_if(directions, std::back_inserter(others),
                        [&](const Direction& d) { return !instrument(d); });
-  Response r = Observed(run, others).run();
+  Observed observed(run, others);
+  Response r = observed.run();
   std::vector<Response::Slope> slopes;
   std::size_t next = 0;
   for (const Direction& d : directions)
-    slopes.push_back(instrument(d) ? along(run, d) : std::move(r.slopes[next++]));
+    slopes.push_back(instrument(d) ? observed.along(d) : std::move(r.slopes[next++]));
   r.slopes = std::move(slopes);
   return r;
 }
 
-bool can_be_taken_back(const sim::Effect& instrument) {
-  constexpr double kAway = 0.05;  // of the range: beyond what rounding hides
+namespace {
+
+constexpr int kProbeSamples = 64;
+
+/// What an instrument is probed with: moving phasors.
+sim::Phasors probe() {
+  constexpr double kRate = 240.0;
+  sim::Phasors p{kRate, 60.0, {}, {}, std::vector<double>(kProbeSamples, 0.0)};
+  for (int k = 0; k < kProbeSamples; ++k) {
+    p.V.push_back(std::polar(1.0 + 1e-3 * k, 2e-3 * k));
+    p.I.push_back(std::polar(0.7 - 2e-3 * k, 1e-3 * k));
+  }
+  return p;
+}
+/// Its parameters away from neutral, beyond what rounding hides.
+std::vector<double> away_from_neutral(const sim::Effect& instrument) {
+  constexpr double kAway = 0.05;  // of the range
   auto p = instrument.standard_parameters();
   for (std::size_t i = 0; i < p.size(); ++i)
     if (const auto& record = instrument.parameters[i]; !record.is_code())
       p[i] = std::clamp(p[i] + kAway * (record.high - record.low), record.low, record.high);
-  constexpr int kProbeSamples = 64;
-  constexpr double kRate = 240.0;
-  sim::Phasors once{kRate, 60.0, {}, {}, std::vector<double>(kProbeSamples, 0.0)};
-  for (int k = 0; k < kProbeSamples; ++k) {
-    once.V.push_back(std::polar(1.0 + 1e-3 * k, 2e-3 * k));
-    once.I.push_back(std::polar(0.7 - 2e-3 * k, 1e-3 * k));
-  }
+  return p;
+}
+
+}  // namespace
+
+bool touches_phasors(const sim::Effect& instrument) {
+  const sim::Phasors before = probe();
+  sim::Phasors after = before;
+  instrument.measure(away_from_neutral(instrument).data(), 1, after);
+  return after.V != before.V || after.I != before.I;
+}
+
+bool can_be_taken_back(const sim::Effect& instrument) {
+  const auto p = away_from_neutral(instrument);
+  sim::Phasors once = probe();
   const auto before = once.V;
   sim::Phasors twice = once;
   for (auto* channel : {&twice.V, &twice.I})

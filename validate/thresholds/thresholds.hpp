@@ -52,6 +52,8 @@ struct Posterior {
                 "the most probable explanations that make up this much are the set (decision 41)"};
   Threshold told{"posterior.told", 0.5, "probability",
                  "which of the set comes first is told above this (decision 41)"};
+  Threshold negligible{"posterior.negligible", 1e-4, "probability beside the leading one",
+                       "what cannot become more probable is not fitted on (decision 45)"};
 };
 inline constexpr Posterior posterior;
 

@@ -61,6 +61,7 @@ struct Setting {
   InputKind input;
   std::vector<std::vector<double>> knots;  ///< of the input, per event [s]
   bool lenient = false;                    ///< of the search; see FitOptions
+  bool linear_slopes = false;              ///< see event::Playing
   bool goes_on = false;                    ///< with slopes that foretold a step well, if lenient
   bool can_exist = false;  ///< the plant to start from; the search then stays among such plants
 };

@@ -152,7 +152,7 @@ event::RowMatrix EventCost::values(const double* z, const double* state, bool sl
                                            {.tolerance = setting_.tolerance,
                                             .lenient = setting_.lenient,
                                             .allowance = &allowance_,
-                                            .linear_slopes = setting_.lenient,
+                                            .linear_slopes = setting_.linear_slopes,
                                             .past = &last_.past,
                                             .input = setting_.input});
     const auto n = static_cast<Eigen::Index>(along.size());

@@ -41,7 +41,7 @@ bool unheard(const Hypothesis& h) {
 
 StartFinder::StartFinder(const Stage& stage) : stage_(stage) {
   if (stage.fit.misfit() < thresholds::search.nearly_fits)
-    score_.emplace(stage.events, stage.under_test(), stage.fit);
+    score_.emplace(stage.events, stage.under_test(), stage.fit, true);
 }
 
 Candidate StartFinder::of(Hypothesis h) const {
@@ -234,12 +234,18 @@ void StartFinder::score(const Hypothesis& h, std::size_t looks, Candidate& c) co
   };
   std::vector<fit::ScoreTest::Change> changes;
   std::vector<std::pair<double, std::vector<double>>> starts;
-  std::size_t looked_at = 0;
-  for (const auto& start : h.starts) {
-    const bool scored = looked_at++ < looks;
-    if (!scored && !which.empty()) break;
-    const auto values = beside_fit(h, start);
-    auto whole = score_->change_to({with_values(h, free, values), h.conventions});
+  const std::size_t looked = which.empty() ? h.starts.size() : std::min(looks, h.starts.size());
+  std::vector<std::vector<double>> values_of_start;
+  std::vector<sim::plant::Plant> plants;
+  for (const auto& start : std::span(h.starts).first(looked)) {
+    values_of_start.push_back(beside_fit(h, start));
+    plants.push_back(with_values(h, free, values_of_start.back()));
+  }
+  auto wholes = score_->changes_to(plants, h.conventions);
+  for (std::size_t k = 0; k < looked; ++k) {
+    const bool scored = k < looks;
+    const auto& values = values_of_start[k];
+    auto& whole = wholes[k];
     if (!whole) continue;
     if (which.empty()) starts.emplace_back(whole->rise(), values);
     if (!scored) continue;
