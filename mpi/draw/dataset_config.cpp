@@ -450,7 +450,7 @@ DatasetConfig read_dataset_config(const fs::path& file, const Overrides& overrid
   read_record(c, d.record);
   read_operating_point(c, d.operating_point);
   d.tolerance = c.optional<double>("kernel.tolerance", 1e-6, {1e-12, 1e-2, ""});
-  d.lanes = static_cast<int>(c.optional<std::int64_t>("kernel.lanes", 0, {0, 8, ""}));
+  d.lanes = static_cast<int>(c.optional<std::int64_t>("kernel.lanes", 0, {0, 16, ""}));
   if (d.fault.start + d.fault.longest >= d.record.t_end && d.record.t_end > 0)
     c.problem("fault.start", fmt::format("a fault until {} s", d.fault.start + d.fault.longest),
               fmt::format("the record ends at {} s", d.record.t_end),

@@ -42,6 +42,32 @@ struct EngineOf final : Engine {
 };
 }  // namespace detail
 
+namespace {
+/// Sixteen lanes in float: currents that are sought (algebra.hpp) are found to 1e-13, which a float cannot
+/// tell.
+void refuse_in_float(const grid::Grid& grid) {
+  Problems problems;
+  const auto refuse = [&](const std::string& what, const std::string& why) {
+    problems.add(what + " in lanes of float", "option lanes", why, "choose 8 lanes, or 0");
+  };
+  for (const plant::Plant& plant : grid.plants) {
+    const Effect& machine = *plant.machine.effect;
+    if (machine.get<double>().machine.current != nullptr)
+      refuse(fmt::format("{} at {}", machine.name, plant.name),
+             "its current is no linear function of the voltage");
+    std::vector<const Effect*> effects{&machine};
+    for (const plant::Block& block : plant.controls) effects.push_back(block.effect);
+    for (const Effect* effect : effects)
+      if (!has_float_ops(*effect))
+        refuse(fmt::format("{} at {}", effect->name, plant.name), "a law file is evaluated in double");
+  }
+  for (const plant::Consumer& load : grid.loads)
+    refuse(fmt::format("{} at {}", load.block.effect->name, load.name),
+           "its current is no linear function of the voltage");
+  problems.raise();
+}
+}  // namespace
+
 struct Batch::Impl {
   BatchOptions options;
   std::unique_ptr<detail::Engine> engine;
@@ -77,9 +103,14 @@ Batch::Batch(const grid::Grid& grid, BatchOptions options) : impl_(std::make_uni
     case 8:
       impl_->engine = std::make_unique<detail::EngineOf<P8>>(grid, options);
       break;
+    case FloatPack::lanes:
+      refuse_in_float(grid);
+      impl_->engine = std::make_unique<detail::EngineOf<FloatPack>>(grid, options);
+      break;
     default:
       throw InputError({fmt::format("{} lanes", options.lanes), "option lanes",
-                        "the kernel is built for 1, 4 and 8", "choose one of these, or 0 for the widest"});
+                        "the kernel is built for 1, 4, 8 and, in float, 16",
+                        "choose one of these, or 0 for the widest in double"});
   }
 }
 Batch::~Batch() = default;
@@ -90,8 +121,9 @@ void Batch::run(const std::function<bool(Job&)>& next,
 }
 
 std::string Batch::variant() const {
-  return fmt::format("dp54 lanes={} isa={} tol={:g} angles=moved", impl_->options.lanes, instruction_set(),
-                     impl_->options.tolerance);
+  const int lanes = impl_->options.lanes;
+  return fmt::format("dp54 lanes={}{} isa={} tol={:g} angles=moved", lanes,
+                     lanes == FloatPack::lanes ? " float" : "", instruction_set(), impl_->options.tolerance);
 }
 
 }  // namespace swingbank::sim::lanes

@@ -19,7 +19,7 @@ struct BatchOptions {
   double tolerance = 1e-6;        ///< error per step, weighted maximum norm over the states
   std::vector<int> plants;        ///< recorded; empty: all
   std::vector<Channel> channels;  ///< recorded; empty: all of kChannels
-  int lanes = 0;                  ///< 1, 4 or 8; 0: the widest this build was made for
+  int lanes = 0;  ///< 1, 4 or 8 in double, 16 in float (decision 46); 0: the widest in double of this build
   /// A run ends where a rotor angle has moved by so much against another's of the same island since the start
   double lose_at = constants::pi;  ///< [rad]
   bool sensitivities = false;      ///< carry derivatives along Job::seeds; always 8 lanes
@@ -54,13 +54,15 @@ std::map<int, plant::Plant> changed_plants(const grid::Grid& grid, const Job& jo
 
 class Batch {
  public:
+  /// Throws InputError: a number of lanes that is not built; sources or law files that cannot run in float.
   Batch(const grid::Grid& grid, BatchOptions options);
   ~Batch();
   /// Runs jobs until `next` returns false. `done` is called once per job, in the order they finish; the
   /// trajectory is only valid during the call. An InputError of a job (operating point refused) is thrown.
   void run(const std::function<bool(Job&)>& next,
            const std::function<void(const Job&, const Trajectory&)>& done);
-  /// "dp54 lanes=8 isa=avx512 tol=1e-06 angles=moved": part of a dataset's config hash.
+  /// "dp54 lanes=8 isa=avx512 tol=1e-06 angles=moved", "dp54 lanes=16 float isa=...": part of a dataset's
+  /// config hash.
   [[nodiscard]] std::string variant() const;
 
  private:

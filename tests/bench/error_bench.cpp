@@ -1,6 +1,6 @@
 // Worst error of the lanes against the reference integrator over the events of bench_kernel that it finds
-// stable, without controls and with: of max(1 pu, the channel's swing), samples within 2 ms of a switching
-// left out.
+// stable, without controls and with, in double and in float: of max(1 pu, the channel's swing), samples
+// within 2 ms of a switching left out.
 //   bench_error RAW DYR [events]
 #include <algorithm>
 #include <cmath>
@@ -58,11 +58,13 @@ void compare(const grid::Grid& grid, const lanes::Job& job, const Trajectory& ru
   worst.beyond += event > 1e-4;
 }
 
-void report(const char* what, const grid::Grid& grid, int count) {
+void report(const char* what, const grid::Grid& grid, int count, int lanes) {
   const auto list = jobs(grid, count);
   std::size_t at = 0;
   Worst worst;
-  lanes::Batch batch(grid, lanes::BatchOptions{});
+  lanes::BatchOptions options;
+  options.lanes = lanes;
+  lanes::Batch batch(grid, options);
   batch.run([&](lanes::Job& job) { return at < list.size() && (job = list[at++], true); },
             [&](const lanes::Job& job, const Trajectory& run) { compare(grid, job, run, worst); });
   std::printf("%-16s worst error %.2g (%s), %d of %d stable events beyond 1e-4, %d with another outcome\n",
@@ -78,8 +80,11 @@ int main(int argc, char** argv) {
   try {
     const grid::Grid grid = grid::load_grid(argv[1], argv[2], Conventions::psse());
     const int count = argc > 3 ? std::atoi(argv[3]) : 400;
-    report("machines alone", grid, count);
-    report("controls on all", controlled(grid), count);
+    for (const int lanes : {8, 16}) {
+      std::printf("%s\n", lanes == 8 ? "8 lanes in double" : "16 lanes in float");
+      report("machines alone", grid, count, lanes);
+      report("controls on all", controlled(grid), count, lanes);
+    }
   } catch (const swingbank::InputError& e) {
     std::fprintf(stderr, "%s\n", e.what());
     return 1;

@@ -101,14 +101,18 @@ int main(int argc, char** argv) {
                                {"reference integrator, all recorded", 0, false, false},
                                {"8 lanes, one generator recorded", 8, true, false},
                                {"8 lanes, controls on all, all recorded", 8, false, true},
-                               {"8 lanes, controls on all, one recorded", 8, true, true}};
+                               {"8 lanes, controls on all, one recorded", 8, true, true},
+                               {"16 floats, all generators recorded", 16, false, false},
+                               {"16 floats, one generator recorded", 16, true, false},
+                               {"16 floats, controls on all, all recorded", 16, false, true},
+                               {"16 floats, controls on all, one recorded", 16, true, true}};
     if (argc > 5)
       std::erase_if(cases, [&](const Case& c) {
         return std::string_view(c.what).find(argv[5]) == std::string_view::npos;
       });
 #ifdef SWINGBANK_COUNT_FLOPS
     for (auto& c : cases) {
-      if (c.lanes < 4) continue;
+      if (c.lanes != 4 && c.lanes != 8) continue;  // packs of doubles are counted
       round(c, c.controls ? with_controls : grid, list);
       std::printf("%-40s %7.2f million operations per event, %d events\n", c.what, 1e-6 * c.operations,
                   c.events);

@@ -6,6 +6,7 @@
 #include <immintrin.h>
 #endif
 
+#include "sim/core/float_pack.hpp"
 #include "sim/core/scalar.hpp"
 
 namespace swingbank::sim::lanes {
@@ -16,6 +17,7 @@ struct LaneTraits;
 template <>
 struct LaneTraits<double> {
   using Flat = double;
+  using Real = double;  ///< of one lane
   static constexpr int lanes = 1, directions = 0;
   static double get(double v, int) { return v; }
   static void set(double& v, int, double a) { v = a; }
@@ -30,6 +32,7 @@ struct LaneTraits<double> {
 template <int N>
 struct LaneTraits<Pack<N>> {
   using Flat = Pack<N>;
+  using Real = double;
   static constexpr int lanes = N, directions = 0;
   static double get(const Pack<N>& v, int l) { return v.v[l]; }
   static void set(Pack<N>& v, int l, double a) { reinterpret_cast<double*>(&v)[l] = a; }
@@ -56,12 +59,57 @@ struct LaneTraits<Pack<N>> {
   static Pack<N> constant(const Pack<N>& v) { return v; }
   static Pack<N> magnitude(const Pack<N>& v) { return Pack<N>(v.v > -v.v ? v.v : -v.v); }
 };
+template <>
+struct LaneTraits<FloatPack> {
+  using Flat = FloatPack;
+  using Real = float;
+  static constexpr int lanes = FloatPack::lanes, directions = 0;
+  static double get(const FloatPack& v, int l) { return v.v[l]; }
+  static void set(FloatPack& v, int l, double a) { reinterpret_cast<float*>(&v)[l] = static_cast<float>(a); }
+  static FloatPack::Mask mask(unsigned bits) {
+#ifdef __AVX512F__
+    return FloatPack::Mask(_mm512_maskz_set1_epi32(static_cast<__mmask16>(bits), -1));
+#else
+    FloatPack::Mask m;
+    for (int l = 0; l < lanes; ++l) m[l] = -static_cast<std::int32_t>((bits >> l) & 1U);
+    return m;
+#endif
+  }
+  static FloatPack load(const float* v) {
+    FloatPack p;
+    __builtin_memcpy(&p, v, sizeof p);
+    return p;
+  }
+  static void store(const FloatPack& v, float* to) { __builtin_memcpy(to, &v, sizeof v); }
+  // Times, errors and records are double.
+  static FloatPack load(const double* v) {
+    FloatPack p;
+    for (int l = 0; l < lanes; ++l) p.v[l] = static_cast<float>(v[l]);
+    return p;
+  }
+  static void store(const FloatPack& v, double* to) {
+    for (int l = 0; l < lanes; ++l) to[l] = v.v[l];
+  }
+  static void stream(const FloatPack& v, double* to) {
+#ifdef __AVX512F__
+    const auto halves = (__m512d)v.v;
+    _mm512_stream_pd(to, _mm512_cvtps_pd((__m256)_mm512_castpd512_pd256(halves)));
+    _mm512_stream_pd(to + 8, _mm512_cvtps_pd((__m256)_mm512_extractf64x4_pd(halves, 1)));
+#else
+    store(v, to);
+#endif
+  }
+  static FloatPack value(const FloatPack& v) { return v; }
+  static FloatPack constant(const FloatPack& v) { return v; }
+  static FloatPack magnitude(const FloatPack& v) { return v.v > -v.v ? v.v : -v.v; }
+};
 /// Sensitivities ride in the lanes: a value is 1 + D flats, one after the other.
 template <int N, int D>
 struct LaneTraits<Dual<Pack<N>, D>> {
   using T = Dual<Pack<N>, D>;
   using Flat = Pack<N>;
   using Of = LaneTraits<Flat>;
+  using Real = double;
   static constexpr int lanes = N, directions = D;
   static_assert(sizeof(T) == (1 + D) * sizeof(Flat));
   static double get(const T& v, int l) { return v.a.v[l]; }
@@ -105,6 +153,9 @@ template <int N>
 inline Pack<N> absolute(Pack<N> a) {
   return maximum(a, -a);
 }
+inline FloatPack maximum(FloatPack a, FloatPack b) { return a.v > b.v ? a.v : b.v; }
+inline FloatPack minimum(FloatPack a, FloatPack b) { return a.v < b.v ? a.v : b.v; }
+inline FloatPack absolute(FloatPack a) { return maximum(a, -a); }
 inline double round_nearest(double a) { return std::nearbyint(a); }
 template <class T, int D>
 Dual<T, D> maximum(const Dual<T, D>& a, const Dual<T, D>& b) {

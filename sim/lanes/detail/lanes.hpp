@@ -1,11 +1,12 @@
 #pragma once
-// The lanes kernel for one scalar type (double: one lane, Pack<N>: N lanes). See batch.hpp for what it
-// promises.
+// The lanes kernel for one scalar type (double: one lane, Pack<N>: N lanes, FloatPack: sixteen). See
+// batch.hpp for what it promises.
 #include <cmath>
 #include <limits>
 #include <map>
 #include <string>
 
+#include "sim/core/float_ops.hpp"
 #include "sim/lanes/detail/internal_network.hpp"
 #include "sim/lanes/detail/lane_schedule.hpp"
 #include "sim/lanes/detail/lane_traits.hpp"
@@ -34,6 +35,9 @@ class Lanes {
  private:
   using Traits = LaneTraits<T>;
   using Flat = typename Traits::Flat;
+  using Real = typename Traits::Real;
+  /// States are then carried as the sum of two, and lose nothing from step to step.
+  static constexpr bool kCarries = std::is_same_v<Real, float>;
   /// Of dp54::kink in the error: 0.03 would bound what a kink leaves by the tolerance, this by ten times it.
   static constexpr double kKinkShare = 0.003;
   /// What a kink leaves shows at once, however soon it is gone: a state weighs at least this much there.
@@ -109,6 +113,9 @@ class Lanes {
   void record_step(const T& h, unsigned accepted, const double* start, const double* tried);
   void interpolate(const T& h, const double* start, const double* tried);
   void dense(std::size_t state, const T& h, Flat* rows) const;
+  /// States of the waiting samples: [pack][state][sample of the pack].
+  static Real* waiting(LaneRun& run) { return reinterpret_cast<Real*>(run.waiting.data()); }
+  static const Real* waiting(const LaneRun& run) { return reinterpret_cast<const Real*>(run.waiting.data()); }
   const T* waiting_pack(const LaneRun& run, int first, const std::vector<int>& states, T* room) const;
   void evaluate_pending(int lane, int count);
   void drop_waiting(LaneRun& run, int count);
@@ -195,14 +202,15 @@ class Lanes {
   std::vector<double> weight_;  ///< per state, already divided by the tolerance
 
   Constants per_lane_, per_sample_;
-  std::vector<T> m_, er_, ei_;  ///< scratch of one evaluation
-  std::vector<T> ir_, ii_;      ///< likewise, where shares_
-  Signals<T> signals_;          ///< likewise: zeroing one per plant would cost 25 packs
-  std::vector<T> algebra_;      ///< scratch of newton_step
-  std::vector<T> steady_;       ///< currents of the linear sources at the nonlinear ones
-  T time_{}, start_{};          ///< of the evaluation, of the step, per lane [s]
-  std::vector<T> y_, trial_;    ///< states
-  std::vector<T> rest_;         ///< rotor angle of each plant at its operating point [rad]
+  std::vector<T> m_, er_, ei_;   ///< scratch of one evaluation
+  std::vector<T> ir_, ii_;       ///< likewise, where shares_
+  Signals<T> signals_;           ///< likewise: zeroing one per plant would cost 25 packs
+  std::vector<T> algebra_;       ///< scratch of newton_step
+  std::vector<T> steady_;        ///< currents of the linear sources at the nonlinear ones
+  T time_{}, start_{};           ///< of the evaluation, of the step, per lane [s]
+  std::vector<T> y_, trial_;     ///< states
+  std::vector<T> carry_, move_;  ///< where kCarries: what y_ does not hold, what a step adds to it
+  std::vector<T> rest_;          ///< rotor angle of each plant at its operating point [rad]
   std::vector<T> k_[plant::dp54::kStages];
   std::vector<T> kept_, unused_;
   std::vector<LaneRun> lanes_;

@@ -109,6 +109,8 @@ void Lanes<T>::reserve() {
   steady_.assign(free, T(0.0));
   for (auto* v : {&er_, &ei_}) v->assign(sources, T(0.0));
   for (auto* v : {&y_, &trial_, &kept_, &unused_}) v->assign(states, T(0.0));
+  if constexpr (kCarries)
+    for (auto* v : {&carry_, &move_}) v->assign(states, T(0.0));
   rest_.assign(n, T(0.0));
   islands_ = std::ranges::max(network::islands(grid_.network)) + 1;
   for (auto& k : k_) k.assign(states, T(0.0));
@@ -187,6 +189,8 @@ void Lanes<T>::load(int lane) {
     Traits::set(per_lane_.vr[i], lane, at.s.Vr);
     Traits::set(per_lane_.vi[i], lane, at.s.Vi);
   }
+  if constexpr (kCarries)
+    for (T& carried : carry_) Traits::set(carried, lane, 0.0);
   find_moving();
   find_weights();
   run.segment = 0;
@@ -198,8 +202,8 @@ template <class T>
 void Lanes<T>::find_moving() {
   const auto zero = [this](int coefficient) {
     if (coefficient < 0) return true;
-    const double* v = reinterpret_cast<const double*>(&per_lane_.c[static_cast<std::size_t>(coefficient)]);
-    return std::all_of(v, v + kFlats * kLanes, [](double a) { return a == 0.0; });
+    const Real* v = reinterpret_cast<const Real*>(&per_lane_.c[static_cast<std::size_t>(coefficient)]);
+    return std::all_of(v, v + kFlats * kLanes, [](Real a) { return a == 0; });
   };
   std::vector<char> still(y_.size());
   for (const Resting& r : resting_)
@@ -251,6 +255,15 @@ void Lanes<T>::load_seeded(int lane, const std::map<int, plant::Plant>& changed)
   }
 }
 
+/// The last moment before an instant at which effects may jump, in a lane's own precision [s].
+template <class Real>
+double moment_before(double instant) {
+  if constexpr (std::is_same_v<Real, float>)
+    return std::nextafter(static_cast<float>(instant), 0.0F);
+  else
+    return instant - plant::kBeforeSwitching;
+}
+
 /// Puts the matrices of the lane's current segment into place and starts the step control anew.
 template <class T>
 void Lanes<T>::enter_segment(int lane) {
@@ -282,7 +295,7 @@ void Lanes<T>::enter_segment(int lane) {
   const bool last = run.segment + 1 >= run.segments.size();
   const double end = last ? options_.t_end : run.segments[run.segment + 1].start;
   Traits::set(per_lane_.last_moment, lane,
-              last ? std::numeric_limits<double>::max() : end - plant::kBeforeSwitching);
+              last ? std::numeric_limits<Real>::max() : moment_before<Real>(end));
   run.clock.restart(std::min(end, options_.t_end));
   fresh_ |= 1U << lane;
 }
@@ -310,8 +323,8 @@ void Lanes<T>::record_steady_start(int lane) {
 /// Fills a lane's waiting room with its operating point: what rests is not interpolated.
 template <class T>
 void Lanes<T>::fill_waiting(int lane) {
-  double* to = lanes_[static_cast<std::size_t>(lane)].waiting.data();
-  const double* from = reinterpret_cast<const double*>(y_.data()) + lane;
+  Real* to = waiting(lanes_[static_cast<std::size_t>(lane)]);
+  const Real* from = reinterpret_cast<const Real*>(y_.data()) + lane;
   for (int pack = 0; pack < kRoom / kLanes; ++pack)
     for (std::size_t i = 0; i < y_.size() * kFlats; ++i, to += kLanes)
       std::fill(to, to + kLanes, from[i * kLanes]);
@@ -374,7 +387,7 @@ void Lanes<T>::begin_record(LaneRun& run) const {
   record.outcome = Outcome::stable;
   record.largest_spread = 0.0;
   run.recorded = run.pending = 0;
-  run.waiting.resize(y_.size() * kFlats * kRoom);
+  run.waiting.resize(y_.size() * kFlats * kRoom * sizeof(Real) / sizeof(double));
   run.theta.assign(recorded_.size(), 0.0);
 }
 

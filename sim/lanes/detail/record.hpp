@@ -58,8 +58,8 @@ template <class T>
 void Lanes<T>::interpolate(const T& h, const double* start, const double* tried) {
   using Of = LaneTraits<Flat>;
   struct Pass {
-    Flat a, b;   ///< theta, 1 - theta
-    double* to;  ///< the pack's first state
+    Flat a, b;  ///< theta, 1 - theta
+    Real* to;   ///< the pack's first state
     int lane, offset;
     decltype(Of::mask(0U)) later;  ///< samples of this pack, not of the next
   };
@@ -78,24 +78,24 @@ void Lanes<T>::interpolate(const T& h, const double* start, const double* tried)
         theta[(s + offset) % kLanes] = std::min(1.0, ((first + s) * spacing - start[due.lane]) * inverse);
       const Flat a = Of::load(theta);
       const auto pack = static_cast<std::size_t>((run.pending + done) / kLanes);
-      passes[count++] = {a,        Flat(1.0) - a, run.waiting.data() + pack * flats,
+      passes[count++] = {a,        Flat(1.0) - a, waiting(run) + pack * flats,
                          due.lane, offset,        Of::mask(~((1U << offset) - 1U))};
     }
   }
   for (const int state : sampled_) {
     Flat rows[5 * kFlats];
     dense(static_cast<std::size_t>(state), h, rows);
-    const double* d = reinterpret_cast<const double*>(rows);
+    const Real* d = reinterpret_cast<const Real*>(rows);
     constexpr std::size_t row = kFlats * kLanes;
     const std::size_t place = static_cast<std::size_t>(state) * row;
     for (std::size_t k = 0; k < count; ++k) {
       const Pass& p = passes[k];
       for (std::size_t f = 0; f < kFlats; ++f) {
-        const double* at = d + f * kLanes + p.lane;
+        const Real* at = d + f * kLanes + p.lane;
         const Flat value =
             Flat(at[0]) + p.a * (Flat(at[row]) + p.b * (Flat(at[2 * row]) +
                                                         p.a * (Flat(at[3 * row]) + p.b * Flat(at[4 * row]))));
-        double* to = p.to + place + f * kLanes;
+        Real* to = p.to + place + f * kLanes;
         if (p.offset == 0) {
           Of::store(value, to);
         } else {
@@ -113,7 +113,7 @@ void Lanes<T>::spread_constants(int lane) {
   const auto copy = [lane](const std::vector<T>& from, std::vector<T>& to, std::size_t first,
                            std::size_t count) {
     if (count == 0) return;  // an empty vector has no address to count from
-    const double* __restrict source = reinterpret_cast<const double*>(from.data()) + lane;
+    const Real* __restrict source = reinterpret_cast<const Real*>(from.data()) + lane;
     Flat* __restrict target = reinterpret_cast<Flat*>(to.data());
     for (std::size_t i = first * kFlats; i < (first + count) * kFlats; ++i)
       target[i] = Flat(source[i * kLanes]);
@@ -148,9 +148,9 @@ const T* Lanes<T>::waiting_pack(const LaneRun& run, int first, const std::vector
                                 T* room) const {
   const std::size_t flats = y_.size() * kFlats * kLanes;
   const int offset = first % kLanes;
-  const double* from = run.waiting.data() + static_cast<std::size_t>(first / kLanes) * flats;
+  const Real* from = waiting(run) + static_cast<std::size_t>(first / kLanes) * flats;
   if (offset == 0) return reinterpret_cast<const T*>(from);
-  double* to = reinterpret_cast<double*>(room);
+  Real* to = reinterpret_cast<Real*>(room);
   for (const int state : states) {
     const std::size_t place = static_cast<std::size_t>(state) * kFlats * kLanes;
     for (std::size_t i = place; i < place + kFlats * kLanes; i += kLanes)
@@ -193,7 +193,7 @@ void Lanes<T>::drop_waiting(LaneRun& run, int count) {
   run.pending -= count;
   for (int moved = 0; moved < run.pending; moved += kLanes) {
     const T* from = waiting_pack(run, count + moved, sampled_, kept_.data());
-    T* to = reinterpret_cast<T*>(run.waiting.data() + static_cast<std::size_t>(moved) * y_.size() * kFlats);
+    T* to = reinterpret_cast<T*>(waiting(run) + static_cast<std::size_t>(moved) * y_.size() * kFlats);
     for (const int state : sampled_) to[state] = from[state];
   }
 }

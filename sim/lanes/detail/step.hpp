@@ -33,7 +33,12 @@ void Lanes<T>::stage(const T& h) {
     T sum = T(plant::dp54::a[Stage][0]) * k_[0][i];
     for (int j = 1; j < Stage; ++j)
       if (plant::dp54::a[Stage][j] != 0.0) sum = sum + T(plant::dp54::a[Stage][j]) * k_[j][i];
-    trial[i] = y[i] + h * sum;
+    if constexpr (kCarries) {
+      move_[i] = carry_[i] + h * sum;
+      trial[i] = y[i] + move_[i];
+    } else {
+      trial[i] = y[i] + h * sum;
+    }
   }
   if (timed_) time_ = start_ + T(plant::dp54::c[Stage]) * h;
   derivative(trial, k_[Stage].data());
@@ -112,7 +117,7 @@ typename Lanes<T>::Flat Lanes<T>::kink_error(std::size_t state) const {
 /// How far apart the rotor angles have moved since the start, over all plants.
 template <class T>
 T Lanes<T>::spread(const T* x) const {
-  T low(std::numeric_limits<double>::max()), high = -low;
+  T low(std::numeric_limits<Real>::max()), high = -low;
   for (std::size_t i = 0; i < plants_.size(); ++i) {
     if (!plants_[i].rotor) continue;
     const T delta = x[plants_[i].x] - rest_[i];
@@ -154,6 +159,11 @@ void Lanes<T>::commit(unsigned accepted) {
   const auto ok = Traits::mask(accepted);
   for (const int state : moving_) {
     const auto i = static_cast<std::size_t>(state);
+    if constexpr (kCarries) {  // Knuth's sum of two: the sum and what it lost
+      const T added = trial_[i] - y_[i];
+      const T lost = (y_[i] - (trial_[i] - added)) + (move_[i] - added);
+      carry_[i] = select(ok, lost, carry_[i]);
+    }
     y_[i] = select(ok, trial_[i], y_[i]);
     k_[0][i] = select(ok, k_[6][i], k_[0][i]);
   }
@@ -175,7 +185,11 @@ void Lanes<T>::clamp_states() {
   alignas(64) double by[kLanes];
   LaneTraits<Flat>::store(Traits::value(moved), by);
   for (int l = 0; l < kLanes; ++l)
-    if (by[l] > 0.0) fresh_ |= 1U << l;
+    if (by[l] > 0.0) {
+      fresh_ |= 1U << l;
+      if constexpr (kCarries)
+        for (const int state : stopped_) Traits::set(carry_[static_cast<std::size_t>(state)], l, 0.0);
+    }
 }
 
 /// After a step: lanes that lost synchronism or came to their end are handed over, lanes at a switching

@@ -179,9 +179,9 @@ struct Difference {
   std::string where;
 };
 
-/// Worst difference over all channels, away from the switchings.
+/// Worst difference over all channels, away from the switchings. One of Efd counts as `efd` of it.
 inline Difference difference(const grid::Grid& grid, const network::Event& event, const Trajectory& a,
-                             const Trajectory& b) {
+                             const Trajectory& b, double efd = 1.0) {
   constexpr double near = 2e-3;  // samples this close to a switching are left out [s]
   std::vector<double> instants, jumps;
   for (const plant::Plant& p : grid.plants)
@@ -191,15 +191,16 @@ inline Difference difference(const grid::Grid& grid, const network::Event& event
   const auto channels = static_cast<int>(a.channels.size());
   for (int row = 0; row < a.rows(); ++row) {
     const auto [low, high] = std::minmax_element(b.row(row), b.row(row) + b.samples);
-    const double unit = std::max(1.0, *high - *low);
+    const auto channel = a.channels[static_cast<std::size_t>(row % channels)];
+    const double unit = std::max(1.0, *high - *low) / (channel == Channel::Efd ? efd : 1.0);
     for (int k = 0; k < a.samples; ++k) {
       const double t = k / a.rate, error = std::abs(a.row(row)[k] - b.row(row)[k]) / unit;
       if (error <= worst.value) continue;
       if (std::ranges::any_of(instants, [&](double i) { return std::abs(t - i) < near; })) continue;
-      const auto channel = static_cast<std::size_t>(a.channels[static_cast<std::size_t>(row % channels)]);
       worst.value = error;
       worst.where = grid.plants[static_cast<std::size_t>(row / channels)].name + "." +
-                    std::string(kChannels[channel].name) + " at " + std::to_string(t) + " s";
+                    std::string(kChannels[static_cast<std::size_t>(channel)].name) + " at " +
+                    std::to_string(t) + " s";
     }
   }
   return worst;

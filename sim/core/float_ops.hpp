@@ -1,0 +1,34 @@
+#pragma once
+// Effects' equations in single precision: what a step needs of them, and no more. Operating points and
+// coefficients are found in double.
+#include "sim/core/effect.hpp"
+#include "sim/core/float_pack.hpp"
+
+namespace swingbank::sim {
+
+/// Whether the effect's equations are there in single precision: a compiled effect's are, a law file's not.
+bool has_float_ops(const Effect& effect);
+/// Only where has_float_ops(). Generated, as the registry is.
+template <>
+const Ops<FloatPack>& Effect::get<FloatPack>() const;
+
+// ---- used by the generated table only ----------------------------------------------------------------
+template <class M>
+Ops<FloatPack> make_float_ops() {
+  using T = FloatPack;
+  Ops<T> o;
+  if constexpr (M::slot == Slot::machine) {
+    o.machine.emf = &M::template emf<T>;
+    o.machine.electrical = &M::template electrical<T>;
+    o.machine.derivative = &M::template derivative<T>;
+    if constexpr (requires { &M::template current<T>; }) o.machine.current = &M::template current<T>;
+  } else if constexpr (is_control(M::slot)) {
+    o.control.evaluate = +[](const void*, const T* c, const T* x, Signals<T>& s, T* dx) {
+      M::template evaluate<T>(c, x, s, dx);
+    };
+    if constexpr (requires { &M::template publish<T>; }) o.control.publish = &M::template publish<T>;
+  }
+  return o;
+}
+
+}  // namespace swingbank::sim
