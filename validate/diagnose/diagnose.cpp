@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -220,6 +221,10 @@ class Diagnoser {
                           std::make_move_iterator(pairs.end()));
   }
   [[nodiscard]] hypothesis::Stage model_stage() const {
+    const auto takes_off = [&](const hypothesis::MissingInput& m) {
+      return m.fit.events.empty() || !m.fit.failed.empty() ? std::numeric_limits<double>::infinity()
+                                                           : fit::gain(result_.base, m.fit);
+    };
     return {.events = result_.events,
             .plant = model_.plant,
             .conventions = model_.conventions,
@@ -227,7 +232,9 @@ class Diagnoser {
             .fit = result_.base,
             .spread = options_.spread,
             .threads = threads_,
-            .stop = options_.stop};
+            .stop = options_.stop,
+            .by_torque = takes_off(result_.torque),
+            .by_field = takes_off(result_.field)};
   }
   /// Tries pairs beside the best single hypotheses, one of each slot. The next single one is tried only if no
   /// pair beside the one before holds.

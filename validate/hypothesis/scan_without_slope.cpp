@@ -46,7 +46,8 @@ class BlindScan {
     const auto left = left_by_each(plants, h_.conventions, stage_.events, states_);
     std::vector<std::pair<double, sim::plant::Plant>> starts;
     for (std::size_t k = 0; k < plants.size(); ++k)
-      if (std::isfinite(left[k])) starts.emplace_back(left[k], std::move(plants[k]));
+      if (std::isfinite(left[k]) && (near() || (left[k] < left_ && !alike(left[k], left_))))
+        starts.emplace_back(left[k], std::move(plants[k]));
     std::ranges::sort(starts, {}, &std::pair<double, sim::plant::Plant>::first);
     const auto same = std::ranges::unique(starts, alike, &std::pair<double, sim::plant::Plant>::first);
     starts.erase(same.begin(), same.end());
@@ -61,6 +62,10 @@ class BlindScan {
 
  private:
   using Group = std::vector<fit::FreeParameter>;
+
+  /// Beside a model that nearly fits, a value that makes things worse may still be the right one once the
+  /// rest has followed; where much is missing, only what helps by itself is gone on with.
+  [[nodiscard]] bool near() const { return stage_.fit.misfit() < thresholds::search.nearly_fits; }
 
   /// For each parameter of the hypothesis, whether any event's answer has a slope along it.
   [[nodiscard]] std::vector<char> slopes() const {

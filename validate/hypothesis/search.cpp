@@ -63,8 +63,11 @@ class Searcher {
         });
       };
       start(1, std::vector<char>(candidates.size(), 1));
-      start(kFirstStarts, std::vector<char>(candidates.size(), 1));
-      start(kTries, promising(candidates, begun, thresholds::search.fair_at_first));
+      const auto allowed = allowed_by_inputs(candidates, begun);
+      start(kFirstStarts, allowed);
+      auto fair = promising(candidates, begun, thresholds::search.fair_at_first);
+      for (std::size_t i = 0; i < fair.size(); ++i) fair[i] = fair[i] && allowed[i];
+      start(kTries, fair);
       const auto onward = promising(candidates, begun, thresholds::search.fair);
       each(candidates, "fit ", [&](std::size_t i) {
         tried[i] = onward[i] && !stage_.stopped() ? more_steps(candidates[i], begun[i])
@@ -138,6 +141,22 @@ class Searcher {
           gains[i], candidates[i].hypothesis.slot));
     }
     return onward;
+  }
+  /// Marks the hypotheses that could come to a fair share of what the best one gains, as far as an input that
+  /// is free in time could.
+  std::vector<char> allowed_by_inputs(const std::vector<Candidate>& candidates,
+                                      const std::vector<std::vector<fit::Fit>>& begun) const {
+    const auto best = std::ranges::max_element(begun, {}, [&](const auto& fits) { return gain_of(fits); });
+    std::vector<char> allowed;
+    for (const Candidate& c : candidates) {
+      const Hypothesis& h = c.hypothesis;
+      const double most = h.side == Side::mechanical   ? stage_.by_torque
+                          : h.side == Side::excitation ? stage_.by_field
+                                                       : std::numeric_limits<double>::infinity();
+      const int slot = candidates[static_cast<std::size_t>(best - begun.begin())].hypothesis.slot;
+      allowed.push_back(FittedOn{gain_of(*best), slot}(most, h.slot));
+    }
+    return allowed;
   }
   /// Goes on from the best draw and from the standard values. These are not left out for being slow, because
   /// draws that hardly act always look better at first. Beliefs are about the start, not about where its

@@ -2,6 +2,7 @@
 // Every hypothesis tried by itself on one structure: started from draws, fitted for a short while, in order
 // of its evidence. Judging the leading ones on unseen events comes after (judge).
 #include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,6 +29,9 @@ struct Stage {
   int threads = 1;
   /// Whether a person has asked for an end: what was begun is kept as it is then. May be empty.
   std::function<bool()> stop = {};
+  /// What a torque and a field voltage free in time take off the cost of `fit`: no effect that acts through
+  /// them alone can take off more. Infinite: not known.
+  double by_torque = std::numeric_limits<double>::infinity(), by_field = by_torque;
   [[nodiscard]] bool stopped() const { return stop && stop(); }
   [[nodiscard]] sim::plant::PlantUnderTest under_test() const { return {plant, conventions}; }
   /// What of a plant the events are of.
