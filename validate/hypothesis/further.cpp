@@ -48,7 +48,10 @@ std::vector<double> by_name(const Hypothesis& h, std::vector<double> values,
 
 }  // namespace
 
-bool alike(double left, double other) { return std::abs(left - other) < kSameRun * std::min(left, other); }
+bool alike(double left, double other) {
+  return std::abs(left - other) <
+         std::max(thresholds::search.other_steps.value, kSameRun * std::min(left, other));
+}
 
 double left_by(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
                const std::vector<fit::EventState>& states) {

@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# Each exciter of the list hidden with values far from its standard ones, at sizes of some 20, 100 and up to 1,000 times the
+# noise: a diagnosis has it among what makes up 95 %, none is lost. Some: SWINGBANK_SIZES="10" (in detection limits of 10).
+# SWINGBANK_KEEP=FOLDER keeps cases and verdicts there, and goes on with what is there.
+# shellcheck disable=SC2154 # what lib.bash sets
+source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+
+config=$SWINGBANK_SOURCE/configs/blind/exciters.toml
+kinds=$(sed -nE 's/^\[kind\.(.*)\]$/\1/p' "$config" | paste -sd,)
+folder=${SWINGBANK_KEEP:-$work}
+lost=()
+for size in ${SWINGBANK_SIZES:-2 10 100}; do
+  run=$folder/size$size
+  "$swingbank" blind-test --config "$config" --seed 19 --kinds "$kinds" --make 7 --size "$size" --out "$run" \
+    >/dev/null 2>"$work/errors" || fail "make: $(tail -n 3 "$work/errors")"
+  "$swingbank" blind-test --diagnose --threads 1 --out "$run" >/dev/null 2>"$work/errors" ||
+    fail "diagnose: $(tail -n 3 "$work/errors")"
+  mapfile -t found < <(
+    python3 - "$run" <<'PYTHON'
+import json, pathlib, sys
+run = pathlib.Path(sys.argv[1])
+for file in sorted((run / "truth").glob("*.json")):
+    hidden = json.loads(file.read_text())["hidden"][0]
+    v = json.loads((run / "verdicts" / file.name).read_text())
+    leading = ", ".join(f"{name} {100 * share:.1f} %" for name, share in v["probabilities"][:3])
+    inside = bool({*v["effects"], *v["set"]} & {*hidden["answers"]})
+    print(f"{'found' if inside else 'lost'}: {hidden['kind']} of {hidden['left_noise']:.0f} x noise, {v['seconds']:.0f} s: "
+          f"{v['verdict']}, {leading}")
+PYTHON
+  )
+  printf '%s\n' "${found[@]}"
+  for line in "${found[@]}"; do
+    [[ $line == found* ]] || lost+=("$line")
+  done
+done
+((${#lost[@]} == 0)) || fail "${#lost[@]} lost"
