@@ -14,7 +14,7 @@
 #     --seeds      trains with that many seeds, from --seed on; default 3 where the night has 4 hours or more, else 1
 #     --keep-data  keeps the simulated events (gigabytes; the same config makes the same bytes again)
 #     --tests      1 runs the tests that are too long for every change (tests/run.sh --night), 0 leaves them out; default 1
-#                  where 0.7 of what is left is time enough
+#                  where 0.7 of what is left is what they took in a night before (in none: an hour and a half)
 #     --fuzz       time of each fuzz target of the readers; default what is left; 0 leaves them out
 #     --blind      cases of a blind test of the diagnosis with the night's seed; default as many as time is left for;
 #                  0 leaves it out
@@ -27,7 +27,7 @@ out=$source_folder/out/nightly date=$(date +%F) preset='' seed='' seeds='' hours
 tries=3 pause=${SWINGBANK_NIGHTLY_PAUSE:-60} # [s] between tries
 hours_of_seeds=4                             # from which on a cell has a spread
 table_share=0.67                             # of the hours
-tests_take=1500                              # [s] of two cores, their build in it; docs/performance.md
+tests_take=5400                              # [s] of two cores, their builds in it, where no night before tells
 blind_share=0.6                              # of what the tables leave
 blind_case=80                                # [s] of two cores; docs/blind-test.md
 fuzz_build=300 fuzz_least=10                 # [s]; docs/performance.md
@@ -102,6 +102,17 @@ part() {
 used() { awk -F'\t' '{sum += $2} END {printf "%d", sum}' "$night/parts.tsv"; }
 # left SHARE: seconds of the budget that are left, times SHARE
 left() { awk -v used="$(used)" "BEGIN {left = ($hours * 3600 - used) * $1; printf \"%d\", (left > 0 ? left : 0)}"; }
+
+# What the tests of the night took where they last came to their end [s].
+tests_took() {
+  local folder took=$tests_take
+  for folder in "$out"/????-??-??; do # in the order of their dates
+    if grep -qsE '^== (all passed|failed)' "$folder/tests.txt"; then
+      took=$(awk -F'\t' '$1 == "tests of the night" {sum += $2} END {print sum + 0}' "$folder/parts.tsv")
+    fi
+  done
+  echo "$took"
+}
 
 # keep NAME...: these variables are the night's
 keep() { declare -p "$@" | sed 's/^declare -[-a]* //' >>"$night/sizes.conf"; }
@@ -229,7 +240,7 @@ run_tables || stopped $?
 report || stopped 1
 ln -sfn "$date" "$out/latest"
 
-if [[ -z $tests ]]; then tests=$(($(left 0.7) >= tests_take)) && keep tests; fi
+if [[ -z $tests ]]; then tests=$(($(left 0.7) >= $(tests_took))) && keep tests; fi
 if [[ $tests != 0 ]]; then part "tests of the night" night_tests || status=$?; fi
 ((status != 2)) || stopped 2
 if [[ -z $blind ]]; then blind=$(($(left "$blind_share") / blind_case)) && keep blind; fi

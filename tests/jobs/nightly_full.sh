@@ -57,6 +57,18 @@ for wanted in '^| short: events | [0-9]' '^| short: training, seed 204890 |' '^|
   grep -q "$wanted" "$work/short/2026-02-05/report.md" || fail "no '$wanted' in: $(cat "$work/short/2026-02-05/report.md")"
 done
 
+# Four hours are enough for the tests, but not where a night before says that they took longer. One that was broken off
+# in its tests says nothing.
+for told in '2026-02-06 99999 all passed' '2026-02-07 1 broken off'; do
+  read -r date took end <<<"$told"
+  mkdir -p "$work/told/$date"
+  printf 'tests of the night\t%s\n' "$took" >"$work/told/$date/parts.tsv"
+  printf '\n== %s (after %s s)\n' "$end" "$took" >"$work/told/$date/tests.txt"
+done
+bash "$SWINGBANK_SOURCE/jobs/nightly.sh" --out "$work/told" --hours 4 --seeds 1 --preset quick --fuzz 0 --blind 0 --date 2026-02-08 \
+  "$work/tiny.toml" </dev/null >"$work/log" 2>&1 || fail "a night after one with long tests: $(tail "$work/log")"
+grep -qx 'tests="0"' "$work/told/2026-02-08/sizes.conf" || fail "tests that take too long: $(cat "$work/told/2026-02-08/sizes.conf")"
+
 exec 8>"$out/.lock"
 flock 8
 refuses "double run" "$out" night 2026-02-03 "$work/tiny.toml"
