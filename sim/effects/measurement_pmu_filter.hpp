@@ -4,28 +4,11 @@
 
 #include "base/constants.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/core/pmu_window.hpp"
 #include "sim/core/window.hpp"
 #include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::measurement_pmu_filter {
-
-/// Reference filters of class M: reports per second, cut-off reference Ffr [Hz], order at 16 samples a cycle.
-struct MClass {
-  double reports, Ffr, order;
-};
-inline constexpr MClass kAt50Hz[] = {{10, 1.779, 806}, {25, 4.355, 338}, {50, 7.75, 142}, {100, 14.1, 66}};
-inline constexpr MClass kAt60Hz[] = {{10, 1.780, 968}, {12, 2.125, 816}, {15, 2.64, 662}, {20, 3.50, 502},
-                                     {30, 5.02, 306},  {60, 8.19, 164},  {120, 16.25, 70}};
-inline std::span<const MClass> table(double hz) {
-  if (hz == 50.0) return kAt50Hz;
-  if (hz == 60.0) return kAt60Hz;
-  return {};
-}
-inline const MClass* find(double hz, double reports) {
-  for (const MClass& row : table(hz))
-    if (row.reports == reports) return &row;
-  return nullptr;
-}
 
 struct Model {
   static constexpr std::string_view name = "PMUFILTER", title = "filter of a phasor measurement unit",
@@ -69,7 +52,7 @@ struct Model {
     either(compensation);
     if (!(p[scale] >= 0))
       problems.add(fmt::format("scale = {:g}", p[scale]), where, "a window has a length", "give scale >= 0");
-    if (p[klass] == 1.0 && !find(50.0, p[reports]) && !find(60.0, p[reports]))
+    if (p[klass] == 1.0 && !pmu_window::find(50.0, p[reports]) && !pmu_window::find(60.0, p[reports]))
       problems.add(
           fmt::format("reports = {:g} per second", p[reports]), where,
           "class M has windows for 10, 25, 50, 100 at 50 Hz and 10, 12, 15, 20, 30, 60, 120 at 60 Hz",
@@ -77,9 +60,9 @@ struct Model {
   }
   static std::string_view unphysical(const double*) { return ""; }
   static double half_length(const double* p, double hz) {
-    if (p[klass] == 0.0) return p[scale] / hz;
-    const MClass* row = find(hz, p[reports]);
-    return row ? p[scale] * row->order / (32.0 * hz) : 0.0;
+    if (p[klass] == 0.0) return p[scale] * pmu_window::kHalfOfP / hz;
+    const pmu_window::MClass* row = pmu_window::find(hz, p[reports]);
+    return row ? p[scale] * row->half(hz) : 0.0;
   }
   /// At whichever of 50 and 60 Hz the window is longer.
   static double memory(const double* p) { return std::max(half_length(p, 50.0), half_length(p, 60.0)); }
@@ -93,11 +76,9 @@ struct Model {
                         fmt::format("PMUFILTER, {:g} Hz", f0), "the standard has no such window",
                         f0 == 50.0 ? "give reports = 10, 25, 50 or 100"
                                    : "give reports = 10, 12, 15, 20, 30, 60 or 120 (in a 60 Hz system)"});
-    const double cut = p[klass] == 1.0 ? 4.0 * constants::pi * find(f0, p[reports])->Ffr / p[scale] : 0.0;
+    const double Ffr = p[klass] == 1.0 ? pmu_window::find(f0, p[reports])->Ffr / p[scale] : 0.0;
     const auto window = [&](double t) {
-      if (p[klass] == 0.0) return 1.0 - std::fabs(t) / half;
-      const double x = cut * t, sinc = std::fabs(x) < 1e-4 ? 1.0 - x * x / 6.0 : std::sin(x) / x;
-      return sinc * (0.54 + 0.46 * std::cos(constants::pi * t / half));
+      return p[klass] == 0.0 ? pmu_window::class_p(t, half) : pmu_window::class_m(t, half, Ffr);
     };
     const auto weights = window_weights(window, half, 1.0 / phasors.rate);
     phasors.V = averaged(phasors.V, weights);

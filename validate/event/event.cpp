@@ -1,6 +1,7 @@
 #include "validate/event/event.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "base/median.hpp"
@@ -172,9 +173,10 @@ void take_told(FitEvent& e, Jumps jumps) {
                             });
                    });
 }
+/// Infinite where none is.
 double before_first_smeared(const FitEvent& e) {
   const auto k = static_cast<std::size_t>(std::ranges::find(e.smeared, 1) - e.smeared.begin());
-  return e.record.t[k] - e.record.step() / 2;
+  return k < e.smeared.size() ? e.record.t[k] - e.record.step() / 2 : std::numeric_limits<double>::infinity();
 }
 
 FitEvent prepare(record::Record record, const FitEventOptions& options, Jumps jumps) {
@@ -193,16 +195,21 @@ FitEvent prepare(record::Record record, const FitEventOptions& options, Jumps ju
     e.clean = without(e.record, e.smeared);
   else
     e.smeared.clear();
+  return e;
+}
+
+/// Where the model starts, once it is known what is smeared.
+void set_start(FitEvent& e, const FitEventOptions& options) {
   auto first = e.switchings;
-  if (!e.smeared.empty() && !first.empty()) first.front().time -= first.front().uncertainty;
-  if (!e.smeared.empty() && !e.record.switched.empty())
+  if (!e.smeared.empty() && !first.empty()) {
+    first.front().time -= first.front().uncertainty;
     first.front().time = std::min(first.front().time, before_first_smeared(e));
+  }
   if (const double still = still_until(e.record);
       !first.empty() && e.record.switched.empty() && !e.record.breaker() && still < first.front().time)
     first.insert(first.begin(), {still, 0.0});
   e.start = playin::pre_event_point(e.record, first, options.pre_event);
   e.channels = playin::compared_outputs(e.record, options.measured_states);
-  return e;
 }
 
 /// One instrument smears all jumps over the same time, so a step that is spread wider than every record's
@@ -349,7 +356,10 @@ WhitenedEvents prepare_events(const plant::PlantModel& model, std::vector<record
   for (record::Record& r : records) events.push_back(prepare(std::move(r), options, jumps));
   if (jumps == Jumps::spread) drop_swings(events);
   unsmear(events);
-  for (FitEvent& e : events) e.left_out = left_out(e);
+  for (FitEvent& e : events) {
+    set_start(e, options);
+    e.left_out = left_out(e);
+  }
   NoiseModel noise = noise_through(model.under_test(), events);
   return {std::move(events), std::move(noise)};
 }

@@ -10,6 +10,7 @@
 #include "base/constants.hpp"
 #include "validate/fit/detail/event_cost.hpp"
 #include "validate/fit/detail/input_evidence.hpp"
+#include "validate/playin/can_run.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::fit {

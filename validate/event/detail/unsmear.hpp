@@ -1,24 +1,18 @@
 #pragma once
-// Brings back the voltage of a short fault that an instrument's filter has smeared. Where fewer than three
-// samples of a segment are free of the jumps beside it, extrapolation does not know the segment's voltage.
-// The smeared samples do know it: they are averages of what lies before, within and after the segment, and
-// the weights of these averages are known but for a width.
+// Brings back the voltage about switchings that an instrument's filter has smeared. The smeared samples know
+// it: each is the average of what lies about it, and the window of the average is one of a few.
 #include <vector>
 
+#include "validate/event/detail/filter_window.hpp"
 #include "validate/event/event.hpp"
 
 namespace swingbank::validate::event {
 
-/// The averaging window of a filter: even, its integral 1.
-struct FilterWindow {
-  enum class Shape { triangle, box } shape = Shape::triangle;
-  double half = 0;  ///< how far the window reaches to either side [s]; 0: none found
-};
-
-/// Fills short segments of the events' clean records with the voltage whose average gives the smeared
-/// samples, and places their switchings. One window is common to all events, and the one that leaves least is
-/// taken. Where no window answers to within a few times the noise of V and theta, only segments without a
-/// clean sample are filled, so that there is something to play in. Returns the window.
+/// Finds the window that makes the samples about all switchings most probable (SmearedCurve), one for all
+/// events, and the instants of those switchings that nobody told. Marks as smeared what this window reaches,
+/// and puts the voltage that was brought back into the events' clean records, so that every segment between
+/// switchings has one. Where the instrument has another window than those known, a rougher voltage makes up
+/// for it. Returns the window, half = 0 where nothing is smeared.
 FilterWindow unsmear(std::vector<FitEvent>& events);
 
 }  // namespace swingbank::validate::event

@@ -16,7 +16,9 @@ struct ForeignBase {
 };
 /// Whether inertia and reactance together are those of a machine of another size: H on a base that is too
 /// small is as many times too large as Xd is too small. `reactance`: "Xd" or "Xdp", whichever the effect has.
-std::optional<ForeignBase> foreign_base(const std::string& reactance, double h, double x, double base_mva);
+/// Where the data are not `sound` anyway, a smaller ratio is told.
+std::optional<ForeignBase> foreign_base(const std::string& reactance, double h, double x, double base_mva,
+                                        bool sound);
 
 /// Values of a PSS/E file that stand for "no limit" (999, -9999) and lie beyond what is physically possible,
 /// brought to the bound; what was done, for the person.

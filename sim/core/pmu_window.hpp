@@ -1,0 +1,42 @@
+#pragma once
+// Windows of the reference filters of phasor measurement units, classes P and M (IEEE Std C37.118.1-2011,
+// Annex C; 2018, Annex D). Instruments average with them, and whoever takes the average back must know them.
+#include <cmath>
+#include <span>
+
+#include "base/constants.hpp"
+
+namespace swingbank::sim::pmu_window {
+
+/// Class P: a triangle, so many cycles to either side.
+inline constexpr double kHalfOfP = 1.0;
+/// w(t) = 1 - |t| / half, |t| < half.
+inline double class_p(double t, double half) { return 1.0 - std::fabs(t) / half; }
+
+/// Reference filters of class M: reports per second, cut-off reference Ffr [Hz], order at 16 samples a cycle.
+struct MClass {
+  double reports, Ffr, order;
+  /// Half of the window's length [s].
+  [[nodiscard]] constexpr double half(double hz) const { return order / (32.0 * hz); }
+};
+inline constexpr MClass kAt50Hz[] = {{10, 1.779, 806}, {25, 4.355, 338}, {50, 7.75, 142}, {100, 14.1, 66}};
+inline constexpr MClass kAt60Hz[] = {{10, 1.780, 968}, {12, 2.125, 816}, {15, 2.64, 662}, {20, 3.50, 502},
+                                     {30, 5.02, 306},  {60, 8.19, 164},  {120, 16.25, 70}};
+inline std::span<const MClass> table(double hz) {
+  if (hz == 50.0) return kAt50Hz;
+  if (hz == 60.0) return kAt60Hz;
+  return {};
+}
+inline const MClass* find(double hz, double reports) {
+  for (const MClass& row : table(hz))
+    if (row.reports == reports) return &row;
+  return nullptr;
+}
+/// w(t) = sin(x) / x (0.54 + 0.46 cos(pi t / half)), |t| < half, x = 4 pi Ffr t.
+inline double class_m(double t, double half, double Ffr) {
+  const double x = 4.0 * constants::pi * Ffr * t,
+               sinc = std::fabs(x) < 1e-4 ? 1.0 - x * x / 6.0 : std::sin(x) / x;
+  return sinc * (0.54 + 0.46 * std::cos(constants::pi * t / half));
+}
+
+}  // namespace swingbank::sim::pmu_window

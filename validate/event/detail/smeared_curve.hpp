@@ -1,0 +1,54 @@
+#pragma once
+// The voltage that jumps at given instants and is smooth between them, by the averages that a filter has made
+// of it.
+#include <Eigen/Dense>
+#include <vector>
+
+#include "base/complex.hpp"
+#include "validate/event/detail/filter_window.hpp"
+
+namespace swingbank::validate::event {
+
+/// Samples about some switchings, each an average over a window.
+struct SmearedStretch {
+  std::vector<double> t;       ///< [s]
+  std::vector<Complex> v;      ///< [pu]
+  double noise = 0, step = 0;  ///< of one component of a phasor [pu]; between samples [s]
+};
+
+/// The most probable voltage. Between instants its second derivative is white noise of intensity `roughness`
+/// [pu^2/s^3] (a smoothing spline: G. Wahba, "Improper priors, spline smoothing and the problem of guarding
+/// against model errors in regression", J. R. Stat. Soc. B 40, 1978), written in cubic B-splines of half a
+/// sample, or of an eighth of the window where that is longer. It goes on for half a window beyond the
+/// stretch.
+class SmearedCurve {
+ public:
+  /// The instants are ascending and lie within the stretch.
+  SmearedCurve(const SmearedStretch& stretch, const FilterWindow& window, std::vector<double> instants,
+               double roughness);
+  /// Logarithm of the probability of the samples, given window, instants and roughness.
+  [[nodiscard]] double evidence() const { return evidence_; }
+  /// Voltage phasor [pu] at t [s] in segment 0 (before the first instant), 1, ...
+  [[nodiscard]] Complex operator()(int segment, double t) const;
+  /// Its standard deviation in one component [pu].
+  [[nodiscard]] double deviation(int segment, double t) const;
+
+ private:
+  /// A segment: spans of one cubic each, whose coefficients begin at `first`.
+  struct Segment {
+    double from, span;
+    int spans, first;
+  };
+  void set_segments(const SmearedStretch& stretch, const FilterWindow& window,
+                    const std::vector<double>& instants);
+  [[nodiscard]] Eigen::MatrixXd averages(const SmearedStretch& stretch, const FilterWindow& window) const;
+  [[nodiscard]] Eigen::MatrixXd prior(double roughness) const;
+  [[nodiscard]] Eigen::VectorXd basis(int segment, double t) const;
+  std::vector<Segment> segments_;
+  int count_ = 0;
+  Eigen::MatrixXd coefficients_;  // [coefficient][real, imaginary]
+  Eigen::LLT<Eigen::MatrixXd> precision_;
+  double evidence_ = 0;
+};
+
+}  // namespace swingbank::validate::event
