@@ -87,6 +87,17 @@ one_definition() {
     ! grep -m 12 -E 'warning:|error:' "$log" >&2
 }
 
+# Each source names what it uses: a build that groups files otherwise must not fail (ten minutes of a core; nothing is kept).
+each_alone() {
+  local folder=$source_folder/build/alone log=$source_folder/build/alone.log objects
+  cmake --preset release -S "$source_folder" -B "$folder" -DCMAKE_UNITY_BUILD=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON \
+    -DCMAKE_CXX_FLAGS_RELEASE=-fsyntax-only -DSWINGBANK_TESTS=OFF -DSWINGBANK_BENCH=OFF >"$log" || return 1
+  mapfile -t objects < <(ninja -C "$folder" -t targets all | sed -n 's/: CXX_COMPILER__.*//p')
+  ((${#objects[@]} > 300)) && CCACHE_DISABLE=1 ninja -C "$folder" -k 0 "${objects[@]}" >>"$log" 2>&1 && return
+  grep -m 12 -E 'error:' "$log" >&2
+  return 1
+}
+
 # What starts threads, under the thread sanitizer: seven seconds, or for ever where threads disturb one another.
 threads() {
   local log=$source_folder/build/tsan.log
@@ -131,6 +142,8 @@ tier() {
 if ((night)); then
   say "one definition of each name"
   one_definition || failed+=(one_definition)
+  say "each source alone"
+  each_alone || failed+=(each_alone)
   say "threads"
   threads || failed+=(threads)
   # One instruction set a night: where ccache has nothing, its build takes some ten minutes of two cores.

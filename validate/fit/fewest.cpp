@@ -60,11 +60,12 @@ class Selection {
         break;
       }
     }
+    const std::vector<double> evidence = drop_idle(set, chosen);
     if (set.empty()) return back;
     chosen = refit(set, true);
     if (gain(all_, chosen, criterion) - options_.each * static_cast<double>(set.size()) < options_.least)
       return back;
-    describe(set, chosen, nothing - most, back);
+    describe(set, evidence, chosen, nothing - most, back);
     back.fit = std::move(chosen);
     return back;
   }
@@ -210,17 +211,39 @@ class Selection {
         *best = {std::move(f), beams_[size][k].set};
     return *best;
   }
-  void describe(const Set& set, const Fit& chosen, double excess_of_model, Fewest& back) const {
+  [[nodiscard]] static Set without(Set set, std::size_t i) {
+    set.erase(set.begin() + static_cast<std::ptrdiff_t>(i));
+    return set;
+  }
+  /// Drops members that the others have made needless, the least first; of a smaller size, only few sets were
+  /// refitted. Returns by how much the cost rises without each of those that remain.
+  std::vector<double> drop_idle(Set& set, Fit& chosen) const {
+    std::vector<double> evidence;
+    while (!set.empty()) {
+      evidence.clear();
+      Fit cheapest;
+      for (std::size_t i = 0; i < set.size(); ++i) {
+        Fit less = refit(without(set, i));
+        evidence.push_back(gain(less, chosen));
+        if (evidence.back() <= *std::ranges::min_element(evidence)) cheapest = std::move(less);
+        report("sets of parameters without one", i + 1, set.size());
+      }
+      const auto least = std::ranges::min_element(evidence);
+      if (*least >= options_.each) break;
+      set = without(set, static_cast<std::size_t>(least - evidence.begin()));
+      chosen = std::move(cheapest);
+    }
+    return evidence;
+  }
+  void describe(const Set& set, const std::vector<double>& evidence, const Fit& chosen,
+                double excess_of_model, Fewest& back) const {
     for (std::size_t i = 0; i < set.size(); ++i) {
-      Set less = set;
-      less.erase(less.begin() + static_cast<std::ptrdiff_t>(i));
       WrongParameter w;
       w.fit = chosen.parameters[i];
-      w.evidence = gain(refit(less), chosen);
+      w.evidence = evidence[i];
       w.share = excess_of_model > 0 ? std::clamp(w.evidence / excess_of_model, 0.0, 1.0) : 0.0;
       w.tied = tied(set, set[i], chosen);
       back.wrong.push_back(std::move(w));
-      report("sets of parameters without one", i + 1, set.size());
     }
     std::ranges::stable_sort(back.wrong, std::greater<>(), &WrongParameter::evidence);
   }

@@ -8,7 +8,7 @@
 namespace swingbank::validate::event {
 namespace {
 
-constexpr double kWidest = 3;  ///< standard deviation of a coefficient, where nothing else is known [pu]
+constexpr double kAnyVoltage = 3;  ///< standard deviation of a coefficient, where nothing else is known [pu]
 
 /// Cubic B-splines on a uniform grid, those that reach a span, at u = 0 ... 1 of it.
 std::array<double, 4> cubics(double u) {
@@ -104,7 +104,7 @@ Eigen::MatrixXd SmearedCurve::averages(const SmearedStretch& stretch, const Filt
 }
 
 Eigen::MatrixXd SmearedCurve::prior(double roughness) const {
-  Eigen::MatrixXd P = Eigen::MatrixXd::Identity(count_, count_) / (kWidest * kWidest);
+  Eigen::MatrixXd P = Eigen::MatrixXd::Identity(count_, count_) / (kAnyVoltage * kAnyVoltage);
   for (const Segment& s : segments_)
     for (int span = 0; span < s.spans; ++span)
       P.block<4, 4>(s.first + span, s.first + span) += bends() / (roughness * s.span * s.span * s.span);

@@ -11,8 +11,8 @@ namespace swingbank::validate::event {
 namespace {
 
 constexpr int kLeastKnots = 3;  ///< of a segment that is brought back
-constexpr int kBeyond = 4;      ///< samples beyond the longest window's reach that a stretch holds
-constexpr int kRounds = 9;      ///< of the search for instants, each half as wide as the last
+constexpr int kAbout = 4;      ///< samples beyond the longest window's reach that a stretch holds
+constexpr int kNarrowings = 9;      ///< of the search for instants, each half as wide as the last
 /// Roughness of a grid's voltage between switchings [pu^2/s^3]: a swing of 0.1 pu at 1 Hz has about 10, the
 /// subtransient behind a fault some hundred for its few hundredths of a second.
 constexpr double kRoughness[] = {0.1, 1, 10, 100, 1e3, 1e4};
@@ -43,7 +43,7 @@ double phasor_noise(const FitEvent& e) {
 
 std::vector<Cluster> clusters_of(const FitEvent& e, std::size_t event, double widest) {
   std::vector<Cluster> found;
-  const double step = e.record.step(), noise = phasor_noise(e), reach = widest + kBeyond * step;
+  const double step = e.record.step(), noise = phasor_noise(e), reach = widest + kAbout * step;
   for (std::size_t s = 0; s < e.switchings.size(); ++s) {
     if (s == 0 || e.switchings[s].time - e.switchings[s - 1].time > 2 * reach)
       found.push_back({event, s, 0, {{}, {}, noise, step}});
@@ -113,7 +113,7 @@ BroughtBack brought_back(const FitEvent& e, const Cluster& c, const FilterWindow
   }
   const bool told = !e.record.switched.empty();
   InstantSearch search(c, window);
-  search.run(best, width, kFirstRoughness, told ? 0 : kRounds);
+  search.run(best, width, kFirstRoughness, told ? 0 : kNarrowings);
   double roughness = kFirstRoughness;
   for (const double other : kRoughness) {
     SmearedCurve curve(c.stretch, window, best.instants, other);
@@ -122,7 +122,7 @@ BroughtBack brought_back(const FitEvent& e, const Cluster& c, const FilterWindow
     roughness = other;
   }
   for (double& w : width) w /= 8;
-  if (!told && roughness != kFirstRoughness) search.run(best, width, roughness, kRounds - 3);
+  if (!told && roughness != kFirstRoughness) search.run(best, width, roughness, kNarrowings - 3);
   return best;
 }
 
