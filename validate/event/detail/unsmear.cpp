@@ -11,8 +11,8 @@ namespace swingbank::validate::event {
 namespace {
 
 constexpr int kLeastKnots = 3;  ///< of a segment that is brought back
-constexpr int kAbout = 4;      ///< samples beyond the longest window's reach that a stretch holds
-constexpr int kNarrowings = 9;      ///< of the search for instants, each half as wide as the last
+constexpr int kAbout = 4;       ///< samples beyond the longest window's reach that a stretch holds
+constexpr int kNarrowings = 9;  ///< of the search for instants, each half as wide as the last
 /// Roughness of a grid's voltage between switchings [pu^2/s^3]: a swing of 0.1 pu at 1 Hz has about 10, the
 /// subtransient behind a fault some hundred for its few hundredths of a second.
 constexpr double kRoughness[] = {0.1, 1, 10, 100, 1e3, 1e4};
