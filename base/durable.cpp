@@ -109,9 +109,11 @@ void reserve(const fs::path& file, std::uint64_t bytes) {
   const fs::path temporary = temporary_name(file);
   const Descriptor d(open_new(temporary));
   if (d.get() < 0) raise_file_error(file, errno, "cannot write the file");
-  int error = EINTR;
-  while (error == EINTR) error = bytes == 0 ? 0 : ::posix_fallocate(d.get(), 0, static_cast<off_t>(bytes));
-  if (error == 0 || error == EOPNOTSUPP || error == EINVAL) return;
+  // Not posix_fallocate: where the file system has none it writes every block, and the file is written
+  // anyway.
+  const auto ask = [&] { return ::fallocate(d.get(), 0, 0, static_cast<off_t>(bytes)); };
+  if (bytes == 0 || until_done(ask) == 0 || errno == EOPNOTSUPP) return;
+  const int error = errno;
   ::unlink(temporary.c_str());
   raise_file_error(file, error, "cannot reserve " + std::to_string(bytes) + " bytes for the file");
 }

@@ -39,6 +39,11 @@ grep -q "bus 77 of fault.except" "$work/output" || fail "not all problems at onc
 [ -z "$(find "$work/limit/shards" -type f)" ] || fail "a half-written shard stayed"
 expect 0 "$whole" "${make[@]}" --out "$work/limit"
 
+# A file system that cannot set space aside (95: EOPNOTSUPP): nothing is written in its place, and the data are whole.
+expect 0 "$whole" env LD_PRELOAD="$SWINGBANK_BIN/failing_call.so" FAILING_CALL=fallocate FAILING_ERROR=95 FAILING_AT=1 \
+  FAILING_UNDER="$work/unreserved" FAILING_LOG="$work/failing" "${make[@]}" --out "$work/unreserved"
+grep -q "^failed fallocate" "$work/failing" || fail "no space was asked for: $(cat "$work/failing")"
+
 # Damaged shards are found and made anew.
 truncate -s 1000 "$work/data/shards/shard-000001.h5"
 expect 1 "truncated or changed shard" "$verify" "$work/data"

@@ -156,7 +156,7 @@ INTERPOSE(ssize_t, pwritev, (int fd, const iovec* v, int n, off_t at), (fd, v, n
 INTERPOSE(int, fsync, (int fd), (fd), fd, -1)
 INTERPOSE(int, ftruncate, (int fd, off_t n), (fd, n), fd, -1)
 INTERPOSE(int, ftruncate64, (int fd, off64_t n), (fd, n), fd, -1)
-INTERPOSE(int, posix_fallocate, (int fd, off_t at, off_t n), (fd, at, n), fd, errno)
+INTERPOSE(int, fallocate, (int fd, int mode, off_t at, off_t n), (fd, mode, at, n), fd, -1)
 INTERPOSE(int, flock, (int fd, int what), (fd, what), fd, -1)
 INTERPOSE(int, rename, (const char* from, const char* to), (from, to), from, -1)
 INTERPOSE(int, unlink, (const char* path), (path), path, -1)
