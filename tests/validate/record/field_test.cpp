@@ -169,6 +169,17 @@ TEST(FrequencyTest, GivesTheAngleWhereNoneWasRecorded) {
   EXPECT_NEAR(r.theta[120], 2 * std::numbers::pi * 0.1 * (1 - std::cos(2.0)), 1e-4);
   EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("integrated from the frequency"), HasSubstr("switching"))));
 }
+/// A straight line between samples would miss 5e-3 rad of it.
+TEST(FrequencyTest, GivesTheAngleOfAFastSwing) {
+  constexpr double kSwing = 2 * std::numbers::pi * 1.5;  // [rad/s]
+  const auto text = table("t_s,V_pu,f_hz,P_pu,Q_pu\n", 121, [](int k) {
+    return fmt::format("{:.7f},1.02,{:.9f},0.4,0.1", k / 30.0, 60 + 0.5 * std::sin(kSwing * k / 30.0));
+  });
+  const Record r = parse_record(text, "r.csv", kTestBase);
+  for (std::size_t k = 0; k < r.t.size(); ++k)
+    EXPECT_NEAR(r.theta[k], std::numbers::pi / kSwing * (1 - std::cos(kSwing * r.t[k])), 3e-4)
+        << r.t[k] << " s";
+}
 TEST(FrequencyTest, WithoutItNothingIsKnownOfTheAngle) {
   const auto text =
       table("t_s,V_pu,P_pu,Q_pu\n", 60, [](int k) { return fmt::format("{:.7f},1.02,0.4,0.1", k / 60.0); });
