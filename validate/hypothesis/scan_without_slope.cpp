@@ -15,7 +15,7 @@ constexpr std::array<double, 10> kMultiples = {0.3, 0.5, 0.7, 0.85, 0.95, 1.05, 
 constexpr double kScanLess = 0.7, kScanMore = 1.4;
 /// The kScanFitted multiples that leave least get kScanOwnSteps steps of the parameters that have slopes. The
 /// kBest best of these get kScanAllSteps steps of all parameters.
-constexpr std::size_t kScanFitted = 6, kBest = 2;
+constexpr std::size_t kScanFitted = 12, kBest = 2;
 constexpr int kScanOwnSteps = 3, kScanAllSteps = 9;
 /// So many rounds at most.
 constexpr int kScanRounds = 4;

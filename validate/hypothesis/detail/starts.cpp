@@ -5,8 +5,6 @@
 #include <cmath>
 #include <span>
 
-#include "validate/hypothesis/posterior.hpp"
-
 namespace swingbank::validate::hypothesis {
 namespace {
 
@@ -270,9 +268,7 @@ void StartFinder::score(const Hypothesis& h, std::size_t looks, Candidate& c) co
       }
     if (!which.empty()) starts.emplace_back(-gain, at(values, share));
   }
-  // a draw that hardly makes it worse is near enough
-  const auto near_by = [](const auto& start) { return start.first < out_of_reach(); };
-  if (which.empty() && h.drawn && std::ranges::none_of(starts, near_by)) add_far(h, starts);
+  if (which.empty() && h.drawn) add_far(h, starts);
   c.promise = score_->joint_gain(changes);
   if (starts.empty() || std::ranges::none_of(changes, [](const auto& x) { return x.square > 0; })) return;
   c.starts = {believed(h)};
