@@ -8,8 +8,10 @@
 namespace swingbank::validate::event {
 namespace {
 
-constexpr double kAnyVoltage = 3;  ///< standard deviation of a coefficient, where nothing else is known [pu]
+constexpr double kAnyVoltage =
+    1;  ///< standard deviation of a coefficient about 0, where nothing else is known [pu]
 
+double square(double x) { return x * x; }
 /// Cubic B-splines on a uniform grid, those that reach a span, at u = 0 ... 1 of it.
 std::array<double, 4> cubics(double u) {
   const double a = 1 - u;
@@ -34,24 +36,43 @@ const Eigen::Matrix4d& bends() {
 SmearedCurve::SmearedCurve(const SmearedStretch& stretch, const FilterWindow& window,
                            std::vector<double> instants, double roughness) {
   set_segments(stretch, window, instants);
+  const Eigen::MatrixXd A = averages(stretch, window), before = prior(roughness);
+  // weights of real and imaginary part and of both together: the noise lies along the phasor and across it
   const auto samples = static_cast<Eigen::Index>(stretch.t.size());
   Eigen::MatrixXd measured(samples, 2);
+  Eigen::ArrayXd re(samples), im(samples), both(samples);
   for (Eigen::Index k = 0; k < samples; ++k) {
-    const Complex v = stretch.v[static_cast<std::size_t>(k)];
+    const Complex v = stretch.v[static_cast<std::size_t>(k)], u = v == 0.0 ? 1.0 : v / std::abs(v);
+    const double along = 1 / square(stretch.magnitude),
+                 across = 1 / square(std::abs(v) * stretch.angle + stretch.magnitude);
     measured.row(k) << v.real(), v.imag();
+    re[k] = along * square(u.real()) + across * square(u.imag());
+    im[k] = along * square(u.imag()) + across * square(u.real());
+    both[k] = (along - across) * u.real() * u.imag();
   }
-  const double weight = 1 / (stretch.noise * stretch.noise);
-  const Eigen::MatrixXd A = averages(stretch, window), before = prior(roughness);
-  precision_.compute(before + weight * A.transpose() * A);
-  coefficients_ = precision_.solve(weight * A.transpose() * measured);
-  const double missed = weight * (measured - A * coefficients_).squaredNorm();
+  const auto weighted = [&](const Eigen::ArrayXd& w) -> Eigen::MatrixXd {
+    return A.transpose() * w.matrix().asDiagonal() * A;
+  };
+  const auto weighed = [&](const Eigen::MatrixXd& values) -> Eigen::MatrixXd {
+    Eigen::MatrixXd out(samples, 2);
+    out << (re * values.col(0).array() + both * values.col(1).array()).matrix(),
+        (both * values.col(0).array() + im * values.col(1).array()).matrix();
+    return out;
+  };
+  Eigen::MatrixXd precision(2 * count_, 2 * count_);
+  precision.topLeftCorner(count_, count_) = before + weighted(re);
+  precision.bottomRightCorner(count_, count_) = before + weighted(im);
+  precision.bottomLeftCorner(count_, count_) = weighted(both);
+  const Eigen::LLT<Eigen::MatrixXd> known(precision);  // reads the lower half
+  coefficients_ = A.transpose() * weighed(measured);
+  coefficients_.reshaped() = known.solve(Eigen::VectorXd(coefficients_.reshaped()));
+  const Eigen::MatrixXd left = measured - A * coefficients_;
+  const double missed = left.cwiseProduct(weighed(left)).sum();
   const double unlikely = (coefficients_.transpose() * before * coefficients_).trace();
   const auto log_root = [](const Eigen::LLT<Eigen::MatrixXd>& L) {
     return L.matrixLLT().diagonal().array().log().sum();
   };
-  // two components share the matrices
-  evidence_ = -0.5 * (missed + unlikely) + 2 * (log_root(before.llt()) - log_root(precision_)) -
-              2 * static_cast<double>(samples) * std::log(stretch.noise);
+  evidence_ = -0.5 * (missed + unlikely) + 2 * log_root(before.llt()) - log_root(known);
 }
 
 void SmearedCurve::set_segments(const SmearedStretch& stretch, const FilterWindow& window,
@@ -111,22 +132,16 @@ Eigen::MatrixXd SmearedCurve::prior(double roughness) const {
   return P;
 }
 
-Eigen::VectorXd SmearedCurve::basis(int segment, double t) const {
+Complex SmearedCurve::operator()(int segment, double t) const {
   const Segment& s = segments_[static_cast<std::size_t>(segment)];
   const int span = std::clamp(static_cast<int>((t - s.from) / s.span), 0, s.spans - 1);
   const auto shape = cubics((t - s.from) / s.span - span);
-  Eigen::VectorXd b = Eigen::VectorXd::Zero(count_);
-  for (int j = 0; j < 4; ++j) b[s.first + span + j] = shape[static_cast<std::size_t>(j)];
-  return b;
-}
-
-Complex SmearedCurve::operator()(int segment, double t) const {
-  const Eigen::RowVector2d v = basis(segment, t).transpose() * coefficients_;
-  return {v[0], v[1]};
-}
-
-double SmearedCurve::deviation(int segment, double t) const {
-  return precision_.matrixL().solve(basis(segment, t)).norm();
+  Complex v = 0;
+  for (int j = 0; j < 4; ++j) {
+    const auto c = coefficients_.row(s.first + span + j);
+    v += shape[static_cast<std::size_t>(j)] * Complex(c[0], c[1]);
+  }
+  return v;
 }
 
 }  // namespace swingbank::validate::event

@@ -11,9 +11,10 @@ namespace swingbank::validate::event {
 
 /// Samples about some switchings, each an average over a window.
 struct SmearedStretch {
-  std::vector<double> t;       ///< [s]
-  std::vector<Complex> v;      ///< [pu]
-  double noise = 0, step = 0;  ///< of one component of a phasor [pu]; between samples [s]
+  std::vector<double> t;            ///< [s]
+  std::vector<Complex> v;           ///< [pu]
+  double magnitude = 0, angle = 0;  ///< noise of V [pu], noise of theta [rad]
+  double step = 0;                  ///< between samples [s]
 };
 
 /// The most probable voltage. Between instants its second derivative is white noise of intensity `roughness`
@@ -26,12 +27,10 @@ class SmearedCurve {
   /// The instants are ascending and lie within the stretch.
   SmearedCurve(const SmearedStretch& stretch, const FilterWindow& window, std::vector<double> instants,
                double roughness);
-  /// Logarithm of the probability of the samples, given window, instants and roughness.
+  /// Logarithm of the probability of the samples, given window, instants and roughness, but for a constant.
   [[nodiscard]] double evidence() const { return evidence_; }
   /// Voltage phasor [pu] at t [s] in segment 0 (before the first instant), 1, ...
   [[nodiscard]] Complex operator()(int segment, double t) const;
-  /// Its standard deviation in one component [pu].
-  [[nodiscard]] double deviation(int segment, double t) const;
 
  private:
   /// A segment: spans of one cubic each, whose coefficients begin at `first`.
@@ -43,11 +42,9 @@ class SmearedCurve {
                     const std::vector<double>& instants);
   [[nodiscard]] Eigen::MatrixXd averages(const SmearedStretch& stretch, const FilterWindow& window) const;
   [[nodiscard]] Eigen::MatrixXd prior(double roughness) const;
-  [[nodiscard]] Eigen::VectorXd basis(int segment, double t) const;
   std::vector<Segment> segments_;
   int count_ = 0;
   Eigen::MatrixXd coefficients_;  // [coefficient][real, imaginary]
-  Eigen::LLT<Eigen::MatrixXd> precision_;
   double evidence_ = 0;
 };
 

@@ -29,24 +29,21 @@ struct BroughtBack {
   std::optional<SmearedCurve> curve;
 };
 
-/// Of one component of the phasor, by second differences before the first smeared sample.
-double phasor_noise(const FitEvent& e) {
-  const auto v = [&](std::ptrdiff_t k) {
-    return std::polar(e.record.V[static_cast<std::size_t>(k)], e.record.theta[static_cast<std::size_t>(k)]);
-  };
-  const auto quiet = std::ranges::find(e.smeared, 1) - e.smeared.begin();
+/// Noise by second differences before the first smeared sample.
+double noise_of(const std::vector<double>& x, const FitEvent& e) {
+  const auto quiet = static_cast<std::size_t>(std::ranges::find(e.smeared, 1) - e.smeared.begin());
   double sum = 0, count = 0;
-  for (std::ptrdiff_t k = 1; k + 1 < quiet; ++k, count += 2)
-    sum += std::norm(v(k + 1) - 2.0 * v(k) + v(k - 1));
-  return std::sqrt(sum / std::max(1.0, count) / 6) + kLeastNoise;
+  for (std::size_t k = 1; k + 1 < quiet; ++k, ++count) sum += std::pow(x[k + 1] - 2 * x[k] + x[k - 1], 2);
+  return std::sqrt(sum / std::max(1.0, count) / 6);
 }
 
 std::vector<Cluster> clusters_of(const FitEvent& e, std::size_t event, double widest) {
   std::vector<Cluster> found;
-  const double step = e.record.step(), noise = phasor_noise(e), reach = widest + kAbout * step;
+  const double step = e.record.step(), magnitude = noise_of(e.record.V, e) + kLeastNoise,
+               angle = noise_of(e.record.theta, e), reach = widest + kAbout * step;
   for (std::size_t s = 0; s < e.switchings.size(); ++s) {
     if (s == 0 || e.switchings[s].time - e.switchings[s - 1].time > 2 * reach)
-      found.push_back({event, s, 0, {{}, {}, noise, step}});
+      found.push_back({event, s, 0, {{}, {}, magnitude, angle, step}});
     ++found.back().count;
   }
   for (Cluster& c : found) {
@@ -142,12 +139,13 @@ Attempt attempt(const std::vector<FitEvent>& events, const std::vector<Cluster>&
   return a;
 }
 
-/// Marks which samples the window reaches with a jump at its instants.
+/// Marks what the window reaches beside what was seen to move.
 void mark_again(FitEvent& e, const FilterWindow& window) {
   const double reach = window.half() - 1e-3 * e.record.step();
   for (std::size_t k = 0; k < e.record.t.size(); ++k)
-    e.smeared[k] = std::ranges::any_of(
-        e.switchings, [&](const playin::Switching& s) { return std::abs(e.record.t[k] - s.time) < reach; });
+    e.smeared[k] = e.smeared[k] || std::ranges::any_of(e.switchings, [&](const playin::Switching& s) {
+                     return std::abs(e.record.t[k] - s.time) < reach;
+                   });
 }
 
 /// Puts knots of the curve in place of what stands in the clean record between two times.
