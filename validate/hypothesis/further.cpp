@@ -110,8 +110,8 @@ void try_further(const Stage& stage, const fit::Fit& leader, Judgement& j) {
   for (std::size_t k = 0; k < starts.size(); ++k)
     if (std::isfinite(left[k])) order.emplace_back(left[k], &starts[k]);
   std::ranges::sort(order);
-  const auto same = std::ranges::unique(order, alike, &std::pair<double, const std::vector<double>*>::first);
-  order.erase(same.begin(), same.end());
+  const auto same = [](const auto& a, const auto& b) { return alike(a.first, b.first); };
+  order.erase(std::unique(order.begin(), order.end(), same), order.end());
   const auto free = free_of(h, stage.spread);
   for (std::size_t k = 0; k < std::min(kFurther, order.size()); ++k) {
     fit::FitOptions o{.lenient = true, .errors = false};

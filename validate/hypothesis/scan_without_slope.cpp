@@ -49,8 +49,8 @@ class BlindScan {
       if (std::isfinite(left[k]) && (near() || (left[k] < left_ && !alike(left[k], left_))))
         starts.emplace_back(left[k], std::move(plants[k]));
     std::ranges::sort(starts, {}, &std::pair<double, sim::plant::Plant>::first);
-    const auto same = std::ranges::unique(starts, alike, &std::pair<double, sim::plant::Plant>::first);
-    starts.erase(same.begin(), same.end());
+    const auto same = [](const auto& a, const auto& b) { return alike(a.first, b.first); };
+    starts.erase(std::unique(starts.begin(), starts.end(), same), starts.end());
     std::vector<fit::Fit> tried;
     for (const auto& start : std::span(starts).first(std::min(kScanFitted, starts.size())))
       if (fit::Fit f = beside(start.second); f.failed.empty()) tried.push_back(std::move(f));
