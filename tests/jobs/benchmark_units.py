@@ -5,7 +5,7 @@ transformer would record them at 30/s: four faults, three losses of generation, 
     benchmark_units.py SWINGBANK RAW DYR FOLDER {sharp,class-m}
 
 Writes FOLDER/event1.csv to event12.csv (V in kV, angle in degrees, P in MW, Q in Mvar). Noise: 0.01 % on V, 0.005
-degrees, 0.05 % of the unit's 800 MVA on P and Q. class-m: behind PMUFILTER of class M for 30/s, which is 0.28 s long; at
+degrees, 0.05 % of the unit's 800 MVA on P and Q. class-m: behind PMUFILTER of class M for 30/s, which is 0.32 s long; at
 the terminal, for it and the transformer are linear in voltage and current.
 """
 import cmath
@@ -16,7 +16,7 @@ import sys
 
 FINE, RATE = 960, 30  # samples/s of the simulation and of the record
 MVA, KV, RATIO, REACTANCE = 8.0, 345.0, 1.07, 0.02j  # machine [100 MVA], grid side, transformer 10-32 [pu on 100 MVA]
-EDGE = 160  # five reports, in samples at FINE, left out at either end: half of the filter is 134 long
+EDGE = 160  # five reports, in samples at FINE, left out at either end: half of the filter is 153 long
 EVENTS = [
     ("--fault 14:2:2.08", 12), ("--fault 4:2:2.1", 12), ("--fault 21:2:2.07", 12), ("--fault 26:2:2.1:0:0.05", 12),
     ("--trip-generator 38:2", 30), ("--trip-generator 35:2:0.5", 30), ("--trip-generator 30:2", 30),

@@ -133,20 +133,6 @@ bool moves_before(const record::Record& r, double threshold) {
   const auto step = playin::voltage_steps(r);
   return std::abs(step[k - 2]) > std::max(threshold / 2, kBegins * std::abs(step[k - 1]));
 }
-/// Time, V and theta of the samples that are not smeared.
-record::Record without(const record::Record& record, const std::vector<char>& smeared) {
-  record::Record clean;
-  clean.name = record.name;
-  clean.base = record.base;
-  for (std::size_t k = 0; k < record.t.size(); ++k) {
-    if (smeared[k]) continue;
-    clean.t.push_back(record.t[k]);
-    clean.V.push_back(record.V[k]);
-    clean.theta.push_back(record.theta[k]);
-  }
-  return clean;
-}
-
 /// Last sample before V leaves what it was in the first half second. This needs no switching to be found.
 double still_until(const record::Record& r) {
   constexpr double kFirstStretch = 0.5, kOffMean = 8;  // [s]; standard deviations

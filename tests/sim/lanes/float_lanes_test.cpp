@@ -13,6 +13,7 @@
 #include "sim/library/library.hpp"
 #include "tests/bench/synthetic_grid.hpp"
 #include "tests/sim/lanes/random_grids.hpp"
+#include "tests/sim/lanes/run_jobs.hpp"
 
 namespace swingbank::sim::lanes {
 namespace {
@@ -57,12 +58,7 @@ std::map<std::uint64_t, Trajectory> run_lanes(const grid::Grid& grid, const std:
   BatchOptions options;
   options.t_end = 6.0;
   options.lanes = lanes;
-  Batch batch(grid, options);
-  std::map<std::uint64_t, Trajectory> all;
-  std::size_t at = 0;
-  batch.run([&](Job& job) { return at < jobs.size() && (job = jobs[at++], true); },
-            [&](const Job& job, const Trajectory& t) { all[job.id] = t; });
-  return all;
+  return run_jobs(grid, jobs, options);
 }
 
 /// Of the events that both find stable; returns how many.

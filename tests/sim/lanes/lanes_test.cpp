@@ -5,6 +5,7 @@
 #include <random>
 
 #include "sim/lanes/batch.hpp"
+#include "tests/sim/lanes/run_jobs.hpp"
 
 namespace swingbank::sim::lanes {
 namespace {
@@ -32,12 +33,7 @@ std::vector<Job> random_jobs(int count, unsigned seed) {
 
 std::map<std::uint64_t, Trajectory> run(const std::vector<Job>& jobs, BatchOptions options) {
   options.t_end = 3.0;
-  Batch batch(ieee39(), options);
-  std::map<std::uint64_t, Trajectory> all;
-  std::size_t at = 0;
-  batch.run([&](Job& job) { return at < jobs.size() && (job = jobs[at++], true); },
-            [&](const Job& job, const Trajectory& t) { all[job.id] = t; });
-  return all;
+  return run_jobs(ieee39(), jobs, options);
 }
 
 TEST(Lanes, ARecordDoesNotDependOnItsLaneOrNeighbours) {

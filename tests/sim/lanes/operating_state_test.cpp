@@ -8,6 +8,7 @@
 #include "sim/grid/operating_point.hpp"
 #include "sim/lanes/batch.hpp"
 #include "tests/bench/synthetic_grid.hpp"
+#include "tests/sim/lanes/run_jobs.hpp"
 
 namespace swingbank::sim::lanes {
 namespace {
@@ -67,12 +68,7 @@ struct Mixed {
 std::map<std::uint64_t, Trajectory> run(const grid::Grid& grid, const std::vector<Job>& jobs,
                                         BatchOptions options) {
   options.t_end = 1.5;
-  Batch batch(grid, options);
-  std::map<std::uint64_t, Trajectory> all;
-  std::size_t at = 0;
-  batch.run([&](Job& job) { return at < jobs.size() && (job = jobs[at++], true); },
-            [&](const Job& job, const Trajectory& t) { all[job.id] = t; });
-  return all;
+  return run_jobs(grid, jobs, options);
 }
 
 /// Jobs of several operating points in one batch, each against a batch of that grid by itself.

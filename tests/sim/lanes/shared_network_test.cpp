@@ -8,6 +8,7 @@
 #include "sim/lanes/detail/switched_network.hpp"
 #include "sim/reference/reference.hpp"
 #include "tests/bench/synthetic_grid.hpp"
+#include "tests/sim/lanes/run_jobs.hpp"
 
 namespace swingbank::sim::lanes {
 namespace {
@@ -223,12 +224,7 @@ std::vector<Job> jobs() {
 std::map<std::uint64_t, Trajectory> run_all(const std::vector<Job>& list, BatchOptions options) {
   static_assert(kMachines >= SharedNetwork<P8>::kMany);
   options.t_end = 1.0;
-  Batch batch(grid(), options);
-  std::map<std::uint64_t, Trajectory> all;
-  std::size_t at = 0;
-  batch.run([&](Job& job) { return at < list.size() && (job = list[at++], true); },
-            [&](const Job& job, const Trajectory& t) { all[job.id] = t; });
-  return all;
+  return run_jobs(grid(), list, options);
 }
 
 TEST(LanesOfManySources, AreTheRunsWithAMatrixEach) {

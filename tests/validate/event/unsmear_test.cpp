@@ -58,13 +58,7 @@ FitEvent event(double noise, const Fault& fault = {}, const Filter& filter = kTr
     e.record.theta.push_back(std::arg(v) + normal(random));
   }
   e.switchings = find_switchings(e.record, playin::kJumpThreshold, Jumps::spread, e.smeared);
-  e.clean.base = e.record.base;
-  for (std::size_t k = 0; k < e.record.t.size(); ++k) {
-    if (e.smeared[k]) continue;
-    e.clean.t.push_back(e.record.t[k]);
-    e.clean.V.push_back(e.record.V[k]);
-    e.clean.theta.push_back(e.record.theta[k]);
-  }
+  e.clean = without(e.record, e.smeared);
   return e;
 }
 double worst_within(const FitEvent& e, const Fault& fault = {}) {
@@ -109,9 +103,9 @@ TEST(Unsmear, AFaultShorterThanTheWindowOfClassMComesBack) {
     EXPECT_EQ(window.shape(), FilterWindow::Shape::class_m);
     EXPECT_NEAR(window.half(), kClassM30.half, 1e-9);
     ASSERT_EQ(e.switchings.size(), 2u);
-    EXPECT_NEAR(e.switchings[0].time, kOn, 1e-3);
-    EXPECT_NEAR(e.switchings[1].time, deep.off, 1e-3);
-    EXPECT_LT(worst_within(e, deep), 1e-2);
+    EXPECT_NEAR(e.switchings[0].time, kOn, 3e-4);
+    EXPECT_NEAR(e.switchings[1].time, deep.off, 3e-4);
+    EXPECT_LT(worst_within(e, deep), 4e-3);  // measured: 1.5e-3, instants to 9e-5 s
   }
 }
 TEST(Unsmear, BehindALagThatIsNoWindowTheFaultKeepsItsVoltage) {
@@ -120,11 +114,11 @@ TEST(Unsmear, BehindALagThatIsNoWindowTheFaultKeepsItsVoltage) {
   FitEvent& e = events.front();
   unsmear(events);
   ASSERT_EQ(e.switchings.size(), 2u);
-  EXPECT_NEAR(e.switchings[0].time, kOn, kCycle) << "later by the lag";
-  EXPECT_NEAR(e.switchings[1].time, deep.off, kCycle);
+  EXPECT_NEAR(e.switchings[0].time, kOn, 0.012) << "later by more than the lag";
+  EXPECT_NEAR(e.switchings[1].time, deep.off, 0.012);
   const double middle = (kOn + deep.off) / 2;
   EXPECT_LT(std::abs(playin::VoltageCurve(e.clean, e.switchings)(1, middle) - truth(deep, middle)),
-            0.1);  // of 0.7 pu
+            0.1);  // of jumps of 0.7 pu; measured: 0.065
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ const Eigen::Matrix4d& bends() {
 }  // namespace
 
 SmearedCurve::SmearedCurve(const SmearedStretch& stretch, const FilterWindow& window,
-                           std::vector<double> instants, double roughness) {
+                           const std::vector<double>& instants, double roughness) {
   set_segments(stretch, window, instants);
   const Eigen::MatrixXd A = averages(stretch, window), before = prior(roughness);
   // weights of real and imaginary part and of both together: the noise lies along the phasor and across it
@@ -50,7 +50,7 @@ SmearedCurve::SmearedCurve(const SmearedStretch& stretch, const FilterWindow& wi
     im[k] = along * square(u.imag()) + across * square(u.real());
     both[k] = (along - across) * u.real() * u.imag();
   }
-  const auto weighted = [&](const Eigen::ArrayXd& w) -> Eigen::MatrixXd {
+  const auto curvature = [&](const Eigen::ArrayXd& w) -> Eigen::MatrixXd {
     return A.transpose() * w.matrix().asDiagonal() * A;
   };
   const auto weighed = [&](const Eigen::MatrixXd& values) -> Eigen::MatrixXd {
@@ -60,9 +60,9 @@ SmearedCurve::SmearedCurve(const SmearedStretch& stretch, const FilterWindow& wi
     return out;
   };
   Eigen::MatrixXd precision(2 * count_, 2 * count_);
-  precision.topLeftCorner(count_, count_) = before + weighted(re);
-  precision.bottomRightCorner(count_, count_) = before + weighted(im);
-  precision.bottomLeftCorner(count_, count_) = weighted(both);
+  precision.topLeftCorner(count_, count_) = before + curvature(re);
+  precision.bottomRightCorner(count_, count_) = before + curvature(im);
+  precision.bottomLeftCorner(count_, count_) = curvature(both);
   const Eigen::LLT<Eigen::MatrixXd> known(precision);  // reads the lower half
   coefficients_ = A.transpose() * weighed(measured);
   coefficients_.reshaped() = known.solve(Eigen::VectorXd(coefficients_.reshaped()));

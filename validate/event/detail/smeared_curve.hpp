@@ -25,7 +25,7 @@ struct SmearedStretch {
 class SmearedCurve {
  public:
   /// The instants are ascending and lie within the stretch.
-  SmearedCurve(const SmearedStretch& stretch, const FilterWindow& window, std::vector<double> instants,
+  SmearedCurve(const SmearedStretch& stretch, const FilterWindow& window, const std::vector<double>& instants,
                double roughness);
   /// Logarithm of the probability of the samples, given window, instants and roughness, but for a constant.
   [[nodiscard]] double evidence() const { return evidence_; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -13,6 +14,8 @@ namespace {
 constexpr int kLeastKnots = 3;  ///< of a segment that is brought back
 constexpr int kAbout = 4;       ///< samples beyond the longest window's reach that a stretch holds
 constexpr int kNarrowings = 9;  ///< of the search for instants, each half as wide as the last
+/// With another roughness the search begins again as wide as after so many.
+constexpr int kAgain = 3;
 /// Roughness of a grid's voltage between switchings [pu^2/s^3]: a swing of 0.1 pu at 1 Hz has about 10, the
 /// subtransient behind a fault some hundred for its few hundredths of a second.
 constexpr double kRoughness[] = {0.1, 1, 10, 100, 1e3, 1e4};
@@ -118,8 +121,8 @@ BroughtBack brought_back(const FitEvent& e, const Cluster& c, const FilterWindow
     best.curve = std::move(curve);
     roughness = other;
   }
-  for (double& w : width) w /= 8;
-  if (!told && roughness != kFirstRoughness) search.run(best, width, roughness, kNarrowings - 3);
+  for (double& w : width) w /= 1 << kAgain;
+  if (!told && roughness != kFirstRoughness) search.run(best, width, roughness, kNarrowings - kAgain);
   return best;
 }
 
@@ -172,18 +175,6 @@ void replace(FitEvent& e, int segment, double from, double to, const SmearedCurv
   put(r.theta, theta);
 }
 
-void keep_clean(FitEvent& e) {
-  e.clean.t.clear();
-  e.clean.V.clear();
-  e.clean.theta.clear();
-  for (std::size_t k = 0; k < e.record.t.size(); ++k) {
-    if (e.smeared[k]) continue;
-    e.clean.t.push_back(e.record.t[k]);
-    e.clean.V.push_back(e.record.V[k]);
-    e.clean.theta.push_back(e.record.theta[k]);
-  }
-}
-
 void place(FitEvent& e, const Cluster& c, const BroughtBack& b) {
   if (!e.record.switched.empty()) return;
   for (std::size_t i = 0; i < c.count; ++i)
@@ -198,7 +189,21 @@ void fill(FitEvent& e, const Cluster& c, const BroughtBack& b, double half) {
     replace(e, static_cast<int>(s), s == 0 ? begin : b.instants[s - 1], s == c.count ? end : b.instants[s],
             *b.curve);
 }
+
 }  // namespace
+
+record::Record without(const record::Record& record, const std::vector<char>& smeared) {
+  record::Record clean;
+  clean.name = record.name;
+  clean.base = record.base;
+  for (std::size_t k = 0; k < record.t.size(); ++k) {
+    if (smeared[k]) continue;
+    clean.t.push_back(record.t[k]);
+    clean.V.push_back(record.V[k]);
+    clean.theta.push_back(record.theta[k]);
+  }
+  return clean;
+}
 
 FilterWindow unsmear(std::vector<FitEvent>& events) {
   const auto first = std::ranges::find_if(events, [](const FitEvent& e) { return !e.smeared.empty(); });
@@ -218,7 +223,7 @@ FilterWindow unsmear(std::vector<FitEvent>& events) {
   for (FitEvent& e : events) {
     if (e.smeared.empty()) continue;
     mark_again(e, best.window);
-    keep_clean(e);
+    e.clean = without(e.record, e.smeared);
   }
   for (std::size_t i = 0; i < clusters.size(); ++i)
     fill(events[clusters[i].event], clusters[i], best.clusters[i], best.window.half());

@@ -8,6 +8,9 @@
 
 namespace swingbank::validate::event {
 
+/// Time, V and theta of the samples that are not smeared.
+record::Record without(const record::Record& record, const std::vector<char>& smeared);
+
 /// Finds the window that makes the samples about all switchings most probable (SmearedCurve), one for all
 /// events, and the instants of those switchings that nobody told. Marks as smeared what this window reaches,
 /// and puts the voltage that was brought back into the events' clean records, so that every segment between
