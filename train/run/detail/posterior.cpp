@@ -1,5 +1,6 @@
 #include "train/run/detail/posterior.hpp"
 
+#include <ATen/ATen.h>
 #include <fmt/format.h>
 
 #include <algorithm>
