@@ -96,7 +96,10 @@ void settle_generators(Network& n, const std::function<std::string(std::size_t)>
   std::map<int, const Generator*> first;
   for (std::size_t i = 0; i < n.generators.size(); ++i) {
     Generator& g = n.generators[i];
-    if (!g.in_service || at(n, g.bus).type == BusType::load) continue;
+    if (!g.in_service || at(n, g.bus).type == BusType::load) {
+      g.regulated = -1;  // it holds no voltage
+      continue;
+    }
     const std::string place = unit_text(n, g) + " (" + where(i) + ")";
     if (g.regulated == g.bus) g.regulated = -1;
     hold_own(n, g, place);

@@ -162,13 +162,15 @@ TEST(FoundFiles, IslandsGetASlackBusOrGoOutOfService) {
 
 TEST(FoundFiles, AGeneratorAtALoadBusDeliversOnlyIfTheVoltagesShowIt) {
   RawCase c;
-  c.generators += "103,'9',100,20,1,-1,1.0,0,100,0,0.3\n";
+  c.generators += "103,'9',100,20,1,-1,1.0,102,100,0,0.3\n";
   const network::Network off = c.read();  // the voltages of RawCase are those of a load of 250 MW alone
   EXPECT_FALSE(off.generators[2].in_service);
+  EXPECT_EQ(off.generators[2].regulated, -1);
   EXPECT_THAT(places(off, "out of service, as in PSS/E"), ::testing::SizeIs(1));
   c.loads = "103,'1',1,1,1,350.0,50.0\n";
   const network::Network on = c.read();
   EXPECT_TRUE(on.generators[2].in_service);
+  EXPECT_EQ(on.generators[2].regulated, -1);
   const network::PowerFlow flow = network::solve_power_flow(on);
   EXPECT_NEAR(flow.generation[2].real(), 1.0, 1e-12);
   EXPECT_NEAR(flow.generation[2].imag(), 0.2, 1e-12);
