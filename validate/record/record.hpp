@@ -81,7 +81,9 @@ struct Record {
   Component component = Component::plant;  ///< what it is read for
   std::vector<StagedEvent> staged;         ///< what was done to the plant while it ran
   std::vector<double> switched;  ///< instants of switchings that a person knows [s]; empty: the jumps tell
-  std::vector<char> lost;        ///< marks samples that were not recorded and are bridged; empty: none
+  /// Marks samples that are not compared: frames that were not recorded, whose voltage is bridged, and frames
+  /// in which a channel that is compared has no value. Empty: none.
+  std::vector<char> lost;
 
   /// The event that takes the plant off the grid; nullptr: none does, or a part of it is tried that does not
   /// see the grid.

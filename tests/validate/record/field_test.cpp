@@ -222,7 +222,39 @@ TEST(LostFramesTest, AlsoWhereRowsHoldNoValues) {
   const Record r = parse_record(text, "r.csv", kTestBase);
   EXPECT_EQ(std::ranges::count(r.lost, 1), 3);
   EXPECT_NEAR(r.P[600], 0.4, 1e-9);
-  EXPECT_THAT(r.notes, ElementsAre(HasSubstr("in 3 places")));
+  EXPECT_EQ(r.V[600], 1.02) << "P alone is missing: the voltage is as recorded";
+  EXPECT_THAT(r.notes, ElementsAre(HasSubstr("in 2 places"), HasSubstr("P_pu has no value in 1 of 900")));
+}
+TEST(LostFramesTest, AQuantityAloneMissingKeepsTheVoltageOfItsFrames) {
+  const auto with = [](const std::string& q, int first, int count) {
+    return table(kHeader, 900, [&](int k) {
+      return k >= first && k < first + count
+                 ? fmt::format("{:.7f},{:.3f},{:.3f},0.4,{}", k / 30.0, 0.7 + 0.01 * k, 0.001 * k, q)
+                 : row(k, k / 30.0);
+    });
+  };
+  for (const char* q : {"", "NaN", "-9999"}) {
+    const Record r = parse_record(with(q, 400, 3), "r.csv", kTestBase);
+    for (std::size_t k = 400; k < 403; ++k) {
+      EXPECT_NEAR(r.V[k], 0.7 + 0.01 * static_cast<double>(k), 1e-9);
+      EXPECT_NEAR(r.theta[k], 0.001 * static_cast<double>(k), 1e-9);
+      EXPECT_NEAR(r.Q[k], 0.1, 1e-9);
+    }
+    EXPECT_EQ(std::ranges::count(r.lost, 1), 3);
+    EXPECT_THAT(r.notes, ElementsAre(AllOf(HasSubstr("Q_pu has no value in 3 of 900 frames"),
+                                           HasSubstr("not compared"))));
+  }
+  const Record ends = parse_record(with("", 0, 2), "r.csv", kTestBase);
+  EXPECT_EQ(ends.samples(), 900);
+  EXPECT_NEAR(ends.Q[0], 0.1, 1e-9) << "held before the first value";
+  EXPECT_EQ(std::ranges::count(ends.lost, 1), 2);
+  EXPECT_THAT(field_faults(with("", 400, 8)), ElementsAre(AllOf(HasSubstr("Q_pu"), HasSubstr("8 samples"))));
+  // Without an angle f drives the model, and its frames are lost with it.
+  const auto driven = table("t_s,V_pu,f_Hz,P_pu,Q_pu\n", 900, [](int k) {
+    return fmt::format("{:.7f},1.02,{},0.4,0.1", k / 30.0, k == 300 ? "" : "60.0");
+  });
+  EXPECT_THAT(parse_record(driven, "r.csv", kTestBase).notes,
+              ::testing::Contains(HasSubstr("frames are missing")));
 }
 TEST(LostFramesTest, LongerGapsAreNamed) {
   const auto text =

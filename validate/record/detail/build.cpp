@@ -130,8 +130,38 @@ bool same_rows(const RawRecord& raw, std::size_t a, std::size_t b) {
   });
 }
 
+/// Whether a frame without this quantity is none: what drives a model must be there. Of a component, and of
+/// one file of several, every column may.
+bool drives(const RawRecord& raw, const ReadOptions& options, Quantity q) {
+  if (options.part || options.component != Component::plant) return true;
+  const auto has = [&](Quantity wanted) {
+    return std::ranges::any_of(raw.columns, [&](const RawColumn& c) { return c.meaning.quantity == wanted; });
+  };
+  if (q == Quantity::V || q == Quantity::theta) return true;
+  if (has(Quantity::theta)) return false;
+  return q == Quantity::f || (!has(Quantity::f) && (q == Quantity::P || q == Quantity::Q));
+}
+/// Whether something that drives a model is missing in a row.
+bool is_lost(const RawRecord& raw, const ReadOptions& options, std::size_t row) {
+  return std::ranges::any_of(raw.columns, [&](const RawColumn& c) {
+    return c.meaning.quantity != Quantity::time && !std::isfinite(c.values[row]) &&
+           drives(raw, options, c.meaning.quantity);
+  });
+}
+/// Whether a column has nothing on the grid for longer than kLongestGap.
+bool is_long_without(const std::vector<double>& values, const EvenRows& rows) {
+  if (rows.t.size() < 2) return false;
+  const double step = (rows.t.back() - rows.t.front()) / static_cast<double>(rows.t.size() - 1);
+  std::size_t longest = 0, run = 0;
+  for (const double place : rows.place) {
+    run = std::isfinite(place) && !std::isfinite(values[static_cast<std::size_t>(place)]) ? run + 1 : 0;
+    longest = std::max(longest, run);
+  }
+  return static_cast<double>(longest) * step > kLongestGap * (1 + 1e-6);
+}
+
 /// Rows on an even grid, without lost ones at either end; gaps that are too long are faults.
-EvenRows settle(RawRecord& raw, Record& r, SampleFaults& faults) {
+EvenRows settle(RawRecord& raw, const ReadOptions& options, Record& r, SampleFaults& faults) {
   check_magnitudes(raw, faults);
   const std::vector<double>& t = times_of(raw);
   EvenRows rows = settle_rows({.t = t,
@@ -140,12 +170,17 @@ EvenRows settle(RawRecord& raw, Record& r, SampleFaults& faults) {
                                .same = [&](std::size_t a, std::size_t b) { return same_rows(raw, a, b); }},
                               r, faults);
   const std::vector<char> lost = faults.lost(t.size());
+  const auto gone = [&](double row) {
+    const auto k = static_cast<std::size_t>(row);
+    return lost[k] && is_lost(raw, options, k);
+  };
   if (!lost.empty())
     for (double& place : rows.place)
-      if (std::isfinite(place) &&
-          (lost[static_cast<std::size_t>(place)] || lost[static_cast<std::size_t>(std::ceil(place))]))
-        place = kNoValue;
-  if (!gaps_are_short(rows, r)) faults.tell_missing();
+      if (std::isfinite(place) && (gone(place) || gone(std::ceil(place)))) place = kNoValue;
+  if (!gaps_are_short(rows, r) || (!lost.empty() && std::ranges::any_of(raw.columns, [&](const RawColumn& c) {
+        return c.meaning.quantity != Quantity::time && is_long_without(c.values, rows);
+      })))
+    faults.tell_missing();
   return rows;
 }
 
@@ -165,8 +200,32 @@ std::vector<double> at_places(const std::vector<double>& values, const std::vect
   return all;
 }
 
-void fill_channels(RawRecord& raw, const EvenRows& rows, Record& r) {
+/// Straight lines over samples of the grid that a column has not, though their frames were recorded; which
+/// these are.
+std::vector<std::size_t> fill_unmeasured(std::vector<double>& values, const EvenRows& rows) {
+  std::vector<std::size_t> filled;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (!std::isfinite(values[k]) && std::isfinite(rows.place[k])) filled.push_back(k);
+  const std::vector<double> given = values;
+  for (const std::size_t k : filled) {
+    std::size_t before = k, after = k;
+    while (before > 0 && !std::isfinite(given[before])) --before;
+    while (after + 1 < given.size() && !std::isfinite(given[after])) ++after;
+    const bool first = std::isfinite(given[before]), last = std::isfinite(given[after]);
+    const double part =
+        static_cast<double>(k - before) / static_cast<double>(std::max<std::size_t>(after - before, 1));
+    values[k] = first && last ? given[before] + part * (given[after] - given[before])
+                : first       ? given[before]
+                : last        ? given[after]
+                              : 0.0;
+  }
+  return filled;
+}
+
+/// Marks the frames in which something that is compared has no value.
+std::vector<char> fill_channels(RawRecord& raw, const EvenRows& rows, Record& r) {
   std::vector<double> current, angle;
+  std::vector<char> unmeasured;
   for (RawColumn& column : raw.columns) {
     const Quantity q = column.meaning.quantity;
     if (q == Quantity::time) continue;
@@ -174,6 +233,15 @@ void fill_channels(RawRecord& raw, const EvenRows& rows, Record& r) {
     if (q == Quantity::theta) as_written = column.values;
     if (q == Quantity::theta || q == Quantity::phi) unwrap(column.values);
     std::vector<double> values = at_places(column.values, rows.place);
+    if (const auto filled = fill_unmeasured(values, rows); !filled.empty()) {
+      const bool compared = q != Quantity::f;
+      r.notes.push_back(fmt::format("{} has no value in {} of {} frames, the first at t = {:.4g} s{}.",
+                                    column.name, filled.size(), values.size(), rows.t[filled.front()],
+                                    compared ? ": their voltage is used, and they are not compared" : ""));
+      if (compared) unmeasured.resize(values.size(), 0);
+      for (const std::size_t k : filled)
+        if (compared) unmeasured[k] = 1;
+    }
     if (q == Quantity::theta && values.size() == as_written.size())
       r.theta_as_written = std::move(as_written);
     if (auto* to = channel(r, q))
@@ -193,6 +261,7 @@ void fill_channels(RawRecord& raw, const EvenRows& rows, Record& r) {
     if (!current.empty() && !angle.empty() && !r.theta.empty()) power_from_current(r, current, angle);
   }
   if (r.theta_as_written.empty() || !r.lost.empty()) r.theta_as_written.clear();
+  return unmeasured;
 }
 
 /// Mean of f over the interval before sample k: of the cubic through the four samples about it where these
@@ -361,15 +430,17 @@ Record build_record(RawRecord raw, const RecordBase& base, const ReadOptions& op
   convert(raw, base);
   begin_at_zero(raw, r);
   cut_rows(raw, options, faults);
-  const EvenRows rows = settle(raw, r, faults);
+  const EvenRows rows = settle(raw, options, r, faults);
   faults.tell(problems, file);
   if (rows.place.size() < kFewestSamples)
     problems.add(fmt::format("{} samples", rows.place.size()), file,
                  fmt::format("a record needs at least {}", kFewestSamples), "give a longer record");
   problems.raise();
-  fill_channels(raw, rows, r);
+  const std::vector<char> unmeasured = fill_channels(raw, rows, r);
   if (options.component == Component::governor && r.V.empty() && !options.part) r.V.assign(r.t.size(), 1.0);
   bridge(r);
+  r.lost.resize(unmeasured.empty() ? r.lost.size() : r.t.size(), 0);
+  for (std::size_t k = 0; k < unmeasured.size(); ++k) r.lost[k] = r.lost[k] || unmeasured[k];
   r.component = options.component;
   if (options.part) return r;
   settle_angle(r);
