@@ -68,6 +68,10 @@ RawSurvey survey_raw(const std::filesystem::path& file, const RawOptions& option
 /// The same from a text; `name` stands for the file in messages.
 RawSurvey parse_raw_survey(const std::string& text, const std::string& name, const RawOptions& options = {});
 
+/// Throws InputError, in one sentence, where the first lines show that a .raw and a .dyr are in each other's
+/// place or that one of them is of the other's kind.
+void refuse_exchanged(const std::filesystem::path& raw, const std::filesystem::path& dyr);
+
 /// Writes version 32, 33, 34 or 35; reading it back gives the same values to the last bit (`origin` apart).
 /// Lines come first, then transformers. Throws InputError where the file cannot be written or a branch has no
 /// .raw form: a tap or phase shift on a branch not marked as a transformer, charging or a far-end shunt on a

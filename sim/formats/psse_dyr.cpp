@@ -90,7 +90,8 @@ class DyrReader {
     }
     if (fields.size() < 3) {
       problems_.add("incomplete record", fields.where(),
-                    "a record is: bus number, 'MODEL', id, parameters, /",
+                    std::string("a record is: bus number, 'MODEL', id, parameters, /") +
+                        (unended ? "; none ends this one: the file may be cut off there" : ""),
                     "complete the record or remove it");
       return;
     }

@@ -151,7 +151,11 @@ std::optional<long double> parse_number(std::string text) {
   for (char& c : text)
     if (c == 'd' || c == 'D') c = 'e';
   char* end = nullptr;
-  const long double value = std::strtold(text.c_str(), &end);
+  long double value = std::strtold(text.c_str(), &end);
+  // Rounded twice, to extended precision and then to double, one decimal in 2,000 would become the double
+  // beside the nearest.
+  if (const double nearest = std::strtod(text.c_str(), nullptr); static_cast<double>(value) != nearest)
+    value = std::nextafter(value, static_cast<long double>(nearest));
   // A value beyond the range of double would turn to infinity later on.
   if (*end != '\0' || !std::isfinite(static_cast<double>(value))) return {};
   return value;
@@ -165,7 +169,7 @@ std::string shortest(double value, long double scale) {
   const int whole = value == 0.0 ? 1 : static_cast<int>(std::floor(std::log10(std::abs(scaled)))) + 1;
   for (int digits = std::clamp(whole, 1, 12); digits <= 21; ++digits) {
     std::snprintf(text, sizeof text, "%.*Lg", digits, scaled);
-    if (static_cast<double>(std::strtold(text, nullptr) / scale) == value) break;
+    if (const auto read = parse_number(text); read && static_cast<double>(*read / scale) == value) break;
   }
   return text;
 }

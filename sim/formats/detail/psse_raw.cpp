@@ -10,19 +10,42 @@ namespace swingbank::sim::formats {
 
 namespace {
 bool is_rawx(const std::string& name) { return name.ends_with(".rawx") || name.ends_with(".RAWX"); }
+
+/// Throws in place of many faults of a wrong version that version.
+void tell_version(const std::vector<std::string>& lines, const std::string& name, const RawOptions& options,
+                  int read_as, const std::vector<Problem>& faults) {
+  if (const auto other = psse::other_version(lines, name, options, read_as, faults)) throw InputError(*other);
+}
+network::Network read_lines_as_raw(const std::vector<std::string>& lines, const std::string& name,
+                                   const RawOptions& options) {
+  psse::RawReader reader(lines, name, options);
+  try {
+    return reader.read();
+  } catch (const InputError& error) {
+    tell_version(lines, name, options, reader.version(), error.problems());
+    throw;
+  }
+}
+RawSurvey survey_lines(const std::vector<std::string>& lines, const std::string& name,
+                       const RawOptions& options) {
+  psse::RawReader reader(lines, name, options);
+  RawSurvey survey = reader.survey();
+  tell_version(lines, name, options, reader.version(), survey.faults);
+  return survey;
+}
 }  // namespace
 
 network::Network read_raw(const std::filesystem::path& file, const RawOptions& options) {
-  return psse::RawReader(psse::read_lines(file), file.string(), options).read();
+  return read_lines_as_raw(psse::read_lines(file), file.string(), options);
 }
 network::Network parse_raw(const std::string& text, const std::string& name, const RawOptions& options) {
-  return psse::RawReader(psse::lines_of(text), name, options).read();
+  return read_lines_as_raw(psse::lines_of(text), name, options);
 }
 RawSurvey survey_raw(const std::filesystem::path& file, const RawOptions& options) {
-  return psse::RawReader(psse::read_lines(file), file.string(), options).survey();
+  return survey_lines(psse::read_lines(file), file.string(), options);
 }
 RawSurvey parse_raw_survey(const std::string& text, const std::string& name, const RawOptions& options) {
-  return psse::RawReader(psse::lines_of(text), name, options).survey();
+  return survey_lines(psse::lines_of(text), name, options);
 }
 
 namespace psse {
@@ -142,7 +165,7 @@ void RawReader::header() {
     problems_.add("REV is missing", f.where(), "fields and sections lie where the version has them" + comment,
                   "say it with --raw-version, 23 to 35");
   else
-    version_ = f.integer(2, "REV", options_.version);
+    version_ = forced_ != 0 ? forced_ : f.integer(2, "REV", options_.version);
   if (f.text(5, "").empty() && !options_.frequency_hz)
     problems_.add("BASFRQ is missing", f.where(), "the rotors turn at this frequency",
                   "say it with --frequency-hz, 50 or 60 Hz");

@@ -44,6 +44,11 @@ class RawReader {
       : file_(std::move(name)), lines_(std::move(lines)), options_(options) {}
   network::Network read();
   RawSurvey survey();
+  /// How many faults the file has if it is read as this version, whatever its header says. The reader is of
+  /// no use after that.
+  std::size_t faults_as(int version);
+  /// The version it was read as; 0: the header did not say it.
+  [[nodiscard]] int version() const { return version_; }
 
  private:
   void read_sections();
@@ -138,7 +143,7 @@ class RawReader {
   std::vector<std::string> lines_;
   std::size_t at_ = 0;     ///< next line
   std::string separator_;  ///< the line that ended the last section
-  int version_ = 0;
+  int version_ = 0, forced_ = 0;
   Columns columns_{};
   long double base_ = 100.0L;
   network::Network network_;
@@ -162,5 +167,10 @@ class RawReader {
   std::map<int, std::vector<std::pair<double, Complex>>> tables_;  ///< T and factor, ascending
   std::set<int> stars_;  ///< indices of the star points of three-winding transformers
 };
+
+/// Where a file has many faults as the version that it was read as, and hardly any as another: that.
+std::optional<Problem> other_version(const std::vector<std::string>& lines, const std::string& name,
+                                     const RawOptions& options, int read_as,
+                                     const std::vector<Problem>& faults);
 
 }  // namespace swingbank::sim::formats::psse

@@ -1,0 +1,105 @@
+// Files of another kind or version than they are taken for: one sentence in place of a fault for each line.
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "sim/formats/detail/psse_raw.hpp"
+
+namespace swingbank::sim::formats {
+namespace {
+
+/// The first line that holds a field, split; nothing where the file has none or cannot be read, which its
+/// reader tells.
+std::optional<psse::Record> first_record(const std::filesystem::path& file) {
+  try {
+    Problems ignored;
+    const auto lines = psse::read_lines(file);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const auto begin = lines[i].find_first_not_of(" \t\r");
+      if (begin == std::string::npos || lines[i].compare(begin, 2, "//") == 0 ||
+          lines[i].compare(begin, 2, "@!") == 0)
+        continue;
+      auto record = psse::split(lines[i], static_cast<int>(i) + 1, file.string(), ignored);
+      if (!record.fields.empty()) return record;
+    }
+  } catch (const InputError&) {
+  }
+  return {};
+}
+bool is_number(const psse::Field& field) { return !field.quoted && psse::parse_number(field.text); }
+/// A bus number, or in quotes the name of equipment, and a model's name in quotes.
+bool is_of_dyr(const psse::Record& r) {
+  return r.fields.size() > 1 && (r.fields[0].quoted || is_number(r.fields[0])) && r.fields[1].quoted &&
+         !r.fields[1].text.empty() && std::isalpha(static_cast<unsigned char>(r.fields[1].text[0])) != 0;
+}
+/// IC and SBASE, of a .rawx a brace.
+bool is_of_raw(const psse::Record& r) {
+  return r.fields[0].text.starts_with('{') ||
+         (r.fields.size() > 1 && is_number(r.fields[0]) && is_number(r.fields[1]));
+}
+std::string place(const std::filesystem::path& file, const psse::Record& record) {
+  return file.string() + ":" + std::to_string(record.line);
+}
+
+}  // namespace
+
+void refuse_exchanged(const std::filesystem::path& raw, const std::filesystem::path& dyr) {
+  const auto network = first_record(raw), dynamics = first_record(dyr);
+  const bool no_raw = network && is_of_dyr(*network), no_dyr = dynamics && is_of_raw(*dynamics);
+  if (no_raw && no_dyr)
+    throw InputError(
+        {"the two files are in each other's place", place(raw, *network),
+         "a record of a dynamic model begins the one that should be the .raw, and a .raw's header "
+         "the one that should be the .dyr",
+         "exchange --raw and --dyr"});
+  if (no_raw)
+    throw InputError({"no .raw", place(raw, *network),
+                      "the file begins with a record of a dynamic model, '" + network->fields[1].text +
+                          "', as a .dyr does",
+                      "give the network's file with --raw"});
+  if (no_dyr)
+    throw InputError({"no .dyr", place(dyr, *dynamics), "the file begins with the header of a .raw",
+                      "give the dynamic models' file with --dyr"});
+}
+
+namespace psse {
+
+std::size_t RawReader::faults_as(int version) {
+  forced_ = version;
+  units_only_ = true;
+  try {
+    read_sections();
+  } catch (const InputError& error) {
+    return error.problems().size();
+  }
+  return problems_.list().size();
+}
+
+std::optional<Problem> other_version(const std::vector<std::string>& lines, const std::string& name,
+                                     const RawOptions& options, int read_as,
+                                     const std::vector<Problem>& faults) {
+  // Fewer faults are told one by one; another version counts if it has so many times fewer.
+  constexpr std::size_t kToldOneByOne = 3, kTimesFewer = 10;
+  if (faults.size() < kToldOneByOne || read_as == 0) return {};
+  constexpr std::array kVersions = {33, 34, 35, 32, 31, 30, 29, 28, 27, 26, 25, 24, 23};
+  std::size_t least = faults.size() / kTimesFewer;
+  int best = 0;
+  for (const int version : kVersions) {
+    if (version == read_as) continue;
+    const std::size_t left = RawReader(lines, name, options).faults_as(version);
+    if (left > least || (best != 0 && left == least)) continue;
+    least = left;
+    best = version;
+  }
+  if (best == 0) return {};
+  return Problem{std::to_string(faults.size()) + " faults as version " + std::to_string(read_as), name,
+                 "as version " + std::to_string(best) + " it has " +
+                     (least == 0 ? std::string("none") : std::to_string(least)) +
+                     "; the first: " + faults[0].what + " at " + faults[0].where,
+                 options.version == read_as
+                     ? "say --raw-version " + std::to_string(best)
+                     : "correct REV in the header, in a copy, to " + std::to_string(best)};
+}
+
+}  // namespace psse
+}  // namespace swingbank::sim::formats
