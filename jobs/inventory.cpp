@@ -27,7 +27,7 @@ struct Arguments {
 };
 
 struct Totals {
-  int units = 0, covered = 0, without_machine = 0, partly = 0, off = 0;
+  int units = 0, covered = 0, without_machine = 0, partly = 0, off = 0, classical = 0, idle = 0;
 };
 Totals totals_of(const Inventory& inventory) {
   Totals t;
@@ -37,6 +37,8 @@ Totals totals_of(const Inventory& inventory) {
     t.without_machine += u.models.empty() ? 1 : 0;
     t.partly += !u.covered() && !u.models.empty() ? 1 : 0;
     t.off += u.in_service ? 0 : 1;
+    t.classical += u.classical ? 1 : 0;
+    t.idle += u.classical ? u.field_records : 0;
   }
   return t;
 }
@@ -79,6 +81,12 @@ void print_text(const Inventory& inventory, bool units) {
   fmt::print(
       "{} units: {} wholly covered ({:.1f} %), {} in part, {} without a dynamic model; {} out of service\n",
       t.units, t.covered, share(t.covered), t.partly, t.without_machine, t.off);
+  if (t.classical > 0)
+    fmt::print(
+        "{} units are classical machines (GENCLS){}\n", t.classical,
+        t.idle == 0
+            ? std::string()
+            : fmt::format(": {} records of exciters, stabilisers and the like do nothing there", t.idle));
   print_models(inventory);
   for (const ModelCount& m : inventory.models)
     if (m.faulty > 0) fmt::print("\n{} x {}, as this: {}\n", m.faulty, m.name, m.fault);
@@ -102,6 +110,8 @@ void print_json(const Inventory& inventory) {
             {"in_part", t.partly},
             {"without_model", t.without_machine},
             {"out_of_service", t.off},
+            {"classical", t.classical},
+            {"idle_records", t.idle},
             {"records_without_generator", inventory.without_generator},
             {"models", Json::array()},
             {"list", Json::array()},

@@ -17,7 +17,7 @@ struct Arguments {
   std::filesystem::path out, dyd;
   std::vector<std::string> replace;
   std::string conventions = "psse";
-  int measured_at = 0;
+  int measured_at = 0, complete_records = 0;
 };
 
 int run(Arguments& a) {
@@ -32,6 +32,7 @@ int run(Arguments& a) {
     problems.add("no dynamic models", "--dyr", "a plant is made of the records of its unit",
                  "give the case's .dyr, or --dyd with its .dyd");
   problems.raise();
+  a.unit.complete_records = static_cast<sim::grid::Lacking>(a.complete_records);
   if (a.measured_at > 0) a.unit.measured_at = a.measured_at;
   const sim::grid::Unit unit = sim::grid::read_unit(a.unit);
   const std::string files = a.unit.raw.string() + " and " + a.unit.dyr.string();
@@ -65,12 +66,17 @@ int main(int argc, char** argv) {
   line.add("--bus", a.unit.bus, "number of the unit's bus").required().positive();
   line.add("--id", a.unit.id, "the unit's id, where the bus has several");
   line.add("--out", a.out, "plant file to write (default: to the terminal)");
-  line.add("--drop", a.unit.models.ignore, "model of the unit to leave out; may be repeated")
-      .one_value_a_mention();
+  line.add("--drop", a.unit.models.ignore,
+           "models of the unit to leave out, comma-separated; may be repeated")
+      .one_value_a_mention()
+      .comma_separated();
   line.add("--replace", a.replace,
            "OLD=NEW: a model of the unit read as another: with its values where both have as many "
            "parameters, else with the other's standard values; may be repeated")
       .one_value_a_mention();
+  line.add_choice("--complete-records", a.complete_records, {"no", "zero", "standard"},
+                  "records that are shorter than their model get these values at their end, longer ones lose "
+                  "what is beyond it; each value is named");
   line.add("--measured-at", a.measured_at,
            "bus beyond the unit's transformer, where the records were taken: the transformer becomes part "
            "of the plant")

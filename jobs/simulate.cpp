@@ -379,9 +379,12 @@ int main(int argc, char** argv) {
       .one_of({"checked", "file", "none"})
       .shows_default();
   line.add("--changes", o.changes, "text file for all that was done to the case, a line for every place");
-  line.add("--ignore-model", o.ignore_models, "name of a .dyr model to leave out; may be repeated");
+  line.add("--ignore-model", o.ignore_models,
+           "names of .dyr models to leave out, comma-separated; may be repeated")
+      .comma_separated();
   line.add("--map-model", o.map_models,
-           "FROM=TO: read a .dyr model as another with as many parameters; may be repeated");
+           "FROM=TO,...: read a .dyr model as another with as many parameters; may be repeated")
+      .comma_separated();
   line.add("--law", o.laws, "law file (.toml) whose effect --attach may use; may be repeated");
   line.add("--attach", o.attached,
            "PLANT:EFFECT[:PARAM=VALUE,...]: an effect added to a plant (or to all); may be repeated");

@@ -76,11 +76,11 @@ constexpr double kNoNeutral = std::numeric_limits<double>::quiet_NaN();
 /// In a parameter's record before its bounds' source: its standard value has the effect's source.
 constexpr Source kAsEffect = {};
 
-/// One parameter of an effect. `low` and `high` bound what is physically possible; a dataset's sampling box
-/// stands in its own config and is checked against them. `neutral` is the value at which the parameter's
-/// influence vanishes (NaN: there is none). The unit "code" marks a choice among whole numbers: never
-/// sampled, never fitted. The two sources are the effect's own, standards_from and bounds_from, where a
-/// record gives none.
+/// One parameter of an effect. `low` and `high` bound what is usual (sim/plant/usual.hpp); what no equation
+/// takes is refused by check(). A dataset's sampling box must lie within them. `neutral` is the value at
+/// which the influence vanishes (NaN: there is none). The unit "code" marks a choice among whole numbers:
+/// never sampled, never fitted. The two sources are the effect's own, standards_from and bounds_from, where
+/// a record gives none.
 struct Parameter {
   std::string_view name;    ///< identifier in configs, HDF5 and tables: "Xdp"
   std::string_view symbol;  ///< as engineers write it: "X'd"

@@ -11,6 +11,7 @@
 #include "sim/formats/matpower.hpp"
 #include "sim/grid/detail/dyr_models.hpp"
 #include "sim/grid/load_choice.hpp"
+#include "sim/plant/usual.hpp"
 
 namespace swingbank::sim::grid {
 namespace {
@@ -27,6 +28,7 @@ class GridMaker {
     plants();
   }
   Grid make(const std::vector<formats::DyrRecord>& dynamics) {
+    if (!dynamics.empty() && dynamics.back().unended) cut_off_at_ = dynamics.back().line;
     for (const formats::DyrRecord& record : dynamics) add(record);
     tell_unknown();
     for (plant::Plant& plant : grid_.plants) finish(plant);
@@ -100,20 +102,9 @@ class GridMaker {
   /// Whether the record is as long as its model takes it, or is made so where that is asked for.
   bool fits(const Effect& effect, formats::DyrRecord& record, const std::string& where, Problems& problems) {
     tell_empty(record, where);
-    const std::size_t has = record.values.size(), takes = effect.dyr_columns.size();
-    if (has == takes || options_.complete_records == Lacking::refused)
-      return complete(effect, record, where, problems, ", or let --complete-records do it");
-    record.values.resize(takes);
-    const std::vector<double> standard = effect.standard_parameters();
-    if (options_.complete_records == Lacking::standard)
-      for (std::size_t i = has; i < takes; ++i)
-        record.values[i] = standard[static_cast<std::size_t>(effect.dyr_columns[i])];
-    grid_.network.remark(has > takes
-                             ? "values that records have beyond those of their model are left out, as asked"
-                             : "values that records lack at their end are zero or standard, as asked",
-                         fmt::format("{} of '{}' at bus {} has {} of {} values ({})", record.model, record.id,
-                                     record.bus, has, takes, where));
-    return true;
+    const Completion done = complete(effect, record, options_.complete_records, where, problems);
+    if (!done.what.empty()) grid_.network.remark(done.what, done.place);
+    return done.sound;
   }
   void add_control(const Effect& effect, formats::DyrRecord record, const std::string& where,
                    Problems& problems) {
@@ -132,6 +123,8 @@ class GridMaker {
     take_from_raw(block, g);
     if (const std::string left_out = remark_on(block, where, plant.name); !left_out.empty())
       grid_.network.remark("values that the equations take in their own way, or not at all", left_out);
+    for (const std::string& text : plant::unusual_texts(block, where))
+      grid_.network.remark("values outside the range that is usual for them", text);
     const plant::Plant before = plant;
     const std::string warning = place(plant, std::move(block), {g, grid_.network.origin}, where, problems);
     if (!problems.empty()) plant = before;
@@ -158,10 +151,12 @@ class GridMaker {
       const std::string others =
           one.records > 1 ? " and " + std::to_string(one.records - 1) + " more" : std::string();
       problems_.add((user ? "user-written model '" : "unknown model '") + name + "' of " + one.first + others,
-                    one.where, "available are " + dyr_names(),
+                    one.where, lacking_text(dyr_),
                     "leave it out with --ignore-model " + name +
-                        ", or let another with as many parameters (" + std::to_string(one.parameters) +
-                        ") stand for it with --map-model " + name + "=OTHER");
+                        (one.parameters == 0
+                             ? std::string()
+                             : ", or let another with as many parameters (" + std::to_string(one.parameters) +
+                                   ") stand for it with --map-model " + name + "=OTHER"));
     }
   }
   /// A model for one load, or with the id * for every load, of a bus, owner, zone, area or of all.
@@ -213,10 +208,22 @@ class GridMaker {
     if (!plant.machine.effect) unmodelled_.push_back(plant.generator);
     check_fit(plant, dyr_, problems_);
     sort_controls(plant);
+    for (const std::string& text : idle_controls(plant))
+      grid_.network.remark("controls of the field voltage that do nothing", text);
   }
   [[nodiscard]] std::string unit_text(int generator) const {
     const network::Generator& g = grid_.network.generators[static_cast<std::size_t>(generator)];
     return "'" + g.id + "' at bus " + std::to_string(bus_number(g));
+  }
+  /// Whether the .dyr seems to end too early: inside a record, or before the last generators of the network.
+  [[nodiscard]] std::string cut_off_text() const {
+    if (cut_off_at_ > 0)
+      return fmt::format("; no '/' ends the last record, of line {}: the file may be cut off", cut_off_at_);
+    const auto modelled = std::ranges::max_element(
+        grid_.plants, {}, [](const plant::Plant& p) { return p.machine.effect ? p.generator : -1; });
+    const bool at_the_end = modelled != grid_.plants.end() && modelled->machine.effect &&
+                            modelled->generator < std::ranges::min(unmodelled_);
+    return at_the_end ? "; all generators before them have one: the .dyr may be cut off" : "";
   }
   /// Generators without a machine model: all in one sentence.
   void tell_unmodelled() {
@@ -230,7 +237,7 @@ class GridMaker {
     problems_.add(
         one ? "no machine model for generator " + list
             : "no machine model for " + std::to_string(unmodelled_.size()) + " generators: " + list,
-        dyr_, (one ? "it is" : "they are") + (" in service in " + grid_.network.origin),
+        dyr_, (one ? "it is" : "they are") + (" in service in " + grid_.network.origin) + cut_off_text(),
         "add records with one of " + machine_names() +
             ", take them out of service, or go on with --net-generators, which makes them negative loads");
   }
@@ -339,6 +346,7 @@ class GridMaker {
   };
   std::string dyr_;
   CaseOptions options_;
+  int cut_off_at_ = 0;           ///< line of the .dyr's last record, where no '/' ends it
   std::vector<int> unmodelled_;  ///< generators in service without a machine model
   Grid grid_;
   Problems problems_;
@@ -373,6 +381,7 @@ std::string remark_line(const network::Remark& remark, std::size_t places) {
 
 Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dyr, Conventions conventions,
                const CaseOptions& options) {
+  formats::refuse_exchanged(raw, dyr);
   Problems problems;
   network::Network network;
   std::vector<formats::DyrRecord> dynamics;

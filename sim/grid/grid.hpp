@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/formats/psse.hpp"
+#include "sim/grid/lacking.hpp"
 #include "sim/library/library.hpp"
 #include "sim/network/powerflow.hpp"
 #include "sim/plant/plant.hpp"
@@ -26,8 +27,6 @@ struct Grid {
   [[nodiscard]] std::vector<int> modelled_loads() const;
 };
 
-/// What the values are that a record of a .dyr lacks at its end.
-enum class Lacking { refused, zero, standard };
 /// What is done to a case that is not whole. Everything done stands in Network::remarks.
 struct CaseOptions {
   formats::DyrOptions dyr;

@@ -70,6 +70,9 @@ class InventoryTaker {
       unit.uncovered.push_back(name);
     else if (effect->slot == Slot::machine)
       unit.machine = true;
+    if (effect && effect->slot == Slot::machine)
+      unit.classical = !effect->converter && !reads_field_voltage(*effect);
+    if (effect && acts_on_field(effect->slot)) ++unit.field_records;
   }
 
   const formats::RawSurvey& raw_;
@@ -85,6 +88,7 @@ class InventoryTaker {
 
 Inventory take_inventory(const std::filesystem::path& raw, const std::filesystem::path& dyr,
                          const formats::RawOptions& options) {
+  formats::refuse_exchanged(raw, dyr);
   const formats::RawSurvey survey = formats::survey_network(raw, options);
   const formats::DyrSurvey dynamics = formats::survey_dyr(dyr);
   return InventoryTaker(survey, dynamics, dyr.string()).take();

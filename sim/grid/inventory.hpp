@@ -26,6 +26,8 @@ struct UnitCount {
   std::vector<std::string> models;     ///< as the .dyr has them
   std::vector<std::string> uncovered;  ///< those of them that cannot be used
   bool machine = false;                ///< one of the models is a machine that can be used
+  bool classical = false;              ///< it has no field winding: GENCLS
+  int field_records = 0;               ///< of controls that act through the field voltage
   [[nodiscard]] bool covered() const { return machine && uncovered.empty(); }
 };
 

@@ -10,6 +10,7 @@
 #include "sim/formats/matpower.hpp"
 #include "sim/grid/detail/dyr_models.hpp"
 #include "sim/library/library.hpp"
+#include "sim/plant/usual.hpp"
 
 namespace swingbank::sim::grid {
 namespace {
@@ -17,6 +18,7 @@ namespace {
 class UnitReader {
  public:
   explicit UnitReader(const UnitChoice& choice) : choice_(choice) {
+    if (!choice.dyd) formats::refuse_exchanged(choice.raw, choice.dyr);
     survey_ = formats::survey_network(choice.raw, {choice.frequency_hz, choice.raw_version});
     survey_.network.origin = choice.raw.string();
     if (choice.dyd) {
@@ -134,6 +136,8 @@ class UnitReader {
                     "add a record with one of " + machine_names() + ", or choose another unit");
     check_fit(unit_.plant, choice_.dyr.string(), problems_);
     sort_controls(unit_.plant);
+    for (const std::string& text : idle_controls(unit_.plant))
+      unit_.notes.push_back(text + ": it does nothing");
   }
   /// Why a record may have been lost.
   [[nodiscard]] std::string lost_text() const {
@@ -165,7 +169,8 @@ class UnitReader {
     if (!effect)
       return problems_.add(
           fmt::format("unknown model '{}' of unit '{}' at bus {}", name_of(record), unit_.id, unit_.bus),
-          where, "available are " + (choice_.dyd ? formats::dyd_models_text() : dyr_names()),
+          where,
+          choice_.dyd ? "available are " + formats::dyd_models_text() : lacking_text(choice_.dyr.string()),
           fmt::format("leave it out with --drop {0}, or let another stand for it with --replace {0}=OTHER "
                       "(under [grid] of a plant file: ignore_models, map_models)",
                       given));
@@ -182,7 +187,10 @@ class UnitReader {
           record.line, effect->dyr_name, record.values.size(), effect->dyr_columns.size(), effect->dyr_name));
     } else {
       problems_.add(record.faults);
-      if (!record.faults.empty() || !complete(*effect, record, where, problems_)) return;
+      if (!record.faults.empty()) return;
+      const Completion done = complete(*effect, record, choice_.complete_records, where, problems_);
+      if (!done.sound) return;
+      if (!done.what.empty()) unit_.notes.push_back(done.what + ": " + done.place);
       block = values_of(*effect, record);
       for (const int i : record.empty)
         unit_.notes.push_back(fmt::format("{}: empty parameter {} of {} is taken as zero", where, i, given));
@@ -194,6 +202,7 @@ class UnitReader {
     take_from_raw(block, g);
     if (std::string left_out = remark_on(block, where, unit_.plant.name); !left_out.empty())
       unit_.notes.push_back(std::move(left_out));
+    for (auto& text : plant::unusual_texts(block, where)) unit_.notes.push_back(std::move(text));
     std::string warning = place(unit_.plant, std::move(block), {g, net().origin}, where, problems_);
     if (!warning.empty()) unit_.notes.push_back(std::move(warning));
   }

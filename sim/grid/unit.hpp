@@ -9,6 +9,7 @@
 
 #include "sim/formats/dyd.hpp"
 #include "sim/formats/psse.hpp"
+#include "sim/grid/lacking.hpp"
 #include "sim/plant/plant.hpp"
 
 namespace swingbank::sim::grid {
@@ -24,7 +25,9 @@ struct UnitChoice {
   /// with the other's standard values.
   formats::DyrOptions models = {};
   std::optional<int> measured_at = {};  ///< a bus beyond the unit's transformer, where its records were taken
-  bool dyd = false;                     ///< `dyr` is a .dyd of PSLF (formats::survey_dyd)
+  /// Records shorter or longer than their model: missing values at the end are these, surplus ones left out.
+  Lacking complete_records = Lacking::refused;
+  bool dyd = false;  ///< `dyr` is a .dyd of PSLF (formats::survey_dyd)
 };
 
 /// The unit's plant, without a network: `bus` and `generator` of it are -1.

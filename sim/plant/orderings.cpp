@@ -22,6 +22,12 @@ int index_of(const Effect& effect, std::string_view name) {
   return own < 0 && name == "Xqpp" ? effect.parameter_index("Xdpp") : own;
 }
 
+/// X'q of a machine whose T'qo is 0, as of one with salient poles: it has no transient circuit there.
+bool is_absent(const Block& block, std::string_view name) {
+  const int time = block.effect->parameter_index("Tqop");
+  return name == "Xqp" && time >= 0 && block.p[static_cast<std::size_t>(time)] == 0;
+}
+
 }  // namespace
 
 std::vector<Ordering> orderings(const Block& block) {
@@ -31,7 +37,7 @@ std::vector<Ordering> orderings(const Block& block) {
     int before = -1;
     for (const auto name : chain) {
       const int at = index_of(*block.effect, name);
-      if (at < 0) continue;
+      if (at < 0 || is_absent(block, name)) continue;
       if (before >= 0 && block.p[static_cast<std::size_t>(before)] > 0 &&
           block.p[static_cast<std::size_t>(at)] > 0)
         list.push_back({before, at, name == kChains.front().back()});

@@ -74,6 +74,26 @@ j = json.load(sys.stdin)
 assert (j['units'], j['covered']) == (10, 5)
 assert [m['not_covered'] for m in j['models'] if m['name'] == 'STRANGE'] == [4]" || fail "inventory --json"
 
+# Several names with commas; files in each other's place; a file that is cut off; records that are too short.
+"$swingbank" simulate --raw "$raw" --dyr "$work/more.dyr" --ignore-model STRANGE,ESAC9Z --t-end 0.1 --out "$work/x.csv" >/dev/null 2>&1 ||
+  fail "--ignore-model with commas"
+"$swingbank" plant --raw "$raw" --dyr "$work/more.dyr" --bus 32 --drop ESAC9Z,STRANGE >/dev/null 2>"$work/notes" || fail "--drop with commas"
+for command in "simulate --out $work/x.csv" "plant --bus 32" inventory; do
+  # shellcheck disable=SC2086
+  refuses "exchanged" "exchange --raw and --dyr" "$swingbank" $command --raw "$dyr" --dyr "$raw"
+  (($(wc -l <"$work/stderr") == 1)) || fail "$command: more than one sentence: $(cat "$work/stderr")"
+done
+head -c $(($(wc -c <"$dyr") * 2 / 3)) "$dyr" >"$work/cut.dyr"
+refuses "cut off" "may be cut off" "$swingbank" simulate --raw "$raw" --dyr "$work/cut.dyr" --out "$work/x.csv"
+{
+  cat "$dyr"
+  echo "32 'SEXS' 1 0.1 10 100 0.1 -500 /"
+} >"$work/short.dyr"
+refuses "a short record" "SEXS with 5 parameters .*--complete-records" "$swingbank" plant --raw "$raw" --dyr "$work/short.dyr" --bus 32
+"$swingbank" plant --raw "$raw" --dyr "$work/short.dyr" --bus 32 --complete-records zero >"$work/short.toml" 2>"$work/notes"
+grep -q 'has 5 of 6 values: EMAX = 0 ' "$work/notes" || fail "the value is not named: $(cat "$work/notes")"
+grep -q "short.dyr:$(wc -l <"$work/short.dyr"): EMIN = -500 pu (SEXS's is usually " "$work/notes" || fail "an unusual value: $(cat "$work/notes")"
+
 # A block to paste makes a plant.
 {
   sed '/^\[machine\]/,$d' "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml"

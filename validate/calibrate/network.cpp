@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/durable.hpp"
+#include "sim/plant/usual.hpp"
 
 namespace swingbank::validate::calibrate {
 namespace {
@@ -86,8 +87,9 @@ sim::plant::Plant estimated_plant(const NetworkEstimate& estimate, const plant::
                    "train a network about this plant (swingbank add --retrain shows how), or widen --spread");
       continue;
     }
-    const auto& record = sim::plant::parameter_record(plant, {*block, index});
-    if (p.learnt()) value = std::clamp(p.value, record.low, record.high);
+    const auto [low, high] =
+        sim::plant::search_range(sim::plant::parameter_record(plant, {*block, index}), value);
+    if (p.learnt()) value = std::clamp(p.value, low, high);
   }
   if (!absent.empty())
     problems.add("a plant without " + absent, model.origin,

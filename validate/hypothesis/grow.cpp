@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "sim/plant/usual.hpp"
 #include "validate/fit/rao_score.hpp"
 #include "validate/hypothesis/judge.hpp"
 #include "validate/playin/can_run.hpp"
@@ -60,7 +61,8 @@ std::vector<sim::plant::ParameterId> companions(const fit::ScoreTest& score, con
     const sim::plant::Plant before = plant;
     const auto& p = sim::plant::parameter_record(plant, id);
     double& value = sim::plant::parameter_value(plant, id);
-    value = std::clamp(kCompanionMoves * value, p.low, p.high);
+    const auto [low, high] = sim::plant::search_range(p, value);
+    value = std::clamp(kCompanionMoves * value, low, high);
     return score.apart({before, h.conventions}, {plant, h.conventions});
   };
   std::vector<sim::plant::ParameterId> found;
@@ -75,10 +77,11 @@ void try_part(const fit::ScoreTest& score, const Hypothesis& h, const fit::Fit& 
               std::optional<Part>& best) {
   const auto& p = sim::plant::parameter_record(h.plant, id);
   const double now = sim::plant::parameter_value(h.plant, id);
+  const auto range = sim::plant::search_range(p, now);
   const auto moved_by = [&](double share) {
     sim::plant::Plant moved = f.plant;
     sim::plant::parameter_value(moved, id) +=
-        share * std::min(kWidestRoom, share > 0 ? p.high - now : now - p.low);
+        share * std::min(kWidestRoom, share > 0 ? range.high - now : now - range.low);
     return moved;
   };
   const auto beside = companions(score, h, f.plant, moved_by(kShares[1]));
@@ -91,7 +94,8 @@ void try_part(const fit::ScoreTest& score, const Hypothesis& h, const fit::Fit& 
       for (const auto& other : beside) {
         const auto& record = sim::plant::parameter_record(moved, other);
         double& value = sim::plant::parameter_value(moved, other);
-        value = std::clamp(multiple * value, record.low, record.high);
+        const auto [low, high] = sim::plant::search_range(record, value);
+        value = std::clamp(multiple * value, low, high);
       }
       trials.push_back(std::move(moved));
       if (beside.empty()) break;

@@ -9,6 +9,7 @@
 #include "base/input_file.hpp"
 #include "sim/laws/law.hpp"
 #include "sim/plant/orderings.hpp"
+#include "sim/plant/usual.hpp"
 #include "validate/plant/detail/plausible.hpp"
 #include "validate/plant/detail/staged.hpp"
 
@@ -34,11 +35,23 @@ std::vector<std::string> effects_of(const EffectLibrary& library, Slot slot, std
   return names;
 }
 
+/// What is unusual in a section: noted with its line, not refused.
+void warn_unusual(const Config& config, const std::string& section, const sim::plant::Block& block,
+                  PlantModel& model) {
+  for (const int i : sim::plant::unusual(block)) {
+    const auto& name = block.effect->parameters[static_cast<std::size_t>(i)].name;
+    model.warnings.push_back(Problem{sim::plant::value_text(block, i),
+                                     config.where(fmt::format("{}.{}", section, name)),
+                                     sim::plant::usual_text(*block.effect, i), "correct it if it is a slip"}
+                                 .sentence());
+  }
+}
+
 /// One section: the effect's name and every one of its parameters; checked for consistency if all could be
-/// read. `section` is a slot's name, or "limiter[1]". What the section leaves to the standard values is noted
-/// in `standard`.
-sim::plant::Block read_block(Config& config, const EffectLibrary& library, Slot slot,
-                             const std::string& section, std::vector<std::string>& standard) {
+/// read. `section` is a slot's name, or "limiter[1]". What the section leaves to the standard values, and
+/// what is unusual in it, is noted in the model.
+sim::plant::Block read_block(Config& config, PlantModel& model, Slot slot, const std::string& section) {
+  const EffectLibrary& library = model.library;
   sim::plant::Block block{
       library.find(config.choice(section + ".effect", effects_of(library, slot, section))), {}};
   if (!block.effect || block.effect->slot != slot) return {};
@@ -48,47 +61,17 @@ sim::plant::Block read_block(Config& config, const EffectLibrary& library, Slot 
     const std::string key = fmt::format("{}.{}", section, p.name);
     if (may_miss && !config.has(key)) {
       block.p.push_back(p.standard);
-      standard.push_back(fmt::format("{}.{}", block.effect->name, p.name));
+      model.standard.push_back(fmt::format("{}.{}", block.effect->name, p.name));
     } else {
-      block.p.push_back(config.require<double>(key, {p.low, p.high, std::string(p.unit)}));
+      block.p.push_back(config.require<double>(key));
     }
   }
   if (!sound || !config.sound()) return block;
   Problems problems;
   block.effect->check(block.effect->law.get(), block.p.data(), config.where(section), problems);
   for (const auto& p : problems.list()) config.problem(section, p.what, p.why, p.remedy);
+  warn_unusual(config, section, block, model);
   return block;
-}
-
-/// A number of the file whatever its range, if it is one.
-std::optional<double> number_at(Config& config, const std::string& key) {
-  if (!config.has(key) || config.is_text(key)) return {};
-  return config.optional<double>(key, 0.0);
-}
-
-/// Data on another base than the machine's: a problem where values are refused for it, else a
-/// warning.
-void check_base(Config& config, PlantModel& model, bool sound) {
-  for (const char* reactance : {"Xd", "Xdp"}) {
-    const auto h = number_at(config, "machine.H");
-    const auto x = number_at(config, std::string("machine.") + reactance);
-    if (!x) continue;
-    const auto foreign = foreign_base(reactance, h.value_or(0.0), *x, model.plant.mva, sound);
-    if (!foreign) return;
-    const std::string why = fmt::format(
-        "on {:g} MVA these would be a machine of about {:g} MVA; are they on another base, the system's or one "
-        "that the file has wrong?",
-        model.plant.mva, foreign->mva);
-    const std::string remedy = fmt::format(
-        "set base_mva to the machine's own, say {0:g}, and give values on it: H divided, reactances and "
-        "resistances multiplied by {1:.3g}",
-        foreign->mva, foreign->mva / model.plant.mva);
-    if (sound)
-      model.warnings.push_back(Problem{foreign->what, config.where("machine.H"), why, remedy}.sentence());
-    else
-      config.problem("machine.H", foreign->what, why, remedy);
-    return;
-  }
 }
 
 /// Orderings that every machine has, each with its line.
@@ -105,14 +88,13 @@ void check_orderings(const Config& config, PlantModel& model) {
 }
 
 /// Every [[section]] of a slot that takes several effects.
-std::vector<sim::plant::Block> read_several(Config& config, const EffectLibrary& library, Slot slot,
-                                            std::vector<std::string>& standard) {
+std::vector<sim::plant::Block> read_several(Config& config, PlantModel& model, Slot slot) {
   const std::string name(sim::slot_name(slot));
   config.ignore(name);  // its keys are compared below
   std::vector<sim::plant::Block> blocks;
   for (int k = 0; config.has(fmt::format("{}[{}]", name, k)); ++k) {
     const std::string section = fmt::format("{}[{}]", name, k);
-    const sim::plant::Block block = read_block(config, library, slot, section, standard);
+    const sim::plant::Block block = read_block(config, model, slot, section);
     if (!block.effect) continue;
     std::vector<std::string> known = {"effect", "standard"};
     for (const auto& p : block.effect->parameters) known.emplace_back(p.name);
@@ -126,11 +108,10 @@ std::vector<sim::plant::Block> read_several(Config& config, const EffectLibrary&
 }
 
 /// The effects of one slot: one [section], or several [[section]] where they add up.
-void read_slot(Config& config, const EffectLibrary& library, Slot slot, std::vector<sim::plant::Block>& into,
-               std::vector<std::string>& standard) {
+void read_slot(Config& config, PlantModel& model, Slot slot, std::vector<sim::plant::Block>& into) {
   const std::string section(sim::slot_name(slot));
   if (!config.is_array(section)) {
-    sim::plant::Block block = read_block(config, library, slot, section, standard);
+    sim::plant::Block block = read_block(config, model, slot, section);
     if (block.effect) into.push_back(std::move(block));
     return;
   }
@@ -139,7 +120,7 @@ void read_slot(Config& config, const EffectLibrary& library, Slot slot, std::vec
     return config.problem(section, "several [[" + section + "]]", "a plant has room for one",
                           "write one [" + section + "]");
   }
-  std::ranges::move(read_several(config, library, slot, standard), std::back_inserter(into));
+  std::ranges::move(read_several(config, model, slot), std::back_inserter(into));
 }
 
 /// A slot that the grid's files fill already.
@@ -172,10 +153,9 @@ void read_around(Config& config, PlantModel& model) {
                                     : fmt::format("remove it, or write ignore_models = [\"{}\"] under [grid]",
                                                   name_in(plant, slot)));
     } else if (slot == Slot::transformer) {
-      plant.transformer = read_block(config, model.library, slot, section, model.standard);
+      plant.transformer = read_block(config, model, slot, section);
     } else {
-      read_slot(config, model.library, slot, slot == Slot::measurement ? plant.measurements : plant.controls,
-                model.standard);
+      read_slot(config, model, slot, slot == Slot::measurement ? plant.measurements : plant.controls);
     }
   }
   std::ranges::stable_sort(plant.controls, {}, [](const auto& b) { return b.effect->slot; });
@@ -194,7 +174,7 @@ void read_submitted(Config& config, PlantModel& model) {
     for (std::size_t i = 0; block.effect && i < block.p.size(); ++i) {
       const auto& p = block.effect->parameters[i];
       const std::string key = fmt::format("submitted.{}.{}", block.effect->name, p.name);
-      if (config.has(key)) block.p[i] = config.require<double>(key, {p.low, p.high, std::string(p.unit)});
+      if (config.has(key)) block.p[i] = config.require<double>(key);
     }
   };
   take(plant.machine);
@@ -244,6 +224,10 @@ void read_from_grid(Config& config, PlantModel& model) {
   choice.bus = static_cast<int>(config.require<std::int64_t>("grid.bus", {1.0, kMostBuses}));
   choice.id = config.optional<std::string>("grid.id", "");
   choice.models = sim::formats::read_dyr_options(config, "grid.");
+  const std::string complete = config.choice("grid.complete_records", {"no", "zero", "standard"}, "no");
+  choice.complete_records = complete == "zero"       ? sim::grid::Lacking::zero
+                            : complete == "standard" ? sim::grid::Lacking::standard
+                                                     : sim::grid::Lacking::refused;
   if (config.has("grid.measured_at"))
     choice.measured_at =
         static_cast<int>(config.require<std::int64_t>("grid.measured_at", {1.0, kMostBuses}));
@@ -299,10 +283,11 @@ PlantModel parse_plant_model(const std::string& text, const fs::path& file) {
     model.plant.name = model.name;
     model.bus = static_cast<int>(config.optional<std::int64_t>("plant.bus", 0, {1.0, kMostBuses}));
     model.id = config.optional<std::string>("plant.id", model.id);
-    const bool sound = config.sound();
     const std::string source = config.has("converter") && !config.has("machine") ? "converter" : "machine";
-    model.plant.machine = read_block(config, model.library, Slot::machine, source, model.standard);
-    check_base(config, model, sound == config.sound());
+    model.plant.machine = read_block(config, model, Slot::machine, source);
+    if (const auto base = foreign_base(model.plant.machine, model.plant.mva))
+      model.warnings.push_back(
+          Problem{base->what, config.where("machine.H"), base->why, base->remedy}.sentence());
   }
   read_around(config, model);
   if (config.sound()) check_orderings(config, model);
@@ -338,11 +323,8 @@ PlantModel model_of_unit(const sim::grid::Unit& unit, sim::Conventions conventio
                     "base_kv, line to line, under [record]",
                     unit.bus, unit.kv));
   note_standard(model, unit.standard);
-  const auto settle = [&](sim::plant::Block& block) {
-    for (auto& note : settle_unlimited(block)) model.warnings.push_back(std::move(note));
-  };
-  settle(model.plant.machine);
-  for (auto& control : model.plant.controls) settle(control);
+  if (const auto base = foreign_base(model.plant.machine, model.plant.mva))
+    model.warnings.push_back(fmt::format("{}: {}; {}", base->what, base->why, base->remedy));
   for (const auto& o : sim::plant::violated(model.plant.machine))
     model.warnings.push_back(sim::plant::violation_text(model.plant.machine, o) +
                              ": no machine is like that");

@@ -44,16 +44,16 @@ std::string subject(const PlantModel& model);
 /// Reads a plant file (configs/plants/README.md describes it). Every parameter of every effect must be given
 /// by name; what is not is taken from the effect's standard values only where its block says
 /// `standard = true`. Throws InputError with every fault of the file: unknown keys, effects or
-/// parameters (the known ones are listed), missing ones, wrong types, values outside what is physically
-/// possible, inconsistent values.
+/// parameters (the known ones are listed), missing ones, wrong types, values that no equation takes. Values
+/// outside what is usual for them are warnings, each with its line.
 PlantModel load_plant_model(const std::filesystem::path& file);
 /// The same from a text; `file` stands for it in messages, and relative paths in it refer to its folder.
 PlantModel parse_plant_model(const std::string& text, const std::filesystem::path& file);
 /// The model to fit or diagnose: as it was before a calibration that did not hold, else as it is.
 PlantModel as_submitted(PlantModel model);
-/// The model of one unit of a case; `files` names them in messages. The records' base is the system's. What
-/// stands for "no limit" (999) and is beyond what is possible is brought to the bound. The warnings say that,
-/// and which orderings are violated.
+/// The model of one unit of a case, with the values of the case; `files` names them in messages. The records'
+/// base is the system's. The warnings say which orderings are violated, and whether the data look like those
+/// of another base.
 PlantModel model_of_unit(const sim::grid::Unit& unit, sim::Conventions conventions, std::string files);
 
 }  // namespace swingbank::validate::plant

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/plant/usual.hpp"
 #include "validate/calibrate/report.hpp"
 
 namespace swingbank::validate::retrain {
@@ -72,8 +73,9 @@ sim::plant::Plant seen_plant(const calibrate::NetworkEstimate& e, const plant::P
         sum += estimate_of(e, k, p->full());
         ++n;
       }
-      const sim::Parameter& record = sim::plant::parameter_record(plant, id);
-      if (n > 0) sim::plant::parameter_value(plant, id) = std::clamp(sum / n, record.low, record.high);
+      double& value = sim::plant::parameter_value(plant, id);
+      const auto [low, high] = sim::plant::search_range(sim::plant::parameter_record(plant, id), value);
+      if (n > 0) value = std::clamp(sum / n, low, high);
     }
   }
   return plant;

@@ -58,15 +58,6 @@ std::pair<const Effect*, Reach> effect_of_model(std::string model) {
   return {nullptr, Reach::load};
 }
 
-/// Names of the effects with a .dyr form, of one slot or of all.
-std::string names_of(const Slot* slot) {
-  std::string names;
-  for (const Effect& e : library::compiled_effects())
-    if (!e.dyr_name.empty() && (!slot || e.slot == *slot))
-      names += (names.empty() ? "" : ", ") + std::string(e.dyr_name);
-  return names;
-}
-
 /// What stands already where the effect belongs, or nullptr.
 const Effect* in_the_way(const plant::Plant& plant, const Effect& effect) {
   if (effect.slot == Slot::machine) return plant.machine.effect;
@@ -96,10 +87,15 @@ std::pair<const Effect*, Reach> effect_of_dyr(const formats::DyrRecord& record) 
   return effect_of_model(record.user.empty() ? record.model : record.user);
 }
 
-std::string dyr_names() { return names_of(nullptr); }
+std::string lacking_text(const std::string& dyr) {
+  return "there is no such model here; 'swingbank effects --coverage " + dyr + "' lists those that there are";
+}
 std::string machine_names() {
-  constexpr Slot machine = Slot::machine;
-  return names_of(&machine);
+  std::string names;
+  for (const Effect& e : library::compiled_effects())
+    if (!e.dyr_name.empty() && e.slot == Slot::machine)
+      names += (names.empty() ? "" : ", ") + std::string(e.dyr_name);
+  return names;
 }
 std::string columns_text(const Effect& effect) {
   std::string text = std::to_string(effect.dyr_columns.size()) + ":";
@@ -125,12 +121,48 @@ formats::DyrRecord plain(formats::DyrRecord record, const Effect& effect) {
   }
   return record;
 }
-bool complete(const Effect& effect, const formats::DyrRecord& record, const std::string& where,
-              Problems& problems, const std::string& or_else) {
-  if (record.values.size() == effect.dyr_columns.size()) return true;
-  problems.add(record.model + " with " + std::to_string(record.values.size()) + " parameters", where,
-               "it takes " + columns_text(effect), "give every parameter, in this order" + or_else);
-  return false;
+namespace {
+
+std::string_view symbol_of_column(const Effect& effect, std::size_t column) {
+  return effect.parameters[static_cast<std::size_t>(effect.dyr_columns[column])].symbol;
+}
+/// Fills in what is missing at the end; what stands where, as text.
+std::string fill(const Effect& effect, std::vector<double>& values, Lacking lacking) {
+  const std::vector<double> standard = effect.standard_parameters();
+  std::string text;
+  for (std::size_t i = values.size(); i < effect.dyr_columns.size(); ++i) {
+    values.push_back(lacking == Lacking::zero ? 0.0
+                                              : standard[static_cast<std::size_t>(effect.dyr_columns[i])]);
+    text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", symbol_of_column(effect, i), values.back());
+  }
+  return text;
+}
+
+}  // namespace
+
+Completion complete(const Effect& effect, formats::DyrRecord& record, Lacking lacking,
+                    const std::string& where, Problems& problems) {
+  const std::size_t has = record.values.size(), takes = effect.dyr_columns.size();
+  if (has == takes) return {true, {}, {}};
+  if (lacking == Lacking::refused) {
+    const bool cut = record.unended && has < takes;
+    problems.add(record.model + " with " + std::to_string(has) + " parameters", where,
+                 "it takes " + columns_text(effect) +
+                     (cut ? "; no '/' ends the record: the file may be cut off there" : ""),
+                 (cut ? "restore the file, or give" : "give") +
+                     std::string(" every parameter, in this order, or let --complete-records do it"));
+    return {};
+  }
+  const std::string record_text = fmt::format("{} of '{}' at bus {} has {} of {} values", record.model,
+                                              record.id, record.bus, has, takes);
+  if (has < takes)
+    return {true, "values that records lack at their end are zero or standard, as asked",
+            fmt::format("{}: {} ({})", record_text, fill(effect, record.values, lacking), where)};
+  const std::vector<double> surplus(record.values.begin() + static_cast<std::ptrdiff_t>(takes),
+                                    record.values.end());
+  record.values.resize(takes);
+  return {true, "values that records have beyond those of their model are left out, as asked",
+          fmt::format("{}: {} ({})", record_text, fmt::join(surplus, ", "), where)};
 }
 plant::Block values_of(const Effect& effect, const formats::DyrRecord& record) {
   plant::Block block{&effect, effect.standard_parameters()};
@@ -143,7 +175,7 @@ std::string fault_of(const Effect& effect, formats::DyrRecord record, const netw
                      const std::string& where) {
   record = plain(std::move(record), effect);
   Problems problems = record.faults;
-  if (problems.empty() && complete(effect, record, where, problems)) {
+  if (problems.empty() && complete(effect, record, Lacking::refused, where, problems).sound) {
     plant::Block block = values_of(effect, record);
     if (g) take_from_raw(block, *g);
     effect.check(effect.law.get(), block.p.data(), where, problems);
@@ -197,6 +229,36 @@ std::string remark_on(const plant::Block& block, const std::string& where, const
   return left_out.empty()
              ? left_out
              : fmt::format("{}: {} of generator {}: {}", where, block.effect->name, plant, left_out);
+}
+bool reads_field_voltage(const Effect& machine) {
+  const auto& ops = machine.get<double>();
+  const auto p = machine.standard_parameters();
+  std::vector<double> c(static_cast<std::size_t>(machine.coefficients)), x(machine.states.size()),
+      m(static_cast<std::size_t>(machine.scratch)), before(x.size()), after(x.size());
+  ops.prepare(p.data(), Conventions::psse(), c.data());
+  double er = 0.0, ei = 0.0;
+  Signals<double> s;
+  ops.machine.emf(c.data(), x.data(), m.data(), er, ei);
+  ops.machine.electrical(c.data(), x.data(), m.data(), s);
+  s.Efd = 1.0;
+  ops.machine.derivative(c.data(), x.data(), m.data(), s, before.data());
+  s.Efd = 2.0;
+  ops.machine.derivative(c.data(), x.data(), m.data(), s, after.data());
+  return before != after;
+}
+bool acts_on_field(Slot slot) {
+  return slot == Slot::compensator || slot == Slot::stabiliser || slot == Slot::limiter ||
+         slot == Slot::exciter;
+}
+std::vector<std::string> idle_controls(const plant::Plant& plant) {
+  std::vector<std::string> list;
+  const Effect* machine = plant.machine.effect;
+  if (!machine || machine->converter || reads_field_voltage(*machine)) return list;
+  for (const plant::Block& block : plant.controls)
+    if (acts_on_field(block.effect->slot))
+      list.push_back(fmt::format("{} of generator {}: {} has no field winding", block.effect->dyr_name,
+                                 plant.name, machine->name));
+  return list;
 }
 void check_fit(const plant::Plant& plant, const std::string& where, Problems& problems) {
   if (!plant.machine.effect) return;

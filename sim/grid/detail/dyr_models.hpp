@@ -2,8 +2,10 @@
 // Records of a .dyr as blocks of plants: which effect a model is, its parameters, its place.
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "sim/formats/psse.hpp"
+#include "sim/grid/lacking.hpp"
 #include "sim/plant/plant.hpp"
 
 namespace swingbank::sim::grid {
@@ -14,8 +16,9 @@ enum class Reach { load, owner, zone, area, all };
 /// The effect of a record, nullptr if there is none, and the loads it is for; names that stand for another
 /// count: IEELAR is IEELBL for an area.
 std::pair<const Effect*, Reach> effect_of_dyr(const formats::DyrRecord& record);
-/// Names of all effects that have a .dyr form, and of the machines among them, for messages.
-std::string dyr_names();
+/// Why a record of an unknown model is refused, for messages.
+std::string lacking_text(const std::string& dyr);
+/// Names of the machines that have a .dyr form, for messages.
 std::string machine_names();
 /// Symbols of the columns: "6: TA/TB TB K".
 std::string columns_text(const Effect& effect);
@@ -25,9 +28,15 @@ inline std::string name_of(const formats::DyrRecord& r) { return r.user.empty() 
 /// A user-written model that is one of ours, without IC, IT, NI, NC, NS, NV before its parameters; any other
 /// record as it is.
 formats::DyrRecord plain(formats::DyrRecord record, const Effect& effect);
-/// Whether the record has as many parameters as the effect; a problem if not, whose remedy `or_else` goes on.
-bool complete(const Effect& effect, const formats::DyrRecord& record, const std::string& where,
-              Problems& problems, const std::string& or_else = "");
+/// What was done to a record that is shorter or longer than its model takes it.
+struct Completion {
+  bool sound = false;  ///< it is now as long as that
+  std::string what;    ///< empty: it was
+  std::string place;   ///< record, and each value that was filled in or left out
+};
+/// Makes the record as long as its model takes it, if that is asked for; else it is a problem.
+Completion complete(const Effect& effect, formats::DyrRecord& record, Lacking lacking,
+                    const std::string& where, Problems& problems);
 /// The record's values, standard ones where it has no column.
 plant::Block values_of(const Effect& effect, const formats::DyrRecord& record);
 
@@ -51,6 +60,12 @@ std::string place(plant::Plant& plant, plant::Block block, const RawGenerator& r
 void sort_controls(plant::Plant& plant);
 /// What a block's values ask for and its equations leave out, as a warning; empty if nothing.
 std::string remark_on(const plant::Block& block, const std::string& where, const std::string& plant);
+/// Whether a machine's derivatives change with Efd, tried out: a classical machine's do not.
+bool reads_field_voltage(const Effect& machine);
+/// Whether a control in this slot acts through the field voltage alone.
+bool acts_on_field(Slot slot);
+/// Controls of the field voltage at a machine whose equations do not read it, one sentence each.
+std::vector<std::string> idle_controls(const plant::Plant& plant);
 /// Controls that have no place beside the plant's source become problems.
 void check_fit(const plant::Plant& plant, const std::string& where, Problems& problems);
 

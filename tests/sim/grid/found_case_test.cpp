@@ -117,8 +117,9 @@ TEST(FoundCase, RecordsOfAnotherLengthAreCompletedOrCutAsAsked) {
   options.complete_records = Lacking::zero;
   const Grid grid = make({}, dyr, options);
   EXPECT_EQ(grid.plants[0].machine.p[1], 0.0);
-  EXPECT_THAT(places(grid, "lack at their end"), ElementsAre(HasSubstr("has 1 of 2 values")));
-  EXPECT_THAT(places(grid, "beyond those of their model"), ElementsAre(HasSubstr("has 3 of 2 values")));
+  EXPECT_THAT(places(grid, "lack at their end"), ElementsAre(HasSubstr("has 1 of 2 values: D = 0 (")))
+      << "each value that was filled in is named";
+  EXPECT_THAT(places(grid, "beyond those of their model"), ElementsAre(HasSubstr("has 3 of 2 values: 7 (")));
   options.complete_records = Lacking::standard;
   const Grid standard = make({}, dyr, options);
   const plant::Block& machine = standard.plants[0].machine;
@@ -142,6 +143,42 @@ TEST(FoundCase, AGenrouWithoutTheQAxisTransientCircuitIsTakenAndSaid) {
                                  kBoth.substr(kBoth.find('\n') + 1));
   EXPECT_THAT(places(grid, "in their own way"), ElementsAre(HasSubstr("T'qo = 0")));
   EXPECT_NO_THROW(plant::operating_point(grid.plants[0], grid.flow.voltage[0], 100.0, grid.conventions));
+}
+
+TEST(FoundCase, UnusualValuesAreRunAndSaid) {
+  const Grid grid = make({}, kBoth + "101 'TGOV1' 1 0.05 0.5 2 -1.5 2 7 0 /\n");
+  EXPECT_THAT(places(grid, "usual for them"),
+              ElementsAre("case.dyr:3: VMIN = -1.5 pu (TGOV1's is usually -1 to 1 pu)"));
+  EXPECT_EQ(grid.plants[0].controls[0].p[3], -1.5);
+}
+
+TEST(FoundCase, AnExciterAtAMachineWithoutAFieldIsSaidToDoNothing) {
+  const std::string sexs = " 'SEXS' 1 0.1 10 100 0.1 0 3 /\n";
+  const Grid grid = make({},
+                         "101 'GENROU' 1 8.0 0.03 0.4 0.05 6.5 0 1.8 1.7 0.3 0.55 0.25 0.2 0.05 0.3 /\n"
+                         "102 'GENCLS' 1 3 0 /\n101" +
+                             sexs + "102" + sexs);
+  EXPECT_THAT(places(grid, "do nothing"), ElementsAre("SEXS of generator 102: GENCLS has no field winding"));
+}
+
+TEST(FoundCase, AFileThatBreaksOffIsRecognised) {
+  const auto said = [](const std::string& dyr) { return formats::sentences_of([&] { make({}, dyr); }); };
+  const std::string genrou = "101 'GENROU' 1 8.0 0.03 0.4 0.05 6.5 0 1.8";
+  EXPECT_THAT(said(kBoth.substr(kBoth.find('\n') + 1) + genrou),
+              ::testing::AllOf(HasSubstr("GENROU with 7 parameters"), HasSubstr("may be cut off there")));
+  EXPECT_THAT(said("101 'GENCLS' 1 3 0 /\n102 'GENC"), HasSubstr("a quote is not closed"));
+  EXPECT_THAT(said("101 'GENCLS' 1 3 0 /\n101 'SEXS' 1 0.1 10 100 0.1 0 3"),
+              ::testing::AllOf(HasSubstr("no machine model for generator '1' at bus 102"),
+                               HasSubstr("no '/' ends the last record, of line 2")));
+  EXPECT_THAT(said("101 'GENCLS' 1 3 0 /\n"), HasSubstr("all generators before them have one"));
+  EXPECT_THAT(said("102 'GENCLS' 1 3 0 /\n"), ::testing::Not(HasSubstr("cut off")));
+}
+
+TEST(FoundCase, AnUnknownModelIsSaidToBeNone) {
+  EXPECT_THAT(formats::sentences_of([&] { make({}, kBoth + "101 'EXDC9' 1 1 2 /\n"); }),
+              ::testing::AllOf(HasSubstr("unknown model 'EXDC9'"), HasSubstr("there is no such model here"),
+                               HasSubstr("swingbank effects --coverage case.dyr"),
+                               ::testing::Not(HasSubstr("EXDC2"))));
 }
 
 TEST(FoundCase, ARecordOfEquipmentIsNamedByIt) {

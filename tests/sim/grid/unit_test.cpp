@@ -143,6 +143,30 @@ TEST_F(UnitTest, IsWrittenAsRecordsThatReadBack) {
   EXPECT_EQ(back.plant.controls[0].p, unit.plant.controls[0].p);
 }
 
+TEST_F(UnitTest, AnInventoryCountsClassicalMachinesAndWhatDoesNothingThere) {
+  write(formats::RawCase().text(),
+        "101 'SEXS' 1 0.1 10 100 0.1 -5 5 /\n101 'GENCLS' 1 3 0 /\n102 'GENROU' 1 " + kRoundRotor +
+            " /\n102 'SEXS' 1 0.1 10 100 0.1 -5 5 /\n");
+  const Inventory i = take_inventory(raw_.path, dyr_.path);
+  ASSERT_EQ(i.units.size(), 2u);
+  EXPECT_TRUE(i.units[0].classical);
+  EXPECT_EQ(i.units[0].field_records, 1);
+  EXPECT_TRUE(i.units[0].covered());
+  EXPECT_FALSE(i.units[1].classical);
+  EXPECT_THAT(read_unit(choice(101)).notes, Contains(HasSubstr("GENCLS has no field winding")));
+}
+
+TEST_F(UnitTest, AShortRecordIsCompletedAsAsked) {
+  write(formats::RawCase().text(),
+        "102 'GENROU' 1 " + kRoundRotor + " /\n102 'SEXS' 1 0.1 10 100 0.1 -5 /\n");
+  UnitChoice asked = choice(102);
+  EXPECT_THAT(formats::sentences_of([&] { read_unit(asked); }), HasSubstr("--complete-records"));
+  asked.complete_records = Lacking::zero;
+  const Unit unit = read_unit(asked);
+  EXPECT_EQ(unit.plant.controls.at(0).p.back(), 0.0);
+  EXPECT_THAT(unit.notes, Contains(HasSubstr("has 5 of 6 values: EMAX = 0")));
+}
+
 TEST_F(UnitTest, AnInventoryGroupsWhatIsNotCovered) {
   formats::RawCase raw;
   raw.generators += "103,'1',10.0,0,100,-100,1.02,0,50,0,0.4,0,0,1,1\n103,'2',10.0,0,9,-9,1.0,0,50,0,0.4\n";
@@ -160,6 +184,7 @@ TEST_F(UnitTest, AnInventoryGroupsWhatIsNotCovered) {
   EXPECT_EQ(i.models[0].name, "GENROU");
   EXPECT_EQ(i.models[0].records, 3);
   EXPECT_EQ(i.without_generator, 1);
+  EXPECT_FALSE(i.units[0].classical);
   for (const auto& m : i.models)
     if (m.name == "X9") {
       EXPECT_EQ(m.uncovered(), 2);

@@ -120,9 +120,9 @@ TEST_F(PlantFileTest, CopiesLawFilesBesideIt) {
 
 TEST_F(PlantFileTest, RefusesWhatWouldNotReadBackAndWritesNothing) {
   PlantModel m = example();
-  m.plant.machine.p[static_cast<std::size_t>(m.plant.machine.effect->parameter_index("H"))] = 500;
+  m.plant.machine.p[static_cast<std::size_t>(m.plant.machine.effect->parameter_index("H"))] = -5;
   EXPECT_THAT(test::messages([&] { write_plant_file(folder_ / "model.toml", m, {}); }),
-              ::testing::ElementsAre(HasSubstr("H = 500")));
+              ::testing::ElementsAre(HasSubstr("H = -5")));
   EXPECT_FALSE(std::filesystem::exists(folder_));
 }
 

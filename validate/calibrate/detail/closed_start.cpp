@@ -5,6 +5,7 @@
 
 #include "base/median.hpp"
 #include "sim/direct/smooth.hpp"
+#include "sim/plant/usual.hpp"
 #include "validate/playin/can_run.hpp"
 
 namespace swingbank::validate::calibrate {
@@ -51,10 +52,9 @@ std::vector<double> medians(const std::vector<sim::Recording>& records, const si
     std::vector<double> values;
     for (const auto& p : found)
       if (const double v = p[static_cast<std::size_t>(f.id.index)]; std::isfinite(v)) values.push_back(v);
-    const auto& record = sim::plant::parameter_record(plant, f.id);
-    if (!values.empty())
-      sim::plant::parameter_value(plant, f.id) =
-          std::clamp(median(std::move(values)), record.low, record.high);
+    double& value = sim::plant::parameter_value(plant, f.id);
+    const auto [low, high] = sim::plant::search_range(sim::plant::parameter_record(plant, f.id), value);
+    if (!values.empty()) value = std::clamp(median(std::move(values)), low, high);
   }
   if (found.empty() || !playin::can_exist(plant)) return {};
   return fit::values_of(plant, free);

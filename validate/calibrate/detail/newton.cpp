@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/plant/usual.hpp"
+
 namespace swingbank::validate::calibrate {
 
 Eigen::VectorXd off_belief(const sim::plant::Plant& believed, const sim::plant::Plant& plant,
@@ -25,8 +27,8 @@ sim::plant::Plant stepped(const sim::plant::Plant& plant, const std::vector<fit:
     const auto& record = sim::plant::parameter_record(plant, f.id);
     double& value = sim::plant::parameter_value(moved, f.id);
     const double move = fit::axis_unit(plant, f) * step[i], old = value;
-    value = std::clamp(old > 0 ? old * std::exp(move / old) : old + move, std::min(old, record.low),
-                       std::max(old, record.high));
+    const auto [low, high] = sim::plant::search_range(record, old);
+    value = std::clamp(old > 0 ? old * std::exp(move / old) : old + move, low, high);
   }
   return moved;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/core/noise.hpp"
+#include "sim/plant/usual.hpp"
 #include "validate/fit/slopes.hpp"
 #include "validate/playin/can_run.hpp"
 
@@ -38,7 +39,8 @@ double Screen::one(const fit::FreeParameter& f, double normal) const {
   const double value = sim::plant::parameter_value(plant, f.id);
   const double moved =
       value > 0 ? value * std::exp(f.spread * normal) : value + normal * fit::axis_unit(plant_, f);
-  return std::clamp(moved, record.low, record.high);
+  const auto [low, high] = sim::plant::search_range(record, value);
+  return std::clamp(moved, low, high);
 }
 
 }  // namespace swingbank::validate::calibrate

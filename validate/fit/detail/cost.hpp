@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "sim/plant/orderings.hpp"
+#include "sim/plant/usual.hpp"
 #include "validate/fit/detail/states.hpp"
 #include "validate/fit/fit.hpp"
 #include "validate/fit/sign.hpp"
@@ -41,7 +42,8 @@ struct Axis {
 inline Axis make_axis(const sim::plant::Plant& plant, const FreeParameter& f) {
   const sim::Parameter& record = parameter_record(plant, f.id);
   const double start = parameter_value(plant, f.id);
-  Axis a{f, start, record.low, record.high, start > 0 && !may_change_sign(record), 1.0};
+  const sim::plant::SearchRange range = sim::plant::search_range(record, start);
+  Axis a{f, start, range.low, range.high, start > 0 && !may_change_sign(record), 1.0};
   if (a.logarithmic) {
     a.low = std::max(a.low, 1e-3 * start);
     a.high = std::min(a.high, 1e3 * start);

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
+#include <string_view>
+
+#include "sim/plant/usual.hpp"
 
 namespace swingbank::validate::plant {
 namespace {
@@ -17,39 +19,43 @@ constexpr Typical kSynchronous = {4.0, 1.6, 0.6, 40.0}, kTransient = {4.0, 0.3, 
 /// A factor between bases that no spread of machines explains, and that few machines do.
 constexpr double kFar = 3.0, kFarForOne = 2.0;
 
-/// 99, 999, 9999.0, ...: what people write for "none".
-bool stands_for_none(double value) {
-  double nines = 99.0;
-  for (int digits = 2; digits < 8; ++digits, nines = 10 * nines + 9)
-    if (std::abs(value) == nines) return true;
-  return false;
+/// The ratio of the machine's likely base to that of the data; nothing if they look like one.
+std::optional<double> ratio_of_bases(const Typical& typical, double h, double x, double far) {
+  if (!(h > 0 && x > 0) || h * x < typical.least || h * x > typical.most) return {};
+  const double ratio = std::sqrt(h / x * typical.x / typical.h);
+  if (ratio < far && ratio > 1 / far) return {};
+  return ratio;
+}
+
+std::optional<double> value_of(const sim::plant::Block& block, std::string_view parameter) {
+  const int at = block.effect->parameter_index(parameter);
+  if (at < 0 || static_cast<std::size_t>(at) >= block.p.size()) return {};
+  return block.p[static_cast<std::size_t>(at)];
 }
 
 }  // namespace
 
-std::optional<ForeignBase> foreign_base(const std::string& reactance, double h, double x, double base_mva,
-                                        bool sound) {
-  const Typical& typical = reactance == "Xd" ? kSynchronous : kTransient;
-  if (!(h > 0 && x > 0) || h * x < typical.least || h * x > typical.most) return {};
-  const double ratio = std::sqrt(h / x * typical.x / typical.h);
-  const double far = sound ? kFar : kFarForOne;
-  if (ratio < far && ratio > 1 / far) return {};
-  const double mva = ratio * base_mva, unit = std::pow(10.0, std::floor(std::log10(mva)) - 1);
-  return ForeignBase{fmt::format("H = {:g} s and {} = {:g} pu", h, reactance, x),
-                     std::round(mva / unit) * unit, ratio};
-}
-
-std::vector<std::string> settle_unlimited(sim::plant::Block& block) {
-  std::vector<std::string> notes;
-  for (std::size_t i = 0; i < block.p.size(); ++i) {
-    const sim::Parameter& p = block.effect->parameters[i];
-    const double given = block.p[i];
-    if ((given >= p.low && given <= p.high) || !stands_for_none(given)) continue;
-    block.p[i] = std::clamp(given, p.low, p.high);
-    notes.push_back(fmt::format("{}.{} = {:g} stands for no limit: taken as {:g} {}", block.effect->name,
-                                p.name, given, block.p[i], p.unit));
-  }
-  return notes;
+std::optional<ForeignBase> foreign_base(const sim::plant::Block& machine, double base_mva) {
+  if (!machine.effect || machine.effect->converter) return {};
+  const auto h = value_of(machine, "H");
+  const bool subsynchronous = !value_of(machine, "Xd");
+  const char* reactance = subsynchronous ? "Xdp" : "Xd";
+  const auto x = value_of(machine, reactance);
+  if (!h || !x) return {};
+  const double far = sim::plant::unusual(machine).empty() ? kFar : kFarForOne;
+  const auto ratio = ratio_of_bases(subsynchronous ? kTransient : kSynchronous, *h, *x, far);
+  if (!ratio) return {};
+  const double likely = *ratio * base_mva, unit = std::pow(10.0, std::floor(std::log10(likely)) - 1);
+  const double mva = std::round(likely / unit) * unit;
+  return ForeignBase{
+      fmt::format("H = {:g} s and {} = {:g} pu", *h, reactance, *x),
+      fmt::format("on {:g} MVA these would be a machine of about {:g} MVA; are they on another base, the "
+                  "system's or one that the file has wrong?",
+                  base_mva, mva),
+      fmt::format(
+          "set base_mva to the machine's own, say {0:g}, and give values on it: H divided, reactances "
+          "and resistances multiplied by {1:.3g}",
+          mva, mva / base_mva)};
 }
 
 }  // namespace swingbank::validate::plant
