@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <set>
 
 #include "base/capitals.hpp"
@@ -33,6 +34,7 @@ class UnitReader {
     problems_.raise();
     describe();
     read_models();
+    if (problems_.empty()) tell_dispatch();
     if (choice_.measured_at)
       read_transformer(*choice_.measured_at);
     else
@@ -138,6 +140,22 @@ class UnitReader {
     sort_controls(unit_.plant);
     for (const std::string& text : idle_controls(unit_.plant))
       unit_.notes.push_back(text + ": it does nothing");
+  }
+  /// What the model cannot hold of the operating point that the .raw gives: records are likely to begin
+  /// there.
+  void tell_dispatch() {
+    const network::Bus& bus = bus_at(generator().bus);
+    if (!generator().in_service || !(bus.vm > 0)) return;
+    plant::Plant plant = unit_.plant;
+    plant.generation = {generator().p, generator().q};
+    try {
+      (void)plant::operating_point(plant, std::polar(bus.vm, bus.va), net().base_mva,
+                                   Conventions::psse(net().frequency));
+    } catch (const InputError& error) {
+      const Problem& p = error.problems().front();  // others follow from it
+      unit_.notes.push_back(fmt::format("at P, Q and V of {}: {} ({}): a record that begins there is refused",
+                                        net().origin, p.what, p.why));
+    }
   }
   /// Why a record may have been lost.
   [[nodiscard]] std::string lost_text() const {

@@ -8,6 +8,7 @@
 
 #include "base/constants.hpp"
 #include "base/in_parallel.hpp"
+#include "sim/plant/usual.hpp"
 #include "validate/calibrate/detail/closed_start.hpp"
 #include "validate/calibrate/detail/identify.hpp"
 #include "validate/calibrate/detail/newton.hpp"
@@ -329,15 +330,16 @@ class Calibrating {
       for (Eigen::Index j = 0; j < n; ++j)
         c_.correlation(i, j) = inverse(i, j) / std::sqrt(inverse(i, i) * inverse(j, j));
       CalibratedParameter p{.fit = c_.fit.parameters[static_cast<std::size_t>(i)]};
-      const auto& record = sim::plant::parameter_record(c_.fit.plant, p.fit.where.id);
+      const auto range =
+          sim::plant::search_range(sim::plant::parameter_record(c_.fit.plant, p.fit.where.id), p.fit.start);
       p.shift = shift_[i];
       p.curvature_error = unit[i] * std::sqrt(inverse(i, i));
       p.fit.error = p.curvature_error * widening[i];
       const double reach = constants::normal95 * p.fit.error;
       const bool logarithmic = p.fit.start > 0;
-      p.fit.low = std::max(record.low,
+      p.fit.low = std::max(range.low,
                            logarithmic ? p.fit.value * std::exp(-reach / p.fit.value) : p.fit.value - reach);
-      p.fit.high = std::min(record.high,
+      p.fit.high = std::min(range.high,
                             logarithmic ? p.fit.value * std::exp(reach / p.fit.value) : p.fit.value + reach);
       c_.parameters.push_back(p);
     }

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "base/constants.hpp"
+#include "sim/plant/usual.hpp"
 #include "validate/playin/can_run.hpp"
 
 namespace swingbank::validate::calibrate {
@@ -141,8 +142,9 @@ class CurveFitting {
     for (std::size_t e = 0; e < events_.size(); ++e)
       if (!out_[e]) problem.AddResidualBlock(new EventResidual(setting_, events_[e]), nullptr, {z_.data()});
     for (std::size_t i = 0; i < free_.size(); ++i) {
-      const auto& record = sim::plant::parameter_record(fit_.model.plant, free_[i].id);
-      const double a = record.low / setting_.start[i], b = record.high / setting_.start[i];
+      const auto range = sim::plant::search_range(sim::plant::parameter_record(fit_.model.plant, free_[i].id),
+                                                  setting_.start[i]);
+      const double a = range.low / setting_.start[i], b = range.high / setting_.start[i];
       problem.SetParameterLowerBound(z_.data(), static_cast<int>(i), std::min(a, b));
       problem.SetParameterUpperBound(z_.data(), static_cast<int>(i), std::max(a, b));
     }
@@ -191,7 +193,8 @@ class CurveFitting {
       p.low = p.value - constants::normal95 * p.error;
       p.high = p.value + constants::normal95 * p.error;
       const double edge = 1e-6 * std::abs(p.start);
-      p.at_bound = p.value <= record.low + edge || p.value >= record.high - edge;
+      const auto range = sim::plant::search_range(record, p.start);
+      p.at_bound = p.value <= range.low + edge || p.value >= range.high - edge;
       fit_.parameters.push_back(p);
     }
   }

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "sim/library/variants.hpp"
+#include "sim/plant/usual.hpp"
 #include "validate/fit/sign.hpp"
 #include "validate/playin/can_run.hpp"
 #include "validate/playin/component.hpp"
@@ -90,7 +91,9 @@ std::vector<std::vector<double>> draws(const sim::plant::Plant& plant,
       const double shared = std::sqrt(0.5) * width * whole, own = std::sqrt(0.5) * width * normal(random);
       const double factor =
           fit::may_change_sign(p) ? 1 + shared + own : (bounded ? shorter : std::exp(shared)) * std::exp(own);
-      values.push_back(std::clamp(sim::plant::parameter_value(plant, f.id) * factor, p.low, p.high));
+      const double value = sim::plant::parameter_value(plant, f.id);
+      const auto range = sim::plant::search_range(p, value);
+      values.push_back(std::clamp(value * factor, range.low, range.high));
       sim::plant::parameter_value(drawn, f.id) = values.back();
     }
     if (free.empty() || playin::can_run(sim::plant::block_at(drawn, free.front().id.block)))

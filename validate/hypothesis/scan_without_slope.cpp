@@ -5,6 +5,7 @@
 #include <map>
 #include <span>
 
+#include "sim/plant/usual.hpp"
 #include "validate/hypothesis/search.hpp"
 
 namespace swingbank::validate::hypothesis {
@@ -85,8 +86,8 @@ class BlindScan {
     sim::plant::Plant plant = from_.plant;
     for (const fit::FreeParameter& f : group) {
       double& value = sim::plant::parameter_value(plant, f.id);
-      const sim::Parameter& record = sim::plant::parameter_record(plant, f.id);
-      value = std::clamp(value * by, record.low, record.high);
+      const auto range = sim::plant::search_range(sim::plant::parameter_record(plant, f.id), value);
+      value = std::clamp(value * by, range.low, range.high);
     }
     return plant;
   }

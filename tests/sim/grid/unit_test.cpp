@@ -156,6 +156,15 @@ TEST_F(UnitTest, AnInventoryCountsClassicalMachinesAndWhatDoesNothingThere) {
   EXPECT_THAT(read_unit(choice(101)).notes, Contains(HasSubstr("GENCLS has no field winding")));
 }
 
+TEST_F(UnitTest, ADispatchBeyondALimitIsSaid) {
+  const std::string governor = " /\n102 'TGOV1' 1 0.05 0.5 ";
+  write(formats::RawCase().text(), "102 'GENROU' 1 " + kRoundRotor + governor + "0.5 0 2 7 0 /\n");
+  EXPECT_THAT(read_unit(choice(102)).notes,
+              Contains(::testing::AllOf(HasSubstr("at P, Q and V of"), HasSubstr("its upper limit is 0.5"))));
+  write(formats::RawCase().text(), "102 'GENROU' 1 " + kRoundRotor + governor + "2 0 2 7 0 /\n");
+  EXPECT_THAT(read_unit(choice(102)).notes, Not(Contains(HasSubstr("at P, Q and V of"))));
+}
+
 TEST_F(UnitTest, AShortRecordIsCompletedAsAsked) {
   write(formats::RawCase().text(),
         "102 'GENROU' 1 " + kRoundRotor + " /\n102 'SEXS' 1 0.1 10 100 0.1 -5 /\n");

@@ -43,6 +43,23 @@ TEST(FitAxis, ParametersAtOneBoundAreEqualWhereverTheyStarted) {
       EXPECT_NEAR(from(start).value(from(start).z(bound)), bound, 1e-11 * bound);
     }
 }
+/// The plant on a quarter of its base: H is beyond what is usual, and the search goes on from there.
+TEST(FitAxis, AValueBeyondItsRangeIsMovedFurtherWhereTheRecordsAskForIt) {
+  ExciterExample example(kSpread);
+  sim::plant::Block& machine = example.model.plant.machine;
+  const auto at = [&](const char* name) -> double& {
+    return machine.p[static_cast<std::size_t>(machine.effect->parameter_index(name))];
+  };
+  example.model.plant.mva /= 4;
+  for (const char* reactance : {"Xd", "Xq", "Xdp", "Xqp", "Xdpp", "Xl"}) at(reactance) /= 4;
+  const double expected = 4 * at("H"), highest = 20.0;
+  at("H") = 22.0;
+  ASSERT_GT(at("H"), highest);
+  const Fit f = example.fitted({"H"});
+  ASSERT_EQ(f.failed, "");
+  EXPECT_NEAR(f.parameters.front().value, expected, 0.02 * expected);
+  EXPECT_FALSE(f.parameters.front().at_bound);
+}
 /// The machine without its exciter: parameters would be bent beyond what any machine is.
 TEST(FitOrderings, BoundEveryFit) {
   ExciterExample example(0.5);
