@@ -2,11 +2,12 @@
 """Twelve events of a unit at bus 32 of the IEEE 39-bus grid, as a phasor measurement unit on the high side of its
 transformer would record them at 30/s: four faults, three losses of generation, three load steps, two lines tripped.
 
-    benchmark_units.py SWINGBANK RAW DYR FOLDER {sharp,class-m}
+    benchmark_units.py SWINGBANK RAW DYR FOLDER {sharp,class-m,jumpless-f,meter-f}
 
 Writes FOLDER/event1.csv to event12.csv (V in kV, angle in degrees, P in MW, Q in Mvar). Noise: 0.01 % on V, 0.005
 degrees, 0.05 % of the unit's 800 MVA on P and Q. class-m: behind PMUFILTER of class M for 30/s, which is 0.32 s long; at
-the terminal, for it and the transformer are linear in voltage and current.
+the terminal, for it and the transformer are linear in voltage and current. jumpless-f: f in place of the angle, with 1 mHz of
+noise, without what the angle jumps by; meter-f: the same as the mean over two reports, in which the jumps are peaks.
 """
 import cmath
 import math
@@ -44,19 +45,38 @@ def simulated(program, raw, dyr, event, seconds, folder, measure):
     return t, voltage, current
 
 
+def frequency(voltage, instrument):
+    """Hz, of voltages at FINE."""
+    phase = [cmath.phase(v) for v in voltage]
+    f = [math.remainder(b - a, math.tau) * FINE / math.tau for a, b in zip(phase, phase[1:])]
+    f.append(f[-1])
+    if instrument == "jumpless-f":
+        for k in range(2, len(f) - 2):
+            if min(abs(f[k] - f[k - 1]), abs(f[k] - f[k + 1])) > 0.3:
+                f[k] = f[k - 1]
+        return [60 + x for x in f]
+    total, width = [0.0], FINE // RATE
+    for x in f:
+        total.append(total[-1] + x)
+    ends = [(max(0, k - width), min(len(f), k + width)) for k in range(len(f))]
+    return [60 + (total[b] - total[a]) / (b - a) for a, b in ends]
+
+
 def main():
     program, raw, dyr, folder, instrument = sys.argv[1:]
     measure = ["--measure", "PMUFILTER:class=1,reports=30"] if instrument == "class-m" else []
     for k, (event, seconds) in enumerate(EVENTS, 1):
         t, voltage, current = simulated(program, raw, dyr, event, seconds, folder, measure)
         noise = random.Random(k)
+        f = frequency(voltage, instrument) if instrument.endswith("-f") else None
         with open(f"{folder}/event{k}.csv", "w") as file:
-            file.write("t_s,V_kV,angle_deg,P_MW,Q_Mvar\n")
+            file.write(f"t_s,V_kV,{'f_Hz' if f else 'angle_deg'},P_MW,Q_Mvar\n")
             for j in range(EDGE if measure else 0, len(t) - (EDGE if measure else 0), FINE // RATE):
                 v, i = voltage[j], current[j]
                 power = 100 * v * i.conjugate()
-                file.write(f"{t[j]:.4f},{abs(v) * KV * (1 + 1e-4 * noise.gauss(0, 1)):.4f},"
-                           f"{math.degrees(cmath.phase(v)) + 0.005 * noise.gauss(0, 1):.5f},"
+                volts = abs(v) * KV * (1 + 1e-4 * noise.gauss(0, 1))
+                angle = f[j] + 1e-3 * noise.gauss(0, 1) if f else math.degrees(cmath.phase(v)) + 0.005 * noise.gauss(0, 1)
+                file.write(f"{t[j]:.4f},{volts:.4f},{angle:.6f},"
                            f"{power.real + 0.4 * noise.gauss(0, 1):.4f},{power.imag + 0.4 * noise.gauss(0, 1):.4f}\n")
 
 

@@ -32,6 +32,7 @@ class Check {
     if (!complete()) return std::move(findings_);
     signals_ = record_signals(r_);
     jumps_ = clear_jumps(r_);
+    rate();
     dropouts();
     event();
     voltage();
@@ -63,6 +64,17 @@ class Check {
     return std::ranges::find(findings_, kind, &Finding::kind) != findings_.end();
   }
 
+  /// The slowest rate but one that IEC/IEEE 60255-118-1 (2018, 5.2) asks of phasor measurement units is 25/s.
+  void rate() {
+    constexpr double kSlowestRate = 24.5;
+    if (r_.component != record::Component::plant || r_.rate() >= kSlowestRate) return;
+    warn(
+        "slow_rate", fmt::format("{:.3g} samples/s", r_.rate()),
+        fmt::format("a swing of 2 Hz has {:.2g} samples, and what the voltage does between them is guessed",
+                    r_.rate() / 2),
+        "give a record at 25/s or more if there is one; of this one believe what is slow: inertia, governor, "
+        "reactances");
+  }
   /// Records that were not read from a file may hold anything.
   bool complete() {
     const std::size_t n = r_.t.size();

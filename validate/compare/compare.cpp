@@ -257,9 +257,9 @@ std::string describe_fit(const EventComparison& e, bool tried, const std::string
                : "the middle of each interval was taken.";
 }
 
-void explain(EventComparison& e, bool tried, const std::string& failed) {
+void explain(EventComparison& e, event::Jumps jumps, bool tried, const std::string& failed) {
   if (const auto smeared = std::ranges::count(e.left_out, 1) - std::ranges::count(e.record.lost, 1);
-      smeared > 0)
+      jumps == event::Jumps::spread && smeared > 0)
     e.notes.push_back(fmt::format(
         "The instrument's filter has smeared the jumps over {} samples: these are neither played in nor "
         "compared, and {} moved to where the rest is met best.",
@@ -269,6 +269,13 @@ void explain(EventComparison& e, bool tried, const std::string& failed) {
         fmt::format("The switching instants were found in the record, which tells each to ± {:.1f} ms only; "
                     "{} Give them with --switch where they are known.",
                     1e3 * e.switchings.front().uncertainty, describe_fit(e, tried, failed)));
+  if (std::ranges::any_of(e.switchings, [](const playin::Switching& s) { return s.turn != 0; })) {
+    std::string turns;
+    for (const playin::Switching& s : e.switchings)
+      turns += (turns.empty() ? "" : ", ") + fmt::format("{:+.1f}°", s.turn * constants::degrees_in_radian);
+    e.notes.push_back("At the switchings the integrated angle was turned by " + turns +
+                      ", to where P and Q are met best: a frequency does not show all of it.");
+  }
   if (e.switchings.empty())
     e.notes.push_back(fmt::format(
         "The voltage does not jump anywhere: the first {:.3g} s are taken for the steady state (--pre-event){}.",
@@ -396,23 +403,30 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
                                  ? event::jumps_of({e.record}, options.jump_threshold)
                                  : options.jumps;
   std::string failed;
-  const auto fitted = [&] {
+  const auto fitted_with = [&](bool start_stands) {
     EventComparison other = e;
-    play_fitted(model, options, jumps, other);
+    play_fitted(model, options, jumps, start_stands, other);
     measure_channels(model, DriveBy::voltage, options.play_in, other);
     return other;
+  };
+  // a model that lacks something would move P and Q of the start to hide it
+  const auto fitted = [&] {
+    EventComparison other = fitted_with(false);
+    return explained(other) ? other : fitted_with(true);
   };
   if (!e.record.breaker() && jumps == event::Jumps::spread && options.drive == DriveBy::voltage) {
     e = fitted();
   } else {
     if (e.detected)
-      e.switchings = playin::detect_switchings(e.record, options.jump_threshold);
+      e.switchings = playin::detect_switchings(event::seen_by_rotor({e.record}, model.plant.mva).front(),
+                                               options.jump_threshold);
     else
       for (const double t : e.record.switched) e.switchings.push_back({.time = t});
     if (e.detected && e.record.breaker()) e.switchings = playin::breaker_instants(e.record, e.switchings);
     step("the voltage is played in", 0);
     if (!no_angle) play(model, DriveBy::voltage, options.play_in, e);
-    if (!no_angle && e.detected && options.fit_switchings && (!e.switchings.empty() || !explained(e))) {
+    const bool movable = e.detected || e.record.angle == record::AngleSource::integrated;
+    if (!no_angle && movable && options.fit_switchings && (!e.switchings.empty() || !explained(e))) {
       step("instants and start are fitted", 1);
       try {
         if (EventComparison other = fitted(); is_closer(other, e)) e = std::move(other);
@@ -423,7 +437,7 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
   }
   step("what is left is measured", 2);
   if (no_angle) play_without_angle(model, options.play_in, e);
-  explain(e, options.fit_switchings && !no_angle, failed);
+  explain(e, jumps, options.fit_switchings && !no_angle, failed);
   if (options.drive == DriveBy::power) {  // with the instants that the voltage told
     if (!no_angle) play(model, DriveBy::power, options.play_in, e);
     e.notes.push_back(

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/median.hpp"
+#include "validate/event/detail/turns.hpp"
 #include "validate/event/detail/unsmear.hpp"
 #include "validate/event/play.hpp"
 #include "validate/playin/component.hpp"
@@ -111,6 +112,17 @@ bool has_peak(const std::vector<Complex>& step, Smear jump, std::size_t m) {
   return true;
 }
 
+/// Whether a jump over several intervals has a good part in its second one. The little that a filter may
+/// leave there, a subtransient moves as well, and a fault of two samples hides how that goes on.
+bool is_shared_out(const record::Record& r, const playin::Switching& jump) {
+  constexpr double kGoodPart = 0.15;  // of the largest step
+  const auto step = playin::voltage_steps(r);
+  std::size_t m = 1;
+  for (std::size_t k = 1; k + 1 < step.size(); ++k)
+    if (std::abs(r.t[k] - jump.time) < jump.uncertainty && std::abs(step[k]) > std::abs(step[m])) m = k;
+  const auto along = [&](std::size_t k) { return std::real(step[k] * std::conj(step[m])); };
+  return std::max(along(m - 1), along(m + 1)) > kGoodPart * std::norm(step[m]);
+}
 /// Whether the record's first jump cannot have passed a filter: a decay follows it, or it is large and too
 /// sudden. A filter would share it out over two intervals, or begin in the interval before. Later jumps may
 /// be those of a swing.
@@ -165,12 +177,13 @@ double before_first_smeared(const FitEvent& e) {
   return k < e.smeared.size() ? e.record.t[k] - e.record.step() / 2 : std::numeric_limits<double>::infinity();
 }
 
-FitEvent prepare(record::Record record, const FitEventOptions& options, Jumps jumps) {
+FitEvent prepare(record::Record record, const record::Record& seen, const FitEventOptions& options,
+                 Jumps jumps) {
   FitEvent e;
   e.record = std::move(record);
   // The threshold is half of what matters to the eye. A filter shares a jump out over two intervals, and a
   // jump that is not found is played in as a ramp.
-  e.switchings = find_switchings(e.record, options.jump_threshold / 2, jumps, e.smeared);
+  e.switchings = find_switchings(seen, options.jump_threshold / 2, jumps, e.smeared);
   if (!e.record.switched.empty())
     take_told(e, jumps);
   else if (e.record.breaker()) {
@@ -279,7 +292,9 @@ NoiseModel noise_through(const sim::plant::PlantUnderTest& tested, const Events&
 
 Jumps jumps_of(const std::vector<record::Record>& records, double threshold) {
   bool any_spread = false, any_sharp = false;
-  for (const record::Record& r : records) {
+  for (record::Record r : records) {
+    // an integrated angle is not what the instrument made of the phasor
+    if (r.angle == record::AngleSource::integrated) r.theta.assign(r.t.size(), 0.0);
     if (!r.switched.empty()) {
       if (moves_before(r, threshold)) return Jumps::spread;
       any_sharp = true;
@@ -287,7 +302,8 @@ Jumps jumps_of(const std::vector<record::Record>& records, double threshold) {
     }
     std::vector<char> smeared;
     const auto found = find_switchings(r, threshold, Jumps::either, smeared);
-    if (!found.empty() && found.front().uncertainty > r.step()) return Jumps::spread;
+    if (!found.empty() && found.front().uncertainty > r.step() && is_shared_out(r, found.front()))
+      return Jumps::spread;
     any_sharp = any_sharp || is_sharp(r, found, threshold);
     any_spread = any_spread || std::ranges::count(smeared, 1) > 0;
   }
@@ -337,14 +353,18 @@ WhitenedEvents prepare_events(const plant::PlantModel& model, std::vector<record
   std::vector<FitEvent> events;
   for (const record::Record& r : records)
     if (!playin::is_part(r) && !r.breaker()) record::require_angle(r);
+  const std::vector<record::Record> seen = seen_by_rotor(records, model.plant.mva);
   const Jumps jumps =
       options.jumps == Jumps::either ? jumps_of(records, options.jump_threshold) : options.jumps;
-  for (record::Record& r : records) events.push_back(prepare(std::move(r), options, jumps));
+  for (std::size_t r = 0; r < records.size(); ++r)
+    events.push_back(prepare(std::move(records[r]), seen[r], options, jumps));
   if (jumps == Jumps::spread) drop_swings(events);
   unsmear(events);
   for (FitEvent& e : events) {
     set_start(e, options);
     e.left_out = left_out(e);
+    drop_peaks(e);
+    find_turns(model.under_test(), e);
   }
   NoiseModel noise = noise_through(model.under_test(), events);
   return {std::move(events), std::move(noise)};

@@ -19,6 +19,11 @@ struct FitEventOptions {
   Jumps jumps = Jumps::either;  ///< either: the records tell (jumps_of)
 };
 
+/// The records in which jumps are sought. An angle that was integrated from a frequency does not show them,
+/// but the power that flows over the transient reactance does: the angle is that of the voltage as the rotor
+/// sees it then, which is theta = -0.3 P on a machine of so many MVA. Others stay as they are.
+std::vector<record::Record> seen_by_rotor(std::vector<record::Record> records, double mva);
+
 /// Finds switchings even where a filter has spread their jumps over two or three sample intervals. `smeared`
 /// gets a mark for each sample that lies inside such a jump or beside it. If jumps are known to be spread,
 /// the neighbours of sharp ones are marked too; if they are known to be sharp, a spread step is a swing.
@@ -28,6 +33,7 @@ std::vector<playin::Switching> find_switchings(const record::Record& record, dou
 /// What one instrument does to jumps, by all of its records: an instrument's filter is even, so it smears
 /// before and after a jump alike, and what decays only after it is the machine's subtransient. Their first
 /// jumps decide, because later ones may be those of a swing. `either` where no record tells.
+/// Where the angle was integrated, V alone tells.
 Jumps jumps_of(const std::vector<record::Record>& records, double threshold);
 
 /// Prepares records that belong together (one plant, one instrument). The noise is that of the pre-event

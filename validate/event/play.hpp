@@ -17,6 +17,7 @@ enum class InputKind { none, torque, field };
 /// What belongs to one event.
 struct EventState {
   std::vector<double> switchings;  ///< [s]; empty: where they were found
+  std::vector<double> turns = {};  ///< of the angle at each of them [rad]; empty: as they were found
   /// Offsets of the operating point and of the first states. Of an exciter or a governor P is that of Efd or
   /// Pm, and the others mean nothing.
   double P = 0, Q = 0, angle = 0, speed = 0;

@@ -4,11 +4,16 @@
 #include <stdexcept>
 
 #include "validate/playin/component.hpp"
+#include "validate/playin/given.hpp"
 
 namespace swingbank::validate::event {
 
 const std::vector<double>& FitEvent::measured(playin::Output o) const {
   return playin::measured_values(record, o);
+}
+
+bool FitEvent::turns() const {
+  return record.angle == record::AngleSource::integrated && !playin::is_part(record) && !record.breaker();
 }
 
 namespace {

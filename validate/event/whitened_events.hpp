@@ -55,6 +55,9 @@ struct FitEvent {
   /// [compared sample * channels + channel].
   [[nodiscard]] Eigen::VectorXd collected(const std::vector<double>* values, bool less_measured) const;
   [[nodiscard]] const std::vector<double>& measured(playin::Output o) const;
+  /// Whether the angle turns by an unknown amount at each switching, because it was integrated from a
+  /// frequency.
+  [[nodiscard]] bool turns() const;
   /// The record that is played in.
   [[nodiscard]] const record::Record& played() const { return smeared.empty() ? record : clean; }
   [[nodiscard]] bool compared(std::size_t sample) const { return left_out.empty() || !left_out[sample]; }

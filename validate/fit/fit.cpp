@@ -144,7 +144,7 @@ class Search {
   std::vector<double> start_of(std::size_t e) const {
     const event::FitEvent& event = (*setting_.events)[e];
     const std::size_t knots = setting_.knots[e].size();
-    if (options_.start.empty()) return std::vector<double>(event.switchings.size() + kStates + knots, 0.0);
+    if (options_.start.empty()) return std::vector<double>(switching_numbers(event) + kStates + knots, 0.0);
     const EventState& from = options_.start[e];
     std::vector<double> s = state_of(event, from);
     s.resize(s.size() + knots);
@@ -160,11 +160,10 @@ class Search {
     if (!z_.empty()) blocks.push_back(z_.data());
     blocks.push_back(states_[e].data());
     problem_->AddResidualBlock(cost, nullptr, blocks);
-    std::vector<double> spread(event.switchings.size(), 0.0);
-    spread.insert(spread.end(), std::begin(kStateBelief), std::end(kStateBelief));
+    std::vector<double> spread = state_beliefs(event);
     spread.resize(states_[e].size(), 0.0);
     problem_->AddResidualBlock(new Belief(spread, &discrepancy_), nullptr, {states_[e].data()});
-    if (const std::size_t first = event.switchings.size() + kStates; first < states_[e].size())
+    if (const std::size_t first = switching_numbers(event) + kStates; first < states_[e].size())
       problem_->AddResidualBlock(new Bends(states_[e].size(), first, options_.bend), nullptr,
                                  {states_[e].data()});
     // an instant on a sample would change sides with it
@@ -179,6 +178,8 @@ class Search {
       problem_->SetParameterLowerBound(states_[e].data(), static_cast<int>(k), -room);
       problem_->SetParameterUpperBound(states_[e].data(), static_cast<int>(k), room);
     }
+    for (int k = 0; options_.start_stands && k < 2; ++k)
+      fixed.push_back(static_cast<int>(switching_numbers(event)) + k);
     if (!fixed.empty())
       problem_->SetManifold(states_[e].data(),
                             new ceres::SubsetManifold(static_cast<int>(states_[e].size()), fixed));
@@ -226,7 +227,7 @@ class Search {
       compare(*setting_.events, e, r, f);
       fit.chi2 += f.chi2;
       fit.values += f.values;
-      fit.fitted += static_cast<int>(event.switchings.size()) + kStates;
+      fit.fitted += static_cast<int>(switching_numbers(event)) + kStates;
       fit.events.push_back(std::move(f));
     }
     fit.fitted += static_cast<int>(z_.size());
@@ -295,9 +296,9 @@ class Search {
     double* jacobians[] = {at.by_z.data(), at.by_state.data()};
     costs_[e]->renew();
     if (!costs_[e]->Evaluate(blocks, at.residuals.data(), jacobians)) return std::nullopt;
-    at.precision = Eigen::VectorXd::Zero(size - knots);
-    for (Eigen::Index k = 0; k < kStates; ++k)
-      at.precision[size - knots - kStates + k] = 1 / (kStateBelief[k] * kStateBelief[k]);
+    at.precision.resize(size - knots);
+    const std::vector<double> beliefs = state_beliefs((*setting_.events)[e]);
+    std::ranges::transform(beliefs, at.precision.begin(), [](double b) { return b > 0 ? 1 / (b * b) : 0.0; });
     at.input = Eigen::Map<const Eigen::VectorXd>(states_[e].data(), size).tail(knots);
     return at;
   }

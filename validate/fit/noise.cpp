@@ -85,19 +85,19 @@ std::vector<double> detrended(const std::vector<double>& x, int count) {
   return rest;
 }
 
-/// What moves in the band in one stretch of a record: sums over its lines, of V (relative) and of theta.
+/// What moves in the band in one stretch of a record: sums over lines, of V (relative), of theta, and of what
+/// an integrated theta moves by from sample to sample.
 struct Band {
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  int lines = 0;
+  Eigen::Array3d sum = Eigen::Array3d::Zero(), lines = Eigen::Array3d::Zero();
   void add(const Band& other) {
     sum += other.sum;
     lines += other.lines;
   }
   /// Variances of white noise of the same density.
-  [[nodiscard]] Eigen::Vector2d level() const {
-    return lines > 0 ? Eigen::Vector2d(sum / lines) : Eigen::Vector2d(Eigen::Vector2d::Zero());
-  }
+  [[nodiscard]] Eigen::Vector3d level() const { return sum / lines.max(1.0); }
 };
+
+bool integrated(const event::FitEvent& e) { return e.record.angle == record::AngleSource::integrated; }
 
 /// Neighbouring lines behind a Hann window, of stretches that overlap by half, tell as much as so many times
 /// fewer lines would that know nothing of each other (Welch, IEEE Trans. Audio Electroacoust. 15, 1967, 70).
@@ -110,20 +110,26 @@ Band in_band(const event::FitEvent& e, std::size_t first) {
         {x.begin() + static_cast<std::ptrdiff_t>(first), x.begin() + static_cast<std::ptrdiff_t>(first) + n},
         n);
   };
-  const auto V = piece(e.record.V), theta = piece(e.record.theta);
+  const auto V = piece(e.record.V), angle = piece(integrated(e) ? e.record.f : e.record.theta);
+  const double per_angle =
+      integrated(e) ? constants::turn * e.record.base.frequency * e.record.step() : 1.0;  // a step's turn
   const double line = 1 / (n * e.record.step());
   Band band;
-  for (int m = static_cast<int>(std::ceil(kLow / line)); m * line <= kHigh && 2 * m < n; ++m, ++band.lines) {
-    Complex by_v = 0, by_theta = 0;
+  const Eigen::Index of_angle = integrated(e) ? 2 : 1;
+  for (int m = static_cast<int>(std::ceil(kLow / line)); m * line <= kHigh && 2 * m < n; ++m) {
+    Complex by_v = 0, by_angle = 0;
     double power = 0;
     for (int k = 0; k < n; ++k) {
       const double height = std::pow(std::sin(0.5 * constants::turn * (k + 0.5) / n), 2);
       const Complex wave = std::polar(height, constants::turn * m * k / n);
       by_v += wave * V[static_cast<std::size_t>(k)] / std::abs(e.start.voltage);
-      by_theta += wave * theta[static_cast<std::size_t>(k)];
+      by_angle += wave * angle[static_cast<std::size_t>(k)];
       power += height * height;
     }
-    band.sum += Eigen::Vector2d(std::norm(by_v), std::norm(by_theta)) / power;
+    band.sum[0] += std::norm(by_v) / power;
+    band.sum[of_angle] += std::norm(by_angle) * per_angle * per_angle / power;
+    ++band.lines[0];
+    ++band.lines[of_angle];
   }
   return band;
 }
@@ -138,11 +144,11 @@ bool disturbed(const event::FitEvent& e, std::size_t first) {
   });
 }
 
-/// Variances of the white noise that would have the density that V (relative) and theta [rad] show in the
-/// band before the events, and in every later stretch that moves no more than that; and how many squares of
-/// normal variables, twice over, they rest on.
+/// Variances (VoltageNoise) of the white noise that would have the density that V and angle show in the band
+/// before the events, and in every later stretch that moves no more than that; and how many squares of normal
+/// variables, twice over, they rest on.
 struct Moving {
-  Eigen::Vector2d variance, freedom;
+  Eigen::Vector3d variance, freedom;
 };
 Moving moving_in_band(const event::WhitenedEvents& events) {
   constexpr double kBeyond = 3.0;  // standard deviations
@@ -155,14 +161,15 @@ Moving moving_in_band(const event::WhitenedEvents& events) {
       if (!disturbed(e, first)) later.push_back(in_band(e, first));
   }
   Moving all{before.level(), {}};
-  for (const Eigen::Index c : {0, 1}) {
+  for (const Eigen::Index c : {0, 1, 2}) {
     Band calm = before;
     for (const Band& b : later) {
-      const double off = std::sqrt(kLinesPerFreedom * (1.0 / b.lines + 1.0 / before.lines));
+      if (b.lines[c] == 0 || before.lines[c] == 0) continue;
+      const double off = std::sqrt(kLinesPerFreedom * (1.0 / b.lines[c] + 1.0 / before.lines[c]));
       if (b.level()[c] <= before.level()[c] * (1 + kBeyond * off)) calm.add(b);
     }
     all.variance[c] = calm.level()[c];
-    all.freedom[c] = calm.lines / kLinesPerFreedom;
+    all.freedom[c] = calm.lines[c] / kLinesPerFreedom;
   }
   return all;
 }
@@ -249,6 +256,11 @@ Eigen::MatrixXd VoltageNoise::into(const event::FitEvent& event) const {
   return by;
 }
 
+Eigen::Vector3d VoltageNoise::of(const event::FitEvent& event) const {
+  return integrated(event) ? Eigen::Vector3d(variance[0], 0.0, variance[2])
+                           : Eigen::Vector3d(variance[0], variance[1], 0.0);
+}
+
 event::SlowNoise slow_noise(const playin::LinearPlant& plant, event::WhitenedEvent whitened,
                             const VoltageNoise& voltage) {
   const event::FitEvent& e = whitened.event;
@@ -269,7 +281,8 @@ event::SlowNoise slow_noise(const playin::LinearPlant& plant, event::WhitenedEve
   const Eigen::MatrixXd F = whole.topLeftCorner(n, n), G = whole.block(0, n, n, 2),
                         H = whole.topRightCorner(n, 2);
   const Eigen::MatrixXd in = F * H + G - H, through = D + C * H - voltage.into(e);
-  const Eigen::MatrixXd V = voltage.variance.asDiagonal();
+  const Eigen::Vector3d variance = voltage.of(e);
+  const Eigen::MatrixXd V = variance.head(2).asDiagonal();
 
   event::SlowNoise s;
   s.A = Eigen::MatrixXd::Identity(m, m);
@@ -280,6 +293,7 @@ event::SlowNoise slow_noise(const playin::LinearPlant& plant, event::WhitenedEve
   s.P = s.Q = Eigen::MatrixXd::Zero(m, m);
   s.P.bottomRightCorner(2, 2) = V / e.start.samples;
   s.Q.topLeftCorner(n, n) = in * V * in.transpose();
+  s.Q(m - 1, m - 1) = variance[2];
   // the voltage is only guessed between the samples about a switching
   s.jump = Eigen::MatrixXd::Zero(m, m);
   s.jump.topLeftCorner(n, n) = kGuess * kGuess * in * in.transpose();
@@ -323,14 +337,17 @@ event::FitEvent at_rest(const event::FitEvent& like, double seconds) {
   return event;
 }
 
-event::FitEvent minute_of_noise(const event::FitEvent& like, const Eigen::Vector2d& deviation) {
+event::FitEvent minute_of_noise(const event::FitEvent& like, const Eigen::Vector3d& variance) {
+  const Eigen::Vector3d deviation = VoltageNoise{.variance = variance}.of(like).cwiseSqrt();
   constexpr double kMinute = 60.0;
   event::FitEvent event = at_rest(like, kMinute);
   record::Record& r = event.record;
+  double astray = 0;
   for (std::size_t k = 0; k < r.t.size(); ++k) {
     const auto normal = sim::normal_pair(1, 0, k);
     r.V[k] *= 1 + deviation[0] * normal[0];
-    r.theta[k] += deviation[1] * normal[1];
+    astray += deviation[2] * sim::normal_pair(2, 0, k)[0];
+    r.theta[k] += deviation[1] * normal[1] + astray;
   }
   return event;
 }
@@ -353,10 +370,12 @@ std::shared_ptr<const event::Innovations> memory_of(const sim::plant::PlantUnder
 VoltageNoise voltage_noise(const Fit& fit, const event::WhitenedEvents& events) {
   const Shares shares = shares_of(fit, events);
   const Moving moving = moving_in_band(events);
-  return {.variance = shares.instrument * moving.variance,
-          .carried = shares.carried,
-          .share = shares.instrument,
-          .doubt = moving.freedom.cwiseMax(1.0).cwiseSqrt().cwiseInverse()};
+  return {
+      .variance = shares.instrument * moving.variance,
+      .carried = shares.carried,
+      .share = shares.instrument,
+      .doubt =
+          (moving.freedom.array() > 0).select(moving.freedom.cwiseMax(1.0).cwiseSqrt().cwiseInverse(), 0.0)};
 }
 
 event::NoiseModel remember_noise(const Fit& fit, const sim::Conventions& conventions,

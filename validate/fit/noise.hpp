@@ -11,9 +11,11 @@ namespace swingbank::validate::fit {
 /// the residual before the events is not white.
 event::NoiseModel sharpen_noise(const Fit& fit, const event::WhitenedEvents& events);
 
-/// White noise of the played-in voltage.
+/// Noise of the played-in voltage, white where it was measured. An angle that was integrated from a frequency
+/// goes astray from sample to sample instead.
 struct VoltageNoise {
-  Eigen::Vector2d variance = Eigen::Vector2d::Zero();  ///< of V (relative) and theta [rad^2]
+  /// Of V (relative), of theta [rad^2], and of what an integrated theta goes astray by in one sample [rad^2].
+  Eigen::Vector3d variance = Eigen::Vector3d::Zero();
   /// Share of this noise that the measured P and Q carry too: 1 where an instrument makes them of the phasors
   /// that it records, 0 where each channel has noise of its own.
   double carried = 0;
@@ -21,10 +23,12 @@ struct VoltageNoise {
   /// do not answer the movement, and 0 if they do as the model says, because the plant has then really seen
   /// it.
   double share = 0;
-  Eigen::Vector2d doubt = Eigen::Vector2d::Zero();  ///< standard deviation of each variance, relative
+  Eigen::Vector3d doubt = Eigen::Vector3d::Zero();  ///< standard deviation of each variance, relative
   /// What P and Q of this operating point move by with V (relative) and theta [rad] where the current stands
   /// still, times `carried`: [channel][V, theta], in the channels' units.
   [[nodiscard]] Eigen::MatrixXd into(const event::FitEvent& event) const;
+  /// The variances, less those that this event has not.
+  [[nodiscard]] Eigen::Vector3d of(const event::FitEvent& event) const;
 };
 
 /// Noise of the played-in voltage as the plant answers it. The states are the plant's, less what the latest
@@ -44,9 +48,9 @@ VoltageNoise voltage_noise(const Fit& fit, const event::WhitenedEvents& events);
 /// So many seconds at the operating point of `like` [s]. Answers are compared with zero.
 event::FitEvent at_rest(const event::FitEvent& like, double seconds);
 
-/// A minute at the operating point of `like`, with V and theta moved by that many standard deviations of
-/// noise. Answers are compared with zero.
-event::FitEvent minute_of_noise(const event::FitEvent& like, const Eigen::Vector2d& deviation);
+/// A minute at the operating point of `like`, with V and theta moved by noise of these variances
+/// (VoltageNoise). Answers are compared with zero.
+event::FitEvent minute_of_noise(const event::FitEvent& like, const Eigen::Vector3d& variance);
 
 /// Noise of the played-in voltage passes exciter and rotor, and what comes out is slow. This follows it
 /// through the plant's equations about each event's start, and returns the events' noise with that memory

@@ -8,9 +8,9 @@
 namespace swingbank::validate::fit {
 
 PassedNoise::PassedNoise(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
-                         const Eigen::Vector2d& variance)
-    : quiet_(minute_of_noise(events.front(), Eigen::Vector2d::Zero())),
-      noisy_(minute_of_noise(events.front(), variance.cwiseSqrt())),
+                         const Eigen::Vector3d& variance)
+    : quiet_(minute_of_noise(events.front(), Eigen::Vector3d::Zero())),
+      noisy_(minute_of_noise(events.front(), variance)),
       noise_(events.noise(0)) {
   noise_.memory = memory_of(tested, {quiet_, noise_}, {.variance = variance});
   double values = 0;

@@ -8,10 +8,10 @@ namespace swingbank::validate::fit {
 
 class PassedNoise {
  public:
-  /// Takes the structure that others are held against. Noise of these variances [V/V, rad] is played in for a
-  /// minute at the first event's operating point, and whitened as the residual of this structure is.
+  /// Takes the structure that others are held against. Noise of these variances (VoltageNoise) is played in
+  /// for a minute at the first event's operating point, and whitened as the residual of this structure is.
   PassedNoise(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
-              const Eigen::Vector2d& variance);
+              const Eigen::Vector3d& variance);
   /// By how much chi2 of all events falls with another structure because it passes less noise. Negative if it
   /// passes more, 0 where it cannot be run.
   [[nodiscard]] double less_with(const sim::plant::PlantUnderTest& tested) const;

@@ -57,8 +57,7 @@ ScoreTest::ScoreTest(const event::WhitenedEvents& events, const sim::plant::Plan
     each.push_back(slopes_of(setting, e, z, state));
     rows += each.back().residual.size();
     at.insert(at.end(), state.begin(), state.end());
-    belief.insert(belief.end(), events[e].switchings.size(), 0.0);
-    for (const double b : kStateBelief) belief.push_back(1 / (b * b));
+    for (const double b : state_beliefs(events[e])) belief.push_back(b > 0 ? 1 / (b * b) : 0.0);
   }
   residual_.resize(rows);
   slopes_ = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(at.size()));

@@ -19,6 +19,8 @@ std::vector<playin::Direction> state_directions(const event::FitEvent& event) {
     if (event.switchings[k].uncertainty > 0)
       along.push_back(
           {.kind = Kind::switching, .index = static_cast<int>(k), .scale = event.switchings[k].uncertainty});
+  for (std::size_t k = 0; event.turns() && k < event.switchings.size(); ++k)
+    along.push_back({.kind = Kind::turn, .index = static_cast<int>(k), .scale = kTurnScale * kTurnBelief});
   for (std::size_t k = 0; k < std::size(kStateKind); ++k)
     along.push_back({.kind = kStateKind[k], .scale = kStateSpread[k]});
   return along;
@@ -30,6 +32,10 @@ Eigen::VectorXd on_directions(const event::FitEvent& event, const EventState& st
   for (std::size_t k = 0; k < event.switchings.size(); ++k)
     if (const playin::Switching& s = event.switchings[k]; s.uncertainty > 0)
       all.push_back(k < state.switchings.size() ? (state.switchings[k] - s.time) / s.uncertainty : 0.0);
+  for (std::size_t k = 0; event.turns() && k < event.switchings.size(); ++k)
+    all.push_back(k < state.turns.size()
+                      ? (state.turns[k] - event.switchings[k].turn) / (kTurnScale * kTurnBelief)
+                      : 0.0);
   const double values[kStates] = {state.P, state.Q, state.angle, state.speed};
   for (std::size_t k = 0; k < std::size(kStateKind); ++k) all.push_back(values[k] / kStateSpread[k]);
   return Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/constants.hpp"
 #include "sim/core/noise.hpp"
 #include "validate/fit/noise.hpp"
 
@@ -18,10 +19,14 @@ double white_variance(const std::vector<double>& values, int n) {
   return sum / (6.0 * std::max(1, n - 2));
 }
 
-/// Columns whose products with themselves make up a covariance of rank two.
+/// Columns whose products with themselves make up a covariance of rank three at most.
 Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> of(covariance);
-  return of.eigenvectors().rightCols(2) * of.eigenvalues().tail(2).cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  return of.eigenvectors().rightCols(3) * of.eigenvalues().tail(3).cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+/// By how much an angle that was integrated from f goes astray in one sample [rad^2].
+double astray(const record::Record& r, int n) {
+  return white_variance(r.f, n) * std::pow(constants::turn * r.base.frequency * r.step(), 2);
 }
 
 /// The plant's answer to kicks of its states: [channel][sample].
@@ -43,8 +48,10 @@ VoltageDoubt voltage_doubt(const sim::plant::PlantUnderTest& tested, event::Whit
   const event::FitEvent& e = whitened.event;
   constexpr std::uint32_t kDraws = 48;  // so many draws tell a variance to 20 %
   const std::size_t samples = e.record.t.size();
-  const Eigen::Vector2d variance(white_variance(e.record.V, e.start.samples) / std::norm(e.start.voltage),
-                                 white_variance(e.record.theta, e.start.samples));
+  const bool integrated = e.record.angle == record::AngleSource::integrated;
+  const Eigen::Vector3d variance(white_variance(e.record.V, e.start.samples) / std::norm(e.start.voltage),
+                                 integrated ? 0.0 : white_variance(e.record.theta, e.start.samples),
+                                 integrated ? astray(e.record, e.start.samples) : 0.0);
   const playin::VoltageCurve curve(e.record, {});
   const event::SlowNoise noise = slow_noise(playin::linearise({.plant = &tested.plant,
                                                                .conventions = tested.conventions,
@@ -64,10 +71,11 @@ VoltageDoubt voltage_doubt(const sim::plant::PlantUnderTest& tested, event::Whit
     doubt.shapes.push_back(answer(noise, samples, [&](int k) -> Eigen::VectorXd {
       if (k < 0) return none;
       const auto normal = sim::normal_pair(1, d, static_cast<std::uint64_t>(k));
-      return moved * Eigen::Vector2d(normal[0], normal[1]);
+      const double third = integrated ? sim::normal_pair(2, d, static_cast<std::uint64_t>(k))[0] : 0.0;
+      return moved * Eigen::Vector3d(third, normal[0], normal[1]);
     }));
   for (std::size_t at = 0; at < samples; ++at)
-    for (Eigen::Index j = 0; noise.doubtful[at] > 0 && j < 2; ++j)
+    for (Eigen::Index j = 1; noise.doubtful[at] > 0 && j < 3; ++j)  // two: V and theta
       doubt.shapes.push_back(answer(noise, samples, [&](int k) -> Eigen::VectorXd {
         return k == static_cast<int>(at) ? (std::sqrt(noise.doubtful[at]) * guessed.col(j)).eval() : none;
       }));

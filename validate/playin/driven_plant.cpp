@@ -119,12 +119,10 @@ class Driven {
     ++next_;
     look_ahead();
     fresh_ = true;
-    if (at.switching >= 0) {
-      ++equations_.side.segment;
-      equations_.side.isolated = equations_.side.isolated || breaker_;
-    } else if (!trace_) {
+    if (at.switching >= 0)
+      equations_.pass(at.switching, x_.data());
+    else if (!trace_)
       return;
-    }
     const T* after = derivative_at(at.time, 1);
     mark(Trace::Node::Kind::after, at.switching, after);
     if (at.switching < 0) return;

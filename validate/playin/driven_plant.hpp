@@ -69,6 +69,7 @@ struct Direction {
   enum class Kind {
     parameter,  ///< `parameter` of the plant
     switching,  ///< instant `index` of the curve [s]
+    turn,       ///< of the voltage's angle at that instant [rad]
     P,          ///< of the operating point [pu on the record's base]; of a component Efd and Pm
     Q,          ///< likewise
     angle,      ///< at the start [rad]

@@ -44,9 +44,9 @@ class Together {
       if (sample > runs_.front().until) break;
       while (next_ < switchings.size() && sample > switchings[next_].time + slack) {
         advance(switchings[next_].time);
+        equations_.pass(static_cast<int>(next_), x_.data());
         ++next_;
         look_ahead();
-        ++equations_.side.segment;
         fresh_ = true;
       }
       advance(sample);

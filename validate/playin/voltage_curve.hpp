@@ -15,6 +15,7 @@ struct Switching {
   double uncertainty = 0;  ///< it lies within time ± uncertainty [s]; 0: known
   bool has_before = false, has_after = false;
   Complex before{}, after{};  ///< one-sided voltages at `time` [pu], where they are known
+  double turn = 0;            ///< what the record's angle lacks from here on, if it was not measured [rad]
 };
 
 /// Steps of the voltage larger than this [pu] in one sample interval are taken for switching.

@@ -11,6 +11,7 @@
 #include <iterator>
 #include <limits>
 
+#include "base/constants.hpp"
 #include "base/input_file.hpp"
 #include "validate/record/detail/build.hpp"
 #include "validate/record/formats.hpp"
@@ -194,6 +195,28 @@ double quantum(const std::vector<double>& values) {
   const bool grid = std::ranges::all_of(
       steps, [&](double s) { return std::abs(s / least - std::round(s / least)) < 0.02; });
   return grid ? least : 0;
+}
+
+namespace {
+
+/// Mean of f over the interval before sample k: of the cubic through the four samples about it where these
+/// are evenly spaced (of a swing at 1.5 Hz and 30/s it misses 1.5e-4, a straight line 0.8 %), else of a
+/// straight line.
+double mean_before(const std::vector<double>& t, const std::vector<double>& f, std::size_t k) {
+  const double step = t[k] - t[k - 1];
+  const auto even = [&](std::size_t i) { return std::abs(t[i] - t[i - 1] - step) < 1e-3 * step; };
+  if (k < 2 || k + 1 >= t.size() || !even(k - 1) || !even(k + 1)) return (f[k - 1] + f[k]) / 2;
+  return (13 * (f[k - 1] + f[k]) - f[k - 2] - f[k + 1]) / 24;
+}
+
+}  // namespace
+
+std::vector<double> angle_of_frequency(const Record& r) {
+  std::vector<double> theta(r.t.size(), 0.0);
+  const double scale = constants::turn * r.base.frequency;
+  for (std::size_t k = 1; k < theta.size(); ++k)
+    theta[k] = theta[k - 1] + scale * (r.t[k] - r.t[k - 1]) * mean_before(r.t, r.f, k);
+  return theta;
 }
 
 void require_angle(const Record& record) {

@@ -98,6 +98,9 @@ struct Record {
   [[nodiscard]] double rate() const { return 1.0 / step(); }
 };
 
+/// The angle against nominal frequency, from zero, integrated from the record's f [rad].
+std::vector<double> angle_of_frequency(const Record& record);
+
 /// Fewest samples a record may have: a pre-event window and a response cannot be told from less.
 constexpr int kFewestSamples = 30;
 /// Frames that a stream lost are bridged up to this length [s].

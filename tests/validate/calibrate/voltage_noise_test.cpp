@@ -27,7 +27,7 @@ class Copies {
         if (sim::plant::parameter_record(model_.plant, f.id).name == name) free_.push_back(f);
   }
   [[nodiscard]] static fit::VoltageNoise voltage(double carried = 1) {
-    return {.variance = Eigen::Vector2d::Constant(kDeviation * kDeviation), .carried = carried};
+    return {.variance = {kDeviation * kDeviation, kDeviation * kDeviation, 0.0}, .carried = carried};
   }
   /// Scores of one copy after `settled` samples, less those of the plant at rest.
   [[nodiscard]] Eigen::VectorXd score(unsigned seed) const {

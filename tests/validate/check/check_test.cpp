@@ -131,6 +131,22 @@ TEST_P(RecordMistakeTest, IsRecognised) {
 INSTANTIATE_TEST_SUITE_P(All, RecordMistakeTest, ::testing::ValuesIn(mistakes()),
                          [](const auto& each) { return std::string(each.param.name); });
 
+TEST(RecordCheckTest, ASlowRecordIsSaid) {
+  const record::Record r = example(1);
+  const auto every = [&](std::size_t stride) {
+    record::Record thin = r;
+    for (auto* c : {&thin.t, &thin.V, &thin.theta, &thin.P, &thin.Q, &thin.f}) {
+      std::size_t kept = 0;
+      for (std::size_t k = 0; k < c->size(); k += stride) (*c)[kept++] = (*c)[k];
+      c->resize(kept);
+    }
+    return told(check_record(thin, {100, 60}));
+  };
+  ASSERT_NEAR(r.rate(), 60, 1e-6);
+  EXPECT_THAT(every(2), ::testing::Not(::testing::HasSubstr("slow_rate")));
+  EXPECT_THAT(every(4), ::testing::HasSubstr("warn slow_rate: 15 samples/s"));
+}
+
 TEST(RecordCheckTest, OnlyAMachinesCurrentMustJumpAsItsReactanceSays) {
   Written turned;
   turned.edit = [](std::vector<double>& x) { x[4] = -x[4]; };

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <numeric>
 #include <random>
 
 #include "sim/library/library.hpp"
@@ -118,16 +119,41 @@ TEST(CompareTest, WithoutAngleAndFrequencyPowerDrives) {
 }
 TEST(CompareTest, AnAngleOfTheFrequencyDrivesTheModel) {
   RightModel right;
-  right.record.f = frequency_of(right.record.t, right.record.theta, 60);
-  std::vector<double> theta(right.record.t.size(), 0.0);
-  for (std::size_t k = 1; k < theta.size(); ++k)
-    theta[k] = theta[k - 1] + 2 * std::numbers::pi * 60 * right.record.step() *
-                                  (right.record.f[k] + right.record.f[k - 1]) / 2;
-  right.record.theta = theta;
-  right.record.angle = record::AngleSource::integrated;
+  const record::Record whole = test::record_of(right.s, 3, 8);
+  const auto jump = [&](double at) {  // of the voltage's angle, over the sample interval
+    const auto k = static_cast<std::size_t>(std::ranges::upper_bound(whole.t, at) - whole.t.begin());
+    return (whole.theta[k] - whole.theta[k - 1]) - (whole.theta[k - 1] - whole.theta[k - 2]);
+  };
+  const double on = jump(right.s.t_on), off = jump(right.s.t_off);
+  ASSERT_GT(std::abs(on), 0.05);
+  constexpr double kFrequencyNoise = 1e-3 / 60;  // 1 mHz
+  right.record = test::by_frequency(right.record, {right.s.t_on, right.s.t_off}, kFrequencyNoise);
+  std::vector<EventComparison> events = {compare_event(right.model, right.record)};
+  ASSERT_EQ(events[0].switchings.size(), 2U);
+  constexpr double kSubtransient = 0.04;  // moves the angle in the samples next to a switching
+  EXPECT_NEAR(events[0].switchings[0].turn, on, kSubtransient);
+  EXPECT_NEAR(events[0].switchings[1].turn, off, kSubtransient);
+  EXPECT_THAT(events[0].notes, ::testing::Contains(HasSubstr("the integrated angle was turned by")));
+  const Adequacy a = judge(events);
+  EXPECT_TRUE(a.adequate) << a.sentence;
+  auto& machine = right.model.plant.machine;
+  machine.p[static_cast<std::size_t>(machine.effect->parameter_index("H"))] *= 1.1;
+  std::vector<EventComparison> wrong = {compare_event(right.model, right.record)};
+  EXPECT_FALSE(judge(wrong).adequate) << "turns do not hide it";
+}
+TEST(CompareTest, AWrongModelDoesNotMoveTheStart) {
+  RightModel right;
+  auto& machine = right.model.plant.machine;
+  machine.p[static_cast<std::size_t>(machine.effect->parameter_index("Xd"))] *= 1.3;
+  machine.p[static_cast<std::size_t>(machine.effect->parameter_index("Xdp"))] *= 1.3;
   const EventComparison e = compare_event(right.model, right.record);
-  const auto& last = e.channels[0].windows.back();
-  EXPECT_LT(last.rms, 0.02) << "what the switchings lack dies away";
+  ASSERT_TRUE(e.fitted);
+  const auto mean = [&](const std::vector<double>& x) {
+    const auto n = static_cast<std::ptrdiff_t>(e.playback.start.samples);
+    return std::accumulate(x.begin(), x.begin() + n, 0.0) / static_cast<double>(n);
+  };
+  EXPECT_NEAR(e.playback.start.P, mean(right.record.P), 1e-9);
+  EXPECT_NEAR(e.playback.start.Q, mean(right.record.Q), 1e-9);
 }
 TEST(CompareTest, AFifthOfASecondBeforeTheEventIsEnough) {
   RightModel right;

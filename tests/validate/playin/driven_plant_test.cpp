@@ -46,6 +46,9 @@ class DrivenPlantTest : public ::testing::Test {
         case Kind::switching:
           switchings[index].time += move;
           break;
+        case Kind::turn:
+          switchings[index].turn += move;
+          break;
         case Kind::P:
           run.start.P += move;
           break;
@@ -113,10 +116,41 @@ TEST_F(DrivenPlantTest, SlopesAlongEveryParameter) {
 TEST_F(DrivenPlantTest, SlopesAlongNuisances) {
   expect_slopes({{.kind = Kind::switching, .index = 0, .scale = 1e-5},
                  {.kind = Kind::switching, .index = 1, .scale = 1e-5},
+                 {.kind = Kind::turn, .index = 0, .scale = 1e-5},
+                 {.kind = Kind::turn, .index = 1, .scale = 1e-5},
                  {.kind = Kind::P, .scale = 1e-5},
                  {.kind = Kind::Q, .scale = 1e-5},
                  {.kind = Kind::angle, .scale = 1e-5},
                  {.kind = Kind::speed, .scale = 1e-6}});
+}
+/// A frequency that lacks the jumps of the angle, and the same voltage with them.
+TEST_F(DrivenPlantTest, ATurnIsWhatTheAngleLacks) {
+  const double lacks[] = {0.3, -0.5};  // [rad]
+  record::Record turned = record_;
+  auto turning = switchings_;
+  ASSERT_EQ(turning.size(), 2U);
+  for (std::size_t s = 0; s < 2; ++s) {
+    turning[s].turn = lacks[s];
+    for (std::size_t k = 0; k < turned.t.size(); ++k)
+      if (turned.t[k] > turning[s].time) turned.theta[k] += lacks[s];
+  }
+  const auto answer = [&](const record::Record& r, const std::vector<Switching>& at) {
+    const VoltageCurve curve(r, at);
+    return drive({.plant = &model_.plant,
+                  .conventions = model_.conventions,
+                  .record = &r,
+                  .curve = &curve,
+                  .start = pre_event_point(r, at, 1.0)});
+  };
+  const Response with = answer(turned, switchings_), by_turns = answer(record_, turning),
+                 without = answer(record_, switchings_);
+  double least = 0;
+  for (const Output o : {Output::P, Output::Q, Output::speed, Output::Efd})
+    for (std::size_t k = 0; k < record_.t.size(); ++k) {
+      EXPECT_NEAR(by_turns.of(o)[k], with.of(o)[k], 1e-7) << output_name(o) << " at " << record_.t[k] << " s";
+      least = std::max(least, std::abs(without.of(o)[k] - with.of(o)[k]));
+    }
+  EXPECT_GT(least, 0.1);
 }
 /// The current of a GENTPJ is found by Newton's method, its terminal behind the transformer by another one.
 TEST_F(DrivenPlantTest, SlopesThroughATransformerAndASaturatedStator) {

@@ -21,6 +21,7 @@ class DrivenTogether : public ::testing::Test {
     model_.plant.controls.push_back({effect, effect->standard_parameters()});
     record_ = record::read_record(configs / "records" / "record-example" / "avr_ev1.csv", model_.record_base);
     switchings_ = detect_switchings(record_);
+    for (Switching& s : switchings_) s.turn = 0.1;
     curve_.emplace(record_, switchings_);
   }
   /// The plant with its exciter's gain multiplied by powers of 1.3.

@@ -59,6 +59,8 @@ class LinearSlopesTest : public ::testing::Test {
                            .scale = blocks[b][p]});
     for (int k = 0; k < static_cast<int>(switchings_.size()); ++k)
       along.push_back({.kind = Kind::switching, .index = k, .scale = 1e-3});
+    for (int k = 0; k < static_cast<int>(switchings_.size()); ++k)
+      along.push_back({.kind = Kind::turn, .index = k, .scale = 1e-3});
     for (const Kind kind : {Kind::P, Kind::Q, Kind::angle, Kind::speed})
       along.push_back({.kind = kind, .scale = 1e-3});
     for (int k = 0; k < static_cast<int>(knots_.size()); ++k) {

@@ -1,5 +1,6 @@
 #pragma once
 // Simulated events, and records made of them, shared by the tests of play-in and compare.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -7,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/constants.hpp"
 #include "sim/library/library.hpp"
 #include "sim/reference/reference.hpp"
 #include "validate/playin/voltage_curve.hpp"
@@ -90,6 +92,28 @@ inline record::Record record_of(const Simulated& s, int plant, int stride, doubl
     add(r.P, 2, k, noise);
     add(r.Q, 3, k, noise);
   }
+  return r;
+}
+
+/// The record with a frequency [pu] in place of its angle, which is integrated from it: it lacks the jumps at
+/// `switched` and goes astray by the frequency's noise.
+inline record::Record by_frequency(record::Record r, const std::vector<double>& switched,
+                                   double noise = 0.0) {
+  std::mt19937_64 generator(3);
+  std::normal_distribution<double> normal(0, noise);
+  const double nominal = constants::turn * r.base.frequency;
+  std::vector<double> slope;  // [rad/s]
+  for (std::size_t k = 0; k + 1 < r.t.size(); ++k) {
+    const bool jumps = std::ranges::any_of(switched, [&](double s) { return r.t[k] <= s && s < r.t[k + 1]; });
+    const std::size_t from = jumps ? k - 1 : k;
+    slope.push_back((r.theta[from + 1] - r.theta[from]) / (r.t[from + 1] - r.t[from]));
+  }
+  slope.push_back(slope.back());
+  r.f.clear();
+  for (std::size_t k = 0; k < r.t.size(); ++k) r.f.push_back(slope[k] / nominal + normal(generator));
+  for (std::size_t k = 1; k < r.t.size(); ++k)
+    r.theta[k] = r.theta[k - 1] + nominal * r.f[k - 1] * (r.t[k] - r.t[k - 1]);
+  r.angle = record::AngleSource::integrated;
   return r;
 }
 

@@ -64,7 +64,8 @@ event::EventNoise noise_of(const sim::plant::PlantUnderTest& tested, const event
   event::EventNoise noise{.deviation = white.diagonal().cwiseSqrt(),
                           .whitening = white.llt().matrixL().solve(Eigen::Matrix2d::Identity())};
   noise.memory = std::make_shared<event::Innovations>(
-      fit::slow_noise(linear, {e, noise}, {.variance = variance}), e.record.samples(), e.left_out);
+      fit::slow_noise(linear, {e, noise}, {.variance = {variance[0], variance[1], 0.0}}), e.record.samples(),
+      e.left_out);
   return noise;
 }
 

@@ -47,11 +47,15 @@ VoltagePull voltage_pull(const sim::plant::PlantUnderTest& tested,
   const Eigen::MatrixXd carried = voltage.into(quiet);
   const auto n = static_cast<Eigen::Index>(free.size());
   VoltagePull pull{Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n)};
-  for (const Eigen::Index of : {0, 1}) {
+  const Eigen::Vector3d variance = voltage.of(quiet);
+  for (const Eigen::Index of : {0, 1, 2}) {
+    if (variance[of] == 0) continue;
     event::FitEvent kicked = quiet;
     record::Record& r = kicked.record;
-    (of == 0 ? r.V[at] : r.theta[at]) += of == 0 ? kKick * r.V[at] : kKick;
-    for (std::size_t c = 0; c < kicked.channels.size(); ++c) {
+    if (of == 0) r.V[at] += kKick * r.V[at];
+    if (of == 1) r.theta[at] += kKick;
+    for (std::size_t k = at; of == 2 && k < r.theta.size(); ++k) r.theta[k] += kKick;
+    for (std::size_t c = 0; of < 2 && c < kicked.channels.size(); ++c) {
       const double more = kKick * carried(static_cast<Eigen::Index>(c), of);
       if (kicked.channels[c] == playin::Output::P) r.P[at] += more;
       if (kicked.channels[c] == playin::Output::Q) r.Q[at] += more;
@@ -59,7 +63,7 @@ VoltagePull voltage_pull(const sim::plant::PlantUnderTest& tested,
     const Answer moved = answer(tested, {kicked, noise}, along);
     const Eigen::MatrixXd slopes = (moved.slopes - still.slopes) / kKick;
     const Eigen::VectorXd residual = (moved.residual - still.residual) / kKick;
-    const double times = samples * voltage.variance[of];
+    const double times = samples * variance[of];
     const Eigen::VectorXd score = times * slopes.transpose() * residual;
     pull.score += score;
     pull.information += times * slopes.transpose() * slopes;

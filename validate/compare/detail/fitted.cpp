@@ -7,12 +7,12 @@
 namespace swingbank::validate::compare {
 
 void play_fitted(const plant::PlantModel& model, const CompareOptions& options, event::Jumps jumps,
-                 EventComparison& e) {
+                 bool start_stands, EventComparison& e) {
   const auto events = event::prepare_events(
       model, {e.record},
       {.jump_threshold = options.jump_threshold, .pre_event = options.play_in.pre_event, .jumps = jumps});
   const event::FitEvent& event = events.front();
-  const fit::Fit f = fit::fit(model.under_test(), events, {});
+  const fit::Fit f = fit::fit(model.under_test(), events, {}, {.start_stands = start_stands});
   if (!f.failed.empty())
     throw InputError({"the model cannot follow the record", e.record.name, f.failed,
                       "check the model's parameters and the record's base and units"});
@@ -22,8 +22,10 @@ void play_fitted(const plant::PlantModel& model, const CompareOptions& options, 
   e.playback.start = event::start_at(event, state);
   playin::take_outputs(r, e.playback);
   e.switchings = event::switchings_at(event, state);
+  e.record.theta = event.record.theta;  // as it was played in
+  e.record.notes = event.record.notes;
   e.fitted = true;
-  e.left_out = jumps == event::Jumps::spread ? event.left_out : e.record.lost;
+  e.left_out = jumps == event::Jumps::spread || event.turns() ? event.left_out : e.record.lost;
 }
 
 void add_doubt(const plant::PlantModel& model, EventComparison& e) {

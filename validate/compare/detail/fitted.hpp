@@ -6,10 +6,10 @@
 namespace swingbank::validate::compare {
 
 /// Sets switchings, playback and left_out of an event whose record is set. Its instants and its start are
-/// fitted, and the model stays as it is. Samples that a filter has smeared over a jump are not played in.
-/// Throws InputError where the model cannot follow the record.
+/// fitted, and the model stays as it is; P and Q of the start too, where it `stands`. Samples that a filter
+/// has smeared over a jump are not played in. Throws InputError where the model cannot follow the record.
 void play_fitted(const plant::PlantModel& model, const CompareOptions& options, event::Jumps jumps,
-                 EventComparison& e);
+                 bool start_stands, EventComparison& e);
 
 /// Sets EventComparison::doubt of an event that was played in by its voltage.
 void add_doubt(const plant::PlantModel& model, EventComparison& e);

@@ -80,6 +80,8 @@ inline std::vector<double> state_of(const event::FitEvent& event, const EventSta
   std::vector<double> s;
   for (std::size_t k = 0; k < event.switchings.size(); ++k)
     s.push_back((from.switchings[k] - event.switchings[k].time) / kSwitchScale);
+  for (std::size_t k = 0; event.turns() && k < event.switchings.size(); ++k)
+    s.push_back(k < from.turns.size() ? (from.turns[k] - event.switchings[k].turn) / kTurnScale : 0.0);
   const double values[kStates] = {from.P, from.Q, from.angle, from.speed};
   for (int k = 0; k < kStates; ++k) s.push_back(values[k] / kStateScale[k]);
   return s;
@@ -89,6 +91,8 @@ inline std::vector<double> state_of(const event::FitEvent& event, const EventSta
 inline EventState event_state(const event::FitEvent& event, const double* s) {
   EventState at;
   for (const auto& w : event.switchings) at.switchings.push_back(w.time + kSwitchScale * *s++);
+  if (event.turns())
+    for (const auto& w : event.switchings) at.turns.push_back(w.turn + kTurnScale * *s++);
   at.P = kStateScale[0] * s[0];
   at.Q = kStateScale[1] * s[1];
   at.angle = kStateScale[2] * s[2];

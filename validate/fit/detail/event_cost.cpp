@@ -170,7 +170,7 @@ event::RowMatrix EventCost::values(const double* z, const double* state, bool sl
 EventState EventCost::at(const double* state) const {
   EventState whole = event_state(event_, state);
   if (setting_.input == InputKind::none) return whole;
-  const double* s = state + event_.switchings.size() + kStates;
+  const double* s = state + switching_numbers(event_) + kStates;
   whole.input.t = knots_;
   whole.input.value.assign(s, s + knots_.size());
   return whole;
@@ -188,6 +188,8 @@ playin::Response EventCost::answer(const sim::plant::Plant& plant, const EventSt
 void EventCost::add_state_directions(std::vector<playin::Direction>& along) const {
   for (std::size_t k = 0; k < event_.switchings.size(); ++k)
     along.push_back({.kind = Kind::switching, .index = static_cast<int>(k), .scale = kSwitchScale});
+  for (std::size_t k = 0; event_.turns() && k < event_.switchings.size(); ++k)
+    along.push_back({.kind = Kind::turn, .index = static_cast<int>(k), .scale = kTurnScale});
   for (int k = 0; k < kStates; ++k) along.push_back({.kind = kStateKind[k], .scale = kStateScale[k]});
   const Kind kind = setting_.input == InputKind::torque ? Kind::torque : Kind::field;
   for (std::size_t k = 0; k < knots_.size(); ++k)

@@ -17,7 +17,7 @@ event::RowMatrix triangle_of(const event::RowMatrix& e);
 class EventCost : public ceres::CostFunction {
  public:
   EventCost(const Setting& setting, std::size_t event);
-  [[nodiscard]] std::size_t state_size() const { return event_.switchings.size() + kStates + knots_.size(); }
+  [[nodiscard]] std::size_t state_size() const { return switching_numbers(event_) + kStates + knots_.size(); }
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
   /// Whitened residuals of all values in the last column, and before it their slopes by z and by the state.
   /// Empty where the plant cannot be run.

@@ -1,10 +1,22 @@
 #pragma once
-// The state that every event has of its own: its operating point and how it moves at the start.
+// The state that every event has of its own: when it was switched, where an angle that was not measured
+// turns, its operating point and how it moves at the start.
 #include <array>
+#include <vector>
 
+#include "validate/event/whitened_events.hpp"
 #include "validate/playin/play_in.hpp"
 
 namespace swingbank::validate::fit {
+
+/// Instants and turns, which stand before the rest.
+inline std::size_t switching_numbers(const event::FitEvent& event) {
+  return event.switchings.size() * (event.turns() ? 2 : 1);
+}
+
+/// One unit of a turn [rad], and how many of them it is believed to be off from where it was found: a
+/// reactance that is wrong by a fifth makes it wrong by so much.
+inline constexpr double kTurnScale = 1e-3, kTurnBelief = 100;
 
 inline constexpr int kStates = 4;  ///< P, Q [pu], angle [rad], speed [pu]
 inline constexpr std::array<playin::Direction::Kind, kStates> kStateKind = {
@@ -21,5 +33,13 @@ inline constexpr std::array<double, kStates> kStateSpread = [] {
   for (std::size_t k = 0; k < kStates; ++k) spread[k] = kStateScale[k] * kStateBelief[k];
   return spread;
 }();
+
+/// How far each number of the state is believed to be off, in its units; 0: nothing is believed.
+inline std::vector<double> state_beliefs(const event::FitEvent& event) {
+  std::vector<double> all(event.switchings.size(), 0.0);
+  all.resize(switching_numbers(event), kTurnBelief);
+  all.insert(all.end(), kStateBelief.begin(), kStateBelief.end());
+  return all;
+}
 
 }  // namespace swingbank::validate::fit

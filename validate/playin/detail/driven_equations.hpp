@@ -88,6 +88,19 @@ class DrivenEquations {
   void each(F f) const {
     for (std::size_t i = 0; i < directions_.size(); ++i) f(directions_[i], i);
   }
+  /// Over to the other side of a switching of the curve. Where the voltage's angle turns by more than was
+  /// recorded, the rotor turns back by as much: nothing but the angle between the two counts.
+  void pass(int switching, T* x) {
+    ++side.segment;
+    side.isolated = side.isolated || breaker_;
+    if (!has_rotor()) return;
+    x[0] = x[0] - T(run_.curve->switchings()[static_cast<std::size_t>(switching)].turn);
+    each([&](const Direction& d, std::size_t i) {
+      if (d.kind == Kind::turn && d.index == switching) Seeds<T>::add(x[0], i, -d.scale);
+    });
+  }
+  /// A converter and a recorded machine have none, which might stand elsewhere.
+  [[nodiscard]] bool has_rotor() const { return !recorded_ && !run_.plant->machine.effect->converter; }
   /// As seen from a frame that turns with the pre-event angle.
   [[nodiscard]] Complex voltage(double t) const {
     if (breaker_) return run_.start.voltage;
@@ -163,7 +176,7 @@ class DrivenEquations {
     x0 = std::move(at.x);
     Efd = at.Efd;
     Tm = at.Tm;
-    if (plant.machine.effect->converter) return;  // it has no rotor that might stand elsewhere
+    if (plant.machine.effect->converter) return;
     x0[0] = x0[0] + T(run_.angle);
     x0[1] = x0[1] + T(run_.speed);
     each([&](const Direction& d, std::size_t i) {

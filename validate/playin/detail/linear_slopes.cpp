@@ -379,13 +379,17 @@ class LinearSlopes {
       });
     }
   }
-  /// To the other side of an instant, which the directions of its switching move.
+  /// To the other side of an instant, which the directions of its switching move and turn.
   void jump(std::size_t k) {
     const int switching = trace_.nodes[k].switching;
     const double *before = trace_.dx.data() + (k - 1) * n_, *after = trace_.dx.data() + k * n_;
-    for (std::size_t d = 0; d < m_; ++d)
-      if (directions_[d].kind == Kind::switching && directions_[d].index == switching)
-        for (std::size_t i = 0; i < n_; ++i) S_.at(i, d) += directions_[d].scale * (before[i] - after[i]);
+    for (std::size_t d = 0; d < m_; ++d) {
+      const Direction& along = directions_[d];
+      if (switching < 0 || along.index != switching) continue;
+      if (along.kind == Kind::turn && packs_.front().equations.has_rotor()) S_.at(0, d) -= along.scale;
+      for (std::size_t i = 0; along.kind == Kind::switching && i < n_; ++i)
+        S_.at(i, d) += along.scale * (before[i] - after[i]);
+    }
   }
   void record() {
     const std::size_t wide = packs();

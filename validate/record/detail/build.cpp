@@ -264,23 +264,6 @@ std::vector<char> fill_channels(RawRecord& raw, const EvenRows& rows, Record& r)
   return unmeasured;
 }
 
-/// Mean of f over the interval before sample k: of the cubic through the four samples about it where these
-/// are evenly spaced (of a swing at 1.5 Hz and 30/s it misses 1.5e-4, a straight line 0.8 %), else of a
-/// straight line.
-double mean_before(const std::vector<double>& t, const std::vector<double>& f, std::size_t k) {
-  const double step = t[k] - t[k - 1];
-  const auto even = [&](std::size_t i) { return std::abs(t[i] - t[i - 1] - step) < 1e-3 * step; };
-  if (k < 2 || k + 1 >= t.size() || !even(k - 1) || !even(k + 1)) return (f[k - 1] + f[k]) / 2;
-  return (13 * (f[k - 1] + f[k]) - f[k - 2] - f[k + 1]) / 24;
-}
-/// The angle against nominal frequency.
-void integrate_angle(Record& r) {
-  r.theta.assign(r.t.size(), 0.0);
-  const double scale = constants::turn * r.base.frequency;
-  for (std::size_t k = 1; k < r.t.size(); ++k)
-    r.theta[k] = r.theta[k - 1] + scale * (r.t[k] - r.t[k - 1]) * mean_before(r.t, r.f, k);
-}
-
 /// Where no angle was recorded it is integrated from the frequency; without that it is nothing.
 void settle_angle(Record& r) {
   if (!r.theta.empty()) return;
@@ -290,12 +273,11 @@ void settle_angle(Record& r) {
     return;
   }
   if (!r.f.empty()) {
-    integrate_angle(r);
+    r.theta = angle_of_frequency(r);
     r.angle = AngleSource::integrated;
     r.notes.emplace_back(
         "The record has no angle: it was integrated from the frequency. At a switching the angle turns at once, "
-        "and a measured frequency shows that late, smoothed or not at all; what P and Q lack or have too much of in "
-        "the first swings after one may come from that.");
+        "and a measured frequency shows that late, smoothed or not at all: by how much it turns there is fitted.");
     return;
   }
   r.theta.assign(r.t.size(), 0.0);

@@ -1,0 +1,80 @@
+// An angle that was integrated from a frequency: jumps are found in the power, a meter's peaks are dropped,
+// and the turn at each switching is told by P and Q.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/constants.hpp"
+#include "tests/validate/playin/support.hpp"
+#include "validate/event/event.hpp"
+
+namespace swingbank::validate::event {
+namespace {
+
+struct Turns : ::testing::Test {
+  static constexpr int kPlant = 3, kStride = 8;  // 60 samples/s
+  test::Simulated s = test::simulate("ieee39_genrou", sim::Conventions::psse(), 16, 2.0062, 2.1131);
+  plant::PlantModel model;
+  record::Record whole = test::record_of(s, kPlant, kStride);
+  Turns() {
+    model.name = "right";
+    model.plant = s.grid.plants[kPlant];
+    model.conventions = s.grid.conventions;
+    model.record_base = whole.base;
+  }
+  /// By how much the angle is off, samples beside switchings aside, once it has turned; the mean taken off.
+  [[nodiscard]] double off(const FitEvent& e) const {
+    std::vector<double> left;
+    for (std::size_t k = 0; k < whole.t.size(); ++k) {
+      double turn = 0;
+      for (const playin::Switching& w : e.switchings) turn += e.record.t[k] > w.time ? w.turn : 0.0;
+      if (e.compared(k)) left.push_back(e.record.theta[k] + turn - whole.theta[k]);
+    }
+    const auto [low, high] = std::ranges::minmax(left);
+    return high - low;
+  }
+};
+
+TEST_F(Turns, ArePutWhereTheFrequencyLacksThem) {
+  const auto events = prepare_events(model, {test::by_frequency(whole, {s.t_on, s.t_off})});
+  ASSERT_EQ(events[0].switchings.size(), 2U);
+  EXPECT_GT(std::abs(events[0].switchings[0].turn), 0.05);
+  EXPECT_LT(off(events[0]), 0.1);  // as a fit believes it to be
+}
+TEST_F(Turns, APeakOfAMeterIsDropped) {
+  record::Record r = whole;  // f: what the angle turns by from one sample before to one after
+  const double nominal = constants::turn * r.base.frequency;
+  for (std::size_t k = 0; k < r.t.size(); ++k) {
+    const std::size_t a = k > 0 ? k - 1 : 0, b = std::min(k + 1, r.t.size() - 1);
+    r.f.push_back((whole.theta[b] - whole.theta[a]) / (whole.t[b] - whole.t[a]) / nominal);
+  }
+  r.theta = record::angle_of_frequency(r);
+  r.angle = record::AngleSource::integrated;
+  const auto events = prepare_events(model, {r});
+  ASSERT_EQ(events[0].switchings.size(), 2U);
+  EXPECT_LT(off(events[0]), 0.1);  // as a fit believes it to be
+  EXPECT_FALSE(events[0].record.notes.empty());
+}
+TEST_F(Turns, ASwitchingThatOnlyThePowerShowsIsFound) {
+  record::Record r;
+  r.base = whole.base;
+  for (int k = 0; k < 300; ++k) {
+    r.t.push_back(k / 30.0);
+    r.V.push_back(1.0 + 1e-4 * std::sin(7.0 * k));
+    r.P.push_back(k < 100 ? 0.8 : 0.68);
+    r.Q.push_back(0.1);
+    r.f.push_back(0.0);
+  }
+  r.theta.assign(r.t.size(), 0.0);
+  r.angle = record::AngleSource::integrated;
+  std::vector<char> smeared;
+  EXPECT_TRUE(find_switchings(r, playin::kJumpThreshold / 2, Jumps::sharp, smeared).empty());
+  const auto seen = seen_by_rotor({r}, r.base.mva);
+  EXPECT_EQ(find_switchings(seen[0], playin::kJumpThreshold / 2, Jumps::sharp, smeared).size(), 1U);
+  r.angle = record::AngleSource::measured;
+  EXPECT_EQ(seen_by_rotor({r}, r.base.mva)[0].theta, r.theta);
+}
+
+}  // namespace
+}  // namespace swingbank::validate::event

@@ -1,0 +1,162 @@
+#include "validate/event/detail/turns.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/problem.hpp"
+#include "validate/event/play.hpp"
+
+namespace swingbank::validate::event {
+namespace {
+
+constexpr int kBehind = 3;                                ///< samples behind a switching that tell its turn
+constexpr double kFarthestTurn = 0.5, kTurnFound = 1e-5;  ///< of a search [rad]
+constexpr int kTurnSteps = 12;
+
+constexpr double kPeakReach = 2.1;    ///< samples about a switching that a meter's window reaches
+constexpr std::size_t kForetell = 4;  ///< samples on a side that foretell what f is nearer to the switching
+constexpr double kStandsOut = 5;      ///< standard deviations of f's noise ...
+constexpr double kLeastPeak = 0.02;   ///< ... and so much [Hz] make a peak
+
+/// The straight line through the samples [first, last) of f.
+struct Line {
+  double middle = 0, mean = 0, slope = 0;
+  Line(const record::Record& r, std::size_t first, std::size_t last) {
+    const auto n = static_cast<double>(last - first);
+    for (std::size_t k = first; k < last; ++k) middle += r.t[k] / n, mean += r.f[k] / n;
+    double spread = 0;
+    for (std::size_t k = first; k < last; ++k) {
+      slope += (r.t[k] - middle) * (r.f[k] - mean);
+      spread += (r.t[k] - middle) * (r.t[k] - middle);
+    }
+    slope = spread > 0 ? slope / spread : 0.0;
+  }
+  double operator()(double t) const { return mean + slope * (t - middle); }
+};
+
+/// The first sample later than t.
+std::size_t behind(const record::Record& r, double t) {
+  return static_cast<std::size_t>(std::ranges::upper_bound(r.t, t) - r.t.begin());
+}
+
+/// What f would be in the samples [from, to) by those on either side, without what happened from `begin` to
+/// `end` [s]; straight from one to the other between the two.
+std::vector<double> foretold(const record::Record& r, std::size_t from, std::size_t to, double begin,
+                             double end) {
+  const Line before(r, from - kForetell, from), after(r, to, to + kForetell);
+  std::vector<double> f;
+  for (std::size_t k = from; k < to; ++k) {
+    const double t = r.t[k];
+    if (t <= begin)
+      f.push_back(before(t));
+    else if (t > end)
+      f.push_back(after(t));
+    else
+      f.push_back(before(begin) + (t - begin) / (end - begin) * (after(end) - before(begin)));
+  }
+  return f;
+}
+
+/// Standard deviation of white noise of f before the event, by second differences.
+double noise_of_frequency(const FitEvent& event) {
+  const auto& f = event.record.f;
+  double sum = 0;
+  const auto n = static_cast<std::size_t>(event.start.samples);
+  for (std::size_t k = 1; k + 1 < n; ++k) sum += std::pow(f[k - 1] - 2 * f[k] + f[k + 1], 2);
+  return n > 2 ? std::sqrt(sum / (6.0 * static_cast<double>(n - 2))) : 0.0;
+}
+
+/// The first compared samples behind a switching and before the next one.
+std::vector<std::size_t> samples_behind(const FitEvent& event, std::size_t switching) {
+  const auto& at = event.switchings;
+  const double from = at[switching].time, to = switching + 1 < at.size()
+                                                   ? at[switching + 1].time
+                                                   : std::numeric_limits<double>::infinity();
+  std::vector<std::size_t> found;
+  for (std::size_t k = 0; k < event.record.t.size() && found.size() < kBehind; ++k)
+    if (event.record.t[k] > from && event.record.t[k] < to && event.compared(k)) found.push_back(k);
+  return found;
+}
+
+/// P and Q at these samples by Gauss and Newton: on a circle that the turn moves along there is one least.
+double best_turn(const sim::plant::PlantUnderTest& tested, FitEvent& event, std::size_t switching) {
+  const std::vector<std::size_t> samples = samples_behind(event, switching);
+  if (samples.empty()) return 0.0;
+  const playin::Direction along{.kind = playin::Direction::Kind::turn, .index = static_cast<int>(switching)};
+  double turn = 0, best = 0, least = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < kTurnSteps; ++step) {
+    event.switchings[switching].turn = turn;
+    const playin::Response r =
+        play(tested, event, {}, {&along, 1}, {.until = event.record.t[samples.back()] + 1e-9});
+    double cost = 0, slope = 0, curvature = 0;
+    for (const playin::Output o : {playin::Output::P, playin::Output::Q}) {
+      if (std::ranges::count(event.channels, o) == 0) continue;
+      const auto& by = r.slopes.front().value[static_cast<int>(o)];
+      for (const std::size_t k : samples) {
+        const double off = r.of(o)[k] - event.measured(o)[k];
+        cost += off * off;
+        slope += off * by[k];
+        curvature += by[k] * by[k];
+      }
+    }
+    if (cost < least) least = cost, best = turn;
+    if (!(curvature > 0)) break;
+    const double move = std::clamp(-slope / curvature, -kFarthestTurn, kFarthestTurn);
+    if (std::abs(move) < kTurnFound) break;
+    turn += move;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<record::Record> seen_by_rotor(std::vector<record::Record> records, double mva) {
+  constexpr double kTransientReactance = 0.3;  // X'd as most machines have it [pu]
+  for (record::Record& r : records)
+    if (r.angle == record::AngleSource::integrated && r.P.size() == r.t.size())
+      std::ranges::transform(r.P, r.theta.begin(),
+                             [&](double P) { return -kTransientReactance * P * r.base.mva / mva; });
+  return records;
+}
+
+void drop_peaks(FitEvent& event) {
+  record::Record& r = event.record;
+  if (!event.turns() || !event.smeared.empty()) return;
+  const double least = std::max(kStandsOut * noise_of_frequency(event), kLeastPeak / r.base.frequency),
+               reach = kPeakReach * r.step();
+  const auto& at = event.switchings;
+  bool dropped = false;
+  for (std::size_t first = 0, last; first < at.size(); first = last + 1) {
+    for (last = first; last + 1 < at.size() && at[last + 1].time - at[last].time < 2 * reach;) ++last;
+    const std::size_t from = behind(r, at[first].time - reach), to = behind(r, at[last].time + reach);
+    if (from < kForetell || to + kForetell > r.t.size()) continue;
+    const std::vector<double> quiet = foretold(r, from, to, at[first].time, at[last].time);
+    const auto begin = r.f.begin() + static_cast<std::ptrdiff_t>(from);
+    if (std::equal(quiet.begin(), quiet.end(), begin,
+                   [&](double a, double b) { return std::abs(a - b) <= least; }))
+      continue;
+    dropped = true;
+    std::ranges::copy(quiet, begin);
+    for (std::size_t k = behind(r, at[first].time); k < to; ++k) event.left_out[k] = 1;
+  }
+  if (!dropped) return;
+  r.theta = record::angle_of_frequency(r);
+  r.notes.emplace_back(
+      "The frequency has peaks about the switchings, where a meter spreads the angle's jump over its window: for the "
+      "angle it is taken from the samples beyond them, and those behind a switching are not compared.");
+}
+
+void find_turns(const sim::plant::PlantUnderTest& tested, FitEvent& event) {
+  if (!event.turns()) return;
+  for (std::size_t k = 0; k < event.switchings.size(); ++k) {
+    double turn = 0;
+    try {
+      turn = best_turn(tested, event, k);
+    } catch (const InputError&) {  // the model cannot follow; the fit will say so
+    }
+    event.switchings[k].turn = turn;
+  }
+}
+
+}  // namespace swingbank::validate::event
