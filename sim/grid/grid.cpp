@@ -82,6 +82,7 @@ class GridMaker {
           given.model + " of '" + given.id + "' at bus " + std::to_string(given.bus) + " (" + where + ")");
     Problems refused;
     take(*effect, reach, plain(given, *effect), where, refused);
+    if (!refused.empty() && !options_.drop_refused && effect->slot == Slot::machine) refused_.insert(key);
     for (const Problem& p : refused.list()) {
       if (options_.drop_refused)
         grid_.network.remark("records that their model cannot take are left out, as asked",
@@ -205,7 +206,9 @@ class GridMaker {
       grid_.network.remark("models of loads that are not in service are left out", what + " (" + where + ")");
   }
   void finish(plant::Plant& plant) {
-    if (!plant.machine.effect) unmodelled_.push_back(plant.generator);
+    const network::Generator& g = grid_.network.generators[static_cast<std::size_t>(plant.generator)];
+    if (!plant.machine.effect && !refused_.contains({bus_number(g), g.id}))
+      unmodelled_.push_back(plant.generator);
     check_fit(plant, dyr_, problems_);
     sort_controls(plant);
     for (const std::string& text : idle_controls(plant))
@@ -353,7 +356,8 @@ class GridMaker {
   std::vector<LoadModel> load_models_;
   std::map<std::pair<std::string, bool>, Unknown> unknown_;  ///< by name and whether it is user-written
   std::map<std::pair<int, std::string>, std::size_t> plant_of_;
-  std::set<std::pair<int, std::string>> known_;  ///< every generator of the network
+  std::set<std::pair<int, std::string>> refused_;  ///< generators whose machine's record is told as refused
+  std::set<std::pair<int, std::string>> known_;    ///< every generator of the network
 };
 
 }  // namespace

@@ -174,6 +174,15 @@ TEST(FoundCase, AFileThatBreaksOffIsRecognised) {
   EXPECT_THAT(said("102 'GENCLS' 1 3 0 /\n"), ::testing::Not(HasSubstr("cut off")));
 }
 
+TEST(FoundCase, AMachineThatIsRefusedIsNotCalledMissingToo) {
+  const std::string dyr = "101 'GENCLS' 1 3 0 /\n102 'GENCLS' 1 -3 0 /\n";
+  EXPECT_THAT(formats::sentences_of([&] { make({}, dyr); }),
+              ::testing::AllOf(HasSubstr("case.dyr:2"), ::testing::Not(HasSubstr("no machine model"))));
+  CaseOptions options;
+  options.drop_refused = true;
+  EXPECT_THAT(formats::sentences_of([&] { make({}, dyr, options); }), HasSubstr("no machine model"));
+}
+
 TEST(FoundCase, AnUnknownModelIsSaidToBeNone) {
   EXPECT_THAT(formats::sentences_of([&] { make({}, kBoth + "101 'EXDC9' 1 1 2 /\n"); }),
               ::testing::AllOf(HasSubstr("unknown model 'EXDC9'"), HasSubstr("there is no such model here"),
