@@ -83,6 +83,8 @@ class Diagnoser {
                     fit::voltage_noise(result_.base, result_.events).variance);
     held_out_base_ = hypothesis::hold_out(trial(), model_.under_test(), {}, result_.base);
     if (again) infer_inputs(true);
+    for (hypothesis::MissingInput* m : {&result_.torque, &result_.field})
+      fit::count_passed(&*passed_, model_.conventions, m->fit);
     if (stopped()) return false;
     search();
     if (stopped()) return false;
@@ -377,14 +379,15 @@ class Diagnoser {
   }
 
   /// Rivals of the best in its slot are fitted from further starts, and with what their standard values leave
-  /// off, if they come near it at all.
+  /// off, if they come near it at all. One that is worse than nothing has not arrived anywhere, which says
+  /// nothing of it.
   void give_rivals_a_chance(std::vector<hypothesis::Judgement>& tried) const {
     const int slot = tried.front().hypothesis.slot;
     if (slot < 0) return;
     const double near = thresholds::evidence.near * tried.front().gain;
     const auto rivals =
         std::stable_partition(tried.begin(), tried.end(), [&](const hypothesis::Judgement& j) {
-          return j.hypothesis.slot == slot && j.gain > near && j.fitted;
+          return j.hypothesis.slot == slot && (j.gain > near || j.gain < 0) && j.fitted;
         });
     const hypothesis::Stage stage = model_stage();
     const fit::Fit leader =
@@ -392,6 +395,21 @@ class Diagnoser {
     each({tried.begin(), rivals}, "further starts", [&](hypothesis::Judgement& j) {
       hypothesis::try_further(stage, leader, j);
       hypothesis::grow(result_.events, options_.spread, j.hypothesis, j.fit);
+      j.gain = fit::gain(result_.base, j.fit, fit::criterion);
+    });
+    std::ranges::stable_sort(tried, std::greater<>(), &hypothesis::Judgement::gain);
+    look_elsewhere(stage, tried);
+  }
+  /// What could still become probable beside the best one of its slot may lie at the lesser of several
+  /// optima.
+  void look_elsewhere(const hypothesis::Stage& stage, std::vector<hypothesis::Judgement>& tried) const {
+    const int slot = tried.front().hypothesis.slot;
+    const double reach = tried.front().gain - hypothesis::out_of_reach();
+    const auto far = std::stable_partition(tried.begin(), tried.end(), [&](const hypothesis::Judgement& j) {
+      return j.hypothesis.slot == slot && j.gain > reach && j.fitted;
+    });
+    each({tried.begin(), far}, "other optima", [&](hypothesis::Judgement& j) {
+      hypothesis::try_basins(stage, j);
       j.gain = fit::gain(result_.base, j.fit, fit::criterion);
     });
     std::ranges::stable_sort(tried, std::greater<>(), &hypothesis::Judgement::gain);

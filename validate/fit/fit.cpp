@@ -360,8 +360,10 @@ void require_same(const event::NoiseModel& a, const event::NoiseModel& b) {
 double penalised(const Fit& f) {
   return f.failed.empty() ? f.chi2 + f.belief : std::numeric_limits<double>::infinity();
 }
-double criterion(const Fit& f) { return penalised(f) + f.occam; }
-double data_cost(const Fit& f) { return f.failed.empty() ? f.chi2 : std::numeric_limits<double>::infinity(); }
+double criterion(const Fit& f) { return penalised(f) + f.occam + f.passes_less; }
+double data_cost(const Fit& f) {
+  return f.failed.empty() ? f.chi2 + f.passes_less : std::numeric_limits<double>::infinity();
+}
 
 double gain(const Fit& from, const Fit& to, double (*cost)(const Fit&)) {
   if (from.failed.empty() && to.failed.empty()) require_same(from.noise, to.noise);

@@ -65,6 +65,9 @@ struct Fit {
   /// Log determinant of what records and beliefs know of the parameters, in units of what the beliefs knew. A
   /// parameter that the records do not decide adds nothing. NaN without errors.
   double occam = 0;
+  /// Chi2 that is gone only because this structure passes less of the voltage's noise than the one it is held
+  /// against: it explains nothing, so data_cost() and criterion() count it back. 0 until count_passed().
+  double passes_less = 0;
   int iterations = 0;
   bool converged = false;
   std::string failed;  ///< why the start could not be evaluated; empty if it could
@@ -74,9 +77,10 @@ struct Fit {
 /// The cost that is minimised, where nothing but noise is left; infinite if the fit failed.
 double penalised(const Fit& f);
 /// -2 log of the structure's evidence by Laplace's approximation (MacKay, Neural Computation 4, 1992, p.
-/// 415), up to what all structures share. Needs a fit with errors.
+/// 415), up to what all structures share, with what less passed noise took off counted back
+/// (Fit::passes_less). Needs a fit with errors.
 double criterion(const Fit& f);
-/// chi2 of the data alone; infinite if the fit failed.
+/// chi2 of the data alone, counted back in the same way; infinite if the fit failed.
 double data_cost(const Fit& f);
 
 /// By how much a cost falls from one fit to another; negative if it rises. Every comparison of two fits goes

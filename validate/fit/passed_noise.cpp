@@ -1,8 +1,8 @@
 #include "validate/fit/passed_noise.hpp"
 
+#include <algorithm>
 #include <cmath>
 
-#include "validate/fit/fit.hpp"
 #include "validate/fit/noise.hpp"
 
 namespace swingbank::validate::fit {
@@ -33,6 +33,11 @@ double PassedNoise::passed(const sim::plant::PlantUnderTest& tested) const {
   } catch (const InputError&) {
     return std::nan("");
   }
+}
+
+void count_passed(const PassedNoise* passed, const sim::Conventions& conventions, Fit& fit) {
+  if (passed && fit.failed.empty())
+    fit.passes_less = std::max(0.0, passed->less_with({fit.plant, conventions}));
 }
 
 }  // namespace swingbank::validate::fit

@@ -87,7 +87,7 @@ void try_further(const Stage& stage, const fit::Fit& leader, Judgement& j) {
   constexpr std::size_t kFurther = 2;
   constexpr int kOwnSteps = 8, kBriefSteps = 4, kAllSteps = 6;
   const Hypothesis& h = j.hypothesis;
-  // where nothing but noise is left, another start has nothing to find
+  // where nothing but noise is left, it is near enough: what remains to be found is try_basins' to find
   if (j.fit.failed.empty() && j.fit.misfit() < thresholds::adequacy.misfit &&
       fit::gain(j.fit, leader) < thresholds::evidence.accepted)
     return;

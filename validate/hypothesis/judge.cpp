@@ -72,8 +72,8 @@ void judge(const Trial& trial, const fit::Fit& base, const std::vector<HeldOut>&
   if (fit::Fit f = fit::fit(j.hypothesis.under_test(), trial.events, free, o);
       f.failed.empty() && fit::gain(j.fit, f) > -thresholds::evidence.same_fit)
     j.fit = std::move(f);
+  fit::count_passed(trial.passed, j.hypothesis.conventions, j.fit);
   j.gain = fit::gain(base, j.fit, fit::criterion);
-  if (trial.passed) j.gain -= std::max(0.0, trial.passed->less_with({j.fit.plant, j.hypothesis.conventions}));
   j.size = std::sqrt(std::max(0.0, fit::gain(base, j.fit, fit::data_cost)));
   if (j.gain < trial.evidence) {
     j.why_not = fmt::format("evidence {:.0f}, below {:.0f}", j.gain, trial.evidence);

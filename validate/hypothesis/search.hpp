@@ -78,6 +78,10 @@ struct FittedOn {
 /// its slot found it. A rival must not lose by a poor start.
 void try_further(const Stage& stage, const fit::Fit& leader, Judgement& j);
 
+/// Looks for other optima of `j`, whose fit has errors: from draws of its own parameters far from where it
+/// ended, chosen by what they leave with everything else following.
+void try_basins(const Stage& stage, Judgement& j);
+
 /// Fits `j` from where the fit of another structure ended.
 void try_from(const Stage& stage, const fit::Fit& other, Judgement& j);
 

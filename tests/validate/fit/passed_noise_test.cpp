@@ -46,5 +46,23 @@ TEST_F(PassedNoiseTest, WhatCannotBeRunCountsAsPassingAsMuch) {
   EXPECT_EQ(less_with(with_reactance(std::nan(""))), 0.0);
 }
 
+TEST_F(PassedNoiseTest, WhatPassingLessTakesOffIsCountedBackInEveryCost) {
+  Fit f = example_.fitted({"H"}, {.iterations = 0});
+  f.plant = with_reactance(1.1);
+  const double evidence = criterion(f), data = data_cost(f), searched = penalised(f);
+  count_passed(&passed_, example_.model.conventions, f);
+  EXPECT_GT(f.passes_less, 0.05 * passed_.own());
+  EXPECT_DOUBLE_EQ(criterion(f), evidence + f.passes_less);
+  EXPECT_DOUBLE_EQ(data_cost(f), data + f.passes_less);
+  EXPECT_EQ(penalised(f), searched) << "a search minimises what is there";
+}
+TEST_F(PassedNoiseTest, WhatPassesMoreIsNotCredited) {
+  Fit f = example_.fitted({"H"}, {.iterations = 0});
+  f.plant = with_reactance(0.9);
+  count_passed(&passed_, example_.model.conventions, f);
+  EXPECT_EQ(f.passes_less, 0.0);
+  EXPECT_LT(less_with(f.plant), 0.0);
+}
+
 }  // namespace
 }  // namespace swingbank::validate::fit
