@@ -27,13 +27,14 @@ class Together {
     for (auto& k : k_) k.resize(n);
     trial_.resize(n);
     allowed_.assign(n, P8(runs.front().tolerance));
-    for (std::size_t lane = 0; lane < runs.size(); ++lane)
+    for (std::size_t lane = 0; any() && lane < runs.size(); ++lane)
       for (std::size_t i = 0; i < runs[lane].allowance.size(); ++i)
         allowed_[i].set(static_cast<int>(lane), runs[lane].tolerance * runs[lane].allowance[i]);
     look_ahead();
   }
 
   std::vector<std::optional<Response>> run() {
+    if (!any()) return std::vector<std::optional<Response>>(runs_.size());  // no operating point can be held
     const record::Record& r = *runs_.front().record;
     const auto& switchings = runs_.front().curve->switchings();
     for (auto& answer : answers_)

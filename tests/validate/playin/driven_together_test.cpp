@@ -67,6 +67,17 @@ TEST_F(DrivenTogether, AnswersAsEachByItself) {
     }
   }
 }
+TEST_F(DrivenTogether, WhereNoneCanStandThereIsNoAnswer) {
+  auto all = plants(3);
+  const int EMAX = model_.plant.controls.front().effect->parameter_index("EMAX");
+  std::vector<Drive> runs;
+  for (auto& plant : all) {
+    plant.controls.front().p[static_cast<std::size_t>(EMAX)] = 0.5;  // below what the start needs
+    runs.push_back(run(plant));
+    runs.back().allowance.assign(16, 1.0);  // as a search gives it, of the plant that it began with
+  }
+  for (const auto& answer : drive_together(runs)) EXPECT_FALSE(answer.has_value());
+}
 TEST_F(DrivenTogether, OneThatCannotStandLeavesTheOthers) {
   auto all = plants(4);
   const int EMAX = model_.plant.controls.front().effect->parameter_index("EMAX");
