@@ -174,6 +174,7 @@ struct Replay {
   int fault;
   std::vector<std::string> units;
 };
+std::ostream& operator<<(std::ostream& out, const Replay& r) { return out << kCases[r.which].name; }
 class ReplayFull : public ::testing::TestWithParam<Replay> {
  protected:
   void SetUp() override {
