@@ -1,23 +1,15 @@
 #include "validate/fit/voltage_doubt.hpp"
 
 #include <cmath>
+#include <span>
 
 #include "base/constants.hpp"
+#include "base/white_noise.hpp"
 #include "sim/core/noise.hpp"
 #include "validate/fit/noise.hpp"
 
 namespace swingbank::validate::fit {
 namespace {
-
-/// Variance of white noise, by second differences of the first n values.
-double white_variance(const std::vector<double>& values, int n) {
-  double sum = 0;
-  for (int k = 1; k + 1 < n; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    sum += std::pow(values[i - 1] - 2 * values[i] + values[i + 1], 2);
-  }
-  return sum / (6.0 * std::max(1, n - 2));
-}
 
 /// Columns whose products with themselves make up a covariance of rank three at most.
 Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance) {
@@ -25,8 +17,8 @@ Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance) {
   return of.eigenvectors().rightCols(3) * of.eigenvalues().tail(3).cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 /// By how much an angle that was integrated from f goes astray in one sample [rad^2].
-double astray(const record::Record& r, int n) {
-  return white_variance(r.f, n) * std::pow(constants::turn * r.base.frequency * r.step(), 2);
+double astray(const record::Record& r, std::size_t n) {
+  return white_variance(std::span(r.f).first(n)) * std::pow(constants::turn * r.base.frequency * r.step(), 2);
 }
 
 /// The plant's answer to kicks of its states: [channel][sample].
@@ -48,10 +40,12 @@ VoltageDoubt voltage_doubt(const sim::plant::PlantUnderTest& tested, event::Whit
   const event::FitEvent& e = whitened.event;
   constexpr std::uint32_t kDraws = 48;  // so many draws tell a variance to 20 %
   const std::size_t samples = e.record.t.size();
+  const auto quiet = static_cast<std::size_t>(e.start.samples);
   const bool integrated = e.record.angle == record::AngleSource::integrated;
-  const Eigen::Vector3d variance(white_variance(e.record.V, e.start.samples) / std::norm(e.start.voltage),
-                                 integrated ? 0.0 : white_variance(e.record.theta, e.start.samples),
-                                 integrated ? astray(e.record, e.start.samples) : 0.0);
+  const Eigen::Vector3d variance(
+      white_variance(std::span(e.record.V).first(quiet)) / std::norm(e.start.voltage),
+      integrated ? 0.0 : white_variance(std::span(e.record.theta).first(quiet)),
+      integrated ? astray(e.record, quiet) : 0.0);
   const playin::VoltageCurve curve(e.record, {});
   const event::SlowNoise noise = slow_noise(playin::linearise({.plant = &tested.plant,
                                                                .conventions = tested.conventions,

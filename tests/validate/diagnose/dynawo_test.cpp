@@ -101,6 +101,8 @@ TEST(DynawoRecords, TheBelievedModelMissesAndARightInertiaNearlyMeetsIt) {
              right_P, right_Q);
   EXPECT_GT(P, 10);
   EXPECT_GT(Q, 4);
+  EXPECT_GT(P, 4 * right_P);
+  EXPECT_GT(Q, 2 * right_Q);
   EXPECT_LT(right_P, 3.5);
   EXPECT_LT(right_Q, 2.5);
 }

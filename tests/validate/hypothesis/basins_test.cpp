@@ -4,38 +4,24 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/validate/fit/exciter_example.hpp"
-#include "validate/hypothesis/search.hpp"
+#include "tests/validate/hypothesis/hidden_exciter.hpp"
 
 namespace swingbank::validate::hypothesis {
 namespace {
 
 /// An event of a plant with EXAC1 far from its standard values; the model has no exciter.
-class Basins : public ::testing::Test {
+class Basins : public HiddenExciter {
  protected:
   Basins() {
     hypothesis_ = named("EXAC1");
     sim::plant::Plant truth = hypothesis_.plant;
     set(truth, kTruth);
-    event::FitEvent e = events_.front();
-    const playin::Response r = fit::answer(e, {}, {truth, model_.conventions});
-    e.record.P = r.of(playin::Output::P);
-    e.record.Q = r.of(playin::Output::Q);
-    events_ = {{e}, events_.noise_model()};
+    record_answer_of({truth, model_.conventions});
   }
   using Values = std::vector<std::pair<std::string_view, double>>;
   const Values kTruth = {{"KA", 4.7}, {"TE", 0.3}, {"KF", 0.1}, {"TF", 0.3}, {"KC", 0.5}, {"KD", 0.1}};
-  [[nodiscard]] int index(std::string_view name) const {
-    const auto& known = hypothesis_.plant.controls.back().effect->parameters;
-    return static_cast<int>(std::ranges::find(known, name, &sim::Parameter::name) - known.begin());
-  }
-  void set(sim::plant::Plant& plant, const Values& values) const {
-    for (const auto& [name, value] : values)
-      plant.controls.back().p[static_cast<std::size_t>(index(name))] = value;
-  }
-  [[nodiscard]] Hypothesis named(const std::string& name) const {
-    const auto all = all_hypotheses(model_.under_test(), model_.library);
-    return *std::ranges::find(all, name, &Hypothesis::name);
+  static void set(sim::plant::Plant& plant, const Values& values) {
+    for (const auto& [name, value] : values) parameter(plant, name) = value;
   }
   /// Where a fit ends that begins with these values.
   [[nodiscard]] fit::Fit fitted_from(const Values& values) const {
@@ -46,18 +32,7 @@ class Basins : public ::testing::Test {
     o.values = fit::values_of(start, free);
     return fit::fit(hypothesis_.under_test(), events_, free, o);
   }
-  const plant::PlantModel model_ = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
-  event::WhitenedEvents events_ = event::prepare_events(
-      model_,
-      {record::read_record(test::source("configs/records/record-example/avr_ev1.csv"), model_.record_base)},
-      {.measured_states = false});
-  const fit::Fit base_ = fit::fit(model_.under_test(), events_, {}, {.iterations = 0});
   Hypothesis hypothesis_;
-  const Stage stage_{.events = events_,
-                     .plant = model_.plant,
-                     .conventions = model_.conventions,
-                     .library = model_.library,
-                     .fit = base_};
 };
 
 TEST_F(Basins, AFitThatEndedAtALesserOptimumGetsOut) {

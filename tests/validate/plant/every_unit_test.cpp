@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <regex>
 
 #include "sim/grid/grid.hpp"
 #include "sim/grid/limits.hpp"
 #include "sim/grid/unit.hpp"
+#include "tests/sim/reference/psse_folder.hpp"
 #include "tests/validate/playin/support.hpp"
 #include "validate/plant/plant_dyr.hpp"
 #include "validate/plant/plant_file.hpp"
@@ -54,10 +54,7 @@ const std::vector<Case> kCases = {
      .dyr = "texas2000_v23_fullsys_noac_wind_mod.dyr",
      .complete = sim::grid::Lacking::zero}};
 
-fs::path cases() {
-  const char* given = std::getenv("SWINGBANK_REFERENCE");
-  return fs::path(given ? given : std::string(SWINGBANK_SOURCE) + "/../shared/reference") / ".." / "cases";
-}
+fs::path cases() { return sim::test::record_folder("../cases"); }
 
 struct Loaded {
   fs::path raw, dyr;
@@ -127,12 +124,7 @@ std::string fault_of_export(const PlantModel& model) {
   return std::regex_search(text, tail) ? "a number with a tail in " + text : "";
 }
 
-class EveryUnitFull : public ::testing::TestWithParam<Case> {
- protected:
-  void SetUp() override {
-    if (!fs::exists(cases())) GTEST_SKIP() << "no cases at " << cases();
-  }
-};
+class EveryUnitFull : public ::testing::TestWithParam<Case> {};
 
 TEST_P(EveryUnitFull, IsTakenOutAndStands) {
   Loaded l = load(GetParam());
@@ -175,12 +167,7 @@ struct Replay {
   std::vector<std::string> units;
 };
 std::ostream& operator<<(std::ostream& out, const Replay& r) { return out << kCases[r.which].name; }
-class ReplayFull : public ::testing::TestWithParam<Replay> {
- protected:
-  void SetUp() override {
-    if (!fs::exists(cases())) GTEST_SKIP() << "no cases at " << cases();
-  }
-};
+class ReplayFull : public ::testing::TestWithParam<Replay> {};
 
 TEST_P(ReplayFull, TheUnitTakenOutAnswersAsItRan) {
   const Case& c = kCases[GetParam().which];

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "base/problem.hpp"
+#include "base/white_noise.hpp"
 #include "validate/event/play.hpp"
 
 namespace swingbank::validate::event {
@@ -56,15 +58,6 @@ std::vector<double> foretold(const record::Record& r, std::size_t from, std::siz
       f.push_back(before(begin) + (t - begin) / (end - begin) * (after(end) - before(begin)));
   }
   return f;
-}
-
-/// Standard deviation of white noise of f before the event, by second differences.
-double noise_of_frequency(const FitEvent& event) {
-  const auto& f = event.record.f;
-  double sum = 0;
-  const auto n = static_cast<std::size_t>(event.start.samples);
-  for (std::size_t k = 1; k + 1 < n; ++k) sum += std::pow(f[k - 1] - 2 * f[k] + f[k + 1], 2);
-  return n > 2 ? std::sqrt(sum / (6.0 * static_cast<double>(n - 2))) : 0.0;
 }
 
 /// The first compared samples behind a switching and before the next one.
@@ -123,7 +116,9 @@ std::vector<record::Record> seen_by_rotor(std::vector<record::Record> records, d
 void drop_peaks(FitEvent& event) {
   record::Record& r = event.record;
   if (!event.turns() || !event.smeared.empty()) return;
-  const double least = std::max(kStandsOut * noise_of_frequency(event), kLeastPeak / r.base.frequency),
+  const double least = std::max(kStandsOut * std::sqrt(white_variance(std::span(r.f).first(
+                                                 static_cast<std::size_t>(event.start.samples)))),
+                                kLeastPeak / r.base.frequency),
                reach = kPeakReach * r.step();
   const auto& at = event.switchings;
   bool dropped = false;

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
+#include <span>
 #include <utility>
 
+#include "base/white_noise.hpp"
 #include "validate/event/detail/smeared_curve.hpp"
 
 namespace swingbank::validate::event {
@@ -35,9 +37,7 @@ struct BroughtBack {
 /// Noise by second differences before the first smeared sample.
 double noise_of(const std::vector<double>& x, const FitEvent& e) {
   const auto quiet = static_cast<std::size_t>(std::ranges::find(e.smeared, 1) - e.smeared.begin());
-  double sum = 0, count = 0;
-  for (std::size_t k = 1; k + 1 < quiet; ++k, ++count) sum += std::pow(x[k + 1] - 2 * x[k] + x[k - 1], 2);
-  return std::sqrt(sum / std::max(1.0, count) / 6);
+  return std::sqrt(white_variance(std::span(x).first(std::min(quiet, x.size()))));
 }
 
 std::vector<Cluster> clusters_of(const FitEvent& e, std::size_t event, double widest) {

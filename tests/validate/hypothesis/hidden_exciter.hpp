@@ -1,0 +1,47 @@
+#pragma once
+// An event of a plant whose exciter its model lacks.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "tests/validate/fit/exciter_example.hpp"
+#include "validate/hypothesis/search.hpp"
+
+namespace swingbank::validate::hypothesis {
+
+class HiddenExciter : public ::testing::Test {
+ protected:
+  /// P and Q of the event become what this plant answers.
+  void record_answer_of(const sim::plant::PlantUnderTest& truth) {
+    event::FitEvent e = events_.front();
+    const playin::Response r = fit::answer(e, base_.events.front().state, truth);
+    e.record.P = r.of(playin::Output::P);
+    e.record.Q = r.of(playin::Output::Q);
+    events_ = {{e}, events_.noise_model()};
+  }
+  [[nodiscard]] Hypothesis named(const std::string& name) const {
+    const auto all = all_hypotheses(model_.under_test(), model_.library);
+    return *std::ranges::find(all, name, &Hypothesis::name);
+  }
+  /// Of the block that the hypothesis adds.
+  static double& parameter(sim::plant::Plant& plant, std::string_view name) {
+    sim::plant::Block& exciter = plant.controls.back();
+    const auto& known = exciter.effect->parameters;
+    const auto at = std::ranges::find(known, name, &sim::Parameter::name);
+    return exciter.p[static_cast<std::size_t>(at - known.begin())];
+  }
+  const plant::PlantModel model_ = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  event::WhitenedEvents events_ = event::prepare_events(
+      model_,
+      {record::read_record(test::source("configs/records/record-example/avr_ev1.csv"), model_.record_base)},
+      {.measured_states = false});
+  const fit::Fit base_ = fit::fit(model_.under_test(), events_, {}, {.iterations = 0});
+  const Stage stage_{.events = events_,
+                     .plant = model_.plant,
+                     .conventions = model_.conventions,
+                     .library = model_.library,
+                     .fit = base_};
+};
+
+}  // namespace swingbank::validate::hypothesis
