@@ -15,7 +15,7 @@
 set -euo pipefail
 
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-of_others='PsseRecords|MatpowerRecords|RecorderFiles|DynawoRecords|EveryUnitFull|ReplayFull' # suites that read what is not part of this repository
+of_others='PsseRecords|MatpowerRecords|RecorderFiles|DynawoRecords|EveryUnitFull|ReplayFull|others_plants|cases_as_found' # what reads what is not part of this repository
 fast_only=0 night=0 with_psse=1 sanitize=0 ci=0
 while (($#)); do
   case $1 in

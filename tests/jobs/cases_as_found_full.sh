@@ -2,12 +2,7 @@
 # Public PSS/E cases as they are found, read where they lie beside $SWINGBANK_REFERENCE: each runs with the options that
 # the messages name, says what was done to it on one screen, and holds still without a fault.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
-
-cases=${SWINGBANK_REFERENCE:-$SWINGBANK_SOURCE/../shared/reference}/../cases
-if [[ ! -d $cases ]]; then
-  echo "skipped: no cases at $cases"
-  exit 0
-fi
+cases_of_others
 
 # holds_still NAME SECONDS RAW DYR [OPTION...]: largest change of any recorded channel below 1e-9
 holds_still() {

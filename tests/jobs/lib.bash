@@ -17,6 +17,15 @@ fail() {
   exit 1
 }
 
+# cases_of_others: $cases, the folder of public PSS/E cases, which are not part of this repository
+cases_of_others() {
+  local folder=${SWINGBANK_REFERENCE:-$SWINGBANK_SOURCE/../shared/reference}/../cases
+  [[ -d $folder ]] || fail "no cases at $folder (they are not part of this repository): set SWINGBANK_REFERENCE to the" \
+    "folder beside which cases/ lies, or run .ci/run --without-psse"
+  # shellcheck disable=SC2034 # for the tests that source this
+  cases=$folder
+}
+
 # | holds -q PATTERN: grep that reads to the end, since a program whose pipe is closed early fails by SIGPIPE
 holds() { grep "$@" <<<"$(cat)"; }
 

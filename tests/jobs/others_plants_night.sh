@@ -4,12 +4,7 @@
 # is a variant of, among what makes up 95 %. SWINGBANK_PLANTS=REGEX runs some of them; no more than one may be
 # missed: bus 31 of griddyn_ieee39 stands at its exciter's limit.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
-
-cases=${SWINGBANK_REFERENCE:-$SWINGBANK_SOURCE/../shared/reference}/../cases
-if [[ ! -d $cases ]]; then
-  echo "skipped: no cases at $cases"
-  exit 0
-fi
+cases_of_others
 
 # as_records FAULT... : $work/event<k>.csv of the unit $plant, as a PMU would write it: noise of 0.02 % on V, of
 # 0.1 % of the unit's MVA on P and Q, of 0.01 degrees on the angle
