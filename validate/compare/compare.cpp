@@ -157,8 +157,15 @@ void measure_channels(const plant::PlantModel& model, DriveBy drive, const playi
                               const std::vector<double>& modelled, bool starts_at_mean, bool judged) {
     const ChannelUnit u = channel_unit(o, base);
     const bool power_of = o == playin::Output::P || o == playin::Output::Q || o == playin::Output::Pm;
-    add({std::string(playin::output_name(o)), u.name, u.scale, u.floor * (power_of ? per_machine : 1.0),
-         starts_at_mean, judged},
+    const double size = power_of ? per_machine : 1.0;
+    add({std::string(playin::output_name(o)),
+         u.name,
+         u.scale,
+         u.floor * size,
+         starts_at_mean,
+         judged,
+         {},
+         size},
         measured, modelled);
   };
   if (e.record.component != record::Component::plant || e.record.breaker()) {
@@ -219,33 +226,6 @@ bool is_closer(const EventComparison& other, const EventComparison& than) {
   return ratios < judged;
 }
 
-/// One cell of all maps, and what it is called.
-struct NamedCell {
-  const EventComparison* event;
-  const ChannelComparison* channel;
-  std::string where;
-  const MapCell* cell;
-};
-std::vector<NamedCell> all_cells(const std::vector<EventComparison>& events) {
-  std::vector<NamedCell> all;
-  for (const auto& e : events)
-    for (const auto& c : e.channels) {
-      if (!c.judged) continue;
-      const auto add = [&](const std::string& where, const MapCell& cell) {
-        if (!cell.empty()) all.push_back({&e, &c, where, &cell});
-      };
-      add("over the whole record", c.map.whole);
-      for (std::size_t w = 0; w < c.map.rows.size(); ++w) {
-        const auto& row = c.map.rows[w];
-        add("in the window “" + e.windows[w].name + "”", row.all);
-        for (std::size_t b = 0; b < row.bands.size(); ++b)
-          add(fmt::format("in the window “{}” at {}", e.windows[w].name, error_bands()[b].name),
-              row.bands[b]);
-      }
-    }
-  return all;
-}
-
 /// Says how the instants were treated. `failed` is why they could not be moved, and empty where they could.
 std::string describe_fit(const EventComparison& e, bool tried, const std::string& failed) {
   const std::string what =
@@ -302,6 +282,7 @@ ChannelComparison compare_channel(const ChannelRule& channel, const std::vector<
   c.unit = channel.unit;
   c.scale = channel.scale;
   c.judged = channel.judged;
+  c.size = channel.size;
   c.measured = measured;
   c.modelled = modelled;
   c.residual.resize(measured.size());
@@ -447,38 +428,6 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
   }
   step("compared", 3);
   return e;
-}
-
-Adequacy judge(std::vector<EventComparison>& events) {
-  std::vector<ErrorMap*> maps;
-  for (auto& e : events)
-    for (auto& c : e.channels)
-      if (c.judged) maps.push_back(&c.map);
-  set_bounds(maps, thresholds::adequacy.false_alarm);
-  Adequacy a;
-  const NamedCell* worst = nullptr;
-  const auto cells = all_cells(events);
-  for (const auto& named : cells) {
-    ++a.cells;
-    a.exceeding += named.cell->exceeds() ? 1 : 0;
-    if (!worst || named.cell->in_noise / named.cell->bound > worst->cell->in_noise / worst->cell->bound)
-      worst = &named;
-  }
-  a.ruling = thresholds::judged_by_cells(a.exceeding, a.cells);
-  a.adequate = a.ruling.adequate;
-  a.sentence =
-      a.adequate
-          ? fmt::format("Adequate: each of {} cells is within what noise alone allows", a.cells)
-          : fmt::format("Not adequate: {} of {} cells exceed what noise alone allows", a.exceeding, a.cells);
-  a.sentence += fmt::format(" (with probability {:g} % for all of them together).",
-                            100 * (1 - thresholds::adequacy.false_alarm));
-  if (worst)
-    a.sentence +=
-        fmt::format(" {}: {} {} of {}, RMS {:.3g} {}, {} noise where {} is allowed.",
-                    a.adequate ? "Nearest to its bound" : "Furthest off", worst->channel->name, worst->where,
-                    worst->event->record.name, worst->cell->rms * worst->channel->scale, worst->channel->unit,
-                    times_noise(worst->cell->in_noise), times_noise(worst->cell->bound));
-  return a;
 }
 
 }  // namespace swingbank::validate::compare

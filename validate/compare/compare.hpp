@@ -30,6 +30,7 @@ struct ChannelComparison {
   std::vector<WindowError> windows;  ///< one per window of the event
   ErrorMap map;                      ///< per window and band; bounds are set by judge()
   bool judged = true;                ///< counts for the verdict
+  double size = 1;                   ///< of what is measured: the machine's MVA of a power [pu]
 };
 enum class DriveBy {
   voltage,  ///< V and theta drive, P and Q are compared
@@ -82,6 +83,7 @@ struct ChannelRule {
   bool starts_at_mean;  ///< the model starts at this channel's pre-event mean
   bool judged = true;
   std::string_view skip = {};  ///< window whose noise is not that before the event
+  double size = 1;             ///< of what is measured: the machine's MVA of a power [pu]
 };
 /// Residual, windows and error map of one channel of an event whose record, windows and playback.start are
 /// set; noise is that of the first playback.start.samples residuals.
@@ -108,12 +110,15 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
 struct Adequacy {
   bool adequate = false;
   int cells = 0, exceeding = 0;  ///< of all maps, the whole records included
+  int vague = 0;                 ///< cells of which noise alone may leave more than the channel is large
   std::string sentence;          ///< verdict, criterion and the cell that is furthest off
   thresholds::Ruling ruling;     ///< Criterion::cells
 };
 /// Sets the bounds of all maps and judges by them: a model is adequate if every cell of every map, every
 /// window over all frequencies and every channel's whole record stays within what noise allows, with
-/// probability 1 - adequacy.false_alarm for all of them together.
+/// probability 1 - adequacy.false_alarm for all of them together. Where noise is allowed to leave more than
+/// the machine is large, as in a model that runs away when it is driven, no record can tell, and the model is
+/// not adequate.
 Adequacy judge(std::vector<EventComparison>& events);
 
 }  // namespace swingbank::validate::compare

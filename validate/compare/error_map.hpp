@@ -48,6 +48,8 @@ struct MapCell {
   double in_noise = std::numeric_limits<double>::quiet_NaN();
   double bound = std::numeric_limits<double>::quiet_NaN();  ///< noise alone stays below; set by set_bounds()
   [[nodiscard]] bool empty() const { return values == 0; }
+  /// What noise alone may leave [pu].
+  [[nodiscard]] double allowed() const { return in_noise > 0 ? rms / in_noise * bound : 0.0; }
   [[nodiscard]] bool exceeds() const { return !empty() && in_noise > bound; }
 };
 

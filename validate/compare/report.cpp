@@ -138,6 +138,7 @@ std::string json_report(const plant::PlantModel& model, const std::vector<EventC
                       {"adequacy", thresholds::ruling_json(adequacy.ruling)},
                       {"cells", adequacy.cells},
                       {"cells_exceeding", adequacy.exceeding},
+                      {"cells_telling_nothing", adequacy.vague},
                       {"false_alarm_probability", thresholds::adequacy.false_alarm.value},
                       {"model",
                        {{"name", model.name},

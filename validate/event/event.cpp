@@ -208,6 +208,7 @@ void set_start(FitEvent& e, const FitEventOptions& options) {
       !first.empty() && e.record.switched.empty() && !e.record.breaker() && still < first.front().time)
     first.insert(first.begin(), {still, 0.0});
   e.start = playin::pre_event_point(e.record, first, options.pre_event);
+  if (options.start) e.start.P = options.start->real(), e.start.Q = options.start->imag();
   e.channels = playin::compared_outputs(e.record, options.measured_states);
 }
 
@@ -353,7 +354,8 @@ WhitenedEvents prepare_events(const plant::PlantModel& model, std::vector<record
   std::vector<FitEvent> events;
   for (const record::Record& r : records)
     if (!playin::is_part(r) && !r.breaker()) record::require_angle(r);
-  const std::vector<record::Record> seen = seen_by_rotor(records, model.plant.mva);
+  const std::vector<record::Record> seen =
+      seen_by_rotor(records, options.mva > 0 ? options.mva : model.plant.mva);
   const Jumps jumps =
       options.jumps == Jumps::either ? jumps_of(records, options.jump_threshold) : options.jumps;
   for (std::size_t r = 0; r < records.size(); ++r)
@@ -364,10 +366,17 @@ WhitenedEvents prepare_events(const plant::PlantModel& model, std::vector<record
     set_start(e, options);
     e.left_out = left_out(e);
     drop_peaks(e);
-    find_turns(model.under_test(), e);
+    if (!options.start) find_turns(model.under_test(), e);
   }
   NoiseModel noise = noise_through(model.under_test(), events);
   return {std::move(events), std::move(noise)};
+}
+
+int samples_before_event(const record::Record& record, const FitEventOptions& options) {
+  FitEvent e = prepare(record, seen_by_rotor({record}, options.mva).front(), options,
+                       jumps_of({record}, options.jump_threshold));
+  set_start(e, options);
+  return e.start.samples;
 }
 
 NoiseModel measure_noise(const sim::plant::PlantUnderTest& tested, const WhitenedEvents& events) {

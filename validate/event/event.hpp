@@ -1,6 +1,7 @@
 #pragma once
 // Events made ready for fitting: where the voltage jumps, where the model starts, and how large the noise is
 // in each channel.
+#include <optional>
 #include <vector>
 
 #include "sim/plant/under_test.hpp"
@@ -17,12 +18,19 @@ struct FitEventOptions {
   double jump_threshold = playin::kJumpThreshold;
   double pre_event = 1.0;       ///< length of the steady window where nothing is switched [s]
   Jumps jumps = Jumps::either;  ///< either: the records tell (jumps_of)
+  double mva = 0;               ///< of all machines whose power the records hold; 0: the model's
+  /// P and Q at which the model stands, where the records' are those of several units [pu on their base]. An
+  /// integrated angle's turns are then left to whoever knows all of them.
+  std::optional<Complex> start = {};
 };
 
 /// The records in which jumps are sought. An angle that was integrated from a frequency does not show them,
 /// but the power that flows over the transient reactance does: the angle is that of the voltage as the rotor
 /// sees it then, which is theta = -0.3 P on a machine of so many MVA. Others stay as they are.
 std::vector<record::Record> seen_by_rotor(std::vector<record::Record> records, double mva);
+
+/// Samples about a switching that a meter's window reaches, whose frequency is then not that of the angle.
+constexpr double kPeakReach = 2.1;
 
 /// Finds switchings even where a filter has spread their jumps over two or three sample intervals. `smeared`
 /// gets a mark for each sample that lies inside such a jump or beside it. If jumps are known to be spread,
@@ -42,6 +50,10 @@ Jumps jumps_of(const std::vector<record::Record>& records, double threshold);
 /// InputError if a record has no pre-event.
 WhitenedEvents prepare_events(const plant::PlantModel& model, std::vector<record::Record> records,
                               const FitEventOptions& options = {});
+
+/// Samples of the steady state before the first switching, as prepare_events() finds them, without a model.
+/// `options.mva` is needed where the angle was integrated. Throws InputError if there are none.
+int samples_before_event(const record::Record& record, const FitEventOptions& options);
 
 /// Measures the noise anew with another model of the plant, because a reactance that is wrong by a fifth
 /// makes the noise wrong by a fifth. The noise is white.

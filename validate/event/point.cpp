@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "base/config.hpp"
+#include "validate/event/detail/turns.hpp"
 #include "validate/event/event.hpp"
 #include "validate/event/play.hpp"
 
@@ -121,24 +122,25 @@ struct Standing {
   }
 };
 
-FitEventOptions of_power() {
+/// The machines behind the point, on whose power a switching shows.
+double all_mva(const MeasuredPoint& point) {
+  double mva = point.tried.plant.mva;
+  for (const OtherUnit& unit : point.others) mva += unit.model.plant.mva;
+  return mva;
+}
+
+FitEventOptions of_all(double mva) {
   FitEventOptions options;
   options.measured_states = false;
+  options.mva = mva;
   return options;
 }
 
-/// With its dispatch held still: what it does then is the model's answer alone.
-Standing standing(const plant::PlantModel& model, record::Record seen, Complex start) {
-  seen.P.assign(seen.t.size(), start.real());
-  seen.Q.assign(seen.t.size(), start.imag());
-  return {model.under_test(), start, prepare_events(model, {std::move(seen)}, of_power())};
-}
-
-/// Of the whole before the event, which may be more than the unit could give.
-Complex share_of(const OtherUnit& unit, record::Record seen) {
-  for (auto* channel : {&seen.P, &seen.Q})
-    for (double& x : *channel) x *= unit.share;
-  return mean_power(seen, prepare_events(unit.model, {seen}, of_power())[0].start.samples);
+/// A unit that stands at P and Q = `start` of the whole that is seen.
+Standing standing(const plant::PlantModel& model, const record::Record& seen, double mva, Complex start) {
+  FitEventOptions options = of_all(mva);
+  options.start = start;
+  return {model.under_test(), start, prepare_events(model, {seen}, options)};
 }
 
 /// What all units together leave of the measured P and Q until shortly after the switchings.
@@ -184,19 +186,21 @@ Eigen::VectorXd bounded_step(const Eigen::MatrixXd& slopes, Eigen::VectorXd left
   return step;
 }
 
-/// The instants within their sample intervals at which all units together meet the record best
-/// (Gauss-Newton): half an interval at 60 per second would cost the units several per cent of their power
-/// during a fault.
+/// The instants within their sample intervals, and the turns of an integrated angle, at which all units
+/// together meet the record best (Gauss-Newton): half an interval at 60 per second would cost the units
+/// several per cent of their power during a fault.
 EventState fitted_instants(const std::vector<Standing>& units, const record::Record& whole) {
   constexpr int kPointRounds = 8;
-  constexpr double kAside = 0.02, kPointSettled = 1e-4;  // of the half interval
+  constexpr double kAside = 0.02, kPointSettled = 1e-4;  // of the half interval, or the farthest turn
   const auto& switchings = units[0].events[0].switchings;
-  const auto n = static_cast<Eigen::Index>(switchings.size());
+  const auto n = static_cast<Eigen::Index>(switchings.size() * (units[0].events[0].turns() ? 2 : 1));
   const auto state_at = [&](const Eigen::VectorXd& at) {
     EventState state;
     for (std::size_t k = 0; k < switchings.size(); ++k)
       state.switchings.push_back(switchings[k].time +
                                  switchings[k].uncertainty * at[static_cast<Eigen::Index>(k)]);
+    for (auto k = static_cast<Eigen::Index>(switchings.size()); k < n; ++k)
+      state.turns.push_back(kFarthestTurn * at[k]);
     return state;
   };
   const auto left_at = [&](const Eigen::VectorXd& at) { return left_over(units, whole, state_at(at)); };
@@ -233,15 +237,16 @@ record::Record of_tried_unit(const MeasuredPoint& point, record::Record record) 
   for (auto* channel :
        {&seen.speed, &seen.Efd, &seen.Ifd, &seen.Vs, &seen.Vref, &seen.Pm, &seen.Pref, &seen.gate})
     channel->clear();  // the tried unit's own
+  const double mva = all_mva(point);
+  const Complex whole = mean_power(seen, samples_before_event(seen, of_all(mva)));
   std::vector<Standing> units;
   Complex others = 0;
   for (const OtherUnit& unit : point.others) {
-    const Complex start = unit.share > 0 ? share_of(unit, seen) : Complex(unit.P, unit.Q) / record.base.mva;
-    units.push_back(standing(unit.model, seen, start));
+    const Complex start = unit.share > 0 ? unit.share * whole : Complex(unit.P, unit.Q) / record.base.mva;
+    units.push_back(standing(unit.model, seen, mva, start));
     others += start;
   }
-  const Complex whole = mean_power(seen, units[0].events[0].start.samples);
-  units.push_back(standing(point.tried, seen, whole - others));
+  units.push_back(standing(point.tried, seen, mva, whole - others));
   EventState state;
   if (!units[0].events[0].switchings.empty()) state = fitted_instants(units, record);
   for (std::size_t u = 0; u < point.others.size(); ++u) {

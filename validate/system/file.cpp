@@ -171,7 +171,7 @@ void read_terminal(Config& c, const std::string& name, SystemCase& s) {
   add_instruments(c, at + "instruments", s, t);
   if (t.bus < 0) return;
   attempt(c, at + "record", [&] {
-    t.record = record::read_record(c.name().parent_path() / file, s.base, {.power = !is_bus, .angle = true});
+    t.record = record::read_record(c.name().parent_path() / file, s.base, {.power = !is_bus});
     Problems problems;
     t.warnings = t.record.notes;
     if (is_bus) {
@@ -239,6 +239,10 @@ SystemCase load_system(const fs::path& file) {
   if (c.sound() && !reference.empty() && s.reference < 0)
     c.problem("compare.reference", "no terminal " + reference, "angles are relative to it",
               "name one of [terminal.NAME]");
+  if (s.reference >= 0 &&
+      s.terminals[static_cast<std::size_t>(s.reference)].record.angle != record::AngleSource::measured)
+    c.problem("compare.reference", "no angle in the record of " + reference, "angles are relative to it",
+              "name a terminal that has one, or leave compare.reference out: frequencies are compared then");
   if (c.sound()) {
     check_clocks(c, s);
     double end = s.terminals.front().record.t.back();

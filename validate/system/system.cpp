@@ -123,18 +123,32 @@ class Comparer {
     output(playin::Output::Efd, r.Efd, m.Efd);
     output(playin::Output::Ifd, r.Ifd, m.Ifd);
   }
-  /// Compares angles relative to the reference where there is one. The reference's own angle, and all angles
-  /// where there is no reference, are compared as frequency. Returns the angle that the model starts off by;
-  /// NaN where the frequency is compared.
+  /// A meter's frequency shows the jump of an angle late, smoothed or not at all.
+  void leave_out_peaks(compare::EventComparison& e) const {
+    const double reach = event::kPeakReach * e.record.step();
+    e.left_out.resize(e.record.t.size(), 0);
+    for (std::size_t k = 0; k < e.record.t.size(); ++k)
+      if (std::ranges::any_of(out_.instants,
+                              [&](double at) { return std::abs(e.record.t[k] - at) <= reach; }))
+        e.left_out[k] = 1;
+  }
+  /// Compares angles relative to the reference where there is one. The reference's own angle, all angles
+  /// where there is no reference, and what a record has in place of an angle are compared as frequency.
+  /// Returns the angle that the model starts off by; NaN where the frequency is compared.
   double angle(std::size_t i, compare::EventComparison& e, bool gone) {
     const auto reference = static_cast<std::size_t>(std::max(s_.reference, 0));
     const record::Record &r = s_.terminals[i].record, &other = s_.terminals[reference].record;
     const std::string_view skip = gone ? "fault" : "";
-    if (s_.reference < 0 || i == reference) {
+    if (r.angle == record::AngleSource::none) return kNaN;
+    const bool by_meter = r.angle == record::AngleSource::integrated;
+    if (s_.reference < 0 || i == reference || by_meter) {
       const double nominal = s_.base.frequency;
+      const std::vector<char> compared = e.left_out;
+      if (by_meter) leave_out_peaks(e);
       add(e, {"frequency", "mHz", 1e3 * nominal, event::kLeastSpeedNoise, shift(), true, skip},
-          compare::frequency_of(r.t, r.theta, nominal),
+          by_meter ? r.f : compare::frequency_of(r.t, r.theta, nominal),
           compare::frequency_of(r.t, run_.answers[i].theta, nominal));
+      e.left_out = compared;
       return kNaN;
     }
     if (other.samples() != r.samples() || std::abs(other.t.front() - r.t.front()) > 1e-3 * r.step() ||

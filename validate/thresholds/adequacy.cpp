@@ -9,7 +9,9 @@ namespace swingbank::validate::thresholds {
 
 const CriterionRecord& criterion_record(Criterion criterion) {
   static constexpr std::array<CriterionRecord, 6> records = {{
-      {"cells", "cells of the error maps beyond what noise alone allows, the model as it is", "cells", "at"},
+      {"cells",
+       "cells of the error maps beyond what noise alone allows, or in which that is more than the machine is large",
+       "cells", "at"},
       {"events", "chi2 per value of the event furthest off, parameters refitted", "chi2 per value", "up to"},
       {"misfit", "chi2 per value over all events, parameters refitted", "chi2 per value", "up to"},
       {"slow", "slow remainder of the residual, parameters refitted", "standard deviations", "below"},

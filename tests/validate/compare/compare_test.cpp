@@ -244,6 +244,17 @@ TEST(CompareTest, AnInadequateModelIsCalledSo) {
   EXPECT_THAT(a.sentence, HasSubstr("Efd"));
   EXPECT_FALSE(events[0].channels[0].map.rows[0].all.exceeds());
 }
+TEST(CompareTest, OfAModelThatRunsAwayNothingIsTold) {
+  WithoutNoise unstable;
+  auto& machine = unstable.model.plant.machine;
+  machine.p[static_cast<std::size_t>(machine.effect->parameter_index("D"))] = -60;
+  std::vector<EventComparison> events = {compare_event(unstable.model, unstable.record)};
+  const Adequacy a = judge(events);
+  EXPECT_FALSE(a.adequate) << a.sentence;
+  EXPECT_GT(a.vague, 0);
+  EXPECT_THAT(a.sentence, HasSubstr("Cannot be told"));
+  EXPECT_THAT(a.sentence, HasSubstr("MW"));
+}
 TEST(CompareTest, ComparesWhatIsRecorded) {
   const EventComparison e = example_event({2.0, 2.1});
   std::vector<std::string> channels;

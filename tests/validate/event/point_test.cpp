@@ -87,6 +87,17 @@ TEST_F(TwoUnits, TheTriedOneIsLeft) {
                     Contains(HasSubstr("unit 6 does by its model was taken off; it began at 30 MW"))));
 }
 
+TEST_F(TwoUnits, AnAngleOfTheFrequencyTurnsForAllOfThem) {
+  const MeasuredPoint point{.file = "point.toml",
+                            .collector = collector,
+                            .tried = tried,
+                            .others = {{.model = other, .share = 0, .P = kP, .Q = kQ}}};
+  const record::Record left = of_tried_unit(point, test::by_frequency(seen(), {run.t_on, run.t_off}));
+  double worst = 0;
+  for (std::size_t k = 0; k < left.t.size(); ++k)
+    worst = std::max({worst, std::abs(left.P[k] - alone.P[k]), std::abs(left.Q[k] - alone.Q[k])});
+  EXPECT_LT(worst, 1e-5);  // without turns the machines cannot follow
+}
 TEST_F(TwoUnits, ASharesDispatchIsOfTheWhole) {
   const record::Record inner = behind_collector(seen(), collector);
   const double share = kP / inner.base.mva / inner.P[0];

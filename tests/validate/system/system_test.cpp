@@ -32,8 +32,9 @@ class SystemCompare : public ::testing::Test {
   struct Truth {
     std::vector<std::string> attached;
     double t_on = 2, t_off = 2.1, noise = 2e-4, shift_V = 0;
-    int window = 0;  ///< samples to either side that a triangular filter takes in
-    int fine = 8;    ///< samples of the grid in one of the record
+    int window = 0;       ///< samples to either side that a triangular filter takes in
+    int fine = 8;         ///< samples of the grid in one of the record
+    bool meters = false;  ///< frequency of a meter [Hz] in place of the angle
   };
   /// Of every `fine`-th phasor, what is seen behind the filter.
   static std::vector<Complex> seen(const std::vector<Complex>& fine, const Truth& truth) {
@@ -50,6 +51,24 @@ class SystemCompare : public ::testing::Test {
       values.push_back(sum / weights);
     }
     return values;
+  }
+  static std::vector<double> unwrapped(const std::vector<Complex>& V) {
+    std::vector<double> angle = {std::arg(V.front())};
+    for (std::size_t k = 1; k < V.size(); ++k)
+      angle.push_back(angle.back() + std::remainder(std::arg(V[k]) - angle.back(), 2 * std::numbers::pi));
+    return angle;
+  }
+  /// What a meter makes of an angle [rad] at 60/s: the mean frequency over two intervals, with noise of 1
+  /// mHz.
+  static std::vector<double> metered(const std::vector<double>& angle, std::mt19937& random) {
+    std::normal_distribution<double> noise(0, 1e-3);
+    std::vector<double> f;
+    for (std::size_t k = 0; k < angle.size(); ++k) {
+      const std::size_t a = k > 0 ? k - 1 : 0, b = std::min(k + 1, angle.size() - 1);
+      f.push_back(60 + 60 * (angle[b] - angle[a]) / static_cast<double>(b - a) / (2 * std::numbers::pi) +
+                  noise(random));
+    }
+    return f;
   }
   /// Records of plants 1, 2, 8 and bus 5 of IEEE 14 with governors and exciters, fault at bus 4; white noise
   /// [pu].
@@ -75,7 +94,7 @@ class SystemCompare : public ::testing::Test {
       const sim::plant::Plant& plant = grid.plants[static_cast<std::size_t>(run.plants[p])];
       std::ofstream out(folder / ("plant" + plant.name + ".csv"));
       out.precision(10);
-      out << "t_s,V_pu,theta_rad,P_pu,Q_pu\n";
+      out << "t_s,V_pu," << (truth.meters ? "f_Hz" : "theta_rad") << ",P_pu,Q_pu\n";
       std::vector<Complex> V, I;
       for (int k = 0; k < run.samples; ++k) {
         const auto at = [&](int c) { return run.at(static_cast<int>(p), c)[k]; };
@@ -84,27 +103,27 @@ class SystemCompare : public ::testing::Test {
       }
       V = seen(V, truth);
       I = seen(I, truth);
-      double angle = std::arg(V.front());
+      const auto angle = unwrapped(V);
+      const auto frequency = metered(angle, random);
       for (std::size_t k = 0; k < V.size(); ++k) {
         const Complex power = V[k] * std::conj(I[k]);
-        angle += std::remainder(std::arg(V[k]) - angle, 2 * std::numbers::pi);
         out << static_cast<double>(k) / 60.0 << ',' << std::abs(V[k]) + truth.shift_V + noise(random) << ','
-            << angle + noise(random) << ',' << power.real() + noise(random) << ','
-            << power.imag() + noise(random) << '\n';
+            << (truth.meters ? frequency[k] : angle[k] + noise(random)) << ',' << power.real() + noise(random)
+            << ',' << power.imag() + noise(random) << '\n';
       }
     }
     std::ofstream out(folder / "bus5.csv");
     out.precision(10);
-    out << "t_s,V_pu,theta_rad\n";
+    out << "t_s,V_pu," << (truth.meters ? "f_Hz\n" : "theta_rad\n");
     std::vector<Complex> V;
     for (std::size_t k = 0; k < static_cast<std::size_t>(run.samples); ++k)
       V.push_back(std::polar(run.bus_v[k], run.bus_theta[k]));
     V = seen(V, truth);
-    double angle = std::arg(V.front());
+    const auto angle = unwrapped(V);
+    const auto frequency = metered(angle, random);
     for (std::size_t k = 0; k < V.size(); ++k) {
-      angle += std::remainder(std::arg(V[k]) - angle, 2 * std::numbers::pi);
       out << static_cast<double>(k) / 60.0 << ',' << std::abs(V[k]) + noise(random) << ','
-          << angle + noise(random) << '\n';
+          << (truth.meters ? frequency[k] : angle[k] + noise(random)) << '\n';
     }
   }
   /// The file, with `from` replaced by `to`.
@@ -174,6 +193,22 @@ TEST_F(SystemCompare, TheSameGridIsAdequate) {
   for (const auto& r : c.ranking) EXPECT_LT(r.worst, 1);
 }
 
+TEST_F(SystemCompare, MetersOfFrequencyWillDo) {
+  record({.attached = same, .noise = 1e-3, .meters = true});
+  EXPECT_THAT(test::messages([&] { load_system(system()); }),
+              Contains(HasSubstr("no angle in the record of one")));
+  const fs::path file = system("reference = \"one\"", "");
+  const SystemComparison right = compare_system(load_system(file));
+  EXPECT_TRUE(right.adequacy.adequate) << right.adequacy.sentence;
+  for (const auto& e : right.terminals) EXPECT_EQ(e.channels[1].name, "frequency");
+  for (const TerminalRank& r : right.ranking) EXPECT_TRUE(!r.alone || r.alone->adequate) << r.alone->sentence;
+  record({.attached = {"all:TGOV1:R=0.05,T1=0.5", "1:SEXS", "8:SEXS", "2:SEXS:K=20"},
+          .noise = 1e-3,
+          .meters = true});
+  const SystemComparison wrong = compare_system(load_system(file));
+  EXPECT_FALSE(wrong.adequacy.adequate);
+  EXPECT_EQ(wrong.terminals[wrong.ranking.front().terminal].record.name, "two");
+}
 TEST_F(SystemCompare, BehindFiltersTheSameGridIsAdequate) {
   // what a filter does to fast decays within the fault (0.002 pu of Q) lies below this noise
   record({.attached = same, .t_on = 2.003, .t_off = 2.108, .noise = 1e-3, .window = 7});

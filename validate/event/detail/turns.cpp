@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "base/problem.hpp"
 #include "base/white_noise.hpp"
@@ -12,14 +13,14 @@
 namespace swingbank::validate::event {
 namespace {
 
-constexpr int kBehind = 3;                                ///< samples behind a switching that tell its turn
-constexpr double kFarthestTurn = 0.5, kTurnFound = 1e-5;  ///< of a search [rad]
+constexpr int kBehind = 3;           ///< samples behind a switching that tell its turn
+constexpr double kTurnFound = 1e-5;  ///< of a search [rad]
 constexpr int kTurnSteps = 12;
 
-constexpr double kPeakReach = 2.1;    ///< samples about a switching that a meter's window reaches
-constexpr std::size_t kForetell = 4;  ///< samples on a side that foretell what f is nearer to the switching
-constexpr double kStandsOut = 5;      ///< standard deviations of f's noise ...
-constexpr double kLeastPeak = 0.02;   ///< ... and so much [Hz] make a peak
+/// Samples on a side that foretell what f is nearer to the switching, and how many do where others are near.
+constexpr std::size_t kForetell = 4, kFewestToForetell = 2;
+constexpr double kStandsOut = 5;     ///< standard deviations of f's noise ...
+constexpr double kLeastPeak = 0.02;  ///< ... and so much [Hz] make a peak
 
 /// The straight line through the samples [first, last) of f.
 struct Line {
@@ -42,11 +43,16 @@ std::size_t behind(const record::Record& r, double t) {
   return static_cast<std::size_t>(std::ranges::upper_bound(r.t, t) - r.t.begin());
 }
 
-/// What f would be in the samples [from, to) by those on either side, without what happened from `begin` to
-/// `end` [s]; straight from one to the other between the two.
-std::vector<double> foretold(const record::Record& r, std::size_t from, std::size_t to, double begin,
-                             double end) {
-  const Line before(r, from - kForetell, from), after(r, to, to + kForetell);
+/// Samples [from, to) about switchings, and how many beside them are free of other switchings.
+struct Peak {
+  std::size_t from, to, before, after;
+};
+
+/// What f would be there by the samples on either side, without what happened from `begin` to `end` [s];
+/// straight from one to the other between the two.
+std::vector<double> foretold(const record::Record& r, const Peak& p, double begin, double end) {
+  const auto [from, to] = std::pair(p.from, p.to);
+  const Line before(r, from - p.before, from), after(r, to, to + p.after);
   std::vector<double> f;
   for (std::size_t k = from; k < to; ++k) {
     const double t = r.t[k];
@@ -122,11 +128,16 @@ void drop_peaks(FitEvent& event) {
                reach = kPeakReach * r.step();
   const auto& at = event.switchings;
   bool dropped = false;
+  const std::vector<double> with_peaks = record::angle_of_frequency(r);
+  const auto begins = [&](std::size_t k) { return behind(r, at[k].time - reach); };
+  const auto ends = [&](std::size_t k) { return behind(r, at[k].time + reach); };
   for (std::size_t first = 0, last; first < at.size(); first = last + 1) {
-    for (last = first; last + 1 < at.size() && at[last + 1].time - at[last].time < 2 * reach;) ++last;
-    const std::size_t from = behind(r, at[first].time - reach), to = behind(r, at[last].time + reach);
-    if (from < kForetell || to + kForetell > r.t.size()) continue;
-    const std::vector<double> quiet = foretold(r, from, to, at[first].time, at[last].time);
+    for (last = first; last + 1 < at.size() && begins(last + 1) < ends(last) + kFewestToForetell;) ++last;
+    const std::size_t from = begins(first), to = ends(last), free_from = first > 0 ? ends(first - 1) : 0,
+                      free_to = last + 1 < at.size() ? begins(last + 1) : r.t.size();
+    const Peak peak{from, to, std::min(kForetell, from - free_from), std::min(kForetell, free_to - to)};
+    if (std::min(peak.before, peak.after) < kFewestToForetell) continue;
+    const std::vector<double> quiet = foretold(r, peak, at[first].time, at[last].time);
     const auto begin = r.f.begin() + static_cast<std::ptrdiff_t>(from);
     if (std::equal(quiet.begin(), quiet.end(), begin,
                    [&](double a, double b) { return std::abs(a - b) <= least; }))
@@ -136,7 +147,9 @@ void drop_peaks(FitEvent& event) {
     for (std::size_t k = behind(r, at[first].time); k < to; ++k) event.left_out[k] = 1;
   }
   if (!dropped) return;
-  r.theta = record::angle_of_frequency(r);
+  const std::vector<double> without = record::angle_of_frequency(r);
+  for (std::size_t k = 0; k < r.t.size(); ++k)  // a collector between point and units has moved the angle
+    r.theta[k] += without[k] - with_peaks[k];
   r.notes.emplace_back(
       "The frequency has peaks about the switchings, where a meter spreads the angle's jump over its window: for the "
       "angle it is taken from the samples beyond them, and those behind a switching are not compared.");

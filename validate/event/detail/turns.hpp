@@ -5,6 +5,8 @@
 
 namespace swingbank::validate::event {
 
+constexpr double kFarthestTurn = 0.5;  ///< of a search [rad]
+
 /// A meter shows the jump of an angle as a peak of f, spread over its own window. Where f stands out about
 /// the switchings from what its other samples foretell, it is taken from these, on each side from its own,
 /// and the angle is integrated again; samples behind a switching, where it is a guess, are left out. Nothing

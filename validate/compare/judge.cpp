@@ -1,0 +1,95 @@
+// Is nothing but noise left, and could the records have told?
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "validate/compare/compare.hpp"
+#include "validate/compare/error_map_table.hpp"
+
+namespace swingbank::validate::compare {
+namespace {
+
+/// One cell of all maps, and what it is called.
+struct NamedCell {
+  const EventComparison* event;
+  const ChannelComparison* channel;
+  std::string where;
+  const MapCell* cell;
+};
+std::vector<NamedCell> all_cells(const std::vector<EventComparison>& events) {
+  std::vector<NamedCell> all;
+  for (const auto& e : events)
+    for (const auto& c : e.channels) {
+      if (!c.judged) continue;
+      const auto add = [&](const std::string& where, const MapCell& cell) {
+        if (!cell.empty()) all.push_back({&e, &c, where, &cell});
+      };
+      add("over the whole record", c.map.whole);
+      for (std::size_t w = 0; w < c.map.rows.size(); ++w) {
+        const auto& row = c.map.rows[w];
+        add("in the window “" + e.windows[w].name + "”", row.all);
+        for (std::size_t b = 0; b < row.bands.size(); ++b)
+          add(fmt::format("in the window “{}” at {}", e.windows[w].name, error_bands()[b].name),
+              row.bands[b]);
+      }
+    }
+  return all;
+}
+
+/// Whether noise alone may leave more in the cell than the channel is large: nothing can be compared there.
+bool tells_nothing(const NamedCell& named) { return !(named.cell->allowed() <= named.channel->size); }
+
+/// The cell in which noise may leave most, beside the size of its channel.
+std::string vague_sentence(const std::vector<NamedCell>& cells, int vague) {
+  const auto share = [](const NamedCell& n) { return n.cell->allowed() / n.channel->size; };
+  const NamedCell& most = *std::ranges::max_element(cells, {}, share);
+  return fmt::format(
+      "Cannot be told: in {} of {} cells the noise of the voltage alone may move the model's answer by more than "
+      "the machine is large ({} {}: by {:.3g} {}, {:.3g} times its size). Driven by this voltage the model runs "
+      "away: check its damping, time constants and the order of its reactances.",
+      vague, cells.size(), most.channel->name, most.where, most.cell->allowed() * most.channel->scale,
+      most.channel->unit, share(most));
+}
+
+}  // namespace
+
+Adequacy judge(std::vector<EventComparison>& events) {
+  std::vector<ErrorMap*> maps;
+  for (auto& e : events)
+    for (auto& c : e.channels)
+      if (c.judged) maps.push_back(&c.map);
+  set_bounds(maps, thresholds::adequacy.false_alarm);
+  Adequacy a;
+  const NamedCell* worst = nullptr;
+  const auto cells = all_cells(events);
+  for (const auto& named : cells) {
+    ++a.cells;
+    a.exceeding += named.cell->exceeds() ? 1 : 0;
+    a.vague += tells_nothing(named) ? 1 : 0;
+    if (!worst || named.cell->in_noise / named.cell->bound > worst->cell->in_noise / worst->cell->bound)
+      worst = &named;
+  }
+  a.ruling = thresholds::judged_by_cells(a.exceeding + a.vague, a.cells);
+  a.adequate = a.ruling.adequate;
+  if (a.vague > 0) {
+    a.sentence = vague_sentence(cells, a.vague);
+    return a;
+  }
+  a.sentence =
+      a.adequate
+          ? fmt::format("Adequate: each of {} cells is within what noise alone allows", a.cells)
+          : fmt::format("Not adequate: {} of {} cells exceed what noise alone allows", a.exceeding, a.cells);
+  a.sentence += fmt::format(" (with probability {:g} % for all of them together).",
+                            100 * (1 - thresholds::adequacy.false_alarm));
+  if (worst)
+    a.sentence +=
+        fmt::format(" {}: {} {} of {}, RMS {:.3g} {}, {} noise where {} is allowed.",
+                    a.adequate ? "Nearest to its bound" : "Furthest off", worst->channel->name, worst->where,
+                    worst->event->record.name, worst->cell->rms * worst->channel->scale, worst->channel->unit,
+                    times_noise(worst->cell->in_noise), times_noise(worst->cell->bound));
+  return a;
+}
+
+}  // namespace swingbank::validate::compare
