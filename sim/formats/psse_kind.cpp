@@ -64,8 +64,9 @@ void refuse_exchanged(const std::filesystem::path& raw, const std::filesystem::p
 
 namespace psse {
 
-std::size_t RawReader::faults_as(int version) {
+std::size_t RawReader::faults_as(int version, std::size_t most) {
   forced_ = version;
+  most_faults_ = most;
   units_only_ = true;
   try {
     read_sections();
@@ -86,7 +87,7 @@ std::optional<Problem> other_version(const std::vector<std::string>& lines, cons
   int best = 0;
   for (const int version : kVersions) {
     if (version == read_as) continue;
-    const std::size_t left = RawReader(lines, name, options).faults_as(version);
+    const std::size_t left = RawReader(lines, name, options).faults_as(version, least);
     if (left > least || (best != 0 && left == least)) continue;
     least = left;
     best = version;

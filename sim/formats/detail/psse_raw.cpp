@@ -240,6 +240,7 @@ bool RawReader::section(const Section& section, bool may_be_missing) {
       return true;
     }
     if (section.row) (this->*section.row)(*record);
+    if (problems_.list().size() > most_faults_) problems_.raise();
     generator_line_.resize(network_.generators.size(), record->line);
     branch_line_.resize(network_.branches.size(), record->line);
   }

@@ -2,6 +2,7 @@
 // The reader of .raw files, section by section. Used by psse_*.cpp only.
 #include <array>
 #include <functional>
+#include <limits>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <set>
@@ -44,9 +45,9 @@ class RawReader {
       : file_(std::move(name)), lines_(std::move(lines)), options_(options) {}
   network::Network read();
   RawSurvey survey();
-  /// How many faults the file has if it is read as this version, whatever its header says. The reader is of
-  /// no use after that.
-  std::size_t faults_as(int version);
+  /// How many faults the file has if it is read as this version, whatever its header says; it is read no
+  /// further once there are more than `most`. The reader is of no use after that.
+  std::size_t faults_as(int version, std::size_t most);
   /// The version it was read as; 0: the header did not say it.
   [[nodiscard]] int version() const { return version_; }
 
@@ -144,6 +145,7 @@ class RawReader {
   std::size_t at_ = 0;     ///< next line
   std::string separator_;  ///< the line that ended the last section
   int version_ = 0, forced_ = 0;
+  std::size_t most_faults_ = std::numeric_limits<std::size_t>::max();  ///< more end the reading
   Columns columns_{};
   long double base_ = 100.0L;
   network::Network network_;
