@@ -3,10 +3,14 @@
 // others (psse_folder.hpp); the parameters are those of the tests that the curves were published with.
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
+#include <iostream>
 #include <map>
 #include <numbers>
 
 #include "sim/grid/load_choice.hpp"
+#include "tests/sim/effects/control_bench.hpp"
 #include "tests/sim/reference/psse_folder.hpp"
 #include "tests/sim/reference/reference_support.hpp"
 
@@ -142,8 +146,125 @@ TEST(OpenipslRecords, HygovWithScrx) {
       "1 'GENSAL' '1' 6.7 0.028 0.0358 4.41 0 1.22 0.76 0.297 0.2 0.12 0.186 0.802 /\n"
       "1 'SCRX' '1' 0.1 10 100 0.05 0 5 0 0 /\n"
       "1 'HYGOV' '1' 0.05 0.3 5 0.05 0.5 0.02 0.415 0 1.25 1.2 0.2 0.08 /\n",
-      // Asked for are 2e-3 of the power as well; it misses them by 0.9e-3.
+      // Asked for are 2e-3 of the power as well; the curve is off its own equations by more than that
+      // (HygovsCurveIsOffItsOwnEquations).
       with(with(machine("gENSAL"), {Channel::Efd, "sCRX.EFD", 2e-3}), {Channel::Tm, "hYGOV.PMECH", 3e-3}));
+}
+/// A curve between its samples: the cubic through four of them, none from beyond a switching, where a file
+/// has two samples at one time.
+class Between {
+ public:
+  Between(std::vector<double> t, std::vector<double> y) : t_(std::move(t)), y_(std::move(y)) {}
+  [[nodiscard]] std::size_t samples() const { return t_.size(); }
+  [[nodiscard]] double width(std::size_t k) const { return t_[k + 1] - t_[k]; }
+  [[nodiscard]] bool jumps(std::size_t k) const { return width(k) < 1e-6; }
+  [[nodiscard]] double time(std::size_t k) const { return t_[k]; }
+  /// At `x` within the interval that begins with sample k.
+  [[nodiscard]] double at(std::size_t k, double x) const {
+    std::size_t first = k, last = k + 1;
+    while (last - first < 3 && (can_precede(first) || can_follow(last))) {
+      if (can_precede(first)) --first;
+      if (last - first < 3 && can_follow(last)) ++last;
+    }
+    double sum = 0.0;
+    for (std::size_t i = first; i <= last; ++i) {
+      double share = y_[i];
+      for (std::size_t j = first; j <= last; ++j)
+        if (j != i) share *= (x - t_[j]) / (t_[i] - t_[j]);
+      sum += share;
+    }
+    return sum;
+  }
+
+ private:
+  [[nodiscard]] bool can_precede(std::size_t i) const { return i > 0 && !jumps(i - 1); }
+  [[nodiscard]] bool can_follow(std::size_t i) const { return i + 1 < t_.size() && !jumps(i); }
+  std::vector<double> t_, y_;
+};
+
+/// OpenIPSL's HYGOV as its blocks stand, with the values of HygovWithScrx.
+struct OpenipslsHygov {
+  double e, c, g, q, nref;
+  static constexpr double R = 0.05, r = 0.3, Tr = 5, Tf = 0.05, Tg = 0.5, VELM = 0.02, GMAX = 0.415,
+                          TW = 1.25, At = 1.2, Dturb = 0.2, qNL = 0.08;
+  explicit OpenipslsHygov(double power) : e(0), c(power / At + qNL), g(c), q(c), nref(R * c) {}
+  /// The midpoint rule.
+  void advance(double w, double h) {
+    const OpenipslsHygov half = moved(*this, w, 0.5 * h);
+    *this = moved(half, w, h);
+    if (c > GMAX) c = GMAX;
+  }
+  [[nodiscard]] double power(double w) const { return At * (q / g) * (q / g) * (q - qNL) - Dturb * w * g; }
+
+ private:
+  [[nodiscard]] OpenipslsHygov moved(const OpenipslsHygov& at, double w, double h) const {
+    OpenipslsHygov to = *this;
+    const double de = (nref - w - R * at.c - at.e) / Tf, asked = (at.e / Tr + de) / r;
+    const double speed = at.c >= GMAX && asked > 0 ? 0.0 : std::clamp(asked, -VELM, VELM);
+    to.e += h * de;
+    to.c += h * speed;
+    to.g += h * (at.c - at.g) / Tg;
+    to.q += h * (1.0 - (at.q / at.g) * (at.q / at.g)) / TW;
+    return to;
+  }
+};
+
+// OpenIPSL's own equations, and ours, driven by the curve's own speed: both miss the curve's power by the
+// same 0.277 % of its swing, at 6.7 s. So what HygovWithScrx misses is how the curve was integrated; its gate
+// is off where the velocity limit sets in and ends, in every half swing.
+TEST(OpenipslRecords, HygovsCurveIsOffItsOwnEquations) {
+  test::Table record = test::read_table(folder() / "HYGOV/modelica_results.csv", true);
+  for (std::string& column : record.names) std::erase(column, '"');
+  const auto column = [&](const char* name) {
+    std::vector<double> values;
+    for (const auto& row : record.rows)
+      values.push_back(row[static_cast<std::size_t>(name ? record.column(name) : 0)]);
+    return values;
+  };
+  const Between speed(column(nullptr), column("gENSAL.w"));
+  const std::vector<double> theirs = column("hYGOV.PMECH");
+  OpenipslsHygov by_hand(theirs[0]);
+  Signals<double> start = test::ControlBench::rated();
+  start.P = start.Te = start.Tm = theirs[0];
+  test::ControlBench ours("HYGOV",
+                          {{"R", 0.05},
+                           {"r", 0.3},
+                           {"Tr", 5},
+                           {"Tf", 0.05},
+                           {"Tg", 0.5},
+                           {"VELM", 0.02},
+                           {"GMAX", 0.415},
+                           {"GMIN", 0},
+                           {"TW", 1.25},
+                           {"At", 1.2},
+                           {"Dturb", 0.2},
+                           {"qNL", 0.08}},
+                          start);
+  constexpr int kParts = 200;  // of 0.1 ms
+  double low = 1e9, high = -1e9, off_by_hand = 0.0, off_ours = 0.0, apart = 0.0, at = 0.0;
+  for (std::size_t k = 0; k + 1 < speed.samples(); ++k) {
+    if (speed.jumps(k)) continue;
+    const double h = speed.width(k) / kParts;
+    for (int i = 0; i < kParts; ++i) {
+      ours.in.speed = speed.at(k, speed.time(k) + (i + 0.5) * h);
+      by_hand.advance(ours.in.speed, h);
+      ours.run(h, h);
+    }
+    ours.in.speed = speed.at(k, speed.time(k + 1));
+    const double hand = by_hand.power(ours.in.speed), effect = ours.out().Tm, curve = theirs[k + 1];
+    low = std::min(low, curve);
+    high = std::max(high, curve);
+    if (std::abs(hand - curve) > off_by_hand) at = speed.time(k + 1);
+    off_by_hand = std::max(off_by_hand, std::abs(hand - curve));
+    off_ours = std::max(off_ours, std::abs(effect - curve));
+    apart = std::max(apart, std::abs(hand - effect));
+  }
+  const double swing = high - low;
+  std::cout << "HYGOV from the curve's speed: by hand " << off_by_hand / swing << " at " << at << " s, ours "
+            << off_ours / swing << ", apart " << apart / swing << "\n";
+  EXPECT_GT(off_by_hand / swing, 2e-3);
+  EXPECT_LT(off_by_hand / swing, 3e-3);
+  EXPECT_LT(apart / swing, 1e-4);
 }
 TEST(OpenipslRecords, IeeestWithEsst1a) {
   expect_agreement(
