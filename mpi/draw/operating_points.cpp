@@ -24,6 +24,7 @@ constexpr int kLineTries = 1000;  ///< picks until a line is found that may be m
 
 void draw_loads(const OperatingPointConfig& c, double common, Random& random, network::Network& n) {
   for (auto& load : n.loads) {
+    if (load.kind == network::LoadKind::shunt) continue;  // it consumes nothing
     const double s = common * random.uniform(1.0 - c.load_spread, 1.0 + c.load_spread);
     load.power *= s;
     load.current *= s;

@@ -10,6 +10,7 @@
 //   the equations of its kind     MachineOps, ControlOps, TransformerOps or LoadOps below
 //   steady<T>()                   back-initialisation from the operating point
 //   converter                     of a source, optional: true where it is a controlled current
+//   at_shunt                      of a load, optional: true where a .dyr means a switched shunt by it
 //   publish<T>()                  of a control, optional: signals that are states, before the evaluation
 //   remark()                      optional: what its values ask for and the equations leave out
 //   instants()                    optional: when its equations jump in time
@@ -140,7 +141,8 @@ struct Signals {
   T dGref{};           ///< move of the governor's reference in its own unit: speed where a droop follows it,
                        ///< else power [pu]
   T t{};               ///< time [s]; at an instant named by instants() that of the running side
-  T Vpr{}, Vpi{}, Vp{};  ///< voltage at the grid's side of the step-up transformer [pu]
+  T Vpr{}, Vpi{}, Vp{};  ///< voltage at the grid's side of the step-up transformer; Vpr, Vpi of a load: at
+                         ///< the bus that it regulates (Consumer::regulated), else its own [pu]
   // of a converter's controls alone
   T Pext{}, Qext{};    ///< references of P and of Q (or of V, as the control's flags say), less their values
                        ///< at the operating point [pu]
@@ -187,7 +189,7 @@ struct TransformerOps {
 };
 
 /// A consumer. Its current into the bus (negative while it consumes) follows from the bus voltage and its
-/// states; per unit on Load::mva. `steady` gets Vr, Vi, Ir, Ii.
+/// states; per unit on Consumer::mva. `steady` gets Vr, Vi, Vpr, Vpi, Ir, Ii.
 template <class T>
 struct LoadOps {
   void (*current)(const T* c, const T* x, Signals<T>& s) = nullptr;  ///< Vr, Vi -> Ir, Ii
@@ -231,6 +233,7 @@ struct Effect {
   int raw_resistance, raw_reactance;  ///< parameters that PSS/E keeps in the .raw (ZR, ZX), or -1
   int coefficients, scratch;
   bool converter = false;  ///< of a source: a controlled current, no synchronous machine
+  bool at_shunt = false;   ///< of a load: a .dyr's records of it belong to switched shunts
   void (*check)(const void* law, const double* p, const std::string& where, Problems& problems);
   std::string_view (*unphysical)(const double* p);  ///< empty, or the ordering that is violated
   /// What these values ask for and the equations leave out, as a sentence for a warning; nullptr: nothing.
@@ -331,6 +334,7 @@ Effect make_effect() {
   if constexpr (requires { M::coefficients; }) e.coefficients = M::coefficients;
   if constexpr (requires { M::scratch; }) e.scratch = M::scratch;
   if constexpr (requires { M::converter; }) e.converter = M::converter;
+  if constexpr (requires { M::at_shunt; }) e.at_shunt = M::at_shunt;
   e.check = +[](const void*, const double* p, const std::string& where, Problems& problems) {
     M::check(p, where, problems);
   };

@@ -63,6 +63,8 @@ inline constexpr Work griddyn{"GridDyn", "LLNL", "96b5751", "Case files", "githu
 inline constexpr Work steps{"STEPS", "Changgang Li", "e5579d2", "Case files", "github.com/changgang/steps"};
 inline constexpr Work powerful_cases{"PowerfulCases", "Hantao Cui", "b44f5d5", "Case files",
                                      "github.com/cuihantao/PowerfulCases"};
+inline constexpr Work interpss{"InterPSS", "InterPSS-Project", "529b98f", "PSS/E test cases",
+                               "github.com/InterPSS-Project/ipss-plugin"};
 
 }  // namespace literature
 }  // namespace swingbank::sim

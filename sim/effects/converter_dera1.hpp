@@ -10,6 +10,7 @@
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/controlled_current.hpp"
 #include "sim/effects/detail/electrical_control.hpp"
+#include "sim/effects/detail/lasting.hpp"
 #include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::converter_dera1 {
@@ -322,25 +323,15 @@ struct Model : shared::ControlledCurrent<Model> {
   static T of_voltage(const T* c, const T& V, const T& moved) {
     return clamp(c[Kqv] * renewable::dead_zone(c[Vref0] + moved - V, c[dbd1], c[dbd2]), c[Iql1], c[Iqh1]);
   }
-  /// A timer that runs while `beyond` is 1 and returns to 0 where that ends before `delay`; 1 for good once
-  /// it has gone past it, where nothing moves it back.
-  template <class T>
-  static T passed(const T& beyond, const T& delay, const T& x, T& dx) {
-    const T zero(0.0), one(1.0), past = (x - delay) * T(1.0 / renewable::kFading);
-    const T kept = clamp(past, zero, one);
-    dx = beyond * clamp(T(2.0) - past, zero, one) -
-         (one - kept) * (one - beyond) * x * T(1.0 / renewable::kFollow);
-    return kept;
-  }
   /// The share that neither voltage nor frequency has taken off; V: measured, `at_once`: as it is.
   template <class T>
   static T stays_on(const T* c, const T* x, const T& V, const T& at_once, const T& f, T* dx) {
     const T zero(0.0), one(1.0), per_band(1.0 / renewable::kDipBand), per_follow(1.0 / renewable::kFollow);
     const auto beyond = [&](const T& much) { return c[vtripFlag] * clamp(much * per_band, zero, one); };
-    const T part_low = passed(beyond(c[Vl1] - V), c[tvl1], x[low1], dx[low1]);
-    const T all_low = passed(beyond(c[Vl0] - V), c[tvl0], x[low0], dx[low0]);
-    const T part_high = passed(beyond(V - c[Vh1]), c[tvh1], x[high1], dx[high1]);
-    const T all_high = passed(beyond(V - c[Vh0]), c[tvh0], x[high0], dx[high0]);
+    const T part_low = shared::passed(beyond(c[Vl1] - V), c[tvl1], x[low1], dx[low1]);
+    const T all_low = shared::passed(beyond(c[Vl0] - V), c[tvl0], x[low0], dx[low0]);
+    const T part_high = shared::passed(beyond(V - c[Vh1]), c[tvh1], x[high1], dx[high1]);
+    const T all_high = shared::passed(beyond(V - c[Vh0]), c[tvh0], x[high0], dx[high0]);
     const T low = clamp(V, c[Vl0], c[Vl1]), high = clamp(V, c[Vh1], c[Vh0]);
     const T below = positive_part(x[least] - low), above = positive_part(high - x[most]);
     dx[least] = zero - part_low * below * per_follow;
@@ -355,8 +346,8 @@ struct Model : shared::ControlledCurrent<Model> {
     const T zero(0.0), one(1.0), per_band(1.0 / kFrequencyBand);
     const T counts = c[ftripFlag] * clamp((V - c[Vpr]) * T(1.0 / renewable::kDipBand), zero, one);
     const auto beyond = [&](const T& much) { return counts * clamp(much * per_band, zero, one); };
-    return (one - passed(beyond(c[f_under] - f), c[tfl], x[under], dx[under])) *
-           (one - passed(beyond(f - c[f_over]), c[tfh], x[over], dx[over]));
+    return (one - shared::passed(beyond(c[f_under] - f), c[tfl], x[under], dx[under])) *
+           (one - shared::passed(beyond(f - c[f_over]), c[tfh], x[over], dx[over]));
   }
 };
 

@@ -101,6 +101,10 @@ class DyrReader {
     dyr.unended = unended;
     psse::Fields numbers(record, name_, dyr.faults);
     for (std::size_t i = named_fourth ? 4 : 3; i < fields.size(); ++i) {
+      if (record.fields[i].quoted && model.starts_with("SVSMO")) {  // the id of a shunt that it may switch
+        dyr.values.push_back(0.0);
+        continue;
+      }
       if (record.fields[i].text.empty()) dyr.empty.push_back(static_cast<int>(dyr.values.size()) + 1);
       dyr.values.push_back(static_cast<double>(
           numbers.number(i, (dyr.model + " parameter " + std::to_string(i - 2)).c_str(), 0.0L)));

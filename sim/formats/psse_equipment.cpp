@@ -125,7 +125,7 @@ void RawReader::switched_shunt(const Record& record) {
                              [&](const network::Shunt& o) { return o.bus == s.bus && o.id == s.id; }))
     s.id += "+";  // a fixed shunt bears this id: both must be writable as fixed shunts
   switching(f, s);
-  if (s.admittance.imag() != 0.0) network_.shunts.push_back(std::move(s));
+  network_.shunts.push_back(std::move(s));  // at 0 Mvar too: a model may belong to it
 }
 
 /// Mode, band and steps: MODSW 1 steps through its blocks in their order, reactors and capacitors apart.

@@ -95,6 +95,7 @@ class RawWriter {
   }
   void loads() {
     for (const network::Load& l : n_.loads) {
+      if (l.kind == network::LoadKind::shunt) continue;
       Row r{number(l.bus),
             quote(l.id),
             "1",
@@ -118,6 +119,9 @@ class RawWriter {
   void shunts() {
     for (const network::Shunt& s : n_.shunts)
       row({number(s.bus), quote(s.id), "1", mw(s.admittance.real()), mw(s.admittance.imag())});
+    for (const network::Load& l : n_.loads)
+      if (l.kind == network::LoadKind::shunt)
+        row({number(l.bus), quote(l.id), "1", mw(l.admittance.real()), mw(0.0 - l.admittance.imag())});
     end("fixed shunt");
   }
   void generators() {

@@ -16,7 +16,7 @@ struct Missing {
 constexpr Missing kMissing[] = {
     {"CMLD", "composite load, not modelled"},
     {"CMPLD", "composite load, not modelled"},
-    {"SVSMO", "static var system at a switched shunt, not modelled"},
+    {"SVSMO", "static var system of stepped branches or a converter, not modelled"},
     {"VSCHVDC", "STEPS's own, no PSS/E model"},
 };
 std::string why_missing(std::string_view name) {

@@ -37,6 +37,7 @@ class GridMaker {
     solve();
     net_generators();
     devices();
+    shunts_with_models();
     for (LoadModel& model : load_models_) {
       if (is_composed(*model.block.effect)) compose(grid_, model.load, model.block, model.where, problems_);
       set_load(grid_, model.load, std::move(model.block), model.where, problems_);
@@ -95,7 +96,9 @@ class GridMaker {
             Problems& problems) {
     problems.add(record.faults);
     if (!record.faults.empty()) return;
-    if (effect.slot == Slot::load)
+    if (effect.at_shunt)
+      add_shunt_model(effect, std::move(record), where, problems);
+    else if (effect.slot == Slot::load)
       add_load(effect, reach, std::move(record), where, problems);
     else
       add_control(effect, std::move(record), where, problems);
@@ -205,6 +208,63 @@ class GridMaker {
     if (!any)
       grid_.network.remark("models of loads that are not in service are left out", what + " (" + where + ")");
   }
+  /// A model of a switched shunt; a record without an id means the first one of its bus.
+  void add_shunt_model(const Effect& effect, formats::DyrRecord record, const std::string& where,
+                       Problems& problems) {
+    const std::string what = record.model + " at bus " + std::to_string(record.bus);
+    if (!fits(effect, record, where, problems)) return;
+    ShuntModel model{grid_.network.bus_index(record.bus), {}, -1, values_of(effect, record), where};
+    effect.check(effect.law.get(), model.block.p.data(), where, problems);
+    if (const int far = regulated_bus(model.block); far != 0 && far != record.bus) {
+      model.regulated = grid_.network.bus_index(far);
+      if (model.regulated < 0)
+        problems.add(what + " regulates bus " + std::to_string(far), where,
+                     grid_.network.origin + " has no such bus", "correct the bus number");
+    }
+    const auto is_its = [&](const network::Shunt& s) {
+      return s.bus == model.bus &&
+             (record.id == kAnyShunt ? s.id.starts_with("SW")
+                                     : s.id == (record.id == "1" ? "SW" : "SW" + record.id));
+    };
+    const auto shunt = std::ranges::find_if(grid_.network.shunts, is_its);
+    if (shunt == grid_.network.shunts.end()) {
+      grid_.network.remark("models of switched shunts that are not in service are left out",
+                           what + " (" + where + ")");
+      return;
+    }
+    model.id = shunt->id;
+    const auto same = [&](const ShuntModel& m) { return m.bus == model.bus && m.id == model.id; };
+    if (std::ranges::any_of(shunt_models_, same))
+      problems.add("a second model, " + what, where, "its switched shunt already has one",
+                   "keep one of them");
+    if (!problems.empty()) return;
+    if (const std::string left_out = effect.remark ? effect.remark(model.block.p.data()) : std::string();
+        !left_out.empty())
+      grid_.network.remark("values that the equations take in their own way, or not at all",
+                           where + ": " + what + ": " + left_out);
+    shunt_models_.push_back(std::move(model));
+  }
+  /// Of each switched shunt with a model the power flow's susceptance becomes a load with that model.
+  void shunts_with_models() {
+    network::Network& n = grid_.network;
+    for (ShuntModel& model : shunt_models_) {
+      const auto at = std::ranges::find_if(
+          n.shunts, [&](const network::Shunt& s) { return s.bus == model.bus && s.id == model.id; });
+      const network::Bus& bus = n.buses[static_cast<std::size_t>(model.bus)];
+      n.loads.push_back({model.bus,
+                         model.id,
+                         {},
+                         {},
+                         std::conj(at->admittance),
+                         bus.area,
+                         bus.zone,
+                         bus.owner,
+                         network::LoadKind::shunt});
+      n.shunts.erase(at);
+      set_load(grid_, static_cast<int>(n.loads.size()) - 1, std::move(model.block), model.where, problems_);
+      grid_.loads.back().regulated = model.regulated;
+    }
+  }
   void finish(plant::Plant& plant) {
     const network::Generator& g = grid_.network.generators[static_cast<std::size_t>(plant.generator)];
     if (!plant.machine.effect && !refused_.contains({bus_number(g), g.id}))
@@ -281,7 +341,7 @@ class GridMaker {
                             s.most, std::abs(grid_.flow.voltage[static_cast<std::size_t>(s.regulated)])));
       std::erase_if(n.shunts, [&](const network::Shunt& o) { return o.bus == s.bus && o.id == s.id; });
       s.present = stepped.susceptance;
-      if (s.present != 0.0) n.shunts.push_back({s.bus, s.id, {0.0, s.present}});
+      n.shunts.push_back({s.bus, s.id, {0.0, s.present}});
     }
   }
   [[nodiscard]] std::string bus_text(int bus) const {
@@ -342,6 +402,13 @@ class GridMaker {
     std::string where;
     Reach reach;
   };
+  struct ShuntModel {
+    int bus;         ///< index of its own bus
+    std::string id;  ///< in Network::shunts
+    int regulated;   ///< index of another bus whose voltage it regulates, or -1
+    plant::Block block;
+    std::string where;
+  };
   struct Unknown {
     int records = 0;
     std::string where, first;  ///< of its first record
@@ -354,6 +421,7 @@ class GridMaker {
   Grid grid_;
   Problems problems_;
   std::vector<LoadModel> load_models_;
+  std::vector<ShuntModel> shunt_models_;
   std::map<std::pair<std::string, bool>, Unknown> unknown_;  ///< by name and whether it is user-written
   std::map<std::pair<int, std::string>, std::size_t> plant_of_;
   std::set<std::pair<int, std::string>> refused_;  ///< generators whose machine's record is told as refused

@@ -68,7 +68,7 @@ void set_load(Grid& grid, int load, plant::Block block, const std::string& where
   consumer.mva = grid.network.base_mva;
   consumer.consumption = network::consumption(l, grid.flow);
   consumer.block = std::move(block);
-  if (consumer.consumption == Complex{}) {
+  if (consumer.consumption == Complex{} && l.kind != network::LoadKind::shunt) {
     problems.add("load " + consumer.name + " draws nothing", where,
                  "its P and Q are zero in " + grid.network.origin, "choose a load that draws power");
     return;

@@ -322,7 +322,7 @@ class UnitReader {
                         "has none",
                         l.id, unit_.bus, measured_at));
     for (const auto& s : net().shunts)
-      if (s.bus == bus)
+      if (s.bus == bus && s.admittance != Complex{})
         unit_.notes.push_back(
             fmt::format("shunt '{}' at bus {} is part of what is measured at bus {}; the "
                         "model has none",

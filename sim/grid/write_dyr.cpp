@@ -66,6 +66,24 @@ std::string plant_record(const Grid& grid, const plant::Plant& plant, const plan
                     grid.network.buses[static_cast<std::size_t>(plant.bus)].number, g.id, file, problems);
 }
 
+/// What stands before the parameters of a static var system: its bus, the one that it regulates, two flags,
+/// and that it switches none of eight shunts. SVSMO1T2 means the first switched shunt of its bus, SVSMO1T3
+/// has an id.
+std::string shunt_record(const plant::Block& block, int bus, const std::string& shunt) {
+  using formats::psse::quote;
+  using formats::psse::shortest;
+  const Effect& effect = *block.effect;
+  const auto value = [&](std::size_t column) {
+    return " " + shortest(block.p[static_cast<std::size_t>(effect.dyr_columns[column])]);
+  };
+  const std::string id = shunt.substr(2), regulated = std::to_string(regulated_bus(block));
+  std::string text = std::to_string(bus) + (id.empty() ? " 'SVSMO1T2' " : " 'SVSMO1T3' " + quote(id) + " ") +
+                     (regulated == "0" ? std::to_string(bus) : regulated) + value(1) + value(2);
+  for (std::size_t i = 1; i <= kSwitchedBeside; ++i) text += " 0 " + quote(std::to_string(i));
+  for (std::size_t i = 3; i < effect.dyr_columns.size(); ++i) text += value(i);
+  return text + " /\n";
+}
+
 /// A step-up transformer stands in the .raw, or nowhere.
 void write_transformer(const Grid& grid, const plant::Plant& plant, const std::string& file,
                        Problems& problems) {
@@ -96,6 +114,11 @@ void write_dyr(const Grid& grid, const std::filesystem::path& file) {
   }
   for (const plant::Consumer& load : grid.loads) {
     const network::Load& l = grid.network.loads[static_cast<std::size_t>(load.load)];
+    if (l.kind == network::LoadKind::shunt) {
+      const network::Bus& bus = grid.network.buses[static_cast<std::size_t>(load.bus)];
+      text += shunt_record(load.block, bus.number, l.id);
+      continue;
+    }
     plant::Block raw{load.block.effect, load.block.effect->standard_parameters()};
     if (is_composed(*raw.effect)) compose(grid, load.load, raw, file.string(), problems);
     text += dyr_record(load.block, "load " + load.name,

@@ -66,6 +66,18 @@ void refuse_in_float(const grid::Grid& grid) {
            "its current is no linear function of the voltage");
   problems.raise();
 }
+
+/// The network is reduced to the sources' buses.
+void refuse_far_regulation(const grid::Grid& grid) {
+  Problems problems;
+  for (const plant::Consumer& load : grid.loads)
+    if (load.regulated >= 0 && load.regulated != load.bus)
+      problems.add(fmt::format("{} at {} regulates bus {}", load.block.effect->name, load.name,
+                               grid.network.buses[static_cast<std::size_t>(load.regulated)].number),
+                   grid.network.origin, "the lanes know the voltages at machines and modelled loads alone",
+                   "use the reference integrator, or let it regulate its own bus");
+  problems.raise();
+}
 }  // namespace
 
 struct Batch::Impl {
@@ -86,6 +98,7 @@ std::map<int, plant::Plant> changed_plants(const grid::Grid& grid, const Job& jo
 Batch::Batch(const grid::Grid& grid, BatchOptions options) : impl_(std::make_unique<Impl>()) {
   if (options.lanes == 0) options.lanes = options.sensitivities ? 8 : widest();
   impl_->options = options;
+  refuse_far_regulation(grid);
   if (options.sensitivities) {
     if (options.lanes != 8)
       throw InputError({fmt::format("{} lanes with sensitivities", options.lanes), "option lanes",

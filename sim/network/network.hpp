@@ -21,7 +21,8 @@ struct Bus {
 enum class LoadKind {
   load,
   generator,  ///< a generator without a machine model, as negative consumption
-  device      ///< equipment that has no model here (dc line, FACTS device), as what it draws in the file
+  device,     ///< equipment that has no model here (dc line, FACTS device), as what it draws in the file
+  shunt       ///< a switched shunt with a model of its own, as its admittance in the file
 };
 /// Consumption P + jQ [pu]: constant power, constant current and constant admittance parts, each at 1 pu
 /// voltage: S = power + current V + admittance V^2.
@@ -40,7 +41,7 @@ struct Shunt {
 /// A shunt that is switched in steps to hold a voltage within a band.
 struct SwitchedShunt {
   int bus;
-  std::string id;             ///< of the shunt in Network::shunts; there is none where `present` is 0
+  std::string id;             ///< of the shunt in Network::shunts
   double present;             ///< its susceptance [pu]
   int regulated;              ///< index of the bus whose voltage it holds
   double least, most;         ///< the band of that voltage [pu]

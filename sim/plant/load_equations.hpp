@@ -2,6 +2,8 @@
 // One consumer's equations: its current follows from the bus voltage and its states. For solvers that work
 // with sources behind constant impedances it is one too: E = V + z I, where z is the impedance the load has
 // at the operating point, so that a constant-impedance load is E = 0.
+#include <optional>
+
 #include "sim/plant/plant.hpp"
 
 namespace swingbank::sim::plant {
@@ -22,7 +24,7 @@ class LoadEquations {
   [[nodiscard]] const T* impedance(const T* c) const { return c + joint_; }
   /// Vr, Vi -> Ir, Ii into the bus.
   void current(const T* c, const T* x, Signals<T>& s) const { ops_.current(c, x, s); }
-  /// After current().
+  /// After current(); Vpr, Vpi: of the bus that it regulates.
   void derivative(const T* c, const T* x, const Signals<T>& s, T* dx) const { ops_.derivative(c, x, s, dx); }
 
  private:
@@ -30,10 +32,11 @@ class LoadEquations {
   int joint_, states_;
 };
 
-/// Brings a load to the voltage of its bus [pu]; throws InputError if it cannot be held there. T: double or a
-/// dual.
+/// Brings a load to the voltage of its bus and of the bus that it regulates, where that is another [pu];
+/// throws InputError if it cannot be held there. T: double or a dual.
 template <class T>
 OperatingOf<T> load_operating_point(const Consumer& load, const std::vector<T>& parameters, Complex voltage,
-                                    double base_mva, const Conventions& conventions);
+                                    double base_mva, const Conventions& conventions,
+                                    std::optional<Complex> regulated = {});
 
 }  // namespace swingbank::sim::plant

@@ -6,10 +6,21 @@
 #include "sim/plant/load_equations.hpp"
 
 namespace swingbank::sim::plant {
+namespace {
+
+/// Any impedance is exact; that of the operating point makes a constant impedance E = 0. What draws next to
+/// nothing there, as a compensator in the middle of its range does, has none that is of use.
+Complex source_impedance(Complex voltage, Complex current) {
+  constexpr double largest = 1e3;  // [pu]
+  return std::abs(current) * largest > std::abs(voltage) ? -voltage / current : Complex(0.0, largest);
+}
+
+}  // namespace
 
 template <class T>
 OperatingOf<T> load_operating_point(const Consumer& load, const std::vector<T>& parameters, Complex voltage,
-                                    double base_mva, const Conventions& conventions) {
+                                    double base_mva, const Conventions& conventions,
+                                    std::optional<Complex> regulated) {
   constexpr double tolerance = 1e-9;  // derivatives of order 1 cancel to rounding, 1e-14 or so
   const LoadEquations<T> equations(load);
   const Effect& effect = *load.block.effect;
@@ -20,12 +31,16 @@ OperatingOf<T> load_operating_point(const Consumer& load, const std::vector<T>& 
   here.mva = load.mva;
   effect.get<T>().prepare(parameters.data(), here, o.c.data());
   const Complex power = load.consumption * (base_mva / load.mva), current = -std::conj(power / voltage);
-  o.s.Vr = o.s.Vpr = T(voltage.real());
-  o.s.Vi = o.s.Vpi = T(voltage.imag());
-  o.s.V = o.s.Vp = T(std::abs(voltage));
+  const Complex watched = regulated.value_or(voltage);
+  o.s.Vr = T(voltage.real());
+  o.s.Vi = T(voltage.imag());
+  o.s.V = T(std::abs(voltage));
+  o.s.Vpr = T(watched.real());
+  o.s.Vpi = T(watched.imag());
+  o.s.Vp = T(std::abs(watched));
   o.s.Ir = T(current.real());
   o.s.Ii = T(current.imag());
-  const Complex z = -voltage / current;
+  const Complex z = source_impedance(voltage, current);
   T* joint = o.c.data() + effect.coefficients;
   joint[load_r] = T(z.real());
   joint[load_x] = T(z.imag());
@@ -54,8 +69,8 @@ OperatingOf<T> load_operating_point(const Consumer& load, const std::vector<T>& 
   return o;
 }
 template OperatingOf<double> load_operating_point(const Consumer&, const std::vector<double>&, Complex,
-                                                  double, const Conventions&);
+                                                  double, const Conventions&, std::optional<Complex>);
 template OperatingOf<D8> load_operating_point(const Consumer&, const std::vector<D8>&, Complex, double,
-                                              const Conventions&);
+                                              const Conventions&, std::optional<Complex>);
 
 }  // namespace swingbank::sim::plant

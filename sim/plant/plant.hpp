@@ -30,6 +30,7 @@ struct Consumer {
   std::string name;     ///< "8" or "8/2": bus number, and id where a bus has several loads
   int bus = -1;         ///< index into Network::buses
   int load = -1;        ///< index into Network::loads
+  int regulated = -1;   ///< index of the bus whose voltage it regulates; -1: its own, or none
   double mva = 100.0;   ///< base of its parameters
   Complex consumption;  ///< P + jQ at the operating point [pu on the network's base]
   Block block;

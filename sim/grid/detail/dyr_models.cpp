@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "sim/formats/psse_text.hpp"
 #include "sim/library/library.hpp"
 
 namespace swingbank::sim::grid {
@@ -39,6 +40,7 @@ constexpr OtherName kOtherNames[] = {
     {"IEE2ST", "ST2CUT"},            // its IEEE form: the same blocks (OpenIPSL, c80a6c4)
     {"ESST5B", "ST5B", kPslfsSt5b},  // PSLF's (InterPSS, St5bExciterTest)
     {"EXDC1", "IEEEX1"},             // GridPACK's and PSLF's name of the type DC1 of 1981
+    {"SVSMO1T3", "SVSMO1T2"},        // the same with the shunt's id (InterPSS, PsseSvsmo1t2ModelTest)
 };
 
 const OtherName* other_name(std::string_view model) {
@@ -101,10 +103,40 @@ std::string columns_text(const Effect& effect) {
   std::string text = std::to_string(effect.dyr_columns.size()) + ":";
   for (const int column : effect.dyr_columns)
     text += " " + std::string(effect.parameters[static_cast<std::size_t>(column)].symbol);
+  if (effect.at_shunt)
+    text += fmt::format(", and behind the third of {} switched shunts whether it is switched and its id",
+                        kSwitchedBeside);
   return text;
 }
 
+namespace {
+
+/// SVSMO1T2 has the regulated bus where others have an id, SVSMO1T3 has it after the id; then two flags and,
+/// of eight mechanically switched shunts, whether each is switched and its id, then the parameters. No shunt
+/// is switched here: a record that asks for it says so by its first flag.
+void without_switched_shunts(formats::DyrRecord& record) {
+  constexpr std::size_t flags = 2, shunts = kSwitchedBeside * kOfSwitched, rest = 47;
+  std::vector<double>& v = record.values;
+  if (record.model == "SVSMO1T2") {
+    const auto bus = formats::psse::parse_number(record.id);
+    if (!bus || v.size() != flags + shunts + rest) return;
+    v.insert(v.begin(), static_cast<double>(*bus));
+    record.id = kAnyShunt;
+  }
+  if (v.size() != 1 + flags + shunts + rest) return;
+  const auto from = v.begin() + 1 + flags;
+  v.erase(from, from + shunts);
+}
+
+}  // namespace
+
+int regulated_bus(const plant::Block& block) {
+  const int index = block.effect->parameter_index("RemoteBus");
+  return index < 0 ? 0 : static_cast<int>(block.p[static_cast<std::size_t>(index)]);
+}
+
 formats::DyrRecord plain(formats::DyrRecord record, const Effect& effect) {
+  if (effect.at_shunt) without_switched_shunts(record);
   constexpr std::size_t before = 6, icons = 2, cons = 3;
   const std::size_t columns = effect.dyr_columns.size();
   if (!record.user.empty()) {

@@ -1,6 +1,8 @@
 #pragma once
 // Records of a .dyr as blocks of plants: which effect a model is, its parameters, its place.
+#include <cstddef>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -25,9 +27,15 @@ std::string columns_text(const Effect& effect);
 
 /// The name it goes by: of a user-written model its own.
 inline std::string name_of(const formats::DyrRecord& r) { return r.user.empty() ? r.model : r.user; }
-/// A user-written model that is one of ours, without IC, IT, NI, NC, NS, NV before its parameters; any other
-/// record as it is.
+/// A user-written model that is one of ours, without IC, IT, NI, NC, NS, NV before its parameters; a model of
+/// a switched shunt without the mechanically switched ones beside it; any other record as it is.
 formats::DyrRecord plain(formats::DyrRecord record, const Effect& effect);
+/// As the id of a record that names no switched shunt: the first one of its bus.
+inline constexpr std::string_view kAnyShunt = "*";
+/// How many switched shunts beside it a static var system may switch, and what stands for each of them.
+inline constexpr std::size_t kSwitchedBeside = 8, kOfSwitched = 2;
+/// Number of the bus whose voltage a model regulates; 0: its own, or none.
+int regulated_bus(const plant::Block& block);
 /// What was done to a record that is shorter or longer than its model takes it.
 struct Completion {
   bool sound = false;  ///< it is now as long as that

@@ -71,8 +71,8 @@ inline void Lanes<T>::derivative(const T* x, T* dx) {
     const std::size_t source = plants_.size() + i;
     current(k, source, s);
     const T* z = source_impedance(k, static_cast<int>(source));
-    s.Vr = er_[source] - z[0] * s.Ir + z[1] * s.Ii;
-    s.Vi = ei_[source] - z[0] * s.Ii - z[1] * s.Ir;
+    s.Vpr = s.Vr = er_[source] - z[0] * s.Ir + z[1] * s.Ii;
+    s.Vpi = s.Vi = ei_[source] - z[0] * s.Ii - z[1] * s.Ir;
     l.equations.derivative(&k.c[static_cast<std::size_t>(l.c)], x + l.x, s, dx + l.x);
   }
 }

@@ -111,8 +111,9 @@ using Owner = std::unique_ptr<std::remove_pointer_t<Handle>, Free>;
 std::vector<int> own_places(const ReferenceSystem& system) {
   std::vector<int> own;
   for (std::size_t u = 0; u < system.units().size(); ++u) {
-    const auto n = static_cast<std::size_t>(system.units()[u].states);
-    for (std::size_t i = 0; i < n; ++i) own.push_back(system.places(u)[i * (n + 2) + i]);
+    const auto n = static_cast<std::size_t>(system.units()[u].states),
+               members = static_cast<std::size_t>(system.units()[u].members());
+    for (std::size_t i = 0; i < n; ++i) own.push_back(system.places(u)[i * members + i]);
   }
   return own;
 }

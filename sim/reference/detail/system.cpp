@@ -93,12 +93,14 @@ ReferencePlants::ReferencePlants(const grid::Grid& grid) {
   for (const plant::Consumer& load : grid.loads) {
     Unit unit;
     unit.load = &load;
-    unit.operating = plant::load_operating_point(load, load.block.p, grid.flow.voltage[load.bus],
-                                                 grid.network.base_mva, grid.conventions);
+    if (load.regulated >= 0 && load.regulated != load.bus) unit.regulated = load.regulated;
+    unit.operating = plant::load_operating_point(
+        load, load.block.p, grid.flow.voltage[load.bus], grid.network.base_mva, grid.conventions,
+        grid.flow.voltage[unit.regulated < 0 ? load.bus : unit.regulated]);
     unit.consumption.emplace(load);
     unit.consumption_sensitivities.emplace(load);
     unit.bus = load.bus;
-    unit.kind = kind_of({load.block.effect});
+    unit.kind = kind_of({load.block.effect, unit.regulated < 0 ? nullptr : load.block.effect});
     unit.states = unit.consumption->states();
     unit.delta = -1;
     unit.scale = load.mva / grid.network.base_mva;
@@ -163,6 +165,8 @@ void ReferenceSystem::build_pattern() {
     std::iota(index.begin(), index.end(), unit.first);
     index.push_back(bus_row(unit.bus));
     index.push_back(bus_row(unit.bus) + 1);
+    if (unit.regulated >= 0)
+      for (const int part : {0, 1}) index.push_back(bus_row(unit.regulated) + part);
     for (int col : index)
       for (int row : index)
         if (row < plants_.states() || !bolted_[unit.bus]) add(row, col, 0.0);
@@ -184,17 +188,18 @@ void ReferenceSystem::build_pattern() {
       }
 }
 
-/// One unit at bus voltage vr + j vi: signals, derivatives of its states, current into the grid.
+/// One unit at the voltage v of its bus: signals, derivatives of its states, current into the grid.
 template <class T>
-Signals<T> ReferenceSystem::evaluate(std::size_t u, double t, const T* x, const T& vr, const T& vi, T* dx,
-                                     T& ir, T& ii) const {
+Signals<T> ReferenceSystem::evaluate(std::size_t u, double t, const T* x, const T* v, const T* regulated,
+                                     T* dx, T& ir, T& ii) const {
   const Unit& unit = plants_.units()[u];
   const T* c = coefficients<T>(unit).data();
   Signals<T> s;
-  s.Vpr = s.Vr = vr;
-  s.Vpi = s.Vi = vi;
+  s.Vpr = s.Vr = v[0];
+  s.Vpi = s.Vi = v[1];
   s.t = T(std::min(t, last_moment_));
   if (unit.load) {
+    if (unit.regulated >= 0) s.Vpr = regulated[0], s.Vpi = regulated[1];
     load_equations<T>(unit).current(c, x, s);
     load_equations<T>(unit).derivative(c, x, s, dx);
     ir = s.Ir;
@@ -228,7 +233,8 @@ Signals<double> ReferenceSystem::signals(std::size_t u, double t, const double* 
   if (!dx) unused.resize(static_cast<std::size_t>(unit.states));
   const double* v = y + bus_row(unit.bus);
   double ir, ii;
-  const auto s = evaluate<double>(u, t, y + unit.first, v[0], v[1], dx ? dx : unused.data(), ir, ii);
+  const double* regulated = y + bus_row(std::max(unit.regulated, 0));
+  const auto s = evaluate<double>(u, t, y + unit.first, v, regulated, dx ? dx : unused.data(), ir, ii);
   current = {ir, ii};
   return s;
 }
@@ -338,17 +344,19 @@ void ReferenceSystem::jacobian(double t, double a, const double* y, double* valu
 void ReferenceSystem::unit_jacobian(std::size_t u, double t, double a, const double* y,
                                     double* values) const {
   const Unit& unit = plants_.units()[u];
-  const int n = unit.states, members = n + 2, row = bus_row(unit.bus);
+  const int n = unit.states, members = unit.members(), row = bus_row(unit.bus),
+            far = bus_row(std::max(unit.regulated, 0));
   const double scale = unit.scale * connected_[u];
   std::vector<D8>&x = scratch<D8>().x, &dx = scratch<D8>().dx;
   x.resize(static_cast<std::size_t>(members));
   dx.resize(static_cast<std::size_t>(n));
   for (int from = 0; from < members; from += kDirections) {
-    for (int i = 0; i < members; ++i) x[i] = D8(i < n ? y[unit.first + i] : y[row + i - n]);
+    for (int i = 0; i < members; ++i)
+      x[i] = D8(i < n ? y[unit.first + i] : i < n + 2 ? y[row + i - n] : y[far + i - n - 2]);
     const int to = std::min(from + kDirections, members);
     for (int i = from; i < to; ++i) x[i].d[i - from] = 1.0;
     D8 ir, ii;
-    (void)evaluate<D8>(u, t, x.data(), x[n], x[n + 1], dx.data(), ir, ii);
+    (void)evaluate<D8>(u, t, x.data(), &x[n], &x[n] + 2, dx.data(), ir, ii);
     for (int col = from; col < to; ++col) {
       const int* place = places_[u].data() + col * members;
       const int k = col - from;

@@ -29,10 +29,13 @@ class ReferencePlants {
     std::optional<plant::LoadEquations<double>> consumption;
     std::optional<plant::LoadEquations<D8>> consumption_sensitivities;
     int bus;
-    int kind;           ///< the same for units made of the same effects
-    int first, states;  ///< index of its first state, and how many
-    int delta;          ///< index of its rotor angle among its own states, -1 if it has none
-    double scale;       ///< own base / network base
+    int regulated = -1;  ///< index of the bus whose voltage a load regulates where it is another; -1: none
+    int kind;            ///< the same for units made of the same effects
+    int first, states;   ///< index of its first state, and how many
+    int delta;           ///< index of its rotor angle among its own states, -1 if it has none
+    double scale;        ///< own base / network base
+    /// Unknowns of its block: states, Vr, Vi, those of the bus that it regulates.
+    [[nodiscard]] int members() const { return states + (regulated < 0 ? 2 : 4); }
   };
   explicit ReferencePlants(const grid::Grid& grid);
   [[nodiscard]] const std::vector<Unit>& units() const { return units_; }  ///< plants, then loads
@@ -86,8 +89,8 @@ class ReferenceSystem {
   /// Jacobian in compressed columns; the pattern is that of `pattern()`, values are written in its order.
   [[nodiscard]] const Eigen::SparseMatrix<double>& pattern() const { return constant_; }
   void jacobian(double t, double a, const double* y, double* values) const;
-  /// Of a unit's block, column by column (states, Vr, Vi): where each entry stands in the pattern, -1:
-  /// nowhere.
+  /// Of a unit's block, column by column (states, Vr, Vi, those of the bus that it regulates): where each
+  /// entry stands in the pattern, -1: nowhere.
   [[nodiscard]] const std::vector<int>& places(std::size_t unit) const { return places_[unit]; }
 
  private:
@@ -108,7 +111,7 @@ class ReferenceSystem {
       return dual_scratch_;
   }
   template <class T>
-  Signals<T> evaluate(std::size_t unit, double t, const T* x, const T& vr, const T& vi, T* dx, T& ir,
+  Signals<T> evaluate(std::size_t unit, double t, const T* x, const T* v, const T* regulated, T* dx, T& ir,
                       T& ii) const;
   [[nodiscard]] int bus_row(int bus) const { return plants_.states() + 2 * bus; }
 

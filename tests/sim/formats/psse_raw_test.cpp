@@ -133,9 +133,11 @@ TEST(PsseRaw, SwitchedShuntsCountWithTheirInitialSusceptance) {
       "103,1,0,1,1.1,0.9,0,100,'',-25.0,5,-5\n102,1,0,0,1.1,0.9,0,100,'',40.0,5,8\n"
       "101,1,0,1,1.1,0.9,0,100,'',0.0,5,8\n";
   const network::Network n = c.read();
-  ASSERT_EQ(n.shunts.size(), 1u);  // one is out of service, one has nothing switched in
+  ASSERT_EQ(n.shunts.size(), 2u);  // one is out of service, one has nothing switched in
   EXPECT_EQ(n.shunts[0].bus, 2);
   EXPECT_EQ(n.shunts[0].admittance, Complex(0.0, -0.25));
+  EXPECT_EQ(n.shunts[1].bus, 0);
+  EXPECT_EQ(n.shunts[1].admittance, Complex());
   ASSERT_EQ(n.switched.size(), 2u);
   EXPECT_EQ(n.switched[0].present, -0.25);
   EXPECT_EQ(n.switched[0].id, n.shunts[0].id);

@@ -228,7 +228,7 @@ const std::set<std::string_view> kLater = {
     "DEGOV",  "DEGOV1", "DERA1",   "ESAC6A", "ESDC1A", "ESDC2A", "ESST1A", "ESST3A",
     "EXAC2",  "EXPIC1", "FVFAULT", "GENQEC", "GENTPF", "HYG3",   "IEEEG2", "IEEEG3",
     "IEEET2", "IEEET3", "IEEEX1",  "IEESGO", "LCFB1",  "PIDGOV", "PSS2C",  "REXS",
-    "SCRX",   "ST2CUT", "ST5B",    "STAB2A", "TGOV3",  "WSHYGP", "WSIEG1"};
+    "SCRX",   "ST2CUT", "ST5B",    "STAB2A", "SVSMO1", "TGOV3",  "WSHYGP", "WSIEG1"};
 
 /// Three grids with events that were beyond the limit before decision 04 was amended on 2026-11-23, drawn
 /// from the effects of that day.

@@ -1,0 +1,355 @@
+#pragma once
+// SVSMO1: static var compensator at a switched shunt, reactors and capacitors that thyristors control
+// smoothly.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "sim/core/blocks.hpp"
+#include "sim/core/effect.hpp"
+#include "sim/effects/detail/lasting.hpp"
+#include "sim/effects/detail/limited_integral.hpp"
+#include "sim/effects/detail/limited_lag.hpp"
+#include "sim/effects/detail/renewable.hpp"
+#include "sim/effects/detail/sources.hpp"
+
+namespace swingbank::sim::effects::load_svsmo1 {
+
+struct Model {
+  static constexpr std::string_view
+      name = "SVSMO1",
+      title = "static var compensator at a switched shunt",
+      source =
+          "Pourbeik et al. (2012), Generic model structures for simulating static var systems, IEEE Trans. "
+          "Power Syst. 27 (3) (WECC's svsmo1); PowerWorld, SVSMO1 (parameters, limits); InterPSS, "
+          "Svsmo1t2Model (equations, columns; github.com/InterPSS-Project/ipss-plugin, 529b98f); PSS/E "
+          "SVSMO1T2",
+      dyr_name = "SVSMO1T2";
+  static constexpr Slot slot = Slot::load;
+  static constexpr bool at_shunt = true;
+  static constexpr std::string_view description = R"(
+  V --> [ (1 + s Tc1)/(1 + s Tb1) ] --> Vm        V: of the regulated bus; Vt: at the compensator
+  Vref - Vm - Xc1 Vt B --> [ dead-band ] --> [ Vemin to Vemax ] --> [ (1 + s Tc2)/(1 + s Tb2) ]
+      --> [ Kpv + Kiv/s, Bmin to Btop ] --> [ 1/(1 + s T2) ] --> B        Q = B Vt^2
+  dead-band: 0 until the error is beyond Vdbd1; then the error, until it was within Vdbd2 for Tdbd
+  Btop = Bshrt; Bmax once what is asked was above it for Tshrt, until it no longer is; at most UVSBmax once V was
+      below UV1 for UVtm1, and for PLLdelay after that
+  B = 0 for good once V was below UVT for UVtm2, above OV1 for OVtm1 or above OV2 for OVtm2
+  Susceptances on the system's base. P/Vt^2: a conductance, where it stands for a load that draws P.
+  Not there, and told where a record asks for it: mechanically switched shunts (Flag1), which stay as they are; a
+  slope in three parts (Flag2), which is Xc1 everywhere; the slow susceptance regulator (Kps, Kis), which stands
+  still; what UV2 does at once, on which the sources are silent or of two minds.
+)";
+  enum P {
+    RemoteBus,
+    Flag1,
+    Flag2,
+    UVSBmax,
+    UV1,
+    UV2,
+    UVT,
+    OV1,
+    OV2,
+    UVtm1,
+    UVtm2,
+    OVtm1,
+    OVtm2,
+    Xc1,
+    Xc2,
+    Xc3,
+    Vup,
+    Vlow,
+    Tc1,
+    Tb1,
+    Tc2,
+    Tb2,
+    Kpv,
+    Kiv,
+    Vemax,
+    Vemin,
+    T2,
+    Bshrt,
+    Bmax,
+    Bmin,
+    Tshrt,
+    Kps,
+    Kis,
+    Vrmax,
+    Vrmin,
+    Vdbd1,
+    Vdbd2,
+    Tdbd,
+    PLLdelay,
+    Eps,
+    Blcs,
+    Bscs,
+    Blis,
+    Bsis,
+    Tmssbrk,
+    Tdelay1,
+    Tdelay2,
+    Tout,
+    Vrefmin,
+    Vrefmax,
+    parameter_count
+  };
+  static constexpr Source standards_from =
+      literature::interpss("PSSE_5Bus_svsmo1t2_synthetic.dyr, which PSS/E 36 ran");
+  static constexpr Source bounds_from = shared::kNoCases;
+  static constexpr Source kUnread = literature::derived("nothing here reads it");
+  static constexpr Source kRange = literature::own("so that a load's Q lies within");
+  static constexpr Parameter parameters[] = {
+      {"RemoteBus", "J", "code", 0.0, 0.0, 999997.0, kNoNeutral,
+       "bus whose voltage it regulates (0: its own); the network's plan says it", shared::kNothing,
+       shared::kBusNumber},
+      {"Flag1", "Flag1", "code", 0.0, 0.0, 1.0, 0.0, "1: shunts are switched mechanically (not modelled)",
+       kAsEffect, renewable::kFlag},
+      {"Flag2", "Flag2", "code", 0.0, 0.0, 1.0, 0.0, "1: a slope in three parts (not modelled)", kAsEffect,
+       renewable::kFlag},
+      {"UVSBmax", "UVSBmax", "pu", 0.18, -10.0, 10.0, kNoNeutral, "upper limit while the voltage is low"},
+      {"UV1", "UV1", "pu", 0.52, 0.0, 1.0, 0.0, "voltage below which UVSBmax is the limit"},
+      {"UV2", "UV2", "pu", 0.31, 0.0, 1.0, kNoNeutral, "second low voltage (not modelled)", kAsEffect,
+       kUnread},
+      {"UVT", "UVT", "pu", 0.48, 0.0, 1.0, 0.0, "voltage below which it trips"},
+      {"OV1", "OV1", "pu", 1.8, 1.0, 99.0, kNoNeutral, "voltage above which it trips"},
+      {"OV2", "OV2", "pu", 2.0, 1.0, 99.0, kNoNeutral, "voltage above which it trips sooner"},
+      {"UVtm1", "UVtm1", "s", 0.93, 0.0, 999.0, kNoNeutral, "how long below UV1 until UVSBmax is the limit"},
+      {"UVtm2", "UVtm2", "s", 6.7, 0.0, 999.0, kNoNeutral, "how long below UVT until it trips"},
+      {"OVtm1", "OVtm1", "s", 0.91, 0.0, 999.0, kNoNeutral, "how long above OV1 until it trips"},
+      {"OVtm2", "OVtm2", "s", 0.27, 0.0, 999.0, kNoNeutral, "how long above OV2 until it trips"},
+      {"Xc1", "Xc1", "pu/pu", 0.023, 0.0, 1.0, 0.0, "slope: voltage by current"},
+      {"Xc2", "Xc2", "pu/pu", 0.0, 0.0, 1.0, kNoNeutral, "slope's second part (not modelled)", kAsEffect,
+       kUnread},
+      {"Xc3", "Xc3", "pu/pu", 0.0, 0.0, 1.0, kNoNeutral, "slope's third part (not modelled)", kAsEffect,
+       kUnread},
+      {"Vup", "Vup", "pu", 1.08, 0.0, 99.0, kNoNeutral, "voltage above which the slope is Xc1", kAsEffect,
+       kUnread},
+      {"Vlow", "Vlow", "pu", 0.92, 0.0, 99.0, kNoNeutral, "voltage below which the slope is Xc3", kAsEffect,
+       kUnread},
+      {"Tc1", "Tc1", "s", 0.0, 0.0, 10.0, 0.0, "lead of the measurement"},
+      {"Tb1", "Tb1", "s", 0.012, 0.0, 10.0, kNoNeutral, "lag of the measurement (0: none)"},
+      {"Tc2", "Tc2", "s", 0.0, 0.0, 10.0, 0.0, "lead of the transient gain reduction"},
+      {"Tb2", "Tb2", "s", 0.0, 0.0, 50.0, kNoNeutral, "lag of the transient gain reduction (0: none)"},
+      {"Kpv", "Kpv", "pu/pu", 42.0, 0.0, 1000.0, kNoNeutral, "proportional gain, susceptance by voltage"},
+      {"Kiv", "Kiv", "pu/(pu s)", 210.0, 0.0, 10000.0, kNoNeutral, "integral gain, susceptance by voltage"},
+      {"Vemax", "Vemax", "pu", 0.45, 0.0, 99.0, kNoNeutral, "largest voltage error"},
+      {"Vemin", "Vemin", "pu", -0.45, -99.0, 0.0, kNoNeutral, "least voltage error"},
+      {"T2", "T2", "s", 0.012, 1e-3, 10.0, kNoNeutral, "delay of the firing"},
+      {"Bshrt", "Bshrt", "pu", 3.3, 0.0, 99.0, kNoNeutral, "upper limit for a short time", kRange},
+      {"Bmax", "Bmax", "pu", 3.0, -10.0, 99.0, kNoNeutral, "upper limit that lasts", kRange},
+      {"Bmin", "Bmin", "pu", -3.0, -99.0, 10.0, kNoNeutral, "lower limit", kRange},
+      {"Tshrt", "Tshrt", "s", 0.35, 0.0, 999.0, kNoNeutral, "how long above Bmax"},
+      {"Kps", "Kps", "pu/pu", 0.0, 0.0, 99.0, 0.0, "proportional gain of the slow regulator (not modelled)",
+       kAsEffect, kUnread},
+      {"Kis", "Kis", "pu/(pu s)", 0.0, 0.0, 99.0, 0.0, "integral gain of the slow regulator (not modelled)",
+       kAsEffect, kUnread},
+      {"Vrmax", "Vrmax", "pu", 0.0, 0.0, 99.0, kNoNeutral, "highest output of the slow regulator", kAsEffect,
+       kUnread},
+      {"Vrmin", "Vrmin", "pu", 0.0, -99.0, 0.0, kNoNeutral, "lowest output of the slow regulator", kAsEffect,
+       kUnread},
+      {"Vdbd1", "Vdbd1", "pu", 0.0, 0.0, 0.5, 0.0, "error beyond which it begins to act (0: no dead-band)"},
+      {"Vdbd2", "Vdbd2", "pu", 0.0, 0.0, 0.5, kNoNeutral, "error within which it ends to act"},
+      {"Tdbd", "Tdbd", "s", 0.0, 0.0, 999.0, kNoNeutral, "how long within Vdbd2 until it ends to act"},
+      {"PLLdelay", "PLLdelay", "s", 0.13, 0.0, 99.0, kNoNeutral,
+       "how long UVSBmax stays after a low voltage"},
+      {"Eps", "Eps", "Mvar", 0.4, 0.0, 999.0, kNoNeutral, "width added to the slow regulator's band",
+       kAsEffect, kUnread},
+      {"Blcs", "Blcs", "Mvar", 37.0, -9999.0, 9999.0, kNoNeutral, "large threshold, capacitive", kAsEffect,
+       kUnread},
+      {"Bscs", "Bscs", "Mvar", 19.0, -9999.0, 9999.0, kNoNeutral, "small threshold, capacitive", kAsEffect,
+       kUnread},
+      {"Blis", "Blis", "Mvar", -38.0, -9999.0, 9999.0, kNoNeutral, "large threshold, inductive", kAsEffect,
+       kUnread},
+      {"Bsis", "Bsis", "Mvar", -18.0, -9999.0, 9999.0, kNoNeutral, "small threshold, inductive", kAsEffect,
+       kUnread},
+      {"Tmssbrk", "Tmssbrk", "s", 0.09, 0.0, 999.0, kNoNeutral, "delay of the switched shunts' breaker",
+       kAsEffect, kUnread},
+      {"Tdelay1", "Tdelay1", "s", 0.47, 0.0, 999.0, kNoNeutral, "delay beyond the large threshold", kAsEffect,
+       kUnread},
+      {"Tdelay2", "Tdelay2", "s", 2.8, 0.0, 999.0, kNoNeutral, "delay beyond the small threshold", kAsEffect,
+       kUnread},
+      {"Tout", "Tout", "s", 280.0, 0.0, 9999.0, kNoNeutral, "discharge of a switched capacitor", kAsEffect,
+       kUnread},
+      {"Vrefmin", "Vrefmin", "pu", 0.8, 0.0, 99.0, kNoNeutral, "lowest reference of the slow regulator",
+       kAsEffect, kUnread},
+      {"Vrefmax", "Vrefmax", "pu", 1.2, 0.0, 99.0, kNoNeutral, "highest reference of the slow regulator",
+       kAsEffect, kUnread}};
+  static constexpr auto dyr_columns = [] {
+    std::array<int, parameter_count> list{};
+    for (int i = 0; i < parameter_count; ++i) list[static_cast<std::size_t>(i)] = i;
+    return list;
+  }();
+  /// The first coefficients are the parameters themselves.
+  enum C {
+    iTb1 = parameter_count,
+    iTb2,
+    iT2,
+    iPLL,
+    banded,  ///< 1 where there is a dead-band
+    Vref,
+    conductance,
+    coefficients
+  };
+  enum X { Vm, e, PI, B, calm, low, held, above, under, over1, over2 };
+  static constexpr auto states = [] {
+    constexpr auto timer = [](std::string_view symbol, std::string_view meaning) {
+      return State{.name = symbol, .unit = "s", .meaning = meaning, .bends = true};
+    };
+    constexpr auto of_gain = [](std::string_view symbol, std::string_view meaning, double weight) {
+      return State{.name = symbol, .unit = "pu", .meaning = meaning, .weight = weight, .bends = true};
+    };
+    return std::array{
+        of_gain("Vm", "measured voltage", 20.0),  // Kpv stands behind it
+        of_gain("e", "state of the transient gain reduction", 20.0),
+        of_gain("PI", "integral of the regulator", 1.0),
+        of_gain("B", "susceptance", 1.0),
+        timer("calm", "time of an error within Vdbd2"),
+        timer("low", "time below UV1"),
+        State{.name = "held", .unit = "-", .meaning = "1 while UVSBmax is the limit", .bends = true},
+        timer("above", "time above Bmax"),
+        timer("under", "time below UVT"),
+        timer("over1", "time above OV1"),
+        timer("over2", "time above OV2")};
+  }();
+
+  static void check(const double* p, const std::string& where, Problems& problems);
+  static std::string_view unphysical(const double*) { return ""; }
+  static std::string remark(const double* p);
+
+  template <class T>
+  static void prepare(const T* p, const Conventions&, T* c) {
+    std::copy(p, p + parameter_count, c);
+    c[iTb1] = inverse(p[Tb1]);
+    c[iTb2] = inverse(p[Tb2]);
+    c[iT2] = T(1.0) / p[T2];
+    c[iPLL] = T(1.0) / renewable::larger(p[PLLdelay], T(renewable::kFollow));
+    c[banded] = select(p[Vdbd1] > T(0.0), T(1.0), T(0.0));
+  }
+  template <class T>
+  static void current(const T* c, const T* x, Signals<T>& s) {
+    s.Ir = x[B] * s.Vi - c[conductance] * s.Vr;
+    s.Ii = T(0.0) - x[B] * s.Vr - c[conductance] * s.Vi;
+  }
+  template <class T>
+  static void derivative(const T* c, const T* x, const Signals<T>& s, T* dx) {
+    const T V = magnitude(s.Vpr, s.Vpi);
+    const T measured = lead_lag(c[Tc1], c[iTb1], x[Vm], V, dx[Vm]);
+    const T error = c[Vref] - measured - c[Xc1] * magnitude(s.Vr, s.Vi) * x[B];
+    const T acts = clamp(awake(c, error, x[calm], dx[calm]) * error, c[Vemin], c[Vemax]);
+    const T u = lead_lag(c[Tc2], c[iTb2], x[e], acts, dx[e]);
+    const T asked = c[Kpv] * u + x[PI], most = top(c, x, V, asked, dx);
+    dx[PI] = shared::non_windup(c[Kiv] * u, asked, c[Bmin], most) -
+             T(shared::kReturn) * (x[PI] - clamp(x[PI], c[Bmin], most));
+    dx[B] = (on(c, x, V, dx) * clamp(asked, c[Bmin], most) - x[B]) * c[iT2];
+  }
+  template <class T>
+  static std::string steady(const T* p, T* c, Signals<T>& s, T* x);
+
+ private:
+  template <class T>
+  static T magnitude(const T& r, const T& i) {
+    using std::sqrt;
+    return sqrt(r * r + i * i + T(1e-24));  // a dual needs a slope at V = 0
+  }
+  /// 1 where `much` is beyond the band in which a threshold of voltage sets in.
+  template <class T>
+  static T beyond(const T& much) {
+    return clamp(much * T(1.0 / renewable::kDipBand), T(0.0), T(1.0));
+  }
+  /// Whether it acts on its error: 0 within the dead-band. The band's own edges are those of voltages, only
+  /// narrower.
+  template <class T>
+  static T awake(const T* c, const T& error, const T& x, T& dx) {
+    const T zero(0.0), one(1.0), size = renewable::larger(error, zero - error), per_edge(1.0 / kWakingBand);
+    const T inside = clamp((c[Vdbd2] - size) * per_edge, zero, one);
+    const T outside = clamp((size - c[Vdbd1]) * per_edge, zero, one);
+    const T past = (x - c[Tdbd]) * T(1.0 / renewable::kFading), asleep = clamp(past, zero, one);
+    const T falls = outside + (one - outside) * (one - asleep) * (one - inside);
+    dx = c[banded] * (inside * clamp(T(2.0) - past, zero, one) - falls * x * T(1.0 / renewable::kFollow));
+    return one - c[banded] * asleep;
+  }
+  /// The upper limit of what the regulator asks for.
+  template <class T>
+  static T top(const T* c, const T* x, const T& V, const T& asked, T* dx) {
+    const T zero(0.0), one(1.0);
+    const T long_low = shared::lasting(beyond(c[UV1] - V), c[UVtm1], x[low], dx[low]);
+    dx[held] = long_low * (one - x[held]) * T(1.0 / renewable::kFollow) -
+               (one - long_low) * clamp(x[held] * T(1.0 / kWakingBand), zero, one) * c[iPLL];
+    const T long_above = shared::lasting(beyond(asked - c[Bmax]), c[Tshrt], x[above], dx[above]);
+    const T usual = c[Bshrt] - long_above * (c[Bshrt] - c[Bmax]);
+    const T share = clamp(x[held] * T(1.0 / kWakingBand), zero, one);
+    return renewable::larger(c[Bmin], usual - share * positive_part(usual - c[UVSBmax]));
+  }
+  /// 1 until it trips.
+  template <class T>
+  static T on(const T* c, const T* x, const T& V, T* dx) {
+    const T one(1.0);
+    return (one - shared::passed(beyond(c[UVT] - V), c[UVtm2], x[under], dx[under])) *
+           (one - shared::passed(beyond(V - c[OV1]), c[OVtm1], x[over1], dx[over1])) *
+           (one - shared::passed(beyond(V - c[OV2]), c[OVtm2], x[over2], dx[over2]));
+  }
+
+  static constexpr double kWakingBand =
+      1e-4;  ///< of the dead-band [pu], and of what `held` counts as nothing
+};
+
+template <class T>
+std::string Model::steady(const T* p, T* c, Signals<T>& s, T* x) {
+  const T square_2 = s.Vr * s.Vr + s.Vi * s.Vi, zero(0.0);
+  const T V = magnitude(s.Vpr, s.Vpi);
+  c[conductance] = zero - (s.Vr * s.Ir + s.Vi * s.Ii) / square_2;
+  x[B] = x[PI] = (s.Vi * s.Ir - s.Vr * s.Ii) / square_2;
+  const double b = value_of(x[B]), v = value_of(V);
+  if (b < value_of(p[Bmin]) || b > value_of(p[Bmax]))
+    return fmt::format("it would stand at B = {:.4f} pu, and Bmin, Bmax are {:g}, {:g} pu", b,
+                       value_of(p[Bmin]), value_of(p[Bmax]));
+  if (v < std::max(value_of(p[UV1]), value_of(p[UVT])) || v > std::min(value_of(p[OV1]), value_of(p[OV2])))
+    return fmt::format(
+        "its protection acts at V = {:.4f} pu: UV1, UVT, OV1, OV2 are {:g}, {:g}, {:g}, {:g} pu", v,
+        value_of(p[UV1]), value_of(p[UVT]), value_of(p[OV1]), value_of(p[OV2]));
+  x[Vm] = V;
+  c[Vref] = V + p[Xc1] * magnitude(s.Vr, s.Vi) * x[B];
+  x[e] = x[low] = x[held] = x[above] = x[under] = x[over1] = x[over2] = zero;
+  x[calm] = p[Tdbd] + T(2.0 * renewable::kFading);  // it sleeps
+  return {};
+}
+
+inline void Model::check(const double* p, const std::string& where, Problems& problems) {
+  const auto says = [&](int i) {
+    return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
+  };
+  for (const int i : {Flag1, Flag2})
+    if (p[i] != 0.0 && p[i] != 1.0) problems.add(says(i), where, "there is no such code", "give 0 or 1");
+  for (int i = 0; i < parameter_count; ++i)
+    if (parameters[i].unit == "s" && !(p[i] >= 0.0))
+      problems.add(says(i), where, "a time is not negative", "give a value >= 0");
+  for (const int i : {Kpv, Kiv, Xc1, Vdbd2})
+    if (!(p[i] >= 0.0)) problems.add(says(i), where, "it would run away", "give a value >= 0");
+  if (p[T2] == 0.0)
+    problems.add(says(T2), where, "the voltage would be a function of itself", "give a value > 0");
+  for (const auto& [high, low_one] : {std::pair<int, int>{Bmax, Bmin}, {Bshrt, Bmax}, {Vdbd1, Vdbd2}})
+    if (!(p[high] >= p[low_one]))
+      problems.add(says(high) + " with " + says(low_one), where, "the first is the wider limit", "swap them");
+  if (!(p[Vemax] >= 0.0 && p[Vemin] <= 0.0))
+    problems.add(says(Vemax) + " with " + says(Vemin), where, "an error of 0 lies between them",
+                 "give Vemax >= 0 >= Vemin");
+}
+
+/// What the record asks for and the equations leave out.
+inline std::string Model::remark(const double* p) {
+  std::string text;
+  const auto add = [&](bool asked, const std::string& what) {
+    if (asked) text += (text.empty() ? "" : "; ") + what;
+  };
+  add(p[Flag1] == 1.0, "Flag1 = 1: mechanically switched shunts stay as they are");
+  add(p[Flag2] == 1.0, "Flag2 = 1: the slope is Xc1 everywhere");
+  add(p[Kps] != 0.0 || p[Kis] != 0.0, "the slow susceptance regulator (Kps, Kis) stands still");
+  add(p[UV2] > 0.0, fmt::format("below UV2 = {:g} pu nothing happens at once", p[UV2]));
+  return text;
+}
+
+}  // namespace swingbank::sim::effects::load_svsmo1
