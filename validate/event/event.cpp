@@ -112,10 +112,11 @@ bool has_peak(const std::vector<Complex>& step, Smear jump, std::size_t m) {
   return true;
 }
 
+constexpr double kGoodPart = 0.15;  ///< of a jump's largest step
+
 /// Whether a jump over several intervals has a good part in its second one. The little that a filter may
 /// leave there, a subtransient moves as well, and a fault of two samples hides how that goes on.
 bool is_shared_out(const record::Record& r, const playin::Switching& jump) {
-  constexpr double kGoodPart = 0.15;  // of the largest step
   const auto step = playin::voltage_steps(r);
   std::size_t m = 1;
   for (std::size_t k = 1; k + 1 < step.size(); ++k)
@@ -123,9 +124,9 @@ bool is_shared_out(const record::Record& r, const playin::Switching& jump) {
   const auto along = [&](std::size_t k) { return std::real(step[k] * std::conj(step[m])); };
   return std::max(along(m - 1), along(m + 1)) > kGoodPart * std::norm(step[m]);
 }
-/// Whether the record's first jump cannot have passed a filter: a decay follows it, or it is large and too
-/// sudden. A filter would share it out over two intervals, or begin in the interval before. Later jumps may
-/// be those of a swing.
+/// Whether the record's first jump cannot have passed a filter: a decay follows it, or it is large or alone,
+/// and too sudden. A filter would share it out over two intervals, or begin in the interval before. Later
+/// jumps may be those of a swing.
 bool is_sharp(const record::Record& r, const std::vector<playin::Switching>& found, double threshold) {
   constexpr double kClear = 10, kBegins = 0.03;
   if (found.empty()) return false;
@@ -133,8 +134,9 @@ bool is_sharp(const record::Record& r, const std::vector<playin::Switching>& fou
       std::ranges::find_if(r.t, [&](double t) { return t > found.front().time; }) - r.t.begin());
   const auto step = playin::voltage_steps(r);
   if (decays_after(step, k - 1, least_jump(prominence(step), threshold))) return true;
-  return std::abs(step[k - 1]) > kClear * threshold &&
-         std::abs(step[k - 2]) < kBegins * std::abs(step[k - 1]);
+  const double jump = std::abs(step[k - 1]);
+  const bool alone = k + 1 < step.size() && std::abs(step[k] - step[k + 1]) < kGoodPart * jump;
+  return (jump > kClear * threshold || alone) && std::abs(step[k - 2]) < kBegins * jump;
 }
 /// Whether the voltage moves before the interval of the first switching that a person told.
 bool moves_before(const record::Record& r, double threshold) {
@@ -213,15 +215,15 @@ void set_start(FitEvent& e, const FitEventOptions& options) {
 }
 
 /// One instrument smears all jumps over the same time, so a step that is spread wider than every record's
-/// first jump is a fast swing.
+/// first jump is a fast swing. Where in its interval a jump lies may make it reach into one more.
 void drop_swings(std::vector<FitEvent>& events) {
   double widest = 0;
   for (const FitEvent& e : events)
     if (!e.switchings.empty()) widest = std::max(widest, e.switchings.front().uncertainty);
   for (FitEvent& e : events) {
-    const double edge = 0.5 * e.record.step();
+    const double edge = 0.5 * e.record.step(), one_more = edge;
     if (e.smeared.empty() || std::erase_if(e.switchings, [&](const playin::Switching& s) {
-                               return s.uncertainty > widest + edge;
+                               return s.uncertainty > widest + one_more + edge / 2;
                              }) == 0)
       continue;
     for (std::size_t k = 0; k < e.smeared.size(); ++k)

@@ -50,11 +50,11 @@ TEST(FindSwitchings, AJumpOutOfASwingIsOne) {
   EXPECT_NEAR(found.front().time, 5.0 + 0.5 / 60, 0.51 / 60);
 }
 /// A fault from 3 s to 3.1 s, then a swing of 3 Hz past the voltage's minimum, as near loss of synchronism.
-record::Record near_loss() {
+record::Record near_loss(double fault = 0.35) {
   return record_of(
-      [](double t) {
+      [fault](double t) {
         if (t <= 3.0) return 1.0;
-        if (t <= 3.1) return 0.35;
+        if (t <= 3.1) return fault;
         return 0.9 - 0.55 * std::exp(-std::pow((t - 3.5) / 0.035, 2));
       },
       [](double t) { return t <= 3.1 ? 0.1 : 0.5 + 0.6 * std::erf((t - 3.5) / 0.05); });
@@ -81,6 +81,10 @@ TEST(FindSwitchings, ASwingBesideSharpJumpsIsNone) {
   EXPECT_NEAR(found[0].time, 3.0, 1.0 / 60);
   EXPECT_NEAR(found[1].time, 3.1, 1.0 / 60);
   EXPECT_EQ(std::ranges::count(smeared, 1), 0);
+}
+TEST(FindSwitchings, ASmallJumpTellsThatNoneIsSmeared) {
+  EXPECT_EQ(jumps_of({near_loss(0.85)}, playin::kJumpThreshold), Jumps::sharp);
+  EXPECT_EQ(jumps_of({filtered(near_loss(0.85))}, playin::kJumpThreshold), Jumps::spread);
 }
 TEST(FindSwitchings, OneInstrumentSmearsAllOrNone) {
   const record::Record quiet = record_of([](double) { return 1.0; });
@@ -173,6 +177,29 @@ TEST(PrepareEvents, AboutToldInstantsAFilterSmearsAsAboutFoundOnes) {
   EXPECT_EQ(told.smeared, found.smeared);
   EXPECT_EQ(told.start.samples, found.start.samples);
   EXPECT_EQ(told.switchings[1].time, 3.1);
+}
+/// A fault near the terminal behind a triangular window of two cycles, stamps with six decimals: the window
+/// reaches one interval more at its end than at its begin.
+TEST(PrepareEvents, TheEndOfAFaultMayReachOneIntervalMore) {
+  const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  const double on = 3 + 0.5 / 60;
+  for (const double end : {5.05, 5.25, 5.75}) {
+    const double off = 3 + end / 60;
+    record::Record r = record_of([=](double t) {
+      double sum = 0;
+      for (int i = -50; i <= 50; ++i) {
+        const double at = t + i / 50.0 / 60;
+        sum += (1 - std::abs(i) / 50.0) * (at <= on ? 1.0 : at <= off ? 0.3 : 0.9 + 2 * (at - off));
+      }
+      return sum / 50;
+    });
+    for (double& t : r.t) t = std::round(1e6 * t) / 1e6;
+    r.P.assign(r.t.size(), 0.4);
+    r.Q.assign(r.t.size(), 0.1);
+    const FitEvent e = prepare_events(model, {r}).front();
+    ASSERT_EQ(e.switchings.size(), 2U) << end;
+    EXPECT_NEAR(e.switchings[1].time, off, 0.2 / 60) << end;
+  }
 }
 /// The filter smears every jump over as many samples, the swing is wider.
 TEST(PrepareEvents, BehindAFilterAWiderSwingIsNone) {
