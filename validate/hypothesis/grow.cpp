@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/problem.hpp"
 #include "sim/plant/usual.hpp"
 #include "validate/fit/rao_score.hpp"
 #include "validate/hypothesis/judge.hpp"
@@ -110,14 +111,21 @@ void try_part(const fit::ScoreTest& score, const Hypothesis& h, const fit::Fit& 
   }
 }
 
+/// The best of the parts. Where the fit ended only lenient steps may get through; their slopes will do then.
 std::optional<Part> most_promising(const event::WhitenedEvents& events, const Hypothesis& h,
                                    const fit::Fit& f) {
   const auto off = left_off(h);
   if (off.empty()) return std::nullopt;
-  const fit::ScoreTest score(events, {believed(f), h.conventions}, f);
-  std::optional<Part> best;
-  for (const auto& id : off) try_part(score, h, f, id, best);
-  return best;
+  for (const bool lenient : {false, true}) {
+    try {
+      const fit::ScoreTest score(events, {believed(f), h.conventions}, f, lenient);
+      std::optional<Part> best;
+      for (const auto& id : off) try_part(score, h, f, id, best);
+      return best;
+    } catch (const InputError&) {  // its slopes cannot be run
+    }
+  }
+  return std::nullopt;
 }
 
 /// The hypothesis with the part free, at its value to start from.

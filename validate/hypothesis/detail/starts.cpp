@@ -5,6 +5,8 @@
 #include <cmath>
 #include <span>
 
+#include "base/problem.hpp"
+
 namespace swingbank::validate::hypothesis {
 namespace {
 
@@ -40,8 +42,11 @@ bool unheard(const Hypothesis& h) {
 }  // namespace
 
 StartFinder::StartFinder(const Stage& stage) : stage_(stage) {
-  if (stage.fit.misfit() < thresholds::search.nearly_fits)
+  if (!(stage.fit.misfit() < thresholds::search.nearly_fits)) return;
+  try {
     score_.emplace(stage.events, stage.under_test(), stage.fit, true);
+  } catch (const InputError&) {  // where the fit ended its slopes cannot be run: starts are screened instead
+  }
 }
 
 Candidate StartFinder::of(Hypothesis h) const {
