@@ -54,7 +54,7 @@ TEST(Networks, OutputOfTheThesissIsNeverNegative) {
   }
 }
 
-TEST(Networks, MlpLearnsASquare) {
+TEST(NetworksFull, MlpLearnsASquare) {
   at::manual_seed(3);
   auto s = shape(1, 2, 1);
   s.output_bias = {0.5f};

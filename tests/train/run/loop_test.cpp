@@ -281,7 +281,7 @@ TEST(Training, ASecondProcessAtTheSameRunIsRefused) {
   EXPECT_FALSE(std::filesystem::exists(file));
 }
 
-TEST(Training, RecurrentNetworksLearn) {
+TEST(TrainingFull, RecurrentNetworksLearn) {
   const World world("recurrent", 500, 8);
   for (const std::string name : {"lstm", "gru"}) {
     RunRequest r = request(world, name, 3);
