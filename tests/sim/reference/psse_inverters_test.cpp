@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <iostream>
 #include <numbers>
 #include <optional>
 
@@ -203,12 +204,12 @@ struct UnitsRecord {
   network::Event (*event)(const grid::Grid&);
   double until;                     ///< [s]
   double angle, voltage, reactive;  ///< largest differences [degrees, pu, of Q's swing]
+  double stepped_angle;             ///< of the angle in PSS/E's steps [degrees]
 };
 class PsseRecordsManyUnits : public testing::TestWithParam<UnitsRecord> {};
 
 // Measured: V 5.9e-5 pu (line) and 1.2e-4 pu (generator), angles against unit 1 0.07 and 0.18 degrees. Of
-// their swing P is off by 4.8 and 1.8 %, Q by 9.3 and 1.0 %, field current by 12 and 3.2 %: PSS/E's step of 5
-// ms.
+// their swing P is off by 4.8 and 1.8 %, Q by 9.3 and 1.0 %, field current by 12 and 3.2 %.
 TEST_P(PsseRecordsManyUnits, WithExactIntegration) {
   const grid::Grid grid = many_units();
   const auto record = unpacked(GetParam().csv);
@@ -274,11 +275,57 @@ TEST_P(PsseRecordsManyUnits, WithExactIntegration) {
   EXPECT_LT(worst_voltage, GetParam().voltage);
   EXPECT_LT(worst[1], GetParam().reactive);
 }
+// In PSS/E's own steps the angles are off by 0.016 and 0.13 degrees, V by 5.9e-5 and 1.3e-4 pu; of the
+// machines' swings P by 4.7 and 0.9 %, Q by 9.2 and 0.5 %, field current by 12 and 3.2 %. So the steps
+// account for most of the angle after the line's trip and for nothing else of it; its swings are small (V of
+// bus 102: 0.0012 pu). There the power at bus 102 is off by 4 % of its swing 10 ms after the switching
+// already, and from 1.5 s on Q between unit WG, the one with a stabiliser, and the others; the converters are
+// right. Why is not understood. Unit 1's field current is printed to 4 % of its swing.
+TEST_P(PsseRecordsManyUnits, InPssesSteps) {
+  const grid::Grid grid = many_units();
+  const auto record = unpacked(GetParam().csv);
+  const network::Event event = GetParam().event(grid);
+  test::PsseStepper stepper(grid, event, kRecordStep, GetParam().until, 1);
+  double voltage = 0.0, angle = 0.0;
+  const auto compare = [&](const std::vector<double>& row) {
+    for (std::size_t b = 0; b < kBuses; ++b)
+      voltage =
+          std::max(voltage, std::abs(std::hypot(stepper.voltages()[2 * b], stepper.voltages()[2 * b + 1]) -
+                                     row[1 + kUnits * kOfUnit + 2 * b]));
+    for (std::size_t u = 0; u < kUnits; ++u) {
+      const bool gone =
+          !event.generator_trips.empty() && event.generator_trips[0].generator == grid.plants[u].generator;
+      if (gone || grid.plants[u].machine.effect->converter) continue;
+      const double theirs = row[1 + u * kOfUnit] - row[1];  // against unit 1
+      angle = std::max(angle, std::abs(in_degrees(stepper.states(u)[0] - stepper.states(0)[0]) - theirs));
+    }
+  };
+  std::size_t next = 0;
+  int compared = 0;
+  const auto last = std::lround(GetParam().until / kRecordStep);
+  for (long k = 0; k <= last; ++k) {
+    const double t = static_cast<double>(k) * kRecordStep;
+    stepper.derive(t);
+    while (next < record.rows.size() && record.rows[next][0] < t - 0.2 * kRecordStep) ++next;
+    const bool there = next < record.rows.size() && record.rows[next][0] < t + 0.2 * kRecordStep;
+    if (k == stepper.switching())
+      stepper.switch_over(t);
+    else if (there)
+      compare(record.rows[next]), ++compared;
+    stepper.advance(t);
+  }
+  RecordProperty("V_pu", testing::PrintToString(voltage));
+  RecordProperty("degrees", testing::PrintToString(angle));
+  std::cout << GetParam().csv << " in PSS/E's steps: V " << voltage << " pu, angle " << angle << " degrees\n";
+  EXPECT_GT(compared, 3900);
+  EXPECT_LT(voltage, 1.5 * kVoltageLimit);
+  EXPECT_LT(angle, GetParam().stepped_angle);
+}
 INSTANTIATE_TEST_SUITE_P(
     All, PsseRecordsManyUnits,
     testing::Values(
         UnitsRecord{"line_trip_results.csv.gz", [](const grid::Grid& grid) { return trip(grid, 101, 103); },
-                    20.0, 0.1, 1.5 * kVoltageLimit, 0.12},
+                    20.0, 0.1, 1.5 * kVoltageLimit, 0.12, 0.02},
         UnitsRecord{
             "gen_trip_results.csv.gz",
             [](const grid::Grid& grid) {
@@ -286,7 +333,7 @@ INSTANTIATE_TEST_SUITE_P(
               event.generator_trips.push_back({grid.plants[plant_at(grid, "102/SW")].generator, kSwitching});
               return event;
             },
-            20.0, 0.2, 1.5 * kVoltageLimit, 0.02}),
+            20.0, 0.2, 1.5 * kVoltageLimit, 0.02, 0.15}),
     [](const auto& one) { return one.index == 0 ? std::string("LineTrip") : std::string("GeneratorTrip"); });
 
 }  // namespace
