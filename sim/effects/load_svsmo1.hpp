@@ -324,6 +324,8 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
   };
   for (const int i : {Flag1, Flag2})
     if (p[i] != 0.0 && p[i] != 1.0) problems.add(says(i), where, "there is no such code", "give 0 or 1");
+  if (!(p[RemoteBus] >= 0.0 && p[RemoteBus] <= parameters[RemoteBus].high))
+    problems.add(says(RemoteBus), where, "there is no such bus number", "give 0 to 999997");
   for (int i = 0; i < parameter_count; ++i)
     if (parameters[i].unit == "s" && !(p[i] >= 0.0))
       problems.add(says(i), where, "a time is not negative", "give a value >= 0");

@@ -213,14 +213,9 @@ class GridMaker {
                        Problems& problems) {
     const std::string what = record.model + " at bus " + std::to_string(record.bus);
     if (!fits(effect, record, where, problems)) return;
-    ShuntModel model{grid_.network.bus_index(record.bus), {}, -1, values_of(effect, record), where};
+    ShuntModel model{grid_.network.bus_index(record.bus), {}, values_of(effect, record), where};
     effect.check(effect.law.get(), model.block.p.data(), where, problems);
-    if (const int far = regulated_bus(model.block); far != 0 && far != record.bus) {
-      model.regulated = grid_.network.bus_index(far);
-      if (model.regulated < 0)
-        problems.add(what + " regulates bus " + std::to_string(far), where,
-                     grid_.network.origin + " has no such bus", "correct the bus number");
-    }
+    (void)regulated_index(grid_.network, model.block, where, problems);
     const auto is_its = [&](const network::Shunt& s) {
       return s.bus == model.bus &&
              (record.id == kAnyShunt ? s.id.starts_with("SW")
@@ -262,7 +257,6 @@ class GridMaker {
                          network::LoadKind::shunt});
       n.shunts.erase(at);
       set_load(grid_, static_cast<int>(n.loads.size()) - 1, std::move(model.block), model.where, problems_);
-      grid_.loads.back().regulated = model.regulated;
     }
   }
   void finish(plant::Plant& plant) {
@@ -405,7 +399,6 @@ class GridMaker {
   struct ShuntModel {
     int bus;         ///< index of its own bus
     std::string id;  ///< in Network::shunts
-    int regulated;   ///< index of another bus whose voltage it regulates, or -1
     plant::Block block;
     std::string where;
   };

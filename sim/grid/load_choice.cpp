@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/grid/detail/dyr_models.hpp"
 #include "sim/network/admittance.hpp"
 #include "sim/plant/block_text.hpp"
 
@@ -68,6 +69,7 @@ void set_load(Grid& grid, int load, plant::Block block, const std::string& where
   consumer.mva = grid.network.base_mva;
   consumer.consumption = network::consumption(l, grid.flow);
   consumer.block = std::move(block);
+  consumer.regulated = regulated_index(grid.network, consumer.block, where, problems);
   if (consumer.consumption == Complex{} && l.kind != network::LoadKind::shunt) {
     problems.add("load " + consumer.name + " draws nothing", where,
                  "its P and Q are zero in " + grid.network.origin, "choose a load that draws power");

@@ -132,7 +132,20 @@ void without_switched_shunts(formats::DyrRecord& record) {
 
 int regulated_bus(const plant::Block& block) {
   const int index = block.effect->parameter_index("RemoteBus");
-  return index < 0 ? 0 : static_cast<int>(block.p[static_cast<std::size_t>(index)]);
+  if (index < 0) return 0;
+  const auto at = static_cast<std::size_t>(index);
+  const double value = block.p[at];
+  // Another value is none that a bus has: check() refuses it.
+  return value > 0.0 && value <= block.effect->parameters[at].high ? static_cast<int>(value) : 0;
+}
+
+int regulated_index(const network::Network& network, const plant::Block& block, const std::string& where,
+                    Problems& problems) {
+  const int number = regulated_bus(block), index = number == 0 ? -1 : network.bus_index(number);
+  if (number != 0 && index < 0)
+    problems.add(fmt::format("{} regulates bus {}", block.effect->name, number), where,
+                 network.origin + " has no such bus", "correct the bus number");
+  return index;
 }
 
 formats::DyrRecord plain(formats::DyrRecord record, const Effect& effect) {

@@ -36,6 +36,9 @@ inline constexpr std::string_view kAnyShunt = "*";
 inline constexpr std::size_t kSwitchedBeside = 8, kOfSwitched = 2;
 /// Number of the bus whose voltage a model regulates; 0: its own, or none.
 int regulated_bus(const plant::Block& block);
+/// Its index, -1 where there is none; a bus that the network has not is a problem.
+int regulated_index(const network::Network& network, const plant::Block& block, const std::string& where,
+                    Problems& problems);
 /// What was done to a record that is shorter or longer than its model takes it.
 struct Completion {
   bool sound = false;  ///< it is now as long as that

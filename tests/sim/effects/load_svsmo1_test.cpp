@@ -249,7 +249,8 @@ TEST(Svsmo1, ValuesThatNoEquationTakesAreRefused) {
                                          {"Vdbd2", 0.1},
                                          {"Vemin", 0.1},
                                          {"Kiv", -1.0},
-                                         {"Tshrt", -0.1}}) {
+                                         {"Tshrt", -0.1},
+                                         {"RemoteBus", 1e300}}) {
     const plant::Consumer load = Bench::consumer({{parameter, value}}, 0.1);
     Problems problems;
     load.block.effect->check(nullptr, load.block.p.data(), "x", problems);
