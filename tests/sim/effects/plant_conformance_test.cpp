@@ -273,8 +273,8 @@ std::vector<T> load_outputs(const plant::Consumer& load, const plant::OperatingO
                             const std::vector<T>& x) {
   const plant::LoadEquations<T> equations(load);
   Signals<T> s;
-  s.Vr = T(kVoltage.real() - 0.1);
-  s.Vi = T(kVoltage.imag() + 0.02);
+  s.Vpr = s.Vr = T(kVoltage.real() - 0.1);  // it regulates its own bus, if any
+  s.Vpi = s.Vi = T(kVoltage.imag() + 0.02);
   equations.current(o.c.data(), x.data(), s);
   std::vector<T> out(x.size(), T(0.0));
   equations.derivative(o.c.data(), x.data(), s, out.data());
