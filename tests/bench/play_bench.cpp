@@ -44,8 +44,9 @@ struct Bench {
                          .scale = std::abs(sim::plant::parameter_value(tested.plant, f.id))});
       const double middle = processor_seconds();
       const int runs = static_cast<int>(along.size() + sim::kDirections - 1) / sim::kDirections;
-      cost.slope_steps += static_cast<double>(event::play(tested, e, {}, along, {.lenient = lenient}).steps) /
-                          e.record.samples() / runs;
+      const event::Playing how{.lenient = lenient, .linear_slopes = lenient};
+      cost.slope_steps += static_cast<double>(event::play(tested, e, {}, along, how).steps) /
+                          e.record.samples() / (lenient ? 1 : runs);
       cost.slope_seconds += processor_seconds() - middle;
       ++cost.runs;
       double square = 0, most = 0;

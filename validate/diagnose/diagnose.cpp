@@ -394,22 +394,27 @@ class Diagnoser {
         std::ranges::max_element(tried.begin(), rivals, {}, &hypothesis::Judgement::gain)->fit;
     each({tried.begin(), rivals}, "further starts", [&](hypothesis::Judgement& j) {
       hypothesis::try_further(stage, leader, j);
+      hypothesis::fit_on(stage, j);
       hypothesis::grow(result_.events, options_.spread, j.hypothesis, j.fit);
       j.gain = fit::gain(result_.base, j.fit, fit::criterion);
     });
     std::ranges::stable_sort(tried, std::greater<>(), &hypothesis::Judgement::gain);
     look_elsewhere(stage, tried);
   }
-  /// What could still become probable beside the best one of its slot may lie at the lesser of several
-  /// optima.
+  /// What could still become probable beside the best one of its slot, and whatever nearly fits, may lie at
+  /// the lesser of several optima. How far behind it stands does not tell: which optimum a fit ends at,
+  /// roundings decide. Where much is left, though, what else could follow linearly says little of a draw.
   void look_elsewhere(const hypothesis::Stage& stage, std::vector<hypothesis::Judgement>& tried) const {
     const int slot = tried.front().hypothesis.slot;
     const double reach = tried.front().gain - hypothesis::out_of_reach();
     const auto far = std::stable_partition(tried.begin(), tried.end(), [&](const hypothesis::Judgement& j) {
-      return j.hypothesis.slot == slot && j.gain > reach && j.fitted;
+      return j.hypothesis.slot == slot && j.fitted &&
+             (j.gain > reach || j.fit.misfit() < thresholds::search.nearly_fits);
     });
+    std::vector<sim::plant::Plant> found;  // as they stand before any of them is looked at elsewhere
+    for (auto j = tried.begin(); j != far; ++j) found.push_back(j->fit.plant);
     each({tried.begin(), far}, "other optima", [&](hypothesis::Judgement& j) {
-      hypothesis::try_basins(stage, j);
+      hypothesis::try_basins(stage, j, found);
       j.gain = fit::gain(result_.base, j.fit, fit::criterion);
     });
     std::ranges::stable_sort(tried, std::greater<>(), &hypothesis::Judgement::gain);

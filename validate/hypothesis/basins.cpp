@@ -19,15 +19,24 @@ constexpr int kLookSteps = 6, kLookOnSteps = 12;
 
 class Basins {
  public:
-  Basins(const Stage& stage, const Judgement& j)
-      : stage_(stage), h_(j.hypothesis), from_(j.fit), own_(h_.free.size() - stage.own.size()) {}
+  Basins(const Stage& stage, const Judgement& j, std::span<const sim::plant::Plant> rivals)
+      : stage_(stage),
+        rivals_(rivals),
+        h_(j.hypothesis),
+        from_(j.fit),
+        own_(h_.free.size() - stage.own.size()) {}
 
   /// The best fit that was found elsewhere, without errors.
   [[nodiscard]] std::optional<fit::Fit> best() const {
     Hypothesis about = h_;
     about.plant = from_.plant;
     std::vector<fit::Fit> tried;
-    for (const sim::plant::Plant& plant : promising(further_draws(about, own_, kDrawsAbout, 0)))
+    auto draws = further_draws(about, own_, kDrawsAbout, 0);
+    const auto fitted_values = fit::values_of(from_.plant, h_.free);
+    for (const sim::plant::Plant& rival : rivals_)
+      if (auto values = by_name(h_, fitted_values, rival); values != fitted_values)
+        draws.push_back(std::move(values));
+    for (const sim::plant::Plant& plant : promising(draws))
       tried.push_back(fitted(plant, from_, kLookSteps, kLookSteps + kLookOnSteps));
     std::ranges::sort(tried, fit::better);
     if (tried.size() > kLooksOn) tried.resize(kLooksOn);
@@ -78,6 +87,7 @@ class Basins {
   }
 
   const Stage& stage_;
+  std::span<const sim::plant::Plant> rivals_;
   const Hypothesis& h_;
   const fit::Fit& from_;
   const std::size_t own_;  ///< the effect's own free parameters, which come first
@@ -93,11 +103,11 @@ class Basins {
 
 }  // namespace
 
-void try_basins(const Stage& stage, Judgement& j) {
+void try_basins(const Stage& stage, Judgement& j, std::span<const sim::plant::Plant> rivals) {
   if (!j.hypothesis.drawn || !j.fit.failed.empty()) return;
   std::optional<fit::Fit> found;
   try {
-    found = Basins(stage, j).best();
+    found = Basins(stage, j, rivals).best();
   } catch (const InputError&) {  // a run with slopes takes other steps, and this one cannot be run
   }
   if (!found || !fit::better(*found, j.fit)) return;

@@ -22,9 +22,8 @@ void copy_values(const sim::plant::Plant& from, const sim::plant::Plant& like,
   }
 }
 
-/// Returns `values` of the hypothesis's free parameters, but takes those of its slot from the leader's effect
-/// there wherever that has a parameter of the same name and unit. Effects of one slot share the names of
-/// their textbooks.
+}  // namespace
+
 std::vector<double> by_name(const Hypothesis& h, std::vector<double> values,
                             const sim::plant::Plant& leader) {
   int there = 0;
@@ -45,8 +44,6 @@ std::vector<double> by_name(const Hypothesis& h, std::vector<double> values,
   }
   return values;
 }
-
-}  // namespace
 
 bool alike(double left, double other) {
   return std::abs(left - other) <
@@ -135,6 +132,25 @@ void try_further(const Stage& stage, const fit::Fit& leader, Judgement& j) {
     if (fit::Fit known = fit::fit(h.under_test(), stage.events, free, o); known.failed.empty())
       j.fit = std::move(known);
   }
+}
+
+void fit_on(const Stage& stage, Judgement& j) {
+  constexpr int kRoundSteps = 6, kRounds = 5;
+  if (!j.fit.failed.empty()) return;
+  const auto free = free_of(j.hypothesis, stage.spread);
+  const fit::Fit begin = j.fit;
+  fit::FitOptions o{.lenient = true, .errors = false};
+  o.iterations = kRoundSteps;
+  for (int round = 0; round < kRounds; ++round) {
+    fit::Fit f = fit::fit(j.hypothesis.under_test(), stage.events, free, fit::continued(o, j.fit, free));
+    if (!f.failed.empty() || !fit::better(f, j.fit)) break;
+    const double gained = fit::gain(j.fit, f);
+    j.fit = std::move(f);
+    if (j.fit.converged || gained < thresholds::search.worth_a_round) break;
+  }
+  fit::Fit known = fit::fit(j.hypothesis.under_test(), stage.events, free,
+                            fit::continued({.iterations = 0, .lenient = true}, j.fit, free));
+  j.fit = known.failed.empty() && fit::gain(begin, known, fit::criterion) > 0 ? std::move(known) : begin;
 }
 
 void try_exchange(const Stage& stage, const Judgement& pair, Judgement& j) {

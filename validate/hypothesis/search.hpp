@@ -78,9 +78,19 @@ struct FittedOn {
 /// its slot found it. A rival must not lose by a poor start.
 void try_further(const Stage& stage, const fit::Fit& leader, Judgement& j);
 
+/// Fits `j` on where its fit ended, in rounds, as long as a round is worth it: a fit that was given few steps
+/// has not arrived, and how far it came says little of where it goes.
+void fit_on(const Stage& stage, Judgement& j);
+
+/// Returns `values` of the hypothesis's free parameters, but takes those of its slot from the leader's effect
+/// there wherever that has a parameter of the same name and unit. Effects of one slot share the names of
+/// their textbooks.
+std::vector<double> by_name(const Hypothesis& h, std::vector<double> values, const sim::plant::Plant& leader);
+
 /// Looks for other optima of `j`, whose fit has errors: from draws of its own parameters far from where it
-/// ended, chosen by what they leave with everything else following.
-void try_basins(const Stage& stage, Judgement& j);
+/// ended, and from the values that its rivals have found under the same names, chosen by what they leave with
+/// everything else following.
+void try_basins(const Stage& stage, Judgement& j, std::span<const sim::plant::Plant> rivals = {});
 
 /// Fits `j` from where the fit of another structure ended.
 void try_from(const Stage& stage, const fit::Fit& other, Judgement& j);
