@@ -79,9 +79,9 @@ constexpr Source kAsEffect = {};
 
 /// One parameter of an effect. `low` and `high` bound what is usual (sim/plant/usual.hpp); what no equation
 /// takes is refused by check(). A dataset's sampling box must lie within them. `neutral` is the value at
-/// which the influence vanishes (NaN: there is none). The unit "code" marks a choice among whole numbers:
-/// never sampled, never fitted. The two sources are the effect's own, standards_from and bounds_from, where
-/// a record gives none.
+/// which the influence vanishes, beyond what is usual too (NaN: there is none). The unit "code" marks a
+/// choice among whole numbers: never sampled, never fitted. The two sources are the effect's own,
+/// standards_from and bounds_from, where a record gives none.
 struct Parameter {
   std::string_view name;    ///< identifier in configs, HDF5 and tables: "Xdp"
   std::string_view symbol;  ///< as engineers write it: "X'd"

@@ -37,7 +37,7 @@ struct Model {
        kNone, shared::kNotModelled},
       {"M", "M", "code", 0.0, 0.0, 0.0, 0.0, "number of the low-pressure generator (0: there is none)", kNone,
        shared::kNotModelled},
-      {"K", "K", "pu", 20.0, 1.0, 200.0, kNoNeutral, "gain, the reciprocal of droop",
+      {"K", "K", "pu", 20.0, 1.0, 200.0, 0.0, "gain, the reciprocal of droop",
        literature::andes("IEEEG1, commit 073cb96")},
       {"T1", "T1", "s", 0.2, 0.0, 100.0, kNoNeutral, "lag of the governor (0: neither lag nor lead)",
        literature::own("a short lag")},

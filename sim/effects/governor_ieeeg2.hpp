@@ -28,7 +28,7 @@ struct Model {
       literature::own("a dashpot of 5 s: T2 = TR, T1 = TR delta/sigma, droops of 5 and 50 %");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
-      {"K", "K", "pu", 20.0, 0.0, 200.0, kNoNeutral, "gain, the reciprocal of droop",
+      {"K", "K", "pu", 20.0, 0.0, 200.0, 0.0, "gain, the reciprocal of droop",
        literature::own("a droop of 5 %; CIM has none")},
       {"T1", "T1", "s", 50.0, 0.0, 500.0, kNoNeutral, "lag of the governor (0: none)"},
       {"T2", "T2", "s", 5.0, 0.0, 100.0, kNoNeutral, "lead of the governor"},

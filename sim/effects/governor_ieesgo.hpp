@@ -35,7 +35,7 @@ struct Model {
       {"T4", "T4", "s", 0.5, 0.0, 50.0, kNoNeutral, "steam inlet (0: none)"},
       {"T5", "T5", "s", 10.0, 0.0, 100.0, kNoNeutral, "reheater (0: none)"},
       {"T6", "T6", "s", 0.5, 0.0, 100.0, kNoNeutral, "crossover (0: none)"},
-      {"K1", "K1", "pu", 20.0, 0.0, 200.0, kNoNeutral, "gain, the reciprocal of droop",
+      {"K1", "K1", "pu", 20.0, 0.0, 200.0, 0.0, "gain, the reciprocal of droop",
        literature::own("5 % droop")},
       {"K2", "K2", "-", 0.7, -3.0, 3.0, kNoNeutral, "fraction that passes the reheater", kSteam},
       {"K3", "K3", "-", 0.43, -3.0, 3.0, kNoNeutral, "fraction of it that passes the crossover", kSteam},
