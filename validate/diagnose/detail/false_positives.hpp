@@ -8,8 +8,8 @@
 namespace swingbank::validate::diagnose {
 
 /// Cases in which nothing was hidden that were given an effect, as judged before anything was mended on them:
-/// seeds 1128960556, 400997928 and 138707171.
-inline const Rate kFalsePositives{2, 110};
+/// seeds 400997928, 138707171 and 1497583896.
+inline const Rate kFalsePositives{1, 150};
 
 /// "In k of n blind cases in which nothing was hidden an effect was named (95 %: a to b %)."
 std::string false_positive_note();
