@@ -221,9 +221,10 @@ void drop_swings(std::vector<FitEvent>& events) {
   for (const FitEvent& e : events)
     if (!e.switchings.empty()) widest = std::max(widest, e.switchings.front().uncertainty);
   for (FitEvent& e : events) {
-    const double edge = 0.5 * e.record.step(), one_more = edge;
+    const double edge = 0.5 * e.record.step();
+    const double one_more = edge, rounding = edge / 2;  // uncertainties are whole numbers of `edge`
     if (e.smeared.empty() || std::erase_if(e.switchings, [&](const playin::Switching& s) {
-                               return s.uncertainty > widest + one_more + edge / 2;
+                               return s.uncertainty > widest + one_more + rounding;
                              }) == 0)
       continue;
     for (std::size_t k = 0; k < e.smeared.size(); ++k)

@@ -91,13 +91,17 @@ class Comparer {
     const double memory = sim::plant::memory(t.instruments);
     return memory > 0 ? memory + 2 * t.record.step() / kFine : undeclared_;
   }
-  void leave_out_smeared(compare::EventComparison& e, double smear) const {
-    if (!(smear > 0)) return;
+  /// Samples as near to a switching [s] are not compared.
+  void leave_out(compare::EventComparison& e, double reach) const {
     e.left_out.resize(e.record.t.size(), 0);
     for (std::size_t k = 0; k < e.record.t.size(); ++k)
       if (std::ranges::any_of(out_.instants,
-                              [&](double at) { return std::abs(e.record.t[k] - at) <= smear; }))
+                              [&](double at) { return std::abs(e.record.t[k] - at) <= reach; }))
         e.left_out[k] = 1;
+  }
+  void leave_out_smeared(compare::EventComparison& e, double smear) const {
+    if (!(smear > 0)) return;
+    leave_out(e, smear);
     e.notes.push_back(fmt::format(
         "The instruments' filters smear switchings by up to {:.0f} ms to either side: samples there are not "
         "compared.",
@@ -123,15 +127,6 @@ class Comparer {
     output(playin::Output::Efd, r.Efd, m.Efd);
     output(playin::Output::Ifd, r.Ifd, m.Ifd);
   }
-  /// A meter's frequency shows the jump of an angle late, smoothed or not at all.
-  void leave_out_peaks(compare::EventComparison& e) const {
-    const double reach = event::kPeakReach * e.record.step();
-    e.left_out.resize(e.record.t.size(), 0);
-    for (std::size_t k = 0; k < e.record.t.size(); ++k)
-      if (std::ranges::any_of(out_.instants,
-                              [&](double at) { return std::abs(e.record.t[k] - at) <= reach; }))
-        e.left_out[k] = 1;
-  }
   /// Compares angles relative to the reference where there is one. The reference's own angle, all angles
   /// where there is no reference, and what a record has in place of an angle are compared as frequency.
   /// Returns the angle that the model starts off by; NaN where the frequency is compared.
@@ -144,7 +139,7 @@ class Comparer {
     if (s_.reference < 0 || i == reference || by_meter) {
       const double nominal = s_.base.frequency;
       const std::vector<char> compared = e.left_out;
-      if (by_meter) leave_out_peaks(e);
+      if (by_meter) leave_out(e, event::kPeakReach * r.step());  // it shows an angle's jump late or smoothed
       add(e, {"frequency", "mHz", 1e3 * nominal, event::kLeastSpeedNoise, shift(), true, skip},
           by_meter ? r.f : compare::frequency_of(r.t, r.theta, nominal),
           compare::frequency_of(r.t, run_.answers[i].theta, nominal));

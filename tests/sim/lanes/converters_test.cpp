@@ -4,6 +4,7 @@
 #include "sim/lanes/batch.hpp"
 #include "sim/library/library.hpp"
 #include "tests/sim/lanes/random_grids.hpp"
+#include "tests/sim/lanes/run_jobs.hpp"
 
 namespace swingbank::sim::lanes {
 namespace {
@@ -42,12 +43,7 @@ std::map<std::uint64_t, Trajectory> play(const grid::Grid& grid, const std::vect
   BatchOptions options;
   options.t_end = 4.0;
   options.rate = 60.0;
-  std::map<std::uint64_t, Trajectory> runs;
-  Batch batch(grid, options);
-  std::uint64_t next = 0;
-  batch.run([&](Job& job) { return next < all.size() && (job.event = all[next], job.id = next++, true); },
-            [&](const Job& job, const Trajectory& run) { runs[job.id] = run; });
-  return runs;
+  return run_events(grid, all, options);
 }
 reference::ReferenceRun play_exactly(const grid::Grid& grid, const network::Event& event) {
   reference::ReferenceOptions exact;

@@ -18,4 +18,13 @@ inline std::map<std::uint64_t, Trajectory> run_jobs(const grid::Grid& grid, cons
   return all;
 }
 
+/// The same of events, by their order.
+inline std::map<std::uint64_t, Trajectory> run_events(const grid::Grid& grid,
+                                                      const std::vector<network::Event>& events,
+                                                      const BatchOptions& options) {
+  std::vector<Job> jobs(events.size());
+  for (std::size_t e = 0; e < events.size(); ++e) jobs[e].id = e, jobs[e].event = events[e];
+  return run_jobs(grid, jobs, options);
+}
+
 }  // namespace swingbank::sim::lanes

@@ -2,7 +2,6 @@
 // near it and its protection; what the lanes cannot know is refused.
 #include <gmock/gmock.h>
 
-#include <cstdint>
 #include <iostream>
 #include <map>
 #include <string>
@@ -12,6 +11,7 @@
 #include "sim/lanes/batch.hpp"
 #include "sim/library/library.hpp"
 #include "tests/sim/lanes/random_grids.hpp"
+#include "tests/sim/lanes/run_jobs.hpp"
 
 namespace swingbank::sim::lanes::static_var {
 namespace {
@@ -65,11 +65,7 @@ TEST(StaticVarLanes, FollowTheReference) {
     BatchOptions options;
     options.t_end = 4.0;
     options.rate = 60.0;
-    std::map<std::uint64_t, Trajectory> runs;
-    Batch batch(grid, options);
-    std::uint64_t next = 0;
-    batch.run([&](Job& job) { return next < all.size() && (job.event = all[next], job.id = next++, true); },
-              [&](const Job& job, const Trajectory& run) { runs[job.id] = run; });
+    const auto runs = run_events(grid, all, options);
     for (std::size_t e = 0; e < all.size(); ++e) {
       reference::ReferenceOptions exact;
       exact.t_end = options.t_end;

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "tests/validate/fit/exciter_example.hpp"
 
 namespace swingbank::validate::hypothesis {
@@ -94,45 +97,79 @@ TEST(Starts, WhatTheFitHasBentStartsAsTheModelHasIt) {
   EXPECT_DOUBLE_EQ(share(values, "H"), 1.3) << "of another block";
 }
 
-/// An ESAC1A whose gain is a two-hundredth of the standard one, in noise in which the model alone nearly
-/// fits: without further draws it ends 11.6 of evidence behind its optimum, which is worth 2,188.
+/// A control with one gain far from the standard one, in noise in which the model alone nearly fits.
+struct FarGain {
+  fit::ExciterExample example{0.2};
+  Hypothesis h;
+  sim::plant::Plant truth;
+  event::WhitenedEvents events;
+  fit::Fit nearly;
+  FarGain(std::string_view name, std::string_view gain, double value) {
+    example.model.plant.controls.clear();
+    auto all = all_hypotheses(example.model.under_test(), example.model.library);
+    h = *std::ranges::find(all, name, &Hypothesis::name);
+    truth = h.plant;
+    sim::plant::Block& control = truth.controls.back();
+    control.p[static_cast<std::size_t>(control.effect->parameter_index(gain))] = value;
+    event::FitEvent e = example.events.front();
+    const playin::Response r = fit::answer(e, {}, {truth, example.model.conventions});
+    e.record.P = r.of(playin::Output::P);
+    e.record.Q = r.of(playin::Output::Q);
+    event::EventNoise noise = example.events.noise(0);
+    const auto alone = [&] {
+      return fit::fit(example.model.under_test(), {{e}, event::NoiseModel({noise})},
+                      fit::free_parameters(example.model.plant, example.spread));
+    };
+    const double louder = std::sqrt(alone().misfit() / 1.2);
+    noise.deviation *= louder;
+    noise.whitening /= louder;
+    events = {{e}, event::NoiseModel({noise})};
+    nearly = fit::fit(example.model.under_test(), events,
+                      fit::free_parameters(example.model.plant, example.spread));
+  }
+  [[nodiscard]] Stage stage() const {
+    return {.events = events,
+            .plant = example.model.plant,
+            .conventions = example.model.conventions,
+            .library = example.model.library,
+            .fit = nearly,
+            .spread = example.spread};
+  }
+};
+
+/// A two-hundredth of the standard gain: without further draws it ends 11.6 of evidence behind its optimum,
+/// which is worth 2,188.
 TEST(Starts, AGainFarFromTheStandardOneIsFound) {
-  fit::ExciterExample example(0.2);
-  example.model.plant.controls.clear();
-  auto all = all_hypotheses(example.model.under_test(), example.model.library);
-  Hypothesis& h = *std::ranges::find(all, "ESAC1A", &Hypothesis::name);
-  sim::plant::Plant truth = h.plant;
-  sim::plant::Block& exciter = truth.controls.back();
-  exciter.p[static_cast<std::size_t>(exciter.effect->parameter_index("KA"))] = 2;
-  event::FitEvent e = example.events.front();
-  const playin::Response r = fit::answer(e, {}, {truth, example.model.conventions});
-  e.record.P = r.of(playin::Output::P);
-  e.record.Q = r.of(playin::Output::Q);
-  event::EventNoise noise = example.events.noise(0);
-  const auto alone = [&] {
-    return fit::fit(example.model.under_test(), {{e}, event::NoiseModel({noise})},
-                    fit::free_parameters(example.model.plant, example.spread));
-  };
-  const double louder = std::sqrt(alone().misfit() / 1.2);
-  noise.deviation *= louder;
-  noise.whitening /= louder;
-  const event::WhitenedEvents events({e}, event::NoiseModel({noise}));
-  const fit::Fit nearly =
-      fit::fit(example.model.under_test(), events, fit::free_parameters(example.model.plant, example.spread));
-  ASSERT_LT(nearly.misfit(), thresholds::search.nearly_fits);
-  const Stage stage{.events = events,
-                    .plant = example.model.plant,
-                    .conventions = example.model.conventions,
-                    .library = example.model.library,
-                    .fit = nearly,
-                    .spread = example.spread};
-  const auto free = free_of(h, stage.spread);
-  const fit::Fit best =
-      fit::fit(h.under_test(), events, free, {.lenient = true, .values = fit::values_of(truth, free)});
-  ASSERT_GT(fit::gain(nearly, best, fit::criterion), thresholds::evidence.accepted) << "it was meant to show";
-  const auto tried = try_hypotheses(stage, {h});
+  const FarGain far("ESAC1A", "KA", 2);
+  ASSERT_LT(far.nearly.misfit(), thresholds::search.nearly_fits);
+  const Stage stage = far.stage();
+  const auto free = free_of(far.h, stage.spread);
+  const fit::Fit best = fit::fit(far.h.under_test(), far.events, free,
+                                 {.lenient = true, .values = fit::values_of(far.truth, free)});
+  ASSERT_GT(fit::gain(far.nearly, best, fit::criterion), thresholds::evidence.accepted)
+      << "it was meant to show";
+  const auto tried = try_hypotheses(stage, {far.h});
   ASSERT_EQ(tried.size(), 1U);
   EXPECT_LT(fit::gain(tried.front().fit, best), 5);
+}
+/// A seventeenth of a governor's: a search from the standard one may see nothing but the valve's speed
+/// limits.
+TEST(Starts, AGovernorsSmallGainIsWhereTheScoreTestSays) {
+  constexpr double kTrue = 1.2;
+  const FarGain far("IEEEG1", "K", kTrue);
+  const Stage stage = far.stage();
+  const Candidate c = StartFinder(stage).of(far.h);
+  const auto free = free_of(far.h, stage.spread);
+  const int index = far.truth.controls.back().effect->parameter_index("K");
+  const auto at = std::ranges::find_if(free, [&](const fit::FreeParameter& f) {
+    return f.id == sim::plant::ParameterId{far.h.free.front().id.block, index};
+  });
+  ASSERT_NE(at, free.end());
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const auto& [rank, values] : c.nested)
+    nearest =
+        std::min(nearest, std::abs(std::log(values[static_cast<std::size_t>(at - free.begin())] / kTrue)));
+  EXPECT_LT(nearest, std::log(2.0)) << "of the standard gain a factor of 17 off";
 }
 
 }  // namespace
