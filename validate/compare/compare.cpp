@@ -8,7 +8,6 @@
 
 #include "base/constants.hpp"
 #include "validate/compare/detail/fitted.hpp"
-#include "validate/compare/error_map_table.hpp"
 #include "validate/playin/component.hpp"
 #include "validate/playin/given.hpp"
 
