@@ -1,5 +1,5 @@
-// swingbank inventory: the units of a PSS/E case, which of them are wholly covered, and what is not, by
-// model.
+// swingbank inventory: the units of a PSS/E or PSLF case, which of them are wholly covered, and what is not,
+// by model.
 #include "sim/grid/inventory.hpp"
 
 #include <fmt/format.h>
@@ -141,8 +141,9 @@ void print_json(const Inventory& inventory) {
 int main(int argc, char** argv) {
   jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank inventory");
   Arguments a;
-  line.add("--raw", a.raw, "network, PSS/E .raw, .rawx or MATPOWER .m").required();
-  line.add("--dyr", a.dyr, "dynamic models, PSS/E .dyr").required();
+  line.add("--raw,--epc", a.raw, "network, told by its ending: PSS/E .raw or .rawx, PSLF .epc, MATPOWER .m")
+      .required();
+  line.add("--dyr,--dyd", a.dyr, "dynamic models, told by its ending: PSS/E .dyr, PSLF .dyd").required();
   line.add("--frequency-hz", a.frequency_hz, "nominal frequency [Hz], where the network has none");
   line.add("--raw-version", a.raw_version, "version of a .raw that does not say it, 23 to 35");
   line.add_flag("--units", a.units, "list every unit with its models");

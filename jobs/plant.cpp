@@ -32,6 +32,7 @@ int run(Arguments& a) {
     problems.add("no dynamic models", "--dyr", "a plant is made of the records of its unit",
                  "give the case's .dyr, or --dyd with its .dyd");
   problems.raise();
+  a.unit.dyd = a.unit.dyd || sim::formats::is_dyd(a.unit.dyr);
   a.unit.complete_records = static_cast<sim::grid::Lacking>(a.complete_records);
   if (a.measured_at > 0) a.unit.measured_at = a.measured_at;
   const sim::grid::Unit unit = sim::grid::read_unit(a.unit);
@@ -60,7 +61,9 @@ int run(Arguments& a) {
 int main(int argc, char** argv) {
   jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank plant");
   Arguments a;
-  line.add("--raw", a.unit.raw, "network, PSS/E .raw, .rawx or MATPOWER .m").required();
+  line.add("--raw,--epc", a.unit.raw,
+           "network, told by its ending: PSS/E .raw or .rawx, PSLF .epc, MATPOWER .m")
+      .required();
   const auto dyr = line.add("--dyr", a.unit.dyr, "dynamic models, PSS/E .dyr");
   line.add("--dyd", a.dyd, "or PSLF .dyd; configs/networks/README.md lists its models").excludes(dyr);
   line.add("--bus", a.unit.bus, "number of the unit's bus").required().positive();

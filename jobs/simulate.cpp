@@ -345,8 +345,9 @@ int simulate(const Options& o) {
 int main(int argc, char** argv) {
   jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank simulate");
   Options o;
-  line.add("--raw", o.raw, "network, PSS/E .raw, .rawx or MATPOWER .m").required();
-  line.add("--dyr", o.dyr, "dynamic models, PSS/E .dyr").required();
+  line.add("--raw,--epc", o.raw, "network, told by its ending: PSS/E .raw or .rawx, PSLF .epc, MATPOWER .m")
+      .required();
+  line.add("--dyr,--dyd", o.dyr, "dynamic models, told by its ending: PSS/E .dyr, PSLF .dyd").required();
   line.add("--frequency-hz", o.frequency_hz, "nominal frequency [Hz], where the network has none");
   line.add("--raw-version", o.raw_version, "version of a .raw that does not say it, 23 to 35");
   line.add_flag("--net-generators", o.net_generators,

@@ -1,67 +1,26 @@
 #include "sim/formats/dyd.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cctype>
+#include <array>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "base/capitals.hpp"
 #include "sim/formats/detail/dyd_models.hpp"
+#include "sim/formats/detail/pslf_text.hpp"
 #include "sim/formats/psse_text.hpp"
 
 namespace swingbank::sim::formats {
 namespace {
 
-std::string lower(std::string_view text) {
-  std::string all(text);
-  std::ranges::transform(all, all.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return all;
-}
-
-struct Token {
-  std::string text;
-  bool quoted = false;
-};
-
-/// A record with its continuation lines; no tokens behind the colon where it has none.
-struct Line {
-  int number = 0;
-  bool colon = false;
-  std::vector<Token> head, tail;
-};
-
-/// Words, texts in quotes, ':' by itself.
-std::vector<Token> tokens_of(const std::string& text, const std::string& where, Problems& problems) {
-  std::vector<Token> tokens;
-  for (std::size_t i = 0; i < text.size();) {
-    if (std::isspace(static_cast<unsigned char>(text[i])) != 0) {
-      ++i;
-    } else if (text[i] == '"') {
-      const auto end = text.find('"', i + 1);
-      if (end == std::string::npos)
-        problems.add("a text without an end", where, "a quote opens and none closes", "close it");
-      tokens.push_back({text.substr(i + 1, end == std::string::npos ? end : end - i - 1), true});
-      i = end == std::string::npos ? text.size() : end + 1;
-    } else {
-      std::size_t end = i + 1;
-      while (text[i] != ':' && end < text.size() && text[end] != '"' && text[end] != ':' &&
-             std::isspace(static_cast<unsigned char>(text[end])) == 0)
-        ++end;
-      tokens.push_back({text.substr(i, end - i), false});
-      i = end;
-    }
-  }
-  return tokens;
-}
-
-std::string trimmed(std::string text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
+using pslf::Line;
+using pslf::lower;
+using pslf::Token;
+using pslf::trimmed;
 
 const dyd::Model* model_of(std::string_view name) {
   const auto all = dyd::models();
@@ -85,23 +44,12 @@ class DydReader {
   [[nodiscard]] std::string where(int line) const { return name_ + ":" + std::to_string(line); }
 
   void join(const std::vector<std::string>& lines) {
-    Line open;
-    bool goes_on = false;
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      std::string text = trimmed(lines[i]);
-      while (!text.empty() && text.back() == '\r') text.pop_back();
-      if (text.empty() || text[0] == '#') continue;
-      if (!goes_on) open = {static_cast<int>(i) + 1, false, {}, {}};
-      goes_on = text.back() == '/';
-      if (goes_on) text.pop_back();
-      for (Token& token : tokens_of(text, where(static_cast<int>(i) + 1), problems_))
-        if (!open.colon && !token.quoted && token.text == ":")
-          open.colon = true;
-        else
-          (open.colon ? open.tail : open.head).push_back(std::move(token));
-      if (!goes_on) lines_.push_back(open);
+    for (std::size_t at = 0; at < lines.size();) {
+      if (pslf::says_nothing(lines[at]))
+        ++at;
+      else
+        lines_.push_back(pslf::record_at(lines, at, lines.size(), name_, problems_));
     }
-    if (goes_on) lines_.push_back(open);
   }
 
   /// Bus and id of a record of a unit: model, bus, name, kV, id.
@@ -132,7 +80,10 @@ class DydReader {
     if (line.head.empty()) return;
     const std::string name = lower(line.head[0].text);
     const dyd::Model* model = model_of(name);
-    if (dyd::is_no_unit(name)) return;
+    if (dyd::is_no_unit(name)) {
+      ++out_.passed_over[name];
+      return;
+    }
     const auto key = key_of(line);
     if (!key) {  // a word that divides the file, or a record between two buses
       if (model)
@@ -142,10 +93,17 @@ class DydReader {
       return;
     }
     DyrRecord out{key->first, capitals(name), key->second, {}, line.number};
+    out_.names[line.number] = out.model;
     if (!model) {
       for (const Token& token : line.tail)
         if (const auto v = psse::parse_number(token.text); v && !token.quoted)
           out.values.push_back(static_cast<double>(*v));
+      // A model of PSS/E by the same name may have other columns, or the same in another order.
+      out.faults.add(
+          fmt::format("PSLF's model {}", name), where(line.number),
+          "no public description of its columns is known; known are " + dyd_models_text(),
+          "leave it out with --ignore-model (of one unit: --drop), or say with --map-model (--replace) "
+          "which model of as many parameters it is");
       out_.dyr.records.push_back(std::move(out));
       return;
     }
@@ -314,6 +272,40 @@ DydSurvey survey_dyd(const std::filesystem::path& file) {
 }
 DydSurvey parse_dyd_survey(const std::string& text, const std::string& name) {
   return DydReader(psse::lines_of(text), name).survey();
+}
+
+std::vector<DyrRecord> chosen_records(const DydSurvey& survey, const std::string& name,
+                                      const DyrOptions& options) {
+  std::vector<DyrRecord> chosen;
+  std::set<std::string> used;
+  for (const DyrRecord& record : survey.dyr.records) {
+    const std::array<std::string, 2> names{record.model, survey.names.at(record.line)};
+    const auto is = [&](const std::string& asked) {
+      const bool hit = std::ranges::find(names, capitals(asked)) != names.end();
+      if (hit) used.insert(capitals(asked));
+      return hit;
+    };
+    if (std::ranges::any_of(options.ignore, is)) {
+      spdlog::warn("{}: {} on line {} is left out, as asked", name, names[1], record.line);
+      continue;
+    }
+    chosen.push_back(record);
+    for (const auto& [from, to] : options.map)
+      if (is(from)) {
+        chosen.back().model = capitals(to);
+        if (!model_of(lower(names[1]))) chosen.back().faults = {};  // it is known now
+      }
+  }
+  Problems problems;
+  for (const Problem& p : survey.dyr.faults) problems.add(p.what, p.where, p.why, p.remedy);
+  std::vector<std::string> asked = options.ignore;
+  for (const auto& [from, to] : options.map) asked.push_back(from);
+  for (const std::string& model : asked)
+    if (!used.contains(capitals(model)))
+      problems.add("no model " + capitals(model) + " to ignore or map", name,
+                   "the file has no record of that name", "correct the name or drop the option");
+  problems.raise();
+  return chosen;
 }
 
 std::string dyd_models_text() {

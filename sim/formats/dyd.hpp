@@ -18,9 +18,12 @@ struct DydMachine {
 };
 
 struct DydSurvey {
-  DyrSurvey dyr;  ///< in the form of a .dyr; a model without counterpart has its values as they stand
-  std::map<int, DydMachine> machines;  ///< by DyrRecord::line
-  std::map<int, std::string> notes;    ///< by DyrRecord::line: what was converted
+  /// In the form of a .dyr; a model without counterpart has its values as they stand, and a fault.
+  DyrSurvey dyr;
+  std::map<int, DydMachine> machines;      ///< by DyrRecord::line
+  std::map<int, std::string> notes;        ///< by DyrRecord::line: what was converted
+  std::map<int, std::string> names;        ///< by DyrRecord::line: the model's name in the .dyd, in capitals
+  std::map<std::string, int> passed_over;  ///< names of the models that are passed over, and how often
 };
 
 /// Reads a .dyd: "model bus "name" kV "id" : #level mva=... values", values in the documented order or each
@@ -31,6 +34,11 @@ struct DydSurvey {
 DydSurvey survey_dyd(const std::filesystem::path& file);
 /// The same from a text; `name` stands for the file in messages.
 DydSurvey parse_dyd_survey(const std::string& text, const std::string& name);
+
+/// The records of a survey with models left out or read as others, as read_dyr does; a model may be given by
+/// its name in the .dyd or in the .dyr. Throws InputError with the file's faults.
+std::vector<DyrRecord> chosen_records(const DydSurvey& survey, const std::string& name,
+                                      const DyrOptions& options);
 
 /// Where a record's unit stands.
 struct DydPlace {

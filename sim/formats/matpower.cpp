@@ -5,6 +5,7 @@
 #include <map>
 
 #include "sim/formats/detail/matpower_text.hpp"
+#include "sim/formats/pslf_epc.hpp"
 #include "sim/formats/psse.hpp"
 #include "sim/formats/psse_text.hpp"
 #include "sim/network/consistency.hpp"
@@ -253,6 +254,7 @@ network::Network read_matpower(const std::filesystem::path& file, double frequen
 }
 
 network::Network read_network(const std::filesystem::path& file, const RawOptions& options) {
+  if (is_epc(file)) return read_epc(file, options);
   if (file.extension() == ".m") {
     if (!options.frequency_hz)
       throw InputError({"no frequency", file.string(), "a MATPOWER case has none of its own",
@@ -268,6 +270,7 @@ network::Network read_network(const std::filesystem::path& file, const RawOption
 }
 
 RawSurvey survey_network(const std::filesystem::path& file, const RawOptions& options) {
+  if (is_epc(file)) return survey_epc(file, options);
   if (file.extension() != ".m") return survey_raw(file, options);
   RawSurvey survey;
   survey.network = read_network(file, options);

@@ -23,8 +23,8 @@ network::Network read_matpower(const std::filesystem::path& file, double frequen
 /// The same from a text; `name` stands for the file in messages.
 network::Network parse_matpower(const std::string& text, const std::string& name, double frequency_hz);
 
-/// A .m by read_matpower, anything else by read_raw. The frequency is needed for a .m; for a .raw that has
-/// its own it must be absent or the same.
+/// A .m by read_matpower, an .epc by read_epc, anything else by read_raw. The frequency is needed for a .m
+/// and an .epc; for a .raw that has its own it must be absent or the same.
 network::Network read_network(const std::filesystem::path& file, const RawOptions& options = {});
 /// The same with what of a .raw cannot be read; a .m is read whole or not at all.
 RawSurvey survey_network(const std::filesystem::path& file, const RawOptions& options = {});

@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "sim/formats/dyd.hpp"
 #include "sim/grid/detail/dyr_models.hpp"
 
 namespace swingbank::sim::grid {
@@ -28,7 +29,8 @@ std::string why_missing(std::string_view name) {
 class CoverageTaker {
  public:
   void read(const std::filesystem::path& file) {
-    const formats::DyrSurvey survey = formats::survey_dyr(file);
+    const formats::DyrSurvey survey =
+        formats::is_dyd(file) ? formats::survey_dyd(file).dyr : formats::survey_dyr(file);
     ++out_.files;
     for (const formats::DyrRecord& record : survey.records)
       count(record, file.string() + ":" + std::to_string(record.line));

@@ -1,14 +1,12 @@
 #include "sim/grid/grid.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <array>
 #include <map>
 #include <set>
 
-#include "sim/formats/matpower.hpp"
 #include "sim/grid/detail/dyr_models.hpp"
 #include "sim/grid/load_choice.hpp"
 #include "sim/plant/usual.hpp"
@@ -433,46 +431,6 @@ std::vector<int> Grid::modelled_loads() const {
 Grid make_grid(network::Network network, const std::vector<formats::DyrRecord>& dynamics,
                const std::string& dyr_name, Conventions conventions, const CaseOptions& options) {
   return GridMaker(std::move(network), dyr_name, conventions, options).make(dynamics);
-}
-
-std::string remark_line(const network::Remark& remark, std::size_t places) {
-  std::string text = remark.what;
-  if (remark.places.size() > 1) text += fmt::format(" ({} times)", remark.places.size());
-  for (std::size_t i = 0; i < remark.places.size() && i < places; ++i)
-    text += (i ? "; " : ": ") + remark.places[i];
-  if (remark.places.size() > places) text += fmt::format("; and {} more", remark.places.size() - places);
-  return text;
-}
-
-Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dyr, Conventions conventions,
-               const CaseOptions& options) {
-  formats::refuse_exchanged(raw, dyr);
-  Problems problems;
-  network::Network network;
-  std::vector<formats::DyrRecord> dynamics;
-  const auto collect = [&](const auto& read) {
-    try {
-      read();
-    } catch (const InputError& error) {
-      for (const Problem& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
-    }
-  };
-  collect([&] { network = formats::read_network(raw, options.raw); });
-  collect([&] { dynamics = formats::read_dyr(dyr, options.dyr); });
-  problems.raise();
-  Grid grid = make_grid(std::move(network), dynamics, dyr.string(), conventions, options);
-  constexpr std::size_t places = 4;  // a screen holds them; `simulate --changes` writes all
-  for (const network::Remark& remark : grid.network.remarks)
-    spdlog::warn("{}: {}", raw.filename().string(), remark_line(remark, places));
-  return grid;
-}
-
-Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dyr, Conventions conventions,
-               const formats::DyrOptions& options, std::optional<double> frequency_hz) {
-  CaseOptions all;
-  all.dyr = options;
-  all.raw.frequency_hz = frequency_hz;
-  return load_grid(raw, dyr, conventions, all);
 }
 
 }  // namespace swingbank::sim::grid

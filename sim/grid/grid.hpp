@@ -48,7 +48,8 @@ struct CaseOptions {
 /// solution and the file's voltages differ by more than 1e-3 pu a remark says so.
 Grid make_grid(network::Network network, const std::vector<formats::DyrRecord>& dynamics,
                const std::string& dyr_name, Conventions conventions, const CaseOptions& options = {});
-/// read_network + read_dyr + make_grid; what was done to the case is warned of.
+/// read_network + read_dyr (of a .dyd: survey_dyd, whose mva, Ra and X'd count for their generators) +
+/// make_grid; what was done to the case is warned of.
 Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dyr, Conventions conventions,
                const CaseOptions& options);
 Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dyr, Conventions conventions,

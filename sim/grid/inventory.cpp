@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "sim/formats/dyd.hpp"
 #include "sim/formats/matpower.hpp"
 #include "sim/grid/detail/dyr_models.hpp"
 
@@ -90,7 +91,8 @@ Inventory take_inventory(const std::filesystem::path& raw, const std::filesystem
                          const formats::RawOptions& options) {
   formats::refuse_exchanged(raw, dyr);
   const formats::RawSurvey survey = formats::survey_network(raw, options);
-  const formats::DyrSurvey dynamics = formats::survey_dyr(dyr);
+  const formats::DyrSurvey dynamics =
+      formats::is_dyd(dyr) ? formats::survey_dyd(dyr).dyr : formats::survey_dyr(dyr);
   return InventoryTaker(survey, dynamics, dyr.string()).take();
 }
 

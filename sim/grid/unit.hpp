@@ -27,7 +27,7 @@ struct UnitChoice {
   std::optional<int> measured_at = {};  ///< a bus beyond the unit's transformer, where its records were taken
   /// Records shorter or longer than their model: missing values at the end are these, surplus ones left out.
   Lacking complete_records = Lacking::refused;
-  bool dyd = false;  ///< `dyr` is a .dyd of PSLF (formats::survey_dyd)
+  bool dyd = false;  ///< `dyr` is a .dyd of PSLF (formats::survey_dyd), whatever its name
 };
 
 /// The unit's plant, without a network: `bus` and `generator` of it are -1.

@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 
+#include "sim/network/admittance.hpp"
 #include "sim/network/connectivity.hpp"
 #include "sim/network/powerflow.hpp"
 
@@ -30,6 +31,30 @@ void settle_isolated(Network& n) {
     if (isolated(b.from) || isolated(b.to)) b.in_service = false;
   for (Generator& g : n.generators)
     if (isolated(g.bus)) g.in_service = false;
+}
+
+void isolate_idle_stars(Network& n, const std::set<int>& stars) {
+  for (const int star : stars)
+    if (std::ranges::none_of(n.branches, [&](const Branch& b) { return b.to == star && b.in_service; }))
+      n.buses[static_cast<std::size_t>(star)].type = BusType::isolated;
+}
+
+void settle_stars(Network& n, const std::set<int>& stars) {
+  const auto y = bus_admittance(n);
+  for (const int star : stars) {
+    Bus& bus = n.buses[static_cast<std::size_t>(star)];
+    if (bus.type == BusType::isolated) continue;
+    Complex others{}, own{};
+    for (decltype(y)::InnerIterator e(y, star); e; ++e) {
+      const Bus& other = at(n, static_cast<int>(e.row()));
+      // The row of a star is wanted, its column is at hand; phase shifts turn the one into the other.
+      const Complex value = y.coeff(star, static_cast<int>(e.row()));
+      (e.row() == star ? own : others) += e.row() == star ? value : value * std::polar(other.vm, other.va);
+    }
+    if (own == Complex{}) continue;
+    bus.vm = std::abs(others / own);
+    bus.va = std::arg(-others / own);
+  }
 }
 
 namespace {

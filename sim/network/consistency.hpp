@@ -1,6 +1,7 @@
 #pragma once
 // What every reader of network files checks when all sections are in.
 #include <functional>
+#include <set>
 #include <string>
 
 #include "base/problem.hpp"
@@ -11,6 +12,11 @@ namespace swingbank::sim::network {
 /// Takes out of service what stands at an isolated bus (type 4): loads and shunts are removed, branches and
 /// generators marked.
 void settle_isolated(Network& network);
+/// Star points of transformers with three windings, by index: one whose windings are all out hangs on
+/// nothing.
+void isolate_idle_stars(Network& network, const std::set<int>& stars);
+/// Gives star points the voltage that those of their windings make: files often leave it at its default.
+void settle_stars(Network& network, const std::set<int>& stars);
 /// Settles what generators in service contradict each other about, with a remark for each. At a load bus
 /// (type 1) a generator delivers its P and Q if the file's voltages show that power, else it is out of
 /// service, as in PSS/E. Generators of one bus that hold different voltages or buses hold those of the first.

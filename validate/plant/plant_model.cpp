@@ -222,6 +222,7 @@ void read_from_grid(Config& config, PlantModel& model) {
                      "remove one of them");
   sim::grid::UnitChoice choice{.raw = config.file("grid.raw"), .dyr = config.file("grid.dyr")};
   choice.bus = static_cast<int>(config.require<std::int64_t>("grid.bus", {1.0, kMostBuses}));
+  choice.dyd = sim::formats::is_dyd(choice.dyr);
   choice.id = config.optional<std::string>("grid.id", "");
   choice.models = sim::formats::read_dyr_options(config, "grid.");
   const std::string complete = config.choice("grid.complete_records", {"no", "zero", "standard"}, "no");

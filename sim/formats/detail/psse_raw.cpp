@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 
-#include "sim/network/admittance.hpp"
 #include "sim/network/consistency.hpp"
 
 namespace swingbank::sim::formats {
@@ -291,10 +290,7 @@ bool RawReader::status(int value, const char* name, const Fields& fields) {
 void RawReader::finish() {
   correct_impedances();
   network::settle_isolated(network_);
-  for (const int star : stars_)  // a star point whose windings are all out hangs on nothing
-    if (std::ranges::none_of(network_.branches,
-                             [&](const network::Branch& b) { return b.to == star && b.in_service; }))
-      network_.buses[static_cast<std::size_t>(star)].type = network::BusType::isolated;
+  network::isolate_idle_stars(network_, stars_);
   if (network_.buses.empty() && problems_.empty())
     problems_.add("no buses", file_, "the bus section is empty", "give a case with buses");
   network::check_finite(network_, file_, problems_);
@@ -308,29 +304,10 @@ void RawReader::finish() {
         g.regulated = found->second;
     }
   if (!problems_.empty()) return;
-  if (!devices_.empty()) settle_stars();
+  if (!devices_.empty()) network::settle_stars(network_, stars_);
   network::stand_in(network_, devices_, options_.devices, problems_);
   network::settle_generators(network_, [&](std::size_t i) { return generator_place(i); });
   network::settle_islands(network_);
-}
-
-/// A star point's voltage from those of its windings: files often leave it at its default.
-void RawReader::settle_stars() {
-  const auto y = network::bus_admittance(network_);
-  for (const int star : stars_) {
-    network::Bus& bus = network_.buses[static_cast<std::size_t>(star)];
-    if (bus.type == network::BusType::isolated) continue;
-    Complex others{}, own{};
-    for (decltype(y)::InnerIterator e(y, star); e; ++e) {
-      const network::Bus& other = at(static_cast<int>(e.row()));
-      // The row of a star is wanted, its column is at hand; phase shifts turn the one into the other.
-      const Complex value = y.coeff(star, static_cast<int>(e.row()));
-      (e.row() == star ? own : others) += e.row() == star ? value : value * std::polar(other.vm, other.va);
-    }
-    if (own == Complex{}) continue;
-    bus.vm = std::abs(others / own);
-    bus.va = std::arg(-others / own);
-  }
 }
 
 }  // namespace psse

@@ -106,7 +106,6 @@ class RawReader {
     return i < places_.size() ? places_[i] : file_ + ":" + std::to_string(generator_line_[i]);
   }
   void correct_impedances();
-  void settle_stars();
 
   /// The `count` records after `first`, which belong to it; fewer where the section ends.
   std::vector<Record> following(const Record& first, std::size_t count, const char* what);

@@ -98,6 +98,29 @@ TEST(Dyd, MetersAndLoadsArePassedOverOthersKept) {
   EXPECT_THAT(s.dyr.records[0].values, ElementsAre(1, 2));
 }
 
+TEST(Dyd, RecordsAreChosenByEitherName) {
+  const std::string governor = "tgov1 1 \"GEN1\" 22.00 \"1 \" : #1 mwcap=900 0.05 0.4 1.0 0.0 3.0 10.0 0.2\n";
+  const DydSurvey s = parse_dyd_survey(kNamed + governor +
+                                           "ccbt1 1 \"1\" 22.00 \"1 \" : #9 1 2\n"
+                                           "cmpldw 1 \"1\" 22.00 \"1 \" : #9 1\n",
+                                       "h.dyd");
+  EXPECT_THAT(s.passed_over, ElementsAre(testing::Pair("cmpldw", 1)));
+  const auto all = chosen_records(s, "h.dyd", {});
+  ASSERT_EQ(all.size(), 3U);
+  EXPECT_THAT(all[2].faults.list().at(0).sentence(), HasSubstr("PSLF's model ccbt1 at h.dyd:3"));
+  DyrOptions options{{"tgov1"}, {{"CCBT1", "LCFB1"}}};
+  const auto chosen = chosen_records(s, "h.dyd", options);
+  ASSERT_EQ(chosen.size(), 2U);
+  EXPECT_EQ(chosen[1].model, "LCFB1");
+  EXPECT_TRUE(chosen[1].faults.empty());
+  EXPECT_THAT(
+      [&] {
+        options.ignore = {"sexs"};
+        (void)chosen_records(s, "h.dyd", options);
+      },
+      testing::ThrowsMessage<InputError>(HasSubstr("no model SEXS to ignore or map at h.dyd")));
+}
+
 /// Every model goes out and comes back to the same values.
 TEST(Dyd, OutAndBack) {
   const std::string dyr =

@@ -13,13 +13,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// The places of the remark whose text has `part`; empty: there is none.
-std::vector<std::string> places(const network::Network& n, const std::string& part) {
-  for (const network::Remark& r : n.remarks)
-    if (r.what.find(part) != std::string::npos) return r.places;
-  return {};
-}
-
 /// The three-bus grid of RawCase in the layout of a version before 31.
 std::string old(int version) {
   const bool old23 = version == 23, tap_in_branch = version < 28;

@@ -12,6 +12,7 @@
 
 #include "base/problem.hpp"
 #include "sim/formats/psse.hpp"
+#include "sim/network/network.hpp"
 
 namespace swingbank::sim::formats {
 
@@ -107,6 +108,12 @@ inline std::string sentences_of(const std::function<void()>& action) {
   std::string all;
   for (const Problem& p : problems_of(action)) all += p.sentence() + "\n";
   return all;
+}
+/// The places of the remark whose text has `part`; empty: there is none.
+inline std::vector<std::string> places(const network::Network& n, const std::string& part) {
+  for (const network::Remark& r : n.remarks)
+    if (r.what.find(part) != std::string::npos) return r.places;
+  return {};
 }
 /// Line of `text` (from 1) on which `part` begins.
 inline int line_of(const std::string& text, const std::string& part) {

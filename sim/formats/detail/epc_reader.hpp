@@ -1,0 +1,98 @@
+#pragma once
+// The reader of .epc files, section by section. Used by pslf_epc*.cpp only.
+#include <array>
+#include <map>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "sim/formats/psse.hpp"
+#include "sim/formats/psse_text.hpp"
+#include "sim/network/consistency.hpp"
+
+namespace swingbank::sim::formats::epc {
+
+/// A record: what it is of, and what it says of it.
+struct Row {
+  psse::Record of, says;
+  std::vector<std::size_t> starts;  ///< for each line that continues it, how many of `says` are before it
+};
+
+class EpcReader {
+ public:
+  /// `name` stands for the file in messages.
+  EpcReader(std::vector<std::string> lines, std::string name, const RawOptions& options)
+      : file_(std::move(name)), lines_(std::move(lines)), options_(options) {}
+  network::Network read();
+  RawSurvey survey();
+
+ private:
+  struct Section {
+    std::string name;         ///< "bus", "dc converter"
+    int announced;            ///< records
+    std::size_t first, last;  ///< its lines, from 0, the last one not its own
+  };
+  using Reads = void (EpcReader::*)(const Row&);
+
+  void divide();
+  /// The block up to '!' after a line that names it; leaves `at` behind it.
+  std::vector<std::string> block(std::size_t& at) const;
+  void solution_parameters(const std::vector<std::string>& block, std::size_t first);
+  void read_sections();
+  void rows(const char* name, Reads take);
+  void tell_left_out();
+  void finish();
+
+  void bus(const Row& row);
+  void load(const Row& row);
+  void shunt(const Row& row);
+  void line_shunt(psse::Fields& of, psse::Fields& f, Complex y);
+  void svd(const Row& row);
+  void steps_of(const Row& row, const network::Shunt& shunt, int regulated, psse::Fields& f);
+  void generator(const Row& row);
+  void converter(const Row& row);
+  void branch(const Row& row);
+  void join_sections();
+  void transformer(const Row& row);
+  void two_windings(psse::Fields& of, psse::Fields& f, int from, int to, bool on);
+  void three_windings(psse::Fields& of, psse::Fields& f, const std::array<int, 3>& ends, bool on);
+  int star_point(const std::array<int, 3>& ends, int internal, const std::string& circuit, bool on);
+  Complex magnetising(psse::Fields& f, int bus);
+
+  /// Index of the bus with this number; -1 and a problem if the file has none.
+  int find_bus(int number, const psse::Fields& fields);
+  /// Whether this identity is the first of its name; one that is not is a problem, or left out if asked for.
+  bool once(const std::string& identity, const psse::Fields& fields);
+  bool status(psse::Fields& f);
+  void some_impedance(network::Branch& b, const psse::Fields& f);
+  [[nodiscard]] static std::string id_of(const psse::Fields& of, std::size_t i);
+  [[nodiscard]] double pu(long double mw) const { return static_cast<double>(mw / base_); }
+  [[nodiscard]] network::Bus& at(int bus) { return network_.buses[static_cast<std::size_t>(bus)]; }
+  [[nodiscard]] std::string place(int line) const { return file_ + ":" + std::to_string(line); }
+
+  /// One section of a line, as it stands in the file; `section` from 1.
+  struct Part {
+    network::Branch branch;
+    int section, line;
+  };
+
+  std::string file_;
+  std::vector<std::string> lines_;
+  RawOptions options_;
+  long double base_ = 0.0L;
+  std::vector<Section> sections_;
+  network::Network network_;
+  Problems problems_;
+  std::map<int, int> index_;
+  std::vector<double> vsched_;                                            ///< per bus [pu]
+  std::map<std::string, int> seen_;                                       ///< identity -> line
+  std::map<std::tuple<int, int, std::string>, std::vector<Part>> parts_;  ///< of the lines: ends and circuit
+  std::vector<std::tuple<int, int, std::string>> order_;                  ///< of these, as in the file
+  std::vector<int> generator_line_, branch_line_;
+  std::vector<network::Device> devices_;
+  std::set<int> stars_;  ///< indices
+  bool units_only_ = false;
+};
+
+}  // namespace swingbank::sim::formats::epc

@@ -1,0 +1,241 @@
+#include "sim/formats/pslf_epc.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+
+#include "sim/formats/detail/epc_reader.hpp"
+#include "sim/formats/detail/pslf_text.hpp"
+
+namespace swingbank::sim::formats {
+
+bool is_epc(const std::filesystem::path& file) { return pslf::lower(file.extension().string()) == ".epc"; }
+
+network::Network read_epc(const std::filesystem::path& file, const RawOptions& options) {
+  return epc::EpcReader(psse::read_lines(file), file.string(), options).read();
+}
+network::Network parse_epc(const std::string& text, const std::string& name, const RawOptions& options) {
+  return epc::EpcReader(psse::lines_of(text), name, options).read();
+}
+RawSurvey survey_epc(const std::filesystem::path& file, const RawOptions& options) {
+  return epc::EpcReader(psse::read_lines(file), file.string(), options).survey();
+}
+RawSurvey parse_epc_survey(const std::string& text, const std::string& name, const RawOptions& options) {
+  return epc::EpcReader(psse::lines_of(text), name, options).survey();
+}
+
+namespace epc {
+namespace {
+
+/// "bus data  [  9]   ty ...": the name and how many records it announces; no name where it is no such line.
+std::pair<std::string, int> header_of(const std::string& line) {
+  constexpr std::string_view word = " data";
+  const std::string text = pslf::lower(pslf::trimmed(line));
+  if (text.empty() || std::isalpha(static_cast<unsigned char>(text[0])) == 0) return {};
+  const auto data = text.find(word), open = text.find('['), close = text.find(']');
+  if (data == std::string::npos || open == std::string::npos || close == std::string::npos || data > open ||
+      open > close || !pslf::trimmed(text.substr(data + word.size(), open - data - word.size())).empty())
+    return {};
+  const std::string number = pslf::trimmed(text.substr(open + 1, close - open - 1));
+  int count = 0;
+  const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), count);
+  if (error != std::errc{} || stop != number.data() + number.size() || count < 0) return {};
+  return {pslf::trimmed(text.substr(0, data)), count};
+}
+
+psse::Record record_of(const std::vector<pslf::Token>& tokens, int line) {
+  psse::Record record{line, true, {}};
+  for (const pslf::Token& token : tokens) record.fields.push_back({pslf::trimmed(token.text), token.quoted});
+  return record;
+}
+
+}  // namespace
+
+std::vector<std::string> EpcReader::block(std::size_t& at) const {
+  std::vector<std::string> lines;
+  for (++at; at < lines_.size() && pslf::trimmed(lines_[at]) != "!"; ++at) lines.push_back(lines_[at]);
+  ++at;
+  return lines;
+}
+
+void EpcReader::solution_parameters(const std::vector<std::string>& block, std::size_t first) {
+  for (std::size_t i = 0; i < block.size(); ++i) {
+    const int line = static_cast<int>(first + i) + 1;
+    const psse::Record record = record_of(pslf::tokens_of(block[i], place(line), problems_), line);
+    psse::Fields f(record, file_, problems_);
+    if (pslf::lower(f.text(0, "")) == "sbase") base_ = static_cast<double>(f.number(1, "sbase"));
+  }
+}
+
+/// Finds the sections; what they hold is read in an order of its own.
+void EpcReader::divide() {
+  bool ended = false;
+  std::size_t at = 0;
+  while (at < lines_.size() && !ended) {
+    const std::string text = pslf::lower(pslf::trimmed(lines_[at]));
+    if (const auto [name, count] = header_of(lines_[at]); !name.empty()) {
+      sections_.push_back({name, count, ++at, at});
+      continue;
+    }
+    if (text == "title") {
+      for (const std::string& line : block(at)) {
+        if (!network_.title.empty())
+          network_.title += network_.title.find('\n') == std::string::npos ? "\n" : " ";
+        network_.title += pslf::trimmed(line);
+      }
+    } else if (text == "comments") {
+      (void)block(at);
+    } else if (text == "solution parameters") {
+      const std::size_t first = at + 1;
+      solution_parameters(block(at), first);
+    } else {
+      ended = text == "end";
+      if (!ended && !pslf::says_nothing(lines_[at]) && text != "!") {
+        if (sections_.empty())
+          problems_.add("a line outside every section", place(static_cast<int>(at) + 1),
+                        "an .epc is: title, comments, solution parameters, then 'bus data [count]' and so on",
+                        "give a complete .epc");
+        else
+          sections_.back().last = at + 1;
+      }
+      ++at;
+    }
+    if (problems_.list().size() > 3) problems_.raise();  // it is another kind of file
+  }
+  if (std::ranges::none_of(sections_, [](const Section& s) { return s.name == "bus"; }))
+    problems_.add("no 'bus data' section", file_, "a network has buses", "give a complete .epc");
+  else if (!ended)
+    problems_.add("the file ends without 'end'", place(static_cast<int>(lines_.size())),
+                  "it may be truncated: sections at its end would be missing", "restore the file");
+  if (!(base_ > 0.0L))
+    problems_.add("no sbase above 0 MVA in the solution parameters", file_,
+                  "powers and admittances refer to it", "give the line 'sbase 100.0'");
+  if (!options_.frequency_hz || !(*options_.frequency_hz > 0))
+    problems_.add("no frequency", file_, "an .epc has none of its own",
+                  "give --frequency-hz (in a config: frequency_hz), 50 or 60 Hz");
+  problems_.raise();  // without these nothing below can be read
+  network_.base_mva = static_cast<double>(base_);
+  network_.frequency = *options_.frequency_hz;
+}
+
+void EpcReader::rows(const char* name, Reads take) {
+  for (const Section& s : sections_) {
+    if (s.name != name) continue;
+    int count = 0;
+    for (std::size_t at = s.first; at < s.last;) {
+      if (pslf::says_nothing(lines_[at])) {
+        ++at;
+        continue;
+      }
+      const pslf::Line line = pslf::record_at(lines_, at, s.last, file_, problems_);
+      ++count;
+      if (!line.colon) {
+        problems_.add("a record without ':'", place(line.number),
+                      "in the " + s.name + " section a ':' stands between what a record is of and its values",
+                      "correct the record");
+        continue;
+      }
+      (this->*take)({record_of(line.head, line.number), record_of(line.tail, line.number), line.starts});
+      generator_line_.resize(network_.generators.size(), line.number);
+      branch_line_.resize(network_.branches.size(), line.number);
+    }
+    if (count != s.announced)
+      problems_.add(std::to_string(count) + " records in the " + s.name + " section",
+                    place(static_cast<int>(s.first)),
+                    "its first line announces " + std::to_string(s.announced) + ": some may be lost",
+                    "restore the file, or correct the number in brackets");
+  }
+}
+
+void EpcReader::read_sections() {
+  network_.origin = file_;
+  divide();
+  rows("bus", &EpcReader::bus);
+  rows("branch", &EpcReader::branch);
+  rows("shunt", &EpcReader::shunt);
+  join_sections();
+  rows("transformer", &EpcReader::transformer);
+  rows("svd", &EpcReader::svd);
+  rows("generator", &EpcReader::generator);
+  rows("load", &EpcReader::load);
+  rows("dc converter", &EpcReader::converter);
+  rows("vs converter", &EpcReader::converter);
+  tell_left_out();
+}
+
+/// Sections that are not empty and of which nothing is read.
+void EpcReader::tell_left_out() {
+  constexpr std::array known = {"bus",   "branch", "transformer",  "generator",   "load",
+                                "shunt", "svd",    "dc converter", "vs converter"};
+  constexpr std::array nothing = {
+      "area", "zone",       "owner",    "interface",  "transaction", "interface branch",
+      "ba",   "substation", "injgroup", "injgrpelem", "dc bus",      "dc line"};
+  for (const Section& s : sections_) {
+    const auto is = [&](const char* name) { return s.name == name; };
+    if (s.announced > 0 && std::ranges::none_of(known, is) && std::ranges::none_of(nothing, is))
+      network_.remark("sections of the .epc that are not read",
+                      s.name + " data, " + std::to_string(s.announced) + " records (" +
+                          place(static_cast<int>(s.first)) + ")");
+  }
+}
+
+network::Network EpcReader::read() {
+  read_sections();
+  finish();
+  problems_.raise();
+  return std::move(network_);
+}
+RawSurvey EpcReader::survey() {
+  units_only_ = true;
+  read_sections();
+  return {std::move(network_), std::move(generator_line_), std::move(branch_line_), problems_.list()};
+}
+
+void EpcReader::finish() {
+  network::settle_isolated(network_);
+  network::isolate_idle_stars(network_, stars_);
+  network::check_finite(network_, file_, problems_);
+  if (!problems_.empty()) return;
+  if (!devices_.empty()) network::settle_stars(network_, stars_);
+  network::stand_in(network_, devices_, options_.devices, problems_);
+  network::settle_generators(network_, [&](std::size_t i) { return place(generator_line_[i]); });
+  network::settle_islands(network_);
+}
+
+int EpcReader::find_bus(int number, const psse::Fields& fields) {
+  const auto found = index_.find(number);
+  if (found != index_.end()) return found->second;
+  problems_.add("bus " + std::to_string(number) + " is not in the bus section", fields.where(),
+                "the record refers to it", "add the bus or correct the number");
+  return -1;
+}
+
+bool EpcReader::once(const std::string& identity, const psse::Fields& fields) {
+  const auto [found, fresh] = seen_.emplace(identity, fields.line());
+  if (fresh) return true;
+  const std::string first = "already on line " + std::to_string(found->second);
+  if (options_.drop_repeated)
+    network_.remark("equipment that appears a second time is left out, as asked",
+                    identity + " (" + fields.where() + ", " + first + ")");
+  else
+    problems_.add(identity + " appears twice", fields.where(), "it is " + first,
+                  "remove one, give it another id, or leave the later one out with --drop-refused");
+  return !options_.drop_repeated;
+}
+
+bool EpcReader::status(psse::Fields& f) {
+  const int value = f.integer(0, "st");
+  if (value != 0 && value != 1)
+    problems_.add("st = " + std::to_string(value), f.where(), "a status is 0 or 1",
+                  "give 1 (in service) or 0 (out of service)");
+  return value == 1;
+}
+
+std::string EpcReader::id_of(const psse::Fields& of, std::size_t i) {
+  const std::string id = of.text(i, "1");
+  return id.empty() ? "1" : id;
+}
+
+}  // namespace epc
+}  // namespace swingbank::sim::formats

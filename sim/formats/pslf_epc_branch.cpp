@@ -1,0 +1,268 @@
+// Branches and transformers of an .epc. The sections of a line stand in series without buses between them. A
+// transformer's impedances are per unit of tbase and of the windings' nominal voltages. In per unit on bus
+// voltages a winding is an ideal ratio: nominal voltage over the bus's, times its tap.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "sim/formats/detail/epc_reader.hpp"
+
+namespace swingbank::sim::formats::epc {
+
+using psse::Fields;
+using psse::shortest;
+
+namespace {
+
+using Impedance = std::complex<long double>;
+
+/// Columns of a transformer's record behind the ':', its lines joined.
+enum Column : std::size_t {
+  kInternal = 6,
+  kTertiary = 9,
+  kTbase = 14,
+  kPsR = 15,
+  kPtR = 17,
+  kTsR = 19,
+  kVnomP = 21,
+  kVnomS = 22,
+  kVnomT = 23,
+  kAngleP = 24,
+  kGmag = 25,
+  kTap = 37,
+  kFixedP = 38,
+  kFixedS = 39,
+  kFixedT = 40,
+  kOhms = 65,
+  kTbasePt = 66,
+  kTbaseTs = 67,
+  kAngleS = 68,
+  kAngleT = 69
+};
+
+std::string ends_text(int from, int to) { return std::to_string(from) + "-" + std::to_string(to); }
+
+double angle(Fields& f, std::size_t column, const char* name) {
+  return static_cast<double>(f.number(column, name, 0.0L) / psse::kDegrees);
+}
+
+/// Nominal over bus voltage; 1 where the file does not give both.
+long double nominal(Fields& f, std::size_t column, const char* name, double kv) {
+  const long double v = f.number(column, name, 0.0L);
+  return v > 0 && kv > 0 ? v / static_cast<long double>(kv) : 1.0L;
+}
+
+long double ratio(long double turns, const char* winding, const Fields& f, Problems& problems) {
+  if (turns > 0) return turns;
+  problems.add("a ratio of " + shortest(static_cast<double>(turns)) + " of the " + winding + " winding",
+               f.where(), "a winding needs turns", "correct its taps");
+  return 1.0L;
+}
+long double primary(Fields& f, double kv, Problems& problems) {
+  const long double tap = f.number(kTap, "tapp", 1.0L) + f.number(kFixedP, "tapfp", 1.0L) - 1.0L;
+  return ratio(nominal(f, kVnomP, "vnomp", kv) * tap, "primary", f, problems);
+}
+/// PSLF writes 0 for the fixed tap of a winding that has none.
+long double other(Fields& f, std::size_t volt, std::size_t fixed, double kv, const char* winding,
+                  Problems& problems) {
+  const long double tap = f.number(fixed, "fixed tap", 1.0L);
+  return ratio(nominal(f, volt, "nominal voltage", kv) * (tap == 0 ? 1.0L : tap), winding, f, problems);
+}
+
+/// The impedance of one pair of windings, its R and X at `column`, per unit of the system's base.
+Impedance pair_impedance(Fields& f, std::size_t column, const char* r, const char* x, long double mva,
+                         long double base, Problems& problems) {
+  const Impedance z{f.number(column, r, 0.0L), f.number(column + 1, x, 0.0L)};
+  if (mva > 0) return z * (base / mva);
+  if (z != Impedance{})
+    problems.add("a transformer on " + shortest(static_cast<double>(mva)) + " MVA", f.where(),
+                 "its impedance refers to tbase", "give a base > 0 MVA");
+  return z;
+}
+
+/// A pi section as its two-port; `series` with another that begins where it ends.
+struct TwoPort {
+  Complex y11, y12, y22;
+  static TwoPort of(const network::Branch& b) {
+    const Complex y = 1.0 / Complex(b.r, b.x), half(0.0, b.b / 2);
+    return {y + half + b.shunt_from, -y, y + half + b.shunt_to};
+  }
+  [[nodiscard]] TwoPort then(const TwoPort& next) const {
+    const Complex middle = y22 + next.y11;
+    return {y11 - y12 * y12 / middle, -y12 * next.y12 / middle, next.y22 - next.y12 * next.y12 / middle};
+  }
+};
+
+}  // namespace
+
+void EpcReader::some_impedance(network::Branch& b, const Fields& f) {
+  if (b.r != 0.0 || b.x != 0.0) return;
+  b.x = kNoImpedance;
+  network_.remark("branches without impedance get X = " + shortest(kNoImpedance) + " pu",
+                  ends_text(at(b.from).number, at(b.to).number) + " (" + f.where() + ")");
+}
+
+void EpcReader::branch(const Row& row) {
+  Fields of(row.of, file_, problems_), f(row.says, file_, problems_);
+  network::Branch b{};
+  const int from = of.integer(0, "from bus"), to = of.integer(3, "to bus");
+  b.from = find_bus(from, of);
+  b.to = find_bus(to, of);
+  b.circuit = id_of(of, 6);
+  const int section = std::max(of.integer(7, "se", 1), 1);
+  const auto value = [&](std::size_t i, const char* name) { return static_cast<double>(f.number(i, name)); };
+  b.in_service = status(f);
+  b.r = value(1, "resist");
+  b.x = value(2, "react");
+  b.b = value(3, "charge");
+  const std::string name = "branch " + ends_text(std::min(from, to), std::max(from, to)) + " circuit '" +
+                           b.circuit + "'" + (section > 1 ? " section " + std::to_string(section) : "");
+  if (!once(name, of)) return;
+  const std::size_t second = row.starts.empty() ? 10 : row.starts[0];  // ar zone trangi tap_f tap_t ... ohm
+  for (const std::size_t i : {second + 3, second + 4})
+    if (const long double tap = f.number(i, "tap", 0.0L); tap != 0 && tap != 1)
+      problems_.add("a transformer inside " + name, f.where(), "tap_f or tap_t is neither 0 nor 1",
+                    "enter it as a transformer");
+  if (f.integer(second + 30, "ohm", 0) != 0)
+    problems_.add(name + " in ohms", f.where(), "only impedances per unit are read",
+                  "save the case per unit");
+  if (b.from == b.to && b.from >= 0)
+    problems_.add("a branch from bus " + std::to_string(from) + " to itself", of.where(), "it joins nothing",
+                  "correct the bus numbers");
+  if (b.from < 0 || b.to < 0) return;
+  some_impedance(b, f);
+  const std::tuple key{b.from, b.to, b.circuit};
+  if (!parts_.contains(key)) order_.push_back(key);
+  parts_[key].push_back({std::move(b), section, of.line()});
+}
+
+/// Sections of a line in series: their charging becomes shunts at its ends.
+void EpcReader::join_sections() {
+  for (const auto& key : order_) {
+    std::vector<Part>& parts = parts_[key];
+    std::ranges::sort(parts, {}, &Part::section);
+    network::Branch line = parts[0].branch;
+    if (parts.size() > 1) {
+      TwoPort all = TwoPort::of(line);
+      for (std::size_t i = 1; i < parts.size(); ++i) {
+        all = all.then(TwoPort::of(parts[i].branch));
+        line.in_service = line.in_service && parts[i].branch.in_service;
+      }
+      const Complex z = -1.0 / all.y12;
+      line.r = z.real();
+      line.x = z.imag();
+      line.b = 0.0;
+      line.shunt_from = all.y11 + all.y12;
+      line.shunt_to = all.y22 + all.y12;
+    }
+    network_.branches.push_back(std::move(line));
+    branch_line_.push_back(parts[0].line);
+  }
+}
+
+/// The magnetising admittance at the primary's bus.
+Complex EpcReader::magnetising(Fields& f, int bus) {
+  const long double mva = f.number(kTbase, "tbase"), v = nominal(f, kVnomP, "vnomp", at(bus).kv);
+  const long double scale = mva > 0 ? mva / base_ / (v * v) : 0.0L;
+  return {static_cast<double>(f.number(kGmag, "gmag", 0.0L) * scale),
+          static_cast<double>(f.number(kGmag + 1, "bmag", 0.0L) * scale)};
+}
+
+void EpcReader::transformer(const Row& row) {
+  Fields of(row.of, file_, problems_), f(row.says, file_, problems_);
+  const int from = of.integer(0, "from bus"), to = of.integer(3, "to bus"), table = f.integer(5, "zt", 0),
+            tertiary = f.integer(kTertiary, "tertiary bus", 0);
+  const std::array<int, 3> ends{find_bus(from, of), find_bus(to, of),
+                                tertiary > 0 ? find_bus(tertiary, f) : -1};
+  const bool on = status(f);
+  std::string identity = "transformer " + ends_text(from, to);
+  if (tertiary > 0) identity += "-" + std::to_string(tertiary);
+  const std::string circuit = id_of(of, 6);
+  if (tertiary <= 0)  // lines and transformers of two windings share their circuits
+    identity = "branch " + ends_text(std::min(from, to), std::max(from, to));
+  if (!once(identity + " circuit '" + circuit + "'", of)) return;
+  if (table > 0)
+    network_.remark("impedance correction of transformers is left out",
+                    ends_text(from, to) + ", table " + std::to_string(table) + " (" + of.where() + ")");
+  if (f.integer(kOhms, "ohm", 0) != 0)
+    problems_.add(identity + " in ohms", f.where(), "only impedances per unit are read",
+                  "save the case per unit");
+  if (from == to || (tertiary > 0 && (tertiary == from || tertiary == to)))
+    problems_.add("a transformer with two windings at one bus", of.where(), "they would be short-circuited",
+                  "correct the bus numbers");
+  if (ends[0] < 0 || ends[1] < 0 || (tertiary > 0 && ends[2] < 0)) return;
+  if (tertiary > 0)
+    three_windings(of, f, ends, on);
+  else
+    two_windings(of, f, ends[0], ends[1], on);
+}
+
+void EpcReader::two_windings(Fields& of, Fields& f, int from, int to, bool on) {
+  network::Branch b{};
+  b.transformer = true;
+  b.from = from;
+  b.to = to;
+  b.circuit = id_of(of, 6);
+  b.in_service = on;
+  const Impedance z = pair_impedance(f, kPsR, "ps_r", "ps_x", f.number(kTbase, "tbase"), base_, problems_);
+  const long double t1 = primary(f, at(from).kv, problems_),
+                    t2 = other(f, kVnomS, kFixedS, at(to).kv, "secondary", problems_);
+  b.r = static_cast<double>(z.real() * t2 * t2);
+  b.x = static_cast<double>(z.imag() * t2 * t2);
+  b.tap = static_cast<double>(t1 / t2);
+  b.shift = angle(f, kAngleP, "anglp") - angle(f, kAngleS, "angls");
+  b.shunt_from = magnetising(f, from);
+  some_impedance(b, f);
+  network_.branches.push_back(std::move(b));
+}
+
+int EpcReader::star_point(const std::array<int, 3>& ends, int internal, const std::string& circuit, bool on) {
+  if (const auto found = index_.find(internal); internal > 0 && found != index_.end()) return found->second;
+  network::Bus star{};
+  star.number = index_.rbegin()->first + 1 + static_cast<int>(stars_.size());
+  star.name = "STAR " + ends_text(at(ends[0]).number, at(ends[1]).number) + "-" +
+              std::to_string(at(ends[2]).number) + " " + circuit;
+  star.kv = 0.0;  // windings of three voltages meet here: there is no nominal one
+  star.type = on ? network::BusType::load : network::BusType::isolated;
+  star.vm = at(ends[0]).vm;
+  star.va = at(ends[0]).va;
+  const int index = static_cast<int>(network_.buses.size());
+  network_.buses.push_back(std::move(star));
+  stars_.insert(index);
+  return index;
+}
+
+void EpcReader::three_windings(Fields& of, Fields& f, const std::array<int, 3>& ends, bool on) {
+  const std::string circuit = id_of(of, 6);
+  const long double tbase = f.number(kTbase, "tbase"), own_pt = f.number(kTbasePt, "tbasept", 0.0L),
+                    own_ts = f.number(kTbaseTs, "tbasets", 0.0L);
+  const Impedance ps = pair_impedance(f, kPsR, "ps_r", "ps_x", tbase, base_, problems_),
+                  pt = pair_impedance(f, kPtR, "pt_r", "pt_x", own_pt > 0 ? own_pt : tbase, base_, problems_),
+                  ts = pair_impedance(f, kTsR, "ts_r", "ts_x", own_ts > 0 ? own_ts : tbase, base_, problems_);
+  const std::array<Impedance, 3> z{(ps + pt - ts) / 2.0L, (ps + ts - pt) / 2.0L, (pt + ts - ps) / 2.0L};
+  const std::array<long double, 3> turns{primary(f, at(ends[0]).kv, problems_),
+                                         other(f, kVnomS, kFixedS, at(ends[1]).kv, "secondary", problems_),
+                                         other(f, kVnomT, kFixedT, at(ends[2]).kv, "tertiary", problems_)};
+  const std::array<double, 3> shift{angle(f, kAngleP, "anglp"), angle(f, kAngleS, "angls"),
+                                    angle(f, kAngleT, "anglt")};
+  const int star = star_point(ends, f.integer(kInternal, "internal bus", 0), circuit, on);
+  for (std::size_t i = 0; i < 3; ++i) {
+    network::Branch b{};
+    b.transformer = true;
+    b.from = ends[i];
+    b.to = star;
+    b.circuit = circuit;
+    b.in_service = on;
+    // Less than the rounding of the three values it is the difference of is zero.
+    const bool none = std::abs(z[i]) <= 1e-12L * (std::abs(ps) + std::abs(pt) + std::abs(ts));
+    b.r = none ? 0.0 : static_cast<double>(z[i].real());
+    b.x = none ? 0.0 : static_cast<double>(z[i].imag());
+    b.tap = static_cast<double>(turns[i]);
+    b.shift = shift[i];
+    if (i == 0) b.shunt_from = magnetising(f, ends[0]);
+    some_impedance(b, f);
+    network_.branches.push_back(std::move(b));
+  }
+}
+
+}  // namespace swingbank::sim::formats::epc
