@@ -10,7 +10,7 @@
 //   the equations of its kind     MachineOps, ControlOps, TransformerOps or LoadOps below
 //   steady<T>()                   back-initialisation from the operating point
 //   converter                     of a source, optional: true where it is a controlled current
-//   at_shunt                      of a load, optional: true where a .dyr means a switched shunt by it
+//   at_shunt                      of a load, optional: layout of its .dyr records, of switched shunts
 //   publish<T>()                  of a control, optional: signals that are states, before the evaluation
 //   remark()                      optional: what its values ask for and the equations leave out
 //   instants()                    optional: when its equations jump in time
@@ -223,6 +223,19 @@ struct OpsFor<std::tuple<T...>> {
 
 struct Recording;
 
+/// Records of a .dyr that belong to switched shunts, where these are not "bus, 'MODEL', id, parameters". One
+/// name is for the first switched shunt of a bus and has the regulated bus in the id's place, the other is
+/// for one by its id, and the regulated bus stands behind it. Behind the first columns stand, for each of
+/// several shunts beside it, whether it is switched and its id.
+struct ShuntRecord {
+  std::string_view of_first, by_id;
+  int regulated;        ///< parameter with the number of the regulated bus: its first column
+  std::size_t columns;  ///< before the shunts beside it
+  std::size_t beside;   ///< of these
+  static constexpr std::size_t of_each = 2;  ///< fields
+  [[nodiscard]] constexpr std::size_t passed_over() const { return beside * of_each; }
+};
+
 /// One registered effect, its types erased.
 struct Effect {
   std::string_view name, title, source, description, dyr_name;
@@ -233,7 +246,8 @@ struct Effect {
   int raw_resistance, raw_reactance;  ///< parameters that PSS/E keeps in the .raw (ZR, ZX), or -1
   int coefficients, scratch;
   bool converter = false;  ///< of a source: a controlled current, no synchronous machine
-  bool at_shunt = false;   ///< of a load: a .dyr's records of it belong to switched shunts
+  /// Of a load whose records in a .dyr belong to switched shunts: how they are laid out.
+  const ShuntRecord* at_shunt = nullptr;
   void (*check)(const void* law, const double* p, const std::string& where, Problems& problems);
   std::string_view (*unphysical)(const double* p);  ///< empty, or the ordering that is violated
   /// What these values ask for and the equations leave out, as a sentence for a warning; nullptr: nothing.
@@ -334,7 +348,7 @@ Effect make_effect() {
   if constexpr (requires { M::coefficients; }) e.coefficients = M::coefficients;
   if constexpr (requires { M::scratch; }) e.scratch = M::scratch;
   if constexpr (requires { M::converter; }) e.converter = M::converter;
-  if constexpr (requires { M::at_shunt; }) e.at_shunt = M::at_shunt;
+  if constexpr (requires { M::at_shunt; }) e.at_shunt = &M::at_shunt;
   e.check = +[](const void*, const double* p, const std::string& where, Problems& problems) {
     M::check(p, where, problems);
   };

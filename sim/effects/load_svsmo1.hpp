@@ -30,7 +30,6 @@ struct Model {
           "SVSMO1T2",
       dyr_name = "SVSMO1T2";
   static constexpr Slot slot = Slot::load;
-  static constexpr bool at_shunt = true;
   static constexpr std::string_view description = R"(
   V --> [ (1 + s Tc1)/(1 + s Tb1) ] --> Vm        V: of the regulated bus; Vt: at the compensator
   Vref - Vm - Xc1 Vt B --> [ dead-band ] --> [ Vemin to Vemax ] --> [ (1 + s Tc2)/(1 + s Tb2) ]
@@ -97,6 +96,9 @@ struct Model {
     Vrefmax,
     parameter_count
   };
+  /// Two flags, and eight mechanically switched shunts that are not modelled. With an id: InterPSS,
+  /// PsseSvsmo1t2ModelTest.
+  static constexpr ShuntRecord at_shunt = {"SVSMO1T2", "SVSMO1T3", RemoteBus, 3, 8};
   static constexpr Source standards_from =
       literature::interpss("PSSE_5Bus_svsmo1t2_synthetic.dyr, which PSS/E 36 ran");
   static constexpr Source bounds_from = shared::kNoCases;

@@ -92,6 +92,13 @@ struct DyrRecord {
   /// Name of the equipment it is for, where a text stands in the bus number's place (`bus` is 0).
   std::string equipment{};
   bool unended = false;  ///< no '/' ended it: the next record began, or the file ended
+  /// A parameter in quotes that is no number: its value is 0, and whoever has no use for a text there tells
+  /// it.
+  struct Text {
+    std::size_t at;  ///< index into `values`
+    Problems fault;
+  };
+  std::vector<Text> texts{};
 };
 /// What to do with models of a .dyr that are not available here. Names in any case; a user-written model may
 /// be given by its own name or as USRMDL.

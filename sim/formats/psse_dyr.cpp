@@ -99,15 +99,17 @@ class DyrReader {
         fields.integer(0, "bus number"), mapped(model, user_name), fields.text(2, ""), {}, record.line};
     dyr.user = dyr.model == model ? user_name : "";
     dyr.unended = unended;
-    psse::Fields numbers(record, name_, dyr.faults);
+    Problems no_number;
+    psse::Fields numbers(record, name_, dyr.faults), texts(record, name_, no_number);
     for (std::size_t i = named_fourth ? 4 : 3; i < fields.size(); ++i) {
-      if (record.fields[i].quoted && model.starts_with("SVSMO")) {  // the id of a shunt that it may switch
-        dyr.values.push_back(0.0);
-        continue;
-      }
-      if (record.fields[i].text.empty()) dyr.empty.push_back(static_cast<int>(dyr.values.size()) + 1);
-      dyr.values.push_back(static_cast<double>(
-          numbers.number(i, (dyr.model + " parameter " + std::to_string(i - 2)).c_str(), 0.0L)));
+      const bool quoted = record.fields[i].quoted;
+      const std::string what = dyr.model + " parameter " + std::to_string(i - 2);
+      if (record.fields[i].text.empty() && !quoted)
+        dyr.empty.push_back(static_cast<int>(dyr.values.size()) + 1);
+      dyr.values.push_back(static_cast<double>((quoted ? texts : numbers).number(i, what.c_str(), 0.0L)));
+      if (no_number.empty()) continue;
+      dyr.texts.push_back({dyr.values.size() - 1, no_number});
+      no_number = {};
     }
     out_.push_back(std::move(dyr));
   }

@@ -17,7 +17,8 @@ struct Missing {
 constexpr Missing kMissing[] = {
     {"CMLD", "composite load, not modelled"},
     {"CMPLD", "composite load, not modelled"},
-    {"SVSMO", "static var system of stepped branches or a converter, not modelled"},
+    {"SVSMO2", "static var system of stepped branches, not modelled"},
+    {"SVSMO3", "static var system of a converter, not modelled"},
     {"VSCHVDC", "STEPS's own, no PSS/E model"},
 };
 std::string why_missing(std::string_view name) {

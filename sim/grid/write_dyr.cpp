@@ -66,21 +66,21 @@ std::string plant_record(const Grid& grid, const plant::Plant& plant, const plan
                     grid.network.buses[static_cast<std::size_t>(plant.bus)].number, g.id, file, problems);
 }
 
-/// What stands before the parameters of a static var system: its bus, the one that it regulates, two flags,
-/// and that it switches none of eight shunts. SVSMO1T2 means the first switched shunt of its bus, SVSMO1T3
-/// has an id.
+/// The record of a model of a switched shunt, which switches none of those beside it.
 std::string shunt_record(const plant::Block& block, int bus, const std::string& shunt) {
   using formats::psse::quote;
   using formats::psse::shortest;
   const Effect& effect = *block.effect;
-  const auto value = [&](std::size_t column) {
-    return " " + shortest(block.p[static_cast<std::size_t>(effect.dyr_columns[column])]);
-  };
+  const ShuntRecord& layout = *effect.at_shunt;
   const std::string id = shunt.substr(2), regulated = std::to_string(regulated_bus(block));
-  std::string text = std::to_string(bus) + (id.empty() ? " 'SVSMO1T2' " : " 'SVSMO1T3' " + quote(id) + " ") +
-                     (regulated == "0" ? std::to_string(bus) : regulated) + value(1) + value(2);
-  for (std::size_t i = 1; i <= kSwitchedBeside; ++i) text += " 0 " + quote(std::to_string(i));
-  for (std::size_t i = 3; i < effect.dyr_columns.size(); ++i) text += value(i);
+  std::string text =
+      std::to_string(bus) + " " + quote(std::string(id.empty() ? layout.of_first : layout.by_id)) +
+      (id.empty() ? "" : " " + quote(id)) + " " + (regulated == "0" ? std::to_string(bus) : regulated);
+  for (std::size_t i = 1; i < effect.dyr_columns.size(); ++i) {
+    if (i == layout.columns)
+      for (std::size_t k = 1; k <= layout.beside; ++k) text += " 0 " + quote(std::to_string(k));
+    text += " " + shortest(block.p[static_cast<std::size_t>(effect.dyr_columns[i])]);
+  }
   return text + " /\n";
 }
 

@@ -19,7 +19,9 @@ constexpr std::array kEndings = {"BL", "OW", "ZN", "AR", "AL"};
 const Effect* effect_named(std::string_view model) {
   const auto same = [](unsigned char a, unsigned char b) { return std::toupper(a) == std::toupper(b); };
   for (const Effect& e : library::compiled_effects())
-    if (!e.dyr_name.empty() && std::ranges::equal(e.dyr_name, model, same)) return &e;
+    if (!e.dyr_name.empty() && (std::ranges::equal(e.dyr_name, model, same) ||
+                                (e.at_shunt && std::ranges::equal(e.at_shunt->by_id, model, same))))
+      return &e;
   return nullptr;
 }
 /// Other names of a model whose equations are the same, and where its columns stand in theirs; none: in the
@@ -40,7 +42,6 @@ constexpr OtherName kOtherNames[] = {
     {"IEE2ST", "ST2CUT"},            // its IEEE form: the same blocks (OpenIPSL, c80a6c4)
     {"ESST5B", "ST5B", kPslfsSt5b},  // PSLF's (InterPSS, St5bExciterTest)
     {"EXDC1", "IEEEX1"},             // GridPACK's and PSLF's name of the type DC1 of 1981
-    {"SVSMO1T3", "SVSMO1T2"},        // the same with the shunt's id (InterPSS, PsseSvsmo1t2ModelTest)
 };
 
 const OtherName* other_name(std::string_view model) {
@@ -104,36 +105,37 @@ std::string columns_text(const Effect& effect) {
   for (const int column : effect.dyr_columns)
     text += " " + std::string(effect.parameters[static_cast<std::size_t>(column)].symbol);
   if (effect.at_shunt)
-    text += fmt::format(", and behind the third of {} switched shunts whether it is switched and its id",
-                        kSwitchedBeside);
+    text += fmt::format(", and behind the first {} of {} switched shunts whether it is switched and its id",
+                        effect.at_shunt->columns, effect.at_shunt->beside);
   return text;
 }
 
 namespace {
 
-/// SVSMO1T2 has the regulated bus where others have an id, SVSMO1T3 has it after the id; then two flags and,
-/// of eight mechanically switched shunts, whether each is switched and its id, then the parameters. No shunt
-/// is switched here: a record that asks for it says so by its first flag.
-void without_switched_shunts(formats::DyrRecord& record) {
-  constexpr std::size_t flags = 2, shunts = kSwitchedBeside * kOfSwitched, rest = 47;
+/// Leaves its parameters of a record of a switched shunt. No shunt beside it is switched here: a record that
+/// asks for it says so by its flags.
+void without_shunts_beside(formats::DyrRecord& record, const ShuntRecord& layout, std::size_t columns) {
   std::vector<double>& v = record.values;
-  if (record.model == "SVSMO1T2") {
+  if (record.model == layout.of_first) {
     const auto bus = formats::psse::parse_number(record.id);
-    if (!bus || v.size() != flags + shunts + rest) return;
+    if (!bus || v.size() + 1 != columns + layout.passed_over()) return;
     v.insert(v.begin(), static_cast<double>(*bus));
     record.id = kAnyShunt;
+    for (formats::DyrRecord::Text& text : record.texts) ++text.at;
   }
-  if (v.size() != 1 + flags + shunts + rest) return;
-  const auto from = v.begin() + 1 + flags;
-  v.erase(from, from + shunts);
+  if (v.size() != columns + layout.passed_over()) return;
+  const auto from = v.begin() + static_cast<std::ptrdiff_t>(layout.columns);
+  v.erase(from, from + static_cast<std::ptrdiff_t>(layout.passed_over()));
+  std::erase_if(record.texts, [&](const formats::DyrRecord::Text& text) {
+    return text.at >= layout.columns && text.at < layout.columns + layout.passed_over();
+  });
 }
 
 }  // namespace
 
 int regulated_bus(const plant::Block& block) {
-  const int index = block.effect->parameter_index("RemoteBus");
-  if (index < 0) return 0;
-  const auto at = static_cast<std::size_t>(index);
+  if (!block.effect->at_shunt) return 0;
+  const auto at = static_cast<std::size_t>(block.effect->at_shunt->regulated);
   const double value = block.p[at];
   // Another value is none that a bus has: check() refuses it.
   return value > 0.0 && value <= block.effect->parameters[at].high ? static_cast<int>(value) : 0;
@@ -149,7 +151,9 @@ int regulated_index(const network::Network& network, const plant::Block& block, 
 }
 
 formats::DyrRecord plain(formats::DyrRecord record, const Effect& effect) {
-  if (effect.at_shunt) without_switched_shunts(record);
+  if (effect.at_shunt) without_shunts_beside(record, *effect.at_shunt, effect.dyr_columns.size());
+  for (const formats::DyrRecord::Text& text : record.texts) record.faults.add(text.fault);
+  record.texts.clear();
   constexpr std::size_t before = 6, icons = 2, cons = 3;
   const std::size_t columns = effect.dyr_columns.size();
   if (!record.user.empty()) {

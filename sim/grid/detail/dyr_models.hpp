@@ -32,8 +32,6 @@ inline std::string name_of(const formats::DyrRecord& r) { return r.user.empty() 
 formats::DyrRecord plain(formats::DyrRecord record, const Effect& effect);
 /// As the id of a record that names no switched shunt: the first one of its bus.
 inline constexpr std::string_view kAnyShunt = "*";
-/// How many switched shunts beside it a static var system may switch, and what stands for each of them.
-inline constexpr std::size_t kSwitchedBeside = 8, kOfSwitched = 2;
 /// Number of the bus whose voltage a model regulates; 0: its own, or none.
 int regulated_bus(const plant::Block& block);
 /// Its index, -1 where there is none; a bus that the network has not is a problem.

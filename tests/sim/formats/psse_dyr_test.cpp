@@ -72,7 +72,7 @@ TEST(PsseDyr, TextInAModelThatIsNotUsedIsOnlyNoted) {
   const auto r =
       read("101 'XYZ' 1 2.0 'text' 3.0 /\n102 'USRMDL' 1 'MyGov' 1 1 0 /\n0 'USRMSC' 'MYREL' 512 0 /\n");
   ASSERT_EQ(r.size(), 3u);
-  EXPECT_EQ(r[0].faults.list().size(), 1u);
+  EXPECT_EQ(r[0].texts.size(), 1u);
   EXPECT_EQ(r[1].model, "USRMDL");
   EXPECT_EQ(r[1].user, "MYGOV");
   EXPECT_THAT(r[1].values, ElementsAre(1.0, 1.0, 0.0));
@@ -133,6 +133,18 @@ TEST(PsseDyr, RecordsOfEquipmentBearItsName) {
   EXPECT_EQ(r[0].equipment, "DC LINE 1");
   EXPECT_EQ(r[0].model, "CDC6T");
   EXPECT_EQ(r[1].equipment, "V1");
+}
+
+/// A text may be meant: the reader keeps it, and whoever takes the record as numbers tells it.
+TEST(PsseDyr, TextsAmongTheParametersAreKept) {
+  const auto r = parse_dyr("7 'MODEL' 1 2 'A1' '3' 4 /\n", "t.dyr");
+  ASSERT_EQ(r.size(), 1U);
+  EXPECT_THAT(r[0].values, ::testing::ElementsAre(2, 0, 3, 4));
+  EXPECT_TRUE(r[0].faults.empty());
+  ASSERT_EQ(r[0].texts.size(), 1U);
+  EXPECT_EQ(r[0].texts[0].at, 1U);
+  EXPECT_THAT(r[0].texts[0].fault.list().at(0).sentence(),
+              ::testing::HasSubstr("MODEL parameter 2 = 'A1' at t.dyr:1"));
 }
 
 }  // namespace

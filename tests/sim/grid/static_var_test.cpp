@@ -126,6 +126,10 @@ TEST(StaticVar, EveryFaultIsReported) {
   const std::string few =
       formats::sentences_of([] { load_from(with_shunt(), kPlants + "103 'SVSMO1T2' 103 0 0 1 2 /\n"); });
   EXPECT_THAT(few, HasSubstr("of 8 switched shunts"));
+  std::string text = record("103");  // a text has a meaning among the shunts beside it alone
+  text.replace(text.find(" 0.18 "), 6, " 'B' ");
+  EXPECT_THAT(formats::sentences_of([&] { load_from(with_shunt(), kPlants + text); }),
+              HasSubstr("SVSMO1T2 parameter 19 = 'B'"));
   const Grid none = load_from({}, kPlants + record("103"));
   EXPECT_TRUE(says(none, "models of switched shunts that are not in service are left out"));
 }
