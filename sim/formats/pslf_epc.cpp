@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <string_view>
 
 #include "sim/formats/detail/epc_reader.hpp"
 #include "sim/formats/detail/pslf_text.hpp"
@@ -70,6 +71,8 @@ void EpcReader::solution_parameters(const std::vector<std::string>& block, std::
 
 /// Finds the sections; what they hold is read in an order of its own.
 void EpcReader::divide() {
+  constexpr std::string_view mark = "\xEF\xBB\xBF";  // some editors begin a file with it
+  if (!lines_.empty() && lines_[0].starts_with(mark)) lines_[0].erase(0, mark.size());
   bool ended = false;
   std::size_t at = 0;
   while (at < lines_.size() && !ended) {

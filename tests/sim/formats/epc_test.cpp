@@ -93,7 +93,8 @@ TEST(Epc, IsTheSameGridAsItsRaw) {
 }
 
 TEST(Epc, IsReadByItsEndingInAnyCase) {
-  const ScratchFile file("CASE.EPC", EpcCase().text());
+  const ScratchFile file("CASE.EPC",
+                         "\xEF\xBB\xBF" + EpcCase().text().substr(EpcCase().text().find("title")));
   EXPECT_EQ(read_network(file.path, {60.0}).buses.size(), 3U);
   EXPECT_EQ(survey_network(file.path, {60.0}).generator_line.size(), 2U);
 }
