@@ -111,7 +111,6 @@ ReferencePlants::ReferencePlants(const grid::Grid& grid) {
 ReferenceSystem::ReferenceSystem(const grid::Grid& grid, const ReferencePlants& plants,
                                  const network::Segment& segment, double end)
     : plants_(plants),
-      grid_(grid),
       buses_(static_cast<int>(grid.network.buses.size())),
       last_moment_(end - plant::kBeforeSwitching),
       bolted_(buses_, false),

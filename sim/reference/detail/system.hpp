@@ -116,7 +116,6 @@ class ReferenceSystem {
   [[nodiscard]] int bus_row(int bus) const { return plants_.states() + 2 * bus; }
 
   const ReferencePlants& plants_;
-  const grid::Grid& grid_;
   int buses_;
   double last_moment_;  ///< largest time effects may see [s]
   std::vector<bool> bolted_;
