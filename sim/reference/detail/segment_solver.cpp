@@ -69,19 +69,23 @@ int residual(realtype t, N_Vector y, N_Vector yp, N_Vector f, void* user) {
 int jacobian(realtype t, realtype a, N_Vector y, N_Vector, N_Vector, SUNMatrix j, void* user, N_Vector,
              N_Vector, N_Vector) {
   auto& p = *static_cast<Problem*>(user);
-  if (p.old(a))
+  const bool anew = p.old(a);
+  if (anew)
     p.system.jacobian(t, a, N_VGetArrayPointer(y), p.values.data());
   else
     for (const int place : p.own) p.values[static_cast<std::size_t>(place)] += a - p.a;
   p.a = a;
-  if (p.nonzeros.take(p.values)) {  // then the order of elimination is found anew
+  if (anew && p.nonzeros.take(p.values)) {  // then the order of elimination is found anew
     if (SUNLinSol_KLUReInit(p.solver, j, p.nonzeros.count(), SUNKLU_REINIT_FULL) < 0) return -1;
-    SUNMatZero(j);
+    p.nonzeros.pattern(SUNSparseMatrix_IndexPointers(j), SUNSparseMatrix_IndexValues(j));
   }
-  p.nonzeros.pattern(SUNSparseMatrix_IndexPointers(j), SUNSparseMatrix_IndexValues(j));
   p.nonzeros.gather(p.values, SUNSparseMatrix_Data(j));
   return 0;
 }
+
+/// IDA empties the matrix before it asks for one, with its pattern; this one is written over as a whole, and
+/// its pattern stays.
+int keep(SUNMatrix) { return 0; }
 
 /// Of the largest weighted error (detail/vector.hpp): the tolerance holds for each single unknown; one that
 /// others see through a gain counts by its weight.
@@ -141,6 +145,7 @@ SegmentSolver::SegmentSolver(SUNContext context, const ReferenceSystem& system, 
       reached_(start) {
   auto& [to_y, to_yp, problem, matrix, solver, ida] = *parts_;
   matrix.reset(SUNSparseMatrix(system.size(), system.size(), system.size(), CSC_MAT, context));
+  matrix->ops->zero = segments::keep;
   solver.reset(SUNLinSol_KLU(y, matrix.get(), context));
   problem.solver = solver.get();
   require(SUNLinSol_KLUSetOrdering(solver.get(), segments::kMinimumDegree), "SUNLinSol_KLUSetOrdering");
