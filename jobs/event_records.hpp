@@ -108,6 +108,8 @@ struct Reading {
     problems.raise();
     if (from) model.reading.from = *from;
     if (until) model.reading.until = *until;
+    if (!point.empty())
+      model.plant.beyond = validate::event::at_point(validate::event::load_point(point, model.origin)).beyond;
     using validate::record::Component;
     for (const auto c : {Component::exciter, Component::governor, Component::machine})
       if (component == validate::record::component_name(c)) {

@@ -13,6 +13,7 @@
 //   at_shunt                      of a load, optional: layout of its .dyr records, of switched shunts
 //   publish<T>()                  of a control, optional: signals that are states, before the evaluation
 //   remark()                      optional: what its values ask for and the equations leave out
+//   elsewhere                     optional: the parameters by which it names what it measures elsewhere
 //   instants()                    optional: when its equations jump in time
 //   closed_form()                 of a machine, optional: its parameters from a record, without a search
 //   measure(), memory()           of a measurement: what it makes of the phasors, and how far it reaches
@@ -92,6 +93,13 @@ struct Parameter {
   [[nodiscard]] constexpr bool is_code() const { return unit == "code"; }
 };
 
+/// Indices of the parameters by which a plant's control or a load names what it measures elsewhere in the
+/// grid (0 in them: at itself); -1: it has none.
+struct Elsewhere {
+  int bus = -1;                          ///< number of the bus whose voltage it regulates
+  int from = -1, to = -1, circuit = -1;  ///< the branch whose flow counts, measured at its first bus
+};
+
 struct State {
   std::string_view name, unit, meaning;
   /// Of this state's error in step control: a speed error counts through the angle it causes.
@@ -123,6 +131,14 @@ struct Conventions {
   static constexpr Conventions andes(double hz = 60.0) { return {false, false, hz}; }
 };
 
+/// What a plant's control sees elsewhere: voltage of the bus that it regulates [pu], current [pu] and power
+/// [pu] of the branch whose flow counts, positive out of the plant. Where its parameters name neither bus nor
+/// branch, those of the plant's grid side, which is where a record of it was taken.
+template <class T>
+struct Far {
+  T Vr{}, Vi{}, Ir{}, Ii{}, P{}, Q{};
+};
+
 /// Everything the blocks of one plant exchange; per unit on the machine's own base, network frame for r, i.
 /// Of a converter Tm is the command of active current and Efd that of reactive current, positive while it
 /// delivers Q [pu]: so what holds, adds to, infers and records Tm and Efd does the same for the commands.
@@ -152,6 +168,7 @@ struct Signals {
   T pitch{}, Paero{};  ///< of the blades, less its value at the operating point (in steady(): that value)
                        ///< [degrees]; power of the wind at the shaft [pu]
   T Pord{};            ///< power that the electrical control orders [pu]
+  Far<T> far{};        ///< for the plant's control, which reads it if its parameters name a bus or a branch
 };
 
 /// Equations of a machine (state 0 is the rotor angle, state 1 the speed deviation): voltage `e` behind the
@@ -248,6 +265,7 @@ struct Effect {
   bool converter = false;  ///< of a source: a controlled current, no synchronous machine
   /// Of a load whose records in a .dyr belong to switched shunts: how they are laid out.
   const ShuntRecord* at_shunt = nullptr;
+  Elsewhere elsewhere = {};
   void (*check)(const void* law, const double* p, const std::string& where, Problems& problems);
   std::string_view (*unphysical)(const double* p);  ///< empty, or the ordering that is violated
   /// What these values ask for and the equations leave out, as a sentence for a warning; nullptr: nothing.
@@ -349,6 +367,7 @@ Effect make_effect() {
   if constexpr (requires { M::scratch; }) e.scratch = M::scratch;
   if constexpr (requires { M::converter; }) e.converter = M::converter;
   if constexpr (requires { M::at_shunt; }) e.at_shunt = &M::at_shunt;
+  if constexpr (requires { M::elsewhere; }) e.elsewhere = M::elsewhere;
   e.check = +[](const void*, const double* p, const std::string& where, Problems& problems) {
     M::check(p, where, problems);
   };

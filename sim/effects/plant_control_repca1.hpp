@@ -21,8 +21,9 @@ struct Model {
   - speed --> [ fdbd1, fdbd2 ] --> x Ddn where it is negative, x Dup where it is positive --droop
   Pref - P/(1 + s Tp) + droop --> within femin, femax --> [ Kpg + Kig/s, Pmin to Pmax ] --> [ 1/(1 + s Tg) ] --> Pext
       (FrqFlag 1; with 0 Pext stays where it is)
-  V, I, P and Q are those of the unit's own terminal, on its base; moves of the reference of V (or Q) and P add to
-  ref and Pref.
+  V is that of the remote bus, I, P and Q are those of the branch, from its first bus to its second, on the unit's
+  base; 0: those of the unit's own terminal. In a plant file, which knows no other bus, they are those of the point
+  where the record was taken. Moves of the reference of V (or Q) and P add to ref and Pref.
 )";
   enum P {
     RemoteBus,
@@ -108,8 +109,11 @@ struct Model {
       RemoteBus, FromBus, ToBus, Circuit, VCFlag, RefFlag, FrqFlag, Tfltr, Kp,   Ki,   Tft, Tfv,
       Vfrz,      Rc,      Xc,    Kc,      emax,   emin,    dbd1,    dbd2,  Qmax, Qmin, Kpg, Kig,
       Tp,        fdbd1,   fdbd2, femax,   femin,  Pmax,    Pmin,    Tg,    Ddn,  Dup};
+  static constexpr Elsewhere elsewhere = {.bus = RemoteBus, .from = FromBus, .to = ToBus, .circuit = Circuit};
   enum C {
-    by_voltage,  ///< flags: 1 or 0
+    at_bus,  ///< flags: 1 or 0
+    at_branch,
+    by_voltage,
     line_drop,
     by_power,
     iTfltr,
@@ -164,15 +168,6 @@ struct Model {
                       problems);
   }
   static std::string_view unphysical(const double*) { return ""; }
-  static std::string remark(const double* p) {
-    std::string text = Core::remote(p[RemoteBus]);
-    if (p[FromBus] != 0 || p[ToBus] != 0)
-      text +=
-          fmt::format("{}it is to count P and Q of branch {:g} - {:g}; here those of the unit itself count",
-                      text.empty() ? "" : "; ", p[FromBus], p[ToBus]);
-    return text;
-  }
-
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {
     for (const auto& [to, from] : {std::pair<int, int>{by_voltage, RefFlag},
@@ -201,14 +196,36 @@ struct Model {
                                    {ddn, Ddn},
                                    {dup, Dup}})
       c[to] = p[from];
+    c[at_bus] = T(value_of(p[RemoteBus]) != 0.0 ? 1.0 : 0.0);
+    c[at_branch] = T(value_of(p[FromBus]) != 0.0 || value_of(p[ToBus]) != 0.0 ? 1.0 : 0.0);
     c[kig] = value_of(p[FrqFlag]) > 0.5 ? p[Kig] : T(0.0);
     c[iTfltr] = inverse(p[Tfltr]);
     c[iTfv] = inverse(p[Tfv]);
     c[iTp] = inverse(p[Tp]);
     c[iTg] = inverse(p[Tg]);
   }
+  /// What it measures: where its parameters say, or at the terminal.
   template <class T>
-  static T regulated(const T* c, const Signals<T>& s) {
+  struct Measured {
+    T Vr, Vi, V, Ir, Ii, P, Q;
+  };
+  template <class T>
+  static Measured<T> measure_at(const T* c, const Signals<T>& s) {
+    using std::sqrt;
+    Measured<T> m{s.Vr, s.Vi, s.V, s.Ir, s.Ii, s.P, s.Q};
+    const T half(0.5);
+    const Far<T>& f = s.far;
+    m.Vr = select(c[at_bus] > half, f.Vr, m.Vr);
+    m.Vi = select(c[at_bus] > half, f.Vi, m.Vi);
+    m.V = select(c[at_bus] > half, sqrt(f.Vr * f.Vr + f.Vi * f.Vi + T(1e-24)), m.V);
+    m.Ir = select(c[at_branch] > half, f.Ir, m.Ir);
+    m.Ii = select(c[at_branch] > half, f.Ii, m.Ii);
+    m.P = select(c[at_branch] > half, f.P, m.P);
+    m.Q = select(c[at_branch] > half, f.Q, m.Q);
+    return m;
+  }
+  template <class T>
+  static T regulated(const T* c, const Measured<T>& s) {
     using std::sqrt;
     const T half(0.5);
     const T re = s.Vr - c[rc] * s.Ir + c[xc] * s.Ii, im = s.Vi - c[rc] * s.Ii - c[xc] * s.Ir;
@@ -219,15 +236,16 @@ struct Model {
   template <class T>
   static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
     const T zero(0.0), one(1.0);
-    const T at = lag(c[iTfltr], x[measured], regulated(c, s), dx[measured]);
+    const Measured<T> m = measure_at(c, s);
+    const T at = lag(c[iTfltr], x[measured], regulated(c, m), dx[measured]);
     const T error = clamp(renewable::dead_zone(c[ref] + s.dVref - at, c[below], c[above]), c[least], c[most]);
-    const T runs = one - clamp((c[vfrz] - s.V) * T(1.0 / renewable::kDipBand), zero, one);
+    const T runs = one - clamp((c[vfrz] - m.V) * T(1.0 / renewable::kDipBand), zero, one);
     const T q = renewable::regulator(c[kp], c[ki], error, c[qmin], c[qmax], runs, x[integral], dx[integral]);
     s.Qext = lead_lag(c[tft], c[iTfv], x[lead], q, dx[lead]) - c[q0];
 
     const T deviation = renewable::dead_zone(zero - s.speed, c[f_below], c[f_above]);
     const T droop = c[dup] * positive_part(deviation) - c[ddn] * positive_part(zero - deviation);
-    const T p = lag(c[iTp], x[power], s.P, dx[power]);
+    const T p = lag(c[iTp], x[power], m.P, dx[power]);
     const T p_error = clamp(c[pref] + s.dPref - p + droop, c[p_least], c[p_most]);
     const T asked =
         renewable::regulator(c[kpg], c[kig], p_error, c[pmin], c[pmax], one, x[p_integral], dx[p_integral]);
@@ -236,9 +254,10 @@ struct Model {
   }
   template <class T>
   static std::string steady(const T*, T* c, Signals<T>& s, T* x) {
-    x[measured] = c[ref] = regulated(c, s);
+    const Measured<T> m = measure_at(c, s);
+    x[measured] = c[ref] = regulated(c, m);
     x[integral] = x[lead] = c[q0] = s.Qneed;
-    x[power] = c[pref] = s.P;
+    x[power] = c[pref] = m.P;
     x[p_integral] = x[p_lag] = c[p0] = s.Pneed;
     const auto outside = [](const char* what, const T& value, const T& low, const T& high) {
       return value_of(value) < value_of(low) || value_of(value) > value_of(high)

@@ -1,5 +1,7 @@
 #include "sim/grid/attach.hpp"
 
+#include "sim/grid/far.hpp"
+
 namespace swingbank::sim::grid {
 
 void attach(Grid& grid, const plant::Attachment& a, const std::string& where, Problems& problems) {
@@ -14,6 +16,7 @@ void attach(Grid& grid, const plant::Attachment& a, const std::string& where, Pr
     if (auto problem = plant::place(plant, a.block, where))
       problems.add(problem->what, problem->where, problem->why, problem->remedy);
   }
+  look_far(grid);
   if (!any)
     problems.add("no plant " + a.plant, where, "the plants are " + names, "choose one of these, or all");
 }

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "sim/grid/detail/dyr_models.hpp"
+#include "sim/grid/far.hpp"
 #include "sim/grid/load_choice.hpp"
 #include "sim/plant/usual.hpp"
 
@@ -41,6 +42,7 @@ class GridMaker {
       set_load(grid_, model.load, std::move(model.block), model.where, problems_);
     }
     problems_.raise();
+    look_far(grid_);
     return std::move(grid_);
   }
 

@@ -1,5 +1,6 @@
 #include "sim/grid/operating_point.hpp"
 
+#include "sim/grid/far.hpp"
 #include "sim/grid/load_choice.hpp"
 
 namespace swingbank::sim::grid {
@@ -10,6 +11,7 @@ Grid at_operating_point(const Grid& grid, network::Network network) {
   at.flow = network::solve_power_flow(at.network, at.flow_options);
   for (plant::Plant& plant : at.plants)
     plant.generation = at.flow.generation[static_cast<std::size_t>(plant.generator)];
+  measure_far(at);
   Problems problems;
   for (const plant::Consumer& load : grid.loads) {
     plant::Block block = load.block;
@@ -23,6 +25,9 @@ Grid at_operating_point(const Grid& grid, network::Network network) {
 
 void set_machine_base(Grid& grid, std::size_t plant, double mva) {
   plant::Plant& p = grid.plants[plant];
+  if (p.far)  // on the machine's base
+    for (double Far<double>::*part : {&Far<double>::Ir, &Far<double>::Ii, &Far<double>::P, &Far<double>::Q})
+      *p.far.*part *= p.mva / mva;
   p.mva = mva;
   grid.network.generators[static_cast<std::size_t>(p.generator)].mva = mva;
 }

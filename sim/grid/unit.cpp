@@ -39,6 +39,7 @@ class UnitReader {
       read_transformer(*choice_.measured_at);
     else
       tell_transformer();
+    tell_far();
     problems_.raise();
     return std::move(unit_);
   }
@@ -303,6 +304,19 @@ class UnitReader {
     neighbours(measured_at);
     add_transformer(net().branches[at], line_of(survey_.branch_line, at));
     unit_.kv = bus_at(net().bus_index(measured_at)).kv;
+  }
+  /// A control that measures elsewhere does so, in a plant file, where the record was taken.
+  void tell_far() {
+    const int recorded = choice_.measured_at.value_or(unit_.bus);
+    for (const plant::Block& block : unit_.plant.controls) {
+      const Elsewhere& at = block.effect->elsewhere;
+      const int bus = number_in(block, at.bus), from = number_in(block, at.from);
+      if ((bus == 0 || bus == recorded) && (from == 0 || from == recorded)) continue;
+      unit_.notes.push_back(fmt::format(
+          "{} measures at bus {}; in a plant file that is where the records are taken: take them there, and "
+          "give what lies between by --measured-at or as [collector] of a point file",
+          block.effect->name, bus != 0 && bus != recorded ? bus : from));
+    }
   }
   /// What else stands at the machine's bus flows through the transformer too.
   void neighbours(int measured_at) {

@@ -13,11 +13,11 @@ namespace {
 using Entries = std::vector<Eigen::Triplet<Complex>>;
 
 void add_branch(const Branch& b, Entries& entries) {
-  const Complex y = 1.0 / Complex(b.r, b.x), half(0.0, 0.5 * b.b), n = std::polar(b.tap, b.shift);
-  entries.emplace_back(b.from, b.from, (y + half) / (b.tap * b.tap) + b.shunt_from);
-  entries.emplace_back(b.from, b.to, -y / std::conj(n));
-  entries.emplace_back(b.to, b.from, -y / n);
-  entries.emplace_back(b.to, b.to, y + half + b.shunt_to);
+  const BranchEnd from = branch_end(b, true), to = branch_end(b, false);
+  entries.emplace_back(b.from, b.from, from.own);
+  entries.emplace_back(b.from, b.to, from.other);
+  entries.emplace_back(b.to, b.from, to.other);
+  entries.emplace_back(b.to, b.to, to.own);
 }
 
 Entries branches_and_shunts(const Network& network, const Topology& topology) {
@@ -58,6 +58,12 @@ void check_supplied(const Network& network, const Topology& topology) {
 }
 
 }  // namespace
+
+BranchEnd branch_end(const Branch& b, bool at_from) {
+  const Complex y = 1.0 / Complex(b.r, b.x), half(0.0, 0.5 * b.b), n = std::polar(b.tap, b.shift);
+  if (at_from) return {(y + half) / (b.tap * b.tap) + b.shunt_from, -y / std::conj(n)};
+  return {y + half + b.shunt_to, -y / n};
+}
 
 Complex consumption(const Load& load, const PowerFlow& flow) {
   const double vm = std::abs(flow.voltage[static_cast<std::size_t>(load.bus)]);

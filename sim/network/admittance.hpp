@@ -9,6 +9,13 @@
 
 namespace swingbank::sim::network {
 
+/// Current into a branch at one of its ends [pu]: own times the voltage there + other times that at the far
+/// end.
+struct BranchEnd {
+  Complex own, other;
+};
+BranchEnd branch_end(const Branch& branch, bool at_from);
+
 /// Bus admittance matrix [pu] of branches and shunts alone (what the power flow uses). n x n.
 Eigen::SparseMatrix<Complex> bus_admittance(const Network& network, const Topology& topology = {});
 

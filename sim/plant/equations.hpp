@@ -8,6 +8,8 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <optional>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -28,12 +30,14 @@ class PlantEquations {
     scratch_ = machine.scratch;
     joint_ = machine.coefficients;
     has_transformer_ = plant.transformer.effect != nullptr;
+    beyond_ = plant.beyond;
     limits(machine, 0);
     states_ = static_cast<int>(machine.states.size());
     coefficients_ = joint_ + kJoint;
     for (const Block& block : plant.controls) {
       controls_.push_back({block.effect->get<T>().control, block.effect->law.get(), states_, coefficients_});
       publishes_ = publishes_ || controls_.back().ops.publish != nullptr;
+      looks_far_ = looks_far_ || block.effect->elsewhere.bus >= 0;
       limits(*block.effect, coefficients_);
       states_ += static_cast<int>(block.effect->states.size());
       coefficients_ += block.effect->coefficients;
@@ -73,10 +77,12 @@ class PlantEquations {
     if (!has_transformer_) {
       s.Vr = er - j[joint_r] * s.Ir + j[joint_x] * s.Ii;
       s.Vi = ei - j[joint_r] * s.Ii - j[joint_x] * s.Ir;
+      look_far(s, s.Vr, s.Vi, s.Ir, s.Ii);
       return;
     }
     s.Vpr = er - j[joint_r] * s.Ir + j[joint_x] * s.Ii;
     s.Vpi = ei - j[joint_r] * s.Ii - j[joint_x] * s.Ir;
+    look_far(s, s.Vpr, s.Vpi, s.Ir, s.Ii);
     through_transformer(c, s);
   }
   /// The same from the voltage Vpr, Vpi at the grid's side: of no use behind V = 0.
@@ -101,29 +107,25 @@ class PlantEquations {
     return {n * (v - zt * i), i / n};
   }
 
+  /// What a plant's control sees where it names no other place: voltage and current at the grid's side.
+  void look_far(Signals<T>& s, const T& vr, const T& vi, const T& ir, const T& ii) const {
+    if (!looks_far_) return;
+    Far<T>& f = s.far;
+    f = {vr, vi, ir, ii, {}, {}};
+    if (beyond_) {
+      const auto& [a, b, c, d] = *beyond_;
+      std::tie(f.Vr, f.Vi) = sum_of(a, vr, vi, b, ir, ii);
+      std::tie(f.Ir, f.Ii) = sum_of(c, vr, vi, d, ir, ii);
+    }
+    f.P = f.Vr * f.Ir + f.Vi * f.Ii;
+    f.Q = f.Vi * f.Ir - f.Vr * f.Ii;
+  }
+
   /// Currents and terminal voltage from the voltage Vpr, Vpi in s at the grid's side, after emf(). Returns
   /// the current into the grid in ir, ii.
   void from_grid(const T* c, const T* x, T* m, const T& er, const T& ei, Signals<T>& s, T& ir, T& ii) const {
-    if (nonlinear() && !has_transformer_) {
-      s.Vr = s.Vpr;
-      s.Vi = s.Vpi;
-      current(c, x, m, s);
-      ir = s.Ir;
-      ii = s.Ii;
-      return;
-    }
-    const T* j = c + joint_;
-    const T dr = er - s.Vpr, di = ei - s.Vpi;
-    const T k = T(1.0) / (j[joint_r] * j[joint_r] + j[joint_x] * j[joint_x]);
-    s.Ir = ir = (j[joint_r] * dr + j[joint_x] * di) * k;
-    s.Ii = ii = (j[joint_r] * di - j[joint_x] * dr) * k;
-    if (has_transformer_) {
-      through_transformer(c, s);
-      if (nonlinear()) nonlinear_through_transformer(c, x, m, s, ir, ii);
-      return;
-    }
-    s.Vr = s.Vpr;
-    s.Vi = s.Vpi;
+    currents(c, x, m, er, ei, s, ir, ii);
+    look_far(s, s.Vpr, s.Vpi, ir, ii);
   }
 
   /// After voltages() or from_grid(). In s.Efd and s.Tm stand the values held where no exciter or governor
@@ -194,6 +196,12 @@ class PlantEquations {
   struct Limit {
     int state, low, high;
   };
+  /// Real and imaginary part of p (xr + j xi) + q (yr + j yi).
+  static std::tuple<T, T> sum_of(std::complex<double> p, const T& xr, const T& xi, std::complex<double> q,
+                                 const T& yr, const T& yi) {
+    const T pr(p.real()), pi(p.imag()), qr(q.real()), qi(q.imag());
+    return {pr * xr - pi * xi + qr * yr - qi * yi, pr * xi + pi * xr + qr * yi + qi * yr};
+  }
   void limits(const Effect& effect, int coefficient) {
     for (std::size_t i = 0; i < effect.states.size(); ++i) {
       const State& state = effect.states[i];
@@ -208,6 +216,29 @@ class PlantEquations {
       if (l.low >= 0) d = select(x[l.state] > c[l.low], d, positive_part(d));
       if (l.high >= 0) d = select(x[l.state] < c[l.high], d, T(0.0) - positive_part(T(0.0) - d));
     }
+  }
+  /// from_grid() but for what is measured elsewhere.
+  void currents(const T* c, const T* x, T* m, const T& er, const T& ei, Signals<T>& s, T& ir, T& ii) const {
+    if (nonlinear() && !has_transformer_) {
+      s.Vr = s.Vpr;
+      s.Vi = s.Vpi;
+      current(c, x, m, s);
+      ir = s.Ir;
+      ii = s.Ii;
+      return;
+    }
+    const T* j = c + joint_;
+    const T dr = er - s.Vpr, di = ei - s.Vpi;
+    const T k = T(1.0) / (j[joint_r] * j[joint_r] + j[joint_x] * j[joint_x]);
+    s.Ir = ir = (j[joint_r] * dr + j[joint_x] * di) * k;
+    s.Ii = ii = (j[joint_r] * di - j[joint_x] * dr) * k;
+    if (has_transformer_) {
+      through_transformer(c, s);
+      if (nonlinear()) nonlinear_through_transformer(c, x, m, s, ir, ii);
+      return;
+    }
+    s.Vr = s.Vpr;
+    s.Vi = s.Vpi;
   }
   /// The terminal voltage at which the machine's own current is the one the transformer carries: Newton's
   /// method from the Vr, Vi in s, slopes by differences, whose error only slows it. No current where it is
@@ -264,7 +295,8 @@ class PlantEquations {
   MachineOps<T> machine_;
   std::vector<Control> controls_;
   std::vector<Limit> limits_;
-  bool has_transformer_ = false, publishes_ = false;
+  std::optional<TwoPort> beyond_;
+  bool has_transformer_ = false, publishes_ = false, looks_far_ = false;
   int joint_ = 0, states_ = 0, coefficients_ = 0, scratch_ = 0;
 };
 

@@ -110,6 +110,11 @@ class Initialiser {
     const T per_square(1.0 / std::norm(v));
     s.Ir = (s.Vr * P + s.Vi * Q) * per_square;
     s.Ii = (s.Vi * P - s.Vr * Q) * per_square;
+    equations_.look_far(s, s.Vr, s.Vi, s.Ir, s.Ii);
+    if (plant_.far) {
+      const Far<double>& f = *plant_.far;
+      s.far = {T(f.Vr), T(f.Vi), T(f.Ir), T(f.Ii), T(f.P), T(f.Q)};
+    }
     if (transformer_) equations_.through_transformer(o_.c.data(), s);
     using std::sqrt;
     s.V = s.Vc = sqrt(s.Vr * s.Vr + s.Vi * s.Vi);

@@ -1,5 +1,6 @@
 #pragma once
 // One plant by itself: its blocks, and the operating point they are brought to.
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,17 @@ struct Block {
   const Effect* effect = nullptr;
   std::vector<double> p;
 };
+/// Where a plant's control measures (Elsewhere of its effect), in the network.
+struct FarPlace {
+  int bus = -1;         ///< index of the bus whose voltage it regulates; -1: the plant's grid side
+  int branch = -1;      ///< index of the branch whose flow counts; -1: the plant's own
+  bool at_from = true;  ///< measured at this branch's `from` side
+};
+/// What lies between the plant's grid side and the point where its control measures: voltage and current
+/// there are a V + b I and c V + d I [pu on the machine's base].
+struct TwoPort {
+  Complex a = 1.0, b = 0.0, c = 0.0, d = 1.0;
+};
 /// One generator: the machine and what stands around it.
 struct Plant {
   std::string name;    ///< "30" or "30/2": bus number, and id where a bus has several machines
@@ -24,6 +36,11 @@ struct Plant {
   std::vector<Block> controls;  ///< in order of Slot
   std::vector<Block> measurements;
   int generator = -1;  ///< index into Network::generators
+  FarPlace far_place;
+  std::optional<TwoPort> beyond;  ///< none: the control's point is the grid side
+  /// What its control measures there at the operating point [pu; power and current on `mva`]; where neither
+  /// bus nor branch is another's, nothing.
+  std::optional<Far<double>> far;
 };
 /// A load with a model of its own; every other load is a constant impedance.
 struct Consumer {

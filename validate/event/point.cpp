@@ -15,16 +15,31 @@
 namespace swingbank::validate::event {
 namespace {
 
-Collector read_collector(Config& c) {
+Collector read_section(Config& c, const std::string& at) {
   Collector z;
-  if (!c.has("collector")) return z;
   const Range any{-10.0, 10.0, "pu"};
-  z.R = c.require<double>("collector.r_pu", {0.0, 10.0, "pu"});
-  z.X = c.require<double>("collector.x_pu", any);
-  z.B = c.optional<double>("collector.b_pu", 0.0, any);
-  z.ratio = c.optional<double>("collector.ratio", 1.0, {0.5, 2.0, ""});
-  z.mva = c.require<double>("collector.base_mva", {1e-3, 1e6, "MVA"});
+  z.R = c.require<double>(at + ".r_pu", {0.0, 10.0, "pu"});
+  z.X = c.require<double>(at + ".x_pu", any);
+  z.B = c.optional<double>(at + ".b_pu", 0.0, any);
+  z.ratio = c.optional<double>(at + ".ratio", 1.0, {0.5, 2.0, ""});
+  z.mva = c.require<double>(at + ".base_mva", {1e-3, 1e6, "MVA"});
   return z;
+}
+/// One section, [collector], or several, [[collector]].
+std::vector<Collector> read_collector(Config& c) {
+  std::vector<Collector> all;
+  if (!c.has("collector")) return all;
+  if (!c.is_array("collector")) return {read_section(c, "collector")};
+  c.ignore("collector");  // its keys are compared below
+  for (int k = 0; c.has(fmt::format("collector[{}]", k)); ++k) {
+    const std::string at = fmt::format("collector[{}]", k);
+    for (const std::string& key : c.keys(at))
+      if (key != "r_pu" && key != "x_pu" && key != "b_pu" && key != "ratio" && key != "base_mva")
+        c.problem(at + "." + key, "unknown key " + key,
+                  "a collector has r_pu, x_pu, b_pu, ratio and base_mva", "remove it");
+    all.push_back(read_section(c, at));
+  }
+  return all;
 }
 
 OtherUnit read_unit(Config& c, const std::string& at, const std::filesystem::path& file, Problems& problems) {
@@ -91,8 +106,9 @@ MeasuredPoint load_point(const std::filesystem::path& file, const std::filesyste
   return point;
 }
 
-record::Record behind_collector(record::Record r, const Collector& z) {
-  if (z.R == 0 && z.X == 0 && z.B == 0 && z.ratio == 1) return r;
+namespace {
+
+record::Record behind_section(record::Record r, const Collector& z) {
   const double scale = r.base.mva / z.mva;
   const Complex Z(z.R * scale, z.X * scale), half(0, z.B / scale / 2);
   for (std::size_t k = 0; k < r.t.size(); ++k) {
@@ -108,6 +124,52 @@ record::Record behind_collector(record::Record r, const Collector& z) {
   r.notes.push_back(fmt::format(
       "V, angle, P and Q were moved behind the collector of {:g} + j{:g} pu on {:g} MVA.", z.R, z.X, z.mva));
   return r;
+}
+
+/// Of two in a row, the one at the plant first.
+sim::plant::TwoPort in_a_row(const sim::plant::TwoPort& first, const sim::plant::TwoPort& then) {
+  return {then.a * first.a + then.b * first.c, then.a * first.b + then.b * first.d,
+          then.c * first.a + then.d * first.c, then.c * first.b + then.d * first.d};
+}
+/// From the units' side of a section to the point's [pu on `mva`]; behind_section() the other way.
+sim::plant::TwoPort across(const Collector& z, double mva) {
+  const double scale = mva / z.mva;
+  const Complex Z(z.R * scale, z.X * scale), half(0, z.B / scale / 2);
+  return in_a_row({1 / z.ratio, 0, 0, z.ratio},
+                  in_a_row(in_a_row({1, 0, -half, 1}, {1, -Z, 0, 1}), {1, 0, -half, 1}));
+}
+bool looks_far(const sim::plant::Plant& plant) {
+  return std::ranges::any_of(plant.controls,
+                             [](const auto& block) { return block.effect->elsewhere.bus >= 0; });
+}
+
+}  // namespace
+
+record::Record behind_collector(record::Record r, const std::vector<Collector>& collector) {
+  for (const Collector& z : collector) r = behind_section(std::move(r), z);
+  return r;
+}
+
+sim::plant::TwoPort to_point(const std::vector<Collector>& collector, double mva, double share) {
+  sim::plant::TwoPort all{1, 0, 0, 1 / share};
+  for (std::size_t k = collector.size(); k-- > 0;) all = in_a_row(all, across(collector[k], mva));
+  return all;
+}
+
+sim::plant::Plant at_point(const MeasuredPoint& point) {
+  sim::plant::Plant plant = point.tried.plant;
+  if (!looks_far(plant)) return plant;
+  double share = 1;
+  for (const OtherUnit& unit : point.others) {
+    if (!(unit.share > 0))
+      throw InputError({"P_MW and Q_Mvar of " + unit.model.name, point.file,
+                        "the control of " + point.tried.name +
+                            " measures at the point, where it sees what all units do together",
+                        "give share in their place"});
+    share -= unit.share;
+  }
+  plant.beyond = to_point(point.collector, plant.mva, share);
+  return plant;
 }
 
 namespace {
@@ -224,6 +286,19 @@ EventState fitted_instants(const std::vector<Standing>& units, const record::Rec
   return state_at(at);
 }
 
+/// The models of the others and of the tried unit, whose controls may measure at the point.
+std::vector<plant::PlantModel> models_at(const MeasuredPoint& point) {
+  std::vector<plant::PlantModel> models;
+  for (const OtherUnit& unit : point.others) {
+    models.push_back(unit.model);
+    if (unit.share > 0 && looks_far(unit.model.plant))
+      models.back().plant.beyond = to_point(point.collector, unit.model.plant.mva, unit.share);
+  }
+  models.push_back(point.tried);
+  models.back().plant = at_point(point);
+  return models;
+}
+
 }  // namespace
 
 record::Record of_tried_unit(const MeasuredPoint& point, record::Record record) {
@@ -239,14 +314,16 @@ record::Record of_tried_unit(const MeasuredPoint& point, record::Record record) 
     channel->clear();  // the tried unit's own
   const double mva = all_mva(point);
   const Complex whole = mean_power(seen, samples_before_event(seen, of_all(mva)));
+  const std::vector<plant::PlantModel> models = models_at(point);  // outlive the units, which point to them
   std::vector<Standing> units;
   Complex others = 0;
-  for (const OtherUnit& unit : point.others) {
+  for (std::size_t k = 0; k < point.others.size(); ++k) {
+    const OtherUnit& unit = point.others[k];
     const Complex start = unit.share > 0 ? unit.share * whole : Complex(unit.P, unit.Q) / record.base.mva;
-    units.push_back(standing(unit.model, seen, mva, start));
+    units.push_back(standing(models[k], seen, mva, start));
     others += start;
   }
-  units.push_back(standing(point.tried, seen, mva, whole - others));
+  units.push_back(standing(models.back(), seen, mva, whole - others));
   EventState state;
   if (!units[0].events[0].switchings.empty()) state = fitted_instants(units, record);
   for (std::size_t u = 0; u < point.others.size(); ++u) {

@@ -27,7 +27,7 @@ struct OtherUnit {
 
 struct MeasuredPoint {
   std::string file;
-  Collector collector;
+  std::vector<Collector> collector;  ///< sections one after the other, the one at the point first
   plant::PlantModel tried;  ///< tells, with the others, when within a sample interval the network switched
   std::vector<OtherUnit> others;
 };
@@ -38,7 +38,14 @@ struct MeasuredPoint {
 MeasuredPoint load_point(const std::filesystem::path& file, const std::filesystem::path& tried);
 
 /// The record moved from the point to the units' bus, by its own V, P and Q.
-record::Record behind_collector(record::Record record, const Collector& collector);
+record::Record behind_collector(record::Record record, const std::vector<Collector>& collector);
+
+/// What a control of the plant sees of the point: beyond the collector, where all units behind it carry
+/// 1/`share` times what this one does, as a whole [pu on `mva`].
+sim::plant::TwoPort to_point(const std::vector<Collector>& collector, double mva, double share);
+/// The tried unit's plant, whose control, if one measures elsewhere, measures at the point. Throws InputError
+/// where the unit's share of the whole is not known.
+sim::plant::Plant at_point(const MeasuredPoint& point);
 
 /// What the record shows of the tried unit alone: moved to the units' bus, and without what the other units
 /// do there, which are played in with the voltage of that bus. Notes say so. Throws InputError as play()

@@ -133,12 +133,16 @@ void without_shunts_beside(formats::DyrRecord& record, const ShuntRecord& layout
 
 }  // namespace
 
-int regulated_bus(const plant::Block& block) {
-  if (!block.effect->at_shunt) return 0;
-  const auto at = static_cast<std::size_t>(block.effect->at_shunt->regulated);
+int number_in(const plant::Block& block, int parameter) {
+  if (parameter < 0) return 0;
+  const auto at = static_cast<std::size_t>(parameter);
   const double value = block.p[at];
   // Another value is none that a bus has: check() refuses it.
   return value > 0.0 && value <= block.effect->parameters[at].high ? static_cast<int>(value) : 0;
+}
+
+int regulated_bus(const plant::Block& block) {
+  return block.effect->at_shunt ? number_in(block, block.effect->at_shunt->regulated) : 0;
 }
 
 int regulated_index(const network::Network& network, const plant::Block& block, const std::string& where,

@@ -32,6 +32,8 @@ inline std::string name_of(const formats::DyrRecord& r) { return r.user.empty() 
 formats::DyrRecord plain(formats::DyrRecord record, const Effect& effect);
 /// As the id of a record that names no switched shunt: the first one of its bus.
 inline constexpr std::string_view kAnyShunt = "*";
+/// A bus or circuit that a parameter names (Elsewhere); 0: none.
+int number_in(const plant::Block& block, int parameter);
 /// Number of the bus whose voltage a model regulates; 0: its own, or none.
 int regulated_bus(const plant::Block& block);
 /// Its index, -1 where there is none; a bus that the network has not is a problem.

@@ -40,6 +40,22 @@ inline void Lanes<T>::inputs(const Constants& k, std::size_t plant, Signals<T>& 
   s.dPref = k.dpref[plant];
 }
 
+/// What a plant's control measures elsewhere, after the voltages() of its plant.
+template <class T>
+inline void Lanes<T>::look_far(const Constants& k, const FarRows& rows, Signals<T>& s) const {
+  const auto row = [&](int at, T& real, T& imaginary) {
+    const std::size_t first = static_cast<std::size_t>(at) * static_cast<std::size_t>(sources_);
+    row_times(&k.far_g[first], &k.far_b[first], er_.data(), ei_.data(), sources_, real, imaginary);
+  };
+  if (rows.voltage >= 0) row(rows.voltage, s.far.Vr, s.far.Vi);
+  if (rows.near < 0) return;
+  T vr, vi;
+  row(rows.near, vr, vi);
+  row(rows.current, s.far.Ir, s.far.Ii);
+  s.far.P = vr * s.far.Ir + vi * s.far.Ii;
+  s.far.Q = vi * s.far.Ir - vr * s.far.Ii;
+}
+
 template <class T>
 inline void Lanes<T>::derivative(const T* x, T* dx) {
   Constants& k = per_lane_;
@@ -59,6 +75,7 @@ inline void Lanes<T>::derivative(const T* x, T* dx) {
       p.equations.machine_derivative(c, x + p.x, m, s, dx + p.x);
     } else {
       p.equations.voltages(c, er_[i], ei_[i], s);
+      if (far_count_ > 0) look_far(k, p.far, s);
       p.equations.derivative(c, x + p.x, m, s, dx + p.x);
       if (p.watch >= 0) watch_stage(watched_[static_cast<std::size_t>(p.watch)], s.Vs);
     }

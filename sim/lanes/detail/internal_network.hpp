@@ -17,10 +17,22 @@ struct Terminals {
   std::vector<char> tripped;      ///< 1 where it is disconnected
   std::vector<double> connected;  ///< part of its units that is connected
 };
+/// Where among the rows of InternalMatrix::far_g, far_b those of one plant's control stand
+/// (Plant::far_place); -1: it measures that at its plant.
+struct FarRows {
+  int voltage = -1;             ///< of the bus that it regulates
+  int near = -1, current = -1;  ///< of the branch whose flow counts: voltage and current at its near end
+};
+/// Per plant; `rows`: how many there are.
+std::vector<FarRows> far_rows(const grid::Grid& grid, int& rows);
+
 /// I = (G + jB) E, row and column per source: plants, then loads with a model of their own; currents on each
 /// source's own base [pu]. Row-major.
 struct InternalMatrix : Terminals {
   std::vector<double> g, b;
+  /// What plants' controls measure elsewhere, likewise of E: voltages, and currents on the plant's own base
+  /// [pu].
+  std::vector<double> far_g, far_b;
   [[nodiscard]] Eigen::VectorXcd row(int k) const {
     const auto n = static_cast<Eigen::Index>(grounded.size());
     Eigen::VectorXcd v(n);
@@ -58,12 +70,16 @@ class InternalNetwork {
   };
   Reduced& reduced(const network::Topology& topology);
   void assemble(Reduced& entry, const std::vector<double>& r, const std::vector<double>& x) const;
+  void assemble_far(Reduced& entry, const Eigen::MatrixXcd& voltage) const;
+  int node_at(int bus);
 
   const grid::Grid& grid_;
-  std::vector<int> buses_;      ///< buses with sources, one entry each
+  std::vector<int> buses_;      ///< buses with sources and those that a control measures at, one entry each
   std::vector<int> node_of_;    ///< per source: position in buses_
   std::vector<double> base_;    ///< per source: own base over the network's
   std::vector<int> generator_;  ///< per source: index into Network::generators, -1 for a load
+  std::vector<FarRows> far_;    ///< per plant
+  int far_count_ = 0;
   std::deque<Reduced> cache_;
 };
 

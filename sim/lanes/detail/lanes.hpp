@@ -47,6 +47,7 @@ class Lanes {
     plant::PlantEquations<T> equations;
     int x, c, m;        ///< offsets of states, coefficients and scratch
     int watch = -1;     ///< of watched_, -1: none
+    FarRows far{};      ///< what its control measures elsewhere
     bool rotor = true;  ///< whether its first state is a rotor's angle; else it is a converter
   };
 
@@ -83,6 +84,7 @@ class Lanes {
   /// one event's values in every lane, its lanes being consecutive samples.
   struct Constants {
     std::vector<T> c, g, b, efd, tm, dvref, dpref, on;  ///< on: 1, or 0 where the plant is tripped
+    std::vector<T> far_g, far_b;                        ///< see InternalMatrix
     std::vector<T> vr, vi;   ///< voltages at nonlinear sources' own terminals: where the search begins
     T last_moment;           ///< largest time effects may see [s]
     std::vector<T> factors;  ///< of the slopes of what the search solves, lane by lane of another past
@@ -95,6 +97,7 @@ class Lanes {
   void current(const Constants& k, std::size_t plant, Signals<T>& s) const;
   void shared_current(std::size_t at, const Constants& k, std::size_t plant, Signals<T>& s) const;
   void inputs(const Constants& k, std::size_t plant, Signals<T>& s) const;
+  void look_far(const Constants& k, const FarRows& rows, Signals<T>& s) const;
   void derivative(const T* x, T* dx);
 
   // sources whose current is no linear function of the voltage (algebra.hpp)
@@ -199,6 +202,7 @@ class Lanes {
   std::vector<int> recorded_;
   std::vector<Channel> channels_;
   int n_ = 0, sources_ = 0, samples_ = 0, states_ = 0;
+  int far_count_ = 0;           ///< rows of what controls measure elsewhere
   std::vector<double> weight_;  ///< per state, already divided by the tolerance
 
   Constants per_lane_, per_sample_;

@@ -37,6 +37,7 @@ Lanes<T>::Lanes(const grid::Grid& grid, const BatchOptions& options)
 template <class T>
 void Lanes<T>::build_slices() {
   int c = 0, m = 0;
+  const std::vector<FarRows> far = far_rows(grid_, far_count_);
   const auto add_states = [&](const Effect& effect, int coefficient, bool needed) {
     for (const State& state : effect.states) {
       const auto at = [&](int mover) { return mover < 0 ? -1 : coefficient + mover; };
@@ -55,6 +56,7 @@ void Lanes<T>::build_slices() {
   for (std::size_t i = 0; i < grid_.plants.size(); ++i) {
     const plant::Plant& plant = grid_.plants[i];
     plants_.push_back({plant::PlantEquations<T>(plant), states_, c, m});
+    plants_.back().far = far[i];
     plants_.back().rotor = !plant.machine.effect->converter;
     const auto& equations = plants_.back().equations;
     states_ += equations.states();
@@ -99,6 +101,7 @@ void Lanes<T>::reserve() {
              states = static_cast<std::size_t>(states_), free = 2 * nonlinear_.size();
   for (Constants* k : {&per_lane_, &per_sample_}) {
     for (auto* v : {&k->g, &k->b}) v->assign(shares_ ? 0 : sources * sources, T(0.0));
+    for (auto* v : {&k->far_g, &k->far_b}) v->assign(static_cast<std::size_t>(far_count_) * sources, T(0.0));
     for (auto* v : {&k->efd, &k->tm, &k->dvref, &k->dpref}) v->assign(n, T(0.0));
     k->on.assign(n, T(1.0));
     for (auto* v : {&k->vr, &k->vi}) v->assign(nonlinear_.size(), T(0.0));

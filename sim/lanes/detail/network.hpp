@@ -49,6 +49,10 @@ const Terminals& Lanes<T>::set_matrix(int lane, const network::Topology& topolog
     Traits::set(per_lane_.g[i], lane, matrix.g[i]);
     Traits::set(per_lane_.b[i], lane, matrix.b[i]);
   }
+  for (std::size_t i = 0; i < matrix.far_g.size(); ++i) {
+    Traits::set(per_lane_.far_g[i], lane, matrix.far_g[i]);
+    Traits::set(per_lane_.far_b[i], lane, matrix.far_b[i]);
+  }
   if constexpr (Traits::directions > 0) matrix_slopes(lane, matrix);
   return matrix;
 }
@@ -107,7 +111,8 @@ std::optional<LowRank> Lanes<T>::few_products(int lane, const network::Topology&
   return products;
 }
 
-/// M = (G + jB) changes with a source's impedance by dM = -M[:,k] dz M[k,:].
+/// M = (G + jB) changes with a source's impedance by dM = -M[:,k] dz M[k,:], and a row of what is measured
+/// elsewhere likewise, by its own entry k.
 template <class T>
 void Lanes<T>::matrix_slopes(int lane, const InternalMatrix& matrix) {
   const auto n = static_cast<std::size_t>(sources_);
@@ -119,15 +124,18 @@ void Lanes<T>::matrix_slopes(int lane, const InternalMatrix& matrix) {
       };
       const Complex dz(slope(z[0]), slope(z[1]));
       if (dz == Complex{}) continue;
-      const auto m = [&](std::size_t i, std::size_t j) {
-        return Complex(matrix.g[i * n + j], matrix.b[i * n + j]);
+      const auto add = [&](const std::vector<double>& g, const std::vector<double>& b, std::vector<T>& to_g,
+                           std::vector<T>& to_b) {
+        for (std::size_t row = 0; row < g.size(); row += n)
+          for (std::size_t j = 0; j < n; ++j) {
+            const Complex at_k(g[row + k], b[row + k]), of_k(matrix.g[k * n + j], matrix.b[k * n + j]);
+            const Complex change = -at_k * dz * of_k;
+            Traits::set_slope(to_g[row + j], lane, d, change.real());
+            Traits::set_slope(to_b[row + j], lane, d, change.imag());
+          }
       };
-      for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t j = 0; j < n; ++j) {
-          const Complex dm = -m(i, k) * dz * m(k, j);
-          Traits::set_slope(per_lane_.g[i * n + j], lane, d, dm.real());
-          Traits::set_slope(per_lane_.b[i * n + j], lane, d, dm.imag());
-        }
+      add(matrix.g, matrix.b, per_lane_.g, per_lane_.b);
+      add(matrix.far_g, matrix.far_b, per_lane_.far_g, per_lane_.far_b);
     }
 }
 

@@ -128,6 +128,8 @@ void Lanes<T>::spread_constants(int lane) {
                                        {&from.dpref, &to.dpref},
                                        {&from.on, &to.on}})
     copy(*source, *target, 0, n);
+  copy(from.far_g, to.far_g, 0, to.far_g.size());
+  copy(from.far_b, to.far_b, 0, to.far_b.size());
   copy(from.vr, to.vr, 0, to.vr.size());
   copy(from.vi, to.vi, 0, to.vi.size());
   to.last_moment = T(Traits::get(from.last_moment, lane));
@@ -211,6 +213,7 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
     current(per_sample_, i, s);
   const T* c = &per_sample_.c[static_cast<std::size_t>(p.c)];
   p.equations.voltages(c, er_[i], ei_[i], s);
+  if (far_count_ > 0) look_far(per_sample_, p.far, s);
   p.equations.signals(c, x + p.x, &m_[static_cast<std::size_t>(p.m)], s, unused_.data() + p.x);
   T power, reactive, vr, vi;
   p.equations.grid_power(c, s, power, reactive);

@@ -4,6 +4,7 @@
 
 #include <Eigen/SparseLU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -13,6 +14,9 @@
 
 namespace swingbank::sim::reference {
 namespace {
+
+/// One regulated bus and both ends of a branch.
+constexpr std::size_t kMostSeen = 3;
 
 int delta_state(const Effect& machine) {
   for (std::size_t i = 0; i < machine.states.size(); ++i)
@@ -58,6 +62,25 @@ const auto& load_equations(const ReferencePlants::Unit& unit) {
     return *unit.consumption_sensitivities;
 }
 
+/// What a plant's control sees of the network.
+void see_far(const network::Network& network, ReferencePlants::Unit& unit) {
+  const auto& [bus, branch, at_from] = unit.plant->far_place;
+  if (bus >= 0) unit.seen.push_back(bus);
+  if (branch < 0) return;
+  const network::Branch& b = network.branches[static_cast<std::size_t>(branch)];
+  unit.flow = network::branch_end(b, at_from);
+  unit.seen.push_back(at_from ? b.from : b.to);
+  unit.seen.push_back(at_from ? b.to : b.from);
+}
+
+/// Current at the end of a branch, from the voltages at its near and its far end.
+template <class T>
+std::pair<T, T> flow(const network::BranchEnd& end, const T* near, const T* far) {
+  const T gn(end.own.real()), bn(end.own.imag()), gf(end.other.real()), bf(end.other.imag());
+  return {gn * near[0] - bn * near[1] + gf * far[0] - bf * far[1],
+          gn * near[1] + bn * near[0] + gf * far[1] + bf * far[0]};
+}
+
 }  // namespace
 
 ReferencePlants::ReferencePlants(const grid::Grid& grid) {
@@ -82,6 +105,8 @@ ReferencePlants::ReferencePlants(const grid::Grid& grid) {
     unit.bus = plant.bus;
     std::vector<const Effect*> effects = {plant.machine.effect, plant.transformer.effect};
     for (const plant::Block& block : plant.controls) effects.push_back(block.effect);
+    see_far(grid.network, unit);
+    effects.resize(effects.size() + unit.seen.size());
     unit.kind = kind_of(effects);
     unit.states = unit.equations->states();
     unit.delta = delta_state(*plant.machine.effect);
@@ -93,14 +118,14 @@ ReferencePlants::ReferencePlants(const grid::Grid& grid) {
   for (const plant::Consumer& load : grid.loads) {
     Unit unit;
     unit.load = &load;
-    if (load.regulated >= 0 && load.regulated != load.bus) unit.regulated = load.regulated;
+    if (load.regulated >= 0 && load.regulated != load.bus) unit.seen = {load.regulated};
     unit.operating = plant::load_operating_point(
         load, load.block.p, grid.flow.voltage[load.bus], grid.network.base_mva, grid.conventions,
-        grid.flow.voltage[unit.regulated < 0 ? load.bus : unit.regulated]);
+        grid.flow.voltage[unit.seen.empty() ? load.bus : unit.seen[0]]);
     unit.consumption.emplace(load);
     unit.consumption_sensitivities.emplace(load);
     unit.bus = load.bus;
-    unit.kind = kind_of({load.block.effect, unit.regulated < 0 ? nullptr : load.block.effect});
+    unit.kind = kind_of({load.block.effect, unit.seen.empty() ? nullptr : load.block.effect});
     unit.states = unit.consumption->states();
     unit.delta = -1;
     unit.scale = load.mva / grid.network.base_mva;
@@ -114,6 +139,7 @@ ReferenceSystem::ReferenceSystem(const grid::Grid& grid, const ReferencePlants& 
       buses_(static_cast<int>(grid.network.buses.size())),
       last_moment_(end - plant::kBeforeSwitching),
       bolted_(buses_, false),
+      open_(segment.topology.open),
       island_(network::islands(grid.network, segment.topology.open)),
       connected_(plants.units().size(), 1.0),
       setpoint_(plants.units().size()) {
@@ -164,8 +190,8 @@ void ReferenceSystem::build_pattern() {
     std::iota(index.begin(), index.end(), unit.first);
     index.push_back(bus_row(unit.bus));
     index.push_back(bus_row(unit.bus) + 1);
-    if (unit.regulated >= 0)
-      for (const int part : {0, 1}) index.push_back(bus_row(unit.regulated) + part);
+    for (const int bus : unit.seen)
+      for (const int part : {0, 1}) index.push_back(bus_row(bus) + part);
     for (int col : index)
       for (int row : index)
         if (row < plants_.states() || !bolted_[unit.bus]) add(row, col, 0.0);
@@ -187,10 +213,30 @@ void ReferenceSystem::build_pattern() {
       }
 }
 
-/// One unit at the voltage v of its bus: signals, derivatives of its states, current into the grid.
+/// What the plant's control sees where it names a bus or a branch.
 template <class T>
-Signals<T> ReferenceSystem::evaluate(std::size_t u, double t, const T* x, const T* v, const T* regulated,
-                                     T* dx, T& ir, T& ii) const {
+void ReferenceSystem::look_far(const Unit& unit, const T* seen, Signals<T>& s) const {
+  const plant::FarPlace& place = unit.plant->far_place;
+  if (place.bus >= 0) {
+    s.far.Vr = seen[0];
+    s.far.Vi = seen[1];
+    seen += 2;
+  }
+  if (place.branch < 0) return;
+  const bool open = std::ranges::binary_search(open_, place.branch);
+  const auto [ir, ii] = open ? std::pair(T(0.0), T(0.0)) : flow(unit.flow, seen, seen + 2);
+  const T scale(1.0 / unit.scale);
+  s.far.Ir = ir * scale;
+  s.far.Ii = ii * scale;
+  s.far.P = seen[0] * s.far.Ir + seen[1] * s.far.Ii;
+  s.far.Q = seen[1] * s.far.Ir - seen[0] * s.far.Ii;
+}
+
+/// One unit at the voltage v of its bus, and those of the buses that it sees: signals, derivatives of its
+/// states, current into the grid.
+template <class T>
+Signals<T> ReferenceSystem::evaluate(std::size_t u, double t, const T* x, const T* v, const T* seen, T* dx,
+                                     T& ir, T& ii) const {
   const Unit& unit = plants_.units()[u];
   const T* c = coefficients<T>(unit).data();
   Signals<T> s;
@@ -198,7 +244,7 @@ Signals<T> ReferenceSystem::evaluate(std::size_t u, double t, const T* x, const 
   s.Vpi = s.Vi = v[1];
   s.t = T(std::min(t, last_moment_));
   if (unit.load) {
-    if (unit.regulated >= 0) s.Vpr = regulated[0], s.Vpi = regulated[1];
+    if (!unit.seen.empty()) s.Vpr = seen[0], s.Vpi = seen[1];
     load_equations<T>(unit).current(c, x, s);
     load_equations<T>(unit).derivative(c, x, s, dx);
     ir = s.Ir;
@@ -220,6 +266,7 @@ Signals<T> ReferenceSystem::evaluate(std::size_t u, double t, const T* x, const 
     s.Vpi = ei;
   }
   equations.from_grid(c, x, m.data(), er, ei, s, ir, ii);
+  if (!unit.seen.empty()) look_far(unit, seen, s);
   equations.derivative(c, x, m.data(), s, dx);
   if (tripped(u)) std::fill(dx, dx + unit.states, T(0.0));
   return s;
@@ -232,8 +279,9 @@ Signals<double> ReferenceSystem::signals(std::size_t u, double t, const double* 
   if (!dx) unused.resize(static_cast<std::size_t>(unit.states));
   const double* v = y + bus_row(unit.bus);
   double ir, ii;
-  const double* regulated = y + bus_row(std::max(unit.regulated, 0));
-  const auto s = evaluate<double>(u, t, y + unit.first, v, regulated, dx ? dx : unused.data(), ir, ii);
+  std::array<double, 2 * kMostSeen> seen;
+  for (std::size_t k = 0; k < 2 * unit.seen.size(); ++k) seen[k] = y[bus_row(unit.seen[k / 2]) + k % 2];
+  const auto s = evaluate<double>(u, t, y + unit.first, v, seen.data(), dx ? dx : unused.data(), ir, ii);
   current = {ir, ii};
   return s;
 }
@@ -343,15 +391,17 @@ void ReferenceSystem::jacobian(double t, double a, const double* y, double* valu
 void ReferenceSystem::unit_jacobian(std::size_t u, double t, double a, const double* y,
                                     double* values) const {
   const Unit& unit = plants_.units()[u];
-  const int n = unit.states, members = unit.members(), row = bus_row(unit.bus),
-            far = bus_row(std::max(unit.regulated, 0));
+  const int n = unit.states, members = unit.members(), row = bus_row(unit.bus);
   const double scale = unit.scale * connected_[u];
   std::vector<D8>&x = scratch<D8>().x, &dx = scratch<D8>().dx;
   x.resize(static_cast<std::size_t>(members));
   dx.resize(static_cast<std::size_t>(n));
   for (int from = 0; from < members; from += kDirections) {
-    for (int i = 0; i < members; ++i)
-      x[i] = D8(i < n ? y[unit.first + i] : i < n + 2 ? y[row + i - n] : y[far + i - n - 2]);
+    for (int i = 0; i < n; ++i) x[i] = D8(y[unit.first + i]);
+    for (int i = n; i < members; ++i) {
+      const int k = i - n;  // voltages of its own bus, then of those that it sees
+      x[i] = D8(y[(k < 2 ? row : bus_row(unit.seen[k / 2 - 1])) + k % 2]);
+    }
     const int to = std::min(from + kDirections, members);
     for (int i = from; i < to; ++i) x[i].d[i - from] = 1.0;
     D8 ir, ii;

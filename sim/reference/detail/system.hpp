@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/grid/grid.hpp"
+#include "sim/network/admittance.hpp"
 #include "sim/network/event.hpp"
 #include "sim/plant/equations.hpp"
 #include "sim/plant/load_equations.hpp"
@@ -29,13 +30,16 @@ class ReferencePlants {
     std::optional<plant::LoadEquations<double>> consumption;
     std::optional<plant::LoadEquations<D8>> consumption_sensitivities;
     int bus;
-    int regulated = -1;  ///< index of the bus whose voltage a load regulates where it is another; -1: none
-    int kind;            ///< the same for units made of the same effects
-    int first, states;   ///< index of its first state, and how many
-    int delta;           ///< index of its rotor angle among its own states, -1 if it has none
-    double scale;        ///< own base / network base
-    /// Unknowns of its block: states, Vr, Vi, those of the bus that it regulates.
-    [[nodiscard]] int members() const { return states + (regulated < 0 ? 2 : 4); }
+    /// Buses beside its own whose voltages it sees: the one that it regulates, the ends of the branch whose
+    /// flow its plant's control counts.
+    std::vector<int> seen;
+    network::BranchEnd flow{};  ///< of that branch, from the last two of these
+    int kind;                   ///< the same for units made of the same effects
+    int first, states;          ///< index of its first state, and how many
+    int delta;                  ///< index of its rotor angle among its own states, -1 if it has none
+    double scale;               ///< own base / network base
+    /// Unknowns of its block: states, Vr, Vi, those of the buses that it sees.
+    [[nodiscard]] int members() const { return states + 2 + 2 * static_cast<int>(seen.size()); }
   };
   explicit ReferencePlants(const grid::Grid& grid);
   [[nodiscard]] const std::vector<Unit>& units() const { return units_; }  ///< plants, then loads
@@ -89,7 +93,7 @@ class ReferenceSystem {
   /// Jacobian in compressed columns; the pattern is that of `pattern()`, values are written in its order.
   [[nodiscard]] const Eigen::SparseMatrix<double>& pattern() const { return constant_; }
   void jacobian(double t, double a, const double* y, double* values) const;
-  /// Of a unit's block, column by column (states, Vr, Vi, those of the bus that it regulates): where each
+  /// Of a unit's block, column by column (states, Vr, Vi, those of the buses that it sees): where each
   /// entry stands in the pattern, -1: nowhere.
   [[nodiscard]] const std::vector<int>& places(std::size_t unit) const { return places_[unit]; }
 
@@ -111,14 +115,17 @@ class ReferenceSystem {
       return dual_scratch_;
   }
   template <class T>
-  Signals<T> evaluate(std::size_t unit, double t, const T* x, const T* v, const T* regulated, T* dx, T& ir,
+  Signals<T> evaluate(std::size_t unit, double t, const T* x, const T* v, const T* seen, T* dx, T& ir,
                       T& ii) const;
+  template <class T>
+  void look_far(const Unit& unit, const T* seen, Signals<T>& s) const;
   [[nodiscard]] int bus_row(int bus) const { return plants_.states() + 2 * bus; }
 
   const ReferencePlants& plants_;
   int buses_;
   double last_moment_;  ///< largest time effects may see [s]
   std::vector<bool> bolted_;
+  std::vector<int> open_;                            ///< branches that carry nothing, sorted
   std::vector<int> island_;                          ///< per bus
   std::vector<double> connected_;                    ///< per unit: part that is connected
   std::vector<network::Setpoint> setpoint_;          ///< per unit

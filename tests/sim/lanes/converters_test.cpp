@@ -1,6 +1,7 @@
 // Converters in the lanes against the reference integrator, through faults at and near their terminal.
 #include <map>
 
+#include "sim/grid/far.hpp"
 #include "sim/lanes/batch.hpp"
 #include "sim/library/library.hpp"
 #include "tests/sim/lanes/random_grids.hpp"
@@ -36,6 +37,7 @@ grid::Grid grid_with(const Outfit& outfit) {
   for (std::size_t i = 1; i < outfit.blocks.size(); ++i)
     plant.controls.push_back(block_of(outfit.blocks[i].first, outfit.blocks[i].second));
   std::ranges::stable_sort(plant.controls, {}, [](const plant::Block& b) { return b.effect->slot; });
+  grid::look_far(grid);
   return grid;
 }
 
@@ -103,6 +105,20 @@ INSTANTIATE_TEST_SUITE_P(
                {{"REGCA1", {}},
                 {"REECB1", {{"QFLAG", 1.0}, {"Kqi", 0.1}, {"Vdip", 0.85}}},
                 {"REPCA1", {{"RefFlag", 1.0}, {"Kp", 2.0}, {"Vfrz", 0.7}, {"Ddn", 20.0}}}}},
+        Outfit{"MeasuresElsewhere",
+               {{"REGCA1", {}},
+                {"REECB1", {{"QFLAG", 1.0}, {"Kqi", 0.1}, {"Vdip", 0.85}}},
+                {"REPCA1",
+                 {{"RemoteBus", 2.0},
+                  {"FromBus", 3.0},
+                  {"ToBus", 2.0},
+                  {"Circuit", 1.0},
+                  {"RefFlag", 1.0},
+                  {"VCFlag", 1.0},
+                  {"Xc", 0.03},
+                  {"Kp", 2.0},
+                  {"Vfrz", 0.7},
+                  {"Ddn", 20.0}}}}},
         Outfit{"RidesThrough",
                {{"REGCA1", {}},
                 {"REECA1", {{"Vdip", 0.85}, {"Vup", 1.2}, {"Kqv", 2.0}, {"Thld", -0.1}, {"Thld2", 0.2}}},

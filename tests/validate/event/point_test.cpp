@@ -38,7 +38,8 @@ struct TwoUnits : ::testing::Test {
                       static_cast<int>(std::ranges::find(run.grid.plants, "2", &sim::plant::Plant::name) -
                                        run.grid.plants.begin()),
                       2);
-  Collector collector{.R = 0.004, .X = 0.06, .B = 0.03, .ratio = 1.02, .mva = 150};
+  const Collector section{.R = 0.004, .X = 0.06, .B = 0.03, .ratio = 1.02, .mva = 150};
+  const std::vector<Collector> collector = {section};
   static constexpr double kP = 30, kQ = 10;  // of the other unit before the event [MW, Mvar]
 
   [[nodiscard]] record::Record seen() const {
@@ -53,13 +54,13 @@ struct TwoUnits : ::testing::Test {
     const playin::Playback both = playin::play_in(other.under_test(), beside, curve);
     for (std::size_t k = 0; k < r.t.size(); ++k) {
       // The pi section the other way, in pu on its own base.
-      const double scale = r.base.mva / collector.mva;
+      const double scale = r.base.mva / section.mva;
       const Complex V = std::polar(r.V[k], r.theta[k]);
       const Complex S = Complex(r.P[k] + both.P[k], r.Q[k] + both.Q[k]) * scale;
-      const Complex inner = V / collector.ratio, into = std::conj(S / V) * collector.ratio;
-      const Complex through = into - Complex(0, collector.B / 2) * inner;
-      const Complex outer = inner - Complex(collector.R, collector.X) * through;
-      const Complex out = outer * std::conj(through - Complex(0, collector.B / 2) * outer) / scale;
+      const Complex inner = V / section.ratio, into = std::conj(S / V) * section.ratio;
+      const Complex through = into - Complex(0, section.B / 2) * inner;
+      const Complex outer = inner - Complex(section.R, section.X) * through;
+      const Complex out = outer * std::conj(through - Complex(0, section.B / 2) * outer) / scale;
       r.V[k] = std::abs(outer), r.theta[k] += std::arg(outer / V), r.P[k] = out.real(), r.Q[k] = out.imag();
     }
     return r;
@@ -127,10 +128,15 @@ TEST_F(TwoUnits, PointFiles) {
   const std::string a = "[[unit]]\nmodel = \"a.toml\"\n", b = "[[unit]]\nmodel = \"b.toml\"\n";
   const MeasuredPoint point = load("[collector]\nr_pu = 0.01\nx_pu = 0.1\nbase_mva = 150\n" + a +
                                    "share = 0.6\n" + b + "P_MW = 30\nQ_Mvar = 10\n");
-  EXPECT_EQ(point.collector.X, 0.1);
+  ASSERT_EQ(point.collector.size(), 1U);
+  EXPECT_EQ(point.collector[0].X, 0.1);
   ASSERT_EQ(point.others.size(), 1U);
   EXPECT_EQ(point.others[0].P, 30);
   EXPECT_EQ(point.others[0].model.plant.mva, other.plant.mva);
+  const std::string cable = "[[collector]]\nr_pu = 0.01\nx_pu = 0.1\nbase_mva = 150\n";
+  EXPECT_EQ(load(cable + cable + a).collector.size(), 2U);
+  EXPECT_THAT(test::messages([&] { load(cable + "what = 2\n" + a); }),
+              Contains(HasSubstr("unknown key what")));
   EXPECT_THAT(test::messages([&] { load(b + "share = 0.5\n"); }), Contains(HasSubstr("none of the units")));
   EXPECT_THAT(test::messages([&] { load(a + b + "share = 1.0\n"); }), Contains(HasSubstr("leave nothing")));
   EXPECT_THAT(test::messages([&] { load(a + b + "P_MW = 30\nwhat = 1\n"); }),
