@@ -5,23 +5,31 @@
 //     and after it;
 //   some exciters take shorter steps of the same kind within each, everything else standing still;
 //   Efd is what the exciter's states at t make of voltage and field current at t - h;
-//   HYGOV's power, not TGOV1's, is that of t - h.
+//   HYGOV's power, not TGOV1's, is that of t - h;
+//   a state that stands at its limit has no past derivative;
+//   states are kept in single precision;
+//   the network is that of psse_network.hpp.
 #include <vector>
 
 #include "sim/reference/detail/system.hpp"
+#include "tests/sim/reference/psse_network.hpp"
 
 namespace swingbank::sim::test {
 
 class PsseStepper {
  public:
-  PsseStepper(const grid::Grid& grid, const network::Event& event, double h, double end, int exciter_steps)
+  PsseStepper(const grid::Grid& grid, const network::Event& event, double h, double end, int exciter_steps,
+              double tolerance)
       : h_(h),
         exciter_steps_(exciter_steps),
         plants_(grid),
         parts_(network::segments(event, grid.network, plants_.instants())),
         before_(grid, plants_, parts_.at(0), 2 * end),
         after_(grid, plants_, parts_.at(1), 2 * end),
+        network_before_(grid, before_, tolerance),
+        network_after_(grid, after_, tolerance),
         system_(&before_),
+        network_(&network_before_),
         states_(static_cast<std::size_t>(plants_.states())),
         y_(static_cast<std::size_t>(before_.size())),
         f_(y_),
@@ -42,7 +50,7 @@ class PsseStepper {
 
   /// Solves the network at t and keeps the states' derivatives; after the switching: their mean.
   void derive(double t) {
-    system_->solve_voltages(t, y_.data());
+    network_->solve(t, y_);
     system_->derivatives(t, y_.data(), f_.data());
     for (const Exciter& e : exciters_)
       f_[e.flux] += (late_field_voltage(e, t) - signals(e.unit, t).Efd) / e.time_constant;
@@ -54,6 +62,7 @@ class PsseStepper {
   void switch_over(double t) {
     const auto f = f_;
     system_ = &after_;
+    network_ = &network_after_;
     derive(t);
     for (std::size_t i = 0; i < states_; ++i) f_[i] = 0.5 * (f_[i] + f[i]);
   }
@@ -64,9 +73,10 @@ class PsseStepper {
     for (std::size_t i = 0; i < states_; ++i) y_[i] += h_ * (1.5 * f_[i] - 0.5 * f_before_[i]);
     for (const Exciter& e : exciters_)
       for (std::size_t i = e.first; i < e.end; ++i) y_[i] = exciters[i];
-    (void)system_->clamp_states(y_.data());
-    for (Governor& g : late_governors_) g.last = g.now;
     f_before_ = f_;
+    clamp(y_, f_before_);
+    for (Governor& g : late_governors_) g.last = g.now;
+    for (std::size_t i = 0; i < states_; ++i) y_[i] = static_cast<float>(y_[i]);
     last_ = at_t;
   }
   /// What PSS/E prints of a plant at t.
@@ -127,6 +137,13 @@ class PsseStepper {
     Complex current;
     return system_->signals(e.unit, t, mixed.data(), current).Efd;
   }
+  /// Takes states back to their limits; one that stands there has no past derivative.
+  void clamp(std::vector<double>& y, std::vector<double>& f_before) const {
+    const auto free = y;
+    (void)system_->clamp_states(y.data());
+    for (std::size_t i = 0; i < states_; ++i)
+      if (y[i] != free[i]) f_before[i] = 0.0;
+  }
   /// All states, with the exciters' at t + h.
   std::vector<double> advanced_exciters(double t) {
     auto fine = y_, f = f_;
@@ -135,8 +152,8 @@ class PsseStepper {
       for (const Exciter& e : exciters_)
         for (std::size_t i = e.first; i < e.end; ++i)
           fine[i] += h_ / exciter_steps_ * (1.5 * f[i] - 0.5 * fine_f_before_[i]);
-      (void)system_->clamp_states(fine.data());
       fine_f_before_ = f;
+      clamp(fine, fine_f_before_);
     }
     return fine;
   }
@@ -146,7 +163,9 @@ class PsseStepper {
   reference::ReferencePlants plants_;
   std::vector<network::Segment> parts_;
   reference::ReferenceSystem before_, after_;
+  PsseNetwork network_before_, network_after_;
   const reference::ReferenceSystem* system_;
+  const PsseNetwork* network_;
   std::size_t states_;
   std::vector<double> y_, last_;  ///< states and voltages at t and at t - h
   std::vector<double> f_, f_before_, fine_f_before_;
@@ -157,11 +176,11 @@ class PsseStepper {
 /// Calls see(time, signals, states) of plant `plant` every h seconds until `end` [s], twice at the switching
 /// instant, the only one until then (of the event or of a plant's effects) and a multiple of h. A fourth
 /// argument of `see`, if it takes one, is the real and imaginary voltage of every bus [pu]. `exciter_steps`:
-/// how many the exciters take within h.
+/// how many the exciters take within h; `tolerance`: of the network [pu].
 template <class See>
 void step_as_psse(const grid::Grid& grid, const network::Event& event, std::size_t plant, double h,
-                  double end, const See& see, int exciter_steps = 1) {
-  PsseStepper stepper(grid, event, h, end, exciter_steps);
+                  double end, const See& see, int exciter_steps = 1, double tolerance = kToTheEnd) {
+  PsseStepper stepper(grid, event, h, end, exciter_steps, tolerance);
   const auto show = [&](double t) {
     const auto s = stepper.printed(plant, t);
     if constexpr (requires { see(t, s, stepper.states(plant), stepper.voltages()); })
