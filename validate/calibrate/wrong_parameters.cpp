@@ -25,6 +25,17 @@ WrongParameters wrong_parameters(const plant::PlantModel& model, std::vector<rec
   return w;
 }
 
+namespace {
+/// "KPR and KIR together would do in place of KPM", of all alternatives.
+std::string alternatives_text(const fit::Fewest& found) {
+  std::string text;
+  for (const auto& a : found.alternatives)
+    text += fmt::format(" {} together would do in place of {}: the records cannot tell.",
+                        fmt::join(a.instead, " and "), fmt::join(a.named, " and "));
+  return text;
+}
+}  // namespace
+
 std::string wrong_sentence(const fit::Fewest& found, double adequate) {
   const std::string left = fmt::format(
       "chi2 per value {:.3f} as the model is, {:.3f} with every parameter free", found.before, found.best);
@@ -41,10 +52,10 @@ std::string wrong_sentence(const fit::Fewest& found, double adequate) {
   }
   const bool one = found.wrong.size() == 1;
   return fmt::format(
-      "{} {} must change: {}. {} {:.3f} with {} ({}).",
+      "{} {} must change: {}. {} {:.3f} with {} ({}).{}",
       one ? "One parameter" : fmt::format("{} parameters", found.wrong.size()),
       found.fit.misfit() <= adequate ? "and no more" : "at least, though more than noise is left,", names,
-      "Chi2 per value is", found.fit.misfit(), one ? "it" : "them", left);
+      "Chi2 per value is", found.fit.misfit(), one ? "it" : "them", left, alternatives_text(found));
 }
 
 std::string wrong_text(const WrongParameters& w) {
@@ -78,8 +89,12 @@ nlohmann::json wrong_json(const WrongParameters& w) {
                    {"evidence_chi2", p.evidence},
                    {"share_of_error", p.share},
                    {"or", p.tied}});
+  nlohmann::json alternatives = nlohmann::json::array();
+  for (const auto& a : w.found.alternatives)
+    alternatives.push_back({{"named", a.named}, {"instead", a.instead}});
   return {{"sentence", w.sentence},
           {"wrong", all},
+          {"alternatives", alternatives},
           {"chi2_per_value",
            {{"model", w.found.before}, {"these_changed", w.found.fit.misfit()}, {"all_free", w.found.best}}},
           {"statistically_complete", w.holds()}};

@@ -44,13 +44,17 @@ bool tells_nothing(const NamedCell& named) { return !(named.cell->allowed() <= n
 /// The cell in which noise may leave most, beside the size of its channel.
 std::string vague_sentence(const std::vector<NamedCell>& cells, int vague) {
   const auto share = [](const NamedCell& n) { return n.cell->allowed() / n.channel->size; };
+  constexpr double kNoSize = 10;  // of a machine: beyond it a number says no more than that it runs away
   const NamedCell& most = *std::ranges::max_element(cells, {}, share);
+  const std::string by = share(most) < kNoSize ? fmt::format("{:.3g} {}, {:.3g} times its size",
+                                                             most.cell->allowed() * most.channel->scale,
+                                                             most.channel->unit, share(most))
+                                               : fmt::format("more than {:g} times its size", kNoSize);
   return fmt::format(
       "Cannot be told: in {} of {} cells the noise of the voltage alone may move the model's answer by more than "
-      "the machine is large ({} {}: by {:.3g} {}, {:.3g} times its size). Driven by this voltage the model runs "
+      "the machine is large ({} {}: by {}). Driven by this voltage the model runs "
       "away: check its damping, time constants and the order of its reactances.",
-      vague, cells.size(), most.channel->name, most.where, most.cell->allowed() * most.channel->scale,
-      most.channel->unit, share(most));
+      vague, cells.size(), most.channel->name, most.where, by);
 }
 
 }  // namespace

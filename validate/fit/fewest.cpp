@@ -66,6 +66,7 @@ class Selection {
     if (gain(all_, chosen, criterion) - options_.each * static_cast<double>(set.size()) < options_.least)
       return back;
     describe(set, evidence, chosen, nothing - most, back);
+    back.alternatives = alternatives(set, chosen);
     back.fit = std::move(chosen);
     return back;
   }
@@ -259,10 +260,45 @@ class Selection {
       std::ranges::set_difference(set, r.set, std::back_inserter(gone));
       if (other.size() != 1 || gone.size() != 1 || gone.front() != which) continue;
       ++tried;
-      if (gain(refit(r.set), chosen) < options_.each)
-        names.push_back(sim::plant::parameter_name(tested_.plant, free_[other.front()].id).text());
+      if (gain(refit(r.set), chosen) < options_.each) names.push_back(name(other.front()));
     }
     return names;
+  }
+  [[nodiscard]] std::string name(std::size_t i) const {
+    return sim::plant::parameter_name(tested_.plant, free_[i].id).text();
+  }
+  [[nodiscard]] std::vector<std::string> names_of(const Set& set) const {
+    std::vector<std::string> names;
+    for (const std::size_t i : set) names.push_back(name(i));
+    return names;
+  }
+  /// Pairs that would do in place of one or two of the set, such as the two gains of a regulator and the gain
+  /// behind it. Where a part of the exchange is an alternative by itself it is told alone.
+  [[nodiscard]] std::vector<Alternative> alternatives(const Set& set, const Fit& chosen) const {
+    const double here = foretold(set).excess;
+    std::vector<std::pair<Set, Set>> found;  // gone, in their place
+    const auto told = [&](const Set& gone, const Set& other) {
+      return std::ranges::any_of(found, [&](const auto& f) {
+        return std::ranges::includes(gone, f.first) && std::ranges::includes(other, f.second);
+      });
+    };
+    for (const std::size_t size : {set.size(), set.size() + 1}) {
+      if (size >= beams_.size()) break;
+      std::size_t tried = 0;
+      for (const Ranked& r : beams_[size]) {
+        Set gone, other;
+        std::ranges::set_difference(r.set, set, std::back_inserter(other));
+        std::ranges::set_difference(set, r.set, std::back_inserter(gone));
+        if (gone.empty() || other.size() > 2 || told(gone, other)) continue;
+        // beams begin with what the curvature likes best: those behind would be worse still
+        if (tried++ == kTied || foretold(r.set).excess > here + options_.each) break;
+        if (gain(refit(r.set), chosen) < options_.each) found.emplace_back(std::move(gone), std::move(other));
+      }
+    }
+    std::vector<Alternative> all;
+    for (const auto& [gone, other] : found)
+      if (other.size() == 2) all.push_back({names_of(gone), names_of(other)});
+    return all;
   }
   void report(const std::string& what, std::size_t done, std::size_t total) const {
     if (options_.progress) options_.progress(what, static_cast<int>(done), static_cast<int>(total));

@@ -20,12 +20,18 @@ struct WrongParameter {
   std::vector<std::string> tied = {};
 };
 
+/// Parameters that, changed together in place of some that are named, explain the records as well.
+struct Alternative {
+  std::vector<std::string> named, instead;
+};
+
 struct Fewest {
-  std::vector<WrongParameter> wrong;  ///< the largest share first
-  Fit fit;                            ///< with these free and all others as believed
-  double before = 0;                  ///< chi2 per value of the model as it is, events' own states fitted
-  double best = 0;                    ///< chi2 per value with every parameter free
-  event::WhitenedEvents events;       ///< with the noise that the fits are measured in
+  std::vector<WrongParameter> wrong;      ///< the largest share first
+  std::vector<Alternative> alternatives;  ///< where no single one would do (WrongParameter::tied)
+  Fit fit;                                ///< with these free and all others as believed
+  double before = 0;                      ///< chi2 per value of the model as it is, events' own states fitted
+  double best = 0;                        ///< chi2 per value with every parameter free
+  event::WhitenedEvents events;           ///< with the noise that the fits are measured in
 };
 
 struct FewestOptions {

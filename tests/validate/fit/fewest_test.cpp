@@ -49,6 +49,40 @@ TEST(Fewest, NamesTheParameterThatIsWrong) {
 }
 TEST(Fewest, NamesNothingWhereNothingIsWrong) { EXPECT_TRUE(Known({}, 2).named().empty()); }
 
+/// A unit whose inner regulator is a gain alone (ESST4B, KIM = 0), and whose outer one has both gains too low
+/// by the same factor: the gain behind them does what they do.
+TEST(Fewest, TellsThatTwoTogetherWouldDoInPlaceOfOne) {
+  const auto exciter = [](sim::grid::Grid& grid) {
+    const sim::Effect& esst4b = *sim::library::compiled().find("ESST4B");
+    sim::plant::Block block{&esst4b, esst4b.standard_parameters()};
+    for (const char* limit : {"VRMAX", "VRMIN", "VMMAX", "VMMIN"})  // far off: the exchange is exact
+      block.p[static_cast<std::size_t>(esst4b.parameter_index(limit))] *= 50;
+    std::ranges::find(grid.plants, "2", &sim::plant::Plant::name)->controls.push_back(std::move(block));
+  };
+  const auto run =
+      test::simulate("ieee14_genrou", sim::Conventions::psse(), 5, 2.0, 2.1, 240, {0.0, 0.1}, exciter);
+  const auto at = std::ranges::find(run.grid.plants, "2", &sim::plant::Plant::name) - run.grid.plants.begin();
+  plant::PlantModel model;
+  model.plant = run.grid.plants[static_cast<std::size_t>(at)];
+  model.plant.bus = model.plant.generator = -1;
+  model.conventions = sim::Conventions::psse();
+  model.record_base.mva = model.plant.mva;
+  const auto events = event::prepare_events(model, {test::record_of(run, static_cast<int>(at), 4, 1e-3)},
+                                            {.measured_states = false});
+  std::vector<FreeParameter> free;
+  for (const FreeParameter& f : free_parameters(model.plant, 0.5)) {
+    const std::string name = sim::plant::parameter_name(model.plant, f.id).text();
+    if (name == "ESST4B.KPR" || name == "ESST4B.KIR") sim::plant::parameter_value(model.plant, f.id) *= 0.6;
+    if (name.starts_with("ESST4B.K") || name == "GENROU.H") free.push_back(f);
+  }
+  const Fewest found = fewest(model.under_test(), events, free);
+  ASSERT_EQ(found.wrong.size(), 1U);
+  EXPECT_EQ(found.wrong[0].fit.full_name(), "ESST4B.KPM");
+  ASSERT_EQ(found.alternatives.size(), 1U);
+  EXPECT_EQ(found.alternatives[0].named, std::vector<std::string>{"ESST4B.KPM"});
+  EXPECT_EQ(found.alternatives[0].instead, (std::vector<std::string>{"ESST4B.KPR", "ESST4B.KIR"}));
+}
+
 TEST(FewestFull, NamesThreeThatAreWrong) {
   for (const auto& wrong : std::vector<std::vector<std::pair<std::string, double>>>{
            {{"GENROU.H", 1.3}, {"GENROU.Xdp", 0.8}, {"SEXS.K", 0.7}},
