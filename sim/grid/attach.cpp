@@ -16,7 +16,7 @@ void attach(Grid& grid, const plant::Attachment& a, const std::string& where, Pr
     if (auto problem = plant::place(plant, a.block, where))
       problems.add(problem->what, problem->where, problem->why, problem->remedy);
   }
-  look_far(grid);
+  if (a.block.effect && a.block.effect->elsewhere.bus >= 0) look_far(grid);
   if (!any)
     problems.add("no plant " + a.plant, where, "the plants are " + names, "choose one of these, or all");
 }

@@ -25,11 +25,9 @@ Grid at_operating_point(const Grid& grid, network::Network network) {
 
 void set_machine_base(Grid& grid, std::size_t plant, double mva) {
   plant::Plant& p = grid.plants[plant];
-  if (p.far)  // on the machine's base
-    for (double Far<double>::*part : {&Far<double>::Ir, &Far<double>::Ii, &Far<double>::P, &Far<double>::Q})
-      *p.far.*part *= p.mva / mva;
   p.mva = mva;
   grid.network.generators[static_cast<std::size_t>(p.generator)].mva = mva;
+  measure_far(grid);  // it is on the machine's base
 }
 
 }  // namespace swingbank::sim::grid

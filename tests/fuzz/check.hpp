@@ -63,6 +63,19 @@ inline void check_round_trip(const sim::network::Network& network) {
   }
 }
 
+/// Reads a network with equipment that appears twice refused, and left out; `read` takes the options. True
+/// with `lenient` filled if it is read in the latter way; `whole`: in the former, which then fills `strict`.
+template <class Read>
+bool read_both_ways(const Read& read, sim::formats::RawOptions options, sim::network::Network& strict,
+                    sim::network::Network& lenient, bool& whole) {
+  options.drop_repeated = false;
+  whole = accepted([&] { strict = read(options); });
+  options.drop_repeated = true;
+  if (accepted([&] { lenient = read(options); })) return true;
+  require(!whole, "what is whole is read with either option");
+  return false;
+}
+
 inline void quiet() { spdlog::set_level(spdlog::level::off); }
 
 }  // namespace swingbank::fuzz

@@ -26,7 +26,6 @@ cat >"$work/case.dyr" <<'END_OF_DYR'
 END_OF_DYR
 "$swingbank" simulate --raw "$work/case.raw" --dyr "$work/case.dyr" --fault 103:2:2.1:0:0.3 --rate 60 --t-end 12 --plants 104 \
   --channels P,Q --buses 102,104 --out "$work/run.csv" >"$work/said" 2>&1 || fail "simulate: $(cat "$work/said")"
-head -1 "$work/run.csv" >"$work/columns"
 # V and angle of the point, and P and Q into it: what comes out of the cable; noise of 0.02 % and 0.1 MW
 awk -F, 'function noise() { return sqrt(-2 * log(1 - rand())) * cos(6.2831853 * rand()) }
   NR == 1 { srand(1); print "t_s,V_pu,theta_rad,P_MW,Q_Mvar"; next }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -248,6 +249,12 @@ class Selection {
     }
     std::ranges::stable_sort(back.wrong, std::greater<>(), &WrongParameter::evidence);
   }
+  /// Whether a set leaves no more than the chosen one; each is refitted once.
+  [[nodiscard]] bool does_as_well(const Set& set, const Fit& chosen) const {
+    const auto known = as_well_.find(set);
+    if (known != as_well_.end()) return known->second;
+    return as_well_[set] = gain(refit(set), chosen) < options_.each;
+  }
   /// What would do in place of one of the set.
   [[nodiscard]] std::vector<std::string> tied(const Set& set, std::size_t which, const Fit& chosen) const {
     std::vector<std::string> names;
@@ -260,7 +267,7 @@ class Selection {
       std::ranges::set_difference(set, r.set, std::back_inserter(gone));
       if (other.size() != 1 || gone.size() != 1 || gone.front() != which) continue;
       ++tried;
-      if (gain(refit(r.set), chosen) < options_.each) names.push_back(name(other.front()));
+      if (does_as_well(r.set, chosen)) names.push_back(name(other.front()));
     }
     return names;
   }
@@ -292,7 +299,7 @@ class Selection {
         if (gone.empty() || other.size() > 2 || told(gone, other)) continue;
         // beams begin with what the curvature likes best: those behind would be worse still
         if (tried++ == kTied || foretold(r.set).excess > here + options_.each) break;
-        if (gain(refit(r.set), chosen) < options_.each) found.emplace_back(std::move(gone), std::move(other));
+        if (does_as_well(r.set, chosen)) found.emplace_back(std::move(gone), std::move(other));
       }
     }
     std::vector<Alternative> all;
@@ -313,6 +320,7 @@ class Selection {
   Eigen::VectorXd at_;
   std::vector<std::vector<Ranked>> beams_;  ///< [size of the sets]
   std::vector<std::optional<std::pair<Fit, Set>>> refitted_;
+  mutable std::map<Set, bool> as_well_;  ///< of does_as_well()
 };
 
 }  // namespace

@@ -41,19 +41,7 @@ struct Plant : ::testing::Test {
     sim::formats::RawCase raw = far::behind_a_branch();
     const auto at = raw.branches.find("102,104,'1',0.0,0.08,0.0");
     raw.branches.replace(at, 24, "102,104,'1',0.002,0.06,0.05");
-    test::Simulated s{far::load_from(raw, far::plants({})), kOn, kOff, {}, {}};
-    sim::network::Event event;
-    event.faults.push_back({s.grid.network.bus_index(103), kOn, kOff, {0.0, 0.3}});
-    sim::reference::ReferenceOptions options;
-    options.rate = 240;
-    options.t_end = 10;
-    options.rtol = 1e-9;
-    options.channels = {sim::Channel::V, sim::Channel::theta, sim::Channel::P, sim::Channel::Q,
-                        sim::Channel::speed};
-    s.before = sim::reference::run_reference(s.grid, event, options);
-    options.after_switching = true;
-    s.after = sim::reference::run_reference(s.grid, event, options);
-    return s;
+    return test::with_fault({far::load_from(raw, far::plants({})), kOn, kOff, {}, {}}, 103, 240, {0.0, 0.3});
   }
   [[nodiscard]] sim::plant::Plant model() const {
     sim::plant::Plant plant = run.grid.plants[1];
