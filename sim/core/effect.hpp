@@ -13,10 +13,10 @@
 //   at_shunt                      of a load, optional: layout of its .dyr records, of switched shunts
 //   publish<T>()                  of a control, optional: signals that are states, before the evaluation
 //   remark()                      optional: what its values ask for and the equations leave out
-//   elsewhere                     optional: the parameters by which it names what it measures elsewhere
-//   instants()                    optional: when its equations jump in time
-//   closed_form()                 of a machine, optional: its parameters from a record, without a search
-//   measure(), memory()           of a measurement: what it makes of the phasors, and how far it reaches
+//   elsewhere                     of a plant control, optional: the parameters by which it names what it
+//   measures elsewhere instants()                    optional: when its equations jump in time closed_form()
+//   of a machine, optional: its parameters from a record, without a search measure(), memory()           of a
+//   measurement: what it makes of the phasors, and how far it reaches
 // CMake finds the header and writes the registry; nothing is edited. T runs over `Scalars`.
 #include <algorithm>
 #include <array>
@@ -93,8 +93,8 @@ struct Parameter {
   [[nodiscard]] constexpr bool is_code() const { return unit == "code"; }
 };
 
-/// Indices of the parameters by which a plant's control or a load names what it measures elsewhere in the
-/// grid (0 in them: at itself); -1: it has none.
+/// Indices of the parameters by which a plant's control names what it measures elsewhere in the grid (0 in
+/// them: at the plant); -1: it has none.
 struct Elsewhere {
   int bus = -1;                          ///< number of the bus whose voltage it regulates
   int from = -1, to = -1, circuit = -1;  ///< the branch whose flow counts, measured at its first bus

@@ -168,6 +168,7 @@ struct Model {
                       problems);
   }
   static std::string_view unphysical(const double*) { return ""; }
+
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {
     for (const auto& [to, from] : {std::pair<int, int>{by_voltage, RefFlag},
