@@ -13,10 +13,10 @@
 //   at_shunt                      of a load, optional: layout of its .dyr records, of switched shunts
 //   publish<T>()                  of a control, optional: signals that are states, before the evaluation
 //   remark()                      optional: what its values ask for and the equations leave out
-//   elsewhere                     of a plant control, optional: the parameters by which it names what it
-//   measures elsewhere instants()                    optional: when its equations jump in time closed_form()
-//   of a machine, optional: its parameters from a record, without a search measure(), memory()           of a
-//   measurement: what it makes of the phasors, and how far it reaches
+//   elsewhere                     of a plant control, optional: parameters that say where it measures
+//   instants()                    optional: when its equations jump in time
+//   closed_form()                 of a machine, optional: its parameters from a record, without a search
+//   measure(), memory()           of a measurement: what it makes of the phasors, and how far it reaches
 // CMake finds the header and writes the registry; nothing is edited. T runs over `Scalars`.
 #include <algorithm>
 #include <array>
