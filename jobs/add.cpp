@@ -175,8 +175,8 @@ int run(Arguments& a) {
   std::vector<std::pair<std::string, const sim::Effect*>> laws;
   for (const auto& file : a.laws)
     laws.emplace_back(file, &sim::laws::load_law(std::filesystem::path(file), model.library));
-  a.reading.apply(model);
-  const check::RecordSet set = jobs::read_events(a.records, model, a.reading.preparing(a.model, a.records));
+  const check::Preparing preparing = a.reading.apply(model, a.records);
+  const check::RecordSet set = jobs::read_events(a.records, model, preparing);
   const std::vector<record::Record>& records = set.records;
   a.told = jobs::records_json(set);
   calibrate::held_out_events(records, a.options.calibrate.held_out);

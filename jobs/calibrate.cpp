@@ -189,9 +189,9 @@ int run_fewest(const Arguments& a, const plant::PlantModel& model, const std::ve
 int run(Arguments& a) {
   a.judging.read();
   plant::PlantModel model = jobs::load_model_to_fit(a.model);
-  a.reading.apply(model);
+  const check::Preparing preparing = a.reading.apply(model, a.records);
   const calibrate::Truth truth = a.truth.empty() ? calibrate::Truth{} : calibrate::read_truth(a.truth, model);
-  const check::RecordSet set = jobs::read_events(a.records, model, a.reading.preparing(a.model, a.records));
+  const check::RecordSet set = jobs::read_events(a.records, model, preparing);
   const std::vector<record::Record>& records = set.records;
   const nlohmann::json told = jobs::records_json(set);
   if (a.method == "curve-fit" && !(a.network.empty() && a.start.empty()))

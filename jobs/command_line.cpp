@@ -1,15 +1,13 @@
 #include "jobs/command_line.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <utility>
 
 #include "jobs/software.hpp"
 
 namespace swingbank::jobs {
 namespace {
-
-/// CLI11 calls an enumeration's value ENUM in the help.
-enum class Place : int {};
 
 /// CLI11's own bounds would print the largest number there is.
 CLI::Validator number_that(bool (*holds)(double), const std::string& name, const std::string& wanted) {
@@ -122,11 +120,12 @@ Option CommandLine::add(const std::string& names, std::vector<int>& value, const
 }
 Option CommandLine::add_choice(const std::string& names, int& place, const std::vector<std::string>& words,
                                const std::string& meaning) {
-  const std::function<void(const Place&)> keep = [&place](Place chosen) { place = static_cast<int>(chosen); };
-  CLI::TransformPairs<Place> places;
-  for (const auto& word : words) places.emplace_back(word, static_cast<Place>(places.size()));
-  return Option(
-      parser_->app.add_option_function(names, keep, meaning)->transform(CLI::CheckedTransformer(places)));
+  const std::function<void(const std::string&)> keep = [&place, words](const std::string& word) {
+    place = static_cast<int>(std::find(words.begin(), words.end(), word) - words.begin());
+  };
+  CLI::Option* option = parser_->app.add_option_function(names, keep, meaning);
+  option->default_str(words.at(static_cast<std::size_t>(place)));
+  return Option(option).one_of(words);
 }
 Option CommandLine::add_flag(const std::string& names, bool& on, const std::string& meaning) {
   return Option(parser_->app.add_flag(names, on, meaning));

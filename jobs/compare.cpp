@@ -91,10 +91,9 @@ int main(int argc, char** argv) {
     options.drive = drive == "pq" ? compare::DriveBy::power : compare::DriveBy::voltage;
     plant::PlantModel model = plant::load_plant_model(model_file);
     jobs::tell(model);
-    reading.apply(model);
+    const check::Preparing preparing = reading.apply(model, record_files);
     Problems problems;
-    auto [records, warnings] =
-        check::read_records(record_files, model, problems, reading.preparing(model_file, record_files));
+    auto [records, warnings] = check::read_records(record_files, model, problems, preparing);
     problems.raise();
     options.jumps = event::jumps_of(records, options.jump_threshold);
     options.progress = jobs::progress_line();

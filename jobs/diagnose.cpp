@@ -33,9 +33,8 @@ int run(const std::string& model_file, const std::vector<std::string>& record_fi
         const std::string& command_line) {
   judging.read();
   plant::PlantModel model = jobs::load_model_to_fit(model_file);
-  reading.apply(model);
-  const check::RecordSet set =
-      jobs::read_events(record_files, model, reading.preparing(model_file, record_files));
+  const check::Preparing preparing = reading.apply(model, record_files);
+  const check::RecordSet set = jobs::read_events(record_files, model, preparing);
   options.progress = jobs::progress_line(jobs::kDiagnoseCourse);
   if (!jobs::quiet)
     options.told = [](const std::string& sentence) { fmt::print(stderr, "\n{}\n", sentence); };

@@ -63,17 +63,6 @@ struct Reading {
              "default: found by the voltage's jumps and fitted")
         .one_value_a_mention();
   }
-  /// What is done to each of the records before it is checked. Throws InputError.
-  [[nodiscard]] validate::check::Preparing preparing(const std::string& model_file,
-                                                     const std::vector<std::string>& records) const {
-    const auto told = told_instants(switches, records);
-    std::optional<validate::event::MeasuredPoint> at;
-    if (!point.empty()) at = validate::event::load_point(point, model_file);
-    return [told, at](validate::record::Record r) {
-      if (const auto of = told.find(r.name); of != told.end()) r.switched = of->second;
-      return at ? validate::event::of_tried_unit(*at, std::move(r)) : r;
-    };
-  }
   /// Adds what of the plant is tried.
   void add_component(CommandLine& line) {
     line.add(
@@ -94,8 +83,9 @@ struct Reading {
     if (!point.empty()) all.insert(all.end(), {"--point", point});
     return all;
   }
-  /// Puts them into the model.
-  void apply(validate::plant::PlantModel& model) const {
+  /// Puts them into the model; what is done to each of the records before it is checked. Throws InputError.
+  validate::check::Preparing apply(validate::plant::PlantModel& model,
+                                   const std::vector<std::string>& records) const {
     Problems problems;
     for (const auto& word : columns) {
       const auto equals = word.find('=');
@@ -108,8 +98,11 @@ struct Reading {
     problems.raise();
     if (from) model.reading.from = *from;
     if (until) model.reading.until = *until;
-    if (!point.empty())
-      model.plant.beyond = validate::event::at_point(validate::event::load_point(point, model.origin)).beyond;
+    std::optional<validate::event::MeasuredPoint> at;
+    if (!point.empty()) {
+      at = validate::event::load_point(point, model.origin);
+      model.plant.beyond = validate::event::at_point(*at).beyond;
+    }
     using validate::record::Component;
     for (const auto c : {Component::exciter, Component::governor, Component::machine})
       if (component == validate::record::component_name(c)) {
@@ -118,6 +111,10 @@ struct Reading {
         for (std::size_t k = told; k < model.warnings.size(); ++k)
           fmt::print(stderr, "note: {}\n", model.warnings[k]);
       }
+    return [told = told_instants(switches, records), at](validate::record::Record r) {
+      if (const auto of = told.find(r.name); of != told.end()) r.switched = of->second;
+      return at ? validate::event::of_tried_unit(*at, std::move(r)) : r;
+    };
   }
 };
 

@@ -43,10 +43,10 @@ void require_same_machine(const train::run::NetworkInfo& network, const plant::P
 }
 
 /// Every record, read and checked, so that all faults of all files are told at once.
-std::vector<Estimated> read_all(const Options& o, const plant::PlantModel& model) {
+std::vector<Estimated> read_all(const std::vector<std::string>& files, const plant::PlantModel& model,
+                                const check::Preparing& preparing) {
   std::vector<Estimated> all;
-  for (record::Record& record :
-       jobs::read_events(o.records, model, o.reading.preparing(o.model, o.records)).records) {
+  for (record::Record& record : jobs::read_events(files, model, preparing).records) {
     record::require_angle(record);
     all.push_back({std::move(record), {}, {}});
   }
@@ -164,9 +164,9 @@ std::string believed(const train::run::NetworkInfo& n, const std::vector<Estimat
 int run(const Options& o) {
   const train::run::SavedNetwork network = train::run::SavedNetwork::load(o.network);
   plant::PlantModel model = plant::load_plant_model(o.model);
-  o.reading.apply(model);
+  const check::Preparing preparing = o.reading.apply(model, o.records);
   require_same_machine(network.info(), model);
-  std::vector<Estimated> all = read_all(o, model);
+  std::vector<Estimated> all = read_all(o.records, model, preparing);
   if (o.event && all.size() > 1)
     throw InputError(
         {"one instant for several records", "--event", "each has its own", "give one record at a time"});

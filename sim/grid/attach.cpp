@@ -1,8 +1,21 @@
 #include "sim/grid/attach.hpp"
 
+#include <fmt/format.h>
+
 #include "sim/grid/far.hpp"
 
 namespace swingbank::sim::grid {
+namespace {
+
+/// What was put in may measure elsewhere; there it must find something.
+void find_far(const Grid& grid, plant::Plant& plant, const std::string& where, Problems& problems) {
+  for (const NotThere& missing : look_far(grid, plant))
+    problems.add(fmt::format("no {} for {} of plant {}", missing.what, missing.control, plant.name), where,
+                 "its control is to measure there, and the network has nothing of that name in service",
+                 "name what is in service, or 0 to measure at the plant");
+}
+
+}  // namespace
 
 void attach(Grid& grid, const plant::Attachment& a, const std::string& where, Problems& problems) {
   if (a.plant.empty() && !a.block.effect) return;  // nothing could be read
@@ -15,8 +28,9 @@ void attach(Grid& grid, const plant::Attachment& a, const std::string& where, Pr
     if (!a.block.effect) continue;
     if (auto problem = plant::place(plant, a.block, where))
       problems.add(problem->what, problem->where, problem->why, problem->remedy);
+    else if (a.block.effect->elsewhere.bus >= 0)
+      find_far(grid, plant, where, problems);
   }
-  if (a.block.effect && a.block.effect->elsewhere.bus >= 0) look_far(grid);
   if (!any)
     problems.add("no plant " + a.plant, where, "the plants are " + names, "choose one of these, or all");
 }

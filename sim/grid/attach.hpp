@@ -7,7 +7,8 @@
 
 namespace swingbank::sim::grid {
 
-/// Puts an effect that was read into its plants. An unknown plant and a slot that is taken become problems.
+/// Puts an effect that was read into its plants. An unknown plant, a slot that is taken, and a bus or
+/// a branch to measure at that the network lacks become problems.
 void attach(Grid& grid, const plant::Attachment& attachment, const std::string& where, Problems& problems);
 
 /// "PLANT:EFFECT[:PARAM=VALUE,...]" puts an effect into a plant ("all": into every plant): any slot but

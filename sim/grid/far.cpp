@@ -30,37 +30,30 @@ int branch_between(const network::Network& n, int from, int to, int circuit) {
   return count == 1 ? only : -1;
 }
 
-class FarLooker {
- public:
-  explicit FarLooker(Grid& grid) : grid_(grid) {}
-  plant::FarPlace place(const plant::Plant& plant, const plant::Block& block) {
-    plant::FarPlace place;
-    const Elsewhere& at = block.effect->elsewhere;
-    if (const int bus = number_in(block, at.bus); bus != 0) {
-      place.bus = grid_.network.bus_index(bus);
-      if (place.bus < 0) left_out(plant, block, fmt::format("bus {}", bus));
-      if (place.bus == plant.bus) place.bus = -1;
-    }
-    const int from = number_in(block, at.from), to = number_in(block, at.to),
-              circuit = number_in(block, at.circuit);
-    if (from == 0 && to == 0) return place;
-    const int first = grid_.network.bus_index(from), second = grid_.network.bus_index(to);
-    if (first >= 0 && second >= 0) place.branch = branch_between(grid_.network, first, second, circuit);
-    if (place.branch < 0)
-      left_out(plant, block, fmt::format("branch {} - {}, circuit {}", from, to, circuit));
-    else
-      place.at_from = grid_.network.branches[static_cast<std::size_t>(place.branch)].from == first;
-    return place;
+/// The place that a control of `plant` names.
+plant::FarPlace place_of(const network::Network& network, const plant::Plant& plant,
+                         const plant::Block& block, std::vector<NotThere>& missing) {
+  plant::FarPlace place;
+  const Elsewhere& at = block.effect->elsewhere;
+  const auto none = [&](std::string what) {
+    missing.push_back({std::string(block.effect->name), std::move(what)});
+  };
+  if (const int bus = number_in(block, at.bus); bus != 0) {
+    place.bus = network.bus_index(bus);
+    if (place.bus < 0) none(fmt::format("bus {}", bus));
+    if (place.bus == plant.bus) place.bus = -1;
   }
-
- private:
-  void left_out(const plant::Plant& plant, const plant::Block& block, const std::string& what) {
-    grid_.network.remark(
-        "controls that are to measure where the network has nothing in service measure at their plant",
-        fmt::format("{} of generator {}: {}", block.effect->name, plant.name, what));
-  }
-  Grid& grid_;
-};
+  const int from = number_in(block, at.from), to = number_in(block, at.to),
+            circuit = number_in(block, at.circuit);
+  if (from == 0 && to == 0) return place;
+  const int first = network.bus_index(from), second = network.bus_index(to);
+  if (first >= 0 && second >= 0) place.branch = branch_between(network, first, second, circuit);
+  if (place.branch < 0)
+    none(fmt::format("branch {} - {}, circuit {}", from, to, circuit));
+  else
+    place.at_from = network.branches[static_cast<std::size_t>(place.branch)].from == first;
+  return place;
+}
 
 /// At the operating point, on the plant's base; nothing where it measures at the plant alone.
 std::optional<Far<double>> measured(const Grid& grid, const plant::Plant& plant) {
@@ -82,14 +75,21 @@ std::optional<Far<double>> measured(const Grid& grid, const plant::Plant& plant)
 
 }  // namespace
 
+std::vector<NotThere> look_far(const Grid& grid, plant::Plant& plant) {
+  std::vector<NotThere> missing;
+  plant.far_place = {};
+  for (const plant::Block& block : plant.controls)
+    if (block.effect->elsewhere.bus >= 0) plant.far_place = place_of(grid.network, plant, block, missing);
+  plant.far = measured(grid, plant);
+  return missing;
+}
+
 void look_far(Grid& grid) {
-  FarLooker looker(grid);
-  for (plant::Plant& plant : grid.plants) {
-    plant.far_place = {};
-    for (const plant::Block& block : plant.controls)
-      if (block.effect->elsewhere.bus >= 0) plant.far_place = looker.place(plant, block);
-  }
-  measure_far(grid);
+  for (plant::Plant& plant : grid.plants)
+    for (const NotThere& missing : look_far(grid, plant))
+      grid.network.remark(
+          "controls that are to measure where the network has nothing in service measure at their plant",
+          fmt::format("{} of generator {}: {}", missing.control, plant.name, missing.what));
 }
 
 void measure_far(Grid& grid) {

@@ -50,6 +50,9 @@ refuses "an exciter of a converter" "SEXS for generator 32 .*exciter is part of 
   "$swingbank" simulate --raw "$raw" --dyr "$work/mixed.dyr" --out "$work/x.csv"
 refuses "a plant control of a machine" "REPCA1 for plant 30 .*plant_control is part of a converter" \
   "$swingbank" simulate --raw "$raw" --dyr "$work/case.dyr" --attach 30:REPCA1 --out "$work/x.csv"
+grep -v REPCA1 "$work/case.dyr" >"$work/without.dyr"
+refuses "a plant control that measures nowhere" "no bus 999 for REPCA1 of plant 32 at --attach" \
+  "$swingbank" simulate --raw "$raw" --dyr "$work/without.dyr" --attach 32:REPCA1:RemoteBus=999 --out "$work/x.csv"
 
 # A source that is its own control, and one behind a reactance: each explains its own run, and not with another gain.
 explains_itself() { # NAME VALUES, records on stdin; VALUES: how its record begins

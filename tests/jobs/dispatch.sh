@@ -10,6 +10,8 @@ for program in "$SWINGBANK_BIN"/swingbank-*; do
   grep -qE "^  $command +[a-z].{20,}" "$work/help" || fail "--help says nothing of $command"
   "$swingbank" "$command" --help >"$work/one" 2>&1 || fail "$command --help exits with $?"
   grep -q -- --help "$work/one" || fail "$command --help does not list its options"
+  grep -q "^Usage: swingbank $command" "$work/one" || fail "$command --help has another usage line"
+  ! grep -qE 'ENUM|OR \{|\{(true|false)\}' "$work/one" || fail "$command --help has a parser's words"
 done
 refuses "slip of the pen" "did you mean 'nightly-compare'" "$swingbank" nightly-compar
 refuses "nothing near" 'swingbank --help' "$swingbank" xyzzyxyzzy

@@ -1,5 +1,8 @@
 #include "sim/grid/attach.hpp"
 
+#include <gmock/gmock.h>
+
+#include "tests/sim/grid/far_case.hpp"
 #include "tests/sim/reference/reference_support.hpp"
 
 namespace swingbank::sim::grid {
@@ -51,6 +54,19 @@ TEST(Attach, SaysWhatIsWrong) {
     EXPECT_NE(list[0].find(expected), std::string::npos) << list[0];
   }
   EXPECT_EQ(grid.plants[1].controls.size(), 1u);
+}
+
+TEST(Attach, AControlMeasuresWhereTheNetworkHasSomething) {
+  std::string without = far_control::plants({});
+  without.erase(without.find("104 'REPCA1'"));
+  Grid grid = far_control::load_from(far_control::behind_a_branch(), without);
+  Grid other = grid;
+  EXPECT_THAT(said(grid, "104:REPCA1:RemoteBus=102,FromBus=102,ToBus=103,Circuit=1"), ::testing::IsEmpty());
+  EXPECT_TRUE(grid.plants.at(1).far.has_value());
+  EXPECT_THAT(said(other, "104:REPCA1:RemoteBus=999,FromBus=102,ToBus=101,Circuit=1"),
+              ::testing::ElementsAre(
+                  ::testing::HasSubstr("no bus 999 for REPCA1 of plant 104 at --attach 104:REPCA1:"),
+                  ::testing::HasSubstr("no branch 102 - 101, circuit 1 for REPCA1 of plant 104")));
 }
 
 }  // namespace
