@@ -12,9 +12,15 @@ done
 
 # the exciter that the model lacks is named, on two events
 status=0
-"$swingbank" diagnose --model "$model" --records "$one" "$two" --power-only --threads 1 --out "$work/found" --json \
-  >"$work/printed.json" || status=$?
+script -qefc "'$swingbank' diagnose --model '$model' --records '$one' '$two' --power-only --threads 1 --out '$work/found' --json \
+  >'$work/printed.json'" "$work/terminal" >/dev/null || status=$?
 ((status == 3)) || fail "exit code $status, expected 3"
+# what a terminal shows meanwhile: the share done, or that it goes on beyond it, in a person's words
+tr '\r' '\n' <"$work/terminal" | sed 's/\x1b\[K//' | grep -E ' [0-9]+ of [0-9]+' >"$work/progress"
+(($(wc -l <"$work/progress") > 20)) || fail "a terminal shows no progress: $(cat "$work/progress")"
+! grep -vE '^(note|[0-9]+ % done(, about .* left)?: [a-z]|beyond the usual course: [a-z])' "$work/progress" >"$work/inner" ||
+  fail "progress without a share: $(cat "$work/inner")"
+sed -n 's/^\([0-9]*\) % done.*/\1/p' "$work/progress" | sort -n -c || fail "the share done goes back"
 cmp "$work/printed.json" "$work/found/diagnosis.json" || fail "--json prints something else than it writes"
 grep -q 'SEXS' "$work/found/report.html" || fail "the report does not name the exciter"
 python3 - "$work/found/diagnosis.json" <<'PYTHON'
