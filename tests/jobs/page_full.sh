@@ -38,6 +38,19 @@ PYTHON
   }
   [[ $(too_wide 390 '@media(max-width:600px)') =~ ^over:[^0]*\;$ ]] || fail "the fitness table is wider than a phone: $(too_wide 390 '@media(max-width:600px)')"
   [[ $(too_wide 718 '@media print') =~ ^over:\ *\;$ ]] || fail "wider than A4: $(too_wide 718 '@media print')"
+  # in print a table that a page cannot hold goes on overleaf, a short one stays whole, and a heading stays with what it heads
+  python3 - "$work/out/report.html" "$work/printed.html" <<'PYTHON'
+import sys
+page = open(sys.argv[1]).read()
+open(sys.argv[2], "w").write(page.replace("@media print", "@media all", 1).replace("</main>", """</main><script>addEventListener('load', () => {
+  const [short, long] = document.querySelectorAll('table'), heading = document.querySelector('h3');
+  for (let k = 0; k < 60; ++k) long.tBodies[0].append(long.tBodies[0].rows[0].cloneNode(true));
+  document.body.innerText = 'breaks:' + [getComputedStyle(short).breakInside, getComputedStyle(long).breakInside, getComputedStyle(heading).breakAfter] + ';';
+})</script>""", 1))
+PYTHON
+  breaks=$(chromium --headless --no-sandbox --disable-gpu --window-size=1000,800 --dump-dom "file://$work/printed.html" 2>/dev/null |
+    grep -o 'breaks:[a-z,]*;')
+  [[ $breaks == 'breaks:avoid,auto,avoid;' ]] || fail "a short table, a long one and a heading break in print as $breaks"
 fi
 
 # the page as PDF, printed; --quiet says nothing but the result; progress on a terminal is in a person's words
