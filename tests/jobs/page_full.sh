@@ -13,7 +13,11 @@ for words in 'A. Engineer' "$hash" 'Five words' "X''d" 'V, played in' 'Error map
   grep -qF -- "$words" "$work/out/report.html" || fail "'$words' is not on the page of compare"
 done
 ! grep -qF '</script><b>' "$work/out/report.html" || fail "a name breaks the page"
-python3 -c 'import json, sys; json.load(open(sys.argv[1]))' "$work/out/compare.json"
+python3 - "$work/out/compare.json" "$hash" "$(sha256sum <"$one" | cut -d' ' -f1)" <<'PYTHON'
+import json, sys
+hashes = [row["value"].split()[0] for row in json.load(open(sys.argv[1]))["provenance"] if row["what"] == "SHA-256"]
+assert sorted(hashes) == sorted(sys.argv[2:]), hashes
+PYTHON
 calibrate --out "$work/out" >/dev/null 2>&1
 for words in 'Five words' '95 % interval' 'calibrated' 'submitted' 'Error map' 'SHA-256'; do
   grep -qF -- "$words" "$work/out/report.html" || fail "'$words' is not on the page of calibrate"

@@ -130,7 +130,7 @@ std::string terminal_report(const plant::PlantModel& model, const std::vector<Ev
 
 std::string json_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
                         const Adequacy& adequacy, const Fitness& fitness, const report::Provenance& rows) {
-  nlohmann::json j = {{"format", "swingbank-compare-2"},
+  nlohmann::json j = {{"format", "swingbank-compare-3"},
                       {"adequate", adequacy.adequate},
                       {"statistically_complete", adequacy.adequate},
                       {"fitness", fitness_json(fitness)},
@@ -149,7 +149,7 @@ std::string json_report(const plant::PlantModel& model, const std::vector<EventC
                       {"frequency_hz", model.record_base.frequency}};
   j["events"] = nlohmann::json::array();
   for (const auto& e : events) j["events"].push_back(to_json(e));
-  for (const auto& [name, value] : rows) j["provenance"][name] = value;
+  for (const auto& [name, value] : rows) j["provenance"].push_back({{"what", name}, {"value", value}});
   return json_text(j, 2) + "\n";
 }
 
