@@ -191,10 +191,14 @@ std::string nearest_names(const library::EffectLibrary& library, const std::stri
   return names;
 }
 
-/// Models of inverters, wind and storage by the beginnings of their names.
-bool is_inverter(std::string name) {
+std::string in_capitals(std::string name) {
   std::ranges::transform(name, name.begin(),
                          [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return name;
+}
+
+/// Models of inverters, wind and storage by the beginnings of their names.
+bool is_inverter(const std::string& name) {
   constexpr std::string_view kBeginnings[] = {"REGC", "REEC", "REPC", "WT1",  "WT2", "WT3",  "WT4",
                                               "WTDT", "WTAR", "WTPT", "WTTQ", "PVG", "PVEU", "DERA"};
   return std::ranges::any_of(kBeginnings, [&](std::string_view b) { return name.starts_with(b); });
@@ -224,7 +228,10 @@ int run(const std::vector<std::string>& names, const std::vector<std::string>& l
   std::vector<const Effect*> chosen;
   for (const auto& name : names) {
     chosen.push_back(library.find(name));
-    if (!chosen.back() && is_inverter(name))
+    const std::string typed = in_capitals(name);
+    const bool begun =
+        std::ranges::any_of(library.all(), [&](const Effect* e) { return e->name.starts_with(typed); });
+    if (!chosen.back() && is_inverter(typed) && !begun)
       problems.add("no effect '" + name + "'", "NAME",
                    "of the models of inverters, wind and storage it is not there yet",
                    "see what there is with swingbank effects");

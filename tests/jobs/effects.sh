@@ -62,6 +62,7 @@ refuses "a name mistyped" "no effect 'GENRUO' at NAME \(the nearest names are GE
 "$swingbank" effects GENRUO SEXX 2>"$work/both.txt" && fail "unknown names were accepted"
 (($(wc -l <"$work/both.txt") == 2)) || fail "not every unknown name was told: $(cat "$work/both.txt")"
 "$swingbank" effects REGCA1 | holds -q '^slot: converter' || fail "REGCA1 is no converter"
+refuses "a name cut short" "no effect 'regcb' at NAME \(the nearest names are REGC" "$swingbank" effects regcb
 refuses "a wind turbine" "no effect 'WT3G1' at NAME \(of the models of inverters, wind and storage it is not there yet\)" "$swingbank" effects WT3G1
 "$swingbank" compare --help | grep -F "{false}" && fail "a flag shows how it is stored"
 

@@ -42,7 +42,7 @@ class Phases {
 /// What is left in one window [% of MVA], `percent` of them in 1 pu.
 JudgedErrors errors_of(const EventComparison& e, const ChannelComparison& c, Phase phase,
                        const Phases& phases, double percent) {
-  JudgedErrors row{e.record.name, c.name, phase, 0, {}, {}};
+  JudgedErrors row{e.record.name, c.name, phase, 0, {}, {}, !e.switchings.empty()};
   for (std::size_t k = 0; k < c.residual.size(); ++k) {
     if (phases.of(k) != phase) continue;
     const double error = percent * c.residual[k], size = std::abs(error);
@@ -64,8 +64,8 @@ std::string verdict(const Fitness& f, int exceed, const JudgedErrors& row) {
       "is allowed.",
       f.fit ? fmt::format("yes. All {} errors of P and Q keep", all)
             : fmt::format("no. {} of {} errors of P and Q exceed", exceed, all),
-      f.by.name, f.fit ? "Nearest" : "Furthest off", at.name, row.channel, thresholds::phase_name(row.phase),
-      row.event, at.error, f.mva, at.limit);
+      f.by.name, f.fit ? "Nearest" : "Furthest off", at.name, row.channel, row.window(), row.event, at.error,
+      f.mva, at.limit);
 }
 
 const std::vector<std::string> kHeader = {"event", "channel", "window", "MXE", "ME", "MAE"};
@@ -81,7 +81,7 @@ std::string caption(const Fitness& f) {
 /// Each error from the row that is given for it.
 std::vector<report::Cell> cells_of(const std::string& event, const JudgedErrors& of,
                                    const std::array<const JudgedErrors*, 3>& from) {
-  std::vector<report::Cell> cells = {event, of.channel, std::string(thresholds::phase_name(of.phase))};
+  std::vector<report::Cell> cells = {event, of.channel, std::string(of.window())};
   const auto add = [&](double error, double limit, const char* sign) {
     const bool within = std::abs(error) <= limit;
     cells.emplace_back(std::isfinite(error)
@@ -102,6 +102,11 @@ nlohmann::json errors_json(const Errors& e) {
 }
 
 }  // namespace
+
+std::string_view JudgedErrors::window() const {
+  if (switched) return thresholds::phase_name(phase);
+  return phase == Phase::pre_fault ? "at first" : "later";
+}
 
 Fitness not_judged(const thresholds::Acceptance& by, double mva, const std::string& why) {
   Fitness f;
@@ -157,17 +162,21 @@ report::Table worst_fitness_table(const Fitness& f) {
   for (const char* channel : {"P", "Q"})
     for (const Phase phase : thresholds::kPhases) {
       std::array<const JudgedErrors*, 3> worst{};
+      bool switched = false;
       const auto keep = [](const JudgedErrors*& kept, const JudgedErrors& row, double Errors::*which) {
         if (!kept || !(std::abs(row.errors.*which) <= std::abs(kept->errors.*which))) kept = &row;
       };
       for (const auto& row : f.rows) {
         if (row.channel != channel || row.phase != phase) continue;
+        switched = switched || row.switched;
         keep(worst[0], row, &Errors::mxe);
         keep(worst[1], row, &Errors::me);
         keep(worst[2], row, &Errors::mae);
       }
       if (!worst[0]) continue;
-      table.rows.push_back(cells_of("", *worst[0], worst));
+      JudgedErrors named = *worst[0];
+      named.switched = switched;
+      table.rows.push_back(cells_of("", named, worst));
       table.rows.back().erase(table.rows.back().begin());
     }
   return table;

@@ -3,6 +3,7 @@
 // counts them, beside engineering limits.
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "validate/compare/compare.hpp"
@@ -17,6 +18,9 @@ struct JudgedErrors {
   thresholds::Phase phase = thresholds::Phase::pre_fault;
   int samples = 0;
   thresholds::Errors errors, limits;  ///< [% of MVA]
+  bool switched = true;               ///< of the event: without a switching it has no fault
+  /// "post-fault"; "later" where nothing is switched.
+  [[nodiscard]] std::string_view window() const;
 };
 
 struct Fitness {

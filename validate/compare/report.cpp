@@ -117,7 +117,8 @@ std::string terminal_report(const plant::PlantModel& model, const std::vector<Ev
                            : "\nIn units of noise, per window and band:\n" + report::padded(map_table(maps));
   out += "* exceeds what noise alone allows\n";
   for (const auto& e : events) {
-    out += fmt::format("\n{}: switching at {}\n", e.record.name, describe_instants(e));
+    out += fmt::format("\n{}: {}\n", e.record.name,
+                       e.switchings.empty() ? "no switching" : "switching at " + describe_instants(e));
     if (const auto begins = record::beginning(e.record); !begins.empty())
       out += "  t = 0 is " + begins + "\n";
     for (const auto& note : e.notes) out += "  note: " + note + "\n";

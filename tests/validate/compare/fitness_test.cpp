@@ -102,6 +102,23 @@ TEST(Fitness, WhatTheLimitsLeaveOutIsNotJudged) {
   EXPECT_TRUE(judge_fitness({smeared}, 50, by).fit);
 }
 
+TEST(Fitness, WithoutASwitchingNoWindowIsOfAFault) {
+  auto e = event_off_by([](double t) { return t > 2.0 ? 0.5 : 0.0; });
+  const auto faulted = e;
+  e.switchings.clear();
+  e.windows = event_windows(e.record, {}, 1.0);
+  const Fitness f = judge_fitness({e}, 50, plain_limits());
+  ASSERT_EQ(f.rows.size(), 4U);
+  EXPECT_EQ(f.rows[0].window(), "at first");
+  EXPECT_EQ(f.rows[1].window(), "later");
+  EXPECT_THAT(f.sentence, HasSubstr("in the later window"));
+  EXPECT_THAT(report::padded(worst_fitness_table(f)), testing::Not(HasSubstr("fault ")));
+  const std::string both =
+      report::padded(worst_fitness_table(judge_fitness({e, faulted}, 50, plain_limits())));
+  EXPECT_THAT(both, HasSubstr("post-fault"));
+  EXPECT_THAT(both, testing::Not(HasSubstr("later")));
+}
+
 TEST(Fitness, WhatIsNoNumberDoesNotFit) {
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
