@@ -169,7 +169,10 @@ std::vector<double> allowances(const sim::plant::PlantUnderTest& fitted, const B
   return added;
 }
 
+/// The effect's values, where they are few enough for a sentence; all stand in the table of parameters.
 std::string own_values(const Addition& a) {
+  constexpr int kInASentence = 6;
+  if (a.own > kInASentence) return fmt::format("Its {} values stand among the parameters", a.own);
   std::string text;
   for (int i = 0; i < a.own; ++i) {
     const auto& p = a.parameters[static_cast<std::size_t>(i)];

@@ -43,7 +43,7 @@ td.words{text-align:left;white-space:normal;min-width:9ch;max-width:44ch;overflo
 .hint{color:var(--soft);font-size:.85rem}
 svg{max-width:100%;height:auto;font:12px system-ui,"DejaVu Sans",sans-serif}
 .dygraph-axis-label{color:var(--soft);font-size:12px}.dygraph-label{font-size:12px;color:var(--soft)}
-@media(max-width:600px){table{font-size:.72rem;min-width:0}td.words{min-width:0}.panels{grid-template-columns:minmax(0,1fr)}main{padding:14px 12px 40px}h1{font-size:1.35rem}th,td{padding:.26rem .26rem}.chart{height:210px}}
+@media(max-width:600px){table{font-size:.72rem;min-width:0}td.cell{white-space:normal}td.words{min-width:0}.panels{grid-template-columns:minmax(0,1fr)}main{padding:14px 12px 40px}h1{font-size:1.35rem}th,td{padding:.26rem .26rem}.chart{height:210px}}
 @media print{main{max-width:none;padding:0}figure,p,tr,table:not(:has(tr:nth-child(25))){break-inside:avoid}h2,h3{break-after:avoid}.hint{display:none}.scroll{overflow:visible}table{font-size:8pt;min-width:0;max-width:100%}th,td{padding:.15rem .25rem;white-space:normal;position:static}th.words{text-align:left}
 td.words{min-width:0}body{font-size:10pt}.panels{grid-template-columns:repeat(2,minmax(0,1fr))}.panels figcaption,.panels .legend{font-size:8pt}.cell,th,.note,.verdict{-webkit-print-color-adjust:exact;print-color-adjust:exact}}
 )css";

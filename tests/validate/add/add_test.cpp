@@ -49,6 +49,17 @@ TEST(Add, TheMissingExciterExplainsTheUnseenEvent) {
   ASSERT_EQ(a.model.plant.controls.size(), 1U);
   EXPECT_EQ(a.model.plant.controls[0].effect->name, "SEXS");
   for (int i = 0; i < a.own; ++i) EXPECT_EQ(a.parameters[static_cast<std::size_t>(i)].block, "SEXS");
+  EXPECT_THAT(a.sentence, HasSubstr("TB = "));
+}
+
+TEST(Add, ManyValuesAreNotPartOfTheVerdict) {
+  const plant::PlantModel model = example(false);
+  AddOptions options = power_only();
+  options.refined = 1;
+  const Addition a = add_effect(model, find_hypothesis(model, "IEEET1"), records(model), options);
+  ASSERT_GT(a.own, 6);
+  EXPECT_THAT(a.sentence, AllOf(HasSubstr(fmt::format("Its {} values stand among the parameters.", a.own)),
+                                testing::Not(HasSubstr("KA = "))));
 }
 
 // Noise taken through the model without the exciter left TA/TB outside its interval. Of seventeen sound 95 %
