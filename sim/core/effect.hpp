@@ -197,6 +197,9 @@ struct ControlOps {
   std::string (*steady)(const void* law, const T* p, T* c, Signals<T>& s, T* x) = nullptr;
   /// Optional: writes signals that are states before any control is evaluated, for those that stand earlier.
   void (*publish)(const T* c, const T* x, Signals<T>& s) = nullptr;
+  /// Optional: Effect::guards smooth functions of states and signals. Where one passes zero, a derivative of
+  /// the effect jumps.
+  void (*guard)(const T* c, const T* x, const Signals<T>& s, T* g) = nullptr;
 };
 
 /// A step-up transformer: ideal ratio (grid side / machine side) and impedance on the machine's base.
@@ -262,6 +265,7 @@ struct Effect {
   std::span<const int> dyr_columns;   ///< parameter index of each .dyr column
   int raw_resistance, raw_reactance;  ///< parameters that PSS/E keeps in the .raw (ZR, ZX), or -1
   int coefficients, scratch;
+  int guards = 0;
   bool converter = false;  ///< of a source: a controlled current, no synchronous machine
   /// Of a load whose records in a .dyr belong to switched shunts: how they are laid out.
   const ShuntRecord* at_shunt = nullptr;
@@ -318,6 +322,7 @@ Ops<T> make_ops() {
                    return M::template steady<T>(p, c, s, x);
                  }};
     if constexpr (requires { &M::template publish<T>; }) o.control.publish = &M::template publish<T>;
+    if constexpr (requires { &M::template guard<T>; }) o.control.guard = &M::template guard<T>;
   }
   return o;
 }
@@ -365,6 +370,7 @@ Effect make_effect() {
   if constexpr (requires { M::raw_reactance; }) e.raw_reactance = M::raw_reactance;
   if constexpr (requires { M::coefficients; }) e.coefficients = M::coefficients;
   if constexpr (requires { M::scratch; }) e.scratch = M::scratch;
+  if constexpr (requires { M::guards; }) e.guards = M::guards;
   if constexpr (requires { M::converter; }) e.converter = M::converter;
   if constexpr (requires { M::at_shunt; }) e.at_shunt = &M::at_shunt;
   if constexpr (requires { M::elsewhere; }) e.elsewhere = M::elsewhere;

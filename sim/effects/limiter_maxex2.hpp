@@ -103,6 +103,14 @@ struct Model {
     dx[Voel] = select(operated, c[gain] * (c[wanted] - s.Ifd), none);
     s.Vlimiter = s.Vlimiter + clamp(x[Voel], c[low], none);
   }
+  /// The timer runs out; and until then the current passes the pickup.
+  static constexpr int guards = 2;
+  template <class T>
+  static void guard(const T* c, const T* x, const Signals<T>& s, T* g) {
+    const T one(1.0);
+    g[0] = x[timer] - one;
+    g[1] = select(one <= x[timer], one, s.Ifd * c[irated] - c[i1]);
+  }
   template <class T>
   static std::string steady(const T* p, T*, Signals<T>& s, T* x) {
     x[timer] = x[Voel] = T(0.0);

@@ -35,9 +35,11 @@ class PlantEquations {
     states_ = static_cast<int>(machine.states.size());
     coefficients_ = joint_ + kJoint;
     for (const Block& block : plant.controls) {
-      controls_.push_back({block.effect->get<T>().control, block.effect->law.get(), states_, coefficients_});
+      controls_.push_back(
+          {block.effect->get<T>().control, block.effect->law.get(), states_, coefficients_, guards_});
       publishes_ = publishes_ || controls_.back().ops.publish != nullptr;
       looks_far_ = looks_far_ || block.effect->elsewhere.bus >= 0;
+      guards_ += block.effect->guards;
       limits(*block.effect, coefficients_);
       states_ += static_cast<int>(block.effect->states.size());
       coefficients_ += block.effect->coefficients;
@@ -51,6 +53,8 @@ class PlantEquations {
   /// Whether the current is no linear function of emf and voltage: see current().
   [[nodiscard]] bool nonlinear() const { return machine_.current != nullptr; }
   [[nodiscard]] bool limited() const { return !limits_.empty(); }
+  /// How many functions tell by their sign on which side of a jump of its equations the plant is.
+  [[nodiscard]] int guards() const { return guards_; }
 
   /// Voltage er + j ei as the grid sees it behind r + jx [pu, network frame]. m: scratch() values, kept for
   /// derivative().
@@ -159,6 +163,11 @@ class PlantEquations {
         if (k.ops.publish) k.ops.publish(c + k.coefficient, x + k.state, s);
     for (const Control& k : controls_) k.ops.evaluate(k.law, c + k.coefficient, x + k.state, s, dx + k.state);
   }
+  /// These functions, by the signals that derivative() made of the states.
+  void guard(const T* c, const T* x, const Signals<T>& s, T* g) const {
+    for (const Control& k : controls_)
+      if (k.ops.guard) k.ops.guard(c + k.coefficient, x + k.state, s, g + k.guard);
+  }
   /// Takes states back to the limits they have crossed within a step; adds to `moved` how far.
   void clamp_states(const T* c, T* x, T& moved) const {
     for (const Limit& l : limits_) {
@@ -191,7 +200,7 @@ class PlantEquations {
   struct Control {
     ControlOps<T> ops;
     const void* law;
-    int state, coefficient;
+    int state, coefficient, guard;  ///< its first ones
   };
   struct Limit {
     int state, low, high;
@@ -297,7 +306,7 @@ class PlantEquations {
   std::vector<Limit> limits_;
   std::optional<TwoPort> beyond_;
   bool has_transformer_ = false, publishes_ = false, looks_far_ = false;
-  int joint_ = 0, states_ = 0, coefficients_ = 0, scratch_ = 0;
+  int joint_ = 0, states_ = 0, coefficients_ = 0, scratch_ = 0, guards_ = 0;
 };
 
 }  // namespace swingbank::sim::plant

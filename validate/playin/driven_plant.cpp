@@ -22,6 +22,8 @@ using Kind = Direction::Kind;
 constexpr double kRoughFrom = 1e-5;     ///< tolerance
 constexpr double kShortestStep = 1e-9;  ///< [s]
 constexpr double kCornerError = 1e-6;   ///< of a state, in a step across a corner of the equations
+constexpr double kJumpWithin = 1e-8;    ///< an instant at which the equations jump is found to this [s]
+constexpr double kRateOver = 1e-6;      ///< how fast a guard passes zero is measured over this [s]
 
 template <class T>
 class Driven {
@@ -34,6 +36,9 @@ class Driven {
     missed_.resize(n);
     allowed_.assign(n, run_.tolerance);
     for (std::size_t i = 0; i < run_.allowance.size(); ++i) allowed_[i] *= run_.allowance[i];
+    const auto guards = static_cast<std::size_t>(equations_.of_plant().guards());
+    guards_.resize(guards);
+    guards_at_end_.resize(guards);
     collect_instants();
   }
 
@@ -136,9 +141,9 @@ class Driven {
     refresh();
     mark(Trace::Node::Kind::step, -1, k_[0].data());
   }
-  void mark(Trace::Node::Kind kind, int switching, const T* derivative) {
+  void mark(Trace::Node::Kind kind, int switching, const T* derivative, Trace::Passed passed = {}) {
     if (!trace_) return;
-    trace_->nodes.push_back({t_, equations_.side, kind, switching});
+    trace_->nodes.push_back({t_, equations_.side, kind, switching, passed});
     for (std::size_t i = 0; i < x_.size(); ++i) {
       trace_->x.push_back(sim::value_of(x_[i]));
       trace_->dx.push_back(sim::value_of(derivative[i]));
@@ -162,12 +167,13 @@ class Driven {
       double error = attempt(h);
       if (error > 1 && std::isfinite(error) && (h <= run_.least_step || crosses_corner(h, error))) error = 1;
       if (error <= 1) {
-        t_ = reaches ? to : t_ + h;
-        std::swap(x_, trial_);
-        std::swap(k_.front(), k_[static_cast<std::size_t>(pair_.stages - 1)]);
-        T moved(0.0);
-        equations_.of_plant().clamp_states(equations_.c.data(), x_.data(), moved);
-        fresh_ = sim::value_of(moved) > 0;
+        look_at_guards(trial_, guards_at_end_);
+        if (passed_guard() >= 0) {
+          pass_jump(h);
+          continue;
+        }
+        take(h);
+        if (reaches) t_ = to;
         if (trace_ && t_ < to) mark_step();
       } else if (h < kShortestStep) {
         give_up();
@@ -180,6 +186,93 @@ class Driven {
     }
     t_ = std::max(t_, to);
   }
+  /// The step that was tried last becomes the run's.
+  void take(double h) {
+    t_ += h;
+    std::swap(x_, trial_);
+    std::swap(k_.front(), k_[static_cast<std::size_t>(pair_.stages - 1)]);
+    std::swap(guards_, guards_at_end_);
+    T moved(0.0);
+    equations_.of_plant().clamp_states(equations_.c.data(), x_.data(), moved);
+    fresh_ = sim::value_of(moved) > 0;
+  }
+  /// By the signals as they were evaluated last, at these states.
+  void look_at_guards(const std::vector<T>& x, std::vector<T>& guards) {
+    if (!guards.empty())
+      equations_.of_plant().guard(equations_.c.data(), x.data(), equations_.signals, guards.data());
+  }
+  /// A guard that passes zero in the step that was tried last; -1: none does.
+  [[nodiscard]] int passed_guard() const {
+    for (std::size_t g = 0; g < guards_.size(); ++g)
+      if ((sim::value_of(guards_[g]) < 0) != (sim::value_of(guards_at_end_[g]) < 0)) return static_cast<int>(g);
+    return -1;
+  }
+  /// Goes to where the equations first jump within a step of h, and over to the other side.
+  void pass_jump(double h) {
+    const auto [before, after, guard] = jump_within(h);
+    if (before > 0) {
+      attempt(before);
+      look_at_guards(trial_, guards_at_end_);
+      take(before);
+    }
+    refresh();
+    const std::vector<T> derivative = k_[0];
+    const T rate = rate_of(guard), missing = T(0.0) - guards_[static_cast<std::size_t>(guard)] / rate;
+    mark(Trace::Node::Kind::before, -1, derivative.data(), {guard, sim::value_of(rate)});
+    attempt(after - before);
+    look_at_guards(trial_, guards_at_end_);
+    take(after - before);
+    refresh();
+    mark(Trace::Node::Kind::after, -1, k_[0].data());
+    for (std::size_t i = 0; i < x_.size(); ++i)
+      for (std::size_t d = 0; d < directions_.size(); ++d)
+        Seeds<T>::add(x_[i], d,
+                      Seeds<T>::slope(missing, d) * (sim::value_of(derivative[i]) - sim::value_of(k_[0][i])));
+    fresh_ = fresh_ || !directions_.empty();
+    ++steps_;
+  }
+  struct Jump {
+    double before, after;  ///< it lies between [s]
+    int guard;             ///< which passes zero there
+  };
+  /// By regula falsi (Illinois), from the step that was tried last.
+  Jump jump_within(double h) {
+    constexpr int kMostRounds = 60;
+    Jump jump = {0.0, h, passed_guard()};
+    const auto height = [&](const std::vector<T>& guards) {
+      return std::abs(sim::value_of(guards[static_cast<std::size_t>(jump.guard)]));
+    };
+    double low = height(guards_), high = height(guards_at_end_);
+    int side = 0;  // of zero, on which the last guess was
+    for (int round = 0; round < kMostRounds && jump.after - jump.before > kJumpWithin; ++round) {
+      const double wide = jump.after - jump.before, guess = jump.before + wide * low / (low + high);
+      // a little beyond, so that the next guess comes to lie on the other side
+      const double middle = std::clamp(guess - 0.4 * side * kJumpWithin, jump.before + 0.01 * kJumpWithin,
+                                       jump.after - 0.01 * kJumpWithin);
+      attempt(middle);
+      look_at_guards(trial_, guards_at_end_);
+      const int passed = passed_guard();
+      const int now = passed < 0 ? -1 : 1;
+      if (passed >= 0 && passed != jump.guard) {
+        jump.guard = passed;
+        low = height(guards_);
+      } else if (now == side) {
+        (now < 0 ? high : low) /= 2;
+      }
+      (now < 0 ? jump.before : jump.after) = middle;
+      (now < 0 ? low : high) = height(guards_at_end_);
+      side = now;
+    }
+    return jump;
+  }
+  /// How fast a guard goes on from where the plant stands [1/s].
+  T rate_of(int guard) {
+    const auto g = static_cast<std::size_t>(guard);
+    for (std::size_t i = 0; i < x_.size(); ++i) trial_[i] = x_[i] + T(kRateOver) * k_[0][i];
+    equations_.evaluate(t_ + kRateOver, trial_.data(), k_[1].data());
+    look_at_guards(trial_, guards_at_end_);
+    return (guards_at_end_[g] - guards_[g]) / T(kRateOver);
+  }
   /// Is the step so short, and what it misses so little, that nothing but a corner of the equations stands in
   /// the way (a state that runs into its limit)?
   [[nodiscard]] bool crosses_corner(double h, double error) const {
@@ -190,7 +283,10 @@ class Driven {
   }
   /// Makes k_[0] and the signals those of the states as they stand.
   void refresh() {
-    if (fresh_) equations_.evaluate(t_, x_.data(), k_[0].data());
+    if (fresh_) {
+      equations_.evaluate(t_, x_.data(), k_[0].data());
+      look_at_guards(x_, guards_);
+    }
     fresh_ = false;
   }
   double attempt(double h) {
@@ -276,6 +372,7 @@ class Driven {
   DrivenEquations<T> equations_;
   std::vector<T> x_, trial_, missed_;
   std::array<std::vector<T>, 7> k_;
+  std::vector<T> guards_, guards_at_end_;
   std::vector<double> allowed_;  ///< error of each state per step, relative to 1 + |state|
   const bool breaker_ = run_.record->breaker() != nullptr;
   std::vector<Instant> instants_;

@@ -124,6 +124,57 @@ TEST_F(LinearSlopesTest, AtALimit) {
   EXPECT_GT(std::ranges::count_if(Efd, [](double e) { return e > 2.2 - 1e-6; }), 20);
   EXPECT_LT(worst(all()), 0.05);
 }
+/// A limiter acts from the instant on at which its timer runs out, which every parameter moves.
+class Limited : public LinearSlopesTest {
+ protected:
+  void SetUp() override {
+    LinearSlopesTest::SetUp();
+    for (const char* name : {"MAXEX2", "SEXS"}) add(name);
+    // the current is above the pickup in and behind the fault, below it, and above it for seconds from then on
+    parameter("MAXEX2", "EFDRATED") = 1.92;
+    parameter("MAXEX2", "EFD1") = 1.165;
+    parameter("MAXEX2", "EFD2") = 1.19;
+    parameter("MAXEX2", "EFD3") = 1.4;
+    parameter("MAXEX2", "TIME1") = 1.5;
+    parameter("MAXEX2", "TIME2") = 1.0;
+    parameter("MAXEX2", "TIME3") = 0.5;
+    parameter("MAXEX2", "KMX") = 0.5;
+    parameter("MAXEX2", "EFDDES") = 0.95;
+  }
+};
+TEST_F(Limited, AnInstantHasSlopes) {
+  const std::vector<Direction> along = all();
+  const Response exact = answer(along, false), linear = answer(along, true);
+  constexpr double kAside = 1e-4;
+  int limiter_moved = 0;
+  for (std::size_t d = 0; d < along.size(); ++d) {
+    const Direction& a = along[d];
+    if (a.kind != Kind::parameter) continue;
+    double& value = sim::plant::parameter_value(model_.plant, a.parameter);
+    const double at = value;
+    value = at * (1 + kAside);
+    const Response up = answer({}, false);
+    value = at * (1 - kAside);
+    const Response down = answer({}, false);
+    value = at;
+    double own = 0, off = 0, off_linear = 0;
+    for (const Output output : kShown) {
+      const auto o = static_cast<std::size_t>(output);
+      for (std::size_t k = 0; k < exact.value[o].size(); ++k) {
+        const double secant = (up.value[o][k] - down.value[o][k]) / (2 * kAside);
+        own += secant * secant;
+        off += std::pow(secant - exact.slopes[d].value[o][k], 2);
+        off_linear += std::pow(secant - linear.slopes[d].value[o][k], 2);
+      }
+    }
+    if (own < 0.01) continue;
+    const std::string_view name = sim::plant::parameter_record(model_.plant, a.parameter).name;
+    EXPECT_LT(std::sqrt(off / own), 0.03) << name;
+    EXPECT_LT(std::sqrt(off_linear / own), 0.04) << name;
+    limiter_moved += name.starts_with("EFD") || name.starts_with("TIME") ? 1 : 0;
+  }
+  EXPECT_EQ(limiter_moved, 8) << "it was meant to act";
+}
 TEST_F(LinearSlopesTest, WithASaturatedStatorBehindATransformer) {
   const auto* gentpj = sim::library::compiled().find("GENTPJ");
   model_.plant.machine = {gentpj, gentpj->standard_parameters()};

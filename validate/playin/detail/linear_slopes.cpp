@@ -62,7 +62,8 @@ class LinearSlopes {
         before_(n_, m_, shown_),
         now_(n_, m_, shown_),
         left_(n_, n_),
-        right_(n_, m_) {
+        right_(n_, m_),
+        guard_(2, std::max(n_, m_)) {
     start();
     begin_.assign(m_, -std::numeric_limits<double>::infinity());
     for (std::size_t d = 0; d < m_; ++d)
@@ -74,6 +75,7 @@ class LinearSlopes {
     more_factors_.resize(n_);
     sign_.resize(n_);
     outward_.resize(n_);
+    later_.resize(m_);
   }
 
   bool run() {
@@ -87,7 +89,7 @@ class LinearSlopes {
       look_at(std::min(node.t, node.side.last_moment));
       linearise(k);
       if (node.kind == Trace::Node::Kind::after)
-        jump(k);
+        cross(k);
       else if (k > 0 && node.t > trace_.nodes[k - 1].t)
         step(node.t - trace_.nodes[k - 1].t);
       for (std::size_t i = 0; i < n_; ++i)
@@ -181,7 +183,8 @@ class LinearSlopes {
       packs_.push_back(std::move(pack));
     }
     moves_ = kBase * packs_.size() + 1;
-    slopes_.resize((2 * n_ + shown_) * moves_);
+    slopes_.resize((2 * n_ + shown_ + 1) * moves_);
+    moved_guards_.assign(static_cast<std::size_t>(packs_.front().equations.of_plant().guards()), P8(0.0));
     heights_.resize(m_);
   }
 
@@ -247,11 +250,23 @@ class LinearSlopes {
       for (std::size_t i = 0; i < n_; ++i) keep(p, dx_[i], per_move, i);
       for (std::size_t o = 0; o < shown_; ++o)
         keep(p, y[static_cast<std::size_t>(run_.linear_slopes[o])], per_move, n_ + o);
+      if (node.passed.guard >= 0) {
+        const auto& equations = pack.equations;
+        equations.of_plant().guard(equations.c.data(), x_.data(), equations.signals, moved_guards_.data());
+        keep(p, moved_guards_[static_cast<std::size_t>(node.passed.guard)], per_move, 2 * n_ + shown_);
+      }
       if (!any_held_) continue;
       for (std::size_t i = 0; i < n_; ++i)
         if (now_.held[i]) keep(p, x_[i], per_move, n_ + shown_ + i);
     }
-    for (std::size_t i = 0; i < n_; ++i) take(i, now_.A.row(i), now_.B.row(i));
+    if (node.passed.guard >= 0) take(2 * n_ + shown_, guard_.row(0), guard_.row(1));
+    if (node.passed.guard >= 0 || (k > 0 && trace_.nodes[k - 1].passed.guard >= 0)) {
+      // a copy may have been moved to the other side of the jump
+      now_.A = before_.A;
+      now_.B = before_.B;
+    } else {
+      for (std::size_t i = 0; i < n_; ++i) take(i, now_.A.row(i), now_.B.row(i));
+    }
     for (std::size_t o = 0; o < shown_; ++o) take(n_ + o, now_.C.row(o), now_.D.row(o));
     for (std::size_t i = 0; i < n_; ++i)
       if (now_.held[i]) take(n_ + shown_ + i, nullptr, limits_.row(i));
@@ -379,8 +394,21 @@ class LinearSlopes {
       });
     }
   }
-  /// To the other side of an instant, which the directions of its switching move and turn.
-  void jump(std::size_t k) {
+  /// To the other side of an instant.
+  void cross(std::size_t k) {
+    const Trace::Passed& passed = trace_.nodes[k - 1].passed;
+    if (passed.guard < 0) return switch_over(k);
+    const double *before = trace_.dx.data() + (k - 1) * n_, *after = trace_.dx.data() + k * n_;
+    for (std::size_t d = 0; d < m_; ++d) {
+      double moved = d < active_ ? guard_.at(1, d) : 0.0;  // the guard, at the instant as it is
+      for (std::size_t i = 0; i < n_; ++i) moved += guard_.at(0, i) * S_.at(i, d);
+      later_[d] = -moved / passed.rate;
+    }
+    for (std::size_t i = 0; i < n_; ++i)
+      for (std::size_t d = 0; d < m_; ++d) S_.at(i, d) += later_[d] * (before[i] - after[i]);
+  }
+  /// To the other side of a switching, which its directions move and turn.
+  void switch_over(std::size_t k) {
     const int switching = trace_.nodes[k].switching;
     const double *before = trace_.dx.data() + (k - 1) * n_, *after = trace_.dx.data() + k * n_;
     for (std::size_t d = 0; d < m_; ++d) {
@@ -422,9 +450,9 @@ class LinearSlopes {
   Rows S_, limits_;
   std::size_t shown_;  ///< outputs whose slopes are asked for
   Linear before_, now_;
-  Rows left_, right_;
-  std::vector<double> factors_, more_factors_;
-  std::vector<P8> x_, dx_, row_;
+  Rows left_, right_, guard_;  ///< the last: slopes of the guard that is passed, by states and by directions
+  std::vector<double> factors_, more_factors_, later_;
+  std::vector<P8> x_, dx_, row_, moved_guards_;
   std::vector<double> sign_, outward_, heights_;
   std::vector<double> slopes_;  ///< of derivatives, outputs, limits, by moves
 };

@@ -10,11 +10,17 @@ namespace swingbank::validate::playin {
 
 /// Where a run without slopes went: every step and sample, and both sides of every instant.
 struct Trace {
+  /// A guard of the equations that passes zero just behind a node, and how fast [1/s].
+  struct Passed {
+    int guard = -1;
+    double rate = 0;
+  };
   struct Node {
     double t;  ///< [s]
     Side side;
     enum class Kind { sample, step, before, after } kind;  ///< the last two: of an instant
     int switching;                                         ///< at an instant: of the curve; -1: of an effect
+    Passed passed = {};
   };
   std::vector<Node> nodes;
   std::vector<double> x, dx;  ///< [node][state]: states and their derivatives
