@@ -111,8 +111,6 @@ bool StartFinder::provoke(Hypothesis& h) const {
         acting.push_back(std::move(*start));
   if (acting.empty()) return false;
   h.starts = std::move(acting);
-  for (std::size_t i = 0; i < own; ++i)
-    sim::plant::parameter_value(h.plant, h.free[i].id) = h.starts.front()[i];
   return true;
 }
 std::optional<std::vector<double>> StartFinder::between(const Hypothesis& h,

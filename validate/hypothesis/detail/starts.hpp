@@ -41,8 +41,7 @@ class StartFinder {
   /// stages at the values that were believed of them.
   [[nodiscard]] sim::plant::Plant believed(const Hypothesis& h) const;
   /// A limiter may wait for more than its standard values let it meet in these records. Then draws that act
-  /// become its starts, and beliefs are about the first of them. Returns false where the starts stay as they
-  /// were.
+  /// become its starts. Returns false where the starts stay as they were.
   bool provoke(Hypothesis& h) const;
   void screen(const Hypothesis& h, Candidate& c) const;
   /// Values of all free parameters, with this start beside the fitted stage.
