@@ -52,12 +52,10 @@ files() {
   done
 }
 
-# says FILE: name and title of an effect, else the first sentence of the head comment. A full stop ends it unless it
-# stands in parentheses or behind an initial.
+# says: behind each path on its input a tab, and name and title of an effect, else the first sentence of the head comment.
+# A full stop ends it unless it stands in parentheses or behind an initial.
 says() {
-  local effect=0
-  if [[ $1 == sim/effects/* && $1 != */detail/* ]]; then effect=1; fi
-  awk -v effect="$effect" '
+  awk '
     function first_sentence(s,   i, c, depth) {
       for (i = 1; i < length(s); ++i) {
         c = substr(s, i, 1)
@@ -77,22 +75,34 @@ says() {
       }
       return cell
     }
-    function quoted(word,   s) { # the text behind `word =`
+    function quoted(declared, word,   s) { # the text behind `word =`
       if (!match(declared, word " = \"[^\"]*\"")) return ""
       s = substr(declared, RSTART, RLENGTH)
       gsub(/^[^"]*"|"$/, "", s)
       return s
     }
-    FNR == 1 && /^#pragma once/ { next }
-    !behind && /^\/\/ ?[^ ]/ { sub(/^\/\/ ?/, ""); text = text (text ? " " : "") $0; next }
-    { behind = 1 }
-    effect && /^  static constexpr std::string_view( name = |$)/ { inside = 1 }
-    inside { sub(/^ +/, ""); declared = declared " " $0; if (/;/) exit }
-    END {
+    function said(path, effect,   line, n, text, behind, inside, declared) {
+      for (n = 1; (getline line < path) > 0; ++n) {
+        if (n == 1 && line ~ /^#pragma once/) continue
+        if (!behind && line ~ /^\/\/ ?[^ ]/) {
+          sub(/^\/\/ ?/, "", line)
+          text = text (text ? " " : "") line
+          continue
+        }
+        behind = 1
+        if (!effect) break
+        if (line ~ /^  static constexpr std::string_view( name = |$)/) inside = 1
+        if (!inside) continue
+        sub(/^ +/, "", line)
+        declared = declared " " line
+        if (line ~ /;/) break
+      }
+      close(path)
       gsub(/= +"/, "= \"", declared)
       gsub(/" +"/, "", declared)
-      print as_cell(quoted("title") ? quoted("name") ": " quoted("title") : first_sentence(text))
-    }' "$1"
+      return quoted(declared, "title") ? quoted(declared, "name") ": " quoted(declared, "title") : first_sentence(text)
+    }
+    { print $0 "\t" as_cell(said($0, $0 ~ /^sim\/effects\// && $0 !~ /\/detail\//)) }'
 }
 
 # table ROOM
@@ -105,12 +115,15 @@ table() {
     while read -r name; do
       file=$1/$name.hpp
       [[ -e $file ]] || file=$1/$name.cpp
-      said=$(says "$file")
+      printf '%s\n' "$file"
+    done | says |
+    while IFS=$'\t' read -r file said; do
       if [[ -z $said ]]; then
         echo "no head comment at $file (the table of its room takes its first sentence): say there what the file is" >&2
         return 1
       fi
-      printf '| `%s` | %s |\n' "$name" "$said"
+      name=${file#"$1"/}
+      printf '| `%s` | %s |\n' "${name%.*}" "$said"
     done
 }
 

@@ -4,22 +4,33 @@
 # rooms holds no source.
 set -euo pipefail
 cd "${SWINGBANK_SOURCE:?}"
+sources=('base/*.?pp' 'sim/*.?pp' 'mpi/*.?pp' 'train/*.?pp' 'validate/*.?pp')
 failed=0
-while read -r file; do
-  room=${file%/*}
+
+# room_of FILE: sets `room`
+room_of() {
+  room=${1%/*}
   room=${room%/detail}
+}
+
+while read -r file; do
+  room_of "$file"
+  case $room in
+    sim | mpi | train | validate | validate/blind)
+      echo "$file stands in $room, which holds rooms: put it into one of them" >&2
+      failed=1 ;;
+  esac
+done < <(git ls-files --cached --others --exclude-standard -- "${sources[@]}")
+while IFS=: read -r file opened; do
+  room_of "$file"
   case $room in
     base) name=swingbank ;;
     sim/core) name=swingbank::sim ;;
-    sim | mpi | train | validate | validate/blind)
-      echo "$file stands in $room, which holds rooms: put it into one of them" >&2
-      failed=1
-      continue ;;
     *) name=swingbank::${room//\//::} ;;
   esac
-  if grep -q '^namespace swingbank' "$file" && grep '^namespace swingbank' "$file" | grep -qvE "^namespace $name(::| \{)"; then
-    echo "$file opens $(grep -m1 '^namespace swingbank' "$file") in place of $name" >&2
+  if [[ $opened != "namespace $name "* && $opened != "namespace $name::"* ]]; then
+    echo "$file opens $opened in place of $name" >&2
     failed=1
   fi
-done < <(git ls-files --cached --others --exclude-standard -- 'base/*.?pp' 'sim/*.?pp' 'mpi/*.?pp' 'train/*.?pp' 'validate/*.?pp')
+done < <(git grep --untracked '^namespace swingbank' -- "${sources[@]}")
 exit "$failed"
