@@ -13,7 +13,7 @@
 #include "base/in_parallel.hpp"
 #include "validate/diagnose/detail/verdict.hpp"
 #include "validate/fit/noise.hpp"
-#include "validate/hypothesis/grow.hpp"
+#include "validate/hypothesis/rivals.hpp"
 #include "validate/hypothesis/search.hpp"
 
 namespace swingbank::validate::diagnose {
@@ -205,6 +205,7 @@ class Diagnoser {
     const hypothesis::Stage stage = model_stage();
     judge_leading(result_.ranked);
     if (result_.ranked.empty()) return;
+    look_until_one_holds(stage);
     const hypothesis::Judgement best = result_.ranked.front();
     if (stopped() || (!best.accepted && result_.base.misfit() <= options_.adequate)) return;
     auto pairs = best.accepted ? judged_beside(stage, best) : try_pairs(stage);
@@ -221,6 +222,24 @@ class Diagnoser {
     keep_one_order(pairs);
     result_.ranked.insert(result_.ranked.begin(), std::make_move_iterator(pairs.begin()),
                           std::make_move_iterator(pairs.end()));
+  }
+  /// Where something is missing but nothing holds alone, what nearly fits is looked at elsewhere, until one
+  /// holds.
+  void look_until_one_holds(const hypothesis::Stage& stage) {
+    const auto holds = [&] { return std::ranges::any_of(result_.ranked, &hypothesis::Judgement::accepted); };
+    while (result_.base.misfit() > options_.adequate && !holds() && !stopped()) {
+      const auto looked = hypothesis::look_at_next(stage, result_.ranked, options_.progress);
+      if (looked.empty()) break;
+      const double reach = best_gain(result_.ranked) - thresholds::evidence.within_reach;
+      in_parallel(
+          looked.size(),
+          [&](std::size_t k) {
+            hypothesis::Judgement& j = result_.ranked[looked[k]];
+            if (j.gain > reach && !stopped()) judge_one(j);
+          },
+          [](int) {}, threads_);
+    }
+    best_first(result_.ranked);
   }
   [[nodiscard]] hypothesis::Stage model_stage() const {
     const auto takes_off = [&](const hypothesis::MissingInput& m) {
@@ -336,7 +355,7 @@ class Diagnoser {
   /// none of them holds, three are judged.
   void judge_leading(std::vector<hypothesis::Judgement>& tried) const {
     if (tried.empty()) return;
-    give_rivals_a_chance(tried);
+    hypothesis::give_rivals_a_chance(model_stage(), tried, options_.progress);
     const int most = std::min(options_.leading, static_cast<int>(tried.size()));
     int leading = 0;
     for (double best = tried.front().gain;;) {  // judging may take away some of the first ones' evidence
@@ -378,47 +397,6 @@ class Diagnoser {
     });
   }
 
-  /// Rivals of the best in its slot are fitted from further starts, and with what their standard values leave
-  /// off, if they come near it at all. One that is worse than nothing has not arrived anywhere, which says
-  /// nothing of it.
-  void give_rivals_a_chance(std::vector<hypothesis::Judgement>& tried) const {
-    const int slot = tried.front().hypothesis.slot;
-    if (slot < 0) return;
-    const double near = thresholds::evidence.near * tried.front().gain;
-    const auto rivals =
-        std::stable_partition(tried.begin(), tried.end(), [&](const hypothesis::Judgement& j) {
-          return j.hypothesis.slot == slot && (j.gain > near || j.gain < 0) && j.fitted;
-        });
-    const hypothesis::Stage stage = model_stage();
-    const fit::Fit leader =
-        std::ranges::max_element(tried.begin(), rivals, {}, &hypothesis::Judgement::gain)->fit;
-    each({tried.begin(), rivals}, "further starts", [&](hypothesis::Judgement& j) {
-      hypothesis::try_further(stage, leader, j);
-      hypothesis::fit_on(stage, j);
-      hypothesis::grow(result_.events, options_.spread, j.hypothesis, j.fit);
-      j.gain = fit::gain(result_.base, j.fit, fit::criterion);
-    });
-    std::ranges::stable_sort(tried, std::greater<>(), &hypothesis::Judgement::gain);
-    look_elsewhere(stage, tried);
-  }
-  /// What could still become probable beside the best one of its slot, and whatever nearly fits, may lie at
-  /// the lesser of several optima. How far behind it stands does not tell: which optimum a fit ends at,
-  /// roundings decide. Where much is left, though, what else could follow linearly says little of a draw.
-  void look_elsewhere(const hypothesis::Stage& stage, std::vector<hypothesis::Judgement>& tried) const {
-    const int slot = tried.front().hypothesis.slot;
-    const double reach = tried.front().gain - hypothesis::out_of_reach();
-    const auto far = std::stable_partition(tried.begin(), tried.end(), [&](const hypothesis::Judgement& j) {
-      return j.hypothesis.slot == slot && j.fitted &&
-             (j.gain > reach || j.fit.misfit() < thresholds::search.nearly_fits);
-    });
-    std::vector<sim::plant::Plant> found;  // as they stand before any of them is looked at elsewhere
-    for (auto j = tried.begin(); j != far; ++j) found.push_back(j->fit.plant);
-    each({tried.begin(), far}, "other optima", [&](hypothesis::Judgement& j) {
-      hypothesis::try_basins(stage, j, found);
-      j.gain = fit::gain(result_.base, j.fit, fit::criterion);
-    });
-    std::ranges::stable_sort(tried, std::greater<>(), &hypothesis::Judgement::gain);
-  }
   /// Does something with each judgement, on all cores.
   template <class F>
   void each(std::span<hypothesis::Judgement> tried, const std::string& what, F act) const {

@@ -44,7 +44,8 @@ playin::Drive run_of(const sim::plant::PlantUnderTest& tested, const FitEvent& e
                     .angle = state.angle,
                     .speed = state.speed,
                     .tolerance = how.tolerance,
-                    .until = how.until};
+                    .until = how.until,
+                    .instants_stand = how.instants_stand};
   if (how.hasty) {
     run.least_step = event.record.step() / 40;
     run.step_limit = 15 * event.record.samples();

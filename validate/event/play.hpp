@@ -38,6 +38,7 @@ struct Playing {
   std::vector<double>* allowance = nullptr;
   bool linear_slopes = false;                           ///< slopes as playin::Drive has them: for a search
   std::shared_ptr<const playin::Past>* past = nullptr;  ///< as playin::Drive has it
+  bool instants_stand = false;                          ///< as playin::Drive has it
   InputKind input = InputKind::none;                    ///< where the state's input acts
   double until = 1e300;                                 ///< samples after it are left out [s]
 };

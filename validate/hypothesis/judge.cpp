@@ -65,6 +65,7 @@ std::string objection(const std::vector<HeldOut>& held_out, double evidence, dou
 void judge(const Trial& trial, const fit::Fit& base, const std::vector<HeldOut>& held_out_base,
            Judgement& j) {
   if (!j.fitted) return;
+  j.why_not.clear();
   const auto free = free_of(j.hypothesis, trial.spread);
   fit::FitOptions o{.iterations = kMostSteps, .lenient = true};
   o.values = fit::values_of(j.fit.plant, free);

@@ -30,6 +30,7 @@ struct Judgement {
   double size = 0;                ///< what it adds to the answer: norm of the change / noise, per sqrt(value)
   std::vector<HeldOut> held_out;  ///< empty where judging was not worth it
   bool fitted = true;             ///< false: the score test gave no hope; `fit` is without it
+  bool looked_at = false;         ///< elsewhere (try_basins)
   bool accepted = false;
   std::string why_not;  ///< empty where accepted
 };

@@ -1,4 +1,5 @@
-// A scan over parameters that act without a slope, as the time of a limiter's timer does.
+// A scan over parameters that act through instants alone, as the time of a limiter's timer does: slopes do not
+// lead to where an instant falls into another swing.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,7 +15,7 @@ namespace {
 constexpr std::array<double, 10> kMultiples = {0.3, 0.5, 0.7, 0.85, 0.95, 1.05, 1.18, 1.4, 2.0, 3.3};
 /// Multiples at which it shows whether a parameter acts at all.
 constexpr double kScanLess = 0.7, kScanMore = 1.4;
-/// The kScanFitted multiples that leave least get kScanOwnSteps steps of the parameters that have slopes. The
+/// The kScanFitted multiples that leave least get kScanOwnSteps steps of the hypothesis's parameters. The
 /// kBest best of these get kScanAllSteps steps of all parameters.
 constexpr std::size_t kScanFitted = 12, kBest = 2;
 constexpr int kScanOwnSteps = 3, kScanAllSteps = 9;
@@ -35,11 +36,12 @@ class BlindScan {
     }
     if (std::ranges::all_of(seen, [](char s) { return s; })) return;
     left_ = left_by({from_.plant, h.conventions}, stage.events, states_);
-    for (std::size_t i = 0; i < h.free.size(); ++i) (seen[i] ? seen_ : blind_).push_back(h.free[i]);
+    for (std::size_t i = 0; i < h.free.size(); ++i)
+      if (!seen[i]) blind_.push_back(h.free[i]);
     std::erase_if(blind_, [this](const fit::FreeParameter& f) { return idle(f); });
   }
-  /// The best of the values tried. Parameters of the hypothesis that have slopes are fitted for a few steps;
-  /// everything else is as `from` has it.
+  /// The best of the values tried. Parameters of the hypothesis are fitted for a few steps; everything else is
+  /// as `from` has it.
   [[nodiscard]] std::vector<fit::Fit> best() const {
     std::vector<sim::plant::Plant> plants;
     for (const auto& group : groups())
@@ -68,7 +70,7 @@ class BlindScan {
   /// rest has followed; where much is missing, only what helps by itself is gone on with.
   [[nodiscard]] bool near() const { return stage_.fit.misfit() < thresholds::search.nearly_fits; }
 
-  /// For each parameter of the hypothesis, whether any event's answer has a slope along it.
+  /// For each parameter of the hypothesis, whether any event's answer has a slope along it while instants stand.
   [[nodiscard]] std::vector<char> slopes() const {
     std::vector<playin::Direction> along;
     for (const fit::FreeParameter& f : h_.free)
@@ -76,7 +78,8 @@ class BlindScan {
     std::vector<char> seen(along.size(), 0);
     for (std::size_t e = 0; e < stage_.events.size(); ++e) {
       const event::FitEvent& event = stage_.events[e];
-      const playin::Response r = event::play({from_.plant, h_.conventions}, event, states_[e], along);
+      const playin::Response r = event::play({from_.plant, h_.conventions}, event, states_[e], along,
+                                             {.instants_stand = true});
       for (std::size_t d = 0; d < along.size(); ++d)
         if (event.collected(r.slopes[d].value, false).squaredNorm() > 0) seen[d] = 1;
     }
@@ -115,7 +118,7 @@ class BlindScan {
     fit::FitOptions o{.lenient = true, .brief = true, .errors = false};
     o.iterations = kScanOwnSteps;
     o.start = states_;
-    return fit::fit({plant, h_.conventions}, stage_.events, seen_, o);
+    return fit::fit({plant, h_.conventions}, stage_.events, h_.free, o);
   }
 
   const Stage& stage_;
@@ -123,7 +126,7 @@ class BlindScan {
   const fit::Fit& from_;
   std::vector<fit::EventState> states_;
   double left_ = 0;  ///< chi2 where nothing is changed
-  std::vector<fit::FreeParameter> seen_, blind_;
+  std::vector<fit::FreeParameter> blind_;
 };
 
 }  // namespace

@@ -224,7 +224,7 @@ class Driven {
     take(after - before);
     refresh();
     mark(Trace::Node::Kind::after, -1, k_[0].data());
-    for (std::size_t i = 0; i < x_.size(); ++i)
+    for (std::size_t i = 0; i < x_.size() && !run_.instants_stand; ++i)
       for (std::size_t d = 0; d < directions_.size(); ++d)
         Seeds<T>::add(x_[i], d,
                       Seeds<T>::slope(missing, d) * (sim::value_of(derivative[i]) - sim::value_of(k_[0][i])));

@@ -59,6 +59,7 @@ struct Drive {
   /// Slopes of these outputs alone, and of the plant as it is linear about each end of a step: a per cent or
   /// two off, for a fraction of the cost. None: the answer's own, of every output.
   std::vector<Output> linear_slopes = {};
+  bool instants_stand = false;  ///< the answer's own slopes leave out that a guard's instant moves
   /// A run without directions leaves here where it went, and the same run with linear slopes goes on from
   /// there. Whoever changes the run empties it. Null: nothing is kept.
   std::shared_ptr<const Past>* past = nullptr;

@@ -36,7 +36,7 @@ class HiddenExciter : public ::testing::Test {
       model_,
       {record::read_record(test::source("configs/records/record-example/avr_ev1.csv"), model_.record_base)},
       {.measured_states = false});
-  const fit::Fit base_ = fit::fit(model_.under_test(), events_, {}, {.iterations = 0});
+  fit::Fit base_ = fit::fit(model_.under_test(), events_, {}, {.iterations = 0});
   const Stage stage_{.events = events_,
                      .plant = model_.plant,
                      .conventions = model_.conventions,
