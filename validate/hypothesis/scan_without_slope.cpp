@@ -1,5 +1,5 @@
-// A scan over parameters that act through instants alone, as the time of a limiter's timer does: slopes do not
-// lead to where an instant falls into another swing.
+// A scan over parameters that act through instants alone, as the time of a limiter's timer does: slopes do
+// not lead to where an instant falls into another swing.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -40,8 +40,8 @@ class BlindScan {
       if (!seen[i]) blind_.push_back(h.free[i]);
     std::erase_if(blind_, [this](const fit::FreeParameter& f) { return idle(f); });
   }
-  /// The best of the values tried. Parameters of the hypothesis are fitted for a few steps; everything else is
-  /// as `from` has it.
+  /// The best of the values tried. Parameters of the hypothesis are fitted for a few steps; everything else
+  /// is as `from` has it.
   [[nodiscard]] std::vector<fit::Fit> best() const {
     std::vector<sim::plant::Plant> plants;
     for (const auto& group : groups())
@@ -70,7 +70,8 @@ class BlindScan {
   /// rest has followed; where much is missing, only what helps by itself is gone on with.
   [[nodiscard]] bool near() const { return stage_.fit.misfit() < thresholds::search.nearly_fits; }
 
-  /// For each parameter of the hypothesis, whether any event's answer has a slope along it while instants stand.
+  /// For each parameter of the hypothesis, whether any event's answer has a slope along it while instants
+  /// stand.
   [[nodiscard]] std::vector<char> slopes() const {
     std::vector<playin::Direction> along;
     for (const fit::FreeParameter& f : h_.free)
@@ -78,8 +79,8 @@ class BlindScan {
     std::vector<char> seen(along.size(), 0);
     for (std::size_t e = 0; e < stage_.events.size(); ++e) {
       const event::FitEvent& event = stage_.events[e];
-      const playin::Response r = event::play({from_.plant, h_.conventions}, event, states_[e], along,
-                                             {.instants_stand = true});
+      const playin::Response r =
+          event::play({from_.plant, h_.conventions}, event, states_[e], along, {.instants_stand = true});
       for (std::size_t d = 0; d < along.size(); ++d)
         if (event.collected(r.slopes[d].value, false).squaredNorm() > 0) seen[d] = 1;
     }

@@ -204,7 +204,8 @@ class Driven {
   /// A guard that passes zero in the step that was tried last; -1: none does.
   [[nodiscard]] int passed_guard() const {
     for (std::size_t g = 0; g < guards_.size(); ++g)
-      if ((sim::value_of(guards_[g]) < 0) != (sim::value_of(guards_at_end_[g]) < 0)) return static_cast<int>(g);
+      if ((sim::value_of(guards_[g]) < 0) != (sim::value_of(guards_at_end_[g]) < 0))
+        return static_cast<int>(g);
     return -1;
   }
   /// Goes to where the equations first jump within a step of h, and over to the other side.

@@ -130,7 +130,8 @@ class Limited : public LinearSlopesTest {
   void SetUp() override {
     LinearSlopesTest::SetUp();
     for (const char* name : {"MAXEX2", "SEXS"}) add(name);
-    // the current is above the pickup in and behind the fault, below it, and above it for seconds from then on
+    // the current is above the pickup in and behind the fault, below it, and above it for seconds from then
+    // on
     parameter("MAXEX2", "EFDRATED") = 1.92;
     parameter("MAXEX2", "EFD1") = 1.165;
     parameter("MAXEX2", "EFD2") = 1.19;
