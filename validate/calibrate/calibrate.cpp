@@ -249,7 +249,8 @@ class Calibrating {
       nearest = std::min(nearest, off);
       Eigen::VectorXd step = secants.step(plain);
       step *= std::min(1.0, kLongestPull / step.cwiseAbs().maxCoeff());
-      while (step.norm() > kShortest && !playin::can_exist(stepped(plant, free_, step))) step *= 0.5;
+      while (step.norm() > kShortest && !playin::can_exist_beside(stepped(plant, free_, step), c_.fit.plant))
+        step *= 0.5;
       if (step.norm() <= kShortest) break;
       plant = stepped(plant, free_, step);
       secants.taken(step);

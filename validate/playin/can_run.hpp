@@ -11,5 +11,7 @@ bool can_run(const sim::plant::Plant& plant);
 /// Whether the plant can be run, and a machine, a control or an instrument of that kind can have such
 /// parameters (Effect::unphysical).
 bool can_exist(const sim::plant::Plant& plant);
+/// The same where `given`, a plant of the same blocks, stands: what its own values violate may stay violated.
+bool can_exist_beside(const sim::plant::Plant& plant, const sim::plant::Plant& given);
 
 }  // namespace swingbank::validate::playin

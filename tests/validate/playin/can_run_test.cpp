@@ -59,6 +59,19 @@ TEST_F(CanRun, WhatNoMachineHasMayRun) {
   EXPECT_TRUE(can_run(plant));
   EXPECT_FALSE(can_exist(plant));
 }
+TEST_F(CanRun, WhatIsGivenMayStayAndNothingElseMayCome) {
+  sim::plant::Plant given = plant;
+  value(plant.machine, "Xl") = 1.1 * value(plant.machine, "Xdpp");
+  EXPECT_FALSE(can_exist_beside(plant, given));
+  EXPECT_TRUE(can_exist_beside(given, plant));
+  given = plant;
+  EXPECT_TRUE(can_exist_beside(plant, given));
+  value(plant.machine, "Xqp") = 1.01 * value(plant.machine, "Xq");
+  EXPECT_FALSE(can_exist_beside(plant, given));
+  plant = given;
+  value(plant.machine, "H") = -1;
+  EXPECT_FALSE(can_exist_beside(plant, plant));
+}
 
 }  // namespace
 }  // namespace swingbank::validate::playin

@@ -56,7 +56,7 @@ std::vector<double> medians(const std::vector<sim::Recording>& records, const si
     const auto [low, high] = sim::plant::search_range(sim::plant::parameter_record(plant, f.id), value);
     if (!values.empty()) value = std::clamp(median(std::move(values)), low, high);
   }
-  if (found.empty() || !playin::can_exist(plant)) return {};
+  if (found.empty() || !playin::can_exist_beside(plant, model)) return {};
   return fit::values_of(plant, free);
 }
 

@@ -15,7 +15,7 @@ std::vector<double> Screen::draw(std::uint64_t k) const {
     std::vector<double> values;
     for (std::size_t i = 0; i < free_.size(); ++i)
       values.push_back(one(free_[i], sim::normal_pair(seed_ + k, attempt, i)[0]));
-    if (playin::can_exist(with(values))) return values;
+    if (playin::can_exist_beside(with(values), plant_)) return values;
   }
   return own();
 }
