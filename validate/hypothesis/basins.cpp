@@ -111,10 +111,8 @@ void try_basins(const Stage& stage, Judgement& j, std::span<const sim::plant::Pl
   } catch (const InputError&) {  // a run with slopes takes other steps, and this one cannot be run
   }
   if (!found || !fit::better(*found, j.fit)) return;
-  const auto free = free_of(j.hypothesis, stage.spread);
-  fit::Fit known = fit::fit(j.hypothesis.under_test(), stage.events, free,
-                            fit::continued({.iterations = 0, .lenient = true}, *found, free));
-  if (known.failed.empty() && fit::gain(j.fit, known, fit::criterion) > 0) j.fit = std::move(known);
+  auto known = with_errors(stage, j.hypothesis, *found);
+  if (known && fit::gain(j.fit, *known, fit::criterion) > 0) j.fit = std::move(*known);
 }
 
 }  // namespace swingbank::validate::hypothesis

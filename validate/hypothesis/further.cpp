@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "validate/hypothesis/search.hpp"
 
@@ -128,10 +129,16 @@ void try_further(const Stage& stage, const fit::Fit& leader, Judgement& j) {
     o.iterations = kAllSteps;
     const fit::Fit f = fit::fit(h.under_test(), stage.events, free, o);
     if (!f.failed.empty() || !fit::better(f, j.fit)) continue;
-    o = fit::continued({.iterations = 0, .lenient = true}, f, free);  // its errors alone
-    if (fit::Fit known = fit::fit(h.under_test(), stage.events, free, o); known.failed.empty())
-      j.fit = std::move(known);
+    if (auto known = with_errors(stage, h, f)) j.fit = std::move(*known);
   }
+}
+
+std::optional<fit::Fit> with_errors(const Stage& stage, const Hypothesis& h, const fit::Fit& f) {
+  const auto free = free_of(h, stage.spread);
+  fit::Fit known = fit::fit(h.under_test(), stage.events, free,
+                            fit::continued({.iterations = 0, .lenient = true}, f, free));
+  if (!known.failed.empty()) return std::nullopt;
+  return known;
 }
 
 void fit_on(const Stage& stage, Judgement& j) {
@@ -148,9 +155,8 @@ void fit_on(const Stage& stage, Judgement& j) {
     j.fit = std::move(f);
     if (j.fit.converged || gained < thresholds::search.worth_a_round) break;
   }
-  fit::Fit known = fit::fit(j.hypothesis.under_test(), stage.events, free,
-                            fit::continued({.iterations = 0, .lenient = true}, j.fit, free));
-  j.fit = known.failed.empty() && fit::gain(begin, known, fit::criterion) > 0 ? std::move(known) : begin;
+  auto known = with_errors(stage, j.hypothesis, j.fit);
+  j.fit = known && fit::gain(begin, *known, fit::criterion) > 0 ? std::move(*known) : begin;
 }
 
 void try_exchange(const Stage& stage, const Judgement& pair, Judgement& j) {

@@ -3,6 +3,7 @@
 // of its evidence. Judging the leading ones on unseen events comes after (judge).
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -81,6 +82,9 @@ void try_further(const Stage& stage, const fit::Fit& leader, Judgement& j);
 /// Fits `j` on where its fit ended, in rounds, as long as a round is worth it: a fit that was given few steps
 /// has not arrived, and how far it came says little of where it goes.
 void fit_on(const Stage& stage, Judgement& j);
+
+/// A fit of the hypothesis with its errors, which its evidence needs; nothing where they cannot be had.
+std::optional<fit::Fit> with_errors(const Stage& stage, const Hypothesis& h, const fit::Fit& f);
 
 /// Returns `values` of the hypothesis's free parameters, but takes those of its slot from the leader's effect
 /// there wherever that has a parameter of the same name and unit. Effects of one slot share the names of

@@ -176,7 +176,8 @@ TEST_P(CoverageNight, TheIntervalsHoldTheTruth) {
 
 INSTANTIATE_TEST_SUITE_P(Calibrate, CoverageNight,
                          ::testing::Values(Cell{0.02, 0.02, 30}, Cell{0.02, 0.1, 30}, Cell{0.1, 0.02, 30},
-                                           Cell{0.1, 0.1, 30}, Cell{0.1, 0.1, 60}),
+                                           Cell{0.1, 0.1, 30}, Cell{0.1, 0.1, 60}, Cell{0.02, 0.02, 120},
+                                           Cell{0.1, 0.1, 120}),
                          [](const auto& which) {
                            const Cell& c = which.param;
                            return fmt::format("V{}Angle{}At{}",
