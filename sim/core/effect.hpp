@@ -12,6 +12,7 @@
 //   converter                     of a source, optional: true where it is a controlled current
 //   at_shunt                      of a load, optional: layout of its .dyr records, of switched shunts
 //   publish<T>()                  of a control, optional: signals that are states, before the evaluation
+//   afterwards<T>()               of a control, optional: derivatives that need the field voltage
 //   remark()                      optional: what its values ask for and the equations leave out
 //   elsewhere                     of a plant control, optional: parameters that say where it measures
 //   instants()                    optional: when its equations jump in time
@@ -200,6 +201,9 @@ struct ControlOps {
   /// Optional: Effect::guards smooth functions of states and signals. Where one passes zero, a derivative of
   /// the effect jumps.
   void (*guard)(const T* c, const T* x, const Signals<T>& s, T* g) = nullptr;
+  /// Optional: after all controls were evaluated, derivatives that need what those behind it make, as the
+  /// field voltage; those that evaluate() has written stand in dx.
+  void (*afterwards)(const T* c, const T* x, const Signals<T>& s, T* dx) = nullptr;
 };
 
 /// A step-up transformer: ideal ratio (grid side / machine side) and impedance on the machine's base.
@@ -323,6 +327,7 @@ Ops<T> make_ops() {
                  }};
     if constexpr (requires { &M::template publish<T>; }) o.control.publish = &M::template publish<T>;
     if constexpr (requires { &M::template guard<T>; }) o.control.guard = &M::template guard<T>;
+    if constexpr (requires { &M::template afterwards<T>; }) o.control.afterwards = &M::template afterwards<T>;
   }
   return o;
 }

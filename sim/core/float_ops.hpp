@@ -27,6 +27,7 @@ Ops<FloatPack> make_float_ops() {
       M::template evaluate<T>(c, x, s, dx);
     };
     if constexpr (requires { &M::template publish<T>; }) o.control.publish = &M::template publish<T>;
+    if constexpr (requires { &M::template afterwards<T>; }) o.control.afterwards = &M::template afterwards<T>;
   }
   return o;
 }

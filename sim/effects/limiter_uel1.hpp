@@ -5,6 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/under_excitation.hpp"
 
 namespace swingbank::sim::effects::limiter_uel1 {
 
@@ -21,6 +22,7 @@ struct Model {
   Vui + KUL e -> (1 + s TU1)/(1 + s TU2) -> (1 + s TU3)/(1 + s TU4) -> [VULMIN, VULMAX] -> Vuel
   Vlimiter = Vlimiter + Vuel         (at the exciter's summing point; TU2, TU4 = 0: bypass)
 )";
+  using Regulator = shared::UnderExcitation<Model>;
   enum P { KUR, KUC, KUF, VURMAX, VUCMAX, KUI, KUL, VUIMAX, VUIMIN, TU1, TU2, TU3, TU4, VULMAX, VULMIN };
   static constexpr Source standards_from = literature::cim("UnderexcLimIEEE1");
   static constexpr Source bounds_from = shared::kNoCases;
@@ -76,19 +78,9 @@ struct Model {
       if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
     };
     const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
-    bad(p[KUF] != 0.0, says(KUF), "the exciter's rate feedback is not passed to UEL1", "give KUF = 0");
-    bad(p[VULMIN] != 0.0, says(VULMIN) + " pu",
-        "UEL1 adds to the voltage error and must be silent inside its circle; a takeover gate is not "
-        "modelled",
-        "give VULMIN = 0");
     for (int i : {KUR, KUC, VURMAX, VUCMAX})
       bad(!(p[i] > 0), says(i) + " pu", "the circle needs a radius, a centre and room", "give a value > 0");
-    for (int i : {KUI, KUL})
-      bad(!(p[i] >= 0), says(i), "the limiter would pull further out", "give a value >= 0");
-    for (int i : {TU2, TU4}) bad(!(p[i] >= 0), says(i) + " s", "a time constant", "give a value >= 0");
-    bad(!(p[VUIMIN] <= 0.0 && p[VUIMAX] >= 0.0), fmt::format("{} pu with {} pu", says(VUIMIN), says(VUIMAX)),
-        "the integrator rests at VUIMIN and may only raise the voltage above", "give VUIMIN <= 0 <= VUIMAX");
-    bad(!(p[VULMAX] >= 0.0), says(VULMAX) + " pu", "the limits cross", "give VULMAX >= 0");
+    Regulator::check(p, where, problems);
   }
   static std::string_view unphysical(const double* p) { return p[KUC] < p[KUR] ? "" : "KUC < KUR"; }
 
@@ -98,16 +90,7 @@ struct Model {
     c[centre] = p[KUC];
     c[radius_max] = p[VURMAX];
     c[distance_max] = p[VUCMAX];
-    c[integral] = p[KUI];
-    c[proportional] = p[KUL];
-    c[vimax] = p[VUIMAX];
-    c[vimin] = p[VUIMIN];
-    c[t1] = p[TU1];
-    c[it2] = inverse(p[TU2]);
-    c[t3] = p[TU3];
-    c[it4] = inverse(p[TU4]);
-    c[top] = p[VULMAX];
-    c[bottom] = p[VULMIN];
+    Regulator::prepare(p, c);
   }
   /// How far the operating point lies outside the circle, over V [pu].
   template <class T>
@@ -120,11 +103,7 @@ struct Model {
   }
   template <class T>
   static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
-    const T e = outside(c, s);
-    dx[Vui] = c[integral] * e;
-    const T u = clamp(x[Vui], c[vimin], c[vimax]) + c[proportional] * e;
-    const T a = lead_lag(c[t1], c[it2], x[lead1], u, dx[lead1]);
-    s.Vlimiter = s.Vlimiter + clamp(lead_lag(c[t3], c[it4], x[lead2], a, dx[lead2]), c[bottom], c[top]);
+    s.Vlimiter = s.Vlimiter + Regulator::output(c, x, outside(c, s), dx);
   }
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
@@ -134,8 +113,7 @@ struct Model {
           "P = {:.4f} pu, Q = {:.4f} pu at V = {:.4f} pu lies {:.4f} pu outside the circle of "
           "radius KUR V^2 about Q = KUC V^2: UEL1 would act from the start",
           value_of(s.P), value_of(s.Q), value_of(s.V), value_of(e) * value_of(s.V));
-    x[Vui] = p[VUIMIN];
-    x[lead1] = x[lead2] = p[VUIMIN] + p[KUL] * e;
+    Regulator::rest(p, e, x);
     T dx[std::size(states)];
     evaluate(c, x, s, dx);
     return {};

@@ -20,6 +20,9 @@ constexpr Missing kMissing[] = {
     {"SVSMO2", "static var system of stepped branches, not modelled"},
     {"SVSMO3", "static var system of a converter, not modelled"},
     {"VSCHVDC", "STEPS's own, no PSS/E model"},
+    {"VSG1", "STEPS's own, no PSS/E model"},
+    {"ESURRY", "the order of its parameters is not public"},
+    {"REGCC", "converter with a phase-locked loop and an inner current control, not modelled"},
 };
 std::string why_missing(std::string_view name) {
   for (const Missing& m : kMissing)

@@ -1,7 +1,7 @@
 #pragma once
 // One plant's equations, whatever effects it is made of, in the order every integrator evaluates them:
-//   emf -> (network: current) -> terminal -> machine.electrical -> controls in order of Slot ->
-//   machine.derivative -> non-windup limits
+//   emf -> (network: current) -> terminal -> machine.electrical -> controls in order of Slot -> what follows
+//   from those behind -> machine.derivative -> non-windup limits
 // States of a plant lie back to back, machine first; coefficients likewise, with the plant's own (Joint)
 // after the machine's.
 #include <algorithm>
@@ -38,6 +38,7 @@ class PlantEquations {
       controls_.push_back(
           {block.effect->get<T>().control, block.effect->law.get(), states_, coefficients_, guards_});
       publishes_ = publishes_ || controls_.back().ops.publish != nullptr;
+      has_afterwards_ = has_afterwards_ || controls_.back().ops.afterwards != nullptr;
       looks_far_ = looks_far_ || block.effect->elsewhere.bus >= 0;
       guards_ += block.effect->guards;
       limits(*block.effect, coefficients_);
@@ -162,6 +163,9 @@ class PlantEquations {
       for (const Control& k : controls_)
         if (k.ops.publish) k.ops.publish(c + k.coefficient, x + k.state, s);
     for (const Control& k : controls_) k.ops.evaluate(k.law, c + k.coefficient, x + k.state, s, dx + k.state);
+    if (!has_afterwards_) return;
+    for (const Control& k : controls_)
+      if (k.ops.afterwards) k.ops.afterwards(c + k.coefficient, x + k.state, s, dx + k.state);
   }
   /// These functions, by the signals that derivative() made of the states.
   void guard(const T* c, const T* x, const Signals<T>& s, T* g) const {
@@ -305,7 +309,7 @@ class PlantEquations {
   std::vector<Control> controls_;
   std::vector<Limit> limits_;
   std::optional<TwoPort> beyond_;
-  bool has_transformer_ = false, publishes_ = false, looks_far_ = false;
+  bool has_transformer_ = false, publishes_ = false, has_afterwards_ = false, looks_far_ = false;
   int joint_ = 0, states_ = 0, coefficients_ = 0, scratch_ = 0, guards_ = 0;
 };
 

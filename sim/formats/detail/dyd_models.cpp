@@ -170,6 +170,12 @@ constexpr Column kPss2a[] = {  // [2], [4]
     {"ta", off},
     {"tb", off}};
 
+// [7] J. Eisenbarth, oel1_dyd.m of MatlabPowerWorld_NumericalComp_FullWECC_CHJ1_RealPMU_XFMR (writes the
+// line).
+constexpr Column kOel1[] = {{"ifdset", value, 0},  {"ifdmax", value, 1},  {"tpickup", value, 2},
+                            {"runback", value, 3}, {"tmax", value, 4},    {"tset", value, 5},
+                            {"ifcont", value, 6},  {"vfdflag", value, 7}, {"alarm", value, 8}};
+
 constexpr Model kModels[] = {{"genrou", "GENROU", "mva", true, true, 14, kGenrou},
                              {"gentpj", "GENTPJU1", "mva", false, true, 16, kGentpj},
                              {"gentpf", "GENTPJU1", "mva", false, true, 16, kGentpf, kNoKis},
@@ -183,7 +189,8 @@ constexpr Model kModels[] = {{"genrou", "GENROU", "mva", true, true, 14, kGenrou
                              {"ggov1", "GGOV1", "mwcap", true, true, 35, kGgov1, kTrate},
                              {"hygov", "HYGOV", "mwcap", false, true, 12, kHygov},
                              {"ieeest", "IEEEST", "", true, true, 19, kIeeest},
-                             {"pss2a", "PSS2A", "", true, true, 23, kPss2a}};
+                             {"pss2a", "PSS2A", "", true, true, 23, kPss2a},
+                             {"oel1", "OEL1", "", false, true, 9, kOel1}};
 
 }  // namespace
 

@@ -199,6 +199,7 @@ TEST(Conformance, StatesStandStillWithoutTheirMovers) {
       for (double* signal : {&s.Vr, &s.Vi, &s.V, &s.Vc, &s.P, &s.speed, &s.Tm, &s.Vs, &s.Ifd, &s.dVref})
         *signal += 0.1 * u(random);
       ops.control.evaluate(nullptr, c.data(), x.data(), s, dx.data());
+      if (ops.control.afterwards) ops.control.afterwards(c.data(), x.data(), s, dx.data());
       EXPECT_EQ(dx[i], 0.0) << e.name << "." << e.states[i].name;
       ++tested;
     }

@@ -132,6 +132,7 @@ class ControlBench {
   Signals<double> evaluate(const std::vector<double>& at, std::vector<double>& dx) const {
     Signals<double> s = in;
     ops().control.evaluate(effect_->law.get(), c.data(), at.data(), s, dx.data());
+    if (ops().control.afterwards) ops().control.afterwards(c.data(), at.data(), s, dx.data());
     return s;
   }
   template <class Each>

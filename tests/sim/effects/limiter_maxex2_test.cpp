@@ -62,7 +62,26 @@ TEST(LimiterMaxex2, WhatItCannotDoIsNamed) {
   auto hot = ControlBench::rated();
   hot.Ifd = 3.0;
   EXPECT_NE(ControlBench("MAXEX2", kMaxex2Values, hot).refused.find("Ifd = 3.0000 pu"), std::string::npos);
-  EXPECT_EQ(ControlBench("MAXEX2", {{"M", 0.0}, {"EFD2", 1.0}, {"TIME2", 90.0}}).problems.list().size(), 3u);
+  EXPECT_EQ(ControlBench("MAXEX2", {{"M", 2.0}, {"EFD2", 1.0}, {"TIME2", 90.0}}).problems.list().size(), 3u);
+}
+
+TEST(LimiterMaxex2, LimitsTheFieldVoltageWhereMSaysSo) {
+  ControlBench::Changes values = kMaxex2Values;
+  values["M"] = 0.0;
+  ControlBench bench("MAXEX2", values);
+  ASSERT_TRUE(bench.problems.empty());
+  bench.in.Ifd = 2.5 * 2.0;
+  bench.run(20.0, 0.01);
+  EXPECT_EQ(bench.state("timer"), 0.0);  // the current may be what it will
+  bench.in.Efd = 2.5 * 1.3;
+  bench.run(20.0, 0.01);
+  EXPECT_NEAR(bench.state("timer"), 20.0 / 25.0, 1e-12);
+  bench.run(10.0, 0.01);
+  // 0.01 (2.5 - 3.25) pu/s for 5 s; the start is met within a step
+  EXPECT_NEAR(bench.out().Vlimiter, -0.0375, 1e-4);
+  auto hot = ControlBench::rated();
+  hot.Efd = 3.0;
+  EXPECT_NE(ControlBench("MAXEX2", values, hot).refused.find("Efd = 3.0000 pu"), std::string::npos);
 }
 
 }  // namespace

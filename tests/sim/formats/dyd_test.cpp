@@ -66,6 +66,14 @@ TEST(Dyd, WhatTheCounterpartHasNotMustBeSwitchedOff) {
               AllOf(HasSubstr("tc = 0.5"), HasSubstr("efdmax = 4")));
 }
 
+TEST(Dyd, Oel1StandsInTheOrderOfTheFileThatIsPublic) {
+  const DydSurvey s =
+      parse_dyd_survey("oel1     1 \"GEN1\" 22.00 \"1 \" : #0 2.8 4.0 10 100 5 60 2.5 0 1\n", "o.dyd");
+  EXPECT_EQ(faults(s), "");
+  EXPECT_EQ(s.dyr.records.at(0).model, "OEL1");
+  EXPECT_THAT(s.dyr.records.at(0).values, ElementsAre(2.8, 4, 10, 100, 5, 60, 2.5, 0, 1));
+}
+
 TEST(Dyd, RexsIsRefusedWithWhatIsNotModelled) {
   const std::string values =
       "0.02 350 0 1 0.02 0 0 0 0 47 -20 0.05 1 0 0 1 1 0 0 47 -20 0 1 1.2 0.05 2 3 0.1 4 0.3 0 0 1.2 0 1 ";
@@ -138,7 +146,8 @@ TEST(Dyd, OutAndBack) {
       "0.01 98 10 1 186 0.0006 1 1.1 99 -98 /\n"
       "7 'HYGOV' 1 0.05 0.5 7 0.05 0.2 0.07 1 0 2 1.1 0.5 0.1 /\n"
       "7 'IEEEST' 1 1 0 0.1 0.2 0.3 0.4 0.5 0.6 0.2 0.02 0.5 0.05 1 15 30 0.05 -0.06 0 0 /\n"
-      "8 'PSS2A' 1 1 0 3 0 5 1 2 2.1 0.3 2.2 0 2 0.2 1 0.5 0.1 10 0.25 0.04 0.2 0.03 0.1 -0.2 /\n";
+      "8 'PSS2A' 1 1 0 3 0 5 1 2 2.1 0.3 2.2 0 2 0.2 1 0.5 0.1 10 0.25 0.04 0.2 0.03 0.1 -0.2 /\n"
+      "7 'OEL1' 1 2.8 4 -10 100 5 60 2.5 1 0 /\n";
   const auto records = parse_dyr(dyr, "out.dyr");
   Problems problems;
   std::string text;

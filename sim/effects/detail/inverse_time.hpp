@@ -1,0 +1,140 @@
+#pragma once
+// What the over-excitation limiters MAXEX1 and MAXEX2 have in common: the time that a field voltage or
+// current is borne, by three points, and the timer that runs through it and stays once it has.
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+
+#include "sim/core/effect.hpp"
+#include "sim/effects/detail/sources.hpp"
+
+namespace swingbank::sim::effects::shared {
+
+/// In which a field voltage is measured [s]: that of a static exciter follows a limiter's output at once, and
+/// the two would have no order. PSS/E takes the field voltage of its step before.
+inline constexpr double kFieldVoltageLag = 0.01;
+
+/// Parameters that a Model has in this order from EFDRATED on.
+enum InverseTimePoint { rated, efd1, time1, efd2, time2, efd3, time3, efddes, gain_of_it, vlow };
+inline constexpr Parameter kPickup{"EFD1",    "EFD1",  "-", 1.1, 0.5, 5.0, kNoNeutral, "pickup, of rated",
+                                   kAsEffect, kNoCases};
+inline constexpr Parameter kTimeAtPickup{"TIME1",
+                                         "TIME1",
+                                         "s",
+                                         60.0,
+                                         0.1,
+                                         1000.0,
+                                         kNoNeutral,
+                                         "time to operate there",
+                                         literature::own("half of CIM's 120 s"),
+                                         kNoCases};
+inline constexpr Parameter kMiddle{"EFD2",
+                                   "EFD2",
+                                   "-",
+                                   1.25,
+                                   0.5,
+                                   5.0,
+                                   kNoNeutral,
+                                   "middle point, of rated",
+                                   literature::own("between its neighbours; CIM has 1.2"),
+                                   kNoCases};
+inline constexpr Parameter kTimeAtMiddle{"TIME2",
+                                         "TIME2",
+                                         "s",
+                                         30.0,
+                                         0.1,
+                                         1000.0,
+                                         kNoNeutral,
+                                         "time to operate there",
+                                         literature::own("half of TIME1; CIM has 40 s"),
+                                         kNoCases};
+inline constexpr Parameter kUpper{
+    "EFD3", "EFD3", "-", 1.5, 0.5, 10.0, kNoNeutral, "upper point, of rated", kAsEffect, kNoCases};
+inline constexpr Parameter kTimeAtUpper{"TIME3",   "TIME3", "s",        15.0,
+                                        0.01,      1000.0,  kNoNeutral, "time to operate there and beyond",
+                                        kAsEffect, kNoCases};
+inline constexpr Parameter kLowest{"VLOW",
+                                   "VLOW",
+                                   "pu",
+                                   -0.1,
+                                   -10.0,
+                                   0.0,
+                                   kNoNeutral,
+                                   "lower limit of the output",
+                                   literature::own("a tenth of the voltage"),
+                                   kNoCases};
+
+/// A Model keeps `size` coefficients; p and c point to its first parameter and coefficient of these.
+struct InverseTime {
+  enum { irated, i1, i2, i3, t1, t2, slope12, slope23, size };
+  static constexpr double kOperated = 1.0;      ///< of the timer
+  static constexpr double kOperatedFor = 2.0;   ///< it goes on to here, so that no rounding brings it back
+  static constexpr double kTimerReset = -10.0;  ///< of the timer itself, below the pickup [1/s]
+
+  template <class T>
+  static void prepare(const T* p, T* c) {
+    c[irated] = T(1.0) / p[rated];
+    c[i1] = p[efd1];
+    c[i2] = p[efd2];
+    c[i3] = p[efd3];
+    c[t1] = p[time1];
+    c[t2] = p[time2];
+    c[slope12] = (p[time2] - p[time1]) / (p[efd2] - p[efd1]);
+    c[slope23] = (p[time3] - p[time2]) / (p[efd3] - p[efd2]);
+  }
+  /// Time to operate at the current i [of rated], from pickup on.
+  template <class T>
+  static T operating_time(const T* c, const T& i) {
+    const T at = clamp(i, c[i1], c[i3]);
+    return select(at < c[i2], c[t1] + c[slope12] * (at - c[i1]), c[t2] + c[slope23] * (at - c[i2]));
+  }
+  /// Derivative of the timer at the limited quantity [pu]. Once operated it moves away from 1: no rounding of
+  /// an integrator's can undo it.
+  template <class T>
+  static T pace(const T* c, const T& timer, const T& limited) {
+    const T one(kOperated), i = limited * c[irated];
+    return select(one <= timer, one, select(c[i1] < i, one / operating_time(c, i), T(kTimerReset) * timer));
+  }
+
+  /// Where the derivatives jump: the timer runs out; and until then the limited quantity passes the pickup.
+  static constexpr int guards = 2;
+  template <class T>
+  static void guard(const T* c, const T& timer, const T& limited, T* g) {
+    const T one(kOperated);
+    g[0] = timer - one;
+    g[1] = select(one <= timer, one, limited * c[irated] - c[i1]);
+  }
+
+  /// What is wrong with the values; `model`: its name, `limited`: what it limits.
+  static void check(const double* p, std::string_view model, std::string_view limited,
+                    const std::string& where, Problems& problems) {
+    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
+      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
+    };
+    bad(!(p[rated] > 0), fmt::format("EFDRATED = {:g} pu", p[rated]), fmt::format("{} divides by it", model),
+        "give EFDRATED > 0");
+    bad(!(p[efd1] < p[efd2] && p[efd2] < p[efd3]),
+        fmt::format("EFD1 = {:g}, EFD2 = {:g}, EFD3 = {:g}", p[efd1], p[efd2], p[efd3]),
+        "the characteristic is read between its points", "give EFD1 < EFD2 < EFD3");
+    bad(!(p[time1] >= p[time2] && p[time2] >= p[time3] && p[time3] > 0),
+        fmt::format("TIME1 = {:g} s, TIME2 = {:g} s, TIME3 = {:g} s", p[time1], p[time2], p[time3]),
+        fmt::format("more {} is borne for a shorter time", limited), "give TIME1 >= TIME2 >= TIME3 > 0");
+    bad(!(p[gain_of_it] >= 0), fmt::format("KMX = {:g}", p[gain_of_it]), "the loop would be unstable",
+        "give KMX >= 0");
+    bad(!(p[vlow] <= 0), fmt::format("VLOW = {:g} pu", p[vlow]), "the limiter can only lower the voltage",
+        "give VLOW <= 0");
+  }
+  /// Why it cannot rest at what it limits now [pu], empty if it can.
+  template <class T>
+  static std::string beyond_pickup(const T* p, std::string_view model, std::string_view limited, double now) {
+    const double most = value_of(p[efd1]) * value_of(p[rated]);
+    if (now <= most) return {};
+    return fmt::format(
+        "{} = {:.4f} pu stands above the pickup EFD1 EFDRATED = {:.4f} pu: {}'s timer would run from the "
+        "start",
+        limited, now, most, model);
+  }
+};
+
+}  // namespace swingbank::sim::effects::shared

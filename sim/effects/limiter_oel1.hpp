@@ -1,0 +1,154 @@
+#pragma once
+// OEL1: over-excitation limiter that runs the voltage regulator's reference back.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "sim/core/blocks.hpp"
+#include "sim/core/effect.hpp"
+#include "sim/effects/detail/inverse_time.hpp"
+#include "sim/effects/detail/sources.hpp"
+
+namespace swingbank::sim::effects::limiter_oel1 {
+
+struct Model {
+  static constexpr std::string_view
+      name = "OEL1",
+      title = "over-excitation limiter that runs the reference back",
+      source =
+          "PowerWorld, OEL1 (equations, as of PSLF's oel1); J. Eisenbarth, oel1_dyd.m (columns of PSLF's "
+          "oel1; github.com/JEisenbarth/MatlabPowerWorld_NumericalComp_FullWECC_CHJ1_RealPMU_XFMR, 593d84e)",
+      dyr_name = "OEL1";
+  static constexpr Slot slot = Slot::limiter;
+  static constexpr std::string_view variant_of = "MAXEX2";
+  static constexpr std::string_view description = R"(
+  i = Ifd (Vfdflag = 0) or Efd (Vfdflag = 1)
+  d timer/dt = (i - Ifdset)/Tpickup  while i > Ifdset and timer < 1, Tpickup > 0    (Tpickup at 1 pu beyond)
+             = 1/|Tpickup|           while i > Ifdset and timer < 1, Tpickup < 0    (definite time)
+             = 0                     while Ifcont < i <= Ifdset and timer < 1
+             = 1/s                   while i > Ifcont from timer = 1 on, up to 2    (operated)
+             = -20/s timer           while i <= Ifcont                             (reset, within 0.1 s)
+  d Voel/dt = -1/Runback             while operated and i > Ifcont, Runback > 0    (held where that ends)
+  0.01 s d Voel/dt = Runback - Voel  while operated, Runback < 0                   (stays)
+  Vlimiter = Vlimiter + Voel (Alarm = 0), unchanged (Alarm = 1)
+  Not there, and told: the hard limit of the exciter's output at Ifdmax, or at Ifcont for Runback = 0 (no public
+  source says how it acts on an exciter), and the trips of the generator after Tmax and Tset.
+  A .dyr is read in the order of PSLF's .dyd, the only one that is public.
+)";
+  enum P { Ifdset, Ifdmax, Tpickup, Runback, Tmax, Tset, Ifcont, Vfdflag, Alarm };
+  static constexpr Source standards_from = literature::own("no public file has the model");
+  static constexpr Source bounds_from = shared::kNoCases;
+  static constexpr Parameter parameters[] = {
+      {"Ifdset", "Ifdset", "pu", 2.86, 0.5, 20.0, kNoNeutral, "pickup",
+       literature::own("1.1 times the rated field current of MAXEX2")},
+      {"Ifdmax", "Ifdmax", "pu", 4.0, -1.0, 20.0, kNoNeutral, "hard limit (no effect)",
+       literature::own("1.5 times the rated field current of MAXEX2")},
+      {"Tpickup", "Tpickup", "s", 10.0, -1000.0, 1000.0, kNoNeutral,
+       "time to operate 1 pu beyond the pickup; < 0: definite time",
+       literature::own("a few tens of seconds at a moderate overload")},
+      {"Runback", "Runback", "s/pu", 100.0, -1.0, 10000.0, kNoNeutral,
+       "> 0: 1/Runback is the rate of the reference; < 0: what is added to it [pu]",
+       literature::own("a hundredth of the voltage each second")},
+      {"Tmax", "Tmax", "s", 0.0, 0.0, 1000.0, kNoNeutral, "time beyond Ifdmax to a trip (no effect)"},
+      {"Tset", "Tset", "s", 0.0, 0.0, 10000.0, kNoNeutral, "time beyond Ifdset to a trip (no effect)"},
+      {"Ifcont", "Ifcont", "pu", 2.6, 0.5, 20.0, kNoNeutral, "what may last",
+       literature::own("rated field current of MAXEX2")},
+      {"Vfdflag", "Vfdflag", "code", 0.0, 0.0, 1.0, kNoNeutral,
+       "limited quantity: 0 field current, 1 field voltage", literature::own("what heats the field"),
+       shared::kCode},
+      {"Alarm", "Alarm", "code", 0.0, 0.0, 1.0, 1.0, "1: a message only, no action", shared::kNothing,
+       shared::kCode}};
+  static constexpr int dyr_columns[] = {Ifdset, Ifdmax, Tpickup, Runback, Tmax, Tset, Ifcont, Vfdflag, Alarm};
+  enum C { pickup, lasting, inverse_rate, definite_rate, ramp, bias, voltage, zero, top, coefficients };
+  enum X { timer, Voel };
+  static constexpr State states[] = {
+      {"timer", "-", "how far the pickup has come (1: operated)", 1.0, zero, top}, {"Voel", "pu", "output"}};
+  static constexpr double kOperatedReset = -20.0;  ///< of the timer itself, once i is what may last [1/s]
+
+  static void check(const double* p, const std::string& where, Problems& problems);
+  static std::string_view unphysical(const double*) { return {}; }
+  static std::string remark(const double* p);
+
+  template <class T>
+  static void prepare(const T* p, const Conventions&, T* c) {
+    const T none(0.0), silent = T(1.0) - p[Alarm];
+    c[pickup] = p[Ifdset];
+    c[lasting] = p[Ifcont];
+    c[inverse_rate] = inverse(p[Tpickup]);
+    c[definite_rate] = inverse(none - p[Tpickup]);
+    c[ramp] = (none - inverse(p[Runback])) * silent;
+    c[bias] = select(p[Runback] < none, p[Runback], none) * silent;
+    c[voltage] = p[Vfdflag];
+    c[zero] = none;
+    c[top] = T(shared::InverseTime::kOperatedFor);
+  }
+  template <class T>
+  static void evaluate(const T*, const T* x, Signals<T>& s, T*) {
+    s.Vlimiter = s.Vlimiter + x[Voel];
+  }
+  template <class T>
+  static T limited(const T* c, const Signals<T>& s) {
+    return select(c[voltage] > T(0.0), s.Efd, s.Ifd);
+  }
+  template <class T>
+  static void afterwards(const T* c, const T* x, const Signals<T>& s, T* dx) {
+    const T none(0.0), one(shared::InverseTime::kOperated);
+    const T i = limited(c, s), beyond = i - c[pickup];
+    const auto operated = one <= x[timer], lasts = i <= c[lasting];
+    const T picking = select(beyond > none, c[definite_rate] + c[inverse_rate] * beyond, none);
+    dx[timer] = select(lasts, T(kOperatedReset) * x[timer], select(operated, one, picking));
+    const T moved = select(c[bias] < none, (c[bias] - x[Voel]) * T(1.0 / shared::kFieldVoltageLag),
+                           select(lasts, none, c[ramp]));
+    dx[Voel] = select(operated, moved, none);
+  }
+  /// The timer runs out; until then the pickup is passed; and at any time what may last.
+  static constexpr int guards = 3;
+  template <class T>
+  static void guard(const T* c, const T* x, const Signals<T>& s, T* g) {
+    const T one(shared::InverseTime::kOperated), i = limited(c, s);
+    g[0] = x[timer] - one;
+    g[1] = select(one <= x[timer], one, i - c[pickup]);
+    g[2] = i - c[lasting];
+  }
+  template <class T>
+  static std::string steady(const T* p, T*, Signals<T>& s, T* x) {
+    x[timer] = x[Voel] = T(0.0);
+    const bool of_voltage = value_of(p[Vfdflag]) == 1.0;
+    const double now = value_of(of_voltage ? s.Efd : s.Ifd), most = value_of(p[Ifdset]);
+    if (now <= most) return {};
+    return fmt::format(
+        "{} = {:.4f} pu stands above the pickup Ifdset = {:.4f} pu: OEL1's timer would run from the start",
+        of_voltage ? "Efd" : "Ifd", now, most);
+  }
+};
+
+inline void Model::check(const double* p, const std::string& where, Problems& problems) {
+  const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
+    if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
+  };
+  const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
+  const std::string order =
+      "; the values stand as in PSLF's .dyd: Ifdset, Ifdmax, Tpickup, Runback, Tmax, "
+      "Tset, Ifcont, Vfdflag, Alarm";
+  bad(!(p[Ifcont] > 0 && p[Ifcont] <= p[Ifdset]), says(Ifcont) + " pu with " + says(Ifdset) + " pu",
+      "it runs back from the pickup to what may last", "give 0 < Ifcont <= Ifdset" + order);
+  bad(p[Tpickup] == 0.0, says(Tpickup) + " s", "it is a time, and by its sign inverse or definite",
+      "give Tpickup > 0 or < 0" + order);
+  for (int i : {Vfdflag, Alarm}) bad(p[i] != 0.0 && p[i] != 1.0, says(i), "a code", "give 0 or 1" + order);
+  for (int i : {Tmax, Tset}) bad(!(p[i] >= 0), says(i) + " s", "a time", "give a value >= 0" + order);
+}
+inline std::string Model::remark(const double* p) {
+  std::string text = p[Runback] == 0.0
+                         ? fmt::format(
+                               "the hard limit at Ifcont = {:g} pu, its only action for Runback = 0, "
+                               "is left out",
+                               p[Ifcont])
+                         : fmt::format("the hard limit at Ifdmax = {:g} pu is left out", p[Ifdmax]);
+  if (p[Tmax] > 0.0 || p[Tset] > 0.0)
+    text += fmt::format(", and so are the trips after Tmax = {:g} s and Tset = {:g} s", p[Tmax], p[Tset]);
+  return text;
+}
+
+}  // namespace swingbank::sim::effects::limiter_oel1
