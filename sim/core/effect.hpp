@@ -13,6 +13,7 @@
 //   at_shunt                      of a load, optional: layout of its .dyr records, of switched shunts
 //   publish<T>()                  of a control, optional: signals that are states, before the evaluation
 //   afterwards<T>()               of a control, optional: derivatives that need the field voltage
+//   guards, guard<T>()            of a control, optional: what passes zero where its derivatives jump
 //   remark()                      optional: what its values ask for and the equations leave out
 //   elsewhere                     of a plant control, optional: parameters that say where it measures
 //   instants()                    optional: when its equations jump in time
