@@ -5,50 +5,15 @@
 #include <cmath>
 #include <complex>
 
-#include "sim/core/effect.hpp"
-#include "sim/library/library.hpp"
+#include "tests/sim/effects/converter_bench.hpp"
 
 namespace swingbank::sim {
 namespace {
 
-struct Behind {
-  explicit Behind(const std::vector<std::pair<const char*, double>>& changes,
-                  std::complex<double> power = {0.6, 0.2}) {
-    p = effect.standard_parameters();
-    for (const auto& [name, value] : changes)
-      p.at(static_cast<std::size_t>(effect.parameter_index(name))) = value;
-    c.resize(static_cast<std::size_t>(effect.coefficients));
-    x.resize(effect.states.size());
-    m.resize(static_cast<std::size_t>(effect.scratch));
-    effect.check(nullptr, p.data(), "test", problems);
-    s.Vr = 1.0, s.Vi = 0.0, s.Ir = power.real(), s.Ii = -power.imag();
-    ops.prepare(p.data(), Conventions::psse(), c.data());
-    refused = ops.machine.steady(p.data(), c.data(), s, x.data());
-  }
-  /// Current along the voltage and, lagging, across it.
-  std::complex<double> current(std::complex<double> v) {
-    s.Vr = v.real(), s.Vi = v.imag();
-    ops.machine.current(c.data(), x.data(), m.data(), s);
-    return std::conj(std::complex<double>(s.Ir, s.Ii) * std::conj(v) / std::abs(v));
-  }
-  std::vector<double> slopes(std::complex<double> v) {
-    std::vector<double> dx(x.size());
-    current(v);
-    ops.machine.electrical(c.data(), x.data(), m.data(), s);
-    ops.machine.derivative(c.data(), x.data(), m.data(), s, dx.data());
-    return dx;
-  }
-  const Effect& effect = *library::compiled().find("REGCB1");
-  const Ops<double>& ops = effect.get<double>();
-  std::vector<double> p, c, x, m;
-  Signals<double> s;
-  Problems problems;
-  std::string refused;
+struct Behind : BehindImpedance {
+  explicit Behind(const Changes& changes) : BehindImpedance("REGCB1", changes) {}
+  std::complex<double> current(std::complex<double> v) { return BehindImpedance::current(v, v); }
 };
-
-void expect_near(std::complex<double> is, std::complex<double> should, double within) {
-  EXPECT_NEAR(std::abs(is - should), 0.0, within) << is << " for " << should;
-}
 
 TEST(ConverterRegcb1, RestsWhereItIsCommanded) {
   for (const double rate_flag : {0.0, 1.0}) {

@@ -1,0 +1,159 @@
+#pragma once
+// What the converters behind an impedance REGCB1 and REGCC1 have in common: their parameters, the commands
+// within Imax behind their lags, the current through the impedance.
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "sim/core/effect.hpp"
+#include "sim/effects/detail/controlled_current.hpp"
+#include "sim/effects/detail/electrical_control.hpp"
+#include "sim/effects/detail/sources.hpp"
+
+namespace swingbank::sim::effects::shared {
+
+/// A Model has the parameters below by these names without the k, the coefficients that prepare_common()
+/// fills, and the states Ip, Iq and Vf.
+template <class Model>
+struct BehindImpedance : ControlledCurrent<Model> {
+  using Core = renewable::ElectricalControl;  // for what check_common() asks
+  static constexpr Source standards_from = literature::own("as REGCA1's");
+  static constexpr Source bounds_from = renewable::kWecc;
+  static constexpr Parameter kRateFlag{"rateFlag", "rateFlag",
+                                       "code",     0.0,
+                                       0.0,        1.0,
+                                       kNoNeutral, "0: the active current rises by rrpwr, 1: the power",
+                                       kAsEffect,  renewable::kFlag};
+  static constexpr Parameter kPqFlag{
+      "pqFlag",  "pqFlag",        "code", 0.0, 0.0, 1.0, kNoNeutral, "at Imax 0: P yields, 1: Q yields",
+      kAsEffect, renewable::kFlag};
+  static constexpr Parameter kTg{"Tg", "Tg", "s",        0.02,
+                                 1e-3, 0.5,  kNoNeutral, "time constant of the converter"};
+  static constexpr Parameter kTfltr{
+      "Tfltr", "Tfltr", "s",        0.2,
+      0.0,     1.0,     kNoNeutral, "measurement of the voltage for rateFlag 1 (0: none)"};
+  static constexpr Parameter kIqrmax{"Iqrmax", "Iqrmax", "pu/s",     100.0,
+                                     0.0,      9999.0,   kNoNeutral, "fastest rise of the reactive current"};
+  static constexpr Parameter kIqrmin{"Iqrmin", "Iqrmin", "pu/s",     -100.0,
+                                     -9999.0,  0.0,      kNoNeutral, "fastest fall of the reactive current"};
+  static constexpr Parameter kRrpwr{
+      "rrpwr", "rrpwr", "pu/s", 10.0, 0.01, 999.0, kNoNeutral, "fastest rise of the active current or power"};
+  static constexpr Parameter kImax{"Imax", "Imax", "pu", 1.3, 0.1, 99.0, kNoNeutral, "largest current"};
+  static constexpr Parameter kRe{"Re",      "Re", "pu", 0.0, 0.0, 0.5, kNoNeutral, "source resistance",
+                                 kNeglected};
+  static constexpr Parameter kXe{"Xe",
+                                 "Xe",
+                                 "pu",
+                                 0.25,
+                                 0.01,
+                                 2.0,
+                                 kNoNeutral,
+                                 "source reactance",
+                                 literature::own("InterPSS's for aggregated converters")};
+  /// Of Imax: from where on what is left to the other current falls along its tangent, not its circle.
+  static constexpr double kTangent = 0.05;
+
+ protected:
+  static void check_common(const double* p, const std::string& where, Problems& problems) {
+    Core::check_flags(Model::parameters, p, {Model::rateFlag, Model::pqFlag}, where, problems);
+    Core::check_times(Model::parameters, p, {Model::Tfltr, Model::Te}, where, problems);
+    Core::check_signs(Model::parameters, p, {Model::Iqrmax, Model::Re}, {Model::Iqrmin}, where, problems);
+    for (const int i : {Model::Tg, Model::rrpwr, Model::Imax, Model::Xe, Model::Tfreq})
+      if (!(p[i] > 0))
+        problems.add(Core::value(Model::parameters, p, i), where,
+                     "the equations divide by it or stand still without it", "give a value > 0");
+  }
+  template <class T>
+  static void prepare_common(const T* p, const Conventions& conventions, T* c) {
+    for (const auto& [to, from] : {std::pair<int, int>{Model::of_power, Model::rateFlag},
+                                   {Model::p_first, Model::pqFlag},
+                                   {Model::q_rise, Model::Iqrmax},
+                                   {Model::q_fall, Model::Iqrmin},
+                                   {Model::rise, Model::rrpwr},
+                                   {Model::most, Model::Imax},
+                                   {Model::r, Model::Re},
+                                   {Model::x_e, Model::Xe}})
+      c[to] = p[from];
+    for (const auto& [to, from] :
+         {std::pair<int, int>{Model::iTg, Model::Tg}, {Model::iTfltr, Model::Tfltr}, {Model::iTe, Model::Te}})
+      c[to] = inverse(p[from]);
+    c[Model::admittance] = T(1.0) / (p[Model::Re] * p[Model::Re] + p[Model::Xe] * p[Model::Xe]);
+    ControlledCurrent<Model>::prepare_frequency(p[Model::Tfreq], conventions, c);
+  }
+  /// The active current behind its lag.
+  template <class T>
+  static T lagged_active(const T* c, const T* x, const T& V) {
+    const T measured = renewable::at_least_small(select(c[Model::iTfltr] > T(0.0), x[Model::Vf], V));
+    return select(c[Model::of_power] > T(0.5), x[Model::Ip] / measured, x[Model::Ip]);
+  }
+  /// Adds to the voltage d + jq what drives the currents through the impedance.
+  template <class T>
+  static void add_drop(const T* c, const T& active, const T& reactive, T& d, T& q) {
+    d = d + c[Model::r] * active + c[Model::x_e] * reactive;
+    q = q + c[Model::x_e] * active - c[Model::r] * reactive;
+  }
+  /// The currents that d + jq drives through the impedance, before Imax.
+  template <class T>
+  static void driven(const T* c, const T& d, const T& q, T& active, T& reactive) {
+    active = (c[Model::r] * d + c[Model::x_e] * q) * c[Model::admittance];
+    reactive = (c[Model::x_e] * d - c[Model::r] * q) * c[Model::admittance];
+  }
+  template <class T>
+  static void follow_commands(const T* c, const T* x, const T& magnitude, const Signals<T>& s, T* dx) {
+    const T V = lag(c[Model::iTfltr], x[Model::Vf], magnitude, dx[Model::Vf]);
+    T p = s.Tm, q = s.Efd;
+    within(c, p, q);
+    const T wanted = (select(c[Model::of_power] > T(0.5), p * V, p) - x[Model::Ip]) * c[Model::iTg],
+            none(renewable::kNoLimit);
+    const auto draws = x[Model::Ip] < T(0.0);
+    dx[Model::Ip] = clamp(wanted, select(draws, T(0.0) - c[Model::rise], T(0.0) - none),
+                          select(draws, none, c[Model::rise]));
+    dx[Model::Iq] = clamp((q - x[Model::Iq]) * c[Model::iTg], c[Model::q_fall], c[Model::q_rise]);
+  }
+  /// The commands and their lags at the operating point; p, q: its currents along the voltage V.
+  template <class T>
+  static std::string steady_commands(T* c, const T& V, T& p, T& q, Signals<T>& s, T* x) {
+    const T P = s.Vr * s.Ir + s.Vi * s.Ii, Q = s.Vi * s.Ir - s.Vr * s.Ii;
+    p = P / V;
+    q = Q / V;
+    const double active = value_of(p), reactive = value_of(q), total = value_of(c[Model::most]);
+    if (active * active + reactive * reactive > total * total)
+      return renewable::beyond_imax(active, reactive, total);
+    x[Model::Vf] = V;
+    x[Model::Ip] = select(c[Model::of_power] > T(0.5), P, p);
+    x[Model::Iq] = q;
+    if (!(value_of(Q) > 0.0)) c[Model::q_rise] = T(renewable::kNoLimit);
+    if (!(value_of(Q) < 0.0)) c[Model::q_fall] = T(-renewable::kNoLimit);
+    ControlledCurrent<Model>::steady_voltage(s, x);
+    s.Tm = p;
+    s.Efd = q;
+    s.V = V;
+    return {};
+  }
+  /// What the current `leading` leaves to the other one.
+  template <class T>
+  static T left(const T* c, const T& leading) {
+    using std::sqrt;
+    const T square = c[Model::most] * c[Model::most] - leading * leading, knee = T(kTangent) * c[Model::most];
+    const auto on_circle = square > knee * knee;
+    return select(on_circle, sqrt(select(on_circle, square, T(1.0))), (square + knee * knee) / (knee + knee));
+  }
+  /// How far either current may go beside the other, the leading one as far as Imax.
+  template <class T>
+  static void limits(const T* c, const T& p, const T& q, T& most_p, T& most_q) {
+    const auto p_leads = c[Model::p_first] > T(0.5);
+    const T room = left(c, clamp(select(p_leads, p, q), T(0.0) - c[Model::most], c[Model::most]));
+    most_p = select(p_leads, c[Model::most], room);
+    most_q = select(p_leads, room, c[Model::most]);
+  }
+  /// Brings both currents within Imax, the leading one as it is as far as it can be.
+  template <class T>
+  static void within(const T* c, T& p, T& q) {
+    T most_p, most_q;
+    limits(c, p, q, most_p, most_q);
+    p = clamp(p, T(0.0) - most_p, most_p);
+    q = clamp(q, T(0.0) - most_q, most_q);
+  }
+};
+
+}  // namespace swingbank::sim::effects::shared
