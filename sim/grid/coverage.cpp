@@ -22,7 +22,6 @@ constexpr Missing kMissing[] = {
     {"VSCHVDC", "STEPS's own, no PSS/E model"},
     {"VSG1", "STEPS's own, no PSS/E model"},
     {"ESURRY", "the order of its parameters is not public"},
-    {"REGCC", "converter with a phase-locked loop and an inner current control, not modelled"},
 };
 std::string why_missing(std::string_view name) {
   for (const Missing& m : kMissing)
