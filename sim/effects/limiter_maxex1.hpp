@@ -4,7 +4,6 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/inverse_time.hpp"
-#include "sim/effects/detail/record.hpp"
 
 namespace swingbank::sim::effects::limiter_maxex1 {
 

@@ -230,7 +230,7 @@ class Driven {
         Seeds<T>::add(x_[i], d,
                       Seeds<T>::slope(missing, d) * (sim::value_of(derivative[i]) - sim::value_of(k_[0][i])));
     fresh_ = fresh_ || !directions_.empty();
-    ++steps_;
+    if (++steps_ > run_.step_limit) give_up();
   }
   struct Jump {
     double before, after;  ///< it lies between [s]

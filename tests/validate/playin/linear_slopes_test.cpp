@@ -170,6 +170,7 @@ TEST_F(Limited, AnInstantHasSlopes) {
     }
     if (own < 0.01) continue;
     const std::string_view name = sim::plant::parameter_record(model_.plant, a.parameter).name;
+    // measured: 2.5 and 3.7 % at most
     EXPECT_LT(std::sqrt(off / own), 0.03) << name;
     EXPECT_LT(std::sqrt(off_linear / own), 0.04) << name;
     limiter_moved += name.starts_with("EFD") || name.starts_with("TIME") ? 1 : 0;
