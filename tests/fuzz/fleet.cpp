@@ -1,8 +1,7 @@
 // Fleet files: bytes -> plants with their models and records.
-#include "validate/fleet/fleet.hpp"
-
 #include "tests/fuzz/check.hpp"
 #include "tests/fuzz/in_a_file.hpp"
+#include "validate/fleet/fleet_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace swingbank;

@@ -1,69 +1,19 @@
-// What laws compute against compiled effects, in every scalar and in both integrators.
+// What laws compute against compiled effects, in every scalar.
 #include <random>
 
-#include "sim/lanes/batch.hpp"
 #include "sim/laws/detail/definition.hpp"
 #include "sim/library/library.hpp"
 #include "tests/sim/effects/control_bench.hpp"
+#include "tests/sim/laws/on_a_grid.hpp"
 #include "tests/sim/laws/support.hpp"
-#include "tests/sim/reference/reference_support.hpp"
 
 namespace swingbank::sim::laws {
 namespace {
 
-using test::kHead;
-using test::law_of;
+using test::kNonlinear;
+using test::reference_run;
 using test::sexs_law;
-
-// against the compiled exciter
-grid::Grid with_exciter(const Effect& exciter, std::vector<double> p) {
-  grid::Grid grid = test::two_machine_grid(Conventions::psse());
-  grid.plants[1].controls = {{&exciter, std::move(p)}};
-  return grid;
-}
-const network::Event kFault{{{1, 0.5, 0.65, {0.0, 0.05}}}, {}};
-Trajectory lanes_run(const grid::Grid& grid, int lanes, double tolerance = 1e-6) {
-  lanes::BatchOptions options;
-  options.t_end = 5.0;
-  options.lanes = lanes;
-  options.tolerance = tolerance;
-  options.plants = {1};
-  lanes::Batch batch(grid, options);
-  Trajectory run;
-  bool given = false;
-  batch.run([&](lanes::Job& job) { return job.event = kFault, !std::exchange(given, true); },
-            [&](const lanes::Job&, const Trajectory& t) { run = t; });
-  return run;
-}
-reference::ReferenceRun reference_run(const grid::Grid& grid, double rtol = 1e-8) {
-  reference::ReferenceOptions options;
-  options.t_end = 5.0;
-  options.rtol = rtol;
-  options.atol = rtol / 100;
-  options.plants = {1};  // the other stands behind 1e-4 pu, which magnifies its voltage's rounding
-  return reference::run_reference(grid, kFault, options);
-}
-
-TEST(LawFile, SexsAsALawEqualsTheCompiledOne) {
-  const std::vector<std::vector<double>> sets = {{0.1, 10.0, 100.0, 0.1, -4.0, 5.0},  // runs into the ceiling
-                                                 {0.5, 2.0, 20.0, 0.05, -10.0, 10.0},  // does not
-                                                 {1.0, 0.0, 50.0, 0.2, -4.0, 4.0}};    // lead-lag bypassed
-  bool reached = false;
-  for (const auto& p : sets) {
-    const grid::Grid compiled = with_exciter(*library::compiled().find("SEXS"), p),
-                     law = with_exciter(sexs_law(), p);
-    for (const int lanes : {1, 4, 8}) {
-      const Trajectory a = lanes_run(compiled, lanes), b = lanes_run(law, lanes);
-      EXPECT_LE(test::largest_difference(a, b), 1e-10) << lanes;  // the same arithmetic in the same order
-      const double* efd = a.at(0, static_cast<int>(Channel::Efd));
-      reached = reached || *std::max_element(efd, efd + a.samples) == p[5];
-    }
-    // The compiler contracts a product and a sum where the interpreter rounds twice; IDA then takes other
-    // steps, so the tolerance is held far below what is compared.
-    EXPECT_LE(test::largest_difference(reference_run(compiled, 1e-12), reference_run(law, 1e-12)), 1e-10);
-  }
-  EXPECT_TRUE(reached);
-}
+using test::with_exciter;
 
 /// The same exciter by expressions: states, derivatives, an explicit reference.
 constexpr const char* kByExpressions = R"law(
@@ -141,54 +91,6 @@ TEST(LawFile, ALimitedStateDoesNotWindUp) {
   bench.in.dVref = 0.0;  // back to 2: it leaves the ceiling at once, e-folding 0.5 s
   bench.run(0.5);
   EXPECT_NEAR(bench.out().Efd, 2.0 + std::exp(-1.0), 1e-9);  // Runge-Kutta at TE / 500
-}
-
-// a nonlinear law, in every scalar
-constexpr const char* kNonlinear = R"law(
-name = "NONLINEAR"
-title = "a bit of everything"
-source = "test"
-output = "Vs"
-action = "replace"
-value = "clamp(K * washed * abs(washed) + 0.05 * sin(square), -limit, limit)"
-[signals]
-e = "deadband(speed, band) * 50 + (P - P0)"
-washed = "e - x"
-[states.x]
-unit = "pu"
-meaning = "washout"
-derivative = "(e - x) / T"
-[states.square]
-unit = "pu"
-meaning = "rests at sqrt(V): found by Newton's method"
-derivative = "10 * (V - square^2) + 0.1 * min(washed, max(e, -0.1))"
-start = "1"
-[parameters]
-K = { unit = "pu", standard = 5.0, low = 0.0, high = 100.0, neutral = 0.0, meaning = "gain" }
-T = { unit = "s", standard = 2.0, low = 0.1, high = 100.0, meaning = "washout" }
-band = { unit = "pu", standard = 0.0005, low = 0.0, high = 0.1, meaning = "dead-band" }
-limit = { unit = "pu", standard = 0.1, low = 0.01, high = 1.0, meaning = "limit" }
-)law";
-grid::Grid nonlinear_grid() {
-  grid::Grid grid = with_exciter(*library::compiled().find("SEXS"), {0.5, 2.0, 20.0, 0.05, -10.0, 10.0});
-  const Effect& law = load_law(kNonlinear, "n", grid.library);
-  grid.plants[1].controls.insert(grid.plants[1].controls.begin(), {&law, law.standard_parameters()});
-  return grid;
-}
-
-TEST(LawFile, ANonlinearLawRunsInEveryKernel) {
-  const grid::Grid grid = nonlinear_grid();
-  const auto at = plant::operating_point(grid.plants[1], grid.flow.voltage[2], 100.0, grid.conventions);
-  EXPECT_NEAR(at.x[7], std::sqrt(at.s.V), 1e-12);  // six states of the machine, x, then the root
-  const Trajectory one = lanes_run(grid, 1), eight = lanes_run(grid, 8), four = lanes_run(grid, 4);
-  // Packs have their own sincos, 2 ulp off; adaptive steps carry it on.
-  EXPECT_LE(test::largest_difference(one, eight), 1e-10);
-  EXPECT_LE(test::largest_difference(one, four), 1e-10);
-  // The law has corners that no integrator locates; hence smaller steps than usual for this comparison.
-  EXPECT_LE(test::largest_difference(lanes_run(grid, 8, 1e-8), reference_run(grid, 1e-10)), 1e-5);
-  grid::Grid without = grid;
-  without.plants[1].controls.erase(without.plants[1].controls.begin());
-  EXPECT_GT(test::largest_difference(one, lanes_run(without, 1)), 1e-2);  // it does something
 }
 
 /// Every state's derivative and the output, off the operating point, for parameters p.
@@ -296,16 +198,6 @@ TEST(LawFile, TheExamplesAreSound) {
     law.check(law.law.get(), law.standard_parameters().data(), file.path().string(), problems);
     EXPECT_TRUE(problems.empty()) << file.path();
     EXPECT_FALSE(law.description.empty());
-    // A plant with it stands still and runs through a fault.
-    grid::Grid grid = with_exciter(*library::compiled().find("SEXS"), {0.5, 2.0, 20.0, 0.05, -10.0, 10.0});
-    auto& controls = grid.plants[1].controls;
-    if (law.slot == Slot::exciter) controls.clear();
-    controls.push_back({&law, law.standard_parameters()});
-    std::ranges::stable_sort(controls, {}, [](const plant::Block& b) { return b.effect->slot; });
-    const Trajectory run = lanes_run(grid, 8);
-    EXPECT_EQ(run.outcome, Outcome::stable) << file.path();
-    EXPECT_LE(test::largest_difference(run, reference_run(grid)), 1e-4)
-        << file.path();  // the kernel's promise
     ++count;
   }
   EXPECT_GE(count, 4);
