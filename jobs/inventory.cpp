@@ -144,7 +144,8 @@ int main(int argc, char** argv) {
   line.add("--raw,--epc", a.raw, "network, told by its ending: PSS/E .raw or .rawx, PSLF .epc, MATPOWER .m")
       .required();
   line.add("--dyr,--dyd", a.dyr, "dynamic models, told by its ending: PSS/E .dyr, PSLF .dyd").required();
-  line.add("--frequency-hz", a.frequency_hz, "nominal frequency [Hz], where the network has none");
+  line.add("--frequency-hz", a.frequency_hz,
+           "nominal frequency [Hz]: taken as by the other commands, but counting needs none");
   line.add("--raw-version", a.raw_version, "version of a .raw that does not say it, 23 to 35");
   line.add_flag("--units", a.units, "list every unit with its models");
   line.add_flag("--json", a.json, "print everything as JSON");

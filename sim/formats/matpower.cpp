@@ -256,10 +256,10 @@ network::Network read_matpower(const std::filesystem::path& file, double frequen
 network::Network read_network(const std::filesystem::path& file, const RawOptions& options) {
   if (is_epc(file)) return read_epc(file, options);
   if (file.extension() == ".m") {
-    if (!options.frequency_hz)
+    if (!options.frequency_hz && options.needs_frequency)
       throw InputError({"no frequency", file.string(), "a MATPOWER case has none of its own",
                         "give --frequency-hz (in a config: frequency_hz), 50 or 60 Hz"});
-    return read_matpower(file, *options.frequency_hz);
+    return read_matpower(file, options.frequency_hz.value_or(1.0));
   }
   network::Network network = read_raw(file, options);
   if (options.frequency_hz && *options.frequency_hz != network.frequency)

@@ -114,12 +114,12 @@ void EpcReader::divide() {
   if (!(base_ > 0.0L))
     problems_.add("no sbase above 0 MVA in the solution parameters", file_,
                   "powers and admittances refer to it", "give the line 'sbase 100.0'");
-  if (!options_.frequency_hz || !(*options_.frequency_hz > 0))
+  if (options_.needs_frequency && !(options_.frequency_hz.value_or(0) > 0))
     problems_.add("no frequency", file_, "an .epc has none of its own",
                   "give --frequency-hz (in a config: frequency_hz), 50 or 60 Hz");
   problems_.raise();  // without these nothing below can be read
   network_.base_mva = static_cast<double>(base_);
-  network_.frequency = *options_.frequency_hz;
+  network_.frequency = options_.frequency_hz.value_or(1.0);
 }
 
 void EpcReader::rows(const char* name, Reads take) {

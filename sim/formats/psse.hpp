@@ -18,6 +18,7 @@ struct RawOptions {
   /// Equipment without a model here; network::stand_in.
   network::StandIn devices = network::StandIn::checked;
   std::optional<double> frequency_hz = {};  ///< where BASFRQ is missing
+  bool needs_frequency = true;              ///< false: where the file has none, the network's means nothing
   int version = 0;                          ///< where REV is missing; 0: not given
   bool drop_repeated = false;               ///< equipment that appears a second time is left out
   RawOptions() = default;

@@ -116,7 +116,7 @@ void RawReader::read_json() {
   columns_ = columns(version_);
   Fields f(header, file_, problems_);
   base_ = static_cast<double>(f.number(1, "SBASE", 100.0L));
-  if (f.text(5, "").empty() && !options_.frequency_hz)
+  if (f.text(5, "").empty() && !options_.frequency_hz && options_.needs_frequency)
     throw InputError({"BASFRQ is missing", f.where(), "the rotors turn at this frequency",
                       "say it with --frequency-hz, 50 or 60 Hz"});
   check_header(f, f.integer(0, "IC", 0),

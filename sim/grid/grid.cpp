@@ -29,6 +29,7 @@ class GridMaker {
   Grid make(const std::vector<formats::DyrRecord>& dynamics) {
     if (!dynamics.empty() && dynamics.back().unended) cut_off_at_ = dynamics.back().line;
     for (const formats::DyrRecord& record : dynamics) add(record);
+    tell_refused();
     tell_unknown();
     for (plant::Plant& plant : grid_.plants) finish(plant);
     tell_unmodelled();
@@ -89,7 +90,30 @@ class GridMaker {
         grid_.network.remark("records that their model cannot take are left out, as asked",
                              p.what + " (" + p.where + ")");
       else
-        problems_.add(p.what, p.where, p.why, p.remedy + ", or leave the record out with --drop-refused");
+        refuse(p, given.line);
+    }
+  }
+  /// Kept until all are known: one sentence for records with the same fault.
+  void refuse(const Problem& p, int line) {
+    const auto same = std::ranges::find_if(
+        alike_, [&](const Alike& a) { return a.first.what == p.what && a.first.why == p.why; });
+    if (same == alike_.end())
+      alike_.push_back({p, {}});
+    else
+      same->lines.push_back(line);
+  }
+  void tell_refused() {
+    constexpr std::size_t kLines = 10;
+    for (const Alike& a : alike_) {
+      std::string more;
+      for (std::size_t k = 0; k < std::min(a.lines.size(), kLines); ++k)
+        more += (k > 0 ? ", " : "") + std::to_string(a.lines[k]);
+      if (!a.lines.empty())
+        more = " and " + std::to_string(a.lines.size()) + " more, on lines " + more +
+               (a.lines.size() > kLines ? ", …" : "");
+      problems_.add(a.first.what, a.first.where + more, a.first.why,
+                    a.first.remedy + ", or leave " + (more.empty() ? "the record" : "these records") +
+                        " out with --drop-refused");
     }
   }
   void take(const Effect& effect, Reach reach, formats::DyrRecord record, const std::string& where,
@@ -415,6 +439,11 @@ class GridMaker {
   Problems problems_;
   std::vector<LoadModel> load_models_;
   std::vector<ShuntModel> shunt_models_;
+  struct Alike {
+    Problem first;
+    std::vector<int> lines;  ///< of the others
+  };
+  std::vector<Alike> alike_;                                 ///< records that their model cannot take
   std::map<std::pair<std::string, bool>, Unknown> unknown_;  ///< by name and whether it is user-written
   std::map<std::pair<int, std::string>, std::size_t> plant_of_;
   std::set<std::pair<int, std::string>> refused_;  ///< generators whose machine's record is told as refused

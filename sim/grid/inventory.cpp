@@ -90,7 +90,9 @@ class InventoryTaker {
 Inventory take_inventory(const std::filesystem::path& raw, const std::filesystem::path& dyr,
                          const formats::RawOptions& options) {
   formats::refuse_exchanged(raw, dyr);
-  const formats::RawSurvey survey = formats::survey_network(raw, options);
+  formats::RawOptions counting = options;
+  counting.needs_frequency = false;  // nothing turns here
+  const formats::RawSurvey survey = formats::survey_network(raw, counting);
   const formats::DyrSurvey dynamics =
       formats::is_dyd(dyr) ? formats::survey_dyd(dyr).dyr : formats::survey_dyr(dyr);
   return InventoryTaker(survey, dynamics, dyr.string()).take();

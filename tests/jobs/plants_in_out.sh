@@ -67,6 +67,10 @@ refuses "grouped" "unknown model 'STRANGE' of '1' at bus 30 and 3 more" "$swingb
 "$swingbank" inventory --raw "$raw" --dyr "$work/more.dyr" >"$work/inventory"
 grep -q '^10 units: 5 wholly covered (50.0 %), 5 in part' "$work/inventory" || fail "inventory says: $(head -1 "$work/inventory")"
 grep -qE "^STRANGE +4 +4 +[0-9]+  no$" "$work/inventory" || fail "inventory: $(cat "$work/inventory")"
+# A header without a frequency: no rotor turns in a count.
+sed '1s/, 60$/,/' "$raw" >"$work/silent.raw"
+"$swingbank" inventory --raw "$work/silent.raw" --dyr "$work/more.dyr" | holds -q '^10 units: 5 wholly covered' || fail "inventory without a frequency"
+refuses "no frequency" 'say it with --frequency-hz' "$swingbank" plant --raw "$work/silent.raw" --dyr "$work/more.dyr" --bus 32
 "$swingbank" inventory --raw "$raw" --dyr "$work/more.dyr" --units | holds -qE '^ +32 1 .*not covered: ESAC9Z' || fail "inventory --units"
 "$swingbank" inventory --raw "$raw" --dyr "$work/more.dyr" --json | python3 -c "
 import json, sys

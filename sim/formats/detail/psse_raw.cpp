@@ -165,7 +165,7 @@ void RawReader::header() {
                   "say it with --raw-version, 23 to 35");
   else
     version_ = forced_ != 0 ? forced_ : f.integer(2, "REV", options_.version);
-  if (f.text(5, "").empty() && !options_.frequency_hz)
+  if (f.text(5, "").empty() && !options_.frequency_hz && options_.needs_frequency)
     problems_.add("BASFRQ is missing", f.where(), "the rotors turn at this frequency",
                   "say it with --frequency-hz, 50 or 60 Hz");
   const double frequency = static_cast<double>(f.number(5, "BASFRQ", options_.frequency_hz.value_or(1.0)));
@@ -175,7 +175,7 @@ void RawReader::header() {
                       "versions 23 to 35 are read", "save the case as one of these versions"});
   if (f.text(2, "").empty())
     network_.remark("REV is taken from --raw-version: " + std::to_string(version_), f.where());
-  if (f.text(5, "").empty())
+  if (f.text(5, "").empty() && options_.frequency_hz)
     network_.remark("BASFRQ is taken from --frequency-hz: " + shortest(frequency) + " Hz", f.where());
   columns_ = columns(version_);
   check_header(f, change, frequency);

@@ -126,6 +126,16 @@ TEST(FoundCase, RecordsOfAnotherLengthAreCompletedOrCutAsAsked) {
   EXPECT_EQ(machine.p[1], machine.effect->standard_parameters()[1]);
 }
 
+TEST(FoundCase, TheSameFaultOfSeveralRecordsIsOneSentence) {
+  const std::string dyr =
+      kBoth + "101 'TGOV1' 1 0.05 0.5 1 /\n102 'TGOV1' 1 0.05 0.4 1 /\n102 'SEXS' 1 0.1 10 /\n";
+  const std::string said = formats::sentences_of([&] { make({}, dyr); });
+  EXPECT_THAT(said, HasSubstr("TGOV1 with 3 parameters"));
+  EXPECT_EQ(said.find("TGOV1 with"), said.rfind("TGOV1 with"));
+  EXPECT_THAT(said, ::testing::ContainsRegex("and 1 more, on lines [0-9]+ .*leave these records out"));
+  EXPECT_THAT(said, HasSubstr("SEXS with 2 parameters"));
+}
+
 TEST(FoundCase, RecordsThatTheirModelCannotTakeAreDroppedAsAsked) {
   const std::string dyr =
       kBoth + "101 'TGOV1' 1 0 0.5 0.5 0 2 7 0 /\n102 'GENCLS' 1 4 0 /\n102 'TGOV1' 1 x 0.5 2 0 2 7 0 /\n";
