@@ -94,6 +94,7 @@ int main(int argc, char** argv) {
     const check::Preparing preparing = reading.apply(model, record_files);
     Problems problems;
     auto [records, warnings] = check::read_records(record_files, model, problems, preparing);
+    jobs::tell_events_elsewhere(record_files, model.reading.staged);
     problems.raise();
     options.jumps = event::jumps_of(records, options.jump_threshold);
     options.progress = jobs::progress_line();

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <functional>
@@ -22,6 +23,7 @@
 #include "validate/event/point.hpp"
 #include "validate/plant/plant_model.hpp"
 #include "validate/record/record.hpp"
+#include "validate/record/staged.hpp"
 
 namespace swingbank::jobs {
 
@@ -95,6 +97,10 @@ struct Reading {
       else
         model.reading.columns[word.substr(0, equals)] = word.substr(equals + 1);
     }
+    if (from && until && !(*from < *until))
+      problems.add(fmt::format("--from {:g} with --until {:g}", *from, *until), "--from",
+                   "nothing lies between them",
+                   "give --from an earlier time than --until, both in s of the record");
     problems.raise();
     if (from) model.reading.from = *from;
     if (until) model.reading.until = *until;
@@ -118,6 +124,17 @@ struct Reading {
   }
 };
 
+/// Says which staged events belong to none of these records: of another test, or its name is mistyped.
+inline void tell_events_elsewhere(const std::vector<std::string>& files,
+                                  const std::vector<validate::record::StagedEvent>& staged) {
+  if (quiet) return;
+  for (const auto& e : staged)
+    if (std::ranges::none_of(files, [&](const auto& file) { return validate::record::belongs_to(e, file); }))
+      fmt::print(stderr,
+                 "note: the [[event]] {} of {} is left out (none of the records here has that name)\n",
+                 validate::record::staged_name(e.kind), e.record);
+}
+
 /// Reads and checks every record, so that all faults of all files are told at once; findings that do not
 /// refuse go to stderr.
 inline validate::check::RecordSet read_events(const std::vector<std::string>& files,
@@ -128,6 +145,7 @@ inline validate::check::RecordSet read_events(const std::vector<std::string>& fi
   for (std::size_t k = 0; k < set.records.size(); ++k)
     for (const auto& warning : set.warnings[k])
       if (!quiet) fmt::print(stderr, "note on {}: {}\n", set.records[k].name, warning);
+  tell_events_elsewhere(files, model.reading.staged);
   problems.raise();
   return set;
 }

@@ -31,6 +31,7 @@ refuses "a third of a second that is no number" 'nan.csv:40' compare "$model" "$
 head -n 50 "$record" | sed '40s/,[^,]*$//' >"$work/short.csv"
 refuses "missing column" 'short.csv:40' compare "$model" "$work/short.csv"
 sed '41{h;d};42{G}' "$record" >"$work/order.csv"
+refuses "a stretch that ends before it begins" '--from 5 with --until 3' "$swingbank" compare --model "$model" --record "$record" --from 5 --until 3
 refuses "time that runs backwards" 'order.csv:42' compare "$model" "$work/order.csv"
 leaves_nothing "$out"
 

@@ -8,6 +8,7 @@
 
 #include "base/constants.hpp"
 #include "validate/compare/detail/fitted.hpp"
+#include "validate/compare/detail/power_doubt.hpp"
 #include "validate/playin/component.hpp"
 #include "validate/playin/given.hpp"
 
@@ -61,6 +62,12 @@ std::vector<double> bridged(std::vector<double> values, const std::vector<char>&
     k = end;
   }
   return values;
+}
+
+/// Takes off what a rounding may have made: half a step of each value. Where noise does not blur the steps,
+/// what a slow signal is rounded by is slow too, and no noise.
+void take_rounding(std::vector<double>& residual, double step) {
+  for (double& r : residual) r = std::copysign(std::max(0.0, std::abs(r) - step / 2), r);
 }
 
 const std::vector<double>& played(const playin::Playback& p, playin::Output o) {
@@ -137,6 +144,7 @@ void measure_channels(const plant::PlantModel& model, DriveBy drive, const playi
     add_doubt(model, e);
     add_interpolation(model, options, e);
   }
+  if (power) add_power_doubt(model, options, e);
   e.windows = event_windows(e.record, e.switchings, options.pre_event, e.left_out);
   e.channels.clear();
   const record::RecordBase& base = e.record.base;
@@ -265,6 +273,10 @@ void explain(EventComparison& e, event::Jumps jumps, bool tried, const std::stri
         fmt::format("Before the event the angle turns by {:.3g} rad/s (frequency {:+.2f} mHz off nominal): "
                     "the model starts in equilibrium in that frame.",
                     e.playback.start.drift, 1e3 * e.playback.start.drift / constants::turn));
+  if (playin::is_part(e.record) && e.record.speed.empty() && !e.record.f.empty())
+    e.notes.push_back(
+        "The record has no speed: where the component asks for it the terminal's frequency stands for it. In a swing "
+        "the shaft's speed is another, and a right model may leave more than noise for some seconds after a switching.");
   if (!e.record.ignored.empty()) {
     std::string all;
     for (const auto& name : e.record.ignored) all += (all.empty() ? "" : ", ") + name;
@@ -295,14 +307,15 @@ ChannelComparison compare_channel(const ChannelRule& channel, const std::vector<
   c.whole = measured_in({"whole record", t.front(), t.back()}, true);
   for (std::size_t w = 0; w < event.windows.size(); ++w)
     c.windows.push_back(measured_in(event.windows[w], w == 0));
-  const auto seen = bridged(c.residual, event.left_out);
+  auto seen = bridged(c.residual, event.left_out);
   const std::span<const double> all(seen);
   const auto doubt = event.doubt.find(channel.name);
   // Values that come in steps hide noise: what the steps leave is the least.
-  const double step = record::quantum(measured);
-  const double floor =
-      std::hypot(channel.floor, std::sqrt(std::max(0.0, step * step / 12 - c.noise * c.noise)));
-  c.map = error_map(t, all, event.windows, estimate_noise(all.first(static_cast<std::size_t>(quiet)), floor),
+  const double step = record::quantum(measured), hidden = step * step / 12 - c.noise * c.noise;
+  const double floor = std::hypot(channel.floor, std::sqrt(std::max(0.0, hidden)));
+  const auto noise = estimate_noise(all.first(static_cast<std::size_t>(quiet)), floor);
+  if (hidden > 0) take_rounding(seen, step);
+  c.map = error_map(t, all, event.windows, noise,
                     {.quiet = quiet,
                      .starts_at_mean = channel.starts_at_mean,
                      .skip = channel.skip,

@@ -15,6 +15,7 @@
 #include "base/input_file.hpp"
 #include "validate/record/detail/build.hpp"
 #include "validate/record/formats.hpp"
+#include "validate/record/staged.hpp"
 
 namespace swingbank::validate::record {
 namespace {
@@ -131,13 +132,16 @@ double Record::first_staged() const {
   return first;
 }
 
-Record read_staged(const std::filesystem::path& file, const RecordBase& base, ReadOptions options) {
+bool belongs_to(const StagedEvent& e, const std::filesystem::path& file) {
   const std::string named = file.string(), path = named.substr(0, named.rfind('#'));
-  const std::string name = std::filesystem::path(path).filename().string();
+  return e.record.empty() || e.record == std::filesystem::path(path).filename().string() ||
+         e.record == file.filename().string();
+}
+
+Record read_staged(const std::filesystem::path& file, const RecordBase& base, ReadOptions options) {
   std::vector<StagedEvent> staged;
-  std::ranges::copy_if(options.staged, std::back_inserter(staged), [&](const StagedEvent& e) {
-    return e.record.empty() || e.record == name || e.record == file.filename().string();
-  });
+  std::ranges::copy_if(options.staged, std::back_inserter(staged),
+                       [&](const StagedEvent& e) { return belongs_to(e, file); });
   const bool open = std::ranges::any_of(
       staged, [](const StagedEvent& e) { return e.kind == StagedEvent::Kind::open_circuit; });
   if (open) {

@@ -94,6 +94,20 @@ TEST(CompareTest, ARightModelIsAdequateWithoutNoiseAndAWrongOneNot) {
   std::vector<EventComparison> wrong = {compare_event(exact.model, exact.record)};
   EXPECT_FALSE(judge(wrong).adequate);
 }
+// Steps of 1 % of the machine without noise to blur them: a slow swing is rounded slowly.
+TEST(CompareTest, WhatARoundingHidesIsNoMisfit) {
+  WithoutNoise coarse;
+  const double step = 0.01 * coarse.model.plant.mva / 100;
+  for (auto* power : {&coarse.record.P, &coarse.record.Q})
+    for (double& value : *power) value = std::round(value / step) * step;
+  std::vector<EventComparison> events = {compare_event(coarse.model, coarse.record)};
+  const Adequacy right = judge(events);
+  EXPECT_TRUE(right.adequate) << right.sentence;
+  coarse.model.plant.machine
+      .p[static_cast<std::size_t>(coarse.model.plant.machine.effect->parameter_index("H"))] *= 1.2;
+  events = {compare_event(coarse.model, coarse.record)};
+  EXPECT_FALSE(judge(events).adequate);
+}
 TEST(CompareTest, FramesThatWereLostAreNotCompared) {
   RightModel right;
   for (const std::size_t k : {std::size_t{60}, std::size_t{300}, std::size_t{301}}) {
@@ -116,6 +130,29 @@ TEST(CompareTest, WithoutAngleAndFrequencyPowerDrives) {
   EXPECT_EQ(events[0].channels[0].name, "V");
   const Adequacy a = judge(events);
   EXPECT_TRUE(a.adequate) << a.sentence;
+}
+// What the noise of P and Q in the fault and instants known to half a sample leave in V afterwards is no
+// misfit.
+TEST(CompareTest, WherePowerDrivesAFaultLeavesMoreDoubt) {
+  plant::PlantModel model = example_model();
+  model.plant.controls.push_back({sim::library::compiled().find("SEXS"), {0.1, 10, 100, 0.05, -4.0, 5.0}});
+  const auto events = [&] {
+    std::vector<EventComparison> all;
+    for (const char* name : {"avr_ev3.csv", "avr_ev4.csv"}) {
+      record::Record r = record::read_record(
+          test::source(std::string("configs/records/record-example/") + name), model.record_base);
+      r.angle = record::AngleSource::none;
+      for (auto* unknown : {&r.theta, &r.f, &r.speed, &r.Efd, &r.Ifd}) unknown->clear();
+      r.theta.assign(r.t.size(), 0.0);
+      all.push_back(compare_event(model, std::move(r)));
+    }
+    return all;
+  };
+  auto right = events();
+  EXPECT_TRUE(judge(right).adequate) << judge(right).sentence;
+  model.plant.controls.front().p[2] = 30;  // K
+  auto wrong = events();
+  EXPECT_FALSE(judge(wrong).adequate);
 }
 TEST(CompareTest, AnAngleOfTheFrequencyDrivesTheModel) {
   RightModel right;

@@ -72,6 +72,14 @@ TEST(CompareComponentTest, ARightGovernorIsAdequateAndAWrongDroopIsNot) {
   EXPECT_FALSE(t.adequacy().adequate);
 }
 
+TEST(CompareComponentTest, ThatAFrequencyStandsForTheSpeedIsSaid) {
+  Tried t({"TGOV1"}, Component::governor);
+  const auto notes = [&] { return compare_event(t.model, t.record).notes; };
+  EXPECT_THAT(notes(), ::testing::Not(::testing::Contains(HasSubstr("has no speed"))));
+  std::swap(t.record.f, t.record.speed);
+  EXPECT_THAT(notes(), ::testing::Contains(HasSubstr("has no speed")));
+}
+
 TEST(CompareComponentTest, ARightMachineIsAdequateAndAWrongReactanceIsNot) {
   Tried t({"SEXS", "TGOV1"}, Component::machine);
   std::vector<std::string> channels;

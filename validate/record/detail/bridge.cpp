@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <vector>
+
+#include "validate/record/detail/across.hpp"
 
 namespace swingbank::validate::record {
 namespace {
@@ -27,9 +30,50 @@ std::vector<Gap> gaps_of(std::size_t n, Lost lost) {
   return gaps;
 }
 
-/// Whether the voltage changes over the gap by more than its steps on both sides let expect.
-bool jumps_in(const Record& r, const Gap& gap) {
-  constexpr double kJump = 0.02;  // pu, what is taken for a switching elsewhere too
+constexpr double kJump = 0.02;  // pu and rad, what is taken for a switching elsewhere too
+
+constexpr std::size_t kReach = 8;  // samples of each side: at 30/s a third of a swing's period
+
+/// Samples about the gap that tell what lies in it, up to the next gap or jump. A third difference leaves of
+/// a swing little and of a jump all.
+std::vector<std::size_t> beside(const Record& r, const Gap& gap) {
+  const auto v = [&](std::size_t k) { return std::polar(r.V[k], r.theta.empty() ? 0.0 : r.theta[k]); };
+  const auto walk = [&](std::size_t from, std::ptrdiff_t out, std::size_t room) {
+    const auto at = [&](std::ptrdiff_t i) { return v(from + static_cast<std::size_t>(out * i)); };
+    std::vector<std::size_t> side = {from};
+    for (std::ptrdiff_t i = 1; side.size() < kReach && side.size() < room; ++i) {
+      const auto k = from + static_cast<std::size_t>(out * i);
+      if (r.lost[k]) break;
+      if (side.size() + 2 < room &&
+          !(std::abs(at(i - 1) - 3.0 * at(i) + 3.0 * at(i + 1) - at(i + 2)) < kJump))
+        break;
+      side.push_back(k);
+    }
+    return side;
+  };
+  std::vector<std::size_t> all = walk(gap.first - 1, -1, gap.first);
+  const std::vector<std::size_t> after = walk(gap.last + 1, 1, r.t.size() - gap.last - 1);
+  all.insert(all.end(), after.begin(), after.end());
+  return all;
+}
+
+/// What these samples of one channel tell of the gap.
+Across told_across(const std::vector<double>& y, const Gap& gap, const std::vector<std::size_t>& told) {
+  const auto place = [&](std::size_t k) {
+    return (static_cast<double>(k) - static_cast<double>(gap.first + gap.last) / 2) /
+           static_cast<double>(kReach);
+  };
+  std::vector<double> at, value, inside;
+  for (const std::size_t k : told) at.push_back(place(k)), value.push_back(y[k]);
+  for (std::size_t k = gap.first; k <= gap.last; ++k) inside.push_back(place(k));
+  return across(at, value, inside);
+}
+/// Whether the voltage jumps in the gap; of too few samples, whether it changes by more than the steps beside
+/// it.
+bool jumps_in(const Record& r, const Gap& gap, const std::vector<std::size_t>& told) {
+  if (told.size() >= kFewestAcross)
+    return std::abs(told_across(r.V, gap, told).jump) > kJump ||
+           (!r.theta.empty() && std::abs(told_across(r.theta, gap, told).jump) > kJump);
   const auto v = [&](std::size_t k) { return std::polar(r.V[k], r.theta.empty() ? 0.0 : r.theta[k]); };
   const std::size_t p = gap.first - 1, q = gap.last + 1;
   const std::complex<double> before = p > 0 ? v(p) - v(p - 1) : 0.0,
@@ -38,17 +82,8 @@ bool jumps_in(const Record& r, const Gap& gap) {
   return std::abs(v(q) - v(p) - steps * (before + after) / 2.0) >
          kJump + steps * std::abs(before - after) / 2;
 }
-
-/// Cubic through both ends with the slopes of the steps beside them.
-void smooth(std::vector<double>& y, const Gap& gap) {
-  const std::size_t p = gap.first - 1, q = gap.last + 1;
-  const double steps = static_cast<double>(q - p), straight = y[q] - y[p];
-  const double before = p > 0 ? (y[p] - y[p - 1]) * steps : straight;
-  const double after = q + 1 < y.size() && std::isfinite(y[q + 1]) ? (y[q + 1] - y[q]) * steps : straight;
-  for (std::size_t k = gap.first; k <= gap.last; ++k) {
-    const double s = static_cast<double>(k - p) / steps, u = 1 - s;
-    y[k] = y[p] * u * u * (1 + 2 * s) + y[q] * s * s * (1 + 2 * u) + before * s * u * u - after * s * s * u;
-  }
+void smooth(std::vector<double>& y, const Gap& gap, const std::vector<std::size_t>& told) {
+  std::ranges::copy(told_across(y, gap, told).inside, y.begin() + static_cast<std::ptrdiff_t>(gap.first));
 }
 void hold(std::vector<double>& y, const Gap& gap) {
   const std::size_t p = gap.first - 1, q = gap.last + 1;
@@ -100,14 +135,23 @@ bool gaps_are_short(EvenRows& rows, Record& about) {
 
 void bridge(Record& r) {
   for (const Gap& gap : gaps_of(r.lost.size(), [&](std::size_t k) { return r.lost[k] != 0; })) {
-    const bool jump = !r.V.empty() && jumps_in(r, gap);
+    const auto told = r.V.empty() ? std::vector<std::size_t>() : beside(r, gap);
+    const bool jump = !r.V.empty() && jumps_in(r, gap, told);
     if (jump)
       r.notes.push_back(fmt::format(
           "The voltage jumps where frames are missing, between t = {:.4f} and {:.4f} s: the instant is known no better.",
           r.t[gap.first - 1], r.t[gap.last + 1]));
-    for (auto* y : {&r.V, &r.theta})
-      if (!y->empty()) (jump ? hold : smooth)(*y, gap);
-    for (auto* y : {&r.P, &r.Q, &r.f, &r.speed, &r.Efd, &r.Ifd, &r.Vs, &r.Vref, &r.Pm, &r.Pref, &r.gate})
+    const bool bends = !jump && told.size() >= kFewestAcross;
+    for (auto* y : {&r.V, &r.theta, &r.f, &r.speed, &r.P, &r.Q}) {
+      if (y->empty()) continue;
+      if (bends)
+        smooth(*y, gap, told);
+      else if (jump && (y == &r.V || y == &r.theta))
+        hold(*y, gap);
+      else
+        straight(*y, gap);
+    }
+    for (auto* y : {&r.Efd, &r.Ifd, &r.Vs, &r.Vref, &r.Pm, &r.Pref, &r.gate})
       if (!y->empty()) straight(*y, gap);
   }
 }

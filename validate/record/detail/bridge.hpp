@@ -8,8 +8,8 @@ namespace swingbank::validate::record {
 /// longer than kLongestGap.
 bool gaps_are_short(EvenRows& rows, Record& about);
 
-/// Fills samples marked in record.lost: the voltage is carried on smoothly, or held on both sides where it
-/// jumps within the gap; other channels go straight.
+/// Fills samples marked in record.lost: voltage, angle, frequency, speed, P and Q by what the samples on both
+/// sides tell, or held there (the voltage) where it jumps within the gap; other channels go straight.
 void bridge(Record& record);
 
 }  // namespace swingbank::validate::record
