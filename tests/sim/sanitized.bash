@@ -19,9 +19,8 @@ for level in "${levels[@]}"; do
     echo "$level: left out, this processor does not have it"
     continue
   fi
-  build=$source_folder/build/fuzz # its instruction set is x86-64-v2
-  if [[ $level != x86-64-v2 ]]; then build+=-$level; fi
-  if ! { cmake -S "$source_folder" --preset fuzz -B "$build" -DSWINGBANK_ARCH="$level" &&
+  build=$source_folder/build/sanitized-$level
+  if ! { cmake -S "$source_folder" --preset fuzz -B "$build" -DSWINGBANK_ARCH="$level" -DSWINGBANK_CHECK_PACKS=ON &&
     cmake --build "$build" --target "${tests[@]}"; } >"$build.log" 2>&1; then
     grep -m 12 -E 'error|FAILED' "$build.log" >&2 || tail -n 12 "$build.log" >&2
     status=1
