@@ -8,6 +8,10 @@ python3 docs/architecture.py --check
 copy=$(mktemp -d)
 trap 'rm -rf "$copy"' EXIT
 tar -cf - --exclude='*.cpp' docs/readme_tables.sh docs/architecture.py base sim mpi train validate | tar -xf - -C "$copy"
+# Two rooms show it as well as all.
+for folder in mpi sim train validate; do mv "$copy/$folder/CMakeLists.txt" "$copy/$folder.all"; done
+grep '^swingbank_room(sim/formats ' "$copy/sim.all" >"$copy/sim/CMakeLists.txt"
+touch "$copy"/{mpi,train,validate}/CMakeLists.txt
 # What only sources say, as in this copy without them, is out of date.
 if bash "$copy/docs/readme_tables.sh" --check 2>"$copy/said"; then
   echo "vanished sources went unnoticed" >&2
@@ -26,6 +30,7 @@ if [[ $last != '| `clock` | A clock (see J. Harrison, 1759) |' ]]; then
   echo "the row of a new header is: $last" >&2
   exit 1
 fi
+for folder in mpi sim train validate; do mv "$copy/$folder.all" "$copy/$folder/CMakeLists.txt"; done
 sed -i 's/^swingbank_room(sim\/core USES base)/swingbank_room(sim\/core USES base validate\/fleet)/' "$copy/sim/CMakeLists.txt"
 if python3 "$copy/docs/architecture.py" --check 2>"$copy/said"; then
   echo "a circle of rooms went unnoticed" >&2
