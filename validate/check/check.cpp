@@ -185,9 +185,13 @@ class Check {
     for (const auto& [name, y, limit] :
          {std::tuple{"V", &r_.V, 2e-4}, {"P", &r_.P, 0.002 / scale}, {"Q", &r_.Q, 0.002 / scale}})
       if (const double step = record::quantum(*y); step > limit)
-        warn(std::string("quantised_") + name, fmt::format("{} comes in steps of {:.3g} pu", name, step),
-             "a transducer or an archive has rounded it; noise is taken to be at least what that leaves",
-             "export it with more digits where that is possible");
+        warn(
+            std::string("quantised_") + name, fmt::format("{} comes in steps of {:.3g} pu", name, step),
+            *name == 'V'
+                ? "a transducer or an archive has rounded it; what that does behind a regulator is slow, so that a "
+                  "right model may leave more than noise"
+                : "a transducer or an archive has rounded it; noise is taken to be at least what that leaves",
+            "export it with more digits where that is possible");
   }
 
   /// Powers must stand still before the event, or the equilibrium that the model starts in is not the
