@@ -214,7 +214,8 @@ class Diagnoser {
     const auto unneeded = [&](const hypothesis::Judgement& j) { return !j.accepted || !needed(j); };
     std::erase_if(pairs, unneeded);
     if (!pairs.empty()) {  // the first effect was chosen while the second was missing
-      auto others = exchanged(stage, pairs.front());
+      std::vector<hypothesis::Judgement> others = exchanged(stage, pairs.front());
+      std::ranges::move(beside_second(stage, pairs.front()), std::back_inserter(others));
       std::erase_if(others, unneeded);
       std::ranges::move(others, std::back_inserter(pairs));
       std::ranges::stable_sort(pairs, std::greater<>(), &hypothesis::Judgement::gain);
@@ -265,8 +266,7 @@ class Diagnoser {
       const bool taken = std::ranges::any_of(firsts, [&](const hypothesis::Judgement* f) {
         return j.hypothesis.slot >= 0 && f->hypothesis.slot == j.hypothesis.slot;
       });
-      if (!taken && j.gain >= trial().evidence && j.fitted && !j.hypothesis.replaces &&
-          static_cast<int>(firsts.size()) < options_.firsts)
+      if (!taken && can_be_first(j) && static_cast<int>(firsts.size()) < options_.firsts)
         firsts.push_back(&j);
     }
     std::vector<hypothesis::Judgement> pairs;
@@ -276,6 +276,9 @@ class Diagnoser {
       if (!pairs.empty() && pairs.front().accepted) break;
     }
     return pairs;
+  }
+  [[nodiscard]] bool can_be_first(const hypothesis::Judgement& single) const {
+    return single.gain >= trial().evidence && single.fitted && !single.hypothesis.replaces;
   }
   [[nodiscard]] std::vector<hypothesis::Judgement> judged_beside(const hypothesis::Stage& stage,
                                                                  const hypothesis::Judgement& first) const {
@@ -293,19 +296,38 @@ class Diagnoser {
     });
     std::erase_if(rivals, [](const hypothesis::Judgement& j) { return !j.fit.failed.empty(); });
     std::ranges::stable_sort(rivals, std::greater<>(), &hypothesis::Judgement::gain);
-    std::erase_if(rivals, [&](const hypothesis::Judgement& j) {
-      return j.gain < pair.gain - thresholds::evidence.within_reach;
-    });
+    std::erase_if(rivals, [&](const hypothesis::Judgement& j) { return out_of_reach(j, pair); });
     each(rivals, "unseen events", [&](hypothesis::Judgement& j) { judge_one(j); });
     return rivals;
   }
-  /// Fits every hypothesis beside one that is taken as given; the evidence is that of both.
+  /// What was no rival of a pair's first effect, beside the second one: the first was chosen while the second
+  /// was missing, and may have done the work of two. Nothing where the second is no first by itself.
+  [[nodiscard]] std::vector<hypothesis::Judgement> beside_second(const hypothesis::Stage& stage,
+                                                                 const hypothesis::Judgement& pair) const {
+    const auto second = std::ranges::find_if(result_.ranked, [&](const hypothesis::Judgement& single) {
+      return single.hypothesis.name == pair.hypothesis.name && single.hypothesis.with.empty();
+    });
+    if (second == result_.ranked.end() || !can_be_first(*second) || stopped()) return {};
+    std::vector<std::string> known{pair.hypothesis.with};
+    for (const hypothesis::Judgement& j : hypothesis::exchanges(stage, pair, result_.ranked))
+      known.push_back(j.hypothesis.name);
+    auto pairs = beside(stage, *second, known);
+    std::erase_if(pairs, [&](const hypothesis::Judgement& j) { return out_of_reach(j, pair); });
+    judge_leading(pairs);
+    return pairs;
+  }
+  static bool out_of_reach(const hypothesis::Judgement& j, const hypothesis::Judgement& pair) {
+    return j.gain < pair.gain - thresholds::evidence.within_reach;
+  }
+  /// Fits every hypothesis, but those of these names, beside one that is taken as given; the evidence is that
+  /// of both.
   [[nodiscard]] std::vector<hypothesis::Judgement> beside(const hypothesis::Stage& stage,
-                                                          const hypothesis::Judgement& first) const {
+                                                          const hypothesis::Judgement& first,
+                                                          const std::vector<std::string>& but = {}) const {
     const hypothesis::Stage then = hypothesis::after(stage, first);
-    auto pairs = hypothesis::try_hypotheses(
-        then, hypothesis::all_hypotheses(then.under_test(), then.library, then.component()),
-        options_.progress);
+    auto all = hypothesis::all_hypotheses(then.under_test(), then.library, then.component());
+    std::erase_if(all, [&](const hypothesis::Hypothesis& h) { return std::ranges::count(but, h.name) > 0; });
+    auto pairs = hypothesis::try_hypotheses(then, std::move(all), options_.progress);
     // a rival of the best hypothesis may only have started badly
     const int slot = pairs.empty() || pairs.front().gain < thresholds::evidence.second
                          ? -1

@@ -25,6 +25,7 @@ constexpr std::size_t kDrawnStarts = 39;  ///< draws of an effect's parameters, 
 constexpr std::size_t kRedraws = 20;      ///< tries for each draw until one is sound, at most
 constexpr double kShortestDraw = 3e-3;    ///< the shortest draw takes this share of the time allowed
 constexpr double kAddedSpread = 1.0;      ///< an added effect's parameters are believed within a factor e
+constexpr double kFactorSpread = 0.1;  ///< and its factors about 1, as a transformer's taps, within a tenth
 
 Side side_of(Slot slot) {
   switch (slot) {
@@ -85,7 +86,7 @@ std::vector<std::vector<double>> draws(const sim::plant::Plant& plant,
     for (const auto& f : free) {
       const auto& p = sim::plant::parameter_record(plant, f.id);
       // gains are believed within decades, times and limits within a factor
-      const double width = p.low > 0 && p.high / p.low >= 1000 ? 2.0 : 0.8;
+      const double width = (p.low > 0 && p.high / p.low >= 1000 ? 2.0 : 0.8) * f.spread;
       const double whole = common.try_emplace(p.unit, normal(random)).first->second;
       const bool bounded = p.unit == "s" && within > 0;
       const double shared = std::sqrt(0.5) * width * whole, own = std::sqrt(0.5) * width * normal(random);
@@ -117,6 +118,17 @@ void start_near_neutral(Hypothesis& h, int block) {
   }
 }
 
+/// Parameters of an added effect that are free. One whose standard value is its neutral one is a part that is
+/// left off, unless it is a factor: of a transformer that nobody mentioned nobody knows the ratio.
+std::vector<fit::FreeParameter> free_of_added(const sim::plant::Plant& plant, int block) {
+  std::vector<fit::FreeParameter> free = fit::free_parameters(plant, block, kAddedSpread);
+  const auto& parameters = sim::plant::block_effect(plant, block).parameters;
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    if (const auto& p = parameters[i]; p.neutral == p.standard && p.neutral > 0 && !p.is_code())
+      free.push_back({{block, static_cast<int>(i)}, kFactorSpread});
+  return free;
+}
+
 /// The effect in a slot that has room for it.
 Hypothesis added_to(const sim::plant::PlantUnderTest& tested, const sim::Effect& effect) {
   Hypothesis h;
@@ -130,7 +142,7 @@ Hypothesis added_to(const sim::plant::PlantUnderTest& tested, const sim::Effect&
   if (effect.slot == Slot::measurement) {
     start_near_neutral(h, block);
   } else {
-    h.free = fit::free_parameters(h.plant, block, kAddedSpread);
+    h.free = free_of_added(h.plant, block);
     h.starts = draws(h.plant, h.free, kDrawnStarts, 1);
     h.starts.insert(h.starts.begin(), fit::values_of(h.plant, h.free));
     h.drawn = true;

@@ -8,13 +8,15 @@
 namespace swingbank::validate::thresholds {
 
 const CriterionRecord& criterion_record(Criterion criterion) {
-  static constexpr std::array<CriterionRecord, 6> records = {{
+  static constexpr std::array<CriterionRecord, 7> records = {{
       {"cells",
        "cells of the error maps beyond what noise alone allows, or in which that is more than the machine is large",
        "cells", "at"},
       {"events", "chi2 per value of the event furthest off, parameters refitted", "chi2 per value", "up to"},
       {"misfit", "chi2 per value over all events, parameters refitted", "chi2 per value", "up to"},
       {"slow", "slow remainder of the residual, parameters refitted", "standard deviations", "below"},
+      {"line", "what a steady oscillation of one frequency in all events explains beyond its price", "chi2",
+       "up to"},
       {"free_input", "what an input free in time explains beyond its knots", "chi2", "up to"},
       {"named_effect", "evidence of the effect that is named", "chi2", "below"},
   }};
@@ -32,10 +34,11 @@ double event_limit(double spread, double least) {
 Ruling judged_by_remainder(const Refitted& r, double least) {
   const Ruling misfit{Criterion::misfit, r.misfit <= least, r.misfit, least},
       slow{Criterion::slow, r.slow < adequacy.slow, r.slow, adequacy.slow},
+      line{Criterion::line, r.line <= adequacy.line, r.line, adequacy.line},
       torque{Criterion::free_input, r.torque <= adequacy.free_input, r.torque, adequacy.free_input, "torque"},
       field{Criterion::free_input, r.field <= adequacy.free_input, r.field, adequacy.free_input,
             "field voltage"};
-  for (const Ruling& one : {misfit, slow, torque, field})
+  for (const Ruling& one : {misfit, slow, line, torque, field})
     if (!one.adequate) return one;
   return misfit;
 }

@@ -10,8 +10,9 @@
 //              because the next question is which parameter, not which second.
 //   diagnose   refits the parameters too and decides whether to name an effect. Besides chi2 over all events
 //   it asks for
-//              slow remainders and for what an input that is free in time would explain, because effects of
-//              40 times the noise have hidden in a chi2 of 1.07; and a named effect must have its evidence.
+//              slow remainders, for steady oscillations and for what an input that is free in time would
+//              explain, because effects of 40 times the noise have hidden in a chi2 of 1.07; and a named
+//              effect must have its evidence.
 // They differ by what has been refitted and by what follows from "no", so they are three criteria and not
 // one. All of them stand here, every verdict says which one decided it, and their numbers are those of
 // thresholds.hpp.
@@ -27,6 +28,7 @@ enum class Criterion {
   events,        ///< calibrate, add: no event's chi2 per value exceeds its limit
   misfit,        ///< diagnose: chi2 per value over all events
   slow,          ///< diagnose: slow remainder of the residual
+  line,          ///< diagnose: what a steady oscillation explains
   free_input,    ///< diagnose: what a free torque or field voltage explains
   named_effect,  ///< diagnose: evidence of the effect that it names
 };
@@ -73,9 +75,10 @@ Ruling judged_by_events(const Events& events) {
 struct Refitted {
   double misfit;         ///< chi2 per value over all events
   double slow;           ///< slow remainder [standard deviations]
+  double line;           ///< what a steady oscillation explains, beyond its price [chi2]
   double torque, field;  ///< what each explains, free in time, beyond the price of its knots [chi2]
 };
-/// Adequate if all four hold (`least` is the limit of the misfit); the first that does not decides, and where
+/// Adequate if all five hold (`least` is the limit of the misfit); the first that does not decides, and where
 /// all hold, the misfit is told.
 Ruling judged_by_remainder(const Refitted& r, double least);
 /// Not adequate: an effect of this evidence was accepted.

@@ -90,6 +90,10 @@ struct Adequacy {
       "adequacy.slow", 8, "standard deviations",
       "means of the residual over 0.5 to 2 s may exceed those of white noise by this; thirty development "
       "cases with nothing hidden had 3.9 at most (measured 2026-11-21)"};
+  Threshold line{
+      "adequacy.line", 40, "chi2 beyond its price",
+      "a steady oscillation in what is left has to earn what an effect has to; the strongest line of 75 "
+      "cases with nothing hidden earned 18 at most (measured 2026-11-26)"};
   Threshold knot{"adequacy.knot", 2, "chi2 per knot",
                  "what a knot of an input that is free in time must earn (Akaike; decision 18)"};
   Threshold free_input{"adequacy.free_input", 0, "chi2 beyond the knots' price",

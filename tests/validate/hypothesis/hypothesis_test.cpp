@@ -36,6 +36,22 @@ TEST(Hypotheses, StartsAreTheStandardValuesThenDraws) {
     EXPECT_EQ(std::set(h.starts.begin(), h.starts.end()).size(), h.starts.size()) << h.name;
   }
 }
+TEST(Hypotheses, AnAddedTransformersRatioIsFreeWithinItsTaps) {
+  for (const Hypothesis& h : hypotheses()) {
+    if (h.name != "STEPUP") continue;
+    std::vector<std::string_view> names;
+    for (const auto& f : h.free) names.push_back(sim::plant::parameter_record(h.plant, f.id).name);
+    EXPECT_EQ(names, (std::vector<std::string_view>{"X", "ratio"}));
+    std::set<double> ratios;
+    for (const auto& start : h.starts) ratios.insert(start.back());
+    EXPECT_EQ(h.starts.front().back(), 1.0);
+    EXPECT_GT(ratios.size(), 30U);
+    EXPECT_GT(*ratios.begin(), 0.7);  // three times a tenth
+    EXPECT_LT(*ratios.rbegin(), 1.3);
+    return;
+  }
+  FAIL() << "no transformer is tried";
+}
 TEST(Hypotheses, FurtherDrawsAreOthers) {
   for (const Hypothesis& h : hypotheses()) {
     if (!h.drawn) continue;

@@ -47,7 +47,7 @@ TEST(Adequacy, AnEventThatCannotBeComparedIsNotAdequate) {
 }
 
 TEST(Adequacy, DiagnoseNamesTheFirstCriterionThatFails) {
-  const Refitted good{.misfit = 1.12, .slow = 7.9, .torque = 0, .field = -40};
+  const Refitted good{.misfit = 1.12, .slow = 7.9, .line = 39, .torque = 0, .field = -40};
   const auto by = [](Refitted r) { return judged_by_remainder(r, adequacy.misfit); };
   EXPECT_TRUE(by(good).adequate);
   EXPECT_EQ(by(good).by, Criterion::misfit);
@@ -58,6 +58,10 @@ TEST(Adequacy, DiagnoseNamesTheFirstCriterionThatFails) {
   r = good;
   r.slow = 8;
   EXPECT_EQ(by(r).by, Criterion::slow);
+  EXPECT_FALSE(by(r).adequate);
+  r = good;
+  r.line = 41;
+  EXPECT_EQ(by(r).by, Criterion::line);
   EXPECT_FALSE(by(r).adequate);
   r = good;
   r.field = 0.5;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "validate/fit/lines.hpp"
 #include "validate/fit/noise.hpp"
 #include "validate/plant/plant_model.hpp"
 #include "validate/record/record.hpp"
@@ -30,6 +31,7 @@ nlohmann::json basis_of(const diagnose::Diagnosis& d) {
   nlohmann::json j = {{"values", d.base.values},
                       {"misfit", d.base.misfit()},
                       {"slow", fit::slow_remainder(d.base, d.events)},
+                      {"line", fit::strongest_line(d.base, d.events).explains},
                       {"torque", input(d.torque)},
                       {"field", input(d.field)},
                       {"hypotheses", nlohmann::json::array()}};

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <span>
 
+#include "validate/fit/lines.hpp"
 #include "validate/fit/noise.hpp"
 #include "validate/hypothesis/decide.hpp"
 
@@ -40,7 +41,21 @@ void weigh(Diagnosis& d) {
   const auto worth = [&](const hypothesis::MissingInput& m) {
     return std::min(m.explains(d.base), m.evidence(d.base) - thresholds::evidence.accepted);
   };
-  d.probabilities = hypothesis::posterior(std::move(all), std::max(worth(d.torque), worth(d.field)));
+  const double line = fit::strongest_line(d.base, d.events).explains - thresholds::adequacy.line;
+  d.probabilities = hypothesis::posterior(std::move(all), std::max({worth(d.torque), worth(d.field), line}));
+}
+
+/// What is left of the model with its parameters refitted; of the inputs only what is known by then.
+thresholds::Refitted left_by(const Diagnosis& d, double torque, double field) {
+  return {d.base.misfit(), slow_remainder(d.base, d.events), strongest_line(d.base, d.events).explains,
+          torque, field};
+}
+/// "What is left oscillates at 0.37 Hz in P."; empty: it does not.
+std::string line_sentence(const Diagnosis& d) {
+  const fit::Line line = strongest_line(d.base, d.events);
+  if (line.explains <= thresholds::adequacy.line) return "";
+  return fmt::format(" What is left oscillates at {:.2f} Hz in {}, in all events together (chi2 {:.0f}).",
+                     line.frequency, playin::output_name(line.channel), line.explains);
 }
 
 std::string capitalised(std::string text) {
@@ -156,14 +171,14 @@ void name_best(const laws::Unexplained& judged, Diagnosis& d) {
 
 std::string first_sentence(const Diagnosis& d, double adequate) {
   const double slow = slow_remainder(d.base, d.events);
-  if (d.base.misfit() <= adequate && slow <= thresholds::adequacy.slow)
+  if (thresholds::judged_by_remainder(left_by(d, 0, 0), adequate).adequate)
     return fmt::format(
         "So far: with its parameters refitted the model leaves nothing but noise (chi2 per value {:.3f}).",
         d.base.misfit());
   return fmt::format(
       "So far: something is missing; with its parameters refitted the model leaves chi2 of {:.2f} per value, "
-      "slow means {:.1f} standard deviations.",
-      d.base.misfit(), slow);
+      "slow means {:.1f} standard deviations.{}",
+      d.base.misfit(), slow, line_sentence(d));
 }
 
 std::string wrong_sentence(const Diagnosis& d) {
@@ -214,8 +229,7 @@ std::string_view verdict_name(Verdict verdict) {
 
 void interrupt(Diagnosis& d) {
   d.verdict = Verdict::interrupted;
-  d.ruling = thresholds::judged_by_remainder({d.base.misfit(), slow_remainder(d.base, d.events), 0, 0},
-                                             thresholds::adequacy.misfit);
+  d.ruling = thresholds::judged_by_remainder(left_by(d, 0, 0), thresholds::adequacy.misfit);
   for (hypothesis::Judgement& j : d.ranked) {
     j.accepted = false;
     if (j.why_not.empty()) j.why_not = "not judged: interrupted";
@@ -236,8 +250,7 @@ void settle(const laws::Unexplained& judged, const laws::LawProgress& progress, 
   weigh(d);
   if (!r.empty() && r.front().accepted && names_an_effect(d)) return name_best(judged, d);
   refuse_all(d);
-  d.ruling = thresholds::judged_by_remainder({d.base.misfit(), slow_remainder(d.base, d.events),
-                                              d.torque.explains(d.base), d.field.explains(d.base)},
+  d.ruling = thresholds::judged_by_remainder(left_by(d, d.torque.explains(d.base), d.field.explains(d.base)),
                                              judged.trial.adequate);
   if (d.ruling.adequate) {
     d.verdict = Verdict::adequate;
@@ -249,9 +262,9 @@ void settle(const laws::Unexplained& judged, const laws::LawProgress& progress, 
   d.side = t < f ? hypothesis::Side::mechanical : hypothesis::Side::excitation;
   d.sentence = fmt::format(
       "None of the {} known effects explains the records (chi2 per value {:.2f} at best {:.2f}). A missing "
-      "{} would (chi2 per value {:.2f}); its course is shown.",
+      "{} would (chi2 per value {:.2f}); its course is shown.{}",
       r.size(), d.base.misfit(), r.empty() ? d.base.misfit() : r.front().fit.misfit(),
-      t < f ? "torque" : "field voltage", std::min(t, f));
+      t < f ? "torque" : "field voltage", std::min(t, f), line_sentence(d));
   d.laws = laws::search_laws(judged, progress);
   if (d.laws.found()) {
     d.side = d.laws.found()->judgement.hypothesis.side;

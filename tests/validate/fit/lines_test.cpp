@@ -1,0 +1,83 @@
+// A steady oscillation in a residual is found below what chi2 shows, and noise holds none.
+#include "validate/fit/lines.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "base/constants.hpp"
+#include "validate/thresholds/thresholds.hpp"
+
+namespace swingbank::validate::fit {
+namespace {
+
+struct Residuals {
+  event::WhitenedEvents events;
+  Fit fit;
+  [[nodiscard]] double misfit() const {
+    double sum = 0, count = 0;
+    for (const EventFit& e : fit.events)
+      for (const auto& channel : e.residual)
+        for (const double r : channel) sum += r * r, ++count;
+    return sum / count;
+  }
+};
+/// Five events of 12 to 20 s, P and Q: white noise, in Q with a wave of that size, whose phase is each
+/// event's own; its third harmonic has a ninth of its power.
+Residuals with_wave(double amplitude, double frequency, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  Residuals c;
+  std::vector<event::FitEvent> events;
+  std::vector<event::EventNoise> noise;
+  for (int i = 0; i < 5; ++i) {
+    event::FitEvent e;
+    EventFit f;
+    f.residual.resize(2);
+    for (int k = 0; k < 60 * (12 + 2 * i); ++k) {
+      const double t = k / 60.0, phase = constants::turn * frequency * t + i;
+      e.record.t.push_back(t);
+      e.record.P.push_back(0);
+      e.record.Q.push_back(0);
+      f.residual[0].push_back(normal(random));
+      f.residual[1].push_back(normal(random) + amplitude * (std::sin(phase) + std::sin(3 * phase) / 3));
+    }
+    for (auto& channel : f.residual) std::fill_n(channel.begin() + 100, 20, 0.0);  // not compared
+    e.channels = {playin::Output::P, playin::Output::Q};
+    noise.push_back(
+        {.deviation = Eigen::VectorXd::Constant(2, 1.0), .whitening = Eigen::MatrixXd::Identity(2, 2)});
+    events.push_back(std::move(e));
+    c.fit.events.push_back(std::move(f));
+  }
+  c.events = {std::move(events), event::NoiseModel(std::move(noise))};
+  return c;
+}
+
+TEST(Lines, AWaveBelowWhatChi2ShowsIsFoundAtItsFrequency) {
+  const Residuals c = with_wave(0.2, 0.37, 1);
+  EXPECT_LT(c.misfit(), thresholds::adequacy.misfit);
+  const Line line = strongest_line(c.fit, c.events);
+  EXPECT_EQ(line.channel, playin::Output::Q);
+  EXPECT_NEAR(line.frequency, 0.37, 0.02);  // half of 1 / 20 s is resolved
+  EXPECT_GT(line.explains, thresholds::adequacy.line);
+}
+TEST(Lines, NoiseHoldsNone) {
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    const Residuals c = with_wave(0.0, 0.37, seed);
+    EXPECT_LT(strongest_line(c.fit, c.events).explains, thresholds::adequacy.line / 2) << seed;
+  }
+}
+TEST(Lines, WhatIsTooShortForTwoPeriodsIsNotLookedAt) {
+  Residuals c = with_wave(0.2, 0.37, 1);
+  std::vector<event::FitEvent> events(c.events.begin(), c.events.end());
+  std::vector<event::EventNoise> noise(5, c.events.noise(0));
+  for (auto& e : events) e.record.t = {0, 0.1, 0.2};
+  for (auto& e : c.fit.events)
+    for (auto& channel : e.residual) channel.resize(3);
+  c.events = {std::move(events), event::NoiseModel(std::move(noise))};
+  EXPECT_LE(strongest_line(c.fit, c.events).explains, 0.0);
+}
+
+}  // namespace
+}  // namespace swingbank::validate::fit
