@@ -61,13 +61,16 @@ class Selection {
         break;
       }
     }
-    const std::vector<double> evidence = drop_idle(set, chosen);
+    std::vector<double> evidence = drop_idle(set, chosen);
     if (set.empty()) return back;
+    while (exchange(set, chosen, evidence)) {
+    }
     chosen = refit(set, true);
     if (gain(all_, chosen, criterion) - options_.each * static_cast<double>(set.size()) < options_.least)
       return back;
     describe(set, evidence, chosen, nothing - most, back);
-    back.alternatives = alternatives(set, chosen);
+    for (const auto& [gone, other] : exchanges(set, chosen))
+      if (other.size() == 2) back.alternatives.push_back({names_of(gone), names_of(other)});
     back.fit = std::move(chosen);
     return back;
   }
@@ -279,11 +282,32 @@ class Selection {
     for (const std::size_t i : set) names.push_back(name(i));
     return names;
   }
+  /// A single parameter that does what two are wrong in, as the gain behind a regulator's two, may ask for a
+  /// third to make up for it. Where the pair in its place makes others needless, the smaller set is taken.
+  [[nodiscard]] bool exchange(Set& set, Fit& chosen, std::vector<double>& evidence) const {
+    as_well_.clear();
+    for (const auto& [gone, other] : exchanges(set, chosen)) {
+      if (other.size() != 2) continue;
+      Set next, kept;
+      std::ranges::set_difference(set, gone, std::back_inserter(kept));
+      std::ranges::set_union(kept, other, std::back_inserter(next));
+      Fit fitted = refit(next);
+      std::vector<double> its = drop_idle(next, fitted);
+      if (next.size() >= set.size() ||
+          gain(fitted, chosen) >= options_.each * static_cast<double>(set.size() - next.size()))
+        continue;
+      set = std::move(next), chosen = std::move(fitted), evidence = std::move(its);
+      as_well_.clear();
+      return true;
+    }
+    return false;
+  }
+  using Exchange = std::pair<Set, Set>;  ///< gone, in their place
   /// Pairs that would do in place of one or two of the set, such as the two gains of a regulator and the gain
   /// behind it. Where a part of the exchange is an alternative by itself it is told alone.
-  [[nodiscard]] std::vector<Alternative> alternatives(const Set& set, const Fit& chosen) const {
+  [[nodiscard]] std::vector<Exchange> exchanges(const Set& set, const Fit& chosen) const {
     const double here = foretold(set).excess;
-    std::vector<std::pair<Set, Set>> found;  // gone, in their place
+    std::vector<Exchange> found;
     const auto told = [&](const Set& gone, const Set& other) {
       return std::ranges::any_of(found, [&](const auto& f) {
         return std::ranges::includes(gone, f.first) && std::ranges::includes(other, f.second);
@@ -302,10 +326,7 @@ class Selection {
         if (does_as_well(r.set, chosen)) found.emplace_back(std::move(gone), std::move(other));
       }
     }
-    std::vector<Alternative> all;
-    for (const auto& [gone, other] : found)
-      if (other.size() == 2) all.push_back({names_of(gone), names_of(other)});
-    return all;
+    return found;
   }
   void report(const std::string& what, std::size_t done, std::size_t total) const {
     if (options_.progress) options_.progress(what, static_cast<int>(done), static_cast<int>(total));
