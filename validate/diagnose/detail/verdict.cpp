@@ -50,10 +50,13 @@ thresholds::Refitted left_by(const Diagnosis& d, double torque, double field) {
   return {d.base.misfit(), slow_remainder(d.base, d.events), strongest_line(d.base, d.events).explains,
           torque, field};
 }
-/// "What is left oscillates at 0.37 Hz in P."; empty: it does not.
+/// " What is left oscillates at 0.37 Hz in P ..."; empty where something else shows that more than noise is
+/// left, because any misfit has a frequency at which it is strongest.
 std::string line_sentence(const Diagnosis& d) {
+  if (thresholds::judged_by_remainder(left_by(d, 0, 0), thresholds::adequacy.misfit).by !=
+      thresholds::Criterion::line)
+    return "";
   const fit::Line line = strongest_line(d.base, d.events);
-  if (line.explains <= thresholds::adequacy.line) return "";
   return fmt::format(" What is left oscillates at {:.2f} Hz in {}, in all events together (chi2 {:.0f}).",
                      line.frequency, playin::output_name(line.channel), line.explains);
 }
