@@ -17,8 +17,8 @@ struct PlayInOptions {
   int step_limit = 2'000'000;                              ///< steps of the integrator before it gives up
 };
 
-/// Mean of the samples before the first switching, or of the first `pre_event` seconds where there is none.
-/// Throws InputError if that leaves fewer than 5 samples.
+/// Mean of the samples before the first switching, or of the first `pre_event` seconds where there is none;
+/// where the angle bends, the courses at the first sample. Throws InputError if that leaves fewer than 5.
 OperatingPoint pre_event_point(const record::Record& record, const std::vector<Switching>& switchings,
                                double pre_event);
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <random>
 
 #include "tests/validate/playin/support.hpp"
 
@@ -192,6 +193,39 @@ TEST(PlayInTest, AnOffNominalFrequencyTurnsTheFrame) {
   EXPECT_NEAR(turning.start.drift, drift, 1e-6);
   // Phasors of 120/s turn by 1 mrad per sample; splines through them differ by h^4 of that: a few 1e-6 pu.
   EXPECT_LT(worst(turning.P, still.P), 1e-5);
+}
+
+/// Ten seconds before a switching: an angle of that course, P and V that rise, and noise.
+record::Record before_an_event(double (*angle)(double t)) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> noise(0, 1e-5);
+  record::Record r;
+  for (int k = 0; k <= 900; ++k) {
+    const double t = k / 60.0;
+    r.t.push_back(t);
+    r.V.push_back(1.02 + 1e-4 * t + noise(random));
+    r.theta.push_back(angle(t) + noise(random));
+    r.P.push_back(0.8 + 5e-3 * t + noise(random));
+    r.Q.push_back(0.1 + noise(random));
+  }
+  return r;
+}
+
+TEST(PlayInTest, WhereTheGridSlowsDownThePlantStartsOnTheCourse) {
+  const record::Record r = before_an_event([](double t) { return 0.3 + 0.02 * t - 0.004 * t * t; });
+  const OperatingPoint start = pre_event_point(r, {{10.0, 0.0}}, 1.0);
+  EXPECT_NEAR(start.drift, 0.02, 1e-5);
+  EXPECT_NEAR(std::abs(start.voltage), 1.02, 1e-5);
+  EXPECT_NEAR(std::arg(start.voltage), 0.3, 1e-5);
+  EXPECT_NEAR(start.P, 0.8, 1e-5);
+  EXPECT_NEAR(start.Q, 0.1, 1e-5);
+}
+TEST(PlayInTest, AnAngleThatTurnsEvenlyOrSwingsIsNoSuchCourse) {
+  for (const auto angle : {+[](double t) { return 0.3 + 0.02 * t; },
+                           +[](double t) { return 0.3 + 0.01 * std::sin(2 * std::numbers::pi * 0.7 * t); }}) {
+    const OperatingPoint start = pre_event_point(before_an_event(angle), {{10.0, 0.0}}, 1.0);
+    EXPECT_NEAR(start.P, 0.825, 1e-5);  // the mean
+  }
 }
 
 TEST(PlayInTest, UsesTheRecordsOwnBase) {
