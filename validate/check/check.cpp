@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/constants.hpp"
+#include "validate/check/detail/findings.hpp"
 #include "validate/check/detail/jumps.hpp"
 #include "validate/check/detail/mistakes.hpp"
 #include "validate/check/signals.hpp"
@@ -24,12 +25,13 @@ bool near(double x, double target, double share) { return std::abs(x - target) <
 
 double square(double x) { return x * x; }
 
-class Check {
+class Check : Findings {
  public:
-  Check(const record::Record& record, const PlantFacts& plant) : r_(record), plant_(plant) {}
+  Check(const record::Record& record, const PlantFacts& plant)
+      : Findings(record.name), r_(record), plant_(plant) {}
 
   std::vector<Finding> run() {
-    if (!complete()) return std::move(findings_);
+    if (!complete()) return taken();
     signals_ = record_signals(r_);
     jumps_ = clear_jumps(r_);
     rate();
@@ -43,27 +45,10 @@ class Check {
     quantised();
     if (plant_.synchronous && r_.angle == record::AngleSource::measured)
       jumps();  // the phasors', so not without an angle of their own
-    std::ranges::stable_sort(findings_, {}, [](const Finding& f) { return f.severity; });
-    return std::move(findings_);
+    return taken();
   }
 
  private:
-  void add(std::string kind, Severity severity, std::string what, std::string why, std::string remedy) {
-    // The first word on a kind is the best founded; another test of the same adds nothing.
-    if (std::ranges::find(findings_, kind, &Finding::kind) != findings_.end()) return;
-    findings_.push_back(
-        {std::move(kind), severity, {std::move(what), r_.name, std::move(why), std::move(remedy)}});
-  }
-  void refuse(std::string kind, std::string what, std::string why, std::string remedy) {
-    add(std::move(kind), Severity::refuse, std::move(what), std::move(why), std::move(remedy));
-  }
-  void warn(std::string kind, std::string what, std::string why, std::string remedy) {
-    add(std::move(kind), Severity::warn, std::move(what), std::move(why), std::move(remedy));
-  }
-  [[nodiscard]] bool found(std::string_view kind) const {
-    return std::ranges::find(findings_, kind, &Finding::kind) != findings_.end();
-  }
-
   /// The slowest rate but one that IEC/IEEE 60255-118-1 (2018, 5.2) asks of phasor measurement units is 25/s.
   void rate() {
     constexpr double kSlowestRate = 24.5;
@@ -90,7 +75,7 @@ class Check {
         if (!std::isfinite((*c)[k]))
           refuse("not_finite", fmt::format("sample {}", k), "a value is not finite",
                  "fill the gap at the source, or cut the record before it");
-    return findings_.empty();
+    return none();
   }
 
   void dropouts() {
@@ -478,7 +463,6 @@ class Check {
   PlantFacts plant_;
   Signals signals_;
   std::vector<Jump> jumps_;
-  std::vector<Finding> findings_;
 };
 
 }  // namespace

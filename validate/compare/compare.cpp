@@ -9,15 +9,12 @@
 #include "base/constants.hpp"
 #include "validate/compare/detail/fitted.hpp"
 #include "validate/compare/detail/power_doubt.hpp"
+#include "validate/compare/detail/spread.hpp"
 #include "validate/playin/component.hpp"
 #include "validate/playin/given.hpp"
 
 namespace swingbank::validate::compare {
 namespace {
-
-/// Rounding of a file with 8 digits leaves residuals of this size. Below it there is no noise to compare
-/// with.
-constexpr double kNoNoise = 1e-7;
 
 WindowError measure(const std::vector<double>& t, const std::vector<double>& residual,
                     const std::vector<char>& left_out, const Window& window, bool first, double noise) {
@@ -38,15 +35,6 @@ WindowError measure(const std::vector<double>& t, const std::vector<double>& res
   }
   e.in_noise = noise > 0 ? e.rms / noise : std::numeric_limits<double>::quiet_NaN();
   return e;
-}
-
-/// Standard deviation of the first n values.
-double spread(const std::vector<double>& values, int n) {
-  double mean = 0, square = 0;
-  for (int k = 0; k < n; ++k) mean += values[static_cast<std::size_t>(k)] / n;
-  for (int k = 0; k < n; ++k) square += std::pow(values[static_cast<std::size_t>(k)] - mean, 2);
-  const double s = std::sqrt(square / (n - 1));
-  return s > kNoNoise ? s : 0.0;
 }
 
 /// Samples that are left out in the middle of a window, on a straight line between their neighbours.

@@ -14,8 +14,8 @@ struct Line {
 };
 /// The one that explains most. Of white noise the periodogram is exponentially distributed, each frequency by
 /// itself, so that those of several events add up (J. Follum, J. W. Pierre, IEEE Trans. Power Syst. 31 (2016)
-/// 2423). Looks up to 5 Hz or to what the records hold. Nothing is explained where no record is two of the
-/// longest periods long.
+/// 2423). Looks from two periods in the longest record up to 5 Hz, or to what all records hold; below 0 where
+/// no frequency is left.
 Line strongest_line(const Fit& fit, const event::WhitenedEvents& events);
 
 }  // namespace swingbank::validate::fit

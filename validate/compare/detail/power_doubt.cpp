@@ -5,18 +5,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "validate/compare/detail/spread.hpp"
+
 namespace swingbank::validate::compare {
 namespace {
 
 constexpr std::size_t kRuns = 24;  ///< of P and of Q: of more samples, neighbours move together
-
-/// Standard deviation of the first n values.
-double noise_of(const std::vector<double>& y, int n) {
-  double sum = 0, square = 0;
-  for (int k = 0; k < n; ++k) sum += y[static_cast<std::size_t>(k)] / n;
-  for (int k = 0; k < n; ++k) square += std::pow(y[static_cast<std::size_t>(k)] - sum, 2);
-  return n > 1 ? std::sqrt(square / (n - 1)) : 0.0;
-}
 
 class PowerDoubt {
  public:
@@ -39,7 +33,7 @@ class PowerDoubt {
  private:
   /// Samples about the switchings, each off by what it is off before the event.
   void noise(std::vector<double> record::Record::*power) {
-    const double deviation = noise_of(e_.record.*power, e_.playback.start.samples);
+    const double deviation = spread(e_.record.*power, e_.playback.start.samples);
     if (!(deviation > 0)) return;
     const std::size_t together = (last_ - first_ + kRuns - 1) / kRuns;
     for (std::size_t k = first_; k < last_; k += together) {
