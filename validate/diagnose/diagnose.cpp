@@ -24,6 +24,8 @@ constexpr int kAtLeast = 3;
 /// The model alone is fitted once more from the kWaysOut leading extensions, kBases times at most.
 constexpr std::size_t kWaysOut = 2;
 constexpr int kBases = 2;
+/// A fit of the model alone that nearly fits goes on until it has converged, in so many rounds at most.
+constexpr int kBaseRounds = 4;
 
 /// Steps of the fits that go on with the noise measured again.
 constexpr int kOnwards = 4;
@@ -99,11 +101,17 @@ class Diagnoser {
     if (result_.base.failed.empty()) {
       result_.events =
           result_.events.with(fit::measure_noise_through(result_.base, model_.conventions, result_.events));
-      o = fit::continued({.lenient = true}, result_.base, free);
-      result_.base = fit::fit(model_.under_test(), result_.events, free, o);
+      for (int round = 0; round == 0 || (round < kBaseRounds && unfinished(result_.base)); ++round) {
+        o = fit::continued({.lenient = true}, result_.base, free);
+        result_.base = fit::fit(model_.under_test(), result_.events, free, o);
+      }
     }
     require_fitted_base();
     report("base", 1, 1);
+  }
+  /// Whether more steps of the model's fit might leave nothing but noise.
+  static bool unfinished(const fit::Fit& f) {
+    return f.failed.empty() && !f.converged && f.misfit() < thresholds::noise.believed;
   }
   /// Where the refitted model leaves only noise, a few wrong parameters may be all that it takes.
   void few_wrong() {

@@ -214,27 +214,6 @@ void set_start(FitEvent& e, const FitEventOptions& options) {
   e.channels = playin::compared_outputs(e.record, options.measured_states);
 }
 
-/// One instrument smears all jumps over the same time, so a step that is spread wider than every record's
-/// first jump is a fast swing. Where in its interval a jump lies may make it reach into one more.
-void drop_swings(std::vector<FitEvent>& events) {
-  double widest = 0;
-  for (const FitEvent& e : events)
-    if (!e.switchings.empty()) widest = std::max(widest, e.switchings.front().uncertainty);
-  for (FitEvent& e : events) {
-    const double edge = 0.5 * e.record.step();
-    const double one_more = edge, rounding = edge / 2;  // uncertainties are whole numbers of `edge`
-    if (e.smeared.empty() || std::erase_if(e.switchings, [&](const playin::Switching& s) {
-                               return s.uncertainty > widest + one_more + rounding;
-                             }) == 0)
-      continue;
-    for (std::size_t k = 0; k < e.smeared.size(); ++k)
-      e.smeared[k] = std::ranges::any_of(e.switchings, [&](const playin::Switching& s) {
-        return std::abs(e.record.t[k] - s.time) < s.uncertainty - edge;
-      });
-    e.clean = without(e.record, e.smeared);
-  }
-}
-
 /// Samples that are not compared.
 std::vector<char> left_out(const FitEvent& e) {
   std::vector<char> marks = e.smeared;
@@ -295,7 +274,8 @@ NoiseModel noise_through(const sim::plant::PlantUnderTest& tested, const Events&
 }  // namespace
 
 Jumps jumps_of(const std::vector<record::Record>& records, double threshold) {
-  bool any_spread = false, any_sharp = false;
+  bool any_spread = false, any_sharp = false, any_open = false;
+  std::vector<FitEvent> if_spread;
   for (record::Record r : records) {
     // an integrated angle is not what the instrument made of the phasor
     if (r.angle == record::AngleSource::integrated) r.theta.assign(r.t.size(), 0.0);
@@ -308,9 +288,16 @@ Jumps jumps_of(const std::vector<record::Record>& records, double threshold) {
     const auto found = find_switchings(r, threshold, Jumps::either, smeared);
     if (!found.empty() && found.front().uncertainty > r.step() && is_shared_out(r, found.front()))
       return Jumps::spread;
-    any_sharp = any_sharp || is_sharp(r, found, threshold);
+    const bool sharp = is_sharp(r, found, threshold);
+    any_sharp = any_sharp || sharp;
+    any_open = any_open || (!sharp && !found.empty());
     any_spread = any_spread || std::ranges::count(smeared, 1) > 0;
+    FitEvent& e = if_spread.emplace_back();
+    e.switchings = find_switchings(r, threshold / 2, Jumps::spread, e.smeared);
+    if (std::ranges::count(e.smeared, 1) == 0) e.smeared.clear();
+    e.record = std::move(r);
   }
+  if (any_sharp && any_open && passed_filter(if_spread)) return Jumps::spread;
   return any_sharp ? Jumps::sharp : any_spread ? Jumps::spread : Jumps::either;
 }
 
@@ -354,16 +341,15 @@ std::vector<playin::Switching> find_switchings(const record::Record& record, dou
 
 WhitenedEvents prepare_events(const plant::PlantModel& model, std::vector<record::Record> records,
                               const FitEventOptions& options) {
-  std::vector<FitEvent> events;
   for (const record::Record& r : records)
     if (!playin::is_part(r) && !r.breaker()) record::require_angle(r);
   const std::vector<record::Record> seen =
       seen_by_rotor(records, options.mva > 0 ? options.mva : model.plant.mva);
   const Jumps jumps =
       options.jumps == Jumps::either ? jumps_of(records, options.jump_threshold) : options.jumps;
+  std::vector<FitEvent> events;
   for (std::size_t r = 0; r < records.size(); ++r)
     events.push_back(prepare(std::move(records[r]), seen[r], options, jumps));
-  if (jumps == Jumps::spread) drop_swings(events);
   unsmear(events);
   for (FitEvent& e : events) {
     set_start(e, options);

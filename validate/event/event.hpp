@@ -40,8 +40,9 @@ std::vector<playin::Switching> find_switchings(const record::Record& record, dou
 
 /// What one instrument does to jumps, by all of its records: an instrument's filter is even, so it smears
 /// before and after a jump alike, and what decays only after it is the machine's subtransient. Their first
-/// jumps decide, because later ones may be those of a swing. `either` where no record tells.
-/// Where the angle was integrated, V alone tells.
+/// jumps decide, because later ones may be those of a swing. Where some look sharp and others do not, the
+/// most probable window does (passed_filter). `either` where no record tells. Where the angle was integrated,
+/// V alone tells.
 Jumps jumps_of(const std::vector<record::Record>& records, double threshold);
 
 /// Prepares records that belong together (one plant, one instrument). The noise is that of the pre-event

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "base/constants.hpp"
+#include "validate/fit/detail/at_bounds.hpp"
 #include "validate/fit/detail/event_cost.hpp"
 #include "validate/fit/detail/input_evidence.hpp"
 #include "validate/playin/can_run.hpp"
@@ -65,6 +66,7 @@ class Search {
     const auto& events = *setting.events;
     ceres::Problem::Options owned;
     problem_ = std::make_unique<ceres::Problem>(owned);
+    bounds_ = std::make_unique<AtBounds>(*problem_);
     for (std::size_t e = 0; e < events.size(); ++e) states_.push_back(start_of(e));
     for (std::size_t e = 0; e < events.size(); ++e) add_event(e);
     if (!z_.empty()) add_beliefs();
@@ -110,8 +112,18 @@ class Search {
     }
     return std::max(1.0, chi2 / values);
   }
-  /// One search of at most so many iterations; true if it converged.
+  /// A search of at most so many iterations; true if it converged. What stands at a bound then is held there
+  /// while the others go on, as long as that is something else each time.
   bool solve(int iterations, int& done) {
+    const int before = done;
+    bool converged = search(iterations, done);
+    while (converged && done - before < iterations && !out_of_reach_ && bounds_->hold())
+      converged = search(iterations - (done - before), done);
+    bounds_->release();
+    for (EventCost* c : costs_) c->look_at(1);  // for whoever asks for slopes at the end
+    return converged;
+  }
+  bool search(int iterations, int& done) {
     // a start that cannot be evaluated comes back in the summary: no line of the log
     static const bool quiet = (FLAGS_minloglevel = google::GLOG_FATAL, true);
     static_cast<void>(quiet);
@@ -180,9 +192,7 @@ class Search {
     }
     for (int k = 0; options_.start_stands && k < 2; ++k)
       fixed.push_back(static_cast<int>(switching_numbers(event)) + k);
-    if (!fixed.empty())
-      problem_->SetManifold(states_[e].data(),
-                            new ceres::SubsetManifold(static_cast<int>(states_[e].size()), fixed));
+    bounds_->fix(states_[e].data(), fixed);
   }
   void add_beliefs() {
     std::vector<double> spread;
@@ -192,6 +202,7 @@ class Search {
       problem_->SetParameterLowerBound(z_.data(), static_cast<int>(i), std::min(0.0, a.z(a.low)));
       problem_->SetParameterUpperBound(z_.data(), static_cast<int>(i), std::max(0.0, a.z(a.high)));
     }
+    bounds_->fix(z_.data(), {});
     problem_->AddResidualBlock(new Belief(spread, &discrepancy_), nullptr, {z_.data()});
     auto walls = std::make_unique<Walls>(setting_, &discrepancy_);
     if (!walls->empty()) problem_->AddResidualBlock(walls.release(), nullptr, {z_.data()});
@@ -346,6 +357,7 @@ class Search {
   std::vector<std::vector<double>> states_;
   std::vector<EventCost*> costs_;
   std::unique_ptr<ceres::Problem> problem_;
+  std::unique_ptr<AtBounds> bounds_;
 };
 
 void require_same(const event::NoiseModel& a, const event::NoiseModel& b) {

@@ -106,8 +106,9 @@ VoltageCurve VoltageCurve::moved(const record::Record& record, std::vector<Switc
     const auto before = [&](double instant) {
       return std::ranges::upper_bound(record.t, instant + slack) - record.t.begin();
     };
+    const bool within = std::abs(to.time - from.time) <= from.uncertainty;
     same = !from.has_before && !from.has_after && !to.has_before && !to.has_after &&
-           before(from.time) == before(to.time);
+           (within || before(from.time) == before(to.time));
   }
   if (!same) return {record, std::move(switchings)};
   VoltageCurve curve = *this;

@@ -34,8 +34,10 @@ class VoltageCurve {
   /// Throws InputError if switchings lie outside the record or leave a segment without any point.
   VoltageCurve(const record::Record& record, std::vector<Switching> switchings);
 
-  /// The curve of the same record with its instants moved. It shares the splines where every sample stays on
-  /// its side of them and no one-sided voltage is known. Throws as the constructor.
+  /// The curve of the same record with its instants moved. It shares the splines where no one-sided voltage
+  /// is known and every instant stays within its uncertainty or every sample on its side: a voltage that was
+  /// brought back from behind a filter has knots nearer to an instant than that is known, and they belong to
+  /// the segment that they were made for. Throws as the constructor.
   [[nodiscard]] VoltageCurve moved(const record::Record& record, std::vector<Switching> switchings) const;
 
   [[nodiscard]] int segments() const { return static_cast<int>(segments_->size()); }

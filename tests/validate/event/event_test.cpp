@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <complex>
 #include <functional>
 #include <numbers>
 #include <random>
@@ -12,6 +13,8 @@
 
 namespace swingbank::validate::event {
 namespace {
+
+constexpr double kOneCycle = 1 / 60.0;  ///< [s]
 
 /// Ten seconds of V(t) and theta(t), with noise of 1e-4 pu.
 record::Record record_of(
@@ -81,6 +84,48 @@ TEST(FindSwitchings, ASwingBesideSharpJumpsIsNone) {
   EXPECT_NEAR(found[0].time, 3.0, 1.0 / 60);
   EXPECT_NEAR(found[1].time, 3.1, 1.0 / 60);
   EXPECT_EQ(std::ranges::count(smeared, 1), 0);
+}
+/// Behind a triangular window that reaches `half` [s] to either side (0: none): a fault at `on` for `length`
+/// [s] that leaves `V`, with subtransients of `fell` pu behind both jumps; the angle jumps by `turn` [rad]
+/// and then turns at 2 rad/s.
+record::Record behind(double half, double on, double length, double V, double fell, double turn) {
+  const double off = on + length;
+  const auto since = [](double t, double begin) { return std::exp(-(t - begin) / 0.03); };
+  const auto at = [=](double t) {
+    if (t <= on) return std::polar(1.0, 0.1);
+    if (t <= off) return std::polar(V - fell * (1 - since(t, on)), 0.1 + turn + 2 * (t - on));
+    return std::polar(0.98 - fell * since(t, off), 0.1 + 2 * (t - on));
+  };
+  const auto seen = [=](double t) {
+    constexpr int kSide = 60;
+    std::complex<double> sum = 0;
+    double weights = 0;
+    for (int i = -kSide; i <= kSide; ++i) {
+      const double u = i / (kSide + 0.5), weight = 1 - std::abs(u);
+      sum += weight * at(t + u * half);
+      weights += weight;
+    }
+    return sum / weights;
+  };
+  record::Record r =
+      record_of([&](double t) { return std::abs(seen(t)); }, [&](double t) { return std::arg(seen(t)); });
+  r.P.assign(r.t.size(), 0.4);
+  r.Q.assign(r.t.size(), 0.1);
+  return r;
+}
+/// One fault that looks sharp does not outweigh another that was plainly smeared, if their samples are more
+/// probable behind a window.
+TEST(FindSwitchings, WhereRecordsDisagreeTheirSamplesDecide) {
+  const record::Record looks_sharp = behind(kOneCycle, 3.01, 0.1, 0.9, 0.04, -0.05),
+                       open = behind(kOneCycle, 3.0, 0.1, 0.97, 0.04, 0.02);
+  ASSERT_EQ(jumps_of({looks_sharp}, playin::kJumpThreshold), Jumps::sharp);
+  ASSERT_EQ(jumps_of({open}, playin::kJumpThreshold), Jumps::either);
+  EXPECT_EQ(jumps_of({looks_sharp, open}, playin::kJumpThreshold), Jumps::spread);
+  for (const double phase : {0.0, 0.2, 0.4, 0.6, 0.8})
+    EXPECT_EQ(jumps_of({near_loss(0.85), behind(0, 3 + phase * kOneCycle, 0.1, 0.97, 0.04, 0.02)},
+                       playin::kJumpThreshold),
+              Jumps::sharp)
+        << phase;
 }
 TEST(FindSwitchings, ASmallJumpTellsThatNoneIsSmeared) {
   EXPECT_EQ(jumps_of({near_loss(0.85)}, playin::kJumpThreshold), Jumps::sharp);
@@ -200,6 +245,15 @@ TEST(PrepareEvents, TheEndOfAFaultMayReachOneIntervalMore) {
     ASSERT_EQ(e.switchings.size(), 2U) << end;
     EXPECT_NEAR(e.switchings[1].time, off, e.switchings[1].uncertainty) << end;
   }
+}
+/// A subtransient of 30 ms behind the fault's end makes that jump wider than its begin.
+TEST(PrepareEvents, BehindAFilterTheEndOfAFaultMayDecay) {
+  const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  const double on = 3.005, off = on + 0.06;
+  const FitEvent e = prepare_events(model, {behind(kOneCycle, on, off - on, 0.95, 0.12, 0.0)}).front();
+  ASSERT_EQ(e.switchings.size(), 2U);
+  EXPECT_NEAR(e.switchings[0].time, on, kOneCycle / 2);
+  EXPECT_NEAR(e.switchings[1].time, off, kOneCycle / 2);
 }
 /// The filter smears every jump over as many samples, the swing is wider.
 TEST(PrepareEvents, BehindAFilterAWiderSwingIsNone) {

@@ -92,6 +92,35 @@ TEST(Unsmear, NoiseMovesItLittle) {
   EXPECT_NEAR(events.front().switchings[1].time, Fault{}.off, 3e-4);
   EXPECT_LT(worst_within(events.front()), 5e-3);
 }
+/// Both jumps of a fault of three samples share the samples between them, and the probability of the instants
+/// has many peaks.
+TEST(Unsmear, InstantsOfAShortFaultAreFoundWhereverItLies) {
+  for (const double phase : {0.0, 0.25, 0.5, 0.75})
+    for (const double length : {0.05, 0.055, 0.06}) {
+      const Fault fault = {.off = kOn + length, .V = 0.85};
+      std::vector<FitEvent> events = {event(1e-4, fault, kTriangle, kRate, phase / kRate)};
+      unsmear(events);
+      ASSERT_EQ(events.front().switchings.size(), 2u);
+      EXPECT_NEAR(events.front().switchings[0].time, kOn, 2e-3) << phase << ' ' << length;
+      EXPECT_NEAR(events.front().switchings[1].time, fault.off, 2e-3) << phase << ' ' << length;
+    }
+}
+/// The knots of what was brought back lie nearer to an instant than it is known.
+TEST(Unsmear, KnotsStayInTheirSegmentWhileTheInstantsMove) {
+  std::vector<FitEvent> events = {event(1e-4, {.off = kOn + 0.055})};
+  unsmear(events);
+  const FitEvent& e = events.front();
+  const playin::VoltageCurve curve(e.clean, e.switchings);
+  for (const double by : {-0.9, 0.9})
+    for (std::size_t s = 0; s < e.switchings.size(); ++s) {
+      std::vector<playin::Switching> at = e.switchings;
+      at[s].time += by * at[s].uncertainty;
+      const playin::VoltageCurve moved = curve.moved(e.clean, at);
+      EXPECT_EQ(moved.end(static_cast<int>(s)), at[s].time);
+      for (int segment = 0; segment < 3; ++segment)
+        EXPECT_EQ(moved(segment, kOn + 0.03), curve(segment, kOn + 0.03)) << s << ' ' << by;
+    }
+}
 /// Class M reaches far: at 30 reports a second 0.16 s to either side of a fault of 0.1 s, in which no sample
 /// is clean.
 TEST(Unsmear, AFaultShorterThanTheWindowOfClassMComesBack) {

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "base/constants.hpp"
 #include "base/white_noise.hpp"
 #include "validate/event/detail/smeared_curve.hpp"
 
@@ -15,13 +16,18 @@ namespace {
 
 constexpr int kLeastKnots = 3;  ///< of a segment that is brought back
 constexpr int kAbout = 4;       ///< samples beyond the longest window's reach that a stretch holds
-constexpr int kNarrowings = 9;  ///< of the search for instants, each half as wide as the last
+constexpr int kNarrowings = 5;  ///< of the search for instants, each half as wide as the last
 /// With another roughness the search begins again as wide as after so many.
-constexpr int kAgain = 3;
+constexpr int kAgain = 2;
+constexpr int kLastNarrowings = 5;    ///< with the window that is taken
+constexpr double kSameLength = 1e-3;  ///< of a window and a sample interval
 /// Roughness of a grid's voltage between switchings [pu^2/s^3]: a swing of 0.1 pu at 1 Hz has about 10, the
 /// subtransient behind a fault some hundred for its few hundredths of a second.
 constexpr double kRoughness[] = {0.1, 1, 10, 100, 1e3, 1e4};
 constexpr double kFirstRoughness = 10;
+/// The scan for instants goes in such shares of a sample. A large jump that the grid misses by a millisecond
+/// asks for a rough voltage, and in a rough one a small jump needs no instant.
+constexpr double kScanStep = 0.25, kScanRoughness[] = {10, 100};
 
 /// Switchings first ... first + count - 1 of an event, whose windows meet, and the samples about them.
 struct Cluster {
@@ -31,7 +37,8 @@ struct Cluster {
 /// What a window makes of a cluster.
 struct BroughtBack {
   std::vector<double> instants;
-  std::optional<SmearedCurve> curve;
+  double roughness = kFirstRoughness;
+  std::optional<SmearedCurve> curve = {};
 };
 
 /// Noise by second differences before the first smeared sample.
@@ -61,68 +68,112 @@ std::vector<Cluster> clusters_of(const FitEvent& e, std::size_t event, double wi
   return found;
 }
 
+/// Whether instants lie one after the other within the stretch.
+bool in_order(const std::vector<double>& instants, const SmearedStretch& stretch) {
+  const double edge = 1e-2 * stretch.step;
+  double last = stretch.t.front();
+  for (const double t : instants) {
+    if (t < last + edge) return false;
+    last = t;
+  }
+  return last + edge < stretch.t.back();
+}
+
 /// Search for a cluster's instants: pairs of neighbours on a grid that narrows down about the best.
 class InstantSearch {
  public:
   InstantSearch(const Cluster& cluster, const FilterWindow& window) : cluster_(cluster), window_(window) {}
-  void run(BroughtBack& best, std::vector<double> width, double roughness, int rounds) {
-    best.curve.emplace(cluster_.stretch, window_, best.instants, roughness);
-    for (int round = 0; round < rounds; ++round) {
-      for (std::size_t i = 0; i == 0 || i + 1 < best.instants.size(); ++i) around(best, width, i, roughness);
-      for (double& w : width) w /= 2;
+  /// Pairs of neighbours on an even grid, over all that was left open: the probability has many peaks, each
+  /// much narrower than that.
+  void scan(BroughtBack& best, const std::vector<double>& width) {
+    const std::vector<double> middle = best.instants;
+    best.curve.emplace(cluster_.stretch, window_, best.instants, best.roughness);
+    const double step = kScanStep * cluster_.stretch.step;
+    const auto steps = [&](std::size_t i) { return static_cast<int>(width[i] / step); };
+    for (std::size_t i = 0; i == 0 || i + 1 < middle.size(); ++i) {
+      const std::vector<double> others = best.instants;
+      const bool pair = i + 1 < middle.size();
+      for (int a = -steps(i); a <= steps(i); ++a)
+        for (int b = pair ? -steps(i + 1) : 0; b <= (pair ? steps(i + 1) : 0); ++b) {
+          std::vector<double> at = others;
+          at[i] = middle[i] + a * step;
+          if (pair) at[i + 1] = middle[i + 1] + b * step;
+          if (allowed(at)) keep(best, std::move(at));
+        }
     }
+  }
+  /// Narrows down from `width` [s] in so many rounds, with the roughness that stands.
+  void run(BroughtBack& best, double width, int rounds) {
+    best.curve.emplace(cluster_.stretch, window_, best.instants, best.roughness);
+    for (int round = 0; round < rounds; ++round, width /= 2)
+      for (std::size_t i = 0; i == 0 || i + 1 < best.instants.size(); ++i) around(best, width, i);
   }
 
  private:
-  void around(BroughtBack& best, const std::vector<double>& width, std::size_t i, double roughness) const {
+  void around(BroughtBack& best, double width, std::size_t i) const {
     constexpr int kSide = 2;
     const std::vector<double> middle = best.instants;
     const bool pair = i + 1 < middle.size();
     for (int a = -kSide; a <= kSide; ++a)
       for (int b = pair ? -kSide : 0; b <= (pair ? kSide : 0); ++b) {
         std::vector<double> at = middle;
-        at[i] += a * width[i] / kSide;
-        if (pair) at[i + 1] += b * width[i + 1] / kSide;
-        if (allowed(at)) keep(best, std::move(at), roughness);
+        at[i] += a * width / kSide;
+        if (pair) at[i + 1] += b * width / kSide;
+        if (allowed(at)) keep(best, std::move(at));
       }
   }
-  [[nodiscard]] bool allowed(const std::vector<double>& at) const {
-    const double edge = 1e-2 * cluster_.stretch.step;
-    double last = cluster_.stretch.t.front();
-    for (const double t : at) {
-      if (t < last + edge) return false;
-      last = t;
-    }
-    return last + edge < cluster_.stretch.t.back();
-  }
-  void keep(BroughtBack& best, std::vector<double> at, double roughness) const {
-    SmearedCurve curve(cluster_.stretch, window_, at, roughness);
-    if (curve.evidence() > best.curve->evidence()) best = {std::move(at), std::move(curve)};
+  [[nodiscard]] bool allowed(const std::vector<double>& at) const { return in_order(at, cluster_.stretch); }
+  void keep(BroughtBack& best, std::vector<double> at) const {
+    SmearedCurve curve(cluster_.stretch, window_, at, best.roughness);
+    if (curve.evidence() > best.curve->evidence()) best = {std::move(at), best.roughness, std::move(curve)};
   }
   const Cluster& cluster_;
   const FilterWindow& window_;
 };
 
-/// Instants that a person told stay.
-BroughtBack brought_back(const FitEvent& e, const Cluster& c, const FilterWindow& window) {
-  BroughtBack best;
-  std::vector<double> width;
+/// How wide the search for instants is after so many rounds [s].
+double width_after(const Cluster& c, int rounds) { return c.stretch.step / 2 / (1 << rounds); }
+
+bool told(const FitEvent& e) { return !e.record.switched.empty(); }
+
+/// Where the instants are about; those that a person told stay. Every window is even, so that one serves for
+/// all.
+std::vector<double> first_instants(const FitEvent& e, const Cluster& c, const FilterWindow& window) {
+  std::vector<double> middle, width;
   for (std::size_t s = c.first; s < c.first + c.count; ++s) {
-    best.instants.push_back(e.switchings[s].time);
+    middle.push_back(e.switchings[s].time);
     width.push_back(e.switchings[s].uncertainty);
   }
-  const bool told = !e.record.switched.empty();
-  InstantSearch search(c, window);
-  search.run(best, width, kFirstRoughness, told ? 0 : kNarrowings);
-  double roughness = kFirstRoughness;
-  for (const double other : kRoughness) {
-    SmearedCurve curve(c.stretch, window, best.instants, other);
-    if (curve.evidence() <= best.curve->evidence()) continue;
-    best.curve = std::move(curve);
-    roughness = other;
+  if (told(e)) return middle;
+  BroughtBack best;
+  for (const double roughness : kScanRoughness) {
+    BroughtBack scanned{middle, roughness};
+    InstantSearch(c, window).scan(scanned, width);
+    if (!best.curve || scanned.curve->evidence() > best.curve->evidence()) best = std::move(scanned);
   }
-  for (double& w : width) w /= 1 << kAgain;
-  if (!told && roughness != kFirstRoughness) search.run(best, width, roughness, kNarrowings - kAgain);
+  return best.instants;
+}
+
+/// Gives the curve the most probable roughness.
+void take_roughness(const Cluster& c, const FilterWindow& window, BroughtBack& best) {
+  best.curve.emplace(c.stretch, window, best.instants, best.roughness);
+  for (const double other : kRoughness)
+    if (SmearedCurve curve(c.stretch, window, best.instants, other);
+        curve.evidence() > best.curve->evidence())
+      best = {std::move(best.instants), other, std::move(curve)};
+}
+
+BroughtBack brought_back(const FitEvent& e, const Cluster& c, const FilterWindow& window,
+                         const std::vector<double>& instants) {
+  BroughtBack best{instants};
+  if (told(e)) {
+    take_roughness(c, window, best);
+    return best;
+  }
+  InstantSearch search(c, window);
+  search.run(best, width_after(c, 0), kNarrowings);
+  take_roughness(c, window, best);
+  if (best.roughness != kFirstRoughness) search.run(best, width_after(c, kAgain), kNarrowings - kAgain);
   return best;
 }
 
@@ -133,13 +184,93 @@ struct Attempt {
   double evidence = -1e300;
 };
 Attempt attempt(const std::vector<FitEvent>& events, const std::vector<Cluster>& clusters,
-                const FilterWindow& window) {
+                const std::vector<std::vector<double>>& instants, const FilterWindow& window) {
   Attempt a{window, {}, 0};
-  for (const Cluster& c : clusters) {
-    a.clusters.push_back(brought_back(events[c.event], c, window));
+  for (std::size_t i = 0; i < clusters.size(); ++i) {
+    a.clusters.push_back(brought_back(events[clusters[i].event], clusters[i], window, instants[i]));
     a.evidence += a.clusters.back().curve->evidence();
   }
   return a;
+}
+
+/// Logarithm of the share of all that was left open of an instant [s] in which the samples are about as
+/// probable as at the best (Laplace).
+double told_share(const Cluster& c, const FilterWindow& window, const BroughtBack& b, std::size_t instant,
+                  double open) {
+  const double aside = c.stretch.step / 50;
+  double falls = 0;
+  int sides = 0;
+  for (const double by : {-aside, aside}) {
+    std::vector<double> at = b.instants;
+    at[instant] += by;
+    if (!in_order(at, c.stretch)) continue;
+    falls += b.curve->evidence() - SmearedCurve(c.stretch, window, at, b.roughness).evidence();
+    ++sides;
+  }
+  if (sides == 0) return std::log(aside / open);
+  const double bend = 2 * falls / sides;
+  return bend > 0 ? std::min(0.0, std::log(std::sqrt(2 * constants::pi / bend) * aside / open)) : 0.0;
+}
+/// Drops instants without which the samples are more probable, the best to drop first: a fast swing looks
+/// like a jump that a wide window has smeared. Returns which of the cluster's stay.
+std::vector<char> drop_swings(const FitEvent& e, const Cluster& c, const FilterWindow& window,
+                              BroughtBack& b) {
+  std::vector<char> stays(c.count, 1);
+  for (bool dropped = true; dropped;) {
+    dropped = false;
+    BroughtBack best;
+    double most = 0;
+    std::size_t which = 0;
+    for (std::size_t i = 0, k = 0; i < c.count; ++i) {
+      if (!stays[i]) continue;
+      const double told = told_share(c, window, b, k, 2 * e.switchings[c.first + i].uncertainty);
+      BroughtBack without{b.instants};
+      without.instants.erase(without.instants.begin() + static_cast<std::ptrdiff_t>(k++));
+      take_roughness(c, window, without);
+      const double gained = without.curve->evidence() - b.curve->evidence() - told;
+      if (gained <= most) continue;
+      most = gained, best = std::move(without), which = i, dropped = true;
+    }
+    if (!dropped) break;
+    stays[which] = 0;
+    b = std::move(best);
+  }
+  return stays;
+}
+
+/// Takes away the other switchings, and the marks of what was seen to move about them.
+void keep(FitEvent& e, const std::vector<char>& stays) {
+  std::vector<playin::Switching> kept;
+  for (std::size_t s = 0; s < stays.size(); ++s)
+    if (stays[s]) kept.push_back(e.switchings[s]);
+  if (kept.size() == e.switchings.size()) return;
+  e.switchings = std::move(kept);
+  for (std::size_t k = 0; k < e.smeared.size(); ++k)
+    e.smeared[k] = e.smeared[k] && std::ranges::any_of(e.switchings, [&](const playin::Switching& s) {
+                     return std::abs(e.record.t[k] - s.time) < s.uncertainty - 0.5 * e.record.step();
+                   });
+  if (std::ranges::count(e.smeared, 1) == 0) e.smeared.clear(), e.clean = {};
+}
+/// The same for all events. Clusters of which nothing stays are gone.
+void drop_swings(std::vector<FitEvent>& events, std::vector<Cluster>& clusters, Attempt& a) {
+  std::vector<std::vector<char>> stays(events.size());
+  for (std::size_t i = 0; i < clusters.size(); ++i) {
+    Cluster& c = clusters[i];
+    std::vector<char>& its = stays[c.event];
+    const std::vector<char> some = told(events[c.event])
+                                       ? std::vector<char>(c.count, 1)
+                                       : drop_swings(events[c.event], c, a.window, a.clusters[i]);
+    c.first = static_cast<std::size_t>(std::ranges::count(its, 1));
+    c.count = static_cast<std::size_t>(std::ranges::count(some, 1));
+    its.insert(its.end(), some.begin(), some.end());
+  }
+  for (std::size_t e = 0; e < events.size(); ++e)
+    if (!stays[e].empty()) keep(events[e], stays[e]);
+  for (std::size_t i = clusters.size(); i-- > 0;)
+    if (clusters[i].count == 0) {
+      clusters.erase(clusters.begin() + static_cast<std::ptrdiff_t>(i));
+      a.clusters.erase(a.clusters.begin() + static_cast<std::ptrdiff_t>(i));
+    }
 }
 
 /// Marks what the window reaches beside what was seen to move.
@@ -176,7 +307,7 @@ void replace(FitEvent& e, int segment, double from, double to, const SmearedCurv
 }
 
 void place(FitEvent& e, const Cluster& c, const BroughtBack& b) {
-  if (!e.record.switched.empty()) return;
+  if (told(e)) return;
   for (std::size_t i = 0; i < c.count; ++i)
     e.switchings[c.first + i] = {.time = b.instants[i], .uncertainty = e.record.step() / 5};
 }
@@ -205,19 +336,57 @@ record::Record without(const record::Record& record, const std::vector<char>& sm
   return clean;
 }
 
-FilterWindow unsmear(std::vector<FitEvent>& events) {
+namespace {
+
+/// What was smeared of all events, and where its instants are about.
+struct Smeared {
+  std::vector<FilterWindow> windows;  ///< worth trying; none where nothing is smeared
+  std::vector<Cluster> clusters = {};
+  std::vector<std::vector<double>> instants = {};
+};
+Smeared smeared_of(const std::vector<FitEvent>& events) {
   const auto first = std::ranges::find_if(events, [](const FitEvent& e) { return !e.smeared.empty(); });
   if (first == events.end()) return {};
-  const auto windows = known_windows(first->record.base.frequency, 1 / first->record.step());
+  const double frequency = first->record.base.frequency;
+  Smeared all{known_windows(frequency, 1 / first->record.step())};
   double widest = 0;
-  for (const FilterWindow& w : windows) widest = std::max(widest, w.half());
-  std::vector<Cluster> clusters;
+  for (const FilterWindow& w : all.windows) widest = std::max(widest, w.half());
   for (std::size_t e = 0; e < events.size(); ++e)
     if (!events[e].smeared.empty())
-      std::ranges::move(clusters_of(events[e], e, widest), std::back_inserter(clusters));
+      std::ranges::move(clusters_of(events[e], e, widest), std::back_inserter(all.clusters));
+  const FilterWindow one_cycle(FilterWindow::Shape::triangle, 1 / frequency);
+  for (const Cluster& c : all.clusters) all.instants.push_back(first_instants(events[c.event], c, one_cycle));
+  return all;
+}
+Attempt most_probable(const std::vector<FitEvent>& events, const Smeared& all) {
   Attempt best;
-  for (const FilterWindow& w : windows)
-    if (Attempt a = attempt(events, clusters, w); a.evidence > best.evidence) best = std::move(a);
+  for (const FilterWindow& w : all.windows)
+    if (Attempt a = attempt(events, all.clusters, all.instants, w); a.evidence > best.evidence)
+      best = std::move(a);
+  return best;
+}
+
+}  // namespace
+
+bool passed_filter(const std::vector<FitEvent>& events) {
+  const Smeared all = smeared_of(events);
+  if (all.clusters.empty()) return false;
+  const FilterWindow none(FilterWindow::Shape::box, 1e-3 * all.clusters.front().stretch.step);
+  const Attempt best = most_probable(events, all);
+  return 2 * best.window.half() > (1 + kSameLength) * all.clusters.front().stretch.step &&
+         best.evidence > attempt(events, all.clusters, all.instants, none).evidence;
+}
+
+FilterWindow unsmear(std::vector<FitEvent>& events) {
+  Smeared all = smeared_of(events);
+  if (all.windows.empty()) return {};
+  Attempt best = most_probable(events, all);
+  std::vector<Cluster>& clusters = all.clusters;
+  for (std::size_t i = 0; i < clusters.size(); ++i)
+    if (!told(events[clusters[i].event]))
+      InstantSearch(clusters[i], best.window)
+          .run(best.clusters[i], width_after(clusters[i], kNarrowings), kLastNarrowings);
+  drop_swings(events, clusters, best);
   for (std::size_t i = 0; i < clusters.size(); ++i)
     place(events[clusters[i].event], clusters[i], best.clusters[i]);
   for (FitEvent& e : events) {

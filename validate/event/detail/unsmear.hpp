@@ -11,6 +11,10 @@ namespace swingbank::validate::event {
 /// Time, V and theta of the samples that are not smeared.
 record::Record without(const record::Record& record, const std::vector<char>& smeared);
 
+/// Whether the samples about the switchings are most probable behind a known window that is longer than a
+/// sample interval; a shorter one cannot be told from none. The events are prepared as if there were one.
+bool passed_filter(const std::vector<FitEvent>& events);
+
 /// Finds the window that makes the samples about all switchings most probable (SmearedCurve), one for all
 /// events, and the instants of those switchings that nobody told. Marks as smeared what this window reaches,
 /// and puts the voltage that was brought back into the events' clean records, so that every segment between

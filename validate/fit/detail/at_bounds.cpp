@@ -1,0 +1,61 @@
+#include "validate/fit/detail/at_bounds.hpp"
+
+#include <algorithm>
+
+namespace swingbank::validate::fit::fitting {
+
+void AtBounds::fix(double* block, std::vector<int> which) {
+  std::ranges::sort(which);
+  apply(block, which);
+  fixed_[block] = std::move(which);
+}
+
+void AtBounds::apply(double* block, const std::vector<int>& which) {
+  const int n = problem_.ParameterBlockSize(block);
+  if (static_cast<int>(which.size()) == n) return problem_.SetParameterBlockConstant(block);
+  problem_.SetParameterBlockVariable(block);
+  problem_.SetManifold(block, which.empty() ? nullptr : new ceres::SubsetManifold(n, which));
+}
+
+/// -1: at its lower bound, 1: at its upper one, 0: between.
+double AtBounds::beyond(double* block, int i) const {
+  return block[i] <= problem_.GetParameterLowerBound(block, i)   ? -1
+         : block[i] >= problem_.GetParameterUpperBound(block, i) ? 1
+                                                                 : 0;
+}
+
+bool AtBounds::any_at_bound() const {
+  return std::ranges::any_of(fixed_, [&](const auto& of) {
+    for (int i = 0, n = problem_.ParameterBlockSize(of.first); i < n; ++i)
+      if (!std::ranges::binary_search(of.second, i) && beyond(of.first, i) != 0) return true;
+    return false;
+  });
+}
+
+bool AtBounds::hold() {
+  if (!any_at_bound()) return false;
+  const Which before = held_.empty() ? fixed_ : held_;
+  release();
+  ceres::Problem::EvaluateOptions some;
+  for (const auto& of : fixed_) some.parameter_blocks.push_back(of.first);
+  std::vector<double> gradient;
+  if (!problem_.Evaluate(some, nullptr, nullptr, &gradient, nullptr)) return false;
+  auto slope = gradient.begin();
+  for (const auto& [block, fixed] : fixed_) {
+    std::vector<int>& held = held_[block];
+    for (int i = 0, n = problem_.ParameterBlockSize(block); i < n; ++i) {
+      const bool never_moves = std::ranges::binary_search(fixed, i);
+      if (never_moves || *slope * beyond(block, i) < 0) held.push_back(i);
+      if (!never_moves) ++slope;
+    }
+    apply(block, held);
+  }
+  return held_ != before;
+}
+
+void AtBounds::release() {
+  for (const auto& [block, fixed] : fixed_) apply(block, fixed);
+  held_.clear();
+}
+
+}  // namespace swingbank::validate::fit::fitting
