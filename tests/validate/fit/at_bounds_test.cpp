@@ -15,43 +15,44 @@ struct Valley {
     return true;
   }
 };
-double solve(ceres::Problem& problem) {
-  ceres::Solver::Options o;
-  o.function_tolerance = 1e-3;  // each step along the cut direction gains a ten-thousandth
-  o.max_num_line_search_step_size_iterations = 0;
-  o.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(o, &problem, &summary);
-  return summary.final_cost;
-}
+/// The valley from (x, 1, 0), with an upper bound of one of the three and some that never move.
+struct Bounded {
+  double at[3];
+  ceres::Problem problem;
+  AtBounds bounds{problem};
+  Bounded(double x, int which, double bound, std::vector<int> fixed) : at{x, 1, 0} {
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<Valley, 2, 3>(new Valley), nullptr, at);
+    problem.SetParameterUpperBound(at, which, bound);
+    bounds.fix(at, std::move(fixed));
+  }
+  double solve() {
+    ceres::Solver::Options o;
+    o.function_tolerance = 1e-3;  // each step along the cut direction gains a ten-thousandth
+    o.max_num_line_search_step_size_iterations = 0;
+    o.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(o, &problem, &summary);
+    return summary.final_cost;
+  }
+};
 
 TEST(AtBounds, WhatIsDrawnBeyondABoundIsHeldThere) {
-  double at[3] = {1, 1, 0};
-  ceres::Problem problem;
-  problem.AddResidualBlock(new ceres::AutoDiffCostFunction<Valley, 2, 3>(new Valley), nullptr, at);
-  problem.SetParameterUpperBound(at, 0, 1.0);
-  AtBounds bounds(problem);
-  bounds.fix(at, {});
-  ASSERT_GT(solve(problem), 1.0) << "the bound was meant to stop the search";
-  ASSERT_TRUE(bounds.hold());
-  EXPECT_LT(solve(problem), 1e-9);
-  EXPECT_NEAR(at[1], 3, 1e-6);
-  EXPECT_FALSE(bounds.hold()) << "the same is held";
+  Bounded valley(1, 0, 1.0, {});
+  ASSERT_GT(valley.solve(), 1.0) << "the bound was meant to stop the search";
+  ASSERT_TRUE(valley.bounds.hold());
+  EXPECT_LT(valley.solve(), 1e-9);
+  EXPECT_NEAR(valley.at[1], 3, 1e-6);
+  EXPECT_FALSE(valley.bounds.hold()) << "the same is held";
 }
 TEST(AtBounds, WhatNeverMovesStays) {
-  double at[3] = {0.5, 1, 0};
-  ceres::Problem problem;
-  problem.AddResidualBlock(new ceres::AutoDiffCostFunction<Valley, 2, 3>(new Valley), nullptr, at);
-  problem.SetParameterUpperBound(at, 1, 2.0);
-  AtBounds bounds(problem);
-  bounds.fix(at, {0});
-  solve(problem);
-  EXPECT_EQ(at[0], 0.5);
-  bounds.hold();
-  solve(problem);
-  bounds.release();
-  solve(problem);
-  EXPECT_EQ(at[0], 0.5);
+  Bounded valley(0.5, 1, 1.0, {0});
+  valley.solve();
+  EXPECT_EQ(valley.at[0], 0.5);
+  ASSERT_TRUE(valley.bounds.hold());
+  valley.solve();
+  valley.bounds.release();
+  valley.solve();
+  EXPECT_EQ(valley.at[0], 0.5);
 }
 
 }  // namespace

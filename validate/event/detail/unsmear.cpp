@@ -85,44 +85,41 @@ class InstantSearch {
   InstantSearch(const Cluster& cluster, const FilterWindow& window) : cluster_(cluster), window_(window) {}
   /// Pairs of neighbours on an even grid, over all that was left open: the probability has many peaks, each
   /// much narrower than that.
-  void scan(BroughtBack& best, const std::vector<double>& width) {
+  void scan(BroughtBack& best, const std::vector<double>& width) const {
     const std::vector<double> middle = best.instants;
     best.curve.emplace(cluster_.stretch, window_, best.instants, best.roughness);
     const double step = kScanStep * cluster_.stretch.step;
-    const auto steps = [&](std::size_t i) { return static_cast<int>(width[i] / step); };
+    const auto steps = [&](std::size_t i) {
+      return i < width.size() ? static_cast<int>(width[i] / step) : 0;
+    };
     for (std::size_t i = 0; i == 0 || i + 1 < middle.size(); ++i) {
-      const std::vector<double> others = best.instants;
-      const bool pair = i + 1 < middle.size();
-      for (int a = -steps(i); a <= steps(i); ++a)
-        for (int b = pair ? -steps(i + 1) : 0; b <= (pair ? steps(i + 1) : 0); ++b) {
-          std::vector<double> at = others;
-          at[i] = middle[i] + a * step;
-          if (pair) at[i + 1] = middle[i + 1] + b * step;
-          if (allowed(at)) keep(best, std::move(at));
-        }
+      std::vector<double> about = best.instants;
+      for (std::size_t k = i; k < std::min(i + 2, middle.size()); ++k) about[k] = middle[k];
+      grid(best, i, about, step, steps(i), steps(i + 1));
     }
   }
   /// Narrows down from `width` [s] in so many rounds, with the roughness that stands.
-  void run(BroughtBack& best, double width, int rounds) {
+  void run(BroughtBack& best, double width, int rounds) const {
+    constexpr int kSide = 2;
     best.curve.emplace(cluster_.stretch, window_, best.instants, best.roughness);
     for (int round = 0; round < rounds; ++round, width /= 2)
-      for (std::size_t i = 0; i == 0 || i + 1 < best.instants.size(); ++i) around(best, width, i);
+      for (std::size_t i = 0; i == 0 || i + 1 < best.instants.size(); ++i)
+        grid(best, i, std::vector(best.instants), width / kSide, kSide, kSide);
   }
 
  private:
-  void around(BroughtBack& best, double width, std::size_t i) const {
-    constexpr int kSide = 2;
-    const std::vector<double> middle = best.instants;
-    const bool pair = i + 1 < middle.size();
-    for (int a = -kSide; a <= kSide; ++a)
-      for (int b = pair ? -kSide : 0; b <= (pair ? kSide : 0); ++b) {
-        std::vector<double> at = middle;
-        at[i] += a * width / kSide;
-        if (pair) at[i + 1] += b * width / kSide;
-        if (allowed(at)) keep(best, std::move(at));
+  /// Keeps the best of instants i and i + 1 moved from where they stand in `about`, by so many steps at most.
+  void grid(BroughtBack& best, std::size_t i, const std::vector<double>& about, double step, int first,
+            int second) const {
+    const bool pair = i + 1 < about.size();
+    for (int a = -first; a <= first; ++a)
+      for (int b = pair ? -second : 0; b <= (pair ? second : 0); ++b) {
+        std::vector<double> at = about;
+        at[i] += a * step;
+        if (pair) at[i + 1] += b * step;
+        if (in_order(at, cluster_.stretch)) keep(best, std::move(at));
       }
   }
-  [[nodiscard]] bool allowed(const std::vector<double>& at) const { return in_order(at, cluster_.stretch); }
   void keep(BroughtBack& best, std::vector<double> at) const {
     SmearedCurve curve(cluster_.stretch, window_, at, best.roughness);
     if (curve.evidence() > best.curve->evidence()) best = {std::move(at), best.roughness, std::move(curve)};
@@ -223,11 +220,11 @@ std::vector<char> drop_swings(const FitEvent& e, const Cluster& c, const FilterW
     std::size_t which = 0;
     for (std::size_t i = 0, k = 0; i < c.count; ++i) {
       if (!stays[i]) continue;
-      const double told = told_share(c, window, b, k, 2 * e.switchings[c.first + i].uncertainty);
+      const double share = told_share(c, window, b, k, 2 * e.switchings[c.first + i].uncertainty);
       BroughtBack without{b.instants};
       without.instants.erase(without.instants.begin() + static_cast<std::ptrdiff_t>(k++));
       take_roughness(c, window, without);
-      const double gained = without.curve->evidence() - b.curve->evidence() - told;
+      const double gained = without.curve->evidence() - b.curve->evidence() - share;
       if (gained <= most) continue;
       most = gained, best = std::move(without), which = i, dropped = true;
     }
