@@ -40,6 +40,7 @@ inline const Course kDiagnoseCourse = then_played({
     {"first steps ", "second effects are tried in brief", 0.95, 0.97, true, " beside"},
     {"fit ", "promising second effects are fitted", 0.95, 0.97, true, " beside"},
     {"in place of", "pairs of other effects are tried", 0.95, 0.97, true, " + "},
+    {"crossed", "partners are exchanged between pairs", 0.95, 0.97, true, " + "},
     {"unseen events", "pairs are judged on events they were not fitted to", 0.95, 0.97, true, " + "},
     {"base", "the model's parameters are refitted", 0, 0.01},
     {"parameter", "a few wrong parameters are tried", 0.01, 0.015},

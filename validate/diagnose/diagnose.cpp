@@ -227,6 +227,7 @@ class Diagnoser {
       std::erase_if(others, unneeded);
       std::ranges::move(others, std::back_inserter(pairs));
       std::ranges::stable_sort(pairs, std::greater<>(), &hypothesis::Judgement::gain);
+      cross(stage, pairs);
     }
     keep_one_order(pairs);
     result_.ranked.insert(result_.ranked.begin(), std::make_move_iterator(pairs.begin()),
@@ -323,6 +324,26 @@ class Diagnoser {
     std::erase_if(pairs, [&](const hypothesis::Judgement& j) { return out_of_reach(j, pair); });
     judge_leading(pairs);
     return pairs;
+  }
+  /// Tries the pairs between those that hold: each effect was fitted beside one partner, which may not be the
+  /// best one for it. Only what would be in the set of the probable ones is worth it.
+  void cross(const hypothesis::Stage& stage, std::vector<hypothesis::Judgement>& pairs) const {
+    std::vector<hypothesis::Judgement> tried = pairs;
+    const auto in_set = [&](double gain) { return gain > pairs.front().gain - hypothesis::out_of_set(); };
+    for (auto next = hypothesis::best_cross(tried); next && in_set(next->expected) && !stopped();
+         next = hypothesis::best_cross(tried)) {
+      hypothesis::Judgement j = hypothesis::crossed(stage, *next);
+      report("crossed " + hypothesis::full_name(j.hypothesis), 0, 1);
+      hypothesis::try_begun(stage, j);
+      fit::count_passed(trial().passed, j.hypothesis.conventions, j.fit);
+      if (j.fit.failed.empty()) j.gain = fit::gain(result_.base, j.fit, fit::criterion);
+      tried.push_back(j);
+      if (!j.fit.failed.empty() || !in_set(j.gain)) continue;
+      judge_one(j);
+      if (!j.accepted || !needed(j)) continue;
+      pairs.push_back(std::move(j));
+      std::ranges::stable_sort(pairs, std::greater<>(), &hypothesis::Judgement::gain);
+    }
   }
   static bool out_of_reach(const hypothesis::Judgement& j, const hypothesis::Judgement& pair) {
     return j.gain < pair.gain - thresholds::evidence.within_reach;

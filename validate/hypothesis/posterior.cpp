@@ -33,6 +33,8 @@ double out_of_reach() {
   return -2 * thresholds::posterior.scale * std::log(thresholds::posterior.negligible.value);
 }
 
+double out_of_set() { return -2 * thresholds::posterior.scale * std::log(1 - thresholds::posterior.set); }
+
 std::string probability_text(double probability) {
   const double percent = 100 * probability;
   if (percent < 1) return "< 1 %";

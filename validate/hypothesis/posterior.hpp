@@ -27,6 +27,8 @@ std::size_t credible(const std::vector<Explanation>& all);
 /// By how much evidence an explanation stands behind another one beside which it is negligible
 /// (thresholds::posterior.negligible) [chi2].
 double out_of_reach();
+/// What a hypothesis may stand behind the best one and still be in the set of the probable ones [chi2].
+double out_of_set();
 
 /// "97 %"; never 0 or 100 %: "< 1 %", "> 99 %".
 std::string probability_text(double probability);

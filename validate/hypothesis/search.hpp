@@ -110,8 +110,24 @@ void bring(const Stage& stage, Hypothesis& h);
 /// to start from: the first effect's as `alone` found them, the second effect's as the pair has them.
 std::vector<Judgement> exchanges(const Stage& stage, const Judgement& pair,
                                  const std::vector<Judgement>& alone);
+/// Fits one that `exchanges` or `crossed` has begun, from its start.
+void try_begun(const Stage& stage, Judgement& j);
 /// Fits one of the exchanges. If it ends behind the pair, it is fitted from further starts with the machine
 /// as in the pair.
 void try_exchange(const Stage& stage, const Judgement& pair, Judgement& j);
+
+/// Two effects that were found in two pairs, each beside a partner of the other.
+struct Cross {
+  std::string joins;          ///< name of the effect that is taken out of the better pair
+  const Judgement* joins_in;  ///< the better pair, whose machine is taken as well
+  std::string stays;          ///< name of the effect that is taken out of the other pair
+  const Judgement* stays_in;
+  double
+      expected;  ///< evidence, if what two effects take off adds up: that of both pairs less their partners'
+};
+/// The most promising cross whose two effects are in no pair together, while their partners are.
+std::optional<Cross> best_cross(std::span<const Judgement> pairs);
+/// The pair of a cross, not fitted. Where one effect needs another to be there, it holds the names alone.
+Judgement crossed(const Stage& stage, const Cross& cross);
 
 }  // namespace swingbank::validate::hypothesis

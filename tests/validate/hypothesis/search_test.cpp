@@ -96,5 +96,61 @@ TEST_F(Exchange, NothingStandsWithoutWhatItNeeds) {
   EXPECT_THAT(exchanges(stage_, pair, {}), IsEmpty());
 }
 
+class Crossing : public Exchange {
+ protected:
+  /// A pair of these names and this evidence.
+  [[nodiscard]] static Judgement pair(const std::string& with, const std::string& name, double gain) {
+    Judgement j;
+    j.hypothesis.with = with;
+    j.hypothesis.name = name;
+    j.gain = gain;
+    return j;
+  }
+};
+TEST_F(Crossing, WhatTwoEffectsTakeOffAddsUp) {
+  std::vector<Judgement> pairs = {pair("GGOV1", "IEEET1", 100), pair("EXAC1", "GGOV1", 80),
+                                  pair("EXAC1", "IEEEG1", 75), pair("EXAC1", "HYGOV", 60)};
+  const auto best = best_cross(pairs);
+  ASSERT_TRUE(best);
+  EXPECT_EQ(best->joins + " joins " + best->stays, "IEEET1 joins IEEEG1");
+  EXPECT_EQ(best->joins_in, &pairs[0]);
+  EXPECT_EQ(best->stays_in, &pairs[2]);
+  EXPECT_EQ(best->expected, 95);
+  pairs.push_back(pair("IEEEG1", "IEEET1", 130));  // now the best, and beside it HYGOV's turn
+  const auto next = best_cross(pairs);
+  ASSERT_TRUE(next);
+  EXPECT_EQ(next->joins + " joins " + next->stays, "IEEET1 joins HYGOV");
+  EXPECT_EQ(next->expected, 130 + 60 - 75);
+}
+TEST_F(Crossing, NothingIsExpectedOfEffectsWhosePartnersWereNeverTogether) {
+  EXPECT_FALSE(best_cross(std::vector{pair("GGOV1", "IEEET1", 100), pair("EXAC1", "IEEEG1", 75)}));
+  EXPECT_FALSE(best_cross(std::vector{pair("GGOV1", "IEEET1", 100), pair("GGOV1", "EXAC1", 75)}));
+}
+TEST_F(Crossing, APairThatCannotBeFittedIsNotTriedAgain) {
+  std::vector<Judgement> pairs = {pair("GGOV1", "IEEET1", 100), pair("EXAC1", "GGOV1", 80),
+                                  pair("EXAC1", "IEEEG1", 75), pair("IEEEG1", "IEEET1", 0)};
+  pairs.back().fit.failed = "too steep";
+  EXPECT_FALSE(best_cross(pairs));
+}
+TEST_F(Crossing, EachEffectStartsAsItsPairHasIt) {
+  const std::vector<Judgement> pairs = {beside(alone("STEPUP", 0.07), "IEEEG1", 0.08),
+                                        beside(alone("CTERROR", 0.01), "TGOV1", 0.06)};
+  const Judgement j = crossed(stage_, {"IEEEG1", &pairs[0], "CTERROR", &pairs[1], 0});
+  EXPECT_EQ(full_name(j.hypothesis), "CTERROR + IEEEG1");
+  EXPECT_EQ(sim::plant::parameter_value(j.fit.plant, j.hypothesis.free.front().id), 0.08);
+  const auto own = named(all_hypotheses(model().under_test(), model().library), "CTERROR");
+  const auto id = sim::plant::same_parameter(j.fit.plant, own.plant, own.free.front().id).value();
+  EXPECT_EQ(sim::plant::parameter_value(j.fit.plant, id),
+            sim::plant::parameter_value(
+                pairs[1].fit.plant,
+                sim::plant::same_parameter(pairs[1].fit.plant, own.plant, own.free.front().id).value()));
+  EXPECT_NE(std::ranges::find(j.hypothesis.free, id, &fit::FreeParameter::id), j.hypothesis.free.end());
+}
+TEST_F(Crossing, NothingIsFittedWhereAnEffectNeedsAnother) {
+  const std::vector<Judgement> pairs = {beside(alone("TGOV1", 0.06), "TGOV1:db", 0.001),
+                                        beside(alone("CTERROR", 0.01), "STEPUP", 0.07)};
+  EXPECT_FALSE(crossed(stage_, {"STEPUP", &pairs[1], "TGOV1:db", &pairs[0], 0}).fit.failed.empty());
+}
+
 }  // namespace
 }  // namespace swingbank::validate::hypothesis

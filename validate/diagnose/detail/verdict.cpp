@@ -15,6 +15,9 @@
 namespace swingbank::validate::diagnose {
 namespace {
 
+constexpr double kEffectShownFrom = 0.01;    ///< probability of an effect by itself
+constexpr std::size_t kPairsInSentence = 3;  ///< the page and the table hold them all
+
 /// What an explanation with so many effects has to earn before it is as probable as one without.
 double price(const hypothesis::Hypothesis& h) {
   return thresholds::evidence.accepted + (h.with.empty() ? 0.0 : thresholds::evidence.second.value);
@@ -117,10 +120,37 @@ std::string with_probabilities(std::span<const hypothesis::Explanation> some) {
                         hypothesis::probability_text(e.probability));
   return text;
 }
+/// The same of a set. Effects that may stand beside each other make many pairs: the first of them then.
+std::string set_text(std::span<const hypothesis::Explanation> set, bool pairs) {
+  if (!pairs || set.size() <= kPairsInSentence) return with_probabilities(set);
+  return fmt::format("{} and {} more", with_probabilities(set.first(kPairsInSentence)),
+                     set.size() - kPairsInSentence);
+}
 
 /// What makes up the set.
 std::span<const hypothesis::Explanation> credible_set(const Diagnosis& d) {
   return std::span(d.probabilities).first(hypothesis::credible(d.probabilities));
+}
+
+/// "Each effect by itself: IEEET1 (62 %), IEEEG1 (44 %).": of all explanations that hold it, together.
+std::string by_effect_sentence(const Diagnosis& d) {
+  std::vector<hypothesis::Explanation> alone;
+  const auto count = [&](const std::string& name, double probability) {
+    const auto known = std::ranges::find(alone, name, &hypothesis::Explanation::name);
+    if (known == alone.end())
+      alone.push_back({.name = name, .probability = probability});
+    else
+      known->probability += probability;
+  };
+  for (const auto& e : d.probabilities) {
+    if (e.place < 0) continue;
+    const hypothesis::Hypothesis& h = d.ranked[static_cast<std::size_t>(e.place)].hypothesis;
+    if (!h.with.empty()) count(h.with, e.probability);
+    count(h.name, e.probability);
+  }
+  std::erase_if(alone, [](const auto& e) { return e.probability < kEffectShownFrom; });
+  std::ranges::stable_sort(alone, std::greater<>(), &hypothesis::Explanation::probability);
+  return "Each effect by itself: " + with_probabilities(alone) + ".";
 }
 
 bool names_an_effect(const Diagnosis& d) {
@@ -151,6 +181,7 @@ void name_best(const laws::Unexplained& judged, Diagnosis& d) {
     if (e.place >= 0) d.equivalent.push_back(e.name);
   }
   d.verdict = d.equivalent.empty() ? Verdict::missing : Verdict::confusable;
+  const bool pairs = !best.hypothesis.with.empty();
   const std::string does = best.hypothesis.replaces ? "explains the records" : "is missing";
   if (first->probability > thresholds::posterior.told)
     d.sentence =
@@ -159,11 +190,12 @@ void name_best(const laws::Unexplained& judged, Diagnosis& d) {
                                     ? best.hypothesis.what
                                     : best.hypothesis.with + ", and besides " + best.hypothesis.what),
                     does, hypothesis::probability_text(first->probability),
-                    others.empty() ? "" : ", or " + with_probabilities(others));
+                    others.empty() ? "" : ", or " + set_text(others, pairs));
   else
     d.sentence =
-        fmt::format("One of these {}, and the records cannot tell which: {}", does, with_probabilities(set));
+        fmt::format("One of these {}, and the records cannot tell which: {}", does, set_text(set, pairs));
   d.sentence += fmt::format(": {}.", fall_of_error(d.base, best));
+  if (set.size() > 1 && pairs) d.sentence += " " + by_effect_sentence(d);
   d.would_decide = hypothesis::what_would_decide(d.ranked, d.probabilities, judged.trial.events,
                                                  judged.trial.spread, judged.threads);
   if (const std::string words = hypothesis::decide_sentence(d.would_decide); !words.empty())
