@@ -57,7 +57,7 @@ import json, sys
 wrong = {w["name"]: w["fitted"] for w in json.load(open(sys.argv[1]))["wrong"]}
 truth = {name: float(value) for name, value in (a.split("=") for a in sys.argv[2:])}
 count = len(wrong)
-if "ESST4B.KPM" in wrong and "ESST4B.KPR" in truth:  # with KG = 0 the products KPM KPR and KPM KIR act
+if "ESST4B.KPM" in wrong and "ESST4B.KPR" in truth:  # with KG = 0 the products KPM KPR and KPM KIR act; 5.5 is the owner's
     gain = wrong.pop("ESST4B.KPM")
     print(f"ESST4B.KPM {gain:.4g} scales KPR and KIR")
     wrong |= {name: gain * wrong.get(name, 5.5) for name in ("ESST4B.KPR", "ESST4B.KIR")}

@@ -110,7 +110,8 @@ void bring(const Stage& stage, Hypothesis& h);
 /// to start from: the first effect's as `alone` found them, the second effect's as the pair has them.
 std::vector<Judgement> exchanges(const Stage& stage, const Judgement& pair,
                                  const std::vector<Judgement>& alone);
-/// Fits one that `exchanges` or `crossed` has begun, from its start.
+/// Fits one that `exchanges` or `crossed` has begun, from its start. One that could not be begun stays as it
+/// is.
 void try_begun(const Stage& stage, Judgement& j);
 /// Fits one of the exchanges. If it ends behind the pair, it is fitted from further starts with the machine
 /// as in the pair.
@@ -123,7 +124,7 @@ struct Cross {
   std::string stays;          ///< name of the effect that is taken out of the other pair
   const Judgement* stays_in;
   double
-      expected;  ///< evidence, if what two effects take off adds up: that of both pairs less their partners'
+      expected;  ///< evidence of both pairs less that of their partners' pair: what effects take off adds up
 };
 /// The most promising cross whose two effects are in no pair together, while their partners are.
 std::optional<Cross> best_cross(std::span<const Judgement> pairs);
