@@ -141,6 +141,7 @@ blind::cases::BlindCase make(const blind::cases::BlindConfig& config, const blin
   made.plant_name = "second";
   made.conventions = sim::Conventions::psse();
   made.noise = config.noise[d.below(config.noise.size())];
+  made.voltage_noise = made.noise * config.voltage_noise;
   made.channels = d.coin(config.channels_share);
   const std::string kind = spec.hidden.empty() ? "" : spec.hidden.front()->name;
   second::Setup plain;
@@ -166,8 +167,7 @@ blind::cases::BlindCase make(const blind::cases::BlindConfig& config, const blin
   made.model = made.truth = known_plant(plain);
   if (!kind.empty()) {
     const blind::cases::BlindSize size({made.model, made.conventions}, made.events, without,
-                                       made.noise * kMva / without.front().base.mva,
-                                       made.noise * config.voltage_noise);
+                                       made.noise * kMva / without.front().base.mva, made.voltage_noise);
     truth.kind = spec.hidden.front();
     truth.left = size.left(made.records);
     truth.visible = size.visible(made.records);
@@ -175,7 +175,8 @@ blind::cases::BlindCase make(const blind::cases::BlindConfig& config, const blin
   }
   if (!blind::cases::mislead(made.model.machine, config.wrong, d)) throw Unstable{};
   for (record::Record& record : made.records)
-    blind::cases::add_noise(record, config, made.noise, kMva, made.channels, d);
+    blind::cases::add_noise(record, {made.noise, kMva, made.voltage_noise, config.speed_noise}, made.channels,
+                            d);
   return made;
 }
 

@@ -31,9 +31,15 @@ class Maker {
       : config_(config), spec_(spec), draw_(draw), world_(config, spec.hidden, draw) {
     made_.spec = spec;
     made_.noise = config.noise[draw.below(config.noise.size())];
-    made_.pmu_filter = draw.coin(config.filter_share);
-    for (const BlindKind* kind : spec.hidden)  // the instrument is what is in question
-      if (kind->side == "measurement") made_.pmu_filter = false;
+    const auto instrument = [](const BlindKind* kind) { return kind->side == "measurement"; };
+    conditions_ =
+        draw_conditions(config, std::ranges::any_of(spec.hidden, instrument), world_.controlled(), draw);
+    made_.pmu_filter = conditions_.filter != Filter::none;
+    made_.voltage_noise = made_.noise * conditions_.voltage_noise;
+    made_.conditions = told(conditions_, config);
+    if (!config.conditions.machines.empty())
+      made_.conditions.emplace_back(target(world_.plain()).machine.effect->name);
+    if (world_.transformed()) made_.conditions.emplace_back("behind its transformer");
     made_.channels = draw.coin(config.channels_share);
     made_.controlled = world_.controlled();
     made_.grid_name = world_.grid_name();
@@ -49,7 +55,8 @@ class Maker {
     draw_model();
     made_.records = records(grid);
     for (record::Record& record : made_.records)
-      add_noise(record, config_, made_.noise, made_.truth.mva, made_.channels, draw_);
+      add_noise(record, {made_.noise, made_.truth.mva, made_.voltage_noise, config_.speed_noise},
+                made_.channels, draw_);
     return made_;
   }
 
@@ -68,8 +75,8 @@ class Maker {
   [[nodiscard]] std::vector<record::Record> records(const sim::grid::Grid& grid) const {
     std::vector<record::Record> all;
     for (std::size_t e = 0; e < made_.events.size(); ++e)
-      all.push_back(measured(run(grid, made_.events[e]), target(grid), config_, grid.conventions.frequency,
-                             made_.pmu_filter, seed_ + e));
+      all.push_back(measured(run(grid, made_.events[e]), target(grid), made_.events[e], conditions_,
+                             grid.conventions.frequency, seed_ + e));
     return all;
   }
   void draw_events() {
@@ -77,14 +84,20 @@ class Maker {
   }
   BlindEvent draw_event(int k) {
     for (int i = 0; i < kEventTries; ++i) {
-      const bool fault = k < config_.faults;
-      BlindEvent event = fault ? draw_fault(world_, draw_) : draw_frequency_event(world_, draw_);
+      const bool fault = k < config_.faults, last = k + 1 == config_.faults + config_.frequency_events;
+      const sim::network::Network& network = world_.plain().network;
+      BlindEvent event = fault                            ? draw_fault(world_, draw_)
+                         : last && conditions_.switchless ? draw_dip(network, draw_)
+                                                          : draw_frequency_event(world_, draw_);
+      if (event.seconds == 0) event.seconds = config_.seconds * (k == 0 && conditions_.longer ? 3 : 1);
+      let_loads_move(event, network, conditions_, draw_);
       try {
         const sim::reference::ReferenceRun fine = run(world_.plain(), event);
         const double* v = fine.at(0, 0);
         if (fault && v[0] - *std::min_element(v, v + fine.samples) < kDip) continue;
-        plain_.push_back(measured(fine, target(world_.plain()), config_, world_.plain().conventions.frequency,
-                                  made_.pmu_filter, seed_ + static_cast<std::uint64_t>(k)));
+        plain_.push_back(measured(fine, target(world_.plain()), event, conditions_,
+                                  world_.plain().conventions.frequency,
+                                  seed_ + static_cast<std::uint64_t>(k)));
         return event;
       } catch (const Unstable&) {  // drawn again
       }
@@ -97,8 +110,7 @@ class Maker {
     if (spec_.hidden.empty()) return;
     const sim::grid::Grid& plain = world_.plain();
     const BlindSize size({target(plain), plain.conventions}, made_.events, plain_,
-                         made_.noise * target(plain).mva / plain_.front().base.mva,
-                         made_.noise * config_.voltage_noise);
+                         made_.noise * target(plain).mva / plain_.front().base.mva, made_.voltage_noise);
     scales_.assign(spec_.hidden.size(), {});
     Scales found = scales_;
     for (std::size_t k = 0; k < spec_.hidden.size(); ++k) {
@@ -166,6 +178,7 @@ class Maker {
   const BlindSpec& spec_;
   BlindDraw& draw_;
   BlindWorld world_;
+  Conditions conditions_;
   BlindCase made_;
   std::vector<record::Record> plain_;  ///< without hidden effects or noise
   Scales scales_;

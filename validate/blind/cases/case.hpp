@@ -27,6 +27,7 @@ struct BlindEvent {
   std::string text;                ///< what happened, with units
   sim::network::Event event;       ///< indices of the grid it was drawn for
   std::vector<double> switchings;  ///< instants within the record [s]
+  double seconds = 0;              ///< simulated and, but for a late beginning, recorded
 };
 
 /// One hidden effect at the size it was given.
@@ -50,7 +51,9 @@ struct BlindCase {
   std::vector<BlindEvent> events;
   std::vector<record::Record> records;  ///< with noise, one per event
   std::vector<BlindTruth> hidden;
-  double noise = 0;  ///< of the machine's MVA [-]
+  double noise = 0;                     ///< of the machine's MVA [-]
+  double voltage_noise = 0;             ///< of V [pu] and theta [rad]
+  std::vector<std::string> conditions;  ///< what of [conditions] was drawn, in words
   bool pmu_filter = false, channels = false, controlled = false;
 };
 

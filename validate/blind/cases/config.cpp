@@ -78,6 +78,45 @@ BlindKind read_kind(Config& config, const std::string& name) {
   return kind;
 }
 
+BlindConditions read_conditions(Config& config) {
+  BlindConditions c;
+  const auto share = [&](const char* name) {
+    return config.optional<double>(std::string("conditions.") + name, 0.0, {0.0, 1.0});
+  };
+  const auto between = [&](const char* name, const Range& range) {
+    const std::string key = std::string("conditions.") + name;
+    return config.has(key) ? config.interval(key, range) : std::pair(0.0, 0.0);
+  };
+  const auto numbers = [&](const char* name, const Range& range) {
+    return config.optional<std::vector<double>>(std::string("conditions.") + name, {}, range);
+  };
+  const auto texts = [&](const char* name) {
+    return config.optional<std::vector<std::string>>(std::string("conditions.") + name, {});
+  };
+  c.rates = numbers("rates", {10.0, 240.0, "1/s"});
+  c.voltage_noise = numbers("voltage_noise", {0.0, 10.0, "of noise"});
+  c.class_m_share = share("class_m_share");
+  c.class_m_rates = numbers("class_m_rates", {10.0, 120.0, "1/s"});
+  c.short_share = share("short_share");
+  c.lead = config.optional<double>("conditions.lead", c.lead, {0.05, 1.5, "s"});
+  c.ambient_share = share("ambient_share");
+  c.ambient = between("ambient", {0.0, 0.1, "of a load"});
+  c.drift_share = share("drift_share");
+  c.drift = between("drift", {0.0, 0.5, "of the load per minute"});
+  c.wander_share = share("wander_share");
+  c.wander = between("wander", {0.0, 1.0, "rad"});
+  c.long_share = share("long_share");
+  c.dip_share = share("dip_share");
+  c.transformer_share = share("transformer_share");
+  c.machines = texts("machines");
+  c.exciters = texts("exciters");
+  c.governors = texts("governors");
+  check_blocks(config, "conditions.machines", c.machines);
+  check_blocks(config, "conditions.exciters", c.exciters);
+  check_blocks(config, "conditions.governors", c.governors);
+  return c;
+}
+
 }  // namespace
 
 const BlindKind* BlindConfig::kind(const std::string& name) const {
@@ -105,15 +144,19 @@ BlindConfig load_blind_config(const std::filesystem::path& file) {
   b.filter_share = config.require<double>("record.filter_share", {0.0, 1.0});
   b.channels_share = config.require<double>("record.channels_share", {0.0, 1.0});
   b.controlled_share = config.require<double>("events.controlled_share", {0.0, 1.0});
+  b.conditions = read_conditions(config);
   for (const auto& name : config.keys("grid"))
     b.grids.push_back({config.file("grid." + name + ".raw"), config.file("grid." + name + ".dyr"),
                        config.require<std::vector<std::int64_t>>("grid." + name + ".buses", {1.0})});
   for (const auto& name : config.keys("kind")) b.kinds.push_back(read_kind(config, name));
   if (b.grids.empty())
     config.problem("grid", "no [grid.NAME]", "cases are simulated on a grid", "give one grid at least");
-  if (std::abs(b.fine_rate / b.rate - std::round(b.fine_rate / b.rate)) > 1e-9)
-    config.problem("record.fine_rate", fmt::format("fine_rate = {:g} 1/s", b.fine_rate),
-                   fmt::format("it is no multiple of rate = {:g} 1/s", b.rate), "make it one");
+  std::vector<double> rates = b.conditions.rates;
+  rates.push_back(b.rate);
+  for (const double rate : rates)
+    if (std::abs(b.fine_rate / rate - std::round(b.fine_rate / rate)) > 1e-9)
+      config.problem("record.fine_rate", fmt::format("fine_rate = {:g} 1/s", b.fine_rate),
+                     fmt::format("it is no multiple of rate = {:g} 1/s", rate), "make it one");
   config.raise();
   return b;
 }

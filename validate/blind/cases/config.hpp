@@ -35,6 +35,27 @@ struct BlindGrid {
   std::vector<std::int64_t> buses;  ///< buses whose plants may be the one recorded
 };
 
+/// What a case may meet beyond a clean record of a quiet grid ([conditions]; docs/blind-test.md). Each is
+/// drawn for each case; a share of 0 and an empty list take no draw, and what [record] says holds.
+struct BlindConditions {
+  std::vector<double> rates;                ///< reports per second
+  std::vector<double> voltage_noise;        ///< as BlindConfig's
+  double class_m_share = 0;                 ///< of the filtered records that have a rate of `class_m_rates`
+  std::vector<double> class_m_rates;        ///< at which the standard has a filter of class M
+  double short_share = 0, lead = 0.2;       ///< records that begin `lead` [s] before their event
+  double ambient_share = 0;                 ///< every load moves about its power by itself,
+  std::pair<double, double> ambient{0, 0};  ///< rms, as a part of its power
+  double drift_share = 0;                   ///< all loads drift,
+  std::pair<double, double> drift{0, 0};    ///< a part of their power per minute, up or down
+  double wander_share = 0;                  ///< the reference of the angle wanders,
+  std::pair<double, double> wander{0, 0};   ///< amplitude [rad]
+  double long_share = 0;                    ///< the first event is recorded three times as long
+  double dip_share = 0;                     ///< the last event is a dip of frequency without any switching
+  double transformer_share = 0;             ///< a known transformer stands before the point that is recorded
+  std::vector<std::string> machines;        ///< effects, one of which takes the place of the file's machine
+  std::vector<std::string> exciters, governors;  ///< that the model may know: "EFFECT[:PARAM=VALUE,...]"
+};
+
 struct BlindConfig {
   std::vector<BlindGrid> grids;
   std::vector<BlindKind> kinds;
@@ -46,6 +67,7 @@ struct BlindConfig {
   std::pair<double, double> wrong{0.1, 0.2};  ///< shares by which the model's machine parameters are off
   std::pair<double, double> size{1.0, 10.0};  ///< drawn sizes, in detection limits
   double spread = 0.1;                        ///< spread of the true parameters about those of the files
+  BlindConditions conditions;
   double filter_share = 0.5, channels_share = 0.5, controlled_share = 0.5;
   std::uint64_t hash = 0;  ///< XXH64 of the file
 

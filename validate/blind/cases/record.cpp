@@ -5,10 +5,14 @@
 #include <cmath>
 
 #include "base/constants.hpp"
+#include "sim/library/library.hpp"
 #include "validate/blind/cases/detail/world.hpp"
 
 namespace swingbank::validate::blind::cases {
 namespace {
+
+/// The filter looks ahead by that much at most: two cycles, or half the window of class M at 30/s [s].
+constexpr double kAhead = 0.05, kAheadM = 0.2;
 
 enum FineChannel { kFineV, kFineTheta, kFineP, kFineQ, kFineSpeed, kFineIfd };
 
@@ -31,6 +35,15 @@ std::vector<Complex> p_class(const std::vector<Complex>& x, double rate, double 
   return y;
 }
 
+/// The reference filter of class M for these reports per second.
+void m_class(sim::Phasors& p, double reports) {
+  const sim::Effect& filter = *sim::library::compiled().find("PMUFILTER");
+  std::vector<double> values = filter.standard_parameters();
+  values[static_cast<std::size_t>(filter.parameter_index("class"))] = 1.0;
+  values[static_cast<std::size_t>(filter.parameter_index("reports"))] = reports;
+  filter.measure(values.data(), 0, p);
+}
+
 sim::Phasors phasors(const sim::reference::ReferenceRun& fine, double frequency) {
   sim::Phasors p;
   p.rate = fine.rate;
@@ -51,7 +64,8 @@ sim::reference::ReferenceRun simulate_fine(const sim::grid::Grid& grid, int plan
                                            const BlindConfig& config) {
   sim::reference::ReferenceOptions options;
   options.rate = config.fine_rate;
-  options.t_end = config.seconds + 0.05;  // the filter looks ahead
+  const bool class_m = config.conditions.class_m_share > 0;
+  options.t_end = event.seconds + (class_m ? kAheadM : kAhead);
   options.plants = {plant};
   options.channels = {sim::Channel::V, sim::Channel::theta, sim::Channel::P,
                       sim::Channel::Q, sim::Channel::speed, sim::Channel::Ifd};
@@ -59,24 +73,31 @@ sim::reference::ReferenceRun simulate_fine(const sim::grid::Grid& grid, int plan
 }
 
 record::Record measured(const sim::reference::ReferenceRun& fine, const sim::plant::Plant& plant,
-                        const BlindConfig& config, double frequency, bool pmu_filter, std::uint64_t seed) {
+                        const BlindEvent& event, const Conditions& conditions, double frequency,
+                        std::uint64_t seed) {
   sim::Phasors p = phasors(fine, frequency);
   for (const sim::plant::Block& block : plant.measurements) block.effect->measure(block.p.data(), seed, p);
-  if (pmu_filter) {
+  if (conditions.filter == Filter::class_p) {
     p.V = p_class(p.V, fine.rate, frequency);
     p.I = p_class(p.I, fine.rate, frequency);
+  } else if (conditions.filter == Filter::class_m) {
+    m_class(p, conditions.rate);
   }
   record::Record r;
   r.base.mva = kRecordMva;
   r.base.frequency = frequency;
-  const int stride = static_cast<int>(std::lround(config.fine_rate / config.rate));
+  const int stride = static_cast<int>(std::lround(fine.rate / conditions.rate));
+  const double begin = event.switchings.empty() ? 0.0 : event.switchings.front() - conditions.lead;
   const double scale = plant.mva / kRecordMva;
-  for (int k = 0; k <= static_cast<int>(std::lround(config.seconds * config.fine_rate)); k += stride) {
+  for (int k = 0; k <= static_cast<int>(std::lround(event.seconds * fine.rate)); k += stride) {
     const auto i = static_cast<std::size_t>(k);
+    const double t = static_cast<double>(k / stride) / conditions.rate;
+    if (t < begin) continue;
     const Complex power = p.V[i] * std::conj(p.I[i]) * scale;
     double angle = std::arg(p.V[i]);
+    angle += conditions.wander * std::sin(constants::turn * t / conditions.wander_s);
     if (!r.theta.empty()) angle += constants::turn * std::round((r.theta.back() - angle) / constants::turn);
-    r.t.push_back(static_cast<double>(k / stride) / config.rate);
+    r.t.push_back(t);
     r.V.push_back(std::abs(p.V[i]));
     r.theta.push_back(angle);
     r.P.push_back(power.real());
@@ -87,17 +108,16 @@ record::Record measured(const sim::reference::ReferenceRun& fine, const sim::pla
   return r;
 }
 
-void add_noise(record::Record& record, const BlindConfig& config, double noise, double mva, bool channels,
-               BlindDraw& draw) {
+void add_noise(record::Record& record, const RecordNoise& noise, bool channels, BlindDraw& draw) {
   const auto add = [&](std::vector<double>& values, double sigma) {
     for (double& value : values) value += sigma * draw.normal();
   };
-  add(record.V, noise * config.voltage_noise);
-  add(record.theta, noise * config.voltage_noise);
-  add(record.P, noise * mva / kRecordMva);
-  add(record.Q, noise * mva / kRecordMva);
-  add(record.speed, config.speed_noise);
-  add(record.Ifd, noise);
+  add(record.V, noise.voltage);
+  add(record.theta, noise.voltage);
+  add(record.P, noise.power * noise.mva / kRecordMva);
+  add(record.Q, noise.power * noise.mva / kRecordMva);
+  add(record.speed, noise.speed);
+  add(record.Ifd, noise.power);
   if (channels) return;
   record.speed.clear();
   record.Ifd.clear();

@@ -5,8 +5,6 @@
 
 #include "validate/fit/lines.hpp"
 #include "validate/fit/noise.hpp"
-#include "validate/plant/plant_model.hpp"
-#include "validate/record/record.hpp"
 
 namespace swingbank::validate::blind::score {
 namespace {
@@ -67,16 +65,20 @@ BlindVerdict verdict_of(const diagnose::Diagnosis& d) {
 
 }  // namespace
 
+Evidence read_evidence(const fs::path& folder) {
+  Evidence e{plant::load_plant_model(folder / "model.toml"), {}};
+  for (const auto& file : event_files(folder))
+    e.records.push_back(record::read_record(file, e.model.record_base));
+  return e;
+}
+
 BlindJudge diagnosis_judge(const diagnose::DiagnoseOptions& options) {
   return [options](const fs::path& folder) {
     const auto begin = std::chrono::steady_clock::now();
     BlindVerdict verdict;
     try {
-      const plant::PlantModel model = plant::load_plant_model(folder / "model.toml");
-      std::vector<record::Record> records;
-      for (const auto& file : event_files(folder))
-        records.push_back(record::read_record(file, model.record_base));
-      verdict = verdict_of(diagnose::diagnose(model, std::move(records), options));
+      Evidence seen = read_evidence(folder);
+      verdict = verdict_of(diagnose::diagnose(seen.model, std::move(seen.records), options));
     } catch (const InputError& error) {
       verdict.verdict = "refused";
       verdict.why = error.what();

@@ -73,6 +73,18 @@ std::string matrix(const BlindScore& score) {
   return text;
 }
 
+/// Empty where no case was recorded under any.
+std::string conditions(const BlindScore& score) {
+  if (score.by_condition.empty()) return "";
+  std::string text =
+      "## Recorded under\n\n| condition | nothing hidden: adequate | one effect: first or in the set | outside the "
+      "list: none of these |\n|---|---|---|---|\n";
+  for (const auto& [name, c] : score.by_condition)
+    text +=
+        fmt::format("| {} | {} | {} | {} |\n", name, percent(c.nothing), percent(c.one), percent(c.outside));
+  return text + "\n";
+}
+
 json rate_json(const Rate& r) {
   return {{"hits", r.hits}, {"n", r.n}, {"rate", r.value()}, {"low", r.low()}, {"high", r.high()}};
 }
@@ -92,13 +104,14 @@ std::string score_markdown(const BlindScore& score) {
       "## Right effect first, against size\n"
       "\n"
       "{}\n"
+      "{}"
       "## Confusion matrix\n"
       "\n"
       "First effect named, or the verdict where none was.\n"
       "\n"
       "{}{}",
       score.cases.size(), score.unjudged.size(), score.median_seconds, score.longest_seconds, rates(score),
-      sizes(score), matrix(score), reliability_markdown(score.reliability));
+      sizes(score), conditions(score), matrix(score), reliability_markdown(score.reliability));
 }
 
 json score_json(const BlindScore& score) {
@@ -114,6 +127,9 @@ json score_json(const BlindScore& score) {
   for (const auto& [name, rate] : score.rates) all["rates"][name] = rate_json(rate);
   for (const auto& [with, list] : score.by_size)
     for (const Rate& rate : list) all["by_size"][with].push_back(rate_json(rate));
+  for (const auto& [name, c] : score.by_condition)
+    all["by_condition"][name] = {
+        {"nothing", rate_json(c.nothing)}, {"one", rate_json(c.one)}, {"outside", rate_json(c.outside)}};
   for (const auto& c : score.cases)
     all["cases"].push_back({{"case", c.name},
                             {"hidden", c.kinds},

@@ -47,6 +47,7 @@ ScoredCase read_truth(const fs::path& file) {
     c.name = j.at("case");
     c.channels = j.at("channels").get<std::string>() != "P,Q";
     c.size = j.at("hidden").empty() ? 0.0 : 1e300;
+    c.conditions = j.value("conditions", c.conditions);
     for (const auto& h : j.at("hidden")) {
       c.kinds.push_back(h.at("kind"));
       c.sides.push_back(h.at("side"));
@@ -102,6 +103,19 @@ void count(const ScoredCase& c, BlindScore& score) {
     score.rates["outside the list: none of these"].count(v.verdict == "unexplained");
   } else {
     count_single(c, score);
+  }
+}
+
+void count_conditions(const ScoredCase& c, BlindScore& score) {
+  const std::string& verdict = c.verdict.verdict;
+  for (const std::string& condition : c.conditions) {
+    ByCondition& at = score.by_condition[condition];
+    if (c.kinds.empty())
+      at.nothing.count(verdict == "adequate");
+    else if (!c.listed)
+      at.outside.count(verdict == "unexplained");
+    else if (c.kinds.size() == 1 && c.size >= kFrom)
+      at.one.count(c.right_or_in_set());
   }
 }
 
@@ -190,6 +204,7 @@ BlindScore score_blind(const fs::path& run, const fs::path& targets) {
       c.verdict = read_verdict(verdict);
       seconds.push_back(c.verdict.seconds);
       count(c, score);
+      count_conditions(c, score);
       score.cases.push_back(std::move(c));
     } catch (const InputError& error) {
       for (const auto& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);

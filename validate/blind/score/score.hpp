@@ -20,6 +20,7 @@ struct ScoredCase {
   bool listed = true;                             ///< every hidden effect is in the list of hypotheses
   double size = 0;                                ///< smallest of the hidden effects, in detection limits
   bool channels = false;                          ///< speed and Ifd measured too
+  std::vector<std::string> conditions;            ///< what the case was recorded under, in words
   BlindVerdict verdict;
 
   [[nodiscard]] bool first_right() const;      ///< the first effect named is the hidden one
@@ -32,6 +33,13 @@ struct ScoredCase {
   [[nodiscard]] Forecast forecast() const;
 };
 
+/// What was right of the cases that were recorded under one condition; of single effects from 2 limits up.
+struct ByCondition {
+  Rate nothing;  ///< nothing hidden: adequate
+  Rate one;      ///< one listed effect: first, or in the set
+  Rate outside;  ///< outside the list: none of these
+};
+
 struct BlindScore {
   std::vector<ScoredCase> cases;
   std::vector<std::string> unjudged;  ///< cases without a verdict
@@ -39,6 +47,7 @@ struct BlindScore {
   std::map<std::string, double> targets;
   std::map<std::string, std::map<std::string, int>> confusion;  ///< [kind][what was said first]
   std::map<std::string, std::vector<Rate>> by_size;             ///< "PQ", "all": right first, per size class
+  std::map<std::string, ByCondition> by_condition;
   Reliability reliability;
   double median_seconds = 0, longest_seconds = 0;
 };

@@ -94,6 +94,68 @@ TEST(BlindCase, SwitchingsLieOffTheSamples) {
     }
 }
 
+/// The largest move of V from sample to sample before the event.
+double largest_move(const record::Record& r, double until) {
+  double most = 0;
+  for (std::size_t k = 1; k < r.t.size() && r.t[k] < until; ++k)
+    most = std::max(most, std::abs(r.V[k] - r.V[k - 1]));
+  return most;
+}
+
+TEST(BlindConditions, RateAndBeginningAreWhatTheySay) {
+  BlindConfig config = tiny();
+  config.conditions.rates = {30.0};
+  config.conditions.short_share = 1.0;
+  const BlindCase made = make(config, "");
+  EXPECT_THAT(made.conditions, testing::IsSupersetOf({"30/s", "begins 0.2 s before the event"}));
+  for (std::size_t e = 0; e < made.records.size(); ++e) {
+    EXPECT_NEAR(made.records[e].step(), 1.0 / 30, 1e-12);
+    const double before = made.events[e].switchings.front() - made.records[e].t.front();
+    EXPECT_LE(before, 0.2);
+    EXPECT_GT(before, 0.2 - 1.0 / 30);
+  }
+}
+TEST(BlindConditions, LoadsThatMoveShowInTheVoltage) {
+  BlindConfig config = tiny();
+  config.noise = {1e-9};
+  const BlindCase quiet = make(config, "");
+  config.conditions.ambient_share = 1.0;
+  config.conditions.ambient = {0.005, 0.005};
+  const BlindCase moved = make(config, "");
+  for (std::size_t e = 0; e < 3; ++e) {
+    EXPECT_LT(largest_move(quiet.records[e], quiet.events[e].switchings.front()), 1e-6);
+    EXPECT_GT(largest_move(moved.records[e], moved.events[e].switchings.front()), 1e-5);
+  }
+}
+TEST(BlindConditions, ADipHasNoSwitchingAndLetsTheFrequencyFall) {
+  BlindConfig config = tiny();
+  config.noise = {1e-9};
+  config.controlled_share = config.channels_share = 1.0;
+  config.conditions.dip_share = 1.0;
+  const BlindCase made = make(config, "");
+  EXPECT_TRUE(made.events.back().switchings.empty());
+  const record::Record& dip = made.records.back();
+  EXPECT_GT(dip.t.back(), 26.0);
+  EXPECT_LT(largest_move(dip, dip.t.back()), 0.005);
+  EXPECT_LT(*std::ranges::min_element(dip.speed), -3e-4);
+  EXPECT_NEAR(dip.speed.back(), 0.0, 2e-4);
+}
+TEST(BlindConditions, AnotherMachineTakesTheValuesOfItsNames) {
+  BlindConfig config = tiny();
+  config.conditions.machines = {"GENSAL"};
+  const BlindCase made = make(config, "");
+  ASSERT_EQ(made.truth.machine.effect->name, "GENSAL");
+  EXPECT_EQ(made.model.machine.effect->name, "GENSAL");
+  EXPECT_THAT(made.conditions, testing::Contains("GENSAL"));
+  expect_misled(made, config);
+}
+TEST(BlindConditions, NoneTakesNoDraw) {
+  const BlindConfig config = tiny();
+  BlindConfig unused = config;
+  unused.conditions.ambient = {0.1, 0.1};  // with a share of 0
+  EXPECT_EQ(all_csv(make(config, "sawtooth")), all_csv(make(unused, "sawtooth")));
+}
+
 TEST(BlindCase, FolderHoldsNothingOfTheTruth) {
   const BlindConfig config = tiny();
   const BlindCase made = make(config, "FORCEDOSC");
@@ -120,20 +182,19 @@ TEST(BlindCase, FolderHoldsNothingOfTheTruth) {
 }
 
 TEST(BlindCase, NoiseIsTheStatedOne) {
-  const BlindConfig config = tiny();
   record::Record record;
   record.P.assign(20'000, 0.0);
   record.Q = record.V = record.theta = record.speed = record.Ifd = record.P;
   BlindDraw draw(1, 2, 3);
-  add_noise(record, config, 0.002, 300.0, true, draw);
+  add_noise(record, {.power = 0.002, .mva = 300.0, .voltage = 0.0002, .speed = 2e-5}, true, draw);
   const auto deviation = [](const std::vector<double>& x) {
     double sum = 0;
     for (const double value : x) sum += value * value;
     return std::sqrt(sum / static_cast<double>(x.size()));
   };
   // 20,000 draws give a standard deviation to 0.5 %; four of these.
-  EXPECT_NEAR(deviation(record.P), 0.006, 0.02 * 0.006);    // 0.2 % of 300 MVA on 100 MVA
-  EXPECT_NEAR(deviation(record.V), 0.0002, 0.02 * 0.0002);  // a tenth of 0.2 %, as the config says
+  EXPECT_NEAR(deviation(record.P), 0.006, 0.02 * 0.006);  // 0.2 % of 300 MVA on 100 MVA
+  EXPECT_NEAR(deviation(record.V), 0.0002, 0.02 * 0.0002);
   EXPECT_NEAR(deviation(record.theta), 0.0002, 0.02 * 0.0002);
   EXPECT_NEAR(deviation(record.speed), 2e-5, 0.02 * 2e-5);
 }
@@ -155,14 +216,14 @@ sim::reference::ReferenceRun step_of_power(double rate, int samples) {
 }
 
 TEST(BlindRecord, FilterIsTwoCyclesLongAndKeepsConstants) {
-  BlindConfig config = tiny();
-  config.seconds = 2.0;
-  config.rate = config.fine_rate = 960.0;
+  BlindEvent event;
+  event.seconds = 2.0;
   sim::plant::Plant plant;
   plant.mva = 100.0;
   const auto run = step_of_power(960, 2001);
-  const record::Record plain = measured(run, plant, config, 60.0, false, 0);
-  const record::Record filtered = measured(run, plant, config, 60.0, true, 0);
+  const record::Record plain = measured(run, plant, event, {.rate = 960.0}, 60.0, 0);
+  const record::Record filtered =
+      measured(run, plant, event, {.rate = 960.0, .filter = Filter::class_p}, 60.0, 0);
   // 15 samples to either side at 16 samples a cycle; rounding of a weighted sum elsewhere.
   for (int k = 0; k <= 1920; ++k) {
     const bool away = k < 1000 - 15 || k >= 1000 + 15;
@@ -172,6 +233,21 @@ TEST(BlindRecord, FilterIsTwoCyclesLongAndKeepsConstants) {
   }
   EXPECT_NEAR(filtered.P[999] + filtered.P[1000], 1.2, 1e-14);  // symmetric about the step
   EXPECT_GT(filtered.P[990], 0.5 + 1e-4);
+}
+
+TEST(BlindRecord, FilterOfClassMIsAsLongAsTheStandardSays) {
+  BlindEvent event;
+  event.seconds = 2.0;
+  sim::plant::Plant plant;
+  plant.mva = 100.0;
+  const auto run = step_of_power(960, 2001);
+  const record::Record filtered =
+      measured(run, plant, event, {.rate = 60.0, .filter = Filter::class_m}, 60.0, 0);
+  // order 164 at 16 samples a cycle: 85.4 ms to either side of the step at 1.0417 s, in samples of 1/60 s
+  const auto moved = [&](std::size_t k) { return std::abs(filtered.P[k] - 0.5); };
+  EXPECT_LT(moved(57), 1e-12);  // 92 ms before
+  EXPECT_GT(moved(58), 1e-9);   // 75 ms before
+  EXPECT_NEAR(filtered.P[68], 0.7, 1e-12);
 }
 
 TEST(BlindEffects, OddOnesAreInNoList) {

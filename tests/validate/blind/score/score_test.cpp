@@ -26,7 +26,8 @@ class BlindScoring : public testing::Test {
     double size;
     bool listed = true;
   };
-  void add(const std::vector<Hidden>& effects, const BlindVerdict& verdict, bool channels = false) {
+  void add(const std::vector<Hidden>& effects, const BlindVerdict& verdict, bool channels = false,
+           const std::vector<std::string>& conditions = {}) {
     const std::string name = "c" + std::to_string(++count_);
     json hidden = json::array();
     for (const Hidden& h : effects)
@@ -36,7 +37,8 @@ class BlindScoring : public testing::Test {
                         {"listed", h.listed},
                         {"left_noise", 10 * h.size},
                         {"limit_noise", 10}});
-    const json truth = {{"case", name}, {"channels", channels ? "P,Q,speed,Ifd" : "P,Q"}, {"hidden", hidden}};
+    json truth = {{"case", name}, {"channels", channels ? "P,Q,speed,Ifd" : "P,Q"}, {"hidden", hidden}};
+    if (!conditions.empty()) truth["conditions"] = conditions;
     write_file(run_ / "truth" / (name + ".json"), truth.dump());
     write_file(run_ / "verdicts" / (name + ".json"), verdict_json(verdict));
     fs::create_directories(run_ / "cases" / name);
@@ -87,6 +89,29 @@ TEST_F(BlindScoring, CountsEachRate) {
   EXPECT_EQ(s.confusion.at("SEXS").at("TGOV1"), 1);
   EXPECT_EQ(s.confusion.at("nothing").at("adequate"), 1);
   EXPECT_DOUBLE_EQ(s.longest_seconds, 9.0);
+}
+
+TEST_F(BlindScoring, CountsWhatIsRightUnderEachCondition) {
+  const Hidden sexs{"SEXS", "excitation", "SEXS", 5}, odd{"sawtooth", "mechanical", "ODD", 3, false};
+  add({sexs}, {"missing", {"SEXS"}, {}, "excitation", 1}, false, {"30/s", "class M"});
+  add({sexs}, {"missing", {"TGOV1"}, {}, "mechanical", 1}, false, {"30/s"});
+  add({{"SEXS", "excitation", "SEXS", 1.5}}, {"adequate", {}, {}, "none", 1}, false,
+      {"30/s"});  // below 2 limits
+  add({}, {"adequate", {}, {}, "none", 1}, false, {"30/s"});
+  add({odd}, {"adequate", {}, {}, "none", 1}, false, {"class M"});
+  add({sexs, odd}, {"unexplained", {}, {}, "none", 1}, false, {"class M"});  // as outside the list
+  add({sexs}, {"missing", {"SEXS"}, {}, "excitation", 1});
+  const BlindScore s = score();
+  ASSERT_EQ(s.by_condition.size(), 2U);
+  const ByCondition &slow = s.by_condition.at("30/s"), &m = s.by_condition.at("class M");
+  EXPECT_EQ(slow.one.n, 2);
+  EXPECT_EQ(slow.one.hits, 1);
+  EXPECT_EQ(slow.nothing.hits, 1);
+  EXPECT_EQ(slow.outside.n, 0);
+  EXPECT_EQ(m.one.hits, 1);
+  EXPECT_EQ(m.outside.n, 2);
+  EXPECT_EQ(m.outside.hits, 1);
+  EXPECT_THAT(score_markdown(s), testing::HasSubstr("| class M | – | 100.0 % (1 of 1;"));
 }
 
 TEST_F(BlindScoring, APairIsInTheSetWhereOneEntryNamesBoth) {

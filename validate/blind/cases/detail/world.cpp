@@ -14,6 +14,8 @@ namespace {
 
 constexpr int kBlockTries = 200;  ///< draws of one block until its checks accept it
 
+constexpr const char* kKnownTransformer = "STEPUP:X=0.1";
+
 [[noreturn]] void refuse(const std::string& what, const std::string& why) {
   throw InputError({what, "blind case", why, "change the kinds in the config"});
 }
@@ -43,6 +45,14 @@ void put(sim::plant::Plant& plant, sim::plant::Block block) {
     return;
   }
   if (auto problem = sim::plant::place(plant, std::move(block), "blind case")) throw InputError(*problem);
+}
+
+/// Another machine in the place of the plant's, with its values under the same names.
+void take_machine(sim::plant::Plant& plant, sim::plant::Block machine) {
+  for (std::size_t i = 0; i < machine.p.size(); ++i)
+    if (const int k = plant.machine.effect->parameter_index(machine.effect->parameters[i].name); k >= 0)
+      machine.p[i] = plant.machine.p[static_cast<std::size_t>(k)];
+  plant.machine = std::move(machine);
 }
 
 double along(const BlindPath& path, double scale, bool logarithmic) {
@@ -119,8 +129,11 @@ BlindWorld::BlindWorld(const BlindConfig& config, const std::vector<const BlindK
   const auto at = std::ranges::find(grid_.plants, bus, &sim::plant::Plant::name);
   if (at == grid_.plants.end()) refuse("no plant " + bus, name_ + " has none");
   plant_ = static_cast<int>(at - grid_.plants.begin());
+  if (const auto& machines = config.conditions.machines; !machines.empty())
+    take_machine(grid_.plants[static_cast<std::size_t>(plant_)],
+                 block_of(machines[draw.below(machines.size())]));
   draw_machines(config.spread, draw);
-  draw_target(draw);
+  draw_target(config.conditions, draw);
   controlled_ = draw.coin(config.controlled_share);
   if (controlled_) draw_others(draw);
 }
@@ -141,7 +154,7 @@ void BlindWorld::draw_machines(double spread, BlindDraw& draw) {
   }
 }
 
-void BlindWorld::draw_target(BlindDraw& draw) {
+void BlindWorld::draw_target(const BlindConditions& conditions, BlindDraw& draw) {
   sim::plant::Plant& plant = grid_.plants[static_cast<std::size_t>(plant_)];
   std::vector<sim::plant::Block> known, all;
   blocks_.resize(hidden_.size());
@@ -159,8 +172,16 @@ void BlindWorld::draw_target(BlindDraw& draw) {
   }
   all.insert(all.end(), known.begin(), known.end());
   const bool exciter = draw.coin(), governor = draw.coin();
-  if (exciter && !has_slot(all, sim::Slot::exciter)) known.push_back(block_of("SEXS:K=150"));
-  if (governor && !has_slot(all, sim::Slot::governor)) known.push_back(block_of("TGOV1:VMAX=1.2"));
+  const auto one_of = [&](const std::vector<std::string>& list, const char* otherwise) {
+    return block_of(list.empty() ? otherwise : list[draw.below(list.size())]);
+  };
+  if (exciter && !has_slot(all, sim::Slot::exciter))
+    known.push_back(one_of(conditions.exciters, "SEXS:K=150"));
+  if (governor && !has_slot(all, sim::Slot::governor))
+    known.push_back(one_of(conditions.governors, "TGOV1:VMAX=1.2"));
+  transformed_ = conditions.transformer_share > 0 && draw.coin(conditions.transformer_share) &&
+                 !has_slot(all, sim::Slot::transformer);
+  if (transformed_) known.push_back(block_of(kKnownTransformer));
   for (sim::plant::Block& block : known) {
     jitter(block, 0.15, draw);
     put(plant, block);

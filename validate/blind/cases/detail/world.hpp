@@ -8,6 +8,7 @@
 #include "sim/grid/grid.hpp"
 #include "sim/reference/reference.hpp"
 #include "validate/blind/cases/case.hpp"
+#include "validate/blind/cases/detail/conditions.hpp"
 #include "validate/blind/cases/detail/random.hpp"
 #include "validate/event/event.hpp"
 
@@ -27,10 +28,12 @@ class BlindWorld {
   [[nodiscard]] int plant() const { return plant_; }
   [[nodiscard]] const std::string& grid_name() const { return name_; }
   [[nodiscard]] bool controlled() const { return controlled_; }
+  /// Whether a transformer that the model knows stands before the point that is recorded.
+  [[nodiscard]] bool transformed() const { return transformed_; }
 
  private:
   void draw_machines(double spread, BlindDraw& draw);
-  void draw_target(BlindDraw& draw);
+  void draw_target(const BlindConditions& conditions, BlindDraw& draw);
   void draw_others(BlindDraw& draw);
   void apply(const BlindKind& kind, double scale, sim::grid::Grid& grid) const;
   std::vector<const BlindKind*> hidden_;
@@ -38,7 +41,7 @@ class BlindWorld {
   sim::grid::Grid grid_;
   std::string name_;
   int plant_ = 0;
-  bool controlled_ = false;
+  bool controlled_ = false, transformed_ = false;
 };
 
 /// Every non-code parameter moved by up to `spread`, until the effect's own checks accept them.
@@ -56,12 +59,16 @@ BlindEvent draw_frequency_event(const BlindWorld& world, BlindDraw& draw);
 /// machine's base.
 sim::reference::ReferenceRun simulate_fine(const sim::grid::Grid& grid, int plant, const BlindEvent& event,
                                            const BlindConfig& config);
-/// The record that the instruments make of it, without noise: hidden measurement effects and the P-class
-/// filter act on the fine grid, and every n-th sample is taken. P and Q are on kRecordMva.
+/// The record that the instruments make of it, without noise: hidden measurement effects and the filter act
+/// on the fine grid, and every n-th sample is taken. P and Q are on kRecordMva.
 record::Record measured(const sim::reference::ReferenceRun& fine, const sim::plant::Plant& plant,
-                        const BlindConfig& config, double frequency, bool pmu_filter, std::uint64_t seed);
-void add_noise(record::Record& record, const BlindConfig& config, double noise, double mva, bool channels,
-               BlindDraw& draw);
+                        const BlindEvent& event, const Conditions& conditions, double frequency,
+                        std::uint64_t seed);
+/// White noise of these standard deviations: `noise` of `mva` on P and Q, the rest as the record's columns.
+struct RecordNoise {
+  double power, mva, voltage, speed;
+};
+void add_noise(record::Record& record, const RecordNoise& noise, bool channels, BlindDraw& draw);
 
 /// How large a difference between records is, for P and Q of all events, in units of the noise that the right
 /// model leaves. This is the noise of P and Q, and that of V and theta as plant and controls answer to it,

@@ -1,0 +1,105 @@
+// blind-optimum: how far the fit of the true structure, as a diagnosis leaves it, lies behind the optimum
+// that a fit reaches which begins at the truth. For cases of `swingbank blind-test` in which nothing or one
+// effect is hidden. A line for each: case, what is hidden, chi2 that the truth as start gains [chi2], chi2
+// per value.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "base/durable.hpp"
+#include "validate/blind/cases/plan.hpp"
+#include "validate/blind/score/judge.hpp"
+#include "validate/calibrate/side_by_side.hpp"
+
+namespace {
+using namespace swingbank;
+using namespace swingbank::validate;
+namespace fs = std::filesystem;
+
+/// A fit from the truth is gone on with in so many rounds at most.
+constexpr int kTruthRounds = 5;
+
+/// The true structure as the diagnosis fitted it.
+struct Ended {
+  sim::plant::PlantUnderTest tested;
+  std::vector<fit::FreeParameter> free;
+  const fit::Fit* fit;
+};
+/// Nothing where the diagnosis did not fit it.
+std::optional<Ended> true_one(const plant::PlantModel& model, const diagnose::Diagnosis& d,
+                              const nlohmann::json& hidden, double spread) {
+  if (hidden.empty()) return Ended{model.under_test(), fit::free_parameters(model.plant, spread), &d.base};
+  const auto answers = hidden.front().at("answers").get<std::vector<std::string>>();
+  for (const hypothesis::Judgement& j : d.ranked)
+    if (j.fitted && j.fit.failed.empty() && std::ranges::count(answers, hypothesis::full_name(j.hypothesis)))
+      return Ended{j.hypothesis.under_test(), hypothesis::free_of(j.hypothesis, spread), &j.fit};
+  return std::nullopt;
+}
+
+/// The best fit that begins at the truth, with each event's state as `ended` has it and as it was prepared.
+fit::Fit from_truth(const Ended& ended, const event::WhitenedEvents& events, const calibrate::Truth& truth) {
+  std::vector<double> values = fit::values_of(ended.fit->plant, ended.free);
+  for (std::size_t i = 0; i < ended.free.size(); ++i)
+    if (const auto at = truth.find(sim::plant::parameter_name(ended.fit->plant, ended.free[i].id).text());
+        at != truth.end())
+      values[i] = at->second;
+  const auto arrive = [&](fit::FitOptions o) {
+    o.values = values;
+    fit::Fit f = fit::fit(ended.tested, events, ended.free, o);
+    for (int round = 1; round < kTruthRounds && f.failed.empty() && !f.converged; ++round)
+      f = fit::fit(ended.tested, events, ended.free,
+                   fit::continued({.lenient = true, .errors = false}, f, ended.free));
+    return f;
+  };
+  const fit::FitOptions fresh{.lenient = true, .errors = false};
+  return std::min(arrive(fit::continued(fresh, *ended.fit, ended.free)), arrive(fresh), fit::better);
+}
+
+void tell(const fs::path& run, const std::string& name, const diagnose::DiagnoseOptions& options) {
+  const fs::path file = run / "truth" / (name + ".json");
+  const auto hidden = nlohmann::json::parse(read_text(file)).at("hidden");
+  if (hidden.size() > 1 || (!hidden.empty() && !hidden.front().at("listed").get<bool>())) return;
+  const std::string what = hidden.empty()
+                               ? "nothing"
+                               : fmt::format("{} ({:.0f})", hidden.front().at("kind").get<std::string>(),
+                                             hidden.front().at("left_noise").get<double>());
+  const blind::score::Evidence seen = blind::score::read_evidence(run / "cases" / name);
+  const diagnose::Diagnosis d = diagnose::diagnose(seen.model, seen.records, options);
+  const auto ended = true_one(seen.model, d, hidden, options.spread);
+  if (!ended) {
+    fmt::print("{} {}: not fitted\n", name, what);
+  } else {
+    const fit::Fit best = from_truth(*ended, d.events, calibrate::read_truth(file, seen.model));
+    fmt::print("{} {}: {:.1f}, {:.4f} of {:.4f}{}\n", name, what, fit::gain(*ended->fit, best), best.misfit(),
+               ended->fit->misfit(), best.converged ? "" : ", not converged");
+  }
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("where the fit of the true structure ended, against a fit that begins at the truth");
+  fs::path run;
+  std::string part = "1/1";
+  app.add_option("--run", run, "folder that blind-test --make wrote")->required();
+  app.add_option("--part", part, "K/N: every N-th case, from the K-th");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    const auto [k, n] = blind::cases::read_part(part);
+    diagnose::DiagnoseOptions options;
+    options.threads = 1;
+    std::vector<std::string> names;
+    for (const auto& file : fs::directory_iterator(run / "truth"))
+      names.push_back(file.path().stem().string());
+    std::ranges::sort(names);
+    for (auto i = static_cast<std::size_t>(k - 1); i < names.size(); i += static_cast<std::size_t>(n))
+      tell(run, names[i], options);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+  return 0;
+}
