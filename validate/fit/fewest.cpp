@@ -19,6 +19,8 @@ constexpr std::size_t kBeam = 60;     ///< sets of each size that are kept
 constexpr std::size_t kRefitted = 3;  ///< sets of each size that are refitted
 constexpr std::size_t kTied = 6;      ///< sets of the size that is taken that are refitted to find ties
 
+constexpr double kExactly = 1e-6;  ///< a share by which what is held exactly may move, for the algebra
+
 const FitOptions kSearch = {.lenient = true};
 
 struct Ranked {
@@ -36,42 +38,46 @@ class Selection {
     fit_all();
     learn_curvature();
     Fewest back;
-    Fit chosen = refit({});
-    back.fit = chosen;
+    back.fit = refit({}).fit;
     back.events = events_;
-    back.before = chosen.misfit();
+    back.before = back.fit.misfit();
     back.best = all_.misfit();
     grow();
     if (hopeless()) return back;
     Set set;
-    const double nothing = penalised(chosen), most = penalised(all_);
-    double taken = nothing;
+    Refit chosen = refit({});
+    double taken = chosen.cost;
     for (std::size_t size = 1; size < beams_.size(); ++size) {
       if (stopped()) return back;
-      if (taken - most < options_.each) break;  // every other parameter together earns no more
-      const auto& [fit, best] = best_of(size);
+      if (taken - penalised(all_) < options_.each) break;  // every other parameter together earns no more
+      const auto& [refitted, best] = best_of(size);
       report("sets of parameters", size, beams_.size() - 1);
       // a set of this size may look poor where the next one holds two that work together
-      if (const double gain = taken - penalised(fit);
-          gain > options_.each * static_cast<double>(size - set.size())) {
-        taken = penalised(fit);
-        chosen = fit;
+      if (taken - refitted.cost > options_.each * static_cast<double>(size - set.size())) {
+        taken = refitted.cost;
+        chosen = refitted;
         set = best;
       } else if (size >= set.size() + 2) {
         break;
       }
     }
-    std::vector<double> evidence = drop_idle(set, chosen);
+    drop_idle(set, chosen);
     if (set.empty()) return back;
-    while (exchange(set, chosen, evidence)) {
+    while (exchange(set, chosen)) {
     }
+    std::vector<double> rises = evidence(set, chosen.fit);
+    // one that earned its place only while the others moved a little is no news where they stay
+    for (auto least = std::ranges::min_element(rises); least != rises.end() && *least < options_.each;
+         least = std::ranges::min_element(rises)) {
+      set = without(set, static_cast<std::size_t>(least - rises.begin()));
+      chosen = refit(set);
+      rises = evidence(set, chosen.fit);
+      as_well_.clear();
+    }
+    if (set.empty()) return back;
     chosen = refit(set, true);
-    if (gain(all_, chosen, criterion) - options_.each * static_cast<double>(set.size()) < options_.least)
-      return back;
-    describe(set, evidence, chosen, nothing - most, back);
-    for (const auto& [gone, other] : exchanges(set, chosen))
-      if (other.size() == 2) back.alternatives.push_back({names_of(gone), names_of(other)});
-    back.fit = std::move(chosen);
+    if (worth(criterion(chosen.fit), 0, set.size()) < options_.least) return back;
+    describe(set, rises, chosen, back);
     return back;
   }
 
@@ -109,29 +115,32 @@ class Selection {
                            : (p.value - p.start) / axis_unit(tested_.plant, p.where);
     }
   }
-  /// What the curvature foretells if only these move: by how much the cost exceeds that with all free, where
-  /// they end, and the log determinant of what is known of them (Fit::occam).
+  /// What the curvature foretells if these move and the others stay within what is right: by how much the
+  /// cost exceeds that with all free, where all end, and the log determinant of what is known of them
+  /// (Fit::occam).
   struct Foretold {
     double excess = 0, occam = 0;
     Eigen::VectorXd at = {};
   };
-  [[nodiscard]] Foretold foretold(const Set& set) const {
-    const auto k = static_cast<Eigen::Index>(set.size());
+  [[nodiscard]] Foretold foretold(const Set& set) const { return foretold(set, options_.right); }
+  /// `right`: standard deviation of the others about what is believed of them, as a share of it.
+  [[nodiscard]] Foretold foretold(const Set& set, double right) const {
     const Eigen::VectorXd toward = curvature_ * at_;
-    Foretold f{.excess = at_.dot(toward)};
-    if (k == 0) return f;
-    Eigen::MatrixXd own(k, k);
-    Eigen::VectorXd along(k);
-    for (Eigen::Index i = 0; i < k; ++i) {
-      const auto a = static_cast<Eigen::Index>(set[static_cast<std::size_t>(i)]);
-      along[i] = toward[a];
-      for (Eigen::Index j = 0; j < k; ++j)
-        own(i, j) = curvature_(a, static_cast<Eigen::Index>(set[static_cast<std::size_t>(j)]));
+    Eigen::MatrixXd held = curvature_;
+    double believed = 0;
+    for (std::size_t i = 0; i < free_.size(); ++i) {
+      if (std::ranges::binary_search(set, i)) continue;
+      FreeParameter held_to = free_[i];
+      held_to.spread = std::min(held_to.spread, right);
+      const double tighter =
+          std::pow(axis_unit(tested_.plant, free_[i]) / axis_unit(tested_.plant, held_to), 2);
+      held.diagonal()[static_cast<Eigen::Index>(i)] += tighter - 1;
+      believed += std::log(tighter);
     }
-    const auto known = own.ldlt();
-    f.at = known.solve(along);
-    f.excess -= along.dot(f.at);
-    f.occam = known.vectorD().array().log().sum();
+    const auto known = held.ldlt();
+    Foretold f{.at = known.solve(toward)};
+    f.excess = toward.dot(at_ - f.at);
+    f.occam = known.vectorD().array().log().sum() - believed;
     return f;
   }
   /// The sets of every size that cost least, on the curvature.
@@ -174,46 +183,54 @@ class Selection {
         if (const double its = worth(penalised(all_) + f.excess, f.occam, k); its > most)
           most = its, size = k, best = std::move(f);
       }
-    return size == 0 || worth(penalised(best_of(size).first), best.occam, size) < options_.least;
+    return size == 0 || worth(best_of(size).first.cost, best.occam, size) < options_.least;
   }
-  [[nodiscard]] std::vector<FreeParameter> members(const Set& set) const {
-    std::vector<FreeParameter> some;
-    for (const std::size_t i : set) some.push_back(free_[i]);
-    return some;
+  /// Where the curvature foretells that a parameter ends.
+  [[nodiscard]] double foretold_value(const Foretold& there, std::size_t i) const {
+    const double believed = parameter_value(tested_.plant, free_[i].id),
+                 z = there.at[static_cast<Eigen::Index>(i)];
+    return believed > 0 ? believed * std::exp(z * free_[i].spread)
+                        : believed + z * axis_unit(tested_.plant, free_[i]);
   }
+  /// A fit in which these alone move, and what it would cost if the others moved within what is right.
+  struct Refit {
+    Fit fit;
+    double cost = std::numeric_limits<double>::infinity();
+  };
   /// Fits these alone from where the curvature foretells their optimum. A fit that ends where the curvature
-  /// has it has missed nothing; any other one gets a second start, at the believed values.
-  [[nodiscard]] Fit refit(const Set& set, bool errors = false) const {
+  /// has it has missed nothing; any other one gets a second start, at the believed values. Of what the fit
+  /// costs beyond that with all free, the others would take off the share that the curvature foretells.
+  [[nodiscard]] Refit refit(const Set& set, bool errors = false) const {
+    const Foretold fixed = foretold(set, kExactly), soft = foretold(set);
     FitOptions o = kSearch;
     o.errors = errors;
-    const auto some = members(set);
+    std::vector<FreeParameter> some;
+    for (const std::size_t i : set) some.push_back(free_[i]);
+    FitOptions from = o;
+    if (!set.empty()) {
+      from = continued(o, all_, some);
+      for (std::size_t i = 0; i < some.size(); ++i) from.values[i] = foretold_value(fixed, set[i]);
+    }
+    const double most = penalised(all_);
+    Refit r{fit(tested_, events_, some, from)};
     if (set.empty()) {
-      Fit f = fit(tested_, events_, some, o);
-      require(f);
-      return f;
+      require(r.fit);
+    } else if (penalised(r.fit) >= most + fixed.excess + options_.each) {
+      Fit other = fit(tested_, events_, some, o);
+      if (better(other, r.fit)) r.fit = std::move(other);
     }
-    const Foretold there = foretold(set);
-    FitOptions from = continued(o, all_, some);
-    for (std::size_t i = 0; i < some.size(); ++i) {
-      const double believed = parameter_value(tested_.plant, some[i].id),
-                   z = there.at[static_cast<Eigen::Index>(i)];
-      from.values[i] = believed > 0 ? believed * std::exp(z * some[i].spread)
-                                    : believed + z * axis_unit(tested_.plant, some[i]);
-    }
-    Fit ended = fit(tested_, events_, some, from);
-    if (penalised(ended) < penalised(all_) + there.excess + options_.each) return ended;
-    Fit other = fit(tested_, events_, some, o);
-    return better(other, ended) ? other : ended;
+    r.cost = penalised(r.fit);
+    if (r.cost > most && fixed.excess > 0) r.cost = most + (r.cost - most) * soft.excess / fixed.excess;
+    return r;
   }
   /// The best of this size, of those that the curvature likes best.
-  const std::pair<Fit, Set>& best_of(std::size_t size) {
+  const std::pair<Refit, Set>& best_of(std::size_t size) {
     auto& best = refitted_[size];
     if (best) return *best;
     best.emplace();
-    best->first.failed = "not fitted";
     for (std::size_t k = 0; k < std::min(kRefitted, beams_[size].size()); ++k)
-      if (Fit f = refit(beams_[size][k].set); better(f, best->first))
-        *best = {std::move(f), beams_[size][k].set};
+      if (Refit r = refit(beams_[size][k].set); r.cost < best->first.cost)
+        *best = {std::move(r), beams_[size][k].set};
     return *best;
   }
   [[nodiscard]] static Set without(Set set, std::size_t i) {
@@ -221,15 +238,14 @@ class Selection {
     return set;
   }
   /// Drops members that the others have made needless, the least first; of a smaller size, only few sets were
-  /// refitted. Returns by how much the cost rises without each of those that remain.
-  std::vector<double> drop_idle(Set& set, Fit& chosen) const {
-    std::vector<double> evidence;
+  /// refitted.
+  void drop_idle(Set& set, Refit& chosen) const {
     while (!set.empty()) {
-      evidence.clear();
-      Fit cheapest;
+      std::vector<double> evidence;
+      Refit cheapest;
       for (std::size_t i = 0; i < set.size(); ++i) {
-        Fit less = refit(without(set, i));
-        evidence.push_back(gain(less, chosen));
+        Refit less = refit(without(set, i));
+        evidence.push_back(less.cost - chosen.cost);
         if (evidence.back() <= *std::ranges::min_element(evidence)) cheapest = std::move(less);
         report("sets of parameters without one", i + 1, set.size());
       }
@@ -238,28 +254,37 @@ class Selection {
       set = without(set, static_cast<std::size_t>(least - evidence.begin()));
       chosen = std::move(cheapest);
     }
-    return evidence;
   }
-  void describe(const Set& set, const std::vector<double>& evidence, const Fit& chosen,
-                double excess_of_model, Fewest& back) const {
+  /// By how much the cost rises without each of the set, the others exactly as believed.
+  [[nodiscard]] std::vector<double> evidence(const Set& set, const Fit& only) const {
+    std::vector<double> rises;
+    for (std::size_t i = 0; i < set.size(); ++i) rises.push_back(gain(refit(without(set, i)).fit, only));
+    return rises;
+  }
+  /// The set as a person reads it, from fits in which the others stay exactly as believed.
+  void describe(const Set& set, const std::vector<double>& rises, const Refit& chosen, Fewest& back) const {
+    const double excess = penalised(back.fit) - penalised(all_);
     for (std::size_t i = 0; i < set.size(); ++i) {
       WrongParameter w;
-      w.fit = chosen.parameters[i];
-      w.evidence = evidence[i];
-      w.share = excess_of_model > 0 ? std::clamp(w.evidence / excess_of_model, 0.0, 1.0) : 0.0;
+      w.fit = chosen.fit.parameters[i];
+      w.evidence = rises[i];
+      w.share = excess > 0 ? std::clamp(w.evidence / excess, 0.0, 1.0) : 0.0;
       w.tied = tied(set, set[i], chosen);
       back.wrong.push_back(std::move(w));
     }
     std::ranges::stable_sort(back.wrong, std::greater<>(), &WrongParameter::evidence);
+    for (const auto& [gone, other] : exchanges(set, chosen))
+      if (other.size() == 2) back.alternatives.push_back({names_of(gone), names_of(other)});
+    back.fit = chosen.fit;
   }
   /// Whether a set leaves no more than the chosen one; each is refitted once.
-  [[nodiscard]] bool does_as_well(const Set& set, const Fit& chosen) const {
+  [[nodiscard]] bool does_as_well(const Set& set, const Refit& chosen) const {
     const auto known = as_well_.find(set);
     if (known != as_well_.end()) return known->second;
-    return as_well_[set] = gain(refit(set), chosen) < options_.each;
+    return as_well_[set] = refit(set).cost - chosen.cost < options_.each;
   }
   /// What would do in place of one of the set.
-  [[nodiscard]] std::vector<std::string> tied(const Set& set, std::size_t which, const Fit& chosen) const {
+  [[nodiscard]] std::vector<std::string> tied(const Set& set, std::size_t which, const Refit& chosen) const {
     std::vector<std::string> names;
     std::size_t tried = 0;
     for (const Ranked& r : beams_[set.size()]) {
@@ -284,19 +309,19 @@ class Selection {
   }
   /// A single parameter that does what two are wrong in, as the gain behind a regulator's two, may ask for a
   /// third to make up for it. Where the pair in its place makes others needless, the smaller set is taken.
-  [[nodiscard]] bool exchange(Set& set, Fit& chosen, std::vector<double>& evidence) const {
+  [[nodiscard]] bool exchange(Set& set, Refit& chosen) const {
     as_well_.clear();
     for (const auto& [gone, other] : exchanges(set, chosen)) {
       if (other.size() != 2) continue;
       Set next, kept;
       std::ranges::set_difference(set, gone, std::back_inserter(kept));
       std::ranges::set_union(kept, other, std::back_inserter(next));
-      Fit fitted = refit(next);
-      std::vector<double> its = drop_idle(next, fitted);
+      Refit fitted = refit(next);
+      drop_idle(next, fitted);
       if (next.size() >= set.size() ||
-          gain(fitted, chosen) >= options_.each * static_cast<double>(set.size() - next.size()))
+          fitted.cost - chosen.cost >= options_.each * static_cast<double>(set.size() - next.size()))
         continue;
-      set = std::move(next), chosen = std::move(fitted), evidence = std::move(its);
+      set = std::move(next), chosen = std::move(fitted);
       as_well_.clear();
       return true;
     }
@@ -305,7 +330,7 @@ class Selection {
   using Exchange = std::pair<Set, Set>;  ///< gone, in their place
   /// Pairs that would do in place of one or two of the set, such as the two gains of a regulator and the gain
   /// behind it. Where a part of the exchange is an alternative by itself it is told alone.
-  [[nodiscard]] std::vector<Exchange> exchanges(const Set& set, const Fit& chosen) const {
+  [[nodiscard]] std::vector<Exchange> exchanges(const Set& set, const Refit& chosen) const {
     const double here = foretold(set).excess;
     std::vector<Exchange> found;
     const auto told = [&](const Set& gone, const Set& other) {
@@ -340,7 +365,7 @@ class Selection {
   Eigen::MatrixXd curvature_;
   Eigen::VectorXd at_;
   std::vector<std::vector<Ranked>> beams_;  ///< [size of the sets]
-  std::vector<std::optional<std::pair<Fit, Set>>> refitted_;
+  std::vector<std::optional<std::pair<Refit, Set>>> refitted_;
   mutable std::map<Set, bool> as_well_;  ///< of does_as_well()
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 // Which parameters are wrong: the fewest that must change for the model to explain the records, while every
-// other one stays as it is believed.
+// other one stays as it is believed, or within what a right value is off by.
 #include <functional>
 #include <limits>
 #include <string>
@@ -37,6 +37,10 @@ struct Fewest {
 struct FewestOptions {
   std::size_t most = 8;  ///< so many at most
   double each = 10;      ///< what a parameter must earn [chi2]
+  /// Standard deviation of a value that is right about the one that is believed, as a share of it: parameters
+  /// that are not named may move by that much while sets are compared (spike and slab; George and McCulloch,
+  /// J. Am. Stat. Assoc. 88, 1993, p. 881). In what is returned they stay as they are.
+  double right = 0.01;
   std::function<void(const std::string& what, int done, int total)> progress = {};
   /// Asked between sets; true: nothing is named.
   std::function<bool()> stop = {};
@@ -49,8 +53,9 @@ struct FewestOptions {
 };
 
 /// Sets of parameters are compared on the curvature of the cost where all are free, and the best of each size
-/// are refitted from where it foretells their optimum. `free` may move; what is believed of those that do
-/// stands in their spread. Throws InputError where the model cannot be fitted.
+/// are refitted, with the others within what is right, from where it foretells their optimum. `free` may
+/// move; what is believed of those that do stands in their spread. Throws InputError where the model cannot
+/// be fitted.
 Fewest fewest(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
               const std::vector<FreeParameter>& free, const FewestOptions& options = {});
 

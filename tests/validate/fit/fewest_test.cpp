@@ -30,8 +30,8 @@ struct Known {
   }
   [[nodiscard]] std::vector<FreeParameter> free() const { return free_parameters(model.plant, 0.2); }
   /// Names of what is found, in order of the alphabet.
-  [[nodiscard]] std::vector<std::string> named() const {
-    const Fewest found = fewest(model.under_test(), events, free());
+  [[nodiscard]] std::vector<std::string> named(const FewestOptions& options = {}) const {
+    const Fewest found = fewest(model.under_test(), events, free(), options);
     std::vector<std::string> names;
     for (const auto& w : found.wrong) {
       names.push_back(w.fit.full_name());
@@ -46,6 +46,12 @@ struct Known {
 
 TEST(Fewest, NamesTheParameterThatIsWrong) {
   EXPECT_EQ(Known({{"GENROU.H", 1.3}}, 2).named(), std::vector<std::string>{"GENROU.H"});
+}
+/// One per cent off has an evidence of its own here, which is named only where right means exactly.
+TEST(Fewest, AValueThatIsOffByAPercentIsRight) {
+  const Known known({{"GENROU.H", 1.3}, {"GENROU.Xdp", 1.01}}, 2);
+  EXPECT_EQ(known.named(), std::vector<std::string>{"GENROU.H"});
+  EXPECT_EQ(known.named({.right = 1e-6}), (std::vector<std::string>{"GENROU.H", "GENROU.Xdp"}));
 }
 TEST(Fewest, NamesNothingWhereNothingIsWrong) { EXPECT_TRUE(Known({}, 2).named().empty()); }
 

@@ -12,9 +12,10 @@
 namespace swingbank::validate::blind::cases {
 namespace {
 
-constexpr double kStair = 0.05;      ///< loads move in stairs of that length [s]
+constexpr double kStair = 0.025;     ///< loads move in stairs of that length [s]
 constexpr double kOffset = 0.0137;   ///< of the stairs, so that they lie off the samples of any rate [s]
-constexpr double kMemory = 1.0;      ///< time constant of the ambient noise [s]
+constexpr double kMemory = 1.0;      ///< of the ambient noise [s],
+constexpr double kSmooth = 0.2;      ///< which is smoothed, so that its stairs are no jumps [s]
 constexpr double kReactive = 0.2;    ///< Q that moves with P, as a load step's does
 constexpr double kDipStart = 1.5;    ///< [s]
 constexpr double kAfterDip = 5.0;    ///< recorded after it [s]
@@ -83,10 +84,13 @@ std::vector<std::string> told(const Conditions& c, const BlindConfig& config) {
 void let_loads_move(BlindEvent& event, const sim::network::Network& network, const Conditions& c,
                     BlindDraw& draw) {
   if (c.ambient == 0 && c.drift == 0) return;
-  const double keeps = std::exp(-kStair / kMemory), adds = c.ambient * std::sqrt(1 - keeps * keeps);
-  double noise = 0;
+  const double keeps = std::exp(-kStair / kMemory), holds = std::exp(-kStair / kSmooth);
+  const double adds = c.ambient * std::sqrt((1 - keeps * keeps) * (kMemory + kSmooth) / kMemory);
+  double rough = 0, noise = 0;
   move(event, network, event.seconds, [&](int k, double t) {
-    noise = k == 0 ? 0.0 : keeps * noise + adds * draw.normal();
+    if (k == 0) rough = noise = 0;  // at rest where the run begins
+    rough = keeps * rough + adds * draw.normal();
+    noise = holds * noise + (1 - holds) * rough;
     return noise + c.drift * t;
   });
 }

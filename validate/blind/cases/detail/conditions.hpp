@@ -33,7 +33,7 @@ Conditions draw_conditions(const BlindConfig& config, bool instrument, bool dips
 /// What of it is not the usual, for the truth: "30/s", "class M", "ambient 0.3 %".
 std::vector<std::string> told(const Conditions& c, const BlindConfig& config);
 
-/// Lets the loads of an event move as the conditions say: stairs of 0.05 s that lie off the samples.
+/// Lets the loads of an event move as the conditions say: stairs of 0.025 s that lie off the samples.
 void let_loads_move(BlindEvent& event, const sim::network::Network& network, const Conditions& c,
                     BlindDraw& draw);
 /// All loads rise by a few per cent and fall back over 20 to 60 s, without any switching.
