@@ -65,7 +65,7 @@ void tell(const fs::path& run, const std::string& name, const diagnose::Diagnose
                                ? "nothing"
                                : fmt::format("{} ({:.0f})", hidden.front().at("kind").get<std::string>(),
                                              hidden.front().at("left_noise").get<double>());
-  const blind::score::Evidence seen = blind::score::read_evidence(run / "cases" / name);
+  const blind::score::SeenCase seen = blind::score::read_seen_case(run / "cases" / name);
   const diagnose::Diagnosis d = diagnose::diagnose(seen.model, seen.records, options);
   const auto ended = true_one(seen.model, d, hidden, options.spread);
   if (!ended) {

@@ -38,14 +38,14 @@ class Selection {
     fit_all();
     learn_curvature();
     Fewest back;
-    back.fit = refit({}).fit;
+    Refit chosen = refit({});
+    back.fit = chosen.fit;
     back.events = events_;
     back.before = back.fit.misfit();
     back.best = all_.misfit();
     grow();
     if (hopeless()) return back;
     Set set;
-    Refit chosen = refit({});
     double taken = chosen.cost;
     for (std::size_t size = 1; size < beams_.size(); ++size) {
       if (stopped()) return back;

@@ -46,6 +46,19 @@ void check_blocks(Config& config, const std::string& key, const std::vector<std:
   }
 }
 
+/// Blocks of one slot; a list that names another one's would be put there silently.
+void check_slot(Config& config, const std::string& key, const std::vector<std::string>& texts,
+                sim::Slot slot) {
+  check_blocks(config, key, texts);
+  for (const auto& text : texts)
+    if (const sim::Effect* effect = blind_effect(text.substr(0, text.find(':')));
+        effect && effect->slot != slot)
+      config.problem(
+          key, "'" + text + "'",
+          fmt::format("its slot is {}, not {}", sim::slot_name(effect->slot), sim::slot_name(slot)),
+          "choose an effect of that slot; swingbank effects lists them");
+}
+
 void check_path(Config& config, const std::string& key, const BlindPath& path) {
   if (path.target == "conventions" && path.parameter == "speed_voltage") return;
   const sim::Effect* effect = blind_effect(path.target == "machine" ? "GENROU" : path.target);
@@ -83,9 +96,10 @@ BlindConditions read_conditions(Config& config) {
   const auto share = [&](const char* name) {
     return config.optional<double>(std::string("conditions.") + name, 0.0, {0.0, 1.0});
   };
-  const auto between = [&](const char* name, const Range& range) {
+  // what a share speaks of must be there
+  const auto between = [&](const char* name, double how_often, const Range& range) {
     const std::string key = std::string("conditions.") + name;
-    return config.has(key) ? config.interval(key, range) : std::pair(0.0, 0.0);
+    return how_often > 0 || config.has(key) ? config.interval(key, range) : std::pair(0.0, 0.0);
   };
   const auto numbers = [&](const char* name, const Range& range) {
     return config.optional<std::vector<double>>(std::string("conditions.") + name, {}, range);
@@ -97,23 +111,27 @@ BlindConditions read_conditions(Config& config) {
   c.voltage_noise = numbers("voltage_noise", {0.0, 10.0, "of noise"});
   c.class_m_share = share("class_m_share");
   c.class_m_rates = numbers("class_m_rates", {10.0, 120.0, "1/s"});
+  if (c.class_m_share > 0 && c.class_m_rates.empty())
+    config.problem("conditions.class_m_share", fmt::format("class_m_share = {:g}", c.class_m_share),
+                   "class_m_rates names no rate at which there is such a filter",
+                   "give class_m_rates, or a share of 0");
   c.short_share = share("short_share");
   c.lead = config.optional<double>("conditions.lead", c.lead, {0.05, 1.5, "s"});
   c.ambient_share = share("ambient_share");
-  c.ambient = between("ambient", {0.0, 0.1, "of a load"});
+  c.ambient = between("ambient", c.ambient_share, {0.0, 0.1, "of a load"});
   c.drift_share = share("drift_share");
-  c.drift = between("drift", {0.0, 0.5, "of the load per minute"});
+  c.drift = between("drift", c.drift_share, {0.0, 0.5, "of the load per minute"});
   c.wander_share = share("wander_share");
-  c.wander = between("wander", {0.0, 1.0, "rad"});
+  c.wander = between("wander", c.wander_share, {0.0, 1.0, "rad"});
   c.long_share = share("long_share");
   c.dip_share = share("dip_share");
   c.transformer_share = share("transformer_share");
   c.machines = texts("machines");
   c.exciters = texts("exciters");
   c.governors = texts("governors");
-  check_blocks(config, "conditions.machines", c.machines);
-  check_blocks(config, "conditions.exciters", c.exciters);
-  check_blocks(config, "conditions.governors", c.governors);
+  check_slot(config, "conditions.machines", c.machines, sim::Slot::machine);
+  check_slot(config, "conditions.exciters", c.exciters, sim::Slot::exciter);
+  check_slot(config, "conditions.governors", c.governors, sim::Slot::governor);
   return c;
 }
 

@@ -9,7 +9,7 @@
 namespace swingbank::validate::blind::cases {
 namespace {
 
-/// An instant that is no sample of any rate in use.
+/// An instant that is no sample at 30, 60 or 120/s, nor of the fine run of cases.toml.
 double off_grid(double low, double high, BlindDraw& draw) {
   constexpr double kFinest = 960.0 * 4, kAway = 0.05;  // of a quarter of the fine step
   for (;;) {

@@ -65,8 +65,8 @@ BlindVerdict verdict_of(const diagnose::Diagnosis& d) {
 
 }  // namespace
 
-Evidence read_evidence(const fs::path& folder) {
-  Evidence e{plant::load_plant_model(folder / "model.toml"), {}};
+SeenCase read_seen_case(const fs::path& folder) {
+  SeenCase e{plant::load_plant_model(folder / "model.toml"), {}};
   for (const auto& file : event_files(folder))
     e.records.push_back(record::read_record(file, e.model.record_base));
   return e;
@@ -77,7 +77,7 @@ BlindJudge diagnosis_judge(const diagnose::DiagnoseOptions& options) {
     const auto begin = std::chrono::steady_clock::now();
     BlindVerdict verdict;
     try {
-      Evidence seen = read_evidence(folder);
+      SeenCase seen = read_seen_case(folder);
       verdict = verdict_of(diagnose::diagnose(seen.model, std::move(seen.records), options));
     } catch (const InputError& error) {
       verdict.verdict = "refused";

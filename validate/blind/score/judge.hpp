@@ -11,12 +11,12 @@
 namespace swingbank::validate::blind::score {
 
 /// What a judge may see of a case: the owner's model and the records of its events.
-struct Evidence {
+struct SeenCase {
   plant::PlantModel model;
   std::vector<record::Record> records;
 };
 /// From model.toml and every event*.csv of a case folder. Throws InputError.
-Evidence read_evidence(const std::filesystem::path& folder);
+SeenCase read_seen_case(const std::filesystem::path& folder);
 
 /// Diagnoses what stands in a case folder. What the diagnosis refuses
 /// (InputError) is the verdict `refused`.
