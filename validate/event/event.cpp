@@ -206,9 +206,13 @@ void set_start(FitEvent& e, const FitEventOptions& options) {
     first.front().time -= first.front().uncertainty;
     first.front().time = std::min(first.front().time, before_first_smeared(e));
   }
-  if (const double still = still_until(e.record);
-      !first.empty() && e.record.switched.empty() && !e.record.breaker() && still < first.front().time)
-    first.insert(first.begin(), {still, 0.0});
+  if (e.record.switched.empty() && !e.record.breaker()) {
+    const double until = first.empty() ? e.record.t.front() + options.pre_event : first.front().time;
+    const auto n = static_cast<std::size_t>(std::ranges::upper_bound(e.record.t, until) - e.record.t.begin());
+    double still = e.record.t[playin::before_power_jump(e.record, std::max<std::size_t>(1, n))];
+    if (!first.empty()) still = std::min(still, still_until(e.record));
+    if (still < until - e.record.step()) first.insert(first.begin(), {still, 0.0});
+  }
   e.start = playin::pre_event_point(e.record, first, options.pre_event);
   if (options.start) e.start.P = options.start->real(), e.start.Q = options.start->imag();
   e.channels = playin::compared_outputs(e.record, options.measured_states);

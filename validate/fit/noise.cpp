@@ -71,18 +71,11 @@ constexpr double kLeastOwnNoise = 0.01;  ///< at least this share of a channel's
 constexpr double kMatters = 1e-3;
 
 /// The first `count` values less their mean and slope.
-std::vector<double> detrended(const std::vector<double>& x, int count) {
-  double mean = 0, slope = 0, spread = 0;
-  const double middle = 0.5 * (count - 1);
-  for (int k = 0; k < count; ++k) mean += x[static_cast<std::size_t>(k)] / count;
-  for (int k = 0; k < count; ++k) {
-    slope += (k - middle) * (x[static_cast<std::size_t>(k)] - mean);
-    spread += (k - middle) * (k - middle);
-  }
-  std::vector<double> rest;
-  for (int k = 0; k < count; ++k)
-    rest.push_back(x[static_cast<std::size_t>(k)] - mean - slope / spread * (k - middle));
-  return rest;
+template <class T>
+Eigen::ArrayX<T> detrended(const std::vector<T>& x, int count) {
+  const Eigen::Map<const Eigen::ArrayX<T>> values(x.data(), count);
+  const Eigen::ArrayX<T> ramp = Eigen::ArrayXd::LinSpaced(count, -1.0, 1.0).cast<T>();
+  return values - values.mean() - (values * ramp).sum() / ramp.square().sum() * ramp;
 }
 
 /// What moves in the band in one stretch of a record: sums over lines, of V (relative), of theta, and of what
@@ -103,31 +96,31 @@ bool integrated(const event::FitEvent& e) { return e.record.angle == record::Ang
 /// fewer lines would that know nothing of each other (Welch, IEEE Trans. Audio Electroacoust. 15, 1967, 70).
 constexpr double kLinesPerFreedom = 2.06;
 
-Band in_band(const event::FitEvent& e, std::size_t first) {
-  const int n = e.start.samples;
-  const auto piece = [&](const std::vector<double>& x) {
-    return detrended(
-        {x.begin() + static_cast<std::ptrdiff_t>(first), x.begin() + static_cast<std::ptrdiff_t>(first) + n},
-        n);
+/// What a stretch of n samples is multiplied by for its line m: a wave behind a Hann window, less what a mean
+/// and a slope have of it, which in a stretch of a fifth of a second is a quarter of its lowest line.
+Eigen::ArrayXcd line_of(int n, int m) {
+  std::vector<Complex> wave;
+  for (int k = 0; k < n; ++k)
+    wave.push_back(std::polar(std::pow(std::sin(0.5 * constants::turn * (k + 0.5) / n), 2),
+                              constants::turn * m * k / n));
+  return detrended(wave, n);
+}
+
+/// The band in n samples from `first` on.
+Band in_band(const event::FitEvent& e, std::size_t first, int n) {
+  const auto power = [&](const std::vector<double>& x, const Eigen::ArrayXcd& line) {
+    const Eigen::Map<const Eigen::ArrayXd> piece(x.data() + first, n);
+    return std::norm((piece.cast<Complex>() * line).sum()) / line.abs2().sum();
   };
-  const auto V = piece(e.record.V), angle = piece(integrated(e) ? e.record.f : e.record.theta);
   const double per_angle =
       integrated(e) ? constants::turn * e.record.base.frequency * e.record.step() : 1.0;  // a step's turn
-  const double line = 1 / (n * e.record.step());
+  const double apart = 1 / (n * e.record.step());
   Band band;
   const Eigen::Index of_angle = integrated(e) ? 2 : 1;
-  for (int m = static_cast<int>(std::ceil(kLow / line)); m * line <= kHigh && 2 * m < n; ++m) {
-    Complex by_v = 0, by_angle = 0;
-    double power = 0;
-    for (int k = 0; k < n; ++k) {
-      const double height = std::pow(std::sin(0.5 * constants::turn * (k + 0.5) / n), 2);
-      const Complex wave = std::polar(height, constants::turn * m * k / n);
-      by_v += wave * V[static_cast<std::size_t>(k)] / std::abs(e.start.voltage);
-      by_angle += wave * angle[static_cast<std::size_t>(k)];
-      power += height * height;
-    }
-    band.sum[0] += std::norm(by_v) / power;
-    band.sum[of_angle] += std::norm(by_angle) * per_angle * per_angle / power;
+  for (int m = static_cast<int>(std::ceil(kLow / apart)); m * apart <= kHigh && 2 * m < n; ++m) {
+    const Eigen::ArrayXcd line = line_of(n, m);
+    band.sum[0] += power(e.record.V, line) / std::norm(e.start.voltage);
+    band.sum[of_angle] += power(integrated(e) ? e.record.f : e.record.theta, line) * per_angle * per_angle;
     ++band.lines[0];
     ++band.lines[of_angle];
   }
@@ -135,8 +128,8 @@ Band in_band(const event::FitEvent& e, std::size_t first) {
 }
 
 /// Whether a switching or a lost sample lies in the stretch or close to it.
-bool disturbed(const event::FitEvent& e, std::size_t first) {
-  const std::size_t last = first + static_cast<std::size_t>(e.start.samples) - 1;
+bool disturbed(const event::FitEvent& e, std::size_t first, std::size_t n) {
+  const std::size_t last = first + n - 1;
   for (std::size_t k = first; k <= last; ++k)
     if (!e.compared(k)) return true;
   return std::ranges::any_of(e.switchings, [&](const playin::Switching& s) {
@@ -152,21 +145,29 @@ struct Moving {
 };
 Moving moving_in_band(const event::WhitenedEvents& events) {
   constexpr double kBeyond = 3.0;  // standard deviations
+  constexpr double kStretch =
+      1.0;                    // [s], at least: a shorter one has so few lines that any level could be theirs
+  constexpr int kRounds = 3;  // as what was before the events may be few lines too
   Band before;
   std::vector<Band> later;
   for (const event::FitEvent& e : events) {
-    const auto n = static_cast<std::size_t>(e.start.samples);
-    before.add(in_band(e, 0));
-    for (std::size_t first = (n + 1) / 2; first + n <= e.record.t.size(); first += (n + 1) / 2)
-      if (!disturbed(e, first)) later.push_back(in_band(e, first));
+    before.add(in_band(e, 0, e.start.samples));
+    const int n = std::max(e.start.samples, static_cast<int>(std::lround(kStretch / e.record.step())));
+    const auto length = static_cast<std::size_t>(n), half = (length + 1) / 2;
+    for (auto first = static_cast<std::size_t>(e.start.samples + 1) / 2; first + length <= e.record.t.size();
+         first += half)
+      if (!disturbed(e, first, length)) later.push_back(in_band(e, first, n));
   }
-  Moving all{before.level(), {}};
+  Moving all;
   for (const Eigen::Index c : {0, 1, 2}) {
     Band calm = before;
-    for (const Band& b : later) {
-      if (b.lines[c] == 0 || before.lines[c] == 0) continue;
-      const double off = std::sqrt(kLinesPerFreedom * (1.0 / b.lines[c] + 1.0 / before.lines[c]));
-      if (b.level()[c] <= before.level()[c] * (1 + kBeyond * off)) calm.add(b);
+    for (int round = 0; round < kRounds && before.lines[c] > 0; ++round) {
+      const double level = calm.level()[c], lines = calm.lines[c];
+      calm = before;
+      for (const Band& b : later) {
+        const double off = std::sqrt(kLinesPerFreedom * (1.0 / std::max(1.0, b.lines[c]) + 1.0 / lines));
+        if (b.lines[c] > 0 && b.level()[c] <= level * (1 + kBeyond * off)) calm.add(b);
+      }
     }
     all.variance[c] = calm.level()[c];
     all.freedom[c] = calm.lines[c] / kLinesPerFreedom;
@@ -187,14 +188,14 @@ Shares shares_of(const Fit& fit, const event::WhitenedEvents& events) {
   for (std::size_t i = 0; i < events.size(); ++i) {
     const event::FitEvent& e = events[i];
     const int n = e.start.samples;
-    const auto V = detrended(e.record.V, n), theta = detrended(e.record.theta, n);
+    const Eigen::ArrayXd V = detrended(e.record.V, n), theta = detrended(e.record.theta, n);
     const Eigen::MatrixXd into = VoltageNoise{.carried = 1}.into(e);
     for (std::size_t c = 0; c < e.channels.size(); ++c) {
       const auto row = static_cast<Eigen::Index>(c);
       const double noise = events.noise(i).deviation[row];
-      const auto answer = detrended(fit.events[i].model[c], n),
-                 measured = detrended(e.measured(e.channels[c]), n);
-      for (std::size_t k = 0; k < answer.size(); ++k) {
+      const Eigen::ArrayXd answer = detrended(fit.events[i].model[c], n),
+                           measured = detrended(e.measured(e.channels[c]), n);
+      for (Eigen::Index k = 0; k < n; ++k) {
         const Eigen::Vector2d x =
             Eigen::Vector2d(answer[k],
                             -into(row, 0) * V[k] / std::abs(e.start.voltage) - into(row, 1) * theta[k]) /

@@ -21,6 +21,10 @@ Switching within_step(const record::Record& record, std::size_t k);
 /// away makes such a jump.
 std::vector<Switching> lone_jumps(const record::Record& record, double threshold);
 
+/// The last of the first n samples before P and Q jump together, n - 1 where they do not. A load switched far
+/// away may move V by no more than its noise; what a machine answers stands out by its admittance.
+std::size_t before_power_jump(const record::Record& record, std::size_t n);
+
 /// When a signal counts as having left its level.
 struct Leaving {
   double level = 0,

@@ -14,7 +14,7 @@ inline T non_windup(const T& slope, const T& out, const T& least, const T& most)
   const T zero(0.0), one(1.0), per_band(1.0 / kIntegralBand);
   const T rise = one - clamp((out - most) * per_band, zero, one);
   const T fall = one - clamp((least - out) * per_band, zero, one);
-  return positive_part(slope) * rise - positive_part(zero - slope) * fall;
+  return slope * select(slope > zero, rise, fall);  // one derivative also where it is zero
 }
 
 }  // namespace swingbank::sim::effects::shared

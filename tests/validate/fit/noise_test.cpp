@@ -98,8 +98,9 @@ TEST(SharpenNoise, ColouredNoiseIsLeftAlone) {
 }
 
 /// Events in which V and theta have white noise that the model answers; the measured P and Q hold the share
-/// `carried` of it as phasors would, noise of their own, and the answer to what of the movement is `real`.
-Case moving(double carried, bool real) {
+/// `carried` of it as phasors would, noise of their own, and the answer to what of the movement is `real`. So
+/// many samples at 30/s precede the event.
+Case moving(double carried, bool real, int before = 30) {
   constexpr double kVoltage = 1e-3, kOwn = 4e-4, kP = 0.5, kQ = 0.2;
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal;
@@ -123,7 +124,7 @@ Case moving(double carried, bool real) {
         f.model[ch].push_back((ch == 0 ? kP : kQ) + answer[ch]);
       }
     }
-    e.start = {.samples = 30, .voltage = 1.0, .P = kP, .Q = kQ};
+    e.start = {.samples = before, .voltage = 1.0, .P = kP, .Q = kQ};
     e.channels = {playin::Output::P, playin::Output::Q};
     noise.push_back({.deviation = Eigen::Vector2d(6e-3, 4e-3), .whitening = Eigen::Matrix2d::Identity()});
     events.push_back(std::move(e));
@@ -146,6 +147,12 @@ TEST(VoltageNoise, IsMeasuredOnTheWholeRecordAndNotByItsSwings) {
   EXPECT_LT(found.doubt.maxCoeff(), 0.1);  // the stretches before the events alone tell it to 0.3
   EXPECT_NEAR(found.variance[0], 1e-6, 3e-6 * found.doubt[0]);
   EXPECT_NEAR(found.variance[1], 4e-6, 12e-6 * found.doubt[1]);
+}
+TEST(VoltageNoise, AFifthOfASecondBeforeAnEventTellsIt) {
+  const VoltageNoise found = voltage_noise(moving(1, false, 6).fit, moving(1, false, 6).events);
+  EXPECT_LT(found.doubt[1], 0.05);
+  // a mean and a slope take a seventh of the lines that fit into so short a stretch
+  EXPECT_NEAR(found.variance[1], 4e-6, 0.1 * 4e-6);
 }
 TEST(VoltageNoise, WhatThePlantAnswersIsNoNoise) {
   const Case c = moving(0, true);

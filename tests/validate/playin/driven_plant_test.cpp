@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/library/library.hpp"
+#include "sim/plant/block_text.hpp"
 #include "validate/plant/plant_model.hpp"
 #include "validate/playin/play_in.hpp"
 
@@ -26,6 +27,42 @@ class DrivenPlantTest : public ::testing::Test {
     switchings_ = detect_switchings(record_);
     knots_ = {0.5, 1.5, 2.5, 4.0};
     zeros_.assign(knots_.size(), 0.0);
+  }
+  /// V and theta step by little at the start and stay: the outputs of the linear plant against play-in.
+  void expect_linear() {
+    for (const Complex factor : {Complex(1 + 1e-5, 0), std::polar(1.0, 1e-5)}) {
+      record::Record quiet = record_;
+      const OperatingPoint start = pre_event_point(record_, switchings_, 1.0);
+      std::ranges::fill(quiet.V, std::abs(start.voltage));
+      std::ranges::fill(quiet.theta, std::arg(start.voltage));
+      const VoltageCurve curve(quiet, {});
+      Drive run{.plant = &model_.plant, .conventions = model_.conventions, .record = &quiet, .curve = &curve};
+      run.start = start;
+      run.until = 3.0;
+      const LinearPlant plant = linearise(run);
+      const Response still = drive(run);
+      run.voltage_factor = factor;
+      const Response moved = drive(run);
+      const Eigen::Vector2d u(std::abs(factor) - 1, std::arg(factor));
+      Eigen::VectorXd x = Eigen::VectorXd::Zero(plant.A.rows());
+      double t = quiet.t.front();
+      Eigen::MatrixXd worst = Eigen::MatrixXd::Zero(kOutputs, 2);  // difference, size
+      for (std::size_t k = 0; k < moved.value[0].size(); ++k) {
+        constexpr int kParts = 2000;  // of a sample interval: explicit steps, right to 1e-4
+        for (const double h = (quiet.t[k] - t) / kParts; t < quiet.t[k] - h / 2; t += h)
+          x += h * (plant.A * x + plant.B * u);
+        t = quiet.t[k];
+        const Eigen::VectorXd y = plant.C * x + plant.D * u;
+        for (int o = 0; o < kOutputs; ++o) {
+          const double by = moved.value[o][k] - still.value[o][k];
+          worst(o, 0) = std::max(worst(o, 0), std::abs(by - y[o]));
+          worst(o, 1) = std::max(worst(o, 1), std::abs(by));
+        }
+      }
+      for (int o = 0; o < kOutputs; ++o)
+        // the step's own curvature and the explicit steps' error
+        EXPECT_LE(worst(o, 0), 2e-3 * worst(o, 1) + 1e-10) << output_name(static_cast<Output>(o));
+    }
   }
   /// The answer with every direction moved by `by` units.
   Response answer(const std::vector<Direction>& along, double by, bool slopes = false) {
@@ -175,41 +212,23 @@ TEST_F(DrivenPlantTest, SlopesAlongAddedInputs) {
                  {.kind = Kind::field, .index = 1, .scale = 1e-4},
                  {.kind = Kind::field, .index = 3, .scale = 1e-4}});
 }
-TEST_F(DrivenPlantTest, LinearPlantAnswersASmallStep) {
-  // V and theta step by little at the start and stay: states and outputs of the linear plant against play-in
-  for (const Complex factor : {Complex(1 + 1e-5, 0), std::polar(1.0, 1e-5)}) {
-    record::Record quiet = record_;
-    const OperatingPoint start = pre_event_point(record_, switchings_, 1.0);
-    std::ranges::fill(quiet.V, std::abs(start.voltage));
-    std::ranges::fill(quiet.theta, std::arg(start.voltage));
-    const VoltageCurve curve(quiet, {});
-    Drive run{.plant = &model_.plant, .conventions = model_.conventions, .record = &quiet, .curve = &curve};
-    run.start = start;
-    run.until = 3.0;
-    const LinearPlant plant = linearise(run);
-    const Response still = drive(run);
-    run.voltage_factor = factor;
-    const Response moved = drive(run);
-    const Eigen::Vector2d u(std::abs(factor) - 1, std::arg(factor));
-    Eigen::VectorXd x = Eigen::VectorXd::Zero(plant.A.rows());
-    double t = quiet.t.front();
-    Eigen::MatrixXd worst = Eigen::MatrixXd::Zero(kOutputs, 2);  // difference, size
-    for (std::size_t k = 0; k < moved.value[0].size(); ++k) {
-      constexpr int kParts = 2000;  // of a sample interval: explicit steps, right to 1e-4
-      for (const double h = (quiet.t[k] - t) / kParts; t < quiet.t[k] - h / 2; t += h)
-        x += h * (plant.A * x + plant.B * u);
-      t = quiet.t[k];
-      const Eigen::VectorXd y = plant.C * x + plant.D * u;
-      for (int o = 0; o < kOutputs; ++o) {
-        const double by = moved.value[o][k] - still.value[o][k];
-        worst(o, 0) = std::max(worst(o, 0), std::abs(by - y[o]));
-        worst(o, 1) = std::max(worst(o, 1), std::abs(by));
-      }
-    }
-    for (int o = 0; o < kOutputs; ++o)
-      // the step's own curvature and the explicit steps' error
-      EXPECT_LE(worst(o, 0), 2e-3 * worst(o, 1) + 1e-10) << output_name(static_cast<Output>(o));
-  }
+TEST_F(DrivenPlantTest, LinearPlantAnswersASmallStep) { expect_linear(); }
+/// At rest the errors of a converter's regulators are zero, where their integrals' limits have a corner.
+TEST_F(DrivenPlantTest, LinearConverterAnswersASmallStep) {
+  model_.plant.controls.clear();
+  Problems problems;
+  const auto block = [&](const char* name, const char* values) {
+    const auto* effect = sim::library::compiled().find(name);
+    sim::plant::Block b{effect, effect->standard_parameters()};
+    sim::plant::set_parameters(b, values, name, problems);
+    return b;
+  };
+  model_.plant.machine = block("REGCA1", "");
+  model_.plant.controls = {
+      block("REPCA1", "RefFlag=1,Kp=2,Ki=1,Kc=0,Qmax=2,Qmin=-2,Pmax=2,Ddn=20,Dup=20,fdbd1=0,fdbd2=0"),
+      block("REECA1", "QFLAG=1,Kqi=0.1,Kvp=1,Kvi=40,VMIN=0.8,VMAX=1.2,Imax=2,QMax=2,QMin=-2,PMAX=2")};
+  problems.raise();
+  expect_linear();
 }
 TEST_F(DrivenPlantTest, AddedInputIsPiecewiseLinear) {
   const PiecewiseLinear f{{1.0, 2.0, 4.0}, {0.0, 1.0, -1.0}};

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "validate/blind/cases/detail/effects.hpp"
 #include "validate/blind/cases/detail/world.hpp"
 
 namespace swingbank::validate::blind::cases {
@@ -21,6 +22,15 @@ constexpr double kSizeMet = 0.1;     ///< a size is met within that part of it
 constexpr int kSizeTries = 8;        ///< simulations of all events while a size is sought
 
 constexpr double kHuge = 1e300;  ///< size of what cannot be simulated
+
+/// Whether a kind's path ends at another position of a switch, which has no middle.
+bool turns_a_switch(const BlindKind& kind) {
+  return std::ranges::any_of(kind.path, [](const BlindPath& path) {
+    const sim::Effect* effect = blind_effect(path.target);
+    return effect &&
+           effect->parameters[static_cast<std::size_t>(effect->parameter_index(path.parameter))].is_code();
+  });
+}
 
 /// A draw that cannot be simulated; another one is made.
 struct Unstable {};
@@ -129,10 +139,10 @@ class Maker {
   }
   void seek(const BlindSize& size, std::size_t k, Scales& alone, BlindTruth& truth) {
     double low = 0.0, high = 1.0, low_left = 0.0, high_left = kHuge, scale = 1.0, best = kHuge;
-    const bool logarithmic = truth.kind->logarithmic;
+    const bool logarithmic = truth.kind->logarithmic && !truth.kind->value;  // a right value has no size
     for (int i = 0; i < kSizeTries; ++i) {
       alone[k] = scale;
-      const auto [left, visible] = sizes(size, alone);
+      const auto [left, visible] = sizes(size, alone, *truth.kind);
       const double miss = std::abs(std::log(left / truth.wanted));
       if (left < kHuge && miss < best) {
         best = miss;
@@ -140,7 +150,7 @@ class Maker {
         truth.left = left;
         truth.visible = visible;
       }
-      const bool end = left < truth.wanted ? scale == 1.0 : scale == 0.0;
+      const bool end = turns_a_switch(*truth.kind) || (left < truth.wanted ? scale == 1.0 : scale == 0.0);
       if (miss < std::log1p(kSizeMet) || end) break;
       (left > truth.wanted ? high : low) = scale;
       (left > truth.wanted ? high_left : low_left) = left;
@@ -150,10 +160,12 @@ class Maker {
     if (best == kHuge || truth.left < truth.kind->limit) throw Unstable{};
   }
   /// Size left and visible at these scales; huge where the grid does not stay stable.
-  [[nodiscard]] std::pair<double, double> sizes(const BlindSize& size, const Scales& scales) const {
+  [[nodiscard]] std::pair<double, double> sizes(const BlindSize& size, const Scales& scales,
+                                                const BlindKind& kind) const {
     try {
       const std::vector<record::Record> with = records(world_.grid(scales));
-      return {size.left(with), size.visible(with)};
+      const std::span<const BlindPath> but(kind.path);
+      return {size.left(with, kind.value ? but : but.first(0)), size.visible(with)};
     } catch (const Unstable&) {  // too strong: larger than anything asked for
       return {kHuge, kHuge};
     }

@@ -59,12 +59,32 @@ void check_slot(Config& config, const std::string& key, const std::vector<std::s
           "choose an effect of that slot; swingbank effects lists them");
 }
 
+/// Controls beside each machine that may be drawn.
+void check_controls(Config& config, const BlindConditions& c) {
+  check_blocks(config, "conditions.controls", c.controls);
+  for (const auto& text : c.controls)
+    for (const auto& machine : c.machines) {
+      const sim::Effect *control = blind_effect(text.substr(0, text.find(':'))),
+                        *source = blind_effect(machine.substr(0, machine.find(':')));
+      if (!control || !source) continue;
+      if (const std::string why = sim::misfit(*source, *control); !why.empty())
+        config.problem("conditions.controls", fmt::format("'{}' beside {}", text, source->name), why,
+                       "choose controls that go with every one of conditions.machines");
+    }
+}
+
 void check_path(Config& config, const std::string& key, const BlindPath& path) {
   if (path.target == "conventions" && path.parameter == "speed_voltage") return;
   const sim::Effect* effect = blind_effect(path.target == "machine" ? "GENROU" : path.target);
   if (effect && effect->parameter_index(path.parameter) >= 0) return;
   config.problem(key, path.target + "." + path.parameter, "no effect has such a parameter",
                  "swingbank effects lists them; machine means GENROU");
+}
+
+std::vector<std::string> values_of(const BlindKind& kind) {
+  std::vector<std::string> names;
+  for (const BlindPath& path : kind.path) names.push_back(path.target + "." + path.parameter);
+  return names;
 }
 
 BlindKind read_kind(Config& config, const std::string& name) {
@@ -74,9 +94,9 @@ BlindKind read_kind(Config& config, const std::string& name) {
   kind.side = config.choice(at + "side", kSides);
   kind.listed = config.optional<bool>(at + "listed", true);
   kind.drawn = config.optional<bool>(at + "drawn", true);
+  kind.value = config.optional<bool>(at + "value", false);
   kind.base = config.optional<std::vector<std::string>>(at + "base", {});
   kind.hidden = config.optional<std::vector<std::string>>(at + "hidden", {});
-  kind.answers = config.optional<std::vector<std::string>>(at + "answers", {name});
   kind.logarithmic = config.choice(at + "spacing", {"linear", "log"}, "linear") == "log";
   kind.limit = config.require<double>(at + "limit", {1e-3, 1e6, "noise"});
   check_blocks(config, at + "base", kind.base);
@@ -88,6 +108,12 @@ BlindKind read_kind(Config& config, const std::string& name) {
       config.problem(at + "path", "'" + text + "'", "a logarithmic path cannot pass through 0",
                      "give both ends the same sign, or spacing = \"linear\"");
   }
+  kind.answers = {name};
+  if (kind.value) kind.answers = values_of(kind);
+  kind.answers = config.optional<std::vector<std::string>>(at + "answers", kind.answers);
+  if (kind.value && !kind.hidden.empty())
+    config.problem(at + "value", "value = true beside hidden effects",
+                   "where a value is wrong nothing is missing", "leave out hidden, or value");
   return kind;
 }
 
@@ -127,9 +153,11 @@ BlindConditions read_conditions(Config& config) {
   c.dip_share = share("dip_share");
   c.transformer_share = share("transformer_share");
   c.machines = texts("machines");
+  c.controls = texts("controls");
   c.exciters = texts("exciters");
   c.governors = texts("governors");
   check_slot(config, "conditions.machines", c.machines, sim::Slot::machine);
+  check_controls(config, c);
   check_slot(config, "conditions.exciters", c.exciters, sim::Slot::exciter);
   check_slot(config, "conditions.governors", c.governors, sim::Slot::governor);
   return c;

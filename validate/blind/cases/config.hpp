@@ -22,9 +22,10 @@ struct BlindKind {
   std::string side;                  ///< mechanical, excitation, machine, measurement, none
   bool listed = true;                ///< false: of the private set, which no hypothesis names
   bool drawn = true;                 ///< false: hidden only where it is asked for by name
+  bool value = false;                ///< nothing is missing: values that the model has are wrong
   std::vector<std::string> base;     ///< controls the model knows: "EFFECT[:PARAM=VALUE,...]"
   std::vector<std::string> hidden;   ///< what the model lacks, written the same way
-  std::vector<std::string> answers;  ///< names a verdict may give it
+  std::vector<std::string> answers;  ///< names a verdict may give it; of values all, as EFFECT.PARAM
   std::vector<BlindPath> path;
   bool logarithmic = false;  ///< scale runs through the logarithm of the parameters
   double limit = 0;  ///< detection limit: size (docs/blind-test.md) from which it is asked for [noise]
@@ -53,7 +54,8 @@ struct BlindConditions {
   double dip_share = 0;                     ///< the last event is a dip of frequency without any switching
   double transformer_share = 0;             ///< a known transformer stands before the point that is recorded
   std::vector<std::string> machines;        ///< effects, one of which takes the place of the file's machine
-  std::vector<std::string> exciters, governors;  ///< that the model may know: "EFFECT[:PARAM=VALUE,...]"
+  std::vector<std::string> controls;        ///< that every case's model knows: "EFFECT[:PARAM=VALUE,...]"
+  std::vector<std::string> exciters, governors;  ///< that it may know, beside a machine that rotates
 };
 
 struct BlindConfig {

@@ -35,6 +35,7 @@ json truth_json(const BlindCase& made, const BlindConfig& config, const std::str
     hidden.push_back({{"kind", h.kind->name},
                       {"listed", h.kind->listed},
                       {"side", h.kind->side},
+                      {"value", h.kind->value},
                       {"answers", h.kind->answers},
                       {"scale", h.scale},
                       {"limit_noise", h.kind->limit},

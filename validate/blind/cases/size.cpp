@@ -148,14 +148,22 @@ double BlindSize::visible(const std::vector<record::Record>& with) const {
   return std::sqrt(sum);
 }
 
-double BlindSize::left(const std::vector<record::Record>& with) const {
+double BlindSize::left(const std::vector<record::Record>& with, std::span<const BlindPath> but) const {
   Eigen::VectorXd all(columns_.rows());
   for (std::size_t e = 0; e < with.size(); ++e) {
     event::RowMatrix r = residual(e, with[e]);
     noise_[e].whiten(r);
     all.segment(first_row(e), r.rows()) = r;
   }
-  return (all - columns_ * columns_.colPivHouseholderQr().solve(all)).norm();
+  event::RowMatrix columns = columns_;
+  const auto shared = fit::free_parameters(plant_, 1.0);
+  for (std::size_t d = 0; d < shared.size(); ++d)
+    if (std::ranges::any_of(but, [&](const BlindPath& path) {
+          return path.target == block_effect(plant_, shared[d].id.block).name &&
+                 path.parameter == parameter_record(plant_, shared[d].id).name;
+        }))
+      columns.col(static_cast<Eigen::Index>(d)).setZero();
+  return (all - columns * columns.colPivHouseholderQr().solve(all)).norm();
 }
 
 }  // namespace swingbank::validate::blind::cases

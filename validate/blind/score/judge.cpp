@@ -58,6 +58,8 @@ BlindVerdict verdict_of(const diagnose::Diagnosis& d) {
   v.why = d.sentence;
   for (const auto& e : d.probabilities) v.probabilities.emplace_back(e.name, e.probability);
   v.basis = basis_of(d);
+  if (d.verdict == diagnose::Verdict::adequate && d.wrong)
+    for (const fit::WrongParameter& w : d.wrong->wrong) v.wrong.push_back(w.fit.full_name());
   if (v.effects.empty() && d.verdict == diagnose::Verdict::confusable && !v.set.empty())
     v.effects = {v.set.front()};
   return v;

@@ -77,11 +77,11 @@ std::string matrix(const BlindScore& score) {
 std::string conditions(const BlindScore& score) {
   if (score.by_condition.empty()) return "";
   std::string text =
-      "## Recorded under\n\n| condition | nothing hidden: adequate | one effect: first or in the set | outside the "
-      "list: none of these |\n|---|---|---|---|\n";
+      "## Recorded under\n\n| condition | nothing hidden: adequate | one effect: first or in the set | wrong value: "
+      "named | outside the list: none of these |\n|---|---|---|---|---|\n";
   for (const auto& [name, c] : score.by_condition)
-    text +=
-        fmt::format("| {} | {} | {} | {} |\n", name, percent(c.nothing), percent(c.one), percent(c.outside));
+    text += fmt::format("| {} | {} | {} | {} | {} |\n", name, percent(c.nothing), percent(c.one),
+                        percent(c.value), percent(c.outside));
   return text + "\n";
 }
 
@@ -128,8 +128,10 @@ json score_json(const BlindScore& score) {
   for (const auto& [with, list] : score.by_size)
     for (const Rate& rate : list) all["by_size"][with].push_back(rate_json(rate));
   for (const auto& [name, c] : score.by_condition)
-    all["by_condition"][name] = {
-        {"nothing", rate_json(c.nothing)}, {"one", rate_json(c.one)}, {"outside", rate_json(c.outside)}};
+    all["by_condition"][name] = {{"nothing", rate_json(c.nothing)},
+                                 {"one", rate_json(c.one)},
+                                 {"value", rate_json(c.value)},
+                                 {"outside", rate_json(c.outside)}};
   for (const auto& c : score.cases)
     all["cases"].push_back({{"case", c.name},
                             {"hidden", c.kinds},

@@ -53,6 +53,7 @@ ScoredCase read_truth(const fs::path& file) {
       c.sides.push_back(h.at("side"));
       c.answers.push_back(h.at("answers"));
       c.listed = c.listed && h.at("listed").get<bool>();
+      c.value = h.value("value", false);
       c.size = std::min(c.size, h.at("left_noise").get<double>() / h.at("limit_noise").get<double>());
     }
     return c;
@@ -94,6 +95,13 @@ void count(const ScoredCase& c, BlindScore& score) {
     score.rates["false positive"].count(v.verdict == "missing" || v.verdict == "confusable");
     return;
   }
+  if (c.value) {
+    score.rates["wrong value: nothing missing"].count(v.verdict == "adequate");
+    score.rates["wrong value: named"].count(c.values_named());
+    score.rates["wrong value: named and no other"].count(c.values_named() &&
+                                                         v.wrong.size() == c.answers.front().size());
+    return;
+  }
   if (c.size >= kFrom) score.rates["side"].count(c.side_right());
   if (c.kinds.size() > 1) {
     score.rates["two effects: both named"].count(c.all_named());
@@ -112,6 +120,8 @@ void count_conditions(const ScoredCase& c, BlindScore& score) {
     ByCondition& at = score.by_condition[condition];
     if (c.kinds.empty())
       at.nothing.count(verdict == "adequate");
+    else if (c.value)
+      at.value.count(c.values_named());
     else if (!c.listed)
       at.outside.count(verdict == "unexplained");
     else if (c.kinds.size() == 1 && c.size >= kFrom)
@@ -152,14 +162,19 @@ bool ScoredCase::all_in_set() const {
   return all_named() ||
          (verdict.verdict == "confusable" && !answers.empty() && std::ranges::any_of(verdict.set, names_all));
 }
+bool ScoredCase::values_named() const {
+  return verdict.verdict == "adequate" && std::ranges::all_of(answers.front(), [&](const std::string& one) {
+           return among(verdict.wrong, one);
+         });
+}
 bool ScoredCase::side_right() const { return among(sides, verdict.side); }
 
 Forecast ScoredCase::forecast() const {
   Forecast f;
   f.group = channels ? kWithChannels : kPowerOnly;
-  f.listed = listed && kinds.size() == 1;
+  f.listed = listed && kinds.size() == 1 && !value;
   const auto is_truth = [&](const std::string& explanation) {
-    if (kinds.empty()) return false;
+    if (nothing_missing()) return false;
     if (!listed) return explanation == hypothesis::kNoneOfThese;
     const auto said = together(explanation);
     return said.size() == answers.size() &&
@@ -172,7 +187,7 @@ Forecast ScoredCase::forecast() const {
       nothing += probability;
     else
       said.emplace_back(probability, is_truth(explanation) ? 1 : 0);
-  if (!verdict.probabilities.empty()) said.emplace_back(nothing, kinds.empty() ? 1 : 0);
+  if (!verdict.probabilities.empty()) said.emplace_back(nothing, nothing_missing() ? 1 : 0);
   std::ranges::stable_sort(said, std::greater<>(), &std::pair<double, char>::first);
   for (const auto& [probability, right] : said) {
     f.probabilities.push_back(probability);

@@ -18,6 +18,7 @@ struct ScoredCase {
   std::vector<std::string> kinds, sides;          ///< of the hidden effects
   std::vector<std::vector<std::string>> answers;  ///< names that count as right, per hidden effect
   bool listed = true;                             ///< every hidden effect is in the list of hypotheses
+  bool value = false;                             ///< nothing is missing: a value of the model is wrong
   double size = 0;                                ///< smallest of the hidden effects, in detection limits
   bool channels = false;                          ///< speed and Ifd measured too
   std::vector<std::string> conditions;            ///< what the case was recorded under, in words
@@ -28,6 +29,9 @@ struct ScoredCase {
   [[nodiscard]] bool all_named() const;        ///< every hidden effect is named
   [[nodiscard]] bool all_in_set() const;       ///< or one entry of the stated set ("A + B") names every one
   [[nodiscard]] bool side_right() const;
+  [[nodiscard]] bool nothing_missing() const { return kinds.empty() || value; }
+  [[nodiscard]] bool values_named()
+      const;  ///< nothing is missing, and the wrong values are among those named
   /// The verdict's probabilities against the truth: right is the explanation that names all that is hidden,
   /// and nothing else.
   [[nodiscard]] Forecast forecast() const;
@@ -37,6 +41,7 @@ struct ScoredCase {
 struct ByCondition {
   Rate nothing;  ///< nothing hidden: adequate
   Rate one;      ///< one listed effect: first, or in the set
+  Rate value;    ///< a wrong value: named
   Rate outside;  ///< outside the list: none of these
 };
 

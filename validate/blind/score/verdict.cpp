@@ -98,6 +98,7 @@ BlindVerdict read_verdict(const fs::path& file) {
   v.side = word(j, "side", kSides, file, problems);
   v.effects = names(j, "effects", file, problems);
   v.set = names(j, "set", file, problems);
+  if (j.contains("wrong")) v.wrong = names(j, "wrong", file, problems);
   const auto seconds = j.find("seconds");
   if (seconds != j.end() && seconds->is_number() && seconds->get<double>() >= 0)
     v.seconds = seconds->get<double>();
@@ -114,6 +115,7 @@ BlindVerdict read_verdict(const fs::path& file) {
 std::string verdict_json(const BlindVerdict& v) {
   json j = {{"verdict", v.verdict}, {"effects", v.effects}, {"set", v.set},
             {"side", v.side},       {"seconds", v.seconds}, {"why", v.why}};
+  if (!v.wrong.empty()) j["wrong"] = v.wrong;
   if (!v.probabilities.empty()) j["probabilities"] = v.probabilities;
   if (!v.basis.is_null()) j["basis"] = v.basis;
   return j.dump(1) + "\n";

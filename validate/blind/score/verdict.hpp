@@ -9,12 +9,13 @@
 namespace swingbank::validate::blind::score {
 
 struct BlindVerdict {
-  std::string verdict;               ///< adequate, missing, confusable, unexplained or refused
-  std::vector<std::string> effects;  ///< what is missing, best first; several where several are missing
-  std::vector<std::string> set;      ///< names that cannot be told apart
-  std::string side = "none";         ///< mechanical, excitation, machine, measurement or none
-  double seconds = 0;                ///< wall time it took [s]
-  std::string why = {};              ///< optional: the sentence behind it
+  std::string verdict;                  ///< adequate, missing, confusable, unexplained or refused
+  std::vector<std::string> effects;     ///< what is missing, best first; several where several are missing
+  std::vector<std::string> set;         ///< names that cannot be told apart
+  std::string side = "none";            ///< mechanical, excitation, machine, measurement or none
+  double seconds = 0;                   ///< wall time it took [s]
+  std::string why = {};                 ///< optional: the sentence behind it
+  std::vector<std::string> wrong = {};  ///< optional: values that are wrong, as "GENROU.H"
   /// optional: of each explanation, the most probable first ("SEXS", "A + B", hypothesis::kNothingMissing,
   /// hypothesis::kNoneOfThese)
   std::vector<std::pair<std::string, double>> probabilities = {};
@@ -24,8 +25,8 @@ struct BlindVerdict {
 /// Gets a case folder (model.toml, event1.csv ...), which holds nothing of the truth.
 using BlindJudge = std::function<BlindVerdict(const std::filesystem::path& folder)>;
 
-/// Reads a verdict's JSON: the keys verdict, effects, set, side, seconds and, if there, why, probabilities
-/// and basis. Throws InputError with every fault.
+/// Reads a verdict's JSON: the keys verdict, effects, set, side, seconds and, if there, wrong, why,
+/// probabilities and basis. Throws InputError with every fault.
 BlindVerdict read_verdict(const std::filesystem::path& file);
 std::string verdict_json(const BlindVerdict& verdict);
 

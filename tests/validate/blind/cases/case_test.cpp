@@ -175,7 +175,41 @@ TEST(BlindConditions, AShareWithoutWhatItSpeaksOfIsRefused) {
          {"conditions.ambient", "class_m_rates", "its slot is exciter, not machine", "rate = 35"})
       EXPECT_THAT(error.what(), testing::HasSubstr(said));
   }
+  try {
+    load(
+        "[conditions]\nmachines = [\"REGCA1\"]\ncontrols = [\"SEXS\"]\n[kind.gain]\nside = \"none\"\nvalue = "
+        "true\nhidden = [\"SEXS\"]\npath = [\"SEXS.K=1:2\"]\nlimit = 10.0\n");
+    FAIL() << "nothing was refused";
+  } catch (const InputError& error) {
+    for (const char* said : {"'SEXS' beside REGCA1", "value = true beside hidden effects"})
+      EXPECT_THAT(error.what(), testing::HasSubstr(said));
+  }
   fs::remove(file);
+}
+/// A converter plant's value of that name.
+double value(const sim::plant::Plant& plant, const std::string& effect, const char* parameter) {
+  for (const sim::plant::Block& b : plant.controls)
+    if (b.effect->name == effect) return b.p[static_cast<std::size_t>(b.effect->parameter_index(parameter))];
+  ADD_FAILURE() << "no " << effect;
+  return 0;
+}
+TEST(BlindConverter, ASwitchOrAValueOfItsControlsIsHidden) {
+  BlindConfig config = load_blind_config(test::source("configs/blind/converter.toml"));
+  config.conditions.rates = {60.0};
+  config.faults = config.frequency_events = 1;
+  const BlindCase turned = make(config, "QFLAG"), wrong = make(config, "Ki");
+  for (const BlindCase* made : {&turned, &wrong}) {
+    EXPECT_EQ(made->model.machine.effect->name, "REGCA1");
+    EXPECT_EQ(made->model.machine.p, made->truth.machine.p);
+    EXPECT_EQ(made->model.controls.size(), 2U);
+    EXPECT_GE(made->hidden[0].left, made->hidden[0].kind->limit);
+  }
+  EXPECT_EQ(value(turned.model, "REECA1", "QFLAG"), 1.0);
+  EXPECT_EQ(value(turned.truth, "REECA1", "QFLAG"), 0.0);
+  EXPECT_EQ(turned.hidden[0].scale, 1.0);
+  EXPECT_EQ(value(wrong.model, "REPCA1", "Ki"), 1.0);
+  EXPECT_NEAR(value(wrong.truth, "REPCA1", "Ki"), std::pow(10.0, wrong.hidden[0].scale), 1e-12);
+  EXPECT_THAT(wrong.hidden[0].kind->answers, testing::ElementsAre("REPCA1.Ki"));
 }
 TEST(BlindConditions, NoneTakesNoDraw) {
   const BlindConfig config = tiny();

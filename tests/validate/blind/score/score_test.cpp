@@ -6,6 +6,7 @@
 
 #include "base/write_file.hpp"
 #include "tests/validate/playin/support.hpp"
+#include "validate/hypothesis/posterior.hpp"
 
 namespace swingbank::validate::blind::score {
 namespace {
@@ -24,7 +25,7 @@ class BlindScoring : public testing::Test {
   struct Hidden {
     const char *kind, *side, *answer;
     double size;
-    bool listed = true;
+    bool listed = true, value = false;
   };
   void add(const std::vector<Hidden>& effects, const BlindVerdict& verdict, bool channels = false,
            const std::vector<std::string>& conditions = {}) {
@@ -35,6 +36,7 @@ class BlindScoring : public testing::Test {
                         {"side", h.side},
                         {"answers", {h.answer}},
                         {"listed", h.listed},
+                        {"value", h.value},
                         {"left_noise", 10 * h.size},
                         {"limit_noise", 10}});
     json truth = {{"case", name}, {"channels", channels ? "P,Q,speed,Ifd" : "P,Q"}, {"hidden", hidden}};
@@ -114,6 +116,25 @@ TEST_F(BlindScoring, CountsWhatIsRightUnderEachCondition) {
   EXPECT_THAT(score_markdown(s), testing::HasSubstr("| class M | – | 100.0 % (1 of 1;"));
 }
 
+TEST_F(BlindScoring, AWrongValueIsToBeNamedAndNothingIsMissing) {
+  const Hidden gain{"Ki", "none", "REPCA1.Ki", 5, true, true};
+  BlindVerdict named{"adequate", {}, {}, "none", 1};
+  named.wrong = {"REPCA1.Ki"};
+  BlindVerdict more = named, other = named, missing{"missing", {"SEXS"}, {}, "excitation", 1};
+  named.probabilities = {{hypothesis::kNothingMissing, 0.9}, {"SEXS", 0.1}};
+  more.wrong.emplace_back("REECA1.Kvi");
+  other.wrong = {"REECA1.Kvi"};
+  for (const BlindVerdict& v : {named, more, other, missing}) add({gain}, v, false, {"30/s"});
+  const BlindScore s = score();
+  EXPECT_EQ(s.rates.at("wrong value: nothing missing").hits, 3);
+  EXPECT_EQ(s.rates.at("wrong value: named").hits, 2);
+  EXPECT_EQ(s.rates.at("wrong value: named and no other").hits, 1);
+  EXPECT_EQ(s.rates.at("wrong value: named").n, 4);
+  EXPECT_EQ(s.rates.count("right first, P, Q only"), 0U);
+  EXPECT_THAT(s.cases.front().forecast().right, testing::ElementsAre(1, 0));
+  EXPECT_EQ(s.by_condition.at("30/s").value.hits, 2);
+  EXPECT_EQ(s.by_condition.at("30/s").one.n, 0);
+}
 TEST_F(BlindScoring, APairIsInTheSetWhereOneEntryNamesBoth) {
   const Hidden sexs{"SEXS", "excitation", "SEXS", 5}, droop{"TGOV1", "mechanical", "TGOV1", 3};
   const auto in_set = [&](const BlindVerdict& verdict) {

@@ -109,6 +109,7 @@ bool mislead(sim::plant::Block& machine, std::pair<double, double> wrong, BlindD
     for (std::size_t k = 0; k < right.size(); ++k) {
       const double off = draw.uniform(wrong.first, wrong.second);
       machine.p[k] = right[k] * (draw.coin() ? 1.0 + off : 1.0 - off);
+      if (effect.parameters[k].is_code()) machine.p[k] = right[k];
       inside =
           inside && machine.p[k] >= effect.parameters[k].low && machine.p[k] <= effect.parameters[k].high;
     }
@@ -171,7 +172,12 @@ void BlindWorld::draw_target(const BlindConditions& conditions, BlindDraw& draw)
     }
   }
   all.insert(all.end(), known.begin(), known.end());
-  const bool exciter = draw.coin(), governor = draw.coin();
+  for (const std::string& text : conditions.controls)
+    if (const sim::plant::Block block = block_of(text); !has_slot(all, block.effect->slot)) {
+      known.push_back(block);
+      all.push_back(block);
+    }
+  const bool exciter = draw.coin() && !converter(), governor = draw.coin() && !converter();
   const auto one_of = [&](const std::vector<std::string>& list, const char* otherwise) {
     return block_of(list.empty() ? otherwise : list[draw.below(list.size())]);
   };

@@ -28,6 +28,9 @@ class BlindWorld {
   [[nodiscard]] int plant() const { return plant_; }
   [[nodiscard]] const std::string& grid_name() const { return name_; }
   [[nodiscard]] bool controlled() const { return controlled_; }
+  [[nodiscard]] bool converter() const {
+    return grid_.plants[static_cast<std::size_t>(plant_)].machine.effect->converter;
+  }
   /// Whether a transformer that the model knows stands before the point that is recorded.
   [[nodiscard]] bool transformed() const { return transformed_; }
 
@@ -82,7 +85,9 @@ class BlindSize {
   [[nodiscard]] double visible(const std::vector<record::Record>& with) const;
   /// Size of what is left after a linear refit of the machine's parameters, and of each event's instants and
   /// start.
-  [[nodiscard]] double left(const std::vector<record::Record>& with) const;
+  /// With `but`, these parameters of the path stay as they are.
+  [[nodiscard]] double left(const std::vector<record::Record>& with,
+                            std::span<const BlindPath> but = {}) const;
 
  private:
   [[nodiscard]] playin::Response answer(std::size_t event, const record::Record& record,
