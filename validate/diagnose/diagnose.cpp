@@ -85,7 +85,7 @@ class Diagnoser {
   bool judge_all() {
     const bool again = measure_noise_again();
     passed_.emplace(sim::plant::PlantUnderTest{result_.base.plant, model_.conventions}, result_.events,
-                    fit::voltage_noise(result_.base, result_.events).variance);
+                    fit::voltage_noise(result_.base, result_.events));
     held_out_base_ = hypothesis::hold_out(trial(), model_.under_test(), {}, result_.base);
     if (again) infer_inputs(true);
     for (hypothesis::MissingInput* m : {&result_.torque, &result_.field})

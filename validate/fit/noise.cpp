@@ -1,6 +1,7 @@
 #include "validate/fit/noise.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <unsupported/Eigen/MatrixFunctions>
@@ -66,7 +67,6 @@ constexpr double kLow = 3.0, kHigh = 10.0;  ///< band in which the voltage's noi
 constexpr double kGuess = 2e-3;             ///< V may be off by this share of itself beside a switching
 /// Where V was brought back, the square of kGuess is this many times larger.
 constexpr char kSmeared = 40;
-constexpr double kLeastOwnNoise = 0.01;  ///< at least this share of a channel's variance is its own noise
 /// Slow noise matters from this share of the variance of white noise.
 constexpr double kMatters = 1e-3;
 
@@ -147,7 +147,7 @@ Moving moving_in_band(const event::WhitenedEvents& events) {
   constexpr double kBeyond = 3.0;  // standard deviations
   constexpr double kStretch =
       1.0;                    // [s], at least: a shorter one has so few lines that any level could be theirs
-  constexpr int kRounds = 3;  // as what was before the events may be few lines too
+  constexpr int kLevels = 3;  // as what was before the events may be few lines too
   Band before;
   std::vector<Band> later;
   for (const event::FitEvent& e : events) {
@@ -161,7 +161,7 @@ Moving moving_in_band(const event::WhitenedEvents& events) {
   Moving all;
   for (const Eigen::Index c : {0, 1, 2}) {
     Band calm = before;
-    for (int round = 0; round < kRounds && before.lines[c] > 0; ++round) {
+    for (int round = 0; round < kLevels && before.lines[c] > 0; ++round) {
       const double level = calm.level()[c], lines = calm.lines[c];
       calm = before;
       for (const Band& b : later) {
@@ -175,46 +175,68 @@ Moving moving_in_band(const event::WhitenedEvents& events) {
   return all;
 }
 
-/// How much of the answer's own movement before the events is found in the residual, and how much of the
-/// voltage's movement is found in the measured P and Q as if the current stood still; by least squares.
-struct Shares {
-  double instrument = 1, carried = 0;
+/// Sums over samples before the events of what the residual is told by, each in units of the channel's noise.
+struct Sums {
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();  ///< of the answer, and of V and theta as a carried noise
+  Eigen::Vector2d right = Eigen::Vector2d::Zero();   ///< of these with the residual
+  double left = 0, freedom = 0;
+  void add(const Sums& other) {
+    normal += other.normal;
+    right += other.right;
+    left += other.left;
+    freedom += other.freedom;
+  }
+  /// What such a combination leaves of the residual.
+  [[nodiscard]] double rest(const Eigen::Vector2d& x) const {
+    return std::max(0.0, left - 2 * x.dot(right) + x.dot(normal * x));
+  }
 };
-Shares shares_of(const Fit& fit, const event::WhitenedEvents& events) {
-  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
-  Eigen::Vector2d right = Eigen::Vector2d::Zero();
-  double left = 0;
-  int values = 0;
+std::array<Sums, playin::kOutputs> sums_of(const Fit& fit, const event::WhitenedEvents& events) {
+  constexpr double kOfLine = 2;  // what a mean and a slope take
+  std::array<Sums, playin::kOutputs> sums;
   for (std::size_t i = 0; i < events.size(); ++i) {
     const event::FitEvent& e = events[i];
     const int n = e.start.samples;
-    const Eigen::ArrayXd V = detrended(e.record.V, n), theta = detrended(e.record.theta, n);
+    const Eigen::ArrayXd V = detrended(e.record.V, n) / std::abs(e.start.voltage),
+                         theta = detrended(e.record.theta, n);
     const Eigen::MatrixXd into = VoltageNoise{.carried = 1}.into(e);
     for (std::size_t c = 0; c < e.channels.size(); ++c) {
       const auto row = static_cast<Eigen::Index>(c);
       const double noise = events.noise(i).deviation[row];
-      const Eigen::ArrayXd answer = detrended(fit.events[i].model[c], n),
-                           measured = detrended(e.measured(e.channels[c]), n);
-      for (Eigen::Index k = 0; k < n; ++k) {
-        const Eigen::Vector2d x =
-            Eigen::Vector2d(answer[k],
-                            -into(row, 0) * V[k] / std::abs(e.start.voltage) - into(row, 1) * theta[k]) /
-            noise;
-        const double residual = (answer[k] - measured[k]) / noise;
-        normal += x * x.transpose();
-        right += residual * x;
-        left += residual * residual;
-        ++values;
-      }
+      const Eigen::ArrayXd answer = detrended(fit.events[i].model[c], n) / noise,
+                           measured = detrended(e.measured(e.channels[c]), n) / noise;
+      Eigen::ArrayX2d by(n, 2);
+      by << answer, -(into(row, 0) * V + into(row, 1) * theta) / noise;
+      const Eigen::VectorXd residual = answer - measured;
+      sums[static_cast<std::size_t>(e.channels[c])].add({by.matrix().transpose() * by.matrix(),
+                                                         by.matrix().transpose() * residual,
+                                                         residual.squaredNorm(), n - kOfLine});
     }
   }
-  if (!(normal.determinant() > 1e-9 * normal(0, 0) * normal(1, 1))) return {};
-  const Eigen::Matrix2d inverse = normal.inverse();
-  const Eigen::Vector2d found = inverse * right;
-  const double scatter = std::max(0.0, left - found.dot(right)) / std::max(1, values - 2);
+  return sums;
+}
+
+/// How much of the answer's own movement before the events is found in the residual, and how much of the
+/// voltage's movement is found in the measured P and Q as if the current stood still; by least squares. What
+/// these leave is the channels' own noise.
+struct Shares {
+  double instrument = 1, carried = 0;
+  std::array<double, playin::kOutputs> own = VoltageNoise{}.own;
+};
+Shares shares_of(const Fit& fit, const event::WhitenedEvents& events) {
+  const auto sums = sums_of(fit, events);
+  Sums all;
+  for (const Sums& one : sums) all.add(one);
+  if (!(all.normal.determinant() > 1e-9 * all.normal(0, 0) * all.normal(1, 1))) return {};
+  const Eigen::Matrix2d inverse = all.normal.inverse();
+  const Eigen::Vector2d found = inverse * all.right;
+  const double scatter = all.rest(found) / std::max(1.0, all.freedom - 2);
   // the larger value where that cannot be told
-  const double share = std::clamp(found[0] + std::sqrt(scatter * inverse(0, 0)), 0.0, 1.0);
-  return {share, share > 0 ? std::clamp(found[1] / share, 0.0, 1.0) : 0.0};
+  Shares shares{.instrument = std::clamp(found[0] + std::sqrt(scatter * inverse(0, 0)), 0.0, 1.0)};
+  if (shares.instrument > 0) shares.carried = std::clamp(found[1] / shares.instrument, 0.0, 1.0);
+  for (std::size_t c = 0; c < sums.size(); ++c)
+    if (sums[c].freedom > 0) shares.own[c] = std::max(shares.own[c], sums[c].rest(found) / sums[c].freedom);
+  return shares;
 }
 
 /// Whether the slow part of any channel's noise has a variance worth speaking of by the record's end.
@@ -307,15 +329,21 @@ event::SlowNoise slow_noise(const playin::LinearPlant& plant, event::WhitenedEve
   }
   s.M = Eigen::MatrixXd::Zero(m, count);
   s.M.topRows(n) = in * V * through.transpose();
-  // the measured noise already holds what the voltage's noise does at once, and the rest cannot be less than
-  // nothing
+  // the measured noise already holds what the voltage's noise does at once, and what is left beside that is
+  // no less than the channels' own: the difference of two large variances tells it badly
   const Eigen::MatrixXd scale = noise.deviation.asDiagonal(),
                         unit = noise.deviation.cwiseInverse().asDiagonal();
   const Eigen::MatrixXd white = unit * noise.whitening.inverse();
   const Eigen::MatrixXd at_once = unit * through * V * through.transpose() * unit;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> rest(white * white.transpose() - at_once);
-  const Eigen::VectorXd left = rest.eigenvalues().cwiseMax(kLeastOwnNoise);
-  s.S = scale * (at_once + rest.eigenvectors() * left.asDiagonal() * rest.eigenvectors().transpose()) * scale;
+  Eigen::MatrixXd own = Eigen::MatrixXd::Zero(count, count);
+  for (Eigen::Index c = 0; c < count; ++c)
+    own(c, c) = voltage.own[static_cast<std::size_t>(e.channels[static_cast<std::size_t>(c)])];
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> more(white * white.transpose() - at_once - own);
+  s.S = scale *
+        (at_once + own +
+         more.eigenvectors() * more.eigenvalues().cwiseMax(0.0).asDiagonal() *
+             more.eigenvectors().transpose()) *
+        scale;
   return s;
 }
 
@@ -376,7 +404,8 @@ VoltageNoise voltage_noise(const Fit& fit, const event::WhitenedEvents& events) 
       .carried = shares.carried,
       .share = shares.instrument,
       .doubt =
-          (moving.freedom.array() > 0).select(moving.freedom.cwiseMax(1.0).cwiseSqrt().cwiseInverse(), 0.0)};
+          (moving.freedom.array() > 0).select(moving.freedom.cwiseMax(1.0).cwiseSqrt().cwiseInverse(), 0.0),
+      .own = shares.own};
 }
 
 event::NoiseModel remember_noise(const Fit& fit, const sim::Conventions& conventions,

@@ -1,6 +1,8 @@
 #pragma once
 // How large the noise is, from the whole records instead of the quiet stretch before the event alone: a
 // verdict on a few per cent of chi2 needs it to a few per cent.
+#include <array>
+
 #include "validate/fit/fit.hpp"
 
 namespace swingbank::validate::fit {
@@ -24,6 +26,13 @@ struct VoltageNoise {
   /// it.
   double share = 0;
   Eigen::Vector3d doubt = Eigen::Vector3d::Zero();  ///< standard deviation of each variance, relative
+  /// Of a channel's variance, what is its own noise and no answer to that of the voltage; by playin::Output.
+  std::array<double, playin::kOutputs> own = [] {
+    constexpr double kLeast = 0.01;
+    std::array<double, playin::kOutputs> least{};
+    least.fill(kLeast);
+    return least;
+  }();
   /// What P and Q of this operating point move by with V (relative) and theta [rad] where the current stands
   /// still, times `carried`: [channel][V, theta], in the channels' units.
   [[nodiscard]] Eigen::MatrixXd into(const event::FitEvent& event) const;

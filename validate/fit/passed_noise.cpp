@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "validate/fit/noise.hpp"
-
 namespace swingbank::validate::fit {
 
 PassedNoise::PassedNoise(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
-                         const Eigen::Vector3d& variance)
+                         const VoltageNoise& voltage)
     : quiet_(minute_of_noise(events.front(), Eigen::Vector3d::Zero())),
-      noisy_(minute_of_noise(events.front(), variance)),
+      noisy_(minute_of_noise(events.front(), voltage.variance)),
       noise_(events.noise(0)) {
-  noise_.memory = memory_of(tested, {quiet_, noise_}, {.variance = variance});
+  noise_.memory = memory_of(tested, {quiet_, noise_}, {.variance = voltage.variance, .own = voltage.own});
   double values = 0;
   for (const event::FitEvent& e : events) values += e.values();
   times_ = values / noisy_.values();

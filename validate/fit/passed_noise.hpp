@@ -3,16 +3,16 @@
 // explains the records better without explaining anything. For example, a current that is late by part of a
 // sample is read between the samples, where the curve through them is smoother than the noise on them.
 #include "validate/event/event.hpp"
-#include "validate/fit/fit.hpp"
+#include "validate/fit/noise.hpp"
 
 namespace swingbank::validate::fit {
 
 class PassedNoise {
  public:
-  /// Takes the structure that others are held against. Noise of these variances (VoltageNoise) is played in
-  /// for a minute at the first event's operating point, and whitened as the residual of this structure is.
+  /// Takes the structure that others are held against. Noise of these variances is played in for a minute at
+  /// the first event's operating point, and whitened as the residual of this structure is.
   PassedNoise(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
-              const Eigen::Vector3d& variance);
+              const VoltageNoise& voltage);
   /// By how much chi2 of all events falls with another structure because it passes less noise. Negative if it
   /// passes more, 0 where it cannot be run.
   [[nodiscard]] double less_with(const sim::plant::PlantUnderTest& tested) const;

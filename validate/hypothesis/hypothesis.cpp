@@ -170,6 +170,21 @@ std::string_view stem(std::string_view name) {
   return name;
 }
 
+/// Parts of the room that parameters have, from which they begin.
+const std::vector<double> kCurveStarts = {0.02, 0.1, 0.3, -0.02, -0.1};
+/// Of a dead-band's edges. Ranges of 1 pu are a form; a voltage's dead-band is a few hundredths of that, a
+/// frequency's a thousandth, and one wider than all that moves has no slope to come back by.
+const std::vector<double> kBandStarts = {3e-4, 1e-3, 4e-3, 0.015, 0.05};
+
+/// Whether a group is the two edges of a dead-band about a neutral 0.
+bool is_band(const sim::Effect& effect, const std::vector<int>& group) {
+  if (group.size() != 2) return false;
+  const auto &lower = effect.parameters[static_cast<std::size_t>(group[0])],
+             &upper = effect.parameters[static_cast<std::size_t>(group[1])];
+  return lower.neutral == 0.0 && lower.low < 0.0 && lower.high == 0.0 && upper.neutral == 0.0 &&
+         upper.low == 0.0 && upper.high > 0.0;
+}
+
 void add_neutral_groups(const sim::plant::PlantUnderTest& tested, std::vector<Hypothesis>& all) {
   for (int b = 0; b < sim::plant::first_measurement(tested.plant); ++b) {
     const sim::plant::Block& block = sim::plant::block_at(tested.plant, b);
@@ -200,14 +215,16 @@ void add_neutral_groups(const sim::plant::PlantUnderTest& tested, std::vector<Hy
       h.side = side_of(effect.slot);
       h.plant = tested.plant;
       h.conventions = tested.conventions;
-      for (const double share : {0.02, 0.1, 0.3, -0.02, -0.1}) {
+      const bool band = is_band(effect, group);
+      for (const double share : band ? kBandStarts : kCurveStarts) {
         std::vector<double> values;
         sim::plant::Block moved = block;
         for (std::size_t k = 0; k < group.size(); ++k) {
           const auto& p = effect.parameters[static_cast<std::size_t>(group[k])];
           const double room = share > 0 ? p.high - p.neutral : p.neutral - p.low;
           // a curve's later points lie above its earlier ones
-          const double v = p.neutral + share * room * static_cast<double>(k + 1) * (k > 0 ? 2.0 : 1.0);
+          const double curve = share * room * static_cast<double>(k + 1) * (k > 0 ? 2.0 : 1.0);
+          const double v = p.neutral + (band ? share * (p.high > p.neutral ? p.high : p.low) : curve);
           values.push_back(v);
           moved.p[static_cast<std::size_t>(group[k])] = v;
         }

@@ -21,14 +21,15 @@ std::vector<double> standing_out(const std::vector<Complex>& step) {
 }
 
 /// Values to either side of a jump that its height is told by.
-constexpr std::size_t kBeside = 3;
+constexpr std::size_t kSamplesBeside = 3;
 
 double mean_of(std::span<const double> x) {
   return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
 }
 /// From the values up to sample k to those behind it.
 double height(std::span<const double> x, std::size_t k) {
-  return mean_of(x.subspan(k + 1, kBeside)) - mean_of(x.subspan(k + 1 - kBeside, kBeside));
+  return mean_of(x.subspan(k + 1, kSamplesBeside)) -
+         mean_of(x.subspan(k + 1 - kSamplesBeside, kSamplesBeside));
 }
 /// Variance of a height by the noise to either side of it, a record's rounding included.
 double height_variance(std::span<const double> x, std::size_t k) {
@@ -37,27 +38,28 @@ double height_variance(std::span<const double> x, std::size_t k) {
   const double noise = (weight(before) * white_variance(before) + weight(after) * white_variance(after)) /
                        (weight(before) + weight(after));
   const double step = record::quantum({x.begin(), x.end()});
-  return 2.0 / kBeside * (noise + step * step / 12);
+  return 2.0 / kSamplesBeside * (noise + step * step / 12);
 }
 
 }  // namespace
 
 std::size_t before_power_jump(const record::Record& record, std::size_t n) {
-  constexpr double kErrors = 6, kOfBefore = 3, kOfPower = 1e-3;
+  constexpr double kErrorsOfHeight = 6, kOfBefore = 3, kOfPower = 1e-3;
   constexpr std::size_t kSamplesBefore = 4,
-                        kReaches = kBeside - 1;  // a jump's height in the samples beside it
-  if (record.P.size() < n || record.Q.size() < n || n < kSamplesBefore + 2 * kBeside + 1) return n - 1;
+                        kReaches = kSamplesBeside - 1;  // a jump's height in the samples beside it
+  if (record.P.size() < n || record.Q.size() < n || n < kSamplesBefore + 2 * kSamplesBeside + 1) return n - 1;
   const std::span P(record.P.data(), n), Q(record.Q.data(), n);
   const double least = kOfPower * std::hypot(mean_of(P), mean_of(Q));
   std::vector<double> jump(n, 0.0);
-  for (std::size_t k = kReaches; k + kBeside < n; ++k) jump[k] = std::hypot(height(P, k), height(Q, k));
-  for (std::size_t k = kSamplesBefore; k + kBeside < n; ++k) {
+  for (std::size_t k = kReaches; k + kSamplesBeside < n; ++k)
+    jump[k] = std::hypot(height(P, k), height(Q, k));
+  for (std::size_t k = kSamplesBefore; k + kSamplesBeside < n; ++k) {
     const auto beside = std::span(jump).subspan(k - kReaches, 2 * kReaches + 1);
     const auto before = std::span(jump).first(k - kReaches);
     const bool stands_out =
         jump[k] == std::ranges::max(beside) && jump[k] > kOfBefore * std::ranges::max(before);
     if (stands_out &&
-        jump[k] > std::max(least, kErrors * std::sqrt(height_variance(P, k) + height_variance(Q, k))))
+        jump[k] > std::max(least, kErrorsOfHeight * std::sqrt(height_variance(P, k) + height_variance(Q, k))))
       return k;
   }
   return n - 1;

@@ -126,7 +126,7 @@ Case moving(double carried, bool real, int before = 30) {
     }
     e.start = {.samples = before, .voltage = 1.0, .P = kP, .Q = kQ};
     e.channels = {playin::Output::P, playin::Output::Q};
-    noise.push_back({.deviation = Eigen::Vector2d(6e-3, 4e-3), .whitening = Eigen::Matrix2d::Identity()});
+    noise.push_back({.deviation = Eigen::Vector2d(3e-3, 2e-3), .whitening = Eigen::Matrix2d::Identity()});
     events.push_back(std::move(e));
     c.fit.events.push_back(std::move(f));
   }
@@ -140,6 +140,8 @@ TEST(VoltageNoise, IsSeenInPAndQThatWereMadeOfThePhasors) {
     const VoltageNoise found = voltage_noise(c.fit, c.events);
     EXPECT_NEAR(found.carried, carried, 0.15);
     EXPECT_NEAR(found.share, 1.0, 0.05);
+    // noise of 4e-4 where the deviation is taken for 2e-3; 84 samples tell it to 15 %
+    EXPECT_NEAR(found.own[static_cast<int>(playin::Output::Q)], 0.04, 0.3 * 0.04);
   }
 }
 TEST(VoltageNoise, IsMeasuredOnTheWholeRecordAndNotByItsSwings) {

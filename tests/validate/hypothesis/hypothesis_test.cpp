@@ -99,6 +99,26 @@ TEST(Hypotheses, EverySwitchIsTriedInItsOtherPosition) {
             (std::set<std::string>{"REGCB1:rateFlag=1", "REGCB1:pqFlag=1", "REECA1:PFFLAG=1",
                                    "REECA1:VFLAG=0", "REECA1:QFLAG=1", "REECA1:PFLAG=1", "REECA1:PQFLAG=1"}));
 }
+/// Its edges lie to either side of the neutral 0, and a start wider than all that moves has no slope.
+TEST(Hypotheses, ADeadBandIsTriedFromNarrowToWide) {
+  const auto standard = [](const char* name) {
+    const sim::Effect* effect = sim::library::compiled().find(name);
+    return sim::plant::Block{effect, effect->standard_parameters()};
+  };
+  sim::plant::Plant plant;
+  plant.machine = standard("REGCA1");
+  plant.controls = {standard("REPCA1"), standard("REECA1")};
+  int bands = 0;
+  for (const Hypothesis& h : all_hypotheses({plant, sim::Conventions::psse()}, sim::library::compiled())) {
+    if (h.name != "REPCA1:dbd1,dbd2" && h.name != "REECA1:dbd1,dbd2") continue;
+    ++bands;
+    ASSERT_GE(h.starts.size(), 4U);
+    for (const auto& start : h.starts) EXPECT_DOUBLE_EQ(start[0], -start[1]);
+    EXPECT_LT(h.starts.front()[1], 1e-3);  // a frequency's is some 0.0006 pu
+    EXPECT_GT(h.starts.back()[1], 0.02);   // a voltage's some 0.02 pu
+  }
+  EXPECT_EQ(bands, 2);
+}
 TEST(Triangle, HasTheProductsOfTheColumns) {
   event::RowMatrix e = event::RowMatrix::Random(50, 6);
   e.col(3) = 2 * e.col(0) - e.col(1);  // what the others make leaves nothing of its own
