@@ -19,6 +19,16 @@ double trigger_of(const event::FitEvent& e, double level) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
+/// The plant driven with the inferred input, by the steps of the search where exact ones do not get on.
+playin::Response driven(const sim::plant::PlantUnderTest& tested, const event::FitEvent& e,
+                        const fit::EventState& state, fit::InputKind kind) {
+  try {
+    return event::play(tested, e, state, {}, {.input = kind});
+  } catch (const InputError&) {
+    return event::play(tested, e, state, {}, {.lenient = true, .input = kind});
+  }
+}
+
 }  // namespace
 
 std::vector<LawTrace> law_traces(const plant::PlantModel& model, const event::WhitenedEvents& events,
@@ -30,8 +40,7 @@ std::vector<LawTrace> law_traces(const plant::PlantModel& model, const event::Wh
     const auto switchings = event::switchings_at(e, state);
     const playin::VoltageCurve curve(e.played(), switchings);
     // The signals are those that the instruments show, as the fit had them.
-    const playin::Response r =
-        event::play({input.fit.plant, model.conventions}, e, state, {}, {.input = input.kind});
+    const playin::Response r = driven({input.fit.plant, model.conventions}, e, state, input.kind);
     const double to_machine = e.record.base.mva / input.fit.plant.mva;
     LawTrace t;
     t.t = e.record.t;
