@@ -67,6 +67,7 @@ constexpr double kLow = 3.0, kHigh = 10.0;  ///< band in which the voltage's noi
 constexpr double kGuess = 2e-3;             ///< V may be off by this share of itself beside a switching
 /// Where V was brought back, the square of kGuess is this many times larger.
 constexpr char kSmeared = 40;
+constexpr double kLeastOwnNoise = 0.01;  ///< at least this share of a channel's variance is its own noise
 /// Slow noise matters from this share of the variance of white noise.
 constexpr double kMatters = 1e-3;
 
@@ -145,9 +146,10 @@ struct Moving {
 };
 Moving moving_in_band(const event::WhitenedEvents& events) {
   constexpr double kBeyond = 3.0;  // standard deviations
-  constexpr double kStretch =
-      1.0;                    // [s], at least: a shorter one has so few lines that any level could be theirs
-  constexpr int kLevels = 3;  // as what was before the events may be few lines too
+  // A shorter stretch has so few lines that any level could be theirs, and so may have what was before the
+  // events: the level is found so many times.
+  constexpr double kStretch = 1.0;  // [s]
+  constexpr int kLevels = 3;
   Band before;
   std::vector<Band> later;
   for (const event::FitEvent& e : events) {
@@ -221,7 +223,7 @@ std::array<Sums, playin::kOutputs> sums_of(const Fit& fit, const event::Whitened
 /// these leave is the channels' own noise.
 struct Shares {
   double instrument = 1, carried = 0;
-  std::array<double, playin::kOutputs> own = VoltageNoise{}.own;
+  std::array<double, playin::kOutputs> own{};
 };
 Shares shares_of(const Fit& fit, const event::WhitenedEvents& events) {
   const auto sums = sums_of(fit, events);
@@ -235,7 +237,7 @@ Shares shares_of(const Fit& fit, const event::WhitenedEvents& events) {
   Shares shares{.instrument = std::clamp(found[0] + std::sqrt(scatter * inverse(0, 0)), 0.0, 1.0)};
   if (shares.instrument > 0) shares.carried = std::clamp(found[1] / shares.instrument, 0.0, 1.0);
   for (std::size_t c = 0; c < sums.size(); ++c)
-    if (sums[c].freedom > 0) shares.own[c] = std::max(shares.own[c], sums[c].rest(found) / sums[c].freedom);
+    if (sums[c].freedom > 0) shares.own[c] = sums[c].rest(found) / sums[c].freedom;
   return shares;
 }
 
@@ -337,7 +339,8 @@ event::SlowNoise slow_noise(const playin::LinearPlant& plant, event::WhitenedEve
   const Eigen::MatrixXd at_once = unit * through * V * through.transpose() * unit;
   Eigen::MatrixXd own = Eigen::MatrixXd::Zero(count, count);
   for (Eigen::Index c = 0; c < count; ++c)
-    own(c, c) = voltage.own[static_cast<std::size_t>(e.channels[static_cast<std::size_t>(c)])];
+    own(c, c) = std::max(kLeastOwnNoise,
+                         voltage.own[static_cast<std::size_t>(e.channels[static_cast<std::size_t>(c)])]);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> more(white * white.transpose() - at_once - own);
   s.S = scale *
         (at_once + own +

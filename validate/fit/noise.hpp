@@ -26,13 +26,9 @@ struct VoltageNoise {
   /// it.
   double share = 0;
   Eigen::Vector3d doubt = Eigen::Vector3d::Zero();  ///< standard deviation of each variance, relative
-  /// Of a channel's variance, what is its own noise and no answer to that of the voltage; by playin::Output.
-  std::array<double, playin::kOutputs> own = [] {
-    constexpr double kLeast = 0.01;
-    std::array<double, playin::kOutputs> least{};
-    least.fill(kLeast);
-    return least;
-  }();
+  /// Share of a channel's variance that is its own noise and no answer to that of the voltage, by
+  /// playin::Output; a hundredth is supposed at least.
+  std::array<double, playin::kOutputs> own{};
   /// What P and Q of this operating point move by with V (relative) and theta [rad] where the current stands
   /// still, times `carried`: [channel][V, theta], in the channels' units.
   [[nodiscard]] Eigen::MatrixXd into(const event::FitEvent& event) const;

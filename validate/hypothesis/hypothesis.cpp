@@ -171,10 +171,10 @@ std::string_view stem(std::string_view name) {
 }
 
 /// Parts of the room that parameters have, from which they begin.
-const std::vector<double> kCurveStarts = {0.02, 0.1, 0.3, -0.02, -0.1};
+constexpr std::array kCurveStarts = {0.02, 0.1, 0.3, -0.02, -0.1};
 /// Of a dead-band's edges. Ranges of 1 pu are a form; a voltage's dead-band is a few hundredths of that, a
 /// frequency's a thousandth, and one wider than all that moves has no slope to come back by.
-const std::vector<double> kBandStarts = {3e-4, 1e-3, 4e-3, 0.015, 0.05};
+constexpr std::array kBandStarts = {3e-4, 1e-3, 4e-3, 0.015, 0.05};
 
 /// Whether a group is the two edges of a dead-band about a neutral 0.
 bool is_band(const sim::Effect& effect, const std::vector<int>& group) {

@@ -71,9 +71,7 @@ class Driven {
     for (Eigen::Index first = 0; first < n + 2; first += sim::kDirections) {
       const Eigen::Index count = std::min<Eigen::Index>(sim::kDirections, n + 2 - first);
       auto x = x_;
-      // beside the corner that a dead-band of no width has, and no two states by as much, whose difference
-      // would stay on it
-      for (std::size_t k = 0; k < x.size(); ++k) x[k] = x[k] + T(1e-9 * static_cast<double>(k + 1));
+      for (T& value : x) value = value + T(1e-9);  // beside the corner that a dead-band of no width has
       T vr(v.real()), vi(v.imag());
       for (Eigen::Index i = 0; i < count; ++i) {
         const auto d = static_cast<std::size_t>(i);

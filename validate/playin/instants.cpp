@@ -1,9 +1,9 @@
 #include "validate/playin/instants.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <numeric>
 
 #include "base/white_noise.hpp"
 
@@ -23,13 +23,12 @@ std::vector<double> standing_out(const std::vector<Complex>& step) {
 /// Values to either side of a jump that its height is told by.
 constexpr std::size_t kSamplesBeside = 3;
 
-double mean_of(std::span<const double> x) {
-  return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
+double mean(std::span<const double> x) {
+  return Eigen::Map<const Eigen::ArrayXd>(x.data(), static_cast<Eigen::Index>(x.size())).mean();
 }
 /// From the values up to sample k to those behind it.
 double height(std::span<const double> x, std::size_t k) {
-  return mean_of(x.subspan(k + 1, kSamplesBeside)) -
-         mean_of(x.subspan(k + 1 - kSamplesBeside, kSamplesBeside));
+  return mean(x.subspan(k + 1, kSamplesBeside)) - mean(x.subspan(k + 1 - kSamplesBeside, kSamplesBeside));
 }
 /// Variance of a height by the noise to either side of it, a record's rounding included.
 double height_variance(std::span<const double> x, std::size_t k) {
@@ -49,7 +48,7 @@ std::size_t before_power_jump(const record::Record& record, std::size_t n) {
                         kReaches = kSamplesBeside - 1;  // a jump's height in the samples beside it
   if (record.P.size() < n || record.Q.size() < n || n < kSamplesBefore + 2 * kSamplesBeside + 1) return n - 1;
   const std::span P(record.P.data(), n), Q(record.Q.data(), n);
-  const double least = kOfPower * std::hypot(mean_of(P), mean_of(Q));
+  const double least = kOfPower * std::hypot(mean(P), mean(Q));
   std::vector<double> jump(n, 0.0);
   for (std::size_t k = kReaches; k + kSamplesBeside < n; ++k)
     jump[k] = std::hypot(height(P, k), height(Q, k));

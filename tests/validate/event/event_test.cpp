@@ -195,6 +195,19 @@ TEST(PrepareEvents, TheEndOfAFaultWithADecayIsFound) {
   EXPECT_TRUE(e.smeared.empty());
   EXPECT_NEAR(e.switchings[1].time, 3.1 + 0.5 / 30, 0.51 / 30);
 }
+TEST(PrepareEvents, TheWindowBeforeAnEventEndsWherePAndQJump) {
+  record::Record r = record_of([](double) { return 1.0; });
+  std::mt19937_64 random(6);
+  std::normal_distribution<double> noise(0, 1e-4);
+  for (const double t : r.t) {
+    r.P.push_back((t > 0.21 ? 0.38 : 0.4) + noise(random));
+    r.Q.push_back((t > 0.21 ? 0.09 : 0.1) + noise(random));
+  }
+  const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  const FitEvent e = prepare_events(model, {r}).front();
+  EXPECT_TRUE(e.switchings.empty());
+  EXPECT_EQ(e.start.samples, 13);  // up to 0.2 s at 60/s
+}
 /// Two samples of fault at 30/s tell no decay from a filter: the person does.
 TEST(PrepareEvents, ToldInstantsAreTaken) {
   record::Record r = subtransient(0.5, 4, 0.025);

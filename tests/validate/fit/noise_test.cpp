@@ -98,20 +98,23 @@ TEST(SharpenNoise, ColouredNoiseIsLeftAlone) {
 }
 
 /// Events in which V and theta have white noise that the model answers; the measured P and Q hold the share
-/// `carried` of it as phasors would, noise of their own, and the answer to what of the movement is `real`. So
-/// many samples at 30/s precede the event.
-Case moving(double carried, bool real, int before = 30) {
+/// `carried` of it as phasors would, noise of their own, and the answer to what of the movement is `real`.
+/// Samples are at 30/s; so many precede an event.
+struct Samples {
+  int before = 30, all = kSamples, events = 3;
+};
+Case moving(double carried, bool real, Samples samples = {}) {
   constexpr double kVoltage = 1e-3, kOwn = 4e-4, kP = 0.5, kQ = 0.2;
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal;
   Case c;
   std::vector<event::FitEvent> events;
   std::vector<event::EventNoise> noise;
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < samples.events; ++i) {
     event::FitEvent e;
     EventFit f;
     f.model.resize(2);
-    for (int k = 0; k < kSamples; ++k) {
+    for (int k = 0; k < samples.all; ++k) {
       const double v = kVoltage * normal(random), theta = 2 * kVoltage * normal(random);
       const double answer[2] = {0.3 * v - 3 * theta, -4 * v + 0.2 * theta};
       const double by_phasors[2] = {kP * v - kQ * theta, kQ * v + kP * theta};
@@ -124,7 +127,7 @@ Case moving(double carried, bool real, int before = 30) {
         f.model[ch].push_back((ch == 0 ? kP : kQ) + answer[ch]);
       }
     }
-    e.start = {.samples = before, .voltage = 1.0, .P = kP, .Q = kQ};
+    e.start = {.samples = samples.before, .voltage = 1.0, .P = kP, .Q = kQ};
     e.channels = {playin::Output::P, playin::Output::Q};
     noise.push_back({.deviation = Eigen::Vector2d(3e-3, 2e-3), .whitening = Eigen::Matrix2d::Identity()});
     events.push_back(std::move(e));
@@ -150,11 +153,17 @@ TEST(VoltageNoise, IsMeasuredOnTheWholeRecordAndNotByItsSwings) {
   EXPECT_NEAR(found.variance[0], 1e-6, 3e-6 * found.doubt[0]);
   EXPECT_NEAR(found.variance[1], 4e-6, 12e-6 * found.doubt[1]);
 }
-TEST(VoltageNoise, AFifthOfASecondBeforeAnEventTellsIt) {
-  const VoltageNoise found = voltage_noise(moving(1, false, 6).fit, moving(1, false, 6).events);
-  EXPECT_LT(found.doubt[1], 0.05);
-  // a mean and a slope take a seventh of the lines that fit into so short a stretch
-  EXPECT_NEAR(found.variance[1], 4e-6, 0.1 * 4e-6);
+TEST(VoltageNoise, AfterAFifthOfASecondTheCalmPartsTellIt) {
+  const Case c = moving(1, false, {.before = 6});
+  const VoltageNoise found = voltage_noise(c.fit, c.events);
+  EXPECT_LT(found.doubt[1], 0.05);  // six lines alone tell it to 0.6
+  EXPECT_NEAR(found.variance[1], 4e-6, 12e-6 * found.doubt[1]);
+}
+TEST(VoltageNoise, WhatAMeanAndASlopeTakeOfAShortStretchIsCounted) {
+  const Case c = moving(1, false, {.before = 6, .all = 12, .events = 1000});  // no second that could be calm
+  const VoltageNoise found = voltage_noise(c.fit, c.events);
+  EXPECT_LT(found.doubt[1], 0.04);
+  EXPECT_NEAR(found.variance[1], 4e-6, 12e-6 * found.doubt[1]);  // a seventh would be gone
 }
 TEST(VoltageNoise, WhatThePlantAnswersIsNoNoise) {
   const Case c = moving(0, true);

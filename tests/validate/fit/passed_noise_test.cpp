@@ -27,7 +27,8 @@ class PassedNoiseTest : public ::testing::Test {
     return passed_.less_with({plant, example_.model.conventions});
   }
   const ExciterExample example_{0.2};
-  const PassedNoise passed_{example_.model.under_test(), example_.events, VoltageNoise{.variance = {4e-8, 4e-8, 0}}};
+  const PassedNoise passed_{example_.model.under_test(), example_.events,
+                            VoltageNoise{.variance = {4e-8, 4e-8, 0}}};
 };
 
 TEST_F(PassedNoiseTest, ACurrentReadBetweenSamplesPassesLess) {
