@@ -384,16 +384,19 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
                                  ? event::jumps_of({e.record}, options.jump_threshold)
                                  : options.jumps;
   std::string failed;
-  const auto fitted_with = [&](bool start_stands) {
+  const auto fitted_with = [&](Fitted how) {
     EventComparison other = e;
-    play_fitted(model, options, jumps, start_stands, other);
+    play_fitted(model, options, jumps, how, other);
     measure_channels(model, DriveBy::voltage, options.play_in, other);
     return other;
   };
   // a model that lacks something would move P and Q of the start to hide it
   const auto fitted = [&] {
-    EventComparison other = fitted_with(false);
-    return explained(other) ? other : fitted_with(true);
+    for (const Fitted how : {Fitted::in_white_noise, Fitted::in_slow_noise}) {
+      if (how == Fitted::in_slow_noise && playin::is_part(e.record)) continue;
+      if (EventComparison other = fitted_with(how); explained(other)) return other;
+    }
+    return fitted_with(Fitted::start_stands);
   };
   if (!e.record.breaker() && jumps == event::Jumps::spread && options.drive == DriveBy::voltage) {
     e = fitted();

@@ -16,12 +16,22 @@
 namespace swingbank::validate::event {
 namespace {
 
-/// How much each step stands out from the steps two and three before and after it [pu].
+/// How far x lies from everything between a and b.
+double beyond(Complex x, Complex a, Complex b) {
+  const double length = std::norm(b - a);
+  const double at = length > 0 ? std::real((x - a) * std::conj(b - a)) / length : 0.0;
+  return std::abs(x - a - std::clamp(at, 0.0, 1.0) * (b - a));
+}
+/// How much each step stands out from the steps two and three before and after it, and from what lies between
+/// these: where a converter's ramp ends, or a swing turns, steps go over from one size to another [pu].
 std::vector<double> prominence(const std::vector<Complex>& step) {
   std::vector<double> d(step.size(), 0.0);
-  for (std::size_t k = 3; k + 3 < step.size(); ++k)
-    d[k] = std::min({std::abs(step[k] - step[k - 3]), std::abs(step[k] - step[k - 2]),
-                     std::abs(step[k] - step[k + 2]), std::abs(step[k] - step[k + 3])});
+  for (std::size_t k = 3; k + 3 < step.size(); ++k) {
+    d[k] = std::numeric_limits<double>::infinity();
+    for (const std::size_t before : {k - 3, k - 2})
+      for (const std::size_t after : {k + 2, k + 3})
+        d[k] = std::min(d[k], beyond(step[k], step[before], step[after]));
+  }
   return d;
 }
 /// Whether intervals first .. last are part of a fast swing, where nothing stands out from steps of the same

@@ -41,6 +41,18 @@ TEST(FindSwitchings, AFastSwingIsNone) {
                                      [](double t) { return 0.1 + 2 * (1 + std::erf((t - 4) / 0.42)); });
   for (const auto& s : switchings_of(r)) ADD_FAILURE() << "switching at " << s.time << " s";
 }
+TEST(FindSwitchings, TheEndOfARampIsNone) {
+  // a converter's active power comes back at its ramp rate: the angle turns by 0.05 rad from sample to sample
+  // for 70 ms, and the steps die out within three
+  const auto theta = [](double t) {
+    const double ramp = std::clamp(t, 3.0, 3.07) - 3.0, after = std::max(0.0, t - 3.07);
+    return 6.0 * (ramp + 0.02 * (1 - std::exp(-after / 0.02)));
+  };
+  const record::Record r = record_of([](double t) { return t <= 3.0 ? 0.8 : 1.0; }, theta, 120);
+  const auto found = switchings_of(r);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NEAR(found.front().time, 3.0 + 0.5 / 120, 0.51 / 120);
+}
 TEST(FindSwitchings, ASmallJumpIsOne) {
   const auto found = switchings_of(record_of([](double t) { return t <= 3.0 ? 1.0 : 0.985; }));
   ASSERT_EQ(found.size(), 1U);

@@ -50,6 +50,7 @@ class Maker {
     if (!config.conditions.machines.empty())
       made_.conditions.emplace_back(target(world_.plain()).machine.effect->name);
     if (world_.transformed()) made_.conditions.emplace_back("behind its transformer");
+    if (world_.recorded().size() > 1) made_.conditions.emplace_back("two units recorded together");
     made_.channels = draw.coin(config.channels_share);
     made_.controlled = world_.controlled();
     made_.grid_name = world_.grid_name();
@@ -63,9 +64,10 @@ class Maker {
     made_.conventions = grid.conventions;
     made_.plant_name = made_.truth.name;
     draw_model();
-    made_.records = records(grid);
+    if (other(grid)) made_.other = *other(grid);
+    made_.records = records(grid, other(grid));
     for (record::Record& record : made_.records)
-      add_noise(record, {made_.noise, made_.truth.mva, made_.voltage_noise, config_.speed_noise},
+      add_noise(record, {made_.noise, recorded_mva(), made_.voltage_noise, config_.speed_noise},
                 made_.channels, draw_);
     return made_;
   }
@@ -74,19 +76,32 @@ class Maker {
   [[nodiscard]] const sim::plant::Plant& target(const sim::grid::Grid& grid) const {
     return grid.plants[static_cast<std::size_t>(world_.plant())];
   }
+  /// The unit that is recorded with it; nullptr: none.
+  [[nodiscard]] const sim::plant::Plant* other(const sim::grid::Grid& grid) const {
+    if (world_.recorded().size() < 2) return nullptr;
+    return &grid.plants[static_cast<std::size_t>(world_.recorded()[1])];
+  }
+  /// Machine bases of all that is recorded [MVA].
+  [[nodiscard]] double recorded_mva() const {
+    const sim::plant::Plant* beside = other(world_.plain());
+    return target(world_.plain()).mva + (beside ? beside->mva : 0.0);
+  }
   /// The run of one event; throws Unstable where it does not stay in bounds.
   [[nodiscard]] sim::reference::ReferenceRun run(const sim::grid::Grid& grid, const BlindEvent& event) const {
-    sim::reference::ReferenceRun fine = simulate_fine(grid, world_.plant(), event, config_);
+    sim::reference::ReferenceRun fine = simulate_fine(grid, world_.recorded(), event, config_);
     if (fine.outcome != sim::Outcome::stable) throw Unstable{};
-    for (int k = 0; k < fine.samples; ++k)
-      if (!(std::abs(fine.at(0, 4)[k]) < kUntripped)) throw Unstable{};
+    for (std::size_t u = 0; u < world_.recorded().size(); ++u)
+      for (int k = 0; k < fine.samples; ++k)
+        if (!(std::abs(fine.at(static_cast<int>(u), 4)[k]) < kUntripped)) throw Unstable{};
     return fine;
   }
-  [[nodiscard]] std::vector<record::Record> records(const sim::grid::Grid& grid) const {
+  /// Of the target, and of `beside` with it.
+  [[nodiscard]] std::vector<record::Record> records(const sim::grid::Grid& grid,
+                                                    const sim::plant::Plant* beside = nullptr) const {
     std::vector<record::Record> all;
     for (std::size_t e = 0; e < made_.events.size(); ++e)
       all.push_back(measured(run(grid, made_.events[e]), target(grid), made_.events[e], conditions_,
-                             grid.conventions.frequency, seed_ + e));
+                             grid.conventions.frequency, seed_ + e, beside));
     return all;
   }
   void draw_events() {
@@ -120,7 +135,7 @@ class Maker {
     if (spec_.hidden.empty()) return;
     const sim::grid::Grid& plain = world_.plain();
     const BlindSize size({target(plain), plain.conventions}, made_.events, plain_,
-                         made_.noise * target(plain).mva / plain_.front().base.mva, made_.voltage_noise);
+                         made_.noise * recorded_mva() / plain_.front().base.mva, made_.voltage_noise);
     scales_.assign(spec_.hidden.size(), {});
     Scales found = scales_;
     for (std::size_t k = 0; k < spec_.hidden.size(); ++k) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,7 @@ struct BlindCase {
   sim::Conventions conventions;
   sim::plant::Plant truth,
       model;  ///< with the hidden effects and right parameters; without, and 10-20 % wrong
+  std::optional<sim::plant::Plant> other;  ///< the unit recorded with it, whose model is right
   std::vector<BlindEvent> events;
   std::vector<record::Record> records;  ///< with noise, one per event
   std::vector<BlindTruth> hidden;

@@ -152,6 +152,7 @@ BlindConditions read_conditions(Config& config) {
   c.long_share = share("long_share");
   c.dip_share = share("dip_share");
   c.transformer_share = share("transformer_share");
+  c.second_unit_share = share("second_unit_share");
   c.machines = texts("machines");
   c.controls = texts("controls");
   c.exciters = texts("exciters");

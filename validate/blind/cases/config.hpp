@@ -53,6 +53,7 @@ struct BlindConditions {
   double long_share = 0;                    ///< the first event is recorded three times as long
   double dip_share = 0;                     ///< the last event is a dip of frequency without any switching
   double transformer_share = 0;             ///< a known transformer stands before the point that is recorded
+  double second_unit_share = 0;             ///< another unit at the bus is recorded with it, its model known
   std::vector<std::string> machines;        ///< effects, one of which takes the place of the file's machine
   std::vector<std::string> controls;        ///< that every case's model knows: "EFFECT[:PARAM=VALUE,...]"
   std::vector<std::string> exciters, governors;  ///< that it may know, beside a machine that rotates

@@ -64,18 +64,27 @@ json truth_json(const BlindCase& made, const BlindConfig& config, const std::str
           {"speed_voltage", made.conventions.speed_voltage},
           {"mechanical_power", made.conventions.mechanical_power},
           {"true_plant", plant_json(made.truth)},
-          {"model", plant_json(made.model)}};
+          {"model", plant_json(made.model)},
+          {"other_unit", made.other ? plant_json(*made.other) : json()}};
 }
 
-std::string model_file(const BlindCase& made, const std::string& name) {
+std::string model_file(const sim::plant::Plant& plant, const std::string& name,
+                       const sim::Conventions& conventions, const char* what) {
   plant::PlantModel model;
   model.name = name;
-  model.plant = made.model;
+  model.plant = plant;
   model.plant.name = name;
-  model.conventions = sim::Conventions::psse(made.conventions.frequency);
+  model.conventions = conventions;
   model.record_base.mva = kRecordMva;
-  model.record_base.frequency = made.conventions.frequency;
-  return plant::plant_text(model, {"Plant of a blind case, as its owner believes it to be"});
+  model.record_base.frequency = conventions.frequency;
+  return plant::plant_text(model, {what});
+}
+
+/// Both units behind the point, as `--point` reads them (configs/plants/README.md).
+std::string point_file(const BlindCase& made) {
+  const double share = made.other->mva / (made.other->mva + made.model.mva);
+  return fmt::format(
+      "[[unit]]\nmodel = \"model.toml\"\n\n[[unit]]\nmodel = \"other.toml\"\nshare = {:.12g}\n", share);
 }
 
 }  // namespace
@@ -85,7 +94,14 @@ void write_blind_case(const BlindCase& made, const BlindConfig& config, const st
   write_file(truth, truth_json(made, config, name).dump(1) + "\n");
   const fs::path partial = folder.parent_path() / ("." + folder.filename().string() + ".partial");
   fs::remove_all(partial);
-  write_file(partial / "model.toml", model_file(made, name));
+  write_file(partial / "model.toml",
+             model_file(made.model, name, sim::Conventions::psse(made.conventions.frequency),
+                        "Plant of a blind case, as its owner believes it to be"));
+  if (made.other) {
+    write_file(partial / "other.toml", model_file(*made.other, name + "/2", made.conventions,
+                                                  "The unit recorded with it, as it is"));
+    write_file(partial / "point.toml", point_file(made));
+  }
   for (std::size_t e = 0; e < made.records.size(); ++e)
     write_file(partial / fmt::format("event{}.csv", e + 1), record_csv(made.records[e]));
   fs::rename(partial, folder);

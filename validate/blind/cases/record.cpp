@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "base/constants.hpp"
 #include "sim/library/library.hpp"
@@ -44,14 +45,25 @@ void m_class(sim::Phasors& p, double reports) {
   filter.measure(values.data(), 0, p);
 }
 
-sim::Phasors phasors(const sim::reference::ReferenceRun& fine, double frequency) {
+/// Of all units that are recorded, on the base of the first.
+Complex power(const sim::reference::ReferenceRun& fine, std::span<const double> mva, int k) {
+  Complex sum = 0;
+  for (std::size_t u = 0; u < mva.size(); ++u) {
+    const int unit = static_cast<int>(u);
+    sum += Complex(fine.at(unit, kFineP)[k], fine.at(unit, kFineQ)[k]) * mva[u] / mva[0];
+  }
+  return sum;
+}
+
+sim::Phasors phasors(const sim::reference::ReferenceRun& fine, std::span<const double> mva,
+                     double frequency) {
   sim::Phasors p;
   p.rate = fine.rate;
   p.frequency = frequency;
   for (int k = 0; k < fine.samples; ++k) {
     const Complex v = std::polar(fine.at(0, kFineV)[k], fine.at(0, kFineTheta)[k]);
     p.V.push_back(v);
-    p.I.push_back(std::conj(Complex(fine.at(0, kFineP)[k], fine.at(0, kFineQ)[k]) / v));
+    p.I.push_back(std::conj(power(fine, mva, k) / v));
     const double* theta = fine.at(0, kFineTheta);
     p.df.push_back(k == 0 ? 0.0 : (theta[k] - theta[k - 1]) * fine.rate / (constants::turn * frequency));
   }
@@ -60,13 +72,13 @@ sim::Phasors phasors(const sim::reference::ReferenceRun& fine, double frequency)
 
 }  // namespace
 
-sim::reference::ReferenceRun simulate_fine(const sim::grid::Grid& grid, int plant, const BlindEvent& event,
-                                           const BlindConfig& config) {
+sim::reference::ReferenceRun simulate_fine(const sim::grid::Grid& grid, const std::vector<int>& plants,
+                                           const BlindEvent& event, const BlindConfig& config) {
   sim::reference::ReferenceOptions options;
   options.rate = config.fine_rate;
   const bool class_m = config.conditions.class_m_share > 0;
   options.t_end = event.seconds + (class_m ? kAheadM : kAhead);
-  options.plants = {plant};
+  options.plants = plants;
   options.channels = {sim::Channel::V, sim::Channel::theta, sim::Channel::P,
                       sim::Channel::Q, sim::Channel::speed, sim::Channel::Ifd};
   return sim::reference::run_reference(grid, event.event, options);
@@ -74,8 +86,10 @@ sim::reference::ReferenceRun simulate_fine(const sim::grid::Grid& grid, int plan
 
 record::Record measured(const sim::reference::ReferenceRun& fine, const sim::plant::Plant& plant,
                         const BlindEvent& event, const Conditions& conditions, double frequency,
-                        std::uint64_t seed) {
-  sim::Phasors p = phasors(fine, frequency);
+                        std::uint64_t seed, const sim::plant::Plant* other) {
+  std::vector<double> mva = {plant.mva};
+  if (other) mva.push_back(other->mva);
+  sim::Phasors p = phasors(fine, mva, frequency);
   for (const sim::plant::Block& block : plant.measurements) block.effect->measure(block.p.data(), seed, p);
   if (conditions.filter == Filter::class_p) {
     p.V = p_class(p.V, fine.rate, frequency);

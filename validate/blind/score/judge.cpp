@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 
+#include "validate/event/point.hpp"
 #include "validate/fit/lines.hpp"
 #include "validate/fit/noise.hpp"
 
@@ -68,9 +70,17 @@ BlindVerdict verdict_of(const diagnose::Diagnosis& d) {
 }  // namespace
 
 SeenCase read_seen_case(const fs::path& folder) {
-  SeenCase e{plant::load_plant_model(folder / "model.toml"), {}};
-  for (const auto& file : event_files(folder))
-    e.records.push_back(record::read_record(file, e.model.record_base));
+  const fs::path model = folder / "model.toml", together = folder / "point.toml";
+  SeenCase e{plant::load_plant_model(model), {}};
+  std::optional<event::MeasuredPoint> point;
+  if (fs::exists(together)) {
+    point = event::load_point(together, model);
+    e.model.plant.beyond = event::at_point(*point).beyond;
+  }
+  for (const auto& file : event_files(folder)) {
+    record::Record record = record::read_record(file, e.model.record_base);
+    e.records.push_back(point ? event::of_tried_unit(*point, std::move(record)) : std::move(record));
+  }
   return e;
 }
 

@@ -1,18 +1,35 @@
 #include "validate/compare/detail/fitted.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "validate/fit/fit.hpp"
+#include "validate/fit/noise.hpp"
 #include "validate/fit/voltage_doubt.hpp"
 #include "validate/playin/component.hpp"
 
 namespace swingbank::validate::compare {
+namespace {
+
+/// The same as `white` where the noise of the voltage, as the plant answers it, is in the cost; `white` itself
+/// where that hardly matters.
+fit::Fit in_slow_noise(fit::Fit white, const plant::PlantModel& model, const event::WhitenedEvents& events) {
+  const auto slow = events.with(fit::remember_noise(white, model.conventions, events));
+  if (!slow.noise(0).memory) return white;
+  return std::min(fit::fit(model.under_test(), slow, {}),
+                  fit::fit(model.under_test(), slow, {}, fit::continued({}, white, {})), fit::better);
+}
+
+}  // namespace
 
 void play_fitted(const plant::PlantModel& model, const CompareOptions& options, event::Jumps jumps,
-                 bool start_stands, EventComparison& e) {
+                 Fitted how, EventComparison& e) {
   const auto events = event::prepare_events(
       model, {e.record},
       {.jump_threshold = options.jump_threshold, .pre_event = options.play_in.pre_event, .jumps = jumps});
   const event::FitEvent& event = events.front();
-  const fit::Fit f = fit::fit(model.under_test(), events, {}, {.start_stands = start_stands});
+  fit::Fit f = fit::fit(model.under_test(), events, {}, {.start_stands = how == Fitted::start_stands});
+  if (how == Fitted::in_slow_noise && f.failed.empty()) f = in_slow_noise(std::move(f), model, events);
   if (!f.failed.empty())
     throw InputError({"the model cannot follow the record", e.record.name, f.failed,
                       "check the model's parameters and the record's base and units"});

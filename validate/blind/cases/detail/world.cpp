@@ -15,6 +15,8 @@ namespace {
 constexpr int kBlockTries = 200;  ///< draws of one block until its checks accept it
 
 constexpr const char* kKnownTransformer = "STEPUP:X=0.1";
+constexpr const char* kKnownExciter = "SEXS:K=150";
+constexpr const char* kKnownGovernor = "TGOV1:VMAX=1.2";
 
 [[noreturn]] void refuse(const std::string& what, const std::string& why) {
   throw InputError({what, "blind case", why, "change the kinds in the config"});
@@ -134,7 +136,9 @@ BlindWorld::BlindWorld(const BlindConfig& config, const std::vector<const BlindK
     take_machine(grid_.plants[static_cast<std::size_t>(plant_)],
                  block_of(machines[draw.below(machines.size())]));
   draw_machines(config.spread, draw);
+  recorded_ = {plant_};
   draw_target(config.conditions, draw);
+  split_target(config, draw);
   controlled_ = draw.coin(config.controlled_share);
   if (controlled_) draw_others(draw);
 }
@@ -182,9 +186,9 @@ void BlindWorld::draw_target(const BlindConditions& conditions, BlindDraw& draw)
     return block_of(list.empty() ? otherwise : list[draw.below(list.size())]);
   };
   if (exciter && !has_slot(all, sim::Slot::exciter))
-    known.push_back(one_of(conditions.exciters, "SEXS:K=150"));
+    known.push_back(one_of(conditions.exciters, kKnownExciter));
   if (governor && !has_slot(all, sim::Slot::governor))
-    known.push_back(one_of(conditions.governors, "TGOV1:VMAX=1.2"));
+    known.push_back(one_of(conditions.governors, kKnownGovernor));
   transformed_ = conditions.transformer_share > 0 && draw.coin(conditions.transformer_share) &&
                  !has_slot(all, sim::Slot::transformer);
   if (transformed_) known.push_back(block_of(kKnownTransformer));
@@ -197,9 +201,37 @@ void BlindWorld::draw_target(const BlindConditions& conditions, BlindDraw& draw)
       set_path(plant, grid_.conventions, path, along(path, 0.0, kind->logarithmic));
 }
 
+/// A part of the plant becomes a unit of its own at the same bus, with values and controls of its own. Not
+/// where an instrument's error is hidden: it would be one of the sum, which no hypothesis about one unit says.
+void BlindWorld::split_target(const BlindConfig& config, BlindDraw& draw) {
+  const double share = config.conditions.second_unit_share;
+  const bool instrument =
+      std::ranges::any_of(hidden_, [](const BlindKind* kind) { return kind->side == "measurement"; });
+  if (!(share > 0 && draw.coin(share)) || instrument) return;
+  const double part = draw.uniform(0.3, 0.7);
+  sim::plant::Plant& plant = grid_.plants[static_cast<std::size_t>(plant_)];
+  sim::plant::Plant other = plant;
+  other.name = plant.name + "/2";
+  other.controls.clear();
+  jitter(other.machine, config.spread, draw);
+  std::vector<std::string> controls = config.conditions.controls;
+  if (!converter()) controls = {kKnownExciter, kKnownGovernor};
+  for (const std::string& text : controls) {
+    sim::plant::Block block = block_of(text);
+    jitter(block, 0.15, draw);
+    put(other, block);
+  }
+  other.mva *= part, other.generation *= part;
+  plant.mva *= 1 - part, plant.generation *= 1 - part;
+  other.generator = static_cast<int>(grid_.network.generators.size());
+  grid_.network.generators.push_back(grid_.network.generators[static_cast<std::size_t>(plant.generator)]);
+  recorded_.push_back(static_cast<int>(grid_.plants.size()));
+  grid_.plants.push_back(std::move(other));
+}
+
 void BlindWorld::draw_others(BlindDraw& draw) {
   for (std::size_t i = 0; i < grid_.plants.size(); ++i) {
-    if (static_cast<int>(i) == plant_) continue;
+    if (std::ranges::count(recorded_, static_cast<int>(i))) continue;
     sim::plant::Block exciter = block_of("SEXS:K=50,TE=0.1,EMAX=6,EMIN=-5"),
                       governor = block_of("TGOV1:VMAX=1.5");
     jitter(exciter, 0.3, draw);

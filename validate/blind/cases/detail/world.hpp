@@ -31,12 +31,15 @@ class BlindWorld {
   [[nodiscard]] bool converter() const {
     return grid_.plants[static_cast<std::size_t>(plant_)].machine.effect->converter;
   }
+  /// Indices of the plants whose P and Q are recorded together, that of plant() first.
+  [[nodiscard]] const std::vector<int>& recorded() const { return recorded_; }
   /// Whether a transformer that the model knows stands before the point that is recorded.
   [[nodiscard]] bool transformed() const { return transformed_; }
 
  private:
   void draw_machines(double spread, BlindDraw& draw);
   void draw_target(const BlindConditions& conditions, BlindDraw& draw);
+  void split_target(const BlindConfig& config, BlindDraw& draw);
   void draw_others(BlindDraw& draw);
   void apply(const BlindKind& kind, double scale, sim::grid::Grid& grid) const;
   std::vector<const BlindKind*> hidden_;
@@ -44,6 +47,7 @@ class BlindWorld {
   sim::grid::Grid grid_;
   std::string name_;
   int plant_ = 0;
+  std::vector<int> recorded_;
   bool controlled_ = false, transformed_ = false;
 };
 
@@ -58,15 +62,16 @@ BlindEvent draw_fault(const BlindWorld& world, BlindDraw& draw);
 /// A load step or the loss of another generator.
 BlindEvent draw_frequency_event(const BlindWorld& world, BlindDraw& draw);
 
-/// The plant's own quantities of one event on the fine grid: V, theta, P, Q, speed, Ifd, P and Q on the
+/// The plants' own quantities of one event on the fine grid: V, theta, P, Q, speed, Ifd, P and Q on each
 /// machine's base.
-sim::reference::ReferenceRun simulate_fine(const sim::grid::Grid& grid, int plant, const BlindEvent& event,
-                                           const BlindConfig& config);
+sim::reference::ReferenceRun simulate_fine(const sim::grid::Grid& grid, const std::vector<int>& plants,
+                                           const BlindEvent& event, const BlindConfig& config);
 /// The record that the instruments make of it, without noise: hidden measurement effects and the filter act
-/// on the fine grid, and every n-th sample is taken. P and Q are on kRecordMva.
+/// on the fine grid, and every n-th sample is taken. P and Q are on kRecordMva, and those of `other`, the
+/// run's second plant, are in them if there is one.
 record::Record measured(const sim::reference::ReferenceRun& fine, const sim::plant::Plant& plant,
                         const BlindEvent& event, const Conditions& conditions, double frequency,
-                        std::uint64_t seed);
+                        std::uint64_t seed, const sim::plant::Plant* other = nullptr);
 /// White noise of these standard deviations: `noise` of `mva` on P and Q, the rest as the record's columns.
 struct RecordNoise {
   double power, mva, voltage, speed;

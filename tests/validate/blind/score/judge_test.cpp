@@ -1,0 +1,43 @@
+// What a judge sees of a case.
+#include "validate/blind/score/judge.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "tests/validate/playin/support.hpp"
+#include "validate/blind/cases/case.hpp"
+#include "validate/event/event.hpp"
+#include "validate/fit/fit.hpp"
+
+namespace swingbank::validate::blind::score {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What the right plant leaves of the records that are seen [chi2 per value].
+double left_by(const cases::BlindCase& made, const fs::path& folder) {
+  SeenCase seen = read_seen_case(folder);
+  seen.model.plant.machine.p = made.truth.machine.p;
+  const event::WhitenedEvents events = event::prepare_events(seen.model, seen.records);
+  return fit::fit(seen.model.under_test(), events, {}, {.lenient = true, .errors = false}).misfit();
+}
+
+TEST(SeenCase, TheUnitThatIsRecordedWithItIsTakenOff) {
+  cases::BlindConfig config = cases::load_blind_config(test::source("configs/blind/tiny.toml"));
+  config.conditions.second_unit_share = 1.0;
+  config.channels_share = 0.0;
+  const cases::BlindCase made = cases::make_blind_case(config, {.seed = 11, .index = 1});
+  ASSERT_TRUE(made.other);
+  EXPECT_NE(made.other->machine.p, made.truth.machine.p);
+  const fs::path run = fs::path(testing::TempDir()) / ("seen_case_" + std::to_string(::getpid()));
+  fs::remove_all(run);
+  cases::write_blind_case(made, config, "c0001", run / "c0001", run / "truth.json");
+  // instants alone are fitted, so that little more than noise is left where the right unit stands alone
+  EXPECT_LT(left_by(made, run / "c0001"), 1.2);
+  fs::remove(run / "c0001" / "point.toml");
+  EXPECT_GT(left_by(made, run / "c0001"), 100.0);
+  fs::remove_all(run);
+}
+
+}  // namespace
+}  // namespace swingbank::validate::blind::score
